@@ -1,6 +1,6 @@
 //! [`FlowPlan`]: when the sensors of a flow ring fire. The gaps of a cycle are decided in `planning`.
 
-use super::settings::FlowSettings;
+use super::settings::{FlowSettings, Pace};
 use super::slot::{DISABLED, QUIET_US, SETTLED, Slot};
 use crate::hopping::{CATCHES_UP, HoppingCode, HoppingError, HoppingListening, Lateness, Weighed};
 use crate::judging::{Firing, Heard, Judge};
@@ -39,10 +39,8 @@ pub struct FlowPlan<const K: usize> {
     /// One unit of the grid.
     pub(super) unit: Micros,
     pub(super) window: Micros,
-    /// From a firing until nothing of it is heard in a window that opens then: the most quiet that a sensor gets.
-    dies: Micros,
     tolerated: u16,
-    pub(super) settings: FlowSettings,
+    pub(super) pace: Pace,
     pub(super) slots: [Slot; K],
 }
 
@@ -75,6 +73,9 @@ impl<const K: usize> FlowPlan<K> {
         if settings.shortest_cycle < least || settings.shortest_cycle > MAX_PERIOD {
             return Err(HoppingError::Period { period: settings.shortest_cycle, least });
         }
+        // Nothing of a firing is heard in a window that opens so much later; the waits of two may bring them closer by
+        // the width of the code.
+        let pace = Pace::of(&settings, listening.dies().saturating_add(code.width()));
         let mut plan = Self {
             next: NOBODY,
             place: 0,
@@ -91,11 +92,10 @@ impl<const K: usize> FlowPlan<K> {
             fastest: 0,
             unit: code.width().saturating_add(code.step()).saturating_add(code.step()),
             window: listening.window,
-            dies: listening.dies(),
             tolerated: (code.step().abs_diff(t_delta).as_micros().saturating_sub(1) / 2) as u16,
-            slots: [Slot::new(quiet(settings.shortest_gap)); K],
+            slots: [Slot::new(pace.least); K],
             code,
-            settings,
+            pace,
         };
         for turn in 0..sensors as u8 {
             let sensor = plan.sensor_of(turn);
@@ -188,12 +188,6 @@ impl<const K: usize> FlowPlan<K> {
         self.lateness.break_off();
         self.changed = true;
     }
-}
-
-/// A time in units of quiet.
-pub(super) const fn quiet(time: Micros) -> u8 {
-    let units = time.as_micros() / QUIET_US;
-    if units > 255 { 255 } else { units as u8 }
 }
 
 impl<const K: usize> Plan for FlowPlan<K> {
@@ -307,7 +301,7 @@ impl<const K: usize> Plan for FlowPlan<K> {
         self.break_off();
         self.place = 0;
         self.planned = 0;
-        self.length = self.settings.shortest_cycle;
+        self.length = self.pace.shortest_cycle;
         self.find_due();
     }
 
@@ -326,35 +320,31 @@ impl<const K: usize> Plan for FlowPlan<K> {
     }
 
     fn horizon(&self) -> Micros {
-        let longest = self.settings.longest_cycle.max(self.settings.shortest_cycle);
+        let longest = self.pace.longest_cycle;
         longest.saturating_add(longest).saturating_add(self.window)
     }
 }
 
 impl<const K: usize> FlowPlan<K> {
-    /// Raises or lowers a sensor's quiet.
+    /// Raises a sensor's quiet if others fooled it or nothing of it is believed, lowers it if its reading is.
     fn learn(&mut self, heard: &Heard<'_>, verdict: &Verdict, judge: &impl Judge) {
         let sensor = heard.sensor;
         let change = heard.firing.expected_change_us.unsigned_abs();
         self.fastest = self.fastest.max(change);
-        let settings = self.settings;
-        // The waits of two firings may bring them closer by the width of the code.
-        let most = quiet(self.dies.saturating_add(self.code.width()));
-        let least = quiet(settings.shortest_gap).min(most);
+        let pace = self.pace;
         let echo = heard.echoes.first().copied();
         let believed = judge.believed(sensor);
         let clear = judge.is_clear(sensor);
         let gap_after = self.gap_after(sensor);
         let Some(slot) = self.slots.get_mut(usize::from(sensor)) else { return };
-        let raise = |quiet: &mut u8, by: u8| *quiet = quiet.saturating_add(by).min(most);
+        let raise = |quiet: &mut u8, by: u8| *quiet = quiet.saturating_add(by).min(pace.most);
         match verdict.kind {
             // Neither silence nor quiet helps a sensor that is not heard.
             ReadingKind::Stuck | ReadingKind::Unanswered => return,
             ReadingKind::Accepted | ReadingKind::Clear => {
                 slot.unserved = 0;
-                let takes = quiet(settings.believed_takes);
-                slot.before = slot.before.saturating_sub(takes).max(least);
-                slot.after = slot.after.saturating_sub(takes).max(least);
+                slot.before = slot.before.saturating_sub(pace.believed_takes).max(pace.least);
+                slot.after = slot.after.saturating_sub(pace.believed_takes).max(pace.least);
                 return;
             }
             ReadingKind::Tentative => {
@@ -370,14 +360,14 @@ impl<const K: usize> FlowPlan<K> {
             (None, _) => false,
         };
         if let (true, Some(echo)) = (masked, echo) {
-            raise(&mut slot.before, quiet(settings.masked_adds));
+            raise(&mut slot.before, pace.masked_adds);
             if echo > gap_after {
-                raise(&mut slot.after, quiet(settings.masked_adds));
+                raise(&mut slot.after, pace.masked_adds);
             }
         }
-        if slot.unserved % settings.unserved_after.max(1) == 0 {
-            raise(&mut slot.before, quiet(settings.unserved_adds));
-            raise(&mut slot.after, quiet(settings.unserved_adds));
+        if slot.unserved % pace.unserved_after.max(1) == 0 {
+            raise(&mut slot.before, pace.unserved_adds);
+            raise(&mut slot.after, pace.unserved_adds);
         }
     }
 

@@ -1,6 +1,6 @@
 //! The gaps of the next cycle of a flow ring.
 
-use super::plan::{FlowPlan, quiet};
+use super::plan::FlowPlan;
 use super::slot::{FIRED, GIVEN, QUIET_US};
 use crate::hopping::CATCHES_UP;
 use crate::plan::Plan;
@@ -19,18 +19,18 @@ impl<const K: usize> FlowPlan<K> {
 
     /// The longest that this cycle may take: the shorter the faster the robot moved in the last.
     fn longest_cycle(&self) -> Micros {
-        let settings = &self.settings;
-        let travel = settings.travel.as_micros();
+        let pace = &self.pace;
+        let travel = u32::from(pace.travel_us);
         // Changes are at most 65,535 us where they count.
         let most = match self.fastest {
-            0 => settings.longest_cycle,
-            fastest if fastest <= travel && self.length >= settings.longest_cycle => settings.longest_cycle,
+            0 => pace.longest_cycle,
+            fastest if fastest <= travel && self.length >= pace.longest_cycle => pace.longest_cycle,
             fastest => {
                 let length = u64::from(self.length.as_micros()) * u64::from(travel) / u64::from(fastest);
-                Micros::new(u32::try_from(length).unwrap_or(u32::MAX)).min(settings.longest_cycle)
+                Micros::new(u32::try_from(length).unwrap_or(u32::MAX)).min(pace.longest_cycle)
             }
         };
-        most.max(settings.shortest_cycle)
+        most.max(pace.shortest_cycle)
     }
 
     /// A time in units of the grid.
@@ -82,7 +82,7 @@ impl<const K: usize> FlowPlan<K> {
 
     /// Gives each firing the gap to the next, within `most` units in all.
     fn give_gaps(&mut self, most: u32) {
-        let least = self.quiet_units(quiet(self.settings.shortest_gap)).max(1);
+        let least = self.quiet_units(self.pace.least).max(1);
         let mut sum = 0;
         for place in 0..self.planned {
             let gap = self.need(place).max(least);
@@ -167,7 +167,7 @@ impl<const K: usize> FlowPlan<K> {
             }
             at = at.saturating_add(u16::from(self.gap(place)));
         }
-        let units = u32::from(at).max(self.units(self.settings.shortest_cycle, true));
+        let units = u32::from(at).max(self.units(self.pace.shortest_cycle, true));
         self.length = Micros::new(units.saturating_mul(self.unit.as_micros()));
     }
 

@@ -1,5 +1,6 @@
 //! [`FlowSettings`]: how a flow ring spaces its firings and weighs its readings.
 
+use super::slot::quiet;
 use crate::time::Micros;
 use crate::tracker::TrackerSettings;
 
@@ -52,5 +53,38 @@ impl FlowSettings {
 impl Default for FlowSettings {
     fn default() -> Self {
         Self::DEFAULT
+    }
+}
+
+/// The settings that are about firing, as the plan keeps them: the tracker has the others.
+#[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub(super) struct Pace {
+    pub(super) least: u8,
+    pub(super) most: u8,
+    pub(super) masked_adds: u8,
+    pub(super) believed_takes: u8,
+    pub(super) unserved_adds: u8,
+    pub(super) unserved_after: u8,
+    pub(super) travel_us: u16,
+    pub(super) shortest_cycle: Micros,
+    pub(super) longest_cycle: Micros,
+}
+
+impl Pace {
+    /// `longest`: the most quiet that helps.
+    pub(super) fn of(settings: &FlowSettings, longest: Micros) -> Self {
+        let most = quiet(longest);
+        Self {
+            least: quiet(settings.shortest_gap).min(most),
+            most,
+            masked_adds: quiet(settings.masked_adds),
+            believed_takes: quiet(settings.believed_takes),
+            unserved_adds: quiet(settings.unserved_adds),
+            unserved_after: settings.unserved_after.max(1),
+            travel_us: u16::try_from(settings.travel.as_micros()).unwrap_or(u16::MAX),
+            shortest_cycle: settings.shortest_cycle,
+            longest_cycle: settings.longest_cycle.max(settings.shortest_cycle),
+        }
     }
 }

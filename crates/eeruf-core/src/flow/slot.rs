@@ -1,5 +1,7 @@
 //! [`Slot`]: what a flow ring knows of one sensor's firings.
 
+use crate::time::Micros;
+
 /// One sensor's firings: twelve bytes.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -27,6 +29,12 @@ pub(super) struct Slot {
 
 /// The unit of quiet, in microseconds.
 pub(super) const QUIET_US: u32 = 256;
+
+/// A time in units of quiet.
+pub(super) const fn quiet(time: Micros) -> u8 {
+    let units = time.as_micros() / QUIET_US;
+    if units > 255 { 255 } else { units as u8 }
+}
 
 /// It has fired since the start.
 pub(super) const FIRED: u8 = 1;

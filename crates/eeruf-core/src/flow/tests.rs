@@ -74,6 +74,11 @@ fn flow_keeps_what_every_plan_promises() {
 }
 
 #[test]
+fn a_flow_ring_of_twelve_takes_912_bytes() {
+    assert_eq!(size_of::<FlowRing<12>>(), 912);
+}
+
+#[test]
 fn a_ring_that_is_believed_fires_each_sensor_once_in_the_shortest_cycle() {
     let (mut plan, mut fired) = (plan::<8>(8), [Instant::from_micros(0); 8]);
     for _ in 0..20 {

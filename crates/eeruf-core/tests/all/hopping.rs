@@ -3,9 +3,12 @@
 //! fixed time later.
 
 use eeruf_core::{
-    Instant, MAX_PERIOD, Micros, Phase, ReadingKind, RingEvent, Tally,
+    Instant, MAX_PERIOD, Micros, Phase, ReadingKind, Ring, RingEvent, Tally,
+    flow::{FlowRing, FlowSettings},
     hopping::{HoppingCode, HoppingError, HoppingListening, HoppingRing, HoppingSchedule, HoppingSettings},
+    judge::Judge,
     phases::{Audible, PhaseRequirements, PhaseTable},
+    plan::Plan,
 };
 use proptest::prelude::*;
 
@@ -42,9 +45,20 @@ fn readings(
     let code = HoppingCode::new(SENSORS, 2, Micros::new(step)).unwrap();
     let schedule = HoppingSchedule::<SENSORS>::spread(code, Micros::new(60_000)).unwrap();
     let listening = HoppingListening::new(Micros::new(WINDOW)).with_blanking(Micros::new(BLANKING));
-    let mut random = Random(seed);
     let start = Instant::from_micros(0);
-    let mut ring = HoppingRing::<SENSORS>::hopping(&schedule, settings, listening, seed as u32, start).unwrap();
+    let ring = HoppingRing::<SENSORS>::hopping(&schedule, settings, listening, seed as u32, start).unwrap();
+    readings_of(ring, paths, late, seed, periods)
+}
+
+/// The same of any ring.
+fn readings_of<P: Plan, J: Judge>(
+    mut ring: Ring<P, J, SENSORS, 1, 1>,
+    paths: &[Path],
+    late: Late,
+    seed: u64,
+    periods: u32,
+) -> Vec<ReadingKind> {
+    let mut random = Random(seed);
     let (mut kinds, mut arrivals, mut ended) = (Vec::new(), Vec::<(u32, u8)>::new(), 0);
     while ended < periods {
         let stall = if random.up_to(39) == 0 { random.up_to(late.stall) } else { 0 };
@@ -105,6 +119,23 @@ proptest! {
     ) {
         let path = Path { from, to: (from + further) % 8, length };
         let kinds = readings(&[path], 240, settings, Late { each, stall }, seed, 150);
+        prop_assert!(kinds.len() > 20);
+        prop_assert_eq!(accepted_or_tentative(&kinds), 0);
+    }
+
+    #[test]
+    fn flow_never_believes_one_path_whatever_the_lateness(
+        from in 0..8_u8,
+        further in 1..8_u8,
+        length in 0..=WINDOW,
+        each in prop_oneof![Just(0_u32), 0..100_u32, 0..2000_u32],
+        stall in prop_oneof![Just(0_u32), 0..3000_u32, 0..200_000_u32],
+        seed in any::<u64>(),
+    ) {
+        let path = Path { from, to: (from + further) % 8, length };
+        let listening = HoppingListening::new(Micros::new(WINDOW)).with_blanking(Micros::new(BLANKING));
+        let ring = FlowRing::<SENSORS>::flow(SENSORS, FlowSettings::DEFAULT, listening, Instant::from_micros(0)).unwrap();
+        let kinds = readings_of(ring, &[path], Late { each, stall }, seed, 150);
         prop_assert!(kinds.len() > 20);
         prop_assert_eq!(accepted_or_tentative(&kinds), 0);
     }

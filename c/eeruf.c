@@ -18,7 +18,7 @@ SIZE_IS(EerufLimits, 7);
 #if EERUF_HOPPING
 SIZE_IS(EerufRing, 73);
 SIZE_IS(EerufHopSensor, 16);
-SIZE_IS(EerufHopper, 57);
+SIZE_IS(EerufHopper, 62);
 #endif
 #else
 SIZE_IS(EerufSensor, 16 + 4 * EERUF_FIRINGS);

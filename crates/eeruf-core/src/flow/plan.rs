@@ -48,9 +48,9 @@ impl<const K: usize> FlowPlan<K> {
     /// A plan whose first cycle begins at `now`.
     ///
     /// # Errors
-    /// [`HoppingError`] for more sensors than there is room for, a code as in [`HoppingCode::new`], a step no larger than
-    /// `t_delta`, a window longer than [`HoppingListening::MAX_WINDOW`], or a shortest cycle that is shorter than window
-    /// and code or longer than [`MAX_PERIOD`].
+    /// [`HoppingError`] for more sensors than there is room for, a code as in [`HoppingCode::new`], a step no larger
+    /// than `t_delta`, a window longer than [`HoppingListening::MAX_WINDOW`], or a shortest cycle that is shorter than
+    /// window and code or longer than [`MAX_PERIOD`].
     pub fn new(
         sensors: usize,
         settings: FlowSettings,

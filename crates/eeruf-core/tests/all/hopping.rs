@@ -134,7 +134,8 @@ proptest! {
     ) {
         let path = Path { from, to: (from + further) % 8, length };
         let listening = HoppingListening::new(Micros::new(WINDOW)).with_blanking(Micros::new(BLANKING));
-        let ring = FlowRing::<SENSORS>::flow(SENSORS, FlowSettings::DEFAULT, listening, Instant::from_micros(0)).unwrap();
+        let start = Instant::from_micros(0);
+        let ring = FlowRing::<SENSORS>::flow(SENSORS, FlowSettings::DEFAULT, listening, start).unwrap();
         let kinds = readings_of(ring, &[path], Late { each, stall }, seed, 150);
         prop_assert!(kinds.len() > 20);
         prop_assert_eq!(accepted_or_tentative(&kinds), 0);

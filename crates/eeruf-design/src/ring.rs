@@ -73,7 +73,7 @@ struct PlaceFile {
 /// What a ring file asks for.
 #[derive(Clone, Debug)]
 pub struct RingSpec {
-    /// How many sensors, 1 to 64.
+    /// Number of sensors, 1 to 64.
     pub sensors: usize,
     /// All times are multiples of this.
     pub tick: Micros,
@@ -146,7 +146,7 @@ impl RingSpec {
     }
 }
 
-/// What a ring file says of a robot in a scene: how [`World::from_text_with`](eeruf_sim::World::from_text_with) reads
+/// The robot of a ring file in a scene, as [`World::from_text_with`](eeruf_sim::World::from_text_with) reads
 /// one.
 ///
 /// # Errors

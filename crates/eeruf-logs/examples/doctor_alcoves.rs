@@ -1,4 +1,4 @@
-//! How often the doctor of `eeruf logs` is right, on logs of alcoves of Set I, where the simulator knows whose sound
+//! Rates of the doctor of `eeruf logs`, on logs of alcoves of Set I, where the simulator knows whose sound
 //! each reading is:
 //! `cargo run --release -p eeruf-logs --example doctor_alcoves -- [FIRST [ALCOVES [PERIODS [PHYSICS]]]]`.
 //!
@@ -45,7 +45,7 @@ fn world(number: u64, drives: bool, physics: Physics, sensor: Option<usize>) -> 
     Ok(World::new(alcove.scene()?, vec![robot], Noise::default())?.with_physics(physics)?)
 }
 
-/// What the doctor says of readings: sensor, firing in seconds and echo in microseconds.
+/// The doctor's findings on readings: sensor, firing in seconds and echo in microseconds.
 fn examine(readings: &[(u8, f64, f64)], speed_of_sound: f64) -> Result<Examination, Box<dyn Error>> {
     let mut text = "time_us,sensor,range_m\n".to_owned();
     for (sensor, fired_s, echo_us) in readings {

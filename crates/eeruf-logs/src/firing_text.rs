@@ -39,7 +39,7 @@ struct Header {
     weighed: Option<Columns>,
 }
 
-/// Why a line gives no firing: a column, if it is one, and what is wrong.
+/// The reason that a line gives no firing: a column, if it is one, and what is wrong.
 type Wrong = (Option<usize>, String);
 
 impl Header {

@@ -26,7 +26,7 @@ pub(crate) fn is_serial(first: &[u8]) -> bool {
     whole >= 2 && whole > damaged
 }
 
-/// What a recording holds beside its firings.
+/// Contents of a recording beside its firings.
 #[derive(Default)]
 struct Line {
     clock: String,

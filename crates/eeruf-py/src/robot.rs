@@ -191,7 +191,7 @@ fn sketch(value: &Bound<'_, PyAny>) -> PyResult<Sketch> {
     Sketch::from_table(&table).map_err(|message| ArgumentError::new_err(format!("firing: {message}")))
 }
 
-/// What a ring file says of a robot.
+/// The robot of a ring file.
 fn ring_file(path: &Bound<'_, PyAny>) -> PyResult<RobotRing> {
     let path: PathBuf = path.extract().map_err(|_| wrong("ring", shown(path), "the path of a ring file"))?;
     let failed = |message: &dyn std::fmt::Display| ArgumentError::new_err(format!("{}: {message}", path.display()));

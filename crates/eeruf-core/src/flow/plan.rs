@@ -1,7 +1,7 @@
 //! [`FlowPlan`]: when the sensors of a flow ring fire. The gaps of a cycle are decided in `planning`.
 
 use super::settings::{FlowSettings, Pace};
-use super::slot::{DISABLED, QUIET_US, SETTLED, Slot};
+use super::slot::{DISABLED, QUIET_US, Slot};
 use crate::hopping::{CATCHES_UP, HoppingCode, HoppingError, HoppingListening, Lateness, Weighed};
 use crate::judging::{Firing, Heard, Judge};
 use crate::plan::{Limits, Plan};
@@ -26,8 +26,6 @@ pub struct FlowPlan<const K: usize> {
     changed: bool,
     changes: u8,
     paused: bool,
-    /// The cycle before has kept its timetable, or nothing is heard of it.
-    settled: bool,
     pub(super) start: Instant,
     due: Instant,
     lateness: Lateness,
@@ -84,7 +82,6 @@ impl<const K: usize> FlowPlan<K> {
             changed: false,
             changes: 0,
             paused: false,
-            settled: true,
             start: now,
             due: now,
             lateness: Lateness::NEW,
@@ -97,12 +94,13 @@ impl<const K: usize> FlowPlan<K> {
             code,
             pace,
         };
-        for turn in 0..sensors as u8 {
-            let sensor = plan.sensor_of(turn);
+        let mut sensor = 0;
+        for turn in 0..sensors {
             if let Some(slot) = plan.slots.get_mut(usize::from(sensor)) {
                 // In the order of firing: only the sensor that fires before it, in the cycle before, moves as it does.
-                slot.place = code.place(turn.into(), 0);
+                slot.place = code.place(turn, 0);
             }
+            sensor = plan.sensor_after(sensor);
         }
         plan.plan(|_| now);
         Ok(plan)
@@ -202,9 +200,9 @@ impl<const K: usize> Plan for FlowPlan<K> {
     #[inline(always)]
     fn fire(&mut self, now: Instant) {
         let (sensor, late) = (self.next, now.since(self.due));
-        let (phase, settled) = (self.phase, self.settled);
+        let phase = self.phase;
         let Some(slot) = self.slots.get_mut(usize::from(sensor)) else { return };
-        slot.fire(phase, settled);
+        slot.fire(phase);
         if late == Micros::ZERO {
             self.lateness.note_punctual();
         }
@@ -294,9 +292,6 @@ impl<const K: usize> Plan for FlowPlan<K> {
     }
 
     fn restart(&mut self, now: Instant) {
-        for slot in &mut self.slots {
-            slot.set(SETTLED, false);
-        }
         self.start = now;
         self.break_off();
         self.place = 0;
@@ -307,7 +302,7 @@ impl<const K: usize> Plan for FlowPlan<K> {
 
     fn last_firing(&self, sensor: u8, _periods_ago: u8) -> Firing {
         let Some(slot) = self.slots.get(usize::from(sensor)) else { return Firing::new(Phase(0)) };
-        let steady = slot.is(SETTLED) && self.lateness.is_steady(slot.late, self.tolerated);
+        let steady = self.lateness.is_steady(slot.late, self.tolerated);
         Firing { steady, ..Firing::new(Phase(slot.phase)) }
     }
 

@@ -44,39 +44,26 @@ impl<const K: usize> FlowPlan<K> {
         self.units(Micros::new(u32::from(quiet) * QUIET_US), true).min(255) as u8
     }
 
-    /// The sensor that fires in a turn, if all do: each as far from the one before as the ring allows, since neighbours
-    /// hear each other loudest.
-    pub(super) fn sensor_of(&self, turn: u8) -> u8 {
+    /// The sensor after one in the order of firing, if all do: as far from it as the ring allows, since neighbours hear
+    /// each other loudest.
+    pub(super) fn sensor_after(&self, sensor: u8) -> u8 {
         let sensors = self.code.sensors() as u8;
-        let stride = stride(sensors);
-        let (mut sensor, mut left) = (0, turn);
-        while left > 0 {
-            sensor += stride;
-            if sensor >= sensors {
-                sensor -= sensors;
-            }
-            left -= 1;
-        }
-        sensor
+        let next = sensor + stride(sensors);
+        if next >= sensors { next - sensors } else { next }
     }
 
     /// Lists the sensors that fire.
     fn put_in_order(&mut self) {
-        let sensors = self.code.sensors() as u8;
-        let stride = stride(sensors);
         self.planned = 0;
         let mut sensor = 0;
-        for _ in 0..sensors {
+        for _ in 0..self.code.sensors() {
             if self.is_enabled(sensor) {
                 if let Some(slot) = self.slots.get_mut(usize::from(self.planned)) {
                     slot.order = sensor;
                     self.planned += 1;
                 }
             }
-            sensor += stride;
-            if sensor >= sensors {
-                sensor -= sensors;
-            }
+            sensor = self.sensor_after(sensor);
         }
     }
 
@@ -171,7 +158,7 @@ impl<const K: usize> FlowPlan<K> {
         self.length = Micros::new(units.saturating_mul(self.unit.as_micros()));
     }
 
-    /// How long after the cycle's start a sensor that has last `fired` then still listens.
+    /// Time after the cycle's start for which a sensor that has last `fired` then still listens.
     fn rests_for(&self, sensor: u8, fired: Instant) -> Micros {
         let rested = fired + self.window;
         let rests = if self.start.has_reached(rested) { Micros::ZERO } else { rested.since(self.start) };

@@ -4,16 +4,16 @@ use super::slot::quiet;
 use crate::time::Micros;
 use crate::tracker::TrackerSettings;
 
-/// How a [`FlowRing`](super::FlowRing) fires and believes.
+/// The gaps of a [`FlowRing`](super::FlowRing) and the weights of its readings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub struct FlowSettings {
-    /// How readings are weighed.
+    /// Weights of readings.
     pub tracker: TrackerSettings,
     /// Step of the code: crosstalk moves by at least as much from phase to phase. Above the tracker's `t_delta`.
     pub step: Micros,
-    /// Least time between two firings, at most [`LONGEST_GAP`](Self::LONGEST_GAP) as all times of quiet.
+    /// Least time between two firings, at most 65 ms, as all times of quiet.
     pub shortest_gap: Micros,
     /// Quiet that a reading adds that comes before what is believed.
     pub masked_adds: Micros,
@@ -32,9 +32,6 @@ pub struct FlowSettings {
 }
 
 impl FlowSettings {
-    /// Longest time of quiet: 65 ms.
-    pub const LONGEST_GAP: Micros = Micros::new(255 << 8);
-
     /// For every robot.
     pub const DEFAULT: Self = Self {
         tracker: TrackerSettings::BALANCED.with_memory(5),

@@ -38,12 +38,10 @@ pub(super) const fn quiet(time: Micros) -> u8 {
 
 /// It has fired since the start.
 pub(super) const FIRED: u8 = 1;
-/// What it hears of its last firing moves as the code says.
-pub(super) const SETTLED: u8 = 2;
 /// It does not fire.
-pub(super) const DISABLED: u8 = 4;
+pub(super) const DISABLED: u8 = 2;
 /// The gaps around it were raised to its need.
-pub(super) const GIVEN: u8 = 8;
+pub(super) const GIVEN: u8 = 4;
 
 impl Slot {
     pub(super) const fn new(quiet: u8) -> Self {
@@ -71,10 +69,9 @@ impl Slot {
 
     /// It fires, on time.
     #[inline(always)]
-    pub(super) fn fire(&mut self, phase: u8, settled: bool) {
-        let settled = if settled { SETTLED } else { 0 };
+    pub(super) fn fire(&mut self, phase: u8) {
         (self.late, self.phase) = (0, phase);
-        self.flags = (self.flags & !SETTLED) | FIRED | settled;
+        self.flags |= FIRED;
     }
 }
 

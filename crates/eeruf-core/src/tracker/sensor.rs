@@ -40,7 +40,7 @@ pub(super) struct SensorTracks<const H: usize> {
     tracks: [Track; H],
     /// Firings since the last accepted reading.
     age: u16,
-    /// How much more than the expected change there is, in 1/64 of it, as consecutive readings showed so far:
+    /// The excess over the expected change, in 1/64 of it, that consecutive readings showed so far:
     /// a wall that it sees at a slant comes nearer more slowly than one straight ahead, or faster.
     surplus: i8,
     /// The surplus that two consecutive readings showed last, or [`UNKNOWN`].

@@ -3,7 +3,7 @@
 
 use super::series::Series;
 
-/// How two sensors agree.
+/// The agreement of two sensors.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Mirrored {
     /// Firings in which both have an echo.

@@ -20,7 +20,7 @@ const DEVIATIONS: f64 = 4.0;
 /// And if this share of the readings does.
 const LEAST_SHARE: f64 = 0.05;
 
-/// What the log says of crosstalk.
+/// The verdict of a log on crosstalk.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Verdict {
     /// Sensors read each other's sound.
@@ -43,7 +43,7 @@ impl Verdict {
     }
 }
 
-/// What the doctor finds in a log.
+/// The findings of the doctor in a log.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Examination {
     /// The verdict.
@@ -52,11 +52,11 @@ pub struct Examination {
     pub fooled: Vec<usize>,
     /// Pairs of sensors that read each other's sound.
     pub pairs: Vec<(usize, usize)>,
-    /// Why, one sentence each.
+    /// The reasons, one sentence each.
     pub reasons: Vec<String>,
-    /// What to record, if the log does not tell.
+    /// Advice on what to record, if the log cannot tell.
     pub record: Option<String>,
-    /// What else strikes of single sensors, one sentence each.
+    /// Remarks on single sensors, one sentence each.
     pub notes: Vec<String>,
 }
 

@@ -1,4 +1,4 @@
-//! What strikes of a single sensor, without the others.
+//! Remarks on a single sensor, without the others.
 
 use super::series::{Series, Steady};
 

@@ -94,8 +94,8 @@ impl Series {
         Some((lags.iter().map(|lag| (!lag.is_nan()).then_some(*lag > threshold)).collect(), gap))
     }
 
-    /// How the readings fall in two classes of firings: by steady value, or without echo, if the sensor stands; else by
-    /// whether a reading lies before, on or behind the line between its neighbours, which are of the other class.
+    /// Counts of the readings in two classes of firings: by steady value, or without echo, if the sensor stands; else
+    /// by whether a reading lies before, on or behind the line between its neighbours, which are of the other class.
     pub(crate) fn by_class(&self, classes: &[Option<bool>]) -> Contingency {
         if !self.moves() {
             let values = self.steady();

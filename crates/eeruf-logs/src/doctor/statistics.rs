@@ -1,6 +1,6 @@
 //! The tests of the doctor, each with a stated rate of false alarms.
 
-/// How a reading falls, counted for each of two classes: `[class][category]`.
+/// Counts of readings for each of two classes: `[class][category]`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Contingency {
     counts: [Vec<u32>; 2],
@@ -37,7 +37,7 @@ impl Contingency {
         0.5 * differences.sum::<f64>()
     }
 
-    /// How many standard deviations of a normal variable the chi-square statistic of independence is worth. Categories
+    /// The chi-square statistic of independence in standard deviations of a normal variable. Categories
     /// of which fewer than 5 are expected in a class are taken together.
     pub(crate) fn deviations(&self) -> f64 {
         let [a, b] = self.totals();

@@ -27,7 +27,7 @@ struct Row {
     name: &'static str,
     /// Whether it is EERUF: waits alternate, and readings are compared.
     eeruf: bool,
-    /// Whether it fires by a robot's [`Sketch`](crate::Sketch).
+    /// True if it fires by a robot's [`Sketch`](crate::Sketch).
     sketch: bool,
     /// The schedule that a robot's ring starts with; for dither the lags alone.
     schedule: fn(&ScheduleQuery<'_>) -> Made,

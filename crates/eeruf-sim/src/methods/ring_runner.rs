@@ -150,7 +150,7 @@ pub(crate) struct RingStart<'s> {
     pub(crate) plan: &'s FiringPlan,
     /// How a hopping ring fires and believes.
     pub(crate) hopping: HoppingSettings,
-    /// How a flow ring does.
+    /// Settings of a flow ring.
     pub(crate) flow: FlowSettings,
     pub(crate) random: Random,
     pub(crate) now: Instant,

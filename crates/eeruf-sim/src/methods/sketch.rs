@@ -162,7 +162,7 @@ struct LanePlan {
     triggered: [Option<Instant>; MAX_SENSORS],
     enabled: [bool; MAX_SENSORS],
     paused: bool,
-    /// How often a period ends, which is nothing to the firing.
+    /// Time between ends of periods, which is nothing to the firing.
     period: Micros,
     period_start: Instant,
 }

@@ -20,7 +20,7 @@ pub struct Options {
     /// How [`Method::EerufHopping`](crate::Method::EerufHopping) fires and believes; how many sensors are neighbours,
     /// the robot says. The default is [`HoppingSettings::BALANCED`].
     pub hopping: HoppingSettings,
-    /// How [`Method::Flow`](crate::Method::Flow) fires and believes; the robot's period is its shortest cycle. The
+    /// Settings of [`Method::Flow`](crate::Method::Flow); the robot's period is its shortest cycle. The
     /// default is [`FlowSettings::DEFAULT`].
     pub flow: FlowSettings,
 }

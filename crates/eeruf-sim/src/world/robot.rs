@@ -78,7 +78,7 @@ pub struct Robot {
     /// [`window`](Self::window) and [`t_delta`](Self::t_delta) are then the largest, which other methods use for all.
     /// Empty, as by default, where they are alike.
     pub limits: Vec<SensorLimits>,
-    /// How its sketch fires.
+    /// Its firing as a sketch does it.
     pub firing: Sketch,
     /// The time for which sound is heard after it was sent, as far as methods that fire one by one allow for it: that
     /// of its modules where they are [given](Self::with_modules). The default is 0: no longer than sensors listen.

@@ -44,7 +44,7 @@ pub struct Brief {
     pub belief_right: Option<Spread>,
 }
 
-/// What one placing gave.
+/// The result of one placing.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Run {
     others_of_accepted: Option<f64>,

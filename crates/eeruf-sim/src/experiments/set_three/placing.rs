@@ -13,15 +13,15 @@ use crate::{
     world::{Clock, Motion, Random, Robot},
 };
 
-/// How many sensors a ring has, evenly around the robot: as many as the paper's table.
+/// Number of sensors of a ring, evenly around the robot: as many as the paper's table.
 pub const SENSORS: usize = 12;
 /// The period of the rings: that of the paper's table.
 pub const PERIOD: Micros = Micros::from_millis(100);
-/// How fast robots drive that do, in m/s: a choice.
+/// Speed of robots that drive, in m/s: a choice.
 pub const SPEED_M_S: f64 = 0.5;
 /// The largest drift of a robot's clock, in millionths: a choice, that of a cheap quartz.
 pub const DRIFT_PPM: f64 = 50.0;
-/// How near two robots stand to each other, from middle to middle.
+/// Distance of robots that stand beside each other, from middle to middle.
 const NEAREST_M: f64 = 1.4;
 /// And how far neighbours in a row are from each other at most.
 const FARTHEST_M: f64 = 2.6;
@@ -36,7 +36,7 @@ pub enum Place {
     Hall,
 }
 
-/// How robots are to each other.
+/// Arrangement of the robots.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Arrangement {
@@ -53,7 +53,7 @@ pub enum Arrangement {
 pub struct Placing {
     /// Where they are.
     pub place: Place,
-    /// How they are to each other.
+    /// Their arrangement.
     pub arrangement: Arrangement,
     /// The robots, two to six.
     pub robots: Vec<Robot>,

@@ -17,10 +17,10 @@ use crate::{
     world::{Noise, World, WorldError},
 };
 
-/// What is asked of Set III.
+/// Options of Set III.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SetThreeOptions {
-    /// How many placings. The default is 200.
+    /// Number of placings. The default is 200.
     pub seeds: u64,
     /// The first placing's number. The default is [`FIRST`]: parameters were tuned on numbers below 2,000.
     pub first: u64,
@@ -55,14 +55,14 @@ impl Default for SetThreeOptions {
 pub struct SetThree {
     /// The first placing's number.
     pub first: u64,
-    /// How many placings.
+    /// Number of placings.
     pub seeds: u64,
     /// Which effects the rooms had.
     pub physics: Physics,
     /// Their height and the rings' gain.
     #[serde(flatten)]
     pub conditions: Conditions,
-    /// How many periods each was simulated for.
+    /// Periods that each was simulated for.
     pub periods: u32,
     /// The ways in the order asked for, with their figures over all placings.
     #[serde(serialize_with = "by_way")]
@@ -77,13 +77,13 @@ pub struct Group {
     /// Where they are; none for anywhere.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub place: Option<Place>,
-    /// How they are to each other; none for anyhow.
+    /// Their arrangement; none for any.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub arrangement: Option<Arrangement>,
-    /// How many robots there are; none for any number.
+    /// Number of robots; none for any number.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub robots: Option<usize>,
-    /// How many placings these are.
+    /// Number of these placings.
     pub placings: usize,
     /// The ways in the order asked for, with their figures over these placings.
     #[serde(serialize_with = "by_way")]

@@ -46,7 +46,7 @@ impl Way {
         }
     }
 
-    /// How it hops, if it does.
+    /// Settings of time hopping, if it hops.
     pub const fn hopping(self) -> HoppingSettings {
         match self {
             Self::Method(_) => HoppingSettings::BALANCED,

@@ -5,10 +5,10 @@ use eeruf_modules::Module;
 
 use crate::{acoustics::Transducer, geometry::Pose, scene::Air, world::robot::Robot};
 
-/// What a ring file says of a robot.
+/// The robot of a ring file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RobotRing {
-    /// How many sensors, 1 to 64.
+    /// Number of sensors, 1 to 64.
     pub sensors: usize,
     /// Where each stands on the robot; empty if the file does not say it.
     pub poses: Vec<Pose>,
@@ -18,9 +18,9 @@ pub struct RobotRing {
     pub limits: Vec<SensorLimits>,
     /// Sets of sensors that fire together, bit x for sensor x.
     pub together: Vec<u64>,
-    /// How fast it drives, in m/s, which `T_delta` must cover too where it has no odometry.
+    /// Its speed in m/s, which `T_delta` must cover too where it has no odometry.
     pub speed_m_s: f64,
-    /// How many adjacent sensors must not fire close together.
+    /// Number of adjacent sensors that must not fire close together.
     pub neighbours: u8,
 }
 
@@ -39,7 +39,7 @@ impl RobotRing {
     /// The robot at a place, with its sensors where `poses` are, or else where the file has them.
     ///
     /// # Errors
-    /// What is missing, or does not fit its number of sensors.
+    /// The key that is missing, or does not fit its number of sensors.
     pub fn robot(&self, pose: Pose, poses: Option<Vec<Pose>>) -> Result<Robot, String> {
         let poses = poses.unwrap_or_else(|| self.poses.clone());
         if poses.is_empty() {

@@ -40,7 +40,7 @@ struct PhasesFile {
     t_lag_us: Option<Vec<u32>>,
 }
 
-/// What a table `[firing]` says.
+/// A table `[firing]`.
 pub(super) fn sketch(source: &Source, file: &SketchFile) -> Result<Sketch, WorldFileError> {
     let default = Sketch::default();
     let us = |time: Option<u32>| Micros::new(time.unwrap_or(0));

@@ -11,10 +11,12 @@ use eeruf_design::{CURVE_BUDGET, FoundJson, Need, RealPeriod, RingDesign, RingSp
 
 use eeruf_sim::AnySchedule;
 use eeruf_sim::modules::Module;
+use serde::Serialize;
 
 use super::answer::Answer;
 use super::arguments::{picture, seconds};
 use super::certificate::{self, CertificateForm, Written};
+use super::rooms::{self, RoomArgs};
 use crate::console::{print, print_line, tell};
 use crate::files::error::InputError;
 use crate::files::ring::read_ring;
@@ -24,6 +26,7 @@ use crate::report::draw;
 use crate::report::json::to_json;
 use crate::report::phases::{DesignJson, describe_design};
 use crate::report::questions::{CurveJson, describe_curve, describe_fit, fit_json};
+use crate::report::rooms::{RoomsJson, RoomsReport};
 use crate::report::watch::Watch;
 
 /// Find the schedule with the shortest period for a ring of sensors, and prove that none is shorter.
@@ -96,6 +99,8 @@ pub(crate) struct Args {
     /// what time is left, and states the bound that follows without a search if there is none
     #[arg(long, value_name = "S", value_parser = seconds)]
     time_limit: Option<Duration>,
+    #[command(flatten)]
+    rooms: RoomArgs,
 }
 
 impl Args {
@@ -141,6 +146,15 @@ enum Form {
     Json,
 }
 
+/// The shortest period, and the ways of firing judged in rooms.
+#[derive(Serialize)]
+struct Answered {
+    #[serde(flatten)]
+    found: FoundJson,
+    #[serde(flatten)]
+    rooms: Option<RoomsJson>,
+}
+
 /// How many nodes a search may cost by default.
 const BUDGET: u64 = 50_000_000;
 
@@ -179,6 +193,10 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     let prove = |_| Written::new(args.certificate_form, &design, args.certificate_budget, &mut watch);
     let certificate = args.certificate.as_ref().map(prove);
     let real = over_reals(args, &design, &mut watch);
+    watch.forget_interrupt();
+    // Who asks for a schedule's source text gets it at once.
+    let judges = args.rooms.asks() && matches!(args.form(), None | Some(Form::Json));
+    let rooms = judges.then(|| rooms::judged(&args.rooms, &spec, Some(&design), &mut watch)).transpose()?;
     drop(watch);
     let requirements = design.spec.problem().requirements;
     if let Some(file) = &args.svg {
@@ -212,9 +230,14 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
         Some(Form::Json) => {
             let real_period_us = real.as_ref().map(|real| real.period_us);
             let real_proven = real.as_ref().map(|real| real.proven);
-            print_line(to_json(&FoundJson { real_period_us, real_proven, ..design.json(seconds) }))?;
+            let found = FoundJson { real_period_us, real_proven, ..design.json(seconds) };
+            print_line(to_json(&Answered { found, rooms: rooms.as_ref().map(RoomsReport::json) }))?;
         }
-        None => tell(describe(&args.file.display().to_string(), &spec, &design, real.as_ref(), seconds))?,
+        None => {
+            let name = args.file.display().to_string();
+            let judged = rooms.map_or_else(String::new, |rooms| rooms.text(&name));
+            tell(judged + &describe(&name, &spec, &design, real.as_ref(), seconds))?;
+        }
     }
     Ok(certified)
 }

@@ -21,6 +21,7 @@ mod methods;
 mod paths;
 mod replay;
 mod replay_hopping;
+mod rooms;
 mod scene;
 mod search;
 mod study;

@@ -13,6 +13,7 @@ pub(crate) mod percent;
 pub(crate) mod phases;
 pub(crate) mod questions;
 pub(crate) mod replay;
+pub(crate) mod rooms;
 pub(crate) mod search;
 pub(crate) mod study;
 pub(crate) mod survey;

@@ -13,6 +13,7 @@ pub(crate) fn run_quick() -> ExitCode {
     steps.step("formatting", || cargo(&["fmt", "--all", "--check"]));
     steps.step("rules of the house", crate::house::check);
     steps.step("listings of the documents", listings::check_all);
+    steps.step("links of the documents", crate::links::check_documents);
     steps.step("clippy", || {
         cargo(&["clippy", "--quiet", "--workspace", "--all-targets", "--locked", "--", "--deny", "warnings"])
     });

@@ -17,6 +17,7 @@
 //! | `hopping` | schedules of many phases: the file, and the shortest period |
 //! | `atlas`, `atlas_making` | rings whose shortest period is known; how their file is made |
 //! | `ticks`, `certificate` | the problem in ticks, and the proof, as a text that others check |
+//! | `rooms` | the ring's robot, for rooms in which ways of firing are judged |
 //! | `reals` | what the tick costs: the shortest period over the reals |
 //!
 //! ```
@@ -47,6 +48,7 @@ mod moving;
 mod questions;
 mod reals;
 mod ring;
+mod rooms;
 mod shortest;
 mod text;
 mod ticks;
@@ -63,6 +65,7 @@ pub use limits::{four, neighbours_in_range, sensors_in_range};
 pub use questions::{CURVE_BUDGET, CURVE_POINTS, CurvePoint, Fit, Need};
 pub use reals::{RealPeriod, over_reals, real_budget};
 pub use ring::{RingFile, RingSpec, robot_ring};
+pub use rooms::RoomRobot;
 pub use shortest::{Search, Shortest, shortest};
 pub use text::{TextError, parse};
 pub use uneven::OwnedUneven;

@@ -79,6 +79,8 @@ pub struct RingSpec {
     pub tick: Micros,
     /// How they stand.
     pub layout: OwnedLayout,
+    /// How many adjacent sensors must not fire close together.
+    pub neighbours: u8,
     /// The least time between the firings of two neighbours (Sec. 3.1 c).
     pub min_interval: Micros,
     /// `T_wind`: how long a sensor listens; the longest where sensors have their own.
@@ -144,6 +146,25 @@ impl RingSpec {
         };
         PeriodProblem { sensors: self.sensors, requirements, tick: self.tick }
     }
+
+    /// The ring as scenes take it.
+    pub fn robot_ring(&self) -> RobotRing {
+        let requirements = self.problem().requirements;
+        let limits = (0..self.sensors).map(|sensor| SensorLimits {
+            t_delta: requirements.t_delta_of(sensor),
+            // What only keeps a module from being triggered is no time to listen.
+            window: requirements.window_of(sensor).min(self.listening),
+        });
+        RobotRing {
+            sensors: self.sensors,
+            poses: self.poses.clone(),
+            modules: self.modules.clone(),
+            limits: limits.collect(),
+            together: requirements.uneven.map_or(vec![], |uneven| uneven.together.to_vec()),
+            speed_m_s: f64::from(self.speed_mm_s.unwrap_or(0)) / 1e3,
+            neighbours: self.neighbours,
+        }
+    }
 }
 
 /// The robot of a ring file in a scene, as [`World::from_text_with`](eeruf_sim::World::from_text_with) reads
@@ -163,23 +184,7 @@ pub fn robot_ring(text: &str) -> Result<RobotRing, String> {
         Some(line) => format!("line {line}: {}", error.message),
         None => error.message,
     };
-    let file = parse::<RingFile>(text).map_err(at)?;
-    let spec = file.spec()?;
-    let requirements = spec.problem().requirements;
-    let limits = (0..spec.sensors).map(|sensor| SensorLimits {
-        t_delta: requirements.t_delta_of(sensor),
-        // What only keeps a module from being triggered is no time to listen.
-        window: requirements.window_of(sensor).min(spec.listening),
-    });
-    Ok(RobotRing {
-        sensors: spec.sensors,
-        poses: spec.poses.clone(),
-        modules: spec.modules.clone(),
-        limits: limits.collect(),
-        together: requirements.uneven.map_or(vec![], |uneven| uneven.together.to_vec()),
-        speed_m_s: file.speed_m_s.unwrap_or(0.0),
-        neighbours: file.neighbours,
-    })
+    Ok(RingSpec::from_text(text).map_err(at)?.robot_ring())
 }
 
 impl RingFile {
@@ -269,6 +274,7 @@ impl RingFile {
             sensors: self.sensors,
             tick: Micros::new(self.tick_us),
             layout: self.layout.owned(self.neighbours, self.sensors)?,
+            neighbours: self.neighbours,
             min_interval,
             window: largest_window,
             listening,

@@ -5,6 +5,7 @@ mod by_name;
 mod conditions;
 mod error;
 mod progress;
+pub mod rooms;
 pub mod set_one;
 pub mod set_three;
 pub mod set_two;

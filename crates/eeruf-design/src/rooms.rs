@@ -1,0 +1,82 @@
+//! The robot of a ring file, for rooms in which ways of firing it are judged.
+
+use core::f64::consts::TAU;
+
+use eeruf_core::Layout;
+use eeruf_sim::modules::POLAROID_6500;
+use eeruf_sim::{Pose, Robot, Transducer};
+
+use crate::ring::RingSpec;
+
+/// Radius of a ring that the file has no places for, in metres: a choice, that of a small robot.
+const RADIUS_M: f64 = 0.2;
+/// Angle between sensors in a line that the file has no places for, in degrees: that of the paper's ring.
+const SPACING_DEG: f64 = 15.0;
+
+/// The robot of a ring file, and what of it the file does not say.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RoomRobot {
+    /// The robot.
+    pub robot: Robot,
+    /// Assumptions, each a sentence without a full stop.
+    pub assumed: Vec<String>,
+}
+
+impl RingSpec {
+    /// Its robot. Where the file has no places, a ring stands evenly all round, and a line 15 degrees apart; where it
+    /// names no modules, they are Polaroid 6500.
+    ///
+    /// # Errors
+    /// A layout of pairs without places, which no robot follows from.
+    pub fn room_robot(&self) -> Result<RoomRobot, String> {
+        let mut assumed = vec![];
+        let mut ring = self.robot_ring();
+        let places = if self.poses.is_empty() {
+            let spacing_deg = match self.layout.layout() {
+                Layout::Ring(_) => 360.0 / self.sensors as f64,
+                Layout::Line(_) => SPACING_DEG.min(360.0 / self.sensors as f64),
+                _ => {
+                    return Err("the ring file does not say where its sensors are, and its layout does not either; \
+                                expected poses, or spacing_deg and radius_m"
+                        .to_owned());
+                }
+            };
+            assumed.push(format!(
+                "sensors {spacing_deg} degrees apart on a circle of {RADIUS_M} m, as the file has no poses"
+            ));
+            let spacing = spacing_deg / 360.0 * TAU;
+            Some(Robot::ring(Pose::identity(), self.sensors, spacing, RADIUS_M, Transducer::POLAROID_6500).sensors)
+        } else {
+            None
+        };
+        if self.modules.is_empty() {
+            ring.modules = vec![POLAROID_6500; self.sensors];
+            assumed.push("modules like the Polaroid 6500, as the file names none".to_owned());
+        }
+        let robot = ring.robot(Pose::identity(), places)?;
+        Ok(RoomRobot { robot, assumed })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_ring_stands_all_round_a_line_ahead_and_pairs_need_places() {
+        let robot = |layout: &str| {
+            let text = format!("sensors = 4\n{layout}\nt_delta_us = 100\nmin_interval_us = 0\nwindow_us = 20_000");
+            RingSpec::from_text(&text).unwrap().room_robot()
+        };
+        let ring = robot("layout = \"ring\"").unwrap();
+        let headings: Vec<_> =
+            ring.robot.sensors.iter().map(|pose| pose.rotation.angle().to_degrees().round()).collect();
+        assert_eq!(headings, [-135.0, -45.0, 45.0, 135.0]);
+        assert_eq!(ring.assumed.len(), 2);
+        assert_eq!(ring.robot.window.as_micros(), 20_000);
+        let line = robot("layout = \"line\"\nspacing_deg = 30\nradius_m = 0.1\nmodule = \"hc-sr04\"").unwrap();
+        assert!(line.assumed.is_empty());
+        assert!((line.robot.radius_m() - 0.1).abs() < 1e-12);
+        assert!(robot("layout = [[0, 1], [2, 3]]").unwrap_err().contains("expected poses"));
+    }
+}

@@ -1,0 +1,297 @@
+//! Ways of firing, judged in rooms, and the one to recommend.
+
+use eeruf_modules::Gain;
+use serde::Serialize;
+
+use super::plan::{DRIVING_S, RoomKind, RoomPlan};
+use super::way::{Condition, RoomWay};
+use crate::experiments::error::ExperimentError;
+use crate::experiments::progress::Progress;
+use crate::experiments::spread::Spread;
+use crate::{
+    acoustics::{GainProfile, Physics},
+    results::{Belief, Readings, Summary, quantile},
+    scene::Room,
+    simulation::{Options, SimulationError, simulate_while},
+    threads::sweep,
+    world::{Robot, World},
+};
+
+/// How long each room is simulated for a robot that stands, in seconds: long against the first readings, before which
+/// nothing is believed.
+const STANDING_S: f64 = 20.0;
+
+/// Options of a judgement.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RoomsOptions {
+    /// The robot's speed in m/s; 0, the default, for one that stands.
+    pub speed_m_s: f64,
+    /// The modules' gain, and floor and ceiling.
+    pub condition: Condition,
+    /// The largest share of foreign sound in what is believed, at the median room of each kind, of a way that is
+    /// recommended. The default is 0.03.
+    pub wrong: f64,
+}
+
+impl Default for RoomsOptions {
+    fn default() -> Self {
+        Self { speed_m_s: 0.0, condition: Condition::ALL[0], wrong: 0.03 }
+    }
+}
+
+/// Rooms whose figures are summed up together.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RoomGroup {
+    /// The name in tables and in JSON.
+    pub name: String,
+    /// The rooms.
+    pub rooms: Vec<RoomPlan>,
+}
+
+impl RoomGroup {
+    /// Rooms of one kind with consecutive numbers, for a robot that needs a circle of this radius. Ways are chosen on
+    /// numbers below 2,000, and reported from [`FIRST`](crate::experiments::FIRST) on.
+    pub fn of_kind(kind: RoomKind, numbers: core::ops::Range<u64>, radius_m: f64) -> Self {
+        let rooms = numbers.map(|number| RoomPlan::random(kind, number, radius_m)).collect();
+        Self { name: kind.to_string(), rooms }
+    }
+}
+
+/// The figures of a way in rooms of one kind, of one robot: shares of time and rates are means, what a way is refused
+/// for is that of the median room.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct RoomFigures {
+    /// Shares of the time by what was last believed.
+    #[serde(flatten)]
+    pub belief: Belief,
+    /// The mean share that is right lies here with 95 % confidence.
+    pub belief_right_95: [f64; 2],
+    /// The least of these shares.
+    pub belief_right_worst: f64,
+    /// Accepted echoes that were right in a second.
+    pub right_echoes_per_s: f64,
+    /// This mean lies here with 95 % confidence.
+    pub right_echoes_per_s_95: [f64; 2],
+    /// Share of what was accepted that was foreign sound and wrong.
+    pub foreign_of_believed: f64,
+    /// The largest of these shares.
+    pub foreign_of_believed_worst: f64,
+    /// Share of what was accepted that was the sensor's own sound and wrong.
+    pub own_wrong_of_believed: f64,
+    /// Sensors that were right under 5 % of the times they fired.
+    pub blind: f64,
+    /// 99 % of the time the last accepted reading is no older than this.
+    pub age_p99_ms: f64,
+}
+
+/// A way with its figures.
+#[derive(Clone, Debug, PartialEq)]
+pub struct JudgedWay {
+    /// The way.
+    pub way: RoomWay,
+    /// Its figures in each group of rooms, in the order asked for; or why it cannot fire this ring.
+    pub rooms: Result<Vec<RoomFigures>, String>,
+}
+
+/// Ways of firing judged in rooms.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Judgement {
+    /// The ways, in the order asked for.
+    pub ways: Vec<JudgedWay>,
+    /// The index of the way to recommend; none if no way can fire the ring.
+    pub recommended: Option<usize>,
+    /// True if that keeps to the shares asked for in each kind of room.
+    pub keeps: bool,
+}
+
+/// One room's figures.
+#[derive(Clone, Copy, Debug)]
+struct Run {
+    belief: Belief,
+    right_echoes_per_s: f64,
+    foreign: f64,
+    own: f64,
+    blind: f64,
+    age_p99_ms: f64,
+}
+
+impl Run {
+    fn of(readings: &Readings, robots: usize) -> Self {
+        let of_one = robots.max(1) as f64;
+        let summary = readings.summary();
+        let Summary { belief, right_echoes_per_s, blind, age_ms, .. } = summary;
+        let share = |of_all: f64| match summary.accepted {
+            0 => 0.0,
+            accepted => of_all * summary.readings as f64 / accepted as f64,
+        };
+        let foreign = share(summary.crosstalk_of_all);
+        Self {
+            belief,
+            right_echoes_per_s: right_echoes_per_s / of_one,
+            foreign,
+            own: (share(summary.wrong_of_all) - foreign).max(0.0),
+            blind: blind as f64 / of_one,
+            age_p99_ms: age_ms.p99,
+        }
+    }
+}
+
+impl RoomFigures {
+    fn of(runs: &[Run]) -> Option<Self> {
+        let spread = |value: fn(&Run) -> f64| Spread::of(runs.iter().map(value));
+        let (right, echoes) = (spread(|run| run.belief.right)?, spread(|run| run.right_echoes_per_s)?);
+        let mean = |value: fn(&Run) -> f64| runs.iter().map(value).sum::<f64>() / runs.len() as f64;
+        let median = |value: fn(&Run) -> f64| quantile(&mut runs.iter().map(value).collect::<Vec<_>>(), 0.5);
+        Some(Self {
+            belief: Belief {
+                right: right.mean,
+                unknown: mean(|run| run.belief.unknown),
+                phantom: mean(|run| run.belief.phantom),
+                too_far: mean(|run| run.belief.too_far),
+                faint: mean(|run| run.belief.faint),
+            },
+            belief_right_95: right.mean_95,
+            belief_right_worst: runs.iter().map(|run| run.belief.right).fold(1.0, f64::min),
+            right_echoes_per_s: echoes.mean,
+            right_echoes_per_s_95: echoes.mean_95,
+            foreign_of_believed: median(|run| run.foreign),
+            foreign_of_believed_worst: runs.iter().map(|run| run.foreign).fold(0.0, f64::max),
+            own_wrong_of_believed: median(|run| run.own),
+            blind: median(|run| run.blind),
+            age_p99_ms: median(|run| run.age_p99_ms),
+        })
+    }
+}
+
+/// Judges ways of firing in rooms, on all cores; the first is the one by one that others are measured by.
+///
+/// `keep_going` is called now and then, by several threads, with the share that is done, 0 to 1; when its answer is
+/// `false` the judgement stops. The result does not depend on the number of threads.
+///
+/// # Errors
+/// [`ExperimentError`] for no rooms or ways, a room in which the robot cannot be, and if it was stopped.
+pub fn judge(
+    ways: &[RoomWay],
+    rooms: &[RoomGroup],
+    asked: &RoomsOptions,
+    keep_going: &(dyn Fn(f64) -> bool + Sync),
+) -> Result<Judgement, ExperimentError> {
+    if ways.is_empty() {
+        return Err(ExperimentError::NoMethods);
+    }
+    if rooms.is_empty() || rooms.iter().any(|group| group.rooms.is_empty()) {
+        return Err(ExperimentError::NoSeeds);
+    }
+    let places = rooms.iter().flat_map(|group| &group.rooms);
+    let jobs: Vec<_> = places.flat_map(|room| (0..ways.len()).map(move |way| (room, way))).collect();
+    let progress = Progress::new(jobs.len() as u64, keep_going);
+    let runs = sweep(&jobs, |&(room, way)| {
+        if !progress.go_on() {
+            return Err(ExperimentError::Stopped);
+        }
+        let RoomWay { method, robot, options, .. } = &ways[way];
+        let world = world_of(room, robot, asked)?;
+        // All for the same time, which a way's period measures.
+        let seconds = if asked.speed_m_s > 0.0 { DRIVING_S } else { STANDING_S };
+        let periods = (1e6 * seconds / f64::from(robot.period.as_micros())).ceil() as u32;
+        let options = Options { periods, ..*options };
+        let run = match simulate_while(&world, *method, &options, |_| progress.go_on()) {
+            Ok(readings) => Ok(Run::of(&readings, world.robots().len())),
+            Err(SimulationError::Stopped) => return Err(ExperimentError::Stopped),
+            Err(error) => Err(error.to_string()),
+        };
+        progress.one_done();
+        Ok(run)
+    });
+    let runs: Vec<Result<Run, String>> = runs.into_iter().collect::<Result<_, ExperimentError>>()?;
+    if progress.stopped() {
+        return Err(ExperimentError::Stopped);
+    }
+    let judged = |(index, way): (usize, &RoomWay)| {
+        let of_way: Result<Vec<Run>, String> = runs.iter().skip(index).step_by(ways.len()).cloned().collect();
+        let by_group = |mut of_way: &[Run]| {
+            let mut figures = Vec::with_capacity(rooms.len());
+            for group in rooms {
+                let (runs, rest) = of_way.split_at_checked(group.rooms.len()).unwrap_or((of_way, &[]));
+                figures.extend(RoomFigures::of(runs));
+                of_way = rest;
+            }
+            figures
+        };
+        JudgedWay { way: way.clone(), rooms: of_way.map(|of_way| by_group(&of_way)) }
+    };
+    let ways: Vec<_> = ways.iter().enumerate().map(judged).collect();
+    let (recommended, keeps) = recommend(&ways, asked.wrong);
+    Ok(Judgement { ways, recommended, keeps })
+}
+
+/// A room with the robot in it.
+fn world_of(room: &RoomPlan, robot: &Robot, asked: &RoomsOptions) -> Result<World, ExperimentError> {
+    let Condition { other_gain, flat } = asked.condition;
+    let robot = if other_gain { with_other_gain(robot) } else { robot.clone() };
+    let height = if flat { None } else { Some(Room::DEFAULT) };
+    Ok(room.world(&robot, asked.speed_m_s)?.with_room(height)?.with_physics(Physics::DEFAULT)?)
+}
+
+/// The same robot with the other gain: the steps of the chip where it is constant, constant where it grows.
+fn with_other_gain(robot: &Robot) -> Robot {
+    let other = match robot.module_of(0).gain {
+        Gain::Constant if robot.module_of(0).frequency_hz > 45_000 => GainProfile::Polaroid6500,
+        Gain::Constant => GainProfile::Stepped,
+        _ => GainProfile::Constant,
+    };
+    robot.clone().with_pattern(Some(other), None)
+}
+
+/// By how much the share of own wrong echoes may exceed that of one by one.
+const OWN_WRONG_MORE: f64 = 0.01;
+/// Ways whose shares of right belief differ by less are equal, and the one with more right echoes is better.
+const AS_GOOD: f64 = 0.01;
+
+impl JudgedWay {
+    /// The share of time in which what is believed is right, over all kinds of rooms.
+    pub fn belief_right(&self) -> Option<f64> {
+        let rooms = self.rooms.as_ref().ok()?;
+        Some(rooms.iter().map(|figures| figures.belief.right).sum::<f64>() / rooms.len() as f64)
+    }
+
+    /// How many times the right echoes of another way it has, as the geometric mean over all kinds of rooms.
+    pub fn echoes_against(&self, other: &Self) -> Option<f64> {
+        let (Ok(own), Ok(others)) = (&self.rooms, &other.rooms) else { return None };
+        let ratio = |(own, other): (&RoomFigures, &RoomFigures)| {
+            // Where neither hears an echo, they are equal.
+            libm::log((own.right_echoes_per_s + 0.1) / (other.right_echoes_per_s + 0.1))
+        };
+        let logs = own.iter().zip(others).map(ratio).sum::<f64>();
+        Some(libm::exp(logs / own.len() as f64))
+    }
+
+    /// The index of the first group of rooms in which it is wrong too often or leaves a sensor blind that one by one
+    /// does not.
+    pub fn fails_in(&self, one_by_one: &Self, wrong: f64) -> Option<usize> {
+        let (Ok(own), Ok(base)) = (&self.rooms, &one_by_one.rooms) else { return None };
+        let fails = |own: &RoomFigures, base: &RoomFigures| {
+            own.foreign_of_believed > wrong
+                || own.own_wrong_of_believed > base.own_wrong_of_believed + OWN_WRONG_MORE
+                || own.blind > base.blind
+        };
+        own.iter().zip(base).position(|(own, base)| fails(own, base))
+    }
+}
+
+/// The way that is right most of the time among those that keep to the shares asked for; of several as good, the one
+/// with most right echoes. Where none keeps to them, the one that is right most of the time.
+fn recommend(ways: &[JudgedWay], wrong: f64) -> (Option<usize>, bool) {
+    let Some(base) = ways.first() else { return (None, false) };
+    let best_of = |among: &dyn Fn(&JudgedWay) -> bool| {
+        let fit: Vec<_> = ways.iter().enumerate().filter(|(_, way)| among(way)).collect();
+        let most = fit.iter().filter_map(|(_, way)| way.belief_right()).reduce(f64::max)?;
+        let as_good = fit.iter().filter(|(_, way)| way.belief_right().is_some_and(|right| right >= most - AS_GOOD));
+        let by_echoes = as_good.map(|(index, way)| (*index, way.echoes_against(base).unwrap_or(0.0)));
+        by_echoes.reduce(|one, next| if next.1 > one.1 { next } else { one }).map(|(index, _)| index)
+    };
+    match best_of(&|way| way.rooms.is_ok() && way.fails_in(base, wrong).is_none()) {
+        Some(index) => (Some(index), true),
+        None => (best_of(&|way| way.rooms.is_ok()), false),
+    }
+}

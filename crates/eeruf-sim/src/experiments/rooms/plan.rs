@@ -1,0 +1,417 @@
+//! Rooms in which rings are judged: what stands in each, where the robot is and how it drives.
+
+use core::f64::consts::{FRAC_PI_2, PI, TAU};
+use core::fmt;
+use core::str::FromStr;
+
+use serde::{Serialize, Serializer};
+
+use crate::{
+    geometry::{Point, Pose, Vector},
+    scene::{Air, Pole, Scene, SceneError, Wall},
+    world::{Clock, Motion, Noise, Random, Robot, World, WorldError},
+};
+
+/// The version of the set. A room of one version and number is the same for ever.
+pub const VERSION: u32 = 1;
+/// How long a robot that drives is simulated, in seconds, and has way to drive.
+pub const DRIVING_S: f64 = 8.0;
+
+/// Free space that is kept around a robot, in metres.
+const CLEARANCE_M: f64 = 0.2;
+
+/// A kind of room. All measures are choices: rooms as people live and work in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum RoomKind {
+    /// A corridor 16 m long and 1.6 to 2.4 m wide.
+    Corridor,
+    /// A room of 4.5 to 6 by 3.5 to 4.5 m with a cupboard in a corner.
+    Office,
+    /// A bare hall of 8 to 12 by 6 to 9 m.
+    Hall,
+    /// A hall as large with three to six cupboards and two to four poles.
+    Clutter,
+    /// Three walls 1 to 2.4 m apart and 0.9 to 2 m deep, the robot in the mouth: the paper's Set I.
+    Alcove,
+    /// A garage of 6 by 5.4 to 6.5 m with a car and a pillar.
+    Garage,
+    /// An aisle 1.5 to 2.2 m wide between shelves whose ends leave gaps.
+    Aisle,
+    /// A corridor 2.2 to 3 m wide with another robot of the same make 1.4 to 3 m away.
+    Meeting,
+}
+
+impl RoomKind {
+    /// Every kind.
+    pub const ALL: [Self; 8] = [
+        Self::Corridor,
+        Self::Office,
+        Self::Hall,
+        Self::Clutter,
+        Self::Alcove,
+        Self::Garage,
+        Self::Aisle,
+        Self::Meeting,
+    ];
+
+    /// The name in tables, in JSON and in Python.
+    pub const fn as_str(self) -> &'static str {
+        match self {
+            Self::Corridor => "corridor",
+            Self::Office => "office",
+            Self::Hall => "hall",
+            Self::Clutter => "clutter",
+            Self::Alcove => "alcove",
+            Self::Garage => "garage",
+            Self::Aisle => "aisle",
+            Self::Meeting => "meeting",
+        }
+    }
+}
+
+impl fmt::Display for RoomKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.as_str())
+    }
+}
+
+impl Serialize for RoomKind {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(self.as_str())
+    }
+}
+
+/// A name that no kind of room has.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct UnknownRoom(pub String);
+
+impl fmt::Display for UnknownRoom {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let names = RoomKind::ALL.map(RoomKind::as_str).join(", ");
+        write!(f, "no room `{}`; expected {names}", self.0)
+    }
+}
+
+impl core::error::Error for UnknownRoom {}
+
+impl FromStr for RoomKind {
+    type Err = UnknownRoom;
+
+    /// ```
+    /// use eeruf_sim::experiments::rooms::RoomKind;
+    /// assert_eq!("office".parse(), Ok(RoomKind::Office));
+    /// assert!("kitchen".parse::<RoomKind>().unwrap_err().to_string().starts_with("no room `kitchen`; expected corr"));
+    /// ```
+    fn from_str(name: &str) -> Result<Self, UnknownRoom> {
+        Self::ALL.into_iter().find(|kind| kind.as_str() == name).ok_or_else(|| UnknownRoom(name.to_owned()))
+    }
+}
+
+/// A room with a place in it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RoomPlan {
+    /// Its kind's number in the set, or its file's own; it seeds what is random.
+    pub number: u64,
+    /// Its walls.
+    pub walls: Vec<Wall>,
+    /// Its poles.
+    pub poles: Vec<Pole>,
+    /// The robot's place.
+    pub pose: Pose,
+    /// The place of another robot of the same make.
+    pub other: Option<Pose>,
+    /// The direction in which the robot drives, if it does, as a unit vector, and the free way ahead in metres.
+    way: (Vector, f64),
+    /// True if it looks where it drives.
+    turns: bool,
+}
+
+/// What stands in a room: a box from corner to corner.
+#[derive(Clone, Copy, Debug)]
+struct Solid {
+    low: [f64; 2],
+    high: [f64; 2],
+}
+
+impl Solid {
+    fn new(x: f64, y: f64, width: f64, depth: f64) -> Self {
+        Self { low: [x, y], high: [x + width, y + depth] }
+    }
+
+    /// Its walls, seen from outside.
+    fn walls(self) -> impl Iterator<Item = Wall> {
+        let Self { low: [x0, y0], high: [x1, y1] } = self;
+        Wall::polyline(&[[x0, y0], [x0, y1], [x1, y1], [x1, y0], [x0, y0]]).collect::<Vec<_>>().into_iter()
+    }
+
+    fn distance_m(self, [x, y]: [f64; 2]) -> f64 {
+        let off = |at: f64, low: f64, high: f64| (low - at).max(at - high).max(0.0);
+        off(x, self.low[0], self.high[0]).hypot(off(y, self.low[1], self.high[1]))
+    }
+
+    fn is_near(self, other: Self, m: f64) -> bool {
+        (0..2).all(|axis| self.low[axis] < other.high[axis] + m && other.low[axis] < self.high[axis] + m)
+    }
+}
+
+/// A room being furnished: its middle is the origin.
+struct Draft {
+    /// Length and width inside.
+    size: [f64; 2],
+    solids: Vec<Solid>,
+    poles: Vec<Pole>,
+}
+
+impl Draft {
+    /// The distance from a place to the nearest thing, in metres; below zero outside.
+    fn free_m(&self, place: [f64; 2]) -> f64 {
+        let [x, y] = place;
+        let walls = (0.5 * self.size[0] - x.abs()).min(0.5 * self.size[1] - y.abs());
+        let solids = self.solids.iter().map(|solid| solid.distance_m(place));
+        let poles = self.poles.iter().map(|pole| (pole.centre - Point::new(x, y)).norm() - pole.radius_m);
+        solids.chain(poles).fold(walls, f64::min)
+    }
+
+    /// How far a robot of this radius can drive from a place, up to what it drives.
+    fn way_m(&self, from: Vector, direction: Vector, radius_m: f64) -> f64 {
+        const STEP_M: f64 = 0.05;
+        let free = |step: &u32| {
+            let at = from + direction * (STEP_M * f64::from(*step));
+            self.free_m([at.x, at.y]) >= radius_m
+        };
+        STEP_M * f64::from((1..=200).take_while(free).count() as u32)
+    }
+
+    /// The roomiest of some places drawn in the middle part of the room.
+    fn place(&self, random: &mut Random, share: f64, radius_m: f64) -> Vector {
+        let mut best = ([0.0; 2], f64::NEG_INFINITY);
+        for _ in 0..200 {
+            let [x, y] = self.size.map(|side| 0.5 * share * side);
+            let place = [random.between(-x, x), random.between(-y, y)];
+            let free = self.free_m(place);
+            if free >= radius_m {
+                return Vector::new(place[0], place[1]);
+            }
+            if free > best.1 {
+                best = (place, free);
+            }
+        }
+        Vector::new(best.0[0], best.0[1])
+    }
+
+    fn walls(&self) -> Vec<Wall> {
+        let [x, y] = self.size.map(|side| 0.5 * side);
+        let outer = [[-x, -y], [x, -y], [x, y], [-x, y], [-x, -y]];
+        Wall::polyline(&outer).chain(self.solids.iter().flat_map(|solid| solid.walls())).collect()
+    }
+}
+
+impl RoomPlan {
+    /// The room that a number stands for, of a kind, for a robot that needs a circle of this radius. Where that does
+    /// not fit, the room is larger by as much.
+    pub fn random(kind: RoomKind, number: u64, radius_m: f64) -> Self {
+        let mut random = Random::new(number).of(kind as u64);
+        let radius_m = radius_m + CLEARANCE_M;
+        // Half of the robots look along a wall or at it, as robots in rooms do; the others anywhere.
+        let is_square = number.is_multiple_of(2);
+        let tilt = random.between(-2.0, 2.0).to_radians();
+        let turn = |random: &mut Random| {
+            if is_square { FRAC_PI_2 * (random.bits() % 4) as f64 + tilt } else { random.between(0.0, TAU) }
+        };
+        // Wide enough for the robot.
+        let wide = |width: f64| width.max(2.0 * radius_m + 0.1);
+        if kind == RoomKind::Alcove {
+            return Self::alcove(number, &mut random, radius_m, tilt, is_square);
+        }
+        let draft = Draft::new(kind, &mut random, wide);
+        let share = match kind {
+            RoomKind::Corridor | RoomKind::Aisle => 0.6,
+            RoomKind::Meeting => 0.4,
+            _ => 0.8,
+        };
+        let at = draft.place(&mut random, share, radius_m);
+        let pose = Pose::new(at, turn(&mut random));
+        let other = (kind == RoomKind::Meeting).then(|| {
+            let ahead = at + Vector::new(2.0 * radius_m + random.between(0.8, 2.2), 0.0);
+            let room = (0.5 * draft.size[1] - radius_m).max(0.0);
+            Pose::new(Vector::new(ahead.x, random.between(-room, room)), random.between(0.0, TAU))
+        });
+        // Away from the other robot along a corridor, and where most room is elsewhere.
+        let directions = match kind {
+            RoomKind::Meeting => vec![PI],
+            _ => (0..16).map(|k| TAU * f64::from(k) / 16.0).collect(),
+        };
+        let ways = directions.into_iter().map(|rad: f64| Vector::new(libm::cos(rad), libm::sin(rad)));
+        let ways = ways.map(|direction| (direction, draft.way_m(at, direction, radius_m)));
+        let way = ways.reduce(|one, next| if next.1 > one.1 { next } else { one });
+        let way = way.unwrap_or((Vector::new(1.0, 0.0), 0.0));
+        Self { number, walls: draft.walls(), poles: draft.poles, pose, other, way, turns: true }
+    }
+
+    /// Three walls with the robot in the mouth, looking in.
+    fn alcove(number: u64, random: &mut Random, radius_m: f64, tilt: f64, is_square: bool) -> Self {
+        let half = (0.5 * random.between(1.0, 2.4)).max(radius_m);
+        let depth = random.between(0.9, 2.0) + (radius_m - 0.5).max(0.0);
+        let corners = [[half, 0.0], [half, depth], [-half, depth], [-half, 0.0]];
+        let aside = half - radius_m;
+        let x = if aside > 0.0 { random.between(-aside, aside) } else { 0.0 };
+        let y = random.between(-0.4, 0.3);
+        let heading = if is_square { tilt } else { random.between(-20.0, 20.0).to_radians() };
+        Self {
+            number,
+            walls: Wall::polyline(&corners).collect(),
+            poles: vec![],
+            pose: Pose::new(Vector::new(x, y), FRAC_PI_2 + heading),
+            other: None,
+            // It backs out.
+            way: (Vector::new(0.0, -1.0), 10.0),
+            turns: false,
+        }
+    }
+
+    /// A room of the caller's own, with the robot at a place; it drives as far ahead as nobody else said that it cannot.
+    pub fn own(number: u64, walls: Vec<Wall>, poles: Vec<Pole>, pose: Pose, way_m: f64) -> Self {
+        let ahead = Vector::new(pose.rotation.re, pose.rotation.im);
+        Self { number, walls, poles, pose, other: None, way: (ahead, way_m), turns: false }
+    }
+
+    /// Walls and poles.
+    ///
+    /// # Errors
+    /// [`SceneError`] for measures that make no walls.
+    pub fn scene(&self) -> Result<Scene, SceneError> {
+        Scene::new(self.walls.clone(), self.poles.clone(), Air::default())
+    }
+
+    /// The world with a robot in its place, standing or at this speed, which is less where it would meet something
+    /// within [`DRIVING_S`]. Another robot of its make has its own clock.
+    ///
+    /// # Errors
+    /// [`WorldError`] for a robot that does not fit.
+    pub fn world(&self, robot: &Robot, speed_m_s: f64) -> Result<World, WorldError> {
+        let (direction, way_m) = self.way;
+        let speed_m_s = speed_m_s.min(way_m / DRIVING_S);
+        let moves = speed_m_s > 0.0;
+        let motion = match moves {
+            true => Motion::Constant { velocity: speed_m_s * direction, turn_rad_s: 0.0 },
+            false => Motion::Still,
+        };
+        // The alcove's robot looks at what it backs away from.
+        let pose = if moves && self.turns {
+            Pose::new(self.pose.translation.vector, libm::atan2(direction.y, direction.x))
+        } else {
+            self.pose
+        };
+        let first = Robot { pose, motion, odometry: moves && robot.odometry, ..robot.clone() };
+        let mut random = Random::new(self.number).of(99);
+        let period = f64::from(robot.period.as_micros());
+        let other = self.other.map(|pose| Robot {
+            pose,
+            start: eeruf_core::Micros::new(random.between(0.0, period) as u32),
+            clock: Clock { offset_us: random.bits() as u32, drift_ppm: random.between(-50.0, 50.0) },
+            ..robot.clone()
+        });
+        let robots = core::iter::once(first).chain(other).collect();
+        Ok(World::new(self.scene()?, robots, Noise::default())?.with_seed(self.number))
+    }
+}
+
+impl Draft {
+    fn new(kind: RoomKind, random: &mut Random, wide: impl Fn(f64) -> f64) -> Self {
+        let mut draft = Self { size: [0.0; 2], solids: vec![], poles: vec![] };
+        draft.size = match kind {
+            RoomKind::Corridor => [16.0, wide(random.between(1.6, 2.4))],
+            RoomKind::Office => [wide(random.between(4.5, 6.0)), wide(random.between(3.5, 4.5))],
+            RoomKind::Garage => [wide(6.0), wide(random.between(5.4, 6.5))],
+            // Shelves of 0.6 m on both sides.
+            RoomKind::Aisle => [16.0, wide(random.between(1.5, 2.2)) + 1.2],
+            RoomKind::Meeting => [20.0, wide(random.between(2.2, 3.0))],
+            RoomKind::Hall | RoomKind::Clutter | RoomKind::Alcove => {
+                [wide(random.between(8.0, 12.0)), wide(random.between(6.0, 9.0))]
+            }
+        };
+        let [x, y] = draft.size.map(|side| 0.5 * side);
+        match kind {
+            RoomKind::Office => draft.solids.push(Solid::new(x - 1.0, y - 0.5, 0.8, 0.4)),
+            RoomKind::Garage => {
+                // A car at one side, and a pillar.
+                draft.solids.push(Solid::new(-0.5 * 4.2, y - 2.2, 4.2, 1.7));
+                draft.solids.push(Solid::new(random.between(-2.0, 1.6), -y + 0.1, 0.3, 0.3));
+            }
+            RoomKind::Aisle => {
+                for side in [-1.0, 1.0] {
+                    let mut at = 0.1 - x;
+                    while at < x - 1.0 {
+                        let length = random.between(1.2, 2.6).min(x - 0.1 - at);
+                        let low = if side < 0.0 { 0.01 - y } else { y - 0.61 };
+                        draft.solids.push(Solid::new(at, low, length, 0.6));
+                        at += length + random.between(0.1, 0.4);
+                    }
+                }
+            }
+            RoomKind::Clutter => {
+                let count = 3 + random.bits() % 4;
+                for _ in 0..count {
+                    let (width, depth) = (random.between(0.4, 1.6), random.between(0.4, 1.0));
+                    let corner = [random.between(0.3 - x, x - 0.3 - width), random.between(0.3 - y, y - 0.3 - depth)];
+                    let solid = Solid::new(corner[0], corner[1], width, depth);
+                    if draft.solids.iter().all(|other| !solid.is_near(*other, 0.3)) {
+                        draft.solids.push(solid);
+                    }
+                }
+                let count = 2 + random.bits() % 3;
+                for _ in 0..count {
+                    let place = [random.between(0.5 - x, x - 0.5), random.between(0.5 - y, y - 0.5)];
+                    if draft.free_m(place) > 0.2 {
+                        draft.poles.push(Pole::new(place[0], place[1], random.between(0.02, 0.1)));
+                    }
+                }
+            }
+            RoomKind::Corridor | RoomKind::Hall | RoomKind::Alcove | RoomKind::Meeting => {}
+        }
+        draft
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::acoustics::Transducer;
+
+    fn ring(radius_m: f64) -> Robot {
+        Robot::ring(Pose::identity(), 12, TAU / 12.0, radius_m, Transducer::POLAROID_6500)
+    }
+
+    #[test]
+    fn each_room_of_each_kind_holds_a_small_robot_and_a_car() {
+        for kind in RoomKind::ALL {
+            for number in 0..150 {
+                for radius_m in [0.05, 0.3, 0.9] {
+                    let plan = RoomPlan::random(kind, number, radius_m);
+                    assert_eq!(plan, RoomPlan::random(kind, number, radius_m));
+                    for speed_m_s in [0.0, 0.5] {
+                        let world = plan.world(&ring(radius_m), speed_m_s);
+                        let world = world.unwrap_or_else(|error| panic!("{kind} {number} {radius_m}: {error}"));
+                        assert_eq!(world.robots().len(), if kind == RoomKind::Meeting { 2 } else { 1 });
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_robot_that_drives_meets_nothing() {
+        let mut slowest: f64 = 1.0;
+        for (kind, number) in RoomKind::ALL.into_iter().flat_map(|kind| (0..60).map(move |number| (kind, number))) {
+            let plan = RoomPlan::random(kind, number, 0.25);
+            let world = plan.world(&ring(0.25), 0.5).unwrap();
+            let robot = &world.robots()[0];
+            let ends = robot.motion.at(&robot.pose, DRIVING_S).pose;
+            let stands = Robot { pose: ends, motion: Motion::Still, ..ring(0.25) };
+            World::new(plan.scene().unwrap(), vec![stands], Noise::default()).unwrap();
+            let Motion::Constant { velocity, .. } = robot.motion else { panic!("{kind} {number} stands") };
+            slowest = slowest.min(velocity.norm());
+        }
+        assert!(slowest > 0.05, "{slowest}");
+    }
+}

@@ -29,7 +29,12 @@ use crate::report::questions::{CurveJson, describe_curve, describe_fit, fit_json
 use crate::report::rooms::{RoomsJson, RoomsReport};
 use crate::report::watch::Watch;
 
-/// Find the schedule with the shortest period for a ring of sensors, and prove that none is shorter.
+/// Find the way of firing a ring that is right most of the time in rooms, and the shortest period, proven.
+///
+/// The ring is fired by every way: one by one, at once, in groups, in two phases, by time hopping and flow, in seeded
+/// rooms (corridor, office, hall, clutter, alcove, garage, aisle, and beside another robot of the same make), standing
+/// or --driving. The way recommended is right most of the time among those that keep foreign sound below --wrong and
+/// leave no sensor blind; what it depends on is said. --emit writes the schedule of two phases with the shortest period.
 ///
 /// With --phases it is one of many phases, for a ring that hops in time and whose sensors do not stay blind: a linear
 /// congruence with lags, and the bound that holds for any such schedule; --emit rust, c and arduino then write all that
@@ -99,8 +104,11 @@ pub(crate) struct Args {
     /// what time is left, and states the bound that follows without a search if there is none
     #[arg(long, value_name = "S", value_parser = seconds)]
     time_limit: Option<Duration>,
+    /// Find the shortest period and judge nothing in rooms
+    #[arg(long, conflicts_with_all = ["rooms", "places", "first", "wrong", "driving"])]
+    period_only: bool,
     #[command(flatten)]
-    rooms: RoomArgs,
+    in_rooms: RoomArgs,
 }
 
 impl Args {
@@ -155,6 +163,8 @@ struct Answered {
     rooms: Option<RoomsJson>,
 }
 
+/// Nodes for the same ring with odometry, which is a remark.
+const STANDING_BUDGET: u64 = 200_000;
 /// How many nodes a search may cost by default.
 const BUDGET: u64 = 50_000_000;
 
@@ -194,9 +204,10 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     let certificate = args.certificate.as_ref().map(prove);
     let real = over_reals(args, &design, &mut watch);
     watch.forget_interrupt();
+    let still = args.form().is_none().then(|| standing(&spec, &search)).flatten();
     // Who asks for a schedule's source text gets it at once.
-    let judges = args.rooms.asks() && matches!(args.form(), None | Some(Form::Json));
-    let rooms = judges.then(|| rooms::judged(&args.rooms, &spec, Some(&design), &mut watch)).transpose()?;
+    let judges = !args.period_only && matches!(args.form(), None | Some(Form::Json));
+    let rooms = judges.then(|| rooms::judged(&args.in_rooms, &spec, Some(&design), &mut watch)).transpose()?;
     drop(watch);
     let requirements = design.spec.problem().requirements;
     if let Some(file) = &args.svg {
@@ -236,7 +247,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
         None => {
             let name = args.file.display().to_string();
             let judged = rooms.map_or_else(String::new, |rooms| rooms.text(&name));
-            tell(judged + &describe(&name, &spec, &design, real.as_ref(), seconds))?;
+            tell(judged + &describe(&name, &spec, &design, real.as_ref(), still.as_ref(), seconds))?;
         }
     }
     Ok(certified)
@@ -329,6 +340,14 @@ fn curve_of(args: &Args, spec: &RingSpec, need: Need) -> Result<Answer, InputErr
         tell(describe_curve(&args.file.display().to_string(), spec, need, &points, seconds))?;
     }
     Ok(Answer::Yes)
+}
+
+/// The design of a ring that moves, for firmware that knows by how much each reading changes.
+fn standing(spec: &RingSpec, search: &Search) -> Option<RingDesign> {
+    spec.speed_mm_s.filter(|&speed| speed > 0)?;
+    let still = RingSpec { speed_mm_s: None, ..spec.clone() };
+    let search = Search { budget: search.budget.min(STANDING_BUDGET), what_if: false, atlas: search.atlas };
+    still.shortest(&search, &mut ()).ok()?.ok()
 }
 
 /// What the tick costs, where it is printed or certified.

@@ -3,14 +3,19 @@
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
-use eeruf_design::{RingDesign, RingSpec};
+use eeruf_design::atlas::ATLAS;
+use eeruf_design::{RingDesign, RingSpec, Search};
 use eeruf_sim::experiments::ExperimentError;
 use eeruf_sim::experiments::rooms::{
     Condition, DRIVING_S, RoomGroup, RoomKind, RoomPlan, RoomWay, RoomsOptions, judge,
 };
 
+use super::answer::Answer;
+use crate::console::{print_line, tell};
 use crate::files::error::InputError;
+use crate::files::ring::read_ring;
 use crate::files::toml::read_world;
+use crate::report::json::to_json;
 use crate::report::rooms::{Elsewhere, RoomsReport};
 use crate::report::watch::Watch;
 
@@ -21,21 +26,20 @@ pub(crate) struct RoomArgs {
     /// where the scene's first robot does
     #[arg(long, value_name = "SCENE.toml|DIR")]
     rooms: Vec<PathBuf>,
-    /// The number of rooms of each kind
-    #[arg(long, value_name = "N", default_value_t = 6, value_parser = clap::value_parser!(u64).range(1..=1000))]
-    places: u64,
-    /// The number of the first room of each kind. Ways are chosen on numbers below 2000; report from 20000 on
-    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u64).range(..=1_000_000_000))]
-    first: u64,
-    /// The largest share of foreign sound in what is believed, in per cent, of a way that is recommended
-    #[arg(long, value_name = "PERCENT", default_value_t = 3.0, value_parser = percent)]
-    wrong: f64,
+    /// The number of rooms of each kind; 6 by default
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1000))]
+    places: Option<u64>,
+    /// The number of the first room of each kind; 0 by default. Ways are chosen on numbers below 2000; report from 20000
+    /// on
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(..=1_000_000_000))]
+    first: Option<u64>,
+    /// The largest share of foreign sound in what is believed, in per cent, of a way that is recommended; 3 by
+    /// default
+    #[arg(long, value_name = "PERCENT", value_parser = percent)]
+    wrong: Option<f64>,
     /// Let the robot drive through the rooms at the ring's speed_m_s, or 0.3 m/s
     #[arg(long)]
     driving: bool,
-    /// Find the shortest period and judge nothing in rooms
-    #[arg(long, conflicts_with_all = ["rooms", "places", "first", "wrong", "driving"])]
-    period_only: bool,
 }
 
 fn percent(text: &str) -> Result<f64, String> {
@@ -49,10 +53,43 @@ const USUAL_SPEED_M_S: f64 = 0.3;
 const LESS_ELSEWHERE: usize = 3;
 
 impl RoomArgs {
-    /// Returns true if ways of firing are to be judged.
-    pub(crate) fn asks(&self) -> bool {
-        !self.period_only
+    /// Returns the first option that was given, for a file that is no ring.
+    pub(crate) fn given(&self) -> Option<&'static str> {
+        let given = [
+            ("--rooms", !self.rooms.is_empty()),
+            ("--places", self.places.is_some()),
+            ("--first", self.first.is_some()),
+            ("--wrong", self.wrong.is_some()),
+            ("--driving", self.driving),
+        ];
+        given.into_iter().find(|(_, given)| *given).map(|(name, _)| name)
     }
+
+    fn first(&self) -> u64 {
+        self.first.unwrap_or(0)
+    }
+
+    fn wrong_percent(&self) -> f64 {
+        self.wrong.unwrap_or(3.0)
+    }
+}
+
+/// Nodes for the schedule of two phases of `eeruf study RING.toml`.
+const STUDY_BUDGET: u64 = 200_000;
+
+/// Judges a ring file without a word of its period: `eeruf study RING.toml`.
+pub(crate) fn study(args: &RoomArgs, file: &Path, as_json: bool) -> Result<Answer, InputError> {
+    let spec = read_ring(file)?;
+    let mut watch = Watch::new();
+    let search = Search { budget: STUDY_BUDGET, what_if: false, atlas: ATLAS };
+    let design = spec.shortest(&search, &mut ()).map_err(|error| InputError::new(file, None, error))?;
+    let report = judged(args, &spec, design.as_ref().ok(), &mut watch)?;
+    drop(watch);
+    match as_json {
+        true => print_line(to_json(&report.json()))?,
+        false => tell(report.text(&file.display().to_string()))?,
+    }
+    Ok(if report.judgement.is_ok() { Answer::Yes } else { Answer::No })
 }
 
 /// Judges the ways of firing a ring, with the schedule of two phases that was found for it; or says why that cannot be
@@ -72,7 +109,7 @@ pub(crate) fn judged(
     let speed_m_s = spec.speed_mm_s.filter(|&mm| mm > 0).map_or(USUAL_SPEED_M_S, |mm| f64::from(mm) / 1e3);
     let asked = RoomsOptions {
         speed_m_s: if args.driving { speed_m_s } else { 0.0 },
-        wrong: args.wrong / 100.0,
+        wrong: args.wrong_percent() / 100.0,
         ..RoomsOptions::default()
     };
     let groups = groups(args, robot.robot.radius_m())?;
@@ -113,8 +150,8 @@ pub(crate) fn judged(
         groups: groups.into_iter().map(|group| (group.name, group.rooms.len())).collect(),
         own_rooms: !args.rooms.is_empty(),
         speed_m_s: asked.speed_m_s,
-        wrong: args.wrong,
-        first: args.first,
+        wrong: args.wrong_percent(),
+        first: args.first(),
         elsewhere,
     })
 }
@@ -122,7 +159,7 @@ pub(crate) fn judged(
 /// The rooms of the set, or the scenes that were named.
 fn groups(args: &RoomArgs, radius_m: f64) -> Result<Vec<RoomGroup>, InputError> {
     if args.rooms.is_empty() {
-        let numbers = args.first..args.first + args.places;
+        let numbers = args.first()..args.first() + args.places.unwrap_or(6);
         return Ok(RoomKind::ALL.map(|kind| RoomGroup::of_kind(kind, numbers.clone(), radius_m)).into());
     }
     let mut files = vec![];

@@ -9,9 +9,11 @@ use eeruf_sim::{
 
 use super::answer::Answer;
 use super::methods::chosen;
+use super::rooms::{self, RoomArgs};
 use crate::console::{print_line, tell};
 use crate::files::error::InputError;
 use crate::files::firings::write_firings;
+use crate::files::kind::Kind;
 use crate::files::mcap::{Stage, write_mcap};
 use crate::files::toml::read_world;
 use crate::report::json::to_json;
@@ -31,8 +33,8 @@ use crate::report::watch::Watch;
 /// came, or after a time-out), arrays, groups, sync_line, free_running, table.
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// The scene
-    #[arg(value_name = "SCENE.toml")]
+    /// The scene; or a ring, which is judged in rooms
+    #[arg(value_name = "SCENE.toml|RING.toml")]
     file: PathBuf,
     /// For how many of the first robot's periods; by default 2000, or 250 if anything moves
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
@@ -62,6 +64,25 @@ pub(crate) struct Args {
     /// Other effects than the scene's: plain, or default (see docs/physics.md)
     #[arg(long, value_name = "PRESET")]
     physics: Option<Physics>,
+    #[command(flatten)]
+    in_rooms: RoomArgs,
+}
+
+impl Args {
+    /// Returns the first option that was given and means nothing for a ring.
+    fn of_scenes(&self) -> Option<&'static str> {
+        let given = [
+            ("--periods", self.periods.is_some()),
+            ("--svg", self.svg.is_some()),
+            ("--png", self.png.is_some()),
+            ("--log", self.log.is_some()),
+            ("--mcap", self.mcap.is_some()),
+            ("--method", !self.methods.is_empty()),
+            ("--seed", self.seed.is_some()),
+            ("--physics", self.physics.is_some()),
+        ];
+        given.into_iter().find(|(_, given)| *given).map(|(name, _)| name)
+    }
 }
 
 const PERIODS: u32 = 2000;
@@ -71,6 +92,18 @@ const PERIODS_IF_MOVING: u32 = 250;
 const BUDGET: u64 = 20_000;
 
 pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
+    let refuse = |option: &str, of: &str| {
+        Err(InputError::new(&args.file, None, format!("{option}: given; expected it with {of} alone")))
+    };
+    if Kind::of_file(&args.file) == Some(Kind::Ring) {
+        return match args.of_scenes() {
+            Some(option) => refuse(option, "a scene"),
+            None => rooms::study(&args.in_rooms, &args.file, args.json),
+        };
+    }
+    if let Some(option) = args.in_rooms.given() {
+        return refuse(option, "a ring file");
+    }
     let mut world = read_world(&args.file)?;
     if let Some(physics) = args.physics {
         world = world.with_physics(physics).map_err(|error| InputError::new(&args.file, None, error))?;

@@ -52,6 +52,11 @@ impl Kind {
         None
     }
 
+    /// Returns the kind that a file looks like; none for one that cannot be read as text.
+    pub(crate) fn of_file(file: &Path) -> Option<Self> {
+        fs::read_to_string(file).ok().and_then(|text| Self::of(file, &text))
+    }
+
     fn name(self) -> &'static str {
         match self {
             Self::Schedule => "a schedule",

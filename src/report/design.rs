@@ -15,6 +15,7 @@ pub(crate) fn describe(
     spec: &RingSpec,
     design: &RingDesign,
     real: Option<&RealPeriod>,
+    still: Option<&RingDesign>,
     seconds: f64,
 ) -> String {
     let RingDesign { schedule, found, preferred, to_spare, what_if, .. } = design;
@@ -41,10 +42,16 @@ pub(crate) fn describe(
         "t_delta".to_owned(),
         report.max_t_delta().map_or_else(|| "none".to_owned(), |t_delta| t_delta.to_string()),
         match &spec.uneven {
-            None => format!("needed: {}{}", requirements.t_delta, best(preferred.map(|p| p.t_delta_proven))),
+            None => format!(
+                "needed: {}, {} of range{}",
+                requirements.t_delta,
+                as_range(spec, requirements.t_delta),
+                best(preferred.map(|p| p.t_delta_proven))
+            ),
             Some(_) => format!(
-                "if all sensors had the same; needed: {}, and kept",
-                span(spec.sensors, |sensor| design.spec.problem().requirements.t_delta_of(sensor))
+                "if all sensors had the same; needed: {}, and kept; the largest is {} of range",
+                span(spec.sensors, |sensor| design.spec.problem().requirements.t_delta_of(sensor)),
+                as_range(spec, design.spec.t_delta)
             ),
         },
     ]);
@@ -83,14 +90,20 @@ pub(crate) fn describe(
         format!("{:.2} m/s", f64::from(speed) / 1000.0),
         format!("before good readings differ by more than t_delta ({} at most between firings)", schedule.max_refire()),
     ]);
+    if let Some(still) = still {
+        let needed = still.t_delta;
+        table.add_row([
+            "with odometry".to_owned(),
+            still.schedule.period().to_string(),
+            format!(
+                "where the firmware gives each reading's expected change: t_delta {needed}, {}",
+                as_range(spec, needed)
+            ),
+        ]);
+    }
     let rate = |period: f64| 1e6 / period;
-    let one_by_one = one_by_one_us(spec.sensors, requirements);
     let us = f64::from(period.as_micros());
-    table.add_row([
-        "readings".to_owned(),
-        format!("{:.1} a second", rate(us)),
-        format!("of each sensor; {:.1} times one by one ({:.1} a second)", one_by_one / us, rate(one_by_one)),
-    ]);
+    table.add_row(["firings".to_owned(), format!("{:.1} a second", rate(us)), "of each sensor".to_owned()]);
     if let Some(paper) = papers_period_us(spec, requirements) {
         table.add_row([
             String::new(),
@@ -147,13 +160,10 @@ fn span(sensors: usize, of: impl Fn(usize) -> Micros) -> String {
     if least == most { most.to_string() } else { format!("{least} to {most}") }
 }
 
-/// A round of all sensors one after the other, each for as long as it listens; those that fire together at once.
-fn one_by_one_us(sensors: usize, requirements: &Requirements<'_>) -> f64 {
-    let listens = |sensor: usize| requirements.window_of(sensor);
-    let with =
-        |sensor: usize| (0..sensors).filter(move |&other| other == sensor || requirements.fire_together(sensor, other));
-    let firsts = (0..sensors).filter(|&sensor| with(sensor).next() == Some(sensor));
-    firsts.filter_map(|sensor| with(sensor).map(listens).max()).map(|window| f64::from(window.as_micros())).sum()
+/// A time as the change of range that it stands for.
+fn as_range(spec: &RingSpec, time: Micros) -> String {
+    // c/2 in mm/s times us is 1e-7 cm.
+    format!("{:.1} cm", 0.5e-7 * f64::from(spec.c.mm_per_s()) * f64::from(time.as_micros()))
 }
 
 /// What the designer may change to get faster.

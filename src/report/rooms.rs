@@ -72,13 +72,15 @@ impl RoomsReport {
             _ = writeln!(text, "Assumed: {assumed}.");
         }
         let Some(base) = judgement.ways.first() else { return text };
-        let header = ["way", "right %", "phantom %", "right echoes/s", "x one by one", "foreign %", "blind", "kept"];
+        let header = ["way", "right %", "phantom %", "right echoes/s", "x one by one", "foreign %", "blind", "limits"];
         let row = |way: &JudgedWay| self.row(way, base);
         _ = writeln!(text, "\n{}", markdown(&header, judgement.ways.iter().map(row)));
         text.push_str(
-            "right: share of time in which what was last believed, up to 0.6 s ago, is right within 0.5 ms; phantom: in \
-             which it is foreign sound. foreign: its share of what was believed, in the median room of the worst kind. \
-             kept: no kind of room in which a way is wrong too often or blinds a sensor that one by one does not.\n",
+            "right: share of time in which the last believed reading, at most 0.6 s old, is right within 0.5 ms (8.6 \
+             cm); phantom: in which it is foreign sound. foreign, blind: share of foreign sound in what was believed, and \
+             sensors that are right under 5 % of the time, in the median room of the worst kind. limits: the first kind \
+             of room in which foreign sound exceeds its limit, or own wrong echoes those of one by one by a point, or \
+             a sensor is blind that one by one is not.\n",
         );
         for way in &judgement.ways {
             if let Err(why) = &way.rooms {
@@ -99,24 +101,32 @@ impl RoomsReport {
 
     /// The sentence that answers.
     fn verdict(&self, name: &str, judgement: &Judgement) -> String {
-        let best = judgement.recommended.and_then(|index| judgement.ways.get(index));
-        let (Some(way), Some(base)) = (best, judgement.ways.first()) else {
+        let (Some(way), Some(base)) = (way_of(judgement), judgement.ways.first()) else {
             return format!("{name}: no way of firing was possible for this ring.\n");
         };
         let right = |way: &JudgedWay| 100.0 * way.belief_right().unwrap_or(0.0);
-        let mut text = format!(
-            "{name}: recommended: {} ({}), right {:.1} % of the time; one by one {:.1} %",
-            way.way.name,
-            way.way.title(),
-            right(way),
-            right(base)
-        );
+        let title = if way.way.name == way.way.title() { String::new() } else { format!(" ({})", way.way.title()) };
+        let mut text = format!("{name}: recommended: {}{title}, right {:.1} % of the time", way.way.name, right(way));
         match way.echoes_against(base).filter(|_| way != base) {
-            Some(times) => _ = writeln!(text, ", with {times:.2} times its right echoes."),
+            Some(times) => {
+                _ = writeln!(text, "; one by one {:.1} %, with 1/{times:.1} of its right echoes.", right(base));
+            }
             None => text.push_str(".\n"),
         }
         if PLAIN.contains(&way.way.name) {
-            text.push_str("You do not need eeruf here: nothing else is right more of the time by a point.\n");
+            text.push_str("You do not need eeruf here: no other way is right for a point more of the time.\n");
+            let fast = judgement.ways.iter().filter(|way| way.fails_in(base, self.wrong / 100.0).is_none());
+            let most = fast.filter_map(|way| Some((way, way.echoes_against(way_of(judgement)?)?)));
+            if let Some((other, times)) = most.reduce(|one, next| if next.1 > one.1 { next } else { one }) {
+                if times > 1.5 {
+                    _ = writeln!(
+                        text,
+                        "For fresher readings: {} has {times:.1} times its right echoes and is right {:.1} % of the time.",
+                        other.way.name,
+                        right(other)
+                    );
+                }
+            }
         }
         if !judgement.keeps {
             let wrong = self.wrong;
@@ -142,7 +152,7 @@ impl RoomsReport {
         let most = |of: fn(&RoomFigures) -> f64| rooms.iter().map(of).fold(0.0, f64::max);
         let kept = match way.fails_in(base, self.wrong / 100.0).and_then(|index| self.groups.get(index)) {
             Some((room, _)) => format!("not in {room}"),
-            None => "yes".to_owned(),
+            None => "kept".to_owned(),
         };
         row.extend([
             format!("{:.1}", 100.0 * mean(|figures| figures.belief.right)),
@@ -159,10 +169,10 @@ impl RoomsReport {
     /// What the answer hangs on.
     fn hangs_on(&self, here: &Judgement) -> String {
         let mut text = String::new();
-        let chosen = here.recommended.and_then(|index| here.ways.get(index)).map_or("", |way| way.way.name);
+        let chosen = way_of(here).map_or("", |way| way.way.name);
         let mut differs = false;
         for Elsewhere { condition: other, judgement } in &self.elsewhere {
-            let Some(best) = judgement.recommended.and_then(|index| judgement.ways.get(index)) else { continue };
+            let Some(best) = way_of(judgement) else { continue };
             differs |= best.way.name != chosen;
             let right = |way: &JudgedWay| format!("{:.1} %", 100.0 * way.belief_right().unwrap_or(0.0));
             let ours = judgement.ways.iter().find(|way| way.way.name == chosen).map(right);
@@ -180,11 +190,19 @@ impl RoomsReport {
             };
         }
         if text.is_empty() {
-            return "Under other gain and height it was not judged: the time was over.\n\n".to_owned();
+            return "Other gain and height: not judged, as the time was over.\n\n".to_owned();
+        }
+        let alone =
+            here.without(|index| self.groups.get(index).is_some_and(|(name, _)| name == "meeting"), self.wrong / 100.0);
+        if let Some(best) = alone.as_ref().and_then(way_of) {
+            differs |= best.way.name != chosen;
+            let right = 100.0 * best.belief_right().unwrap_or(0.0);
+            let too = if best.way.name == chosen { " too" } else { "" };
+            _ = writeln!(text, "- no other robot of the same make near: {}{too}, {right:.1} %.", best.way.name);
         }
         let title = match differs {
-            true => "The answer hangs on the gain of the modules and the height of the rooms:",
-            false => "The answer does not hang on the gain of the modules or the height of the rooms:",
+            true => "The answer depends on conditions; elsewhere the recommended way is:",
+            false => "The answer is the same under other conditions:",
         };
         format!("{title}\n{text}\n")
     }
@@ -194,9 +212,7 @@ impl RoomsReport {
         let Ok(judgement) = &self.judgement else {
             return RoomsJson { not_judged: self.judgement.as_ref().err().cloned(), ..RoomsJson::default() };
         };
-        let best = |judgement: &Judgement| {
-            judgement.recommended.and_then(|index| judgement.ways.get(index)).map(|way| way.way.name.to_owned())
-        };
+        let best = |judgement: &Judgement| way_of(judgement).map(|way| way.way.name.to_owned());
         let rooms_of = |way: &JudgedWay| {
             let named = self.groups.iter().zip(way.rooms.iter().flatten());
             named.map(|((name, _), figures)| (name.clone(), room_json(figures))).collect::<Map<_, _>>()
@@ -221,6 +237,11 @@ impl RoomsReport {
             not_judged: None,
         }
     }
+}
+
+/// The recommended way.
+fn way_of(judgement: &Judgement) -> Option<&JudgedWay> {
+    judgement.recommended.and_then(|index| judgement.ways.get(index))
 }
 
 /// A room's figures, with the belief's shares by the names that they have in other tables.

@@ -71,16 +71,16 @@ fn a_ring_of_the_atlas_is_answered_in_any_tick_that_its_needs_are_as_many_of() {
             times(30)
         );
         let (_folder, file) = Scratch::new("ring.toml", &ring);
-        let found = json(&["design", file.to_str().unwrap(), "--json"]);
+        let found = json(&["design", "--period-only", file.to_str().unwrap(), "--json"]);
         assert_eq!((&found["from_atlas"], &found["value_us"]), (&true.into(), &times(65).into()), "{tick}");
         // One tick more to listen is another ring.
         let other = ring.replace(&format!("window_us = {}", times(30)), &format!("window_us = {}", times(31)));
         std::fs::write(&file, other).unwrap();
-        let searched = json(&["design", file.to_str().unwrap(), "--json"]);
+        let searched = json(&["design", "--period-only", file.to_str().unwrap(), "--json"]);
         assert_eq!((&searched["from_atlas"], &searched["proven"]), (&false.into(), &true.into()), "{tick}");
     }
-    let described = eeruf(&["design", "rings/paper-12.toml"]);
+    let described = eeruf(&["design", "--period-only", "rings/paper-12.toml"]);
     assert!(described.out.contains("from the atlas, verified"), "{}", described.out);
-    let searched = eeruf(&["design", "rings/paper-12.toml", "--no-atlas"]);
+    let searched = eeruf(&["design", "--period-only", "rings/paper-12.toml", "--no-atlas"]);
     assert!(searched.out.contains("128 nodes, and"), "{}", searched.out);
 }

@@ -18,6 +18,7 @@ mod program;
 mod provoked;
 mod recording;
 mod rings_in_scenes;
+mod rooms;
 mod ros2;
 mod scene;
 mod study;

@@ -117,9 +117,9 @@ fn the_papers_ring_can_run_at_65_ms_and_the_answer_is_the_same_in_every_form() {
     assert_eq!(found["proven"], true);
     assert_eq!(found["schedule"]["period_us"], 65_000);
     assert_eq!(found["schedule"]["t_fire_a_us"].as_array().unwrap().len(), 12);
-    let again = json(&["design", "rings/paper-12.toml", "--no-atlas", "--json"]);
+    let again = json(&["design", "--period-only", "rings/paper-12.toml", "--no-atlas", "--json"]);
     assert_eq!((&again["schedule"], &again["nodes"]), (&found["schedule"], &found["nodes"]));
-    let known = json(&["design", "rings/paper-12.toml", "--json"]);
+    let known = json(&["design", "--period-only", "rings/paper-12.toml", "--json"]);
     assert_eq!((&known["from_atlas"], &again["from_atlas"]), (&true.into(), &false.into()));
     assert_eq!((&known["schedule"], &known["reason"]), (&found["schedule"], &found["reason"]));
     assert_eq!((&known["nodes"], &known["real_period_us"]), (&0.into(), &serde_json::json!([129_995, 2])));
@@ -131,7 +131,7 @@ fn the_papers_ring_can_run_at_65_ms_and_the_answer_is_the_same_in_every_form() {
     let report = json(&[&["verify", file.to_str().unwrap(), "--json"], &asked[..]].concat());
     assert_eq!((&report["ok"], &report["max_t_delta_us"]), (&true.into(), &999.into()));
 
-    let described = eeruf(&["design", "rings/paper-12.toml"]);
+    let described = eeruf(&["design", "--period-only", "rings/paper-12.toml"]);
     for said in [
         "65 ms",
         "proven: no schedule in ticks of 1 ms is shorter",
@@ -148,14 +148,14 @@ fn the_papers_ring_can_run_at_65_ms_and_the_answer_is_the_same_in_every_form() {
 
 #[test]
 fn every_ring_file_that_we_ship_gets_a_proven_schedule_with_a_picture() {
-    let uneven = [("car-12", 33_300), ("hc-sr04-8-two-multiplexers", 61_500), ("mower-8-and-4", 37_000)];
+    let uneven = [("car-12", 34_100), ("hc-sr04-8-two-multiplexers", 61_500), ("mower-8-and-4", 37_000)];
     for (ring, period_us) in
-        [("labmate-8", 48_300), ("ring-24", 76_000), ("hc-sr04-8", 63_000)].into_iter().chain(uneven)
+        [("labmate-8", 48_300), ("ring-24", 76_000), ("hc-sr04-8", 63_500)].into_iter().chain(uneven)
     {
         let (folder, _) = Scratch::new("unused", "");
         let picture = folder.path().join("timing.svg");
         let file = format!("rings/{ring}.toml");
-        let found = json(&["design", &file, "--json", "--svg", picture.to_str().unwrap()]);
+        let found = json(&["design", &file, "--period-only", "--json", "--svg", picture.to_str().unwrap()]);
         assert_eq!((&found["value_us"], &found["proven"]), (&period_us.into(), &true.into()), "{ring}");
         assert!(std::fs::read_to_string(picture).unwrap().contains("phase b"));
     }
@@ -217,10 +217,11 @@ fn a_schedule_is_held_against_a_ring_file_with_all_that_differs_in_it() {
 fn a_robot_that_moves_gets_a_t_delta_that_covers_its_motion() {
     let still = "sensors = 8\nwindow_us = 20_000\nmin_interval_us = 10_000\njitter_us = 60\ntick_us = 100\n";
     let (_folder, file) = Scratch::new("still.toml", still);
-    let still_period = json(&["design", file.to_str().unwrap(), "--json"])["value_us"].as_u64().unwrap();
+    let still_period =
+        json(&["design", "--period-only", file.to_str().unwrap(), "--json"])["value_us"].as_u64().unwrap();
     let moving = format!("{still}speed_m_s = 1.0\n");
     let (_folder, file) = Scratch::new("moving.toml", &moving);
-    let found = json(&["design", file.to_str().unwrap(), "--json"]);
+    let found = json(&["design", "--period-only", file.to_str().unwrap(), "--json"]);
     assert!(found["value_us"].as_u64().unwrap() > still_period);
     // No good reading changes by more than jitter and 2 v dt / c over the longest dt.
     let times = |key: &str| -> Vec<i64> {
@@ -234,7 +235,7 @@ fn a_robot_that_moves_gets_a_t_delta_that_covers_its_motion() {
     assert_eq!(eeruf(&["verify", schedule.to_str().unwrap(), "--t-delta-us", &t_delta]).code, Some(0));
 
     let (_folder, file) = Scratch::new("rocket.toml", &format!("{still}speed_m_s = 100.0\n"));
-    let rocket = eeruf(&["design", file.to_str().unwrap()]);
+    let rocket = eeruf(&["design", "--period-only", file.to_str().unwrap()]);
     assert_eq!(rocket.code, Some(1));
     assert!(rocket.out.contains("no schedule"), "{}", rocket.out);
 }
@@ -373,8 +374,13 @@ fn ctrl_c_ends_a_long_design_with_the_best_schedule_so_far() {
     let needs = "t_delta_us = 999\nmin_interval_us = 15_000\nwindow_us = 15_000\ntick_us = 100";
     let (_scratch, ring) = Scratch::new("ring-15.toml", &format!("sensors = 15\nlayout = 'ring'\n{needs}\n"));
     let mut program = Command::new(env!("CARGO_BIN_EXE_eeruf"));
-    let search =
-        program.arg("design").arg(&ring).args(["--budget", "1000000000"]).stdout(Stdio::piped()).spawn().unwrap();
+    let search = program
+        .arg("design")
+        .arg(&ring)
+        .args(["--period-only", "--budget", "1000000000"])
+        .stdout(Stdio::piped())
+        .spawn()
+        .unwrap();
     // Long enough to begin, on a busy machine too.
     std::thread::sleep(Duration::from_secs(2));
     let signalled = Command::new("kill").args(["-INT", &search.id().to_string()]).status().unwrap();

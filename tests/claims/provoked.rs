@@ -325,7 +325,7 @@ fn tables_fit_80_and_40_columns() {
         &["paths", &scene],
         &["replay", &log, "--t-delta-us", "500"],
         &["verify", &table, "--t-delta-us", "1000"],
-        &["design", &ring],
+        &["design", &ring, "--places", "1"],
         &["experiment", "set-one", "--seeds", "2"],
         &["experiment", "set-two", "--seeds", "1", "--method", "sequential"],
     ];

@@ -12,6 +12,13 @@ use crate::limits::{four, neighbours_in_range, number, sensors_in_range};
 use crate::text::{TextError, parse};
 use crate::uneven::OwnedUneven;
 
+/// What readings of one wall differ by on a robot that stands, for a file that names its modules and no jitter: a
+/// choice, twice the 50 us that an HC-SR04 scatters by.
+const USUAL_JITTER_US: u32 = 100;
+/// Walls up to here make neighbours hear each other, for a file that names its modules and no interval: the paper's 15
+/// ms between neighbours.
+const USUAL_CROSSTALK_RANGE_M: f64 = 2.57;
+
 const fn one_millisecond() -> u32 {
     1000
 }
@@ -27,8 +34,9 @@ pub struct RingFile {
     layout: LayoutKey,
     #[serde(default = "one_millisecond")]
     tick_us: u32,
-    #[serde(default)]
-    stale_echo: bool,
+    /// Whether a sensor's own echo from the period before must be rejected; by default where modules are named, which
+    /// hear farther than they see.
+    stale_echo: Option<bool>,
     /// The modules: range and rest of each, where the file does not say otherwise.
     module: Option<ModulesFile>,
     /// `T_delta` itself, or the sensor's repeatability with jitter, and how fast the robot moves.
@@ -229,12 +237,16 @@ impl RingFile {
             (Some(t_delta), None, None) => (t_delta.list("t_delta_us", sensors)?, None),
             (None, Some(jitter), None) => (jitter.list("jitter_us", sensors)?, None),
             (None, Some(jitter), Some(metres)) => (jitter.list("jitter_us", sensors)?, Some(speed(metres)?)),
+            (None, None, metres) if self.module.is_some() => {
+                (vec![USUAL_JITTER_US; sensors], metres.map(speed).transpose()?)
+            }
             _ => return Err("expected either t_delta_us, or jitter_us with or without speed_m_s".to_owned()),
         };
         let t_delta: Vec<Micros> = t_delta.into_iter().map(Micros::new).collect();
         let min_interval = match (self.min_interval_us, self.crosstalk_range_m) {
             (Some(us), None) => Micros::new(us),
             (None, Some(range)) => metres("crosstalk_range_m", range)?,
+            (None, None) if self.module.is_some() => metres("crosstalk_range_m", USUAL_CROSSTALK_RANGE_M)?,
             _ => return Err("expected either min_interval_us or crosstalk_range_m".to_owned()),
         };
         let modules = self.module.as_ref().map(|modules| modules.list(sensors)).transpose()?.unwrap_or_default();
@@ -279,7 +291,7 @@ impl RingFile {
             window: largest_window,
             listening,
             retrigger,
-            stale_echo: self.stale_echo,
+            stale_echo: self.stale_echo.unwrap_or(self.module.is_some()),
             c,
             t_delta: largest_t_delta,
             speed_mm_s,

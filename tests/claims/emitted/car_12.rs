@@ -1,31 +1,31 @@
 use eeruf_core::{Criterion, EachSensor, Layout, Micros, Requirements, Uneven, VerifiedSchedule, schedule};
 
-// 12 sensors, T_p = 33.3 ms; 3 adjacent sensors of a ring at least 6.993 ms apart, and what each sensor and pair needs.
+// 12 sensors, T_p = 34.1 ms; 3 adjacent sensors of a ring at least 6.993 ms apart, and what each sensor and pair needs.
 pub const RING: VerifiedSchedule<12, 2, EachSensor<12>> = schedule! {
-    period_us: 33_300,
-    t_fire_a_us: [25_100, 7_600, 15_200, 30_800, 22_800, 9_800, 30_400, 2_100, 17_100, 25_500, 3_600, 17_500],
-    t_fire_b_us: [28_700, 7_600, 16_400, 33_200, 8_700, 25_600, 18_000, 9_100, 27_800, 20_200, 12_600, 0],
+    period_us: 34_100,
+    t_fire_a_us: [17_000, 0, 25_500, 8_500, 17_000, 0, 25_500, 8_500, 17_000, 0, 25_500, 8_500],
+    t_fire_b_us: [13_700, 2_000, 24_800, 13_100, 0, 22_400, 13_900, 2_100, 25_200, 13_400, 4_900, 23_700],
     each_meets: Requirements {
-        t_delta: Micros::new(845),
+        t_delta: Micros::new(894),
         criterion: Criterion::Exact,
         min_interval: Micros::new(6_993),
         layout: Layout::Ring(3),
         window: Micros::new(32_051),
-        stale_echo: false,
+        stale_echo: true,
         uneven: Some(Uneven {
             t_delta: &[
-                Micros::new(595),
-                Micros::new(595),
-                Micros::new(595),
-                Micros::new(595),
-                Micros::new(845),
-                Micros::new(845),
-                Micros::new(845),
-                Micros::new(845),
-                Micros::new(845),
-                Micros::new(845),
-                Micros::new(845),
-                Micros::new(845),
+                Micros::new(644),
+                Micros::new(644),
+                Micros::new(644),
+                Micros::new(644),
+                Micros::new(894),
+                Micros::new(894),
+                Micros::new(894),
+                Micros::new(894),
+                Micros::new(894),
+                Micros::new(894),
+                Micros::new(894),
+                Micros::new(894),
             ],
             window: &[
                 Micros::new(26_224),

@@ -104,6 +104,25 @@ pub struct Judgement {
     pub keeps: bool,
 }
 
+impl Judgement {
+    /// The judgement without some groups of rooms, named by their index; none if no group is left out, or none left.
+    pub fn without(&self, left_out: impl Fn(usize) -> bool, wrong: f64) -> Option<Self> {
+        let mut ways = self.ways.clone();
+        let mut fewer = false;
+        for rooms in ways.iter_mut().filter_map(|way| way.rooms.as_mut().ok()) {
+            let all = rooms.len();
+            let mut index = 0..all;
+            rooms.retain(|_| index.next().is_some_and(|index| !left_out(index)));
+            if rooms.is_empty() {
+                return None;
+            }
+            fewer |= rooms.len() < all;
+        }
+        let (recommended, keeps) = recommend(&ways, wrong);
+        fewer.then_some(Self { ways, recommended, keeps })
+    }
+}
+
 /// One room's figures.
 #[derive(Clone, Copy, Debug)]
 struct Run {
@@ -293,5 +312,83 @@ fn recommend(ways: &[JudgedWay], wrong: f64) -> (Option<usize>, bool) {
     match best_of(&|way| way.rooms.is_ok() && way.fails_in(base, wrong).is_none()) {
         Some(index) => (Some(index), true),
         None => (best_of(&|way| way.rooms.is_ok()), false),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::acoustics::Transducer;
+    use crate::geometry::Pose;
+
+    const USUAL: RoomFigures = RoomFigures {
+        belief: Belief { right: 0.9, unknown: 0.1, phantom: 0.0, too_far: 0.0, faint: 0.0 },
+        belief_right_95: [0.9; 2],
+        belief_right_worst: 0.9,
+        right_echoes_per_s: 10.0,
+        right_echoes_per_s_95: [10.0; 2],
+        foreign_of_believed: 0.0,
+        foreign_of_believed_worst: 0.0,
+        own_wrong_of_believed: 0.0,
+        blind: 0.0,
+        age_p99_ms: 100.0,
+    };
+
+    fn right(right: f64, echoes: f64) -> RoomFigures {
+        RoomFigures { belief: Belief { right, ..USUAL.belief }, right_echoes_per_s: echoes, ..USUAL }
+    }
+
+    fn chosen(figures: &[Result<[RoomFigures; 2], &str>]) -> (Option<usize>, bool) {
+        let robot = Robot::ring(Pose::identity(), 4, 1.57, 0.2, Transducer::HC_SR04);
+        let way = RoomWay::all(&robot, None)[0].clone();
+        let judged = figures
+            .iter()
+            .map(|rooms| JudgedWay { way: way.clone(), rooms: rooms.map(Vec::from).map_err(str::to_owned) });
+        recommend(&judged.collect::<Vec<_>>(), 0.03)
+    }
+
+    #[test]
+    fn way_that_is_right_most_is_recommended_and_echoes_part_equals() {
+        let base = Ok([USUAL; 2]);
+        assert_eq!(chosen(&[base, Ok([right(0.95, 9.0); 2]), Ok([right(0.8, 99.0); 2])]), (Some(1), true));
+        assert_eq!(chosen(&[base, Ok([right(0.95, 9.0); 2]), Ok([right(0.945, 20.0); 2])]), (Some(2), true));
+        // What cannot fire is passed over.
+        assert_eq!(chosen(&[base, Err("too fast")]), (Some(0), true));
+        assert_eq!(chosen(&[Err("too fast")]), (None, false));
+    }
+
+    #[test]
+    fn limits_in_one_kind_of_room_are_enough_to_refuse_a_way() {
+        let good = right(0.99, 50.0);
+        let worse = [
+            RoomFigures { foreign_of_believed: 0.04, ..good },
+            RoomFigures { own_wrong_of_believed: 0.02, ..good },
+            RoomFigures { blind: 1.0, ..good },
+        ];
+        for worse in worse {
+            assert_eq!(chosen(&[Ok([USUAL; 2]), Ok([good, worse])]), (Some(0), true), "{worse:?}");
+            // Where all are refused, the one that is right most is named, and said to be refused.
+            let base = RoomFigures { foreign_of_believed: 0.5, ..USUAL };
+            assert_eq!(chosen(&[Ok([base; 2]), Ok([good, worse])]).0, Some(1), "{worse:?}");
+        }
+        let base = RoomFigures { foreign_of_believed: 0.5, ..USUAL };
+        let worse = RoomFigures { foreign_of_believed: 0.04, ..good };
+        assert_eq!(chosen(&[Ok([base; 2]), Ok([good, worse])]), (Some(1), false));
+    }
+
+    #[test]
+    fn judgement_is_the_same_on_any_number_of_threads_and_stops_when_told() {
+        let robot = Robot::ring(Pose::identity(), 4, 1.57, 0.2, Transducer::HC_SR04);
+        let ways = RoomWay::all(&robot, None);
+        let rooms = [RoomGroup::of_kind(RoomKind::Office, 3..5, 0.2), RoomGroup::of_kind(RoomKind::Meeting, 3..4, 0.2)];
+        let asked = RoomsOptions::default();
+        let once = judge(&ways, &rooms, &asked, &|_| true).unwrap();
+        assert_eq!(once, judge(&ways, &rooms, &asked, &|_| true).unwrap());
+        assert_eq!(once.ways[0].rooms.as_ref().unwrap().len(), 2);
+        let alone = once.without(|index| index == 1, 0.03).unwrap();
+        assert_eq!(alone.ways[0].rooms.as_ref().unwrap().len(), 1);
+        assert_eq!(judge(&ways, &rooms, &asked, &|_| false), Err(ExperimentError::Stopped));
+        assert_eq!(judge(&[], &rooms, &asked, &|_| true), Err(ExperimentError::NoMethods));
+        assert_eq!(judge(&ways, &[], &asked, &|_| true), Err(ExperimentError::NoSeeds));
     }
 }

@@ -1,0 +1,106 @@
+//! `eeruf design` and `eeruf study RING.toml`: ways of firing judged in rooms.
+
+use crate::common::{Scratch, eeruf, json};
+use serde_json::Value;
+
+const ROOMS: [&str; 8] = ["corridor", "office", "hall", "clutter", "alcove", "garage", "aisle", "meeting"];
+
+fn number(value: &Value) -> f64 {
+    value.as_f64().unwrap_or_else(|| panic!("{value} is no number"))
+}
+
+fn way<'a>(answer: &'a Value, name: &str) -> &'a Value {
+    let ways = answer["ways"].as_array().expect("ways");
+    ways.iter().find(|way| way["way"] == name).unwrap_or_else(|| panic!("no way {name}"))
+}
+
+/// The mean over rooms of a figure.
+fn mean(way: &Value, figure: &str) -> f64 {
+    ROOMS.iter().map(|room| number(&way["rooms"][room][figure])).sum::<f64>() / ROOMS.len() as f64
+}
+
+#[test]
+fn four_lines_get_a_way_with_its_figures_in_each_room() {
+    let (_scratch, file) =
+        Scratch::new("ring.toml", "sensors = 8\nmodule = 'hc-sr04'\nlayout = 'ring'\nspeed_m_s = 0.5\n");
+    let ring = file.to_str().unwrap();
+    let answer = json(&["design", ring, "--places", "1", "--json"]);
+    assert!(answer["schedule"].is_object() && answer["proven"] == true);
+    assert_eq!(answer["ways"][0]["way"], "sequential");
+    let best = way(&answer, answer["recommended"].as_str().expect("a way"));
+    for room in ROOMS {
+        let figures = &best["rooms"][room];
+        let shares = ["belief_right", "unknown", "phantom", "too_far", "faint"];
+        let sum: f64 = shares.iter().map(|share| number(&figures[share])).sum();
+        assert!((sum - 1.0).abs() < 1e-6, "{room}: {figures}");
+        assert!(number(&figures["right_echoes_per_s"]) >= 0.0 && number(&figures["blind"]) >= 0.0);
+    }
+    assert_eq!(answer["elsewhere"].as_array().map(Vec::len), Some(3));
+    // The same question has the same answer.
+    let again = json(&["study", ring, "--places", "1", "--json"]);
+    assert_eq!(again["ways"], answer["ways"]);
+    let said = eeruf(&["design", ring, "--places", "1"]).out;
+    assert!(said.contains("recommended: ") && said.contains("period"), "{said}");
+    let period = eeruf(&["design", ring, "--period-only"]).out;
+    assert!(!period.contains("recommended") && period.contains("5.5 cm of range"), "{period}");
+}
+
+#[test]
+fn way_recommended_keeps_foreign_sound_low_where_all_at_once_does_not() {
+    let answer = json(&["study", "rings/hc-sr04-8.toml", "--places", "4", "--first", "20000", "--json"]);
+    assert_eq!(answer["keeps"], true);
+    let best = way(&answer, answer["recommended"].as_str().unwrap());
+    let foreign = |way: &Value| {
+        ROOMS.map(|room| number(&way["rooms"][room]["foreign_of_believed"])).into_iter().fold(0.0, f64::max)
+    };
+    assert!(foreign(best) <= 0.03, "{}", foreign(best));
+    assert!(foreign(way(&answer, "simultaneous")) > 0.1);
+    let base = way(&answer, "sequential");
+    assert!(mean(best, "belief_right") > mean(base, "belief_right") - 0.02);
+    assert!(mean(best, "right_echoes_per_s") > 2.0 * mean(base, "right_echoes_per_s"));
+}
+
+#[test]
+fn two_sensors_back_to_back_need_no_eeruf() {
+    let ring = "sensors = 2\nmodule = 'hc-sr04'\nlayout = 'ring'\njitter_us = 100\nposes = [{ x_m = 0.1, y_m = 0, heading_deg = 0 }, \
+                { x_m = -0.1, y_m = 0, heading_deg = 180 }]\n";
+    let (_scratch, file) = Scratch::new("ring.toml", ring);
+    let said = eeruf(&["design", file.to_str().unwrap(), "--places", "3"]).out;
+    assert!(said.contains("You do not need eeruf here"), "{said}");
+}
+
+#[test]
+fn limits_no_way_keeps_are_named() {
+    let said = eeruf(&["study", "rings/ring-24.toml", "--places", "2"]).out;
+    assert!(said.contains("No way keeps foreign sound at 3 %"), "{said}");
+}
+
+#[test]
+fn own_scenes_are_rooms_and_options_of_scenes_are_refused() {
+    let answer = json(&[
+        "study",
+        "rings/hc-sr04-8.toml",
+        "--rooms",
+        "scenes/alcove.toml",
+        "--rooms",
+        "scenes/lab.toml",
+        "--json",
+    ]);
+    let rooms = way(&answer, "flow")["rooms"].as_object().unwrap();
+    assert_eq!(rooms.keys().collect::<Vec<_>>(), ["alcove", "lab"]);
+    for (words, said) in [
+        (["study", "rings/hc-sr04-8.toml", "--periods", "5"], "--periods: given; expected it with a scene alone"),
+        (["study", "scenes/alcove.toml", "--places", "5"], "--places: given; expected it with a ring file alone"),
+        (["study", "rings/hc-sr04-8.toml", "--rooms", "rings/paper-12.toml"], "expected a scene"),
+        (["study", "rings/hc-sr04-8.toml", "--rooms", "docs"], "no file that ends in .toml; expected scenes"),
+    ] {
+        let refused = eeruf(&words);
+        assert!(refused.code == Some(2) && refused.err.contains(said), "{words:?}: {}", refused.err);
+    }
+    let pairs = eeruf(&["study", "rings/mower-8-and-4.toml"]);
+    assert!(
+        pairs.code == Some(1) && pairs.out.contains("not judged in rooms: the ring file does not say"),
+        "{}",
+        pairs.out
+    );
+}

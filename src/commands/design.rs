@@ -26,7 +26,7 @@ use crate::report::draw;
 use crate::report::json::to_json;
 use crate::report::phases::{DesignJson, describe_design};
 use crate::report::questions::{CurveJson, describe_curve, describe_fit, fit_json};
-use crate::report::rooms::{RoomsJson, RoomsReport};
+use crate::report::rooms::{RoomsOrNot, describe as describe_rooms};
 use crate::report::watch::Watch;
 
 /// Find the way of firing a ring that is right most of the time in rooms, and the shortest period, proven.
@@ -156,11 +156,11 @@ enum Form {
 
 /// The shortest period, and the ways of firing judged in rooms.
 #[derive(Serialize)]
-struct Answered {
+struct Answered<'a> {
     #[serde(flatten)]
     found: FoundJson,
     #[serde(flatten)]
-    rooms: Option<RoomsJson>,
+    rooms: Option<RoomsOrNot<'a>>,
 }
 
 /// Nodes for the same ring with odometry, which is a remark.
@@ -242,11 +242,11 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
             let real_period_us = real.as_ref().map(|real| real.period_us);
             let real_proven = real.as_ref().map(|real| real.proven);
             let found = FoundJson { real_period_us, real_proven, ..design.json(seconds) };
-            print_line(to_json(&Answered { found, rooms: rooms.as_ref().map(RoomsReport::json) }))?;
+            print_line(to_json(&Answered { found, rooms: rooms.as_ref().map(RoomsOrNot::of) }))?;
         }
         None => {
             let name = args.file.display().to_string();
-            let judged = rooms.map_or_else(String::new, |rooms| rooms.text(&name));
+            let judged = rooms.map_or_else(String::new, |rooms| describe_rooms(&name, &rooms));
             tell(judged + &describe(&name, &spec, &design, real.as_ref(), still.as_ref(), seconds))?;
         }
     }

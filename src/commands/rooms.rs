@@ -4,11 +4,8 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
 use eeruf_design::atlas::ATLAS;
-use eeruf_design::{RingDesign, RingSpec, Search};
-use eeruf_sim::experiments::ExperimentError;
-use eeruf_sim::experiments::rooms::{
-    Condition, DRIVING_S, RoomGroup, RoomKind, RoomPlan, RoomWay, RoomsOptions, judge,
-};
+use eeruf_design::{RingDesign, RingSpec, RoomsAnswer, RoomsAsked, Search};
+use eeruf_sim::experiments::rooms::{DRIVING_S, RoomGroup, RoomPlan};
 
 use super::answer::Answer;
 use crate::console::{print_line, tell};
@@ -16,7 +13,7 @@ use crate::files::error::InputError;
 use crate::files::ring::read_ring;
 use crate::files::toml::read_world;
 use crate::report::json::to_json;
-use crate::report::rooms::{Elsewhere, RoomsReport};
+use crate::report::rooms::{RoomsOrNot, describe};
 use crate::report::watch::Watch;
 
 /// Options for judging ways of firing in rooms.
@@ -47,11 +44,6 @@ fn percent(text: &str) -> Result<f64, String> {
     number.ok_or_else(|| "expected a number from 0 to 100".to_owned())
 }
 
-/// The speed of a robot whose ring file has none, in m/s: a choice.
-const USUAL_SPEED_M_S: f64 = 0.3;
-/// One room in so many is looked at under the other conditions.
-const LESS_ELSEWHERE: usize = 3;
-
 impl RoomArgs {
     /// Returns the first option that was given, for a file that is no ring.
     pub(crate) fn given(&self) -> Option<&'static str> {
@@ -64,14 +56,6 @@ impl RoomArgs {
         ];
         given.into_iter().find(|(_, given)| *given).map(|(name, _)| name)
     }
-
-    fn first(&self) -> u64 {
-        self.first.unwrap_or(0)
-    }
-
-    fn wrong_percent(&self) -> f64 {
-        self.wrong.unwrap_or(3.0)
-    }
 }
 
 /// Nodes for the schedule of two phases of `eeruf study RING.toml`.
@@ -83,13 +67,13 @@ pub(crate) fn study(args: &RoomArgs, file: &Path, as_json: bool) -> Result<Answe
     let mut watch = Watch::new();
     let search = Search { budget: STUDY_BUDGET, what_if: false, atlas: ATLAS };
     let design = spec.shortest(&search, &mut ()).map_err(|error| InputError::new(file, None, error))?;
-    let report = judged(args, &spec, design.as_ref().ok(), &mut watch)?;
+    let judged = judged(args, &spec, design.as_ref().ok(), &mut watch)?;
     drop(watch);
     match as_json {
-        true => print_line(to_json(&report.json()))?,
-        false => tell(report.text(&file.display().to_string()))?,
+        true => print_line(to_json(&RoomsOrNot::of(&judged)))?,
+        false => tell(describe(&file.display().to_string(), &judged))?,
     }
-    Ok(if report.judgement.is_ok() { Answer::Yes } else { Answer::No })
+    Ok(if judged.is_ok() { Answer::Yes } else { Answer::No })
 }
 
 /// Judges the ways of firing a ring, with the schedule of two phases that was found for it; or says why that cannot be
@@ -99,71 +83,26 @@ pub(crate) fn judged(
     spec: &RingSpec,
     design: Option<&RingDesign>,
     watch: &mut Watch,
-) -> Result<RoomsReport, InputError> {
-    // With the T_delta that the schedule needs where the robot moves.
-    let spec = design.map_or(spec, |design| &design.spec);
-    let robot = match spec.room_robot() {
-        Ok(robot) => robot,
-        Err(why) => return Ok(RoomsReport::not_judged(why)),
+) -> Result<Result<RoomsAnswer, String>, InputError> {
+    let default = RoomsAsked::default();
+    let asked = RoomsAsked {
+        own: own_rooms(&args.rooms)?,
+        places: args.places.unwrap_or(default.places),
+        first: args.first.unwrap_or(default.first),
+        driving: args.driving,
+        wrong: args.wrong.map_or(default.wrong, |percent| percent / 100.0),
     };
-    let speed_m_s = spec.speed_mm_s.filter(|&mm| mm > 0).map_or(USUAL_SPEED_M_S, |mm| f64::from(mm) / 1e3);
-    let asked = RoomsOptions {
-        speed_m_s: if args.driving { speed_m_s } else { 0.0 },
-        wrong: args.wrong_percent() / 100.0,
-        ..RoomsOptions::default()
-    };
-    let groups = groups(args, robot.robot.radius_m())?;
-    let ways = RoomWay::all(&robot.robot, design.map(|design| &design.schedule));
     let watch = Mutex::new(watch);
-    let judge = |ways: &[RoomWay], groups: &[RoomGroup], asked: &RoomsOptions, of: &str| {
-        judge(ways, groups, asked, &|share| {
-            let mut watch = watch.lock().unwrap_or_else(PoisonError::into_inner);
-            watch.go_on(|| format!("{of}: {:.0} % done", 100.0 * share))
-        })
-    };
-    let judgement = match judge(&ways, &groups, &asked, "rooms") {
-        Ok(judgement) => judgement,
-        Err(ExperimentError::Stopped) => {
-            return Ok(RoomsReport::not_judged("the time was over before the rooms were judged".to_owned()));
-        }
-        Err(error) => return Ok(RoomsReport::not_judged(error.to_string())),
-    };
-    let fewer: Vec<_> = groups
-        .iter()
-        .map(|group| RoomGroup {
-            name: group.name.clone(),
-            rooms: group.rooms.iter().step_by(LESS_ELSEWHERE).cloned().collect(),
-        })
-        .collect();
-    let mut elsewhere = vec![];
-    for condition in &Condition::ALL[1..] {
-        let asked = RoomsOptions { condition: *condition, ..asked.clone() };
-        match judge(&ways, &fewer, &asked, "other gain and height") {
-            Ok(judgement) => elsewhere.push(Elsewhere { condition: *condition, judgement }),
-            // What is left out, the report says.
-            Err(_) => break,
-        }
-    }
-    Ok(RoomsReport {
-        judgement: Ok(judgement),
-        assumed: robot.assumed,
-        groups: groups.into_iter().map(|group| (group.name, group.rooms.len())).collect(),
-        own_rooms: !args.rooms.is_empty(),
-        speed_m_s: asked.speed_m_s,
-        wrong: args.wrong_percent(),
-        first: args.first(),
-        elsewhere,
-    })
+    Ok(spec.judge_in_rooms(design, &asked, &|share| {
+        let mut watch = watch.lock().unwrap_or_else(PoisonError::into_inner);
+        watch.go_on(|| format!("rooms: {:.0} % done", 100.0 * share))
+    }))
 }
 
-/// The rooms of the set, or the scenes that were named.
-fn groups(args: &RoomArgs, radius_m: f64) -> Result<Vec<RoomGroup>, InputError> {
-    if args.rooms.is_empty() {
-        let numbers = args.first()..args.first() + args.places.unwrap_or(6);
-        return Ok(RoomKind::ALL.map(|kind| RoomGroup::of_kind(kind, numbers.clone(), radius_m)).into());
-    }
+/// The scenes that were named, as rooms.
+fn own_rooms(paths: &[PathBuf]) -> Result<Vec<RoomGroup>, InputError> {
     let mut files = vec![];
-    for path in &args.rooms {
+    for path in paths {
         if path.is_dir() {
             let bad = |error: std::io::Error| InputError::new(path, None, error);
             let entries = std::fs::read_dir(path).map_err(bad)?;

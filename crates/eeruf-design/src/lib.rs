@@ -17,7 +17,7 @@
 //! | `hopping` | schedules of many phases: the file, and the shortest period |
 //! | `atlas`, `atlas_making` | rings whose shortest period is known; how their file is made |
 //! | `ticks`, `certificate` | the problem in ticks, and the proof, as a text that others check |
-//! | `rooms` | the ring's robot, for rooms in which ways of firing are judged |
+//! | `rooms` | ways of firing the ring, judged in rooms |
 //! | `reals` | what the tick costs: the shortest period over the reals |
 //!
 //! ```
@@ -65,7 +65,7 @@ pub use limits::{four, neighbours_in_range, sensors_in_range};
 pub use questions::{CURVE_BUDGET, CURVE_POINTS, CurvePoint, Fit, Need};
 pub use reals::{RealPeriod, over_reals, real_budget};
 pub use ring::{RingFile, RingSpec, robot_ring};
-pub use rooms::RoomRobot;
+pub use rooms::{RoomRobot, RoomsAnswer, RoomsAsked, RoomsJson};
 pub use shortest::{Search, Shortest, shortest};
 pub use text::{TextError, parse};
 pub use uneven::OwnedUneven;

@@ -1,11 +1,17 @@
-//! The robot of a ring file, for rooms in which ways of firing it are judged.
+//! A ring file's ways of firing, judged in rooms: what the program, the page and Python print.
 
 use core::f64::consts::TAU;
 
 use eeruf_core::Layout;
+use eeruf_sim::experiments::ExperimentError;
+use eeruf_sim::experiments::rooms::{
+    Condition, JudgedWay, Judgement, RoomGroup, RoomKind, RoomWay, RoomsOptions, judge,
+};
 use eeruf_sim::modules::POLAROID_6500;
 use eeruf_sim::{Pose, Robot, Transducer};
+use serde::{Serialize, Serializer};
 
+use crate::find::RingDesign;
 use crate::ring::RingSpec;
 
 /// Radius of a ring that the file has no places for, in metres: a choice, that of a small robot.
@@ -55,6 +61,184 @@ impl RingSpec {
         }
         let robot = ring.robot(Pose::identity(), places)?;
         Ok(RoomRobot { robot, assumed })
+    }
+}
+
+/// Rooms and limits for judging ways of firing.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RoomsAsked {
+    /// Rooms of the caller's own; none for those of the set.
+    pub own: Vec<RoomGroup>,
+    /// Number of rooms of each kind of the set. The default is 6.
+    pub places: u64,
+    /// Number of the first room of each kind. The default is 0: ways are chosen on numbers below 2,000, and reported
+    /// from 20,000 on.
+    pub first: u64,
+    /// True for a robot that drives, at the ring's `speed_m_s` or 0.3 m/s.
+    pub driving: bool,
+    /// The largest share of foreign sound in what is believed, of a way that is recommended. The default is 0.03.
+    pub wrong: f64,
+}
+
+impl Default for RoomsAsked {
+    fn default() -> Self {
+        Self { own: vec![], places: 6, first: 0, driving: false, wrong: RoomsOptions::default().wrong }
+    }
+}
+
+/// Ways of firing a ring, judged in rooms, and what the answer depends on.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RoomsAnswer {
+    /// The judgement.
+    pub judgement: Judgement,
+    /// The names of the groups of rooms, and the number of rooms in each.
+    pub groups: Vec<(String, usize)>,
+    /// Assumptions where the ring file is silent, each a sentence without a full stop.
+    pub assumed: Vec<String>,
+    /// The robot's speed in m/s.
+    pub speed_m_s: f64,
+    /// The largest share of foreign sound that was asked for.
+    pub wrong: f64,
+    /// Judgements under other conditions, in a third of the rooms; fewer than three if they were stopped.
+    pub elsewhere: Vec<(Condition, Judgement)>,
+}
+
+/// The speed of a robot whose ring file has none, in m/s: a choice.
+const USUAL_SPEED_M_S: f64 = 0.3;
+/// One room in this number is looked at under the other conditions.
+const LESS_ELSEWHERE: usize = 3;
+
+impl RingSpec {
+    /// Judges the ways of firing the ring, with the schedule of two phases that was found for it.
+    ///
+    /// `keep_going` is called by several threads with the share that is done of the part under way; when its answer is
+    /// `false` the judgement stops.
+    ///
+    /// # Errors
+    /// A ring without places, no room, and if it was stopped before the first judgement was complete, in words.
+    pub fn judge_in_rooms(
+        &self,
+        design: Option<&RingDesign>,
+        asked: &RoomsAsked,
+        keep_going: &(dyn Fn(f64) -> bool + Sync),
+    ) -> Result<RoomsAnswer, String> {
+        // With the T_delta that the schedule needs where the robot moves.
+        let spec = design.map_or(self, |design| &design.spec);
+        let RoomRobot { robot, assumed } = spec.room_robot()?;
+        let speed_m_s = spec.speed_mm_s.filter(|&mm| mm > 0).map_or(USUAL_SPEED_M_S, |mm| f64::from(mm) / 1e3);
+        let here = RoomsOptions {
+            speed_m_s: if asked.driving { speed_m_s } else { 0.0 },
+            wrong: asked.wrong,
+            ..RoomsOptions::default()
+        };
+        let numbers = asked.first..asked.first.saturating_add(asked.places);
+        let of_kind = |kind| RoomGroup::of_kind(kind, numbers.clone(), robot.radius_m());
+        let groups = if asked.own.is_empty() { RoomKind::ALL.map(of_kind).into() } else { asked.own.clone() };
+        let ways = RoomWay::all(&robot, design.map(|design| &design.schedule));
+        let judgement = judge(&ways, &groups, &here, keep_going).map_err(|error| match error {
+            ExperimentError::Stopped => "stopped before the rooms were judged".to_owned(),
+            error => error.to_string(),
+        })?;
+        let fewer: Vec<_> = groups
+            .iter()
+            .map(|RoomGroup { name, rooms }| RoomGroup {
+                name: name.clone(),
+                rooms: rooms.iter().step_by(LESS_ELSEWHERE).cloned().collect(),
+            })
+            .collect();
+        let mut elsewhere = vec![];
+        for condition in &Condition::ALL[1..] {
+            match judge(&ways, &fewer, &RoomsOptions { condition: *condition, ..here.clone() }, keep_going) {
+                Ok(judgement) => elsewhere.push((*condition, judgement)),
+                Err(_) => break,
+            }
+        }
+        let groups = groups.into_iter().map(|group| (group.name, group.rooms.len())).collect();
+        Ok(RoomsAnswer { judgement, groups, assumed, speed_m_s: here.speed_m_s, wrong: asked.wrong, elsewhere })
+    }
+}
+
+impl RoomsAnswer {
+    /// The answer as JSON has it.
+    pub fn json(&self) -> RoomsJson<'_> {
+        let ways = |judgement| WaysJson { groups: &self.groups, judgement };
+        let elsewhere = self.elsewhere.iter().map(|(condition, judgement)| ElsewhereJson {
+            condition: *condition,
+            recommended: name_of(judgement),
+            keeps: judgement.keeps,
+            ways: ways(judgement),
+        });
+        RoomsJson {
+            recommended: name_of(&self.judgement),
+            keeps: self.judgement.keeps,
+            assumed: &self.assumed,
+            ways: ways(&self.judgement),
+            elsewhere: elsewhere.collect(),
+        }
+    }
+}
+
+fn name_of(judgement: &Judgement) -> Option<&'static str> {
+    judgement.best().map(|way| way.way.name)
+}
+
+/// Ways of firing judged in rooms, as JSON.
+#[derive(Debug, Serialize)]
+pub struct RoomsJson<'a> {
+    /// The name of the way to recommend.
+    pub recommended: Option<&'static str>,
+    /// True if it keeps to the limits in each kind of room.
+    pub keeps: bool,
+    /// Assumptions where the ring file is silent.
+    pub assumed: &'a [String],
+    ways: WaysJson<'a>,
+    elsewhere: Vec<ElsewhereJson<'a>>,
+}
+
+#[derive(Debug, Serialize)]
+struct ElsewhereJson<'a> {
+    condition: Condition,
+    recommended: Option<&'static str>,
+    keeps: bool,
+    ways: WaysJson<'a>,
+}
+
+/// The ways of a judgement, each with its figures by the names of rooms.
+#[derive(Debug)]
+struct WaysJson<'a> {
+    groups: &'a [(String, usize)],
+    judgement: &'a Judgement,
+}
+
+impl Serialize for WaysJson<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_seq(self.judgement.ways.iter().map(|way| WayJson {
+            way: way.way.name,
+            title: way.way.title(),
+            not_possible: way.rooms.as_ref().err(),
+            rooms: FiguresJson { groups: self.groups, way },
+        }))
+    }
+}
+
+#[derive(Serialize)]
+struct WayJson<'a> {
+    way: &'static str,
+    title: &'static str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    not_possible: Option<&'a String>,
+    rooms: FiguresJson<'a>,
+}
+
+struct FiguresJson<'a> {
+    groups: &'a [(String, usize)],
+    way: &'a JudgedWay,
+}
+
+impl Serialize for FiguresJson<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let figures = self.way.rooms.iter().flatten();
+        serializer.collect_map(self.groups.iter().map(|(name, _)| name).zip(figures))
     }
 }
 

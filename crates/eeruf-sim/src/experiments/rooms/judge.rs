@@ -105,6 +105,11 @@ pub struct Judgement {
 }
 
 impl Judgement {
+    /// The way to recommend.
+    pub fn best(&self) -> Option<&JudgedWay> {
+        self.recommended.and_then(|index| self.ways.get(index))
+    }
+
     /// The judgement without some groups of rooms, named by their index; none if no group is left out, or none left.
     pub fn without(&self, left_out: impl Fn(usize) -> bool, wrong: f64) -> Option<Self> {
         let mut ways = self.ways.clone();

@@ -37,13 +37,13 @@ impl FlowSettings {
         tracker: TrackerSettings::BALANCED.with_memory(5),
         step: Micros::new(240),
         shortest_gap: Micros::new(7_500),
-        masked_adds: Micros::from_millis(5),
-        believed_takes: Micros::from_millis(1),
-        unserved_adds: Micros::from_millis(12),
+        masked_adds: Micros::from_millis(4),
+        believed_takes: Micros::new(1_500),
+        unserved_adds: Micros::from_millis(6),
         unserved_after: 3,
         shortest_cycle: Micros::from_millis(60),
         longest_cycle: Micros::from_millis(400),
-        travel: Micros::new(290),
+        travel: Micros::new(500),
     };
 }
 

@@ -117,7 +117,7 @@ fn silence(seen: &[(u8, u32)], length: u32, sensor: u8) -> (u32, u32) {
 fn a_masked_sensor_gains_quiet_until_nothing_is_heard_of_others_and_gives_it_back() {
     let (mut plan, mut fired) = (plan::<8>(8), [Instant::from_micros(0); 8]);
     let masked = |sensor| if sensor == 4 { MASKED(sensor) } else { WELL(sensor) };
-    for _ in 0..12 {
+    for _ in 0..20 {
         cycle(&mut plan, &mut fired, 0, masked);
     }
     for _ in 0..10 {

@@ -34,7 +34,7 @@ use crate::report::watch::Watch;
 /// The ring is fired by every way: one by one, at once, in groups, in two phases, by time hopping and flow, in seeded
 /// rooms (corridor, office, hall, clutter, alcove, garage, aisle, and beside another robot of the same make), standing
 /// or --driving. The way recommended is right most of the time among those that keep foreign sound below --wrong and
-/// leave no sensor blind; what it depends on is said. --emit writes the schedule of two phases with the shortest period.
+/// leave no sensor blind, and the answer lists what it depends on. --emit writes the shortest schedule of two phases.
 ///
 /// With --phases it is one of many phases, for a ring that hops in time and whose sensors do not stay blind: a linear
 /// congruence with lags, and the bound that holds for any such schedule; --emit rust, c and arduino then write all that

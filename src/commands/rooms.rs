@@ -26,8 +26,8 @@ pub(crate) struct RoomArgs {
     /// The number of rooms of each kind; 6 by default
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1000))]
     places: Option<u64>,
-    /// The number of the first room of each kind; 0 by default. Ways are chosen on numbers below 2000; report from 20000
-    /// on
+    /// The number of the first room of each kind; 0 by default. Ways are chosen on numbers below 2000; report those
+    /// from 20000 on
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(..=1_000_000_000))]
     first: Option<u64>,
     /// The largest share of foreign sound in what is believed, in per cent, of a way that is recommended; 3 by

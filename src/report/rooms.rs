@@ -41,11 +41,11 @@ impl Described<'_> {
         let row = |way: &JudgedWay| self.row(way, base);
         _ = writeln!(text, "\n{}", markdown(&header, judgement.ways.iter().map(row)));
         text.push_str(
-            "right: share of time in which the last believed reading, at most 0.6 s old, is right within 0.5 ms (8.6 \
-             cm); phantom: in which it is foreign sound. foreign, blind: share of foreign sound in what was believed, and \
-             sensors that are right under 5 % of the time, in the median room of the worst kind. limits: the first kind \
-             of room in which foreign sound exceeds its limit, or own wrong echoes those of one by one by a point, or \
-             a sensor is blind that one by one is not.\n",
+            "right: share of time in which the last believed reading, at most 0.6 s old, is right within 0.5 ms \
+             (8.6 cm); phantom: in which it is foreign sound. foreign, blind: share of foreign sound in what was \
+             believed, and sensors that are right under 5 % of the time, in the median room of the worst kind. limits: \
+             the first kind of room in which foreign sound exceeds its limit, or own wrong echoes those of one by one \
+             by a point, or a sensor is blind that one by one is not.\n",
         );
         for way in &judgement.ways {
             if let Err(why) = &way.rooms {
@@ -83,15 +83,14 @@ impl Described<'_> {
             text.push_str("You do not need eeruf here: no other way is right for a point more of the time.\n");
             let fast = judgement.ways.iter().filter(|way| way.fails_in(base, self.answer.wrong).is_none());
             let most = fast.filter_map(|way| Some((way, way.echoes_against(judgement.best()?)?)));
-            if let Some((other, times)) = most.reduce(|one, next| if next.1 > one.1 { next } else { one }) {
-                if times > 1.5 {
-                    _ = writeln!(
-                        text,
-                        "For fresher readings: {} has {times:.1} times its right echoes and is right {:.1} % of the time.",
-                        other.way.name,
-                        right(other)
-                    );
-                }
+            let most = most.reduce(|one, next| if next.1 > one.1 { next } else { one });
+            if let Some((other, times)) = most.filter(|(_, times)| *times > 1.5) {
+                _ = writeln!(
+                    text,
+                    "For fresher readings: {} has {times:.1} times its right echoes, and is right {:.1} % of the time.",
+                    other.way.name,
+                    right(other)
+                );
             }
         }
         if !judgement.keeps {

@@ -62,7 +62,8 @@ fn way_recommended_keeps_foreign_sound_low_where_all_at_once_does_not() {
 
 #[test]
 fn two_sensors_back_to_back_need_no_eeruf() {
-    let ring = "sensors = 2\nmodule = 'hc-sr04'\nlayout = 'ring'\njitter_us = 100\nposes = [{ x_m = 0.1, y_m = 0, heading_deg = 0 }, \
+    let ring = "sensors = 2\nmodule = 'hc-sr04'\nlayout = 'ring'\njitter_us = 100\n\
+                poses = [{ x_m = 0.1, y_m = 0, heading_deg = 0 }, \
                 { x_m = -0.1, y_m = 0, heading_deg = 180 }]\n";
     let (_scratch, file) = Scratch::new("ring.toml", ring);
     let said = eeruf(&["design", file.to_str().unwrap(), "--places", "3"]).out;

@@ -146,7 +146,7 @@ impl Solid {
 
     fn distance_m(self, [x, y]: [f64; 2]) -> f64 {
         let off = |at: f64, low: f64, high: f64| (low - at).max(at - high).max(0.0);
-        off(x, self.low[0], self.high[0]).hypot(off(y, self.low[1], self.high[1]))
+        libm::hypot(off(x, self.low[0], self.high[0]), off(y, self.low[1], self.high[1]))
     }
 
     fn is_near(self, other: Self, m: f64) -> bool {
@@ -269,7 +269,7 @@ impl RoomPlan {
         }
     }
 
-    /// A room of the caller's own, with the robot at a place; it drives as far ahead as nobody else said that it cannot.
+    /// A room of the caller's own, with the robot at a place, from which it can drive this far ahead.
     pub fn own(number: u64, walls: Vec<Wall>, poles: Vec<Pole>, pose: Pose, way_m: f64) -> Self {
         let ahead = Vector::new(pose.rotation.re, pose.rotation.im);
         Self { number, walls, poles, pose, other: None, way: (ahead, way_m), turns: false }

@@ -30,5 +30,5 @@ fn an_emitted_table_drives_a_ring() {
 fn an_emitted_table_of_sensors_that_are_not_all_alike_drives_a_ring_that_knows_each() {
     let ring = Ring::<_, _, 12>::new(&car_12::RING, RingConfig::new(), Instant::default()).unwrap();
     assert_eq!((ring.window_of(1), ring.window_of(4)), (Micros::new(32_051), Micros::new(11_655)));
-    assert_eq!((ring.t_delta_of(1), ring.t_delta_of(4)), (Micros::new(595), Micros::new(845)));
+    assert_eq!((ring.t_delta_of(1), ring.t_delta_of(4)), (Micros::new(644), Micros::new(894)));
 }

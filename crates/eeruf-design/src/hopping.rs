@@ -199,7 +199,7 @@ impl RingSpec {
             audible: Audible::new(self.window),
             min_interval: self.min_interval,
             layout: self.layout.layout(),
-            stale_echo: self.stale_echo,
+            stale_echo: self.stale_echo && !self.stale_echo_by_module,
         }
     }
 

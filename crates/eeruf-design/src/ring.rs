@@ -100,6 +100,9 @@ pub struct RingSpec {
     pub retrigger: Micros,
     /// True if a sensor's own echo from the period before must be rejected too.
     pub stale_echo: bool,
+    /// True if only the modules ask for that: schedules of many phases, whose step does not move a sensor's own sound, do
+    /// without.
+    pub stale_echo_by_module: bool,
     /// The speed of sound.
     pub c: SpeedOfSound,
     /// What `t_delta` must cover on a robot that stands; the largest where sensors have their own.
@@ -292,6 +295,7 @@ impl RingFile {
             listening,
             retrigger,
             stale_echo: self.stale_echo.unwrap_or(self.module.is_some()),
+            stale_echo_by_module: self.stale_echo.is_none(),
             c,
             t_delta: largest_t_delta,
             speed_mm_s,

@@ -47,6 +47,7 @@ impl Arguments<'_, '_> {
             listening: window,
             retrigger: Micros::ZERO,
             stale_echo: flag("stale_echo", self.stale_echo, false)?,
+            stale_echo_by_module: false,
             c: SpeedOfSound::at_celsius_tenths(200),
             t_delta,
             speed_mm_s: None,

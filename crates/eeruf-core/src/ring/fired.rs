@@ -40,7 +40,7 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
                 self.punctuality.note(later);
                 self.punctuality.add(later, 0);
             }
-            if self.oldest == sensor {
+            if self.oldest == sensor || self.windows_differ() {
                 self.find_oldest(polled);
                 self.emit_when_oldest_ends();
             }

@@ -15,6 +15,7 @@ SIZE_IS(EerufSensor, 12 + 4 * EERUF_FIRINGS);
 SIZE_IS(EerufLine, 6);
 SIZE_IS(EerufSchedule, 46);
 SIZE_IS(EerufLimits, 7);
+SIZE_IS(EerufWatched, 10);
 #if EERUF_HOPPING
 SIZE_IS(EerufRing, 73);
 SIZE_IS(EerufHopSensor, 16);
@@ -1168,7 +1169,7 @@ EerufStatus eeruf_ring_fired(EerufRing *ring, uint8_t x, uint32_t at_us) {
             }
             add_late(ring, narrow(later_us));
         }
-        if (ring->oldest == x) {
+        if (ring->oldest == x || windows_differ(ring)) {
             find_oldest(ring, polled_us);
             emit_when_oldest_ends(ring);
         }
@@ -1363,6 +1364,99 @@ EerufStatus eeruf_ring_set_audible(EerufRing *ring, uint32_t audible_us) {
     if (audible_us > MAX_AUDIBLE) return EERUF_ERR_AUDIBLE;
     ring->audible_us = audible_us;
     disturb(ring);
+    return EERUF_OK;
+}
+
+/* ---- The state before each sensor ---- */
+
+/* In one byte: the state, why nothing is known, and whether the last reading did not confirm it. */
+#define KNOWN 0x07u
+#define WHY_AT 3u
+#define DOUBTED 0x80u
+
+const char *eeruf_state_name(uint8_t kind) {
+    switch (kind) {
+    case EERUF_STATE_UNKNOWN: return "unknown";
+    case EERUF_STATE_OBSTACLE: return "obstacle";
+    case EERUF_STATE_CLEAR: return "clear";
+    case EERUF_STATE_TOO_CLOSE: return "too close";
+    case EERUF_STATE_UNANSWERED: return "unanswered";
+    default: return "?";
+    }
+}
+
+EerufStatus eeruf_watch_init(EerufWatch *watch, size_t watch_size, EerufWatched *sensors, size_t sensors_size,
+                             uint32_t now_us) {
+    const size_t count_of_sensors = sensors_size / sizeof *sensors;
+    uint8_t x;
+    if (watch == NULL || sensors == NULL) return EERUF_ERR_NULL;
+    if (watch_size != sizeof *watch) return EERUF_ERR_MEMORY;
+    if (count_of_sensors - 1u >= EERUF_MAX_SENSORS) return EERUF_ERR_SENSORS;
+    watch->sensors = sensors;
+    watch->count = (uint8_t)count_of_sensors;
+    memset(sensors, 0, sensors_size);
+    for (x = 0; x < watch->count; x++) sensors[x].at_us = now_us;
+    watch->ready = READY;
+    return EERUF_OK;
+}
+
+/* The state that a reading shows, with EERUF_STATE_UNKNOWN why; NOBODY for a reading after the one of its firing. */
+static uint8_t state_by(const EerufReading *reading) {
+    switch (reading->kind) {
+    case EERUF_READING_ACCEPTED:
+    case EERUF_READING_TENTATIVE: return EERUF_STATE_OBSTACLE;
+    case EERUF_READING_CLEAR: return EERUF_STATE_CLEAR;
+    case EERUF_READING_TOO_EARLY: return EERUF_STATE_TOO_CLOSE;
+    case EERUF_READING_STUCK:
+    case EERUF_READING_UNANSWERED: return EERUF_STATE_UNANSWERED;
+    case EERUF_READING_LATE: return NOBODY;
+    case EERUF_READING_REJECTED: return EERUF_WHY_REJECTED << WHY_AT;
+    case EERUF_READING_AMBIGUOUS: return EERUF_WHY_AMBIGUOUS << WHY_AT;
+    default: return EERUF_WHY_UNSURE << WHY_AT;
+    }
+}
+
+static void watch_reading(EerufWatched *sensor, const EerufReading *reading, uint32_t now_us) {
+    const uint8_t known = sensor->state & KNOWN, state = state_by(reading);
+    if (state == NOBODY) return;
+    if ((state & KNOWN) == EERUF_STATE_UNKNOWN && sensor->state == EERUF_STATE_OBSTACLE) {
+        /* One echo may be missed, or another's heard. */
+        sensor->state |= DOUBTED;
+        return;
+    }
+    sensor->state = state;
+    sensor->explained_by = reading->explained_by;
+    /* For how long nothing is known or answered goes on. */
+    if ((state & KNOWN) == known && (known == EERUF_STATE_UNKNOWN || known == EERUF_STATE_UNANSWERED)) return;
+    sensor->at_us = now_us;
+    sensor->t_echo_us = reading->t_echo_us;
+}
+
+EerufStatus eeruf_watch_event(EerufWatch *watch, const EerufEvent *event, uint32_t now_us) {
+    uint8_t x;
+    if (watch == NULL || event == NULL) return EERUF_ERR_NULL;
+    if (watch->ready != READY) return EERUF_ERR_NOT_READY;
+    if (event->kind == EERUF_EVENT_READING) {
+        if (event->sensor >= watch->count) return EERUF_ERR_SENSOR;
+        watch_reading(&watch->sensors[event->sensor], &event->u.reading, now_us);
+    } else if (event->kind == EERUF_EVENT_PERIOD) {
+        for (x = 0; x < watch->count; x++)
+            if (now_us - watch->sensors[x].at_us > HALF_TURN) watch->sensors[x].at_us = now_us - HALF_TURN;
+    }
+    return EERUF_OK;
+}
+
+EerufStatus eeruf_watch_state(const EerufWatch *watch, uint8_t sensor, uint32_t now_us, EerufState *state) {
+    const EerufWatched *watched;
+    if (watch == NULL || state == NULL) return EERUF_ERR_NULL;
+    if (watch->ready != READY) return EERUF_ERR_NOT_READY;
+    if (sensor >= watch->count) return EERUF_ERR_SENSOR;
+    watched = &watch->sensors[sensor];
+    state->kind = watched->state & KNOWN;
+    state->why = (uint8_t)((watched->state & ~DOUBTED) >> WHY_AT);
+    state->explained_by = state->why == EERUF_WHY_AMBIGUOUS ? watched->explained_by : EERUF_BY_NOTHING;
+    state->age_us = shorter(now_us - watched->at_us, HALF_TURN);
+    state->t_echo_us = state->kind == EERUF_STATE_OBSTACLE ? watched->t_echo_us : EERUF_NO_ECHO;
     return EERUF_OK;
 }
 

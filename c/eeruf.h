@@ -371,6 +371,52 @@ EerufStatus eeruf_adaptation_period(EerufAdaptation *adaptation, EerufRing *ring
 /* The fastest motion, in mm/s, at which good readings still pass with this schedule, where sound travels at `c`. */
 uint32_t eeruf_schedule_max_speed_mm_s(const EerufSchedule *schedule, uint32_t t_delta_us, uint32_t c_mm_s);
 
+/* ---- The state before each sensor: what is there now, since when, and why nothing is known ---- */
+
+enum {
+    EERUF_STATE_UNKNOWN = 0,    /* nothing is known: `why` */
+    EERUF_STATE_OBSTACLE = 1,   /* something is there: an accepted echo, or a tentative one of a hopping ring */
+    EERUF_STATE_CLEAR = 2,      /* nothing is in range, by silence that is confirmed */
+    EERUF_STATE_TOO_CLOSE = 3,  /* something is closer than the sensor can measure */
+    EERUF_STATE_UNANSWERED = 4  /* the sensor does not answer, or its line is stuck */
+};
+enum {
+    EERUF_WHY_NO_FIRING = 0, /* it has not fired yet */
+    EERUF_WHY_UNSURE = 1,    /* one echo, or one silence, that is not confirmed yet */
+    EERUF_WHY_REJECTED = 2,  /* the last two echoes differ */
+    EERUF_WHY_AMBIGUOUS = 3  /* they agree, and sound of `explained_by` explains both */
+};
+const char *eeruf_state_name(uint8_t kind); /* "clear"; not linked unless called */
+
+typedef struct EerufState {
+    uint32_t t_echo_us;   /* of an obstacle, else EERUF_NO_ECHO */
+    uint32_t age_us;      /* since it was last confirmed, or for which nothing is known or answered; stops at 2^31 */
+    uint8_t kind;         /* EERUF_STATE_.. */
+    uint8_t why;          /* EERUF_WHY_.. of EERUF_STATE_UNKNOWN */
+    uint8_t explained_by; /* as in the reading */
+} EerufState;
+
+/* One sensor of a watch: 10 bytes on an AVR. Not for the caller. */
+typedef struct EerufWatched {
+    uint32_t at_us, t_echo_us;
+    uint8_t state, explained_by;
+} EerufWatched;
+
+/* Watches the events of a ring of any kind. Not for the caller. */
+typedef struct EerufWatch {
+    uint16_t ready;
+    EerufWatched *sensors;
+    uint8_t count;
+} EerufWatch;
+
+/* Of each sensor there is a place for. Nothing is known yet. */
+EerufStatus eeruf_watch_init(EerufWatch *watch, size_t watch_size, EerufWatched *sensors, size_t sensors_size,
+                             uint32_t now_us);
+/* Takes in an event of a poll at `now_us`: every one, or at least readings and ends of periods. One reading that does
+   not confirm an obstacle leaves it, so that its age grows; two in a row do not. Any echo ends EERUF_STATE_CLEAR. */
+EerufStatus eeruf_watch_event(EerufWatch *watch, const EerufEvent *event, uint32_t now_us);
+EerufStatus eeruf_watch_state(const EerufWatch *watch, uint8_t sensor, uint32_t now_us, EerufState *state);
+
 /* ---- Distances ---- */
 
 #define EERUF_SOUND_20C 343200u /* mm/s at 20 C (ISO 9613-1) */

@@ -32,6 +32,12 @@ _ALWAYS = 255  # the schedule is not proven, so the ring searches at each readin
 # Places in a reading, (READING, sensor, phase, period, kind, t_echo_us, previous_us, age, explained_by). Without echo a
 # time is None. `explained_by`: the sensor whose sound could be both echoes, or HISTORY; None unless ambiguous.
 SENSOR, PHASE, KIND, T_ECHO, PREVIOUS, AGE, EXPLAINED_BY = 1, 2, 4, 5, 6, 7, 8
+# The state that each kind of reading shows, or why nothing is known; None for an echo after the reading of its firing.
+_SHOWS = (
+    "unsure", "obstacle", "rejected", "unsure", "unsure", "clear", "too_close", None, "unanswered", "obstacle",
+    "ambiguous", "unanswered",
+)  # fmt: skip
+_WHYS = ("no_firing", "unsure", "rejected", "ambiguous")
 
 
 class Schedule:
@@ -117,7 +123,20 @@ class _Sensor:
         self.phase = self.period = self.score = 0
         self.age = NEVER
         self.enabled = True
+        self.shows, self.seen_us, self.seen_at, self.doubted, self.by = "no_firing", None, 0, False, None
         self.drop(long_ago_us)
+
+    def see(self, kind, echo_us, explained_by, now_us):
+        shows, known = _SHOWS[kind], self.shows
+        if shows is None:
+            return
+        if shows in _WHYS and known == "obstacle" and not self.doubted:
+            self.doubted = True  # one echo may be missed, or another's heard
+            return
+        self.shows, self.by, self.doubted = shows, explained_by, False
+        # For how long nothing is known or answered goes on.
+        if not (shows == known == "unanswered" or shows in _WHYS and known in _WHYS):
+            self.seen_us, self.seen_at = echo_us, now_us
 
     def forget(self):
         self.known_us, self.score, self.confirmed = None, 0, False
@@ -174,6 +193,8 @@ class Ring:
         self.expects_answers = False  # whether silence counts only where `answered` says that the sensor listened
         self._known_from = (now_us - self._long_ago) & self._mask  # firings before are not known
         self._sensors = [_Sensor(self._known_from) for _ in range(schedule.sensors)]
+        for sensor in self._sensors:
+            sensor.seen_at = now_us
         self._oldest, self._pending, self._emit_at = NOBODY, 0, now_us
         self._period = 0
         self._tally = [0] * len(READING_NAMES)
@@ -277,6 +298,8 @@ class Ring:
                 sensor.forget_firings(long_ago)
                 if not sensor.listening:
                     sensor.outside = True  # no edge is an echo of them
+            if (now_us - sensor.seen_at) & self._mask > self._half:
+                sensor.seen_at = (now_us - self._half) & self._mask
         if self._is_long_ago(self._known_from, now_us):
             self._known_from = long_ago
         return latest, total
@@ -336,13 +359,26 @@ class Ring:
             self._fire(x, now_us)
             return event
         if x != NOBODY:
-            return self._emit(x, 0 if change_us is None else change_us[x])
+            event = self._emit(x, 0 if change_us is None else change_us[x])
+            self._sensors[x].see(event[KIND], event[T_ECHO], event[EXPLAINED_BY], now_us)
+            return event
         return self._end_period(now_us) if is_due else None
 
     def deadline(self):
         """When to poll next."""
         pends = self._pending > 0 or self._oldest != NOBODY
         return self._emit_at if pends and not self._reached(self._emit_at, self._due) else self._due
+
+    def state(self, x, now_us):
+        """What is before a sensor: (kind, t_echo_us, age_us, why, explained_by). The kind is "obstacle", with its echo time;
+        "clear"; "too_close"; "unanswered"; or "unknown" with why: "no_firing", "unsure", "rejected" or "ambiguous". The age
+        is the time since that was last confirmed, or for which nothing is known, up to half a turn of the clock. One reading
+        that does not confirm an obstacle leaves it, two in a row do not; any echo ends "clear"."""
+        sensor = self._sensors[x]
+        age_us = min((now_us - sensor.seen_at) & self._mask, self._half)
+        if sensor.shows in _WHYS:
+            return "unknown", None, age_us, sensor.shows, sensor.by
+        return sensor.shows, sensor.seen_us if sensor.shows == "obstacle" else None, age_us, None, None
 
     def _next_pending(self, now_us):
         if self._pending == 0:
@@ -649,6 +685,10 @@ class HcSr04Ring:
         pin.value(0)
         if self._one_pin:
             pin.init(self._pin.IN)
+
+    def state(self, x):
+        """As `Ring.state`, now."""
+        return self.ring.state(x, self._time.ticks_us())
 
     def read(self):
         """One step; a reading if there is one, else None."""

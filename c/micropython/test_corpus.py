@@ -8,6 +8,8 @@ from eeruf import HISTORY, READING, Ring, Schedule
 
 NONE = 0xFFFFFFFF
 LAYOUTS = ("line", "ring", "blocks")
+KINDS = ("unknown", "obstacle", "clear", "too_close", "unanswered")
+WHYS = ("no_firing", "unsure", "rejected", "ambiguous")
 
 
 def flat(event):
@@ -35,6 +37,12 @@ def check(lines):
             if said != n[1:]:
                 raise AssertionError("line %d: %r, not %r" % (number, said, n[1:]))
             count += len(event) > 0
+        elif what == "O":
+            kind, t_echo, age, why, by = ring.state(n[0], n[1])  # noqa: F821
+            said = [KINDS.index(kind), NONE if t_echo is None else t_echo, age, 0 if why is None else WHYS.index(why)]
+            said.append(255 if by is None else 254 if by == HISTORY else by)
+            if said != n[2:]:
+                raise AssertionError("line %d: %r, not %r" % (number, said, n[2:]))
         elif what == "E":
             ring.echo(n[0], n[1])  # noqa: F821
         elif what == "K":

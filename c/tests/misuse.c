@@ -473,6 +473,51 @@ static void a_line_that_is_held_listens_still(void) {
     }
 }
 
+static void reads(EerufWatch *watch, uint8_t kind, uint32_t t_echo_us, uint32_t now_us) {
+    event.kind = EERUF_EVENT_READING;
+    event.sensor = 1;
+    event.u.reading.kind = kind;
+    event.u.reading.t_echo_us = t_echo_us;
+    event.u.reading.explained_by = kind == EERUF_READING_AMBIGUOUS ? 3 : EERUF_BY_NOTHING;
+    EXPECT(eeruf_watch_event(watch, &event, now_us), EERUF_OK);
+}
+
+static void watches(void) {
+    EerufWatched watched[SENSORS];
+    EerufWatch watch;
+    EerufState state;
+    memset(&watch, 0, sizeof watch);
+    EXPECT(eeruf_watch_init(NULL, sizeof watch, watched, sizeof watched, 0), EERUF_ERR_NULL);
+    EXPECT(eeruf_watch_init(&watch, sizeof watch, NULL, sizeof watched, 0), EERUF_ERR_NULL);
+    EXPECT(eeruf_watch_init(&watch, sizeof watch - 1, watched, sizeof watched, 0), EERUF_ERR_MEMORY);
+    EXPECT(eeruf_watch_init(&watch, sizeof watch, watched, sizeof *watched - 1, 0), EERUF_ERR_SENSORS);
+    EXPECT(eeruf_watch_event(&watch, &event, 0), EERUF_ERR_NOT_READY);
+    EXPECT(eeruf_watch_state(&watch, 0, 0, &state), EERUF_ERR_NOT_READY);
+    EXPECT(eeruf_watch_init(&watch, sizeof watch, watched, sizeof watched, 5), EERUF_OK);
+    EXPECT(eeruf_watch_event(NULL, &event, 0), EERUF_ERR_NULL);
+    EXPECT(eeruf_watch_event(&watch, NULL, 0), EERUF_ERR_NULL);
+    EXPECT(eeruf_watch_state(&watch, SENSORS, 0, &state), EERUF_ERR_SENSOR);
+    EXPECT(eeruf_watch_state(&watch, 0, 0, NULL), EERUF_ERR_NULL);
+    EXPECT(eeruf_watch_state(&watch, 1, 25, &state), EERUF_OK);
+    EXPECT(state.kind == EERUF_STATE_UNKNOWN && state.why == EERUF_WHY_NO_FIRING && state.age_us == 20, 1);
+    reads(&watch, EERUF_READING_ACCEPTED, 9000, 100);
+    reads(&watch, EERUF_READING_AMBIGUOUS, 9100, 200);
+    EXPECT(eeruf_watch_state(&watch, 1, 250, &state), EERUF_OK);
+    EXPECT(state.kind == EERUF_STATE_OBSTACLE && state.t_echo_us == 9000 && state.age_us == 150, 1);
+    reads(&watch, EERUF_READING_AMBIGUOUS, 9100, 300);
+    EXPECT(eeruf_watch_state(&watch, 1, 310, &state), EERUF_OK);
+    EXPECT(state.kind == EERUF_STATE_UNKNOWN && state.why == EERUF_WHY_AMBIGUOUS && state.explained_by == 3, 1);
+    EXPECT(state.age_us == 10 && state.t_echo_us == EERUF_NO_ECHO, 1);
+    reads(&watch, EERUF_READING_UNANSWERED, EERUF_NO_ECHO, 400);
+    reads(&watch, EERUF_READING_STUCK, EERUF_NO_ECHO, 500);
+    EXPECT(eeruf_watch_state(&watch, 1, 510, &state), EERUF_OK);
+    EXPECT(state.kind == EERUF_STATE_UNANSWERED && state.age_us == 110, 1);
+    event.sensor = SENSORS;
+    EXPECT(eeruf_watch_event(&watch, &event, 600), EERUF_ERR_SENSOR);
+    EXPECT(strcmp(eeruf_state_name(EERUF_STATE_TOO_CLOSE), "too close"), 0);
+    EXPECT(strcmp(eeruf_state_name(9), "?"), 0);
+}
+
 int main(void) {
     EXPECT(eeruf_version(), EERUF_VERSION);
     EXPECT(strcmp(eeruf_reading_name(EERUF_READING_CLEAR), "clear"), 0);
@@ -488,6 +533,7 @@ int main(void) {
     silence_needs_a_witness();
     a_line_that_is_held_listens_still();
     adaptations();
+    watches();
 #if EERUF_HOPPING
     hopping_rings();
 #endif

@@ -37,7 +37,7 @@ const IN_RUST: Example =
 
 const ALL: [u8; 16] = [2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17];
 
-const EXAMPLES: [Example; 7] = [
+const EXAMPLES: [Example; 8] = [
     Example { name: "Two", modules: 2, triggers: &[4, 5], echoes: &[2, 3], short: false },
     Example { name: "Ring8", modules: 8, triggers: ALL.split_at(8).0, echoes: ALL.split_at(8).1, short: false },
     Example {
@@ -48,6 +48,7 @@ const EXAMPLES: [Example; 7] = [
         short: true,
     },
     Example { name: "FromNewPing", modules: 3, triggers: &[4, 5, 6], echoes: &[4, 5, 6], short: true },
+    Example { name: "States4", modules: 4, triggers: ALL.split_at(4).0, echoes: ALL.split_at(4).0, short: false },
     Example { name: "Hopping8", modules: 8, triggers: ALL.split_at(8).0, echoes: ALL.split_at(8).0, short: false },
     Example { name: "SerialRing8", modules: 8, triggers: ALL.split_at(8).0, echoes: ALL.split_at(8).1, short: true },
     Example { name: "Adaptive", modules: 8, triggers: ALL.split_at(8).0, echoes: ALL.split_at(8).0, short: false },

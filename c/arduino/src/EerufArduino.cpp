@@ -89,6 +89,16 @@ void EerufModules::climb(EerufModules &self, const EerufEvent &event) {
     (void)eeruf_adaptation_period(self.adaptation_, &self.ring_, &event);
 }
 
+void EerufModules::watchEvent(EerufModules &self, const EerufEvent &event, uint32_t now) {
+    (void)eeruf_watch_event(self.watch_, &event, now);
+}
+
+EerufState EerufModules::state(uint8_t sensor) const {
+    EerufState state = {EERUF_NO_ECHO, 0, EERUF_STATE_UNKNOWN, EERUF_WHY_NO_FIRING, EERUF_BY_NOTHING};
+    (void)eeruf_watch_state(watch_, sensor, ::micros(), &state);
+    return state;
+}
+
 // Unless the line is high.
 void EerufModules::fire(uint8_t sensor) {
     if (eeruf_hc_sr04_fire(&modules_, sensor, EerufPin::isHigh(echoes_[sensor])) != EERUF_OK) return;
@@ -115,6 +125,7 @@ bool EerufModules::read() {
         sensor_ = event.sensor;
         reading_ = event.u.reading;
     }
+    if (onReading_ != nullptr) onReading_(*this, event, now);
     // A sensor that is to fire has fired by now.
     if (onEvent_ != nullptr) onEvent_(*this, event, now);
     return event.kind == EERUF_EVENT_READING;

@@ -43,6 +43,13 @@ public:
     // The distance at this temperature; 0 without echo.
     uint16_t millimetres(uint32_t soundMmPerS = EERUF_SOUND_20C) const;
 
+    // Keeps the state before each module, which state() then asks for.
+    void watch(EerufWatch &watch) {
+        watch_ = &watch;
+        onReading_ = watchEvent;
+    }
+    // What is before a module now, since when, and why nothing is known; EERUF_WHY_NO_FIRING without watch().
+    EerufState state(uint8_t sensor) const;
     // How a module is: EERUF_HEALTH_..
     uint8_t health(uint8_t sensor) const { return eeruf_hc_sr04_health(&modules_, sensor); }
     // Stops a module, or lets it fire again.
@@ -83,6 +90,7 @@ private:
     static void sample(EerufModules &self);
     static void drain(EerufModules &self);
     static void climb(EerufModules &self, const EerufEvent &event);
+    static void watchEvent(EerufModules &self, const EerufEvent &event, uint32_t now);
     void fire(uint8_t sensor);
 
     const EerufSchedule *schedule_;
@@ -91,14 +99,25 @@ private:
     EerufLine *lines_;
     EerufAdaptation *adaptation_;
     EerufEdges *edges_;
+    EerufWatch *watch_ = nullptr;
     void (*collect_)(EerufModules &) = sample;
     void (*onPeriod_)(EerufModules &, const EerufEvent &) = nullptr;
+    void (*onReading_)(EerufModules &, const EerufEvent &, uint32_t) = nullptr;
     void (*onEvent_)(EerufModules &, const EerufEvent &, uint32_t) = nullptr;
     EerufRing ring_;
     EerufHcSr04 modules_;
     EerufReading reading_;
     uint8_t count_, sensor_;
     EerufStatus status_ = EERUF_ERR_NOT_READY;
+};
+
+// The state before each of N modules: sonar.watch(states) after sonar.begin(). 10 bytes a module.
+template <uint8_t N> class EerufStates : public EerufWatch {
+public:
+    EerufStates() { (void)eeruf_watch_init(this, sizeof(EerufWatch), watched_, sizeof watched_, 0); }
+
+private:
+    EerufWatched watched_[N];
 };
 
 // A ring of N modules by a table for N.

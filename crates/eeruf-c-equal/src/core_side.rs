@@ -1,8 +1,10 @@
 //! Core's events and errors as the numbers that C gives.
 
 use eeruf_core::{
-    Micros, PeriodStats, Phase, Reading, ReadingKind, RingError, RingEvent, Tally, conditions::ViolationKind,
+    Micros, PeriodStats, Phase, Reading, ReadingKind, RingError, RingEvent, Tally,
+    conditions::ViolationKind,
     judge::Explanation,
+    watch::{Doubt, SensorState},
 };
 
 use crate::{Flat, NO_ECHO};
@@ -45,6 +47,28 @@ pub fn explanation(explained_by: Option<Explanation>) -> u32 {
 /// An echo time as a number.
 pub fn echo(t_echo: Option<Micros>) -> u32 {
     t_echo.map_or(NO_ECHO, Micros::as_micros)
+}
+
+/// A state as numbers: kind, echo, age, why, explanation.
+pub fn state(state: SensorState) -> [u32; 5] {
+    let known = |kind, t_echo: Option<Micros>, age: Micros| [kind, echo(t_echo), age.as_micros(), 0, 0xFF];
+    match state {
+        SensorState::Obstacle { t_echo, age } => known(1, Some(t_echo), age),
+        SensorState::Clear { age } => known(2, None, age),
+        SensorState::TooClose { age } => known(3, None, age),
+        SensorState::Unanswered { since } => known(4, None, since),
+        SensorState::Unknown { since, why } => {
+            let (why, by) = match why {
+                Doubt::NoFiring => (0, 0xFF),
+                Doubt::Unsure => (1, 0xFF),
+                Doubt::Rejected => (2, 0xFF),
+                Doubt::Ambiguous(by) => (3, explanation(Some(by))),
+                _ => unreachable!("{why:?}"),
+            };
+            [0, NO_ECHO, since.as_micros(), why, by]
+        }
+        _ => unreachable!("{state:?}"),
+    }
 }
 
 /// The status that C has for an error.

@@ -1,11 +1,12 @@
 //! Rings that hop in time.
 
-use crate::core_side::{echo, flat};
+use crate::core_side::{echo, flat, state};
 use crate::{C, Do, Random};
 use eeruf_core::{
     Instant, Micros, RingError, RingEvent,
     hopping::{HoppingCode, HoppingError, HoppingListening, HoppingRing, HoppingSchedule, HoppingSettings},
     judge::TrackerSettings,
+    watch::SensorWatch,
 };
 
 use crate::world::{World, same};
@@ -110,6 +111,8 @@ pub fn run<const K: usize>(r: &Random) -> u64 {
         ring.expect_answers();
         same::<()>(&mut c, Do::ExpectAnswers, 0, 0, Ok(()));
     }
+    let mut watch = SensorWatch::<K>::new(0, Instant::from_micros(start));
+    assert_eq!(c.watch(K as u8, start), 0);
     let moves = r.once_in(3);
     let mut count = 0;
     for step in 0..4_000 {
@@ -159,6 +162,11 @@ pub fn run<const K: usize>(r: &Random) -> u64 {
             assert_eq!(c.deadline(), ring.next_deadline().as_micros(), "{}", at());
             let Some(event) = event else { break };
             count += 1;
+            watch.observe(&event, now);
+            let (sensor, later) =
+                (world.random.within(0, K as u32) as u8, world.now.wrapping_add(world.random.duration(u32::MAX)));
+            let known = watch.state(sensor, Instant::from_micros(later)).map(state).map_err(|_| -5);
+            assert_eq!(c.state(sensor, later), known, "{}", at());
             match event {
                 RingEvent::Fire { sensor, .. } => {
                     world.fired(sensor);

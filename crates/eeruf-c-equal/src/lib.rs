@@ -153,6 +153,20 @@ impl C {
         if status == EVENT { Ok(flat) } else { Err(status) }
     }
 
+    /// `eeruf_watch_init`: the events of polls from now on are handed to it.
+    pub fn watch(&mut self, sensors: u8, now_us: u32) -> i32 {
+        // SAFETY: any numbers will do.
+        unsafe { shim::shim_watch(self.0, sensors, now_us) }
+    }
+
+    /// `eeruf_watch_state`: kind, echo, age, why, explanation; or its status.
+    pub fn state(&self, sensor: u8, now_us: u32) -> Result<[u32; 5], i32> {
+        let mut out = [0; 5];
+        // SAFETY: a watch that was made, and room for five numbers.
+        let status = unsafe { shim::shim_state(self.0, sensor, now_us, out.as_mut_ptr()) };
+        if status == 0 { Ok(out) } else { Err(status) }
+    }
+
     /// `eeruf_ring_deadline`.
     pub fn deadline(&self) -> u32 {
         // SAFETY: a ring that was made.

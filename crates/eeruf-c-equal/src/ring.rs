@@ -1,11 +1,12 @@
 //! Rings that fire by tables.
 
-use crate::core_side::{flat, status_of, status_of_violation};
+use crate::core_side::{flat, state, status_of, status_of_violation};
 use crate::{C, Do, Needs, OwnNeeds, Random};
 use eeruf_core::{
     EachSensor, EchoFilter, Instant, Layout, Micros, Requirements, Ring, RingConfig, RingError, RingEvent, Schedule,
     Uneven,
     plan::{EachInUse, ScheduledFiring},
+    watch::SensorWatch,
 };
 
 use crate::world::{World, same};
@@ -232,6 +233,8 @@ where
         ring.expect_answers();
         same::<()>(&mut c, Do::ExpectAnswers, 0, 0, Ok(()));
     }
+    let mut watch = SensorWatch::<K>::new(0, Instant::from_micros(start));
+    assert_eq!(c.watch(sensors, start), 0);
     let moves = r.once_in(3);
     let acts = r.one_of(&[10, 100, 1_000]);
     let mut count = 0;
@@ -256,6 +259,13 @@ where
             assert_eq!(c.deadline(), ring.next_deadline().as_micros(), "{}", at());
             let Some(event) = event else { break };
             count += 1;
+            watch.observe(&event, now);
+            let (sensor, later) = (
+                world.random.within(0, u32::from(sensors) - 1) as u8,
+                world.now.wrapping_add(world.random.duration(u32::MAX)),
+            );
+            let known = watch.state(sensor, Instant::from_micros(later)).map(state).map_err(|_| -5);
+            assert_eq!(c.state(sensor, later), known, "{}", at());
             if let RingEvent::Fire { sensor, .. } = event {
                 world.fired(sensor);
                 if world.random.once_in(40) {

@@ -19,6 +19,8 @@ typedef struct Handle {
     EerufHcSr04Settings settings;
     EerufLine *lines;
     EerufAdaptation adaptation;
+    EerufWatch watch;
+    EerufWatched *watched;
     EerufEvent last;
     EerufSerial line;
     uint16_t late_us[64];
@@ -42,6 +44,7 @@ void shim_free(Handle *handle) {
     free(handle->hop_sensors);
     free(handle->hoppers);
     free(handle->lines);
+    free(handle->watched);
     free(handle);
 }
 
@@ -126,7 +129,27 @@ int shim_poll(Handle *handle, uint32_t now_us, const int32_t *change_us, uint32_
     const EerufStatus status = handle->hopping != NULL
                                    ? eeruf_hopping_poll(handle->hopping, now_us, change_us, &handle->last)
                                    : eeruf_ring_poll_expecting(handle->ring, now_us, change_us, &handle->last);
-    if (status == EERUF_EVENT) flatten(&handle->last, out);
+    if (status != EERUF_EVENT) return status;
+    flatten(&handle->last, out);
+    return handle->watched == NULL || eeruf_watch_event(&handle->watch, &handle->last, now_us) == EERUF_OK ? status : -99;
+}
+
+/* A watch of the events that are polled from now on. */
+int shim_watch(Handle *handle, uint8_t sensors, uint32_t now_us) {
+    const size_t size = sensors * sizeof(EerufWatched);
+    handle->watched = (EerufWatched *)malloc(size);
+    return eeruf_watch_init(&handle->watch, sizeof handle->watch, handle->watched, size, now_us);
+}
+
+/* `out`: kind, echo, age, why, by whom explained. */
+int shim_state(const Handle *handle, uint8_t sensor, uint32_t now_us, uint32_t *out) {
+    EerufState state = {0, 0, 0, 0, 0};
+    const EerufStatus status = eeruf_watch_state(&handle->watch, sensor, now_us, &state);
+    out[0] = state.kind;
+    out[1] = state.t_echo_us;
+    out[2] = state.age_us;
+    out[3] = state.why;
+    out[4] = state.explained_by;
     return status;
 }
 

@@ -1,7 +1,11 @@
 //! What is wrong, as `diagnostic_msgs/DiagnosticArray` says it once a second: of each sensor, of the line, of the
 //! timing. Times are seconds of any one clock.
 
-use eeruf_core::{Micros, ReadingKind, Tally};
+use eeruf_core::{
+    Instant, MAX_SENSORS, Micros, PeriodStats, Phase, Reading, ReadingKind, RingEvent, Tally,
+    judge::Explanation,
+    watch::{Doubt, SensorState, SensorWatch},
+};
 
 use crate::parameters::{Parameters, Source};
 
@@ -54,6 +58,7 @@ struct Interval {
 
 pub(crate) struct Diagnosis {
     sensors: Vec<Sensor>,
+    watch: SensorWatch<MAX_SENSORS>,
     serial: bool,
     late_us: u32,
     blind_after: u32,
@@ -76,6 +81,7 @@ impl Diagnosis {
             |_| Sensor { heard_at_s: now_s, health: 0, echoes_since_accepted: 0, tally: Tally::default(), last: None };
         Self {
             sensors: (0..parameters.sensors).map(sensor).collect(),
+            watch: SensorWatch::new(0, instant(now_s)),
             serial: parameters.source == Source::Serial,
             late_us: parameters.late_us,
             blind_after: parameters.blind_after,
@@ -91,10 +97,21 @@ impl Diagnosis {
         }
     }
 
-    /// A reading of a sensor, whose firing came so late.
-    pub(crate) fn reading(&mut self, now_s: f64, sensor: u8, kind: ReadingKind, t_echo: Option<Micros>, late: Micros) {
+    /// Takes in a reading of a sensor, whose firing came so late, and what explains an ambiguous one.
+    pub(crate) fn reading(
+        &mut self,
+        now_s: f64,
+        sensor: u8,
+        kind: ReadingKind,
+        t_echo: Option<Micros>,
+        late: Micros,
+        explained_by: Option<Explanation>,
+    ) {
         self.interval.firings += 1;
         self.interval.max_late = self.interval.max_late.max(late);
+        let (phase, period, previous, age) = (Phase::A, 0, None, None);
+        let reading = Reading { sensor, phase, period, kind, t_echo, previous, age, explained_by };
+        self.watch.observe(&RingEvent::Reading(reading), instant(now_s));
         let Some(sensor) = self.sensors.get_mut(usize::from(sensor)) else { return };
         sensor.heard_at_s = now_s;
         sensor.tally.count(kind);
@@ -155,12 +172,16 @@ impl Diagnosis {
     /// How everything is, and begins the next interval.
     pub(crate) fn report(&mut self, now_s: f64) -> Vec<Status> {
         let interval = std::mem::take(&mut self.interval);
+        // Ages stay within what the watch's clock of 32 bits can tell.
+        let (zero, tally) = (Micros::ZERO, Tally::default());
+        let second = PeriodStats { period: 0, phase: Phase::A, tally, max_late: zero, sum_late: zero };
+        self.watch.observe(&RingEvent::PeriodEnded(second), instant(now_s));
         let mut report = Vec::new();
         if self.serial {
             report.push(self.line(&interval));
         }
         report.push(self.timing(&interval));
-        let sensors = (1..).zip(&self.sensors).map(|(number, sensor)| self.sensor(now_s, number, sensor));
+        let sensors = (0..).zip(&self.sensors).map(|(number, sensor)| self.sensor(now_s, number, sensor));
         report.extend(sensors);
         self.foreign = None;
         self.edges_lost_before = self.edges_lost;
@@ -209,7 +230,7 @@ impl Diagnosis {
         Status { level, about: "timing".to_owned(), message, values }
     }
 
-    fn sensor(&self, now_s: f64, number: u32, sensor: &Sensor) -> Status {
+    fn sensor(&self, now_s: f64, number: u8, sensor: &Sensor) -> Status {
         let silent_s = now_s - sensor.heard_at_s;
         let last = sensor.last.map(|(kind, _)| kind);
         let (level, message) = if silent_s > self.silent_after_s {
@@ -227,7 +248,10 @@ impl Diagnosis {
         };
         let of = |kind| sensor.tally.of(kind).to_string();
         let (last, t_echo) = sensor.last.map_or((String::new(), None), |(kind, t_echo)| (kind.to_string(), t_echo));
+        let (state, age) = self.watch.state(number, instant(now_s)).map_or_else(|_| Default::default(), said);
         let values = vec![
+            ("state", state),
+            ("state's age, s", format!("{:.1}", f64::from(age.as_micros()) / 1e6)),
             ("accepted", of(ReadingKind::Accepted)),
             ("rejected", of(ReadingKind::Rejected)),
             ("ambiguous", of(ReadingKind::Ambiguous)),
@@ -238,7 +262,33 @@ impl Diagnosis {
             ("last reading", last),
             ("last echo time, us", t_echo.map(|t_echo| t_echo.as_micros().to_string()).unwrap_or_default()),
         ];
-        Status { level, about: format!("sensor {number}"), message, values }
+        Status { level, about: format!("sensor {}", number + 1), message, values }
+    }
+}
+
+/// Seconds by the watch's clock, which wraps.
+fn instant(now_s: f64) -> Instant {
+    Instant::from_micros((now_s * 1e6) as u64 as u32)
+}
+
+/// The words for a state, and its age.
+fn said(state: SensorState) -> (String, Micros) {
+    match state {
+        SensorState::Obstacle { t_echo, age } => (format!("obstacle, echo after {} us", t_echo.as_micros()), age),
+        SensorState::Clear { age } => ("clear".to_owned(), age),
+        SensorState::TooClose { age } => ("too close".to_owned(), age),
+        SensorState::Unanswered { since } => ("unanswered".to_owned(), since),
+        SensorState::Unknown { since, why } => {
+            let why = match why {
+                Doubt::NoFiring => "no firing".to_owned(),
+                Doubt::Rejected => "rejected".to_owned(),
+                Doubt::Ambiguous(Explanation::Sensor(by)) => format!("ambiguous, explained by sensor {}", by + 1),
+                Doubt::Ambiguous(_) => "ambiguous".to_owned(),
+                _ => "unsure".to_owned(),
+            };
+            (format!("unknown: {why}"), since)
+        }
+        _ => ("unknown".to_owned(), Micros::ZERO),
     }
 }
 
@@ -256,7 +306,7 @@ mod tests {
 
     fn both(diagnosis: &mut Diagnosis, now_s: f64, kind: ReadingKind) {
         for sensor in 0..2 {
-            diagnosis.reading(now_s, sensor, kind, Some(Micros::new(9_000)), Micros::ZERO);
+            diagnosis.reading(now_s, sensor, kind, Some(Micros::new(9_000)), Micros::ZERO, None);
         }
     }
 
@@ -309,21 +359,48 @@ mod tests {
     }
 
     #[test]
+    fn state_ages_until_confirmed_or_lost() {
+        let mut diagnosis = diagnosis();
+        let mut state = |readings: &[(f64, ReadingKind)], now_s: f64| {
+            for &(at_s, kind) in readings {
+                let by = (kind == ReadingKind::Ambiguous).then_some(Explanation::Sensor(1));
+                diagnosis.reading(at_s, 0, kind, Some(Micros::new(9_000)), Micros::ZERO, by);
+            }
+            let report = diagnosis.report(now_s);
+            let value = |name| report[2].values.iter().find(|(key, _)| *key == name).unwrap().1.clone();
+            (value("state"), value("state's age, s"))
+        };
+        let said = |state: &str, age: &str| (state.to_owned(), age.to_owned());
+        assert_eq!(state(&[], 1.0), said("unknown: no firing", "1.0"));
+        let seen = [(1.1, ReadingKind::Accepted), (1.2, ReadingKind::Ambiguous)];
+        assert_eq!(state(&seen, 2.0), said("obstacle, echo after 9000 us", "0.9"));
+        let lost = [(2.5, ReadingKind::Ambiguous)];
+        assert_eq!(state(&lost, 3.0), said("unknown: ambiguous, explained by sensor 2", "0.5"));
+        assert_eq!(state(&[(3.5, ReadingKind::Clear)], 4.0), said("clear", "0.5"));
+        // For a clock of 32 bits an hour and a half is less than twenty minutes.
+        for minute in 1..90 {
+            state(&[], 4.0 + 60.0 * f64::from(minute));
+        }
+        assert_eq!(state(&[], 5404.0), said("clear", "2147.5"));
+        assert_eq!(state(&[(5404.5, ReadingKind::Unanswered)], 5405.0), said("unanswered", "0.5"));
+    }
+
+    #[test]
     fn a_sensor_is_blind_when_echoes_are_not_accepted_and_silent_when_it_does_not_fire() {
         let mut diagnosis = diagnosis();
         for _ in 0..3 {
-            diagnosis.reading(0.5, 1, ReadingKind::NoEcho, None, Micros::ZERO);
+            diagnosis.reading(0.5, 1, ReadingKind::NoEcho, None, Micros::ZERO, None);
         }
         for kind in [ReadingKind::First, ReadingKind::Rejected, ReadingKind::Ambiguous] {
-            diagnosis.reading(0.5, 0, kind, Some(Micros::new(9_000)), Micros::ZERO);
+            diagnosis.reading(0.5, 0, kind, Some(Micros::new(9_000)), Micros::ZERO, None);
         }
         assert_eq!(said(&mut diagnosis, 1.0)[2..], [(Level::Warn, "blind".to_owned()), well()]);
         both(&mut diagnosis, 1.0, ReadingKind::Accepted);
         assert_eq!(said(&mut diagnosis, 1.5)[2..], [well(), well()]);
-        diagnosis.reading(2.4, 1, ReadingKind::Stuck, None, Micros::ZERO);
+        diagnosis.reading(2.4, 1, ReadingKind::Stuck, None, Micros::ZERO, None);
         let (silent, stuck) = ((Level::Error, "silent".to_owned()), (Level::Error, "stuck".to_owned()));
         assert_eq!(said(&mut diagnosis, 2.5), [well(), well(), silent.clone(), stuck]);
-        diagnosis.reading(2.6, 1, ReadingKind::Unanswered, None, Micros::ZERO);
+        diagnosis.reading(2.6, 1, ReadingKind::Unanswered, None, Micros::ZERO, None);
         let unanswered = (Level::Error, "unanswered".to_owned());
         assert_eq!(said(&mut diagnosis, 2.7), [well(), well(), silent.clone(), unanswered]);
         assert_eq!(said(&mut diagnosis, 9.0), [silent.clone(), well(), silent.clone(), silent]);

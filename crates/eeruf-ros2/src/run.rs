@@ -186,7 +186,8 @@ impl EerufNode {
                         Distance::TooClose => (Raw::TooEarly, None),
                     };
                     let kind = self.filter.push(sensor, raw)?;
-                    self.reading(sensor, kind, t_echo, Micros::ZERO, nanoseconds());
+                    self.diagnosis.reading(self.now_s(), sensor, kind, t_echo, Micros::ZERO, None);
+                    self.publish(sensor, kind, t_echo, nanoseconds());
                 }
                 Ok(Heard::Range { distance: None, .. }) => {}
                 Err(why) => self.say_once(&why),
@@ -204,12 +205,13 @@ impl EerufNode {
         if let Some(log) = &mut self.log {
             log.write(&self.clock_name, firing).map_err(|error| format!("log: {error}"))?;
         }
-        self.reading(firing.sensor, firing.kind, firing.t_echo, firing.late, fired_ns);
+        let Firing { sensor, kind, t_echo, late, explained_by, .. } = *firing;
+        self.diagnosis.reading(self.now_s(), sensor, kind, t_echo, late, explained_by);
+        self.publish(sensor, kind, t_echo, fired_ns);
         Ok(())
     }
 
-    fn reading(&mut self, sensor: u8, kind: ReadingKind, t_echo: Option<Micros>, late: Micros, fired_ns: i64) {
-        self.diagnosis.reading(self.now_s(), sensor, kind, t_echo, late);
+    fn publish(&mut self, sensor: u8, kind: ReadingKind, t_echo: Option<Micros>, fired_ns: i64) {
         let Some(distance) = self.scale.distance(kind, t_echo) else { return };
         let range = self.scale.number(distance);
         let published = self.ros.as_ref().is_none_or(|ros| ros.publish_range(sensor, fired_ns, range));

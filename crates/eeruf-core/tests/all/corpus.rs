@@ -5,14 +5,18 @@
 //! window, neighbours, layout, stale echo), then separation and window, both 0 if not met; `L` how a ring listens
 //! (`t_delta`, window, blanking, consecutive, path change, audible) and its start. Then echoes `E`, stuck lines `K`,
 //! corrected firings `F`, sensors enabled or not `N`, restarts `R`, another path change `C` or `audible` `A`, and polls
-//! `P` with the deadline after it and the event, if there is one. 2^32 - 1 stands for no echo, and where a ring listens
-//! for the default; as the explanation of a reading 254 stands for history and 255 for none.
+//! `P` with the deadline after it and the event, if there is one. `O`: the state before a sensor at an instant: kind,
+//! echo, age, reason, explanation. 2^32 - 1 stands for no echo, and where a ring listens for the default; as the
+//! explanation of a reading 254 stands for history and 255 for none.
 
 use std::fmt::Write;
 
 use eeruf_core::{
     EchoFilter, Instant, Layout, Micros, PeriodStats, Phase, Reading, ReadingKind, Requirements, Ring, RingConfig,
-    RingEvent, Schedule, judge::Explanation, plan::ScheduledFiring,
+    RingEvent, Schedule,
+    judge::Explanation,
+    plan::ScheduledFiring,
+    watch::{Doubt, SensorState, SensorWatch},
 };
 
 use crate::common::random::Random;
@@ -62,17 +66,42 @@ impl Random {
     }
 }
 
+fn explanation(explained_by: Option<Explanation>) -> u32 {
+    match explained_by {
+        Some(Explanation::Sensor(sensor)) => sensor.into(),
+        Some(Explanation::History) => 254,
+        None => 255,
+    }
+}
+
+/// A state as numbers.
+fn flat_state(state: SensorState) -> [u32; 5] {
+    match state {
+        SensorState::Obstacle { t_echo, age } => [1, t_echo.as_micros(), age.as_micros(), 0, 255],
+        SensorState::Clear { age } => [2, NONE, age.as_micros(), 0, 255],
+        SensorState::TooClose { age } => [3, NONE, age.as_micros(), 0, 255],
+        SensorState::Unanswered { since } => [4, NONE, since.as_micros(), 0, 255],
+        SensorState::Unknown { since, why } => {
+            let (why, by) = match why {
+                Doubt::NoFiring => (0, None),
+                Doubt::Unsure => (1, None),
+                Doubt::Rejected => (2, None),
+                Doubt::Ambiguous(by) => (3, Some(by)),
+                _ => unreachable!("{why:?}"),
+            };
+            [0, NONE, since.as_micros(), why, explanation(by)]
+        }
+        _ => unreachable!("{state:?}"),
+    }
+}
+
 /// An event as numbers.
 fn flat(event: &RingEvent) -> Vec<u32> {
     let echo = |t_echo: Option<Micros>| t_echo.map_or(NONE, Micros::as_micros);
     match *event {
         RingEvent::Fire { sensor, phase: Phase(phase), due } => vec![0, sensor.into(), phase.into(), due.as_micros()],
         RingEvent::Reading(Reading { sensor, phase, period, kind, t_echo, previous, age, explained_by }) => {
-            let explained_by = match explained_by {
-                Some(Explanation::Sensor(sensor)) => sensor.into(),
-                Some(Explanation::History) => 254,
-                None => 255,
-            };
+            let explained_by = explanation(explained_by);
             let verdict = [echo(t_echo), echo(previous), age.unwrap_or(u16::MAX).into(), explained_by];
             [&[1, sensor.into(), phase.0.into(), period, kind as u32][..], &verdict].concat()
         }
@@ -197,6 +226,7 @@ fn run<const M: usize>(r: &mut Random, text: &mut Text, schedule: &Schedule<K, M
     (config.t_delta, config.window) = (asked(t_delta), asked(window));
     (config.path_change, config.audible) = (asked(path_change), asked(audible));
     let mut ring = ScheduledBy::<M>::unverified(schedule, config, Instant::from_micros(start)).unwrap();
+    let mut watch = SensorWatch::<K>::new(0, Instant::from_micros(start));
     let sensors = schedule.sensors() as u8;
     let paths = [r.within(100, window), r.within(100, 2 * period)];
     let mut world = World {
@@ -222,6 +252,12 @@ fn run<const M: usize>(r: &mut Random, text: &mut Text, schedule: &Schedule<K, M
             let numbers = [world.now, ring.next_deadline().as_micros()];
             text.add('P', numbers.into_iter().chain(event.iter().flat_map(flat)));
             let Some(event) = event else { break };
+            watch.observe(&event, Instant::from_micros(world.now));
+            if let RingEvent::Reading(Reading { sensor, .. }) = event {
+                let at = world.now.wrapping_add(100 * u32::from(sensor));
+                let state = watch.state(sensor, Instant::from_micros(at)).unwrap();
+                text.add('O', [sensor.into(), at].into_iter().chain(flat_state(state)));
+            }
             let polls_again = Instant::from_micros(world.now).has_reached(ring.next_deadline()) || r.once_in(8);
             if let RingEvent::Fire { sensor, .. } = event {
                 let mut fired = world.now;
@@ -313,6 +349,9 @@ fn corpus_file_matches_core() {
     let has = |place: usize, value: &str| readings().any(|line| line.split(' ').nth(place) == Some(value));
     for kind in [0, 1, 2, 3, 4, 5, 6, 7, 8, 10] {
         assert!(has(6, &kind.to_string()), "no reading of kind {kind}");
+    }
+    for state in 0..5 {
+        assert!(text.lines().any(|line| line.starts_with("O ") && line.split(' ').nth(3) == Some(&state.to_string())));
     }
     for explained_by in ["0", "1", "254", "255"] {
         assert!(has(10, explained_by), "no reading explained by {explained_by}");

@@ -17,7 +17,7 @@ SIZE_IS(EerufSchedule, 46);
 SIZE_IS(EerufLimits, 7);
 SIZE_IS(EerufWatched, 10);
 #if EERUF_HOPPING
-SIZE_IS(EerufRing, 73);
+SIZE_IS(EerufRing, 77);
 SIZE_IS(EerufHopSensor, 16);
 SIZE_IS(EerufHopper, 62);
 #endif
@@ -477,6 +477,7 @@ static void fire_hop(EerufRing *ring, uint8_t sensor, uint32_t now_us);
 static void end_hopping_period(EerufRing *ring, uint32_t now_us);
 static void restart_hopping(EerufRing *ring, uint32_t now_us);
 static uint32_t horizon_of_hopping(const EerufRing *ring);
+static EerufStatus upcoming_hop(const EerufRing *ring, uint8_t number, uint8_t *sensor, uint32_t *due_us);
 #else
 #define HOPS(ring) false
 #define STRIDE(ring) sizeof(EerufSensor)
@@ -484,6 +485,7 @@ static uint32_t horizon_of_hopping(const EerufRing *ring);
 #define end_hopping_period(ring, now_us) ((void)0)
 #define restart_hopping(ring, now_us) ((void)0)
 #define horizon_of_hopping(ring) 0u
+#define upcoming_hop(ring, number, sensor, due_us) EERUF_EMPTY
 #endif
 
 static uint32_t window_of(const EerufRing *ring, uint8_t sensor);
@@ -698,7 +700,6 @@ static OUT_OF_LINE uint32_t horizon_of_table(const EerufRing *ring) {
 /* Ends the period of a table. Returns whether the next one does not follow on it as the schedule says. */
 static bool end_period_of_table(EerufRing *ring, uint32_t now_us, uint32_t late_us) {
     const uint32_t settling = settling_time(ring->schedule);
-    const bool differed = windows_differ(ring);
     bool changed = late_us > READ32(ring->schedule->period_us);
     uint8_t phase;
     ring->schedule_before = NULL;
@@ -711,11 +712,6 @@ static bool end_period_of_table(EerufRing *ring, uint32_t now_us, uint32_t late_
     }
     phase = (uint8_t)(ring->phase + 1u);
     begin_period(ring, phase < READ8(ring->schedule->phases) ? phase : 0);
-    /* Another schedule may allow other windows, also to firings under way. */
-    if (differed || windows_differ(ring)) {
-        find_first_to_close(ring);
-        emit_when_oldest_ends(ring);
-    }
     return changed;
 }
 
@@ -864,9 +860,9 @@ static bool has_pending(const EerufRing *ring) {
     return (uint8_t)(ring->pending | (ring->oldest ^ NOBODY)) != 0;
 }
 
-/* When the window of a sensor's last firing closes. */
+/* When a sensor's last firing ends if there is no echo. */
 static OUT_OF_LINE uint32_t closes_at(const EerufRing *ring, uint8_t x) {
-    return sensor_of(ring, x)->fired_us[0] + window_of(ring, x);
+    return sensor_of(ring, x)->fired_us[0] + longer(window_of(ring, x), ring->report_after_us);
 }
 
 /* Without a reading that can be emitted sooner, the next one comes when the window of the oldest closes. */
@@ -918,9 +914,11 @@ static void fire(EerufRing *ring, uint8_t sensor, uint32_t now_us, uint16_t late
 #endif
     fired->fired_us[0] = now_us;
     if (late_us != 0) fired_late(ring, late_us, hops);
-    if (ring->oldest == NOBODY ||
-        (windows_differ(ring) && !has_reached(closes_at(ring, sensor), closes_at(ring, ring->oldest)))) {
+    if (ring->oldest == NOBODY) {
         ring->oldest = sensor;
+        emit_when_oldest_ends(ring);
+    } else if (windows_differ(ring)) {
+        find_first_to_close(ring);
         emit_when_oldest_ends(ring);
     }
     if (hops) {
@@ -1002,6 +1000,7 @@ static void emit_reading(EerufRing *ring, uint8_t x, const int32_t *change_us, E
 
 static void end_period(EerufRing *ring, uint32_t now_us, uint32_t late_us, EerufEvent *event, bool hops) {
     EerufPeriod *ended = &event->u.ended;
+    const bool differed = !hops && windows_differ(ring);
     bool changed = false;
     uint8_t kind;
     note_late(ring, narrow(late_us));
@@ -1012,6 +1011,11 @@ static void end_period(EerufRing *ring, uint32_t now_us, uint32_t late_us, Eeruf
     else changed = end_period_of_table(ring, now_us, late_us);
     end_late_period(ring, ended, now_us, hops);
     if (changed) disturb(ring);
+    /* Another schedule may allow other windows, also to firings under way. */
+    if (!hops && (differed || windows_differ(ring))) {
+        find_first_to_close(ring);
+        emit_when_oldest_ends(ring);
+    }
     for (kind = 0; kind < EERUF_READING_KINDS; kind++) {
         ended->tally[kind] = ring->tally[kind];
         ring->tally[kind] = 0;
@@ -1097,6 +1101,37 @@ OUT_OF_LINE uint32_t eeruf_ring_deadline(const EerufRing *ring) {
 
 OUT_OF_LINE uint32_t eeruf_ring_due(const EerufRing *ring) {
     return is_ready(ring) == EERUF_OK ? ring->due_us : 0;
+}
+
+EerufStatus eeruf_ring_upcoming(const EerufRing *ring, uint8_t number, uint8_t *sensor, uint32_t *due_us) {
+    const EerufStatus status = is_ready(ring);
+    uint32_t gap_us, at_us;
+    uint8_t phase, place, next;
+    bool goes_on;
+    if (status != EERUF_OK) return status;
+    if (sensor == NULL || due_us == NULL) return EERUF_ERR_NULL;
+    if (HOPS(ring)) return upcoming_hop(ring, number, sensor, due_us);
+    phase = ring->phase;
+    place = ring->following;
+    next = ring->next;
+    at_us = ring->due_us;
+    goes_on = ring->next_schedule == NULL && !ring->paused;
+    for (;;) {
+        const bool fires = next != NOBODY && !(sensor_of(ring, next)->filter.state & DISABLED);
+        if (fires && number-- == 0) {
+            *sensor = next;
+            *due_us = at_us;
+            return EERUF_OK;
+        }
+        if (next == NOBODY) {
+            if (!goes_on) return EERUF_EMPTY;
+            goes_on = false;
+            phase = (uint8_t)(phase + 1u) < READ8(ring->schedule->phases) ? (uint8_t)(phase + 1u) : 0;
+            place = 0;
+        }
+        next = firing(ring->schedule, ring->count, phase, place++, &gap_us);
+        at_us += gap_us;
+    }
 }
 
 static void hear(EerufRing *ring, uint8_t x, uint32_t at_us) {
@@ -1319,6 +1354,11 @@ EerufStatus eeruf_ring_change_to_unverified(EerufRing *ring, const EerufSchedule
     return change(ring, schedule, false);
 }
 
+/* No sensor fires again within this time. */
+static uint32_t least_refire(const EerufRing *ring) {
+    return HOPS(ring) ? ring->window_us : READ32(ring->schedule->min_refire_us);
+}
+
 /* With one of the three changed. */
 static EerufStatus relisten(EerufRing *ring, uint32_t t_delta_us, uint32_t window_us, uint32_t blanking_us) {
     EerufStatus status;
@@ -1347,6 +1387,16 @@ EerufStatus eeruf_ring_set_window(EerufRing *ring, uint32_t window_us) {
 EerufStatus eeruf_ring_set_blanking(EerufRing *ring, uint32_t blanking_us) {
     const EerufStatus status = is_ready(ring);
     return status == EERUF_OK ? relisten(ring, ring->t_delta_us, ring->window_us, blanking_us) : status;
+}
+
+EerufStatus eeruf_ring_set_report_after(EerufRing *ring, uint32_t report_after_us) {
+    const EerufStatus status = is_ready(ring);
+    if (status != EERUF_OK) return status;
+    if (report_after_us > least_refire(ring)) return EERUF_ERR_WINDOW;
+    ring->report_after_us = report_after_us;
+    if (windows_differ(ring)) find_first_to_close(ring);
+    emit_when_oldest_ends(ring);
+    return EERUF_OK;
 }
 
 EerufStatus eeruf_ring_set_path_change(EerufRing *ring, uint32_t path_change_us) {
@@ -1688,13 +1738,11 @@ static EerufStatus allows_retrigger(const EerufHcSr04Settings *settings, uint32_
 EerufStatus eeruf_hc_sr04_init(EerufHcSr04 *modules, size_t modules_size, EerufLine *lines, size_t lines_size,
                                EerufRing *ring, const EerufHcSr04Settings *settings) {
     EerufStatus status = is_ready(ring);
-    uint32_t min_refire_us;
     if (status != EERUF_OK) return status;
     if (modules == NULL || lines == NULL || settings == NULL) return EERUF_ERR_NULL;
     if (settings->version != EERUF_VERSION) return EERUF_ERR_VERSION;
     if (modules_size != sizeof *modules || lines_size < ring->count * sizeof *lines) return EERUF_ERR_MEMORY;
-    min_refire_us = HOPS(ring) ? ring->window_us : READ32(ring->schedule->min_refire_us);
-    status = allows_retrigger(settings, min_refire_us);
+    status = allows_retrigger(settings, least_refire(ring));
     if (status != EERUF_OK) return status;
     memset(lines, 0, ring->count * sizeof *lines);
     modules->ring = ring;
@@ -1753,6 +1801,18 @@ EerufStatus eeruf_hc_sr04_fire(EerufHcSr04 *modules, uint8_t sensor, bool line_i
     return begin_firing(modules, sensor, line_is_high ? EERUF_HEALTH_STUCK_HIGH : EERUF_HEALTH_WELL);
 }
 
+EerufStatus eeruf_hc_sr04_triggered(EerufHcSr04 *modules, uint8_t sensor) {
+    const EerufStatus status = has_line(modules, sensor);
+    const EerufLine *line;
+    if (status != EERUF_OK) return status;
+    line = &modules->lines[sensor];
+    /* A module that holds its line does not hear a trigger; one that has long held it has lost its end. */
+    if ((line->state & PULSE) == ROSE &&
+        sensor_of(modules->ring, sensor)->fired_us[0] - line->rose_us <= modules->settings->longest_hold_us)
+        return EERUF_OK;
+    return begin_firing(modules, sensor, EERUF_HEALTH_WELL);
+}
+
 EerufStatus eeruf_hc_sr04_cannot_read(EerufHcSr04 *modules, uint8_t sensor) {
     return begin_firing(modules, sensor, EERUF_HEALTH_PIN_ERROR);
 }
@@ -1783,6 +1843,12 @@ OUT_OF_LINE EerufStatus eeruf_hc_sr04_edge(EerufHcSr04 *modules, uint8_t sensor,
         } else if ((line->state & FLAW) == 0) {
             set_bits(line, FLAW, LOST_EDGE);
         }
+    } else if (pulse == ROSE && high && !has_reached(line->rose_us, fired_us)) {
+        /* The end of a pulse that began before this firing got lost: what counted as silence may have been an echo. */
+        set_health(line, EERUF_HEALTH_LOSES_EDGES);
+        line->rose_us = at_us;
+        forget_readings(modules->ring, sensor);
+        note_answer(sensor_of(modules->ring, sensor));
     } else if (pulse == ROSE && !high) {
         width_us = at_us - line->rose_us;
         if (width_us < modules->settings->shortest_us) {
@@ -1796,6 +1862,35 @@ OUT_OF_LINE EerufStatus eeruf_hc_sr04_edge(EerufHcSr04 *modules, uint8_t sensor,
         set_bits(line, FLAW, CHATTERED);
     }
     return EERUF_OK;
+}
+
+EerufStatus eeruf_hc_sr04_edges_until(EerufHcSr04 *modules, EerufEdges *edges, uint32_t until_us) {
+    if (edges == NULL) return EERUF_ERR_NULL;
+    if (edges->ready != READY) return EERUF_ERR_NOT_READY;
+    while (edges->popped != edges->pushed) {
+        EerufEdge edge;
+        FENCE();
+        if (!has_reached(until_us, edges->places[edges->popped & edges->mask].at_us)) break;
+        (void)eeruf_edges_pop(edges, &edge);
+        (void)eeruf_hc_sr04_edge(modules, edge.sensor, edge.high, edge.at_us);
+    }
+    return has_line(modules, 0);
+}
+
+EerufStatus eeruf_hc_sr04_pulse(EerufHcSr04 *modules, uint8_t sensor, uint32_t width_us) {
+    const EerufStatus status = has_line(modules, sensor);
+    EerufLine *line;
+    if (status != EERUF_OK) return status;
+    line = &modules->lines[sensor];
+    if ((line->state & PULSE) == IDLE) return EERUF_OK;
+    line->silent = 0;
+    if (width_us < modules->settings->shortest_us || (line->state & PULSE) == OVER) {
+        set_bits(line, FLAW, CHATTERED);
+        return EERUF_OK;
+    }
+    set_bits(line, PULSE | FLAW, OVER);
+    return eeruf_ring_measured(modules->ring, sensor,
+                               width_us < modules->settings->longest_us ? width_us : EERUF_NO_ECHO);
 }
 
 EerufStatus eeruf_hc_sr04_edges(EerufHcSr04 *modules, EerufEdges *edges) {
@@ -2451,6 +2546,14 @@ static void leave_out(EerufHoppingRing *hopping, uint8_t sensor) {
     if (at == hopping->planned) return;
     for (hopping->planned--; at < hopping->planned; at++) hopping->hoppers[at].order = hopping->hoppers[at + 1].order;
     look_ahead(hopping);
+}
+
+static EerufStatus upcoming_hop(const EerufRing *ring, uint8_t number, uint8_t *sensor, uint32_t *due_us) {
+    const EerufHoppingRing *hopping = (const EerufHoppingRing *)(const void *)ring;
+    if (number >= hopping->planned - hopping->place) return EERUF_EMPTY;
+    *sensor = hopping->hoppers[hopping->place + number].order;
+    *due_us = number == 0 ? ring->due_us : hopping->start_us + offset_of(hopping, *sensor);
+    return EERUF_OK;
 }
 
 static uint32_t horizon_of_hopping(const EerufRing *ring) {

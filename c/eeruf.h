@@ -273,13 +273,13 @@ typedef struct EerufEvent {
     } u;
 } EerufEvent;
 
-/* A ring: 73 bytes on an AVR. Initialise it with eeruf_ring_init; not for the caller otherwise. */
+/* A ring: 77 bytes on an AVR. Initialise it with eeruf_ring_init; not for the caller otherwise. */
 typedef struct EerufRing {
     uint16_t ready;
     const EerufSchedule *schedule, *next_schedule, *schedule_before;
     EerufSensor *sensors;
     void (*hook)(struct EerufRing *ring, uint8_t sensor, uint32_t us);
-    uint32_t due_us, last_fired_us, emit_at_us, window_us, period, audible_us, known_from_us;
+    uint32_t due_us, last_fired_us, emit_at_us, window_us, period, audible_us, known_from_us, report_after_us;
     uint16_t t_delta_us, blanking_us, path_change_us, latest_us, sum_late_us;
     uint8_t count, phase, following, next, paused, oldest, pending, consecutive, watched, stride, unanswered;
     uint8_t tally[EERUF_READING_KINDS];
@@ -307,6 +307,13 @@ uint32_t eeruf_ring_deadline(const EerufRing *ring);
    time to spare waits for it: a reading takes time that makes the firing late. 0 for a ring that is not initialised. */
 uint32_t eeruf_ring_due(const EerufRing *ring);
 
+/* The firings to come, for a timer or other hardware that fires by itself: number 0 is the next, 1 the one after it.
+   They hold until one is late, or the ring is changed. EERUF_EMPTY beyond the end of the next period, where the ring
+   hops or changes its schedule of this one. The loop may then come late; let it repeat what happened in its order: for
+   each firing poll at its instant until there is no event, so that EERUF_EVENT_FIRE says what is done already; hand in
+   echoes; last poll at the present. A firing that hardware has missed is then still due. */
+EerufStatus eeruf_ring_upcoming(const EerufRing *ring, uint8_t number, uint8_t *sensor, uint32_t *due_us);
+
 /* An echo, at this instant. Any number, in any order, at any time, wanted or not. For a module that answers with a
    pulse as long as the echo took this is the firing's instant plus the pulse's width: see EerufHcSr04. */
 EerufStatus eeruf_ring_echo(EerufRing *ring, uint8_t sensor, uint32_t at_us);
@@ -325,7 +332,7 @@ EerufStatus eeruf_ring_stuck(EerufRing *ring, uint8_t sensor);
 EerufStatus eeruf_ring_expect_answers(EerufRing *ring);
 EerufStatus eeruf_ring_answered(EerufRing *ring, uint8_t sensor);
 EerufStatus eeruf_ring_unanswered(EerufRing *ring, uint8_t sensor); /* takes it back: that was a disturbance */
-/* What hardware or a protocol measured of a sensor's last firing, before its window closes: the echo time, or
+/* What hardware or a protocol measured of a sensor's last firing, before its reading is emitted: the echo time, or
    EERUF_NO_ECHO if it listened and heard nothing. */
 EerufStatus eeruf_ring_measured(EerufRing *ring, uint8_t sensor, uint32_t t_echo_us);
 /* What is known of a sensor's echo is not what it seemed: its next reading is compared with nothing. Ages go on. */
@@ -343,6 +350,9 @@ EerufStatus eeruf_ring_change_to_unverified(EerufRing *ring, const EerufSchedule
 EerufStatus eeruf_ring_set_t_delta(EerufRing *ring, uint32_t t_delta_us);
 EerufStatus eeruf_ring_set_window(EerufRing *ring, uint32_t window_us);
 EerufStatus eeruf_ring_set_blanking(EerufRing *ring, uint32_t blanking_us);
+/* How long after its firing a reading without an echo is emitted at the soonest, for modules that report by a bus or a
+   pulse's width after their window has closed: at most the time until a sensor fires again. 0: when it closes. */
+EerufStatus eeruf_ring_set_report_after(EerufRing *ring, uint32_t report_after_us);
 /* P, at most 65,534 us: for a robot that moves at v its jitter and 2 v dt / c. Less than t_delta makes fewer readings
    ambiguous where firings are late. And R, at most 67,108,864 us. */
 EerufStatus eeruf_ring_set_path_change(EerufRing *ring, uint32_t path_change_us);
@@ -493,13 +503,19 @@ EerufStatus eeruf_hc_sr04_init(EerufHcSr04 *modules, size_t modules_size, EerufL
    10 us. EERUF_DO_NOT_TRIGGER: leave it alone; the line is stuck, or the module has heard nothing yet and holds it. With
    one pin for both, read it before it is an output. */
 EerufStatus eeruf_hc_sr04_fire(EerufHcSr04 *modules, uint8_t sensor, bool line_is_high);
+/* Instead, if a timer or other hardware has triggered it: then nobody has seen whether its line was low, and a module
+   that still held it counts as unanswered. */
+EerufStatus eeruf_hc_sr04_triggered(EerufHcSr04 *modules, uint8_t sensor);
 /* A pin could not be read before the trigger (then nothing is triggered), or written at it. */
 EerufStatus eeruf_hc_sr04_cannot_read(EerufHcSr04 *modules, uint8_t sensor);
 EerufStatus eeruf_hc_sr04_cannot_write(EerufHcSr04 *modules, uint8_t sensor);
 /* An edge of an echo line. Hand in all edges you have before you poll. */
 EerufStatus eeruf_hc_sr04_edge(EerufHcSr04 *modules, uint8_t sensor, bool high, uint32_t at_us);
-/* All edges of a queue. */
+/* All edges of a queue; or those that are not later than an instant, such as that of a timer's trigger. */
 EerufStatus eeruf_hc_sr04_edges(EerufHcSr04 *modules, EerufEdges *edges);
+EerufStatus eeruf_hc_sr04_edges_until(EerufHcSr04 *modules, EerufEdges *edges, uint32_t until_us);
+/* The width of a module's pulse, from hardware that measures it: instead of edges, before the reading is emitted. */
+EerufStatus eeruf_hc_sr04_pulse(EerufHcSr04 *modules, uint8_t sensor, uint32_t width_us);
 /* Whether the line of a sensor is worth looking at, for those who sample lines: it was triggered, and its pulse is not
    over. `was_high`, if not null: the level it had last. */
 bool eeruf_hc_sr04_awaits(const EerufHcSr04 *modules, uint8_t sensor, bool *was_high);

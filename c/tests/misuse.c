@@ -473,6 +473,63 @@ static void a_line_that_is_held_listens_still(void) {
     }
 }
 
+/* Hardware that fires and reports by itself. */
+static void by_hardware(void) {
+    const EerufHcSr04Settings settings = EERUF_HC_SR04;
+    EerufSchedule table;
+    uint8_t places_of[2 * SENSORS];
+    uint32_t times[2 * (SENSORS + 1)];
+    EerufHcSr04 modules;
+    EerufLine lines[SENSORS];
+    EerufEdge places[4];
+    EerufEdges edges;
+    EerufConfig config = EERUF_CONFIG;
+    uint32_t due_us = 0, first_us;
+    uint8_t sensor = 9, first, last, number = 0;
+    EXPECT(eeruf_ring_upcoming(NULL, 0, &sensor, &due_us), EERUF_ERR_NULL);
+    EXPECT(eeruf_ring_upcoming(&not_ready, 0, &sensor, &due_us), EERUF_ERR_NOT_READY);
+    EXPECT(eeruf_ring_set_report_after(&not_ready, 0), EERUF_ERR_NOT_READY);
+    EXPECT(eeruf_schedule_make(&table, places_of, sizeof places_of, times, sizeof times, 68000, SENSORS, 2, TIMES),
+           EERUF_OK);
+    config.t_delta_us = 900;
+    config.window_us = 40000;
+    EXPECT(eeruf_ring_init_unverified(&ring, sizeof ring, sensors, sizeof sensors, &table, &config, 1000), EERUF_OK);
+    EXPECT(eeruf_ring_upcoming(&ring, 0, NULL, &due_us), EERUF_ERR_NULL);
+    EXPECT(eeruf_ring_upcoming(&ring, 0, &sensor, NULL), EERUF_ERR_NULL);
+    EXPECT(eeruf_ring_set_report_after(&ring, 62001), EERUF_ERR_WINDOW);
+    EXPECT(eeruf_ring_set_report_after(&ring, 50000), EERUF_OK);
+    while (eeruf_ring_upcoming(&ring, number, &last, &due_us) == EERUF_OK) number++;
+    EXPECT(number, 2 * SENSORS); /* this period and the next */
+    EXPECT(due_us, 1000 + 68000 + 51000);
+    EXPECT(eeruf_hc_sr04_init(&modules, sizeof modules, lines, sizeof lines, &ring, &settings), EERUF_OK);
+    EXPECT(eeruf_edges_init(&edges, sizeof edges, places, sizeof places), EERUF_OK);
+    EXPECT(eeruf_hc_sr04_triggered(NULL, 0), EERUF_ERR_NULL);
+    EXPECT(eeruf_hc_sr04_triggered(&modules, SENSORS), EERUF_ERR_SENSOR);
+    EXPECT(eeruf_hc_sr04_pulse(&modules, SENSORS, 9000), EERUF_ERR_SENSOR);
+    EXPECT(eeruf_hc_sr04_pulse(&modules, 0, 9000), EERUF_OK); /* not triggered: ignored */
+    EXPECT(eeruf_hc_sr04_edges_until(&modules, NULL, 0), EERUF_ERR_NULL);
+    EXPECT(eeruf_ring_upcoming(&ring, 0, &first, &first_us), EERUF_OK);
+    /* The timer has triggered the first while the loop slept, and its line has risen since. */
+    EXPECT(eeruf_edges_push(&edges, first, true, first_us + 450), EERUF_OK);
+    EXPECT(eeruf_hc_sr04_edges_until(&modules, &edges, first_us), EERUF_OK);
+    EXPECT(eeruf_ring_poll(&ring, first_us, &event), EERUF_EVENT);
+    EXPECT(event.kind == EERUF_EVENT_FIRE && event.sensor == first && event.u.due_us == first_us, 1);
+    EXPECT(eeruf_hc_sr04_triggered(&modules, first), EERUF_OK);
+    EXPECT(eeruf_hc_sr04_edges_until(&modules, &edges, first_us + 449), EERUF_OK);
+    EXPECT(edges.pushed != edges.popped, 1); /* later than that: it waits */
+    EXPECT(eeruf_hc_sr04_edges(&modules, &edges), EERUF_OK);
+    /* Its pulse is reported after the window, and still counts: nothing is in range. */
+    while (eeruf_ring_poll(&ring, first_us + 49000, &event) == EERUF_EVENT) {
+        EXPECT(event.kind == EERUF_EVENT_FIRE, 1);
+        EXPECT(eeruf_hc_sr04_triggered(&modules, event.sensor), EERUF_OK);
+    }
+    EXPECT(eeruf_hc_sr04_pulse(&modules, first, 39000), EERUF_OK);
+    EXPECT(eeruf_hc_sr04_health(&modules, first), EERUF_HEALTH_WELL);
+    EXPECT(eeruf_ring_poll(&ring, first_us + 50000, &event), EERUF_EVENT);
+    EXPECT(event.kind == EERUF_EVENT_READING && event.sensor == first, 1);
+    EXPECT(event.u.reading.kind, EERUF_READING_NO_ECHO);
+}
+
 static void reads(EerufWatch *watch, uint8_t kind, uint32_t t_echo_us, uint32_t now_us) {
     event.kind = EERUF_EVENT_READING;
     event.sensor = 1;
@@ -534,6 +591,7 @@ int main(void) {
     a_line_that_is_held_listens_still();
     adaptations();
     watches();
+    by_hardware();
 #if EERUF_HOPPING
     hopping_rings();
 #endif

@@ -4,6 +4,7 @@ use eeruf_core::{
     Micros, PeriodStats, Phase, Reading, ReadingKind, RingError, RingEvent, Tally,
     conditions::ViolationKind,
     judge::Explanation,
+    plan::Upcoming,
     watch::{Doubt, SensorState},
 };
 
@@ -47,6 +48,11 @@ pub fn explanation(explained_by: Option<Explanation>) -> u32 {
 /// An echo time as a number.
 pub fn echo(t_echo: Option<Micros>) -> u32 {
     t_echo.map_or(NO_ECHO, Micros::as_micros)
+}
+
+/// Firings to come as numbers: sensor and instant.
+pub fn upcoming(upcoming: impl Iterator<Item = Upcoming>) -> Vec<[u32; 2]> {
+    upcoming.map(|Upcoming { sensor, due, .. }| [sensor.into(), due.as_micros()]).collect()
 }
 
 /// A state as numbers: kind, echo, age, why, explanation.

@@ -1,6 +1,6 @@
 //! Rings that hop in time.
 
-use crate::core_side::{echo, flat, state};
+use crate::core_side::{echo, flat, state, upcoming};
 use crate::{C, Do, Random};
 use eeruf_core::{
     Instant, Micros, RingError, RingEvent,
@@ -160,6 +160,7 @@ pub fn run<const K: usize>(r: &Random) -> u64 {
             let at = || format!("{origin}, step {step}: {event:?}");
             assert_eq!(in_c, event.as_ref().map(flat).ok_or(0), "{}", at());
             assert_eq!(c.deadline(), ring.next_deadline().as_micros(), "{}", at());
+            assert_eq!(c.upcoming(), upcoming(ring.upcoming()), "{}", at());
             let Some(event) = event else { break };
             count += 1;
             watch.observe(&event, now);

@@ -54,6 +54,9 @@ pub enum Do {
     Unanswered,
     Forget,
     Measured,
+    Triggered,
+    Pulse,
+    SetReportAfter,
     Solo,
 }
 
@@ -151,6 +154,17 @@ impl C {
         // SAFETY: a number for each sensor, and room for an event.
         let status = unsafe { shim::shim_poll(self.0, now_us, change_us, flat.as_mut_ptr()) };
         if status == EVENT { Ok(flat) } else { Err(status) }
+    }
+
+    /// `eeruf_ring_upcoming` until there is none: sensors and instants.
+    pub fn upcoming(&self) -> Vec<[u32; 2]> {
+        let next = |number| {
+            let mut out = [0; 2];
+            // SAFETY: a ring that was made, and room for two numbers.
+            let status = unsafe { shim::shim_upcoming(self.0, number, out.as_mut_ptr()) };
+            (status == 0).then_some(out)
+        };
+        (0..=u8::MAX).map_while(next).collect()
     }
 
     /// `eeruf_watch_init`: the events of polls from now on are handed to it.

@@ -171,7 +171,10 @@ pub fn run(r: &Random) -> u64 {
             let r = &world.random;
             let next = Fault { high: r.once_in(30), cannot_read: r.once_in(60), cannot_write: r.once_in(60) };
             fault.set(next);
-            let event = modules.poll(Instant::from_micros(world.now));
+            // By a timer, at the same instant.
+            let timed = r.once_in(5);
+            let now = Instant::from_micros(world.now);
+            let event = if timed { modules.poll_triggered(now) } else { modules.poll(now) };
             let in_c = c.poll(world.now, None);
             let at = || format!("{origin}, step {step}: {event:?}");
             assert_eq!(in_c, event.as_ref().map(flat).ok_or(0), "{}", at());
@@ -180,11 +183,16 @@ pub fn run(r: &Random) -> u64 {
             if let RingEvent::Fire { sensor, .. } = event {
                 let with_level = sensor | u8::from(next.high) << 7;
                 let status = match next.cannot_read {
+                    _ if timed => c.call(Do::Triggered, sensor, 0),
                     true => c.call(Do::CannotRead, sensor, world.now),
                     false => c.call(Do::FireModule, with_level, world.now),
                 };
-                assert_eq!(status, if next.high || next.cannot_read { 2 } else { 0 }, "{}", at());
-                if status == 0 && next.cannot_write {
+                assert_eq!(status, if !timed && (next.high || next.cannot_read) { 2 } else { 0 }, "{}", at());
+                if r.once_in(6) {
+                    let width = r.one_of(&[3_000 + 4_000 * u32::from(sensor), 38_000, r.duration(40_000)]);
+                    same(&mut c, Do::Pulse, sensor, width, modules.pulse(sensor, Micros::new(width)));
+                }
+                if status == 0 && next.cannot_write && !timed {
                     assert_eq!(c.call(Do::CannotWrite, sensor, 0), 0);
                 }
                 pulse(r, &mut edges, world.now, sensor, 3_000 + 4_000 * u32::from(sensor));

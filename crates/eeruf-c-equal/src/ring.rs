@@ -1,11 +1,11 @@
 //! Rings that fire by tables.
 
-use crate::core_side::{flat, state, status_of, status_of_violation};
+use crate::core_side::{flat, state, status_of, status_of_violation, upcoming};
 use crate::{C, Do, Needs, OwnNeeds, Random};
 use eeruf_core::{
     EachSensor, EchoFilter, Instant, Layout, Micros, Requirements, Ring, RingConfig, RingError, RingEvent, Schedule,
     Uneven,
-    plan::{EachInUse, ScheduledFiring},
+    plan::{EachInUse, Plan, ScheduledFiring},
     watch::SensorWatch,
 };
 
@@ -138,7 +138,7 @@ type Fires<const M: usize> = (Schedule<K, M>, EachSensor<K>);
 /// What a caller may do now and then.
 fn act<'s, const M: usize>(r: &Random, c: &mut C, ring: &mut Table<'s, M>, schedules: &'s [Fires<M>], now: u32) {
     let sensor = r.within(0, ring.sensors() as u32) as u8;
-    match r.within(0, 16) {
+    match r.within(0, 17) {
         0 => {
             ring.pause();
             change(c, Do::Pause, 1, Ok(()));
@@ -169,6 +169,11 @@ fn act<'s, const M: usize>(r: &Random, c: &mut C, ring: &mut Table<'s, M>, sched
         12 => {
             let blanking = r.duration(80_000);
             change(c, Do::SetBlanking, blanking, ring.set_blanking(Micros::new(blanking)));
+        }
+        15 => {
+            let longest = ring.plan().min_refire().as_micros();
+            let report = r.one_of(&[0, r.duration(100_000), longest, longest.saturating_add(1)]);
+            change(c, Do::SetReportAfter, report, ring.set_report_after(Micros::new(report)));
         }
         13 => {
             let change = r.one_of(&[r.duration(2_000), r.duration(80_000), 0]);
@@ -257,6 +262,7 @@ where
             let at = || format!("{r}, {M} phases, step {step}: {event:?}");
             assert_eq!(in_c, event.as_ref().map(flat).ok_or(0), "{}", at());
             assert_eq!(c.deadline(), ring.next_deadline().as_micros(), "{}", at());
+            assert_eq!(c.upcoming(), upcoming(ring.upcoming()), "{}", at());
             let Some(event) = event else { break };
             count += 1;
             watch.observe(&event, now);

@@ -134,6 +134,14 @@ int shim_poll(Handle *handle, uint32_t now_us, const int32_t *change_us, uint32_
     return handle->watched == NULL || eeruf_watch_event(&handle->watch, &handle->last, now_us) == EERUF_OK ? status : -99;
 }
 
+/* `out`: sensor and instant. */
+int shim_upcoming(const Handle *handle, uint8_t number, uint32_t *out) {
+    uint8_t sensor = 0;
+    const EerufStatus status = eeruf_ring_upcoming(handle->ring, number, &sensor, &out[1]);
+    out[0] = sensor;
+    return status;
+}
+
 /* A watch of the events that are polled from now on. */
 int shim_watch(Handle *handle, uint8_t sensors, uint32_t now_us) {
     const size_t size = sensors * sizeof(EerufWatched);
@@ -194,6 +202,9 @@ int shim_do(Handle *handle, unsigned what, uint8_t sensor, uint32_t value) {
     case 24: return eeruf_ring_unanswered(ring, sensor);
     case 25: return eeruf_ring_forget(ring, sensor);
     case 26: return eeruf_ring_measured(ring, sensor, value);
+    case 27: return eeruf_hc_sr04_triggered(&handle->modules, sensor);
+    case 28: return eeruf_hc_sr04_pulse(&handle->modules, sensor, value);
+    case 29: return eeruf_ring_set_report_after(ring, value);
     default: return eeruf_hopping_solo(handle->hopping);
     }
 }

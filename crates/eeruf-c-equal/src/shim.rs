@@ -31,6 +31,7 @@ unsafe extern "C" {
         consecutive: u8,
         now_us: u32,
     ) -> i32;
+    pub(crate) fn shim_upcoming(handle: *const c_void, number: u8, out: *mut u32) -> i32;
     pub(crate) fn shim_watch(handle: *mut c_void, sensors: u8, now_us: u32) -> i32;
     pub(crate) fn shim_state(handle: *const c_void, sensor: u8, now_us: u32, out: *mut u32) -> i32;
     pub(crate) fn shim_poll(handle: *mut c_void, now_us: u32, change_us: *const i32, out: *mut u32) -> i32;

@@ -25,8 +25,13 @@ pub(crate) enum Shown {
     Nothing,
     /// The line rose: the sensor listens.
     Answer,
+    /// The line rose, and the end of a pulse that began before this firing got lost: what counted as silence may have
+    /// been an echo.
+    AnswerAfterLoss,
     /// The pulse was too short for an echo: it does not after all.
     Disturbance,
+    /// The pulse ended, as long as the sensor's own time-out: it listened and heard nothing.
+    Silence,
     /// The echo is in, this long after the sound was sent.
     Echo(Micros),
 }
@@ -67,6 +72,11 @@ impl Line {
                 self.pulse = Pulse::Over;
                 if width < settings.longest { Shown::Echo(width) } else { Shown::Nothing }
             }
+            (Pulse::Rose(rose), true) if !rose.has_reached(fired) => {
+                self.pulse = Pulse::Rose(edge.at);
+                self.health = Health::LosesEdges;
+                Shown::AnswerAfterLoss
+            }
             (Pulse::Over, true) => {
                 self.flaw = Health::Chatters;
                 Shown::Nothing
@@ -80,6 +90,20 @@ impl Line {
             }
             _ => Shown::Nothing,
         }
+    }
+
+    /// Returns the meaning of a pulse that hardware has measured.
+    pub(crate) fn pulse(&mut self, width: Micros, settings: &Settings) -> Shown {
+        if self.pulse == Pulse::Idle {
+            return Shown::Nothing;
+        }
+        self.silent = 0;
+        if width < settings.shortest || self.pulse == Pulse::Over {
+            self.flaw = Health::Chatters;
+            return Shown::Nothing;
+        }
+        (self.pulse, self.flaw) = (Pulse::Over, Health::Well);
+        if width < settings.longest { Shown::Echo(width) } else { Shown::Silence }
     }
 
     /// Returns true if a line that is high rose after its trigger, no longer ago than a healthy sensor holds it.

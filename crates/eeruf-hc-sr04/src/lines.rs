@@ -44,6 +44,25 @@ impl<T, I, D, const K: usize> Lines<T, I, D, K> {
         line.map_or(Shown::Nothing, |line| line.edge(edge, fired, &self.settings))
     }
 
+    /// Returns the meaning of a pulse that hardware has measured.
+    pub(crate) fn pulse(&mut self, sensor: u8, width: Micros) -> Shown {
+        let line = self.lines.get_mut(usize::from(sensor));
+        line.map_or(Shown::Nothing, |line| line.pulse(width, &self.settings))
+    }
+
+    /// Takes in that hardware has triggered a sensor.
+    pub(crate) fn triggered(&mut self, sensor: u8, now: Instant) -> Trigger {
+        let given = Trigger::Given { lost_an_edge: false };
+        let Some(line) = self.lines.get_mut(usize::from(sensor)) else { return given };
+        // One that holds its line does not hear a trigger. One that has long held it has lost the end of its pulse.
+        if line.listens_still(now, self.settings.longest_hold) {
+            return given;
+        }
+        let lost_an_edge = line.end_firing(self.settings.missing_after);
+        line.pulse = Pulse::Awaited;
+        Trigger::Given { lost_an_edge }
+    }
+
     pub(crate) fn health(&self, sensor: u8) -> Health {
         self.lines.get(usize::from(sensor)).map_or(Health::Missing, |line| line.health)
     }

@@ -3,7 +3,7 @@
 use eeruf_core::{
     EchoFilter, Edge, EdgeQueue, Instant, Micros, Ring, RingError, RingEvent, SensorError, VerifiedSchedule,
     judge::Judge,
-    plan::{LimitsInUse, OwnLimits, Plan, ScheduledFiring},
+    plan::{LimitsInUse, OwnLimits, Plan, ScheduledFiring, Upcoming},
 };
 use embedded_hal::delay::DelayNs;
 use embedded_hal::digital::{InputPin, OutputPin};
@@ -33,15 +33,12 @@ impl<P: Plan, J: Judge, T: OutputPin, I: InputPin, D: DelayNs, const K: usize, c
     /// # Errors
     /// [`SetupError::Retrigger`] if the ring fires a sensor again sooner than it may be triggered.
     pub fn new(
-        mut ring: Ring<P, J, K, 1, H>,
+        ring: Ring<P, J, K, 1, H>,
         pins: [Pins<T, I>; K],
         delay: D,
         settings: Settings,
     ) -> Result<Self, SetupError> {
-        settings.allow(ring.plan().min_refire())?;
-        // A line that does not rise is no free space.
-        ring.expect_answers();
-        Ok(Self { ring, lines: Lines::new(pins, delay, settings) })
+        Self::on(ring, pins, delay, settings)
     }
 
     /// As [`Ring::poll`]. [`RingEvent::Fire`] is for information: the sensor has been triggered already.
@@ -56,13 +53,8 @@ impl<P: Plan, J: Judge, T: OutputPin, I: InputPin, D: DelayNs, const K: usize, c
     pub fn poll_expecting(&mut self, now: Instant, expected_change_us: impl FnMut(u8) -> i32) -> Option<RingEvent> {
         let event = self.ring.poll_expecting(now, expected_change_us)?;
         if let RingEvent::Fire { sensor, .. } = event {
-            // It is there: it has just fired.
-            _ = match self.lines.trigger(sensor, now) {
-                Trigger::Given { lost_an_edge: false } => Ok(()),
-                Trigger::Given { lost_an_edge: true } => self.ring.forget(sensor),
-                Trigger::Withheld => self.ring.stuck(sensor),
-                Trigger::ListensStill => self.ring.answered(sensor),
-            };
+            let trigger = self.lines.trigger(sensor, now);
+            self.has_triggered(sensor, trigger);
         }
         Some(event)
     }
@@ -75,6 +67,76 @@ impl<P: Plan, J: Judge, T: OutputPin, I: InputPin, D: DelayNs, const K: usize, c
             _ = self.edge(edge);
         }
         self.poll(now)
+    }
+}
+
+impl<P: Plan, J: Judge, const K: usize, const H: usize> HcSr04Ring<Ring<P, J, K, 1, H>, (), (), (), K> {
+    /// Puts a ring on hardware that has the pins: a timer, PIO or RMT that triggers at the instants of
+    /// [`upcoming`](Self::upcoming), for [`poll_triggered`](Self::poll_triggered), and stamps edges or measures pulses.
+    ///
+    /// # Errors
+    /// As for [`new`](HcSr04Ring::new).
+    pub fn by_hardware(ring: Ring<P, J, K, 1, H>, settings: Settings) -> Result<Self, SetupError> {
+        Self::on(ring, [const { Pins { trigger: (), echo: () } }; K], (), settings)
+    }
+}
+
+impl<P: Plan, J: Judge, T, I, D, const K: usize, const H: usize> HcSr04Ring<Ring<P, J, K, 1, H>, T, I, D, K> {
+    fn on(
+        mut ring: Ring<P, J, K, 1, H>,
+        pins: [Pins<T, I>; K],
+        delay: D,
+        settings: Settings,
+    ) -> Result<Self, SetupError> {
+        settings.allow(ring.plan().min_refire())?;
+        // A line that does not rise is no free space.
+        ring.expect_answers();
+        Ok(Self { ring, lines: Lines::new(pins, delay, settings) })
+    }
+
+    fn has_triggered(&mut self, sensor: u8, trigger: Trigger) {
+        // It is there: it has just fired.
+        _ = match trigger {
+            Trigger::Given { lost_an_edge: false } => Ok(()),
+            Trigger::Given { lost_an_edge: true } => self.ring.forget(sensor),
+            Trigger::Withheld => self.ring.stuck(sensor),
+            Trigger::ListensStill => self.ring.answered(sensor),
+        };
+    }
+
+    /// As [`poll`](Self::poll) at the instant `at` at which hardware has triggered the sensor that was due, by
+    /// [`Ring::upcoming`]: it is not triggered again. Call until there is no event, after all edges up to `at` and before
+    /// all later ones. Nobody has seen if the line was low: a sensor that still held it counts as unanswered.
+    pub fn poll_triggered(&mut self, at: Instant) -> Option<RingEvent> {
+        let event = self.ring.poll(at)?;
+        if let RingEvent::Fire { sensor, .. } = event {
+            let trigger = self.lines.triggered(sensor, at);
+            self.has_triggered(sensor, trigger);
+        }
+        Some(event)
+    }
+
+    /// Hands in the width of a sensor's pulse, from hardware that measures it: instead of edges, before the reading is
+    /// emitted (see [`Ring::set_report_after`]).
+    ///
+    /// # Errors
+    /// [`SensorError`] if the sensor is out of range.
+    pub fn pulse(&mut self, sensor: u8, width: Micros) -> Result<(), SensorError> {
+        let shown = self.lines.pulse(sensor, width);
+        self.show(sensor, shown)
+    }
+
+    fn show(&mut self, sensor: u8, shown: Shown) -> Result<(), SensorError> {
+        match shown {
+            // The ring says if it has no such sensor.
+            Shown::Nothing if usize::from(sensor) >= self.ring.sensors() => self.ring.answered(sensor),
+            Shown::Nothing => Ok(()),
+            Shown::Answer => self.ring.answered(sensor),
+            Shown::AnswerAfterLoss => self.ring.forget(sensor).and_then(|()| self.ring.answered(sensor)),
+            Shown::Disturbance => self.ring.unanswered(sensor),
+            Shown::Silence => self.ring.measured(sensor, None),
+            Shown::Echo(t_echo) => self.ring.measured(sensor, Some(t_echo)),
+        }
     }
 
     /// As [`Ring::next_deadline`].
@@ -91,12 +153,8 @@ impl<P: Plan, J: Judge, T: OutputPin, I: InputPin, D: DelayNs, const K: usize, c
             // The ring says that it is not there.
             return self.ring.echo(edge.sensor, edge.at);
         };
-        match self.lines.edge(edge, fired) {
-            Shown::Nothing => Ok(()),
-            Shown::Answer => self.ring.answered(edge.sensor),
-            Shown::Disturbance => self.ring.unanswered(edge.sensor),
-            Shown::Echo(t_echo) => self.ring.echo(edge.sensor, fired + t_echo),
-        }
+        let shown = self.lines.edge(edge, fired);
+        self.show(edge.sensor, shown)
     }
 
     /// As [`Ring::fired`], where a sensor was triggered at another instant than the poll said.
@@ -147,6 +205,19 @@ impl<P: Plan, J: Judge, T: OutputPin, I: InputPin, D: DelayNs, const K: usize, c
     /// As [`Ring::restart`].
     pub fn restart(&mut self, now: Instant) {
         self.ring.restart(now);
+    }
+
+    /// As [`Ring::upcoming`].
+    pub fn upcoming(&self) -> impl Iterator<Item = Upcoming> {
+        self.ring.upcoming()
+    }
+
+    /// As [`Ring::set_report_after`].
+    ///
+    /// # Errors
+    /// As there.
+    pub fn set_report_after(&mut self, report_after: Micros) -> Result<(), RingError> {
+        self.ring.set_report_after(report_after)
     }
 }
 

@@ -20,14 +20,14 @@ const HOPPING: [(&str, u32); 7] = [
     ("new_lags", 24_734),
 ];
 const HOPPING_FLASH: u64 = 8880;
-const HOPPING_RAM: u64 = 924;
+const HOPPING_RAM: u64 = 928;
 /// What a poll of it takes of the stack there.
 const HOPPING_STACK: u64 = 332;
 /// Compilers differ: only more than the budget and this part of it fails.
 const LEEWAY: f64 = 0.05;
-const FLASH: u64 = 4972;
-const RAM: u64 = 12 * 32 + 88;
-const STACK: u64 = 616;
+const FLASH: u64 = 5048;
+const RAM: u64 = 12 * 32 + 92;
+const STACK: u64 = 624;
 
 /// The tables of all boards or of one, and which budgets are exceeded. Only of all boards there is the simulated world.
 pub(super) fn measure(only: Option<&str>) -> Result<(Tables, Vec<String>), Trouble> {

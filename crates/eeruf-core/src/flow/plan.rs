@@ -4,7 +4,7 @@ use super::settings::{FlowSettings, Pace};
 use super::slot::{DISABLED, QUIET_US, Slot};
 use crate::hopping::{CATCHES_UP, HoppingCode, HoppingError, HoppingListening, Lateness, Weighed};
 use crate::judging::{Firing, Heard, Judge};
-use crate::plan::{Limits, Plan};
+use crate::plan::{Limits, Plan, Upcoming};
 use crate::reading::{ReadingKind, Verdict};
 use crate::schedule::{MAX_PERIOD, Phase};
 use crate::time::{Instant, Micros};
@@ -191,6 +191,15 @@ impl<const K: usize> FlowPlan<K> {
 impl<const K: usize> Plan for FlowPlan<K> {
     fn deadline(&self) -> Instant {
         self.due
+    }
+
+    /// To the end of the cycle that has begun, since the next is decided then.
+    fn upcoming(&self) -> impl Iterator<Item = Upcoming> {
+        (self.place..self.planned).map(|place| {
+            let sensor = self.order(place);
+            let due = if place == self.place { self.due } else { self.start + self.offset(sensor) };
+            Upcoming { sensor, phase: self.phase(), due }
+        })
     }
 
     fn next_firing(&self) -> Option<(u8, Phase)> {

@@ -9,7 +9,7 @@ use super::settings::{HoppingListening, HoppingSettings, Pace};
 use super::turn::{DISABLED, FIRED, SETTLED, SOLO, Turn};
 use super::weighed::Weighed;
 use crate::judging::{Firing, Heard, Judge};
-use crate::plan::{Limits, Plan};
+use crate::plan::{Limits, Plan, Upcoming};
 use crate::reading::{ReadingKind, Verdict};
 use crate::schedule::Phase;
 use crate::time::{Instant, Micros};
@@ -276,6 +276,15 @@ impl<const K: usize> HoppingPlan<K> {
 impl<const K: usize> Plan for HoppingPlan<K> {
     fn deadline(&self) -> Instant {
         self.due
+    }
+
+    /// To the end of the period that has begun, since the next is decided then.
+    fn upcoming(&self) -> impl Iterator<Item = Upcoming> {
+        (self.place..self.planned).map(|place| {
+            let sensor = self.order(place);
+            let due = if place == self.place { self.due } else { self.start + self.offset(sensor) };
+            Upcoming { sensor, phase: self.phase(), due }
+        })
     }
 
     fn next_firing(&self) -> Option<(u8, Phase)> {

@@ -31,6 +31,18 @@ pub enum PlanStep {
     },
 }
 
+/// A firing to come.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Upcoming {
+    /// The sensor, from 0.
+    pub sensor: u8,
+    /// The phase its wait belongs to.
+    pub phase: Phase,
+    /// When it is due.
+    pub due: Instant,
+}
+
 /// What a plan allows the ring that it fires.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -72,6 +84,12 @@ pub trait Plan {
     fn deadline(&self) -> Instant;
     /// The sensor that fires next and the phase of its wait; none if the period ends next.
     fn next_firing(&self) -> Option<(u8, Phase)>;
+    /// The firings to come, in their order, if none is late: as many as are decided, at least the next one of this
+    /// period.
+    fn upcoming(&self) -> impl Iterator<Item = Upcoming> {
+        let due = self.deadline();
+        self.next_firing().map(|(sensor, phase)| Upcoming { sensor, phase, due }).into_iter()
+    }
     /// Fires that sensor, `now`. To be called when it is due.
     fn fire(&mut self, now: Instant);
     /// A sensor has fired this much later than [`fire`](Self::fire) was called for: what follows from its firing moves

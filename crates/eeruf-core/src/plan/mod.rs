@@ -10,7 +10,7 @@ mod immediate;
 mod scheduled;
 
 pub use check::{BrokenPromise, check_plan};
-pub use contract::{Limits, Plan, PlanStep};
+pub use contract::{Limits, Plan, PlanStep, Upcoming};
 pub use immediate::ImmediateRefiring;
 pub use scheduled::ScheduledFiring;
 

@@ -1,6 +1,6 @@
 //! [`ScheduledFiring`]: every sensor fires once per period, by the table of a schedule (Sec. 3.1, Fig. 3).
 
-use super::contract::{Limits, Plan};
+use super::contract::{Limits, Plan, Upcoming};
 use crate::judging::Firing;
 use crate::own_limits::{Alike, LimitsInUse, OwnLimits, SensorLimits};
 use crate::schedule::{MAX_SENSORS, Phase, Schedule, VerifiedFor};
@@ -141,6 +141,10 @@ impl<'s, const K: usize, const M: usize, U: LimitsInUse> ScheduledFiring<'s, K, 
         self.last_fired + settling_time(self.schedule)
     }
 
+    const fn phase_after(&self, phase: u8) -> u8 {
+        if (phase as usize) + 1 < M { phase + 1 } else { 0 }
+    }
+
     fn begin_period(&mut self, phase: u8, start: Instant) {
         self.phase = phase;
         self.following = 0;
@@ -214,14 +218,37 @@ impl<const K: usize, const M: usize, U: LimitsInUse> Plan for ScheduledFiring<'_
             }
             self.schedule = next;
         }
-        let next_phase = if usize::from(self.phase) + 1 < M { self.phase + 1 } else { 0 };
-        self.begin_period(next_phase, start);
+        self.begin_period(self.phase_after(self.phase), start);
         (phase, changed)
     }
 
     #[inline]
     fn next_firing(&self) -> Option<(u8, Phase)> {
         is_sensor::<K>(self.next).then_some((self.next, Phase(self.phase)))
+    }
+
+    /// To the end of the next period, unless that is another schedule's.
+    fn upcoming(&self) -> impl Iterator<Item = Upcoming> {
+        let (mut phase, mut following, mut sensor, mut due) = (self.phase, self.following, self.next, self.due);
+        let mut goes_on = self.next_schedule.is_none() && self.skips != Skips::All;
+        core::iter::from_fn(move || {
+            loop {
+                let next = Upcoming { sensor, phase: Phase(phase), due };
+                let fires = is_sensor::<K>(sensor);
+                if !fires {
+                    if !core::mem::take(&mut goes_on) {
+                        return None;
+                    }
+                    (phase, following) = (self.phase_after(phase), 0);
+                }
+                let (follows, gap) = self.schedule.firing(phase, following);
+                (sensor, following) = (follows, following.wrapping_add(1));
+                due += gap;
+                if fires && !self.disabled.contains(next.sensor) {
+                    return Some(next);
+                }
+            }
+        })
     }
 
     #[inline]

@@ -88,6 +88,25 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
         Ok(())
     }
 
+    /// Sets how long after its firing a reading without an echo is emitted at the soonest, for modules that report by a
+    /// bus or a pulse's width after their window has closed; 0 for the end of the window. What counts as an echo stays:
+    /// [`measured`](Self::measured) takes any echo time within the window.
+    ///
+    /// # Errors
+    /// [`RingError::Window`] for more than the time until a sensor fires again. The ring then goes on as before.
+    pub fn set_report_after(&mut self, report_after: Micros) -> Result<(), RingError> {
+        let min_refire = self.plan.min_refire();
+        if report_after > min_refire {
+            return Err(RingError::Window { window: report_after, min_refire });
+        }
+        self.report_after = report_after;
+        if self.windows_differ() {
+            self.find_first_to_close();
+        }
+        self.emit_when_oldest_ends();
+        Ok(())
+    }
+
     /// Sets the blanking time, for which a sensor is deaf after it has fired.
     ///
     /// # Errors

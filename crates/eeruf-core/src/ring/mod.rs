@@ -17,7 +17,7 @@ mod steps;
 use crate::filter::EchoFilter;
 use crate::judging::{Agreement, Judge};
 use crate::own_limits::{Alike, LimitsInUse, OwnLimits};
-use crate::plan::{ImmediateRefiring, Plan, ScheduledFiring};
+use crate::plan::{ImmediateRefiring, Plan, ScheduledFiring, Upcoming};
 use crate::reading::{ReadingKind, Tally};
 use crate::schedule::{MAX_SENSORS, Schedule};
 use crate::sensor_error::SensorError;
@@ -84,6 +84,8 @@ pub struct Ring<P, J, const K: usize, const E: usize = 1, const H: usize = 4> {
     punctuality: Punctuality,
     /// Firings before this are not known: the ring was restarted.
     known_from: Instant,
+    /// A reading without an echo is emitted no sooner than this after its firing.
+    report_after: Micros,
     sensors: [Sensor<E, H>; K],
     judge: J,
     tally: Tally<u8>,
@@ -222,6 +224,7 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
             listening,
             period: 0,
             known_from: now,
+            report_after: Micros::ZERO,
             sensors: Self::SENSORS,
         };
         // As if silence had come before: what was fired earlier is for the caller to wait for.
@@ -276,6 +279,39 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
     pub fn next_deadline(&self) -> Instant {
         let due = self.plan.deadline();
         if self.has_pending() && !self.emit_at.has_reached(due) { self.emit_at } else { due }
+    }
+
+    /// The firings to come, in their order, for hardware that fires by itself: a timer, PIO or RMT. They hold until one
+    /// is late, or the ring is changed. By a table they reach to the end of the next period, else of the present one.
+    ///
+    /// The loop may then come late. Let it repeat what happened in its order: for each firing poll at its instant until
+    /// there is no event, so that [`RingEvent::Fire`] says what is done already; hand in echoes; last poll at the
+    /// present. A firing that hardware has missed is then still due.
+    ///
+    /// ```
+    /// use eeruf_core::{Instant, Micros, ReadingKind, Ring, RingConfig, RingEvent, tables::PAPER_12};
+    ///
+    /// let mut ring = Ring::new(&PAPER_12, RingConfig::new(), Instant::from_micros(0))?;
+    /// let mut accepted = 0;
+    /// for turn in 0..1000 {
+    ///     let Some(timer) = ring.upcoming().next() else { break };
+    ///     let now = timer.due + Micros::new(turn % 900); // when the loop comes round
+    ///     for at in [timer.due, now] {
+    ///         while let Some(event) = ring.poll(at) {
+    ///             match event {
+    ///                 // Fired by the timer; a capture unit reports a wall 2 m away.
+    ///                 RingEvent::Fire { sensor, .. } => ring.measured(sensor, Some(Micros::from_millis(12)))?,
+    ///                 RingEvent::Reading(reading) => accepted += u32::from(reading.kind == ReadingKind::Accepted),
+    ///                 RingEvent::PeriodEnded(stats) => assert_eq!(stats.sum_late, Micros::ZERO),
+    ///             }
+    ///         }
+    ///     }
+    /// }
+    /// assert!(accepted > 950);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn upcoming(&self) -> impl Iterator<Item = Upcoming> {
+        self.plan.upcoming()
     }
 
     /// Whether a reading will be emitted without a further firing.
@@ -352,8 +388,8 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
         Ok(())
     }
 
-    /// Hands in what hardware or a protocol measured of a sensor's last firing, before its window closes: the echo
-    /// time, or that it listened and heard nothing.
+    /// Hands in what hardware or a protocol measured of a sensor's last firing, before its reading is emitted: the echo
+    /// time, or that it listened and heard nothing. See [`set_report_after`](Self::set_report_after).
     ///
     /// # Errors
     /// [`SensorError`] for a sensor that is not there.

@@ -63,7 +63,7 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
         if self.oldest == NOBODY {
             self.oldest = sensor;
             if self.ready == 0 {
-                self.emit_at = now + self.window_of(sensor);
+                self.emit_at = now + self.closes_after(sensor);
             }
         } else if self.windows_differ() {
             self.find_first_to_close();
@@ -158,7 +158,7 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
         let own = self.sensors.get_mut(usize::from(sensor))?;
         let (fired, periods_ago) = (own.fired(), own.periods_ago(self.period));
         let Ended { listened, was_ready, unusable, echoes } = own.end();
-        let mut ended_at = fired + self.listening.window_of(&self.plan, sensor);
+        let mut ended_at = fired + self.closes_after(sensor);
         let echoes = heard(&echoes);
         if was_ready {
             ended_at = fired + echoes.first().copied().unwrap_or_default();
@@ -201,10 +201,8 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
     /// Without a reading that can be emitted sooner, the next one comes when the window of the oldest closes.
     #[inline]
     pub(super) fn emit_when_oldest_ends(&mut self) {
-        if self.ready == 0 {
-            if let Some(oldest) = self.sensor(self.oldest) {
-                self.emit_at = oldest.fired() + self.window_of(self.oldest);
-            }
+        if self.ready == 0 && self.oldest != NOBODY {
+            self.emit_at = self.closes(self.oldest);
         }
     }
 
@@ -241,10 +239,16 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
         self.emit_when_oldest_ends();
     }
 
-    /// When the window of a sensor's last firing closes.
+    /// After how long the reading of a sensor is emitted if there is no echo.
+    #[inline]
+    fn closes_after(&self, sensor: u8) -> Micros {
+        self.window_of(sensor).max(self.report_after)
+    }
+
+    /// When a sensor's last firing ends if there is no echo.
     fn closes(&self, sensor: u8) -> Instant {
         let fired = self.sensor(sensor).map_or(Instant::default(), Sensor::fired);
-        fired + self.window_of(sensor)
+        fired + self.closes_after(sensor)
     }
 
     fn sensor(&self, sensor: u8) -> Option<&Sensor<E, H>> {

@@ -2,6 +2,7 @@
 //! binary.
 
 mod brute_force;
+mod by_hardware;
 mod claims;
 mod common;
 mod comparing;

@@ -468,7 +468,7 @@ enum {
 };
 const char *eeruf_health_name(uint8_t health); /* "stuck high"; not linked unless called */
 
-/* What the modules need, in microseconds. */
+/* What the modules need, in microseconds: EERUF_HC_SR04, or EERUF_MODULES of a table whose ring file names them. */
 typedef struct EerufHcSr04Settings {
     uint16_t version;          /* EERUF_VERSION */
     uint16_t deaf_us;          /* edges sooner after the trigger are the trigger itself, seen through the cable */
@@ -477,8 +477,9 @@ typedef struct EerufHcSr04Settings {
     uint32_t longest_hold_us;  /* a line that rose and is high no longer than this listens still: clones hold 200 ms */
     uint32_t min_retrigger_us; /* the data sheet advises 60 ms */
     uint8_t missing_after;     /* firings in a row without a pulse, after which a module counts as missing */
+    uint8_t trigger_us;        /* how long the trigger is high; for whoever raises it */
 } EerufHcSr04Settings;
-#define EERUF_HC_SR04 {EERUF_VERSION, 100, 100, 36000, 250000, 60000, 3}
+#define EERUF_HC_SR04 {EERUF_VERSION, 100, 100, 36000, 250000, 60000, 3, 10}
 
 /* One echo line: 6 bytes on an AVR. Not for the caller. */
 typedef struct EerufLine {
@@ -500,7 +501,7 @@ typedef struct EerufHcSr04 {
 EerufStatus eeruf_hc_sr04_init(EerufHcSr04 *modules, size_t modules_size, EerufLine *lines, size_t lines_size,
                                EerufRing *ring, const EerufHcSr04Settings *settings);
 /* For each EERUF_EVENT_FIRE, before the next poll: whether the echo line is high. EERUF_OK: now raise the trigger for
-   10 us. EERUF_DO_NOT_TRIGGER: leave it alone; the line is stuck, or the module has heard nothing yet and holds it. With
+   the settings' trigger_us. EERUF_DO_NOT_TRIGGER: leave it alone; the line is stuck, or the module has heard nothing yet and holds it. With
    one pin for both, read it before it is an output. */
 EerufStatus eeruf_hc_sr04_fire(EerufHcSr04 *modules, uint8_t sensor, bool line_is_high);
 /* Instead, if a timer or other hardware has triggered it: then nobody has seen whether its line was low, and a module

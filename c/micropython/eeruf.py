@@ -190,6 +190,9 @@ class Ring:
         self.schedule = schedule
         self.t_delta_us, self.window_us, self.blanking_us = t_delta_us, window_us, blanking_us
         self.consecutive = consecutive
+        # How long after its firing a reading without an echo is emitted at the soonest, for modules that report after their
+        # window has closed: by a bus, or a pulse that hardware measures.
+        self.report_after_us = 0
         self.expects_answers = False  # whether silence counts only where `answered` says that the sensor listened
         self._known_from = (now_us - self._long_ago) & self._mask  # firings before are not known
         self._sensors = [_Sensor(self._known_from) for _ in range(schedule.sensors)]
@@ -380,6 +383,21 @@ class Ring:
             return "unknown", None, age_us, sensor.shows, sensor.by
         return sensor.shows, sensor.seen_us if sensor.shows == "obstacle" else None, age_us, None, None
 
+    def upcoming(self):
+        """The firings to come up to the end of the next period, as (sensor, instant), for PIO, RMT or a timer that fires by
+        itself. They hold until one is late. The loop may then come late: for each firing poll at its instant until there is
+        no event, so that FIRE says what is done already; hand in echoes; last poll at the present."""
+        schedule, phase, place, x, at = self.schedule, self._phase, self._following, self._next, self._due
+        is_last = False
+        while x != NOBODY or not is_last:
+            if x == NOBODY:
+                phase, place, is_last = (phase + 1) % schedule.phases, 0, True
+            elif self._sensors[x].enabled:
+                yield x, at
+            x = schedule.order[phase][place] if place < schedule.sensors else NOBODY
+            at = (at + schedule.gap_us[phase][place]) & self._mask
+            place += 1
+
     def _next_pending(self, now_us):
         if self._pending == 0:
             return self._oldest if self._oldest != NOBODY and self._reached(now_us, self._emit_at) else NOBODY
@@ -392,7 +410,8 @@ class Ring:
 
     def _emit_when_oldest_ends(self):
         if self._pending == 0 and self._oldest != NOBODY:
-            self._emit_at = (self._sensors[self._oldest].firings[0] + self.window_us) & self._mask
+            listens_us = max(self.window_us, self.report_after_us)
+            self._emit_at = (self._sensors[self._oldest].firings[0] + listens_us) & self._mask
 
     def _find_oldest(self, before):
         before -= self._step_back  # 1 us before is not a turn of the clock after
@@ -567,8 +586,8 @@ class Ring:
             self._sensors[x].unanswered = not answered
 
     def measured(self, x, t_echo_us):
-        """What hardware or a protocol measured of a sensor's last firing, before its window closes: the echo time, or None if
-        it listened and heard nothing."""
+        """What hardware or a protocol measured of a sensor's last firing, before its reading is emitted: the echo time, or None
+        if it listened and heard nothing."""
         if t_echo_us is None:
             self.answered(x)
         else:
@@ -608,13 +627,16 @@ class HcSr04Ring:
     """A ring of HC-SR04 modules, on one pin each or with the echo lines on other pins. Needs `machine` and `time`; both may
     be handed in. A reading is what `Ring.poll` says; `read` samples the lines, so call it often."""
 
+    # Of an HC-SR04; a subclass for another module has its own.
     DEAF_US, SHORTEST_US, LONGEST_US = 100, 100, 36000
+    MIN_RETRIGGER_US, TRIGGER_US = 60000, 10
     LONGEST_HOLD_US = 250000  # a line that rose and is high no longer than this listens still: clones hold 200 ms
     SOON_US = 1000  # what is due so soon is waited for: modules that fire late by differing times compare less
 
     def __init__(self, schedule, pins, echoes=None, machine=None, time=None, **ring):
-        if schedule.min_refire_us < 60000:
-            raise ValueError("a module would fire again after %d us: 60000 expected" % schedule.min_refire_us)
+        if schedule.min_refire_us < self.MIN_RETRIGGER_US:
+            needs = schedule.min_refire_us, self.MIN_RETRIGGER_US
+            raise ValueError("a module would fire again after %d us: %d expected" % needs)
         if len(pins) != schedule.sensors or (echoes is not None and len(echoes) != len(pins)):
             raise ValueError("%d pins for %d sensors" % (len(pins), schedule.sensors))
         if machine is None:
@@ -681,7 +703,7 @@ class HcSr04Ring:
             pin.init(self._pin.OUT, value=0)
         self._awaits[x] = True
         pin.value(1)
-        self._time.sleep_us(10)
+        self._time.sleep_us(self.TRIGGER_US)
         pin.value(0)
         if self._one_pin:
             pin.init(self._pin.IN)

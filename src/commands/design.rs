@@ -10,7 +10,7 @@ use eeruf_design::atlas::ATLAS;
 use eeruf_design::{CURVE_BUDGET, FoundJson, Need, RealPeriod, RingDesign, RingSpec, Search, real_budget};
 
 use eeruf_sim::AnySchedule;
-use eeruf_sim::modules::Module;
+use eeruf_sim::modules::{Module, PulseTimes};
 use serde::Serialize;
 
 use super::answer::Answer;
@@ -275,6 +275,29 @@ fn emit_modules(modules: &[Module], form: Form) -> Result<(), InputError> {
     Ok(())
 }
 
+/// Prints the settings of a driver for the modules of a table in C, if they are alike and answer by a pulse: those that
+/// may be triggered again sooner than the module says have it from the ring file, whose table keeps it.
+fn emit_settings(modules: &[Module], form: Form, min_refire: Micros) -> Result<(), InputError> {
+    let name = match form {
+        Form::C => "EERUF_MODULES",
+        Form::Arduino => "RING_MODULES",
+        Form::Toml | Form::Rust | Form::Json => return Ok(()),
+    };
+    let Some(module) = modules.first().filter(|first| modules.iter().all(|module| module == *first)) else {
+        return Ok(());
+    };
+    let Some(PulseTimes { deaf_us, shortest_us, longest_us, longest_hold_us }) = module.pulse_times() else {
+        return Ok(());
+    };
+    let (rest_us, trigger_us) = (module.rest_us.min(min_refire.as_micros()), module.trigger_us);
+    let times = format!("{deaf_us}, {shortest_us}, {longest_us}, {longest_hold_us}, {rest_us}, 3, {trigger_us}");
+    print_line("")?;
+    print_line(format!(
+        "/* Of these modules, for an EerufHcSr04Settings. */\n#define {name} {{EERUF_VERSION, {times}}}"
+    ))?;
+    Ok(())
+}
+
 /// Prints a schedule in a form, after the modules that it is for.
 fn emit(
     modules: &[Module],
@@ -291,7 +314,7 @@ fn emit(
         // Whoever asks for JSON gets more than the schedule.
         Form::Json => {}
     }
-    Ok(())
+    emit_settings(modules, form, schedule.min_refire())
 }
 
 /// Answers `--period`.

@@ -21,4 +21,5 @@ mod rings_in_scenes;
 mod rooms;
 mod ros2;
 mod scene;
+mod started;
 mod study;

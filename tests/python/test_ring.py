@@ -279,3 +279,36 @@ def test_each_sensor_of_an_uneven_ring_listens_as_long_as_it_may_also_by_another
         ring.change_schedule(tables.TABLE_I_D)
     with pytest.raises(eeruf.ArgumentError, match="3 values; expected one for each of 4 sensors"):
         eeruf.Ring(found.schedule, [999] * 3, window_us=12_000)
+
+
+def test_late_loop_with_timed_firings_accepts_walls() -> None:
+    """A timer fires at the instants of `upcoming`, the loop comes up to 5 ms late, reports come after the window."""
+    ring = eeruf.Ring(eeruf.tables.TABLE_I_D, t_delta_us=500, window_us=36_000)
+    ring.expect_answers()
+    ring.report_after_us = 60_000
+    assert ring.report_after_us == 60_000
+    with pytest.raises(eeruf.RingError, match="window"):
+        ring.report_after_us = 1_000_000
+    kinds: list[tuple[int, str]] = []
+    reports: list[tuple[int, int, int | None]] = []
+    now_us = 0
+    for turn in range(4_000):
+        now_us += turn * 977 % 5_000
+        while True:
+            fires = [fire.due_us for fire in ring.upcoming()[:1] if fire.due_us <= now_us]
+            until_us = fires[0] if fires else now_us
+            for report in [report for report in reports if report[0] <= until_us]:
+                reports.remove(report)
+                ring.measured(*report[1:])
+            while event := ring.poll(until_us):
+                if isinstance(event, eeruf.Fire):
+                    assert event.due_us == until_us
+                    wall_us = None if event.sensor == 3 else 5_000 + 2_000 * event.sensor
+                    reports.append((until_us + 55_000, event.sensor, wall_us))
+                elif isinstance(event, eeruf.Reading):
+                    kinds.append((event.sensor, event.kind))
+            if not fires:
+                break
+    for sensor in range(12):
+        mine = [kind for x, kind in kinds if x == sensor][1:]
+        assert len(mine) > 80 and set(mine) == {"clear" if sensor == 3 else "accepted"}

@@ -46,17 +46,21 @@ void EerufPin::release(uint8_t trigger, uint8_t echo) {
     setOutput(trigger, trigger != echo);
 }
 
-void EerufPin::trigger(uint8_t trigger, uint8_t echo) {
+void EerufPin::trigger(uint8_t trigger, uint8_t echo, uint8_t us) {
     // In this order: an input that is driven high has its pull-up on, and reads as an edge of the echo line.
     setOutput(trigger, true);
     drive(trigger, true);
-    delayMicroseconds(10);
+    delayMicroseconds(us);
     release(trigger, echo);
 }
 
-bool EerufModules::begin() {
-    const EerufConfig config = EERUF_CONFIG;
+const EerufHcSr04Settings &EerufModules::hcSr04() {
     static const EerufHcSr04Settings settings = EERUF_HC_SR04;
+    return settings;
+}
+
+bool EerufModules::begin(const EerufHcSr04Settings &settings) {
+    const EerufConfig config = EERUF_CONFIG;
     const uint8_t *echo = echoes_, *trigger = triggers_;
     for (uint8_t left = count_; left > 0; left--, echo++, trigger++) {
         setOutput(*echo, false);
@@ -102,7 +106,7 @@ EerufState EerufModules::state(uint8_t sensor) const {
 // Unless the line is high.
 void EerufModules::fire(uint8_t sensor) {
     if (eeruf_hc_sr04_fire(&modules_, sensor, EerufPin::isHigh(echoes_[sensor])) != EERUF_OK) return;
-    EerufPin::trigger(triggers_[sensor], echoes_[sensor]);
+    EerufPin::trigger(triggers_[sensor], echoes_[sensor], modules_.settings->trigger_us);
 }
 
 bool EerufModules::read() {

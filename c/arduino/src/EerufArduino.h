@@ -21,15 +21,16 @@ namespace EerufPin {
 bool isHigh(uint8_t pin);
 // Ends a trigger; one that is the echo line too is an input from then on.
 void release(uint8_t trigger, uint8_t echo);
-// A pulse of 10 us.
-void trigger(uint8_t trigger, uint8_t echo);
+// A pulse of so many microseconds.
+void trigger(uint8_t trigger, uint8_t echo, uint8_t us = 10);
 } // namespace EerufPin
 
 // What all rings have in common, whatever their number of modules.
 class EerufModules {
 public:
-    // Begins firing. False if the table cannot be used: status() says why.
-    bool begin();
+    // Begins firing. False if the table cannot be used: status() says why. Of other modules than HC-SR04, or some that
+    // may be triggered sooner, the settings are RING_MODULES of the table of their ring file; they must last.
+    bool begin(const EerufHcSr04Settings &settings = hcSr04());
 
     // One step; true if a module has a new reading, which the functions below are about.
     bool read();
@@ -87,6 +88,7 @@ protected:
         : schedule_(&schedule), triggers_(triggers), echoes_(echoes), sensors_(sensors), lines_(lines), count_(count) {}
 
 private:
+    static const EerufHcSr04Settings &hcSr04();
     static void sample(EerufModules &self);
     static void drain(EerufModules &self);
     static void climb(EerufModules &self, const EerufEvent &event);

@@ -1,7 +1,7 @@
 //! [`Settings`]: the times that the sensors need.
 
 use eeruf_core::Micros;
-use eeruf_modules::{HC_SR04, HC_SR04_CLONE, Module, NoEcho};
+use eeruf_modules::{HC_SR04, Module};
 
 use crate::error::SetupError;
 
@@ -36,16 +36,13 @@ impl Settings {
     /// assert_eq!(Settings::of(&SRF08), None);
     /// ```
     pub const fn of(module: &Module) -> Option<Self> {
-        let NoEcho::Holds { us: hold_us } = module.no_echo else { return None };
-        // Among modules of one name there are clones.
-        let clone_us = HC_SR04_CLONE.no_echo.hold_us();
-        let longest_hold_us = if hold_us > clone_us { hold_us } else { clone_us };
+        let Some(times) = module.pulse_times() else { return None };
         Some(Self {
             trigger: Micros::new(module.trigger_us),
-            deaf: Micros::new(100),
-            shortest: Micros::new(100),
-            longest: Micros::new(hold_us / 19 * 18),
-            longest_hold: Micros::new(longest_hold_us / 4 * 5),
+            deaf: Micros::new(times.deaf_us),
+            shortest: Micros::new(times.shortest_us),
+            longest: Micros::new(times.longest_us),
+            longest_hold: Micros::new(times.longest_hold_us),
             min_retrigger: Micros::new(module.rest_us),
             missing_after: 3,
         })

@@ -27,7 +27,7 @@ mod presets;
 #[cfg(feature = "serde")]
 pub use file::{ModuleFile, ModulesFile};
 pub use keys::{KEYS, Key, ModuleError, Value};
-pub use module::{Beam, Gain, Interface, Module, NoEcho};
+pub use module::{Beam, Gain, Interface, Module, NoEcho, PulseTimes};
 pub use presets::{
     A02YYUW, HC_SR04, HC_SR04_CLONE, JSN_SR04T, MB1010, MB1242, PING, POLAROID_6500, PRESETS, Preset, SRF08, Source,
     US_100, find, names,

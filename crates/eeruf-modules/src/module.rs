@@ -1,5 +1,7 @@
 //! [`Module`]: an ultrasonic transducer with its electronics, in whole numbers.
 
+use crate::presets::HC_SR04_CLONE;
+
 /// A ranging module. Change what differs from a preset, by field or by [`set`](Self::set).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Module {
@@ -142,5 +144,30 @@ impl NoEcho {
             Self::Holds { us } => us,
             Self::Silent | Self::Reports => 0,
         }
+    }
+}
+
+/// How a driver reads the line of a module that answers by a pulse as long as the echo took, in us.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PulseTimes {
+    /// Edges sooner than this after the trigger are the trigger itself, seen through the cable.
+    pub deaf_us: u32,
+    /// Shorter pulses are no echoes: 100 us is 17 mm, less than these modules can measure.
+    pub shortest_us: u32,
+    /// Pulses as long as this are the module's own time-out, which may be a nineteenth short: no echo.
+    pub longest_us: u32,
+    /// The longest that a healthy module holds its line where nothing is in range, and a quarter.
+    pub longest_hold_us: u32,
+}
+
+impl Module {
+    /// How a driver reads its line; `None` if it does not answer by the width of a pulse that ends without an echo too.
+    pub const fn pulse_times(&self) -> Option<PulseTimes> {
+        let NoEcho::Holds { us: hold_us } = self.no_echo else { return None };
+        // Among modules of one name there are clones.
+        let clone_us = HC_SR04_CLONE.no_echo.hold_us();
+        let longest_us = if hold_us > clone_us { hold_us } else { clone_us };
+        let (longest_us, longest_hold_us) = (hold_us / 19 * 18, longest_us / 4 * 5);
+        Some(PulseTimes { deaf_us: 100, shortest_us: 100, longest_us, longest_hold_us })
     }
 }

@@ -8,7 +8,7 @@ use crate::{
     owned_ring::OwnedRing,
     requirements::{RequirementArguments, UnevenArguments},
     ring_arguments::{Sound, begins, config},
-    ring_events::to_python,
+    ring_events::{Fire, to_python},
     schedule::Schedule,
     sensor_watch::State,
 };
@@ -302,6 +302,34 @@ impl Ring {
         self.0.change(|ring| ring.set_audible(audible))
     }
 
+    /// How long after its firing a reading without an echo is emitted at the soonest, in microseconds: for modules that
+    /// report by a bus or a pulse's width after their window has closed. 0: when it closes.
+    #[getter]
+    fn report_after_us(&self) -> u32 {
+        self.0.ring().report_after().as_micros()
+    }
+
+    #[setter]
+    fn set_report_after_us(&mut self, report_after_us: &Bound<'_, PyAny>) -> PyResult<()> {
+        let report_after = micros("report_after_us", report_after_us)?;
+        self.0.change(|ring| ring.set_report_after(report_after))
+    }
+
+    /// The firings to come, up to the end of the next period: for hardware that fires by itself.
+    ///
+    /// They hold until one is late, or the ring is changed. The loop may then come late: for each firing poll at its
+    /// instant until there is no event, so that ``Fire`` says what is done already; hand in echoes; last poll at the
+    /// present.
+    ///
+    /// Example:
+    ///     >>> import eeruf
+    ///     >>> ring = eeruf.Ring(eeruf.tables.TABLE_I_D, t_delta_us=500, window_us=36_000)
+    ///     >>> [(fire.sensor, fire.due_us) for fire in ring.upcoming()[:4]]
+    ///     [(0, 24000), (4, 24000), (8, 24000), (1, 43000)]
+    fn upcoming(&self) -> Vec<Fire> {
+        self.0.ring().upcoming().map(Fire::of).collect()
+    }
+
     /// The number of sensors.
     #[getter]
     fn sensors(&self) -> usize {
@@ -401,7 +429,8 @@ impl Ring {
         Ok(State::of(&self.0.watch, self.0.sensor(sensor)?, self.0.now))
     }
 
-    /// Hand in what hardware or a protocol measured of a sensor's last firing, before its window closes.
+    /// Hand in what hardware or a protocol measured of a sensor's last firing, before its reading is emitted: see
+    /// ``report_after_us``.
     ///
     /// Args:
     ///     sensor: which one, from 0.

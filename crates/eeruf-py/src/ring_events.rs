@@ -5,6 +5,7 @@ use std::ops::RangeInclusive;
 use eeruf_core::{
     Instant, MAX_SENSORS, Micros, PeriodStats, Phase, ReadingKind, RingEvent, Tally,
     judge::{Explanation, Verdict},
+    plan::Upcoming,
 };
 use pyo3::{
     IntoPyObjectExt,
@@ -35,6 +36,14 @@ pub(crate) struct Fire {
     phase: u8,
     /// When it was due, on the ring's clock: before the time of the poll if that was late.
     due_us: u32,
+}
+
+impl Fire {
+    /// A firing to come.
+    pub(crate) fn of(upcoming: Upcoming) -> Self {
+        let Upcoming { sensor, phase, due } = upcoming;
+        Self { sensor, phase: phase.0, due_us: due.as_micros() }
+    }
 }
 
 #[pymethods]

@@ -8,16 +8,17 @@ const PYTHON: &str = include_str!("../../../../c/micropython/eeruf.py");
 #[test]
 fn times_of_an_hc_sr04_are_alike_in_all_languages() {
     assert_eq!(Settings::of(&HC_SR04), Some(Settings::default()));
-    let Settings { deaf, shortest, longest, longest_hold, min_retrigger, missing_after, .. } = Settings::default();
-    let us = [deaf, shortest, longest, longest_hold, min_retrigger].map(|time| time.as_micros());
-    let [deaf, shortest, longest, longest_hold, min_retrigger] = us;
-    let times = format!("{deaf}, {shortest}, {longest}, {longest_hold}, {min_retrigger}, {missing_after}");
+    let Settings { trigger, deaf, shortest, longest, longest_hold, min_retrigger, missing_after, .. } =
+        Settings::default();
+    let us = [deaf, shortest, longest, longest_hold, min_retrigger, trigger].map(|time| time.as_micros());
+    let [deaf, shortest, longest, longest_hold, min_retrigger, trigger] = us;
+    let times = format!("{deaf}, {shortest}, {longest}, {longest_hold}, {min_retrigger}, {missing_after}, {trigger}");
     let macro_line = format!("#define EERUF_HC_SR04 {{EERUF_VERSION, {times}}}");
     assert!(HEADER.lines().any(|line| line.starts_with(&macro_line)), "{macro_line}");
     for line in [
         format!("DEAF_US, SHORTEST_US, LONGEST_US = {deaf}, {shortest}, {longest}"),
         format!("LONGEST_HOLD_US = {longest_hold} "),
-        format!("if schedule.min_refire_us < {min_retrigger}:"),
+        format!("MIN_RETRIGGER_US, TRIGGER_US = {min_retrigger}, {trigger}"),
     ] {
         assert!(PYTHON.lines().any(|text| text.trim_start().starts_with(&line)), "{line}");
     }

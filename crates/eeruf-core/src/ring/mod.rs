@@ -450,6 +450,11 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
         self.listening.audible()
     }
 
+    /// How long after its firing a reading without an echo is emitted at the soonest; 0 for the end of its window.
+    pub const fn report_after(&self) -> Micros {
+        self.report_after
+    }
+
     /// Returns true while all firings that could be heard in a sensor's last three readings kept a timetable that was
     /// verified for what the ring asks for, so that crosstalk moves as (13a), (13b) say.
     pub const fn is_on_time(&self) -> bool {

@@ -105,8 +105,8 @@ impl<P: Plan, J: Judge, T, I, D, const K: usize, const H: usize> HcSr04Ring<Ring
     }
 
     /// As [`poll`](Self::poll) at the instant `at` at which hardware has triggered the sensor that was due, by
-    /// [`Ring::upcoming`]: it is not triggered again. Call until there is no event, after all edges up to `at` and before
-    /// all later ones. Nobody has seen if the line was low: a sensor that still held it counts as unanswered.
+    /// [`Ring::upcoming`]: it is not triggered again. Call until there is no event, after all edges up to `at` and
+    /// before all later ones. Nobody has seen if the line was low: a sensor that still held it counts as unanswered.
     pub fn poll_triggered(&mut self, at: Instant) -> Option<RingEvent> {
         let event = self.ring.poll(at)?;
         if let RingEvent::Fire { sensor, .. } = event {

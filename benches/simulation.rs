@@ -72,8 +72,8 @@ fn set_two(criterion: &mut Criterion) {
         let mut group = criterion.benchmark_group(format!("set two {title}, {name}, simulated ms"));
         group.sample_size(10);
         for method in [Method::Sequential, Method::Conventional, Method::Eeruf, Method::MultiEcho] {
-            let options =
-                SetTwoOptions { seeds: 5, methods: vec![method], second_robot, physics, ..SetTwoOptions::default() };
+            let methods = vec![method.into()];
+            let options = SetTwoOptions { seeds: 5, methods, second_robot, physics, ..SetTwoOptions::default() };
             let drive = || one_core.install(|| driven::set_two(&options, &|_| true).expect("the courses have room"));
             let simulated_s: f64 = drive().runs.iter().flatten().map(|run| run.time_s).sum();
             group.throughput(Throughput::Elements((simulated_s * 1e3) as u64));

@@ -8,7 +8,7 @@ import polars as pl
 from numpy.typing import ArrayLike, NDArray
 
 from eeruf._results import Summary
-from eeruf._types import HeardPaths
+from eeruf._types import FlowSettings, HeardPaths
 from eeruf.logs import Firings
 
 # Whole numbers: Python's and NumPy's.
@@ -35,7 +35,7 @@ _Kind = Literal[
     "ambiguous",
     "unanswered",
 ]
-_Method = Literal[
+_MethodName = Literal[
     "simultaneous",
     "sequential",
     "sequential_votes",
@@ -96,8 +96,8 @@ _Case = TypeVar("_Case")
 _Result = TypeVar("_Result")
 
 KINDS: Final[tuple[_Kind, ...]]
-METHODS: Final[tuple[_Method, ...]]
-EERUF_METHODS: Final[tuple[_Method, ...]]
+METHODS: Final[tuple[_MethodName, ...]]
+EERUF_METHODS: Final[tuple[_MethodName, ...]]
 CAUSES: Final[tuple[_Cause, ...]]
 EXAMPLES: Final[tuple[str, ...]]
 __version__: Final[str]
@@ -1114,7 +1114,7 @@ class Paths:
 @final
 class Readings:
     @property
-    def method(self) -> _Method: ...
+    def method(self) -> _MethodName: ...
     @property
     def duration_s(self) -> float: ...
     @property
@@ -1207,6 +1207,32 @@ class FiredReading:
 _Fires = Callable[[int], tuple[_Int, Iterable[tuple[_Int, _Int]]] | tuple[_Int, Iterable[tuple[_Int, _Int]], _Int]]
 _Judges = Callable[[FiredReading], Reading | tuple[_Kind, float | None]]
 
+_MakeFilter = Callable[[Robot], _Judges]
+_MakeFiring = Callable[[Robot], _Fires]
+
+@final
+class Method:
+    def __new__(
+        cls,
+        name: _MethodName | Literal["driving"] = "eeruf",
+        *,
+        label: str | None = None,
+        schedule: Schedule | HoppingSchedule | None = None,
+        settings: HoppingSettings | _Hopping | FlowSettings | None = None,
+        sketch: dict[str, object] | None = None,
+        make_filter: _MakeFilter | None = None,
+        make_firing: _MakeFiring | None = None,
+    ) -> Method: ...
+    @property
+    def name(self) -> _MethodName: ...
+    @property
+    def label(self) -> str: ...
+    def _arguments(self) -> dict[str, Any]: ...
+    def __eq__(self, other: object, /) -> bool: ...
+    def __hash__(self, /) -> int: ...
+
+_Method = _MethodName | Literal["driving"] | Method
+
 @final
 class Simulation:
     def __new__(
@@ -1273,17 +1299,21 @@ def _set_one(
     methods: Sequence[_Method] | None,
     progress: _Progress,
     physics: _Physics | None = None,
-) -> str: ...
+) -> tuple[str, str]: ...
 def _set_three(
     seeds: int,
     first: int | None,
     periods: int | None,
-    methods: Sequence[str] | None,
+    methods: Sequence[_Method] | None,
     progress: _Progress,
     physics: _Physics,
     height: object,
-) -> str: ...
-def _set_two(asked: dict[str, object], progress: _Progress) -> tuple[str, dict[_Method, list[dict[str, object]]]]: ...
+) -> tuple[str, str]: ...
+def _set_two(asked: dict[str, object], progress: _Progress) -> tuple[str, dict[str, list[dict[str, object]]]]: ...
+def _figures(set: int, runs: str) -> str: ...
+def _difference(differences: Sequence[float]) -> str | None: ...
+def _alcove(number: _Int, physics: _Physics) -> Scene: ...
+def _course(number: _Int, physics: _Physics) -> Scene: ...
 def _speed_sweep(speeds_m_s: Sequence[float], asked: dict[str, object], progress: _Progress) -> str: ...
 def _readings_from_columns(
     method: str,

@@ -17,6 +17,11 @@ def robot(arguments: dict[str, Any]) -> _eeruf.Robot:
     return _eeruf.Robot(**arguments)
 
 
+def method(arguments: dict[str, Any]) -> _eeruf.Method:
+    """Make a method of keyword arguments."""
+    return _eeruf.Method(**arguments)
+
+
 def noise(fading_db_rms: float, jitter_us_rms: float, bursts_per_s: float, burst_db: float) -> _eeruf.Noise:
     """Make noise of its numbers."""
     return _eeruf.Noise(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import os
+import pickle
 from types import ModuleType
 from typing import TYPE_CHECKING, Any, Callable, TypeVar
 
@@ -22,6 +23,8 @@ def sweep(
     cases: Iterable[Case],
     executor: Executor | None = None,
     progress: bool | Callable[[float | None, str], Any] | None = None,
+    *,
+    folder: str | os.PathLike[str] | None = None,
 ) -> list[Result]:
     """Call a function for every case, in parallel, and return the results in the order of the cases.
 
@@ -37,11 +40,17 @@ def sweep(
             with threads may hang: a script that starts them needs ``if __name__ == "__main__":``.
         progress: True for a bar (tqdm if it is installed), or a callable that takes the share done and a text.
 
+        folder: where each result is kept in a file of its own as soon as it comes (a pickle: read only what you trust). A sweep
+            that was killed goes on from there when it is called again with the same function and cases: what is lost is what was
+            under way. The folder is made if need be.
+
     Returns:
-        One result for each case. The results do not depend on the executor.
+        One result for each case. The results do not depend on the executor, nor on how often the sweep was begun again.
 
     Raises:
-        ArgumentError: the function cannot be called, the cases are not several, or an executor or ``progress`` that is none.
+        ArgumentError: the function cannot be called, the cases are not several, an executor or ``progress`` that is none, or a
+            folder with results of another sweep.
+        OSError: the folder cannot be written to.
         Exception: whatever the function raises first.
 
     Example:
@@ -64,11 +73,74 @@ def sweep(
     todo = list(one_by_one)
     if executor is not None and not callable(getattr(executor, "submit", None)):
         raise ArgumentError(f"executor = {executor!r:.60}; expected a concurrent.futures.Executor")
+    kept = None if folder is None else _Kept(folder, function, todo)
     if executor is not None:
-        return _run(function, todo, executor, report)
+        return _run(function, todo, executor, report, kept)
     if _is_own(function):
-        return _run_on_threads(function, todo, report)
-    return _run_on_processes(function, todo, report)
+        return _run_on_threads(function, todo, report, kept)
+    return _run_on_processes(function, todo, report, kept)
+
+
+class _Kept:
+    """The results of a sweep in the files of a folder, one for each case."""
+
+    def __init__(self, folder: str | os.PathLike[str], function: Callable[..., Any], cases: list[Any]) -> None:
+        """Read what is there, and refuse what is of another sweep."""
+        try:
+            self.folder = os.fspath(folder)
+        except TypeError:
+            raise ArgumentError(f"folder = {folder!r:.60}; expected the path of a folder, or None") from None
+        os.makedirs(self.folder, exist_ok=True)
+        self.cases = [self._plain((_named(function), len(cases), case)) for case in cases]
+        self.results = {index: self._read(index) for index in range(len(cases)) if os.path.exists(self._path(index))}
+
+    @staticmethod
+    def _plain(value: Any) -> Any:
+        return pickle.loads(pickle.dumps(value))
+
+    def _path(self, index: int) -> str:
+        return os.path.join(self.folder, f"{index:06}.pickle")
+
+    def _read(self, index: int) -> Any:
+        path = self._path(index)
+        with open(path, "rb") as file:
+            try:
+                asked, result = pickle.load(file)
+            except Exception as error:
+                expected = "a result of a sweep; delete it, and its case runs again"
+                raise ArgumentError(f"{path}: {type(error).__name__}: {error}; expected {expected}") from error
+        if not _equal(asked, self.cases[index]):
+            expected = f"one of the case {self.cases[index]!r:.60}; use another folder for another sweep"
+            raise ArgumentError(f"{path}: a result of the case {asked!r:.60}; expected {expected}")
+        return result
+
+    def keep(self, index: int, result: Any) -> None:
+        """Write a result; a file is there whole or not at all."""
+        path = self._path(index)
+        with open(path + ".part", "wb") as file:
+            pickle.dump((self.cases[index], result), file)
+            file.flush()
+            os.fsync(file.fileno())
+        os.replace(path + ".part", path)
+
+
+def _named(function: Any) -> Any:
+    """What a function is called, and the arguments that it is bound to."""
+    if isinstance(function, functools.partial):
+        return _named(function.func), function.args, function.keywords
+    return getattr(function, "__module__", ""), getattr(function, "__qualname__", type(function).__qualname__)
+
+
+def _equal(one: Any, other: Any) -> bool:
+    """Whether two cases are the same; arrays by their elements."""
+    if isinstance(one, (tuple, list)) and type(one) is type(other):
+        return len(one) == len(other) and all(map(_equal, one, other))
+    if isinstance(one, dict) and isinstance(other, dict):
+        return one.keys() == other.keys() and all(_equal(one[key], other[key]) for key in one)
+    try:
+        return bool(one == other) or pickle.dumps(one) == pickle.dumps(other)
+    except ValueError:
+        return pickle.dumps(one) == pickle.dumps(other)
 
 
 def _is_own(function: Callable[..., Any]) -> bool:
@@ -98,7 +170,10 @@ def _workers(cases: list[Case]) -> int:
 
 
 def _run_on_threads(
-    function: Callable[[Case], Result], cases: list[Case], report: Callable[[float | None, str], Any] | None
+    function: Callable[[Case], Result],
+    cases: list[Case],
+    report: Callable[[float | None, str], Any] | None,
+    kept: _Kept | None,
 ) -> list[Result]:
     """Run on threads of our own, which end with us."""
     # Not before it is needed: that is most of what importing eeruf would cost.
@@ -107,14 +182,17 @@ def _run_on_threads(
     stop = _Stop()
     with ThreadPoolExecutor(max_workers=_workers(cases)) as threads:
         try:
-            return _run(functools.partial(_until_stopped, stop, function), cases, threads, report)
+            return _run(functools.partial(_until_stopped, stop, function), cases, threads, report, kept)
         except BaseException:
             stop.stop()
             raise
 
 
 def _run_on_processes(
-    function: Callable[[Case], Result], cases: list[Case], report: Callable[[float | None, str], Any] | None
+    function: Callable[[Case], Result],
+    cases: list[Case],
+    report: Callable[[float | None, str], Any] | None,
+    kept: _Kept | None,
 ) -> list[Result]:
     """Run on processes of our own, which end with us."""
     import multiprocessing
@@ -126,7 +204,7 @@ def _run_on_processes(
     others = set(multiprocessing.active_children())
     with ProcessPoolExecutor(max_workers=_workers(cases), mp_context=context) as processes:
         try:
-            return _run(function, cases, processes, report)
+            return _run(function, cases, processes, report, kept)
         except BaseException:
             # A case may take hours, and what was handed to a process can no longer be cancelled.
             for process in set(multiprocessing.active_children()) - others:
@@ -139,22 +217,28 @@ def _run(
     cases: list[Case],
     executor: Executor,
     report: Callable[[float | None, str], Any] | None,
+    kept: _Kept | None,
 ) -> list[Result]:
     import queue
 
+    found: dict[int, Any] = dict(kept.results) if kept is not None else {}
     # Not `as_completed`, which waits for ever for a future that an executor cancels by itself, as Dask does when a worker dies.
     ended: queue.SimpleQueue[Future[Result]] = queue.SimpleQueue()
-    futures = [executor.submit(function, case) for case in cases]
+    futures = {executor.submit(function, case): index for index, case in enumerate(cases) if index not in found}
     try:
         for future in futures:
             future.add_done_callback(ended.put)
-        for done in range(1, len(futures) + 1):
+        for _ in futures:
+            future = ended.get()
             # An error is raised as it comes.
-            ended.get().result()
+            result, index = future.result(), futures[future]
+            found[index] = result
+            if kept is not None:
+                kept.keep(index, result)
             if report is not None:
-                report(done / len(futures), f"{done} of {len(futures)}")
+                report(len(found) / len(cases), f"{len(found)} of {len(cases)}")
     finally:
         # After an error or Ctrl-C nobody waits for the rest.
         for future in futures:
             future.cancel()
-    return [future.result() for future in futures]
+    return [found[index] for index in range(len(cases))]

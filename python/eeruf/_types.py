@@ -21,3 +21,16 @@ class HeardPaths(TypedDict):
     departure_rad: NDArray[np.float64]
     arrival_rad: NDArray[np.float64]
     walls: list[tuple[int, ...]]
+
+
+class FlowSettings(TypedDict, total=False):
+    """What of the settings of the method ``flow`` differs from its default, as :class:`eeruf.sim.Method` takes it."""
+
+    step_us: int
+    shortest_gap_us: int
+    masked_adds_us: int
+    believed_takes_us: int
+    unserved_adds_us: int
+    unserved_after: int
+    longest_cycle_us: int
+    travel_us: int

@@ -1,17 +1,22 @@
 """The paper's experiments (Sec. 4): robots that stand before walls, a robot that drives between poles; and robots of one make.
 
 What the tables say, and where the paper promises too much, stands in ``docs/experiments.md``; the program prints the same ones
-(``eeruf experiment``).
+(``eeruf experiment``). A method is a name or a ``eeruf.sim.Method``, which may have a filter or a firing of your own. Parameters are
+tuned on seeds below 2,000; what is reported starts at :data:`FIRST`.
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Literal
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Literal, overload
 
 from eeruf import _eeruf, _results
 from eeruf._results import (
+    AlcoveRun,
+    Difference,
     Latency,
     NewStep,
+    PlacingRun,
     Run,
     SetOne,
     SetOneFigures,
@@ -24,10 +29,12 @@ from eeruf._results import (
     SpeedStep,
     SpeedSweep,
     Spread,
+    compare,
+    concat,
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable
 
     _Progress = bool | Callable[[float | None, str], object] | None
     from eeruf._eeruf import _Method as Method
@@ -39,9 +46,13 @@ if TYPE_CHECKING:
 __all__ = [
     "FIRST",
     "SPEEDS_M_S",
+    "AlcoveRun",
+    "Difference",
     "Latency",
     "NewStep",
+    "PlacingRun",
     "Run",
+    "Scenes",
     "SetOne",
     "SetOneFigures",
     "SetThree",
@@ -53,6 +64,10 @@ __all__ = [
     "SpeedStep",
     "SpeedSweep",
     "Spread",
+    "alcoves",
+    "compare",
+    "concat",
+    "courses",
     "set_one",
     "set_three",
     "set_two",
@@ -66,6 +81,127 @@ SPEEDS_M_S: tuple[float, ...] = (0.5, 0.75, 1.0, 1.25, 1.5, 1.75, 2.0)
 """The top speeds of :func:`speed_sweep` unless others are given, in m/s."""
 
 
+class Scenes(Sequence["_eeruf.Scene"]):
+    """Numbered scenes of an experiment, each made when it is asked for: a sequence whose slices are such sequences.
+
+    A scene's ``seed`` is its number. They compare and pickle.
+
+    Args:
+        kind: ``"alcove"`` or ``"course"``.
+        numbers: the scenes' numbers.
+        physics: as the argument of ``eeruf.sim.Scene``.
+
+    Example:
+        >>> from eeruf import experiments
+        >>> scenes = experiments.Scenes("alcove", range(3, 9, 2))
+        >>> [scene.seed for scene in scenes[1:]]
+        [5, 7]
+
+    """
+
+    def __init__(self, kind: Literal["alcove", "course"], numbers: range, physics: _Physics = "default") -> None:
+        """Of these numbers."""
+        if kind not in ("alcove", "course"):
+            raise _eeruf.ArgumentError(f'kind = {kind!r}; expected "alcove" or "course"')
+        if not isinstance(numbers, range) or (len(numbers) and min(numbers[0], numbers[-1]) < 0):
+            raise _eeruf.ArgumentError(f"numbers = {numbers!r:.60}; expected a range of numbers from 0 on")
+        self.kind, self.numbers, self.physics = kind, numbers, physics
+
+    def __len__(self) -> int:
+        """Return how many there are."""
+        return len(self.numbers)
+
+    @overload
+    def __getitem__(self, index: int) -> _eeruf.Scene: ...
+    @overload
+    def __getitem__(self, index: slice) -> Scenes: ...
+    def __getitem__(self, index: int | slice) -> _eeruf.Scene | Scenes:
+        """Make a scene, or take some of them."""
+        if isinstance(index, slice):
+            return Scenes(self.kind, self.numbers[index], self.physics)
+        make = _eeruf._alcove if self.kind == "alcove" else _eeruf._course
+        return make(self.numbers[index], self.physics)
+
+    def __eq__(self, other: object) -> bool:
+        """Return true for the same scenes."""
+        if not isinstance(other, Scenes):
+            return NotImplemented
+        return (self.kind, self.numbers, self.physics) == (other.kind, other.numbers, other.physics)
+
+    def __hash__(self) -> int:
+        """Return a hash of the numbers."""
+        return hash((self.kind, self.numbers))
+
+    def __repr__(self) -> str:
+        """Return the call that makes them."""
+        return f"Scenes({self.kind!r}, {self.numbers!r}, {self.physics!r})"
+
+
+def alcoves(first: int = FIRST, n: int = 200, *, physics: _Physics = "default") -> Scenes:
+    """Return the alcoves of Set I as scenes with the robot in place; a scene's ``seed`` is its number.
+
+    ``eeruf.sim.simulate`` reads in one exactly what :func:`set_one` reads by the same method; but for ``multi_echo``, for which that
+    sets ``t_delta_us`` to 200.
+
+    Args:
+        first: the first alcove's number.
+        n: how many.
+        physics: as the argument of ``eeruf.sim.Scene``.
+
+    Raises:
+        ArgumentError: a number is below 0, or there are no such effects.
+
+    Example:
+        >>> from eeruf import experiments, sim
+        >>> [scene.seed for scene in experiments.alcoves(20_000, 3)]
+        [20000, 20001, 20002]
+        >>> run = experiments.set_one(1, readings=400, methods=["eeruf"]).runs["eeruf"][0]
+        >>> run.summary == sim.simulate(experiments.alcoves()[0], "eeruf", 50).summary()
+        True
+
+    """
+    return Scenes("alcove", _numbers(first, n), physics)
+
+
+def courses(first: int = FIRST, n: int = 100, *, physics: _Physics = "default") -> Scenes:
+    """Return the courses of Set II as scenes with the robot at the start; a scene's ``seed`` is its number.
+
+    Drive in one with ``eeruf.sim.Simulation``. Sound is followed for two bounces at walls and poles, where :func:`set_two` follows
+    one that meets a pole for one bounce only, for speed.
+
+    Args:
+        first: the first course's number.
+        n: how many.
+        physics: as the argument of ``eeruf.sim.Scene``.
+
+    Raises:
+        ArgumentError: a number is below 0, or there are no such effects.
+
+    Example:
+        >>> from eeruf import experiments
+        >>> [len(scene.poles) for scene in experiments.courses(n=3)]
+        [14, 14, 14]
+
+    """
+    return Scenes("course", _numbers(first, n), physics)
+
+
+def _numbers(first: int, n: int) -> range:
+    for name, value in (("first", first), ("n", n)):
+        if isinstance(value, bool) or not hasattr(value, "__index__") or value < 0:
+            raise _eeruf.ArgumentError(f"{name} = {value!r:.60}; expected a whole number from 0 on")
+    return range(first, first + n)
+
+
+def _checked(first: int, seeds: int, tune: bool) -> None:
+    """Refuse to tune on seeds that figures are reported on."""
+    if tune and hasattr(first, "__index__") and hasattr(seeds, "__index__") and first + seeds > FIRST:
+        raise _eeruf.ExperimentError(
+            f"seeds up to {first + seeds - 1} with tune=True; expected seeds below {FIRST}, such as first=0: "
+            "figures are reported on those from there on"
+        )
+
+
 def set_one(
     seeds: int = 200,
     *,
@@ -73,6 +209,7 @@ def set_one(
     methods: Sequence[Method] | None = None,
     first: int = FIRST,
     physics: _Physics = "default",
+    tune: bool = False,
     progress: _Progress = None,
 ) -> SetOne:
     """Set I: eight sensors before three walls at right angles, by every method, in many random alcoves.
@@ -82,9 +219,10 @@ def set_one(
     Args:
         seeds: how many alcoves, 1 to 100,000.
         readings: about how many readings of each alcove and method, 1 or more.
-        methods: names of ``eeruf.sim.METHODS``; by default all but those that fire as sketches and modules do.
+        methods: names of ``eeruf.sim.METHODS`` and ``eeruf.sim.Method``; by default all but those that fire as sketches and modules do.
         first: the first alcove's number.
         physics: as the argument of ``eeruf.sim.Scene``.
+        tune: whether parameters are chosen by the result. Seeds from :data:`FIRST` on are then refused: they are for reports.
         progress: True for a bar (tqdm if it is installed), or a callable that takes the share done and a text.
 
     Returns:
@@ -92,7 +230,7 @@ def set_one(
 
     Raises:
         ArgumentError: a number is out of range, or there is no such method.
-        ExperimentError: there are no methods.
+        ExperimentError: there are no methods, two of one label, or ``tune`` with a seed for reports.
 
     Example:
         >>> import eeruf
@@ -102,7 +240,8 @@ def set_one(
         True
 
     """
-    return _results.set_one(_eeruf._set_one(seeds, first, readings, methods, progress, physics))
+    _checked(first, seeds, tune)
+    return _results.set_one(*_eeruf._set_one(seeds, first, readings, methods, progress, physics))
 
 
 def set_two(
@@ -118,6 +257,7 @@ def set_two(
     odometry_noise: bool = True,
     bodies: bool = False,
     physics: _Physics = "default",
+    tune: bool = False,
     progress: _Progress = None,
 ) -> SetTwo:
     """Set II: a LabMate drives through random courses of 8 mm poles about 1.6 m apart, steered by what its ring reads.
@@ -127,7 +267,7 @@ def set_two(
 
     Args:
         seeds: how many courses, 1 to 100,000.
-        methods: names of ``eeruf.sim.METHODS``; by default sequential, far_groups, conventional, comparison, eeruf,
+        methods: names of ``eeruf.sim.METHODS`` and ``eeruf.sim.Method``; by default sequential, far_groups, conventional, comparison, eeruf,
             eeruf_best, adaptive, eeruf_hopping and multi_echo.
         second_robot: where another robot stands that fires 24 times in 80 ms: ``"behind"`` the start, ``"ahead"`` in the
             reflective corner that all sensors face, or a point (x, y) in metres of the lab, which is 10 m by 6 m.
@@ -143,6 +283,7 @@ def set_two(
         bodies: whether robots have bodies: the platform its square, with the ring on its edge, the second robot a disc, which is
             then an obstacle to sound and to the platform. The pilots were tuned without.
         physics: as the argument of ``eeruf.sim.Scene``.
+        tune: whether parameters are chosen by the result. Seeds from :data:`FIRST` on are then refused: they are for reports.
         progress: True for a bar (tqdm if it is installed), or a callable that takes the share done and a text.
 
     Returns:
@@ -151,7 +292,7 @@ def set_two(
 
     Raises:
         ArgumentError: a number is out of range, or there is no such method.
-        ExperimentError: there are no methods, or the second robot stands where it cannot.
+        ExperimentError: there are no methods, two of one label, ``tune`` with a seed for reports, or the second robot stands where it cannot.
 
     Example:
         >>> import eeruf
@@ -160,6 +301,7 @@ def set_two(
         {'conventional': 2, 'eeruf': 1}
 
     """
+    _checked(first, seeds, tune)
     asked = _asked(
         seeds, methods, second_robot, speed_m_s, odometry, t_delta_us, first, pilot, odometry_noise, physics, bodies
     )
@@ -169,11 +311,12 @@ def set_two(
 def set_three(
     seeds: int = 200,
     *,
-    methods: Sequence[str] | None = None,
+    methods: Sequence[Method] | None = None,
     periods: int = 40,
     first: int = FIRST,
     physics: _Physics = "default",
     height: Literal["flat", "room"] | dict[str, object] = "flat",
+    tune: bool = False,
     progress: _Progress = None,
 ) -> SetThree:
     """Set III: two to six robots with the same ring stand, meet or follow each other in a corridor or a hall.
@@ -182,12 +325,12 @@ def set_three(
 
     Args:
         seeds: how many placings, 1 to 100,000.
-        methods: names of ``eeruf.sim.METHODS``, and ``"driving"``, time hopping by its settings for robots that drive; by
-            default simultaneous, sequential, sequential_votes, dither, eeruf, eeruf_hopping, driving and flow.
+        methods: names of ``eeruf.sim.METHODS`` and ``eeruf.sim.Method``; by default simultaneous, sequential, sequential_votes, dither, eeruf, eeruf_hopping, driving and flow.
         periods: of 100 ms, for which each placing is simulated, 10 to 100,000.
         first: the first placing's number.
         physics: as the argument of ``eeruf.sim.Scene``.
         height: as the argument of ``eeruf.sim.Scene``.
+        tune: whether parameters are chosen by the result. Seeds from :data:`FIRST` on are then refused: they are for reports.
         progress: True for a bar (tqdm if it is installed), or a callable that takes the share done and a text.
 
     Returns:
@@ -195,7 +338,7 @@ def set_three(
 
     Raises:
         ArgumentError: a number is out of range, or there is no such method.
-        ExperimentError: there are no methods.
+        ExperimentError: there are no methods, two of one label, or ``tune`` with a seed for reports.
 
     Example:
         >>> import eeruf
@@ -204,7 +347,8 @@ def set_three(
         True
 
     """
-    return _results.set_three(_eeruf._set_three(seeds, first, periods, methods, progress, physics, height))
+    _checked(first, seeds, tune)
+    return _results.set_three(*_eeruf._set_three(seeds, first, periods, methods, progress, physics, height))
 
 
 def speed_sweep(
@@ -220,6 +364,7 @@ def speed_sweep(
     odometry_noise: bool = True,
     bodies: bool = False,
     physics: _Physics = "default",
+    tune: bool = False,
     progress: _Progress = None,
 ) -> SpeedSweep:
     """Set II at several top speeds: which speed each method sustains. Ctrl-C ends it.
@@ -236,6 +381,7 @@ def speed_sweep(
         odometry_noise: as in :func:`set_two`.
         bodies: as in :func:`set_two`.
         physics: as in :func:`set_two`.
+        tune: as in :func:`set_two`.
         progress: as in :func:`set_two`.
 
     Returns:
@@ -243,7 +389,7 @@ def speed_sweep(
 
     Raises:
         ArgumentError: a number is out of range, or there is no such method.
-        ExperimentError: there are no methods, or the second robot stands where it cannot.
+        ExperimentError: there are no methods, two of one label, ``tune`` with a seed for reports, or the second robot stands where it cannot.
 
     Example:
         >>> import eeruf
@@ -252,6 +398,7 @@ def speed_sweep(
         ([1.0, 0.5], {'eeruf': 0.75})
 
     """
+    _checked(first, seeds, tune)
     asked = _asked(
         seeds, methods, second_robot, 1.0, odometry, t_delta_us, first, pilot, odometry_noise, physics, bodies
     )

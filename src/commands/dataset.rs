@@ -96,7 +96,8 @@ fn alcove(args: &Args, number: u64, method: Method, go_on: &dyn Fn(f64) -> bool)
     let folder = folder(args, "alcoves", number)?;
     let bad = |error: &dyn std::fmt::Display| InputError::new(&folder, None, error);
     let options = SetOneOptions { physics: args.physics, ..SetOneOptions::default() };
-    let world = world_of(&options, &Alcove::random(number), method).map_err(|error| bad(&error))?.with_seed(number);
+    let world = world_of(&options, &Alcove::random(number), &method.into());
+    let world = world.map_err(|error| bad(&error))?.with_seed(number);
     if method == METHODS[0] {
         write(&folder.join("scene.toml"), scene_file(&world))?;
     }
@@ -109,7 +110,7 @@ fn course(args: &Args, number: u64, method: Method, go_on: &dyn Fn(f64) -> bool)
     let folder = folder(args, "courses", number)?;
     let bad = |error: &dyn std::fmt::Display| InputError::new(&folder, None, error);
     let options = SetTwoOptions { physics: args.physics, ..SetTwoOptions::default() };
-    let driven = drive(&options, method, number, go_on).map_err(|error| bad(&error))?;
+    let driven = drive(&options, &method.into(), number, go_on).map_err(|error| bad(&error))?;
     if method == METHODS[0] {
         write(&folder.join("scene.toml"), scene_file(&driven.world))?;
     }

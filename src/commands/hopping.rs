@@ -1,5 +1,6 @@
 //! The settings of time hopping by their names on the command line.
 
+use clap::ValueEnum;
 use eeruf_core::hopping::HoppingSettings;
 
 /// The named settings of time hopping.
@@ -16,6 +17,12 @@ pub(crate) enum Hopping {
 }
 
 impl Hopping {
+    /// The name on the command line.
+    pub(crate) fn name(self) -> String {
+        // No value is skipped.
+        self.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned())
+    }
+
     pub(crate) fn settings(self) -> HoppingSettings {
         match self {
             Self::Balanced => HoppingSettings::BALANCED,

@@ -17,6 +17,7 @@ mod licenses;
 mod log_args;
 mod logs;
 mod man;
+mod merge;
 mod methods;
 mod paths;
 mod replay;
@@ -38,7 +39,7 @@ use crate::files::error::InputError;
 const GROUPS: &str = "\
 Commands by what they are for:
   Schedules   design, verify, search, atlas
-  Simulation  study, paths, scene, experiment, dataset
+  Simulation  study, paths, scene, experiment, merge, dataset
   Real rings  survey, logs, replay, diagnose
   Setting up  examples, completions, man, licenses
 
@@ -135,6 +136,8 @@ pub(crate) enum Verb {
         "0 repeated; 2 bad input"
     ))]
     Experiment(experiment::Args),
+    #[command(after_help = help!("merge part-1.json part-2.json", "0 merged; 2 bad input, or a part is missing"))]
+    Merge(merge::Args),
     #[command(after_help = help!("dataset out --alcoves 2 --courses 1", "0 written; 2 bad input"))]
     Dataset(dataset::Args),
     #[command(after_help = help!(
@@ -166,6 +169,7 @@ impl Verb {
             Self::Diagnose(args) => diagnose::run(args),
             Self::Survey(args) => survey::run(args),
             Self::Experiment(args) => experiment::run(args),
+            Self::Merge(args) => merge::run(args),
             Self::Dataset(args) => dataset::run(args),
             Self::Atlas(args) => atlas::run(args),
             Self::Examples(args) => examples::run(args),

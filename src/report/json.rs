@@ -1,6 +1,5 @@
 //! What `--json` prints.
 
-use eeruf_sim::Method;
 use serde::{Serialize, Serializer};
 
 /// What `--json` prints: one object on one line.
@@ -10,6 +9,9 @@ pub(crate) fn to_json(answer: &impl Serialize) -> String {
 }
 
 /// As an object whose keys keep the order in which methods are listed.
-pub(crate) fn in_order<S: Serializer, T: Serialize>(entries: &[(Method, T)], serializer: S) -> Result<S::Ok, S::Error> {
+pub(crate) fn in_order<S: Serializer, N: Serialize, T: Serialize>(
+    entries: &[(N, T)],
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
     serializer.collect_map(entries.iter().map(|(method, entry)| (method, entry)))
 }

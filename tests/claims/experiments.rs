@@ -55,3 +55,74 @@ fn an_unknown_method_and_a_speed_out_of_range_are_refused_in_words() {
         assert!(outcome.err.contains(says), "{}", outcome.err);
     }
 }
+
+#[test]
+fn merged_parts_equal_the_whole_run() {
+    for set in [
+        &["set-one", "--seeds", "5", "--method", "eeruf,median,flow"][..],
+        &["set-two", "--seeds", "4", "--method", "eeruf,conventional", "--second-robot", "ahead", "--exact-odometry"],
+        &["set-three", "--seeds", "5", "--periods", "15", "--method", "eeruf,driving", "--height", "room"],
+    ] {
+        let folder = tempfile::tempdir().unwrap();
+        let words = [&["experiment"], set].concat();
+        let mut files = vec![];
+        for part in ["2/3", "3/3", "1/3"] {
+            let outcome = eeruf(&[&words[..], &["--shard", part]].concat());
+            assert_eq!((outcome.code, outcome.err.as_str()), (Some(0), ""));
+            let file = folder.path().join(part.replace('/', "-"));
+            std::fs::write(&file, outcome.out).unwrap();
+            files.push(file.to_str().unwrap().to_owned());
+        }
+        let files: Vec<_> = files.iter().map(String::as_str).collect();
+        let merged = |more: &[&str]| eeruf(&[&["merge"], &files[..], more].concat());
+        assert_eq!(merged(&[]).out, eeruf(&words).out, "{set:?}");
+        assert_eq!(merged(&["--json"]).out, eeruf(&[&words[..], &["--json"]].concat()).out, "{set:?}");
+        let missing = eeruf(&["merge", files[0], files[1]]);
+        assert_eq!(missing.code, Some(2));
+        assert!(
+            missing.err.contains("1 of 3 parts are missing, the first is 1; run `eeruf experiment set-"),
+            "{}",
+            missing.err
+        );
+        let twice = eeruf(&["merge", files[0], files[0]]);
+        assert!(twice.err.contains("part 2/3; expected each once"), "{}", twice.err);
+    }
+}
+
+#[test]
+fn merge_refuses_parts_that_do_not_belong_together() {
+    let folder = tempfile::tempdir().unwrap();
+    let part = |name: &str, words: &[&str]| {
+        let outcome =
+            eeruf(&[&["experiment", "set-three", "--method", "sequential", "--periods", "10"], words].concat());
+        let file = folder.path().join(name);
+        std::fs::write(&file, &outcome.out).unwrap();
+        (file.to_str().unwrap().to_owned(), outcome.out)
+    };
+    let (first, text) = part("first", &["--seeds", "2", "--shard", "1/2"]);
+    let (other, _) = part("other", &["--seeds", "2", "--first", "7", "--shard", "2/2"]);
+    let (third, _) = part("third", &["--seeds", "3", "--shard", "2/3"]);
+    let refused = |files: &[&str], says: &str| {
+        let outcome = eeruf(&[&["merge"], files].concat());
+        assert!(outcome.code == Some(2) && outcome.err.contains(says), "{}", outcome.err);
+    };
+    refused(&[&first, &other], "expected one of `set-three --seeds 2 --first 20000");
+    refused(&[&first, &third], "part 2/3; expected one of 2 as");
+    refused(&[folder.path().join("none").to_str().unwrap()], "none");
+    for (name, cut) in
+        [("half", &text[..text.len() / 2]), ("empty", ""), ("old", &text.replace("\"eeruf\":\"", "\"eeruf\":\"0.0.1-"))]
+    {
+        let file = folder.path().join(name);
+        std::fs::write(&file, cut).unwrap();
+        let says = if name == "old" {
+            "a part of eeruf 0.0.1-"
+        } else {
+            "expected what `eeruf experiment .. --shard I/N` prints"
+        };
+        refused(&[file.to_str().unwrap()], says);
+    }
+    let outcome = eeruf(&["experiment", "set-one", "--seeds", "2", "--shard", "3/9"]);
+    assert!(outcome.err.contains("--shard: 3/9 of 2 seeds; expected at most 2 parts"), "{}", outcome.err);
+    let outcome = eeruf(&["experiment", "set-one", "--shard", "4/3"]);
+    assert!(outcome.err.contains("expected I/N, such as 2/8"), "{}", outcome.err);
+}

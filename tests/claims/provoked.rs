@@ -366,6 +366,7 @@ fn help_of_each_command_has_example_and_exit_codes() {
         "diagnose",
         "survey",
         "experiment",
+        "merge",
         "dataset",
         "atlas",
         "examples",

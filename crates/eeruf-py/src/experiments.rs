@@ -3,28 +3,31 @@
 
 use eeruf_core::Micros;
 use eeruf_sim::{
-    LabMate, Method, Physics, Robot,
+    LabMate, Physics, Robot, WorldParts,
     experiments::{
-        FIRST,
+        Difference, FIRST,
         set_one::{self as first_set, Alcove, READINGS, SetOneOptions},
-        set_three::{self as third_set, SetThreeOptions, Way},
+        set_three::{self as third_set, SetThreeOptions},
         set_two::{
             self as second_set, Course, Ending, OdometryNoise, POLE_RADIUS_M, Pilots, Run, SECOND_AHEAD, SECOND_BEHIND,
             SetTwoOptions, SpeedStep,
         },
     },
+    world::DEFAULT_ORDER,
 };
 use numpy::{PyArray1, PyArray2, prelude::*};
 use pyo3::{
     prelude::*,
     types::{PyDict, PyList},
 };
-use serde::Serialize;
+use serde::{Serialize, de::DeserializeOwned};
 
 use crate::{
-    arguments::{choice, flag, items, micros, number, points, shown, text, whole, whole_or, wrong},
+    arguments::{choice, flag, items, micros, number, points, shown, whole, whole_or, wrong},
     errors::{ArgumentError, Raise},
-    methods::{best, methods as methods_named},
+    methods::{best, methods as methods_of},
+    own::Made,
+    scene::Scene,
     surroundings,
     watch::{Background, in_background},
 };
@@ -38,7 +41,7 @@ fn json(table: &impl Serialize) -> PyResult<String> {
     serde_json::to_string(table).map_err(|error| ArgumentError::new_err(error.to_string()))
 }
 
-/// Set I over many geometries.
+/// Set I over many geometries: the table, and the runs of each method.
 #[pyfunction]
 #[pyo3(name = "_set_one", signature = (seeds, first, readings, methods, progress, physics=None))]
 pub(crate) fn set_one(
@@ -49,22 +52,22 @@ pub(crate) fn set_one(
     methods: Option<&Bound<'_, PyAny>>,
     progress: Option<&Bound<'_, PyAny>>,
     physics: Option<&Bound<'_, PyAny>>,
-) -> PyResult<String> {
+) -> PyResult<(String, String)> {
     let physics = surroundings::physics(physics)?;
     let seeds = whole("seeds", seeds, 1..=SEEDS_MOST)?;
     let first = whole_or("first", first, FIRST, 0..=u64::from(u32::MAX))?;
     let readings = whole_or("readings", readings, READINGS, 1..=u32::MAX)?;
-    let methods = methods_named(methods, &Method::usual().collect::<Vec<_>>())?;
+    let (methods, made) = methods_of(methods, SetOneOptions::default().methods)?;
     in_background(py, progress, move |background| {
         let best = best(&methods, &Alcove::random(0).robot(), background)?;
         let keep_going = |done| background.go_on(Some(done), || format!("{seeds} alcoves"));
         let asked = SetOneOptions { seeds, first, readings, methods, physics, best, ..SetOneOptions::default() };
-        let table = first_set::set_one(&asked, &keep_going).map_err(Raise::raise)?;
-        json(&table)
+        let table = first_set::set_one(&asked, &keep_going).map_err(|error| made.raise(error))?;
+        Ok((json(&table)?, json(&table.runs)?))
     })
 }
 
-/// Set III over many placings.
+/// Set III over many placings: the table, and the runs of each method.
 #[pyfunction]
 #[pyo3(name = "_set_three", signature = (seeds, first, periods, methods, progress, physics, height))]
 #[expect(clippy::too_many_arguments, reason = "keyword arguments")]
@@ -77,26 +80,91 @@ pub(crate) fn set_three(
     progress: Option<&Bound<'_, PyAny>>,
     physics: Option<&Bound<'_, PyAny>>,
     height: Option<&Bound<'_, PyAny>>,
-) -> PyResult<String> {
+) -> PyResult<(String, String)> {
     let default = SetThreeOptions::default();
-    let way = |name: &Bound<'_, PyAny>| {
-        let name = text("methods", name, "a name of eeruf.sim.METHODS, or \"driving\"")?;
-        name.parse::<Way>().map_err(|error| ArgumentError::new_err(error.to_string()))
-    };
-    let named = methods.map(|names| items("methods", names, "a sequence of names of eeruf.sim.METHODS")).transpose()?;
+    let (methods, made) = methods_of(methods, default.methods)?;
     let asked = SetThreeOptions {
         seeds: whole("seeds", seeds, 1..=SEEDS_MOST)?,
         first: whole_or("first", first, FIRST, 0..=u64::from(u32::MAX))?,
         periods: whole_or("periods", periods, default.periods, 10..=100_000)?,
-        ways: named.map_or(Ok(default.ways), |names| names.iter().map(way).collect())?,
+        methods,
         physics: surroundings::physics(physics)?,
         room: surroundings::height(height)?,
         gain: default.gain,
     };
     in_background(py, progress, move |background| {
         let keep_going = |done| background.go_on(Some(done), || format!("{} placings", asked.seeds));
-        json(&third_set::set_three(&asked, &keep_going).map_err(Raise::raise)?)
+        let table = third_set::set_three(&asked, &keep_going).map_err(|error| made.raise(error))?;
+        Ok((json(&table)?, json(&table.runs)?))
     })
+}
+
+/// Figures of methods by name, and of groups.
+#[derive(Serialize)]
+struct Merged<F: Serialize, G: Serialize> {
+    methods: Vec<(String, F)>,
+    groups: G,
+}
+
+/// The figures of runs that were made in several calls: of Set I, II or III, as JSON of pairs of names and runs.
+#[pyfunction]
+#[pyo3(name = "_figures", signature = (set, runs))]
+pub(crate) fn figures(py: Python<'_>, set: u8, runs: String) -> PyResult<String> {
+    fn of<R: DeserializeOwned, F: Serialize, G: Serialize>(
+        runs: &str,
+        figures: fn(&[R]) -> F,
+        groups: impl FnOnce(&[&str], &[Vec<R>]) -> G,
+    ) -> PyResult<String> {
+        let refused =
+            |error: serde_json::Error| ArgumentError::new_err(format!("runs: {error}; expected unchanged ones"));
+        let (names, runs): (Vec<String>, Vec<Vec<R>>) =
+            serde_json::from_str::<Vec<(String, Vec<R>)>>(runs).map_err(refused)?.into_iter().unzip();
+        let groups = groups(&names.iter().map(String::as_str).collect::<Vec<_>>(), &runs);
+        json(&Merged { methods: names.into_iter().zip(runs.iter().map(|runs| figures(runs))).collect(), groups })
+    }
+    py.detach(|| match set {
+        1 => of(&runs, first_set::Figures::of, |_, _| ()),
+        2 => of(&runs, second_set::Figures::of, |_, _| ()),
+        _ => of(&runs, third_set::Figures::of, third_set::group),
+    })
+}
+
+/// How a figure differs between two methods, from its differences scene by scene.
+#[pyfunction]
+#[pyo3(name = "_difference", signature = (differences))]
+pub(crate) fn difference(py: Python<'_>, differences: Vec<f64>) -> PyResult<Option<String>> {
+    py.detach(|| Difference::of(differences).map(|found| json(&found)).transpose())
+}
+
+/// Which of the experiments' scenes, and how they sound.
+fn numbered(number: &Bound<'_, PyAny>, physics: &Bound<'_, PyAny>) -> PyResult<(u64, Physics)> {
+    Ok((whole("first", number, 0..=u64::from(u32::MAX) + SEEDS_MOST)?, surroundings::physics(Some(physics))?))
+}
+
+/// The scene of an alcove of Set I.
+#[pyfunction]
+#[pyo3(name = "_alcove", signature = (number, physics))]
+pub(crate) fn alcove(number: &Bound<'_, PyAny>, physics: &Bound<'_, PyAny>) -> PyResult<Scene> {
+    let (seed, physics) = numbered(number, physics)?;
+    let alcove = Alcove::random(seed);
+    scene_of(alcove.scene().map_err(Raise::raise)?, alcove.robot(), DEFAULT_ORDER, seed, physics)
+}
+
+/// The scene of a course of Set II, with the robot at the start.
+#[pyfunction]
+#[pyo3(name = "_course", signature = (number, physics))]
+pub(crate) fn course(number: &Bound<'_, PyAny>, physics: &Bound<'_, PyAny>) -> PyResult<Scene> {
+    let (seed, physics) = numbered(number, physics)?;
+    let course = Course::random(seed);
+    let order = course.world(course.robot(), None).map_err(Raise::raise)?.max_order();
+    let robot = SetTwoOptions::default().robot(course.robot());
+    scene_of(course.scene().map_err(Raise::raise)?, robot, order, seed, physics)
+}
+
+fn scene_of(scene: eeruf_sim::Scene, robot: Robot, max_order: u32, seed: u64, physics: Physics) -> PyResult<Scene> {
+    let robots = vec![crate::robot::Robot::of(&robot)];
+    let (noise, faults) = (eeruf_sim::Noise::default(), vec![]);
+    Scene::of(WorldParts { scene, robots: vec![robot], noise, physics, max_order, seed, faults }, robots)
 }
 
 /// What is asked of Set II, as Python gives it.
@@ -121,26 +189,28 @@ fn speed(name: &str, value: &Bound<'_, PyAny>) -> PyResult<f64> {
 }
 
 impl Asked<'_> {
-    fn options(self) -> PyResult<SetTwoOptions> {
+    fn options(self) -> PyResult<(SetTwoOptions, Made)> {
         let default = SetTwoOptions::default();
+        let (methods, made) = methods_of(self.methods.as_ref(), default.methods)?;
         let odometry = flag("odometry", Some(&self.odometry), true)?;
         let t_delta = self.t_delta_us.map(|value| micros("t_delta_us", &value)).transpose()?;
         let noisy = flag("odometry_noise", Some(&self.odometry_noise), true)?;
         let named = Pilots::NAMED.map(|pilots| (pilots.as_str(), pilots));
-        Ok(SetTwoOptions {
+        let options = SetTwoOptions {
             pilots: choice("pilot", Some(&self.pilot), &named)?,
             odometry_noise: if noisy { OdometryNoise::default() } else { OdometryNoise::NONE },
             seeds: whole("seeds", &self.seeds, 1..=SEEDS_MOST)?,
             first: whole_or("first", self.first.as_ref(), FIRST, 0..=u64::from(u32::MAX))?,
-            methods: methods_named(self.methods.as_ref(), &default.methods)?,
+            methods,
             second_robot: self.second_robot.as_ref().map(corner).transpose()?,
             labmate: LabMate { speed_max_m_s: speed("speed_m_s", &self.speed_m_s)?, ..default.labmate },
             odometry,
             bodies: flag("bodies", Some(&self.bodies), false)?,
             physics: surroundings::physics(self.physics.as_ref())?,
             t_delta: t_delta.unwrap_or(if odometry { default.t_delta } else { WITHOUT_ODOMETRY }),
-            ..default
-        })
+            ..SetTwoOptions::default()
+        };
+        Ok((options, made))
     }
 }
 
@@ -170,16 +240,16 @@ pub(crate) fn set_two<'py>(
     asked: Asked<'py>,
     progress: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<(String, Bound<'py, PyDict>)> {
-    let options = asked.options()?;
+    let (options, made) = asked.options()?;
     let found = in_background(py, progress, move |background| {
         let options = with_best(options, background)?;
         let keep_going = |done| background.go_on(Some(done), || format!("{} courses", options.seeds));
-        second_set::set_two(&options, &keep_going).map_err(Raise::raise)
+        second_set::set_two(&options, &keep_going).map_err(|error| made.raise(error))
     })?;
     let runs = PyDict::new(py);
     for ((method, _), of_method) in found.methods.iter().zip(&found.runs) {
         let fields = of_method.iter().map(|run| fields(py, run)).collect::<PyResult<Vec<_>>>()?;
-        runs.set_item(method.as_str(), PyList::new(py, fields)?)?;
+        runs.set_item(method, PyList::new(py, fields)?)?;
     }
     Ok((json(&found)?, runs))
 }
@@ -212,12 +282,12 @@ pub(crate) fn speed_sweep(
     if speeds.is_empty() {
         return Err(wrong("speeds_m_s", "[]", expected));
     }
-    let options = asked.options()?;
+    let (options, made) = asked.options()?;
     in_background(py, progress, move |background| {
         let options = with_best(options, background)?;
         let keep_going =
             |done| background.go_on(Some(done), || format!("{} courses at {} speeds", options.seeds, speeds.len()));
-        let steps = second_set::speed_sweep(&options, &speeds, &keep_going).map_err(Raise::raise)?;
+        let steps = second_set::speed_sweep(&options, &speeds, &keep_going).map_err(|error| made.raise(error))?;
         let second_robot_m = options.second_robot.map(|at| [at.x, at.y]);
         let SetTwoOptions { first, seeds, pilots, physics, bodies, .. } = options;
         json(&Sweep { first, pilot: pilots.as_str(), physics, bodies, seeds, second_robot_m, steps })

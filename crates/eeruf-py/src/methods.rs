@@ -1,33 +1,291 @@
-//! Firing methods by name, and the schedule that `eeruf_best` fires by.
+//! `sim.Method`: a method as a value, with the schedule, the settings and the code that make it another one; and methods
+//! by their names.
 
-use eeruf_sim::{BestSchedule, Method, Robot, best_schedule_for};
-use pyo3::prelude::*;
+use std::sync::Arc;
+
+use eeruf_core::{Micros, flow::FlowSettings};
+use eeruf_sim::{BestSchedule, Entry, Method as Named, Robot, best_schedule_for};
+use pyo3::{
+    PyTraverseError, PyVisit,
+    prelude::*,
+    types::{PyDict, PyList, PyString, PyTuple},
+};
 
 use crate::{
-    arguments::{items, text},
+    arguments::{instance, items, shown, text, whole, wrong},
     errors::{ArgumentError, Raise},
+    hopping_schedule::HoppingSchedule,
+    hopping_settings::HoppingSettings,
+    own::{Made, Makers},
+    scene::Scene,
+    schedule::Schedule,
     watch::Background,
 };
 
 /// How many nodes the search for `eeruf_best` may cost, as in the program; it is proven shortest long before.
 const BEST_BUDGET: u64 = 300_000;
 
-/// The method with a name.
-pub(crate) fn method(argument: &str, name: &Bound<'_, PyAny>) -> PyResult<Method> {
-    let name = text(argument, name, "a name of eeruf.sim.METHODS")?;
+const EXPECTED: &str = "a name of eeruf.sim.METHODS, or an eeruf.sim.Method";
+
+/// A method as a value: plan, judge and settings under a label. :func:`simulate`, :class:`Simulation` and all
+/// experiments take one wherever they take a name. Immutable; methods compare, and pickle if their callables do.
+///
+/// Args:
+///     name: one of ``METHODS``, which gives whatever the others do not; or ``"driving"``, time hopping by its settings
+///         for robots that drive.
+///     label: the name in results and tables; by default ``name``. No two methods of one experiment have the same.
+///     schedule: what the ring fires by: a ``Schedule`` for methods that fire by the robot's own, a ``HoppingSchedule``
+///         for ``eeruf_hopping``. Its sensors must be as many as the robot's.
+///     settings: a ``HoppingSettings`` or its name for ``eeruf_hopping``; for ``flow`` a dict of what differs from its
+///         default: ``step_us``, ``shortest_gap_us``, ``masked_adds_us``, ``believed_takes_us``, ``unserved_adds_us``,
+///         ``unserved_after``, ``longest_cycle_us``, ``travel_us``.
+///     sketch: a dict as the argument ``firing`` of :class:`Robot`, for methods that fire as sketches and modules do.
+///     make_filter: makes your own filter: called with the :class:`Robot` at the start of each simulation, it returns a
+///         callable as the argument ``filter`` of :class:`Simulation`. A class whose instances can be called will do.
+///     make_firing: makes your own firing in the same way, a callable as the argument ``firing`` of
+///         :class:`Simulation`.
+///
+/// Raises:
+///     ArgumentError: no such method, or something that it does not take.
+///
+/// Example:
+///     >>> from eeruf import sim
+///     >>> quick = sim.Method("eeruf_hopping", label="quick", settings="quick")
+///     >>> believing = sim.Method("eeruf", label="all", make_filter=lambda robot: lambda firing: ("accepted",
+///     ...     firing.t_echoes_us[0]) if firing.t_echoes_us else ("clear", None))
+///     >>> robot = sim.Robot((0, 0, 1.57), sensors=8, spacing_rad=0.26, radius_m=0.3)
+///     >>> scene = sim.Scene([[5, 2, -5, 2]], robots=[robot])
+///     >>> [float(sim.simulate(scene, method, 50).is_accepted.mean()) for method in (believing, quick)]
+///     [1.0, 0.92]
+#[pyclass(frozen, module = "eeruf.sim")]
+pub(crate) struct Method {
+    entry: Entry,
+    makers: Option<Arc<Makers>>,
+    schedule: Option<Py<PyAny>>,
+    settings: Option<Py<PyAny>>,
+    sketch: Option<Py<PyAny>>,
+}
+
+fn by_name(argument: &str, name: &Bound<'_, PyAny>) -> PyResult<Entry> {
+    let name = text(argument, name, EXPECTED)?;
     name.parse().map_err(|error: eeruf_sim::UnknownMethod| ArgumentError::new_err(error.to_string()))
 }
 
-/// The methods with these names, or the default.
-pub(crate) fn methods(names: Option<&Bound<'_, PyAny>>, default: &[Method]) -> PyResult<Vec<Method>> {
-    let Some(names) = names else { return Ok(default.to_vec()) };
-    let names = items("methods", names, "a sequence of names of eeruf.sim.METHODS")?;
-    names.iter().map(|name| method("methods", name)).collect()
+/// The settings of flow that differ from its default.
+fn flow(value: &Bound<'_, PyAny>) -> PyResult<FlowSettings> {
+    let expected = "a dict such as {\"masked_adds_us\": 5_000} for the method flow";
+    let mut settings = FlowSettings::DEFAULT;
+    for (key, value) in value.cast::<PyDict>().map_err(|_| wrong("settings", shown(value), expected))? {
+        let key = text("key of settings", &key, "the name of a setting of flow")?;
+        let field: &mut Micros = match key.as_str() {
+            "unserved_after" => {
+                settings.unserved_after = whole(&key, &value, 1..=u8::MAX)?;
+                continue;
+            }
+            "step_us" => &mut settings.step,
+            "shortest_gap_us" => &mut settings.shortest_gap,
+            "masked_adds_us" => &mut settings.masked_adds,
+            "believed_takes_us" => &mut settings.believed_takes,
+            "unserved_adds_us" => &mut settings.unserved_adds,
+            "longest_cycle_us" => &mut settings.longest_cycle,
+            "travel_us" => &mut settings.travel,
+            _ => {
+                let names = "step_us, shortest_gap_us, masked_adds_us, believed_takes_us, unserved_adds_us, \
+                             unserved_after, longest_cycle_us, travel_us";
+                return Err(ArgumentError::new_err(format!("no setting {key} of flow; expected one of {names}")));
+            }
+        };
+        *field = Micros::new(whole(&key, &value, 0..=u32::MAX)?);
+    }
+    Ok(settings)
 }
 
-/// What `eeruf_best` fires by, if it is asked for.
-pub(crate) fn best(methods: &[Method], robot: &Robot, background: &Background) -> PyResult<Option<BestSchedule>> {
-    let asked = methods.contains(&Method::EerufBest);
+#[pymethods]
+impl Method {
+    #[new]
+    #[pyo3(signature = (name=None, *, label=None, schedule=None, settings=None, sketch=None, make_filter=None,
+        make_firing=None))]
+    #[pyo3(text_signature = "(name=\"eeruf\", *, label=None, schedule=None, settings=None, sketch=None, \
+        make_filter=None, make_firing=None)")]
+    fn new(
+        name: Option<&Bound<'_, PyAny>>,
+        label: Option<&Bound<'_, PyAny>>,
+        schedule: Option<&Bound<'_, PyAny>>,
+        settings: Option<&Bound<'_, PyAny>>,
+        sketch: Option<&Bound<'_, PyAny>>,
+        make_filter: Option<&Bound<'_, PyAny>>,
+        make_firing: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Self> {
+        let named = name.map_or_else(|| Ok(Entry::from(Named::Eeruf)), |name| by_name("name", name))?;
+        let method = named.method();
+        let mut entry = match label {
+            None => named,
+            Some(label) => named.with_name(&text("label", label, "a text")?),
+        };
+        let refused = |argument, value: &Bound<'_, PyAny>, takes: &str| {
+            wrong(argument, shown(value), format_args!("none for the method {method}; {takes}"))
+        };
+        if let Some(given) = schedule {
+            entry = match (method, given.cast::<HoppingSchedule>(), given.cast::<Schedule>()) {
+                (Named::EerufHopping, Ok(hopping), _) => entry.with_hopping_schedule(hopping.get().0),
+                (
+                    Named::Eeruf | Named::Adaptive | Named::MultiEcho | Named::EerufBest | Named::Table,
+                    _,
+                    Ok(schedule),
+                ) => entry.with_schedule(schedule.get().0),
+                _ => {
+                    let takes = "eeruf, adaptive, multi_echo and table take an eeruf.Schedule, eeruf_hopping an \
+                                 eeruf.HoppingSchedule";
+                    return Err(refused("schedule", given, takes));
+                }
+            };
+        }
+        if let Some(given) = settings {
+            entry = match method {
+                Named::EerufHopping => entry.with_hopping(HoppingSettings::of("settings", Some(given))?),
+                Named::Flow => entry.with_flow(flow(given)?),
+                _ => return Err(refused("settings", given, "eeruf_hopping and flow take some")),
+            };
+        }
+        if let Some(given) = sketch {
+            if !method.is_sketch() {
+                return Err(refused("sketch", given, "methods that fire as sketches and modules do take one"));
+            }
+            entry = entry.with_sketch(crate::robot::sketch("sketch", given)?);
+        }
+        let makers = Makers::of(make_firing, make_filter)?;
+        if let Some(makers) = &makers {
+            entry = entry.with_own(Arc::clone(makers) as _);
+        }
+        let kept = |value: Option<&Bound<'_, PyAny>>| value.map(|value| value.clone().unbind());
+        Ok(Self { entry, makers, schedule: kept(schedule), settings: kept(settings), sketch: kept(sketch) })
+    }
+
+    /// The method that it is made of, one of ``METHODS``.
+    #[getter]
+    fn name(&self) -> &'static str {
+        self.entry.method().as_str()
+    }
+
+    /// The name in results and tables.
+    #[getter]
+    fn label(&self) -> &str {
+        self.entry.name()
+    }
+
+    /// The keyword arguments that make it again.
+    fn _arguments<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let all = PyDict::new(py);
+        let driving = self.settings.is_none() && self.entry.is_driving();
+        all.set_item("name", if driving { "driving" } else { self.name() })?;
+        all.set_item("label", self.label())?;
+        let (filter, firing) = self.makers.as_ref().map_or((None, None), |makers| makers.callables(py));
+        let parts = [
+            ("schedule", self.schedule.as_ref().map(|value| value.clone_ref(py))),
+            ("settings", self.settings.as_ref().map(|value| value.clone_ref(py))),
+            ("sketch", self.sketch.as_ref().map(|value| value.clone_ref(py))),
+            ("make_filter", filter),
+            ("make_firing", firing),
+        ];
+        for (name, part) in parts {
+            if let Some(part) = part {
+                all.set_item(name, part)?;
+            }
+        }
+        Ok(all)
+    }
+
+    fn __eq__(&self, py: Python<'_>, other: &Bound<'_, PyAny>) -> PyResult<bool> {
+        let Ok(other) = other.cast::<Self>() else { return Ok(false) };
+        self._arguments(py)?.eq(other.get()._arguments(py)?)
+    }
+
+    fn __hash__(&self, py: Python<'_>) -> PyResult<isize> {
+        PyString::new(py, self.label()).hash()
+    }
+
+    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
+        let shown = |(name, value): (Bound<'_, PyAny>, Bound<'_, PyAny>)| Ok(format!("{name}={}", value.repr()?));
+        let all = self._arguments(py)?.iter().map(shown).collect::<PyResult<Vec<_>>>()?;
+        Ok(format!("Method({})", all.join(", ")))
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
+        let py = slf.py();
+        let rebuild = py.import("eeruf._rebuild")?.getattr("method")?;
+        Ok((rebuild, (slf.get()._arguments(py)?,).into_pyobject(py)?))
+    }
+
+    fn __traverse__(&self, visit: PyVisit<'_>) -> Result<(), PyTraverseError> {
+        self.makers.as_ref().map_or(Ok(()), |makers| makers.traverse(&visit))
+    }
+}
+
+/// A method of an argument, with what makes its own code if it has some.
+#[derive(Clone)]
+pub(crate) struct Chosen {
+    pub(crate) entry: Entry,
+    pub(crate) makers: Option<Arc<Makers>>,
+}
+
+impl Chosen {
+    pub(crate) fn of(argument: &str, value: Option<&Bound<'_, PyAny>>) -> PyResult<Self> {
+        let Some(value) = value else { return Ok(Self { entry: Named::Eeruf.into(), makers: None }) };
+        if let Ok(method) = value.cast::<Method>() {
+            let Method { entry, makers, .. } = method.get();
+            return Ok(Self { entry: entry.clone(), makers: makers.clone() });
+        }
+        Ok(Self { entry: by_name(argument, value)?, makers: None })
+    }
+
+    /// A scene whose robots have what the method changes of them.
+    pub(crate) fn scene<'py>(
+        argument: Option<&Bound<'py, PyAny>>,
+        scene: &Bound<'py, Scene>,
+    ) -> PyResult<Bound<'py, Scene>> {
+        let method = argument.and_then(|value| value.cast::<Method>().ok()).map(Bound::get);
+        let Some(Method { schedule, sketch, entry, .. }) = method else { return Ok(scene.clone()) };
+        // A schedule of hopping is none of the robot's.
+        let schedule = schedule.as_ref().filter(|_| entry.method() != Named::EerufHopping);
+        if schedule.is_none() && sketch.is_none() {
+            return Ok(scene.clone());
+        }
+        let (py, robots) = (scene.py(), PyList::empty(scene.py()));
+        for robot in scene.getattr("robots")?.try_iter()? {
+            let (robot, changes) = (robot?, PyDict::new(py));
+            if let Some(schedule) = schedule {
+                changes.set_item("schedule", schedule)?;
+                changes.set_item("period_us", robot.getattr("period_us")?)?;
+            }
+            if let Some(sketch) = sketch {
+                changes.set_item("firing", sketch)?;
+            }
+            robots.append(robot.call_method("replace", (), Some(&changes))?)?;
+        }
+        let changes = PyDict::new(py);
+        changes.set_item("robots", robots)?;
+        let scene = scene.call_method("replace", (), Some(&changes))?;
+        instance::<Scene>("scene", &scene, "an eeruf.sim.Scene").cloned()
+    }
+}
+
+/// The methods of an argument, or the default.
+pub(crate) fn methods(values: Option<&Bound<'_, PyAny>>, default: Vec<Entry>) -> PyResult<(Vec<Entry>, Made)> {
+    let Some(values) = values else { return Ok((default, Made::default())) };
+    let values = items("methods", values, "a sequence of names of eeruf.sim.METHODS and eeruf.sim.Method")?;
+    let chosen = values.iter().map(|value| Chosen::of("methods", Some(value))).collect::<PyResult<Vec<_>>>()?;
+    let makers = chosen.iter().filter_map(|chosen| chosen.makers.clone()).collect();
+    Ok((chosen.into_iter().map(|chosen| chosen.entry).collect(), Made(makers)))
+}
+
+/// The method with a name.
+pub(crate) fn method(argument: &str, name: &Bound<'_, PyAny>) -> PyResult<Named> {
+    by_name(argument, name).map(|entry| entry.method())
+}
+
+/// What `eeruf_best` fires by, if one of these fires so.
+pub(crate) fn best(methods: &[Entry], robot: &Robot, background: &Background) -> PyResult<Option<BestSchedule>> {
+    let asked = methods.iter().any(|entry| entry.method() == Named::EerufBest);
     asked
         .then(|| {
             best_schedule_for(robot, BEST_BUDGET, |_| background.go_on(None, || "designing".to_owned()))

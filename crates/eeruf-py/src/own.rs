@@ -6,7 +6,7 @@ use std::{
 };
 
 use eeruf_core::{MAX_SENSORS, Micros, Phase, ReadingKind};
-use eeruf_sim::{Echo, Filter, Filtered, Firing, FiringPeriod, Own, OwnError};
+use eeruf_sim::{Echo, Filter, Filtered, Firing, FiringPeriod, MakeOwn, Own, OwnError};
 use pyo3::{
     PyTraverseError, PyVisit,
     prelude::*,
@@ -15,7 +15,9 @@ use pyo3::{
 
 use crate::{
     arguments::{items, micros, number, shown, whole, wrong},
+    errors::Raise,
     ring_events::Reading,
+    robot::Robot,
 };
 
 /// What one firing of one sensor has heard, for a filter of one's own in a :class:`Simulation`.
@@ -107,15 +109,25 @@ impl FiredReading {
     }
 }
 
+/// What a callable has raised, for whoever ran what called it.
+type Raised = Arc<Mutex<Option<PyErr>>>;
+
 /// The callables of a simulation, where the garbage collector finds them, and what one of them has raised.
 #[derive(Default)]
 pub(crate) struct Calls {
     callables: Vec<Mutex<Option<Py<PyAny>>>>,
-    raised: Mutex<Option<PyErr>>,
+    raised: Raised,
 }
 
 fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Keeps an error for whoever ran it, and says it to the simulator.
+fn keep(raised: &Raised, error: PyErr) -> OwnError {
+    let said = OwnError::new(error.to_string());
+    *locked(raised) = Some(error);
+    said
 }
 
 impl Calls {
@@ -124,11 +136,7 @@ impl Calls {
         Python::attach(|py| {
             let callable = locked(&self.callables[index]).as_ref().map(|callable| callable.clone_ref(py));
             let Some(callable) = callable else { return Err(OwnError::from("the callable is gone")) };
-            ask(callable.bind(py)).map_err(|error| {
-                let said = OwnError::new(error.to_string());
-                *locked(&self.raised) = Some(error);
-                said
-            })
+            ask(callable.bind(py)).map_err(|error| keep(&self.raised, error))
         })
     }
 
@@ -153,32 +161,128 @@ impl Calls {
     }
 }
 
-/// The arguments `firing` and `filter` of a simulation of so many robots: a callable for the first one, or a dict of
-/// callables by robot.
-pub(crate) fn own(
-    firing: Option<&Bound<'_, PyAny>>,
-    filter: Option<&Bound<'_, PyAny>>,
-    sensors: &[usize],
+/// Makes a method's own firings and filters anew for each simulation.
+#[derive(Debug)]
+pub(crate) struct Makers {
+    firing: Option<Py<PyAny>>,
+    filter: Option<Py<PyAny>>,
+    raised: Raised,
+}
+
+type ByRobot<'py> = Vec<(usize, Bound<'py, PyAny>)>;
+
+impl Makers {
+    /// The arguments `make_firing` and `make_filter` of a method; none if it has neither.
+    pub(crate) fn of(
+        firing: Option<&Bound<'_, PyAny>>,
+        filter: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Option<Arc<Self>>> {
+        for (name, maker) in [("make_firing", firing), ("make_filter", filter)] {
+            if let Some(maker) = maker.filter(|maker| !maker.is_callable()) {
+                return Err(wrong(name, shown(maker), "a callable that takes a robot and returns a callable"));
+            }
+        }
+        if firing.is_none() && filter.is_none() {
+            return Ok(None);
+        }
+        let kept = |maker: Option<&Bound<'_, PyAny>>| maker.map(|maker| maker.clone().unbind());
+        Ok(Some(Arc::new(Self { firing: kept(firing), filter: kept(filter), raised: Raised::default() })))
+    }
+
+    /// Those of filters and of firings.
+    pub(crate) fn callables(&self, py: Python<'_>) -> (Option<Py<PyAny>>, Option<Py<PyAny>>) {
+        let copy = |maker: &Option<Py<PyAny>>| maker.as_ref().map(|maker| maker.clone_ref(py));
+        (copy(&self.filter), copy(&self.firing))
+    }
+
+    pub(crate) fn traverse(&self, visit: &PyVisit<'_>) -> Result<(), PyTraverseError> {
+        visit.call(&self.firing)?;
+        visit.call(&self.filter)
+    }
+
+    /// A callable for each robot that has none in `given`.
+    fn fill<'py>(
+        name: &str,
+        maker: Option<&Py<PyAny>>,
+        py: Python<'py>,
+        robots: &[eeruf_sim::Robot],
+        given: &mut ByRobot<'py>,
+    ) -> PyResult<()> {
+        let Some(maker) = maker else { return Ok(()) };
+        for (index, robot) in robots.iter().enumerate() {
+            if given.iter().all(|(known, _)| *known != index) {
+                let made = maker.bind(py).call1((Robot::of(robot),))?;
+                if !made.is_callable() {
+                    return Err(wrong(&format!("what {name} returned"), shown(&made), "a callable"));
+                }
+                given.push((index, made));
+            }
+        }
+        Ok(())
+    }
+}
+
+impl MakeOwn for Makers {
+    fn make(&self, robots: &[eeruf_sim::Robot]) -> Result<Own, OwnError> {
+        Python::attach(|py| {
+            let (own, _) = made(py, Some(self), ByRobot::new(), ByRobot::new(), robots)?;
+            Ok(own)
+        })
+        .map_err(|error| keep(&self.raised, error))
+    }
+}
+
+/// The makers of an experiment's methods, with what their code has raised.
+#[derive(Default)]
+pub(crate) struct Made(pub(crate) Vec<Arc<Makers>>);
+
+impl Made {
+    /// The error of the caller's code that ended an experiment, or else the experiment's.
+    pub(crate) fn raise(&self, error: impl Raise) -> PyErr {
+        self.0.iter().find_map(|makers| locked(&makers.raised).take()).unwrap_or_else(|| error.raise())
+    }
+}
+
+fn made<'py>(
+    py: Python<'py>,
+    makers: Option<&Makers>,
+    mut firing: ByRobot<'py>,
+    mut filter: ByRobot<'py>,
+    robots: &[eeruf_sim::Robot],
 ) -> PyResult<(Own, Arc<Calls>)> {
-    let (firing, filter) = (by_robot("firing", firing, sensors.len())?, by_robot("filter", filter, sensors.len())?);
+    let mut raised = Raised::default();
+    if let Some(makers) = makers {
+        Makers::fill("make_firing", makers.firing.as_ref(), py, robots, &mut firing)?;
+        Makers::fill("make_filter", makers.filter.as_ref(), py, robots, &mut filter)?;
+        raised = Arc::clone(&makers.raised);
+    }
     let callables = firing.iter().chain(&filter).map(|(_, callable)| Mutex::new(Some(callable.clone().unbind())));
-    let calls = Arc::new(Calls { callables: callables.collect(), raised: Mutex::default() });
+    let calls = Arc::new(Calls { callables: callables.collect(), raised });
     let mut own = Own::new();
     for (index, (robot, _)) in firing.iter().enumerate() {
         own = own.firing(*robot, OwnFiring { calls: Arc::clone(&calls), index });
     }
     for (index, (robot, _)) in (firing.len()..).zip(&filter) {
-        let last = vec![VecDeque::new(); sensors[*robot].min(MAX_SENSORS)];
+        let last = vec![VecDeque::new(); robots[*robot].sensors.len().min(MAX_SENSORS)];
         own = own.filter(*robot, OwnFilter { calls: Arc::clone(&calls), index, last });
     }
     Ok((own, calls))
 }
 
-fn by_robot<'py>(
-    name: &str,
-    value: Option<&Bound<'py, PyAny>>,
-    robots: usize,
-) -> PyResult<Vec<(usize, Bound<'py, PyAny>)>> {
+/// The arguments `firing` and `filter` of a simulation of these robots, each a callable for the first one, or a dict of
+/// callables by robot; and for the others those of its method.
+pub(crate) fn own(
+    py: Python<'_>,
+    firing: Option<&Bound<'_, PyAny>>,
+    filter: Option<&Bound<'_, PyAny>>,
+    makers: Option<&Makers>,
+    robots: &[eeruf_sim::Robot],
+) -> PyResult<(Own, Arc<Calls>)> {
+    let (firing, filter) = (by_robot("firing", firing, robots.len())?, by_robot("filter", filter, robots.len())?);
+    made(py, makers, firing, filter, robots)
+}
+
+fn by_robot<'py>(name: &str, value: Option<&Bound<'py, PyAny>>, robots: usize) -> PyResult<ByRobot<'py>> {
     let Some(value) = value else { return Ok(vec![]) };
     if value.is_callable() {
         return Ok(vec![(0, value.clone())]);

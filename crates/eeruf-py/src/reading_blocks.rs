@@ -3,7 +3,9 @@
 use eeruf_sim::simulation::expected_readings;
 use pyo3::prelude::*;
 
-use crate::{arguments::whole_or, memory, readings::Readings, simulate::Asked, simulation::Simulation, watch::Watch};
+use crate::{
+    arguments::whole_or, memory, own, readings::Readings, simulate::Asked, simulation::Simulation, watch::Watch,
+};
 
 /// How many periods a block has unless another number is asked for.
 const BLOCK_PERIODS: u32 = 10_000;
@@ -88,6 +90,7 @@ pub(crate) fn simulate_blocks(
     memory::check(&format!("{readings} readings"), bytes, "so fewer block_periods")?;
     // What is wrong with it is said now, not with the first block.
     Watch::new(progress)?;
-    let simulation = Simulation::new_from(scene.py(), asked, None, None)?;
+    let own = own::own(scene.py(), None, None, asked.chosen.makers.as_deref(), asked.world.robots())?;
+    let simulation = Simulation::new_from(scene.py(), asked, own, true, None)?;
     Ok(ReadingBlocks { simulation, block_periods, progress: progress.map(|progress| progress.clone().unbind()) })
 }

@@ -185,10 +185,10 @@ fn heights(value: Option<&Bound<'_, PyAny>>, sensors: usize) -> PyResult<Vec<f64
 }
 
 /// How sketches and modules fire it.
-fn sketch(value: &Bound<'_, PyAny>) -> PyResult<Sketch> {
-    let refused = |_| wrong("firing", shown(value), "a dict with keys of [firing], such as {\"turn_us\": 33_000}");
-    let table = table_of("firing", value.cast::<PyDict>().map_err(refused)?)?;
-    Sketch::from_table(&table).map_err(|message| ArgumentError::new_err(format!("firing: {message}")))
+pub(crate) fn sketch(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Sketch> {
+    let refused = |_| wrong(name, shown(value), "a dict with keys of [firing], such as {\"turn_us\": 33_000}");
+    let table = table_of(name, value.cast::<PyDict>().map_err(refused)?)?;
+    Sketch::from_table(&table).map_err(|message| ArgumentError::new_err(format!("{name}: {message}")))
 }
 
 /// The robot of a ring file.
@@ -377,7 +377,7 @@ impl Robot {
         set("min_refire_us", min_refire_us, &mut robot.min_refire)?;
         set("start_us", start_us, &mut robot.start)?;
         set("audible_us", audible_us, &mut robot.audible)?;
-        robot.firing = firing.map_or(Ok(Sketch::default()), sketch)?;
+        robot.firing = firing.map_or(Ok(Sketch::default()), |firing| sketch("firing", firing))?;
         if neighbours.is_some() || ring.is_none() {
             robot.neighbours = requirements::neighbours(neighbours)?;
         }

@@ -2,14 +2,14 @@
 
 use std::sync::Arc;
 
-use eeruf_sim::{Method, Options, World, simulate_until, simulation::expected_readings};
+use eeruf_sim::{Options, World, simulation::expected_readings};
 use pyo3::prelude::*;
 
 use crate::{
     arguments::{instance, whole, whole_or},
-    errors::Raise,
     memory,
-    methods::{self, best},
+    methods::{Chosen, best},
+    own::Made,
     readings::Readings,
     scene::Scene,
     watch::{Background, in_background},
@@ -22,7 +22,7 @@ use crate::{
 ///
 /// Args:
 ///     scene: with one robot or more.
-///     method: one of ``METHODS``.
+///     method: one of ``METHODS``, or a :class:`Method`.
 ///     periods: for how many periods of the first robot, 1 or more.
 ///     seed: of the noise, 0 to 2^64 - 1; the scene's by default.
 ///     progress: True for a bar (tqdm if it is installed), or a callable that takes the share done and a text.
@@ -57,17 +57,18 @@ pub(crate) fn simulate(
     let instead = "or simulate_blocks, which needs no more than a block";
     memory::check(&format!("{readings} readings"), eeruf_sim::Readings::bytes_for(readings), instead)?;
     in_background(scene.py(), progress, move |background| {
-        let Asked { world, method, options } = asked.with_best(background)?;
-        let keep_going = |share| background.go_on(Some(share), || format!("simulating {method}"));
-        let readings = simulate_until(&world, method, &options, background.stop(), keep_going);
-        readings.map(Readings::new).map_err(Raise::raise)
+        let Asked { world, chosen: Chosen { entry, makers }, options } = asked.with_best(background)?;
+        let keep_going = |share| background.go_on(Some(share), || format!("simulating {entry}"));
+        let readings = entry.simulate(&world, &options, background.stop(), keep_going);
+        readings.map(Readings::new).map_err(|error| Made(makers.into_iter().collect()).raise(error))
     })
 }
 
 /// The arguments of [`simulate`] and its like.
+#[derive(Clone)]
 pub(crate) struct Asked {
     pub(crate) world: Arc<World>,
-    pub(crate) method: Method,
+    pub(crate) chosen: Chosen,
     pub(crate) options: Options,
 }
 
@@ -79,20 +80,23 @@ impl Asked {
         seed: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
         let scene = instance::<Scene>("scene", scene, "an eeruf.sim.Scene")?;
-        let world = Arc::clone(scene.get().world()?);
-        let method = method.map_or(Ok(Method::Eeruf), |name| methods::method("method", name))?;
+        scene.get().world()?;
+        let chosen = Chosen::of("method", method)?;
+        let world = Arc::clone(Chosen::scene(method, scene)?.get().world()?);
         let options = Options {
             seed: seed.map(|seed| whole("seed", seed, 0..=u64::MAX)).transpose()?,
             ..Options::periods(whole_or("periods", periods, 1000, 1..=u32::MAX)?)
         };
-        Ok(Self { world, method, options })
+        Ok(Self { world, chosen, options })
     }
 
-    /// With the schedule of `eeruf_best`, if that is the method.
+    /// With the schedule of `eeruf_best`, if that is the method, and with what the method sets.
     pub(crate) fn with_best(mut self, background: &Background) -> PyResult<Self> {
         if let Some(robot) = self.world.robots().first() {
-            self.options.best = best(&[self.method], robot, background)?.map(|best| best.schedule);
+            let methods = std::slice::from_ref(&self.chosen.entry);
+            self.options.best = best(methods, robot, background)?.map(|best| best.schedule);
         }
+        self.options = self.chosen.entry.options(self.options);
         Ok(self)
     }
 }

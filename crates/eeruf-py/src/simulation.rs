@@ -29,7 +29,7 @@ use crate::{
 ///
 /// Args:
 ///     scene: with one robot or more.
-///     method: one of ``METHODS``.
+///     method: one of ``METHODS``, or a :class:`Method`.
 ///     seed: of the noise, 0 to 2^64 - 1; the scene's by default.
 ///     firing: when the first robot's sensors fire, instead of by the method: a callable that takes the number of a
 ///         period, from 0, and returns how long it lasts in microseconds and who fires when in it,
@@ -74,20 +74,22 @@ pub(crate) struct UnderWay {
 }
 
 impl Simulation {
-    /// With the caller's own firings and filters, or one that ends when the options say.
+    /// With the caller's own firings and filters; it may end when the options say.
     pub(crate) fn new_from(
         py: Python<'_>,
         asked: Asked,
-        own: Option<(Own, Arc<Calls>)>,
+        (own, calls): (Own, Arc<Calls>),
+        ends: bool,
         mcap: Option<PathBuf>,
     ) -> PyResult<Self> {
         in_background(py, None, move |background| {
             let asked = asked.with_best(background)?;
-            let Asked { ref world, method, ref options } = asked;
-            let (world, stop) = (world.clone(), background.stop().clone());
-            let (simulation, calls) = match own {
-                Some((own, calls)) => (eeruf_sim::Simulation::with_own(world, method, options, own, stop), calls),
-                None => (eeruf_sim::Simulation::ending(world, method, options, stop), Arc::default()),
+            let Asked { ref world, ref chosen, ref options } = asked;
+            let (world, stop, method) = (world.clone(), background.stop().clone(), chosen.entry.method());
+            let simulation = if ends {
+                eeruf_sim::Simulation::ending(world, method, options, own, stop)
+            } else {
+                eeruf_sim::Simulation::with_own(world, method, options, own, stop)
             };
             let simulation = simulation.map_err(|error| calls.raised().unwrap_or_else(|| error.raise()))?;
             let recording = mcap.map(|file| Recording::create(&file, &simulation)).transpose().map_err(logs::raise)?;
@@ -128,7 +130,7 @@ impl Simulation {
     ) -> PyResult<Readings> {
         let mut watch = Watch::new(progress)?;
         let readings = py.detach(|| {
-            let mut keep_going = |share| watch.go_on(Some(share), || format!("simulating {}", self.asked.method));
+            let mut keep_going = |share| watch.go_on(Some(share), || format!("simulating {}", self.asked.chosen.entry));
             let UnderWay { simulation, recording } = &mut *self.lock()?;
             self.set_stepping(Some(thread::current().id()));
             let readings = step(simulation, &mut keep_going);
@@ -157,13 +159,12 @@ impl Simulation {
         mcap: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
         let asked = Asked::new(scene, method, None, seed)?;
-        let sensors: Vec<_> = asked.world.robots().iter().map(|robot| robot.sensors.len()).collect();
-        let own = own::own(firing, filter, &sensors)?;
+        let own = own::own(scene.py(), firing, filter, asked.chosen.makers.as_deref(), asked.world.robots())?;
         let file = |path: &Bound<'_, PyAny>| {
             path.extract::<PathBuf>().map_err(|_| wrong("mcap", shown(path), "the path of a file to write, or None"))
         };
         let mcap = mcap.map(file).transpose()?;
-        Self::new_from(scene.py(), asked, Some(own), mcap)
+        Self::new_from(scene.py(), asked, own, false, mcap)
     }
 
     /// End the MCAP file, if one is being written; the simulation may go on.
@@ -368,7 +369,7 @@ impl Simulation {
     fn __repr__(&self, py: Python<'_>) -> String {
         let robots = self.asked.world.robots().len();
         let time = self.time_s(py).map_or("in a step".to_owned(), |time_s| format!("after {time_s:.3} s"));
-        format!("<Simulation: {robots} robots, {}, {time}>", self.asked.method)
+        format!("<Simulation: {robots} robots, {}, {time}>", self.asked.chosen.entry)
     }
 
     fn __traverse__(&self, visit: PyVisit<'_>) -> Result<(), PyTraverseError> {

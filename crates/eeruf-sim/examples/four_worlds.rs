@@ -35,7 +35,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut courses = Vec::new();
     for (_, room, gain) in WORLDS {
         let transducer = Transducer { gain, ..Transducer::POLAROID_6500 };
-        let methods = METHODS.to_vec();
+        let methods = Entry::all(METHODS);
         let asked = SetOneOptions { seeds: ALCOVES, steps: 0, methods, room, transducer, ..SetOneOptions::default() };
         let found = set_one(&asked, &|_| true)?;
         let cell = |figures: &experiments::set_one::Figures| {
@@ -43,7 +43,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             format!("{} / {}", percent(wrong), percent(lost))
         };
         alcoves.push(found.methods.iter().map(|(_, figures)| cell(figures)).collect());
-        let methods = METHODS.to_vec();
+        let methods = Entry::all(METHODS);
         let asked = SetTwoOptions { seeds: COURSES, methods, room, gain, ..SetTwoOptions::default() };
         let found = set_two(&asked, &|_| true)?;
         let cell = |figures: &experiments::set_two::Figures| {

@@ -5,7 +5,7 @@
 use eeruf_core::{Micros, hopping::HoppingSettings, judge::TrackerSettings};
 use eeruf_sim::experiments::Spread;
 use eeruf_sim::experiments::set_one::{Latency, SetOneOptions, set_one};
-use eeruf_sim::{Method, Physics};
+use eeruf_sim::{Entry, Method, Physics};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut arguments = std::env::args().skip(1);
@@ -16,7 +16,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("| accepted/s | nearer | farther |");
     println!("|---|---|---|---|---|---|---|---|---|---|---|");
     for (name, hopping) in rows() {
-        let methods = vec![Method::EerufHopping];
+        let methods = Entry::all([Method::EerufHopping]);
         let asked = SetOneOptions { seeds, first, methods, hopping, physics, ..SetOneOptions::default() };
         let table = set_one(&asked, &|_| true)?;
         for (_, figures) in &table.methods {

@@ -87,7 +87,7 @@ fn moving_ms(physics: Physics, room: Option<Room>) -> (f64, usize) {
 
 /// Two courses of Set II on one core.
 fn set_two_ms(physics: Physics) -> (f64, usize) {
-    let options = SetTwoOptions { seeds: 2, methods: vec![Method::Eeruf], physics, ..SetTwoOptions::default() };
+    let options = SetTwoOptions { seeds: 2, methods: vec![Method::Eeruf.into()], physics, ..SetTwoOptions::default() };
     let one_core = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread starts");
     let mut finished = 0;
     let drive = || set_two(&options, &|_| true).expect("the courses have room").methods[0].1.finished;

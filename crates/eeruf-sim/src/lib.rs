@@ -93,8 +93,8 @@ pub use scene::{
     SceneError, Wall,
 };
 pub use simulation::{
-    Echo, Filter, Filtered, FiredReading, LockStep, Options, Own, Simulation, SimulationError, simulate,
-    simulate_until, simulate_while,
+    Echo, Entry, Filter, Filtered, FiredReading, LockStep, MakeOwn, Options, Own, Simulation, SimulationError,
+    simulate, simulate_until, simulate_while,
 };
 pub use threads::{Stop, sweep};
 pub use tracing::{

@@ -9,6 +9,7 @@ use eeruf_core::search::Progress;
 use eeruf_sim::experiments::FIRST;
 use eeruf_sim::{GainProfile, Physics, Room};
 
+use super::shard::Shard;
 use crate::files::error::InputError;
 use crate::report::draw::Picture;
 use crate::report::watch::Watch;
@@ -34,6 +35,9 @@ pub(crate) struct Common {
     /// How the receivers' gain grows: constant, square_root, linear, stepped or polaroid_6500
     #[arg(long, value_name = "GAIN", default_value = "constant", value_parser = gain)]
     pub(crate) gain: GainProfile,
+    /// Run the I-th of N parts, and print what `eeruf merge` makes the whole of
+    #[arg(long, value_name = "I/N", conflicts_with_all = ["json", "svg", "png"])]
+    pub(crate) shard: Option<Shard>,
     /// Print one JSON object
     #[arg(long)]
     pub(crate) json: bool,
@@ -58,6 +62,19 @@ fn gain(name: &str) -> Result<GainProfile, String> {
 }
 
 impl Common {
+    /// The arguments that decide what is run, all of them; `seeds` unless another number is asked for.
+    pub(super) fn words(&self, seeds: u64) -> Vec<String> {
+        let Self { first, physics, height, gain, .. } = self;
+        let height = match height {
+            Height::Flat => "flat",
+            Height::Room => "room",
+        };
+        let seeds = self.seeds.unwrap_or(seeds);
+        let words =
+            format!("--seeds {seeds} --first {first} --physics {physics} --height {height} --gain {}", gain.name());
+        words.split(' ').map(str::to_owned).collect()
+    }
+
     /// Floor and ceiling, if rings hear them.
     pub(crate) fn room(&self) -> Option<Room> {
         matches!(self.height, Height::Room).then_some(Room::DEFAULT)

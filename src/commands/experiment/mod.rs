@@ -5,6 +5,11 @@ mod common;
 mod set_one;
 mod set_three;
 mod set_two;
+mod shard;
+
+use std::path::Path;
+
+pub(super) use shard::{Part, Shard};
 
 use super::answer::Answer;
 use crate::files::error::InputError;
@@ -33,4 +38,13 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
         Set::Three(args) => set_three::run(args)?,
     }
     Ok(Answer::Yes)
+}
+
+/// Prints the whole experiment that a part's arguments ask for, of the runs of all parts.
+pub(super) fn merged(args: &Args, file: &Path, runs: &shard::Runs) -> Result<(), InputError> {
+    match &args.set {
+        Set::One(args) => set_one::merged(args, file, runs),
+        Set::Two(args) => set_two::merged(args, file, runs),
+        Set::Three(args) => set_three::merged(args, file, runs),
+    }
 }

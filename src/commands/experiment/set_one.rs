@@ -4,10 +4,11 @@ use std::path::{Path, PathBuf};
 
 use eeruf_core::Micros;
 use eeruf_sim::best_schedule_for;
-use eeruf_sim::experiments::set_one::{Alcove, SENSORS, SetOneOptions, set_one, world_of};
-use eeruf_sim::{GainProfile, Method, Options, Robot, Transducer, simulate};
+use eeruf_sim::experiments::set_one::{Alcove, SENSORS, SetOne, SetOneOptions, set_one, world_of};
+use eeruf_sim::{Entry, GainProfile, Method, Options, Robot, Stop, Transducer};
 
 use super::common::{BUDGET, Common, bad, designing, watched};
+use super::shard::{Part, Runs, runs_of};
 use crate::commands::hopping::Hopping;
 use crate::commands::methods::chosen;
 use crate::console::{print_line, tell};
@@ -42,21 +43,48 @@ pub(crate) struct Args {
     hopping: Hopping,
     /// Print instead how results move with the receiver's gain, the floor of its pattern, and fading; by default for
     /// sequential, conventional, comparison, eeruf, eeruf_hopping and multi_echo
-    #[arg(long, conflicts_with_all = ["svg", "png"])]
+    #[arg(long, conflicts_with_all = ["svg", "png", "shard"])]
     vary: bool,
     /// Write the readings of the first alcove by all methods as MCAP, for Foxglove and Rerun, instead
-    #[arg(long, value_name = "FILE.mcap", conflicts_with_all = ["vary", "svg", "png", "json"])]
+    #[arg(long, value_name = "FILE.mcap", conflicts_with_all = ["vary", "svg", "png", "json", "shard"])]
     mcap: Option<PathBuf>,
 }
 
 pub(crate) fn run(args: &Args) -> Result<(), InputError> {
     let bad = bad("set-one");
+    let mut options = options(args)?;
+    if args.vary {
+        return vary(args, &options);
+    }
+    if let Some(file) = &args.mcap {
+        return first_alcove(file, &options);
+    }
+    if let Some(shard) = args.common.shard {
+        (options.first, options.seeds) = shard.seeds(options.first, options.seeds).map_err(|error| bad(&error))?;
+    }
+    let watched = watched(format!("{} alcoves by {} methods", options.seeds, options.methods.len()));
+    let found = set_one(&options, &watched).map_err(|error| bad(&error))?;
+    drop(watched);
+    match args.common.shard {
+        Some(shard) => Part::print(shard, words(args), &options.methods, &found.runs),
+        None => print(args, &options, &found),
+    }
+}
+
+/// Prints the whole of the runs of all parts.
+pub(super) fn merged(args: &Args, file: &Path, runs: &Runs) -> Result<(), InputError> {
+    let options = options(args)?;
+    let runs = runs_of(&options.methods, options.seeds, file, runs)?;
+    print(args, &options, &SetOne::of(&options, runs))
+}
+
+fn options(args: &Args) -> Result<SetOneOptions, InputError> {
     let mut options = SetOneOptions {
         first: args.common.first,
         physics: args.common.physics,
         room: args.common.room(),
         transducer: Transducer { gain: args.common.gain, ..Transducer::POLAROID_6500 },
-        methods: chosen(&args.methods, false),
+        methods: Entry::all(chosen(&args.methods, false)),
         hopping: args.hopping.settings(),
         sensors: args.sensors.into(),
         period: Micros::new(args.period_us),
@@ -65,24 +93,28 @@ pub(crate) fn run(args: &Args) -> Result<(), InputError> {
     options.seeds = args.common.seeds.unwrap_or(options.seeds);
     let mut watch = Watch::new();
     let robot = Robot { period: options.period, ..Alcove::random(0).robot_of(options.sensors) };
-    let best = best_schedule_for(&robot, BUDGET, |progress| watch.go_on(|| designing(progress)))
-        .map_err(|error| bad(&error))?;
-    options.best = Some(best);
-    drop(watch);
-    if args.vary {
-        return vary(args, &options);
-    }
-    if let Some(file) = &args.mcap {
-        return first_alcove(file, &options);
-    }
-    let watched = watched(format!("{} alcoves by {} methods", options.seeds, options.methods.len()));
-    let found = set_one(&options, &watched).map_err(|error| bad(&error))?;
-    drop(watched);
-    args.common.draw("set-one", || draw::set_one(&found))?;
-    if args.common.json {
-        print_line(to_json(&found))?;
-    } else {
-        tell(describe(&found, &best))?;
+    let best = best_schedule_for(&robot, BUDGET, |progress| watch.go_on(|| designing(progress)));
+    options.best = Some(best.map_err(|error| bad("set-one")(&error))?);
+    Ok(options)
+}
+
+/// The arguments that decide what is run.
+fn words(args: &Args) -> Vec<String> {
+    let mut words = args.common.words(SetOneOptions::default().seeds);
+    words.insert(0, "set-one".to_owned());
+    let methods: Vec<_> = chosen(&args.methods, false).iter().map(Method::to_string).collect();
+    let (sensors, period_us) = (args.sensors.to_string(), args.period_us.to_string());
+    let own = [("--method", &methods.join(",")), ("--sensors", &sensors), ("--period-us", &period_us)];
+    words.extend(own.into_iter().flat_map(|(option, value)| [option.to_owned(), value.clone()]));
+    words.extend(["--hopping".to_owned(), args.hopping.name()]);
+    words
+}
+
+fn print(args: &Args, options: &SetOneOptions, found: &SetOne) -> Result<(), InputError> {
+    args.common.draw("set-one", || draw::set_one(found))?;
+    match &options.best {
+        Some(best) if !args.common.json => tell(describe(found, best))?,
+        _ => print_line(to_json(found))?,
     }
     Ok(())
 }
@@ -92,17 +124,19 @@ fn first_alcove(file: &Path, options: &SetOneOptions) -> Result<(), InputError> 
     let bad = bad("set-one");
     let alcove = Alcove::random(options.first);
     let mut runs = Vec::new();
-    for &method in &options.methods {
-        let world = world_of(options, &alcove, method).map_err(|error| bad(&error))?;
+    let mut stage = None;
+    for entry in &options.methods {
+        let world = world_of(options, &alcove, entry).map_err(|error| bad(&error))?;
         let best = options.best.as_ref().map(|best| best.schedule);
         let periods = options.readings.div_ceil(options.sensors as u32);
         let simulation =
             Options { best, hopping: options.hopping, seed: Some(options.first), ..Options::periods(periods) };
-        runs.push(simulate(&world, method, &simulation).map_err(|error| bad(&error))?);
+        let readings = entry.simulate(&world, &simulation, &Stop::default(), |_| true);
+        runs.push(readings.map_err(|error| bad(&error))?);
+        // Where walls and robot stand does not depend on the method.
+        stage.get_or_insert(world);
     }
-    let Some(&method) = options.methods.first() else { return Ok(()) };
-    // Where walls and robot stand does not depend on the method.
-    let world = world_of(options, &alcove, method).map_err(|error| bad(&error))?;
+    let Some(world) = stage else { return Ok(()) };
     write_mcap(file, &Stage::of(&world), &runs)
 }
 
@@ -148,7 +182,7 @@ const VARIED: [Method; 7] = [
 
 /// Set I with one setting after the other changed.
 fn vary(args: &Args, options: &SetOneOptions) -> Result<(), InputError> {
-    let methods = if args.methods.is_empty() { VARIED.to_vec() } else { options.methods.clone() };
+    let methods = if args.methods.is_empty() { Entry::all(VARIED) } else { options.methods.clone() };
     let options = SetOneOptions { methods, steps: 0, ..options.clone() };
     let mut found = Vec::new();
     for (name, with) in VARIATIONS {

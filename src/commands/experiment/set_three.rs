@@ -1,8 +1,12 @@
 //! `eeruf experiment set-three`: robots of one make near each other, over many placings.
 
-use eeruf_sim::experiments::set_three::{SetThreeOptions, Way, set_three};
+use std::path::Path;
+
+use eeruf_sim::Entry;
+use eeruf_sim::experiments::set_three::{SetThree, SetThreeOptions, set_three, usual};
 
 use super::common::{Common, bad, watched};
+use super::shard::{Part, Runs, runs_of};
 use crate::console::{print_line, tell};
 use crate::files::error::InputError;
 use crate::report::draw;
@@ -21,7 +25,7 @@ pub(crate) struct Args {
     /// Simulate only these methods, separated by commas; `driving` is eeruf_hopping by its settings for robots that
     /// drive. By default simultaneous, sequential, sequential_votes, dither, eeruf, eeruf_hopping, driving and flow
     #[arg(long = "method", value_name = "NAME,..", value_delimiter = ',')]
-    ways: Vec<Way>,
+    methods: Vec<Entry>,
     /// For how many periods each placing is simulated
     #[arg(long, value_name = "N", default_value_t = SetThreeOptions::default().periods)]
     #[arg(value_parser = clap::value_parser!(u32).range(10..=100_000))]
@@ -31,23 +35,54 @@ pub(crate) struct Args {
 const SEEDS: u64 = 200;
 
 pub(crate) fn run(args: &Args) -> Result<(), InputError> {
-    let options = SetThreeOptions {
+    let bad = bad("set-three");
+    let mut options = options(args);
+    if let Some(shard) = args.common.shard {
+        (options.first, options.seeds) = shard.seeds(options.first, options.seeds).map_err(|error| bad(&error))?;
+    }
+    let watched = watched(format!("{} placings by {} methods", options.seeds, options.methods.len()));
+    let found = set_three(&options, &watched).map_err(|error| bad(&error))?;
+    drop(watched);
+    match args.common.shard {
+        Some(shard) => Part::print(shard, words(args), &options.methods, &found.runs),
+        None => print(args, &found),
+    }
+}
+
+/// Prints the whole of the runs of all parts.
+pub(super) fn merged(args: &Args, file: &Path, runs: &Runs) -> Result<(), InputError> {
+    let options = options(args);
+    let runs = runs_of(&options.methods, options.seeds, file, runs)?;
+    print(args, &SetThree::of(&options, runs))
+}
+
+fn options(args: &Args) -> SetThreeOptions {
+    SetThreeOptions {
         seeds: args.common.seeds.unwrap_or(SEEDS),
         first: args.common.first,
         periods: args.periods,
-        ways: if args.ways.is_empty() { Way::USUAL.to_vec() } else { args.ways.clone() },
+        methods: if args.methods.is_empty() { usual() } else { args.methods.clone() },
         physics: args.common.physics,
         room: args.common.room(),
         gain: args.common.gain,
-    };
-    let watched = watched(format!("{} placings by {} methods", options.seeds, options.ways.len()));
-    let found = set_three(&options, &watched).map_err(|error| bad("set-three")(&error))?;
-    drop(watched);
-    args.common.draw("set-three", || draw::robots_of_one_make(&found))?;
+    }
+}
+
+/// The arguments that decide what is run.
+fn words(args: &Args) -> Vec<String> {
+    let mut words = args.common.words(SEEDS);
+    words.insert(0, "set-three".to_owned());
+    let methods: Vec<_> = options(args).methods.iter().map(Entry::to_string).collect();
+    words.extend(["--method".to_owned(), methods.join(","), "--periods".to_owned(), args.periods.to_string()]);
+    words
+}
+
+fn print(args: &Args, found: &SetThree) -> Result<(), InputError> {
+    args.common.draw("set-three", || draw::robots_of_one_make(found))?;
     if args.common.json {
-        print_line(to_json(&found))?;
+        print_line(to_json(found))?;
     } else {
-        tell(describe(&found))?;
+        tell(describe(found))?;
     }
     Ok(())
 }

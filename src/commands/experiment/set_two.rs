@@ -1,16 +1,18 @@
 //! `eeruf experiment set-two`: a LabMate drives through a course of thin poles, over many courses.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
+use clap::ValueEnum;
 use eeruf_core::Micros;
 use eeruf_sim::LabMate;
 use eeruf_sim::best_schedule_for;
 use eeruf_sim::experiments::set_two::{
-    Course, OdometryNoise, Pilots, SECOND_AHEAD, SECOND_BEHIND, SetTwoOptions, drive, set_two, speed_sweep,
+    Course, OdometryNoise, Pilots, SECOND_AHEAD, SECOND_BEHIND, SetTwo, SetTwoOptions, drive, set_two, speed_sweep,
 };
-use eeruf_sim::{Method, Point, Robot};
+use eeruf_sim::{Entry, Method, Point, Robot};
 
 use super::common::{BUDGET, Common, bad, designing, watched};
+use super::shard::{Part, Runs, runs_of};
 use crate::commands::hopping::Hopping;
 use crate::commands::methods::chosen;
 use crate::console::{print_line, tell};
@@ -61,10 +63,10 @@ pub(crate) struct Args {
     #[arg(long)]
     bodies: bool,
     /// Drive all courses at several top speeds instead, and give the highest that each method sustains
-    #[arg(long, conflicts_with = "speed")]
+    #[arg(long, conflicts_with_all = ["speed", "shard"])]
     sweep: bool,
     /// Drive the first course alone, by one --method, and write its readings as MCAP, for Foxglove and Rerun
-    #[arg(long, value_name = "FILE.mcap", conflicts_with_all = ["sweep", "svg", "png", "json"])]
+    #[arg(long, value_name = "FILE.mcap", conflicts_with_all = ["sweep", "svg", "png", "json", "shard"])]
     mcap: Option<PathBuf>,
 }
 
@@ -98,6 +100,65 @@ fn speed(text: &str) -> Result<f64, String> {
 
 pub(crate) fn run(args: &Args) -> Result<(), InputError> {
     let bad = bad("set-two");
+    let mut options = options(args)?;
+    let pilots = &args.pilots[..];
+    if let Some(file) = &args.mcap {
+        let ([entry], [pilots]) = (&options.methods[..], pilots) else {
+            return Err(bad(&"--mcap needs one --method and one --pilot, whose first course is written"));
+        };
+        let options = SetTwoOptions { pilots: *pilots, ..options.clone() };
+        let watched = watched(format!("course {}", options.first));
+        let driven = drive(&options, entry, options.first, &watched).map_err(|error| bad(&error))?;
+        return write_mcap(file, &Stage::driven(&driven.world, &driven.run.track), &[driven.readings]);
+    }
+    if let Some(shard) = args.common.shard {
+        (options.first, options.seeds) = shard.seeds(options.first, options.seeds).map_err(|error| bad(&error))?;
+    }
+    let watched = watched(format!("{} courses by {} methods", options.seeds, options.methods.len()));
+    let one = |of: &str| match pilots {
+        &[pilots] => Ok(SetTwoOptions { pilots, ..options.clone() }),
+        _ => Err(bad(&format!("{} pilots; {of} takes one", pilots.len()))),
+    };
+    if args.sweep {
+        let options = one("--sweep")?;
+        let steps = speed_sweep(&options, &SPEEDS, &watched).map_err(|error| bad(&error))?;
+        drop(watched);
+        let sweep = Sweep::of(&options, steps);
+        if args.common.json {
+            print_line(to_json(&sweep))?;
+        } else {
+            tell(sweep.describe())?;
+        }
+        return Ok(());
+    }
+    if let Some(shard) = args.common.shard {
+        let mut found = set_two(&one("--shard")?, &watched).map_err(|error| bad(&error))?;
+        drop(watched);
+        for run in found.runs.iter_mut().flatten() {
+            // Only pictures need them, and they take far more room than all else.
+            (run.track, run.grid) = (vec![], vec![]);
+        }
+        return Part::print(shard, words(args), &options.methods, &found.runs);
+    }
+    let mut each = Vec::new();
+    for &pilots in pilots {
+        let found = set_two(&SetTwoOptions { pilots, ..options.clone() }, &watched).map_err(|error| bad(&error))?;
+        args.common.draw(&picture_name(args.second_robot, pilots), || draw::courses(&found))?;
+        each.push(found);
+    }
+    drop(watched);
+    print(args, &each)
+}
+
+/// Prints the whole of the runs of all parts.
+pub(super) fn merged(args: &Args, file: &Path, runs: &Runs) -> Result<(), InputError> {
+    let mut options = options(args)?;
+    options.pilots = args.pilots.first().copied().unwrap_or_default();
+    let runs = runs_of(&options.methods, options.seeds, file, runs)?;
+    print(args, &[SetTwo::of(&options, runs)])
+}
+
+fn options(args: &Args) -> Result<SetTwoOptions, InputError> {
     let mut options = SetTwoOptions {
         seeds: args.common.seeds.unwrap_or(SEEDS),
         first: args.common.first,
@@ -114,50 +175,45 @@ pub(crate) fn run(args: &Args) -> Result<(), InputError> {
         ..SetTwoOptions::default()
     };
     if !args.methods.is_empty() {
-        options.methods = chosen(&args.methods, false);
+        options.methods = Entry::all(chosen(&args.methods, false));
     }
-    if options.methods.contains(&Method::EerufBest) {
+    if options.methods.iter().any(|entry| entry.method() == Method::EerufBest) {
         let mut watch = Watch::new();
         let robot = Robot { t_delta: options.t_delta, ..Course::random(0).robot() };
         let best = best_schedule_for(&robot, BUDGET, |progress| watch.go_on(|| designing(progress)));
-        options.best = Some(best.map_err(|error| bad(&error))?);
+        options.best = Some(best.map_err(|error| bad("set-two")(&error))?);
     }
-    let pilots = &args.pilots[..];
-    if let Some(file) = &args.mcap {
-        let ([method], [pilots]) = (&options.methods[..], pilots) else {
-            return Err(bad(&"--mcap needs one --method and one --pilot, whose first course is written"));
-        };
-        let options = SetTwoOptions { pilots: *pilots, ..options.clone() };
-        let watched = watched(format!("course {}", options.first));
-        let driven = drive(&options, *method, options.first, &watched).map_err(|error| bad(&error))?;
-        return write_mcap(file, &Stage::driven(&driven.world, &driven.run.track), &[driven.readings]);
+    Ok(options)
+}
+
+/// The arguments that decide what is run.
+fn words(args: &Args) -> Vec<String> {
+    let mut words = args.common.words(SEEDS);
+    words.insert(0, "set-two".to_owned());
+    let pilots: Vec<_> = args.pilots.iter().map(Pilots::to_string).collect();
+    let mut add = |option: &str, value: String| words.extend([option.to_owned(), value]);
+    if !args.methods.is_empty() {
+        let methods: Vec<_> = chosen(&args.methods, false).iter().map(Method::to_string).collect();
+        add("--method", methods.join(","));
     }
-    let watched = watched(format!("{} courses by {} methods", options.seeds, options.methods.len()));
-    if args.sweep {
-        let &[pilots] = pilots else { return Err(bad(&format!("{} pilots; --sweep takes one", pilots.len()))) };
-        let options = SetTwoOptions { pilots, ..options };
-        let steps = speed_sweep(&options, &SPEEDS, &watched).map_err(|error| bad(&error))?;
-        drop(watched);
-        let sweep = Sweep::of(&options, steps);
-        if args.common.json {
-            print_line(to_json(&sweep))?;
-        } else {
-            tell(sweep.describe())?;
-        }
-        return Ok(());
+    add("--pilot", pilots.join(","));
+    add("--hopping", args.hopping.name());
+    add("--speed", args.speed.to_string());
+    if let Some(corner) = args.second_robot.and_then(|corner| corner.to_possible_value()) {
+        add("--second-robot", corner.get_name().to_owned());
     }
-    let mut each = Vec::new();
-    for &pilots in pilots {
-        let found = set_two(&SetTwoOptions { pilots, ..options.clone() }, &watched).map_err(|error| bad(&error))?;
-        args.common.draw(&picture_name(args.second_robot, pilots), || draw::courses(&found))?;
-        each.push(found);
-    }
-    drop(watched);
-    match &each[..] {
+    let flags =
+        [("--no-odometry", args.no_odometry), ("--exact-odometry", args.exact_odometry), ("--bodies", args.bodies)];
+    words.extend(flags.into_iter().filter(|(_, given)| *given).map(|(flag, _)| flag.to_owned()));
+    words
+}
+
+fn print(args: &Args, each: &[SetTwo]) -> Result<(), InputError> {
+    match each {
         [found] if args.common.json => print_line(to_json(found))?,
         [found] => tell(describe(found))?,
-        _ if args.common.json => print_line(to_json(&SideBySide::of(&each)))?,
-        _ => tell(SideBySide::of(&each).describe())?,
+        _ if args.common.json => print_line(to_json(&SideBySide::of(each)))?,
+        _ => tell(SideBySide::of(each).describe())?,
     }
     Ok(())
 }

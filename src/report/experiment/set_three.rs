@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use eeruf_sim::experiments::Spread;
-use eeruf_sim::experiments::set_three::{Arrangement, Brief, Figures, Group, PERIOD, Place, SetThree, Way};
+use eeruf_sim::experiments::set_three::{Arrangement, Brief, Figures, Group, PERIOD, Place, SetThree};
 
 use crate::report::percent::{fine_percent, median};
 use crate::report::table::markdown;
@@ -27,9 +27,9 @@ pub(crate) fn describe(found: &SetThree) -> String {
         "right echoes/s",
         "blind",
     ];
-    _ = writeln!(text, "{}", markdown(&header, found.methods.iter().map(|(way, figures)| accepted(*way, figures))));
+    _ = writeln!(text, "{}", markdown(&header, found.methods.iter().map(|(way, figures)| accepted(way, figures))));
     let header = ["% of the time", "right", "unknown", "phantom", "too far", "faint"];
-    _ = writeln!(text, "\n{}", markdown(&header, found.methods.iter().map(|(way, figures)| belief(*way, figures))));
+    _ = writeln!(text, "\n{}", markdown(&header, found.methods.iter().map(|(way, figures)| belief(way, figures))));
     let mut header = vec!["others, % of accepted / belief right %".to_owned(), "placings".to_owned()];
     header.extend(found.methods.iter().map(|(way, _)| way.to_string()));
     _ = writeln!(text, "\n{}", markdown(&header, found.groups.iter().map(group)));
@@ -52,7 +52,7 @@ fn mean_95(spread: Option<Spread>, digits: usize) -> String {
     )
 }
 
-fn accepted(way: Way, figures: &Figures) -> Vec<String> {
+fn accepted(way: &str, figures: &Figures) -> Vec<String> {
     let p90 = figures.others_of_accepted.map_or_else(|| "-".to_owned(), |spread| fine_percent(spread.p90));
     vec![
         way.to_string(),
@@ -66,7 +66,7 @@ fn accepted(way: Way, figures: &Figures) -> Vec<String> {
     ]
 }
 
-fn belief(way: Way, figures: &Figures) -> Vec<String> {
+fn belief(way: &str, figures: &Figures) -> Vec<String> {
     let shares = [figures.belief_right, figures.unknown, figures.phantom, figures.too_far, figures.faint];
     [way.to_string()].into_iter().chain(shares.map(with_interval)).collect()
 }

@@ -2,9 +2,9 @@
 
 use std::fmt::Write as _;
 
+use eeruf_sim::Physics;
 use eeruf_sim::experiments::Conditions;
 use eeruf_sim::experiments::set_two::{Figures, MULTI_ECHO_CONSECUTIVE, SetTwo, SetTwoOptions, SpeedStep};
-use eeruf_sim::{Method, Physics};
 use serde::Serialize;
 
 use crate::report::json::in_order;
@@ -64,12 +64,12 @@ pub(crate) fn describe(found: &SetTwo) -> String {
         found.physics,
         found.conditions,
     );
-    let rows = found.methods.iter().map(|(method, figures)| row(*method, figures));
+    let rows = found.methods.iter().map(|(method, figures)| row(method, figures));
     _ = writeln!(text, "{}", markdown(&header, rows));
     text
 }
 
-fn row(method: Method, figures: &Figures) -> Vec<String> {
+fn row(method: &str, figures: &Figures) -> Vec<String> {
     vec![
         method.to_string(),
         finished(figures),
@@ -101,7 +101,7 @@ pub(crate) struct Sweep {
     steps: Vec<SpeedStep>,
     /// The highest speed at which nearly all courses are finished.
     #[serde(serialize_with = "in_order")]
-    borne_m_s: Vec<(Method, Option<f64>)>,
+    borne_m_s: Vec<(String, Option<f64>)>,
 }
 
 impl Sweep {
@@ -110,7 +110,8 @@ impl Sweep {
             let mut enough = steps.iter().filter(|step| step.finished[index].1 >= SUSTAINED);
             enough.next_back().map(|step| step.speed_m_s)
         };
-        let borne_m_s = options.methods.iter().enumerate().map(|(index, method)| (*method, sustained(index))).collect();
+        let borne_m_s =
+            options.methods.iter().enumerate().map(|(index, of)| (of.name().to_owned(), sustained(index))).collect();
         let second_robot_m = options.second_robot.map(|at| [at.x, at.y]);
         let SetTwoOptions { first, seeds, pilots, physics, bodies, .. } = *options;
         let conditions = Conditions::of(options.room.as_ref(), options.gain);

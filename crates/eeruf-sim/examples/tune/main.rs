@@ -41,8 +41,10 @@ fn pilots(folder: &Path) -> Result<String, Box<dyn Error>> {
     let mut log = Log::open(folder, &search::ROUNDS)?;
     let mut found: Vec<(Method, Tuned)> = Vec::new();
     // Those that are driven by default first, as they are what a search that is stopped early should have.
-    let (first, others): (Vec<_>, Vec<_>) =
-        Method::ALL.into_iter().filter(|&of| steered_as(of) == of).partition(|of| options.methods.contains(of));
+    let (first, others): (Vec<_>, Vec<_>) = Method::ALL
+        .into_iter()
+        .filter(|&of| steered_as(of) == of)
+        .partition(|&of| options.methods.contains(&of.into()));
     for method in first.into_iter().chain(others) {
         let tuned = Search { rounds: &search::ROUNDS, options: &options, method }.run(&mut log)?;
         eprintln!("{}", print::row(method, &tuned));

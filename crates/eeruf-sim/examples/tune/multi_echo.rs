@@ -3,7 +3,7 @@
 use eeruf_core::Micros;
 use eeruf_sim::experiments::ExperimentError;
 use eeruf_sim::experiments::set_one::{MultiEcho, SetOneOptions, set_one};
-use eeruf_sim::{Method, Physics};
+use eeruf_sim::{Entry, Method, Physics};
 
 /// On how many alcoves, from 0 on.
 const ALCOVES: u64 = 100;
@@ -28,7 +28,7 @@ pub(crate) fn line() -> Result<String, ExperimentError> {
 
 /// What is wrong and what is lost together, as shares: of the median alcove and of the one that one in ten exceeds.
 fn cost(multi_echo: MultiEcho, seeds: u64) -> Result<f64, ExperimentError> {
-    let methods = vec![Method::MultiEcho];
+    let methods = Entry::all([Method::MultiEcho]);
     let asked = SetOneOptions {
         seeds,
         first: 0,

@@ -87,7 +87,7 @@ impl Search<'_> {
             let asked = SetTwoOptions {
                 seeds: courses,
                 first,
-                methods: vec![self.method],
+                methods: vec![self.method.into()],
                 second_robot,
                 pilots: Pilots::Given(candidate(pilot).piloting()),
                 ..self.options.clone()

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use eeruf_sim::experiments::set_two::{Pilots, SetTwoOptions, set_two, steered_as};
-use eeruf_sim::{Method, Physics};
+use eeruf_sim::{Entry, Method, Physics};
 
 use crate::draw::candidate;
 use crate::log::Log;
@@ -41,7 +41,7 @@ fn a_small_search_takes_the_pilot_that_finishes_most_and_prints_it() {
         let ahead = Some(eeruf_sim::experiments::set_two::SECOND_AHEAD);
         let each = places.into_iter().chain([ahead]).map(|second_robot| {
             let pilots = Pilots::Given(candidate(pilot).piloting());
-            let methods = vec![Method::Eeruf];
+            let methods = Entry::all([Method::Eeruf]);
             let physics = Physics::PLAIN;
             let asked =
                 SetTwoOptions { first, seeds, methods, second_robot, pilots, physics, ..SetTwoOptions::default() };

@@ -3,7 +3,10 @@
 use core::fmt;
 use core::ops::Range;
 
-use crate::{simulation::SimulationError, world::WorldError};
+use crate::{
+    simulation::{Entry, SimulationError},
+    world::WorldError,
+};
 
 /// Why an experiment cannot be run.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,6 +23,11 @@ pub enum ExperimentError {
     },
     /// Not one method.
     NoMethods,
+    /// Two methods of one name.
+    Twice {
+        /// The name.
+        name: String,
+    },
     /// A world of the experiment.
     World(WorldError),
     /// A simulation of the experiment.
@@ -35,6 +43,17 @@ pub(super) fn numbers(first: u64, seeds: u64) -> Result<Range<u64>, ExperimentEr
     }
     let end = first.checked_add(seeds).ok_or(ExperimentError::Numbers { first, seeds })?;
     Ok(first..end)
+}
+
+/// Checks that there is a method, and none twice.
+pub(super) fn distinct(methods: &[Entry]) -> Result<(), ExperimentError> {
+    let mut names: Vec<_> = methods.iter().map(Entry::name).collect();
+    names.sort_unstable();
+    match names.windows(2).find(|pair| pair[0] == pair[1]) {
+        _ if names.is_empty() => Err(ExperimentError::NoMethods),
+        Some(pair) => Err(ExperimentError::Twice { name: pair[0].to_owned() }),
+        None => Ok(()),
+    }
 }
 
 impl From<WorldError> for ExperimentError {
@@ -60,6 +79,7 @@ impl fmt::Display for ExperimentError {
                 write!(f, "{seeds} seeds from {first} on; expected a last one of at most {}", u64::MAX - 1)
             }
             Self::NoMethods => write!(f, "no methods; expected at least one"),
+            Self::Twice { name } => write!(f, "two methods `{name}`; expected another name for one of them"),
             Self::World(error) => error.fmt(f),
             Self::Simulation(error) => error.fmt(f),
             Self::Stopped => write!(f, "stopped"),

@@ -3,6 +3,7 @@
 
 mod by_name;
 mod conditions;
+mod difference;
 mod error;
 mod progress;
 pub mod rooms;
@@ -12,6 +13,7 @@ pub mod set_two;
 mod spread;
 
 pub use conditions::Conditions;
+pub use difference::Difference;
 pub use error::ExperimentError;
 pub use spread::Spread;
 

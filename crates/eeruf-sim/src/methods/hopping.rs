@@ -5,7 +5,7 @@ use eeruf_core::{
     hopping::{HoppingCode, HoppingListening, HoppingRing, HoppingSchedule},
 };
 
-use super::ring_runner::{RingStart, Started};
+use super::ring_runner::{RingStart, StartError, Started};
 use crate::world::Robot;
 
 /// By how much crosstalk moves at least from phase to phase: 90 us more than the tracker's `T_delta`, for jitter and
@@ -27,11 +27,20 @@ pub(super) fn hopping<'s>(start: &RingStart<'s>) -> Started<'s> {
 
 fn ring<'s, const K: usize>(start: &RingStart<'s>) -> Started<'s> {
     let Robot { ref sensors, period, window, blanking, neighbours, .. } = *start.robot;
-    // Each phase gives one vote.
-    let code = HoppingCode::new(sensors.len(), start.hopping.tracker.votes, STEP)?;
-    let stands = start.hopping.solo_rate > 0;
-    let turns = Micros::new(if stands { TURN_US * sensors.len() as u32 } else { 0 });
-    let schedule = HoppingSchedule::<K>::spread(code, period.max(turns))?;
+    let schedule = if let Some(given) = start.hopping_schedule {
+        if given.code().sensors() != sensors.len() {
+            let (schedule, sensors) = (given.code().sensors(), sensors.len());
+            return Err(StartError::Sensors { schedule, sensors });
+        }
+        let lags = core::array::from_fn(|sensor| given.t_lag(sensor).unwrap_or_default());
+        HoppingSchedule::<K>::new(*given.code(), given.period(), lags)?
+    } else {
+        // Each phase gives one vote.
+        let code = HoppingCode::new(sensors.len(), start.hopping.tracker.votes, STEP)?;
+        let stands = start.hopping.solo_rate > 0;
+        let turns = Micros::new(if stands { TURN_US * sensors.len() as u32 } else { 0 });
+        HoppingSchedule::<K>::spread(code, period.max(turns))?
+    };
     let settings = start.hopping.with_neighbours(neighbours);
     let listening = HoppingListening::new(window).with_blanking(blanking);
     let seed = start.random.of(0).bits() as u32;

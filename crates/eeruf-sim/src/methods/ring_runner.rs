@@ -6,7 +6,7 @@ use eeruf_core::{
     adaptation::LadderError,
     conditions::Violation,
     flow::{FlowPlan, FlowSettings},
-    hopping::{HoppingError, HoppingPlan, HoppingSettings, Weighed},
+    hopping::{HoppingError, HoppingPlan, HoppingSchedule, HoppingSettings, Weighed},
     judge::{AgreementRing, Judge},
     plan::{EachInUse, ImmediateRefiring, Plan, ScheduledFiring},
 };
@@ -150,6 +150,8 @@ pub(crate) struct RingStart<'s> {
     pub(crate) plan: &'s FiringPlan,
     /// How a hopping ring fires and believes.
     pub(crate) hopping: HoppingSettings,
+    /// What a hopping ring fires by; `None` for even lags.
+    pub(crate) hopping_schedule: Option<HoppingSchedule<MAX_SENSORS>>,
     /// Settings of a flow ring.
     pub(crate) flow: FlowSettings,
     pub(crate) random: Random,
@@ -167,6 +169,13 @@ pub(crate) enum StartError {
     Ladder(LadderError),
     /// It cannot hop as asked.
     Hopping(HoppingError),
+    /// A schedule for another number of sensors.
+    Sensors {
+        /// Of the schedule.
+        schedule: usize,
+        /// Of the robot.
+        sensors: usize,
+    },
     /// Its first period cannot be fired.
     Own(OwnError),
 }

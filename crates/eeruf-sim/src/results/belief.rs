@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::readings::{Cause, Readings, SensorId};
 
@@ -13,7 +13,7 @@ pub const BELIEF_LASTS_S: f64 = 0.6;
 ///
 /// A believed reading counts from its firing on for [`BELIEF_LASTS_S`], carried on by odometry, unless another takes
 /// its place. At each firing of the sensor it is compared with what the sensor would read alone there.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Belief {
     /// Right within the tolerance: an echo at the reference, or silence where the sensor alone hears none.
     #[serde(rename = "belief_right")]

@@ -3,6 +3,7 @@
 
 mod attribution;
 mod belief;
+mod parts;
 mod quantiles;
 mod readings;
 mod summary;

@@ -1,7 +1,7 @@
 //! How good a method was: the figures that are always reported together, since each alone is easily made good at the
 //! cost of the others.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::belief::Belief;
 use super::quantiles::quantile;
@@ -18,7 +18,7 @@ pub const DEFAULT_TOLERANCE_US: f64 = 500.0;
 /// that nothing is in range), *wrong* if what it says differs from the reference by more than the tolerance or says
 /// echo where the sensor alone hears none or the reverse, and *good* if the firing's earliest echo was not wrong,
 /// believed or not.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Summary {
     /// The method.
     pub method: Method,
@@ -64,7 +64,7 @@ pub struct Summary {
 
 /// How old a sensor's last accepted reading is, in milliseconds, whenever it fires: from the firing that the accepted
 /// reading came from (from the start of the simulation before the first) to the present firing. At best one period.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Age {
     /// Half of the time no older than this.
     #[serde(rename = "age_ms")]

@@ -20,11 +20,12 @@ pub(crate) fn simulate_in_turn(
     each: u32,
     method: Method,
     options: &Options,
+    mut own: Own,
     mut keep_going: impl FnMut(f64) -> bool,
 ) -> Result<Readings, SimulationError> {
     let Some(first) = worlds.first() else { return Err(SimulationError::Stopped) };
     let kinematics = Planned(first);
-    let mut own = Own::new();
+    own.check(first.robots().len())?;
     let plans = plans(first, method, options, &kinematics, &own)?;
     let (end, room) = (end_of(first, options.periods), expected_readings(first, options.periods));
     let stop = Stop::default();

@@ -140,6 +140,7 @@ impl SimulationError {
             StartError::Unverified(violation) => Self::Unverified { robot, violation },
             StartError::Ladder(error) => Self::Ladder { robot, error },
             StartError::Hopping(error) => Self::Hopping { robot, error },
+            StartError::Sensors { schedule, sensors } => Self::Sensors { robot, schedule, sensors },
             StartError::Own(error) => Self::Own { robot, what: "firing", at_s: 0.0, error },
         }
     }

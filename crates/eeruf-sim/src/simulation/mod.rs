@@ -4,6 +4,7 @@
 mod changing;
 mod channels;
 mod engine;
+mod entry;
 mod error;
 mod kinematics;
 mod lock_step;
@@ -18,6 +19,7 @@ pub(crate) use changing::simulate_in_turn;
 pub use engine::expected_readings;
 pub(crate) use engine::run;
 pub use engine::{Filter, Filtered, FiredReading, Own};
+pub use entry::{Entry, MakeOwn};
 pub use error::SimulationError;
 pub(crate) use kinematics::Kinematics;
 pub use lock_step::LockStep;

@@ -12,7 +12,7 @@ use super::kinematics::{Kinematics, Planned};
 use super::options::Options;
 use super::steered::Steered;
 use crate::{
-    geometry::Moment,
+    geometry::{Moment, Pose},
     methods::Method,
     results::Readings,
     scene::Scene,
@@ -102,13 +102,19 @@ impl Simulation {
         Self::until(world, method, options, own, None, stop)
     }
 
-    /// The same, but firings after `options.periods` periods of the first robot do not count.
+    /// The same with [`Own`], but firings after `options.periods` periods of the first robot do not count.
     ///
     /// # Errors
     /// As [`simulate`](crate::simulate()).
-    pub fn ending(world: Arc<World>, method: Method, options: &Options, stop: Stop) -> Result<Self, SimulationError> {
+    pub fn ending(
+        world: Arc<World>,
+        method: Method,
+        options: &Options,
+        own: Own,
+        stop: Stop,
+    ) -> Result<Self, SimulationError> {
         let end = end_of(&world, options.periods);
-        Self::until(world, method, options, Own::new(), Some(end), stop)
+        Self::until(world, method, options, own, Some(end), stop)
     }
 
     fn until(
@@ -238,6 +244,24 @@ impl Simulation {
         Ok(())
     }
 
+    /// Puts a robot at another place, whatever is in between; it goes on at the speeds set last, or stands. Readings on
+    /// either side of that are compared as if odometry had followed the leap. Nobody looks whether it stands free there.
+    ///
+    /// # Errors
+    /// No such robot, or a pose beyond 10^6 m.
+    pub fn set_pose(&mut self, robot: usize, pose: Pose) -> Result<(), SimulationError> {
+        self.known(robot)?;
+        let place = pose.translation.vector;
+        for (what, value) in [("x_m", place.x), ("y_m", place.y), ("heading_rad", pose.rotation.angle())] {
+            if !(-1e6..=1e6).contains(&value) {
+                return Err(SimulationError::Number { what, value, expected: "-1e6 to 1e6" });
+            }
+        }
+        let now = self.now;
+        self.under_way.with_dependent_mut(|_, events| events.steer().place(robot, now, pose));
+        Ok(())
+    }
+
     /// A robot's ring fires by another schedule from the end of its present period on, as late as keeps the intervals
     /// of both. Readings before and after the change are not compared.
     ///
@@ -363,7 +387,7 @@ impl Simulation {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{acoustics::Transducer, geometry::Pose, scene::Air, scene::Scene, world::Noise, world::Robot};
+    use crate::{acoustics::Transducer, scene::Air, scene::Scene, world::Noise, world::Robot};
 
     #[test]
     fn where_a_steered_robot_was_is_known_exactly_for_ten_seconds_and_then_forgotten() {

@@ -1,6 +1,10 @@
 //! What can be asked for besides the world and the method.
 
-use eeruf_core::{flow::FlowSettings, hopping::HoppingSettings};
+use eeruf_core::{
+    MAX_SENSORS,
+    flow::FlowSettings,
+    hopping::{HoppingSchedule, HoppingSettings},
+};
 
 use crate::world::AnySchedule;
 
@@ -20,6 +24,9 @@ pub struct Options {
     /// How [`Method::EerufHopping`](crate::Method::EerufHopping) fires and believes; how many sensors are neighbours,
     /// the robot says. The default is [`HoppingSettings::BALANCED`].
     pub hopping: HoppingSettings,
+    /// What [`Method::EerufHopping`](crate::Method::EerufHopping) fires by, of as many
+    /// sensors as every robot has; `None` for even lags over the robot's period.
+    pub hopping_schedule: Option<HoppingSchedule<MAX_SENSORS>>,
     /// Settings of [`Method::Flow`](crate::Method::Flow); the robot's period is its shortest cycle. The
     /// default is [`FlowSettings::DEFAULT`].
     pub flow: FlowSettings,
@@ -33,6 +40,7 @@ impl Default for Options {
             best: None,
             median_of: 3,
             hopping: HoppingSettings::BALANCED,
+            hopping_schedule: None,
             flow: FlowSettings::DEFAULT,
         }
     }

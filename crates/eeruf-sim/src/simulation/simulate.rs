@@ -1,6 +1,6 @@
 //! Running a world under a method.
 
-use super::engine;
+use super::engine::{self, Own};
 use super::error::SimulationError;
 use super::kinematics::Planned;
 use super::options::Options;
@@ -52,5 +52,5 @@ pub fn simulate_until(
     stop: &Stop,
     keep_going: impl FnMut(f64) -> bool,
 ) -> Result<Readings, SimulationError> {
-    engine::run(world, method, options, &mut Planned(world), stop, keep_going)
+    engine::run(world, method, options, Own::new(), &mut Planned(world), stop, keep_going)
 }

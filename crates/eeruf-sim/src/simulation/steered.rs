@@ -55,6 +55,16 @@ impl<'w> Steered<'w> {
         legs.push_back(Leg { since: now, pose, v_m_s, w_rad_s });
     }
 
+    /// From now on a robot is at another place, at the speeds that it was steered by last.
+    pub(super) fn place(&mut self, robot: usize, now: u64, pose: Pose) {
+        let legs = &mut self.legs[robot].legs;
+        let (v_m_s, w_rad_s) = legs.back().map_or((0.0, 0.0), |last| (last.v_m_s, last.w_rad_s));
+        self.set(robot, now, v_m_s, w_rad_s);
+        if let Some(last) = self.legs[robot].legs.back_mut() {
+            last.pose = pose;
+        }
+    }
+
     /// Whether it is known where a robot was then.
     pub(super) fn knows(&self, robot: usize, then: u64) -> bool {
         self.legs[robot].known_since <= then

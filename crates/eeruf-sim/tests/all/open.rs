@@ -39,7 +39,8 @@ fn the_blocks_of_a_simulation_together_are_the_simulation_bit_for_bit() {
         let options = Options { seed: Some(5), ..Options::periods(40) };
         let whole = simulate(&world, Method::Conventional, &options).unwrap();
         let mut simulation =
-            Simulation::ending(Arc::clone(&world), Method::Conventional, &options, Stop::default()).unwrap();
+            Simulation::ending(Arc::clone(&world), Method::Conventional, &options, Own::new(), Stop::default())
+                .unwrap();
         let mut blocks = Vec::new();
         while !simulation.is_over() {
             blocks.push(simulation.step_periods(7, |_| true).unwrap());
@@ -72,7 +73,8 @@ fn steps_to_the_next_reading_together_are_the_simulation_bit_for_bit() {
         let options = Options { seed: Some(5), ..Options::periods(20) };
         let whole = simulate(&world, Method::Conventional, &options).unwrap();
         let mut simulation =
-            Simulation::ending(Arc::clone(&world), Method::Conventional, &options, Stop::default()).unwrap();
+            Simulation::ending(Arc::clone(&world), Method::Conventional, &options, Own::new(), Stop::default())
+                .unwrap();
         let (mut steps, mut time_s) = (Vec::new(), 0.0);
         while !simulation.is_over() {
             let step = simulation.step_to_reading(1.0, |_| true).unwrap();

@@ -3,7 +3,7 @@
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use eeruf_sim::{
-    BestSchedule, GainProfile, Method, Physics, Room, Transducer, best_schedule_for,
+    BestSchedule, Entry, GainProfile, Method, Physics, Room, Transducer, best_schedule_for,
     experiments::{
         ExperimentError,
         set_one::{Alcove, Figures, READINGS, SetOne, SetOneOptions, set_one},
@@ -15,7 +15,7 @@ const METHODS: [Method; 6] =
     [Method::Conventional, Method::Comparison, Method::Eeruf, Method::EerufBest, Method::Adaptive, Method::MultiEcho];
 
 fn asked(seeds: u64, readings: u32, methods: &[Method], best: Option<BestSchedule>) -> SetOneOptions {
-    SetOneOptions { seeds, readings, methods: methods.to_vec(), best, ..SetOneOptions::default() }
+    SetOneOptions { seeds, readings, methods: Entry::all(methods.iter().copied()), best, ..SetOneOptions::default() }
 }
 
 fn run(seeds: u64, readings: u32, methods: &[Method]) -> SetOne {
@@ -28,7 +28,7 @@ fn run_under(physics: Physics, seeds: u64, readings: u32, methods: &[Method]) ->
 }
 
 fn of(table: &SetOne, method: Method) -> Figures {
-    table.methods.iter().find(|(of, _)| *of == method).unwrap().1
+    table.methods.iter().find(|(of, _)| of == method.as_str()).unwrap().1
 }
 
 #[test]

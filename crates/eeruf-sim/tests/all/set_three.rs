@@ -1,28 +1,30 @@
 //! Set III: robots of one make.
 
-use eeruf_sim::experiments::set_three::{Placing, SetThreeOptions, Way, set_three, world_of};
+use eeruf_sim::experiments::set_three::{Placing, SetThreeOptions, set_three, world_of};
 use eeruf_sim::*;
 
-const WAYS: [Way; 2] = [Way::Method(Method::Sequential), Way::Driving];
+fn ways() -> [Entry; 2] {
+    [Method::Sequential.into(), Entry::driving()]
+}
 
-fn asked(seeds: u64, ways: &[Way]) -> SetThreeOptions {
-    SetThreeOptions { seeds, periods: 20, ways: ways.to_vec(), ..SetThreeOptions::default() }
+fn asked(seeds: u64, methods: &[Entry]) -> SetThreeOptions {
+    SetThreeOptions { seeds, periods: 20, methods: methods.to_vec(), ..SetThreeOptions::default() }
 }
 
 #[test]
 fn figures_depend_on_neither_threads_nor_other_methods() {
-    let on = |threads, ways: &[Way]| {
+    let on = |threads, methods: &[Entry]| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| set_three(&asked(4, ways), &|_| true)).unwrap()
+        pool.install(|| set_three(&asked(4, methods), &|_| true)).unwrap()
     };
-    let both = on(1, &WAYS);
-    assert_eq!(both, on(2, &WAYS));
-    assert_eq!(on(2, &WAYS[1..]).methods[0], both.methods[1]);
+    let both = on(1, &ways());
+    assert_eq!(both, on(2, &ways()));
+    assert_eq!(on(2, &ways()[1..]).methods[0], both.methods[1]);
 }
 
 #[test]
 fn json_names_ways_and_groups() {
-    let json = serde_json::to_value(set_three(&asked(7, &WAYS), &|_| true).unwrap()).unwrap();
+    let json = serde_json::to_value(set_three(&asked(7, &ways()), &|_| true).unwrap()).unwrap();
     for way in ["sequential", "driving"] {
         let figures = &json["methods"][way];
         let share = |name: &str| figures[name]["mean"].as_f64().unwrap();
@@ -48,8 +50,9 @@ fn robots_out_of_reach_take_nothing_from_each_other() {
     for (robot, x) in placing.robots.iter_mut().zip([-40.0, 40.0]) {
         robot.pose = Pose::new(Vector::new(x, 0.0), 0.3);
     }
-    let world = world_of(&asked(1, &WAYS), &placing).unwrap();
-    let readings = simulate(&world, Method::Simultaneous, &Options::periods(20)).unwrap();
+    let method = Method::Simultaneous;
+    let world = world_of(&asked(1, &ways()), &placing, &method.into()).unwrap();
+    let readings = simulate(&world, method, &Options::periods(20)).unwrap();
     let heard = readings.paths.iter().filter(|path| path.emitter.robot != path.receiver.robot).count();
     assert_eq!(heard, 0);
 }
@@ -57,7 +60,7 @@ fn robots_out_of_reach_take_nothing_from_each_other() {
 #[test]
 fn nothing_to_do_is_refused() {
     let error = |asked: &SetThreeOptions| set_three(asked, &|_| true).unwrap_err().to_string();
-    assert_eq!(error(&asked(0, &WAYS)), "0 seeds; expected at least one");
+    assert_eq!(error(&asked(0, &ways())), "0 seeds; expected at least one");
     assert_eq!(error(&asked(1, &[])), "no methods; expected at least one");
-    assert_eq!(set_three(&asked(2, &WAYS), &|_| false).unwrap_err().to_string(), "stopped");
+    assert_eq!(set_three(&asked(2, &ways()), &|_| false).unwrap_err().to_string(), "stopped");
 }

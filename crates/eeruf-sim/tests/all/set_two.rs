@@ -3,7 +3,7 @@
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use eeruf_sim::{
-    LabMate, Method, Physics, Point,
+    Entry, LabMate, Method, Physics, Point,
     experiments::{
         ExperimentError,
         set_two::{
@@ -14,11 +14,11 @@ use eeruf_sim::{
 };
 
 fn options(seeds: u64, methods: &[Method]) -> SetTwoOptions {
-    SetTwoOptions { seeds, methods: methods.to_vec(), ..SetTwoOptions::default() }
+    SetTwoOptions { seeds, methods: Entry::all(methods.iter().copied()), ..SetTwoOptions::default() }
 }
 
 fn of(found: &SetTwo, method: Method) -> Figures {
-    found.methods.iter().find(|(of, _)| *of == method).unwrap().1
+    found.methods.iter().find(|(of, _)| of == method.as_str()).unwrap().1
 }
 
 #[test]
@@ -153,9 +153,9 @@ fn a_sweep_tells_at_each_speed_what_a_run_at_that_speed_tells() {
         let labmate = LabMate { speed_max_m_s: step.speed_m_s, ..LabMate::default() };
         let found = set_two(&SetTwoOptions { labmate, ..asked.clone() }, &|_| true).unwrap();
         for (place, (method, figures)) in found.methods.iter().enumerate() {
-            assert_eq!(step.finished[place], (*method, figures.finished as f64 / 4.0));
-            assert_eq!(step.finished_95[place], (*method, figures.finished_95));
-            assert_eq!(step.mean_speed_m_s[place], (*method, figures.mean_speed_m_s));
+            assert_eq!(step.finished[place], (method.clone(), figures.finished as f64 / 4.0));
+            assert_eq!(step.finished_95[place], (method.clone(), figures.finished_95));
+            assert_eq!(step.mean_speed_m_s[place], (method.clone(), figures.mean_speed_m_s));
             assert!(figures.top_speed_m_s <= step.speed_m_s && figures.mean_speed_m_s < figures.top_speed_m_s);
         }
     }

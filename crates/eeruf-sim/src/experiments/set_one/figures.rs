@@ -2,7 +2,8 @@
 
 use serde::Serialize;
 
-use super::step::{Latency, NewStep, Steps};
+use super::step::{Latency, NewStep};
+use super::table::Run;
 use crate::{
     experiments::spread::{Spread, interval_95, mean},
     results::Summary,
@@ -61,12 +62,14 @@ pub struct Figures {
 }
 
 impl Figures {
-    pub(super) fn of(summaries: &[Summary], steps: &[Steps]) -> Self {
-        let spread = |value: fn(&Summary) -> Option<f64>| Spread::of(summaries.iter().filter_map(value));
-        let starved: Vec<_> = summaries.iter().map(|summary| summary.starved as f64).collect();
-        let mean_of = |value: fn(&Summary) -> usize| {
-            mean(&summaries.iter().map(|summary| value(summary) as f64).collect::<Vec<_>>())
-        };
+    /// The figures of one method's runs.
+    pub fn of(runs: &[Run]) -> Self {
+        let summaries = || runs.iter().map(|run| &run.summary);
+        let spread = |value: fn(&Summary) -> Option<f64>| Spread::of(summaries().filter_map(value));
+        let starved: Vec<_> = summaries().map(|summary| summary.starved as f64).collect();
+        let mean_of =
+            |value: fn(&Summary) -> usize| mean(&summaries().map(|summary| value(summary) as f64).collect::<Vec<_>>());
+        let steps = || runs.iter().map(|run| &run.steps);
         Self {
             wrong_of_all: spread(|s| Some(s.wrong_of_all)),
             crosstalk_of_all: spread(|s| Some(s.crosstalk_of_all)),
@@ -88,9 +91,9 @@ impl Figures {
             starved_95: interval_95(&starved, |sample| mean(sample)),
             blind: mean_of(|summary| summary.blind),
             starved_in_part: mean_of(|summary| summary.starved_in_part),
-            nearer: Latency::of(steps.iter().flat_map(|steps| &steps.nearer)),
-            farther: Latency::of(steps.iter().flat_map(|steps| &steps.farther)),
-            new_step: NewStep::of(steps.iter().flat_map(|steps| &steps.new_ms)),
+            nearer: Latency::of(steps().flat_map(|steps| &steps.nearer)),
+            farther: Latency::of(steps().flat_map(|steps| &steps.farther)),
+            new_step: NewStep::of(steps().flat_map(|steps| &steps.new_ms)),
         }
     }
 }

@@ -16,5 +16,5 @@ pub use alcove::{Alcove, RADIUS_M, SENSORS, SPACING_DEG};
 pub use figures::Figures;
 pub use multi_echo::MultiEcho;
 pub use options::{READINGS, SetOneOptions};
-pub use step::{Latency, NewStep, STEP_M};
-pub use table::{SetOne, set_one, world_of};
+pub use step::{Latency, NewStep, STEP_M, Steps};
+pub use table::{Run, SetOne, set_one, world_of};

@@ -9,6 +9,7 @@ use crate::{
     experiments::FIRST,
     methods::{BestSchedule, Method},
     scene::Room,
+    simulation::Entry,
     world::Noise,
 };
 
@@ -29,10 +30,10 @@ pub struct SetOneOptions {
     /// 22: to and fro in each phase of a cycle of 11.
     pub steps: u32,
     /// The methods. The default is [`Method::usual`].
-    pub methods: Vec<Method>,
+    pub methods: Vec<Entry>,
     /// What [`Method::EerufBest`] fires by, see [`best_schedule_for`](crate::best_schedule_for).
     pub best: Option<BestSchedule>,
-    /// How [`Method::EerufHopping`] fires and believes.
+    /// How [`Method::EerufHopping`] fires and believes, unless its entry says.
     pub hopping: HoppingSettings,
     /// Which effects the alcoves have. The default is [`Physics::DEFAULT`].
     pub physics: Physics,
@@ -57,7 +58,7 @@ impl Default for SetOneOptions {
             first: FIRST,
             readings: READINGS,
             steps: 22,
-            methods: Method::usual().collect(),
+            methods: Entry::all(Method::usual()),
             best: None,
             hopping: HoppingSettings::BALANCED,
             physics: Physics::DEFAULT,

@@ -1,12 +1,11 @@
 //! How soon a method sees that the back wall has come nearer or gone away.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::{
     experiments::spread::interval_95,
-    methods::Method,
     results::{DEFAULT_TOLERANCE_US, Readings, quantile},
-    simulation::{Options, SimulationError, simulate_in_turn},
+    simulation::{Entry, Options, SimulationError, simulate_in_turn},
     world::World,
 };
 
@@ -19,14 +18,17 @@ const NEVER: u32 = 64;
 /// Only sensors are counted whose echo moves by more, in microseconds.
 const MOVED_US: f64 = 1000.0;
 
-/// For each step and sensor that it concerns, in which period after it the first right reading was accepted.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Steps {
-    pub(super) nearer: Vec<Option<u32>>,
-    pub(super) farther: Vec<Option<u32>>,
+/// For each step and sensor that it concerns, in which period after it the first right reading was accepted; `None` for
+/// never.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Steps {
+    /// For the steps nearer.
+    pub nearer: Vec<Option<u32>>,
+    /// For the steps away.
+    pub farther: Vec<Option<u32>>,
     /// For the first step, which brings the wall nearer than it ever was: how many milliseconds after it the first
     /// right reading was heard and accepted.
-    pub(super) new_ms: Vec<Option<f64>>,
+    pub new_ms: Vec<Option<f64>>,
 }
 
 /// How soon steps are seen, over all steps and sensors, in periods: 1 is the period of the step.
@@ -92,12 +94,13 @@ impl NewStep {
 pub(super) fn steps(
     worlds: &[World; 2],
     steps: u32,
-    method: Method,
+    entry: &Entry,
     options: &Options,
     go_on: impl Fn() -> bool,
 ) -> Result<Steps, SimulationError> {
-    let options = Options { periods: STAYS.saturating_mul(steps.saturating_add(1)), ..*options };
-    let readings = simulate_in_turn(worlds, STAYS, method, &options, |_| go_on())?;
+    let options = Options { periods: STAYS.saturating_mul(steps.saturating_add(1)), ..entry.options(*options) };
+    let own = entry.own(worlds[0].robots())?;
+    let readings = simulate_in_turn(worlds, STAYS, entry.method(), &options, own, |_| go_on())?;
     // A world has at least one robot.
     let robot = &worlds[0].robots()[0];
     let period_s = f64::from(robot.period.as_micros()) * 1e-6;

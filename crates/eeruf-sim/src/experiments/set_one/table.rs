@@ -1,21 +1,21 @@
 //! Set I over many geometries: every method's figures, and how they spread.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::alcove::Alcove;
 use super::figures::Figures;
 use super::options::SetOneOptions;
 use super::step::{self, Steps};
-use crate::experiments::by_name::by_name;
+use crate::experiments::by_name::{by_name, named, transposed};
 use crate::experiments::conditions::Conditions;
-use crate::experiments::error::{ExperimentError, numbers};
+use crate::experiments::error::{ExperimentError, distinct, numbers};
 use crate::experiments::progress::Progress;
 use crate::{
     acoustics::Physics,
     methods::Method,
     results::Summary,
-    simulation::{Options, simulate_while},
-    threads::sweep,
+    simulation::{Entry, Options},
+    threads::{Stop, sweep},
     world::{Robot, World, WorldError},
 };
 
@@ -39,7 +39,22 @@ pub struct SetOne {
     pub periods: u32,
     /// The methods in the order asked for, with their figures.
     #[serde(serialize_with = "by_name")]
-    pub methods: Vec<(Method, Figures)>,
+    pub methods: Vec<(String, Figures)>,
+    /// For each method, the result in each geometry.
+    #[serde(skip)]
+    pub runs: Vec<Vec<Run>>,
+}
+
+/// The result of one geometry under one method.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Run {
+    /// The geometry's number, which seeds all that is random.
+    pub seed: u64,
+    /// The figures of the alcove as it is.
+    pub summary: Summary,
+    /// Those of its back wall going to and fro.
+    #[serde(flatten)]
+    pub steps: Steps,
 }
 
 /// Runs Set I: every geometry under each method, on all cores.
@@ -48,80 +63,81 @@ pub struct SetOne {
 /// `false` the run stops. The result does not depend on the number of threads.
 ///
 /// # Errors
-/// [`ExperimentError`] for no geometries, more than there are numbers for, or no methods, for a ring that cannot be,
-/// and if it was stopped.
+/// [`ExperimentError`] for no geometries, more than there are numbers for, no methods or two of one name, for a ring
+/// that cannot be, and if it was stopped.
 ///
 /// ```
-/// use eeruf_sim::{Method, experiments::set_one::{SetOneOptions, set_one}};
-/// let methods = vec![Method::Conventional, Method::Eeruf];
+/// use eeruf_sim::{Entry, Method, experiments::set_one::{SetOneOptions, set_one}};
+/// let methods = Entry::all([Method::Conventional, Method::Eeruf]);
 /// let table = set_one(&SetOneOptions { seeds: 2, methods, ..SetOneOptions::default() }, &|_| true)?;
-/// let [(_, conventional), (_, eeruf)] = table.methods[..] else { unreachable!() };
+/// let [(_, conventional), (_, eeruf)] = &table.methods[..] else { unreachable!() };
 /// assert!(eeruf.wrong_of_all.unwrap().p90 < conventional.wrong_of_all.unwrap().p10);
 /// # Ok::<(), eeruf_sim::experiments::ExperimentError>(())
 /// ```
 pub fn set_one(asked: &SetOneOptions, keep_going: &(dyn Fn(f64) -> bool + Sync)) -> Result<SetOne, ExperimentError> {
-    let &SetOneOptions { first, seeds, readings, ref methods, physics, sensors, period, .. } = asked;
-    let geometries: Vec<u64> = numbers(first, seeds)?.collect();
-    if methods.is_empty() {
-        return Err(ExperimentError::NoMethods);
-    }
-    let periods = readings.div_ceil(sensors.max(1) as u32);
-    let progress = Progress::new(seeds.saturating_mul(methods.len() as u64), keep_going);
+    let geometries: Vec<u64> = numbers(asked.first, asked.seeds)?.collect();
+    distinct(&asked.methods)?;
+    let progress = Progress::new(asked.seeds.saturating_mul(asked.methods.len() as u64), keep_going);
     let runs = sweep(&geometries, |&number| {
-        let mut runs = Vec::with_capacity(methods.len());
-        for &method in methods {
-            runs.push(run(asked, number, method, periods, &progress)?);
+        let mut runs = Vec::with_capacity(asked.methods.len());
+        for entry in &asked.methods {
+            runs.push(run(asked, number, entry, &progress)?);
             progress.one_done();
         }
         Ok(runs)
     });
-    let runs: Vec<Vec<(Summary, Steps)>> = runs.into_iter().collect::<Result<_, ExperimentError>>()?;
+    let runs: Vec<Vec<Run>> = runs.into_iter().collect::<Result<_, ExperimentError>>()?;
     if progress.stopped() {
         return Err(ExperimentError::Stopped);
     }
-    let of = |column: usize| {
-        let (summaries, steps): (Vec<_>, Vec<_>) = runs.iter().map(|run| run[column].clone()).unzip();
-        Figures::of(&summaries, &steps)
-    };
-    let methods = methods.iter().enumerate().map(|(column, &method)| (method, of(column))).collect();
-    let conditions = Conditions::of(asked.room.as_ref(), asked.transducer.gain);
-    Ok(SetOne { first, seeds, physics, conditions, sensors, period_us: period.as_micros(), periods, methods })
+    Ok(SetOne::of(asked, transposed(asked.methods.len(), runs)))
+}
+
+impl SetOne {
+    /// The table of runs that were made as asked: for each method one for each geometry.
+    pub fn of(asked: &SetOneOptions, runs: Vec<Vec<Run>>) -> Self {
+        let &SetOneOptions { first, seeds, physics, sensors, period, .. } = asked;
+        let methods = named(&asked.methods, runs.iter().map(|runs| Figures::of(runs)));
+        let (conditions, period_us) = (Conditions::of(asked.room.as_ref(), asked.transducer.gain), period.as_micros());
+        let periods = periods(asked);
+        Self { first, seeds, physics, conditions, sensors, period_us, periods, methods, runs }
+    }
+}
+
+/// For how many periods each geometry is simulated.
+fn periods(asked: &SetOneOptions) -> u32 {
+    asked.readings.div_ceil(asked.sensors.max(1) as u32)
 }
 
 /// An alcove and the robot before it, as a method has it in Set I; its seed there is the alcove's number.
 ///
 /// # Errors
 /// [`WorldError`] for a ring that cannot be.
-pub fn world_of(asked: &SetOneOptions, alcove: &Alcove, method: Method) -> Result<World, WorldError> {
+pub fn world_of(asked: &SetOneOptions, alcove: &Alcove, entry: &Entry) -> Result<World, WorldError> {
     let SetOneOptions { period, transducer, .. } = *asked;
     let plain = Robot { period, transducer, ..alcove.robot_of(asked.sensors) };
-    let robot = match method {
+    let robot = match entry.method() {
         Method::MultiEcho => asked.multi_echo.of(plain),
         _ => plain,
     };
-    World::new(alcove.scene()?.with_room(asked.room)?, vec![robot], asked.noise)?.with_physics(asked.physics)
+    World::new(alcove.scene()?.with_room(asked.room)?, vec![entry.robot(robot)], asked.noise)?
+        .with_physics(asked.physics)
 }
 
 /// One alcove under one method: as it is, and with its back wall going to and fro.
-fn run(
-    asked: &SetOneOptions,
-    number: u64,
-    method: Method,
-    periods: u32,
-    progress: &Progress<'_>,
-) -> Result<(Summary, Steps), ExperimentError> {
+fn run(asked: &SetOneOptions, number: u64, entry: &Entry, progress: &Progress<'_>) -> Result<Run, ExperimentError> {
     if !progress.go_on() {
         return Err(ExperimentError::Stopped);
     }
     let alcove = Alcove::random(number);
-    let world = |alcove: &Alcove| world_of(asked, alcove, method).map(|world| world.with_seed(number));
+    let world = |alcove: &Alcove| world_of(asked, alcove, entry).map(|world| world.with_seed(number));
     let best = asked.best.as_ref().map(|best| best.schedule);
-    let options = Options { best, hopping: asked.hopping, ..Options::periods(periods) };
+    let options = Options { best, hopping: asked.hopping, ..Options::periods(periods(asked)) };
     let far = world(&alcove)?;
-    let summary = simulate_while(&far, method, &options, |_| progress.go_on())?.summary();
+    let summary = entry.simulate(&far, &options, &Stop::default(), |_| progress.go_on())?.summary();
     let steps = match asked.steps {
         0 => Steps::default(),
-        steps => step::steps(&[far, world(&alcove.nearer())?], steps, method, &options, || progress.go_on())?,
+        steps => step::steps(&[far, world(&alcove.nearer())?], steps, entry, &options, || progress.go_on())?,
     };
-    Ok((summary, steps))
+    Ok(Run { seed: number, summary, steps })
 }

@@ -1,6 +1,6 @@
 //! A way's figures over placings.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::{
     experiments::spread::Spread,
@@ -44,23 +44,33 @@ pub struct Brief {
     pub belief_right: Option<Spread>,
 }
 
-/// The result of one placing.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Run {
-    others_of_accepted: Option<f64>,
-    others_at_worst: Option<f64>,
-    foreign_of_accepted: Option<f64>,
-    good_lost: Option<f64>,
-    right_echoes_per_s: f64,
-    belief: Belief,
-    blind: f64,
+/// The result of one placing under one method, with the figures that [`Figures`] spreads.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Run {
+    /// The placing's number, which seeds all that is random.
+    pub seed: u64,
+    /// See [`Figures::others_of_accepted`].
+    pub others_of_accepted: Option<f64>,
+    /// See [`Figures::others_at_worst`].
+    pub others_at_worst: Option<f64>,
+    /// See [`Figures::foreign_of_accepted`].
+    pub foreign_of_accepted: Option<f64>,
+    /// See [`Figures::good_lost`].
+    pub good_lost: Option<f64>,
+    /// See [`Figures::right_echoes_per_s`].
+    pub right_echoes_per_s: f64,
+    /// Shares of the time by what was last believed.
+    #[serde(flatten)]
+    pub belief: Belief,
+    /// See [`Figures::blind`].
+    pub blind: f64,
 }
 
 /// As many readings must be accepted of a sensor that may be the worst.
 const ENOUGH: usize = 5;
 
 impl Run {
-    pub(super) fn of(readings: &Readings, robots: usize) -> Self {
+    pub(super) fn of(seed: u64, readings: &Readings, robots: usize) -> Self {
         let sensors = readings.sensors.div_ceil(robots.max(1));
         let mut each = vec![(0_usize, 0_usize); readings.sensors];
         let mut foreign = 0;
@@ -82,6 +92,7 @@ impl Run {
         let Summary { good_lost, right_echoes_per_s, belief, blind, .. } = readings.summary();
         let of_one = robots.max(1) as f64;
         Self {
+            seed,
             others_of_accepted: share(others, accepted),
             others_at_worst: often.filter_map(|&(accepted, others)| share(others, accepted)).reduce(f64::max),
             foreign_of_accepted: share(foreign, accepted),
@@ -94,7 +105,8 @@ impl Run {
 }
 
 impl Figures {
-    pub(super) fn of(runs: &[Run]) -> Self {
+    /// The figures of one method's runs.
+    pub fn of(runs: &[Run]) -> Self {
         let spread = |value: fn(&Run) -> Option<f64>| Spread::of(runs.iter().filter_map(value));
         Self {
             others_of_accepted: spread(|run| run.others_of_accepted),

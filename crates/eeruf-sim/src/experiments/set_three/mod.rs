@@ -8,9 +8,7 @@
 mod figures;
 mod placing;
 mod table;
-mod way;
 
-pub use figures::{Brief, Figures};
+pub use figures::{Brief, Figures, Run};
 pub use placing::{Arrangement, DRIFT_PPM, PERIOD, Place, Placing, SENSORS, SPEED_M_S};
-pub use table::{Group, SetThree, SetThreeOptions, set_three, world_of};
-pub use way::Way;
+pub use table::{Group, SetThree, SetThreeOptions, group, set_three, usual, world_of};

@@ -1,20 +1,21 @@
-//! Set III over many placings: every way's figures, and how they spread.
+//! Set III over many placings: every method's figures, and how they spread.
 
-use serde::{Serialize, Serializer, ser::SerializeMap};
+use serde::Serialize;
 
 use super::figures::{Brief, Figures, Run};
 use super::placing::{Arrangement, Place, Placing};
-use super::way::Way;
+use crate::experiments::by_name::{by_name, named, transposed};
 use crate::experiments::conditions::Conditions;
-use crate::experiments::error::{ExperimentError, numbers};
+use crate::experiments::error::{ExperimentError, distinct, numbers};
 use crate::experiments::progress::Progress;
 use crate::{
     acoustics::{GainProfile, Physics},
     experiments::FIRST,
+    methods::Method,
     scene::Room,
-    simulation::{Options, simulate_while},
-    threads::sweep,
-    world::{Noise, World, WorldError},
+    simulation::{Entry, Options},
+    threads::{Stop, sweep},
+    world::{Noise, Robot, World, WorldError},
 };
 
 /// Options of Set III.
@@ -26,8 +27,8 @@ pub struct SetThreeOptions {
     pub first: u64,
     /// For how many periods each placing is simulated. The default is 40, 4 s: robots that meet are then side by side.
     pub periods: u32,
-    /// The ways of firing. The default is [`Way::USUAL`].
-    pub ways: Vec<Way>,
+    /// The methods. The default is [`usual`].
+    pub methods: Vec<Entry>,
     /// Which effects the rooms have. The default is [`Physics::DEFAULT`].
     pub physics: Physics,
     /// Floor and ceiling. The default is none: the rooms are flat.
@@ -36,13 +37,21 @@ pub struct SetThreeOptions {
     pub gain: GainProfile,
 }
 
+/// The methods that Set III compares unless others are asked for.
+pub fn usual() -> Vec<Entry> {
+    use Method::{Dither, Eeruf, EerufHopping, Flow, Sequential, SequentialVotes, Simultaneous};
+    let mut methods = Entry::all([Simultaneous, Sequential, SequentialVotes, Dither, Eeruf, EerufHopping]);
+    methods.extend([Entry::driving(), Flow.into()]);
+    methods
+}
+
 impl Default for SetThreeOptions {
     fn default() -> Self {
         Self {
             seeds: 200,
             first: FIRST,
             periods: 40,
-            ways: Way::USUAL.to_vec(),
+            methods: usual(),
             physics: Physics::DEFAULT,
             room: None,
             gain: GainProfile::Constant,
@@ -64,11 +73,14 @@ pub struct SetThree {
     pub conditions: Conditions,
     /// Periods that each was simulated for.
     pub periods: u32,
-    /// The ways in the order asked for, with their figures over all placings.
-    #[serde(serialize_with = "by_way")]
-    pub methods: Vec<(Way, Figures)>,
+    /// The methods in the order asked for, with their figures over all placings.
+    #[serde(serialize_with = "by_name")]
+    pub methods: Vec<(String, Figures)>,
     /// The placings by place and arrangement, and by the number of robots.
     pub groups: Vec<Group>,
+    /// For each method, the result in each placing.
+    #[serde(skip)]
+    pub runs: Vec<Vec<Run>>,
 }
 
 /// Some of the placings.
@@ -85,55 +97,46 @@ pub struct Group {
     pub robots: Option<usize>,
     /// Number of these placings.
     pub placings: usize,
-    /// The ways in the order asked for, with their figures over these placings.
-    #[serde(serialize_with = "by_way")]
-    pub methods: Vec<(Way, Brief)>,
+    /// The methods in the order asked for, with their figures over these placings.
+    #[serde(serialize_with = "by_name")]
+    pub methods: Vec<(String, Brief)>,
 }
 
-fn by_way<S: Serializer, T: Serialize>(entries: &[(Way, T)], serializer: S) -> Result<S::Ok, S::Error> {
-    let mut map = serializer.serialize_map(Some(entries.len()))?;
-    for (way, entry) in entries {
-        map.serialize_entry(way, entry)?;
-    }
-    map.end()
-}
-
-/// Runs Set III: every placing under each way, on all cores.
+/// Runs Set III: every placing under each method, on all cores.
 ///
 /// `keep_going` is called now and then, by several threads, with the share that is done, 0 to 1; when its answer is
 /// `false` the run stops. The result does not depend on the number of threads.
 ///
 /// # Errors
-/// [`ExperimentError`] for no placings, more than there are numbers for, or no ways, and if it was stopped.
+/// [`ExperimentError`] for no placings, more than there are numbers for, no methods or two of one name, and if it was
+/// stopped.
 ///
 /// ```
-/// use eeruf_sim::experiments::set_three::{SetThreeOptions, Way, set_three};
-/// let ways = vec!["conventional".parse()?, Way::Driving];
-/// let asked = SetThreeOptions { seeds: 2, periods: 20, ways, ..SetThreeOptions::default() };
+/// use eeruf_sim::{Entry, experiments::set_three::{SetThreeOptions, set_three}};
+/// let methods = vec!["conventional".parse()?, Entry::driving()];
+/// let asked = SetThreeOptions { seeds: 2, periods: 20, methods, ..SetThreeOptions::default() };
 /// let table = set_three(&asked, &|_| true)?;
-/// assert_eq!(table.methods[1].0, Way::Driving);
+/// assert_eq!(table.methods[1].0, "driving");
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn set_three(
     asked: &SetThreeOptions,
     keep_going: &(dyn Fn(f64) -> bool + Sync),
 ) -> Result<SetThree, ExperimentError> {
-    let &SetThreeOptions { first, seeds, periods, ref ways, physics, .. } = asked;
-    let placings: Vec<u64> = numbers(first, seeds)?.collect();
-    if ways.is_empty() {
-        return Err(ExperimentError::NoMethods);
-    }
-    let progress = Progress::new(seeds.saturating_mul(ways.len() as u64), keep_going);
+    let placings: Vec<u64> = numbers(asked.first, asked.seeds)?.collect();
+    distinct(&asked.methods)?;
+    let progress = Progress::new(asked.seeds.saturating_mul(asked.methods.len() as u64), keep_going);
     let runs = sweep(&placings, |&number| {
-        let mut runs = Vec::with_capacity(ways.len());
+        let mut runs = Vec::with_capacity(asked.methods.len());
         if !progress.go_on() {
             return Err(ExperimentError::Stopped);
         }
-        let world = world_of(asked, &Placing::random(number))?.with_seed(number);
-        for way in ways {
-            let options = Options { hopping: way.hopping(), ..Options::periods(periods) };
-            let readings = simulate_while(&world, way.method(), &options, |_| progress.go_on())?;
-            runs.push(Run::of(&readings, world.robots().len()));
+        let placing = Placing::random(number);
+        for entry in &asked.methods {
+            let world = world_of(asked, &placing, entry)?.with_seed(number);
+            let options = Options::periods(asked.periods);
+            let readings = entry.simulate(&world, &options, &Stop::default(), |_| progress.go_on())?;
+            runs.push(Run::of(number, &readings, world.robots().len()));
             progress.one_done();
         }
         Ok(runs)
@@ -142,43 +145,55 @@ pub fn set_three(
     if progress.stopped() {
         return Err(ExperimentError::Stopped);
     }
-    let of = |column: usize| Figures::of(&runs.iter().map(|run| run[column]).collect::<Vec<_>>());
-    let methods = ways.iter().enumerate().map(|(column, &way)| (way, of(column))).collect();
-    let conditions = Conditions::of(asked.room.as_ref(), asked.gain);
-    Ok(SetThree { first, seeds, physics, conditions, periods, methods, groups: groups(&placings, ways, &runs) })
+    Ok(SetThree::of(asked, transposed(asked.methods.len(), runs)))
 }
 
-/// The placings by place and arrangement, and by the number of robots.
-fn groups(placings: &[u64], ways: &[Way], runs: &[Vec<Run>]) -> Vec<Group> {
-    let kinds: Vec<_> = placings
-        .iter()
-        .map(|&number| Placing::random(number))
-        .map(|Placing { place, arrangement, robots, .. }| (place, arrangement, robots.len()))
-        .collect();
+impl SetThree {
+    /// The table of runs that were made as asked: for each method one for each placing.
+    pub fn of(asked: &SetThreeOptions, runs: Vec<Vec<Run>>) -> Self {
+        let &SetThreeOptions { first, seeds, periods, physics, .. } = asked;
+        let methods = named(&asked.methods, runs.iter().map(|runs| Figures::of(runs)));
+        let conditions = Conditions::of(asked.room.as_ref(), asked.gain);
+        let names: Vec<_> = asked.methods.iter().map(Entry::name).collect();
+        let groups = group(&names, &runs);
+        Self { first, seeds, physics, conditions, periods, methods, groups, runs }
+    }
+}
+
+/// The placings by place and arrangement, and by the number of robots: for methods of these names the runs of each.
+pub fn group(names: &[&str], runs: &[Vec<Run>]) -> Vec<Group> {
+    let placing = |run: &Run| {
+        let Placing { place, arrangement, robots, .. } = Placing::random(run.seed);
+        (place, arrangement, robots.len())
+    };
+    let kinds: Vec<_> = runs.first().into_iter().flatten().map(placing).collect();
     let group = |place: Option<Place>, arrangement: Option<Arrangement>, robots: Option<usize>| {
         let of = |kind: &(Place, Arrangement, usize)| {
             place.is_none_or(|place| place == kind.0)
                 && arrangement.is_none_or(|arrangement| arrangement == kind.1)
                 && robots.is_none_or(|robots| robots == kind.2)
         };
-        let members: Vec<_> = runs.iter().zip(&kinds).filter(|(_, kind)| of(kind)).map(|(run, _)| run).collect();
-        let brief = |column: usize| Brief::of(members.iter().map(|run| &run[column]));
-        let methods = ways.iter().enumerate().map(|(column, &way)| (way, brief(column))).collect();
-        Group { place, arrangement, robots, placings: members.len(), methods }
+        let members = |runs: &'_ [Run]| -> Vec<Run> {
+            runs.iter().zip(&kinds).filter(|(_, kind)| of(kind)).map(|(run, _)| *run).collect()
+        };
+        let briefs = runs.iter().map(|runs| Brief::of(members(runs).iter()));
+        let methods = names.iter().map(|&name| name.to_owned()).zip(briefs).collect();
+        Group { place, arrangement, robots, placings: kinds.iter().filter(|kind| of(kind)).count(), methods }
     };
     let arrangements = [Arrangement::Standing, Arrangement::Meeting, Arrangement::Following];
     let places = [Place::Corridor, Place::Hall].into_iter();
-    let kinds = places.flat_map(|place| arrangements.map(|arrangement| (place, arrangement)));
-    let by_kind = kinds.map(|(place, arrangement)| group(Some(place), Some(arrangement), None));
+    let kinds_of = places.flat_map(|place| arrangements.map(|arrangement| (place, arrangement)));
+    let by_kind = kinds_of.map(|(place, arrangement)| group(Some(place), Some(arrangement), None));
     let all = by_kind.chain((2..=6).map(|robots| group(None, None, Some(robots))));
     all.filter(|group| group.placings > 0).collect()
 }
 
-/// A placing as a world.
+/// A placing as a world of rings that fire by a method.
 ///
 /// # Errors
 /// [`WorldError`] for a placing that cannot be.
-pub fn world_of(asked: &SetThreeOptions, placing: &Placing) -> Result<World, WorldError> {
-    let robots = placing.robots.iter().map(|robot| robot.clone().with_pattern(Some(asked.gain), None)).collect();
+pub fn world_of(asked: &SetThreeOptions, placing: &Placing, entry: &Entry) -> Result<World, WorldError> {
+    let robot = |robot: &Robot| entry.robot(robot.clone().with_pattern(Some(asked.gain), None));
+    let robots = placing.robots.iter().map(robot).collect();
     World::new(placing.scene()?.with_room(asked.room)?, robots, Noise::default())?.with_physics(asked.physics)
 }

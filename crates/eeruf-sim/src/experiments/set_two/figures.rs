@@ -39,7 +39,8 @@ pub struct Figures {
 }
 
 impl Figures {
-    pub(super) fn of(runs: &[Run]) -> Self {
+    /// The figures of one method's runs.
+    pub fn of(runs: &[Run]) -> Self {
         let ended = |ending| runs.iter().filter(|run| run.ending == ending).count();
         let sum = |value: fn(&Run) -> f64| runs.iter().map(value).sum::<f64>();
         let share = |part: f64, whole: f64| if whole > 0.0 { part / whole } else { 0.0 };

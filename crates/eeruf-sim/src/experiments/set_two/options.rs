@@ -5,12 +5,14 @@ use eeruf_core::{Micros, hopping::HoppingSettings};
 use super::odometry::OdometryNoise;
 use super::pilots::Pilots;
 use crate::{
-    acoustics::{GainProfile, Physics},
+    acoustics::{GainProfile, Physics, Transducer},
     experiments::FIRST,
     geometry::Point,
     methods::{BestSchedule, Method},
     navigation::LabMate,
     scene::Room,
+    simulation::Entry,
+    world::Robot,
 };
 
 /// What is asked of Set II.
@@ -22,10 +24,10 @@ pub struct SetTwoOptions {
     /// 10,000 to 10,999 as well.
     pub first: u64,
     /// The methods.
-    pub methods: Vec<Method>,
+    pub methods: Vec<Entry>,
     /// What [`Method::EerufBest`] fires by, see [`best_schedule_for`](crate::best_schedule_for).
     pub best: Option<BestSchedule>,
-    /// How [`Method::EerufHopping`] fires and believes. The default is [`HoppingSettings::DRIVING`].
+    /// How [`Method::EerufHopping`] fires and believes, unless its entry says. The default is [`HoppingSettings::DRIVING`].
     pub hopping: HoppingSettings,
     /// Where another robot stands that fires 24 times in 80 ms, if there is one.
     pub second_robot: Option<Point>,
@@ -52,12 +54,21 @@ pub struct SetTwoOptions {
     pub pilots: Pilots,
 }
 
+impl SetTwoOptions {
+    /// The robot of a course as these options have it.
+    #[must_use]
+    pub fn robot(&self, robot: Robot) -> Robot {
+        let transducer = Transducer { gain: self.gain, ..robot.transducer };
+        Robot { odometry: self.odometry, t_delta: self.t_delta, transducer, ..robot }
+    }
+}
+
 impl Default for SetTwoOptions {
     fn default() -> Self {
         Self {
             seeds: 100,
             first: FIRST,
-            methods: vec![
+            methods: Entry::all([
                 Method::Sequential,
                 Method::FarGroups,
                 Method::Conventional,
@@ -67,7 +78,7 @@ impl Default for SetTwoOptions {
                 Method::Adaptive,
                 Method::EerufHopping,
                 Method::MultiEcho,
-            ],
+            ]),
             best: None,
             hopping: HoppingSettings::DRIVING,
             second_robot: None,

@@ -1,9 +1,9 @@
 //! What comes of one course under one method.
 
-use serde::Serialize;
+use serde::{Deserialize, Deserializer, Serialize};
 
 /// How a course ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Ending {
     /// Over the finishing line.
@@ -15,7 +15,7 @@ pub enum Ending {
 }
 
 /// Where the robot was at a time.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Place {
     /// In seconds.
     pub time_s: f64,
@@ -30,7 +30,7 @@ pub struct Place {
 }
 
 /// A cell of the grid that is not empty.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Cell {
     /// Its middle, in metres.
     pub x_m: f64,
@@ -41,7 +41,7 @@ pub struct Cell {
 }
 
 /// What came of one course under one method.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Run {
     /// Which course.
     pub course: u64,
@@ -53,7 +53,8 @@ pub struct Run {
     pub way_m: f64,
     /// Its highest speed, in m/s.
     pub top_speed_m_s: f64,
-    /// How near its outline came to a pole, in metres.
+    /// How near its outline came to a pole, in metres; infinite if it never came near one, which JSON has as null.
+    #[serde(deserialize_with = "infinite")]
     pub nearest_m: f64,
     /// How many readings its sensors took.
     pub readings: u32,
@@ -70,9 +71,16 @@ pub struct Run {
     /// How many of them never had an echo entered into the grid.
     pub poles_missed: u32,
     /// Where it drove, every 30 ms.
+    #[serde(default)]
     pub track: Vec<Place>,
     /// The grid in the end.
+    #[serde(default)]
     pub grid: Vec<Cell>,
+}
+
+/// A number, or null for an infinite one.
+fn infinite<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
+    Option::deserialize(deserializer).map(|number| number.unwrap_or(f64::INFINITY))
 }
 
 impl Run {

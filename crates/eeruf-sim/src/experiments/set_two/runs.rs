@@ -7,16 +7,16 @@ use super::figures::Figures;
 use super::options::SetTwoOptions;
 use super::pilot::Pilot;
 use super::run::Run;
-use crate::experiments::by_name::by_name;
+use crate::experiments::by_name::{by_name, named, transposed};
 use crate::experiments::conditions::Conditions;
-use crate::experiments::error::{ExperimentError, numbers};
+use crate::experiments::error::{ExperimentError, distinct, numbers};
 use crate::experiments::progress::Progress;
 use crate::{
-    acoustics::{Physics, Transducer},
+    acoustics::Physics,
     methods::Method,
     navigation::LabMate,
     results::Readings,
-    simulation::{self, Options, SimulationError},
+    simulation::{self, Entry, Options, SimulationError},
     threads::{Stop, sweep},
     tracing::PathsError,
     world::{Robot, World},
@@ -51,7 +51,7 @@ pub struct SetTwo {
     pub speed_m_s: f64,
     /// The methods in the order asked for, with their figures.
     #[serde(serialize_with = "by_name")]
-    pub methods: Vec<(Method, Figures)>,
+    pub methods: Vec<(String, Figures)>,
     /// For each method, what came of each course.
     #[serde(skip)]
     pub runs: Vec<Vec<Run>>,
@@ -65,52 +65,54 @@ pub struct SetTwo {
 /// [`ExperimentError`] for no courses, more than there are numbers for, or no methods, and if it was stopped.
 ///
 /// ```
-/// use eeruf_sim::{Method, experiments::set_two::{SetTwoOptions, set_two}};
-/// let options = SetTwoOptions { seeds: 2, methods: vec![Method::Eeruf], ..SetTwoOptions::default() };
+/// use eeruf_sim::{Entry, Method, experiments::set_two::{SetTwoOptions, set_two}};
+/// let options = SetTwoOptions { seeds: 2, methods: Entry::all([Method::Eeruf]), ..SetTwoOptions::default() };
 /// let found = set_two(&options, &|_| true)?;
 /// assert_eq!(found.methods[0].1.courses, 2);
 /// # Ok::<(), eeruf_sim::experiments::ExperimentError>(())
 /// ```
 pub fn set_two(options: &SetTwoOptions, keep_going: &(dyn Fn(f64) -> bool + Sync)) -> Result<SetTwo, ExperimentError> {
-    let courses = numbers(options.first, options.seeds)?;
-    if options.methods.is_empty() {
-        return Err(ExperimentError::NoMethods);
-    }
-    let jobs: Vec<(Method, u64)> =
-        options.methods.iter().flat_map(|&method| courses.clone().map(move |number| (method, number))).collect();
+    let courses: Vec<u64> = numbers(options.first, options.seeds)?.collect();
+    distinct(&options.methods)?;
+    let jobs: Vec<(u64, &Entry)> =
+        courses.iter().flat_map(|&number| options.methods.iter().map(move |entry| (number, entry))).collect();
     let progress = Progress::new(jobs.len() as u64, keep_going);
-    let runs = sweep(&jobs, |&(method, number)| {
-        let run = run_course(options, method, number, &progress)?;
+    let runs = sweep(&jobs, |&(number, entry)| {
+        let run = run_course(options, entry, number, &progress)?;
         progress.one_done();
         Ok(run)
     });
     if progress.stopped() {
         return Err(ExperimentError::Stopped);
     }
-    let mut runs = runs.into_iter();
-    let mut by_method = Vec::new();
-    for _ in &options.methods {
-        by_method.push(runs.by_ref().take(options.seeds as usize).collect::<Result<Vec<_>, ExperimentError>>()?);
+    let mut runs = runs.into_iter().collect::<Result<Vec<_>, ExperimentError>>()?.into_iter();
+    let each = courses.iter().map(|_| runs.by_ref().take(options.methods.len()).collect()).collect();
+    Ok(SetTwo::of(options, transposed(options.methods.len(), each)))
+}
+
+impl SetTwo {
+    /// The table of runs that were made as asked: for each method one for each course.
+    pub fn of(options: &SetTwoOptions, runs: Vec<Vec<Run>>) -> Self {
+        let methods = named(&options.methods, runs.iter().map(|runs| Figures::of(runs)));
+        let &SetTwoOptions { first, seeds, second_robot, pilots, physics, bodies, .. } = options;
+        let second_robot_m = second_robot.map(|at| [at.x, at.y]);
+        let (pilot, speed_m_s) = (pilots.as_str(), options.labmate.speed_max_m_s);
+        let conditions = Conditions::of(options.room.as_ref(), options.gain);
+        Self { first, pilot, physics, conditions, bodies, seeds, second_robot_m, speed_m_s, methods, runs }
     }
-    let methods = options.methods.iter().zip(&by_method).map(|(&method, runs)| (method, Figures::of(runs))).collect();
-    let SetTwoOptions { first, seeds, second_robot, pilots, physics, bodies, .. } = *options;
-    let second_robot_m = second_robot.map(|at| [at.x, at.y]);
-    let (pilot, speed_m_s) = (pilots.as_str(), options.labmate.speed_max_m_s);
-    let conditions = Conditions::of(options.room.as_ref(), options.gain);
-    Ok(SetTwo { first, pilot, physics, conditions, bodies, seeds, second_robot_m, speed_m_s, methods, runs: by_method })
 }
 
 /// One course by one method.
 fn run_course(
     options: &SetTwoOptions,
-    method: Method,
+    entry: &Entry,
     number: u64,
     progress: &Progress<'_>,
 ) -> Result<Run, ExperimentError> {
     if !progress.go_on() {
         return Err(ExperimentError::Stopped);
     }
-    Ok(drive(options, method, number, &|_| progress.go_on())?.run)
+    Ok(drive(options, entry, number, &|_| progress.go_on())?.run)
 }
 
 /// One course by one method, with all that was read.
@@ -131,16 +133,18 @@ pub struct Drive {
 /// [`ExperimentError`] for a ring that cannot be, and if it was stopped.
 pub fn drive(
     options: &SetTwoOptions,
-    method: Method,
+    entry: &Entry,
     number: u64,
     keep_going: &dyn Fn(f64) -> bool,
 ) -> Result<Drive, ExperimentError> {
-    let course = Course::random(number);
+    let (course, method) = (Course::random(number), entry.method());
     let consecutive = if method == Method::MultiEcho { MULTI_ECHO_CONSECUTIVE } else { 2 };
     let robot = if options.bodies { course.robot_with_body(&options.labmate) } else { course.robot() };
-    let transducer = Transducer { gain: options.gain, ..robot.transducer };
-    let robot = Robot { odometry: options.odometry, t_delta: options.t_delta, consecutive, transducer, ..robot };
-    let world = course.world(robot, options.second_robot)?.with_room(options.room)?.with_physics(options.physics)?;
+    let robot = Robot { consecutive, ..options.robot(robot) };
+    let world = course
+        .world(entry.robot(robot), options.second_robot)?
+        .with_room(options.room)?
+        .with_physics(options.physics)?;
     let mut piloting = options.pilots.of(method);
     piloting.vfh.speed_max_m_s = options.labmate.speed_max_m_s;
     let mut pilot = Pilot::new(&world, number, options, piloting, TIME_S);
@@ -150,7 +154,8 @@ pub fn drive(
         hopping: options.hopping,
         ..Options::periods((TIME_S / period_s).ceil() as u32)
     };
-    let readings = match simulation::run(&world, method, &simulation, &mut pilot, &Stop::default(), keep_going) {
+    let (own, simulation, stop) = (entry.own(&world.robots()[..1])?, entry.options(simulation), Stop::default());
+    let readings = match simulation::run(&world, method, &simulation, own, &mut pilot, &stop, keep_going) {
         // A sensor on the platform's edge, or another robot's body, touched something between two of the pilot's steps.
         Err(SimulationError::Paths { error: PathsError::Inside { .. } | PathsError::Body { .. }, .. })
             if options.bodies =>
@@ -172,13 +177,13 @@ pub struct SpeedStep {
     pub speed_m_s: f64,
     /// For each method, the share of courses finished without contact.
     #[serde(serialize_with = "by_name", rename = "finished_of_all")]
-    pub finished: Vec<(Method, f64)>,
+    pub finished: Vec<(String, f64)>,
     /// For each method, where that share lies with 95 % confidence, by Wilson's interval.
     #[serde(serialize_with = "by_name")]
-    pub finished_95: Vec<(Method, [f64; 2])>,
+    pub finished_95: Vec<(String, [f64; 2])>,
     /// For each method, the mean speed in m/s.
     #[serde(serialize_with = "by_name")]
-    pub mean_speed_m_s: Vec<(Method, f64)>,
+    pub mean_speed_m_s: Vec<(String, f64)>,
 }
 
 /// Runs Set II at several top speeds.
@@ -195,11 +200,12 @@ pub fn speed_sweep(
         let share = |done: f64| keep_going((step as f64 + done) / speeds_m_s.len() as f64);
         let labmate = LabMate { speed_max_m_s: speed_m_s, ..options.labmate };
         let found = set_two(&SetTwoOptions { labmate, ..options.clone() }, &share)?;
-        let each = |value: fn(&Figures) -> f64| found.methods.iter().map(|(method, of)| (*method, value(of))).collect();
+        let each =
+            |value: fn(&Figures) -> f64| found.methods.iter().map(|(method, of)| (method.clone(), value(of))).collect();
         steps.push(SpeedStep {
             speed_m_s,
             finished: each(|of| of.finished as f64 / of.courses as f64),
-            finished_95: found.methods.iter().map(|(method, of)| (*method, of.finished_95)).collect(),
+            finished_95: found.methods.iter().map(|(method, of)| (method.clone(), of.finished_95)).collect(),
             mean_speed_m_s: each(|of| of.mean_speed_m_s),
         });
     }

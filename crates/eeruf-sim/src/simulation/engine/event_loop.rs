@@ -61,11 +61,12 @@ pub(crate) fn run(
     world: &World,
     method: Method,
     options: &Options,
+    mut own: Own,
     kinematics: &mut impl Kinematics,
     stop: &Stop,
     keep_going: impl FnMut(f64) -> bool,
 ) -> Result<Readings, SimulationError> {
-    let mut own = Own::new();
+    own.check(world.robots().len())?;
     let plans = plans(world, method, options, kinematics, &own)?;
     let end = end_of(world, options.periods);
     let (room, stop) = (expected(world, end), stop.clone());

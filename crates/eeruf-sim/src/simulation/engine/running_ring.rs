@@ -95,8 +95,8 @@ pub(crate) fn start_all<'a>(
         let now = clock.instant(start);
         let ring = match (plan, own.take_firing(index)) {
             (Some(plan), None) => {
-                let Options { hopping, flow, .. } = *options;
-                method.start(&RingStart { robot, plan, hopping, flow, random, now })
+                let Options { hopping, hopping_schedule, flow, .. } = *options;
+                method.start(&RingStart { robot, plan, hopping, hopping_schedule, flow, random, now })
             }
             (_, Some(firing)) => method.start_own(robot, firing, now),
             // Every robot has one of the two.

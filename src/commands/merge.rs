@@ -1,0 +1,77 @@
+//! `eeruf merge`: the parts of an experiment as the whole.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::PathBuf;
+
+use clap::Parser;
+
+use super::answer::Answer;
+use super::experiment::{Part, Shard, merged};
+use super::{Cli, Verb};
+use crate::files::error::InputError;
+
+/// Put the parts that `eeruf experiment --shard` printed together: the output is that of the undivided run, bit for
+/// bit.
+#[derive(clap::Args)]
+pub(crate) struct Args {
+    /// The parts, in any order
+    #[arg(value_name = "FILE", required = true)]
+    files: Vec<PathBuf>,
+    /// Print one JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
+    let mut parts: BTreeMap<u64, (&PathBuf, Part)> = BTreeMap::new();
+    for file in &args.files {
+        let refused = |what: String| InputError::new(file, None, what);
+        let text = fs::read_to_string(file).map_err(|error| InputError::reading(file, &error))?;
+        let part: Part = serde_json::from_str(&text).map_err(|error| {
+            refused(format!("{error}; expected what `eeruf experiment .. --shard I/N` prints, whole"))
+        })?;
+        if part.eeruf != Part::VERSION {
+            let (theirs, ours) = (&part.eeruf, Part::VERSION);
+            return Err(refused(format!("a part of eeruf {theirs}; expected one of {ours}, which reads it")));
+        }
+        let Shard { part: number, of } = part.shard;
+        if let Some((known, other)) = parts.values().next() {
+            let known = known.display();
+            if other.shard.of != of {
+                return Err(refused(format!("part {number}/{of}; expected one of {} as {known}", other.shard.of)));
+            }
+            if other.arguments != part.arguments {
+                let (theirs, ours) = (part.arguments.join(" "), other.arguments.join(" "));
+                return Err(refused(format!("a part of `{theirs}`; expected one of `{ours}` as {known}")));
+            }
+        }
+        if let Some((known, _)) = parts.insert(number, (file, part)) {
+            return Err(refused(format!("part {number}/{of}; expected each once, and {} is it too", known.display())));
+        }
+    }
+    // There is one file at least.
+    let Some((file, first)) = parts.values().next() else { return Ok(Answer::No) };
+    let refused = |what: String| InputError::new(file, None, what);
+    let missing: Vec<_> = (1..=first.shard.of).filter(|part| !parts.contains_key(part)).collect();
+    if let Some(&next) = missing.first() {
+        let (count, of) = (missing.len(), first.shard.of);
+        let again = format!("eeruf experiment {} --shard {next}/{of}", first.arguments.join(" "));
+        return Err(refused(format!("{count} of {of} parts are missing, the first is {next}; run `{again}`")));
+    }
+    let words = ["eeruf", "experiment"].into_iter().chain(first.arguments.iter().map(String::as_str));
+    let json = args.json.then_some("--json");
+    let whole = Cli::try_parse_from(words.chain(json)).ok().map(|cli| cli.verb);
+    let Some(Verb::Experiment(whole)) = whole else {
+        let words = first.arguments.join(" ");
+        return Err(refused(format!("arguments `{words}`; expected those of `eeruf experiment`, unchanged")));
+    };
+    let mut runs = BTreeMap::new();
+    for (_, part) in parts.values() {
+        for (method, of) in &part.runs {
+            runs.entry(method.clone()).or_insert_with(Vec::new).extend(of.iter().cloned());
+        }
+    }
+    merged(&whole, file, &runs)?;
+    Ok(Answer::Yes)
+}

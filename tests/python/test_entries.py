@@ -1,0 +1,332 @@
+"""Methods are values that simulations and experiments take alike, and parts of experiments make the whole."""
+
+import functools
+import os
+import pickle
+import re
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import Any, Callable
+
+import eeruf
+import numpy as np
+import pytest
+from eeruf import experiments, sim
+
+ANY: Any = eeruf
+ROOT = Path(__file__).parents[2]
+SCENE = experiments.alcoves()[0]
+
+
+class Paper:
+    """The paper's filter as one's own."""
+
+    def __init__(self, robot: sim.Robot) -> None:
+        """With the robot's settings."""
+        t_delta_us = robot.t_delta_us
+        assert isinstance(t_delta_us, int)
+        self.filter = eeruf.EchoFilter(robot.sensors, t_delta_us)
+
+    def __call__(self, firing: sim.FiredReading) -> eeruf.Reading:
+        return self.filter.push_echoes(firing.reading.sensor, firing.t_echoes_us, firing.expected_change_us)
+
+
+def believe_all(firing: sim.FiredReading) -> Any:
+    return ("accepted", firing.t_echoes_us[0]) if firing.t_echoes_us else ("clear", None)
+
+
+def believing(robot: sim.Robot) -> Callable[[sim.FiredReading], Any]:
+    return believe_all
+
+
+class InTurn:
+    """One after the other, as the method ``sequential``."""
+
+    def __init__(self, robot: sim.Robot) -> None:
+        """Of so many sensors."""
+        self.sensors = robot.sensors
+
+    def __call__(self, period: int) -> Any:
+        return 40_000 * self.sensors, [(40_000 * sensor, sensor) for sensor in range(self.sensors)]
+
+
+MINE = sim.Method("conventional", label="mine", make_filter=Paper)
+
+
+def same(one: sim.Readings, other: sim.Readings) -> bool:
+    columns = other.columns()
+    return len(one) == len(other) > 0 and all(
+        np.array_equal(column, columns[name], equal_nan=column.dtype.kind == "f")
+        for name, column in one.columns().items()
+    )
+
+
+def test_an_own_filter_equals_the_built_in_method_everywhere() -> None:
+    assert same(sim.simulate(SCENE, MINE, 100), sim.simulate(SCENE, "comparison", 100))
+    stepped, built_in = sim.Simulation(SCENE, MINE), sim.Simulation(SCENE, "comparison")
+    for _ in range(3):
+        assert stepped.step(0.5).kind.tolist() == built_in.step(0.5).kind.tolist()
+    (block,) = sim.simulate_blocks(SCENE, MINE, 100)
+    assert same(block, sim.simulate(SCENE, "comparison", 100))
+    for table in (
+        experiments.set_one(3, readings=400, methods=["comparison", MINE]),
+        experiments.set_two(2, methods=["comparison", MINE], pilot="published"),
+        experiments.set_three(3, periods=15, methods=["comparison", MINE]),
+    ):
+        runs = table.runs
+        assert [run.figures() for run in runs["comparison"]] == [run.figures() for run in runs["mine"]]  # type: ignore[attr-defined]
+        assert [run.seed for run in runs["mine"]] == list(range(20_000, 20_000 + table.seeds))  # type: ignore[attr-defined]
+        assert list(table.methods) == ["comparison", "mine"]
+
+
+def test_an_own_firing_enters_experiments() -> None:
+    slow = sim.Method("conventional", label="slow", make_firing=InTurn)
+    table = experiments.set_one(3, readings=800, methods=[slow, "sequential"])
+    found = experiments.compare(table.runs["slow"], table.runs["sequential"])
+    assert abs(found["good_lost"].mean) < 0.01
+    rates = [table.methods[name].readings_per_s for name in table.methods]
+    assert rates[0] is not None and rates[1] is not None
+    assert rates[0].median == pytest.approx(rates[1].median, rel=0.2)
+
+
+def test_schedules_settings_and_sketches_are_those_given() -> None:
+    table = eeruf.design(8, 999, 15_000, 36_000).schedule
+    assert table is not None
+    designed = sim.Method("eeruf", label="designed", schedule=table)
+    robots = [robot.replace(schedule=table, period_us=robot.period_us) for robot in SCENE.robots]
+    assert same(sim.simulate(SCENE, designed, 100), sim.simulate(SCENE.replace(robots=robots), "eeruf", 100))
+    quick = sim.Method("eeruf_hopping", label="quick", settings="quick")
+    assert not same(sim.simulate(SCENE, quick, 200), sim.simulate(SCENE, "eeruf_hopping", 200))
+    driving = sim.Method("eeruf_hopping", settings="driving")
+    assert same(sim.simulate(SCENE, driving, 100), sim.simulate(SCENE, "driving", 100))
+    hopping = eeruf.HoppingSchedule(8, 90_000, 240, phases=10)
+    hops = sim.Method("eeruf_hopping", label="hops", schedule=hopping)
+    fired = sim.simulate(SCENE, hops, 100)
+    assert int(fired.period.max()) == pytest.approx(100 * 60 / 90, abs=1)
+    assert fired.phase.max() == 9
+    timid = sim.Method("flow", label="timid", settings={"shortest_gap_us": 20_000})
+    assert len(sim.simulate(SCENE, timid, 200)) < len(sim.simulate(SCENE, "flow", 200))
+    turned = sim.Method("in_turn", label="turned", sketch={"turn_us": 50_000})
+    robots = [robot.replace(firing={"turn_us": 50_000}) for robot in SCENE.robots]
+    assert same(sim.simulate(SCENE, turned, 50), sim.simulate(SCENE.replace(robots=robots), "in_turn", 50))
+    both = experiments.set_one(2, readings=400, methods=[designed, quick, hops, timid, turned, "driving"])
+    assert list(both.methods) == ["designed", "quick", "hops", "timid", "turned", "driving"]
+    assert both.runs["designed"][0].summary == sim.simulate(SCENE, designed, 50).summary()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"name": "eruf"}, "no method `eruf`; expected simultaneous"),
+        ({"settings": "quick"}, "settings = 'quick'; expected none for the method eeruf"),
+        ({"name": "flow", "settings": {"step": 3}}, "no setting step of flow; expected one of step_us"),
+        ({"name": "flow", "settings": "quick"}, "settings = 'quick'; expected a dict"),
+        ({"name": "conventional", "schedule": eeruf.tables.TABLE_I_D}, "expected none for the method conventional"),
+        ({"name": "eeruf_hopping", "schedule": eeruf.tables.TABLE_I_D}, "eeruf_hopping an eeruf.HoppingSchedule"),
+        ({"sketch": {"turn_us": 1}}, "sketch = .*; expected none for the method eeruf"),
+        ({"name": "in_turn", "sketch": {"turn": 1}}, "sketch: "),
+        ({"make_filter": 3}, "make_filter = 3; expected a callable that takes a robot"),
+        ({"label": 3}, "label = 3; expected a text"),
+    ],
+)
+def test_what_a_method_does_not_take_is_refused(arguments: dict[str, Any], message: str) -> None:
+    with pytest.raises(eeruf.ArgumentError, match=message):
+        ANY.sim.Method(**arguments)
+
+
+def test_what_own_code_raises_comes_out_of_simulations_and_experiments() -> None:
+    class Weary(Exception):
+        pass
+
+    def tired(firing: sim.FiredReading) -> Any:
+        raise Weary("for today")
+
+    def unmade(robot: sim.Robot) -> Any:
+        raise Weary("never begun")
+
+    method = sim.Method("eeruf", make_filter=lambda robot: tired)
+    for run in (
+        lambda: sim.simulate(SCENE, method, 10),
+        lambda: sim.Simulation(SCENE, method).step(1),
+        lambda: experiments.set_one(2, readings=80, methods=[method]),
+        lambda: experiments.set_two(2, methods=[method]),
+        lambda: experiments.set_three(2, periods=10, methods=[method]),
+    ):
+        with pytest.raises(Weary, match="for today"):
+            run()
+    with pytest.raises(Weary, match="never begun"):
+        experiments.set_one(2, readings=80, methods=[sim.Method("eeruf", make_firing=unmade)])
+    with pytest.raises(eeruf.ArgumentError, match="what make_filter returned = 3; expected a callable"):
+        ANY.sim.simulate(SCENE, sim.Method(make_filter=lambda robot: 3), 10)
+    with pytest.raises(eeruf.SimulationError, match="a schedule of 12 sensors; expected one of 8"):
+        sim.simulate(SCENE, sim.Method("eeruf_hopping", schedule=eeruf.HoppingSchedule(12, 90_000, 240)))
+    with pytest.raises(eeruf.SceneError, match="12"):
+        sim.simulate(SCENE, sim.Method("eeruf", schedule=eeruf.tables.TABLE_I_D))
+    with pytest.raises(eeruf.ExperimentError, match="12"):
+        experiments.set_one(1, methods=[sim.Method("eeruf", schedule=eeruf.tables.TABLE_I_D)])
+    with pytest.raises(eeruf.ExperimentError, match="two methods `eeruf`; expected another name"):
+        experiments.set_one(1, methods=["eeruf", sim.Method("eeruf")])
+
+
+def test_methods_and_scenes_compare_pickle_and_show_themselves() -> None:
+    quick = sim.Method("eeruf_hopping", label="quick", settings=eeruf.HoppingSettings("quick", votes=5))
+    for value in (MINE, quick, sim.Method(), sim.Method("driving"), experiments.alcoves(3, 9)[2:]):
+        again = pickle.loads(pickle.dumps(value))
+        assert again == value and hash(again) == hash(value)
+        assert value != sim.Method("flow")
+    scope = {"Method": sim.Method, "HoppingSettings": eeruf.HoppingSettings}
+    assert eval(repr(quick), scope) == quick
+    assert (MINE.name, MINE.label, repr(sim.Method("driving"))) == (
+        "conventional", "mine", "Method(name='driving', label='driving')"
+    )  # fmt: skip
+
+
+def test_scenes_are_those_of_the_experiments() -> None:
+    scenes = experiments.alcoves(20_000, 5)
+    assert [scene.seed for scene in scenes[1:4]] == [20_001, 20_002, 20_003]
+    assert scenes[-1].seed == 20_004 and len(scenes) == 5
+    table = experiments.set_one(5, readings=400, methods=["eeruf", "flow"])
+    for name in ("eeruf", "flow"):
+        alone = [sim.simulate(scene, name, 50).summary() for scene in scenes]
+        assert [run.summary for run in table.runs[name]] == alone
+    course = experiments.courses(20_003, 1)[0]
+    run = experiments.set_two(1, first=20_003, methods=["eeruf"]).runs["eeruf"][0]
+    assert course.poles[:, :2].tolist() == run.poles[:, :2].tolist()
+    assert course.robots[0].odometry and course.robots[0].t_delta_us == 150
+    with pytest.raises(IndexError):
+        scenes[5]
+    with pytest.raises(eeruf.ArgumentError, match="n = -1; expected"):
+        experiments.alcoves(0, -1)
+
+
+def test_concat_of_parts_equals_the_undivided_run() -> None:
+    methods: list[Any] = ["eeruf", MINE]
+    one = functools.partial(experiments.set_one, readings=400, methods=methods)
+    two = functools.partial(experiments.set_two, methods=methods, second_robot="ahead")
+    three = functools.partial(experiments.set_three, periods=15, methods=methods, height="room")
+    for run in (one, two, three):
+        parts: list[Any] = [run(seeds, first=first) for first, seeds in ((20_003, 2), (20_000, 3), (20_005, 1))]
+        assert experiments.concat(parts) == run(6)  # type: ignore[misc]
+        for broken, message in [
+            (parts[:1] + parts[2:], None),
+            (parts[1:2] + parts[2:], "seeds up to 20002 and from 20005 on; expected each seed once"),
+            (parts + parts[1:2], "seeds up to 20002 and from 20000 on"),
+            ([], "expected tables of one of set_one"),
+            ([parts[0], 3], "tables: a .* and a int"),
+        ]:
+            if message is not None:
+                with pytest.raises(eeruf.ArgumentError, match=message):
+                    experiments.concat(broken)
+    with pytest.raises(eeruf.ArgumentError, match="tables: periods = 50 and 10; expected parts of one experiment"):
+        experiments.concat([one(1), experiments.set_one(1, first=20_001, readings=80, methods=methods)])
+
+
+def test_compare_pairs_by_seed_and_covers_what_it_claims() -> None:
+    table = experiments.set_one(12, readings=400, methods=["sequential", "conventional"])
+    one, other = table.runs["sequential"], table.runs["conventional"]
+    found, swapped = experiments.compare(one, other), experiments.compare(other, one[::-1])
+    for name, difference in found.items():
+        assert difference.mean == pytest.approx(-swapped[name].mean, abs=1e-12)
+        assert (difference.less, difference.more) == (swapped[name].more, swapped[name].less)
+        values = sorted(a.figures()[name] - b.figures()[name] for a, b in zip(one, other))  # type: ignore[operator]
+        assert difference.median_95 == (values[2], values[9])
+    assert found["wrong_of_all"].more == 0 and found["wrong_of_all"].p_sign == 2 / 2**12
+    same = experiments.compare(one, one)["wrong_of_all"]
+    assert (same.mean_95, same.median_95, same.p_sign) == ((0, 0), (0, 0), 1)
+    with pytest.raises(eeruf.ArgumentError, match="seed 20011 and 0 others are of one method only"):
+        experiments.compare(one, other[:-1])
+    with pytest.raises(eeruf.ArgumentError, match="one = .*; expected runs of one method"):
+        ANY.experiments.compare(table, other)
+
+
+@pytest.mark.parametrize("run", [experiments.set_one, experiments.set_two, experiments.set_three])
+def test_reporting_seeds_refuse_to_tune(run: Any) -> None:
+    with pytest.raises(eeruf.ExperimentError, match="seeds up to 20000 with tune=True; expected seeds below 20000"):
+        run(1, tune=True)
+    with pytest.raises(eeruf.ExperimentError, match="seeds up to 20001"):
+        run(3, first=19_999, tune=True)
+    assert run(1, first=0, tune=True, methods=["sequential"]).first == 0
+
+
+KILLED = """
+import os, sys, time
+import eeruf
+from eeruf import experiments
+
+def part(first):
+    with open({log!r}, "a") as log:
+        log.write(f"{{first}}\\n")
+    if first >= 20_004 and {slow}:
+        time.sleep(600)
+    return experiments.set_one(2, first=first, readings=400, methods=["eeruf"])
+
+if __name__ == "__main__":
+    from concurrent.futures import ThreadPoolExecutor
+    with ThreadPoolExecutor(1) as one:
+        parts = eeruf.sweep(part, range(20_000, 20_010, 2), executor=one, folder={folder!r})
+    print(experiments.concat(parts) == experiments.set_one(10, readings=400, methods=["eeruf"]))
+"""
+
+
+def test_a_killed_sweep_resumes_from_its_folder(tmp_path: Path) -> None:
+    log, folder, script = tmp_path / "log", tmp_path / "parts", tmp_path / "script.py"
+    script.write_text(KILLED.format(log=str(log), folder=str(folder), slow=True))
+    with subprocess.Popen([sys.executable, script]) as process:
+        try:
+            deadline = time.monotonic() + 60
+            while not (log.exists() and "20004" in log.read_text()):
+                assert time.monotonic() < deadline and process.poll() is None
+                time.sleep(0.05)
+        finally:
+            process.send_signal(signal.SIGKILL if os.name == "posix" else signal.SIGTERM)
+    assert sorted(path.name for path in folder.iterdir()) == ["000000.pickle", "000001.pickle"]
+    script.write_text(KILLED.format(log=str(log), folder=str(folder), slow=False))
+    done = subprocess.run([sys.executable, script], capture_output=True, text=True, timeout=300)
+    assert (done.stdout, done.stderr) == ("True\n", "")
+    # Only the part under way was lost.
+    assert log.read_text().split() == ["20000", "20002", "20004", "20004", "20006", "20008"]
+
+
+def square(number: int) -> int:
+    return number * number
+
+
+def test_a_folder_of_another_sweep_or_a_damaged_file_is_refused(tmp_path: Path) -> None:
+    assert eeruf.sweep(square, [1, 2, 3], folder=tmp_path) == [1, 4, 9]
+    assert eeruf.sweep(square, [1, 2, 3], folder=tmp_path) == [1, 4, 9]
+    for function, cases in ((square, [1, 2, 4]), (abs, [1, 2, 3]), (square, [1, 2])):
+        with pytest.raises(eeruf.ArgumentError, match="use another folder for another sweep"):
+            eeruf.sweep(function, cases, folder=tmp_path)  # type: ignore[arg-type]
+    (tmp_path / "000001.pickle").write_bytes(b"no pickle")
+    with pytest.raises(eeruf.ArgumentError, match=r"000001.pickle: .*; expected a result of a sweep; delete it"):
+        eeruf.sweep(square, [1, 2, 3], folder=tmp_path)
+    with pytest.raises(eeruf.ArgumentError, match="folder = 3; expected the path of a folder"):
+        ANY.sweep(square, [1], folder=3)
+
+
+def test_one_process_dask_and_parts_give_equal_tables() -> None:
+    from distributed import Client, LocalCluster
+
+    run = functools.partial(part, methods=("eeruf", "sequential"))
+    firsts = range(20_000, 20_006, 2)
+    whole = experiments.set_one(6, readings=400, methods=["eeruf", "sequential"])
+    with LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster, Client(cluster) as client:
+        there = eeruf.sweep(run, firsts, executor=client.get_executor())
+    assert experiments.concat(there) == experiments.concat(eeruf.sweep(run, firsts)) == whole
+
+
+def part(first: int, methods: Any) -> experiments.SetOne:
+    return experiments.set_one(2, first=first, readings=400, methods=list(methods))
+
+
+def test_the_documents_own_filter_takes_15_lines_and_its_comparison_five() -> None:
+    text = (ROOT / "docs/python.md").read_text().split("## A method of your own")[1].split("\n## ")[0]
+    entry, comparison = re.findall(r"^```python\n(.*?)^```$", text, flags=re.M | re.S)[:2]
+    assert len(entry.strip().splitlines()) <= 15 and len(comparison.strip().splitlines()) <= 5
+    scope: dict[str, Any] = {}
+    exec(compile(entry, "entry", "exec"), scope)
+    exec(compile(comparison, "comparison", "exec"), scope)
+    assert set(scope["alcoves"].runs) == set(scope["courses"].runs) == {"eeruf", "mine"}

@@ -68,7 +68,10 @@ from eeruf._eeruf import (
 # Checkers take it for true, as the one of typing, which would cost more to import than all of eeruf.
 TYPE_CHECKING = False
 if TYPE_CHECKING:
+    from typing_extensions import TypeGuard
+
     from eeruf import experiments, logs, plot
+    from eeruf._eeruf import _Kind
     from eeruf._sweep import sweep
     from eeruf.logs import diagnose, read_firings, read_log, replay, survey
 
@@ -116,6 +119,7 @@ __all__ = [
     "example",
     "experiments",
     "fit",
+    "is_kind",
     "logs",
     "nav",
     "plot",
@@ -128,6 +132,21 @@ __all__ = [
     "sweep",
     "tables",
 ]
+
+
+def is_kind(name: str) -> TypeGuard[_Kind]:
+    """Return true for a kind of readings, so that a type checker takes it for one.
+
+    Args:
+        name: a text from elsewhere, such as a log.
+
+    Example:
+        >>> import eeruf
+        >>> eeruf.is_kind("accepted"), eeruf.is_kind("acepted")
+        (True, False)
+
+    """
+    return name in KINDS
 
 
 def show_versions() -> None:

@@ -1,14 +1,16 @@
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from os import PathLike
-from typing import IO, Any, Final, Literal, SupportsIndex, TypeVar, final, overload
+from typing import IO, Any, Final, Literal, SupportsIndex, TypedDict, TypeVar, final, overload, type_check_only
 
 import numpy as np
 import pandas as pd
 import polars as pl
+import xarray as xr
 from numpy.typing import ArrayLike, NDArray
+from typing_extensions import Unpack
 
 from eeruf._results import Summary
-from eeruf._types import FlowSettings, HeardPaths
+from eeruf._types import FlowSettings, HeardPaths, ReadingColumns
 from eeruf.logs import Firings
 
 # Whole numbers: Python's and NumPy's.
@@ -102,22 +104,167 @@ CAUSES: Final[tuple[_Cause, ...]]
 EXAMPLES: Final[tuple[str, ...]]
 __version__: Final[str]
 
-class EerufError(ValueError): ...
-class ArgumentError(EerufError): ...
-class CertificateError(EerufError): ...
-class ScheduleError(EerufError): ...
-class FilterError(EerufError): ...
-class RingError(EerufError): ...
-class HoppingError(EerufError): ...
-class LogError(EerufError): ...
-class SearchError(EerufError): ...
-class SceneError(EerufError): ...
-class PathsError(EerufError): ...
-class SimulationError(EerufError): ...
-class ExperimentError(EerufError): ...
+class EerufError(ValueError):
+    """Something eeruf cannot do with what it was given; a ``ValueError``, and the base of all others.
+
+    Example:
+        >>> import eeruf
+        >>> try:
+        ...     eeruf.design(sensors=65, t_delta_us=999, min_interval_us=15_000, window_us=36_000)
+        ... except eeruf.EerufError as error:
+        ...     print(error)
+        sensors = 65; expected a whole number from 1 to 64
+    """
+
+class ArgumentError(EerufError):
+    """An argument of the wrong type, shape or range, which it names.
+
+    Example:
+        >>> import eeruf
+        >>> eeruf.EchoFilter(sensors=0, t_delta_us=500)
+        Traceback (most recent call last):
+        eeruf.ArgumentError: sensors = 0; expected a whole number from 1 to 64
+    """
+
+class CertificateError(EerufError):
+    """A certificate that proves nothing, or not that a period is the shortest; the message says why.
+
+    Example:
+        >>> import eeruf
+        >>> eeruf.check_certificate("")
+        Traceback (most recent call last):
+        eeruf.CertificateError: line 1: found "", expected a line eeruf-certificate
+    """
+
+class ScheduleError(EerufError):
+    """Numbers that make no schedule.
+
+    Example:
+        >>> import eeruf
+        >>> eeruf.Schedule.from_firing(40_000, [0, 50_000], [0, 2_000])
+        Traceback (most recent call last):
+        eeruf.ScheduleError: sensor 1 fires 50 ms into phase a; expected less than the period of 40 ms
+    """
+
+class FilterError(EerufError):
+    """A filter that cannot compare as asked.
+
+    Example:
+        >>> import eeruf
+        >>> eeruf.EchoFilter(4, 500, consecutive=9)
+        Traceback (most recent call last):
+        eeruf.FilterError: 9 consecutive readings; expected 2 to 8
+    """
+
+class RingError(EerufError):
+    """A ring that cannot listen as asked.
+
+    Example:
+        >>> import eeruf
+        >>> eeruf.Ring(eeruf.tables.TABLE_I_D, 500, window_us=0)
+        Traceback (most recent call last):
+        eeruf.RingError: a blanking time of 0 us; expected less than the window of 0 us, and at most 65.535 ms
+    """
+
+class HoppingError(EerufError):
+    """A ring that cannot hop as asked, or settings that contradict each other.
+
+    Example:
+        >>> import eeruf
+        >>> eeruf.HoppingSchedule(8, 2_000, 240)
+        Traceback (most recent call last):
+        eeruf.HoppingError: a period of 2 ms; expected 2.161 ms to 268435.456 ms
+    """
+
+class LogError(EerufError):
+    """A log that cannot be read, with its file, its line, and what is expected.
+
+    Example:
+        >>> import eeruf
+        >>> eeruf.logs.read_log("no.bag")
+        Traceback (most recent call last):
+        eeruf.LogError: no.bag: No such file or directory (os error 2)
+    """
+
+class SearchError(EerufError):
+    """Needs that make no sense or are too large to search.
+
+    Example:
+        >>> import eeruf
+        >>> eeruf.WaitSearch(4, 40_000, 8_000, tick_us=3_000, t_delta_us=999)
+        Traceback (most recent call last):
+        eeruf.SearchError: a lag of 10 ms; expected a whole number of ticks of 3 ms
+    """
+
+class SceneError(EerufError):
+    """Walls, poles, robots or noise that make no scene.
+
+    Example:
+        >>> import eeruf
+        >>> eeruf.sim.Scene([[0, 0, 0, 0]])
+        Traceback (most recent call last):
+        eeruf.SceneError: wall 0 is 0 m long; expected at least 0.000001 m
+    """
+
+class PathsError(EerufError):
+    """Paths that cannot be found.
+
+    Example:
+        >>> import eeruf
+        >>> eeruf.sim.Scene([[5, 2, -5, 2]]).paths((0, 0), (1, 0), max_order=1001)
+        Traceback (most recent call last):
+        eeruf.PathsError: paths up to order 1001; expected at most 1000
+    """
+
+class SimulationError(EerufError):
+    """A simulation that cannot be run.
+
+    Example:
+        >>> import eeruf
+        >>> robot = eeruf.sim.Robot((0, 0, 0), sensors=8, spacing_rad=0.26, radius_m=0.3, window_us=90_000)
+        >>> scene = eeruf.sim.Scene([[5, 2, -5, 2]], robots=[robot])
+        >>> eeruf.sim.simulate(scene)
+        Traceback (most recent call last):
+        eeruf.SimulationError: robot 0, method eeruf: a listening window of 90 ms; a sensor of this schedule fires again after 45.6 ms, expected a window no longer than that (T_wind)
+    """
+
+class ExperimentError(EerufError):
+    """An experiment that cannot be run.
+
+    Example:
+        >>> import eeruf
+        >>> eeruf.experiments.set_one(seeds=1, methods=[])
+        Traceback (most recent call last):
+        eeruf.ExperimentError: no methods; expected at least one
+    """
 
 @final
 class Schedule:
+    """When each sensor of a ring fires, in the two phases that alternate from period to period. Immutable; equal if all
+    times are.
+
+    Sensor ``x`` fires ``t_lag_us[x] + t_wait_a_us[x]`` after the beginning of an even period (phase a) and
+    ``t_lag_us[x] + t_wait_b_us[x]`` after that of an odd one (phase b). Times are whole microseconds below 2^32;
+    sensors count from 0, and are printed from 1. Schedules compare, hash and pickle, and their ``repr`` can be pasted
+    back.
+
+    Args:
+        period_us: the period, ``T_p``.
+        t_lag_us: ``T_lag`` of each sensor, 1 to 64 of them.
+        t_wait_a_us: ``T_wait`` of each sensor in phase a.
+        t_wait_b_us: ``T_wait`` of each sensor in phase b.
+
+    Raises:
+        ArgumentError: a time is not a whole number of microseconds, or negative.
+        ScheduleError: the lengths differ, there are no or more than 64 sensors, or one would fire after its period's
+            end.
+
+    Example:
+        >>> import eeruf
+        >>> two = eeruf.Schedule(40_000, t_lag_us=[0, 20_000], t_wait_a_us=[0, 0], t_wait_b_us=[2_000, 5_000])
+        >>> two.t_fire_b_us
+        (2000, 25000)
+    """
     def __new__(
         cls,
         period_us: _Int,
@@ -126,7 +273,23 @@ class Schedule:
         t_wait_b_us: Iterable[_Int],
     ) -> Schedule: ...
     @staticmethod
-    def from_firing(period_us: _Int, t_fire_a_us: Iterable[_Int], t_fire_b_us: Iterable[_Int]) -> Schedule: ...
+    def from_firing(period_us: _Int, t_fire_a_us: Iterable[_Int], t_fire_b_us: Iterable[_Int]) -> Schedule:
+        """Make a schedule of firing times instead of lags and waits.
+
+        Args:
+            period_us: the period, ``T_p``.
+            t_fire_a_us: when each sensor fires in phase a, 1 to 64 times; below the period.
+            t_fire_b_us: when each sensor fires in phase b, as many.
+
+        Raises:
+            ArgumentError: a time is not a whole number of microseconds, or negative.
+            ScheduleError: as for ``Schedule``.
+
+        Example:
+            >>> from eeruf import Schedule
+            >>> Schedule.from_firing(40_000, [0, 20_000], [2_000, 25_000]).sensors
+            2
+        """
     @staticmethod
     def congruence(
         sensors: _Int,
@@ -134,28 +297,117 @@ class Schedule:
         step_us: _Int,
         phases: _Int = 5,
         t_lag_us: Iterable[_Int] | None = None,
-    ) -> HoppingSchedule: ...
+    ) -> HoppingSchedule:
+        """A schedule of many phases by a linear congruence: sensor ``x`` fires ``step_us * ((x + 1) * m % phases)`` after
+        its lag in phase ``m``. For robots that stand: a robot that drives takes a :class:`HoppingSchedule`.
+
+        Args:
+            sensors: how many, 1 to 64.
+            period_us: the period, ``T_p``.
+            step_us: by how much crosstalk moves at least, 1 to 65535.
+            phases: at least so many, 2 to 67; by default the 5 that confirm an echo.
+            t_lag_us: the lag of each sensor; by default they are spread evenly over the period.
+
+        Raises:
+            ArgumentError: something of the wrong type or out of range.
+            HoppingError: numbers that make no such schedule.
+
+        Example:
+            >>> from eeruf import Schedule
+            >>> Schedule.congruence(sensors=8, period_us=60_000, step_us=240).t_fire_us[1, :3].tolist()
+            [240, 7680, 15120]
+        """
     @staticmethod
-    def from_toml(text: str) -> Schedule: ...
+    def from_toml(text: str) -> Schedule:
+        r"""Read a schedule as ``eeruf design --emit toml`` and :meth:`to_toml` write it.
+
+        Args:
+            text: the contents of a file: ``period_us``, and ``t_lag_us``, ``t_wait_a_us``, ``t_wait_b_us`` or
+                ``t_fire_a_us``, ``t_fire_b_us``.
+
+        Raises:
+            ArgumentError: not a text.
+            ScheduleError: the text is no TOML, a key is missing, or the numbers make no schedule.
+
+        Example:
+            >>> from eeruf import Schedule
+            >>> Schedule.from_toml("period_us = 40000\nt_fire_a_us = [0]\nt_fire_b_us = [2000]").period_us
+            40000
+        """
     @staticmethod
-    def read_toml(path: str | PathLike[str]) -> Schedule: ...
+    def read_toml(path: str | PathLike[str]) -> Schedule:
+        """Read a schedule file, such as those in the folder ``rings``.
+
+        Args:
+            path: of the file.
+
+        Raises:
+            ArgumentError: not a path.
+            ScheduleError: no such file, or as for :meth:`from_toml`.
+
+        Example:
+            >>> import eeruf, pathlib, tempfile
+            >>> file = pathlib.Path(tempfile.mkdtemp(), "ring.toml")
+            >>> _ = file.write_text(eeruf.tables.TABLE_I_D.to_toml())
+            >>> eeruf.Schedule.read_toml(file) == eeruf.tables.TABLE_I_D
+            True
+        """
     @staticmethod
-    def from_json(text: str) -> Schedule: ...
+    def from_json(text: str) -> Schedule:
+        """Read a schedule as :meth:`to_json` writes it, with the keys of :meth:`from_toml`.
+
+        Args:
+            text: one JSON object.
+
+        Raises:
+            ArgumentError: not a text.
+            ScheduleError: the text is no JSON, a key is missing, or the numbers make no schedule.
+
+        Example:
+            >>> from eeruf import Schedule
+            >>> Schedule.from_json('{"period_us": 40000, "t_fire_a_us": [0], "t_fire_b_us": [2000]}').sensors
+            1
+        """
     @property
-    def period_us(self) -> int: ...
+    def period_us(self) -> int:
+        """The period ``T_p``, in microseconds."""
     @property
-    def sensors(self) -> int: ...
+    def sensors(self) -> int:
+        """How many sensors fire."""
     @property
-    def t_lag_us(self) -> tuple[int, ...]: ...
+    def t_lag_us(self) -> tuple[int, ...]:
+        """``T_lag`` of each sensor, in microseconds; zeros if the schedule was made of firing times."""
     @property
-    def t_wait_a_us(self) -> tuple[int, ...]: ...
+    def t_wait_a_us(self) -> tuple[int, ...]:
+        """``T_wait`` of each sensor in phase a, in microseconds."""
     @property
-    def t_wait_b_us(self) -> tuple[int, ...]: ...
+    def t_wait_b_us(self) -> tuple[int, ...]:
+        """``T_wait`` of each sensor in phase b, in microseconds."""
     @property
-    def t_fire_a_us(self) -> tuple[int, ...]: ...
+    def t_fire_a_us(self) -> tuple[int, ...]:
+        """When each sensor fires in phase a, in microseconds from the beginning of the period."""
     @property
-    def t_fire_b_us(self) -> tuple[int, ...]: ...
-    def scaled(self, num: _Int, den: _Int) -> Schedule: ...
+    def t_fire_b_us(self) -> tuple[int, ...]:
+        """When each sensor fires in phase b, in microseconds from the beginning of the period."""
+    def scaled(self, num: _Int, den: _Int) -> Schedule:
+        """Multiply all times by ``num / den`` (Sec. 3.1, proportional scaling), rounded to whole microseconds.
+
+        Args:
+            num: the numerator, 1 to 2^32 - 1.
+            den: the denominator, 1 to 2^32 - 1.
+
+        Returns:
+            The schedule; verify it again, since ``T_delta`` and the intervals scale as well.
+
+        Raises:
+            ArgumentError: not whole numbers.
+            ScheduleError: one is zero, or the times become too long.
+
+        Example:
+            >>> from eeruf.tables import TABLE_I_D
+            >>> TABLE_I_D.scaled(3, 5).period_us
+            60000
+        """
     def verify(
         self,
         t_delta_us: _Each,
@@ -169,9 +421,55 @@ class Schedule:
         intervals_us: Iterable[tuple[_Int, _Int, _Int]] | None = None,
         shared_lines: Iterable[Sequence[_Int]] | None = None,
         together: Iterable[Sequence[_Int]] | None = None,
-    ) -> Report: ...
-    def to_toml(self) -> str: ...
-    def to_json(self) -> str: ...
+    ) -> Report:
+        """Check every condition of the paper, sensor by sensor.
+
+        Args:
+            t_delta_us: ``T_delta``: consecutive readings that differ by no more are near-identical (Eq. 11). One for
+                all sensors or a sequence of one for each; two sensors need the separation of the larger.
+            min_interval_us: the least time between the firings of two neighbours (Sec. 3.1 c).
+            neighbours: how many sensors in a row count as neighbours, 1 to 64.
+            layout: how they stand: ``"line"``, ``"ring"`` (the last beside the first), ``"blocks"`` of ``neighbours``,
+                or pairs of neighbours, such as ``[(0, 1), (1, 2)]``.
+            criterion: how to read Eqs. (13a), (13b): ``"exact"``, or as the ``"paper"`` prints them.
+            window_us: ``T_wind``, for which a sensor listens: it must not fire again earlier. One for all, or a
+                sequence.
+            stale_echo: whether a sensor's own echo from the period before must be rejected too.
+            refire_us: how soon a sensor may be triggered again, where that is later. One for all, or a sequence.
+            intervals_us: pairs of sensors with the least time between their firings, whatever the layout says:
+                ``[(0, 4, 9000)]``; 0 for none.
+            shared_lines: groups of sensors on one echo line, ``[(0, 3), (1, 4)]``: none fires while another listens.
+            together: groups of sensors that must fire at the same instants. No separation is asked between them.
+
+        Returns:
+            The report, which is true if all conditions hold.
+
+        Raises:
+            ArgumentError: something of the wrong type or out of range.
+
+        Example:
+            >>> from eeruf.tables import TABLE_I_D
+            >>> report = TABLE_I_D.verify(t_delta_us=999, min_interval_us=15_000)
+            >>> report.ok, report.min_interval_us, report.max_t_delta_us
+            (True, 17000, 999)
+        """
+    def to_toml(self) -> str:
+        """Write a schedule file, as the program reads it.
+
+        Example:
+            >>> from eeruf import Schedule, tables
+            >>> Schedule.from_toml(tables.TABLE_I_D.to_toml()) == tables.TABLE_I_D
+            True
+        """
+    def to_json(self) -> str:
+        """Write one JSON object with the keys of the schedule file.
+
+        Example:
+            >>> import json
+            >>> from eeruf.tables import TABLE_I_D
+            >>> json.loads(TABLE_I_D.to_json())["period_us"]
+            100000
+        """
     def to_rust(
         self,
         t_delta_us: _Int | None = None,
@@ -181,7 +479,26 @@ class Schedule:
         criterion: _Criterion = "exact",
         window_us: _Int = 0,
         stale_echo: bool = False,
-    ) -> str: ...
+    ) -> str:
+        """Write a Rust constant for firmware, which is checked when it is compiled.
+
+        Args:
+            t_delta_us: what the constant is checked for; by default the most that the schedule allows.
+            min_interval_us: as in :meth:`verify`, and so all others.
+            neighbours: as in :meth:`verify`.
+            layout: as in :meth:`verify`.
+            criterion: as in :meth:`verify`.
+            window_us: as in :meth:`verify`.
+            stale_echo: as in :meth:`verify`.
+
+        Raises:
+            ArgumentError: something of the wrong type or out of range.
+
+        Example:
+            >>> from eeruf.tables import TABLE_I_D
+            >>> "schedule!" in TABLE_I_D.to_rust(min_interval_us=15_000)
+            True
+        """
     def to_c(
         self,
         t_delta_us: _Int | None = None,
@@ -191,14 +508,48 @@ class Schedule:
         criterion: _Criterion = "exact",
         window_us: _Int = 0,
         stale_echo: bool = False,
-    ) -> str: ...
-    def to_dict(self) -> dict[str, object]: ...
+    ) -> str:
+        """Write a C99 header with the firing times and what they were verified for.
+
+        Args:
+            t_delta_us: what the header says it was verified for; by default the most that the schedule allows.
+            min_interval_us: as in :meth:`verify`, and so all others.
+            neighbours: as in :meth:`verify`.
+            layout: as in :meth:`verify`.
+            criterion: as in :meth:`verify`.
+            window_us: as in :meth:`verify`.
+            stale_echo: as in :meth:`verify`.
+
+        Raises:
+            ArgumentError: something of the wrong type or out of range.
+
+        Example:
+            >>> from eeruf.tables import TABLE_I_D
+            >>> "#include <stdint.h>" in TABLE_I_D.to_c(min_interval_us=15_000)
+            True
+        """
+    def to_dict(self) -> dict[str, object]:
+        """Its times by their names, as the arguments of ``Schedule``: a dict of plain values.
+
+        Example:
+            >>> from eeruf import Schedule, tables
+            >>> Schedule(**tables.TABLE_I_D.to_dict()) == tables.TABLE_I_D
+            True
+        """
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...
     def __hash__(self, /) -> int: ...
 
 @final
 class Violation:
+    """One condition that a schedule does not meet.
+
+    Example:
+        >>> from eeruf.tables import TABLE_I_B
+        >>> violation = TABLE_I_B.verify(t_delta_us=999, min_interval_us=15_000).violations[0]
+        >>> violation.kind, violation.value_us < violation.required_us, violation.source
+        ('interval', True, 'Sec. 3.1 c')
+    """
     def __new__(
         cls,
         kind: _Condition,
@@ -209,24 +560,46 @@ class Violation:
         source: str,
     ) -> Violation: ...
     @property
-    def kind(self) -> _Condition: ...
+    def kind(self) -> _Condition:
+        """Which condition: ``"crosstalk_a"``, ``"crosstalk_b"``, ``"stale_echo"``, ``"interval"``, ``"window"``; where
+        sensors are not all alike also ``"shared_line"``, ``"refire"`` or ``"together"``.
+        """
     @property
-    def sensors(self) -> tuple[int, int]: ...
+    def sensors(self) -> tuple[int, int]:
+        """The two sensors, from 0; the same one twice where a condition is about one alone."""
     @property
-    def phases(self) -> tuple[_Phase, _Phase]: ...
+    def phases(self) -> tuple[_Phase, _Phase]:
+        """The phases in which they fire, each ``"a"`` or ``"b"``."""
     @property
-    def value_us(self) -> int: ...
+    def value_us(self) -> int:
+        """What the schedule has, in microseconds."""
     @property
-    def required_us(self) -> int: ...
+    def required_us(self) -> int:
+        """What the condition asks for, in microseconds."""
     @property
-    def source(self) -> str: ...
-    def to_dict(self) -> dict[str, object]: ...
+    def source(self) -> str:
+        """Where the condition comes from, such as ``"Eq. (13a)"``."""
+    def to_dict(self) -> dict[str, object]:
+        """Its fields by their names: a dict of plain values.
+
+        Example:
+            >>> import eeruf
+            >>> eeruf.Violation("window", (0, 0), ("a", "b"), 20_000, 36_000, "Sec. 3.1").to_dict()["sensors"]
+            [0, 0]
+        """
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...
     def __hash__(self, /) -> int: ...
 
 @final
 class Report:
+    """What ``Schedule.verify`` found. It is true if all conditions hold.
+
+    Example:
+        >>> from eeruf.tables import TABLE_I_D
+        >>> bool(TABLE_I_D.verify(t_delta_us=999)), bool(TABLE_I_D.verify(t_delta_us=1_000))
+        (True, False)
+    """
     def __new__(
         cls,
         separation_us: _Int | None,
@@ -236,18 +609,36 @@ class Report:
         violations: Sequence[Violation],
     ) -> Report: ...
     @property
-    def ok(self) -> bool: ...
+    def ok(self) -> bool:
+        """Whether every condition holds."""
     @property
-    def separation_us(self) -> int | None: ...
+    def separation_us(self) -> int | None:
+        """The smaller left side of (13a), (13b) of the pair that is closest to failing, in microseconds; None for a single
+        sensor.
+        """
     @property
-    def max_t_delta_us(self) -> int | None: ...
+    def max_t_delta_us(self) -> int | None:
+        """The largest ``T_delta`` at which (13a), (13b) (and the stale echo condition, if asked for) hold, in
+        microseconds; None if none does.
+        """
     @property
-    def min_interval_us(self) -> int | None: ...
+    def min_interval_us(self) -> int | None:
+        """The smallest time between the firings of two neighbours, in microseconds; None without neighbours."""
     @property
-    def min_refire_us(self) -> int: ...
+    def min_refire_us(self) -> int:
+        """The shortest time between two firings of one sensor, in microseconds."""
     @property
-    def violations(self) -> tuple[Violation, ...]: ...
-    def to_dict(self) -> dict[str, object]: ...
+    def violations(self) -> tuple[Violation, ...]:
+        """Every violation, as a tuple of ``Violation``: first (13a), then (13b), stale echoes, intervals and windows."""
+    def to_dict(self) -> dict[str, object]:
+        """Its fields by their names, violations as dicts too: a dict of plain values.
+
+        Example:
+            >>> from eeruf.tables import TABLE_I_D
+            >>> report = TABLE_I_D.verify(t_delta_us=999, min_interval_us=15_000).to_dict()
+            >>> report["ok"], report["min_interval_us"]
+            (True, 17000)
+        """
     def __bool__(self, /) -> bool: ...
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...
@@ -255,6 +646,14 @@ class Report:
 
 @final
 class Found:
+    """The answer of a search: the best schedule it came to, and whether that is proven.
+
+    Example:
+        >>> import eeruf
+        >>> found = eeruf.design(sensors=4, t_delta_us=999, min_interval_us=15_000, window_us=36_000)
+        >>> found.value_us, found.bound_us, found.proven
+        (62000, 62000, True)
+    """
     def __new__(
         cls,
         schedule: Schedule | None,
@@ -272,37 +671,73 @@ class Found:
         spare_proven: tuple[bool, bool, bool] | None = None,
     ) -> Found: ...
     @property
-    def schedule(self) -> Schedule | None: ...
+    def schedule(self) -> Schedule | None:
+        """The schedule; None if there is none, or none was found within the budget."""
     @property
-    def value_us(self) -> int | None: ...
+    def value_us(self) -> int | None:
+        """What was sought of it, in microseconds: the period, the smallest interval or ``T_delta``; None without a
+        schedule.
+        """
     @property
-    def bound_us(self) -> int | None: ...
+    def bound_us(self) -> int | None:
+        """No schedule is better than this, in microseconds; None if it is proven that there is none at all."""
     @property
-    def proven(self) -> bool: ...
+    def proven(self) -> bool:
+        """Whether no better schedule exists (or none at all, without a schedule)."""
     @property
-    def nodes(self) -> int: ...
+    def nodes(self) -> int:
+        """How many nodes the search visited: the same on each machine."""
     @property
-    def seconds(self) -> float: ...
+    def seconds(self) -> float:
+        """How long it took."""
     @property
-    def reason(self) -> str | None: ...
+    def reason(self) -> str | None:
+        """Why the period is not shorter, in words; None from ``WaitSearch.best``."""
     @property
-    def certificate(self) -> str | None: ...
+    def certificate(self) -> str | None:
+        """A proof for :func:`check_certificate`; None unless ``design`` was asked for one."""
     @property
-    def real_period_us(self) -> tuple[int, int] | None: ...
+    def real_period_us(self) -> tuple[int, int] | None:
+        """The shortest period over the reals in microseconds, as numerator and denominator in lowest terms; None unless
+        ``design`` was asked for it.
+        """
     @property
-    def real_proven(self) -> bool | None: ...
+    def real_proven(self) -> bool | None:
+        """Whether no real period is shorter; None without one."""
     @property
-    def from_atlas(self) -> bool: ...
+    def from_atlas(self) -> bool:
+        """Whether the atlas of proven rings answered, and nothing was searched."""
     @property
-    def spare_us(self) -> tuple[int, int, int] | None: ...
+    def spare_us(self) -> tuple[int, int, int] | None:
+        """Of a ring whose sensors are not all alike: what its schedule keeps beyond every ``t_delta``, then every interval
+        and turn on a shared line, then every refire time, in microseconds; else None.
+        """
     @property
-    def spare_proven(self) -> tuple[bool, bool, bool] | None: ...
-    def to_dict(self) -> dict[str, object]: ...
+    def spare_proven(self) -> tuple[bool, bool, bool] | None:
+        """Whether no schedule of this period has more, of each; None without them."""
+    def to_dict(self) -> dict[str, object]:
+        """Its fields by their names, the schedule as its times: a dict of plain values.
+
+        Example:
+            >>> import eeruf
+            >>> found = eeruf.design(sensors=4, t_delta_us=999, min_interval_us=15_000, window_us=36_000).to_dict()
+            >>> found["value_us"], found["schedule"]["period_us"]
+            (62000, 62000)
+        """
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...
 
 @final
 class HoppingFound:
+    """The answer of ``design`` with ``phases``: a schedule for a hopping ring, and how much shorter one could be.
+
+    Example:
+        >>> import eeruf
+        >>> found = eeruf.design(8, t_delta_us=150, min_interval_us=0, window_us=36_000, phases=5)
+        >>> found.schedule.phases, found.value_us, found.proven
+        (11, 38107, True)
+        >>> ring = eeruf.HoppingRing(found.schedule, window_us=36_000)
+    """
     def __new__(
         cls,
         schedule: HoppingSchedule,
@@ -314,20 +749,35 @@ class HoppingFound:
         width_bound_us: _Int,
     ) -> HoppingFound: ...
     @property
-    def schedule(self) -> HoppingSchedule: ...
+    def schedule(self) -> HoppingSchedule:
+        """The schedule: a linear congruence with lags."""
     @property
-    def value_us(self) -> int: ...
+    def value_us(self) -> int:
+        """Its period, in microseconds."""
     @property
-    def bound_us(self) -> int: ...
+    def bound_us(self) -> int:
+        """No schedule of so many phases or more that separates sound of every age has a shorter period, in microseconds."""
     @property
-    def proven(self) -> bool: ...
+    def proven(self) -> bool:
+        """Whether no such schedule is shorter."""
     @property
-    def reason(self) -> str: ...
+    def reason(self) -> str:
+        """What sets the bound, in words."""
     @property
-    def width_us(self) -> int: ...
+    def width_us(self) -> int:
+        """The longest wait of the code, in microseconds."""
     @property
-    def width_bound_us(self) -> int: ...
-    def to_dict(self) -> dict[str, object]: ...
+    def width_bound_us(self) -> int:
+        """No code that separates sound of every age is narrower than this, in microseconds."""
+    def to_dict(self) -> dict[str, object]:
+        """Its fields by their names, as ``eeruf design --phases M --json`` prints them: a dict of plain values.
+
+        Example:
+            >>> import eeruf
+            >>> found = eeruf.design(8, t_delta_us=150, min_interval_us=0, window_us=36_000, phases=5).to_dict()
+            >>> found["value_us"], found["schedule"]["step_us"]
+            (38107, 301)
+        """
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...
 
@@ -353,7 +803,74 @@ def design(
     phases: None = None,
     margin_us: None = None,
     atlas: bool = True,
-) -> Found: ...
+) -> Found:
+    """Find the schedule with the shortest period for a ring, and prove that none is shorter.
+
+    Firing times are free, on a grid of ticks. Among all schedules of the shortest period it prefers a larger
+    ``T_delta``, then a larger smallest interval, then evener firing; where sensors are not all alike it takes the first
+    that it finds. It runs on one core, without the interpreter lock;
+    Ctrl-C ends it.
+
+    Args:
+        sensors: how many, 1 to 64.
+        t_delta_us: ``T_delta``: consecutive readings that differ by no more are near-identical (Eq. 11). One for all
+            sensors or a sequence of one for each; two sensors need the separation of the larger.
+        min_interval_us: the least time between the firings of two neighbours (Sec. 3.1 c).
+        window_us: ``T_wind``, for which a sensor listens: it must not fire again earlier. 1 or more; one for all, or a
+            sequence.
+        tick_us: the grid of firing times and period, 1 or more.
+        neighbours: how many sensors in a row count as neighbours, 1 to 64.
+        layout: ``"line"``, ``"ring"``, ``"blocks"`` or pairs of neighbours, as in :meth:`Schedule.verify`.
+        stale_echo: whether a sensor's own echo from the period before must be rejected too.
+        budget: how many nodes to visit at most, 1 or more; 50 million by default.
+        progress: True for a bar (tqdm if it is installed), or a callable that takes the share done (None: unknown) and
+            a text.
+        certificate: whether to prove the answer to :func:`check_certificate`, in ``Found.certificate``: that no period
+            is shorter, or none below ``bound_us``, or below a lower bound that a million nodes suffice for.
+        time_limit_s: how long the call may take before it gives the best schedule so far, above 0; the certificate has
+            what time is left. No limit by default.
+        refire_us: how soon a sensor may be triggered again, where that is later than its window. One for all, or a
+            sequence.
+        intervals_us: pairs of sensors with the least time between their firings, whatever the layout says:
+            ``[(0, 4, 9000)]``; 0 for none.
+        shared_lines: groups of sensors on one echo line, ``[(0, 3), (1, 4)]``: none fires while another listens.
+        together: groups of sensors that fire at the same instants, declared not to hear each other.
+        over_reals: whether to say what the tick costs: in ``Found.real_period_us`` the shortest period in
+            ticks of any length, for the needs in exact microseconds, and in ``Found.real_proven`` whether
+            none is shorter. Only where the period in ticks is proven.
+        phases: at least so many, 2 to 67: a schedule for a :class:`HoppingRing`, as ``eeruf design --phases`` finds it.
+            Then times are whole microseconds, of lists the largest counts, and nothing below ``stale_echo`` may be
+            given but ``margin_us``.
+        margin_us: with ``phases``: crosstalk need move by ``T_delta`` and this margin alone, which is all that jitter
+            and lateness may use, instead of ``2 T_delta + 1``.
+        atlas: whether the atlas of rings whose shortest period is known may answer, as that of the program does;
+            ``Found.from_atlas`` says whether it did, and ``nodes`` is 0 then.
+
+    Returns:
+        A :class:`Found`: the shortest period in ``value_us``, or the best found within budget and time; ``proven`` says
+        which. With ``phases`` a :class:`HoppingFound`.
+
+    Raises:
+        ArgumentError: something of the wrong type or out of range.
+        SearchError: needs that make no sense, or too large a grid.
+        HoppingError: no schedule of so many phases.
+
+    Example:
+        >>> import eeruf
+        >>> found = eeruf.design(sensors=8, t_delta_us=999, min_interval_us=15_000, window_us=36_000)
+        >>> found.value_us, found.proven
+        (66000, True)
+        >>> found = eeruf.design(12, 999, 15_000, 45_000, over_reals=True)
+        >>> found.value_us, found.real_period_us, found.real_proven
+        (70000, (69499, 1), True)
+        >>> windows = [36_000, 36_000, 12_000, 12_000]
+        >>> found = eeruf.design(4, [999, 999, 1500, 1500], 15_000, windows, shared_lines=[(0, 2)])
+        >>> found.value_us, found.proven
+        (59000, True)
+        >>> eeruf.design(8, t_delta_us=150, min_interval_us=0, window_us=36_000, phases=5, margin_us=90).value_us
+        37680
+    """
+
 @overload
 def design(
     sensors: _Int,
@@ -366,7 +883,74 @@ def design(
     stale_echo: bool = False,
     phases: _Int,
     margin_us: _Int | None = None,
-) -> HoppingFound: ...
+) -> HoppingFound:
+    """Find the schedule with the shortest period for a ring, and prove that none is shorter.
+
+    Firing times are free, on a grid of ticks. Among all schedules of the shortest period it prefers a larger
+    ``T_delta``, then a larger smallest interval, then evener firing; where sensors are not all alike it takes the first
+    that it finds. It runs on one core, without the interpreter lock;
+    Ctrl-C ends it.
+
+    Args:
+        sensors: how many, 1 to 64.
+        t_delta_us: ``T_delta``: consecutive readings that differ by no more are near-identical (Eq. 11). One for all
+            sensors or a sequence of one for each; two sensors need the separation of the larger.
+        min_interval_us: the least time between the firings of two neighbours (Sec. 3.1 c).
+        window_us: ``T_wind``, for which a sensor listens: it must not fire again earlier. 1 or more; one for all, or a
+            sequence.
+        tick_us: the grid of firing times and period, 1 or more.
+        neighbours: how many sensors in a row count as neighbours, 1 to 64.
+        layout: ``"line"``, ``"ring"``, ``"blocks"`` or pairs of neighbours, as in :meth:`Schedule.verify`.
+        stale_echo: whether a sensor's own echo from the period before must be rejected too.
+        budget: how many nodes to visit at most, 1 or more; 50 million by default.
+        progress: True for a bar (tqdm if it is installed), or a callable that takes the share done (None: unknown) and
+            a text.
+        certificate: whether to prove the answer to :func:`check_certificate`, in ``Found.certificate``: that no period
+            is shorter, or none below ``bound_us``, or below a lower bound that a million nodes suffice for.
+        time_limit_s: how long the call may take before it gives the best schedule so far, above 0; the certificate has
+            what time is left. No limit by default.
+        refire_us: how soon a sensor may be triggered again, where that is later than its window. One for all, or a
+            sequence.
+        intervals_us: pairs of sensors with the least time between their firings, whatever the layout says:
+            ``[(0, 4, 9000)]``; 0 for none.
+        shared_lines: groups of sensors on one echo line, ``[(0, 3), (1, 4)]``: none fires while another listens.
+        together: groups of sensors that fire at the same instants, declared not to hear each other.
+        over_reals: whether to say what the tick costs: in ``Found.real_period_us`` the shortest period in
+            ticks of any length, for the needs in exact microseconds, and in ``Found.real_proven`` whether
+            none is shorter. Only where the period in ticks is proven.
+        phases: at least so many, 2 to 67: a schedule for a :class:`HoppingRing`, as ``eeruf design --phases`` finds it.
+            Then times are whole microseconds, of lists the largest counts, and nothing below ``stale_echo`` may be
+            given but ``margin_us``.
+        margin_us: with ``phases``: crosstalk need move by ``T_delta`` and this margin alone, which is all that jitter
+            and lateness may use, instead of ``2 T_delta + 1``.
+        atlas: whether the atlas of rings whose shortest period is known may answer, as that of the program does;
+            ``Found.from_atlas`` says whether it did, and ``nodes`` is 0 then.
+
+    Returns:
+        A :class:`Found`: the shortest period in ``value_us``, or the best found within budget and time; ``proven`` says
+        which. With ``phases`` a :class:`HoppingFound`.
+
+    Raises:
+        ArgumentError: something of the wrong type or out of range.
+        SearchError: needs that make no sense, or too large a grid.
+        HoppingError: no schedule of so many phases.
+
+    Example:
+        >>> import eeruf
+        >>> found = eeruf.design(sensors=8, t_delta_us=999, min_interval_us=15_000, window_us=36_000)
+        >>> found.value_us, found.proven
+        (66000, True)
+        >>> found = eeruf.design(12, 999, 15_000, 45_000, over_reals=True)
+        >>> found.value_us, found.real_period_us, found.real_proven
+        (70000, (69499, 1), True)
+        >>> windows = [36_000, 36_000, 12_000, 12_000]
+        >>> found = eeruf.design(4, [999, 999, 1500, 1500], 15_000, windows, shared_lines=[(0, 2)])
+        >>> found.value_us, found.proven
+        (59000, True)
+        >>> eeruf.design(8, t_delta_us=150, min_interval_us=0, window_us=36_000, phases=5, margin_us=90).value_us
+        37680
+    """
+
 def fit(
     period_us: _Int,
     sensors: _Int,
@@ -382,7 +966,41 @@ def fit(
     intervals_us: Iterable[tuple[_Int, _Int, _Int]] | None = None,
     shared_lines: Iterable[Sequence[_Int]] | None = None,
     together: Iterable[Sequence[_Int]] | None = None,
-) -> tuple[bool | None, Found]: ...
+) -> tuple[bool | None, Found]:
+    """Find what fits into a period: whether the needs do, and the largest ``T_delta``. Ctrl-C ends it.
+
+    Args:
+        period_us: the period, in whole ticks.
+        sensors: how many, 1 to 64.
+        t_delta_us: as in :func:`design`, as are the arguments below but ``budget``.
+        min_interval_us: the least time between the firings of two neighbours.
+        window_us: how long a sensor listens; one for all, or a sequence.
+        tick_us: the grid of firing times and period, 1 or more.
+        neighbours: how many sensors in a row count as neighbours, 1 to 64.
+        layout: ``"line"``, ``"ring"``, ``"blocks"`` or pairs of neighbours.
+        stale_echo: whether a sensor's own echo from the period before must be rejected too.
+        budget: how many nodes to visit at most, 1 or more; 50 million by default.
+        refire_us: how soon a sensor may be triggered again, where that is later than its window.
+        intervals_us: pairs of sensors with the least time between their firings.
+        shared_lines: groups of sensors on one echo line.
+        together: groups of sensors that fire at the same instants.
+
+    Returns:
+        Whether a schedule of this period meets all needs, None if that was not decided; and a :class:`Found` with the
+        largest ``T_delta`` of this period in ``value_us``: of the sensor with the largest, where sensors have their own
+        and each grows by the same. Its schedule is one that meets the needs, or else the one with that ``T_delta``.
+
+    Raises:
+        ArgumentError: something of the wrong type or out of range.
+        SearchError: needs that make no sense, or a period that is no whole number of ticks.
+
+    Example:
+        >>> import eeruf
+        >>> fits, found = eeruf.fit(100_000, 12, 999, 15_000, 30_000)
+        >>> fits, found.value_us, found.proven
+        (True, 2999, True)
+    """
+
 def curve(
     need: Literal["t_delta", "range", "interval"],
     sensors: _Int,
@@ -398,13 +1016,114 @@ def curve(
     intervals_us: Iterable[tuple[_Int, _Int, _Int]] | None = None,
     shared_lines: Iterable[Sequence[_Int]] | None = None,
     together: Iterable[Sequence[_Int]] | None = None,
-) -> list[tuple[int, int | None, int | None, bool]]: ...
-def check_certificate(text: str) -> int: ...
-def example(name: str) -> str: ...
+) -> list[tuple[int, int | None, int | None, bool]]:
+    """Find the shortest period for 20 values of one need, from a tenth of the one given to twice as much. Ctrl-C ends it.
+
+    Args:
+        need: ``"t_delta"``, ``"range"`` (the window) or ``"interval"``.
+        sensors: how many, 1 to 64.
+        t_delta_us: as in :func:`design`, as are the arguments below but ``budget``. Where sensors or pairs have
+            their own needs, all vary by the same factor.
+        min_interval_us: the least time between the firings of two neighbours.
+        window_us: how long a sensor listens; one for all, or a sequence.
+        tick_us: the grid of firing times and period, 1 or more.
+        neighbours: how many sensors in a row count as neighbours, 1 to 64.
+        layout: ``"line"``, ``"ring"``, ``"blocks"`` or pairs of neighbours.
+        stale_echo: whether a sensor's own echo from the period before must be rejected too.
+        budget: how many nodes each point may cost, 1 or more; 20,000 by default.
+        refire_us: how soon a sensor may be triggered again, where that is later than its window.
+        intervals_us: pairs of sensors with the least time between their firings.
+        shared_lines: groups of sensors on one echo line.
+        together: groups of sensors that fire at the same instants.
+
+    Returns:
+        Tuples of the need's value, the shortest period found, the bound below which there is none, all in microseconds,
+        and whether the period is proven the shortest.
+
+    Raises:
+        ArgumentError: something of the wrong type or out of range.
+        SearchError: needs that make no sense, or too large a grid.
+
+    Example:
+        >>> import eeruf
+        >>> curve = eeruf.curve("interval", 12, 999, 15_000, 30_000)
+        >>> len(curve), curve[9]
+        (20, (15000, 65000, 65000, True))
+    """
+
+def check_certificate(text: str) -> int:
+    """Check a certificate: that its schedule keeps the requirements in it, and that no period is shorter.
+
+    The checker shares nothing with the search; ``checker/check_period.py`` in the repository is another, in 300 lines
+    of Python, and ``docs/certificate.md`` has the format and the proof of each rule. A certificate speaks of the
+    numbers that stand in it, and of nothing else.
+
+    Args:
+        text: the certificate, as in ``design(..., certificate=True).certificate``.
+
+    Returns:
+        The shortest period, in microseconds.
+
+    Raises:
+        ArgumentError: no text.
+        CertificateError: the first line that is wrong; or the certificate proves a bound only, which it names.
+
+    Example:
+        >>> import eeruf
+        >>> found = eeruf.design(4, 999, 15_000, 36_000, certificate=True)
+        >>> eeruf.check_certificate(found.certificate)
+        62000
+        >>> eeruf.check_certificate(found.certificate.replace("period 62", "period 63"))
+        Traceback (most recent call last):
+        eeruf.CertificateError: no period below 62000 us; schedule of 63000 us (tick 1000 us)
+    """
+
+def example(name: str) -> str:
+    """The text of an example file: a scene for :meth:`sim.Scene.from_toml`, or a ring for the command ``eeruf design``.
+
+    ``eeruf examples DIR`` writes them all into a folder.
+
+    Args:
+        name: one of ``EXAMPLES``, as ``"scenes/alcove.toml"``.
+
+    Raises:
+        ArgumentError: there is no such example.
+
+    Example:
+        >>> import eeruf
+        >>> eeruf.sim.Scene.from_toml(eeruf.example("scenes/alcove.toml"))
+        <Scene: 3 walls, 0 poles, 1 robots>
+    """
+
 def _run_program(words: Sequence[str]) -> int: ...
 
 @final
 class WaitSearch:
+    """The paper's question: lags are given, waits are sought on a grid so that crosstalk never repeats (Sec. 3.1).
+
+    Args:
+        sensors: how many, 1 to 64.
+        period_us: ``T_p``, a whole number of ticks.
+        wait_max_us: waits are 0, one tick, two ticks, up to this.
+        tick_us: the grid, 1 or more.
+        t_lag_us: ``T_lag`` of each sensor, in whole ticks; None spreads each group of ``neighbours`` over the period,
+            as Table I-a.
+        t_delta_us: ``T_delta``: consecutive readings that differ by no more are near-identical (Eq. 11).
+        min_interval_us: the least time between the firings of two neighbours (Sec. 3.1 c).
+        neighbours: how many adjacent sensors make a group, 1 to 64.
+        layout: ``"line"``, ``"ring"``, ``"blocks"`` or pairs of neighbours, as in :meth:`Schedule.verify`.
+        criterion: how to read Eqs. (13a), (13b): as the ``"paper"`` prints them, or ``"exact"``.
+
+    Raises:
+        ArgumentError: something of the wrong type or out of range.
+        SearchError: needs that make no sense, or too large a grid.
+
+    Example:
+        >>> import eeruf
+        >>> search = eeruf.WaitSearch(12, 100_000, 24_000, 1000, t_delta_us=999, min_interval_us=15_000)
+        >>> search.best("interval").value_us
+        19000
+    """
     def __new__(
         cls,
         sensors: _Int,
@@ -419,35 +1138,241 @@ class WaitSearch:
         layout: _Layout = "line",
         criterion: _Criterion = "paper",
     ) -> WaitSearch: ...
-    def first(self) -> Schedule | None: ...
-    def count(self, limit: _Int | None = None) -> int: ...
-    def all(self) -> WaitTables: ...
-    def best(self, objective: Literal["interval", "t_delta"] = "interval", budget: _Int | None = None) -> Found: ...
-    def pareto(self) -> list[tuple[Schedule, int, int | None]]: ...
+    def first(self) -> Schedule | None:
+        """One table of waits, the same each time, or None if there is none. Ctrl-C ends the search.
+
+        Example:
+            >>> import eeruf
+            >>> table = eeruf.WaitSearch(2, 40_000, 4_000, 1000, t_delta_us=999).first()
+            >>> table.t_wait_a_us, table.t_wait_b_us
+            ((2000, 0), (0, 0))
+        """
+    def count(self, limit: _Int | None = None) -> int:
+        """How many tables there are, however many: counted without listing them where that is possible. Ctrl-C ends the
+        search.
+
+        Args:
+            limit: where to stop counting, 1 or more; None counts all.
+
+        Returns:
+            The number of tables, or the limit if there are as many.
+
+        Raises:
+            ArgumentError: the limit is no such number.
+            SearchError: more than can be counted.
+
+        Example:
+            >>> import eeruf
+            >>> eeruf.WaitSearch(2, 40_000, 4_000, 1000, t_delta_us=999).count(limit=10)
+            10
+        """
+    def all(self) -> WaitTables:
+        """All tables in lexical order, as an iterator of ``Schedule``.
+
+        Raises:
+            SearchError: too large to search.
+
+        Example:
+            >>> import itertools, eeruf
+            >>> search = eeruf.WaitSearch(2, 40_000, 4_000, 1000, t_delta_us=999)
+            >>> [table.t_wait_b_us for table in itertools.islice(search.all(), 2)]
+            [(0, 2000), (0, 3000)]
+        """
+    def best(self, objective: Literal["interval", "t_delta"] = "interval", budget: _Int | None = None) -> Found:
+        """The best table: the one whose smallest interval between neighbours, or whose ``T_delta``, is largest. Ctrl-C
+        ends the search.
+
+        Args:
+            objective: ``"interval"`` or ``"t_delta"``.
+            budget: how many nodes to visit at most, 1 or more; unlimited by default.
+
+        Returns:
+            The table, with the interval or ``T_delta`` as ``value_us``.
+
+        Raises:
+            ArgumentError: no such objective or budget.
+            SearchError: too large to search.
+
+        Example:
+            >>> import eeruf
+            >>> found = eeruf.WaitSearch(4, 40_000, 8_000, 1000, t_delta_us=999).best("t_delta")
+            >>> found.proven, found.schedule.verify(found.value_us).ok
+            (True, True)
+        """
+    def pareto(self) -> list[tuple[Schedule, int, int | None]]:
+        """The tables of which no other has a larger smallest interval without a smaller ``T_delta``, both at least what is
+        asked for: from the largest interval to the largest ``T_delta``. Ctrl-C ends the search.
+
+        Returns:
+            Triples of table, smallest interval and ``T_delta``, in microseconds; ``T_delta`` is None if two readings of
+            the table are alike.
+
+        Raises:
+            SearchError: too large to search.
+
+        Example:
+            >>> import eeruf
+            >>> search = eeruf.WaitSearch(4, 40_000, 9_000, 1000, t_delta_us=99)
+            >>> [(interval_us, t_delta_us) for _, interval_us, t_delta_us in search.pareto()]
+            [(9000, 499), (8000, 999), (7000, 1499)]
+        """
 
 @final
 class WaitTables(Iterator[Schedule]):
+    """All tables of a ``WaitSearch``, one after the other: an iterator that Ctrl-C interrupts.
+
+    Example:
+        >>> import eeruf
+        >>> tables = eeruf.WaitSearch(2, 40_000, 4_000, 1000, t_delta_us=999).all()
+        >>> next(tables).sensors
+        2
+    """
     def __iter__(self, /) -> WaitTables: ...
     def __next__(self, /) -> Schedule: ...
 
 @final
 class EchoFilter:
+    """Compares the consecutive readings of each sensor, and accepts those that are near-identical (Eq. 11).
+
+    Args:
+        sensors: how many, 1 to 64.
+        t_delta_us: ``T_delta``: readings that differ by no more are near-identical.
+        consecutive: how many readings in a row must agree, 2 to 8.
+        echoes: how many echoes of one firing a sensor reports at most, 1 to 8; the earliest that repeats is accepted.
+
+    Raises:
+        ArgumentError: something of the wrong type or out of range.
+        FilterError: fewer than 2 or more than 8 readings to compare.
+
+    Example:
+        >>> import eeruf
+        >>> filter = eeruf.EchoFilter(sensors=1, t_delta_us=500)
+        >>> [filter.push(0, us).kind for us in (9_000, 9_300, 12_000)]
+        ['first', 'accepted', 'rejected']
+    """
     def __new__(cls, sensors: _Int, t_delta_us: _Int, consecutive: _Int = 2, *, echoes: _Int = 1) -> EchoFilter: ...
     @property
-    def sensors(self) -> int: ...
+    def sensors(self) -> int:
+        """How many sensors."""
     @property
-    def t_delta_us(self) -> int: ...
+    def t_delta_us(self) -> int:
+        """``T_delta``, in microseconds."""
     @property
-    def consecutive(self) -> int: ...
+    def consecutive(self) -> int:
+        """How many readings in a row must agree."""
     @property
-    def echoes(self) -> int: ...
-    def push(self, sensor: _Int, t_echo_us: _Int | None, expected_change_us: _Int = 0) -> Reading: ...
-    def push_echoes(self, sensor: _Int, t_echoes_us: Iterable[_Int], expected_change_us: _Int = 0) -> Reading: ...
-    def push_many(self, t_echo_us: ArrayLike) -> NDArray[np.int8]: ...
-    def forget(self, sensor: _Int) -> None: ...
+    def echoes(self) -> int:
+        """How many echoes of one firing count."""
+    def push(self, sensor: _Int, t_echo_us: _Int | None, expected_change_us: _Int = 0) -> Reading:
+        """Take in one firing of a sensor.
+
+        Args:
+            sensor: which one, from 0.
+            t_echo_us: the time of its echo after firing in whole microseconds, or None for no echo.
+            expected_change_us: by how much a good reading should differ from the one before, from the robot's own
+                motion: ``-2 v dt / c`` for an object approached at ``v``.
+
+        Returns:
+            The reading, without phase and period, which a filter does not know.
+
+        Raises:
+            ArgumentError: no such sensor, or no such time.
+
+        Example:
+            >>> import eeruf
+            >>> filter = eeruf.EchoFilter(1, 100)
+            >>> [filter.push(0, us, expected_change_us=-400).kind for us in (9_000, 8_610)]
+            ['first', 'accepted']
+        """
+    def push_echoes(self, sensor: _Int, t_echoes_us: Iterable[_Int], expected_change_us: _Int = 0) -> Reading:
+        """Take in one firing of a sensor that reports several echoes.
+
+        Args:
+            sensor: which one, from 0.
+            t_echoes_us: the times of its echoes after firing in whole microseconds, in any order; the earliest
+                ``echoes`` count.
+            expected_change_us: as for ``push``.
+
+        Returns:
+            The reading, without phase and period, which a filter does not know.
+
+        Raises:
+            ArgumentError: no such sensor, or no such times.
+
+        Example:
+            >>> import eeruf
+            >>> filter = eeruf.EchoFilter(1, 100, echoes=8)
+            >>> firings = [9_000, 14_000], [14_000, 9_000], [3_000, 9_000]
+            >>> [filter.push_echoes(0, firing).t_echo_us for firing in firings]
+            [9000, 9000, 9000]
+        """
+    def push_many(self, t_echo_us: ArrayLike) -> NDArray[np.int8]:
+        """Take in many firings at once, without the interpreter lock.
+
+        Args:
+            t_echo_us: array of shape (periods, sensors): echo times in microseconds, rounded to whole ones; NaN for no
+                echo. An array of contiguous float64 is read in place, anything else is converted first.
+
+        Returns:
+            Array of int8 of the same shape: indices into ``eeruf.KINDS``.
+
+        Raises:
+            ArgumentError: another shape, or a time that is negative or 2^32 or more; nothing has been taken in then.
+
+        Example:
+            >>> import eeruf, numpy
+            >>> kinds = eeruf.EchoFilter(2, 500).push_many([[9_000, 7_000], [9_100, numpy.nan]])
+            >>> [[eeruf.KINDS[kind] for kind in row] for row in kinds]
+            [['first', 'first'], ['accepted', 'no_echo']]
+        """
+    def forget(self, sensor: _Int) -> None:
+        """Forget the readings of a sensor, so that its next one is compared with nothing.
+
+        Args:
+            sensor: which one, from 0.
+
+        Raises:
+            ArgumentError: no such sensor.
+
+        Example:
+            >>> import eeruf
+            >>> filter = eeruf.EchoFilter(1, 500)
+            >>> kinds = [filter.push(0, 9_000).kind]
+            >>> filter.forget(0)
+            >>> kinds + [filter.push(0, 9_000).kind]
+            ['first', 'first']
+        """
 
 @final
 class HoppingSchedule:
+    """When the sensors of a hopping ring fire: a code of many phases, for sensors that two phases leave blind. Immutable.
+
+    The code is Welch's Costas sequence: the sensor that is ``i``th in the order of lags fires
+    ``step_us * (a * g ** (m - i) % q - 1)`` after its lag in phase ``m``, with ``q`` the prime above the number of
+    phases and ``g`` its least primitive root. Any path from one sensor to another moves by at least a step from each
+    phase to each other, and few phases lie along any line, as a robot's own speed would draw it. Schedules compare,
+    hash and pickle, and their ``repr`` can be pasted back.
+
+    Args:
+        sensors: how many, 1 to 64.
+        period_us: the period, ``T_p``; it must exceed the width of the code.
+        step_us: by how much crosstalk moves at least, 1 to 65535.
+        phases: at least so many, 2 to 67, as far as there are; there are more than sensors, and one less than a prime.
+            By default at least the 5 that confirm an echo.
+        t_lag_us: the lag of each sensor; by default they are spread evenly over the period.
+        first_multiplier: ``a``, below the number of phases, which are then exactly as many as asked for: one less than
+            a prime, or a prime for the linear congruence ``(x + a) * m % phases`` of sensor ``x``.
+
+    Raises:
+        ArgumentError: something of the wrong type or out of range.
+        HoppingError: numbers that make no such schedule, such as a period too short for the code.
+
+    Example:
+        >>> import eeruf
+        >>> schedule = eeruf.HoppingSchedule(sensors=8, period_us=60_000, step_us=240)
+        >>> schedule.phases, schedule.width_us, schedule.t_fire_us.shape
+        (10, 2160, (10, 8))
+    """
     def __new__(
         cls,
         sensors: _Int,
@@ -459,75 +1384,195 @@ class HoppingSchedule:
         first_multiplier: _Int | None = None,
     ) -> HoppingSchedule: ...
     @staticmethod
-    def from_toml(text: str) -> HoppingSchedule: ...
-    def to_toml(self) -> str: ...
+    def from_toml(text: str) -> HoppingSchedule:
+        r"""Read a schedule as ``eeruf design --phases M --emit toml`` and :meth:`to_toml` write it.
+
+        Args:
+            text: the contents of a file: ``period_us``, ``step_us``, ``phases`` and ``t_lag_us``.
+
+        Raises:
+            ArgumentError: not a text.
+            HoppingError: the text is no TOML, a key is missing, the numbers make no schedule, or it is a table of
+            firing
+                times, which no ring hops by.
+
+        Example:
+            >>> from eeruf import HoppingSchedule
+            >>> keys = "period_us = 60000\nstep_us = 240\nphases = 5\nt_lag_us = [0, 9000]"
+            >>> HoppingSchedule.from_toml(keys).phases
+            5
+        """
+    def to_toml(self) -> str:
+        """Write a schedule file, as the program reads it.
+
+        Example:
+            >>> from eeruf import HoppingSchedule
+            >>> schedule = HoppingSchedule(sensors=8, period_us=60_000, step_us=240)
+            >>> HoppingSchedule.from_toml(schedule.to_toml()) == schedule
+            True
+        """
     @property
-    def period_us(self) -> int: ...
+    def period_us(self) -> int:
+        """The period ``T_p``, in microseconds."""
     @property
-    def sensors(self) -> int: ...
+    def sensors(self) -> int:
+        """How many sensors fire."""
     @property
-    def phases(self) -> int: ...
+    def phases(self) -> int:
+        """How many phases a cycle has: one less than a prime, or a prime for a linear congruence."""
     @property
-    def first_multiplier(self) -> int: ...
+    def first_multiplier(self) -> int:
+        """``a``: what the first sensor's wait is multiplied by."""
     @property
-    def step_us(self) -> int: ...
+    def step_us(self) -> int:
+        """By how much crosstalk moves at least from one phase to another, in microseconds."""
     @property
-    def width_us(self) -> int: ...
+    def width_us(self) -> int:
+        """The longest wait of the code, in microseconds."""
     @property
-    def t_lag_us(self) -> tuple[int, ...]: ...
+    def t_lag_us(self) -> tuple[int, ...]:
+        """The lag of each sensor at the start, in microseconds; a ring may move them."""
     @property
-    def t_fire_us(self) -> _Ints: ...
-    def to_dict(self) -> dict[str, object]: ...
+    def t_fire_us(self) -> _Ints:
+        """When each sensor fires, in microseconds from the beginning of the period: an array of int64 of shape
+        (phases, sensors).
+        """
+    def to_dict(self) -> dict[str, object]:
+        """The period and the code with its lags by their names: a dict of plain values.
+
+        Example:
+            >>> import eeruf
+            >>> eeruf.HoppingSchedule(sensors=2, period_us=60_000, step_us=240, phases=5).to_dict()["t_lag_us"]
+            [0, 29400]
+        """
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...
     def __hash__(self, /) -> int: ...
 
+@type_check_only
+class _HoppingChanges(TypedDict, total=False):
+    t_delta_us: _Int
+    near_us: _Int
+    votes: _Int
+    score_limit: _Int
+    contradiction: _Int
+    solo_contradiction: _Int
+    tentative_votes: _Int
+    tentative_within_us: _Int
+    solo_rate: _Int
+    solo_after: _Int
+    solo_spacing: _Int
+    shift_after: _Int
+    shift_spacing: _Int
+    shift_interval_us: _Int
+    neighbours: _Int
+
 @final
 class HoppingSettings:
-    def __new__(cls, name: _Hopping = "balanced", /, **changes: _Int) -> HoppingSettings: ...
+    """How a hopping ring, or its tracker alone, weighs readings and fires. Immutable; they compare, hash and pickle.
+
+    Args:
+        name: what to start from: ``"balanced"`` for most robots, ``"quick"`` for those that must stop early (a little
+            more is wrong), ``"driving"`` for those that drive (no solo periods), ``"maps"`` for
+            confirmed echoes alone.
+        changes: whatever is to be different, by the names of the attributes; whole numbers.
+
+    Raises:
+        ArgumentError: no such name, or not such a number.
+        HoppingError: settings that contradict each other.
+
+    Example:
+        >>> import eeruf
+        >>> settings = eeruf.HoppingSettings("quick", shift_after=5)  # lags are drawn anew
+        >>> settings.votes, settings.shift_after
+        (4, 5)
+        >>> settings
+        HoppingSettings('quick', shift_after=5)
+    """
+    def __new__(cls, name: _Hopping = "balanced", /, **changes: Unpack[_HoppingChanges]) -> HoppingSettings: ...
     @property
-    def t_delta_us(self) -> int: ...
+    def t_delta_us(self) -> int:
+        """``T_delta``: a reading supports an echo that it differs from by no more, in microseconds; 1 to 65535."""
     @property
-    def near_us(self) -> int: ...
+    def near_us(self) -> int:
+        """A reading this near a confirmed echo is accepted, in microseconds; ``t_delta_us`` to 65535."""
     @property
-    def votes(self) -> int: ...
+    def votes(self) -> int:
+        """How many phases must support an echo before it is confirmed, 2 to 15."""
     @property
-    def score_limit(self) -> int: ...
+    def score_limit(self) -> int:
+        """The highest score of an echo, ``votes`` to 15: the higher, the longer it is believed."""
     @property
-    def contradiction(self) -> int: ...
+    def contradiction(self) -> int:
+        """What a later reading takes from the score of a confirmed echo, 1 to 15."""
     @property
-    def solo_contradiction(self) -> int: ...
+    def solo_contradiction(self) -> int:
+        """What it takes if the sensor fired alone, 1 to 15."""
     @property
-    def tentative_votes(self) -> int: ...
+    def tentative_votes(self) -> int:
+        """How many phases must support an echo before it is tentative, 2 to 15; 0: none ever is."""
     @property
-    def tentative_within_us(self) -> int: ...
+    def tentative_within_us(self) -> int:
+        """How closely they must agree for that, in microseconds; 0 to ``t_delta_us``."""
     @property
-    def solo_rate(self) -> int: ...
+    def solo_rate(self) -> int:
+        """What of a solo period each period earns, in 1/256, 0 to 255; 0: none is ever held."""
     @property
-    def solo_after(self) -> int: ...
+    def solo_after(self) -> int:
+        """A sensor with nothing accepted for so many firings asks for a solo period."""
     @property
-    def solo_spacing(self) -> int: ...
+    def solo_spacing(self) -> int:
+        """At least so many periods from one solo period to the next."""
     @property
-    def shift_after(self) -> int: ...
+    def shift_after(self) -> int:
+        """After so many readings running that do not fit, a sensor draws a new lag; 0: lags stay."""
     @property
-    def shift_spacing(self) -> int: ...
+    def shift_spacing(self) -> int:
+        """At least so many periods from one change of lags to the next."""
     @property
-    def shift_interval_us(self) -> int: ...
+    def shift_interval_us(self) -> int:
+        """What neighbours keep between their firings when a lag is drawn, in microseconds."""
     @property
-    def neighbours(self) -> int: ...
+    def neighbours(self) -> int:
+        """How many adjacent sensors are neighbours."""
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...
     def __hash__(self, /) -> int: ...
 
 @final
 class EchoTracker:
+    """Believes an echo that readings from several phases support: the filter of a hopping ring, alone.
+
+    A path from another sensor repeats itself in its own phase for ever, but moves from phase to phase; so only support
+    from different phases counts. Use it where the sensors fire by a :class:`HoppingSchedule`, or replay a log of such.
+
+    Args:
+        sensors: how many, 1 to 64.
+        t_delta_us: ``T_delta``: a reading supports an echo that it differs from by no more, 1 to 65535; by default that
+            of the settings. It must be less than the schedule's step.
+        settings: a :class:`HoppingSettings`, or the name of one.
+
+    Raises:
+        ArgumentError: something of the wrong type or out of range.
+        HoppingError: settings that contradict each other.
+
+    Example:
+        >>> import eeruf
+        >>> tracker = eeruf.EchoTracker(sensors=1)
+        >>> [tracker.push(0, phase, 9_000).kind for phase in range(6)]
+        ['first', 'tentative', 'tentative', 'tentative', 'accepted', 'accepted']
+        >>> {tracker.push(0, 3, 7_000).kind for _ in range(100)}  # one phase alone: crosstalk
+        {'rejected'}
+    """
     def __new__(
         cls, sensors: _Int, t_delta_us: _Int | None = None, *, settings: HoppingSettings | _Hopping = "balanced"
     ) -> EchoTracker: ...
     @property
-    def sensors(self) -> int: ...
+    def sensors(self) -> int:
+        """How many sensors."""
     @property
-    def t_delta_us(self) -> int: ...
+    def t_delta_us(self) -> int:
+        """``T_delta``, in microseconds."""
     def push(
         self,
         sensor: _Int,
@@ -537,29 +1582,156 @@ class EchoTracker:
         *,
         solo: bool = False,
         steady: bool = True,
-    ) -> Reading: ...
-    def push_many(self, phase: Iterable[_Int], t_echo_us: ArrayLike) -> NDArray[np.int8]: ...
-    def confirmed_us(self, sensor: _Int) -> int | None: ...
-    def is_clear(self, sensor: _Int) -> bool: ...
-    def forget(self, sensor: _Int) -> None: ...
-    def firing_changed(self) -> None: ...
+    ) -> Reading:
+        """Take in one firing of a sensor.
+
+        Args:
+            sensor: which one, from 0.
+            phase: the phase in which it fired, 0 to 255.
+            t_echo_us: the time of its echo after firing in whole microseconds, or None for no echo.
+            expected_change_us: by how much a good reading should have changed since this sensor's firing before, from
+                the robot's own motion: ``-2 v dt / c`` for an object approached at ``v``.
+            solo: whether no other sensor's sound could be heard.
+            steady: whether firings were so punctual that crosstalk moved as the schedule says; else it supports
+                nothing.
+
+        Returns:
+            The reading, without the period, which a tracker does not know.
+
+        Raises:
+            ArgumentError: no such sensor, phase or time.
+
+        Example:
+            >>> import eeruf
+            >>> eeruf.EchoTracker(1).push(0, 0, 9_000, solo=True).kind
+            'tentative'
+        """
+    def push_many(self, phase: Iterable[_Int], t_echo_us: ArrayLike) -> NDArray[np.int8]:
+        """Take in many firings at once, without the interpreter lock.
+
+        Args:
+            phase: the phase of each period, 0 to 255.
+            t_echo_us: array of shape (periods, sensors): echo times in microseconds, rounded to whole ones; NaN for no
+                echo.
+
+        Returns:
+            Array of int8 of the same shape: indices into ``eeruf.KINDS``.
+
+        Raises:
+            ArgumentError: another shape, or a time that is negative or 2^32 or more; nothing has been taken in then.
+
+        Example:
+            >>> import eeruf, numpy
+            >>> kinds = eeruf.EchoTracker(1).push_many(range(5), numpy.full((5, 1), 9_000.0))
+            >>> eeruf.KINDS[kinds[-1, 0]]
+            'accepted'
+        """
+    def confirmed_us(self, sensor: _Int) -> int | None:
+        """The confirmed echo time of a sensor.
+
+        Args:
+            sensor: which one, from 0.
+
+        Returns:
+            Microseconds; None if none is confirmed, and where it is confirmed that nothing is in range (``is_clear``).
+
+        Raises:
+            ArgumentError: no such sensor.
+
+        Example:
+            >>> import eeruf
+            >>> tracker = eeruf.EchoTracker(1)
+            >>> kinds = [tracker.push(0, phase, 9_000).kind for phase in range(5)]
+            >>> tracker.confirmed_us(0)
+            9000
+        """
+    def is_clear(self, sensor: _Int) -> bool:
+        """Whether it is confirmed that nothing is in a sensor's range.
+
+        Args:
+            sensor: which one, from 0.
+
+        Raises:
+            ArgumentError: no such sensor.
+
+        Example:
+            >>> import eeruf
+            >>> tracker = eeruf.EchoTracker(1)
+            >>> kinds = [tracker.push(0, phase, 9_000).kind for phase in range(5)]
+            >>> tracker.is_clear(0)
+            False
+        """
+    def forget(self, sensor: _Int) -> None:
+        """Forget what is known of a sensor's echo. Its age goes on.
+
+        Args:
+            sensor: which one, from 0.
+
+        Raises:
+            ArgumentError: no such sensor.
+
+        Example:
+            >>> import eeruf
+            >>> tracker = eeruf.EchoTracker(1)
+            >>> kinds = [tracker.push(0, phase, 9_000).kind for phase in range(5)]
+            >>> tracker.forget(0)
+            >>> tracker.confirmed_us(0) is None
+            True
+        """
+    def firing_changed(self) -> None:
+        """Say that firing times have changed against each other otherwise than by the phase, such as by a new lag: what is
+        not confirmed begins anew.
+
+        Example:
+            >>> import eeruf
+            >>> tracker = eeruf.EchoTracker(1)
+            >>> kinds = [tracker.push(0, phase, 9_000).kind for phase in range(5)]
+            >>> tracker.firing_changed()
+            >>> tracker.confirmed_us(0)
+            9000
+        """
 
 @final
 class Fire:
+    """The ring is to fire a sensor, now.
+
+    Example:
+        >>> import eeruf
+        >>> eeruf.Ring(eeruf.tables.TABLE_I_D, t_delta_us=500, window_us=36_000).poll(24_000)
+        Fire(sensor=0, phase=0, due_us=24000)
+    """
     def __new__(cls, sensor: _Int, phase: _Int = 0, due_us: _Int = 0) -> Fire: ...
     @property
-    def sensor(self) -> int: ...
+    def sensor(self) -> int:
+        """Which sensor, from 0."""
     @property
-    def phase(self) -> int: ...
+    def phase(self) -> int:
+        """The phase that its wait belongs to: 0 for a, 1 for b; more in a hopping ring."""
     @property
-    def due_us(self) -> int: ...
-    def to_dict(self) -> dict[str, object]: ...
+    def due_us(self) -> int:
+        """When it was due, on the ring's clock: before the time of the poll if that was late."""
+    def to_dict(self) -> dict[str, object]:
+        """Its fields by their names: a dict of plain values.
+
+        Example:
+            >>> import eeruf
+            >>> eeruf.Fire(3, phase=1).to_dict()
+            {'sensor': 3, 'phase': 1, 'due_us': 0}
+        """
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...
     def __hash__(self, /) -> int: ...
 
 @final
 class Reading:
+    """What came of one firing of one sensor.
+
+    Example:
+        >>> import eeruf
+        >>> reading = eeruf.EchoFilter(1, 500).push(0, 9_000)
+        >>> reading.sensor, reading.kind, reading.t_echo_us, reading.explained_by
+        (0, 'first', 9000, None)
+    """
     def __new__(
         cls,
         sensor: _Int,
@@ -572,28 +1744,57 @@ class Reading:
         explained_by: _Int | Literal["history"] | None = None,
     ) -> Reading: ...
     @property
-    def sensor(self) -> int: ...
+    def sensor(self) -> int:
+        """Which sensor, from 0."""
     @property
-    def kind(self) -> _Kind: ...
+    def kind(self) -> _Kind:
+        """What came of it, one of ``eeruf.KINDS``; ``"accepted"`` and ``"clear"`` (nothing in range) count;
+        for ``"tentative"``, from a hopping ring, slow down.
+        """
     @property
-    def t_echo_us(self) -> int | None: ...
+    def t_echo_us(self) -> int | None:
+        """The time of the echo after firing, in microseconds; None without echo."""
     @property
-    def previous_us(self) -> int | None: ...
+    def previous_us(self) -> int | None:
+        """What it was compared with, in microseconds; None if with nothing."""
     @property
-    def age(self) -> int | None: ...
+    def age(self) -> int | None:
+        """How many firings ago the sensor's last accepted reading was: 0 for this one, None if there never was one."""
     @property
-    def phase(self) -> int | None: ...
+    def phase(self) -> int | None:
+        """The phase in which the sensor fired: 0 for a, 1 for b, more in a hopping ring; None from a filter alone."""
     @property
-    def period(self) -> int | None: ...
+    def period(self) -> int | None:
+        """The period in which the sensor fired, from 0; None from a filter alone."""
     @property
-    def explained_by(self) -> int | Literal["history"] | None: ...
-    def to_dict(self) -> dict[str, object]: ...
+    def explained_by(self) -> int | Literal["history"] | None:
+        """Why the reading is ambiguous: the sensor, from 0, whose sound explains it and the one before, or ``"history"``
+        for a firing that is no longer remembered; None for every other kind.
+        """
+    def to_dict(self) -> dict[str, object]:
+        """Its fields by their names: a dict of plain values.
+
+        Example:
+            >>> import eeruf
+            >>> eeruf.EchoFilter(1, 500).push(0, 9_000).to_dict()["t_echo_us"]
+            9000
+        """
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...
     def __hash__(self, /) -> int: ...
 
 @final
 class PeriodEnded:
+    """A period of the ring has ended.
+
+    Example:
+        >>> import eeruf
+        >>> ring = eeruf.Ring(eeruf.tables.TABLE_I_D, t_delta_us=500, window_us=36_000)
+        >>> while not isinstance(event := ring.poll(ring.next_deadline_us), eeruf.PeriodEnded):
+        ...     pass
+        >>> event.period, event.phase, event.tally["no_echo"] <= 12
+        (0, 0, True)
+    """
     def __new__(
         cls,
         period: _Int,
@@ -603,21 +1804,85 @@ class PeriodEnded:
         tally: dict[str, int] = {},
     ) -> PeriodEnded: ...
     @property
-    def period(self) -> int: ...
+    def period(self) -> int:
+        """Which period, from 0."""
     @property
-    def phase(self) -> int: ...
+    def phase(self) -> int:
+        """Its phase: 0 for a, 1 for b; more in a hopping ring."""
     @property
-    def max_late_us(self) -> int: ...
+    def max_late_us(self) -> int:
+        """How long after it was due the latest of its firings and its end was polled for, in microseconds, at most
+        65,535.
+        """
     @property
-    def sum_late_us(self) -> int: ...
+    def sum_late_us(self) -> int:
+        """The lateness of all its firings together, in microseconds, at most 65,535."""
     @property
-    def tally(self) -> dict[str, int]: ...
-    def to_dict(self) -> dict[str, object]: ...
+    def tally(self) -> dict[str, int]:
+        """How many readings of each kind were emitted since the period before ended: a dict by the names in
+        ``eeruf.KINDS``.
+        """
+    def to_dict(self) -> dict[str, object]:
+        """Its fields by their names: a dict of plain values.
+
+        Example:
+            >>> import eeruf
+            >>> ring = eeruf.Ring(eeruf.tables.TABLE_I_D, t_delta_us=500, window_us=36_000)
+            >>> ring.pause()
+            >>> ring.poll(ring.next_deadline_us).to_dict()["max_late_us"]
+            0
+        """
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...
 
 @final
 class Ring:
+    """Plan and filter together, as the firmware runs them: the caller passes the time and gets back what to do.
+
+    Moments are microseconds on a clock that wraps at 2^32, as on a small microcontroller; larger numbers are taken
+    modulo that.
+
+    Args:
+        schedule: when the sensors fire.
+        t_delta_us: ``T_delta``: consecutive readings that differ by no more are near-identical (Eq. 11). One for all,
+            or a sequence with one for each sensor.
+        now_us: when the first period begins.
+        window_us: ``T_wind``: how long a sensor listens after it has fired, 1 or more. One for all, or a sequence.
+        blanking_us: edges sooner than this after firing are ringing of the transducer, not echoes.
+        consecutive: the number of consecutive readings that must agree, 2 to 8.
+        path_change_us: P: by how much, at most, the path of a foreign sound changes from one reading to the next, at
+            most 65,534; None for ``t_delta_us``. Less makes fewer readings ambiguous where firings are late.
+        audible_us: R: how long sound is audible, at most 67 s; None for one period.
+        refire_us: how soon a sensor may be triggered again, as for :func:`design`. With this, with those below or with
+            a sequence above the ring is one of sensors that are not all alike: its schedule must keep what each needs,
+            each listens and compares by its own numbers, and ``t_delta_us`` and ``window_us`` say the largest.
+        intervals_us: pairs of sensors with the least time between their firings: ``[(0, 4, 9000)]``.
+        shared_lines: groups of sensors on one echo line, ``[(0, 3), (1, 4)]``: none fires while another listens.
+        together: groups of sensors that fire at the same instants, declared not to hear each other.
+
+    Raises:
+        ArgumentError: something of the wrong type or out of range.
+        RingError: the ring cannot listen like that, such as longer than the schedule lets it; or the schedule does not
+            reject crosstalk at this ``t_delta_us`` (see ``Ring.unverified``), or breaks what a sensor needs.
+
+    Example:
+        >>> import eeruf
+        >>> ring, kinds = eeruf.Ring(eeruf.tables.TABLE_I_D, t_delta_us=500, window_us=36_000), []
+        >>> while len(kinds) < 24:
+        ...     now_us = ring.next_deadline_us
+        ...     while event := ring.poll(now_us):
+        ...         if isinstance(event, eeruf.Fire):
+        ...             ring.echo(event.sensor, now_us + 9_000)  # a wall 1.5 m away
+        ...         elif isinstance(event, eeruf.Reading):
+        ...             kinds.append(event.kind)
+        >>> kinds == ["first"] * 12 + ["accepted"] * 12
+        True
+        >>> needs = dict(t_delta_us=[999, 999, 1500, 1500], window_us=[36_000, 36_000, 12_000, 12_000])
+        >>> found = eeruf.design(4, min_interval_us=15_000, shared_lines=[(0, 2)], **needs)
+        >>> ring = eeruf.Ring(found.schedule, shared_lines=[(0, 2)], **needs)
+        >>> ring.t_delta_us, ring.window_us
+        (1500, 36000)
+    """
     def __new__(
         cls,
         schedule: Schedule,
@@ -645,60 +1910,414 @@ class Ring:
         consecutive: _Int = 2,
         path_change_us: _Int | None = None,
         audible_us: _Int | None = None,
-    ) -> Ring: ...
+    ) -> Ring:
+        """A ring whose schedule was not verified. Crosstalk that it repeats, as constant waits do, makes readings
+        ``"ambiguous"``; none of it is accepted.
+
+        Args:
+            schedule: when the sensors fire.
+            t_delta_us: as for ``Ring``, as are all others.
+            now_us: when the first period begins.
+            window_us: how long a sensor listens after it has fired, 1 or more.
+            blanking_us: edges sooner than this after firing are no echoes.
+            consecutive: the number of consecutive readings that must agree, 2 to 8.
+            path_change_us: P: by how much, at most, the path of a foreign sound changes from one reading to the next,
+                at most 65,534; None for ``t_delta_us``. Less makes fewer readings ambiguous where firings are late.
+            audible_us: R: how long sound is audible, at most 67 s; None for one period.
+
+        Raises:
+            ArgumentError: something of the wrong type or out of range.
+            RingError: the ring cannot listen like that.
+
+        Example:
+            >>> import eeruf
+            >>> constant = eeruf.Schedule(60_000, [0, 15_000], [0, 0], [0, 0])
+            >>> eeruf.Ring.unverified(constant, 500, window_us=36_000).poll(0)
+            Fire(sensor=0, phase=0, due_us=0)
+        """
     @property
-    def schedule(self) -> Schedule: ...
-    def change_schedule(self, schedule: Schedule) -> None: ...
+    def schedule(self) -> Schedule:
+        """What it fires by in the present period."""
+    def change_schedule(self, schedule: Schedule) -> None:
+        """Fire by another schedule when the present period ends. ``t_delta_us`` and ``window_us``
+        stay, and so does what each sensor needs where they are not all alike.
+
+        Args:
+            schedule: of as many sensors.
+
+        Raises:
+            ArgumentError: no schedule, or not of as many sensors.
+            RingError: a sensor would fire again while it still listens, or the schedule does not reject crosstalk at
+                this ``t_delta_us``, or breaks what a sensor needs. The ring goes on as before.
+
+        Example:
+            >>> import eeruf
+            >>> ring = eeruf.Ring(eeruf.tables.TABLE_I_D, t_delta_us=500, window_us=36_000)
+            >>> ring.change_schedule(eeruf.tables.TABLE_I_D.scaled(4, 5))
+            >>> while not isinstance(ring.poll(ring.next_deadline_us), eeruf.PeriodEnded):
+            ...     pass
+            >>> ring.schedule.period_us
+            80000
+        """
     @property
-    def sensors(self) -> int: ...
+    def sensors(self) -> int:
+        """The number of sensors."""
     @property
-    def t_delta_us(self) -> int: ...
+    def t_delta_us(self) -> int:
+        """``T_delta``, in microseconds. It can be changed while the ring runs."""
     @t_delta_us.setter
-    def t_delta_us(self, value: _Int, /) -> None: ...
+    def t_delta_us(self, value: _Int, /) -> None:
+        """``T_delta``, in microseconds. It can be changed while the ring runs."""
     @property
-    def window_us(self) -> int: ...
+    def window_us(self) -> int:
+        """``T_wind``, in microseconds. It can be changed while the ring runs, also for firings that are under way."""
     @window_us.setter
-    def window_us(self, value: _Int, /) -> None: ...
+    def window_us(self, value: _Int, /) -> None:
+        """``T_wind``, in microseconds. It can be changed while the ring runs, also for firings that are under way."""
     @property
-    def blanking_us(self) -> int: ...
+    def blanking_us(self) -> int:
+        """For how long after firing edges are no echoes, in microseconds. It can be changed while the ring runs."""
     @blanking_us.setter
-    def blanking_us(self, value: _Int, /) -> None: ...
+    def blanking_us(self, value: _Int, /) -> None:
+        """For how long after firing edges are no echoes, in microseconds. It can be changed while the ring runs."""
     @property
-    def path_change_us(self) -> int: ...
+    def path_change_us(self) -> int:
+        """P, by how much the path of a foreign sound may change from one reading to the next, in microseconds. It can be
+        changed while the ring runs: as the robot's speed changes, for example.
+        """
     @path_change_us.setter
-    def path_change_us(self, value: _Int, /) -> None: ...
+    def path_change_us(self, value: _Int, /) -> None:
+        """P, by how much the path of a foreign sound may change from one reading to the next, in microseconds. It can be
+        changed while the ring runs: as the robot's speed changes, for example.
+        """
     @property
-    def audible_us(self) -> int: ...
+    def audible_us(self) -> int:
+        """R, how long sound is audible, in microseconds. It can be changed while the ring runs."""
     @audible_us.setter
-    def audible_us(self, value: _Int, /) -> None: ...
+    def audible_us(self, value: _Int, /) -> None:
+        """R, how long sound is audible, in microseconds. It can be changed while the ring runs."""
     @property
     def report_after_us(self) -> int: ...
     @report_after_us.setter
     def report_after_us(self, value: _Int, /) -> None: ...
     def upcoming(self) -> list[Fire]: ...
     @property
-    def next_deadline_us(self) -> int: ...
-    def wait_us(self, now_us: _Int) -> int: ...
+    def next_deadline_us(self) -> int:
+        """When to poll next, in microseconds of the clock that wraps at 2^32; in the past if an event is pending."""
+    def wait_us(self, now_us: _Int) -> int:
+        """How long to wait before polling next, in microseconds: 0 if an event is pending.
+
+        This is right across the wrap of the clock at 2^32, where ``next_deadline_us`` and a ``now_us`` that goes on
+        growing no longer compare.
+
+        Args:
+            now_us: the present, 0 or more.
+
+        Raises:
+            ArgumentError: not such a time.
+
+        Example:
+            >>> import eeruf
+            >>> ring = eeruf.Ring(eeruf.tables.TABLE_I_D, t_delta_us=500, window_us=36_000, now_us=2**32 - 1_000)
+            >>> ring.wait_us(2**32 - 1_000), ring.wait_us(2**32 + 23_000)
+            (24000, 0)
+        """
     def poll(
         self, now_us: _Int, expected_change_us: Iterable[_Int] | None = None
-    ) -> Fire | Reading | PeriodEnded | None: ...
-    def echo(self, sensor: _Int, at_us: _Int) -> None: ...
-    def fired(self, sensor: _Int, at_us: _Int) -> None: ...
-    def stuck(self, sensor: _Int) -> None: ...
-    def expect_answers(self) -> None: ...
-    def answered(self, sensor: _Int, answered: bool = True) -> None: ...
-    def measured(self, sensor: _Int, t_echo_us: _Int | None) -> None: ...
-    def forget(self, sensor: _Int) -> None: ...
-    def state(self, sensor: _Int) -> State: ...
-    def disable(self, sensor: _Int) -> None: ...
-    def enable(self, sensor: _Int) -> None: ...
-    def is_enabled(self, sensor: _Int) -> bool: ...
-    def pause(self) -> None: ...
-    def resume(self) -> None: ...
-    def restart(self, now_us: _Int) -> None: ...
+    ) -> Fire | Reading | PeriodEnded | None:
+        """The next event at a time. Call again until there is none, then wait until ``next_deadline_us``.
+
+        Hand in the echoes you know of before you poll: one that comes after the poll that closed its window is not
+        heard.
+
+        Args:
+            now_us: the present, 0 or more.
+            expected_change_us: for each sensor, by how much a good reading should differ from the one before, from the
+                robot's own motion: ``-2 v dt / c`` for an object approached at ``v``. None for a robot that stands.
+
+        Returns:
+            A ``Fire``, a ``Reading``, a ``PeriodEnded``, or None if there is nothing to do now.
+
+        Raises:
+            ArgumentError: not such a time, or not one change for each sensor.
+
+        Example:
+            >>> import eeruf
+            >>> ring = eeruf.Ring(eeruf.tables.TABLE_I_D, t_delta_us=500, window_us=36_000)
+            >>> ring.poll(23_000)
+            >>> ring.poll(24_000)
+            Fire(sensor=0, phase=0, due_us=24000)
+        """
+    def echo(self, sensor: _Int, at_us: _Int) -> None:
+        """An edge on the echo line of a sensor. Edges may come in any order, at any time, wanted or not.
+
+        Args:
+            sensor: which one, from 0.
+            at_us: when, 0 or more.
+
+        Raises:
+            ArgumentError: no such sensor or time.
+
+        Example:
+            >>> import eeruf
+            >>> ring = eeruf.Ring(eeruf.tables.TABLE_I_D, t_delta_us=500, window_us=36_000)
+            >>> [ring.poll(24_000).sensor for _ in range(3)]  # one of each group of four
+            [0, 4, 8]
+            >>> ring.echo(0, 33_000)
+            >>> ring.poll(33_000).t_echo_us
+            9000
+        """
+    def fired(self, sensor: _Int, at_us: _Int) -> None:
+        """Corrects when a sensor last fired: by what a timer captured, for example. Optional: echo times count from then,
+        and if it is later than the poll, all later firings move by as much.
+
+        Args:
+            sensor: which one, from 0.
+            at_us: when, 0 or more; a time that is not after the sensor's firing before is ignored.
+
+        Raises:
+            ArgumentError: no such sensor or time.
+
+        Example:
+            >>> import eeruf
+            >>> ring = eeruf.Ring(eeruf.tables.TABLE_I_D, t_delta_us=500, window_us=36_000)
+            >>> [ring.poll(24_000).sensor for _ in range(3)]  # one of each group of four
+            [0, 4, 8]
+            >>> ring.fired(0, 24_100)
+            >>> ring.echo(0, 33_000)
+            >>> ring.poll(33_000).t_echo_us
+            8900
+        """
+    def stuck(self, sensor: _Int) -> None:
+        """The echo line of a sensor was already high when it was to fire: the firing just emitted counts as ``"stuck"``.
+
+        Args:
+            sensor: which one, from 0.
+
+        Raises:
+            ArgumentError: no such sensor.
+
+        Example:
+            >>> import eeruf
+            >>> ring = eeruf.Ring(eeruf.tables.TABLE_I_D, t_delta_us=500, window_us=36_000)
+            >>> [ring.poll(24_000).sensor for _ in range(3)]  # one of each group of four
+            [0, 4, 8]
+            >>> ring.stuck(0)
+            >>> while not isinstance(event := ring.poll(ring.next_deadline_us), eeruf.Reading):
+            ...     pass
+            >>> event.sensor, event.kind
+            (0, 'stuck')
+        """
+    def expect_answers(self) -> None:
+        """Ask silence for a witness, from the next firing on: a firing without an echo is then ``"unanswered"``, which is
+        never free space, unless :meth:`answered` or :meth:`measured` says that the sensor listened.
+
+        Example:
+            >>> import eeruf
+            >>> ring = eeruf.Ring(eeruf.tables.TABLE_I_D, t_delta_us=500, window_us=36_000)
+            >>> ring.expect_answers()
+            >>> while not isinstance(event := ring.poll(ring.next_deadline_us), eeruf.Reading):
+            ...     pass
+            >>> event.kind, ring.state(event.sensor).kind
+            ('unanswered', 'unanswered')
+        """
+    def answered(self, sensor: _Int, answered: bool = True) -> None:
+        """A sensor has shown that it listens for the echo of its last firing, such as by a line that rises.
+
+        Args:
+            sensor: which one, from 0.
+            answered: False takes that back: it was a disturbance.
+
+        Raises:
+            ArgumentError: no such sensor.
+
+        Example:
+            >>> import eeruf
+            >>> ring = eeruf.Ring(eeruf.tables.TABLE_I_D, t_delta_us=500, window_us=36_000)
+            >>> ring.expect_answers()
+            >>> while not isinstance(event := ring.poll(ring.next_deadline_us), eeruf.Reading):
+            ...     if isinstance(event, eeruf.Fire):
+            ...         ring.answered(event.sensor)
+            >>> event.kind
+            'no_echo'
+        """
+    def measured(self, sensor: _Int, t_echo_us: _Int | None) -> None:
+        """Hand in what hardware or a protocol measured of a sensor's last firing, before its window closes.
+
+        Args:
+            sensor: which one, from 0.
+            t_echo_us: the echo time in microseconds, or None if it listened and heard nothing.
+
+        Raises:
+            ArgumentError: no such sensor or time.
+
+        Example:
+            >>> import eeruf
+            >>> ring = eeruf.Ring(eeruf.tables.TABLE_I_D, t_delta_us=500, window_us=36_000)
+            >>> [ring.poll(24_000).sensor for _ in range(3)]  # one of each group of four
+            [0, 4, 8]
+            >>> ring.measured(4, 9_000)
+            >>> ring.poll(40_000).t_echo_us
+            9000
+        """
+    def forget(self, sensor: _Int) -> None:
+        """Forget what is known of a sensor's echo, so that its next reading is compared with nothing: the last one was not
+        what it seemed.
+
+        Args:
+            sensor: which one, from 0.
+
+        Raises:
+            ArgumentError: no such sensor.
+
+        Example:
+            >>> import eeruf
+            >>> ring = eeruf.Ring(eeruf.tables.TABLE_I_D, t_delta_us=500, window_us=36_000)
+            >>> ring.forget(3)
+        """
+    def state(self, sensor: _Int) -> State:
+        """The state of the space before a sensor, at the time of the last poll.
+
+        Args:
+            sensor: which one, from 0.
+
+        Returns:
+            A ``State``: an obstacle, clear, too close, unanswered or unknown, for how long, and why.
+
+        Raises:
+            ArgumentError: no such sensor.
+
+        Example:
+            >>> import eeruf
+            >>> ring = eeruf.Ring(eeruf.tables.TABLE_I_D, t_delta_us=500, window_us=36_000)
+            >>> ring.state(3)
+            State(kind='unknown', t_echo_us=None, age_us=0, why='no_firing', explained_by=None)
+        """
+    def disable(self, sensor: _Int) -> None:
+        """Stop a sensor from firing. The reading of a firing that is under way is still emitted.
+
+        Args:
+            sensor: which one, from 0.
+
+        Raises:
+            ArgumentError: no such sensor.
+
+        Example:
+            >>> import eeruf
+            >>> ring = eeruf.Ring(eeruf.tables.TABLE_I_D, t_delta_us=500, window_us=36_000)
+            >>> ring.disable(0)
+            >>> ring.is_enabled(0)
+            False
+        """
+    def enable(self, sensor: _Int) -> None:
+        """Let a sensor fire again, from its next turn on. Its readings from before are forgotten.
+
+        Args:
+            sensor: which one, from 0.
+
+        Raises:
+            ArgumentError: no such sensor.
+
+        Example:
+            >>> import eeruf
+            >>> ring = eeruf.Ring(eeruf.tables.TABLE_I_D, t_delta_us=500, window_us=36_000)
+            >>> ring.disable(0)
+            >>> ring.enable(0)
+            >>> ring.is_enabled(0)
+            True
+        """
+    def is_enabled(self, sensor: _Int) -> bool:
+        """Whether a sensor fires.
+
+        Args:
+            sensor: which one, from 0.
+
+        Raises:
+            ArgumentError: no such sensor.
+
+        Example:
+            >>> import eeruf
+            >>> ring = eeruf.Ring(eeruf.tables.TABLE_I_D, t_delta_us=500, window_us=36_000)
+            >>> ring.is_enabled(11)
+            True
+        """
+    def pause(self) -> None:
+        """Let no sensor fire until :meth:`resume`. Readings of firings under way are still emitted, and periods go on.
+
+        Example:
+            >>> import eeruf
+            >>> ring = eeruf.Ring(eeruf.tables.TABLE_I_D, t_delta_us=500, window_us=36_000)
+            >>> ring.pause()
+            >>> type(ring.poll(ring.next_deadline_us)).__name__
+            'PeriodEnded'
+        """
+    def resume(self) -> None:
+        """Let sensors fire again, as of the next period. Readings from before are forgotten.
+
+        Example:
+            >>> import eeruf
+            >>> ring = eeruf.Ring(eeruf.tables.TABLE_I_D, t_delta_us=500, window_us=36_000)
+            >>> ring.pause()
+            >>> ring.resume()
+            >>> _ = ring.poll(ring.next_deadline_us)  # the period ends
+            >>> type(ring.poll(ring.next_deadline_us)).__name__
+            'Fire'
+        """
+    def restart(self, now_us: _Int) -> None:
+        """Start again with phase a at a time, or as soon as the last firings allow: after a long sleep. Firings under way
+        are dropped, and readings from before are forgotten.
+
+        Args:
+            now_us: the present, 0 or more.
+
+        Raises:
+            ArgumentError: not such a time.
+
+        Example:
+            >>> import eeruf
+            >>> ring = eeruf.Ring(eeruf.tables.TABLE_I_D, t_delta_us=500, window_us=36_000)
+            >>> ring.restart(3_600_000_000)
+            >>> ring.wait_us(3_600_000_000)
+            24000
+        """
 
 @final
 class HoppingRing:
+    """A ring that hops in time, as the firmware runs it: used as a :class:`Ring`; its readings can also be
+    ``"tentative"``.
+
+    No sensor stays blind: one that hears nothing of its own gets a period in which it fires alone, and one whose
+    readings keep disagreeing draws a new lag. ``docs/hopping.md`` has the rules, what they bring, and what is not
+    promised.
+
+    Args:
+        schedule: a :class:`HoppingSchedule`.
+        settings: a :class:`HoppingSettings`, or the name of one.
+        now_us: when the first period begins.
+        window_us: ``T_wind``: how long a sensor listens after it has fired, 1 to 16,711,679.
+        blanking_us: edges sooner than this after firing are ringing of the transducer, not echoes.
+        reach_us: after how long no sound is heard any more; by default the window.
+        seed: of the draws of new lags, below 2^32.
+
+    Raises:
+        ArgumentError: something of the wrong type or out of range.
+        HoppingError: a ``T_delta`` that is not below the schedule's step, a period too short for window and code, a
+            window that is too long or ends within the blanking time.
+
+    Example:
+        >>> import eeruf
+        >>> schedule = eeruf.HoppingSchedule(sensors=8, period_us=60_000, step_us=240)
+        >>> ring, kinds = eeruf.HoppingRing(schedule, "quick", window_us=36_000), []
+        >>> while len(kinds) < 40:
+        ...     now_us = ring.next_deadline_us
+        ...     while event := ring.poll(now_us):
+        ...         if isinstance(event, eeruf.Fire):
+        ...             ring.echo(event.sensor, now_us + 12_000)  # a wall 2 m away
+        ...         elif isinstance(event, eeruf.Reading):
+        ...             kinds.append(event.kind)
+        >>> kinds == ["first"] * 8 + ["tentative"] * 16 + ["accepted"] * 16
+        True
+    """
     def __new__(
         cls,
         schedule: HoppingSchedule,
@@ -711,55 +2330,368 @@ class HoppingRing:
         seed: _Int = 1,
     ) -> HoppingRing: ...
     @property
-    def schedule(self) -> HoppingSchedule: ...
+    def schedule(self) -> HoppingSchedule:
+        """What it fires by, with the lags of the start."""
     @property
-    def sensors(self) -> int: ...
+    def sensors(self) -> int:
+        """How many sensors it has."""
     @property
-    def settings(self) -> HoppingSettings: ...
+    def settings(self) -> HoppingSettings:
+        """How it fires and weighs readings."""
     @property
-    def t_lag_us(self) -> tuple[int, ...]: ...
+    def t_lag_us(self) -> tuple[int, ...]:
+        """The lag of each sensor as it is now, in microseconds."""
     @property
-    def solo(self) -> int | None: ...
+    def solo(self) -> int | None:
+        """The sensor that the present period belongs to alone, from 0; None if it belongs to all."""
     @property
-    def next_deadline_us(self) -> int: ...
-    def wait_us(self, now_us: _Int) -> int: ...
+    def next_deadline_us(self) -> int:
+        """When to poll next, in microseconds of the clock that wraps at 2^32; in the past if an event is pending."""
+    def wait_us(self, now_us: _Int) -> int:
+        """How long to wait before polling next, in microseconds, right across the clock's wrap: 0 if an event is pending.
+
+        Args:
+            now_us: the present, 0 or more.
+
+        Raises:
+            ArgumentError: not such a time.
+
+        Example:
+            >>> import eeruf
+            >>> schedule = eeruf.HoppingSchedule(sensors=8, period_us=60_000, step_us=240)
+            >>> ring = eeruf.HoppingRing(schedule, window_us=36_000)
+            >>> ring.poll(0).sensor
+            0
+            >>> ring.wait_us(0)
+            8430
+        """
     def poll(
         self, now_us: _Int, expected_change_us: Iterable[_Int] | None = None
-    ) -> Fire | Reading | PeriodEnded | None: ...
-    def confirmed_us(self, sensor: _Int) -> int | None: ...
-    def is_clear(self, sensor: _Int) -> bool: ...
-    def echo(self, sensor: _Int, at_us: _Int) -> None: ...
-    def fired(self, sensor: _Int, at_us: _Int) -> None: ...
-    def stuck(self, sensor: _Int) -> None: ...
-    def disable(self, sensor: _Int) -> None: ...
-    def enable(self, sensor: _Int) -> None: ...
-    def is_enabled(self, sensor: _Int) -> bool: ...
-    def pause(self) -> None: ...
-    def resume(self) -> None: ...
-    def restart(self, now_us: _Int) -> None: ...
+    ) -> Fire | Reading | PeriodEnded | None:
+        """The next event at a time. Call again until there is none, then wait until ``next_deadline_us``.
+
+        Hand in the echoes you know of before you poll: one that comes after the poll that closed its window is not
+        heard.
+
+        Args:
+            now_us: the present, 0 or more.
+            expected_change_us: for each sensor, by how much a good reading should differ from the one before, from the
+                robot's own motion: ``-2 v dt / c`` for an object approached at ``v``. None for a robot that stands.
+
+        Returns:
+            A ``Fire``, a ``Reading``, a ``PeriodEnded``, or None if there is nothing to do now.
+
+        Raises:
+            ArgumentError: not such a time, or not one change for each sensor.
+
+        Example:
+            >>> import eeruf
+            >>> schedule = eeruf.HoppingSchedule(sensors=8, period_us=60_000, step_us=240)
+            >>> ring = eeruf.HoppingRing(schedule, window_us=36_000)
+            >>> ring.poll(0)
+            Fire(sensor=0, phase=0, due_us=0)
+        """
+    def confirmed_us(self, sensor: _Int) -> int | None:
+        """The confirmed echo time of a sensor.
+
+        Args:
+            sensor: which one, from 0.
+
+        Returns:
+            Microseconds; None if none is confirmed, and where it is confirmed that nothing is in range (``is_clear``).
+
+        Raises:
+            ArgumentError: no such sensor.
+
+        Example:
+            >>> import eeruf
+            >>> schedule = eeruf.HoppingSchedule(sensors=8, period_us=60_000, step_us=240)
+            >>> ring = eeruf.HoppingRing(schedule, window_us=36_000)
+            >>> ring.confirmed_us(3) is None
+            True
+        """
+    def is_clear(self, sensor: _Int) -> bool:
+        """Whether it is confirmed that nothing is in a sensor's range.
+
+        Args:
+            sensor: which one, from 0.
+
+        Raises:
+            ArgumentError: no such sensor.
+
+        Example:
+            >>> import eeruf
+            >>> schedule = eeruf.HoppingSchedule(sensors=8, period_us=60_000, step_us=240)
+            >>> ring = eeruf.HoppingRing(schedule, window_us=36_000)
+            >>> ring.is_clear(3)
+            False
+        """
+    def echo(self, sensor: _Int, at_us: _Int) -> None:
+        """An edge on the echo line of a sensor. Edges may come in any order, at any time, wanted or not.
+
+        Args:
+            sensor: which one, from 0.
+            at_us: when, 0 or more.
+
+        Raises:
+            ArgumentError: no such sensor or time.
+
+        Example:
+            >>> import eeruf
+            >>> schedule = eeruf.HoppingSchedule(sensors=8, period_us=60_000, step_us=240)
+            >>> ring = eeruf.HoppingRing(schedule, window_us=36_000)
+            >>> ring.poll(0).sensor
+            0
+            >>> ring.echo(0, 6_000)
+            >>> ring.poll(6_000).t_echo_us
+            6000
+        """
+    def fired(self, sensor: _Int, at_us: _Int) -> None:
+        """The sensor of the last ``Fire`` has really fired at this time, later than the poll said. Optional: echo times
+        count from then.
+
+        Args:
+            sensor: which one, from 0.
+            at_us: when, 0 or more; a time before the poll is ignored.
+
+        Raises:
+            ArgumentError: no such sensor or time.
+
+        Example:
+            >>> import eeruf
+            >>> schedule = eeruf.HoppingSchedule(sensors=8, period_us=60_000, step_us=240)
+            >>> ring = eeruf.HoppingRing(schedule, window_us=36_000)
+            >>> ring.poll(0).sensor
+            0
+            >>> ring.fired(0, 100)
+            >>> ring.echo(0, 6_000)
+            >>> ring.poll(6_000).t_echo_us
+            5900
+        """
+    def stuck(self, sensor: _Int) -> None:
+        """The echo line of a sensor was already high when it was to fire: the firing just emitted counts as ``"stuck"``.
+
+        Args:
+            sensor: which one, from 0.
+
+        Raises:
+            ArgumentError: no such sensor.
+
+        Example:
+            >>> import eeruf
+            >>> schedule = eeruf.HoppingSchedule(sensors=8, period_us=60_000, step_us=240)
+            >>> ring = eeruf.HoppingRing(schedule, window_us=36_000)
+            >>> ring.poll(0).sensor
+            0
+            >>> ring.stuck(0)
+            >>> while not isinstance(event := ring.poll(ring.next_deadline_us), eeruf.Reading):
+            ...     pass
+            >>> event.sensor, event.kind
+            (0, 'stuck')
+        """
+    def disable(self, sensor: _Int) -> None:
+        """Stop a sensor from firing. The reading of a firing that is under way is still emitted.
+
+        Args:
+            sensor: which one, from 0.
+
+        Raises:
+            ArgumentError: no such sensor.
+
+        Example:
+            >>> import eeruf
+            >>> schedule = eeruf.HoppingSchedule(sensors=8, period_us=60_000, step_us=240)
+            >>> ring = eeruf.HoppingRing(schedule, window_us=36_000)
+            >>> ring.disable(0)
+            >>> ring.is_enabled(0)
+            False
+        """
+    def enable(self, sensor: _Int) -> None:
+        """Let a sensor fire again, from the next period on. What was known of its echo is forgotten.
+
+        Args:
+            sensor: which one, from 0.
+
+        Raises:
+            ArgumentError: no such sensor.
+
+        Example:
+            >>> import eeruf
+            >>> schedule = eeruf.HoppingSchedule(sensors=8, period_us=60_000, step_us=240)
+            >>> ring = eeruf.HoppingRing(schedule, window_us=36_000)
+            >>> ring.disable(0)
+            >>> ring.enable(0)
+            >>> ring.is_enabled(0)
+            True
+        """
+    def is_enabled(self, sensor: _Int) -> bool:
+        """Whether a sensor fires.
+
+        Args:
+            sensor: which one, from 0.
+
+        Raises:
+            ArgumentError: no such sensor.
+
+        Example:
+            >>> import eeruf
+            >>> schedule = eeruf.HoppingSchedule(sensors=8, period_us=60_000, step_us=240)
+            >>> ring = eeruf.HoppingRing(schedule, window_us=36_000)
+            >>> ring.is_enabled(7)
+            True
+        """
+    def pause(self) -> None:
+        """Let no sensor fire until :meth:`resume`. Readings of firings under way are still emitted, and periods go on.
+
+        Example:
+            >>> import eeruf
+            >>> schedule = eeruf.HoppingSchedule(sensors=8, period_us=60_000, step_us=240)
+            >>> ring = eeruf.HoppingRing(schedule, window_us=36_000)
+            >>> ring.pause()
+            >>> type(ring.poll(ring.next_deadline_us)).__name__
+            'PeriodEnded'
+        """
+    def resume(self) -> None:
+        """Let sensors fire again, as of the next period. What was known of their echoes is forgotten.
+
+        Example:
+            >>> import eeruf
+            >>> schedule = eeruf.HoppingSchedule(sensors=8, period_us=60_000, step_us=240)
+            >>> ring = eeruf.HoppingRing(schedule, window_us=36_000)
+            >>> ring.pause()
+            >>> ring.resume()
+            >>> _ = ring.poll(ring.next_deadline_us)  # the period ends
+            >>> type(ring.poll(ring.next_deadline_us)).__name__
+            'Fire'
+        """
+    def restart(self, now_us: _Int) -> None:
+        """Start again at a time, or as soon as the last firings allow: after a long sleep. Firings under way are dropped.
+
+        Args:
+            now_us: the present, 0 or more.
+
+        Raises:
+            ArgumentError: not such a time.
+
+        Example:
+            >>> import eeruf
+            >>> schedule = eeruf.HoppingSchedule(sensors=8, period_us=60_000, step_us=240)
+            >>> ring = eeruf.HoppingRing(schedule, window_us=36_000)
+            >>> ring.restart(3_600_000_000)
+            >>> ring.wait_us(3_600_000_000)
+            0
+        """
 
 @final
 class SensorWatch:
+    """Watches the events of a ring, a hopping one too: what is known of the space before each sensor now, and which
+    sensors hear echoes none of which is accepted.
+
+    Args:
+        sensors: how many, 1 to 64.
+        blind_after: a sensor counts as blind when nothing was accepted for so many firings with an echo, 1 to 255;
+            0: never.
+        now_us: the present, 0 or more.
+
+    Raises:
+        ArgumentError: something of the wrong type or out of range.
+
+    Example:
+        >>> import eeruf
+        >>> ring = eeruf.Ring(eeruf.tables.TABLE_I_D, t_delta_us=500, window_us=36_000)
+        >>> watch, blind, far_us = eeruf.SensorWatch(sensors=12, blind_after=4), [], 0
+        >>> for _ in range(400):
+        ...     now_us = ring.next_deadline_us
+        ...     while event := ring.poll(now_us):
+        ...         if isinstance(event, eeruf.Fire):
+        ...             far_us = (far_us + 700) % 9_000  # what sensor 5 hears moves on and on
+        ...             ring.echo(event.sensor, now_us + 9_000 + (far_us if event.sensor == 5 else 0))
+        ...         if found := watch.observe(event, now_us):
+        ...             blind.append(found)
+        >>> blind
+        [Blind(sensor=5, firings=4)]
+        >>> watch.state(4, now_us).t_echo_us, watch.state(5, now_us).kind
+        (9000, 'unknown')
+    """
     def __new__(cls, sensors: _Int, blind_after: _Int = 20, now_us: _Int = 0) -> SensorWatch: ...
     @property
-    def sensors(self) -> int: ...
-    def observe(self, event: Fire | Reading | PeriodEnded, now_us: _Int) -> Blind | None: ...
-    def state(self, sensor: _Int, now_us: _Int) -> State: ...
+    def sensors(self) -> int:
+        """How many sensors it watches."""
+    def observe(self, event: Fire | Reading | PeriodEnded, now_us: _Int) -> Blind | None:
+        """Take in what a poll returned. Observe every event, or at least readings and the ends of periods.
+
+        Args:
+            event: of ``Ring.poll`` or ``HoppingRing.poll``.
+            now_us: the time of that poll, 0 or more.
+
+        Returns:
+            A ``Blind`` when a sensor has just become blind, once, and again only after something was accepted; else
+            None.
+
+        Raises:
+            ArgumentError: no event, or not such a time.
+
+        Example:
+            >>> import eeruf
+            >>> watch = eeruf.SensorWatch(sensors=12, blind_after=1)
+            >>> watch.observe(eeruf.Reading(3, "rejected", 9_000, 7_000), now_us=100_000)
+            Blind(sensor=3, firings=1)
+        """
+    def state(self, sensor: _Int, now_us: _Int) -> State:
+        """The state of the space before a sensor.
+
+        Args:
+            sensor: which one, from 0.
+            now_us: the present, 0 or more.
+
+        Raises:
+            ArgumentError: no such sensor or time.
+
+        Example:
+            >>> import eeruf
+            >>> watch = eeruf.SensorWatch(sensors=12)
+            >>> watch.observe(eeruf.Reading(3, "accepted", 9_000, 9_100), now_us=102_400)
+            >>> watch.state(3, now_us=153_600)
+            State(kind='obstacle', t_echo_us=9000, age_us=51200, why=None, explained_by=None)
+        """
 
 @final
 class Blind:
+    """A sensor that hears echoes, none of which was accepted for so many firings.
+
+    Example:
+        >>> import eeruf
+        >>> eeruf.Blind(sensor=3, firings=20).to_dict()
+        {'sensor': 3, 'firings': 20}
+    """
     def __new__(cls, sensor: _Int, firings: _Int) -> Blind: ...
     @property
-    def sensor(self) -> int: ...
+    def sensor(self) -> int:
+        """Which sensor, from 0."""
     @property
-    def firings(self) -> int: ...
-    def to_dict(self) -> dict[str, object]: ...
+    def firings(self) -> int:
+        """For how many firings with an echo nothing was accepted."""
+    def to_dict(self) -> dict[str, object]:
+        """Its fields by their names: a dict of plain values.
+
+        Example:
+            >>> import eeruf
+            >>> eeruf.Blind(3, 20).to_dict()
+            {'sensor': 3, 'firings': 20}
+        """
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...
     def __hash__(self, /) -> int: ...
 
 @final
 class State:
+    """The state of the space before a sensor.
+
+    Example:
+        >>> import eeruf
+        >>> eeruf.State("clear", age_us=51_200).to_dict()
+        {'kind': 'clear', 't_echo_us': None, 'age_us': 51200, 'why': None, 'explained_by': None}
+    """
     def __new__(
         cls,
         kind: _StateKind,
@@ -769,22 +2701,76 @@ class State:
         explained_by: _Int | Literal["history"] | None = None,
     ) -> State: ...
     @property
-    def kind(self) -> _StateKind: ...
+    def kind(self) -> _StateKind:
+        """``"obstacle"``: something stands there; ``"clear"``: nothing is in range; ``"too_close"``: closer than the
+        sensor can measure; ``"unanswered"``: it does not answer, or its line is stuck; ``"unknown"``.
+        """
     @property
-    def t_echo_us(self) -> int | None: ...
+    def t_echo_us(self) -> int | None:
+        """The echo time of an obstacle, in microseconds; None for all else."""
     @property
-    def age_us(self) -> int: ...
+    def age_us(self) -> int:
+        """Microseconds since that was last confirmed, or for which nothing has been known or answered; at most 2^31
+        (36 minutes), which stands for all longer times.
+        """
     @property
-    def why(self) -> _Doubt | None: ...
+    def why(self) -> _Doubt | None:
+        """Why nothing is known: ``"no_firing"``, ``"unsure"`` (one echo, or one silence), ``"rejected"`` or
+        ``"ambiguous"``; None for all else.
+        """
     @property
-    def explained_by(self) -> int | Literal["history"] | None: ...
-    def to_dict(self) -> dict[str, object]: ...
+    def explained_by(self) -> int | Literal["history"] | None:
+        """The sensor whose sound explains an ambiguous echo, or ``"history"``; None for all else."""
+    def to_dict(self) -> dict[str, object]:
+        """Its fields by their names: a dict of plain values.
+
+        Example:
+            >>> import eeruf
+            >>> eeruf.State("unanswered", age_us=1_000).to_dict()["kind"]
+            'unanswered'
+        """
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...
     def __hash__(self, /) -> int: ...
 
 @final
 class Adaptation:
+    """Adaptive scheduling (end of Sec. 3.1): fire more slowly where too much is rejected, and faster again when it is
+    calm.
+
+    It watches the rejection rate over windows of some periods. One noisy window moves one rung up, to a longer period;
+    only several calm windows running move one rung down.
+
+    Args:
+        schedules: the rungs, of equally many sensors, from the shortest period to the longest. The ring begins with
+            the first.
+        t_delta_us: ``T_delta`` of the ring, at which each must reject crosstalk.
+        noisy: above this rejection rate, a fraction of 1, it fires more slowly.
+        calm: up to this rejection rate a window is calm.
+        window_periods: how many periods a window has, 1 to 255.
+        patience: how many calm windows running it takes to fire faster, 1 to 255.
+
+    Raises:
+        ArgumentError: something of the wrong type or out of range.
+        RingError: a schedule does not reject crosstalk at this ``t_delta_us``.
+        ScheduleError: the schedules are no ladder.
+
+    Example:
+        >>> import eeruf
+        >>> fast, slow = eeruf.tables.TABLE_I_D.scaled(3, 5), eeruf.tables.TABLE_I_D
+        >>> ring = eeruf.Ring(fast, t_delta_us=500, window_us=36_000)
+        >>> adaptation = eeruf.Adaptation([fast, slow], t_delta_us=500)
+        >>> noise_us = 0
+        >>> while adaptation.rung == 0:  # everything that is heard is noise
+        ...     now_us = ring.next_deadline_us
+        ...     while event := ring.poll(now_us):
+        ...         if isinstance(event, eeruf.Fire):
+        ...             noise_us = (noise_us + 7_000) % 30_000
+        ...             ring.echo(event.sensor, now_us + 1_000 + noise_us)
+        ...         _ = adaptation.adapt(ring, event)
+        >>> adaptation.rejection_rate > 0.9, adaptation.schedule == slow
+        (True, True)
+    """
     def __new__(
         cls,
         schedules: Iterable[Schedule],
@@ -795,32 +2781,151 @@ class Adaptation:
         window_periods: _Int = 16,
         patience: _Int = 4,
     ) -> Adaptation: ...
-    def adapt(self, ring: Ring, event: Fire | Reading | PeriodEnded) -> bool: ...
+    def adapt(self, ring: Ring, event: Fire | Reading | PeriodEnded) -> bool:
+        """Take in an event of a ring, and change the ring to another schedule when the present one should be left. Only
+        the ends of periods count.
+
+        Args:
+            ring: an ``eeruf.Ring`` that began with the first schedule.
+            event: what its ``poll`` returned.
+
+        Returns:
+            Whether there was a change; the ring makes it when the present period ends.
+
+        Raises:
+            ArgumentError: no ring, no event, or a ring of other sensors.
+            RingError: the ring refuses the schedule. Both then go on as before.
+
+        Example:
+            >>> import eeruf
+            >>> ring = eeruf.Ring(eeruf.tables.TABLE_I_D, t_delta_us=500, window_us=36_000)
+            >>> adaptation = eeruf.Adaptation([eeruf.tables.TABLE_I_D], t_delta_us=500)
+            >>> adaptation.adapt(ring, ring.poll(ring.next_deadline_us))
+            False
+        """
     @property
-    def rung(self) -> int: ...
+    def rung(self) -> int:
+        """The rung in use, 0 for the shortest period."""
     @property
-    def schedule(self) -> Schedule: ...
+    def schedule(self) -> Schedule:
+        """The schedule in use."""
     @property
-    def rejection_rate(self) -> float | None: ...
-    def max_speed_m_s(self, t_delta_us: _Int, sound_m_s: float = 343.2) -> float: ...
+    def rejection_rate(self) -> float | None:
+        """The share of the readings that were compared and rejected in the last whole window; None before, or if nothing
+        was compared in it.
+        """
+    def max_speed_m_s(self, t_delta_us: _Int, sound_m_s: float = 343.2) -> float:
+        """The fastest motion, in m/s, at which good readings still pass on the rung in use: a reading changes by
+        ``2 v dt / c`` (Sec. 3.1).
+
+        Args:
+            t_delta_us: ``T_delta`` of the ring.
+            sound_m_s: the speed of sound, in m/s, 100 to 1000.
+
+        Raises:
+            ArgumentError: out of range.
+
+        Example:
+            >>> import eeruf
+            >>> eeruf.Adaptation([eeruf.tables.TABLE_I_D], t_delta_us=999).max_speed_m_s(t_delta_us=999)
+            1.382
+        """
 
 _Point = tuple[float, float] | Sequence[float] | NDArray[np.float64]
 _Axis = _Pose | Sequence[float] | NDArray[np.float64]
 
 @final
 class Himm:
+    """A certainty grid that range readings fill and clear while the robot drives: histogramic in-motion mapping
+    (J. Borenstein and Y. Koren, IEEE T-RA 7(4), 1991).
+
+    A reading counts only on the sensor's acoustic axis: the cell at the measured range gains 3, each cell on the way
+    there loses 1, and values stay between 0 and 15. A real obstacle is met again and again and grows quickly; a phantom
+    is met once and is cleared by the next readings that look past it.
+
+    Args:
+        side: how many cells the grid's window has on a side, 1 to 4096.
+        cell_m: how wide a cell is, in metres, above 0.
+        growth: whether cells beside certain ones grow faster (the paper's growth rate operator, for fast robots).
+
+    Raises:
+        ArgumentError: something of the wrong type or out of range.
+
+    Example:
+        >>> from eeruf import nav
+        >>> grid = nav.Himm()
+        >>> grid.echo((0.05, 0.05, 0.0), range_m=1.0)
+        >>> grid.value((1.05, 0.05)), grid.value((9.0, 0.0))
+        (3, None)
+    """
     def __new__(cls, side: _Int = 33, cell_m: float = 0.1, *, growth: bool = False) -> Himm: ...
     @property
-    def side(self) -> int: ...
+    def side(self) -> int:
+        """How many cells the window has on a side."""
     @property
-    def cell_m(self) -> float: ...
+    def cell_m(self) -> float:
+        """How wide a cell is, in metres."""
     @property
-    def growth(self) -> bool: ...
+    def growth(self) -> bool:
+        """Whether cells beside certain ones grow faster."""
     @property
-    def extent_m(self) -> tuple[float, float, float, float]: ...
-    def move_to(self, place: _Point) -> None: ...
-    def echo(self, sensor: _Axis, range_m: float, near_m: float = 0.0) -> None: ...
-    def clear(self, sensor: _Axis, range_m: float, near_m: float = 0.0) -> None: ...
+    def extent_m(self) -> tuple[float, float, float, float]:
+        """What the window covers: (least x, greatest x, least y, greatest y) in metres, as ``imshow`` takes it."""
+    def move_to(self, place: _Point) -> None:
+        """Move the window so that a place is in its middle cell. Cells that leave it are forgotten, those that enter are
+        empty.
+
+        Args:
+            place: (x, y) in metres.
+
+        Raises:
+            ArgumentError: no such place.
+
+        Example:
+            >>> from eeruf import nav
+            >>> grid = nav.Himm()
+            >>> grid.move_to((9.05, 0.05))
+            >>> grid.value((9.0, 0.0)), grid.value((0.0, 0.0))
+            (0, None)
+        """
+    def echo(self, sensor: _Axis, range_m: float, near_m: float = 0.0) -> None:
+        """Enter an echo: an obstacle on a sensor's axis, and nothing before it.
+
+        Args:
+            sensor: its place and heading (x, y, heading) in metres and radians.
+            range_m: how far the obstacle is, in metres, 0 to 1,000.
+            near_m: cells nearer than this, where the sensor is deaf, are left as they are.
+
+        Raises:
+            ArgumentError: no such place or range.
+
+        Example:
+            >>> from eeruf import nav
+            >>> grid = nav.Himm()
+            >>> for _ in range(9):
+            ...     grid.echo((0.0, 0.0, 1.57), range_m=1.0)
+            >>> grid.cells().round(2).tolist()
+            [[0.05, 0.95, 15.0]]
+        """
+    def clear(self, sensor: _Axis, range_m: float, near_m: float = 0.0) -> None:
+        """Enter that nothing is on a sensor's axis.
+
+        Args:
+            sensor: its place and heading (x, y, heading) in metres and radians.
+            range_m: as far as that, in metres, 0 to 1,000.
+            near_m: cells nearer than this, where the sensor is deaf, are left as they are.
+
+        Raises:
+            ArgumentError: no such place or range.
+
+        Example:
+            >>> from eeruf import nav
+            >>> grid = nav.Himm()
+            >>> grid.echo((0.05, 0.05, 0.0), range_m=1.0)
+            >>> grid.clear((0.05, 0.05, 0.0), range_m=1.5)
+            >>> grid.value((1.05, 0.05))
+            2
+        """
     def enter(
         self,
         readings: Readings,
@@ -829,13 +2934,103 @@ class Himm:
         *,
         robot: _Int = 0,
         sound_m_s: float = 343.2,
-    ) -> None: ...
-    def value(self, point: _Point) -> int | None: ...
-    def cells(self) -> NDArray[np.float64]: ...
-    def to_numpy(self) -> NDArray[np.int8]: ...
+    ) -> None:
+        """Enter what a simulation's ring reads, from where each sensor really stood: accepted echoes up to a range as
+        obstacles; farther ones, and that nothing is there, clear the way.
+
+        Args:
+            readings: of ``Simulation.step``.
+            range_m: how far the grid is filled, in metres, 0 to 1,000.
+            near_m: cells nearer than this, where the sensors are deaf, are left as they are.
+            robot: whose readings, from 0.
+            sound_m_s: the speed of sound, in m/s, 100 to 1000.
+
+        Raises:
+            ArgumentError: no readings, or out of range.
+
+        Example:
+            >>> from eeruf import nav, sim
+            >>> robot = sim.Robot((0, 0, 1.57), sensors=8, spacing_rad=0.26, radius_m=0.3)
+            >>> world = sim.Simulation(sim.Scene([[5, 1.5, -5, 1.5]], robots=[robot]))
+            >>> grid = nav.Himm()
+            >>> grid.enter(world.step(1.0), range_m=2.0)
+            >>> x, y, value = grid.cells().T
+            >>> bool(1.4 < y[value == 15].min() <= y.max() < 1.7)
+            True
+        """
+    def value(self, point: _Point) -> int | None:
+        """The certainty of the cell that holds a point.
+
+        Args:
+            point: (x, y) in metres.
+
+        Returns:
+            0 to 15, or None outside the window.
+
+        Raises:
+            ArgumentError: no point.
+
+        Example:
+            >>> from eeruf import nav
+            >>> nav.Himm().value((0.0, 0.0))
+            0
+        """
+    def cells(self) -> NDArray[np.float64]:
+        """The cells that are not empty.
+
+        Returns:
+            Array of shape (n, 3), float64: x, y (m) of the cell's middle, and its certainty, 1 to 15.
+
+        Example:
+            >>> from eeruf import nav
+            >>> nav.Himm().cells().shape
+            (0, 3)
+        """
+    def to_numpy(self) -> NDArray[np.int8]:
+        """The whole window as a picture, for ``imshow(grid.to_numpy(), extent=grid.extent_m, origin="lower")``.
+
+        Returns:
+            Array of shape (side, side), int8: a row for each y, from the least; certainties 0 to 15.
+
+        Example:
+            >>> from eeruf import nav
+            >>> grid = nav.Himm(side=3)
+            >>> grid.echo((0.05, 0.05, 0.0), range_m=0.1)
+            >>> grid.to_numpy().tolist()
+            [[0, 0, 0], [0, 0, 3], [0, 0, 0]]
+        """
 
 @final
 class Vfh:
+    """The vector field histogram (J. Borenstein and Y. Koren, IEEE T-RA 7(3), 1991): from a certainty grid to where to
+    steer and how fast to go.
+
+    The cells around the robot become a histogram of obstacle density over 72 sectors of 5 degrees; among its valleys
+    the one nearest the target is steered for. Directions are in the scene's frame, counter-clockwise.
+
+    Args:
+        window: how many cells the active window has on a side, 1 to 4096.
+        smoothing: over how many sectors to either side the histogram is smoothed (the paper's l), 0 to 35.
+        threshold: a sector with a lower density is free; densities are in units of a fully certain cell beside the
+            robot. The default suits robots about 0.8 m wide; smaller ones want more.
+        wide: a valley of more sectors is wide (s_max), 1 to 72.
+        density_max: the density ahead at which the robot goes no faster than ``speed_min_m_s`` (h_m).
+        speed_max_m_s: V_max, in m/s.
+        speed_min_m_s: V_min, in m/s.
+        turn_max_rad_s: the rate of turn at which it goes no faster than ``speed_min_m_s`` (Omega_max), in rad/s.
+
+    Raises:
+        ArgumentError: something of the wrong type or out of range.
+
+    Example:
+        >>> from eeruf import nav
+        >>> grid = nav.Himm()
+        >>> for _ in range(5):
+        ...     grid.echo((0.05, 0.05, 0.0), range_m=0.6)  # something stands ahead
+        >>> steering = nav.Vfh().steer(grid, place=(0.05, 0.05), target=(5.0, 0.0))
+        >>> 0.3 < abs(steering.direction_rad) < 1.2, steering.trapped
+        (True, False)
+    """
     def __new__(
         cls,
         *,
@@ -849,47 +3044,149 @@ class Vfh:
         turn_max_rad_s: float = 2.0943951023931953,
     ) -> Vfh: ...
     @property
-    def window(self) -> int: ...
+    def window(self) -> int:
+        """How many cells the active window has on a side."""
     @property
-    def smoothing(self) -> int: ...
+    def smoothing(self) -> int:
+        """Over how many sectors to either side the histogram is smoothed."""
     @property
-    def threshold(self) -> float: ...
+    def threshold(self) -> float:
+        """A sector with a lower density is free."""
     @property
-    def wide(self) -> int: ...
+    def wide(self) -> int:
+        """A valley of more sectors is wide."""
     @property
-    def density_max(self) -> float: ...
+    def density_max(self) -> float:
+        """The density ahead at which the robot goes no faster than its lowest speed."""
     @property
-    def speed_max_m_s(self) -> float: ...
+    def speed_max_m_s(self) -> float:
+        """The highest speed, in m/s."""
     @property
-    def speed_min_m_s(self) -> float: ...
+    def speed_min_m_s(self) -> float:
+        """The lowest speed, in m/s."""
     @property
-    def turn_max_rad_s(self) -> float: ...
-    def histogram(self, grid: Himm, place: _Point) -> NDArray[np.float64]: ...
-    def steer(self, grid: Himm, place: _Point, target: _Point) -> Steering | None: ...
+    def turn_max_rad_s(self) -> float:
+        """The rate of turn at which it goes no faster than its lowest speed, in rad/s."""
+    def histogram(self, grid: Himm, place: _Point) -> NDArray[np.float64]:
+        """The smoothed histogram around a place.
+
+        Args:
+            grid: an ``eeruf.nav.Himm``.
+            place: (x, y) in metres.
+
+        Returns:
+            Array of 72 densities, float64; sector k begins at k times 5 degrees.
+
+        Raises:
+            ArgumentError: no grid or no place.
+
+        Example:
+            >>> from eeruf import nav
+            >>> grid = nav.Himm()
+            >>> grid.echo((0.05, 0.05, 0.0), range_m=1.0)
+            >>> int(nav.Vfh(smoothing=0).histogram(grid, (0.05, 0.0)).argmax())
+            0
+        """
+    def steer(self, grid: Himm, place: _Point, target: _Point) -> Steering | None:
+        """Where to steer from a place to come to a target.
+
+        Args:
+            grid: an ``eeruf.nav.Himm``.
+            place: where the robot is, (x, y) in metres.
+            target: where to, (x, y) in metres.
+
+        Returns:
+            A ``Steering``, or None if every direction is blocked.
+
+        Raises:
+            ArgumentError: no grid or no point.
+
+        Example:
+            >>> from eeruf import nav
+            >>> nav.Vfh().steer(nav.Himm(), place=(0, 0), target=(5, 0))
+            Steering(direction_rad=0.0, valley=(0, 72), trapped=False)
+        """
     def drive(
         self, grid: Himm, pose: _Axis, target: _Point, turn_rad_s: float = 0.0, *, turn_gain: float = 3.0
-    ) -> tuple[float, float]: ...
+    ) -> tuple[float, float]:
+        """How to drive from a pose to a target, for ``Simulation.set_velocity``: the farther off the heading, the slower.
+        Where every way is blocked it stands and looks around.
+
+        Args:
+            grid: an ``eeruf.nav.Himm``.
+            pose: where the robot is, (x, y, heading) in metres and radians.
+            target: where to, (x, y) in metres.
+            turn_rad_s: how fast it turns now, in rad/s, -50 to 50.
+            turn_gain: what a steering error of a radian asks for, in rad/s, 0 to 100.
+
+        Returns:
+            The speed ahead in m/s, and the rate of turn in rad/s.
+
+        Raises:
+            ArgumentError: no grid, no pose, no point, or out of range.
+
+        Example:
+            >>> from eeruf import nav
+            >>> nav.Vfh().drive(nav.Himm(), pose=(0, 0, 0), target=(5, 0))
+            (1.0, 0.0)
+        """
 
 @final
 class Steering:
+    """Where to steer.
+
+    Example:
+        >>> from eeruf import nav
+        >>> steering = nav.Vfh().steer(nav.Himm(), place=(0, 0), target=(0, 5))
+        >>> round(steering.direction_rad, 3), steering.trapped
+        (1.571, False)
+    """
     def __new__(cls, direction_rad: float, valley: tuple[int, int] = (0, 72), trapped: bool = False) -> Steering: ...
     @property
-    def direction_rad(self) -> float: ...
+    def direction_rad(self) -> float:
+        """The direction, in radians of the scene, counter-clockwise from the x axis."""
     @property
-    def valley(self) -> tuple[int, int]: ...
+    def valley(self) -> tuple[int, int]:
+        """The valley that was chosen: its first sector, and how many it has; 72 if nothing is near."""
     @property
-    def trapped(self) -> bool: ...
-    def to_dict(self) -> dict[str, object]: ...
+    def trapped(self) -> bool:
+        """Whether the direction leads away from the target, by more than 90 degrees: the robot is in a dead end, or soon
+        will be.
+        """
+    def to_dict(self) -> dict[str, object]:
+        """Its fields by their names: a dict of plain values.
+
+        Example:
+            >>> from eeruf import nav
+            >>> nav.Vfh().steer(nav.Himm(), place=(0, 0), target=(5, 0)).to_dict()
+            {'direction_rad': 0.0, 'valley': [0, 72], 'trapped': False}
+        """
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...
 
 @final
 class Material:
+    """The surface of a wall or a pole.
+
+    Args:
+        reflection: the share of the pressure that a flat piece returns, 0 to 1.
+        roughness_m: the root-mean-square height of the surface, in metres.
+
+    Raises:
+        ArgumentError: a number out of range.
+
+    Example:
+        >>> from eeruf import sim
+        >>> sim.Scene([[5, 2, -5, 2]], materials=sim.Material(0.6, roughness_m=0.0002)).materials[0].reflection
+        0.6
+    """
     def __new__(cls, reflection: float, roughness_m: float = 0.0) -> Material: ...
     @property
-    def reflection(self) -> float: ...
+    def reflection(self) -> float:
+        """The share of the pressure that a flat piece returns."""
     @property
-    def roughness_m(self) -> float: ...
+    def roughness_m(self) -> float:
+        """The root-mean-square height of the surface, in metres."""
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...
 
@@ -897,6 +3194,22 @@ _Surface = Literal["smooth", "painted", "soft", "perfect"] | Material
 
 @final
 class Noise:
+    """How noisy a scene is.
+
+    Args:
+        fading_db_rms: by how much each arrival's level fades or grows, in dB, 0 to 20.
+        jitter_us_rms: by how much each arrival is early or late, in microseconds, 0 to 10,000.
+        bursts_per_s: how many bursts from outside are heard in a second, 0 to 10,000.
+        burst_db: how far they are above what is just heard, in dB, -200 to 200.
+
+    Raises:
+        ArgumentError: a number out of range.
+
+    Example:
+        >>> from eeruf import sim
+        >>> sim.Scene([[5, 2, -5, 2]], noise=sim.Noise(bursts_per_s=5.0)).noise.bursts_per_s
+        5.0
+    """
     def __new__(
         cls,
         *,
@@ -906,18 +3219,113 @@ class Noise:
         burst_db: float = 20.0,
     ) -> Noise: ...
     @property
-    def fading_db_rms(self) -> float: ...
+    def fading_db_rms(self) -> float:
+        """By how much each arrival's level fades or grows, root mean square, in dB."""
     @property
-    def jitter_us_rms(self) -> float: ...
+    def jitter_us_rms(self) -> float:
+        """By how much each arrival is early or late, root mean square, in microseconds."""
     @property
-    def bursts_per_s(self) -> float: ...
+    def bursts_per_s(self) -> float:
+        """How many bursts from outside are heard in a second."""
     @property
-    def burst_db(self) -> float: ...
+    def burst_db(self) -> float:
+        """How far they are above what is just heard, in dB."""
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...
 
+@type_check_only
+class _RobotChanges(TypedDict, total=False):
+    pose: _Pose
+    sensors: _Int | Iterable[_Pose] | None
+    spacing_rad: float | None
+    radius_m: float | None
+    module: _Module | Sequence[_Module]
+    gain: _Gain
+    period_us: _Int
+    t_delta_us: _Int | Iterable[_Int]
+    window_us: _Int | Iterable[_Int]
+    blanking_us: _Int | Iterable[_Int] | None
+    min_refire_us: _Int
+    start_us: _Int
+    schedule: Schedule | None
+    neighbours: _Int
+    consecutive: _Int
+    odometry: bool
+    velocity_m_s: tuple[float, float] | None
+    turn_rad_s: float | None
+    waypoints_m: ArrayLike | None
+    speed_m_s: float | None
+    clock_offset_us: _Int
+    clock_drift_ppm: float
+    body: _Body | None
+    beam: _Beam | None
+    coupling_db: float | None
+    height_m: float | Iterable[float]
+    together: Iterable[Iterable[_Int]]
+    transducer: _Module | Sequence[_Module] | None
+    audible_us: _Int | None
+    firing: dict[str, object] | None
+    ring: str | PathLike[str] | None
+
 @final
 class Robot:
+    """A robot with a ring of sensors, on an arc whose middle is ahead or wherever you put them.
+
+    Args:
+        pose: (x, y, heading) in metres and radians, counter-clockwise from the x axis.
+        sensors: how many on an arc, 1 to 64; or where each one is on the robot, as (x, y, heading). None where the ring
+            file says it.
+        spacing_rad: the angle from one sensor to the next on the arc, in radians.
+        radius_m: the radius of the arc, in metres.
+        module: of its sensors: a name such as ``"hc-sr04"``, a dict of what differs from one, such as
+            ``{"like": "hc-sr04", "sees_to_m": 2.5}``, or a list of one for each sensor; docs/modules.md has them all.
+        gain: how the receiver's gain grows while it listens: ``"constant"``, ``"square_root"``, ``"linear"``,
+            ``"stepped"`` or ``"polaroid_6500"``, the steps of that module's control circuit.
+        beam: the pattern near 90 degrees off a sensor's axis: ``"cut_at_90"``, an endless baffle with nothing behind,
+            or ``"continuous"``, a baffle that ends; None for the module's own, ``"cut_at_90"`` of the
+            Polaroid 6500 and ``"continuous"`` of the HC-SR04.
+        coupling_db: the level of the sound that the mounting carries straight from sensor to sensor, relative to two
+            that face each other as far apart, -200 to 0; None for what the patterns say.
+        height_m: of its sensors above the floor, one for all or one each, in metres; for scenes that are not flat.
+        body: its outline, which others' sound is reflected and shaded by: the radius of a disc, (length, width) of a
+            box, or 3 to 8 corners (x, y) of a convex polygon, counter-clockwise, all in metres; None for none.
+        period_us: ``T_p`` of the methods that bring no schedule of their own; the schedule's if there is one.
+        t_delta_us: ``T_delta``: consecutive readings that differ by no more are near-identical; one for all, or a list
+            of one for each sensor, for the robot's own schedule.
+        window_us: ``T_wind``: how long a sensor listens; one for all, or a list as well.
+        together: sets of sensors that the robot's own schedule fires at once, such as ``[[8, 9], [10, 11]]``.
+        blanking_us: how long a sensor is deaf after it has fired, one for all or a list; the module's own unless it is
+            given.
+        min_refire_us: with immediate refiring, how long a sensor rests between its echo and its next firing.
+        audible_us: how long sound is heard after it was sent, as far as methods that fire one by one allow for it; what
+            its modules say where ``module`` is given, or else no longer than sensors listen.
+        ring: the path of a ring file, for ``eeruf design``, that gives modules, windows, ``T_delta``, sensors that fire
+            together and neighbours, unless these are given here.
+        firing: a dict with the keys of ``[firing]`` in scene files, such as ``{"turn_us": 33_000}``, for the methods
+            that fire as sketches and modules do.
+        start_us: when the ring begins to fire, by its own clock.
+        schedule: what the EERUF methods fire by; None for the paper's table, scaled to the period.
+        neighbours: how many adjacent sensors must not fire close together, 1 to 64.
+        consecutive: how many readings in a row must agree, 2 to 8.
+        odometry: whether the robot hands its ring the changes that its own motion should cause.
+        velocity_m_s: (x, y) in the scene's frame, which it keeps for ever, in m/s.
+        turn_rad_s: the rate of turn that it keeps, in rad/s.
+        waypoints_m: points (x, y) that it drives through in straight lines, instead of a velocity.
+        speed_m_s: how fast it does so, in m/s.
+        clock_offset_us: what its clock shows at the start.
+        transducer: an older name of ``module``.
+        clock_drift_ppm: by how much its clock goes too fast, in millionths.
+
+    Raises:
+        ArgumentError: something of the wrong type or out of range, or two kinds of motion at once.
+
+    Example:
+        >>> from eeruf import sim
+        >>> sim.Robot((0.0, 0.0, 1.57), sensors=8, spacing_rad=0.26, radius_m=0.3).period_us
+        60000
+        >>> sim.Robot((0, 0, 0), sensors=[(0.1, 0.1, 0.5), (0.1, -0.1, -0.5)], module="hc-sr04").sensors
+        2
+    """
     def __new__(
         cls,
         pose: _Pose,
@@ -953,72 +3361,173 @@ class Robot:
         firing: dict[str, object] | None = None,
         ring: str | PathLike[str] | None = None,
     ) -> Robot: ...
-    def replace(self, **changes: object) -> Robot: ...
+    def replace(self, **changes: Unpack[_RobotChanges]) -> Robot:
+        """The same robot, but for these arguments.
+
+        Args:
+            changes: arguments of ``Robot``, by name.
+
+        Raises:
+            ArgumentError: as for ``Robot``.
+
+        Example:
+            >>> from eeruf import sim
+            >>> sim.Robot((0, 0, 0), 8, 0.26, 0.3).replace(t_delta_us=100).t_delta_us
+            100
+        """
     @property
-    def pose(self) -> _Pose: ...
+    def pose(self) -> _Pose:
+        """(x, y, heading) in metres and radians."""
     @property
-    def sensors(self) -> int: ...
+    def sensors(self) -> int:
+        """How many sensors."""
     @property
-    def sensor_poses(self) -> list[_Pose]: ...
+    def sensor_poses(self) -> list[_Pose]:
+        """Where each sensor is on the robot: (x, y, heading) in metres and radians."""
     @property
-    def spacing_rad(self) -> float | None: ...
+    def spacing_rad(self) -> float | None:
+        """The angle from one sensor to the next, in radians; None for sensors at places of their own."""
     @property
-    def radius_m(self) -> float | None: ...
+    def radius_m(self) -> float | None:
+        """The radius of the arc, in metres; None for sensors at places of their own."""
     @property
-    def module(self) -> _Module | list[_Module]: ...
+    def module(self) -> _Module | list[_Module]:
+        """The module of its sensors: a name, a dict of figures, or a list of these, one for each sensor."""
     @property
-    def together(self) -> list[list[int]]: ...
+    def together(self) -> list[list[int]]:
+        """Sets of sensors that the robot's own schedule fires at once."""
     @property
-    def gain(self) -> _Gain: ...
+    def gain(self) -> _Gain:
+        """How the receiver's gain grows while it listens; the first sensor's where they differ."""
     @property
-    def beam(self) -> _Beam: ...
+    def beam(self) -> _Beam:
+        """The pattern near 90 degrees off a sensor's axis."""
     @property
-    def coupling_db(self) -> float | None: ...
+    def coupling_db(self) -> float | None:
+        """The level of the sound that the mounting carries straight from sensor to sensor, in dB; None for what the
+        patterns say.
+        """
     @property
-    def height_m(self) -> list[float]: ...
+    def height_m(self) -> list[float]:
+        """The height of its sensors above the floor in metres, one each."""
     @property
-    def body(self) -> _Body | None: ...
+    def body(self) -> _Body | None:
+        """Its outline: the radius of a disc, (length, width) of a box, or the corners of a polygon; None without."""
     @property
-    def period_us(self) -> int: ...
+    def period_us(self) -> int:
+        """``T_p`` of the methods that bring no schedule of their own, in microseconds."""
     @property
-    def t_delta_us(self) -> int | list[int]: ...
+    def t_delta_us(self) -> int | list[int]:
+        """``T_delta``, in microseconds; a list of one for each sensor where they have their own."""
     @property
-    def window_us(self) -> int | list[int]: ...
+    def window_us(self) -> int | list[int]:
+        """How long a sensor listens, in microseconds; a list of one for each sensor where they have their own."""
     @property
-    def blanking_us(self) -> int | list[int]: ...
+    def blanking_us(self) -> int | list[int]:
+        """How long a sensor is deaf after it has fired, in microseconds; a list of one for each sensor where they differ."""
     @property
-    def min_refire_us(self) -> int: ...
+    def min_refire_us(self) -> int:
+        """How long a sensor rests between its echo and its next firing, in microseconds."""
     @property
-    def audible_us(self) -> int: ...
+    def audible_us(self) -> int:
+        """How long sound is heard after it was sent, in microseconds; 0 for as long as sensors listen."""
     @property
-    def firing(self) -> dict[str, object]: ...
+    def firing(self) -> dict[str, object]:
+        """How sketches and modules fire it: a dict of what differs from the default."""
     @property
-    def start_us(self) -> int: ...
+    def start_us(self) -> int:
+        """When the ring begins to fire, in microseconds."""
     @property
-    def schedule(self) -> Schedule | None: ...
+    def schedule(self) -> Schedule | None:
+        """What the EERUF methods fire by; None for the paper's table."""
     @property
-    def neighbours(self) -> int: ...
+    def neighbours(self) -> int:
+        """How many adjacent sensors must not fire close together."""
     @property
-    def consecutive(self) -> int: ...
+    def consecutive(self) -> int:
+        """How many readings in a row must agree."""
     @property
-    def odometry(self) -> bool: ...
+    def odometry(self) -> bool:
+        """Whether the ring knows by how much its own motion should change readings."""
     @property
-    def velocity_m_s(self) -> tuple[float, float] | None: ...
+    def velocity_m_s(self) -> tuple[float, float] | None:
+        """The velocity that it keeps, (x, y) in m/s; None for a robot that stands or drives through waypoints."""
     @property
-    def turn_rad_s(self) -> float | None: ...
+    def turn_rad_s(self) -> float | None:
+        """The rate of turn that it keeps, in rad/s; None for a robot that stands or drives through waypoints."""
     @property
-    def waypoints_m(self) -> list[tuple[float, float]] | None: ...
+    def waypoints_m(self) -> list[tuple[float, float]] | None:
+        """The points that it drives through, (x, y) in metres; None without."""
     @property
-    def speed_m_s(self) -> float | None: ...
+    def speed_m_s(self) -> float | None:
+        """How fast it drives through its waypoints, in m/s; None without."""
     @property
-    def clock_offset_us(self) -> int: ...
+    def clock_offset_us(self) -> int:
+        """What its clock shows at the start, in microseconds."""
     @property
-    def clock_drift_ppm(self) -> float: ...
+    def clock_drift_ppm(self) -> float:
+        """By how much its clock goes too fast, in millionths."""
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...
 
+@type_check_only
+class _SceneChanges(TypedDict, total=False):
+    walls: ArrayLike
+    open: Iterable[_Int] | None
+    two_sided: Iterable[_Int] | None
+    poles: ArrayLike | None
+    materials: _Surface | Iterable[_Surface] | None
+    pole_materials: _Surface | Iterable[_Surface] | None
+    temperature_c: float
+    humidity_percent: float
+    pressure_kpa: float
+    robots: Sequence[Robot]
+    noise: bool | Noise
+    seed: _Int
+    max_order: _Int
+    physics: _Physics
+    height: _Height
+    faults: Iterable[_Fault]
+
 @final
 class Scene:
+    """Walls, poles and robots from above, in metres. Immutable; scenes pickle.
+
+    A wall reflects on its left side, seen from its first end to its second, and its back swallows: a room is a loop
+    walked counter-clockwise, a pillar one walked clockwise.
+
+    Args:
+        walls: array of shape (n, 4): x, y of one end and x, y of the other.
+        open: indices of openings, from which nothing comes back.
+        two_sided: indices of walls that reflect on both sides.
+        poles: array of shape (m, 3): x, y and radius.
+        materials: of the walls, one for all or one each: ``"smooth"``, ``"painted"``, ``"soft"``, ``"perfect"`` or a
+            :class:`Material`; smooth unless given.
+        pole_materials: of the poles, likewise.
+        temperature_c: of the air, in degrees Celsius, -100 to 100; the speed of sound depends on it.
+        humidity_percent: of the air, 0 to 100.
+        pressure_kpa: of the air.
+        robots: the robots that :func:`simulate` drives.
+        noise: True for a little jitter and fading, False for none, or a :class:`Noise`.
+        seed: of the noise, 0 to 2^64 - 1.
+        max_order: how many bounces :func:`simulate` follows; 6 unless it is given.
+        physics: ``"plain"``, ``"default"``, or a dict of what differs from a ``preset``: ``shadows``, ``edges``,
+            ``narrow_panels``, ``range_walk`` (each True or False), ``fading_time_s``; see ``docs/physics.md``.
+        height: ``"flat"``, all sound in one plane; ``"room"``, between a floor and a ceiling at 2.6 m; or a dict of
+            what differs from that room: ``ceiling_m``, and ``floor`` and ``ceiling`` as in ``materials``.
+        faults: what goes wrong, dicts with the keys of ``[[fault]]`` in scene files, such as
+            ``{"kind": "cut", "sensors": [2], "from_s": 3.0}``; docs/study.md has them all.
+
+    Raises:
+        ArgumentError: an array of the wrong shape, an index of no wall, something of the wrong type or out of range.
+        SceneError: walls that cross, have no length or are not finite, or a robot where none can stand.
+
+    Example:
+        >>> from eeruf import sim
+        >>> scene = sim.Scene([[0.85, 0, 0.85, 1.39], [0.85, 1.39, -0.85, 1.39], [-0.85, 1.39, -0.85, 0]])
+        >>> scene
+        <Scene: 3 walls, 0 poles, 0 robots>
+    """
     def __new__(
         cls,
         walls: ArrayLike,
@@ -1040,43 +3549,113 @@ class Scene:
         faults: Iterable[_Fault] = (),
     ) -> Scene: ...
     @staticmethod
-    def read_toml(path: str | PathLike[str]) -> Scene: ...
+    def read_toml(path: str | PathLike[str]) -> Scene:
+        """Read a scene file, such as those in the folder ``scenes``.
+
+        Args:
+            path: of the file; a schedule that it names is looked for beside it.
+
+        Raises:
+            ArgumentError: not a path.
+            SceneError: no such file, or it says something that makes no scene: by name, value and what is expected.
+
+        Example:
+            >>> import eeruf, pathlib, tempfile
+            >>> file = pathlib.Path(tempfile.mkdtemp(), "alcove.toml")
+            >>> _ = file.write_text(eeruf.example("scenes/alcove.toml"))
+            >>> len(eeruf.sim.Scene.read_toml(file).walls)
+            3
+        """
     @staticmethod
-    def from_toml(text: str) -> Scene: ...
-    def to_toml(self) -> str: ...
-    def replace(self, **changes: object) -> Scene: ...
+    def from_toml(text: str) -> Scene:
+        r"""A scene out of the text of a scene file, as :meth:`to_toml` writes it.
+
+        Args:
+            text: the contents of a file; a schedule that it names is looked for in the present folder.
+
+        Raises:
+            ArgumentError: not a text.
+            SceneError: it says something that makes no scene: by name, value and what is expected.
+
+        Example:
+            >>> from eeruf import sim
+            >>> sim.Scene.from_toml("[[pole]]\nat_m = [1, 2]\nradius_m = 0.05").poles.tolist()
+            [[1.0, 2.0, 0.05]]
+        """
+    def to_toml(self) -> str:
+        """Write a scene file that says all this: it gives the same readings, in Python and in the program.
+
+        Example:
+            >>> from eeruf import sim
+            >>> scene = sim.Scene([[5, 2, -5, 2]], robots=[sim.Robot((0, 0, 1.57), 8, 0.26, 0.3)])
+            >>> sim.Scene.from_toml(scene.to_toml()).to_toml() == scene.to_toml()
+            True
+        """
+    def replace(self, **changes: Unpack[_SceneChanges]) -> Scene:
+        """The same scene, but for these arguments.
+
+        Args:
+            changes: arguments of ``Scene``, by name. Other walls or poles have the default materials, unless those are
+                given too, and no openings.
+
+        Raises:
+            ArgumentError: as for ``Scene``.
+            SceneError: as for ``Scene``.
+
+        Example:
+            >>> from eeruf import sim
+            >>> scene = sim.Scene([[5, 2, -5, 2]], seed=3).replace(temperature_c=0.0)
+            >>> scene.temperature_c, scene.seed
+            (0.0, 3)
+        """
     @property
-    def faults(self) -> list[_Fault]: ...
+    def faults(self) -> list[_Fault]:
+        """What goes wrong: dicts with the keys of ``[[fault]]`` in scene files."""
     @property
-    def walls(self) -> _Floats: ...
+    def walls(self) -> _Floats:
+        """The walls: array of shape (n, 4), as given."""
     @property
-    def open(self) -> list[int]: ...
+    def open(self) -> list[int]:
+        """The indices of the openings, from which nothing comes back."""
     @property
-    def two_sided(self) -> list[int]: ...
+    def two_sided(self) -> list[int]:
+        """The indices of the walls that reflect on both sides."""
     @property
-    def poles(self) -> _Floats: ...
+    def poles(self) -> _Floats:
+        """The poles: array of shape (m, 3) of x, y and radius in metres."""
     @property
-    def materials(self) -> list[Material]: ...
+    def materials(self) -> list[Material]:
+        """The material of each wall, a list of ``Material``."""
     @property
-    def pole_materials(self) -> list[Material]: ...
+    def pole_materials(self) -> list[Material]:
+        """The material of each pole, a list of ``Material``."""
     @property
-    def temperature_c(self) -> float: ...
+    def temperature_c(self) -> float:
+        """The temperature of the air, in degrees Celsius."""
     @property
-    def humidity_percent(self) -> float: ...
+    def humidity_percent(self) -> float:
+        """The humidity of the air, in percent."""
     @property
-    def pressure_kpa(self) -> float: ...
+    def pressure_kpa(self) -> float:
+        """The pressure of the air, in kilopascals."""
     @property
-    def robots(self) -> tuple[Robot, ...]: ...
+    def robots(self) -> tuple[Robot, ...]:
+        """The robots, a tuple of ``Robot``."""
     @property
-    def noise(self) -> Noise: ...
+    def noise(self) -> Noise:
+        """How noisy it is, a ``Noise``."""
     @property
-    def seed(self) -> int: ...
+    def seed(self) -> int:
+        """What decides all that is random."""
     @property
-    def max_order(self) -> int: ...
+    def max_order(self) -> int:
+        """How many bounces :func:`simulate` follows."""
     @property
-    def physics(self) -> _Physics: ...
+    def physics(self) -> _Physics:
+        """Which effects there are: a preset's name, or a dict."""
     @property
-    def height(self) -> _Height: ...
+    def height(self) -> _Height:
+        """Floor and ceiling: ``"flat"`` without, ``"room"`` for the default, or a dict."""
     def paths(
         self,
         source: ArrayLike,
@@ -1085,89 +3664,378 @@ class Scene:
         max_length_m: float | None = None,
         *,
         progress: _Progress = None,
-    ) -> Paths: ...
+    ) -> Paths:
+        """Every path from a source to some receivers, exactly, without the interpreter lock. Ctrl-C ends it.
+
+        The paths are those that :func:`simulate` knows: under the scene's ``physics`` nothing runs through a thick
+        pole, edges diffract, and narrow walls return less. With ``physics="plain"`` they are the specular ones alone.
+        Amplitudes are for the first robot's transducers, or for a Polaroid 6500 where there is no robot.
+
+        Args:
+            source: (x, y) in metres, or (x, y, height) in a scene that is not flat; 0.3 m high unless it says so.
+            receivers: array of shape (n, 2) or (n, 3), or one point, likewise.
+            max_order: the most bounces, 0 to 1000; those at poles, floor and ceiling count. Of the last two a path has
+                4 at most.
+            max_length_m: the longest path, in metres, above 0; None for any length.
+            progress: True for a bar (tqdm if it is installed), or a callable that takes None and a text now and then.
+
+        Returns:
+            The paths as arrays, sorted by receiver and then by length.
+
+        Raises:
+            ArgumentError: something of the wrong type, shape or range.
+            PathsError: a point that is not finite, far from all walls or inside something solid, too high an order, or
+                too many paths to keep.
+
+        Example:
+            >>> from eeruf import sim
+            >>> wall = sim.Scene([[5, 2, -5, 2]], physics="plain")
+            >>> paths = wall.paths(source=(0, 0), receivers=[(3, 0)], max_order=1)
+            >>> paths.order.tolist(), paths.length_m.tolist()
+            ([0, 1], [3.0, 5.0])
+        """
     def _repr_svg_(self) -> str: ...
 
 @final
 class Paths:
+    """Every path from a source to some receivers: arrays of equal length, sorted by receiver and then by length. The
+    arrays are read-only.
+
+    Example:
+        >>> from eeruf import sim
+        >>> paths = sim.Scene([[5, 2, -5, 2]], physics="plain").paths((0, 0), [(3, 0)], max_order=1)
+        >>> len(paths), paths.walls
+        (2, [(), (0,)])
+    """
     @property
-    def receiver(self) -> NDArray[np.int64]: ...
+    def receiver(self) -> NDArray[np.int64]:
+        """The index of the receiver: int64."""
     @property
-    def length_m(self) -> NDArray[np.float64]: ...
+    def length_m(self) -> NDArray[np.float64]:
+        """The length in metres: float64."""
     @property
-    def order(self) -> NDArray[np.int64]: ...
+    def order(self) -> NDArray[np.int64]:
+        """How many bounces, those at poles included: int64."""
     @property
-    def departure_rad(self) -> NDArray[np.float64]: ...
+    def departure_rad(self) -> NDArray[np.float64]:
+        """The direction in which the path leaves the source, in (-pi, pi]: float64."""
     @property
-    def arrival_rad(self) -> NDArray[np.float64]: ...
+    def arrival_rad(self) -> NDArray[np.float64]:
+        """The direction in which the receiver looks to see it, in (-pi, pi]: float64."""
     @property
-    def amplitude(self) -> NDArray[np.float64]: ...
+    def amplitude(self) -> NDArray[np.float64]:
+        """The amplitude relative to 1 m in free air, without the transducers' patterns: float64."""
     @property
-    def departure_elevation_rad(self) -> NDArray[np.float64]: ...
+    def departure_elevation_rad(self) -> NDArray[np.float64]:
+        """The elevation at which the path leaves the source, in radians, upwards positive; 0 in a flat scene: float64."""
     @property
-    def arrival_elevation_rad(self) -> NDArray[np.float64]: ...
+    def arrival_elevation_rad(self) -> NDArray[np.float64]:
+        """The elevation at which the receiver looks to see it, in radians, upwards positive; 0 in a flat scene: float64."""
     @property
-    def walls(self) -> list[tuple[int, ...]]: ...
-    def points(self, path: _Int) -> NDArray[np.float64]: ...
+    def walls(self) -> list[tuple[int, ...]]:
+        """For each path its bounces from source to receiver, a list of tuples: a wall by its index, a pole by -1 minus its
+        index, an edge by 2^32 plus its index, the floor by 2^33 and the ceiling by one more. Those at floor and ceiling
+        stand last, in their own order.
+        """
+    def points(self, path: _Int) -> NDArray[np.float64]:
+        """The corners of a path in the plan, from source to receiver, those at floor and ceiling left out.
+
+        Args:
+            path: which one, from 0.
+
+        Returns:
+            Array of shape (n, 2), in metres; n is ``order + 2`` in a flat scene.
+
+        Raises:
+            ArgumentError: no such path.
+
+        Example:
+            >>> from eeruf import sim
+            >>> wall = sim.Scene([[5, 2, -5, 2]], physics="plain")
+            >>> wall.paths((0, 0), (3, 0), max_order=1).points(1).tolist()
+            [[0.0, 0.0], [1.5, 2.0], [3.0, 0.0]]
+        """
     def __len__(self, /) -> int: ...
 
 @final
 class Readings:
+    """Every reading of a simulation: arrays of equal length, in the order in which the rings emitted them. Readings
+    pickle.
+
+    Each reading comes with what caused it and with what the sensor would have read alone. Times without a value are
+    NaN. The arrays are read-only.
+
+    Example:
+        >>> from eeruf import sim
+        >>> robot = sim.Robot((0, 0, 1.57), sensors=8, spacing_rad=0.26, radius_m=0.3)
+        >>> readings = sim.simulate(sim.Scene([[5, 2, -5, 2]], robots=[robot]), periods=100)
+        >>> len(readings), readings.summary().wrong_of_all < 0.01
+        (800, True)
+    """
     @property
-    def method(self) -> _MethodName: ...
+    def method(self) -> _MethodName:
+        """The method that was simulated, one of ``METHODS``."""
     @property
-    def duration_s(self) -> float: ...
+    def duration_s(self) -> float:
+        """For how long, in seconds."""
     @property
-    def sensors(self) -> int: ...
+    def sensors(self) -> int:
+        """How many sensors the scene has, of all robots together."""
     @property
-    def robot(self) -> NDArray[np.int64]: ...
+    def robot(self) -> NDArray[np.int64]:
+        """The robot, from 0: int64."""
     @property
-    def sensor(self) -> NDArray[np.int64]: ...
+    def sensor(self) -> NDArray[np.int64]:
+        """The sensor on its ring, from 0: int64."""
     @property
-    def period(self) -> NDArray[np.int64]: ...
+    def period(self) -> NDArray[np.int64]:
+        """The period in which it fired, from 0: int64."""
     @property
-    def phase(self) -> NDArray[np.int64]: ...
+    def phase(self) -> NDArray[np.int64]:
+        """The phase in which it fired, 0 for a and 1 for b: int64."""
     @property
-    def fired_s(self) -> NDArray[np.float64]: ...
+    def fired_s(self) -> NDArray[np.float64]:
+        """When it fired, in seconds: float64."""
     @property
-    def x_m(self) -> NDArray[np.float64]: ...
+    def x_m(self) -> NDArray[np.float64]:
+        """Where the sensor stood when it fired, in metres of the scene: float64."""
     @property
-    def y_m(self) -> NDArray[np.float64]: ...
+    def y_m(self) -> NDArray[np.float64]:
+        """Where the sensor stood when it fired, in metres of the scene: float64."""
     @property
-    def heading_rad(self) -> NDArray[np.float64]: ...
+    def heading_rad(self) -> NDArray[np.float64]:
+        """Whither the sensor looked when it fired, in radians of the scene, counter-clockwise from the x axis: float64."""
     @property
-    def kind(self) -> NDArray[np.int8]: ...
+    def kind(self) -> NDArray[np.int8]:
+        """What the method made of it, an index into ``eeruf.KINDS``: int8."""
     @property
-    def t_echo_us(self) -> NDArray[np.float64]: ...
+    def t_echo_us(self) -> NDArray[np.float64]:
+        """The echo time that the method reports, in microseconds: float64."""
     @property
-    def earliest_us(self) -> NDArray[np.float64]: ...
+    def earliest_us(self) -> NDArray[np.float64]:
+        """The earliest echo of the firing, in microseconds: float64."""
     @property
-    def reference_us(self) -> NDArray[np.float64]: ...
+    def reference_us(self) -> NDArray[np.float64]:
+        """What the sensor would have read alone in quiet air, in microseconds: float64."""
     @property
-    def cause(self) -> NDArray[np.int8]: ...
+    def cause(self) -> NDArray[np.int8]:
+        """What ``t_echo_us`` came from, an index into ``CAUSES``: int8."""
     @property
-    def path(self) -> NDArray[np.int64]: ...
+    def path(self) -> NDArray[np.int64]:
+        """Along which of ``paths`` the sound came, an index, or -1 for none: int64."""
     @property
-    def paths(self) -> HeardPaths: ...
+    def paths(self) -> HeardPaths:
+        """Every path that some reading came along: a dict of arrays of equal length.
+
+        ``emitter_robot``, ``emitter``, ``receiver_robot``, ``receiver`` count from 0; ``order`` is the number of
+        bounces; ``length_m``, ``departure_rad`` and ``arrival_rad`` are in metres and radians of the scene; ``walls``
+        is a list of tuples as in ``Paths``.
+        """
     @property
-    def emitted_s(self) -> NDArray[np.float64]: ...
+    def emitted_s(self) -> NDArray[np.float64]:
+        """When the sound behind ``t_echo_us`` was sent, in seconds: float64."""
     @property
-    def expected_change_us(self) -> NDArray[np.int32]: ...
+    def expected_change_us(self) -> NDArray[np.int32]:
+        """The change that odometry expects since the sensor's firing before, in microseconds; 0 without odometry: int32."""
     @property
-    def is_accepted(self) -> NDArray[np.bool_]: ...
-    def is_wrong(self, tolerance_us: float = 500.0) -> NDArray[np.bool_]: ...
-    def summary(self, tolerance_us: float = 500.0) -> Summary: ...
-    def columns(self) -> dict[str, NDArray[np.float64 | np.int64 | np.int8]]: ...
-    def to_pandas(self) -> pd.DataFrame: ...
-    def to_polars(self) -> pl.DataFrame: ...
+    def is_accepted(self) -> NDArray[np.bool_]:
+        """Whether the method accepts the reading, an echo or that nothing is in range: bool."""
+    def is_wrong(self, tolerance_us: float = 500.0) -> NDArray[np.bool_]:
+        """Whether what the reading says is wrong, accepted or not.
+
+        Args:
+            tolerance_us: by how much it may miss the reference, in microseconds.
+
+        Returns:
+            Array of bool.
+
+        Raises:
+            ArgumentError: the tolerance is negative or not a number.
+
+        Example:
+            >>> from eeruf import sim
+            >>> robot = sim.Robot((0, 0, 1.57), sensors=8, spacing_rad=0.26, radius_m=0.3)
+            >>> readings = sim.simulate(sim.Scene([[5, 2, -5, 2]], robots=[robot]), periods=100)
+            >>> int(readings.is_wrong(tolerance_us=1e6).sum()) <= int(readings.is_wrong().sum())
+            True
+        """
+    def summary(self, tolerance_us: float = 500.0) -> Summary:
+        """The figures that are always reported together.
+
+        Args:
+            tolerance_us: by how much a reading may miss the reference, in microseconds.
+
+        Returns:
+            A ``Summary``.
+
+        Raises:
+            ArgumentError: the tolerance is negative or not a number.
+
+        Example:
+            >>> from eeruf import sim
+            >>> robot = sim.Robot((0, 0, 1.57), sensors=8, spacing_rad=0.26, radius_m=0.3)
+            >>> readings = sim.simulate(sim.Scene([[5, 2, -5, 2]], robots=[robot]), periods=100)
+            >>> readings.summary().readings, readings.summary().wrong_of_all < 0.01
+            (800, True)
+        """
+    def columns(self) -> dict[str, NDArray[np.float64 | np.int64 | np.int8]]:
+        """All arrays, one entry for each reading, by their names: a dict.
+
+        Example:
+            >>> from eeruf import sim
+            >>> robot = sim.Robot((0, 0, 1.57), sensors=8, spacing_rad=0.26, radius_m=0.3)
+            >>> readings = sim.simulate(sim.Scene([[5, 2, -5, 2]], robots=[robot]), periods=100)
+            >>> readings.columns()["t_echo_us"] is readings.t_echo_us
+            True
+        """
+    def to_pandas(self) -> pd.DataFrame:
+        """All arrays as a ``pandas.DataFrame``: ``kind`` and ``cause`` are categoricals with their names, ``path`` is null
+        where there is none, and times without a value are NaN.
+
+        Raises:
+            ImportError: pandas is not installed.
+
+        Example:
+            >>> from eeruf import sim
+            >>> robot = sim.Robot((0, 0, 1.57), sensors=8, spacing_rad=0.26, radius_m=0.3)
+            >>> readings = sim.simulate(sim.Scene([[5, 2, -5, 2]], robots=[robot]), periods=100)
+            >>> readings.to_pandas()["kind"].dtype.name
+            'category'
+        """
+    def to_polars(self) -> pl.DataFrame:
+        """All arrays as a ``polars.DataFrame``: ``kind`` and ``cause`` are enums with their names, and what has no value
+        is null.
+
+        Raises:
+            ImportError: polars is not installed.
+
+        Example:
+            >>> from eeruf import sim
+            >>> robot = sim.Robot((0, 0, 1.57), sensors=8, spacing_rad=0.26, radius_m=0.3)
+            >>> readings = sim.simulate(sim.Scene([[5, 2, -5, 2]], robots=[robot]), periods=100)
+            >>> readings.to_polars().columns[:3]
+            ['robot', 'sensor', 'period']
+        """
     def __arrow_c_stream__(self, requested_schema: object | None = None) -> object: ...
-    def save(self, file: str | PathLike[str] | IO[bytes]) -> None: ...
+    def save(self, file: str | PathLike[str] | IO[bytes]) -> None:
+        """Write everything into one file, from which :meth:`load` makes the same readings.
+
+        Args:
+            file: its path; NumPy's format ``.npz``, compressed.
+
+        Raises:
+            OSError: it cannot be written.
+
+        Example:
+            >>> import io
+            >>> from eeruf import sim
+            >>> robot = sim.Robot((0, 0, 1.57), sensors=8, spacing_rad=0.26, radius_m=0.3)
+            >>> readings = sim.simulate(sim.Scene([[5, 2, -5, 2]], robots=[robot]), periods=100)
+            >>> file = io.BytesIO()
+            >>> readings.save(file)
+            >>> _ = file.seek(0)
+            >>> sim.Readings.load(file).summary() == readings.summary()
+            True
+        """
     @staticmethod
-    def load(file: str | PathLike[str] | IO[bytes]) -> Readings: ...
+    def load(file: str | PathLike[str] | IO[bytes]) -> Readings:
+        """Read what :meth:`save` wrote.
+
+        Args:
+            file: its path.
+
+        Raises:
+            OSError: it cannot be read.
+            ArgumentError: it holds no readings.
+
+        Example:
+            >>> import pathlib, tempfile
+            >>> from eeruf import sim
+            >>> robot = sim.Robot((0, 0, 1.57), sensors=8, spacing_rad=0.26, radius_m=0.3)
+            >>> file = pathlib.Path(tempfile.mkdtemp(), "readings.npz")
+            >>> sim.simulate(sim.Scene([[5, 2, -5, 2]], robots=[robot]), periods=100).save(file)
+            >>> len(sim.Readings.load(file))
+            800
+        """
+    @staticmethod
+    def concat(parts: Iterable[Readings]) -> Readings:
+        """Join readings of consecutive steps or blocks, or of several robots' logs: all columns, and durations added up.
+
+        Args:
+            parts: readings of one method and of as many sensors each.
+
+        Raises:
+            ArgumentError: no readings, or of several methods or numbers of sensors.
+
+        Example:
+            >>> from eeruf import sim
+            >>> robot = sim.Robot((0, 0, 1.57), sensors=8, spacing_rad=0.26, radius_m=0.3)
+            >>> scene = sim.Scene([[5, 2, -5, 2]], robots=[robot])
+            >>> blocks = sim.simulate_blocks(scene, periods=100, block_periods=30)
+            >>> sim.Readings.concat(blocks).summary() == sim.simulate(scene, periods=100).summary()
+            True
+        """
+    @staticmethod
+    def from_arrays(
+        sensor: ArrayLike,
+        fired_s: ArrayLike,
+        t_echo_us: ArrayLike,
+        *,
+        kind: ArrayLike | None = None,
+        reference_us: ArrayLike | None = None,
+        duration_s: float | None = None,
+        sensors: _Int | None = None,
+        method: _MethodName = "eeruf",
+        **columns: Unpack[ReadingColumns],
+    ) -> Readings:
+        """Make readings of arrays of your own, such as those of a drive, so that they can be summed up and saved.
+
+        Args:
+            sensor: the sensor of each reading, from 0; others have as many entries.
+            fired_s: when it fired, in seconds, in order.
+            t_echo_us: the echo time, NaN for none.
+            kind: what was made of it, indices into ``eeruf.KINDS``; by default echoes are accepted and silence is clear.
+            reference_us: what the sensor reads alone; by default ``t_echo_us``, as if all were right.
+            duration_s: for how long; by default until the last firing.
+            sensors: how many sensors there are; by default one more than the last.
+            method: one of ``METHODS``, as which they count.
+            columns: any others of :meth:`columns`, by name.
+
+        Raises:
+            ArgumentError: no such column, arrays of several lengths, or values out of range.
+
+        Example:
+            >>> from eeruf import sim
+            >>> found = sim.Readings.from_arrays([0, 1, 0], [0.0, 0.03, 0.06], [9_000, float("nan"), 9_040])
+            >>> found.is_accepted.tolist(), found.sensors, found.summary().wrong_of_all
+            ([True, True, True], 2, 0.0)
+        """
+    def to_xarray(self) -> xr.Dataset:
+        """All arrays as an ``xarray.Dataset`` along ``reading``, with method, duration and sensors as attributes.
+
+        Raises:
+            ImportError: xarray is not installed.
+
+        Example:
+            >>> from eeruf import sim
+            >>> robot = sim.Robot((0, 0, 1.57), sensors=8, spacing_rad=0.26, radius_m=0.3)
+            >>> readings = sim.simulate(sim.Scene([[5, 2, -5, 2]], robots=[robot]), periods=100)
+            >>> readings.to_xarray().sizes["reading"]
+            800
+        """
+    def __getitem__(self, key: slice | ArrayLike, /) -> Readings: ...
     def __len__(self, /) -> int: ...
 
 @final
 class RobotState:
+    """A robot of a ``Simulation``, now.
+
+    Example:
+        >>> from eeruf import sim
+        >>> robot = sim.Robot((1, 0, 0), sensors=8, spacing_rad=0.26, radius_m=0.3)
+        >>> sim.Simulation(sim.Scene([[5, 2, -5, 2]], robots=[robot])).robots[0].pose
+        (1.0, 0.0, 0.0)
+    """
     def __new__(
         cls,
         pose: tuple[float, float, float],
@@ -1176,31 +4044,70 @@ class RobotState:
         touches: bool = False,
     ) -> RobotState: ...
     @property
-    def pose(self) -> tuple[float, float, float]: ...
+    def pose(self) -> tuple[float, float, float]:
+        """(x, y, heading) in metres and radians."""
     @property
-    def velocity_m_s(self) -> tuple[float, float]: ...
+    def velocity_m_s(self) -> tuple[float, float]:
+        """Velocity along x and y, in m/s."""
     @property
-    def turn_rad_s(self) -> float: ...
+    def turn_rad_s(self) -> float:
+        """Rate of turn, counter-clockwise, in rad/s."""
     @property
-    def touches(self) -> bool: ...
-    def to_dict(self) -> dict[str, object]: ...
+    def touches(self) -> bool:
+        """Whether the disc that holds its sensors touches a wall or a pole."""
+    def to_dict(self) -> dict[str, object]:
+        """Its fields by their names: a dict of plain values.
+
+        Example:
+            >>> from eeruf import sim
+            >>> robot = sim.Robot((1, 0, 0), sensors=8, spacing_rad=0.26, radius_m=0.3)
+            >>> sim.Simulation(sim.Scene([[5, 2, -5, 2]], robots=[robot])).robots[0].to_dict()["pose"]
+            [1.0, 0.0, 0.0]
+        """
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...
 
 @final
 class FiredReading:
+    """What one firing of one sensor has heard, for a filter of one's own in a :class:`Simulation`.
+
+    Example:
+        >>> from eeruf import sim
+        >>> heard = []
+        >>> def believe(firing):
+        ...     heard.append(firing)
+        ...     return firing.reading
+        >>> robot = sim.Robot((0, 0, 1.57), sensors=8, spacing_rad=0.26, radius_m=0.3)
+        >>> _ = sim.Simulation(sim.Scene([[5, 2, -5, 2]], robots=[robot]), filter=believe).step(0.1)
+        >>> heard[0].reading.sensor, len(heard[0].t_echoes_us), round(heard[0].fired_s, 3)
+        (4, 1, 0.014)
+    """
     def __new__(
         cls, reading: Reading, t_echoes_us: Iterable[_Int], fired_s: float = 0.0, expected_change_us: _Int = 0
     ) -> FiredReading: ...
     @property
-    def reading(self) -> Reading: ...
+    def reading(self) -> Reading:
+        """What the ring itself makes of it, with the paper's filter: its sensor, phase and period too."""
     @property
-    def t_echoes_us(self) -> tuple[int, ...]: ...
+    def t_echoes_us(self) -> tuple[int, ...]:
+        """The times of its echoes after firing, in microseconds, earliest first: a tuple of one at most, but of up to
+        eight under ``"multi_echo"``.
+        """
     @property
-    def fired_s(self) -> float: ...
+    def fired_s(self) -> float:
+        """When it fired, in seconds."""
     @property
-    def expected_change_us(self) -> int: ...
-    def to_dict(self) -> dict[str, object]: ...
+    def expected_change_us(self) -> int:
+        """By how much odometry expects a good reading to have changed since the sensor's firing before, in microseconds."""
+    def to_dict(self) -> dict[str, object]:
+        """Its fields by their names: a dict of plain values.
+
+        Example:
+            >>> import eeruf
+            >>> reading = eeruf.EchoFilter(1, 500).push(0, 9_000)
+            >>> eeruf.sim.FiredReading(reading, (9_000,)).to_dict()["t_echoes_us"]
+            [9000]
+        """
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...
 
@@ -1212,6 +4119,37 @@ _MakeFiring = Callable[[Robot], _Fires]
 
 @final
 class Method:
+    """A method as a value: plan, judge and settings under a label. :func:`simulate`, :class:`Simulation` and all
+    experiments take one wherever they take a name. Immutable; methods compare, and pickle if their callables do.
+
+    Args:
+        name: one of ``METHODS``, which gives whatever the others do not; or ``"driving"``, time hopping by its settings
+            for robots that drive.
+        label: the name in results and tables; by default ``name``. No two methods of one experiment have the same.
+        schedule: what the ring fires by: a ``Schedule`` for methods that fire by the robot's own, a ``HoppingSchedule``
+            for ``eeruf_hopping``. Its sensors must be as many as the robot's.
+        settings: a ``HoppingSettings`` or its name for ``eeruf_hopping``; for ``flow`` a dict of what differs from its
+            default: ``step_us``, ``shortest_gap_us``, ``masked_adds_us``, ``believed_takes_us``, ``unserved_adds_us``,
+            ``unserved_after``, ``longest_cycle_us``, ``travel_us``.
+        sketch: a dict as the argument ``firing`` of :class:`Robot`, for methods that fire as sketches and modules do.
+        make_filter: makes your own filter: called with the :class:`Robot` at the start of each simulation, it returns a
+            callable as the argument ``filter`` of :class:`Simulation`. A class whose instances can be called will do.
+        make_firing: makes your own firing in the same way, a callable as the argument ``firing`` of
+            :class:`Simulation`.
+
+    Raises:
+        ArgumentError: no such method, or something that it does not take.
+
+    Example:
+        >>> from eeruf import sim
+        >>> quick = sim.Method("eeruf_hopping", label="quick", settings="quick")
+        >>> believing = sim.Method("eeruf", label="all", make_filter=lambda robot: lambda firing: ("accepted",
+        ...     firing.t_echoes_us[0]) if firing.t_echoes_us else ("clear", None))
+        >>> robot = sim.Robot((0, 0, 1.57), sensors=8, spacing_rad=0.26, radius_m=0.3)
+        >>> scene = sim.Scene([[5, 2, -5, 2]], robots=[robot])
+        >>> [float(sim.simulate(scene, method, 50).is_accepted.mean()) for method in (believing, quick)]
+        [1.0, 0.92]
+    """
     def __new__(
         cls,
         name: _MethodName | Literal["driving"] = "eeruf",
@@ -1224,9 +4162,11 @@ class Method:
         make_firing: _MakeFiring | None = None,
     ) -> Method: ...
     @property
-    def name(self) -> _MethodName: ...
+    def name(self) -> _MethodName:
+        """The method that it is made of, one of ``METHODS``."""
     @property
-    def label(self) -> str: ...
+    def label(self) -> str:
+        """The name in results and tables."""
     def _arguments(self) -> dict[str, Any]: ...
     def __eq__(self, other: object, /) -> bool: ...
     def __hash__(self, /) -> int: ...
@@ -1235,6 +4175,45 @@ _Method = _MethodName | Literal["driving"] | Method
 
 @final
 class Simulation:
+    """A world that goes on step by step: for your own controller, filter, or display.
+
+    Its steps together give the readings of :func:`simulate`, bit for bit, and need little more memory than one of them.
+    A copy, and one that was pickled, does again what was done since the beginning (about 30 bytes a call), and goes on
+    alike.
+
+    Args:
+        scene: with one robot or more.
+        method: one of ``METHODS``, or a :class:`Method`.
+        seed: of the noise, 0 to 2^64 - 1; the scene's by default.
+        firing: when the first robot's sensors fire, instead of by the method: a callable that takes the number of a
+            period, from 0, and returns how long it lasts in microseconds and who fires when in it,
+            ``(length_us, [(t_fire_us, sensor), ..])``, or the same with the phase, 0 to 7, as a third. A dict by robot
+            for others. No sensor fires while it listens.
+        filter: what is believed of the first robot's readings, instead of by the method: a callable that takes a
+            :class:`FiredReading` and returns ``(kind, t_echo_us)``, or what :meth:`EchoFilter.push` returns. A dict by
+            robot for others.
+        mcap: a file that each step is written into, for Foxglove, Rerun and ROS 2: ranges, what is accepted, poses, the
+            scene, each reading's path and each firing. :meth:`close` ends it, and so does ``with``.
+
+    What these callables raise comes out of the step that called them, and so does an ArgumentError about what they
+    return. They run within a step: the simulation itself cannot be asked or steered by them.
+
+    Raises:
+        ArgumentError: no such method, or something of the wrong type or out of range.
+        SceneError: the scene has no robot.
+        SimulationError: a ring cannot fire by the method as it should listen, or a period cannot be fired.
+        LogError: the file cannot be written.
+
+    Example:
+        >>> from eeruf import sim
+        >>> robot = sim.Robot((0, 0, 1.57), sensors=8, spacing_rad=0.26, radius_m=0.3)
+        >>> world = sim.Simulation(sim.Scene([[5, 2, -5, 2]], robots=[robot]))
+        >>> world.set_velocity(0, v_m_s=0.3, w_rad_s=0.0)
+        >>> while not world.robots[0].touches:
+        ...     readings = world.step(0.06)
+        >>> round(world.robots[0].pose[1], 1)
+        1.7
+    """
     def __new__(
         cls,
         scene: Scene,
@@ -1247,23 +4226,223 @@ class Simulation:
     ) -> Simulation: ...
     def __enter__(self) -> Simulation: ...
     def __exit__(self, _kind: object, _error: object, _traceback: object, /) -> None: ...
-    def close(self) -> None: ...
-    def step(self, seconds: float) -> Readings: ...
-    def step_to_reading(self, seconds: float) -> Readings: ...
-    def set_velocity(self, robot: _Int, v_m_s: float, w_rad_s: float) -> None: ...
-    def change_schedule(self, robot: _Int, schedule: Schedule) -> None: ...
-    def change_scene(self, scene: Scene) -> None: ...
+    def close(self) -> None:
+        """End the MCAP file, if one is being written; the simulation may go on.
+
+        Raises:
+            LogError: what was left could not be written.
+
+        Example:
+            >>> from eeruf import read_firings, sim
+            >>> import pathlib, tempfile
+            >>> file = pathlib.Path(tempfile.mkdtemp(), "wall.mcap")
+            >>> robot = sim.Robot((0, 0, 1.57), sensors=8, spacing_rad=0.26, radius_m=0.3)
+            >>> with sim.Simulation(sim.Scene([[5, 2, -5, 2]], robots=[robot]), mcap=file) as world:
+            ...     readings = world.step(0.6)
+            >>> len(read_firings(file)) == len(readings)
+            True
+        """
+    def step(self, seconds: float) -> Readings:
+        """Let time pass, without the interpreter lock. Ctrl-C ends it.
+
+        Args:
+            seconds: how long, 0 to 10^9.
+
+        Returns:
+            What was read meanwhile: the readings whose windows have closed.
+
+        Raises:
+            ArgumentError: no such time.
+            SimulationError: a robot has moved out of the scene's reach.
+
+        Example:
+            >>> from eeruf import sim
+            >>> robot = sim.Robot((0, 0, 1.57), sensors=8, spacing_rad=0.26, radius_m=0.3)
+            >>> world = sim.Simulation(sim.Scene([[5, 2, -5, 2]], robots=[robot]))
+            >>> len(world.step(0.6)) > 70, round(world.time_s, 6)
+            (True, 0.6)
+        """
+    def step_to_reading(self, seconds: float) -> Readings:
+        """Let time pass until the next reading comes, without the interpreter lock. Ctrl-C ends it.
+
+        Args:
+            seconds: how long at most, 0 to 10^9.
+
+        Returns:
+            What was read then: one reading, several of the same moment, or none if that time passed before.
+
+        Raises:
+            ArgumentError: no such time.
+            SimulationError: a robot has moved out of the scene's reach.
+
+        Example:
+            >>> from eeruf import sim
+            >>> robot = sim.Robot((0, 0, 1.57), sensors=8, spacing_rad=0.26, radius_m=0.3)
+            >>> world = sim.Simulation(sim.Scene([[5, 2, -5, 2]], robots=[robot]))
+            >>> len(world.step_to_reading(0.6)) >= 1, world.time_s < 0.6
+            (True, True)
+        """
+    def set_velocity(self, robot: _Int, v_m_s: float, w_rad_s: float) -> None:
+        """From now on a robot goes ahead and turns at these speeds, whatever its motion was.
+
+        Args:
+            robot: which one, from 0.
+            v_m_s: the speed ahead in m/s, -50 to 50.
+            w_rad_s: the rate of turn in rad/s, counter-clockwise, -50 to 50.
+
+        Raises:
+            ArgumentError: no such robot or speed.
+
+        Example:
+            >>> from eeruf import sim
+            >>> robot = sim.Robot((0, 0, 1.57), sensors=8, spacing_rad=0.26, radius_m=0.3)
+            >>> world = sim.Simulation(sim.Scene([[5, 2, -5, 2]], robots=[robot]))
+            >>> world.set_velocity(0, v_m_s=0.5, w_rad_s=0.0)
+            >>> _ = world.step(1.0)
+            >>> round(world.robots[0].pose[1], 3)
+            0.5
+        """
+    def set_pose(self, robot: _Int, pose: _Pose) -> None:
+        """Put a robot at another place, whatever is in between. It goes on at the speeds set last, or else stands.
+
+        A ring with odometry takes the leap for a drive. Nobody looks whether the robot stands free: see
+        ``RobotState.touches``.
+
+        Args:
+            robot: which one, from 0.
+            pose: (x, y, heading) in metres and radians, up to 10^5.
+
+        Raises:
+            ArgumentError: no such robot or pose.
+
+        Example:
+            >>> from eeruf import sim
+            >>> robot = sim.Robot((0, 0, 1.57), sensors=8, spacing_rad=0.26, radius_m=0.3)
+            >>> world = sim.Simulation(sim.Scene([[5, 2, -5, 2]], robots=[robot]))
+            >>> world.set_pose(0, (0.5, 1.0, 1.57))
+            >>> world.robots[0].pose
+            (0.5, 1.0, 1.57)
+        """
+    def reset(self, seed: _Int | None = None) -> None:
+        """Begin again: time 0, robots at their first poses, the scene and the schedules of the start.
+
+        What the method makes (``make_filter``, ``make_firing``) is made anew; callables that were arguments go on being
+        called as they are. An MCAP file that is being written ends.
+
+        Args:
+            seed: of the noise from now on; the same as before by default.
+
+        Raises:
+            ArgumentError: no such seed.
+            LogError: what was left of the file could not be written.
+
+        Example:
+            >>> from eeruf import sim
+            >>> robot = sim.Robot((0, 0, 1.57), sensors=8, spacing_rad=0.26, radius_m=0.3)
+            >>> world = sim.Simulation(sim.Scene([[5, 2, -5, 2]], robots=[robot]))
+            >>> first = world.step(0.6).t_echo_us.tolist()
+            >>> world.reset(seed=7)
+            >>> other = world.step(0.6).t_echo_us.tolist()
+            >>> world.reset(seed=1)
+            >>> world.time_s, other != first, world.step(0.6).t_echo_us.tolist() == first
+            (0.0, True, True)
+        """
+    def change_schedule(self, robot: _Int, schedule: Schedule) -> None:
+        """From the end of its present period on a robot's ring fires by another schedule, as late as keeps the intervals
+        of both. Readings before and after the change are not compared.
+
+        Args:
+            robot: which one, from 0.
+            schedule: a ``Schedule`` of as many sensors.
+
+        Raises:
+            ArgumentError: no such robot, or something else than a schedule.
+            SimulationError: a method without such a schedule (immediate refiring, dither, hopping, adaptive, a firing
+                of one's own), a schedule of another number of sensors, or one by which a sensor would fire again while
+                it listens. The ring then goes on as before.
+
+        Example:
+            >>> import eeruf
+            >>> from eeruf import sim
+            >>> fast, slow = eeruf.tables.TABLE_I_D.scaled(3, 5), eeruf.tables.TABLE_I_D
+            >>> robot = sim.Robot((0, 0, 1.57), sensors=12, spacing_rad=0.26, radius_m=0.3, schedule=fast)
+            >>> world = sim.Simulation(sim.Scene([[5, 2, -5, 2]], robots=[robot]))
+            >>> before = len(world.step(1.2))
+            >>> world.change_schedule(0, slow)
+            >>> len(world.step(1.2)) < 0.75 * before
+            True
+        """
+    def change_scene(self, scene: Scene) -> None:
+        """From now on sound travels among these walls and poles and in this air: obstacles have moved. Sound that is on
+        its way arrives as it would have before. Nobody looks whether the robots stand free in it.
+
+        Args:
+            scene: whose robots, noise, seed, order and physics do not count: those of the simulation stay.
+
+        Raises:
+            ArgumentError: something else than a scene.
+            SimulationError: a sensor is within something solid or out of the scene's reach. Everything then stays as it
+                was; of a robot that moves it is said when it fires.
+
+        Example:
+            >>> from eeruf import sim
+            >>> robot = sim.Robot((0, 0, 1.57), sensors=8, spacing_rad=0.26, radius_m=0.3)
+            >>> near, far = sim.Scene([[5, 2, -5, 2]], robots=[robot]), sim.Scene([[5, 2.5, -5, 2.5]])
+            >>> world = sim.Simulation(near)
+            >>> before = min(world.step(0.6).reference_us)
+            >>> world.change_scene(far)
+            >>> bool(min(world.step(0.6).reference_us[-8:]) > before + 2_000)
+            True
+        """
     @property
-    def robots(self) -> list[RobotState]: ...
+    def robots(self) -> list[RobotState]:
+        """The robots now: a list of ``RobotState``."""
     @property
-    def time_s(self) -> float: ...
+    def time_s(self) -> float:
+        """The time that has passed, in seconds."""
 
 @final
 class ReadingBlocks(Iterator[Readings]):
+    """The readings of a simulation block by block: an iterator that Ctrl-C interrupts.
+
+    Example:
+        >>> from eeruf import sim
+        >>> robot = sim.Robot((0, 0, 1.57), sensors=8, spacing_rad=0.26, radius_m=0.3)
+        >>> scene = sim.Scene([[5, 2, -5, 2]], robots=[robot])
+        >>> blocks = list(sim.simulate_blocks(scene, periods=25, block_periods=10))
+        >>> len(blocks), sum(map(len, blocks))
+        (3, 200)
+    """
     def __iter__(self, /) -> ReadingBlocks: ...
     def __next__(self, /) -> Readings: ...
 
-def read_map(path: str | PathLike[str], *, tolerance_m: float | None = None) -> Scene: ...
+def read_map(path: str | PathLike[str], *, tolerance_m: float | None = None) -> Scene:
+    r"""A scene out of an occupancy grid, as the ROS ``map_server`` saves it: walls along the outlines of what is occupied.
+
+    A cell is occupied if it is with a probability above the file's ``occupied_thresh``; one of which nothing is known
+    is not. Add robots with :meth:`Scene.replace`.
+
+    Args:
+        path: of the YAML file, which names a PGM picture beside it.
+        tolerance_m: how far walls may be from the edges of the occupied cells, in metres, 0 to 1000; one and a half
+            cells if it is not given, which makes the stair straight that a slanted wall becomes in cells.
+
+    Raises:
+        ArgumentError: not a path, or no such tolerance.
+        SceneError: no such file, or it says something that makes no map: by name, value and what is expected.
+
+    Example:
+        >>> from pathlib import Path
+        >>> from tempfile import TemporaryDirectory
+        >>> from eeruf import sim
+        >>> with TemporaryDirectory() as folder:
+        ...     _ = (Path(folder) / "room.pgm").write_text("P2 4 3 1  0 0 0 0  0 1 1 0  0 0 0 0")
+        ...     text = "image: room.pgm\nresolution: 0.5\norigin: [0, 0, 0]"
+        ...     _ = (Path(folder) / "room.yaml").write_text(text)
+        ...     sim.read_map(Path(folder) / "room.yaml", tolerance_m=0)
+        <Scene: 8 walls, 0 poles, 0 robots>
+    """
+
 def simulate_blocks(
     scene: Scene,
     method: _Method = "eeruf",
@@ -1272,7 +4451,36 @@ def simulate_blocks(
     *,
     block_periods: _Int = 10000,
     progress: _Progress = None,
-) -> ReadingBlocks: ...
+) -> ReadingBlocks:
+    """As :func:`simulate`, but block by block: however long it is, it needs no more memory than a block.
+
+    Args:
+        scene: as for :func:`simulate`, and so all others.
+        method: as for :func:`simulate`.
+        periods: for how many periods of the first robot, 1 or more.
+        seed: as for :func:`simulate`.
+        block_periods: how many periods a block has at most.
+        progress: as for :func:`simulate`.
+
+    Returns:
+        An iterator of ``Readings``, which together are those of :func:`simulate`.
+
+    Raises:
+        ArgumentError: as for :func:`simulate`, and so all others.
+        SceneError: as for :func:`simulate`.
+        SimulationError: as for :func:`simulate`.
+        MemoryError: a block does not fit into memory.
+
+    Example:
+        >>> from eeruf import sim
+        >>> robot = sim.Robot((0, 0, 1.57), sensors=8, spacing_rad=0.26, radius_m=0.3)
+        >>> scene = sim.Scene([[5, 2, -5, 2]], robots=[robot])
+        >>> wrong = 0
+        >>> for readings in sim.simulate_blocks(scene, periods=2_000, block_periods=500):
+        ...     wrong += int((readings.is_accepted & readings.is_wrong()).sum())
+        >>> wrong < 40
+        True
+    """
 
 @final
 class _Stop:
@@ -1287,7 +4495,35 @@ def simulate(
     seed: _Int | None = None,
     *,
     progress: _Progress = None,
-) -> Readings: ...
+) -> Readings:
+    """Drive the rings of a scene through simulated time by a method: core's own plans and judges, as on the target.
+
+    The same scene, method and seed give the same readings, bit for bit. It runs on one core, without the interpreter
+    lock; Ctrl-C ends it.
+
+    Args:
+        scene: with one robot or more.
+        method: one of ``METHODS``, or a :class:`Method`.
+        periods: for how many periods of the first robot, 1 or more.
+        seed: of the noise, 0 to 2^64 - 1; the scene's by default.
+        progress: True for a bar (tqdm if it is installed), or a callable that takes the share done and a text.
+
+    Returns:
+        Every reading.
+
+    Raises:
+        ArgumentError: no such method, or something of the wrong type or out of range.
+        SceneError: the scene has no robot.
+        SimulationError: a ring cannot fire by the method as it should listen.
+        MemoryError: so many readings do not fit into memory; :func:`simulate_blocks` gives them bit by bit.
+
+    Example:
+        >>> from eeruf import sim
+        >>> robot = sim.Robot((0, 0, 1.57), sensors=8, spacing_rad=0.26, radius_m=0.3)
+        >>> scene = sim.Scene([[5, 2, -5, 2]], robots=[robot])
+        >>> sim.simulate(scene, method="conventional", periods=10)
+        <Readings: 80 of 8 sensors, conventional, 0.600 s>
+    """
 
 _ROOM_M: list[float]
 _SIDE_M: float

@@ -50,6 +50,91 @@ def to_polars(columns: dict[str, NDArray[Any]]) -> Any:
     return pl.DataFrame([converted(name, column) for name, column in columns.items()])
 
 
+def to_xarray(columns: dict[str, NDArray[Any]], about: tuple[str, float, int]) -> Any:
+    """Make a data set along one dimension."""
+    import xarray as xr
+
+    attributes = dict(zip(("method", "duration_s", "sensors"), about))
+    return xr.Dataset({name: ("reading", column) for name, column in columns.items()}, attrs=attributes)
+
+
+# The columns of readings: their types, and what they are by default.
+_DEFAULTS: dict[str, tuple[str, float]] = {
+    "robot": ("int64", 0),
+    "sensor": ("int64", 0),
+    "period": ("int64", 0),
+    "phase": ("int64", 0),
+    "fired_s": ("float64", 0),
+    "x_m": ("float64", 0),
+    "y_m": ("float64", 0),
+    "heading_rad": ("float64", 0),
+    "kind": ("int8", 0),
+    "t_echo_us": ("float64", 0),
+    "earliest_us": ("float64", 0),
+    "reference_us": ("float64", 0),
+    "cause": ("int8", 0),
+    "path": ("int64", -1),
+    "emitted_s": ("float64", np.nan),
+    "expected_change_us": ("int32", 0),
+}
+
+
+def from_arrays(
+    sensor: Any,
+    fired_s: Any,
+    t_echo_us: Any,
+    kind: Any,
+    reference_us: Any,
+    duration_s: float | None,
+    sensors: int | None,
+    method: str | None,
+    columns: dict[str, Any] | None,
+) -> _eeruf.Readings:
+    """Make readings of arrays, with defaults for what is not there."""
+    given: dict[str, Any] = {"sensor": sensor, "fired_s": fired_s, "t_echo_us": t_echo_us}
+    given.update({name: value for name, value in (("kind", kind), ("reference_us", reference_us)) if value is not None})
+    for name, value in (columns or {}).items():
+        if name not in _DEFAULTS:
+            raise _eeruf.ArgumentError(f"no column {name}; expected one of {', '.join(_DEFAULTS)}")
+        given[name] = value
+    arrays: dict[str, NDArray[Any]] = {}
+    for name, value in given.items():
+        dtype = _DEFAULTS[name][0]
+        expected = f"an array of {dtype} with an entry for each reading"
+        try:
+            array = np.asarray(value)
+            with np.errstate(invalid="ignore"):
+                # An int8 from wider whole numbers is checked below.
+                arrays[name] = array.astype(dtype, casting="unsafe" if dtype == "int8" else "same_kind")
+        except (TypeError, ValueError) as error:
+            raise _eeruf.ArgumentError(f"{name} = {value!r:.60}; expected {expected}") from error
+        if arrays[name].shape != arrays["sensor"].shape or array.ndim != 1:
+            raise _eeruf.ArgumentError(f"shape of {name} = {array.shape}; expected {arrays['sensor'].shape}")
+        if dtype == "int8" and not np.array_equal(array, arrays[name]):
+            raise _eeruf.ArgumentError(f"{name} = {value!r:.60}; expected {expected}")
+    count, echoes = len(arrays["sensor"]), arrays["t_echo_us"]
+    clear, accepted = _eeruf.KINDS.index("clear"), _eeruf.KINDS.index("accepted")
+    arrays.setdefault("kind", np.where(np.isnan(echoes), clear, accepted).astype("int8"))
+    arrays.setdefault("cause", np.where(np.isnan(echoes), 0, 1).astype("int8"))
+    arrays.setdefault("earliest_us", echoes)
+    arrays.setdefault("reference_us", echoes)
+    for name, (dtype, default) in _DEFAULTS.items():
+        arrays.setdefault(name, np.full(count, default, dtype=dtype))
+    if (arrays["path"] >= 0).any():
+        raise _eeruf.ArgumentError("path = an index; expected -1, since these readings have no paths")
+    if duration_s is None:
+        duration_s = float(arrays["fired_s"].max()) if count else 0.0
+    if sensors is None:
+        sensors = int(arrays["sensor"].max()) + 1 if count else 0
+    none: dict[str, Any] = {name: np.empty(0, dtype="int64") for name in _PATHS_INT}
+    none.update({name: np.empty(0) for name in _PATHS_FLOAT}, walls=[])
+    return _eeruf._readings_from_columns(method or "eeruf", duration_s, sensors, arrays, none)
+
+
+_PATHS_INT = ("emitter_robot", "emitter", "receiver_robot", "receiver", "order")
+_PATHS_FLOAT = ("length_m", "departure_rad", "arrival_rad")
+
+
 def save(
     file: str | PathLike[str] | IO[bytes],
     about: tuple[str, float, int],

@@ -22,6 +22,14 @@ def method(arguments: dict[str, Any]) -> _eeruf.Method:
     return _eeruf.Method(**arguments)
 
 
+def simulation(scene: _eeruf.Scene, method: Any, seed: int | None, done: list[tuple[Any, ...]]) -> _eeruf.Simulation:
+    """Make a simulation and do again what was done."""
+    world = _eeruf.Simulation(scene, method, seed=seed)
+    for name, *arguments in done:
+        getattr(world, name)(*arguments)
+    return world
+
+
 def noise(fading_db_rms: float, jitter_us_rms: float, bursts_per_s: float, burst_db: float) -> _eeruf.Noise:
     """Make noise of its numbers."""
     return _eeruf.Noise(

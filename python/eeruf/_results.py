@@ -14,8 +14,8 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from eeruf._eeruf import _Physics
     from eeruf._eeruf import _MethodName as Method
+    from eeruf._eeruf import _Physics
 
     _Ending = Literal["finished", "contact", "time_out"]
     _PilotName = Literal["own", "shared", "published", "published-gro"]
@@ -780,14 +780,14 @@ def _spreads(of: _Fields) -> _Fields:
     made: _Fields = {}
     for name, value in _with_pairs(of).items():
         kind = {"nearer": Latency, "farther": Latency, "new_step": NewStep}.get(name, Spread)
-        made[name] = kind(**_with_pairs(value)) if isinstance(value, dict) else value  # type: ignore[arg-type]
+        made[name] = kind(**_with_pairs(value)) if isinstance(value, dict) else value
     return made
 
 
 def _alcove_run(of: _Fields) -> AlcoveRun:
     steps = {name: tuple(cast("list[None]", of[name])) for name in ("nearer", "farther", "new_ms")}
     summary = Summary(**cast("_SummaryFields", of["summary"]))
-    return AlcoveRun(seed=cast("int", of["seed"]), summary=summary, **steps)  # type: ignore[arg-type]
+    return AlcoveRun(seed=cast("int", of["seed"]), summary=summary, **steps)
 
 
 def _groups(of: object) -> tuple[SetThreeGroup, ...]:

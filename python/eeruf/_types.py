@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, TypedDict
 
 if TYPE_CHECKING:
     import numpy as np
-    from numpy.typing import NDArray
+    from numpy.typing import ArrayLike, NDArray
 
 
 class HeardPaths(TypedDict):
@@ -34,3 +34,19 @@ class FlowSettings(TypedDict, total=False):
     unserved_after: int
     longest_cycle_us: int
     travel_us: int
+
+
+class ReadingColumns(TypedDict, total=False):
+    """The other columns that :meth:`eeruf.sim.Readings.from_arrays` takes."""
+
+    robot: ArrayLike
+    period: ArrayLike
+    phase: ArrayLike
+    x_m: ArrayLike
+    y_m: ArrayLike
+    heading_rad: ArrayLike
+    earliest_us: ArrayLike
+    cause: ArrayLike
+    path: ArrayLike
+    emitted_s: ArrayLike
+    expected_change_us: ArrayLike

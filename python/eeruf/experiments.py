@@ -7,7 +7,7 @@ tuned on seeds below 2,000; what is reported starts at :data:`FIRST`.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import operator
 from typing import TYPE_CHECKING, Literal, overload
 
 from eeruf import _eeruf, _results
@@ -34,7 +34,7 @@ from eeruf._results import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator, Sequence
 
     _Progress = bool | Callable[[float | None, str], object] | None
     from eeruf._eeruf import _Method as Method
@@ -81,8 +81,8 @@ SPEEDS_M_S: tuple[float, ...] = (0.5, 0.75, 1.0, 1.25, 1.5, 1.75, 2.0)
 """The top speeds of :func:`speed_sweep` unless others are given, in m/s."""
 
 
-class Scenes(Sequence["_eeruf.Scene"]):
-    """Numbered scenes of an experiment, each made when it is asked for: a sequence whose slices are such sequences.
+class Scenes:
+    """Numbered scenes of an experiment, each made when it is asked for; slices are such scenes again.
 
     A scene's ``seed`` is its number. They compare and pickle.
 
@@ -101,10 +101,12 @@ class Scenes(Sequence["_eeruf.Scene"]):
 
     def __init__(self, kind: Literal["alcove", "course"], numbers: range, physics: _Physics = "default") -> None:
         """Of these numbers."""
-        if kind not in ("alcove", "course"):
+        if not isinstance(kind, str) or kind not in ("alcove", "course"):
             raise _eeruf.ArgumentError(f'kind = {kind!r}; expected "alcove" or "course"')
         if not isinstance(numbers, range) or (len(numbers) and min(numbers[0], numbers[-1]) < 0):
             raise _eeruf.ArgumentError(f"numbers = {numbers!r:.60}; expected a range of numbers from 0 on")
+        # What is wrong with the effects is said at once.
+        _eeruf._alcove(0, physics)
         self.kind, self.numbers, self.physics = kind, numbers, physics
 
     def __len__(self) -> int:
@@ -121,6 +123,10 @@ class Scenes(Sequence["_eeruf.Scene"]):
             return Scenes(self.kind, self.numbers[index], self.physics)
         make = _eeruf._alcove if self.kind == "alcove" else _eeruf._course
         return make(self.numbers[index], self.physics)
+
+    def __iter__(self) -> Iterator[_eeruf.Scene]:
+        """Make one after the other."""
+        return (self[index] for index in range(len(self)))
 
     def __eq__(self, other: object) -> bool:
         """Return true for the same scenes."""
@@ -188,14 +194,23 @@ def courses(first: int = FIRST, n: int = 100, *, physics: _Physics = "default") 
 
 def _numbers(first: int, n: int) -> range:
     for name, value in (("first", first), ("n", n)):
-        if isinstance(value, bool) or not hasattr(value, "__index__") or value < 0:
+        if not _is_whole(value) or value < 0:
             raise _eeruf.ArgumentError(f"{name} = {value!r:.60}; expected a whole number from 0 on")
     return range(first, first + n)
 
 
+def _is_whole(value: object) -> bool:
+    try:
+        operator.index(value)  # type: ignore[arg-type]
+    except TypeError:
+        return False
+    return not isinstance(value, bool)
+
+
 def _checked(first: int, seeds: int, tune: bool) -> None:
     """Refuse to tune on seeds that figures are reported on."""
-    if tune and hasattr(first, "__index__") and hasattr(seeds, "__index__") and first + seeds > FIRST:
+    # What is no number is refused elsewhere.
+    if tune and _is_whole(first) and _is_whole(seeds) and first + seeds > FIRST:
         raise _eeruf.ExperimentError(
             f"seeds up to {first + seeds - 1} with tune=True; expected seeds below {FIRST}, such as first=0: "
             "figures are reported on those from there on"

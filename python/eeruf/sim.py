@@ -29,6 +29,9 @@ from eeruf._eeruf import (
 # As in eeruf itself.
 TYPE_CHECKING = False
 if TYPE_CHECKING:
+    from typing_extensions import TypeGuard
+
+    from eeruf._eeruf import _MethodName
     from eeruf._results import Summary
 else:
 
@@ -39,6 +42,21 @@ else:
 
             return Summary
         raise AttributeError(f"module 'eeruf.sim' has no attribute {name!r}")
+
+
+def is_method(name: str) -> TypeGuard[_MethodName]:
+    """Return true for a name that methods have, so that a type checker takes it for one.
+
+    Args:
+        name: a text from elsewhere, such as a command line.
+
+    Example:
+        >>> from eeruf import sim
+        >>> sim.is_method("eeruf"), sim.is_method("eruf")
+        (True, False)
+
+    """
+    return name in METHODS or name == "driving"
 
 
 __all__ = [
@@ -57,6 +75,7 @@ __all__ = [
     "Scene",
     "Simulation",
     "Summary",
+    "is_method",
     "read_map",
     "simulate",
     "simulate_blocks",

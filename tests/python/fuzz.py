@@ -53,6 +53,8 @@ FIRINGS = eeruf.logs.Firings.of(
     phase=READINGS.phase,
     t_echo_us=READINGS.earliest_us,
 )
+TABLE = eeruf.experiments.set_one(2, readings=16, methods=["eeruf"])
+RUNS = TABLE.runs["eeruf"]
 PATHS = ROOM.paths((0, 0), [(1, 0), (2, 0)], 2)
 UNEVEN: dict[str, Any] = {"t_delta_us": [999, 999, 1_500, 1_500], "window_us": [36_000, 36_000, 12_000, 12_000]}
 FOUND = eeruf.design(4, min_interval_us=15_000, shared_lines=[(0, 2)], certificate=True, **UNEVEN)
@@ -319,6 +321,18 @@ def calls(c: Chance) -> list[Callable[[], Any]]:
         lambda: ANY.experiments.set_three(
             1, periods=m(20), methods=m(["driving"]), physics=m("plain"), height=m("room")
         ),
+        lambda: ANY.experiments.compare(m(RUNS), m(RUNS)),
+        lambda: ANY.experiments.concat(m([TABLE])),
+        lambda: RUNS[0].figures(),
+        lambda: [*c.random.choice([ANY.experiments.alcoves, ANY.experiments.courses])(m(3), m(2))[:1]],
+        lambda: [*ANY.experiments.Scenes(m("alcove"), m(range(3)), m("plain"))[:2]],
+        lambda: ANY.sim.simulate(ROOM, method(c), 5).to_xarray(),
+        lambda: READINGS[m(slice(1, 5))],
+        lambda: ANY.sim.Readings.concat(m([READINGS, READINGS])),
+        lambda: ANY.sim.Readings.from_arrays(m([0, 1]), m([0.0, 0.1]), m([9_000, 8_000]), kind=m([1, 1]), sensors=m(2)),
+        lambda: c.random.choice([ANY.is_kind, ANY.sim.is_method])(c.word()),
+        lambda: ANY.sim.Simulation(ROOM, method(c)).reset(m(3)),
+        lambda: ANY.sim.Simulation(ROOM).set_pose(m(0), m((0, 0, 1))),
         lambda: ANY.experiments.speed_sweep(m([]), seeds=m(1), methods=m([]), bodies=m(True), t_delta_us=m(150)),
         lambda: ANY.sweep(
             m(repr),
@@ -327,6 +341,20 @@ def calls(c: Chance) -> list[Callable[[], Any]]:
             progress=c.random.choice([None, False, 3, len]),
         ),
     ]
+
+
+def method(c: Chance) -> Any:
+    """A method that nearly makes sense."""
+    m = c.mostly
+    return ANY.sim.Method(
+        m(c.random.choice(["eeruf", "flow", "eeruf_hopping", "in_turn"])),
+        label=m("mine"),
+        schedule=m(None),
+        settings=m(c.random.choice([None, {"masked_adds_us": m(5_000)}, "quick"])),
+        sketch=m(None),
+        make_filter=m(c.random.choice([None, lambda robot: lambda firing: m(("clear", None))])),
+        make_firing=m(None),
+    )
 
 
 def tried(call: Callable[..., Any], *arguments: Any) -> Any:

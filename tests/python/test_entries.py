@@ -77,8 +77,8 @@ def test_an_own_filter_equals_the_built_in_method_everywhere() -> None:
         experiments.set_three(3, periods=15, methods=["comparison", MINE]),
     ):
         runs = table.runs
-        assert [run.figures() for run in runs["comparison"]] == [run.figures() for run in runs["mine"]]  # type: ignore[attr-defined]
-        assert [run.seed for run in runs["mine"]] == list(range(20_000, 20_000 + table.seeds))  # type: ignore[attr-defined]
+        assert [run.figures() for run in runs["comparison"]] == [run.figures() for run in runs["mine"]]
+        assert [run.seed for run in runs["mine"]] == list(range(20_000, 20_000 + table.seeds))
         assert list(table.methods) == ["comparison", "mine"]
 
 
@@ -160,7 +160,7 @@ def test_what_own_code_raises_comes_out_of_simulations_and_experiments() -> None
     with pytest.raises(Weary, match="never begun"):
         experiments.set_one(2, readings=80, methods=[sim.Method("eeruf", make_firing=unmade)])
     with pytest.raises(eeruf.ArgumentError, match="what make_filter returned = 3; expected a callable"):
-        ANY.sim.simulate(SCENE, sim.Method(make_filter=lambda robot: 3), 10)
+        ANY.sim.simulate(SCENE, ANY.sim.Method(make_filter=lambda robot: 3), 10)
     with pytest.raises(eeruf.SimulationError, match="a schedule of 12 sensors; expected one of 8"):
         sim.simulate(SCENE, sim.Method("eeruf_hopping", schedule=eeruf.HoppingSchedule(12, 90_000, 240)))
     with pytest.raises(eeruf.SceneError, match="12"):
@@ -209,7 +209,7 @@ def test_concat_of_parts_equals_the_undivided_run() -> None:
     three = functools.partial(experiments.set_three, periods=15, methods=methods, height="room")
     for run in (one, two, three):
         parts: list[Any] = [run(seeds, first=first) for first, seeds in ((20_003, 2), (20_000, 3), (20_005, 1))]
-        assert experiments.concat(parts) == run(6)  # type: ignore[misc]
+        assert experiments.concat(parts) == run(6)
         for broken, message in [
             (parts[:1] + parts[2:], None),
             (parts[1:2] + parts[2:], "seeds up to 20002 and from 20005 on; expected each seed once"),
@@ -238,7 +238,7 @@ def test_compare_pairs_by_seed_and_covers_what_it_claims() -> None:
     assert (same.mean_95, same.median_95, same.p_sign) == ((0, 0), (0, 0), 1)
     with pytest.raises(eeruf.ArgumentError, match="seed 20011 and 0 others are of one method only"):
         experiments.compare(one, other[:-1])
-    with pytest.raises(eeruf.ArgumentError, match="one = .*; expected runs of one method"):
+    with pytest.raises(eeruf.ArgumentError, match=r"one = .*; expected runs of one method"):
         ANY.experiments.compare(table, other)
 
 
@@ -299,7 +299,7 @@ def test_a_folder_of_another_sweep_or_a_damaged_file_is_refused(tmp_path: Path) 
     assert eeruf.sweep(square, [1, 2, 3], folder=tmp_path) == [1, 4, 9]
     for function, cases in ((square, [1, 2, 4]), (abs, [1, 2, 3]), (square, [1, 2])):
         with pytest.raises(eeruf.ArgumentError, match="use another folder for another sweep"):
-            eeruf.sweep(function, cases, folder=tmp_path)  # type: ignore[arg-type]
+            eeruf.sweep(function, cases, folder=tmp_path)
     (tmp_path / "000001.pickle").write_bytes(b"no pickle")
     with pytest.raises(eeruf.ArgumentError, match=r"000001.pickle: .*; expected a result of a sweep; delete it"):
         eeruf.sweep(square, [1, 2, 3], folder=tmp_path)

@@ -1,11 +1,14 @@
 """Time hopping, as Python sees it."""
 
 import pickle
+from typing import Any
 
 import eeruf
 import numpy as np
 import pytest
 from eeruf import HoppingRing, HoppingSchedule, HoppingSettings, Schedule
+
+ANY: Any = eeruf
 
 PERIOD_US, WINDOW_US = 60_000, 36_000
 EIGHT = HoppingSchedule(sensors=8, period_us=PERIOD_US, step_us=240)
@@ -184,7 +187,7 @@ def test_each_error_names_what_is_wrong_from_sensor_0_and_what_is_expected() -> 
         (lambda: HoppingSchedule(2, 60_000, 240, 2, [0]), eeruf.ArgumentError, "t_lag_us = 1 times; expected"),
         (lambda: HoppingSchedule(2, 60_000, 240, 2, [0, 60_000]), eeruf.HoppingError, "for sensor 1; expected"),
         (lambda: HoppingSettings(tentative_within_us=151), eeruf.HoppingError, "tentative_within is 151"),
-        (lambda: HoppingSettings(vote=3), eeruf.ArgumentError, "no setting vote; expected one of t_delta_us"),
+        (lambda: ANY.HoppingSettings(vote=3), eeruf.ArgumentError, "no setting vote; expected one of t_delta_us"),
         (lambda: eeruf.EchoTracker(2).push(2, 0, 9_000), eeruf.ArgumentError, "sensor = 2; expected"),
         (lambda: eeruf.EchoTracker(2).push_many([0], [[1, 2], [1, 2]]), eeruf.ArgumentError, "2 phases"),
         (

@@ -1,25 +1,64 @@
 """Type checkers find slips, and nothing in what is right."""
 
+import ast
+import inspect
 import subprocess
 import sys
 from pathlib import Path
 
-WRONG = Path(__file__).with_name("wrong_programs.py")
-FIRST = 1 + WRONG.read_text().splitlines().index('eeruf.design(8, 999, 15_000, 36_000, layout="circle")')
-EVERY = set(range(FIRST, 1 + len(WRONG.read_text().splitlines())))
+import eeruf
+import pytest
+from eeruf import sim
+
+HERE = Path(__file__).parent
+# The wrong lines of each file begin with this one.
+FIRST = {
+    "wrong_programs.py": 'eeruf.design(8, 999, 15_000, 36_000, layout="circle")',
+    "wrong_keywords.py": "robot.replace(t_delta=100)",
+}
 
 
-def lines_with_errors(checker: str, *options: str) -> set[int]:
-    """The lines of the file of wrong programs in which a checker finds something."""
-    run = subprocess.run([sys.executable, "-m", checker, *options, str(WRONG)], capture_output=True, text=True)
-    found = [line for line in run.stdout.splitlines() if WRONG.name + ":" in line]
+def every(name: str) -> set[int]:
+    """The lines that are wrong."""
+    lines = (HERE / name).read_text().splitlines()
+    return set(range(1 + lines.index(FIRST[name]), 1 + len(lines)))
+
+
+def lines_with_errors(name: str, checker: str, *options: str) -> set[int]:
+    """The lines of a file in which a checker finds something."""
+    run = subprocess.run([sys.executable, "-m", checker, *options, str(HERE / name)], capture_output=True, text=True)
+    found = [line for line in run.stdout.splitlines() if name + ":" in line]
     assert found, run.stdout + run.stderr
-    return {int(line.split(WRONG.name + ":")[1].split(":")[0]) for line in found}
+    return {int(line.split(name + ":")[1].split(":")[0]) for line in found}
 
 
-def test_mypy_refuses_each_line_of_the_wrong_programs() -> None:
-    assert lines_with_errors("mypy", "--strict") == EVERY
+@pytest.mark.parametrize("name", FIRST)
+def test_mypy_refuses_each_wrong_line(name: str) -> None:
+    assert len(every(name)) >= 29
+    assert lines_with_errors(name, "mypy", "--strict") == every(name)
 
 
-def test_pyright_refuses_each_line_of_the_wrong_programs() -> None:
-    assert lines_with_errors("pyright", "--pythonpath", sys.executable) == EVERY
+@pytest.mark.parametrize("name", FIRST)
+def test_pyright_refuses_each_wrong_line(name: str) -> None:
+    assert lines_with_errors(name, "pyright", "--pythonpath", sys.executable) == every(name)
+
+
+@pytest.mark.parametrize(
+    ("changes", "taken"),
+    [("_RobotChanges", sim.Robot), ("_SceneChanges", sim.Scene), ("_HoppingChanges", eeruf.HoppingSettings)],
+)
+def test_stub_knows_every_keyword_that_is_changed(changes: str, taken: type) -> None:
+    stub = ast.parse((HERE.parents[1] / "python" / "eeruf" / "_eeruf.pyi").read_text())
+    (known,) = (node for node in stub.body if isinstance(node, ast.ClassDef) and node.name == changes)
+    names = {
+        line.target.id for line in known.body if isinstance(line, ast.AnnAssign) and isinstance(line.target, ast.Name)
+    }
+    if taken is eeruf.HoppingSettings:
+        assert names == {name for name in vars(taken) if not name.startswith("_")}
+    else:
+        assert names == set(inspect.signature(taken).parameters)
+
+
+def test_guards_know_the_literals() -> None:
+    assert eeruf.is_kind("accepted") and not eeruf.is_kind("acepted")
+    assert sim.is_method("eeruf") and sim.is_method("driving") and not sim.is_method("eruf")

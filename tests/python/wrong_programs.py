@@ -23,7 +23,7 @@ sim.simulate(scene, periods="100")
 sim.simulate(scene).is_accepted()
 sim.simulate(scene).summary().wrong_of_al
 sim.simulate(scene).summary().accepted = 0
-eeruf.experiments.set_one(2).methods["eruf"]
+eeruf.experiments.set_one(2).methods[3]
 eeruf.experiments.set_one(2).method
 sim.simulate(scene).paths["emiter"]
 sim.simulate(scene).period.foo

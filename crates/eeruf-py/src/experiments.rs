@@ -18,7 +18,7 @@ use eeruf_sim::{
 use numpy::{PyArray1, PyArray2, prelude::*};
 use pyo3::{
     prelude::*,
-    types::{PyDict, PyList},
+    types::{PyDict, PyList, PyString},
 };
 use serde::{Serialize, de::DeserializeOwned};
 
@@ -109,7 +109,8 @@ struct Merged<F: Serialize, G: Serialize> {
 /// The figures of runs that were made in several calls: of Set I, II or III, as JSON of pairs of names and runs.
 #[pyfunction]
 #[pyo3(name = "_figures", signature = (set, runs))]
-pub(crate) fn figures(py: Python<'_>, set: u8, runs: String) -> PyResult<String> {
+pub(crate) fn figures(py: Python<'_>, set: u8, runs: &Bound<'_, PyString>) -> PyResult<String> {
+    let runs = runs.to_cow()?;
     fn of<R: DeserializeOwned, F: Serialize, G: Serialize>(
         runs: &str,
         figures: fn(&[R]) -> F,

@@ -8,6 +8,7 @@ use crate::{
     arguments::{matrix, micros, times_of, whole, whole_or, wrong},
     columns::room,
     errors::{ArgumentError, Raise},
+    exclusive::Exclusive,
     requirements,
     ring_events::Reading,
 };
@@ -29,9 +30,9 @@ use crate::{
 ///     >>> filter = eeruf.EchoFilter(sensors=1, t_delta_us=500)
 ///     >>> [filter.push(0, us).kind for us in (9_000, 9_300, 12_000)]
 ///     ['first', 'accepted', 'rejected']
-#[pyclass(module = "eeruf")]
+#[pyclass(frozen, module = "eeruf")]
 pub(crate) struct EchoFilter {
-    filter: Filter,
+    filter: Exclusive<Filter>,
     /// How many sensors.
     #[pyo3(get)]
     sensors: usize,
@@ -84,6 +85,7 @@ impl EchoFilter {
             eeruf_core::EchoFilter::new(t_delta, consecutive).map(|filter| Filter::Several(Box::new(filter)))
         };
         let filter = filter.map_err(Raise::raise)?;
+        let filter = Exclusive::new("EchoFilter", filter);
         Ok(Self { filter, sensors, t_delta_us: t_delta.as_micros(), consecutive, echoes })
     }
 
@@ -109,7 +111,7 @@ impl EchoFilter {
     #[pyo3(signature = (sensor, t_echo_us, expected_change_us=None))]
     #[pyo3(text_signature = "($self, sensor, t_echo_us, expected_change_us=0)")]
     fn push(
-        &mut self,
+        &self,
         sensor: &Bound<'_, PyAny>,
         t_echo_us: Option<&Bound<'_, PyAny>>,
         expected_change_us: Option<&Bound<'_, PyAny>>,
@@ -117,7 +119,7 @@ impl EchoFilter {
         let sensor = self.sensor(sensor)?;
         let echo = t_echo_us.map(|echo| micros("t_echo_us", echo)).transpose()?;
         let change = whole_or("expected_change_us", expected_change_us, 0, i32::MIN..=i32::MAX)?;
-        let verdict = self.filter.push(sensor, echo.as_slice(), change).map_err(Raise::raise)?;
+        let verdict = self.filter.get()?.push(sensor, echo.as_slice(), change).map_err(Raise::raise)?;
         Ok(Reading::of_filter(sensor, &verdict))
     }
 
@@ -144,7 +146,7 @@ impl EchoFilter {
     #[pyo3(signature = (sensor, t_echoes_us, expected_change_us=None))]
     #[pyo3(text_signature = "($self, sensor, t_echoes_us, expected_change_us=0)")]
     fn push_echoes(
-        &mut self,
+        &self,
         sensor: &Bound<'_, PyAny>,
         t_echoes_us: &Bound<'_, PyAny>,
         expected_change_us: Option<&Bound<'_, PyAny>>,
@@ -154,7 +156,7 @@ impl EchoFilter {
         echoes.sort_unstable();
         echoes.truncate(self.echoes);
         let change = whole_or("expected_change_us", expected_change_us, 0, i32::MIN..=i32::MAX)?;
-        let verdict = self.filter.push(sensor, &echoes, change).map_err(Raise::raise)?;
+        let verdict = self.filter.get()?.push(sensor, &echoes, change).map_err(Raise::raise)?;
         Ok(Reading::of_filter(sensor, &verdict))
     }
 
@@ -176,7 +178,7 @@ impl EchoFilter {
     ///     >>> [[eeruf.KINDS[kind] for kind in row] for row in kinds]
     ///     [['first', 'first'], ['accepted', 'no_echo']]
     #[pyo3(signature = (t_echo_us))]
-    fn push_many<'py>(&mut self, py: Python<'py>, t_echo_us: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArray2<i8>>> {
+    fn push_many<'py>(&self, py: Python<'py>, t_echo_us: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArray2<i8>>> {
         let echoes = matrix("t_echo_us", t_echo_us, self.sensors)?;
         let echoes = echoes.as_slice().map_err(|error| ArgumentError::new_err(error.to_string()))?;
         if let Some(at) = echoes.iter().position(|&us| !(us.is_nan() || (0.0..=f64::from(u32::MAX)).contains(&us))) {
@@ -185,7 +187,8 @@ impl EchoFilter {
         }
         let mut kinds = room(echoes.len())?;
         kinds.resize(echoes.len(), 0_i8);
-        let (filter, sensors) = (&mut self.filter, self.sensors);
+        let (mut filter, sensors) = (self.filter.get()?, self.sensors);
+        let filter = &mut *filter;
         let pushed = py.detach(|| {
             for (row, kinds) in echoes.chunks_exact(sensors).zip(kinds.chunks_exact_mut(sensors)) {
                 for (sensor, (&us, kind)) in (0..).zip(row.iter().zip(kinds)) {
@@ -216,9 +219,9 @@ impl EchoFilter {
     ///     >>> kinds + [filter.push(0, 9_000).kind]
     ///     ['first', 'first']
     #[pyo3(signature = (sensor))]
-    fn forget(&mut self, sensor: &Bound<'_, PyAny>) -> PyResult<()> {
+    fn forget(&self, sensor: &Bound<'_, PyAny>) -> PyResult<()> {
         let sensor = self.sensor(sensor)?;
-        match &mut self.filter {
+        match &mut *self.filter.get()? {
             Filter::One(filter) => filter.forget(sensor),
             Filter::Several(filter) => filter.forget(sensor),
         }

@@ -17,6 +17,7 @@ mod contents;
 mod design;
 mod drawing;
 mod errors;
+mod exclusive;
 mod experiments;
 mod faults;
 mod fields;

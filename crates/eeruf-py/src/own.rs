@@ -116,6 +116,8 @@ type Raised = Arc<Mutex<Option<PyErr>>>;
 #[derive(Default)]
 pub(crate) struct Calls {
     callables: Vec<Mutex<Option<Py<PyAny>>>>,
+    /// Of the callables that were arguments of the simulation: whether it fires, its robot, and its place.
+    given: Vec<(bool, usize, usize)>,
     raised: Raised,
 }
 
@@ -143,6 +145,11 @@ impl Calls {
     /// What a callable has raised since this was last asked.
     pub(crate) fn raised(&self) -> Option<PyErr> {
         locked(&self.raised).take()
+    }
+
+    /// Whether some of them were arguments of the simulation.
+    pub(crate) fn is_given(&self) -> bool {
+        !self.given.is_empty()
     }
 
     pub(crate) fn traverse(&self, visit: &PyVisit<'_>) -> Result<(), PyTraverseError> {
@@ -251,13 +258,17 @@ fn made<'py>(
     robots: &[eeruf_sim::Robot],
 ) -> PyResult<(Own, Arc<Calls>)> {
     let mut raised = Raised::default();
+    let given = (firing.len(), filter.len());
     if let Some(makers) = makers {
         Makers::fill("make_firing", makers.firing.as_ref(), py, robots, &mut firing)?;
         Makers::fill("make_filter", makers.filter.as_ref(), py, robots, &mut filter)?;
         raised = Arc::clone(&makers.raised);
     }
     let callables = firing.iter().chain(&filter).map(|(_, callable)| Mutex::new(Some(callable.clone().unbind())));
-    let calls = Arc::new(Calls { callables: callables.collect(), raised });
+    let of_firing = firing.iter().take(given.0).enumerate().map(|(place, (robot, _))| (true, *robot, place));
+    let of_filter = filter.iter().take(given.1).zip(firing.len()..).map(|((robot, _), place)| (false, *robot, place));
+    let given = of_firing.chain(of_filter).collect();
+    let calls = Arc::new(Calls { callables: callables.collect(), given, raised });
     let mut own = Own::new();
     for (index, (robot, _)) in firing.iter().enumerate() {
         own = own.firing(*robot, OwnFiring { calls: Arc::clone(&calls), index });
@@ -280,6 +291,24 @@ pub(crate) fn own(
 ) -> PyResult<(Own, Arc<Calls>)> {
     let (firing, filter) = (by_robot("firing", firing, robots.len())?, by_robot("filter", filter, robots.len())?);
     made(py, makers, firing, filter, robots)
+}
+
+/// The same once more: callables that were arguments stay, those of the method are made anew.
+pub(crate) fn again(
+    py: Python<'_>,
+    calls: &Calls,
+    makers: Option<&Makers>,
+    robots: &[eeruf_sim::Robot],
+) -> PyResult<(Own, Arc<Calls>)> {
+    let given = |fires: bool| {
+        let of = calls.given.iter().filter(|(of, ..)| *of == fires);
+        let bound = |&(_, robot, place): &(bool, usize, usize)| {
+            let callable = locked(&calls.callables[place]).as_ref()?.clone_ref(py);
+            Some((robot, callable.into_bound(py)))
+        };
+        of.filter_map(bound).collect()
+    };
+    made(py, makers, given(true), given(false), robots)
 }
 
 fn by_robot<'py>(name: &str, value: Option<&Bound<'py, PyAny>>, robots: usize) -> PyResult<ByRobot<'py>> {

@@ -1,13 +1,14 @@
 //! `Readings`: what `sim.simulate` returns, as arrays.
 
 use eeruf_sim::NO_PATH;
+use numpy::PyReadonlyArray1;
 use pyo3::{
     prelude::*,
     types::{PyDict, PyTuple},
 };
 
 use crate::{
-    arguments::number,
+    arguments::{instance, items, number, shown, wrong},
     columns::{Columns, read_only},
     errors::ArgumentError,
     paths::coded,
@@ -349,6 +350,112 @@ impl Readings {
     #[pyo3(signature = (file))]
     fn load<'py>(file: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         file.py().import("eeruf._frames")?.call_method1("load", (file,))
+    }
+
+    /// Join readings of consecutive steps or blocks, or of several robots' logs: all columns, and durations added up.
+    ///
+    /// Args:
+    ///     parts: readings of one method and of as many sensors each.
+    ///
+    /// Raises:
+    ///     ArgumentError: no readings, or of several methods or numbers of sensors.
+    ///
+    /// Example:
+    ///     >>> from eeruf import sim
+    ///     >>> robot = sim.Robot((0, 0, 1.57), sensors=8, spacing_rad=0.26, radius_m=0.3)
+    ///     >>> scene = sim.Scene([[5, 2, -5, 2]], robots=[robot])
+    ///     >>> blocks = sim.simulate_blocks(scene, periods=100, block_periods=30)
+    ///     >>> sim.Readings.concat(blocks).summary() == sim.simulate(scene, periods=100).summary()
+    ///     True
+    #[staticmethod]
+    #[pyo3(signature = (parts))]
+    fn concat(parts: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let expected = "several eeruf.sim.Readings, one or more";
+        let parts = items("parts", parts, expected)?;
+        let each = parts.iter().map(|part| instance::<Self>("parts", part, expected).map(|part| &part.get().readings));
+        let each = each.collect::<PyResult<Vec<_>>>()?;
+        for (place, part) in each.iter().enumerate() {
+            let (of, first) = ((part.method, part.sensors), (each[0].method, each[0].sensors));
+            if of != first {
+                let shown = |(method, sensors)| format!("{method} of {sensors} sensors");
+                return Err(wrong(
+                    &format!("parts[{place}]"),
+                    shown(of),
+                    format_args!("{}, as the first", shown(first)),
+                ));
+            }
+        }
+        let all = eeruf_sim::Readings::concat(&each).ok_or_else(|| wrong("parts", "[]", expected))?;
+        Ok(Self::new(all))
+    }
+
+    /// Make readings of arrays of your own, such as those of a drive, so that they can be summed up and saved.
+    ///
+    /// Args:
+    ///     sensor: the sensor of each reading, from 0; others have as many entries.
+    ///     fired_s: when it fired, in seconds, in order.
+    ///     t_echo_us: the echo time, NaN for none.
+    ///     kind: what was made of it, indices into ``eeruf.KINDS``; by default echoes are accepted and silence is clear.
+    ///     reference_us: what the sensor reads alone; by default ``t_echo_us``, as if all were right.
+    ///     duration_s: for how long; by default until the last firing.
+    ///     sensors: how many sensors there are; by default one more than the last.
+    ///     method: one of ``METHODS``, as which they count.
+    ///     columns: any others of :meth:`columns`, by name.
+    ///
+    /// Raises:
+    ///     ArgumentError: no such column, arrays of several lengths, or values out of range.
+    ///
+    /// Example:
+    ///     >>> from eeruf import sim
+    ///     >>> found = sim.Readings.from_arrays([0, 1, 0], [0.0, 0.03, 0.06], [9_000, float("nan"), 9_040])
+    ///     >>> found.is_accepted.tolist(), found.sensors, found.summary().wrong_of_all
+    ///     ([True, True, True], 2, 0.0)
+    #[staticmethod]
+    #[pyo3(signature = (sensor, fired_s, t_echo_us, *, kind=None, reference_us=None, duration_s=None, sensors=None,
+        method=None, **columns))]
+    #[pyo3(text_signature = "(sensor, fired_s, t_echo_us, *, kind=None, reference_us=None, duration_s=None, \
+        sensors=None, method=\"eeruf\", **columns)")]
+    #[expect(clippy::too_many_arguments, reason = "keyword arguments")]
+    fn from_arrays<'py>(
+        sensor: &Bound<'py, PyAny>,
+        fired_s: &Bound<'py, PyAny>,
+        t_echo_us: &Bound<'py, PyAny>,
+        kind: Option<&Bound<'py, PyAny>>,
+        reference_us: Option<&Bound<'py, PyAny>>,
+        duration_s: Option<&Bound<'py, PyAny>>,
+        sensors: Option<&Bound<'py, PyAny>>,
+        method: Option<&Bound<'py, PyAny>>,
+        columns: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let given = (sensor, fired_s, t_echo_us, kind, reference_us, duration_s, sensors, method, columns);
+        sensor.py().import("eeruf._frames")?.call_method1("from_arrays", given)
+    }
+
+    /// All arrays as an ``xarray.Dataset`` along ``reading``, with method, duration and sensors as attributes.
+    ///
+    /// Raises:
+    ///     ImportError: xarray is not installed.
+    ///
+    /// Example:
+    ///     >>> from eeruf import sim
+    ///     >>> robot = sim.Robot((0, 0, 1.57), sensors=8, spacing_rad=0.26, radius_m=0.3)
+    ///     >>> readings = sim.simulate(sim.Scene([[5, 2, -5, 2]], robots=[robot]), periods=100)
+    ///     >>> readings.to_xarray().sizes["reading"]
+    ///     800
+    fn to_xarray<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        let this = &slf.get().readings;
+        let about = (this.method.as_str(), this.duration_s, this.sensors);
+        slf.py().import("eeruf._frames")?.call_method1("to_xarray", (Self::columns(slf)?, about))
+    }
+
+    /// Some of the readings: those of a slice, a mask or an array of indices. Duration and sensors stay as they are.
+    fn __getitem__(&self, key: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let refused = || wrong("readings[..]", shown(key), "a slice, a mask of as many bools, or an array of indices");
+        let all = key.py().import("numpy")?.call_method1("arange", (self.readings.len(),))?;
+        let chosen = all.get_item(key).map_err(|_| refused())?;
+        let places: PyReadonlyArray1<'_, i64> = chosen.extract().map_err(|_| refused())?;
+        let places: Vec<usize> = places.as_array().iter().map(|&place| place as usize).collect();
+        Ok(Self::new(self.readings.select(&places)))
     }
 
     fn __repr__(&self) -> String {

@@ -14,6 +14,7 @@ use pyo3::prelude::*;
 use crate::{
     arguments::{choice, micros, times, whole, whole_or},
     errors::Raise,
+    exclusive::Exclusive,
     found::Found,
     requirements::{self, OwnedLayout},
     schedule::Schedule,
@@ -170,7 +171,10 @@ impl WaitSearch {
     ///     >>> [table.t_wait_b_us for table in itertools.islice(search.all(), 2)]
     ///     [(0, 2000), (0, 3000)]
     fn all(&self) -> PyResult<WaitTables> {
-        Ok(WaitTables(Walk::try_new(self.search.clone(), search::WaitSearch::enumerate).map_err(Raise::raise)?))
+        Ok(WaitTables(Exclusive::new(
+            "iterator of tables",
+            Walk::try_new(self.search.clone(), search::WaitSearch::enumerate).map_err(Raise::raise)?,
+        )))
     }
 
     /// The best table: the one whose smallest interval between neighbours, or whose ``T_delta``, is largest. Ctrl-C
@@ -254,8 +258,8 @@ self_cell::self_cell!(
 ///     >>> tables = eeruf.WaitSearch(2, 40_000, 4_000, 1000, t_delta_us=999).all()
 ///     >>> next(tables).sensors
 ///     2
-#[pyclass(module = "eeruf")]
-pub(crate) struct WaitTables(Walk);
+#[pyclass(frozen, module = "eeruf")]
+pub(crate) struct WaitTables(Exclusive<Walk>);
 
 #[pymethods]
 impl WaitTables {
@@ -263,10 +267,11 @@ impl WaitTables {
         slf
     }
 
-    fn __next__(&mut self, py: Python<'_>) -> PyResult<Option<Schedule>> {
-        let mut watch = Watch::new(None)?;
+    fn __next__(&self, py: Python<'_>) -> PyResult<Option<Schedule>> {
+        let (mut watch, mut walk) = (Watch::new(None)?, self.0.get()?);
+        let walk = &mut *walk;
         let next = py.detach(|| {
-            self.0.with_dependent_mut(|search, tables| {
+            walk.with_dependent_mut(|search, tables| {
                 let (mut a, mut b) = ([0; MAX_SENSORS], [0; MAX_SENSORS]);
                 let mut watcher = |_: &Progress| control_flow(watch.go_on(None, String::new));
                 let mut budget = Budget::nodes_at_most(u64::MAX).watched(POLL, &mut watcher);

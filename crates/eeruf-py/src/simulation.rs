@@ -6,14 +6,19 @@ use std::{
     thread::{self, ThreadId},
 };
 
-use eeruf_sim::{Body, Own, SimulationError};
-use pyo3::{PyTraverseError, PyVisit, prelude::*};
+use eeruf_sim::{Body, Own, SimulationError, Stop};
+use pyo3::{
+    PyTraverseError, PyVisit,
+    prelude::*,
+    types::{PyString, PyTuple},
+};
 
 use crate::{
     arguments::{instance, number, shown, whole, wrong},
     errors::{Raise, SimulationError as SimulationRefused},
     logs,
     own::{self, Calls},
+    pose::{PoseOf, pose_of, to_pose},
     program::Recording,
     readings::Readings,
     robot_state::RobotState,
@@ -25,7 +30,9 @@ use crate::{
 
 /// A world that goes on step by step: for your own controller, filter, or display.
 ///
-/// Its steps together give the readings of :func:`simulate`, bit for bit, and need no more memory than one of them.
+/// Its steps together give the readings of :func:`simulate`, bit for bit, and need little more memory than one of them.
+/// A copy, and one that was pickled, does again what was done since the beginning (about 30 bytes a call), and goes on
+/// alike.
 ///
 /// Args:
 ///     scene: with one robot or more.
@@ -61,16 +68,55 @@ use crate::{
 ///     1.7
 #[pyclass(frozen, module = "eeruf.sim")]
 pub(crate) struct Simulation {
+    robots: usize,
     under_way: Mutex<UnderWay>,
     /// Who lets time pass: a callable that is asked for must not wait for that.
     stepping: Mutex<Option<ThreadId>>,
-    asked: Asked,
-    calls: Arc<Calls>,
+    asked: Mutex<Asked>,
+    calls: Mutex<Arc<Calls>>,
+    /// The arguments that make it again, and what was done since.
+    made_of: Option<(Py<Scene>, Py<PyAny>)>,
+    history: Mutex<Vec<Done>>,
+}
+
+/// What was done to a simulation, so that a copy comes to the same.
+enum Done {
+    Step(f64),
+    ToReading(f64),
+    Velocity(usize, f64, f64),
+    Pose(usize, PoseOf),
+    Schedule(usize, Py<Schedule>),
+    Scene(Py<Scene>),
+}
+
+impl Done {
+    /// The method and its arguments.
+    fn call<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        match self {
+            Self::Step(seconds) => ("step", seconds).into_pyobject(py),
+            Self::ToReading(seconds) => ("step_to_reading", seconds).into_pyobject(py),
+            Self::Velocity(robot, v_m_s, w_rad_s) => ("set_velocity", robot, v_m_s, w_rad_s).into_pyobject(py),
+            Self::Pose(robot, pose) => ("set_pose", robot, *pose).into_pyobject(py),
+            Self::Schedule(robot, schedule) => ("change_schedule", robot, schedule).into_pyobject(py),
+            Self::Scene(scene) => ("change_scene", scene).into_pyobject(py),
+        }
+    }
 }
 
 pub(crate) struct UnderWay {
     pub(crate) simulation: eeruf_sim::Simulation,
     recording: Option<Recording>,
+}
+
+/// A simulation at its beginning.
+fn begun(asked: &Asked, own: Own, ends: bool, stop: &Stop) -> Result<eeruf_sim::Simulation, SimulationError> {
+    let Asked { world, chosen, options } = asked;
+    let (world, method) = (Arc::clone(world), chosen.entry.method());
+    if ends {
+        eeruf_sim::Simulation::ending(world, method, options, own, stop.clone())
+    } else {
+        eeruf_sim::Simulation::with_own(world, method, options, own, stop.clone())
+    }
 }
 
 impl Simulation {
@@ -84,18 +130,32 @@ impl Simulation {
     ) -> PyResult<Self> {
         in_background(py, None, move |background| {
             let asked = asked.with_best(background)?;
-            let Asked { ref world, ref chosen, ref options } = asked;
-            let (world, stop, method) = (world.clone(), background.stop().clone(), chosen.entry.method());
-            let simulation = if ends {
-                eeruf_sim::Simulation::ending(world, method, options, own, stop)
-            } else {
-                eeruf_sim::Simulation::with_own(world, method, options, own, stop)
-            };
+            let simulation = begun(&asked, own, ends, background.stop());
             let simulation = simulation.map_err(|error| calls.raised().unwrap_or_else(|| error.raise()))?;
             let recording = mcap.map(|file| Recording::create(&file, &simulation)).transpose().map_err(logs::raise)?;
             let under_way = Mutex::new(UnderWay { simulation, recording });
-            Ok(Self { under_way, stepping: Mutex::default(), asked, calls })
+            Ok(Self {
+                robots: asked.world.robots().len(),
+                under_way,
+                stepping: Mutex::default(),
+                asked: Mutex::new(asked),
+                calls: Mutex::new(calls),
+                made_of: None,
+                history: Mutex::default(),
+            })
         })
+    }
+
+    fn asked(&self) -> Asked {
+        self.asked.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+
+    fn note(&self, done: Done) {
+        self.history.lock().unwrap_or_else(PoisonError::into_inner).push(done);
+    }
+
+    fn calls(&self) -> Arc<Calls> {
+        Arc::clone(&self.calls.lock().unwrap_or_else(PoisonError::into_inner))
     }
 
     /// Without the interpreter lock: whoever holds the simulation may wait for that.
@@ -113,8 +173,7 @@ impl Simulation {
     }
 
     fn robot(&self, name: &str, robot: &Bound<'_, PyAny>) -> PyResult<usize> {
-        let last = self.asked.world.robots().len() as u32 - 1;
-        Ok(whole(name, robot, 0..=last)? as usize)
+        Ok(whole(name, robot, 0..=self.robots as u32 - 1)? as usize)
     }
 
     /// Lets time pass while Ctrl-C and progress are looked after.
@@ -129,13 +188,14 @@ impl Simulation {
         ) -> Result<eeruf_sim::Readings, SimulationError>,
     ) -> PyResult<Readings> {
         let mut watch = Watch::new(progress)?;
+        let (calls, entry) = (self.calls(), self.asked().chosen.entry);
         let readings = py.detach(|| {
-            let mut keep_going = |share| watch.go_on(Some(share), || format!("simulating {}", self.asked.chosen.entry));
+            let mut keep_going = |share| watch.go_on(Some(share), || format!("simulating {entry}"));
             let UnderWay { simulation, recording } = &mut *self.lock()?;
             self.set_stepping(Some(thread::current().id()));
             let readings = step(simulation, &mut keep_going);
             self.set_stepping(None);
-            let readings = readings.map_err(|error| self.calls.raised().unwrap_or_else(|| error.raise()))?;
+            let readings = readings.map_err(|error| calls.raised().unwrap_or_else(|| error.raise()))?;
             if let Some(recording) = recording {
                 recording.add(simulation, &readings).map_err(logs::raise)?;
             }
@@ -164,7 +224,10 @@ impl Simulation {
             path.extract::<PathBuf>().map_err(|_| wrong("mcap", shown(path), "the path of a file to write, or None"))
         };
         let mcap = mcap.map(file).transpose()?;
-        Self::new_from(scene.py(), asked, own, false, mcap)
+        let made = Self::new_from(scene.py(), asked, own, false, mcap)?;
+        let method = method.map_or_else(|| PyString::new(scene.py(), "eeruf").into_any(), Clone::clone);
+        let scene = instance::<Scene>("scene", scene, "an eeruf.sim.Scene")?.clone();
+        Ok(Self { made_of: Some((scene.unbind(), method.unbind())), ..made })
     }
 
     /// End the MCAP file, if one is being written; the simulation may go on.
@@ -221,7 +284,9 @@ impl Simulation {
     fn step(&self, seconds: &Bound<'_, PyAny>) -> PyResult<Readings> {
         let py = seconds.py();
         let seconds = number("seconds", seconds, 0.0..=1e9)?;
-        self.go_on(py, None, |simulation, keep_going| simulation.step(seconds, keep_going))
+        let readings = self.go_on(py, None, |simulation, keep_going| simulation.step(seconds, keep_going))?;
+        self.note(Done::Step(seconds));
+        Ok(readings)
     }
 
     /// Let time pass until the next reading comes, without the interpreter lock. Ctrl-C ends it.
@@ -246,7 +311,10 @@ impl Simulation {
     fn step_to_reading(&self, seconds: &Bound<'_, PyAny>) -> PyResult<Readings> {
         let py = seconds.py();
         let seconds = number("seconds", seconds, 0.0..=1e9)?;
-        self.go_on(py, None, |simulation, keep_going| simulation.step_to_reading(seconds, keep_going))
+        let readings =
+            self.go_on(py, None, |simulation, keep_going| simulation.step_to_reading(seconds, keep_going))?;
+        self.note(Done::ToReading(seconds));
+        Ok(readings)
     }
 
     /// From now on a robot goes ahead and turns at these speeds, whatever its motion was.
@@ -277,7 +345,80 @@ impl Simulation {
         let py = robot.py();
         let robot = self.robot("robot", robot)?;
         let (v_m_s, w_rad_s) = (number("v_m_s", v_m_s, -50.0..=50.0)?, number("w_rad_s", w_rad_s, -50.0..=50.0)?);
-        py.detach(|| self.lock()?.simulation.set_velocity(robot, v_m_s, w_rad_s).map_err(Raise::raise))
+        py.detach(|| self.lock()?.simulation.set_velocity(robot, v_m_s, w_rad_s).map_err(Raise::raise))?;
+        self.note(Done::Velocity(robot, v_m_s, w_rad_s));
+        Ok(())
+    }
+
+    /// Put a robot at another place, whatever is in between. It goes on at the speeds set last, or else stands.
+    ///
+    /// A ring with odometry takes the leap for a drive. Nobody looks whether the robot stands free: see
+    /// ``RobotState.touches``.
+    ///
+    /// Args:
+    ///     robot: which one, from 0.
+    ///     pose: (x, y, heading) in metres and radians, up to 10^5.
+    ///
+    /// Raises:
+    ///     ArgumentError: no such robot or pose.
+    ///
+    /// Example:
+    ///     >>> from eeruf import sim
+    ///     >>> robot = sim.Robot((0, 0, 1.57), sensors=8, spacing_rad=0.26, radius_m=0.3)
+    ///     >>> world = sim.Simulation(sim.Scene([[5, 2, -5, 2]], robots=[robot]))
+    ///     >>> world.set_pose(0, (0.5, 1.0, 1.57))
+    ///     >>> world.robots[0].pose
+    ///     (0.5, 1.0, 1.57)
+    #[pyo3(signature = (robot, pose))]
+    fn set_pose(&self, robot: &Bound<'_, PyAny>, pose: &Bound<'_, PyAny>) -> PyResult<()> {
+        let py = robot.py();
+        let (robot, pose) = (self.robot("robot", robot)?, pose_of("pose", pose)?);
+        py.detach(|| self.lock()?.simulation.set_pose(robot, to_pose(pose)).map_err(Raise::raise))?;
+        self.note(Done::Pose(robot, pose));
+        Ok(())
+    }
+
+    /// Begin again: time 0, robots at their first poses, the scene and the schedules of the start.
+    ///
+    /// What the method makes (``make_filter``, ``make_firing``) is made anew; callables that were arguments go on being
+    /// called as they are. An MCAP file that is being written ends.
+    ///
+    /// Args:
+    ///     seed: of the noise from now on; the same as before by default.
+    ///
+    /// Raises:
+    ///     ArgumentError: no such seed.
+    ///     LogError: what was left of the file could not be written.
+    ///
+    /// Example:
+    ///     >>> from eeruf import sim
+    ///     >>> robot = sim.Robot((0, 0, 1.57), sensors=8, spacing_rad=0.26, radius_m=0.3)
+    ///     >>> world = sim.Simulation(sim.Scene([[5, 2, -5, 2]], robots=[robot]))
+    ///     >>> first = world.step(0.6).t_echo_us.tolist()
+    ///     >>> world.reset(seed=7)
+    ///     >>> other = world.step(0.6).t_echo_us.tolist()
+    ///     >>> world.reset(seed=1)
+    ///     >>> world.time_s, other != first, world.step(0.6).t_echo_us.tolist() == first
+    ///     (0.0, True, True)
+    #[pyo3(signature = (seed=None))]
+    fn reset(&self, py: Python<'_>, seed: Option<&Bound<'_, PyAny>>) -> PyResult<()> {
+        let mut asked = self.asked();
+        if let Some(seed) = seed {
+            asked.options.seed = Some(whole("seed", seed, 0..=u64::MAX)?);
+        }
+        let makers = asked.chosen.makers.clone();
+        let (own, calls) = own::again(py, &self.calls(), makers.as_deref(), asked.world.robots())?;
+        py.detach(|| {
+            let mut under_way = self.lock()?;
+            let simulation = begun(&asked, own, false, &Stop::default());
+            under_way.simulation = simulation.map_err(|error| calls.raised().unwrap_or_else(|| error.raise()))?;
+            let recording = under_way.recording.take();
+            drop(under_way);
+            self.history.lock().unwrap_or_else(PoisonError::into_inner).clear();
+            *self.asked.lock().unwrap_or_else(PoisonError::into_inner) = asked;
+            *self.calls.lock().unwrap_or_else(PoisonError::into_inner) = calls;
+            recording.map_or(Ok(()), Recording::finish).map_err(logs::raise)
+        })
     }
 
     /// From the end of its present period on a robot's ring fires by another schedule, as late as keeps the intervals
@@ -307,8 +448,11 @@ impl Simulation {
     fn change_schedule(&self, robot: &Bound<'_, PyAny>, schedule: &Bound<'_, PyAny>) -> PyResult<()> {
         let py = robot.py();
         let robot = self.robot("robot", robot)?;
-        let schedule = instance::<Schedule>("schedule", schedule, "an eeruf.Schedule")?.get().0;
-        py.detach(|| self.lock()?.simulation.change_schedule(robot, &schedule).map_err(Raise::raise))
+        let given = instance::<Schedule>("schedule", schedule, "an eeruf.Schedule")?;
+        let schedule = given.get().0;
+        py.detach(|| self.lock()?.simulation.change_schedule(robot, &schedule).map_err(Raise::raise))?;
+        self.note(Done::Schedule(robot, given.clone().unbind()));
+        Ok(())
     }
 
     /// From now on sound travels among these walls and poles and in this air: obstacles have moved. Sound that is on
@@ -334,19 +478,22 @@ impl Simulation {
     #[pyo3(signature = (scene))]
     fn change_scene(&self, scene: &Bound<'_, PyAny>) -> PyResult<()> {
         let py = scene.py();
-        let scene = instance::<Scene>("scene", scene, "an eeruf.sim.Scene")?.get();
+        let given = instance::<Scene>("scene", scene, "an eeruf.sim.Scene")?;
+        let scene = given.get();
         py.detach(|| {
             let now = scene.scene();
             let copied = eeruf_sim::Scene::new(now.walls().to_vec(), now.poles().to_vec(), now.air());
             let copied = copied.map_err(Raise::raise)?;
             self.lock()?.simulation.change_scene(copied).map_err(Raise::raise)
-        })
+        })?;
+        self.note(Done::Scene(given.clone().unbind()));
+        Ok(())
     }
 
     /// The robots now: a list of ``RobotState``.
     #[getter]
     fn robots(&self, py: Python<'_>) -> PyResult<Vec<RobotState>> {
-        let world = &self.asked.world;
+        let world = &self.asked().world;
         let state = |(index, robot): (usize, &eeruf_sim::Robot)| {
             let moment = self.lock()?.simulation.moment(index).map_err(Raise::raise)?;
             let at = moment.pose.translation;
@@ -367,16 +514,30 @@ impl Simulation {
     }
 
     fn __repr__(&self, py: Python<'_>) -> String {
-        let robots = self.asked.world.robots().len();
+        let (robots, entry) = (self.robots, self.asked().chosen.entry);
         let time = self.time_s(py).map_or("in a step".to_owned(), |time_s| format!("after {time_s:.3} s"));
-        format!("<Simulation: {robots} robots, {}, {time}>", self.asked.chosen.entry)
+        format!("<Simulation: {robots} robots, {entry}, {time}>")
+    }
+
+    /// A copy and a pickle do again what was done since the beginning, so that they go on alike.
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
+        let Some((scene, method)) = self.made_of.as_ref().filter(|_| !self.calls().is_given()) else {
+            let why = "a copy of a simulation with firing or filter; expected a sim.Method that makes them for each";
+            return Err(SimulationRefused::new_err(why));
+        };
+        let history = self.history.lock().unwrap_or_else(PoisonError::into_inner);
+        let done = history.iter().map(|done| done.call(py)).collect::<PyResult<Vec<_>>>()?;
+        let rebuild = py.import("eeruf._rebuild")?.getattr("simulation")?;
+        Ok((rebuild, (scene, method, self.asked().options.seed, done).into_pyobject(py)?))
     }
 
     fn __traverse__(&self, visit: PyVisit<'_>) -> Result<(), PyTraverseError> {
-        self.calls.traverse(&visit)
+        // One that is locked is being changed, and so is in use.
+        self.calls.try_lock().map_or(Ok(()), |calls| calls.traverse(&visit))?;
+        self.made_of.as_ref().map_or(Ok(()), |(_, method)| visit.call(method))
     }
 
     fn __clear__(&self) {
-        self.calls.clear();
+        self.calls().clear();
     }
 }

@@ -11,6 +11,7 @@ use crate::{
     arguments::{flag, items, matrix, micros, shown, whole, whole_or, wrong},
     columns::room,
     errors::{ArgumentError, Raise},
+    exclusive::Exclusive,
     hopping_settings::tracker_settings,
     requirements,
     ring_events::Reading,
@@ -38,9 +39,10 @@ use crate::{
 ///     ['first', 'tentative', 'tentative', 'tentative', 'accepted', 'accepted']
 ///     >>> {tracker.push(0, 3, 7_000).kind for _ in range(100)}  # one phase alone: crosstalk
 ///     {'rejected'}
-#[pyclass(module = "eeruf")]
+#[pyclass(frozen, module = "eeruf")]
 pub(crate) struct EchoTracker {
-    tracker: Box<eeruf_core::judge::EchoTracker<MAX_SENSORS>>,
+    tracker: Exclusive<Box<eeruf_core::judge::EchoTracker<MAX_SENSORS>>>,
+    t_delta: Micros,
     /// How many sensors.
     #[pyo3(get)]
     sensors: usize,
@@ -59,13 +61,15 @@ impl EchoTracker {
         let sensors = requirements::sensors(sensors)?;
         let t_delta = t_delta_us.map(|t_delta| micros("t_delta_us", t_delta)).transpose()?;
         let tracker = eeruf_core::judge::EchoTracker::new(tracker_settings(t_delta, settings)?);
-        Ok(Self { tracker: Box::new(tracker.map_err(Raise::raise)?), sensors })
+        let tracker = Box::new(tracker.map_err(Raise::raise)?);
+        let t_delta = tracker.settings().t_delta;
+        Ok(Self { tracker: Exclusive::new("EchoTracker", tracker), t_delta, sensors })
     }
 
     /// ``T_delta``, in microseconds.
     #[getter]
     fn t_delta_us(&self) -> u32 {
-        self.tracker.settings().t_delta.as_micros()
+        self.t_delta.as_micros()
     }
 
     /// Take in one firing of a sensor.
@@ -93,7 +97,7 @@ impl EchoTracker {
     #[pyo3(signature = (sensor, phase, t_echo_us, expected_change_us=None, *, solo=None, steady=None))]
     #[pyo3(text_signature = "($self, sensor, phase, t_echo_us, expected_change_us=0, *, solo=False, steady=True)")]
     fn push(
-        &mut self,
+        &self,
         sensor: &Bound<'_, PyAny>,
         phase: &Bound<'_, PyAny>,
         t_echo_us: Option<&Bound<'_, PyAny>>,
@@ -106,7 +110,7 @@ impl EchoTracker {
         let change = whole_or("expected_change_us", expected_change_us, 0, i32::MIN..=i32::MAX)?;
         let (solo, steady) = (flag("solo", solo, false)?, flag("steady", steady, true)?);
         let firing = Firing { phase, solo, steady, expected_change_us: change };
-        let verdict = self.tracker.push(sensor.into(), t_echo, firing).map_err(Raise::raise)?;
+        let verdict = self.tracker.get()?.push(sensor.into(), t_echo, firing).map_err(Raise::raise)?;
         Ok(Reading::of_tracker(sensor, phase, &verdict))
     }
 
@@ -130,7 +134,7 @@ impl EchoTracker {
     ///     'accepted'
     #[pyo3(signature = (phase, t_echo_us))]
     fn push_many<'py>(
-        &mut self,
+        &self,
         py: Python<'py>,
         phase: &Bound<'py, PyAny>,
         t_echo_us: &Bound<'py, PyAny>,
@@ -151,7 +155,8 @@ impl EchoTracker {
         }
         let mut kinds = room(echoes.len())?;
         kinds.resize(echoes.len(), 0_i8);
-        let (tracker, sensors) = (&mut self.tracker, self.sensors);
+        let (mut tracker, sensors) = (self.tracker.get()?, self.sensors);
+        let tracker = &mut *tracker;
         let pushed = py.detach(|| {
             let rows = echoes.chunks_exact(sensors).zip(kinds.chunks_exact_mut(sensors));
             for ((row, kinds), &phase) in rows.zip(&phases) {
@@ -186,7 +191,7 @@ impl EchoTracker {
     ///     9000
     #[pyo3(signature = (sensor))]
     fn confirmed_us(&self, sensor: &Bound<'_, PyAny>) -> PyResult<Option<u32>> {
-        Ok(self.tracker.confirmed(self.sensor(sensor)?.into()).map(Micros::as_micros))
+        Ok(self.tracker.get()?.confirmed(self.sensor(sensor)?.into()).map(Micros::as_micros))
     }
 
     /// Whether it is confirmed that nothing is in a sensor's range.
@@ -205,7 +210,7 @@ impl EchoTracker {
     ///     False
     #[pyo3(signature = (sensor))]
     fn is_clear(&self, sensor: &Bound<'_, PyAny>) -> PyResult<bool> {
-        Ok(self.tracker.is_clear(self.sensor(sensor)?.into()))
+        Ok(self.tracker.get()?.is_clear(self.sensor(sensor)?.into()))
     }
 
     /// Forget what is known of a sensor's echo. Its age goes on.
@@ -224,9 +229,9 @@ impl EchoTracker {
     ///     >>> tracker.confirmed_us(0) is None
     ///     True
     #[pyo3(signature = (sensor))]
-    fn forget(&mut self, sensor: &Bound<'_, PyAny>) -> PyResult<()> {
+    fn forget(&self, sensor: &Bound<'_, PyAny>) -> PyResult<()> {
         let sensor = self.sensor(sensor)?;
-        self.tracker.forget(sensor.into());
+        self.tracker.get()?.forget(sensor.into());
         Ok(())
     }
 
@@ -240,8 +245,9 @@ impl EchoTracker {
     ///     >>> tracker.firing_changed()
     ///     >>> tracker.confirmed_us(0)
     ///     9000
-    fn firing_changed(&mut self) {
-        self.tracker.firing_changed();
+    fn firing_changed(&self) -> PyResult<()> {
+        self.tracker.get()?.firing_changed();
+        Ok(())
     }
 
     fn __repr__(&self) -> String {

@@ -3994,7 +3994,7 @@ class Readings:
             sensor: the sensor of each reading, from 0; others have as many entries.
             fired_s: when it fired, in seconds, in order.
             t_echo_us: the echo time, NaN for none.
-            kind: what was made of it, indices into ``eeruf.KINDS``; by default echoes are accepted and silence is clear.
+            kind: what was made of it, indices into ``eeruf.KINDS``; by default echoes are accepted, silence is clear.
             reference_us: what the sensor reads alone; by default ``t_echo_us``, as if all were right.
             duration_s: for how long; by default until the last firing.
             sensors: how many sensors there are; by default one more than the last.

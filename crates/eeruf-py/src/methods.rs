@@ -1,5 +1,5 @@
-//! `sim.Method`: a method as a value, with the schedule, the settings and the code that make it another one; and methods
-//! by their names.
+//! `sim.Method`: a method as a value, with the schedule, the settings and the code that make it another one; and
+//! methods by their names.
 
 use std::sync::Arc;
 

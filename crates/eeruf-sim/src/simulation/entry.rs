@@ -168,8 +168,8 @@ impl Entry {
         made.map_err(|error| SimulationError::Own { robot: 0, what: "method", at_s: 0.0, error })
     }
 
-    /// Simulates a world whose robots are [`robot`](Self::robot)s of this entry. `stop` ends it from another thread, and
-    /// so does `keep_going`, which is called now and then with the share of time that has passed.
+    /// Simulates a world whose robots are [`robot`](Self::robot)s of this entry. `stop` ends it from another thread,
+    /// and so does `keep_going`, which is called now and then with the share of time that has passed.
     ///
     /// # Errors
     /// As [`simulate`](crate::simulate()), and for what the caller's own code refuses.

@@ -245,7 +245,7 @@ impl Simulation {
     }
 
     /// Puts a robot at another place, whatever is in between; it goes on at the speeds set last, or stands. Readings on
-    /// either side of that are compared as if odometry had followed the leap. Nobody looks whether it stands free there.
+    /// either side of that are compared as if odometry had followed the leap. Whether it stands free is not checked.
     ///
     /// # Errors
     /// No such robot, or a pose beyond 10^6 m.

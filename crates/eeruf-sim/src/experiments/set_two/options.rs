@@ -27,7 +27,8 @@ pub struct SetTwoOptions {
     pub methods: Vec<Entry>,
     /// What [`Method::EerufBest`] fires by, see [`best_schedule_for`](crate::best_schedule_for).
     pub best: Option<BestSchedule>,
-    /// How [`Method::EerufHopping`] fires and believes, unless its entry says. The default is [`HoppingSettings::DRIVING`].
+    /// How [`Method::EerufHopping`] fires and believes, unless its entry says. The default is
+    /// [`HoppingSettings::DRIVING`].
     pub hopping: HoppingSettings,
     /// Where another robot stands that fires 24 times in 80 ms, if there is one.
     pub second_robot: Option<Point>,

@@ -4147,8 +4147,8 @@ class Method:
         ...     firing.t_echoes_us[0]) if firing.t_echoes_us else ("clear", None))
         >>> robot = sim.Robot((0, 0, 1.57), sensors=8, spacing_rad=0.26, radius_m=0.3)
         >>> scene = sim.Scene([[5, 2, -5, 2]], robots=[robot])
-        >>> [float(sim.simulate(scene, method, 50).is_accepted.mean()) for method in (believing, quick)]
-        [1.0, 0.92]
+        >>> [round(float(sim.simulate(scene, method, 50).is_accepted.mean()), 2) for method in (believing, quick)]
+        [1.0, 0.69]
     """
     def __new__(
         cls,
@@ -4340,11 +4340,11 @@ class Simulation:
             >>> from eeruf import sim
             >>> robot = sim.Robot((0, 0, 1.57), sensors=8, spacing_rad=0.26, radius_m=0.3)
             >>> world = sim.Simulation(sim.Scene([[5, 2, -5, 2]], robots=[robot]))
-            >>> first = world.step(0.6).t_echo_us.tolist()
+            >>> first = str(world.step(0.6).t_echo_us)
             >>> world.reset(seed=7)
-            >>> other = world.step(0.6).t_echo_us.tolist()
+            >>> other = str(world.step(0.6).t_echo_us)
             >>> world.reset(seed=1)
-            >>> world.time_s, other != first, world.step(0.6).t_echo_us.tolist() == first
+            >>> world.time_s, other != first, str(world.step(0.6).t_echo_us) == first
             (0.0, True, True)
         """
     def change_schedule(self, robot: _Int, schedule: Schedule) -> None:

@@ -394,11 +394,11 @@ impl Simulation {
     ///     >>> from eeruf import sim
     ///     >>> robot = sim.Robot((0, 0, 1.57), sensors=8, spacing_rad=0.26, radius_m=0.3)
     ///     >>> world = sim.Simulation(sim.Scene([[5, 2, -5, 2]], robots=[robot]))
-    ///     >>> first = world.step(0.6).t_echo_us.tolist()
+    ///     >>> first = str(world.step(0.6).t_echo_us)
     ///     >>> world.reset(seed=7)
-    ///     >>> other = world.step(0.6).t_echo_us.tolist()
+    ///     >>> other = str(world.step(0.6).t_echo_us)
     ///     >>> world.reset(seed=1)
-    ///     >>> world.time_s, other != first, world.step(0.6).t_echo_us.tolist() == first
+    ///     >>> world.time_s, other != first, str(world.step(0.6).t_echo_us) == first
     ///     (0.0, True, True)
     #[pyo3(signature = (seed=None))]
     fn reset(&self, py: Python<'_>, seed: Option<&Bound<'_, PyAny>>) -> PyResult<()> {

@@ -44,7 +44,9 @@ def test_a_simulation_has_the_figures_that_the_program_prints(method: Any) -> No
 def test_set_one_is_the_programs() -> None:
     methods: Any = ["conventional", "eeruf", "eeruf_best", "multi_echo"]
     printed = program("experiment", "set-one", "--seeds", "2", "--method", ",".join(methods))
-    assert eeruf.experiments.set_one(seeds=2, methods=methods).to_dict() == printed
+    found = eeruf.experiments.set_one(seeds=2, methods=methods).to_dict()
+    del found["runs"]
+    assert found == printed
 
 
 @pytest.mark.parametrize(

@@ -12,7 +12,7 @@
 #define SIZE_IS(type, size) typedef char type##_has_another_size[sizeof(type) == (size) ? 1 : -1]
 #ifdef __AVR__
 SIZE_IS(EerufSensor, 12 + 4 * EERUF_FIRINGS);
-SIZE_IS(EerufLine, 6);
+SIZE_IS(EerufLine, 8);
 SIZE_IS(EerufSchedule, 46);
 SIZE_IS(EerufLimits, 7);
 SIZE_IS(EerufWatched, 10);
@@ -1134,7 +1134,8 @@ EerufStatus eeruf_ring_upcoming(const EerufRing *ring, uint8_t number, uint8_t *
     }
 }
 
-static void hear(EerufRing *ring, uint8_t x, uint32_t at_us) {
+/* An echo, which may be taken back until it has settled. */
+static void hear(EerufRing *ring, uint8_t x, uint32_t at_us, uint32_t settled_us) {
     EerufSensor *sensor = sensor_of(ring, x);
     const uint32_t t_echo_us = at_us - sensor->fired_us[0];
     const uint8_t flags = sensor->flags;
@@ -1158,13 +1159,23 @@ static void hear(EerufRing *ring, uint8_t x, uint32_t at_us) {
     }
     if ((flags & OUTSIDE) || t_echo_us < sensor->echo_us) sensor->echo_us = t_echo_us;
     if (flags & CAN_EMIT) return;
-    if (!has_pending(ring) || !has_reached(at_us, ring->emit_at_us)) ring->emit_at_us = at_us;
+    if (!has_pending(ring) || !has_reached(settled_us, ring->emit_at_us)) ring->emit_at_us = settled_us;
     ring->pending++;
+}
+
+/* Takes back an echo whose reading has not been emitted yet. */
+static void unhear(EerufRing *ring, uint8_t x) {
+    EerufSensor *sensor = sensor_of(ring, x);
+    if ((sensor->flags & (LISTENING | CAN_EMIT)) != (LISTENING | CAN_EMIT)) return;
+    sensor->flags = (uint8_t)(sensor->flags & ~CAN_EMIT);
+    sensor->echo_us = EERUF_NO_ECHO;
+    ring->pending--;
+    emit_when_oldest_ends(ring);
 }
 
 EerufStatus eeruf_ring_echo(EerufRing *ring, uint8_t sensor, uint32_t at_us) {
     const EerufStatus status = has_sensor(ring, sensor);
-    if (status == EERUF_OK) hear(ring, sensor, at_us);
+    if (status == EERUF_OK) hear(ring, sensor, at_us, at_us);
     return status;
 }
 
@@ -1256,7 +1267,10 @@ EerufStatus eeruf_ring_measured(EerufRing *ring, uint8_t sensor, uint32_t t_echo
     const EerufStatus status = has_sensor(ring, sensor);
     if (status != EERUF_OK) return status;
     if (t_echo_us == EERUF_NO_ECHO) note_answer(sensor_of(ring, sensor));
-    else hear(ring, sensor, sensor_of(ring, sensor)->fired_us[0] + t_echo_us);
+    else {
+        t_echo_us += sensor_of(ring, sensor)->fired_us[0];
+        hear(ring, sensor, t_echo_us, t_echo_us);
+    }
     return EERUF_OK;
 }
 
@@ -1857,9 +1871,16 @@ OUT_OF_LINE EerufStatus eeruf_hc_sr04_edge(EerufHcSr04 *modules, uint8_t sensor,
             return EERUF_OK;
         }
         set_bits(line, PULSE, OVER);
-        if (width_us < modules->settings->longest_us) hear(modules->ring, sensor, fired_us + width_us);
+        line->width_us = (uint16_t)(width_us > UINT16_MAX ? 0 : width_us);
+        if (width_us < modules->settings->longest_us)
+            hear(modules->ring, sensor, fired_us + width_us, at_us + modules->settings->shortest_us);
     } else if (pulse == OVER && high) {
         set_bits(line, FLAW, CHATTERED);
+        if (line->width_us == 0 || at_us - line->rose_us - line->width_us >= modules->settings->shortest_us)
+            return EERUF_OK;
+        /* A gap as short as that is a disturbance: the pulse goes on. */
+        set_bits(line, PULSE, ROSE);
+        unhear(modules->ring, sensor);
     }
     return EERUF_OK;
 }
@@ -1889,6 +1910,7 @@ EerufStatus eeruf_hc_sr04_pulse(EerufHcSr04 *modules, uint8_t sensor, uint32_t w
         return EERUF_OK;
     }
     set_bits(line, PULSE | FLAW, OVER);
+    line->width_us = 0;
     return eeruf_ring_measured(modules->ring, sensor,
                                width_us < modules->settings->longest_us ? width_us : EERUF_NO_ECHO);
 }

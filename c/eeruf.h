@@ -481,9 +481,10 @@ typedef struct EerufHcSr04Settings {
 } EerufHcSr04Settings;
 #define EERUF_HC_SR04 {EERUF_VERSION, 100, 100, 36000, 250000, 60000, 3, 10}
 
-/* One echo line: 6 bytes on an AVR. Not for the caller. */
+/* One echo line: 8 bytes on an AVR. Not for the caller. */
 typedef struct EerufLine {
     uint32_t rose_us;
+    uint16_t width_us; /* of the pulse that is over */
     uint8_t state, silent;
 } EerufLine;
 

@@ -104,6 +104,11 @@ fn pulse(r: &Random, edges: &mut Vec<(u32, u8, bool)>, now: u32, sensor: u8, wid
     if !r.once_in(12) {
         edges.push((rise, sensor, true));
     }
+    if r.once_in(6) {
+        // A gap in the pulse.
+        let gap = rise.wrapping_add(width / 2);
+        edges.extend([(gap, sensor, false), (gap.wrapping_add(r.duration(200)), sensor, true)]);
+    }
     if !r.once_in(12) {
         edges.push((fall, sensor, false));
     }

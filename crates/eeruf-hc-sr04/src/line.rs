@@ -14,8 +14,8 @@ pub(crate) enum Pulse {
     Awaited,
     /// The line rose at this instant.
     Rose(Instant),
-    /// The pulse is over.
-    Over,
+    /// The pulse is over: it rose at this instant, and was so many microseconds wide.
+    Over(Instant, u16),
 }
 
 /// The meaning of an edge for a firing.
@@ -32,6 +32,8 @@ pub(crate) enum Shown {
     Disturbance,
     /// The pulse ended, as long as the sensor's own time-out: it listened and heard nothing.
     Silence,
+    /// The pulse goes on after a short gap: what looked like its end was a disturbance.
+    GoesOn,
     /// The echo is in, this long after the sound was sent.
     Echo(Micros),
 }
@@ -69,7 +71,7 @@ impl Line {
                     self.flaw = Health::Chatters;
                     return Shown::Disturbance;
                 }
-                self.pulse = Pulse::Over;
+                self.pulse = Pulse::Over(rose, u16::try_from(width.as_micros()).unwrap_or(0));
                 if width < settings.longest { Shown::Echo(width) } else { Shown::Nothing }
             }
             (Pulse::Rose(rose), true) if !rose.has_reached(fired) => {
@@ -77,7 +79,15 @@ impl Line {
                 self.health = Health::LosesEdges;
                 Shown::AnswerAfterLoss
             }
-            (Pulse::Over, true) => {
+            // A gap as short as that is a disturbance: the pulse goes on.
+            (Pulse::Over(rose, width), true)
+                if width > 0 && edge.at.since(rose + Micros::new(width.into())) < settings.shortest =>
+            {
+                self.pulse = Pulse::Rose(rose);
+                self.flaw = Health::Chatters;
+                Shown::GoesOn
+            }
+            (Pulse::Over(..), true) => {
                 self.flaw = Health::Chatters;
                 Shown::Nothing
             }
@@ -98,11 +108,11 @@ impl Line {
             return Shown::Nothing;
         }
         self.silent = 0;
-        if width < settings.shortest || self.pulse == Pulse::Over {
+        if width < settings.shortest || matches!(self.pulse, Pulse::Over(..)) {
             self.flaw = Health::Chatters;
             return Shown::Nothing;
         }
-        (self.pulse, self.flaw) = (Pulse::Over, Health::Well);
+        (self.pulse, self.flaw) = (Pulse::Over(Instant::from_micros(0), 0), Health::Well);
         if width < settings.longest { Shown::Echo(width) } else { Shown::Silence }
     }
 
@@ -122,8 +132,8 @@ impl Line {
                 }
             }
             // A pulse may follow what was taken for the end of one whose beginning was too soon after the trigger.
-            Pulse::Over if self.flaw == Health::LosesEdges => self.health = Health::Well,
-            Pulse::Awaited | Pulse::Over => self.health = self.flaw,
+            Pulse::Over(..) if self.flaw == Health::LosesEdges => self.health = Health::Well,
+            Pulse::Awaited | Pulse::Over(..) => self.health = self.flaw,
             // If the line is still high it is stuck, as will be seen.
             Pulse::Rose(_) => self.health = Health::LosesEdges,
             Pulse::Idle => {}

@@ -63,6 +63,11 @@ impl<T, I, D, const K: usize> Lines<T, I, D, K> {
         Trigger::Given { lost_an_edge }
     }
 
+    /// How long a gap in a pulse may be that does not end it.
+    pub(crate) const fn shortest(&self) -> Micros {
+        self.settings.shortest
+    }
+
     pub(crate) fn health(&self, sensor: u8) -> Health {
         self.lines.get(usize::from(sensor)).map_or(Health::Missing, |line| line.health)
     }

@@ -134,6 +134,7 @@ impl<P: Plan, J: Judge, T, I, D, const K: usize, const H: usize> HcSr04Ring<Ring
             Shown::Answer => self.ring.answered(sensor),
             Shown::AnswerAfterLoss => self.ring.forget(sensor).and_then(|()| self.ring.answered(sensor)),
             Shown::Disturbance => self.ring.unanswered(sensor),
+            Shown::GoesOn => self.ring.unheard(sensor),
             Shown::Silence => self.ring.measured(sensor, None),
             Shown::Echo(t_echo) => self.ring.measured(sensor, Some(t_echo)),
         }
@@ -153,8 +154,14 @@ impl<P: Plan, J: Judge, T, I, D, const K: usize, const H: usize> HcSr04Ring<Ring
             // The ring says that it is not there.
             return self.ring.echo(edge.sensor, edge.at);
         };
-        let shown = self.lines.edge(edge, fired);
-        self.show(edge.sensor, shown)
+        match self.lines.edge(edge, fired) {
+            // Until then the line may rise again: a gap that is no end.
+            Shown::Echo(t_echo) => {
+                let settled = edge.at + self.lines.shortest();
+                self.ring.echo_until(edge.sensor, fired + t_echo, settled)
+            }
+            shown => self.show(edge.sensor, shown),
+        }
     }
 
     /// As [`Ring::fired`], where a sensor was triggered at another instant than the poll said.

@@ -129,6 +129,16 @@ fn faulty_line_before_wall_is_never_clear() {
 }
 
 #[test]
+fn short_gap_in_pulse_is_no_end() {
+    let gaps: [(u32, bool, bool); 4] =
+        [(450, true, true), (3_000, false, true), (3_005, true, true), (450 + WALL, false, true)];
+    let found = run(&gaps, 1);
+    let wall = Micros::new(WALL);
+    let right = |state| matches!(state, SensorState::Obstacle { t_echo, .. } if t_echo == wall);
+    assert!(found[1..].iter().all(|&(kind, state)| kind == ReadingKind::Accepted && right(state)), "{:?}", found[3]);
+}
+
+#[test]
 fn held_line_is_clear_unless_held_forever() {
     for hold_ms in [38, 66, 130, 200] {
         let line = [(450, true, true), (450 + 1_000 * hold_ms, false, true)];

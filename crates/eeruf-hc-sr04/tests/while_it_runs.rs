@@ -116,7 +116,8 @@ fn the_width_of_a_pulse_counts_wherever_the_trigger_really_came() {
     driver.edge(Edge { sensor, high: false, at: us(395) }).unwrap();
     driver.edge(Edge { sensor, high: true, at: us(750) }).unwrap();
     driver.edge(Edge { sensor, high: false, at: us(5_750) }).unwrap();
-    let reading = std::iter::from_fn(|| driver.poll(us(5_750))).find_map(|event| match event {
+    // A gap of less than 100 us would not end it.
+    let reading = std::iter::from_fn(|| driver.poll(us(5_850))).find_map(|event| match event {
         RingEvent::Reading(reading) => Some(reading),
         _ => None,
     });

@@ -327,14 +327,24 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
     /// [`SensorError`] for a sensor that is not there.
     #[inline]
     pub fn echo(&mut self, sensor: u8, at: Instant) -> Result<(), SensorError> {
+        self.echo_until(sensor, at, at)
+    }
+
+    /// As [`echo`](Self::echo), for drivers that may take it back: its reading is emitted no sooner than `settled`,
+    /// unless another sensor's is.
+    ///
+    /// # Errors
+    /// As there.
+    #[inline]
+    pub fn echo_until(&mut self, sensor: u8, at: Instant, settled: Instant) -> Result<(), SensorError> {
         let window = self.listening.window_of(&self.plan, sensor);
         let Some(heard) = self.sensors.get_mut(usize::from(sensor)) else {
             return self.no_such(sensor);
         };
         match heard.echo(at, self.listening.blanking(), window) {
             Noted::Ready => {
-                if !self.has_pending() || !at.has_reached(self.emit_at) {
-                    self.emit_at = at;
+                if !self.has_pending() || !settled.has_reached(self.emit_at) {
+                    self.emit_at = settled;
                 }
                 self.ready = self.ready.saturating_add(1);
                 self.last_ready = sensor;
@@ -399,6 +409,19 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
             Some(t_echo) => self.echo(sensor, fired + t_echo),
             None => self.answered(sensor),
         }
+    }
+
+    /// Takes back the echo of a sensor whose reading has not been emitted yet: it was none. See
+    /// [`echo_until`](Self::echo_until).
+    ///
+    /// # Errors
+    /// [`SensorError`] if the sensor is out of range.
+    pub fn unheard(&mut self, sensor: u8) -> Result<(), SensorError> {
+        if self.sensor_mut(sensor)?.unhear() {
+            self.ready = self.ready.saturating_sub(1);
+            self.emit_when_oldest_ends();
+        }
+        Ok(())
     }
 
     /// Forgets the readings of a sensor, so that its next one is compared with nothing: for a driver that learns that

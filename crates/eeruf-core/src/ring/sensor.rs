@@ -140,6 +140,16 @@ impl<const E: usize, const H: usize> Sensor<E, H> {
         Noted::Ready
     }
 
+    /// Forgets the echo of the present firing. Returns true if that could have been emitted.
+    pub(super) fn unhear(&mut self) -> bool {
+        let was_ready = self.is(LISTENING) && self.is(READY);
+        if was_ready {
+            self.clear(READY);
+            self.echoes = [NO_ECHO; E];
+        }
+        was_ready
+    }
+
     fn hold(&mut self, t_echo: Micros) {
         if let Some(echo) = self.echoes.first_mut() {
             *echo = t_echo;

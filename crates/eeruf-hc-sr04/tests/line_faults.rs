@@ -51,8 +51,8 @@ impl DelayNs for NoDelay {
 /// An edge of a line: microseconds after the trigger, level, and whether the interrupt sees it.
 type Seen = (u32, bool, bool);
 
-/// Runs a ring for 100 periods. `line` says what a trigger of sensor 1 does, `other` on which line. Returns the readings
-/// of sensor 1, each with the state after it.
+/// Runs a ring for 100 periods. A trigger of sensor 1 has the edges of `line`, on the line of sensor `on`. Returns the
+/// readings of sensor 1, each with the state after it.
 fn run(line: &[Seen], on: u8) -> Vec<(ReadingKind, SensorState)> {
     let ms = |ms: [u32; K]| ms.map(Micros::from_millis);
     let schedule: Schedule<K> =

@@ -502,8 +502,8 @@ typedef struct EerufHcSr04 {
 EerufStatus eeruf_hc_sr04_init(EerufHcSr04 *modules, size_t modules_size, EerufLine *lines, size_t lines_size,
                                EerufRing *ring, const EerufHcSr04Settings *settings);
 /* For each EERUF_EVENT_FIRE, before the next poll: whether the echo line is high. EERUF_OK: now raise the trigger for
-   the settings' trigger_us. EERUF_DO_NOT_TRIGGER: leave it alone; the line is stuck, or the module has heard nothing yet
-   and holds it. With one pin for both, read it before it is an output. */
+   the settings' trigger_us. EERUF_DO_NOT_TRIGGER: leave it alone; the line is stuck, or the module has heard nothing
+   yet and holds it. With one pin for both, read it before it is an output. */
 EerufStatus eeruf_hc_sr04_fire(EerufHcSr04 *modules, uint8_t sensor, bool line_is_high);
 /* Instead, if a timer or other hardware has triggered it: then nobody has seen whether its line was low, and a module
    that still held it counts as unanswered. */

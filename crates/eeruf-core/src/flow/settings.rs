@@ -43,7 +43,7 @@ impl FlowSettings {
         unserved_after: 3,
         shortest_cycle: Micros::from_millis(60),
         longest_cycle: Micros::from_millis(400),
-        travel: Micros::new(500),
+        travel: Micros::new(380),
     };
 }
 

@@ -7,8 +7,9 @@ tuned on seeds below 2,000; what is reported starts at :data:`FIRST`.
 
 from __future__ import annotations
 
+import json
 import operator
-from typing import TYPE_CHECKING, Literal, overload
+from typing import TYPE_CHECKING, Any, Literal, overload
 
 from eeruf import _eeruf, _results
 from eeruf._results import (
@@ -35,12 +36,14 @@ from eeruf._results import (
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
+    from os import PathLike
 
     _Progress = bool | Callable[[float | None, str], object] | None
     from eeruf._eeruf import _Method as Method
-    from eeruf._eeruf import _Physics
+    from eeruf._eeruf import _Height, _Physics
 
     _Corner = Literal["behind", "ahead"] | tuple[float, float] | None
+    _RoomKind = Literal["corridor", "office", "hall", "clutter", "alcove", "garage", "aisle", "meeting"]
     _Pilot = Literal["own", "shared", "published", "published-gro"]
 
 __all__ = [
@@ -68,6 +71,8 @@ __all__ = [
     "compare",
     "concat",
     "courses",
+    "recommend",
+    "rooms",
     "set_one",
     "set_three",
     "set_two",
@@ -190,6 +195,85 @@ def courses(first: int = FIRST, n: int = 100, *, physics: _Physics = "default") 
 
     """
     return Scenes("course", _numbers(first, n), physics)
+
+
+def rooms(
+    ring: str | PathLike[str],
+    first: int = FIRST,
+    n: int = 6,
+    *,
+    kind: _RoomKind = "office",
+    driving: bool = False,
+    physics: _Physics = "default",
+    height: _Height = "room",
+) -> list[_eeruf.Scene]:
+    """Return rooms of one kind as scenes with the robot of a ring file in its place; a scene's ``seed`` is its number.
+
+    These are the rooms in which ``eeruf design`` judges ways of firing (``docs/rooms.md``).
+
+    Args:
+        ring: the path of a ring file. Without ``poses`` a ring stands evenly all round, a line 15 degrees apart.
+        first: the first room's number.
+        n: how many.
+        kind: which rooms; in ``"meeting"`` a second robot of the same make stands near.
+        driving: whether the robot drives, at the file's ``speed_m_s`` or 0.3 m/s.
+        physics: as the argument of ``eeruf.sim.Scene``.
+        height: as the argument of ``eeruf.sim.Scene``.
+
+    Raises:
+        ArgumentError: a number is below 0, the file cannot be read, or there are no such rooms or effects.
+
+    Example:
+        >>> import pathlib, tempfile
+        >>> from eeruf import experiments
+        >>> ring = pathlib.Path(tempfile.mkdtemp(), "ring.toml")
+        >>> _ = ring.write_text("sensors = 8\\nmodule = 'hc-sr04'\\nlayout = 'ring'")
+        >>> [len(scene.robots) for scene in experiments.rooms(ring, n=2, kind="meeting")]
+        [2, 2]
+
+    """
+    return [_eeruf._room(kind, number, ring, driving, physics, height) for number in _numbers(first, n)]
+
+
+def recommend(
+    ring: str | PathLike[str],
+    *,
+    places: int = 6,
+    first: int = 0,
+    driving: bool = False,
+    wrong: float = 0.03,
+    progress: _Progress = None,
+) -> dict[str, Any]:
+    """Judge the ways of firing a ring in rooms, and recommend one, as ``eeruf study RING.toml --json`` does.
+
+    Args:
+        ring: the path of a ring file.
+        places: rooms of each kind, 1 to 1,000.
+        first: the number of the first room of each kind; ways are chosen on numbers below 2,000, and reported from :data:`FIRST` on.
+        driving: whether the robot drives.
+        wrong: the largest share of foreign sound in what is believed, of a way that is recommended.
+        progress: True for a bar (tqdm if it is installed), or a callable that takes the share done and a text.
+
+    Returns:
+        ``recommended``, the name of the way; ``keeps``, whether it keeps to the limits in each kind of room; ``assumed``, where the file
+        is silent; ``ways``, each with ``way``, ``title`` and ``rooms``, its figures by kind; ``elsewhere``, the same under other gain
+        and height.
+
+    Raises:
+        ArgumentError: a number is out of range, or the file cannot be read or does not say where its sensors are.
+
+    Example:
+        >>> import pathlib, tempfile
+        >>> import eeruf
+        >>> ring = pathlib.Path(tempfile.mkdtemp(), "ring.toml")
+        >>> _ = ring.write_text("sensors = 4\\nmodule = 'hc-sr04'\\nlayout = 'ring'")
+        >>> answer = eeruf.experiments.recommend(ring, places=1)
+        >>> answer["ways"][0]["way"], sorted(answer["ways"][0]["rooms"])[:2]
+        ('sequential', ['aisle', 'alcove'])
+
+    """
+    answer: dict[str, Any] = json.loads(_eeruf._recommend(ring, places, first, driving, wrong, progress))
+    return answer
 
 
 def _numbers(first: int, n: int) -> range:

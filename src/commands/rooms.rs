@@ -3,8 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
-use eeruf_design::atlas::ATLAS;
-use eeruf_design::{RingDesign, RingSpec, RoomsAnswer, RoomsAsked, Search};
+use eeruf_design::{RingDesign, RingSpec, RoomsAnswer, RoomsAsked};
 use eeruf_sim::experiments::rooms::{DRIVING_S, RoomGroup, RoomPlan};
 
 use super::answer::Answer;
@@ -58,16 +57,12 @@ impl RoomArgs {
     }
 }
 
-/// Nodes for the schedule of two phases of `eeruf study RING.toml`.
-const STUDY_BUDGET: u64 = 200_000;
-
 /// Judges a ring file without a word of its period: `eeruf study RING.toml`.
 pub(crate) fn study(args: &RoomArgs, file: &Path, as_json: bool) -> Result<Answer, InputError> {
     let spec = read_ring(file)?;
     let mut watch = Watch::new();
-    let search = Search { budget: STUDY_BUDGET, what_if: false, atlas: ATLAS };
-    let design = spec.shortest(&search, &mut ()).map_err(|error| InputError::new(file, None, error))?;
-    let judged = judged(args, &spec, design.as_ref().ok(), &mut watch)?;
+    let design = spec.shortest_to_study().map_err(|error| InputError::new(file, None, error))?;
+    let judged = judged(args, &spec, design.as_ref(), &mut watch)?;
     drop(watch);
     match as_json {
         true => print_line(to_json(&RoomsOrNot::of(&judged)))?,

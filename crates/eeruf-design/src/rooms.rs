@@ -3,6 +3,7 @@
 use core::f64::consts::TAU;
 
 use eeruf_core::Layout;
+use eeruf_core::search::SearchError;
 use eeruf_sim::experiments::ExperimentError;
 use eeruf_sim::experiments::rooms::{
     Condition, JudgedWay, Judgement, RoomGroup, RoomKind, RoomWay, RoomsOptions, judge,
@@ -11,8 +12,10 @@ use eeruf_sim::modules::POLAROID_6500;
 use eeruf_sim::{Pose, Robot, Transducer};
 use serde::{Serialize, Serializer};
 
+use crate::atlas::ATLAS;
 use crate::find::RingDesign;
 use crate::ring::RingSpec;
+use crate::shortest::Search;
 
 /// Radius of a ring that the file has no places for, in metres: a choice, that of a small robot.
 const RADIUS_M: f64 = 0.2;
@@ -108,7 +111,24 @@ const USUAL_SPEED_M_S: f64 = 0.3;
 /// One room in this number is looked at under the other conditions.
 const LESS_ELSEWHERE: usize = 3;
 
+/// Nodes for the schedule of two phases that ways are judged by.
+const STUDY_BUDGET: u64 = 200_000;
+
 impl RingSpec {
+    /// The speed at which its robot drives through rooms, in m/s: the ring's, or 0.3, a choice.
+    pub fn room_speed_m_s(&self) -> f64 {
+        self.speed_mm_s.filter(|&mm| mm > 0).map_or(USUAL_SPEED_M_S, |mm| f64::from(mm) / 1e3)
+    }
+
+    /// A short schedule of two phases, proven or not, for judging it in rooms; none where there is none.
+    ///
+    /// # Errors
+    /// As for [`RingSpec::shortest`].
+    pub fn shortest_to_study(&self) -> Result<Option<RingDesign>, SearchError> {
+        let search = Search { budget: STUDY_BUDGET, what_if: false, atlas: ATLAS };
+        Ok(self.shortest(&search, &mut ())?.ok())
+    }
+
     /// Judges the ways of firing the ring, with the schedule of two phases that was found for it.
     ///
     /// `keep_going` is called by several threads with the share that is done of the part under way; when its answer is
@@ -125,7 +145,7 @@ impl RingSpec {
         // With the T_delta that the schedule needs where the robot moves.
         let spec = design.map_or(self, |design| &design.spec);
         let RoomRobot { robot, assumed } = spec.room_robot()?;
-        let speed_m_s = spec.speed_mm_s.filter(|&mm| mm > 0).map_or(USUAL_SPEED_M_S, |mm| f64::from(mm) / 1e3);
+        let speed_m_s = spec.room_speed_m_s();
         let here = RoomsOptions {
             speed_m_s: if asked.driving { speed_m_s } else { 0.0 },
             wrong: asked.wrong,

@@ -1,11 +1,15 @@
 //! The paper's experiments, and robots of one make. Their tables come as JSON, with the names that `eeruf experiment
 //! --json` uses; what users call is in `python/eeruf/experiments.py`.
 
+use std::path::PathBuf;
+
 use eeruf_core::Micros;
+use eeruf_design::{RingSpec, RoomsAsked};
 use eeruf_sim::{
     LabMate, Physics, Robot, WorldParts,
     experiments::{
         Difference, FIRST,
+        rooms::{RoomKind, RoomPlan},
         set_one::{self as first_set, Alcove, READINGS, SetOneOptions},
         set_three::{self as third_set, SetThreeOptions},
         set_two::{
@@ -160,6 +164,69 @@ pub(crate) fn course(number: &Bound<'_, PyAny>, physics: &Bound<'_, PyAny>) -> P
     let order = course.world(course.robot(), None).map_err(Raise::raise)?.max_order();
     let robot = SetTwoOptions::default().robot(course.robot());
     scene_of(course.scene().map_err(Raise::raise)?, robot, order, seed, physics)
+}
+
+/// The ring of a ring file.
+fn ring_of(path: &Bound<'_, PyAny>) -> PyResult<RingSpec> {
+    let path: PathBuf = path.extract().map_err(|_| wrong("ring", shown(path), "the path of a ring file"))?;
+    let failed = |message: &dyn std::fmt::Display| ArgumentError::new_err(format!("{}: {message}", path.display()));
+    let text = std::fs::read_to_string(&path).map_err(|error| failed(&error))?;
+    RingSpec::from_text(&text).map_err(|error| failed(&error))
+}
+
+/// The scene of a room, with the robot of a ring file in its place.
+#[pyfunction]
+#[pyo3(name = "_room", signature = (kind, number, ring, driving, physics, height))]
+pub(crate) fn room(
+    kind: &Bound<'_, PyAny>,
+    number: &Bound<'_, PyAny>,
+    ring: &Bound<'_, PyAny>,
+    driving: &Bound<'_, PyAny>,
+    physics: &Bound<'_, PyAny>,
+    height: &Bound<'_, PyAny>,
+) -> PyResult<Scene> {
+    let kinds = RoomKind::ALL.map(|kind| (kind.as_str(), kind));
+    let kind = choice("kind", Some(kind), &kinds)?;
+    let (seed, physics) = numbered(number, physics)?;
+    let height = surroundings::height(Some(height))?;
+    let spec = ring_of(ring)?;
+    let robot = spec.room_robot().map_err(ArgumentError::new_err)?.robot;
+    let speed_m_s = if flag("driving", Some(driving), false)? { spec.room_speed_m_s() } else { 0.0 };
+    let plan = RoomPlan::random(kind, seed, robot.radius_m());
+    let world = plan.world(&Robot { odometry: true, ..robot }, speed_m_s).map_err(Raise::raise)?;
+    let scene = plan.scene().and_then(|scene| scene.with_room(height)).map_err(Raise::raise)?;
+    let robots = world.robots().to_vec();
+    let shown = robots.iter().map(crate::robot::Robot::of).collect();
+    let (noise, faults) = (eeruf_sim::Noise::default(), vec![]);
+    Scene::of(WorldParts { scene, robots, noise, physics, max_order: DEFAULT_ORDER, seed, faults }, shown)
+}
+
+/// Ways of firing a ring file's ring, judged in rooms, as `eeruf study RING.toml --json` prints them.
+#[pyfunction]
+#[pyo3(name = "_recommend", signature = (ring, places, first, driving, wrong, progress))]
+pub(crate) fn recommend(
+    py: Python<'_>,
+    ring: &Bound<'_, PyAny>,
+    places: &Bound<'_, PyAny>,
+    first: &Bound<'_, PyAny>,
+    driving: &Bound<'_, PyAny>,
+    wrong: &Bound<'_, PyAny>,
+    progress: Option<&Bound<'_, PyAny>>,
+) -> PyResult<String> {
+    let spec = ring_of(ring)?;
+    let asked = RoomsAsked {
+        own: vec![],
+        places: whole("places", places, 1..=1000)?,
+        first: whole("first", first, 0..=1_000_000_000)?,
+        driving: flag("driving", Some(driving), false)?,
+        wrong: number("wrong", wrong, 0.0..=1.0)?,
+    };
+    in_background(py, progress, move |background| {
+        let design = spec.shortest_to_study().map_err(|error| ArgumentError::new_err(error.to_string()))?;
+        let keep_going = |done| background.go_on(Some(done), || "rooms".to_owned());
+        let answer = spec.judge_in_rooms(design.as_ref(), &asked, &keep_going).map_err(ArgumentError::new_err)?;
+        json(&answer.json())
+    })
 }
 
 fn scene_of(scene: eeruf_sim::Scene, robot: Robot, max_order: u32, seed: u64, physics: Physics) -> PyResult<Scene> {

@@ -74,7 +74,7 @@ mod _eeruf {
             ArgumentError, CertificateError, EerufError, ExperimentError, FilterError, HoppingError, PathsError,
             RingError, SceneError, ScheduleError, SearchError, SimulationError,
         },
-        experiments::{alcove, course, difference, figures, set_one, set_three, set_two, speed_sweep},
+        experiments::{alcove, course, difference, figures, recommend, room, set_one, set_three, set_two, speed_sweep},
         filter::EchoFilter,
         found::Found,
         himm::Himm,

@@ -1,0 +1,50 @@
+"""Rooms in which a ring is judged, and the way of firing that is recommended."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import eeruf
+import pytest
+from eeruf import experiments, sim
+
+ANY: Any = experiments
+RING = Path(__file__).parents[2] / "rings" / "hc-sr04-8.toml"
+
+
+def test_recommendation_is_the_programs() -> None:
+    """By the same words and figures."""
+    answer = experiments.recommend(RING, places=1, first=7)
+    words = ["study", str(RING), "--places", "1", "--first", "7", "--json"]
+    printed = subprocess.run([sys.executable, "-m", "eeruf", *words], capture_output=True, check=True).stdout
+    assert answer == json.loads(printed)
+    names = [way["way"] for way in answer["ways"]]
+    assert names[0] == "sequential" and answer["recommended"] in names
+
+
+def test_rooms_are_scenes_of_the_rings_robot() -> None:
+    """With its modules in place, the same for the same number, driving where asked."""
+    one, other = experiments.rooms(RING, 5, 2, kind="clutter")
+    assert (one.seed, other.seed, one.height) == (5, 6, other.height)
+    assert len(one.robots[0].sensors) == 8 and one.robots[0].module == "hc-sr04"
+    again = experiments.rooms(RING, 5, 1, kind="clutter")[0]
+    readings = [sim.simulate(scene, "sequential", 5).t_echo_us.tobytes() for scene in (one, again)]
+    assert readings[0] == readings[1]
+    assert len(experiments.rooms(RING, n=1, kind="meeting")[0].robots) == 2
+    driving = experiments.rooms(RING, n=1, kind="corridor", driving=True)[0]
+    assert sim.simulate(driving, "sequential", 30).x_m.std() > 0
+
+
+def test_wrong_arguments_are_named() -> None:
+    """Thing, value and expectation."""
+    with pytest.raises(eeruf.ArgumentError, match='kind = .*kitchen.*; expected .*"corridor"'):
+        ANY.rooms(RING, kind="kitchen")
+    with pytest.raises(eeruf.ArgumentError, match="none.toml: No such file"):
+        experiments.recommend("none.toml")
+    with pytest.raises(eeruf.ArgumentError, match="places = 0; expected a whole number from 1 to 1000"):
+        experiments.recommend(RING, places=0)
+    mower = RING.with_name("mower-8-and-4.toml")
+    with pytest.raises(eeruf.ArgumentError, match="does not say where its sensors are"):
+        experiments.recommend(mower)

@@ -39,8 +39,8 @@ if TYPE_CHECKING:
     from os import PathLike
 
     _Progress = bool | Callable[[float | None, str], object] | None
-    from eeruf._eeruf import _Method as Method
     from eeruf._eeruf import _Height, _Physics
+    from eeruf._eeruf import _Method as Method
 
     _Corner = Literal["behind", "ahead"] | tuple[float, float] | None
     _RoomKind = Literal["corridor", "office", "hall", "clutter", "alcove", "garage", "aisle", "meeting"]
@@ -207,7 +207,7 @@ def rooms(
     physics: _Physics = "default",
     height: _Height = "room",
 ) -> list[_eeruf.Scene]:
-    """Return rooms of one kind as scenes with the robot of a ring file in its place; a scene's ``seed`` is its number.
+    r"""Return rooms of one kind as scenes with the robot of a ring file in its place; a scene's ``seed`` is its number.
 
     These are the rooms in which ``eeruf design`` judges ways of firing (``docs/rooms.md``).
 
@@ -227,7 +227,7 @@ def rooms(
         >>> import pathlib, tempfile
         >>> from eeruf import experiments
         >>> ring = pathlib.Path(tempfile.mkdtemp(), "ring.toml")
-        >>> _ = ring.write_text("sensors = 8\\nmodule = 'hc-sr04'\\nlayout = 'ring'")
+        >>> _ = ring.write_text("sensors = 8\nmodule = 'hc-sr04'\nlayout = 'ring'")
         >>> [len(scene.robots) for scene in experiments.rooms(ring, n=2, kind="meeting")]
         [2, 2]
 
@@ -244,7 +244,7 @@ def recommend(
     wrong: float = 0.03,
     progress: _Progress = None,
 ) -> dict[str, Any]:
-    """Judge the ways of firing a ring in rooms, and recommend one, as ``eeruf study RING.toml --json`` does.
+    r"""Judge the ways of firing a ring in rooms, and recommend one, as ``eeruf study RING.toml --json`` does.
 
     Args:
         ring: the path of a ring file.
@@ -266,7 +266,7 @@ def recommend(
         >>> import pathlib, tempfile
         >>> import eeruf
         >>> ring = pathlib.Path(tempfile.mkdtemp(), "ring.toml")
-        >>> _ = ring.write_text("sensors = 4\\nmodule = 'hc-sr04'\\nlayout = 'ring'")
+        >>> _ = ring.write_text("sensors = 4\nmodule = 'hc-sr04'\nlayout = 'ring'")
         >>> answer = eeruf.experiments.recommend(ring, places=1)
         >>> answer["ways"][0]["way"], sorted(answer["ways"][0]["rooms"])[:2]
         ('sequential', ['aisle', 'alcove'])

@@ -28,7 +28,7 @@ def test_rooms_are_scenes_of_the_rings_robot() -> None:
     """With its modules in place, the same for the same number, driving where asked."""
     one, other = experiments.rooms(RING, 5, 2, kind="clutter")
     assert (one.seed, other.seed, one.height) == (5, 6, other.height)
-    assert len(one.robots[0].sensors) == 8 and one.robots[0].module == "hc-sr04"
+    assert one.robots[0].sensors == 8 and one.robots[0].module == "hc-sr04"
     again = experiments.rooms(RING, 5, 1, kind="clutter")[0]
     readings = [sim.simulate(scene, "sequential", 5).t_echo_us.tobytes() for scene in (one, again)]
     assert readings[0] == readings[1]
@@ -39,9 +39,9 @@ def test_rooms_are_scenes_of_the_rings_robot() -> None:
 
 def test_wrong_arguments_are_named() -> None:
     """Thing, value and expectation."""
-    with pytest.raises(eeruf.ArgumentError, match='kind = .*kitchen.*; expected .*"corridor"'):
+    with pytest.raises(eeruf.ArgumentError, match=r'kind = .*kitchen.*; expected .*"corridor"'):
         ANY.rooms(RING, kind="kitchen")
-    with pytest.raises(eeruf.ArgumentError, match="none.toml: No such file"):
+    with pytest.raises(eeruf.ArgumentError, match=r"none\.toml: No such file"):
         experiments.recommend("none.toml")
     with pytest.raises(eeruf.ArgumentError, match="places = 0; expected a whole number from 1 to 1000"):
         experiments.recommend(RING, places=0)

@@ -1997,10 +1997,28 @@ class Ring:
     def audible_us(self, value: _Int, /) -> None:
         """R, how long sound is audible, in microseconds. It can be changed while the ring runs."""
     @property
-    def report_after_us(self) -> int: ...
+    def report_after_us(self) -> int:
+        """How long after its firing a reading without an echo is emitted at the soonest, in microseconds: for modules that
+        report by a bus or a pulse's width after their window has closed. 0: when it closes.
+        """
     @report_after_us.setter
-    def report_after_us(self, value: _Int, /) -> None: ...
-    def upcoming(self) -> list[Fire]: ...
+    def report_after_us(self, value: _Int, /) -> None:
+        """How long after its firing a reading without an echo is emitted at the soonest, in microseconds: for modules that
+        report by a bus or a pulse's width after their window has closed. 0: when it closes.
+        """
+    def upcoming(self) -> list[Fire]:
+        """The firings to come, up to the end of the next period: for hardware that fires by itself.
+
+        They hold until one is late, or the ring is changed. The loop may then come late: for each firing poll at its
+        instant until there is no event, so that ``Fire`` says what is done already; hand in echoes; last poll at the
+        present.
+
+        Example:
+            >>> import eeruf
+            >>> ring = eeruf.Ring(eeruf.tables.TABLE_I_D, t_delta_us=500, window_us=36_000)
+            >>> [(fire.sensor, fire.due_us) for fire in ring.upcoming()[:4]]
+            [(0, 24000), (4, 24000), (8, 24000), (1, 49000)]
+        """
     @property
     def next_deadline_us(self) -> int:
         """When to poll next, in microseconds of the clock that wraps at 2^32; in the past if an event is pending."""
@@ -2142,7 +2160,8 @@ class Ring:
             'no_echo'
         """
     def measured(self, sensor: _Int, t_echo_us: _Int | None) -> None:
-        """Hand in what hardware or a protocol measured of a sensor's last firing, before its window closes.
+        """Hand in what hardware or a protocol measured of a sensor's last firing, before its reading is emitted: see
+        ``report_after_us``.
 
         Args:
             sensor: which one, from 0.

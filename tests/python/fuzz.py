@@ -53,6 +53,7 @@ FIRINGS = eeruf.logs.Firings.of(
     phase=READINGS.phase,
     t_echo_us=READINGS.earliest_us,
 )
+RING_FILE = Path(__file__).parents[2] / "rings" / "hc-sr04-8.toml"
 TABLE = eeruf.experiments.set_one(2, readings=16, methods=["eeruf"])
 RUNS = TABLE.runs["eeruf"]
 PATHS = ROOM.paths((0, 0), [(1, 0), (2, 0)], 2)
@@ -325,6 +326,9 @@ def calls(c: Chance) -> list[Callable[[], Any]]:
         lambda: ANY.experiments.concat(m([TABLE])),
         lambda: RUNS[0].figures(),
         lambda: [*c.random.choice([ANY.experiments.alcoves, ANY.experiments.courses])(m(3), m(2))[:1]],
+        lambda: ANY.experiments.rooms(m(RING_FILE), m(3), m(1), kind=m("hall"), driving=m(False), height=m("flat")),
+        # Judging takes a second: what is wrong is refused before.
+        lambda: ANY.experiments.recommend(m(RING_FILE), places=m(0), first=m(0), driving=m(False), wrong=m(0.03)),
         lambda: [*ANY.experiments.Scenes(m("alcove"), m(range(3)), m("plain"))[:2]],
         lambda: ANY.sim.simulate(ROOM, method(c), 5).to_xarray(),
         lambda: READINGS[m(slice(1, 5))],
@@ -421,6 +425,7 @@ def disturb(c: Chance, live: Any, now: int) -> None:
     tried(live.wait_us, c.anything())
     c.random.choice([live.pause, live.resume, live.resume, lambda: tried(live.restart, c.mostly(now))])()
     if isinstance(live, ANY.Ring):
+        tried(live.upcoming)
         tried(live.measured, c.mostly(1), c.random.choice([None, c.mostly(9_000)]))
         tried(live.answered, c.mostly(1), c.mostly(False))
         tried(c.random.choice([live.state, live.forget]), c.mostly(1))

@@ -100,8 +100,8 @@ pub struct RingSpec {
     pub retrigger: Micros,
     /// True if a sensor's own echo from the period before must be rejected too.
     pub stale_echo: bool,
-    /// True if only the modules ask for that: schedules of many phases, whose step does not move a sensor's own sound, do
-    /// without.
+    /// True if only the modules ask for that. Schedules of many phases, whose step does not move a sensor's own sound,
+    /// do without.
     pub stale_echo_by_module: bool,
     /// The speed of sound.
     pub c: SpeedOfSound,

@@ -1,4 +1,4 @@
-//! Faults of one echo line: what is never told as free space, and the state that each shows.
+//! Faults of one echo line: never free space, and the state of each.
 
 use std::cell::Cell;
 use std::convert::Infallible;

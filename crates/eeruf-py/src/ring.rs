@@ -325,7 +325,7 @@ impl Ring {
     ///     >>> import eeruf
     ///     >>> ring = eeruf.Ring(eeruf.tables.TABLE_I_D, t_delta_us=500, window_us=36_000)
     ///     >>> [(fire.sensor, fire.due_us) for fire in ring.upcoming()[:4]]
-    ///     [(0, 24000), (4, 24000), (8, 24000), (1, 43000)]
+    ///     [(0, 24000), (4, 24000), (8, 24000), (1, 49000)]
     fn upcoming(&self) -> Vec<Fire> {
         self.0.ring().upcoming().map(Fire::of).collect()
     }

@@ -71,13 +71,15 @@ impl Described<'_> {
             return format!("{name}: no way of firing was possible for this ring.\n");
         };
         let right = |way: &JudgedWay| 100.0 * way.belief_right().unwrap_or(0.0);
+        let echoes = |way: &JudgedWay| {
+            let rooms = way.rooms.as_ref().map_or(&[][..], Vec::as_slice);
+            rooms.iter().map(|figures| figures.right_echoes_per_s).sum::<f64>() / rooms.len().max(1) as f64
+        };
         let title = if way.way.name == way.way.title() { String::new() } else { format!(" ({})", way.way.title()) };
         let mut text = format!("{name}: recommended: {}{title}, right {:.1} % of the time", way.way.name, right(way));
-        match way.echoes_against(base).filter(|_| way != base) {
-            Some(times) => {
-                _ = writeln!(text, "; one by one {:.1} %, with 1/{times:.1} of its right echoes.", right(base));
-            }
-            None => text.push_str(".\n"),
+        _ = writeln!(text, ", {:.0} right echoes a second.", echoes(way));
+        if way != base {
+            _ = writeln!(text, "One by one: {:.1} % and {:.0}.", right(base), echoes(base));
         }
         if PLAIN.contains(&way.way.name) {
             text.push_str("You do not need eeruf here: no other way is right for a point more of the time.\n");

@@ -12,8 +12,8 @@ use crate::limits::{four, neighbours_in_range, number, sensors_in_range};
 use crate::text::{TextError, parse};
 use crate::uneven::OwnedUneven;
 
-/// What readings of one wall differ by on a robot that stands, for a file that names its modules and no jitter: a
-/// choice, twice the 50 us that an HC-SR04 scatters by.
+/// Repeatability of readings of one wall on a robot that stands, for a file that names its modules and no jitter: a
+/// choice.
 const USUAL_JITTER_US: u32 = 100;
 /// Walls up to here make neighbours hear each other, for a file that names its modules and no interval: the paper's 15
 /// ms between neighbours.
@@ -34,8 +34,8 @@ pub struct RingFile {
     layout: LayoutKey,
     #[serde(default = "one_millisecond")]
     tick_us: u32,
-    /// Whether a sensor's own echo from the period before must be rejected; by default where modules are named, which
-    /// hear farther than they see.
+    /// Rejection of a sensor's own echo from the period before; by default where modules are named, which hear farther
+    /// than they see.
     stale_echo: Option<bool>,
     /// The modules: range and rest of each, where the file does not say otherwise.
     module: Option<ModulesFile>,
@@ -87,7 +87,7 @@ pub struct RingSpec {
     pub tick: Micros,
     /// How they stand.
     pub layout: OwnedLayout,
-    /// How many adjacent sensors must not fire close together.
+    /// Number of adjacent sensors that must not fire close together.
     pub neighbours: u8,
     /// The least time between the firings of two neighbours (Sec. 3.1 c).
     pub min_interval: Micros,

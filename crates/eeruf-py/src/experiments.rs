@@ -1,10 +1,8 @@
 //! The paper's experiments, and robots of one make. Their tables come as JSON, with the names that `eeruf experiment
 //! --json` uses; what users call is in `python/eeruf/experiments.py`.
 
-use std::path::PathBuf;
-
 use eeruf_core::Micros;
-use eeruf_design::{RingSpec, RoomsAsked};
+use eeruf_design::RoomsAsked;
 use eeruf_sim::{
     LabMate, Physics, Robot, WorldParts,
     experiments::{
@@ -31,6 +29,7 @@ use crate::{
     errors::{ArgumentError, Raise},
     methods::{best, methods as methods_of},
     own::Made,
+    robot::ring_file,
     scene::Scene,
     surroundings,
     watch::{Background, in_background},
@@ -166,14 +165,6 @@ pub(crate) fn course(number: &Bound<'_, PyAny>, physics: &Bound<'_, PyAny>) -> P
     scene_of(course.scene().map_err(Raise::raise)?, robot, order, seed, physics)
 }
 
-/// The ring of a ring file.
-fn ring_of(path: &Bound<'_, PyAny>) -> PyResult<RingSpec> {
-    let path: PathBuf = path.extract().map_err(|_| wrong("ring", shown(path), "the path of a ring file"))?;
-    let failed = |message: &dyn std::fmt::Display| ArgumentError::new_err(format!("{}: {message}", path.display()));
-    let text = std::fs::read_to_string(&path).map_err(|error| failed(&error))?;
-    RingSpec::from_text(&text).map_err(|error| failed(&error))
-}
-
 /// The scene of a room, with the robot of a ring file in its place.
 #[pyfunction]
 #[pyo3(name = "_room", signature = (kind, number, ring, driving, physics, height))]
@@ -189,7 +180,7 @@ pub(crate) fn room(
     let kind = choice("kind", Some(kind), &kinds)?;
     let (seed, physics) = numbered(number, physics)?;
     let height = surroundings::height(Some(height))?;
-    let spec = ring_of(ring)?;
+    let spec = ring_file(ring)?;
     let robot = spec.room_robot().map_err(ArgumentError::new_err)?.robot;
     let speed_m_s = if flag("driving", Some(driving), false)? { spec.room_speed_m_s() } else { 0.0 };
     let plan = RoomPlan::random(kind, seed, robot.radius_m());
@@ -213,7 +204,7 @@ pub(crate) fn recommend(
     wrong: &Bound<'_, PyAny>,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<String> {
-    let spec = ring_of(ring)?;
+    let spec = ring_file(ring)?;
     let asked = RoomsAsked {
         own: vec![],
         places: whole("places", places, 1..=1000)?,

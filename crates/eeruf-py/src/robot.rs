@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use eeruf_core::{Micros, SensorLimits};
-use eeruf_design::robot_ring;
-use eeruf_sim::{Beam, Clock, GainProfile, Motion, Point, RobotRing, Sketch, Transducer, world::cover_motion};
+use eeruf_design::RingSpec;
+use eeruf_sim::{Beam, Clock, GainProfile, Motion, Point, Sketch, Transducer, world::cover_motion};
 use pyo3::{
     prelude::*,
     types::{PyDict, PyString, PyTuple},
@@ -191,12 +191,12 @@ pub(crate) fn sketch(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Sketch> {
     Sketch::from_table(&table).map_err(|message| ArgumentError::new_err(format!("{name}: {message}")))
 }
 
-/// The robot of a ring file.
-fn ring_file(path: &Bound<'_, PyAny>) -> PyResult<RobotRing> {
+/// The ring of a ring file.
+pub(crate) fn ring_file(path: &Bound<'_, PyAny>) -> PyResult<RingSpec> {
     let path: PathBuf = path.extract().map_err(|_| wrong("ring", shown(path), "the path of a ring file"))?;
     let failed = |message: &dyn std::fmt::Display| ArgumentError::new_err(format!("{}: {message}", path.display()));
     let text = std::fs::read_to_string(&path).map_err(|error| failed(&error))?;
-    robot_ring(&text).map_err(|message| failed(&message))
+    RingSpec::from_text(&text).map_err(|error| failed(&error))
 }
 
 fn refused_ring(message: &str) -> PyErr {
@@ -277,7 +277,7 @@ impl Robot {
         let pose = pose_of("pose", pose)?;
         let spacing_rad = spacing_rad.map(|angle| number("spacing_rad", angle, -10.0..=10.0)).transpose()?;
         let radius_m = radius_m.map(|radius| number("radius_m", radius, 0.0..=1e3)).transpose()?;
-        let file = ring.map(ring_file).transpose()?;
+        let file = ring.map(ring_file).transpose()?.map(|spec| spec.robot_ring());
         let rated_m_s = file.as_ref().map_or(0.0, |file| file.speed_m_s);
         let (mut robot, sensor_poses) = if let (None, Some(file)) = (sensors, &file) {
             if spacing_rad.is_some() || radius_m.is_some() {

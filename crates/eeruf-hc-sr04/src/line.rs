@@ -14,7 +14,7 @@ pub(crate) enum Pulse {
     Awaited,
     /// The line rose at this instant.
     Rose(Instant),
-    /// The pulse is over: it rose at this instant, and was so many microseconds wide.
+    /// The pulse is over: the instant of its rise, and its width in microseconds.
     Over(Instant, u16),
 }
 

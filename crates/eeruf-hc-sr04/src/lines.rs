@@ -63,7 +63,7 @@ impl<T, I, D, const K: usize> Lines<T, I, D, K> {
         Trigger::Given { lost_an_edge }
     }
 
-    /// How long a gap in a pulse may be that does not end it.
+    /// Longest gap in a pulse that does not end it.
     pub(crate) const fn shortest(&self) -> Micros {
         self.settings.shortest
     }

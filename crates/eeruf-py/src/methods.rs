@@ -283,7 +283,7 @@ pub(crate) fn method(argument: &str, name: &Bound<'_, PyAny>) -> PyResult<Named>
     by_name(argument, name).map(|entry| entry.method())
 }
 
-/// What `eeruf_best` fires by, if one of these fires so.
+/// The schedule of `eeruf_best`, if it is among these methods.
 pub(crate) fn best(methods: &[Entry], robot: &Robot, background: &Background) -> PyResult<Option<BestSchedule>> {
     let asked = methods.iter().any(|entry| entry.method() == Named::EerufBest);
     asked

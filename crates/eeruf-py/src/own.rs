@@ -109,7 +109,7 @@ impl FiredReading {
     }
 }
 
-/// What a callable has raised, for whoever ran what called it.
+/// The exception that a callable raised, kept for the caller of the simulation.
 type Raised = Arc<Mutex<Option<PyErr>>>;
 
 /// The callables of a simulation, where the garbage collector finds them, and what one of them has raised.
@@ -142,12 +142,12 @@ impl Calls {
         })
     }
 
-    /// What a callable has raised since this was last asked.
+    /// Takes the exception that a callable raised, if any.
     pub(crate) fn raised(&self) -> Option<PyErr> {
         locked(&self.raised).take()
     }
 
-    /// Whether some of them were arguments of the simulation.
+    /// True if some of them were arguments of the simulation.
     pub(crate) fn is_given(&self) -> bool {
         !self.given.is_empty()
     }
@@ -168,7 +168,7 @@ impl Calls {
     }
 }
 
-/// Makes a method's own firings and filters anew for each simulation.
+/// Makes a method's own firings and filters for each simulation.
 #[derive(Debug)]
 pub(crate) struct Makers {
     firing: Option<Py<PyAny>>,
@@ -293,7 +293,7 @@ pub(crate) fn own(
     made(py, makers, firing, filter, robots)
 }
 
-/// The same once more: callables that were arguments stay, those of the method are made anew.
+/// A copy: callables that were arguments are kept, those of the method are made again.
 pub(crate) fn again(
     py: Python<'_>,
     calls: &Calls,

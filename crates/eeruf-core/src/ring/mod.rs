@@ -473,7 +473,7 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
         self.listening.audible()
     }
 
-    /// How long after its firing a reading without an echo is emitted at the soonest; 0 for the end of its window.
+    /// Shortest time from a firing to a reading of it without an echo; 0 for the end of its window.
     pub const fn report_after(&self) -> Micros {
         self.report_after
     }

@@ -35,7 +35,7 @@ fn late_loop(seed: u64, by_timer: bool) -> (u32, u32) {
     while readings < 3_600 {
         now += Micros::new(r.up_to(5_000));
         loop {
-            // What has happened since the last turn, in its order.
+            // The events since the last turn, in order.
             let fires = ring.upcoming().next().filter(|next| by_timer && now.has_reached(next.due));
             let until = fires.map_or(now, |next| next.due);
             edges.retain(|&(sensor, edge)| {

@@ -504,9 +504,9 @@ static void count(EerufRing *ring, uint8_t kind) {
     if (ring->tally[kind] < UINT8_MAX) ring->tally[kind]++;
 }
 
-/* -- What was fired: see the header, and docs/theory.md, section 2.1. While all firings kept a verified timetable,
-   (13a) and (13b) say what asking would find. A late firing delays all that follow, so the time between two firings is
-   off by at most the lateness in between; a verified schedule has some of that to spare. -- */
+/* -- What was fired: see the header, and docs/explanation/theory.md, section 2.1. While all firings kept a verified
+   timetable, (13a) and (13b) say what asking would find. A late firing delays all that follow, so the time between two
+   firings is off by at most the lateness in between; a verified schedule has some of that to spare. -- */
 
 #define AS_T_DELTA UINT16_MAX        /* the path change of a ring that follows its t_delta */
 #define MAX_AUDIBLE ((uint32_t)1 << 26)
@@ -1980,7 +1980,8 @@ static uint16_t fewer16(uint16_t one, uint16_t other) {
 #define DRAWS 8u            /* lags that are drawn in search of one that keeps the neighbours' interval */
 
 /* -- The tracker: which echo of a sensor is its own. A reading within t_delta of a track supports it, and only support
-   from different phases counts. A later reading contradicts it; an earlier one hides it (docs/hopping.md). -- */
+   from different phases counts. A later reading contradicts it; an earlier one hides it:
+   docs/explanation/hopping.md. -- */
 
 static OUT_OF_LINE uint32_t between(uint32_t one, uint32_t other) {
     return apart(one, other);

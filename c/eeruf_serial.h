@@ -1,6 +1,6 @@
 /*
  * What a ring says over a serial line: one frame for each firing, for eeruf-ros2 and `eeruf diagnose`. Byte by byte:
- * docs/serial.md.
+ * docs/reference/serial.md.
  *
  *     uint16_t late_us[8];
  *     EerufSerial line = EERUF_SERIAL(late_us, 8, "board");

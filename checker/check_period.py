@@ -2,11 +2,11 @@
 """Checks a certificate that a firing schedule's period is the shortest one: python3 check_period.py FILE
 
 Python's standard library alone; shares nothing with the search that found the schedule, nor with crates/eeruf-check.
-docs/certificate.md has problem and format; its sections "The rules" and "What the root may assume" have the proofs.
-Sensor x fires at a[x] in phase a, at b[x] in phase b, both in [0, T); d[x] = a[x] - b[x]. Required: |d| differ by the
-larger of two separations D; 2 |d[x]| >= D[x] if stale_echo; T - |d[x]| >= window[x]; after x, y fires no sooner than
-gap[x][y]. A schedule for T is one for longer periods: times within a phase stay, those across phases grow. So refuting
-one period refutes all below it."""
+docs/reference/certificate.md has problem and format; its sections "The rules" and "What the root may assume" have the
+proofs. Sensor x fires at a[x] in phase a, at b[x] in phase b, both in [0, T); d[x] = a[x] - b[x]. Required: |d| differ
+by the larger of two separations D; 2 |d[x]| >= D[x] if stale_echo; T - |d[x]| >= window[x]; after x, y fires no sooner
+than gap[x][y]. A schedule for T is one for longer periods: times within a phase stay, those across phases grow. So
+refuting one period refutes all below it."""
 import copy
 import sys
 from fractions import Fraction

@@ -5,8 +5,8 @@
 
 Each ring is drawn from its seed: two to six sensors with windows, retrigger times and tolerances of their own, intervals of pairs, shared
 echo lines, sensors that fire together, stale echoes. It is written as a ring file, so what is compared begins with the file. The model is the
-definition (docs/certificate.md, "The problem"), written down for all firings of two periods and the first of the third. Ends at the first
-difference, and prints how many rings of each kind there were.
+definition (docs/reference/certificate.md, "The problem"), written down for all firings of two periods and the first of
+the third. Ends at the first difference, and prints how many rings of each kind there were.
 """
 
 import argparse

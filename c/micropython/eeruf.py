@@ -249,7 +249,7 @@ class Ring:
         return left_out
 
     # -- Near-identical readings are ambiguous if sound of one sensor explains both. While firings keep a verified
-    #    timetable there is none, and the ring does not search (docs/theory.md, section 2.1). --
+    #    timetable there is none, and the ring does not search (docs/explanation/theory.md, section 2.1). --
 
     def set_path_change(self, path_change_us):
         """Sets by how much a path of foreign sound may change from one reading to the next, None for `t_delta_us`."""

@@ -251,7 +251,7 @@ describe("the page in a browser", { concurrency: LONG ? 1 : 4 }, () => {
       "sensors is 99; expected a number from 1 to 64. Shown is the first example instead.",
     );
     await other.page.goto(`${new URL(LECTURE, server.url)}?${toHash(/** @type {any} */ (state))}`);
-    // In a lecturer's own page, as docs/page.md embeds it, a link shows its state too.
+    // In a lecturer's own page, as docs/how-to/page.md embeds it, a link shows its state too.
     const frame = other.page.frameLocator("iframe");
     await frame.locator(".panel:not(.stale)").nth(2).waitFor();
     assert.equal(await frame.locator("#look").inputValue(), "3");

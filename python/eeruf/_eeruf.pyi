@@ -1055,8 +1055,8 @@ def check_certificate(text: str) -> int:
     """Check a certificate: that its schedule keeps the requirements in it, and that no period is shorter.
 
     The checker shares nothing with the search; ``checker/check_period.py`` in the repository is another, in 300 lines
-    of Python, and ``docs/certificate.md`` has the format and the proof of each rule. A certificate speaks of the
-    numbers that stand in it, and of nothing else.
+    of Python, and ``docs/reference/certificate.md`` has the format and the proof of each rule. A certificate speaks of
+    the numbers that stand in it, and of nothing else.
 
     Args:
         text: the certificate, as in ``design(..., certificate=True).certificate``.
@@ -2306,8 +2306,8 @@ class HoppingRing:
     ``"tentative"``.
 
     No sensor stays blind: one that hears nothing of its own gets a period in which it fires alone, and one whose
-    readings keep disagreeing draws a new lag. ``docs/hopping.md`` has the rules, what they bring, and what is not
-    promised.
+    readings keep disagreeing draws a new lag. ``docs/explanation/hopping.md`` has the rules, what they bring, and what
+    is not promised.
 
     Args:
         schedule: a :class:`HoppingSchedule`.
@@ -3297,7 +3297,8 @@ class Robot:
         spacing_rad: the angle from one sensor to the next on the arc, in radians.
         radius_m: the radius of the arc, in metres.
         module: of its sensors: a name such as ``"hc-sr04"``, a dict of what differs from one, such as
-            ``{"like": "hc-sr04", "sees_to_m": 2.5}``, or a list of one for each sensor; docs/modules.md has them all.
+            ``{"like": "hc-sr04", "sees_to_m": 2.5}``, or a list of one for each sensor; docs/reference/modules.md has
+            them all.
         gain: how the receiver's gain grows while it listens: ``"constant"``, ``"square_root"``, ``"linear"``,
             ``"stepped"`` or ``"polaroid_6500"``, the steps of that module's control circuit.
         beam: the pattern near 90 degrees off a sensor's axis: ``"cut_at_90"``, an endless baffle with nothing behind,
@@ -3531,11 +3532,12 @@ class Scene:
         seed: of the noise, 0 to 2^64 - 1.
         max_order: how many bounces :func:`simulate` follows; 6 unless it is given.
         physics: ``"plain"``, ``"default"``, or a dict of what differs from a ``preset``: ``shadows``, ``edges``,
-            ``narrow_panels``, ``range_walk`` (each True or False), ``fading_time_s``; see ``docs/physics.md``.
+            ``narrow_panels``, ``range_walk`` (each True or False), ``fading_time_s``; see
+            ``docs/explanation/physics.md``.
         height: ``"flat"``, all sound in one plane; ``"room"``, between a floor and a ceiling at 2.6 m; or a dict of
             what differs from that room: ``ceiling_m``, and ``floor`` and ``ceiling`` as in ``materials``.
         faults: what goes wrong, dicts with the keys of ``[[fault]]`` in scene files, such as
-            ``{"kind": "cut", "sensors": [2], "from_s": 3.0}``; docs/study.md has them all.
+            ``{"kind": "cut", "sensors": [2], "from_s": 3.0}``; docs/how-to/simulate.md has them all.
 
     Raises:
         ArgumentError: an array of the wrong shape, an index of no wall, something of the wrong type or out of range.

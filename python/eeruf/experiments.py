@@ -1,8 +1,8 @@
 """The paper's experiments (Sec. 4): robots that stand before walls, a robot that drives between poles; and robots of one make.
 
-What the tables say, and where the paper promises too much, stands in ``docs/experiments.md``; the program prints the same ones
-(``eeruf experiment``). A method is a name or a ``eeruf.sim.Method``, which may have a filter or a firing of your own. Parameters are
-tuned on seeds below 2,000; what is reported starts at :data:`FIRST`.
+What the tables say, and where the paper promises too much, stands in ``docs/log/experiments.md``; the program prints
+the same ones (``eeruf experiment``). A method is a name or a ``eeruf.sim.Method``, which may have a filter or a firing
+of your own. Parameters are tuned on seeds below 2,000; what is reported starts at :data:`FIRST`.
 """
 
 from __future__ import annotations
@@ -209,7 +209,7 @@ def rooms(
 ) -> list[_eeruf.Scene]:
     r"""Return rooms of one kind as scenes with the robot of a ring file in its place; a scene's ``seed`` is its number.
 
-    These are the rooms in which ``eeruf design`` judges ways of firing (``docs/rooms.md``).
+    These are the rooms in which ``eeruf design`` judges ways of firing (``docs/how-to/design.md``).
 
     Args:
         ring: the path of a ring file. Without ``poses`` a ring stands evenly all round, a line 15 degrees apart.

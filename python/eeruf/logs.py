@@ -1,6 +1,7 @@
 """Logs of robots: the ranges of bags, MCAP and CSV files, and what a ring's log of firings says about it.
 
-Everything is read by the same code as ``eeruf replay``, ``eeruf diagnose`` and ``eeruf survey``; docs/logs.md says what is read.
+Everything is read by the same code as ``eeruf replay``, ``eeruf diagnose`` and ``eeruf survey``; docs/how-to/logs.md
+says what is read.
 
 Example:
     >>> import eeruf
@@ -390,7 +391,7 @@ def read_log(
 
 
 def read_firings(path: str | os.PathLike[str]) -> Firings:
-    """Read a ring's log of firings, CSV or MCAP; docs/diagnose.md has the format.
+    """Read a ring's log of firings, CSV or MCAP; docs/how-to/diagnose.md has the format.
 
     Args:
         path: the log.
@@ -421,7 +422,7 @@ def replay(
     """Run the tracker of a hopping ring again over the ring's own log of firings.
 
     With the settings of the ring, it accepts exactly what the ring accepted. The log says how each reading was weighed, as one that
-    ``eeruf study --method eeruf_hopping --log`` writes does; docs/diagnose.md has the columns.
+    ``eeruf study --method eeruf_hopping --log`` writes does; docs/how-to/diagnose.md has the columns.
 
     Args:
         path: the log, CSV or MCAP.
@@ -484,7 +485,7 @@ def diagnose(
 
 
 def survey(log: Firings | str | os.PathLike[str], *, tolerance_us: int = 100, until_us: int = 15_000) -> Surveyed:
-    """Say from a measuring run who hears whom; docs/survey.md says how to make one.
+    """Say from a measuring run who hears whom; docs/how-to/survey.md says how to make one.
 
     Args:
         log: a file, or firings.

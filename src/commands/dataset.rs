@@ -18,7 +18,7 @@ use crate::report::watch::Watch;
 /// Write simulated readings with ground truth, in alcoves and on courses of poles: what each sensor read, what it would
 /// have read alone, and whose sound it was.
 ///
-/// docs/dataset.md is its data card. The same arguments write the same files.
+/// docs/how-to/dataset.md is its data card. The same arguments write the same files.
 #[derive(clap::Args)]
 pub(crate) struct Args {
     /// The folder, which is made
@@ -36,7 +36,7 @@ pub(crate) struct Args {
     /// How many periods of 60 ms in each alcove
     #[arg(long, value_name = "N", default_value_t = 500, value_parser = clap::value_parser!(u32).range(1..=100_000))]
     periods: u32,
-    /// Which effects there are: plain, or default (see docs/physics.md)
+    /// Which effects there are: plain, or default (see docs/explanation/physics.md)
     #[arg(long, value_name = "PRESET", default_value = "default")]
     physics: Physics,
 }
@@ -75,7 +75,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     });
     written.into_iter().collect::<Result<Vec<_>, _>>()?;
     let about = json!({
-        "about": "simulated ultrasonic rings with ground truth; docs/dataset.md of eeruf says what is in it",
+        "about": "simulated ultrasonic rings with ground truth; docs/how-to/dataset.md of eeruf says what is in it",
         "eeruf": env!("CARGO_PKG_VERSION"),
         "physics": args.physics.name(),
         "first": args.first, "alcoves": args.alcoves, "courses": args.courses, "periods": args.periods,

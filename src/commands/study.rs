@@ -61,7 +61,7 @@ pub(crate) struct Args {
     /// Another seed than the scene's
     #[arg(long, value_name = "N")]
     seed: Option<u64>,
-    /// Other effects than the scene's: plain, or default (see docs/physics.md)
+    /// Other effects than the scene's: plain, or default (see docs/explanation/physics.md)
     #[arg(long, value_name = "PRESET")]
     physics: Option<Physics>,
     #[command(flatten)]

@@ -37,7 +37,7 @@ pub(crate) struct Args {
     /// Write the simulated log
     #[arg(long, value_name = "LOG.csv", requires = "simulate")]
     out: Option<PathBuf>,
-    /// Simulated: other effects than the scene's: plain, or default (see docs/physics.md)
+    /// Simulated: other effects than the scene's: plain, or default (see docs/explanation/physics.md)
     #[arg(long, value_name = "PRESET", requires = "simulate")]
     physics: Option<Physics>,
     /// Simulated: how many times there are between the two of a pair, from 0 on

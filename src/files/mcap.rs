@@ -112,8 +112,8 @@ pub(crate) fn write_mcap(file: &Path, stage: &Stage<'_>, runs: &[Readings]) -> R
 }
 
 /// A [`Simulation`] as an MCAP file, written while it goes on, as `eeruf study --mcap` writes a whole one: ranges, what
-/// is accepted, poses, the scene and what it changes to, each reading's path and each firing; `docs/logs.md` has the
-/// topics.
+/// is accepted, poses, the scene and what it changes to, each reading's path and each firing; `docs/how-to/logs.md` has
+/// the topics.
 ///
 /// ```
 /// use eeruf_sim::*;

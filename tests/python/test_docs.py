@@ -119,7 +119,7 @@ def listings(document: str) -> list[str]:
 
 TASKS = re.findall(
     r"^```python\n(.*?)^```$",
-    (ROOT / "docs/python.md").read_text().split("## Twelve tasks")[1].split("\n## ")[0],
+    (ROOT / "docs/how-to/python.md").read_text().split("## Twelve tasks")[1].split("\n## ")[0],
     flags=re.M | re.S,
 )
 
@@ -144,7 +144,9 @@ def test_each_of_the_twelve_tasks_takes_fewer_than_fifteen_lines_and_runs_as_a_s
     assert (tmp_path / "tables.pdf").stat().st_size > 5_000
 
 
-@pytest.mark.parametrize(("document", "least"), [("README.md", 1), ("python/README.md", 1), ("docs/python.md", 8)])
+@pytest.mark.parametrize(
+    ("document", "least"), [("README.md", 1), ("python/README.md", 1), ("docs/how-to/python.md", 8)]
+)
 def test_the_listings_of_a_document_run_from_top_to_bottom(
     document: str, least: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

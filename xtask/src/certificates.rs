@@ -21,7 +21,7 @@ pub(crate) struct Plan {
 }
 
 const FOLDER: &str = "target/certificates";
-/// The table's intervals and separations, see docs/search.md.
+/// The table's intervals and separations, see docs/explanation/search.md.
 const WINDOWS_MS: [u32; 4] = [15, 30, 45, 60];
 const TABLE: [u32; 4] = [8, 12, 16, 24];
 
@@ -106,7 +106,7 @@ fn timed(command: &mut Command, total: &mut Duration) -> Result<String, Trouble>
     Ok(said)
 }
 
-/// Ring files for the table of docs/search.md with so many sensors.
+/// Ring files for the table of docs/explanation/search.md with so many sensors.
 pub(crate) fn table(sensors: &[u32], tick_us: u32) -> Vec<(String, String)> {
     let mut rings = Vec::new();
     for layout in ["line", "ring"] {

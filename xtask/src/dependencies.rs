@@ -1,4 +1,4 @@
-//! Whether docs/dependencies.md names every dependency, and how many crates each of ours brings along.
+//! Whether docs/project/dependencies.md names every dependency, and how many crates each of ours brings along.
 //!
 //! Only tests: nothing here is a command.
 
@@ -15,7 +15,7 @@ fn root() -> PathBuf {
 }
 
 fn document() -> String {
-    std::fs::read_to_string(root().join("docs/dependencies.md")).unwrap()
+    std::fs::read_to_string(root().join("docs/project/dependencies.md")).unwrap()
 }
 
 /// What stands between back quotes in a text.
@@ -45,7 +45,7 @@ fn every_direct_dependency_is_named_with_its_reason_and_no_other() {
     let text = document.replace('\n', " ");
     let named = quoted(&text);
     let missing: Vec<_> = dependencies.iter().filter(|(name, _)| !named.contains(name.as_str())).collect();
-    assert!(missing.is_empty(), "docs/dependencies.md does not name {missing:?}");
+    assert!(missing.is_empty(), "docs/project/dependencies.md does not name {missing:?}");
     // The first column of the table is of dependencies alone.
     let rows = document.lines().filter_map(|line| line.strip_prefix("| `"));
     let first: Vec<_> = rows.map(|row| row.split('|').next().unwrap()).collect();
@@ -55,7 +55,7 @@ fn every_direct_dependency_is_named_with_its_reason_and_no_other() {
         .flat_map(|cell| quoted(&format!("`{cell}")).into_iter().map(str::to_owned).collect::<Vec<_>>())
         .filter(|name| !dependencies.contains_key(name) && !name.starts_with("eeruf"))
         .collect();
-    assert!(gone.is_empty(), "nothing depends on {gone:?}, which docs/dependencies.md names");
+    assert!(gone.is_empty(), "nothing depends on {gone:?}, which docs/project/dependencies.md names");
 }
 
 #[test]

@@ -123,10 +123,10 @@ mod tests {
 
     #[test]
     fn a_link_is_followed_from_where_its_document_lies() {
-        let document = Path::new("docs/theory.md");
-        assert_eq!(parts(document, "../README.md"), ("README.md".into(), None));
-        assert_eq!(parts(document, "study.md#who"), ("docs/study.md".into(), Some("who")));
-        assert_eq!(parts(document, "#here"), ("docs/theory.md".into(), Some("here")));
+        let document = Path::new("docs/explanation/theory.md");
+        assert_eq!(parts(document, "../../README.md"), ("README.md".into(), None));
+        assert_eq!(parts(document, "../how-to/simulate.md#who"), ("docs/how-to/simulate.md".into(), Some("who")));
+        assert_eq!(parts(document, "#here"), ("docs/explanation/theory.md".into(), Some("here")));
     }
 
     #[test]

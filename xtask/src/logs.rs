@@ -12,7 +12,7 @@ use crate::steps::{Steps, Trouble, output, run};
 const HOME: &str = "target/logs";
 /// Topics, and messages on each: a million, and a tenth of that.
 const SIZES: [(u32, [u32; 2]); 2] = [(8, [125_000, 12_500]), (24, [41_667, 4_167])];
-const DATA_CARD: &str = "docs/dataset.md";
+const DATA_CARD: &str = "docs/how-to/dataset.md";
 
 pub(crate) fn logs(steps: &mut Steps) {
     for (topics, messages) in SIZES {
@@ -50,7 +50,7 @@ fn bags(topics: u32, messages: [u32; 2]) -> Result<(), Trouble> {
     replayed
 }
 
-/// The verdicts of `eeruf logs` on logs of alcoves, which fail if they break what docs/logs.md promises.
+/// The verdicts of `eeruf logs` on logs of alcoves, which fail if they break what docs/how-to/logs.md promises.
 fn doctor(physics: &str) -> Result<(), Trouble> {
     let example = ["run", "--quiet", "--release", "-p", "eeruf-logs", "--example", "doctor_alcoves", "--"];
     run(Command::new("cargo").args(example).args(["20000", "100", "1000", physics]))

@@ -67,7 +67,7 @@ enum Verb {
         #[arg(long)]
         nothing_skipped: bool,
     },
-    /// Build the firmware, run it on emulated boards, and compare its figures with those of docs/firmware.md
+    /// Build the firmware, run it on emulated boards, and compare its figures with those of docs/how-to/firmware.md
     Firmware(firmware::Plan),
     /// Compile the C library strictly, misuse it, and compare it with the Rust crates under sanitizers
     C,
@@ -81,7 +81,7 @@ enum Verb {
     },
     /// Run the tests of c/micropython in MicroPython's WebAssembly build and in CPython
     Micropython,
-    /// Run NewPing beside the Arduino library on a simulated Uno, and print the table that docs/arduino.md shows
+    /// Run NewPing beside the Arduino library on a simulated Uno, and print the table that docs/how-to/arduino.md shows
     Newping {
         /// A folder with NewPing.h and NewPing.cpp, which are not part of this project
         #[arg(value_name = "DIR")]
@@ -93,8 +93,9 @@ enum Verb {
     Ros2,
     /// Load a recording in Rerun, whose wheel has 170 MB, and see that none of it is raw bytes
     Rerun,
-    /// Replay bags of a million messages, name senders in 200 alcoves, write the data set: the figures of docs/logs.md,
-    /// docs/diagnose.md and docs/dataset.md, which are also what must hold (many minutes)
+    /// Replay bags of a million messages, name senders in 200 alcoves, write the data set: the figures of
+    /// docs/how-to/logs.md, docs/how-to/diagnose.md and docs/how-to/dataset.md, which are also what must hold (many
+    /// minutes)
     Logs,
     /// Build the page in playground/, as a folder for a server and as one file for a disk
     Page {
@@ -149,7 +150,7 @@ enum Verb {
         #[arg(long)]
         check: bool,
     },
-    /// Print the table of shortest periods that docs/search.md shows
+    /// Print the table of shortest periods that docs/explanation/search.md shows
     Periods {
         /// What to pass to the example `shortest_periods` of eeruf-core
         #[arg(value_name = "ARGUMENT")]

@@ -1,4 +1,5 @@
-//! Tables of measurements in docs/firmware.md: `<!-- measured: NAME -->` stands before each, `<!-- end -->` after it.
+//! Tables of measurements in docs/how-to/firmware.md: `<!-- measured: NAME -->` stands before each, `<!-- end -->`
+//! after it.
 //!
 //! Counts repeat on the same compiler and must be the same; those of another one, which may be a third more or less,
 //! are not compared. Timings differ a little from run to run.
@@ -9,7 +10,7 @@ use std::fs;
 use crate::blocks::{blocks, replaced};
 use crate::steps::Trouble;
 
-pub(crate) const DOCUMENT: &str = "docs/firmware.md";
+pub(crate) const DOCUMENT: &str = "docs/how-to/firmware.md";
 const MEASURED: &str = "<!-- measured: ";
 /// The table that says which compiler each board's figures are of.
 pub(crate) const COMPILERS: &str = "compilers";

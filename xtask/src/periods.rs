@@ -1,4 +1,5 @@
-//! `cargo xtask periods`: the columns that the example `shortest_periods` prints, as the table of docs/search.md.
+//! `cargo xtask periods`: the columns that the example `shortest_periods` prints, as the table of
+//! docs/explanation/search.md.
 
 use std::process::Command;
 

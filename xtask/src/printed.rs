@@ -8,7 +8,7 @@ use std::fs;
 use std::process::Command;
 
 use crate::blocks::{Block, blocks, replaced};
-use crate::steps::{Trouble, run};
+use crate::steps::{Trouble, output, run};
 
 const PRINTED_BY: &str = "<!-- printed by";
 
@@ -45,16 +45,9 @@ fn mark<'a>(block: &Block<'a>) -> Result<Mark<'a>, Trouble> {
 
 /// The README, and all documents in `docs`.
 pub(crate) fn documents() -> Result<Vec<String>, Trouble> {
-    let failed = |error: std::io::Error| Trouble::Failed(format!("docs: {error}"));
-    let mut all = vec!["README.md".to_owned()];
-    for entry in fs::read_dir("docs").map_err(failed)? {
-        let path = entry.map_err(failed)?.path();
-        if path.extension().is_some_and(|ending| ending == "md") {
-            all.push(path.display().to_string());
-        }
-    }
-    all.sort();
-    Ok(all)
+    let listed = output(Command::new("git").args(["ls-files", "README.md", "docs/*.md"]));
+    let listed = listed.ok_or_else(|| Trouble::Failed("git ls-files: no answer".to_owned()))?;
+    Ok(listed.lines().map(str::to_owned).collect())
 }
 
 /// Compares what stands in documents with what their commands print now.

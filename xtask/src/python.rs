@@ -130,7 +130,7 @@ fn fresh(python: &Path, distribution: &Path) -> Result<(), Trouble> {
 
 /// Runs what the tutorial says to type, but for how to install, in a folder where a user has the program and no clone.
 fn tutorial(home: &Path, program: &Path) -> Result<(), Trouble> {
-    let text = fs::read_to_string("docs/tutorial.md").map_err(|error| Trouble::Failed(error.to_string()))?;
+    let text = fs::read_to_string("docs/tutorial/ring.md").map_err(|error| Trouble::Failed(error.to_string()))?;
     let blocks = text.split("```sh\n").skip(1).filter_map(|rest| rest.split("```").next());
     let commands: Vec<_> = blocks.flat_map(str::lines).filter(|line| !line.contains(" install ")).collect();
     let here = std::env::var_os("PATH").unwrap_or_default();

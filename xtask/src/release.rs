@@ -10,7 +10,7 @@ use crate::steps::{Steps, Trouble, output, run};
 
 /// What a person does: nobody else may.
 const REMAINS: &str = "
-What remains for a person, in this order (docs/releasing.md says how):
+What remains for a person, in this order (docs/project/releasing.md says how):
   1. read CHANGELOG.md once more as a user would, and the site (cargo xtask site)
   2. run the long checks that changed code asks for, and put their figures into the docs
   3. git tag v{VERSION} && git push origin v{VERSION}: the workflow publishes crates and wheels, and drafts the release

@@ -9,7 +9,7 @@ use crate::steps::{Trouble, output, run};
 const HOME: &str = "target/rerun";
 
 /// Converts a recording by `rerun mcap convert`, and checks that nothing of it is kept as bytes; then runs the script
-/// of docs/logs.md.
+/// of docs/how-to/logs.md.
 pub(crate) fn rerun() -> Result<(), Trouble> {
     if output(Command::new("python3").args(["-c", "import venv, ensurepip"])).is_none() {
         return Err(Trouble::Skipped("python3 with venv is not installed".to_owned()));

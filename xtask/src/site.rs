@@ -87,9 +87,10 @@ fn rewritten(document: &Path, text: &str) -> String {
         if !within_reach(&link.target) || link.target.starts_with('#') || link.range.start < end {
             continue;
         }
+        let up = "../".repeat(document.strip_prefix("docs").map_or(0, |inside| inside.components().count() - 1));
         let target = match (file.strip_prefix("docs"), OUTSIDE.iter().find(|(name, _)| Path::new(name) == file)) {
-            (_, Some((_, chapter))) => (*chapter).to_owned(),
-            (Ok(inside), None) if !inside.starts_with("notebooks") => inside.display().to_string(),
+            (_, Some((_, chapter))) => format!("{up}{chapter}"),
+            (Ok(inside), None) if !inside.starts_with("notebooks") => format!("{up}{}", inside.display()),
             _ => format!("{REPOSITORY}/{}", file.display()),
         };
         let target = heading.map_or(target.clone(), |heading| format!("{target}#{heading}"));
@@ -174,14 +175,14 @@ mod tests {
 
     #[test]
     fn links_lead_to_chapters_in_the_book_and_to_sources_in_the_repository() {
-        let text = "[docs/study.md](docs/study.md#who) ![b](docs/pictures/b.png) [c](CHANGELOG.md) [d](src/main.rs) \
-                    [e](https://e.org/)";
-        let expected = "[docs/study.md](study.md#who) ![b](pictures/b.png) [c](changes.md) \
+        let text = "[docs/how-to/simulate.md](docs/how-to/simulate.md#who) ![b](docs/pictures/b.png) \
+                    [c](CHANGELOG.md) [d](src/main.rs) [e](https://e.org/)";
+        let expected = "[docs/how-to/simulate.md](how-to/simulate.md#who) ![b](pictures/b.png) [c](changes.md) \
                         [d](https://github.com/eeruf/eeruf/blob/main/src/main.rs) [e](https://e.org/)";
         assert_eq!(rewritten(Path::new("README.md"), text), expected);
-        let text = "[a](theory.md) [b](../README.md) [c](notebooks) [d](#here)";
-        let expected = "[a](theory.md) [b](introduction.md) \
+        let text = "[a](../explanation/theory.md) [b](../../README.md) [c](../notebooks) [d](#here)";
+        let expected = "[a](../explanation/theory.md) [b](../introduction.md) \
                         [c](https://github.com/eeruf/eeruf/blob/main/docs/notebooks) [d](#here)";
-        assert_eq!(rewritten(Path::new("docs/study.md"), text), expected);
+        assert_eq!(rewritten(Path::new("docs/how-to/simulate.md"), text), expected);
     }
 }

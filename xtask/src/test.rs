@@ -94,7 +94,7 @@ fn each_feature_alone(metadata: &Metadata) -> Result<(), Trouble> {
             run_cargo(&[&["check", "--package", &package.name, "--locked"], &features[..]].concat())?;
         }
     }
-    // The wheel without the command, which docs/python.md says how to build.
+    // The wheel without the command, which docs/how-to/python.md says how to build.
     run_cargo(&["check", "--package", "eeruf-py", "--locked", "--no-default-features"])
 }
 

@@ -1,8 +1,8 @@
 //! Checks a certificate that the period of a firing schedule is the shortest one.
 //!
 //! A certificate holds the problem, a schedule, and a tree of case distinctions that refutes every shorter period.
-//! docs/certificate.md in the repository has the format and the proof of each rule. This crate depends on nothing, does
-//! nothing else, and shares nothing with the programs that find schedules and write certificates.
+//! docs/reference/certificate.md in the repository has the format and the proof of each rule. This crate depends on
+//! nothing, does nothing else, and shares nothing with the programs that find schedules and write certificates.
 //!
 //! | file | content |
 //! |---|---|

@@ -1,4 +1,4 @@
-//! `eeruf-check FILE` checks a certificate; docs/certificate.md has the format.
+//! `eeruf-check FILE` checks a certificate; docs/reference/certificate.md has the format.
 #![forbid(unsafe_code)]
 
 use std::process::ExitCode;

@@ -1,5 +1,5 @@
-//! What follows from what is known: rules 2 to 6 of docs/certificate.md, where each has its proof. Rule 1, the closure
-//! of bounds, is in `bounds`.
+//! What follows from what is known: rules 2 to 6 of docs/reference/certificate.md, where each has its proof. Rule 1,
+//! the closure of bounds, is in `bounds`.
 //!
 //! Each rule only ever tightens, and more the tighter its premises are. So all orders of applying them end in the same
 //! state, and a checker may take whichever order is fastest.

@@ -1,4 +1,5 @@
-//! What the root may assume because schedules come in symmetric pairs or families; docs/certificate.md has the proofs.
+//! What the root may assume because schedules come in symmetric pairs or families; docs/reference/certificate.md has
+//! the proofs.
 
 use crate::bounds::Refuted;
 use crate::error::CheckError;

@@ -1,7 +1,7 @@
 //! What a hopping ring loses to lateness, and how often paths that agree by accident are believed, in a naive world:
 //! sound leaves when a sensor fires and arrives a fixed time later; each sensor reports the first.
 //!
-//! `cargo run --release -p eeruf-core --example hopping_limits` prints the tables of `docs/hopping.md`.
+//! `cargo run --release -p eeruf-core --example hopping_limits` prints the tables of `docs/explanation/hopping.md`.
 
 #[expect(unreachable_pub, reason = "the tests share it")]
 #[path = "../tests/all/common/random.rs"]

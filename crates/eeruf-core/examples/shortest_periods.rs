@@ -1,6 +1,6 @@
 //! Prints the table of shortest periods with what each cost: `cargo run --release --example shortest_periods
 //! [ticks-per-ms] [separation-ms] [sensors,..] [neighbours] [layout,..] [budget] [window-ms,..]`; without arguments the
-//! table of `docs/search.md`, 8 to 24 sensors in a line and in a ring.
+//! table of `docs/explanation/search.md`, 8 to 24 sensors in a line and in a ring.
 //!
 //! The columns are read by `benches/peers/design_cpsat.py`; keep them in step.
 

@@ -1,6 +1,6 @@
-//! Prints what the table of `docs/search.md` costs core's search of even rings and the engine, and what it costs where
-//! one limit of one sensor or pair is a tick more or less: `cargo run --release -p eeruf-design --example twins
-//! [seconds]`, for each ring at most.
+//! Prints what the table of `docs/explanation/search.md` costs core's search of even rings and the engine, and what it
+//! costs where one limit of one sensor or pair is a tick more or less: `cargo run --release -p eeruf-design --example
+//! twins [seconds]`, for each ring at most.
 
 use std::time::Instant;
 

@@ -1,4 +1,4 @@
-//! Prints docs/modules.md's tables: modules by interface, limits, and the source of each figure.
+//! Prints docs/reference/modules.md's tables: modules by interface, limits, and the source of each figure.
 
 use eeruf_modules::{Interface, KEYS, Module, NoEcho, PRESETS, Preset, Source, Value};
 

@@ -213,8 +213,8 @@ fn certify(
 /// Check a certificate: that its schedule keeps the requirements in it, and that no period is shorter.
 ///
 /// The checker shares nothing with the search; ``checker/check_period.py`` in the repository is another, in 300 lines
-/// of Python, and ``docs/certificate.md`` has the format and the proof of each rule. A certificate speaks of the
-/// numbers that stand in it, and of nothing else.
+/// of Python, and ``docs/reference/certificate.md`` has the format and the proof of each rule. A certificate speaks of
+/// the numbers that stand in it, and of nothing else.
 ///
 /// Args:
 ///     text: the certificate, as in ``design(..., certificate=True).certificate``.

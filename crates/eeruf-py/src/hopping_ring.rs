@@ -18,8 +18,8 @@ type Core = eeruf_core::hopping::HoppingRing<MAX_SENSORS>;
 /// ``"tentative"``.
 ///
 /// No sensor stays blind: one that hears nothing of its own gets a period in which it fires alone, and one whose
-/// readings keep disagreeing draws a new lag. ``docs/hopping.md`` has the rules, what they bring, and what is not
-/// promised.
+/// readings keep disagreeing draws a new lag. ``docs/explanation/hopping.md`` has the rules, what they bring, and what
+/// is not promised.
 ///
 /// Args:
 ///     schedule: a :class:`HoppingSchedule`.

@@ -30,7 +30,8 @@ use crate::{
 ///     spacing_rad: the angle from one sensor to the next on the arc, in radians.
 ///     radius_m: the radius of the arc, in metres.
 ///     module: of its sensors: a name such as ``"hc-sr04"``, a dict of what differs from one, such as
-///         ``{"like": "hc-sr04", "sees_to_m": 2.5}``, or a list of one for each sensor; docs/modules.md has them all.
+///         ``{"like": "hc-sr04", "sees_to_m": 2.5}``, or a list of one for each sensor; docs/reference/modules.md has
+/// them all.
 ///     gain: how the receiver's gain grows while it listens: ``"constant"``, ``"square_root"``, ``"linear"``,
 ///         ``"stepped"`` or ``"polaroid_6500"``, the steps of that module's control circuit.
 ///     beam: the pattern near 90 degrees off a sensor's axis: ``"cut_at_90"``, an endless baffle with nothing behind,

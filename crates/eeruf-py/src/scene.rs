@@ -45,11 +45,12 @@ use crate::{
 ///     seed: of the noise, 0 to 2^64 - 1.
 ///     max_order: how many bounces :func:`simulate` follows; 6 unless it is given.
 ///     physics: ``"plain"``, ``"default"``, or a dict of what differs from a ``preset``: ``shadows``, ``edges``,
-///         ``narrow_panels``, ``range_walk`` (each True or False), ``fading_time_s``; see ``docs/physics.md``.
+///         ``narrow_panels``, ``range_walk`` (each True or False), ``fading_time_s``; see
+/// ``docs/explanation/physics.md``.
 ///     height: ``"flat"``, all sound in one plane; ``"room"``, between a floor and a ceiling at 2.6 m; or a dict of
 ///         what differs from that room: ``ceiling_m``, and ``floor`` and ``ceiling`` as in ``materials``.
 ///     faults: what goes wrong, dicts with the keys of ``[[fault]]`` in scene files, such as
-///         ``{"kind": "cut", "sensors": [2], "from_s": 3.0}``; docs/study.md has them all.
+///         ``{"kind": "cut", "sensors": [2], "from_s": 3.0}``; docs/how-to/simulate.md has them all.
 ///
 /// Raises:
 ///     ArgumentError: an array of the wrong shape, an index of no wall, something of the wrong type or out of range.

@@ -2,7 +2,7 @@
 //!
 //! It listens to a board over a serial line, or to raw echo times or ranges on topics, publishes what counts as
 //! `sensor_msgs/Range` and what is wrong as `diagnostic_msgs/DiagnosticArray`, sends `MAVLink`, and writes the log that
-//! `eeruf diagnose` reads. See `docs/ros2.md`.
+//! `eeruf diagnose` reads. See `docs/how-to/ros2.md`.
 
 mod board_clock;
 mod board_line;

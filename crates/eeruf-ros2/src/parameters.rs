@@ -31,7 +31,7 @@ pub(crate) enum ClearAs {
     MaxRange,
 }
 
-/// All parameters; `docs/ros2.md` says what each is for.
+/// All parameters; `docs/how-to/ros2.md` says what each is for.
 #[derive(Clone, Debug, Deserialize, PartialEq)]
 #[serde(default, deny_unknown_fields)]
 pub(crate) struct Parameters {

@@ -200,7 +200,7 @@ fn one_wrong_bit_before_packing_is_always_noticed() {
     }
 }
 
-/// The examples of docs/serial.md.
+/// The examples of docs/reference/serial.md.
 #[test]
 fn a_firing_is_these_bytes_and_a_weighed_one_these() {
     let firing = Firing {
@@ -306,7 +306,7 @@ fn a_recorder_says_everything_that_a_ring_reads() {
     assert_eq!(heard, expected);
 }
 
-/// The frames that docs/serial.md gave for version 1.
+/// The frames that docs/reference/serial.md gave for version 1.
 #[test]
 fn frames_of_version_one_are_still_read() {
     let bytes = |hex: &str| hex.split(' ').map(|byte| u8::from_str_radix(byte, 16).unwrap()).collect::<Vec<_>>();

@@ -1,4 +1,5 @@
-//! How exact parry's ray casts are, as `docs/physics.md` quotes it: why they judge paths in tests and do not find them.
+//! How exact parry's ray casts are, as `docs/explanation/physics.md` quotes it: why they judge paths in tests and do
+//! not find them.
 //!
 //! `cargo run --release -p eeruf-sim --example ray_casts`
 

@@ -13,8 +13,8 @@
 //!   runs the ring of `eeruf-core` through simulated time under a [`Method`]. Every one of the [`Readings`] knows what
 //!   caused it; [`Summary`] counts the errors and [`Attribution`] says who was fooled by whom.
 //!
-//! Which effects a world has, its [`Physics`] says; `docs/physics.md` in the repository says what is computed and what
-//! is left out.
+//! Which effects a world has, its [`Physics`] says; `docs/explanation/physics.md` in the repository says what is
+//! computed and what is left out.
 //!
 //! The rooms, each of which uses only those before it:
 //!

@@ -26,7 +26,7 @@ pub(crate) struct Common {
     /// The number of the first geometry or course; parameters were tuned on numbers below 2000
     #[arg(long, value_name = "SEED", default_value_t = FIRST)]
     pub(crate) first: u64,
-    /// Which effects there are: default or plain (see docs/physics.md)
+    /// Which effects there are: default or plain (see docs/explanation/physics.md)
     #[arg(long, value_name = "PRESET", default_value = "default")]
     pub(crate) physics: Physics,
     /// Whether rings hear floor and ceiling: flat, or a room 2.6 m high with sensors at 0.3 m

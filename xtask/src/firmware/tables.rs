@@ -1,4 +1,4 @@
-//! The tables of `docs/firmware.md`, and what they may not exceed.
+//! The tables of `docs/how-to/firmware.md`, and what they may not exceed.
 
 use std::process::Command;
 
@@ -9,7 +9,7 @@ use crate::steps::{Trouble, output};
 /// What a ring of twelve may cost on the Cortex-M0: (name in the measured lines, most instructions).
 const INSTRUCTIONS: [(&str, u32); 6] =
     [("idle_poll", 44), ("fire", 116), ("echo", 69), ("stamp", 60), ("reading", 553), ("reading_late", 3311)];
-/// What a hopping ring of twelve costs there, as `docs/hopping.md` has it: it may not grow unnoticed.
+/// What a hopping ring of twelve costs there, as `docs/explanation/hopping.md` has it: it may not grow unnoticed.
 const HOPPING: [(&str, u32); 7] = [
     ("idle_poll", 67),
     ("fire", 139),

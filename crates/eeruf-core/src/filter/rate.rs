@@ -9,7 +9,7 @@ use crate::time::{Instant, Micros};
 /// Accepts the third of three consecutive readings if the second one lies within `t_delta` of the line between the
 /// first and the third, over the times at which the sensor really fired. So an echo may change at any constant rate,
 /// up to a limit, without odometry; crosstalk that the schedule moves by more than `t_delta` between two readings is as
-/// far from the line as it moves: `docs/theory.md` section 2.2.
+/// far from the line as it moves: `docs/explanation/theory.md` section 2.2.
 ///
 /// It is for readings of two phases, as the judge of a [`Ring`](crate::Ring), which should remember five firings of
 /// each sensor then, or alone: hand in the echo time of each reading with the instant of its firing. It takes 20 bytes

@@ -5,7 +5,7 @@
 //! [Welch's sequence](crate::hopping::HoppingCode): crosstalk of one path never repeats from phase to phase, however
 //! gaps change. An [`EchoTracker`] believes what several phases support.
 //!
-//! Rules and measurements: `docs/flow.md`.
+//! Rules and measurements: `docs/explanation/flow.md`.
 
 mod plan;
 mod planning;

@@ -13,8 +13,8 @@ use crate::time::Micros;
 /// - **The linear congruence**, [`shortest`](Self::shortest): `q` phases. Sensor `i` waits `step ((i + a) m mod q)`.
 ///
 /// What sound of one sensor, sent j periods before, moves by from one phase of another sensor to another is at least a
-/// step (`docs/theory.md`, section 9). With the linear congruence it moves by the same from each period to the next, as
-/// an obstacle does that a robot drives towards; with Welch's sequence few phases lie along any line.
+/// step (`docs/explanation/theory.md`, section 9). With the linear congruence it moves by the same from each period to
+/// the next, as an obstacle does that a robot drives towards; with Welch's sequence few phases lie along any line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct HoppingCode {
@@ -62,7 +62,7 @@ impl HoppingCode {
     /// `phases`.
     ///
     /// A sensor's two firings are then never closer than `T_p - (K - 1) step`. No code of any kind that moves sound of
-    /// every age by a step does better (`docs/theory.md`, section 9.3).
+    /// every age by a step does better (`docs/explanation/theory.md`, section 9.3).
     ///
     /// # Errors
     /// As for [`HoppingCode::new`].

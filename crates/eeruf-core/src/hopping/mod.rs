@@ -5,7 +5,7 @@
 //! them support ([`EchoTracker`]). A sensor that hears nothing of its own for a while gets a *solo period*, in which it
 //! fires alone; where settings say so, one whose readings keep disagreeing draws a new lag.
 //!
-//! Rules and measurements: `docs/hopping.md`.
+//! Rules and measurements: `docs/explanation/hopping.md`.
 
 mod code;
 mod emit;
@@ -38,8 +38,8 @@ pub use weighed::Weighed;
 /// [`ScheduledRing`](crate::ScheduledRing); its readings are also [`Tentative`](crate::ReadingKind::Tentative).
 ///
 /// One path of fixed length from one sensor to another is never accepted, not even tentatively, however late firings
-/// are, if its sound dies within `reach` of [`HoppingListening`] and that is less than a period: `docs/theory.md`
-/// section 9 says why, and what is not covered.
+/// are, if its sound dies within `reach` of [`HoppingListening`] and that is less than a period:
+/// `docs/explanation/theory.md` section 9 says why, and what is not covered.
 ///
 /// ```
 /// use eeruf_core::hopping::{HoppingCode, HoppingListening, HoppingRing, HoppingSchedule, HoppingSettings};

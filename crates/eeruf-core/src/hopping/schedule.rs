@@ -88,9 +88,9 @@ impl<const K: usize> HoppingSchedule<K> {
         table
     }
 
-    /// Checks the schedule. That crosstalk moves by the step is proven (`docs/theory.md`, section 9.1) and not worked
-    /// out again where the period is at least twice the code and a step, so that this is cheap enough for the
-    /// compiler; [`PhaseTable::verify`] works it out.
+    /// Checks the schedule. That crosstalk moves by the step is proven (`docs/explanation/theory.md`, section 9.1) and
+    /// not worked out again where the period is at least twice the code and a step, so that this is cheap enough for
+    /// the compiler; [`PhaseTable::verify`] works it out.
     pub const fn verify<'r>(&self, requirements: &'r PhaseRequirements<'r>) -> PhaseVerification<'r> {
         let rows = self.table::<{ HoppingCode::MAX_PHASES as usize }>();
         let (cycle, _) = rows.split_at(self.code.phases() as usize);

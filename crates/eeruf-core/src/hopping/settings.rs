@@ -4,8 +4,8 @@ use crate::time::Micros;
 use crate::tracker::{LATEST_ECHO, TrackerSettings};
 
 /// How a [`HoppingRing`](super::HoppingRing) fires and believes. Begin with one of [`BALANCED`](Self::BALANCED),
-/// [`QUICK`](Self::QUICK), [`DRIVING`](Self::DRIVING) and [`MAPS`](Self::MAPS); `docs/hopping.md` says which is for
-/// whom.
+/// [`QUICK`](Self::QUICK), [`DRIVING`](Self::DRIVING) and [`MAPS`](Self::MAPS); `docs/explanation/hopping.md` says
+/// which is for whom.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]

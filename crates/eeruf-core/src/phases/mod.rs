@@ -8,8 +8,8 @@
 //! ```
 //!
 //! A filter that lets readings of any two phases support each other needs `|g - g'| >= D` for any two phases and any
-//! two ages in which the path can be heard. With two phases and one age this is (13a) and (13b): `docs/theory.md`,
-//! sections 4 and 9.
+//! two ages in which the path can be heard. With two phases and one age this is (13a) and (13b):
+//! `docs/explanation/theory.md`, sections 4 and 9.
 
 mod verify;
 

@@ -10,7 +10,7 @@
 //! `h - a` is the length, in time, that a path from x would have; R is how long sound is audible, and P is by how much
 //! a path may change between the two readings. For the receiver itself `a = f1` and `b = f2` do not count: these are
 //! the echoes that it is meant to hear. A single path of sound that changes by at most P is among those tried, whenever
-//! and for whatever reason its emitter fired: `docs/theory.md` section 2.1.
+//! and for whatever reason its emitter fired: `docs/explanation/theory.md` section 2.1.
 
 use crate::time::{Instant, Micros};
 

@@ -41,7 +41,7 @@ pub use events::{PeriodStats, Reading, RingEvent};
 /// was fired, not by what was planned: late polls, pauses, restarts, changes of schedule and sensors that are disabled
 /// or enabled may cost readings, but no single path of foreign sound that is audible for no longer than
 /// [`RingConfig::audible`] and changes by no more than [`RingConfig::path_change`] is ever accepted. On time a verified
-/// schedule has no ambiguous readings. `docs/theory.md` section 2.1 has the proof and its limits.
+/// schedule has no ambiguous readings. `docs/explanation/theory.md` section 2.1 has the proof and its limits.
 ///
 /// `H` is the number of firings that are remembered of each sensor, 4 bytes each. A reading that sound of a forgotten
 /// one might explain is ambiguous too; four suffice if sound is audible for no longer than a period.

@@ -6,7 +6,8 @@
 //! track contradicts it, since that echo would have come first; an earlier one says nothing about it, since it masks
 //! what comes later. Silence is a track like any other, later than all echoes.
 //!
-//! The room uses readings and times; it knows nothing of schedules. Rules and measurements: `docs/hopping.md`.
+//! The room uses readings and times; it knows nothing of schedules. Rules and measurements:
+//! `docs/explanation/hopping.md`.
 
 mod error;
 mod sensor;

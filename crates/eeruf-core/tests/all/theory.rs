@@ -1,4 +1,5 @@
-//! The numbers of `docs/theory.md`, section by section, against the code; its tables are read from the page itself.
+//! The numbers of `docs/explanation/theory.md`, section by section, against the code; its tables are read from the page
+//! itself.
 //!
 //! Claims with a test of their own are not repeated: (13a), (13b) pair by pair, the rearrangements of Table I, nested
 //! loops for tables of waits, and that every period of `tests/data/shortest-periods.json` is the shortest.
@@ -7,7 +8,7 @@ use eeruf_core::search::{Found, PeriodProblem, WaitProblem, WaitSearch, design, 
 use eeruf_core::tables::{TABLE_I_B, TABLE_I_C, TABLE_I_D, THE_ONE_WITH_19_MS};
 use eeruf_core::{Criterion, Layout, Micros, Phase, Requirements, Schedule, conditions::Interval};
 
-const THEORY: &str = include_str!("../../../../docs/theory.md");
+const THEORY: &str = include_str!("../../../../docs/explanation/theory.md");
 
 const fn ms(ms: u32) -> Micros {
     Micros::from_millis(ms)

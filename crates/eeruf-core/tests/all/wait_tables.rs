@@ -1,5 +1,6 @@
 //! The shared counts and optima of small wait-time problems, and the facts about the paper's own pairs
-//! (`docs/theory.md`, section 7.3). Plain nested loops and a slow, obvious checker judge what the searches return.
+//! (`docs/explanation/theory.md`, section 7.3). Plain nested loops and a slow, obvious checker judge what the searches
+//! return.
 
 use crate::common::Owned;
 use crate::common::naive::{self, Layout};

@@ -1,4 +1,4 @@
-//! A difference-bound matrix of firing times, kept closed (rule 1 of docs/certificate.md).
+//! A difference-bound matrix of firing times, kept closed (rule 1 of docs/reference/certificate.md).
 //!
 //! A bound is one integer: `2 v` says "at most v", `2 v - 1` says "less than v". So comparing integers compares bounds,
 //! and whole ticks and real times are treated alike: in whole ticks no bound is odd.

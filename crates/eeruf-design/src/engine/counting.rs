@@ -1,4 +1,4 @@
-//! Bounds on the period by counting (docs/theory.md, section 5), of the even ring that asks for no more.
+//! Bounds on the period by counting (docs/explanation/theory.md, section 5), of the even ring that asks for no more.
 //!
 //! Where sensors differ, a ring whose sensors all have the smallest separation, gap and window asks for less, so a
 //! bound on its period is one on theirs. Write I for that gap, D for the separation, R for the window, and
@@ -135,7 +135,7 @@ impl Even {
 }
 
 /// Sensors of which each has a gap to each other, how many such sets there are, and how they hang together; the proofs
-/// are in docs/theory.md, section 5.3 and 5.4.
+/// are in docs/explanation/theory.md, section 5.3 and 5.4.
 struct Classes {
     n: i32,
     cliques: i32,

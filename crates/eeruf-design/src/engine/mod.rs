@@ -17,8 +17,8 @@
 //! # The engine and the checker
 //!
 //! The crate `eeruf-check` has a matrix, a state and rules of its own, and nothing here is linked to them: a mistake in
-//! one is none in the other. Both state the rules of docs/certificate.md, for a certificate gives the tree alone, and a
-//! checker must come to the same refutations. Where they differ, they do on purpose:
+//! one is none in the other. Both state the rules of docs/reference/certificate.md, for a certificate gives the tree
+//! alone, and a checker must come to the same refutations. Where they differ, they do on purpose:
 //!
 //! - The checker reads each assumption about symmetry from the text and verifies it; the engine constructs those that
 //!   turns, reflections and exchanges give, and keeps them as data.

@@ -1,4 +1,4 @@
-//! Propagation: rules 2 to 6 of docs/certificate.md, where each has its proof. Rule 1, the closure
+//! Propagation: rules 2 to 6 of docs/reference/certificate.md, where each has its proof. Rule 1, the closure
 //! of bounds, is in `bounds`.
 //!
 //! Each rule only ever tightens, and more the tighter its premises are. So all orders of applying them end in the same

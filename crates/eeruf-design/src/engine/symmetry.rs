@@ -1,5 +1,5 @@
-//! Assumptions that the root may make because schedules come in symmetric pairs or families; docs/certificate.md has
-//! the proofs.
+//! Assumptions that the root may make because schedules come in symmetric pairs or families;
+//! docs/reference/certificate.md has the proofs.
 
 use crate::engine::bounds::Refuted;
 use crate::engine::problem::{Merged, Problem};

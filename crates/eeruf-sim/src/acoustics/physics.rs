@@ -5,7 +5,7 @@ use core::str::FromStr;
 
 use serde::ser::{Serialize, SerializeStruct as _, Serializer};
 
-/// Which effects are computed. `docs/physics.md` says what each is, and where its default comes from.
+/// Which effects are computed. `docs/explanation/physics.md` says what each is, and where its default comes from.
 ///
 /// ```
 /// use eeruf_sim::Physics;
@@ -39,8 +39,8 @@ impl Physics {
     pub const PLAIN: Self =
         Self { shadows: false, edges: false, narrow_panels: false, range_walk: false, fading_time_s: 0.0 };
 
-    /// What worlds have unless asked otherwise: everything on, with the numbers that `docs/physics.md` gives reasons
-    /// for.
+    /// What worlds have unless asked otherwise: everything on, with the numbers that `docs/explanation/physics.md`
+    /// gives reasons for.
     pub const DEFAULT: Self =
         Self { shadows: true, edges: true, narrow_panels: true, range_walk: true, fading_time_s: 1.0 };
 

@@ -22,7 +22,7 @@ const STEP_DB: f64 = 1.15;
 /// [`GainProfile::Polaroid6500`] has the twelve steps of the Polaroid 6500 module, by the clock of its control circuit,
 /// the TL851 (Texas Instruments, SLSS004, March 1988): whatever range it is used for, a step ends 2.38, 5.12, 7.87, ..
 /// 38.04 ms after firing. Each step adds 1.15 dB. That is a choice: the TL852's relative gain is published as a drawing
-/// only (SLSS003, Fig. 2), and regions of constant depth leave 1.1 to 1.2 dB a step; see `docs/physics.md`.
+/// only (SLSS003, Fig. 2), and regions of constant depth leave 1.1 to 1.2 dB a step; see `docs/explanation/physics.md`.
 ///
 /// ```
 /// use eeruf_sim::{GainProfile, gain_at};
@@ -77,7 +77,7 @@ impl Transducer {
     pub const POLAROID_6500: Self = Self::of(&eeruf_modules::POLAROID_6500);
 
     /// HC-SR04 module. Its gain is constant, as the module's is: amplifiers of fixed gain before a comparator; see
-    /// `docs/physics.md`.
+    /// `docs/explanation/physics.md`.
     pub const HC_SR04: Self = Self::of(&eeruf_modules::HC_SR04);
 
     /// What a module sends and hears.

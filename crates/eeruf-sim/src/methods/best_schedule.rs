@@ -9,7 +9,8 @@ use std::ops::ControlFlow;
 use super::schedules::table_i_d_for;
 use crate::world::{AnySchedule, Robot};
 
-/// The grid on which firing times are sought: a choice; finer ticks seldom gain (`docs/theory.md`, section 5.5).
+/// The grid on which firing times are sought: a choice; finer ticks seldom gain (`docs/explanation/theory.md`, section
+/// 5.5).
 pub const TICK: Micros = Micros::new(100);
 
 /// What [`Method::EerufBest`](crate::Method::EerufBest) fires by.

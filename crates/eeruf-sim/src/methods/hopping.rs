@@ -13,7 +13,7 @@ use crate::world::Robot;
 const STEP: Micros = Micros::new(240);
 
 /// How much of a period each sensor gets at least, unless the robot drives: with less, more crosstalk comes first and
-/// what is believed is right for less of the time (docs/hopping.md).
+/// what is believed is right for less of the time (docs/explanation/hopping.md).
 const TURN_US: u32 = 10_000;
 
 /// A hopping ring, no larger than needed.

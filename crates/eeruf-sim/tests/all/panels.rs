@@ -67,7 +67,7 @@ fn share(source: Point, receiver: Point, from: [f64; 2], to: [f64; 2]) -> f64 {
 
 #[test]
 fn straight_ahead_a_panel_returns_what_the_table_says() {
-    // docs/physics.md, in dB: the widths in millimetres.
+    // docs/explanation/physics.md, in dB: the widths in millimetres.
     let widths = [1.0, 10.0, 20.0, 50.0, 83.0, 100.0];
     for (r, expected) in [(1.0, [-35.4, -15.4, -9.4, -1.6, 2.0, 2.6]), (3.0, [-40.2, -20.2, -14.1, -6.2, -1.9, -0.4])] {
         for (width, expected) in widths.iter().zip(expected) {

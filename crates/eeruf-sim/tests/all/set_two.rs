@@ -58,7 +58,7 @@ fn with_bodies_the_second_robot_is_an_obstacle_and_courses_are_finished_all_the_
 
 #[test]
 fn in_the_labs_rectangle_the_width_of_walls_changes_nothing() {
-    // docs/experiments.md and docs/physics.md say so.
+    // docs/log/experiments.md and docs/explanation/physics.md say so.
     let without = Physics { narrow_panels: false, ..Physics::DEFAULT };
     for (second_robot, bodies) in [(None, false), (Some(SECOND_BEHIND), false), (Some(SECOND_AHEAD), true)] {
         let run = |physics| {

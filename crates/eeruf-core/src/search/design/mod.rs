@@ -12,7 +12,8 @@
 //!   possible at one period is possible at any longer one;
 //! - fine ticks start with what coarse ones have found.
 //!
-//! `docs/theory.md`, sections 5 and 6, has the arguments. The answer depends on the problem and the budget alone.
+//! `docs/explanation/theory.md`, sections 5 and 6, has the arguments. The answer depends on the problem and the budget
+//! alone.
 //!
 //! Each sensor fires once in phase a and once in phase b, and `d` is the difference of the two times. A [`Problem`]
 //! says, in ticks, how far apart all `|d|` must be (the separation), how far apart conflicting sensors fire (the

@@ -22,7 +22,7 @@
 //!
 //! Once orders are decided, waits are a system of difference constraints, which Bellman and Ford's algorithm solves or
 //! refutes (T. H. Cormen and others, *Introduction to Algorithms*, chapter on shortest paths); which order, rank or
-//! sign is *disjunctive*, so the search branches on it. `docs/theory.md`, section 7, has the arguments.
+//! sign is *disjunctive*, so the search branches on it. `docs/explanation/theory.md`, section 7, has the arguments.
 //!
 //! Nothing here allocates, recurses, reads a clock or draws random numbers. The caller lends memory: [`MEMORY_WORDS`]
 //! says how much is enough for all but counting, and counting is exact with any amount, faster with more. What the

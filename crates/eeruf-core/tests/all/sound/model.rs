@@ -1,4 +1,5 @@
-//! The rule of docs/theory.md section 2.1 by an account of all firings in true time, written from the document.
+//! The rule of docs/explanation/theory.md section 2.1 by an account of all firings in true time, written from the
+//! document.
 
 use eeruf_core::Reading;
 

@@ -1,5 +1,5 @@
-//! What is known at a node of the tree, and what follows: rules 1 to 5 of docs/certificate.md, each with a lemma in the
-//! proof wherever unit propagation in the model alone would not see it.
+//! What is known at a node of the tree, and what follows: rules 1 to 5 of docs/reference/certificate.md, each with a
+//! lemma in the proof wherever unit propagation in the model alone would not see it.
 
 use super::literals::{Literal, Truth, Variable, before, below};
 use super::model::Model;

@@ -1,6 +1,6 @@
 //! A proof for VeriPB, a checker of pseudo-Boolean proofs that others wrote: a second root of trust.
 //!
-//! docs/certificate.md, "A second root of trust", has the model and how its proof goes.
+//! docs/reference/certificate.md, "A second root of trust", has the model and how its proof goes.
 
 mod known;
 mod literals;

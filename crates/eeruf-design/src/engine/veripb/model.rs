@@ -1,6 +1,7 @@
 //! The model: what schedules with one period are, as sums of 0-1 variables.
 //!
-//! docs/certificate.md, "A second root of trust", lists its inequalities. They say what `schedule::check` checks.
+//! docs/reference/certificate.md, "A second root of trust", lists its inequalities. They say what `schedule::check`
+//! checks.
 
 use core::fmt::Write as _;
 

@@ -16,8 +16,8 @@
 //!   that cover all sensors, which is no smaller.
 //! - **Classes.** How few `|d|` fit where clique and interval leave little to spare: [`classes`].
 //!
-//! The counting is that of `docs/theory.md`, section 5. It uses the problem and its symmetry alone, nothing of the
-//! search.
+//! The counting is that of `docs/explanation/theory.md`, section 5. It uses the problem and its symmetry alone, nothing
+//! of the search.
 
 mod classes;
 mod cliques;

@@ -2,10 +2,10 @@
 //!
 //! A *simple temporal network* holds what is certain: bounds on the differences between any two firing times, kept
 //! closed in a *difference-bound matrix* ([`difference_bounds`]). Orders and ranks are *disjunctive*, so the search
-//! branches on them, in this order (`docs/theory.md`, section 6.3): the sensor with the largest `|d|`; the firing
-//! orders of conflicting sensors, sensor by sensor; the ranks of the other `|d|` with their signs, downwards; and,
-//! where ranks leave room and the matrix read as times is no schedule yet, values ([`branching`]). After each decision
-//! [`propagate`] draws conclusions, among them from *Hall intervals* ([`spacing`]).
+//! branches on them, in this order (`docs/explanation/theory.md`, section 6.3): the sensor with the largest `|d|`; the
+//! firing orders of conflicting sensors, sensor by sensor; the ranks of the other `|d|` with their signs, downwards;
+//! and, where ranks leave room and the matrix read as times is no schedule yet, values ([`branching`]). After each
+//! decision [`propagate`] draws conclusions, among them from *Hall intervals* ([`spacing`]).
 //!
 //! There is no recursion: a stack of [`Decision`]s in lent memory, and difference bounds that can be undone. What is on
 //! the stack is read and written with `get`.

@@ -6,9 +6,9 @@
 //! tick costs no more.
 //!
 //! **Where ranks suffice.** If conflicting sensors fire in the same order in both phases and the criterion is
-//! [`Criterion::Exact`], then a table exists only if one exists with `|d| = D r` exactly: `docs/theory.md`, section
-//! 7.1, has the proof. In particular `n I + D (K - 1) <= T_p` for n mutual neighbours (section 5.2) needs no test of
-//! its own: the greatest rank finds no sensor.
+//! [`Criterion::Exact`], then a table exists only if one exists with `|d| = D r` exactly: `docs/explanation/theory.md`,
+//! section 7.1, has the proof. In particular `n I + D (K - 1) <= T_p` for n mutual neighbours (section 5.2) needs no
+//! test of its own: the greatest rank finds no sensor.
 
 mod branch;
 mod walk;

@@ -1,4 +1,4 @@
-//! `eeruf man`: the pages for `man`, one for the program and one for each verb.
+//! `eeruf man`: the pages for `man`, one for the program and one for each verb, or one document.
 
 use std::fs;
 use std::path::PathBuf;
@@ -7,19 +7,29 @@ use clap::CommandFactory as _;
 
 use super::Cli;
 use super::answer::Answer;
+use crate::console::print;
 use crate::files::error::InputError;
 
 /// Write the manual's pages, one for the program and one for each verb.
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// The folder that they are written into, as ~/.local/share/man/man1
-    #[arg(value_name = "DIR")]
-    folder: PathBuf,
+    /// Folder for the pages, as ~/.local/share/man/man1
+    #[arg(value_name = "DIR", required_unless_present = "markdown")]
+    folder: Option<PathBuf>,
+    /// Print all verbs and options as one document in Markdown
+    #[arg(long, conflicts_with = "folder")]
+    markdown: bool,
 }
 
 pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
-    fs::create_dir_all(&args.folder)
-        .and_then(|()| clap_mangen::generate_to(Cli::command(), &args.folder))
-        .map_err(|error| InputError::new(&args.folder, None, error))?;
+    if let Some(folder) = &args.folder {
+        fs::create_dir_all(folder)
+            .and_then(|()| clap_mangen::generate_to(Cli::command(), folder))
+            .map_err(|error| InputError::new(folder, None, error))?;
+    }
+    if args.markdown {
+        let options = clap_markdown::MarkdownOptions::new().show_footer(false).title("Verbs and options".to_owned());
+        print(clap_markdown::help_markdown_custom::<Cli>(&options))?;
+    }
     Ok(Answer::Yes)
 }

@@ -45,8 +45,7 @@ Commands by what they are for:
 
 Exit codes: 0 fine; 1 the answer is no; 2 bad input; 3 not decided; 74 the output cannot be written.";
 
-/// Fire all ultrasonic sensors of a robot five to ten times faster than one by one, without believing each other's
-/// echoes.
+/// Fire all ultrasonic sensors of a robot several times faster than one by one, without believing each other's echoes.
 ///
 /// Sensors are printed from 1, as in the paper, and counted from 0 in files and in --json.
 #[derive(Parser)]

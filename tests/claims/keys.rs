@@ -60,13 +60,13 @@ fn figures_of_modules_are_those_in_the_document() {
 #[test]
 fn keys_of_ring_files_are_those_in_the_document() {
     let documented: BTreeSet<_> =
-        rows("docs/explanation/search.md", "## Keys of ring files").iter().flat_map(|row| quoted(&row[0])).collect();
+        rows("docs/reference/ring-files.md", "# Keys of ring files").iter().flat_map(|row| quoted(&row[0])).collect();
     assert_eq!(documented, expected(&RingSpec::from_text("unknown = 1").unwrap_err().message));
 }
 
 #[test]
 fn keys_of_scene_files_are_those_in_the_document() {
-    let rows = rows("docs/how-to/simulate.md", "## Keys of scene files");
+    let rows = rows("docs/reference/scene-files.md", "# Keys of scene files");
     let documented = |table: &str| -> BTreeSet<String> {
         let of = rows.iter().filter(|row| row[0].trim_matches('`') == table);
         of.flat_map(|row| quoted(&row[1])).collect()

@@ -13,6 +13,7 @@ mod hopping;
 mod inputs;
 mod keys;
 mod logs;
+mod newcomers;
 mod output;
 mod program;
 mod provoked;

@@ -145,7 +145,14 @@ def test_each_of_the_twelve_tasks_takes_fewer_than_fifteen_lines_and_runs_as_a_s
 
 
 @pytest.mark.parametrize(
-    ("document", "least"), [("README.md", 1), ("python/README.md", 1), ("docs/how-to/python.md", 8)]
+    ("document", "least"),
+    [
+        ("README.md", 1),
+        ("python/README.md", 1),
+        ("docs/how-to/python.md", 8),
+        ("docs/how-to/method.md", 4),
+        ("docs/how-to/cluster.md", 2),
+    ],
 )
 def test_the_listings_of_a_document_run_from_top_to_bottom(
     document: str, least: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
@@ -157,3 +164,14 @@ def test_the_listings_of_a_document_run_from_top_to_bottom(
     scope: dict[str, Any] = {}
     for block in blocks:
         exec(compile(block, document, "exec"), scope)
+
+
+def test_picture_of_a_second_says_what_the_simulator_says(tmp_path: Path) -> None:
+    drawn = tmp_path / "second.svg"
+    subprocess.run([sys.executable, ROOT / "docs/pictures/second.py", drawn], check=True, cwd=tmp_path)
+    counts = [
+        re.findall(r"\d+ right, \d+ wrong in this second|>blind<", svg.read_text())
+        for svg in (drawn, ROOT / "docs/pictures/second.svg")
+    ]
+    assert counts[0] == counts[1]
+    assert len(counts[0]) == 6

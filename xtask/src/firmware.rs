@@ -56,7 +56,7 @@ impl Plan {
 }
 
 /// Builds, runs and measures everything, or what there is for one board; prints the tables of
-/// `docs/how-to/firmware.md`, and compares them with what stands there or writes them.
+/// `docs/log/firmware.md`, and compares them with what stands there or writes them.
 pub(crate) fn firmware(plan: &Plan) -> Result<(), Trouble> {
     let (tables, over) = tables::measure(plan.board.as_deref())?;
     for (name, table) in &tables {

@@ -67,7 +67,7 @@ enum Verb {
         #[arg(long)]
         nothing_skipped: bool,
     },
-    /// Build the firmware, run it on emulated boards, and compare its figures with those of docs/how-to/firmware.md
+    /// Build the firmware, run it on emulated boards, and compare its figures with those of docs/log/firmware.md
     Firmware(firmware::Plan),
     /// Compile the C library strictly, misuse it, and compare it with the Rust crates under sanitizers
     C,

@@ -1,4 +1,4 @@
-//! Tables of measurements in docs/how-to/firmware.md: `<!-- measured: NAME -->` stands before each, `<!-- end -->`
+//! Tables of measurements in docs/log/firmware.md: `<!-- measured: NAME -->` stands before each, `<!-- end -->`
 //! after it.
 //!
 //! Counts repeat on the same compiler and must be the same; those of another one, which may be a third more or less,
@@ -10,7 +10,7 @@ use std::fs;
 use crate::blocks::{blocks, replaced};
 use crate::steps::Trouble;
 
-pub(crate) const DOCUMENT: &str = "docs/how-to/firmware.md";
+pub(crate) const DOCUMENT: &str = "docs/log/firmware.md";
 const MEASURED: &str = "<!-- measured: ";
 /// The table that says which compiler each board's figures are of.
 pub(crate) const COMPILERS: &str = "compilers";

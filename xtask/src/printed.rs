@@ -11,6 +11,7 @@ use crate::blocks::{Block, blocks, replaced};
 use crate::steps::{Trouble, output, run};
 
 const PRINTED_BY: &str = "<!-- printed by";
+const FENCE: &str = "```text\n";
 
 /// Which parts of a document to compare.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -43,9 +44,9 @@ fn mark<'a>(block: &Block<'a>) -> Result<Mark<'a>, Trouble> {
     Ok(mark)
 }
 
-/// The README, and all documents in `docs`.
+/// README.md, ARCHITECTURE.md, and all documents in `docs`.
 pub(crate) fn documents() -> Result<Vec<String>, Trouble> {
-    let listed = output(Command::new("git").args(["ls-files", "README.md", "docs/*.md"]));
+    let listed = output(Command::new("git").args(["ls-files", "README.md", "ARCHITECTURE.md", "docs/*.md"]));
     let listed = listed.ok_or_else(|| Trouble::Failed("git ls-files: no answer".to_owned()))?;
     Ok(listed.lines().map(str::to_owned).collect())
 }
@@ -63,7 +64,7 @@ pub(crate) fn check(documents: &[String], which: Which) -> Result<(), Trouble> {
             let printed = output_of(mark.command)?;
             let compared =
                 |text: &str| if mark.decimals_are_timings { without_decimals(text) } else { text.to_owned() };
-            if compared(block.body.trim()) == compared(printed.trim()) {
+            if compared(unfenced(block.body)) == compared(printed.trim()) {
                 same += 1;
             } else {
                 println!("{document}: {} prints\n{printed}", mark.command);
@@ -77,8 +78,18 @@ pub(crate) fn check(documents: &[String], which: Which) -> Result<(), Trouble> {
 
 /// Puts what the commands of a document print now in place of what stands there.
 pub(crate) fn reprint(document: &str) -> Result<(), Trouble> {
-    let fresh = replaced(&read(document)?, PRINTED_BY, |block| output_of(mark(block)?.command))?;
+    let fresh = replaced(&read(document)?, PRINTED_BY, |block| {
+        let printed = output_of(mark(block)?.command)?;
+        let fenced = block.body.trim().starts_with(FENCE);
+        Ok(if fenced { format!("{FENCE}{}\n```", printed.trim_end()) } else { printed })
+    })?;
     fs::write(document, fresh).map_err(|error| Trouble::Failed(format!("{document}: {error}")))
+}
+
+/// The body of a part without the fence around what is no Markdown.
+fn unfenced(body: &str) -> &str {
+    let body = body.trim();
+    body.strip_prefix(FENCE).map_or(body, |inner| inner.trim_end_matches("```").trim())
 }
 
 fn read(document: &str) -> Result<String, Trouble> {
@@ -125,6 +136,12 @@ mod tests {
         let both = Mark { large: true, decimals_are_timings: true, command: "cargo run" };
         assert_eq!(of(" (large, decimals are timings): cargo run"), Some(both));
         assert_eq!(of(" (huge): cargo run"), None);
+    }
+
+    #[test]
+    fn fence_around_a_part_is_ignored() {
+        assert_eq!(unfenced("\n```text\na\n|-- b\n```\n"), "a\n|-- b");
+        assert_eq!(unfenced("\n| a |\n"), "| a |");
     }
 
     #[test]

@@ -19,9 +19,10 @@ const REPOSITORY: &str = "https://github.com/eeruf/eeruf/blob/main";
 /// The version of mdBook that the site is built with, so that two builds look alike.
 const MDBOOK: &str = "0.5.4";
 /// Chapters from outside `docs/`, and their files in the book.
-const OUTSIDE: [(&str, &str); 5] = [
+const OUTSIDE: [(&str, &str); 6] = [
     ("README.md", "introduction.md"),
     ("CHANGELOG.md", "changes.md"),
+    ("ARCHITECTURE.md", "architecture.md"),
     ("CONTRIBUTING.md", "contributing.md"),
     ("SECURITY.md", "security.md"),
     ("CODE_OF_CONDUCT.md", "conduct.md"),

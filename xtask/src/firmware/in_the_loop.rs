@@ -95,8 +95,8 @@ mod tests {
 
     #[test]
     fn the_document_has_the_numbers_that_are_asked_for() {
-        let document = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/how-to/firmware.md");
-        let text = std::fs::read_to_string(document).expect("docs/how-to/firmware.md");
+        let document = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/log/firmware.md");
+        let text = std::fs::read_to_string(document).expect("docs/log/firmware.md");
         let begin = text.find("<!-- measured: in a simulated world -->").expect("the table");
         let end = text[begin..].find("<!-- end -->").expect("its end");
         assert_eq!(unlike(&text[begin..begin + end]), None);

@@ -1,4 +1,4 @@
-//! The tables of `docs/how-to/firmware.md`, and what they may not exceed.
+//! The tables of `docs/log/firmware.md`, and what they may not exceed.
 
 use std::process::Command;
 

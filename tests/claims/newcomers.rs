@@ -1,0 +1,69 @@
+//! What a newcomer types: the commands of the tutorials run from top to bottom, and print the figures of their texts.
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+/// Runs a line of a shell in a folder, with the program under its own name.
+fn shell(line: &str, folder: &Path) -> Output {
+    let program = Path::new(env!("CARGO_BIN_EXE_eeruf")).parent().unwrap();
+    let path = std::env::var("PATH").unwrap();
+    let mut sh = Command::new("sh");
+    sh.args(["-c", line]).current_dir(folder).env("PATH", format!("{}:{path}", program.display()));
+    sh.env_remove("COLUMNS").output().unwrap()
+}
+
+/// The commands in a document's listings for a shell, but those that install or build.
+fn commands(document: &str) -> Vec<String> {
+    let text = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(document)).unwrap();
+    let listings = text.split("```sh\n").skip(1).filter_map(|rest| rest.split("```").next());
+    let lines = listings.flat_map(str::lines).filter(|line| !line.starts_with("cargo ") && !line.starts_with("pip "));
+    lines.map(str::to_owned).collect()
+}
+
+/// The cell of a table's row under a heading.
+fn cell(out: &str, row: &str, heading: &str) -> String {
+    let cells = |line: &str| line.split('|').map(|cell| cell.trim().to_owned()).collect::<Vec<_>>();
+    let head = out.lines().map(cells).find(|head| head.iter().any(|cell| cell == heading)).unwrap();
+    let row = out.lines().map(cells).find(|cells| cells.get(1).is_some_and(|name| name == row)).unwrap();
+    row[head.iter().position(|cell| cell == heading).unwrap()].clone()
+}
+
+#[test]
+fn paper_in_an_evening_runs_and_prints_its_figures() {
+    let folder = tempfile::tempdir().unwrap();
+    assert!(shell("eeruf examples .", folder.path()).status.success());
+    let commands = commands("docs/tutorial/paper.md");
+    assert!(commands.len() >= 9, "{commands:?}");
+    let mut outputs = Vec::new();
+    for command in &commands {
+        let output = shell(command, folder.path());
+        let expected = i32::from(command.contains("table-i-a.toml"));
+        let error = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(expected), "{command}: {error}");
+        outputs.push((command.clone(), String::from_utf8(output.stdout).unwrap()));
+    }
+    let of = |part: &str| &outputs.iter().find(|(command, _)| command.contains(part)).unwrap().1;
+    assert!(of("eeruf paths").contains("110 critical paths"));
+    let wall = of("scenes/wall.toml");
+    let wrong = ["conventional", "comparison", "eeruf"].map(|method| cell(wall, method, "wrong, % of all"));
+    assert_eq!(wrong, ["64.0", "62.8", "0.20"]);
+    assert_eq!(cell(wall, "eeruf", "starved"), "7");
+    assert!(of("rings/table-i-d.toml").contains("17000 us"));
+    assert!(of("rings/paper-12.toml --period-only").contains("65 ms"));
+    assert!(of("check_period.py").contains("65000 us is the shortest period"));
+    let set_one = of("conventional,comparison,eeruf");
+    assert!(outputs.iter().any(|(_, out)| out.contains("0.0 / 1.9 / 8.6") && out.contains("44.3 (")), "{set_one}");
+    let set_two = of("set-two");
+    assert_eq!(["conventional", "eeruf"].map(|method| cell(set_two, method, "phantom echoes")), ["148.2", "0.2"]);
+}
+
+#[test]
+fn ring_in_a_tutorial_is_designed_and_checked() {
+    let folder = tempfile::tempdir().unwrap();
+    assert!(shell("eeruf examples .", folder.path()).status.success());
+    for command in commands("docs/tutorial/ring.md") {
+        let output = shell(&command, folder.path());
+        let error = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(0), "{command}: {error}");
+    }
+}

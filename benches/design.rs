@@ -1,4 +1,4 @@
-//! How long the shortest period takes: the instances of the theory's table, and those of it in finer ticks.
+//! Time of the shortest period: the instances of the theory's table, and those of it in finer ticks.
 
 #![allow(missing_docs, reason = "criterion's macro writes a public function without any")]
 

@@ -1,5 +1,5 @@
-//! How many readings a second are simulated on one core: a static world with its paths known, one that moves, and Set I
-//! with everything from the walls on; and how much faster than real time the courses of Set II are driven.
+//! Number of readings a second that are simulated on one core: a static world with its paths known, one that moves, and
+//! Set I with everything from the walls on; and how much faster than real time the courses of Set II are driven.
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use eeruf_sim::experiments::set_one::Alcove;
@@ -9,7 +9,7 @@ use eeruf_sim::{Method, Motion, Options, Physics, Robot, Vector, World, simulate
 /// Long enough that finding the paths once does not count.
 const LONG: u32 = 20_000;
 
-/// What everybody gets first, then what earlier versions can be compared with.
+/// The default first, then the presets that earlier versions can be compared with.
 const PHYSICS: [(&str, Physics); 2] = [("default", Physics::DEFAULT), ("plain", Physics::PLAIN)];
 
 fn under(physics: Physics, world: Result<World, eeruf_sim::WorldError>) -> World {

@@ -1,4 +1,4 @@
-//! What the wait search costs: the best interval over sensors and ticks, Table I rearranged, and counting against plain
+//! Cost of the wait search: the best interval over sensors and ticks, Table I rearranged, and counting against plain
 //! nested loops in the same run (the first lines print the ratio).
 
 #![allow(missing_docs)]

@@ -8,7 +8,7 @@ const ATLAS: &str = "../crates/eeruf-design/src/atlas/atlas.txt";
 /// With so many sensors no search of the atlas's rings takes longer than one waits for a key press, a few tenths of a
 /// second.
 const QUICK: u64 = 12;
-/// How many adjacent sensors are neighbours on the page.
+/// Number of adjacent sensors that are neighbours on the page.
 const NEIGHBOURS: u64 = 4;
 
 fn main() {

@@ -8,7 +8,7 @@ use eeruf_design::engine::prove::{NoProof, prove};
 
 use crate::one_line;
 
-/// How many schedules are tried at most for one period.
+/// Number of schedules that are tried at most for one period.
 const MOST: u32 = 20_000;
 
 /// Checks the text, and where a certificate passes, what it claims.

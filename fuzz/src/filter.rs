@@ -6,7 +6,7 @@ use eeruf_core::{EchoFilter, Micros, ReadingKind};
 /// The most echoes that a sensor reports of one firing here.
 const ECHOES: usize = 3;
 
-/// What the fuzzer makes up.
+/// Input that the fuzzer makes up.
 #[derive(Arbitrary, Debug)]
 pub struct Firings {
     t_delta: u16,
@@ -30,13 +30,13 @@ struct Heard {
     expected: i32,
 }
 
-/// Whether `echo` is near-identical to `previous`, after taking off the change expected (Eq. 11).
+/// Returns true if `echo` is near-identical to `previous`, after taking off the change expected (Eq. 11).
 fn near(t_delta: u16, echo: u32, previous: u32, expected: i32) -> bool {
     (i128::from(echo) - i128::from(previous) - i128::from(expected)).abs() <= i128::from(t_delta)
 }
 
-/// How many firings running, the last included, hold an echo near-identical to that of the one before, and end with
-/// `echo`.
+/// Number of consecutive firings, the last included, that hold an echo near-identical to that of the one before, and
+/// end with `echo`.
 fn run(t_delta: u16, firings: &[Heard], echo: u32) -> usize {
     let [before @ .., last] = firings else { return 0 };
     let previous = before.last().map_or(&[][..], |heard| &heard.echoes);
@@ -44,7 +44,7 @@ fn run(t_delta: u16, firings: &[Heard], echo: u32) -> usize {
     1 + longest.map(|&previous| run(t_delta, before, previous)).max().unwrap_or(0)
 }
 
-/// What the filter should say: the kind and the echo time.
+/// Verdict that the filter should give: the kind and the echo time.
 fn naive(t_delta: u16, consecutive: usize, firings: &[Heard]) -> (ReadingKind, Option<u32>) {
     // Only so many firings matter, and a run through more of them branches.
     let firings = &firings[firings.len().saturating_sub(consecutive)..];

@@ -1,4 +1,4 @@
-//! What the fuzz targets check: each module takes whatever the fuzzer makes up and panics where a promise is broken.
+//! Fuzz targets: each module takes whatever the fuzzer makes up and panics where a promise is broken.
 //!
 //! The targets in `fuzz_targets` only call these, so that a finding can be replayed by an ordinary test. Readers of
 //! files take the file itself, so that any file of the repository is a seed.
@@ -18,7 +18,7 @@ pub mod scenes;
 #[cfg(feature = "schedules")]
 pub mod schedules;
 
-/// What is wrong with a file is said in one line.
+/// Asserts that an error in a file takes one line.
 #[allow(dead_code)]
 fn one_line(error: &str) {
     assert!(!error.is_empty() && !error.contains('\n'), "{error:?}");

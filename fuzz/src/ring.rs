@@ -27,7 +27,7 @@ use self::model::{Listening, Model, instant};
 /// Sensors of the ring.
 pub const SENSORS: usize = 4;
 
-/// What the fuzzer makes up.
+/// Input that the fuzzer makes up.
 #[derive(Arbitrary, Debug)]
 pub struct Input {
     /// Where the clock starts; it wraps soon after the larger values.

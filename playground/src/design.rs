@@ -10,14 +10,14 @@ use serde::Serialize;
 
 use crate::exports::progress;
 
-/// How many nodes a search on the page may visit, and where there are more sensors than [`FEW`], each of whose nodes
-/// costs many times as much: a minute or so.
+/// Budget of nodes for a search on the page, and where there are more sensors than [`FEW`], each of whose nodes costs
+/// many times as much: a minute or so.
 const BUDGET: u64 = 2_000_000;
 const BUDGET_OF_MANY: u64 = 50_000;
 const FEW: usize = 24;
 /// The rings of the atlas whose search takes long: see `build.rs`.
 const ATLAS: &str = include_str!(concat!(env!("OUT_DIR"), "/atlas.txt"));
-/// How many nodes the certificate's proof may have, as by default in `eeruf design`.
+/// Budget of nodes for the certificate's proof, as by default in `eeruf design`.
 const CERTIFICATE_BUDGET: usize = 1_000_000;
 /// After so many nodes of a proof the page learns how far it is.
 const SAID_EVERY: usize = 256;
@@ -25,23 +25,23 @@ const SAID_EVERY: usize = 256;
 /// A designed ring. Times in microseconds.
 #[derive(Serialize)]
 pub(crate) struct DesignAnswer {
-    /// What `eeruf design --json` prints; `seconds` is 0, as there is no clock.
+    /// The output of `eeruf design --json`; `seconds` is 0, as there is no clock.
     found: FoundJson,
-    /// What `t_delta` must cover, and the largest that the schedule allows.
+    /// The change that `t_delta` must cover, and the largest that the schedule allows.
     t_delta_us: u32,
     max_t_delta_us: Option<u32>,
     /// The smallest interval of two neighbours that must be kept, and that is kept.
     min_interval_us: u32,
     kept_interval_us: Option<u32>,
     window_us: u32,
-    /// How far the window sees.
+    /// Range of the window.
     range_m: f64,
-    /// How soon a sensor fires again at the earliest.
+    /// Least time until a sensor fires again.
     min_refire_us: u32,
-    /// How fast the robot may move before good readings differ by more than `t_delta`.
+    /// Speed of the robot above which good readings differ by more than `t_delta`.
     speed_m_s: f64,
     fire_us: [Vec<u32>; 2],
-    /// Whether the verifier, which shares nothing with the search, agrees.
+    /// True if the verifier, which shares nothing with the search, agrees.
     verified: bool,
     rust: String,
     c: String,
@@ -49,7 +49,7 @@ pub(crate) struct DesignAnswer {
     toml: String,
 }
 
-/// What one need, relaxed, would bring.
+/// The gain from relaxing one need.
 #[derive(Serialize)]
 pub(crate) struct What {
     need: String,
@@ -95,7 +95,7 @@ pub(crate) fn design(ring: &str) -> Result<DesignAnswer, String> {
     })
 }
 
-/// What would make the same answer shorter.
+/// Changes that would make the same answer shorter.
 pub(crate) fn faster(ring: &str) -> Result<Vec<What>, String> {
     let relaxed = shortest(ring)?.what_if(&mut say).map_err(|error| error.to_string())?;
     let what = |WhatIf { need, period, proven }| What { need, period_us: period.map(Micros::as_micros), proven };

@@ -1,4 +1,4 @@
-//! What JavaScript calls. It reserves room for a question, writes the question there, and asks; the answer lies where
+//! Calls from JavaScript. It reserves room for a question, writes the question there, and asks; the answer lies where
 //! [`answer_at`] says. Both are JSON in UTF-8.
 
 use std::cell::RefCell;

@@ -10,7 +10,7 @@ use crate::{design, run, trace};
 #[derive(Deserialize)]
 #[serde(tag = "ask", rename_all = "snake_case", deny_unknown_fields)]
 enum Question {
-    /// Which firing methods there are.
+    /// The firing methods.
     Methods {},
     /// Every critical path of the first robot's ring.
     Trace { scene: String },
@@ -18,13 +18,13 @@ enum Question {
     Run { scene: String, method: String, periods: u32, shown_s: f64 },
     /// The shortest period for a ring.
     Design { ring: String },
-    /// What would make it shorter.
+    /// Changes that would make it shorter.
     Faster { ring: String },
     /// The certificate that it is the shortest, checked.
     Certificate { ring: String },
 }
 
-/// What went well, or one sentence that says what did not.
+/// A result, or one sentence that says what failed.
 #[derive(Serialize)]
 #[serde(rename_all = "snake_case")]
 enum Answer<T> {

@@ -10,7 +10,7 @@ use serde::Serialize;
 use crate::exports::progress;
 use crate::trace::pairs;
 
-/// How many nodes the search for `eeruf_best` may cost, as in `eeruf study`.
+/// Budget of nodes for the search for `eeruf_best`, as in `eeruf study`.
 const BUDGET: u64 = 20_000;
 /// More periods than anybody waits for.
 const MAX_PERIODS: u32 = 100_000;
@@ -24,7 +24,7 @@ pub(crate) struct Run {
     blind: Vec<usize>,
     /// For each sensor: readings, and of them accepted and right, accepted and wrong.
     tally: Vec<[u32; 3]>,
-    /// Who was fooled by whom, the commonest first.
+    /// Attributions of wrong readings, the commonest first.
     fooled: Vec<Attribution>,
     /// The readings of the first seconds, as arrays of equal length.
     readings: Shown,
@@ -40,11 +40,11 @@ struct Shown {
     fired_s: Vec<f64>,
     /// `null` for no echo.
     t_echo_us: Vec<f64>,
-    /// What the sensor reads alone; `null` for nothing.
+    /// Readings of the sensor alone; `null` for nothing.
     reference_us: Vec<f64>,
     /// One of `accepted`, `rejected`, `none` (nothing heard, believed or not), `first` (not yet compared).
     verdict: Vec<&'static str>,
-    /// Whether it is off by more than the tolerance, believed or not.
+    /// True if it is off by more than the tolerance, believed.
     wrong: Vec<bool>,
     cause: Vec<Cause>,
     /// The path in `paths`; `null` for none.
@@ -103,7 +103,7 @@ pub(crate) fn run(world: &World, method: Method, periods: u32, shown_s: f64) -> 
     })
 }
 
-/// What the simulation says without the number of the robot, of which there is one.
+/// The simulation's error without the number of the robot, of which there is one.
 fn sentence(error: &SimulationError) -> String {
     error.to_string().trim_start_matches("robot 1, ").to_owned()
 }

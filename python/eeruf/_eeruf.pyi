@@ -373,7 +373,7 @@ class Schedule:
         """The period ``T_p``, in microseconds."""
     @property
     def sensors(self) -> int:
-        """How many sensors fire."""
+        """Number of sensors that fire."""
     @property
     def t_lag_us(self) -> tuple[int, ...]:
         """``T_lag`` of each sensor, in microseconds; zeros if the schedule was made of firing times."""
@@ -561,7 +561,7 @@ class Violation:
     ) -> Violation: ...
     @property
     def kind(self) -> _Condition:
-        """Which condition: ``"crosstalk_a"``, ``"crosstalk_b"``, ``"stale_echo"``, ``"interval"``, ``"window"``; where
+        """The condition: ``"crosstalk_a"``, ``"crosstalk_b"``, ``"stale_echo"``, ``"interval"``, ``"window"``; where
         sensors are not all alike also ``"shared_line"``, ``"refire"`` or ``"together"``.
         """
     @property
@@ -572,10 +572,10 @@ class Violation:
         """The phases in which they fire, each ``"a"`` or ``"b"``."""
     @property
     def value_us(self) -> int:
-        """What the schedule has, in microseconds."""
+        """Value of the schedule, in microseconds."""
     @property
     def required_us(self) -> int:
-        """What the condition asks for, in microseconds."""
+        """Value that the condition asks for, in microseconds."""
     @property
     def source(self) -> str:
         """Where the condition comes from, such as ``"Eq. (13a)"``."""
@@ -593,7 +593,7 @@ class Violation:
 
 @final
 class Report:
-    """What ``Schedule.verify`` found. It is true if all conditions hold.
+    """Findings of ``Schedule.verify``. It is true if all conditions hold.
 
     Example:
         >>> from eeruf.tables import TABLE_I_D
@@ -610,7 +610,7 @@ class Report:
     ) -> Report: ...
     @property
     def ok(self) -> bool:
-        """Whether every condition holds."""
+        """Returns true if every condition holds."""
     @property
     def separation_us(self) -> int | None:
         """The smaller left side of (13a), (13b) of the pair that is closest to failing, in microseconds; None for a single
@@ -675,21 +675,19 @@ class Found:
         """The schedule; None if there is none, or none was found within the budget."""
     @property
     def value_us(self) -> int | None:
-        """What was sought of it, in microseconds: the period, the smallest interval or ``T_delta``; None without a
-        schedule.
-        """
+        """The optimised value, in microseconds: the period, the smallest interval or ``T_delta``; None without a schedule."""
     @property
     def bound_us(self) -> int | None:
         """No schedule is better than this, in microseconds; None if it is proven that there is none at all."""
     @property
     def proven(self) -> bool:
-        """Whether no better schedule exists (or none at all, without a schedule)."""
+        """True if no better schedule exists (or none at all, without a schedule)."""
     @property
     def nodes(self) -> int:
-        """How many nodes the search visited: the same on each machine."""
+        """Number of nodes that the search visited: the same on each machine."""
     @property
     def seconds(self) -> float:
-        """How long it took."""
+        """Duration."""
     @property
     def reason(self) -> str | None:
         """Why the period is not shorter, in words; None from ``WaitSearch.best``."""
@@ -703,10 +701,10 @@ class Found:
         """
     @property
     def real_proven(self) -> bool | None:
-        """Whether no real period is shorter; None without one."""
+        """True if no real period is shorter; None without one."""
     @property
     def from_atlas(self) -> bool:
-        """Whether the atlas of proven rings answered, and nothing was searched."""
+        """True if the atlas of proven rings answered, and nothing was searched."""
     @property
     def spare_us(self) -> tuple[int, int, int] | None:
         """Of a ring whose sensors are not all alike: what its schedule keeps beyond every ``t_delta``, then every interval
@@ -714,7 +712,7 @@ class Found:
         """
     @property
     def spare_proven(self) -> tuple[bool, bool, bool] | None:
-        """Whether no schedule of this period has more, of each; None without them."""
+        """True if no schedule of this period has more, of each; None without them."""
     def to_dict(self) -> dict[str, object]:
         """Its fields by their names, the schedule as its times: a dict of plain values.
 
@@ -759,10 +757,10 @@ class HoppingFound:
         """No schedule of so many phases or more that separates sound of every age has a shorter period, in microseconds."""
     @property
     def proven(self) -> bool:
-        """Whether no such schedule is shorter."""
+        """True if no such schedule is shorter."""
     @property
     def reason(self) -> str:
-        """What sets the bound, in words."""
+        """Reason of the bound, in words."""
     @property
     def width_us(self) -> int:
         """The longest wait of the code, in microseconds."""
@@ -1148,8 +1146,7 @@ class WaitSearch:
             ((2000, 0), (0, 0))
         """
     def count(self, limit: _Int | None = None) -> int:
-        """How many tables there are, however many: counted without listing them where that is possible. Ctrl-C ends the
-        search.
+        """Number of tables, however many: counted without listing them where that is possible. Ctrl-C ends the search.
 
         Args:
             limit: where to stop counting, 1 or more; None counts all.
@@ -1253,16 +1250,16 @@ class EchoFilter:
     def __new__(cls, sensors: _Int, t_delta_us: _Int, consecutive: _Int = 2, *, echoes: _Int = 1) -> EchoFilter: ...
     @property
     def sensors(self) -> int:
-        """How many sensors."""
+        """Number of sensors."""
     @property
     def t_delta_us(self) -> int:
         """``T_delta``, in microseconds."""
     @property
     def consecutive(self) -> int:
-        """How many readings in a row must agree."""
+        """Number of readings in a row that must agree."""
     @property
     def echoes(self) -> int:
-        """How many echoes of one firing count."""
+        """Number of echoes of one firing that count."""
     def push(self, sensor: _Int, t_echo_us: _Int | None, expected_change_us: _Int = 0) -> Reading:
         """Take in one firing of a sensor.
 
@@ -1416,16 +1413,16 @@ class HoppingSchedule:
         """The period ``T_p``, in microseconds."""
     @property
     def sensors(self) -> int:
-        """How many sensors fire."""
+        """Number of sensors that fire."""
     @property
     def phases(self) -> int:
-        """How many phases a cycle has: one less than a prime, or a prime for a linear congruence."""
+        """Number of phases a cycle has: one less than a prime, or a prime for a linear congruence."""
     @property
     def first_multiplier(self) -> int:
         """``a``: what the first sensor's wait is multiplied by."""
     @property
     def step_us(self) -> int:
-        """By how much crosstalk moves at least from one phase to another, in microseconds."""
+        """The least shift of crosstalk from one phase to another, in microseconds."""
     @property
     def width_us(self) -> int:
         """The longest wait of the code, in microseconds."""
@@ -1469,7 +1466,8 @@ class _HoppingChanges(TypedDict, total=False):
 
 @final
 class HoppingSettings:
-    """How a hopping ring, or its tracker alone, weighs readings and fires. Immutable; they compare, hash and pickle.
+    """Settings by which a hopping ring, or its tracker alone, weighs readings and fires. Immutable; they compare, hash and
+    pickle.
 
     Args:
         name: what to start from: ``"balanced"`` for most robots, ``"quick"`` for those that must stop early (a little
@@ -1498,25 +1496,25 @@ class HoppingSettings:
         """A reading this near a confirmed echo is accepted, in microseconds; ``t_delta_us`` to 65535."""
     @property
     def votes(self) -> int:
-        """How many phases must support an echo before it is confirmed, 2 to 15."""
+        """Number of phases that must support an echo before it is confirmed, 2 to 15."""
     @property
     def score_limit(self) -> int:
         """The highest score of an echo, ``votes`` to 15: the higher, the longer it is believed."""
     @property
     def contradiction(self) -> int:
-        """What a later reading takes from the score of a confirmed echo, 1 to 15."""
+        """Score that a later reading takes from a confirmed echo, 1 to 15."""
     @property
     def solo_contradiction(self) -> int:
-        """What it takes if the sensor fired alone, 1 to 15."""
+        """Score that it takes if the sensor fired alone, 1 to 15."""
     @property
     def tentative_votes(self) -> int:
-        """How many phases must support an echo before it is tentative, 2 to 15; 0: none ever is."""
+        """Number of phases that must support an echo before it is tentative, 2 to 15; 0: none ever is."""
     @property
     def tentative_within_us(self) -> int:
-        """How closely they must agree for that, in microseconds; 0 to ``t_delta_us``."""
+        """Tolerance of agreement for that, in microseconds; 0 to ``t_delta_us``."""
     @property
     def solo_rate(self) -> int:
-        """What of a solo period each period earns, in 1/256, 0 to 255; 0: none is ever held."""
+        """Credit per period towards a solo period, in 1/256, 0 to 255; 0: none is ever held."""
     @property
     def solo_after(self) -> int:
         """A sensor with nothing accepted for so many firings asks for a solo period."""
@@ -1531,10 +1529,10 @@ class HoppingSettings:
         """At least so many periods from one change of lags to the next."""
     @property
     def shift_interval_us(self) -> int:
-        """What neighbours keep between their firings when a lag is drawn, in microseconds."""
+        """Least interval between firings of neighbours when a lag is drawn, in microseconds."""
     @property
     def neighbours(self) -> int:
-        """How many adjacent sensors are neighbours."""
+        """Number of adjacent sensors that are neighbours."""
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...
     def __hash__(self, /) -> int: ...
@@ -1569,7 +1567,7 @@ class EchoTracker:
     ) -> EchoTracker: ...
     @property
     def sensors(self) -> int:
-        """How many sensors."""
+        """Number of sensors."""
     @property
     def t_delta_us(self) -> int:
         """``T_delta``, in microseconds."""
@@ -1646,7 +1644,7 @@ class EchoTracker:
             9000
         """
     def is_clear(self, sensor: _Int) -> bool:
-        """Whether it is confirmed that nothing is in a sensor's range.
+        """Returns true if it is confirmed that nothing is in a sensor's range.
 
         Args:
             sensor: which one, from 0.
@@ -1703,7 +1701,7 @@ class Fire:
     def __new__(cls, sensor: _Int, phase: _Int = 0, due_us: _Int = 0) -> Fire: ...
     @property
     def sensor(self) -> int:
-        """Which sensor, from 0."""
+        """The sensor, from 0."""
     @property
     def phase(self) -> int:
         """The phase that its wait belongs to: 0 for a, 1 for b; more in a hopping ring."""
@@ -1724,7 +1722,7 @@ class Fire:
 
 @final
 class Reading:
-    """What came of one firing of one sensor.
+    """The outcome of one firing of one sensor.
 
     Example:
         >>> import eeruf
@@ -1745,21 +1743,21 @@ class Reading:
     ) -> Reading: ...
     @property
     def sensor(self) -> int:
-        """Which sensor, from 0."""
+        """The sensor, from 0."""
     @property
     def kind(self) -> _Kind:
-        """What came of it, one of ``eeruf.KINDS``; ``"accepted"`` and ``"clear"`` (nothing in range) count;
-        for ``"tentative"``, from a hopping ring, slow down.
+        """The outcome, one of ``eeruf.KINDS``; ``"accepted"`` and ``"clear"`` (nothing in range) count; for
+        ``"tentative"``, from a hopping ring, slow down.
         """
     @property
     def t_echo_us(self) -> int | None:
         """The time of the echo after firing, in microseconds; None without echo."""
     @property
     def previous_us(self) -> int | None:
-        """What it was compared with, in microseconds; None if with nothing."""
+        """The echo time it was compared with, in microseconds; None if with nothing."""
     @property
     def age(self) -> int | None:
-        """How many firings ago the sensor's last accepted reading was: 0 for this one, None if there never was one."""
+        """Number of firings since the sensor's last accepted reading: 0 for this one, None if there never was one."""
     @property
     def phase(self) -> int | None:
         """The phase in which the sensor fired: 0 for a, 1 for b, more in a hopping ring; None from a filter alone."""
@@ -1805,21 +1803,19 @@ class PeriodEnded:
     ) -> PeriodEnded: ...
     @property
     def period(self) -> int:
-        """Which period, from 0."""
+        """The period, from 0."""
     @property
     def phase(self) -> int:
         """Its phase: 0 for a, 1 for b; more in a hopping ring."""
     @property
     def max_late_us(self) -> int:
-        """How long after it was due the latest of its firings and its end was polled for, in microseconds, at most
-        65,535.
-        """
+        """Largest delay with which its firings and its end were polled for, in microseconds, at most 65,535."""
     @property
     def sum_late_us(self) -> int:
         """The lateness of all its firings together, in microseconds, at most 65,535."""
     @property
     def tally(self) -> dict[str, int]:
-        """How many readings of each kind were emitted since the period before ended: a dict by the names in
+        """Number of readings of each kind that were emitted since the period before ended: a dict by the names in
         ``eeruf.KINDS``.
         """
     def to_dict(self) -> dict[str, object]:
@@ -1937,7 +1933,7 @@ class Ring:
         """
     @property
     def schedule(self) -> Schedule:
-        """What it fires by in the present period."""
+        """Schedule of the present period."""
     def change_schedule(self, schedule: Schedule) -> None:
         """Fire by another schedule when the present period ends. ``t_delta_us`` and ``window_us``
         stay, and so does what each sensor needs where they are not all alike.
@@ -1998,12 +1994,12 @@ class Ring:
         """R, how long sound is audible, in microseconds. It can be changed while the ring runs."""
     @property
     def report_after_us(self) -> int:
-        """How long after its firing a reading without an echo is emitted at the soonest, in microseconds: for modules that
+        """Earliest time after its firing at which a reading without an echo is emitted, in microseconds: for modules that
         report by a bus or a pulse's width after their window has closed. 0: when it closes.
         """
     @report_after_us.setter
     def report_after_us(self, value: _Int, /) -> None:
-        """How long after its firing a reading without an echo is emitted at the soonest, in microseconds: for modules that
+        """Earliest time after its firing at which a reading without an echo is emitted, in microseconds: for modules that
         report by a bus or a pulse's width after their window has closed. 0: when it closes.
         """
     def upcoming(self) -> list[Fire]:
@@ -2023,7 +2019,7 @@ class Ring:
     def next_deadline_us(self) -> int:
         """When to poll next, in microseconds of the clock that wraps at 2^32; in the past if an event is pending."""
     def wait_us(self, now_us: _Int) -> int:
-        """How long to wait before polling next, in microseconds: 0 if an event is pending.
+        """Time to wait before polling next, in microseconds: 0 if an event is pending.
 
         This is right across the wrap of the clock at 2^32, where ``next_deadline_us`` and a ``now_us`` that goes on
         growing no longer compare.
@@ -2246,7 +2242,7 @@ class Ring:
             True
         """
     def is_enabled(self, sensor: _Int) -> bool:
-        """Whether a sensor fires.
+        """Returns true if a sensor fires.
 
         Args:
             sensor: which one, from 0.
@@ -2350,13 +2346,13 @@ class HoppingRing:
     ) -> HoppingRing: ...
     @property
     def schedule(self) -> HoppingSchedule:
-        """What it fires by, with the lags of the start."""
+        """Its schedule, with the lags of the start."""
     @property
     def sensors(self) -> int:
-        """How many sensors it has."""
+        """Number of sensors it has."""
     @property
     def settings(self) -> HoppingSettings:
-        """How it fires and weighs readings."""
+        """Its settings for firing and weighing readings."""
     @property
     def t_lag_us(self) -> tuple[int, ...]:
         """The lag of each sensor as it is now, in microseconds."""
@@ -2367,7 +2363,7 @@ class HoppingRing:
     def next_deadline_us(self) -> int:
         """When to poll next, in microseconds of the clock that wraps at 2^32; in the past if an event is pending."""
     def wait_us(self, now_us: _Int) -> int:
-        """How long to wait before polling next, in microseconds, right across the clock's wrap: 0 if an event is pending.
+        """Time to wait before polling next, in microseconds, right across the clock's wrap: 0 if an event is pending.
 
         Args:
             now_us: the present, 0 or more.
@@ -2430,7 +2426,7 @@ class HoppingRing:
             True
         """
     def is_clear(self, sensor: _Int) -> bool:
-        """Whether it is confirmed that nothing is in a sensor's range.
+        """Returns true if it is confirmed that nothing is in a sensor's range.
 
         Args:
             sensor: which one, from 0.
@@ -2544,7 +2540,7 @@ class HoppingRing:
             True
         """
     def is_enabled(self, sensor: _Int) -> bool:
-        """Whether a sensor fires.
+        """Returns true if a sensor fires.
 
         Args:
             sensor: which one, from 0.
@@ -2635,7 +2631,7 @@ class SensorWatch:
     def __new__(cls, sensors: _Int, blind_after: _Int = 20, now_us: _Int = 0) -> SensorWatch: ...
     @property
     def sensors(self) -> int:
-        """How many sensors it watches."""
+        """Number of sensors it watches."""
     def observe(self, event: Fire | Reading | PeriodEnded, now_us: _Int) -> Blind | None:
         """Take in what a poll returned. Observe every event, or at least readings and the ends of periods.
 
@@ -2686,7 +2682,7 @@ class Blind:
     def __new__(cls, sensor: _Int, firings: _Int) -> Blind: ...
     @property
     def sensor(self) -> int:
-        """Which sensor, from 0."""
+        """The sensor, from 0."""
     @property
     def firings(self) -> int:
         """For how many firings with an echo nothing was accepted."""
@@ -2880,16 +2876,16 @@ class Himm:
     def __new__(cls, side: _Int = 33, cell_m: float = 0.1, *, growth: bool = False) -> Himm: ...
     @property
     def side(self) -> int:
-        """How many cells the window has on a side."""
+        """Number of cells the window has on a side."""
     @property
     def cell_m(self) -> float:
-        """How wide a cell is, in metres."""
+        """Width of a cell, in metres."""
     @property
     def growth(self) -> bool:
-        """Whether cells beside certain ones grow faster."""
+        """Returns true if cells beside certain ones grow faster."""
     @property
     def extent_m(self) -> tuple[float, float, float, float]:
-        """What the window covers: (least x, greatest x, least y, greatest y) in metres, as ``imshow`` takes it."""
+        """Extent of the window: (least x, greatest x, least y, greatest y) in metres, as ``imshow`` takes it."""
     def move_to(self, place: _Point) -> None:
         """Move the window so that a place is in its middle cell. Cells that leave it are forgotten, those that enter are
         empty.
@@ -3064,7 +3060,7 @@ class Vfh:
     ) -> Vfh: ...
     @property
     def window(self) -> int:
-        """How many cells the active window has on a side."""
+        """Number of cells the active window has on a side."""
     @property
     def smoothing(self) -> int:
         """Over how many sectors to either side the histogram is smoothed."""
@@ -3128,8 +3124,8 @@ class Vfh:
     def drive(
         self, grid: Himm, pose: _Axis, target: _Point, turn_rad_s: float = 0.0, *, turn_gain: float = 3.0
     ) -> tuple[float, float]:
-        """How to drive from a pose to a target, for ``Simulation.set_velocity``: the farther off the heading, the slower.
-        Where every way is blocked it stands and looks around.
+        """Drives from a pose to a target, for ``Simulation.set_velocity``: the farther off the heading, the slower. Where
+        every way is blocked it stands and looks around.
 
         Args:
             grid: an ``eeruf.nav.Himm``.
@@ -3169,7 +3165,7 @@ class Steering:
         """The valley that was chosen: its first sector, and how many it has; 72 if nothing is near."""
     @property
     def trapped(self) -> bool:
-        """Whether the direction leads away from the target, by more than 90 degrees: the robot is in a dead end, or soon
+        """True if the direction leads away from the target, by more than 90 degrees: the robot is in a dead end, or soon
         will be.
         """
     def to_dict(self) -> dict[str, object]:
@@ -3213,7 +3209,7 @@ _Surface = Literal["smooth", "painted", "soft", "perfect"] | Material
 
 @final
 class Noise:
-    """How noisy a scene is.
+    """Noise of a scene.
 
     Args:
         fading_db_rms: by how much each arrival's level fades or grows, in dB, 0 to 20.
@@ -3239,16 +3235,16 @@ class Noise:
     ) -> Noise: ...
     @property
     def fading_db_rms(self) -> float:
-        """By how much each arrival's level fades or grows, root mean square, in dB."""
+        """Fading of each arrival's level, root mean square, in dB."""
     @property
     def jitter_us_rms(self) -> float:
-        """By how much each arrival is early or late, root mean square, in microseconds."""
+        """Jitter of each arrival, root mean square, in microseconds."""
     @property
     def bursts_per_s(self) -> float:
-        """How many bursts from outside are heard in a second."""
+        """Number of bursts from outside that are heard in a second."""
     @property
     def burst_db(self) -> float:
-        """How far they are above what is just heard, in dB."""
+        """Level above what is just heard, in dB."""
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...
 
@@ -3298,7 +3294,7 @@ class Robot:
         radius_m: the radius of the arc, in metres.
         module: of its sensors: a name such as ``"hc-sr04"``, a dict of what differs from one, such as
             ``{"like": "hc-sr04", "sees_to_m": 2.5}``, or a list of one for each sensor; docs/reference/modules.md has
-            them all.
+    them all.
         gain: how the receiver's gain grows while it listens: ``"constant"``, ``"square_root"``, ``"linear"``,
             ``"stepped"`` or ``"polaroid_6500"``, the steps of that module's control circuit.
         beam: the pattern near 90 degrees off a sensor's axis: ``"cut_at_90"``, an endless baffle with nothing behind,
@@ -3400,7 +3396,7 @@ class Robot:
         """(x, y, heading) in metres and radians."""
     @property
     def sensors(self) -> int:
-        """How many sensors."""
+        """Number of sensors."""
     @property
     def sensor_poses(self) -> list[_Pose]:
         """Where each sensor is on the robot: (x, y, heading) in metres and radians."""
@@ -3418,7 +3414,7 @@ class Robot:
         """Sets of sensors that the robot's own schedule fires at once."""
     @property
     def gain(self) -> _Gain:
-        """How the receiver's gain grows while it listens; the first sensor's where they differ."""
+        """Growth of the receiver's gain while it listens; the first sensor's where they differ."""
     @property
     def beam(self) -> _Beam:
         """The pattern near 90 degrees off a sensor's axis."""
@@ -3441,34 +3437,34 @@ class Robot:
         """``T_delta``, in microseconds; a list of one for each sensor where they have their own."""
     @property
     def window_us(self) -> int | list[int]:
-        """How long a sensor listens, in microseconds; a list of one for each sensor where they have their own."""
+        """Listening time of a sensor, in microseconds; a list of one for each sensor where they have their own."""
     @property
     def blanking_us(self) -> int | list[int]:
-        """How long a sensor is deaf after it has fired, in microseconds; a list of one for each sensor where they differ."""
+        """Deaf time of a sensor after it has fired, in microseconds; a list of one for each sensor where they differ."""
     @property
     def min_refire_us(self) -> int:
-        """How long a sensor rests between its echo and its next firing, in microseconds."""
+        """Rest of a sensor between its echo and its next firing, in microseconds."""
     @property
     def audible_us(self) -> int:
-        """How long sound is heard after it was sent, in microseconds; 0 for as long as sensors listen."""
+        """Time for which sound is heard after it was sent, in microseconds; 0 for as long as sensors listen."""
     @property
     def firing(self) -> dict[str, object]:
-        """How sketches and modules fire it: a dict of what differs from the default."""
+        """Firing by sketches and modules: a dict of what differs from the default."""
     @property
     def start_us(self) -> int:
         """When the ring begins to fire, in microseconds."""
     @property
     def schedule(self) -> Schedule | None:
-        """What the EERUF methods fire by; None for the paper's table."""
+        """Schedule of the EERUF methods; None for the paper's table."""
     @property
     def neighbours(self) -> int:
-        """How many adjacent sensors must not fire close together."""
+        """Number of adjacent sensors that must not fire close together."""
     @property
     def consecutive(self) -> int:
-        """How many readings in a row must agree."""
+        """Number of readings in a row that must agree."""
     @property
     def odometry(self) -> bool:
-        """Whether the ring knows by how much its own motion should change readings."""
+        """Returns true if the ring knows by how much its own motion should change readings."""
     @property
     def velocity_m_s(self) -> tuple[float, float] | None:
         """The velocity that it keeps, (x, y) in m/s; None for a robot that stands or drives through waypoints."""
@@ -3480,13 +3476,13 @@ class Robot:
         """The points that it drives through, (x, y) in metres; None without."""
     @property
     def speed_m_s(self) -> float | None:
-        """How fast it drives through its waypoints, in m/s; None without."""
+        """Speed through its waypoints, in m/s; None without."""
     @property
     def clock_offset_us(self) -> int:
-        """What its clock shows at the start, in microseconds."""
+        """Its clock at the start, in microseconds."""
     @property
     def clock_drift_ppm(self) -> float:
-        """By how much its clock goes too fast, in millionths."""
+        """Drift of its clock (positive: too fast), in millionths."""
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...
 
@@ -3533,7 +3529,7 @@ class Scene:
         max_order: how many bounces :func:`simulate` follows; 6 unless it is given.
         physics: ``"plain"``, ``"default"``, or a dict of what differs from a ``preset``: ``shadows``, ``edges``,
             ``narrow_panels``, ``range_walk`` (each True or False), ``fading_time_s``; see
-            ``docs/explanation/physics.md``.
+    ``docs/explanation/physics.md``.
         height: ``"flat"``, all sound in one plane; ``"room"``, between a floor and a ceiling at 2.6 m; or a dict of
             what differs from that room: ``ceiling_m``, and ``floor`` and ``ceiling`` as in ``materials``.
         faults: what goes wrong, dicts with the keys of ``[[fault]]`` in scene files, such as
@@ -3631,7 +3627,7 @@ class Scene:
         """
     @property
     def faults(self) -> list[_Fault]:
-        """What goes wrong: dicts with the keys of ``[[fault]]`` in scene files."""
+        """Faults: dicts with the keys of ``[[fault]]`` in scene files."""
     @property
     def walls(self) -> _Floats:
         """The walls: array of shape (n, 4), as given."""
@@ -3664,16 +3660,16 @@ class Scene:
         """The robots, a tuple of ``Robot``."""
     @property
     def noise(self) -> Noise:
-        """How noisy it is, a ``Noise``."""
+        """Its noise, a ``Noise``."""
     @property
     def seed(self) -> int:
-        """What decides all that is random."""
+        """Seed of all that is random."""
     @property
     def max_order(self) -> int:
-        """How many bounces :func:`simulate` follows."""
+        """Number of bounces that :func:`simulate` follows."""
     @property
     def physics(self) -> _Physics:
-        """Which effects there are: a preset's name, or a dict."""
+        """Effects that are simulated: a preset's name, or a dict."""
     @property
     def height(self) -> _Height:
         """Floor and ceiling: ``"flat"`` without, ``"room"`` for the default, or a dict."""
@@ -3736,7 +3732,7 @@ class Paths:
         """The length in metres: float64."""
     @property
     def order(self) -> NDArray[np.int64]:
-        """How many bounces, those at poles included: int64."""
+        """Number of bounces, those at poles included: int64."""
     @property
     def departure_rad(self) -> NDArray[np.float64]:
         """The direction in which the path leaves the source, in (-pi, pi]: float64."""
@@ -3801,7 +3797,7 @@ class Readings:
         """For how long, in seconds."""
     @property
     def sensors(self) -> int:
-        """How many sensors the scene has, of all robots together."""
+        """Number of sensors the scene has, of all robots together."""
     @property
     def robot(self) -> NDArray[np.int64]:
         """The robot, from 0: int64."""
@@ -3828,7 +3824,7 @@ class Readings:
         """Whither the sensor looked when it fired, in radians of the scene, counter-clockwise from the x axis: float64."""
     @property
     def kind(self) -> NDArray[np.int8]:
-        """What the method made of it, an index into ``eeruf.KINDS``: int8."""
+        """Verdict of the method, an index into ``eeruf.KINDS``: int8."""
     @property
     def t_echo_us(self) -> NDArray[np.float64]:
         """The echo time that the method reports, in microseconds: float64."""
@@ -3837,10 +3833,10 @@ class Readings:
         """The earliest echo of the firing, in microseconds: float64."""
     @property
     def reference_us(self) -> NDArray[np.float64]:
-        """What the sensor would have read alone in quiet air, in microseconds: float64."""
+        """Reading of the sensor if it were alone in quiet air, in microseconds: float64."""
     @property
     def cause(self) -> NDArray[np.int8]:
-        """What ``t_echo_us`` came from, an index into ``CAUSES``: int8."""
+        """Cause of ``t_echo_us``, an index into ``CAUSES``: int8."""
     @property
     def path(self) -> NDArray[np.int64]:
         """Along which of ``paths`` the sound came, an index, or -1 for none: int64."""
@@ -3860,9 +3856,9 @@ class Readings:
         """The change that odometry expects since the sensor's firing before, in microseconds; 0 without odometry: int32."""
     @property
     def is_accepted(self) -> NDArray[np.bool_]:
-        """Whether the method accepts the reading, an echo or that nothing is in range: bool."""
+        """Returns true if the method accepts the reading, an echo or that nothing is in range: bool."""
     def is_wrong(self, tolerance_us: float = 500.0) -> NDArray[np.bool_]:
-        """Whether what the reading says is wrong, accepted or not.
+        """Returns true if what the reading says is wrong, accepted.
 
         Args:
             tolerance_us: by how much it may miss the reference, in microseconds.
@@ -4075,7 +4071,7 @@ class RobotState:
         """Rate of turn, counter-clockwise, in rad/s."""
     @property
     def touches(self) -> bool:
-        """Whether the disc that holds its sensors touches a wall or a pole."""
+        """True if the disc that holds its sensors touches a wall or a pole."""
     def to_dict(self) -> dict[str, object]:
         """Its fields by their names: a dict of plain values.
 
@@ -4090,7 +4086,7 @@ class RobotState:
 
 @final
 class FiredReading:
-    """What one firing of one sensor has heard, for a filter of one's own in a :class:`Simulation`.
+    """Echoes that one firing of one sensor has heard, for a filter of one's own in a :class:`Simulation`.
 
     Example:
         >>> from eeruf import sim
@@ -4108,7 +4104,7 @@ class FiredReading:
     ) -> FiredReading: ...
     @property
     def reading(self) -> Reading:
-        """What the ring itself makes of it, with the paper's filter: its sensor, phase and period too."""
+        """The ring's own verdict on it, with the paper's filter: its sensor, phase and period too."""
     @property
     def t_echoes_us(self) -> tuple[int, ...]:
         """The times of its echoes after firing, in microseconds, earliest first: a tuple of one at most, but of up to
@@ -4119,7 +4115,7 @@ class FiredReading:
         """When it fired, in seconds."""
     @property
     def expected_change_us(self) -> int:
-        """By how much odometry expects a good reading to have changed since the sensor's firing before, in microseconds."""
+        """Change of a good reading since the sensor's firing before that odometry expects, in microseconds."""
     def to_dict(self) -> dict[str, object]:
         """Its fields by their names: a dict of plain values.
 

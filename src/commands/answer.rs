@@ -1,4 +1,4 @@
-//! What a command answers, and with it the exit code.
+//! Answer of a command, and with it the exit code.
 
 pub(crate) enum Answer {
     /// Exit code 0.

@@ -11,7 +11,7 @@ use crate::files::error::InputError;
 use crate::files::write::write;
 use crate::report::watch::Watch;
 
-/// Who is to check a certificate.
+/// Certificate format.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub(crate) enum CertificateForm {
     /// One text for eeruf-check and checker/check_period.py
@@ -21,11 +21,11 @@ pub(crate) enum CertificateForm {
     Veripb,
 }
 
-/// What proves a design's period.
+/// Proof of a design's period.
 pub(crate) struct Written {
     /// The files' texts, by ending if there are several; or why there are none.
     texts: Result<Vec<(&'static str, String)>, String>,
-    /// What was proven, to be said.
+    /// The claim that was proven, for the report.
     claim: String,
 }
 
@@ -71,12 +71,12 @@ impl Written {
     }
 }
 
-/// What the checker says of the certificate.
+/// The checker's claim about the certificate.
 pub(crate) fn claim_of(text: &str) -> String {
     check(text).map_or_else(|error| format!("refused: {error}"), |certified| certified.to_string())
 }
 
-/// What the checker says of the certificate, and whether the search knows more.
+/// The checker's claim about the certificate, and whether the search knows more.
 fn claim(text: &str, design: &RingDesign) -> String {
     let known = design.bound.unwrap_or_default();
     match check(text) {

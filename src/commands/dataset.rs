@@ -24,19 +24,19 @@ pub(crate) struct Args {
     /// The folder, which is made
     #[arg(value_name = "OUT")]
     out: PathBuf,
-    /// How many alcoves of Set I
+    /// Number of alcoves of Set I
     #[arg(long, value_name = "N", default_value_t = 20, value_parser = clap::value_parser!(u64).range(..=1000))]
     alcoves: u64,
-    /// How many courses of Set II
+    /// Number of courses of Set II
     #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u64).range(..=1000))]
     courses: u64,
     /// The number of the first alcove and of the first course
     #[arg(long, value_name = "N", default_value_t = 60_000)]
     first: u64,
-    /// How many periods of 60 ms in each alcove
+    /// Number of periods of 60 ms in each alcove
     #[arg(long, value_name = "N", default_value_t = 500, value_parser = clap::value_parser!(u32).range(1..=100_000))]
     periods: u32,
-    /// Which effects there are: plain, or default (see docs/explanation/physics.md)
+    /// Effects that are simulated: plain, or default (see docs/explanation/physics.md)
     #[arg(long, value_name = "PRESET", default_value = "default")]
     physics: Physics,
 }

@@ -33,7 +33,7 @@ pub(crate) struct Args {
     /// the log has none
     #[arg(long, value_name = "SCHEDULE.toml")]
     schedule: Option<PathBuf>,
-    /// By how much a reading may differ from what a path predicts: about four times the jitter
+    /// Largest difference between a reading and what a path predicts: about four times the jitter
     #[arg(long, value_name = "N", default_value_t = 75, value_parser = clap::value_parser!(u32).range(1..=5000))]
     tolerance_us: u32,
     /// For how long sound is followed

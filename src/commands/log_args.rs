@@ -7,7 +7,7 @@ use eeruf_logs::{Damage, FieldChoice, Options, RangeUnit, Report, Table, TimeUni
 use crate::console::warning;
 use crate::files::error::InputError;
 
-/// How to read a log. What is not given is guessed, and `eeruf logs` lists each guess.
+/// Options for reading a log. What is not given is guessed, and `eeruf logs` lists each guess.
 #[derive(clap::Args)]
 #[command(next_help_heading = "The log")]
 pub(crate) struct LogArgs {
@@ -152,7 +152,7 @@ pub(crate) fn tell_damage(file: &Path, report: &Report) -> Result<(), InputError
     Ok(())
 }
 
-/// What was left out of a log, and why.
+/// Records left out of a log, and why.
 pub(crate) fn left_out(report: &Report) -> Vec<String> {
     let said = report.skipped.iter().map(|topic| match topic.messages {
         0 => format!("{}: {}", topic.topic, topic.why),

@@ -1,4 +1,4 @@
-//! Which methods a command simulates.
+//! Methods that a command simulates.
 
 use eeruf_sim::Method;
 

@@ -271,7 +271,7 @@ impl Replayed {
 }
 
 impl Filtered {
-    /// What the filter makes of a reading; `None` of one that is no number.
+    /// The filter's verdict on a reading; `None` for a non-numeric one.
     fn kind(&mut self, reading: &Reading, speed_of_sound: f64, log: &Path) -> Result<Option<ReadingKind>, InputError> {
         // Each filter has one sensor, so that it knows it.
         if reading.at_ns.is_none() && matches!(self.filter, Filter::Rate(_)) {

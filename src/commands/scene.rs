@@ -18,8 +18,8 @@ pub(crate) struct Args {
     /// The map
     #[arg(value_name = "MAP.yaml")]
     file: PathBuf,
-    /// How far walls may be from the edges of the occupied cells, in metres; one and a half cells if not given, which
-    /// makes the stair straight that a slanted wall becomes in cells
+    /// Largest distance of walls from the edges of the occupied cells, in metres; one and a half cells if not given,
+    /// which makes the stair straight that a slanted wall becomes in cells
     #[arg(long, value_name = "M", value_parser = tolerance)]
     tolerance_m: Option<f64>,
 }

@@ -35,10 +35,10 @@ pub(crate) struct Args {
     /// other has more of one without less of the other
     #[arg(long, value_enum, value_name = "WHAT")]
     best: Option<Best>,
-    /// How many nodes to search at most
+    /// Largest number of nodes to search
     #[arg(long, default_value_t = u64::MAX, hide_default_value = true, value_name = "NODES")]
     budget: u64,
-    /// How long the command may take, in seconds
+    /// Time limit of the command, in seconds
     #[arg(long, value_name = "S", value_parser = seconds)]
     time_limit: Option<Duration>,
     /// Print one JSON object
@@ -46,7 +46,7 @@ pub(crate) struct Args {
     json: bool,
 }
 
-/// How many nodes it may cost to find out which requirement cannot be met.
+/// Number of nodes it may cost to find out which requirement cannot be met.
 const REASON_BUDGET: u64 = 2_000_000;
 /// After how many nodes each it is looked whether to go on.
 const WATCHED_EVERY: u32 = 1 << 12;

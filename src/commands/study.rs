@@ -88,7 +88,7 @@ impl Args {
 const PERIODS: u32 = 2000;
 /// Paths have to be found anew for every firing then.
 const PERIODS_IF_MOVING: u32 = 250;
-/// How many nodes the search for `eeruf_best` may cost.
+/// Budget of nodes for the search for `eeruf_best`.
 const BUDGET: u64 = 20_000;
 
 pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {

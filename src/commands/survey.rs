@@ -48,7 +48,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "N", default_value_t = 750, requires = "simulate")]
     #[arg(value_parser = clap::value_parser!(u32).range(10..=100_000))]
     lead_step_us: u32,
-    /// By how much edges of one path may differ: about four times the jitter
+    /// Largest difference between edges of one path: about four times the jitter
     #[arg(long, value_name = "N", default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..=5000))]
     tolerance_us: u32,
     /// Write a ring file for `design`, in which the pairs that hear each other are neighbours, each with an interval of

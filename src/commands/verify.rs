@@ -41,13 +41,13 @@ pub(crate) struct Args {
     /// The least time between the firings of two neighbours
     #[arg(long, default_value_t = 0, value_name = "N")]
     min_interval_us: u32,
-    /// How many adjacent sensors are neighbours
+    /// Number of adjacent sensors that are neighbours
     #[arg(long, default_value_t = 4, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=64))]
     neighbours: u8,
-    /// How the sensors stand: line, ring, blocks, or the pairs of neighbours themselves, counted from 0: 0-1,1-2
+    /// Arrangement of the sensors: line, ring, blocks, or the pairs of neighbours themselves, counted from 0: 0-1,1-2
     #[arg(long, default_value = "line", value_name = "LAYOUT")]
     layout: LayoutArg,
-    /// How to read (13a), (13b)
+    /// Reading of (13a), (13b)
     #[arg(long, value_enum, default_value_t = CriterionArg::Exact)]
     criterion: CriterionArg,
     /// T_wind: how long a sensor listens
@@ -79,7 +79,7 @@ pub(crate) struct Args {
 
 #[derive(Clone, Copy, ValueEnum)]
 enum CriterionArg {
-    /// What rejecting all crosstalk needs
+    /// The form that suffices to reject all crosstalk
     Exact,
     /// As printed, with an outer absolute value
     Paper,

@@ -21,7 +21,7 @@ const POSES_S: f64 = 0.05;
 /// A path is shown for so long.
 const SHOWN_NS: u64 = 120_000_000;
 
-/// What of scenes that were exchanged is kept: longer than sound is on its way.
+/// Time for which scenes that were exchanged are kept: longer than sound is on its way.
 const KEPT_S: f64 = 10.0;
 
 /// A world and where its robots are.

@@ -14,7 +14,7 @@ pub(crate) struct TruePath {
     pub(crate) sender: u8,
     pub(crate) receiver: u8,
     pub(crate) travel_us: f64,
-    /// By how much it is above what is just heard; below it is negative.
+    /// Level above what is just heard; below it is negative.
     pub(crate) level_db: f64,
 }
 

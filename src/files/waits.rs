@@ -39,7 +39,7 @@ enum CriterionKey {
     Exact,
 }
 
-/// What such a file asks for.
+/// Contents of such a file.
 pub(crate) struct WaitSpec {
     file: WaitFile,
     layout: OwnedLayout,

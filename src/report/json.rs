@@ -1,8 +1,8 @@
-//! What `--json` prints.
+//! Output of `--json`.
 
 use serde::{Serialize, Serializer};
 
-/// What `--json` prints: one object on one line.
+/// Output of `--json`: one object on one line.
 pub(crate) fn to_json(answer: &impl Serialize) -> String {
     // Our own types: named fields, numbers and strings, which always serialise.
     serde_json::to_string(answer).unwrap_or_default()

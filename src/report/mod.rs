@@ -1,4 +1,4 @@
-//! What is printed and drawn: tables, JSON, pictures, and how far a long task is.
+//! Output: tables, JSON, pictures, and the progress of a long task.
 //!
 //! Uses the libraries and `files`; knows nothing of commands and their arguments.
 

@@ -67,7 +67,7 @@ impl From<&PhaseVerification<'_>> for ReportJson {
     }
 }
 
-/// What the criterion asks for, in words.
+/// The criterion in words.
 fn criterion(requirements: &PhaseRequirements<'_>) -> String {
     let separation = us(requirements.separation());
     match requirements.criterion {
@@ -120,7 +120,7 @@ pub(crate) fn describe(
     text
 }
 
-/// What `design --phases` found, with the names that `design` uses.
+/// Result of `design --phases`, with the names that `design` uses.
 #[derive(Serialize)]
 pub(crate) struct DesignJson<'d> {
     schedule: ScheduleJson,

@@ -1,4 +1,4 @@
-//! What fits into a period, and the curve of a need, as text and as JSON.
+//! Schedules that fit into a period, and the curve of a need, as text and as JSON.
 
 use comfy_table::{Table, presets};
 use eeruf_core::Micros;
@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use super::timing;
 
-/// What `--curve --json` prints.
+/// Output of `--curve --json`.
 #[derive(Serialize)]
 pub(crate) struct CurveJson {
     need: &'static str,
@@ -38,7 +38,7 @@ impl CurveJson {
     }
 }
 
-/// What `--period --json` prints: `value_us` is the largest `t_delta`.
+/// Output of `--period --json`: `value_us` is the largest `t_delta`.
 pub(crate) fn fit_json(fit: &Fit, seconds: f64) -> FoundJson {
     let Fit { schedule, t_delta: value, bound, proven, nodes, .. } = *fit;
     FoundJson { fits: fit.fits, ..FoundJson::new(&Found { schedule, value, bound, proven, nodes }, seconds) }

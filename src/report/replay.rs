@@ -1,4 +1,4 @@
-//! What the filter made of a log, as a table and as JSON.
+//! The filter's verdicts on a log, as a table and as JSON.
 
 use std::path::Path;
 
@@ -7,13 +7,13 @@ use serde::Serialize;
 
 use super::table::markdown;
 
-/// What the filter made of one sensor's readings, one after the other.
+/// The filter's verdicts on one sensor's readings, one after the other.
 pub(crate) struct Column {
     pub(crate) name: String,
     pub(crate) kinds: Vec<ReadingKind>,
 }
 
-/// What the filter made of one sensor's readings, counted, and when they were.
+/// The filter's verdicts on one sensor's readings, counted, and when they were.
 #[derive(Default)]
 pub(crate) struct Counted {
     pub(crate) tally: Tally<u32>,
@@ -27,7 +27,7 @@ pub(crate) struct Counted {
     pub(crate) gaps: u64,
 }
 
-/// What `--json` prints.
+/// Output of `--json`.
 #[derive(Serialize)]
 pub(crate) struct Replay {
     pub(crate) total: Counts,
@@ -35,28 +35,28 @@ pub(crate) struct Replay {
     /// Of a hopping ring's log: how many readings are what it made of them.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) as_logged: Option<u64>,
-    /// What of the log could not be read.
+    /// Damage of the log.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(crate) damage: Vec<String>,
     /// Topics that were left out, and why.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(crate) skipped: Vec<String>,
-    /// What was read and seems wrong.
+    /// Values that were read and seem wrong.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(crate) warnings: Vec<String>,
-    /// How the sensors fire.
+    /// Firing pattern of the sensors.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) firing: Option<Firing>,
 }
 
-/// How the sensors of a log fire, and what agreement proves for it.
+/// Firing pattern of a log's sensors, and what agreement proves for it.
 #[derive(Serialize)]
 pub(crate) struct Firing {
     pub(crate) pattern: &'static str,
     pub(crate) proves: String,
 }
 
-/// How often each kind occurred.
+/// Number of readings of each kind.
 #[derive(Clone, Default, Serialize)]
 pub(crate) struct Counts {
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -145,7 +145,7 @@ impl Counts {
         }
     }
 
-    /// How many readings there were.
+    /// Number of readings.
     fn readings(&self) -> u64 {
         let compared = self.compared();
         compared + self.first + self.no_echo + self.clear + self.too_early + self.invalid
@@ -191,7 +191,7 @@ impl Counts {
     }
 }
 
-/// Which columns not every log needs.
+/// Columns that not every log needs.
 #[derive(Clone, Copy)]
 struct Columns {
     close: bool,

@@ -1,4 +1,4 @@
-//! What `search` found, as text and as JSON.
+//! Result of `search`, as text and as JSON.
 
 use std::fmt::Write as _;
 
@@ -12,7 +12,7 @@ use serde::Serialize;
 pub(crate) const NOT_DECIDED: &str = "not decided: the search ended before it found a table or excluded all; expected \
                                       a larger --budget or --time-limit\n";
 
-/// What `--count` prints.
+/// Output of `--count`.
 #[derive(Serialize)]
 pub(crate) struct CountJson {
     pub(crate) count: u128,
@@ -21,11 +21,11 @@ pub(crate) struct CountJson {
     pub(crate) at_least: bool,
 }
 
-/// What `--best pareto` prints.
+/// Output of `--best pareto`.
 #[derive(Serialize)]
 pub(crate) struct FrontJson {
     tables: Vec<FrontTableJson>,
-    /// Whether no table of the front is missing.
+    /// True if no table of the front is missing.
     proven: bool,
     nodes: u64,
     seconds: f64,

@@ -1,4 +1,4 @@
-//! What `verify` found, as text and as JSON.
+//! Result of `verify`, as text and as JSON.
 
 use std::fmt::Write as _;
 
@@ -52,7 +52,7 @@ impl From<&Verification<'_, MAX_SENSORS>> for ReportJson {
     }
 }
 
-/// How many violations to print before counting the rest.
+/// Number of violations to print before counting the rest.
 const PRINTED_VIOLATIONS: usize = 10;
 
 pub(crate) fn describe(

@@ -1,5 +1,5 @@
-//! What a search or simulation looks like while it runs: a progress line after two seconds, and Ctrl-C or a limit that
-//! ends it cleanly.
+//! Display of a running search or simulation: a progress line after two seconds, and Ctrl-C or a limit that ends it
+//! cleanly.
 
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -11,7 +11,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 /// After this time the progress line appears.
 const SHOWN_AFTER: Duration = Duration::from_secs(2);
 
-/// Whether Ctrl-C was pressed since the program began.
+/// Returns true if Ctrl-C was pressed since the program began.
 fn interrupted() -> &'static AtomicBool {
     static INTERRUPTED: OnceLock<Arc<AtomicBool>> = OnceLock::new();
     INTERRUPTED.get_or_init(|| {

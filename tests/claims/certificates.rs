@@ -7,7 +7,7 @@ use std::process::Command;
 
 use crate::common::{Scratch, eeruf};
 
-/// What the checker in Python says of a certificate: its exit code and what it prints.
+/// Verdict of the checker in Python on a certificate: its exit code and what it prints.
 fn python(certificate: &Path) -> (Option<i32>, String) {
     let checked =
         Command::new("python3").arg("checker/check_period.py").arg(certificate).output().expect("python3 runs");

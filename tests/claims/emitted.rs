@@ -1,4 +1,4 @@
-//! What `eeruf design --emit rust` printed, compiled: the compiler has checked the table against its requirements.
+//! Output of `eeruf design --emit rust`, compiled: the compiler has checked the table against its requirements.
 
 // Public, for firmware to put where it likes.
 #[expect(unreachable_pub)]

@@ -1,4 +1,4 @@
-//! What goes wrong in a scene shows in what is read, for the time that it lasts; scene files say it.
+//! Faults in a scene show in what is read, for the time that they last; scene files name them.
 
 use std::path::Path;
 

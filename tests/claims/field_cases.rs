@@ -6,7 +6,7 @@ use serde_json::Value;
 /// A file, options, and what each sensor counts.
 type Case<'a> = (&'a str, &'a [&'a str], &'a [(&'a str, [u64; 4])]);
 
-/// What `replay` says of a case: its outcome and its object.
+/// Result of `replay` on a case: its outcome and its object.
 fn replay(file: &str, options: &[&str]) -> (Outcome, Value) {
     let path = format!("tests/data/field-cases/{file}");
     let outcome = eeruf(&[&["replay", &path, "--t-delta-us", "500", "--json"], options].concat());

@@ -1,4 +1,4 @@
-//! What the paper and the documents claim, one module for each claim, in one binary: linking took longer than testing.
+//! Claims of the paper and the documents, one module for each claim, in one binary: linking took longer than testing.
 
 mod common;
 

@@ -1,4 +1,4 @@
-//! What a newcomer types: the commands of the tutorials run from top to bottom, and print the figures of their texts.
+//! A newcomer's session: the commands of the tutorials run from top to bottom, and print the figures of their texts.
 
 use std::path::Path;
 use std::process::{Command, Output};

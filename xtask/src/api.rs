@@ -114,7 +114,7 @@ fn interface(name: &str) -> Result<String, Trouble> {
     Ok(api.items().map(|item| format!("{item}\n")).collect())
 }
 
-/// What is gone (`-`) and what is new (`+`); order does not matter.
+/// Lines that are gone (`-`) and new (`+`); order does not matter.
 fn changes(was: &str, is: &str) -> Vec<String> {
     let (was, is): (BTreeSet<_>, BTreeSet<_>) = (was.lines().collect(), is.lines().collect());
     let gone = was.difference(&is).map(|line| format!("- {line}"));

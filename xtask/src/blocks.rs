@@ -6,7 +6,7 @@ const END: &str = "<!-- end -->";
 
 /// A part that was printed.
 pub(crate) struct Block<'a> {
-    /// What the comment says after its first words.
+    /// The comment after its first words.
     pub(crate) label: &'a str,
     pub(crate) body: &'a str,
 }

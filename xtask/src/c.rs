@@ -19,7 +19,7 @@ const COMPILERS: [(&str, &[&str]); 8] = [
 ];
 const SANITIZERS: &str = "-fsanitize=address,undefined";
 
-/// Whether a compiler is installed.
+/// Returns true if a compiler is installed.
 pub(crate) fn need(tool: &str, package: &str) -> Result<(), Trouble> {
     match output(Command::new(tool).arg("--version")) {
         Some(_) => Ok(()),

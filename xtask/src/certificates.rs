@@ -9,13 +9,13 @@ use std::time::{Duration, Instant};
 
 use crate::steps::{Steps, Trouble, output, run};
 
-/// What to check.
+/// Parts to check.
 #[derive(clap::Args)]
 pub(crate) struct Plan {
-    /// How many mutated certificates to give both checkers; half of tiny problems, half of the table's smaller rings
+    /// Number of mutated certificates to give both checkers; half of tiny problems, half of the table's smaller rings
     #[arg(long, default_value_t = 10_000)]
     mutations: u32,
-    /// What the mutations are drawn from
+    /// Seed of the mutations
     #[arg(long, default_value_t = 20_000)]
     seed: u32,
 }
@@ -98,7 +98,7 @@ fn certify(group: &Group) -> Result<String, Trouble> {
     Ok(format!("| {} | {} | {nodes} | {bytes} | {in_rust} | {in_python} |\n", group.name, group.rings.len()))
 }
 
-/// What a checker says, and how long it takes to.
+/// Verdict of a checker, and its duration.
 fn timed(command: &mut Command, total: &mut Duration) -> Result<String, Trouble> {
     let began = Instant::now();
     let said = output(command).ok_or_else(|| Trouble::Failed(format!("{command:?} refuses")))?;

@@ -1,4 +1,4 @@
-//! Which files and packages changed since the branch left the main one, as git knows it.
+//! Files and packages that changed since the branch left the main one, as git knows it.
 
 use std::path::Path;
 use std::process::Command;

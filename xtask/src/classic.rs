@@ -54,7 +54,7 @@ impl Script<'_, '_> {
     }
 }
 
-/// What a module is called in the script.
+/// Name of a module in the script.
 fn variable(module: &str) -> String {
     module.replace(|letter: char| !letter.is_ascii_alphanumeric(), "_")
 }

@@ -1,4 +1,4 @@
-//! Whether docs/project/dependencies.md names every dependency, and how many crates each of ours brings along.
+//! True if docs/project/dependencies.md names every dependency, and how many crates each of ours brings along.
 //!
 //! Only tests: nothing here is a command.
 
@@ -18,7 +18,7 @@ fn document() -> String {
     std::fs::read_to_string(root().join("docs/project/dependencies.md")).unwrap()
 }
 
-/// What stands between back quotes in a text.
+/// Words between back quotes in a text.
 fn quoted(text: &str) -> BTreeSet<&str> {
     text.split('`').skip(1).step_by(2).collect()
 }

@@ -8,7 +8,7 @@ use std::process::Command;
 
 use crate::steps::{Steps, Trouble, output, run};
 
-/// What is built: Rust's name, and the oldest system that the wheel is for.
+/// Targets: Rust's name, and the oldest system that the wheel is for.
 const TARGETS: [(&str, &str); 4] = [
     ("x86_64-unknown-linux-gnu", "manylinux2014"),
     ("x86_64-unknown-linux-musl", "musllinux_1_2"),
@@ -17,7 +17,7 @@ const TARGETS: [(&str, &str); 4] = [
 ];
 /// Where the files of a release lie.
 const DIST: &str = "target/dist";
-/// What the programs for all targets must answer alike.
+/// Commands that the programs for all targets must answer alike.
 const SAY_ALIKE: [&[&str]; 3] = [
     &["--version"],
     &["design", "rings/hc-sr04-8.toml", "--no-atlas", "--emit", "c"],
@@ -106,7 +106,7 @@ fn tools() -> Result<(), Trouble> {
 
 /// A compiler that has the libraries of a target, or makes them.
 struct Compiler {
-    /// What the environment of a build needs so that it is taken.
+    /// Environment of a build that makes it be taken.
     environment: Vec<(&'static str, &'static str)>,
     /// Compilers that come from different places must not share a folder.
     target_folder: &'static str,
@@ -200,7 +200,7 @@ fn program(folder: &Path, target: &str) -> Result<PathBuf, Trouble> {
     Ok(folder.join(compiler.target_folder).join(target).join("wheel/eeruf"))
 }
 
-/// Whether a program needs no library and no loader.
+/// Returns true if a program needs no library and no loader.
 fn stands_alone(program: &Path) -> Result<(), Trouble> {
     let said = output(Command::new("readelf").args(["--wide", "--program-headers", "--dynamic"]).arg(program))
         .ok_or_else(|| Trouble::Skipped("no readelf; try: apt install binutils".to_owned()))?;
@@ -208,7 +208,7 @@ fn stands_alone(program: &Path) -> Result<(), Trouble> {
     if needs.is_empty() { Ok(()) } else { Err(Trouble::Failed(format!("it is not static: {needs:?}"))) }
 }
 
-/// What a program prints, here or in an emulator; nothing where neither can run it.
+/// Output of a program, here or in an emulator; nothing where neither can run it.
 fn says(program: &Path, target: &str) -> Result<Option<Vec<String>>, Trouble> {
     let (architecture, _) = target.split_once('-').unwrap_or((target, ""));
     let emulator = format!("qemu-{architecture}");

@@ -59,7 +59,7 @@ fn broken_rules(text: &str) -> Vec<(usize, String)> {
     broken
 }
 
-/// Whether it stands there as a word of its own, as a part of `a_name` it does not.
+/// Returns true if it stands there as a word of its own, as a part of `a_name` it does not.
 fn has_word(text: &str, word: &str) -> bool {
     let of_a_word = |c: char| c.is_alphanumeric() || c == '_';
     text.match_indices(word)

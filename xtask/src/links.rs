@@ -47,7 +47,7 @@ pub(crate) fn check_documents() -> Result<(), Trouble> {
     if broken.is_empty() { Ok(()) } else { Err(Trouble::Failed(broken.join("\n"))) }
 }
 
-/// Whether a link leads into the repository, not to the world.
+/// Returns true if a link leads into the repository, not to the world.
 pub(crate) fn within_reach(target: &str) -> bool {
     !target.contains("://") && !target.starts_with("mailto:")
 }

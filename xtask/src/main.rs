@@ -152,7 +152,7 @@ enum Verb {
     },
     /// Print the table of shortest periods that docs/explanation/search.md shows
     Periods {
-        /// What to pass to the example `shortest_periods` of eeruf-core
+        /// Arguments for the example `shortest_periods` of eeruf-core
         #[arg(value_name = "ARGUMENT")]
         arguments: Vec<String>,
     },

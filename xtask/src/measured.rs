@@ -19,8 +19,8 @@ pub(crate) const COMPILERS: &str = "compilers";
 const COMPILED: [&str; 7] =
     ["hopping instructions", "hopping size", "instructions", "lateness", "search", "size", "stack"];
 
-/// By how much a timing may differ, as a share of the larger one and besides: the emulator does not take every
-/// interrupt at the very same instruction.
+/// Largest difference of a timing, as a share of the larger one and besides: the emulator does not take every interrupt
+/// at the very same instruction.
 const TIMING_SHARE: f64 = 0.1;
 const TIMING_BESIDES: f64 = 40.0;
 
@@ -103,7 +103,8 @@ fn differences(
     differ
 }
 
-/// Whether a cell is as measured. A number is a timing if it stands before `us` or `ms`, or after a word in `_us`.
+/// Returns true if a cell is as measured. A number is a timing if it stands before `us` or `ms`, or after a word in
+/// `_us`.
 fn is_same(expected: &str, measured: &str) -> bool {
     let words = |cell: &str| cell.split_whitespace().map(|word| word.trim_end_matches(',').to_owned()).collect();
     let (expected, measured): (Vec<String>, Vec<String>) = (words(expected), words(measured));

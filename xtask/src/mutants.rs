@@ -54,7 +54,7 @@ const SLOW_OF_REST: [&str; 16] = [
 /// Features of the core that have tests.
 const FEATURES: &str = "embassy-time,fugit,serde";
 
-/// Which tests run.
+/// Tests of a round.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Round {
     Quick,
@@ -80,7 +80,7 @@ impl Round {
         }
     }
 
-    /// What a round has beside what is set for all: few cases, and the same ones for each mutant.
+    /// Environment of a round beside what is set for all: few cases, and the same ones for each mutant.
     fn environment(self) -> &'static [(&'static str, &'static str)] {
         match self {
             Self::Quick => &[("PROPTEST_CASES", "16"), ("PROPTEST_RNG_SEED", "1")],
@@ -90,7 +90,7 @@ impl Round {
     }
 }
 
-/// What to break.
+/// Parts to break.
 #[derive(clap::Args, Debug)]
 pub(crate) struct Plan {
     /// Break the search instead of everything outside it
@@ -134,14 +134,14 @@ impl Plan {
         args
     }
 
-    /// Which of their mutants.
+    /// The shard of their mutants.
     fn shard(&self) -> Vec<String> {
         // Every N-th mutant, so that each part has some of each file.
         let shard = self.part().map(|part| ["--shard", part, "--sharding", "round-robin"].map(str::to_owned));
         shard.into_iter().flatten().collect()
     }
 
-    /// How to try those that are not listed as caught before.
+    /// Arguments that try those that are not listed as caught before.
     fn args(&self, round: Round) -> Vec<String> {
         let mut args: Vec<String> =
             ["mutants", "--iterate", "--no-shuffle", "--colors", "never", "--output"].map(str::to_owned).to_vec();
@@ -198,7 +198,7 @@ fn leave_out<'m>(folder: &Path, mutants: impl Iterator<Item = &'m String>) -> io
     std::fs::write(out.join("previously_caught.txt"), text)
 }
 
-/// Whether the comparison with the C library passes as the code is: else it would notice each mutant.
+/// Returns true if the comparison with the C library passes as the code is: else it would notice each mutant.
 fn passes_unbroken(build: &Path) -> bool {
     let mut cargo = Command::new("cargo");
     cargo.args(["test", "--quiet", "--package", "eeruf-c-equal", "--test", "all"]).env("CARGO_TARGET_DIR", build);
@@ -223,7 +223,7 @@ pub(crate) fn run(plan: &Plan) -> ExitCode {
     }
 }
 
-/// How many were missed.
+/// Number of mutants that were missed.
 fn try_all(plan: &Plan) -> Result<usize, String> {
     let folder = plan.folder();
     let failed = |error: io::Error| format!("{}: {error}", folder.display());

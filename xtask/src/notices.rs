@@ -12,7 +12,7 @@ use crate::steps::{Trouble, output};
 
 /// The file, which program and wheel carry.
 pub(crate) const FILE: &str = "LICENSE-THIRD-PARTY.txt";
-/// What is linked and is no crate.
+/// Linked parts that are no crates.
 const OTHERS: &str = "xtask/notices/others.txt";
 const HEAD: &str = "\
 What others wrote and is within the program eeruf and the Python package eeruf, and under which licence it is used \
@@ -51,7 +51,7 @@ struct Used {
     id: String,
     text: String,
     by: BTreeSet<String>,
-    /// Who wrote it, where the text itself leaves that open.
+    /// Authors, where the text itself leaves that open.
     whose: BTreeSet<String>,
 }
 

@@ -23,7 +23,7 @@ const TESTS: &str = "playground/tests";
 const FOLDER: &str = "target/page/folder";
 /// The one file for a disk.
 const SINGLE: &str = "target/page/who-fools-whom.html";
-/// What the compiler may use of WebAssembly, for `wasm-opt`.
+/// Features of WebAssembly that the compiler may use, for `wasm-opt`.
 const FEATURES: [&str; 6] = [
     "--enable-bulk-memory",
     "--enable-mutable-globals",
@@ -32,12 +32,12 @@ const FEATURES: [&str; 6] = [
     "--enable-reference-types",
     "--enable-multivalue",
 ];
-/// What npm last installed for the tests.
+/// Packages that npm last installed for the tests.
 const INSTALLED: &str = "node_modules/.installed.json";
 /// The module that differs between the folder and the one file, and what stands for it there.
 const PLATFORM: [&str; 2] = ["platform.js", "platform-single.js"];
 
-/// Which tests of the page to run.
+/// Tests of the page to run.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Tests {
     /// None, only build.

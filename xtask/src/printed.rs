@@ -1,4 +1,5 @@
-//! What documents quote of programs' output: `<!-- printed by: COMMAND -->` stands before it, `<!-- end -->` after it.
+//! Quotations of programs' output in documents: `<!-- printed by: COMMAND -->` stands before it, `<!-- end -->` after
+//! it.
 //!
 //! The command is `eeruf ARGUMENTS` or `cargo ARGUMENTS`. Words in brackets say more, as in
 //! `<!-- printed by (large, decimals are timings): COMMAND -->`: what takes long, and where numbers with a decimal
@@ -13,7 +14,7 @@ use crate::steps::{Trouble, output, run};
 const PRINTED_BY: &str = "<!-- printed by";
 const FENCE: &str = "```text\n";
 
-/// Which parts of a document to compare.
+/// Parts of a document to compare.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Which {
     All,
@@ -21,7 +22,7 @@ pub(crate) enum Which {
     SmallOfOthers,
 }
 
-/// How a part was printed.
+/// The mark of a printed part.
 #[derive(Debug, PartialEq, Eq)]
 struct Mark<'a> {
     large: bool,
@@ -96,7 +97,7 @@ fn read(document: &str) -> Result<String, Trouble> {
     fs::read_to_string(document).map_err(|error| Trouble::Failed(format!("{document}: {error}")))
 }
 
-/// What a command prints on standard output.
+/// Standard output of a command.
 fn output_of(command: &str) -> Result<String, Trouble> {
     println!("{command}");
     let failed = |why: &dyn std::fmt::Display| Trouble::Failed(format!("{command}: {why}"));

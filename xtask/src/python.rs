@@ -10,7 +10,8 @@ use std::process::Command;
 
 use crate::steps::{Trouble, output, run};
 
-/// How maturin makes a wheel: packed as tight as its format can, which takes a second and saves a fortieth.
+/// Options by which maturin makes a wheel: packed as tight as its format can, which takes a second and saves a
+/// fortieth.
 pub(crate) const BUILD: [&str; 4] = ["build", "--locked", "--compression-level", "9"];
 
 /// Everything about the Python package.
@@ -108,7 +109,7 @@ fn environment(home: &Path) -> Result<PathBuf, Trouble> {
     Ok(python)
 }
 
-/// What a user does first: the wheel, or the source distribution, in an empty environment, the README's lines, and the
+/// A user's first steps: the wheel, or the source distribution, in an empty environment, the README's lines, and the
 /// program that came along.
 fn fresh(python: &Path, distribution: &Path) -> Result<(), Trouble> {
     let home = Path::new("target/python-fresh");
@@ -156,6 +157,7 @@ others = re.search(r"^```python\n(.*?)^```$", pathlib.Path("python/README.md").r
 os.chdir("target/python-fresh")
 exec(others)
 exec(lines)
+eeruf.plot.timing(found.schedule, window_us=36_000).figure.savefig("timing.png")
 assert pathlib.Path("timing.png").stat().st_size > 5_000
 "#;
 

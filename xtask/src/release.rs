@@ -8,7 +8,7 @@ use cargo_metadata::MetadataCommand;
 
 use crate::steps::{Steps, Trouble, output, run};
 
-/// What a person does: nobody else may.
+/// Steps that only a person may take.
 const REMAINS: &str = "
 What remains for a person, in this order (docs/project/releasing.md says how):
   1. read CHANGELOG.md once more as a user would, and the site (cargo xtask site)

@@ -10,7 +10,7 @@ use crate::steps::{Steps, Trouble, output, run};
 
 /// The site, for any web server or a disk.
 const SITE: &str = "target/site/book";
-/// What the book is made of.
+/// Sources of the book.
 const SOURCES: &str = "target/site/src";
 /// Where the book leads to what lies beside it: the references and the page.
 const REFERENCES: &str = "site/references.md";

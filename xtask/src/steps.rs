@@ -11,7 +11,7 @@ pub(crate) enum Trouble {
     Skipped(String),
 }
 
-/// What came of all steps so far.
+/// Results of all steps so far.
 #[derive(Default)]
 pub(crate) struct Steps {
     passed: u32,

@@ -1,4 +1,4 @@
-//! Which compiler serves for what: a declared minimum version, or a target without an operating system.
+//! Compilers by purpose: a declared minimum version, or a target without an operating system.
 //!
 //! Compilers that come from different places must not share a target directory.
 

@@ -11,7 +11,7 @@ use crate::steps::{Trouble, output};
 const FOLDER: &str = "target/tune";
 const PILOTS: &str = "crates/eeruf-sim/src/experiments/set_two/own_pilots.rs";
 const MULTI_ECHO: &str = "crates/eeruf-sim/src/experiments/set_one/multi_echo.rs";
-/// How the line begins that holds what was found for several echoes.
+/// Beginning of the line that holds the result for several echoes.
 const LINE: &str = "    pub const TUNED: Self = ";
 
 /// Searches, and writes or compares.

@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 use crate::certificates::{files, table};
 use crate::steps::{Steps, Trouble, output, run};
 
-/// What to check.
+/// Parts to check.
 #[derive(clap::Args)]
 pub(crate) struct Plan {
     /// The program, where it is installed already; otherwise it is built from crates.io into target/veripb
@@ -131,7 +131,7 @@ fn broken_proofs(proof: &str) -> Vec<(&'static str, String)> {
     broken
 }
 
-/// Whether VeriPB accepts the proof that the model has no solution.
+/// Returns true if VeriPB accepts the proof that the model has no solution.
 fn accepts(program: &Path, model: &Path, proof: &Path) -> bool {
     output(Command::new(program).arg(model).arg(proof)).is_some_and(|said| said.contains("VERIFIED UNSATISFIABLE"))
 }

@@ -1,4 +1,4 @@
-//! What the searches, the filter and a ring cost in instructions, under callgrind.
+//! Cost of the searches, the filter and a ring in instructions, under callgrind.
 #![allow(missing_docs, unused_qualifications, reason = "what the macros generate")]
 
 use std::hint::black_box;

@@ -3,7 +3,7 @@
 //! A bound is one integer: `2 v` says "at most v", `2 v - 1` says "less than v". So comparing integers compares bounds,
 //! and whole ticks and real times are treated alike: in whole ticks no bound is odd.
 
-/// What a bound is made of: `t_j - t_i <= v` is stored as `2 v`, `t_j - t_i < v` as `2 v - 1`.
+/// A bound: `t_j - t_i <= v` is stored as `2 v`, `t_j - t_i < v` as `2 v - 1`.
 pub(crate) type Bound = i32;
 
 /// The requirements contradict each other here.

@@ -7,7 +7,7 @@ use core::fmt;
 pub struct CheckError {
     /// The number of the line, from 1.
     pub line: usize,
-    /// What was found there and what was expected.
+    /// The text found there and the one expected.
     pub what: String,
 }
 

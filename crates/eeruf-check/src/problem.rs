@@ -1,6 +1,6 @@
 //! The problem of a certificate, and what the checker makes of it.
 
-/// What a ring of sensors requires of its firing times, in ticks. Sensors count from 0.
+/// Requirements of a ring of sensors on its firing times, in ticks. Sensors count from 0.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Problem {
     /// A tick is `tick_us.0 / tick_us.1` microseconds.
@@ -9,9 +9,9 @@ pub struct Problem {
     pub separation: Vec<u32>,
     /// Each sensor's listening window R: it fires again no sooner.
     pub window: Vec<u32>,
-    /// Whether `2 |d_x| >= D_x`.
+    /// True if `2 |d_x| >= D_x`.
     pub stale_echo: bool,
-    /// Whether the claim is about real firing times and periods; otherwise they are whole ticks.
+    /// True if the claim is about real firing times and periods; otherwise they are whole ticks.
     pub over_reals: bool,
     /// Groups of sensors that fire at the same instants; separation does not count within a group.
     pub together: Vec<Vec<usize>>,
@@ -88,7 +88,7 @@ impl Merged {
         self.separation.len()
     }
 
-    /// How far apart `|d_x|` and `|d_y|` are, as a bound.
+    /// A bound on the distance of `|d_x|` and `|d_y|`.
     pub(crate) fn apart(&self, x: usize, y: usize) -> i32 {
         2 * self.separation[x].max(self.separation[y])
     }

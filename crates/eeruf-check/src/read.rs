@@ -4,7 +4,7 @@ use crate::error::CheckError;
 use crate::problem::{MAX_NUMBER, MAX_SENSORS, Problem};
 use crate::text::Lines;
 
-/// What a certificate claims: the schedule keeps what the problem requires, and no period below `bound` can.
+/// The claim of a certificate: the schedule keeps what the problem requires, and no period below `bound` can.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Claim {
     /// The requirements.

@@ -1,5 +1,5 @@
-//! What follows from what is known: rules 2 to 6 of docs/reference/certificate.md, where each has its proof. Rule 1,
-//! the closure of bounds, is in `bounds`.
+//! Consequences of what is known: rules 2 to 6 of docs/reference/certificate.md, where each has its proof. Rule 1, the
+//! closure of bounds, is in `bounds`.
 //!
 //! Each rule only ever tightens, and more the tighter its premises are. So all orders of applying them end in the same
 //! state, and a checker may take whichever order is fastest.
@@ -108,8 +108,8 @@ fn members(mut set: u64) -> impl Iterator<Item = usize> {
     })
 }
 
-/// What is below all `values`, each a value's upper bound and its separation: below any set of them by the width that
-/// the set needs, together with a value of separation `own`.
+/// A bound on what lies below all `values`, each a value's upper bound and its separation: below any set of them by the
+/// width that the set needs, together with a value of separation `own`.
 fn beyond(values: &mut [(Bound, i32)], own: i32) -> Option<Bound> {
     values.sort_unstable();
     let (mut width, mut narrowest) = (own, own);

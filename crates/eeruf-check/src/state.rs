@@ -1,9 +1,9 @@
-//! What is known at a node of the tree: bounds on differences of firing times, bounds on |d|, the order of |d|.
+//! Knowledge at a node of the tree: bounds on differences of firing times, bounds on |d|, the order of |d|.
 
 use crate::bounds::{Bound, Bounds, Refuted};
 use crate::problem::Merged;
 
-/// What is known at a node.
+/// Knowledge at a node.
 #[derive(Clone, Debug)]
 pub(crate) struct State {
     pub(crate) bounds: Bounds,
@@ -26,7 +26,7 @@ pub(crate) fn step(merged: &Merged) -> Bound {
 }
 
 impl State {
-    /// What every schedule with a period below `period` meets.
+    /// Bounds that every schedule with a period below `period` meets.
     pub(crate) fn new(merged: &Merged, period: i32) -> Result<Self, Refuted> {
         let (count, step) = (merged.count(), step(merged));
         // Whole ticks: the period is at most `period - 1`, and firing times at most one less.
@@ -93,7 +93,7 @@ impl State {
         news
     }
 
-    /// Whether `|d_x| < |d_y|` is known.
+    /// Returns true if `|d_x| < |d_y|` is known.
     pub(crate) fn is_below(&self, x: usize, y: usize) -> bool {
         self.below[y] >> x & 1 == 1
     }
@@ -103,7 +103,7 @@ impl State {
         self.bounds.learn(event(y, phase), event(x, phase), -2 * merged.gap[x][y])
     }
 
-    /// Whether it is known that in this phase x fires before y.
+    /// Returns true if it is known that in this phase x fires before y.
     pub(crate) fn is_ordered(&self, merged: &Merged, x: usize, y: usize, phase: usize) -> bool {
         self.bounds.at(event(y, phase), event(x, phase)) <= -2 * merged.gap[x][y]
     }

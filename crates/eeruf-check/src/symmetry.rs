@@ -1,5 +1,5 @@
-//! What the root may assume because schedules come in symmetric pairs or families; docs/reference/certificate.md has
-//! the proofs.
+//! Assumptions of the root, which symmetric pairs or families of schedules allow; docs/reference/certificate.md has the
+//! proofs.
 
 use crate::bounds::Refuted;
 use crate::error::CheckError;
@@ -69,7 +69,7 @@ pub(crate) fn root(
     Ok(root.and_then(|mut state| propagate(&mut state, merged).map(|()| state)))
 }
 
-/// Whether `image` takes the problem to itself, and leaves what was assumed earlier as it is.
+/// Returns true if `image` takes the problem to itself, and leaves what was assumed earlier as it is.
 fn verify(problem: &Problem, image: &[usize], earlier: &[(usize, Vec<usize>)]) -> Result<(), String> {
     let sensors = problem.sensors();
     if let Some(missing) = (0..sensors).find(|sensor| !image.contains(sensor)) {

@@ -53,7 +53,7 @@ impl<'t> Lines<'t> {
         Ok(numbers)
     }
 
-    /// Whether the line read last has so many numbers, each between `least` and `most`.
+    /// Returns true if the line read last has so many numbers, each between `least` and `most`.
     pub(crate) fn expect(&self, numbers: &[u32], count: usize, least: u32, most: u32) -> Result<(), CheckError> {
         if numbers.len() != count {
             return Err(self.error(format!("found {} numbers, expected {count}", numbers.len())));

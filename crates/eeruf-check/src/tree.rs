@@ -51,7 +51,7 @@ impl Branching {
         propagate(state, merged)
     }
 
-    /// Whether it is known which case holds.
+    /// Returns true if it is known which case holds.
     pub(crate) fn is_decided(&self, state: &State, merged: &Merged) -> bool {
         match *self {
             Self::Order(phase, x, y) => state.is_ordered(merged, x, y, phase) || state.is_ordered(merged, y, x, phase),

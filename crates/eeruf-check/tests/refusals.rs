@@ -1,4 +1,4 @@
-//! What is refused, and in which words; the program's exit codes.
+//! Refusals, their words, and the program's exit codes.
 
 use eeruf_check::{check, read_claim};
 use std::process::Command;

@@ -1,4 +1,4 @@
-//! What a hopping ring loses to lateness, and how often paths that agree by accident are believed, in a naive world:
+//! Losses of a hopping ring to lateness, and how often paths that agree by accident are believed, in a naive world:
 //! sound leaves when a sensor fires and arrives a fixed time later; each sensor reports the first.
 //!
 //! `cargo run --release -p eeruf-core --example hopping_limits` prints the tables of `docs/explanation/hopping.md`.
@@ -28,7 +28,7 @@ struct Path {
     length: u32,
 }
 
-/// What became of the readings of some sensors.
+/// Counts of the readings of some sensors.
 #[derive(Clone, Copy, Default)]
 struct Count {
     readings: u32,

@@ -21,7 +21,7 @@ static FRONT: VerifiedSchedule<4> = schedule! {
     },
 };
 
-/// How far each wall is, in millimetres; the last sensor sees nothing.
+/// Distance of each wall, in millimetres; the last sensor sees nothing.
 const WALLS_MM: [Option<u32>; 4] = [Some(800), Some(1_200), Some(2_500), None];
 
 fn main() -> Result<(), Box<dyn Error>> {

@@ -76,7 +76,7 @@ pub struct Adaptation<'s, const K: usize, L = Alike> {
     pub calm_permille: u16,
     /// The number of periods in a window. Default: 16; 0 counts as 1.
     pub window: u8,
-    /// How many calm windows running it takes to fire faster. Default: 4; 0 counts as 1.
+    /// Number of consecutive calm windows before firing gets faster. Default: 4; 0 counts as 1.
     pub patience: u8,
     periods: u8,
     calm_windows: u8,
@@ -84,7 +84,7 @@ pub struct Adaptation<'s, const K: usize, L = Alike> {
     rejection_permille: Option<u16>,
 }
 
-/// What [`Adaptation`] makes of the present schedule.
+/// Advice of [`Adaptation`] on the present schedule.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Advice {
@@ -165,7 +165,7 @@ impl<'s, const K: usize, L> Adaptation<'s, K, L> {
         }
     }
 
-    /// What the present schedule allows a ring with this `t_delta`, where sound travels at `c`.
+    /// Limits of the present schedule for a ring with this `t_delta`, where sound travels at `c`.
     pub fn advice(&self, t_delta: Micros, c: SpeedOfSound) -> Advice {
         let max_speed_mm_s = match self.ladder.rungs.get(self.rung) {
             Some(schedule) => schedule.max_speed_mm_s(t_delta, c.mm_per_s()),
@@ -195,9 +195,9 @@ pub enum LadderError {
     Sensors {
         /// The rung.
         rung: usize,
-        /// How many sensors it has.
+        /// Number of sensors it has.
         sensors: usize,
-        /// How many the first has.
+        /// Sensors of the first.
         expected: usize,
     },
 }

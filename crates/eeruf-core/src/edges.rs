@@ -10,7 +10,7 @@ use crate::time::Instant;
 pub struct Edge {
     /// The sensor, from 0 to 127.
     pub sensor: u8,
-    /// Whether the line rose.
+    /// True if the line rose.
     pub high: bool,
     /// When.
     pub at: Instant,
@@ -35,7 +35,7 @@ pub struct EdgeQueue<const N: usize> {
     at: [[AtomicU16; 2]; N],
     /// The sensor, and in the highest bit whether its line rose.
     line: [AtomicU8; N],
-    /// How many edges were ever pushed, and how many popped; both wrap.
+    /// Number of edges that were ever pushed, and how many popped; both wrap.
     pushed: AtomicU8,
     popped: AtomicU8,
     lost: AtomicU8,
@@ -89,12 +89,12 @@ impl<const N: usize> EdgeQueue<N> {
         Some(Edge { sensor: line & !HIGH, high: line & HIGH != 0, at })
     }
 
-    /// Whether nothing waits; ask with interrupts off before going to sleep.
+    /// Returns true if nothing waits; ask with interrupts off before going to sleep.
     pub fn is_empty(&self) -> bool {
         self.popped.load(Ordering::Relaxed) == self.pushed.load(Ordering::Relaxed)
     }
 
-    /// How many edges found the queue full; stops at 255.
+    /// Number of edges that found the queue full; stops at 255.
     pub fn lost(&self) -> u8 {
         self.lost.load(Ordering::Relaxed)
     }

@@ -10,14 +10,14 @@ use crate::time::{Instant, Micros};
 pub struct Firing {
     /// The phase of the schedule in which the sensor fired.
     pub phase: Phase,
-    /// Whether no other sensor's sound could be heard.
+    /// True if no other sensor's sound could be heard.
     pub solo: bool,
-    /// Whether firings were punctual enough that crosstalk moved as the schedule says. An echo of a firing that was
-    /// not supports nothing.
+    /// True if firings were punctual enough that crosstalk moved as the schedule says. An echo of a firing that was not
+    /// supports nothing.
     pub steady: bool,
-    /// By how many microseconds a good reading should have changed since this sensor's firing before, if it comes from
-    /// straight ahead: `-2 d / c` for a sensor carried forward by `d`. What part of it there really is the tracker
-    /// learns for each sensor, from none to twice: walls seen at a slant change otherwise.
+    /// Expected change of a good reading since this sensor's firing before, in microseconds, if it comes from straight
+    /// ahead: `-2 d / c` for a sensor carried forward by `d`. What part of it there really is the tracker learns for
+    /// each sensor, from none to twice: walls seen at a slant change otherwise.
     pub expected_change_us: i32,
 }
 
@@ -28,7 +28,7 @@ impl Firing {
     }
 }
 
-/// What one firing brought, as a ring tells it to its judge.
+/// The outcome of one firing, as a ring hands it to its judge.
 #[derive(Clone, Copy, Debug)]
 pub struct Heard<'r> {
     /// The sensor, from 0.
@@ -37,10 +37,9 @@ pub struct Heard<'r> {
     pub fired: Instant,
     /// The echo times, earliest first; none for silence.
     pub echoes: &'r [Micros],
-    /// What the firing was like, by the plan, and the change that odometry expects.
+    /// Properties of the firing, by the plan, and the change that odometry expects.
     pub firing: Firing,
-    /// What counts as near-identical for this sensor now: the ring's `T_delta`, or less where the plan allows the
-    /// sensor less.
+    /// `T_delta` of this sensor now: the ring's, or less where the plan allows the sensor less.
     pub t_delta: Micros,
 }
 
@@ -53,7 +52,7 @@ impl Heard<'_> {
     }
 }
 
-/// What a ring knows of the sounds that a sensor may have heard.
+/// A ring's knowledge of the sounds that a sensor may have heard.
 pub trait Sounds {
     /// The firing whose sound could be both the echo that the sensor heard `first` after the firing before its last one
     /// and the one that it heard `second` after its last, by a path that changes by no more than P in between.

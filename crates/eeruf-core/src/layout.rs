@@ -1,10 +1,10 @@
-//! Which sensors are neighbours: two that must not fire shortly after one another (Sec. 3.1, constraint c).
+//! Neighbours: pairs of sensors that must not fire shortly after one another (Sec. 3.1, constraint c).
 
 use core::fmt;
 
 use crate::schedule::MAX_SENSORS;
 
-/// How the sensors stand, and how many adjacent ones count as neighbours.
+/// The arrangement of the sensors, and the number of adjacent ones that count as neighbours.
 ///
 /// The paper asks that any *four* adjacent sensors fire at least 15 ms apart (Sec. 3.1 c). Sensors are counted from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -27,7 +27,7 @@ pub enum Layout<'a> {
 pub struct LayoutError {
     /// The two sensors, from 0.
     pub pair: (usize, usize),
-    /// How many sensors there are.
+    /// Number of sensors.
     pub sensors: usize,
 }
 
@@ -74,7 +74,7 @@ pub fn neighbour_rows(
 }
 
 impl Layout<'_> {
-    /// Whether all neighbours that a graph names are among `sensors`.
+    /// Returns true if all neighbours that a graph names are among `sensors`.
     ///
     /// # Errors
     /// [`LayoutError`] for the first that is not.
@@ -89,7 +89,7 @@ impl Layout<'_> {
         Ok(())
     }
 
-    /// Whether `x` and `y` (from 0) of `sensors` are neighbours; never for a sensor and itself.
+    /// Returns true if `x` and `y` (from 0) of `sensors` are neighbours; never for a sensor and itself.
     pub const fn neighbours(&self, sensors: usize, x: usize, y: usize) -> bool {
         if x == y || x >= sensors || y >= sensors {
             return false;

@@ -117,7 +117,7 @@ pub mod conditions {
     pub use crate::verify::{Verification, Violation, ViolationKind, Violations};
 }
 
-/// What is proven, and why: `docs/explanation/theory.md`, for reading here.
+/// The proofs: `docs/explanation/theory.md`, for reading here.
 ///
 /// The file in this crate is a link to it, so that a packed crate holds the text too.
 #[cfg(doc)]

@@ -1,4 +1,4 @@
-//! What one sensor or one pair needs, by [`Requirements`], whether all are alike or not.
+//! Needs of one sensor or one pair, by [`Requirements`], whether all are alike or not.
 
 use crate::requirements::Requirements;
 use crate::time::{Micros, longer, shorter};
@@ -21,7 +21,7 @@ impl Requirements<'_> {
         }
     }
 
-    /// How soon a sensor may be triggered again; no longer than its window where nothing is said of it.
+    /// Least time between two triggers of a sensor; its window where nothing else is given.
     pub const fn refire_of(&self, sensor: usize) -> Micros {
         match self.uneven {
             Some(uneven) if sensor < uneven.refire.len() => uneven.refire[sensor],
@@ -56,7 +56,7 @@ impl Requirements<'_> {
         if self.layout.neighbours(sensors, x, y) { Some(self.min_interval) } else { None }
     }
 
-    /// Whether two sensors share an echo line.
+    /// Returns true if two sensors share an echo line.
     pub const fn share_a_line(&self, x: usize, y: usize) -> bool {
         match self.uneven {
             Some(uneven) => x != y && Uneven::in_one(uneven.shared_lines, x, y),
@@ -64,7 +64,7 @@ impl Requirements<'_> {
         }
     }
 
-    /// Whether two sensors must fire at the same instants.
+    /// Returns true if two sensors must fire at the same instants.
     pub const fn fire_together(&self, x: usize, y: usize) -> bool {
         match self.uneven {
             Some(uneven) => x != y && Uneven::in_one(uneven.together, x, y),
@@ -72,8 +72,8 @@ impl Requirements<'_> {
         }
     }
 
-    /// How long after a firing of `x` sensor `y` must not fire, of so many sensors: the interval of the two, or the
-    /// window of `x` where that is longer and they share an echo line.
+    /// Time after a firing of `x` in which sensor `y` must not fire, in a ring of this size: the interval of the two,
+    /// or the window of `x` where that is longer and they share an echo line.
     pub const fn gap_after(&self, sensors: usize, x: usize, y: usize) -> Micros {
         let interval = match self.interval_of(sensors, x, y) {
             Some(interval) => interval,

@@ -17,7 +17,7 @@ pub struct SensorLimits {
     pub window: Micros,
 }
 
-/// Which limits the sensors of a schedule have of their own: none, [`Alike`], or some for each, [`EachSensor`].
+/// Limits that the sensors of a schedule have of their own: none, [`Alike`], or some for each, [`EachSensor`].
 pub trait OwnLimits: Copy + fmt::Debug + sealed::Sealed {
     /// The part of them that a plan holds while it fires.
     type InUse<'s>: LimitsInUse

@@ -1,10 +1,10 @@
-//! What comes of one firing: a [`ReadingKind`], never a magic number; and [`Tally`], which counts the kinds.
+//! The outcome of one firing: a [`ReadingKind`], never a magic number; and [`Tally`], which counts the kinds.
 
 use core::fmt;
 
 use crate::time::Micros;
 
-/// What came of one firing of one sensor. Each firing yields exactly one kind; only [`ReadingKind::Late`] may follow
+/// The outcome of one firing of one sensor. Each firing yields exactly one kind; only [`ReadingKind::Late`] may follow
 /// it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
@@ -116,21 +116,21 @@ impl fmt::Display for Explanation {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Verdict {
-    /// What came of the firing.
+    /// The outcome of the firing.
     pub kind: ReadingKind,
     /// The echo time: the accepted one, or else the earliest; `None` without echo.
     #[doc(alias = "T_echo")]
     pub t_echo: Option<Micros>,
     /// The echo time of the firing before that it was compared with, if there was one.
     pub previous: Option<Micros>,
-    /// How many firings of this sensor ago the last reading was accepted: 0 for an accepted one, `None` if none ever
+    /// Number of firings of this sensor since the last accepted reading: 0 for an accepted one, `None` if none ever
     /// was. Stops at 65,534.
     pub age: Option<u16>,
     /// The explanation of an [`Ambiguous`](ReadingKind::Ambiguous) reading; `None` for all other kinds.
     pub explained_by: Option<Explanation>,
 }
 
-/// How many readings of each kind; `N` is `u8` for one period of a ring, `u32` for long runs. Counts saturate.
+/// Counts of readings by kind; `N` is `u8` for one period of a ring, `u32` for long runs. Counts saturate.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Tally<N = u32> {

@@ -1,4 +1,4 @@
-//! What a schedule must meet so that crosstalk never passes the filter: Eqs. (13a), (13b) and constraint 3.1 c.
+//! Requirements on a schedule so that crosstalk never passes the filter: Eqs. (13a), (13b) and constraint 3.1 c.
 //!
 //! The paper prints, for all sensors `x != y` (x causes crosstalk, y suffers it),
 //!
@@ -31,13 +31,14 @@ use crate::schedule::{Phase, Schedule};
 use crate::time::Micros;
 use crate::uneven::Uneven;
 
-/// How to read Eqs. (13a), (13b).
+/// The reading of Eqs. (13a), (13b).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Criterion {
     /// As printed, with an outer absolute value. Stronger than needed.
     Paper,
-    /// What rejecting every crosstalk reading needs; the lags cancel, so firing times serve as well as waits.
+    /// The form that suffices to reject every crosstalk reading; the lags cancel, so firing times serve as well as
+    /// waits.
     #[default]
     Exact,
 }
@@ -57,18 +58,18 @@ pub enum Criterion {
 pub struct Requirements<'a> {
     /// `T_delta`: consecutive readings that differ by no more are near-identical (Eq. 11).
     pub t_delta: Micros,
-    /// How to read (13a), (13b).
+    /// The reading of (13a), (13b).
     pub criterion: Criterion,
     /// The least time between the firings of two neighbours, in each phase and across each period's end; 15 ms in the
     /// paper (Sec. 3.1 c).
     pub min_interval: Micros,
-    /// Which sensors are neighbours.
+    /// Pairs of neighbours.
     pub layout: Layout<'a>,
     /// `T_wind`, for which a sensor listens: it must not fire again earlier.
     pub window: Micros,
     /// Also reject a sensor's own echo from the period before: `2 |d| > 2 T_delta` for each sensor.
     pub stale_echo: bool,
-    /// What single sensors and pairs need, where they are not all alike.
+    /// Needs of single sensors and pairs, where they are not all alike.
     pub uneven: Option<Uneven<'a>>,
 }
 

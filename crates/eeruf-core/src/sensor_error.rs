@@ -8,7 +8,7 @@ use core::fmt;
 pub struct SensorError {
     /// The sensor that was asked for, from 0.
     pub sensor: u8,
-    /// How many there are.
+    /// Number of sensors in the ring.
     pub sensors: u8,
 }
 

@@ -9,7 +9,7 @@
 use crate::schedule::MAX_SENSORS;
 use crate::time::{Instant, Micros};
 
-/// What fires in one slot.
+/// The firings of one slot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct SurveySlot {
@@ -19,7 +19,7 @@ pub struct SurveySlot {
     pub second: Option<(u8, Micros)>,
 }
 
-/// What fires when in a survey.
+/// The firings of a survey, and their times.
 ///
 /// ```
 /// use eeruf_core::{Micros, survey::{SurveyPlan, SurveySlot}};
@@ -40,7 +40,7 @@ pub struct SurveyPlan {
     quiet: Micros,
 }
 
-/// How far ahead of its first poll a survey begins at most; what seems further ahead has passed.
+/// Longest time from its first poll to a survey's beginning; what seems further ahead has passed.
 const FURTHEST_BEGINNING: Micros = Micros::from_millis(600_000);
 /// A clock may step back by as much.
 const STEP_BACK: Micros = Micros::from_millis(1000);
@@ -56,36 +56,36 @@ impl SurveyPlan {
         Self { sensors, solos: 3, leads: 20, lead_step, window, quiet }
     }
 
-    /// How often each sensor fires alone.
+    /// Sets the number of firings that each sensor has alone.
     #[must_use]
     pub const fn with_solos(self, solos: u8) -> Self {
         Self { solos, ..self }
     }
 
-    /// How many leads each ordered pair has, the first of them 0, and from one to the next; at most ten seconds. A path
-    /// is seen with leads between its length and that less the receiver's own echo: two of them must fit.
+    /// Number of leads that each ordered pair has, the first of them 0, and from one to the next; at most ten seconds.
+    /// A path is seen with leads between its length and that less the receiver's own echo: two of them must fit.
     #[must_use]
     pub const fn with_leads(self, leads: u8, lead_step: Micros) -> Self {
         Self { leads, lead_step: at_most_ten_seconds(lead_step), ..self }
     }
 
-    /// How long a sensor listens, and how long nothing fires after that; at most ten seconds each.
+    /// Sets how long a sensor listens, and how long nothing fires after that; at most ten seconds each.
     #[must_use]
     pub const fn with_window(self, window: Micros, quiet: Micros) -> Self {
         Self { window: at_most_ten_seconds(window), quiet: at_most_ten_seconds(quiet), ..self }
     }
 
-    /// How many sensors the ring has.
+    /// Number of sensors the ring has.
     pub const fn sensors(&self) -> u8 {
         self.sensors
     }
 
-    /// How long a sensor listens.
+    /// Listening time of a sensor.
     pub const fn window(&self) -> Micros {
         self.window
     }
 
-    /// How many slots there are.
+    /// Number of slots.
     pub const fn slots(&self) -> u32 {
         let sensors = self.sensors as u32;
         self.alone() + sensors * sensors.saturating_sub(1) * self.leads as u32
@@ -95,13 +95,13 @@ impl SurveyPlan {
         self.sensors as u32 * self.solos as u32
     }
 
-    /// How long each slot lasts.
+    /// Length of a slot.
     pub const fn slot_length(&self) -> Micros {
         let longest = self.lead(self.leads.saturating_sub(1));
         longest.saturating_add(self.window).saturating_add(self.quiet)
     }
 
-    /// How long all of it lasts, in microseconds.
+    /// Length of the whole survey, in microseconds.
     pub const fn duration_us(&self) -> u64 {
         self.slots() as u64 * self.slot_length().as_micros() as u64
     }
@@ -111,7 +111,7 @@ impl SurveyPlan {
         Micros::new(self.lead_step.as_micros().saturating_mul(number as u32))
     }
 
-    /// What fires in a slot, counted from 0.
+    /// The firings of a slot, counted from 0.
     pub const fn slot(&self, number: u32) -> Option<SurveySlot> {
         if number >= self.slots() {
             return None;
@@ -148,7 +148,7 @@ pub struct SurveyRow {
     pub t_echo: Option<Micros>,
 }
 
-/// What a survey wants done, or has measured.
+/// A step that a survey asks for, or a measurement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum SurveyEvent {
@@ -287,7 +287,7 @@ impl Survey {
         all.min_by_key(|at| at.since(self.begins))
     }
 
-    /// Whether all slots are over.
+    /// Returns true if all slots are over.
     pub fn is_over(&self) -> bool {
         self.slot >= self.plan.slots()
     }

@@ -150,7 +150,7 @@ impl Instant {
         now_us.saturating_add_signed(self.0.wrapping_sub(now_us as u32) as i32 as i64)
     }
 
-    /// What the caller's counter read.
+    /// The value of the caller's counter.
     pub const fn as_micros(self) -> u32 {
         self.0
     }
@@ -160,7 +160,7 @@ impl Instant {
         Micros(self.0.wrapping_sub(earlier.0))
     }
 
-    /// Whether `self` is `deadline` or up to 35.8 minutes past it.
+    /// Returns true if `self` is `deadline` or up to 35.8 minutes past it.
     pub const fn has_reached(self, deadline: Self) -> bool {
         self.0.wrapping_sub(deadline.0) <= u32::MAX / 2
     }

@@ -5,7 +5,7 @@ use core::fmt;
 use crate::schedule::MAX_SENSORS;
 use crate::time::Micros;
 
-/// What single sensors and pairs need, where they are not all alike; what is not named here needs what
+/// Needs of single sensors and pairs, where they are not all alike; anything not named here needs what
 /// [`Requirements`](crate::Requirements) say for all. Sensors are counted from 0.
 ///
 /// ```
@@ -34,8 +34,8 @@ pub struct Uneven<'a> {
     pub t_delta: &'a [Micros],
     /// `T_wind` of each sensor; empty if all have that of the requirements.
     pub window: &'a [Micros],
-    /// How soon each sensor may be triggered again, where that is later than the end of its window; empty if all may be
-    /// then.
+    /// Least time between two triggers of each sensor, where that is later than the end of its window; empty if all may
+    /// be then.
     pub refire: &'a [Micros],
     /// Pairs of sensors with the least time between their firings, whatever the layout and the interval of all say; 0
     /// for none.
@@ -52,7 +52,7 @@ impl Uneven<'_> {
     pub const NONE: Self =
         Self { t_delta: &[], window: &[], refire: &[], intervals: &[], shared_lines: &[], together: &[] };
 
-    /// Whether it makes sense for so many sensors.
+    /// Returns true if it makes sense for so many sensors.
     ///
     /// # Errors
     /// The first thing that does not: see [`UnevenError`].
@@ -87,7 +87,7 @@ impl Uneven<'_> {
         Ok(())
     }
 
-    /// Whether two sensors are in one of these sets.
+    /// Returns true if two sensors are in one of these sets.
     pub(crate) const fn in_one(sets: &[u64], x: usize, y: usize) -> bool {
         let mut at = 0;
         while at < sets.len() {
@@ -100,7 +100,7 @@ impl Uneven<'_> {
     }
 }
 
-/// What of an [`Uneven`] makes no sense.
+/// Reasons why an [`Uneven`] is invalid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
@@ -109,16 +109,16 @@ pub enum UnevenError {
     Length {
         /// Of what.
         what: &'static str,
-        /// How many values there are.
+        /// Number of values.
         given: usize,
-        /// How many sensors.
+        /// Number of sensors.
         sensors: usize,
     },
     /// A pair names a sensor that is not there, or one twice.
     Pair {
         /// The pair, from 0.
         pair: (usize, usize),
-        /// How many sensors there are.
+        /// Number of sensors.
         sensors: usize,
     },
     /// A pair has two intervals.
@@ -132,7 +132,7 @@ pub enum UnevenError {
         what: &'static str,
         /// The set, bit x for sensor x.
         set: u64,
-        /// How many sensors there are.
+        /// Number of sensors.
         sensors: usize,
     },
     /// A sensor fires together with two groups.

@@ -16,7 +16,7 @@ impl<const K: usize> Schedule<K> {
     }
 }
 
-/// What [`Schedule::verify`] found.
+/// Findings of [`Schedule::verify`].
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Verification<'r, const K: usize> {
@@ -33,7 +33,7 @@ impl<'r, const K: usize> Verification<'r, K> {
         self.requirements
     }
 
-    /// Whether every requirement holds.
+    /// Returns true if every requirement holds.
     pub const fn ok(&self) -> bool {
         self.violations().advance().is_none()
     }
@@ -189,7 +189,7 @@ impl ViolationKind {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Violation {
-    /// Which requirement.
+    /// The requirement.
     pub kind: ViolationKind,
     /// The sensors concerned, from 0; twice the same if it concerns one.
     pub sensors: (u8, u8),

@@ -91,7 +91,7 @@ mod a_format_that_counts_fields {
     /// Counts the fields of a struct, which formats such as CBOR write before them.
     struct Count;
 
-    /// How many fields were announced, and how many came.
+    /// Number of fields that were announced, and how many came.
     struct Fields(usize, usize);
 
     type Never = Impossible<(usize, usize), Error>;

@@ -8,13 +8,13 @@ use crate::atlas::{Ring, Row};
 use crate::certificate::certify;
 use crate::engine::prove::NoProof;
 
-/// How many nodes the search of a ring may cost, the choice among its shortest schedules, and the proof of its
-/// certificate; with more than 16 sensors fewer, since each costs more.
+/// Budget of nodes for the search of a ring, the choice among its shortest schedules, and the proof of its certificate;
+/// with more than 16 sensors fewer, since each costs more.
 const BUDGET: u64 = 20_000;
 const PREFERENCE_BUDGET: u64 = 20_000;
 const CERTIFICATE_BUDGET: u64 = 4_000;
 
-/// What the file begins with.
+/// The first lines of the file.
 #[must_use]
 pub fn header() -> &'static str {
     "# Shortest periods of rings of 2 to 32 sensors, made by `eeruf atlas FILE`. In ticks:\n\

@@ -14,7 +14,7 @@ use crate::shortest::{Search, Shortest, shortest};
 
 /// The number of larger separations that are tried where firings cannot be moved apart.
 const HANDLING_STEPS: u32 = 8;
-/// How many nodes it may cost to find out what one need, relaxed, would bring.
+/// Number of nodes it may cost to find out what one need, relaxed, would bring.
 const WHAT_IF_BUDGET: u64 = 20_000;
 
 /// A schedule for a ring file.
@@ -22,7 +22,7 @@ const WHAT_IF_BUDGET: u64 = 20_000;
 pub struct RingDesign {
     /// The schedule.
     pub schedule: AnySchedule,
-    /// What `t_delta` has to cover, motion included.
+    /// The change that `t_delta` has to cover, motion included.
     pub t_delta: Micros,
     /// The ring, with that `t_delta`.
     pub spec: RingSpec,
@@ -35,15 +35,14 @@ pub struct RingDesign {
     pub bound: Option<Micros>,
     /// Why it is not shorter, in words.
     pub reason: String,
-    /// What is known of the choice among the schedules of that period, if the period is proven and all sensors are
-    /// alike.
+    /// The choice among the schedules of that period, if the period is proven and all sensors are alike.
     pub preferred: Option<Preferred<MAX_SENSORS>>,
-    /// What the schedule of a ring whose sensors are not alike has to spare, if the period is proven: of those with
-    /// this period it is the one with most.
+    /// Slack of a schedule for a ring whose sensors are not alike, if the period is proven: of those with this period
+    /// it has the most.
     pub to_spare: Option<ToSpare>,
-    /// Whether period and schedule are the atlas's, and nothing was searched.
+    /// True if period and schedule are the atlas's, and nothing was searched.
     pub from_atlas: bool,
-    /// What would be shorter, if it was asked for.
+    /// Changes that would shorten it, if they were asked for.
     pub what_if: Vec<WhatIf>,
 }
 
@@ -80,19 +79,19 @@ impl fmt::Display for NoSchedule {
 
 impl Error for NoSchedule {}
 
-/// What one need, relaxed, would bring.
+/// The gain from relaxing one need.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct WhatIf {
     /// The relaxed need, in words.
     pub need: String,
     /// The shortest period with it, or the shortest found.
     pub period: Option<Micros>,
-    /// Whether no schedule with it is shorter.
+    /// True if no schedule with it is shorter.
     pub proven: bool,
 }
 
 impl RingDesign {
-    /// What one need, relaxed, would bring; nothing where the period is not proven.
+    /// The gain from relaxing one need; nothing where the period is not proven.
     ///
     /// # Errors
     /// As for [`RingSpec::shortest`].

@@ -11,16 +11,16 @@ use crate::engine::shortest::{Shortest, SoFar, shortest};
 use crate::engine::spare::most_to_spare;
 use crate::ticks::{claim, in_ticks};
 
-/// What a schedule of an uneven ring keeps beyond what is needed, by the same for all sensors.
+/// Slack of a schedule for an uneven ring beyond its needs, the same for all sensors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ToSpare {
-    /// By how much every `t_delta` may grow; then
+    /// Growth that every `t_delta` may have; then
     pub t_delta: Micros,
     /// by how much every time between two firings, be it an interval or for a shared line; then
     pub interval: Micros,
     /// how much later every sensor is triggered again than it asks for.
     pub refire: Micros,
-    /// Whether no schedule of this period has more, of each.
+    /// True if no schedule of this period has more, of each.
     pub proven: [bool; 3],
     /// Nodes visited for the choice.
     pub nodes: u64,

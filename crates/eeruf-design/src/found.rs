@@ -1,4 +1,4 @@
-//! What a search found, as JSON.
+//! Results of a search, as JSON.
 
 use eeruf_core::search::Found;
 use eeruf_core::{MAX_SENSORS, Micros};
@@ -10,7 +10,7 @@ use serde::Serialize;
 pub struct FoundJson {
     /// The schedule, if there is one.
     pub schedule: Option<ScheduleFile>,
-    /// What was sought of it: the period, the smallest interval or `t_delta`.
+    /// The value that was optimised: the period, the smallest interval or `t_delta`.
     pub value_us: Option<u32>,
     /// No schedule is better than this.
     pub bound_us: Option<u32>,
@@ -21,25 +21,25 @@ pub struct FoundJson {
     pub fits: Option<bool>,
     /// Nodes visited.
     pub nodes: u64,
-    /// How long it took.
+    /// Duration.
     pub seconds: f64,
     /// Why nothing is better; only `design` says it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub reason: Option<String>,
-    /// Whether the atlas answered, and nothing was searched; only `design` says it.
+    /// True if the atlas answered, and nothing was searched; only `design` says it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub from_atlas: Option<bool>,
-    /// What an uneven ring's schedule keeps beyond every `t_delta`, then every interval and turn on a shared line, then
+    /// Slack of an uneven ring's schedule beyond every `t_delta`, then every interval and turn on a shared line, then
     /// every refire time; only where that was chosen.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub spare_us: Option<[u32; 3]>,
-    /// Whether no schedule of this period has more, of each.
+    /// True if no schedule of this period has more, of each.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub spare_proven: Option<[bool; 3]>,
     /// The shortest period over the reals in microseconds, as numerator and denominator; only where it was asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub real_period_us: Option<(u64, u64)>,
-    /// Whether no real period is shorter.
+    /// True if no real period is shorter.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub real_proven: Option<bool>,
 }

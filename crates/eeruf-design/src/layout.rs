@@ -1,4 +1,4 @@
-//! How the sensors of a ring stand, as files spell it.
+//! The arrangement of the sensors of a ring, as files spell it.
 
 use eeruf_core::{
     Layout,
@@ -6,7 +6,7 @@ use eeruf_core::{
 };
 use serde::Deserialize;
 
-/// How the sensors stand, as files spell it.
+/// The arrangement of the sensors, as files spell it.
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(
     untagged,

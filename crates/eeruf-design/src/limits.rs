@@ -1,4 +1,4 @@
-//! What numbers a ring file may hold.
+//! Numbers that a ring file may hold.
 
 use eeruf_core::MAX_SENSORS;
 
@@ -7,7 +7,7 @@ pub const fn four() -> u8 {
     4
 }
 
-/// Whether a ring may have so many sensors.
+/// Returns true if a ring may have so many sensors.
 ///
 /// # Errors
 /// The number and what is expected.
@@ -19,7 +19,7 @@ pub fn sensors_in_range(sensors: usize) -> Result<(), String> {
     }
 }
 
-/// Whether so many adjacent sensors may be neighbours.
+/// Returns true if so many adjacent sensors may be neighbours.
 ///
 /// # Errors
 /// The number and what is expected.

@@ -35,7 +35,7 @@ pub struct Fit {
 pub enum Need {
     /// `t_delta`, without what motion adds.
     TDelta,
-    /// How long sensors listen.
+    /// Listening time.
     Range,
     /// The least time between the firings of neighbours.
     Interval,

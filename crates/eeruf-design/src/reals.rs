@@ -15,7 +15,7 @@ use crate::ticks::in_ticks;
 pub struct RealPeriod {
     /// The period in microseconds as a fraction in lowest terms: numerator and denominator.
     pub period_us: (u64, u64),
-    /// Whether no real period is shorter. Otherwise it is the least that the firing orders found so far give.
+    /// True if no real period is shorter. Otherwise it is the least that the firing orders found so far give.
     pub proven: bool,
     /// The certificate that no real period is shorter, if it is proven and the proof needs no more than the rules of
     /// certificates.
@@ -29,7 +29,7 @@ impl RealPeriod {
         self.period_us.0 as f64 / self.period_us.1 as f64
     }
 
-    /// By how much it is shorter than one in whole ticks, in microseconds.
+    /// Gain over the shortest period in whole ticks, in microseconds.
     #[must_use]
     pub fn gain_us(&self, period: Micros) -> f64 {
         (u64::from(period.as_micros()) * self.period_us.1).saturating_sub(self.period_us.0) as f64

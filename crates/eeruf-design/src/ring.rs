@@ -78,14 +78,14 @@ struct PlaceFile {
     heading_deg: f64,
 }
 
-/// What a ring file asks for.
+/// Requirements of a ring file.
 #[derive(Clone, Debug)]
 pub struct RingSpec {
     /// Number of sensors, 1 to 64.
     pub sensors: usize,
     /// All times are multiples of this.
     pub tick: Micros,
-    /// How they stand.
+    /// The arrangement.
     pub layout: OwnedLayout,
     /// Number of adjacent sensors that must not fire close together.
     pub neighbours: u8,
@@ -96,7 +96,7 @@ pub struct RingSpec {
     /// The range to see as an echo time, without what only keeps a sensor from being triggered again; the longest where
     /// sensors have their own.
     pub listening: Micros,
-    /// How soon sensors that are all alike may be triggered again; zero where they have their own.
+    /// Least time between two triggers of sensors that are all alike; zero where they have their own.
     pub retrigger: Micros,
     /// True if a sensor's own echo from the period before must be rejected too.
     pub stale_echo: bool,
@@ -105,9 +105,9 @@ pub struct RingSpec {
     pub stale_echo_by_module: bool,
     /// The speed of sound.
     pub c: SpeedOfSound,
-    /// What `t_delta` must cover on a robot that stands; the largest where sensors have their own.
+    /// The change that `t_delta` must cover on a robot that stands; the largest where sensors have their own.
     pub t_delta: Micros,
-    /// How fast the robot moves, in mm/s, if `t_delta` must cover that too.
+    /// Speed of the robot, in mm/s, if `t_delta` must cover that too.
     pub speed_mm_s: Option<u32>,
     /// The time that the controller needs for one firing: it gives two that are closer than this one after the other.
     pub handling: Micros,
@@ -115,7 +115,7 @@ pub struct RingSpec {
     pub modules: Vec<Module>,
     /// Where each sensor is on the robot, if the file says it.
     pub poses: Vec<Pose>,
-    /// What single sensors and pairs need, where they are not all alike.
+    /// Needs of single sensors and pairs, where they are not all alike.
     pub uneven: Option<OwnedUneven>,
 }
 
@@ -144,7 +144,7 @@ impl RingSpec {
         Self { t_delta, uneven, ..self.clone() }
     }
 
-    /// What a schedule must meet.
+    /// Requirements on a schedule.
     pub fn problem(&self) -> PeriodProblem<'_> {
         let requirements = Requirements {
             t_delta: self.t_delta,
@@ -220,7 +220,7 @@ impl RingFile {
         }
     }
 
-    /// What it asks for.
+    /// Requirements of the file.
     ///
     /// # Errors
     /// The first thing wrong with it: the key, its value and what is expected.

@@ -7,17 +7,17 @@ use eeruf_sim::AnySchedule;
 use crate::atlas;
 use crate::find_uneven::{ToSpare, prefer_uneven, shortest_uneven};
 
-/// How many nodes the choice among the shortest schedules may cost.
+/// Budget of nodes for the choice among the shortest schedules.
 const PREFERENCE_BUDGET: u64 = 100_000;
-/// How many nodes the choice among the shortest schedules of an uneven ring may cost.
+/// Budget of nodes for the choice among the shortest schedules of an uneven ring.
 pub(crate) const SPARE_BUDGET: u64 = 30_000;
 
-/// How far to search.
+/// The effort of a search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Search {
-    /// How many nodes to visit at most before giving the best schedule so far.
+    /// Largest number of nodes to visit before giving the best schedule so far.
     pub budget: u64,
-    /// Whether to look for what would make the period shorter.
+    /// True to look for what would make the period shorter.
     pub what_if: bool,
     /// The atlas that may answer where it knows the shortest period: [`atlas::ATLAS`], a part of it, or an empty text
     /// for none.
@@ -31,20 +31,19 @@ impl Default for Search {
     }
 }
 
-/// What is known of the shortest period.
+/// Knowledge of the shortest period.
 #[derive(Clone, Debug)]
 pub struct Shortest {
     /// The shortest period, or the best found.
     pub found: Found<MAX_SENSORS>,
     /// Why it is not shorter, in words.
     pub reason: String,
-    /// What is known of the choice among the schedules of that period, if the period is proven and all sensors are
-    /// alike.
+    /// The choice among the schedules of that period, if the period is proven and all sensors are alike.
     pub preferred: Option<Preferred<MAX_SENSORS>>,
-    /// What the schedule of a ring whose sensors are not alike has to spare, if the period is proven: of those with
-    /// this period it is the one with most.
+    /// Slack of a schedule for a ring whose sensors are not alike, if the period is proven: of those with this period
+    /// it has the most.
     pub to_spare: Option<ToSpare>,
-    /// Whether period and schedule are the atlas's, and nothing was searched.
+    /// True if period and schedule are the atlas's, and nothing was searched.
     pub from_atlas: bool,
 }
 
@@ -85,7 +84,7 @@ pub fn shortest(
     Ok(Shortest { found: designed.found, reason, preferred, to_spare: None, from_atlas: false })
 }
 
-/// What an atlas says of a problem, if it knows its shortest period.
+/// The atlas's entry for a problem, if it has its shortest period.
 fn known(problem: &PeriodProblem<'_>, rows: &str) -> Result<Option<Shortest>, SearchError> {
     let Some((row, schedule)) = atlas::answer(rows, problem) else { return Ok(None) };
     let period = schedule.period();

@@ -4,7 +4,7 @@ use core::fmt;
 
 use serde::de::DeserializeOwned;
 
-/// What is wrong with a text, in one line.
+/// An error in a text, in one line.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TextError {
     /// The line, from 1, where one is to blame.

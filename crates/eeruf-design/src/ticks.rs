@@ -34,7 +34,7 @@ pub(crate) fn in_ticks(problem: &PeriodProblem<'_>) -> Problem {
     }
 }
 
-/// What a certificate says of the schedule, in ticks.
+/// The claim of a certificate about the schedule, in ticks.
 pub(crate) fn claim(problem: &PeriodProblem<'_>, schedule: &AnySchedule, bound: Option<Micros>) -> Claim {
     let tick_us = problem.tick.as_micros().max(1);
     let ticks = |time: Micros| time.as_micros() / tick_us;

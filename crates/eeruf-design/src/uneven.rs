@@ -1,4 +1,4 @@
-//! What sensors of a ring need that are not all alike, as files and callers say it.
+//! Needs of a ring's sensors that are not all alike, as files and callers give them.
 
 use eeruf_core::{MAX_SENSORS, Micros, Requirements, Uneven, conditions::UnevenError};
 
@@ -9,7 +9,7 @@ pub struct OwnedUneven {
     pub t_delta: Vec<Micros>,
     /// `T_wind` of each sensor.
     pub window: Vec<Micros>,
-    /// How soon each sensor may be triggered again.
+    /// Least time between two triggers of each sensor.
     pub refire: Vec<Micros>,
     intervals: Vec<(u8, u8, Micros)>,
     shared_lines: Vec<u64>,
@@ -70,7 +70,7 @@ impl OwnedUneven {
         Self { refire, ..self.clone() }
     }
 
-    /// What of it a schedule of many phases would not keep, by its key, where all listen for the longest `window`.
+    /// The key that a schedule of many phases would not keep, where all listen for the longest `window`.
     pub(crate) fn not_in_many_phases(&self, window: Micros) -> Option<&'static str> {
         let later = self.refire.iter().any(|&refire| refire > window);
         let keys = [
@@ -103,7 +103,7 @@ impl OwnedUneven {
         (!self.shared_lines.is_empty()).then(|| Self { shared_lines: Vec::new(), ..self.clone() })
     }
 
-    /// Whether no two sensors that fire together must keep a time between their firings.
+    /// Returns true if no two sensors that fire together must keep a time between their firings.
     ///
     /// # Errors
     /// The two that must.

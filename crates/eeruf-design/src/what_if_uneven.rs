@@ -1,4 +1,4 @@
-//! What would make the period of an uneven ring shorter: one need of all sensors relaxed at a time.
+//! Changes that would shorten the period of an uneven ring: one need of all sensors relaxed at a time.
 
 use eeruf_core::Micros;
 use eeruf_core::search::{Control, SearchError};
@@ -8,7 +8,7 @@ use crate::find_uneven::shortest_uneven;
 use crate::ring::RingSpec;
 use crate::ticks::in_ticks;
 
-/// How many nodes it may cost to find out what one need, relaxed, would bring.
+/// Number of nodes it may cost to find out what one need, relaxed, would bring.
 const WHAT_IF_BUDGET: u64 = 20_000;
 
 impl RingSpec {

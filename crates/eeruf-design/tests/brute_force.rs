@@ -73,7 +73,7 @@ fn the_search_finds_the_period_that_trying_all_schedules_gives() {
     assert!(solved * 3 > cases && hopeless * 10 < cases, "{solved} of {cases} solved, {hopeless} without a schedule");
 }
 
-/// Whether some schedule of this period keeps so much more separation, gaps and windows.
+/// Returns true if some schedule of this period keeps so much more separation, gaps and windows.
 fn keeps(problem: &Problem, period: u32, more: [u32; 3]) -> bool {
     let each = |times: &[u32], by: u32| times.iter().map(|time| time + by).collect();
     let gaps = problem.gaps.iter().map(|&(x, y, after_x, after_y)| (x, y, after_x + more[1], after_y + more[1]));

@@ -1,4 +1,4 @@
-//! What a search that ends before its proof may claim of a ring whose robot moves.
+//! Claims of a search that ends before its proof, for a ring whose robot moves.
 
 use eeruf_design::{NoSchedule, RingSpec, Search};
 

@@ -1,4 +1,4 @@
-//! What fits into a period, and curves of needs, against the shortest period.
+//! Schedules that fit into a period, and curves of needs, against the shortest period.
 
 use eeruf_core::Micros;
 use eeruf_design::{CURVE_POINTS, Need, RingSpec, Search};

@@ -1,4 +1,4 @@
-//! What is said of finer ticks, against searches in ticks of a tenth.
+//! Claims about finer ticks, against searches in ticks of a tenth.
 
 use eeruf_core::Micros;
 use eeruf_design::{RingDesign, RingSpec, Search, real_budget};

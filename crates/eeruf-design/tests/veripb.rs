@@ -26,7 +26,7 @@ fn weights(model: &str) -> Vec<u32> {
     words.chunks(2).map(|term| term[0].parse().expect("a weight")).collect()
 }
 
-/// Whether the model allows the schedule.
+/// Returns true if the model allows the schedule.
 fn allows(model: &str, problem: &Problem, fire: &[Vec<u32>; 2]) -> bool {
     // Of sensors that fire together the model has one, numbered in the order of the first ones.
     let is_first = |x: &usize| !problem.together.iter().any(|group| group.contains(x) && group[0] != *x);

@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-/// How a sensor is.
+/// The health of a sensor.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Health {

@@ -44,7 +44,7 @@ pub(crate) struct Line {
     pub(crate) pulse: Pulse,
     /// Firings in a row without a pulse.
     silent: u8,
-    /// What is wrong with this firing: more than one pulse or one too short, or an edge without its counterpart.
+    /// The flaw of this firing: more than one pulse or one too short, or an edge without its counterpart.
     flaw: Health,
     pub(crate) health: Health,
 }

@@ -33,7 +33,7 @@ impl<T, I, D, const K: usize> Lines<T, I, D, K> {
         Self { pins, delay, lines: [Line::NEW; K], settings }
     }
 
-    /// Whether a sensor may be triggered again after this time.
+    /// Returns true if a sensor may be triggered again after this time.
     pub(crate) fn allow(&self, min_refire: Micros) -> Result<(), SetupError> {
         self.settings.allow(min_refire)
     }

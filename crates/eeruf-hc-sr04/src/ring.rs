@@ -172,8 +172,8 @@ impl<P: Plan, J: Judge, T, I, D, const K: usize, const H: usize> HcSr04Ring<Ring
         self.ring.fired(sensor, at)
     }
 
-    /// How a sensor was at its last complete firing, as far as its line shows it; [`Health::Missing`] for one that the
-    /// ring does not have.
+    /// Health of a sensor at its last complete firing, as far as its line shows it; [`Health::Missing`] for one that
+    /// the ring does not have.
     pub fn health(&self, sensor: u8) -> Health {
         self.lines.health(sensor)
     }

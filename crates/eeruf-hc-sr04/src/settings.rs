@@ -5,11 +5,11 @@ use eeruf_modules::{HC_SR04, Module};
 
 use crate::error::SetupError;
 
-/// What the sensors need.
+/// Needs of the sensors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Settings {
-    /// How long the trigger stays high.
+    /// Width of the trigger's pulse.
     pub trigger: Micros,
     /// Edges sooner than this after the trigger are the trigger itself, seen through the cable.
     pub deaf: Micros,
@@ -48,7 +48,7 @@ impl Settings {
         })
     }
 
-    /// Whether a sensor may be triggered again after this time.
+    /// Returns true if a sensor may be triggered again after this time.
     pub(crate) fn allow(&self, min_refire: Micros) -> Result<(), SetupError> {
         let min_retrigger = self.min_retrigger;
         if min_refire < min_retrigger { Err(SetupError::Retrigger { min_refire, min_retrigger }) } else { Ok(()) }

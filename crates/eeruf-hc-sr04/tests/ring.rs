@@ -17,7 +17,7 @@ fn schedule(period_ms: u32) -> Schedule<K> {
 
 const CONFIG: RingConfig = RingConfig::new().with_t_delta(Micros::new(500)).with_window(Micros::from_millis(40));
 
-/// What a sensor does after a trigger: edges as (time in us, high).
+/// Response of a sensor to a trigger: edges as (time in us, high).
 type Line<'a> = &'a dyn Fn(u32) -> Vec<(u32, bool)>;
 
 fn echo(us: u32) -> impl Fn(u32) -> Vec<(u32, bool)> {

@@ -1,4 +1,4 @@
-//! What can be said to a driver and changed while it runs.
+//! Settings of a driver that may change while it runs.
 
 use core::convert::Infallible;
 

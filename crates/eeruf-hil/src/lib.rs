@@ -18,7 +18,7 @@ use eeruf_core::{
 };
 use eeruf_hc_sr04::Health;
 
-/// How many sensors there are: as many as in `scenes/alcove-hc-sr04.toml`.
+/// Number of sensors: as many as in `scenes/alcove-hc-sr04.toml`.
 pub const SENSORS: usize = 8;
 
 /// The paper's Table I-d for the first eight of its twelve sensors, verified for as large a `t_delta` as it allows: the
@@ -35,12 +35,11 @@ pub const SCHEDULE: VerifiedSchedule<SENSORS> = {
     }
 };
 
-/// How the ring listens and compares: as `scenes/alcove-hc-sr04.toml` says, with a window for the longest pulse and its
-/// delay.
+/// Settings of the ring: those of `scenes/alcove-hc-sr04.toml`, with a window for the longest pulse and its delay.
 pub const CONFIG: RingConfig = RingConfig::new().with_t_delta(Micros::new(500)).with_window(Micros::from_millis(40));
 
-/// By how much crosstalk moves at least from phase to phase in the hopping ring: so much that firings may differ in
-/// lateness by 250 us, since the boards also write to the host.
+/// The least shift of crosstalk from phase to phase in the hopping ring: so much that firings may differ in lateness by
+/// 250 us, since the boards also write to the host.
 pub const STEP: Micros = Micros::new(652);
 
 /// The hopping ring of the same sensors, with the same period, and a window for as long as the modules must
@@ -56,10 +55,10 @@ pub fn hopping_ring(now: Instant) -> Result<HoppingRing<SENSORS>, HoppingError> 
     HoppingRing::hopping(&schedule, settings, HoppingListening::new(Micros::from_millis(60)), 1, now)
 }
 
-/// What the host says first.
+/// The host's first message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Orders {
-    /// What the board's clock reads at the start.
+    /// The board's clock at the start.
     pub start: Instant,
     /// For how many periods to run.
     pub periods: u32,
@@ -89,7 +88,7 @@ pub const MOST_AHEAD: usize = 48;
 pub struct Ahead {
     /// The edge, and when.
     pub edge: Edge,
-    /// Whether its interrupt gets lost: the line changes, and no interrupt says so.
+    /// True if its interrupt gets lost: the line changes, and no interrupt says so.
     pub lost: bool,
 }
 
@@ -113,7 +112,7 @@ impl Ahead {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Record(pub [u32; 6]);
 
-/// What a [`Record`] is about.
+/// The subject of a [`Record`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Topic {
@@ -129,7 +128,7 @@ pub enum Topic {
     Event,
     /// Until when the board sleeps.
     Deadline,
-    /// How the sensors are at a period's end, and how many edges found the queue full.
+    /// The sensors at a period's end, and the number of edges that found the queue full.
     State,
 }
 
@@ -217,13 +216,13 @@ impl Record {
         }
     }
 
-    /// How the sensors are, and how many edges found the queue full.
+    /// The state of the sensors, and the number of edges that found the queue full.
     pub fn state(health: [Health; SENSORS], edges_lost: u8) -> Self {
         let code = health.iter().fold(0, |sum, &health| sum << 4 | health as u32);
         Self::new(Topic::State, 0, edges_lost, [code, 0, 0, 0, 0])
     }
 
-    /// What it is about, if anything.
+    /// Its subject, if any.
     pub fn topic(self) -> Option<Topic> {
         Topic::ALL.get(usize::from(self.0[0] as u8)).copied()
     }

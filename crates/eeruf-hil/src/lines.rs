@@ -19,7 +19,7 @@ const STUCK_FROM: u32 = 20;
 /// No interrupt comes later than this: some instructions at 64 ns each, and other interrupts before it.
 const LATEST_US: u64 = 200;
 
-/// What is wrong with the line of [`FAULTY`]: faults as scenes have them.
+/// The fault on the line of [`FAULTY`]: faults as scenes have them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum LineFault {
     None,
@@ -50,7 +50,7 @@ impl LineFault {
         kinds.into_iter().map(fault).collect()
     }
 
-    /// What the driver should call it.
+    /// The name that the driver should give it.
     pub(crate) fn name(self) -> Health {
         match self {
             Self::None => Health::Well,
@@ -79,7 +79,7 @@ impl fmt::Display for LineFault {
 struct Line {
     triggered_us: Option<u64>,
     firings: u32,
-    /// How many edges of this firing the board has noticed.
+    /// Number of edges of this firing that the board has noticed.
     noticed: usize,
 }
 
@@ -140,7 +140,7 @@ impl<'w> Lines<'w> {
         edges.map(|edge| (edge.at_us, edge.high, edge.lost)).collect()
     }
 
-    /// What is to come on all lines, for a board whose clock reads `now`. Edges that it may just have noticed are among
+    /// Edges to come on all lines, for a board whose clock reads `now`. Edges that it may just have noticed are among
     /// them.
     pub(crate) fn ahead(&mut self, now: Instant) -> Result<Vec<Ahead>, String> {
         let now = self.since_start(now);

@@ -18,7 +18,7 @@ use embedded_hal::digital::{ErrorType, InputPin, OutputPin};
 use crate::emulator::Emulator;
 use crate::lines::Lines;
 
-/// What ring and pins share: the board, its lines, and the first error.
+/// The state that ring and pins share: the board, its lines, and the first error.
 pub(crate) struct Session<'w> {
     pub(crate) board: Emulator,
     pub(crate) lines: Lines<'w>,
@@ -180,5 +180,5 @@ impl<'w, P: Plan, J: Judge, const H: usize> Reference<'w, AnyRing<P, J, H>> {
     }
 }
 
-/// What every sensor read, in the order of its firings.
+/// The readings of every sensor, in the order of its firings.
 pub(crate) type Read = [Vec<Reading>; SENSORS];

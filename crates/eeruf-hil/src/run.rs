@@ -15,7 +15,7 @@ use crate::reference::{AnyRing, Read, Reference, Session};
 /// For how many periods each run of the tables lasts.
 pub(crate) const PERIODS: u32 = 1000;
 
-/// What goes wrong in a run.
+/// The fault in a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Fault {
     None,
@@ -76,7 +76,7 @@ impl fmt::Display for Fault {
     }
 }
 
-/// What came of a run.
+/// The outcome of a run.
 pub(crate) struct Run {
     pub(crate) read: Read,
     /// The latest that an edge was noticed.
@@ -89,15 +89,15 @@ pub(crate) struct Run {
     named_after: Option<u32>,
 }
 
-/// How the sensors without a fault differ from a run without one.
+/// The difference between the sensors without a fault and a run without one.
 pub(crate) struct Change {
     /// Readings of another kind.
     pub(crate) kinds: usize,
-    /// By how much echo times moved.
+    /// Change of echo times.
     pub(crate) moved: Micros,
 }
 
-/// How fast a board may run.
+/// The speed of a board.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Pace {
     /// As fast as it is emulated.
@@ -220,7 +220,7 @@ impl Run {
         self.read.iter().map(Vec::len).sum()
     }
 
-    /// How many readings of a kind there are, of all sensors or of all but this one.
+    /// Number of readings of a kind, of all sensors or of all but this one.
     pub(crate) fn of(&self, kind: ReadingKind, but: Option<u8>) -> usize {
         let sensors = self.read.iter().enumerate().filter(|&(sensor, _)| Some(sensor) != but.map(usize::from));
         sensors.flat_map(|(_, read)| read).filter(|reading| reading.kind == kind).count()
@@ -238,7 +238,7 @@ impl Run {
         sensors.map(|(_, read)| share(read)).fold(1.0, f64::min)
     }
 
-    /// Whether all other sensors read what they would have read without the fault.
+    /// Returns true if all other sensors read what they would have read without the fault.
     fn others_are(&self, control: &Read) -> Result<(), String> {
         for (sensor, (read, without)) in self.read.iter().zip(control).enumerate() {
             if sensor != usize::from(FAULTY) && read != without {
@@ -252,7 +252,7 @@ impl Run {
         Ok(())
     }
 
-    /// How many readings are of the kind that the simulator's own run of the same world has, and by how many
+    /// Number of readings that are of the kind that the simulator's own run of the same world has, and by how many
     /// microseconds their echo times differ at most.
     pub(crate) fn as_simulated(&self, simulated: &Readings) -> Result<(usize, f64), String> {
         let (mut same, mut most) = (0, 0.0_f64);
@@ -272,7 +272,7 @@ impl Run {
         Ok((same, most))
     }
 
-    /// What the report calls the fault; it must be this one, and nothing else.
+    /// The report's name for the fault; it must be this one, and nothing else.
     pub(crate) fn report(&self, fault: Fault) -> Result<String, String> {
         // The next firing is due up to 24 ms after the stall began.
         self.report_late(fault, Micros::from_millis(26))
@@ -303,9 +303,10 @@ impl Run {
         })
     }
 
-    /// How other sensors differ from a run without a fault. Firings and interrupts come some microseconds earlier or
-    /// later when there is more or less to do, so echo times move by as much; no kind of reading may change for it. A
-    /// stall makes the ring compare some with nothing: those not yet emitted when it ended, and those of three periods.
+    /// The difference of other sensors from a run without a fault. Firings and interrupts come some microseconds
+    /// earlier or later when there is more or less to do, so echo times move by as much; no kind of reading may change
+    /// for it. A stall makes the ring compare some with nothing: those not yet emitted when it ended, and those of
+    /// three periods.
     pub(crate) fn change_from(&self, fault_free: &Self, fault: Fault) -> Result<Change, String> {
         let mut change = Change { kinds: 0, moved: Micros::ZERO };
         for (sensor, (mine, without)) in self.read.iter().zip(&fault_free.read).enumerate() {

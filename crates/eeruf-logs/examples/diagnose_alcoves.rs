@@ -1,5 +1,6 @@
-//! How well `diagnose` names the senders of rejected readings, in alcoves of Set I, where the simulator knows them:
-//! `cargo run --release -p eeruf-logs --example diagnose_alcoves -- [FIRST [ALCOVES [METHOD [PERIODS [PHYSICS]]]]]`.
+//! Success of `diagnose` at naming the senders of rejected readings, in alcoves of Set I, where the simulator knows
+//! them: `cargo run --release -p eeruf-logs --example diagnose_alcoves -- [FIRST [ALCOVES [METHOD [PERIODS
+//! [PHYSICS]]]]]`.
 
 use std::error::Error;
 
@@ -22,7 +23,7 @@ struct Counts {
     /// Paths that were found, and how many of them no sound took.
     paths: usize,
     accidental: usize,
-    /// What was said to be broken; nothing is.
+    /// Number of faults reported; nothing is broken.
     faults: usize,
 }
 

@@ -7,7 +7,7 @@ pub(crate) enum Order {
     Big,
 }
 
-/// What is left of a slice.
+/// The rest of a slice.
 #[derive(Clone, Copy)]
 pub(crate) struct Bytes<'a> {
     all: &'a [u8],

@@ -1,4 +1,4 @@
-//! What is wrong with a log: why nothing of it can be read, and what of it cannot.
+//! Errors in a log: why nothing of it can be read, and what of it cannot.
 
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -30,7 +30,7 @@ impl LogError {
         self.line
     }
 
-    /// What is wrong and what is expected, without file and line.
+    /// The error and what is expected, without file and line.
     pub fn message(&self) -> &str {
         &self.message
     }
@@ -57,7 +57,7 @@ pub struct Damage {
     pub at: Option<u64>,
     /// The line of a text, from 1.
     pub line: Option<u64>,
-    /// What is wrong, and what is lost by it.
+    /// The error, and what is lost by it.
     pub message: String,
 }
 

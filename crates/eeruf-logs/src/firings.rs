@@ -43,29 +43,29 @@ pub struct Firing {
     pub phase: u8,
     /// From firing to the first echo, in microseconds; `None` without echo.
     pub t_echo_us: Option<u32>,
-    /// Whether the ring rejected the reading or found it ambiguous, if the log says what it made of it.
+    /// True if the ring rejected the reading or found it ambiguous, if the log says what it made of it.
     pub rejected: Option<bool>,
-    /// How the tracker of a hopping ring weighed the reading, if the log says so.
+    /// The tracker's weighing of the reading in a hopping ring, if the log has it.
     pub weighed: Option<Weighed>,
 }
 
 /// A log of firings, in order of time.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FiringLog {
-    /// Which clock the times are of.
+    /// The clock of the times.
     pub clock: String,
     /// The firings, in order of time.
     pub firings: Vec<Firing>,
-    /// What sensors heard that listened without firing: `fired_us` is when they began to.
+    /// Sounds heard by sensors that listened without firing: `fired_us` is when they began to.
     pub listened: Vec<Firing>,
-    /// Whether the log does not say when sensors fired: `fired_us` is 0 then, see [`align`](crate::align()).
+    /// True if the log does not say when sensors fired: `fired_us` is 0 then, see [`align`](crate::align()).
     pub lacks_instants: bool,
-    /// What of the file could not be read, if that is so.
+    /// The part of the file that could not be read, if any.
     pub damage: Option<String>,
 }
 
 impl Firing {
-    /// What the ring made of the reading, as logs spell it.
+    /// The ring's verdict on the reading, as logs spell it.
     pub(crate) fn reading(&self) -> &'static str {
         match (self.weighed.as_ref().and_then(|weighed| weighed.kind), self.rejected) {
             (Some(kind), _) => kind.as_str(),
@@ -129,7 +129,7 @@ impl FiringLog {
         Ok(())
     }
 
-    /// How many sensors the ring has, as far as the log shows: one more than the highest number.
+    /// Number of sensors the ring has, as far as the log shows: one more than the highest number.
     pub fn sensors(&self) -> usize {
         let rows = self.firings.iter().chain(&self.listened);
         rows.map(|firing| usize::from(firing.sensor) + 1).max().unwrap_or(0)

@@ -30,17 +30,17 @@ const RECORD_HEAD: usize = 9;
 /// The largest chunk that is unpacked, and the largest record that is read.
 const LARGEST_CHUNK: u64 = 1 << 30;
 
-/// What is known from the records so far.
+/// State after the records so far.
 #[derive(Default)]
 struct State {
     /// Name and text of each schema.
     schemas: HashMap<u16, (String, Option<String>)>,
     topics: HashMap<u16, Topic>,
-    /// How many messages there are, if the file says so.
+    /// Number of messages, if the file says so.
     counted: u64,
     /// Where its summary says that chunks are.
     chunks: Chunks,
-    /// Whether messages are packed one by one, as rosbag2 may have it.
+    /// True if messages are packed one by one, as rosbag2 may have it.
     packed: bool,
     zstd: Unzstd,
     unpacked: Vec<u8>,
@@ -151,7 +151,7 @@ fn record_head(input: &mut impl Read) -> io::Result<(u8, u64)> {
     Ok((letter[0], u64::from_le_bytes(length)))
 }
 
-/// Whether a chunk begins at a place that the summary names.
+/// Returns true if a chunk begins at a place that the summary names.
 fn is_chunk(input: &mut BufReader<File>, start: u64, size: u64) -> io::Result<bool> {
     let Some(room) = size.checked_sub(start.saturating_add(RECORD_HEAD as u64)) else { return Ok(false) };
     input.seek(SeekFrom::Start(start))?;

@@ -10,7 +10,7 @@ use crate::options::{Options, RangeUnit};
 use crate::reading::Reading;
 use crate::schema::{Header, Schema};
 
-/// How the messages of a topic are encoded.
+/// Encoding of a topic's messages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Encoding {
     /// ROS 2.
@@ -22,7 +22,7 @@ pub(crate) enum Encoding {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {
     Range {
-        /// Whether the schema has a variance, if there is a schema.
+        /// True if the schema has a variance, if there is a schema.
         variance: Option<bool>,
     },
     /// With at most as many beams.
@@ -204,7 +204,8 @@ fn push_all(header: &Header, values: Vec<f64>, recorded_ns: u64, readings: &mut 
     Some(header.frame.clone().into_bytes())
 }
 
-/// Whether a schema has a variance; `None` where it does not even have a range, so that it is no schema of `Range`.
+/// Returns true if a schema has a variance; `None` where it does not even have a range, so that it is no schema of
+/// `Range`.
 fn has_variance(schema: &str) -> Option<bool> {
     // The definitions of other messages follow after a line of `=`.
     let own = schema.lines().take_while(|line| !line.starts_with("===="));
@@ -214,7 +215,7 @@ fn has_variance(schema: &str) -> Option<bool> {
     has("range").then(|| has("variance"))
 }
 
-/// What follows CDR's own header of four bytes, of which the second says in which order bytes come, and the largest
+/// The bytes after CDR's own header of four bytes, of which the second gives the order of bytes, and the largest
 /// alignment.
 pub(crate) fn cdr_bytes(message: &[u8]) -> Option<(Bytes<'_>, usize)> {
     let (header, body) = message.split_at_checked(4)?;

@@ -1,6 +1,7 @@
 //! Options of reading a log.
 
-/// How to read a log. Whatever is not given is guessed, and listed in [`Report::guesses`](crate::Report::guesses).
+/// Options for reading a log. Whatever is not given is guessed, and listed in
+/// [`Report::guesses`](crate::Report::guesses).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Options {
     /// The columns of a text.

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-/// How the sensors of a ring fire relative to each other.
+/// Pattern in which the sensors of a ring fire relative to each other.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Pattern {
     /// All at the same instant.
@@ -55,7 +55,7 @@ pub struct FiringPattern {
 }
 
 impl FiringPattern {
-    /// What agreement within this `t_delta` of a sensor's consecutive readings proves for the pattern.
+    /// The proof that agreement within this `t_delta` of a sensor's consecutive readings gives for the pattern.
     pub fn proves(&self, t_delta_us: Option<u32>) -> String {
         let repeats = "the sound of another sensor repeats as exactly as the own echo, so that agreement of \
                        consecutive readings shows nothing about crosstalk";

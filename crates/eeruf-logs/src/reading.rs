@@ -1,4 +1,4 @@
-//! What a log holds: readings, and the sensors that they are of.
+//! Contents of a log: readings, and the sensors that they are of.
 
 /// A sensor of a log: a topic and a frame, and for a `LaserScan` one of its beams.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
@@ -43,7 +43,7 @@ pub struct Reading {
     pub variance: Option<f32>,
 }
 
-/// What a range says.
+/// The meaning of a range.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Echo {
     /// An echo from this range, in metres.
@@ -57,7 +57,7 @@ pub enum Echo {
 }
 
 impl Reading {
-    /// What the range says by REP 117.
+    /// The meaning of the range by REP 117.
     pub fn echo(&self) -> Echo {
         let Self { range_m, min_range_m, max_range_m, .. } = *self;
         if range_m.is_nan() {

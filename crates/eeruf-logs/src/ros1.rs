@@ -73,7 +73,7 @@ impl<'a> Header<'a> {
 #[derive(Default)]
 struct State {
     topics: HashMap<u32, Topic>,
-    /// How many messages there are, if the index says so.
+    /// Number of messages, if the index says so.
     counted: u64,
     /// Where the index says that chunks are.
     chunks: Chunks,
@@ -180,7 +180,7 @@ pub(crate) fn read(file: &Path, sink: &mut Sink<'_>) -> Result<(), LogError> {
     Ok(())
 }
 
-/// Whether a chunk begins at a place that the index names.
+/// Returns true if a chunk begins at a place that the index names.
 fn is_chunk(input: &mut BufReader<File>, start: u64) -> io::Result<bool> {
     /// More than the header of a chunk has.
     const LONGEST: u64 = 4096;

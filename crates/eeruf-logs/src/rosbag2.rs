@@ -13,13 +13,13 @@ use crate::unzstd::{LARGEST_MESSAGE, Unzstd};
 
 pub(crate) const SQLITE_MAGIC: &[u8; 16] = b"SQLite format 3\0";
 
-/// What `metadata.yaml` says.
+/// Contents of `metadata.yaml`.
 #[derive(Default)]
 struct Metadata {
     files: Vec<PathBuf>,
-    /// How many messages they have.
+    /// Number of messages they have.
     messages: u64,
-    /// Whether each message is compressed for itself.
+    /// True if each message is compressed for itself.
     packed: bool,
 }
 

@@ -10,31 +10,31 @@ use crate::options::{Options, RangeUnit};
 use crate::pattern::{FiringPattern, Stamps};
 use crate::reading::{Echo, Reading, Sensor};
 
-/// What a log holds, and what of it could not be read.
+/// Contents of a log, and what of it could not be read.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Report {
     /// The form of the file.
     pub form: String,
     /// The sensors, in the order in which they were first met.
     pub sensors: Vec<Sensor>,
-    /// How many messages with readings there were (rows, of a CSV file).
+    /// Number of messages with readings there that were (rows, of a CSV file).
     pub messages: u64,
-    /// What could not be read, as far as that is known.
+    /// Damage, as far as it is known.
     pub damage: Vec<Damage>,
     /// Topics without readings, with their types, and how many topics had none at all.
     pub skipped: Vec<Skipped>,
-    /// What the log does not say, and is guessed.
+    /// Guesses about what the log does not say.
     pub guesses: Vec<Guess>,
-    /// What is read and seems to be wrong.
+    /// Values that were read and seem to be wrong.
     pub warnings: Vec<String>,
-    /// How the sensors fire, by the times of the readings.
+    /// Firing pattern of the sensors, by the times of the readings.
     pub firing: FiringPattern,
 }
 
 /// A guess about a log.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Guess {
-    /// What is guessed.
+    /// The subject of the guess.
     pub what: String,
     /// The guess, and what it is made by.
     pub value: String,
@@ -49,7 +49,7 @@ pub struct Skipped {
     pub topic: String,
     /// Why its messages were left out.
     pub why: String,
-    /// How many messages were left out, where they were counted.
+    /// Number of messages that were left out, where they were counted.
     pub messages: u64,
 }
 
@@ -90,7 +90,7 @@ struct Frame {
 /// Takes messages, and hands on readings.
 pub(crate) struct Sink<'a> {
     pub(crate) report: Report,
-    /// How many messages were found, of whatever type and whether or not they could be read.
+    /// Number of messages that were found, of whatever type and whether or not they could be read.
     pub(crate) found: u64,
     each: &'a mut dyn FnMut(&[Sensor], &Reading),
     buffer: Vec<Reading>,
@@ -350,7 +350,7 @@ fn finite(reading: &Reading) -> Option<f64> {
 }
 
 impl Topic {
-    /// Whether its messages hold readings, as far as its type says.
+    /// Returns true if its messages hold readings, as far as its type says.
     pub(crate) const fn has_readings(&self) -> bool {
         self.decoding.is_some()
     }

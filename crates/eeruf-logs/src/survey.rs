@@ -1,4 +1,4 @@
-//! What a measuring run says: which sensor hears which, along paths of which length, and how sure that is.
+//! Findings of a measuring run: which sensor hears which, along paths of which length, and how sure that is.
 //!
 //! In each slot of a survey at most two sensors fire, and all earlier sound has died away: see
 //! [`SurveyPlan`](https://docs.rs/eeruf-core/latest/eeruf_core/struct.SurveyPlan.html). So an edge is the sensor's own
@@ -15,12 +15,12 @@ use std::collections::HashMap;
 use crate::diagnose::{FoundPath, groups, ln_at_least, median};
 use crate::firings::{Firing, FiringLog};
 
-/// How to look for paths in a survey.
+/// Settings of the search for paths in a survey.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PathSettings {
-    /// By how much edges of one path may differ, in microseconds: about four times the jitter.
+    /// Largest difference between edges of one path, in microseconds: about four times the jitter.
     pub tolerance_us: u32,
-    /// How many paths may be found by accident, on average, in the whole survey.
+    /// Number of paths that may be found by accident, on average, in the whole survey.
     pub accidents: f64,
 }
 
@@ -31,14 +31,14 @@ impl Default for PathSettings {
     }
 }
 
-/// What a survey found.
+/// Findings of a survey.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Surveyed {
-    /// How many sensors the ring has.
+    /// Number of sensors the ring has.
     pub sensors: usize,
     /// The paths, by receiver and sender, shortest first. A sensor's own echo is a path from itself.
     pub paths: Vec<FoundPath>,
-    /// How many edges there were, and how many of them no path explains.
+    /// Number of edges, and how many of them no path explains.
     pub edges: (u32, u32),
     /// The longest echo time of the log, in microseconds: sensors listen at least so long.
     pub window_us: u32,
@@ -92,11 +92,11 @@ impl Surveyed {
     }
 }
 
-/// What one sensor heard in one slot.
+/// Sounds of one sensor in one slot.
 struct Heard {
     slot: u32,
     echo_us: Option<i64>,
-    /// Who fired, itself too if it did, and when, after it began to listen.
+    /// Firings in the slot, its own too, and their times after it began to listen.
     fired: Vec<(u8, i64)>,
     is_explained: bool,
 }
@@ -112,7 +112,7 @@ struct Place {
 
 /// The most paths to one receiver.
 const MOST_PATHS: usize = 200;
-/// How many places of each sender are looked at more closely before the best is taken.
+/// Number of places of each sender that are looked at more closely before the best is taken.
 const LOOKED_AT: usize = 4;
 /// A path supports an offset if it is heard in this share of the slots with that offset in which nothing hid it.
 const SUPPORTS: f64 = 0.5;
@@ -230,7 +230,7 @@ impl Search {
         places.min_by(|a, b| a.ln_accident.total_cmp(&b.ln_accident))
     }
 
-    /// What speaks for a path and what against it.
+    /// Evidence for a path and against it.
     fn support(&self, sender: u8, travel_us: i64) -> Place {
         // By offset, or by slot: whether it was heard there.
         let mut trials = Vec::<(i64, bool)>::new();

@@ -3,24 +3,23 @@
 use eeruf_core::ReadingKind;
 use serde_json::Value;
 
-/// How the tracker of a hopping ring weighed a reading, beside its phase and echo time: what
+/// The tracker's weighing of a reading in a hopping ring, beside its phase and echo time: what
 /// [`replay`](crate::replay()) needs to do the same again.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Weighed {
     /// Its place in the order in which the ring gave its readings: an early echo comes before the late one of a sensor
     /// that fired sooner. Of a log without the column, its place among the rows.
     pub given: u64,
-    /// What the ring made of it, if the log names the kind.
+    /// The ring's verdict, if the log names the kind.
     pub kind: Option<ReadingKind>,
-    /// Whether no other sensor's sound could be heard.
+    /// True if no other sensor's sound could be heard.
     pub solo: bool,
-    /// Whether firings were so punctual that crosstalk moved as the schedule says.
+    /// True if firings were so punctual that crosstalk moved as the schedule says.
     pub steady: bool,
-    /// How often firing times had changed against each other otherwise than by the phase, modulo 256, as
+    /// Number of times that firing times had changed against each other otherwise than by the phase, modulo 256, as
     /// `HoppingRing::changes` counts.
     pub changes: u8,
-    /// By how much the reading was expected to change since the sensor's firing before, in microseconds; 0 in a log
-    /// without the column.
+    /// Expected change of the reading since the sensor's firing before, in microseconds; 0 in a log without the column.
     pub expected_change_us: i32,
 }
 

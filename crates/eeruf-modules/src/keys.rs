@@ -9,12 +9,12 @@ use crate::module::{Beam, Gain, Interface, Module, NoEcho};
 pub struct Key {
     /// The name.
     pub name: &'static str,
-    /// What it says.
+    /// Its contents.
     pub about: &'static str,
     kind: Kind,
 }
 
-/// How a figure is kept.
+/// The type of a figure.
 #[derive(Clone, Copy, Debug)]
 enum Kind {
     /// A number in the file's unit, kept as so many thousandths or whole ones, up to a largest.

@@ -11,7 +11,7 @@ pub struct Module {
     pub sees_to_mm: u32,
     /// The farthest wall off which its sound is still heard now and then, in mm.
     pub hears_to_mm: u32,
-    /// How long it is deaf after it has fired, in us.
+    /// Deaf time after it has fired, in us.
     pub blanking_us: u32,
     /// Frequency in Hz.
     pub frequency_hz: u32,
@@ -25,13 +25,13 @@ pub struct Module {
     pub radius_um: u32,
     /// The pattern near 90 degrees and beyond.
     pub beam: Beam,
-    /// What it does where nothing is in range.
+    /// Behaviour where nothing is in range.
     pub no_echo: NoEcho,
     /// The shortest time from one trigger to the next, in us.
     pub rest_us: u32,
     /// The length of the trigger pulse, in us; 0 for a command, a level, or a module that runs freely.
     pub trigger_us: u32,
-    /// How it reports.
+    /// Its way to report.
     pub interface: Interface,
     /// The time from the trigger to its report, in us; 0 where the echo's own edge reports it.
     pub report_us: u32,
@@ -94,7 +94,7 @@ words! {
 }
 
 words! {
-    /// How a module reports.
+    /// A module's way to report.
     Interface {
         /// A line rises when the echo is heard.
         Edge = "edge",
@@ -111,12 +111,12 @@ words! {
     }
 }
 
-/// What a module does where nothing is in range.
+/// Behaviour of a module where nothing is in range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NoEcho {
     /// It holds its line high for this long, then releases it.
     Holds {
-        /// How long, in us.
+        /// The time, in us.
         us: u32,
     },
     /// Its line never rises.
@@ -138,7 +138,7 @@ impl NoEcho {
         }
     }
 
-    /// How long its line is held, in us; 0 for one that is not.
+    /// Time for which its line is held, in us; 0 for one that is not.
     pub const fn hold_us(self) -> u32 {
         match self {
             Self::Holds { us } => us,
@@ -147,7 +147,7 @@ impl NoEcho {
     }
 }
 
-/// How a driver reads the line of a module that answers by a pulse as long as the echo took, in us.
+/// Times by which a driver reads the line of a module that answers by a pulse as long as the echo took, in us.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PulseTimes {
     /// Edges sooner than this after the trigger are the trigger itself, seen through the cable.
@@ -161,7 +161,8 @@ pub struct PulseTimes {
 }
 
 impl Module {
-    /// How a driver reads its line; `None` if it does not answer by the width of a pulse that ends without an echo too.
+    /// Times by which a driver reads its line; `None` if it does not answer by the width of a pulse that ends without
+    /// an echo too.
     pub const fn pulse_times(&self) -> Option<PulseTimes> {
         let NoEcho::Holds { us: hold_us } = self.no_echo else { return None };
         // Among modules of one name there are clones.

@@ -17,7 +17,7 @@ use crate::{
 type OnLadder<'s> = Core<'s, MAX_SENSORS>;
 
 self_cell::self_cell!(
-    /// What adapts, with the rungs that it borrows.
+    /// The adaptation, with the rungs that it borrows.
     struct Owned {
         owner: Vec<VerifiedSchedule<MAX_SENSORS>>,
         #[covariant]

@@ -1,4 +1,4 @@
-//! What stands in a scene: shared between a `Scene` and the `Paths` found in it.
+//! Objects in a scene: shared between a `Scene` and the `Paths` found in it.
 
 use std::sync::Arc;
 

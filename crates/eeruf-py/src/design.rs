@@ -18,9 +18,9 @@ use crate::{
     watch::{Watch, control_flow, in_background},
 };
 
-/// How many nodes a search visits unless another budget is given.
+/// Default budget of nodes for a search.
 const DESIGN_BUDGET: u64 = 50_000_000;
-/// How many nodes the proof of a certificate may have.
+/// Budget of nodes for the proof of a certificate.
 const CERTIFICATE_BUDGET: usize = 1_000_000;
 /// Up to so many sensors the engine asks often whether to go on. With more, a good part of a second may lie between two
 /// nodes that ask, so the search gets a thread of its own. A small search would wait for that thread longer than for

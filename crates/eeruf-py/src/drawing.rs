@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use eeruf_sim::{Faces, Robot, Scene};
 
-/// How wide the picture is, in pixels.
+/// Width of the picture, in pixels.
 const WIDTH: f64 = 360.0;
 
 /// Walls, poles, robots and the directions in which their sensors look, from above, y upwards. Openings are dashed.

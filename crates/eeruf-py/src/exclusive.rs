@@ -1,4 +1,4 @@
-//! What one call at a time may use, and what is said to a second one.
+//! A guard that admits one call at a time, and the error for a second one.
 
 use std::sync::{Mutex, MutexGuard, TryLockError};
 

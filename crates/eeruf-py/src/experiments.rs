@@ -133,14 +133,14 @@ pub(crate) fn figures(py: Python<'_>, set: u8, runs: &Bound<'_, PyString>) -> Py
     })
 }
 
-/// How a figure differs between two methods, from its differences scene by scene.
+/// Difference of a figure between two methods, from its differences scene by scene.
 #[pyfunction]
 #[pyo3(name = "_difference", signature = (differences))]
 pub(crate) fn difference(py: Python<'_>, differences: Vec<f64>) -> PyResult<Option<String>> {
     py.detach(|| Difference::of(differences).map(|found| json(&found)).transpose())
 }
 
-/// Which of the experiments' scenes, and how they sound.
+/// Scenes of the experiments by number, and their sound.
 fn numbered(number: &Bound<'_, PyAny>, physics: &Bound<'_, PyAny>) -> PyResult<(u64, Physics)> {
     Ok((whole("first", number, 0..=u64::from(u32::MAX) + SEEDS_MOST)?, surroundings::physics(Some(physics))?))
 }
@@ -226,7 +226,7 @@ fn scene_of(scene: eeruf_sim::Scene, robot: Robot, max_order: u32, seed: u64, ph
     Scene::of(WorldParts { scene, robots: vec![robot], noise, physics, max_order, seed, faults }, robots)
 }
 
-/// What is asked of Set II, as Python gives it.
+/// Arguments of Set II, as Python gives them.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub(crate) struct Asked<'py> {
@@ -313,7 +313,7 @@ pub(crate) fn set_two<'py>(
     Ok((json(&found)?, runs))
 }
 
-/// What a sweep returns, under the program's names.
+/// Result of a sweep, under the program's names.
 #[derive(Serialize)]
 struct Sweep {
     first: u64,

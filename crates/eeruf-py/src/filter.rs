@@ -33,16 +33,16 @@ use crate::{
 #[pyclass(frozen, module = "eeruf")]
 pub(crate) struct EchoFilter {
     filter: Exclusive<Filter>,
-    /// How many sensors.
+    /// Number of sensors.
     #[pyo3(get)]
     sensors: usize,
     /// ``T_delta``, in microseconds.
     #[pyo3(get)]
     t_delta_us: u32,
-    /// How many readings in a row must agree.
+    /// Number of readings in a row that must agree.
     #[pyo3(get)]
     consecutive: u8,
-    /// How many echoes of one firing count.
+    /// Number of echoes of one firing that count.
     #[pyo3(get)]
     echoes: usize,
 }

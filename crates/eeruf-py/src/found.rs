@@ -26,20 +26,19 @@ use crate::{
 #[derive(Clone, PartialEq)]
 pub(crate) struct Found {
     schedule: Option<Schedule>,
-    /// What was sought of it, in microseconds: the period, the smallest interval or ``T_delta``; None without a
-    /// schedule.
+    /// The optimised value, in microseconds: the period, the smallest interval or ``T_delta``; None without a schedule.
     #[pyo3(get)]
     value_us: Option<u32>,
     /// No schedule is better than this, in microseconds; None if it is proven that there is none at all.
     #[pyo3(get)]
     bound_us: Option<u32>,
-    /// Whether no better schedule exists (or none at all, without a schedule).
+    /// True if no better schedule exists (or none at all, without a schedule).
     #[pyo3(get)]
     proven: bool,
-    /// How many nodes the search visited: the same on each machine.
+    /// Number of nodes that the search visited: the same on each machine.
     #[pyo3(get)]
     nodes: u64,
-    /// How long it took.
+    /// Duration.
     #[pyo3(get)]
     seconds: f64,
     /// Why the period is not shorter, in words; None from ``WaitSearch.best``.
@@ -52,17 +51,17 @@ pub(crate) struct Found {
     /// ``design`` was asked for it.
     #[pyo3(get)]
     real_period_us: Option<(u64, u64)>,
-    /// Whether no real period is shorter; None without one.
+    /// True if no real period is shorter; None without one.
     #[pyo3(get)]
     real_proven: Option<bool>,
-    /// Whether the atlas of proven rings answered, and nothing was searched.
+    /// True if the atlas of proven rings answered, and nothing was searched.
     #[pyo3(get)]
     from_atlas: bool,
     /// Of a ring whose sensors are not all alike: what its schedule keeps beyond every ``t_delta``, then every interval
     /// and turn on a shared line, then every refire time, in microseconds; else None.
     #[pyo3(get)]
     spare_us: Option<(u32, u32, u32)>,
-    /// Whether no schedule of this period has more, of each; None without them.
+    /// True if no schedule of this period has more, of each; None without them.
     #[pyo3(get)]
     spare_proven: Option<(bool, bool, bool)>,
 }

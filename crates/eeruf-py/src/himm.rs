@@ -68,25 +68,25 @@ impl Himm {
         Ok(Self { grid })
     }
 
-    /// How many cells the window has on a side.
+    /// Number of cells the window has on a side.
     #[getter]
     fn side(&self) -> usize {
         self.grid.side()
     }
 
-    /// How wide a cell is, in metres.
+    /// Width of a cell, in metres.
     #[getter]
     fn cell_m(&self) -> f64 {
         self.grid.cell_m()
     }
 
-    /// Whether cells beside certain ones grow faster.
+    /// Returns true if cells beside certain ones grow faster.
     #[getter]
     fn growth(&self) -> bool {
         self.grid.growth
     }
 
-    /// What the window covers: (least x, greatest x, least y, greatest y) in metres, as ``imshow`` takes it.
+    /// Extent of the window: (least x, greatest x, least y, greatest y) in metres, as ``imshow`` takes it.
     #[getter]
     fn extent_m(&self) -> (f64, f64, f64, f64) {
         let (corner, width) = (self.grid.corner(), self.grid.side() as f64 * self.grid.cell_m());

@@ -35,9 +35,9 @@ pub(crate) struct HoppingFound {
     value_us: u32,
     /// No schedule of so many phases or more that separates sound of every age has a shorter period, in microseconds.
     bound_us: u32,
-    /// Whether no such schedule is shorter.
+    /// True if no such schedule is shorter.
     proven: bool,
-    /// What sets the bound, in words.
+    /// Reason of the bound, in words.
     reason: String,
     /// The longest wait of the code, in microseconds.
     width_us: u32,
@@ -45,7 +45,7 @@ pub(crate) struct HoppingFound {
     width_bound_us: u32,
 }
 
-/// What :func:`design` was given, of what matters with many phases.
+/// Needs given to :func:`design` that matter with many phases.
 pub(crate) struct Needs<'a, 'py> {
     pub(crate) sensors: &'a Bound<'py, PyAny>,
     pub(crate) t_delta_us: &'a Bound<'py, PyAny>,

@@ -135,7 +135,7 @@ impl HoppingRing {
         self.ring.next_deadline().as_micros()
     }
 
-    /// How long to wait before polling next, in microseconds, right across the clock's wrap: 0 if an event is pending.
+    /// Time to wait before polling next, in microseconds, right across the clock's wrap: 0 if an event is pending.
     ///
     /// Args:
     ///     now_us: the present, 0 or more.
@@ -156,13 +156,13 @@ impl HoppingRing {
         Ok(until(self.ring.next_deadline(), instant("now_us", now_us)?))
     }
 
-    /// What it fires by, with the lags of the start.
+    /// Its schedule, with the lags of the start.
     #[getter]
     fn schedule(&self) -> HoppingSchedule {
         self.schedule.clone()
     }
 
-    /// How it fires and weighs readings.
+    /// Its settings for firing and weighing readings.
     #[getter]
     fn settings(&self) -> HoppingSettings {
         self.settings.clone()
@@ -203,7 +203,7 @@ impl HoppingRing {
         Ok(self.ring.judge().confirmed(self.sensor(sensor)?.into()).map(Micros::as_micros))
     }
 
-    /// Whether it is confirmed that nothing is in a sensor's range.
+    /// Returns true if it is confirmed that nothing is in a sensor's range.
     ///
     /// Args:
     ///     sensor: which one, from 0.
@@ -340,7 +340,7 @@ impl HoppingRing {
         self.change(|ring| ring.enable(sensor))
     }
 
-    /// Whether a sensor fires.
+    /// Returns true if a sensor fires.
     ///
     /// Args:
     ///     sensor: which one, from 0.
@@ -387,7 +387,7 @@ impl HoppingRing {
         self.ring.resume();
     }
 
-    /// How many sensors it has.
+    /// Number of sensors it has.
     #[getter]
     fn sensors(&self) -> usize {
         self.ring.sensors()

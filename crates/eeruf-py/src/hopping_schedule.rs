@@ -166,13 +166,13 @@ impl HoppingSchedule {
         self.0.period().as_micros()
     }
 
-    /// How many sensors fire.
+    /// Number of sensors that fire.
     #[getter]
     fn sensors(&self) -> usize {
         self.0.code().sensors()
     }
 
-    /// How many phases a cycle has: one less than a prime, or a prime for a linear congruence.
+    /// Number of phases a cycle has: one less than a prime, or a prime for a linear congruence.
     #[getter]
     fn phases(&self) -> u8 {
         self.0.code().phases()
@@ -184,7 +184,7 @@ impl HoppingSchedule {
         self.0.code().first_multiplier()
     }
 
-    /// By how much crosstalk moves at least from one phase to another, in microseconds.
+    /// The least shift of crosstalk from one phase to another, in microseconds.
     #[getter]
     fn step_us(&self) -> u32 {
         self.0.code().step().as_micros()

@@ -12,7 +12,8 @@ use crate::{
 const NAMED: [(&str, Core); 4] =
     [("balanced", Core::BALANCED), ("quick", Core::QUICK), ("driving", Core::DRIVING), ("maps", Core::MAPS)];
 
-/// How a hopping ring, or its tracker alone, weighs readings and fires. Immutable; they compare, hash and pickle.
+/// Settings by which a hopping ring, or its tracker alone, weighs readings and fires. Immutable; they compare, hash and
+/// pickle.
 ///
 /// Args:
 ///     name: what to start from: ``"balanced"`` for most robots, ``"quick"`` for those that must stop early (a little
@@ -143,7 +144,7 @@ impl HoppingSettings {
         self.0.tracker.near.as_micros()
     }
 
-    /// How many phases must support an echo before it is confirmed, 2 to 15.
+    /// Number of phases that must support an echo before it is confirmed, 2 to 15.
     #[getter]
     fn votes(&self) -> u8 {
         self.0.tracker.votes
@@ -155,31 +156,31 @@ impl HoppingSettings {
         self.0.tracker.score_limit
     }
 
-    /// What a later reading takes from the score of a confirmed echo, 1 to 15.
+    /// Score that a later reading takes from a confirmed echo, 1 to 15.
     #[getter]
     fn contradiction(&self) -> u8 {
         self.0.tracker.contradiction
     }
 
-    /// What it takes if the sensor fired alone, 1 to 15.
+    /// Score that it takes if the sensor fired alone, 1 to 15.
     #[getter]
     fn solo_contradiction(&self) -> u8 {
         self.0.tracker.solo_contradiction
     }
 
-    /// How many phases must support an echo before it is tentative, 2 to 15; 0: none ever is.
+    /// Number of phases that must support an echo before it is tentative, 2 to 15; 0: none ever is.
     #[getter]
     fn tentative_votes(&self) -> u8 {
         self.0.tracker.tentative_votes
     }
 
-    /// How closely they must agree for that, in microseconds; 0 to ``t_delta_us``.
+    /// Tolerance of agreement for that, in microseconds; 0 to ``t_delta_us``.
     #[getter]
     fn tentative_within_us(&self) -> u32 {
         self.0.tracker.tentative_within.as_micros()
     }
 
-    /// What of a solo period each period earns, in 1/256, 0 to 255; 0: none is ever held.
+    /// Credit per period towards a solo period, in 1/256, 0 to 255; 0: none is ever held.
     #[getter]
     fn solo_rate(&self) -> u8 {
         self.0.solo_rate
@@ -209,13 +210,13 @@ impl HoppingSettings {
         self.0.shift_spacing
     }
 
-    /// What neighbours keep between their firings when a lag is drawn, in microseconds.
+    /// Least interval between firings of neighbours when a lag is drawn, in microseconds.
     #[getter]
     fn shift_interval_us(&self) -> u32 {
         self.0.shift_interval.as_micros()
     }
 
-    /// How many adjacent sensors are neighbours.
+    /// Number of adjacent sensors that are neighbours.
     #[getter]
     fn neighbours(&self) -> u8 {
         self.0.neighbours

@@ -167,7 +167,7 @@ pub(crate) fn read_firings<'py>(path: &Bound<'py, PyAny>) -> PyResult<Bound<'py,
     Ok(out)
 }
 
-/// What the tracker of a hopping ring makes of each firing of the ring's own log, as columns.
+/// Replays each firing of a hopping ring's own log through the tracker, as columns.
 #[pyfunction]
 #[pyo3(name = "_replay")]
 pub(crate) fn replay<'py>(
@@ -203,7 +203,7 @@ pub(crate) fn replay<'py>(
 /// Thirty years, so that differences of moments are far from overflow.
 const MOST_US: u64 = 1_000_000_000_000_000;
 
-/// What `eeruf.logs.Firings` holds.
+/// Columns of `eeruf.logs.Firings`.
 #[derive(FromPyObject)]
 pub(crate) struct Columns<'py> {
     sensor: PyReadonlyArray1<'py, i64>,
@@ -285,7 +285,7 @@ fn paths<'py>(py: Python<'py>, paths: &[FoundPath]) -> PyResult<Bound<'py, PyDic
     Ok(out)
 }
 
-/// Which sensors fool each other, from columns.
+/// Finds from columns which sensors fool each other.
 #[pyfunction]
 #[pyo3(name = "_diagnose")]
 pub(crate) fn diagnose<'py>(
@@ -326,7 +326,7 @@ fn fault(fault: &Fault) -> Option<(&'static str, Vec<u8>)> {
     }
 }
 
-/// Who hears whom, from the columns of a measuring run.
+/// Finds from the columns of a measuring run who hears whom.
 #[pyfunction]
 #[pyo3(name = "_survey")]
 pub(crate) fn survey<'py>(

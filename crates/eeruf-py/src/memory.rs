@@ -1,4 +1,4 @@
-//! Whether there is memory for a result, before it is begun: an interpreter that runs out of it is ended.
+//! True if there is memory for a result, before it is begun: an interpreter that runs out of it is ended.
 
 use std::fs;
 
@@ -15,7 +15,7 @@ pub(crate) fn check(what: &str, bytes: u64, instead: &str) -> PyResult<()> {
     }
 }
 
-/// How many bytes can still be had, where the system says so: on Linux.
+/// Number of bytes that can still be had, where the system says so: on Linux.
 fn available() -> Option<u64> {
     let line = |file: &str, key: &str| -> Option<u64> {
         let text = fs::read_to_string(file).ok()?;

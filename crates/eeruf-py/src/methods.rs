@@ -22,7 +22,7 @@ use crate::{
     watch::Background,
 };
 
-/// How many nodes the search for `eeruf_best` may cost, as in the program; it is proven shortest long before.
+/// Budget of nodes for the search for `eeruf_best`, as in the program; it is proven shortest long before.
 const BEST_BUDGET: u64 = 300_000;
 
 const EXPECTED: &str = "a name of eeruf.sim.METHODS, or an eeruf.sim.Method";

@@ -5,7 +5,7 @@ use pyo3::prelude::*;
 
 use crate::arguments::{items, shown, whole, wrong};
 
-/// What is expected to change of each sensor's readings, of the argument `expected_change_us`.
+/// Expected changes of each sensor's readings, of the argument `expected_change_us`.
 pub(crate) fn expected_changes(changes: Option<&Bound<'_, PyAny>>, sensors: usize) -> PyResult<Vec<i32>> {
     let Some(changes) = changes else { return Ok(Vec::new()) };
     let name = "expected_change_us";
@@ -18,7 +18,7 @@ pub(crate) fn expected_changes(changes: Option<&Bound<'_, PyAny>>, sensors: usiz
     items.iter().enumerate().map(each).collect()
 }
 
-/// How long from now until a deadline, in microseconds; 0 if it has been reached.
+/// Time from now until a deadline, in microseconds; 0 if it has been reached.
 pub(crate) fn until(deadline: Instant, now: Instant) -> u32 {
     if now.has_reached(deadline) { 0 } else { deadline.since(now).as_micros() }
 }

@@ -20,7 +20,7 @@ use crate::{
     robot::Robot,
 };
 
-/// What one firing of one sensor has heard, for a filter of one's own in a :class:`Simulation`.
+/// Echoes that one firing of one sensor has heard, for a filter of one's own in a :class:`Simulation`.
 ///
 /// Example:
 ///     >>> from eeruf import sim
@@ -35,14 +35,14 @@ use crate::{
 #[pyclass(frozen, eq, module = "eeruf.sim")]
 #[derive(Clone, PartialEq)]
 pub(crate) struct FiredReading {
-    /// What the ring itself makes of it, with the paper's filter: its sensor, phase and period too.
+    /// The ring's own verdict on it, with the paper's filter: its sensor, phase and period too.
     #[pyo3(get)]
     reading: Reading,
     t_echoes_us: Vec<u32>,
     /// When it fired, in seconds.
     #[pyo3(get)]
     fired_s: f64,
-    /// By how much odometry expects a good reading to have changed since the sensor's firing before, in microseconds.
+    /// Change of a good reading since the sensor's firing before that odometry expects, in microseconds.
     #[pyo3(get)]
     expected_change_us: i32,
 }
@@ -370,7 +370,7 @@ struct OwnFilter {
     last: Vec<VecDeque<Echo>>,
 }
 
-/// How many echoes of a sensor are kept.
+/// Number of echoes of a sensor that are kept.
 const KEPT: usize = 16;
 const JUDGED: &str = "an eeruf.Reading, or (kind, t_echo_us) with None for no echo";
 

@@ -36,13 +36,13 @@ self_cell::self_cell!(
     }
 );
 
-/// What a ring's schedules must keep.
+/// Requirements on a ring's schedules.
 enum Promise {
     /// Nothing: crosstalk that the schedule repeats makes readings ambiguous.
     Nothing,
     /// They reject crosstalk at the ring's `t_delta`.
     TDelta,
-    /// What each sensor needs.
+    /// Needs of each sensor.
     EachSensor(OwnedRequirements),
 }
 
@@ -50,7 +50,7 @@ enum Promise {
 pub(crate) struct OwnedRing {
     ring: WithSchedules,
     promise: Promise,
-    /// What it fires by from the end of the present period on.
+    /// Schedule from the end of the present period on.
     next: Box<AnySchedule>,
     /// The state of each sensor by its events.
     pub(crate) watch: SensorWatch<MAX_SENSORS>,
@@ -58,7 +58,7 @@ pub(crate) struct OwnedRing {
     pub(crate) now: Instant,
 }
 
-/// Whether a schedule rejects crosstalk.
+/// Returns true if a schedule rejects crosstalk.
 fn verify(schedule: &AnySchedule, t_delta: Micros) -> PyResult<()> {
     let requirements = Requirements::new(t_delta);
     let verification = schedule.verify(&requirements);

@@ -109,7 +109,7 @@ impl Paths {
         self.columns.get(py, 1, self.paths.length_m.iter().copied())
     }
 
-    /// How many bounces, those at poles included: int64.
+    /// Number of bounces, those at poles included: int64.
     #[getter]
     fn order<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.columns.get(py, 2, self.paths.order.iter().map(|&index| i64::from(index)))

@@ -10,7 +10,7 @@ use crate::errors::ArgumentError;
 #[cfg(feature = "program")]
 pub(crate) use eeruf::{Recording, examples, run};
 
-/// What stands for the program where the package was built without it.
+/// Stand-in for the program where the package was built without it.
 #[cfg(not(feature = "program"))]
 mod without {
     use std::ffi::OsString;

@@ -7,7 +7,7 @@ use crate::{
     arguments::whole_or, memory, own, readings::Readings, simulate::Asked, simulation::Simulation, watch::Watch,
 };
 
-/// How many periods a block has unless another number is asked for.
+/// Number of periods a block has unless another number is asked for.
 const BLOCK_PERIODS: u32 = 10_000;
 
 /// The readings of a simulation block by block: an iterator that Ctrl-C interrupts.

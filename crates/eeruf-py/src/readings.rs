@@ -63,7 +63,7 @@ impl Readings {
         self.readings.duration_s
     }
 
-    /// How many sensors the scene has, of all robots together.
+    /// Number of sensors the scene has, of all robots together.
     #[getter]
     fn sensors(&self) -> usize {
         self.readings.sensors
@@ -117,7 +117,7 @@ impl Readings {
         self.columns.get(py, 15, self.readings.heading_rad.iter().copied())
     }
 
-    /// What the method made of it, an index into ``eeruf.KINDS``: int8.
+    /// Verdict of the method, an index into ``eeruf.KINDS``: int8.
     #[getter]
     fn kind<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.columns.get(py, 5, self.readings.kind.iter().map(|&kind| kind as i8))
@@ -135,13 +135,13 @@ impl Readings {
         self.columns.get(py, 7, self.readings.earliest_us.iter().copied())
     }
 
-    /// What the sensor would have read alone in quiet air, in microseconds: float64.
+    /// Reading of the sensor if it were alone in quiet air, in microseconds: float64.
     #[getter]
     fn reference_us<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.columns.get(py, 8, self.readings.reference_us.iter().copied())
     }
 
-    /// What ``t_echo_us`` came from, an index into ``CAUSES``: int8.
+    /// Cause of ``t_echo_us``, an index into ``CAUSES``: int8.
     #[getter]
     fn cause<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.columns.get(py, 9, self.readings.cause.iter().map(|&cause| cause as i8))
@@ -187,13 +187,13 @@ impl Readings {
         self.columns.get(py, 16, self.readings.expected_change_us.iter().copied())
     }
 
-    /// Whether the method accepts the reading, an echo or that nothing is in range: bool.
+    /// Returns true if the method accepts the reading, an echo or that nothing is in range: bool.
     #[getter]
     fn is_accepted<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.columns.get(py, 12, (0..self.readings.len()).map(|reading| self.readings.is_accepted(reading)))
     }
 
-    /// Whether what the reading says is wrong, accepted or not.
+    /// Returns true if what the reading says is wrong, accepted.
     ///
     /// Args:
     ///     tolerance_us: by how much it may miss the reference, in microseconds.

@@ -21,16 +21,16 @@ use crate::{
 #[pyclass(frozen, eq, hash, get_all, module = "eeruf")]
 #[derive(Clone, PartialEq, Eq, Hash)]
 pub(crate) struct Violation {
-    /// Which condition: ``"crosstalk_a"``, ``"crosstalk_b"``, ``"stale_echo"``, ``"interval"``, ``"window"``; where
+    /// The condition: ``"crosstalk_a"``, ``"crosstalk_b"``, ``"stale_echo"``, ``"interval"``, ``"window"``; where
     /// sensors are not all alike also ``"shared_line"``, ``"refire"`` or ``"together"``.
     kind: String,
     /// The two sensors, from 0; the same one twice where a condition is about one alone.
     sensors: (u8, u8),
     /// The phases in which they fire, each ``"a"`` or ``"b"``.
     phases: (String, String),
-    /// What the schedule has, in microseconds.
+    /// Value of the schedule, in microseconds.
     value_us: u32,
-    /// What the condition asks for, in microseconds.
+    /// Value that the condition asks for, in microseconds.
     required_us: u32,
     /// Where the condition comes from, such as ``"Eq. (13a)"``.
     source: String,
@@ -89,7 +89,7 @@ impl Violation {
     }
 }
 
-/// What ``Schedule.verify`` found. It is true if all conditions hold.
+/// Findings of ``Schedule.verify``. It is true if all conditions hold.
 ///
 /// Example:
 ///     >>> from eeruf.tables import TABLE_I_D
@@ -158,7 +158,7 @@ impl Report {
         })
     }
 
-    /// Whether every condition holds.
+    /// Returns true if every condition holds.
     #[getter]
     fn ok(&self) -> bool {
         self.violations.is_empty()

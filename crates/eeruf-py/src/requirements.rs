@@ -1,4 +1,4 @@
-//! What a schedule must meet, out of keyword arguments: layout, neighbours, times.
+//! Requirements on a schedule, out of keyword arguments: layout, neighbours, times.
 
 use eeruf_core::{
     Criterion, Layout, MAX_SENSORS, Micros, Requirements,
@@ -11,7 +11,7 @@ use pyo3::{prelude::*, types::PyList};
 use crate::arguments::{choice, flag, items, micros, shown, times, whole, whole_or, wrong};
 use crate::errors::ArgumentError;
 
-/// How the sensors stand, with the rows of the graph if it is one.
+/// The arrangement of the sensors, with the rows of the graph if it is one.
 pub(crate) enum OwnedLayout {
     Named(Layout<'static>),
     Graph(Box<[u64; MAX_SENSORS]>),
@@ -48,12 +48,12 @@ impl OwnedLayout {
     }
 }
 
-/// How to read (13a), (13b); exactly by default.
+/// The reading of (13a), (13b); exact by default.
 fn criterion(value: Option<&Bound<'_, PyAny>>) -> PyResult<Criterion> {
     choice("criterion", value, &[("exact", Criterion::Exact), ("paper", Criterion::Paper)])
 }
 
-/// What a schedule must meet.
+/// Requirements on a schedule.
 pub(crate) struct OwnedRequirements {
     t_delta: Micros,
     min_interval: Micros,
@@ -65,7 +65,7 @@ pub(crate) struct OwnedRequirements {
 }
 
 impl OwnedRequirements {
-    /// Whether they say what single sensors need.
+    /// Returns true if they say what single sensors need.
     pub(crate) fn is_uneven(&self) -> bool {
         self.uneven.is_some()
     }
@@ -88,7 +88,7 @@ impl OwnedRequirements {
     }
 }
 
-/// How many sensors in a row count as neighbours; four by default, as in the paper (Sec. 3.1 c).
+/// Number of adjacent sensors that count as neighbours; four by default, as in the paper (Sec. 3.1 c).
 pub(crate) fn neighbours(value: Option<&Bound<'_, PyAny>>) -> PyResult<u8> {
     whole_or("neighbours", value, 4, 1..=MAX_SENSORS as u8)
 }
@@ -135,8 +135,8 @@ pub(crate) struct UnevenArguments<'a, 'py> {
 }
 
 impl UnevenArguments<'_, '_> {
-    /// What differs, with lists of `t_delta` and window that are empty where all sensors have the same; `None` if
-    /// nothing does.
+    /// Differences between the sensors, with lists of `t_delta` and window that are empty where all have the same;
+    /// `None` if there are none.
     pub(crate) fn owned(
         &self,
         sensors: usize,

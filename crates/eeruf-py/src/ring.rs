@@ -188,7 +188,7 @@ impl Ring {
         self.0.ring().next_deadline().as_micros()
     }
 
-    /// How long to wait before polling next, in microseconds: 0 if an event is pending.
+    /// Time to wait before polling next, in microseconds: 0 if an event is pending.
     ///
     /// This is right across the wrap of the clock at 2^32, where ``next_deadline_us`` and a ``now_us`` that goes on
     /// growing no longer compare.
@@ -209,7 +209,7 @@ impl Ring {
         Ok(until(self.0.ring().next_deadline(), instant("now_us", now_us)?))
     }
 
-    /// What it fires by in the present period.
+    /// Schedule of the present period.
     #[getter]
     fn schedule(&self) -> Schedule {
         Schedule(*self.0.ring().schedule())
@@ -302,7 +302,7 @@ impl Ring {
         self.0.change(|ring| ring.set_audible(audible))
     }
 
-    /// How long after its firing a reading without an echo is emitted at the soonest, in microseconds: for modules that
+    /// Earliest time after its firing at which a reading without an echo is emitted, in microseconds: for modules that
     /// report by a bus or a pulse's width after their window has closed. 0: when it closes.
     #[getter]
     fn report_after_us(&self) -> u32 {
@@ -553,7 +553,7 @@ impl Ring {
         self.0.change(|ring| ring.enable(sensor))
     }
 
-    /// Whether a sensor fires.
+    /// Returns true if a sensor fires.
     ///
     /// Args:
     ///     sensor: which one, from 0.

@@ -1,4 +1,4 @@
-//! What a `Ring` is made with, from Python's arguments.
+//! Settings that a `Ring` is made with, from Python's arguments.
 
 use eeruf_core::{Instant, Micros, RingConfig};
 use pyo3::prelude::*;
@@ -8,7 +8,7 @@ use crate::{
     moments::instant,
 };
 
-/// What sound may do, as Python says it.
+/// Limits of sound, as Python gives them.
 pub(crate) struct Sound<'a, 'py> {
     pub(crate) path_change_us: Option<&'a Bound<'py, PyAny>>,
     pub(crate) audible_us: Option<&'a Bound<'py, PyAny>>,

@@ -1,4 +1,4 @@
-//! What a `Ring` hands out: `Fire`, `Reading` and `PeriodEnded`.
+//! Events of a `Ring`: `Fire`, `Reading` and `PeriodEnded`.
 
 use std::ops::RangeInclusive;
 
@@ -30,7 +30,7 @@ const SENSORS: RangeInclusive<u8> = 0..=MAX_SENSORS as u8 - 1;
 #[pyclass(frozen, eq, hash, get_all, module = "eeruf")]
 #[derive(Clone, PartialEq, Eq, Hash)]
 pub(crate) struct Fire {
-    /// Which sensor, from 0.
+    /// The sensor, from 0.
     sensor: u8,
     /// The phase that its wait belongs to: 0 for a, 1 for b; more in a hopping ring.
     phase: u8,
@@ -84,7 +84,7 @@ impl Fire {
     }
 }
 
-/// What came of one firing of one sensor.
+/// The outcome of one firing of one sensor.
 ///
 /// Example:
 ///     >>> import eeruf
@@ -94,16 +94,16 @@ impl Fire {
 #[pyclass(frozen, eq, hash, get_all, module = "eeruf")]
 #[derive(Clone, PartialEq, Eq, Hash)]
 pub(crate) struct Reading {
-    /// Which sensor, from 0.
+    /// The sensor, from 0.
     sensor: u8,
-    /// What came of it, one of ``eeruf.KINDS``; ``"accepted"`` and ``"clear"`` (nothing in range) count;
-    /// for ``"tentative"``, from a hopping ring, slow down.
+    /// The outcome, one of ``eeruf.KINDS``; ``"accepted"`` and ``"clear"`` (nothing in range) count; for
+    /// ``"tentative"``, from a hopping ring, slow down.
     kind: &'static str,
     /// The time of the echo after firing, in microseconds; None without echo.
     t_echo_us: Option<u32>,
-    /// What it was compared with, in microseconds; None if with nothing.
+    /// The echo time it was compared with, in microseconds; None if with nothing.
     previous_us: Option<u32>,
-    /// How many firings ago the sensor's last accepted reading was: 0 for this one, None if there never was one.
+    /// Number of firings since the sensor's last accepted reading: 0 for this one, None if there never was one.
     age: Option<u16>,
     /// The phase in which the sensor fired: 0 for a, 1 for b, more in a hopping ring; None from a filter alone.
     phase: Option<u8>,
@@ -168,7 +168,7 @@ impl Reading {
         Self { phase: Some(phase.0), period: Some(period), ..Self::of_filter(sensor, &verdict) }
     }
 
-    /// What a filter says of a firing.
+    /// A filter's verdict on a firing.
     pub(crate) fn kind_and_t_echo(&self) -> (ReadingKind, Option<Micros>) {
         let kind = ReadingKind::ALL.into_iter().find(|kind| kind.as_str() == self.kind);
         // A reading has one of them.
@@ -287,7 +287,7 @@ impl PeriodEnded {
         }))
     }
 
-    /// Which period, from 0.
+    /// The period, from 0.
     #[getter]
     fn period(&self) -> u32 {
         self.0.period
@@ -299,8 +299,7 @@ impl PeriodEnded {
         self.0.phase.0
     }
 
-    /// How long after it was due the latest of its firings and its end was polled for, in microseconds, at most
-    /// 65,535.
+    /// Largest delay with which its firings and its end were polled for, in microseconds, at most 65,535.
     #[getter]
     fn max_late_us(&self) -> u32 {
         self.0.max_late.as_micros()
@@ -312,7 +311,7 @@ impl PeriodEnded {
         self.0.sum_late.as_micros()
     }
 
-    /// How many readings of each kind were emitted since the period before ended: a dict by the names in
+    /// Number of readings of each kind that were emitted since the period before ended: a dict by the names in
     /// ``eeruf.KINDS``.
     #[getter]
     fn tally<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
@@ -349,7 +348,7 @@ impl PeriodEnded {
     }
 }
 
-/// How many readings of each kind a dict says there are.
+/// Number of readings of each kind, as a dict.
 fn counted(tally: &Bound<'_, PyAny>) -> PyResult<Tally<u8>> {
     let expected = "a dict of counts by the names in eeruf.KINDS";
     let mut counted = Tally::default();

@@ -185,7 +185,7 @@ fn heights(value: Option<&Bound<'_, PyAny>>, sensors: usize) -> PyResult<Vec<f64
     each.iter().map(|height_m| number("height_m", height_m, 0.0..=1e3)).collect()
 }
 
-/// How sketches and modules fire it.
+/// Firing by sketches and modules.
 pub(crate) fn sketch(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Sketch> {
     let refused = |_| wrong(name, shown(value), "a dict with keys of [firing], such as {\"turn_us\": 33_000}");
     let table = table_of(name, value.cast::<PyDict>().map_err(refused)?)?;
@@ -446,7 +446,7 @@ impl Robot {
         slf.get_type().call((), Some(&arguments))
     }
 
-    /// How many sensors.
+    /// Number of sensors.
     #[getter]
     fn sensors(&self) -> usize {
         self.robot.sensors.len()
@@ -473,7 +473,7 @@ impl Robot {
         self.robot.together.iter().map(members).collect()
     }
 
-    /// How the receiver's gain grows while it listens; the first sensor's where they differ.
+    /// Growth of the receiver's gain while it listens; the first sensor's where they differ.
     #[getter]
     fn gain(&self) -> &'static str {
         self.robot.transducer.gain.name()
@@ -516,32 +516,32 @@ impl Robot {
         shown_micros(py, self.robot.t_delta, self.limits(|limits| limits.t_delta))
     }
 
-    /// How long a sensor listens, in microseconds; a list of one for each sensor where they have their own.
+    /// Listening time of a sensor, in microseconds; a list of one for each sensor where they have their own.
     #[getter]
     fn window_us<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         shown_micros(py, self.robot.window, self.limits(|limits| limits.window))
     }
 
-    /// How long a sensor is deaf after it has fired, in microseconds; a list of one for each sensor where they differ.
+    /// Deaf time of a sensor after it has fired, in microseconds; a list of one for each sensor where they differ.
     #[getter]
     fn blanking_us<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let each = Some(self.robot.blankings.clone()).filter(|each| !each.is_empty());
         shown_micros(py, self.robot.blanking, each)
     }
 
-    /// How long a sensor rests between its echo and its next firing, in microseconds.
+    /// Rest of a sensor between its echo and its next firing, in microseconds.
     #[getter]
     fn min_refire_us(&self) -> u32 {
         self.robot.min_refire.as_micros()
     }
 
-    /// How long sound is heard after it was sent, in microseconds; 0 for as long as sensors listen.
+    /// Time for which sound is heard after it was sent, in microseconds; 0 for as long as sensors listen.
     #[getter]
     fn audible_us(&self) -> u32 {
         self.robot.audible.as_micros()
     }
 
-    /// How sketches and modules fire it: a dict of what differs from the default.
+    /// Firing by sketches and modules: a dict of what differs from the default.
     #[getter]
     fn firing<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         shown_table(py, &self.robot.firing.to_table())
@@ -553,25 +553,25 @@ impl Robot {
         self.robot.start.as_micros()
     }
 
-    /// What the EERUF methods fire by; None for the paper's table.
+    /// Schedule of the EERUF methods; None for the paper's table.
     #[getter]
     fn schedule(&self) -> Option<Schedule> {
         self.robot.schedule.map(Schedule)
     }
 
-    /// How many adjacent sensors must not fire close together.
+    /// Number of adjacent sensors that must not fire close together.
     #[getter]
     fn neighbours(&self) -> u8 {
         self.robot.neighbours
     }
 
-    /// How many readings in a row must agree.
+    /// Number of readings in a row that must agree.
     #[getter]
     fn consecutive(&self) -> u8 {
         self.robot.consecutive
     }
 
-    /// Whether the ring knows by how much its own motion should change readings.
+    /// Returns true if the ring knows by how much its own motion should change readings.
     #[getter]
     fn odometry(&self) -> bool {
         self.robot.odometry
@@ -604,7 +604,7 @@ impl Robot {
         }
     }
 
-    /// How fast it drives through its waypoints, in m/s; None without.
+    /// Speed through its waypoints, in m/s; None without.
     #[getter]
     fn speed_m_s(&self) -> Option<f64> {
         match &self.robot.motion {
@@ -613,13 +613,13 @@ impl Robot {
         }
     }
 
-    /// What its clock shows at the start, in microseconds.
+    /// Its clock at the start, in microseconds.
     #[getter]
     fn clock_offset_us(&self) -> u32 {
         self.robot.clock.offset_us
     }
 
-    /// By how much its clock goes too fast, in millionths.
+    /// Drift of its clock (positive: too fast), in millionths.
     #[getter]
     fn clock_drift_ppm(&self) -> f64 {
         self.robot.clock.drift_ppm
@@ -638,7 +638,7 @@ impl Robot {
     }
 }
 
-/// Whether the change of `sensors` is one of places, not of their number.
+/// Returns true if the change of `sensors` is one of places, not of their number.
 fn changes_places(changes: Option<&Bound<'_, PyDict>>) -> PyResult<bool> {
     let sensors = changes.map(|changes| changes.get_item("sensors")).transpose()?.flatten();
     Ok(sensors.is_some_and(|sensors| sensors.try_iter().is_ok()))

@@ -28,7 +28,7 @@ pub(crate) struct RobotState {
     pub(crate) velocity_m_s: (f64, f64),
     /// Rate of turn, counter-clockwise, in rad/s.
     pub(crate) turn_rad_s: f64,
-    /// Whether the disc that holds its sensors touches a wall or a pole.
+    /// True if the disc that holds its sensors touches a wall or a pole.
     pub(crate) touches: bool,
 }
 

@@ -68,10 +68,10 @@ pub(crate) struct Scene {
     noise: eeruf_sim::Noise,
     physics: eeruf_sim::Physics,
     faults: Vec<eeruf_sim::Fault>,
-    /// What decides all that is random.
+    /// Seed of all that is random.
     #[pyo3(get)]
     seed: u64,
-    /// How many bounces :func:`simulate` follows.
+    /// Number of bounces that :func:`simulate` follows.
     #[pyo3(get)]
     max_order: u32,
 }
@@ -313,7 +313,7 @@ impl Scene {
         slf.get_type().call((), Some(&arguments))
     }
 
-    /// What goes wrong: dicts with the keys of ``[[fault]]`` in scene files.
+    /// Faults: dicts with the keys of ``[[fault]]`` in scene files.
     #[getter]
     fn faults<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
         faults::shown_faults(py, &self.faults)
@@ -365,13 +365,13 @@ impl Scene {
         self.scene().poles().iter().map(|pole| Material::of(pole.material)).collect()
     }
 
-    /// How noisy it is, a ``Noise``.
+    /// Its noise, a ``Noise``.
     #[getter]
     fn noise(&self) -> Noise {
         Noise::of(self.noise)
     }
 
-    /// Which effects there are: a preset's name, or a dict.
+    /// Effects that are simulated: a preset's name, or a dict.
     #[getter]
     fn physics<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         surroundings::shown_physics(py, &self.physics)

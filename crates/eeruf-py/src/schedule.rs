@@ -199,7 +199,7 @@ impl Schedule {
         self.0.period().as_micros()
     }
 
-    /// How many sensors fire.
+    /// Number of sensors that fire.
     #[getter]
     fn sensors(&self) -> usize {
         self.0.sensors()

@@ -12,12 +12,12 @@ impl Schedule {
         PyTuple::new(py, (0..self.0.sensors()).map(fire))
     }
 
-    /// Whether some sensor has a lag, so that waits say more than firing times.
+    /// Returns true if some sensor has a lag, so that waits say more than firing times.
     pub(crate) fn has_lags(&self) -> bool {
         self.0.t_lag().iter().any(|&lag| lag != Micros::ZERO)
     }
 
-    /// What `repr` shows.
+    /// The text of `repr`.
     pub(crate) fn shown(&self, py: Python<'_>) -> PyResult<String> {
         let period = self.period_us();
         Ok(if self.has_lags() {

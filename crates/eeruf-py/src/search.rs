@@ -21,7 +21,7 @@ use crate::{
     watch::{Watch, control_flow},
 };
 
-/// How many nodes of the search for waits lie between two looks at the clock.
+/// Number of nodes of the search for waits between two looks at the clock.
 const POLL: u32 = 1 << 12;
 
 /// The paper's question: lags are given, waits are sought on a grid so that crosstalk never repeats (Sec. 3.1).
@@ -134,8 +134,7 @@ impl WaitSearch {
         Ok(first.1.map(Schedule))
     }
 
-    /// How many tables there are, however many: counted without listing them where that is possible. Ctrl-C ends the
-    /// search.
+    /// Number of tables, however many: counted without listing them where that is possible. Ctrl-C ends the search.
     ///
     /// Args:
     ///     limit: where to stop counting, 1 or more; None counts all.

@@ -66,7 +66,7 @@ impl SensorWatch {
         Ok(Self { watch: eeruf_core::watch::SensorWatch::new(blind_after, begins(now_us)?), sensors })
     }
 
-    /// How many sensors it watches.
+    /// Number of sensors it watches.
     #[getter]
     fn sensors(&self) -> u8 {
         self.sensors
@@ -132,7 +132,7 @@ impl SensorWatch {
 #[pyclass(frozen, eq, hash, get_all, module = "eeruf")]
 #[derive(Clone, PartialEq, Eq, Hash)]
 pub(crate) struct Blind {
-    /// Which sensor, from 0.
+    /// The sensor, from 0.
     sensor: u8,
     /// For how many firings with an echo nothing was accepted.
     firings: u8,

@@ -70,7 +70,7 @@ use crate::{
 pub(crate) struct Simulation {
     robots: usize,
     under_way: Mutex<UnderWay>,
-    /// Who lets time pass: a callable that is asked for must not wait for that.
+    /// The thread that lets time pass: a callable that is asked for must not wait for that.
     stepping: Mutex<Option<ThreadId>>,
     asked: Mutex<Asked>,
     calls: Mutex<Arc<Calls>>,
@@ -79,7 +79,7 @@ pub(crate) struct Simulation {
     history: Mutex<Vec<Done>>,
 }
 
-/// What was done to a simulation, so that a copy comes to the same.
+/// Operations on a simulation, so that a copy comes to the same.
 enum Done {
     Step(f64),
     ToReading(f64),

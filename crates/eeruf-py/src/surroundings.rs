@@ -94,7 +94,7 @@ pub(crate) fn materials(
     each.iter().enumerate().map(|(index, value)| one(&format!("{name}[{index}]"), value)).collect()
 }
 
-/// How noisy a scene is.
+/// Noise of a scene.
 ///
 /// Args:
 ///     fading_db_rms: by how much each arrival's level fades or grows, in dB, 0 to 20.
@@ -112,13 +112,13 @@ pub(crate) fn materials(
 #[pyclass(frozen, eq, get_all, module = "eeruf.sim")]
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) struct Noise {
-    /// By how much each arrival's level fades or grows, root mean square, in dB.
+    /// Fading of each arrival's level, root mean square, in dB.
     fading_db_rms: f64,
-    /// By how much each arrival is early or late, root mean square, in microseconds.
+    /// Jitter of each arrival, root mean square, in microseconds.
     jitter_us_rms: f64,
-    /// How many bursts from outside are heard in a second.
+    /// Number of bursts from outside that are heard in a second.
     bursts_per_s: f64,
-    /// How far they are above what is just heard, in dB.
+    /// Level above what is just heard, in dB.
     burst_db: f64,
 }
 
@@ -185,7 +185,7 @@ pub(crate) fn noise(value: Option<&Bound<'_, PyAny>>) -> PyResult<eeruf_sim::Noi
 const PHYSICS: &str = "\"plain\", \"default\", or a dict with preset, shadows, edges, narrow_panels, range_walk \
                        or fading_time_s";
 
-/// Which effects a scene has: a preset's name, or what differs from one.
+/// Effects of a scene: a preset's name, or what differs from one.
 pub(crate) fn physics(value: Option<&Bound<'_, PyAny>>) -> PyResult<Physics> {
     let refused = |value: &Bound<'_, PyAny>| wrong("physics", shown(value), PHYSICS);
     let preset = |value: &Bound<'_, PyAny>| {

@@ -43,7 +43,7 @@ use crate::{
 pub(crate) struct EchoTracker {
     tracker: Exclusive<Box<eeruf_core::judge::EchoTracker<MAX_SENSORS>>>,
     t_delta: Micros,
-    /// How many sensors.
+    /// Number of sensors.
     #[pyo3(get)]
     sensors: usize,
 }
@@ -194,7 +194,7 @@ impl EchoTracker {
         Ok(self.tracker.get()?.confirmed(self.sensor(sensor)?.into()).map(Micros::as_micros))
     }
 
-    /// Whether it is confirmed that nothing is in a sensor's range.
+    /// Returns true if it is confirmed that nothing is in a sensor's range.
     ///
     /// Args:
     ///     sensor: which one, from 0.

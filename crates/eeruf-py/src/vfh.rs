@@ -14,7 +14,7 @@ use crate::{
     pose::{point_of, pose_of, to_pose},
 };
 
-/// What a steering error of a radian asks for, in rad/s, unless another gain is asked for.
+/// Rate of turn for a steering error of a radian, in rad/s, unless another gain is asked for.
 const TURN_GAIN: f64 = 3.0;
 
 /// The vector field histogram (J. Borenstein and Y. Koren, IEEE T-RA 7(3), 1991): from a certainty grid to where to
@@ -85,7 +85,7 @@ impl Vfh {
         }))
     }
 
-    /// How many cells the active window has on a side.
+    /// Number of cells the active window has on a side.
     #[getter]
     fn window(&self) -> usize {
         self.0.window
@@ -189,8 +189,8 @@ impl Vfh {
         }))
     }
 
-    /// How to drive from a pose to a target, for ``Simulation.set_velocity``: the farther off the heading, the slower.
-    /// Where every way is blocked it stands and looks around.
+    /// Drives from a pose to a target, for ``Simulation.set_velocity``: the farther off the heading, the slower. Where
+    /// every way is blocked it stands and looks around.
     ///
     /// Args:
     ///     grid: an ``eeruf.nav.Himm``.
@@ -251,7 +251,7 @@ pub(crate) struct Steering {
     direction_rad: f64,
     /// The valley that was chosen: its first sector, and how many it has; 72 if nothing is near.
     valley: (usize, usize),
-    /// Whether the direction leads away from the target, by more than 90 degrees: the robot is in a dead end, or soon
+    /// True if the direction leads away from the target, by more than 90 degrees: the robot is in a dead end, or soon
     /// will be.
     trapped: bool,
 }

@@ -18,14 +18,14 @@ use pyo3::{
     types::PyBool,
 };
 
-/// How often Python is asked whether to go on.
+/// Interval at which Python is asked whether to go on.
 const EVERY: Duration = Duration::from_millis(20);
 
-/// How long to wait for work that was stopped: it looks far more often.
+/// Time to wait for work that was stopped: it looks far more often.
 const PATIENCE: Duration = Duration::from_secs(3);
 
 thread_local! {
-    /// What ends the calls of this thread, as Ctrl-C does in the main thread.
+    /// The stop flag of this thread's calls, as Ctrl-C is in the main thread.
     static STOPPED_BY: RefCell<Option<Stop>> = const { RefCell::new(None) };
 }
 
@@ -59,7 +59,7 @@ pub(crate) fn until_stopped<'py>(
     result
 }
 
-/// What a watcher says, as the search reads it.
+/// A watcher's answer, as the search reads it.
 pub(crate) fn control_flow(go_on: bool) -> ControlFlow<()> {
     if go_on { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
 }
@@ -94,7 +94,7 @@ impl Watch {
         Ok(Self { progress: progress.map(Bound::unbind), stopped_by, last: Instant::now(), error: None })
     }
 
-    /// Whether to go on. Called as often as one likes: it looks at the clock first.
+    /// True to go on. Called as often as one likes: it looks at the clock first.
     pub(crate) fn go_on(&mut self, share: Option<f64>, text: impl FnOnce() -> String) -> bool {
         if self.error.is_some() {
             return false;
@@ -130,7 +130,7 @@ impl Watch {
     }
 }
 
-/// What work on a thread of its own shares with the thread that called: how far it is, and whether to stop.
+/// State that work on a thread of its own shares with the thread that called: how far it is, and whether to stop.
 #[derive(Default)]
 pub(crate) struct Background {
     stop: Stop,
@@ -139,7 +139,7 @@ pub(crate) struct Background {
 }
 
 impl Background {
-    /// Whether to go on, with how far the work has come; from any thread.
+    /// True to go on, with how far the work has come; from any thread.
     pub(crate) fn go_on(&self, share: Option<f64>, text: impl FnOnce() -> String) -> bool {
         let mut reached = self.reached.lock().unwrap_or_else(PoisonError::into_inner);
         // Threads report their shares in any order.
@@ -148,7 +148,7 @@ impl Background {
         !self.stop.is_stopped()
     }
 
-    /// What ends the work.
+    /// The flag that ends the work.
     pub(crate) fn stop(&self) -> &Stop {
         &self.stop
     }

@@ -1,5 +1,5 @@
-//! What each part of time hopping is worth in Set I, as the table of `docs/explanation/hopping.md`: every row leaves
-//! one part out.
+//! Worth of each part of time hopping in Set I, as the table of `docs/explanation/hopping.md`: every row leaves one
+//! part out.
 //!
 //! `cargo run --release -p eeruf-sim --example hopping_ablation -- [SEEDS [FIRST [PHYSICS]]]`
 

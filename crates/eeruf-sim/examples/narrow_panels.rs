@@ -1,4 +1,4 @@
-//! What `narrow_panels` does: how loud panels are straight ahead, and what changes in the first alcoves of Set I.
+//! Effect of `narrow_panels`: how loud panels are straight ahead, and what changes in the first alcoves of Set I.
 //!
 //! `cargo run --release -p eeruf-sim --example narrow_panels`
 
@@ -45,7 +45,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-/// What a panel returns, relative to a wall, in dB.
+/// Reflection of a panel, relative to a wall, in dB.
 fn straight_ahead_db(distance_m: f64, width_m: f64) -> Result<f64, Box<dyn std::error::Error>> {
     let amplitude = |half_m: f64, narrow_panels| -> Result<f64, Box<dyn std::error::Error>> {
         let panel = Wall::new(distance_m, half_m, distance_m, -half_m).with_faces(Faces::Both);

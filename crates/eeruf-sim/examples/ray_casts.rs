@@ -1,5 +1,5 @@
-//! How exact parry's ray casts are, as `docs/explanation/physics.md` quotes it: why they judge paths in tests and do
-//! not find them.
+//! Exactness of parry's ray casts, as `docs/explanation/physics.md` quotes it: why they judge paths in tests and do not
+//! find them.
 //!
 //! `cargo run --release -p eeruf-sim --example ray_casts`
 
@@ -59,7 +59,7 @@ fn self_hits(random: &mut Random) -> f64 {
     f64::from(hit_again) / f64::from(TRIED)
 }
 
-/// How far the hit of a ray that grazes a wall at a tenth of a milliradian is off the wall's line at most, in metres.
+/// Largest distance from the wall's line of the hit of a ray that grazes a wall at a tenth of a milliradian, in metres.
 fn grazing_m(random: &mut Random) -> f64 {
     let mut worst: f64 = 0.0;
     for _ in 0..TRIED {

@@ -1,4 +1,4 @@
-//! What Rust says and how long it takes, for Python to be held against. Prints one JSON object.
+//! Answers of Rust and their durations, for Python to be held against. Prints one JSON object.
 //!
 //!     rust_side paths    every critical path of the shared corpus
 //!     rust_side times    seconds of one call of `design`, `paths` and `push_many`'s work and of one step, best of many
@@ -101,7 +101,7 @@ fn step(own: impl Fn() -> Own) -> f64 {
     seconds(many) / f64::from(STEPS)
 }
 
-/// What `eeruf.design` does: the shortest period, and of its schedules the one to prefer.
+/// The work of `eeruf.design`: the shortest period, and of its schedules the one to prefer.
 fn design_of(sensors: usize) -> Option<Micros> {
     let requirements = Requirements {
         min_interval: Micros::from_millis(15),

@@ -18,7 +18,7 @@ const STEP_S: f64 = 0.1;
 const STEPS_TO_END: usize = 3;
 const STEPS_OF_TURN: usize = 5;
 
-/// What the robots swing in, and how fast.
+/// Surroundings in which the robots swing, and their speed.
 #[derive(Clone, Copy)]
 struct Around {
     physics: Physics,
@@ -35,7 +35,7 @@ fn direction(step: usize, to_end: usize) -> f64 {
 /// three periods, as long as solo periods may keep it from firing, is 0.5 ms.
 const ELSEWHERE_US: f64 = 600.0;
 
-/// What a sensor's own echo was at its last firing, and whether it was heard since it came from there.
+/// A sensor's own echo at its last firing, and whether it was heard since it came from there.
 #[derive(Clone, Copy)]
 struct Own {
     t_echo_us: f64,

@@ -1,4 +1,4 @@
-//! What each effect of the physics costs: Set I's first alcove with a robot that stands, and with one that moves.
+//! Cost of each effect of the physics: Set I's first alcove with a robot that stands, and with one that moves.
 //!
 //! `cargo run --release -p eeruf-sim --example time_physics -- [EFFECT stands|moves]`: with both, one run of that
 //! alone, for counting instructions.

@@ -1,6 +1,6 @@
-//! How long the scenes take that are expensive to follow sound in: a ring's matrix among walls and poles, halls of
-//! pillars, a world that moves, and Set II, under `default` and under `plain`. The same file, built against another
-//! commit, prints that commit's times.
+//! Duration of scenes that are expensive to follow sound in: a ring's matrix among walls and poles, halls of pillars, a
+//! world that moves, and Set II, under `default` and under `plain`. The same file, built against another commit, prints
+//! that commit's times.
 //!
 //!     cargo run --release -p eeruf-sim --example time_scenes -- [SCENE [RUNS]]
 //!

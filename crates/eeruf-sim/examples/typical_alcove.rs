@@ -1,4 +1,4 @@
-//! Which alcove of Set I is the typical one, and where the alcove of `scenes/alcove.toml` stands among them.
+//! The typical alcove of Set I, and where the alcove of `scenes/alcove.toml` stands among them.
 //!
 //! The rule: of 200 alcoves from 20,000 on, the one whose ranks in four figures (wrong under constant lags; wrong, lost
 //! and starved under EERUF) are nearest to the middle, in sum. `scenes/typical-alcove.toml` is that one.

@@ -59,7 +59,7 @@ struct Figures {
     believed: f64,
 }
 
-/// What a filter makes of all readings: `push` says whether it believes one.
+/// Figures of a filter over all readings: `push` says whether it believes one.
 fn figures(readings: &Readings, mut push: impl FnMut(u8, Instant, Option<Micros>) -> ReadingKind) -> Figures {
     let (mut believed, mut wrong, mut good, mut lost) = (0_u32, 0_u32, 0_u32, 0_u32);
     for k in 0..readings.len() {

@@ -1,4 +1,4 @@
-//! What the ring needs of an ATmega328P at 16 MHz: pins, a clock in microseconds, a serial line, and its interrupts.
+//! Needs of the ring from an ATmega328P at 16 MHz: pins, a clock in microseconds, a serial line, and its interrupts.
 //! The registers stand where the data sheet puts them ("Register Summary"), as addresses in memory.
 
 use core::cell::Cell;

@@ -22,10 +22,10 @@ const PINS: [Pins<Pin, Pin>; 8] = {
     [pins(0), pins(1), pins(2), pins(3), pins(4), pins(5), pins(6), pins(7)]
 };
 
-/// What is still to be sent.
+/// Bytes still to be sent.
 struct Outbox {
     bytes: [u8; Self::SIZE],
-    /// How many bytes were ever put in, and how many sent; both wrap.
+    /// Number of bytes that were ever put in, and how many sent; both wrap.
     put: u8,
     sent: u8,
 }

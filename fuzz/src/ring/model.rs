@@ -1,10 +1,10 @@
-//! What the ring may say and do, derived from what happened to it.
+//! Events that the ring may emit, derived from what happened to it.
 
 use eeruf_core::{Instant, Micros, PeriodStats, Phase, Reading, ReadingKind, Schedule, Tally};
 
 use super::SENSORS;
 
-/// Whether a restart keeps the intervals between different sensors too.
+/// True if a restart keeps the intervals between different sensors too.
 const RESTARTS_KEEP_INTERVALS: bool = true;
 
 /// A firing whose reading is not yet out.
@@ -19,7 +19,7 @@ pub(super) struct Open {
     pub(super) stuck: bool,
 }
 
-/// How the ring listens and compares.
+/// Settings by which the ring listens and compares.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Listening {
     pub(super) t_delta: Micros,
@@ -44,13 +44,13 @@ pub(super) struct Sensor {
     pub(super) age: Option<u16>,
 }
 
-/// What is known of the last firing of all.
+/// The last firing of all.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Last {
     pub(super) at: u64,
     /// Where the schedule has it, in microseconds from the start of the period with number 0 since the restart.
     pub(super) planned: u64,
-    /// How often the ring had restarted or changed its schedule.
+    /// Number of times that the ring had restarted or changed its schedule.
     pub(super) epoch: u32,
 }
 
@@ -287,7 +287,7 @@ impl<'s> Model<'s> {
         }
     }
 
-    /// Whether the ring listens otherwise from now on: exactly where it can.
+    /// Returns true if the ring listens otherwise from now on: exactly where it can.
     pub(super) fn listen(&mut self, done: bool, changed: Listening) {
         let Listening { t_delta, window, blanking, .. } = changed;
         let longest =

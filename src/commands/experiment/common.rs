@@ -1,4 +1,4 @@
-//! What both sets are asked, and how both show how far they are.
+//! Arguments of both sets, and how both show their progress.
 
 use std::fmt;
 use std::fs;
@@ -14,25 +14,25 @@ use crate::files::error::InputError;
 use crate::report::draw::Picture;
 use crate::report::watch::Watch;
 
-/// How many nodes the search for `eeruf_best` may cost; it is proven shortest long before.
+/// Budget of nodes for the search for `eeruf_best`; it is proven shortest long before.
 pub(crate) const BUDGET: u64 = 300_000;
 
-/// What both sets are asked.
+/// Arguments of both sets.
 #[derive(clap::Args)]
 pub(crate) struct Common {
-    /// How many geometries or courses
+    /// Number of geometries or courses
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=100_000))]
     pub(crate) seeds: Option<u64>,
     /// The number of the first geometry or course; parameters were tuned on numbers below 2000
     #[arg(long, value_name = "SEED", default_value_t = FIRST)]
     pub(crate) first: u64,
-    /// Which effects there are: default or plain (see docs/explanation/physics.md)
+    /// Effects that are simulated: default or plain (see docs/explanation/physics.md)
     #[arg(long, value_name = "PRESET", default_value = "default")]
     pub(crate) physics: Physics,
-    /// Whether rings hear floor and ceiling: flat, or a room 2.6 m high with sensors at 0.3 m
+    /// True if rings hear floor and ceiling: flat, or a room 2.6 m high with sensors at 0.3 m
     #[arg(long, value_name = "HEIGHT", default_value = "flat")]
     height: Height,
-    /// How the receivers' gain grows: constant, square_root, linear, stepped or polaroid_6500
+    /// Growth of the receivers' gain: constant, square_root, linear, stepped or polaroid_6500
     #[arg(long, value_name = "GAIN", default_value = "constant", value_parser = gain)]
     pub(crate) gain: GainProfile,
     /// Run the I-th of N parts, and print what `eeruf merge` makes the whole of
@@ -92,7 +92,7 @@ impl Common {
     }
 }
 
-/// How far the search for `eeruf_best` is.
+/// Progress of the search for `eeruf_best`.
 pub(crate) fn designing(progress: &Progress) -> String {
     format!("designing eeruf_best, {} nodes", progress.nodes)
 }

@@ -30,7 +30,7 @@ pub(crate) struct Args {
     /// Simulate only these methods, separated by commas: eeruf,sequential
     #[arg(long = "method", value_name = "NAME,..", value_delimiter = ',')]
     methods: Vec<Method>,
-    /// How many sensors the ring has
+    /// Number of sensors the ring has
     #[arg(long, value_name = "N", default_value_t = SENSORS as u8)]
     #[arg(value_parser = clap::value_parser!(u8).range(1..=24))]
     sensors: u8,
@@ -38,7 +38,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "US", default_value_t = 60_000)]
     #[arg(value_parser = clap::value_parser!(u32).range(45_000..=1_000_000))]
     period_us: u32,
-    /// How eeruf_hopping fires and believes
+    /// Settings of eeruf_hopping
     #[arg(long, value_name = "SETTING", default_value = "balanced")]
     hopping: Hopping,
     /// Print instead how results move with the receiver's gain, the floor of its pattern, and fading; by default for
@@ -140,7 +140,7 @@ fn first_alcove(file: &Path, options: &SetOneOptions) -> Result<(), InputError> 
     write_mcap(file, &Stage::of(&world), &runs)
 }
 
-/// What is varied, one at a time: a name, and the options with it.
+/// A variation, one at a time: a name, and the options with it.
 type Variation = (&'static str, fn(SetOneOptions) -> SetOneOptions);
 
 const VARIATIONS: [Variation; 8] = [

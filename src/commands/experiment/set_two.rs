@@ -36,12 +36,12 @@ pub(crate) struct Args {
     /// eeruf, eeruf_best, adaptive, eeruf_hopping and multi_echo
     #[arg(long = "method", value_name = "NAME,..", value_delimiter = ',')]
     methods: Vec<Method>,
-    /// Who steers: each method's own pilot, found by the same search for each; one shared by all that an earlier search
-    /// found by the score of eeruf; or the published settings, with and without the growth rate operator. Several are
-    /// printed side by side
+    /// Pilots: each method's own, found by the same search for each; one shared by all that an earlier search found by
+    /// the score of eeruf; or the published settings, with and without the growth rate operator. Several are printed
+    /// side by side
     #[arg(long = "pilot", value_name = "PILOT,..", value_delimiter = ',', default_value = "own")]
     pilots: Vec<Pilots>,
-    /// How eeruf_hopping fires and believes
+    /// Settings of eeruf_hopping
     #[arg(long, value_name = "SETTING", default_value = "driving")]
     hopping: Hopping,
     /// Let another robot with 24 sensors fire 24 times in 80 ms in a corner of the lab: behind the start, or ahead,

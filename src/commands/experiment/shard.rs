@@ -50,7 +50,7 @@ impl Shard {
 /// The runs of each method by its name.
 pub(crate) type Runs = BTreeMap<String, Vec<Value>>;
 
-/// What a part prints.
+/// Output of a part.
 #[derive(Serialize, Deserialize)]
 pub(crate) struct Part {
     /// The program's version.

@@ -5,7 +5,7 @@ use serde_json::{Value, json as object};
 
 use super::Found;
 
-/// What `--json` prints.
+/// Output of `--json`.
 pub(crate) fn json(found: &Found<'_>) -> Value {
     let diagnosis = found.diagnosis;
     let paths: Vec<_> = diagnosis

@@ -1,4 +1,4 @@
-//! What a ring's log says about it: as text, as JSON, as a picture.
+//! Report of a ring's log: as text, as JSON, as a picture.
 
 mod json;
 mod picture;
@@ -57,7 +57,7 @@ impl Found<'_> {
         blind.map(|of| of.sensor).collect()
     }
 
-    /// What to change, one thing a line.
+    /// Advice, one change a line.
     fn advice(&self) -> Vec<String> {
         use eeruf_logs::Fault;
         let mut advice = Vec::new();

@@ -1,4 +1,4 @@
-//! Who fools whom: a square for each pair, darker the more of the receiver's readings are the sender's sound.
+//! Matrix of who fools whom: a square for each pair, darker the more of the receiver's readings are the sender's sound.
 
 use plotters::style::RGBColor;
 

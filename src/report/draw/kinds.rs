@@ -1,4 +1,4 @@
-//! What the filter made of recorded readings: one lane for each sensor, time to the right.
+//! Recorded readings and the filter's verdicts: one lane for each sensor, time to the right.
 
 use eeruf_core::ReadingKind;
 use plotters::style::RGBColor;

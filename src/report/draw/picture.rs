@@ -19,14 +19,14 @@ use crate::files::write::write;
 const FONT: &str = "sans-serif";
 /// The font that bitmaps are lettered in.
 const FONT_FILE: &[u8] = include_bytes!("font/DejaVuSans-part.ttf");
-/// How much larger than in a bitmap plotters sets the same text in SVG, with this font.
+/// Ratio of the size of a text in SVG to that in a bitmap by plotters, with this font.
 const SVG_TEXT_SCALE: f64 = 0.939;
-/// How far below that of a bitmap the baseline of the same text in SVG is, in sizes of the text.
+/// Distance of the baseline of a text in SVG below that in a bitmap, in sizes of the text.
 const SVG_TEXT_DROP: f64 = 0.129;
 
 /// Pixels of a PNG for each of the picture's.
 const DENSITY: usize = 2;
-/// How much larger than the PNG it is drawn.
+/// Ratio in which it is drawn larger than the PNG.
 const OVERSAMPLING: usize = 2;
 
 /// A picture before it is known what file it becomes.

@@ -1,4 +1,4 @@
-//! What one sensor read over time, and what of it was believed.
+//! Readings of one sensor over time, and which of them were believed.
 
 use eeruf_sim::Readings;
 use plotters::style::Color;

@@ -14,11 +14,11 @@ pub(crate) struct DrawnPath {
     pub(crate) emitter: usize,
     /// From the emitter over all bounces to the receiver.
     pub(crate) corners: Vec<Point>,
-    /// How many readings it spoilt.
+    /// Number of readings it spoilt.
     pub(crate) times: usize,
 }
 
-/// What one method made of the scene.
+/// One method's readings of the scene.
 pub(crate) struct Panel {
     pub(crate) title: String,
     pub(crate) caption: String,
@@ -29,7 +29,7 @@ const WIDTH: f64 = 900.0;
 const MARGIN: f64 = 20.0;
 const GAP: f64 = 24.0;
 const TOP: f64 = 64.0;
-/// How far a beam is hinted at.
+/// Length of a beam that is hinted at.
 const BEAM_M: f64 = 0.22;
 const HALF_BEAM_RAD: f64 = 0.15;
 
@@ -107,7 +107,7 @@ impl View {
         Self { low, width_m: width / scale, scale, width, height: height_m * scale }
     }
 
-    /// How wide a path is drawn that spoilt so many readings.
+    /// Width of a path that spoilt this number of readings.
     fn width_of(&self, times: usize, most: usize) -> f64 {
         let widest = (0.02 * self.scale).clamp(3.0, 5.0);
         1.0 + (widest - 1.0) * (times as f64 / most.max(1) as f64).sqrt()

@@ -1,4 +1,4 @@
-//! What the experiments found, as tables.
+//! Results of the experiments, as tables.
 
 pub(crate) mod set_one;
 pub(crate) mod set_three;

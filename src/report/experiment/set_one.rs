@@ -10,7 +10,7 @@ use eeruf_sim::experiments::set_one::{Figures, Latency, MultiEcho, NewStep, SetO
 use crate::report::percent::{fine_percent, median, median_95, percent, percents, percents_95};
 use crate::report::table::markdown;
 
-/// What the paper reports of a method in Set I: how many of the readings were wrong.
+/// The paper's report on a method in Set I: how many of the readings were wrong.
 fn paper(method: &str) -> &'static str {
     match method {
         "conventional" => "over 30, mostly 40-80",
@@ -165,7 +165,7 @@ fn row(method: &str, figures: &Figures) -> Vec<String> {
     ]
 }
 
-/// How the figures move with what is varied.
+/// Changes of the figures with what is varied.
 pub(crate) fn describe_variations(found: &[(&str, SetOne)]) -> String {
     let Some((_, one)) = found.first() else { return String::new() };
     let mut text = format!(

@@ -26,12 +26,12 @@ fn bodies(bodies: bool) -> &'static str {
     if bodies { ", robots with bodies" } else { "" }
 }
 
-/// How many courses, and which.
+/// Number of courses, and which.
 fn courses(first: u64, seeds: u64) -> String {
     format!("{seeds} courses from {first} on")
 }
 
-/// How many were finished, and between which per cents that lies.
+/// Number of courses finished, and its interval in per cent.
 fn finished(figures: &Figures) -> String {
     let [low, high] = figures.finished_95.map(|share| 100.0 * share);
     format!("{} of {} ({low:.0}-{high:.0} %)", figures.finished, figures.courses)
@@ -87,7 +87,7 @@ fn row(method: &str, figures: &Figures) -> Vec<String> {
     ]
 }
 
-/// What a sweep of top speeds found.
+/// Result of a sweep of top speeds.
 #[derive(Serialize)]
 pub(crate) struct Sweep {
     first: u64,

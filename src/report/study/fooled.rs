@@ -1,4 +1,4 @@
-//! Who was fooled by whom: the critical paths along which foreign sound was taken for an echo, under several methods.
+//! Attribution by path: the critical paths along which foreign sound was taken for an echo, under several methods.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -15,7 +15,7 @@ const ROWS: usize = 8;
 /// alternation, and with it.
 const COMPARED: [Method; 4] = [Method::Conventional, Method::Comparison, Method::Eeruf, Method::EerufBest];
 
-/// What a path is called in all runs: who heard whom, along which bounces.
+/// Name of a path in all runs: who heard whom, along which bounces.
 type Key = (SensorId, Option<SensorId>, u8, Box<[Bounce]>);
 
 /// One path, and how often it fooled its receiver under each method.

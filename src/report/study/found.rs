@@ -1,9 +1,9 @@
-//! What a study found.
+//! Result of a study.
 
 use eeruf_sim::BestSchedule;
 use eeruf_sim::{Method, Readings};
 
-/// By how much a reading may be off before it counts as wrong.
+/// Error from which a reading counts as wrong.
 pub(crate) const TOLERANCE_US: f64 = eeruf_sim::DEFAULT_TOLERANCE_US;
 
 /// All methods on one world.

@@ -9,7 +9,7 @@ use super::found::{Study, TOLERANCE_US, of_robot};
 use crate::report::bounces::wall_numbers;
 use crate::report::json::in_order;
 
-/// What `--json` prints. Shares are fractions of 1; robots, sensors and walls from 0.
+/// Output of `--json`. Shares are fractions of 1; robots, sensors and walls from 0.
 #[derive(Serialize)]
 pub(crate) struct StudyJson<'a> {
     scene: String,

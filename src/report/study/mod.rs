@@ -1,4 +1,4 @@
-//! What a study found: printed, as JSON, and drawn.
+//! Result of a study: printed, as JSON, and drawn.
 
 pub(crate) mod fooled;
 pub(crate) mod found;

@@ -12,7 +12,7 @@ use crate::report::draw::{self, DrawnPath, Panel};
 
 /// The most paths that are drawn for one method.
 const MOST_PATHS: usize = 24;
-/// How many readings of one sensor are drawn.
+/// Number of readings of one sensor that are drawn.
 const SHOWN_READINGS: usize = 70;
 
 /// Draws `scene`, `timing`, `readings`, `methods`, and `blind` where a sensor that is blind under EERUF comes to see
@@ -71,7 +71,7 @@ fn comes_to_see(before: &Readings, after: &Readings) -> Option<SensorId> {
     blind.max_by_key(seen).filter(|id| seen(id) > 0)
 }
 
-/// What a method believed of what it should not have, by path.
+/// Errors that a method believed, by path.
 fn panel(world: &World, readings: &Readings) -> Panel {
     let entries = readings.attribution(TOLERANCE_US);
     let foreign = |cause| matches!(cause, Cause::Crosstalk | Cause::Stale);

@@ -93,7 +93,7 @@ fn table(runs: &[Readings]) -> Table {
     markdown(&header, runs.iter().map(|readings| row(readings.summary())))
 }
 
-/// What the table says, in words: why alternate, and what it costs.
+/// The table in words: why alternate, and what it costs.
 fn verdict(runs: &[Readings], sensors: usize) -> String {
     let of = |method| runs.iter().find(|readings| readings.method == method).map(Readings::summary);
     let wrong = |summary: &Summary| fine_percent(summary.wrong_of_accepted.unwrap_or(0.0));

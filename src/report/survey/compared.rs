@@ -9,7 +9,7 @@ use crate::report::table::markdown;
 /// A path is the same if it is not further off than this, in microseconds: a faint echo is heard up to a burst late.
 const SAME_US: f64 = 400.0;
 
-/// How far a survey is right.
+/// Accuracy of a survey.
 #[derive(Clone, Copy, Default, Serialize)]
 pub(crate) struct Compared {
     /// Ordered pairs with a path within `until_us`, and how many of them the survey found to be such.

@@ -1,4 +1,4 @@
-//! What a survey found: as text, as JSON, as a ring file, as a picture.
+//! Result of a survey: as text, as JSON, as a ring file, as a picture.
 
 mod compared;
 mod picture;
@@ -48,7 +48,7 @@ impl Found<'_> {
     }
 }
 
-/// What `--json` prints; sensors from 0.
+/// Output of `--json`; sensors from 0.
 #[derive(Serialize)]
 pub(crate) struct Json {
     sensors: usize,

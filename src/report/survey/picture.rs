@@ -1,4 +1,5 @@
-//! Who hears whom: a square for each ordered pair, darker the sooner the sound comes, with the travel time in it.
+//! Matrix of who hears whom: a square for each ordered pair, darker the sooner the sound comes, with the travel time in
+//! it.
 
 use plotters::style::RGBColor;
 

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use super::Found;
 
-/// What a ring file needs besides who hears whom.
+/// Needs of a ring file besides who hears whom.
 pub(crate) struct RingTerms {
     pub(crate) t_delta_us: u32,
     pub(crate) window_us: u32,

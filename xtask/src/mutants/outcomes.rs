@@ -1,4 +1,4 @@
-//! What is known of mutants, over all runs: files in the folder of their part.
+//! Record of mutants, over all runs: files in the folder of their part.
 
 use std::collections::BTreeSet;
 use std::io;
@@ -6,20 +6,20 @@ use std::path::Path;
 
 use super::Round;
 
-/// What came of mutants, over all runs.
+/// Fates of mutants, over all runs.
 #[derive(Debug, Default, PartialEq)]
 pub(super) struct Outcomes {
     pub(super) caught: BTreeSet<String>,
     pub(super) timeouts: BTreeSet<String>,
     unviable: BTreeSet<String>,
-    /// What the quick tests left, what the comparison with C did, and what all did when they ran last.
+    /// Mutants that the quick tests left, that the comparison with C left, and that all tests left when they ran last.
     left: BTreeSet<String>,
     alike: BTreeSet<String>,
     pub(super) missed: BTreeSet<String>,
 }
 
 impl Outcomes {
-    /// What was written down.
+    /// Reads what was written down.
     pub(super) fn read(folder: &Path) -> Self {
         let of = |name: &str| lines(&folder.join(name));
         let (caught, unviable) = (of("caught.txt"), of("unviable.txt"));
@@ -75,7 +75,7 @@ impl Outcomes {
         Ok(())
     }
 
-    /// Which of these are still to be tried in a round.
+    /// Mutants still to be tried in a round.
     pub(super) fn open<'m>(&self, wanted: &'m BTreeSet<String>, round: Round) -> Vec<&'m String> {
         let done = |mutant: &&String| {
             let known = [&self.caught, &self.timeouts, &self.unviable].iter().any(|set| set.contains(*mutant));

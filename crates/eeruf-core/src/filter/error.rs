@@ -9,12 +9,12 @@ use core::fmt;
 pub enum FilterError {
     /// Too few or too many consecutive readings.
     Consecutive {
-        /// How many were asked for.
+        /// The number asked for.
         consecutive: u8,
     },
     /// A rate at which no robot's echoes change.
     Rate {
-        /// What was asked for, in microseconds per second.
+        /// The drift asked for, in microseconds per second.
         us_per_s: u32,
     },
 }

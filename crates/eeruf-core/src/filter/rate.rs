@@ -39,14 +39,14 @@ pub struct RateFilter<const K: usize> {
     us_per_s: u32,
 }
 
-/// What is known of one sensor.
+/// State of one sensor's line.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 struct Line {
     /// The last two firings, the later one first.
     fired: [Instant; 2],
     echoes: [u32; 2],
-    /// How many of them had an echo, or that the last one or the last two had none.
+    /// Number of those that had an echo, or that the last one or the last two had none.
     known: Known,
     /// Firings since the last accepted reading.
     age: u16,
@@ -230,8 +230,8 @@ impl<const K: usize> Judge for RateFilter<K> {
     }
 }
 
-/// Whether the second of three echoes lies within `t_delta` of the line between the first and the third, where firings
-/// came so long after one another. All are below 2^24.
+/// Returns true if the second of three echoes lies within `t_delta` of the line between the first and the third, where
+/// firings came so long after one another. All are below 2^24.
 fn is_on_line(echoes: [u32; 3], [before, since]: [u32; 2], t_delta: u32) -> bool {
     let [first, second, third] = echoes.map(i64::from);
     let [before, since] = [before, since].map(i64::from);

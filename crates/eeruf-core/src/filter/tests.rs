@@ -1,4 +1,4 @@
-//! What the filter makes of firings in a row.
+//! The filter over consecutive firings.
 
 extern crate std;
 use super::*;

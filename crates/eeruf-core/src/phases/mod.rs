@@ -46,13 +46,13 @@ pub struct PhaseTable<'a, const K: usize> {
     t_fire: &'a [[Micros; K]],
 }
 
-/// What of a path can be heard.
+/// The audible part of a path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Audible {
-    /// How long a sensor listens after it has fired.
+    /// Listening time of a sensor after it has fired.
     pub window: Micros,
-    /// How long it is deaf before.
+    /// Deaf time before that.
     pub blanking: Micros,
     /// After how long no sound is heard any more; sound that is four periods old never is.
     pub reach: Micros,
@@ -65,17 +65,17 @@ impl Audible {
     }
 }
 
-/// By how much crosstalk moves at least, and where.
+/// The least shift of crosstalk, and where it occurs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct PhaseSeparation {
-    /// By how much.
+    /// The shift.
     pub value: Micros,
     /// The sensor that sends and the one that hears, from 0.
     pub sensors: (u8, u8),
     /// The two phases in which it hears.
     pub phases: (Phase, Phase),
-    /// How many periods before the sound was sent, in each: -1 if in the period after, while it still listened.
+    /// Number of periods before the sound was sent, in each: -1 if in the period after, while it still listened.
     pub ages: (i8, i8),
 }
 
@@ -83,7 +83,7 @@ pub struct PhaseSeparation {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct PhaseInterval {
-    /// How long.
+    /// The interval.
     pub value: Micros,
     /// The two sensors, from 0; twice the same where a sensor fires again.
     pub sensors: (u8, u8),
@@ -107,7 +107,7 @@ impl<'a, const K: usize> PhaseTable<'a, K> {
         Self { sensors: sensors as u8, ..self }
     }
 
-    /// How many sensors it has.
+    /// Number of sensors it has.
     pub const fn sensors(&self) -> usize {
         self.sensors as usize
     }
@@ -117,7 +117,7 @@ impl<'a, const K: usize> PhaseTable<'a, K> {
         self.period
     }
 
-    /// How many phases it has.
+    /// Number of phases it has.
     pub const fn phases(&self) -> usize {
         self.t_fire.len()
     }
@@ -185,7 +185,7 @@ impl<'a, const K: usize> PhaseTable<'a, K> {
         least
     }
 
-    /// Whether a sensor's own sound of this age is a stale echo, which ought to move.
+    /// Returns true if a sensor's own sound of this age is a stale echo, which ought to move.
     const fn is_stale(&self, event: usize) -> bool {
         AGES[event % AGES.len()] as i64 % self.phases() as i64 != 0
     }
@@ -246,7 +246,7 @@ impl<'a, const K: usize> PhaseTable<'a, K> {
     }
 }
 
-/// Whether some path is heard with both offsets: one that is no longer than `reach` and arrives in the window.
+/// Returns true if some path is heard with both offsets: one that is no longer than `reach` and arrives in the window.
 const fn together(a: i64, b: i64, audible: &Audible) -> bool {
     let (window, blanking) = (audible.window.as_micros() as i64, audible.blanking.as_micros() as i64);
     let (low, high) = if a < b { (a, b) } else { (b, a) };

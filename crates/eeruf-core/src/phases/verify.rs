@@ -6,7 +6,7 @@ use super::{Audible, PhaseInterval, PhaseSeparation, PhaseTable};
 use crate::layout::Layout;
 use crate::time::Micros;
 
-/// By how much crosstalk must move from phase to phase.
+/// The shift of crosstalk that is required from phase to phase.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum PhaseCriterion {
@@ -18,21 +18,21 @@ pub enum PhaseCriterion {
     Margin(Micros),
 }
 
-/// What firing times of many phases must keep.
+/// Requirements on firing times of many phases.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct PhaseRequirements<'a> {
     /// `T_delta`: a reading supports a track that it differs from by no more.
     pub t_delta: Micros,
-    /// By how much crosstalk must move.
+    /// The shift that crosstalk must have.
     pub criterion: PhaseCriterion,
-    /// What of a path can be heard. No sensor may fire again within its window.
+    /// The audible part of a path. No sensor may fire again within its window.
     pub audible: Audible,
     /// The least time between the firings of two neighbours (Sec. 3.1 c).
     pub min_interval: Micros,
-    /// Which sensors are neighbours.
+    /// Pairs of neighbours.
     pub layout: Layout<'a>,
-    /// Whether a sensor's own sound from earlier periods must move too.
+    /// True if a sensor's own sound from earlier periods must move too.
     pub stale_echo: bool,
 }
 
@@ -70,7 +70,7 @@ impl<const K: usize> PhaseTable<'_, K> {
     }
 }
 
-/// What was found of firing times of many phases, against what was asked for.
+/// Findings on firing times of many phases, against the requirements.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct PhaseVerification<'r> {
@@ -92,7 +92,7 @@ impl<'r> PhaseVerification<'r> {
         Self { requirements, separation, stale, min_interval, min_refire: table.min_refire() }
     }
 
-    /// Whether every requirement holds.
+    /// Returns true if every requirement holds.
     pub const fn ok(&self) -> bool {
         self.violation(0).is_none()
             && self.violation(1).is_none()
@@ -100,12 +100,12 @@ impl<'r> PhaseVerification<'r> {
             && self.violation(3).is_none()
     }
 
-    /// By how much crosstalk moves at least, and where; `None` if no path can be heard in two phases.
+    /// The least shift of crosstalk, and where it occurs; `None` if no path can be heard in two phases.
     pub const fn separation(&self) -> Option<PhaseSeparation> {
         self.separation
     }
 
-    /// By how much a stale echo moves at least; `None` if none can be heard, or if it was not asked for.
+    /// The least shift of a stale echo; `None` if none can be heard, or if it was not asked for.
     pub const fn stale_separation(&self) -> Option<PhaseSeparation> {
         self.stale
     }
@@ -142,7 +142,7 @@ impl<'r> PhaseVerification<'r> {
         }
     }
 
-    /// What does not hold, the worst of each kind.
+    /// Violations, the worst of each kind.
     pub const fn violations(&self) -> PhaseViolations<'r> {
         PhaseViolations { verification: *self, next: 0 }
     }
@@ -188,14 +188,14 @@ pub enum PhaseViolation {
     Crosstalk {
         /// The least by which it moves.
         found: PhaseSeparation,
-        /// By how much it must.
+        /// The shift required.
         required: Micros,
     },
     /// A sensor's own echo from an earlier period would be believed.
     StaleEcho {
         /// The least by which it moves.
         found: PhaseSeparation,
-        /// By how much it must.
+        /// The shift required.
         required: Micros,
     },
     /// Two neighbours fire too close together: Sec. 3.1 c.
@@ -278,7 +278,7 @@ impl fmt::Display for PhaseViolation {
     }
 }
 
-/// What does not hold: see [`PhaseVerification::violations`].
+/// Violations: see [`PhaseVerification::violations`].
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct PhaseViolations<'r> {

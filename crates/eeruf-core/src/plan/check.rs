@@ -29,7 +29,7 @@ pub enum BrokenPromise {
     },
     /// A deadline lies further ahead than `horizon`.
     Horizon {
-        /// How far.
+        /// The distance.
         ahead: Micros,
     },
     /// Polled at one instant, it never comes to rest.
@@ -92,7 +92,7 @@ pub fn check_plan<P: Plan>(plan: &mut P, now: Instant, polls: u32, seed: u32) ->
     Ok(())
 }
 
-/// What is known of one sensor.
+/// State of one sensor's line.
 #[derive(Clone, Copy, Default)]
 struct Seen {
     fired: Option<Instant>,

@@ -8,7 +8,7 @@ use crate::reading::Verdict;
 use crate::schedule::{Phase, VerifiedFor};
 use crate::time::{Instant, Micros};
 
-/// What a plan wants done.
+/// The step that a plan asks for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum PlanStep {
@@ -18,14 +18,14 @@ pub enum PlanStep {
         sensor: u8,
         /// The phase its wait belongs to.
         phase: Phase,
-        /// How long ago it was due.
+        /// Time since it was due.
         late: Micros,
     },
     /// A period has ended.
     PeriodEnded {
         /// Its phase.
         phase: Phase,
-        /// Whether the next one does not follow on it as the schedule says: another schedule begins, or periods in
+        /// True if the next one does not follow on it as the schedule says: another schedule begins, or periods in
         /// which nothing fired were left out.
         changed: bool,
     },
@@ -43,15 +43,15 @@ pub struct Upcoming {
     pub due: Instant,
 }
 
-/// What a plan allows the ring that it fires.
+/// Limits that a plan sets to the ring it fires.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Limits<'s> {
-    /// How long a sensor may listen: it does not fire again within this time of firing, unless it has ended.
+    /// Longest listening time of a sensor: it does not fire again within this time of firing, unless it has ended.
     pub longest_window: Micros,
-    /// What the schedule was verified for, if it was: the ring may ask for less, and not for more.
+    /// Requirements that the schedule was verified for, if it was: the ring may ask for less, and not for more.
     pub verified_for: Option<&'s VerifiedFor>,
-    /// How long sound is taken to be audible: what the schedule was verified for, or its period. `None` without a
+    /// Time for which sound is taken to be audible: that of the verified requirements, or the period. `None` without a
     /// common period.
     pub audible: Option<Micros>,
 }
@@ -116,21 +116,21 @@ pub trait Plan {
     }
     /// A sensor has stopped listening: its echo came in, or its window closed, `at` this instant.
     fn ended(&mut self, sensor: u8, at: Instant);
-    /// How many sensors it fires.
+    /// Number of sensors it fires.
     fn sensors(&self) -> usize;
     /// Lets a sensor fire from its next turn on, or stops it.
     fn set_enabled(&mut self, sensor: u8, enabled: bool);
     /// Lets no sensor fire until it is unset; periods go on.
     fn set_paused(&mut self, paused: bool);
-    /// Whether a sensor fires, but for a pause.
+    /// Returns true if a sensor fires, but for a pause.
     fn is_enabled(&self, sensor: u8) -> bool;
     /// Starts again with phase a, no sooner than `now`.
     fn restart(&mut self, now: Instant);
-    /// What the last firing of a sensor was like, `periods_ago` periods before the present one.
+    /// Properties of a sensor's last firing, `periods_ago` periods before the present one.
     fn last_firing(&self, sensor: u8, periods_ago: u8) -> Firing;
-    /// What it allows in the present period.
+    /// Limits in the present period.
     fn limits(&self) -> Limits<'_>;
-    /// What it allows as of the next period, if it changes to another schedule then.
+    /// Limits as of the next period, if it changes to another schedule then.
     fn next_limits(&self) -> Option<Limits<'_>> {
         None
     }
@@ -139,8 +139,8 @@ pub trait Plan {
     fn hears(&self, _receiver: u8, _emitter: u8) -> bool {
         true
     }
-    /// What it allows one sensor, where sensors are not all alike; the ring asks for no more than this either. `None`
-    /// for every sensor where they are.
+    /// Limits of one sensor, where sensors are not all alike; the ring asks for no more than this either. `None` for
+    /// every sensor where they are.
     fn limits_of(&self, _sensor: u8) -> Option<SensorLimits> {
         None
     }

@@ -34,7 +34,7 @@ pub struct ScheduledFiring<'s, const K: usize, const M: usize = 2, U = Alike> {
     following: u8,
     /// The next sensor to fire; one that is not there when all have.
     next: u8,
-    /// Whether any sensor is disabled, since asking all 64 takes time at every firing, and whether all are, by a pause.
+    /// True if any sensor is disabled, since asking all 64 takes time at every firing, and whether all are, by a pause.
     skips: Skips,
     /// When it is due, or when the period ends. Worked out once per step, since it is asked for at every poll.
     due: Instant,
@@ -46,7 +46,7 @@ pub struct ScheduledFiring<'s, const K: usize, const M: usize = 2, U = Alike> {
     own_limits: U,
 }
 
-/// Who does not fire.
+/// Sensors that do not fire.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 enum Skips {
@@ -152,13 +152,13 @@ impl<'s, const K: usize, const M: usize, U: LimitsInUse> ScheduledFiring<'s, K, 
     }
 }
 
-/// Whether a number in the firing order is a sensor's. A schedule with room for more has no more.
+/// Returns true if a number in the firing order is a sensor's. A schedule with room for more has no more.
 const fn is_sensor<const K: usize>(sensor: u8) -> bool {
     (sensor as usize) < K && (sensor as usize) < MAX_SENSORS
 }
 
-/// How long to stay silent after the last firing so that a period which was not verified against it may begin. Where
-/// nothing was verified a whole period: two neighbours fire within one, so no interval can be longer.
+/// Silence after the last firing before a period may begin that was not verified against it. Where nothing was verified
+/// a whole period: two neighbours fire within one, so no interval can be longer.
 const fn settling_time<const K: usize, const M: usize>(schedule: &Schedule<K, M>) -> Micros {
     match schedule.verified_for() {
         Some(verified_for) => longer(verified_for.min_interval, schedule.min_refire()),
@@ -167,7 +167,7 @@ const fn settling_time<const K: usize, const M: usize>(schedule: &Schedule<K, M>
 }
 
 impl<'s> Limits<'s> {
-    /// What a schedule allows whose sensors have limits of their own, of which this is the most: none of them fires
+    /// Limits under a schedule whose sensors have limits of their own, of which this is the most: none of them fires
     /// again within its own window.
     fn of_most(most: &'s VerifiedFor) -> Self {
         Self { longest_window: most.window, verified_for: Some(most), audible: Some(most.audible) }
@@ -175,7 +175,7 @@ impl<'s> Limits<'s> {
 }
 
 impl<const K: usize, const M: usize> Schedule<K, M> {
-    /// What it allows a ring.
+    /// Limits that it sets to a ring.
     pub(crate) const fn limits(&self) -> Limits<'_> {
         let audible = match self.verified_for() {
             Some(verified_for) => verified_for.audible,

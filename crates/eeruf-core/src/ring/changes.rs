@@ -1,4 +1,4 @@
-//! What can be changed while a ring runs.
+//! Settings that can change while a ring runs.
 
 use super::history::is_just_ahead;
 use super::listening::Listening;

@@ -5,7 +5,8 @@ use crate::filter::{Consecutive, Tolerance};
 use crate::plan::Plan;
 use crate::time::Micros;
 
-/// How a [`Ring`](super::Ring) listens and compares; `E` is the number of echoes that a sensor reports of one firing.
+/// Settings by which a [`Ring`](super::Ring) listens and compares; `E` is the number of echoes that a sensor reports of
+/// one firing.
 ///
 /// ```
 /// use eeruf_core::{Micros, RingConfig};
@@ -54,7 +55,7 @@ impl Default for RingConfig {
 }
 
 impl<const E: usize> RingConfig<E> {
-    /// How readings are compared, by what the plan's schedule was verified for.
+    /// The tolerance of comparison, by what the plan's schedule was verified for.
     pub(super) fn tolerance(&self, plan: &impl Plan) -> Result<Tolerance, RingError> {
         let verified_for = plan.limits().verified_for;
         let t_delta = self.t_delta.or(verified_for.map(|verified_for| verified_for.t_delta));

@@ -38,9 +38,9 @@ pub enum RingError {
     },
     /// The plan fires more sensors than the ring has.
     Sensors {
-        /// How many it fires.
+        /// Number of sensors it fires.
         sensors: usize,
-        /// How many the ring has.
+        /// Sensors of the ring.
         capacity: usize,
     },
     /// The ring has room for more sensors than a schedule may have.

@@ -4,7 +4,7 @@ use crate::reading::{Explanation, ReadingKind, Tally};
 use crate::schedule::Phase;
 use crate::time::{Instant, Micros};
 
-/// What a [`Ring`](super::Ring) hands to its caller.
+/// An event that a [`Ring`](super::Ring) hands to its caller.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum RingEvent {
@@ -17,13 +17,13 @@ pub enum RingEvent {
         /// When it was due: in the past if the poll is late.
         due: Instant,
     },
-    /// What came of an earlier firing.
+    /// The outcome of an earlier firing.
     Reading(Reading),
     /// A period has ended.
     PeriodEnded(PeriodStats),
 }
 
-/// What came of one firing of one sensor.
+/// The outcome of one firing of one sensor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -34,19 +34,19 @@ pub struct Reading {
     pub phase: Phase,
     /// The period in which it fired, counted from 0; right if that was fewer than eight periods ago.
     pub period: u32,
-    /// What came of the firing.
+    /// The outcome of the firing.
     pub kind: ReadingKind,
     /// The echo time; `None` without echo.
     pub t_echo: Option<Micros>,
     /// The echo time that it was compared with.
     pub previous: Option<Micros>,
-    /// How many firings ago this sensor's last reading was accepted; `None` if none ever was.
+    /// Number of firings since this sensor's last accepted reading; `None` if none ever was.
     pub age: Option<u16>,
     /// The explanation of an [`Ambiguous`](ReadingKind::Ambiguous) reading; `None` for all other kinds.
     pub explained_by: Option<Explanation>,
 }
 
-/// What happened since the end of the period before.
+/// Statistics since the end of the period before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct PeriodStats {

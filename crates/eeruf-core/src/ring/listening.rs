@@ -81,7 +81,7 @@ impl Listening {
         }
     }
 
-    /// What counts as the same echo for one sensor: no more than the plan allows it.
+    /// `T_delta` of one sensor: no more than the plan allows it.
     #[inline]
     pub(super) fn t_delta_of<P: Plan>(&self, plan: &P, sensor: u8) -> Micros {
         match plan.limits_of(sensor) {
@@ -140,7 +140,7 @@ impl Listening {
         }
     }
 
-    /// Whether the plan's timetable was verified for what sound may do.
+    /// Returns true if the plan's timetable was verified for what sound may do.
     pub(super) fn is_proven(&self, plan: &impl Plan) -> bool {
         let limits = plan.limits();
         let Some(verified_for) = limits.verified_for else { return false };
@@ -153,8 +153,8 @@ impl Listening {
             && two_periods < plan.min_refire()
     }
 
-    /// By how much the firings of one period may be late together so that crosstalk still moves by more than it must:
-    /// a quarter of what is to spare, as no two readings hear more than four periods.
+    /// Lateness that the firings of one period may have together so that crosstalk still moves by more than it must: a
+    /// quarter of what is to spare, as no two readings hear more than four periods.
     pub(super) fn spare(&self, limits: Limits<'_>) -> u16 {
         let Some(verified_for) = limits.verified_for else { return 0 };
         let change = self.asked_path_change().unwrap_or(self.t_delta());

@@ -72,7 +72,7 @@ pub use events::{PeriodStats, Reading, RingEvent};
 pub struct Ring<P, J, const K: usize, const E: usize = 1, const H: usize = 4> {
     /// The sensor whose window closes first, or [`NOBODY`].
     oldest: u8,
-    /// How many sensors have a reading to emit before their window closes.
+    /// Number of sensors that have a reading to emit before their window closes.
     ready: u8,
     /// The last of them to get it, or a sensor that has emitted it since.
     last_ready: u8,
@@ -263,13 +263,13 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
         None
     }
 
-    /// Whether there may be an event.
+    /// Returns true if there may be an event.
     #[inline(always)]
     fn is_due(&self, now: Instant) -> bool {
         now.has_reached(self.plan.deadline()) || (self.has_pending() && now.has_reached(self.emit_at))
     }
 
-    /// Whether the clock must have jumped, since what is next is too far ahead.
+    /// Returns true if the clock must have jumped, since what is next is too far ahead.
     #[inline(always)]
     fn has_jumped(&self, now: Instant) -> bool {
         self.plan.deadline().since(now) > self.plan.horizon()
@@ -314,7 +314,7 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
         self.plan.upcoming()
     }
 
-    /// Whether a reading will be emitted without a further firing.
+    /// Returns true if a reading will be emitted without a further firing.
     #[inline]
     fn has_pending(&self) -> bool {
         self.ready > 0 || self.oldest != NOBODY
@@ -435,7 +435,7 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
         Ok(())
     }
 
-    /// Whether a sensor fires.
+    /// Returns true if a sensor fires.
     pub fn is_enabled(&self, sensor: u8) -> bool {
         self.plan.is_enabled(sensor)
     }
@@ -484,7 +484,7 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
         self.punctuality.is_on_time()
     }
 
-    /// How long a sensor is deaf after it has fired.
+    /// Deaf time of a sensor after it has fired.
     pub const fn blanking(&self) -> Micros {
         self.listening.blanking()
     }
@@ -515,7 +515,7 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
         &self.plan
     }
 
-    /// What readings are worth.
+    /// The judge of the readings.
     pub const fn judge(&self) -> &J {
         &self.judge
     }

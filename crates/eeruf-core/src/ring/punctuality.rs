@@ -10,7 +10,7 @@ const WATCHED: u8 = 6;
 /// Nothing is proven of the timetable, so that each reading is asked about.
 const ALWAYS: u8 = u8::MAX;
 
-/// How late firings were, and whether that matters yet.
+/// Lateness of firings, and whether it matters yet.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(C)]

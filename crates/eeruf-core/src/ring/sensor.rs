@@ -1,4 +1,4 @@
-//! What a ring knows of one of its sensors.
+//! A ring's state of one of its sensors.
 
 use super::history::Firings;
 use crate::filter::{NO_ECHO, insert, shift};
@@ -30,7 +30,7 @@ pub(super) const STUCK: u8 = 1 << 6;
 /// Nothing has shown yet that it listens: silence says nothing.
 pub(super) const UNANSWERED: u8 = 1 << 7;
 
-/// What came of an edge.
+/// The outcome of an edge.
 pub(super) enum Noted {
     /// It makes a reading that can be emitted.
     Ready,
@@ -66,7 +66,7 @@ impl<const E: usize, const H: usize> Sensor<E, H> {
         self.flags &= !flag;
     }
 
-    /// How many periods ago it fired, if fewer than eight.
+    /// Number of periods ago it fired, if fewer than eight.
     pub(super) const fn periods_ago(&self, period: u32) -> u8 {
         (period as u8).wrapping_sub(self.flags) & PERIOD
     }

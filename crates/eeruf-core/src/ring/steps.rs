@@ -1,4 +1,4 @@
-//! What a poll of a [`Ring`] does when something is due: fire, emit a reading, end the period.
+//! The steps that a poll of a [`Ring`] takes when something is due: fire, emit a reading, end the period.
 
 use super::history::{Answer, Firings, Pair, STEP_BACK, is_long_ago, long_before};
 use super::listening::Listening;
@@ -256,7 +256,7 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
     }
 }
 
-/// What is known of who fired when, for the reading of one sensor.
+/// Memory of who fired when, for the reading of one sensor.
 struct Memory<'r, P, const E: usize, const H: usize> {
     receiver: u8,
     sensors: &'r [Sensor<E, H>],

@@ -13,23 +13,23 @@ use crate::time::Micros;
 pub enum ScheduleError {
     /// No sensors, or more than fit.
     Sensors {
-        /// How many were given.
+        /// The number given.
         sensors: usize,
-        /// How many fit.
+        /// The number that fits.
         capacity: usize,
     },
     /// No phase, or more than eight.
     Phases {
-        /// How many were given.
+        /// The number given.
         phases: usize,
     },
     /// A phase lists waits for more or fewer sensors than there are lags.
     Waits {
         /// The phase.
         phase: Phase,
-        /// How many waits it has.
+        /// Number of waits it has.
         waits: usize,
-        /// How many sensors there are.
+        /// Number of sensors.
         sensors: usize,
     },
     /// The period is zero or beyond [`MAX_PERIOD`].

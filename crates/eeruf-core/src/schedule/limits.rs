@@ -1,4 +1,4 @@
-//! How large a [`Schedule`](super::Schedule) can be, and its phases.
+//! Largest sizes of a [`Schedule`](super::Schedule), and its phases.
 
 use core::fmt;
 

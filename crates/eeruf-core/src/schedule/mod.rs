@@ -60,7 +60,7 @@ pub struct Schedule<const K: usize, const M: usize = 2> {
 struct Firings<const K: usize> {
     /// The sensors by firing time; then nobody (255).
     order: [u8; K],
-    /// How long each fires after the one before it, the first after the start of the period; then `after_last`.
+    /// Time from the firing before to each, of the first from the start of the period; then `after_last`.
     gap: [Micros; K],
     /// From the last firing to the end of the period.
     after_last: Micros,
@@ -141,12 +141,12 @@ impl<const K: usize, const M: usize> Schedule<K, M> {
         }
     }
 
-    /// What it was verified for, if it was.
+    /// Requirements that it was verified for, if it was.
     pub(crate) const fn verified_for(&self) -> Option<&VerifiedFor> {
         self.verified_for.as_ref()
     }
 
-    /// Whether it was verified: a copy of what a [`VerifiedSchedule`](crate::VerifiedSchedule) holds.
+    /// Returns true if it was verified: a copy of what a [`VerifiedSchedule`](crate::VerifiedSchedule) holds.
     pub const fn is_verified(&self) -> bool {
         self.verified_for.is_some()
     }

@@ -1,4 +1,4 @@
-//! How long a sensor of a [`Schedule`] waits until it fires again, and what motion that allows.
+//! Time until a sensor of a [`Schedule`](super::Schedule) fires again, and the motion which that allows.
 
 use super::{Phase, Schedule};
 use crate::time::Micros;

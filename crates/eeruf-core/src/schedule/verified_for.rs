@@ -2,7 +2,7 @@
 
 use crate::time::Micros;
 
-/// What a schedule was verified for, where it was. Only
+/// Requirements that a schedule was verified for, where it was. Only
 /// [`Verification::verified`](crate::conditions::Verification::verified) makes one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
@@ -15,7 +15,7 @@ pub struct VerifiedFor {
     pub min_interval: Micros,
     /// `T_wind`; the shortest refire time where no window was asked for, the smallest where sensors have their own.
     pub window: Micros,
-    /// By how much crosstalk moves at least from one reading to the next, `2 t_delta + 1 us` or more.
+    /// The least shift of crosstalk from one reading to the next, `2 t_delta + 1 us` or more.
     pub separation: Micros,
     /// P: by how much, at most, a path may change from one reading to the next; `None` for as much as `t_delta`.
     pub path_change: Option<Micros>,
@@ -24,7 +24,7 @@ pub struct VerifiedFor {
 }
 
 impl VerifiedFor {
-    /// What a schedule was verified for that was not.
+    /// The requirements of a schedule that was not verified: none.
     pub(crate) const NOTHING: Self = Self {
         t_delta: Micros::ZERO,
         min_interval: Micros::ZERO,

@@ -31,14 +31,14 @@ pub enum SearchError {
     Problem(ProblemError),
     /// Even firing one by one takes longer than [`MAX_PERIOD`].
     TooLong {
-        /// What it takes, in microseconds.
+        /// The time that it takes, in microseconds.
         period_us: u64,
     },
     /// Firing one by one takes longer than [`MAX_PERIOD`] because every need is rounded up to a whole tick.
     CoarseTick {
         /// The tick.
         tick: Micros,
-        /// What it takes, in microseconds.
+        /// The time that it takes, in microseconds.
         period_us: u64,
     },
     /// The schedule found does not fit the capacity asked for.
@@ -113,7 +113,7 @@ pub enum GridError {
     NoTick,
     /// A time that should be a whole number of ticks.
     OffGrid {
-        /// What the time is.
+        /// The name of the time.
         what: &'static str,
         /// The time.
         time: Micros,

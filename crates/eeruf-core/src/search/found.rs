@@ -1,4 +1,4 @@
-//! What a search gives back to the user, in microseconds.
+//! Results that a search gives back to the user, in microseconds.
 
 use crate::schedule::Schedule;
 use crate::time::Micros;
@@ -9,11 +9,11 @@ use crate::time::Micros;
 pub struct Found<const K: usize> {
     /// The schedule; `None` if there is none, or none was found within the budget.
     pub schedule: Option<Schedule<K>>,
-    /// What was sought of it: the period, the smallest interval or `t_delta`.
+    /// The value that was optimised: the period, the smallest interval or `t_delta`.
     pub value: Option<Micros>,
     /// No schedule is better than this; `None` if it is proven that there is none.
     pub bound: Option<Micros>,
-    /// Whether no better schedule exists (or none at all, without a schedule).
+    /// True if no better schedule exists (or none at all, without a schedule).
     pub proven: bool,
     /// Nodes visited: the same on each machine.
     pub nodes: u64,

@@ -9,7 +9,7 @@ use crate::requirements::{Criterion, Requirements};
 use crate::schedule::{MAX_PERIOD, MAX_SENSORS, Schedule};
 use crate::time::Micros;
 
-/// What a ring needs. Firing times are free: every sensor fires once per period, whenever it suits all.
+/// Needs of a ring. Firing times are free: every sensor fires once per period, whenever it suits all.
 ///
 /// ```
 /// use eeruf_core::search::{PeriodProblem, design};
@@ -37,7 +37,7 @@ use crate::time::Micros;
 pub struct PeriodProblem<'a> {
     /// The number of sensors, 1 to 64.
     pub sensors: usize,
-    /// What the schedule must meet, under [`Criterion::Exact`].
+    /// Requirements on the schedule, under [`Criterion::Exact`].
     pub requirements: Requirements<'a>,
     /// All firing times and the period are multiples of this.
     pub tick: Micros,
@@ -75,11 +75,11 @@ impl<const K: usize> ShortestPeriod<K> {
 pub struct Preferred<const K: usize> {
     /// The schedule.
     pub schedule: Schedule<K>,
-    /// Whether no other schedule of this period allows a larger `t_delta`.
+    /// True if no other schedule of this period allows a larger `t_delta`.
     pub t_delta_proven: bool,
-    /// Whether none of this period and `t_delta` keeps neighbours further apart.
+    /// True if none of this period and `t_delta` keeps neighbours further apart.
     pub min_interval_proven: bool,
-    /// Whether none of this period, `t_delta` and interval leaves a sensor more time between two firings.
+    /// True if none of this period, `t_delta` and interval leaves a sensor more time between two firings.
     pub min_refire_proven: bool,
     /// Nodes visited.
     pub nodes: u64,

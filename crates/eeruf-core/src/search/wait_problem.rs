@@ -12,7 +12,7 @@ use crate::requirements::Criterion;
 use crate::schedule::{MAX_SENSORS, Schedule};
 use crate::time::Micros;
 
-/// What a table of waits must meet (Sec. 3.1).
+/// Requirements on a table of waits (Sec. 3.1).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WaitProblem<'a> {
     /// The number of sensors, 1 to 64.
@@ -30,11 +30,11 @@ pub struct WaitProblem<'a> {
     pub t_delta: Micros,
     /// The least time between the firings of two neighbours.
     pub min_interval: Micros,
-    /// How many adjacent sensors make a group for the default lags.
+    /// Number of adjacent sensors in a group of the default lags.
     pub neighbours: u8,
-    /// Which sensors are neighbours.
+    /// Pairs of neighbours.
     pub layout: Layout<'a>,
-    /// How to read (13a), (13b).
+    /// The reading of (13a), (13b).
     pub criterion: Criterion,
 }
 
@@ -208,7 +208,7 @@ impl WaitSearch {
         Ok(Infeasible::Together)
     }
 
-    /// How many tables there are, exactly; it stops when it has counted `limit`.
+    /// Number of tables, exactly; it stops when it has counted `limit`.
     ///
     /// # Errors
     /// None after [`WaitSearch::new`].

@@ -1,5 +1,5 @@
-//! Which readings of a ring are ambiguous: after a restart those that sound from before could explain, and none that
-//! nothing explains, whatever is done to the ring.
+//! Ambiguous readings of a ring: after a restart those that sound from before could explain, and none that nothing
+//! explains, whatever is done to the ring.
 
 use eeruf_core::tables::{PAPER_12, TABLE_I_D};
 use eeruf_core::{

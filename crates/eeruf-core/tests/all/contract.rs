@@ -27,7 +27,7 @@ fn immediate_refiring_keeps_the_contract_whatever_is_done_to_it() {
     }
 }
 
-/// What is wrong with a plan that is right otherwise.
+/// The fault of a plan that is right otherwise.
 #[derive(Clone, Copy, PartialEq)]
 enum Fault {
     FiresTheDisabled,
@@ -45,7 +45,7 @@ enum Fault {
 struct Faulty {
     inner: ScheduledFiring<'static, 12>,
     fault: Fault,
-    /// What it says is disabled.
+    /// Sensors that it reports as disabled.
     disabled: [bool; 12],
 }
 
@@ -136,7 +136,7 @@ impl Plan for Faulty {
     }
 }
 
-/// What the check finds with some seed.
+/// The check's finding with some seed.
 fn found(fault: Fault) -> Option<BrokenPromise> {
     (0..40).find_map(|seed| {
         let inner = ScheduledFiring::new(&TABLE_I_D, START);

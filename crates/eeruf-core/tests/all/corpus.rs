@@ -147,7 +147,7 @@ fn verify(r: &mut Random, text: &mut Text, schedule: Schedule<K>) -> (Schedule<K
     }
 }
 
-/// What happens around a ring, and what its sensors hear: something before each, or one path from each to the next.
+/// Events around a ring, and sounds of its sensors: something before each, or one path from each to the next.
 struct World {
     now: u32,
     late: u32,

@@ -1,6 +1,5 @@
-//! What each search does for its answer, step by step, the same on each machine: written down in
-//! `tests/data/search-effort.txt`. A change that makes it take other steps shows there what it costs or saves.
-//! `EERUF_WRITE=1` writes the file anew.
+//! Steps of each search for its answer, the same on each machine: written down in `tests/data/search-effort.txt`. A
+//! change that makes it take other steps shows there what it costs or saves. `EERUF_WRITE=1` writes the file anew.
 
 use std::fmt::{Debug, Write as _};
 use std::ops::ControlFlow;

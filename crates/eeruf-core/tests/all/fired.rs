@@ -13,7 +13,7 @@ fn ring() -> ScheduledRing<'static, 12> {
     Ring::new(&PAPER_12, RingConfig::new().with_window(Micros::from_millis(40)), at(0)).unwrap()
 }
 
-/// What came of a run in which the firing with number `n` comes `late(n)` us after its poll, and its echo 9 ms later.
+/// Outcome of a run in which the firing with number `n` comes `late(n)` us after its poll, and its echo 9 ms later.
 struct Run {
     fired: Vec<(u8, u32)>,
     /// Where the schedule has them, without any lateness.

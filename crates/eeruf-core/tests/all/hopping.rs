@@ -1,4 +1,4 @@
-//! What a hopping ring promises: one path of fixed length is never believed, whatever the lateness, with solo periods
+//! The promise of a hopping ring: one path of fixed length is never believed, whatever the lateness, with solo periods
 //! and with lags that change. The world here is as naive as can be: sound leaves when a sensor fires and arrives a
 //! fixed time later.
 
@@ -26,7 +26,7 @@ struct Path {
     length: u32,
 }
 
-/// How late polls are: up to `each` microseconds, and now and then a stall.
+/// Lateness of polls: up to `each` microseconds, and now and then a stall.
 #[derive(Clone, Copy, Debug)]
 struct Late {
     each: u32,
@@ -380,7 +380,7 @@ fn what_is_proven_of_the_separation_is_what_trying_all_phases_finds() {
     assert!(alone.unwrap().verify(&requirements).separation().is_none());
 }
 
-/// How a ring with a window of so many microseconds, and a period of half a minute, takes one path as long as that.
+/// Judges one path of this length by a ring with such a window and a period of half a minute.
 fn accepted_of_one_path(window: u32) -> Result<usize, HoppingError> {
     let code = HoppingCode::new(2, 5, Micros::new(240)).unwrap();
     let schedule = HoppingSchedule::<2>::new(code, Micros::from_millis(30_000), [Micros::ZERO; 2]).unwrap();

@@ -1,4 +1,4 @@
-//! What a log of a hopping ring holds is enough: an [`EchoTracker`] that is handed the phase, the raw echo time and the
+//! A log of a hopping ring suffices: an [`EchoTracker`] that is handed the phase, the raw echo time and the
 //! [`Weighed`](eeruf_core::hopping::Weighed) of each reading says what the ring said.
 
 use std::collections::BTreeMap;
@@ -22,7 +22,7 @@ fn ring(settings: HoppingSettings, seed: u32) -> HoppingRing<SENSORS> {
     HoppingRing::hopping(&schedule, settings, listening, seed, Instant::from_micros(0)).unwrap()
 }
 
-/// What odometry expects of a sensor: half of them see a wall that the robot leaves.
+/// Odometry's expectation for a sensor: half of them see a wall that the robot leaves.
 fn expected_change_us(sensor: u8) -> i32 {
     if sensor % 2 == 0 { 20 } else { i32::from(sensor) * 30 - 100 }
 }

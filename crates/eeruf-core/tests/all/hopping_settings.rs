@@ -1,5 +1,5 @@
-//! What the settings of a hopping ring say: each `with_*` sets what it names and nothing else, and the named sets are
-//! the numbers that firmware was tried with.
+//! Settings of a hopping ring: each `with_*` sets what it names and nothing else, and the named sets are the numbers
+//! that firmware was tried with.
 
 use eeruf_core::{
     Micros, RingError,

@@ -1,4 +1,4 @@
-//! What immediate refiring promises a ring, one promise at a time; the whole contract, which takes longer, is held in
+//! Promises of immediate refiring to a ring, one at a time; the whole contract, which takes longer, is held in
 //! `contract`.
 
 use eeruf_core::tables::TABLE_I_D;

@@ -1,4 +1,4 @@
-//! What a ring hears: which edges are the echo of a firing, to the microsecond, and which are none.
+//! Hearing of a ring: which edges are the echo of a firing, to the microsecond, and which are none.
 
 use eeruf_core::{
     Instant, Micros, Reading, ReadingKind, Ring, RingConfig, RingError, RingEvent, Schedule, ScheduledRing,
@@ -43,7 +43,7 @@ fn reading(ring: &mut ScheduledRing<'_, 2>) -> (Instant, Reading) {
     panic!("sensor 0 has no reading");
 }
 
-/// What a new ring makes of edges so many microseconds after the firing: the kind, the echo time, and when it says so.
+/// Reading of a new ring from edges this long after the firing: the kind, the echo time, and when it is emitted.
 fn heard(edges: &[u32]) -> (ReadingKind, Option<u32>, u32) {
     let schedule = schedule();
     let mut ring = ring(&schedule);

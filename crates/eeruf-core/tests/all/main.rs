@@ -1,4 +1,4 @@
-//! What the paper claims, and the searches against shared tables, slow and obvious judges, and their own limits, in one
+//! The paper's claims, and the searches against shared tables, slow and obvious judges, and their own limits, in one
 //! binary.
 
 mod brute_force;

@@ -1,4 +1,4 @@
-//! What a problem costs in nodes: larger neighbourhoods, and the same problem in finer ticks.
+//! Cost of a problem in nodes: larger neighbourhoods, and the same problem in finer ticks.
 
 use eeruf_core::search::design::{Problem, memory_words, shortest};
 

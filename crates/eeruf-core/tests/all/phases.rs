@@ -215,7 +215,7 @@ fn a_path_that_is_heard_in_one_phase_only_counts_for_no_separation() {
     assert_eq!(table.separation(&audible(30_000)).map(|least| least.value), Some(us(30_000)));
 }
 
-/// What separates a table of two sensors, by trying each length of a path: from x to y, of any two phases and ages.
+/// Separation of a table of two sensors, by trying each length of a path: from x to y, of any two phases and ages.
 fn tried(times: &[[u32; 2]], period: u32, audible: &Audible, stale: bool) -> Option<u32> {
     let phases = times.len() as i64;
     let us = |time: Micros| i64::from(time.as_micros());
@@ -282,7 +282,7 @@ fn neighbours_that_fire_last_and_first_are_close_across_the_end_of_a_period() {
 /// stale echo by 1 ms.
 const MOVING: [[Micros; 2]; 2] = [[Micros::ZERO, Micros::new(20_000)], [Micros::new(500), Micros::new(23_000)]];
 
-/// What `MOVING` just keeps at a period of 60 ms.
+/// Requirements that `MOVING` just keeps at a period of 60 ms.
 const JUST_KEPT: PhaseRequirements = PhaseRequirements {
     criterion: PhaseCriterion::Margin(Micros::new(600)),
     audible: Audible { reach: Micros::new(100_000), ..Audible::new(Micros::new(57_000)) },

@@ -1,5 +1,5 @@
-//! What a ring and its plans promise, where it was once broken: intervals through restarts and changes, firing
-//! after long silences, sizes and settings that do not fit.
+//! Promises of a ring and its plans that were once broken: intervals through restarts and changes, firing after long
+//! silences, sizes and settings that do not fit.
 
 use std::hash::{BuildHasher, BuildHasherDefault, DefaultHasher};
 
@@ -85,7 +85,7 @@ fn a_schedule_that_was_not_verified_keeps_its_own_intervals_through_a_restart() 
     assert!(least_interval(&fired) >= 40_000, "{fired:?}");
 }
 
-/// How long scheduled firing alone, polled every 10 ms from `now` on, takes to fire.
+/// Time that scheduled firing alone, polled every 10 ms from `now` on, takes to fire.
 fn time_to_fire(plan: &mut ScheduledFiring<'_, 12>, mut now: Instant) -> Micros {
     let start = now;
     loop {
@@ -152,7 +152,7 @@ fn periods_in_which_nothing_fires_are_caught_up_with_if_the_poll_is_no_more_than
     }
 }
 
-/// Whether a reading survives a poll at an instant so long before the end of the period.
+/// Returns true if a reading survives a poll at an instant so long before the end of the period.
 fn outlasts_a_step_back(back: u32) -> bool {
     let schedule = Schedule::<1>::from_firing(ms(20), [[ms(17)], [ms(18)]]).unwrap();
     let mut ring: ScheduledRing<1> = Ring::unverified(&schedule, CONFIG, Instant::from_micros(0)).unwrap();

@@ -180,7 +180,7 @@ fn section_5_3_four_neighbours_need_60_ms_in_another_order_and_66_with_a_long_wi
     assert_eq!((found.value, found.proven), (Some(ms(60 + 2 * 3)), true));
 }
 
-/// What the formulas of sections 5.1, 5.3 and 5.4 say for n = 4, I = 15, D = 2 and R = 15, 30, 45 or 60.
+/// Values of the formulas of sections 5.1, 5.3 and 5.4 for n = 4, I = 15, D = 2 and R = 15, 30, 45 or 60.
 fn by_formula(layout: &str, sensors: u32, window: u32) -> u32 {
     let groups = sensors / 4;
     let line = match window {

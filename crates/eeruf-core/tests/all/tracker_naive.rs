@@ -234,7 +234,7 @@ impl Naive {
     }
 }
 
-/// What a sensor hears: a wall that comes and goes, moves and turns away, paths in some phases, and chance.
+/// Sounds of a sensor: a wall that comes and goes, moves and turns away, paths in some phases, and chance.
 struct World {
     random: Random,
     wall_us: Place,
@@ -267,7 +267,7 @@ impl World {
         settings.with_tentative_within(Micros::new(random.up_to(t_delta.as_micros())))
     }
 
-    /// What comes of a firing in this phase.
+    /// The outcome of a firing in this phase.
     fn heard(&mut self, firing: Firing, part: i64) -> Place {
         if self.one_in(40) {
             let far = self.one_in(20);

@@ -1,5 +1,5 @@
-//! What the search for waits says beside its tables: how far apart a table keeps sensors, which pairs of waits differ
-//! enough, that a question without an answer has no bound, and what is wrong with a question.
+//! Answers of the search for waits beside its tables: how far apart a table keeps sensors, which pairs of waits differ
+//! enough, that a question without an answer has no bound, and errors in a question.
 
 use eeruf_core::search::wait::{Budget, MEMORY_WORDS, Objective, Problem, Search};
 use eeruf_core::search::{Outcome, WaitProblem, WaitSearch};

@@ -1,4 +1,4 @@
-//! Which rings the atlas holds.
+//! Rings of the atlas.
 
 use core::fmt;
 use core::str::FromStr;
@@ -6,7 +6,7 @@ use core::str::FromStr;
 use eeruf_core::search::PeriodProblem;
 use eeruf_core::{Layout, MAX_SENSORS, Micros, Requirements};
 
-/// Who is whose neighbour.
+/// Neighbourhoods.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Neighbourhood {
     /// All of each other, as in any short line or ring.
@@ -20,21 +20,21 @@ pub enum Neighbourhood {
 /// A ring of sensors that are all alike, in whole ticks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Ring {
-    /// How many.
+    /// Number of sensors.
     pub sensors: u8,
-    /// Who is whose neighbour.
+    /// Neighbourhoods.
     pub neighbourhood: Neighbourhood,
-    /// By how much the refire times of any two differ: the smallest number of ticks above `2 t_delta`.
+    /// Least difference of the refire times of any two: the smallest number of ticks above `2 t_delta`.
     pub separation: u32,
-    /// How far apart neighbours fire.
+    /// Interval between firings of neighbours.
     pub interval: u32,
-    /// How long each listens.
+    /// Listening time of each.
     pub window: u32,
 }
 
-/// How many sensors a ring of the atlas has at most.
+/// Largest number of sensors of a ring in the atlas.
 const MOST_SENSORS: u8 = 32;
-/// How many adjacent sensors are neighbours.
+/// Number of adjacent sensors that are neighbours.
 const NEIGHBOURS: core::ops::RangeInclusive<u8> = 2..=6;
 /// Near-identical below 0.5 ms, and the paper's 1 ms, in ticks of 1 ms.
 const SEPARATIONS: [u32; 2] = [1, 2];
@@ -69,14 +69,14 @@ pub fn all_rings() -> Vec<Ring> {
     rings
 }
 
-/// Whether the ring of this number belongs to this one of so many processes, both from 0.
+/// Returns true if the ring of this number belongs to this one of so many processes, both from 0.
 #[must_use]
 pub fn is_in_shard(number: usize, shard: usize, shards: usize) -> bool {
     number % shards.max(1) == shard
 }
 
 impl Neighbourhood {
-    /// What so many sensors of this layout are to each other, by whatever name it goes; `None` if the atlas has none.
+    /// Neighbourhood of this layout, by whatever name it goes; `None` if the atlas has none.
     #[must_use]
     pub fn of(layout: &Layout<'_>, sensors: u8) -> Option<Self> {
         let count = usize::from(sensors);
@@ -117,7 +117,7 @@ impl Ring {
         Some(Self { sensors, neighbourhood, separation, interval, window })
     }
 
-    /// What a schedule must meet, in ticks of 1 ms.
+    /// Requirements on a schedule, in ticks of 1 ms.
     #[must_use]
     pub fn problem(&self) -> PeriodProblem<'static> {
         let requirements = Requirements {

@@ -8,7 +8,7 @@ use eeruf_sim::AnySchedule;
 
 use super::rings::Ring;
 
-/// What is known of a ring. Times are in ticks.
+/// Knowledge of a ring. Times are in ticks.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Row {
     /// The ring.
@@ -21,7 +21,7 @@ pub struct Row {
     pub certified: u32,
     /// The first 32 digits of the certificate's SHA-256; empty where a part of the atlas leaves them out.
     pub hash: String,
-    /// Whether it is proven that no schedule of this period has a larger `t_delta`, a larger interval at this
+    /// True if it is proven that no schedule of this period has a larger `t_delta`, a larger interval at this
     /// `t_delta`, a longer refire time at both.
     pub preferred: [bool; 3],
     /// When each sensor fires in phases a and b.
@@ -30,7 +30,7 @@ pub struct Row {
 
 /// The digits of firing times: two for each, the higher first.
 const DIGITS: &[u8; 64] = b"0123456789ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz-_";
-/// How many digits of the hash there are.
+/// Number of digits of the hash.
 const HASH: usize = 32;
 
 /// The rows of a text, without those that are not whole: a process may have ended while it wrote one.

@@ -5,7 +5,7 @@
 
 use crate::engine::problem::MAX_SENSORS;
 
-/// What a bound is made of: `t_j - t_i <= v` is stored as `2 v`, `t_j - t_i < v` as `2 v - 1`.
+/// A bound: `t_j - t_i <= v` is stored as `2 v`, `t_j - t_i < v` as `2 v - 1`.
 pub(crate) type Bound = i32;
 
 /// The requirements contradict each other here.

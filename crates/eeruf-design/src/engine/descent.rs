@@ -1,4 +1,4 @@
-//! What a short descent branches on: the largest |d|, firing orders, then the ranks of the other |d|, downwards.
+//! Branchings of a short descent: the largest |d|, firing orders, then the ranks of the other |d|, downwards.
 //!
 //! The case that comes first matters only for how soon a schedule is found: it is drawn from a fixed seed, copied from
 //! a schedule for another period or from the sensors next to it, or the one that leaves the others most room.
@@ -52,7 +52,7 @@ impl Random {
     }
 }
 
-/// What is tried first.
+/// The first alternative to try.
 pub(crate) struct Choice {
     pub(crate) random: Option<Random>,
     /// The times of a schedule with another period.

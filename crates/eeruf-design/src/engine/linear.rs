@@ -23,13 +23,13 @@ pub(crate) fn least_of_first(variables: usize, rows: &[Row], most_pivots: usize)
     None
 }
 
-/// What each variable and each row's surplus is, as a sum of those that are 0 at the present point.
+/// Each variable and each row's surplus, as a sum of those that are 0 at the present point.
 struct Tableau {
     /// `value[i] = (constant[i] + sum over j of entry[i][j] zero[j]) / denominator`; the last row is what is minimised.
     entries: Vec<Vec<i128>>,
     constants: Vec<i128>,
     denominator: i128,
-    /// Which variable or surplus each row and each column is: variables by their numbers, surpluses above.
+    /// The variable or surplus of each row and each column: variables by their numbers, surpluses above.
     rows: Vec<usize>,
     columns: Vec<usize>,
 }

@@ -32,7 +32,7 @@ pub enum Decided {
 pub struct Search {
     problem: Problem,
     merged: Merged,
-    /// What the root of a full search may assume, once it is asked for: that takes as long as many nodes.
+    /// Assumptions of the root of a full search, once it is asked for: that takes as long as many nodes.
     assumptions: OnceCell<Assumptions>,
     /// The number of nodes between two questions whether to go on.
     between: u64,
@@ -138,8 +138,8 @@ impl Search {
         32 + 6 * self.merged.count() as u64
     }
 
-    /// What every schedule of this period keeps, if there may be any: without assumptions about symmetry, so that a
-    /// short descent may end in each.
+    /// Bounds that every schedule of this period keeps, if there may be any: without assumptions about symmetry, so
+    /// that a short descent may end in each.
     fn root(&self, period: u32) -> Option<State> {
         let mut state = State::new(&self.merged, period as i32 + 1).ok()?;
         state.goes_further = !self.merged.over_reals;

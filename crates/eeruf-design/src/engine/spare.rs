@@ -10,7 +10,7 @@ use crate::engine::search::{Decided, FiringTimes, Search};
 pub struct Spare {
     /// The firing times.
     pub fire: FiringTimes,
-    /// By how many ticks every separation, then every gap, then every window may grow, in this order: none grows at the
+    /// Ticks by which every separation, then every gap, then every window may grow, in this order: none grows at the
     /// cost of an earlier one.
     pub more: [u32; 3],
     /// True if no schedule of this period has more, of each.

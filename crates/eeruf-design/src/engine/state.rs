@@ -15,9 +15,9 @@ pub(crate) struct State {
     pub(crate) reverse: Option<(usize, usize)>,
     /// True if more is concluded than the rules of a certificate do.
     pub(crate) goes_further: bool,
-    /// What `low` and `below` were at each mark.
+    /// Values of `low` and `below` at each mark.
     trail: Vec<(Bound, u64)>,
-    /// What the rules were last applied to in vain.
+    /// State that the rules were last applied to in vain.
     pub(crate) seen: Seen,
 }
 

@@ -90,7 +90,7 @@ fn extend(problem: &Problem, period: u32, fire: &mut Vec<(u32, u32)>) -> bool {
     false
 }
 
-/// Whether the last sensor keeps the definition, by itself and with all before it.
+/// Returns true if the last sensor keeps the definition, by itself and with all before it.
 fn last_fits(problem: &Problem, period: u32, fire: &[(u32, u32)]) -> bool {
     let y = fire.len() - 1;
     let d = |x: usize| i64::from(fire[x].0) - i64::from(fire[x].1);

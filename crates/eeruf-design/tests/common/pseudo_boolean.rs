@@ -89,7 +89,7 @@ impl Inequality {
         image
     }
 
-    /// Whether the assignment keeps it.
+    /// Returns true if the assignment keeps it.
     pub(crate) fn holds(&self, is_true: &dyn Fn(&str) -> bool) -> bool {
         let kept = self.terms.iter().filter(|(variable, (sign, _))| is_true(variable) == *sign);
         kept.map(|(_, (_, coefficient))| coefficient).sum::<i128>() >= self.least
@@ -104,7 +104,7 @@ fn opposite(literal: &str) -> String {
     literal.strip_prefix('~').map_or_else(|| format!("~{literal}"), str::to_owned)
 }
 
-/// Whether unit propagation in these ends in a contradiction.
+/// Returns true if unit propagation in these ends in a contradiction.
 fn propagates_to_contradiction<'a>(all: &(impl Iterator<Item = &'a Inequality> + Clone)) -> bool {
     let mut assigned: HashMap<&str, bool> = HashMap::new();
     loop {
@@ -136,7 +136,7 @@ pub(crate) fn read_model(text: &str) -> Vec<Inequality> {
     lines.map(|line| Inequality::parse(line.strip_suffix(" ;").expect("a line ends with ;"))).collect()
 }
 
-/// What is wrong with the proof that the model has no solution, if anything: the line and why.
+/// The error in the proof that the model has no solution, if any: the line and why.
 pub(crate) fn check(model: &str, proof: &str) -> Result<(), String> {
     let mut known: Vec<Option<Inequality>> = read_model(model).into_iter().map(Some).collect();
     let mut lines = proof.lines().enumerate();

@@ -12,17 +12,17 @@ use std::collections::BTreeMap;
 use super::statistics::{ln_at_least, median};
 use crate::firings::FiringLog;
 
-/// How well a log fits a schedule.
+/// The fit of a log to a schedule.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Alignment {
     /// The log's phase p is the schedule's phase p + `rotation`, counted round.
     pub rotation: u8,
     /// Of how many observed moves the schedule explains how many.
     pub moves: (u32, u32),
-    /// How many schedules would explain as many by accident, of as many as there are rotations. Above 0.01 the readings
-    /// do not say whether the ring fired by it.
+    /// Number of schedules that would explain as many by accident, of as many as there are rotations. Above 0.01 the
+    /// readings do not say whether the ring fired by it.
     pub accidents: f64,
-    /// How sure the rotation is among all, 0 to 1.
+    /// Confidence in the rotation among all, 0 to 1.
     pub sure: f64,
 }
 
@@ -46,7 +46,7 @@ pub enum AlignError {
     Moved {
         /// The period.
         period: u32,
-        /// How many series of readings (of a sensor in a phase) jump, of how many that stay before and after.
+        /// Number of series of readings (of a sensor in a phase) that jump, and of those that stay before and after.
         jumps: (u32, u32),
     },
     /// Readings do not move as by this schedule.
@@ -196,7 +196,7 @@ fn moves(readings: &BTreeMap<(u8, u32), (u8, i64)>, tolerance: i64) -> Vec<(u8, 
     observed
 }
 
-/// Whether many series of readings jump at once.
+/// Returns true if many series of readings jump at once.
 fn jumps(series: &BTreeMap<(u8, u8), Vec<(u32, i64)>>, tolerance: i64) -> Result<(), AlignError> {
     let mut at = BTreeMap::<u32, u32>::new();
     let mut steady = 0;

@@ -1,4 +1,4 @@
-//! What is broken: sensors that hear nothing, that chatter, or whose lines are swapped.
+//! Broken parts: sensors that hear nothing, that chatter, or whose lines are swapped.
 
 use super::sensors::{Hearing, Share};
 use super::statistics::{ln_at_least, median};
@@ -14,7 +14,7 @@ pub enum Fault {
         sensor: u8,
         /// Firings with an echo.
         echoes: Share,
-        /// Whether others hear its sound, so that it is not its trigger.
+        /// True if others hear its sound, so that it is not its trigger.
         is_heard: bool,
     },
     /// A sensor's echoes come from nowhere and at any time.
@@ -29,11 +29,12 @@ pub enum Fault {
     Swapped {
         /// The two sensors, from 0.
         sensors: (u8, u8),
-        /// How many paths of these two have their like in the other direction if the lines are exchanged, of how many.
+        /// Number of paths of these two that have their like in the other direction if the lines are exchanged, of how
+        /// many.
         exchanged: Share,
         /// The same as the log stands.
         as_it_is: Share,
-        /// How many such pairs are expected in a whole ring by accident.
+        /// Number of such pairs that are expected in a whole ring by accident.
         accidents: f64,
     },
 }

@@ -1,5 +1,5 @@
-//! What is wrong with a ring, from its own log: which sensors fool each other, along paths of which length, since when,
-//! and how sure that is.
+//! Diagnosis of a ring from its own log: which sensors fool each other, along paths of which length, since when, and
+//! how sure that is.
 //!
 //! A path from sensor x to sensor y takes sound the same time whenever x fires. So if y's readings came along it, the
 //! time from x's firing to the edge at y is the same for all of them, however the firings of x and y move against each
@@ -36,16 +36,16 @@ pub(crate) use statistics::{groups, ln_at_least, median};
 use timeline::Timeline;
 pub use timing::{Timing, TimingError, timing};
 
-/// How to look for paths.
+/// Settings of the search for paths.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
-    /// How long sound is followed, in microseconds.
+    /// Time for which sound is followed, in microseconds.
     pub max_travel_us: u32,
-    /// By how much a reading may differ from what a path predicts, in microseconds: about four times the jitter.
+    /// Largest difference between a reading and what a path predicts, in microseconds: about four times the jitter.
     pub tolerance_us: u32,
-    /// How many paths may be found by accident, on average, in the whole log.
+    /// Number of paths that may be found by accident, on average, in the whole log.
     pub accidents: f64,
-    /// How sure a sender must be to be named, 0 to 1.
+    /// Confidence from which a sender is named, 0 to 1.
     pub sure: f64,
 }
 
@@ -63,15 +63,15 @@ pub struct FoundPath {
     pub sender: u8,
     /// The sensor that hears it, from 0.
     pub receiver: u8,
-    /// How long the sound travels, in microseconds.
+    /// Travel time of the sound, in microseconds.
     pub travel_us: f64,
     /// Standard error of that.
     pub travel_error_us: f64,
-    /// By how much single readings scatter, rms, in microseconds.
+    /// Scatter of single readings, rms, in microseconds.
     pub scatter_us: f64,
-    /// How many different offsets between the two firings support it, of how many in which it could be heard.
+    /// Number of different offsets between the two firings that support it, and of those in which it could be heard.
     pub offsets: (u32, u32),
-    /// How many paths with as much support are expected by accident in the whole log.
+    /// Number of paths with as much support that are expected by accident in the whole log.
     pub accidents: f64,
     /// Readings that came along it.
     pub readings: u32,
@@ -81,16 +81,16 @@ pub struct FoundPath {
     pub periods: (u32, u32),
 }
 
-/// What a log says about a ring.
+/// Findings of a log about a ring.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Diagnosis {
     /// The paths, by receiver, best supported first. A sensor's own echo is a path from itself.
     pub paths: Vec<FoundPath>,
     /// For each firing of the log, whose sound its reading is, if that is sure enough.
     pub named: Vec<Option<Named>>,
-    /// What each sensor hears.
+    /// Sounds that each sensor hears.
     pub hearing: Vec<Hearing>,
-    /// What is broken.
+    /// Broken parts.
     pub faults: Vec<Fault>,
     /// The most offsets at which a reading could come from a firing of another sensor, over all pairs.
     pub most_offsets: u32,

@@ -3,14 +3,14 @@
 use super::timeline::Timeline;
 use super::{FoundPath, Settings};
 
-/// Whose sound a reading is.
+/// The sender of a reading.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Named {
     /// The sensor that sent it, from 0: the receiver itself for its own echo.
     pub sender: u8,
-    /// How long the sound travelled, in microseconds.
+    /// Travel time of the sound, in microseconds.
     pub travel_us: f64,
-    /// How sure that is, 0 to 1.
+    /// Confidence, 0 to 1.
     pub sure: f64,
 }
 

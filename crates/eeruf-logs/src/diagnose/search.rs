@@ -13,10 +13,10 @@ const MOST_PATHS: usize = 60;
 /// A path supports an offset if it is heard in this share of the readings there that nothing earlier hid: a loud path,
 /// or a faint one.
 const SUPPORTS: [f64; 2] = [0.5, 0.2];
-/// How many places of each sender are looked at more closely before the best is taken.
+/// Number of places of each sender that are looked at more closely before the best is taken.
 const LOOKED_AT: usize = 3;
 
-/// Whose sound it may be: a sensor's, or the receiver's own of this very firing, or its own of an earlier one.
+/// The possible sender: a sensor, or the receiver itself by this very firing, or by an earlier one.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Source {
     Other(u8),
@@ -34,7 +34,7 @@ struct Travel {
     reading: usize,
 }
 
-/// How well a path is supported.
+/// Support of a path.
 struct Support {
     offsets: (u32, u32),
     /// The natural logarithm of the probability of as much support by accident.
@@ -47,7 +47,7 @@ struct Search<'a> {
     receiver: u8,
     timeline: &'a Timeline,
     heard: &'a [Heard],
-    /// Which readings are explained by a path that was found.
+    /// Readings that are explained by a path that was found.
     explained: Vec<bool>,
     /// The echo times of those that are not, sorted.
     open: Vec<i64>,
@@ -170,7 +170,7 @@ impl Search<'_> {
         places
     }
 
-    /// What speaks for a path and what against it.
+    /// Evidence for a path and against it.
     fn support(&self, source: Source, travel_us: i64) -> Support {
         // By offset: whether the path was heard, the chance of that by accident, and the reading.
         let mut trials = Vec::<(i64, bool, f64, usize)>::new();

@@ -1,4 +1,4 @@
-//! What each sensor hears: its own echo, others' sound, or what no path explains; and in which phases it is blind.
+//! Sounds of each sensor: its own echo, others' sound, or what no path explains; and the phases in which it is blind.
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -8,7 +8,7 @@ use crate::firings::{Firing, FiringLog};
 /// A share of a number of trials, with its 95 % interval.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Share {
-    /// How many.
+    /// Number of sensors.
     pub count: u32,
     /// Of how many.
     pub of: u32,
@@ -34,7 +34,7 @@ impl Share {
     }
 }
 
-/// What one sensor hears.
+/// Sounds of one sensor.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Hearing {
     /// The sensor, from 0.
@@ -52,7 +52,7 @@ pub struct Hearing {
     /// Firings whose echo fits no path and does not even come back at the same time when the ring fires alike: of those
     /// with an echo in a phase and beside firings that there were four times at least.
     pub wandering: Share,
-    /// Whether its own echo was found as a path.
+    /// True if its own echo was found as a path.
     pub has_own_path: bool,
     /// The phases in which it fired at least five times and its own echo was never first, with the number of firings.
     pub blind_phases: Vec<(u8, u32)>,

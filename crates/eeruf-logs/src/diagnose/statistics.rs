@@ -1,4 +1,4 @@
-//! How likely accidents are.
+//! Probabilities of accidents.
 
 /// The natural logarithm of the factorial of `n`.
 fn ln_factorial(n: f64) -> f64 {

@@ -63,7 +63,7 @@ impl Timeline {
         most
     }
 
-    /// Who fired before a moment and may still be heard at it, latest first: when, and who. What fired at the very
+    /// Firings before a moment that may still be heard at it, latest first: when, and who. What fired at the very
     /// moment counts.
     pub(super) fn before(&self, moment_us: i64) -> impl Iterator<Item = (i64, u8)> + '_ {
         let end = self.firings.partition_point(|&(fired_us, _)| fired_us <= moment_us);

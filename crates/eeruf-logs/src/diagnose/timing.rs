@@ -4,10 +4,10 @@ use core::fmt;
 
 use crate::firings::FiringLog;
 
-/// How firings keep a schedule.
+/// Adherence of firings to a schedule.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Timing {
-    /// By how much the log's clock runs slow against the schedule's (firings come late more and more), in millionths.
+    /// Drift of the log's clock against the schedule's (firings come late more and more), in millionths.
     pub drift_ppm: f64,
     /// Standard error of that.
     pub drift_error_ppm: f64,
@@ -15,7 +15,7 @@ pub struct Timing {
     pub jitter_us: f64,
     /// Of 100 firings one is late by more than this after the schedule that drifts so, in microseconds.
     pub late_99_us: f64,
-    /// How many firings were compared.
+    /// Number of firings that were compared.
     pub firings: usize,
 }
 

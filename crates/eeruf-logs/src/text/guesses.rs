@@ -132,7 +132,7 @@ impl Plan {
 
 /// The unit of ranges by their magnitude; sorts them.
 fn by_magnitude(values: &mut [(f64, bool)]) -> RangeUnit {
-    /// What sensors and libraries send in place of a range.
+    /// Values that sensors and libraries send in place of a range.
     const PLACEHOLDERS: [f64; 8] = [999.0, 9999.0, 8190.0, 8191.0, 32767.0, 65533.0, 65534.0, 65535.0];
     values.sort_by(|a, b| a.0.total_cmp(&b.0));
     let real: Vec<_> = values.iter().copied().filter(|value| !PLACEHOLDERS.contains(&value.0)).collect();

@@ -1,10 +1,10 @@
-//! What the name of a column says about its values.
+//! Meaning of a column's name for its values.
 
 use crate::options::{RangeUnit, TimeUnit};
 
 use super::value;
 
-/// What a column is by its name.
+/// Meaning of a column by its name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Meaning {
     Range,
@@ -257,7 +257,7 @@ pub(crate) fn time_unit(name: &str) -> Option<TimeUnit> {
     words(name).iter().rev().find_map(|word| time_word(word))
 }
 
-/// How much a column's time is to be preferred: the stamp of a message's header, then any other.
+/// Preference of a column's time: the stamp of a message's header, then any other.
 pub(crate) fn preference(name: &str) -> u8 {
     let words = words(name);
     let has = |word: &str| words.iter().any(|own| own == word);

@@ -4,7 +4,7 @@ use serde_json::Value as Json;
 
 use super::value;
 
-/// How a line parts into cells.
+/// Separation of a line into cells.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Shape {
     Separated(Separator),

@@ -81,7 +81,7 @@ pub(crate) fn unit(word: &str) -> Option<RangeUnit> {
     })
 }
 
-/// What a cell of ranges says; nothing for what is neither a number nor a word for no echo.
+/// The range in a cell; `None` for what is neither a number nor a word for no echo.
 pub(crate) fn range(text: &str, decimal_comma: bool) -> Option<(Value, Option<RangeUnit>)> {
     if is_no_echo(text) {
         return Some((Value::NoEcho, None));

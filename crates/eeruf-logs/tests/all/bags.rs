@@ -6,7 +6,7 @@ use eeruf_logs::{Echo, Options, Reading, Report};
 
 use crate::{BAGS, bag, read};
 
-/// What `write_bags.py` put into message `m` of topic `n`.
+/// Contents that `write_bags.py` put into message `m` of topic `n`.
 fn expected(topic: usize, message: usize) -> Echo {
     match message {
         2 => Echo::Nothing,

@@ -16,13 +16,13 @@ impl Random {
     }
 }
 
-/// How the ring is built, and what is broken about it.
+/// The ring and its faults.
 struct World {
-    /// How many phases; 2 to 7.
+    /// Number of phases; 2 to 7.
     phases: i64,
-    /// Whether lags are drawn anew every 50 periods.
+    /// True if lags are drawn anew every 50 periods.
     shifts: bool,
-    /// Which sensor's receiver is at the end of each echo line.
+    /// The sensor whose receiver is at the end of each echo line.
     receivers: [usize; SENSORS],
     deaf: Option<usize>,
     chatters: Option<usize>,

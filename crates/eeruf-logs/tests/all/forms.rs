@@ -5,8 +5,8 @@ use std::path::Path;
 
 use eeruf_logs::{Echo, FieldChoice, Options, Pattern, RangeUnit, Report, Table, read_log, read_text};
 
-/// What a log says: each sensor's name and its ranges in metres, `-` for no echo, `<` for too close, `!` for no number;
-/// and how many seconds lie between its first two readings.
+/// A log's contents: each sensor's name and its ranges in metres, `-` for no echo, `<` for too close, `!` for no
+/// number; and the seconds between its first two readings.
 fn said(bytes: &[u8], options: &Options) -> (String, Option<f64>, Report) {
     let mut readings = vec![];
     let report = read_text(bytes, Path::new("log"), options, |_, reading| readings.push(*reading)).unwrap();

@@ -17,7 +17,7 @@ impl Random {
     }
 }
 
-/// How long sound takes from the first index to the second.
+/// Travel times of sound from the first index to the second.
 type Travel = [[Vec<i64>; SENSORS]; SENSORS];
 
 fn room(random: &mut Random) -> Travel {
@@ -67,7 +67,7 @@ fn log(travel: &Travel, random: &mut Random, strays: i64) -> FiringLog {
     FiringLog::new("test", firings)
 }
 
-/// Whether a path is one of the room's.
+/// Returns true if a path is one of the room's.
 fn is_there(travel: &Travel, sender: u8, receiver: u8, travel_us: f64) -> bool {
     travel[usize::from(sender)][usize::from(receiver)].iter().any(|&us| (us as f64 - travel_us).abs() < 60.0)
 }

@@ -1,4 +1,4 @@
-//! What `McapWriter` writes.
+//! Output of `McapWriter`.
 
 use eeruf_logs::{McapWriter, Options, Reading, read_log};
 

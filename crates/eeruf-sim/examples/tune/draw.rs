@@ -1,9 +1,10 @@
-//! Which pilots are tried: the same for every method.
+//! Pilots that are tried: the same for every method.
 
 use eeruf_sim::experiments::set_two::Piloting;
 use eeruf_sim::{Random, Vfh};
 
-/// What the search may change; the rest is as published. Numbers have few digits, so that they print as they are.
+/// Parameters that the search may change; the rest is as published. Numbers have few digits, so that they print as they
+/// are.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Candidate {
     pub(crate) smoothing: usize,

@@ -1,4 +1,4 @@
-//! What was tried already, in a file: a search that was stopped takes up where it was.
+//! Record of what was tried already, in a file: a search that was stopped takes up where it was.
 
 use std::collections::HashMap;
 use std::fs::{self, File, OpenOptions};
@@ -9,7 +9,7 @@ use eeruf_sim::Method;
 
 use crate::search::{Round, Score};
 
-/// What a score belongs to: method, round, number of the candidate.
+/// Owner of a score: method, round, number of the candidate.
 type Key = (String, usize, usize);
 
 /// All scores so far.

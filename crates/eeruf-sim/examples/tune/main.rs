@@ -21,7 +21,7 @@ use eeruf_sim::{Method, Physics, Robot, best_schedule_for};
 use log::Log;
 use search::{Search, Tuned};
 
-/// How many nodes the search for the schedule of `eeruf_best` may cost; it is proven shortest long before.
+/// Budget of nodes for the search of the schedule of `eeruf_best`; it is proven shortest long before.
 const BUDGET: u64 = 300_000;
 
 fn main() -> Result<(), Box<dyn Error>> {

@@ -1,4 +1,4 @@
-//! What several echoes are compared by in Set I: the best of a grid, on alcoves below 2,000.
+//! Settings by which several echoes are compared in Set I: the best of a grid, on alcoves below 2,000.
 
 use eeruf_core::Micros;
 use eeruf_sim::experiments::ExperimentError;
@@ -26,7 +26,7 @@ pub(crate) fn line() -> Result<String, ExperimentError> {
     Ok(best.map_or_else(String::new, |(_, setting)| printed(setting)))
 }
 
-/// What is wrong and what is lost together, as shares: of the median alcove and of the one that one in ten exceeds.
+/// Errors and losses together, as shares: of the median alcove and of the one that one in ten exceeds.
 fn cost(multi_echo: MultiEcho, seeds: u64) -> Result<f64, ExperimentError> {
     let methods = Entry::all([Method::MultiEcho]);
     let asked = SetOneOptions {

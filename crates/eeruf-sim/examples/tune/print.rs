@@ -1,4 +1,4 @@
-//! What was found, as the source of `eeruf-sim` has it.
+//! The result, as the source of `eeruf-sim` has it.
 
 use eeruf_sim::Method;
 

@@ -11,22 +11,22 @@ use eeruf_sim::experiments::set_two::{Ending, Pilots, SECOND_AHEAD, SECOND_BEHIN
 use crate::draw::{Candidate, candidate};
 use crate::log::Log;
 
-/// How many pilots drive how many courses, alone, behind a second robot and ahead of one. Courses of a round come after
-/// those of the round before.
+/// Numbers of pilots and of courses that each drives, alone, behind a second robot and ahead of one. Courses of a round
+/// come after those of the round before.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Round {
     pub(crate) pilots: usize,
     pub(crate) courses: u64,
 }
 
-/// What each method is given: 48 pilots, and 2,880 courses driven.
+/// Budget of each method: 48 pilots, and 2,880 courses driven.
 pub(crate) const ROUNDS: [Round; 3] =
     [Round { pilots: 48, courses: 8 }, Round { pilots: 12, courses: 24 }, Round { pilots: 4, courses: 72 }];
 
-/// What a pilot made of a round's courses.
+/// Score of a pilot on a round's courses.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Score {
-    /// How many courses it finished alone, with a second robot behind, and with one ahead.
+    /// Number of courses it finished alone, with a second robot behind, and with one ahead.
     pub(crate) finished: [u32; 3],
     /// For how long it drove on those that it finished, in seconds.
     pub(crate) time_s: f64,
@@ -40,7 +40,7 @@ impl Score {
     }
 }
 
-/// What a search found.
+/// Result of a search.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Tuned {
     pub(crate) number: usize,

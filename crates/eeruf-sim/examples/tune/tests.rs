@@ -87,7 +87,7 @@ fn the_pilots_in_the_source_are_printed_as_this_prints_them_and_are_what_is_driv
     }
 }
 
-/// What a line of the source says: which candidate, and how often it finished.
+/// Contents of a line of the source: the candidate, and how often it finished.
 fn read(method: Method, line: &str) -> Tuned {
     let finished = line.rsplit_once("// ").unwrap().1.split(", ").map(|count| count.parse().unwrap());
     let finished: Vec<u32> = finished.collect();

@@ -70,7 +70,7 @@ impl Piston {
         self.lobe(self.ka * libm::sin(off)).max(self.floor)
     }
 
-    /// What the end of the baffle leaves at an angle of 0 to pi, 1 on the axis.
+    /// Share that the end of the baffle leaves at an angle of 0 to pi, 1 on the axis.
     fn rim(&self, off: f64) -> f64 {
         let edge_wave = |x: f64| {
             let [c, s] = fresnel(x.abs() * (2.0 / PI).sqrt());

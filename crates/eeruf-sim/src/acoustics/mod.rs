@@ -1,5 +1,5 @@
-//! How loud sound is: directivity and gain of transducers, reflection, spreading, and waves at poles and edges.
-//! It uses `geometry` and `scene`; `tracing` applies it to the paths that it finds.
+//! Loudness of sound: directivity and gain of transducers, reflection, spreading, and waves at poles and edges. It uses
+//! `geometry` and `scene`; `tracing` applies it to the paths that it finds.
 
 mod diffraction;
 mod directivity;

@@ -1,4 +1,4 @@
-//! What a wall returns that is not wide against the first Fresnel zone: Fresnel's integral over its width.
+//! Reflection of a wall that is not wide against the first Fresnel zone: Fresnel's integral over its width.
 
 use core::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2, PI};
 
@@ -68,7 +68,7 @@ pub(crate) fn fresnel(x: f64) -> [f64; 2] {
     [0.5 + f * sin - g * cos, 0.5 - f * cos - g * sin]
 }
 
-/// How much of an endless wall's reflection a part of it returns, which ends at two edges. Each is given by how much
+/// Share of an endless wall's reflection that a part of it returns, which ends at two edges. Each is given by how much
 /// longer the way by it is than the path, in wavelengths; infinite where the wall does not end. `beside` says that the
 /// point of reflection does not lie between them.
 ///

@@ -1,11 +1,11 @@
-//! Which effects a world has: the presets `plain` and `default`, and what can be switched one by one.
+//! Effects of a world: the presets `plain` and `default`, and what can be switched one by one.
 
 use core::fmt;
 use core::str::FromStr;
 
 use serde::ser::{Serialize, SerializeStruct as _, Serializer};
 
-/// Which effects are computed. `docs/explanation/physics.md` says what each is, and where its default comes from.
+/// Effects that are computed. `docs/explanation/physics.md` says what each is, and where its default comes from.
 ///
 /// ```
 /// use eeruf_sim::Physics;
@@ -15,16 +15,16 @@ use serde::ser::{Serialize, SerializeStruct as _, Serializer};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Physics {
-    /// Whether a pole shades what lies behind it where it is thicker than sound can bend around: where its radius
+    /// True if a pole shades what lies behind it where it is thicker than sound can bend around: where its radius
     /// exceeds that of the first Fresnel zone, `sqrt(lambda d1 d2 / (d1 + d2))`. A sensor within a pole or a wall is
     /// then refused as well. Robots' bodies shade in any case.
     pub shadows: bool,
-    /// Whether the free ends of walls and the corners that jut out diffract, once and in plain sight.
+    /// True if the free ends of walls and the corners that jut out diffract, once and in plain sight.
     pub edges: bool,
-    /// Whether a wall that is narrow against the first Fresnel zone, `sqrt(lambda r)` wide at distance r, returns as
+    /// True if a wall that is narrow against the first Fresnel zone, `sqrt(lambda r)` wide at distance r, returns as
     /// much as its width does instead of what an endless wall does.
     pub narrow_panels: bool,
-    /// Whether a threshold detector hears faint echoes later. An echo just at the threshold is heard a whole burst
+    /// True if a threshold detector hears faint echoes later. An echo just at the threshold is heard a whole burst
     /// late.
     pub range_walk: bool,
     /// For how long a path fades in the same way, in seconds: the time after which the correlation has fallen to 1/e.
@@ -39,8 +39,7 @@ impl Physics {
     pub const PLAIN: Self =
         Self { shadows: false, edges: false, narrow_panels: false, range_walk: false, fading_time_s: 0.0 };
 
-    /// What worlds have unless asked otherwise: everything on, with the numbers that `docs/explanation/physics.md`
-    /// gives reasons for.
+    /// The default of worlds: everything on, with the numbers that `docs/explanation/physics.md` gives reasons for.
     pub const DEFAULT: Self =
         Self { shadows: true, edges: true, narrow_panels: true, range_walk: true, fading_time_s: 1.0 };
 
@@ -52,7 +51,7 @@ impl Physics {
         Self::PRESETS.iter().find(|(_, preset)| preset == self).map(|(name, _)| *name)
     }
 
-    /// Whether paths fade in the same way for a time.
+    /// Returns true if paths fade in the same way for a time.
     pub(crate) fn fades_slowly(&self) -> bool {
         self.fading_time_s > 0.0
     }

@@ -1,4 +1,4 @@
-//! How the amplitude falls along a path over poles, by geometric optics.
+//! Fall of the amplitude along a path over poles, by geometric optics.
 
 use crate::geometry::Specular;
 

@@ -13,7 +13,7 @@ const GAIN_STEPS: f64 = 12.0;
 /// 1,000, then 1,152 for each step, and 2,304 for each of the last three.
 const TL851_HZ: f64 = 420e3;
 const TL851_STEPS: [u32; 11] = [1000, 2152, 3304, 4456, 5608, 6760, 7912, 9064, 11_368, 13_672, 15_976];
-/// What a step of [`GainProfile::Polaroid6500`] adds, in dB.
+/// Height of a step of [`GainProfile::Polaroid6500`], in dB.
 const STEP_DB: f64 = 1.15;
 
 /// The gain of a receiver at a time after firing, relative to the gain at `full_s`, from which on it stays 1. The
@@ -80,7 +80,7 @@ impl Transducer {
     /// `docs/explanation/physics.md`.
     pub const HC_SR04: Self = Self::of(&eeruf_modules::HC_SR04);
 
-    /// What a module sends and hears.
+    /// Sending and hearing of a module.
     pub const fn of(module: &Module) -> Self {
         Self {
             frequency_hz: module.frequency_hz as f64,
@@ -121,7 +121,7 @@ impl Transducer {
         Piston { floor: self.pattern_floor, beam: self.beam, ..Piston::new(self.wave_number(air), self.radius_m) }
     }
 
-    /// Whether it hears the sound of another kind: whether their bands overlap. Whoever sends is heard in turn.
+    /// Returns true if it hears the sound of another kind: whether their bands overlap. Whoever sends is heard in turn.
     ///
     /// ```
     /// use eeruf_sim::Transducer;
@@ -156,7 +156,7 @@ impl Transducer {
         amplitude * gain_at(self.gain, length_m / c, 2.0 * self.max_range_m / c)
     }
 
-    /// By how many decibels that is above the [`detection_floor`](Self::detection_floor); below 0 nothing is heard.
+    /// Level above the [`detection_floor`](Self::detection_floor), in decibels; below 0 nothing is heard.
     ///
     /// ```
     /// use eeruf_sim::{Air, Transducer};

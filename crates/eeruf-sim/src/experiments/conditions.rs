@@ -1,4 +1,4 @@
-//! What an experiment's rings hear besides what its physics says: floor and ceiling, and the module's own gain.
+//! Conditions of an experiment's rings besides its physics: floor and ceiling, and the module's own gain.
 
 use core::fmt;
 
@@ -26,7 +26,7 @@ impl Conditions {
     }
 }
 
-/// What follows the name of the physics in a title; nothing where both are usual.
+/// The words after the name of the physics in a title; nothing where both are usual.
 impl fmt::Display for Conditions {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.height.map_or(Ok(()), |height| write!(f, ", height: {height}"))?;

@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::spread::{interval_95, mean};
 use crate::results::quantile;
 
-/// How a figure differs between two methods on the same scenes.
+/// Difference of a figure between two methods on the same scenes.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Difference {
     /// Number of scenes in which both methods have the figure.

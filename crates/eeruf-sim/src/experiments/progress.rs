@@ -1,4 +1,4 @@
-//! How far an experiment on many threads has come, and whether it goes on: one that is stopped should not wait for the
+//! Progress of an experiment on many threads, and whether it goes on: one that is stopped should not wait for the
 //! simulations under way.
 
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -17,7 +17,7 @@ impl<'a> Progress<'a> {
         Self { keep_going, all, done: AtomicU64::new(0), stopped: AtomicBool::new(false) }
     }
 
-    /// Whether to go on; to be asked in the middle of a simulation as well.
+    /// True to go on; to be asked in the middle of a simulation as well.
     pub(super) fn go_on(&self) -> bool {
         let share = self.done.load(Ordering::Relaxed) as f64 / self.all as f64;
         let going = !self.stopped() && (self.keep_going)(share);
@@ -33,7 +33,7 @@ impl<'a> Progress<'a> {
         self.go_on();
     }
 
-    /// Whether an answer was `false`.
+    /// Returns true if an answer was `false`.
     pub(super) fn stopped(&self) -> bool {
         self.stopped.load(Ordering::Relaxed)
     }

@@ -1,4 +1,4 @@
-//! How a figure spreads over many runs.
+//! Spread of a figure over many runs.
 
 use serde::Serialize;
 
@@ -23,7 +23,7 @@ pub struct Spread {
     pub mean_95: [f64; 2],
 }
 
-/// How many samples the bootstrap draws.
+/// Number of samples that the bootstrap draws.
 const SAMPLES: usize = 1000;
 /// Seeds the bootstrap, so that the same values have the same intervals.
 const SEED: u64 = 1979;

@@ -9,7 +9,7 @@ pub(crate) struct Mirror {
     normal: Vector,
     /// Twice the line's own angle: reflection sends a direction `theta` to `turn - theta`.
     pub(crate) turn: f64,
-    /// What a flat wall of its material returns.
+    /// Reflection of a flat wall of its material.
     pub(crate) reflection: f64,
 }
 

@@ -1,9 +1,9 @@
-//! What can be wrong with a map.
+//! Errors in a map.
 
 use core::fmt;
 use std::path::{Path, PathBuf};
 
-/// What is wrong with a map: which file, what it says, and what is expected.
+/// An error in a map: the file, what it says, and what is expected.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct MapError {
     file: PathBuf,
@@ -20,7 +20,7 @@ impl MapError {
         &self.file
     }
 
-    /// What is wrong with it.
+    /// The error.
     pub fn message(&self) -> &str {
         &self.message
     }

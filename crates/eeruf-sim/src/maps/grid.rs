@@ -8,7 +8,7 @@ use super::error::MapError;
 use super::{pgm, simplify, yaml};
 use crate::scene::Wall;
 
-/// Which cells of a square grid are occupied, and where the grid lies.
+/// Occupied cells of a square grid, and where the grid lies.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OccupancyGrid {
     width: usize,
@@ -56,7 +56,7 @@ impl OccupancyGrid {
         self.cell_m
     }
 
-    /// Whether a cell is occupied, counted from the lower left; none is outside the grid.
+    /// Returns true if a cell is occupied, counted from the lower left; none is outside the grid.
     pub fn is_occupied(&self, column: usize, row: usize) -> bool {
         column < self.width && row < self.height && self.occupied[row * self.width + column]
     }

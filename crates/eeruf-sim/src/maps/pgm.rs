@@ -8,7 +8,7 @@ const MOST: usize = 400_000_000;
 pub(super) struct Picture {
     pub(super) width: usize,
     pub(super) height: usize,
-    /// How bright each pixel is, 0 to 1.
+    /// Brightness of each pixel, 0 to 1.
     pub(super) pixels: Vec<f32>,
 }
 

@@ -100,7 +100,7 @@ fn square(a: Corner, b: Corner) -> i64 {
     (a[0] - b[0]).pow(2) + (a[1] - b[1]).pow(2)
 }
 
-/// How far a corner is from a line between two corners.
+/// Distance of a corner from a line between two corners.
 pub(super) fn off(corner: Corner, from: Corner, to: Corner) -> f64 {
     let [dx, dy] = [to[0] - from[0], to[1] - from[1]].map(|way| way as f64);
     let [x, y] = [corner[0] - from[0], corner[1] - from[1]].map(|way| way as f64);
@@ -134,7 +134,7 @@ fn crossing(lines: &[Line]) -> BTreeSet<usize> {
     found
 }
 
-/// Whether two lines have more in common than an end of both. Exact, as corners are whole numbers.
+/// Returns true if two lines have more in common than an end of both. Exact, as corners are whole numbers.
 fn meet([a, b]: [Corner; 2], [c, d]: [Corner; 2]) -> bool {
     let side = |from: Corner, to: Corner, of: Corner| {
         ((to[0] - from[0]) * (of[1] - from[1]) - (to[1] - from[1]) * (of[0] - from[0])).signum()
@@ -164,7 +164,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// How far a point is from the nearest of some lines.
+    /// Distance of a point from the nearest of some lines.
     fn off_lines(point: [f64; 2], corners: &[Corner]) -> f64 {
         let lines = corners.iter().zip(corners.iter().cycle().skip(1));
         let each = lines.map(|(a, b)| {

@@ -2,7 +2,7 @@
 
 use saphyr::{LoadableYamlNode, Scalar, Yaml};
 
-/// What the file says.
+/// Contents of the file.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Head {
     pub(super) image: String,
@@ -10,7 +10,7 @@ pub(super) struct Head {
     pub(super) resolution_m: f64,
     /// Where the lower left corner of the picture is: x and y in metres, yaw in radians.
     pub(super) origin: [f64; 3],
-    /// Whether white is occupied, not black.
+    /// True if white is occupied, not black.
     pub(super) negate: bool,
     /// A cell that is occupied with a higher probability is.
     pub(super) occupied_thresh: f64,

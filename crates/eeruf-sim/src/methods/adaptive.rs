@@ -34,7 +34,7 @@ impl<'s> RingRunner<'s> for AdaptiveRing<'s> {
     }
 }
 
-/// What the rungs of the adaptive method's ladder are, times the schedule it starts from.
+/// Rungs of the adaptive method's ladder, times the schedule it starts from.
 const RUNGS: [(u32, u32); 4] = [(5, 6), (1, 1), (4, 3), (5, 3)];
 
 /// The rungs of a robot's ladder, from the schedule that it starts from.

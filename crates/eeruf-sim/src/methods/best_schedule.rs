@@ -13,18 +13,18 @@ use crate::world::{AnySchedule, Robot};
 /// 5.5).
 pub const TICK: Micros = Micros::new(100);
 
-/// What [`Method::EerufBest`](crate::Method::EerufBest) fires by.
+/// Schedule of [`Method::EerufBest`](crate::Method::EerufBest).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BestSchedule {
     /// The schedule.
     pub schedule: AnySchedule,
-    /// Whether it is proven that no schedule for the same requirements has a shorter period.
+    /// True if it is proven that no schedule for the same requirements has a shorter period.
     pub proven: bool,
 }
 
-/// What a ring must not give up against the schedule that it fires by: the robot's `t_delta` and window, the interval
-/// that its schedule (or the paper's table at its period) keeps between neighbours, and that a sensor's own stale
-/// echoes are rejected.
+/// Requirements that a ring must keep of the schedule it fires by: the robot's `t_delta` and window, the interval that
+/// its schedule (or the paper's table at its period) keeps between neighbours, and that a sensor's own stale echoes are
+/// rejected.
 pub fn requirements_of(robot: &Robot) -> Requirements<'static> {
     let own = robot.schedule.or_else(|| table_i_d_for(robot.sensors.len(), robot.period, robot.neighbours).ok());
     let layout = layout_of(robot);

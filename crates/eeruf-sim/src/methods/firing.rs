@@ -42,12 +42,12 @@ impl<F: Firing + ?Sized> Firing for Box<F> {
 /// One period of a [`Firing`].
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FiringPeriod {
-    /// How long it lasts: 1 us to [`MAX_PERIOD`].
+    /// Length: 1 us to [`MAX_PERIOD`].
     pub length: Micros,
     /// Its phase, which its readings carry: 0 to 7.
     pub phase: Phase,
-    /// Which sensors fire, each with its time after the beginning of the period and before its end, in any order. A
-    /// sensor may fire several times or not at all, but never while it still listens: within the robot's
+    /// Firings, each with its time after the beginning of the period and before its end, in any order. A sensor may
+    /// fire several times or not at all, but never while it still listens: within the robot's
     /// [`window`](crate::Robot::window) of its last firing.
     pub firings: Vec<(Micros, u8)>,
 }
@@ -138,7 +138,7 @@ pub(crate) struct PeriodFiring {
     /// The next of them.
     next: usize,
     start: Instant,
-    /// How long ago each sensor fired when the present period begins, as planned; none for long ago.
+    /// Time since each sensor fired when the present period begins, as planned; none for long ago.
     before_us: Vec<Option<u64>>,
     enabled: [bool; MAX_SENSORS],
     paused: bool,

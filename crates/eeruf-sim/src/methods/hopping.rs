@@ -8,12 +8,11 @@ use eeruf_core::{
 use super::ring_runner::{RingStart, StartError, Started};
 use crate::world::Robot;
 
-/// By how much crosstalk moves at least from phase to phase: 90 us more than the tracker's `T_delta`, for jitter and
-/// lateness.
+/// The least shift of crosstalk from phase to phase: 90 us more than the tracker's `T_delta`, for jitter and lateness.
 const STEP: Micros = Micros::new(240);
 
-/// How much of a period each sensor gets at least, unless the robot drives: with less, more crosstalk comes first and
-/// what is believed is right for less of the time (docs/explanation/hopping.md).
+/// Least share of a period for each sensor, unless the robot drives: with less, more crosstalk comes first and what is
+/// believed is right for less of the time (docs/explanation/hopping.md).
 const TURN_US: u32 = 10_000;
 
 /// A hopping ring, no larger than needed.

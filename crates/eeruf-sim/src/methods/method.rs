@@ -22,10 +22,10 @@ use crate::world::{AnySchedule, Robot};
 /// The most echoes that a sensor reports of one firing.
 pub(crate) const MAX_ECHOES: usize = 8;
 
-/// How a method fires and believes.
+/// Firing and belief of a method.
 struct Row {
     name: &'static str,
-    /// Whether it is EERUF: waits alternate, and readings are compared.
+    /// True if it is EERUF: waits alternate, and readings are compared.
     eeruf: bool,
     /// True if it fires by a robot's [`Sketch`](crate::Sketch).
     sketch: bool,
@@ -34,15 +34,15 @@ struct Row {
     /// The ring, ready to run.
     ring: for<'s> fn(&RingStart<'s>) -> Started<'s>,
     belief: Belief,
-    /// What the ring fires by, from that schedule.
+    /// The ring's plan, from that schedule.
     plan: fn(&Robot, AnySchedule) -> Result<FiringPlan, StartError>,
-    /// How many echoes of a firing a sensor reports.
+    /// Number of echoes of a firing that a sensor reports.
     echoes: usize,
-    /// How soon a sensor may fire again.
+    /// Least time until a sensor may fire again.
     refire: fn(&Robot) -> Micros,
 }
 
-/// What a row has by default: one schedule, one echo, no firing while the sensor listens.
+/// Defaults of a row: one schedule, one echo, no firing while the sensor listens.
 const DEFAULT: Row = Row {
     name: "",
     eeruf: false,
@@ -252,7 +252,8 @@ impl Method {
         self.row().name
     }
 
-    /// Whether it is the paper's method or follows from it: waits alternate, and consecutive readings are compared.
+    /// Returns true if it is the paper's method or follows from it: waits alternate, and consecutive readings are
+    /// compared.
     pub const fn is_eeruf(self) -> bool {
         self.row().eeruf
     }
@@ -267,17 +268,17 @@ impl Method {
         Self::ALL.into_iter().filter(|method| !method.is_sketch())
     }
 
-    /// Which readings it believes.
+    /// Readings that it believes.
     pub(crate) const fn belief(self) -> Belief {
         self.row().belief
     }
 
-    /// How many echoes of a firing a sensor reports.
+    /// Number of echoes of a firing that a sensor reports.
     pub(crate) const fn echoes(self) -> usize {
         self.row().echoes
     }
 
-    /// How soon a sensor may fire again.
+    /// Least time until a sensor may fire again.
     pub(crate) fn soonest_refire(self, robot: &Robot) -> Micros {
         (self.row().refire)(robot)
     }
@@ -287,7 +288,7 @@ impl Method {
         (self.row().schedule)(&ScheduleQuery { robot, best })
     }
 
-    /// What a robot's ring fires by, from the schedule that it starts with.
+    /// The plan of a robot's ring, from the schedule that it starts with.
     pub(crate) fn plan(self, robot: &Robot, schedule: AnySchedule) -> Result<FiringPlan, StartError> {
         (self.row().plan)(robot, schedule)
     }
@@ -308,16 +309,16 @@ impl Method {
     }
 }
 
-/// Which readings a method believes.
+/// Readings that a method believes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Belief {
     /// Every one.
     All,
     /// The median of the last few.
     Median,
-    /// What agrees with one of the sensor's two readings before.
+    /// Readings that agree with one of the sensor's two readings before.
     TwoOfThree,
-    /// What the ring's own filter accepts.
+    /// Readings that the ring's own filter accepts.
     Repeated,
     /// Every one, or what the ring's own filter accepts: as the robot's sketch says.
     AsSketched,

@@ -16,8 +16,7 @@ use crate::world::{AnySchedule, Random, Robot};
 
 /// A ring of any kind, which can change to schedules that live as long as `'s`.
 pub(crate) trait RingRunner<'s>: Send {
-    /// What the ring does now, if anything; `expected_change_us` says by how much a good reading of a sensor should
-    /// change.
+    /// The ring's next event, if any; `expected_change_us` says by how much a good reading of a sensor should change.
     fn poll(&mut self, now: Instant, expected_change_us: &dyn Fn(u8) -> i32) -> Option<RingEvent>;
     /// When it is to be polled again.
     fn next_deadline(&self) -> Instant;
@@ -47,7 +46,7 @@ pub(crate) enum ChangeError {
     Ring(RingError),
 }
 
-/// What the simulator asks of a plan beyond what a ring asks.
+/// Demands of the simulator on a plan beyond those of a ring.
 pub(super) trait SimulatedPlan<'s>: Plan + Send + Sized {
     /// Changes a ring to another schedule.
     fn change<J: Judge, const K: usize, const E: usize, const H: usize>(
@@ -127,13 +126,13 @@ impl<'s, P: SimulatedPlan<'s>, J: Judge + Send, const K: usize, const E: usize, 
 /// Firing by a table, whether sensors are alike or not.
 pub(super) type TableFiring<'s> = ScheduledFiring<'s, MAX_SENSORS, 2, EachInUse<'s, MAX_SENSORS>>;
 
-/// What a robot's ring fires by.
+/// The plan of a robot's ring.
 pub(crate) struct FiringPlan {
     /// The schedule that the method asked for.
     pub(crate) schedule: AnySchedule,
     /// Where it adapts, all that it may change to, the first one first.
     pub(crate) ladder: Vec<VerifiedSchedule<MAX_SENSORS, 2, EachSensor<MAX_SENSORS>>>,
-    /// What each sensor may do by itself, where they are not all alike.
+    /// Limits of each sensor, where they are not all alike.
     pub(crate) own_limits: EachSensor<MAX_SENSORS>,
 }
 
@@ -144,13 +143,13 @@ impl FiringPlan {
     }
 }
 
-/// What a ring is started with.
+/// Settings that a ring is started with.
 pub(crate) struct RingStart<'s> {
     pub(crate) robot: &'s Robot,
     pub(crate) plan: &'s FiringPlan,
-    /// How a hopping ring fires and believes.
+    /// Settings of a hopping ring.
     pub(crate) hopping: HoppingSettings,
-    /// What a hopping ring fires by; `None` for even lags.
+    /// Schedule of a hopping ring; `None` for even lags.
     pub(crate) hopping_schedule: Option<HoppingSchedule<MAX_SENSORS>>,
     /// Settings of a flow ring.
     pub(crate) flow: FlowSettings,
@@ -198,7 +197,7 @@ impl From<RingError> for StartError {
 /// A running ring, if it can be started.
 pub(super) type Started<'s> = Result<Box<dyn RingRunner<'s> + 's>, StartError>;
 
-/// How a robot's ring listens and compares.
+/// Settings by which a robot's ring listens and compares.
 pub(super) fn config_of(robot: &Robot) -> RingConfig {
     let &Robot { t_delta, window, blanking, consecutive, .. } = robot;
     let listens = RingConfig::new().with_t_delta(t_delta).with_window(window).with_blanking(blanking);
@@ -211,7 +210,7 @@ impl<'s> RingStart<'s> {
         &self.plan.schedule
     }
 
-    /// How the robot's ring listens and compares.
+    /// Settings by which the robot's ring listens and compares.
     pub(super) fn config(&self) -> RingConfig {
         config_of(self.robot)
     }

@@ -4,7 +4,7 @@ use eeruf_core::{Micros, Phase, ScheduleError};
 
 use crate::world::{AnySchedule, Robot};
 
-/// What a schedule is made for: a robot, and the best schedule for its ring where the caller knows one.
+/// Purpose of a schedule: a robot, and the best schedule for its ring where the caller knows one.
 pub(super) struct ScheduleQuery<'a> {
     pub(super) robot: &'a Robot,
     pub(super) best: Option<&'a AnySchedule>,
@@ -122,8 +122,8 @@ fn lags(sensors: usize, period: Micros, neighbours: u8) -> Vec<Micros> {
     (0..sensors).map(lag).collect()
 }
 
-/// How far dither moves a firing at most: as far as the paper's waits do, but never so far that a sensor would fire
-/// again while it listens.
+/// Largest shift of a firing by dither: as far as the paper's waits, but never so far that a sensor would fire again
+/// while it listens.
 pub(super) fn widest_dither(robot: &Robot) -> Micros {
     widest_wait(robot.period, robot.neighbours).min(robot.period.saturating_sub(robot.window))
 }

@@ -6,18 +6,18 @@ use crate::{
     scene::Body,
 };
 
-/// What the platform can do.
+/// Abilities of the platform.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LabMate {
     /// Length and width, in metres.
     pub side_m: f64,
     /// The highest speed, in m/s.
     pub speed_max_m_s: f64,
-    /// How fast the speed changes at most, in m/s^2.
+    /// Largest change of the speed, in m/s^2.
     pub acceleration_m_s2: f64,
     /// The highest rate of turn, in rad/s.
     pub turn_max_rad_s: f64,
-    /// How fast the rate of turn changes at most, in rad/s^2.
+    /// Largest change of the rate of turn, in rad/s^2.
     pub turn_acceleration_rad_s2: f64,
 }
 

@@ -2,21 +2,21 @@
 
 use super::Vfh;
 
-/// How readings become steering.
+/// The way from readings to steering.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Piloting {
     /// The vector field histogram; its highest speed is the platform's.
     pub vfh: Vfh,
-    /// What a steering error of a radian asks for, in rad/s.
+    /// Rate of turn for a steering error of a radian, in rad/s.
     pub turn_gain: f64,
     /// Echoes from farther away are not entered into the grid, but clear the way there, in metres.
     pub range_m: f64,
-    /// Whether cells beside certain ones grow faster, see [`Himm::growth`](super::Himm::growth).
+    /// True if cells beside certain ones grow faster, see [`Himm::growth`](super::Himm::growth).
     pub growth: bool,
 }
 
 impl Piloting {
-    /// What an earlier search found by the score of `eeruf` above all, the same for every method.
+    /// Result of an earlier search by the score of `eeruf` above all, the same for every method.
     pub const SHARED: Self = tuned(3, 0.03, 13, 0.7, 360.0, 3.0, 2.75, true);
 }
 

@@ -1,4 +1,4 @@
-//! Who was fooled by whom: the wrong readings of a simulation, counted by the sensor that made them, what caused them
+//! Attribution of errors: the wrong readings of a simulation, counted by the sensor that made them, what caused them
 //! and along which path.
 
 use std::collections::HashMap;
@@ -18,11 +18,11 @@ pub struct Attribution {
     pub emitter: Option<SensorId>,
     /// Along which of [`Readings::paths`], or [`NO_PATH`].
     pub path: u32,
-    /// How many bounces that path has.
+    /// Number of bounces that path has.
     pub order: Option<u32>,
-    /// How many readings were wrong this way, believed or not.
+    /// Number of readings that were wrong this way, believed or not.
     pub wrong: usize,
-    /// How many of those the method believed.
+    /// Number of those that the method believed.
     pub accepted: usize,
 }
 

@@ -1,5 +1,5 @@
-//! What a simulation returns: every reading of every sensor as arrays of equal length, each with what caused it and
-//! with what the sensor would have read alone.
+//! Result of a simulation: every reading of every sensor as arrays of equal length, each with what caused it and with
+//! what the sensor would have read alone.
 
 use std::collections::TryReserveError;
 
@@ -16,7 +16,7 @@ pub struct SensorId {
     pub sensor: u8,
 }
 
-/// What a reading came from.
+/// Cause of a reading.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize)]
 #[serde(rename_all = "snake_case")]
 #[repr(u8)]
@@ -43,7 +43,7 @@ pub struct HeardPath {
     pub emitter: SensorId,
     /// The sensor that heard it.
     pub receiver: SensorId,
-    /// How many bounces.
+    /// Number of bounces.
     pub order: u32,
     /// Its length in metres, when it was first heard if something moves.
     pub length_m: f64,
@@ -56,7 +56,7 @@ pub struct HeardPath {
 }
 
 impl HeardPath {
-    /// Whether it causes *direct* crosstalk: straight over or by a single reflection.
+    /// Returns true if it causes *direct* crosstalk: straight over or by a single reflection.
     pub fn is_direct(&self) -> bool {
         self.order <= 1
     }
@@ -69,7 +69,7 @@ pub struct Readings {
     pub method: Method,
     /// For how long, in seconds of true time; readings of all firings within it are here.
     pub duration_s: f64,
-    /// How many sensors the world has.
+    /// Number of sensors the world has.
     pub sensors: usize,
     /// The robot, from 0.
     pub robot: Vec<u16>,
@@ -87,7 +87,7 @@ pub struct Readings {
     pub y_m: Vec<f64>,
     /// Whither it looked then, in radians of the scene, counter-clockwise from the x axis, in (-pi, pi].
     pub heading_rad: Vec<f64>,
-    /// What the method made of the reading. Methods that believe everything know [`ReadingKind::Accepted`] and
+    /// Verdict of the method on the reading. Methods that believe everything know [`ReadingKind::Accepted`] and
     /// [`ReadingKind::Clear`].
     pub kind: Vec<ReadingKind>,
     /// The echo time that the method gives, in microseconds of the robot's clock: the firing's earliest echo, but for
@@ -95,11 +95,11 @@ pub struct Readings {
     pub t_echo_us: Vec<f64>,
     /// The earliest echo of this firing, in microseconds of the robot's clock.
     pub earliest_us: Vec<f64>,
-    /// What the sensor would read if it fired alone at this place in quiet air: the first arrival of its own sound that
-    /// is loud enough, between blanking and the end of the window, without fading and jitter. In microseconds of true
+    /// Reading of the sensor if it fired alone at this place in quiet air: the first arrival of its own sound that is
+    /// loud enough, between blanking and the end of the window, without fading and jitter. In microseconds of true
     /// time.
     pub reference_us: Vec<f64>,
-    /// What `t_echo_us` came from.
+    /// Cause of `t_echo_us`.
     pub cause: Vec<Cause>,
     /// Along which of `paths`, or [`NO_PATH`].
     pub path: Vec<u32>,
@@ -108,14 +108,14 @@ pub struct Readings {
     /// The change that odometry expects of a good reading since the sensor's firing before, in microseconds; 0 for a
     /// robot without odometry.
     pub expected_change_us: Vec<i32>,
-    /// How the ring's tracker weighed it, if it has one.
+    /// Weighing by the ring's tracker, if it has one.
     pub weighed: Vec<Option<Weighed>>,
     /// Every path that some reading came along.
     pub paths: Vec<HeardPath>,
 }
 
 impl Readings {
-    /// How much memory so many readings take, in bytes.
+    /// Memory of this number of readings, in bytes.
     pub const fn bytes_for(readings: u64) -> u64 {
         let whole =
             size_of::<[f64; 8]>() + size_of::<Option<Weighed>>() + size_of::<(u32, u32, i32)>() + size_of::<u16>();
@@ -216,39 +216,39 @@ impl Readings {
         paths.clear();
     }
 
-    /// How many readings there are.
+    /// Number of readings.
     pub fn len(&self) -> usize {
         self.robot.len()
     }
 
-    /// Whether there is none.
+    /// Returns true if there is none.
     pub fn is_empty(&self) -> bool {
         self.robot.is_empty()
     }
 
-    /// Which sensor a reading is of.
+    /// The sensor of a reading.
     pub fn id(&self, reading: usize) -> SensorId {
         SensorId { robot: self.robot[reading], sensor: self.sensor[reading] }
     }
 
-    /// Whether the method believes the reading: an accepted echo, if only tentatively, or confirmed that nothing is in
-    /// range.
+    /// Returns true if the method believes the reading: an accepted echo, if only tentatively, or confirmed that
+    /// nothing is in range.
     pub fn is_accepted(&self, reading: usize) -> bool {
         self.is_confirmed(reading) || self.kind[reading] == ReadingKind::Tentative
     }
 
-    /// Whether the method believes the reading, and not only tentatively.
+    /// Returns true if the method believes the reading, and not only tentatively.
     pub fn is_confirmed(&self, reading: usize) -> bool {
         matches!(self.kind[reading], ReadingKind::Accepted | ReadingKind::Clear)
     }
 
-    /// Whether what the reading says is wrong, believed or not: more than `tolerance_us` off the reference, an echo
+    /// Returns true if what the reading says is wrong, believed: more than `tolerance_us` off the reference, an echo
     /// where the sensor alone hears none, or none where it hears one.
     pub fn is_wrong(&self, reading: usize, tolerance_us: f64) -> bool {
         is_off(self.t_echo_us[reading], self.reference_us[reading], tolerance_us)
     }
 
-    /// Whether the firing's earliest echo is right by the same measure, so that a reading was there to be had.
+    /// Returns true if the firing's earliest echo is right by the same measure, so that a reading was there to be had.
     pub fn is_good(&self, reading: usize, tolerance_us: f64) -> bool {
         !is_off(self.earliest_us[reading], self.reference_us[reading], tolerance_us)
     }

@@ -1,5 +1,5 @@
-//! How good a method was: the figures that are always reported together, since each alone is easily made good at the
-//! cost of the others.
+//! Quality of a method: the figures that are always reported together, since each alone is easily made good at the cost
+//! of the others.
 
 use serde::{Deserialize, Serialize};
 
@@ -8,8 +8,8 @@ use super::quantiles::quantile;
 use super::readings::{Cause, Readings};
 use crate::methods::Method;
 
-/// By how much a reading may miss the reference, unless another tolerance is asked for: 0.5 ms, 8.6 cm. Set I's
-/// measure of an error, as large as its `T_delta`.
+/// Tolerance of a reading against the reference, unless another is asked for: 0.5 ms, 8.6 cm. Set I's measure of an
+/// error, as large as its `T_delta`.
 pub const DEFAULT_TOLERANCE_US: f64 = 500.0;
 
 /// A method's figures over one simulation, all robots together. Shares are fractions of 1.
@@ -22,9 +22,9 @@ pub const DEFAULT_TOLERANCE_US: f64 = 500.0;
 pub struct Summary {
     /// The method.
     pub method: Method,
-    /// How many readings there were.
+    /// Number of readings.
     pub readings: usize,
-    /// How many of them were accepted.
+    /// Number of those that were accepted.
     pub accepted: usize,
     /// Share of all readings that were accepted and wrong: what does harm.
     pub wrong_of_all: f64,
@@ -52,17 +52,17 @@ pub struct Summary {
     pub age_ms: Age,
     /// Accepted readings in a second of simulated time, all sensors together.
     pub readings_per_s: f64,
-    /// How many sensors had fewer than 5 % of their readings accepted.
+    /// Number of sensors that had fewer than 5 % of their readings accepted.
     pub starved: usize,
-    /// How many sensors were right under 5 % of the times they fired: the reading was accepted and not wrong.
+    /// Number of sensors that were right under 5 % of the times they fired: the reading was accepted and not wrong.
     pub blind: usize,
-    /// How many of the starved sensors read right in one phase and not in another (more than half of the phase's
+    /// Number of starved sensors that read right in one phase and not in another (more than half of the phase's
     /// readings are good, or fewer): foreign sound comes first in part of the periods only, but no two consecutive
     /// readings agree.
     pub starved_in_part: usize,
 }
 
-/// How old a sensor's last accepted reading is, in milliseconds, whenever it fires: from the firing that the accepted
+/// Age of a sensor's last accepted reading, in milliseconds, whenever it fires: from the firing that the accepted
 /// reading came from (from the start of the simulation before the first) to the present firing. At best one period.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Age {
@@ -158,7 +158,7 @@ fn count(phases: &mut Phases, phase: u8, is_good: bool) {
     phases[phase].1 += 1;
 }
 
-/// Whether more than half of the readings are good in one phase and not in another.
+/// Returns true if more than half of the readings are good in one phase and not in another.
 fn differ(phases: &Phases) -> bool {
     let mut mostly_good = phases.iter().filter(|(_, of)| *of > 0).map(|(good, of)| 2 * good > *of);
     mostly_good.next().is_some_and(|first| mostly_good.any(|other| other != first))

@@ -36,7 +36,7 @@ pub struct Outline {
 pub enum OutlineError {
     /// Too few or too many.
     Corners {
-        /// How many were given.
+        /// The number given.
         count: usize,
     },
     /// One where the outline does not turn to the left, or that is not a number.
@@ -123,12 +123,12 @@ impl Body {
         }
     }
 
-    /// Whether it overlaps another body.
+    /// Returns true if it overlaps another body.
     pub fn overlaps(&self, pose: &Pose, other: &Self, there: &Pose) -> bool {
         self.with_shape(|shape| other.with_shape(|other| meets(&placed(pose), shape, &placed(there), other)))
     }
 
-    /// Whether a point is within it.
+    /// Returns true if a point is within it.
     pub fn holds(&self, pose: &Pose, point: Point) -> bool {
         self.overlaps(pose, &Self::Disc(TOUCH_M), &Pose::from(point.coords))
     }
@@ -148,7 +148,7 @@ impl Body {
         corners.iter().map(|corner| pose * corner).map(|corner| [corner.x, corner.y]).collect()
     }
 
-    /// How many walls go around it; none around a disc.
+    /// Number of walls that go around it; none around a disc.
     pub(crate) fn sides(&self) -> usize {
         match self {
             Self::Disc(_) => 0,
@@ -157,7 +157,7 @@ impl Body {
         }
     }
 
-    /// Whether its measures are positive numbers.
+    /// Returns true if its measures are positive numbers.
     pub(crate) fn is_valid(&self) -> bool {
         let fits = |size: f64| size > 0.0 && size <= super::MAX_POLE_M;
         match *self {
@@ -173,7 +173,7 @@ pub(super) fn placed(pose: &Pose) -> ParryPose {
     ParryPose::new(pose.translation.vector.into(), pose.rotation.angle())
 }
 
-/// Whether two shapes touch. Parry knows all pairs used here, so "not supported" does not occur.
+/// Returns true if two shapes touch. Parry knows all pairs used here, so "not supported" does not occur.
 pub(super) fn meets(at: &ParryPose, shape: &dyn Shape, there: &ParryPose, other: &dyn Shape) -> bool {
     intersection_test(at, shape, there, other).is_ok_and(|found| found.intersecting)
 }

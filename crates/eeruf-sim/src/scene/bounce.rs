@@ -1,4 +1,4 @@
-//! What a path meets on its way: one of the scene's walls, poles or edges.
+//! An object that a path meets on its way: one of the scene's walls, poles or edges.
 
 /// One bounce of a path.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]

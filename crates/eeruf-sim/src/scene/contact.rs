@@ -9,7 +9,7 @@ use parry2d_f64::{
     shape::{Ball, Segment, Shape},
 };
 
-/// What a body touches.
+/// An object that a body touches.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Contact {
     /// The wall with this index. Openings are not touched: a body may pass them.

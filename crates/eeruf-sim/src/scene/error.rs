@@ -1,5 +1,4 @@
-//! What can be wrong with a scene, and the limits that it must keep. Walls and poles are counted from 0, as in code and
-//! files.
+//! Errors of a scene, and the limits that it must keep. Walls and poles are counted from 0, as in code and files.
 
 use core::fmt;
 
@@ -46,7 +45,7 @@ pub enum SceneError {
     },
     /// More walls than the mesh can number.
     TooManyWalls {
-        /// How many were given.
+        /// The number given.
         count: usize,
     },
     /// A wall's material has a reflection outside 0 to 1 or a negative roughness.
@@ -73,7 +72,7 @@ pub enum SceneError {
     },
     /// Temperature, humidity or pressure outside what the formulas hold for.
     Air {
-        /// Which of the three.
+        /// One of the three.
         quantity: &'static str,
         /// The offending number.
         value: f64,
@@ -87,17 +86,17 @@ pub enum SceneError {
     },
     /// A material of floor or ceiling that makes no sense.
     RoomMaterial {
-        /// Which of the two.
+        /// One of the two.
         surface: &'static str,
     },
     /// The walls meet in a way that the mesh cannot hold, such as many crossing within a nanometre.
     Tangled {
-        /// How many pieces of wall were refused.
+        /// Number of pieces of wall that were refused.
         pieces: usize,
     },
 }
 
-/// What a message says of a material, after whose it is.
+/// The message about a material, after whose it is.
 const OUT_OF_RANGE: &str = "is out of range; expected a reflection of 0 to 1 and a roughness of 0 m or more";
 
 impl fmt::Display for SceneError {

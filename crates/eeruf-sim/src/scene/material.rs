@@ -1,4 +1,4 @@
-//! What a wall does to the sound that it reflects: a pressure reflection coefficient and a surface roughness.
+//! Effect of a wall on the sound that it reflects: a pressure reflection coefficient and a surface roughness.
 
 /// The surface of a wall or a pole.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -47,7 +47,7 @@ impl Material {
         self.reflection * libm::exp(-2.0 * phase * phase)
     }
 
-    /// Whether both numbers make sense.
+    /// Returns true if both numbers make sense.
     pub(crate) fn is_valid(&self) -> bool {
         (0.0..=1.0).contains(&self.reflection) && self.roughness_m >= 0.0 && self.roughness_m.is_finite()
     }

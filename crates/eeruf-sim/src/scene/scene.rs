@@ -24,14 +24,14 @@ pub struct Scene {
     pub(crate) mesh: Mesh,
     pub(crate) mirrors: Vec<Mirror>,
     pub(crate) wall_boxes: Bvh,
-    /// Which triangles each pole's disc overlaps: (triangle, pole).
+    /// Overlaps of triangles and poles' discs: (triangle, pole).
     pub(crate) pole_triangles: Vec<(u32, u32)>,
     edges: Vec<Edge>,
     /// The triangles that each edge is a corner of; found when first asked for.
     edge_triangles: OnceLock<Vec<Box<[u32]>>>,
-    /// How far walls go on; found when first asked for.
+    /// Extents of walls; found when first asked for.
     extents: OnceLock<Extents>,
-    /// Whether any surface is rough.
+    /// True if any surface is rough.
     pub(crate) rough: bool,
 }
 
@@ -127,7 +127,7 @@ impl Scene {
         of_all.get(edge).map_or(&[], |triangles| triangles)
     }
 
-    /// How far walls go on, for [`Physics::narrow_panels`](crate::Physics::narrow_panels).
+    /// Extents of walls, for [`Physics::narrow_panels`](crate::Physics::narrow_panels).
     pub(crate) fn extents(&self) -> &Extents {
         self.extents.get_or_init(|| {
             // The same walls were joined when the scene was made.
@@ -141,8 +141,8 @@ impl Scene {
         self.air
     }
 
-    /// Whether a point lies inside something solid: within a pillar, or outside a closed room. A point in a pole is
-    /// not; see [`contact`](Self::contact).
+    /// Returns true if a point lies inside something solid: within a pillar, or outside a closed room. A point in a
+    /// pole is not; see [`contact`](Self::contact).
     pub fn is_solid(&self, point: Point) -> bool {
         self.mesh.is_solid(point)
     }

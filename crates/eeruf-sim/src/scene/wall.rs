@@ -3,7 +3,7 @@
 use super::material::Material;
 use crate::geometry::Point;
 
-/// What a wall does to a beam that meets it.
+/// Effect of a wall on a beam that meets it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Faces {
     /// Reflects on the left of the direction `from` to `to`, where the free space is; the back swallows. A room is a
@@ -23,9 +23,9 @@ pub struct Wall {
     pub from: Point,
     /// Where it ends.
     pub to: Point,
-    /// Which sides reflect.
+    /// Sides that reflect.
     pub faces: Faces,
-    /// What its surface does to the amplitude.
+    /// Effect of its surface on the amplitude.
     pub material: Material,
 }
 
@@ -58,7 +58,7 @@ impl Wall {
         corners.windows(2).map(|pair| Self::new(pair[0][0], pair[0][1], pair[1][0], pair[1][1]))
     }
 
-    /// Whether it is an opening.
+    /// Returns true if it is an opening.
     pub fn is_open(&self) -> bool {
         self.faces == Faces::Open
     }

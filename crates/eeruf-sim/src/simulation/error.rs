@@ -36,7 +36,7 @@ pub enum SimulationError {
     Unverified {
         /// The robot.
         robot: usize,
-        /// What is wrong with its own schedule.
+        /// The violation of its own schedule.
         violation: Violation,
     },
     /// A robot's schedules make no ladder for [`Method::Adaptive`].
@@ -55,7 +55,7 @@ pub enum SimulationError {
     },
     /// The median of none or of too many readings.
     Median {
-        /// How many were asked for.
+        /// The number asked for.
         median_of: u8,
     },
     /// Paths could not be found, most often because a robot has moved out of the scene's reach.
@@ -67,30 +67,30 @@ pub enum SimulationError {
     },
     /// There is not enough memory for as many readings.
     Memory {
-        /// How many there would be.
+        /// Number of readings.
         readings: u64,
     },
     /// A robot that is not there.
     Robot {
         /// The robot.
         robot: usize,
-        /// How many there are.
+        /// Number of robots in the world.
         robots: usize,
     },
     /// A number that makes no sense.
     Number {
-        /// What it is.
+        /// The name of the number.
         what: &'static str,
         /// The number.
         value: f64,
-        /// What is expected.
+        /// The expectation.
         expected: &'static str,
     },
     /// The caller's own firing or filter has ended it.
     Own {
         /// The robot.
         robot: usize,
-        /// Which of the two.
+        /// One of the two.
         what: &'static str,
         /// When, in seconds.
         at_s: f64,
@@ -108,9 +108,9 @@ pub enum SimulationError {
     Sensors {
         /// The robot.
         robot: usize,
-        /// How many the schedule is for.
+        /// Number of sensors that the schedule is for.
         schedule: usize,
-        /// How many there are.
+        /// Number of sensors of the robot.
         sensors: usize,
     },
     /// A fault has no room in the scene at a time.

@@ -5,7 +5,7 @@ use crate::{geometry::Moment, methods::Method, results::Readings, world::World};
 
 /// Says where robots are, and receives what their rings read. Time never goes back from call to call.
 pub(crate) trait Kinematics {
-    /// Whether anything ever moves.
+    /// Returns true if anything ever moves.
     fn moves(&self) -> bool;
 
     /// Where a robot is now, in true nanoseconds.
@@ -24,7 +24,7 @@ pub(crate) trait Kinematics {
         asked
     }
 
-    /// Whether it matters what a robot hears.
+    /// Returns true if it matters what a robot hears.
     fn listens(&self, _robot: usize) -> bool {
         true
     }

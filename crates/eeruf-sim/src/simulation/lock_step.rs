@@ -18,7 +18,7 @@ use crate::{
 pub struct LockStep<'w> {
     world: &'w World,
     channels: Channels<'w>,
-    /// How each sensor hears.
+    /// Hearing of each sensor.
     hearings: Vec<Hearing>,
     receivers: Vec<Receiver>,
     propagation: Propagation,

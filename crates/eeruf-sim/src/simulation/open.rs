@@ -218,7 +218,7 @@ impl Simulation {
         Ok(readings)
     }
 
-    /// Whether no more readings will come.
+    /// Returns true if no more readings will come.
     pub fn is_over(&self) -> bool {
         self.over
     }

@@ -1,4 +1,4 @@
-//! Who hears whom on one robot's ring, in the very physics that a simulation of its world begins with.
+//! Hearing between the sensors of one robot's ring, in the very physics that a simulation of its world begins with.
 
 use super::channels::Bodies;
 use crate::{

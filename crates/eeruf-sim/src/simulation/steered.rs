@@ -17,7 +17,7 @@ pub(super) struct Steered<'w> {
     legs: Vec<Legs>,
 }
 
-/// How a robot was steered, the last leg under way.
+/// Legs of a steered robot, the last under way.
 #[derive(Clone, Default)]
 struct Legs {
     legs: VecDeque<Leg>,
@@ -65,7 +65,7 @@ impl<'w> Steered<'w> {
         }
     }
 
-    /// Whether it is known where a robot was then.
+    /// Returns true if it is known where a robot was then.
     pub(super) fn knows(&self, robot: usize, then: u64) -> bool {
         self.legs[robot].known_since <= then
     }

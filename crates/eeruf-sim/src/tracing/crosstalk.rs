@@ -1,4 +1,5 @@
-//! Who hears whom: all critical paths of a ring at one pose, from each emitter to each receiver, that are loud enough.
+//! Crosstalk matrix: all critical paths of a ring at one pose, from each emitter to each receiver, that are loud
+//! enough.
 
 use super::audibility::Audibility;
 use super::error::PathsError;
@@ -23,7 +24,7 @@ pub struct CriticalPath {
     pub length_m: f64,
     /// Amplitude relative to 1 m on axis, both patterns included.
     pub amplitude: f64,
-    /// How many bounces.
+    /// Number of bounces.
     pub order: u32,
     /// Where the path leaves, in the scene's frame.
     pub departure_rad: f64,
@@ -36,24 +37,25 @@ pub struct CriticalPath {
 }
 
 impl CriticalPath {
-    /// Whether it causes *direct* crosstalk: straight over or by a single reflection. All others are *indirect*.
+    /// Returns true if it causes *direct* crosstalk: straight over or by a single reflection. All others are
+    /// *indirect*.
     pub fn is_direct(&self) -> bool {
         self.order <= 1
     }
 }
 
-/// What is asked of a [`CrosstalkMatrix`]: which sensors, and what they hear.
+/// The question for a [`CrosstalkMatrix`]: which sensors, and what they hear.
 #[derive(Clone, Copy, Debug)]
 pub struct CrosstalkQuery<'a> {
-    /// What the sound meets.
+    /// Objects that the sound meets.
     pub scene: &'a Scene,
     /// The transducers' places and headings in the scene; each heads along its pose's x axis.
     pub sensors: &'a [Pose],
-    /// What kind of transducer they are: how they hear, and how they send unless others do.
+    /// The kind of transducer: how they hear, and how they send unless others do.
     pub transducer: &'a Transducer,
-    /// How far to follow the sound.
+    /// Limits up to which the sound is followed.
     pub limits: Limits,
-    /// What is heard: the [received level](Transducer::received) at or above this.
+    /// Threshold of hearing: the [received level](Transducer::received) at or above this.
     pub floor: f64,
     /// The amplitude of straight paths between two different sensors, at least, relative to two that face each other as
     /// far apart: what their mounting carries. 0 if the patterns alone decide.
@@ -299,7 +301,7 @@ impl CrosstalkMatrix {
         (self.emitters, self.sensors) = (sensors, sensors);
     }
 
-    /// How many sensors the ring has.
+    /// Number of sensors the ring has.
     pub fn sensors(&self) -> usize {
         self.sensors
     }

@@ -1,4 +1,4 @@
-//! What can be wrong with a question about paths. Receivers are counted from 0.
+//! Errors in a question about paths. Receivers are counted from 0.
 
 use core::fmt;
 
@@ -13,7 +13,7 @@ pub enum PathsError {
     Source {
         /// Its position in metres.
         at: [f64; 2],
-        /// How far from the walls the scene reaches, in metres.
+        /// Distance that the scene reaches from the walls, in metres.
         reach_m: f64,
     },
     /// A receiver is not a number or lies out of the scene's reach.
@@ -22,7 +22,7 @@ pub enum PathsError {
         receiver: usize,
         /// Its position in metres.
         at: [f64; 2],
-        /// How far from the walls the scene reaches, in metres.
+        /// Distance that the scene reaches from the walls, in metres.
         reach_m: f64,
     },
     /// A source or a receiver is inside something solid, and [`Tracer::pole_shadows`](super::Tracer::pole_shadows) asks
@@ -30,7 +30,7 @@ pub enum PathsError {
     Inside {
         /// Its position in metres.
         at: [f64; 2],
-        /// What it is inside of.
+        /// The object that it is inside of.
         what: Contact,
     },
     /// A source or a receiver is not between floor and ceiling.
@@ -42,12 +42,12 @@ pub enum PathsError {
     },
     /// The order asked for is above [`MAX_ORDER`].
     Order {
-        /// What was asked for.
+        /// The order asked for.
         max_order: u32,
     },
     /// The longest path asked for is not a positive number (infinity is allowed).
     Length {
-        /// What was asked for, in metres.
+        /// The length asked for, in metres.
         max_length_m: f64,
     },
     /// The scene has more beams or paths of this order than fit into the budget.

@@ -1,4 +1,4 @@
-//! How far sound is followed, and how much may be asked at once.
+//! Limits up to which sound is followed, and of how much may be asked at once.
 
 /// The highest order that may be asked for: a choice; sound is inaudible long before.
 pub const MAX_ORDER: u32 = 1000;
@@ -11,7 +11,7 @@ pub const DEFAULT_FREQUENCY_HZ: f64 = 49_400.0;
 /// not are found, and not weighed.
 pub(crate) type Matters<'a> = &'a dyn Fn(usize, f64) -> bool;
 
-/// How far to follow the sound.
+/// Limits up to which the sound is followed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
     /// The most bounces.

@@ -1,4 +1,4 @@
-//! What walls that end return: of each bounce the share that Fresnel's integral over the wall's width says.
+//! Reflection of walls that end: of each bounce the share that Fresnel's integral over the wall's width says.
 
 use super::bounce_points::parts;
 use crate::{
@@ -36,7 +36,7 @@ struct Turn {
     at: Point,
     /// The way to it and from it.
     legs: [Vector; 2],
-    /// How long the ways are, with the walls before and after it as mirrors.
+    /// Lengths of the ways, with the walls before and after it as mirrors.
     whole_m: [f64; 2],
 }
 
@@ -60,7 +60,7 @@ impl Turn {
         panel_share(detours, false)
     }
 
-    /// How much longer the way by an end of the wall is, in metres.
+    /// Excess length of the way by an end of the wall, in metres.
     fn detour_m(&self, end: Point, way: Vector) -> f64 {
         let [before_m, after_m] = self.whole_m;
         let off = end - self.at;

@@ -25,12 +25,12 @@ pub struct Paths {
 }
 
 impl Paths {
-    /// How many paths there are.
+    /// Number of paths.
     pub fn len(&self) -> usize {
         self.length_m.len()
     }
 
-    /// Whether there is none.
+    /// Returns true if there is none.
     pub fn is_empty(&self) -> bool {
         self.length_m.is_empty()
     }

@@ -41,26 +41,26 @@ impl Heights<'_> {
 pub struct Tracer {
     /// The frequency that absorption and roughness are taken at, in Hz.
     pub frequency_hz: f64,
-    /// Whether poles return what a rigid cylinder does at this frequency instead of what geometric optics says; see
+    /// True if poles return what a rigid cylinder does at this frequency instead of what geometric optics says; see
     /// [`pole_wave_correction`](crate::pole_wave_correction). Off by default.
     pub pole_waves: bool,
-    /// Whether poles shade what lies behind them where they are thicker than the first Fresnel zone, and sensors within
+    /// True if poles shade what lies behind them where they are thicker than the first Fresnel zone, and sensors within
     /// something solid are refused; see [`Physics::shadows`](crate::Physics::shadows). Off by default.
     pub pole_shadows: bool,
-    /// Whether free ends of walls and corners that jut out diffract; see [`Physics::edges`](crate::Physics::edges). Off
+    /// True if free ends of walls and corners that jut out diffract; see [`Physics::edges`](crate::Physics::edges). Off
     /// by default.
     pub edges: bool,
-    /// Whether a wall returns as much as its width does; see [`Physics::narrow_panels`](crate::Physics::narrow_panels).
+    /// True if a wall returns as much as its width does; see [`Physics::narrow_panels`](crate::Physics::narrow_panels).
     /// Off by default.
     pub narrow_panels: bool,
-    /// How long the burst is, in cycles. If [`narrow_panels`](Self::narrow_panels) is on, ways by a wall's ends that
+    /// Length of the burst, in cycles. If [`narrow_panels`](Self::narrow_panels) is on, ways by a wall's ends that
     /// differ by less are heard as one. A [`CrosstalkMatrix`](crate::CrosstalkMatrix) sets it to the emitter's.
     pub burst_cycles: u32,
     /// The most bounces of a path with a pole, at most those of all others. The default is [`MAX_ORDER`].
     pub pole_order: u32,
     /// Ends a question under way with [`PathsError::Stopped`].
     pub stop: Stop,
-    /// What the air takes, for the air and the frequency asked for last.
+    /// Loss in the air, for the air and the frequency asked for last.
     loss: Option<(Air, f64, f64)>,
     pub(super) tree: BeamTree,
     pub(super) poles: PoleSearch,
@@ -110,7 +110,7 @@ impl Tracer {
         self.narrow_panels = physics.narrow_panels;
     }
 
-    /// By how much a path may be louder than whole walls make it.
+    /// Largest factor by which a path may be louder than whole walls make it.
     pub(crate) fn loudest(&self) -> f64 {
         if self.narrow_panels { LOUDEST_PANEL } else { 1.0 }
     }
@@ -255,7 +255,7 @@ impl Tracer {
         if self.stop.is_stopped() { PathsError::Stopped } else { PathsError::Budget { beams: MAX_BEAMS } }
     }
 
-    /// How many beams the last question grew.
+    /// Number of beams that the last question grew.
     pub fn beams(&self) -> usize {
         self.tree.beams.len()
     }
@@ -292,7 +292,7 @@ fn check(scene: &Scene, source: Point, receivers: &[Point], limits: Limits) -> R
     }
 }
 
-/// Whether a point is in the open: in no pole, no pillar, and not outside the room.
+/// Returns true if a point is in the open: in no pole, no pillar, and not outside the room.
 fn check_free(scene: &Scene, at: Point) -> Result<(), PathsError> {
     let pole = scene.poles().iter().position(|pole| (at - pole.centre).norm() < pole.radius_m);
     let what = match pole {

@@ -40,7 +40,7 @@ impl Way {
         (0..self.order).map(move |k| if k.is_multiple_of(2) { self.first } else { other })
     }
 
-    /// What floor and ceiling leave of the amplitude, at a wave number and a sine of the elevation.
+    /// Share of the amplitude that floor and ceiling leave, at a wave number and a sine of the elevation.
     pub(super) fn reflected(self, room: &Room, wave_number: f64, sin_elevation: f64) -> f64 {
         let each = self.bounces().map(|bounce| {
             let material = if bounce == Bounce::Ceiling { &room.ceiling } else { &room.floor };

@@ -213,7 +213,7 @@ impl Tracer {
         self.corners = turns;
     }
 
-    /// What spreading, walls, poles and edges leave of the amplitude in the plan.
+    /// Share of the amplitude that spreading, walls, poles and edges leave in the plan.
     #[inline]
     fn spread(
         &self,

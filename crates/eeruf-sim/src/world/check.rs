@@ -1,4 +1,4 @@
-//! Whether a robot makes sense, and stands free in its scene.
+//! True if a robot makes sense, and stands free in its scene.
 
 use eeruf_core::{MAX_PERIOD, MAX_SENSORS, Micros};
 
@@ -9,12 +9,12 @@ use super::robot::Robot;
 use crate::geometry::{Point, Pose};
 use crate::scene::{Body, MAX_COORDINATE_M, Scene};
 
-/// Whether a number is one, and not farther from zero than `most`.
+/// Returns true if a number is one, and not farther from zero than `most`.
 fn within(value: f64, most: f64) -> bool {
     (-most..=most).contains(&value)
 }
 
-/// Whether no robot stands inside another one that came before it.
+/// Returns true if no robot stands inside another one that came before it.
 pub(super) fn check_apart(robots: &[Robot]) -> Result<(), WorldError> {
     for (other, robot) in robots.iter().enumerate() {
         for (one, before) in robots[..other].iter().enumerate() {
@@ -32,7 +32,7 @@ pub(super) fn check_apart(robots: &[Robot]) -> Result<(), WorldError> {
     Ok(())
 }
 
-/// Whether two robots, one of them with a body at least, are clear of each other, their sensors too.
+/// Returns true if two robots, one of them with a body at least, are clear of each other, their sensors too.
 fn check_bodies_apart(index: [usize; 2], robots: [&Robot; 2]) -> Result<(), WorldError> {
     let [one, other] = robots;
     if one.outline().overlaps(&one.pose, &other.outline(), &other.pose) {
@@ -49,7 +49,7 @@ fn check_bodies_apart(index: [usize; 2], robots: [&Robot; 2]) -> Result<(), Worl
     Ok(())
 }
 
-/// Whether a robot's sensors are between floor and ceiling, if there are any.
+/// Returns true if a robot's sensors are between floor and ceiling, if there are any.
 pub(super) fn check_heights(scene: &Scene, index: usize, robot: &Robot) -> Result<(), WorldError> {
     let fail = |value, expected| Err(WorldError::Field { robot: index, field: "height_m", value, expected });
     if !robot.heights_m.is_empty() && robot.heights_m.len() != robot.sensors.len() {

@@ -5,12 +5,12 @@
 
 use eeruf_core::Instant;
 
-/// How a robot's clock relates to true time.
+/// Relation of a robot's clock to true time.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Clock {
-    /// What the counter reads at the start, in microseconds.
+    /// The counter at the start, in microseconds.
     pub offset_us: u32,
-    /// How much faster than true time it runs, in parts per million, -1000 to 1000.
+    /// Speed above that of true time, in parts per million, -1000 to 1000.
     pub drift_ppm: f64,
 }
 
@@ -31,7 +31,7 @@ pub(crate) struct Ticker {
 struct Stretch {
     /// When it begins, in true nanoseconds.
     from: u64,
-    /// What the clock has counted by then, in nanoseconds.
+    /// Time that the clock has counted by then, in nanoseconds.
     own: u64,
     /// Nanoseconds that the clock gains in a second.
     gain_ppb: i64,
@@ -87,7 +87,7 @@ impl Ticker {
         stretch.from + ((own_ns + rate - 1) / rate) as u64
     }
 
-    /// What the counter reads after that many ticks.
+    /// The counter after that many ticks.
     pub(crate) fn instant(&self, ticks: u64) -> Instant {
         Instant::from_micros(self.offset_us.wrapping_add(ticks as u32))
     }

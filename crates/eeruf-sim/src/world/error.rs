@@ -17,14 +17,14 @@ pub enum WorldError {
     Scene(SceneError),
     /// No robots, or too many.
     Robots {
-        /// How many were given.
+        /// The number given.
         robots: usize,
     },
     /// A robot without sensors, or with too many.
     Sensors {
         /// The robot.
         robot: usize,
-        /// How many sensors it has.
+        /// Number of sensors it has.
         sensors: usize,
     },
     /// A number that makes no sense.
@@ -35,7 +35,7 @@ pub enum WorldError {
         field: &'static str,
         /// The offending number.
         value: f64,
-        /// What is expected.
+        /// The expectation.
         expected: &'static str,
     },
     /// A fault that makes no sense.
@@ -46,16 +46,16 @@ pub enum WorldError {
         field: &'static str,
         /// The offending number.
         value: f64,
-        /// What is expected.
+        /// The expectation.
         expected: &'static str,
     },
     /// A schedule for another number of sensors.
     Schedule {
         /// The robot.
         robot: usize,
-        /// How many sensors the schedule has.
+        /// Number of sensors the schedule has.
         sensors: usize,
-        /// How many the robot has.
+        /// Sensors of the robot.
         expected: usize,
     },
     /// A sensor would fire again while it still listens.
@@ -71,7 +71,7 @@ pub enum WorldError {
     Contact {
         /// The robot.
         robot: usize,
-        /// What it touches.
+        /// The object that it touches.
         contact: Contact,
         /// The radius in metres of the disc that it takes up, if it has no body.
         disc_m: Option<f64>,
@@ -82,7 +82,7 @@ pub enum WorldError {
         robot: usize,
         /// The sensor.
         sensor: usize,
-        /// What it is inside of.
+        /// The object that it is inside of.
         contact: Contact,
     },
     /// A sensor that starts inside another robot's body.
@@ -105,16 +105,16 @@ pub enum WorldError {
         field: &'static str,
         /// The offending number.
         value: f64,
-        /// What is expected.
+        /// The expectation.
         expected: &'static str,
     },
     /// Two robots that start one inside the other.
     Overlap {
         /// The robots.
         robots: (usize, usize),
-        /// How far their middles are apart, in metres.
+        /// Distance of their middles, in metres.
         apart_m: f64,
-        /// How far they must be apart at least.
+        /// Least distance allowed.
         least_m: f64,
     },
     /// A number of the noise that makes no sense.
@@ -123,12 +123,12 @@ pub enum WorldError {
         field: &'static str,
         /// The offending number.
         value: f64,
-        /// What is expected.
+        /// The expectation.
         expected: &'static str,
     },
     /// An order beyond what paths can be asked for.
     Order {
-        /// What was asked for.
+        /// The order asked for.
         max_order: u32,
     },
 }

@@ -1,4 +1,4 @@
-//! What goes wrong in a world: sensors, their wires and lines, clocks and tables, people and doors; each for a time.
+//! Faults in a world: of sensors, their wires and lines, clocks and tables, people and doors; each for a time.
 
 use super::error::WorldError;
 use super::robot::{AnySchedule, Robot};
@@ -13,7 +13,7 @@ const LATEST_S: f64 = 1e9;
 /// Something that goes wrong from one time to another.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fault {
-    /// What it is.
+    /// The name of the number.
     pub kind: FaultKind,
     /// The robot that has it, counted from 0.
     pub robot: usize,
@@ -38,7 +38,7 @@ pub enum FaultKind {
     },
     /// Something else is heard while a sensor listens, at random times.
     Noise {
-        /// How often, in 1/s.
+        /// Rate, in 1/s.
         per_s: f64,
     },
     /// Something else is heard in this share of firings, at any time of the window alike.
@@ -52,7 +52,7 @@ pub enum FaultKind {
     TriggerWires,
     /// Triggers arrive late.
     LateTrigger {
-        /// By how much, in us.
+        /// Delay, in us.
         us: u32,
     },
     /// The ring fires by another table than its robot says, from the end of a period on.
@@ -62,7 +62,7 @@ pub enum FaultKind {
     },
     /// The clock goes faster than it should, or slower.
     ClockDrift {
-        /// By how much more, in millionths.
+        /// Drift, in millionths.
         ppm: f64,
     },
     /// There is no sensor: neither sound nor edges.
@@ -83,14 +83,14 @@ pub enum FaultKind {
     },
     /// The line is low for a moment while it should be high.
     GlitchLow {
-        /// How long after it rose, in us.
+        /// Time after it rose, in us.
         after_us: u32,
         /// For how long, in us.
         width_us: u32,
     },
     /// The line is high for a moment while it should be low.
     GlitchHigh {
-        /// How long after it fell, or was triggered where it rises with the echo, in us.
+        /// Time after it fell, or was triggered where it rises with the echo, in us.
         after_us: u32,
         /// For how long, in us.
         width_us: u32,
@@ -174,9 +174,9 @@ impl FaultKind {
 pub struct LineEdge {
     /// When, in us.
     pub at_us: u64,
-    /// Whether the line rises.
+    /// True if the line rises.
     pub high: bool,
-    /// Whether its interrupt is lost: the line changes, and nothing says so.
+    /// True if its interrupt is lost: the line changes, and nothing says so.
     pub lost: bool,
 }
 
@@ -198,12 +198,12 @@ impl Fault {
         Self { from_s, to_s, ..self }
     }
 
-    /// Whether it is there at a time, in seconds.
+    /// Returns true if it is there at a time, in seconds.
     pub fn is_at(&self, time_s: f64) -> bool {
         (self.from_s..self.to_s).contains(&time_s)
     }
 
-    /// Whether a sensor has it.
+    /// Returns true if a sensor has it.
     pub fn is_of(&self, robot: usize, sensor: u8) -> bool {
         !self.kind.is_of_scene() && self.robot == robot && (self.sensors.is_empty() || self.sensors.contains(&sensor))
     }
@@ -217,7 +217,7 @@ impl Fault {
         }
     }
 
-    /// What stands in the scene because of it at a time.
+    /// Objects that stand in the scene because of it at a time.
     pub(crate) fn obstacles(&self, time_s: f64, walls: &mut Vec<Wall>, poles: &mut Vec<Pole>) {
         let share = if self.to_s > self.from_s && self.to_s.is_finite() {
             ((time_s - self.from_s) / (self.to_s - self.from_s)).clamp(0.0, 1.0)

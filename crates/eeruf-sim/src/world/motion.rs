@@ -5,7 +5,7 @@ use crate::geometry::{Moment, Point, Pose, Vector};
 /// The fastest motion, in m/s and rad/s: a choice, beyond any robot, so that more is a mistake in the input.
 pub const MAX_SPEED: f64 = 50.0;
 
-/// How a robot moves from its first pose on.
+/// Motion of a robot from its first pose on.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Motion {
     /// It stands.
@@ -29,7 +29,7 @@ pub enum Motion {
 }
 
 impl Motion {
-    /// Whether it ever moves.
+    /// Returns true if it ever moves.
     pub fn is_still(&self) -> bool {
         match self {
             Self::Still => true,

@@ -27,8 +27,8 @@ pub type AnySchedule = Schedule<MAX_SENSORS>;
 pub struct Robot {
     /// Place and heading of each sensor relative to the robot, 1 to 64 of them.
     pub sensors: Vec<Pose>,
-    /// What kind of transducer they are. Robots hear each other if their [bands overlap](Transducer::hears); those of
-    /// the presets do not.
+    /// The kind of transducer. Robots hear each other if their [bands overlap](Transducer::hears); those of the presets
+    /// do not.
     pub transducer: Transducer,
     /// The module of each sensor, where they are not all of [`transducer`](Self::transducer)'s kind; that is then the
     /// first one's. Empty, as by default, where they are.
@@ -46,7 +46,7 @@ pub struct Robot {
     pub heights_m: Vec<f64>,
     /// Where the robot is at the start.
     pub pose: Pose,
-    /// How it moves from there.
+    /// Motion from there.
     pub motion: Motion,
     /// Its clock.
     pub clock: Clock,
@@ -61,7 +61,7 @@ pub struct Robot {
     pub t_delta: Micros,
     /// `T_wind`: how long a sensor listens. The default is 36 ms, 6.2 m.
     pub window: Micros,
-    /// How long a sensor is deaf after it has fired; the shortest where they differ.
+    /// Deaf time of a sensor after it has fired; the shortest where they differ.
     pub blanking: Micros,
     /// The same of each sensor, where they differ. Empty, as by default, where they do not.
     pub blankings: Vec<Micros>,
@@ -69,10 +69,10 @@ pub struct Robot {
     /// 36 ms, as long as it listens: much sooner, and it hears its last sound fade away in the room, just after
     /// blanking, every time.
     pub min_refire: Micros,
-    /// How many adjacent sensors must not fire close together; the conventional lags repeat after as many. The default
-    /// is 4.
+    /// Number of adjacent sensors that must not fire close together; the conventional lags repeat after as many. The
+    /// default is 4.
     pub neighbours: u8,
-    /// How many consecutive readings must agree, 2 to 8. The default is 2, as in the paper.
+    /// Number of consecutive readings that must agree, 2 to 8. The default is 2, as in the paper.
     pub consecutive: u8,
     /// Window and `T_delta` of each sensor, where they are not all alike, for its own [`schedule`](Self::schedule);
     /// [`window`](Self::window) and [`t_delta`](Self::t_delta) are then the largest, which other methods use for all.
@@ -85,7 +85,7 @@ pub struct Robot {
     pub audible: Micros,
     /// Sets of sensors that its own schedule fires together, bit x for sensor x.
     pub together: Vec<u64>,
-    /// Whether odometry gives the ring by how much a good reading should change from the robot's own motion.
+    /// True if odometry gives the ring by how much a good reading should change from the robot's own motion.
     pub odometry: bool,
 }
 
@@ -226,7 +226,7 @@ impl Robot {
         (0..self.sensors.len()).map(|sensor| self.transducer_of(sensor))
     }
 
-    /// How long a sensor is deaf after it has fired.
+    /// Deaf time of a sensor after it has fired.
     pub fn blanking_of(&self, sensor: usize) -> Micros {
         self.blankings.get(sensor).copied().unwrap_or(self.blanking)
     }
@@ -265,7 +265,7 @@ impl Robot {
         self.sensors.iter().map(|sensor| offset(sensor).norm()).fold(0.0, f64::max)
     }
 
-    /// What must stand free: its body, or without one the disc that holds all its sensors.
+    /// The outline that must stand free: its body, or without one the disc that holds all its sensors.
     pub fn outline(&self) -> Body {
         // A body without extent still stands somewhere.
         self.body.unwrap_or(Body::Disc(self.radius_m().max(1e-6)))

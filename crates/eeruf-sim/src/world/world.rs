@@ -153,7 +153,7 @@ impl World {
         Ok(Self { faults, ..self })
     }
 
-    /// What goes wrong.
+    /// Faults.
     pub fn faults(&self) -> &[Fault] {
         &self.faults
     }
@@ -168,12 +168,12 @@ impl World {
         &self.robots
     }
 
-    /// Which effects it has.
+    /// Its effects.
     pub fn physics(&self) -> Physics {
         self.physics
     }
 
-    /// How noisy it is.
+    /// Its noise.
     pub fn noise(&self) -> Noise {
         self.noise
     }
@@ -188,12 +188,12 @@ impl World {
         self.pole_order.min(self.max_order)
     }
 
-    /// What decides all that is random.
+    /// Seed of all that is random.
     pub fn seed(&self) -> u64 {
         self.seed
     }
 
-    /// Whether any robot ever moves.
+    /// Returns true if any robot ever moves.
     pub fn moves(&self) -> bool {
         self.robots.iter().any(|robot| !robot.motion.is_still())
     }

@@ -58,8 +58,8 @@ fn an_eight_millimetre_pole_midway_between_two_sensors_is_heard_at_1_6_metres() 
     assert!(!heard_at(3.2), "but not at any distance");
 }
 
-/// How far a sensor may turn from a smooth wall and still hear its echo, in whole degrees: where the region of constant
-/// depth ends.
+/// Largest turn of a sensor from a smooth wall with which it still hears its echo, in whole degrees: where the region
+/// of constant depth ends.
 fn heard_up_to_deg(distance_m: f64, gain: GainProfile) -> i32 {
     let wall = Wall::new(distance_m, -9.0, distance_m, 9.0).with_faces(Faces::Both);
     let scene = Scene::new(vec![wall], vec![], Air::default()).unwrap();

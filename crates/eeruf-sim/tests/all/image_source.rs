@@ -36,7 +36,7 @@ fn grown(wall: &Wall, by: f64) -> Segment {
     Segment::new((wall.from - along).coords.into(), (wall.to + along).coords.into())
 }
 
-/// Whether the straight way is free of all walls but the two that it connects.
+/// Returns true if the straight way is free of all walls but the two that it connects.
 fn free(walls: &[Wall], from: Point, to: Point, skip: [Option<usize>; 2]) -> Answer {
     let way = to - from;
     let length = way.norm();

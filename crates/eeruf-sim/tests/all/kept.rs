@@ -18,14 +18,14 @@ fn room_with_poles() -> Scene {
     Scene::new(room(), poles.into(), Air::default()).unwrap()
 }
 
-/// What a list of whole numbers comes to (FNV-1a).
+/// Digest of a list of whole numbers (FNV-1a).
 fn digest(numbers: impl Iterator<Item = u64>) -> u64 {
     numbers
         .flat_map(u64::to_le_bytes)
         .fold(0xcbf2_9ce4_8422_2325, |digest, byte| (digest ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
 }
 
-/// How many readings there are, and what their times, kinds and causes come to. Times are whole microseconds.
+/// Number of readings, and what their times, kinds and causes come to. Times are whole microseconds.
 fn of(readings: &Readings) -> (usize, u64) {
     let us = |time: f64| if time.is_nan() { u64::MAX } else { time as u64 };
     let numbers = (0..readings.len()).flat_map(|k| {

@@ -1,4 +1,4 @@
-//! What narrow panels return: against Kirchhoff's integral, backwards, cut in pieces, and whether all of it is found.
+//! Reflection of narrow panels: against Kirchhoff's integral, backwards, cut in pieces, and whether all of it is found.
 
 use crate::random::{Draw as _, free_point, scene};
 use eeruf_sim::*;
@@ -27,7 +27,7 @@ fn panel(from: [f64; 2], to: [f64; 2]) -> Wall {
     Wall::new(from[0], from[1], to[0], to[1]).with_faces(Faces::Both)
 }
 
-/// What spreading alone leaves of an amplitude after this length.
+/// Amplitude that spreading alone leaves after this length.
 fn free(length_m: f64) -> f64 {
     10f64.powf(-Air::default().absorption_db_per_m(49_400.0) * length_m / 20.0) / length_m
 }
@@ -58,7 +58,7 @@ fn kirchhoff(source: Point, receiver: Point, from: Point, to: Point) -> f64 {
     (k / std::f64::consts::TAU).sqrt() * real.hypot(imaginary)
 }
 
-/// What the only reflection is, relative to an endless wall.
+/// Strength of the only reflection, relative to an endless wall.
 fn share(source: Point, receiver: Point, from: [f64; 2], to: [f64; 2]) -> f64 {
     let paths = traced(&perfect(vec![panel(from, to)], vec![]), source, receiver, NARROW, 1);
     let (_, length_m, amplitude) = paths.iter().find(|path| path.0.len() == 1).expect("a reflection");

@@ -1,4 +1,4 @@
-//! Who hears whom, bodies, and fading that does not depend on who asks.
+//! Hearing between robots, bodies, and fading that does not depend on who asks.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -20,7 +20,7 @@ fn run(world: &World) -> Readings {
     simulate(world, Method::Conventional, &Options::periods(20)).unwrap()
 }
 
-/// How many readings of the first robot came from the second.
+/// Number of readings of the first robot that came from the second.
 fn heard_of_the_second(other: Transducer) -> usize {
     let facing = Robot { transducer: other, ..single(2.0, 0.0, PI) };
     let readings = run(&open_air(vec![single(0.0, 0.0, 0.0), facing]).unwrap());
@@ -64,7 +64,7 @@ fn a_path_between_two_kinds_has_the_senders_pattern_at_its_start_and_the_listene
     assert!((matrix.paths()[0].amplitude / (patterns * air) - 1.0).abs() < 1e-12);
 }
 
-/// What the first robot's sensor reads alone, in metres to the thing that it sees.
+/// Reading of the first robot's sensor alone, in metres to the thing that it sees.
 fn sees(world: &World) -> f64 {
     let readings = run(world);
     let first = (0..readings.len()).find(|&k| readings.robot[k] == 0).unwrap();

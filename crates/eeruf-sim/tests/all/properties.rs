@@ -1,4 +1,4 @@
-//! What must hold for every scene: reciprocity, motion, scale, and what changing walls or the order may do.
+//! Laws that must hold for every scene: reciprocity, motion, scale, and what changing walls or the order may do.
 
 use crate::random::{free_point, scene};
 use eeruf_sim::{Air, Bounce, Faces, Paths, Point, Pole, Pose, Random, Scene, Vector, Wall};

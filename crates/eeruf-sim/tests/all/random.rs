@@ -1,8 +1,8 @@
-//! What several tests draw: points, rooms and scenes, from a raw state of the simulator's own generator.
+//! Draws of several tests: points, rooms and scenes, from a raw state of the simulator's own generator.
 
 use eeruf_sim::{Air, Faces, Point, Random, Scene, Wall};
 
-/// What tests draw besides numbers in a range.
+/// Draws of tests besides numbers in a range.
 pub(crate) trait Draw {
     /// A whole number below `count`.
     fn below(&mut self, count: u64) -> u64;

@@ -1,8 +1,8 @@
-//! How the caller watches and stops a search.
+//! Control over a search: watching and stopping it.
 
 use core::ops::ControlFlow;
 
-/// How far a search has come.
+/// Progress of a search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
@@ -25,7 +25,7 @@ impl Progress {
 
 /// Polled every few milliseconds, or as often as the caller asks. `()` always goes on and costs nothing.
 pub trait Control {
-    /// Whether to go on, given how far the search has come.
+    /// True to go on, given how far the search has come.
     fn poll(&mut self, progress: &Progress) -> ControlFlow<()>;
 }
 

@@ -75,7 +75,7 @@ pub enum ProblemError {
     },
     /// A slice given by the caller is too short.
     Short {
-        /// What it is.
+        /// The name of the number.
         what: &'static str,
         /// Its length.
         given: usize,

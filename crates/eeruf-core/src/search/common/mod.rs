@@ -1,4 +1,4 @@
-//! What both engines speak: how a search ends, how the caller watches it, why a problem makes no sense, and sets of
+//! The language of both engines: how a search ends, how the caller watches it, why a problem is invalid, and sets of
 //! sensors. It uses nothing of either engine.
 
 mod control;

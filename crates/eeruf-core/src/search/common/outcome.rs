@@ -1,6 +1,6 @@
 //! The three ways in which a search ends.
 
-/// How a search ended. A search that hands its answer out elsewhere, as those for waits do, finds `()`.
+/// The end of a search. A search that hands its answer out elsewhere, as those for waits do, finds `()`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Outcome<T = ()> {
@@ -13,7 +13,7 @@ pub enum Outcome<T = ()> {
 }
 
 impl<T> Outcome<T> {
-    /// Whether something was found.
+    /// Returns true if something was found.
     pub const fn is_found(&self) -> bool {
         matches!(self, Self::Found(_))
     }

@@ -1,4 +1,4 @@
-//! Whether there is a schedule with a given period.
+//! True if there is a schedule with a given period.
 
 use super::bisect::{Bisection, Query};
 use super::bounds;
@@ -11,13 +11,13 @@ use crate::search::common::{Control, Outcome, ProblemError};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Decided {
-    /// What came out: found, exhausted (all were searched, or counting excludes them) or budget spent.
+    /// The outcome: found, exhausted (all were searched, or counting excludes them) or budget spent.
     pub outcome: Outcome<Firing>,
     /// Nodes visited.
     pub nodes: u64,
 }
 
-/// Whether there is a schedule with a period of `period` ticks, within `budget` nodes.
+/// Returns true if there is a schedule with a period of `period` ticks, within `budget` nodes.
 ///
 /// # Errors
 /// If the problem makes no sense, the period is 0 or too long, or the memory is smaller than

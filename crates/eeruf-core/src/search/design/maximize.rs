@@ -19,7 +19,7 @@ pub struct Maximum {
 }
 
 impl Maximum {
-    /// Whether the value is proven the largest, or it is proven that there is none.
+    /// Returns true if the value is proven the largest, or it is proven that there is none.
     #[must_use]
     pub fn proven(&self) -> bool {
         self.found.map(|(value, _)| value) == self.bound

@@ -8,7 +8,7 @@ use super::shortest::Shortest;
 use super::solver::check_memory;
 use crate::search::common::{Control, ProblemError};
 
-/// How good a second optimum is.
+/// The quality of a second optimum.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Optimum {
@@ -19,7 +19,7 @@ pub struct Optimum {
 }
 
 impl Optimum {
-    /// Whether the value is proven the best; otherwise it is the best found.
+    /// Returns true if the value is proven the best; otherwise it is the best found.
     #[must_use]
     pub fn proven(&self) -> bool {
         self.value == self.bound

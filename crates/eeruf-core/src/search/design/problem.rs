@@ -1,4 +1,4 @@
-//! What the sensors need, in ticks, and the check that the numbers make sense.
+//! Needs of the sensors, in ticks, and the check that the numbers are valid.
 
 use crate::schedule::MAX_SENSORS;
 use crate::search::common::{ProblemError, check_conflicts};
@@ -6,7 +6,7 @@ use crate::search::common::{ProblemError, check_conflicts};
 /// The longest time the search computes with, in ticks (67 s of 1 us), so that sums of a few times fit 32 bits.
 pub const MAX_TICKS: u32 = 1 << 26;
 
-/// What the sensors need. All times are in ticks of the caller's choice.
+/// Needs of the sensors. All times are in ticks of the caller's choice.
 ///
 /// With the firing times `a` and `b` of a sensor in the two phases, each in `0..period`, and `d = a - b`:
 ///
@@ -28,7 +28,7 @@ pub struct Problem<'a> {
     pub interval: u32,
     /// R, the smallest time between two firings of the same sensor: its listening window.
     pub window: u32,
-    /// Whether a sensor's own echo of the period before must be rejected too.
+    /// True if a sensor's own echo of the period before must be rejected too.
     pub stale_echo: bool,
 }
 

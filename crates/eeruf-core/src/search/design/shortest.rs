@@ -26,7 +26,7 @@ pub struct Shortest {
 }
 
 impl Shortest {
-    /// Whether no shorter period exists.
+    /// Returns true if no shorter period exists.
     #[must_use]
     pub fn proven(&self) -> bool {
         self.bound == self.period

@@ -12,7 +12,7 @@ use super::problem::CheckedProblem;
 use crate::schedule::MAX_SENSORS;
 use crate::search::common::Members;
 
-/// Whether sensor i may be renamed to `to(i)` for all i at once.
+/// Returns true if sensor i may be renamed to `to(i)` for all i at once.
 fn keeps_conflicts(problem: &CheckedProblem, to: impl Fn(usize) -> usize) -> bool {
     (0..problem.sensors).all(|x| {
         let renamed = Members(problem.conflicts[x]).fold(0, |set, y| set | 1 << to(y));
@@ -20,7 +20,7 @@ fn keeps_conflicts(problem: &CheckedProblem, to: impl Fn(usize) -> usize) -> boo
     })
 }
 
-/// Whether the sensors stand on a closed ring: each sees the same as the next.
+/// Returns true if the sensors stand on a closed ring: each sees the same as the next.
 pub(crate) fn is_ring(problem: &CheckedProblem) -> bool {
     keeps_conflicts(problem, |i| (i + 1) % problem.sensors)
 }

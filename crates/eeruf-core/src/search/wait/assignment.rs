@@ -15,7 +15,7 @@ use crate::search::common::{Members, Outcome, ProblemError};
 pub struct Assignment<'p> {
     search: Search<'p>,
     pairs: &'p [(u32, u32)],
-    /// Whether the pairs are separated as the criterion asks.
+    /// True if the pairs are separated as the criterion asks.
     separate: bool,
 }
 

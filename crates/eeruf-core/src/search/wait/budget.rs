@@ -1,10 +1,10 @@
-//! How many nodes a search may visit, and who watches it: one counter of nodes, one comparison a node.
+//! Budget of nodes for a search, and its watcher: one counter of nodes, one comparison a node.
 
 use core::fmt;
 
 use crate::search::common::{Control, Progress};
 
-/// How long a search may run, and who watches it.
+/// The budget of a search, and its watcher.
 ///
 /// The budget counts nodes, so a search ends at the same place on each machine. The watcher is polled every so many
 /// nodes and can stop the search.
@@ -74,7 +74,7 @@ impl<'c> Budget<'c> {
         self.nodes
     }
 
-    /// Whether the budget is spent or the watcher stopped the search.
+    /// Returns true if the budget is spent or the watcher stopped the search.
     #[must_use]
     pub const fn spent(&self) -> bool {
         self.stopped || self.nodes >= self.limit

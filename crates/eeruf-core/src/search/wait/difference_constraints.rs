@@ -68,7 +68,7 @@ impl<'p> Constraints<'p> {
         self.after_weight(i, j) - self.problem.period as i32
     }
 
-    /// Whether `j` can fire `I` after `i` within a phase at all.
+    /// Returns true if `j` can fire `I` after `i` within a phase at all.
     pub(super) fn can_follow(&self, i: usize, j: usize) -> bool {
         self.after_weight(i, j) <= self.problem.wait_max as i32
     }

@@ -105,7 +105,7 @@ impl Enumeration<'_> {
         false
     }
 
-    /// Whether sensor `k` fires `I` away from the sensors before it, in one phase.
+    /// Returns true if sensor `k` fires `I` away from the sensors before it, in one phase.
     fn in_time(&self, k: usize, phase: usize) -> bool {
         let Problem { period, lag, interval, conflicts, .. } = self.problem;
         let (own, other) = if phase == 0 { (&self.a, &self.b) } else { (&self.b, &self.a) };
@@ -115,7 +115,7 @@ impl Enumeration<'_> {
         })
     }
 
-    /// Whether `|d|` (and `s`) of sensor `k` lie `D` from those of the sensors before it.
+    /// Returns true if `|d|` (and `s`) of sensor `k` lie `D` from those of the sensors before it.
     fn is_separate(&self, k: usize) -> bool {
         let separation = self.problem.separation;
         let (d, s) = (self.a[k].abs_diff(self.b[k]), self.a[k] + self.b[k]);

@@ -9,7 +9,7 @@ use crate::requirements::Criterion;
 use crate::schedule::MAX_SENSORS;
 use crate::search::common::{Outcome, ProblemError};
 
-/// What is to be as large as possible.
+/// The value to maximise.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Objective {
     /// The smallest interval between conflicting sensors, at the separation of the problem.
@@ -33,7 +33,7 @@ pub struct Best {
 }
 
 impl Best {
-    /// Whether the value is proven to be the best, or that no table exists.
+    /// Returns true if the value is proven to be the best, or that no table exists.
     #[must_use]
     pub fn proven(&self) -> bool {
         self.outcome != Outcome::BudgetSpent

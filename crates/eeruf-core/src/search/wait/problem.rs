@@ -22,13 +22,13 @@ pub struct Problem<'a> {
     pub interval: u32,
     /// Row `i` has bit `j` set when sensors `i` and `j` conflict; symmetric, diagonal clear.
     pub conflicts: &'a [u64],
-    /// Which reading of (13a) and (13b) holds.
+    /// The reading of (13a) and (13b) that holds.
     pub criterion: Criterion,
 }
 
 impl Problem<'_> {
-    /// Whether the values `|d|` cannot lie `D` apart, which needs `D (K - 1) <= wait_max`, or two sensors cannot fire
-    /// `I` apart, of which one fires before and after the other on the circle of `2 T_p`.
+    /// Returns true if the values `|d|` cannot lie `D` apart, which needs `D (K - 1) <= wait_max`, or two sensors
+    /// cannot fire `I` apart, of which one fires before and after the other on the circle of `2 T_p`.
     pub(super) fn is_beyond_capacity(&self) -> bool {
         let packed = u64::from(self.separation) * (self.lag.len() as u64).saturating_sub(1);
         let conflict = self.conflicts.iter().any(|&row| row != 0);

@@ -74,7 +74,7 @@ fn assert_meets(problem: &Problem<'_>, period: u32, firing: &Firing) {
     assert!(needs(problem, period).met_by(&times(firing)), "{problem:?} at {period}: {:?}", times(firing));
 }
 
-/// How many questions were answered, and how many were too large to try, by the number of sensors.
+/// Number of questions that were answered, and how many were too large to try, by the number of sensors.
 #[derive(Default, Debug)]
 struct Tally {
     yes: [u32; 7],
@@ -263,7 +263,8 @@ fn whether_one_tick_less_of_a_need_allows_a_shorter_period_is_decided_rightly() 
     tally.assert_enough(true);
 }
 
-/// Whether a schedule exists, by trying all times of one sensor after the other and asking for everything at the end.
+/// Returns true if a schedule exists, by trying all times of one sensor after the other and asking for everything at
+/// the end.
 fn nested_loops(needs: &Needs, times: &mut Vec<(i32, i32)>) -> bool {
     if times.len() == needs.conflicts.len() {
         return needs.met_by(times);

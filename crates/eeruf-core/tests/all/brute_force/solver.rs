@@ -1,8 +1,8 @@
-//! Whether a schedule exists, by going through firing times: no thought beyond what each setting leaves to the others.
+//! True if a schedule exists, by going through firing times: no thought beyond what each setting leaves to the others.
 
 /// The longest period that is judged.
 pub(crate) const MOST_TICKS: u32 = 40;
-/// What one sensor may do at most: `MOST_TICKS` rows, one for each time in phase a, with a bit for each time in phase
+/// Times open to one sensor at most: `MOST_TICKS` rows, one for each time in phase a, with a bit for each time in phase
 /// b.
 type Times = [u64; MOST_TICKS as usize];
 /// A question that takes the brute force more steps than this is left unjudged, and few may be.
@@ -24,19 +24,19 @@ impl Needs {
         self.conflicts[x] >> y & 1 == 1
     }
 
-    /// Whether a sensor alone may fire at these times.
+    /// Returns true if a sensor alone may fire at these times.
     fn alone(&self, (a, b): (i32, i32)) -> bool {
         let size = (a - b).abs();
         self.period - size >= self.window && (!self.stale_echo || 2 * size >= self.separation)
     }
 
-    /// Whether the crosstalk between two sensors moves enough.
+    /// Returns true if the crosstalk between two sensors moves enough.
     fn separated(&self, (ax, bx): (i32, i32), (ay, by): (i32, i32)) -> bool {
         ((ax - bx).abs() - (ay - by).abs()).abs() >= self.separation
     }
 
-    /// Whether two firings, `s` in one sensor's phase and `t` in the other's, are far enough apart. `other` says that
-    /// the phases differ, and then one comes a period after the other, whichever is first.
+    /// Returns true if two firings, `s` in one sensor's phase and `t` in the other's, are far enough apart. `other`
+    /// says that the phases differ, and then one comes a period after the other, whichever is first.
     fn apart(&self, s: i32, t: i32, other: bool) -> bool {
         if other {
             self.period + t - s >= self.interval && self.period + s - t >= self.interval
@@ -45,12 +45,12 @@ impl Needs {
         }
     }
 
-    /// Whether two conflicting sensors fire far enough apart in both phases and across the ends of both.
+    /// Returns true if two conflicting sensors fire far enough apart in both phases and across the ends of both.
     fn all_apart(&self, (ax, bx): (i32, i32), (ay, by): (i32, i32)) -> bool {
         self.apart(ax, ay, false) && self.apart(bx, by, false) && self.apart(ax, by, true) && self.apart(bx, ay, true)
     }
 
-    /// Whether these firing times meet the needs, pair by pair.
+    /// Returns true if these firing times meet the needs, pair by pair.
     pub(crate) fn met_by(&self, times: &[(i32, i32)]) -> bool {
         let within = |time: i32| (0..self.period).contains(&time);
         (0..times.len()).all(|x| {
@@ -64,7 +64,7 @@ impl Needs {
     }
 }
 
-/// Whether a schedule exists; `None` if that takes too many steps.
+/// Returns true if a schedule exists; `None` if that takes too many steps.
 pub(crate) fn brute_force(needs: &Needs) -> Option<bool> {
     assert!((1..=MOST_TICKS as i32).contains(&needs.period));
     let sensors = needs.conflicts.len();
@@ -135,7 +135,7 @@ impl BruteForce<'_> {
         Some(false)
     }
 
-    /// What is left to sensor `x` when `other` fires at these times.
+    /// Times left to sensor `x` when `other` fires at these times.
     fn remaining(&self, x: usize, open: Times, other: usize, (a, b): (i32, i32)) -> Times {
         let needs = self.needs;
         if self.set[x].is_some() {
@@ -160,7 +160,7 @@ impl BruteForce<'_> {
         self.needs.conflicts[x] & !(1 << y) == self.needs.conflicts[y] & !(1 << x)
     }
 
-    /// Whether the sensors that are left may find enough separated |d| between them, and those of them that all
+    /// Returns true if the sensors that are left may find enough separated |d| between them, and those of them that all
     /// conflict with one another enough times in each phase.
     fn has_room(&self, left: &[usize], open: &[Times]) -> bool {
         let sizes = |s: usize, row: u64| row >> s | row.reverse_bits() >> (63 - s);
@@ -183,8 +183,8 @@ impl BruteForce<'_> {
     }
 }
 
-/// How many of these numbers can be chosen so that each is `apart` or more from the next: from small to large, each as
-/// soon as it can be.
+/// Number of these numbers that can be chosen so that each is `apart` or more from the next: from small to large,
+/// each as soon as it can be.
 fn most(numbers: u64, apart: i32) -> usize {
     if apart == 0 {
         return usize::MAX;

@@ -42,8 +42,8 @@ prop_compose! {
     }
 }
 
-/// What becomes of the readings of `receiver` if it hears nothing but `emitter`, over one path, for some periods. The
-/// caller polls late by `stalls` now and then.
+/// Readings of `receiver` if it hears nothing but `emitter`, over one path, for some periods. The caller polls late by
+/// `stalls` now and then.
 fn readings_of_crosstalk(
     schedule: &Schedule<64>,
     config: RingConfig,

@@ -1,4 +1,4 @@
-//! What the paper claims of schedules, ring and filter, one module for each claim.
+//! Claims of the paper about schedules, ring and filter, one module for each claim.
 
 mod conditions;
 mod crosstalk;

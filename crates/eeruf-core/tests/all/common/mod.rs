@@ -1,4 +1,5 @@
-//! What the tests and benches of the searches share: problems that own their parts, slow judges and the shared tables.
+//! Parts that the tests and benches of the searches share: problems that own their parts, slow judges and the shared
+//! tables.
 
 #![allow(dead_code, missing_docs, unreachable_pub)]
 

@@ -28,7 +28,7 @@ pub fn conflicts_where(sensors: usize, close: impl Fn(usize, usize) -> bool) -> 
     (0..sensors).map(|x| (0..sensors).filter(|&y| conflict(x, y)).map(|y| 1 << y).sum()).collect()
 }
 
-/// Whether sensors x and y may stand in one table.
+/// Returns true if sensors x and y may stand in one table.
 pub fn pair_holds(problem: &Problem<'_>, x: usize, y: usize, a: &[u32], b: &[u32]) -> bool {
     let (xa, xb, ya, yb) = (a[x] as i64, b[x] as i64, a[y] as i64, b[y] as i64);
     let d = i64::from(problem.separation);

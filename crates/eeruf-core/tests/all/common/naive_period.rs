@@ -3,7 +3,7 @@
 
 use eeruf_core::search::design::{Firing, Problem};
 
-/// What is wrong with a schedule: each need is checked as it is written, pair by pair.
+/// Violations of a schedule: each need is checked as it is written, pair by pair.
 pub fn check(problem: &Problem<'_>, period: u32, a: &[u32], b: &[u32]) -> Result<(), String> {
     let k = problem.sensors;
     if a.len() != k || b.len() != k {
@@ -45,7 +45,7 @@ pub fn assert_serves(problem: &Problem<'_>, period: u32, firing: &Firing) {
     assert_eq!(check(problem, period, firing.fire_a(), firing.fire_b()), Ok(()), "{problem:?} at {period}");
 }
 
-/// Whether any schedule exists, by trying all times of one sensor after the other.
+/// Returns true if any schedule exists, by trying all times of one sensor after the other.
 pub fn nested_loops(problem: &Problem<'_>, period: u32) -> bool {
     fn assign(problem: &Problem<'_>, period: u32, a: &mut Vec<u32>, b: &mut Vec<u32>) -> bool {
         let k = a.len();

@@ -1,4 +1,4 @@
-//! What a ring promises whatever was fired when: one path of sound that is audible for no longer than R and changes by
+//! The promise of a ring whatever was fired when: one path of sound that is audible for no longer than R and changes by
 //! no more than P is never accepted, and what nothing foreign explains is. In [`world`] everything is done to a ring
 //! that can be; [`model`] is the rule by an account that forgets nothing.
 //!

@@ -3,7 +3,7 @@
 
 use eeruf_core::Reading;
 
-/// What one sensor fired and heard.
+/// Firings and sounds of one sensor.
 #[derive(Clone, Default)]
 struct Sensor {
     /// All instants at which it fired, in true time.
@@ -26,7 +26,7 @@ pub(super) enum Compared {
     Unexplained,
 }
 
-/// What sound may do, in microseconds.
+/// Limits of sound, in microseconds.
 #[derive(Clone, Copy)]
 pub(super) struct Sound {
     pub(super) t_delta: u64,

@@ -11,10 +11,10 @@ use crate::common::random::Random;
 
 /// Room in the rings of these tests.
 pub(super) const ROOM: usize = 24;
-/// By how much the clock steps back between two readings that are compared, at most.
+/// Largest step back of the clock between two readings that are compared.
 pub(super) const STEPS: u32 = 12;
 
-/// What each sensor hears.
+/// Sounds that each sensor hears.
 #[derive(Clone, Copy)]
 pub(super) enum Heard {
     /// Sound of one emitter along one path of at least so many microseconds.
@@ -23,7 +23,7 @@ pub(super) enum Heard {
     Wall { t_echo: u32 },
 }
 
-/// How a run goes.
+/// The course of a run.
 #[derive(Clone, Copy)]
 pub(super) struct Course {
     /// Polls come late by up to so many microseconds; every 64th by up to eight times as much.
@@ -38,7 +38,7 @@ pub(super) struct Course {
     pub(super) clock_steps: u32,
 }
 
-/// What the readings came to.
+/// Counts of the readings.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Count {
     /// Readings compared with the one before.
@@ -60,7 +60,7 @@ pub(super) struct World<'s> {
     random: Random,
     model: Model,
     now: u64,
-    /// How far the ring's clock is behind true time.
+    /// Distance of the ring's clock behind true time.
     behind: u64,
     /// Steps of the clock since each sensor's last reading but one are at most [`STEPS`].
     arrivals: BinaryHeap<Reverse<(u64, u8)>>,

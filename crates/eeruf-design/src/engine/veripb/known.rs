@@ -1,4 +1,4 @@
-//! What is known at a node of the tree, and what follows: rules 1 to 5 of docs/reference/certificate.md, each with a
+//! Knowledge at a node of the tree, and its consequences: rules 1 to 5 of docs/reference/certificate.md, each with a
 //! lemma in the proof wherever unit propagation in the model alone would not see it.
 
 use super::literals::{Literal, Truth, Variable, before, below};
@@ -16,7 +16,7 @@ struct Edge {
     why: Why,
 }
 
-/// What is known at a node. All of it is what unit propagation knows there, given the proof's lemmas.
+/// Knowledge at a node. All of it is what unit propagation knows there, given the proof's lemmas.
 #[derive(Clone, Debug)]
 pub(crate) struct Known {
     /// In the form in which the certificate's branchings are chosen: the closed bounds, and who is below whom.
@@ -29,7 +29,7 @@ pub(crate) struct Known {
 }
 
 impl Known {
-    /// What holds in every schedule.
+    /// Bounds that hold in every schedule.
     pub(crate) fn new(proof: &mut Proof<'_>) -> Result<Self, Refuted> {
         let model = proof.model;
         let count = model.merged.count();
@@ -160,7 +160,7 @@ impl Known {
         Ok(news | self.sides(proof, x)?)
     }
 
-    /// What bounds on |d| say of d.
+    /// Consequences for d of bounds on |d|.
     fn sides(&mut self, proof: &mut Proof<'_>, x: usize) -> Result<bool, Refuted> {
         let (low, high) = self.size[x];
         let mut news = self.at_most(proof, x, high)? | self.at_least(proof, x, -high)?;
@@ -211,7 +211,7 @@ impl Known {
         Ok(news)
     }
 
-    /// Whether it is known, as a literal, that in this phase x fires before y.
+    /// Returns true if it is known, as a literal, that in this phase x fires before y.
     fn is_ordered(&self, x: usize, y: usize, phase: usize) -> bool {
         self.edges.iter().any(|edge| edge.why == Why::Order(phase, x, y))
     }

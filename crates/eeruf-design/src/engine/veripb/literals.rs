@@ -24,7 +24,7 @@ pub(crate) struct Literal {
     pub(crate) is_true: bool,
 }
 
-/// What a literal stands for may be settled by the bounds of the model.
+/// The truth of a literal, where the bounds of the model may settle it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Truth {
     Always,

@@ -39,7 +39,7 @@ pub fn model(problem: &Problem, period: u32) -> String {
 /// A node's branching, on the way to where the tree has come.
 struct Open {
     known: Known,
-    /// What its second case assumes.
+    /// Assumption of its second case.
     second: Truth,
     /// The clause that refutes its first case, once that is done.
     first_refuted: Option<usize>,

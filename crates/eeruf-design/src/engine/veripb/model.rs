@@ -89,7 +89,7 @@ impl<'m> Model<'m> {
         self.order[x * self.merged.count() + y][phase]
     }
 
-    /// How far apart `|d_x|` and `|d_y|` are.
+    /// The distance of `|d_x|` and `|d_y|`.
     pub(crate) fn apart(&self, x: usize, y: usize) -> i32 {
         self.merged.apart(x, y) / 2
     }
@@ -145,7 +145,7 @@ impl<'m> Model<'m> {
         self.chain.push(chain);
     }
 
-    /// What `|d|` is.
+    /// Sizes of `|d|`.
     fn sizes(&mut self, x: usize) {
         for v in 1..=self.reach[x] {
             let (size, above, not_below) = (self.size_from(x, v), self.d_from(x, v), self.d_from(x, 1 - v));

@@ -1,5 +1,5 @@
-//! What the root may assume, as in docs/reference/certificate.md: each assumption is a clause that VeriPB adds by its
-//! rule of redundance, with the permutation as witness.
+//! Assumptions of the root, as in docs/reference/certificate.md: each is a clause that VeriPB adds by its rule of
+//! redundance, with the permutation as witness.
 
 use super::known::Known;
 use super::literals::{Truth, Variable, before, below};

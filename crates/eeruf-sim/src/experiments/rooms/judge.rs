@@ -17,7 +17,7 @@ use crate::{
     world::{Robot, World},
 };
 
-/// How long each room is simulated for a robot that stands, in seconds: long against the first readings, before which
+/// Simulated time of each room for a robot that stands, in seconds: long against the first readings, before which
 /// nothing is believed.
 const STANDING_S: f64 = 20.0;
 
@@ -267,7 +267,7 @@ fn with_other_gain(robot: &Robot) -> Robot {
     robot.clone().with_pattern(Some(other), None)
 }
 
-/// By how much the share of own wrong echoes may exceed that of one by one.
+/// Excess of own wrong echoes over those of one by one that is allowed, as a share.
 const OWN_WRONG_MORE: f64 = 0.01;
 /// Ways whose shares of right belief differ by less are equal, and the one with more right echoes is better.
 const AS_GOOD: f64 = 0.01;
@@ -279,7 +279,7 @@ impl JudgedWay {
         Some(rooms.iter().map(|figures| figures.belief.right).sum::<f64>() / rooms.len() as f64)
     }
 
-    /// How many times the right echoes of another way it has, as the geometric mean over all kinds of rooms.
+    /// Ratio of its right echoes to those of another way, as the geometric mean over all kinds of rooms.
     pub fn echoes_against(&self, other: &Self) -> Option<f64> {
         let (Ok(own), Ok(others)) = (&self.rooms, &other.rooms) else { return None };
         let ratio = |(own, other): (&RoomFigures, &RoomFigures)| {

@@ -14,7 +14,7 @@ use crate::{
 
 /// The version of the set. A room of one version and number is the same for ever.
 pub const VERSION: u32 = 1;
-/// How long a robot that drives is simulated, in seconds, and has way to drive.
+/// Simulated time of a robot that drives, in seconds, and has way to drive.
 pub const DRIVING_S: f64 = 8.0;
 
 /// Free space that is kept around a robot, in metres.
@@ -126,7 +126,7 @@ pub struct RoomPlan {
     turns: bool,
 }
 
-/// What stands in a room: a box from corner to corner.
+/// An object in a room: a box from corner to corner.
 #[derive(Clone, Copy, Debug)]
 struct Solid {
     low: [f64; 2],
@@ -172,7 +172,7 @@ impl Draft {
         solids.chain(poles).fold(walls, f64::min)
     }
 
-    /// How far a robot of this radius can drive from a place, up to what it drives.
+    /// Distance that a robot of this radius can drive from a place, up to what it drives.
     fn way_m(&self, from: Vector, direction: Vector, radius_m: f64) -> f64 {
         const STEP_M: f64 = 0.05;
         let free = |step: &u32| {

@@ -7,7 +7,7 @@ use crate::{
     world::{Noise, Random, Robot, World, WorldError},
 };
 
-/// How many sensors the ring has: a choice, as the paper leaves Set I open (see `docs/log/experiments.md`).
+/// Number of sensors the ring has: a choice, as the paper leaves Set I open (see `docs/log/experiments.md`).
 pub const SENSORS: usize = 8;
 /// Their spacing, in degrees: that of the paper's ring.
 pub const SPACING_DEG: f64 = 15.0;

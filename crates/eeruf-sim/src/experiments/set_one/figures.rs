@@ -53,11 +53,11 @@ pub struct Figures {
     pub blind: f64,
     /// Mean number of starved sensors that read right in one phase and not in another.
     pub starved_in_part: f64,
-    /// How soon the back wall is read right again when it has come nearer by [`STEP_M`](super::STEP_M).
+    /// Time until the back wall is read right again when it has come nearer by [`STEP_M`](super::STEP_M).
     pub nearer: Option<Latency>,
-    /// How soon it is when it has gone away as far.
+    /// The same when it has gone away as far.
     pub farther: Option<Latency>,
-    /// How soon it is when it comes nearer for the first time, in milliseconds.
+    /// The same when it comes nearer for the first time, in milliseconds.
     pub new_step: Option<NewStep>,
 }
 

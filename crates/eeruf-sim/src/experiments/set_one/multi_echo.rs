@@ -1,4 +1,4 @@
-//! What sensors that report several echoes are read by.
+//! Reading of sensors that report several echoes.
 
 use eeruf_core::Micros;
 
@@ -8,7 +8,7 @@ use crate::world::Robot;
 /// pairs of them agree by accident in proportion to `t_delta`; a robot that stands needs no more than jitter asks for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MultiEcho {
-    /// How many readings must agree, 2 to 8. As many periods pass before a new echo is believed.
+    /// Number of readings that must agree, 2 to 8. As many periods pass before a new echo is believed.
     pub consecutive: u8,
     /// Within what.
     pub t_delta: Micros,

@@ -1,4 +1,4 @@
-//! What is asked of Set I.
+//! Arguments of Set I.
 
 use eeruf_core::{Micros, hopping::HoppingSettings};
 
@@ -13,41 +13,42 @@ use crate::{
     world::Noise,
 };
 
-/// How many readings the paper has of one set-up (Sec. 4): of the conventional method, and of all others in that time.
+/// Number of readings the paper has of one set-up (Sec. 4): of the conventional method, and of all others in that
+/// time.
 pub const READINGS: u32 = 8000;
 
-/// What is asked of Set I.
+/// Arguments of Set I.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SetOneOptions {
-    /// How many geometries. The default is 200.
+    /// Number of geometries. The default is 200.
     pub seeds: u64,
     /// The first geometry's number. The default is [`FIRST`]: parameters were tuned on geometries below 2,000.
     pub first: u64,
     /// For how long each geometry is simulated: as long as so many readings of the conventional method take. The
     /// default is [`READINGS`], as in the paper.
     pub readings: u32,
-    /// How often the back wall steps to and fro, for the figures of how soon that is seen; 0: never. The default is
+    /// Number of steps of the back wall to and fro, for the figures of how soon that is seen; 0: none. The default is
     /// 22: to and fro in each phase of a cycle of 11.
     pub steps: u32,
     /// The methods. The default is [`Method::usual`].
     pub methods: Vec<Entry>,
-    /// What [`Method::EerufBest`] fires by, see [`best_schedule_for`](crate::best_schedule_for).
+    /// Schedule of [`Method::EerufBest`], see [`best_schedule_for`](crate::best_schedule_for).
     pub best: Option<BestSchedule>,
-    /// How [`Method::EerufHopping`] fires and believes, unless its entry says.
+    /// Settings of [`Method::EerufHopping`], unless its entry has others.
     pub hopping: HoppingSettings,
-    /// Which effects the alcoves have. The default is [`Physics::DEFAULT`].
+    /// Effects in the alcoves. The default is [`Physics::DEFAULT`].
     pub physics: Physics,
     /// Floor and ceiling of the alcoves. The default is none: they are flat.
     pub room: Option<Room>,
-    /// How many sensors the ring has, 1 to 24. The default is 8.
+    /// Number of sensors the ring has, 1 to 24. The default is 8.
     pub sensors: usize,
     /// Its period. The default is 60 ms.
     pub period: Micros,
     /// Its transducers. The default is [`Transducer::POLAROID_6500`].
     pub transducer: Transducer,
-    /// How noisy the alcoves are; each has its own number as seed.
+    /// Noise in the alcoves; each has its own number as seed.
     pub noise: Noise,
-    /// What [`Method::MultiEcho`] fires and believes by.
+    /// Settings of [`Method::MultiEcho`].
     pub multi_echo: MultiEcho,
 }
 

@@ -1,4 +1,4 @@
-//! How soon a method sees that the back wall has come nearer or gone away.
+//! Time until a method sees that the back wall has come nearer or gone away.
 
 use serde::{Deserialize, Serialize};
 
@@ -9,7 +9,7 @@ use crate::{
     world::World,
 };
 
-/// By how much the back wall steps, in metres.
+/// Step of the back wall, in metres.
 pub const STEP_M: f64 = 0.25;
 /// The wall stays for so many periods: one more than a sensor may take, so that steps come in every phase of a cycle.
 const STAYS: u32 = 65;
@@ -31,10 +31,10 @@ pub struct Steps {
     pub new_ms: Vec<Option<f64>>,
 }
 
-/// How soon steps are seen, over all steps and sensors, in periods: 1 is the period of the step.
+/// Time until steps are seen, over all steps and sensors, in periods: 1 is the period of the step.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Latency {
-    /// How many steps of sensors were counted.
+    /// Number of steps of sensors that were counted.
     pub steps: usize,
     /// Half of the steps are seen within as many periods; `None` if more than half never are.
     pub median: Option<u32>,
@@ -63,11 +63,11 @@ impl Latency {
     }
 }
 
-/// How soon a wall is seen that has come nearer for the first time, so that no memory of places helps, over all
+/// Time until a wall is seen that has come nearer for the first time, so that no memory of places helps, over all
 /// sensors that it concerns, in milliseconds from the step to the echo of the first right reading that is accepted.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct NewStep {
-    /// How many steps of sensors were counted.
+    /// Number of steps of sensors that were counted.
     pub steps: usize,
     /// Half of the steps are seen within this time; `None` if more than half never are.
     pub median_ms: Option<f64>,
@@ -111,7 +111,7 @@ pub(super) fn steps(
     Ok(found)
 }
 
-/// What one sensor makes of all steps.
+/// Steps as one sensor sees them.
 fn seen(readings: &Readings, sensor: usize, steps: u32, period_s: f64, found: &mut Steps) {
     let of_sensor: Vec<_> = (0..readings.len()).filter(|&n| usize::from(readings.sensor[n]) == sensor).collect();
     for step in 1..=steps {

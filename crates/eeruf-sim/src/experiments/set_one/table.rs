@@ -24,18 +24,18 @@ use crate::{
 pub struct SetOne {
     /// The first geometry's number.
     pub first: u64,
-    /// How many geometries.
+    /// Number of geometries.
     pub seeds: u64,
-    /// Which effects the alcoves had.
+    /// Effects in the alcoves.
     pub physics: Physics,
     /// Their height and the ring's gain.
     #[serde(flatten)]
     pub conditions: Conditions,
-    /// How many sensors the ring had.
+    /// Number of sensors the ring had.
     pub sensors: usize,
     /// The period, in microseconds.
     pub period_us: u32,
-    /// How many periods each was simulated for.
+    /// Number of periods each was simulated for.
     pub periods: u32,
     /// The methods in the order asked for, with their figures.
     #[serde(serialize_with = "by_name")]

@@ -29,7 +29,7 @@ pub struct SetThreeOptions {
     pub periods: u32,
     /// The methods. The default is [`usual`].
     pub methods: Vec<Entry>,
-    /// Which effects the rooms have. The default is [`Physics::DEFAULT`].
+    /// Effects in the rooms. The default is [`Physics::DEFAULT`].
     pub physics: Physics,
     /// Floor and ceiling. The default is none: the rooms are flat.
     pub room: Option<Room>,
@@ -66,7 +66,7 @@ pub struct SetThree {
     pub first: u64,
     /// Number of placings.
     pub seeds: u64,
-    /// Which effects the rooms had.
+    /// Effects in the rooms.
     pub physics: Physics,
     /// Their height and the rings' gain.
     #[serde(flatten)]

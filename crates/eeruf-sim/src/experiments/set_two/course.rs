@@ -17,7 +17,7 @@ pub const ROOM_M: [f64; 2] = [10.0, 6.0];
 pub const POLE_RADIUS_M: f64 = 0.004;
 /// Between poles of the unshaken lattice, in metres.
 const SPACING_M: f64 = 1.6;
-/// How far a pole is moved from its place at most, along either axis.
+/// Largest distance that a pole is moved from its place, along either axis.
 const SHAKE_M: f64 = 0.2;
 /// No two poles are nearer.
 const LEAST_GAP_M: f64 = 1.4;
@@ -28,7 +28,7 @@ const CELL_M: f64 = 0.1;
 /// Where the robot starts, and the line that it finishes at.
 const START_M: [f64; 2] = [1.0, 3.0];
 pub(super) const FINISH_X_M: f64 = 8.2;
-/// What it steers for.
+/// Target of the steering.
 pub(super) const TARGET: Point = Point::new(9.4, 3.0);
 
 /// Places for a second robot, out of the first one's way: in the corner behind it, and in the reflective corner ahead,
@@ -40,7 +40,7 @@ pub const SECOND_AHEAD: Point = Point::new(9.4, 5.3);
 /// One course.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Course {
-    /// Which one.
+    /// Its number.
     pub number: u64,
     /// The poles' axes.
     pub poles: Vec<Point>,
@@ -155,7 +155,7 @@ impl Course {
     }
 }
 
-/// How far sound is followed, at walls alone and if a pole is among them.
+/// Number of bounces that sound is followed for, at walls alone and if a pole is among them.
 const ORDER: u32 = 2;
 const POLE_ORDER: u32 = 1;
 

@@ -8,9 +8,9 @@ use crate::experiments::spread::share_95;
 /// A method's figures over all courses; shares are fractions of 1.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Figures {
-    /// How many courses.
+    /// Number of courses.
     pub courses: usize,
-    /// How many were finished without contact.
+    /// Number of courses finished without contact.
     pub finished: usize,
     /// Where the share of finished courses lies with 95 % confidence, by Wilson's interval.
     pub finished_95: [f64; 2],
@@ -22,7 +22,7 @@ pub struct Figures {
     pub mean_speed_m_s: f64,
     /// The highest speed in any course, in m/s.
     pub top_speed_m_s: f64,
-    /// How near a pole came to the robot's outline: the mean over the courses, in metres.
+    /// Distance of the nearest pole from the robot's outline: the mean over the courses, in metres.
     pub nearest_m: f64,
     /// Share of all readings that were accepted and wrong.
     pub wrong_of_all: f64,

@@ -1,4 +1,4 @@
-//! What the robot takes for its own way: dead reckoning by two wheels that are not measured exactly.
+//! The robot's own idea of its way: dead reckoning by two wheels that are not measured exactly.
 
 use crate::{
     geometry::Pose,
@@ -9,8 +9,8 @@ use crate::{
 /// From wheel to wheel, in metres: a choice.
 const TRACK_M: f64 = 0.34;
 
-/// How wrong the platform's odometry is. What it tells the ring of a change in readings stays exact: at the default
-/// noise that change would be wrong by some 3 us, a fiftieth of `T_delta`.
+/// Errors of the platform's odometry. What it tells the ring of a change in readings stays exact: at the default noise
+/// that change would be wrong by some 3 us, a fiftieth of `T_delta`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OdometryNoise {
     /// Root mean square by which the travel of each wheel is misjudged for all of a course, as a share of it: wheels
@@ -36,7 +36,7 @@ impl OdometryNoise {
 /// The way that the robot takes itself to have driven.
 pub(super) struct Odometry {
     noise: OdometryNoise,
-    /// By how much each wheel's travel is misjudged, left and right.
+    /// Scale errors of each wheel's travel, left and right.
     scales: [f64; 2],
     random: Random,
     state: Driven,

@@ -1,4 +1,4 @@
-//! What is asked of Set II.
+//! Arguments of Set II.
 
 use eeruf_core::{Micros, hopping::HoppingSettings};
 
@@ -15,43 +15,42 @@ use crate::{
     world::Robot,
 };
 
-/// What is asked of Set II.
+/// Arguments of Set II.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SetTwoOptions {
-    /// How many courses. The default is 100.
+    /// Number of courses. The default is 100.
     pub seeds: u64,
     /// The first course's number. The default is [`FIRST`]: pilots were tuned on courses below 2,000, the shared one on
     /// 10,000 to 10,999 as well.
     pub first: u64,
     /// The methods.
     pub methods: Vec<Entry>,
-    /// What [`Method::EerufBest`] fires by, see [`best_schedule_for`](crate::best_schedule_for).
+    /// Schedule of [`Method::EerufBest`], see [`best_schedule_for`](crate::best_schedule_for).
     pub best: Option<BestSchedule>,
-    /// How [`Method::EerufHopping`] fires and believes, unless its entry says. The default is
-    /// [`HoppingSettings::DRIVING`].
+    /// Settings of [`Method::EerufHopping`], unless its entry has others. The default is [`HoppingSettings::DRIVING`].
     pub hopping: HoppingSettings,
     /// Where another robot stands that fires 24 times in 80 ms, if there is one.
     pub second_robot: Option<Point>,
     /// The platform.
     pub labmate: LabMate,
-    /// Whether odometry gives the ring by how much readings should change from the robot's own motion.
+    /// True if odometry gives the ring by how much readings should change from the robot's own motion.
     pub odometry: bool,
     /// `T_delta`. With odometry it need not leave room for motion, and readings agree by accident the more rarely the
     /// smaller it is.
     pub t_delta: Micros,
-    /// Which effects the lab has. The default is [`Physics::DEFAULT`].
+    /// Effects in the lab. The default is [`Physics::DEFAULT`].
     pub physics: Physics,
     /// Floor and ceiling of the lab. The default is none: it is flat.
     pub room: Option<Room>,
     /// The gain of the robot's receivers. The default is [`GainProfile::Constant`].
     pub gain: GainProfile,
-    /// Whether robots have bodies: the platform its square, with the ring on its edge, the other robot the disc that
+    /// True if robots have bodies: the platform its square, with the ring on its edge, the other robot the disc that
     /// its ring is on, which is then an obstacle to sound and to the platform. The default is without, as pilots were
     /// tuned.
     pub bodies: bool,
-    /// How wrong the platform is about where it is.
+    /// Errors of the platform's odometry.
     pub odometry_noise: OdometryNoise,
-    /// Who steers.
+    /// Pilots that steer.
     pub pilots: Pilots,
 }
 

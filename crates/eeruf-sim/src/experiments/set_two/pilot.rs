@@ -19,7 +19,7 @@ use crate::{
 
 /// The platform is driven in steps of this length, in nanoseconds.
 const STEP_NS: u64 = 5_000_000;
-/// How many of them go by between two looks at the grid: 30 ms, as long as one took on the paper's computer.
+/// Number of those that go by between two looks at the grid: 30 ms, as long as one took on the paper's computer.
 const STEPS_PER_LOOK: u64 = 6;
 /// The width of the grid's cells, in metres, as in the papers.
 const CELL_M: f64 = 0.1;

@@ -1,4 +1,4 @@
-//! Who steers: one set of parameters for every method, or one for each.
+//! Pilots: one set of parameters for every method, or one for each.
 
 use core::fmt;
 use core::str::FromStr;
@@ -9,7 +9,7 @@ use crate::{
     navigation::{Piloting, Vfh},
 };
 
-/// Who steers.
+/// Pilots that steer.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 #[non_exhaustive]
 pub enum Pilots {
@@ -43,7 +43,7 @@ impl Pilots {
         }
     }
 
-    /// What a method is steered by.
+    /// The pilot of a method.
     pub fn of(&self, method: Method) -> Piloting {
         let published = Piloting { vfh: Vfh::default(), turn_gain: 3.0, range_m: 2.0, growth: false };
         match *self {

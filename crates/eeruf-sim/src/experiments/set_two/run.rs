@@ -1,8 +1,8 @@
-//! What comes of one course under one method.
+//! Outcome of one course under one method.
 
 use serde::{Deserialize, Deserializer, Serialize};
 
-/// How a course ended.
+/// End of a course.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Ending {
@@ -40,35 +40,36 @@ pub struct Cell {
     pub value: u8,
 }
 
-/// What came of one course under one method.
+/// Outcome of one course under one method.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Run {
-    /// Which course.
+    /// Number of the course.
     pub course: u64,
-    /// How it ended.
+    /// Its end.
     pub ending: Ending,
     /// For how long it drove, in seconds.
     pub time_s: f64,
-    /// How far it drove, in metres.
+    /// Distance driven, in metres.
     pub way_m: f64,
     /// Its highest speed, in m/s.
     pub top_speed_m_s: f64,
-    /// How near its outline came to a pole, in metres; infinite if it never came near one, which JSON has as null.
+    /// Least distance between its outline and a pole, in metres; infinite if it never came near one, which JSON has as
+    /// null.
     #[serde(deserialize_with = "infinite")]
     pub nearest_m: f64,
-    /// How many readings its sensors took.
+    /// Number of readings its sensors took.
     pub readings: u32,
-    /// How many of them were not accepted.
+    /// Number of those that were not accepted.
     pub rejected: u32,
-    /// How many were accepted and wrong.
+    /// Number of readings that were accepted and wrong.
     pub wrong: u32,
-    /// How many echoes were entered into the grid where nothing is.
+    /// Number of echoes that were entered into the grid where nothing is.
     pub phantom_echoes: u32,
-    /// How many cells of the grid are certain in the end though nothing is there.
+    /// Number of cells of the grid that are certain in the end though nothing is there.
     pub phantom_cells: u32,
-    /// How many poles the robot came near.
+    /// Number of poles the robot came near.
     pub poles_passed: u32,
-    /// How many of them never had an echo entered into the grid.
+    /// Number of those that never had an echo entered into the grid.
     pub poles_missed: u32,
     /// Where it drove, every 30 ms.
     #[serde(default)]

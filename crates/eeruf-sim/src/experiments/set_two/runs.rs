@@ -25,8 +25,9 @@ use crate::{
 /// For how long a robot may try.
 const TIME_S: f64 = 40.0;
 
-/// How many readings [`Method::MultiEcho`] compares. Pairs of many echoes agree by accident, the more the more foreign
-/// sound there is; three running do so far more rarely, and a sensor that hears past foreign sound can afford them.
+/// Number of readings that [`Method::MultiEcho`] compares. Pairs of many echoes agree by accident, the more the more
+/// foreign sound there is; three running do so far more rarely, and a sensor that hears past foreign sound can afford
+/// them.
 pub const MULTI_ECHO_CONSECUTIVE: u8 = 3;
 
 /// Set II over many courses.
@@ -34,16 +35,16 @@ pub const MULTI_ECHO_CONSECUTIVE: u8 = 3;
 pub struct SetTwo {
     /// The first course's number.
     pub first: u64,
-    /// Who steered, see [`Pilots::as_str`](super::Pilots::as_str).
+    /// The pilot, see [`Pilots::as_str`](super::Pilots::as_str).
     pub pilot: &'static str,
-    /// Which effects the lab had.
+    /// Effects in the lab.
     pub physics: Physics,
     /// Its height and the robot's gain.
     #[serde(flatten)]
     pub conditions: Conditions,
-    /// Whether robots had bodies.
+    /// True if robots had bodies.
     pub bodies: bool,
-    /// How many courses.
+    /// Number of courses.
     pub seeds: u64,
     /// Where another robot stood and fired, in metres.
     pub second_robot_m: Option<[f64; 2]>,
@@ -120,9 +121,9 @@ fn run_course(
 pub struct Drive {
     /// Walls, poles and robots; where the first robot is, `run.track` says.
     pub world: World,
-    /// What the robots' sensors read; nothing where bodies are on and one touched something.
+    /// Readings of the robots' sensors; nothing where bodies are on and one touched something.
     pub readings: Readings,
-    /// What came of it.
+    /// The outcome.
     pub run: Run,
 }
 

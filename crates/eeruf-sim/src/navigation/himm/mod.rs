@@ -13,9 +13,9 @@ use crate::geometry::{Point, Vector};
 
 /// The highest certainty value, as in the paper on HIMM.
 pub const MAX_VALUE: u8 = 15;
-/// What the cell at the measured range gains, as in the paper on HIMM.
+/// Gain of the cell at the measured range, as in the paper on HIMM.
 pub const INCREMENT: u8 = 3;
-/// What each cell on the way there loses, as in the paper on HIMM.
+/// Loss of each cell on the way there, as in the paper on HIMM.
 pub const DECREMENT: u8 = 1;
 
 /// The certainty grid. Cells lie on a lattice fixed in the scene; the grid holds a square of them, which can be moved
@@ -65,7 +65,7 @@ impl Himm {
         self.cell_m
     }
 
-    /// How many cells the window has on a side.
+    /// Number of cells the window has on a side.
     pub fn side(&self) -> usize {
         self.side as usize
     }

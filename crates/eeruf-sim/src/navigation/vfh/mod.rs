@@ -15,7 +15,7 @@ mod tests;
 use super::himm::{Himm, MAX_VALUE};
 use crate::geometry::{Point, Pose, Vector, wrap_angle};
 
-/// How many sectors the histogram has, as in the paper on VFH.
+/// Number of sectors the histogram has, as in the paper on VFH.
 pub const SECTORS: usize = 72;
 /// The width of a sector in radians: 5 degrees.
 pub const SECTOR_RAD: f64 = TAU / SECTORS as f64;
@@ -26,7 +26,7 @@ pub type Histogram = [f64; SECTORS];
 /// The method's parameters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Vfh {
-    /// How many cells the active window has on a side. 33 as in the paper.
+    /// Number of cells the active window has on a side. 33 as in the paper.
     pub window: usize,
     /// `l`: over how many sectors to either side the histogram is smoothed. 5 as in the paper.
     pub smoothing: usize,
@@ -65,7 +65,7 @@ impl Default for Vfh {
 pub struct Valley {
     /// Its first sector.
     pub first: usize,
-    /// How many sectors it has; [`SECTORS`] if nothing is near.
+    /// Number of sectors it has; [`SECTORS`] if nothing is near.
     pub sectors: usize,
 }
 
@@ -185,8 +185,8 @@ impl Vfh {
         (self.speed_max_m_s * calm * straight + self.speed_min_m_s).min(self.speed_max_m_s)
     }
 
-    /// How to drive from a pose to a target: the speed ahead in m/s, and the rate of turn in rad/s. A steering error of
-    /// a radian asks for `turn_gain` rad/s, at most `turn_most_rad_s`; the farther the heading is off, the slower it
+    /// Drives from a pose to a target: the speed ahead in m/s, and the rate of turn in rad/s. A steering error of a
+    /// radian asks for `turn_gain` rad/s, at most `turn_most_rad_s`; the farther the heading is off, the slower it
     /// goes. Where every way is blocked it stands and looks around. `turn_rad_s` is how fast it turns now.
     ///
     /// ```
@@ -228,7 +228,7 @@ impl Vfh {
     }
 }
 
-/// How far a direction is outside a valley, in radians; none inside.
+/// Angle of a direction outside a valley, in radians; none inside.
 fn off(valley: &Valley, direction_rad: f64) -> f64 {
     let half = 0.5 * valley.sectors as f64 * SECTOR_RAD;
     let middle = valley.first as f64 * SECTOR_RAD + half;

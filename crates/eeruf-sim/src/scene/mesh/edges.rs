@@ -16,7 +16,7 @@ pub struct Edge {
     pub at: Point,
     /// The direction of one of its faces, from the edge along the wall; the open space begins there, counter-clockwise.
     pub face_rad: f64,
-    /// How far the open space reaches around the edge: more than half a turn, a whole one at a wall's free end.
+    /// Angle of the open space around the edge: more than half a turn, a whole one at a wall's free end.
     pub outside_rad: f64,
 }
 

@@ -1,4 +1,4 @@
-//! How far walls go on: where the straight surface ends that sound is reflected by. Pieces that continue each other are
+//! Extents of walls: where the straight surface ends that sound is reflected by. Pieces that continue each other are
 //! one surface; it ends where a wall does and at corners that jut out, and not at corners of less than half a turn.
 
 use core::f64::consts::{PI, TAU};
@@ -41,7 +41,7 @@ pub(crate) struct Surface {
 #[derive(Clone, Copy, Debug)]
 struct Stretch {
     wall: usize,
-    /// How far from the wall's start it ends, in metres.
+    /// Distance of its end from the wall's start, in metres.
     upto_m: f64,
     sides: [Ends; 2],
 }
@@ -57,7 +57,7 @@ pub(crate) struct Extents {
     starts: Vec<u32>,
     /// The surfaces that end at each edge, in their order.
     at_edges: Vec<u32>,
-    /// Whether a wall's surface ends anywhere, on either side.
+    /// True if a wall's surface ends anywhere, on either side.
     ends: Vec<bool>,
 }
 

@@ -98,7 +98,7 @@ fn root(same: &mut [usize], mut corner: usize) -> usize {
     corner
 }
 
-/// How two walls meet.
+/// Meeting of two walls.
 #[derive(Default)]
 struct Meeting {
     /// For each end of the first wall, the end of the second that it is joined to.
@@ -136,7 +136,7 @@ fn meet(a: &Wall, b: &Wall) -> Meeting {
     meeting
 }
 
-/// Whether a point lies on a wall, its ends aside.
+/// Returns true if a point lies on a wall, its ends aside.
 fn within(wall: &Wall, point: Point) -> bool {
     let (along, to) = (wall.to - wall.from, point - wall.from);
     let length = along.norm();

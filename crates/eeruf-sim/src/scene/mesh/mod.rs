@@ -17,7 +17,7 @@ const SWALLOW: u32 = u32::MAX;
 /// Not a wall, not a triangle.
 pub(crate) const NONE: u32 = u32::MAX;
 
-/// What lies behind one side of a triangle.
+/// The triangle behind one side of a triangle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Exit(u32);
 
@@ -51,9 +51,9 @@ impl Exit {
 pub(crate) struct Gate {
     /// The corner opposite to the gate.
     pub(crate) apex: Point,
-    /// What lies behind the side left of the apex, seen from the gate.
+    /// The triangle behind the side left of the apex, seen from the gate.
     pub(crate) left: Exit,
-    /// What lies behind the side right of the apex.
+    /// The triangle behind the side right of the apex.
     pub(crate) right: Exit,
 }
 
@@ -84,12 +84,12 @@ pub(crate) struct Mesh {
     /// Half the width of the square that the mesh covers, and its middle.
     half_m: f64,
     middle: Point,
-    /// How far beyond the walls the mesh reaches.
+    /// Extent of the mesh beyond the walls.
     pub(crate) reach_m: f64,
 }
 
 impl Mesh {
-    /// How many triangles there are.
+    /// Number of triangles.
     pub(crate) fn len(&self) -> usize {
         self.gates.len() / 3
     }
@@ -108,7 +108,7 @@ impl Mesh {
         core::array::from_fn(|k| self.gates[base + (k + 1) % 3].apex)
     }
 
-    /// Whether a point can be located: finite and within reach.
+    /// Returns true if a point can be located: finite and within reach.
     pub(crate) fn covers(&self, point: Point) -> bool {
         // Written so that a NaN fails.
         (point.x - self.middle.x).abs() < self.half_m && (point.y - self.middle.y).abs() < self.half_m
@@ -138,7 +138,7 @@ impl Mesh {
         }
     }
 
-    /// Whether a triangle contains a point, its border included.
+    /// Returns true if a triangle contains a point, its border included.
     pub(crate) fn touches(&self, triangle: u32, point: Point) -> bool {
         let corners = self.corners(triangle);
         (0..3).all(|k| {
@@ -195,12 +195,12 @@ impl Mesh {
         found
     }
 
-    /// Whether a point lies inside something solid: in a region bounded by backs of walls only.
+    /// Returns true if a point lies inside something solid: in a region bounded by backs of walls only.
     pub(crate) fn is_solid(&self, point: Point) -> bool {
         self.covers(point) && self.solid[self.locate(point) as usize]
     }
 
-    /// Whether the straight segment between two points meets no wall.
+    /// Returns true if the straight segment between two points meets no wall.
     pub(crate) fn sees(&self, from: Point, to: Point, [starts, goals]: &mut [Vec<u32>; 2]) -> bool {
         self.containing(from, starts);
         self.containing(to, goals);

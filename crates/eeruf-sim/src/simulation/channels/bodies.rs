@@ -19,7 +19,7 @@ pub(in crate::simulation) struct Bodies {
 /// A scene with bodies in it.
 pub(in crate::simulation) struct Furnished {
     pub(in crate::simulation) scene: Scene,
-    /// How many walls and poles the world's own scene has.
+    /// Numbers of walls and poles of the world's own scene.
     own: [usize; 2],
     /// The numbers of the walls and poles that are bodies.
     walls: Vec<u32>,
@@ -42,7 +42,7 @@ impl Bodies {
         Self { first, any: world.robots().iter().any(|robot| robot.body.is_some()) }
     }
 
-    /// Whether there are any.
+    /// True if there are any.
     pub(in crate::simulation) fn any(&self) -> bool {
         self.any
     }

@@ -1,4 +1,5 @@
-//! How faint the sound of one kind of transducer may be, and how far it may come, to be heard by another.
+//! Limits of hearing: how faint the sound of one kind of transducer may be, and how far it may come, to be heard by
+//! another.
 
 use crate::{
     acoustics::{LOUDEST_PANEL, Transducer},
@@ -6,7 +7,7 @@ use crate::{
     world::{FARTHEST, World},
 };
 
-/// What a kind of transducer hears of a kind in this world.
+/// Sound that a kind of transducer hears of a kind in this world.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct HearingRange {
     sending: Transducer,

@@ -30,7 +30,7 @@ pub(crate) struct Channel {
     pub(crate) receiver: u32,
     /// The path's number, see [`Channels::paths`].
     pub(crate) path: u32,
-    /// What only its ends and its bounces decide.
+    /// The part that only its ends and its bounces decide.
     pub(crate) key: u64,
     /// Travelling time in nanoseconds.
     pub(crate) delay: u64,
@@ -74,7 +74,7 @@ pub(crate) struct Channels<'w> {
     /// Of each kind of transducer that hears one.
     ranges: Vec<HearingRange>,
     bodies: Bodies,
-    /// Whether it matters what a robot hears.
+    /// True if it matters what a robot hears.
     listens: Vec<bool>,
     /// The channels from each emitter while nothing moves, with one more start at the end; else those of the last
     /// firing.
@@ -168,7 +168,7 @@ impl<'w> Channels<'w> {
         self.paths.paths()
     }
 
-    /// Whether paths are looked for at each firing.
+    /// Returns true if paths are looked for at each firing.
     pub(crate) fn moves(&self) -> bool {
         self.moves
     }

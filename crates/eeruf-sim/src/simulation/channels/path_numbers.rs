@@ -53,7 +53,7 @@ impl PathNumbers {
         number
     }
 
-    /// What only a path's ends and bounces decide: the same in every simulation, whatever was met before.
+    /// The part that only a path's ends and bounces decide: the same in every simulation, whatever was met before.
     pub(super) fn key(&self, number: u32) -> u64 {
         self.keys[number as usize]
     }

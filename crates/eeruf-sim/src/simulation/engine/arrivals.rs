@@ -1,4 +1,4 @@
-//! What reaches the receivers: the sound of a firing along its channels, with fading and jitter, and bursts from
+//! Arrivals at the receivers: the sound of a firing along its channels, with fading and jitter, and bursts from
 //! outside.
 
 use core::f32::consts::FRAC_PI_2;
@@ -13,7 +13,7 @@ const ARRIVALS: u64 = 1;
 const BURSTS: u64 = 2;
 const FADING: u64 = 4;
 
-/// How sound fades and jitters on its way.
+/// Fading and jitter of sound on its way.
 pub(crate) struct Propagation {
     /// For what each firing draws anew.
     random: Random,
@@ -94,8 +94,8 @@ impl Propagation {
         }
     }
 
-    /// How a path with this key fades and shifts at a time, both normally distributed: decided by the seed, the path
-    /// and the time alone, so that it does not matter who asks, nor what was asked before.
+    /// Fading and shift of a path with this key at a time, both normally distributed: decided by the seed, the path and
+    /// the time alone, so that it does not matter who asks, nor what was asked before.
     ///
     /// Between independent normal numbers at knots, each path's at places of its own, it goes along a quarter of a
     /// circle, which keeps the variance: at the share `u` of the way `cos(u pi / 2) a + sin(u pi / 2) b`. At a distance
@@ -140,7 +140,7 @@ impl Bursts {
         };
     }
 
-    /// How a burst at `now` reaches one receiver, if it is loud enough there.
+    /// Arrival of a burst at `now` at one receiver, if it is loud enough there.
     pub(crate) fn arrival(&mut self, now: u64) -> Option<Arrival> {
         let [fades, _] = self.normal.pair(self.random.bits());
         let level_over_threshold_db = self.noise.burst_db as f32 + self.noise.fading_db_rms as f32 * fades;

@@ -25,7 +25,7 @@ use crate::{
     world::{AnySchedule, Random, Robot, World},
 };
 
-/// How many events go by between two calls of `keep_going`.
+/// Number of events that go by between two calls of `keep_going`.
 const EVENTS_PER_CALL: u32 = 8192;
 
 /// A world under way.
@@ -38,7 +38,7 @@ pub(crate) struct EventLoop<'a, K> {
     bursts: Bursts,
     /// Of every sensor of the world.
     receivers: Vec<Receiver>,
-    /// What each sensor reads alone, at its last firing.
+    /// Reading of each sensor alone, at its last firing.
     references: Vec<u64>,
     /// Where each sensor's robot was then, and at the firing before.
     fired: Vec<Option<Moment>>,
@@ -195,7 +195,7 @@ impl<'a, K: Kinematics> EventLoop<'a, K> {
         }
     }
 
-    /// What faults change now: tables, and what stands in the scene.
+    /// Changes by faults now: tables, and the objects in the scene.
     fn change(&mut self, rings: &mut [RunningRing<'a>]) -> Result<(), SimulationError> {
         let now = self.faults.next();
         let at_s = now as f64 * 1e-9;
@@ -219,7 +219,7 @@ impl<'a, K: Kinematics> EventLoop<'a, K> {
         Ok(())
     }
 
-    /// What was read since it was last taken, of so many seconds.
+    /// Readings since they were last taken, over this many seconds.
     pub(crate) fn take(&mut self, duration_s: f64) -> Readings {
         self.recorder.take(self.channels.paths(), duration_s)
     }

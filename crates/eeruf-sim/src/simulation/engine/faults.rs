@@ -10,16 +10,16 @@ use crate::{
     world::{AnySchedule, Fault, FaultKind, Random, Robot, World, WorldError, scene_with},
 };
 
-/// What the stream of random numbers is for.
+/// Purpose of the stream of random numbers.
 const FAULTS: u64 = 5;
 /// From one place of a door or a leg to the next, in nanoseconds: at 1 m/s a twentieth of a metre. A choice.
 const FRAME_NS: u64 = 50_000_000;
-/// By how much noise is above what is just heard, in dB: a choice, as loud as a burst from outside.
+/// Level of noise above what is just heard, in dB: a choice, as loud as a burst from outside.
 const NOISE_DB: f32 = 20.0;
 /// The same of a glitch, which is no sound and rises at once.
 const GLITCH_DB: f32 = 200.0;
 
-/// What becomes of a trigger.
+/// The fate of a trigger.
 pub(super) enum Fired {
     /// No sound is sent, and nothing is heard.
     Nothing,
@@ -93,7 +93,7 @@ impl<'a> Faults<'a> {
         times.filter(|&at| now.is_none_or(|now| at > now)).min().unwrap_or(NEVER)
     }
 
-    /// What is due at a time, the one of [`next`](Self::next).
+    /// The event due at a time, the one of [`next`](Self::next).
     pub(super) fn due(&mut self, now: u64) -> Result<Vec<Due<'a>>, WorldError> {
         let mut due = vec![];
         let time_s = now as f64 * 1e-9;
@@ -135,7 +135,7 @@ impl<'a> Faults<'a> {
         of_sensor.of(firing.into()).of(what).bits() as f64 / (u64::MAX as f64 + 1.0)
     }
 
-    /// What becomes of a sensor's trigger.
+    /// The fate of a sensor's trigger.
     pub(super) fn fired(&self, id: SensorId, now: u64) -> Fired {
         let wires = self.of(id, now).filter(|(_, fault)| fault.kind == FaultKind::TriggerWires);
         let sensor = wires.fold(id.sensor, |sensor, (_, fault)| fault.exchanged(sensor));
@@ -150,7 +150,7 @@ impl<'a> Faults<'a> {
         if sends { Fired::Sends(sensor, late) } else { Fired::Nothing }
     }
 
-    /// What a sensor hears after a firing because of faults, beside sound.
+    /// Sounds of a sensor after a firing because of faults, beside sound.
     pub(super) fn heard_beside(&self, id: SensorId, now: u64, firing: u32, hearing: &Hearing) -> Vec<Arrival> {
         let mut heard = vec![];
         let robot = self.robots.get(usize::from(id.robot));

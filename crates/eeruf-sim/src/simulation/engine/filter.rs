@@ -6,8 +6,8 @@ use crate::methods::{Belief, OwnError};
 use crate::simulation::receiver::Echo;
 use crate::world::Robot;
 
-/// What is believed of the readings of one robot's ring. Hand it to a simulation with [`Own`](crate::Own); what the
-/// methods believe goes through it as well.
+/// Belief in the readings of one robot's ring. Hand it to a simulation with [`Own`](crate::Own); what the methods
+/// believe goes through it as well.
 ///
 /// ```
 /// use std::collections::HashMap;
@@ -39,24 +39,24 @@ impl<F: Filter + ?Sized> Filter for Box<F> {
     }
 }
 
-/// What one firing of one sensor has heard.
+/// Echoes that one firing of one sensor has heard.
 #[derive(Clone, Copy, Debug)]
 pub struct FiredReading<'a> {
-    /// What the ring itself makes of it, with the filter of core: its sensor, phase and period too.
+    /// The ring's own verdict, with the filter of core: its sensor, phase and period too.
     pub reading: &'a Reading,
     /// Its echoes, earliest first: one at most, but up to eight under [`Method::MultiEcho`](crate::Method::MultiEcho).
     pub echoes: &'a [Echo],
     /// When it fired, in seconds of true time.
     pub fired_s: f64,
-    /// By how much odometry expects a good reading to have changed since the sensor's firing before, in microseconds; 0
-    /// for a robot without odometry.
+    /// Change of a good reading since the sensor's firing before that odometry expects, in microseconds; 0 for a robot
+    /// without odometry.
     pub expected_change_us: i32,
 }
 
-/// What is believed of a firing.
+/// Belief in a firing.
 #[derive(Clone, Copy, Debug)]
 pub struct Filtered {
-    /// What to make of it. [`Accepted`](ReadingKind::Accepted) and [`Clear`](ReadingKind::Clear) count as believed.
+    /// The verdict. [`Accepted`](ReadingKind::Accepted) and [`Clear`](ReadingKind::Clear) count as believed.
     pub kind: ReadingKind,
     /// The echo that it stands for: one of this firing, or of an earlier one that the filter has kept; none for
     /// silence.

@@ -58,13 +58,13 @@ impl Own {
         self
     }
 
-    /// Whether all of it is for robots that there are.
+    /// True if all of it is for robots that there are.
     pub(in crate::simulation) fn check(&self, robots: usize) -> Result<(), SimulationError> {
         let last = self.firing.keys().chain(self.filter.keys()).max().copied();
         last.filter(|&robot| robot >= robots).map_or(Ok(()), |robot| Err(SimulationError::Robot { robot, robots }))
     }
 
-    /// Whether a robot fires by it.
+    /// Returns true if a robot fires by it.
     pub(super) fn fires(&self, robot: usize) -> bool {
         self.firing.contains_key(&robot)
     }

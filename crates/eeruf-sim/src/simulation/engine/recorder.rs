@@ -1,4 +1,4 @@
-//! What becomes of a reading under a method, and its entry in the record: what it says, what it came from, and what the
+//! The way of a reading under a method, and its entry in the record: what it says, what it came from, and what the
 //! sensor would have read alone.
 
 use eeruf_core::{Reading, ReadingKind, hopping::Weighed};
@@ -21,7 +21,7 @@ const ROOM: usize = 1 << 13;
 /// Writes down the readings.
 pub(crate) struct Recorder {
     readings: Readings,
-    /// What is believed of each robot's readings.
+    /// Filters of each robot's readings.
     filters: Vec<Box<dyn Filter>>,
     ids: Vec<SensorId>,
     end: u64,
@@ -57,7 +57,7 @@ impl Recorder {
         Ok(Self { readings, filters, ids: ids.to_vec(), end })
     }
 
-    /// Whether nothing was read since the record was last taken.
+    /// Returns true if nothing was read since the record was last taken.
     pub(crate) fn is_empty(&self) -> bool {
         self.readings.is_empty()
     }

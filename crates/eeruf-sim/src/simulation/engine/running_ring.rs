@@ -14,7 +14,7 @@ use crate::{
     world::{FaultKind, Random, Robot, Ticker, World},
 };
 
-/// What the stream of random numbers is for.
+/// Purpose of the stream of random numbers.
 const DITHER: u64 = 3;
 
 /// A ring under way.
@@ -22,7 +22,7 @@ pub(crate) struct RunningRing<'a> {
     pub(crate) robot: &'a Robot,
     pub(crate) ring: Box<dyn RingRunner<'a> + 'a>,
     pub(crate) clock: Ticker,
-    /// How each sensor hears.
+    /// Hearing of each sensor.
     hearings: Vec<Hearing>,
     /// Its sensors among all of the world's.
     pub(crate) sensors: core::ops::Range<usize>,
@@ -33,7 +33,7 @@ pub(crate) struct RunningRing<'a> {
 }
 
 impl RunningRing<'_> {
-    /// How a sensor, one of all of the world's, hears.
+    /// Hearing of a sensor, one of all of the world's.
     pub(crate) fn hearing_of(&self, number: usize) -> &Hearing {
         // One for each of its sensors.
         &self.hearings[number - self.sensors.start]
@@ -126,8 +126,8 @@ pub(crate) fn start_all<'a>(
     Ok(rings)
 }
 
-/// By how much a good reading of a sensor should have changed since its firing before: `-2 d / c`, with `d` the way
-/// that the robot carried it forward in between, as odometry knows it. Nothing without odometry.
+/// Expected change of a good reading of a sensor since its firing before: `-2 d / c`, with `d` the way that the robot
+/// carried it forward in between, as odometry knows it. Nothing without odometry.
 pub(crate) fn expected_change_us(robot: &Robot, sensor: u8, before: &Pose, fired: &Pose, speed_of_sound: f64) -> i32 {
     let Some(pose) = robot.sensors.get(usize::from(sensor)).filter(|_| robot.odometry) else { return 0 };
     let (before, fired) = (before * pose, fired * pose);

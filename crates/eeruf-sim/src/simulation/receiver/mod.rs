@@ -41,7 +41,7 @@ pub struct Echo {
     /// Since the firing, by the robot's clock.
     pub(crate) t_echo_us: u32,
     pub(crate) arrival: Arrival,
-    /// Whether it was sent at the very moment at which the sensor fired: its own sound, or that of one which fired
+    /// True if it was sent at the very moment at which the sensor fired: its own sound, or that of one which fired
     /// together with it.
     pub(crate) of_this_firing: bool,
 }
@@ -65,26 +65,26 @@ impl Echo {
     }
 }
 
-/// How a receiver hears. Times are true nanoseconds.
+/// Hearing of a receiver. Times are true nanoseconds.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Hearing {
     pub(crate) blanking: u64,
     pub(crate) window: u64,
     /// No sensor fires again within this time of firing.
     pub(crate) refire: u64,
-    /// How long a sensor that reports several echoes is deaf after each.
+    /// Dead time after each echo of a sensor that reports several.
     pub(crate) dead_time: u64,
     pub(crate) echoes: usize,
     pub(crate) gain: GainProfile,
     /// When the gain is full, in seconds.
     pub(crate) gain_full_s: f64,
-    /// How long an echo rises, in nanoseconds, if that is when it is heard: over a burst. 0 for a receiver that hears
+    /// Rise time of an echo, in nanoseconds, if that is when it is heard: over a burst. 0 for a receiver that hears
     /// every echo at its onset.
     pub(crate) rise_ns: f64,
 }
 
 impl Hearing {
-    /// How a sensor of a robot hears whose true times are `ns` of what its clock measures.
+    /// Hearing of a robot's sensor whose clock measures `ns` of true time.
     pub(crate) fn new(
         world: &World,
         robot: &Robot,
@@ -107,8 +107,8 @@ impl Hearing {
         }
     }
 
-    /// How long after its onset sound is heard that begins so long after the receiver has fired; `None` if it is too
-    /// faint.
+    /// Time from the onset of a sound until it is heard, by when it begins after the receiver has fired; `None` if it
+    /// is too faint.
     ///
     /// A threshold detector hears an echo whose envelope rises evenly over its burst when it has reached the threshold:
     /// at a level of `L` dB over that, `10^(-L / 20)` of a burst after the onset.
@@ -143,9 +143,9 @@ pub(crate) struct Receiver {
     own_until: u64,
     /// When it last fired.
     pub(crate) fired: u64,
-    /// How often it has fired.
+    /// Number of its firings.
     pub(crate) firings: u32,
-    /// What it will hear next.
+    /// The next arrival that it will hear.
     next: Option<Arrival>,
     /// Arrivals yet to come, in no order.
     pending: Vec<Arrival>,
@@ -172,7 +172,8 @@ impl Receiver {
         self.next.map_or(NEVER, |next| next.at)
     }
 
-    /// Whether an arrival about this time, give or take `slack`, can matter. Most cannot, and need not be drawn at all.
+    /// Returns true if an arrival about this time, give or take `slack`, can matter. Most cannot, and need not be drawn
+    /// at all.
     #[inline]
     pub(crate) fn cares(&self, at: u64, slack: u64) -> bool {
         let latest = at + slack;
@@ -288,7 +289,7 @@ impl Receiver {
         }
     }
 
-    /// What it heard since it fired, earliest first.
+    /// Echoes since it fired, earliest first.
     pub(crate) fn heard(&self) -> &[Echo] {
         self.heard.get(..self.heard_count).unwrap_or(&[])
     }

@@ -1,4 +1,4 @@
-//! What a transducer sends into a cone, or hears from it, at most; and how far that is heard.
+//! Largest strength that a transducer sends into a cone, or hears from it; and how far that is heard.
 
 use super::reach::Reach;
 use super::{FAR, at_cos};

@@ -13,12 +13,12 @@ pub(crate) struct EnsonifiedPole<'a> {
     pub(super) pole: &'a Pole,
     /// `s'`; none if the pole is too near for the bound.
     pub(super) before_m: Option<f64>,
-    /// What is known of `A^2`: all but the receiver's pattern and `s (s' + s)`.
+    /// The known part of `A^2`: all but the receiver's pattern and `s (s' + s)`.
     pub(super) part: f64,
 }
 
 impl EnsonifiedPole<'_> {
-    /// Whether certainly none of these receivers hears it.
+    /// Returns true if certainly none of these receivers hears it.
     #[inline]
     pub(crate) fn is_inaudible(&self, receivers: &[Point]) -> bool {
         if self.part == 0.0 && self.before_m.is_some() {
@@ -29,7 +29,7 @@ impl EnsonifiedPole<'_> {
         nearest_m >= FAR * self.pole.radius_m && self.is_too_faint(self.part, nearest_m)
     }
 
-    /// Whether a receiver may hear it.
+    /// Returns true if a receiver may hear it.
     #[inline]
     pub(crate) fn may_be_heard(&self, receiver: usize, at: Point) -> bool {
         let Some(axis) = self.audibility.receivers.get(receiver) else { return true };
@@ -39,7 +39,7 @@ impl EnsonifiedPole<'_> {
             || !self.is_too_faint(self.part * self.audibility.heard(home.dot(axis) / far_m), far_m)
     }
 
-    /// Whether `A^2 s (s' + s)` is too little this far from the pole's centre.
+    /// Returns true if `A^2 s (s' + s)` is too little this far from the pole's centre.
     #[inline]
     fn is_too_faint(&self, part: f64, far_m: f64) -> bool {
         let Some(before_m) = self.before_m else { return false };

@@ -1,5 +1,5 @@
-//! Which paths are certainly too faint to be heard: decided from where they point, before anything expensive is
-//! computed.
+//! Early rejection of paths that are certainly too faint to be heard: decided from where they point, before anything
+//! expensive is computed.
 //!
 //! Every bound is an upper one, so that nothing audible is lost: the patterns by their envelope, a pole by the most
 //! that it can return, the air by what it takes on a slightly shorter way.
@@ -19,13 +19,14 @@ pub(super) use aim::Aim;
 pub(super) use ensonified::EnsonifiedPole;
 use reach::Reach;
 
-/// How finely the envelope is known: in equal steps of `sin(angle / 2)`.
+/// Resolution of the envelope: in equal steps of `sin(angle / 2)`.
 const STEPS: usize = 1024;
-/// By how much a path to a pole's surface may point past its axis, in radians, if the pole is [`FAR`] or farther.
+/// Largest angle by which a path to a pole's surface may point past its axis, in radians, if the pole is [`FAR`] or
+/// farther.
 const ASIDE_RAD: f64 = 1.2 / FAR;
 /// Poles nearer than this many radii count as audible.
 const FAR: f64 = 60.0;
-/// How finely the loss in the air is known, in steps per metre, and how far.
+/// Resolution of the loss in the air, in steps per metre, and its range.
 const STEPS_PER_M: f64 = 32.0;
 const REACH_M: f64 = 32.0;
 
@@ -34,7 +35,7 @@ const REACH_M: f64 = 32.0;
 pub(crate) struct Audibility {
     /// The emitter's and the receivers' patterns.
     pistons: [Piston; 2],
-    /// Whether paths rise and fall, so that they may point less far off an axis than they seem to in the plan.
+    /// True if paths rise and fall, so that they may point less far off an axis than they seem to in the plan.
     in_room: bool,
     /// The highest squares of the two patterns from an angle on.
     departing: Vec<f64>,
@@ -45,7 +46,7 @@ pub(crate) struct Audibility {
     /// By steps of length: a lower bound on the square of the amplitude that would just be heard if the air took
     /// nothing.
     faint: Vec<f64>,
-    /// How far sound is heard that leaves with a share of its strength.
+    /// Range of sound that leaves with a share of its strength.
     reach: Reach,
     /// Where the source heads.
     source: Vector,
@@ -97,12 +98,12 @@ impl Audibility {
         self.receivers.extend(receivers);
     }
 
-    /// What the source sends where.
+    /// Sound of the source by direction.
     pub(crate) fn of_source(&self) -> Aim<'_> {
         Aim { envelope: &self.departing, reach: &self.reach, axis: self.source, beam: self.pistons[0].beam }
     }
 
-    /// What a receiver hears from where: sound comes the same way as it would go. None where everything counts as
+    /// Hearing of a receiver by direction: sound comes the same way as it would go. None where everything counts as
     /// heard.
     pub(crate) fn of_receiver(&self, receiver: usize) -> Option<Aim<'_>> {
         let axis = *self.receivers.get(receiver).filter(|_| self.floor > 0.0)?;
@@ -121,15 +122,15 @@ impl Audibility {
         at_cos(&self.arriving, cos)
     }
 
-    /// What the square of an amplitude is at least that is heard after this length, but for the air.
+    /// Least square of an amplitude that is heard after this length, but for the air.
     #[inline]
     fn faint(&self, length_m: f64) -> f64 {
         let step = ((length_m * STEPS_PER_M) as usize).min(self.faint.len().saturating_sub(1));
         self.faint.get(step).copied().unwrap_or(0.0)
     }
 
-    /// Whether a path over walls may be heard that leaves at an angle with this cosine off the source's axis, and whose
-    /// image the receiver sees in the direction `towards`, as long as the path.
+    /// Returns true if a path over walls may be heard that leaves at an angle with this cosine off the source's axis,
+    /// and whose image the receiver sees in the direction `towards`, as long as the path.
     #[inline]
     pub(crate) fn may_hear_image(
         &self,
@@ -177,8 +178,8 @@ impl Audibility {
         self.sent(cos) * most * most >= self.faint(least_m) * least_m * least_m
     }
 
-    /// Whether a path around an edge may be heard that is no louder than `most` but for the patterns; `out` leads from
-    /// the source to the edge, `home` from the receiver.
+    /// Returns true if a path around an edge may be heard that is no louder than `most` but for the patterns; `out`
+    /// leads from the source to the edge, `home` from the receiver.
     #[inline]
     pub(crate) fn may_hear_around(&self, most: f64, receiver: usize, out: Vector, home: Vector, length_m: f64) -> bool {
         let Some(axis) = self.receivers.get(receiver) else { return true };
@@ -186,8 +187,8 @@ impl Audibility {
         sent * self.heard(home.dot(axis) / home.norm()) * most * most >= self.faint(length_m)
     }
 
-    /// Whether a path over one pole may be heard that has been left this square of its amplitude by patterns and walls,
-    /// and has at least so far to go before and after the pole: by
+    /// Returns true if a path over one pole may be heard that has been left this square of its amplitude by patterns
+    /// and walls, and has at least so far to go before and after the pole: by
     ///
     /// ```text
     /// A^2 <= square (a / 2) / (s' s (s' + s))
@@ -210,7 +211,7 @@ impl Audibility {
         left >= self.faint(length_m) * before_m * between_m * after_m * length_m
     }
 
-    /// What sound falls on a pole.
+    /// Sound that falls on a pole.
     pub(crate) fn ensonify<'a>(&'a self, source: Point, pole: &'a Pole) -> EnsonifiedPole<'a> {
         let out = pole.centre - source;
         let far = out.norm();

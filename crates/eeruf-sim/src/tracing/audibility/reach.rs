@@ -1,4 +1,4 @@
-//! How far sound is heard, by the strength with which it leaves.
+//! Range of sound, by the strength with which it leaves.
 
 /// Steps in each octave of the square of an amplitude.
 const STEPS_BITS: u32 = 2;

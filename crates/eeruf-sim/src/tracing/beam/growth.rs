@@ -1,4 +1,4 @@
-//! What a beam tree is grown for: the scene, how far, and for whom.
+//! Growth of a beam tree: the scene, how far, and for whom.
 
 use crate::tracing::audibility::Aim;
 use crate::{
@@ -7,7 +7,7 @@ use crate::{
     threads::Stop,
 };
 
-/// What a tree is grown for.
+/// Growth of a tree.
 pub(crate) struct Growth<'a> {
     pub(crate) mesh: &'a Mesh,
     pub(crate) mirrors: &'a [Mirror],
@@ -18,7 +18,7 @@ pub(crate) struct Growth<'a> {
     pub(crate) budget: usize,
     /// Beams of the last order serve receivers only, not poles, and may be dropped where no receiver is.
     pub(crate) last_for_receivers: bool,
-    /// What the source sends where, if what is certainly too faint may be left out.
+    /// Sound of the source by direction, if what is certainly too faint may be left out.
     pub(crate) aim: Option<Aim<'a>>,
     /// Ends it early.
     pub(crate) stop: &'a Stop,

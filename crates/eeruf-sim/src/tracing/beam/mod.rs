@@ -72,7 +72,7 @@ pub(crate) struct PoleCone {
 }
 
 impl PoleCone {
-    /// Whether a point seen from the beam's image is in the cone, its limits included.
+    /// Returns true if a point seen from the beam's image is in the cone, its limits included.
     pub(crate) fn holds(&self, ahead: Vector) -> bool {
         cone_holds(self.left, self.right, ahead)
     }

@@ -1,4 +1,4 @@
-//! What is read from a grown tree: the bounces of a path, and which images are loud enough.
+//! Results of a grown tree: the bounces of a path, and which images are loud enough.
 
 use super::tree::BeamTree;
 use super::{Beam, VisibleImage};

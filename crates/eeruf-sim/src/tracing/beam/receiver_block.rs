@@ -44,14 +44,14 @@ impl ReceiverBlock {
         self.radius = far.fold(0.0, f64::max) * (1.0 + 1e-9) + TOUCH_M;
     }
 
-    /// Whether all receivers are certainly farther from a point.
+    /// Returns true if all receivers are certainly farther from a point.
     #[inline]
     pub(super) fn is_beyond(&self, from: Point, length_m: f64) -> bool {
         let least_m = length_m + self.radius;
         (self.middle - from).norm_squared() > least_m * least_m
     }
 
-    /// Whether any receiver may be in the cone; when it says no, there is certainly none.
+    /// Returns true if any receiver may be in the cone; when it says no, there is certainly none.
     #[inline]
     pub(super) fn may_see(&self, image: Point, left: Vector, right: Vector) -> bool {
         let ahead = self.middle - image;

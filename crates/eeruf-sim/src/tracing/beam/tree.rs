@@ -8,7 +8,7 @@ use crate::{
     scene::{Beyond, Exit, Gate, NONE},
 };
 
-/// How many beams lie between two looks at whether to stop.
+/// Number of beams that lie between two looks at whether to stop.
 const BEAMS_PER_LOOK: usize = 256;
 /// Marks a target as a pole.
 const POLE: u32 = 1 << 31;
@@ -36,7 +36,7 @@ struct Flight<'a> {
     beam: &'a Beam,
     /// The beam's number in the tree.
     index: u32,
-    /// Whether walls reflect it: not after the last order.
+    /// True if walls reflect it: not after the last order.
     reflects: bool,
 }
 
@@ -296,8 +296,8 @@ impl BeamTree {
     }
 }
 
-/// Whether all that lies behind a gate is farther from a point than a length, given as its square: whether the gate's
-/// line is.
+/// Returns true if all that lies behind a gate is farther from a point than a length, given as its square: whether the
+/// gate's line is.
 #[inline]
 fn is_beyond(gates: &[Gate], gate: u32, from: Point, length2: f64) -> bool {
     let first = gate - gate % 3;

@@ -83,7 +83,7 @@ struct Seen {
     point_m: f64,
     /// The way by that point.
     length_m: f64,
-    /// Whether the surface reaches there.
+    /// True if the surface reaches there.
     is_reflected: bool,
 }
 

@@ -19,7 +19,7 @@ pub(crate) struct EdgePath {
     pub(crate) length_m: f64,
     pub(crate) departure_rad: f64,
     pub(crate) arrival_rad: f64,
-    /// What diffraction and spreading leave of the amplitude, at the wave number of the question.
+    /// Share of the amplitude that diffraction and spreading leave, at the wave number of the question.
     pub(crate) spread: f64,
     /// The same without a bound, and that wave number; none of two ways that are heard as one.
     unbounded: Option<[f64; 2]>,
@@ -28,7 +28,7 @@ pub(crate) struct EdgePath {
 }
 
 impl EdgePath {
-    /// What is left of the amplitude at another wave number: Keller's coefficient falls with its square root.
+    /// Share of the amplitude that is left at another wave number: Keller's coefficient falls with its square root.
     pub(crate) fn spread_at(&self, wave_number: f64) -> f64 {
         match self.unbounded {
             Some([unbounded, at]) if wave_number != at => {
@@ -56,11 +56,11 @@ pub(crate) struct EdgeSearch {
     chosen: Vec<u32>,
 }
 
-/// What is asked for.
+/// The question.
 #[derive(Clone, Copy)]
 pub(crate) struct EdgeQuery<'a> {
     pub(crate) scene: &'a Scene,
-    /// What is certainly too faint may be left out.
+    /// Audibility, if what is certainly too faint may be left out.
     pub(crate) audibility: Option<&'a Audibility>,
     pub(crate) source: Point,
     pub(crate) receivers: &'a [Point],

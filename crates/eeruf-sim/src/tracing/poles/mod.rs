@@ -19,7 +19,7 @@ pub(super) use shadow::is_shaded;
 /// The most problems of Alhazen that one question may try, some ten seconds.
 const MAX_TRIED: usize = 1 << 25;
 
-/// How many problems of Alhazen lie between two looks at whether to stop.
+/// Number of problems of Alhazen that lie between two looks at whether to stop.
 const TRIED_PER_LOOK: usize = 64;
 
 /// A path with one pole, or two in turn.
@@ -32,24 +32,24 @@ pub(crate) struct PolePath {
     pub(crate) arrival_rad: f64,
     /// Where the source seems to be, by which doubles are recognised.
     pub(crate) image: Point,
-    /// What the legs and the poles' curvature leave of the amplitude.
+    /// Share of the amplitude that the legs and the poles' curvature leave.
     pub(crate) spread: f64,
     pub(crate) cos_incidence: [f64; 2],
     bounces: (u32, u32),
 }
 
-/// What is asked for: a source whose tree is grown, and how far to follow its sound.
+/// The question: a source whose tree is grown, and how far to follow its sound.
 #[derive(Clone, Copy)]
 pub(crate) struct PoleQuery<'a> {
     pub(crate) scene: &'a Scene,
     pub(crate) tree: &'a BeamTree,
     pub(crate) source: Point,
     pub(crate) limits: Limits,
-    /// What is certainly too faint may be left out.
+    /// Audibility, if what is certainly too faint may be left out.
     pub(crate) audibility: Option<&'a Audibility>,
-    /// Whether scene, receivers, limits and audibility are those of the last query, but for the source.
+    /// True if scene, receivers, limits and audibility are those of the last query, but for the source.
     pub(crate) again: bool,
-    /// How many beams and paths there may be.
+    /// Largest number of beams and paths.
     pub(crate) budget: usize,
     /// Ends it early.
     pub(crate) stop: &'a Stop,
@@ -193,7 +193,7 @@ impl PoleSearch {
         }
     }
 
-    /// Whether to end; looked at now and then.
+    /// True to end; looked at now and then.
     fn is_stopped(&self, stop: &Stop) -> bool {
         self.tried.is_multiple_of(TRIED_PER_LOOK) && stop.is_stopped()
     }

@@ -1,4 +1,4 @@
-//! What poles shade. Sound bends around what is thinner than its first Fresnel zone, and does not reach what lies
+//! Shadows of poles. Sound bends around what is thinner than its first Fresnel zone, and does not reach what lies
 //! behind anything thicker.
 
 use crate::{
@@ -7,7 +7,7 @@ use crate::{
     tracing::bounce_points::parts,
 };
 
-/// Whether a pole stands in a path's way that is too thick there for sound to bend around: nearer to a leg than its
+/// True if a pole stands in a path's way that is too thick there for sound to bend around: nearer to a leg than its
 /// radius, which exceeds
 ///
 /// ```text

@@ -1,4 +1,4 @@
-//! What the three searches found, side by side: images seen over walls first, then paths over poles, then those around
+//! Results of the three searches, side by side: images seen over walls first, then paths over poles, then those around
 //! edges.
 
 use crate::geometry::{Point, TOUCH_M};
@@ -45,7 +45,7 @@ impl<'a> Found<'a> {
         }
     }
 
-    /// Whether two paths have the same number of bounces and the same image.
+    /// True if two paths have the same number of bounces and the same image.
     pub(in crate::tracing) fn are_one(self, a: u32, b: u32) -> bool {
         let ((order_a, image_a), (order_b, image_b)) = (self.key(a), self.key(b));
         order_a == order_b && (image_a - image_b).norm() <= TOUCH_M

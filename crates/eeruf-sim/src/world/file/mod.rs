@@ -88,22 +88,22 @@ impl World {
     }
 }
 
-/// What a world file says, a scene without robots too. The robots and the noise are not yet checked against it.
+/// Contents of a world file, a scene without robots too. The robots and the noise are not yet checked against it.
 #[derive(Debug)]
 pub struct WorldParts {
     /// Walls, poles and air.
     pub scene: Scene,
     /// The robots, if there are any.
     pub robots: Vec<Robot>,
-    /// How noisy it is.
+    /// Its noise.
     pub noise: Noise,
-    /// Which effects it has.
+    /// Its effects.
     pub physics: Physics,
     /// The most bounces that sound is followed for.
     pub max_order: u32,
-    /// What decides all that is random.
+    /// Seed of all that is random.
     pub seed: u64,
-    /// What goes wrong.
+    /// Faults.
     pub faults: Vec<Fault>,
 }
 
@@ -158,7 +158,7 @@ impl WorldParts {
     }
 }
 
-/// Which part of the file an error is about, and which field of it.
+/// The part of the file that an error is about, and its field.
 fn blame(file: &WorldFile, error: &WorldError) -> (Option<Range<usize>>, &'static str) {
     let robot = |robot: usize| file.robots.get(robot).map(Spanned::span);
     match *error {

@@ -11,7 +11,7 @@ pub struct WorldFileError {
     pub file: PathBuf,
     /// The line, from 1, where one is to blame.
     pub line: Option<usize>,
-    /// What is wrong and what is expected.
+    /// The error and what is expected.
     pub message: String,
 }
 

@@ -12,16 +12,16 @@ use super::error::WorldError;
 pub(crate) use normal::{FARTHEST, Normal};
 pub use random::Random;
 
-/// How noisy a world is.
+/// Noise of a world.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Noise {
     /// Root mean square by which each arrival's level fades or grows, in dB.
     pub fading_db_rms: f64,
     /// Root mean square by which each arrival is early or late, in microseconds.
     pub jitter_us_rms: f64,
-    /// How many bursts from outside (compressed air, keys, another make of sensor) are heard in a second, on average.
+    /// Mean number of bursts from outside (compressed air, keys, another make of sensor) that are heard in a second.
     pub bursts_per_s: f64,
-    /// How far they are above what is just heard, in dB.
+    /// Level above what is just heard, in dB.
     pub burst_db: f64,
 }
 

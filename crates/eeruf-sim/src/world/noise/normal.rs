@@ -2,7 +2,7 @@
 
 use std::sync::LazyLock;
 
-/// How many equal shares the normal distribution is cut into.
+/// Number of equal shares that the normal distribution is cut into.
 const SHARES: usize = 1024;
 /// No normal number drawn here is farther from zero: one in 16,000 would be.
 pub(crate) const FARTHEST: f32 = 4.0;

@@ -33,7 +33,7 @@ pub(crate) struct Meter<'h, C> {
 }
 
 impl<C> Meter<'_, C> {
-    /// What the control is shown.
+    /// The progress shown to the control.
     pub(super) fn progress(&self) -> Progress {
         let known = |value: u32| (value > 0).then_some(value);
         Progress { nodes: self.nodes, best: known(self.best), bound: known(self.bound) }
@@ -41,7 +41,7 @@ impl<C> Meter<'_, C> {
 }
 
 impl<C: Control> Meter<'_, C> {
-    /// Whether budget and control allow going on.
+    /// Returns true if budget and control allow going on.
     pub(super) fn may_go_on(&self) -> bool {
         !self.stopped && self.nodes < self.limit
     }

@@ -102,7 +102,7 @@ impl<C: Control> Bisection<'_, C> {
         }
     }
 
-    /// Whether a schedule is found at the level with few nodes.
+    /// Returns true if a schedule is found at the level with few nodes.
     pub(crate) fn finds(&mut self, level: i32, budget: u64, bracket: &mut Bracket<'_>) -> bool {
         self.probe_level(level, budget, false, bracket).is_found()
     }

@@ -1,4 +1,4 @@
-//! What is asked: whether a problem has a schedule at a period, and for which values of one of its numbers.
+//! The question: whether a problem has a schedule at a period, and for which values of one of its numbers.
 
 use super::super::firing::Firing;
 use super::super::problem::CheckedProblem;
@@ -63,7 +63,7 @@ pub(crate) struct Probe {
     pub(crate) budget: u64,
     /// Firing times of an easier query, whose orders are tried first.
     pub(crate) guide: Option<Firing>,
-    /// Whether the budget is for a proof rather than for finding a schedule.
+    /// True if the budget is for a proof rather than for finding a schedule.
     pub(crate) thorough: bool,
 }
 
@@ -77,6 +77,6 @@ pub(crate) struct Bracket<'q> {
     pub(crate) feasible: i32,
     /// Firing times at `feasible`.
     pub(crate) firing: Firing,
-    /// Whether these times came from a search, so that they are worth following.
+    /// True if these times came from a search, so that they are worth following.
     pub(crate) searched: bool,
 }

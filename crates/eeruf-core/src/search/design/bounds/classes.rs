@@ -1,4 +1,4 @@
-//! How little a period may leave to spare for sensors that all conflict, so that all their `|d|` find room.
+//! The least slack of a period for sensors that all conflict, so that all their `|d|` find room.
 //!
 //! Take n sensors that all conflict, in a period `T_p = n I + sigma`, with `R >= I`. Any two firings that follow each
 //! other are I apart, also those of one sensor. If a sensor is the p-th of them in phase a and the q-th in phase b,
@@ -83,7 +83,7 @@ impl Classes {
         yes as u32
     }
 
-    /// Whether too few `|d|` fit into the classes at this period, at least n I.
+    /// Returns true if too few `|d|` fit into the classes at this period, at least n I.
     fn excludes(&self, problem: &CheckedProblem, period: i32) -> bool {
         let (n, cliques, separation) = (self.n, self.cliques, problem.separation);
         let spare = period - n * problem.interval;
@@ -103,8 +103,8 @@ impl Classes {
     }
 }
 
-/// Whether some permutation of n places moves no more of them by each distance than there is room for, or that takes
-/// too long to find out. Places and distances are below n, which is at most `MAX_SENSORS`.
+/// Returns true if some permutation of n places moves no more of them by each distance than there is room for, or that
+/// takes too long to find out. Places and distances are below n, which is at most `MAX_SENSORS`.
 fn permutes(n: usize, room: &mut [i32; MAX_SENSORS]) -> bool {
     let all = u64::MAX >> (MAX_SENSORS - n);
     // Where each place goes, and where it may still be tried to go.

@@ -49,7 +49,7 @@ pub enum Bound {
         sensors: u32,
         /// I in ticks.
         interval: u32,
-        /// What follows the last of them: I, or the window if that is shorter.
+        /// The gap after the last of them: I, or the window if that is shorter.
         own: u32,
     },
     /// At most so many sensors can keep their interval at the same time.
@@ -60,7 +60,7 @@ pub enum Bound {
         at_once: u32,
         /// I in ticks.
         interval: u32,
-        /// What each sensor keeps after its second firing: I, or the window if that is shorter.
+        /// The gap that each sensor keeps after its second firing: I, or the window if that is shorter.
         own: u32,
     },
     /// Sensors that all conflict fire one after the other, and too few `|d|` fit into the little time that leaves.

@@ -1,4 +1,4 @@
-//! What the search branches on next, and which alternative it tries first.
+//! The next branching of the search, and the alternative it tries first.
 //!
 //! The alternative that comes first matters only for how soon a schedule is found: it is drawn from a fixed seed in
 //! short descents, copied from a schedule for an easier problem, or the one that leaves the others most room.
@@ -77,7 +77,7 @@ impl State<'_, '_> {
         None
     }
 
-    /// Whether `u` fires before `v` by the order of the sensors one clique further along, if that is decided.
+    /// Returns true if `u` fires before `v` by the order of the sensors one clique further along, if that is decided.
     fn pattern(&self, u: usize, v: usize) -> Option<bool> {
         let (k, shift) = (self.problem.sensors, self.shift);
         let (x, y, phase) = ((u - 1) % k, (v - 1) % k, (u - 1) / k);

@@ -3,12 +3,12 @@
 /// Words of one decision.
 pub(crate) const DECISION_WORDS: usize = 6;
 
-/// What a decision branches on.
+/// The subject of a decision.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Branch {
     /// The sensor with the largest `|d|`.
     Top,
-    /// Which of two firings in the same phase comes first.
+    /// The order of two firings in the same phase.
     Order,
     /// The sensor with the largest `|d|` of those without a rank, and its sign.
     Rank,

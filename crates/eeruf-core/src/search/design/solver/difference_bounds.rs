@@ -128,7 +128,7 @@ impl<'m> DifferenceBounds<'m> {
         }
     }
 
-    /// Whether the log ran over since the last call; then all marks before are void.
+    /// Returns true if the log ran over since the last call; then all marks before are void.
     pub(crate) fn take_overrun(&mut self) -> bool {
         core::mem::take(&mut self.overrun)
     }

@@ -72,7 +72,7 @@ impl<'p, 'm> Solver<'p, 'm> {
         solver
     }
 
-    /// How many sensors the problem has.
+    /// Number of sensors the problem has.
     pub(crate) fn sensors(&self) -> usize {
         self.state.problem.sensors
     }

@@ -1,4 +1,4 @@
-//! What follows from the decisions made so far (`docs/explanation/theory.md`, sections 6.1 and 6.2).
+//! Consequences of the decisions made so far (`docs/explanation/theory.md`, sections 6.1 and 6.2).
 //!
 //! Three arguments, repeated until nothing is new: an order that has become impossible leaves the other one; ranked
 //! neighbours are D apart; and K values `|d|` must fit ([`spacing`](super::spacing)).

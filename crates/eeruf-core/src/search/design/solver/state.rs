@@ -1,4 +1,5 @@
-//! What the search knows and prefers at one node: the difference bounds, the ranks decided, and what to try first.
+//! Knowledge and preferences of the search at one node: the difference bounds, the ranks decided, and what to try
+//! first.
 //!
 //! Indices: sensors are below `problem.sensors` and so below `MAX_SENSORS`, the length of what is indexed by sensor.
 
@@ -12,7 +13,7 @@ use super::spacing::Intervals;
 use crate::schedule::MAX_SENSORS;
 use crate::search::common::Members;
 
-/// What the search of one period knows, and what it tries first.
+/// State of the search of one period, and what it tries first.
 pub(super) struct State<'p, 'm> {
     pub(super) problem: &'p CheckedProblem,
     /// The largest `|d|` allowed.
@@ -49,8 +50,8 @@ impl<'p, 'm> State<'p, 'm> {
         self.ranks = Ranks::NONE;
     }
 
-    /// What to try first from now on: alternatives drawn from `random`, or those of a schedule for an easier problem,
-    /// or the fixed order.
+    /// Sets what is tried first from now on: alternatives drawn from `random`, or those of a schedule for an easier
+    /// problem, or the fixed order.
     pub(super) fn prefer(&mut self, random: Option<Random>, guide: Option<Firing>) {
         self.guide = guide;
         self.random = random;
@@ -62,7 +63,7 @@ impl<'p, 'm> State<'p, 'm> {
         1 + x + phase * self.problem.sensors
     }
 
-    /// What holds for every schedule.
+    /// Adds the bounds that hold for every schedule.
     pub(super) fn add_root_bounds(&mut self, period: i32) -> Result<(), Conflict> {
         let problem = self.problem;
         for x in 0..problem.sensors {

@@ -16,7 +16,8 @@ pub(super) fn waits_with(d: i32, left: [u64; 2], s: [u64; 2], paper: bool) -> u6
     waits & shifted(s[odd as usize], (d + odd) / 2)
 }
 
-/// How far a value keeps others away: `D - 1`, or more than any wait if a single sensor has a greater `D`.
+/// The distance to which a value keeps others away: `D - 1`, or more than any wait if a single sensor has a greater
+/// `D`.
 pub(super) fn reach(problem: &Problem<'_>) -> i32 {
     problem.separation.min(MASK_MAX + 1) as i32 - 1
 }

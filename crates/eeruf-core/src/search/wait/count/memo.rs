@@ -10,7 +10,7 @@ const ENTRY_WORDS: usize = 1 + 4;
 const PROBES: usize = 4;
 /// Entries used at first.
 const FIRST_ENTRIES: usize = 512;
-/// How many times more are used when those are half full.
+/// Number of times more that are used when those are half full.
 const GROWTH: usize = 8;
 
 /// A remainder as words.
@@ -143,7 +143,7 @@ impl<'m> Memo<'m> {
     }
 }
 
-/// Whether the words of a key are those kept: a dozen or so, fewer than a call is worth.
+/// Returns true if the words of a key are those kept: a dozen or so, fewer than a call is worth.
 #[inline]
 fn same(own: &[u32], key: &[u32; KEY_WORDS]) -> bool {
     own.iter().zip(key).fold(0, |differ, (x, y)| differ | (x ^ y)) == 0

@@ -1,4 +1,4 @@
-//! How many tables there are: depth first over the sensors, with what was counted before kept in memory.
+//! Number of tables: depth first over the sensors, with what was counted before kept in memory.
 //!
 //! What the sensors already placed mean to those still to come is little: which `|d|` (and `s`) are still free, and
 //! which waits remain to each sensor that conflicts with one of them. Two partial tables that leave the same remainder

@@ -7,7 +7,7 @@ use crate::requirements::Criterion;
 use crate::schedule::MAX_SENSORS;
 use crate::search::common::{Members, Outcome};
 
-/// What is still free for the separations: bit `v` of `d` for `|d| = v`, bit `v` of `s[p]` for `s = 2 v + p`.
+/// Values still free for the separations: bit `v` of `d` for `|d| = v`, bit `v` of `s[p]` for `s = 2 v + p`.
 #[derive(Clone, Copy, Default)]
 struct Free {
     d: u64,
@@ -220,7 +220,7 @@ impl<'p, 'm> Counting<'p, 'm> {
         u128::from(tables)
     }
 
-    /// Whether so many values `D` apart are still free.
+    /// Returns true if so many values `D` apart are still free.
     fn has_room(&self, mut free: u64, sensors: usize) -> bool {
         let separation = self.problem.separation.max(1);
         for _ in 0..sensors {

@@ -1,4 +1,4 @@
-//! What the search of a table branches on, packed into lent words.
+//! Branchings of the search of a table, packed into lent words.
 
 use super::super::difference_constraints::Order;
 
@@ -11,7 +11,7 @@ pub(super) enum Branch {
     Rank(usize),
     /// The value of `|d|` with this rank.
     Value(usize),
-    /// Which of two sensors has the greater `s`.
+    /// The order of two sensors by `s`.
     Sum(usize, usize),
 }
 

@@ -7,7 +7,8 @@ use crate::requirements::Criterion;
 use crate::schedule::MAX_SENSORS;
 use crate::search::common::{Members, Outcome};
 
-/// How a search walks. Each style is exhaustive in what it looks at; only a tight one does not look at everything.
+/// The way in which a search walks. Each style is exhaustive in what it looks at; only a tight one does not look at
+/// everything.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Style {
     /// Only `|d| = D r` is looked at.
@@ -273,7 +274,7 @@ impl<'p, 'm> Feasibility<'p, 'm> {
         if by_lag == (alternative == 0) { order } else { Order { phase, first: second, second: first } }
     }
 
-    /// Whether `|d| = D r` is all that needs looking at; known once the orders are chosen.
+    /// Returns true if `|d| = D r` is all that needs looking at; known once the orders are chosen.
     fn is_tight(&self) -> bool {
         self.style.tight || self.problem.criterion == Criterion::Exact && self.constraints.same_orders()
     }
@@ -333,7 +334,7 @@ impl<'p, 'm> Feasibility<'p, 'm> {
     }
 }
 
-/// What became of an alternative.
+/// The fate of an alternative.
 enum Applied {
     /// It stands.
     Done,

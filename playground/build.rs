@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 
 const ATLAS: &str = "../crates/eeruf-design/src/atlas/atlas.txt";
-/// With so many sensors no search of the atlas's rings takes longer than one waits for a key press, a few tenths of a
+/// With this many sensors no search of the atlas's rings takes longer than one waits for a key press, a few tenths of a
 /// second.
 const QUICK: u64 = 12;
 /// Number of adjacent sensors that are neighbours on the page.

@@ -46,7 +46,7 @@ fn run(t_delta: u16, firings: &[Heard], echo: u32) -> usize {
 
 /// Verdict that the filter should give: the kind and the echo time.
 fn naive(t_delta: u16, consecutive: usize, firings: &[Heard]) -> (ReadingKind, Option<u32>) {
-    // Only so many firings matter, and a run through more of them branches.
+    // Only this many firings matter, and a run through more of them branches.
     let firings = &firings[firings.len().saturating_sub(consecutive)..];
     let Some((last, before)) = firings.split_last() else { unreachable!("there is a firing") };
     if last.echoes.is_empty() {

@@ -50,7 +50,7 @@ pub struct Table {
 /// Something that happens to the ring.
 #[derive(Arbitrary, Debug)]
 pub enum Step {
-    /// Sleep until the next deadline, then so many microseconds more, and poll.
+    /// Sleep until the next deadline, then this many microseconds more, and poll.
     Sleep {
         late: Option<u16>,
     },
@@ -58,7 +58,7 @@ pub enum Step {
     Pass(u16),
     /// Let a minute or two pass.
     PassLong(u8),
-    /// An edge so many microseconds ago.
+    /// An edge this many microseconds ago.
     Edge {
         sensor: u8,
         ago: u16,
@@ -73,7 +73,7 @@ pub enum Step {
     Enable(u8),
     Restart,
     Change(bool),
-    /// The last firing came so many microseconds after its poll, and the clock has moved on.
+    /// The last firing came this many microseconds after its poll, and the clock has moved on.
     Fired(u8),
     Pause,
     Resume,

@@ -16,7 +16,7 @@ export function inMs(us) {
   return `${Number((us / 1000).toFixed(3))} ms`;
 }
 
-/** @param {number} sensors @returns {number} How high the diagram of so many sensors is, in units of the picture. */
+/** @param {number} sensors @returns {number} How high the diagram of this many sensors is, in units of the picture. */
 export function timingHeight(sensors) {
   return TOP + BOTTOM + sensors * laneHeight(sensors);
 }

@@ -28,7 +28,7 @@ export function boxOf(state) {
   return { left, top, width: right - left, height: top - bottom };
 }
 
-/** A box fitted into a picture of so many pixels, in its middle. */
+/** A box fitted into a picture of this many pixels, in its middle. */
 export class View {
   /** @param {Box} box @param {number} width @param {number} height */
   constructor(box, width, height) {

@@ -19,7 +19,7 @@ const FEW: usize = 24;
 const ATLAS: &str = include_str!(concat!(env!("OUT_DIR"), "/atlas.txt"));
 /// Budget of nodes for the certificate's proof, as by default in `eeruf design`.
 const CERTIFICATE_BUDGET: usize = 1_000_000;
-/// After so many nodes of a proof the page learns how far it is.
+/// After this many nodes of a proof the page learns how far it is.
 const SAID_EVERY: usize = 256;
 
 /// A designed ring. Times in microseconds.

@@ -10,7 +10,7 @@ thread_local! {
     static ANSWER: RefCell<String> = const { RefCell::new(String::new()) };
 }
 
-/// Room for a question of so many bytes; valid until the next call.
+/// Room for a question of this many bytes; valid until the next call.
 // SAFETY: no other function of that name exists in this module; so for the other two.
 #[unsafe(no_mangle)]
 pub(crate) extern "C" fn reserve(bytes: usize) -> *mut u8 {

@@ -61,7 +61,7 @@ struct ShownPath {
     corners: Vec<[f64; 2]>,
 }
 
-/// Simulates for so many of the robot's periods, and shows the readings of the first so many seconds.
+/// Simulates for this many of the robot's periods, and shows the readings of the first this many seconds.
 pub(crate) fn run(world: &World, method: Method, periods: u32, shown_s: f64) -> Result<Run, String> {
     if !(1..=MAX_PERIODS).contains(&periods) {
         return Err(format!("{periods} periods; expected 1 to {MAX_PERIODS}"));

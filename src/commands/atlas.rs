@@ -29,15 +29,15 @@ pub(crate) struct Args {
     /// Draw period over number of sensors, as SVG or, if the name ends in .png, as PNG
     #[arg(long, value_name = "FILE", value_parser = picture())]
     svg: Option<PathBuf>,
-    /// Only this share of the rings, of so many
+    /// Only this share of the rings, of this many
     #[arg(long, value_name = "I/N", value_parser = share, default_value = "1/1")]
     shard: Shard,
-    /// Only rings of up to so many sensors
+    /// Only rings of up to this many sensors
     #[arg(long, value_name = "K", default_value_t = 32, value_parser = clap::value_parser!(u8).range(2..=32))]
     most_sensors: u8,
 }
 
-/// One share of so many, from 0.
+/// One share of this many, from 0.
 #[derive(Clone, Copy)]
 struct Shard {
     share: usize,

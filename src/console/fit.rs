@@ -199,7 +199,7 @@ impl<'a> Table<'a> {
 enum Frame {
     /// Bars, as in Markdown.
     Bars,
-    /// So many spaces.
+    /// A number of spaces.
     Gaps(usize),
 }
 

@@ -167,7 +167,7 @@ fn a_line_without_edges_gives_no_echo_and_only_a_missing_sensor_is_silent() {
         assert_eq!(without_echo(&readings, 3, is_during), 1.0, "{kind}");
         others_are_well(&readings, &[3]);
     }
-    // Six milliseconds apart sensors hear each other: one whose line is cut is heard still, one that is not there is
+    // Six milliseconds apart sensors hear each other: one whose line is cut is heard still, one that does not exist is
     // not.
     let text = SCENE.replace("spacing_deg = 90.0", "spacing_deg = 5.0");
     let text = text.lines().filter(|line| !line.starts_with("schedule")).collect::<Vec<_>>().join("\n");

@@ -15,7 +15,7 @@ struct Ended {
     err: String,
 }
 
-/// Runs the program in a folder with so many columns.
+/// Runs the program in a folder with this many columns.
 fn run(folder: &Path, words: &[&str], columns: usize) -> Ended {
     let (out, err) = (folder.join("out.txt"), folder.join("err.txt"));
     let create = |file: &Path| fs::File::create(file).expect("the folder can be written to");

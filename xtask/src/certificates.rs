@@ -106,7 +106,7 @@ fn timed(command: &mut Command, total: &mut Duration) -> Result<String, Trouble>
     Ok(said)
 }
 
-/// Ring files for the table of docs/explanation/search.md with so many sensors.
+/// Ring files for the table of docs/explanation/search.md with this many sensors.
 pub(crate) fn table(sensors: &[u32], tick_us: u32) -> Vec<(String, String)> {
     let mut rings = Vec::new();
     for layout in ["line", "ring"] {

@@ -16,7 +16,7 @@ pub(crate) struct Plan {
     /// The program, where it is installed already; otherwise it is built from crates.io into target/veripb
     #[arg(long, value_name = "FILE")]
     program: Option<PathBuf>,
-    /// The table's rings with up to so many sensors
+    /// The table's rings with up to this many sensors
     #[arg(long, default_value_t = 24, value_name = "K")]
     sensors: u32,
     /// Ticks, in microseconds

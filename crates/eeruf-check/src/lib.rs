@@ -65,7 +65,7 @@ pub fn read_claim(text: &str) -> Result<Claim, CheckError> {
 }
 
 impl Certified {
-    /// So many ticks in microseconds.
+    /// A number of ticks in microseconds.
     fn micros(&self, ticks: u32) -> String {
         let (numerator, denominator) = self.claim.problem.tick_us;
         fraction(u64::from(ticks) * u64::from(numerator), u64::from(denominator))

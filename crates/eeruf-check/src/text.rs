@@ -46,14 +46,14 @@ impl<'t> Lines<'t> {
         Ok(numbers[0])
     }
 
-    /// Reads the line that must begin with `word`: so many numbers, each between `least` and `most`.
+    /// Reads the line that must begin with `word`: this many numbers, each between `least` and `most`.
     pub(crate) fn list(&mut self, word: &str, count: usize, least: u32, most: u32) -> Result<Vec<u32>, CheckError> {
         let numbers = self.numbers(word)?;
         self.expect(&numbers, count, least, most)?;
         Ok(numbers)
     }
 
-    /// Returns true if the line read last has so many numbers, each between `least` and `most`.
+    /// Returns true if the line read last has this many numbers, each between `least` and `most`.
     pub(crate) fn expect(&self, numbers: &[u32], count: usize, least: u32, most: u32) -> Result<(), CheckError> {
         if numbers.len() != count {
             return Err(self.error(format!("found {} numbers, expected {count}", numbers.len())));

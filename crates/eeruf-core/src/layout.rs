@@ -21,7 +21,7 @@ pub enum Layout<'a> {
     Graph(&'a [u64]),
 }
 
-/// A pair of neighbours that a ring of so many sensors does not have.
+/// A pair of neighbours that a ring of this many sensors does not have.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct LayoutError {
@@ -45,7 +45,7 @@ impl core::error::Error for LayoutError {}
 /// The rows of a [`Layout::Graph`] whose neighbours are these pairs of sensors, counted from 0.
 ///
 /// # Errors
-/// [`LayoutError`] for the first pair that names one sensor twice, or one that is not there: a layout that was meant
+/// [`LayoutError`] for the first pair that names one sensor twice, or one out of range: a layout that was meant
 /// for another ring would keep fewer sensors apart than it says.
 ///
 /// ```

@@ -40,7 +40,7 @@ impl Requirements<'_> {
         Some(larger.saturating_add(larger).saturating_add(Micros::new(1)))
     }
 
-    /// The least time between the firings of two of so many sensors; `None` if they need none.
+    /// The least time between the firings of two of this many sensors; `None` if they need none.
     pub const fn interval_of(&self, sensors: usize, x: usize, y: usize) -> Option<Micros> {
         if let Some(uneven) = self.uneven {
             let mut at = 0;
@@ -83,7 +83,7 @@ impl Requirements<'_> {
         if self.share_a_line(x, y) && window.as_micros() > interval.as_micros() { window } else { interval }
     }
 
-    /// The smallest `t_delta`, the longest time that any one or two of so many sensors keep between firings, and the
+    /// The smallest `t_delta`, the longest time that any one or two of this many sensors keep between firings, and the
     /// smallest window.
     pub(crate) const fn strictest(&self, sensors: usize) -> (Micros, Micros, Micros) {
         let (mut t_delta, mut gap, mut window) = (Micros::MAX, self.min_interval, Micros::MAX);

@@ -110,8 +110,8 @@ impl<const K: usize> EachSensor<K> {
     pub const NONE: Self =
         Self { most: None, limits: [SensorLimits { t_delta: Micros::MAX, window: Micros::MAX }; K], groups: [0; K] };
 
-    /// With what a schedule of so many sensors was verified for, if they were all alike, and sets of sensors that fire
-    /// together, bit x for sensor x.
+    /// With what a schedule of this many sensors was verified for, if they were all alike, and sets of sensors that
+    /// fire together, bit x for sensor x.
     pub(crate) const fn new(
         verified_for: VerifiedFor,
         sensors: usize,

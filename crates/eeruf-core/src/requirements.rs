@@ -173,7 +173,7 @@ pub(crate) const fn shorter(least: Option<Interval>, next: Interval) -> Option<I
 impl<const K: usize> Schedule<K> {
     /// `d_i = T_i,a - T_i,b` in microseconds: how much earlier, relative to its period, a sensor fires in phase b.
     ///
-    /// Zero for a sensor that is not there.
+    /// Zero for a sensor out of range.
     pub const fn shift_us(&self, sensor: usize) -> i32 {
         match (self.t_fire(Phase::A, sensor), self.t_fire(Phase::B, sensor)) {
             // Both are below 2^28, so the difference is exact.

@@ -1,8 +1,8 @@
-//! [`SensorError`]: a sensor that is not there.
+//! [`SensorError`]: a sensor out of range.
 
 use core::fmt;
 
-/// A sensor that is not there. Sensors are counted from 0 in code and printed from 1.
+/// A sensor out of range. Sensors are counted from 0 in code and printed from 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct SensorError {

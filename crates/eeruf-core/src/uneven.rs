@@ -52,7 +52,7 @@ impl Uneven<'_> {
     pub const NONE: Self =
         Self { t_delta: &[], window: &[], refire: &[], intervals: &[], shared_lines: &[], together: &[] };
 
-    /// Returns true if it makes sense for so many sensors.
+    /// Returns true if it makes sense for this many sensors.
     ///
     /// # Errors
     /// The first thing that does not: see [`UnevenError`].
@@ -114,7 +114,7 @@ pub enum UnevenError {
         /// Number of sensors.
         sensors: usize,
     },
-    /// A pair names a sensor that is not there, or one twice.
+    /// A pair names a sensor out of range, or one twice.
     Pair {
         /// The pair, from 0.
         pair: (usize, usize),
@@ -126,7 +126,7 @@ pub enum UnevenError {
         /// The pair, from 0.
         pair: (usize, usize),
     },
-    /// A set holds a sensor that is not there, or fewer than two.
+    /// A set holds a sensor out of range, or fewer than two.
     Set {
         /// Of what.
         what: &'static str,

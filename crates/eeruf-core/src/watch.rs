@@ -95,7 +95,7 @@ pub enum Doubt {
     Ambiguous(Explanation),
 }
 
-/// A sensor that hears echoes, and none was accepted for so many firings.
+/// A sensor that hears echoes, and none was accepted for this many firings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Blind {
@@ -166,7 +166,7 @@ impl<const K: usize> SensorWatch<K> {
     /// Returns the state of the space before a sensor, `now`.
     ///
     /// # Errors
-    /// [`SensorError`] for a sensor that is not there.
+    /// [`SensorError`] for a sensor out of range.
     pub fn state(&self, sensor: u8, now: Instant) -> Result<SensorState, SensorError> {
         let watched = self.sensors.get(usize::from(sensor)).ok_or(SensorError::new(sensor, K))?;
         let age = now.since(watched.at).min(LONGEST);

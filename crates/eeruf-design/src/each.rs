@@ -16,7 +16,7 @@ pub enum Each<T> {
 }
 
 impl<T: Copy> Each<T> {
-    /// The value of each of so many sensors; `what` is the key.
+    /// The value of each of this many sensors; `what` is the key.
     pub(crate) fn list(&self, what: &str, sensors: usize) -> Result<Vec<T>, String> {
         match self {
             Self::All(one) => Ok(vec![*one; sensors]),

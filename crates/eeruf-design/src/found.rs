@@ -21,7 +21,7 @@ pub struct FoundJson {
     pub fits: Option<bool>,
     /// Nodes visited.
     pub nodes: u64,
-    /// Duration.
+    /// Duration of the search.
     pub seconds: f64,
     /// Why nothing is better; only `design` says it.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -45,7 +45,7 @@ pub struct FoundJson {
 }
 
 impl FoundJson {
-    /// As found, after so many seconds; without a reason.
+    /// As found, after this many seconds; without a reason.
     pub fn new(found: &Found<MAX_SENSORS>, seconds: f64) -> Self {
         Self {
             schedule: found.schedule.as_ref().map(ScheduleFile::from),

@@ -56,10 +56,10 @@ impl OwnedLayout {
 }
 
 impl LayoutKey {
-    /// The layout of so many sensors, of which so many adjacent ones are neighbours.
+    /// The layout of this many sensors, of which this many adjacent ones are neighbours.
     ///
     /// # Errors
-    /// A pair that names a sensor that is not there, or one twice.
+    /// A pair that names a sensor out of range, or one twice.
     pub fn owned(&self, neighbours: u8, sensors: usize) -> Result<OwnedLayout, String> {
         let pairs = match self {
             Self::Unsaid => return Ok(OwnedLayout { name: Some(LayoutName::Line), neighbours, rows: vec![] }),

@@ -7,7 +7,7 @@ pub const fn four() -> u8 {
     4
 }
 
-/// Returns true if a ring may have so many sensors.
+/// Returns true if a ring may have this many sensors.
 ///
 /// # Errors
 /// The number and what is expected.
@@ -19,7 +19,7 @@ pub fn sensors_in_range(sensors: usize) -> Result<(), String> {
     }
 }
 
-/// Returns true if so many adjacent sensors may be neighbours.
+/// Returns true if this many adjacent sensors may be neighbours.
 ///
 /// # Errors
 /// The number and what is expected.

@@ -45,7 +45,7 @@ impl RingSpec {
         self.t_delta_over(u64::from(schedule.max_refire().as_micros()))
     }
 
-    /// The `t_delta` that covers jitter and the motion of so many microseconds.
+    /// The `t_delta` that covers jitter and the motion of this many microseconds.
     fn t_delta_over(&self, us: u64) -> Micros {
         let change = 2 * u64::from(self.speed_mm_s.unwrap_or(0)) * us;
         let change = change.div_ceil(u64::from(self.c.mm_per_s()).max(1));

@@ -17,7 +17,7 @@ pub struct OwnedUneven {
 }
 
 impl OwnedUneven {
-    /// Of so many sensors, counted from 0. `t_delta`, `window` and `refire` may be empty: all sensors then have what
+    /// Of this many sensors, counted from 0. `t_delta`, `window` and `refire` may be empty: all sensors then have what
     /// the requirements say.
     ///
     /// # Errors

@@ -21,7 +21,7 @@ fn finer(problem: &Problem, parts: u32) -> Problem {
     }
 }
 
-/// The shortest period in ticks so many times as fine, by the search of whole ticks.
+/// The shortest period in ticks this many times as fine, by the search of whole ticks.
 fn in_parts(problem: &Problem, parts: u32) -> u32 {
     let found = shortest(&finer(problem, parts), 1_000_000, &mut |_| true).expect("there is a schedule");
     assert_eq!(found.period, found.bound, "a million nodes prove it: {problem:?}");

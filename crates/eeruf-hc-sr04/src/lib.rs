@@ -10,7 +10,7 @@
 //!   [`ReadingKind::Stuck`](eeruf_core::ReadingKind::Stuck);
 //! - a line that never rises after its trigger: the reading is
 //!   [`ReadingKind::Unanswered`](eeruf_core::ReadingKind::Unanswered), never free space;
-//! - a sensor that is not there, or edges that get lost on the way: [`HcSr04Ring::health`] says so;
+//! - a sensor out of range, or edges that get lost on the way: [`HcSr04Ring::health`] says so;
 //! - a schedule that would trigger a sensor again too soon: it is refused when the ring is set up.
 //!
 //! The ring can also be a [`HoppingRing`](eeruf_core::hopping::HoppingRing), of which no sensor stays blind.

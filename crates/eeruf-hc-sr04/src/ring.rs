@@ -148,10 +148,10 @@ impl<P: Plan, J: Judge, T, I, D, const K: usize, const H: usize> HcSr04Ring<Ring
     /// An edge on an echo line. Hand in all edges you have before you poll.
     ///
     /// # Errors
-    /// [`SensorError`] for a sensor that is not there.
+    /// [`SensorError`] for a sensor out of range.
     pub fn edge(&mut self, edge: Edge) -> Result<(), SensorError> {
         let Some(fired) = self.ring.last_firing(edge.sensor) else {
-            // The ring says that it is not there.
+            // The ring says that it is out of range.
             return self.ring.echo(edge.sensor, edge.at);
         };
         match self.lines.edge(edge, fired) {
@@ -167,7 +167,7 @@ impl<P: Plan, J: Judge, T, I, D, const K: usize, const H: usize> HcSr04Ring<Ring
     /// As [`Ring::fired`], where a sensor was triggered at another instant than the poll said.
     ///
     /// # Errors
-    /// [`SensorError`] for a sensor that is not there.
+    /// [`SensorError`] for a sensor out of range.
     pub fn fired(&mut self, sensor: u8, at: Instant) -> Result<(), SensorError> {
         self.ring.fired(sensor, at)
     }
@@ -186,7 +186,7 @@ impl<P: Plan, J: Judge, T, I, D, const K: usize, const H: usize> HcSr04Ring<Ring
     /// As [`Ring::disable`].
     ///
     /// # Errors
-    /// [`SensorError`] for a sensor that is not there.
+    /// [`SensorError`] for a sensor out of range.
     pub fn disable(&mut self, sensor: u8) -> Result<(), SensorError> {
         self.ring.disable(sensor)
     }
@@ -194,7 +194,7 @@ impl<P: Plan, J: Judge, T, I, D, const K: usize, const H: usize> HcSr04Ring<Ring
     /// As [`Ring::enable`].
     ///
     /// # Errors
-    /// [`SensorError`] for a sensor that is not there.
+    /// [`SensorError`] for a sensor out of range.
     pub fn enable(&mut self, sensor: u8) -> Result<(), SensorError> {
         self.ring.enable(sensor)
     }

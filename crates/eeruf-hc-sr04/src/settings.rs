@@ -22,7 +22,7 @@ pub struct Settings {
     pub longest_hold: Micros,
     /// No sensor may be triggered again sooner.
     pub min_retrigger: Micros,
-    /// After so many firings in a row without a pulse a sensor counts as missing.
+    /// After this many firings in a row without a pulse a sensor counts as missing.
     pub missing_after: u8,
 }
 

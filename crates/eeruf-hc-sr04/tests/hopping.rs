@@ -29,7 +29,7 @@ fn pins(firings: [usize; K], high: Option<usize>) -> [Pins<Mock, Mock>; K] {
     })
 }
 
-/// Runs some periods; an echo of each sensor is so many microseconds wide, if it has one.
+/// Runs some periods; an echo of each sensor is this many microseconds wide, if it has one.
 fn run(
     periods: u32,
     pins: [Pins<Mock, Mock>; K],

@@ -166,7 +166,7 @@ impl<'w> Lines<'w> {
         let noticed_at = self.since_start(edge.at);
         let expected = self.edges(edge.sensor);
         let line = self.lines.get_mut(usize::from(edge.sensor));
-        let line = line.ok_or_else(|| format!("an edge of sensor {}, which is not there", edge.sensor + 1))?;
+        let line = line.ok_or_else(|| format!("an edge of sensor {}, which does not exist", edge.sensor + 1))?;
         let next = expected.iter().filter(|&&(_, _, lost)| !lost).nth(line.noticed);
         let Some(&(at, ..)) =
             next.filter(|&&(at, high, _)| high == edge.high && (at..=at + LATEST_US).contains(&noticed_at))

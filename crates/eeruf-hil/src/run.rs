@@ -57,7 +57,7 @@ impl Fault {
         })
     }
 
-    /// The clock wraps, or the main loop stalls, in the middle of so many periods of 100 ms.
+    /// The clock wraps, or the main loop stalls, in the middle of this many periods of 100 ms.
     fn orders(self, periods: u32) -> Orders {
         let start = if self == Self::Wrap { 0_u32.wrapping_sub(periods / 2 * 100_000) } else { 0 };
         let stall = if self == Self::Stall { STALL } else { Micros::ZERO };

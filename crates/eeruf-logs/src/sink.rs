@@ -305,7 +305,7 @@ impl<'a> Sink<'a> {
         }
     }
 
-    /// A file says how many messages it has, and before it so many had been found.
+    /// A file says how many messages it has, and the number found before it.
     pub(crate) fn counted(&mut self, file: &Path, counted: u64, before: u64) {
         let missing = (before + counted).saturating_sub(self.found);
         if missing > 0 {

@@ -4,8 +4,8 @@
 //! [`SurveyPlan`](https://docs.rs/eeruf-core/latest/eeruf_core/struct.SurveyPlan.html). So an edge is the sensor's own
 //! echo, which does not move, or the other's sound, which comes earlier by as much as the other fired earlier, or a
 //! stray. For each receiver the times from a firing to its edges are laid over each other; a time at which edges of
-//! different slots meet is a path if so many are improbable as strays (a binomial test, times the number of places at
-//! which a path was looked for). The best supported is taken first, and what it explains is taken away.
+//! different slots meet is a path if their number is improbable as strays (a binomial test, times the number of places
+//! at which a path was looked for). The best supported is taken first, and what it explains is taken away.
 //!
 //! A log in which more than two sensors fire close to each other can be read as well, but is better left to
 //! [`diagnose`](crate::diagnose()).

@@ -24,7 +24,7 @@ pub enum ModulesFile {
 }
 
 impl ModulesFile {
-    /// The module of each of so many sensors.
+    /// The module of each of this many sensors.
     ///
     /// # Errors
     /// A list of another length.

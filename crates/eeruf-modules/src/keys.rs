@@ -17,7 +17,7 @@ pub struct Key {
 /// The type of a figure.
 #[derive(Clone, Copy, Debug)]
 enum Kind {
-    /// A number in the file's unit, kept as so many thousandths or whole ones, up to a largest.
+    /// A number in the file's unit, kept as this many thousandths or whole ones, up to a largest.
     Number { scale: f64, most: f64, get: fn(&Module) -> u32, set: fn(&mut Module, u32) },
     /// A word, one of these.
     Word { names: &'static [&'static str], get: fn(&Module) -> &'static str, set: fn(&mut Module, &str) -> bool },

@@ -134,7 +134,7 @@ pub(crate) fn native<'py>(value: &Bound<'py, PyAny>, dtype: Option<&str>) -> PyR
     value.py().import("numpy")?.call_method1("require", (value, dtype, ["C", "A"]))
 }
 
-/// A matrix of floats with so many columns.
+/// A matrix of floats with this many columns.
 pub(crate) fn matrix<'py>(
     name: &str,
     value: &Bound<'py, PyAny>,

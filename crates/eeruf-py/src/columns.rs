@@ -36,7 +36,7 @@ pub(crate) fn read_only<T: Element>(
     Ok(PyArray1::from_vec(py, elements).readwrite().make_nonwriteable().as_any().clone())
 }
 
-/// A vector with room for so many, if the memory is there.
+/// A vector with room for this many, if the memory is there.
 pub(crate) fn room<T>(elements: usize) -> PyResult<Vec<T>> {
     let mut vector = Vec::new();
     let reserved = vector.try_reserve_exact(elements);

@@ -22,9 +22,9 @@ use crate::{
 const DESIGN_BUDGET: u64 = 50_000_000;
 /// Budget of nodes for the proof of a certificate.
 const CERTIFICATE_BUDGET: usize = 1_000_000;
-/// Up to so many sensors the engine asks often whether to go on. With more, a good part of a second may lie between two
-/// nodes that ask, so the search gets a thread of its own. A small search would wait for that thread longer than for
-/// its answer.
+/// Up to this many sensors the engine asks often whether to go on. With more, a good part of a second may lie between
+/// two nodes that ask, so the search gets a thread of its own. A small search would wait for that thread longer than
+/// for its answer.
 const FEW_SENSORS: usize = 12;
 
 /// Find the schedule with the shortest period for a ring, and prove that none is shorter.
@@ -61,8 +61,8 @@ const FEW_SENSORS: usize = 12;
 ///     over_reals: whether to say what the tick costs: in ``Found.real_period_us`` the shortest period in
 ///         ticks of any length, for the needs in exact microseconds, and in ``Found.real_proven`` whether
 ///         none is shorter. Only where the period in ticks is proven.
-///     phases: at least so many, 2 to 67: a schedule for a :class:`HoppingRing`, as ``eeruf design --phases`` finds it.
-///         Then times are whole microseconds, of lists the largest counts, and nothing below ``stale_echo`` may be
+///     phases: at least this many, 2 to 67: a schedule for a :class:`HoppingRing`, as ``eeruf design --phases`` finds
+///         it. Then times are whole microseconds, of lists the largest counts, and nothing below ``stale_echo`` may be
 ///         given but ``margin_us``.
 ///     margin_us: with ``phases``: crosstalk need move by ``T_delta`` and this margin alone, which is all that jitter
 ///         and lateness may use, instead of ``2 T_delta + 1``.
@@ -76,7 +76,7 @@ const FEW_SENSORS: usize = 12;
 /// Raises:
 ///     ArgumentError: something of the wrong type or out of range.
 ///     SearchError: needs that make no sense, or too large a grid.
-///     HoppingError: no schedule of so many phases.
+///     HoppingError: no schedule of this many phases.
 ///
 /// Example:
 ///     >>> import eeruf

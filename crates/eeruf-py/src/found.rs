@@ -38,7 +38,7 @@ pub(crate) struct Found {
     /// Number of nodes that the search visited: the same on each machine.
     #[pyo3(get)]
     nodes: u64,
-    /// Duration.
+    /// Duration of the search, in seconds.
     #[pyo3(get)]
     seconds: f64,
     /// Why the period is not shorter, in words; None from ``WaitSearch.best``.

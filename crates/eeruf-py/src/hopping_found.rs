@@ -33,7 +33,7 @@ pub(crate) struct HoppingFound {
     schedule: HoppingSchedule,
     /// Its period, in microseconds.
     value_us: u32,
-    /// No schedule of so many phases or more that separates sound of every age has a shorter period, in microseconds.
+    /// No schedule of this many phases or more that separates sound of every age has a shorter period, in microseconds.
     bound_us: u32,
     /// True if no such schedule is shorter.
     proven: bool,
@@ -58,7 +58,7 @@ pub(crate) struct Needs<'a, 'py> {
 }
 
 impl HoppingFound {
-    /// The shortest period for at least so many phases. Of what sensors need of their own the largest counts.
+    /// The shortest period for at least this many phases. Of what sensors need of their own the largest counts.
     pub(crate) fn design(phases: &Bound<'_, PyAny>, needs: &Needs<'_, '_>) -> PyResult<Self> {
         let py = phases.py();
         let phases = whole("phases", phases, 2..=eeruf_core::hopping::HoppingCode::MAX_PHASES)?;

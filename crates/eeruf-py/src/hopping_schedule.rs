@@ -30,8 +30,8 @@ use crate::{
 ///     sensors: how many, 1 to 64.
 ///     period_us: the period, ``T_p``; it must exceed the width of the code.
 ///     step_us: by how much crosstalk moves at least, 1 to 65535.
-///     phases: at least so many, 2 to 67, as far as there are; there are more than sensors, and one less than a prime.
-///         By default at least the 5 that confirm an echo.
+///     phases: at least this many, 2 to 67, as far as there are; there are more than sensors, and one less than a
+///         prime. By default at least the 5 that confirm an echo.
 ///     t_lag_us: the lag of each sensor; by default they are spread evenly over the period.
 ///     first_multiplier: ``a``, below the number of phases, which are then exactly as many as asked for: one less than
 ///         a prime, or a prime for the linear congruence ``(x + a) * m % phases`` of sensor ``x``.
@@ -53,7 +53,7 @@ pub(crate) struct HoppingSchedule(pub(crate) Core<MAX_SENSORS>);
 const PHASES: u8 = eeruf_core::judge::TrackerSettings::BALANCED.votes;
 
 impl HoppingSchedule {
-    /// A linear congruence: the narrowest with at least so many phases.
+    /// A linear congruence: the narrowest with at least this many phases.
     pub(crate) fn congruence(
         sensors: &Bound<'_, PyAny>,
         period_us: &Bound<'_, PyAny>,

@@ -186,25 +186,25 @@ impl HoppingSettings {
         self.0.solo_rate
     }
 
-    /// A sensor with nothing accepted for so many firings asks for a solo period.
+    /// A sensor with nothing accepted for this many firings asks for a solo period.
     #[getter]
     fn solo_after(&self) -> u8 {
         self.0.solo_after
     }
 
-    /// At least so many periods from one solo period to the next.
+    /// At least this many periods from one solo period to the next.
     #[getter]
     fn solo_spacing(&self) -> u8 {
         self.0.solo_spacing
     }
 
-    /// After so many readings running that do not fit, a sensor draws a new lag; 0: lags stay.
+    /// After this many readings running that do not fit, a sensor draws a new lag; 0: lags stay.
     #[getter]
     fn shift_after(&self) -> u8 {
         self.0.shift_after
     }
 
-    /// At least so many periods from one change of lags to the next.
+    /// At least this many periods from one change of lags to the next.
     #[getter]
     fn shift_spacing(&self) -> u8 {
         self.0.shift_spacing

@@ -38,7 +38,7 @@ fn module(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Module> {
     Ok(module)
 }
 
-/// The module of each of so many sensors.
+/// The module of each of this many sensors.
 pub(crate) fn modules(name: &str, value: &Bound<'_, PyAny>, sensors: usize) -> PyResult<Vec<Module>> {
     if value.is_instance_of::<PyString>() || value.is_instance_of::<PyDict>() {
         return Ok(vec![module(name, value)?; sensors]);

@@ -44,8 +44,8 @@ pub(crate) struct Ends {
     pub(crate) receivers_m: Vec<f64>,
 }
 
-/// Up to so many walls and receivers, and so many bounces, paths are found sooner than a thread would start, and before
-/// anybody could press Ctrl-C.
+/// Up to this many walls and receivers, and this many bounces, paths are found sooner than a thread would start, and
+/// before anybody could press Ctrl-C.
 const FEW: usize = 32;
 const LOW_ORDER: u32 = 6;
 

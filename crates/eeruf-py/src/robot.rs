@@ -204,7 +204,7 @@ fn refused_ring(message: &str) -> PyErr {
     ArgumentError::new_err(format!("ring: {message}"))
 }
 
-/// A time for each of so many sensors, and whether they were given one by one.
+/// A time for each of this many sensors, and whether they were given one by one.
 fn each_micros(name: &str, value: &Bound<'_, PyAny>, sensors: usize) -> PyResult<(Vec<Micros>, bool)> {
     if value.is_instance_of::<PyString>() || value.try_iter().is_err() {
         return Ok((vec![micros(name, value)?; sensors], false));

@@ -99,7 +99,7 @@ impl Schedule {
     ///     sensors: how many, 1 to 64.
     ///     period_us: the period, ``T_p``.
     ///     step_us: by how much crosstalk moves at least, 1 to 65535.
-    ///     phases: at least so many, 2 to 67; by default the 5 that confirm an echo.
+    ///     phases: at least this many, 2 to 67; by default the 5 that confirm an echo.
     ///     t_lag_us: the lag of each sensor; by default they are spread evenly over the period.
     ///
     /// Raises:

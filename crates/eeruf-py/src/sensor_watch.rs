@@ -22,7 +22,7 @@ use crate::{
 ///
 /// Args:
 ///     sensors: how many, 1 to 64.
-///     blind_after: a sensor counts as blind when nothing was accepted for so many firings with an echo, 1 to 255;
+///     blind_after: a sensor counts as blind when nothing was accepted for this many firings with an echo, 1 to 255;
 ///         0: never.
 ///     now_us: the present, 0 or more.
 ///
@@ -123,7 +123,7 @@ impl SensorWatch {
     }
 }
 
-/// A sensor that hears echoes, none of which was accepted for so many firings.
+/// A sensor that hears echoes, none of which was accepted for this many firings.
 ///
 /// Example:
 ///     >>> import eeruf

@@ -34,7 +34,7 @@ use crate::{
 ///     ArgumentError: no such method, or something of the wrong type or out of range.
 ///     SceneError: the scene has no robot.
 ///     SimulationError: a ring cannot fire by the method as it should listen.
-///     MemoryError: so many readings do not fit into memory; :func:`simulate_blocks` gives them bit by bit.
+///     MemoryError: the readings do not fit into memory; :func:`simulate_blocks` gives them bit by bit.
 ///
 /// Example:
 ///     >>> from eeruf import sim

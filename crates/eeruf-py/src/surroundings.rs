@@ -77,7 +77,7 @@ fn one(name: &str, value: &Bound<'_, PyAny>) -> PyResult<eeruf_sim::Material> {
     named.map(|(_, material)| *material).ok_or_else(|| wrong(name, shown(value), expected))
 }
 
-/// One material for each of so many surfaces: the same for all, or one each.
+/// One material for each of this many surfaces: the same for all, or one each.
 pub(crate) fn materials(
     name: &str,
     value: Option<&Bound<'_, PyAny>>,

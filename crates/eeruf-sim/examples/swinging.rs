@@ -14,7 +14,7 @@ use eeruf_sim::{DEFAULT_TOLERANCE_US, Method, Noise, Options, Physics, Robot, Si
 /// Steps of a tenth of a second, half a minute of them.
 const STEPS: usize = 300;
 const STEP_S: f64 = 0.1;
-/// So many steps from the middle to an end: 0.15 m, and 10 degrees.
+/// Number of steps from the middle to an end: 0.15 m, and 10 degrees.
 const STEPS_TO_END: usize = 3;
 const STEPS_OF_TURN: usize = 5;
 

@@ -4,7 +4,7 @@
 //!
 //!     cargo run --release -p eeruf-sim --example time_scenes -- [SCENE [RUNS]]
 //!
-//! With the beginning of a scene's name only that one is timed, so many times.
+//! With the beginning of a scene's name only that one is timed, this many times.
 
 use std::f64::consts::TAU;
 use std::hint::black_box;
@@ -14,7 +14,7 @@ use eeruf_sim::experiments::set_one::Alcove;
 use eeruf_sim::experiments::set_two::{SetTwoOptions, set_two};
 use eeruf_sim::*;
 
-/// The quickest of several runs of `work`, in milliseconds: so many, or as many as fit into a second, at least three.
+/// The quickest of several runs of `work`, in milliseconds: this many, or as many as fit into a second, at least three.
 fn quickest_ms(mut work: impl FnMut()) -> f64 {
     let (start, mut quickest, mut runs) = (Instant::now(), f64::INFINITY, 0);
     let asked = std::env::args().nth(2).and_then(|runs| runs.parse().ok());
@@ -31,7 +31,7 @@ fn room() -> Vec<Wall> {
     Wall::polyline(&[[0.0, 0.0], [6.0, 0.0], [6.0, 4.0], [0.0, 4.0], [0.0, 0.0]]).collect()
 }
 
-/// A ring of 24 in a room of four walls, with so many poles of 2 cm: its matrix of order 4.
+/// A ring of 24 in a room of four walls, with this many poles of 2 cm: its matrix of order 4.
 fn matrix_ms(poles: usize) -> (f64, usize) {
     let places = [[1.0, 1.0], [4.5, 1.2], [4.0, 3.2], [1.4, 3.0]];
     let poles = places.iter().take(poles).map(|&[x, y]| Pole::new(x, y, 0.01)).collect();
@@ -46,7 +46,8 @@ fn matrix_ms(poles: usize) -> (f64, usize) {
     (ms, matrix.paths().len())
 }
 
-/// A hall with so many rows of square pillars, 1,028 walls with 16: the matrix of a ring of 24 at order 6, per source.
+/// A hall with this many rows of square pillars, 1,028 walls with 16: the matrix of a ring of 24 at order 6, per
+/// source.
 fn hall_ms(rows: u32, physics: Physics) -> (f64, usize) {
     let size_m = 3.0 * f64::from(rows);
     let corners = [[0.0, 0.0], [size_m, 0.0], [size_m, size_m], [0.0, size_m], [0.0, 0.0]];

@@ -11,7 +11,7 @@ use eeruf_sim::{
     Scene, Transducer, Wall, World, simulate, sweep,
 };
 
-/// So many periods of each robot.
+/// Number of periods of each robot.
 const PERIODS: u32 = 300;
 const SPEEDS_M_S: [f64; 4] = [0.0, 0.5, 1.0, 2.0];
 const SPEED_OF_SOUND: f64 = 343.2;

@@ -79,7 +79,7 @@ impl Range {
         Self { name, fewest: u32::MAX, most: 0 }
     }
 
-    /// One more call, which took so many counts of the board's counter.
+    /// One more call, which took this many counts of the board's counter.
     pub fn note(&mut self, counts: u32) {
         self.fewest = self.fewest.min(counts);
         self.most = self.most.max(counts);

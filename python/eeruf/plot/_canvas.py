@@ -43,7 +43,7 @@ def colours(ax: Axes) -> Colours:
 
 
 def axes(ax: Axes | None, *, width: float = 7.0, height: float = 4.0) -> Axes:
-    """These, or new ones of so many inches."""
+    """These, or new ones of this many inches."""
     if ax is not None:
         return ax
     try:
@@ -59,7 +59,7 @@ def _width_pt(ax: Axes) -> float:
 
 
 def title(ax: Axes, text: str, *, legend_rows: int = 0) -> None:
-    """Say what is shown, in as many lines as the width asks for, above a legend of so many rows."""
+    """Say what is shown, in as many lines as the width asks for, above a legend of this many rows."""
     ax.set_title(
         textwrap.fill(text, max(20, int(_width_pt(ax) / 5.8))),
         loc="left",

@@ -78,7 +78,7 @@ struct PathJson {
     offsets: (u32, u32),
     readings: u32,
     heard: f64,
-    /// So many paths with as much support are expected by accident.
+    /// Number of paths with as much support that are expected by accident.
     accidents: f64,
 }
 

@@ -26,12 +26,12 @@ const TABLES: [(u32, u32, &str); 12] = [
     (24, 60_000, ""),
 ];
 
-/// A board fires a module in 0.1 ms. For so many modules firings that coincide are moved apart by that: one by one they
-/// come late by more than the table has to spare.
+/// A board fires a module in 0.1 ms. For this many modules firings that coincide are moved apart by that: one by one
+/// they come late by more than the table has to spare.
 const MANY: u32 = 24;
 const HANDLING: &str = "handling_us = 110\n";
 
-/// The ring file of so many modules. Lines that are sampled in `loop()` are up to 0.2 ms late.
+/// The ring file of this many modules. Lines that are sampled in `loop()` are up to 0.2 ms late.
 fn ring(modules: u32, retrigger_us: u32) -> String {
     let neighbours = modules.min(4);
     let handling = if modules >= MANY { HANDLING } else { "" };

@@ -76,7 +76,7 @@ impl<const K: usize, const E: usize> EchoFilter<K, E> {
     /// Takes in one firing of a sensor (from 0): the time of its echo, or `None` without echo.
     ///
     /// # Errors
-    /// [`SensorError`] for a sensor that is not there.
+    /// [`SensorError`] for a sensor out of range.
     pub fn push(&mut self, sensor: u8, t_echo: Option<Micros>) -> Result<Verdict, SensorError> {
         self.push_echoes(sensor, t_echo.as_slice(), 0)
     }
@@ -87,7 +87,7 @@ impl<const K: usize, const E: usize> EchoFilter<K, E> {
     /// [`Schedule::refire_after`](crate::Schedule::refire_after)).
     ///
     /// # Errors
-    /// [`SensorError`] for a sensor that is not there.
+    /// [`SensorError`] for a sensor out of range.
     pub fn push_echoes(
         &mut self,
         sensor: u8,
@@ -108,7 +108,7 @@ impl<const K: usize, const E: usize> EchoFilter<K, E> {
     /// Forgets the readings of a sensor, so that its next one is compared with nothing. The age goes on.
     ///
     /// # Errors
-    /// [`SensorError`] for a sensor that is not there.
+    /// [`SensorError`] for a sensor out of range.
     pub fn forget(&mut self, sensor: u8) -> Result<(), SensorError> {
         self.trackers.get_mut(usize::from(sensor)).ok_or(SensorError::new(sensor, K))?.forget();
         Ok(())

@@ -94,7 +94,7 @@ impl<const K: usize> RateFilter<K> {
     /// second silence in a row.
     ///
     /// # Errors
-    /// [`SensorError`] for a sensor that is not there.
+    /// [`SensorError`] for a sensor out of range.
     pub fn push(&mut self, sensor: u8, fired: Instant, t_echo: Option<Micros>) -> Result<Verdict, SensorError> {
         let limits = Limits { t_delta: self.t_delta, us_per_s: self.us_per_s };
         let line = self.sensors.get_mut(usize::from(sensor)).ok_or(SensorError::new(sensor, K))?;
@@ -104,7 +104,7 @@ impl<const K: usize> RateFilter<K> {
     /// Forgets the readings of a sensor, so that its next one is compared with nothing. The age goes on.
     ///
     /// # Errors
-    /// [`SensorError`] for a sensor that is not there.
+    /// [`SensorError`] for a sensor out of range.
     pub fn forget(&mut self, sensor: u8) -> Result<(), SensorError> {
         self.sensors.get_mut(usize::from(sensor)).ok_or(SensorError::new(sensor, K))?.known = Known::Nothing;
         Ok(())

@@ -32,7 +32,7 @@ pub struct ScheduledFiring<'s, const K: usize, const M: usize = 2, U = Alike> {
     phase: u8,
     /// Place in the firing order of the sensor after the next one.
     following: u8,
-    /// The next sensor to fire; one that is not there when all have.
+    /// The next sensor to fire; one out of range when all have.
     next: u8,
     /// True if any sensor is disabled, since asking all 64 takes time at every firing, and whether all are, by a pause.
     skips: Skips,

@@ -141,7 +141,7 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
     /// Stops a sensor from firing. The reading of a firing that is under way is still emitted.
     ///
     /// # Errors
-    /// [`SensorError`] for a sensor that is not there.
+    /// [`SensorError`] for a sensor out of range.
     pub fn disable(&mut self, sensor: u8) -> Result<(), SensorError> {
         self.sensor_mut(sensor)?;
         self.plan.set_enabled(sensor, false);
@@ -151,7 +151,7 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
     /// Lets a sensor fire again from its next turn on. Its readings from before are forgotten.
     ///
     /// # Errors
-    /// [`SensorError`] for a sensor that is not there.
+    /// [`SensorError`] for a sensor out of range.
     pub fn enable(&mut self, sensor: u8) -> Result<(), SensorError> {
         let was_enabled = self.plan.is_enabled(sensor);
         self.sensor_mut(sensor)?;

@@ -74,7 +74,7 @@ pub enum RingError {
     },
     /// The schedule was not verified, so that `t_delta` and the window cannot be taken from it.
     Unverified,
-    /// The filter cannot compare so many readings.
+    /// The filter cannot compare this many readings.
     Filter(FilterError),
 }
 

@@ -324,7 +324,7 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
     /// any sensor, wanted or not.
     ///
     /// # Errors
-    /// [`SensorError`] for a sensor that is not there.
+    /// [`SensorError`] for a sensor out of range.
     #[inline]
     pub fn echo(&mut self, sensor: u8, at: Instant) -> Result<(), SensorError> {
         self.echo_until(sensor, at, at)
@@ -361,7 +361,7 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
     /// [`ReadingKind::Stuck`], whatever edges follow.
     ///
     /// # Errors
-    /// [`SensorError`] for a sensor that is not there.
+    /// [`SensorError`] for a sensor out of range.
     pub fn stuck(&mut self, sensor: u8) -> Result<(), SensorError> {
         let stuck = self.sensor_mut(sensor)?;
         if stuck.is(LISTENING) {
@@ -380,7 +380,7 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
     /// Reports that a sensor has shown that it listens for the echo of its last firing.
     ///
     /// # Errors
-    /// [`SensorError`] for a sensor that is not there.
+    /// [`SensorError`] for a sensor out of range.
     pub fn answered(&mut self, sensor: u8) -> Result<(), SensorError> {
         self.sensor_mut(sensor)?.clear(UNANSWERED);
         Ok(())
@@ -389,7 +389,7 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
     /// Takes back [`answered`](Self::answered): what looked like an answer was a disturbance.
     ///
     /// # Errors
-    /// [`SensorError`] for a sensor that is not there.
+    /// [`SensorError`] for a sensor out of range.
     pub fn unanswered(&mut self, sensor: u8) -> Result<(), SensorError> {
         let unanswered = self.sensor_mut(sensor)?;
         if unanswered.is(LISTENING) {
@@ -402,7 +402,7 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
     /// time, or that it listened and heard nothing. See [`set_report_after`](Self::set_report_after).
     ///
     /// # Errors
-    /// [`SensorError`] for a sensor that is not there.
+    /// [`SensorError`] for a sensor out of range.
     pub fn measured(&mut self, sensor: u8, t_echo: Option<Micros>) -> Result<(), SensorError> {
         let fired = self.sensor_mut(sensor)?.fired();
         match t_echo {
@@ -428,7 +428,7 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
     /// the last one was not what it seemed. The age goes on.
     ///
     /// # Errors
-    /// [`SensorError`] for a sensor that is not there.
+    /// [`SensorError`] for a sensor out of range.
     pub fn forget(&mut self, sensor: u8) -> Result<(), SensorError> {
         self.sensor_mut(sensor)?;
         self.judge.forget(sensor);
@@ -527,7 +527,7 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
     }
 
     /// When a sensor last fired, as [`fired`](Self::fired) corrected it; an instant that nothing is heard from if it
-    /// has not yet. `None` for a sensor that is not there.
+    /// has not yet. `None` for a sensor out of range.
     pub fn last_firing(&self, sensor: u8) -> Option<Instant> {
         let there = usize::from(sensor) < self.sensors();
         self.sensors.get(usize::from(sensor)).filter(|_| there).map(Sensor::fired)

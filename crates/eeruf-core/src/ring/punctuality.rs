@@ -4,7 +4,7 @@
 //! late firing delays all that follow, so the time between two firings is off by at most the sum of lateness in
 //! between; a verified schedule has some of that to spare.
 
-/// For so many ends of periods an irregularity is remembered: the first of three readings, which a filter over three
+/// For this many ends of periods an irregularity is remembered: the first of three readings, which a filter over three
 /// may compare, was fired three periods ago, and sound is audible for two.
 const WATCHED: u8 = 6;
 /// Nothing is proven of the timetable, so that each reading is asked about.

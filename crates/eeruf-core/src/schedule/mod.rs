@@ -110,7 +110,7 @@ impl<const K: usize, const M: usize> Schedule<K, M> {
         if (phase.0 as usize) < M { used(&self.t_wait[phase.0 as usize], self.sensors) } else { &[] }
     }
 
-    /// `T_fire = T_lag + T_wait` after the start of the period, or `None` for a sensor or phase that is not there.
+    /// `T_fire = T_lag + T_wait` after the start of the period, or `None` for a sensor or phase out of range.
     #[doc(alias = "T_fire")]
     pub const fn t_fire(&self, phase: Phase, sensor: usize) -> Option<Micros> {
         if sensor < self.sensors as usize && (phase.0 as usize) < M {
@@ -126,7 +126,7 @@ impl<const K: usize, const M: usize> Schedule<K, M> {
     }
 
     /// The sensor at a place in the firing order of a phase, and how long it fires after the one before it; beyond the
-    /// last place a sensor that is not there (`K` or more), and the time from the last firing to the end of the period.
+    /// last place a sensor out of range (`K` or more), and the time from the last firing to the end of the period.
     /// Each step of a plan asks.
     #[inline]
     pub(crate) const fn firing(&self, phase: u8, place: u8) -> (u8, Micros) {

@@ -25,7 +25,7 @@ pub enum SearchError {
         /// The number of lags.
         lags: usize,
     },
-    /// The layout names a sensor that is not there.
+    /// The layout names a sensor out of range.
     Layout(LayoutError),
     /// The problem makes no sense or is too large.
     Problem(ProblemError),

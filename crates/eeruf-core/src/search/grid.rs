@@ -79,7 +79,7 @@ impl Grid {
         )?)
     }
 
-    /// So many ticks as a time; saturates at [`Micros::MAX`].
+    /// A number of ticks as a time; saturates at [`Micros::MAX`].
     pub(super) fn time(self, ticks: u32) -> Micros {
         Micros::new(ticks.saturating_mul(self.tick_us))
     }

@@ -197,7 +197,7 @@ fn neighbours_stand_less_than_so_many_steps_apart() {
             for x in 0..sensors {
                 for y in 0..sensors {
                     let other = x != y;
-                    // By so many steps to either side.
+                    // By this many steps to either side.
                     let line = (1..n.into()).any(|step| x + step == y || y + step == x);
                     let ring = (1..n.into()).any(|step| (x + step) % sensors == y || (y + step) % sensors == x);
                     let block = (0..sensors).any(|first| {

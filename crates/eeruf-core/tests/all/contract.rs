@@ -275,7 +275,7 @@ fn a_broken_promise_names_the_sensor_the_value_and_what_is_expected() {
     assert_eq!(broken.to_string(), "it fires sensor 3 again after 7 ms; expected min_refire or more");
 }
 
-/// Three enabled sensors, none of which ever fires: at each deadline so many periods end at once.
+/// Three enabled sensors, none of which ever fires: at each deadline this many periods end at once.
 struct Periods {
     due: Instant,
     at_once: u32,

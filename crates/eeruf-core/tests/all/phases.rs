@@ -219,7 +219,7 @@ fn a_path_that_is_heard_in_one_phase_only_counts_for_no_separation() {
 fn tried(times: &[[u32; 2]], period: u32, audible: &Audible, stale: bool) -> Option<u32> {
     let phases = times.len() as i64;
     let us = |time: Micros| i64::from(time.as_micros());
-    // What a path of this length reads in a phase, if its sound is so many periods old.
+    // What a path of this length reads in a phase, if its sound is this many periods old.
     let reading = |x: usize, y: usize, (phase, age): (i64, i64), length: i64| {
         let sent = (phase - age).rem_euclid(phases) as usize;
         i64::from(times[sent][x]) + length - i64::from(times[phase as usize][y]) - age * i64::from(period)

@@ -1,5 +1,5 @@
 //! The tracker beside one that is written from its rules (`docs/explanation/hopping.md`) with no regard for size or
-//! speed: sets of phases instead of bits, wide numbers, and `None` for what is not there.
+//! speed: sets of phases instead of bits, wide numbers, and `None` for what is missing.
 
 use std::collections::BTreeSet;
 

@@ -69,7 +69,7 @@ pub fn all_rings() -> Vec<Ring> {
     rings
 }
 
-/// Returns true if the ring of this number belongs to this one of so many processes, both from 0.
+/// Returns true if the ring of this number belongs to this one of this many processes, both from 0.
 #[must_use]
 pub fn is_in_shard(number: usize, shard: usize, shards: usize) -> bool {
     number % shards.max(1) == shard
@@ -85,7 +85,7 @@ impl Neighbourhood {
         core::iter::once(Self::All).chain(named).find(|candidate| candidate.layout(sensors).rows(count) == rows)
     }
 
-    /// As a layout of so many sensors.
+    /// As a layout of this many sensors.
     #[must_use]
     pub fn layout(self, sensors: u8) -> Layout<'static> {
         match self {

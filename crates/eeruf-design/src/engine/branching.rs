@@ -14,7 +14,7 @@ pub(crate) enum Branching {
     Sign(usize),
     /// `|d_x|` is smaller than `|d_y|`, or larger.
     Rank(usize, usize),
-    /// `|d_x|` is at most so many ticks, or more.
+    /// `|d_x|` is at most this many ticks, or more.
     Split(usize, u32),
 }
 

@@ -11,7 +11,7 @@ use crate::engine::problem::Merged;
 /// Times in phases a and b of each sensor of the merged problem.
 pub(crate) type Times = Vec<[i32; 2]>;
 
-/// Colours, in phase b so far apart, in phase a with so many of them in reverse, and colour by colour or not.
+/// Colours, in phase b so far apart, in phase a with this many of them in reverse, and colour by colour or not.
 struct Pattern<'m> {
     merged: &'m Merged,
     turns: &'m [usize],

@@ -14,7 +14,7 @@ use crate::engine::symmetry::Assumptions;
 /// Why there is no certificate.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum NoProof {
-    /// The budget of so many nodes is spent.
+    /// The budget of this many nodes is spent.
     Budget(usize),
     /// The caller wanted no more.
     Stopped,

@@ -17,7 +17,7 @@ use crate::engine::state::event;
 /// The shortest period over the reals of some orders, and whether no orders have a shorter one.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct OverReals {
-    /// The period and the firing times in ticks divided by so many, in lowest terms together.
+    /// The period and the firing times in ticks divided by this many, in lowest terms together.
     pub denominator: u32,
     /// The period.
     pub period: u32,

@@ -54,7 +54,7 @@ const EFFORT: u64 = 16;
 struct Run {
     search: Search,
     found: Shortest,
-    /// The search ends at so many nodes.
+    /// The search ends at this many nodes.
     limit: u64,
     /// True if the schedule found came from a search, so that it is worth following.
     is_guide: bool,

@@ -82,23 +82,23 @@ impl fmt::Display for AlignError {
 
 impl core::error::Error for AlignError {}
 
-/// A series stays if it has so many readings running within the tolerance.
+/// A series stays if it has this many readings running within the tolerance.
 const STAYS: usize = 4;
 /// Of the series that stay before and after a period at most this share jumps there where lags have not moved.
 const JUMPS: f64 = 0.25;
-/// So many moves must agree to be an observation.
+/// This many moves must agree to be an observation.
 const AGREE: usize = 3;
 /// More accidents than this, and nothing is known.
 const ACCIDENTS: f64 = 0.01;
 /// The schedule explains at least this share of the moves. One of another step shares some moves with it, all multiples
 /// of both steps, and explains up to a fifth; that is more than accidents do.
 const EXPLAINS: f64 = 1.0 / 3.0;
-/// So many moves would say whether it is the schedule. Two phases give fewer: a sensor mostly reads its own echo in one
-/// and another's sound in the other, and that move depends on lengths of paths, which nobody knows.
+/// This many moves would say whether it is the schedule. Two phases give fewer: a sensor mostly reads its own echo in
+/// one and another's sound in the other, and that move depends on lengths of paths, which nobody knows.
 const ENOUGH: u32 = 20;
 
-/// Puts the firings of a log where a fixed schedule of so many phases has them: the period in microseconds, and when a
-/// sensor fires in a phase after the start of its period. What the log says of instants is not used.
+/// Puts the firings of a log where a fixed schedule of this many phases has them: the period in microseconds, and when
+/// a sensor fires in a phase after the start of its period. What the log says of instants is not used.
 ///
 /// # Errors
 /// [`AlignError`] for a schedule that is not the ring's or cannot be known to be, and for lags that moved.

@@ -48,7 +48,8 @@ const OTHERS_HEAR: f64 = 0.2;
 const CHATTERS: f64 = 0.1;
 const AS_OTHERS: f64 = 4.0;
 
-/// Rooms are regular: so many paths must have their like only if lines are exchanged, and so many be without it else.
+/// Rooms are regular: this share of paths must have their like only if lines are exchanged, and this share be without
+/// it else.
 const MATCHES: u32 = 3;
 
 pub(super) fn faults(paths: &[FoundPath], hearing: &[Hearing], settings: &Settings) -> Vec<Fault> {

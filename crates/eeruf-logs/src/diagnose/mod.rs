@@ -8,7 +8,7 @@
 //!
 //! Readings in which the two firings stand alike repeat each other and prove nothing. So what counts is *offsets*: how
 //! many different times between the two firings support a path. By accident an edge falls within the tolerance of a
-//! predicted one with a small probability, which the readings themselves tell; that so many offsets agree by accident
+//! predicted one with a small probability, which the readings themselves tell; that as many offsets agree by accident
 //! has then a binomial probability. It is multiplied by the number of places at which a path was looked for
 //! (Bonferroni), and a path counts as found if fewer than [`Settings::accidents`] such paths are expected in the whole
 //! log by accident. That takes many phases, or lags that move: with two phases there are two offsets, and no pair can

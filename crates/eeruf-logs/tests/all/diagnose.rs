@@ -31,7 +31,7 @@ struct World {
 impl World {
     const HEALTHY: Self = Self { phases: 7, shifts: true, receivers: [0, 1, 2, 3, 4, 5], deaf: None, chatters: None };
 
-    /// The log of so many periods, and whose sound each reading is.
+    /// The log of this many periods, and whose sound each reading is.
     fn log(&self, seed: u64, periods: i64) -> (FiringLog, Vec<Option<usize>>) {
         let random = &mut Random(seed);
         let mut travel = [[[0; 2]; SENSORS]; SENSORS];

@@ -34,7 +34,7 @@ fn room(random: &mut Random) -> Travel {
     travel
 }
 
-/// The log of a survey; of a hundred firings so many meet a stray noise first.
+/// The log of a survey; of a hundred firings this many meet a stray noise first.
 fn log(travel: &Travel, random: &mut Random, strays: i64) -> FiringLog {
     let plan = SurveyPlan::new(SENSORS as u8).with_leads(24, Micros::new(500));
     let mut firings = vec![];
@@ -112,7 +112,7 @@ fn a_conflict_lasts_as_long_as_the_longest_path_in_time() {
     assert!((longest - 8_000.0).abs() < 30.0, "{longest}");
     assert_eq!(found.conflicts(15_000).len(), 2);
     assert_eq!(found.conflicts(2_900), []);
-    // Nearly all travel times would be seen, by a sender that fires earlier or later; of one that is not there, none.
+    // Nearly all travel times would be seen, by a sender that fires earlier or later; of one that does not exist, none.
     let visible = [(1, 15_000), (1, 128_000), (9, 15_000)].map(|(sender, until)| found.visible(0, sender, until));
     assert!(visible[0] > 0.7 && visible[1] < 0.5 && visible[2] == 0.0, "{visible:?}");
     assert_eq!((found.slots(0, 1), found.slots(0, 0), found.slots(0, 9)), (48, 3 + 2 * 4 * 24, 0));

@@ -148,7 +148,7 @@ pub(crate) struct PeriodFiring {
 }
 
 impl PeriodFiring {
-    /// A ring of so many sensors, none of which fires again within `refire` of firing. What is wrong with the first
+    /// A ring of this many sensors, none of which fires again within `refire` of firing. What is wrong with the first
     /// period, [`error`](Self::error) says.
     pub(crate) fn new(firing: Box<dyn Firing>, sensors: usize, refire: Micros, now: Instant) -> Self {
         let mut firing = Self {

@@ -149,7 +149,7 @@ impl Readings {
         }
     }
 
-    /// Makes room for so many more, if the memory is there.
+    /// Makes room for this many more, if the memory is there.
     pub(crate) fn try_reserve(&mut self, more: usize) -> Result<(), TryReserveError> {
         let Self { robot, sensor, period, phase, fired_s, kind, .. } = self;
         robot.try_reserve(more)?;

@@ -70,7 +70,7 @@ pub enum SimulationError {
         /// Number of readings.
         readings: u64,
     },
-    /// A robot that is not there.
+    /// A robot out of range.
     Robot {
         /// The robot.
         robot: usize,

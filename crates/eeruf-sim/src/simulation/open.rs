@@ -90,7 +90,7 @@ impl Simulation {
     /// method alone. A robot with its own firing, but not its own filter, is believed as the method says.
     ///
     /// # Errors
-    /// As [`simulate`](crate::simulate()); something of one's own for a robot that is not there, or a first period that
+    /// As [`simulate`](crate::simulate()); something of one's own for a robot out of range, or a first period that
     /// cannot be fired.
     pub fn with_own(
         world: Arc<World>,
@@ -193,7 +193,7 @@ impl Simulation {
         Ok(readings)
     }
 
-    /// As [`step`](Self::step), for so many periods of the first robot.
+    /// As [`step`](Self::step), for this many periods of the first robot.
     ///
     /// # Errors
     /// As [`step`](Self::step).

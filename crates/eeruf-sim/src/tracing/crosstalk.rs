@@ -292,7 +292,7 @@ impl CrosstalkMatrix {
         }));
     }
 
-    /// Puts what was absorbed in order, for a ring of so many sensors.
+    /// Puts what was absorbed in order, for a ring of this many sensors.
     pub(crate) fn sort(&mut self, sensors: usize) {
         let pair = |path: &CriticalPath| path.emitter as usize * sensors + path.receiver as usize;
         self.paths.sort_by(|a, b| pair(a).cmp(&pair(b)).then(a.length_m.total_cmp(&b.length_m)));

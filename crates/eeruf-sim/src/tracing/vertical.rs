@@ -18,7 +18,7 @@ pub(super) struct Way {
 }
 
 impl Way {
-    /// All ways with at most so many bounces, fewest first.
+    /// All ways with at most this many bounces, fewest first.
     pub(super) fn between(room: &Room, source_m: f64, receiver_m: f64, most: u32, ways: &mut Vec<Self>) {
         ways.clear();
         ways.push(Self { rise_m: receiver_m - source_m, order: 0, first: Bounce::Floor });

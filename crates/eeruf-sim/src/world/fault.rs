@@ -71,12 +71,12 @@ pub enum FaultKind {
     Stuck,
     /// The echo line is cut: sound, and no edges.
     Cut,
-    /// One rise of so many makes no interrupt.
+    /// One rise of this many makes no interrupt.
     LostRises {
         /// 1 for all.
         every: u32,
     },
-    /// One fall of so many makes no interrupt.
+    /// One fall of this many makes no interrupt.
     LostFalls {
         /// 1 for all.
         every: u32,

@@ -55,7 +55,7 @@ pub struct FiringTable {
 }
 
 impl Sketch {
-    /// Finds the first setting that does not suit so many sensors with this window: its name in files, its value, and
+    /// Finds the first setting that does not suit this many sensors with this window: its name in files, its value, and
     /// what is expected.
     pub(super) fn check(&self, sensors: usize, window: Micros) -> Result<(), (&'static str, f64, &'static str)> {
         let us = |time: Micros| f64::from(time.as_micros());

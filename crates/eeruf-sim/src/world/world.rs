@@ -198,7 +198,7 @@ impl World {
         self.robots.iter().any(|robot| !robot.motion.is_still())
     }
 
-    /// The places and headings of one robot's sensors at a time in seconds; none for a robot that is not there.
+    /// The places and headings of one robot's sensors at a time in seconds; none for a robot out of range.
     pub fn sensors(&self, robot: usize, time_s: f64) -> impl Iterator<Item = Pose> + '_ {
         self.robots.get(robot).into_iter().flat_map(move |robot| {
             let pose = robot.motion.at(&robot.pose, time_s).pose;

@@ -17,7 +17,7 @@ pub struct Progress {
 }
 
 impl Progress {
-    /// So many nodes, the best value so far and the bound on it, for searches outside this crate.
+    /// A number of nodes, the best value so far and the bound on it, for searches outside this crate.
     pub const fn new(nodes: u64, best: Option<u32>, bound: Option<u32>) -> Self {
         Self { nodes, best, bound }
     }

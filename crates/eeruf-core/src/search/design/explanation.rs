@@ -135,7 +135,7 @@ impl fmt::Display for Explanation {
     }
 }
 
-/// So many ticks, or the time they take.
+/// A number of ticks, or the time they take.
 #[derive(Clone, Copy)]
 struct Time {
     ticks: u32,

@@ -6,8 +6,8 @@ use crate::search::common::{Control, Progress};
 
 /// The budget of a search, and its watcher.
 ///
-/// The budget counts nodes, so a search ends at the same place on each machine. The watcher is polled every so many
-/// nodes and can stop the search.
+/// The budget counts nodes, so a search ends at the same place on each machine. The watcher is polled every few
+/// thousand nodes and can stop the search.
 pub struct Budget<'c> {
     nodes: u64,
     limit: u64,
@@ -39,7 +39,7 @@ impl<'c> Budget<'c> {
         Self::nodes_at_most(u64::MAX)
     }
 
-    /// At most so many nodes.
+    /// At most this many nodes.
     #[must_use]
     pub const fn nodes_at_most(limit: u64) -> Self {
         Self {

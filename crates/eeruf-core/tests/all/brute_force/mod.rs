@@ -5,7 +5,7 @@
 //! sensor has a set of pairs of firing times that are still open to it. Setting one sensor takes away from the others
 //! what no longer fits; the sensor with the fewest pairs is next.
 //!
-//! `EERUF_BRUTE_FORCE=10000` judges so many problems instead of 200 in each test, and `EERUF_BRUTE_FORCE_SEED` draws
+//! `EERUF_BRUTE_FORCE=10000` judges this many problems instead of 200 in each test, and `EERUF_BRUTE_FORCE_SEED` draws
 //! others.
 
 mod solver;

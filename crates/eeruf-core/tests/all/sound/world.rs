@@ -17,24 +17,24 @@ pub(super) const STEPS: u32 = 12;
 /// Sounds that each sensor hears.
 #[derive(Clone, Copy)]
 pub(super) enum Heard {
-    /// Sound of one emitter along one path of at least so many microseconds.
+    /// Sound of one emitter along one path of at least this many microseconds.
     Path { emitter: u8, least: u32 },
-    /// Its own wall after so many microseconds, give or take 15.
+    /// Its own wall after this many microseconds, give or take 15.
     Wall { t_echo: u32 },
 }
 
 /// The course of a run.
 #[derive(Clone, Copy)]
 pub(super) struct Course {
-    /// Polls come late by up to so many microseconds; every 64th by up to eight times as much.
+    /// Polls come late by up to this many microseconds; every 64th by up to eight times as much.
     pub(super) late: u32,
-    /// So many microseconds pass at each event.
+    /// This many microseconds pass at each event.
     pub(super) handling: u32,
-    /// One of so many events is followed by something that is done to the ring; 0 for never.
+    /// One of this many events is followed by something that is done to the ring; 0 for never.
     pub(super) operations: u32,
-    /// One of so many firings comes at another instant than its poll; 0 for never.
+    /// One of this many firings comes at another instant than its poll; 0 for never.
     pub(super) fired: u32,
-    /// One of so many events is followed by a step back of the clock; 0 for never.
+    /// One of this many events is followed by a step back of the clock; 0 for never.
     pub(super) clock_steps: u32,
 }
 
@@ -118,7 +118,7 @@ impl<'s> World<'s> {
         many > 0 && self.random.up_to(many - 1) == 0
     }
 
-    /// Runs until so many readings were compared; returns the counts of each sensor.
+    /// Runs until this many readings were compared; returns the counts of each sensor.
     pub(super) fn run(mut self, compared: u64) -> Vec<Count> {
         let mut events = 0_u64;
         while self.counts.iter().map(|count| count.compared).sum::<u64>() < compared && events < 40 * compared + 1000 {

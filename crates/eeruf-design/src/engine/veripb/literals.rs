@@ -7,9 +7,9 @@ use core::fmt;
 pub(crate) enum Variable {
     /// One summand of a firing time: phase, sensor, number of the summand.
     Bit(usize, usize, usize),
-    /// `d_x` is at least so many ticks.
+    /// `d_x` is at least this many ticks.
     D(usize, i32),
-    /// `|d_x|` is at least so many ticks.
+    /// `|d_x|` is at least this many ticks.
     Size(usize, i32),
     /// In this phase the first sensor fires before the second, which has the higher number.
     Order(usize, usize, usize),

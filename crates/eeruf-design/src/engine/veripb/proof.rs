@@ -53,7 +53,7 @@ impl<'m> Proof<'m> {
         self.last
     }
 
-    /// The same, if it is not there already.
+    /// The same, unless it exists.
     fn derive_once(&mut self, line: String) {
         if !self.derived.contains(&line) {
             self.derive(&line);
@@ -66,7 +66,7 @@ impl<'m> Proof<'m> {
         clause(cases).map(|clause| self.derive(&format!("rup {clause}")))
     }
 
-    /// The same, if it is not there already.
+    /// The same, unless it exists.
     fn propagated_once(&mut self, cases: &[Truth]) {
         if let Some(clause) = clause(cases) {
             self.derive_once(format!("rup {clause}"));

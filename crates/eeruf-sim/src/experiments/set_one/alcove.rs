@@ -61,7 +61,7 @@ impl Alcove {
         self.robot_of(SENSORS)
     }
 
-    /// The robot with a ring of so many sensors.
+    /// The robot with a ring of this many sensors.
     pub fn robot_of(&self, sensors: usize) -> Robot {
         let [x, y] = self.robot_m;
         let pose = Pose::new(Vector::new(x, y), core::f64::consts::FRAC_PI_2 + self.heading_rad);

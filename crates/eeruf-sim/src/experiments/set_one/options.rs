@@ -24,7 +24,7 @@ pub struct SetOneOptions {
     pub seeds: u64,
     /// The first geometry's number. The default is [`FIRST`]: parameters were tuned on geometries below 2,000.
     pub first: u64,
-    /// For how long each geometry is simulated: as long as so many readings of the conventional method take. The
+    /// For how long each geometry is simulated: as long as this many readings of the conventional method take. The
     /// default is [`READINGS`], as in the paper.
     pub readings: u32,
     /// Number of steps of the back wall to and fro, for the figures of how soon that is seen; 0: none. The default is

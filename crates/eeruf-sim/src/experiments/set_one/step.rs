@@ -11,7 +11,7 @@ use crate::{
 
 /// Step of the back wall, in metres.
 pub const STEP_M: f64 = 0.25;
-/// The wall stays for so many periods: one more than a sensor may take, so that steps come in every phase of a cycle.
+/// The wall stays for this many periods: one more than a sensor may take, so that steps come in every phase of a cycle.
 const STAYS: u32 = 65;
 /// A sensor that needs longer has not seen the step.
 const NEVER: u32 = 64;

@@ -75,7 +75,7 @@ pub(crate) fn run(
     Ok(events.take(end as f64 * 1e-9))
 }
 
-/// When so many periods of a world's first robot are over, in true nanoseconds.
+/// When this many periods of a world's first robot are over, in true nanoseconds.
 pub(crate) fn end_of(world: &World, periods: u32) -> u64 {
     // A world has at least one robot.
     u64::from(periods) * u64::from(world.robots()[0].period.as_micros()) * 1000
@@ -83,7 +83,7 @@ pub(crate) fn end_of(world: &World, periods: u32) -> u64 {
 
 impl<'a, K: Kinematics> EventLoop<'a, K> {
     /// Before the first event. Firings from `end` on are not reported; without it there is no end. There is room for
-    /// so many readings.
+    /// this many readings.
     #[expect(clippy::too_many_arguments, reason = "each of them once, in two places")]
     pub(crate) fn new(
         world: &'a World,
@@ -448,7 +448,7 @@ impl<'a, K: Kinematics> EventLoop<'a, K> {
     }
 }
 
-/// About how many readings so many periods of a world's first robot give: what memory is asked for.
+/// About how many readings this many periods of a world's first robot give: what memory is asked for.
 pub fn expected_readings(world: &World, periods: u32) -> u64 {
     expected(world, end_of(world, periods))
 }

@@ -23,7 +23,7 @@ const GLITCH_DB: f32 = 200.0;
 pub(super) enum Fired {
     /// No sound is sent, and nothing is heard.
     Nothing,
-    /// This sensor sends its sound, so many nanoseconds late.
+    /// This sensor sends its sound, this many nanoseconds late.
     Sends(u8, u64),
 }
 

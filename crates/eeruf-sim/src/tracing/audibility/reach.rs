@@ -2,7 +2,7 @@
 
 /// Steps in each octave of the square of an amplitude.
 const STEPS_BITS: u32 = 2;
-/// So many octaves down sound is looked up; fainter sound reaches as far as the faintest of these.
+/// Number of octaves down to which sound is looked up; fainter sound reaches as far as the faintest of these.
 const OCTAVES: usize = 64;
 
 /// Upper bounds on the longest path that is heard.

@@ -52,11 +52,11 @@ pub enum Bound {
         /// The gap after the last of them: I, or the window if that is shorter.
         own: u32,
     },
-    /// At most so many sensors can keep their interval at the same time.
+    /// At most this many sensors can keep their interval at the same time.
     Density {
         /// K.
         sensors: u32,
-        /// At most so many at once.
+        /// At most this many at once.
         at_once: u32,
         /// I in ticks.
         interval: u32,

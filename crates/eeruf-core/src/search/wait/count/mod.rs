@@ -27,7 +27,7 @@ pub const COUNT_WORDS: usize = 1 << if usize::BITS > 16 { 20 } else { 8 };
 /// The outcome of counting.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Count {
-    /// Exhausted: the count is exact. Found: the limit was reached, there are at least as many. Budget spent: so many
+    /// Exhausted: the count is exact. Found: the limit was reached, there are at least as many. Budget spent: this many
     /// were counted before the search stopped.
     pub outcome: Outcome,
     /// The number of tables.

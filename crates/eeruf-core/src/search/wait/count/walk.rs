@@ -220,7 +220,7 @@ impl<'p, 'm> Counting<'p, 'm> {
         u128::from(tables)
     }
 
-    /// Returns true if so many values `D` apart are still free.
+    /// Returns true if this many values `D` apart are still free.
     fn has_room(&self, mut free: u64, sensors: usize) -> bool {
         let separation = self.problem.separation.max(1);
         for _ in 0..sensors {

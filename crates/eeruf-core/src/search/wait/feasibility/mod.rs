@@ -20,7 +20,7 @@ use crate::search::common::{Outcome, ProblemError};
 use walk::{Feasibility, Style};
 
 /// Words of memory that suffice for [`first`](super::Search::first), [`best`](super::Search::best) and
-/// [`pareto`](super::Search::pareto) with so many sensors: 808 bytes for 8, 1,784 for 12.
+/// [`pareto`](super::Search::pareto) with this many sensors: 808 bytes for 8, 1,784 for 12.
 #[must_use]
 pub const fn memory_words(sensors: usize) -> usize {
     // Two orders a pair, one order of s a pair, a rank and a value a sensor; two words a branch.

@@ -395,9 +395,15 @@ def assert_mavlink(mavlink, expected):
 def test_a_late_board_and_a_missing_sensor_are_named_and_clear_is_the_maximum_if_asked_for(
     tmp_path, participant, processes, fault, about, level, message
 ):
-    node, readings, _, _, _ = run(tmp_path, participant, processes, fault, 50, clear_as="max_range")
+    node, readings, _, _, mavlink = run(tmp_path, participant, processes, fault, 50, clear_as="max_range")
     assert_ranges(node, expected_ranges(readings, set(), 4.0))
     assert any(r[about].level == level and r[about].message.startswith(message) for r in node.reports)
+    pictures = [m for m in mavlink.messages if m.get_type() == "OBSTACLE_DISTANCE"]
+    assert len(pictures) > 10
+    if fault == "missing":
+        # The sector that the sensor looks into; what does not answer is an obstacle at the minimum.
+        sector = (-45 * FAULTY % 360 + 20) % 360 // 5
+        assert pictures[-1].distances[sector] == 2
 
 
 def too_close_until_heard(node, write):

@@ -20,7 +20,7 @@ pub(crate) fn ros2() -> Result<(), Trouble> {
     let programs = ["eeruf-ros2", "eeruf-hil", "eeruf"];
     crate::program::build(&programs.map(|program| ["--bin", program]).concat())?;
     let mut tests = Command::new(python);
-    tests.args(["-m", "pytest", "tests/ros2"]).env("EERUF_EMULATOR", emulator);
+    tests.args(["-m", "pytest", "-o", "pythonpath=tests/ros2", "tests/ros2"]).env("EERUF_EMULATOR", emulator);
     for (program, variable) in programs.iter().zip(["EERUF_ROS2", "EERUF_HIL", "EERUF_PROGRAM"]) {
         let path = absolute(format!("target/debug/{program}{EXE_SUFFIX}"));
         tests.env(variable, path.map_err(|error| Trouble::Failed(error.to_string()))?);

@@ -8,6 +8,8 @@ use eeruf_core::{
 };
 
 use crate::parameters::{Parameters, Source};
+use crate::range::Scale;
+use crate::view::View;
 
 /// How bad it is, as `DiagnosticStatus` counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -37,6 +39,9 @@ const HEALTH: [&str; 6] = [
     "loses edges on the way",
     "pin error",
 ];
+
+/// Missing, stuck line and pin error: nothing that the sensor says counts.
+const BROKEN: [u8; 3] = [1, 2, 5];
 
 struct Sensor {
     heard_at_s: f64,
@@ -169,6 +174,17 @@ impl Diagnosis {
         self.interval.unsent += 1;
     }
 
+    /// The view of each sensor, and its age. One that no longer fires, or whose line the board calls broken, counts as
+    /// unanswered.
+    pub(crate) fn views<'a>(&'a self, now_s: f64, scale: &'a Scale) -> impl Iterator<Item = (View, Micros)> + 'a {
+        (0..).zip(&self.sensors).map(move |(number, sensor)| {
+            let state = self.watch.state(number, instant(now_s));
+            let (view, age) = state.map_or((View::Unknown, Micros::ZERO), |state| View::of(state, scale));
+            let is_silent = now_s - sensor.heard_at_s > self.silent_after_s;
+            (if is_silent || BROKEN.contains(&sensor.health) { View::Unanswered } else { view }, age)
+        })
+    }
+
     /// How everything is, and begins the next interval.
     pub(crate) fn report(&mut self, now_s: f64) -> Vec<Status> {
         let interval = std::mem::take(&mut self.interval);
@@ -295,6 +311,7 @@ fn said(state: SensorState) -> (String, Micros) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::range::Distance;
 
     fn diagnosis() -> Diagnosis {
         let parameters = Parameters { sensors: 2, blind_after: 3, late_us: 1_000, ..Parameters::default() };
@@ -383,6 +400,24 @@ mod tests {
         }
         assert_eq!(state(&[], 5404.0), said("clear", "2147.5"));
         assert_eq!(state(&[(5404.5, ReadingKind::Unanswered)], 5405.0), said("unanswered", "0.5"));
+    }
+
+    #[test]
+    fn broken_or_silent_sensor_is_unanswered() {
+        let mut diagnosis = diagnosis();
+        let scale = Scale::new(&Parameters::default());
+        let views =
+            |diagnosis: &Diagnosis, now_s| diagnosis.views(now_s, &scale).map(|(view, _)| view).collect::<Vec<_>>();
+        both(&mut diagnosis, 0.5, ReadingKind::Clear);
+        let clear = View::Sees(Distance::Clear);
+        assert_eq!(views(&diagnosis, 1.0), [clear, clear]);
+        for (health, expected) in [(1, View::Unanswered), (2, View::Unanswered), (5, View::Unanswered), (3, clear)] {
+            diagnosis.period(Micros::ZERO, 0, &[health, 0]);
+            assert_eq!(views(&diagnosis, 1.0), [expected, clear], "health {health}");
+        }
+        diagnosis.reading(1.4, 1, ReadingKind::Unanswered, None, Micros::ZERO, None);
+        assert_eq!(views(&diagnosis, 1.5), [clear, View::Unanswered]);
+        assert_eq!(views(&diagnosis, 1.6)[0], View::Unanswered);
     }
 
     #[test]

@@ -15,6 +15,7 @@ mod parameters;
 mod range;
 mod ros;
 mod run;
+mod view;
 
 use std::process::ExitCode;
 

@@ -31,6 +31,17 @@ pub(crate) enum ClearAs {
     MaxRange,
 }
 
+/// What `OBSTACLE_DISTANCE` says where a sensor does not answer.
+#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum UnansweredAs {
+    /// An obstacle at the minimum range, which no autopilot takes for free space.
+    #[default]
+    Obstacle,
+    /// Unknown, which `ArduPilot` takes for free space.
+    Unknown,
+}
+
 /// All parameters; `docs/how-to/ros2.md` says what each is for.
 #[derive(Clone, Debug, Deserialize, PartialEq)]
 #[serde(default, deny_unknown_fields)]
@@ -62,6 +73,7 @@ pub(crate) struct Parameters {
     pub(crate) mavlink: String,
     pub(crate) mavlink_system: u8,
     pub(crate) mavlink_component: u8,
+    pub(crate) mavlink_unanswered_as: UnansweredAs,
     pub(crate) yaws_deg: Vec<f32>,
 }
 
@@ -92,6 +104,7 @@ impl Default for Parameters {
             mavlink_system: 1,
             // MAV_COMP_ID_OBSTACLE_AVOIDANCE.
             mavlink_component: 196,
+            mavlink_unanswered_as: UnansweredAs::Obstacle,
             yaws_deg: Vec::new(),
         }
     }

@@ -17,6 +17,7 @@ use crate::mavlink::Mavlink;
 use crate::parameters::{Parameters, Source};
 use crate::range::{Distance, Scale};
 use crate::ros::{Heard, Ros};
+use crate::view::View;
 
 /// How often topics are looked at; a ring of 64 has a reading every millisecond or two.
 const LOOK: Duration = Duration::from_millis(5);
@@ -38,6 +39,7 @@ pub(crate) fn run(parameters: &Parameters) -> Result<(), String> {
     let mut reported = Instant::now();
     while !stop.load(Ordering::Relaxed) {
         node.look(line.as_ref())?;
+        node.picture();
         if reported.elapsed() >= REPORT {
             reported += REPORT;
             node.report()?;
@@ -65,6 +67,8 @@ struct EerufNode {
     clock_name: String,
     /// The number of the last frame.
     sequence: Option<u16>,
+    /// True if a reading came since the state of the ring was last sent.
+    has_news: bool,
     began: Instant,
     /// What was last said of the line, so that it is said once.
     said: String,
@@ -84,6 +88,7 @@ impl EerufNode {
             clock: BoardClock::default(),
             clock_name: "board".to_owned(),
             sequence: None,
+            has_news: false,
             began: Instant::now(),
             said: String::new(),
         })
@@ -211,7 +216,21 @@ impl EerufNode {
         Ok(())
     }
 
+    /// Sends the state of the whole ring after new readings.
+    fn picture(&mut self) {
+        if !std::mem::take(&mut self.has_news) {
+            return;
+        }
+        let Some(mavlink) = &mut self.mavlink else { return };
+        let now_s = self.began.elapsed().as_secs_f64();
+        let views: Vec<View> = self.diagnosis.views(now_s, &self.scale).map(|(view, _)| view).collect();
+        if mavlink.picture(&views).is_err() {
+            self.diagnosis.unsent();
+        }
+    }
+
     fn publish(&mut self, sensor: u8, kind: ReadingKind, t_echo: Option<Micros>, fired_ns: i64) {
+        self.has_news = true;
         let Some(distance) = self.scale.distance(kind, t_echo) else { return };
         let range = self.scale.number(distance);
         let published = self.ros.as_ref().is_none_or(|ros| ros.publish_range(sensor, fired_ns, range));

@@ -1,0 +1,31 @@
+//! The state of the space before each sensor, as it is published.
+
+use eeruf_core::{Micros, ReadingKind, watch::SensorState};
+
+use crate::range::{Distance, Scale};
+
+/// What is known of the space before a sensor.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum View {
+    /// The sensor works, and this is what it sees.
+    Sees(Distance),
+    /// The sensor does not answer, its line is broken, or it no longer fires: the space before it is not free.
+    Unanswered,
+    /// Nothing is confirmed: not yet, or readings are rejected or ambiguous.
+    Unknown,
+}
+
+impl View {
+    /// The view of a sensor in this state, and its age.
+    pub(crate) fn of(state: SensorState, scale: &Scale) -> (Self, Micros) {
+        let seen = |kind, t_echo| scale.distance(kind, t_echo).map_or(Self::Unknown, Self::Sees);
+        match state {
+            SensorState::Obstacle { t_echo, age } => (seen(ReadingKind::Accepted, Some(t_echo)), age),
+            SensorState::Clear { age } => (seen(ReadingKind::Clear, None), age),
+            SensorState::TooClose { age } => (seen(ReadingKind::TooEarly, None), age),
+            SensorState::Unanswered { since } => (Self::Unanswered, since),
+            SensorState::Unknown { since, .. } => (Self::Unknown, since),
+            _ => (Self::Unknown, Micros::ZERO),
+        }
+    }
+}

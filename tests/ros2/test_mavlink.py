@@ -1,4 +1,4 @@
-"""A board that a test plays, the node without ROS, and what autopilots make of its MAVLink. Twelve sensors all around."""
+"""A board that a test plays, the node without ROS, and what autopilots make of its MAVLink: twelve sensors all around."""
 
 import math
 import os

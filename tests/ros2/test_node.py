@@ -23,25 +23,32 @@ from pathlib import Path
 
 import pytest
 
-# Read when the domain is made.
-os.environ["CYCLONEDDS_URI"] = """<CycloneDDS><Domain>
-<General><AllowMulticast>false</AllowMulticast>
-<Interfaces><NetworkInterface address="127.0.0.1" multicast="false"/></Interfaces></General>
-<Discovery><ParticipantIndex>auto</ParticipantIndex><Peers><Peer Address="127.0.0.1"/></Peers></Discovery>
-</Domain></CycloneDDS>"""
 os.environ["MAVLINK20"] = "1"
 
-from cyclonedds.core import Policy, Qos
+from dds import (
+    DOMAIN,
+    ERROR,
+    NODE,
+    OK,
+    PATIENCE_S,
+    RELIABLE,
+    WARN,
+    DiagnosticArray,
+    Header,
+    MultiArrayLayout,
+    Range,
+    Time,
+    UInt32MultiArray,
+    environment,
+    reader,
+    taken,
+    until,
+)
 from cyclonedds.domain import DomainParticipant
-from cyclonedds.idl import IdlStruct
-from cyclonedds.idl.types import float32, int32, sequence, uint8, uint32
 from cyclonedds.pub import DataWriter
-from cyclonedds.sub import DataReader
 from cyclonedds.topic import Topic
-from cyclonedds.util import duration
 from pymavlink import mavutil
 
-NODE = os.environ["EERUF_ROS2"]
 PROGRAM = os.environ["EERUF_PROGRAM"]
 HARNESS = os.environ["EERUF_HIL"]
 # The command that emulates the board; its serial line goes to the socket that SERIAL stands for.
@@ -49,81 +56,6 @@ EMULATOR = json.loads(os.environ["EERUF_EMULATOR"])
 SCENE = "scenes/alcove-hc-sr04.toml"
 SENSORS = 8
 FAULTY = 2
-# Ports of higher domains are among those that the system gives away.
-DOMAIN = 1 + os.getpid() % 90
-OK, WARN, ERROR = 0, 1, 2
-PATIENCE_S = 60
-
-
-@dataclass
-class Time(IdlStruct, typename="builtin_interfaces::msg::dds_::Time_"):
-    sec: int32
-    nanosec: uint32
-
-
-@dataclass
-class Header(IdlStruct, typename="std_msgs::msg::dds_::Header_"):
-    stamp: Time
-    frame_id: str
-
-
-@dataclass
-class Range(IdlStruct, typename="sensor_msgs::msg::dds_::Range_"):
-    header: Header
-    radiation_type: uint8
-    field_of_view: float32
-    min_range: float32
-    max_range: float32
-    range: float32
-    variance: float32
-
-
-@dataclass
-class KeyValue(IdlStruct, typename="diagnostic_msgs::msg::dds_::KeyValue_"):
-    key: str
-    value: str
-
-
-@dataclass
-class DiagnosticStatus(IdlStruct, typename="diagnostic_msgs::msg::dds_::DiagnosticStatus_"):
-    level: uint8
-    name: str
-    message: str
-    hardware_id: str
-    values: sequence[KeyValue]
-
-
-@dataclass
-class DiagnosticArray(IdlStruct, typename="diagnostic_msgs::msg::dds_::DiagnosticArray_"):
-    header: Header
-    status: sequence[DiagnosticStatus]
-
-
-@dataclass
-class MultiArrayDimension(IdlStruct, typename="std_msgs::msg::dds_::MultiArrayDimension_"):
-    label: str
-    size: uint32
-    stride: uint32
-
-
-@dataclass
-class MultiArrayLayout(IdlStruct, typename="std_msgs::msg::dds_::MultiArrayLayout_"):
-    dim: sequence[MultiArrayDimension]
-    data_offset: uint32
-
-
-@dataclass
-class UInt32MultiArray(IdlStruct, typename="std_msgs::msg::dds_::UInt32MultiArray_"):
-    layout: MultiArrayLayout
-    data: sequence[uint32]
-
-
-RELIABLE = Qos(
-    Policy.Reliability.Reliable(duration(seconds=1)),
-    Policy.History.KeepAll,
-    Policy.DataRepresentation(use_cdrv0_representation=True),
-)
-
 
 @pytest.fixture(scope="module")
 def participant():
@@ -141,14 +73,6 @@ def processes():
             process.wait()
 
 
-def until(what, process, holds):
-    end = time.monotonic() + PATIENCE_S
-    while not holds():
-        assert process.poll() is None, process.communicate()[1]
-        assert time.monotonic() < end, f"{what} did not happen within {PATIENCE_S} s"
-        time.sleep(0.02)
-
-
 def parameters(folder, **given):
     file = folder / "eeruf.yaml"
     file.write_text("eeruf:\n  ros__parameters:\n" + "".join(f"    {key}: {value}\n" for key, value in given.items()))
@@ -159,14 +83,10 @@ class Node:
     """The node as a process, and what Cyclone DDS hears of it."""
 
     def __init__(self, participant, processes, *arguments, sensors=SENSORS):
-        environment = {**os.environ, "ROS_DOMAIN_ID": str(DOMAIN), "ROS_LOCALHOST_ONLY": "1"}
-        environment.pop("ROS_AUTOMATIC_DISCOVERY_RANGE", None)
-        self.process = subprocess.Popen([NODE, *arguments], env=environment, stderr=subprocess.PIPE, text=True)
+        self.process = subprocess.Popen([NODE, *arguments], env=environment(), stderr=subprocess.PIPE, text=True)
         processes.append(self.process)
-        topic = lambda name, kind: Topic(participant, f"rt/{name}", kind, qos=RELIABLE)
-        reader = lambda name, kind: DataReader(participant, topic(name, kind), qos=RELIABLE)
-        self.readers = [reader(f"eeruf/sonar_{sensor + 1}", Range) for sensor in range(sensors)]
-        self.diagnostics = reader("diagnostics", DiagnosticArray)
+        self.readers = [reader(participant, f"/eeruf/sonar_{sensor + 1}", Range) for sensor in range(sensors)]
+        self.diagnostics = reader(participant, "/diagnostics", DiagnosticArray)
         self.ranges = [[] for _ in range(sensors)]
         self.reports = []
         everything = [*self.readers, self.diagnostics]
@@ -176,12 +96,9 @@ class Node:
         until(what, self.process, holds)
 
     def take(self):
-        # When the node leaves, Cyclone DDS says so in samples that are none.
         for heard, reader in zip(self.ranges, self.readers):
-            heard += [sample for sample in reader.take(N=1000) if isinstance(sample, Range)]
-        for report in self.diagnostics.take(N=100):
-            if not isinstance(report, DiagnosticArray):
-                continue
+            heard += taken(reader, Range)
+        for report in taken(self.diagnostics, DiagnosticArray):
             self.reports.append({status.name.removeprefix("eeruf: "): status for status in report.status})
 
     def end(self):

@@ -89,7 +89,8 @@ enum Verb {
     },
     /// Build the wheel and test it: types, examples, and against what Rust says
     Python,
-    /// Run a ring on an emulated board, its serial line and the ROS 2 node, and listen with Cyclone DDS and pymavlink
+    /// Run a ring on an emulated board, its serial line and the ROS 2 node, and listen with Cyclone DDS and pymavlink;
+    /// build ros2/ with colcon
     Ros2,
     /// Load a recording in Rerun, whose wheel has 170 MB, and see that none of it is raw bytes
     Rerun,
@@ -188,7 +189,12 @@ fn main() -> ExitCode {
             steps.finish(true)
         }
         Verb::Python => one_step("Python package", python::python),
-        Verb::Ros2 => one_step("ROS 2 node", ros2::ros2),
+        Verb::Ros2 => {
+            let mut steps = Steps::default();
+            steps.step("ROS 2 node", ros2::ros2);
+            steps.step("ROS 2 package", ros2::package);
+            steps.finish(true)
+        }
         Verb::Rerun => one_step("recording in Rerun", rerun::rerun),
         Verb::Logs => {
             let mut steps = Steps::default();

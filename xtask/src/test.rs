@@ -73,6 +73,7 @@ pub(crate) fn run_all(nothing_skipped: bool) -> ExitCode {
     steps.step("page in a browser", || crate::page::page(crate::page::Tests::Short));
     steps.step("firmware on emulated boards", || crate::firmware::firmware(&crate::firmware::Plan::COMPARE));
     steps.step("ROS 2 node", crate::ros2::ros2);
+    steps.step("ROS 2 package", crate::ros2::package);
     steps.step("documentation", || {
         run(Command::new("cargo")
             .args(["doc", "--workspace", "--no-deps", "--locked"])

@@ -1,24 +1,33 @@
-//! The command line: where the parameters are, and what stands above them.
+//! The command line: the parameters, and what stands above them.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Parser;
 
 use crate::parameters::{Parameters, Source};
+use crate::placing::Placing;
+use crate::ros_args::{Given, RosArgs};
 
 /// A ROS 2 node for rings of ultrasonic sensors that needs no ROS installed
 #[derive(Parser)]
 #[command(version, max_term_width = 100)]
-pub(crate) struct Cli {
+#[command(after_help = "After --ros-args: -r __ns:=/robot_1 -r FROM:=TO -p NAME:=VALUE --params-file FILE")]
+struct Cli {
     /// Parameters, as YAML that `ros2 param dump` writes; all have defaults
     #[arg(long, value_name = "FILE")]
-    params_file: Option<PathBuf>,
+    params_file: Option<String>,
+    /// Print all parameters with their defaults, as a file
+    #[arg(long)]
+    print_params: bool,
     /// The node's name, by which its parameters are found
-    #[arg(long, default_value = "eeruf")]
-    name: String,
+    #[arg(long)]
+    name: Option<String>,
     /// Listen to a board on this serial line, whatever the parameters say
     #[arg(long, value_name = "DEVICE")]
     port: Option<String>,
+    /// Take number and places of the sensors from a ring file
+    #[arg(long, value_name = "RING.toml")]
+    ring: Option<PathBuf>,
     /// Write a log that `eeruf diagnose` reads
     #[arg(long, value_name = "FILE.csv")]
     log: Option<PathBuf>,
@@ -28,29 +37,57 @@ pub(crate) struct Cli {
     no_ros: bool,
 }
 
-impl Cli {
-    /// The parameters of the file, and what the command line puts above them.
-    pub(crate) fn parameters(self) -> Result<Parameters, String> {
-        let mut parameters = match &self.params_file {
-            None => Parameters::default(),
-            Some(file) => {
-                let text = std::fs::read_to_string(file).map_err(|error| format!("{}: {error}", file.display()))?;
-                Parameters::from_yaml(&text, &self.name).map_err(|error| format!("{}: {error}", file.display()))?
-            }
-        };
-        parameters.name = self.name;
-        if let Some(port) = self.port {
-            parameters.port = port;
-            parameters.source = Source::Serial;
-        }
-        if let Some(log) = self.log {
-            parameters.log = log;
-        }
-        if let Some(mavlink) = self.mavlink {
-            parameters.mavlink = mavlink;
-        }
-        parameters.ros = !self.no_ros;
-        parameters.check()?;
-        Ok(parameters)
+/// What the node is to do.
+pub(crate) enum Task {
+    Print(String),
+    Run(Box<Setup>),
+}
+
+/// What the node is started with.
+pub(crate) struct Setup {
+    pub(crate) parameters: Parameters,
+    /// Where the sensors are, if a ring file says it.
+    pub(crate) placing: Placing,
+    /// None if it speaks no ROS.
+    pub(crate) ros: Option<RosArgs>,
+}
+
+/// Reads the command line, and the files that it names. Leaves the program for what clap answers by itself.
+pub(crate) fn task() -> Result<Task, String> {
+    let mut arguments: Vec<String> = Vec::new();
+    for argument in std::env::args_os() {
+        let text = argument.into_string();
+        arguments.push(text.map_err(|raw| format!("{}: expected UTF-8", Path::new(&raw).display()))?);
     }
+    let mut ros = RosArgs::take_from(&mut arguments)?;
+    let cli = Cli::parse_from(arguments);
+    if cli.print_params {
+        return Ok(Task::Print(Parameters::file()));
+    }
+    if let Some(name) = &cli.name {
+        ros.set_node(name);
+    }
+    let mut parameters = Parameters::default();
+    for given in cli.params_file.map(Given::File).iter().chain(&ros.given) {
+        match given {
+            Given::File(file) => {
+                let text = std::fs::read_to_string(file).map_err(|error| format!("{file}: {error}"))?;
+                parameters.read_yaml(&text, &ros.full_name()).map_err(|error| format!("{file}: {error}"))?;
+            }
+            Given::One(name, value) => parameters.read_one(name, value)?,
+        }
+    }
+    if let Some(port) = cli.port {
+        parameters.port = port;
+        parameters.source = Source::Serial;
+    }
+    parameters.ring = cli.ring.unwrap_or(parameters.ring);
+    parameters.log = cli.log.unwrap_or(parameters.log);
+    parameters.mavlink = cli.mavlink.unwrap_or(parameters.mavlink);
+    let placing = Placing::read(&mut parameters)?;
+    parameters.check()?;
+    if cli.no_ros && parameters.source != Source::Serial {
+        return Err("without ROS only source: serial can be listened to; give --port".to_owned());
+    }
+    Ok(Task::Run(Box::new(Setup { parameters, placing, ros: (!cli.no_ros).then_some(ros) })))
 }

@@ -249,6 +249,7 @@ impl Diagnosis {
     fn sensor(&self, now_s: f64, number: u8, sensor: &Sensor) -> Status {
         let silent_s = now_s - sensor.heard_at_s;
         let last = sensor.last.map(|(kind, _)| kind);
+        let (state, age) = self.watch.state(number, instant(now_s)).map_or_else(|_| Default::default(), said);
         let (level, message) = if silent_s > self.silent_after_s {
             (Level::Error, format!("silent: no firing of it for {silent_s:.1} s"))
         } else if sensor.health != 0 {
@@ -260,11 +261,10 @@ impl Diagnosis {
         } else if sensor.echoes_since_accepted >= self.blind_after {
             (Level::Warn, format!("blind: none of its last {} echoes was accepted", sensor.echoes_since_accepted))
         } else {
-            (Level::Ok, "well".to_owned())
+            (Level::Ok, state.clone())
         };
         let of = |kind| sensor.tally.of(kind).to_string();
         let (last, t_echo) = sensor.last.map_or((String::new(), None), |(kind, t_echo)| (kind.to_string(), t_echo));
-        let (state, age) = self.watch.state(number, instant(now_s)).map_or_else(|_| Default::default(), said);
         let values = vec![
             ("state", state),
             ("state's age, s", format!("{:.1}", f64::from(age.as_micros()) / 1e6)),
@@ -339,11 +339,16 @@ mod tests {
         (Level::Ok, "well".to_owned())
     }
 
+    /// A sensor that sees something.
+    fn sees() -> (Level, String) {
+        (Level::Ok, "obstacle,".to_owned())
+    }
+
     #[test]
     fn a_ring_that_is_well_is_said_to_be_well() {
         let mut diagnosis = diagnosis();
         both(&mut diagnosis, 0.5, ReadingKind::Accepted);
-        assert_eq!(said(&mut diagnosis, 1.0), [well(), well(), well(), well()]);
+        assert_eq!(said(&mut diagnosis, 1.0), [well(), well(), sees(), sees()]);
     }
 
     #[test]
@@ -364,14 +369,14 @@ mod tests {
             let mut diagnosis = diagnosis();
             both(&mut diagnosis, 0.5, ReadingKind::Accepted);
             fault(&mut diagnosis);
-            let mut expected = vec![well(); 4];
+            let mut expected = [well(), well(), sees(), sees()];
             expected[place] = (level, word.to_owned());
             assert_eq!(said(&mut diagnosis, 1.0), expected);
             both(&mut diagnosis, 1.5, ReadingKind::Accepted);
             diagnosis.line_opened();
             diagnosis.hello(2);
             diagnosis.period(Micros::ZERO, diagnosis.edges_lost, &[0, 0]);
-            assert_eq!(said(&mut diagnosis, 2.0), vec![well(); 4], "after {word}");
+            assert_eq!(said(&mut diagnosis, 2.0), [well(), well(), sees(), sees()], "after {word}");
         }
     }
 
@@ -429,9 +434,12 @@ mod tests {
         for kind in [ReadingKind::First, ReadingKind::Rejected, ReadingKind::Ambiguous] {
             diagnosis.reading(0.5, 0, kind, Some(Micros::new(9_000)), Micros::ZERO, None);
         }
-        assert_eq!(said(&mut diagnosis, 1.0)[2..], [(Level::Warn, "blind".to_owned()), well()]);
+        assert_eq!(
+            said(&mut diagnosis, 1.0)[2..],
+            [(Level::Warn, "blind".to_owned()), (Level::Ok, "unknown".to_owned())]
+        );
         both(&mut diagnosis, 1.0, ReadingKind::Accepted);
-        assert_eq!(said(&mut diagnosis, 1.5)[2..], [well(), well()]);
+        assert_eq!(said(&mut diagnosis, 1.5)[2..], [sees(), sees()]);
         diagnosis.reading(2.4, 1, ReadingKind::Stuck, None, Micros::ZERO, None);
         let (silent, stuck) = ((Level::Error, "silent".to_owned()), (Level::Error, "stuck".to_owned()));
         assert_eq!(said(&mut diagnosis, 2.5), [well(), well(), silent.clone(), stuck]);

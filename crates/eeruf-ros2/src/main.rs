@@ -1,8 +1,9 @@
 //! `eeruf-ros2`: a ROS 2 node for rings of ultrasonic sensors that needs no ROS installed.
 //!
-//! It listens to a board over a serial line, or to raw echo times or ranges on topics, publishes what counts as
-//! `sensor_msgs/Range` and what is wrong as `diagnostic_msgs/DiagnosticArray`, sends `MAVLink`, and writes the log that
-//! `eeruf diagnose` reads. See `docs/how-to/ros2.md`.
+//! It listens to a board over a serial line, or to raw echo times or ranges on topics. It publishes what counts as
+//! `sensor_msgs/Range`, the state of all sensors as `sensor_msgs/PointCloud2` and what is wrong as
+//! `diagnostic_msgs/DiagnosticArray`, sends `MAVLink`, and writes the log that `eeruf diagnose` reads. See
+//! `docs/how-to/ros2.md`.
 
 mod board_clock;
 mod board_line;
@@ -12,19 +13,25 @@ mod filter;
 mod firing_log;
 mod mavlink;
 mod parameters;
+mod placing;
 mod range;
 mod ros;
+mod ros_args;
 mod run;
 mod view;
 
 use std::process::ExitCode;
 
-use clap::Parser;
-
-use crate::cli::Cli;
+use crate::cli::{Task, task};
 
 fn main() -> ExitCode {
-    let outcome = Cli::parse().parameters().and_then(|parameters| run::run(&parameters));
+    let outcome = task().and_then(|task| match task {
+        Task::Print(text) => {
+            print!("{text}");
+            Ok(())
+        }
+        Task::Run(setup) => run::run(&setup),
+    });
     match outcome {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {

@@ -5,7 +5,7 @@
 //! <https://mavlink.io/en/guide/serialization.html>.
 
 use std::net::{SocketAddr, ToSocketAddrs, UdpSocket};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use crc::{CRC_16_MCRF4XX, Crc};
 
@@ -42,8 +42,6 @@ const FIRST_SECTOR_DEG: f32 = -20.0;
 const LEAST_HALF_VIEW_DEG: f32 = SECTOR_DEG;
 /// Nothing is known of the sector.
 const UNKNOWN: u16 = u16::MAX;
-/// The shortest time between two pictures of the ring; autopilots take half a second without one for a failure.
-const PICTURE_EVERY: Duration = Duration::from_millis(100);
 
 /// What is the same in all frames, and counts them.
 struct Packer {
@@ -82,7 +80,6 @@ pub(crate) struct Mavlink {
     yaws: Vec<f32>,
     /// The named rotation of each sensor that has one to itself.
     rotations: Vec<Option<u8>>,
-    pictured: Option<Instant>,
 }
 
 impl Mavlink {
@@ -109,7 +106,6 @@ impl Mavlink {
             unanswered_as: parameters.mavlink_unanswered_as,
             rotations: (0..yaws.len()).map(|sensor| rotation(&yaws, sensor)).collect(),
             yaws,
-            pictured: None,
         })
     }
 
@@ -131,14 +127,12 @@ impl Mavlink {
         self.socket.send_to(&frame, self.to).map(|_| ())
     }
 
-    /// Sends the state of all sensors, in their order, at most ten times a second. Call it after new readings only: an
-    /// autopilot must notice when there are none. For the same reason nothing is sent while nothing is known.
-    pub(crate) fn picture(&mut self, views: &[View]) -> std::io::Result<()> {
-        let is_known = views.iter().any(|view| matches!(view, View::Sees(_)));
-        if !is_known || self.pictured.is_some_and(|last| last.elapsed() < PICTURE_EVERY) {
+    /// Sends what each sensor sees, in their order. While none sees anything nothing is sent: both autopilots then find
+    /// after half a second that they have no data.
+    pub(crate) fn picture(&mut self, views: &[(View, f32)]) -> std::io::Result<()> {
+        if !views.iter().any(|(view, _)| matches!(view, View::Sees(_))) {
             return Ok(());
         }
-        self.pictured = Some(Instant::now());
         let time_us = self.began.elapsed().as_micros() as u64;
         let payload = self.obstacle_distance(views, time_us);
         let frame = self.packer.frame(OBSTACLE_DISTANCE, &payload);
@@ -174,7 +168,7 @@ impl Mavlink {
         payload
     }
 
-    fn obstacle_distance(&self, views: &[View], time_us: u64) -> Vec<u8> {
+    fn obstacle_distance(&self, views: &[(View, f32)], time_us: u64) -> Vec<u8> {
         let mut payload = time_us.to_le_bytes().to_vec();
         let sectors = self.sectors(views);
         payload.extend(sectors.iter().chain(&self.limits()).flat_map(|field| field.to_le_bytes()));
@@ -186,11 +180,11 @@ impl Mavlink {
 
     /// The distance of each sector. Where views overlap, the nearest obstacle counts, then what is not known, and a
     /// sector is clear only if all of its sensors say so.
-    fn sectors(&self, views: &[View]) -> [u16; SECTORS] {
+    fn sectors(&self, views: &[(View, f32)]) -> [u16; SECTORS] {
         let half_view = (self.field_of_view_rad.to_degrees() / 2.0).max(LEAST_HALF_VIEW_DEG) + 1e-3;
         let clear = self.centimetres_of(Distance::Clear);
         let mut sectors = [None::<u16>; SECTORS];
-        for (&yaw, &view) in self.yaws.iter().zip(views) {
+        for (&yaw, &(view, _)) in self.yaws.iter().zip(views) {
             let said = match (view, self.unanswered_as) {
                 (View::Sees(distance), _) => self.centimetres_of(distance),
                 (View::Unanswered, UnansweredAs::Obstacle) => self.centimetres_of(Distance::TooClose),
@@ -273,7 +267,7 @@ mod tests {
         };
         let said = |unanswered_as, left, right| {
             let mavlink = opened(parameters(unanswered_as));
-            let sectors = mavlink.sectors(&[left, right, View::Sees(TooClose)]);
+            let sectors = mavlink.sectors(&[left, right, View::Sees(TooClose)].map(|view| (view, 0.0)));
             assert_eq!((sectors[sector(180.0)], sectors[sector(170.0)], sectors[sector(160.0)]), (2, 2, UNKNOWN));
             [-10.0, 0.0, 10.0].map(|deg| sectors[sector(deg)])
         };
@@ -297,7 +291,7 @@ mod tests {
         for yaw in 0_u16..360 {
             let yaws_deg = vec![f32::from(yaw)];
             let mavlink = opened(Parameters { sensors: 1, yaws_deg, field_of_view_rad: 0.01, ..Parameters::default() });
-            let sectors = mavlink.sectors(&[View::Sees(Distance::At(1.0))]);
+            let sectors = mavlink.sectors(&[(View::Sees(Distance::At(1.0)), 0.0)]);
             assert!(sectors.iter().step_by(2).any(|&said| said == 100), "{yaw} degrees");
         }
     }

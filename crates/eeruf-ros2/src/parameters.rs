@@ -1,6 +1,6 @@
-//! What can be set, as ROS 2 writes parameters into YAML files.
+//! The node's parameters, and how they are read from the YAML that ROS 2 uses for them.
 
-use std::fmt;
+use std::fmt::{self, Write as _};
 use std::path::PathBuf;
 
 use eeruf_core::MAX_SENSORS;
@@ -42,126 +42,237 @@ pub(crate) enum UnansweredAs {
     Unknown,
 }
 
-/// All parameters; `docs/how-to/ros2.md` says what each is for.
-#[derive(Clone, Debug, Deserialize, PartialEq)]
-#[serde(default, deny_unknown_fields)]
-pub(crate) struct Parameters {
-    /// Not a parameter: the node's name.
-    #[serde(skip)]
-    pub(crate) name: String,
-    /// Not a parameter: whether to speak ROS at all.
-    #[serde(skip)]
-    pub(crate) ros: bool,
-    pub(crate) source: Source,
-    pub(crate) port: String,
-    pub(crate) baud: u32,
-    pub(crate) sensors: u8,
-    pub(crate) topics: Vec<String>,
-    pub(crate) frame_ids: Vec<String>,
-    pub(crate) echo_times_topic: String,
-    pub(crate) range_topics: Vec<String>,
-    pub(crate) clear_as: ClearAs,
-    pub(crate) field_of_view_rad: f32,
-    pub(crate) min_range_m: f32,
-    pub(crate) max_range_m: f32,
-    pub(crate) temperature_c: f32,
-    pub(crate) t_delta_us: u32,
-    pub(crate) late_us: u32,
-    pub(crate) blind_after: u32,
-    pub(crate) silent_after_s: f64,
-    pub(crate) log: PathBuf,
-    pub(crate) mavlink: String,
-    pub(crate) mavlink_system: u8,
-    pub(crate) mavlink_component: u8,
-    pub(crate) mavlink_unanswered_as: UnansweredAs,
-    pub(crate) yaws_deg: Vec<f32>,
-}
-
-impl Default for Parameters {
-    fn default() -> Self {
-        Self {
-            name: "eeruf".to_owned(),
-            ros: true,
-            source: Source::Serial,
-            port: "/dev/ttyACM0".to_owned(),
-            baud: 115_200,
-            sensors: 8,
-            topics: Vec::new(),
-            frame_ids: Vec::new(),
-            echo_times_topic: "echo_times".to_owned(),
-            range_topics: Vec::new(),
-            clear_as: ClearAs::Inf,
-            field_of_view_rad: 0.52,
-            min_range_m: 0.02,
-            max_range_m: 4.0,
-            temperature_c: 20.0,
-            t_delta_us: 500,
-            late_us: 2_000,
-            blind_after: 20,
-            silent_after_s: 1.0,
-            log: PathBuf::new(),
-            mavlink: String::new(),
-            mavlink_system: 1,
-            // MAV_COMP_ID_OBSTACLE_AVOIDANCE.
-            mavlink_component: 196,
-            mavlink_unanswered_as: UnansweredAs::Obstacle,
-            yaws_deg: Vec::new(),
+macro_rules! parameters {
+    ($($(#[doc = $doc:literal])+ $name:ident: $kind:ty = $default:expr, $shown:literal;)+) => {
+        /// All parameters.
+        #[derive(Clone, Debug, PartialEq)]
+        #[expect(clippy::doc_markdown, reason = "they are comments of a YAML file as well")]
+        pub(crate) struct Parameters {
+            $($(#[doc = $doc])+ pub(crate) $name: $kind,)+
         }
-    }
-}
 
-/// A node's part of the file.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Node {
-    #[serde(rename = "ros__parameters")]
-    parameters: Option<Parameters>,
-}
-
-/// Finds a node's part by its name; what is for other nodes is skipped, whatever it holds.
-struct OfNode<'n>(&'n str);
-
-impl<'de> DeserializeSeed<'de> for OfNode<'_> {
-    type Value = Parameters;
-
-    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<Parameters, D::Error> {
-        deserializer.deserialize_map(self)
-    }
-}
-
-impl<'de> Visitor<'de> for OfNode<'_> {
-    type Value = Parameters;
-
-    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "the parameters of nodes, `{}: ros__parameters: ..`", self.0)
-    }
-
-    fn visit_map<A: MapAccess<'de>>(self, mut nodes: A) -> Result<Parameters, A::Error> {
-        let (mut own, mut of_all, mut others) = (None, None, Vec::new());
-        while let Some(name) = nodes.next_key::<String>()? {
-            if name.trim_start_matches('/') == self.0 {
-                own = Some(nodes.next_value::<Node>()?.parameters.unwrap_or_default());
-            } else if name == "/**" {
-                of_all = Some(nodes.next_value::<Node>()?.parameters.unwrap_or_default());
-            } else {
-                nodes.next_value::<IgnoredAny>()?;
-                others.push(name);
+        impl Default for Parameters {
+            fn default() -> Self {
+                Self { $($name: $default,)+ }
             }
         }
-        own.or(of_all).ok_or_else(|| {
-            let there = others.join(", ");
-            serde::de::Error::custom(format!("parameters of {there}; expected those of {} or /**", self.0))
-        })
+
+        /// Name, comment and default of each parameter.
+        const DESCRIBED: &[(&str, &[&str], &str)] = &[$((stringify!($name), &[$($doc),+], $shown),)+];
+
+        impl Parameters {
+            /// Sets the parameter of this name to what the value says.
+            fn set<'de, D: Deserializer<'de>>(&mut self, name: &str, value: D) -> Result<(), D::Error> {
+                const NAMES: &[&str] = &[$(stringify!($name)),+];
+                match name {
+                    $(stringify!($name) => self.$name = Deserialize::deserialize(value)?,)+
+                    unknown => return Err(serde::de::Error::unknown_field(unknown, NAMES)),
+                }
+                Ok(())
+            }
+        }
+    };
+}
+
+parameters! {
+    /// Where readings come from: serial (a board that filters), echo_times or ranges (topics, filtered here).
+    source: Source = Source::Serial, "serial";
+    /// The board's serial line.
+    port: String = "/dev/ttyACM0".to_owned(), "/dev/ttyACM0";
+    /// Its speed; without effect on USB.
+    baud: u32 = 115_200, "115200";
+    /// For source echo_times: the topic with rows of raw echo times.
+    echo_times_topic: String = "echo_times".to_owned(), "echo_times";
+    /// For source ranges: the topic of each sensor.
+    range_topics: Vec<String> = Vec::new(), "[]";
+    /// For echo_times and ranges: the greatest difference between near-identical echo times.
+    t_delta_us: u32 = 500, "500";
+    /// A ring file with poses: number and places of the sensors, for /tf_static, the cloud and MAVLink.
+    ring: PathBuf = PathBuf::new(), "\"\"";
+    /// The number of sensors, if no ring file says it.
+    sensors: u8 = 8, "8";
+    /// One topic for each sensor; none: ~/sonar_1, ~/sonar_2, ..
+    topics: Vec<String> = Vec::new(), "[]";
+    /// One frame for each sensor; none: sonar_1, sonar_2, ..
+    frame_ids: Vec<String> = Vec::new(), "[]";
+    /// The robot's frame, in which the ring file has the poses.
+    base_frame: String = "base_link".to_owned(), "base_link";
+    /// The height of the sensors above it.
+    height_m: f64 = 0.0, "0.0";
+    /// The full width of a sensor's beam.
+    field_of_view_rad: f32 = 0.52, "0.52";
+    /// Closer than this nothing is measured.
+    min_range_m: f32 = 0.02, "0.02";
+    /// Farther than this nothing counts.
+    max_range_m: f32 = 4.0, "4.0";
+    /// What Range says where nothing is in range: inf (REP 117) or max_range (for Nav2's range layer).
+    clear_as: ClearAs = ClearAs::Inf, "inf";
+    /// The temperature of the air.
+    temperature_c: f32 = 20.0, "20.0";
+    /// Diagnostics: a firing that comes later than this is a fault.
+    late_us: u32 = 2_000, "2000";
+    /// A sensor is blind after this many echoes without an accepted one.
+    blind_after: u32 = 20, "20";
+    /// A sensor is silent after this time without a firing.
+    silent_after_s: f64 = 1.0, "1.0";
+    /// A file for the log that `eeruf diagnose` reads; empty for none.
+    log: PathBuf = PathBuf::new(), "\"\"";
+    /// MAVLink: udp:HOST:PORT; empty for none.
+    mavlink: String = String::new(), "\"\"";
+    /// The number of the vehicle.
+    mavlink_system: u8 = 1, "1";
+    /// 196 is MAV_COMP_ID_OBSTACLE_AVOIDANCE.
+    mavlink_component: u8 = 196, "196";
+    /// What OBSTACLE_DISTANCE says of a sensor that does not answer: obstacle (at min_range_m) or unknown.
+    mavlink_unanswered_as: UnansweredAs = UnansweredAs::Obstacle, "obstacle";
+    /// The heading of each sensor, counter-clockwise from ahead, if no ring file says it; none: evenly around.
+    yaws_deg: Vec<f32> = Vec::new(), "[]";
+    /// Stamps are by the host's clock: true is an error.
+    use_sim_time: bool = false, "false";
+}
+
+/// One parameter, to be set.
+struct One<'p>(&'p mut Parameters, &'p str);
+
+impl<'de> DeserializeSeed<'de> for One<'_> {
+    type Value = ();
+
+    fn deserialize<D: Deserializer<'de>>(self, value: D) -> Result<(), D::Error> {
+        self.0.set(self.1, value)
     }
+}
+
+/// The parameters of one node, to be set.
+struct All<'p>(&'p mut Parameters);
+
+impl<'de> DeserializeSeed<'de> for All<'_> {
+    type Value = ();
+
+    fn deserialize<D: Deserializer<'de>>(self, parameters: D) -> Result<(), D::Error> {
+        parameters.deserialize_any(self)
+    }
+}
+
+impl<'de> Visitor<'de> for All<'_> {
+    type Value = ();
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("parameters, `name: value`")
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut parameters: A) -> Result<(), A::Error> {
+        while let Some(name) = parameters.next_key::<String>()? {
+            parameters.next_value_seed(One(self.0, &name))?;
+        }
+        Ok(())
+    }
+
+    fn visit_unit<E>(self) -> Result<(), E> {
+        Ok(())
+    }
+}
+
+/// A part of a file: of nodes, namespaces, or patterns for them. Sets the parameters that are for this node and skips
+/// the others, whatever they hold.
+struct Nodes<'p> {
+    /// Where the part stands: empty at the top, or as `/robot_1/eeruf`.
+    path: String,
+    /// The node's full name.
+    node: &'p str,
+    parameters: &'p mut Parameters,
+    /// True once parameters for this node were found.
+    found: &'p mut bool,
+    others: &'p mut Vec<String>,
+}
+
+impl<'de> DeserializeSeed<'de> for Nodes<'_> {
+    type Value = ();
+
+    fn deserialize<D: Deserializer<'de>>(self, part: D) -> Result<(), D::Error> {
+        part.deserialize_any(self)
+    }
+}
+
+impl<'de> Visitor<'de> for Nodes<'_> {
+    type Value = ();
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "the parameters of nodes, `{}: ros__parameters: ..`", self.node)
+    }
+
+    fn visit_unit<E>(self) -> Result<(), E> {
+        Ok(())
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut nodes: A) -> Result<(), A::Error> {
+        while let Some(name) = nodes.next_key::<String>()? {
+            if name == "ros__parameters" {
+                if matches(&self.path, self.node) {
+                    *self.found = true;
+                    nodes.next_value_seed(All(self.parameters))?;
+                } else {
+                    nodes.next_value::<IgnoredAny>()?;
+                    self.others.push(self.path.trim_start_matches('/').to_owned());
+                }
+                continue;
+            }
+            nodes.next_value_seed(Nodes {
+                path: format!("{}/{}", self.path, name.trim_matches('/')),
+                node: self.node,
+                parameters: &mut *self.parameters,
+                found: &mut *self.found,
+                others: &mut *self.others,
+            })?;
+        }
+        Ok(())
+    }
+}
+
+/// Returns true if a pattern stands for the full name: `*` for one part of it, `**` for any number.
+fn matches(pattern: &str, name: &str) -> bool {
+    fn parts<'p>(pattern: &[&'p str], name: &[&'p str]) -> bool {
+        match (pattern, name) {
+            ([], []) => true,
+            (["**", rest @ ..], name) => (0..=name.len()).any(|skipped| parts(rest, &name[skipped..])),
+            ([part, rest @ ..], [first, more @ ..]) => (*part == "*" || part == first) && parts(rest, more),
+            _ => false,
+        }
+    }
+    let split = |text: &'_ str| text.split('/').filter(|part| !part.is_empty()).map(str::to_owned).collect::<Vec<_>>();
+    let (pattern, name) = (split(pattern), split(name));
+    parts(&pattern.iter().map(String::as_str).collect::<Vec<_>>(), &name.iter().map(String::as_str).collect::<Vec<_>>())
 }
 
 impl Parameters {
-    /// The parameters of the node with this name, or else those of all nodes (`/**`).
-    pub(crate) fn from_yaml(text: &str, name: &str) -> Result<Self, String> {
-        let read = serde_saphyr::with_deserializer_from_str(text, |yaml| OfNode(name).deserialize(yaml));
-        let mut read = read.map_err(|error| error.to_string())?;
-        name.clone_into(&mut read.name);
-        Ok(read)
+    /// All parameters with their defaults, as a file.
+    pub(crate) fn file() -> String {
+        let mut file = "/**:\n  ros__parameters:\n".to_owned();
+        for (name, comment, default) in DESCRIBED {
+            for line in *comment {
+                _ = writeln!(file, "    #{line}");
+            }
+            _ = writeln!(file, "    {name}: {default}");
+        }
+        file
+    }
+
+    /// Sets what a file says of the node with this full name, as `/eeruf`; later parts of it prevail.
+    pub(crate) fn read_yaml(&mut self, text: &str, node: &str) -> Result<(), String> {
+        let (mut found, mut others) = (false, Vec::new());
+        let nodes = Nodes { path: String::new(), node, parameters: self, found: &mut found, others: &mut others };
+        serde_saphyr::with_deserializer_from_str(text, |yaml| nodes.deserialize(yaml))
+            .map_err(|error| error.to_string())?;
+        if found {
+            return Ok(());
+        }
+        let others = if others.is_empty() { "none".to_owned() } else { format!("parameters of {}", others.join(", ")) };
+        Err(format!("{others}; expected those of {node} or /**"))
+    }
+
+    /// Sets one parameter to what a piece of YAML says.
+    pub(crate) fn read_one(&mut self, name: &str, value: &str) -> Result<(), String> {
+        serde_saphyr::with_deserializer_from_str(value, |yaml| One(self, name).deserialize(yaml))
+            .map_err(|error| format!("{name}:={value}: {error}"))
     }
 
     /// Whether they can be used, and together.
@@ -198,8 +309,9 @@ impl Parameters {
         must(yaw.is_none(), format!("yaws_deg: {}; expected degrees", yaw.unwrap_or(&0.0)))?;
         let logged = self.log.as_os_str().is_empty() || self.source != Source::Ranges;
         must(logged, "log: ranges come without the instants of their firings, of which a log is made".to_owned())?;
-        let heard = self.ros || self.source == Source::Serial;
-        must(heard, "without ROS only source: serial can be listened to; give --port".to_owned())
+        must(self.height_m.is_finite(), format!("height_m: {}; expected metres", self.height_m))?;
+        let sim_time = "use_sim_time: true; expected false: stamps are by this machine's clock".to_owned();
+        must(!self.use_sim_time, sim_time)
     }
 
     /// What is called so for each sensor: the list's entry, or one made of the prefix.
@@ -212,33 +324,60 @@ impl Parameters {
 mod tests {
     use super::*;
 
+    fn read(text: &str, node: &str) -> Result<Parameters, String> {
+        let mut parameters = Parameters::default();
+        parameters.read_yaml(text, node).map(|()| parameters)
+    }
+
     fn wrong(parameters: &str) -> String {
         let text = format!("eeruf:\n  ros__parameters:\n    {parameters}\n");
-        Parameters::from_yaml(&text, "eeruf").and_then(|read| read.check()).unwrap_err()
+        read(&text, "/eeruf").and_then(|read| read.check()).unwrap_err()
     }
 
     #[test]
-    fn the_file_in_config_says_what_the_defaults_are() {
-        let read = Parameters::from_yaml(include_str!("../config/eeruf.yaml"), "eeruf").unwrap();
+    fn file_in_config_holds_all_parameters_and_defaults() {
+        let file = include_str!("../config/eeruf.yaml");
+        assert_eq!(file, Parameters::file(), "eeruf-ros2 --print-params > crates/eeruf-ros2/config/eeruf.yaml");
+        let read = read(file, "/eeruf").unwrap();
         read.check().unwrap();
         assert_eq!(read, Parameters::default());
     }
 
     #[test]
-    fn a_node_finds_its_own_parameters_among_those_of_others() {
-        let text = "nav2:\n  ros__parameters: {rate: [1, {a: b}]}\n/**:\n  ros__parameters: {sensors: 3}\n\
-                    /eeruf:\n  ros__parameters: {sensors: 12, clear_as: max_range}\n";
-        let read = |name| Parameters::from_yaml(text, name).unwrap();
-        assert_eq!((read("eeruf").sensors, read("eeruf").clear_as), (12, ClearAs::MaxRange));
-        assert_eq!((read("other").sensors, read("other").clear_as), (3, ClearAs::Inf));
-        let empty = Parameters::from_yaml("eeruf:\n  ros__parameters:\n", "eeruf").unwrap();
-        assert_eq!(empty, Parameters::default());
-        let none = Parameters::from_yaml("nav2:\n  ros__parameters: {}\n", "eeruf").unwrap_err();
-        assert!(none.contains("parameters of nav2; expected those of eeruf or /**"), "{none}");
+    fn node_finds_its_parameters_among_others() {
+        let text = "nav2:\n  ros__parameters: {rate: [1, {a: b}]}\n/**:\n  ros__parameters: {sensors: 3, baud: 9600}\n\
+                    /eeruf:\n  ros__parameters: {sensors: 12, clear_as: max_range}\n\
+                    robot_1:\n  eeruf:\n    ros__parameters: {sensors: 24}\nrobot_2: {bare: }\n\
+                    /*/left:\n  ros__parameters: {sensors: 5}\n";
+        let said = |node| read(text, node).map(|read| (read.sensors, read.baud, read.clear_as)).unwrap();
+        assert_eq!(said("/eeruf"), (12, 9600, ClearAs::MaxRange));
+        assert_eq!(said("/other"), (3, 9600, ClearAs::Inf));
+        assert_eq!(said("/robot_1/eeruf"), (24, 9600, ClearAs::Inf));
+        assert_eq!(said("/robot_2/eeruf"), (3, 9600, ClearAs::Inf));
+        assert_eq!((said("/robot_2/left").0, said("/left").0, said("/a/b/left").0), (5, 3, 3));
+        assert_eq!(read("eeruf:\n  ros__parameters:\n", "/eeruf").unwrap(), Parameters::default());
+        let none = read("nav2:\n  ros__parameters: {}\n", "/eeruf").unwrap_err();
+        assert!(none.contains("parameters of nav2; expected those of /eeruf or /**"), "{none}");
     }
 
     #[test]
-    fn what_is_wrong_is_named_with_its_value_and_what_is_expected() {
+    fn one_parameter_is_read_as_yaml() {
+        let mut parameters = Parameters::default();
+        for (name, value) in
+            [("sensors", "3"), ("topics", "[a, b, 'c d']"), ("port", "/dev/ttyUSB0"), ("max_range_m", "5")]
+        {
+            parameters.read_one(name, value).unwrap();
+        }
+        assert_eq!((parameters.sensors, parameters.topics.len(), parameters.max_range_m), (3, 3, 5.0));
+        assert_eq!(parameters.port, "/dev/ttyUSB0");
+        let wrong = parameters.read_one("sensors", "many").unwrap_err();
+        assert!(wrong.starts_with("sensors:=many: "), "{wrong}");
+        let unknown = parameters.read_one("senors", "3").unwrap_err();
+        assert!(unknown.contains("unknown field") && unknown.contains(" sensors,"), "{unknown}");
+    }
+
+    #[test]
+    fn wrong_value_is_named_with_what_is_expected() {
         for (parameters, expected) in [
             ("senors: 8", "senors"),
             ("sensors: eight", "eight"),
@@ -251,6 +390,7 @@ mod tests {
             ("temperature_c: 293", "temperature_c: 293; expected -60 to 80"),
             ("t_delta_us: 70000", "t_delta_us: 70000; expected 0 to 65535"),
             ("blind_after: 0", "blind_after: 0; expected 1 or more"),
+            ("use_sim_time: true", "use_sim_time: true; expected false"),
             ("silent_after_s: .nan", "silent_after_s: NaN; expected more than 0"),
         ] {
             let said = wrong(parameters);

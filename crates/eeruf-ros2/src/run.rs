@@ -10,6 +10,7 @@ use eeruf_serial::{Firing, Message, Received};
 
 use crate::board_clock::BoardClock;
 use crate::board_line::{FromLine, listen, nanoseconds};
+use crate::cli::Setup;
 use crate::diagnosis::{Diagnosis, Level};
 use crate::filter::{RangeFilter, Raw};
 use crate::firing_log::FiringLog;
@@ -21,15 +22,18 @@ use crate::view::View;
 
 /// How often topics are looked at; a ring of 64 has a reading every millisecond or two.
 const LOOK: Duration = Duration::from_millis(5);
+/// The shortest time between two pictures of the whole ring.
+const PICTURE: Duration = Duration::from_millis(100);
 /// How often what is wrong is said.
 const REPORT: Duration = Duration::from_secs(1);
 
 /// Runs until Ctrl-C.
-pub(crate) fn run(parameters: &Parameters) -> Result<(), String> {
+pub(crate) fn run(setup: &Setup) -> Result<(), String> {
+    let parameters = &setup.parameters;
     let stop = Arc::new(AtomicBool::new(false));
     let stopped = Arc::clone(&stop);
     ctrlc::set_handler(move || stopped.store(true, Ordering::Relaxed)).map_err(|error| format!("Ctrl-C: {error}"))?;
-    let mut node = EerufNode::open(parameters)?;
+    let mut node = EerufNode::open(setup)?;
     let line = (parameters.source == Source::Serial).then(|| {
         let (to, from) = channel();
         listen(parameters.port.clone(), parameters.baud, to);
@@ -69,17 +73,19 @@ struct EerufNode {
     sequence: Option<u16>,
     /// True if a reading came since the state of the ring was last sent.
     has_news: bool,
+    pictured: Option<Instant>,
     began: Instant,
     /// What was last said of the line, so that it is said once.
     said: String,
 }
 
 impl EerufNode {
-    fn open(parameters: &Parameters) -> Result<Self, String> {
+    fn open(setup: &Setup) -> Result<Self, String> {
+        let parameters = &setup.parameters;
         let is_set = |text: &str| !text.is_empty();
         let log = parameters.log.as_os_str();
         Ok(Self {
-            ros: parameters.ros.then(|| Ros::open(parameters)).transpose()?,
+            ros: setup.ros.as_ref().map(|args| Ros::open(setup, args)).transpose()?,
             mavlink: is_set(&parameters.mavlink).then(|| Mavlink::open(parameters)).transpose()?,
             log: (!log.is_empty()).then(|| FiringLog::create(&parameters.log)).transpose()?,
             filter: RangeFilter::new(Micros::new(parameters.t_delta_us))?,
@@ -89,6 +95,7 @@ impl EerufNode {
             clock_name: "board".to_owned(),
             sequence: None,
             has_news: false,
+            pictured: None,
             began: Instant::now(),
             said: String::new(),
         })
@@ -216,15 +223,19 @@ impl EerufNode {
         Ok(())
     }
 
-    /// Sends the state of the whole ring after new readings.
+    /// Sends the state of the whole ring, at most ten times a second and only after new readings: those who listen must
+    /// notice when there are none.
     fn picture(&mut self) {
-        if !std::mem::take(&mut self.has_news) {
+        if !self.has_news || self.pictured.is_some_and(|last| last.elapsed() < PICTURE) {
             return;
         }
-        let Some(mavlink) = &mut self.mavlink else { return };
-        let now_s = self.began.elapsed().as_secs_f64();
-        let views: Vec<View> = self.diagnosis.views(now_s, &self.scale).map(|(view, _)| view).collect();
-        if mavlink.picture(&views).is_err() {
+        (self.has_news, self.pictured) = (false, Some(Instant::now()));
+        let seconds = |age: Micros| (f64::from(age.as_micros()) / 1e6) as f32;
+        let views = self.diagnosis.views(self.now_s(), &self.scale);
+        let views: Vec<(View, f32)> = views.map(|(view, age)| (view, seconds(age))).collect();
+        let published = self.ros.as_ref().is_none_or(|ros| ros.publish_cloud(nanoseconds(), &views));
+        let sent = self.mavlink.as_mut().is_none_or(|mavlink| mavlink.picture(&views).is_ok());
+        if !(published && sent) {
             self.diagnosis.unsent();
         }
     }

@@ -101,3 +101,77 @@ pub(crate) struct KeyValue {
     pub(crate) key: String,
     pub(crate) value: String,
 }
+
+/// `sensor_msgs/PointField`.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct PointField {
+    pub(crate) name: String,
+    pub(crate) offset: u32,
+    pub(crate) datatype: u8,
+    pub(crate) count: u32,
+}
+
+/// `sensor_msgs/PointField::UINT8`.
+pub(crate) const UINT8: u8 = 2;
+/// `sensor_msgs/PointField::FLOAT32`.
+pub(crate) const FLOAT32: u8 = 7;
+
+/// `sensor_msgs/PointCloud2`.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct PointCloud2 {
+    pub(crate) header: Header,
+    pub(crate) height: u32,
+    pub(crate) width: u32,
+    pub(crate) fields: Vec<PointField>,
+    pub(crate) is_bigendian: bool,
+    pub(crate) point_step: u32,
+    pub(crate) row_step: u32,
+    pub(crate) data: Vec<u8>,
+    pub(crate) is_dense: bool,
+}
+
+/// `geometry_msgs/Vector3`.
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+pub(crate) struct Vector3 {
+    pub(crate) x: f64,
+    pub(crate) y: f64,
+    pub(crate) z: f64,
+}
+
+/// `geometry_msgs/Quaternion`.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub(crate) struct Quaternion {
+    x: f64,
+    y: f64,
+    z: f64,
+    w: f64,
+}
+
+impl Quaternion {
+    /// A turn about the axis that points up.
+    pub(crate) fn from_yaw(yaw_rad: f64) -> Self {
+        let (sin, cos) = (yaw_rad / 2.0).sin_cos();
+        Self { x: 0.0, y: 0.0, z: sin, w: cos }
+    }
+}
+
+/// `geometry_msgs/Transform`.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub(crate) struct Transform {
+    pub(crate) translation: Vector3,
+    pub(crate) rotation: Quaternion,
+}
+
+/// `geometry_msgs/TransformStamped`.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct TransformStamped {
+    pub(crate) header: Header,
+    pub(crate) child_frame_id: String,
+    pub(crate) transform: Transform,
+}
+
+/// `tf2_msgs/TFMessage`.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct TfMessage {
+    pub(crate) transforms: Vec<TransformStamped>,
+}

@@ -1,5 +1,6 @@
 //! The node's part in ROS 2: what it publishes and subscribes to, over DDS.
 
+mod cloud;
 mod messages;
 
 use std::env;
@@ -7,15 +8,24 @@ use std::fmt::Display;
 use std::net::{IpAddr, Ipv4Addr};
 use std::time::Duration;
 
-use ros2_client::dds::rustdds::DomainParticipantBuilder;
-use ros2_client::qos::{History, WhenFull};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+
+use ros2_client::dds::rustdds::{DomainParticipantBuilder, Topic};
+use ros2_client::qos::{Durability, History, WhenFull};
 use ros2_client::{Context, MessageTypeName, Name, Node, NodeName, NodeOptions, Publisher, QosProfile, Subscription};
 
+use crate::board_line::nanoseconds;
+use crate::cli::Setup;
 use crate::diagnosis::Status;
 use crate::parameters::{Parameters, Source};
+use crate::placing::Place;
 use crate::range::Distance;
+use crate::ros_args::RosArgs;
+use crate::view::View;
 use messages::{
-    DiagnosticArray, DiagnosticStatus, Header, KeyValue, Range, RangeHeard, Time, UInt32MultiArray, ULTRASOUND,
+    DiagnosticArray, DiagnosticStatus, Header, KeyValue, PointCloud2, Quaternion, Range, RangeHeard, TfMessage, Time,
+    Transform, TransformStamped, UInt32MultiArray, ULTRASOUND, Vector3,
 };
 
 /// What was heard on a topic.
@@ -36,12 +46,23 @@ enum Input {
     Ranges(Vec<Subscription<RangeHeard>>),
 }
 
+/// What needs the places of the sensors.
+struct Placed {
+    places: Vec<Place>,
+    base_frame: String,
+    cloud: Publisher<PointCloud2>,
+    /// Held so that those who come later receive what it sent.
+    _transforms: Publisher<TfMessage>,
+}
+
 pub(crate) struct Ros {
     /// Leaves when it is dropped.
     _node: Node,
     ranges: Vec<Publisher<Range>>,
     frame_ids: Vec<String>,
     diagnostics: Publisher<DiagnosticArray>,
+    /// None without places of the sensors.
+    placed: Option<Placed>,
     input: Input,
     field_of_view: f32,
     min_range: f32,
@@ -55,13 +76,17 @@ pub(crate) struct Ros {
 const PUBLISHING: QosProfile = QosProfile::publisher_default()
     .reliability_reliable(WhenFull::Wait(Duration::from_millis(10)))
     .history(History::KeepLast { depth: 10 });
+/// For transforms that never change: those who come later receive them, too.
+const LATCHED: QosProfile =
+    QosProfile { durability: Durability::TransientLocal, history: History::KeepLast { depth: 1 }, ..PUBLISHING };
 /// As ROS 2 calls it, sensor data: what gets lost is not asked for again.
 const LISTENING: QosProfile = QosProfile::subscription_default().history(History::KeepLast { depth: 64 });
 
 impl Ros {
     /// Joins the domain `ROS_DOMAIN_ID`; on this machine alone where `ROS_LOCALHOST_ONLY` is 1 or
     /// `ROS_AUTOMATIC_DISCOVERY_RANGE` is `LOCALHOST`.
-    pub(crate) fn open(parameters: &Parameters) -> Result<Self, String> {
+    pub(crate) fn open(setup: &Setup, args: &RosArgs) -> Result<Self, String> {
+        let parameters = &setup.parameters;
         let mut participant = DomainParticipantBuilder::new(domain()?);
         let is = |variable: &str, value: &str| env::var(variable).is_ok_and(|set| set == value);
         if is("ROS_LOCALHOST_ONLY", "1") || is("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST") {
@@ -69,52 +94,43 @@ impl Ros {
         }
         let participant = participant.build().map_err(wrong("DDS"))?;
         let context = Context::from_domain_participant(participant).map_err(wrong("DDS"))?;
-        let node_name = NodeName::new("/", &parameters.name).map_err(wrong(&parameters.name))?;
+        let node_name = NodeName::new(args.namespace(), args.node()).map_err(wrong(&args.full_name()))?;
         let options = NodeOptions::new().enable_rosout(false).start_parameter_services(false);
-        let mut node = context.new_node(node_name, options).map_err(wrong("node"))?;
+        let mut node = Topics { node: context.new_node(node_name, options).map_err(wrong("node"))?, args };
         let mut ranges = Vec::new();
-        let range_type = || MessageTypeName::new("sensor_msgs", "Range");
         for sensor in 0..parameters.sensors {
-            let name = Parameters::name_of(&parameters.topics, &format!("{}/sonar_", parameters.name), sensor);
-            let topic = node.create_topic(&topic_name(&name)?, range_type(), &PUBLISHING).map_err(wrong(&name))?;
-            ranges.push(node.create_publisher(&topic, None).map_err(wrong(&name))?);
+            let name = Parameters::name_of(&parameters.topics, "~/sonar_", sensor);
+            ranges.push(node.publisher(&name, ["sensor_msgs", "Range"], &PUBLISHING)?);
         }
-        let topic = node
-            .create_topic(
-                &topic_name("/diagnostics")?,
-                MessageTypeName::new("diagnostic_msgs", "DiagnosticArray"),
-                &PUBLISHING,
-            )
-            .map_err(wrong("/diagnostics"))?;
-        let diagnostics = node.create_publisher(&topic, None).map_err(wrong("/diagnostics"))?;
+        let diagnostics = node.publisher("/diagnostics", ["diagnostic_msgs", "DiagnosticArray"], &PUBLISHING)?;
         let input = match parameters.source {
             Source::Serial => Input::None,
             Source::EchoTimes => {
-                let name = &parameters.echo_times_topic;
-                let array = MessageTypeName::new("std_msgs", "UInt32MultiArray");
-                let topic = node.create_topic(&topic_name(name)?, array, &LISTENING).map_err(wrong(name))?;
-                Input::EchoTimes(Box::new(node.create_subscription(&topic, None).map_err(wrong(name))?))
+                let array = ["std_msgs", "UInt32MultiArray"];
+                Input::EchoTimes(Box::new(node.subscription(&parameters.echo_times_topic, array)?))
             }
             Source::Ranges => {
-                let mut subscriptions = Vec::new();
-                for name in &parameters.range_topics {
-                    let topic = node.create_topic(&topic_name(name)?, range_type(), &LISTENING).map_err(wrong(name))?;
-                    subscriptions.push(node.create_subscription(&topic, None).map_err(wrong(name))?);
-                }
-                Input::Ranges(subscriptions)
+                let names = parameters.range_topics.iter();
+                let subscriptions = names.map(|name| node.subscription(name, ["sensor_msgs", "Range"]));
+                Input::Ranges(subscriptions.collect::<Result<_, _>>()?)
             }
         };
         let frame_id = |sensor| Parameters::name_of(&parameters.frame_ids, "sonar_", sensor);
+        let frame_ids: Vec<String> = (0..parameters.sensors).map(frame_id).collect();
+        let places = setup.placing.0.clone();
+        let placed =
+            (!places.is_empty()).then(|| node.placed(places, &parameters.base_frame, &frame_ids)).transpose()?;
         Ok(Self {
-            _node: node,
+            _node: node.node,
             ranges,
-            frame_ids: (0..parameters.sensors).map(frame_id).collect(),
+            frame_ids,
             diagnostics,
+            placed,
             input,
             field_of_view: parameters.field_of_view_rad,
             min_range: parameters.min_range_m,
             max_range: parameters.max_range_m,
-            name: parameters.name.clone(),
+            name: args.node().to_owned(),
             hardware: if parameters.source == Source::Serial { parameters.port.clone() } else { String::new() },
         })
     }
@@ -134,6 +150,13 @@ impl Ros {
             variance: 0.0,
         };
         publisher.publish(message).is_ok()
+    }
+
+    /// Publishes what all sensors see and how old that is, in seconds; false if that cannot be sent.
+    pub(crate) fn publish_cloud(&self, now_ns: i64, views: &[(View, f32)]) -> bool {
+        let Some(placed) = &self.placed else { return true };
+        let header = Header { stamp: Time::from_nanoseconds(now_ns), frame_id: placed.base_frame.clone() };
+        placed.cloud.publish(cloud::cloud(header, &placed.places, views, self.min_range)).is_ok()
     }
 
     /// Publishes how everything is; false if that cannot be sent.
@@ -177,6 +200,57 @@ impl Ros {
     }
 }
 
+/// The node, and what its topics are called.
+struct Topics<'a> {
+    node: Node,
+    args: &'a RosArgs,
+}
+
+impl Topics<'_> {
+    fn topic(&mut self, name: &str, [package, kind]: [&str; 2], qos: &QosProfile) -> Result<Topic, String> {
+        let full = self.args.topic(name);
+        let parsed = Name::parse(&full).map_err(|error| format!("topic {full}: {error:?}"))?;
+        self.node.create_topic(&parsed, MessageTypeName::new(package, kind), qos).map_err(wrong(&full))
+    }
+
+    fn publisher<M: Serialize>(
+        &mut self,
+        name: &str,
+        kind: [&str; 2],
+        qos: &QosProfile,
+    ) -> Result<Publisher<M>, String> {
+        let topic = self.topic(name, kind, qos)?;
+        self.node.create_publisher(&topic, None).map_err(wrong(name))
+    }
+
+    fn subscription<M: DeserializeOwned + 'static>(
+        &mut self,
+        name: &str,
+        kind: [&str; 2],
+    ) -> Result<Subscription<M>, String> {
+        let topic = self.topic(name, kind, &LISTENING)?;
+        self.node.create_subscription(&topic, None).map_err(wrong(name))
+    }
+
+    /// Publishes where the sensors are, once and for all.
+    fn placed(&mut self, places: Vec<Place>, base_frame: &str, frame_ids: &[String]) -> Result<Placed, String> {
+        let cloud = self.publisher("~/points", ["sensor_msgs", "PointCloud2"], &PUBLISHING)?;
+        let transforms = self.publisher("/tf_static", ["tf2_msgs", "TFMessage"], &LATCHED)?;
+        let stamp = Time::from_nanoseconds(nanoseconds());
+        let transform = |(place, frame_id): (&Place, &String)| TransformStamped {
+            header: Header { stamp, frame_id: base_frame.to_owned() },
+            child_frame_id: frame_id.clone(),
+            transform: Transform {
+                translation: Vector3 { x: place.x_m, y: place.y_m, z: place.z_m },
+                rotation: Quaternion::from_yaw(place.yaw_rad),
+            },
+        };
+        let message = TfMessage { transforms: places.iter().zip(frame_ids).map(transform).collect() };
+        transforms.publish(message).map_err(|error| format!("/tf_static: {error}"))?;
+        Ok(Placed { places, base_frame: base_frame.to_owned(), cloud, _transforms: transforms })
+    }
+}
+
 /// What a range says, by REP 117.
 fn distance(message: &RangeHeard) -> Option<Distance> {
     let RangeHeard { min_range, max_range, range, .. } = *message;
@@ -213,11 +287,6 @@ fn domain() -> Result<u16, String> {
     let Ok(set) = env::var("ROS_DOMAIN_ID") else { return Ok(0) };
     let id = set.parse().ok().filter(|id| *id <= 232);
     id.ok_or_else(|| format!("ROS_DOMAIN_ID: {set}; expected 0 to 232"))
-}
-
-fn topic_name(name: &str) -> Result<Name, String> {
-    let whole = if name.starts_with('/') { name.to_owned() } else { format!("/{name}") };
-    Name::parse(&whole).map_err(|error| format!("topic {name}: {error:?}"))
 }
 
 fn wrong<E: Display>(what: &str) -> impl Fn(E) -> String + '_ {

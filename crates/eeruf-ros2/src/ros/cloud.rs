@@ -1,0 +1,54 @@
+//! The state of all sensors as a `PointCloud2`: a point for each sensor, in their order.
+
+use crate::placing::Place;
+use crate::range::Distance;
+use crate::view::View;
+
+use super::messages::{FLOAT32, Header, PointCloud2, PointField, UINT8};
+
+/// Name, offset and type of each field.
+const FIELDS: [(&str, u32, u8); 6] = [
+    ("x", 0, FLOAT32),
+    ("y", 4, FLOAT32),
+    ("z", 8, FLOAT32),
+    ("sensor", 12, UINT8),
+    ("state", 13, UINT8),
+    ("age", 16, FLOAT32),
+];
+const POINT: u32 = 20;
+
+/// The cloud of what each sensor sees, with the age of that in seconds. Where no obstacle is, the point is no number: a
+/// reader that knows nothing of states finds no obstacle there, and no free space either.
+pub(super) fn cloud(header: Header, places: &[Place], views: &[(View, f32)], min_m: f32) -> PointCloud2 {
+    let mut data = Vec::new();
+    for ((place, &(view, age_s)), sensor) in places.iter().zip(views).zip(0_u8..) {
+        let (state, metres) = match view {
+            View::Unknown => (0, None),
+            View::Sees(Distance::At(metres)) => (1, Some(metres)),
+            View::Sees(Distance::Clear) => (2, None),
+            View::Sees(Distance::TooClose) => (3, Some(min_m)),
+            View::Unanswered => (4, None),
+        };
+        let (sin, cos) = place.yaw_rad.sin_cos();
+        let point = metres
+            .map(f64::from)
+            .map_or([f64::NAN; 3], |metres| [place.x_m + metres * cos, place.y_m + metres * sin, place.z_m]);
+        data.extend(point.iter().flat_map(|&metres| (metres as f32).to_le_bytes()));
+        data.extend([sensor, state, 0, 0]);
+        data.extend(age_s.to_le_bytes());
+    }
+    let width = places.len().min(views.len()) as u32;
+    let field =
+        |&(name, offset, datatype): &(&str, u32, u8)| PointField { name: name.to_owned(), offset, datatype, count: 1 };
+    PointCloud2 {
+        header,
+        height: 1,
+        width,
+        fields: FIELDS.iter().map(field).collect(),
+        is_bigendian: false,
+        point_step: POINT,
+        row_step: POINT * width,
+        data,
+        is_dense: false,
+    }
+}

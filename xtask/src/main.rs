@@ -10,6 +10,7 @@ mod c;
 mod certificates;
 mod changed;
 mod classic;
+mod deb;
 #[cfg(test)]
 mod dependencies;
 mod dist;
@@ -92,6 +93,8 @@ enum Verb {
     /// Run a ring on an emulated board, its serial line and the ROS 2 node, and listen with Cyclone DDS and pymavlink;
     /// build ros2/ with colcon
     Ros2,
+    /// Pack the Debian package of eeruf-ros2 with its systemd unit into target/deb
+    Deb(deb::Plan),
     /// Load a recording in Rerun, whose wheel has 170 MB, and see that none of it is raw bytes
     Rerun,
     /// Replay bags of a million messages, name senders in 200 alcoves, write the data set: the figures of
@@ -195,6 +198,7 @@ fn main() -> ExitCode {
             steps.step("ROS 2 package", ros2::package);
             steps.finish(true)
         }
+        Verb::Deb(plan) => one_step("Debian package", || deb::deb(&plan)),
         Verb::Rerun => one_step("recording in Rerun", rerun::rerun),
         Verb::Logs => {
             let mut steps = Steps::default();

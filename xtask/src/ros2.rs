@@ -69,7 +69,7 @@ pub(crate) fn package() -> Result<(), Trouble> {
 }
 
 /// A virtual environment with those who listen; its Python.
-fn environment() -> Result<PathBuf, Trouble> {
+pub(crate) fn environment() -> Result<PathBuf, Trouble> {
     let home = Path::new("target/ros2");
     if output(Command::new("python3").args(["-c", "import venv, ensurepip"])).is_none() {
         return Err(Trouble::Skipped("python3 with venv is not installed".to_owned()));

@@ -114,8 +114,8 @@ impl RosArgs {
         format!("{}/{}", self.namespace, self.node)
     }
 
-    /// The full name of a topic: `~` stands for the node, others are within its namespace. The first rule that renames it
-    /// counts.
+    /// The full name of a topic: `~` stands for the node, others are within its namespace. The first rule that renames
+    /// it counts.
     pub(crate) fn topic(&self, name: &str) -> String {
         let full = self.expand(name);
         let renamed = self.rules.iter().find(|(from, _)| self.expand(from) == full);
@@ -149,8 +149,8 @@ mod tests {
     fn ros_arguments_are_taken_out_of_the_others() {
         let (own, read) = taken(
             "--log a.csv --ros-args -r __node:=left -r __ns:=/robot_1/ --params-file p.yaml -p sensors:=4 \
-             -p right:sensors:=5 -p left:baud:=9600 --log-level debug --disable-rosout-logs -- --port /dev/x --ros-args \
-             --remap ~/sonar_1:=front",
+             -p right:sensors:=5 -p left:baud:=9600 --log-level debug --disable-rosout-logs -- --port /dev/x \
+             --ros-args --remap ~/sonar_1:=front",
         );
         assert_eq!(own.join(" "), "--log a.csv --port /dev/x");
         assert_eq!((read.node(), read.namespace(), &*read.full_name()), ("left", "/robot_1", "/robot_1/left"));

@@ -2,6 +2,7 @@
 //! and run on a simulated Uno among simulated HC-SR04 modules.
 
 mod build;
+mod library;
 mod newping;
 mod own_walls;
 mod survey;
@@ -78,28 +79,42 @@ pub(crate) fn arduino(plan: &Plan, steps: &mut Steps) {
     steps.step("tables of the Arduino library", || tables::check(plan.write));
     steps.step("tables of the examples", crate::examples::tables);
     steps.step("Arduino library", || pack().and_then(|library| examples(&library, plan.short)));
-    steps.step("ready tables before walls", || own_walls::run(&Path::new(TARGET).join("Eeruf"), plan.short));
+    steps.step("ready tables before walls", || own_walls::run(&Path::new(TARGET).join("libraries/Eeruf"), plan.short));
 }
 
-/// The library as one installs it: its files and those of `c/`.
+/// The library as one installs it, its files and those of `c/`: packed as the `.zip` that the IDE takes, and unpacked from
+/// there into a folder `libraries`, as the IDE does.
 fn pack() -> Result<PathBuf, Trouble> {
-    let library = Path::new(TARGET).join("Eeruf");
-    let source = library.join("src");
-    if library.exists() {
-        fs::remove_dir_all(&library).map_err(failed("the packed library"))?;
+    let target = Path::new(TARGET);
+    let (library, libraries) = (target.join("Eeruf"), target.join("libraries"));
+    for folder in [&library, &libraries] {
+        if folder.exists() {
+            fs::remove_dir_all(folder).map_err(failed("the packed library"))?;
+        }
     }
+    let source = library.join("src");
     fs::create_dir_all(&source).map_err(failed("the packed library"))?;
+    fs::create_dir_all(&libraries).map_err(failed("the packed library"))?;
     for folder in ["src", "examples"] {
         run(Command::new("cp").args(["-r"]).arg(Path::new("c/arduino").join(folder)).arg(&library))?;
     }
     for file in ["library.properties", "keywords.txt", "library.json", "README.md"] {
         fs::copy(Path::new("c/arduino").join(file), library.join(file)).map_err(failed(file))?;
     }
+    for file in ["LICENSE-MIT", "LICENSE-APACHE"] {
+        fs::copy(file, library.join(file)).map_err(failed(file))?;
+    }
     for file in ["eeruf.c", "eeruf.h", "eeruf_serial.h"] {
         fs::copy(Path::new("c").join(file), source.join(file)).map_err(failed(file))?;
     }
-    run(Command::new("tar").args(["-czf", "Eeruf.tar.gz", "Eeruf"]).current_dir(TARGET))?;
-    Ok(library)
+    let properties = fs::read_to_string(library.join("library.properties")).map_err(failed("library.properties"))?;
+    let version = library::check(&properties).map_err(Trouble::Failed)?;
+    let zip = format!("Eeruf-{version}.zip");
+    let of_python = ["-m", "zipfile"];
+    run(Command::new("python3").args(of_python).args(["-c", &zip, "Eeruf"]).current_dir(TARGET))?;
+    run(Command::new("python3").args(of_python).args(["-e", &zip, "libraries"]).current_dir(TARGET))?;
+    println!("{TARGET}/{zip}");
+    Ok(libraries.join("Eeruf"))
 }
 
 fn examples(library: &Path, short: bool) -> Result<(), Trouble> {

@@ -81,6 +81,7 @@ fn one_version() -> Result<String, Trouble> {
         ("CITATION.cff", format!("version: {version}")),
         ("c/arduino/library.properties", format!("version={version}")),
         ("c/arduino/library.json", format!("  \"version\": \"{version}\"")),
+        ("ros2/package.xml", format!("  <version>{version}</version>")),
         ("c/idf_component.yml", format!("version: \"{version}\"")),
         ("c/CMakeLists.txt", format!("  project(eeruf VERSION {version} ")),
     ] {

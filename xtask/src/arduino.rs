@@ -82,8 +82,8 @@ pub(crate) fn arduino(plan: &Plan, steps: &mut Steps) {
     steps.step("ready tables before walls", || own_walls::run(&Path::new(TARGET).join("libraries/Eeruf"), plan.short));
 }
 
-/// The library as one installs it, its files and those of `c/`: packed as the `.zip` that the IDE takes, and unpacked from
-/// there into a folder `libraries`, as the IDE does.
+/// The library as one installs it, its files and those of `c/`: packed as the `.zip` that the IDE takes, and unpacked
+/// into a folder `libraries`, as the IDE does.
 fn pack() -> Result<PathBuf, Trouble> {
     let target = Path::new(TARGET);
     let (library, libraries) = (target.join("Eeruf"), target.join("libraries"));

@@ -82,13 +82,26 @@ fn pack(program: Option<&Path>) -> Result<PathBuf, Trouble> {
     let libc = libc.split('-').next().unwrap_or_default();
     let said = output(Command::new(&program).arg("--version")).unwrap_or_default();
     let version = said.strip_prefix("eeruf-ros2 ").ok_or_else(|| failed(format!("{}: {said}", program.display())))?;
-    let control = format!(
-        "Package: eeruf-ros2\nVersion: {version}\nArchitecture: {architecture}\nSection: misc\nPriority: optional\n\
-         Depends: libc6 (>= {libc})\nMaintainer: The eeruf contributors <eeruf@users.noreply.github.com>\n\
-         Homepage: https://github.com/eeruf/eeruf\nDescription: node for rings of ultrasonic sensors without crosstalk\n \
-         Reads a board's serial line and publishes ROS 2 ranges, a cloud, transforms and\n diagnostics; sends MAVLink; \
-         writes logs. Needs no ROS.\n"
-    );
+    let depends = format!("libc6 (>= {libc})");
+    let fields = [
+        ("Package", "eeruf-ros2"),
+        ("Version", version),
+        ("Architecture", &architecture),
+        ("Section", "misc"),
+        ("Priority", "optional"),
+        ("Depends", &depends),
+        ("Maintainer", "The eeruf contributors <eeruf@users.noreply.github.com>"),
+        ("Homepage", "https://github.com/eeruf/eeruf"),
+        ("Description", "node for rings of ultrasonic sensors without crosstalk"),
+        ("", "Reads a board's serial line; publishes ROS 2 ranges, a cloud, transforms and"),
+        ("", "diagnostics; sends MAVLink; writes logs. Needs no ROS."),
+    ];
+    // Further lines of a field begin with a space.
+    let line = |(field, value): &(&str, &str)| match *field {
+        "" => format!(" {value}\n"),
+        field => format!("{field}: {value}\n"),
+    };
+    let control: String = fields.iter().map(line).collect();
     write(&root.join("DEBIAN/control"), control.as_bytes(), 0o644)?;
     write(&root.join("DEBIAN/conffiles"), b"/etc/eeruf/eeruf.yaml\n", 0o644)?;
     for script in ["postinst", "prerm"] {

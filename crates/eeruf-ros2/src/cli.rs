@@ -1,12 +1,15 @@
 //! The command line: the parameters, and what stands above them.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use clap::Parser;
+use eeruf_sim::World;
 
 use crate::parameters::{Parameters, Source};
 use crate::placing::Placing;
 use crate::ros_args::{Given, RosArgs};
+use crate::simulated;
 
 /// A ROS 2 node for rings of ultrasonic sensors that needs no ROS installed
 #[derive(Parser)]
@@ -28,6 +31,9 @@ struct Cli {
     /// Take number and places of the sensors from a ring file
     #[arg(long, value_name = "RING.toml")]
     ring: Option<PathBuf>,
+    /// Simulate the first robot of a scene, without hardware
+    #[arg(long, value_name = "SCENE.toml", conflicts_with = "port")]
+    simulate: Option<PathBuf>,
     /// Write a log that `eeruf diagnose` reads
     #[arg(long, value_name = "FILE.csv")]
     log: Option<PathBuf>,
@@ -48,6 +54,8 @@ pub(crate) struct Setup {
     pub(crate) parameters: Parameters,
     /// Where the sensors are, if a ring file says it.
     pub(crate) placing: Placing,
+    /// The scene, if there is no hardware.
+    pub(crate) world: Option<Arc<World>>,
     /// None if it speaks no ROS.
     pub(crate) ros: Option<RosArgs>,
 }
@@ -84,10 +92,20 @@ pub(crate) fn task() -> Result<Task, String> {
     parameters.ring = cli.ring.unwrap_or(parameters.ring);
     parameters.log = cli.log.unwrap_or(parameters.log);
     parameters.mavlink = cli.mavlink.unwrap_or(parameters.mavlink);
-    let placing = Placing::read(&mut parameters)?;
-    parameters.check()?;
-    if cli.no_ros && parameters.source != Source::Serial {
-        return Err("without ROS only source: serial can be listened to; give --port".to_owned());
+    if let Some(scene) = cli.simulate {
+        parameters.scene = scene;
+        parameters.source = Source::Simulation;
     }
-    Ok(Task::Run(Box::new(Setup { parameters, placing, ros: (!cli.no_ros).then_some(ros) })))
+    let mut placing = Placing::read(&mut parameters)?;
+    let world = (parameters.source == Source::Simulation).then(|| simulated::world(&parameters.scene)).transpose()?;
+    if let Some(world) = &world {
+        placing = simulated::placing(world, parameters.height_m);
+        placing.direct(&mut parameters);
+        parameters.temperature_c = world.scene().air().temperature_c as f32;
+    }
+    parameters.check()?;
+    if cli.no_ros && !matches!(parameters.source, Source::Serial | Source::Simulation) {
+        return Err("without ROS there are no topics to listen to; give --port or --simulate".to_owned());
+    }
+    Ok(Task::Run(Box::new(Setup { parameters, placing, world, ros: (!cli.no_ros).then_some(ros) })))
 }

@@ -18,6 +18,7 @@ mod range;
 mod ros;
 mod ros_args;
 mod run;
+mod simulated;
 mod view;
 
 use std::process::ExitCode;

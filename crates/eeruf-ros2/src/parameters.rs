@@ -18,6 +18,8 @@ pub(crate) enum Source {
     EchoTimes,
     /// Ranges on a topic for each sensor, to be filtered here.
     Ranges,
+    /// No hardware: the first robot of a scene file.
+    Simulation,
 }
 
 /// What a `Range` says where nothing is in range.
@@ -75,7 +77,7 @@ macro_rules! parameters {
 }
 
 parameters! {
-    /// Where readings come from: serial (a board that filters), echo_times or ranges (topics, filtered here).
+    /// The source of readings: serial (a board that filters), echo_times or ranges (topics, filtered here), simulation.
     source: Source = Source::Serial, "serial";
     /// The board's serial line.
     port: String = "/dev/ttyACM0".to_owned(), "/dev/ttyACM0";
@@ -87,6 +89,12 @@ parameters! {
     range_topics: Vec<String> = Vec::new(), "[]";
     /// For echo_times and ranges: the greatest difference between near-identical echo times.
     t_delta_us: u32 = 500, "500";
+    /// For simulation: a scene file, whose first robot is the ring, and how it fires and filters.
+    scene: PathBuf = PathBuf::new(), "\"\"";
+    /// A method of `eeruf study`: eeruf, eeruf_hopping, simultaneous, ..
+    method: String = "eeruf".to_owned(), "eeruf";
+    /// The scene's frame in the simulation.
+    map_frame: String = "map".to_owned(), "map";
     /// A ring file with poses: number and places of the sensors, for /tf_static, the cloud and MAVLink.
     ring: PathBuf = PathBuf::new(), "\"\"";
     /// The number of sensors, if no ring file says it.

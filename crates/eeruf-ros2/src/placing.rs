@@ -3,6 +3,7 @@
 use std::fs;
 
 use eeruf_core::MAX_SENSORS;
+use eeruf_sim::Pose;
 
 use crate::parameters::Parameters;
 
@@ -32,16 +33,26 @@ impl Placing {
         if ring.poses.is_empty() {
             return Err(wrong("no places of sensors; expected poses, or spacing_deg and radius_m".to_owned()));
         }
-        parameters.sensors = u8::try_from(ring.sensors).unwrap_or(MAX_SENSORS as u8);
-        let place = |pose: &eeruf_sim::Pose| Place {
+        let placing = Self::of(&ring.poses, parameters.height_m);
+        placing.direct(parameters);
+        Ok(placing)
+    }
+
+    /// Sensors at these poses, all at one height.
+    pub(crate) fn of(poses: &[Pose], height_m: f64) -> Self {
+        let place = |pose: &Pose| Place {
             x_m: pose.translation.x,
             y_m: pose.translation.y,
-            z_m: parameters.height_m,
+            z_m: height_m,
             yaw_rad: pose.rotation.angle(),
         };
-        let places: Vec<Place> = ring.poses.iter().map(place).collect();
-        parameters.yaws_deg = places.iter().map(|place| place.yaw_rad.to_degrees() as f32).collect();
-        Ok(Self(places))
+        Self(poses.iter().map(place).collect())
+    }
+
+    /// Sets what follows from the places: how many sensors there are, and where they look.
+    pub(crate) fn direct(&self, parameters: &mut Parameters) {
+        parameters.sensors = u8::try_from(self.0.len()).unwrap_or(MAX_SENSORS as u8);
+        parameters.yaws_deg = self.0.iter().map(|place| place.yaw_rad.to_degrees() as f32).collect();
     }
 }
 

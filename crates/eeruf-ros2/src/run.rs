@@ -18,6 +18,7 @@ use crate::mavlink::Mavlink;
 use crate::parameters::{Parameters, Source};
 use crate::range::{Distance, Scale};
 use crate::ros::{Heard, Ros};
+use crate::simulated::Simulator;
 use crate::view::View;
 
 /// How often topics are looked at; a ring of 64 has a reading every millisecond or two.
@@ -57,11 +58,15 @@ fn source(parameters: &Parameters) -> String {
         Source::Serial => format!("{} at {} baud", parameters.port, parameters.baud),
         Source::EchoTimes => format!("topic {}", parameters.echo_times_topic),
         Source::Ranges => format!("topics {}", parameters.range_topics.join(", ")),
+        Source::Simulation => format!("the simulation of {}", parameters.scene.display()),
     }
 }
 
 struct EerufNode {
     ros: Option<Ros>,
+    simulator: Option<Simulator>,
+    /// What each sensor of the simulation would have seen alone, at its last firing.
+    truth: Vec<(View, f32)>,
     mavlink: Option<Mavlink>,
     log: Option<FiringLog>,
     filter: RangeFilter,
@@ -86,6 +91,8 @@ impl EerufNode {
         let log = parameters.log.as_os_str();
         Ok(Self {
             ros: setup.ros.as_ref().map(|args| Ros::open(setup, args)).transpose()?,
+            simulator: setup.world.clone().map(|world| Simulator::new(world, &parameters.method)).transpose()?,
+            truth: vec![(View::Unknown, 0.0); usize::from(parameters.sensors)],
             mavlink: is_set(&parameters.mavlink).then(|| Mavlink::open(parameters)).transpose()?,
             log: (!log.is_empty()).then(|| FiringLog::create(&parameters.log)).transpose()?,
             filter: RangeFilter::new(Micros::new(parameters.t_delta_us))?,
@@ -109,7 +116,7 @@ impl EerufNode {
     fn look(&mut self, line: Option<&Receiver<FromLine>>) -> Result<(), String> {
         let Some(line) = line else {
             std::thread::sleep(LOOK);
-            return self.look_at_topics();
+            return if self.simulator.is_some() { self.simulate() } else { self.look_at_topics() };
         };
         match line.recv_timeout(10 * LOOK) {
             Ok(FromLine::Opened) => {
@@ -159,6 +166,36 @@ impl EerufNode {
                 self.firing(&firing, fired_ns)
             }
         }
+    }
+
+    /// Simulates up to now.
+    fn simulate(&mut self) -> Result<(), String> {
+        let Some(simulator) = &mut self.simulator else { return Ok(()) };
+        match self.ros.as_ref().and_then(Ros::velocity) {
+            // A velocity that cannot be driven does not end the simulation.
+            Some(Ok((v_m_s, w_rad_s))) => {
+                if let Err(error) = simulator.drive(v_m_s, w_rad_s) {
+                    self.say_once(&error);
+                }
+            }
+            Some(Err(error)) => self.say_once(&error),
+            None => {}
+        }
+        let Some(simulator) = &mut self.simulator else { return Ok(()) };
+        let (read, is_slow) = simulator.go_on()?;
+        if is_slow {
+            self.say_once("the simulation is slower than the clock on the wall");
+        }
+        for simulated in read {
+            let at = simulated.firing.sensor;
+            let kind = if simulated.truth.is_some() { ReadingKind::Accepted } else { ReadingKind::Clear };
+            let seen = self.scale.distance(kind, simulated.truth).map_or(View::Unknown, View::Sees);
+            if let Some(place) = self.truth.get_mut(usize::from(at)) {
+                *place = (seen, 0.0);
+            }
+            self.firing(&simulated.firing, simulated.fired_ns)?;
+        }
+        Ok(())
     }
 
     fn look_at_topics(&mut self) -> Result<(), String> {
@@ -235,7 +272,10 @@ impl EerufNode {
         let views: Vec<(View, f32)> = views.map(|(view, age)| (view, seconds(age))).collect();
         let published = self.ros.as_ref().is_none_or(|ros| ros.publish_cloud(nanoseconds(), &views));
         let sent = self.mavlink.as_mut().is_none_or(|mavlink| mavlink.picture(&views).is_ok());
-        if !(published && sent) {
+        let course = self.simulator.as_ref().and_then(|simulator| simulator.course().ok());
+        let shown = self.ros.as_ref().zip(course);
+        let shown = shown.is_none_or(|(ros, course)| ros.publish_truth(nanoseconds(), course, &self.truth));
+        if !(published && sent && shown) {
             self.diagnosis.unsent();
         }
     }

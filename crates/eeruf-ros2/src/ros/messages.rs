@@ -130,8 +130,8 @@ pub(crate) struct PointCloud2 {
     pub(crate) is_dense: bool,
 }
 
-/// `geometry_msgs/Vector3`.
-#[derive(Clone, Copy, Debug, Default, Serialize)]
+/// `geometry_msgs/Vector3`, and `Point`.
+#[derive(Clone, Copy, Debug, Default, Deserialize, Serialize)]
 pub(crate) struct Vector3 {
     pub(crate) x: f64,
     pub(crate) y: f64,
@@ -174,4 +174,30 @@ pub(crate) struct TransformStamped {
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct TfMessage {
     pub(crate) transforms: Vec<TransformStamped>,
+}
+
+/// `geometry_msgs/Pose`.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub(crate) struct Pose {
+    pub(crate) position: Vector3,
+    pub(crate) orientation: Quaternion,
+}
+
+/// `geometry_msgs/Twist`.
+#[derive(Clone, Copy, Debug, Deserialize, Serialize)]
+pub(crate) struct Twist {
+    pub(crate) linear: Vector3,
+    pub(crate) angular: Vector3,
+}
+
+/// Of six numbers with themselves; zeros for what is exactly known.
+type Covariance = [[f64; 6]; 6];
+
+/// `nav_msgs/Odometry`, whose pose and twist have a covariance each.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct Odometry {
+    pub(crate) header: Header,
+    pub(crate) child_frame_id: String,
+    pub(crate) pose: (Pose, Covariance),
+    pub(crate) twist: (Twist, Covariance),
 }

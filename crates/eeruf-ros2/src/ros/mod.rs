@@ -2,6 +2,7 @@
 
 mod cloud;
 mod messages;
+mod scene;
 
 use std::env;
 use std::fmt::Display;
@@ -22,11 +23,14 @@ use crate::parameters::{Parameters, Source};
 use crate::placing::Place;
 use crate::range::Distance;
 use crate::ros_args::RosArgs;
+use crate::simulated::Course;
 use crate::view::View;
 use messages::{
     DiagnosticArray, DiagnosticStatus, Header, KeyValue, PointCloud2, Quaternion, Range, RangeHeard, TfMessage, Time,
     Transform, TransformStamped, UInt32MultiArray, ULTRASOUND, Vector3,
 };
+
+use scene::Scene;
 
 /// What was heard on a topic.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -63,6 +67,8 @@ pub(crate) struct Ros {
     diagnostics: Publisher<DiagnosticArray>,
     /// None without places of the sensors.
     placed: Option<Placed>,
+    /// None with hardware.
+    scene: Option<Scene>,
     input: Input,
     field_of_view: f32,
     min_range: f32,
@@ -104,7 +110,7 @@ impl Ros {
         }
         let diagnostics = node.publisher("/diagnostics", ["diagnostic_msgs", "DiagnosticArray"], &PUBLISHING)?;
         let input = match parameters.source {
-            Source::Serial => Input::None,
+            Source::Serial | Source::Simulation => Input::None,
             Source::EchoTimes => {
                 let array = ["std_msgs", "UInt32MultiArray"];
                 Input::EchoTimes(Box::new(node.subscription(&parameters.echo_times_topic, array)?))
@@ -120,12 +126,15 @@ impl Ros {
         let places = setup.placing.0.clone();
         let placed =
             (!places.is_empty()).then(|| node.placed(places, &parameters.base_frame, &frame_ids)).transpose()?;
+        let frames = [&parameters.map_frame, &parameters.base_frame];
+        let scene = setup.world.as_ref().map(|_| Scene::open(&mut node, frames[0], frames[1])).transpose()?;
         Ok(Self {
             _node: node.node,
             ranges,
             frame_ids,
             diagnostics,
             placed,
+            scene,
             input,
             field_of_view: parameters.field_of_view_rad,
             min_range: parameters.min_range_m,
@@ -157,6 +166,17 @@ impl Ros {
         let Some(placed) = &self.placed else { return true };
         let header = Header { stamp: Time::from_nanoseconds(now_ns), frame_id: placed.base_frame.clone() };
         placed.cloud.publish(cloud::cloud(header, &placed.places, views, self.min_range)).is_ok()
+    }
+
+    /// The velocity that a simulated robot was asked for since: ahead and of its turn.
+    pub(crate) fn velocity(&self) -> Option<Result<(f64, f64), String>> {
+        self.scene.as_ref()?.velocity()
+    }
+
+    /// Publishes where a simulated robot is and what its sensors would see alone; false if that cannot be sent.
+    pub(crate) fn publish_truth(&self, now_ns: i64, course: Course, views: &[(View, f32)]) -> bool {
+        let (Some(scene), Some(placed)) = (&self.scene, &self.placed) else { return true };
+        scene.publish(Time::from_nanoseconds(now_ns), course, &placed.places, views, self.min_range)
     }
 
     /// Publishes how everything is; false if that cannot be sent.

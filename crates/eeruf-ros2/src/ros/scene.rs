@@ -1,0 +1,79 @@
+//! The part of a simulation beside the ring: it publishes where the robot is and what its sensors would see alone, and
+//! listens for a velocity.
+
+use ros2_client::{Publisher, Subscription};
+
+use crate::placing::Place;
+use crate::simulated::Course;
+use crate::view::View;
+
+use super::messages::{
+    Header, Odometry, PointCloud2, Pose, Quaternion, TfMessage, Time, Transform, TransformStamped, Twist, Vector3,
+};
+use super::{PUBLISHING, Topics, cloud};
+
+pub(super) struct Scene {
+    transforms: Publisher<TfMessage>,
+    truth: Publisher<Odometry>,
+    cloud: Publisher<PointCloud2>,
+    velocity: Subscription<Twist>,
+    map_frame: String,
+    base_frame: String,
+}
+
+impl Scene {
+    pub(super) fn open(node: &mut Topics<'_>, map_frame: &str, base_frame: &str) -> Result<Self, String> {
+        Ok(Self {
+            transforms: node.publisher("/tf", ["tf2_msgs", "TFMessage"], &PUBLISHING)?,
+            truth: node.publisher("~/truth", ["nav_msgs", "Odometry"], &PUBLISHING)?,
+            cloud: node.publisher("~/true_points", ["sensor_msgs", "PointCloud2"], &PUBLISHING)?,
+            velocity: node.subscription("cmd_vel", ["geometry_msgs", "Twist"])?,
+            map_frame: map_frame.to_owned(),
+            base_frame: base_frame.to_owned(),
+        })
+    }
+
+    /// The last speed ahead and rate of turn that were asked for since.
+    pub(super) fn velocity(&self) -> Option<Result<(f64, f64), String>> {
+        let mut last = None;
+        while let Some(heard) = self.velocity.take().transpose() {
+            let speeds = heard.map(|(twist, _)| (twist.linear.x, twist.angular.z));
+            last = Some(speeds.map_err(|error| format!("cmd_vel: {error}")));
+        }
+        last
+    }
+
+    /// Publishes where the robot is, and what each sensor would see alone; false if that cannot be sent.
+    pub(super) fn publish(
+        &self,
+        stamp: Time,
+        course: Course,
+        places: &[Place],
+        views: &[(View, f32)],
+        min_m: f32,
+    ) -> bool {
+        let in_frame = |frame: &str| Header { stamp, frame_id: frame.to_owned() };
+        let place = Vector3 { x: course.x_m, y: course.y_m, z: 0.0 };
+        let turn = Quaternion::from_yaw(course.yaw_rad);
+        let transform = TransformStamped {
+            header: in_frame(&self.map_frame),
+            child_frame_id: self.base_frame.clone(),
+            transform: Transform { translation: place, rotation: turn },
+        };
+        let twist = Twist {
+            linear: Vector3 { x: course.v_m_s, ..Vector3::default() },
+            angular: Vector3 { z: course.w_rad_s, ..Vector3::default() },
+        };
+        let exact = [[0.0; 6]; 6];
+        let truth = Odometry {
+            header: in_frame(&self.map_frame),
+            child_frame_id: self.base_frame.clone(),
+            pose: (Pose { position: place, orientation: turn }, exact),
+            twist: (twist, exact),
+        };
+        let cloud = cloud::cloud(in_frame(&self.base_frame), places, views, min_m);
+        self.transforms.publish(TfMessage { transforms: vec![transform] }).is_ok()
+            && self.truth.publish(truth).is_ok()
+            && self.cloud.publish(cloud).is_ok()
+    }
+}

@@ -1,0 +1,155 @@
+//! A ring without hardware: the first robot of a scene, simulated at the pace of the clock on the wall.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use eeruf_core::{Instant, Micros, ReadingKind};
+use eeruf_serial::Firing;
+use eeruf_sim::{Fault, FaultKind, Method, Options, Simulation, Stop, World};
+
+use crate::board_line::nanoseconds;
+use crate::placing::Placing;
+
+/// The longest piece that is simulated at once, in seconds: what is published stays even.
+const PIECE_S: f64 = 0.02;
+/// A simulation that is so far behind the clock on the wall, in seconds, waits for it no more.
+const BEHIND_S: f64 = 1.0;
+
+/// The scene of a file.
+pub(crate) fn world(file: &Path) -> Result<Arc<World>, String> {
+    let text = std::fs::read_to_string(file).map_err(|error| format!("simulate: {}: {error}", file.display()))?;
+    let world = World::from_text_with(file, &text, eeruf_design::robot_ring);
+    world.map(Arc::new).map_err(|error| format!("simulate: {error}"))
+}
+
+/// Where the sensors of the first robot are.
+pub(crate) fn placing(world: &World, height_m: f64) -> Placing {
+    Placing::of(world.robots().first().map_or(&[], |robot| &robot.sensors), height_m)
+}
+
+/// A reading of the simulation.
+pub(crate) struct Simulated {
+    pub(crate) firing: Firing,
+    /// When it fired, by the host's clock.
+    pub(crate) fired_ns: i64,
+    /// The echo time of a sensor that fires alone; none if nothing is in range.
+    pub(crate) truth: Option<Micros>,
+}
+
+/// The reading that a driver makes of a module's line where a fault lets nothing come; the simulator itself takes that
+/// for silence.
+fn broken(faults: &[Fault], sensor: u8, time_s: f64) -> Option<ReadingKind> {
+    let mut there = faults.iter().filter(|fault| fault.is_of(0, sensor) && fault.is_at(time_s));
+    there.find_map(|fault| match fault.kind {
+        FaultKind::Missing | FaultKind::Cut => Some(ReadingKind::Unanswered),
+        FaultKind::Stuck => Some(ReadingKind::Stuck),
+        _ => None,
+    })
+}
+
+/// Where the robot is, in the scene.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Course {
+    pub(crate) x_m: f64,
+    pub(crate) y_m: f64,
+    pub(crate) yaw_rad: f64,
+    /// Ahead, in the robot's frame.
+    pub(crate) v_m_s: f64,
+    pub(crate) w_rad_s: f64,
+}
+
+pub(crate) struct Simulator {
+    simulation: Simulation,
+    began_ns: i64,
+    /// How much of the wall's time was left out because the simulation is slower.
+    skipped_s: f64,
+}
+
+impl Simulator {
+    pub(crate) fn new(world: Arc<World>, method: &str) -> Result<Self, String> {
+        let method: Method = method.parse().map_err(|error| format!("method: {error}"))?;
+        let simulation = Simulation::new(world, method, &Options::default(), Stop::default());
+        let simulation = simulation.map_err(|error| format!("simulate: {error}"))?;
+        Ok(Self { simulation, began_ns: nanoseconds(), skipped_s: 0.0 })
+    }
+
+    /// Simulates what has passed by the clock on the wall; the readings, and true if the simulation is slower than it.
+    pub(crate) fn go_on(&mut self) -> Result<(Vec<Simulated>, bool), String> {
+        let mut read = Vec::new();
+        let passed_s = (nanoseconds() - self.began_ns) as f64 * 1e-9 - self.skipped_s;
+        let behind_s = passed_s - self.simulation.time_s();
+        let is_slow = behind_s > BEHIND_S;
+        if is_slow {
+            self.skipped_s += behind_s - PIECE_S;
+        }
+        let step_s = behind_s.clamp(0.0, PIECE_S);
+        let readings = self.simulation.step(step_s, |_| true).map_err(|error| format!("simulate: {error}"))?;
+        for n in (0..readings.len()).filter(|&n| readings.robot[n] == 0) {
+            let micros = |us: f64| (us.is_finite() && us >= 0.0).then(|| Micros::new(us.round() as u32));
+            let fired_s = readings.fired_s[n];
+            let t_echo = micros(readings.t_echo_us[n]);
+            let broken = broken(self.simulation.world().faults(), readings.sensor[n], fired_s);
+            let firing = Firing {
+                sensor: readings.sensor[n],
+                phase: readings.phase[n],
+                kind: broken.filter(|_| t_echo.is_none()).unwrap_or(readings.kind[n]),
+                fired: Instant::from_micros((fired_s * 1e6) as u64 as u32),
+                period: readings.period[n],
+                t_echo,
+                late: Micros::ZERO,
+                age: Micros::ZERO,
+                explained_by: None,
+                weighed: readings.weighed[n],
+            };
+            let fired_ns = self.began_ns + ((fired_s + self.skipped_s) * 1e9) as i64;
+            read.push(Simulated { firing, fired_ns, truth: micros(readings.reference_us[n]) });
+        }
+        Ok((read, is_slow))
+    }
+
+    /// From now on the robot drives so.
+    pub(crate) fn drive(&mut self, v_m_s: f64, w_rad_s: f64) -> Result<(), String> {
+        self.simulation.set_velocity(0, v_m_s, w_rad_s).map_err(|error| format!("cmd_vel: {error}"))
+    }
+
+    pub(crate) fn course(&self) -> Result<Course, String> {
+        let moment = self.simulation.moment(0).map_err(|error| format!("simulate: {error}"))?;
+        let yaw_rad = moment.pose.rotation.angle();
+        let ahead = moment.velocity.x * yaw_rad.cos() + moment.velocity.y * yaw_rad.sin();
+        let place = moment.pose.translation;
+        Ok(Course { x_m: place.x, y_m: place.y, yaw_rad, v_m_s: ahead, w_rad_s: moment.turn_rad_s })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SCENE: &str = "seed = 1\nmax_order = 2\n[[wall]]\npoints_m = [[2.0, -3.0], [2.0, 3.0]]\nfaces = \"both\"\n\
+                         [[robot]]\npose = { x_m = 0.0, y_m = 0.0, heading_deg = 0.0 }\n\
+                         ring = { sensors = 4, spacing_deg = 20.0, radius_m = 0.2 }\nmodule = \"hc-sr04\"\n";
+
+    #[test]
+    fn robot_of_a_scene_reads_and_drives_at_the_walls_pace() {
+        let world = Arc::new(World::from_text("scene.toml".as_ref(), SCENE).unwrap());
+        assert_eq!(placing(&world, 0.1).0.len(), 4);
+        let mut simulator = Simulator::new(Arc::clone(&world), "eeruf").unwrap();
+        simulator.drive(0.5, 0.0).unwrap();
+        let mut read = Vec::new();
+        let began = nanoseconds();
+        while read.len() < 40 {
+            assert!(nanoseconds() - began < 20_000_000_000, "{} readings in 20 s", read.len());
+            read.extend(simulator.go_on().unwrap().0);
+            std::thread::sleep(std::time::Duration::from_millis(5));
+        }
+        let sensors: std::collections::BTreeSet<u8> = read.iter().map(|read| read.firing.sensor).collect();
+        assert_eq!(sensors, [0, 1, 2, 3].into());
+        assert!(read.iter().all(|read| read.fired_ns >= began && read.fired_ns <= nanoseconds()));
+        let course = simulator.course().unwrap();
+        assert!(course.x_m > 0.01 && (course.v_m_s - 0.5).abs() < 1e-9, "{course:?}");
+        // The wall, from the two sensors that look nearly at it.
+        let near = read.iter().filter_map(|read| read.truth).map(Micros::as_micros).min().unwrap();
+        assert!((8_000..11_000).contains(&near), "{near} us");
+        assert!(Simulator::new(world, "eruf").is_err_and(|error| error.starts_with("method: ")));
+    }
+}

@@ -136,7 +136,7 @@ def test_unanswered_is_never_free(ring, said):
         ring.show(all_but(sensor, "unanswered"))
         assert ring.px4.bins[at // 10] == (0.02 if said == "obstacle" else None)
         face = ring.ardupilot.faces.get(ring.ardupilot.face(at))
-        # ArduPilot knows nothing between an obstacle and free: docs/mavlink.md says so.
+        # ArduPilot knows nothing between an obstacle and free: docs/how-to/autopilots.md says so.
         assert (face is not None and face[1] == 0.02) == (said == "obstacle")
 
 

@@ -1,5 +1,5 @@
 //! `MAVLink` 2: `OBSTACLE_DISTANCE` of the whole ring, `DISTANCE_SENSOR` for sensors that a named rotation stands for,
-//! and the `HEARTBEAT` by which others know of us. What autopilots make of them: `docs/mavlink.md`.
+//! and the `HEARTBEAT` by which others know of us. What autopilots make of them: `docs/how-to/autopilots.md`.
 //!
 //! Messages and numbers: <https://mavlink.io/en/messages/common.html>; frames:
 //! <https://mavlink.io/en/guide/serialization.html>.

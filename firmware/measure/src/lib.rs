@@ -5,12 +5,9 @@
 use core::hint::black_box;
 
 use eeruf_board::{COUNTS_PER_1000_INSTRUCTIONS, say};
-use eeruf_core::{
-    Instant, Layout, Micros, Requirements, RingConfig, Schedule, VerifiedSchedule,
-    hopping::{HoppingError, HoppingListening, HoppingRing, HoppingSchedule, HoppingSettings},
-    hopping_schedule,
-    phases::{PhaseCriterion, PhaseRequirements},
-};
+use eeruf_core::{Micros, Requirements, RingConfig, Schedule, VerifiedSchedule};
+
+pub mod planned;
 
 /// The paper's schedule for `K` sensors: groups of four, waits of `2 K` ms in phase a and 0, 2, 4, .. ms in phase b.
 pub const fn plain<const K: usize>() -> VerifiedSchedule<K> {
@@ -38,32 +35,6 @@ pub const T_DELTA: Micros = Micros::new(999);
 
 /// The configuration of all measured rings.
 pub const CONFIG: RingConfig = RingConfig::new().with_window(Micros::from_millis(36));
-
-/// The hopping schedule of twelve sensors: 16 phases, 100 ms, even lags.
-pub const HOPPING_12: HoppingSchedule<12> = hopping_schedule! {
-    period_us: 100_000,
-    step_us: 240,
-    phases: 16,
-    first_multiplier: 1,
-    t_lag_us: [0, 8_000, 16_000, 24_000, 32_000, 40_000, 48_000, 56_000, 64_000, 72_000, 80_000, 88_000],
-    meets: PhaseRequirements {
-        criterion: PhaseCriterion::Margin(Micros::new(90)),
-        min_interval: Micros::from_millis(4),
-        layout: Layout::Line(4),
-        ..PhaseRequirements::new(Micros::new(150), Micros::from_millis(36))
-    },
-};
-
-/// The hopping ring of all that is measured.
-///
-/// # Errors
-/// As [`HoppingRing::hopping`].
-#[inline(always)]
-pub fn hopping<const K: usize>(schedule: &HoppingSchedule<K>, now: Instant) -> Result<HoppingRing<K>, HoppingError> {
-    // Lags that are drawn anew, so that it is measured what that costs.
-    let settings = HoppingSettings::BALANCED.with_shift_after(5);
-    HoppingRing::hopping(schedule, settings, HoppingListening::new(Micros::from_millis(36)), 1, now)
-}
 
 /// The fewest and the most instructions that one kind of call took.
 #[derive(Debug)]
@@ -177,101 +148,6 @@ macro_rules! ring_in_static_memory {
             let ring = memory.write(ring);
             loop {
                 while let Some(event) = ring_poll(ring, eeruf_board::now()) {
-                    if let RingEvent::Fire { sensor, .. } = black_box(event) {
-                        _ = black_box(ring_echo(ring, sensor, eeruf_board::now()));
-                    }
-                }
-                let sensor = black_box(1);
-                match black_box(0) {
-                    1 => _ = black_box(ring_stuck(ring, sensor)),
-                    2 => _ = black_box(ring_disable(ring, sensor)),
-                    3 => _ = black_box(ring_enable(ring, sensor)),
-                    4 => ring_restart(ring, eeruf_board::now()),
-                    _ => eeruf_board::set_alarm(ring_next_deadline(ring)),
-                }
-            }
-        }
-    };
-}
-
-/// As [`ring_in_static_memory!`], with all of `HoppingRing` in it for twelve sensors.
-#[macro_export]
-macro_rules! hopping_in_static_memory {
-    ($k:literal) => {
-        use core::cell::UnsafeCell;
-        use core::hint::black_box;
-        use core::mem::MaybeUninit;
-        use eeruf_core::{
-            Instant, RingEvent, SensorError,
-            hopping::{HoppingError, HoppingRing, HoppingSchedule},
-        };
-
-        static SCHEDULE: HoppingSchedule<$k> = $crate::HOPPING_12;
-
-        struct Memory(UnsafeCell<MaybeUninit<HoppingRing<$k>>>);
-        // SAFETY: used by `main` alone.
-        unsafe impl Sync for Memory {}
-        static MEMORY: Memory = Memory(UnsafeCell::new(MaybeUninit::uninit()));
-
-        #[unsafe(no_mangle)]
-        #[inline(never)]
-        fn ring_new(memory: &mut MaybeUninit<HoppingRing<$k>>, now: Instant) -> Result<(), HoppingError> {
-            memory.write($crate::hopping(&SCHEDULE, now)?);
-            Ok(())
-        }
-
-        #[unsafe(no_mangle)]
-        #[inline(never)]
-        fn ring_poll(ring: &mut HoppingRing<$k>, now: Instant, change_us: &[i32; $k]) -> Option<RingEvent> {
-            ring.poll_expecting(now, |sensor| change_us.get(usize::from(sensor)).copied().unwrap_or(0))
-        }
-
-        #[unsafe(no_mangle)]
-        #[inline(never)]
-        fn ring_next_deadline(ring: &HoppingRing<$k>) -> Instant {
-            ring.next_deadline()
-        }
-
-        #[unsafe(no_mangle)]
-        #[inline(never)]
-        fn ring_echo(ring: &mut HoppingRing<$k>, sensor: u8, at: Instant) -> Result<(), SensorError> {
-            ring.echo(sensor, at)
-        }
-
-        #[unsafe(no_mangle)]
-        #[inline(never)]
-        fn ring_stuck(ring: &mut HoppingRing<$k>, sensor: u8) -> Result<(), SensorError> {
-            ring.stuck(sensor)
-        }
-
-        #[unsafe(no_mangle)]
-        #[inline(never)]
-        fn ring_disable(ring: &mut HoppingRing<$k>, sensor: u8) -> Result<(), SensorError> {
-            ring.disable(sensor)
-        }
-
-        #[unsafe(no_mangle)]
-        #[inline(never)]
-        fn ring_enable(ring: &mut HoppingRing<$k>, sensor: u8) -> Result<(), SensorError> {
-            ring.enable(sensor)
-        }
-
-        #[unsafe(no_mangle)]
-        #[inline(never)]
-        fn ring_restart(ring: &mut HoppingRing<$k>, now: Instant) {
-            ring.restart(now);
-        }
-
-        fn ring_program() {
-            // SAFETY: the only use of the memory.
-            let memory = unsafe { &mut *MEMORY.0.get() };
-            if ring_new(memory, black_box(eeruf_board::now())).is_err() {
-                return;
-            }
-            // SAFETY: it has just been written.
-            let ring = unsafe { memory.assume_init_mut() };
-            loop {
-                while let Some(event) = ring_poll(ring, eeruf_board::now(), black_box(&[0; $k])) {
                     if let RingEvent::Fire { sensor, .. } = black_box(event) {
                         _ = black_box(ring_echo(ring, sensor, eeruf_board::now()));
                     }

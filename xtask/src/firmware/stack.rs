@@ -19,8 +19,8 @@ pub(super) const RING: [&str; 8] = [
     "ring_stuck",
 ];
 
-/// Those of a ring that hops in time.
-pub(super) const HOPPING_RING: [&str; 2] = ["ring_new", "ring_poll"];
+/// Those of a ring that weighs readings by a tracker.
+pub(super) const TRACKING_RING: [&str; 2] = ["ring_new", "ring_poll"];
 
 /// What a call through a pointer leads to.
 const POINTER: &str = "a function by its pointer";

@@ -10,7 +10,7 @@ use crate::schedule::{MAX_PERIOD, Phase};
 use crate::time::{Instant, Micros};
 
 /// No sensor has this number.
-const NOBODY: u8 = u8::MAX;
+pub(super) const NOBODY: u8 = u8::MAX;
 
 /// Fires one sensor after the other, with learned gaps, on a grid of as many steps as the code has places.
 #[derive(Clone, Debug)]
@@ -26,18 +26,18 @@ pub struct FlowPlan<const K: usize> {
     changed: bool,
     changes: u8,
     paused: bool,
+    /// The number of sensors that are in order and fire unless the ring is paused, or [`NOBODY`] if that has changed.
+    pub(super) in_order: u8,
     pub(super) start: Instant,
     due: Instant,
     lateness: Lateness,
     pub(super) code: HoppingCode,
-    /// Length of the present cycle.
-    pub(super) length: Micros,
-    /// The largest change by odometry in this cycle, in microseconds.
-    pub(super) fastest: u32,
-    /// One unit of the grid.
-    pub(super) unit: Micros,
-    pub(super) window: Micros,
+    /// Length of the present cycle, in units of the grid.
+    pub(super) length: u32,
+    /// The largest change by odometry in this cycle, in microseconds; stops at 65,535.
+    pub(super) fastest: u16,
     tolerated: u16,
+    pub(super) window: Micros,
     pub(super) pace: Pace,
     pub(super) slots: [Slot; K],
 }
@@ -73,7 +73,9 @@ impl<const K: usize> FlowPlan<K> {
         }
         // Nothing of a firing is heard in a window that opens so much later; the waits of two may bring them closer by
         // the width of the code.
-        let pace = Pace::of(&settings, listening.dies().saturating_add(code.width()));
+        let longest = listening.dies().saturating_add(code.width());
+        // At most 64 sensors.
+        let pace = Pace::of(&settings, sensors as u8, longest, unit_of(&code));
         let mut plan = Self {
             next: NOBODY,
             place: 0,
@@ -82,12 +84,12 @@ impl<const K: usize> FlowPlan<K> {
             changed: false,
             changes: 0,
             paused: false,
+            in_order: NOBODY,
             start: now,
             due: now,
             lateness: Lateness::NEW,
-            length: settings.shortest_cycle,
+            length: pace.shortest,
             fastest: 0,
-            unit: code.width().saturating_add(code.step()).saturating_add(code.step()),
             window: listening.window,
             tolerated: (code.step().abs_diff(t_delta).as_micros().saturating_sub(1) / 2) as u16,
             slots: [Slot::new(pace.least); K],
@@ -130,8 +132,20 @@ impl<const K: usize> FlowPlan<K> {
     #[inline(always)]
     pub(super) fn offset(&self, sensor: u8) -> Micros {
         let Some(slot) = self.slots.get(usize::from(sensor)) else { return Micros::MAX };
-        let grid = u32::from(slot.at) * self.unit.as_micros();
+        let grid = u32::from(slot.at) * self.unit();
         Micros::new(grid + u32::from(slot.place) * self.code.step().as_micros())
+    }
+
+    /// One unit of the grid, in microseconds: the code and a step.
+    #[inline(always)]
+    pub(super) fn unit(&self) -> u32 {
+        unit_of(&self.code)
+    }
+
+    /// Length of the present cycle.
+    fn cycle(&self) -> Micros {
+        // Gaps and quiet are bounded, and a cycle is at most `MAX_PERIOD` if it must be longer: below 2^29.
+        Micros::new(self.length * self.unit())
     }
 
     /// The sensor at a place of the cycle's order.
@@ -143,7 +157,7 @@ impl<const K: usize> FlowPlan<K> {
     #[inline(always)]
     pub(super) fn find_due(&mut self) {
         self.next = if self.place < self.planned { self.order(self.place) } else { NOBODY };
-        let after = if self.next == NOBODY { self.length } else { self.offset(self.next) };
+        let after = if self.next == NOBODY { self.cycle() } else { self.offset(self.next) };
         self.due = self.start + after;
     }
 
@@ -186,6 +200,12 @@ impl<const K: usize> FlowPlan<K> {
         self.lateness.break_off();
         self.changed = true;
     }
+}
+
+/// One unit of the grid of a code, in microseconds.
+#[inline(always)]
+const fn unit_of(code: &HoppingCode) -> u32 {
+    (code.phases() as u32 + 1) * code.step().as_micros()
 }
 
 impl<const K: usize> Plan for FlowPlan<K> {
@@ -238,7 +258,7 @@ impl<const K: usize> Plan for FlowPlan<K> {
     fn end_period(&mut self, now: Instant) -> (Phase, bool) {
         let phase = self.phase();
         let end = self.due;
-        let left_out = now.since(end) > self.length;
+        let left_out = now.since(end) > self.cycle();
         self.start = if left_out { now } else { end };
         self.lateness.end_period();
         if left_out {
@@ -284,6 +304,7 @@ impl<const K: usize> Plan for FlowPlan<K> {
         if let Some(slot) = self.slots.get_mut(usize::from(sensor)) {
             slot.set(DISABLED, !enabled);
         }
+        self.in_order = NOBODY;
         if !enabled {
             self.leave_out(sensor);
             self.find_due();
@@ -305,7 +326,6 @@ impl<const K: usize> Plan for FlowPlan<K> {
         self.break_off();
         self.place = 0;
         self.planned = 0;
-        self.length = self.pace.shortest_cycle;
         self.find_due();
     }
 
@@ -324,8 +344,9 @@ impl<const K: usize> Plan for FlowPlan<K> {
     }
 
     fn horizon(&self) -> Micros {
-        let longest = self.pace.longest_cycle;
-        longest.saturating_add(longest).saturating_add(self.window)
+        // A cycle of least gaps may be longer than the longest that is asked for. Below 2^31.
+        let least = self.code.sensors() as u32 * u32::from(self.pace.least_gap);
+        Micros::new(2 * least.max(self.pace.longest + 1) * self.unit() + self.window.as_micros())
     }
 }
 
@@ -333,15 +354,10 @@ impl<const K: usize> FlowPlan<K> {
     /// Raises a sensor's quiet if others fooled it or nothing of it is believed, lowers it if its reading is.
     fn learn(&mut self, heard: &Heard<'_>, verdict: &Verdict, judge: &impl Judge) {
         let sensor = heard.sensor;
-        let change = heard.firing.expected_change_us.unsigned_abs();
+        let change = u16::try_from(heard.firing.expected_change_us.unsigned_abs()).unwrap_or(u16::MAX);
         self.fastest = self.fastest.max(change);
         let pace = self.pace;
-        let echo = heard.echoes.first().copied();
-        let believed = judge.believed(sensor);
-        let clear = judge.is_clear(sensor);
-        let gap_after = self.gap_after(sensor);
         let Some(slot) = self.slots.get_mut(usize::from(sensor)) else { return };
-        let raise = |quiet: &mut u8, by: u8| *quiet = quiet.saturating_add(by).min(pace.most);
         match verdict.kind {
             // Neither silence nor quiet helps a sensor that is not heard.
             ReadingKind::Stuck | ReadingKind::Unanswered => return,
@@ -358,20 +374,22 @@ impl<const K: usize> FlowPlan<K> {
             _ => {}
         }
         slot.unserved = slot.unserved.saturating_add(1);
-        let masked = match (echo, believed) {
-            (Some(echo), Some(believed)) => echo < believed,
-            (Some(_), None) => clear,
-            (None, _) => false,
-        };
-        if let (true, Some(echo)) = (masked, echo) {
-            raise(&mut slot.before, pace.masked_adds);
-            if echo > gap_after {
-                raise(&mut slot.after, pace.masked_adds);
+        let mut raise = (0, 0);
+        if divides(pace.unserved_after, slot.unserved) {
+            raise = (pace.unserved_adds, pace.unserved_adds);
+        }
+        if let Some(&echo) = heard.echoes.first() {
+            let masked = judge.believed(sensor).map_or_else(|| judge.is_clear(sensor), |believed| echo < believed);
+            if masked {
+                raise.0 = pace.masked_adds.saturating_add(raise.0);
+                if echo > self.gap_after(sensor) {
+                    raise.1 = pace.masked_adds.saturating_add(raise.1);
+                }
             }
         }
-        if slot.unserved % pace.unserved_after.max(1) == 0 {
-            raise(&mut slot.before, pace.unserved_adds);
-            raise(&mut slot.after, pace.unserved_adds);
+        if let Some(slot) = self.slots.get_mut(usize::from(sensor)) {
+            slot.before = slot.before.saturating_add(raise.0).min(pace.most);
+            slot.after = slot.after.saturating_add(raise.1).min(pace.most);
         }
     }
 
@@ -379,6 +397,31 @@ impl<const K: usize> FlowPlan<K> {
     fn gap_after(&self, sensor: u8) -> Micros {
         let place = (0..self.planned).find(|&place| self.order(place) == sensor);
         let gap = place.and_then(|place| self.slots.get(usize::from(place))).map_or(0, |slot| slot.gap);
-        Micros::new(u32::from(gap) * self.unit.as_micros())
+        Micros::new(u32::from(gap) * self.unit())
+    }
+}
+
+/// Returns true if a number is a multiple of another, above 0. By subtraction: small processors take a hundred
+/// instructions to divide.
+fn divides(number: u8, multiple: u8) -> bool {
+    let mut rest = u32::from(multiple);
+    for bit in (0..8).rev() {
+        let part = u32::from(number) << bit;
+        rest = if rest >= part { rest - part } else { rest };
+    }
+    rest == 0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::divides;
+
+    #[test]
+    fn divides_is_the_remainder_of_every_pair() {
+        for number in 1..=255_u8 {
+            for multiple in 0..=255 {
+                assert_eq!(divides(number, multiple), multiple % number == 0, "{number} {multiple}");
+            }
+        }
     }
 }

@@ -1,7 +1,8 @@
 //! The gaps of the next cycle of a flow ring.
 
-use super::plan::FlowPlan;
-use super::slot::{FIRED, GIVEN, QUIET_US};
+use super::plan::{FlowPlan, NOBODY};
+use super::settings::Pace;
+use super::slot::{FIRED, QUIET_US, Slot};
 use crate::hopping::CATCHES_UP;
 use crate::plan::Plan;
 use crate::time::{Instant, Micros};
@@ -12,48 +13,53 @@ impl<const K: usize> FlowPlan<K> {
         let most = self.longest_cycle();
         self.fastest = 0;
         self.put_in_order();
-        self.give_gaps(self.units(most, false));
+        self.give_gaps(most);
         self.place_firings(fired);
         self.obey_pause();
     }
 
-    /// The longest that this cycle may take: the shorter the faster the robot moved in the last.
-    fn longest_cycle(&self) -> Micros {
+    /// The longest that this cycle may take, in units: the shorter the faster the robot moved in the last.
+    fn longest_cycle(&self) -> u32 {
         let pace = &self.pace;
-        let travel = u32::from(pace.travel_us);
-        // Changes are at most 65,535 us where they count.
         let most = match self.fastest {
-            0 => pace.longest_cycle,
-            fastest if fastest <= travel && self.length >= pace.longest_cycle => pace.longest_cycle,
+            0 => pace.longest,
             fastest => {
-                let length = u64::from(self.length.as_micros()) * u64::from(travel) / u64::from(fastest);
-                Micros::new(u32::try_from(length).unwrap_or(u32::MAX)).min(pace.longest_cycle)
+                // Below 2^32.
+                let share = self.length.min(u32::from(u16::MAX)) * u32::from(pace.travel_us) / u32::from(fastest);
+                share.min(pace.longest)
             }
         };
-        most.max(pace.shortest_cycle)
+        most.max(pace.shortest - u32::from(pace.rounded_up))
     }
 
-    /// A time in units of the grid.
-    fn units(&self, time: Micros, up: bool) -> u32 {
-        let unit = self.unit.as_micros().max(1);
-        let time = time.as_micros().saturating_add(if up { unit - 1 } else { 0 });
-        time / unit
-    }
-
-    fn quiet_units(&self, quiet: u8) -> u8 {
-        self.units(Micros::new(u32::from(quiet) * QUIET_US), true).min(255) as u8
+    /// The gap in units that leaves this quiet, and at least the least.
+    fn gap_for(&self, quiet: u8) -> u8 {
+        let Pace { per_quiet, least_gap, .. } = self.pace;
+        let quiet = u32::from(quiet);
+        let gap = if per_quiet == 0 {
+            in_units(quiet * QUIET_US, self.unit()).min(255)
+        } else {
+            // As dividing, which takes small processors a hundred instructions, does: the product is short by less than
+            // a unit's share of 65,280 us, the longest quiet.
+            (quiet * per_quiet + 0x00ff_ffff) >> 24
+        };
+        (gap as u8).max(least_gap)
     }
 
     /// The sensor after one in the order of firing, if all do: as far from it as the ring allows, since neighbours hear
     /// each other loudest.
     pub(super) fn sensor_after(&self, sensor: u8) -> u8 {
         let sensors = self.code.sensors() as u8;
-        let next = sensor + stride(sensors);
+        let next = sensor + self.pace.stride;
         if next >= sensors { next - sensors } else { next }
     }
 
     /// Lists the sensors that fire.
     fn put_in_order(&mut self) {
+        if self.in_order != NOBODY {
+            self.planned = self.in_order;
+            return;
+        }
         self.planned = 0;
         let mut sensor = 0;
         for _ in 0..self.code.sensors() {
@@ -65,66 +71,81 @@ impl<const K: usize> FlowPlan<K> {
             }
             sensor = self.sensor_after(sensor);
         }
+        self.in_order = self.planned;
     }
 
-    /// Gives each firing the gap to the next, within `most` units in all.
+    /// Gives each firing the gap to the next that the sensors on both sides need, within `most` units in all.
     fn give_gaps(&mut self, most: u32) {
-        let least = self.quiet_units(self.pace.least).max(1);
-        let mut sum = 0;
+        let last = self.planned.saturating_sub(1);
+        let (mut sum, mut previous) = (0, last);
+        let mut after = self.sensor_at(last).map_or(0, |slot| slot.after);
         for place in 0..self.planned {
-            let gap = self.need(place).max(least);
-            self.set_gap(place, gap);
+            let Some(&Slot { before, after: own_after, .. }) = self.sensor_at(place) else { continue };
+            let gap = self.gap_for(after.max(before));
+            self.set_gap(previous, gap);
             sum += u32::from(gap);
+            (previous, after) = (place, own_after);
         }
         if sum > most {
-            self.share_out(most, least);
+            self.share_out(most);
         }
     }
 
     /// Gives all the least gap, and what is left to whoever has been unserved for longest.
-    fn share_out(&mut self, most: u32, least: u8) {
+    fn share_out(&mut self, most: u32) {
+        let least = self.pace.least_gap;
         for place in 0..self.planned {
             self.set_gap(place, least);
-            let sensor = self.order(place);
-            if let Some(slot) = self.slots.get_mut(usize::from(sensor)) {
-                slot.set(GIVEN, false);
-            }
+            let unserved = self.sensor_at(place).map_or(0, |slot| slot.unserved);
+            // Of those that are unserved for as long, the first in order. There are at most 64.
+            self.sort_in(place, u16::from(unserved) << 8 | u16::from(u8::MAX - place));
         }
         let mut left = most.saturating_sub(u32::from(least) * u32::from(self.planned));
-        while left > 0 {
-            let Some(place) = self.longest_unserved() else { break };
-            let sensor = self.order(place);
-            let Some(slot) = self.slots.get_mut(usize::from(sensor)) else { break };
-            slot.set(GIVEN, true);
-            let (before, after) = (slot.before, slot.after);
+        for rank in 0..self.planned {
+            if left == 0 {
+                return;
+            }
+            let key = self.slots.get(usize::from(rank)).map_or(0, |slot| slot.at);
+            let place = u8::MAX - (key & 0xff) as u8;
+            let Some(&Slot { before, after, .. }) = self.sensor_at(place) else { continue };
             let previous = if place == 0 { self.planned - 1 } else { place - 1 };
-            for (place, quiet) in [(previous, before), (place, after)] {
-                let (need, has) = (self.quiet_units(quiet), self.gap(place));
+            left = self.raise_gap(previous, before, left);
+            left = self.raise_gap(place, after, left);
+        }
+    }
+
+    /// Sorts a key in among the first `count`, the largest first. They are kept where firing times are, which are
+    /// decided next.
+    fn sort_in(&mut self, count: u8, key: u16) {
+        let mut key = key;
+        for slot in self.slots.iter_mut().take(usize::from(count)) {
+            if slot.at < key {
+                core::mem::swap(&mut slot.at, &mut key);
+            }
+        }
+        if let Some(slot) = self.slots.get_mut(usize::from(count)) {
+            slot.at = key;
+        }
+    }
+
+    /// Raises a gap to what this quiet needs, by at most `left` units; returns what is left of them.
+    fn raise_gap(&mut self, place: u8, quiet: u8, left: u32) -> u32 {
+        let gap = self.gap_for(quiet);
+        match self.slots.get_mut(usize::from(place)) {
+            Some(slot) if slot.gap < gap => {
                 // Below 256.
-                let more = u32::from(need.saturating_sub(has)).min(left) as u8;
-                self.set_gap(place, has + more);
-                left -= u32::from(more);
+                let more = u32::from(gap - slot.gap).min(left);
+                slot.gap += more as u8;
+                left - more
             }
+            _ => left,
         }
     }
 
-    /// The gap after this place that the sensors on both sides need.
-    fn need(&self, place: u8) -> u8 {
-        let next = if place + 1 < self.planned { place + 1 } else { 0 };
-        let after = self.slots.get(usize::from(self.order(place))).map_or(0, |slot| slot.after);
-        let before = self.slots.get(usize::from(self.order(next))).map_or(0, |slot| slot.before);
-        self.quiet_units(after.max(before))
-    }
-
-    fn longest_unserved(&self) -> Option<u8> {
-        let mut longest = None;
-        for place in 0..self.planned {
-            let Some(slot) = self.slots.get(usize::from(self.order(place))) else { continue };
-            if !slot.is(GIVEN) && longest.is_none_or(|(most, _)| slot.unserved > most) {
-                longest = Some((slot.unserved, place));
-            }
-        }
-        longest.map(|(_, place)| place)
+    /// What is known of the sensor that fires in a place.
+    #[inline(always)]
+    fn sensor_at(&self, place: u8) -> Option<&Slot> {
+        self.slots.get(usize::from(self.order(place)))
     }
 
     fn gap(&self, place: u8) -> u8 {
@@ -139,23 +160,27 @@ impl<const K: usize> FlowPlan<K> {
 
     /// Adds the gaps up to firing times.
     fn place_firings(&mut self, fired: impl Fn(u8) -> Instant) {
-        // At most 64 gaps of a byte, and a window.
-        let mut at = 0_u16;
+        // Gaps of a byte for at most 64 sensors, and a window.
+        let (mut at, unit) = (0_u16, self.unit());
+        // No sensor listens for longer after the cycle's start.
+        let listens = self.window.saturating_add(CATCHES_UP).as_micros();
         for place in 0..self.planned {
             let sensor = self.order(place);
-            if let Some(slot) = self.slots.get_mut(usize::from(sensor)) {
-                slot.at = at;
+            if u32::from(at) * unit < listens {
+                let rests = self.rests_for(sensor, fired(sensor));
+                let waits = self.slots.get(usize::from(sensor)).map_or(0, |slot| u32::from(slot.place));
+                let offset = u32::from(at) * unit + waits * self.code.step().as_micros();
+                let short = rests.as_micros().saturating_sub(offset);
+                if short > 0 {
+                    at = at.saturating_add(u16::try_from(in_units(short, unit)).unwrap_or(u16::MAX));
+                }
             }
-            let rests = self.rests_for(sensor, fired(sensor));
-            let short = rests.saturating_sub(self.offset(sensor));
-            at = at.saturating_add(u16::try_from(self.units(short, true)).unwrap_or(u16::MAX));
             if let Some(slot) = self.slots.get_mut(usize::from(sensor)) {
                 slot.at = at;
             }
             at = at.saturating_add(u16::from(self.gap(place)));
         }
-        let units = u32::from(at).max(self.units(self.pace.shortest_cycle, true));
-        self.length = Micros::new(units.saturating_mul(self.unit.as_micros()));
+        self.length = u32::from(at).max(self.pace.shortest);
     }
 
     /// Time after the cycle's start for which a sensor that has last `fired` then still listens.
@@ -181,7 +206,7 @@ impl<const K: usize> FlowPlan<K> {
 }
 
 /// The distance in the ring from one firing to the next: neighbours hear each other loudest.
-const fn stride(sensors: u8) -> u8 {
+pub(super) const fn stride(sensors: u8) -> u8 {
     let mut stride = if sensors > 6 { sensors / 3 + 1 } else { 1 };
     while !coprime(stride, sensors) {
         stride += 1;
@@ -190,8 +215,15 @@ const fn stride(sensors: u8) -> u8 {
 }
 
 const fn coprime(mut a: u8, mut b: u8) -> bool {
-    while b > 0 {
-        (a, b) = (b, a % b);
+    // By subtraction: small processors do not divide.
+    while b > 0 && a > 0 {
+        if a < b { b -= a } else { a -= b }
     }
-    a <= 1
+    a + b <= 1
+}
+
+/// A time in whole units, rounded up.
+pub(super) const fn in_units(time: u32, unit: u32) -> u32 {
+    let unit = if unit > 0 { unit } else { 1 };
+    time.saturating_add(unit - 1) / unit
 }

@@ -1,6 +1,8 @@
 //! [`FlowSettings`]: how a flow ring spaces its firings and weighs its readings.
 
-use super::slot::quiet;
+use super::planning::{in_units, stride};
+use super::slot::{QUIET_US, quiet};
+use crate::schedule::MAX_PERIOD;
 use crate::time::Micros;
 use crate::tracker::TrackerSettings;
 
@@ -63,25 +65,42 @@ pub(super) struct Pace {
     pub(super) believed_takes: u8,
     pub(super) unserved_adds: u8,
     pub(super) unserved_after: u8,
+    /// The gap of the least quiet, in units of the grid.
+    pub(super) least_gap: u8,
+    /// The distance in the ring from one firing to the next.
+    pub(super) stride: u8,
+    /// The shortest cycle was rounded up to whole units.
+    pub(super) rounded_up: bool,
     pub(super) travel_us: u16,
-    pub(super) shortest_cycle: Micros,
-    pub(super) longest_cycle: Micros,
+    /// The shortest cycle, in units of the grid.
+    pub(super) shortest: u32,
+    /// The longest cycle of a robot that stands, in units of the grid.
+    pub(super) longest: u32,
+    /// Units of the grid in one of quiet, in 1/2^24; 0 if there is a whole one or more.
+    pub(super) per_quiet: u32,
 }
 
 impl Pace {
-    /// `longest`: the most quiet that helps.
-    pub(super) fn of(settings: &FlowSettings, longest: Micros) -> Self {
+    /// `longest`: the most quiet that helps; `unit`: that of the grid.
+    pub(super) fn of(settings: &FlowSettings, sensors: u8, longest: Micros, unit: u32) -> Self {
         let most = quiet(longest);
+        let least = quiet(settings.shortest_gap).min(most);
+        let unit = unit.max(1);
+        let shortest = settings.shortest_cycle.as_micros();
         Self {
-            least: quiet(settings.shortest_gap).min(most),
+            least,
             most,
             masked_adds: quiet(settings.masked_adds),
             believed_takes: quiet(settings.believed_takes),
             unserved_adds: quiet(settings.unserved_adds),
             unserved_after: settings.unserved_after.max(1),
+            least_gap: in_units(u32::from(least) * QUIET_US, unit).clamp(1, 255) as u8,
+            stride: stride(sensors),
+            rounded_up: in_units(shortest, unit) * unit != shortest,
             travel_us: u16::try_from(settings.travel.as_micros()).unwrap_or(u16::MAX),
-            shortest_cycle: settings.shortest_cycle,
-            longest_cycle: settings.longest_cycle.max(settings.shortest_cycle),
+            shortest: in_units(shortest, unit),
+            longest: settings.longest_cycle.min(MAX_PERIOD).as_micros().max(shortest) / unit,
+            per_quiet: if unit > QUIET_US { u32::MAX / unit } else { 0 },
         }
     }
 }

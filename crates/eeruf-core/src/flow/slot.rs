@@ -40,8 +40,6 @@ pub(super) const fn quiet(time: Micros) -> u8 {
 pub(super) const FIRED: u8 = 1;
 /// It does not fire.
 pub(super) const DISABLED: u8 = 2;
-/// The gaps around it were raised to its need.
-pub(super) const GIVEN: u8 = 4;
 
 impl Slot {
     pub(super) const fn new(quiet: u8) -> Self {

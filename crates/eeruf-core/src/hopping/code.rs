@@ -270,8 +270,8 @@ const fn remainder(mut number: u32, phases: u8) -> u32 {
 
 const fn is_prime(number: u8) -> bool {
     let mut divisor = 2;
-    while divisor * divisor <= number {
-        if number % divisor == 0 {
+    while divisor < number {
+        if remainder(number as u32, divisor) == 0 {
             return false;
         }
         divisor += 1;

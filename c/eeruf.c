@@ -19,7 +19,7 @@ SIZE_IS(EerufWatched, 10);
 #if EERUF_HOPPING
 SIZE_IS(EerufRing, 77);
 SIZE_IS(EerufHopSensor, 16);
-SIZE_IS(EerufHopper, 62);
+SIZE_IS(EerufHopper, 64);
 #endif
 #else
 SIZE_IS(EerufSensor, 16 + 4 * EERUF_FIRINGS);
@@ -1961,6 +1961,8 @@ uint8_t eeruf_hc_sr04_health(const EerufHcSr04 *modules, uint8_t sensor) {
 /* The flags of a track. */
 #define TRACK_CONFIRMED 1u
 #define CONTRADICTED 2u
+#define REMEMBERED 4u /* it was confirmed, and is again once it is supported */
+#define REGAINED 2u   /* the least score of a track that is confirmed again */
 
 static OUT_OF_LINE uint16_t less16(uint16_t one, uint16_t other) {
     return one > other ? (uint16_t)(one - other) : 0;
@@ -2026,6 +2028,7 @@ static void firing_changed(EerufHoppingRing *hopping) {
             if (track->flags & TRACK_CONFIRMED) continue;
             track->phases = 0;
             track->close = 0;
+            track->flags &= CONTRADICTED;
             if (track->score > 1) track->score = 1;
         }
     }
@@ -2048,9 +2051,25 @@ static void grow_older(EerufTrack *track) {
 }
 
 /* The last firing in this phase did not support it. One phase alone keeps no track confirmed. */
-static void miss(EerufTrack *track, uint16_t phase) {
+static void miss(EerufTrack *track, uint16_t phase, const EerufTrackerSettings *how) {
     track->phases &= (uint16_t)~phase;
-    if (votes_of(track) < 2) track->flags &= (uint8_t)~TRACK_CONFIRMED;
+    if (!(track->flags & TRACK_CONFIRMED) || votes_of(track) >= 2) return;
+    track->flags &= (uint8_t)~TRACK_CONFIRMED;
+    if (how->memory > 0) track->flags |= REMEMBERED;
+}
+
+/* Nothing speaks for it any more: it is gone, or remembered if it was confirmed. */
+static void lose(EerufTrack *track, const EerufTrackerSettings *how) {
+    if (!(track->flags & (TRACK_CONFIRMED | REMEMBERED)) || track->age >= how->memory) {
+        /* Were it confirmed still, it would keep its place from all that come. */
+        forget_track(track);
+        return;
+    }
+    grow_older(track);
+    track->phases = 0;
+    track->score = 1;
+    track->solo_votes = track->close = 0;
+    track->flags = CONTRADICTED | REMEMBERED;
 }
 
 /* Moves a track towards an echo. */
@@ -2069,6 +2088,11 @@ static void support(EerufTrack *track, uint32_t t_echo_us, uint16_t phase, bool 
         track->score = (uint8_t)(track->score + (solo ? 2u : 1u));
         if (track->score > how->score_limit) track->score = how->score_limit;
     }
+    if ((track->flags & REMEMBERED) && track->age <= how->memory) {
+        track->flags |= TRACK_CONFIRMED;
+        if (track->score < REGAINED) track->score = REGAINED;
+    }
+    track->flags &= (uint8_t)~REMEMBERED;
     track->age = 0;
     /* A quarter of the way, so that one early or late edge does not move it far. */
     if (track->t_echo_us != EERUF_NO_ECHO) follow(track, t_echo_us, distance / 4);
@@ -2078,21 +2102,21 @@ static void support(EerufTrack *track, uint32_t t_echo_us, uint16_t phase, bool 
 static void contradict(EerufTrack *track, uint16_t phase, bool solo, const EerufTrackerSettings *how) {
     const uint8_t weight = solo ? how->solo_contradiction : (track->flags & TRACK_CONFIRMED) ? how->contradiction : 1;
     if (track->score <= weight) {
-        /* Were it confirmed still, it would keep its place from all that come. */
-        forget_track(track);
+        lose(track, how);
         return;
     }
     track->score = (uint8_t)(track->score - weight);
     track->flags |= CONTRADICTED;
     track->solo_votes = 0;
     grow_older(track);
-    miss(track, phase);
+    miss(track, phase, how);
 }
 
 /* Whether one is replaced before the other. */
 static bool ranks_below(const EerufTrack *one, const EerufTrack *other) {
-    const uint8_t confirmed = one->flags & TRACK_CONFIRMED;
-    if (confirmed != (other->flags & TRACK_CONFIRMED)) return confirmed == 0;
+    const uint8_t differs = one->flags ^ other->flags;
+    if (differs & TRACK_CONFIRMED) return !(one->flags & TRACK_CONFIRMED);
+    if (differs & REMEMBERED) return !(one->flags & REMEMBERED);
     return one->score != other->score ? one->score < other->score : one->age > other->age;
 }
 
@@ -2171,7 +2195,7 @@ static void learn(EerufHopper *hopper, uint32_t t_echo_us, int32_t change_us, ui
 }
 
 static void weigh(EerufHoppingRing *hopping, uint8_t sensor, bool steady, int32_t change_us, EerufReading *reading) {
-    const EerufTrackerSettings *how = &hopping->config.tracker;
+    const EerufTrackerSettings *how = &hopping->tracker;
     EerufHopper *hopper = &hopping->hoppers[sensor];
     const bool solo = (hopper->flags & SOLO) != 0;
     const uint32_t t_echo_us = reading->t_echo_us;
@@ -2204,7 +2228,7 @@ static void weigh(EerufHoppingRing *hopping, uint8_t sensor, bool steady, int32_
             contradict(track, phase, solo, how);
         } else {
             grow_older(track);
-            if (track->flags & TRACK_CONFIRMED) miss(track, phase);
+            if (track->flags & TRACK_CONFIRMED) miss(track, phase, how);
         }
     }
     if (steady && nearest == NOBODY && !is_near) {
@@ -2227,13 +2251,7 @@ static EerufHoppingRing *hopping_of(EerufRing *ring) {
 }
 
 static uint32_t code_width(const EerufHoppingRing *hopping) {
-    return (hopping->cycle - 1u) * hopping->config.step_us;
-}
-
-/* What the phase is multiplied by for a sensor, modulo the cycle. */
-static uint8_t multiplier_of(const EerufHoppingConfig *config, uint8_t sensor) {
-    const uint8_t first = config->code == 0 ? 1 : (uint8_t)(config->code - 1u);
-    return (uint8_t)(sensor + first);
+    return (hopping->cycle - 1u) * (uint32_t)hopping->step_us;
 }
 
 static bool is_prime(uint8_t number) {
@@ -2263,10 +2281,10 @@ static uint8_t times_root(uint8_t place, uint8_t root, uint8_t cycle) {
 }
 
 /* By how much less than a period two firings of a sensor are apart at most. */
-static uint32_t longest_drop(const EerufHoppingConfig *config, uint8_t cycle, uint8_t root) {
+static uint32_t longest_drop(const EerufHoppingConfig *config, uint8_t cycle, uint8_t root, uint8_t first) {
     uint8_t x, most = 0, place = 0;
     for (x = 0; x < config->sensors && root == 0; x++) {
-        const uint8_t multiplier = (uint8_t)(multiplier_of(config, x) % cycle);
+        const uint8_t multiplier = (uint8_t)((x + first) % cycle);
         if (multiplier != 0 && cycle - multiplier > most) most = (uint8_t)(cycle - multiplier);
     }
     for (x = 0; x < cycle && root != 0; x++) {
@@ -2281,7 +2299,7 @@ static uint32_t longest_drop(const EerufHoppingConfig *config, uint8_t cycle, ui
 static uint8_t welch_place(const EerufHoppingRing *hopping, uint8_t sensor) {
     const EerufHopper *hoppers = hopping->hoppers;
     uint8_t other, left = (uint8_t)(hopping->cycle + hopping->phase);
-    uint8_t place = (uint8_t)(multiplier_of(&hopping->config, 0) - 1u);
+    uint8_t place = (uint8_t)(hopping->first - 1u);
     if (hopping->root == 0) return 0;
     for (other = 0; other < hopping->ring.count; other++)
         if (hoppers[other].lag_us < hoppers[sensor].lag_us ||
@@ -2298,7 +2316,7 @@ static uint32_t times(uint16_t one, uint16_t other) {
 /* When a sensor fires in this period, after its start, unless it is a solo period: within it. */
 static OUT_OF_LINE uint32_t offset_of(const EerufHoppingRing *hopping, uint8_t sensor) {
     const EerufHopper *hopper = &hopping->hoppers[sensor];
-    return hopper->lag_us + times(hopper->place, (uint16_t)hopping->config.step_us);
+    return hopper->lag_us + times(hopper->place, hopping->step_us);
 }
 
 /* The next phase. In a linear congruence a sensor's place is its multiplier times the phase, modulo the cycle; all are
@@ -2308,7 +2326,7 @@ static void next_phase(EerufHoppingRing *hopping) {
     uint8_t x;
     hopping->phase = hopping->phase + 1u < cycle ? (uint8_t)(hopping->phase + 1u) : 0;
     for (x = 0; x < hopping->ring.count; x++) {
-        uint8_t place = multiplier_of(&hopping->config, x);
+        uint8_t place = (uint8_t)(x + hopping->first);
         if (hopping->root != 0) {
             hopping->hoppers[x].place = times_root(hopping->hoppers[x].place, hopping->root, cycle);
             continue;
@@ -2365,7 +2383,7 @@ static OUT_OF_LINE uint32_t wait_after(const EerufHoppingRing *hopping, uint32_t
 static uint32_t rests_for(const EerufHoppingRing *hopping, uint8_t sensor) {
     const EerufHopper *hopper = &hopping->hoppers[sensor];
     const uint32_t fired_us = sensor_of(&hopping->ring, sensor)->fired_us[0];
-    return hopper->flags & HAS_FIRED ? wait_after(hopping, fired_us, hopping->config.window_us) : 0;
+    return hopper->flags & HAS_FIRED ? wait_after(hopping, fired_us, hopping->ring.window_us) : 0;
 }
 
 static bool is_disabled(const EerufHoppingRing *hopping, uint8_t sensor) {
@@ -2374,7 +2392,7 @@ static bool is_disabled(const EerufHoppingRing *hopping, uint8_t sensor) {
 
 /* The sensor with nothing accepted for longest, if that is long enough. */
 static uint8_t longest_unserved(const EerufHoppingRing *hopping) {
-    uint8_t longest = hopping->config.solo_after, found = NOBODY, x;
+    uint8_t longest = hopping->by.hop.solo_after, found = NOBODY, x;
     if (longest > 0) longest--;
     for (x = 0; x < hopping->ring.count; x++) {
         if (hopping->hoppers[x].unserved > longest && !is_disabled(hopping, x)) {
@@ -2389,24 +2407,25 @@ static uint8_t longest_unserved(const EerufHoppingRing *hopping) {
 static void plan_solo(EerufHoppingRing *hopping, uint8_t sensor) {
     /* Its own last firing is among those that it waits for, but its window may be longer. */
     const uint32_t at_us =
-        longer(wait_after(hopping, hopping->ring.last_fired_us, hopping->dies_us), rests_for(hopping, sensor));
-    hopping->earned = (uint16_t)(hopping->earned - ONE_SOLO);
-    hopping->since_solo = 0;
+        longer(wait_after(hopping, hopping->ring.last_fired_us, hopping->by.hop.dies_us), rests_for(hopping, sensor));
+    hopping->by.hop.earned = (uint16_t)(hopping->by.hop.earned - ONE_SOLO);
+    hopping->by.hop.since_solo = 0;
     hopping->solo_at_us = at_us;
-    hopping->length_us = longer(hopping->length_us, add32(at_us, hopping->dies_us));
+    hopping->fires_as = HAS_FIRED | SOLO | SETTLED;
+    hopping->length_us = longer(hopping->length_us, add32(at_us, hopping->by.hop.dies_us));
     hopping->hoppers[0].order = sensor;
     hopping->planned = 1;
 }
 
 /* Evenly from 0 to `most`, at most 2^28: a xorshift generator (Marsaglia, 2003), the same on every machine. */
 static uint32_t draw(EerufHoppingRing *hopping, uint32_t most) {
-    uint32_t r = hopping->random;
+    uint32_t r = hopping->by.hop.random;
     uint32_t drawn = 0;
     uint8_t bit;
     r ^= r << 13;
     r ^= r >> 17;
     r ^= r << 5;
-    hopping->random = r;
+    hopping->by.hop.random = r;
     /* The high word of r (most + 1), without 64 bits. */
     for (bit = 0; bit < 32; bit++, r >>= 1) {
         if (r & 1u) drawn += most + 1;
@@ -2417,20 +2436,20 @@ static uint32_t draw(EerufHoppingRing *hopping, uint32_t most) {
 
 /* Whether a sensor with this lag keeps the interval from its neighbours, in every phase and across the period's end. */
 static bool keeps_interval(const EerufHoppingRing *hopping, uint8_t sensor, uint32_t lag_us) {
-    const uint32_t least = add32(hopping->config.shift_interval_us, code_width(hopping));
+    const uint32_t least = add32(hopping->by.hop.shift_interval_us, code_width(hopping));
     uint8_t x;
-    if (hopping->config.shift_interval_us == 0) return true;
+    if (hopping->by.hop.shift_interval_us == 0) return true;
     for (x = 0; x < hopping->ring.count; x++) {
         const uint32_t distance = between(hopping->hoppers[x].lag_us, lag_us);
-        const uint32_t across = hopping->config.period_us > distance ? hopping->config.period_us - distance : 0;
-        if (!are_neighbours(EERUF_LAYOUT_LINE, hopping->config.neighbours, hopping->ring.count, sensor, x)) continue;
+        const uint32_t across = hopping->period_us > distance ? hopping->period_us - distance : 0;
+        if (!are_neighbours(EERUF_LAYOUT_LINE, hopping->by.hop.neighbours, hopping->ring.count, sensor, x)) continue;
         if (distance < least || across < least) return false;
     }
     return true;
 }
 
 static bool draw_lag(EerufHoppingRing *hopping, uint8_t sensor) {
-    const uint32_t most = hopping->config.period_us - code_width(hopping) - 1;
+    const uint32_t most = hopping->period_us - code_width(hopping) - 1;
     uint8_t i;
     for (i = 0; i < DRAWS; i++) {
         const uint32_t lag_us = draw(hopping, most);
@@ -2452,9 +2471,9 @@ static void shift_all(EerufHoppingRing *hopping) {
     bool shifted = false;
     uint8_t x;
     for (x = 0; x < hopping->ring.count; x++)
-        if (hopping->hoppers[x].misfits >= hopping->config.shift_after && draw_lag(hopping, x)) shifted = true;
+        if (hopping->hoppers[x].misfits >= hopping->by.hop.shift_after && draw_lag(hopping, x)) shifted = true;
     if (!shifted) return;
-    hopping->since_shift = 0;
+    hopping->by.hop.since_shift = 0;
     hopping->changed = 1;
     for (x = 0; x < hopping->ring.count && hopping->root != 0; x++) hopping->hoppers[x].place = welch_place(hopping, x);
     /* What is pending was fired with the lags of before. */
@@ -2463,23 +2482,23 @@ static void shift_all(EerufHoppingRing *hopping) {
 
 /* Who would fire in the period that begins. */
 static void choose(EerufHoppingRing *hopping) {
-    const EerufHoppingConfig *config = &hopping->config;
+    EerufHopPlan *hop = &hopping->by.hop;
     EerufHopper *hoppers = hopping->hoppers, *place;
     uint8_t x;
-    hopping->place = hopping->planned = 0;
     hopping->solo_at_us = EERUF_NO_ECHO;
-    hopping->length_us = config->period_us;
-    if (hopping->since_solo < UINT8_MAX) hopping->since_solo++;
-    hopping->earned = fewer16((uint16_t)(hopping->earned + config->solo_rate), 2 * ONE_SOLO);
-    if (hopping->earned >= ONE_SOLO && hopping->since_solo >= config->solo_spacing) {
+    hopping->length_us = hopping->period_us;
+    if (hop->since_solo < UINT8_MAX) hop->since_solo++;
+    hop->earned = fewer16((uint16_t)(hop->earned + hop->solo_rate), 2 * ONE_SOLO);
+    if (hop->earned >= ONE_SOLO && hop->since_solo >= hop->solo_spacing) {
         const uint8_t unserved = longest_unserved(hopping);
         if (unserved != NOBODY) {
             plan_solo(hopping, unserved);
             return;
         }
     }
-    if (hopping->since_shift < UINT8_MAX) hopping->since_shift++;
-    if (config->shift_after > 0 && hopping->since_shift >= config->shift_spacing) shift_all(hopping);
+    if (hop->since_shift < UINT8_MAX) hop->since_shift++;
+    if (hop->shift_after > 0 && hop->since_shift >= hop->shift_spacing) shift_all(hopping);
+    hopping->fires_as = hop->since_shift > 0 ? HAS_FIRED | SETTLED : HAS_FIRED;
     for (x = 0; x < hopping->ring.count; x++) {
         const uint32_t offset = offset_of(hopping, x);
         if (is_disabled(hopping, x) || offset < rests_for(hopping, x)) continue;
@@ -2493,7 +2512,8 @@ static void choose(EerufHoppingRing *hopping) {
 
 /* Decides who fires in the period that begins. */
 static void plan(EerufHoppingRing *hopping) {
-    choose(hopping);
+    hopping->place = hopping->planned = 0;
+    hopping->plan(hopping);
     if (hopping->ring.paused) hopping->planned = 0;
     look_ahead(hopping);
 }
@@ -2514,12 +2534,11 @@ static void fire_hop(EerufRing *ring, uint8_t sensor, uint32_t now_us) {
     EerufHoppingRing *hopping = hopping_of(ring);
     EerufHopper *hopper = &hopping->hoppers[sensor];
     const uint32_t late_us = now_us - ring->due_us;
-    const bool solo = hopping->solo_at_us != EERUF_NO_ECHO;
     ring->last_fired_us = now_us;
     hopping->place++;
     hopper->late_us = 0;
     hopper->phase = hopping->phase;
-    hopper->flags = (uint8_t)(HAS_FIRED | (solo ? SOLO | SETTLED : hopping->since_shift > 0 ? SETTLED : 0));
+    hopper->flags = hopping->fires_as;
     hop_late(hopping, hopper, late_us, late_us);
 }
 
@@ -2549,7 +2568,7 @@ static void correct_hop(EerufRing *ring, uint8_t sensor, uint32_t by_us) {
 
 static void end_hopping_period(EerufRing *ring, uint32_t now_us) {
     EerufHoppingRing *hopping = hopping_of(ring);
-    const bool left_out = now_us - hopping->ring.due_us > hopping->config.period_us;
+    const bool left_out = now_us - hopping->ring.due_us > hopping->period_us;
     hopping->start_us = left_out ? now_us : hopping->ring.due_us;
     hopping->least_late[2] = hopping->least_late[1];
     hopping->most_late[2] = hopping->most_late[1];
@@ -2580,9 +2599,7 @@ static EerufStatus upcoming_hop(const EerufRing *ring, uint8_t number, uint8_t *
 }
 
 static uint32_t horizon_of_hopping(const EerufRing *ring) {
-    const EerufHoppingRing *hopping = (const EerufHoppingRing *)(const void *)ring;
-    const uint32_t periods = 2 * hopping->config.period_us;
-    return add32(periods, add32(hopping->dies_us, hopping->dies_us));
+    return ((const EerufHoppingRing *)(const void *)ring)->horizon_us;
 }
 
 static void restart_hopping(EerufRing *ring, uint32_t now_us) {
@@ -2605,28 +2622,94 @@ static EerufStatus tracker_is_fine(const EerufTrackerSettings *how) {
     return fine ? EERUF_OK : EERUF_ERR_TRACKER;
 }
 
+/* A Welch code for so many sensors, of at least this many phases. */
+static uint8_t narrowest_cycle(uint8_t sensors, uint8_t phases) {
+    uint8_t prime = phases > sensors + 1u ? phases : (uint8_t)(sensors + 1u);
+    if (prime < 67) prime++;
+    if (prime < 5) prime = 5; /* two phases would be those of a linear congruence */
+    while (!is_prime(prime)) prime++;
+    return (uint8_t)(prime - 1u);
+}
+
+/* Whether a ring of so many sensors has the memory it needs. */
+static EerufStatus has_room(const EerufHoppingRing *hopping, size_t ring_size, uint8_t count_of_sensors,
+                            size_t sensors_size, size_t hoppers_size) {
+    if (ring_size != sizeof *hopping) return EERUF_ERR_MEMORY;
+    if (count_of_sensors - 1u >= EERUF_MAX_SENSORS) return EERUF_ERR_SENSORS;
+    if (sensors_size / sizeof(EerufHopSensor) < count_of_sensors) return EERUF_ERR_MEMORY;
+    return hoppers_size / sizeof(EerufHopper) < count_of_sensors ? EERUF_ERR_MEMORY : EERUF_OK;
+}
+
+/* What hopping and flow rings begin with, once their settings are in their ranges. */
+static EerufStatus set_up_hopping(EerufHoppingRing *hopping, EerufHopSensor *sensors, EerufHopper *hoppers,
+                                  uint8_t count_of_sensors, const EerufTrackerSettings *tracker, uint32_t step_us,
+                                  uint32_t window_us, uint32_t blanking_us, uint32_t now_us) {
+    EerufStatus status;
+    uint8_t x;
+    memset(hopping, 0, sizeof *hopping);
+    set_up(&hopping->ring, NULL, sensors, count_of_sensors, sizeof *sensors, now_us);
+    hopping->ring.hook = correct_hop;
+    status = listen(&hopping->ring, tracker->t_delta_us, window_us, blanking_us);
+    if (status != EERUF_OK) return status;
+    hopping->hoppers = hoppers;
+    hopping->tracker = *tracker;
+    hopping->step_us = (uint16_t)step_us;
+    hopping->start_us = hopping->ring.last_fired_us = now_us;
+    hopping->solo_at_us = EERUF_NO_ECHO;
+    /* A track may be off by as much as its readings. */
+    hopping->tolerated = (uint16_t)((step_us - tracker->t_delta_us - 1) / 2);
+    hopping->least_late[0] = hopping->least_late[1] = hopping->least_late[2] = UINT16_MAX;
+    memset(hoppers, 0, count_of_sensors * sizeof *hoppers);
+    for (x = 0; x < count_of_sensors; x++) forget_tracks(&hoppers[x]);
+    return EERUF_OK;
+}
+
+/* From a firing until its sensor no longer listens, and nothing of it is heard in a window that opens then. */
+static uint32_t dies_after(uint32_t window_us, uint32_t blanking_us, uint32_t reach_us) {
+    return add32(longer(reach_us > blanking_us ? reach_us - blanking_us : 0, window_us), 1);
+}
+
+/* Places in Welch's sequence are in the order of lags. */
+static void begin_hopping(EerufHoppingRing *hopping) {
+    uint8_t x;
+    for (x = 0; x < hopping->ring.count; x++) hopping->hoppers[x].place = welch_place(hopping, x);
+    plan(hopping);
+    hopping->ring.ready = READY;
+}
+
+/* The hook of a ring that hops, for a reading and the change that odometry expected. Neither silence nor another lag
+   helps a sensor whose line is stuck, or that does not answer: it costs the others nothing. */
+static void judged_hop(EerufHoppingRing *hopping, uint8_t sensor, const EerufReading *reading, int32_t change_us) {
+    EerufHopper *hopper = &hopping->hoppers[sensor];
+    const bool confirmed = reading->kind == EERUF_READING_ACCEPTED || reading->kind == EERUF_READING_CLEAR;
+    const EerufTrack *believed = believed_of(hopper);
+    (void)change_us;
+    if (reading->kind == EERUF_READING_STUCK || reading->kind == EERUF_READING_UNANSWERED) return;
+    /* A sensor that is known to have nothing in range is not fooled by what does not fit. */
+    if (confirmed || (believed != NULL && believed->t_echo_us == EERUF_NO_ECHO)) hopper->misfits = 0;
+    else if (hopper->misfits < UINT8_MAX) hopper->misfits++;
+    if (confirmed || reading->kind == EERUF_READING_TENTATIVE) hopper->unserved = 0;
+    else if (hopper->unserved < UINT8_MAX) hopper->unserved++;
+}
+
 EerufStatus eeruf_hopping_init(EerufHoppingRing *hopping, size_t ring_size, EerufHopSensor *sensors,
                                size_t sensors_size, EerufHopper *hoppers, size_t hoppers_size,
                                const EerufHoppingConfig *config, uint32_t now_us) {
     EerufStatus status;
-    uint32_t width_us, least_us;
-    uint8_t x, cycle, root = 0;
+    uint32_t width_us, least_us, room_us;
+    uint8_t x, cycle, root = 0, first = 1;
     if (hopping == NULL || sensors == NULL || hoppers == NULL || config == NULL) return EERUF_ERR_NULL;
     if (config->version != EERUF_VERSION) return EERUF_ERR_VERSION;
-    if (ring_size != sizeof *hopping) return EERUF_ERR_MEMORY;
-    if (config->sensors - 1u >= EERUF_MAX_SENSORS) return EERUF_ERR_SENSORS;
-    if (sensors_size / sizeof *sensors < config->sensors) return EERUF_ERR_MEMORY;
-    if (hoppers_size / sizeof *hoppers < config->sensors) return EERUF_ERR_MEMORY;
+    status = has_room(hopping, ring_size, config->sensors, sensors_size, hoppers_size);
+    if (status != EERUF_OK) return status;
     if (!is_between(config->phases, 2, 67)) return EERUF_ERR_PHASES;
     if (config->step_us == 0 || config->step_us > UINT16_MAX) return EERUF_ERR_STEP;
     if (config->code == 0) {
-        cycle = config->phases > config->sensors + 1u ? config->phases : (uint8_t)(config->sensors + 1u);
-        if (cycle < 67) cycle++;
-        if (cycle < 5) cycle = 5; /* two phases would be those of a linear congruence */
-        while (!is_prime(cycle)) cycle++;
-        root = primitive_root(cycle--);
+        cycle = narrowest_cycle(config->sensors, config->phases);
+        root = primitive_root((uint8_t)(cycle + 1u));
     } else {
         cycle = config->phases;
+        first = (uint8_t)(config->code - 1u);
         if (!is_prime(cycle) || cycle < config->sensors) {
             if (!is_prime((uint8_t)(cycle + 1u)) || cycle <= config->sensors) return EERUF_ERR_PHASES;
             if (config->code == 1) return EERUF_ERR_PHASES;
@@ -2636,43 +2719,43 @@ EerufStatus eeruf_hopping_init(EerufHoppingRing *hopping, size_t ring_size, Eeru
     }
     width_us = (cycle - 1u) * config->step_us;
     if (config->period_us <= width_us || config->period_us > EERUF_MAX_PERIOD_US) return EERUF_ERR_PERIOD;
+    room_us = config->period_us - width_us;
     for (x = 0; x < config->sensors && config->lag_us != NULL; x++)
-        if (config->lag_us[x] >= config->period_us - width_us) return EERUF_ERR_LAG;
+        if (config->lag_us[x] >= room_us) return EERUF_ERR_LAG;
     status = tracker_is_fine(&config->tracker);
     if (status != EERUF_OK) return status;
     if (config->step_us <= config->tracker.t_delta_us) return EERUF_ERR_T_DELTA;
     if (config->tracker.votes > cycle) return EERUF_ERR_VOTES;
     /* The sensor must have stopped listening, and a path must not read the same with two ages. */
-    least_us = longer(add32(config->window_us, longest_drop(config, cycle, root)), 2 * width_us + config->step_us);
-    if (config->period_us < least_us) return EERUF_ERR_PERIOD;
+    least_us = add32(config->window_us, longest_drop(config, cycle, root, first));
+    if (config->period_us < longer(least_us, 2 * width_us + config->step_us)) return EERUF_ERR_PERIOD;
     if (config->window_us > EERUF_HOPPING_MAX_WINDOW_US) return EERUF_ERR_WINDOW;
 
-    memset(hopping, 0, sizeof *hopping);
-    set_up(&hopping->ring, NULL, sensors, config->sensors, sizeof *sensors, now_us);
-    hopping->ring.hook = correct_hop;
-    status = listen(&hopping->ring, config->tracker.t_delta_us, config->window_us, config->blanking_us);
+    status = set_up_hopping(hopping, sensors, hoppers, config->sensors, &config->tracker, config->step_us,
+                            config->window_us, config->blanking_us, now_us);
     if (status != EERUF_OK) return status;
-    hopping->hoppers = hoppers;
-    hopping->config = *config;
+    hopping->plan = choose;
+    hopping->judged = judged_hop;
     hopping->cycle = cycle;
     hopping->root = root;
-    hopping->start_us = hopping->ring.last_fired_us = now_us;
-    hopping->dies_us = config->reach_us > config->blanking_us ? config->reach_us - config->blanking_us : 0;
-    hopping->dies_us = add32(longer(hopping->dies_us, config->window_us), 1);
-    hopping->random = config->seed == 0 ? 0x9e3779b9u : config->seed;
-    /* A track may be off by as much as its readings. */
-    hopping->tolerated = (uint16_t)((config->step_us - config->tracker.t_delta_us - 1) / 2);
-    hopping->least_late[0] = hopping->least_late[1] = hopping->least_late[2] = UINT16_MAX;
-    memset(hoppers, 0, config->sensors * sizeof *hoppers);
+    hopping->first = first;
+    hopping->period_us = config->period_us;
+    hopping->by.hop.dies_us = dies_after(config->window_us, config->blanking_us, config->reach_us);
+    hopping->by.hop.random = config->seed == 0 ? 0x9e3779b9u : config->seed;
+    hopping->by.hop.shift_interval_us = config->shift_interval_us;
+    hopping->by.hop.solo_rate = config->solo_rate;
+    hopping->by.hop.solo_after = config->solo_after;
+    hopping->by.hop.solo_spacing = config->solo_spacing;
+    hopping->by.hop.shift_after = config->shift_after;
+    hopping->by.hop.shift_spacing = config->shift_spacing;
+    hopping->by.hop.neighbours = config->neighbours;
+    hopping->horizon_us = add32(hopping->by.hop.dies_us, hopping->by.hop.dies_us);
+    hopping->horizon_us = add32(2 * config->period_us, hopping->horizon_us);
     for (x = 0; x < config->sensors; x++) {
-        const uint8_t n = config->sensors;
-        const uint32_t room = config->period_us - width_us; /* x room / n, in 32 bits */
-        forget_tracks(&hoppers[x]);
-        hoppers[x].lag_us = config->lag_us != NULL ? config->lag_us[x] : x * (room / n) + x * (room % n) / n;
+        const uint8_t n = config->sensors; /* x room / n, in 32 bits */
+        hoppers[x].lag_us = config->lag_us != NULL ? config->lag_us[x] : x * (room_us / n) + x * (room_us % n) / n;
     }
-    for (x = 0; x < config->sensors; x++) hoppers[x].place = welch_place(hopping, x);
-    plan(hopping);
-    hopping->ring.ready = READY;
+    begin_hopping(hopping);
     return EERUF_OK;
 }
 
@@ -2686,8 +2769,6 @@ EerufStatus eeruf_hopping_poll(EerufHoppingRing *hopping, uint32_t now_us, const
     EerufStatus status = hopping == NULL ? (EerufStatus)EERUF_ERR_NULL : is_ready(&hopping->ring);
     EerufReading *reading;
     EerufHopper *hopper;
-    bool confirmed, served;
-    const EerufTrack *believed;
     if (status == EERUF_OK && !HOPS(&hopping->ring)) status = EERUF_ERR_NOT_READY;
     if (status == EERUF_OK) status = poll(&hopping->ring, now_us, NULL, event, true);
     if (status != EERUF_EVENT) return status;
@@ -2711,25 +2792,13 @@ EerufStatus eeruf_hopping_poll(EerufHoppingRing *hopping, uint32_t now_us, const
         const int32_t change = change_us == NULL ? 0 : change_us[event->sensor];
         reading->previous_us = EERUF_NO_ECHO;
         if (reading->kind == EERUF_READING_FIRST)
-            learn(hopper, reading->t_echo_us, change, hopping->config.tracker.t_delta_us);
+            learn(hopper, reading->t_echo_us, change, hopping->tracker.t_delta_us);
         else hopper->last_us = EERUF_NO_ECHO;
         shift_tracks(hopper, change);
         if (reading->kind == EERUF_READING_FIRST)
             weigh(hopping, event->sensor, was_steady(hopping, hopper), change, reading);
         end_weighing(&sensor_of(&hopping->ring, event->sensor)->filter, reading);
-    }
-    /* Nor does silence or another lag help a sensor whose line is stuck, or that does not answer: it costs the others
-       nothing. */
-    if (reading->kind != EERUF_READING_LATE && reading->kind != EERUF_READING_STUCK &&
-        reading->kind != EERUF_READING_UNANSWERED) {
-        confirmed = reading->kind == EERUF_READING_ACCEPTED || reading->kind == EERUF_READING_CLEAR;
-        served = confirmed || reading->kind == EERUF_READING_TENTATIVE;
-        believed = believed_of(hopper);
-        /* A sensor that is known to have nothing in range is not fooled by what does not fit. */
-        if (confirmed || (believed != NULL && believed->t_echo_us == EERUF_NO_ECHO)) hopper->misfits = 0;
-        else if (hopper->misfits < UINT8_MAX) hopper->misfits++;
-        if (served) hopper->unserved = 0;
-        else if (hopper->unserved < UINT8_MAX) hopper->unserved++;
+        hopping->judged(hopping, event->sensor, reading, change);
     }
     count(&hopping->ring, reading->kind);
     return status;
@@ -2792,5 +2861,268 @@ uint8_t eeruf_hopping_weighed(const EerufHoppingRing *hopping, uint8_t sensor) {
 
 uint8_t eeruf_hopping_changes(const EerufHoppingRing *hopping) {
     return has_hopper(hopping, 0) == EERUF_OK ? hopping->changes : 0;
+}
+
+/* -- Flow: the rules are in docs/flow.md -- */
+
+#define QUIET_US 256u /* the unit of quiet */
+
+/* A time in units of quiet. */
+static uint8_t quiet_of(uint32_t time_us) {
+    return (uint8_t)shorter(time_us / QUIET_US, UINT8_MAX);
+}
+
+/* A time in whole units of the grid, rounded up. */
+static uint32_t in_units(uint32_t time_us, uint32_t unit_us) {
+    return add32(time_us, unit_us - 1) / unit_us;
+}
+
+static uint8_t less8(uint8_t one, uint8_t other) {
+    return one > other ? (uint8_t)(one - other) : 0;
+}
+
+static uint8_t larger8(uint8_t one, uint8_t other) {
+    return one > other ? one : other;
+}
+
+static uint8_t smaller8(uint8_t one, uint8_t other) {
+    return one < other ? one : other;
+}
+
+static uint8_t add8(uint8_t one, uint8_t other) {
+    return one > UINT8_MAX - other ? UINT8_MAX : (uint8_t)(one + other);
+}
+
+/* The gap in units that leaves this quiet, and at least the least. By a reciprocal, since small processors divide
+   slowly; it is short by less than a unit's share of the longest quiet. */
+static OUT_OF_LINE uint8_t gap_for(const EerufFlowPlan *flow, uint8_t quiet) {
+    uint32_t gap;
+    if (flow->per_quiet != 0) gap = (quiet * flow->per_quiet + 0x00ffffffu) >> 24;
+    else gap = shorter(in_units(quiet * QUIET_US, flow->unit_us), UINT8_MAX);
+    return larger8((uint8_t)gap, flow->least_gap);
+}
+
+/* Hoppers keep the gap after the firing in their place of the order where rings that hop count misfits. */
+static uint8_t *gap_at(EerufHoppingRing *hopping, uint8_t place) {
+    return &hopping->hoppers[place].misfits;
+}
+
+static EerufHopper *firing_at(EerufHoppingRing *hopping, uint8_t place) {
+    return &hopping->hoppers[hopping->hoppers[place].order];
+}
+
+/* The sensor after one in the order of firing if all do: far from it, since neighbours hear each other loudest. */
+static uint8_t sensor_after(const EerufHoppingRing *hopping, uint8_t sensor) {
+    const uint8_t next = (uint8_t)(sensor + hopping->by.flow.stride);
+    return next >= hopping->ring.count ? (uint8_t)(next - hopping->ring.count) : next;
+}
+
+/* Raises a gap to what this quiet needs, by at most `left` units; returns what is left of them. */
+static uint32_t raise_gap(EerufHoppingRing *hopping, uint8_t place, uint8_t quiet, uint32_t left) {
+    uint8_t *gap = gap_at(hopping, place);
+    const uint8_t more = (uint8_t)shorter(less8(gap_for(&hopping->by.flow, quiet), *gap), left);
+    *gap = (uint8_t)(*gap + more);
+    return left - more;
+}
+
+/* Gives all the least gap, and what is left of `most` units to whoever has been unserved for longest. */
+static void share_out(EerufHoppingRing *hopping, uint32_t most) {
+    EerufHopper *hoppers = hopping->hoppers;
+    const uint8_t least = hopping->by.flow.least_gap, planned = hopping->planned;
+    const uint32_t least_sum = (uint32_t)least * planned;
+    uint32_t left = most > least_sum ? most - least_sum : 0;
+    uint8_t place, rank;
+    /* Sorted by insertion, those that are unserved for as long in their order; kept where lags are decided next. */
+    for (place = 0; place < planned; place++) {
+        const uint8_t unserved = firing_at(hopping, place)->unserved;
+        *gap_at(hopping, place) = least;
+        for (rank = place; rank > 0; rank--) {
+            const uint32_t before = hoppers[rank - 1u].lag_us;
+            if (firing_at(hopping, (uint8_t)before)->unserved >= unserved) break;
+            hoppers[rank].lag_us = before;
+        }
+        hoppers[rank].lag_us = place;
+    }
+    for (rank = 0; rank < planned && left > 0; rank++) {
+        const EerufHopper *hopper;
+        place = (uint8_t)hoppers[rank].lag_us;
+        hopper = firing_at(hopping, place);
+        left = raise_gap(hopping, (uint8_t)((place == 0 ? planned : place) - 1u), hopper->quiet_before, left);
+        left = raise_gap(hopping, place, hopper->quiet_after, left);
+    }
+}
+
+/* Gives each firing the gap to the next that the sensors on both sides need, within `most` units in all. */
+static void give_gaps(EerufHoppingRing *hopping, uint32_t most) {
+    uint8_t place, previous = (uint8_t)(hopping->planned - 1u);
+    uint32_t sum = 0;
+    for (place = 0; place < hopping->planned; place++) {
+        const uint8_t after = firing_at(hopping, previous)->quiet_after;
+        const uint8_t gap = gap_for(&hopping->by.flow, larger8(after, firing_at(hopping, place)->quiet_before));
+        *gap_at(hopping, previous) = gap;
+        sum += gap;
+        previous = place;
+    }
+    if (sum > most) share_out(hopping, most);
+}
+
+/* Adds the gaps up to firing times; a sensor that still listens waits. */
+static void place_firings(EerufHoppingRing *hopping) {
+    EerufFlowPlan *flow = &hopping->by.flow;
+    uint32_t at = 0;
+    uint8_t place;
+    for (place = 0; place < hopping->planned; place++) {
+        const uint8_t sensor = hopping->hoppers[place].order;
+        EerufHopper *hopper = &hopping->hoppers[sensor];
+        uint32_t rests_us, offset_us;
+        hopper->lag_us = at * flow->unit_us;
+        rests_us = rests_for(hopping, sensor);
+        offset_us = offset_of(hopping, sensor);
+        if (rests_us > offset_us) {
+            at += in_units(rests_us - offset_us, flow->unit_us);
+            hopper->lag_us = at * flow->unit_us;
+        }
+        at += *gap_at(hopping, place);
+    }
+    flow->length = longer(at, flow->shortest);
+    hopping->length_us = hopping->period_us = flow->length * flow->unit_us;
+}
+
+/* The longest that the next cycle may take, in units: the shorter the faster the robot moved in the last. */
+static uint32_t longest_cycle(const EerufFlowPlan *flow) {
+    uint32_t most = flow->longest;
+    if (flow->fastest_us != 0)
+        most = shorter(most, times(narrow(flow->length), flow->travel_us) / flow->fastest_us);
+    return longer(most, flow->shortest - flow->rounded_up);
+}
+
+/* Decides on the cycle that begins. */
+static void plan_flow(EerufHoppingRing *hopping) {
+    const uint32_t most = longest_cycle(&hopping->by.flow);
+    uint8_t sensor = 0, left;
+    hopping->by.flow.fastest_us = 0;
+    for (left = hopping->ring.count; left > 0; left--) {
+        if (!is_disabled(hopping, sensor)) hopping->hoppers[hopping->planned++].order = sensor;
+        sensor = sensor_after(hopping, sensor);
+    }
+    give_gaps(hopping, most);
+    place_firings(hopping);
+}
+
+/* The gap after a sensor's firing in this cycle, as planned. */
+static uint32_t gap_after(EerufHoppingRing *hopping, uint8_t sensor) {
+    uint8_t place;
+    for (place = 0; place < hopping->planned; place++)
+        if (hopping->hoppers[place].order == sensor) return *gap_at(hopping, place) * hopping->by.flow.unit_us;
+    return 0;
+}
+
+/* Raises a sensor's quiet if others fooled it or nothing of it is believed, lowers it if its reading is. */
+static void judged_flow(EerufHoppingRing *hopping, uint8_t sensor, const EerufReading *reading, int32_t change_us) {
+    EerufFlowPlan *flow = &hopping->by.flow;
+    EerufHopper *hopper = &hopping->hoppers[sensor];
+    const uint16_t change = narrow(change_us < 0 ? 0u - (uint32_t)change_us : (uint32_t)change_us);
+    const EerufTrack *believed;
+    uint8_t before = 0, after = 0;
+    if (change > flow->fastest_us) flow->fastest_us = change;
+    switch (reading->kind) {
+    case EERUF_READING_STUCK:
+    case EERUF_READING_UNANSWERED: return; /* quiet does not help a sensor that is not heard */
+    case EERUF_READING_ACCEPTED:
+    case EERUF_READING_CLEAR:
+        hopper->quiet_before = larger8(less8(hopper->quiet_before, flow->believed_takes), flow->least);
+        hopper->quiet_after = larger8(less8(hopper->quiet_after, flow->believed_takes), flow->least);
+        hopper->unserved = 0;
+        return;
+    case EERUF_READING_TENTATIVE: hopper->unserved = 0; return;
+    default: break;
+    }
+    hopper->unserved = add8(hopper->unserved, 1);
+    if (hopper->unserved % flow->unserved_after == 0) before = after = flow->unserved_adds;
+    believed = believed_of(hopper);
+    /* It is masked; silence that is believed is later than all. */
+    if (believed != NULL && reading->t_echo_us < believed->t_echo_us) {
+        before = add8(before, flow->masked_adds);
+        if (reading->t_echo_us > gap_after(hopping, sensor)) after = add8(after, flow->masked_adds);
+    }
+    hopper->quiet_before = smaller8(add8(hopper->quiet_before, before), flow->most);
+    hopper->quiet_after = smaller8(add8(hopper->quiet_after, after), flow->most);
+}
+
+static bool is_coprime(uint8_t a, uint8_t b) {
+    while (b > 0) {
+        const uint8_t rest = (uint8_t)(a % b);
+        a = b;
+        b = rest;
+    }
+    return a <= 1;
+}
+
+EerufStatus eeruf_flow_init(EerufHoppingRing *hopping, size_t ring_size, EerufHopSensor *sensors, size_t sensors_size,
+                            EerufHopper *hoppers, size_t hoppers_size, const EerufFlowConfig *config, uint32_t now_us) {
+    EerufFlowPlan *flow;
+    EerufStatus status;
+    uint32_t width_us, unit_us, least_us;
+    uint8_t n, turn, cycle, sensor = 0;
+    if (hopping == NULL || sensors == NULL || hoppers == NULL || config == NULL) return EERUF_ERR_NULL;
+    if (config->version != EERUF_VERSION) return EERUF_ERR_VERSION;
+    n = config->sensors;
+    status = has_room(hopping, ring_size, n, sensors_size, hoppers_size);
+    if (status == EERUF_OK) status = tracker_is_fine(&config->tracker);
+    if (status != EERUF_OK) return status;
+    if (config->step_us == 0 || config->step_us > UINT16_MAX) return EERUF_ERR_STEP;
+    if (config->step_us <= config->tracker.t_delta_us) return EERUF_ERR_T_DELTA;
+    if (config->window_us > EERUF_HOPPING_MAX_WINDOW_US) return EERUF_ERR_WINDOW;
+    cycle = narrowest_cycle(n, config->tracker.votes);
+    width_us = (cycle - 1u) * config->step_us;
+    if (config->shortest_cycle_us < config->window_us + width_us) return EERUF_ERR_PERIOD;
+    if (config->shortest_cycle_us > EERUF_MAX_PERIOD_US) return EERUF_ERR_PERIOD;
+    status = set_up_hopping(hopping, sensors, hoppers, n, &config->tracker, config->step_us, config->window_us,
+                            config->blanking_us, now_us);
+    if (status != EERUF_OK) return status;
+    hopping->plan = plan_flow;
+    hopping->judged = judged_flow;
+    hopping->cycle = cycle;
+    hopping->root = primitive_root((uint8_t)(cycle + 1u));
+    hopping->first = 1;
+    hopping->fires_as = HAS_FIRED | SETTLED;
+    flow = &hopping->by.flow;
+    unit_us = flow->unit_us = width_us + 2 * config->step_us;
+    /* Nothing of a firing is heard in a window that opens so much later; the waits of two may bring them closer. */
+    least_us = dies_after(config->window_us, config->blanking_us, config->reach_us);
+    flow->most = quiet_of(add32(least_us, width_us));
+    flow->least = smaller8(quiet_of(config->shortest_gap_us), flow->most);
+    flow->masked_adds = quiet_of(config->masked_adds_us);
+    flow->believed_takes = quiet_of(config->believed_takes_us);
+    flow->unserved_adds = quiet_of(config->unserved_adds_us);
+    flow->unserved_after = larger8(config->unserved_after, 1);
+    flow->least_gap = (uint8_t)shorter(longer(in_units(flow->least * QUIET_US, unit_us), 1), UINT8_MAX);
+    flow->per_quiet = unit_us > QUIET_US ? UINT32_MAX / unit_us : 0;
+    flow->shortest = flow->length = in_units(config->shortest_cycle_us, unit_us);
+    flow->rounded_up = flow->shortest * unit_us != config->shortest_cycle_us;
+    flow->longest = longer(shorter(config->longest_cycle_us, EERUF_MAX_PERIOD_US), config->shortest_cycle_us) / unit_us;
+    flow->travel_us = narrow(config->travel_us);
+    flow->stride = (uint8_t)(n > 6 ? n / 3 + 1 : 1);
+    while (!is_coprime(flow->stride, n)) flow->stride++;
+    /* A cycle of least gaps may be longer than the longest that is asked for. */
+    least_us = 2 * longer((uint32_t)n * flow->least_gap, flow->longest + 1) * unit_us;
+    hopping->horizon_us = least_us + config->window_us;
+    for (turn = 0; turn < n; turn++) {
+        hoppers[sensor].lag_us = turn;
+        hoppers[sensor].quiet_before = hoppers[sensor].quiet_after = flow->least;
+        sensor = sensor_after(hopping, sensor);
+    }
+    begin_hopping(hopping);
+    return EERUF_OK;
+}
+
+EerufStatus eeruf_flow_quiet_us(const EerufHoppingRing *hopping, uint8_t sensor, uint32_t *before_us,
+                                uint32_t *after_us) {
+    const EerufStatus status = has_hopper(hopping, sensor);
+    if (status != EERUF_OK) return status;
+    if (before_us == NULL || after_us == NULL) return EERUF_ERR_NULL;
+    *before_us = hopping->hoppers[sensor].quiet_before * QUIET_US;
+    *after_us = hopping->hoppers[sensor].quiet_after * QUIET_US;
+    return EERUF_OK;
 }
 #endif

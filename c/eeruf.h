@@ -543,6 +543,7 @@ typedef struct EerufTrackerSettings {
     uint8_t score_limit; /* votes to 15 */
     uint8_t contradiction, solo_contradiction; /* 1 to 15 */
     uint8_t tentative_votes; /* 0 or 2 to 15 */
+    uint8_t memory;      /* for so many firings without support a confirmed echo is remembered; 0: it is forgotten */
 } EerufTrackerSettings;
 
 /* How a hopping ring fires, listens and believes. */
@@ -570,16 +571,16 @@ typedef struct EerufHoppingConfig {
 /* The settings of most robots, of those that must stop early, of those that drive, and of those that make maps. */
 #define EERUF_HOPPING_BALANCED(sensors, period_us, window_us)                                                          \
     {EERUF_VERSION, sensors, 5, 240, period_us, NULL, window_us, 0, window_us, 8000, 1,                                \
-     {150, 400, 60, 5, 6, 2, 6, 2}, 84, 5, 3, 0, 8, 4, 0}
+     {150, 400, 60, 5, 6, 2, 6, 2, 0}, 84, 5, 3, 0, 8, 4, 0}
 #define EERUF_HOPPING_QUICK(sensors, period_us, window_us)                                                             \
     {EERUF_VERSION, sensors, 5, 240, period_us, NULL, window_us, 0, window_us, 8000, 1,                                \
-     {150, 400, 100, 4, 6, 2, 6, 2}, 100, 4, 2, 0, 8, 4, 0}
+     {150, 400, 100, 4, 6, 2, 6, 2, 0}, 100, 4, 2, 0, 8, 4, 0}
 #define EERUF_HOPPING_DRIVING(sensors, period_us, window_us)                                                           \
     {EERUF_VERSION, sensors, 5, 240, period_us, NULL, window_us, 0, window_us, 8000, 1,                                \
-     {150, 400, 60, 5, 6, 2, 6, 2}, 0, 5, 3, 0, 8, 4, 0}
+     {150, 400, 60, 5, 6, 2, 6, 2, 0}, 0, 5, 3, 0, 8, 4, 0}
 #define EERUF_HOPPING_MAPS(sensors, period_us, window_us)                                                              \
     {EERUF_VERSION, sensors, 5, 240, period_us, NULL, window_us, 0, window_us, 8000, 1,                                \
-     {150, 400, 60, 5, 7, 1, 6, 0}, 28, 8, 6, 0, 24, 4, 0}
+     {150, 400, 60, 5, 7, 1, 6, 0, 0}, 28, 8, 6, 0, 24, 4, 0}
 
 /* What a hopping ring has of each sensor in place of an EerufSensor: its last firing is enough. 16 bytes on an AVR. Not
    for the caller. */
@@ -597,23 +598,43 @@ typedef struct EerufTrack {
     uint8_t solo_votes, score, close, flags, age;
 } EerufTrack;
 
-/* One sensor of a hopping ring: 62 bytes on an AVR, beside its EerufHopSensor. Not for the caller. */
+/* One sensor of a hopping or flow ring: 64 bytes on an AVR, beside its EerufHopSensor. Not for the caller. */
 typedef struct EerufHopper {
     uint32_t lag_us, last_us;
     uint16_t late_us;
-    uint8_t place, phase, unserved, misfits, flags, order;
+    uint8_t place, phase, unserved, misfits, flags, order, quiet_before, quiet_after;
     int8_t surplus, observed;
     EerufTrack tracks[EERUF_HYPOTHESES];
 } EerufHopper;
 
-/* A hopping ring. Not for the caller. */
+/* What only a ring that hops has. Not for the caller. */
+typedef struct EerufHopPlan {
+    uint32_t shift_interval_us, dies_us, random;
+    uint16_t earned;
+    uint8_t solo_rate, solo_after, solo_spacing, shift_after, shift_spacing, neighbours, since_solo, since_shift;
+} EerufHopPlan;
+
+/* What only a flow ring has; gaps and cycles in units of its grid. Not for the caller. */
+typedef struct EerufFlowPlan {
+    uint32_t unit_us, per_quiet, length, shortest, longest;
+    uint16_t travel_us, fastest_us;
+    uint8_t least, most, masked_adds, believed_takes, unserved_adds, unserved_after, least_gap, rounded_up, stride;
+} EerufFlowPlan;
+
+/* A hopping or flow ring. Not for the caller. */
 typedef struct EerufHoppingRing {
     EerufRing ring; /* the first: pointers to one are pointers to the other */
     EerufHopper *hoppers;
-    EerufHoppingConfig config;
-    uint32_t start_us, length_us, solo_at_us, dies_us, random;
-    uint16_t earned, tolerated, least_late[3], most_late[3];
-    uint8_t phase, cycle, root, planned, place, since_solo, since_shift, changed, changes;
+    void (*plan)(struct EerufHoppingRing *hopping);
+    void (*judged)(struct EerufHoppingRing *hopping, uint8_t sensor, const EerufReading *reading, int32_t change_us);
+    EerufTrackerSettings tracker;
+    uint32_t start_us, length_us, solo_at_us, period_us, horizon_us;
+    uint16_t step_us, tolerated, least_late[3], most_late[3];
+    uint8_t phase, cycle, root, first, planned, place, fires_as, changed, changes;
+    union {
+        EerufHopPlan hop;
+        EerufFlowPlan flow;
+    } by;
 } EerufHoppingRing;
 
 /* Makes a hopping ring that begins at `now_us`. Both arrays have a place for each sensor of the config. Poll it with
@@ -634,7 +655,7 @@ EerufStatus eeruf_hopping_restart(EerufHoppingRing *ring, uint32_t now_us); /* a
 uint32_t eeruf_hopping_confirmed_us(const EerufHoppingRing *ring, uint8_t sensor);
 /* The sensor that the present period belongs to alone, or 255. */
 uint8_t eeruf_hopping_solo(const EerufHoppingRing *ring);
-/* The lag of a sensor as it is now. */
+/* The lag of a sensor as it is now; in a flow ring its place in the cycle, without the code. */
 uint32_t eeruf_hopping_lag_us(const EerufHoppingRing *ring, uint8_t sensor);
 /* For the log of a reading that the last poll gave: how it was weighed. 0 for a sensor that is not there. */
 #define EERUF_WEIGHED_SOLO 1u   /* no other sensor's sound could be heard */
@@ -642,6 +663,39 @@ uint32_t eeruf_hopping_lag_us(const EerufHoppingRing *ring, uint8_t sensor);
 uint8_t eeruf_hopping_weighed(const EerufHoppingRing *ring, uint8_t sensor);
 /* How often firing times have changed against each other otherwise than by the phase, modulo 256. */
 uint8_t eeruf_hopping_changes(const EerufHoppingRing *ring);
+
+/* ---- Flow: one sensor after the other, each with as much quiet around its firing as it has needed ---- */
+
+/* How a flow ring fires, listens and believes (docs/flow.md). */
+typedef struct EerufFlowConfig {
+    uint16_t version;           /* EERUF_VERSION */
+    uint8_t sensors;            /* 1 to 64 */
+    uint8_t unserved_after;     /* firings with nothing believed after which a sensor gains quiet */
+    uint32_t step_us;           /* the code's: above t_delta, at most 65,535 */
+    uint32_t window_us;         /* at most EERUF_HOPPING_MAX_WINDOW_US */
+    uint32_t blanking_us;
+    uint32_t reach_us;          /* after how long no sound is heard any more */
+    uint32_t shortest_gap_us;   /* between two firings, at most 65 ms, as all times of quiet */
+    uint32_t masked_adds_us;    /* quiet that a reading adds that comes before what is believed */
+    uint32_t believed_takes_us; /* quiet that a believed reading takes away */
+    uint32_t unserved_adds_us;
+    uint32_t shortest_cycle_us; /* at least window and code */
+    uint32_t longest_cycle_us;  /* of a robot that stands */
+    uint32_t travel_us;         /* change of an echo by odometry that a cycle may bring */
+    EerufTrackerSettings tracker;
+} EerufFlowConfig;
+
+/* For every robot. */
+#define EERUF_FLOW(sensors, window_us)                                                                                 \
+    {EERUF_VERSION, sensors, 3, 240, window_us, 0, window_us, 7500, 4000, 1500, 6000, 60000, 400000, 380,              \
+     {150, 400, 60, 5, 6, 2, 6, 2, 5}}
+
+/* Makes a flow ring that begins at `now_us`. It is an EerufHoppingRing with another plan: poll it with
+   eeruf_hopping_poll and all that is said of hopping rings holds for it. No sensor fires alone in a cycle. */
+EerufStatus eeruf_flow_init(EerufHoppingRing *ring, size_t ring_size, EerufHopSensor *sensors, size_t sensors_size,
+                            EerufHopper *hoppers, size_t hoppers_size, const EerufFlowConfig *config, uint32_t now_us);
+/* The quiet that a sensor of a flow ring gets before its firing and after it. */
+EerufStatus eeruf_flow_quiet_us(const EerufHoppingRing *ring, uint8_t sensor, uint32_t *before_us, uint32_t *after_us);
 #endif
 
 #ifdef __cplusplus

@@ -388,6 +388,50 @@ static void hopping_rings(void) {
     EXPECT(eeruf_ring_set_audible(&hopping.ring, 1), EERUF_ERR_HOPPING);
     EXPECT(eeruf_ring_change_schedule(&hopping.ring, &schedule), EERUF_ERR_HOPPING);
 }
+
+static EerufStatus flow(size_t ring_size, size_t sensors_size, size_t hoppers_size, const EerufFlowConfig *config) {
+    return eeruf_flow_init(&hopping, ring_size, hop_sensors, sensors_size, hoppers, hoppers_size, config, 0);
+}
+
+static void flow_rings(void) {
+    const EerufFlowConfig fine = EERUF_FLOW(SENSORS, 36000);
+    const size_t r = sizeof hopping, s = sizeof hop_sensors, h = sizeof hoppers;
+    uint32_t before = 0, after = 0;
+    EerufFlowConfig config = fine;
+    EXPECT(eeruf_flow_init(NULL, r, hop_sensors, s, hoppers, h, &config, 0), EERUF_ERR_NULL);
+    EXPECT(eeruf_flow_init(&hopping, r, NULL, s, hoppers, h, &config, 0), EERUF_ERR_NULL);
+    EXPECT(eeruf_flow_init(&hopping, r, hop_sensors, s, NULL, h, &config, 0), EERUF_ERR_NULL);
+    EXPECT(flow(r, s, h, NULL), EERUF_ERR_NULL);
+    EXPECT(flow(r - 1, s, h, &config), EERUF_ERR_MEMORY);
+    EXPECT(flow(r, s - 1, h, &config), EERUF_ERR_MEMORY);
+    EXPECT(flow(r, s, h - 1, &config), EERUF_ERR_MEMORY);
+#undef WITH
+#define WITH(field, value, status)                                                                                     \
+    config = fine;                                                                                                     \
+    config.field = value;                                                                                              \
+    EXPECT(flow(r, s, h, &config), status)
+    WITH(version, EERUF_VERSION + 1, EERUF_ERR_VERSION);
+    WITH(sensors, 0, EERUF_ERR_SENSORS);
+    WITH(sensors, 65, EERUF_ERR_SENSORS);
+    WITH(step_us, 0, EERUF_ERR_STEP);
+    WITH(step_us, 65536, EERUF_ERR_STEP);
+    WITH(step_us, 150, EERUF_ERR_T_DELTA);
+    WITH(tracker.votes, 16, EERUF_ERR_TRACKER);
+    WITH(window_us, EERUF_HOPPING_MAX_WINDOW_US + 1, EERUF_ERR_WINDOW);
+    WITH(shortest_cycle_us, 37199, EERUF_ERR_PERIOD);
+    WITH(shortest_cycle_us, EERUF_MAX_PERIOD_US + 1, EERUF_ERR_PERIOD);
+    WITH(blanking_us, 36000, EERUF_ERR_BLANKING);
+    WITH(unserved_after, 0, EERUF_OK);
+    WITH(shortest_cycle_us, 37200, EERUF_OK);
+    EXPECT(flow(r, s, h, &fine), EERUF_OK);
+    EXPECT(eeruf_flow_quiet_us(NULL, 0, &before, &after), EERUF_ERR_NULL);
+    EXPECT(eeruf_flow_quiet_us(&hopping, 0, NULL, &after), EERUF_ERR_NULL);
+    EXPECT(eeruf_flow_quiet_us(&hopping, SENSORS, &before, &after), EERUF_ERR_SENSOR);
+    EXPECT(eeruf_flow_quiet_us(&hopping, 0, &before, &after), EERUF_OK);
+    EXPECT(before, 7424); /* whole units of 256 us */
+    EXPECT(eeruf_hopping_solo(&hopping), 255);
+    EXPECT(eeruf_ring_pause(&hopping.ring, true), EERUF_ERR_HOPPING);
+}
 #endif
 
 /* Modules whose driver is not called, or whose lines show nothing, are not told as free space; what one edge of two
@@ -594,6 +638,7 @@ int main(void) {
     by_hardware();
 #if EERUF_HOPPING
     hopping_rings();
+    flow_rings();
 #endif
     printf("%d wrong\n", wrong);
     return wrong != 0;

@@ -5,11 +5,13 @@
 //! Nothing here is for others: firmware in Rust uses `eeruf-core`, firmware in C uses `c/eeruf.h`.
 
 pub mod core_side;
+pub mod flow;
 pub mod hopping;
 pub mod modules;
 mod random;
 pub mod ring;
 mod shim;
+mod tracking;
 pub mod world;
 
 use std::ffi::c_void;
@@ -233,10 +235,25 @@ impl C {
 
     /// `eeruf_hopping_init`, with the numbers in the order that `shim.c` names.
     pub fn hopping(&mut self, sensors: u8, phases: u8, numbers: &[u32], now_us: u32) -> i32 {
-        assert!(numbers.len() == 22 || numbers.len() == 22 + usize::from(sensors));
-        let has_lags = u8::from(numbers.len() > 22);
+        assert!(numbers.len() == 23 || numbers.len() == 23 + usize::from(sensors));
+        let has_lags = u8::from(numbers.len() > 23);
         // SAFETY: as many numbers as are read.
         unsafe { shim::shim_hopping(self.0, sensors, phases, numbers.as_ptr(), has_lags, now_us) }
+    }
+
+    /// `eeruf_flow_init`, with the numbers in the order that `shim.c` names.
+    pub fn flow(&mut self, sensors: u8, numbers: &[u32], now_us: u32) -> i32 {
+        assert_eq!(numbers.len(), 21);
+        // SAFETY: as many numbers as are read.
+        unsafe { shim::shim_flow(self.0, sensors, numbers.as_ptr(), now_us) }
+    }
+
+    /// `eeruf_flow_quiet_us`: before and after; `None` for a sensor that is out of range.
+    pub fn quiet_us(&self, sensor: u8) -> Option<[u32; 2]> {
+        let mut out = [0; 2];
+        // SAFETY: a flow ring that was made, and room for two numbers.
+        let status = unsafe { shim::shim_quiet(self.0, sensor, out.as_mut_ptr()) };
+        (status == 0).then_some(out)
     }
 
     /// `eeruf_hopping_confirmed_us`.

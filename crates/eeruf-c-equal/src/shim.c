@@ -237,15 +237,36 @@ void shim_rung(const Handle *handle, uint32_t *rung, uint32_t *permille) {
     *permille = handle->adaptation.rejection_permille;
 }
 
-/* `numbers`: step, period, window, blanking, reach, shift interval, seed; then t_delta, near, tentative_within, votes,
-   score limit, contradiction, solo contradiction, tentative votes; then solo rate, after and spacing, shift after and
-   spacing, neighbours; then one lag for each sensor, or none. */
+/* `numbers`: t_delta, near, tentative_within, votes, score limit, contradiction, solo contradiction, tentative votes,
+   memory. */
+static EerufTrackerSettings tracker_of(const uint32_t *numbers) {
+    EerufTrackerSettings tracker;
+    tracker.t_delta_us = (uint16_t)numbers[0];
+    tracker.near_us = (uint16_t)numbers[1];
+    tracker.tentative_within_us = (uint16_t)numbers[2];
+    tracker.votes = (uint8_t)numbers[3];
+    tracker.score_limit = (uint8_t)numbers[4];
+    tracker.contradiction = (uint8_t)numbers[5];
+    tracker.solo_contradiction = (uint8_t)numbers[6];
+    tracker.tentative_votes = (uint8_t)numbers[7];
+    tracker.memory = (uint8_t)numbers[8];
+    return tracker;
+}
+
+/* Memory for a ring that hops or flows. */
+static void make_room(Handle *handle, uint8_t sensors) {
+    handle->hopping = (EerufHoppingRing *)malloc(sizeof(EerufHoppingRing));
+    handle->hop_sensors = (EerufHopSensor *)malloc(sensors * sizeof(EerufHopSensor));
+    handle->hoppers = (EerufHopper *)malloc(sensors * sizeof(EerufHopper));
+    handle->ring = &handle->hopping->ring;
+}
+
+/* `numbers`: step, period, window, blanking, reach, shift interval, seed; then the tracker's nine; then solo rate,
+   after and spacing, shift after and spacing, neighbours, code; then one lag for each sensor, or none. */
 int shim_hopping(Handle *handle, uint8_t sensors, uint8_t phases, const uint32_t *numbers, uint8_t has_lags,
                  uint32_t now_us) {
-    const uint32_t *tracker = numbers + 7, *rest = numbers + 15;
-    const size_t sensors_size = sensors * sizeof(EerufHopSensor), hoppers_size = sensors * sizeof(EerufHopper);
+    const uint32_t *rest = numbers + 16;
     EerufHoppingConfig config = EERUF_HOPPING_BALANCED(0, 0, 0);
-    EerufStatus status;
     config.sensors = sensors;
     config.phases = phases;
     config.step_us = numbers[0];
@@ -255,14 +276,7 @@ int shim_hopping(Handle *handle, uint8_t sensors, uint8_t phases, const uint32_t
     config.reach_us = numbers[4];
     config.shift_interval_us = numbers[5];
     config.seed = numbers[6];
-    config.tracker.t_delta_us = (uint16_t)tracker[0];
-    config.tracker.near_us = (uint16_t)tracker[1];
-    config.tracker.tentative_within_us = (uint16_t)tracker[2];
-    config.tracker.votes = (uint8_t)tracker[3];
-    config.tracker.score_limit = (uint8_t)tracker[4];
-    config.tracker.contradiction = (uint8_t)tracker[5];
-    config.tracker.solo_contradiction = (uint8_t)tracker[6];
-    config.tracker.tentative_votes = (uint8_t)tracker[7];
+    config.tracker = tracker_of(numbers + 7);
     config.solo_rate = (uint8_t)rest[0];
     config.solo_after = (uint8_t)rest[1];
     config.solo_spacing = (uint8_t)rest[2];
@@ -271,13 +285,39 @@ int shim_hopping(Handle *handle, uint8_t sensors, uint8_t phases, const uint32_t
     config.neighbours = (uint8_t)rest[5];
     config.code = (uint8_t)rest[6];
     config.lag_us = has_lags ? rest + 7 : NULL;
-    handle->hopping = (EerufHoppingRing *)malloc(sizeof(EerufHoppingRing));
-    handle->hop_sensors = (EerufHopSensor *)malloc(sensors_size);
-    handle->hoppers = (EerufHopper *)malloc(hoppers_size);
-    status = eeruf_hopping_init(handle->hopping, sizeof(EerufHoppingRing), handle->hop_sensors, sensors_size,
-                                handle->hoppers, hoppers_size, &config, now_us);
-    handle->ring = &handle->hopping->ring;
-    return status;
+    make_room(handle, sensors);
+    return eeruf_hopping_init(handle->hopping, sizeof(EerufHoppingRing), handle->hop_sensors,
+                              sensors * sizeof(EerufHopSensor), handle->hoppers, sensors * sizeof(EerufHopper),
+                              &config, now_us);
+}
+
+/* `numbers`: window, blanking, reach, unserved after, step, shortest gap, masked adds, believed takes, unserved adds,
+   shortest cycle, longest cycle, travel; then the tracker's nine. */
+int shim_flow(Handle *handle, uint8_t sensors, const uint32_t *numbers, uint32_t now_us) {
+    EerufFlowConfig config = EERUF_FLOW(0, 0);
+    config.sensors = sensors;
+    config.window_us = numbers[0];
+    config.blanking_us = numbers[1];
+    config.reach_us = numbers[2];
+    config.unserved_after = (uint8_t)numbers[3];
+    config.step_us = numbers[4];
+    config.shortest_gap_us = numbers[5];
+    config.masked_adds_us = numbers[6];
+    config.believed_takes_us = numbers[7];
+    config.unserved_adds_us = numbers[8];
+    config.shortest_cycle_us = numbers[9];
+    config.longest_cycle_us = numbers[10];
+    config.travel_us = numbers[11];
+    config.tracker = tracker_of(numbers + 12);
+    make_room(handle, sensors);
+    return eeruf_flow_init(handle->hopping, sizeof(EerufHoppingRing), handle->hop_sensors,
+                           sensors * sizeof(EerufHopSensor), handle->hoppers, sensors * sizeof(EerufHopper), &config,
+                           now_us);
+}
+
+/* `out`: quiet before and after. */
+int shim_quiet(const Handle *handle, uint8_t sensor, uint32_t *out) {
+    return eeruf_flow_quiet_us(handle->hopping, sensor, &out[0], &out[1]);
 }
 
 uint32_t shim_hopping_of(const Handle *handle, uint8_t sensor, uint8_t what) {

@@ -7,7 +7,7 @@ mod parts;
 mod serial;
 mod settings;
 
-use eeruf_c_equal::{Random, hopping, modules, ring};
+use eeruf_c_equal::{Random, flow, hopping, modules, ring};
 
 /// How many events to compare.
 fn events() -> u64 {
@@ -39,6 +39,23 @@ fn a_hopping_ring_says_the_same_event_by_event_whatever_happens_to_it() {
             2 => hopping::run::<5>(&Random::new(seed)),
             3 => hopping::run::<12>(&Random::new(seed)),
             _ => hopping::run::<8>(&Random::new(seed)),
+        };
+        seed += 1;
+    }
+    println!("{count} events of {seed} rings");
+}
+
+#[test]
+fn a_flow_ring_says_the_same_event_by_event() {
+    let (mut count, mut seed) = (0, 0);
+    while count < crate::events() {
+        count += match seed % 7 {
+            0 => flow::run::<1>(&Random::new(seed)),
+            1 => flow::run::<2>(&Random::new(seed)),
+            2 => flow::run::<5>(&Random::new(seed)),
+            3 => flow::run::<24>(&Random::new(seed)),
+            4 => flow::run::<12>(&Random::new(seed)),
+            _ => flow::run::<8>(&Random::new(seed)),
         };
         seed += 1;
     }

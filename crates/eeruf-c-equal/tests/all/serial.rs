@@ -101,9 +101,10 @@ fn hop(seed: u64) -> u64 {
     let reach = listening.reach.as_micros();
     let mut numbers = vec![240, 60_000, 36_000, 0, reach, settings.shift_interval.as_micros(), 1];
     numbers.extend([t.t_delta, t.near, t.tentative_within].map(Micros::as_micros));
-    let small = [t.votes, t.score_limit, t.contradiction, t.solo_contradiction, t.tentative_votes, settings.solo_rate];
+    let small = [t.votes, t.score_limit, t.contradiction, t.solo_contradiction, t.tentative_votes, t.memory];
     numbers.extend(small.map(u32::from));
-    let paces = [settings.solo_after, settings.solo_spacing, settings.shift_after, settings.shift_spacing];
+    let paces =
+        [settings.solo_rate, settings.solo_after, settings.solo_spacing, settings.shift_after, settings.shift_spacing];
     numbers.extend(paces.map(u32::from));
     numbers.extend([settings.neighbours, 0].map(u32::from));
     assert_eq!(c.hopping(EIGHT, 5, &numbers, start), 0);

@@ -1,0 +1,66 @@
+//! Flow rings.
+
+use crate::tracking::{self, status_of};
+use crate::{C, Random};
+use eeruf_core::{
+    Instant, Micros,
+    flow::{FlowRing, FlowSettings},
+    hopping::HoppingListening,
+};
+
+fn settings(r: &Random) -> FlowSettings {
+    let mut settings = FlowSettings::DEFAULT;
+    if r.once_in(2) {
+        settings.tracker = tracking::settings(r);
+        settings.unserved_after = r.within(0, 9) as u8;
+        for time in [&mut settings.shortest_gap, &mut settings.masked_adds, &mut settings.unserved_adds] {
+            *time = Micros::new(r.one_of(&[r.duration(100_000), r.within(0, 20_000)]));
+        }
+        settings.believed_takes = Micros::new(r.duration(20_000));
+        settings.travel = Micros::new(r.one_of(&[0, 380, r.duration(100_000)]));
+    }
+    if r.once_in(2) {
+        settings.step = Micros::new(r.one_of(&[240, r.duration(900), r.duration(70_000)]));
+        settings.shortest_cycle = Micros::new(r.one_of(&[60_000, r.within(0, 200_000), r.duration(1 << 29)]));
+        settings.longest_cycle = Micros::new(r.one_of(&[400_000, r.within(0, 900_000), r.duration(u32::MAX)]));
+    }
+    settings
+}
+
+/// One flow ring for up to 4,000 steps, or until there are no numbers left; the number of its events.
+///
+/// # Panics
+/// Where C and Rust differ.
+pub fn run<const K: usize>(r: &Random) -> u64 {
+    let mut c = C::new();
+    let s = settings(r);
+    let longest = HoppingListening::MAX_WINDOW.as_micros();
+    let window = r.one_of(&[36_000, 36_000, 30_000, r.within(1, 40_000), r.within(longest - 2_000, longest + 200)]);
+    let blanking = r.one_of(&[0, 500, 2_380, r.duration(4_000)]);
+    let listening = HoppingListening::new(Micros::new(window))
+        .with_blanking(Micros::new(blanking))
+        .with_reach(Micros::new(r.one_of(&[window, r.duration(100_000)])));
+    // Also where the clock begins, at which sensors would seem to have just fired.
+    let start = r.one_of(&[r.any() as u32, r.duration(50_000)]);
+    let mut numbers = vec![window, blanking, listening.reach.as_micros(), s.unserved_after.into()];
+    let gaps = [s.shortest_gap, s.masked_adds, s.believed_takes, s.unserved_adds];
+    numbers.extend([s.step].into_iter().chain(gaps).map(Micros::as_micros));
+    numbers.extend([s.shortest_cycle, s.longest_cycle, s.travel].map(Micros::as_micros));
+    numbers.extend(tracking::numbers(&s.tracker));
+    let status = c.flow(K as u8, &numbers, start);
+    let ring = match FlowRing::<K>::flow(K, s, listening, Instant::from_micros(start)) {
+        Ok(ring) => ring,
+        Err(error) => {
+            assert_eq!(status, status_of(&error), "{r}: {error}");
+            return 0;
+        }
+    };
+    assert_eq!(status, 0, "{r}");
+    let weighed = |ring: &FlowRing<K>, sensor| ring.plan().weighed(sensor, 0);
+    tracking::run(r, c, ring, window, start, weighed, |c, ring, at| {
+        for sensor in 0..=K as u8 {
+            let quiet = ring.plan().quiet(sensor).map(|(before, after)| [before, after].map(Micros::as_micros));
+            assert_eq!(c.quiet_us(sensor), quiet, "{at}");
+        }
+    })
+}

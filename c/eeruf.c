@@ -1370,7 +1370,10 @@ EerufStatus eeruf_ring_change_to_unverified(EerufRing *ring, const EerufSchedule
 
 /* No sensor fires again within this time. */
 static uint32_t least_refire(const EerufRing *ring) {
-    return HOPS(ring) ? ring->window_us : READ32(ring->schedule->min_refire_us);
+#if EERUF_HOPPING
+    if (HOPS(ring)) return ((const EerufHoppingRing *)(const void *)ring)->rest_us;
+#endif
+    return READ32(ring->schedule->min_refire_us);
 }
 
 /* With one of the three changed. */
@@ -2379,11 +2382,11 @@ static OUT_OF_LINE uint32_t wait_after(const EerufHoppingRing *hopping, uint32_t
     return waits > HALF_TURN || waits > passes_us + CATCHES_UP_US ? 0 : waits;
 }
 
-/* How long after the start of the period a sensor must not fire yet, since it still listens. */
+/* How long after the start of the period a sensor must not fire yet, since it still listens, or rests. */
 static uint32_t rests_for(const EerufHoppingRing *hopping, uint8_t sensor) {
     const EerufHopper *hopper = &hopping->hoppers[sensor];
     const uint32_t fired_us = sensor_of(&hopping->ring, sensor)->fired_us[0];
-    return hopper->flags & HAS_FIRED ? wait_after(hopping, fired_us, hopping->ring.window_us) : 0;
+    return hopper->flags & HAS_FIRED ? wait_after(hopping, fired_us, hopping->rest_us) : 0;
 }
 
 static bool is_disabled(const EerufHoppingRing *hopping, uint8_t sensor) {
@@ -2656,6 +2659,7 @@ static EerufStatus set_up_hopping(EerufHoppingRing *hopping, EerufHopSensor *sen
     hopping->step_us = (uint16_t)step_us;
     hopping->start_us = hopping->ring.last_fired_us = now_us;
     hopping->solo_at_us = EERUF_NO_ECHO;
+    hopping->rest_us = window_us;
     /* A track may be off by as much as its readings. */
     hopping->tolerated = (uint16_t)((step_us - tracker->t_delta_us - 1) / 2);
     hopping->least_late[0] = hopping->least_late[1] = hopping->least_late[2] = UINT16_MAX;
@@ -2863,7 +2867,7 @@ uint8_t eeruf_hopping_changes(const EerufHoppingRing *hopping) {
     return has_hopper(hopping, 0) == EERUF_OK ? hopping->changes : 0;
 }
 
-/* -- Flow: the rules are in docs/flow.md -- */
+/* -- Flow: the rules are in docs/explanation/flow.md -- */
 
 #define QUIET_US 256u /* the unit of quiet */
 
@@ -3106,7 +3110,8 @@ EerufStatus eeruf_flow_init(EerufHoppingRing *hopping, size_t ring_size, EerufHo
     while (!is_coprime(flow->stride, n)) flow->stride++;
     /* A cycle of least gaps may be longer than the longest that is asked for. */
     least_us = 2 * longer((uint32_t)n * flow->least_gap, flow->longest + 1) * unit_us;
-    hopping->horizon_us = least_us + config->window_us;
+    hopping->rest_us = longer(shorter(config->rest_us, EERUF_HOPPING_MAX_WINDOW_US), config->window_us);
+    hopping->horizon_us = least_us + hopping->rest_us;
     for (turn = 0; turn < n; turn++) {
         hoppers[sensor].lag_us = turn;
         hoppers[sensor].quiet_before = hoppers[sensor].quiet_after = flow->least;

@@ -1,7 +1,7 @@
 /* eeruf: Error Eliminating Rapid Ultrasonic Firing (Borenstein and Koren, 1995) for rings of ultrasonic sensors, in C.
  *
  *   #include "eeruf.h"
- *   #include "ring.h"                          // written by: eeruf design RING.toml --emit c > ring.h
+ *   #include "ring.h"                          // written by: eeruf design RING.toml --period-only --emit c > ring.h
  *
  *   static EerufRing ring;                     // your memory: nothing is allocated
  *   static EerufSensor sensors[EERUF_SENSORS];
@@ -628,7 +628,7 @@ typedef struct EerufHoppingRing {
     void (*plan)(struct EerufHoppingRing *hopping);
     void (*judged)(struct EerufHoppingRing *hopping, uint8_t sensor, const EerufReading *reading, int32_t change_us);
     EerufTrackerSettings tracker;
-    uint32_t start_us, length_us, solo_at_us, period_us, horizon_us;
+    uint32_t start_us, length_us, solo_at_us, period_us, horizon_us, rest_us;
     uint16_t step_us, tolerated, least_late[3], most_late[3];
     uint8_t phase, cycle, root, first, planned, place, fires_as, changed, changes;
     union {
@@ -666,7 +666,7 @@ uint8_t eeruf_hopping_changes(const EerufHoppingRing *ring);
 
 /* ---- Flow: one sensor after the other, each with as much quiet around its firing as it has needed ---- */
 
-/* How a flow ring fires, listens and believes (docs/flow.md). */
+/* How a flow ring fires, listens and believes (docs/explanation/flow.md). */
 typedef struct EerufFlowConfig {
     uint16_t version;           /* EERUF_VERSION */
     uint8_t sensors;            /* 1 to 64 */
@@ -680,6 +680,7 @@ typedef struct EerufFlowConfig {
     uint32_t believed_takes_us; /* quiet that a believed reading takes away */
     uint32_t unserved_adds_us;
     uint32_t shortest_cycle_us; /* at least window and code */
+    uint32_t rest_us;           /* between two firings of a sensor, where its module rests for longer than it listens */
     uint32_t longest_cycle_us;  /* of a robot that stands */
     uint32_t travel_us;         /* change of an echo by odometry that a cycle may bring */
     EerufTrackerSettings tracker;
@@ -687,7 +688,7 @@ typedef struct EerufFlowConfig {
 
 /* For every robot. */
 #define EERUF_FLOW(sensors, window_us)                                                                                 \
-    {EERUF_VERSION, sensors, 3, 240, window_us, 0, window_us, 7500, 4000, 1500, 6000, 60000, 400000, 380,              \
+    {EERUF_VERSION, sensors, 3, 240, window_us, 0, window_us, 7500, 4000, 1500, 6000, 60000, 0, 400000, 380,           \
      {150, 400, 60, 5, 6, 2, 6, 2, 5}}
 
 /* Makes a flow ring that begins at `now_us`. It is an EerufHoppingRing with another plan: poll it with

@@ -5,12 +5,13 @@ use std::time::{Duration, Instant};
 
 use clap::ValueEnum;
 use eeruf_core::search::{Progress, SearchError};
-use eeruf_core::{Micros, Requirements, phases::PhaseCriterion};
+use eeruf_core::{Micros, Requirements, hopping::HoppingListening, phases::PhaseCriterion};
 use eeruf_design::atlas::ATLAS;
 use eeruf_design::{CURVE_BUDGET, FoundJson, Need, RealPeriod, RingDesign, RingSpec, Search, real_budget};
 
-use eeruf_sim::AnySchedule;
+use eeruf_sim::experiments::rooms::RoomWay;
 use eeruf_sim::modules::{Module, PulseTimes};
+use eeruf_sim::{AnySchedule, Method, Robot};
 use serde::Serialize;
 
 use super::answer::Answer;
@@ -34,7 +35,9 @@ use crate::report::watch::Watch;
 /// The ring is fired by every way: one by one, at once, in groups, in two phases, by time hopping and flow, in seeded
 /// rooms (corridor, office, hall, clutter, alcove, garage, aisle, and beside another robot of the same make), standing
 /// or --driving. The way recommended is right most of the time among those that keep foreign sound below --wrong and
-/// leave no sensor blind, and the answer lists what it depends on. --emit writes the shortest schedule of two phases.
+/// leave no sensor blind, and the answer lists what it depends on. --emit rust, c and arduino write what a flow ring is
+/// set up with where that is the way recommended, else the shortest schedule of two phases, as --period-only and --emit
+/// toml always do.
 ///
 /// With --phases it is one of many phases, for a ring that hops in time and whose sensors do not stay blind: a linear
 /// congruence with lags, and the bound that holds for any such schedule; --emit rust, c and arduino then write all that
@@ -205,9 +208,11 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     let real = over_reals(args, &design, &mut watch);
     watch.forget_interrupt();
     let still = args.form().is_none().then(|| standing(&spec, &search)).flatten();
-    // Who asks for a schedule's source text gets it at once.
     let judges = !args.period_only && matches!(args.form(), None | Some(Form::Json));
     let rooms = judges.then(|| rooms::judged(&args.in_rooms, &spec, Some(&design), &mut watch)).transpose()?;
+    // A schedule file holds a table, which flow has not.
+    let emits = !args.period_only && matches!(args.form(), Some(Form::Rust | Form::C | Form::Arduino));
+    let way = emits.then(|| rooms::recommended(&args.in_rooms, &spec, &design, &mut watch)).transpose()?;
     drop(watch);
     let requirements = design.spec.problem().requirements;
     if let Some(file) = &args.svg {
@@ -236,7 +241,19 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     };
     match args.form() {
         Some(form @ (Form::Toml | Form::Rust | Form::C | Form::Arduino)) => {
-            emit(&spec.modules, form, &design.schedule, &requirements)?;
+            let table = || emit(&spec.modules, form, &design.schedule, &requirements);
+            match &way {
+                Some(Ok(Some(way))) if way.method == Method::Flow => emit_flow(&spec.modules, form, way)?,
+                Some(Ok(Some(way))) if way.method != Method::Eeruf => {
+                    comment(form, &format!("In rooms {} is right most of the time, which this is not", way.title()))?;
+                    table()?;
+                }
+                Some(Err(why)) => {
+                    comment(form, &format!("Not judged in rooms: {why}"))?;
+                    table()?;
+                }
+                _ => table()?,
+            }
         }
         Some(Form::Json) => {
             let real_period_us = real.as_ref().map(|real| real.period_us);
@@ -264,15 +281,36 @@ fn emit_modules(modules: &[Module], form: Form) -> Result<(), InputError> {
             us => format!(", held {us} us without an echo"),
         };
         let (last, interface) = (first + group.len() - 1, interface.name());
-        let (begin, end) = match form {
-            Form::Toml => ("#", ""),
-            Form::C | Form::Arduino => ("/*", " */"),
-            Form::Rust | Form::Json => ("//", ""),
-        };
         let times = format!("trigger {trigger_us} us, rest {rest_us} us{held}");
-        print_line(format!("{begin} Sensors {first} to {last}: {name}, {interface}, {times}{end}"))?;
+        comment(form, &format!("Sensors {first} to {last}: {name}, {interface}, {times}"))?;
     }
     Ok(())
+}
+
+/// Prints a line as a comment of a form.
+fn comment(form: Form, line: &str) -> Result<(), InputError> {
+    let (begin, end) = match form {
+        Form::Toml => ("#", ""),
+        Form::C | Form::Arduino => ("/*", " */"),
+        Form::Rust | Form::Json => ("//", ""),
+    };
+    Ok(print_line(format!("{begin} {line}{end}"))?)
+}
+
+/// Prints what a ring is set up with that fires by flow, as it was judged in rooms.
+fn emit_flow(modules: &[Module], form: Form, way: &RoomWay) -> Result<(), InputError> {
+    let Robot { ref sensors, window, blanking, period, .. } = way.robot;
+    let mut settings = way.options.flow;
+    settings.shortest_cycle = period;
+    let (sensors, listening) = (sensors.len(), HoppingListening::new(window).with_blanking(blanking));
+    emit_modules(modules, form)?;
+    match form {
+        Form::Rust => print(settings.to_rust(sensors, listening))?,
+        Form::C => print(settings.to_c(sensors, listening))?,
+        Form::Arduino => print(settings.to_arduino(sensors, listening, "RING"))?,
+        Form::Toml | Form::Json => {}
+    }
+    emit_settings(modules, form, settings.rest.max(window))
 }
 
 /// Prints the settings of a driver for the modules of a table in C, if they are alike and answer by a pulse: those that

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
 use eeruf_design::{RingDesign, RingSpec, RoomsAnswer, RoomsAsked};
-use eeruf_sim::experiments::rooms::{DRIVING_S, RoomGroup, RoomPlan};
+use eeruf_sim::experiments::rooms::{DRIVING_S, RoomGroup, RoomPlan, RoomWay};
 
 use super::answer::Answer;
 use crate::console::{print_line, tell};
@@ -79,19 +79,37 @@ pub(crate) fn judged(
     design: Option<&RingDesign>,
     watch: &mut Watch,
 ) -> Result<Result<RoomsAnswer, String>, InputError> {
+    let asked = asked(args)?;
+    let watch = Mutex::new(watch);
+    Ok(spec.judge_in_rooms(design, &asked, &|share| goes_on(&watch, share)))
+}
+
+/// The way of firing a ring to recommend, as [`judged`] finds it; or why that cannot be said.
+pub(crate) fn recommended(
+    args: &RoomArgs,
+    spec: &RingSpec,
+    design: &RingDesign,
+    watch: &mut Watch,
+) -> Result<Result<Option<RoomWay>, String>, InputError> {
+    let asked = asked(args)?;
+    let watch = Mutex::new(watch);
+    Ok(spec.recommended_in_rooms(Some(design), &asked, &|share| goes_on(&watch, share)))
+}
+
+fn asked(args: &RoomArgs) -> Result<RoomsAsked, InputError> {
     let default = RoomsAsked::default();
-    let asked = RoomsAsked {
+    Ok(RoomsAsked {
         own: own_rooms(&args.rooms)?,
         places: args.places.unwrap_or(default.places),
         first: args.first.unwrap_or(default.first),
         driving: args.driving,
         wrong: args.wrong.map_or(default.wrong, |percent| percent / 100.0),
-    };
-    let watch = Mutex::new(watch);
-    Ok(spec.judge_in_rooms(design, &asked, &|share| {
-        let mut watch = watch.lock().unwrap_or_else(PoisonError::into_inner);
-        watch.go_on(|| format!("rooms: {:.0} % done", 100.0 * share))
-    }))
+    })
+}
+
+fn goes_on(watch: &Mutex<&mut Watch>, share: f64) -> bool {
+    let mut watch = watch.lock().unwrap_or_else(PoisonError::into_inner);
+    watch.go_on(|| format!("rooms: {:.0} % done", 100.0 * share))
 }
 
 /// The scenes that were named, as rooms.

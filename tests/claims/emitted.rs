@@ -5,10 +5,13 @@
 #[path = "emitted/car_12.rs"]
 mod car_12;
 #[expect(unreachable_pub)]
+#[path = "emitted/flow_8.rs"]
+mod flow_8;
+#[expect(unreachable_pub)]
 #[path = "emitted/paper_12.rs"]
 mod paper_12;
 
-use eeruf_core::{Instant, Micros, Ring, RingConfig, RingEvent};
+use eeruf_core::{Instant, Micros, Ring, RingConfig, RingEvent, flow::FlowRing};
 
 #[test]
 fn an_emitted_table_drives_a_ring() {
@@ -24,6 +27,31 @@ fn an_emitted_table_drives_a_ring() {
         }
     }
     assert_eq!(fired, [2; 12]);
+}
+
+#[test]
+fn emitted_flow_drives_a_ring_whose_modules_rest() {
+    use flow_8::{LISTENING, SENSORS, SETTINGS};
+    let start = Instant::default();
+    let mut ring = FlowRing::<SENSORS>::flow(SENSORS, SETTINGS, LISTENING, start).unwrap();
+    assert_eq!((SENSORS, ring.window(), ring.blanking()), (8, Micros::new(23_310), Micros::new(117)));
+    let mut fired = [(0, start); 8];
+    while ring.next_deadline().since(start) < Micros::from_millis(1000) {
+        let now = ring.next_deadline();
+        while let Some(event) = ring.poll(now) {
+            if let RingEvent::Fire { sensor, .. } = event {
+                let (count, before) = &mut fired[usize::from(sensor)];
+                assert!(
+                    *count == 0 || now.since(*before) >= Micros::from_millis(60),
+                    "{sensor}: {}",
+                    now.since(*before)
+                );
+                (*count, *before) = (*count + 1, now);
+            }
+        }
+    }
+    // In cycles of 63.36 ms, longer while nothing is believed.
+    assert!(fired.iter().all(|(count, _)| (10..=16).contains(count)), "{fired:?}");
 }
 
 #[test]

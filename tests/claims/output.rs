@@ -9,7 +9,7 @@ const PROGRAM: &str = env!("CARGO_BIN_EXE_eeruf");
 const RUNS: [&[&str]; 18] = [
     &["design", "rings/paper-12.toml", "--places", "1"],
     &["design", "rings/paper-12.toml", "--period-only", "--json"],
-    &["design", "rings/paper-12.toml", "--emit", "rust"],
+    &["design", "rings/paper-12.toml", "--period-only", "--emit", "rust"],
     &["verify", "rings/table-i-d.toml"],
     &["verify", "rings/table-i-d.toml", "--json"],
     &["search", "rings/table-i-waits.toml"],

@@ -172,7 +172,7 @@ fn ring_file_scene_and_emitted_table_say_the_same_of_a_module() {
     let said =
         format!("Sensors 0 to 7: hc-sr04, pulse_width, trigger {trigger_us} us, rest {rest_us} us, held {held_us} us");
     for (form, begin) in [("toml", "# "), ("rust", "// "), ("c", "/* "), ("arduino", "/* ")] {
-        let emitted = eeruf(&["design", "rings/hc-sr04-8.toml", "--emit", form]).out;
+        let emitted = eeruf(&["design", "rings/hc-sr04-8.toml", "--period-only", "--emit", form]).out;
         assert!(emitted.starts_with(&format!("{begin}{said}")), "{emitted}");
     }
     let still = "sensors = 8\nlayout = \"ring\"\nmodule = \"hc-sr04\"\ncrosstalk_range_m = 2.5\njitter_us = 100\n";
@@ -242,12 +242,12 @@ fn a_robot_that_moves_gets_a_t_delta_that_covers_its_motion() {
 
 #[test]
 fn emitted_rust_is_checked_by_the_compiler_and_emitted_c_compiles_without_a_warning() {
-    let rust = eeruf(&["design", "rings/paper-12.toml", "--emit", "rust"]).out;
+    let rust = eeruf(&["design", "rings/paper-12.toml", "--period-only", "--emit", "rust"]).out;
     // `emitted.rs` compiles that file.
-    assert_eq!(rust, include_str!("emitted/paper_12.rs"), "eeruf design rings/paper-12.toml --emit rust");
-    let rust = eeruf(&["design", "rings/car-12.toml", "--emit", "rust"]).out;
-    assert_eq!(rust, include_str!("emitted/car_12.rs"), "eeruf design rings/car-12.toml --emit rust");
-    let c = eeruf(&["design", "rings/paper-12.toml", "--emit", "c"]).out;
+    assert_eq!(rust, include_str!("emitted/paper_12.rs"), "eeruf design rings/paper-12.toml --period-only --emit rust");
+    let rust = eeruf(&["design", "rings/car-12.toml", "--period-only", "--emit", "rust"]).out;
+    assert_eq!(rust, include_str!("emitted/car_12.rs"), "eeruf design rings/car-12.toml --period-only --emit rust");
+    let c = eeruf(&["design", "rings/paper-12.toml", "--period-only", "--emit", "c"]).out;
     let (folder, header) = Scratch::new("schedule.h", &c);
     let user = folder.path().join("user.c");
     std::fs::write(

@@ -1,9 +1,9 @@
-//! Every ring file, emitted for C and for Arduino: built, and started on its modules.
+//! Every ring file, emitted for C and for Arduino, as a table and as recommended: built, and started on its modules.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use crate::common::{Scratch, eeruf};
+use crate::common::{Scratch, eeruf, json};
 
 const ROOT: &str = env!("CARGO_MANIFEST_DIR");
 
@@ -14,7 +14,8 @@ fn rings() -> Vec<PathBuf> {
     files.filter(|file| !file.file_stem().unwrap().to_str().unwrap().starts_with("table-")).collect()
 }
 
-/// Builds and runs `start.c` with a table; `Err` with what it says if it does not start.
+/// Builds and runs `start.c` with a table, or with what a flow ring is set up with; `Err` with what it says if it does
+/// not start.
 fn start(table: &str, schedule: &str, settings: &str) -> Result<(), String> {
     let (folder, header) = Scratch::new("ring.h", table);
     // Arduino's class is not what is tried, but the table and the library below it.
@@ -22,7 +23,8 @@ fn start(table: &str, schedule: &str, settings: &str) -> Result<(), String> {
     let program = folder.path().join("start");
     let mut gcc = Command::new("gcc");
     gcc.args(["-std=c99", "-Wall", "-Wextra", "-Werror", "-Wno-unused", "-Ic"]).arg("-I").arg(folder.path());
-    gcc.arg(format!("-DSCHEDULE={schedule}")).arg(format!("-DTABLE=\"{}\"", header.display()));
+    let kind = if flows(table) { "FLOW" } else { "SCHEDULE" };
+    gcc.arg(format!("-D{kind}={schedule}")).arg(format!("-DTABLE=\"{}\"", header.display()));
     if table.contains(settings) {
         gcc.arg(format!("-DSETTINGS={settings}"));
     }
@@ -35,16 +37,45 @@ fn start(table: &str, schedule: &str, settings: &str) -> Result<(), String> {
     if ran.status.success() { Ok(()) } else { Err(String::from_utf8_lossy(&ran.stdout).into_owned()) }
 }
 
+fn flows(emitted: &str) -> bool {
+    emitted.contains("EerufFlowConfig")
+}
+
+/// How a ring file is emitted: form, name of the constant, name of the modules' settings.
+const FORMS: [[&str; 3]; 2] = [["c", "eeruf_schedule", "EERUF_MODULES"], ["arduino", "RING", "RING_MODULES"]];
+
 #[test]
-fn every_emitted_ring_starts_and_fires() {
+fn recommended_ways_are_emitted_start_and_fire() {
+    let (mut flow, mut with_modules) = (0, 0);
+    for ring in rings() {
+        let ring = ring.to_str().unwrap();
+        let [form, schedule, settings] = FORMS[usize::from(ring.ends_with("hc-sr04-8.toml"))];
+        let asked = ["design", ring, "--places", "1"];
+        let emitted = eeruf(&[&asked[..], &["--emit", form]].concat());
+        assert_eq!(emitted.code, Some(0), "{ring}: {}", emitted.err);
+        if form == "arduino" {
+            let recommended = json(&[&asked[..], &["--json"]].concat());
+            assert_eq!((&recommended["recommended"], flows(&emitted.out)), (&"flow".into(), true));
+            // `emitted.rs` compiles that file.
+            let rust = eeruf(&[&asked[..], &["--emit", "rust"]].concat()).out;
+            assert_eq!(rust, include_str!("emitted/flow_8.rs"), "eeruf design {ring} --places 1 --emit rust");
+        }
+        let schedule = if flows(&emitted.out) && form == "c" { "eeruf_flow_config" } else { schedule };
+        flow += u32::from(flows(&emitted.out));
+        with_modules += u32::from(flows(&emitted.out) && emitted.out.contains(settings));
+        start(&emitted.out, schedule, settings).unwrap_or_else(|why| panic!("{ring}: {form}: {why}"));
+    }
+    assert!(flow >= 4 && with_modules >= 1, "{flow} flow, {with_modules} of them with HC-SR04 modules");
+}
+
+#[test]
+fn every_emitted_table_starts_and_fires() {
     let mut with_modules = 0;
     let rings = rings();
     assert!(rings.len() >= 6, "{rings:?}");
     for ring in rings {
-        for (form, schedule, settings) in
-            [("c", "eeruf_schedule", "EERUF_MODULES"), ("arduino", "RING", "RING_MODULES")]
-        {
-            let emitted = eeruf(&["design", ring.to_str().unwrap(), "--no-atlas", "--emit", form]);
+        for [form, schedule, settings] in FORMS {
+            let emitted = eeruf(&["design", ring.to_str().unwrap(), "--no-atlas", "--period-only", "--emit", form]);
             assert_eq!(emitted.code, Some(0), "{}: {}", ring.display(), emitted.err);
             with_modules += u32::from(emitted.out.contains(settings));
             start(&emitted.out, schedule, settings).unwrap_or_else(|why| panic!("{}: {form}: {why}", ring.display()));
@@ -56,7 +87,7 @@ fn every_emitted_ring_starts_and_fires() {
 #[test]
 fn table_for_sooner_triggers_needs_its_own_settings() {
     let ring = "rings/hc-sr04-8-two-multiplexers.toml";
-    let emitted = eeruf(&["design", ring, "--no-atlas", "--emit", "c"]).out;
+    let emitted = eeruf(&["design", ring, "--no-atlas", "--period-only", "--emit", "c"]).out;
     // It has 40 ms from the ring file; the data sheet advises 60 ms.
     start(&emitted, "eeruf_schedule", "EERUF_MODULES").unwrap();
     let usual = format!("{emitted}\n#define USUAL EERUF_HC_SR04\n");

@@ -37,6 +37,7 @@ pub(crate) fn c() -> Result<(), Trouble> {
     for (compiler, language) in COMPILERS {
         run(Command::new(compiler).args(language).args(STRICT).args(["-Os", "-c", "c/eeruf.c", "-o"]).arg(&object))?;
     }
+    run(Command::new("gcc").args(STRICT).args(["-std=c99", "-c", "c/examples/flow.c", "-o"]).arg(&object))?;
     for (compiler, language) in &COMPILERS[..4] {
         let program = target.join("misuse");
         let sources = ["c/tests/misuse.c", "c/eeruf.c", SANITIZERS, "-fno-sanitize-recover=all", "-g", "-o"];

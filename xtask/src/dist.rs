@@ -20,7 +20,7 @@ const DIST: &str = "target/dist";
 /// Commands that the programs for all targets must answer alike.
 const SAY_ALIKE: [&[&str]; 3] = [
     &["--version"],
-    &["design", "rings/hc-sr04-8.toml", "--no-atlas", "--emit", "c"],
+    &["design", "rings/hc-sr04-8.toml", "--no-atlas", "--period-only", "--emit", "c"],
     &["study", "scenes/alcove-hc-sr04.toml", "--periods", "100"],
 ];
 /// The environment of the tools from `PyPI`: maturin, zig as linker and compiler of C for any system, abi3audit.

@@ -43,7 +43,7 @@ fn table(board: &str) -> Result<(), Trouble> {
     let folder = Path::new("examples").join(board);
     let failed = |why: &dyn std::fmt::Display| Trouble::Failed(format!("{}: {why}", folder.display()));
     let mut design = Command::new(crate::program::program()?);
-    let design = output(design.arg("design").arg(folder.join("ring.toml")).args(["--emit", "rust"]));
+    let design = output(design.arg("design").arg(folder.join("ring.toml")).args(["--period-only", "--emit", "rust"]));
     let design = design.ok_or_else(|| failed(&"eeruf design ring.toml failed"))?;
     let stands = fs::read_to_string(folder.join("src/ring.rs")).map_err(|error| failed(&error))?;
     if stands.trim() == design {

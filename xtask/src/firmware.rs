@@ -180,7 +180,7 @@ fn expect(board: &Board, name: &str, shift: u32, what: &str) -> Result<(), Troub
 fn c_example(board: &Board) -> Result<(), Trouble> {
     let folder = Path::new("firmware/target/c");
     std::fs::create_dir_all(folder).map_err(|error| Trouble::Failed(error.to_string()))?;
-    let design = ["design", "rings/hc-sr04-8.toml", "--emit", "c"];
+    let design = ["design", "rings/hc-sr04-8.toml", "--period-only", "--emit", "c"];
     let table = output(Command::new(crate::program::program()?).args(design))
         .ok_or_else(|| Trouble::Failed("eeruf design rings/hc-sr04-8.toml failed".to_owned()))?;
     std::fs::write(folder.join("ring.h"), table + "\n").map_err(|error| Trouble::Failed(error.to_string()))?;

@@ -2,7 +2,7 @@
 // each module rest for 60 ms and keeps four adjacent ones 14.569 ms apart, so that sound from up to 2.5 m
 // has died. The slower ones are for EerufAdaptation. Those that a sketch does not name take no room.
 // Written by `cargo xtask arduino --write` from what `eeruf design` finds; for your own ring:
-//   eeruf design RING.toml --emit arduino > ring.h
+//   eeruf design RING.toml --period-only --emit arduino > ring.h
 #pragma once
 #include <EerufArduino.h>
 

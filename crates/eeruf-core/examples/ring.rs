@@ -8,7 +8,7 @@ use eeruf_core::{
     schedule, watch::SensorWatch,
 };
 
-/// Checked when this is compiled. `eeruf design RING.toml --emit rust` writes such a table.
+/// Checked when this is compiled. `eeruf design RING.toml --period-only --emit rust` writes such a table.
 static FRONT: VerifiedSchedule<4> = schedule! {
     period_us: 60_000,
     t_fire_a_us: [0, 15_000, 30_000, 45_000],

@@ -14,7 +14,7 @@ use crate::verify::ViolationKind;
 /// build.
 ///
 /// Times are whole microseconds. The table is given by lags and waits or by firing times, and `meets` is the
-/// [`Requirements`] to hold; `eeruf design --emit rust` writes the whole call.
+/// [`Requirements`] to hold; `eeruf design --period-only --emit rust` writes the whole call.
 ///
 /// ```
 /// use eeruf_core::{Layout, Micros, Requirements, VerifiedSchedule, schedule};

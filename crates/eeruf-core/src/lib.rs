@@ -8,7 +8,7 @@
 //! ```
 //! use eeruf_core::{Instant, ReadingKind, Ring, RingConfig, RingEvent, tables::PAPER_12};
 //!
-//! // `eeruf design RING.toml --emit rust` writes a table for a ring of one's own.
+//! // `eeruf design RING.toml --period-only --emit rust` writes a table for a ring of one's own.
 //! let mut ring = Ring::new(&PAPER_12, RingConfig::new(), Instant::from_micros(0))?;
 //! let now = ring.next_deadline(); // sleep until then
 //! while let Some(event) = ring.poll(now) {

@@ -142,23 +142,8 @@ impl RingSpec {
         asked: &RoomsAsked,
         keep_going: &(dyn Fn(f64) -> bool + Sync),
     ) -> Result<RoomsAnswer, String> {
-        // With the T_delta that the schedule needs where the robot moves.
-        let spec = design.map_or(self, |design| &design.spec);
-        let RoomRobot { robot, assumed } = spec.room_robot()?;
-        let speed_m_s = spec.room_speed_m_s();
-        let here = RoomsOptions {
-            speed_m_s: if asked.driving { speed_m_s } else { 0.0 },
-            wrong: asked.wrong,
-            ..RoomsOptions::default()
-        };
-        let numbers = asked.first..asked.first.saturating_add(asked.places);
-        let of_kind = |kind| RoomGroup::of_kind(kind, numbers.clone(), robot.radius_m());
-        let groups = if asked.own.is_empty() { RoomKind::ALL.map(of_kind).into() } else { asked.own.clone() };
-        let ways = RoomWay::all(&robot, design.map(|design| &design.schedule));
-        let judgement = judge(&ways, &groups, &here, keep_going).map_err(|error| match error {
-            ExperimentError::Stopped => "stopped before the rooms were judged".to_owned(),
-            error => error.to_string(),
-        })?;
+        let Set { ways, groups, here, assumed } = self.set(design, asked)?;
+        let judgement = judge(&ways, &groups, &here, keep_going).map_err(in_words)?;
         let fewer: Vec<_> = groups
             .iter()
             .map(|RoomGroup { name, rooms }| RoomGroup {
@@ -175,6 +160,54 @@ impl RingSpec {
         }
         let groups = groups.into_iter().map(|group| (group.name, group.rooms.len())).collect();
         Ok(RoomsAnswer { judgement, groups, assumed, speed_m_s: here.speed_m_s, wrong: asked.wrong, elsewhere })
+    }
+}
+
+impl RingSpec {
+    /// The way of firing the ring that [`judge_in_rooms`](Self::judge_in_rooms) recommends, without a look at other
+    /// conditions; none if no way can fire it.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn recommended_in_rooms(
+        &self,
+        design: Option<&RingDesign>,
+        asked: &RoomsAsked,
+        keep_going: &(dyn Fn(f64) -> bool + Sync),
+    ) -> Result<Option<RoomWay>, String> {
+        let Set { ways, groups, here, .. } = self.set(design, asked)?;
+        let judgement = judge(&ways, &groups, &here, keep_going).map_err(in_words)?;
+        Ok(judgement.best().map(|judged| judged.way.clone()))
+    }
+
+    fn set(&self, design: Option<&RingDesign>, asked: &RoomsAsked) -> Result<Set, String> {
+        // With the T_delta that the schedule needs where the robot moves.
+        let spec = design.map_or(self, |design| &design.spec);
+        let RoomRobot { robot, assumed } = spec.room_robot()?;
+        let here = RoomsOptions {
+            speed_m_s: if asked.driving { spec.room_speed_m_s() } else { 0.0 },
+            wrong: asked.wrong,
+            ..RoomsOptions::default()
+        };
+        let numbers = asked.first..asked.first.saturating_add(asked.places);
+        let of_kind = |kind| RoomGroup::of_kind(kind, numbers.clone(), robot.radius_m());
+        let groups = if asked.own.is_empty() { RoomKind::ALL.map(of_kind).into() } else { asked.own.clone() };
+        Ok(Set { ways: RoomWay::all(&robot, design.map(|design| &design.schedule)), groups, here, assumed })
+    }
+}
+
+/// What is judged where.
+struct Set {
+    ways: Vec<RoomWay>,
+    groups: Vec<RoomGroup>,
+    here: RoomsOptions,
+    assumed: Vec<String>,
+}
+
+fn in_words(error: ExperimentError) -> String {
+    match error {
+        ExperimentError::Stopped => "stopped before the rooms were judged".to_owned(),
+        error => error.to_string(),
     }
 }
 

@@ -49,7 +49,7 @@ pub(super) fn check(write: bool) -> Result<(), Trouble> {
          // each module rest for 60 ms and keeps four adjacent ones 14.569 ms apart, so that sound from up to 2.5 m\n\
          // has died. The slower ones are for EerufAdaptation. Those that a sketch does not name take no room.\n\
          // Written by `cargo xtask arduino --write` from what `eeruf design` finds; for your own ring:\n\
-         //   eeruf design RING.toml --emit arduino > ring.h\n\
+         //   eeruf design RING.toml --period-only --emit arduino > ring.h\n\
          #pragma once\n#include <EerufArduino.h>\n",
     );
     fs::create_dir_all(TARGET).map_err(failed("target"))?;
@@ -57,7 +57,7 @@ pub(super) fn check(write: bool) -> Result<(), Trouble> {
     for (modules, retrigger_us, suffix) in TABLES {
         let file = Path::new(TARGET).join(format!("ring-{modules}{suffix}.toml"));
         fs::write(&file, ring(modules, retrigger_us)).map_err(failed("target"))?;
-        let design = ["design", "--emit", "arduino"];
+        let design = ["design", "--period-only", "--emit", "arduino"];
         let tab = output(Command::new(&program).args(design).arg(&file))
             .ok_or_else(|| Trouble::Failed(format!("eeruf design {} failed", file.display())))?;
         let constant = tab.replace("#pragma once\n#include <EerufArduino.h>\n", "");

@@ -37,7 +37,8 @@ pub struct FlowPlan<const K: usize> {
     /// The largest change by odometry in this cycle, in microseconds; stops at 65,535.
     pub(super) fastest: u16,
     tolerated: u16,
-    pub(super) window: Micros,
+    /// Least time between two firings of a sensor: while it listens, and rests.
+    pub(super) rest: Micros,
     pub(super) pace: Pace,
     pub(super) slots: [Slot; K],
 }
@@ -90,7 +91,7 @@ impl<const K: usize> FlowPlan<K> {
             lateness: Lateness::NEW,
             length: pace.shortest,
             fastest: 0,
-            window: listening.window,
+            rest: settings.rest.min(most).max(listening.window),
             tolerated: (code.step().abs_diff(t_delta).as_micros().saturating_sub(1) / 2) as u16,
             slots: [Slot::new(pace.least); K],
             code,
@@ -340,13 +341,13 @@ impl<const K: usize> Plan for FlowPlan<K> {
     }
 
     fn min_refire(&self) -> Micros {
-        self.window
+        self.rest
     }
 
     fn horizon(&self) -> Micros {
         // A cycle of least gaps may be longer than the longest that is asked for. Below 2^31.
         let least = self.code.sensors() as u32 * u32::from(self.pace.least_gap);
-        Micros::new(2 * least.max(self.pace.longest + 1) * self.unit() + self.window.as_micros())
+        Micros::new(2 * least.max(self.pace.longest + 1) * self.unit() + self.rest.as_micros())
     }
 }
 

@@ -162,11 +162,11 @@ impl<const K: usize> FlowPlan<K> {
     fn place_firings(&mut self, fired: impl Fn(u8) -> Instant) {
         // Gaps of a byte for at most 64 sensors, and a window.
         let (mut at, unit) = (0_u16, self.unit());
-        // No sensor listens for longer after the cycle's start.
-        let listens = self.window.saturating_add(CATCHES_UP).as_micros();
+        // No sensor has to wait for longer after the cycle's start.
+        let most = self.rest.saturating_add(CATCHES_UP).as_micros();
         for place in 0..self.planned {
             let sensor = self.order(place);
-            if u32::from(at) * unit < listens {
+            if u32::from(at) * unit < most {
                 let rests = self.rests_for(sensor, fired(sensor));
                 let waits = self.slots.get(usize::from(sensor)).map_or(0, |slot| u32::from(slot.place));
                 let offset = u32::from(at) * unit + waits * self.code.step().as_micros();
@@ -183,13 +183,13 @@ impl<const K: usize> FlowPlan<K> {
         self.length = u32::from(at).max(self.pace.shortest);
     }
 
-    /// Time after the cycle's start for which a sensor that has last `fired` then still listens.
+    /// Time after the cycle's start for which a sensor that has last `fired` then must not fire yet.
     fn rests_for(&self, sensor: u8, fired: Instant) -> Micros {
-        let rested = fired + self.window;
+        let rested = fired + self.rest;
         let rests = if self.start.has_reached(rested) { Micros::ZERO } else { rested.since(self.start) };
         let has_fired = self.slots.get(usize::from(sensor)).is_some_and(|slot| slot.is(FIRED));
         // A clock that has jumped says nothing about when that was.
-        if has_fired && rests <= self.window.saturating_add(CATCHES_UP) { rests } else { Micros::ZERO }
+        if has_fired && rests <= self.rest.saturating_add(CATCHES_UP) { rests } else { Micros::ZERO }
     }
 
     /// Takes a sensor out of those that are still to fire.

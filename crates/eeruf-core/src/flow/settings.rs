@@ -27,6 +27,8 @@ pub struct FlowSettings {
     pub unserved_after: u8,
     /// Shortest time from a cycle to the next.
     pub shortest_cycle: Micros,
+    /// Least time between two firings of a sensor, where its module rests for longer than it listens. At most 16.7 s.
+    pub rest: Micros,
     /// Longest time from a cycle to the next, of a robot that stands.
     pub longest_cycle: Micros,
     /// Change of an echo by odometry that a cycle may bring: it bounds the cycle of a robot that moves.
@@ -44,6 +46,7 @@ impl FlowSettings {
         unserved_adds: Micros::from_millis(6),
         unserved_after: 3,
         shortest_cycle: Micros::from_millis(60),
+        rest: Micros::ZERO,
         longest_cycle: Micros::from_millis(400),
         travel: Micros::new(380),
     };

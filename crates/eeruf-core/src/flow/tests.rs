@@ -187,6 +187,27 @@ fn a_cycle_is_never_shorter_than_the_shortest() {
 }
 
 #[test]
+fn no_module_fires_again_before_it_has_rested() {
+    let mut settings = FlowSettings::DEFAULT;
+    settings.rest = Micros::from_millis(60);
+    let now = Instant::from_micros(0);
+    let mut plan = FlowPlan::<8>::new(8, settings, listening(), now).unwrap();
+    assert_eq!(plan.min_refire(), settings.rest);
+    let (mut fired, mut before) = ([now; 8], [None::<Instant>; 8]);
+    let mut shortest = Micros::MAX;
+    for number in 0..200_u32 {
+        // Gaps change from cycle to cycle, so that sensors move to and fro in it.
+        cycle(&mut plan, &mut fired, 0, |sensor| {
+            if (u32::from(sensor) * 7 + number) % 11 < 4 { MASKED(sensor) } else { WELL(sensor) }
+        });
+        for (before, &fired) in before.iter_mut().zip(&fired) {
+            shortest = before.replace(fired).map_or(shortest, |before| shortest.min(fired.since(before)));
+        }
+    }
+    assert!(shortest >= settings.rest && shortest < Micros::from_millis(63), "{shortest}");
+}
+
+#[test]
 fn each_error_names_what_is_wrong() {
     let now = Instant::from_micros(0);
     let with = |change: fn(&mut FlowSettings)| {

@@ -189,10 +189,10 @@ impl<const K: usize> fmt::Display for Constant<'_, K> {
         let [window, blanking, reach, shift_interval] = times;
         write!(f, "    {window}u, {blanking}u, {reach}u, {shift_interval}u,")?;
         let TrackerSettings { t_delta, near, tentative_within, votes, score_limit, .. } = all.tracker;
-        let TrackerSettings { contradiction, solo_contradiction, tentative_votes, .. } = all.tracker;
+        let TrackerSettings { contradiction, solo_contradiction, tentative_votes, memory, .. } = all.tracker;
         let [t_delta, near, within] = [t_delta, near, tentative_within].map(Micros::as_micros);
         write!(f, " 1u,\n    {{{t_delta}, {near}, {within}, {votes}, {score_limit}, {contradiction}, ")?;
-        writeln!(f, "{solo_contradiction}, {tentative_votes}}},")?;
+        writeln!(f, "{solo_contradiction}, {tentative_votes}, {memory}}},")?;
         let HoppingSettings { solo_rate, solo_after, solo_spacing, shift_after, shift_spacing, neighbours, .. } = all;
         write!(f, "    {solo_rate}, {solo_after}, {solo_spacing}, {shift_after}, {shift_spacing}, {neighbours}, ")?;
         writeln!(f, "{},\n}};", 1 + code.first_multiplier())
@@ -275,7 +275,7 @@ mod tests {
         );
         let tab = schedule.to_arduino(&requirements, "PORT").to_string();
         assert!(tab.contains("PORT_lag_us[] = {0u, 9000u, 18000u};"), "{tab}");
-        assert!(tab.contains("{150, 400, 60, 5, 6, 2, 6, 2},\n    84, 5, 3, 0, 8, 2, 2,\n};"), "{tab}");
+        assert!(tab.contains("{150, 400, 60, 5, 6, 2, 6, 2, 0},\n    84, 5, 3, 0, 8, 2, 2,\n};"), "{tab}");
         // What may not be less than T_delta, or more, follows it.
         let wide = PhaseRequirements { t_delta: Micros::new(500), ..requirements };
         assert!(schedule.to_c(&wide).to_string().contains("{500, 500, 60,"));

@@ -66,6 +66,7 @@ impl RoomWay {
         }
         let mut flow = way("flow", Method::Flow, rest);
         flow.robot.odometry = true;
+        flow.options.flow.rest = robot.module_rest();
         ways.push(flow);
         ways
     }

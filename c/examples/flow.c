@@ -1,0 +1,41 @@
+/* Twelve sensors that fire by flow, as a firmware's main loop has them; what it takes of flash and RAM is in
+   docs/explanation/flow.md. CLOCK_US stands for a free-running timer, fire and use for what the board does. */
+#include "eeruf.h"
+
+#define SENSORS 12
+
+static volatile uint32_t CLOCK_US, triggered, distance_mm;
+
+static EerufHoppingRing ring;
+static EerufHopSensor sensors[SENSORS];
+static EerufHopper hoppers[SENSORS];
+
+static void fire(uint8_t sensor) {
+    triggered = sensor;
+}
+
+static void use(uint32_t t_echo_us) {
+    distance_mm = eeruf_distance_mm(t_echo_us, EERUF_SOUND_20C);
+}
+
+/* From the interrupt of an echo line, or after it. */
+static void heard(uint8_t sensor) {
+    (void)eeruf_ring_echo(&ring.ring, sensor, CLOCK_US);
+}
+
+int main(void) {
+    const EerufFlowConfig config = EERUF_FLOW(SENSORS, 36000);
+    EerufStatus status = eeruf_flow_init(&ring, sizeof ring, sensors, sizeof sensors, hoppers, sizeof hoppers, &config,
+                                         CLOCK_US);
+    if (status != EERUF_OK) return status;
+    for (;;) {
+        EerufEvent event;
+        while (eeruf_hopping_poll(&ring, CLOCK_US, NULL, &event) == EERUF_EVENT) {
+            if (event.kind == EERUF_EVENT_FIRE) fire(event.sensor);
+            if (event.kind == EERUF_EVENT_READING && event.u.reading.kind == EERUF_READING_ACCEPTED)
+                use(event.u.reading.t_echo_us);
+        }
+        while (CLOCK_US - eeruf_ring_deadline(&ring.ring) >= 0x80000000u)
+            if (triggered > SENSORS) heard(0);
+    }
+}

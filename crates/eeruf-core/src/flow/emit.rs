@@ -1,0 +1,209 @@
+//! The set-up of a flow ring as source text: Rust, a C header, a file of an Arduino sketch.
+
+use core::fmt;
+
+use super::settings::FlowSettings;
+use crate::emit::{EERUF_VERSION, Grouped};
+use crate::hopping::HoppingListening;
+use crate::time::Micros;
+use crate::tracker::TrackerSettings;
+
+impl FlowSettings {
+    /// Rust: the constants `SENSORS`, `SETTINGS` and `LISTENING` for [`FlowRing::flow`](super::FlowRing::flow).
+    pub const fn to_rust(&self, sensors: usize, listening: HoppingListening) -> impl fmt::Display {
+        FlowRust(FlowSource { settings: self, sensors, listening })
+    }
+
+    /// A C99 header with the constant `eeruf_flow_config` for `eeruf_flow_init`, to be included after `eeruf.h`.
+    pub const fn to_c(&self, sensors: usize, listening: HoppingListening) -> impl fmt::Display {
+        FlowHeader(FlowSource { settings: self, sensors, listening })
+    }
+
+    /// A file of an Arduino sketch with the constant `name`, as in [`to_c`](Self::to_c).
+    pub const fn to_arduino<'r>(
+        &'r self,
+        sensors: usize,
+        listening: HoppingListening,
+        name: &'r str,
+    ) -> impl fmt::Display {
+        FlowTab { source: FlowSource { settings: self, sensors, listening }, name }
+    }
+
+    /// Its times by their names.
+    fn times(&self) -> [(&'static str, Micros); 9] {
+        [
+            ("step", self.step),
+            ("shortest_gap", self.shortest_gap),
+            ("masked_adds", self.masked_adds),
+            ("believed_takes", self.believed_takes),
+            ("unserved_adds", self.unserved_adds),
+            ("shortest_cycle", self.shortest_cycle),
+            ("rest", self.rest),
+            ("longest_cycle", self.longest_cycle),
+            ("travel", self.travel),
+        ]
+    }
+}
+
+/// What a flow ring is set up with.
+struct FlowSource<'r> {
+    settings: &'r FlowSettings,
+    sensors: usize,
+    listening: HoppingListening,
+}
+
+impl fmt::Display for FlowSource<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { settings, sensors, listening } = self;
+        write!(f, "{sensors} sensors that fire by flow, in cycles of at least {},", settings.shortest_cycle)?;
+        write!(f, " listening for {}", listening.window)
+    }
+}
+
+/// In Rust: see [`FlowSettings::to_rust`].
+struct FlowRust<'r>(FlowSource<'r>);
+
+impl fmt::Display for FlowRust<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let FlowSource { settings, sensors, listening } = &self.0;
+        let usual = FlowSettings::DEFAULT;
+        writeln!(f, "use eeruf_core::{{Micros, flow::FlowSettings, hopping::HoppingListening}};\n")?;
+        writeln!(f, "// {}.", self.0)?;
+        writeln!(f, "// For `FlowRing::<SENSORS>::flow(SENSORS, SETTINGS, LISTENING, now)`.")?;
+        writeln!(f, "pub const SENSORS: usize = {sensors};\n")?;
+        writeln!(f, "pub const SETTINGS: FlowSettings = {{\n    let mut settings = FlowSettings::DEFAULT;")?;
+        for ((name, time), (_, usual)) in settings.times().into_iter().zip(usual.times()) {
+            if time != usual {
+                writeln!(f, "    settings.{name} = Micros::new({});", Grouped(time))?;
+            }
+        }
+        if settings.unserved_after != usual.unserved_after {
+            writeln!(f, "    settings.unserved_after = {};", settings.unserved_after)?;
+        }
+        for ((name, number), (_, usual)) in numbers(&settings.tracker).into_iter().zip(numbers(&usual.tracker)) {
+            match name.strip_suffix("_us") {
+                _ if number == usual => {}
+                Some(name) => writeln!(f, "    settings.tracker.{name} = Micros::new({number});")?,
+                None => writeln!(f, "    settings.tracker.{name} = {number};")?,
+            }
+        }
+        writeln!(f, "    settings\n}};\n")?;
+        let [window, blanking, reach] = [listening.window, listening.blanking, listening.reach].map(Grouped);
+        write!(f, "pub const LISTENING: HoppingListening =\n    HoppingListening::new(Micros::new({window}))")?;
+        writeln!(f, ".with_blanking(Micros::new({blanking})).with_reach(Micros::new({reach}));")
+    }
+}
+
+/// The settings of a tracker in the order of C's `EerufTrackerSettings`, by their names.
+fn numbers(tracker: &TrackerSettings) -> [(&'static str, u32); 9] {
+    let TrackerSettings { t_delta, near, tentative_within, votes, score_limit, contradiction, .. } = *tracker;
+    [
+        ("t_delta_us", t_delta.as_micros()),
+        ("near_us", near.as_micros()),
+        ("tentative_within_us", tentative_within.as_micros()),
+        ("votes", votes.into()),
+        ("score_limit", score_limit.into()),
+        ("contradiction", contradiction.into()),
+        ("solo_contradiction", tracker.solo_contradiction.into()),
+        ("tentative_votes", tracker.tentative_votes.into()),
+        ("memory", tracker.memory.into()),
+    ]
+}
+
+/// As a C header: see [`FlowSettings::to_c`].
+struct FlowHeader<'r>(FlowSource<'r>);
+
+impl fmt::Display for FlowHeader<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let FlowSource { sensors, listening, .. } = &self.0;
+        writeln!(f, "/* {}.\n   For eeruf_flow_init; include eeruf.h before it. */", self.0)?;
+        writeln!(f, "#ifndef EERUF_SCHEDULE_H\n#define EERUF_SCHEDULE_H\n")?;
+        writeln!(f, "#ifndef EERUF_H\n#error \"include eeruf.h before this file\"\n#endif\n")?;
+        writeln!(f, "#define EERUF_SENSORS {sensors}")?;
+        writeln!(f, "#define EERUF_WINDOW_US {}u\n", listening.window.as_micros())?;
+        write!(f, "{}", Constant { source: &self.0, name: "eeruf_flow_config" })?;
+        writeln!(f, "\n#endif")
+    }
+}
+
+/// As a file of an Arduino sketch: see [`FlowSettings::to_arduino`].
+struct FlowTab<'r> {
+    source: FlowSource<'r>,
+    name: &'r str,
+}
+
+impl fmt::Display for FlowTab<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { source, name } = self;
+        writeln!(f, "// {source}.\n#pragma once\n#include <EerufArduino.h>\n")?;
+        write!(f, "{}", Constant { source, name })
+    }
+}
+
+/// The constant of type `EerufFlowConfig`.
+struct Constant<'r> {
+    source: &'r FlowSource<'r>,
+    name: &'r str,
+}
+
+impl fmt::Display for Constant<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let FlowSource { settings, sensors, listening } = self.source;
+        let [step, times @ ..] = settings.times().map(|(_, time)| time.as_micros());
+        writeln!(f, "static const EerufFlowConfig {} = {{", self.name)?;
+        write!(f, "    {EERUF_VERSION}, {sensors}, {}, {step}u,", settings.unserved_after)?;
+        for time in [listening.window, listening.blanking, listening.reach] {
+            write!(f, " {}u,", time.as_micros())?;
+        }
+        write!(f, "\n   ")?;
+        for time in times {
+            write!(f, " {time}u,")?;
+        }
+        write!(f, "\n    {{")?;
+        for (place, (_, number)) in numbers(&settings.tracker).into_iter().enumerate() {
+            write!(f, "{}{number}", if place == 0 { "" } else { ", " })?;
+        }
+        writeln!(f, "}},\n}};")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    extern crate std;
+    use super::*;
+    use std::string::ToString;
+
+    const LISTENING: HoppingListening = HoppingListening::new(Micros::new(37_000)).with_blanking(Micros::new(300));
+
+    #[test]
+    fn rust_sets_what_differs_from_the_default() {
+        let mut settings = FlowSettings::DEFAULT;
+        settings.rest = Micros::from_millis(60);
+        settings.tracker = settings.tracker.with_t_delta(Micros::new(100)).with_memory(9);
+        let text = settings.to_rust(8, LISTENING).to_string();
+        assert!(text.contains("pub const SENSORS: usize = 8;\n"), "{text}");
+        let sets: std::vec::Vec<_> = text.lines().filter(|line| line.starts_with("    settings.")).collect();
+        let expected = [
+            "    settings.rest = Micros::new(60_000);",
+            "    settings.tracker.t_delta = Micros::new(100);",
+            "    settings.tracker.memory = 9;",
+        ];
+        assert_eq!(sets, expected);
+        let listening = "HoppingListening::new(Micros::new(37_000)).with_blanking(Micros::new(300))";
+        assert!(text.ends_with(&std::format!("{listening}.with_reach(Micros::new(37_000));\n")), "{text}");
+    }
+
+    #[test]
+    fn c_has_all_settings_in_their_order() {
+        let text = FlowSettings::DEFAULT.to_c(12, LISTENING).to_string();
+        assert!(text.contains("#define EERUF_SENSORS 12\n#define EERUF_WINDOW_US 37000u\n"), "{text}");
+        let constant = "= {\n    3, 12, 3, 240u, 37000u, 300u, 37000u,\n    \
+                        7500u, 4000u, 1500u, 6000u, 60000u, 0u, 400000u, 380u,\n    \
+                        {150, 400, 60, 5, 6, 2, 6, 2, 5},\n};\n";
+        assert!(text.contains(&std::format!("EerufFlowConfig eeruf_flow_config {constant}")), "{text}");
+        let text = FlowSettings::DEFAULT.to_arduino(12, LISTENING, "RING").to_string();
+        assert!(
+            text.ends_with(&std::format!("#include <EerufArduino.h>\n\nstatic const EerufFlowConfig RING {constant}"))
+        );
+    }
+}

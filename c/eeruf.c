@@ -2343,7 +2343,7 @@ static void next_phase(EerufHoppingRing *hopping) {
 
 /* The next firing of the period, or its end. */
 static void look_ahead(EerufHoppingRing *hopping) {
-    uint32_t after_us = hopping->length_us;
+    uint32_t after_us = hopping->length_us - hopping->lead_us;
     hopping->ring.next = NOBODY;
     if (hopping->place < hopping->planned) {
         hopping->ring.next = hopping->hoppers[hopping->place].order;
@@ -2572,7 +2572,7 @@ static void correct_hop(EerufRing *ring, uint8_t sensor, uint32_t by_us) {
 static void end_hopping_period(EerufRing *ring, uint32_t now_us) {
     EerufHoppingRing *hopping = hopping_of(ring);
     const bool left_out = now_us - hopping->ring.due_us > hopping->period_us;
-    hopping->start_us = left_out ? now_us : hopping->ring.due_us;
+    hopping->start_us = left_out ? now_us : hopping->ring.due_us + hopping->lead_us;
     hopping->least_late[2] = hopping->least_late[1];
     hopping->most_late[2] = hopping->most_late[1];
     hopping->least_late[1] = hopping->least_late[0];
@@ -3106,6 +3106,7 @@ EerufStatus eeruf_flow_init(EerufHoppingRing *hopping, size_t ring_size, EerufHo
     flow->rounded_up = flow->shortest * unit_us != config->shortest_cycle_us;
     flow->longest = longer(shorter(config->longest_cycle_us, EERUF_MAX_PERIOD_US), config->shortest_cycle_us) / unit_us;
     flow->travel_us = narrow(config->travel_us);
+    hopping->lead_us = (uint16_t)(quiet_of(shorter(config->lead_us, config->shortest_cycle_us)) * QUIET_US);
     flow->stride = (uint8_t)(n > 6 ? n / 3 + 1 : 1);
     while (!is_coprime(flow->stride, n)) flow->stride++;
     /* A cycle of least gaps may be longer than the longest that is asked for. */

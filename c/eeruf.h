@@ -629,7 +629,7 @@ typedef struct EerufHoppingRing {
     void (*judged)(struct EerufHoppingRing *hopping, uint8_t sensor, const EerufReading *reading, int32_t change_us);
     EerufTrackerSettings tracker;
     uint32_t start_us, length_us, solo_at_us, period_us, horizon_us, rest_us;
-    uint16_t step_us, tolerated, least_late[3], most_late[3];
+    uint16_t step_us, tolerated, lead_us, least_late[3], most_late[3];
     uint8_t phase, cycle, root, first, planned, place, fires_as, changed, changes;
     union {
         EerufHopPlan hop;
@@ -681,6 +681,8 @@ typedef struct EerufFlowConfig {
     uint32_t unserved_adds_us;
     uint32_t shortest_cycle_us; /* at least window and code */
     uint32_t rest_us;           /* between two firings of a sensor, where its module rests for longer than it listens */
+    uint32_t lead_us;           /* before its end a cycle ends for the plan: about 3 ms where planning takes long, as on
+                                   an AVR, or the first firing would be late; at most 65 ms and the shortest cycle */
     uint32_t longest_cycle_us;  /* of a robot that stands */
     uint32_t travel_us;         /* change of an echo by odometry that a cycle may bring */
     EerufTrackerSettings tracker;
@@ -688,7 +690,7 @@ typedef struct EerufFlowConfig {
 
 /* For every robot. */
 #define EERUF_FLOW(sensors, window_us)                                                                                 \
-    {EERUF_VERSION, sensors, 3, 240, window_us, 0, window_us, 7500, 4000, 1500, 6000, 60000, 0, 400000, 380,           \
+    {EERUF_VERSION, sensors, 3, 240, window_us, 0, window_us, 7500, 4000, 1500, 6000, 60000, 0, 0, 400000, 380,           \
      {150, 400, 60, 5, 6, 2, 6, 2, 5}}
 
 /* Makes a flow ring that begins at `now_us`. It is an EerufHoppingRing with another plan: poll it with

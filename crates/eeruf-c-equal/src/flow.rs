@@ -23,6 +23,7 @@ fn settings(r: &Random) -> FlowSettings {
         settings.step = Micros::new(r.one_of(&[240, r.duration(900), r.duration(70_000)]));
         settings.shortest_cycle = Micros::new(r.one_of(&[60_000, r.within(0, 200_000), r.duration(1 << 29)]));
         settings.rest = Micros::new(r.one_of(&[0, 60_000, r.duration(1 << 25)]));
+        settings.lead = Micros::new(r.one_of(&[0, 3_000, r.duration(100_000)]));
         settings.longest_cycle = Micros::new(r.one_of(&[400_000, r.within(0, 900_000), r.duration(u32::MAX)]));
     }
     settings
@@ -46,7 +47,7 @@ pub fn run<const K: usize>(r: &Random) -> u64 {
     let mut numbers = vec![window, blanking, listening.reach.as_micros(), s.unserved_after.into()];
     let gaps = [s.shortest_gap, s.masked_adds, s.believed_takes, s.unserved_adds];
     numbers.extend([s.step].into_iter().chain(gaps).map(Micros::as_micros));
-    numbers.extend([s.shortest_cycle, s.longest_cycle, s.rest, s.travel].map(Micros::as_micros));
+    numbers.extend([s.shortest_cycle, s.longest_cycle, s.rest, s.lead, s.travel].map(Micros::as_micros));
     numbers.extend(tracking::numbers(&s.tracker));
     let status = c.flow(K as u8, &numbers, start);
     let ring = match FlowRing::<K>::flow(K, s, listening, Instant::from_micros(start)) {

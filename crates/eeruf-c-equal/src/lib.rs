@@ -243,7 +243,7 @@ impl C {
 
     /// `eeruf_flow_init`, with the numbers in the order that `shim.c` names.
     pub fn flow(&mut self, sensors: u8, numbers: &[u32], now_us: u32) -> i32 {
-        assert_eq!(numbers.len(), 22);
+        assert_eq!(numbers.len(), 23);
         // SAFETY: as many numbers as are read.
         unsafe { shim::shim_flow(self.0, sensors, numbers.as_ptr(), now_us) }
     }

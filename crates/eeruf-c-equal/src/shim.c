@@ -292,7 +292,7 @@ int shim_hopping(Handle *handle, uint8_t sensors, uint8_t phases, const uint32_t
 }
 
 /* `numbers`: window, blanking, reach, unserved after, step, shortest gap, masked adds, believed takes, unserved adds,
-   shortest cycle, longest cycle, rest, travel; then the tracker's nine. */
+   shortest cycle, longest cycle, rest, lead, travel; then the tracker's nine. */
 int shim_flow(Handle *handle, uint8_t sensors, const uint32_t *numbers, uint32_t now_us) {
     EerufFlowConfig config = EERUF_FLOW(0, 0);
     config.sensors = sensors;
@@ -308,8 +308,9 @@ int shim_flow(Handle *handle, uint8_t sensors, const uint32_t *numbers, uint32_t
     config.shortest_cycle_us = numbers[9];
     config.longest_cycle_us = numbers[10];
     config.rest_us = numbers[11];
-    config.travel_us = numbers[12];
-    config.tracker = tracker_of(numbers + 13);
+    config.lead_us = numbers[12];
+    config.travel_us = numbers[13];
+    config.tracker = tracker_of(numbers + 14);
     make_room(handle, sensors);
     return eeruf_flow_init(handle->hopping, sizeof(EerufHoppingRing), handle->hop_sensors,
                            sensors * sizeof(EerufHopSensor), handle->hoppers, sensors * sizeof(EerufHopper), &config,

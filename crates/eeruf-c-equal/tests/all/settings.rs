@@ -18,7 +18,7 @@ fn flow_settings_of_c_are_those_of_the_core() {
     let (body, _) = after.split_once("}}").unwrap();
     let of = FlowSettings::DEFAULT;
     let gaps = [of.shortest_gap, of.masked_adds, of.believed_takes, of.unserved_adds];
-    let cycles = [of.shortest_cycle, of.rest, of.longest_cycle, of.travel];
+    let cycles = [of.shortest_cycle, of.rest, of.lead, of.longest_cycle, of.travel];
     // Without the window and the reach, which are parameters; blanking is none.
     let mut expected = vec![of.unserved_after.into(), of.step.as_micros(), 0];
     expected.extend(gaps.into_iter().chain(cycles).map(Micros::as_micros));

@@ -30,7 +30,7 @@ impl FlowSettings {
     }
 
     /// Its times by their names.
-    fn times(&self) -> [(&'static str, Micros); 9] {
+    fn times(&self) -> [(&'static str, Micros); 10] {
         [
             ("step", self.step),
             ("shortest_gap", self.shortest_gap),
@@ -39,6 +39,7 @@ impl FlowSettings {
             ("unserved_adds", self.unserved_adds),
             ("shortest_cycle", self.shortest_cycle),
             ("rest", self.rest),
+            ("lead", self.lead),
             ("longest_cycle", self.longest_cycle),
             ("travel", self.travel),
         ]
@@ -198,7 +199,7 @@ mod tests {
         let text = FlowSettings::DEFAULT.to_c(12, LISTENING).to_string();
         assert!(text.contains("#define EERUF_SENSORS 12\n#define EERUF_WINDOW_US 37000u\n"), "{text}");
         let constant = "= {\n    3, 12, 3, 240u, 37000u, 300u, 37000u,\n    \
-                        7500u, 4000u, 1500u, 6000u, 60000u, 0u, 400000u, 380u,\n    \
+                        7500u, 4000u, 1500u, 6000u, 60000u, 0u, 0u, 400000u, 380u,\n    \
                         {150, 400, 60, 5, 6, 2, 6, 2, 5},\n};\n";
         assert!(text.contains(&std::format!("EerufFlowConfig eeruf_flow_config {constant}")), "{text}");
         let text = FlowSettings::DEFAULT.to_arduino(12, LISTENING, "RING").to_string();

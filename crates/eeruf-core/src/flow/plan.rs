@@ -149,6 +149,11 @@ impl<const K: usize> FlowPlan<K> {
         Micros::new(self.length * self.unit())
     }
 
+    /// How long before the present cycle's end the next is planned.
+    fn lead(&self) -> Micros {
+        Micros::new(u32::from(self.pace.lead) * QUIET_US)
+    }
+
     /// The sensor at a place of the cycle's order.
     pub(super) fn order(&self, place: u8) -> u8 {
         self.slots.get(usize::from(place)).map_or(NOBODY, |slot| slot.order)
@@ -158,7 +163,7 @@ impl<const K: usize> FlowPlan<K> {
     #[inline(always)]
     pub(super) fn find_due(&mut self) {
         self.next = if self.place < self.planned { self.order(self.place) } else { NOBODY };
-        let after = if self.next == NOBODY { self.cycle() } else { self.offset(self.next) };
+        let after = if self.next == NOBODY { self.cycle().saturating_sub(self.lead()) } else { self.offset(self.next) };
         self.due = self.start + after;
     }
 
@@ -258,8 +263,8 @@ impl<const K: usize> Plan for FlowPlan<K> {
 
     fn end_period(&mut self, now: Instant) -> (Phase, bool) {
         let phase = self.phase();
-        let end = self.due;
-        let left_out = now.since(end) > self.cycle();
+        let end = self.due + self.lead();
+        let left_out = now.since(self.due) > self.cycle();
         self.start = if left_out { now } else { end };
         self.lateness.end_period();
         if left_out {

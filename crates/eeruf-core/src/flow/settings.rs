@@ -29,6 +29,9 @@ pub struct FlowSettings {
     pub shortest_cycle: Micros,
     /// Least time between two firings of a sensor, where its module rests for longer than it listens. At most 16.7 s.
     pub rest: Micros,
+    /// Time before a cycle begins at which the one before ends and it is planned, for processors that take long to plan:
+    /// else its first firing would be late. At most 65 ms and the shortest cycle.
+    pub lead: Micros,
     /// Longest time from a cycle to the next, of a robot that stands.
     pub longest_cycle: Micros,
     /// Change of an echo by odometry that a cycle may bring: it bounds the cycle of a robot that moves.
@@ -47,6 +50,7 @@ impl FlowSettings {
         unserved_after: 3,
         shortest_cycle: Micros::from_millis(60),
         rest: Micros::ZERO,
+        lead: Micros::ZERO,
         longest_cycle: Micros::from_millis(400),
         travel: Micros::new(380),
     };
@@ -70,6 +74,8 @@ pub(super) struct Pace {
     pub(super) unserved_after: u8,
     /// The gap of the least quiet, in units of the grid.
     pub(super) least_gap: u8,
+    /// How long before its end a cycle ends for the plan, in units of quiet.
+    pub(super) lead: u8,
     /// The distance in the ring from one firing to the next.
     pub(super) stride: u8,
     /// The shortest cycle was rounded up to whole units.
@@ -98,6 +104,7 @@ impl Pace {
             unserved_adds: quiet(settings.unserved_adds),
             unserved_after: settings.unserved_after.max(1),
             least_gap: in_units(u32::from(least) * QUIET_US, unit).clamp(1, 255) as u8,
+            lead: quiet(settings.lead.min(settings.shortest_cycle)),
             stride: stride(sensors),
             rounded_up: in_units(shortest, unit) * unit != shortest,
             travel_us: u16::try_from(settings.travel.as_micros()).unwrap_or(u16::MAX),

@@ -208,6 +208,23 @@ fn no_module_fires_again_before_it_has_rested() {
 }
 
 #[test]
+fn a_cycle_that_is_planned_ahead_fires_at_the_same_instants() {
+    let mut ahead = FlowSettings::DEFAULT;
+    ahead.lead = Micros::from_millis(3);
+    let now = Instant::from_micros(0);
+    let [mut plan, mut early] =
+        [FlowSettings::DEFAULT, ahead].map(|of| FlowPlan::<8>::new(8, of, listening(), now).unwrap());
+    let (mut fired, mut fired_early) = ([now; 8], [now; 8]);
+    for number in 0..50 {
+        let hears = |sensor| if (u32::from(sensor) + number) % 5 < 2 { MASKED(sensor) } else { WELL(sensor) };
+        let (seen, length) = cycle(&mut plan, &mut fired, 0, hears);
+        // In whole units of quiet.
+        assert_eq!(cycle(&mut early, &mut fired_early, 0, hears), (seen, length - 11 * 256));
+    }
+    assert_eq!(fired, fired_early);
+}
+
+#[test]
 fn each_error_names_what_is_wrong() {
     let now = Instant::from_micros(0);
     let with = |change: fn(&mut FlowSettings)| {

@@ -6,8 +6,9 @@ use crate::common::{Scratch, eeruf, json};
 
 const FEW: [&str; 2] = ["--most-sensors", "4"];
 
+// Two processes that share the rings make the file that one makes.
 #[test]
-fn two_processes_that_share_the_rings_make_the_file_that_one_makes() {
+fn two_processes_make_the_file_of_one() {
     let (folder, one) = Scratch::new("one.txt", "");
     let both = folder.path().join("both.txt");
     let made = eeruf(&[&["atlas", one.to_str().unwrap()], &FEW[..]].concat());
@@ -29,8 +30,9 @@ fn two_processes_that_share_the_rings_make_the_file_that_one_makes() {
     assert!(rows > 40, "{rows} rows");
 }
 
+// A file that was cut within a row is completed and rows that are there are not made again.
 #[test]
-fn a_file_that_was_cut_within_a_row_is_completed_and_rows_that_are_there_are_not_made_again() {
+fn cut_file_is_completed_without_repeating_rows() {
     let (_folder, file) = Scratch::new("atlas.txt", "");
     let name = file.to_str().unwrap();
     let command = [&["atlas", name], &FEW[..]].concat();
@@ -60,8 +62,9 @@ fn a_share_that_makes_no_sense_is_refused() {
     }
 }
 
+// A ring of the atlas is answered in any tick that its needs are as many of.
 #[test]
-fn a_ring_of_the_atlas_is_answered_in_any_tick_that_its_needs_are_as_many_of() {
+fn atlas_answers_in_any_multiple_tick() {
     for (tick, us) in [("1000", 1000), ("500", 500)] {
         let times = |ticks: u32| ticks * us;
         let ring = format!(

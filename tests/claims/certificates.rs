@@ -32,8 +32,9 @@ fn both_checkers_accept_the_certificates_of_design() {
     }
 }
 
+// Both checkers refuse a certificate for a period that is not the shortest.
 #[test]
-fn both_checkers_refuse_a_certificate_for_a_period_that_is_not_the_shortest() {
+fn both_checkers_refuse_a_longer_period() {
     let (_scratch, file) = Scratch::new("ring.cert", "");
     let outcome = eeruf(&[
         "design",
@@ -77,8 +78,9 @@ fn a_proof_for_veripb_is_written_beside_its_model() {
     assert!(outcome.err.contains("not written: the proof has more than 16 nodes"), "{}", outcome.err);
 }
 
+// A proof that is given too few nodes certifies a lower bound and says what a longer one would.
 #[test]
-fn a_proof_that_is_given_too_few_nodes_certifies_a_lower_bound_and_says_what_a_longer_one_would() {
+fn short_proof_certifies_a_lower_bound() {
     let (_scratch, file) = Scratch::new("ring.cert", "");
     let certificate = file.display().to_string();
     let asked = [
@@ -101,8 +103,9 @@ fn a_proof_that_is_given_too_few_nodes_certifies_a_lower_bound_and_says_what_a_l
     assert!((50..65).contains(&bound), "{bound}");
 }
 
+// A time limit ends a search with a schedule a bound and its certificate.
 #[test]
-fn a_time_limit_ends_a_search_with_a_schedule_a_bound_and_its_certificate() {
+fn time_limit_ends_with_schedule_bound_and_certificate() {
     // Not proven within half a million nodes.
     let ring = "sensors = 11\nlayout = \"ring\"\nneighbours = 4\nt_delta_us = 999\nmin_interval_us = 15_000\n\
                 window_us = 15_000\n";

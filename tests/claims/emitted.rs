@@ -54,8 +54,9 @@ fn emitted_flow_drives_a_ring_whose_modules_rest() {
     assert!(fired.iter().all(|(count, _)| (10..=16).contains(count)), "{fired:?}");
 }
 
+// An emitted table of sensors that are not all alike drives a ring that knows each.
 #[test]
-fn an_emitted_table_of_sensors_that_are_not_all_alike_drives_a_ring_that_knows_each() {
+fn emitted_uneven_table_drives_its_ring() {
     let ring = Ring::<_, _, 12>::new(&car_12::RING, RingConfig::new(), Instant::default()).unwrap();
     assert_eq!((ring.window_of(1), ring.window_of(4)), (Micros::new(32_051), Micros::new(11_655)));
     assert_eq!((ring.t_delta_of(1), ring.t_delta_of(4)), (Micros::new(644), Micros::new(894)));

@@ -43,8 +43,9 @@ fn pictures_are_drawn_into_a_folder_that_is_made() {
     }
 }
 
+// An unknown method and a speed out of range are refused in words.
 #[test]
-fn an_unknown_method_and_a_speed_out_of_range_are_refused_in_words() {
+fn unknown_method_and_speed_are_refused_in_words() {
     for (words, says) in [
         (["experiment", "set-one", "--method", "eruf"], "`eruf`; expected simultaneous"),
         (["experiment", "set-two", "--speed", "9"], "expected 0.1 to 5"),

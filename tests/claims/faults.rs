@@ -160,8 +160,9 @@ fn a_clock_that_drifts_stretches_what_it_measures() {
     assert!((mean(is_during) / mean(is_apart) - 1.02).abs() < 1e-3, "{} {}", mean(is_during), mean(is_apart));
 }
 
+// A line without edges gives no echo and only a missing sensor is silent.
 #[test]
-fn a_line_without_edges_gives_no_echo_and_only_a_missing_sensor_is_silent() {
+fn line_without_edges_gives_no_echo() {
     for kind in ["missing", "stuck", "cut"] {
         let readings = timed(kind, "[3]", "");
         assert_eq!(without_echo(&readings, 3, is_during), 1.0, "{kind}");
@@ -250,8 +251,9 @@ fn a_door_that_opens_lets_a_sensor_see_farther() {
     assert!((shut - 1.6 / 343.2e-6).abs() < 300.0 && (open - 3.6 / 343.2e-6).abs() < 300.0, "{shut} {open}");
 }
 
+// A scene with faults is written as it is read and wrong ones are refused.
 #[test]
-fn a_scene_with_faults_is_written_as_it_is_read_and_wrong_ones_are_refused() {
+fn faulty_scene_is_written_as_read() {
     let refused = |fault: &str| {
         World::from_text(Path::new("s.toml"), &format!("{SCENE}\n[[fault]]\n{fault}\n")).unwrap_err().to_string()
     };

@@ -22,8 +22,9 @@ fn ring(min_interval_us: u32) -> (Scratch, String) {
     (folder, file.display().to_string())
 }
 
+// The shortest period is window and code and proven where neighbours may fire together.
 #[test]
-fn the_shortest_period_is_window_and_code_and_proven_where_neighbours_may_fire_together() {
+fn shortest_many_phase_period_is_window_and_code() {
     for (sensors, margin, separation) in [(1, None, 301), (7, None, 301), (8, None, 301), (12, Some("90"), 240)] {
         let keys = format!("sensors = {sensors}\nt_delta_us = 150\nwindow_us = 36_000\nmin_interval_us = 0\n");
         let (folder, file) = Scratch::new("ring.toml", &keys);
@@ -41,8 +42,9 @@ fn the_shortest_period_is_window_and_code_and_proven_where_neighbours_may_fire_t
     }
 }
 
+// Neighbours keep their interval in all phases and the bound says how much may be left.
 #[test]
-fn neighbours_keep_their_interval_in_all_phases_and_the_bound_says_how_much_may_be_left() {
+fn neighbours_keep_their_interval_in_all_phases() {
     let (folder, file) = ring(12_000);
     let asked = ["design", &file, "--phases", "11", "--margin-us", "90"];
     let found = json(&[&asked[..], &["--json"]].concat());
@@ -151,8 +153,9 @@ fn what_is_wrong_with_a_file_of_many_phases_is_said_in_one_line() {
     assert!(outcome.code == Some(2) && outcome.err.contains("expected a schedule of many phases"), "{}", outcome.err);
 }
 
+// Emitted rust is checked by the compiler and emitted c compiles without a warning.
 #[test]
-fn emitted_rust_is_checked_by_the_compiler_and_emitted_c_compiles_without_a_warning() {
+fn emitted_rust_and_c_compile_without_warning() {
     let asked = ["design", "tests/data/hopping-8.toml", "--phases", "11", "--margin-us", "90", "--emit"];
     let rust = eeruf(&[&asked[..], &["rust"]].concat()).out;
     assert_eq!(rust, include_str!("emitted/hopping_8.rs"));
@@ -183,8 +186,9 @@ fn emitted_rust_is_checked_by_the_compiler_and_emitted_c_compiles_without_a_warn
     }
 }
 
+// A ring that hops on an arduino is set up by what is emitted for it.
 #[test]
-fn a_ring_that_hops_on_an_arduino_is_set_up_by_what_is_emitted_for_it() {
+fn hopping_ring_is_set_up_by_its_emitted_arduino_file() {
     let asked = ["design", "tests/data/hopping-8.toml", "--phases", "11", "--margin-us", "90", "--emit", "arduino"];
     let (folder, tab) = Scratch::new("ring.h", &eeruf(&asked).out);
     // The tab asks for the library by its name; what it takes of it is eeruf.h.
@@ -230,8 +234,9 @@ fn an_emitted_code_drives_a_hopping_ring() {
     assert!(accepted > 100, "{accepted}");
 }
 
+// A picture of many phases has a line for each sensor and phase.
 #[test]
-fn a_picture_of_many_phases_has_a_line_for_each_sensor_and_phase() {
+fn picture_has_a_line_for_each_sensor_and_phase() {
     let (folder, file) = ring(12_000);
     let picture = folder.path().join("timing.svg");
     let outcome = eeruf(&["design", &file, "--phases", "11", "--svg", picture.to_str().unwrap()]);

@@ -2,8 +2,9 @@
 
 use crate::common::{Scratch, eeruf};
 
+// Bad input gets one line that names file place value and what is expected.
 #[test]
-fn bad_input_gets_one_line_that_names_file_place_value_and_what_is_expected() {
+fn bad_input_gets_one_line_with_its_place() {
     let cases = [
         (
             "period_us = 100000\nt_lag_us = [0]\nt_wait_a_us = [1, 2]\nt_wait_b_us = [1]\n",

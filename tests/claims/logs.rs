@@ -6,8 +6,9 @@ use eeruf_logs::{Echo, FiringLog, Options, read_log, replay};
 use crate::common::{Scratch, eeruf, json};
 use crate::ros2::Message;
 
+// Replay writes what it accepts beside what was recorded by rep 117.
 #[test]
-fn replay_writes_what_it_accepts_beside_what_was_recorded_by_rep_117() {
+fn replay_writes_accepted_ranges_by_rep_117() {
     let rows = ["1.0", "1.0", "2.0", "2.001", "", "", "3.0"];
     let rows: Vec<_> = rows.iter().enumerate().map(|(n, range)| format!("{}.5,{range}", n + 10)).collect();
     let (folder, log) = Scratch::new("log.csv", &format!("t,left\n{}\n", rows.join("\n")));
@@ -37,8 +38,9 @@ fn replay_writes_what_it_accepts_beside_what_was_recorded_by_rep_117() {
     assert!(without.err.ends_with("a reading without a time; --out needs --time COLUMN for CSV\n"), "{}", without.err);
 }
 
+// Of a cut bag replay prints what can be read and says what cannot.
 #[test]
-fn of_a_cut_bag_replay_prints_what_can_be_read_and_says_what_cannot() {
+fn replay_prints_what_a_cut_bag_still_holds() {
     let whole = std::fs::read("crates/eeruf-logs/tests/bags/ros1-none.bag").unwrap();
     let (folder, _) = Scratch::new("unused", "");
     let file = folder.path().join("cut.bag");
@@ -49,8 +51,9 @@ fn of_a_cut_bag_replay_prints_what_can_be_read_and_says_what_cannot() {
     assert!(outcome.out.contains("| /sonar/1 |"), "{}", outcome.out);
 }
 
+// Diagnose says from a log of study who fools whom and that two phases do not tell.
 #[test]
-fn diagnose_says_from_a_log_of_study_who_fools_whom_and_that_two_phases_do_not_tell() {
+fn diagnose_says_who_fools_whom_from_a_study() {
     let (folder, log) = Scratch::new("log.csv", "");
     let (log, picture) = (log.to_str().unwrap(), folder.path().join("pairs.svg"));
     let study = |method| {
@@ -93,8 +96,9 @@ fn study_writes_the_log_of_one_method() {
     assert!(outcome.err.ends_with("expected one --method, whose firings it writes\n"), "{}", outcome.err);
 }
 
+// Study writes ranges poses scene and paths that another reader reads.
 #[test]
-fn study_writes_ranges_poses_scene_and_paths_that_another_reader_reads() {
+fn study_writes_what_another_reader_reads() {
     let (folder, _) = Scratch::new("unused", "");
     let file = folder.path().join("study.mcap");
     let args = ["study", "scenes/alcove.toml", "--method", "conventional,eeruf", "--periods", "40", "--mcap"];
@@ -162,8 +166,9 @@ fn logs_say_whether_there_is_crosstalk() {
     }
 }
 
+// A simulated survey finds who hears whom and its ring file is one for design.
 #[test]
-fn a_simulated_survey_finds_who_hears_whom_and_its_ring_file_is_one_for_design() {
+fn survey_gives_a_ring_file_for_design() {
     let (folder, log) = Scratch::new("survey.csv", "");
     let (log, ring, picture) =
         (log.to_str().unwrap(), folder.path().join("ring.toml"), folder.path().join("survey.svg"));
@@ -222,8 +227,9 @@ fn experiments_write_their_first_alcove_and_course_as_mcap() {
     assert_eq!((without.code, without.err.contains("--mcap needs one --method")), (Some(2), true), "{}", without.err);
 }
 
+// The data set is the same bit for bit and knows whose sound each reading is.
 #[test]
-fn the_data_set_is_the_same_bit_for_bit_and_knows_whose_sound_each_reading_is() {
+fn data_set_is_equal_bit_for_bit_with_causes() {
     let (folder, _) = Scratch::new("unused", "");
     let out = folder.path().join("data");
     let small = ["--alcoves", "1", "--courses", "1", "--periods", "40", "--physics", "default"];
@@ -249,8 +255,9 @@ fn the_data_set_is_the_same_bit_for_bit_and_knows_whose_sound_each_reading_is() 
     assert!(fooled > 20 && readings.lines().count() == 2 + 8 * 40, "{fooled} of {}", readings.lines().count());
 }
 
+// A log without instants is put onto its schedule and refused if lags moved.
 #[test]
-fn a_log_without_instants_is_put_onto_its_schedule_and_refused_if_lags_moved() {
+fn log_without_instants_is_refused_if_lags_moved() {
     let (folder, log) = Scratch::new("log.csv", "");
     let path = log.to_str().unwrap();
     let study = ["study", "scenes/alcove-hc-sr04.toml", "--method", "eeruf", "--physics", "plain", "--periods", "400"];
@@ -301,8 +308,9 @@ fn a_log_without_instants_is_put_onto_its_schedule_and_refused_if_lags_moved() {
     assert!(moved.code == Some(2) && moved.err.contains("jump at once"), "{}{}", moved.out, moved.err);
 }
 
+// The replay of a hopping rings log makes of each firing what the run made of it.
 #[test]
-fn the_replay_of_a_hopping_rings_log_makes_of_each_firing_what_the_run_made_of_it() {
+fn hopping_replay_equals_its_run() {
     // One stands; the other has twelve sensors and drives, with odometry.
     for (scene, periods, ending) in [("scenes/alcove.toml", 2000, "csv"), ("scenes/pole-course.toml", 150, "mcap")] {
         let (folder, _) = Scratch::new("unused", "");
@@ -355,8 +363,9 @@ fn the_replay_of_a_hopping_rings_log_makes_of_each_firing_what_the_run_made_of_i
     }
 }
 
+// A log that does not say how readings were weighed is refused with what is missing.
 #[test]
-fn a_log_that_does_not_say_how_readings_were_weighed_is_refused_with_what_is_missing() {
+fn log_without_weighing_is_refused() {
     let header = "sensor,fired_us,period,phase,t_echo_us,reading";
     let (_folder, log) = Scratch::new("log.csv", &format!("{header}\n0,15000,0,0,5872,rejected\n"));
     let outcome = eeruf(&["replay", log.to_str().unwrap(), "--hopping", "quick"]);
@@ -378,8 +387,9 @@ fn a_log_that_does_not_say_how_readings_were_weighed_is_refused_with_what_is_mis
     assert!(none.err.contains("--t-delta-us"), "{}", none.err);
 }
 
+// A wall that comes nearer too fast for two readings is accepted with a rate.
 #[test]
-fn a_wall_that_comes_nearer_too_fast_for_two_readings_is_accepted_with_a_rate() {
+fn fast_wall_is_accepted_with_a_rate() {
     // 1 m/s, readings 80 and 120 ms apart: 470 and 700 us from each to the next.
     let times = (0..40).map(|n| 10.0 + 0.1 * f64::from(n) - if n % 2 == 1 { 0.02 } else { 0.0 });
     let rows: Vec<_> = times.map(|time| format!("{time:.3},{:.4}", 6.0 - (time - 10.0))).collect();

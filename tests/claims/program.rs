@@ -24,8 +24,9 @@ fn table_i_d_is_verified_up_to_999_us_and_not_at_1000() {
     }
 }
 
+// The report of table i d has the figures of the paper in blocks and ours in a line.
 #[test]
-fn the_report_of_table_i_d_has_the_figures_of_the_paper_in_blocks_and_ours_in_a_line() {
+fn report_of_table_i_d_has_the_papers_figures() {
     for criterion in ["paper", "exact"] {
         for (layout, min_interval) in [("line", 17_000), ("blocks", 19_000), ("0-1,1-2,2-3", 19_000)] {
             let report =
@@ -110,8 +111,9 @@ fn a_replay_draws_what_it_counts() {
     assert!(svg.starts_with("<svg") && svg.contains("left") && svg.contains("3 firings"));
 }
 
+// The papers ring can run at 65 ms and the answer is the same in every form.
 #[test]
-fn the_papers_ring_can_run_at_65_ms_and_the_answer_is_the_same_in_every_form() {
+fn papers_ring_runs_at_65_ms_in_every_form() {
     let found = json(&["design", "rings/paper-12.toml", "--no-atlas", "--emit", "json"]);
     assert_eq!((&found["value_us"], &found["bound_us"]), (&65_000.into(), &65_000.into()));
     assert_eq!(found["proven"], true);
@@ -146,8 +148,9 @@ fn the_papers_ring_can_run_at_65_ms_and_the_answer_is_the_same_in_every_form() {
     }
 }
 
+// Every ring file that we ship gets a proven schedule with a picture.
 #[test]
-fn every_ring_file_that_we_ship_gets_a_proven_schedule_with_a_picture() {
+fn every_shipped_ring_is_proven_with_a_picture() {
     let uneven = [("car-12", 34_100), ("hc-sr04-8-two-multiplexers", 61_500), ("mower-8-and-4", 37_000)];
     for (ring, period_us) in
         [("labmate-8", 48_300), ("ring-24", 76_000), ("hc-sr04-8", 67_500)].into_iter().chain(uneven)
@@ -188,8 +191,9 @@ fn ring_file_scene_and_emitted_table_say_the_same_of_a_module() {
     assert_eq!(modules[1], "# Sensors 2 to 2: srf08, i2c, trigger 0 us, rest 65000 us");
 }
 
+// A schedule is held against a ring file with all that differs in it.
 #[test]
-fn a_schedule_is_held_against_a_ring_file_with_all_that_differs_in_it() {
+fn schedule_is_verified_against_an_uneven_ring_file() {
     let (folder, schedule) = Scratch::new("mower.toml", "");
     let file = schedule.to_str().unwrap();
     let designed = eeruf(&["design", "rings/mower-8-and-4.toml", "--emit", "toml"]).out;
@@ -240,8 +244,9 @@ fn a_robot_that_moves_gets_a_t_delta_that_covers_its_motion() {
     assert!(rocket.out.contains("no schedule"), "{}", rocket.out);
 }
 
+// Emitted rust is checked by the compiler and emitted c compiles without a warning.
 #[test]
-fn emitted_rust_is_checked_by_the_compiler_and_emitted_c_compiles_without_a_warning() {
+fn emitted_rust_and_c_compile_without_warning() {
     let rust = eeruf(&["design", "rings/paper-12.toml", "--period-only", "--emit", "rust"]).out;
     // `emitted.rs` compiles that file.
     assert_eq!(rust, include_str!("emitted/paper_12.rs"), "eeruf design rings/paper-12.toml --period-only --emit rust");
@@ -391,8 +396,9 @@ fn ctrl_c_ends_a_long_design_with_the_best_schedule_so_far() {
     assert!(out.contains("not proven: it may be as short as") && out.contains("t_fire_a_us"), "{out}");
 }
 
+// The examples are written where they are wanted and never over what is there.
 #[test]
-fn the_examples_are_written_where_they_are_wanted_and_never_over_what_is_there() {
+fn examples_never_overwrite() {
     let (folder, _) = Scratch::new("unused", "");
     let folder = folder.path().to_str().unwrap();
     let listed = eeruf(&["examples"]).out;
@@ -407,8 +413,9 @@ fn the_examples_are_written_where_they_are_wanted_and_never_over_what_is_there()
     assert_eq!(text("scenes/wall.toml"), include_str!("../../scenes/wall.toml"));
 }
 
+// Shells complete every verb and the manual has a page for each.
 #[test]
-fn shells_complete_every_verb_and_the_manual_has_a_page_for_each() {
+fn shells_complete_every_verb() {
     let help = eeruf(&["--help"]).out;
     let (_, verbs) = help.split_once("Commands:\n").unwrap();
     let verbs: Vec<_> =
@@ -424,8 +431,9 @@ fn shells_complete_every_verb_and_the_manual_has_a_page_for_each() {
     }
 }
 
+// The program prints its licences and those of what is within it.
 #[test]
-fn the_program_prints_its_licences_and_those_of_what_is_within_it() {
+fn program_prints_all_licences() {
     let said = eeruf(&["licenses"]);
     assert_eq!(said.code, Some(0));
     let own = [include_str!("../../LICENSE-MIT"), include_str!("../../src/report/draw/font/LICENSE")];
@@ -447,7 +455,7 @@ fn the_version_names_the_commit_of_the_clone() {
 /// Rust ignores a pipe whose reader went away, and printing into it then panics.
 #[cfg(unix)]
 #[test]
-fn who_reads_only_the_beginning_of_what_is_printed_sees_no_panic() {
+fn early_end_of_reading_makes_no_panic() {
     let mut program = Command::new(env!("CARGO_BIN_EXE_eeruf"));
     let printing = program.args(["completions", "zsh"]).stdout(Stdio::piped()).stderr(Stdio::piped());
     let mut printing = printing.spawn().unwrap();

@@ -23,8 +23,9 @@ fn simulation() -> Simulation {
     Simulation::new(Arc::new(world), Method::Eeruf, &Options::default(), Stop::default()).unwrap()
 }
 
+// A recording has each reading once and poses where the robot was steered.
 #[test]
-fn a_recording_has_each_reading_once_and_poses_where_the_robot_was_steered() {
+fn recording_has_each_reading_once() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("drive.mcap");
     let mut simulation = simulation();
@@ -97,8 +98,9 @@ fn messages(file: &std::path::Path, ending: &str) -> Vec<(f64, String, Value)> {
     all.map(|message| ((message.log_time - START_NS) as f64 * 1e-9, message.topic, message.value)).collect()
 }
 
+// A scene that is exchanged is drawn from then on and sound that was on its way where it was.
 #[test]
-fn a_scene_that_is_exchanged_is_drawn_from_then_on_and_sound_that_was_on_its_way_where_it_was() {
+fn exchanged_scene_is_drawn_from_then_on() {
     // A sensor that looks along the x axis, and a wall before it; the air too may be another.
     let wall_at = |x: f64, temperature_c: f64, poles: Vec<Pole>| {
         let wall = Wall::new(x, -5.0, x, 5.0).with_faces(Faces::Both);

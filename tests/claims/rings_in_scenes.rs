@@ -36,8 +36,9 @@ fn makes(list: &[&str]) -> String {
     format!("module = {list:?}")
 }
 
+// A car with two makes and a mower fire as their ring files say.
 #[test]
-fn a_car_with_two_makes_and_a_mower_fire_as_their_ring_files_say() {
+fn car_and_mower_fire_as_their_ring_files_say() {
     // The front of another make, as the file says.
     let car: Vec<_> = (0..12).map(|sensor| if sensor < 4 { "jsn-sr04t" } else { "hc-sr04" }).collect();
     let mower: Vec<_> = (0..12).map(|sensor| if sensor < 8 { "hc-sr04" } else { "ping" }).collect();

@@ -45,8 +45,9 @@ fn four_lines_get_a_way_with_its_figures_in_each_room() {
     assert!(!period.contains("recommended") && period.contains("5.5 cm of range"), "{period}");
 }
 
+// Way recommended keeps foreign sound low where all at once does not.
 #[test]
-fn way_recommended_keeps_foreign_sound_low_where_all_at_once_does_not() {
+fn recommended_way_keeps_foreign_sound_low() {
     let answer = json(&["study", "rings/hc-sr04-8.toml", "--places", "4", "--first", "20000", "--json"]);
     assert_eq!(answer["keeps"], true);
     let best = way(&answer, answer["recommended"].as_str().unwrap());

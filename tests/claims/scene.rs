@@ -17,8 +17,9 @@ fn a_map_becomes_a_scene_that_can_be_studied_with_a_robot_in_it() {
     assert_eq!((study.code, &*study.err), (Some(0), ""));
 }
 
+// A map that is wrong is refused with the file and what is expected.
 #[test]
-fn a_map_that_is_wrong_is_refused_with_the_file_and_what_is_expected() {
+fn wrong_map_is_refused_with_its_file() {
     let (_folder, yaml) = Scratch::new("map.yaml", "image: no.pgm\nresolution: 0.05\norigin: [0, 0]\n");
     let outcome = eeruf(&["scene", yaml.to_str().unwrap()]);
     assert_eq!(outcome.code, Some(2));

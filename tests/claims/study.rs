@@ -25,8 +25,9 @@ fn number(value: &Value) -> f64 {
     value.as_f64().unwrap_or_else(|| panic!("{value} is no number"))
 }
 
+// Eeruf believes next to no crosstalk where constant lags believe it with and without comparing.
 #[test]
-fn eeruf_believes_next_to_no_crosstalk_where_constant_lags_believe_it_with_and_without_comparing() {
+fn eeruf_believes_next_to_no_crosstalk() {
     let study = json(&["study", "scenes/alcove.toml", "--periods", "300", "--json"]);
     let wrong = |method: &str| number(&study["methods"][method]["wrong_of_accepted"]);
     assert!(wrong("conventional") > 0.2, "{}", wrong("conventional"));
@@ -46,8 +47,9 @@ fn the_help_names_every_method() {
     }
 }
 
+// Json has every method with shares of one in the order of the table.
 #[test]
-fn json_has_every_method_with_shares_of_one_in_the_order_of_the_table() {
+fn json_has_every_method_in_the_tables_order() {
     let outcome = eeruf(&["study", "scenes/alcove.toml", "--periods", "60", "--json"]);
     let places: Vec<_> = METHODS.iter().map(|method| outcome.out.find(&format!("\"{method}\":{{"))).collect();
     assert!(places.iter().all(Option::is_some) && places.is_sorted(), "{places:?}");
@@ -101,8 +103,9 @@ fn the_table_names_every_method_and_who_was_fooled_by_whom() {
     }
 }
 
+// Each robot has a table and crosstalk between robots is told apart.
 #[test]
-fn each_robot_has_a_table_and_crosstalk_between_robots_is_told_apart() {
+fn each_robot_has_a_table() {
     let outcome = eeruf(&["study", "scenes/lab.toml", "--periods", "40", "--method", "conventional,eeruf"]);
     assert_eq!((outcome.code, outcome.err.as_str()), (Some(0), ""));
     for said in ["Robot 1: 8 sensors", "Robot 2: 24 sensors", " of robot 2 |"] {
@@ -152,8 +155,9 @@ fn a_picture_whose_name_ends_in_png_is_one() {
     assert!(std::fs::read(file).unwrap().starts_with(b"\x89PNG"));
 }
 
+// Paths are listed by emitter receiver and length with the names that python uses.
 #[test]
-fn paths_are_listed_by_emitter_receiver_and_length_with_the_names_that_python_uses() {
+fn paths_are_listed_by_emitter_receiver_and_length() {
     let paths = json(&["paths", "scenes/alcove.toml", "--order", "2", "--json"]);
     let columns = ["emitter", "receiver", "length_m", "order", "departure_rad", "arrival_rad", "amplitude", "walls"];
     let count = paths["length_m"].as_array().unwrap().len();
@@ -191,8 +195,9 @@ fn a_way_there_is_a_way_back() {
     }
 }
 
+// Bad scenes get one line that names file line value and what is expected.
 #[test]
-fn bad_scenes_get_one_line_that_names_file_line_value_and_what_is_expected() {
+fn bad_scenes_get_one_line_with_their_place() {
     let ring = "ring = { sensors = 8, spacing_deg = 15.0, radius_m = 0.3 }";
     let within =
         format!("[[robot]]\npose = {{ x_m = 0.0, y_m = 0.0 }}\n{ring}\n[[wall]]\npoints_m = [[0.2, -1], [0.2, 1]]\n");

@@ -125,15 +125,17 @@ fn changes(was: &str, is: &str) -> Vec<String> {
 mod tests {
     use super::{changes, names_at_root, types_at_two_places};
 
+    // What is gone and what is new is named and order does not matter.
     #[test]
-    fn what_is_gone_and_what_is_new_is_named_and_order_does_not_matter() {
+    fn changes_are_named_in_any_order() {
         assert!(changes("pub fn a()\npub fn b()\n", "pub fn b()\npub fn a()\n").is_empty());
         let changed = changes("pub fn a()\npub fn b()\n", "pub fn a(u8)\npub fn b()\n");
         assert_eq!(changed, ["- pub fn a()", "+ pub fn a(u8)"]);
     }
 
+    // Names at the root are counted once and types under two paths are found.
     #[test]
-    fn names_at_the_root_are_counted_once_and_types_under_two_paths_are_found() {
+    fn root_names_are_counted_once() {
         let api = "pub mod eeruf_core\npub mod eeruf_core::plan\npub struct eeruf_core::plan::Ring<P>\n\
                    impl<P> eeruf_core::plan::Ring<P>\npub const fn eeruf_core::plan::Ring<P>::new(u8) -> Self\n\
                    #[non_exhaustive] pub struct eeruf_core::Ring<P>\n\

@@ -39,8 +39,9 @@ fn dependencies() -> BTreeMap<String, BTreeSet<String>> {
     found
 }
 
+// Every direct dependency is named with its reason and no other.
 #[test]
-fn every_direct_dependency_is_named_with_its_reason_and_no_other() {
+fn direct_dependencies_are_named_with_reasons() {
     let (document, dependencies) = (document(), dependencies());
     let text = document.replace('\n', " ");
     let named = quoted(&text);
@@ -58,8 +59,9 @@ fn every_direct_dependency_is_named_with_its_reason_and_no_other() {
     assert!(gone.is_empty(), "nothing depends on {gone:?}, which docs/project/dependencies.md names");
 }
 
+// As many crates as the document says are built with each of ours.
 #[test]
-fn as_many_crates_as_the_document_says_are_built_with_each_of_ours() {
+fn crate_counts_are_those_of_the_document() {
     let document = document();
     let (mut wrong, mut rows) = (Vec::new(), 0);
     for row in document.lines().filter(|line| line.starts_with("| `eeruf")) {

@@ -138,8 +138,9 @@ fn is_same(expected: &str, measured: &str) -> bool {
 mod tests {
     use super::*;
 
+    // Counts must be the same on the same compiler and are left alone on another.
     #[test]
-    fn counts_must_be_the_same_on_the_same_compiler_and_are_left_alone_on_another() {
+    fn counts_must_match_on_the_same_compiler() {
         let table = |most: u32| format!("| board | most |\n|---|---:|\n| microbit | {most} |\n");
         assert!(differences("size", &table(3564), &table(3564), |_| true).is_empty());
         assert_eq!(
@@ -157,8 +158,9 @@ mod tests {
         assert_eq!(rows_of(table, "rv_virt"), "| board | most |\n|---|---:|\n| rv_virt | 2 |\n");
     }
 
+    // Timings may differ a little and words and counts beside them may not.
     #[test]
-    fn timings_may_differ_a_little_and_words_and_counts_beside_them_may_not() {
+    fn timings_may_differ_a_little() {
         assert!(is_same("a firing 32.1 ms late", "a firing 32.073 ms late"));
         assert!(!is_same("a firing 32.1 ms late", "nothing to name"));
         assert!(is_same("latest_us 58 accepted 2386", "latest_us 61 accepted 2386"));

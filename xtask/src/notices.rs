@@ -169,8 +169,9 @@ mod tests {
         }
     }
 
+    // A text that many use stands once and names them and their authors.
     #[test]
-    fn a_text_that_many_use_stands_once_and_names_them_and_their_authors() {
+    fn shared_licence_text_stands_once() {
         let crates = |names: &[&str]| {
             let one = |name: &&str| json!({ "crate": { "name": name, "version": "1.0.0" } });
             names.iter().map(one).collect::<Vec<_>>()

@@ -81,8 +81,9 @@ mod tests {
 
     use cargo_metadata::MetadataCommand;
 
+    // Each crate says what a stranger asks or why it is not published.
     #[test]
-    fn each_crate_says_what_a_stranger_asks_or_why_it_is_not_published() {
+    fn each_crate_says_what_a_stranger_asks() {
         let metadata = MetadataCommand::new().no_deps().exec().unwrap();
         let mut missing = Vec::new();
         for package in metadata.workspace_packages() {

@@ -174,8 +174,9 @@ mod tests {
 
     use super::rewritten;
 
+    // Links lead to chapters in the book and to sources in the repository.
     #[test]
-    fn links_lead_to_chapters_in_the_book_and_to_sources_in_the_repository() {
+    fn links_lead_to_chapters_and_sources() {
         let text = "[docs/how-to/simulate.md](docs/how-to/simulate.md#who) ![b](docs/pictures/b.png) \
                     [c](CHANGELOG.md) [d](src/main.rs) [e](https://e.org/)";
         let expected = "[docs/how-to/simulate.md](how-to/simulate.md#who) ![b](pictures/b.png) [c](changes.md) \

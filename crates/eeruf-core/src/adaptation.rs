@@ -266,8 +266,9 @@ mod tests {
         assert_eq!(advice, Advice { rung: 0, rejection_permille: Some(0), max_speed_mm_s: 1381 });
     }
 
+    // Noisy is more than the one limit and calm no more than the other.
     #[test]
-    fn noisy_is_more_than_the_one_limit_and_calm_no_more_than_the_other() {
+    fn noisy_and_calm_are_beyond_their_limits() {
         let rungs = rungs();
         let mut adaptation = Adaptation::new(Ladder::new(&rungs).unwrap());
         assert_eq!(changes(&mut adaptation, period(70, 30), 160), []);
@@ -285,8 +286,9 @@ mod tests {
         assert_eq!(adaptation.advice(REQUIREMENTS.t_delta, SpeedOfSound::AT_20_CELSIUS).rung, 2);
     }
 
+    // A change that the ring refuses leaves the rung and is asked for again.
     #[test]
-    fn a_change_that_the_ring_refuses_leaves_the_rung_and_is_asked_for_again() {
+    fn refused_change_leaves_rung_and_is_asked_again() {
         let rungs = rungs();
         let mut adaptation = Adaptation::new(Ladder::new(&rungs).unwrap());
         for window in 0..3 {

@@ -114,8 +114,9 @@ mod tests {
         Edge { sensor: (n % 100) as u8, high: n % 3 == 0, at: Instant::from_micros(n.wrapping_mul(0x0123_4567)) }
     }
 
+    // Edges come out in the order they went in through many wraps of the counts.
     #[test]
-    fn edges_come_out_in_the_order_they_went_in_through_many_wraps_of_the_counts() {
+    fn edges_keep_their_order_through_wraps_of_the_counts() {
         let queue = EdgeQueue::<128>::new();
         for round in 0..20 {
             for n in 0..100 {

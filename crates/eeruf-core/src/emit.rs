@@ -255,8 +255,9 @@ mod tests {
     const REQUIREMENTS: Requirements<'static> =
         Requirements { min_interval: Micros::from_millis(15), ..Requirements::new(Micros::new(999)) };
 
+    // A table of waits is written as lags and waits and one of firing times as such.
     #[test]
-    fn a_table_of_waits_is_written_as_lags_and_waits_and_one_of_firing_times_as_such() {
+    fn table_is_written_as_it_was_made_waits_or_firing_times() {
         assert_eq!(
             TABLE_I_D.to_toml().to_string(),
             "period_us = 100_000\n\

@@ -115,8 +115,9 @@ mod tests_of_core {
     extern crate std;
     use super::*;
 
+    // Durations of core go there and back as far as 32 bits of microseconds reach.
     #[test]
-    fn durations_of_core_go_there_and_back_as_far_as_32_bits_of_microseconds_reach() {
+    fn core_durations_round_trip_within_32_bits() {
         assert_eq!(Micros::try_from(Duration::from_nanos(24_000_999)), Ok(Micros::from_millis(24)));
         assert_eq!(Duration::from(Micros::MAX), Duration::from_micros(u32::MAX.into()));
         assert_eq!(Micros::try_from(Duration::from(Micros::MAX)), Ok(Micros::MAX));
@@ -130,8 +131,9 @@ mod tests_of_core {
 mod tests_of_embassy {
     use super::*;
 
+    // Embassys times go there and back beyond 32 bits of microseconds.
     #[test]
-    fn embassys_times_go_there_and_back_beyond_32_bits_of_microseconds() {
+    fn embassy_times_round_trip_beyond_32_bits() {
         let duration = embassy_time::Duration::from_millis(24);
         assert_eq!(Micros::try_from(duration), Ok(Micros::from_millis(24)));
         assert_eq!(embassy_time::Duration::from(Micros::from_millis(24)), duration);

@@ -149,8 +149,9 @@ mod tests {
         assert!(Layout::Blocks(4).neighbours(12, 4, 7) && !Layout::Blocks(4).neighbours(12, 3, 4));
     }
 
+    // A graph is symmetric and without loops whatever its words say.
     #[test]
-    fn a_graph_is_symmetric_and_without_loops_whatever_its_words_say() {
+    fn graph_is_symmetric_and_without_loops() {
         let graph = Layout::Graph(&[0b011, 0, 0b001]);
         assert!(!graph.neighbours(3, 0, 0));
         assert!(graph.neighbours(3, 0, 1) && graph.neighbours(3, 1, 0));

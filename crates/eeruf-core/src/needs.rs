@@ -115,8 +115,9 @@ mod tests {
         Micros::from_millis(ms)
     }
 
+    // After a firing the other keeps the interval or the window of the line that they share.
     #[test]
-    fn after_a_firing_the_other_keeps_the_interval_or_the_window_of_the_line_that_they_share() {
+    fn gap_after_firing_is_interval_or_shared_window() {
         let windows = [ms(12), ms(40), ms(40)];
         let uneven = Uneven { window: &windows, shared_lines: &[0b011], intervals: &[(0, 1, ms(20))], ..Uneven::NONE };
         let requirements = Requirements {

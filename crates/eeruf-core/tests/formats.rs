@@ -33,16 +33,18 @@ mod schedules_as_serde_sees_them {
         }
     }
 
+    // A format is asked for the fields of as many phases as there are.
     #[test]
-    fn a_format_is_asked_for_the_fields_of_as_many_phases_as_there_are() {
+    fn format_is_asked_for_its_phases() {
         let one = Schedule::<2, 1>::deserialize(AsksFor).unwrap_err().to_string();
         assert_eq!(one, "Schedule of period_us t_lag_us t_wait_a_us");
         let three = Schedule::<2, 3>::deserialize(AsksFor).unwrap_err().to_string();
         assert_eq!(three, "Schedule of period_us t_lag_us t_wait_a_us t_wait_b_us t_wait_c_us");
     }
 
+    // A schedule goes into json and back with the keys of a schedule file.
     #[test]
-    fn a_schedule_goes_into_json_and_back_with_the_keys_of_a_schedule_file() {
+    fn schedule_goes_into_json_and_back() {
         let text = serde_json::to_string(&TABLE_I_D).unwrap();
         assert!(text.starts_with(r#"{"period_us":100000,"t_lag_us":[0,25000,"#), "{text}");
         assert!(text.contains(r#""t_wait_b_us":[18000,12000,"#), "{text}");

@@ -19,8 +19,9 @@ impl Random {
     }
 }
 
+// It has a row for each ring in their order and each reads as it was written.
 #[test]
-fn it_has_a_row_for_each_ring_in_their_order_and_each_reads_as_it_was_written() {
+fn atlas_has_a_row_for_each_ring_in_order() {
     let all: Vec<Row> = rows(ATLAS).collect();
     let text: String = all.iter().map(|row| format!("{row}\n")).collect();
     assert_eq!(format!("{}{text}", header()), ATLAS);
@@ -28,8 +29,9 @@ fn it_has_a_row_for_each_ring_in_their_order_and_each_reads_as_it_was_written() 
     assert!(ATLAS.len() < 1_000_000, "{} bytes", ATLAS.len());
 }
 
+// Each schedule keeps what its ring requires in its period and not one tick less.
 #[test]
-fn each_schedule_keeps_what_its_ring_requires_in_its_period_and_not_one_tick_less() {
+fn atlas_schedules_keep_needs_in_their_periods() {
     for row in rows(ATLAS) {
         let problem = row.ring.problem();
         let schedule = row.schedule(problem.tick).unwrap();
@@ -42,8 +44,9 @@ fn each_schedule_keeps_what_its_ring_requires_in_its_period_and_not_one_tick_les
     }
 }
 
+// No row is longer than sensors by colours with ranks that grow take.
 #[test]
-fn no_row_is_longer_than_sensors_by_colours_with_ranks_that_grow_take() {
+fn no_row_is_longer_than_its_construction() {
     for row in rows(ATLAS) {
         let Ring { sensors, neighbourhood, separation, interval, window } = row.ring;
         let (sensors, colours) = match neighbourhood {
@@ -57,16 +60,18 @@ fn no_row_is_longer_than_sensors_by_colours_with_ranks_that_grow_take() {
     }
 }
 
+// A proven row is the answer to its ring and an open one is none.
 #[test]
-fn a_proven_row_is_the_answer_to_its_ring_and_an_open_one_is_none() {
+fn proven_row_answers_and_open_one_does_not() {
     for row in rows(ATLAS) {
         let found = answer(ATLAS, &row.ring.problem());
         assert_eq!(found.map(|(row, _)| row), (row.period == row.bound).then(|| row.clone()), "{row}");
     }
 }
 
+// A sample is proven again by the search and its certificates are those of the hashes.
 #[test]
-fn a_sample_is_proven_again_by_the_search_and_its_certificates_are_those_of_the_hashes() {
+fn sample_of_atlas_is_proven_again() {
     let cases = std::env::var("EERUF_CASES").map_or(12, |cases| cases.parse().expect("a number"));
     let all: Vec<Row> = rows(ATLAS).collect();
     let (mut random, mut proven) = (Random(20_001), 0);

@@ -30,8 +30,9 @@ fn agree(seed: u64, problem: &Problem, most: u32) -> usize {
     certified.nodes
 }
 
+// The period proven shortest is the one that trying all schedules gives.
 #[test]
-fn the_period_proven_shortest_is_the_one_that_trying_all_schedules_gives() {
+fn proven_period_is_that_of_trying_all_schedules() {
     let cases = std::env::var("EERUF_CASES").map_or(300, |cases| cases.parse().expect("a number"));
     let (mut solved, mut nodes) = (0, 0);
     for seed in 0..cases {
@@ -86,8 +87,9 @@ fn keeps(problem: &Problem, period: u32, more: [u32; 3]) -> bool {
     feasible(&harder, period).is_some()
 }
 
+// What is spared is what trying all schedules gives need by need.
 #[test]
-fn what_is_spared_is_what_trying_all_schedules_gives_need_by_need() {
+fn spare_is_that_of_trying_all_schedules() {
     let (mut solved, mut spared) = (0, [0; 3]);
     for seed in 0..150 {
         let problem = random_problem(&mut Random(seed + 1));

@@ -2,8 +2,9 @@
 
 use eeruf_design::{NoSchedule, RingSpec, Search};
 
+// Whatever the budget bounds hold and what is proven is the shortest.
 #[test]
-fn whatever_the_budget_bounds_hold_and_what_is_proven_is_the_shortest() {
+fn bounds_hold_whatever_the_budget() {
     for layout in ["line", "ring"] {
         let ring = format!(
             "sensors = 12\nlayout = \"{layout}\"\nneighbours = 4\nmax_range_m = 4\ncrosstalk_range_m = 2\njitter_us = \
@@ -30,8 +31,9 @@ fn whatever_the_budget_bounds_hold_and_what_is_proven_is_the_shortest() {
     }
 }
 
+// What would be faster is compared with the needs that are printed.
 #[test]
-fn what_would_be_faster_is_compared_with_the_needs_that_are_printed() {
+fn faster_needs_are_compared_with_printed_ones() {
     // It moves, so that the needed t_delta depends on the schedule that is found.
     let ring = "sensors = 8\nlayout = \"line\"\nneighbours = 4\nmax_range_m = 4\ncrosstalk_range_m = 2\n\
                 jitter_us = 60\nspeed_m_s = 1\ntick_us = 100\n";

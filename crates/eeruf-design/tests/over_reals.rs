@@ -28,8 +28,9 @@ fn in_parts(problem: &Problem, parts: u32) -> u32 {
     found.period
 }
 
+// No finer tick beats the period proven over the reals and that of its denominator meets it.
 #[test]
-fn no_finer_tick_beats_the_period_proven_over_the_reals_and_that_of_its_denominator_meets_it() {
+fn no_finer_tick_beats_the_real_period() {
     let cases = std::env::var("EERUF_CASES").map_or(150, |cases| cases.parse().expect("a number"));
     let (mut proven, mut certificates, mut gained, mut largest) = (0, 0, 0, 1);
     for seed in 0..cases {
@@ -58,8 +59,9 @@ fn no_finer_tick_beats_the_period_proven_over_the_reals_and_that_of_its_denomina
     assert!(proven * 10 > cases * 8 && gained * 20 > cases && largest > 1, "{proven}, {gained}, {largest} of {cases}");
 }
 
+// Of the table line 12 at 45 ms alone gains from finer ticks and of ring 24 at 15 ms it is open.
 #[test]
-fn of_the_table_line_12_at_45_ms_alone_gains_from_finer_ticks_and_of_ring_24_at_15_ms_it_is_open() {
+fn line_12_at_45_ms_alone_gains_from_finer_ticks() {
     let (mut gain, mut open) = (Vec::new(), Vec::new());
     for (name, claim) in common::table(1) {
         let reals = shortest_over_reals(&claim.problem, &claim.fire, 20_000, |_| true).expect("small numbers");
@@ -76,8 +78,9 @@ fn of_the_table_line_12_at_45_ms_alone_gains_from_finer_ticks_and_of_ring_24_at_
     assert_eq!(open, ["ring 24, window 15"]);
 }
 
+// What ends early is what the orders of the schedule give and says so.
 #[test]
-fn what_ends_early_is_what_the_orders_of_the_schedule_give_and_says_so() {
+fn early_end_says_what_its_orders_give() {
     let (_, claim) = common::table(1).into_iter().find(|(name, _)| name == "line 12, window 45").expect("it is there");
     let all = shortest_over_reals(&claim.problem, &claim.fire, 20_000, |_| true).expect("small numbers");
     for (budget, go_on) in [(1, true), (20_000, false)] {

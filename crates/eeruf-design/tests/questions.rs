@@ -69,8 +69,9 @@ fn periods_that_cannot_be_asked_for_are_refused() {
     assert!(error(0).contains("expected"), "{}", error(0));
 }
 
+// Curve points are the shortest periods of rings with that need.
 #[test]
-fn curve_points_are_the_shortest_periods_of_rings_with_that_need() {
+fn curve_points_are_shortest_periods() {
     let text = |t_delta: u32, window: u32, interval: u32| {
         ring(&format!(
             "sensors = 6\nneighbours = 3\nt_delta_us = {t_delta}\nwindow_us = {window}\nmin_interval_us = {interval}\n"
@@ -94,8 +95,9 @@ fn curve_points_are_the_shortest_periods_of_rings_with_that_need() {
     }
 }
 
+// Curves of uneven and moving rings rise and pass their own period.
 #[test]
-fn curves_of_uneven_and_moving_rings_rise_and_pass_their_own_period() {
+fn curves_of_uneven_rings_rise_through_their_period() {
     for spec in &rings()[2..] {
         let own = shortest(spec);
         for need in [Need::TDelta, Need::Range, Need::Interval] {

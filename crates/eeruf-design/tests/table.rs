@@ -41,15 +41,17 @@ fn search_proves_every_period_of_the_table() {
     }
 }
 
+// In fine ticks a period between coarse ones is found and proven.
 #[test]
-fn in_fine_ticks_a_period_between_coarse_ones_is_found_and_proven() {
+fn fine_ticks_find_periods_between_coarse_ones() {
     let (_, claim) = common::table(2).into_iter().find(|(name, _)| name == "line 12, window 45").expect("it is there");
     let found = shortest(&claim.problem, 100_000, &mut |_| true).expect("firing one by one at least");
     assert_eq!((found.period, found.bound), (139, 139));
 }
 
+// Sensors that must fire one after the other have a bound without trying all orders.
 #[test]
-fn sensors_that_must_fire_one_after_the_other_have_a_bound_without_trying_all_orders() {
+fn sequential_sensors_have_a_bound_without_orders() {
     let windows: Vec<u32> = (10..20).collect();
     let pairs = (0..10).flat_map(|x| (x + 1..10).map(move |y| (x, y)));
     let gaps = pairs.map(|(x, y)| (x, y, windows[x], windows[y])).collect();
@@ -92,8 +94,9 @@ fn a_search_that_is_ended_has_a_schedule_and_a_bound() {
     assert!(asked > 5 && stopped.bound < stopped.period && stopped.nodes < 700, "{asked} {stopped:?}");
 }
 
+// A proof ends when the caller or the budget wants it and says so.
 #[test]
-fn a_proof_ends_when_the_caller_or_the_budget_wants_it_and_says_so() {
+fn proof_ends_when_caller_or_budget_wants() {
     let (_, claim) = common::table(1).into_iter().find(|(name, _)| name == "line 8, window 15").expect("it is there");
     let mut asked = Vec::new();
     let stopped = prove_while(&claim, 100_000, |nodes| {
@@ -107,8 +110,9 @@ fn a_proof_ends_when_the_caller_or_the_budget_wants_it_and_says_so() {
     assert_eq!(prove_while(&claim, 100_000, |_| true), prove(&claim, 100_000));
 }
 
+// A proof that ends early leaves the highest bound that can be proven with less.
 #[test]
-fn a_proof_that_ends_early_leaves_the_highest_bound_that_can_be_proven_with_less() {
+fn early_proof_leaves_the_highest_cheaper_bound() {
     let (_, claim) = common::table(1).into_iter().find(|(name, _)| name == "line 8, window 15").expect("it is there");
     let bound = |text: Result<String, NoProof>| check(&text.expect("a proof")).expect("accepted").claim.bound;
     assert_eq!(bound(prove_what_can_be(&claim, 100_000, |_| true)), claim.period);
@@ -129,8 +133,9 @@ fn a_shorter_period_than_the_shortest_has_no_certificate() {
     }
 }
 
+// Line 12 with a window of 45 ms can run at 69 5 ms and no real period is shorter.
 #[test]
-fn line_12_with_a_window_of_45_ms_can_run_at_69_5_ms_and_no_real_period_is_shorter() {
+fn line_12_at_45_ms_runs_at_69_5_ms() {
     let (_, mut claim) =
         common::table(2).into_iter().find(|(name, _)| name == "line 12, window 45").expect("it is there");
     assert_eq!(claim.period, 140);

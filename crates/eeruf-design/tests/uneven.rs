@@ -22,8 +22,9 @@ fn rings() -> [(&'static str, &'static str); 3] {
     ]
 }
 
+// The uneven rings have a shortest period that is verified and certified.
 #[test]
-fn the_uneven_rings_have_a_shortest_period_that_is_verified_and_certified() {
+fn uneven_rings_are_verified_and_certified() {
     for ((name, text), period_us) in rings().into_iter().zip([34_100, 61_500, 37_000]) {
         let spec = read(text);
         let found = design(&spec);
@@ -43,8 +44,9 @@ fn the_uneven_rings_have_a_shortest_period_that_is_verified_and_certified() {
     }
 }
 
+// Of the schedules of an uneven ring the one with most to spare is chosen.
 #[test]
-fn of_the_schedules_of_an_uneven_ring_the_one_with_most_to_spare_is_chosen() {
+fn uneven_schedule_with_most_to_spare_is_chosen() {
     // So much more of each need than the ring has, in microseconds.
     let ring = |t_delta: u32, interval: u32, refire: u32| {
         let t_deltas = [999, 499, 499, 499, 499].map(|us| us + t_delta);
@@ -116,8 +118,9 @@ fn a_robot_that_moves_needs_as_much_more_of_every_tolerance() {
     assert_eq!([t_delta[1] - t_delta[0], t_delta[2] - t_delta[1]], [100, 100]);
 }
 
+// Sensors listen for their range and wait for their retrigger time.
 #[test]
-fn sensors_listen_for_their_range_and_wait_for_their_retrigger_time() {
+fn sensors_listen_for_range_and_wait_for_retrigger() {
     let text = "sensors = 2\nmin_interval_us = 0\njitter_us = 100\nretrigger_us = 40_000\n";
     let uneven = read(&format!("{text}max_range_m = [1.0, 2.0]"));
     let requirements = uneven.problem().requirements;
@@ -128,8 +131,9 @@ fn sensors_listen_for_their_range_and_wait_for_their_retrigger_time() {
     assert_eq!(read(&format!("{text}max_range_m = 2.0")).window, Micros::from_millis(40));
 }
 
+// What is wrong with a file is named with key value and what is expected.
 #[test]
-fn what_is_wrong_with_a_file_is_named_with_key_value_and_what_is_expected() {
+fn file_error_names_key_value_and_expectation() {
     let ring = "sensors = 4\nt_delta_us = 99\nmin_interval_us = 5000\nwindow_us = 9000\n";
     for (more, expected) in [
         ("intervals_us = [[0, 4, 9]]", "intervals_us: sensors 0 and 4; expected two different ones from 0 to 3"),

@@ -72,8 +72,9 @@ fn run(
     (tallies, health, fired)
 }
 
+// The width of the pulse is the echo time and five phases that agree confirm it.
 #[test]
-fn the_width_of_the_pulse_is_the_echo_time_and_five_phases_that_agree_confirm_it() {
+fn pulse_width_is_the_echo_time_and_five_phases_confirm() {
     let (tallies, health, _) = run(20, pins([20; K], None), [Some(5_000), Some(12_000), Some(20_000)]);
     for x in 0..K {
         let of = |kind| tallies[x].of(kind);
@@ -82,8 +83,9 @@ fn the_width_of_the_pulse_is_the_echo_time_and_five_phases_that_agree_confirm_it
     }
 }
 
+// A line stuck high is never triggered and costs the others nothing.
 #[test]
-fn a_line_stuck_high_is_never_triggered_and_costs_the_others_nothing() {
+fn stuck_line_is_never_triggered() {
     let (tallies, health, fired) = run(40, pins([40; K], Some(1)), [Some(5_000), None, Some(20_000)]);
     // No period is given to the stuck sensor alone.
     assert_eq!(fired, [40; K]);

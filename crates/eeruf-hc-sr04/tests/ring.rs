@@ -86,8 +86,9 @@ fn others_are_well(tallies: &[Tally<u32>; K], health: &[Health; K]) {
     }
 }
 
+// The width of the pulse is the echo time and two that agree are accepted.
 #[test]
-fn the_width_of_the_pulse_is_the_echo_time_and_two_that_agree_are_accepted() {
+fn pulse_width_is_the_echo_time_and_two_are_accepted() {
     let (tallies, health) = run(10, false, [&echo(5_000), &echo(12_000), &echo(20_000)]);
     others_are_well(&tallies, &health);
     assert_eq!((tallies[1].of(ReadingKind::Accepted), health[1]), (9, Health::Well));
@@ -112,8 +113,9 @@ fn a_line_stuck_high_is_not_triggered_and_told_as_stuck() {
     assert_eq!((tallies[1].of(ReadingKind::Stuck), health[1]), (10, Health::StuckHigh));
 }
 
+// A missing sensor is named after three firings without a pulse.
 #[test]
-fn a_missing_sensor_is_named_after_three_firings_without_a_pulse() {
+fn missing_sensor_is_named_after_three_firings() {
     let none: Line<'_> = &|_| vec![];
     assert_eq!(run(3, false, [&echo(5_000), none, &echo(20_000)]).1[1], Health::Well);
     let (tallies, health) = run(10, false, [&echo(5_000), none, &echo(20_000)]);
@@ -146,16 +148,18 @@ fn no_line_that_shows_nothing_is_told_as_free_space() {
     }
 }
 
+// A chattering line counts with its first true pulse and is named.
 #[test]
-fn a_chattering_line_counts_with_its_first_true_pulse_and_is_named() {
+fn chattering_line_counts_and_is_named() {
     let chatters = |_| vec![(450, true), (480, false), (500, true), (12_500, false), (13_000, true), (14_000, false)];
     let (tallies, health) = run(10, false, [&echo(5_000), &chatters, &echo(20_000)]);
     others_are_well(&tallies, &health);
     assert_eq!((tallies[1].of(ReadingKind::Accepted), health[1]), (9, Health::Chatters));
 }
 
+// A line whose edges get lost is named and no width is made of what is left.
 #[test]
-fn a_line_whose_edges_get_lost_is_named_and_no_width_is_made_of_what_is_left() {
+fn line_that_loses_edges_is_named() {
     let rises_lost = |_| vec![(12_450, false)];
     let (tallies, health) = run(10, false, [&echo(5_000), &rises_lost, &echo(20_000)]);
     others_are_well(&tallies, &health);
@@ -167,8 +171,9 @@ fn a_line_whose_edges_get_lost_is_named_and_no_width_is_made_of_what_is_left() {
     assert_eq!((tallies[1].of(ReadingKind::NoEcho), health[1]), (10, Health::LosesEdges));
 }
 
+// The trigger seen across the end of the deaf time is no lost edge.
 #[test]
-fn the_trigger_seen_across_the_end_of_the_deaf_time_is_no_lost_edge() {
+fn trigger_across_deaf_time_is_no_lost_edge() {
     let long_glitch = |_| vec![(20, true), (110, false), (450, true), (12_450, false)];
     let (tallies, health) = run(10, false, [&echo(5_000), &long_glitch, &echo(20_000)]);
     others_are_well(&tallies, &health);
@@ -190,8 +195,9 @@ fn fired(event: Option<RingEvent>) -> Option<u8> {
     }
 }
 
+// An echo that came in time is heard however long an event took.
 #[test]
-fn an_echo_that_came_in_time_is_heard_however_long_an_event_took() {
+fn timely_echo_is_heard_however_long_an_event_took() {
     let schedule = schedule(100);
     let pins = || Mock::new(&[Transaction::set(State::High), Transaction::set(State::Low)]);
     let low = || Mock::new(&[Transaction::get(State::Low)]);

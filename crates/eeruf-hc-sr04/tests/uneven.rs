@@ -110,8 +110,9 @@ fn each_module_on_a_shared_line_is_heard_as_far_as_it_sees() {
     assert!(near.iter().all(|&kind| kind != Accepted), "{near:?}");
 }
 
+// A module that needs longer between triggers than the schedule gives is refused.
 #[test]
-fn a_module_that_needs_longer_between_triggers_than_the_schedule_gives_is_refused() {
+fn module_slower_than_the_schedule_is_refused() {
     assert!(driver(56).is_ok());
     assert!(matches!(driver(57), Err(SetupError::Retrigger { .. })));
 }

@@ -55,8 +55,9 @@ impl InputPin for NoPin {
     }
 }
 
+// An adaptation changes the schedule of the driver and stays where that is refused.
 #[test]
-fn an_adaptation_changes_the_schedule_of_the_driver_and_stays_where_that_is_refused() {
+fn adaptation_changes_the_drivers_schedule() {
     let requirements = Requirements::new(Micros::new(500));
     let rung = |scale| TABLE_I_D.scaled(scale, 10).unwrap().verify(&requirements).verified().unwrap();
     // The third fires a sensor again after 53 ms, sooner than an HC-SR04 may be triggered.

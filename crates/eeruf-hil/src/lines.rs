@@ -207,8 +207,9 @@ mod tests {
         Instant::from_micros(us)
     }
 
+    // Every line rises when its sound is sent and falls when something is heard.
     #[test]
-    fn every_line_rises_when_its_sound_is_sent_and_falls_when_something_is_heard() {
+    fn line_rises_with_sound_and_falls_with_echo() {
         let world = alcove();
         let mut lines = Lines::new(&world, LineFault::None, at(0)).unwrap();
         lines.trigger(4, at(1_000)).unwrap();

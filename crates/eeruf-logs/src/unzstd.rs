@@ -84,8 +84,9 @@ mod tests {
         (0..length).map(|n| (n.wrapping_mul(2_654_435_761) >> 24) as u8).collect()
     }
 
+    // One context unpacks frames in turn whether or not they say how much they hold and after bad ones.
     #[test]
-    fn one_context_unpacks_frames_in_turn_whether_or_not_they_say_how_much_they_hold_and_after_bad_ones() {
+    fn zstd_context_unpacks_frames_of_any_kind() {
         let (mut zstd, mut out) = (Unzstd::default(), vec![]);
         for length in [0, 1, 64, 4096, 4097, 300_000, 5] {
             let bytes = noise(length);
@@ -126,8 +127,9 @@ mod tests {
         }
     }
 
+    // A frame that says that it holds four gigabytes is given no room for them.
     #[test]
-    fn a_frame_that_says_that_it_holds_four_gigabytes_is_given_no_room_for_them() {
+    fn frame_of_claimed_gigabytes_gets_no_room() {
         for one_segment in [false, true] {
             let (mut zstd, mut out) = (Unzstd::default(), vec![]);
             assert!(zstd.unpack(&boast(one_segment), usize::MAX, &mut out).is_err());

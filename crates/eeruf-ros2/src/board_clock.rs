@@ -74,8 +74,9 @@ mod tests {
         worst
     }
 
+    // Instants are right to the shortest way through a wrap and with drift.
     #[test]
-    fn instants_are_right_to_the_shortest_way_through_a_wrap_and_with_drift() {
+    fn instants_are_right_through_wrap_and_drift() {
         assert!(worst_error_us(0, 0) <= 1_500);
         assert!(worst_error_us(u32::MAX - 20_000_000, 0) <= 1_500);
         // 100 ppm, of which ten seconds make a millisecond.

@@ -351,8 +351,9 @@ mod tests {
         assert_eq!(said(&mut diagnosis, 1.0), [well(), well(), sees(), sees()]);
     }
 
+    // Each fault is named once it is there and no longer when it is gone.
     #[test]
-    fn each_fault_is_named_once_it_is_there_and_no_longer_when_it_is_gone() {
+    fn fault_is_named_while_it_lasts() {
         type Fault = fn(&mut Diagnosis);
         let faults: [(usize, Level, &str, Fault); 9] = [
             (0, Level::Error, "closed", |diagnosis| diagnosis.line_lost("unplugged".to_owned())),
@@ -425,8 +426,9 @@ mod tests {
         assert_eq!(views(&diagnosis, 1.6)[0], View::Unanswered);
     }
 
+    // A sensor is blind when echoes are not accepted and silent when it does not fire.
     #[test]
-    fn a_sensor_is_blind_when_echoes_are_not_accepted_and_silent_when_it_does_not_fire() {
+    fn blind_and_silent_sensors_are_reported() {
         let mut diagnosis = diagnosis();
         for _ in 0..3 {
             diagnosis.reading(0.5, 1, ReadingKind::NoEcho, None, Micros::ZERO, None);

@@ -36,8 +36,9 @@ impl RangeFilter {
 mod tests {
     use super::*;
 
+    // A reading is compared with the one before of its sensor and with nothing too close.
     #[test]
-    fn a_reading_is_compared_with_the_one_before_of_its_sensor_and_with_nothing_too_close() {
+    fn reading_is_compared_with_the_one_before() {
         let mut filter = RangeFilter::new(Micros::new(500)).unwrap();
         let echo = |us| Raw::Echo(Micros::new(us));
         let mut kinds = |sensor, raws: &[Raw]| {

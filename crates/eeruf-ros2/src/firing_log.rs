@@ -112,8 +112,9 @@ mod tests {
         HoppingRing::hopping(&schedule, HoppingSettings::BALANCED, listening, 1, Instant::from_micros(0)).unwrap()
     }
 
+    // The log of a hopping ring is complete so that its tracker can be run again.
     #[test]
-    fn the_log_of_a_hopping_ring_is_complete_so_that_its_tracker_can_be_run_again() {
+    fn hopping_log_is_complete_for_its_tracker() {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("log.csv");
         let mut log = FiringLog::create(&file).unwrap();

@@ -102,8 +102,9 @@ mod tests {
         assert_eq!(unlike(&text[begin..begin + end]), None);
     }
 
+    // Other numbers than core has are noticed though board and host agree.
     #[test]
-    fn other_numbers_than_core_has_are_noticed_though_board_and_host_agree() {
+    fn numbers_that_differ_from_cores_are_noticed() {
         assert_eq!(unlike(&table("6213", "2")), None);
         assert!(unlike(&table("6212", "2")).is_some_and(|row| row.contains("6212")));
         assert!(unlike(&table("6213", "27")).is_some_and(|row| row.contains("stalls")));

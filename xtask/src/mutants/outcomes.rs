@@ -115,8 +115,9 @@ fn lines(file: &Path) -> BTreeSet<String> {
 mod tests {
     use super::*;
 
+    // What earlier runs found is kept and what does not compile is not counted.
     #[test]
-    fn what_earlier_runs_found_is_kept_and_what_does_not_compile_is_not_counted() {
+    fn earlier_findings_are_kept() {
         let folder = std::env::temp_dir().join(format!("eeruf-mutants-{}", std::process::id()));
         let out = folder.join("mutants.out");
         let wanted: BTreeSet<String> = ["a", "b", "c", "d", "e", "f", "g"].map(str::to_owned).into();

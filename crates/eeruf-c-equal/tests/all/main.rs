@@ -14,8 +14,9 @@ fn events() -> u64 {
     std::env::var("EERUF_C_EVENTS").map_or(200_000, |events| events.parse().expect("a number of events"))
 }
 
+// A ring by a table says the same event by event whatever happens to it.
 #[test]
-fn a_ring_by_a_table_says_the_same_event_by_event_whatever_happens_to_it() {
+fn table_ring_equals_rust_event_by_event() {
     let (mut count, mut seed) = (0, 0);
     while count < crate::events() {
         count += match seed % 8 {
@@ -29,8 +30,9 @@ fn a_ring_by_a_table_says_the_same_event_by_event_whatever_happens_to_it() {
     println!("{count} events of {seed} rings");
 }
 
+// A hopping ring says the same event by event whatever happens to it.
 #[test]
-fn a_hopping_ring_says_the_same_event_by_event_whatever_happens_to_it() {
+fn hopping_ring_equals_rust_event_by_event() {
     let (mut count, mut seed) = (0, 0);
     while count < crate::events() {
         count += match seed % 6 {

@@ -32,8 +32,9 @@ fn the_filter_alone_gives_the_same_verdicts() {
     }
 }
 
+// Distances echo times and the speed of sound are the same for all numbers.
 #[test]
-fn distances_echo_times_and_the_speed_of_sound_are_the_same_for_all_numbers() {
+fn distances_and_speed_of_sound_equal_rust_for_all_numbers() {
     let r = Random::new(2);
     for tenths in i16::MIN..=i16::MAX {
         assert_eq!(sound_mm_s(tenths), SpeedOfSound::at_celsius_tenths(tenths).mm_per_s(), "{tenths}");

@@ -79,8 +79,9 @@ fn run(seed: u64) -> u64 {
     count
 }
 
+// A hopping ring says with each reading how it was weighed in the same frames.
 #[test]
-fn a_hopping_ring_says_with_each_reading_how_it_was_weighed_in_the_same_frames() {
+fn hopping_frames_say_how_readings_were_weighed() {
     let (mut frames, mut seed) = (0, 0);
     while frames < crate::events() / 8 {
         frames += hop(seed);

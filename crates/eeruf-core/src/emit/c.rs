@@ -158,8 +158,9 @@ mod tests {
     const REQUIREMENTS: Requirements<'static> =
         Requirements { min_interval: Micros::from_millis(15), ..Requirements::new(Micros::new(999)) };
 
+    // The constant says what it was verified for or that it was not.
     #[test]
-    fn the_constant_says_what_it_was_verified_for_or_that_it_was_not() {
+    fn constant_says_what_it_was_verified_for() {
         let tab = TABLE_I_D.to_arduino(&REQUIREMENTS, "PAPER").to_string();
         assert!(tab.contains("EerufSchedule PAPER EERUF_FLASH = {\n    3, 12, 2, PAPER_order, PAPER_gap_us,"), "{tab}");
         assert!(

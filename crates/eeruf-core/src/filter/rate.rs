@@ -255,16 +255,18 @@ mod tests {
         readings.iter().map(push).collect()
     }
 
+    // A reading just within t delta of the line is accepted and one just beyond is not.
     #[test]
-    fn a_reading_just_within_t_delta_of_the_line_is_accepted_and_one_just_beyond_is_not() {
+    fn reading_within_t_delta_of_line_is_accepted() {
         use ReadingKind::*;
         // Firings 100 and 300 us apart: the line is a quarter of the way up at the second.
         let at = |second| kinds(&[(0, Some(8_000)), (100, Some(second)), (400, Some(8_400))]);
         assert_eq!([at(8_600)[2], at(8_601)[2], at(7_600)[2], at(7_599)[2]], [Accepted, Repeated, Accepted, Rejected]);
     }
 
+    // An echo that changes faster than any robot drives is rejected though on a line.
     #[test]
-    fn an_echo_that_changes_faster_than_any_robot_drives_is_rejected_though_on_a_line() {
+    fn echo_faster_than_any_robot_is_rejected() {
         use ReadingKind::*;
         let at =
             |slope: u32| kinds(&[(0, Some(8_000)), (100_000, Some(8_000 + slope)), (200_000, Some(8_000 + 2 * slope))]);
@@ -284,8 +286,9 @@ mod tests {
         assert_eq!(kinds(&[(100, Some(8_000)), (100, Some(8_000))]), [First, First]);
     }
 
+    // The age counts readings since the last accepted one and is none before the first.
     #[test]
-    fn the_age_counts_readings_since_the_last_accepted_one_and_is_none_before_the_first() {
+    fn age_counts_readings_since_last_accepted() {
         let mut filter = RateFilter::<1>::new(Micros::new(500), 0).unwrap();
         let age = |(number, echo): (u32, u32)| {
             filter.push(0, Instant::from_micros(100 * number), Some(Micros::new(echo))).unwrap().age

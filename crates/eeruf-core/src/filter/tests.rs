@@ -34,8 +34,9 @@ fn three_readings_must_each_agree_with_the_one_before() {
     assert_eq!(seen, [First, Repeated, Accepted, Accepted, Rejected, Repeated, NoEcho, NoEcho, Clear]);
 }
 
+// The earliest echo that repeats is accepted whatever comes before it.
 #[test]
-fn the_earliest_echo_that_repeats_is_accepted_whatever_comes_before_it() {
+fn earliest_repeated_echo_is_accepted() {
     let mut filter = filter::<4>(100, 2);
     let us = |echoes: &[u32]| echoes.iter().map(|&us| Micros::new(us)).collect::<Vec<_>>();
     filter.push_echoes(0, &us(&[9000, 3000, 12000]), 0).unwrap();

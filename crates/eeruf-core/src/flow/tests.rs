@@ -78,8 +78,9 @@ fn a_flow_ring_of_twelve_takes_916_bytes() {
     assert_eq!(size_of::<FlowRing<12>>(), 916);
 }
 
+// A ring that is believed fires each sensor once in the shortest cycle.
 #[test]
-fn a_ring_that_is_believed_fires_each_sensor_once_in_the_shortest_cycle() {
+fn believed_ring_fires_in_the_shortest_cycle() {
     let (mut plan, mut fired) = (plan::<8>(8), [Instant::from_micros(0); 8]);
     for _ in 0..20 {
         let (seen, length) = cycle(&mut plan, &mut fired, 0, WELL);
@@ -113,8 +114,9 @@ fn silence(seen: &[(u8, u32)], length: u32, sensor: u8) -> (u32, u32) {
     (seen[place].1 - before, seen.get(place + 1).map_or(length, |&(_, at)| at) - seen[place].1)
 }
 
+// A masked sensor gains quiet until nothing is heard of others and gives it back.
 #[test]
-fn a_masked_sensor_gains_quiet_until_nothing_is_heard_of_others_and_gives_it_back() {
+fn masked_sensor_gains_quiet_and_gives_it_back() {
     let (mut plan, mut fired) = (plan::<8>(8), [Instant::from_micros(0); 8]);
     let masked = |sensor| if sensor == 4 { MASKED(sensor) } else { WELL(sensor) };
     for _ in 0..20 {
@@ -135,8 +137,9 @@ fn a_masked_sensor_gains_quiet_until_nothing_is_heard_of_others_and_gives_it_bac
     assert_eq!(plan.quiet(8), None);
 }
 
+// A cycle ends within the longest for a robot that stands and sooner for one that moves.
 #[test]
-fn a_cycle_ends_within_the_longest_for_a_robot_that_stands_and_sooner_for_one_that_moves() {
+fn cycle_ends_in_time_for_standing_and_moving_robots() {
     let (mut plan, mut fired) = (plan::<12>(12), [Instant::from_micros(0); 12]);
     let mut lengths = (0..40).map(|_| cycle(&mut plan, &mut fired, 0, |_| (6_000, ReadingKind::Rejected)).1);
     let longest = lengths.by_ref().skip(10).max().unwrap();

@@ -284,8 +284,9 @@ mod tests {
     extern crate std;
     use super::*;
 
+    // The waits worked out one from the other are those of the code.
     #[test]
-    fn the_waits_worked_out_one_from_the_other_are_those_of_the_code() {
+    fn waits_worked_out_in_turn_are_those_of_the_code() {
         let step = Micros::new(240);
         for sensors in 1..=MAX_SENSORS {
             for code in [HoppingCode::new(sensors, 2, step), HoppingCode::shortest(sensors, 2, step)] {

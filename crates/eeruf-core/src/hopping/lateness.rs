@@ -88,8 +88,9 @@ mod tests {
         }
     }
 
+    // Nothing is steady in the period in which the timetable moves and the two after it.
     #[test]
-    fn nothing_is_steady_in_the_period_in_which_the_timetable_moves_and_the_two_after_it() {
+    fn nothing_is_steady_while_the_timetable_moves() {
         let mut lateness = Lateness::NEW;
         lateness.break_off();
         for steady in [false, false, false, true] {

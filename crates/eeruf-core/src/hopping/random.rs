@@ -39,8 +39,9 @@ mod tests {
         }
     }
 
+    // Each number up to the most is drawn about equally often whatever the seed.
     #[test]
-    fn each_number_up_to_the_most_is_drawn_about_equally_often_whatever_the_seed() {
+    fn drawn_numbers_are_uniform_whatever_the_seed() {
         for seed in [0, 1, 7, u32::MAX] {
             let mut random = SmallRandom::new(seed);
             assert_eq!(random.up_to(0), 0);

@@ -51,8 +51,9 @@ fn fire(ring: &mut HoppingRing<8>, periods: u32, hears: impl Fn(u8, usize) -> Op
     fired
 }
 
+// A paused ring keeps silent and believes nothing from before when it goes on.
 #[test]
-fn a_paused_ring_keeps_silent_and_believes_nothing_from_before_when_it_goes_on() {
+fn paused_ring_is_silent_and_forgets() {
     let mut ring = ring(HoppingSettings::BALANCED);
     let wall = |_, _| Some(9_000);
     fire(&mut ring, 40, wall);
@@ -64,8 +65,9 @@ fn a_paused_ring_keeps_silent_and_believes_nothing_from_before_when_it_goes_on()
     assert!(!fire(&mut ring, 2, wall).is_empty());
 }
 
+// Any two phases move any path by at least a step for every number of sensors.
 #[test]
-fn any_two_phases_move_any_path_by_at_least_a_step_for_every_number_of_sensors() {
+fn any_two_phases_move_any_path_by_a_step() {
     for sensors in 1..=64 {
         for code in [HoppingCode::new(sensors, 2, Micros::new(1)), HoppingCode::shortest(sensors, 2, Micros::new(1))] {
             let code = code.unwrap();
@@ -88,8 +90,9 @@ fn any_two_phases_move_any_path_by_at_least_a_step_for_every_number_of_sensors()
     }
 }
 
+// No code lets a sensor fire less early again than the shortest one.
 #[test]
-fn no_code_lets_a_sensor_fire_less_early_again_than_the_shortest_one() {
+fn shortest_code_has_the_latest_early_refire() {
     for sensors in 1..=64 {
         let code = HoppingCode::shortest(sensors, 2, Micros::new(1)).unwrap();
         assert!(usize::from(code.phases()) >= sensors);
@@ -110,16 +113,18 @@ fn no_code_lets_a_sensor_fire_less_early_again_than_the_shortest_one() {
     }
 }
 
+// Schedules of the same sensors are equal whatever stands beyond them.
 #[test]
-fn schedules_of_the_same_sensors_are_equal_whatever_stands_beyond_them() {
+fn schedules_are_equal_whatever_stands_beyond_sensors() {
     let code = HoppingCode::new(2, 2, Micros::new(240)).unwrap();
     let spread = HoppingSchedule::<8>::spread(code, PERIOD).unwrap();
     let lags = core::array::from_fn(|sensor| spread.t_lag(sensor).unwrap_or(Micros::new(7)));
     assert_eq!(HoppingSchedule::new(code, PERIOD, lags).unwrap(), spread);
 }
 
+// A ring that sees fires each sensor once a period as the schedule says.
 #[test]
-fn a_ring_that_sees_fires_each_sensor_once_a_period_as_the_schedule_says() {
+fn seeing_ring_fires_each_sensor_once_a_period() {
     let fired = fire(&mut ring(HoppingSettings::BALANCED), 40, |_, _| Some(12_000));
     let (phases, period) = (10, PERIOD.as_micros());
     for &(at, sensor, solo) in &fired {
@@ -129,8 +134,9 @@ fn a_ring_that_sees_fires_each_sensor_once_a_period_as_the_schedule_says() {
     assert_eq!(fired.len(), 40 * 8);
 }
 
+// A blind sensor gets solo periods in which all is silent before and after.
 #[test]
-fn a_blind_sensor_gets_solo_periods_in_which_all_is_silent_before_and_after() {
+fn blind_sensor_gets_silent_solo_periods() {
     // Sensor 2 hears something else each time.
     let hears = |sensor, firing: usize| Some(if sensor == 2 { 5000 + (firing as u32 * 7919) % 20_000 } else { 12_000 });
     let settings = HoppingSettings { solo_rate: 255, solo_spacing: 2, ..HoppingSettings::BALANCED };
@@ -144,8 +150,9 @@ fn a_blind_sensor_gets_solo_periods_in_which_all_is_silent_before_and_after() {
     }
 }
 
+// No sensor fires again while it listens and neighbours keep the interval asked for when lags change.
 #[test]
-fn no_sensor_fires_again_while_it_listens_and_neighbours_keep_the_interval_asked_for_when_lags_change() {
+fn new_lags_keep_windows_and_intervals() {
     let interval = Micros::from_millis(8);
     let settings =
         HoppingSettings { shift_interval: interval, shift_after: 5, shift_spacing: 2, ..HoppingSettings::BALANCED };
@@ -249,8 +256,9 @@ fn each_error_names_what_is_wrong_and_what_is_expected() {
     assert_eq!(text(error), "a t_delta of 240 us; expected less than 240 us, by which the code moves crosstalk");
 }
 
+// A code has the phases asked for up to 67 and a step of 16 bits.
 #[test]
-fn a_code_has_the_phases_asked_for_up_to_67_and_a_step_of_16_bits() {
+fn code_has_up_to_67_phases_and_a_step_of_16_bits() {
     let code = |phases, step| HoppingCode::new(2, phases, Micros::new(step)).map(|code| (code.phases(), code.width()));
     assert_eq!(code(13, 240), Ok((16, Micros::new(15 * 240))));
     assert_eq!(code(67, 65_535), Ok((66, Micros::new(65 * 65_535))));

@@ -232,8 +232,9 @@ mod tests {
         assert_eq!(texts, expected);
     }
 
+    // A table of run time size equals the same table as arrays in all it tells.
     #[test]
-    fn a_table_of_run_time_size_equals_the_same_table_as_arrays_in_all_it_tells() {
+    fn run_time_table_equals_array_table() {
         let lags = ms([0, 20, 40]);
         let (a, b) = (ms([9, 9, 9]), ms([7, 5, 3]));
         let fixed = Schedule::new(Micros::from_millis(60), lags, [a, b]).unwrap();

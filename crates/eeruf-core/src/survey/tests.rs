@@ -5,8 +5,9 @@ use super::*;
 use std::collections::BTreeMap;
 use std::vec::Vec;
 
+// Every sensor fires alone and every ordered pair with every lead.
 #[test]
-fn every_sensor_fires_alone_and_every_ordered_pair_with_every_lead() {
+fn every_sensor_and_pair_fires_with_every_lead() {
     let plan = SurveyPlan::new(5).with_solos(2).with_leads(3, Micros::new(400));
     let mut seen = BTreeMap::new();
     for slot in (0..plan.slots()).map(|number| plan.slot(number).unwrap()) {
@@ -53,8 +54,9 @@ fn run(plan: SurveyPlan, late: impl Fn(usize) -> u32) -> (Vec<(u32, u8)>, Vec<Su
     (fired, rows)
 }
 
+// A survey fires as planned and logs each firing once with its first edge.
 #[test]
-fn a_survey_fires_as_planned_and_logs_each_firing_once_with_its_first_edge() {
+fn survey_logs_each_firing_once_with_its_first_edge() {
     let plan = SurveyPlan::new(3).with_leads(2, Micros::new(500)).with_solos(1);
     let (fired, rows) = run(plan, |_| 0);
     assert_eq!((fired.len(), rows.len()), (3 + 12 * 2, 3 + 12 * 2));
@@ -67,8 +69,9 @@ fn a_survey_fires_as_planned_and_logs_each_firing_once_with_its_first_edge() {
     }
 }
 
+// Who fires late delays all that follow and no slot gets shorter.
 #[test]
-fn who_fires_late_delays_all_that_follow_and_no_slot_gets_shorter() {
+fn late_firing_delays_all_that_follow() {
     let plan = SurveyPlan::new(2).with_leads(2, Micros::new(500)).with_solos(1);
     let (on_time, _) = run(plan, |_| 0);
     let (late, rows) = run(plan, |fired| if fired == 3 { 7000 } else { 0 });
@@ -80,8 +83,9 @@ fn who_fires_late_delays_all_that_follow_and_no_slot_gets_shorter() {
     }
 }
 
+// A plan says what it was made with and nothing longer than ten seconds.
 #[test]
-fn a_plan_says_what_it_was_made_with_and_nothing_longer_than_ten_seconds() {
+fn plan_keeps_its_settings_up_to_ten_seconds() {
     let plan = SurveyPlan::new(3).with_solos(1).with_leads(2, Micros::new(500));
     let plan = plan.with_window(Micros::from_millis(30), Micros::from_millis(5));
     assert_eq!((plan.sensors(), plan.window(), plan.slot_length()), (3, Micros::from_millis(30), Micros::new(35_500)));
@@ -98,8 +102,9 @@ fn a_plan_says_what_it_was_made_with_and_nothing_longer_than_ten_seconds() {
     }
 }
 
+// However often it is polled a survey begins no slot early and none before all is logged.
 #[test]
-fn however_often_it_is_polled_a_survey_begins_no_slot_early_and_none_before_all_is_logged() {
+fn survey_begins_no_slot_early_however_often_polled() {
     let plan = SurveyPlan::new(2).with_leads(2, Micros::new(400)).with_solos(1);
     let plan = plan.with_window(Micros::from_millis(3), Micros::ZERO);
     let mut survey = Survey::new(plan, Instant::from_micros(0));

@@ -31,8 +31,9 @@ fn an_echo_from_two_phases_is_tentative_and_from_five_confirmed() {
     assert_eq!(kinds(&mut maps, [us(9000); 5]), [First, Rejected, Rejected, Rejected, Accepted]);
 }
 
+// An echo in one phase only is never believed however often it comes.
 #[test]
-fn an_echo_in_one_phase_only_is_never_believed_however_often_it_comes() {
+fn echo_in_one_phase_is_never_believed() {
     let mut tracker = balanced();
     for _ in 0..300 {
         let verdict = tracker.push(0, us(9000), Firing::new(Phase(4))).unwrap();
@@ -40,8 +41,9 @@ fn an_echo_in_one_phase_only_is_never_believed_however_often_it_comes() {
     }
 }
 
+// A reading of a sensor that fired alone is tentative at once and counts twice.
 #[test]
-fn a_reading_of_a_sensor_that_fired_alone_is_tentative_at_once_and_counts_twice() {
+fn lone_firing_is_tentative_and_counts_twice() {
     use ReadingKind::*;
     let mut tracker = balanced();
     let mut push = |phase, solo| {
@@ -51,8 +53,9 @@ fn a_reading_of_a_sensor_that_fired_alone_is_tentative_at_once_and_counts_twice(
     assert_eq!([push(0, true), push(1, true), push(2, false)], [Tentative, Tentative, Accepted]);
 }
 
+// Crosstalk in one phase does not keep a belief alive whose wall has gone.
 #[test]
-fn crosstalk_in_one_phase_does_not_keep_a_belief_alive_whose_wall_has_gone() {
+fn crosstalk_in_one_phase_keeps_no_belief_alive() {
     let mut tracker = balanced();
     kinds(&mut tracker, [us(9000); 22]);
     assert_eq!(tracker.confirmed(0), us(9000));
@@ -126,8 +129,9 @@ fn accepted_of_a_swing(part: f64) -> usize {
     accepted.count()
 }
 
+// How much of the expected change there is is learned from none to twice.
 #[test]
-fn how_much_of_the_expected_change_there_is_is_learned_from_none_to_twice() {
+fn share_of_expected_change_is_learned() {
     for part in [0.0, 0.5, 0.8, 1.0, 1.3, 2.0] {
         assert!(accepted_of_a_swing(part) >= 195, "{part}: {}", accepted_of_a_swing(part));
     }
@@ -146,8 +150,9 @@ fn tracks_move_with_the_robot_also_while_readings_say_nothing() {
     assert_eq!(tracker.push(0, us(8100), Firing::new(Phase(0))).unwrap().kind, ReadingKind::Accepted);
 }
 
+// A track stays where a change would move it before the firing or past the latest echo.
 #[test]
-fn a_track_stays_where_a_change_would_move_it_before_the_firing_or_past_the_latest_echo() {
+fn track_stays_within_the_window_when_moved() {
     let confirmed_after = |t_echo, expected_change_us| {
         let mut tracker = balanced();
         kinds(&mut tracker, [us(t_echo); 11]);
@@ -185,8 +190,9 @@ fn a_firing_that_was_not_steady_supports_nothing() {
     }
 }
 
+// A change of firing times takes support from what is not confirmed alone.
 #[test]
-fn a_change_of_firing_times_takes_support_from_what_is_not_confirmed_alone() {
+fn changed_firing_times_take_unconfirmed_support() {
     let mut tracker = balanced();
     kinds(&mut tracker, [us(9000); 3]);
     tracker.firing_changed();
@@ -196,8 +202,9 @@ fn a_change_of_firing_times_takes_support_from_what_is_not_confirmed_alone() {
     assert_eq!(tracker.push(0, us(9000), Firing::new(Phase(0))).unwrap().kind, ReadingKind::Accepted);
 }
 
+// The longest times and the largest changes are echoes like any other.
 #[test]
-fn the_longest_times_and_the_largest_changes_are_echoes_like_any_other() {
+fn longest_times_and_largest_changes_are_echoes() {
     let mut tracker = balanced();
     for (phase, change) in (0..40).zip([i32::MAX, i32::MIN, 0, 1, -1].into_iter().cycle()) {
         let firing = Firing { expected_change_us: change, ..Firing::new(Phase(phase)) };
@@ -233,8 +240,9 @@ fn the_tracker_knows_each_sensors_age_as_its_verdicts_say_it() {
     assert_eq!(tracker.age(0), None);
 }
 
+// A reading that takes the place of confirmed silence is not clear.
 #[test]
-fn a_reading_that_takes_the_place_of_confirmed_silence_is_not_clear() {
+fn reading_in_place_of_confirmed_silence_is_not_clear() {
     let mut tracker = EchoTracker::<1, 1>::new(TrackerSettings::BALANCED).unwrap();
     for phase in 0..5 {
         tracker.push(0, None, Firing::new(Phase(phase))).unwrap();

@@ -133,8 +133,9 @@ fn a_resumed_ring_compares_nothing_from_before() {
     }
 }
 
+// A firing corrected by the timer costs nothing without crosstalk.
 #[test]
-fn a_firing_corrected_by_the_timer_costs_nothing_without_crosstalk() {
+fn corrected_firing_costs_nothing_without_crosstalk() {
     for change in [-300_i32, 40] {
         let mut run = paper();
         run.periods(5);

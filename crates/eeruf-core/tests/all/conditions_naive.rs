@@ -87,8 +87,9 @@ fn assert_is_smallest<const M: usize>(schedule: &Schedule<SENSORS, M>, layout: L
     assert_eq!(Some(i64::from(schedule.min_refire().as_micros())), shortest);
 }
 
+// The smallest interval and refire time are the smallest of all in one two and three phases.
 #[test]
-fn the_smallest_interval_and_refire_time_are_the_smallest_of_all_in_one_two_and_three_phases() {
+fn smallest_interval_is_the_smallest_of_all_phases() {
     let mut random = Random(1);
     for _ in 0..1000 {
         let (period, layout) = (10 + random.up_to(90), draw_layout(&mut random));
@@ -284,8 +285,9 @@ fn times_add_and_subtract_as_far_as_they_go_and_instants_wrap() {
     assert!(now.has_reached(Instant::from_micros(u32::MAX)));
 }
 
+// Echo times and distances are rounded to the nearest and end at the largest.
 #[test]
-fn echo_times_and_distances_are_rounded_to_the_nearest_and_end_at_the_largest() {
+fn echo_times_and_distances_are_rounded() {
     let mut random = Random(4);
     let to_most = |exact: u128| u32::try_from(exact).unwrap_or(u32::MAX);
     for _ in 0..5000 {

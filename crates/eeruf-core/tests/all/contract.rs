@@ -269,8 +269,9 @@ fn the_check_makes_the_same_calls_every_time() {
     assert_eq!([0, 1, 2].map(calls), [3_753_173_269, 3_957_200_330, 1_690_996_254]);
 }
 
+// A broken promise names the sensor the value and what is expected.
 #[test]
-fn a_broken_promise_names_the_sensor_the_value_and_what_is_expected() {
+fn broken_promise_names_sensor_value_and_expectation() {
     let broken = BrokenPromise::MinRefire { sensor: 2, after: Micros::from_millis(7) };
     assert_eq!(broken.to_string(), "it fires sensor 3 again after 7 ms; expected min_refire or more");
 }
@@ -343,15 +344,17 @@ impl Plan for Periods {
     }
 }
 
+// The check takes fewer steps at once than four a sensor and eight for coming to rest.
 #[test]
-fn the_check_takes_fewer_steps_at_once_than_four_a_sensor_and_eight_for_coming_to_rest() {
+fn check_limits_steps_at_once() {
     let steps = |at_once| check_plan(&mut Periods::new(at_once, Micros::from_millis(50)), START, 1, 0);
     assert_eq!(steps(4 * 3 + 7), Ok(()));
     assert_eq!(steps(4 * 3 + 8), Err(BrokenPromise::Endless));
 }
 
+// The check calls a sensor silent after more than four horizons and not at four.
 #[test]
-fn the_check_calls_a_sensor_silent_after_more_than_four_horizons_and_not_at_four() {
+fn check_calls_silence_after_four_horizons() {
     let every = Micros::from_millis(50);
     // A run in which all polls are on time and nothing else is done: the sensors wait since the first one's end.
     let after = |polls, seed| {
@@ -364,8 +367,9 @@ fn the_check_calls_a_sensor_silent_after_more_than_four_horizons_and_not_at_four
     assert_eq!(after(6, seed).1, Err(BrokenPromise::Silent { sensor: 0 }));
 }
 
+// A deadline as far ahead as the horizon is no jump of the clock.
 #[test]
-fn a_deadline_as_far_ahead_as_the_horizon_is_no_jump_of_the_clock() {
+fn deadline_at_the_horizon_is_no_jump() {
     let every = Micros::from_millis(50);
     let mut metronome = Metronome::new(every, every);
     assert!(metronome.poll(START).is_some());

@@ -65,8 +65,9 @@ fn an_event_says_when_its_sensor_was_due_and_in_which_phase() {
     }
 }
 
+// Echo times count from the instant of firing and no interval gets shorter.
 #[test]
-fn echo_times_count_from_the_instant_of_firing_and_no_interval_gets_shorter() {
+fn echo_times_count_from_the_firing() {
     let mut random = Random(7);
     let lateness: Vec<u32> = (0..600).map(|_| random.up_to(3_000)).collect();
     let run = run(600, |n| lateness[n as usize]);
@@ -80,8 +81,9 @@ fn echo_times_count_from_the_instant_of_firing_and_no_interval_gets_shorter() {
     }
 }
 
+// An instant said after the poll counts as lateness of the poll does.
 #[test]
-fn an_instant_said_after_the_poll_counts_as_lateness_of_the_poll_does() {
+fn instant_after_the_poll_counts_as_lateness() {
     // The third of a group that fires together is late by 40 us, or said to be.
     let late = |n: u32| u32::from(n % 12 == 5) * 40;
     let said = run(480, late);

@@ -107,8 +107,9 @@ fn settings() -> impl Strategy<Value = HoppingSettings> {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 512, ..ProptestConfig::default() })]
 
+    // One path of any fixed length is never believed whatever the lateness.
     #[test]
-    fn one_path_of_any_fixed_length_is_never_believed_whatever_the_lateness(
+    fn one_fixed_path_is_never_believed(
         from in 0..8_u8,
         further in 1..8_u8,
         length in 0..=WINDOW,
@@ -142,8 +143,9 @@ proptest! {
     }
 }
 
+// A step within t delta of the lateness is what the promise needs.
 #[test]
-fn a_step_within_t_delta_of_the_lateness_is_what_the_promise_needs() {
+fn step_within_t_delta_of_lateness_is_needed() {
     // With a step that leaves a margin of 1 us, a path is not believed either, since readings that lateness has moved
     // do not count; but then hardly any reading counts.
     let late = Late { each: 60, stall: 0 };
@@ -153,8 +155,9 @@ fn a_step_within_t_delta_of_the_lateness_is_what_the_promise_needs() {
     }
 }
 
+// Two or three paths that agree by accident are not confirmed and hardly ever tentative.
 #[test]
-fn two_or_three_paths_that_agree_by_accident_are_not_confirmed_and_hardly_ever_tentative() {
+fn paths_that_agree_by_accident_are_not_confirmed() {
     let (mut random, mut kinds) = (Random(7), Vec::new());
     for world in 0..300 {
         let mut path = |from| Path { from, to: 0, length: BLANKING + random.up_to(WINDOW - BLANKING) };
@@ -182,8 +185,9 @@ fn an_echo_of_ones_own_is_believed_nearly_always() {
     }
 }
 
+// A reading has the phase and period of its firing and a period counts the readings it gave.
 #[test]
-fn a_reading_has_the_phase_and_period_of_its_firing_and_a_period_counts_the_readings_it_gave() {
+fn reading_has_phase_and_period_of_its_firing() {
     let code = HoppingCode::new(SENSORS, 2, Micros::new(240)).unwrap();
     let schedule = HoppingSchedule::<SENSORS>::spread(code, Micros::new(60_000)).unwrap();
     let listening = HoppingListening::new(Micros::new(WINDOW)).with_blanking(Micros::new(BLANKING));
@@ -229,8 +233,9 @@ fn a_reading_has_the_phase_and_period_of_its_firing_and_a_period_counts_the_read
     assert!(phases.iter().copied().eq(wanted.take(phases.len())), "{phases:?}");
 }
 
+// A period counts late edges of both kinds before and after the window was closed.
 #[test]
-fn a_period_counts_late_edges_of_both_kinds_before_and_after_the_window_was_closed() {
+fn period_counts_late_edges_of_both_kinds() {
     let code = HoppingCode::new(SENSORS, 2, Micros::new(240)).unwrap();
     let schedule = HoppingSchedule::<SENSORS>::spread(code, Micros::new(60_000)).unwrap();
     let start = Instant::from_micros(0);
@@ -266,8 +271,9 @@ fn a_period_counts_late_edges_of_both_kinds_before_and_after_the_window_was_clos
     assert!(given > 10, "{given}");
 }
 
+// A sensor rests for its window also after a firing that was late past the periods end.
 #[test]
-fn a_sensor_rests_for_its_window_also_after_a_firing_that_was_late_past_the_periods_end() {
+fn sensor_rests_after_a_firing_late_past_the_period() {
     let code = HoppingCode::new(SENSORS, 2, Micros::new(240)).unwrap();
     let schedule = HoppingSchedule::<SENSORS>::spread(code, Micros::new(60_000)).unwrap();
     let listening = HoppingListening::new(Micros::new(WINDOW)).with_blanking(Micros::new(BLANKING));
@@ -332,8 +338,9 @@ fn a_schedule_takes_what_just_fits_and_nothing_more() {
     assert_eq!((even.t_fire(1, 2), even.t_fire(1, 3)), (Some(us(2 * third + 480)), None));
 }
 
+// The table of a schedule says when each sensor fires over and over again.
 #[test]
-fn the_table_of_a_schedule_says_when_each_sensor_fires_over_and_over_again() {
+fn table_says_when_each_sensor_fires() {
     let code = HoppingCode::new(3, 2, Micros::new(240)).unwrap();
     let schedule = HoppingSchedule::<4>::spread(code, Micros::new(30_000)).unwrap();
     // More phases than a byte counts.
@@ -348,8 +355,9 @@ fn the_table_of_a_schedule_says_when_each_sensor_fires_over_and_over_again() {
     assert!(table[1][2] != Micros::ZERO);
 }
 
+// What is proven of the separation is what trying all phases finds.
 #[test]
-fn what_is_proven_of_the_separation_is_what_trying_all_phases_finds() {
+fn proven_separation_is_what_trying_phases_finds() {
     // Sound is heard for many periods: paths read with two ages.
     let audible = Audible { reach: Micros::new(20_000), ..Audible::new(Micros::new(800)) };
     let requirements = PhaseRequirements { audible, ..PhaseRequirements::new(Micros::new(100), audible.window) };

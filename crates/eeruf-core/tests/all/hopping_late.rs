@@ -34,8 +34,9 @@ fn fires<const K: usize>(ring: &mut HoppingRing<K>, now: Instant) -> u8 {
     }
 }
 
+// A firing up to a millisecond late moves nothing and a later one all that follow.
 #[test]
-fn a_firing_up_to_a_millisecond_late_moves_nothing_and_a_later_one_all_that_follow() {
+fn lateness_up_to_a_millisecond_moves_nothing() {
     // How late the poll is, how long after it the trigger comes, and by how much that moves what follows.
     for (poll, trigger, moves) in [
         (1, 0, 0),
@@ -88,8 +89,9 @@ fn steady(ring: &mut HoppingRing<8>, periods: u32, late: impl Fn(u8) -> (u32, u3
     }
 }
 
+// Crosstalk moves as the code says while firings are late alike.
 #[test]
-fn crosstalk_moves_as_the_code_says_while_firings_are_late_alike() {
+fn equal_lateness_keeps_the_codes_shift() {
     // Whether the polls are late, the triggers after them, or both.
     for late in [(0, 0), (200, 0), (999, 0), (0, 30), (0, 200), (0, 999), (300, 600)] {
         let found = steady(&mut ring(8), 6, |_| late);
@@ -97,8 +99,9 @@ fn crosstalk_moves_as_the_code_says_while_firings_are_late_alike() {
     }
 }
 
+// What is heard counts for nothing where firings differ in lateness.
 #[test]
-fn what_is_heard_counts_for_nothing_where_firings_differ_in_lateness() {
+fn unequal_lateness_supports_nothing() {
     // Every other sensor is polled late, or triggered late: then no reading moves as the code says, once there have
     // been firings of both kinds.
     for late in [|sensor| (200 * u32::from(sensor % 2), 0), |sensor| (0, 200 * u32::from(sensor % 2))] {
@@ -120,8 +123,9 @@ fn what_is_heard_soon_after_a_restart_counts_for_nothing() {
     assert_eq!(ring.plan().changes(), changes + 1);
 }
 
+// A period is left out when its end is polled for more than a period late.
 #[test]
-fn a_period_is_left_out_when_its_end_is_polled_for_more_than_a_period_late() {
+fn period_polled_too_late_is_left_out() {
     // How late the end is polled for, when the next period ends, and how often firing times have changed.
     for (late, next_end, changes) in
         [(0, 2 * PERIOD, 0), (PERIOD, 2 * PERIOD, 0), (PERIOD + 1, 3 * PERIOD + 1, 1), (PERIOD + 9, 3 * PERIOD + 9, 1)]

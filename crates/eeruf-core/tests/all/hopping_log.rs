@@ -137,8 +137,9 @@ fn a_tracker_does_from_the_log_what_the_rings_own_did() {
     assert!(ring(HoppingSettings::BALANCED, 1).plan().weighed(SENSORS as u8, 0).is_none());
 }
 
+// A firing that was late by what the caller says makes its reading unsteady.
 #[test]
-fn a_firing_that_was_late_by_what_the_caller_says_makes_its_reading_unsteady() {
+fn lateness_by_the_caller_makes_reading_unsteady() {
     for (late, steady) in [(0, true), (3000, false)] {
         let mut ring = ring(HoppingSettings::BALANCED, 1);
         let (mut periods, mut readings) = (0, 0);

@@ -33,8 +33,9 @@ fn firings(refiring: &mut ImmediateRefiring<'_, 2>, until: Instant) -> Vec<(u8, 
     fired
 }
 
+// A sensor that fired later than it was polled waits for its refire time from then.
 #[test]
-fn a_sensor_that_fired_later_than_it_was_polled_waits_for_its_refire_time_from_then() {
+fn late_sensor_waits_for_refire_from_its_firing() {
     let schedule = schedule();
     let mut refiring = ImmediateRefiring::new(&schedule, ms(40), at(0));
     assert!(matches!(refiring.poll(at(10)), Some(PlanStep::Fire { sensor: 0, .. })));
@@ -43,8 +44,9 @@ fn a_sensor_that_fired_later_than_it_was_polled_waits_for_its_refire_time_from_t
     assert_eq!((refiring.deadline(), refiring.next_firing()), (at(10 + 3 + 40), Some((0, Phase::B))));
 }
 
+// The end of a period does not change when a sensor that listens fires again.
 #[test]
-fn the_end_of_a_period_does_not_change_when_a_sensor_that_listens_fires_again() {
+fn end_of_period_stays_when_listening_sensor_fires() {
     let schedule = schedule();
     let mut refiring = ImmediateRefiring::new(&schedule, ms(120), at(0));
     for now in [10, 55] {
@@ -55,16 +57,18 @@ fn the_end_of_a_period_does_not_change_when_a_sensor_that_listens_fires_again() 
     assert_eq!((refiring.deadline(), refiring.next_firing()), (at(10 + 120), Some((0, Phase::B))));
 }
 
+// The end of the period is a deadline when no sensor is due before it.
 #[test]
-fn the_end_of_the_period_is_a_deadline_when_no_sensor_is_due_before_it() {
+fn end_of_period_is_a_deadline() {
     let schedule = schedule();
     let mut refiring = ImmediateRefiring::new(&schedule, ms(400), at(0));
     firings(&mut refiring, at(60));
     assert_eq!((refiring.deadline(), refiring.next_firing()), (at(100), None));
 }
 
+// A disabled sensor does not fire until it is enabled and none while all pause.
 #[test]
-fn a_disabled_sensor_does_not_fire_until_it_is_enabled_and_none_while_all_pause() {
+fn disabled_sensor_does_not_fire_until_enabled() {
     let schedule = schedule();
     let mut refiring = ImmediateRefiring::new(&schedule, ms(40), at(0));
     refiring.set_enabled(0, false);

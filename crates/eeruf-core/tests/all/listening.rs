@@ -55,8 +55,9 @@ fn heard(edges: &[u32]) -> (ReadingKind, Option<u32>, u32) {
     (reading.kind, reading.t_echo.map(Micros::as_micros), now.since(fired).as_micros())
 }
 
+// An echo lies between the end of the blanking time and the end of the window both included.
 #[test]
-fn an_echo_lies_between_the_end_of_the_blanking_time_and_the_end_of_the_window_both_included() {
+fn echo_lies_between_blanking_and_window_inclusive() {
     assert_eq!(heard(&[]), (ReadingKind::NoEcho, None, WINDOW));
     assert_eq!(heard(&[0]), (ReadingKind::TooEarly, Some(0), WINDOW));
     assert_eq!(heard(&[BLANKING - 1]), (ReadingKind::TooEarly, Some(BLANKING - 1), WINDOW));
@@ -65,8 +66,9 @@ fn an_echo_lies_between_the_end_of_the_blanking_time_and_the_end_of_the_window_b
     assert_eq!(heard(&[WINDOW + 1]), (ReadingKind::NoEcho, None, WINDOW));
 }
 
+// The earliest edge within the window is the echo whatever else comes.
 #[test]
-fn the_earliest_edge_within_the_window_is_the_echo_whatever_else_comes() {
+fn earliest_edge_in_window_is_the_echo() {
     assert_eq!(heard(&[9_000, 5_000, 7_000]), (ReadingKind::First, Some(5_000), 9_000));
     assert_eq!(heard(&[300, 5_000]), (ReadingKind::First, Some(5_000), 5_000));
     assert_eq!(heard(&[5_000, 300]), (ReadingKind::First, Some(5_000), 5_000));
@@ -82,8 +84,9 @@ fn an_edge_from_before_the_firing_belongs_to_nothing() {
     assert_eq!(reading(&mut ring).1.kind, ReadingKind::NoEcho);
 }
 
+// The first edge after the window is reported once and one within it comes too late for its poll.
 #[test]
-fn the_first_edge_after_the_window_is_reported_once_and_one_within_it_comes_too_late_for_its_poll() {
+fn late_edge_is_reported_once() {
     let schedule = schedule();
     let mut ring = ring(&schedule);
     let fired = fire(&mut ring);
@@ -113,8 +116,9 @@ fn a_late_edge_is_reported_at_once_when_no_sensor_listens() {
     assert_eq!(reading(&mut ring).1.kind, ReadingKind::Late);
 }
 
+// A line that was high makes its firing stuck whatever follows and the next one is heard.
 #[test]
-fn a_line_that_was_high_makes_its_firing_stuck_whatever_follows_and_the_next_one_is_heard() {
+fn high_line_makes_its_firing_stuck() {
     let schedule = schedule();
     let mut ring = ring(&schedule);
     // Before it has fired there is nothing to be stuck.
@@ -185,8 +189,9 @@ fn fire_of_0(ring: &mut ScheduledRing<'_, 2>) -> Instant {
     panic!("sensor 0 never fires");
 }
 
+// Of echoes that are in at one poll that of the sensor which fired first is emitted first.
 #[test]
-fn of_echoes_that_are_in_at_one_poll_that_of_the_sensor_which_fired_first_is_emitted_first() {
+fn echoes_of_one_poll_are_emitted_by_firing_order() {
     let ms = |times: [u32; 2]| times.map(Micros::from_millis);
     let schedule = Schedule::from_firing(Micros::from_millis(100), [ms([10, 15]), ms([15, 10])]).unwrap();
     let mut ring = ring(&schedule);
@@ -211,8 +216,9 @@ fn of_echoes_that_are_in_at_one_poll_that_of_the_sensor_which_fired_first_is_emi
     }
 }
 
+// Where sensors report two echoes each is heard until the window closes.
 #[test]
-fn where_sensors_report_two_echoes_each_is_heard_until_the_window_closes() {
+fn several_echoes_are_heard_until_window_closes() {
     let schedule = schedule();
     let config = RingConfig::new().with_t_delta(Micros::new(500)).with_window(Micros::new(WINDOW)).with_echoes::<2>();
     let mut ring = Ring::<_, _, 2, 2>::unverified(&schedule, config, Instant::from_micros(0)).unwrap();

@@ -49,8 +49,9 @@ fn the_largest_interval_is_found_whatever_interval_is_asked_for() {
     }
 }
 
+// What holds of less than half an interval to spare is not taken to hold of half of one.
 #[test]
-fn what_holds_of_less_than_half_an_interval_to_spare_is_not_taken_to_hold_of_half_of_one() {
+fn slack_below_half_an_interval_is_not_half() {
     // Pairs of neighbours in a line, in two and a half intervals: there is one permutation for all only below that.
     for (sensors, interval, separation) in [(4, 2, 1), (4, 4, 2), (6, 4, 1)] {
         let rows = naive::conflicts(naive::Layout::Line, sensors, 2);
@@ -61,8 +62,9 @@ fn what_holds_of_less_than_half_an_interval_to_spare_is_not_taken_to_hold_of_hal
     }
 }
 
+// An interval between neighbours that there are none of makes no search too long.
 #[test]
-fn an_interval_between_neighbours_that_there_are_none_of_makes_no_search_too_long() {
+fn interval_without_neighbours_makes_no_long_search() {
     let mut memory = vec![0; memory_words(64)];
     let requirements = Requirements { min_interval: ms(5_000), layout: Layout::Line(1), ..NEEDS };
     let problem = PeriodProblem { sensors: 64, requirements, tick: ms(1) };
@@ -111,8 +113,9 @@ fn no_sensors_need_memory_that_can_be_counted() {
     assert!(eeruf_core::search::wait::memory_words(0) <= eeruf_core::search::wait::memory_words(1));
 }
 
+// The preferred schedule of 64 sensors is found up to the longest period.
 #[test]
-fn the_preferred_schedule_of_64_sensors_is_found_up_to_the_longest_period() {
+fn preferred_schedule_of_64_sensors_is_found() {
     let mut memory = vec![0; memory_words(64)];
     for (neighbours, window) in [(64, 10), (64, MAX_TICKS / 2), (2, MAX_TICKS / 2), (1, MAX_TICKS / 2)] {
         let rows = naive::conflicts(naive::Layout::Line, 64, neighbours);
@@ -125,8 +128,9 @@ fn the_preferred_schedule_of_64_sensors_is_found_up_to_the_longest_period() {
     }
 }
 
+// A period known to be the shortest is explained as by the search that proved it.
 #[test]
-fn a_period_known_to_be_the_shortest_is_explained_as_by_the_search_that_proved_it() {
+fn known_shortest_period_is_explained_as_searched() {
     let mut memory = vec![0; memory_words(12)];
     let mut texts = Vec::new();
     for window in [15, 30, 45, 60] {

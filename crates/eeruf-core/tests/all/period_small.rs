@@ -41,8 +41,9 @@ proptest! {
         }
     }
 
+    // The shortest period of tiny problems is where nested loops begin to succeed.
     #[test]
-    fn the_shortest_period_of_tiny_problems_is_where_nested_loops_begin_to_succeed(
+    fn shortest_period_is_where_nested_loops_succeed(
         (rows, separation, interval, window, stale_echo) in tiny()
     ) {
         let problem = Problem { sensors: rows.len(), conflicts: &rows, separation, interval, window, stale_echo };

@@ -5,8 +5,9 @@ use eeruf_core::search::design::{Problem, memory_words, shortest};
 use crate::common::naive::{self, Layout};
 use crate::common::naive_period::{assert_serves, paper_12};
 
+// The half ring of twelve runs at 65 ms and also in microseconds.
 #[test]
-fn the_half_ring_of_twelve_runs_at_65_ms_and_also_in_microseconds() {
+fn half_ring_of_twelve_runs_at_65_ms() {
     let rows = naive::conflicts(Layout::Line, 12, 4);
     let mut memory = vec![0; memory_words(12)];
     for scale in [1, 1000] {
@@ -17,8 +18,9 @@ fn the_half_ring_of_twelve_runs_at_65_ms_and_also_in_microseconds() {
     }
 }
 
+// A tick of a microsecond needs little more nodes than one of a millisecond.
 #[test]
-fn a_tick_of_a_microsecond_needs_little_more_nodes_than_one_of_a_millisecond() {
+fn microsecond_ticks_need_few_more_nodes() {
     let rows = naive::conflicts(Layout::Ring, 8, 4);
     let mut memory = vec![0; memory_words(8)];
     for scale in [1, 100, 1000] {
@@ -29,8 +31,9 @@ fn a_tick_of_a_microsecond_needs_little_more_nodes_than_one_of_a_millisecond() {
     }
 }
 
+// Ticks of a tenth of a millisecond cost at most three times the nodes.
 #[test]
-fn ticks_of_a_tenth_of_a_millisecond_cost_at_most_three_times_the_nodes() {
+fn tenth_ticks_cost_at_most_three_times_the_nodes() {
     let (mut coarse, mut fine) = (0, 0);
     for layout in [Layout::Line, Layout::Ring] {
         for sensors in [8, 12, 16, 24] {

@@ -37,8 +37,9 @@ fn the_reason_names_what_to_relax() {
     assert!(matches!(searched.explanation, Explanation::Exhausted { period: 64, .. }));
 }
 
+// At 100 ms with the paper s refire times the half ring could keep 20 ms.
 #[test]
-fn at_100_ms_with_the_paper_s_refire_times_the_half_ring_could_keep_20_ms() {
+fn papers_half_ring_keeps_20_ms_at_100_ms() {
     // With |d| of at most 24 ms, as in the paper's tables, the window is 76 ms. With the paper's lags the answer is 19
     // ms; here lags are free.
     let rows = naive::conflicts(Layout::Line, 12, 4);
@@ -50,8 +51,9 @@ fn at_100_ms_with_the_paper_s_refire_times_the_half_ring_could_keep_20_ms() {
     assert_serves(&Problem { interval, ..problem }, 100, &firing);
 }
 
+// At 82 ms the maximize separation of twelve sensors with a 60 ms window is 2 ms.
 #[test]
-fn at_82_ms_the_maximize_separation_of_twelve_sensors_with_a_60_ms_window_is_2_ms() {
+fn twelve_sensors_keep_2_ms_separation_at_82_ms() {
     let rows = naive::conflicts(Layout::Line, 12, 4);
     let problem = Problem { window: 60, ..paper_12(&rows, 1) };
     let mut memory = vec![0; memory_words(12)];

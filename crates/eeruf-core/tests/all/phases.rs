@@ -57,8 +57,9 @@ fn check<const K: usize>(kind: &str, period_us: u32, times: &[Vec<u32>], [separa
     assert_eq!(table.min_interval(Layout::Line(4)).map(|interval| interval.value), Some(Micros::new(nearest)));
 }
 
+// Tables of many phases are as separate as is known and those of slots only at one age.
 #[test]
-fn tables_of_many_phases_are_as_separate_as_is_known_and_those_of_slots_only_at_one_age() {
+fn many_phase_tables_are_as_separate_as_known() {
     let cases = cases();
     assert_eq!(cases.len(), 14);
     for (kind, sensors, period_us, times, facts) in &cases {
@@ -196,16 +197,18 @@ fn a_violation_names_sensors_phases_and_what_would_do() {
     assert_eq!(table.verify(&loose).max_t_delta(), Some(Micros::new(50)));
 }
 
+// An interval too long for 32 bits is not taken for a short one.
 #[test]
-fn an_interval_too_long_for_32_bits_is_not_taken_for_a_short_one() {
+fn interval_beyond_32_bits_is_not_short() {
     // From the one sensor to the other in the next period it is 2^32 + 4 us.
     let times = [[Micros::ZERO, Micros::new(5)]];
     let table = PhaseTable::new(Micros::MAX, &times);
     assert_eq!(table.min_interval(Layout::Line(2)).unwrap().value, Micros::new(5));
 }
 
+// A path that is heard in one phase only counts for no separation.
 #[test]
-fn a_path_that_is_heard_in_one_phase_only_counts_for_no_separation() {
+fn path_in_one_phase_counts_for_no_separation() {
     let us = Micros::new;
     // By half a period the one firing moves: no window of 5 ms hears a path in both phases, of whatever length.
     let rows = [[us(0), us(10_000)], [us(0), us(40_000)]];
@@ -269,8 +272,9 @@ fn a_table_is_as_separate_as_trying_each_length_of_a_path_finds() {
     assert!(apart > 200 && by_age.iter().all(|&often| often > 5), "{apart} {by_age:?}");
 }
 
+// Neighbours that fire last and first are close across the end of a period.
 #[test]
-fn neighbours_that_fire_last_and_first_are_close_across_the_end_of_a_period() {
+fn neighbours_are_close_across_the_period_end() {
     let rows = [[0, 50], [20, 50], [0, 45]].map(|row| row.map(Micros::from_millis));
     let table = PhaseTable::new(Micros::from_millis(60), &rows);
     let least = table.min_interval(Layout::Line(2)).unwrap();
@@ -316,8 +320,9 @@ fn what_is_kept_just_so_is_kept_and_a_microsecond_more_is_named() {
     }
 }
 
+// A stale echo that moves less than crosstalk limits t delta where it is asked for.
 #[test]
-fn a_stale_echo_that_moves_less_than_crosstalk_limits_t_delta_where_it_is_asked_for() {
+fn stale_echo_limits_t_delta_where_asked() {
     let table = PhaseTable::new(Micros::new(60_000), &MOVING);
     let found = |stale_echo, criterion| {
         let asked = PhaseRequirements { stale_echo, criterion, ..JUST_KEPT };

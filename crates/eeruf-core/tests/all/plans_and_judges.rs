@@ -119,8 +119,9 @@ fn a_judge_is_asked_to_restart_with_the_ring() {
     assert_eq!(ring.judge().restarts, 1);
 }
 
+// A judge whose t delta is no shorter than the window is refused.
 #[test]
-fn a_judge_whose_t_delta_is_no_shorter_than_the_window_is_refused() {
+fn judge_with_t_delta_of_a_window_is_refused() {
     let coarse = EchoFilter::<12>::new(Micros::from_millis(30), 2).unwrap();
     let ring = Ring::<_, _, 12>::judged_by(ScheduledFiring::new(&TABLE_I_D, BEGIN), coarse, CONFIG, BEGIN);
     assert!(ring.is_err());

@@ -48,8 +48,9 @@ fn least_interval(fired: &[(u8, u32)]) -> u32 {
     fired.windows(2).filter(|pair| pair[0].0 != pair[1].0).map(|pair| pair[1].1 - pair[0].1).min().unwrap()
 }
 
+// A restart keeps the smallest interval where it is longer than refire time and half a period.
 #[test]
-fn a_restart_keeps_the_smallest_interval_where_it_is_longer_than_refire_time_and_half_a_period() {
+fn restart_keeps_an_interval_longer_than_refire() {
     let schedule = verified(48, [0, 40], [43, 0], 40);
     assert_eq!(schedule.min_refire(), ms(5));
     for restart in 0..200 {
@@ -75,8 +76,9 @@ fn a_change_of_schedule_keeps_an_interval_that_both_keep() {
     }
 }
 
+// A schedule that was not verified keeps its own intervals through a restart.
 #[test]
-fn a_schedule_that_was_not_verified_keeps_its_own_intervals_through_a_restart() {
+fn unverified_schedule_keeps_its_intervals_on_restart() {
     let schedule = Schedule::from_firing(ms(48), [[ms(0), ms(40)], [ms(43), ms(0)]]).unwrap();
     let mut ring: ScheduledRing<2> = Ring::unverified(&schedule, CONFIG, Instant::from_micros(0)).unwrap();
     let mut fired = fire_until(&mut ring, 45_000);
@@ -97,16 +99,18 @@ fn time_to_fire(plan: &mut ScheduledFiring<'_, 12>, mut now: Instant) -> Micros 
     }
 }
 
+// Scheduled firing alone goes on after a pause of forty minutes.
 #[test]
-fn scheduled_firing_alone_goes_on_after_a_pause_of_forty_minutes() {
+fn firing_goes_on_after_forty_minutes_of_pause() {
     let mut plan = ScheduledFiring::new(&TABLE_I_D, Instant::from_micros(0));
     time_to_fire(&mut plan, Instant::from_micros(0));
     let forty_minutes = Instant::from_micros(0) + ms(40 * 60 * 1000);
     assert!(time_to_fire(&mut plan, forty_minutes) <= ms(200));
 }
 
+// Forty minutes without sensors do not delay a change of schedule.
 #[test]
-fn forty_minutes_without_sensors_do_not_delay_a_change_of_schedule() {
+fn forty_minutes_without_sensors_delay_no_change() {
     let mut plan = ScheduledFiring::new(&TABLE_I_D, Instant::from_micros(0));
     time_to_fire(&mut plan, Instant::from_micros(0));
     (0..12).for_each(|sensor| plan.set_enabled(sensor, false));
@@ -137,8 +141,9 @@ fn forty_minutes_without_sensors_do_not_delay_a_restart() {
     assert!(time_to_fire(&mut plan, now) <= ms(200));
 }
 
+// Periods in which nothing fires are caught up with if the poll is no more than one late.
 #[test]
-fn periods_in_which_nothing_fires_are_caught_up_with_if_the_poll_is_no_more_than_one_late() {
+fn empty_periods_are_caught_up_one_late() {
     for (late, ended) in [(ms(99), 1), (ms(100), 2), (Micros::new(100_001), 1), (ms(60_000), 1)] {
         let mut ring: ScheduledRing<12> = Ring::unverified(&TABLE_I_D, CONFIG, Instant::from_micros(0)).unwrap();
         ring.pause();
@@ -167,13 +172,15 @@ fn outlasts_a_step_back(back: u32) -> bool {
     }
 }
 
+// A clock that steps back until three periods are left has not jumped and one microsecond more is a jump.
 #[test]
-fn a_clock_that_steps_back_until_three_periods_are_left_has_not_jumped_and_one_microsecond_more_is_a_jump() {
+fn step_back_to_three_periods_is_no_jump() {
     assert_eq!([20_001, 60_000, 60_001].map(outlasts_a_step_back), [true, true, false]);
 }
 
+// A reading is of the period and phase in which its sensor fired.
 #[test]
-fn a_reading_is_of_the_period_and_phase_in_which_its_sensor_fired() {
+fn reading_is_of_its_firings_period_and_phase() {
     // The window closes in the next period, which is of the other phase.
     let schedule = Schedule::<1>::from_firing(ms(20), [[ms(17)], [ms(18)]]).unwrap();
     let mut ring: ScheduledRing<1> = Ring::unverified(&schedule, CONFIG, Instant::from_micros(0)).unwrap();
@@ -216,8 +223,9 @@ fn a_schedule_with_room_for_300_sensors_fires_those_that_it_has() {
     assert_eq!(fired, [0, 1, 2, 0, 1, 2, 0, 1, 2]);
 }
 
+// A ring takes no larger t delta than its schedule was verified for at the start or later.
 #[test]
-fn a_ring_takes_no_larger_t_delta_than_its_schedule_was_verified_for_at_the_start_or_later() {
+fn ring_takes_no_larger_t_delta_than_verified() {
     let good = TABLE_I_D.verify(&Requirements::new(Micros::new(999))).verified().unwrap();
     let better = TABLE_I_D.verify(&Requirements::new(Micros::new(500))).verified().unwrap();
     let ring = |t_delta| -> Result<ScheduledRing<12>, RingError> {
@@ -236,8 +244,9 @@ fn a_ring_takes_no_larger_t_delta_than_its_schedule_was_verified_for_at_the_star
     assert_eq!(running.t_delta(), Micros::new(500));
 }
 
+// A ring listens no longer than its schedule was verified for at the start or later.
 #[test]
-fn a_ring_listens_no_longer_than_its_schedule_was_verified_for_at_the_start_or_later() {
+fn ring_listens_no_longer_than_verified() {
     let verified =
         |window| TABLE_I_D.verify(&Requirements { window, ..Requirements::new(Micros::new(999)) }).verified().unwrap();
     let (long, short) = (verified(ms(50)), verified(ms(40)));
@@ -258,8 +267,9 @@ fn a_ring_listens_no_longer_than_its_schedule_was_verified_for_at_the_start_or_l
     assert_eq!(running.set_window(ms(77)), Err(RingError::Window { window: ms(77), min_refire: ms(76) }));
 }
 
+// T delta and blanking are shorter than the window at the start and later.
 #[test]
-fn t_delta_and_blanking_are_shorter_than_the_window_at_the_start_and_later() {
+fn t_delta_and_blanking_are_below_the_window() {
     let start = |config| Ring::unverified(&TABLE_I_D, config, Instant::default()).unwrap_err().to_string();
     let coarse = "a t_delta of 5 ms; expected less than the window of 5 ms, and at most 65.535 ms";
     assert_eq!(start(CONFIG.with_t_delta(ms(5))), coarse);
@@ -273,8 +283,9 @@ fn t_delta_and_blanking_are_shorter_than_the_window_at_the_start_and_later() {
     assert_eq!((ring.t_delta(), ring.window(), ring.blanking()), (ms(1), ms(5), ms(3)));
 }
 
+// A schedule that was not verified needs t delta and window said.
 #[test]
-fn a_schedule_that_was_not_verified_needs_t_delta_and_window_said() {
+fn unverified_schedule_needs_t_delta_and_window() {
     for config in [RingConfig::new(), RingConfig::new().with_window(ms(5)), RingConfig::new().with_t_delta(ms(1))] {
         let error = Ring::unverified(&TABLE_I_D, config, Instant::default()).unwrap_err();
         assert_eq!(
@@ -288,8 +299,9 @@ fn a_schedule_that_was_not_verified_needs_t_delta_and_window_said() {
     assert!(Ring::unverified(&verified, RingConfig::new(), Instant::default()).is_ok());
 }
 
+// Immediate refiring holds back for any refire time that the clock can tell.
 #[test]
-fn immediate_refiring_holds_back_for_any_refire_time_that_the_clock_can_tell() {
+fn immediate_refiring_takes_any_refire_time() {
     for min_refire in [ms(100_000), Micros::MAX] {
         let mut plan = ImmediateRefiring::new(&TABLE_I_D, min_refire, Instant::default());
         let mut last = [None; 12];
@@ -353,13 +365,15 @@ fn schedules_are_equal_by_their_times_verified_or_not() {
     }
 }
 
+// The papers ring of twelve is verified for 17 ms between neighbours.
 #[test]
-fn the_papers_ring_of_twelve_is_verified_for_17_ms_between_neighbours() {
+fn papers_ring_is_verified_for_17_ms() {
     assert_eq!(PAPER_12.verified_for().min_interval, Micros::from_millis(17));
 }
 
+// A schedule knows its phases whether it was verified and nothing of what is not there.
 #[test]
-fn a_schedule_knows_its_phases_whether_it_was_verified_and_nothing_of_what_is_not_there() {
+fn schedule_knows_its_phases_and_verification() {
     assert_eq!((TABLE_I_D.phases(), TABLE_I_D.is_verified(), PAPER_12.is_verified()), (2, false, true));
     let firings = [(2, 0), (0, 12), (2, 12)].map(|(phase, sensor)| TABLE_I_D.t_fire(Phase(phase), sensor));
     assert_eq!(firings, [None; 3]);

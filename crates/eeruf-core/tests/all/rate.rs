@@ -82,8 +82,9 @@ fn one_path_that_grows_at_any_constant_rate_is_never_accepted() {
     assert!(heard > 30_000 && moved > 20_000, "{heard}, {moved}");
 }
 
+// A wall that comes nearer at any constant rate is accepted from the third reading on.
 #[test]
-fn a_wall_that_comes_nearer_at_any_constant_rate_is_accepted_from_the_third_reading_on() {
+fn wall_at_constant_rate_is_accepted_from_third_reading() {
     let mut random = Random(2);
     for table in 0..500 {
         let (firing, period) = if table == 0 {
@@ -205,8 +206,9 @@ fn heard_of_one_path<J: Judge>(judge: J, emitter: u8, late: u32, length: u32, ra
     }
 }
 
+// A ring with a rate accepts no path of anyone else however late firings are.
 #[test]
-fn a_ring_with_a_rate_accepts_no_path_of_anyone_else_however_late_firings_are() {
+fn rate_ring_accepts_no_foreign_path() {
     let filter = || RateFilter::<12>::new(Micros::new(999), 20_000).unwrap();
     let (mut alone, mut readings) = (0, 0);
     for (seed, late) in (0..110).zip([0, 500, 1_000, 3_000, 10_000].into_iter().cycle()) {

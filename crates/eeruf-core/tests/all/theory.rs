@@ -68,8 +68,9 @@ fn best_interval(search: &WaitSearch) -> Found<24> {
     search.best(wait::Objective::Interval, &mut memory, &mut wait::Budget::unlimited()).expect("memory suffices")
 }
 
+// Section 2 crosstalk from sensor 1 to 2 of table i d reads what the example says.
 #[test]
-fn section_2_crosstalk_from_sensor_1_to_2_of_table_i_d_reads_what_the_example_says() {
+fn section_2_example_of_table_i_d_holds() {
     assert_eq!((TABLE_I_D.shift_us(0), TABLE_I_D.shift_us(1)), (6_000, 12_000));
     let reads = |travels: i32, old: i32, own: Phase, of_sender: Phase| {
         travels - 100 * old + fire_ms(&TABLE_I_D, of_sender, 0) - fire_ms(&TABLE_I_D, own, 1)
@@ -82,8 +83,9 @@ fn section_2_crosstalk_from_sensor_1_to_2_of_table_i_d_reads_what_the_example_sa
     assert_eq!((wait(a, 0), wait(a, 11), wait(b, 0), wait(b, 11)), (ms(24), ms(24), ms(0), ms(22)));
 }
 
+// Section 3 the difference of two sizes is the smaller of difference and sum.
 #[test]
-fn section_3_the_difference_of_two_sizes_is_the_smaller_of_difference_and_sum() {
+fn section_3_difference_of_two_sizes_holds() {
     for (p, q) in (-20_i32..=20).flat_map(|p| (-20_i32..=20).map(move |q| (p, q))) {
         assert_eq!((p.abs() - q.abs()).abs(), (p - q).abs().min((p + q).abs()));
     }
@@ -113,8 +115,9 @@ fn section_3_the_smallest_intervals_of_table_i_are_as_tabled() {
     assert!(THEORY.contains(&format!("b = {}", b.collect::<Vec<_>>().join(" "))));
 }
 
+// Section 4 table i d rejects stale echoes and a sensor that alternates nothing does not.
 #[test]
-fn section_4_table_i_d_rejects_stale_echoes_and_a_sensor_that_alternates_nothing_does_not() {
+fn section_4_table_i_d_rejects_stale_echoes() {
     let stale = Requirements { stale_echo: true, ..Requirements::new(Micros::new(999)) };
     assert!(TABLE_I_D.verify(&stale).ok());
     let alone = Schedule::<1>::from_firing(ms(100), [[ms(0)]; 2]).unwrap();
@@ -134,8 +137,9 @@ fn section_5_1_the_simple_bounds_are_as_computed() {
     assert!(found(13) && !found(14));
 }
 
+// Section 5 2 the best intervals of the papers lags meet the bound.
 #[test]
-fn section_5_2_the_best_intervals_of_the_papers_lags_meet_the_bound() {
+fn section_5_2_papers_lags_meet_the_bound() {
     for (tick_us, best_us) in [(1000, 19_000), (500, 19_500), (100, 19_500)] {
         let best = best_interval(&waits(12, 999, tick_us));
         assert_eq!((best.value, best.proven), (Some(Micros::new(best_us)), true));
@@ -150,8 +154,9 @@ fn section_5_2_the_best_intervals_of_the_papers_lags_meet_the_bound() {
     }
 }
 
+// Section 5 2 the construction serves at 82 ms and no shorter period does.
 #[test]
-fn section_5_2_the_construction_serves_at_82_ms_and_no_shorter_period_does() {
+fn section_5_2_construction_serves_at_82_ms() {
     let (n, separation, groups) = (4, 2, 3);
     let b = core::array::from_fn(|i| i as u32 % n * 15);
     let d: [u32; 12] = core::array::from_fn(|i| separation * (i as u32 % n * groups + i as u32 / n));
@@ -165,8 +170,9 @@ fn section_5_2_the_construction_serves_at_82_ms_and_no_shorter_period_does() {
     assert_eq!(shortest(&needs, 100_000).value, Some(ms(82)));
 }
 
+// Section 5 3 four neighbours need 60 ms in another order and 66 with a long window.
 #[test]
-fn section_5_3_four_neighbours_need_60_ms_in_another_order_and_66_with_a_long_window() {
+fn section_5_3_four_neighbours_need_60_ms() {
     let times = |times: [u32; 4]| times.map(ms);
     let (a, b) = (times([30, 15, 45, 0]), times([0, 15, 30, 45]));
     let needs_15 = needs(4, Layout::Line(4), 15);
@@ -194,8 +200,9 @@ fn by_formula(layout: &str, sensors: u32, window: u32) -> u32 {
     classes.max(window + 2 * (sensors - 1)).max(60)
 }
 
+// Section 5 3 the shortest periods are those of the corpus and 28 of 32 follow from formulas.
 #[test]
-fn section_5_3_the_shortest_periods_are_those_of_the_corpus_and_28_of_32_follow_from_formulas() {
+fn section_5_3_shortest_periods_are_those_of_the_corpus() {
     let corpus: serde_json::Value =
         serde_json::from_str(include_str!("../../../../tests/data/shortest-periods.json")).unwrap();
     let rows = table("ring");
@@ -223,8 +230,9 @@ fn section_5_3_the_shortest_periods_are_those_of_the_corpus_and_28_of_32_follow_
     assert_eq!(exceptions, [("line", 12, 45), ("ring", 8, 30), ("ring", 12, 45), ("ring", 24, 15)]);
 }
 
+// Section 5 3 counting alone ends below the four that were searched.
 #[test]
-fn section_5_3_counting_alone_ends_below_the_four_that_were_searched() {
+fn section_5_3_counting_ends_below_four_searched() {
     // Without a node, the bound is what counting says.
     let bound = |sensors, layout, window| shortest(&needs(sensors, layout, window), 0).bound.unwrap();
     assert_eq!(bound(12, Layout::Line(4), 45), ms(68));
@@ -233,8 +241,9 @@ fn section_5_3_counting_alone_ends_below_the_four_that_were_searched() {
     assert_eq!(bound(24, Layout::Ring(4), 15), ms(68));
 }
 
+// Section 5 5 finer ticks gain half a millisecond for a line of twelve.
 #[test]
-fn section_5_5_finer_ticks_gain_half_a_millisecond_for_a_line_of_twelve() {
+fn section_5_5_finer_ticks_gain_half_a_millisecond() {
     for (tick_us, period_us) in [(1000, 70_000), (100, 69_500)] {
         let needs = PeriodProblem { tick: Micros::new(tick_us), ..needs(12, Layout::Line(4), 45) };
         let found = shortest(&needs, 100_000);
@@ -242,8 +251,9 @@ fn section_5_5_finer_ticks_gain_half_a_millisecond_for_a_line_of_twelve() {
     }
 }
 
+// Section 6 1 the closed matrix is that of three firings in order.
 #[test]
-fn section_6_1_the_closed_matrix_is_that_of_three_firings_in_order() {
+fn section_6_1_closed_matrix_is_of_three_firings() {
     let far = 1000;
     let mut most = [[0, 0, 0, 0], [65, 0, -15, far], [65, far, 0, -15], [65, far, far, 0]];
     for over in 0..4 {
@@ -256,8 +266,9 @@ fn section_6_1_the_closed_matrix_is_that_of_three_firings_in_order() {
     }
 }
 
+// Section 7 the best interval takes a few dozen nodes and three neighbours have 3912 tables.
 #[test]
-fn section_7_the_best_interval_takes_a_few_dozen_nodes_and_three_neighbours_have_3912_tables() {
+fn section_7_best_interval_takes_few_nodes() {
     assert!(best_interval(&waits(12, 999, 1000)).nodes < 100);
     let problem = WaitProblem {
         sensors: 3,

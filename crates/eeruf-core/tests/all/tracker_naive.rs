@@ -342,8 +342,9 @@ fn the_tracker_says_what_its_rules_say_of_any_readings() {
     }
 }
 
+// A sensor is of no age until a reading counts and no older than can be told.
 #[test]
-fn a_sensor_is_of_no_age_until_a_reading_counts_and_no_older_than_can_be_told() {
+fn sensor_age_saturates_and_starts_unknown() {
     let mut tracker = EchoTracker::<1>::new(TrackerSettings::BALANCED).unwrap();
     let alone = Firing { solo: true, ..Firing::new(Phase(0)) };
     assert_eq!(tracker.skip(0, ReadingKind::TooEarly, None, 0).unwrap().age, None);
@@ -383,8 +384,9 @@ fn a_track_that_is_masked_for_long_stays_where_it_is() {
     assert_eq!(push(9_000).unwrap().previous, Some(Micros::new(9_000)));
 }
 
+// A track that is masked and supported in turns gets no more votes than can be counted.
 #[test]
-fn a_track_that_is_masked_and_supported_in_turns_gets_no_more_votes_than_can_be_counted() {
+fn masked_track_gets_no_more_votes_than_fit() {
     let settings = TrackerSettings::BALANCED;
     let mut tracker = EchoTracker::<1>::new(settings).unwrap();
     let mut naive = Naive::new(settings, 4);

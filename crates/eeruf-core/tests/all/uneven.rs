@@ -111,8 +111,9 @@ fn kinds(report: &Verification<'_, 4>) -> Vec<(ViolationKind, u8, u8)> {
     found
 }
 
+// Each violation of an uneven ring is one that firings on a line of time show and none is missed.
 #[test]
-fn each_violation_of_an_uneven_ring_is_one_that_firings_on_a_line_of_time_show_and_none_is_missed() {
+fn uneven_violations_are_those_of_a_time_line() {
     let mut random = Random(7);
     let (mut sound, mut seen) = (0, std::collections::BTreeMap::new());
     for _ in 0..20_000 {
@@ -202,8 +203,9 @@ fn what_makes_no_sense_for_a_ring_is_refused_by_what_it_is() {
     assert!(matches!(too_few, Err(UnevenError::Set { sensors: 63, .. })));
 }
 
+// A verified schedule allows each sensor its own and all together the least.
 #[test]
-fn a_verified_schedule_allows_each_sensor_its_own_and_all_together_the_least() {
+fn verified_uneven_schedule_allows_each_its_own() {
     const CORNERS: VerifiedSchedule<3, 2, EachSensor<3>> = schedule! {
         period_us: 60_000,
         t_fire_a_us: [0, 25_000, 25_000],
@@ -247,8 +249,9 @@ fn the_search_for_sensors_that_are_alike_refuses_others() {
     assert!(error.to_string().starts_with("sensors that are not all alike; expected"), "{error}");
 }
 
+// An uneven schedule is written with all that it was designed for.
 #[test]
-fn an_uneven_schedule_is_written_with_all_that_it_was_designed_for() {
+fn uneven_schedule_is_written_with_all_needs() {
     let ms = |ms: [u32; 2]| ms.map(Micros::from_millis);
     let schedule = Schedule::from_firing(Micros::from_millis(60), [ms([0, 20]), ms([0, 23])]).unwrap();
     let uneven = Uneven {

@@ -178,8 +178,9 @@ fn a_plan_with_limits_keeps_what_every_plan_promises() {
     }
 }
 
+// An uneven ring is on time while its closest pair can spare it.
 #[test]
-fn an_uneven_ring_is_on_time_while_its_closest_pair_can_spare_it() {
+fn uneven_ring_is_on_time_within_its_slack() {
     // Sensors 1 and 2 are 5 ms apart and compare by 2.4 ms, twice; a quarter of the 199 us left over, each period.
     let schedule = corners();
     for (late, on_time) in [(49, true), (50, false)] {
@@ -222,8 +223,9 @@ fn farther() -> VerifiedSchedule<4, 2, EachSensor<4>> {
     schedule.verify(&requirements).verified_each().expect("it keeps all")
 }
 
+// Between two uneven schedules nothing fires or listens sooner or longer than both allow.
 #[test]
-fn between_two_uneven_schedules_nothing_fires_or_listens_sooner_or_longer_than_both_allow() {
+fn change_between_uneven_schedules_keeps_both_limits() {
     let schedules = [corners(), farther()];
     let limits = |of: usize, sensor: usize| schedules[of].limits_of(sensor as u8).unwrap();
     // No more than either allows, so that it can change between them.
@@ -283,8 +285,9 @@ fn between_two_uneven_schedules_nothing_fires_or_listens_sooner_or_longer_than_b
     assert!(cut > 50 && accepted > 100, "{cut} {accepted}");
 }
 
+// A change to an uneven schedule that allows less is refused and the ring goes on.
 #[test]
-fn a_change_to_an_uneven_schedule_that_allows_less_is_refused_and_the_ring_goes_on() {
+fn change_to_less_permissive_schedule_is_refused() {
     let schedules = [corners(), farther()];
     let at = Instant::from_micros(0);
     let mut ring: Ring<_, _, 4> = Ring::new(&schedules[1], RingConfig::new(), at).unwrap();
@@ -303,8 +306,9 @@ fn a_change_to_an_uneven_schedule_that_allows_less_is_refused_and_the_ring_goes_
     assert_eq!(*ring.schedule(), *schedules[1]);
 }
 
+// A ring changes between sensors that are alike and sensors that are not.
 #[test]
-fn a_ring_changes_between_sensors_that_are_alike_and_sensors_that_are_not() {
+fn ring_changes_between_even_and_uneven_schedules() {
     let uneven = corners();
     let schedule = Schedule::from_firing(Micros::from_millis(70), [ms([0, 16, 32, 48]), ms([4, 26, 47, 50])]).unwrap();
     let alike = Requirements { window: Micros::from_millis(50), ..Requirements::new(Micros::new(999)) };

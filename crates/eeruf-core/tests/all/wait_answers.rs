@@ -15,8 +15,9 @@ fn three(criterion: Criterion, separation: u32) -> Owned {
     Owned { period: 40, lag, wait_max: 9, separation, interval: 0, conflicts, criterion }
 }
 
+// The separation of a table is the largest that nested loops find it to keep.
 #[test]
-fn the_separation_of_a_table_is_the_largest_that_nested_loops_find_it_to_keep() {
+fn table_separation_is_what_nested_loops_find() {
     let mut random = Random(7);
     for criterion in [Criterion::Exact, Criterion::Paper] {
         let owned = three(criterion, 0);
@@ -36,8 +37,9 @@ fn the_separation_of_a_table_is_the_largest_that_nested_loops_find_it_to_keep() 
     assert_eq!(Search::new(alone.problem()).unwrap().separation_of(&[3], &[5]), 9);
 }
 
+// Pairs whose sums are alike differ by the exact criterion alone.
 #[test]
-fn pairs_whose_sums_are_alike_differ_by_the_exact_criterion_alone() {
+fn pairs_of_equal_sums_differ_by_exact_criterion_alone() {
     // |d| is 0, 2 and 4; s is 8 each.
     let pairs = [(4, 4), (5, 3), (6, 2)];
     let count = |criterion, separation| {
@@ -88,8 +90,9 @@ fn in_microseconds<'a>(period: Micros, t_lag: Option<&'a [Micros]>) -> WaitProbl
     }
 }
 
+// The best of nothing has no bound and a search that was ended has one.
 #[test]
-fn the_best_of_nothing_has_no_bound_and_a_search_that_was_ended_has_one() {
+fn best_of_nothing_has_no_bound() {
     let mut memory = vec![0; MEMORY_WORDS];
     // |d| is at most 2 ms, and three sensors that are 2 ms apart need 0, 2 and 4.
     let problem = in_microseconds(Micros::from_millis(60), None);

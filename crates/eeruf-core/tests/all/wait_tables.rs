@@ -73,8 +73,9 @@ fn best_interval(owned: &Owned) -> (u32, u64) {
     (value, best.nodes)
 }
 
+// Waits on a millisecond grid give nineteen milliseconds and finer grids half a millisecond more.
 #[test]
-fn waits_on_a_millisecond_grid_give_nineteen_milliseconds_and_finer_grids_half_a_millisecond_more() {
+fn millisecond_grid_gives_nineteen_milliseconds() {
     for criterion in [Criterion::Paper, Criterion::Exact] {
         for layout in [Layout::Line, Layout::Blocks] {
             for (per_ms, best) in [(1, 19), (2, 39), (10, 195)] {

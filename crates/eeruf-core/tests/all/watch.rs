@@ -42,8 +42,9 @@ fn run(
     }
 }
 
+// What is known is as old as what confirmed it last through a wrap of the clock.
 #[test]
-fn what_is_known_is_as_old_as_what_confirmed_it_last_through_a_wrap_of_the_clock() {
+fn state_is_as_old_as_its_confirmation_through_a_wrap() {
     let start = u32::MAX - 3_000_000;
     let (mut ring, mut watch) = (ring(start), SensorWatch::<12>::new(0, at(start)));
     let nothing = SensorState::Unknown { since: Micros::ZERO, why: Doubt::NoFiring };
@@ -65,8 +66,9 @@ fn what_is_known_is_as_old_as_what_confirmed_it_last_through_a_wrap_of_the_clock
     assert_eq!(size_of::<SensorWatch<12>>(), 12 * 16 + 4, "as its documentation says");
 }
 
+// Each reading says what is known of the space before its sensor.
 #[test]
-fn each_reading_says_what_is_known_of_the_space_before_its_sensor() {
+fn each_reading_updates_the_state_before_its_sensor() {
     use ReadingKind::*;
     let mut watch = SensorWatch::<1>::new(0, at(0));
     let ms = Micros::from_millis;
@@ -112,8 +114,9 @@ fn each_reading_says_what_is_known_of_the_space_before_its_sensor() {
     }
 }
 
+// A sensor is blind when nothing is accepted for so many firings with an echo and is named once.
 #[test]
-fn a_sensor_is_blind_when_nothing_is_accepted_for_so_many_firings_with_an_echo_and_is_named_once() {
+fn blind_sensor_is_named_once() {
     let (mut ring, mut watch) = (ring(0), SensorWatch::<12>::new(20, at(0)));
     // Sensor 4 hears something else each time, sensor 5 now and then nothing, all others a wall.
     let echo = |sensor, period| match sensor {
@@ -134,8 +137,9 @@ fn a_sensor_is_blind_when_nothing_is_accepted_for_so_many_firings_with_an_echo_a
     assert_eq!(blind.len(), 2);
 }
 
+// A ring that is paused fires nothing ends its readings and goes on after it.
 #[test]
-fn a_ring_that_is_paused_fires_nothing_ends_its_readings_and_goes_on_after_it() {
+fn paused_ring_ends_readings_and_goes_on() {
     let mut ring = ring(0);
     let mut watch = SensorWatch::<12>::new(0, at(0));
     run(&mut ring, &mut watch, 10, |_, _| Some(9_000));

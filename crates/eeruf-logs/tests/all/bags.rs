@@ -35,8 +35,9 @@ fn holds(name: &str, report: &Report, readings: &[Reading], messages: usize, var
     }
 }
 
+// Bags that rosbags wrote give the readings that went in with and without variance.
 #[test]
-fn bags_that_rosbags_wrote_give_the_readings_that_went_in_with_and_without_variance() {
+fn rosbags_files_give_their_readings() {
     let folder = tempfile::tempdir().unwrap();
     for name in BAGS {
         let (report, readings) = read(&bag(name, folder.path()), &Options::default()).unwrap();
@@ -47,8 +48,9 @@ fn bags_that_rosbags_wrote_give_the_readings_that_went_in_with_and_without_varia
     }
 }
 
+// Without a schema the length of a message says whether it has a variance.
 #[test]
-fn without_a_schema_the_length_of_a_message_says_whether_it_has_a_variance() {
+fn message_length_says_if_it_has_a_variance() {
     let folder = tempfile::tempdir().unwrap();
     for (name, variance) in [("sqlite-humble", None), ("sqlite-jazzy", Some(0.5))] {
         let bag = bag(name, folder.path());
@@ -61,8 +63,9 @@ fn without_a_schema_the_length_of_a_message_says_whether_it_has_a_variance() {
     }
 }
 
+// A schema that the messages do not fit is said and nothing is guessed.
 #[test]
-fn a_schema_that_the_messages_do_not_fit_is_said_and_nothing_is_guessed() {
+fn schema_that_does_not_fit_is_reported() {
     let folder = tempfile::tempdir().unwrap();
     let bag = bag("sqlite-jazzy", folder.path());
     let database = rusqlite::Connection::open(bag.join("sqlite-jazzy.db3")).unwrap();
@@ -75,8 +78,9 @@ fn a_schema_that_the_messages_do_not_fit_is_said_and_nothing_is_guessed() {
     assert_eq!((&*report.skipped[0].why, report.skipped[0].messages), ("a length that does not fit their type", 6));
 }
 
+// Each beam of a scan made of sonars is a sensor with its own time.
 #[test]
-fn each_beam_of_a_scan_made_of_sonars_is_a_sensor_with_its_own_time() {
+fn each_beam_of_a_sonar_scan_is_a_sensor() {
     let folder = tempfile::tempdir().unwrap();
     let (report, readings) = read(&bag("ros1-lz4.bag", folder.path()), &Options::default()).unwrap();
     let beams: Vec<_> = report.sensors.iter().filter_map(|sensor| sensor.beam).collect();
@@ -90,8 +94,9 @@ fn each_beam_of_a_scan_made_of_sonars_is_a_sensor_with_its_own_time() {
     }
 }
 
+// The files of a bag in several are read in order also without its metadata.
 #[test]
-fn the_files_of_a_bag_in_several_are_read_in_order_also_without_its_metadata() {
+fn bag_in_several_files_is_read_in_order() {
     let folder = tempfile::tempdir().unwrap();
     let bag = bag("mcap-jazzy", folder.path());
     let first = bag.join("mcap-jazzy.mcap");

@@ -58,8 +58,9 @@ fn a_column_may_say_whose_reading_a_row_is() {
     assert_eq!(echoes(text, two).unwrap_err(), "2 columns with ranges; with a column of sensors expected is one");
 }
 
+// A sensor asked for by name that never hears anything is there.
 #[test]
-fn a_sensor_asked_for_by_name_that_never_hears_anything_is_there() {
+fn sensor_asked_for_by_name_is_listed_without_echoes() {
     let text = "left,deaf,right\n1.0,,\n1.1,,2.0\n";
     let deaf = |ranges: &[&str]| {
         let ranges = ranges.iter().map(|&name| name.to_owned()).collect();

@@ -25,8 +25,9 @@ fn data_file(bag: &Path) -> PathBuf {
     entries.find(|file| file.extension().is_some_and(|ending| ending == "mcap" || ending == "db3")).unwrap()
 }
 
+// Of every cut or flipped file what can be read is and the rest is said.
 #[test]
-fn of_every_cut_or_flipped_file_what_can_be_read_is_and_the_rest_is_said() {
+fn damaged_files_are_read_and_the_rest_reported() {
     let folder = tempfile::tempdir().unwrap();
     let mut random = Random(1);
     let (mut files, mut partly) = (0, 0);
@@ -190,8 +191,9 @@ fn a_wrong_length_in_a_ros_1_bag_takes_no_more_than_its_chunk() {
     }
 }
 
+// Of a bag that counts more messages than it holds it is said how many are missing.
 #[test]
-fn of_a_bag_that_counts_more_messages_than_it_holds_it_is_said_how_many_are_missing() {
+fn missing_messages_of_a_bag_are_counted() {
     let folder = tempfile::tempdir().unwrap();
     let bag = bag("sqlite-jazzy", folder.path());
     let database = rusqlite::Connection::open(data_file(&bag)).unwrap();

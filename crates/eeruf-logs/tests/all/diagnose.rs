@@ -110,8 +110,9 @@ fn named(log: &FiringLog, truth: &[Option<usize>], found: &Diagnosis) -> (f64, f
     (f64::from(right) / f64::from(foreign.max(1)), f64::from(right) / f64::from(named.max(1)))
 }
 
+// Under many phases most senders are named and the names are right.
 #[test]
-fn under_many_phases_most_senders_are_named_and_the_names_are_right() {
+fn many_phases_name_most_senders_rightly() {
     for seed in 1..=5 {
         let (log, truth) = World::HEALTHY.log(seed, 600);
         let found = diagnose(&log, &Settings::default());
@@ -122,8 +123,9 @@ fn under_many_phases_most_senders_are_named_and_the_names_are_right() {
     }
 }
 
+// Under two phases no sender is named as two offsets prove nothing.
 #[test]
-fn under_two_phases_no_sender_is_named_as_two_offsets_prove_nothing() {
+fn two_phases_name_no_sender() {
     let (log, _) = World { phases: 2, shifts: false, ..World::HEALTHY }.log(1, 600);
     let found = diagnose(&log, &Settings::default());
     assert!(found.named.iter().all(Option::is_none) && found.paths.is_empty());
@@ -170,8 +172,9 @@ fn two_sensors_with_swapped_lines_are_named() {
     }
 }
 
+// A deaf sensor a chattering one and two that are swapped are all named in one ring.
 #[test]
-fn a_deaf_sensor_a_chattering_one_and_two_that_are_swapped_are_all_named_in_one_ring() {
+fn deaf_chattering_and_swapped_sensors_are_named() {
     let broken = World { receivers: [0, 1, 5, 3, 4, 2], deaf: Some(0), chatters: Some(3), ..World::HEALTHY };
     for seed in 1..=3 {
         let (log, _) = broken.log(seed, 1000);
@@ -224,8 +227,9 @@ fn without_instants(log: &FiringLog) -> FiringLog {
     FiringLog::read_from(format!("sensor,period,phase,t_echo_us\n{text}").as_bytes(), "log".as_ref()).unwrap()
 }
 
+// A log without instants is put onto its schedule in the right phase and not onto another nor if lags moved.
 #[test]
-fn a_log_without_instants_is_put_onto_its_schedule_in_the_right_phase_and_not_onto_another_nor_if_lags_moved() {
+fn log_without_instants_fits_its_schedule_alone() {
     let period = PERIOD as u32;
     for seed in 1..=8 {
         let (log, _) = World { shifts: false, ..World::HEALTHY }.log(seed, 300);
@@ -265,8 +269,9 @@ fn without_lags(log: &FiringLog) -> FiringLog {
     FiringLog::new("test", firings)
 }
 
+// A log is read as it was written and a clock of 32 bits may wrap.
 #[test]
-fn a_log_is_read_as_it_was_written_and_a_clock_of_32_bits_may_wrap() {
+fn log_is_read_as_written_and_its_clock_may_wrap() {
     let (log, _) = World::HEALTHY.log(3, 50);
     let mut text = Vec::new();
     log.write(&mut text).unwrap();

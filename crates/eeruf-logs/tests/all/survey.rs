@@ -72,8 +72,9 @@ fn is_there(travel: &Travel, sender: u8, receiver: u8, travel_us: f64) -> bool {
     travel[usize::from(sender)][usize::from(receiver)].iter().any(|&us| (us as f64 - travel_us).abs() < 60.0)
 }
 
+// A survey finds who hears whom and nothing else also among strays.
 #[test]
-fn a_survey_finds_who_hears_whom_and_nothing_else_also_among_strays() {
+fn survey_finds_who_hears_whom_among_strays() {
     for (seed, strays) in [(1, 0), (2, 0), (3, 10), (4, 10), (5, 20)] {
         let random = &mut Random(seed);
         let travel = room(random);
@@ -118,8 +119,9 @@ fn a_conflict_lasts_as_long_as_the_longest_path_in_time() {
     assert_eq!((found.slots(0, 1), found.slots(0, 0), found.slots(0, 9)), (48, 3 + 2 * 4 * 24, 0));
 }
 
+// Modules that can listen without sending are surveyed in one pass.
 #[test]
-fn modules_that_can_listen_without_sending_are_surveyed_in_one_pass() {
+fn listening_modules_are_surveyed_in_one_pass() {
     let random = &mut Random(7);
     let travel = room(random);
     let (mut firings, mut listened) = (vec![], vec![]);
@@ -143,8 +145,9 @@ fn modules_that_can_listen_without_sending_are_surveyed_in_one_pass() {
     assert!(found.paths.iter().all(|path| is_there(&travel, path.sender, path.receiver, path.travel_us)));
 }
 
+// A firing log in mcap is the same as in csv and a cut one says so.
 #[test]
-fn a_firing_log_in_mcap_is_the_same_as_in_csv_and_a_cut_one_says_so() {
+fn firing_log_in_mcap_equals_csv() {
     let random = &mut Random(3);
     let log = log(&room(random), random, 5);
     let folder = tempfile::tempdir().unwrap();

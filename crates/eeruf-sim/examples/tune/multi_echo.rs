@@ -57,8 +57,9 @@ fn printed(MultiEcho { consecutive, t_delta }: MultiEcho) -> String {
 mod tests {
     use super::*;
 
+    // The constant in the source is as this prints it and in the grid.
     #[test]
-    fn the_constant_in_the_source_is_as_this_prints_it_and_in_the_grid() {
+    fn source_constant_is_as_printed_and_in_the_grid() {
         let source = include_str!("../../src/experiments/set_one/multi_echo.rs");
         let MultiEcho { consecutive, t_delta } = MultiEcho::TUNED;
         assert!(source.lines().any(|line| line == printed(MultiEcho::TUNED)), "{}", printed(MultiEcho::TUNED));

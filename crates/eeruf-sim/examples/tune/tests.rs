@@ -31,8 +31,9 @@ fn search(rounds: &[Round], folder: &Path) -> Tuned {
     .unwrap()
 }
 
+// A small search takes the pilot that finishes most and prints it.
 #[test]
-fn a_small_search_takes_the_pilot_that_finishes_most_and_prints_it() {
+fn small_search_takes_the_best_pilot() {
     let folder = folder("small");
     let tuned = search(&SMALL, &folder);
     // The same by hand: the two best of three on course 0, then the better of those on 1 and 2.
@@ -73,8 +74,9 @@ fn a_small_search_takes_the_pilot_that_finishes_most_and_prints_it() {
     fs::remove_dir_all(&folder).ok();
 }
 
+// The pilots in the source are printed as this prints them and are what is driven.
 #[test]
-fn the_pilots_in_the_source_are_printed_as_this_prints_them_and_are_what_is_driven() {
+fn pilots_in_the_source_are_as_printed() {
     let file = include_str!("../../src/experiments/set_two/own_pilots.rs");
     let rows: Vec<&str> = file.lines().filter(|line| line.starts_with("    (Method::")).collect();
     let methods: Vec<_> = Method::ALL.into_iter().filter(|&method| steered_as(method) == method).collect();

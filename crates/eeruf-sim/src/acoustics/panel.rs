@@ -127,8 +127,9 @@ mod tests {
         }
     }
 
+    // A whole wall returns all half of one half and a narrow one as much as it is wide.
     #[test]
-    fn a_whole_wall_returns_all_half_of_one_half_and_a_narrow_one_as_much_as_it_is_wide() {
+    fn panel_returns_a_share_of_a_whole_wall() {
         assert!((panel_share([f64::INFINITY; 2], false) - 1.0).abs() < 1e-15);
         assert!((panel_share([0.0, f64::INFINITY], false) - 0.5).abs() < 1e-15);
         assert!((panel_share([0.0, f64::INFINITY], true) - 0.5).abs() < 1e-15);
@@ -139,8 +140,9 @@ mod tests {
         }
     }
 
+    // The loudest panel is loudest and beside the reflection there is at most half as much.
     #[test]
-    fn the_loudest_panel_is_loudest_and_beside_the_reflection_there_is_at_most_half_as_much() {
+    fn loudest_panel_is_loudest() {
         let (mut most, mut beside): (f64, f64) = (0.0, 0.0);
         for a in (0..600).map(|k| 0.02 * f64::from(k)) {
             for b in (0..600).map(|k| 0.02 * f64::from(k)) {

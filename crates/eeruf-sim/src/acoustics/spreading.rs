@@ -38,8 +38,9 @@ mod tests {
     use super::*;
     use crate::geometry::{Point, alhazen};
 
+    // An eight millimetre pole is 24 decibel below a wall at one metre.
     #[test]
-    fn an_eight_millimetre_pole_is_24_decibel_below_a_wall_at_one_metre() {
+    fn pole_of_8_mm_is_24_db_below_a_wall_at_1_m() {
         let here = Point::origin();
         let hit = alhazen(here, here, Point::new(1.004, 0.0), 0.004).unwrap();
         let wall = 1.0 / 2.0;

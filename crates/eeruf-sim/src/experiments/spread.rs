@@ -101,8 +101,9 @@ mod tests {
         assert!(share_95(100, 100)[0] < 0.97 && share_95(0, 100)[1] > 0.03);
     }
 
+    // The interval of a median holds it and narrows with more values.
     #[test]
-    fn the_interval_of_a_median_holds_it_and_narrows_with_more_values() {
+    fn interval_of_a_median_holds_it_and_narrows() {
         let of = |count: u32| Spread::of((0..count).map(|n| f64::from(n * 7919 % count) / f64::from(count))).unwrap();
         let (few, many) = (of(50), of(5000));
         for spread in [few, many] {

@@ -110,8 +110,9 @@ mod tests {
 
     const YAML: &str = "image: map.pgm\nresolution: 0.5\norigin: [10, 20, 0]\n";
 
+    // A room in a picture is a room of four walls inside and four outside.
     #[test]
-    fn a_room_in_a_picture_is_a_room_of_four_walls_inside_and_four_outside() {
+    fn room_in_a_picture_has_four_walls_each_side() {
         // Black all around, white within, a grey pixel of which nothing is known.
         let grid = map("room", YAML, b"P2 4 4 255 0 0 0 0 0 255 255 0 0 255 205 0 0 0 0 0").unwrap();
         assert_eq!((grid.size(), grid.cell_m()), ([4, 4], 0.5));

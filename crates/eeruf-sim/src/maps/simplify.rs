@@ -185,8 +185,9 @@ mod tests {
     }
 
     proptest! {
+        // Every simplified wall lies within the tolerance of the map and none crosses another.
         #[test]
-        fn every_simplified_wall_lies_within_the_tolerance_of_the_map_and_none_crosses_another(
+        fn simplified_walls_stay_within_tolerance(
             blobs in prop::collection::vec((0_usize..30, 0_usize..24, 1_usize..14, 1_usize..14), 1..12),
             slant in 0_usize..4,
             tolerance in 0.0..4.0_f64,
@@ -227,8 +228,9 @@ mod tests {
         assert!(stairs > 100 && straight <= 8, "{stairs} {straight}");
     }
 
+    // Lines that share an end do not meet and all others that touch do.
     #[test]
-    fn lines_that_share_an_end_do_not_meet_and_all_others_that_touch_do() {
+    fn touching_lines_meet_unless_they_share_an_end() {
         let a = [[0, 0], [4, 4]];
         for (b, expected) in [
             ([[0, 0], [4, 0]], false),

@@ -133,8 +133,9 @@ mod tests {
     use super::*;
     use eeruf_core::{Criterion, Requirements, tables::TABLE_I_D};
 
+    // The table continues to any number of sensors with all pairs apart.
     #[test]
-    fn the_table_continues_to_any_number_of_sensors_with_all_pairs_apart() {
+    fn table_continues_to_any_number_of_sensors() {
         for (sensors, n) in [(1, 4), (8, 4), (12, 4), (24, 4), (64, 4), (16, 8), (5, 1), (9, 2)] {
             let schedule = table_i_d_for(sensors, Micros::from_millis(100), n).unwrap();
             let Some(separation) = schedule.separation(Criterion::Exact) else {
@@ -147,8 +148,9 @@ mod tests {
         }
     }
 
+    // Set one fires by the first eight rows of table i d times six tenths.
     #[test]
-    fn set_one_fires_by_the_first_eight_rows_of_table_i_d_times_six_tenths() {
+    fn set_one_fires_by_scaled_table_i_d() {
         let schedule = table_i_d_for(8, Micros::from_millis(60), 4).unwrap();
         let table = TABLE_I_D.scaled(3, 5).unwrap();
         for phase in [Phase::A, Phase::B] {

@@ -63,8 +63,9 @@ impl Default for Material {
 mod tests {
     use super::*;
 
+    // Roughness of a tenth of a millimetre hardly matters and one millimetre silences.
     #[test]
-    fn roughness_of_a_tenth_of_a_millimetre_hardly_matters_and_one_millimetre_silences() {
+    fn roughness_of_one_millimetre_silences() {
         let k = core::f64::consts::TAU * 49_400.0 / 343.2;
         for (sigma, expected) in [(0.1e-3, 0.9838), (0.5e-3, 0.6643), (1e-3, 0.1948)] {
             let material = Material { reflection: 1.0, roughness_m: sigma };

@@ -73,8 +73,9 @@ mod tests {
     use crate::*;
     use eeruf_core::Phase;
 
+    // A ring fired from outside hears to the microsecond what it hears in a simulation.
     #[test]
-    fn a_ring_fired_from_outside_hears_to_the_microsecond_what_it_hears_in_a_simulation() {
+    fn ring_fired_from_outside_hears_as_in_simulation() {
         const PERIODS: usize = 20;
         let walls = [[1.0, -0.8], [1.0, 0.8], [-0.9, 0.8], [-0.9, -0.8], [1.0, -0.8]];
         let scene = Scene::new(Wall::polyline(&walls).collect(), vec![], Air::default()).unwrap();

@@ -389,8 +389,9 @@ mod tests {
     use super::*;
     use crate::{acoustics::Transducer, scene::Air, scene::Scene, world::Noise, world::Robot};
 
+    // Where a steered robot was is known exactly for ten seconds and then forgotten.
     #[test]
-    fn where_a_steered_robot_was_is_known_exactly_for_ten_seconds_and_then_forgotten() {
+    fn steered_positions_are_known_for_ten_seconds() {
         let robot = Robot::ring(Pose::identity(), 2, 0.3, 0.1, Transducer::POLAROID_6500);
         let scene = Scene::new(vec![], vec![], Air::default()).unwrap();
         let world = World::new(scene, vec![robot], Noise::default()).unwrap();

@@ -93,8 +93,9 @@ mod tests {
         assert_eq!(motion.at(&Pose::identity(), 0.5).velocity, Vector::new(1.0, 0.0));
     }
 
+    // A sensor off the middle of a turning robot has a velocity of its own.
     #[test]
-    fn a_sensor_off_the_middle_of_a_turning_robot_has_a_velocity_of_its_own() {
+    fn off_centre_sensor_has_a_velocity_of_its_own() {
         let motion = Motion::Constant { velocity: Vector::new(0.5, 0.0), turn_rad_s: 2.0 };
         let moment = motion.at(&Pose::identity(), 0.0);
         assert_eq!(moment.velocity_at(Vector::new(0.0, 0.25)), Vector::new(0.0, 0.0));

@@ -30,8 +30,9 @@ fn roughness_counts_at_each_wall_by_its_own_angle() {
     }
 }
 
+// A pole as a rigid cylinder returns 95 per cent of geometric optics.
 #[test]
-fn a_pole_as_a_rigid_cylinder_returns_95_per_cent_of_geometric_optics() {
+fn pole_returns_95_per_cent_of_geometric_optics() {
     let scene = Scene::new(vec![], vec![Pole::new(1.0, 0.0, 0.004)], Air::default()).unwrap();
     let here = Point::origin();
     let (mut tracer, mut paths) = (Tracer::new(), Paths::default());

@@ -61,8 +61,9 @@ fn a_tenth_of_a_degree_changes_little_under_a_continuous_beam() {
     }
 }
 
+// A stated mounting decides what neighbours hear straight along it.
 #[test]
-fn a_stated_mounting_decides_what_neighbours_hear_straight_along_it() {
+fn stated_mounting_decides_coupling() {
     // What is just heard 10 cm apart: 4 m and back lose 18.1 dB to spreading and 10.5 dB to the air, 10 cm gain 20 dB.
     let heard_db = 20.0 * Transducer::HC_SR04.detection_floor(Air::default()).log10() - 20.0
         + 0.1 * Air::default().absorption_db_per_m(40e3);

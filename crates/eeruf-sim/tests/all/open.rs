@@ -32,8 +32,9 @@ fn rows(parts: &[Readings]) -> Vec<Row> {
     parts.iter().flat_map(of_part).collect()
 }
 
+// The blocks of a simulation together are the simulation bit for bit.
 #[test]
-fn the_blocks_of_a_simulation_together_are_the_simulation_bit_for_bit() {
+fn blocks_of_a_simulation_equal_the_simulation() {
     for motion in [Motion::Still, Motion::Constant { velocity: Vector::new(0.05, -0.03), turn_rad_s: 0.1 }] {
         let world = Arc::new(room_with(vec![], vec![robot_at(-0.8), Robot { motion, ..robot_at(0.7) }]));
         let options = Options { seed: Some(5), ..Options::periods(40) };
@@ -52,8 +53,9 @@ fn the_blocks_of_a_simulation_together_are_the_simulation_bit_for_bit() {
     }
 }
 
+// Who keeps the readings of many short steps keeps no room for more.
 #[test]
-fn who_keeps_the_readings_of_many_short_steps_keeps_no_room_for_more() {
+fn readings_of_short_steps_keep_no_more_room() {
     let world = Arc::new(room_with(vec![], vec![robot_at(0.0)]));
     let mut simulation = Simulation::new(world, Method::Eeruf, &Options::default(), Stop::default()).unwrap();
     for _ in 0..5 {
@@ -66,8 +68,9 @@ fn who_keeps_the_readings_of_many_short_steps_keeps_no_room_for_more() {
     }
 }
 
+// Steps to the next reading together are the simulation bit for bit.
 #[test]
-fn steps_to_the_next_reading_together_are_the_simulation_bit_for_bit() {
+fn steps_to_next_reading_equal_the_simulation() {
     for motion in [Motion::Still, Motion::Constant { velocity: Vector::new(0.05, -0.03), turn_rad_s: 0.1 }] {
         let world = Arc::new(room_with(vec![], vec![robot_at(-0.8), Robot { motion, ..robot_at(0.7) }]));
         let options = Options { seed: Some(5), ..Options::periods(20) };
@@ -101,8 +104,9 @@ fn steps_to_the_next_reading_together_are_the_simulation_bit_for_bit() {
     assert_eq!(simulation.step_to_reading(-1.0, |_| true).unwrap_err().to_string(), "seconds is -1; expected 0 to 1e9");
 }
 
+// A steered robot drives on the arc it was given and its sensors hear that.
 #[test]
-fn a_steered_robot_drives_on_the_arc_it_was_given_and_its_sensors_hear_that() {
+fn steered_robot_drives_its_arc_and_hears_there() {
     let world = Arc::new(room_with(vec![], vec![robot_at(0.0)]));
     let mut simulation = Simulation::new(world, Method::Eeruf, &Options::default(), Stop::default()).unwrap();
     let before = simulation.step(0.6, |_| true).unwrap();
@@ -153,8 +157,9 @@ fn two_robots_in_one_place_are_refused() {
     assert_eq!(error.to_string(), message);
 }
 
+// A question about thousands of poles stops when it is asked to.
 #[test]
-fn a_question_about_thousands_of_poles_stops_when_it_is_asked_to() {
+fn question_about_many_poles_stops_when_asked() {
     let pole = |k: i32| Pole::new(f64::from(k % 50) * 0.07 - 1.8, f64::from(k / 50) * 0.07 - 1.8, 0.004);
     let world = room_with(
         (0..2500).map(pole).collect(),

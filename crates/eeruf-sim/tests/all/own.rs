@@ -83,8 +83,9 @@ impl Filter for Median {
     }
 }
 
+// A filter of ones own that does what a methods does gives the same readings.
 #[test]
-fn a_filter_of_ones_own_that_does_what_a_methods_does_gives_the_same_readings() {
+fn own_filter_like_a_methods_gives_equal_readings() {
     let moving = Robot {
         motion: Motion::Constant { velocity: Vector::new(0.05, -0.03), turn_rad_s: 0.1 },
         odometry: true,
@@ -112,8 +113,9 @@ fn a_filter_of_ones_own_that_does_what_a_methods_does_gives_the_same_readings() 
     }
 }
 
+// A firing of ones own by a methods schedule gives the same readings.
 #[test]
-fn a_firing_of_ones_own_by_a_methods_schedule_gives_the_same_readings() {
+fn own_firing_like_a_methods_gives_equal_readings() {
     let table = table_i_d_for(8, robot().period, 4).unwrap();
     let clock = Robot { clock: Clock { drift_ppm: 80.0, ..Clock::default() }, ..robot() };
     for robot in [robot(), clock] {
@@ -127,8 +129,9 @@ fn a_firing_of_ones_own_by_a_methods_schedule_gives_the_same_readings() {
     }
 }
 
+// What is ones own is of one robot and the others go by the method.
 #[test]
-fn what_is_ones_own_is_of_one_robot_and_the_others_go_by_the_method() {
+fn own_code_is_of_one_robot() {
     let beside = Robot { pose: Pose::new(Vector::new(0.4, 0.3), 0.9), ..robot() };
     let here = Robot { pose: Pose::new(Vector::new(-0.4, -0.3), 0.2), ..robot() };
     let world = alcove(vec![here, beside]);
@@ -146,8 +149,9 @@ fn what_is_ones_own_is_of_one_robot_and_the_others_go_by_the_method() {
     assert_eq!(error.to_string(), "robot 3; expected one of 2");
 }
 
+// An echo is told from crosstalk also where a filter gives it another time.
 #[test]
-fn an_echo_is_told_from_crosstalk_also_where_a_filter_gives_it_another_time() {
+fn echo_differs_from_crosstalk_under_filter_times() {
     /// Gives every echo two microseconds late.
     struct Late;
     impl Filter for Late {
@@ -166,8 +170,9 @@ fn an_echo_is_told_from_crosstalk_also_where_a_filter_gives_it_another_time() {
     }
 }
 
+// A period that cannot be fired ends the simulation with the reason.
 #[test]
-fn a_period_that_cannot_be_fired_ends_the_simulation_with_the_reason() {
+fn unfireable_period_ends_the_simulation() {
     /// Fires well for three periods, and then otherwise.
     struct Then(FiringPeriod);
     impl Firing for Then {
@@ -204,8 +209,9 @@ fn a_period_that_cannot_be_fired_ends_the_simulation_with_the_reason() {
     assert!(error.contains("period 4 fires sensor 0 at 0 us, 10000 us after"), "{error}");
 }
 
+// Errors of ones own code come out of the step and the simulation goes on.
 #[test]
-fn errors_of_ones_own_code_come_out_of_the_step_and_the_simulation_goes_on() {
+fn errors_of_own_code_come_out_of_the_step() {
     struct Once(bool);
     impl Filter for Once {
         fn push(&mut self, firing: &FiredReading<'_>) -> Result<Filtered, OwnError> {
@@ -234,8 +240,9 @@ fn errors_of_ones_own_code_come_out_of_the_step_and_the_simulation_goes_on() {
     assert_eq!(error.to_string(), "at 0.000 s: the firing of robot 1: out of service");
 }
 
+// A ring changes to another schedule when its period ends and refuses what it cannot fire.
 #[test]
-fn a_ring_changes_to_another_schedule_when_its_period_ends_and_refuses_what_it_cannot_fire() {
+fn ring_changes_schedule_at_its_periods_end() {
     let (fast, slow) = (Micros::from_millis(60), Micros::from_millis(120));
     let slow = table_i_d_for(8, slow, 4).unwrap();
     let world = alcove(vec![Robot { schedule: Some(table_i_d_for(8, fast, 4).unwrap()), ..robot() }]);
@@ -297,8 +304,9 @@ fn obstacles_that_move_are_heard_where_they_are() {
     }
 }
 
+// A scene in which a sensor is inside something is refused and the old one stays.
 #[test]
-fn a_scene_in_which_a_sensor_is_inside_something_is_refused_and_the_old_one_stays() {
+fn scene_with_a_sensor_inside_is_refused() {
     let scene = |poles| {
         let wall = Wall::new(2.0, -5.0, 2.0, 5.0).with_faces(Faces::Both);
         Scene::new(vec![wall], poles, Air::default()).unwrap()

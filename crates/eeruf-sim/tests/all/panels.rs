@@ -78,8 +78,9 @@ fn straight_ahead_a_panel_returns_what_the_table_says() {
     }
 }
 
+// A panel returns kirchhoffs integral at any distance and angle.
 #[test]
-fn a_panel_returns_kirchhoffs_integral_at_any_distance_and_angle() {
+fn panel_returns_kirchhoffs_integral() {
     let (mut worst, mut count) = (0.0f64, 0);
     for width in [0.01, 0.03, 0.1, 0.3, 1.0, 3.0] {
         for (s, r) in [(0.3, 0.3), (1.0, 1.0), (3.0, 3.0), (0.3, 2.0), (1.0, 4.0)] {
@@ -101,8 +102,9 @@ fn a_panel_returns_kirchhoffs_integral_at_any_distance_and_angle() {
     assert!(worst < 0.025 && count == 360, "{worst}");
 }
 
+// A wide panel returns all and half of one half and a narrow one its width.
 #[test]
-fn a_wide_panel_returns_all_and_half_of_one_half_and_a_narrow_one_its_width() {
+fn panel_returns_by_its_width() {
     let here = Point::new(0.0, 1.0);
     assert!((share(here, here, [-30.0, 0.0], [30.0, 0.0]) - 1.0).abs() < 0.01);
     assert!((share(here, here, [0.0, 0.0], [30.0, 0.0]) - 0.5).abs() < 0.005);
@@ -124,8 +126,9 @@ fn a_wall_that_sound_grazes_is_as_narrow_as_it_looks() {
     assert!(db(grazed / ahead).abs() < 0.2 && ahead < 0.9, "{grazed} {ahead}");
 }
 
+// Every bounce counts by its distances along the path and a pole is an end.
 #[test]
-fn every_bounce_counts_by_its_distances_along_the_path_and_a_pole_is_an_end() {
+fn every_bounce_counts_along_the_path() {
     // To a wall, back to a panel behind, and to the wall again: the panel is 2 m from either end of the path.
     let wall = || panel([-9.0, 1.0], [9.0, 1.0]);
     let behind = || panel([-0.02, -0.5], [0.02, -0.5]);
@@ -185,8 +188,9 @@ fn a_wall_cut_in_pieces_sounds_as_before() {
     assert!(whole(NARROW)[1].2 < 0.98 * whole(Physics::PLAIN)[1].2 || whole(NARROW)[1].2 > whole(Physics::PLAIN)[1].2);
 }
 
+// In a rectangular room nothing changes and at a corner that juts out the wall ends.
 #[test]
-fn in_a_rectangular_room_nothing_changes_and_at_a_corner_that_juts_out_the_wall_ends() {
+fn rectangular_room_does_not_change_with_panels() {
     let corners = [[0.0, 0.0], [4.0, 0.0], [4.0, 3.0], [0.0, 3.0], [0.0, 0.0]];
     let room = Scene::new(Wall::polyline(&corners).collect(), vec![], Air::default()).unwrap();
     // Straight into a corner, too: the images are the exact answer there.
@@ -310,8 +314,9 @@ fn the_ends_of_a_panel_are_heard_once() {
     assert!(found.len() == 2 && found[1].1 > 6.0 && matches!(found[1].0[..], [Bounce::Edge(_)]), "{found:?}");
 }
 
+// Beside its reflection a panel returns kirchhoffs integral in one.
 #[test]
-fn beside_its_reflection_a_panel_returns_kirchhoffs_integral_in_one() {
+fn panel_beside_its_reflection_returns_kirchhoffs_integral() {
     let here = Point::origin();
     let mut worst = 0.0f64;
     for width in [0.005, 0.01, 0.03, 0.06] {

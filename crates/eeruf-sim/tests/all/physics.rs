@@ -47,8 +47,9 @@ fn unlike_transducers_hear_each_other_if_their_bands_overlap() {
     assert_eq!(heard_of_the_second(Transducer::HC_SR04), 0);
 }
 
+// A path between two kinds has the senders pattern at its start and the listeners at its end.
 #[test]
-fn a_path_between_two_kinds_has_the_senders_pattern_at_its_start_and_the_listeners_at_its_end() {
+fn path_has_senders_and_listeners_patterns() {
     let scene = Scene::new(vec![], vec![], Air::default()).unwrap();
     let sending = Transducer { frequency_hz: 48_000.0, beam: Beam::CutAt90, ..Transducer::HC_SR04 };
     let hearing = Transducer::POLAROID_6500;
@@ -77,8 +78,9 @@ fn before_a_wall(robots: Vec<Robot>) -> Result<World, WorldError> {
     World::new(Scene::new(vec![wall], vec![], Air::default())?, robots, Noise::NONE)?.with_physics(Physics::PLAIN)
 }
 
+// A robot with a body reflects and shades for others and not for itself.
 #[test]
-fn a_robot_with_a_body_reflects_and_shades_for_others_and_not_for_itself() {
+fn body_reflects_and_shades_for_others_alone() {
     let triangle = Outline::new(&[[-0.3, -0.4], [0.5, 0.0], [-0.3, 0.4]]).unwrap();
     let watcher = Robot { body: Some(Body::Disc(0.2)), ..single(0.0, 0.0, 0.0) };
     let with = |body| sees(&before_a_wall(vec![watcher.clone(), Robot { body, ..single(2.0, 0.0, 0.0) }]).unwrap());
@@ -103,8 +105,9 @@ fn a_body_shades_one_robot_from_another() {
     assert_eq!(crosstalk(Some(Body::Box(0.3, 0.3))), 0);
 }
 
+// A body moves with its robot and ends the run where it touches.
 #[test]
-fn a_body_moves_with_its_robot_and_ends_the_run_where_it_touches() {
+fn moving_body_ends_the_run_where_it_touches() {
     let coming = |velocity: f64| Robot {
         motion: Motion::Constant { velocity: Vector::new(velocity, 0.0), turn_rad_s: 0.0 },
         body: Some(Body::Disc(0.3)),

@@ -48,8 +48,9 @@ fn alternation_removes_errors_and_several_echoes_lose_little() {
     assert!(lost(Method::MultiEcho) < lost(Method::Eeruf) / 4.0, "{} {}", lost(Method::MultiEcho), lost(Method::Eeruf));
 }
 
+// Time hopping leaves no sensor blind and loses few good readings without more errors.
 #[test]
-fn time_hopping_leaves_no_sensor_blind_and_loses_few_good_readings_without_more_errors() {
+fn time_hopping_leaves_no_sensor_blind() {
     // What a sensor hears of itself is wrong more often where echoes fade slowly, by any method.
     for (physics, most_wrong) in [(Physics::PLAIN, 0.015), (Physics::DEFAULT, 0.06)] {
         let table = run_under(physics, 40, READINGS, &[Method::Eeruf, Method::EerufHopping]);
@@ -69,8 +70,9 @@ fn time_hopping_leaves_no_sensor_blind_and_loses_few_good_readings_without_more_
     }
 }
 
+// The best schedule guarantees what the table does in a period a fifth shorter.
 #[test]
-fn the_best_schedule_guarantees_what_the_table_does_in_a_period_a_fifth_shorter() {
+fn best_schedule_is_a_fifth_shorter_at_equal_guarantees() {
     let robot = Alcove::random(0).robot();
     let best = best_schedule_for(&robot, 100_000, |_| true).unwrap();
     assert!(best.proven && best.schedule.verify(&requirements_of(&robot)).ok());

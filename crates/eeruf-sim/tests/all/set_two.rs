@@ -21,8 +21,9 @@ fn of(found: &SetTwo, method: Method) -> Figures {
     found.methods.iter().find(|(of, _)| of == method.as_str()).unwrap().1
 }
 
+// Eeruf finishes 95 of 100 courses at 0 8 m s or more alone and 90 beside a second robot.
 #[test]
-fn eeruf_finishes_95_of_100_courses_at_0_8_m_s_or_more_alone_and_90_beside_a_second_robot() {
+fn eeruf_finishes_95_of_100_courses() {
     for physics in [Physics::PLAIN, Physics::DEFAULT] {
         for (second_robot, least) in [(None, 95), (Some(SECOND_BEHIND), 90)] {
             let asked = SetTwoOptions { second_robot, physics, ..options(100, &[Method::Eeruf]) };
@@ -32,8 +33,9 @@ fn eeruf_finishes_95_of_100_courses_at_0_8_m_s_or_more_alone_and_90_beside_a_sec
     }
 }
 
+// With bodies the second robot is an obstacle and courses are finished all the same.
 #[test]
-fn with_bodies_the_second_robot_is_an_obstacle_and_courses_are_finished_all_the_same() {
+fn second_robots_body_is_an_obstacle() {
     let run = |bodies, second_robot| {
         let asked = SetTwoOptions { bodies, second_robot, ..options(20, &[Method::Eeruf, Method::Conventional]) };
         set_two(&asked, &|_| true).unwrap()
@@ -69,8 +71,9 @@ fn in_the_labs_rectangle_the_width_of_walls_changes_nothing() {
     }
 }
 
+// With a pilot of its own conventional firing finishes more than half of the courses.
 #[test]
-fn with_a_pilot_of_its_own_conventional_firing_finishes_more_than_half_of_the_courses() {
+fn own_pilot_brings_conventional_through_half_the_courses() {
     for second_robot in [None, Some(SECOND_BEHIND), Some(SECOND_AHEAD)] {
         let asked = SetTwoOptions { second_robot, ..options(40, &[Method::Conventional]) };
         let conventional = of(&set_two(&asked, &|_| true).unwrap(), Method::Conventional);
@@ -78,8 +81,9 @@ fn with_a_pilot_of_its_own_conventional_firing_finishes_more_than_half_of_the_co
     }
 }
 
+// With the pilot that eeruf was to share constant lags fill the grid with phantoms.
 #[test]
-fn with_the_pilot_that_eeruf_was_to_share_constant_lags_fill_the_grid_with_phantoms() {
+fn shared_pilot_fills_the_grid_with_phantoms() {
     for second_robot in [None, Some(SECOND_BEHIND)] {
         let asked = options(20, &[Method::Conventional, Method::Comparison, Method::Eeruf]);
         let found = set_two(&SetTwoOptions { second_robot, pilots: Pilots::Shared, ..asked }, &|_| true).unwrap();
@@ -92,8 +96,9 @@ fn with_the_pilot_that_eeruf_was_to_share_constant_lags_fill_the_grid_with_phant
     }
 }
 
+// Each pilot and the noise of odometry make another drive of the same course.
 #[test]
-fn each_pilot_and_the_noise_of_odometry_make_another_drive_of_the_same_course() {
+fn pilot_and_noise_change_the_drive() {
     let track = |pilots, odometry_noise| {
         let asked = SetTwoOptions { pilots, odometry_noise, ..options(1, &[Method::Eeruf]) };
         set_two(&asked, &|_| true).unwrap().runs[0][0].track.clone()

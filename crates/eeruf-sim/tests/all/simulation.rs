@@ -38,8 +38,9 @@ fn set_one(physics: Physics, method: Method, value: fn(&Summary) -> f64) -> f64 
     quantile(&mut shares, 0.5)
 }
 
+// In set one eeruf removes what fools the conventional method and comparison alone does not.
 #[test]
-fn in_set_one_eeruf_removes_what_fools_the_conventional_method_and_comparison_alone_does_not() {
+fn set_one_eeruf_removes_crosstalk_comparison_does_not() {
     let of = |method, value| set_one(Physics::PLAIN, method, value);
     let conventional = of(Method::Conventional, |summary| summary.wrong_of_all);
     let comparison = of(Method::Comparison, |summary| summary.wrong_of_all);
@@ -53,8 +54,9 @@ fn in_set_one_eeruf_removes_what_fools_the_conventional_method_and_comparison_al
     assert!(rejected > 25.0 && rejected < 75.0, "{rejected}");
 }
 
+// With slow fading edges and range walk too alternation is what removes crosstalk.
 #[test]
-fn with_slow_fading_edges_and_range_walk_too_alternation_is_what_removes_crosstalk() {
+fn alternation_removes_crosstalk_under_full_physics() {
     let crosstalk = |method| set_one(Physics::DEFAULT, method, |summary| summary.crosstalk_of_all);
     let (conventional, comparison) = (crosstalk(Method::Conventional), crosstalk(Method::Comparison));
     let eeruf = crosstalk(Method::Eeruf);
@@ -226,8 +228,9 @@ fn bursts_from_outside_are_heard_and_the_filter_refuses_them() {
     assert!(conventional.summary().wrong_of_all > 0.15 && eeruf.wrong_of_all < 0.01);
 }
 
+// The same seed gives the same readings on any number of threads.
 #[test]
-fn the_same_seed_gives_the_same_readings_on_any_number_of_threads() {
+fn equal_seeds_give_equal_readings_on_any_threads() {
     let jobs: Vec<(u64, Method)> = (0..4).flat_map(|number| Method::ALL.map(|method| (number, method))).collect();
     let all = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();

@@ -27,8 +27,9 @@ fn world(text: &str) -> Result<World, String> {
     World::from_text(Path::new("w.toml"), text).map_err(|error| error.to_string())
 }
 
+// Each sensor of an uneven robot hears as far as its own window and is accepted there.
 #[test]
-fn each_sensor_of_an_uneven_robot_hears_as_far_as_its_own_window_and_is_accepted_there() {
+fn uneven_sensors_hear_as_far_as_their_windows() {
     let robot = world(WORLD).unwrap();
     assert_eq!(robot.robots()[0].window, Micros::from_millis(18));
     let readings = simulate(&robot, Method::Eeruf, &Options::periods(400)).unwrap();

@@ -28,8 +28,9 @@ fn the_worlds_that_are_shipped_can_be_simulated() {
     }
 }
 
+// A bad world gets one line that names file line field value and what is expected.
 #[test]
-fn a_bad_world_gets_one_line_that_names_file_line_field_value_and_what_is_expected() {
+fn bad_world_gets_one_line_with_its_place() {
     assert_eq!(error(WALL), "w.toml: 0 robots; expected 1 to 64");
     let crossing = format!("{WALL}[[wall]]\npoints_m = [[2, 0], [4, 0]]\n{ROBOT}");
     assert_eq!(error(&crossing), "w.toml, line 4: walls 0 and 1 cross at (3.0000, 0.0000); end one of them there");
@@ -124,8 +125,9 @@ fn an_unknown_method_is_answered_with_the_list_of_all() {
     }
 }
 
+// A world written to a file and read again gives the same bit for bit.
 #[test]
-fn a_world_written_to_a_file_and_read_again_gives_the_same_bit_for_bit() {
+fn world_file_round_trips_bit_for_bit() {
     let walls = [[-2.0, -2.0], [2.0, -2.0], [2.0, 2.0], [-2.0, 2.0], [-2.0, -2.0]];
     let outline = Outline::new(&[[-0.2, -0.1], [0.2, -0.1], [0.1, 0.2]]).unwrap();
     let odd = Physics { fading_time_s: 0.3, narrow_panels: false, ..Physics::DEFAULT };
@@ -185,8 +187,9 @@ fn a_world_written_to_a_file_and_read_again_gives_the_same_bit_for_bit() {
     }
 }
 
+// Headings that no angle has move by a last bit when they are written and then no more.
 #[test]
-fn headings_that_no_angle_has_move_by_a_last_bit_when_they_are_written_and_then_no_more() {
+fn headings_move_by_a_last_bit_once() {
     let mut moved = 0;
     for spacing_deg in [7.5, 15.0, 361.0, 1530.0, 10_000.1, 1e9] {
         let pose = "pose = { x_m = 0, y_m = 0, heading_deg = 1234.5 }";

@@ -60,8 +60,9 @@ fn two_solo_periods_are_saved_up_at_most_and_each_costs_one() {
     assert_eq!((solos(250, false), solos(20, false)), (2, 1));
 }
 
+// A solo period is asked for after so many firings with nothing accepted.
 #[test]
-fn a_solo_period_is_asked_for_after_so_many_firings_with_nothing_accepted() {
+fn solo_period_is_asked_for_after_unaccepted_firings() {
     for solo_after in 2..=6 {
         let mut fooled = fooled(HoppingSettings { solo_rate: 255, solo_after, ..HURRIED });
         // Sensor 5 hears nothing that is accepted.
@@ -81,8 +82,9 @@ fn lags_stay_where_settings_say_so_whatever_does_not_fit() {
     assert_eq!(lags(&fooled), before);
 }
 
+// What is heard in the period after lags have changed is unsettled and in no other.
 #[test]
-fn what_is_heard_in_the_period_after_lags_have_changed_is_unsettled_and_in_no_other() {
+fn firings_after_new_lags_are_unsettled() {
     let mut fooled = fooled(HoppingSettings { solo_rate: 0, shift_after: 1, shift_spacing: 3, ..HURRIED });
     let mut changed = 0;
     let mut before = lags(&fooled);

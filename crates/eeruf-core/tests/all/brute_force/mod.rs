@@ -209,8 +209,9 @@ fn no_interval_is_longer_than_the_largest() {
     tally.assert_enough(false);
 }
 
+// The preferred schedule is best in separation then interval then window.
 #[test]
-fn the_preferred_schedule_is_best_in_separation_then_interval_then_window() {
+fn preferred_schedule_is_best_in_order() {
     let mut tally = Tally::default();
     let mut better = [0; 3];
     for_each_problem(60, 5, |problem, memory, _| {
@@ -241,8 +242,9 @@ fn the_preferred_schedule_is_best_in_separation_then_interval_then_window() {
     tally.assert_enough(false);
 }
 
+// Whether one tick less of a need allows a shorter period is decided rightly.
 #[test]
-fn whether_one_tick_less_of_a_need_allows_a_shorter_period_is_decided_rightly() {
+fn one_tick_less_of_a_need_is_decided_rightly() {
     let mut tally = Tally::default();
     for_each_problem(60, 6, |problem, memory, _| {
         let period = shortest(problem, u64::MAX, memory, &mut ()).unwrap().period;

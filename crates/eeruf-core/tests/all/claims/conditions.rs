@@ -79,8 +79,9 @@ proptest! {
         }
     }
 
+    // The conditions do not change with the order of the sensors or of the phases.
     #[test]
-    fn the_conditions_do_not_change_with_the_order_of_the_sensors_or_of_the_phases(schedule in any_schedule()) {
+    fn conditions_do_not_depend_on_order(schedule in any_schedule()) {
         let reversed = |phase| schedule.t_wait(phase).iter().rev().copied().collect::<Vec<_>>();
         let lags: Vec<_> = schedule.t_lag().iter().rev().copied().collect();
         let mirrored =
@@ -107,8 +108,9 @@ proptest! {
     }
 }
 
+// As printed without the outer absolute value 13a fails on the papers own tables.
 #[test]
-fn as_printed_without_the_outer_absolute_value_13a_fails_on_the_papers_own_tables() {
+fn printed_13a_without_outer_value_fails_on_table_i() {
     for table in [TABLE_I_B, TABLE_I_D] {
         let us = |phase| table.t_wait(phase).iter().map(|t| i64::from(t.as_micros())).collect::<Vec<_>>();
         let (a, b) = (us(Phase::A), us(Phase::B));
@@ -117,8 +119,9 @@ fn as_printed_without_the_outer_absolute_value_13a_fails_on_the_papers_own_table
     }
 }
 
+// Tables i b and i d meet 13a and 13b just below one millisecond.
 #[test]
-fn tables_i_b_and_i_d_meet_13a_and_13b_just_below_one_millisecond() {
+fn tables_i_b_and_i_d_hold_below_one_millisecond() {
     for table in [TABLE_I_B, TABLE_I_D, THE_ONE_WITH_19_MS] {
         for criterion in [Criterion::Paper, Criterion::Exact] {
             assert_eq!(table.separation(criterion).unwrap().value, Micros::from_millis(2));
@@ -138,8 +141,9 @@ fn table_i_a_alternates_nothing_and_rejects_nothing() {
     assert_eq!(TABLE_I_A.verify(&report_at).violations().count(), 132);
 }
 
+// Table i c is table i b in firing times with sensors 4 and 1 one millisecond apart.
 #[test]
-fn table_i_c_is_table_i_b_in_firing_times_with_sensors_4_and_1_one_millisecond_apart() {
+fn table_i_c_is_table_i_b_in_firing_times() {
     for (phase, sensor) in [Phase::A, Phase::B].into_iter().flat_map(|p| (0..12).map(move |x| (p, x))) {
         assert_eq!(TABLE_I_B.t_fire(phase, sensor), TABLE_I_C.t_fire(phase, sensor));
     }
@@ -148,8 +152,9 @@ fn table_i_c_is_table_i_b_in_firing_times_with_sensors_4_and_1_one_millisecond_a
     assert_eq!(closest.phases, (Phase::A, Phase::B));
 }
 
+// Table i d has 19 ms within its blocks but 17 ms over any four adjacent sensors.
 #[test]
-fn table_i_d_has_19_ms_within_its_blocks_but_17_ms_over_any_four_adjacent_sensors() {
+fn table_i_d_has_19_ms_in_blocks_and_17_ms_adjacent() {
     assert_eq!(TABLE_I_D.min_interval(Layout::Blocks(4)).unwrap().value, Micros::from_millis(19));
     let closest = TABLE_I_D.min_interval(Layout::Line(4)).unwrap();
     assert_eq!((closest.value, closest.sensors), (Micros::from_millis(17), (1, 4)));

@@ -109,8 +109,9 @@ proptest! {
         prop_assert!(!kinds.contains(&ReadingKind::Accepted), "{kinds:?}");
     }
 
+    // Crosstalk that dies within a period is not accepted after a stall either.
     #[test]
-    fn crosstalk_that_dies_within_a_period_is_not_accepted_after_a_stall_either(
+    fn short_crosstalk_is_not_accepted_after_a_stall(
         (schedule, t_delta) in verified_schedule(),
         pair in any::<(prop::sample::Index, prop::sample::Index)>(),
         periods in 0.0..1.0_f64,
@@ -129,8 +130,9 @@ proptest! {
         prop_assert!(!kinds.contains(&ReadingKind::Accepted), "{kinds:?}");
     }
 
+    // A true echo that moves less than t delta per reading is always accepted.
     #[test]
-    fn a_true_echo_that_moves_less_than_t_delta_per_reading_is_always_accepted(
+    fn slow_true_echo_is_always_accepted(
         (schedule, t_delta) in verified_schedule(),
         steps in prop::collection::vec(-1.0..=1.0_f64, 20),
         consecutive in 2..=8_u8,

@@ -60,8 +60,9 @@ fn readings_of_y(t_echo: u32, path: u32, lag_y: u32, x: Waits, y: Waits) -> Vec<
 }
 
 proptest! {
+    // With constant waits the error settles on the echo time of the other sensor and is believed.
     #[test]
-    fn with_constant_waits_the_error_settles_on_the_echo_time_of_the_other_sensor_and_is_believed(
+    fn constant_waits_settle_on_the_other_echo(
         t_echo in 5_000..30_000_u32,
         path in 5_000..40_000_u32,
         lag_y in 0..5_000_u32,
@@ -74,8 +75,9 @@ proptest! {
         }
     }
 
+    // With alternating waits the error alternates between 10a and 10b and is rejected.
     #[test]
-    fn with_alternating_waits_the_error_alternates_between_10a_and_10b_and_is_rejected(
+    fn alternating_waits_reject_the_other_echo(
         t_echo in 15_000..30_000_u32,
         path in 5_000..40_000_u32,
         lag_y in 0..5_000_u32,
@@ -98,8 +100,9 @@ proptest! {
     }
 }
 
+// Equal waits settle on the other sensors echo and different ones never settle.
 #[test]
-fn equal_waits_settle_on_the_other_sensors_echo_and_different_ones_never_settle() {
+fn only_equal_waits_settle() {
     // Equal waits: y reads x's 12 ms.
     assert_eq!(readings_of_y(12_000, 17_000, 2_000, [5_000; 2], [5_000; 2])[3], (12_000, ReadingKind::Accepted));
     // Alternating waits: 12 + 8 - 2 and 12 + 4 - 6 ms in turn.

@@ -87,8 +87,9 @@ fn instant(us: u64) -> Instant {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(10_000))]
 
+    // Whatever is called intervals and refire times are kept and firing goes on.
     #[test]
-    fn whatever_is_called_intervals_and_refire_times_are_kept_and_firing_goes_on(
+    fn intervals_and_refire_times_hold_whatever_is_called(
         start: u32,
         calls in prop::collection::vec(any_call(), 0..60),
     ) {

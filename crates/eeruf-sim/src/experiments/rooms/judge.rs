@@ -381,8 +381,9 @@ mod tests {
         assert_eq!(chosen(&[Ok([base; 2]), Ok([good, worse])]), (Some(1), false));
     }
 
+    // Judgement is the same on any number of threads and stops when told.
     #[test]
-    fn judgement_is_the_same_on_any_number_of_threads_and_stops_when_told() {
+    fn judgement_is_equal_on_any_number_of_threads() {
         let robot = Robot::ring(Pose::identity(), 4, 1.57, 0.2, Transducer::HC_SR04);
         let ways = RoomWay::all(&robot, None);
         let rooms = [RoomGroup::of_kind(RoomKind::Office, 3..5, 0.2), RoomGroup::of_kind(RoomKind::Meeting, 3..4, 0.2)];

@@ -182,8 +182,9 @@ fn shaken(random: &mut Random) -> Vec<Point> {
 mod tests {
     use super::*;
 
+    // Every random course has room for both robots and poles about 1 6 m apart.
     #[test]
-    fn every_random_course_has_room_for_both_robots_and_poles_about_1_6_m_apart() {
+    fn random_course_has_room_for_both_robots() {
         for number in 0..200 {
             let course = Course::random(number);
             assert!(course.world(course.robot(), Some(SECOND_BEHIND)).is_ok(), "{number}");
@@ -196,8 +197,9 @@ mod tests {
         }
     }
 
+    // A platform with a body has its sensors on its edge as they looked before.
     #[test]
-    fn a_platform_with_a_body_has_its_sensors_on_its_edge_as_they_looked_before() {
+    fn platform_with_body_has_sensors_on_its_edge() {
         let (course, labmate) = (Course::random(0), LabMate::default());
         let (round, square) = (course.robot(), course.robot_with_body(&labmate));
         assert_eq!(square.body, Some(Body::Box(0.75, 0.75)));

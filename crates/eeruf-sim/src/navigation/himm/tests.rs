@@ -21,8 +21,9 @@ fn a_wall_fills_where_sensors_look_along_their_axes() {
     assert_eq!(grid.occupied(ORIGIN, 65).count(), 11);
 }
 
+// A phantom is cleared by the next three readings that look past it.
 #[test]
-fn a_phantom_is_cleared_by_the_next_three_readings_that_look_past_it() {
+fn phantom_is_cleared_by_three_readings_past_it() {
     let mut grid = Himm::new(65, 0.1);
     grid.echo(ORIGIN, 0.0, 0.0, 1.0);
     let phantom = Point::new(1.05, 0.05);

@@ -43,8 +43,9 @@ fn drive(grid: &Himm, from: Point, target: Point) -> (f64, Vec<Point>) {
     (nearest, track)
 }
 
+// An obstacle vector grows with certainty squared and shrinks with distance.
 #[test]
-fn an_obstacle_vector_grows_with_certainty_squared_and_shrinks_with_distance() {
+fn obstacle_vector_grows_with_certainty_squared() {
     let mut grid = Himm::new(33, 0.1);
     grid.echo(Point::new(0.05, 0.05), 0.0, 0.0, 1.0);
     let d_max = 1.6 * 2f64.sqrt();
@@ -93,8 +94,9 @@ fn of_two_valleys_the_one_nearer_to_the_target_is_chosen() {
     assert!((left.direction_rad - 8.0 * SECTOR_RAD).abs() < 1e-12);
 }
 
+// A wide valley is taken nine sectors from its border and a free target directly.
 #[test]
-fn a_wide_valley_is_taken_nine_sectors_from_its_border_and_a_free_target_directly() {
+fn wide_valley_is_taken_nine_sectors_from_its_border() {
     let mut smoothed = [0.0; SECTORS];
     (0..5).for_each(|k| smoothed[k] = 1.0);
     let beside = VFH.choose(&smoothed, 6.0 * SECTOR_RAD).unwrap().direction_rad;

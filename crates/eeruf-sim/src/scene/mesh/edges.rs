@@ -59,8 +59,9 @@ mod tests {
     use crate::*;
     use core::f64::consts::{PI, TAU};
 
+    // Free ends and corners that jut out are edges and nothing else is.
     #[test]
-    fn free_ends_and_corners_that_jut_out_are_edges_and_nothing_else_is() {
+    fn free_ends_and_outer_corners_are_edges() {
         let room = [[0.0, 0.0], [4.0, 0.0], [4.0, 2.0], [2.0, 2.0], [2.0, 4.0], [0.0, 4.0], [0.0, 0.0]];
         let mut walls: Vec<_> = Wall::polyline(&room).collect();
         // A panel that ends on a wall, and one made of two straight pieces.

@@ -258,8 +258,9 @@ mod tests {
         assert_eq!(ends(&backs, 0, 0.5, true), [Some([0.0, 0.0]), Some([1.0, 0.0])]);
     }
 
+    // A wall on which another ends goes on behind it and has a corner before it.
     #[test]
-    fn a_wall_on_which_another_ends_goes_on_behind_it_and_has_a_corner_before_it() {
+    fn wall_behind_a_junction_goes_on() {
         let mut walls = panels(&[[0.0, 0.0], [2.0, 0.0]]);
         walls.push(Wall::new(0.5, 1.0, 0.5, 0.0).with_faces(Faces::Both));
         let (start, end) = (Some([0.0, 0.0]), Some([2.0, 0.0]));

@@ -64,8 +64,9 @@ fn the_gain_of_the_receiver_grows_from_its_own_firing() {
     assert_eq!(hears(&linear, &[(1050, 6.1)]), [1050]);
 }
 
+// A threshold detector hears faint echoes later by up to a burst.
 #[test]
-fn a_threshold_detector_hears_faint_echoes_later_by_up_to_a_burst() {
+fn threshold_detector_hears_faint_echoes_later() {
     let walking = Hearing { rise_ns: 20.0, ..HEARING };
     // At the threshold a whole burst, 20 dB over it a tenth, and never before blanking ends.
     assert_eq!(hears(&walking, &[(1050, 0.0)]), [1070]);
@@ -77,8 +78,9 @@ fn a_threshold_detector_hears_faint_echoes_later_by_up_to_a_burst() {
     assert_eq!(hears(&walking, &[(1050, 0.0), (1055, 20.0)]), [1057]);
 }
 
+// An echo that is heard after its receiver has fired again is heard then.
 #[test]
-fn an_echo_that_is_heard_after_its_receiver_has_fired_again_is_heard_then() {
+fn echo_after_the_next_firing_is_heard_then() {
     let walking = Hearing { rise_ns: 20.0, refire: 45, ..HEARING };
     let mut receiver = Receiver::NEW;
     receiver.fire(1000, &walking);

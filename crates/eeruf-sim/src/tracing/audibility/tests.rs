@@ -56,8 +56,9 @@ fn heard_as_weighed(beam: Beam) -> (usize, usize, usize) {
     (heard, over_poles, behind)
 }
 
+// Single poles are the same whether or not longer paths are sought.
 #[test]
-fn single_poles_are_the_same_whether_or_not_longer_paths_are_sought() {
+fn single_poles_do_not_depend_on_longer_paths() {
     let mut seen = 0;
     for number in 0..40 {
         let (scene, ring) = random(number);

@@ -69,8 +69,9 @@ mod tests {
         assert_eq!(echoes(vec![Pole::new(1.5, 0.61, 0.6)], true), [6.0]);
     }
 
+    // Sound bends around a pole thinner than its first fresnel zone.
     #[test]
-    fn sound_bends_around_a_pole_thinner_than_its_first_fresnel_zone() {
+    fn sound_bends_around_a_thin_pole() {
         // Half way to the wall, 1.5 m of the 6 m there and back: sqrt(6.947 mm * 1.5 m * 4.5 m / 6 m) = 88.4 mm.
         for (radius_m, passes) in [(0.087, true), (0.090, false)] {
             assert_eq!(!echoes(vec![Pole::new(1.5, 0.0, radius_m)], true).is_empty(), passes, "{radius_m}");
@@ -95,8 +96,9 @@ mod tests {
         assert_eq!(heard(vec![behind]), [[Bounce::Pole(0)]]);
     }
 
+    // A sensor inside a pillar or a wall is refused where they are solid.
     #[test]
-    fn a_sensor_inside_a_pillar_or_a_wall_is_refused_where_they_are_solid() {
+    fn sensor_inside_a_solid_is_refused() {
         let room = Wall::polyline(&[[-4.0, -4.0], [4.0, -4.0], [4.0, 4.0], [-4.0, 4.0], [-4.0, -4.0]]).collect();
         let scene = Scene::new(room, vec![Pole::new(1.0, 0.0, 0.3)], Air::default()).unwrap();
         let (mut tracer, mut paths) = (Tracer::new(), Paths::default());

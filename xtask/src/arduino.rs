@@ -38,7 +38,7 @@ const IN_RUST: Example =
 
 const ALL: [u8; 16] = [2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17];
 
-const EXAMPLES: [Example; 8] = [
+const EXAMPLES: [Example; 9] = [
     Example { name: "Two", modules: 2, triggers: &[4, 5], echoes: &[2, 3], short: false },
     Example { name: "Ring8", modules: 8, triggers: ALL.split_at(8).0, echoes: ALL.split_at(8).1, short: false },
     Example {
@@ -48,6 +48,7 @@ const EXAMPLES: [Example; 8] = [
         echoes: ALL.split_at(12).0,
         short: true,
     },
+    Example { name: "Flow12", modules: 12, triggers: ALL.split_at(12).0, echoes: ALL.split_at(12).0, short: true },
     Example { name: "FromNewPing", modules: 3, triggers: &[4, 5, 6], echoes: &[4, 5, 6], short: true },
     Example { name: "States4", modules: 4, triggers: ALL.split_at(4).0, echoes: ALL.split_at(4).0, short: false },
     Example { name: "Hopping8", modules: 8, triggers: ALL.split_at(8).0, echoes: ALL.split_at(8).0, short: false },

@@ -87,8 +87,8 @@ ISR(PCINT2_vect) {
 }
 
 // Times the echo lines of a ring by interrupt from now on. False, and nothing is changed, if a line is on a pin that no
-// interrupt watches.
-static inline bool eerufInterrupts(EerufModules &modules) {
+// interrupt watches. `Modules` are an EerufSonar, or what has count(), echoPin() and use() as it does.
+template <class Modules> static inline bool eerufInterrupts(Modules &modules) {
     using namespace EerufInterrupts;
     uint8_t group, place;
     for (uint8_t i = 0; i < modules.count(); i++)

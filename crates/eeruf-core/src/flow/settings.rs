@@ -29,7 +29,7 @@ pub struct FlowSettings {
     pub shortest_cycle: Micros,
     /// Least time between two firings of a sensor, where its module rests for longer than it listens. At most 16.7 s.
     pub rest: Micros,
-    /// Time before a cycle begins at which the one before ends and it is planned, for processors that take long to plan:
+    /// Time before a cycle begins at which the one before ends and it is planned, for processors that take long for it:
     /// else its first firing would be late. At most 65 ms and the shortest cycle.
     pub lead: Micros,
     /// Longest time from a cycle to the next, of a robot that stands.

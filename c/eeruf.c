@@ -513,7 +513,7 @@ static void count(EerufRing *ring, uint8_t kind) {
 #define LONG_AGO ((uint32_t)1 << 30) /* nothing is heard from then */
 #define STEP_BACK ((uint32_t)1 << 20) /* what lies so little ahead of now is from before the clock stepped back */
 
-/* For so many ends of periods an irregularity is remembered: the first of three readings, which a filter over three may
+/* For this many ends of periods an irregularity is remembered: the first of three readings, which a filter over three may
    compare, was fired three periods ago, and sound is audible for two. */
 #define WATCHED 6u
 #define ALWAYS UINT8_MAX /* nothing is proven of the timetable, so that each reading is asked about */
@@ -752,7 +752,7 @@ static EerufStatus allows(const EerufSchedule *schedule, uint32_t t_delta_us, ui
     return window_us > READ32(schedule->min_refire_us) || window_us >= HALF_TURN ? EERUF_ERR_WINDOW : EERUF_OK;
 }
 
-/* Whether the shortest window that a schedule allows is long enough, for so many sensors. */
+/* Whether the shortest window that a schedule allows is long enough, for this many sensors. */
 static EerufStatus can_hear(const EerufSchedule *schedule, uint8_t sensors, uint32_t t_delta_us, uint32_t window_us,
                             uint32_t blanking_us) {
     uint8_t x;
@@ -2625,7 +2625,7 @@ static EerufStatus tracker_is_fine(const EerufTrackerSettings *how) {
     return fine ? EERUF_OK : EERUF_ERR_TRACKER;
 }
 
-/* A Welch code for so many sensors, of at least this many phases. */
+/* A Welch code for this many sensors, of at least this many phases. */
 static uint8_t narrowest_cycle(uint8_t sensors, uint8_t phases) {
     uint8_t prime = phases > sensors + 1u ? phases : (uint8_t)(sensors + 1u);
     if (prime < 67) prime++;
@@ -2634,7 +2634,7 @@ static uint8_t narrowest_cycle(uint8_t sensors, uint8_t phases) {
     return (uint8_t)(prime - 1u);
 }
 
-/* Whether a ring of so many sensors has the memory it needs. */
+/* Whether a ring of this many sensors has the memory it needs. */
 static EerufStatus has_room(const EerufHoppingRing *hopping, size_t ring_size, uint8_t count_of_sensors,
                             size_t sensors_size, size_t hoppers_size) {
     if (ring_size != sizeof *hopping) return EERUF_ERR_MEMORY;

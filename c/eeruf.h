@@ -113,7 +113,7 @@ uint16_t eeruf_version(void);
 #define EERUF_MAX_PHASES 8u
 #define EERUF_MAX_PERIOD_US 268435456u
 
-/* Which sensors are neighbours: less than `neighbours` apart on a line or a closed ring, or in one block of so many. */
+/* Which sensors are neighbours: less than `neighbours` apart on a line or a closed ring, or in one block of this many. */
 enum { EERUF_LAYOUT_LINE = 0, EERUF_LAYOUT_RING = 1, EERUF_LAYOUT_BLOCKS = 2, EERUF_LAYOUT_OTHER = 3 };
 
 #define EERUF_AS_T_DELTA UINT32_MAX /* a path of sound changes by as much as the receiver's t_delta */
@@ -543,7 +543,7 @@ typedef struct EerufTrackerSettings {
     uint8_t score_limit; /* votes to 15 */
     uint8_t contradiction, solo_contradiction; /* 1 to 15 */
     uint8_t tentative_votes; /* 0 or 2 to 15 */
-    uint8_t memory;      /* for so many firings without support a confirmed echo is remembered; 0: it is forgotten */
+    uint8_t memory;      /* for this many firings without support a confirmed echo is remembered; 0: it is forgotten */
 } EerufTrackerSettings;
 
 /* How a hopping ring fires, listens and believes. */
@@ -657,7 +657,7 @@ uint32_t eeruf_hopping_confirmed_us(const EerufHoppingRing *ring, uint8_t sensor
 uint8_t eeruf_hopping_solo(const EerufHoppingRing *ring);
 /* The lag of a sensor as it is now; in a flow ring its place in the cycle, without the code. */
 uint32_t eeruf_hopping_lag_us(const EerufHoppingRing *ring, uint8_t sensor);
-/* For the log of a reading that the last poll gave: how it was weighed. 0 for a sensor that is not there. */
+/* For the log of a reading that the last poll gave: how it was weighed. 0 for a sensor out of range. */
 #define EERUF_WEIGHED_SOLO 1u   /* no other sensor's sound could be heard */
 #define EERUF_WEIGHED_STEADY 2u /* firings were so punctual that crosstalk moved as the code says */
 uint8_t eeruf_hopping_weighed(const EerufHoppingRing *ring, uint8_t sensor);

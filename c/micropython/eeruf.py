@@ -74,7 +74,7 @@ class Schedule:
         self.audible_us = period_us  # how long sound may be heard
 
     def verify(self, t_delta_us, min_interval_us=0, window_us=0, neighbours=0, layout="ring", stale_echo=False):
-        """Returns the schedule if (13a) and (13b) hold for `t_delta_us` and two of so many neighbours never fire sooner
+        """Returns the schedule if (13a) and (13b) hold for `t_delta_us` and two of this many neighbours never fire sooner
         one after the other than `min_interval_us`; else a ValueError says what does not. No window: the longest."""
         if self.phases != 2:
             raise ValueError("%d phases: two can be verified" % self.phases)

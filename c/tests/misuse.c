@@ -1,4 +1,4 @@
-/* Whatever a caller does wrong has a status: null, memory that is too small, a sensor that is not there, use before
+/* Whatever a caller does wrong has a status: null, memory that is too small, a sensor out of range, use before
    initialisation, another version. Exit code 0 if each call gives the status that it should. */
 #include "eeruf.h"
 

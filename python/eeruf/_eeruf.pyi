@@ -305,7 +305,7 @@ class Schedule:
             sensors: how many, 1 to 64.
             period_us: the period, ``T_p``.
             step_us: by how much crosstalk moves at least, 1 to 65535.
-            phases: at least so many, 2 to 67; by default the 5 that confirm an echo.
+            phases: at least this many, 2 to 67; by default the 5 that confirm an echo.
             t_lag_us: the lag of each sensor; by default they are spread evenly over the period.
 
         Raises:
@@ -754,7 +754,7 @@ class HoppingFound:
         """Its period, in microseconds."""
     @property
     def bound_us(self) -> int:
-        """No schedule of so many phases or more that separates sound of every age has a shorter period, in microseconds."""
+        """No schedule of this many phases or more that separates sound of every age has a shorter period, in microseconds."""
     @property
     def proven(self) -> bool:
         """True if no such schedule is shorter."""
@@ -836,7 +836,7 @@ def design(
         over_reals: whether to say what the tick costs: in ``Found.real_period_us`` the shortest period in
             ticks of any length, for the needs in exact microseconds, and in ``Found.real_proven`` whether
             none is shorter. Only where the period in ticks is proven.
-        phases: at least so many, 2 to 67: a schedule for a :class:`HoppingRing`, as ``eeruf design --phases`` finds it.
+        phases: at least this many, 2 to 67: a schedule for a :class:`HoppingRing`, as ``eeruf design --phases`` finds it.
             Then times are whole microseconds, of lists the largest counts, and nothing below ``stale_echo`` may be
             given but ``margin_us``.
         margin_us: with ``phases``: crosstalk need move by ``T_delta`` and this margin alone, which is all that jitter
@@ -851,7 +851,7 @@ def design(
     Raises:
         ArgumentError: something of the wrong type or out of range.
         SearchError: needs that make no sense, or too large a grid.
-        HoppingError: no schedule of so many phases.
+        HoppingError: no schedule of this many phases.
 
     Example:
         >>> import eeruf
@@ -916,7 +916,7 @@ def design(
         over_reals: whether to say what the tick costs: in ``Found.real_period_us`` the shortest period in
             ticks of any length, for the needs in exact microseconds, and in ``Found.real_proven`` whether
             none is shorter. Only where the period in ticks is proven.
-        phases: at least so many, 2 to 67: a schedule for a :class:`HoppingRing`, as ``eeruf design --phases`` finds it.
+        phases: at least this many, 2 to 67: a schedule for a :class:`HoppingRing`, as ``eeruf design --phases`` finds it.
             Then times are whole microseconds, of lists the largest counts, and nothing below ``stale_echo`` may be
             given but ``margin_us``.
         margin_us: with ``phases``: crosstalk need move by ``T_delta`` and this margin alone, which is all that jitter
@@ -931,7 +931,7 @@ def design(
     Raises:
         ArgumentError: something of the wrong type or out of range.
         SearchError: needs that make no sense, or too large a grid.
-        HoppingError: no schedule of so many phases.
+        HoppingError: no schedule of this many phases.
 
     Example:
         >>> import eeruf
@@ -1354,7 +1354,7 @@ class HoppingSchedule:
         sensors: how many, 1 to 64.
         period_us: the period, ``T_p``; it must exceed the width of the code.
         step_us: by how much crosstalk moves at least, 1 to 65535.
-        phases: at least so many, 2 to 67, as far as there are; there are more than sensors, and one less than a prime.
+        phases: at least this many, 2 to 67, as far as there are; there are more than sensors, and one less than a prime.
             By default at least the 5 that confirm an echo.
         t_lag_us: the lag of each sensor; by default they are spread evenly over the period.
         first_multiplier: ``a``, below the number of phases, which are then exactly as many as asked for: one less than
@@ -1517,16 +1517,16 @@ class HoppingSettings:
         """Credit per period towards a solo period, in 1/256, 0 to 255; 0: none is ever held."""
     @property
     def solo_after(self) -> int:
-        """A sensor with nothing accepted for so many firings asks for a solo period."""
+        """A sensor with nothing accepted for this many firings asks for a solo period."""
     @property
     def solo_spacing(self) -> int:
-        """At least so many periods from one solo period to the next."""
+        """At least this many periods from one solo period to the next."""
     @property
     def shift_after(self) -> int:
-        """After so many readings running that do not fit, a sensor draws a new lag; 0: lags stay."""
+        """After this many readings running that do not fit, a sensor draws a new lag; 0: lags stay."""
     @property
     def shift_spacing(self) -> int:
-        """At least so many periods from one change of lags to the next."""
+        """At least this many periods from one change of lags to the next."""
     @property
     def shift_interval_us(self) -> int:
         """Least interval between firings of neighbours when a lag is drawn, in microseconds."""
@@ -2604,7 +2604,7 @@ class SensorWatch:
 
     Args:
         sensors: how many, 1 to 64.
-        blind_after: a sensor counts as blind when nothing was accepted for so many firings with an echo, 1 to 255;
+        blind_after: a sensor counts as blind when nothing was accepted for this many firings with an echo, 1 to 255;
             0: never.
         now_us: the present, 0 or more.
 
@@ -2672,7 +2672,7 @@ class SensorWatch:
 
 @final
 class Blind:
-    """A sensor that hears echoes, none of which was accepted for so many firings.
+    """A sensor that hears echoes, none of which was accepted for this many firings.
 
     Example:
         >>> import eeruf

@@ -70,17 +70,18 @@ pub(crate) struct Args {
     /// eeruf-check and checker/check_period.py
     #[arg(long, value_name = "FILE")]
     certificate: Option<PathBuf>,
-    /// Who is to check the certificate
+    /// Certificate format
     #[arg(long, value_enum, default_value_t, value_name = "FORM", requires = "certificate")]
     certificate_form: CertificateForm,
     /// Write a certificate over the reals: that no period is shorter even with firing times that are no whole ticks.
     /// Not where the proof needs more than a certificate can state
     #[arg(long, value_name = "FILE")]
     certificate_over_reals: Option<PathBuf>,
-    /// How many nodes the certificate's proof may have; if they do not suffice, it certifies the bound that they prove
+    /// Number of nodes that the certificate's proof may have; if they do not suffice, it certifies the bound that they
+    /// prove
     #[arg(long, default_value_t = 1_000_000, value_name = "NODES")]
     certificate_budget: usize,
-    /// At least so many phases, 2 to 67: a schedule for a ring that hops in time
+    /// At least this many phases, 2 to 67: a schedule for a ring that hops in time
     #[arg(long, value_name = "M", value_parser = clap::value_parser!(u8).range(2..=67),
           conflicts_with_all = ["certificate", "certificate_over_reals", "budget", "time_limit"])]
     phases: Option<u8>,
@@ -88,11 +89,11 @@ pub(crate) struct Args {
     /// use, instead of 2 T_delta + 1
     #[arg(long, value_name = "N", requires = "phases")]
     margin_us: Option<u32>,
-    /// How many nodes to search at most before giving the best schedule so far; 50 million by default, 20,000 for each
+    /// Largest number of nodes to search before giving the best schedule so far; 50 million by default, 20,000 for each
     /// point of a curve
     #[arg(long, value_name = "NODES")]
     budget: Option<u64>,
-    /// Find what fits into a period of so many microseconds instead of the shortest: whether the ring's needs do, and
+    /// Find what fits into a period of this many microseconds instead of the shortest: whether the ring's needs do, and
     /// the largest T_delta. Exit code 1 if they do not, 3 if that was not decided
     #[arg(long, value_name = "US", conflicts_with_all = ["certificate", "certificate_over_reals", "phases", "curve"])]
     period: Option<u32>,
@@ -103,8 +104,8 @@ pub(crate) struct Args {
     /// Search even where the atlas knows the shortest period
     #[arg(long)]
     no_atlas: bool,
-    /// How long the command may take, in seconds, before it gives the best schedule so far; the certificate then has
-    /// what time is left, and states the bound that follows without a search if there is none
+    /// Time limit of the command, in seconds, before it gives the best schedule so far; the certificate then has what
+    /// time is left, and states the bound that follows without a search if there is none
     #[arg(long, value_name = "S", value_parser = seconds)]
     time_limit: Option<Duration>,
     /// Find the shortest period and judge nothing in rooms
@@ -115,7 +116,7 @@ pub(crate) struct Args {
 }
 
 impl Args {
-    /// What to print instead of a description.
+    /// Form of the output that replaces the description.
     fn form(&self) -> Option<Form> {
         if self.json { Some(Form::Json) } else { self.emit }
     }
@@ -124,10 +125,10 @@ impl Args {
 /// The need that a curve varies.
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum CurveOf {
-    /// What readings of one wall may differ by on a robot that stands
+    /// Largest difference between readings of one wall on a robot that stands
     #[value(name = "t_delta", alias = "t-delta")]
     TDelta,
-    /// How far sensors see
+    /// Range of the sensors
     Range,
     /// The least time between the firings of neighbours
     Interval,
@@ -168,7 +169,7 @@ struct Answered<'a> {
 
 /// Nodes for the same ring with odometry, which is a remark.
 const STANDING_BUDGET: u64 = 200_000;
-/// How many nodes a search may cost by default.
+/// Default budget of nodes of a search.
 const BUDGET: u64 = 50_000_000;
 
 pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
@@ -411,7 +412,7 @@ fn standing(spec: &RingSpec, search: &Search) -> Option<RingDesign> {
     still.shortest(&search, &mut ()).ok()?.ok()
 }
 
-/// What the tick costs, where it is printed or certified.
+/// Cost of the tick, where it is printed or certified.
 fn over_reals(args: &Args, design: &RingDesign, watch: &mut Watch) -> Option<RealPeriod> {
     let is_printed = matches!(args.form(), None | Some(Form::Json));
     if !is_printed && args.certificate_over_reals.is_none() {

@@ -1,4 +1,4 @@
-//! What `design` found, as text.
+//! Result of `design`, as text.
 
 use std::fmt::Write as _;
 
@@ -166,7 +166,7 @@ fn as_range(spec: &RingSpec, time: Micros) -> String {
     format!("{:.1} cm", 0.5e-7 * f64::from(spec.c.mm_per_s()) * f64::from(time.as_micros()))
 }
 
-/// What the designer may change to get faster.
+/// Changes by which the designer may get a shorter period.
 fn ways_to_get_faster(cases: &[WhatIf], period: Micros) -> String {
     let mut table = Table::new();
     table.load_style(presets::NOTHING);

@@ -41,7 +41,7 @@ fn flows(emitted: &str) -> bool {
     emitted.contains("EerufFlowConfig")
 }
 
-/// How a ring file is emitted: form, name of the constant, name of the modules' settings.
+/// Forms in which a ring file is emitted: form, name of the constant, name of the modules' settings.
 const FORMS: [[&str; 3]; 2] = [["c", "eeruf_schedule", "EERUF_MODULES"], ["arduino", "RING", "RING_MODULES"]];
 
 #[test]

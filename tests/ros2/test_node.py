@@ -189,7 +189,7 @@ class Mavlink:
 
 
 def run(tmp_path, participant, processes, fault, periods, cable=None, **given):
-    """A ring with a fault for so many periods; the node, what the reference read, the cable, the log, and MAVLink."""
+    """A ring with a fault for this many periods; the node, what the reference read, the cable, the log, and MAVLink."""
     cable, mavlink = cable or Cable(), Mavlink()
     line, terminal = os.openpty()
     tty.setraw(terminal)
@@ -335,7 +335,7 @@ def too_close_until_heard(node, write):
 
 
 def after_too_close(node, awaited):
-    """What the node says after that, when it has said so many ranges of each sensor."""
+    """What the node says after that, when it has said this many ranges of each sensor."""
 
     def ranges():
         node.take()

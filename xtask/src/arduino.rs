@@ -22,13 +22,13 @@ use crate::steps::{Steps, Trouble, run};
 /// Where it is packed, built and run.
 const TARGET: &str = "target/arduino";
 
-/// How an example is wired, and what it is measured by.
+/// Wiring of an example, and what it is measured by.
 struct Example {
     name: &'static str,
     modules: usize,
     triggers: &'static [u8],
     echoes: &'static [u8],
-    /// Whether it is run where time is short.
+    /// True if it is run where time is short.
     short: bool,
 }
 
@@ -60,7 +60,7 @@ fn failed(what: &str) -> impl Fn(std::io::Error) -> Trouble + '_ {
     move |error| Trouble::Failed(format!("{what}: {error}"))
 }
 
-/// What to do.
+/// Parts to run.
 #[derive(clap::Args)]
 pub(crate) struct Plan {
     /// Write the tables anew instead of comparing them

@@ -10,7 +10,7 @@ use clap::Args;
 
 use crate::steps::{Trouble, output, run};
 
-/// What to do.
+/// Parts to run.
 #[derive(Args)]
 pub(crate) struct Plan {
     /// Pack this program, instead of building one with `cargo build --release`
@@ -113,7 +113,7 @@ fn pack(program: Option<&Path>) -> Result<PathBuf, Trouble> {
     absolute(package).map_err(failed)
 }
 
-/// What `systemd-analyze verify` says of the unit, where its program stands as if installed.
+/// Verdict of `systemd-analyze verify` on the unit, where its program stands as if installed.
 fn verify_unit(root: &Path) -> Result<(), Trouble> {
     let unit = fs::read_to_string(root.join(UNIT)).map_err(failed)?;
     let program = absolute(root.join("usr/bin/eeruf-ros2")).map_err(failed)?;

@@ -34,7 +34,7 @@ const BOARDS: [Board; 4] = [
     },
 ];
 
-/// What to build, run and measure.
+/// Parts to build, run and measure.
 #[derive(clap::Args)]
 pub(crate) struct Plan {
     /// Put the tables into the document instead of comparing them
@@ -49,7 +49,7 @@ impl Plan {
     /// For the checks of every change.
     pub(crate) const COMPARE: Self = Self { write: false, board: None };
 
-    /// Whether it is for all boards; then the programs are linted, too.
+    /// Returns true if it is for all boards; then the programs are linted, too.
     pub(crate) fn is_whole(&self) -> bool {
         self.board.is_none()
     }

@@ -1,5 +1,5 @@
-//! Rules for sources that no linter has: how long a line and a file may be, and words that say too little.
-//! CONTRIBUTING.md has the reasons.
+//! Rules for sources that no linter has: lengths of lines and files, words that say too little, and openings of doc
+//! comments. CONTRIBUTING.md has the reasons.
 
 use std::fmt::Write as _;
 use std::process::Command;
@@ -23,6 +23,12 @@ const WORDS: [(&str, &str); 8] = [
     ("unhar", "med"),
 ];
 
+/// Openings that name no thing: a doc comment begins with a noun, or with what the function does.
+const OPENINGS: [&str; 7] = ["What ", "Whether ", "How ", "Who ", "Whom ", "Whose ", "By how "];
+/// Phrases with a plainer word, which stands behind; each in two parts, so that this file has none of them.
+const PHRASES: [(&str, &str, &str); 2] =
+    [("so ma", "ny", "the number, or `this many`"), ("is not the", "re", "`out of range`, or `missing`")];
+
 /// Looks through every Rust file of the repository.
 pub(crate) fn check() -> Result<(), Trouble> {
     let listed = output(Command::new("git").args(["ls-files", "*.rs"]));
@@ -40,7 +46,23 @@ pub(crate) fn check() -> Result<(), Trouble> {
 /// The lines of a file that break a rule, counted from 1, and which.
 fn broken_rules(text: &str) -> Vec<(usize, String)> {
     let mut broken = Vec::new();
+    let mut was_doc = false;
     for (line, words) in (1..).zip(text.lines()) {
+        let doc = words.trim_start().strip_prefix("///").or_else(|| words.trim_start().strip_prefix("//!"));
+        let opening = doc.filter(|_| !was_doc).map(str::trim_start);
+        if let Some(opening) = OPENINGS.iter().find(|word| opening.is_some_and(|doc| doc.starts_with(**word))) {
+            broken.push((
+                line,
+                format!("a doc comment that begins with `{}`; expected a noun or a verb", opening.trim()),
+            ));
+        }
+        was_doc = doc.is_some();
+        for (start, end, plain) in PHRASES {
+            let phrase = [start, end].concat();
+            if words.to_lowercase().contains(&phrase) {
+                broken.push((line, format!("`{phrase}`; expected {plain}")));
+            }
+        }
         let length = words.chars().count();
         if length > LINE {
             broken.push((line, format!("{length} characters; expected at most {LINE}")));
@@ -80,5 +102,12 @@ mod tests {
         assert!(lines_of(&"a\n".repeat(FILE)).is_empty());
         assert_eq!(lines_of(&"a\n".repeat(FILE + 1)), [FILE + 1]);
         assert_eq!(lines_of(&["// He was to", "ld\n// hunted, to", "lds"].concat()), [1]);
+    }
+
+    #[test]
+    fn doc_comment_begins_with_a_noun_or_a_verb() {
+        assert_eq!(lines_of("/// Whether it fires.\nfn a() {}\n/// The time.\n/// How it is found.\nfn b() {}\n"), [1]);
+        assert_eq!(lines_of("//! What it is.\n"), [1]);
+        assert_eq!(lines_of(&["// for so ma", "ny sensors"].concat()), [1]);
     }
 }

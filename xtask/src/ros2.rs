@@ -8,7 +8,7 @@ use std::process::Command;
 
 use crate::steps::{Trouble, output, run};
 
-/// What listens; the newest versions.
+/// Clients that listen; the newest versions.
 const LISTENERS: [&str; 3] = ["cyclonedds", "pymavlink", "pytest"];
 
 pub(crate) fn ros2() -> Result<(), Trouble> {

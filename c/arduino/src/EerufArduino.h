@@ -21,7 +21,7 @@ namespace EerufPin {
 bool isHigh(uint8_t pin);
 // Ends a trigger; one that is the echo line too is an input from then on.
 void release(uint8_t trigger, uint8_t echo);
-// A pulse of so many microseconds.
+// A pulse of this many microseconds.
 void trigger(uint8_t trigger, uint8_t echo, uint8_t us = 10);
 } // namespace EerufPin
 

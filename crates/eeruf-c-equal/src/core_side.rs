@@ -31,7 +31,7 @@ pub fn flat(event: &RingEvent) -> Flat {
     flat
 }
 
-/// How many readings of each kind.
+/// Number of readings of each kind.
 fn counts(tally: &Tally<u8>) -> [u32; 12] {
     ReadingKind::ALL.map(|kind| tally.of(kind))
 }

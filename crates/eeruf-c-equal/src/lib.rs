@@ -25,7 +25,7 @@ pub const NO_ECHO: u32 = u32::MAX;
 /// The status of a poll that had an event.
 pub const EVENT: i32 = 1;
 
-/// What a ring can be asked while it runs.
+/// Operations of a ring while it runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[expect(missing_docs, reason = "named as the functions of eeruf.h")]
 pub enum Do {

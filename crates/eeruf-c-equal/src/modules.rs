@@ -13,7 +13,7 @@ use crate::world::{World, same};
 
 const K: usize = 6;
 
-/// What the pins of all modules do at the next firing.
+/// Behaviour of all modules' pins at the next firing.
 #[derive(Clone, Copy, Default)]
 struct Fault {
     high: bool,

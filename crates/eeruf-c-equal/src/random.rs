@@ -36,7 +36,7 @@ impl Random {
         Self(Source::Bytes(bytes.into(), Rc::default()))
     }
 
-    /// Whether the bytes are at their end; a seed never is.
+    /// Returns true if the bytes are at their end; a seed never is.
     pub fn is_over(&self) -> bool {
         matches!(&self.0, Source::Bytes(bytes, taken) if taken.get() >= bytes.len())
     }
@@ -46,7 +46,7 @@ impl Random {
         self.any_of(8)
     }
 
-    /// Any number; bytes give only so many of its lowest.
+    /// Any number; bytes give only this many of its lowest.
     fn any_of(&self, count: usize) -> u64 {
         match &self.0 {
             Source::Seed(_, state) => {
@@ -72,7 +72,7 @@ impl Random {
         least + (self.any_of(bytes) % width) as u32
     }
 
-    /// Once in so many times.
+    /// Once in this many times.
     pub fn once_in(&self, times: u32) -> bool {
         self.within(1, times) == 1
     }

@@ -75,7 +75,7 @@ macro_rules! cannot_be_verified {
 }
 cannot_be_verified!(1 3 8);
 
-/// A schedule of so many sensors, in both languages, for a window that it mostly allows.
+/// A schedule of this many sensors, in both languages, for a window that it mostly allows.
 fn schedule<const M: usize>(r: &Random, c: &mut C, number: u32, sensors: u8, period: u32) -> Fires<M>
 where
     Schedule<K, M>: Verify,
@@ -135,7 +135,7 @@ type Table<'s, const M: usize> = Ring<ScheduledFiring<'s, K, M, EachInUse<'s, K>
 /// A schedule, and what it allows each sensor.
 type Fires<const M: usize> = (Schedule<K, M>, EachSensor<K>);
 
-/// What a caller may do now and then.
+/// Actions that a caller may take now and then.
 fn act<'s, const M: usize>(r: &Random, c: &mut C, ring: &mut Table<'s, M>, schedules: &'s [Fires<M>], now: u32) {
     let sensor = r.within(0, ring.sensors() as u32) as u8;
     match r.within(0, 17) {

@@ -1,4 +1,4 @@
-//! What `shim.c` declares.
+//! Declarations of `shim.c`.
 
 use std::ffi::c_void;
 

@@ -1,14 +1,14 @@
-//! What happens around a ring: when it is polled, what it hears.
+//! Events around a ring: when it is polled, what it hears.
 
 use crate::{C, Do, Random};
 
 /// A clock that is late, jumps and wraps, and echoes on their way.
 pub struct World {
-    /// What chance is drawn from.
+    /// Source of chance.
     pub random: Random,
     /// The clock.
     pub now: u32,
-    /// How late polls are, at most, in this run.
+    /// Largest lateness of polls in this run.
     late: u32,
     /// Echo time of what stands before each sensor.
     distance_us: Vec<u32>,

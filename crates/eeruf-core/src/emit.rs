@@ -146,7 +146,7 @@ impl<const K: usize> fmt::Display for Summary<'_, K> {
     }
 }
 
-/// What the schedule was designed for.
+/// Requirements that the schedule was designed for.
 struct Promise<'r>(&'r Requirements<'r>);
 
 impl fmt::Display for Promise<'_> {
@@ -159,7 +159,7 @@ impl fmt::Display for Promise<'_> {
     }
 }
 
-/// What is not alike, as the field of the requirements.
+/// Differences between the sensors, as the field of the requirements.
 struct UnevenSource<'u>(&'u Uneven<'u>);
 
 impl fmt::Display for UnevenSource<'_> {

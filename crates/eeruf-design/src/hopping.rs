@@ -33,7 +33,7 @@ pub struct PhaseSchedule {
 }
 
 impl PhaseFile {
-    /// Whether a text is such a file and not one of two phases; it need not be right.
+    /// Returns true if a text is meant as such a file and not one of two phases; it need not be right.
     pub fn is_meant(text: &str) -> bool {
         let keys = toml::from_str::<toml::Table>(text).unwrap_or_default();
         ["step_us", "phases", "t_fire_us", "first_multiplier"].iter().any(|&key| keys.contains_key(key))
@@ -104,12 +104,12 @@ impl PhaseSchedule {
         Ok(Self { sensors, period, rows, hopping: None })
     }
 
-    /// How many sensors fire.
+    /// Number of sensors that fire.
     pub fn sensors(&self) -> usize {
         self.sensors
     }
 
-    /// How many phases a cycle has.
+    /// Number of phases of a cycle.
     pub fn phases(&self) -> usize {
         self.rows.len()
     }
@@ -149,17 +149,17 @@ pub struct HoppingDesign {
     pub period_bound: Micros,
     /// Nor a narrower code than this, the width of which is that of the waits.
     pub width_bound: Micros,
-    /// What sets the bound.
+    /// Reason of the bound.
     pub reason: &'static str,
 }
 
 impl HoppingDesign {
-    /// Whether the period is the shortest that there is, for any schedule of so many phases or more.
+    /// Returns true if the period is the shortest that there is, for any schedule of this many phases or more.
     pub fn proven(&self) -> bool {
         self.schedule.period() == self.period_bound
     }
 
-    /// The shortest period with a linear congruence of at least so many phases, 2 to 67, and lags that keep the
+    /// The shortest period with a linear congruence of at least this many phases, 2 to 67, and lags that keep the
     /// neighbours' interval.
     ///
     /// # Errors
@@ -191,7 +191,7 @@ impl HoppingDesign {
 }
 
 impl RingSpec {
-    /// What a schedule of many phases for this ring must meet; sound is heard for as long as the window.
+    /// Requirements on a schedule of many phases for this ring; sound is heard for as long as the window.
     pub fn phase_requirements(&self, criterion: PhaseCriterion) -> PhaseRequirements<'_> {
         PhaseRequirements {
             t_delta: self.t_delta,
@@ -231,7 +231,7 @@ fn period_bound(sensors: usize, requirements: &PhaseRequirements<'_>) -> (Micros
     let (bound, reason) = if code >= spacing {
         (code, "the window and the code: of K sensors one must fire (K - 1) D sooner again than a period later")
     } else {
-        (spacing, "the neighbours: so many fire in each period, each this long after the one before")
+        (spacing, "the neighbours: this many fire in each period, each this long after the one before")
     };
     (Micros::new(u32::try_from(bound).unwrap_or(u32::MAX)), reason)
 }
@@ -307,7 +307,7 @@ fn shortest(code: HoppingCode, requirements: &PhaseRequirements<'_>) -> Option<H
     HoppingSchedule::new(code, Micros::new(high as u32), all).ok()
 }
 
-/// What neighbours' lags must keep, if neighbours take turns in the order of the first free turn of each sensor.
+/// Bounds on the lags of neighbours, if neighbours take turns in the order of the first free turn of each sensor.
 fn bounds(code: HoppingCode, requirements: &PhaseRequirements<'_>) -> Vec<Bound> {
     let (sensors, layout) = (code.sensors(), requirements.layout);
     let interval = i64::from(requirements.min_interval.as_micros());

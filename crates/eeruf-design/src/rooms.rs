@@ -196,7 +196,7 @@ impl RingSpec {
     }
 }
 
-/// What is judged where.
+/// Rooms and the ways that are judged in them.
 struct Set {
     ways: Vec<RoomWay>,
     groups: Vec<RoomGroup>,

@@ -1,11 +1,11 @@
-//! What a board's clock read, in the host's time.
+//! The board's clock in the host's time.
 //!
 //! A frame says when its sensor fired and how long ago that was when it was made. What lies between the making and the
 //! arrival is the way, which is sometimes short and sometimes long; the shortest of the last ten seconds counts.
 
 use eeruf_core::{Instant, Micros};
 
-/// How long an offset counts for at least, in microseconds of the board.
+/// Least time for which an offset counts, in microseconds of the board.
 const KEPT_US: i64 = 5_000_000;
 /// A board whose clock goes wrong by so much has started anew.
 const RESTART_NS: i64 = 2_000_000_000;

@@ -8,7 +8,7 @@ use std::time::{Duration, SystemTime, UNIX_EPOCH};
 use eeruf_serial::{Decoder, FrameError, Received};
 use serial2::SerialPort;
 
-/// What comes over the line, or happens to it.
+/// Input from the line, or an event of it.
 pub(crate) enum FromLine {
     /// The port is open.
     Opened,
@@ -18,9 +18,9 @@ pub(crate) enum FromLine {
     Frame(Result<Received, FrameError>, i64),
 }
 
-/// How often a port that cannot be opened is tried.
+/// Interval at which a port that cannot be opened is tried.
 const AGAIN: Duration = Duration::from_secs(1);
-/// How long a read waits.
+/// Time that a read waits.
 const PATIENCE: Duration = Duration::from_millis(200);
 
 /// Listens until nobody takes what comes any more.

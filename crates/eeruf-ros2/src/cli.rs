@@ -43,13 +43,13 @@ struct Cli {
     no_ros: bool,
 }
 
-/// What the node is to do.
+/// The node's task.
 pub(crate) enum Task {
     Print(String),
     Run(Box<Setup>),
 }
 
-/// What the node is started with.
+/// Arguments with which the node is started.
 pub(crate) struct Setup {
     pub(crate) parameters: Parameters,
     /// Where the sensors are, if a ring file says it.

@@ -1,5 +1,5 @@
-//! What is wrong, as `diagnostic_msgs/DiagnosticArray` says it once a second: of each sensor, of the line, of the
-//! timing. Times are seconds of any one clock.
+//! Faults, as `diagnostic_msgs/DiagnosticArray` reports them once a second: of each sensor, of the line, of the timing.
+//! Times are seconds of any one clock.
 
 use eeruf_core::{
     Instant, MAX_SENSORS, Micros, PeriodStats, Phase, Reading, ReadingKind, RingEvent, Tally,
@@ -11,7 +11,7 @@ use crate::parameters::{Parameters, Source};
 use crate::range::Scale;
 use crate::view::View;
 
-/// How bad it is, as `DiagnosticStatus` counts.
+/// Severity, as `DiagnosticStatus` counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[repr(u8)]
 pub(crate) enum Level {
@@ -20,17 +20,17 @@ pub(crate) enum Level {
     Error = 2,
 }
 
-/// How one thing is.
+/// State of one thing.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Status {
     pub(crate) level: Level,
-    /// What it is: `sensor 3`, `serial line`, `timing`.
+    /// Its name: `sensor 3`, `serial line`, `timing`.
     pub(crate) about: String,
     pub(crate) message: String,
     pub(crate) values: Vec<(&'static str, String)>,
 }
 
-/// How a board calls what is wrong with a sensor's line, as `eeruf_hc_sr04::Health` counts.
+/// A board's names for faults of a sensor's line, as `eeruf_hc_sr04::Health` counts.
 const HEALTH: [&str; 6] = [
     "well",
     "missing: nothing comes from its line",
@@ -71,7 +71,7 @@ pub(crate) struct Diagnosis {
     interval: Interval,
     /// Why the line is not open, until it is.
     line_lost: Option<String>,
-    /// What whole frames cannot be used for.
+    /// Reason why whole frames cannot be used.
     foreign: Option<String>,
     board_sensors: Option<u8>,
     edges_lost: u8,
@@ -130,7 +130,7 @@ impl Diagnosis {
         }
     }
 
-    /// What the board says at a period's end.
+    /// Takes the board's frame at a period's end.
     pub(crate) fn period(&mut self, max_late: Micros, edges_lost: u8, health: &[u8]) {
         self.interval.max_late = self.interval.max_late.max(max_late);
         self.edges_lost = edges_lost;
@@ -158,7 +158,7 @@ impl Diagnosis {
         self.total_damaged += 1;
     }
 
-    /// So many frames are missing between two that arrived.
+    /// Number of frames missing between two that arrived.
     pub(crate) fn lost(&mut self, frames: u16) {
         self.interval.lost = self.interval.lost.saturating_add(frames.into());
         self.total_lost += u64::from(frames);
@@ -185,7 +185,7 @@ impl Diagnosis {
         })
     }
 
-    /// How everything is, and begins the next interval.
+    /// Reports the state of everything, and begins the next interval.
     pub(crate) fn report(&mut self, now_s: f64) -> Vec<Status> {
         let interval = std::mem::take(&mut self.interval);
         // Ages stay within what the watch's clock of 32 bits can tell.

@@ -21,7 +21,7 @@ impl RangeFilter {
         EchoFilter::new(t_delta, 2).map(Self).map_err(|error| error.to_string())
     }
 
-    /// What comes of a reading of a sensor, which must be less than 64.
+    /// Outcome of a reading of a sensor, which must be less than 64.
     pub(crate) fn push(&mut self, sensor: u8, raw: Raw) -> Result<ReadingKind, String> {
         let kind = match raw {
             Raw::Echo(t_echo) => self.0.push(sensor, Some(t_echo)).map(|verdict| verdict.kind),

@@ -11,7 +11,7 @@ use eeruf_serial::{Firing, Weighed};
 pub(crate) struct FiringLog {
     file: BufWriter<File>,
     begun: bool,
-    /// Whether the ring's first firing said how it was weighed.
+    /// True if the ring's first firing said how it was weighed.
     hops: bool,
 }
 

@@ -43,7 +43,7 @@ const LEAST_HALF_VIEW_DEG: f32 = SECTOR_DEG;
 /// Nothing is known of the sector.
 const UNKNOWN: u16 = u16::MAX;
 
-/// What is the same in all frames, and counts them.
+/// Fields that are the same in all frames, and their count.
 struct Packer {
     sequence: u8,
     system: u8,

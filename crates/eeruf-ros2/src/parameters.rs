@@ -22,7 +22,7 @@ pub(crate) enum Source {
     Simulation,
 }
 
-/// What a `Range` says where nothing is in range.
+/// A `Range`'s value where nothing is in range.
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum ClearAs {
@@ -33,7 +33,7 @@ pub(crate) enum ClearAs {
     MaxRange,
 }
 
-/// What `OBSTACLE_DISTANCE` says where a sensor does not answer.
+/// The value in `OBSTACLE_DISTANCE` where a sensor does not answer.
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum UnansweredAs {
@@ -113,7 +113,7 @@ parameters! {
     min_range_m: f32 = 0.02, "0.02";
     /// Farther than this nothing counts.
     max_range_m: f32 = 4.0, "4.0";
-    /// What Range says where nothing is in range: inf (REP 117) or max_range (for Nav2's range layer).
+    /// Range's value where nothing is in range: inf (REP 117) or max_range (for Nav2's range layer).
     clear_as: ClearAs = ClearAs::Inf, "inf";
     /// The temperature of the air.
     temperature_c: f32 = 20.0, "20.0";
@@ -131,7 +131,7 @@ parameters! {
     mavlink_system: u8 = 1, "1";
     /// 196 is MAV_COMP_ID_OBSTACLE_AVOIDANCE.
     mavlink_component: u8 = 196, "196";
-    /// What OBSTACLE_DISTANCE says of a sensor that does not answer: obstacle (at min_range_m) or unknown.
+    /// OBSTACLE_DISTANCE of a sensor that does not answer: obstacle (at min_range_m) or unknown.
     mavlink_unanswered_as: UnansweredAs = UnansweredAs::Obstacle, "obstacle";
     /// The heading of each sensor, counter-clockwise from ahead, if no ring file says it; none: evenly around.
     yaws_deg: Vec<f32> = Vec::new(), "[]";
@@ -283,7 +283,7 @@ impl Parameters {
             .map_err(|error| format!("{name}:={value}: {error}"))
     }
 
-    /// Whether they can be used, and together.
+    /// Checks that they can be used, and together.
     pub(crate) fn check(&self) -> Result<(), String> {
         let must = |holds: bool, wrong: String| if holds { Ok(()) } else { Err(wrong) };
         let sensors = usize::from(self.sensors);
@@ -322,7 +322,7 @@ impl Parameters {
         must(!self.use_sim_time, sim_time)
     }
 
-    /// What is called so for each sensor: the list's entry, or one made of the prefix.
+    /// Name for each sensor: the list's entry, or one made of the prefix.
     pub(crate) fn name_of(list: &[String], prefix: &str, sensor: u8) -> String {
         list.get(usize::from(sensor)).cloned().unwrap_or_else(|| format!("{prefix}{}", sensor + 1))
     }

@@ -4,7 +4,7 @@ use eeruf_core::{Micros, ReadingKind, SpeedOfSound};
 
 use crate::parameters::{ClearAs, Parameters};
 
-/// What a reading says of the world.
+/// Meaning of a reading for the world.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Distance {
     /// Something is there, in metres.
@@ -46,7 +46,7 @@ impl Scale {
         Micros::new((f64::from(metres) * 2e6 / self.sound_m_s).round() as u32)
     }
 
-    /// What a reading says; `None` for one that says nothing: rejected, ambiguous, unanswered, or not yet confirmed.
+    /// Meaning of a reading; `None` for one without any: rejected, ambiguous, unanswered, or not yet confirmed.
     pub(crate) fn distance(&self, kind: ReadingKind, t_echo: Option<Micros>) -> Option<Distance> {
         match (kind, t_echo) {
             (ReadingKind::Accepted, Some(t_echo)) => {

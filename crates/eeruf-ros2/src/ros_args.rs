@@ -1,6 +1,6 @@
 //! Arguments as ROS 2 gives them to a node, `--ros-args .. --`, and the names that come of them.
 
-/// What ROS says of the node: its name, its namespace, its parameters and other names for topics.
+/// ROS's arguments for the node: its name, its namespace, its parameters and other names for topics.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct RosArgs {
     node: String,
@@ -88,7 +88,7 @@ impl RosArgs {
         Ok(())
     }
 
-    /// What a rule is for, without the node's name before it; none if it is for another node.
+    /// Subject of a rule, without the node's name before it; none if it is for another node.
     fn own<'r>(&self, name: &'r str) -> Option<&'r str> {
         match name.split_once(':') {
             Some((node, rest)) => (node == self.node).then_some(rest),

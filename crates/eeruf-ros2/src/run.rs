@@ -21,11 +21,11 @@ use crate::ros::{Heard, Ros};
 use crate::simulated::Simulator;
 use crate::view::View;
 
-/// How often topics are looked at; a ring of 64 has a reading every millisecond or two.
+/// Interval at which topics are looked at; a ring of 64 has a reading every millisecond or two.
 const LOOK: Duration = Duration::from_millis(5);
 /// The shortest time between two pictures of the whole ring.
 const PICTURE: Duration = Duration::from_millis(100);
-/// How often what is wrong is said.
+/// Interval at which faults are reported.
 const REPORT: Duration = Duration::from_secs(1);
 
 /// Runs until Ctrl-C.
@@ -65,7 +65,7 @@ fn source(parameters: &Parameters) -> String {
 struct EerufNode {
     ros: Option<Ros>,
     simulator: Option<Simulator>,
-    /// What each sensor of the simulation would have seen alone, at its last firing.
+    /// Readings that each sensor of the simulation would have had alone, at its last firing.
     truth: Vec<(View, f32)>,
     mavlink: Option<Mavlink>,
     log: Option<FiringLog>,
@@ -80,7 +80,7 @@ struct EerufNode {
     has_news: bool,
     pictured: Option<Instant>,
     began: Instant,
-    /// What was last said of the line, so that it is said once.
+    /// The last message about the line, so that it is written once.
     said: String,
 }
 

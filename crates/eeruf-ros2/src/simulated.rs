@@ -61,7 +61,7 @@ pub(crate) struct Course {
 pub(crate) struct Simulator {
     simulation: Simulation,
     began_ns: i64,
-    /// How much of the wall's time was left out because the simulation is slower.
+    /// Wall time that was left out because the simulation is slower.
     skipped_s: f64,
 }
 

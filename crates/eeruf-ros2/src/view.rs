@@ -4,7 +4,7 @@ use eeruf_core::{Micros, ReadingKind, watch::SensorState};
 
 use crate::range::{Distance, Scale};
 
-/// What is known of the space before a sensor.
+/// State of the space before a sensor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum View {
     /// The sensor works, and this is what it sees.

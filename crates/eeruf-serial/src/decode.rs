@@ -13,14 +13,14 @@ use crate::{BY_HISTORY, BY_NOTHING, FIRING, HELLO, NO_ECHO, OLDEST_VERSION, PERI
 
 const CRC: Crc<u16, Table<1>> = Crc::<u16, Table<1>>::new(&CRC_16_IBM_3740);
 
-/// What a frame says.
+/// Contents of a frame.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Message {
     /// The board introduces itself, now and then.
     Hello {
-        /// How many sensors it has, 1 to 64.
+        /// Number of its sensors, 1 to 64.
         sensors: u8,
-        /// What its clock is called.
+        /// Name of its clock.
         clock: String,
     },
     /// A firing, and what came of it.
@@ -31,9 +31,9 @@ pub enum Message {
         period: u32,
         /// The latest firing in it.
         max_late: Micros,
-        /// How many edges got lost on the board since it started; stops at 255.
+        /// Number of edges that got lost on the board since it started; stops at 255.
         edges_lost: u8,
-        /// How each sensor is, as `eeruf_hc_sr04::Health` counts.
+        /// Health of each sensor, as `eeruf_hc_sr04::Health` counts.
         health: Vec<u8>,
     },
 }
@@ -43,7 +43,7 @@ pub enum Message {
 pub struct Received {
     /// The number, which wraps: frames that are missing in between were lost.
     pub sequence: u16,
-    /// What the frame says.
+    /// Contents of the frame.
     pub message: Message,
 }
 

@@ -38,7 +38,7 @@ impl Encoder {
         Self { sequence: 0 }
     }
 
-    /// How many sensors there are, and what the board's clock is called: ASCII, of which 16 bytes are sent.
+    /// The number of sensors, and the name of the board's clock: ASCII, of which 16 bytes are sent.
     pub fn hello(&mut self, sensors: u8, clock: &str) -> Frame {
         let mut content = self.begin(HELLO);
         content.push(&[sensors]);

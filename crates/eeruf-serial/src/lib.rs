@@ -1,5 +1,5 @@
-//! What a ring says over a serial line: one frame for each firing, of a few bytes, which firmware writes without an
-//! allocator and a program on the other side reads. Byte by byte: `docs/reference/serial.md`.
+//! Frames of a ring on a serial line: one for each firing, of a few bytes, which firmware writes without an allocator
+//! and a program on the other side reads. Byte by byte: `docs/reference/serial.md`.
 //!
 //! - [`Recorder`] follows the events of a ring and makes the frames: `no_std`, no allocator, no dependency but
 //!   `eeruf-core`. [`Encoder`] is the part of it that knows the bytes. Of a hopping ring, frames say how each reading

@@ -8,7 +8,7 @@ use eeruf_core::{
 use crate::encode::{Encoder, Frame};
 use crate::firing::Firing;
 
-/// How many firings there are from one greeting to the next.
+/// Number of firings from one greeting to the next.
 const GREET_EVERY: u8 = 128;
 
 /// Follows the events of a ring of up to `K` sensors and makes a frame of each reading and of each period's end. Eight

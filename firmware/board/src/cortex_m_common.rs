@@ -1,4 +1,4 @@
-//! What the three Cortex-M boards share.
+//! Parts that the three Cortex-M boards share.
 
 use core::ptr::{read_volatile, write_volatile};
 
@@ -100,13 +100,13 @@ pub fn sleep_unless(awake: impl FnOnce() -> bool) {
     unsafe { cortex_m::interrupt::enable() };
 }
 
-/// What frameworks want to know of a device.
+/// Facts about a device that frameworks ask for.
 pub mod device {
     use cortex_m::interrupt::InterruptNumber;
 
     use crate::chip::{ALARM_IRQ, ECHO_IRQ, SPARE_IRQ};
 
-    /// How many bits of an interrupt's priority count.
+    /// Number of bits of an interrupt's priority that count.
     pub const NVIC_PRIO_BITS: u8 = crate::chip::NVIC_PRIO_BITS;
 
     /// The interrupts in use.

@@ -20,7 +20,7 @@ const RISE: Micros = Micros::new(450);
 
 #[derive(Clone, Copy)]
 struct Line {
-    /// What is in front of the sensor; `None` for a sensor that is missing.
+    /// Echo time of the object in front of the sensor; `None` for a sensor that is missing.
     t_echo: Option<Micros>,
     /// The edges to come.
     rise: Option<Instant>,

@@ -87,7 +87,7 @@ impl Timers {
     }
 }
 
-/// Which of alarm and echo has come; for the handler.
+/// Returns which of alarm and echo has come; for the handler.
 pub fn due() -> (bool, bool) {
     critical_section::with(|token| {
         let timers = TIMERS.borrow(token);

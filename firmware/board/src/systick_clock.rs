@@ -1,5 +1,5 @@
-//! What the Cortex-M3 and the Cortex-M4 board share: SysTick is the clock, and two timers that run down are the alarm
-//! and the echo lines.
+//! Parts that the Cortex-M3 and the Cortex-M4 board share: SysTick is the clock, and two timers that run down are the
+//! alarm and the echo lines.
 //!
 //! SysTick has 24 bits and counts down, so the clock is put together from the differences of its readings: it must be
 //! read at least once in each of its turns.

@@ -10,7 +10,7 @@ use eeruf_hil::{MOST_AHEAD, Orders, Record};
 use semihosting::fs::File;
 use semihosting::io::{Read, Write};
 
-/// How many records are buffered before they are sent.
+/// Number of records that are buffered before they are sent.
 const KEPT: usize = 64;
 
 /// The host.

@@ -15,7 +15,7 @@ struct Lines {
     ahead: [Ahead; MOST_AHEAD],
     next: usize,
     count: usize,
-    /// Whether each line is high.
+    /// True for each line that is high.
     high: [bool; SENSORS],
     /// Edges up to here have come.
     played: Instant,

@@ -1,5 +1,6 @@
-//! What the measured programs share: a schedule of the paper's kind for any number of sensors, and a ring in static
-//! memory behind functions that are not inlined, one for each public function of `Ring`, and a counter of instructions.
+//! Parts that the measured programs share: a schedule of the paper's kind for any number of sensors, and a ring in
+//! static memory behind functions that are not inlined, one for each public function of `Ring`, and a counter of
+//! instructions.
 #![no_std]
 
 use core::hint::black_box;

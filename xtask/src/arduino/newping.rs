@@ -13,7 +13,7 @@ use crate::steps::{Steps, Trouble};
 /// For how long each row runs, in seconds.
 const SECONDS: u32 = 20;
 
-/// What is compared.
+/// Figures that are compared.
 struct Row {
     name: &'static str,
     sketch: &'static str,

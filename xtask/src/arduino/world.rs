@@ -18,7 +18,7 @@ pub(super) const KEPT: &str = "c/arduino/world/alcove.txt";
 /// A reading is wrong if it is off by more: 0.3 ms of echo time.
 const OFF_MM: u32 = 50;
 
-/// What a run came to.
+/// Figures of a run.
 pub(super) struct Heard {
     seconds: u32,
     firings: Vec<u32>,
@@ -49,8 +49,8 @@ pub(super) fn build() -> Result<PathBuf, Trouble> {
     Ok(world)
 }
 
-/// Which ways sound takes among the scene's eight modules, or among more of them all around: a file, and the distance
-/// that each module should measure.
+/// Paths of sound among the scene's eight modules, or among more of them all around: a file, and the distance that each
+/// module should measure.
 fn echo_times(modules: usize) -> Result<(PathBuf, BTreeMap<usize, u32>), Trouble> {
     let sensors = (modules > 8).then(|| modules.to_string());
     let example = crate::program::example("echo_times")?;
@@ -145,8 +145,8 @@ impl Heard {
         }
     }
 
-    /// What a sketch says in frames, none of which may be damaged or missing; other sketches say none. The simulator
-    /// says before that what it has loaded.
+    /// Frames of a sketch, none of which may be damaged or missing; other sketches send none. The simulator says before
+    /// that what it has loaded.
     fn frames(&mut self, mut line: &[u8], own_mm: &BTreeMap<usize, u32>) -> Result<(), String> {
         while line.starts_with(b"Loaded ") {
             line = line.iter().position(|&byte| byte == b'\n').map_or(&[], |end| &line[end + 1..]);
@@ -183,7 +183,7 @@ impl Heard {
         format!("{} | {firings:.1} | {:.1} | {wrong:.1} %", self.stack, per_second(self.accepted))
     }
 
-    /// Whether the sketch did what it is for.
+    /// Returns true if the sketch did what it is for.
     pub(super) fn is_plausible(&self, example: &Example) -> Result<(), Trouble> {
         let least = self.firings.iter().min().copied().unwrap_or(0);
         let most = self.firings.iter().max().copied().unwrap_or(0);

@@ -12,7 +12,7 @@ const BOARD_PROGRAM: &str = "eeruf-hil-board";
 /// The same with a ring that hops in time.
 const HOPPING_PROGRAM: &str = "eeruf-hil-hopping";
 
-/// What every board's ring reads in that world without a fault: readings, as the host's ring, accepted, rejected, of
+/// Readings of every board's ring in that world without a fault: readings, as the host's ring, accepted, rejected, of
 /// the kind that was simulated. Board and host run the same core, so that only numbers can tell that both are wrong.
 const READ: [&str; 5] = ["8000", "all", "6213", "1779", "8000"];
 /// Faults, how many readings of other sensors are then of another kind, and how the report begins that names the fault.

@@ -22,7 +22,7 @@ pub(super) const RING: [&str; 8] = [
 /// Those of a ring that weighs readings by a tracker.
 pub(super) const TRACKING_RING: [&str; 2] = ["ring_new", "ring_poll"];
 
-/// What a call through a pointer leads to.
+/// Target of a call through a pointer.
 const POINTER: &str = "a function by its pointer";
 
 /// The worst stack of each function of a program, in bytes.

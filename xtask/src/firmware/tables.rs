@@ -6,7 +6,7 @@ use super::{BOARDS, Board, build, c_example, cargo, expect, in_the_loop, on_targ
 use crate::measured::{self, Tables};
 use crate::steps::{Trouble, output};
 
-/// What a ring of twelve may cost on the Cortex-M0: (name in the measured lines, most instructions).
+/// Budgets of a ring of twelve on the Cortex-M0: (name in the measured lines, most instructions).
 const INSTRUCTIONS: [(&str, u32); 6] =
     [("idle_poll", 44), ("fire", 116), ("echo", 69), ("stamp", 60), ("reading", 553), ("reading_late", 3311)];
 /// A ring of twelve that weighs readings by a tracker, and what it may cost there: it may not grow unnoticed.
@@ -171,7 +171,7 @@ fn of_calls(board: &Board, said: &str) -> Result<String, Trouble> {
     Ok(text)
 }
 
-/// Which calls take more instructions than their budgets, by the lines `name fewest most`. Each must be among them.
+/// Calls that take more instructions than their budgets, by the lines `name fewest most`. Each must be among them.
 fn exceeded(said: &str, budgets: &[(&str, u32)]) -> Result<Vec<String>, Trouble> {
     let mut over = Vec::new();
     for (name, budget) in budgets {
@@ -190,7 +190,7 @@ fn exceeds(value: u64, budget: u64) -> bool {
     value as f64 > budget as f64 * (1.0 + LEEWAY)
 }
 
-/// What a ring of twelve that weighs readings by a tracker costs on a board.
+/// Costs on a board of a ring of twelve that weighs readings by a tracker.
 struct Costs {
     /// Lines `name fewest most`, in instructions.
     calls: String,
@@ -215,7 +215,7 @@ impl Costs {
         format!("| {} | {} | {} | {poll} | {new} |\n", board.name, self.flash, self.ram)
     }
 
-    /// What of it is more than it should be.
+    /// Excess of the costs over a budget.
     fn over(&self, budget: &Budget) -> Result<Vec<String>, Trouble> {
         let name = budget.name;
         let calls = exceeded(&self.calls, budget.calls)?;

@@ -9,7 +9,7 @@ mod settings;
 
 use eeruf_c_equal::{Random, flow, hopping, modules, ring};
 
-/// How many events to compare.
+/// Number of events to compare.
 fn events() -> u64 {
     std::env::var("EERUF_C_EVENTS").map_or(200_000, |events| events.parse().expect("a number of events"))
 }

@@ -1,4 +1,4 @@
-//! What C and Rust say over a serial line.
+//! Frames of C and Rust on a serial line.
 
 use eeruf_c_equal::core_side::{explanation, flat};
 use eeruf_c_equal::{C, Do, Random};

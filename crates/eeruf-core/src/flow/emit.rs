@@ -46,7 +46,7 @@ impl FlowSettings {
     }
 }
 
-/// What a flow ring is set up with.
+/// Settings of a flow ring.
 struct FlowSource<'r> {
     settings: &'r FlowSettings,
     sensors: usize,

@@ -149,7 +149,7 @@ impl<const K: usize> FlowPlan<K> {
         Micros::new(self.length * self.unit())
     }
 
-    /// How long before the present cycle's end the next is planned.
+    /// Time before the present cycle's end at which the next is planned.
     fn lead(&self) -> Micros {
         Micros::new(u32::from(self.pace.lead) * QUIET_US)
     }

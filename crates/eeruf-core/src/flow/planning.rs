@@ -142,7 +142,7 @@ impl<const K: usize> FlowPlan<K> {
         }
     }
 
-    /// What is known of the sensor that fires in a place.
+    /// State of the sensor that fires in a place.
     #[inline(always)]
     fn sensor_at(&self, place: u8) -> Option<&Slot> {
         self.slots.get(usize::from(self.order(place)))

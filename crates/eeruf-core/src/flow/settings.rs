@@ -74,7 +74,7 @@ pub(super) struct Pace {
     pub(super) unserved_after: u8,
     /// The gap of the least quiet, in units of the grid.
     pub(super) least_gap: u8,
-    /// How long before its end a cycle ends for the plan, in units of quiet.
+    /// Time before its end at which a cycle ends for the plan, in units of quiet.
     pub(super) lead: u8,
     /// The distance in the ring from one firing to the next.
     pub(super) stride: u8,

@@ -32,7 +32,7 @@ impl HoppingCode {
     pub const MAX_PHASES: u8 = 67;
 
     /// The narrowest code of Welch's sequence for 1 to 64 sensors: it has more phases than sensors, and at least
-    /// `phases`, 2 to 67, as far as there are so many: 66 at most. The step is 1 to 65,535 us.
+    /// `phases`, 2 to 67, as far as there are this many: 66 at most. The step is 1 to 65,535 us.
     ///
     /// # Errors
     /// [`HoppingError`] outside these ranges.
@@ -131,7 +131,7 @@ impl HoppingCode {
         Ok(())
     }
 
-    /// How many sensors it is for.
+    /// Number of sensors it is for.
     pub const fn sensors(&self) -> usize {
         self.sensors as usize
     }
@@ -156,7 +156,7 @@ impl HoppingCode {
         self.first
     }
 
-    /// By how much crosstalk moves at least from one phase to another.
+    /// The least shift of crosstalk from one phase to another.
     pub const fn step(&self) -> Micros {
         self.step
     }
@@ -166,7 +166,7 @@ impl HoppingCode {
         Micros::new((self.phases as u32 - 1) * self.step.as_micros())
     }
 
-    /// By how much less than a period two firings of a sensor are apart at most.
+    /// Largest shortfall of two firings of a sensor against a period.
     pub const fn longest_drop(&self) -> Micros {
         let (mut most, mut sensor) = (0, 0);
         while sensor < self.sensors as usize && !self.is_welch() {
@@ -186,7 +186,7 @@ impl HoppingCode {
         Micros::new(most * self.step.as_micros())
     }
 
-    /// What the phase is multiplied by for a sensor, modulo the number of phases.
+    /// Factor of the phase for a sensor, modulo the number of phases.
     const fn multiplier(&self, sensor: usize) -> u32 {
         remainder(sensor as u32 + self.first as u32, self.phases)
     }

@@ -227,7 +227,7 @@ impl<const K: usize> fmt::Display for Summary<'_, K> {
     }
 }
 
-/// What a schedule was designed for.
+/// Requirements that a schedule was designed for.
 struct Promise<'s>(&'s PhaseRequirements<'s>);
 
 impl fmt::Display for Promise<'_> {

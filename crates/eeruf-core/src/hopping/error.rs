@@ -13,19 +13,19 @@ use crate::tracker::TrackerError;
 pub enum HoppingError {
     /// A code for no sensors, or for more than 64 or than the ring has room for.
     Sensors {
-        /// How many were asked for.
+        /// The number asked for.
         sensors: usize,
         /// The most that there can be.
         most: usize,
     },
     /// A code with too few or too many phases.
     Phases {
-        /// How many were asked for.
+        /// The number asked for.
         phases: u8,
     },
     /// A number of phases that is neither a prime, no less than the sensors, nor one less than a prime and above them.
     NotPrime {
-        /// How many were asked for.
+        /// The number asked for.
         phases: u8,
         /// The next number that would do.
         next: u8,
@@ -34,7 +34,7 @@ pub enum HoppingError {
     Multiplier {
         /// The multiplier asked for.
         first_multiplier: u8,
-        /// How many phases there are.
+        /// Number of phases.
         phases: u8,
     },
     /// A step of 0, or of more than 65,535 us.
@@ -53,7 +53,7 @@ pub enum HoppingError {
     Votes {
         /// The tracker's `votes`.
         votes: u8,
-        /// How many phases the code has.
+        /// Number of phases of the code.
         phases: u8,
     },
     /// The period is too short for code and window, or longer than [`MAX_PERIOD`](crate::MAX_PERIOD).
@@ -81,7 +81,7 @@ pub enum HoppingError {
     },
     /// A setting of the tracker.
     Tracker(TrackerError),
-    /// How the ring listens.
+    /// Settings by which the ring listens.
     Ring(RingError),
 }
 

@@ -16,7 +16,7 @@ impl Spread {
     }
 }
 
-/// How late the firings of this period and of the two before were: no older ones can be heard in a reading that is
+/// Lateness of the firings of this period and of the two before: no older ones can be heard in a reading that is
 /// emitted now, if sound dies within a period.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -59,7 +59,7 @@ impl Lateness {
         *present = Spread::NONE;
     }
 
-    /// Whether a firing this late differs from all others by no more than is tolerated.
+    /// Returns true if a firing this late differs from all others by no more than is tolerated.
     pub(crate) fn is_steady(&self, late: u16, tolerated: u16) -> bool {
         let [present, before, before_that] = self.periods;
         let Spread { least, most } = present.and(before).and(before_that);

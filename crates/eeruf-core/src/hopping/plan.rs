@@ -37,11 +37,11 @@ const NOBODY: u8 = u8::MAX;
 pub struct HoppingPlan<const K: usize> {
     /// The sensor that fires next, or [`NOBODY`].
     next: u8,
-    /// How many of this period have fired, and how many fire in it.
+    /// Number of this period's sensors that have fired, and of those that fire in it.
     place: u8,
     pub(super) planned: u8,
     pub(super) phase: u8,
-    /// What is noted of each sensor that fires in it: [`FIRED`], [`SOLO`] and [`SETTLED`].
+    /// Flags of each sensor that fires in it: [`FIRED`], [`SOLO`] and [`SETTLED`].
     pub(super) kind: u8,
     /// Lags have changed or the timetable broke off, and nobody has taken note.
     pub(super) changed: bool,
@@ -50,7 +50,7 @@ pub struct HoppingPlan<const K: usize> {
     pub(super) since_shift: u8,
     pub(super) since_solo: u8,
     paused: bool,
-    /// What has been earned of solo periods, in 1/256.
+    /// Credit towards solo periods, in 1/256.
     pub(super) earned: u16,
     pub(super) start: Instant,
     /// When the next firing or the end of the period is due: it is asked for several times a poll.
@@ -69,7 +69,8 @@ pub struct HoppingPlan<const K: usize> {
     /// From a firing until its sensor no longer listens, and nothing of it is heard in a window that opens then.
     pub(super) dies: Micros,
     pub(super) pace: Pace,
-    /// By how much, in microseconds, firings may differ in lateness and crosstalk still move by more than `t_delta`.
+    /// Largest difference in lateness of firings, in microseconds, with which crosstalk still moves by more than
+    /// `t_delta`.
     tolerated: u16,
     pub(super) turns: [Turn; K],
 }
@@ -160,8 +161,9 @@ impl<const K: usize> HoppingPlan<K> {
         self.turns.first().filter(|_| self.is_solo()).map(|turn| turn.order)
     }
 
-    /// How often firing times have changed against each other otherwise than by the phase, such as by new lags, modulo
-    /// 256: each time [`EchoTracker::firing_changed`](crate::judge::EchoTracker::firing_changed) was called.
+    /// Number of times that firing times have changed against each other otherwise than by the phase, such as by new
+    /// lags, modulo 256: each time [`EchoTracker::firing_changed`](crate::judge::EchoTracker::firing_changed) was
+    /// called.
     pub const fn changes(&self) -> u8 {
         self.changes
     }
@@ -183,7 +185,7 @@ impl<const K: usize> HoppingPlan<K> {
         if self.start.has_reached(silent) { Micros::ZERO } else { silent.since(self.start) }
     }
 
-    /// Whether the present period belongs to one sensor.
+    /// Returns true if the present period belongs to one sensor.
     #[inline(always)]
     const fn is_solo(&self) -> bool {
         self.kind & SOLO != 0
@@ -197,7 +199,7 @@ impl<const K: usize> HoppingPlan<K> {
         Micros::new(turn.lag.as_micros() + u32::from(turn.place) * self.code.step().as_micros())
     }
 
-    /// Who fires next, and when; or when the period ends.
+    /// Finds who fires next, and when; or when the period ends.
     pub(super) fn find_due(&mut self) {
         if self.is_solo() && self.place < self.planned {
             self.next = self.order(self.place);

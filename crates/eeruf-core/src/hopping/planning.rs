@@ -1,4 +1,4 @@
-//! What the next period of a hopping ring is made of: who fires, whether one sensor has it alone, and new lags.
+//! Plan of the next period of a hopping ring: who fires, whether one sensor has it alone, and new lags.
 
 use super::plan::{CATCHES_UP, HoppingPlan};
 use super::schedule::longest_lag;
@@ -8,7 +8,7 @@ use crate::time::{Instant, Micros};
 /// A whole solo period, and the most that is saved up.
 const ONE: u16 = 256;
 const MOST: u16 = 2 * ONE;
-/// How many lags are drawn in search of one that keeps the neighbours' interval.
+/// Number of lags that are drawn in search of one that keeps the neighbours' interval.
 const DRAWS: u8 = 8;
 
 impl<const K: usize> HoppingPlan<K> {
@@ -68,8 +68,8 @@ impl<const K: usize> HoppingPlan<K> {
         }
     }
 
-    /// How long after the start of the period a sensor that has last `fired` then must not fire yet, since it still
-    /// listens.
+    /// Time after the start of the period in which a sensor that has last `fired` then must not fire yet, since it
+    /// still listens.
     fn rests_for(&self, turn: &Turn, fired: Instant) -> Micros {
         let rested = fired + self.window;
         let rests = if self.start.has_reached(rested) { Micros::ZERO } else { rested.since(self.start) };
@@ -103,7 +103,7 @@ impl<const K: usize> HoppingPlan<K> {
         }
     }
 
-    /// Who fires at a place of the period's order.
+    /// The sensor that fires at a place of the period's order.
     pub(super) fn order(&self, place: u8) -> u8 {
         self.turns.get(usize::from(place)).map_or(u8::MAX, |turn| turn.order)
     }
@@ -164,8 +164,8 @@ impl<const K: usize> HoppingPlan<K> {
         false
     }
 
-    /// Whether a sensor with this lag keeps the interval from its neighbours, in every phase and across the period's
-    /// end.
+    /// Returns true if a sensor with this lag keeps the interval from its neighbours, in every phase and across the
+    /// period's end.
     fn keeps_interval(&self, sensor: usize, lag: Micros) -> bool {
         let interval = self.pace.shift_interval;
         if interval == Micros::ZERO {

@@ -131,13 +131,13 @@ impl<const K: usize> HoppingSchedule<K> {
         longest_lag(&self.code, self.period)
     }
 
-    /// The lag of a sensor; `None` for one that is not there.
+    /// The lag of a sensor; `None` for one out of range.
     pub const fn t_lag(&self, sensor: usize) -> Option<Micros> {
         if sensor < self.code.sensors() && sensor < K { Some(self.lags[sensor]) } else { None }
     }
 
     /// When a sensor fires in a phase, after the start of the period; phases are counted modulo the code's. `None` for
-    /// a sensor that is not there.
+    /// a sensor out of range.
     pub const fn t_fire(&self, phase: u8, sensor: usize) -> Option<Micros> {
         match self.t_lag(sensor) {
             Some(lag) => Some(lag.saturating_add(self.code.wait(self.turn(sensor), phase))),

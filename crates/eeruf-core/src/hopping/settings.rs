@@ -1,18 +1,18 @@
-//! How a hopping ring fires and believes, and how it listens.
+//! Settings by which a hopping ring fires, believes and listens.
 
 use crate::time::Micros;
 use crate::tracker::{LATEST_ECHO, TrackerSettings};
 
-/// How a [`HoppingRing`](super::HoppingRing) fires and believes. Begin with one of [`BALANCED`](Self::BALANCED),
-/// [`QUICK`](Self::QUICK), [`DRIVING`](Self::DRIVING) and [`MAPS`](Self::MAPS); `docs/explanation/hopping.md` says
-/// which is for whom.
+/// Settings by which a [`HoppingRing`](super::HoppingRing) fires and believes. Begin with one of
+/// [`BALANCED`](Self::BALANCED), [`QUICK`](Self::QUICK), [`DRIVING`](Self::DRIVING) and [`MAPS`](Self::MAPS);
+/// `docs/explanation/hopping.md` says which is for whom.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub struct HoppingSettings {
-    /// How readings are weighed.
+    /// Settings by which readings are weighed.
     pub tracker: TrackerSettings,
-    /// What of a solo period each period earns, in 1/256; 0: none is ever held.
+    /// Credit per period towards a solo period, in 1/256; 0: none is ever held.
     pub solo_rate: u8,
     /// A sensor with nothing accepted for this many firings asks for a solo period.
     pub solo_after: u8,
@@ -23,10 +23,10 @@ pub struct HoppingSettings {
     /// At least this many periods from one change of lags to the next. All sensors that ask for a new lag get it
     /// together, since whatever is not yet confirmed then loses its support.
     pub shift_spacing: u8,
-    /// What neighbours keep between their firings when a lag is drawn anew; [`Micros::ZERO`]: nothing. The more, the
+    /// Least interval between firings of neighbours when a lag is drawn anew; [`Micros::ZERO`]: none. The more, the
     /// fewer lags are free.
     pub shift_interval: Micros,
-    /// How many adjacent sensors of a line are neighbours.
+    /// Number of adjacent sensors of a line that are neighbours.
     pub neighbours: u8,
 }
 
@@ -70,25 +70,25 @@ impl HoppingSettings {
         Self { solo_rate, ..self }
     }
 
-    /// Asking for a solo period after so many firings with nothing accepted.
+    /// Asking for a solo period after this many firings with nothing accepted.
     #[must_use]
     pub const fn with_solo_after(self, solo_after: u8) -> Self {
         Self { solo_after, ..self }
     }
 
-    /// With so many periods at least from one solo period to the next.
+    /// With this many periods at least from one solo period to the next.
     #[must_use]
     pub const fn with_solo_spacing(self, solo_spacing: u8) -> Self {
         Self { solo_spacing, ..self }
     }
 
-    /// Drawing a new lag after so many readings that do not fit; 0: lags stay.
+    /// Drawing a new lag after this many readings that do not fit; 0: lags stay.
     #[must_use]
     pub const fn with_shift_after(self, shift_after: u8) -> Self {
         Self { shift_after, ..self }
     }
 
-    /// With so many periods at least from one change of lags to the next.
+    /// With this many periods at least from one change of lags to the next.
     #[must_use]
     pub const fn with_shift_spacing(self, shift_spacing: u8) -> Self {
         Self { shift_spacing, ..self }
@@ -100,7 +100,7 @@ impl HoppingSettings {
         Self { shift_interval, ..self }
     }
 
-    /// With so many adjacent sensors of a line as neighbours.
+    /// With this many adjacent sensors of a line as neighbours.
     #[must_use]
     pub const fn with_neighbours(self, neighbours: u8) -> Self {
         Self { neighbours, ..self }
@@ -134,7 +134,7 @@ impl Pace {
     }
 }
 
-/// How a [`HoppingRing`](super::HoppingRing) listens.
+/// Settings by which a [`HoppingRing`](super::HoppingRing) listens.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]

@@ -1,4 +1,4 @@
-//! What a hopping ring fires, and what it refuses.
+//! Firings of a hopping ring, and its refusals.
 
 extern crate std;
 

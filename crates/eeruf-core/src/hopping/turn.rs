@@ -7,9 +7,9 @@ use crate::time::Micros;
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub(super) struct Turn {
     pub(super) lag: Micros,
-    /// What it waits after that in the present phase, in steps of the code.
+    /// Its wait after that in the present phase, in steps of the code.
     pub(super) place: u8,
-    /// By how much its last firing was late, in microseconds.
+    /// Lateness of its last firing, in microseconds.
     pub(super) late: u16,
     /// In which phase that was.
     pub(super) phase: u8,
@@ -26,7 +26,7 @@ pub(super) struct Turn {
 pub(super) const FIRED: u8 = 1;
 /// Its last firing was alone.
 pub(super) const SOLO: u8 = 2;
-/// What it hears of its last firing moves as the code says, as far as lags are concerned.
+/// Set if the lags let the sound of its last firing move as the code says.
 pub(super) const SETTLED: u8 = 4;
 /// It does not fire.
 pub(super) const DISABLED: u8 = 8;

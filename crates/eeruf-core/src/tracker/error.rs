@@ -11,18 +11,18 @@ pub enum TrackerError {
     Setting {
         /// Its field in [`TrackerSettings`](super::TrackerSettings).
         name: &'static str,
-        /// What was given.
+        /// The value given.
         value: u32,
         /// The least that it may be.
         least: u32,
         /// The most that it may be.
         most: u32,
     },
-    /// A sensor that is not there.
+    /// A sensor out of range.
     Sensor {
         /// The sensor, from 0.
         sensor: usize,
-        /// How many there are.
+        /// Number of sensors.
         sensors: usize,
     },
 }

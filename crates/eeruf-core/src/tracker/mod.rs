@@ -65,7 +65,7 @@ impl<const K: usize, const H: usize> EchoTracker<K, H> {
         }
     }
 
-    /// How it weighs readings.
+    /// Settings by which it weighs readings.
     pub const fn settings(&self) -> &TrackerSettings {
         &self.settings
     }
@@ -78,7 +78,7 @@ impl<const K: usize, const H: usize> EchoTracker<K, H> {
     /// [`Rejected`](ReadingKind::Rejected) or [`NoEcho`](ReadingKind::NoEcho).
     ///
     /// # Errors
-    /// [`TrackerError::Sensor`] for a sensor that is not there.
+    /// [`TrackerError::Sensor`] for a sensor out of range.
     pub fn push(&mut self, sensor: usize, t_echo: Option<Micros>, firing: Firing) -> Result<Verdict, TrackerError> {
         let settings = &self.settings;
         match self.sensors.get_mut(sensor) {
@@ -91,7 +91,7 @@ impl<const K: usize, const H: usize> EchoTracker<K, H> {
     /// supported or contradicted, and the age grows; tracks move by `expected_change_us`, as in a [`Firing`].
     ///
     /// # Errors
-    /// [`TrackerError::Sensor`] for a sensor that is not there.
+    /// [`TrackerError::Sensor`] for a sensor out of range.
     pub fn skip(
         &mut self,
         sensor: usize,
@@ -105,7 +105,7 @@ impl<const K: usize, const H: usize> EchoTracker<K, H> {
         }
     }
 
-    /// Whether it is confirmed that nothing is in a sensor's range.
+    /// Returns true if it is confirmed that nothing is in a sensor's range.
     pub fn is_clear(&self, sensor: usize) -> bool {
         self.sensors.get(sensor).is_some_and(SensorTracks::is_clear)
     }

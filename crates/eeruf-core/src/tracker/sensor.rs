@@ -13,7 +13,7 @@ const NOTHING: u32 = u32::MAX;
 /// The age of a sensor none of whose readings was ever accepted.
 const NEVER: u16 = u16::MAX;
 
-/// What one firing of a sensor was like, for those who know more than the echo time.
+/// Properties of one firing of a sensor beside the echo time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub(super) struct Heard {
@@ -49,7 +49,7 @@ pub(super) struct SensorTracks<const H: usize> {
     last: u32,
 }
 
-/// While odometry moves, at least so many phases must support an echo before it is reported as tentative.
+/// While odometry moves, at least this many phases must support an echo before it is reported as tentative.
 const MOVING_VOTES: u8 = 3;
 
 /// As much more as is expected: a surplus is between none at all and twice as much.
@@ -202,7 +202,7 @@ impl<const H: usize> SensorTracks<H> {
         self.verdict(kind, t_echo, None)
     }
 
-    /// Whether nothing in range is confirmed.
+    /// Returns true if it is confirmed that nothing is in range.
     pub(super) fn is_clear(&self) -> bool {
         self.confirmed() == SILENCE
     }
@@ -217,7 +217,7 @@ impl<const H: usize> SensorTracks<H> {
         self.tracks.iter().map(Track::confirmed).min().unwrap_or(NOTHING)
     }
 
-    /// What is [confirmed](Self::confirmed), and the place of the track that is nearest to a reading and within
+    /// The [confirmed](Self::confirmed) track, and the place of the track that is nearest to a reading and within
     /// `t_delta` of it, or `H`.
     #[inline(always)]
     fn confirmed_and_nearest(&self, t_echo: u32, t_delta: u32) -> (u32, usize) {

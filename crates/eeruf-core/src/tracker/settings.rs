@@ -3,8 +3,8 @@
 use super::error::TrackerError;
 use crate::time::Micros;
 
-/// How an [`EchoTracker`](super::EchoTracker) weighs readings. Begin with one of [`BALANCED`](Self::BALANCED),
-/// [`QUICK`](Self::QUICK) and [`MAPS`](Self::MAPS).
+/// Settings by which an [`EchoTracker`](super::EchoTracker) weighs readings. Begin with one of
+/// [`BALANCED`](Self::BALANCED), [`QUICK`](Self::QUICK) and [`MAPS`](Self::MAPS).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
@@ -19,14 +19,15 @@ pub struct TrackerSettings {
     pub votes: u8,
     /// A track's score stops here; each new phase adds to it, each contradiction takes from it. `votes` to 15.
     pub score_limit: u8,
-    /// What a contradiction takes from the score of a confirmed track. 1 to 15.
+    /// Score that a contradiction takes from a confirmed track. 1 to 15.
     pub contradiction: u8,
-    /// What it takes if the sensor fired alone. 1 to 15.
+    /// Score that it takes if the sensor fired alone. 1 to 15.
     pub solo_contradiction: u8,
-    /// How many phases must support an echo that was never contradicted before it is reported as tentative, or 0 to
-    /// report confirmed echoes alone. 0 or 2 to 15; at least three while odometry moves, one if the sensor fired alone.
+    /// Number of phases that must support an echo that was never contradicted before it is reported as tentative, or 0
+    /// to report confirmed echoes alone. 0 or 2 to 15; at least three while odometry moves, one if the sensor fired
+    /// alone.
     pub tentative_votes: u8,
-    /// How closely they must agree to count for that. At most `t_delta`.
+    /// Tolerance of their agreement. At most `t_delta`.
     pub tentative_within: Micros,
     /// A confirmed echo that is contradicted or masked is remembered for this many firings without support, and
     /// confirmed again by a single reading. 0: it is forgotten.
@@ -63,7 +64,7 @@ impl TrackerSettings {
         Self { near, ..self }
     }
 
-    /// Confirming after so many votes, 2 to 15.
+    /// Confirming after this many votes, 2 to 15.
     #[must_use]
     pub const fn with_votes(self, votes: u8) -> Self {
         Self { votes, ..self }
@@ -87,7 +88,7 @@ impl TrackerSettings {
         Self { solo_contradiction, ..self }
     }
 
-    /// Reporting as tentative after so many phases, 2 to 15; 0: never.
+    /// Reporting as tentative after this many phases, 2 to 15; 0: never.
     #[must_use]
     pub const fn with_tentative_votes(self, tentative_votes: u8) -> Self {
         Self { tentative_votes, ..self }
@@ -105,7 +106,7 @@ impl TrackerSettings {
         Self { memory, ..self }
     }
 
-    /// Whether each setting is in its range, as [`EchoTracker::new`](super::EchoTracker::new) checks it.
+    /// Checks each setting's range, as [`EchoTracker::new`](super::EchoTracker::new) does.
     ///
     /// # Errors
     /// [`TrackerError::Setting`] for the first that is not.
@@ -137,7 +138,7 @@ impl TrackerSettings {
 }
 
 impl TrackerSettings {
-    /// What a contradiction takes from the score of a track that is not confirmed, and of one that is.
+    /// Scores that a contradiction takes from a track that is not confirmed, and from one that is.
     #[inline(always)]
     pub(super) const fn contradictions(&self, solo: bool) -> (u8, u8) {
         if solo { (self.solo_contradiction, self.solo_contradiction) } else { (1, self.contradiction) }

@@ -1,4 +1,4 @@
-//! What the tracker makes of firings in a row, and that the faults of patience are not among it.
+//! The tracker over consecutive firings, without the faults of patience.
 
 extern crate std;
 use super::*;
@@ -113,8 +113,9 @@ fn an_echo_that_moves_faster_than_its_support_is_followed() {
     assert!(seen.iter().all(|&kind| kind == ReadingKind::Accepted), "{seen:?}");
 }
 
-/// How many of the last 300 of 400 readings are accepted of a robot that swings to and fro, ten firings each way, while
-/// odometry expects 100 us from firing to firing and the echo moves by `part` of it. Each third firing hears crosstalk.
+/// Number of the last 300 of 400 readings that are accepted of a robot that swings to and fro, ten firings each way,
+/// while odometry expects 100 us from firing to firing and the echo moves by `part` of it. Each third firing hears
+/// crosstalk.
 fn accepted_of_a_swing(part: f64) -> usize {
     let mut tracker = balanced();
     let mut t_echo = 9000.0;

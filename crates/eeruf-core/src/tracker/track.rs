@@ -23,7 +23,7 @@ pub(super) struct Track {
     phases: u16,
     /// The score, 0 for no track; above it the votes that came from solo periods beyond their phases' own.
     score_and_solo: u8,
-    /// How many phases supported it closely, and the flags.
+    /// Number of phases that supported it closely, and the flags.
     close_and_flags: u8,
 }
 
@@ -79,7 +79,7 @@ impl Track {
         self.close_and_flags & CONFIRMED != 0
     }
 
-    /// How many phases supported it closely, unless it was ever contradicted.
+    /// Number of phases that supported it closely, unless it was ever contradicted.
     pub(super) const fn close_votes(&self) -> u8 {
         if self.close_and_flags & CONTRADICTED == 0 { self.close_and_flags / CLOSE_VOTE } else { 0 }
     }
@@ -89,7 +89,7 @@ impl Track {
         (self.echo_and_age & AGE) as u8
     }
 
-    /// What is replaced first: the less, the sooner. First what is not confirmed, then by score, then by age.
+    /// Order of replacement: the less, the sooner. First what is not confirmed, then by score, then by age.
     pub(super) const fn rank(&self) -> u32 {
         let confirmed = (self.close_and_flags & CONFIRMED) as u32;
         let score = (self.score_and_solo & SCORE) as u32;
@@ -97,7 +97,7 @@ impl Track {
         (confirmed << 24) | (remembered << 16) | (score << 8) | (AGE - (self.echo_and_age & AGE))
     }
 
-    /// How far a reading is from it.
+    /// Distance of a reading from it.
     #[inline(always)]
     pub(super) const fn distance(&self, t_echo: u32) -> u32 {
         self.t_echo().abs_diff(t_echo)
@@ -229,7 +229,7 @@ impl Track {
         self.echo_and_age = t_echo << 8 | (self.echo_and_age & AGE);
     }
 
-    /// How much later a reading is, which is at most 65,535 us: it supports the track, or is near it.
+    /// Delay of a reading against it, at most 65,535 us: the reading supports the track, or is near it.
     #[inline(always)]
     pub(super) const fn to(&self, t_echo: u32) -> i32 {
         t_echo.wrapping_sub(self.t_echo()) as i32

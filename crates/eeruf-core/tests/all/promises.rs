@@ -371,7 +371,6 @@ fn papers_ring_is_verified_for_17_ms() {
     assert_eq!(PAPER_12.verified_for().min_interval, Micros::from_millis(17));
 }
 
-// A schedule knows its phases whether it was verified and nothing of what is not there.
 #[test]
 fn schedule_knows_its_phases_and_verification() {
     assert_eq!((TABLE_I_D.phases(), TABLE_I_D.is_verified(), PAPER_12.is_verified()), (2, false, true));

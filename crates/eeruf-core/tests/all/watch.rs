@@ -114,7 +114,7 @@ fn each_reading_updates_the_state_before_its_sensor() {
     }
 }
 
-// A sensor is blind when nothing is accepted for so many firings with an echo and is named once.
+// A sensor is blind when nothing is accepted for this many firings with an echo and is named once.
 #[test]
 fn blind_sensor_is_named_once() {
     let (mut ring, mut watch) = (ring(0), SensorWatch::<12>::new(20, at(0)));

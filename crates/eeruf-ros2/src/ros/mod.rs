@@ -32,7 +32,7 @@ use messages::{
 
 use scene::Scene;
 
-/// What was heard on a topic.
+/// A message on a topic.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Heard {
     /// A row of raw echo times.
@@ -41,7 +41,7 @@ pub(crate) enum Heard {
     Range { sensor: u8, distance: Option<Distance> },
 }
 
-/// How many numbers a row of raw echo times has.
+/// Number of numbers in a row of raw echo times.
 const ROW: usize = 5;
 
 enum Input {
@@ -50,7 +50,7 @@ enum Input {
     Ranges(Vec<Subscription<RangeHeard>>),
 }
 
-/// What needs the places of the sensors.
+/// Outputs that need the places of the sensors.
 struct Placed {
     places: Vec<Place>,
     base_frame: String,
@@ -271,7 +271,7 @@ impl Topics<'_> {
     }
 }
 
-/// What a range says, by REP 117.
+/// Meaning of a range, by REP 117.
 fn distance(message: &RangeHeard) -> Option<Distance> {
     let RangeHeard { min_range, max_range, range, .. } = *message;
     if range.is_nan() {

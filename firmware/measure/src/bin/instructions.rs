@@ -28,7 +28,7 @@ fn echo(ring: &mut ScheduledRing<'static, 12>, sensor: u8, at: Instant) -> Resul
     ring.echo(sensor, at)
 }
 
-/// What an edge interrupt does: it stamps and stores.
+/// Stamps and stores an edge, in the interrupt.
 #[inline(never)]
 fn stamp(sensor: u8, at: Instant) {
     EDGES.push(Edge { sensor, high: true, at });

@@ -1,4 +1,4 @@
-//! Whose period it is, and whether lags change, as planned.
+//! Owners of periods, and changes of lags, as planned.
 
 use super::*;
 use crate::judge::{EchoTracker, Firing, Heard, Judge, TrackerSettings};
@@ -60,7 +60,7 @@ fn two_solo_periods_are_saved_up_at_most_and_each_costs_one() {
     assert_eq!((solos(250, false), solos(20, false)), (2, 1));
 }
 
-// A solo period is asked for after so many firings with nothing accepted.
+// A solo period is asked for after this many firings with nothing accepted.
 #[test]
 fn solo_period_is_asked_for_after_unaccepted_firings() {
     for solo_after in 2..=6 {

@@ -631,10 +631,7 @@ typedef struct EerufHoppingRing {
     uint32_t start_us, length_us, solo_at_us, period_us, horizon_us, rest_us;
     uint16_t step_us, tolerated, lead_us, least_late[3], most_late[3];
     uint8_t phase, cycle, root, first, planned, place, fires_as, changed, changes;
-    union {
-        EerufHopPlan hop;
-        EerufFlowPlan flow;
-    } by;
+    union { EerufHopPlan hop; EerufFlowPlan flow; } by;
 } EerufHoppingRing;
 
 /* Makes a hopping ring that begins at `now_us`. Both arrays have a place for each sensor of the config. Poll it with
@@ -672,17 +669,13 @@ typedef struct EerufFlowConfig {
     uint8_t sensors;            /* 1 to 64 */
     uint8_t unserved_after;     /* firings with nothing believed after which a sensor gains quiet */
     uint32_t step_us;           /* the code's: above t_delta, at most 65,535 */
-    uint32_t window_us;         /* at most EERUF_HOPPING_MAX_WINDOW_US */
-    uint32_t blanking_us;
-    uint32_t reach_us;          /* after how long no sound is heard any more */
+    uint32_t window_us, blanking_us, reach_us; /* as a hopping ring's */
     uint32_t shortest_gap_us;   /* between two firings, at most 65 ms, as all times of quiet */
     uint32_t masked_adds_us;    /* quiet that a reading adds that comes before what is believed */
-    uint32_t believed_takes_us; /* quiet that a believed reading takes away */
-    uint32_t unserved_adds_us;
+    uint32_t believed_takes_us, unserved_adds_us;
     uint32_t shortest_cycle_us; /* at least window and code */
     uint32_t rest_us;           /* between two firings of a sensor, where its module rests for longer than it listens */
-    uint32_t lead_us;           /* before its end a cycle ends for the plan: about 3 ms where planning takes long, as on
-                                   an AVR, or the first firing would be late; at most 65 ms and the shortest cycle */
+    uint32_t lead_us;           /* a cycle is planned so long before it begins: about 4 ms on an AVR; at most 65 ms */
     uint32_t longest_cycle_us;  /* of a robot that stands */
     uint32_t travel_us;         /* change of an echo by odometry that a cycle may bring */
     EerufTrackerSettings tracker;
@@ -690,11 +683,10 @@ typedef struct EerufFlowConfig {
 
 /* For every robot. */
 #define EERUF_FLOW(sensors, window_us)                                                                                 \
-    {EERUF_VERSION, sensors, 3, 240, window_us, 0, window_us, 7500, 4000, 1500, 6000, 60000, 0, 0, 400000, 380,           \
+    {EERUF_VERSION, sensors, 3, 240, window_us, 0, window_us, 7500, 4000, 1500, 6000, 60000, 0, 0, 400000, 380,        \
      {150, 400, 60, 5, 6, 2, 6, 2, 5}}
 
-/* Makes a flow ring that begins at `now_us`. It is an EerufHoppingRing with another plan: poll it with
-   eeruf_hopping_poll and all that is said of hopping rings holds for it. No sensor fires alone in a cycle. */
+/* Makes a flow ring that begins at `now_us`; all else is as with a hopping ring. No sensor fires alone in a cycle. */
 EerufStatus eeruf_flow_init(EerufHoppingRing *ring, size_t ring_size, EerufHopSensor *sensors, size_t sensors_size,
                             EerufHopper *hoppers, size_t hoppers_size, const EerufFlowConfig *config, uint32_t now_us);
 /* The quiet that a sensor of a flow ring gets before its firing and after it. */

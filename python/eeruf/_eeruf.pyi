@@ -687,7 +687,7 @@ class Found:
         """Number of nodes that the search visited: the same on each machine."""
     @property
     def seconds(self) -> float:
-        """Duration."""
+        """Duration of the search, in seconds."""
     @property
     def reason(self) -> str | None:
         """Why the period is not shorter, in words; None from ``WaitSearch.best``."""
@@ -836,8 +836,8 @@ def design(
         over_reals: whether to say what the tick costs: in ``Found.real_period_us`` the shortest period in
             ticks of any length, for the needs in exact microseconds, and in ``Found.real_proven`` whether
             none is shorter. Only where the period in ticks is proven.
-        phases: at least this many, 2 to 67: a schedule for a :class:`HoppingRing`, as ``eeruf design --phases`` finds it.
-            Then times are whole microseconds, of lists the largest counts, and nothing below ``stale_echo`` may be
+        phases: at least this many, 2 to 67: a schedule for a :class:`HoppingRing`, as ``eeruf design --phases`` finds
+            it. Then times are whole microseconds, of lists the largest counts, and nothing below ``stale_echo`` may be
             given but ``margin_us``.
         margin_us: with ``phases``: crosstalk need move by ``T_delta`` and this margin alone, which is all that jitter
             and lateness may use, instead of ``2 T_delta + 1``.
@@ -916,8 +916,8 @@ def design(
         over_reals: whether to say what the tick costs: in ``Found.real_period_us`` the shortest period in
             ticks of any length, for the needs in exact microseconds, and in ``Found.real_proven`` whether
             none is shorter. Only where the period in ticks is proven.
-        phases: at least this many, 2 to 67: a schedule for a :class:`HoppingRing`, as ``eeruf design --phases`` finds it.
-            Then times are whole microseconds, of lists the largest counts, and nothing below ``stale_echo`` may be
+        phases: at least this many, 2 to 67: a schedule for a :class:`HoppingRing`, as ``eeruf design --phases`` finds
+            it. Then times are whole microseconds, of lists the largest counts, and nothing below ``stale_echo`` may be
             given but ``margin_us``.
         margin_us: with ``phases``: crosstalk need move by ``T_delta`` and this margin alone, which is all that jitter
             and lateness may use, instead of ``2 T_delta + 1``.
@@ -1354,8 +1354,8 @@ class HoppingSchedule:
         sensors: how many, 1 to 64.
         period_us: the period, ``T_p``; it must exceed the width of the code.
         step_us: by how much crosstalk moves at least, 1 to 65535.
-        phases: at least this many, 2 to 67, as far as there are; there are more than sensors, and one less than a prime.
-            By default at least the 5 that confirm an echo.
+        phases: at least this many, 2 to 67, as far as there are; there are more than sensors, and one less than a
+            prime. By default at least the 5 that confirm an echo.
         t_lag_us: the lag of each sensor; by default they are spread evenly over the period.
         first_multiplier: ``a``, below the number of phases, which are then exactly as many as asked for: one less than
             a prime, or a prime for the linear congruence ``(x + a) * m % phases`` of sensor ``x``.
@@ -4532,7 +4532,7 @@ def simulate(
         ArgumentError: no such method, or something of the wrong type or out of range.
         SceneError: the scene has no robot.
         SimulationError: a ring cannot fire by the method as it should listen.
-        MemoryError: so many readings do not fit into memory; :func:`simulate_blocks` gives them bit by bit.
+        MemoryError: the readings do not fit into memory; :func:`simulate_blocks` gives them bit by bit.
 
     Example:
         >>> from eeruf import sim

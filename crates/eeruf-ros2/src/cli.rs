@@ -6,6 +6,7 @@ use std::sync::Arc;
 use clap::Parser;
 use eeruf_sim::World;
 
+use crate::gpio::GpioRing;
 use crate::parameters::{Parameters, Source};
 use crate::placing::Placing;
 use crate::ros_args::{Given, RosArgs};
@@ -31,6 +32,9 @@ struct Cli {
     /// Take number and places of the sensors from a ring file
     #[arg(long, value_name = "RING.toml")]
     ring: Option<PathBuf>,
+    /// Fire the modules of this ring file on this machine's own pins; parameters say which
+    #[arg(long, value_name = "RING.toml", conflicts_with_all = ["port", "ring", "simulate"])]
+    gpio: Option<PathBuf>,
     /// Simulate the first robot of a scene, without hardware
     #[arg(long, value_name = "SCENE.toml", conflicts_with = "port")]
     simulate: Option<PathBuf>,
@@ -56,6 +60,8 @@ pub(crate) struct Setup {
     pub(crate) placing: Placing,
     /// The scene, if there is no hardware.
     pub(crate) world: Option<Arc<World>>,
+    /// The ring on this machine's own pins.
+    pub(crate) gpio: Option<GpioRing>,
     /// None if it speaks no ROS.
     pub(crate) ros: Option<RosArgs>,
 }
@@ -92,6 +98,10 @@ pub(crate) fn task() -> Result<Task, String> {
     parameters.ring = cli.ring.unwrap_or(parameters.ring);
     parameters.log = cli.log.unwrap_or(parameters.log);
     parameters.mavlink = cli.mavlink.unwrap_or(parameters.mavlink);
+    if let Some(ring) = cli.gpio {
+        parameters.ring = ring;
+        parameters.source = Source::Gpio;
+    }
     if let Some(scene) = cli.simulate {
         parameters.scene = scene;
         parameters.source = Source::Simulation;
@@ -104,8 +114,9 @@ pub(crate) fn task() -> Result<Task, String> {
         parameters.temperature_c = world.scene().air().temperature_c as f32;
     }
     parameters.check()?;
-    if cli.no_ros && !matches!(parameters.source, Source::Serial | Source::Simulation) {
-        return Err("without ROS there are no topics to listen to; give --port or --simulate".to_owned());
+    let gpio = (parameters.source == Source::Gpio).then(|| GpioRing::design(&parameters.ring)).transpose()?;
+    if cli.no_ros && matches!(parameters.source, Source::EchoTimes | Source::Ranges) {
+        return Err("without ROS there are no topics to listen to; give --port, --gpio or --simulate".to_owned());
     }
-    Ok(Task::Run(Box::new(Setup { parameters, placing, world, ros: (!cli.no_ros).then_some(ros) })))
+    Ok(Task::Run(Box::new(Setup { parameters, placing, world, gpio, ros: (!cli.no_ros).then_some(ros) })))
 }

@@ -64,7 +64,8 @@ struct Interval {
 pub(crate) struct Diagnosis {
     sensors: Vec<Sensor>,
     watch: SensorWatch<MAX_SENSORS>,
-    serial: bool,
+    /// What the ring is listened to over, if it is a board or pins.
+    line: Option<&'static str>,
     late_us: u32,
     blind_after: u32,
     silent_after_s: f64,
@@ -87,7 +88,11 @@ impl Diagnosis {
         Self {
             sensors: (0..parameters.sensors).map(sensor).collect(),
             watch: SensorWatch::new(0, instant(now_s)),
-            serial: parameters.source == Source::Serial,
+            line: match parameters.source {
+                Source::Serial => Some("serial line"),
+                Source::Gpio => Some("GPIO lines"),
+                Source::EchoTimes | Source::Ranges | Source::Simulation => None,
+            },
             late_us: parameters.late_us,
             blind_after: parameters.blind_after,
             silent_after_s: parameters.silent_after_s,
@@ -193,9 +198,7 @@ impl Diagnosis {
         let second = PeriodStats { period: 0, phase: Phase::A, tally, max_late: zero, sum_late: zero };
         self.watch.observe(&RingEvent::PeriodEnded(second), instant(now_s));
         let mut report = Vec::new();
-        if self.serial {
-            report.push(self.line(&interval));
-        }
+        report.extend(self.line.map(|about| self.line(about, &interval)));
         report.push(self.timing(&interval));
         let sensors = (0..).zip(&self.sensors).map(|(number, sensor)| self.sensor(now_s, number, sensor));
         report.extend(sensors);
@@ -204,7 +207,7 @@ impl Diagnosis {
         report
     }
 
-    fn line(&self, interval: &Interval) -> Status {
+    fn line(&self, about: &str, interval: &Interval) -> Status {
         let Interval { damaged, lost, .. } = *interval;
         let wrong_number = self.board_sensors.filter(|&sensors| usize::from(sensors) != self.sensors.len());
         let (level, message) = if let Some(why) = &self.line_lost {
@@ -227,7 +230,7 @@ impl Diagnosis {
             ("frames damaged, in all", self.total_damaged.to_string()),
             ("messages not sent since the last report", interval.unsent.to_string()),
         ];
-        Status { level, about: "serial line".to_owned(), message, values }
+        Status { level, about: about.to_owned(), message, values }
     }
 
     fn timing(&self, interval: &Interval) -> Status {

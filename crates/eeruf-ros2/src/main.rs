@@ -11,6 +11,7 @@ mod cli;
 mod diagnosis;
 mod filter;
 mod firing_log;
+mod gpio;
 mod mavlink;
 mod parameters;
 mod placing;
@@ -31,7 +32,7 @@ fn main() -> ExitCode {
             print!("{text}");
             Ok(())
         }
-        Task::Run(setup) => run::run(&setup),
+        Task::Run(setup) => run::run(*setup),
     });
     match outcome {
         Ok(()) => ExitCode::SUCCESS,

@@ -18,6 +18,8 @@ pub(crate) enum Source {
     EchoTimes,
     /// Ranges on a topic for each sensor, to be filtered here.
     Ranges,
+    /// HC-SR04 modules on this machine's own pins.
+    Gpio,
     /// No hardware: the first robot of a scene file.
     Simulation,
 }
@@ -77,7 +79,7 @@ macro_rules! parameters {
 }
 
 parameters! {
-    /// The source of readings: serial (a board that filters), echo_times or ranges (topics, filtered here), simulation.
+    /// The source of readings: serial (a board), echo_times or ranges (topics, filtered here), gpio or simulation.
     source: Source = Source::Serial, "serial";
     /// The board's serial line.
     port: String = "/dev/ttyACM0".to_owned(), "/dev/ttyACM0";
@@ -89,6 +91,12 @@ parameters! {
     range_topics: Vec<String> = Vec::new(), "[]";
     /// For echo_times and ranges: the greatest difference between near-identical echo times.
     t_delta_us: u32 = 500, "500";
+    /// For gpio: the chip, and its line for the trigger and for the echo of each sensor; the ring file says the rest.
+    gpio_chip: String = "/dev/gpiochip0".to_owned(), "/dev/gpiochip0";
+    /// On a Raspberry Pi the numbers after GPIO, not those of the header.
+    trigger_lines: Vec<u32> = Vec::new(), "[]";
+    /// An HC-SR04 answers with 5 V: a Raspberry Pi needs a divider to 3.3 V on each.
+    echo_lines: Vec<u32> = Vec::new(), "[]";
     /// For simulation: a scene file, whose first robot is the ring, and how it fires and filters.
     scene: PathBuf = PathBuf::new(), "\"\"";
     /// A method of `eeruf study`: eeruf, eeruf_hopping, simultaneous, ..
@@ -298,6 +306,17 @@ impl Parameters {
             let whole = length == 0 || length == sensors;
             must(whole, format!("{list}: {length} entries; expected one for each of {sensors} sensors, or none"))?;
         }
+        if self.source == Source::Gpio {
+            for (list, lines) in [("trigger_lines", &self.trigger_lines), ("echo_lines", &self.echo_lines)] {
+                let length = lines.len();
+                must(length == sensors, format!("{list}: {length} lines; expected one for each of {sensors} sensors"))?;
+            }
+            let mut lines = [&self.trigger_lines[..], &self.echo_lines[..]].concat();
+            lines.sort_unstable();
+            let twice = lines.windows(2).find(|pair| pair[0] == pair[1]).map(|pair| pair[0]);
+            let line = twice.unwrap_or_default();
+            must(twice.is_none(), format!("trigger_lines and echo_lines: {line} twice; expected a line for each pin"))?;
+        }
         let ranges_named = self.source != Source::Ranges || !self.range_topics.is_empty();
         must(ranges_named, "range_topics: none; source: ranges needs one for each sensor".to_owned())?;
         let (least, most) = (self.min_range_m, self.max_range_m);
@@ -398,6 +417,11 @@ mod tests {
             ("temperature_c: 293", "temperature_c: 293; expected -60 to 80"),
             ("t_delta_us: 70000", "t_delta_us: 70000; expected 0 to 65535"),
             ("blind_after: 0", "blind_after: 0; expected 1 or more"),
+            ("source: gpio", "trigger_lines: 0 lines; expected one for each of 8 sensors"),
+            (
+                "{source: gpio, sensors: 2, trigger_lines: [17, 27], echo_lines: [22, 17]}",
+                "trigger_lines and echo_lines: 17 twice; expected a line for each pin",
+            ),
             ("use_sim_time: true", "use_sim_time: true; expected false"),
             ("silent_after_s: .nan", "silent_after_s: NaN; expected more than 0"),
         ] {

@@ -14,6 +14,7 @@ use crate::cli::Setup;
 use crate::diagnosis::{Diagnosis, Level};
 use crate::filter::{RangeFilter, Raw};
 use crate::firing_log::FiringLog;
+use crate::gpio::GpioRing;
 use crate::mavlink::Mavlink;
 use crate::parameters::{Parameters, Source};
 use crate::range::{Distance, Scale};
@@ -29,17 +30,21 @@ const PICTURE: Duration = Duration::from_millis(100);
 const REPORT: Duration = Duration::from_secs(1);
 
 /// Runs until Ctrl-C.
-pub(crate) fn run(setup: &Setup) -> Result<(), String> {
-    let parameters = &setup.parameters;
+pub(crate) fn run(mut setup: Setup) -> Result<(), String> {
     let stop = Arc::new(AtomicBool::new(false));
     let stopped = Arc::clone(&stop);
     ctrlc::set_handler(move || stopped.store(true, Ordering::Relaxed)).map_err(|error| format!("Ctrl-C: {error}"))?;
-    let mut node = EerufNode::open(setup)?;
-    let line = (parameters.source == Source::Serial).then(|| {
-        let (to, from) = channel();
-        listen(parameters.port.clone(), parameters.baud, to);
-        from
-    });
+    let mut node = EerufNode::open(&setup)?;
+    let parameters = &setup.parameters;
+    let line = match (parameters.source, setup.gpio.take()) {
+        (Source::Serial, _) => {
+            let (to, from) = channel();
+            listen(parameters.port.clone(), parameters.baud, to);
+            Some(from)
+        }
+        (_, Some(ring)) => Some(pins(ring, parameters)?),
+        _ => None,
+    };
     eprintln!("eeruf-ros2: {} sensors, from {}", parameters.sensors, source(parameters));
     let mut reported = Instant::now();
     while !stop.load(Ordering::Relaxed) {
@@ -53,11 +58,25 @@ pub(crate) fn run(setup: &Setup) -> Result<(), String> {
     node.end()
 }
 
+#[cfg(target_os = "linux")]
+fn pins(ring: GpioRing, parameters: &Parameters) -> Result<Receiver<FromLine>, String> {
+    let (to, from) = channel();
+    let lines = [&parameters.trigger_lines[..], &parameters.echo_lines[..]];
+    crate::gpio::listen(ring, &parameters.gpio_chip, lines, to)?;
+    Ok(from)
+}
+
+#[cfg(not(target_os = "linux"))]
+fn pins(_: GpioRing, _: &Parameters) -> Result<Receiver<FromLine>, String> {
+    Err("source: gpio; expected Linux, whose kernel has GPIO character devices".to_owned())
+}
+
 fn source(parameters: &Parameters) -> String {
     match parameters.source {
         Source::Serial => format!("{} at {} baud", parameters.port, parameters.baud),
         Source::EchoTimes => format!("topic {}", parameters.echo_times_topic),
         Source::Ranges => format!("topics {}", parameters.range_topics.join(", ")),
+        Source::Gpio => format!("the lines of {}", parameters.gpio_chip),
         Source::Simulation => format!("the simulation of {}", parameters.scene.display()),
     }
 }

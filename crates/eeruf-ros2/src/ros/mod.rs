@@ -110,7 +110,7 @@ impl Ros {
         }
         let diagnostics = node.publisher("/diagnostics", ["diagnostic_msgs", "DiagnosticArray"], &PUBLISHING)?;
         let input = match parameters.source {
-            Source::Serial | Source::Simulation => Input::None,
+            Source::Serial | Source::Gpio | Source::Simulation => Input::None,
             Source::EchoTimes => {
                 let array = ["std_msgs", "UInt32MultiArray"];
                 Input::EchoTimes(Box::new(node.subscription(&parameters.echo_times_topic, array)?))

@@ -1,0 +1,365 @@
+//! A ring of HC-SR04 modules on this machine's own pins, as a Raspberry Pi has them. It speaks to the node as a board
+//! does: with the same messages.
+
+#[cfg(target_os = "linux")]
+mod chip;
+
+use std::fs;
+use std::path::Path;
+use std::rc::Rc;
+#[cfg(target_os = "linux")]
+use std::{sync::mpsc::Sender, thread};
+
+use eeruf_core::search::PeriodProblem;
+use eeruf_core::{Edge, Instant, MAX_SENSORS, Micros, Ring, RingConfig, RingEvent, VerifiedSchedule};
+use eeruf_design::{RingSpec, Search, shortest};
+use eeruf_hc_sr04::{HcSr04Ring, Pins, Settings};
+use eeruf_serial::{Firing, Message, Received};
+use embedded_hal::delay::DelayNs;
+use embedded_hal::digital::{Error, ErrorKind, ErrorType, InputPin, OutputPin};
+
+use crate::board_line::{FromLine, nanoseconds};
+
+/// How far the shortest period is looked for at the start, in nodes: a second or two.
+const BUDGET: u64 = 2_000_000;
+
+/// The pins of all sensors, counted from 0, and the clock that stamps their edges.
+pub(crate) trait Lines {
+    /// Microseconds since some instant.
+    fn now_us(&self) -> u64;
+    fn set_trigger(&self, sensor: u8, high: bool) -> Result<(), String>;
+    fn is_high(&self, sensor: u8) -> Result<bool, String>;
+    fn delay_us(&self, us: u32);
+    /// The next edge of an echo line. Waits for it until this instant, and not at all if that has passed.
+    fn next_edge(&self, until_us: u64) -> Result<Option<Edge>, String>;
+    /// The number of edges that were lost so far.
+    fn lost(&self) -> u8;
+}
+
+/// When the ring of a file fires, and what its modules need.
+pub(crate) struct GpioRing {
+    schedule: VerifiedSchedule<MAX_SENSORS>,
+    settings: Settings,
+    sensors: u8,
+}
+
+impl GpioRing {
+    /// Finds the schedule of a ring file, as `eeruf design` does.
+    pub(crate) fn design(file: &Path) -> Result<Self, String> {
+        let text = fs::read_to_string(file).map_err(|error| format!("ring: {}: {error}", file.display()))?;
+        Self::of(&text).map_err(|error| format!("ring: {}: {error}", file.display()))
+    }
+
+    fn of(text: &str) -> Result<Self, String> {
+        let module = eeruf_design::robot_ring(text)?.modules.first().copied();
+        let spec = RingSpec::from_text(text).map_err(|error| error.message)?;
+        let problem: PeriodProblem<'_> = spec.problem();
+        let search = Search { budget: BUDGET, ..Search::default() };
+        let found = shortest(&problem, &search, &mut ()).map_err(|error| error.to_string())?;
+        let schedule = found.schedule().ok_or_else(|| format!("no schedule: {}", found.reason))?;
+        let verified = schedule.verify(&problem.requirements).verified();
+        let settings = match module {
+            None => Settings::default(),
+            Some(module) => Settings::of(&module)
+                .ok_or_else(|| format!("module {}: expected one that answers by a pulse, as hc-sr04", module.name))?,
+        };
+        Ok(Self { schedule: verified.map_err(|error| error.to_string())?, settings, sensors: problem.sensors as u8 })
+    }
+
+    /// Fires and listens until `each` returns false, which takes the messages.
+    pub(crate) fn run<L: Lines>(&self, lines: L, mut each: impl FnMut(FromLine) -> bool) -> Result<(), String> {
+        let lines = Rc::new(lines);
+        let pins = std::array::from_fn(|n| {
+            let sensor = u8::try_from(n).ok().filter(|&sensor| sensor < self.sensors);
+            let pin = Pin { lines: Rc::clone(&lines), sensor };
+            Pins { trigger: pin.clone(), echo: pin }
+        });
+        let ring = Ring::new(&self.schedule, RingConfig::new(), instant(lines.now_us()));
+        let ring = ring.map_err(|error| error.to_string())?;
+        let delay = Delay(Rc::clone(&lines));
+        let mut ring: HcSr04Ring<Ring<_, _, MAX_SENSORS>, _, _, _, MAX_SENSORS> =
+            HcSr04Ring::new(ring, pins, delay, self.settings).map_err(|error| error.to_string())?;
+        let mut told = Told { sequence: 0, fired: [(instant(0), Micros::ZERO); MAX_SENSORS] };
+        let hello = Message::Hello { sensors: self.sensors, clock: "gpio".to_owned() };
+        if !(each(FromLine::Opened) && each(told.frame(hello))) {
+            return Ok(());
+        }
+        loop {
+            let now_us = lines.now_us();
+            // No window closes on an edge that came in time.
+            while let Some(edge) = lines.next_edge(0)? {
+                _ = ring.edge(edge);
+            }
+            while let Some(event) = ring.poll(instant(now_us)) {
+                let health = |sensor| ring.health(sensor) as u8;
+                let message = told.message(&event, instant(now_us), (0..self.sensors).map(health), lines.lost());
+                if message.is_some_and(|message| !each(told.frame(message))) {
+                    return Ok(());
+                }
+            }
+            let left = ring.next_deadline().since(instant(now_us));
+            // A deadline that has passed is half a turn of the clock ahead.
+            let left_us = if left.as_micros() > i32::MAX as u32 { 0 } else { u64::from(left.as_micros()) };
+            if let Some(edge) = lines.next_edge(now_us + left_us)? {
+                _ = ring.edge(edge);
+            }
+        }
+    }
+}
+
+/// Opens the lines and fires in a thread of its own until nobody takes what comes.
+#[cfg(target_os = "linux")]
+pub(crate) fn listen(
+    ring: GpioRing,
+    chip: &str,
+    [triggers, echoes]: [&[u32]; 2],
+    to: Sender<FromLine>,
+) -> Result<(), String> {
+    let lines = chip::Chip::open(chip, triggers, echoes)?;
+    thread::spawn(move || {
+        if let Err(error) = ring.run(lines, |from| to.send(from).is_ok()) {
+            _ = to.send(FromLine::Lost(error));
+        }
+    });
+    Ok(())
+}
+
+fn instant(us: u64) -> Instant {
+    // Wraps, as instants do.
+    Instant::from_micros(us as u32)
+}
+
+/// What was told of the ring so far.
+struct Told {
+    sequence: u16,
+    fired: [(Instant, Micros); MAX_SENSORS],
+}
+
+impl Told {
+    fn frame(&mut self, message: Message) -> FromLine {
+        let sequence = self.sequence;
+        self.sequence = sequence.wrapping_add(1);
+        FromLine::Frame(Ok(Received { sequence, message }), nanoseconds())
+    }
+
+    fn message(
+        &mut self,
+        event: &RingEvent,
+        now: Instant,
+        health: impl Iterator<Item = u8>,
+        edges_lost: u8,
+    ) -> Option<Message> {
+        match *event {
+            RingEvent::Fire { sensor, due, .. } => {
+                if let Some(place) = self.fired.get_mut(usize::from(sensor)) {
+                    *place = (now, now.since(due));
+                }
+                None
+            }
+            RingEvent::Reading(reading) => {
+                let &(fired, late) = self.fired.get(usize::from(reading.sensor))?;
+                Some(Message::Firing(Firing {
+                    sensor: reading.sensor,
+                    phase: reading.phase.0,
+                    kind: reading.kind,
+                    fired,
+                    period: reading.period,
+                    t_echo: reading.t_echo,
+                    late,
+                    age: now.since(fired),
+                    explained_by: reading.explained_by,
+                    weighed: None,
+                }))
+            }
+            RingEvent::PeriodEnded(ref stats) => {
+                let (period, max_late, health) = (stats.period, stats.max_late, health.collect());
+                Some(Message::Period { period, max_late, edges_lost, health })
+            }
+        }
+    }
+}
+
+/// Trigger and echo line of a sensor; none for those that the ring does not have.
+struct Pin<L> {
+    lines: Rc<L>,
+    sensor: Option<u8>,
+}
+
+impl<L> Clone for Pin<L> {
+    fn clone(&self) -> Self {
+        Self { lines: Rc::clone(&self.lines), sensor: self.sensor }
+    }
+}
+
+/// A pin that the kernel refuses; the driver makes the sensor's health of it.
+#[derive(Debug)]
+pub(crate) struct PinError;
+
+impl Error for PinError {
+    fn kind(&self) -> ErrorKind {
+        ErrorKind::Other
+    }
+}
+
+impl<L> ErrorType for Pin<L> {
+    type Error = PinError;
+}
+
+impl<L: Lines> OutputPin for Pin<L> {
+    fn set_low(&mut self) -> Result<(), PinError> {
+        self.sensor.map_or(Ok(()), |sensor| self.lines.set_trigger(sensor, false).map_err(|_| PinError))
+    }
+
+    fn set_high(&mut self) -> Result<(), PinError> {
+        self.sensor.map_or(Ok(()), |sensor| self.lines.set_trigger(sensor, true).map_err(|_| PinError))
+    }
+}
+
+impl<L: Lines> InputPin for Pin<L> {
+    fn is_high(&mut self) -> Result<bool, PinError> {
+        self.sensor.map_or(Ok(false), |sensor| self.lines.is_high(sensor).map_err(|_| PinError))
+    }
+
+    fn is_low(&mut self) -> Result<bool, PinError> {
+        self.is_high().map(|is_high| !is_high)
+    }
+}
+
+struct Delay<L>(Rc<L>);
+
+impl<L: Lines> DelayNs for Delay<L> {
+    fn delay_ns(&mut self, ns: u32) {
+        self.0.delay_us(ns.div_ceil(1000));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    use std::cell::{Cell, RefCell};
+    use std::collections::BTreeSet;
+
+    use eeruf_core::ReadingKind;
+
+    /// Modules before walls that stand still, and a clock that goes on where the ring waits. Module 2 has a cut wire,
+    /// nothing is in range of module 3, and the line of module 4 is stuck.
+    struct Modules {
+        now_us: Cell<u64>,
+        edges: RefCell<BTreeSet<(u64, u8, bool)>>,
+        triggered: RefCell<Vec<(u64, u8)>>,
+    }
+
+    const SENSORS: u8 = 5;
+    const ECHOES_US: [u64; 2] = [5_800, 11_600];
+
+    impl Lines for Modules {
+        fn now_us(&self) -> u64 {
+            // Reading it takes a little time.
+            self.now_us.set(self.now_us.get() + 2);
+            self.now_us.get()
+        }
+
+        fn set_trigger(&self, sensor: u8, high: bool) -> Result<(), String> {
+            let now = self.now_us();
+            if high {
+                self.triggered.borrow_mut().push((now, sensor));
+                return Ok(());
+            }
+            let width = match sensor {
+                2 => return Ok(()),
+                3 => 38_000,
+                _ => ECHOES_US[usize::from(sensor)],
+            };
+            self.edges.borrow_mut().extend([(now + 450, sensor, true), (now + 450 + width, sensor, false)]);
+            Ok(())
+        }
+
+        fn is_high(&self, sensor: u8) -> Result<bool, String> {
+            Ok(sensor == 4)
+        }
+
+        fn delay_us(&self, us: u32) {
+            self.now_us.set(self.now_us.get() + u64::from(us));
+        }
+
+        fn next_edge(&self, until_us: u64) -> Result<Option<Edge>, String> {
+            let first = self.edges.borrow().first().copied();
+            match first.filter(|(at, ..)| *at <= until_us.max(self.now_us.get())) {
+                Some((at, sensor, high)) => {
+                    self.edges.borrow_mut().pop_first();
+                    // It is read later than it came; its stamp is the kernel's.
+                    self.now_us.set(self.now_us.get().max(at + 30));
+                    Ok(Some(Edge { sensor, high, at: instant(at) }))
+                }
+                None => {
+                    self.now_us.set(self.now_us.get().max(until_us));
+                    Ok(None)
+                }
+            }
+        }
+
+        fn lost(&self) -> u8 {
+            0
+        }
+    }
+
+    const RING: &str = "sensors = 5\nmodule = \"hc-sr04\"\nlayout = \"ring\"\njitter_us = 100\nmin_interval_us = 0\n\
+                        spacing_deg = 72\nradius_m = 0.2";
+
+    type OfSensor = Vec<(ReadingKind, Option<Micros>)>;
+
+    /// The readings of 40 periods, by sensor, and the health at their end.
+    fn read(start_us: u64) -> (Vec<OfSensor>, Vec<u8>) {
+        let ring = GpioRing::of(RING).unwrap();
+        assert_eq!(ring.sensors, SENSORS);
+        let modules = Modules { now_us: Cell::new(start_us), edges: RefCell::default(), triggered: RefCell::default() };
+        let (mut readings, mut healths, mut next) = (vec![vec![]; 5], vec![], 0);
+        ring.run(modules, |from| {
+            let FromLine::Frame(frame, _) = from else { return true };
+            let Received { sequence, message } = frame.unwrap();
+            assert_eq!(sequence, next);
+            next += 1;
+            match message {
+                Message::Hello { sensors, .. } => assert_eq!(sensors, SENSORS),
+                Message::Firing(firing) => {
+                    assert!(firing.late.as_micros() < 200, "{firing:?}");
+                    readings[usize::from(firing.sensor)].push((firing.kind, firing.t_echo));
+                }
+                Message::Period { period, health, .. } => {
+                    healths = health;
+                    return period < 40;
+                }
+            }
+            true
+        })
+        .unwrap();
+        (readings, healths)
+    }
+
+    #[test]
+    fn ring_on_pins_reads_walls_and_what_is_broken() {
+        // The second run goes through the clock's wrap.
+        for start_us in [1_000, u64::from(u32::MAX) - 1_000_000] {
+            let (readings, health) = read(start_us);
+            for (sensor, echo_us) in ECHOES_US.into_iter().enumerate() {
+                let right = |&&(kind, t_echo): &&(ReadingKind, Option<Micros>)| {
+                    kind == ReadingKind::Accepted && t_echo.is_some_and(|t_echo| t_echo.as_micros() == echo_us as u32)
+                };
+                let (all, right) = (readings[sensor].len(), readings[sensor].iter().filter(right).count());
+                assert!(all >= 39 && right >= all - 1, "sensor {sensor}: {right} of {all}");
+            }
+            let all = |sensor: usize, kind| readings[sensor].iter().skip(1).all(|reading| reading.0 == kind);
+            assert!(all(2, ReadingKind::Unanswered), "{:?}", readings[2]);
+            assert!(all(3, ReadingKind::Clear), "{:?}", readings[3]);
+            assert!(all(4, ReadingKind::Stuck), "{:?}", readings[4]);
+            assert_eq!(health, [0, 0, 1, 0, 2]);
+        }
+    }
+
+    #[test]
+    fn module_without_pulses_is_refused() {
+        let error = GpioRing::of(&RING.replace("hc-sr04", "srf08")).err().unwrap();
+        assert!(error.contains("srf08") && error.contains("expected one that answers by a pulse"), "{error}");
+    }
+}

@@ -64,7 +64,7 @@ struct Interval {
 pub(crate) struct Diagnosis {
     sensors: Vec<Sensor>,
     watch: SensorWatch<MAX_SENSORS>,
-    /// What the ring is listened to over, if it is a board or pins.
+    /// The connection over which the ring is listened to, if it is a board or pins.
     line: Option<&'static str>,
     late_us: u32,
     blind_after: u32,

@@ -20,7 +20,7 @@ use embedded_hal::digital::{Error, ErrorKind, ErrorType, InputPin, OutputPin};
 
 use crate::board_line::{FromLine, nanoseconds};
 
-/// How far the shortest period is looked for at the start, in nodes: a second or two.
+/// Budget of nodes in which the shortest period is looked for at the start: a second or two.
 const BUDGET: u64 = 2_000_000;
 
 /// The pins of all sensors, counted from 0, and the clock that stamps their edges.
@@ -129,7 +129,7 @@ fn instant(us: u64) -> Instant {
     Instant::from_micros(us as u32)
 }
 
-/// What was told of the ring so far.
+/// Facts about the ring so far.
 struct Told {
     sequence: u16,
     fired: [(Instant, Micros); MAX_SENSORS],

@@ -79,9 +79,9 @@ impl GpioRing {
         let delay = Delay(Rc::clone(&lines));
         let mut ring: HcSr04Ring<Ring<_, _, MAX_SENSORS>, _, _, _, MAX_SENSORS> =
             HcSr04Ring::new(ring, pins, delay, self.settings).map_err(|error| error.to_string())?;
-        let mut told = Told { sequence: 0, fired: [(instant(0), Micros::ZERO); MAX_SENSORS] };
+        let mut known = Known { sequence: 0, fired: [(instant(0), Micros::ZERO); MAX_SENSORS] };
         let hello = Message::Hello { sensors: self.sensors, clock: "gpio".to_owned() };
-        if !(each(FromLine::Opened) && each(told.frame(hello))) {
+        if !(each(FromLine::Opened) && each(known.frame(hello))) {
             return Ok(());
         }
         loop {
@@ -92,8 +92,8 @@ impl GpioRing {
             }
             while let Some(event) = ring.poll(instant(now_us)) {
                 let health = |sensor| ring.health(sensor) as u8;
-                let message = told.message(&event, instant(now_us), (0..self.sensors).map(health), lines.lost());
-                if message.is_some_and(|message| !each(told.frame(message))) {
+                let message = known.message(&event, instant(now_us), (0..self.sensors).map(health), lines.lost());
+                if message.is_some_and(|message| !each(known.frame(message))) {
                     return Ok(());
                 }
             }
@@ -130,12 +130,12 @@ fn instant(us: u64) -> Instant {
 }
 
 /// Facts about the ring so far.
-struct Told {
+struct Known {
     sequence: u16,
     fired: [(Instant, Micros); MAX_SENSORS],
 }
 
-impl Told {
+impl Known {
     fn frame(&mut self, message: Message) -> FromLine {
         let sequence = self.sequence;
         self.sequence = sequence.wrapping_add(1);

@@ -342,7 +342,7 @@ fn the_tracker_says_what_its_rules_say_of_any_readings() {
     }
 }
 
-// A sensor is of no age until a reading counts and no older than can be told.
+// A sensor is of no age until a reading counts and no older than can be given.
 #[test]
 fn sensor_age_saturates_and_starts_unknown() {
     let mut tracker = EchoTracker::<1>::new(TrackerSettings::BALANCED).unwrap();

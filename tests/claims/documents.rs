@@ -60,3 +60,14 @@ fn every_picture_in_the_docs_is_small() {
     }
     assert!(pictures >= 10, "{pictures}");
 }
+
+#[test]
+fn user_path_has_at_most_20_000_words() {
+    let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs");
+    let mut path = documents(&docs.join("tutorial"));
+    path.extend(documents(&docs.join("how-to")));
+    path.push(docs.join("faq.md"));
+    let words = path.iter().map(|document| std::fs::read_to_string(document).unwrap().split_whitespace().count());
+    let words: usize = words.sum();
+    assert!(words <= 20_000, "{words}; figures and diaries belong into docs/log");
+}

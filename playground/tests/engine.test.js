@@ -82,7 +82,7 @@ test("for twenty rings the page's design is to the bit that of the program", () 
     assert.ok(ours.verified);
     if (k % 5 !== 0) return;
     const emitted = ["rust", "c", "arduino", "toml"].map((form) =>
-      execFileSync(PROGRAM, ["design", join(folder, `ring-${k}.toml`), "--emit", form], { encoding: "utf8" }),
+      execFileSync(PROGRAM, ["design", "--period-only", join(folder, `ring-${k}.toml`), "--emit", form], { encoding: "utf8" }),
     );
     assert.deepEqual([ours.rust, ours.c, ours.arduino, ours.toml], emitted);
   });

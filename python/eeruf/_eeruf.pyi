@@ -4147,7 +4147,7 @@ class Method:
             for ``eeruf_hopping``. Its sensors must be as many as the robot's.
         settings: a ``HoppingSettings`` or its name for ``eeruf_hopping``; for ``flow`` a dict of what differs from its
             default: ``step_us``, ``shortest_gap_us``, ``masked_adds_us``, ``believed_takes_us``, ``unserved_adds_us``,
-            ``unserved_after``, ``longest_cycle_us``, ``travel_us``.
+            ``unserved_after``, ``shortest_cycle_us``, ``rest_us``, ``lead_us``, ``longest_cycle_us``, ``travel_us``.
         sketch: a dict as the argument ``firing`` of :class:`Robot`, for methods that fire as sketches and modules do.
         make_filter: makes your own filter: called with the :class:`Robot` at the start of each simulation, it returns a
             callable as the argument ``filter`` of :class:`Simulation`. A class whose instances can be called will do.

@@ -32,6 +32,9 @@ class FlowSettings(TypedDict, total=False):
     believed_takes_us: int
     unserved_adds_us: int
     unserved_after: int
+    shortest_cycle_us: int
+    rest_us: int
+    lead_us: int
     longest_cycle_us: int
     travel_us: int
 

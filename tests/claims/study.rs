@@ -103,7 +103,7 @@ fn the_table_names_every_method_and_who_was_fooled_by_whom() {
     }
 }
 
-// Each robot has a table and crosstalk between robots is told apart.
+// Each robot has a table and crosstalk between robots is kept apart.
 #[test]
 fn each_robot_has_a_table() {
     let outcome = eeruf(&["study", "scenes/lab.toml", "--periods", "40", "--method", "conventional,eeruf"]);

@@ -154,7 +154,7 @@ enum Verb {
         #[arg(long)]
         check: bool,
     },
-    /// Print the table of shortest periods that docs/explanation/search.md shows
+    /// Print the table of shortest periods that docs/log/search.md shows
     Periods {
         /// Arguments for the example `shortest_periods` of eeruf-core
         #[arg(value_name = "ARGUMENT")]

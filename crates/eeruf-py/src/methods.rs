@@ -38,7 +38,7 @@ const EXPECTED: &str = "a name of eeruf.sim.METHODS, or an eeruf.sim.Method";
 ///         for ``eeruf_hopping``. Its sensors must be as many as the robot's.
 ///     settings: a ``HoppingSettings`` or its name for ``eeruf_hopping``; for ``flow`` a dict of what differs from its
 ///         default: ``step_us``, ``shortest_gap_us``, ``masked_adds_us``, ``believed_takes_us``, ``unserved_adds_us``,
-///         ``unserved_after``, ``longest_cycle_us``, ``travel_us``.
+///         ``unserved_after``, ``shortest_cycle_us``, ``rest_us``, ``lead_us``, ``longest_cycle_us``, ``travel_us``.
 ///     sketch: a dict as the argument ``firing`` of :class:`Robot`, for methods that fire as sketches and modules do.
 ///     make_filter: makes your own filter: called with the :class:`Robot` at the start of each simulation, it returns a
 ///         callable as the argument ``filter`` of :class:`Simulation`. A class whose instances can be called will do.
@@ -87,11 +87,14 @@ fn flow(value: &Bound<'_, PyAny>) -> PyResult<FlowSettings> {
             "masked_adds_us" => &mut settings.masked_adds,
             "believed_takes_us" => &mut settings.believed_takes,
             "unserved_adds_us" => &mut settings.unserved_adds,
+            "shortest_cycle_us" => &mut settings.shortest_cycle,
+            "rest_us" => &mut settings.rest,
+            "lead_us" => &mut settings.lead,
             "longest_cycle_us" => &mut settings.longest_cycle,
             "travel_us" => &mut settings.travel,
             _ => {
                 let names = "step_us, shortest_gap_us, masked_adds_us, believed_takes_us, unserved_adds_us, \
-                             unserved_after, longest_cycle_us, travel_us";
+                             unserved_after, shortest_cycle_us, rest_us, lead_us, longest_cycle_us, travel_us";
                 return Err(ArgumentError::new_err(format!("no setting {key} of flow; expected one of {names}")));
             }
         };

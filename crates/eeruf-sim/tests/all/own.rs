@@ -149,7 +149,7 @@ fn own_code_is_of_one_robot() {
     assert_eq!(error.to_string(), "robot 3; expected one of 2");
 }
 
-// An echo is told from crosstalk also where a filter gives it another time.
+// An echo is distinguished from crosstalk also where a filter gives it another time.
 #[test]
 fn echo_differs_from_crosstalk_under_filter_times() {
     /// Gives every echo two microseconds late.

@@ -381,7 +381,7 @@ mod tests {
         assert_eq!(chosen(&[Ok([base; 2]), Ok([good, worse])]), (Some(1), false));
     }
 
-    // Judgement is the same on any number of threads and stops when told.
+    // Judgement is the same on any number of threads and stops when asked.
     #[test]
     fn judgement_is_equal_on_any_number_of_threads() {
         let robot = Robot::ring(Pose::identity(), 4, 1.57, 0.2, Transducer::HC_SR04);

@@ -38,7 +38,6 @@ fn replay_writes_accepted_ranges_by_rep_117() {
     assert!(without.err.ends_with("a reading without a time; --out needs --time COLUMN for CSV\n"), "{}", without.err);
 }
 
-// Of a cut bag replay prints what can be read and says what cannot.
 #[test]
 fn replay_prints_what_a_cut_bag_still_holds() {
     let whole = std::fs::read("crates/eeruf-logs/tests/bags/ros1-none.bag").unwrap();
@@ -51,7 +50,6 @@ fn replay_prints_what_a_cut_bag_still_holds() {
     assert!(outcome.out.contains("| /sonar/1 |"), "{}", outcome.out);
 }
 
-// Diagnose says from a log of study who fools whom and that two phases do not tell.
 #[test]
 fn diagnose_says_who_fools_whom_from_a_study() {
     let (folder, log) = Scratch::new("log.csv", "");
@@ -166,7 +164,6 @@ fn logs_say_whether_there_is_crosstalk() {
     }
 }
 
-// A simulated survey finds who hears whom and its ring file is one for design.
 #[test]
 fn survey_gives_a_ring_file_for_design() {
     let (folder, log) = Scratch::new("survey.csv", "");

@@ -125,7 +125,6 @@ fn changes(was: &str, is: &str) -> Vec<String> {
 mod tests {
     use super::{changes, names_at_root, types_at_two_places};
 
-    // What is gone and what is new is named and order does not matter.
     #[test]
     fn changes_are_named_in_any_order() {
         assert!(changes("pub fn a()\npub fn b()\n", "pub fn b()\npub fn a()\n").is_empty());

@@ -59,7 +59,6 @@ fn direct_dependencies_are_named_with_reasons() {
     assert!(gone.is_empty(), "nothing depends on {gone:?}, which docs/project/dependencies.md names");
 }
 
-// As many crates as the document says are built with each of ours.
 #[test]
 fn crate_counts_are_those_of_the_document() {
     let document = document();

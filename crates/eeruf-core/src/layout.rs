@@ -149,7 +149,6 @@ mod tests {
         assert!(Layout::Blocks(4).neighbours(12, 4, 7) && !Layout::Blocks(4).neighbours(12, 3, 4));
     }
 
-    // A graph is symmetric and without loops whatever its words say.
     #[test]
     fn graph_is_symmetric_and_without_loops() {
         let graph = Layout::Graph(&[0b011, 0, 0b001]);

@@ -19,7 +19,6 @@ impl Random {
     }
 }
 
-// It has a row for each ring in their order and each reads as it was written.
 #[test]
 fn atlas_has_a_row_for_each_ring_in_order() {
     let all: Vec<Row> = rows(ATLAS).collect();
@@ -44,7 +43,6 @@ fn atlas_schedules_keep_needs_in_their_periods() {
     }
 }
 
-// No row is longer than sensors by colours with ranks that grow take.
 #[test]
 fn no_row_is_longer_than_its_construction() {
     for row in rows(ATLAS) {

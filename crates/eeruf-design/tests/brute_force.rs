@@ -87,7 +87,6 @@ fn keeps(problem: &Problem, period: u32, more: [u32; 3]) -> bool {
     feasible(&harder, period).is_some()
 }
 
-// What is spared is what trying all schedules gives need by need.
 #[test]
 fn spare_is_that_of_trying_all_schedules() {
     let (mut solved, mut spared) = (0, [0; 3]);

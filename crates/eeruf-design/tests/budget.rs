@@ -2,7 +2,6 @@
 
 use eeruf_design::{NoSchedule, RingSpec, Search};
 
-// Whatever the budget bounds hold and what is proven is the shortest.
 #[test]
 fn bounds_hold_whatever_the_budget() {
     for layout in ["line", "ring"] {
@@ -31,7 +30,6 @@ fn bounds_hold_whatever_the_budget() {
     }
 }
 
-// What would be faster is compared with the needs that are printed.
 #[test]
 fn faster_needs_are_compared_with_printed_ones() {
     // It moves, so that the needed t_delta depends on the schedule that is found.

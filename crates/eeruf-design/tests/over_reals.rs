@@ -28,7 +28,6 @@ fn in_parts(problem: &Problem, parts: u32) -> u32 {
     found.period
 }
 
-// No finer tick beats the period proven over the reals and that of its denominator meets it.
 #[test]
 fn no_finer_tick_beats_the_real_period() {
     let cases = std::env::var("EERUF_CASES").map_or(150, |cases| cases.parse().expect("a number"));
@@ -59,7 +58,6 @@ fn no_finer_tick_beats_the_real_period() {
     assert!(proven * 10 > cases * 8 && gained * 20 > cases && largest > 1, "{proven}, {gained}, {largest} of {cases}");
 }
 
-// Of the table line 12 at 45 ms alone gains from finer ticks and of ring 24 at 15 ms it is open.
 #[test]
 fn line_12_at_45_ms_alone_gains_from_finer_ticks() {
     let (mut gain, mut open) = (Vec::new(), Vec::new());
@@ -78,7 +76,6 @@ fn line_12_at_45_ms_alone_gains_from_finer_ticks() {
     assert_eq!(open, ["ring 24, window 15"]);
 }
 
-// What ends early is what the orders of the schedule give and says so.
 #[test]
 fn early_end_says_what_its_orders_give() {
     let (_, claim) = common::table(1).into_iter().find(|(name, _)| name == "line 12, window 45").expect("it is there");

@@ -41,7 +41,6 @@ fn search_proves_every_period_of_the_table() {
     }
 }
 
-// In fine ticks a period between coarse ones is found and proven.
 #[test]
 fn fine_ticks_find_periods_between_coarse_ones() {
     let (_, claim) = common::table(2).into_iter().find(|(name, _)| name == "line 12, window 45").expect("it is there");

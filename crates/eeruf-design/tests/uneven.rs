@@ -44,7 +44,6 @@ fn uneven_rings_are_verified_and_certified() {
     }
 }
 
-// Of the schedules of an uneven ring the one with most to spare is chosen.
 #[test]
 fn uneven_schedule_with_most_to_spare_is_chosen() {
     // So much more of each need than the ring has, in microseconds.
@@ -131,7 +130,6 @@ fn sensors_listen_for_range_and_wait_for_retrigger() {
     assert_eq!(read(&format!("{text}max_range_m = 2.0")).window, Micros::from_millis(40));
 }
 
-// What is wrong with a file is named with key value and what is expected.
 #[test]
 fn file_error_names_key_value_and_expectation() {
     let ring = "sensors = 4\nt_delta_us = 99\nmin_interval_us = 5000\nwindow_us = 9000\n";

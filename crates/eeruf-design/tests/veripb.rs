@@ -65,7 +65,6 @@ fn allows(model: &str, problem: &Problem, fire: &[Vec<u32>; 2]) -> bool {
     read_model(model).iter().all(|inequality| inequality.holds(&is_true))
 }
 
-// No schedule is shorter than the shortest and the model allows that one.
 #[test]
 fn no_schedule_beats_the_shortest_in_the_model() {
     let cases = std::env::var("EERUF_CASES").map_or(60, |cases| cases.parse().expect("a number"));

@@ -84,7 +84,6 @@ mod tests {
         (0..length).map(|n| (n.wrapping_mul(2_654_435_761) >> 24) as u8).collect()
     }
 
-    // One context unpacks frames in turn whether or not they say how much they hold and after bad ones.
     #[test]
     fn zstd_context_unpacks_frames_of_any_kind() {
         let (mut zstd, mut out) = (Unzstd::default(), vec![]);

@@ -115,7 +115,6 @@ fn lines(file: &Path) -> BTreeSet<String> {
 mod tests {
     use super::*;
 
-    // What earlier runs found is kept and what does not compile is not counted.
     #[test]
     fn earlier_findings_are_kept() {
         let folder = std::env::temp_dir().join(format!("eeruf-mutants-{}", std::process::id()));

@@ -14,7 +14,6 @@ fn events() -> u64 {
     std::env::var("EERUF_C_EVENTS").map_or(200_000, |events| events.parse().expect("a number of events"))
 }
 
-// A ring by a table says the same event by event whatever happens to it.
 #[test]
 fn table_ring_equals_rust_event_by_event() {
     let (mut count, mut seed) = (0, 0);
@@ -30,7 +29,6 @@ fn table_ring_equals_rust_event_by_event() {
     println!("{count} events of {seed} rings");
 }
 
-// A hopping ring says the same event by event whatever happens to it.
 #[test]
 fn hopping_ring_equals_rust_event_by_event() {
     let (mut count, mut seed) = (0, 0);

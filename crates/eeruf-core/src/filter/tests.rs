@@ -34,7 +34,6 @@ fn three_readings_must_each_agree_with_the_one_before() {
     assert_eq!(seen, [First, Repeated, Accepted, Accepted, Rejected, Repeated, NoEcho, NoEcho, Clear]);
 }
 
-// The earliest echo that repeats is accepted whatever comes before it.
 #[test]
 fn earliest_repeated_echo_is_accepted() {
     let mut filter = filter::<4>(100, 2);

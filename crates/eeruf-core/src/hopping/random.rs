@@ -39,7 +39,6 @@ mod tests {
         }
     }
 
-    // Each number up to the most is drawn about equally often whatever the seed.
     #[test]
     fn drawn_numbers_are_uniform_whatever_the_seed() {
         for seed in [0, 1, 7, u32::MAX] {

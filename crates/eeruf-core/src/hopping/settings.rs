@@ -23,7 +23,7 @@ pub struct HoppingSettings {
     /// At least this many periods from one change of lags to the next. All sensors that ask for a new lag get it
     /// together, since whatever is not yet confirmed then loses its support.
     pub shift_spacing: u8,
-    /// Least interval between firings of neighbours when a lag is drawn anew; [`Micros::ZERO`]: none. The more, the
+    /// Least interval between firings of neighbours when a new lag is drawn; [`Micros::ZERO`]: none. The more, the
     /// fewer lags are free.
     pub shift_interval: Micros,
     /// Number of adjacent sensors of a line that are neighbours.

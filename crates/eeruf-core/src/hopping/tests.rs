@@ -90,7 +90,6 @@ fn any_two_phases_move_any_path_by_a_step() {
     }
 }
 
-// No code lets a sensor fire less early again than the shortest one.
 #[test]
 fn shortest_code_has_the_latest_early_refire() {
     for sensors in 1..=64 {
@@ -113,7 +112,6 @@ fn shortest_code_has_the_latest_early_refire() {
     }
 }
 
-// Schedules of the same sensors are equal whatever stands beyond them.
 #[test]
 fn schedules_are_equal_whatever_stands_beyond_sensors() {
     let code = HoppingCode::new(2, 2, Micros::new(240)).unwrap();
@@ -150,7 +148,6 @@ fn blind_sensor_gets_silent_solo_periods() {
     }
 }
 
-// No sensor fires again while it listens and neighbours keep the interval asked for when lags change.
 #[test]
 fn new_lags_keep_windows_and_intervals() {
     let interval = Micros::from_millis(8);

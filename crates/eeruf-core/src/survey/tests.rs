@@ -69,7 +69,6 @@ fn survey_logs_each_firing_once_with_its_first_edge() {
     }
 }
 
-// Who fires late delays all that follow and no slot gets shorter.
 #[test]
 fn late_firing_delays_all_that_follow() {
     let plan = SurveyPlan::new(2).with_leads(2, Micros::new(500)).with_solos(1);
@@ -102,7 +101,6 @@ fn plan_keeps_its_settings_up_to_ten_seconds() {
     }
 }
 
-// However often it is polled a survey begins no slot early and none before all is logged.
 #[test]
 fn survey_begins_no_slot_early_however_often_polled() {
     let plan = SurveyPlan::new(2).with_leads(2, Micros::new(400)).with_solos(1);

@@ -130,7 +130,6 @@ fn accepted_of_a_swing(part: f64) -> usize {
     accepted.count()
 }
 
-// How much of the expected change there is is learned from none to twice.
 #[test]
 fn share_of_expected_change_is_learned() {
     for part in [0.0, 0.5, 0.8, 1.0, 1.3, 2.0] {

@@ -107,7 +107,6 @@ fn settings() -> impl Strategy<Value = HoppingSettings> {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 512, ..ProptestConfig::default() })]
 
-    // One path of any fixed length is never believed whatever the lateness.
     #[test]
     fn one_fixed_path_is_never_believed(
         from in 0..8_u8,
@@ -355,7 +354,6 @@ fn table_says_when_each_sensor_fires() {
     assert!(table[1][2] != Micros::ZERO);
 }
 
-// What is proven of the separation is what trying all phases finds.
 #[test]
 fn proven_separation_is_what_trying_phases_finds() {
     // Sound is heard for many periods: paths read with two ages.

@@ -99,7 +99,6 @@ fn equal_lateness_keeps_the_codes_shift() {
     }
 }
 
-// What is heard counts for nothing where firings differ in lateness.
 #[test]
 fn unequal_lateness_supports_nothing() {
     // Every other sensor is polled late, or triggered late: then no reading moves as the code says, once there have

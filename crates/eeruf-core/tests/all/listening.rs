@@ -66,7 +66,6 @@ fn echo_lies_between_blanking_and_window_inclusive() {
     assert_eq!(heard(&[WINDOW + 1]), (ReadingKind::NoEcho, None, WINDOW));
 }
 
-// The earliest edge within the window is the echo whatever else comes.
 #[test]
 fn earliest_edge_in_window_is_the_echo() {
     assert_eq!(heard(&[9_000, 5_000, 7_000]), (ReadingKind::First, Some(5_000), 9_000));
@@ -116,7 +115,6 @@ fn a_late_edge_is_reported_at_once_when_no_sensor_listens() {
     assert_eq!(reading(&mut ring).1.kind, ReadingKind::Late);
 }
 
-// A line that was high makes its firing stuck whatever follows and the next one is heard.
 #[test]
 fn high_line_makes_its_firing_stuck() {
     let schedule = schedule();
@@ -189,7 +187,6 @@ fn fire_of_0(ring: &mut ScheduledRing<'_, 2>) -> Instant {
     panic!("sensor 0 never fires");
 }
 
-// Of echoes that are in at one poll that of the sensor which fired first is emitted first.
 #[test]
 fn echoes_of_one_poll_are_emitted_by_firing_order() {
     let ms = |times: [u32; 2]| times.map(Micros::from_millis);
@@ -216,7 +213,6 @@ fn echoes_of_one_poll_are_emitted_by_firing_order() {
     }
 }
 
-// Where sensors report two echoes each is heard until the window closes.
 #[test]
 fn several_echoes_are_heard_until_window_closes() {
     let schedule = schedule();

@@ -49,7 +49,6 @@ fn the_largest_interval_is_found_whatever_interval_is_asked_for() {
     }
 }
 
-// What holds of less than half an interval to spare is not taken to hold of half of one.
 #[test]
 fn slack_below_half_an_interval_is_not_half() {
     // Pairs of neighbours in a line, in two and a half intervals: there is one permutation for all only below that.

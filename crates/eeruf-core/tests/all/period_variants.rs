@@ -37,7 +37,6 @@ fn the_reason_names_what_to_relax() {
     assert!(matches!(searched.explanation, Explanation::Exhausted { period: 64, .. }));
 }
 
-// At 100 ms with the paper s refire times the half ring could keep 20 ms.
 #[test]
 fn papers_half_ring_keeps_20_ms_at_100_ms() {
     // With |d| of at most 24 ms, as in the paper's tables, the window is 76 ms. With the paper's lags the answer is 19
@@ -51,7 +50,6 @@ fn papers_half_ring_keeps_20_ms_at_100_ms() {
     assert_serves(&Problem { interval, ..problem }, 100, &firing);
 }
 
-// At 82 ms the maximize separation of twelve sensors with a 60 ms window is 2 ms.
 #[test]
 fn twelve_sensors_keep_2_ms_separation_at_82_ms() {
     let rows = naive::conflicts(Layout::Line, 12, 4);

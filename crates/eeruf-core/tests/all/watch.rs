@@ -42,7 +42,6 @@ fn run(
     }
 }
 
-// What is known is as old as what confirmed it last through a wrap of the clock.
 #[test]
 fn state_is_as_old_as_its_confirmation_through_a_wrap() {
     let start = u32::MAX - 3_000_000;

@@ -25,7 +25,6 @@ fn data_file(bag: &Path) -> PathBuf {
     entries.find(|file| file.extension().is_some_and(|ending| ending == "mcap" || ending == "db3")).unwrap()
 }
 
-// Of every cut or flipped file what can be read is and the rest is said.
 #[test]
 fn damaged_files_are_read_and_the_rest_reported() {
     let folder = tempfile::tempdir().unwrap();
@@ -191,7 +190,6 @@ fn a_wrong_length_in_a_ros_1_bag_takes_no_more_than_its_chunk() {
     }
 }
 
-// Of a bag that counts more messages than it holds it is said how many are missing.
 #[test]
 fn missing_messages_of_a_bag_are_counted() {
     let folder = tempfile::tempdir().unwrap();

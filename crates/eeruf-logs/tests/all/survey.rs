@@ -72,7 +72,6 @@ fn is_there(travel: &Travel, sender: u8, receiver: u8, travel_us: f64) -> bool {
     travel[usize::from(sender)][usize::from(receiver)].iter().any(|&us| (us as f64 - travel_us).abs() < 60.0)
 }
 
-// A survey finds who hears whom and nothing else also among strays.
 #[test]
 fn survey_finds_who_hears_whom_among_strays() {
     for (seed, strays) in [(1, 0), (2, 0), (3, 10), (4, 10), (5, 20)] {

@@ -389,7 +389,6 @@ mod tests {
     use super::*;
     use crate::{acoustics::Transducer, scene::Air, scene::Scene, world::Noise, world::Robot};
 
-    // Where a steered robot was is known exactly for ten seconds and then forgotten.
     #[test]
     fn steered_positions_are_known_for_ten_seconds() {
         let robot = Robot::ring(Pose::identity(), 2, 0.3, 0.1, Transducer::POLAROID_6500);

@@ -53,7 +53,6 @@ fn blocks_of_a_simulation_equal_the_simulation() {
     }
 }
 
-// Who keeps the readings of many short steps keeps no room for more.
 #[test]
 fn readings_of_short_steps_keep_no_more_room() {
     let world = Arc::new(room_with(vec![], vec![robot_at(0.0)]));

@@ -129,7 +129,6 @@ fn own_firing_like_a_methods_gives_equal_readings() {
     }
 }
 
-// What is ones own is of one robot and the others go by the method.
 #[test]
 fn own_code_is_of_one_robot() {
     let beside = Robot { pose: Pose::new(Vector::new(0.4, 0.3), 0.9), ..robot() };

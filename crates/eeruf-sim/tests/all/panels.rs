@@ -188,7 +188,6 @@ fn a_wall_cut_in_pieces_sounds_as_before() {
     assert!(whole(NARROW)[1].2 < 0.98 * whole(Physics::PLAIN)[1].2 || whole(NARROW)[1].2 > whole(Physics::PLAIN)[1].2);
 }
 
-// In a rectangular room nothing changes and at a corner that juts out the wall ends.
 #[test]
 fn rectangular_room_does_not_change_with_panels() {
     let corners = [[0.0, 0.0], [4.0, 0.0], [4.0, 3.0], [0.0, 3.0], [0.0, 0.0]];

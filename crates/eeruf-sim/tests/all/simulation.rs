@@ -38,7 +38,6 @@ fn set_one(physics: Physics, method: Method, value: fn(&Summary) -> f64) -> f64 
     quantile(&mut shares, 0.5)
 }
 
-// In set one eeruf removes what fools the conventional method and comparison alone does not.
 #[test]
 fn set_one_eeruf_removes_crosstalk_comparison_does_not() {
     let of = |method, value| set_one(Physics::PLAIN, method, value);

@@ -82,7 +82,6 @@ fn lags_stay_where_settings_say_so_whatever_does_not_fit() {
     assert_eq!(lags(&fooled), before);
 }
 
-// What is heard in the period after lags have changed is unsettled and in no other.
 #[test]
 fn firings_after_new_lags_are_unsettled() {
     let mut fooled = fooled(HoppingSettings { solo_rate: 0, shift_after: 1, shift_spacing: 3, ..HURRIED });

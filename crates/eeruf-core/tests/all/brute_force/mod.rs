@@ -242,7 +242,6 @@ fn preferred_schedule_is_best_in_order() {
     tally.assert_enough(false);
 }
 
-// Whether one tick less of a need allows a shorter period is decided rightly.
 #[test]
 fn one_tick_less_of_a_need_is_decided_rightly() {
     let mut tally = Tally::default();

@@ -108,7 +108,6 @@ proptest! {
     }
 }
 
-// As printed without the outer absolute value 13a fails on the papers own tables.
 #[test]
 fn printed_13a_without_outer_value_fails_on_table_i() {
     for table in [TABLE_I_B, TABLE_I_D] {

@@ -87,7 +87,6 @@ fn instant(us: u64) -> Instant {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(10_000))]
 
-    // Whatever is called intervals and refire times are kept and firing goes on.
     #[test]
     fn intervals_and_refire_times_hold_whatever_is_called(
         start: u32,

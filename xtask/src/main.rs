@@ -9,7 +9,6 @@ mod blocks;
 mod c;
 mod certificates;
 mod changed;
-mod classic;
 mod deb;
 #[cfg(test)]
 mod dependencies;
@@ -23,7 +22,6 @@ mod logs;
 mod materials;
 mod measured;
 mod micropython;
-mod mutants;
 mod notices;
 mod package;
 mod page;
@@ -125,12 +123,8 @@ enum Verb {
     Veripb(veripb::Plan),
     /// Pack the crates that are published, and build and test each from its tarball, in a folder of its own (minutes)
     Package,
-    /// Compare the public items of eeruf-core and eeruf-hc-sr04 with those in their api.txt
-    Api {
-        /// Write those files instead
-        #[arg(long)]
-        write: bool,
-    },
+    /// List the public items of eeruf-core and eeruf-hc-sr04 in target/api, and count names and types
+    Api,
     /// Build wheels for Linux (glibc and musl, AMD64 and aarch64) and static programs into target/dist (many minutes)
     Dist(dist::Plan),
     /// Write what is in each published crate, as a bill of materials, into target/materials
@@ -145,8 +139,6 @@ enum Verb {
     Site,
     /// Do everything of a release but uploading, and print what a person must still do (many minutes)
     Release(release::Plan),
-    /// Break the core in one place at a time, and see whether a test notices (hours; takes up where it stopped)
-    Mutants(mutants::Plan),
     /// Find the pilots of Set II, and what several echoes are compared by in Set I, and put them into the source (an
     /// hour; takes up where it stopped)
     Tune {
@@ -243,7 +235,7 @@ fn main() -> ExitCode {
             package::package(&mut steps);
             steps.finish(true)
         }
-        Verb::Api { write } => one_step("public items", || api::api(write)),
+        Verb::Api => one_step("public items", api::api),
         Verb::Dist(plan) => {
             let mut steps = Steps::default();
             dist::dist(&plan, &mut steps);
@@ -257,7 +249,6 @@ fn main() -> ExitCode {
             steps.finish(true)
         }
         Verb::Release(plan) => release::release(&plan),
-        Verb::Mutants(plan) => mutants::run(&plan),
     }
 }
 

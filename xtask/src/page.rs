@@ -12,7 +12,6 @@ use base64::prelude::BASE64_STANDARD;
 use flate2::Compression;
 use flate2::write::GzEncoder;
 
-use crate::classic::classic_script;
 use crate::steps::{Trouble, output, run};
 use crate::toolchain::cargo_for_target;
 
@@ -21,8 +20,9 @@ const SOURCES: &str = "playground/page";
 const TESTS: &str = "playground/tests";
 /// The folder for a server.
 const FOLDER: &str = "target/page/folder";
-/// The one file for a disk.
+/// The one file for a disk, and the scripts that are bundled for it: browsers load no modules from a disk.
 const SINGLE: &str = "target/page/who-fools-whom.html";
+const BUNDLED: &str = "target/page/bundled";
 /// Features of WebAssembly that the compiler may use, for `wasm-opt`.
 const FEATURES: [&str; 6] = [
     "--enable-bulk-memory",
@@ -50,6 +50,7 @@ pub(crate) enum Tests {
 
 /// Builds the page and tests it.
 pub(crate) fn page(tests: Tests) -> Result<(), Trouble> {
+    install()?;
     if tests == Tests::No {
         return build();
     }
@@ -110,11 +111,10 @@ fn sources() -> Result<BTreeMap<String, String>, Trouble> {
 fn single(sources: &BTreeMap<String, String>, engine: &[u8]) -> Result<String, Trouble> {
     let html = sources.get("index.html").ok_or_else(|| Trouble::Failed(format!("{SOURCES}: no index.html")))?;
     let style = sources.get("style.css").map(String::as_str).unwrap_or_default();
-    let module = |name: &str| {
-        let name = if name == PLATFORM[0] { PLATFORM[1] } else { name };
-        sources.get(name).map(String::as_str)
-    };
-    let script = |name| classic_script(name, &module).map_err(Trouble::Failed);
+    fs::create_dir_all(BUNDLED).map_err(|error| failed(BUNDLED, &error))?;
+    for (name, text) in sources.iter().filter(|(name, _)| **name != PLATFORM[0]) {
+        write(&format!("{BUNDLED}/{}", if name == PLATFORM[1] { PLATFORM[0] } else { name }), text)?;
+    }
     // What a script element holds ends at its end tag, and a comment begins in HTML too.
     let plain = |text: String| {
         if text.contains("</script") || text.contains("<!--") {
@@ -127,8 +127,8 @@ fn single(sources: &BTreeMap<String, String>, engine: &[u8]) -> Result<String, T
          <script type=\"text/plain\" id=\"worker-source\">{}</script>\n\
          <script>{}</script>",
         packed(engine)?,
-        plain(script("worker.js")?)?,
-        plain(script("main.js")?)?,
+        plain(bundle("worker.js")?)?,
+        plain(bundle("main.js")?)?,
     );
     let policy = "default-src 'none'; script-src 'unsafe-inline' 'wasm-unsafe-eval' blob:; worker-src blob:; \
                   style-src 'unsafe-inline'; img-src data:";
@@ -137,6 +137,13 @@ fn single(sources: &BTreeMap<String, String>, engine: &[u8]) -> Result<String, T
     let html = format!("{before}content=\"{policy}\">{after}");
     let html = replaced(&html, "<link rel=\"stylesheet\" href=\"style.css\">", &format!("<style>\n{style}</style>"))?;
     replaced(&html, "<script type=\"module\" src=\"main.js\"></script>", &scripts)
+}
+
+/// A module and all that it imports as one classic script.
+fn bundle(entry: &str) -> Result<String, Trouble> {
+    let mut esbuild = Command::new(Path::new(TESTS).join("node_modules/.bin/esbuild"));
+    esbuild.args(["--bundle", "--format=iife", "--charset=utf8", "--log-level=warning"]);
+    output(esbuild.arg(format!("{BUNDLED}/{entry}"))).ok_or_else(|| failed(entry, &"esbuild does not take it"))
 }
 
 fn split<'a>(text: &'a str, at: &str) -> Result<(&'a str, &'a str), Trouble> {
@@ -155,9 +162,8 @@ fn packed(engine: &[u8]) -> Result<String, Trouble> {
     packed.map(|packed| BASE64_STANDARD.encode(packed)).map_err(|error| failed("eeruf.wasm", &error))
 }
 
-/// Makes what the tests need beside the page: what npm installs, types without a fault, the program that the engine is
-/// held against.
-fn prepare() -> Result<(), Trouble> {
+/// Installs what bundles and tests the page, if that is not done.
+fn install() -> Result<(), Trouble> {
     if output(Command::new("node").arg("--version")).is_none() {
         return Err(Trouble::Skipped("no node; try: apt install nodejs npm".to_owned()));
     }
@@ -173,7 +179,13 @@ fn prepare() -> Result<(), Trouble> {
         run(Command::new(npm).current_dir(tests).args(["ci", "--ignore-scripts", "--no-audit", "--no-fund"]))?;
         write(&tests.join(INSTALLED).display().to_string(), &lock.unwrap_or_default())?;
     }
-    run(Command::new(npm).current_dir(tests).args(["run", "--silent", "types"]))?;
+    Ok(())
+}
+
+/// Makes what the tests need beside the page: types without a fault, and the program that the engine is held against.
+fn prepare() -> Result<(), Trouble> {
+    let npm = if cfg!(windows) { "npm.cmd" } else { "npm" };
+    run(Command::new(npm).current_dir(TESTS).args(["run", "--silent", "types"]))?;
     crate::program::program().map(drop)
 }
 

@@ -57,7 +57,7 @@ pub(crate) fn release(_plan: &Plan) -> ExitCode {
         }
     });
     steps.step("notices", || crate::notices::notices(false));
-    steps.step("public items", || crate::api::api(false));
+    steps.step("public items", crate::api::api);
     steps.step("bills of materials", crate::materials::materials);
     crate::package::package(&mut steps);
     steps.step("wheel and source distribution", || crate::python::distributions(Path::new("target/release-files")));

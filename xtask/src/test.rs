@@ -50,7 +50,7 @@ pub(crate) fn run_all(nothing_skipped: bool) -> ExitCode {
             run(&mut cargo)
         });
     }
-    steps.step("public items", || crate::api::api(false));
+    steps.step("public items", crate::api::api);
     steps.step("tests and doctests", || run_cargo(&["test", "--workspace", "--locked"]));
     // With the features of the whole workspace, as built for the tests; those of instructions need a runner.
     steps.step("benches, each once", || {

@@ -19,9 +19,9 @@ pub struct Specular {
 /// Solves for the specular point to the last digits, or says that there is none: a point inside the circle, or the
 /// circle in between.
 ///
-/// With `t` the angle at the centre from the source's direction towards the receiver's, the angle of incidence seen
-/// from the source grows with `t` and the one seen from the receiver falls, so their difference has one root. Newton's
-/// method finds it; bisection takes over where a step would leave the bracket.
+/// As the point moves from the source's direction towards the receiver's, the angle of incidence seen from the source
+/// grows and the one seen from the receiver falls, so their difference has one root. Newton's method finds it, with
+/// rotations of the normal in place of angles; bisection takes over where a step would leave the bracket.
 ///
 /// ```
 /// use eeruf_sim::{Point, alhazen};
@@ -30,109 +30,248 @@ pub struct Specular {
 /// assert!((echo.before_m + echo.after_m - 3.992).abs() < 1e-15);
 /// ```
 pub fn alhazen(source: Point, receiver: Point, centre: Point, radius_m: f64) -> Option<Specular> {
-    let point = balance(source, receiver, centre, radius_m)?;
-    let normal = (point - centre) / radius_m;
+    specular(source, receiver, centre, balance(source, receiver, (centre, radius_m), None)?)
+}
+
+/// The reflection at the point of a circle that has this normal; none where the circle is in between.
+fn specular(source: Point, receiver: Point, centre: Point, normal: Normal) -> Option<Specular> {
+    let point = centre + normal.unit * normal.radius_m;
     let (back, on) = (source - point, receiver - point);
-    let incidence_rad = libm::atan2(cross(normal, back).abs(), normal.dot(&back));
     // With the circle in between, the angles balance on its far side.
-    (normal.dot(&back) > 0.0 && normal.dot(&on) > 0.0).then(|| Specular {
+    let (up, down) = (normal.unit.dot(&back), normal.unit.dot(&on));
+    (up > 0.0 && down > 0.0).then(|| Specular {
         point,
-        incidence_rad,
+        incidence_rad: libm::atan2(cross(normal.unit, back).abs(), up),
         before_m: back.norm(),
         after_m: on.norm(),
     })
 }
 
-/// The point of the circle with equal angles, in sight or not; none when a point is not outside the circle.
-fn balance(source: Point, receiver: Point, centre: Point, radius_m: f64) -> Option<Point> {
+/// The direction from a circle's centre to a point of it, of length 1.
+#[derive(Clone, Copy)]
+struct Normal {
+    unit: Vector,
+    radius_m: f64,
+}
+
+/// The point of the circle with equal angles, in sight or not, sought from a guess on; none when a point is not outside
+/// the circle.
+fn balance(source: Point, receiver: Point, circle: (Point, f64), guess: Option<Normal>) -> Option<Normal> {
+    let (centre, radius_m) = circle;
     let (to_source, to_receiver) = (source - centre, receiver - centre);
     let (far_s, far_r) = (to_source.norm(), to_receiver.norm());
     // Written so that a NaN gives none.
     if !(far_s > radius_m && far_r > radius_m && radius_m > 0.0) {
         return None;
     }
-    let between = libm::atan2(cross(to_source, to_receiver).abs(), to_source.dot(&to_receiver));
-    let half = |far: f64| Half { far, radius: radius_m };
-    let t = solve(half(far_s), half(far_r), between);
-
-    let towards_receiver = if cross(to_source, to_receiver) < 0.0 { -1.0 } else { 1.0 };
-    let (sin, cos) = libm::sincos(towards_receiver * t);
-    let unit = to_source / far_s;
-    let normal = Vector::new(cos * unit.x - sin * unit.y, sin * unit.x + cos * unit.y);
-    Some(centre + normal * radius_m)
+    // A frame in which the source lies ahead and the receiver to the left.
+    let ahead = to_source / far_s;
+    let left = if cross(ahead, to_receiver) < 0.0 { -perpendicular(ahead) } else { perpendicular(ahead) };
+    let receiver = Vector::new(ahead.dot(&to_receiver), left.dot(&to_receiver).max(0.0));
+    let problem = Problem { source: far_s, receiver, far_r, radius: radius_m };
+    let guess =
+        guess.map_or_else(|| problem.guess(), |guess| Vector::new(ahead.dot(&guess.unit), left.dot(&guess.unit)));
+    let found = problem.solve(guess);
+    // Rounding of the rotations is not left in it.
+    Some(Normal { unit: (ahead * found.x + left * found.y).normalize(), radius_m })
 }
 
-/// One of the two points, seen from the circle.
-#[derive(Clone, Copy)]
-struct Half {
-    far: f64,
+fn perpendicular(vector: Vector) -> Vector {
+    Vector::new(-vector.y, vector.x)
+}
+
+/// A circle about the origin, a source on the positive x axis and a receiver that is not below it.
+struct Problem {
+    source: f64,
+    receiver: Vector,
+    far_r: f64,
     radius: f64,
 }
 
-impl Half {
-    /// Angle of incidence at the circle's point `t` away from this point's direction, and how fast it grows with `t`.
-    fn incidence(self, t: f64) -> (f64, f64) {
-        let (sin, cos) = libm::sincos(t);
-        let (across, along) = (self.far * sin, self.far * cos - self.radius);
-        let slope = self.far * (self.far - self.radius * cos) / (across * across + along * along);
-        (libm::atan2(across, along), slope)
+/// A difference of the two angles, in radians, after which Newton's method has come as near as rounding lets it: what is
+/// left is of its square.
+const LAST: f64 = 1e-9;
+
+impl Problem {
+    /// A direction between both, nearer to the one that is nearer to the circle.
+    fn guess(&self) -> Vector {
+        let (weight_s, weight_r) = (1.0 - self.radius / self.source, 1.0 - self.radius / self.far_r);
+        let between = Vector::new(weight_r, 0.0) + self.receiver * (weight_s / self.far_r);
+        let length = between.norm();
+        // Straight behind each other with the circle in between, they leave no direction between.
+        if length > LAST * (weight_s + weight_r) { between / length } else { Vector::new(0.0, 1.0) }
+    }
+
+    fn solve(&self, guess: Vector) -> Vector {
+        let (mut low, mut high) = (Vector::new(1.0, 0.0), self.receiver / self.far_r);
+        let mut normal = if Self::holds(low, high, guess) { guess } else { self.guess() };
+        for _ in 0..100 {
+            let along_s = self.source * normal.x - self.radius;
+            let across_s = self.source * normal.y;
+            let along_r = self.receiver.dot(&normal) - self.radius;
+            let across_r = cross(normal, self.receiver);
+            // Sine and cosine of what the angle seen from the source exceeds the other by, times the same.
+            let (sin, cos) = (across_s * along_r - along_s * across_r, along_s * along_r + across_s * across_r);
+            if sin > 0.0 {
+                high = normal;
+            } else {
+                low = normal;
+            }
+            let square_s = along_s * along_s + across_s * across_s;
+            let square_r = along_r * along_r + across_r * across_r;
+            let slope = self.source * (self.source - self.radius * normal.x) / square_s
+                + (self.far_r * self.far_r - self.radius * (along_r + self.radius)) / square_r;
+            let tangent = sin / cos;
+            let step = arc_tangent(tangent) / slope;
+            let next = rotated(normal, -step);
+            if cos > 0.0 && Self::holds(low, high, next) {
+                normal = next;
+                if tangent.abs() <= LAST {
+                    break;
+                }
+            } else {
+                let middle = low + high;
+                let length = middle.norm();
+                if cross(low, high).abs() <= LAST && length > 1.0 {
+                    break;
+                }
+                normal = if length > LAST { middle / length } else { perpendicular(low) };
+            }
+        }
+        normal
+    }
+
+    /// True for a direction from the one to the other, counter-clockwise by half a turn at most.
+    fn holds(low: Vector, high: Vector, direction: Vector) -> bool {
+        cross(low, direction) >= 0.0 && cross(direction, high) >= 0.0 && (low + high).dot(&direction) >= 0.0
     }
 }
 
-fn solve(source: Half, receiver: Half, between: f64) -> f64 {
-    let (mut low, mut high) = (0.0, between);
-    let weight = |half: Half| half.far / (half.far - half.radius);
-    let (from_s, from_r) = (weight(source), weight(receiver));
-    let mut t = (between * from_r / (from_s + from_r)).clamp(low, high);
-    for _ in 0..100 {
-        let ((i_s, slope_s), (i_r, slope_r)) = (source.incidence(t), receiver.incidence(between - t));
-        let difference = i_s - i_r;
-        if difference > 0.0 {
-            high = t;
-        } else {
-            low = t;
-        }
-        let step = difference / (slope_s + slope_r);
-        let mut next = t - step;
-        if !(low..=high).contains(&next) {
-            next = 0.5 * (low + high);
-        }
-        if (next - t).abs() <= 2e-16 * between || next == t {
-            return next;
-        }
-        t = next;
-    }
-    t
+/// A direction turned by a small angle, to its third power, with its length kept.
+fn rotated(direction: Vector, angle: f64) -> Vector {
+    let half = 0.5 * angle;
+    let scale = 1.0 / (1.0 + half * half);
+    let (cos, sin) = ((1.0 - half * half) * scale, angle * scale);
+    Vector::new(cos * direction.x - sin * direction.y, sin * direction.x + cos * direction.y)
 }
 
 /// Source, one circle, another circle, receiver: the two specular points of the path that bounces once at each.
 ///
-/// Solving one circle with the other's point held still converges quickly, since a convex circle spreads what it
-/// reflects.
+/// Newton's method moves both points at once. Where it does not settle, as between circles that nearly touch, one circle
+/// after the other is solved with the other's point held, which always does: a convex circle spreads what it reflects.
 pub fn alhazen_twice(
     source: Point,
     receiver: Point,
     first: (Point, f64),
     second: (Point, f64),
 ) -> Option<(Specular, Specular)> {
-    // The first guess aims at the nearer side of the second circle.
     let aside = first.0 - second.0;
     let apart = aside.norm();
-    if apart <= first.1 + second.1 {
+    let outside = |at: Point, circle: (Point, f64)| (at - circle.0).norm() > circle.1 && circle.1 > 0.0;
+    // Written so that a NaN gives none.
+    if !(apart > first.1 + second.1 && outside(source, first) && outside(receiver, second)) {
         return None;
     }
-    let mut on_second = second.0 + aside * (second.1 / apart);
+    let facing = [first.0 - aside * (first.1 / apart), second.0 + aside * (second.1 / apart)];
+    let guesses = [guess(source, facing[1], first), guess(facing[0], receiver, second)];
+    let seen = |normals: [Normal; 2]| {
+        let one = specular(source, second.0 + normals[1].unit * second.1, first.0, normals[0])?;
+        Some((one, specular(one.point, receiver, second.0, normals[1])?))
+    };
+    let circles = [first, second];
+    let found = both_at_once(source, receiver, circles, guesses).and_then(seen);
+    // Angles balance at hidden points too, where Newton's method may end.
+    found.or_else(|| one_after_the_other(source, receiver, circles, facing[1], apart).and_then(seen))
+}
+
+/// A direction between two points as seen from a circle, nearer to the one that is nearer to it.
+fn guess(here: Point, there: Point, (centre, radius_m): (Point, f64)) -> Vector {
+    let (to_here, to_there) = (here - centre, there - centre);
+    let (far_here, far_there) = (to_here.norm(), to_there.norm());
+    (to_here * ((far_there - radius_m) / far_here) + to_there * ((far_here - radius_m) / far_there)).normalize()
+}
+
+/// Newton's method for both normals; none where it does not settle.
+fn both_at_once(
+    source: Point,
+    receiver: Point,
+    [first, second]: [(Point, f64); 2],
+    [mut one, mut two]: [Vector; 2],
+) -> Option<[Normal; 2]> {
+    let mut last = f64::INFINITY;
+    for _ in 0..12 {
+        let (on_first, on_second) = (first.0 + one * first.1, second.0 + two * second.1);
+        let (back, across, on) = (source - on_first, on_second - on_first, receiver - on_second);
+        let (at_first, at_second) = (Balance::of(one, back, across), Balance::of(two, -across, on));
+        let between = 1.0 / across.norm_squared();
+        let own = [at_first.slope(back, across, first.1), at_second.slope(-across, on, second.1)];
+        let cross_terms = [second.1 * two.dot(&across) * between, -first.1 * one.dot(&across) * between];
+        let determinant = own[0] * own[1] - cross_terms[0] * cross_terms[1];
+        let [g, h] = [at_first.excess()?, at_second.excess()?];
+        let left = g.abs().max(h.abs());
+        if left > last {
+            return None;
+        }
+        one = rotated(one, (cross_terms[0] * h - own[1] * g) / determinant);
+        two = rotated(two, (cross_terms[1] * g - own[0] * h) / determinant);
+        if left <= LAST {
+            let normal = |unit: Vector, radius_m| Normal { unit: unit.normalize(), radius_m };
+            return Some([normal(one, first.1), normal(two, second.1)]);
+        }
+        last = left;
+    }
+    None
+}
+
+/// Both legs at a point of a circle, along its normal and across.
+struct Balance {
+    along: [f64; 2],
+    across: [f64; 2],
+}
+
+impl Balance {
+    fn of(normal: Vector, back: Vector, on: Vector) -> Self {
+        Self { along: [normal.dot(&back), normal.dot(&on)], across: [cross(normal, back), cross(normal, on)] }
+    }
+
+    /// The angle of the one leg less that of the other, which is 0 in balance; none where it is no longer small.
+    fn excess(&self) -> Option<f64> {
+        let sin = self.across[0] * self.along[1] + self.along[0] * self.across[1];
+        let cos = self.along[0] * self.along[1] - self.across[0] * self.across[1];
+        (cos > 0.0).then(|| arc_tangent(sin / cos))
+    }
+
+    /// Growth of that angle with the normal's.
+    fn slope(&self, back: Vector, on: Vector, radius_m: f64) -> f64 {
+        -2.0 - radius_m * (self.along[0] / back.norm_squared() + self.along[1] / on.norm_squared())
+    }
+}
+
+/// The arc tangent of what is small, to its sixth power.
+fn arc_tangent(tangent: f64) -> f64 {
+    let square = tangent * tangent;
+    tangent * (15.0 + 4.0 * square) / (15.0 + 9.0 * square)
+}
+
+fn one_after_the_other(
+    source: Point,
+    receiver: Point,
+    [first, second]: [(Point, f64); 2],
+    mut on_second: Point,
+    apart: f64,
+) -> Option<[Normal; 2]> {
+    let (mut at_first, mut at_second) = (None, None);
     let mut last_step = f64::INFINITY;
     for _ in 0..200 {
         // On the way a point may be hidden; only the answer must be seen.
-        let on_first = balance(source, on_second, first.0, first.1)?;
-        let next = balance(on_first, receiver, second.0, second.1)?;
+        let one = balance(source, on_second, first, at_first)?;
+        let two = balance(first.0 + one.unit * first.1, receiver, second, at_second)?;
+        let next = second.0 + two.unit * second.1;
         let step = (next - on_second).norm();
-        on_second = next;
+        (on_second, at_first, at_second) = (next, Some(one), Some(two));
         // Steps shrink until rounding stops them.
         if step == 0.0 || (step < 1e-12 * apart && step >= last_step) {
-            let one = alhazen(source, on_second, first.0, first.1)?;
-            return Some((one, alhazen(one.point, receiver, second.0, second.1)?));
+            return Some([one, two]);
         }
         last_step = step;
     }
@@ -150,6 +289,35 @@ mod tests {
         assert_eq!(alhazen(Point::origin(), Point::new(2.0, 0.1), circle, 0.5), None);
         assert_eq!(alhazen(Point::new(0.9, 0.0), Point::new(2.0, 2.0), circle, 0.5), None);
         assert_eq!(alhazen(Point::new(f64::NAN, 0.0), Point::new(2.0, 2.0), circle, 0.5), None);
+    }
+
+    // Where circles nearly touch, or a point lies close to one, Newton's method and one circle after the other agree.
+    #[test]
+    fn both_ways_to_two_poles_agree() {
+        let mut random = crate::world::Random::new(1);
+        let (mut settled, mut worst) = (0, 0.0_f64);
+        for _ in 0..20_000 {
+            let mut point = || Point::new(random.between(-5.0, 5.0), random.between(-5.0, 5.0));
+            let [source, receiver, first, second] = [point(), point(), point(), point()];
+            let circles = [first, second].map(|at| (at, libm::exp10(random.between(-3.0, 0.3))));
+            let apart = (first - second).norm();
+            if apart <= circles[0].1 + circles[1].1 {
+                continue;
+            }
+            let facing = second + (first - second) * (circles[1].1 / apart);
+            let slow = one_after_the_other(source, receiver, circles, facing, apart);
+            let seen = slow.and_then(|[one, two]| {
+                let one = specular(source, second + two.unit * circles[1].1, first, one)?;
+                specular(one.point, receiver, second, two).map(|two| one.before_m + two.before_m + two.after_m)
+            });
+            let found = alhazen_twice(source, receiver, circles[0], circles[1]);
+            let length_m = found.map(|(one, two)| one.before_m + two.before_m + two.after_m);
+            assert_eq!(length_m.is_some(), seen.is_some(), "{source} {receiver} {circles:?}");
+            if let (Some(length_m), Some(seen)) = (length_m, seen) {
+                (settled, worst) = (settled + 1, worst.max((length_m - seen).abs()));
+            }
+        }
+        assert!(settled > 15_000 && worst < 1e-13, "{settled} {worst}");
     }
 
     proptest! {

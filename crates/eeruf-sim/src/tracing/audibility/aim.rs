@@ -1,7 +1,7 @@
 //! Largest strength that a transducer sends into a cone, or hears from it; and how far that is heard.
 
 use super::reach::Reach;
-use super::{FAR, at_cos};
+use super::{at_cos, nearest_cos};
 use crate::{
     acoustics::Beam,
     geometry::{Point, Vector, cross},
@@ -56,9 +56,7 @@ impl Aim<'_> {
     /// amplitude all but spreading, air, and what happens beyond the pole.
     pub(crate) fn towards_pole(&self, image: Point, axis: Vector, pole: &Pole, reflection_gain: f64) -> f64 {
         let out = pole.centre - image;
-        let far_m = out.norm();
-        // The side of a pole near by may lie anywhere.
-        let sent = if far_m < FAR * pole.radius_m { 1.0 } else { at_cos(self.envelope, out.dot(&axis) / far_m) };
-        sent * reflection_gain * reflection_gain
+        let nearest = nearest_cos(out, out.norm(), pole.radius_m, axis);
+        at_cos(self.envelope, nearest) * reflection_gain * reflection_gain
     }
 }

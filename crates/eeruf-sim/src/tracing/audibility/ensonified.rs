@@ -1,6 +1,6 @@
 //! A bound on what one pole returns, by which receivers are ruled out before its reflection is solved for.
 
-use super::{Audibility, FAR};
+use super::{Audibility, nearest_cos};
 use crate::{geometry::Point, scene::Pole};
 
 /// A pole that the source's sound reaches; which receivers may hear it?
@@ -11,9 +11,9 @@ use crate::{geometry::Point, scene::Pole};
 pub(crate) struct EnsonifiedPole<'a> {
     pub(super) audibility: &'a Audibility,
     pub(super) pole: &'a Pole,
-    /// `s'`; none if the pole is too near for the bound.
-    pub(super) before_m: Option<f64>,
-    /// The known part of `A^2`: all but the receiver's pattern and `s (s' + s)`.
+    /// `s'`.
+    pub(super) before_m: f64,
+    /// The known part of `A^2`: all but the receiver's pattern and `s' s (s' + s)`.
     pub(super) part: f64,
 }
 
@@ -21,12 +21,11 @@ impl EnsonifiedPole<'_> {
     /// Returns true if certainly none of these receivers hears it.
     #[inline]
     pub(crate) fn is_inaudible(&self, receivers: &[Point]) -> bool {
-        if self.part == 0.0 && self.before_m.is_some() {
+        if self.part == 0.0 {
             return true;
         }
         let far2 = receivers.iter().map(|at| (self.pole.centre - at).norm_squared());
-        let nearest_m = far2.fold(f64::INFINITY, f64::min).sqrt();
-        nearest_m >= FAR * self.pole.radius_m && self.is_too_faint(self.part, nearest_m)
+        self.is_too_faint(self.part, far2.fold(f64::INFINITY, f64::min).sqrt())
     }
 
     /// Returns true if a receiver may hear it.
@@ -35,16 +34,15 @@ impl EnsonifiedPole<'_> {
         let Some(axis) = self.audibility.receivers.get(receiver) else { return true };
         let home = self.pole.centre - at;
         let far_m = home.norm();
-        far_m < FAR * self.pole.radius_m
-            || !self.is_too_faint(self.part * self.audibility.heard(home.dot(axis) / far_m), far_m)
+        let heard = self.audibility.heard(nearest_cos(home, far_m, self.pole.radius_m, *axis));
+        !self.is_too_faint(self.part * heard, far_m)
     }
 
-    /// Returns true if `A^2 s (s' + s)` is too little this far from the pole's centre.
+    /// Returns true if `A^2 s' s (s' + s)` is too little this far from the pole's centre.
     #[inline]
     fn is_too_faint(&self, part: f64, far_m: f64) -> bool {
-        let Some(before_m) = self.before_m else { return false };
-        let after_m = far_m - self.pole.radius_m;
-        let length_m = before_m + after_m;
-        part < self.audibility.faint(length_m) * after_m * length_m
+        let after_m = (far_m - self.pole.radius_m).max(0.0);
+        let length_m = self.before_m + after_m;
+        part < self.audibility.faint(length_m) * self.before_m * after_m * length_m
     }
 }

@@ -21,11 +21,6 @@ use reach::Reach;
 
 /// Resolution of the envelope: in equal steps of `sin(angle / 2)`.
 const STEPS: usize = 1024;
-/// Largest angle by which a path to a pole's surface may point past its axis, in radians, if the pole is [`FAR`] or
-/// farther.
-const ASIDE_RAD: f64 = 1.2 / FAR;
-/// Poles nearer than this many radii count as audible.
-const FAR: f64 = 60.0;
 /// Resolution of the loss in the air, in steps per metre, and its range.
 const STEPS_PER_M: f64 = 32.0;
 const REACH_M: f64 = 32.0;
@@ -214,11 +209,10 @@ impl Audibility {
     /// Sound that falls on a pole.
     pub(crate) fn ensonify<'a>(&'a self, source: Point, pole: &'a Pole) -> EnsonifiedPole<'a> {
         let out = pole.centre - source;
-        let far = out.norm();
-        let bounded = far >= FAR * pole.radius_m;
-        let before_m = far - pole.radius_m;
-        let part = self.sent(out.dot(&self.source) / far) * 0.5 * pole.radius_m / before_m;
-        EnsonifiedPole { audibility: self, pole, before_m: bounded.then_some(before_m), part }
+        let far_m = out.norm();
+        let before_m = (far_m - pole.radius_m).max(0.0);
+        let part = self.sent(nearest_cos(out, far_m, pole.radius_m, self.source)) * 0.5 * pole.radius_m;
+        EnsonifiedPole { audibility: self, pole, before_m, part }
     }
 }
 
@@ -231,10 +225,8 @@ fn envelope(piston: &Piston, in_room: bool) -> Vec<f64> {
     let mut highest: f64 = 0.0;
     // From behind to the front.
     for step in (0..=STEPS).rev() {
-        let angle = 2.0 * libm::asin(step as f64 / STEPS as f64);
-        let shifted = piston.pattern((angle - ASIDE_RAD).max(0.0));
-        let straight = piston.pattern(angle);
-        highest = highest.max(shifted * shifted).max(straight * straight);
+        let pattern = piston.pattern(2.0 * libm::asin(step as f64 / STEPS as f64));
+        highest = highest.max(pattern * pattern);
         envelope[step] = highest;
     }
     if in_room && piston.beam != Beam::CutAt90 {
@@ -244,6 +236,15 @@ fn envelope(piston: &Piston, in_room: bool) -> Vec<f64> {
         behind.fill(beside);
     }
     envelope
+}
+
+/// The cosine of the least angle off an axis at which a point of a circle lies, with its centre `out` from here.
+#[inline]
+fn nearest_cos(out: Vector, far_m: f64, radius_m: f64, axis: Vector) -> f64 {
+    let (cos, sin_half) = (out.dot(&axis) / far_m, radius_m / far_m);
+    let cos_half = (1.0 - sin_half * sin_half).max(0.0).sqrt();
+    // Written so that a point inside the circle lies ahead.
+    if cos < cos_half { cos * cos_half + (1.0 - cos * cos).max(0.0).sqrt() * sin_half } else { 1.0 }
 }
 
 #[inline]

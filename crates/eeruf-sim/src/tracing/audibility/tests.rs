@@ -1,10 +1,14 @@
 use crate::*;
 
-/// A room with poles and a ring in it, by a number.
+/// A room with poles, thin or thick, and a ring in it, by a number.
 fn random(number: u64) -> (Scene, Vec<Pose>) {
     let mut random = Random::new(number);
     let corners = [[0.0, 0.0], [9.0, 0.0], [9.0, 3.0], [6.0, 3.0], [6.0, 5.0], [0.0, 5.0], [0.0, 0.0]];
-    let poles = (0..12).map(|_| Pole::new(random.between(0.1, 8.9), random.between(0.1, 2.9), 0.004)).collect();
+    let poles = (0..12).map(|_| {
+        let (x, y, thick) = (random.between(0.1, 8.9), random.between(0.1, 2.9), random.between(0.004, 0.25));
+        Pole::new(x, y, if number.is_multiple_of(2) { 0.004 } else { thick })
+    });
+    let poles = poles.collect();
     let scene = Scene::new(Wall::polyline(&corners).collect(), poles, Air::default()).unwrap();
     let place = Vector::new(random.between(0.5, 8.5), random.between(0.5, 2.5));
     let robot = Pose::new(place, random.between(-3.0, 3.0));

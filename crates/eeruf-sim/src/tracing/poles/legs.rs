@@ -35,7 +35,16 @@ pub(super) struct Home {
     pub(super) beams: Vec<Beam>,
     pub(super) legs: Vec<Leg>,
     /// Poles in plain sight.
-    pub(super) in_sight: Vec<u32>,
+    pub(super) in_sight: Vec<Seen>,
+}
+
+/// A pole in plain sight of a transducer.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Seen {
+    pub(super) pole: u32,
+    /// As of a [`Leg`].
+    pub(super) square: f64,
+    pub(super) least_m: f64,
 }
 
 /// Writes the ways of a grown tree. Without an aim everything may be loud.
@@ -52,9 +61,10 @@ pub(super) fn legs_of(tree: &BeamTree, scene: &Scene, aim: Option<Aim<'_>>, legs
 }
 
 /// The poles that a transducer's own, unreflected cones pass.
-pub(super) fn in_sight(legs: &[Leg], poles: &mut Vec<u32>) {
+pub(super) fn in_sight(legs: &[Leg], poles: &mut Vec<Seen>) {
     poles.clear();
-    poles.extend(legs.iter().filter(|leg| leg.cone.beam == 0).map(|leg| leg.cone.pole));
-    poles.sort_unstable();
-    poles.dedup();
+    let seen = |leg: &Leg| Seen { pole: leg.cone.pole, square: leg.square, least_m: leg.least_m };
+    poles.extend(legs.iter().filter(|leg| leg.cone.beam == 0).map(seen));
+    poles.sort_unstable_by_key(|seen| seen.pole);
+    poles.dedup_by_key(|seen| seen.pole);
 }

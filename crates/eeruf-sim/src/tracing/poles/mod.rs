@@ -13,7 +13,7 @@ use crate::{
     scene::{Bounce, Scene},
     threads::Stop,
 };
-use legs::{Home, Leg, in_sight, legs_of};
+use legs::{Home, Leg, Seen, in_sight, legs_of};
 pub(super) use shadow::is_shaded;
 
 /// The most problems of Alhazen that one question may try, some ten seconds.
@@ -73,7 +73,7 @@ pub(crate) struct PoleSearch {
     homes: Vec<Home>,
     triangles: [Vec<u32>; 2],
     /// Poles in plain sight of the source.
-    firsts: Vec<u32>,
+    firsts: Vec<Seen>,
     /// Problems of Alhazen tried so far.
     tried: usize,
 }
@@ -259,37 +259,27 @@ impl PoleSearch {
     }
 
     /// Source, one pole, another pole, receiver, all in sight of each other.
-    fn two_poles(&mut self, query: &PoleQuery<'_>, lasts: &[u32], receiver: Receiver) {
+    fn two_poles(&mut self, query: &PoleQuery<'_>, lasts: &[Seen], receiver: Receiver) {
         let PoleQuery { scene, source, limits, audibility, stop, .. } = *query;
-        let at = receiver.at;
-        let poles = scene.poles();
-        let heard_from = audibility.and_then(|audibility| audibility.of_receiver(receiver.index as usize));
-        for a in 0..self.firsts.len() {
+        let (at, poles) = (receiver.at, scene.poles());
+        for index in 0..self.firsts.len() {
             if stop.is_stopped() {
                 return;
             }
-            for &b in lasts {
-                let a = self.firsts[a];
-                if a == b {
+            let before = self.firsts[index];
+            for after in lasts.iter().filter(|after| after.pole != before.pole) {
+                let (a, b) = (before.pole, after.pole);
+                let (first, second) = (&poles[a as usize], &poles[b as usize]);
+                let may_be_heard = audibility.is_none_or(|audibility| {
+                    let radii_m = [first.radius_m, second.radius_m];
+                    let between_m = (first.centre - second.centre).norm() - first.radius_m - second.radius_m;
+                    let legs_m = [before.least_m, between_m.max(0.0), after.least_m];
+                    audibility.may_hear_two_poles(before.square * after.square, radii_m, legs_m)
+                });
+                if !may_be_heard {
                     continue;
                 }
-                if let Some(audibility) = audibility {
-                    let (first, second) = (&poles[a as usize], &poles[b as usize]);
-                    let aim = audibility.of_source();
-                    let square = aim.towards_pole(source, aim.axis(), first, 1.0)
-                        * heard_from.map_or(1.0, |aim| aim.towards_pole(at, aim.axis(), second, 1.0));
-                    let radii_m = [first.radius_m, second.radius_m];
-                    let legs_m = [
-                        (source - first.centre).norm() - first.radius_m,
-                        (first.centre - second.centre).norm() - first.radius_m - second.radius_m,
-                        (at - second.centre).norm() - second.radius_m,
-                    ];
-                    if !audibility.may_hear_two_poles(square, radii_m, legs_m.map(|leg_m| leg_m.max(0.0))) {
-                        continue;
-                    }
-                }
                 self.tried += 1;
-                let (first, second) = (&poles[a as usize], &poles[b as usize]);
                 let circles = ((first.centre, first.radius_m), (second.centre, second.radius_m));
                 let Some((one, two)) = alhazen_twice(source, at, circles.0, circles.1) else {
                     continue;

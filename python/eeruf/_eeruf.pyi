@@ -4419,6 +4419,156 @@ class Simulation:
         """The time that has passed, in seconds."""
 
 @final
+class Batch:
+    """Many simulations that go on together on all cores, without the interpreter lock: arrays in, arrays out. For
+    reinforcement learning and sweeps; of each world the first robot is steered and looked at.
+
+    A world's steps give the readings of :class:`Simulation`, bit for bit, on any number of threads. A world in which a
+    sensor or a body goes into something solid stops at the beginning of that step and ``touches``, until :meth:`reset`.
+
+    Args:
+        scenes: one or more, each with a robot; all first robots have the same number of sensors.
+        method: one of ``METHODS``, or a :class:`Method` without callables: those would hold the interpreter lock.
+        seeds: of the noise of each world, 0 to 2^64 - 1; the scenes' by default.
+        threads: how many to step on, 1 to 1024; by default one a core.
+
+    Raises:
+        ArgumentError: no scenes, no such method, or something of the wrong type or out of range.
+        SceneError: a scene has no robot.
+        SimulationError: a ring cannot fire by the method as it should listen, or the method has callables.
+
+    Example:
+        >>> from eeruf import sim
+        >>> robot = sim.Robot((0, 0, 1.57), sensors=8, spacing_rad=0.26, radius_m=0.3)
+        >>> batch = sim.Batch([sim.Scene([[5, y, -5, y]], robots=[robot]) for y in (1.5, 2.0, 2.5)])
+        >>> state = batch.step(0.6, v_m_s=[0.0, 0.5, 1.0], w_rad_s=0.0)
+        >>> state.t_echo_us.shape, [round(float(y), 1) for y in state.pose[:, 1]]
+        ((3, 8), [0.0, 0.3, 0.6])
+    """
+    def __new__(
+        cls,
+        scenes: Iterable[Scene],
+        method: _Method = "eeruf",
+        *,
+        seeds: Iterable[_Int] | None = None,
+        threads: _Int | None = None,
+    ) -> Batch: ...
+    def __len__(self) -> int: ...
+    @property
+    def sensors(self) -> int:
+        """Number of sensors of each world's first robot."""
+    @property
+    def state(self) -> BatchState:
+        """What all worlds look like now.
+
+        Example:
+            >>> from eeruf import experiments, sim
+            >>> sim.Batch(experiments.courses(0, 2)).state.pose.tolist()
+            [[1.0, 3.0, 0.0], [1.0, 3.0, 0.0]]
+        """
+    def step(self, seconds: float, v_m_s: ArrayLike | None = None, w_rad_s: ArrayLike | None = None) -> BatchState:
+        """Let time pass in all worlds, on all cores and without the interpreter lock. Ctrl-C ends it.
+
+        Args:
+            seconds: how long, 0 to 10^9.
+            v_m_s: the first robots' speed ahead from now on, in m/s, -50 to 50: a number, or one for each world. Without
+                it they go on as before.
+            w_rad_s: their rate of turn, counter-clockwise, in rad/s; given together with ``v_m_s``.
+
+        Returns:
+            What all worlds look like then.
+
+        Raises:
+            ArgumentError: no such time or speeds.
+            SimulationError: a robot has moved out of its scene's reach. Other worlds may have gone on; :meth:`reset`
+                this one.
+
+        Example:
+            >>> from eeruf import experiments, sim
+            >>> batch = sim.Batch(experiments.courses(0, 4), "flow")
+            >>> state = batch.step(0.5, v_m_s=0.4, w_rad_s=[0.0, 0.1, 0.0, -0.1])
+            >>> bool((state.accepted.sum(axis=1) > 10).all())
+            True
+        """
+    def reset(
+        self,
+        worlds: ArrayLike | None = None,
+        *,
+        seeds: Iterable[_Int] | None = None,
+        scenes: Iterable[Scene] | None = None,
+        poses: ArrayLike | None = None,
+    ) -> BatchState:
+        """Begin again in some worlds: time 0, robots at their first poses.
+
+        Args:
+            worlds: which ones: a mask, or numbers from 0; all by default.
+            seeds: of their noise from now on, one for each of them; the same as before by default.
+            scenes: other scenes for them, one for each; their first robots have as many sensors.
+            poses: where their first robots begin: an array of shape (n, 3), x, y and heading in metres and radians.
+
+        Returns:
+            What all worlds look like then.
+
+        Raises:
+            ArgumentError: no such worlds, or not one of a thing for each.
+            SimulationError: a ring cannot fire by the method as it should listen.
+
+        Example:
+            >>> from eeruf import experiments, sim
+            >>> batch = sim.Batch(experiments.courses(0, 3))
+            >>> _ = batch.step(0.6, v_m_s=0.5, w_rad_s=0.0)
+            >>> state = batch.reset([False, True, False], scenes=experiments.courses(7, 1), seeds=[7])
+            >>> [round(float(time), 1) for time in state.time_s]
+            [0.6, 0.0, 0.6]
+        """
+
+@final
+class BatchState:
+    """What the worlds of a :class:`Batch` look like at one moment: arrays with a row for each world, and of what concerns
+    sensors a column for each sensor of its first robot. The arrays are read-only.
+
+    Example:
+        >>> from eeruf import experiments, sim
+        >>> state = sim.Batch(experiments.courses(0, 5)).step(0.6)
+        >>> state.pose.shape, state.age_s.shape, bool(state.touches.any())
+        ((5, 3), (5, 8), False)
+    """
+    def __len__(self) -> int: ...
+    @property
+    def time_s(self) -> _Floats:
+        """The time that has passed in each world, in seconds: float64."""
+    @property
+    def pose(self) -> _Floats:
+        """Where the first robots are, x, y and heading in metres and radians: float64 of shape (worlds, 3)."""
+    @property
+    def touches(self) -> NDArray[np.bool_]:
+        """True where the disc that holds the first robot's sensors touches a wall or a pole: bool."""
+    @property
+    def t_echo_us(self) -> _Floats:
+        """Echo times of the latest accepted readings, in microseconds, NaN where there is none or nothing was in range:
+        float64 of shape (worlds, sensors).
+        """
+    @property
+    def age_s(self) -> _Floats:
+        """Time since the latest accepted reading fired, in seconds, infinite where there is none: float64 of shape
+        (worlds, sensors).
+        """
+    @property
+    def is_clear(self) -> NDArray[np.bool_]:
+        """True where the latest accepted reading says that nothing is in range: bool of shape (worlds, sensors)."""
+    @property
+    def is_wrong(self) -> NDArray[np.bool_]:
+        """True where the latest accepted reading is wrong, as :meth:`Readings.is_wrong` judges: bool of shape
+        (worlds, sensors).
+        """
+    @property
+    def readings(self) -> _Ints:
+        """Number of readings in the last step: int64 of shape (worlds, sensors)."""
+    @property
+    def accepted(self) -> _Ints:
+        """Number of accepted readings in the last step: int64 of shape (worlds, sensors)."""
+
+@final
 class ReadingBlocks(Iterator[Readings]):
     """The readings of a simulation block by block: an iterator that Ctrl-C interrupts.
 

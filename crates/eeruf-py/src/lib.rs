@@ -11,6 +11,8 @@
 
 mod adaptation;
 mod arguments;
+mod batch;
+mod batch_state;
 mod body;
 mod columns;
 mod contents;
@@ -69,6 +71,8 @@ mod _eeruf {
     #[pymodule_export]
     use crate::{
         adaptation::Adaptation,
+        batch::Batch,
+        batch_state::BatchState,
         design::{check_certificate, design},
         errors::{
             ArgumentError, CertificateError, EerufError, ExperimentError, FilterError, HoppingError, PathsError,

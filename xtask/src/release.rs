@@ -37,13 +37,16 @@ pub(crate) fn release(_plan: &Plan) -> ExitCode {
     });
     steps.step("links of the documents", crate::links::check_documents);
     steps.step("workflow files", || {
-        let actionlint = "actionlint";
-        match output(Command::new(actionlint).arg("-version")) {
-            Some(_) => run(&mut Command::new(actionlint)),
-            None => Err(Trouble::Skipped(
-                "no actionlint; try: go install github.com/rhysd/actionlint/cmd/actionlint@latest".to_owned(),
-            )),
+        for (program, version, arguments, install) in [
+            ("actionlint", "-version", &[][..], "go install github.com/rhysd/actionlint/cmd/actionlint@latest"),
+            ("zizmor", "--version", &["--offline", "--min-severity", "medium", ".github"], "pip install zizmor"),
+        ] {
+            if output(Command::new(program).arg(version)).is_none() {
+                return Err(Trouble::Skipped(format!("no {program}; try: {install}")));
+            }
+            run(Command::new(program).args(arguments))?;
         }
+        Ok(())
     });
     steps.step("licences and sources of dependencies", || {
         match output(Command::new("cargo").args(["deny", "--version"])) {

@@ -1853,7 +1853,9 @@ OUT_OF_LINE EerufStatus eeruf_hc_sr04_edge(EerufHcSr04 *modules, uint8_t sensor,
     pulse = line->state & PULSE;
     if (pulse == AWAITED) {
         line->silent = 0;
-        if (high) {
+        if (high && since_us > modules->settings->latest_rise_us) {
+            set_bits(line, FLAW, CHATTERED);
+        } else if (high) {
             set_bits(line, PULSE, ROSE);
             line->rose_us = at_us;
             note_answer(sensor_of(modules->ring, sensor));

@@ -473,13 +473,14 @@ typedef struct EerufHcSr04Settings {
     uint16_t version;          /* EERUF_VERSION */
     uint16_t deaf_us;          /* edges sooner after the trigger are the trigger itself, seen through the cable */
     uint16_t shortest_us;      /* shorter pulses are no echoes */
+    uint16_t latest_rise_us;   /* a line that rises later after the trigger was not raised by it: exchanged wires */
     uint32_t longest_us;       /* pulses as long as this are the module's own time-out: no echo */
     uint32_t longest_hold_us;  /* a line that rose and is high no longer than this listens still: clones hold 200 ms */
     uint32_t min_retrigger_us; /* the data sheet advises 60 ms */
     uint8_t missing_after;     /* firings in a row without a pulse, after which a module counts as missing */
     uint8_t trigger_us;        /* how long the trigger is high; for whoever raises it */
 } EerufHcSr04Settings;
-#define EERUF_HC_SR04 {EERUF_VERSION, 100, 100, 36000, 250000, 60000, 3, 10}
+#define EERUF_HC_SR04 {EERUF_VERSION, 100, 100, 2000, 36000, 250000, 60000, 3, 10}
 
 /* One echo line: 8 bytes on an AVR. Not for the caller. */
 typedef struct EerufLine {

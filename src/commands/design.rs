@@ -325,11 +325,13 @@ fn emit_settings(modules: &[Module], form: Form, min_refire: Micros) -> Result<(
     let Some(module) = modules.first().filter(|first| modules.iter().all(|module| module == *first)) else {
         return Ok(());
     };
-    let Some(PulseTimes { deaf_us, shortest_us, longest_us, longest_hold_us }) = module.pulse_times() else {
+    let Some(PulseTimes { deaf_us, shortest_us, latest_rise_us, longest_us, longest_hold_us }) = module.pulse_times()
+    else {
         return Ok(());
     };
     let (rest_us, trigger_us) = (module.rest_us.min(min_refire.as_micros()), module.trigger_us);
-    let times = format!("{deaf_us}, {shortest_us}, {longest_us}, {longest_hold_us}, {rest_us}, 3, {trigger_us}");
+    let edges = format!("{deaf_us}, {shortest_us}, {latest_rise_us}");
+    let times = format!("{edges}, {longest_us}, {longest_hold_us}, {rest_us}, 3, {trigger_us}");
     print_line("")?;
     print_line(format!(
         "/* Of these modules, for an EerufHcSr04Settings. */\n#define {name} {{EERUF_VERSION, {times}}}"

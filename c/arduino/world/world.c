@@ -1,6 +1,6 @@
 /* A small world around a simulated Arduino: HC-SR04 modules on its pins, in a room where they hear each other.
  *
- *   world [--pulses] [--mega] [--cut MODULE] SKETCH.elf SECONDS ECHO_TIMES MODULES TRIGGER_PIN.. ECHO_PIN..
+ *   world [--pulses] [--mega] [--fault KIND:MODULE] SKETCH.elf SECONDS ECHO_TIMES MODULES TRIGGER_PIN.. ECHO_PIN..
  *
  * ECHO_TIMES has a line for each way that sound takes: emitter, receiver, microseconds; `crates/eeruf-sim`'s example
  * echo_times writes it. Pins are the Uno's numbers, or with --mega those of a Mega 2560; the same pin twice is a module
@@ -9,7 +9,10 @@
  * share of the time, in millionths, passed in interrupts. With --pulses there is also a line for each pulse that sound
  * has ended: the module from 1, and whose sound it was: `own`, `earlier` for its own from an earlier firing, `foreign`.
  *
- * With --cut the trigger of a module, counted from 1, is not connected.
+ * With --fault a module, counted from 1, has a fault: `cut`, its trigger is not connected, or it has no power; `deaf`, its
+ * echo wire is cut; `glitch-high`, cut, with a spike of 5 us on its line 3 ms after each trigger; `glitch-low`, its pulse has
+ * a gap of 5 us after 2 ms; `stuck`, its line stays high; `hold-N`, it holds its line for N ms without an echo; `exchanged`,
+ * its echo wire and the next module's are exchanged.
  *
  * A module whose trigger falls sends its sound 450 us later and raises its line, until the first sound reaches it, its
  * own or another's, or until 38 ms are over. It is deaf for the first 150 us. Time is the board's own, to the cycle. */
@@ -37,10 +40,13 @@ static struct Module {
     int trigger, echo;
     int triggered, line_high;
     avr_cycle_count_t rose, fired;
-    unsigned firings, ignored;
+    unsigned firings, ignored, glitches;
 } modules[MODULES];
 static int says_pulses;
-static int cut = -1; /* the module whose trigger wire is cut, if one is */
+enum Fault { NONE, CUT, DEAF, GLITCH_HIGH, GLITCH_LOW, STUCK, EXCHANGED };
+static enum Fault fault;
+static int faulty = -1; /* the module with the fault, if one has one */
+static unsigned hold_ms = 38; /* the faulty module's */
 static int module_count;
 
 /* The pins of a board from 0 on, each by its port and bit; the last are A0 to A5 of an Uno, A0 to A15 of a Mega. */
@@ -99,14 +105,25 @@ static void note_change(int pin) {
         avr_raise_interrupt(avr, &pin_changes[group]);
 }
 
+static int has(const struct Module *module, enum Fault which) {
+    return fault == which && module - modules == faulty;
+}
+
 static void set_line(struct Module *module, int high) {
     module->line_high = high;
+    if (has(module, DEAF)) return;
     note_change(module->echo);
     avr_raise_irq(avr_io_getirq(avr, AVR_IOCTL_IOPORT_GETIRQ(port_of(module->echo)), bit_of(module->echo)),
                   (uint32_t)high);
 }
 
+/* How long a module holds its line when nothing comes, in microseconds. */
+static uint32_t held_us(const struct Module *module) {
+    return module - modules == faulty ? 1000u * hold_ms : 38000u;
+}
+
 static void on_arrival(struct Module *module, const struct Module *emitter, unsigned firing) {
+    if (has(module, STUCK)) return;
     if (!module->line_high || avr->cycle - module->rose < avr_usec_to_cycles(avr, 150)) return;
     set_line(module, 0);
     if (says_pulses)
@@ -117,7 +134,24 @@ static void on_arrival(struct Module *module, const struct Module *emitter, unsi
 static avr_cycle_count_t on_time_out(avr_t *a, avr_cycle_count_t when, void *param) {
     struct Module *module = (struct Module *)param;
     (void)when;
-    if (module->line_high && a->cycle - module->rose >= avr_usec_to_cycles(a, 37990)) set_line(module, 0);
+    if (module->line_high && a->cycle - module->rose >= avr_usec_to_cycles(a, held_us(module) - 10)) set_line(module, 0);
+    return 0;
+}
+
+/* A spike or a gap of 5 us. */
+static avr_cycle_count_t on_glitch(avr_t *a, avr_cycle_count_t when, void *param) {
+    struct Module *module = (struct Module *)param;
+    const int is_gap = fault == GLITCH_LOW;
+    (void)when;
+    if (is_gap && !module->line_high && module->glitches == 0) return 0;
+    if (module->glitches++ == 0) {
+        set_line(module, !is_gap);
+        module->line_high = is_gap;
+        avr_cycle_timer_register_usec(a, 5, on_glitch, module);
+    } else {
+        module->glitches = 0;
+        set_line(module, is_gap);
+    }
     return 0;
 }
 
@@ -160,7 +194,8 @@ static avr_cycle_count_t on_burst(avr_t *a, avr_cycle_count_t when, void *param)
         sounds[sound_count].firing = module->firings;
         sounds[sound_count++].module = &modules[ways[way].receiver];
     }
-    avr_cycle_timer_register_usec(a, 38000, on_time_out, module);
+    if (!has(module, STUCK)) avr_cycle_timer_register_usec(a, held_us(module), on_time_out, module);
+    if (has(module, GLITCH_LOW)) avr_cycle_timer_register_usec(a, 2000, on_glitch, module);
     return 0;
 }
 
@@ -179,7 +214,8 @@ static void look_at_triggers(void) {
             module->triggered = 0;
             /* Too short for a module. Data sheets ask for 10 us, of which delayMicroseconds(10) may take a little off. */
             if (avr->cycle - module->fired < avr_usec_to_cycles(avr, 9)) continue;
-            if (i == cut) continue;
+            if (has(module, GLITCH_HIGH)) avr_cycle_timer_register_usec(avr, 3000, on_glitch, module);
+            if (has(module, CUT) || has(module, GLITCH_HIGH)) continue;
             if (module->line_high) {
                 module->ignored++;
                 continue;
@@ -222,6 +258,21 @@ static void on_interrupt(struct avr_irq_t *irq, uint32_t value, void *param) {
     else interrupted += avr->cycle - interrupted_since;
 }
 
+/* `KIND:MODULE`. */
+static int read_fault(const char *text) {
+    static const char *const kinds[] = {"", "cut", "deaf", "glitch-high", "glitch-low", "stuck", "exchanged"};
+    const char *colon = strchr(text, ':');
+    size_t kind;
+    if (colon == NULL || (faulty = atoi(colon + 1) - 1) < 0) return 0;
+    if (strncmp(text, "hold-", 5) == 0) return (hold_ms = (unsigned)atoi(text + 5)) > 0;
+    for (kind = CUT; kind <= EXCHANGED; kind++)
+        if (strlen(kinds[kind]) == (size_t)(colon - text) && strncmp(text, kinds[kind], strlen(kinds[kind])) == 0) {
+            fault = (enum Fault)kind;
+            return 1;
+        }
+    return 0;
+}
+
 static int read_ways(const char *name) {
     FILE *file = fopen(name, "r");
     if (file == NULL) return 0;
@@ -251,11 +302,11 @@ int main(int argc, char **argv) {
     for (; argc > 1 && argv[1][0] == '-'; argc--, argv++) {
         if (strcmp(argv[1], "--pulses") == 0) says_pulses = 1;
         else if (strcmp(argv[1], "--mega") == 0) board = &mega;
-        else if (strcmp(argv[1], "--cut") == 0 && argc > 2) cut = atoi(argv[2]) - 1, argc--, argv++;
+        else if (strcmp(argv[1], "--fault") == 0 && argc > 2 && read_fault(argv[2])) argc--, argv++;
         else break;
     }
     if (argc < 5 || (module_count = atoi(argv[4])) < 1 || module_count > MODULES || argc != 5 + 2 * module_count) {
-        fprintf(stderr, "usage: world [--pulses] [--mega] [--cut MODULE] SKETCH.elf SECONDS ECHO_TIMES MODULES "
+        fprintf(stderr, "usage: world [--pulses] [--mega] [--fault KIND:MODULE] SKETCH.elf SECONDS ECHO_TIMES MODULES "
                         "TRIGGER_PIN.. "
                         "ECHO_PIN..\n");
         return 2;
@@ -268,6 +319,11 @@ int main(int argc, char **argv) {
                     modules[i].echo, i + 1, board->controller);
             return 2;
         }
+    }
+    if (fault == EXCHANGED && faulty + 1 < module_count) {
+        const int echo = modules[faulty].echo;
+        modules[faulty].echo = modules[faulty + 1].echo;
+        modules[faulty + 1].echo = echo;
     }
     if (!read_ways(argv[3]) || elf_read_firmware(argv[1], &firmware) != 0) {
         fprintf(stderr, "%s or %s cannot be read\n", argv[1], argv[3]);

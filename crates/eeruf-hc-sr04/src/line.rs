@@ -59,6 +59,11 @@ impl Line {
             return Shown::Nothing;
         }
         match (self.pulse, edge.high) {
+            (Pulse::Awaited, true) if edge.at.since(fired) > settings.latest_rise => {
+                self.silent = 0;
+                self.flaw = Health::Chatters;
+                Shown::Nothing
+            }
             (Pulse::Awaited, true) => {
                 self.pulse = Pulse::Rose(edge.at);
                 self.silent = 0;

@@ -15,6 +15,8 @@ pub struct Settings {
     pub deaf: Micros,
     /// Shorter pulses are no echoes: 100 us is 17 mm, less than the sensor can measure.
     pub shortest: Micros,
+    /// A line that rises later after the trigger was not raised by it: another sensor's, by exchanged wires.
+    pub latest_rise: Micros,
     /// Pulses as long as this are the sensor's own time-out, which may be a nineteenth short: no echo.
     pub longest: Micros,
     /// The longest that a healthy sensor holds its line where nothing is in range; many clones do for 130 to 200 ms. A
@@ -41,6 +43,7 @@ impl Settings {
             trigger: Micros::new(module.trigger_us),
             deaf: Micros::new(times.deaf_us),
             shortest: Micros::new(times.shortest_us),
+            latest_rise: Micros::new(times.latest_rise_us),
             longest: Micros::new(times.longest_us),
             longest_hold: Micros::new(times.longest_hold_us),
             min_retrigger: Micros::new(module.rest_us),

@@ -105,13 +105,14 @@ fn run(line: &[Seen], on: u8) -> Vec<(ReadingKind, SensorState)> {
 #[test]
 fn faulty_line_before_wall_is_never_clear() {
     let end = 450 + WALL;
-    let faults: [(&str, &[Seen], u8); 6] = [
+    let faults: [(&str, &[Seen], u8); 7] = [
         ("cut wire, or no power", &[], 1),
         ("lost rising edge", &[(450, true, false), (end, false, true)], 1),
         ("lost falling edge", &[(450, true, true), (end, false, false)], 1),
         ("glitch high of a cut wire", &[(3_000, true, true), (3_005, false, true)], 1),
         ("wire of a line that nobody watches", &[(450, true, false), (end, false, false)], 1),
         ("wires exchanged", &[(450, true, true), (end, false, true)], 2),
+        ("wire of a sensor that fires 2 ms later", &[(2_450, true, true), (2_000 + end, false, true)], 1),
     ];
     for (fault, line, on) in faults {
         let found = run(line, on);

@@ -154,6 +154,9 @@ pub struct PulseTimes {
     pub deaf_us: u32,
     /// Shorter pulses are no echoes: 100 us is 17 mm, less than these modules can measure.
     pub shortest_us: u32,
+    /// A line that rises later after the trigger was not raised by it, as of exchanged wires. An HC-SR04 takes half a
+    /// millisecond; this is a choice.
+    pub latest_rise_us: u32,
     /// Pulses as long as this are the module's own time-out, which may be a nineteenth short: no echo.
     pub longest_us: u32,
     /// The longest that a healthy module holds its line where nothing is in range, and a quarter.
@@ -169,6 +172,6 @@ impl Module {
         let clone_us = HC_SR04_CLONE.no_echo.hold_us();
         let longest_us = if hold_us > clone_us { hold_us } else { clone_us };
         let (longest_us, longest_hold_us) = (hold_us / 19 * 18, longest_us / 4 * 5);
-        Some(PulseTimes { deaf_us: 100, shortest_us: 100, longest_us, longest_hold_us })
+        Some(PulseTimes { deaf_us: 100, shortest_us: 100, latest_rise_us: 2000, longest_us, longest_hold_us })
     }
 }

@@ -55,34 +55,84 @@ pub(super) fn run(library: &Path, short: bool) -> Result<(), Trouble> {
         }
         println!("{row}");
     }
-    a_cut_wire_is_no_free_space(library, &world)
+    faults_are_no_free_space(library, &world)
 }
 
-/// Of Ring8 one module is not connected, and one has nothing before it: the sketch says so of each.
-fn a_cut_wire_is_no_free_space(library: &Path, world: &Path) -> Result<(), Trouble> {
-    const CUT: usize = 3;
-    const FREE: usize = 5;
+/// Faults of one module's line, as `world.c` names them, and what Ring8 says of that module before a wall and before
+/// nothing: a distance, clear, or that it does not answer.
+const FAULTS: [(&str, [Says; 2]); 9] = [
+    ("cut", [Says::NoAnswer, Says::NoAnswer]),
+    ("deaf", [Says::NoAnswer, Says::NoAnswer]),
+    ("glitch-high", [Says::NoAnswer, Says::NoAnswer]),
+    ("glitch-low", [Says::Wall, Says::Clear]),
+    // Until it has been high for longer than any clone holds it, such a line still listens.
+    ("stuck", [Says::NoAnswer, Says::NoAnswer]),
+    ("exchanged", [Says::NoAnswer, Says::NoAnswer]),
+    ("hold-66", [Says::Wall, Says::Clear]),
+    ("hold-130", [Says::Wall, Says::Clear]),
+    ("hold-200", [Says::Wall, Says::Clear]),
+];
+/// Readings that a line may take to show its fault: the time that a clone holds it, in periods.
+const UNTIL_STUCK: usize = 4;
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Says {
+    Wall,
+    Clear,
+    NoAnswer,
+}
+
+/// What Ring8 says of a faulty module, before a wall and before nothing; its other modules read their walls.
+fn faults_are_no_free_space(library: &Path, world: &Path) -> Result<(), Trouble> {
+    const FAULTY: usize = 3;
     let sketch = build::example(library, &build::core(Board::Uno)?, "Ring8")?;
-    let ways = Path::new(TARGET).join("cut.txt");
-    let walls = (0..8).filter(|&module| module + 1 != FREE).map(|module| format!("{module} {module} {EQUAL_US}\n"));
-    fs::write(&ways, walls.collect::<String>()).map_err(failed("target"))?;
     let (triggers, echoes) = ALL.split_at(8);
-    let pins = triggers.iter().chain(echoes).map(ToString::to_string);
-    let said = output(
-        Command::new(world).args(["--cut", &CUT.to_string()]).arg(&sketch.elf).arg("3").arg(&ways).arg("8").args(pins),
-    )
-    .ok_or_else(|| Trouble::Failed("Ring8 with a cut wire did not run".to_owned()))?;
-    let count = |line: &str| said.lines().filter(|said| said.trim() == line).count();
-    let clear = [CUT, FREE].map(|module| count(&format!("{module} clear")));
-    let silent = count(&format!("{CUT} does not answer"));
     println!(
-        "module {CUT}, cut: {silent} times no answer, {} clear; module {FREE}, free: {} clear",
-        clear[0], clear[1]
+        "\n| fault of module {FAULTY} | before | distances | clear | no answer | others' distances, least of each |"
     );
-    if clear[0] == 0 && silent > 30 && clear[1] > 30 {
-        return Ok(());
+    println!("|---|---|---:|---:|---:|---:|");
+    for (fault, expected) in FAULTS {
+        for (place, expected) in ["a wall", "nothing"].into_iter().zip(expected) {
+            let ways = Path::new(TARGET).join("faults.txt");
+            let walls = (1..=8).filter(|&module| module != FAULTY || place == "a wall");
+            let walls = walls.map(|module| format!("{0} {0} {1}\n", module - 1, EQUAL_US + 500 * module as u32));
+            fs::write(&ways, walls.collect::<String>()).map_err(failed("target"))?;
+            let pins = triggers.iter().chain(echoes).map(ToString::to_string);
+            let mut run = Command::new(world);
+            run.arg("--fault")
+                .arg(format!("{fault}:{FAULTY}"))
+                .arg(&sketch.elf)
+                .arg("3")
+                .arg(&ways)
+                .arg("8")
+                .args(pins);
+            let said = output(&mut run).ok_or_else(|| Trouble::Failed(format!("Ring8, {fault}, did not run")))?;
+            let count = |module: usize, what: &dyn Fn(&str) -> bool| {
+                let rest = |line: &str| line.trim().strip_prefix(&format!("{module} ")).is_some_and(what);
+                said.lines().filter(|line| rest(line)).count()
+            };
+            let distances = |module| count(module, &|rest| rest.parse::<u32>().is_ok());
+            let clear = count(FAULTY, &|rest| rest == "clear");
+            let silent = count(FAULTY, &|rest| rest == "does not answer");
+            // The wires of the one after it are exchanged with its own.
+            let others = (1..=8).filter(|&module| module != FAULTY && (fault != "exchanged" || module != FAULTY + 1));
+            let least = others.map(distances).min().unwrap_or(0);
+            println!("| {fault} | {place} | {} | {clear} | {silent} | {least} |", distances(FAULTY));
+            let found = [distances(FAULTY), clear, silent];
+            let fine = match expected {
+                Says::Wall => found[0] > 40 && found[1..] == [0, 0],
+                Says::Clear => found[1] > 40 && found[0] + found[2] == 0,
+                Says::NoAnswer if fault == "stuck" => found[2] > 35 && found[1] < UNTIL_STUCK && found[0] == 0,
+                Says::NoAnswer => found[2] > 35 && found[..2] == [0, 0],
+            };
+            if !fine || least < 40 {
+                return Err(Trouble::Failed(format!(
+                    "{fault} before {place}: expected {expected:?} of module {FAULTY}"
+                )));
+            }
+        }
     }
-    Err(Trouble::Failed("a cut wire reads as free space, or free space does not".to_owned()))
+    Ok(())
 }
 
 /// The sketch for as many modules as there are pins.

@@ -8,11 +8,12 @@ const PYTHON: &str = include_str!("../../../../c/micropython/eeruf.py");
 #[test]
 fn times_of_an_hc_sr04_are_alike_in_all_languages() {
     assert_eq!(Settings::of(&HC_SR04), Some(Settings::default()));
-    let Settings { trigger, deaf, shortest, longest, longest_hold, min_retrigger, missing_after, .. } =
+    let Settings { trigger, deaf, shortest, latest_rise, longest, longest_hold, min_retrigger, missing_after, .. } =
         Settings::default();
-    let us = [deaf, shortest, longest, longest_hold, min_retrigger, trigger].map(|time| time.as_micros());
-    let [deaf, shortest, longest, longest_hold, min_retrigger, trigger] = us;
-    let times = format!("{deaf}, {shortest}, {longest}, {longest_hold}, {min_retrigger}, {missing_after}, {trigger}");
+    let us = [deaf, shortest, latest_rise, longest, longest_hold, min_retrigger, trigger].map(|time| time.as_micros());
+    let [deaf, shortest, latest_rise, longest, longest_hold, min_retrigger, trigger] = us;
+    let edges = format!("{deaf}, {shortest}, {latest_rise}");
+    let times = format!("{edges}, {longest}, {longest_hold}, {min_retrigger}, {missing_after}, {trigger}");
     let macro_line = format!("#define EERUF_HC_SR04 {{EERUF_VERSION, {times}}}");
     assert!(HEADER.lines().any(|line| line.starts_with(&macro_line)), "{macro_line}");
     for line in [

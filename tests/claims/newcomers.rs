@@ -20,6 +20,54 @@ fn commands(document: &str) -> Vec<String> {
     lines.map(str::to_owned).collect()
 }
 
+/// The targets of the links in a text of a document, as paths from the root.
+fn linked(text: &str, document: &str) -> Vec<String> {
+    let folder = Path::new(document).parent().unwrap();
+    let targets = text.split("](").skip(1).filter_map(|rest| rest.split([')', '#']).next());
+    let resolved = targets.filter(|target| !target.contains(':')).map(|target| {
+        let mut path = Vec::new();
+        for part in folder.join(target).components() {
+            match part.as_os_str().to_str().unwrap() {
+                ".." => drop(path.pop()),
+                "." => {}
+                part => path.push(part.to_owned()),
+            }
+        }
+        path.join("/")
+    });
+    resolved.collect()
+}
+
+#[test]
+fn strangers_find_their_ways_from_readme_and_type_what_works() {
+    let (page, root) = ("docs/project/strangers.md", Path::new(env!("CARGO_MANIFEST_DIR")));
+    let read = |document: &str| std::fs::read_to_string(root.join(document)).unwrap();
+    let text = read(page);
+    let tasks: Vec<_> = text.split("\n## ").skip(1).collect();
+    assert_eq!(tasks.len(), 8);
+    for task in tasks {
+        let way = linked(task, page);
+        assert!(way.len() >= 2 && way.len() <= 4 && way[0] == "README.md", "{task}: {way:?}");
+        for step in way.windows(2) {
+            assert!(linked(&read(&step[0]), &step[0]).contains(&step[1]), "{} does not lead to {}", step[0], step[1]);
+        }
+    }
+    let folder = tempfile::tempdir().unwrap();
+    assert!(shell("eeruf examples .", folder.path()).status.success());
+    let mut said = Vec::new();
+    for command in commands(page) {
+        let output = shell(&command, folder.path());
+        let error = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(0), "{command}: {error}");
+        said.push((command, String::from_utf8(output.stdout).unwrap()));
+    }
+    let of = |part: &str| &said.iter().find(|(command, _)| command.contains(part)).unwrap().1;
+    assert!(of("eeruf logs").contains("crosstalk: cannot tell") && of("eeruf logs").contains("- record "));
+    assert!(of("diagnose").contains("who is fooled | by whom"), "{}", of("diagnose"));
+    assert!(of("verify").contains("verified"), "{}", of("verify"));
+    assert!(of("--emit rust").contains("period_us: 67_500"), "{}", of("--emit rust"));
+}
+
 /// The cell of a table's row under a heading.
 fn cell(out: &str, row: &str, heading: &str) -> String {
     let cells = |line: &str| line.split('|').map(|cell| cell.trim().to_owned()).collect::<Vec<_>>();

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use clap::ValueEnum;
 use eeruf_core::search::{Progress, SearchError};
-use eeruf_core::{Micros, Requirements, hopping::HoppingListening, phases::PhaseCriterion};
+use eeruf_core::{Criterion, Micros, Requirements, hopping::HoppingListening};
 use eeruf_design::atlas::ATLAS;
 use eeruf_design::{CURVE_BUDGET, FoundJson, Need, RealPeriod, RingDesign, RingSpec, Search, real_budget};
 
@@ -428,23 +428,24 @@ fn over_reals(args: &Args, design: &RingDesign, watch: &mut Watch) -> Option<Rea
 
 fn many_phases(args: &Args, spec: &RingSpec, phases: u8) -> Result<Answer, InputError> {
     let bad = |message: String| InputError::new(&args.file, None, message);
-    if spec.speed_mm_s.is_some() {
-        return Err(bad("speed_m_s; expected t_delta_us or jitter_us alone with --phases: the tracker follows what \
-                        moves, by odometry"
-            .to_owned()));
-    }
-    let margin = |us| PhaseCriterion::Margin(Micros::new(us));
-    let criterion = args.margin_us.map_or(PhaseCriterion::Exact, margin);
+    let criterion = args.margin_us.map_or(Criterion::Exact, |us| Criterion::Margin(Micros::new(us)));
     let design = spec.hopping(phases, criterion).map_err(bad)?;
     let requirements = spec.phase_requirements(criterion);
+    if spec.uneven.is_some() && matches!(args.form(), Some(Form::C | Form::Arduino)) {
+        return Err(bad(
+            "limits of single sensors or pairs; expected --emit toml or rust with --phases: the C library \
+                        keeps one window and one T_delta for all sensors of a ring that hops"
+                .to_owned(),
+        ));
+    }
     if let Some(file) = &args.svg {
-        draw::hopping_diagram(&design.schedule, requirements.audible.window).save(file)?;
+        draw::hopping_diagram(&design.phases(), &requirements).save(file)?;
     }
     if let Some(form) = args.form().filter(|form| *form != Form::Json) {
         emit_modules(&spec.modules, form)?;
     }
     match args.form() {
-        Some(Form::Toml) => print(design.schedule.to_toml())?,
+        Some(Form::Toml) => print(design.phases().to_toml().unwrap_or_default())?,
         Some(Form::Rust) => print(design.schedule.to_rust(&requirements))?,
         Some(Form::C) => print(design.schedule.to_c(&requirements))?,
         Some(Form::Arduino) => print(design.schedule.to_arduino(&requirements, "RING"))?,

@@ -1,15 +1,11 @@
 //! `eeruf verify`: holds a schedule file against the conditions of the paper.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use clap::ValueEnum;
-use eeruf_core::{
-    Criterion, Micros, Requirements,
-    hopping::HoppingListening,
-    phases::{Audible, PhaseCriterion, PhaseRequirements},
-};
-use eeruf_design::{LayoutKey, LayoutName, PhaseSchedule};
+use eeruf_core::{Criterion, Micros, Requirements, hopping::HoppingListening};
+use eeruf_design::{LayoutKey, LayoutName, PhaseSchedule, RingSpec};
 use eeruf_sim::AnySchedule;
 
 use super::answer::Answer;
@@ -141,11 +137,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
         CriterionArg::Paper => Criterion::Paper,
     };
     if let Some(file) = &args.ring {
-        let spec = read_ring(file)?;
-        if spec.sensors != schedule.sensors() {
-            let message = format!("{} sensors; expected the {} of the schedule", spec.sensors, schedule.sensors());
-            return Err(InputError::new(file, None, message));
-        }
+        let spec = ring_of(file, schedule.sensors())?;
         // Where t_delta must cover motion, it must do so at the longest time between two firings.
         let spec = spec.covering(spec.t_delta_needed(&schedule));
         let requirements = Requirements { criterion, ..spec.problem().requirements };
@@ -154,13 +146,12 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     let layout = args.layout.key().owned(args.neighbours, schedule.sensors());
     let layout = layout.map_err(|message| InputError::new(&args.file, None, message))?;
     let requirements = Requirements {
-        t_delta: Micros::new(args.t_delta_us),
         criterion,
         min_interval: Micros::new(args.min_interval_us),
         layout: layout.layout(),
         window: Micros::new(args.window_us),
         stale_echo: args.stale_echo,
-        uneven: None,
+        ..Requirements::new(Micros::new(args.t_delta_us))
     };
     answer(args, &schedule, &requirements)
 }
@@ -176,38 +167,49 @@ fn answer(args: &Args, schedule: &AnySchedule, requirements: &Requirements<'_>) 
     Ok(if report.ok() { Answer::Yes } else { Answer::No })
 }
 
+/// Reads the ring file of a schedule.
+fn ring_of(file: &Path, sensors: usize) -> Result<RingSpec, InputError> {
+    let spec = read_ring(file)?;
+    if spec.sensors != sensors {
+        let message = format!("{} sensors; expected the {sensors} of the schedule", spec.sensors);
+        return Err(InputError::new(file, None, message));
+    }
+    Ok(spec)
+}
+
 fn many_phases(args: &Args, schedule: &PhaseSchedule) -> Result<Answer, InputError> {
     let bad = |message: String| InputError::new(&args.file, None, message);
-    if args.ring.is_some() {
-        return Err(bad("many phases; expected a schedule of two phases with --ring".to_owned()));
-    }
     if matches!(args.criterion, CriterionArg::Paper) {
         return Err(bad("--criterion paper; expected exact, or --margin-us N, for many phases".to_owned()));
     }
-    let layout = args.layout.key().owned(args.neighbours, schedule.sensors()).map_err(bad)?;
-    let window = Micros::new(args.window_us);
-    let requirements = PhaseRequirements {
-        criterion: args.margin_us.map_or(PhaseCriterion::Exact, |margin| PhaseCriterion::Margin(Micros::new(margin))),
-        audible: Audible {
-            window,
-            blanking: Micros::new(args.blanking_us),
-            reach: args.reach_us.map_or(window, Micros::new),
-        },
-        min_interval: Micros::new(args.min_interval_us),
-        layout: layout.layout(),
-        stale_echo: args.stale_echo,
-        ..PhaseRequirements::new(Micros::new(args.t_delta_us), window)
+    let criterion = args.margin_us.map_or(Criterion::Exact, |margin| Criterion::Margin(Micros::new(margin)));
+    let (spec, layout);
+    let requirements = if let Some(file) = &args.ring {
+        spec = ring_of(file, schedule.sensors())?;
+        spec.phase_requirements(criterion)
+    } else {
+        layout = args.layout.key().owned(args.neighbours, schedule.sensors()).map_err(bad)?;
+        Requirements {
+            criterion,
+            min_interval: Micros::new(args.min_interval_us),
+            layout: layout.layout(),
+            window: Micros::new(args.window_us),
+            stale_echo: args.stale_echo,
+            ..Requirements::new(Micros::new(args.t_delta_us))
+        }
     };
+    let requirements = Requirements {
+        blanking: Micros::new(args.blanking_us),
+        audible: args.reach_us.map(Micros::new),
+        ..requirements
+    };
+    let (window, most) = (requirements.window, HoppingListening::MAX_WINDOW);
     if window == Micros::ZERO {
         return Err(bad("--window-us 0; expected how long a sensor listens: without it nothing is heard".to_owned()));
     }
-    let most = HoppingListening::MAX_WINDOW;
     if schedule.hopping().is_some() && window > most {
-        return Err(bad(format!(
-            "--window-us {}; expected at most {} for a ring that hops",
-            args.window_us,
-            most.as_micros()
-        )));
+        let (window, most) = (window.as_micros(), most.as_micros());
+        return Err(bad(format!("--window-us {window}; expected at most {most} for a ring that hops")));
     }
     let report = schedule.verify(&requirements);
     if args.json {

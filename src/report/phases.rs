@@ -3,10 +3,7 @@
 use std::fmt::Write as _;
 
 use comfy_table::{Table, presets};
-use eeruf_core::{
-    Micros,
-    phases::{PhaseCriterion, PhaseRequirements, PhaseVerification, PhaseViolation},
-};
+use eeruf_core::{Criterion, MAX_SENSORS, Micros, Requirements, conditions::Violation, phases::PhaseVerification};
 use eeruf_design::{HoppingDesign, PhaseSchedule, RingSpec};
 use serde::Serialize;
 
@@ -31,25 +28,16 @@ struct ViolationJson {
     source: &'static str,
 }
 
-impl From<PhaseViolation> for ViolationJson {
-    fn from(violation: PhaseViolation) -> Self {
-        let (sensors, phases, value, required) = match violation {
-            PhaseViolation::Crosstalk { found, required } | PhaseViolation::StaleEcho { found, required } => {
-                (found.sensors, found.phases, found.value, required)
-            }
-            PhaseViolation::Interval { found, required } | PhaseViolation::Window { found, required } => {
-                (found.sensors, found.phases, found.value, required)
-            }
-            // There are no more, and a new one would be caught by the tests of what is printed.
-            _ => ((0, 0), Default::default(), Micros::ZERO, Micros::ZERO),
-        };
+impl From<Violation> for ViolationJson {
+    fn from(violation: Violation) -> Self {
+        let Violation { kind, sensors, phases, value, required, .. } = violation;
         Self {
-            kind: violation.as_str(),
+            kind: kind.as_str(),
             sensors,
             phases: (phases.0.0, phases.1.0),
             value_us: value.as_micros(),
             required_us: required.as_micros(),
-            source: violation.source(),
+            source: kind.source(),
         }
     }
 }
@@ -68,11 +56,12 @@ impl From<&PhaseVerification<'_>> for ReportJson {
 }
 
 /// The criterion in words.
-fn criterion(requirements: &PhaseRequirements<'_>) -> String {
+fn criterion(requirements: &Requirements<'_>) -> String {
     let separation = us(requirements.separation());
+    let of = if requirements.uneven.is_some_and(|uneven| !uneven.t_delta.is_empty()) { "the largest " } else { "" };
     match requirements.criterion {
-        PhaseCriterion::Exact => format!("needed: {separation}, 2 t_delta + 1 us"),
-        PhaseCriterion::Margin(margin) => format!("needed: {separation}, t_delta and a margin of {}", us(margin)),
+        Criterion::Margin(margin) => format!("needed: {separation}, {of}t_delta and a margin of {}", us(margin)),
+        _ => format!("needed: {separation}, 2 {of}t_delta + 1 us"),
     }
 }
 
@@ -89,14 +78,14 @@ fn new_table() -> Table {
 pub(crate) fn describe(
     name: &str,
     schedule: &PhaseSchedule,
-    requirements: &PhaseRequirements<'_>,
+    requirements: &Requirements<'_>,
     report: &PhaseVerification<'_>,
 ) -> String {
     let mut table = new_table();
     let (value, who) =
         report.separation().map_or(("-".to_owned(), "nothing is heard in two phases".to_owned()), |found| {
             let ((x, y), (m, n)) = (found.sensors, found.phases);
-            (us(found.value), format!("from sensor {} to {}, phases {} and {}", x + 1, y + 1, m.0, n.0))
+            (us(found.value), format!("from sensor {} to {}, phases {m} and {n}", x + 1, y + 1))
         });
     table.add_row(["separation", &value, &who]);
     table.add_row([String::new(), String::new(), criterion(requirements)]);
@@ -104,7 +93,7 @@ pub(crate) fn describe(
     table.add_row(["largest t_delta", &t_delta, ""]);
     let interval = report.min_interval().map_or(("-".to_owned(), "no neighbours".to_owned()), |found| {
         let ((x, y), (m, n)) = (found.sensors, found.phases);
-        (us(found.value), format!("sensors {} in phase {} and {} in phase {}", x + 1, m.0, y + 1, n.0))
+        (us(found.value), format!("sensors {} in phase {m} and {} in phase {n}", x + 1, y + 1))
     });
     table.add_row(["smallest interval", &interval.0, &interval.1]);
     if let Some(refire) = report.min_refire() {
@@ -139,11 +128,14 @@ struct ScheduleJson {
     phases: u8,
     first_multiplier: u8,
     t_lag_us: Vec<u32>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    together: Vec<Vec<usize>>,
 }
 
 impl<'d> From<&'d HoppingDesign> for DesignJson<'d> {
     fn from(design: &'d HoppingDesign) -> Self {
-        let HoppingDesign { ref schedule, period_bound, width_bound, reason } = *design;
+        let HoppingDesign { ref schedule, ref together, period_bound, width_bound, reason } = *design;
+        let members = |&set: &u64| (0..MAX_SENSORS).filter(|sensor| set >> sensor & 1 == 1).collect();
         let code = schedule.code();
         Self {
             schedule: ScheduleJson {
@@ -152,6 +144,7 @@ impl<'d> From<&'d HoppingDesign> for DesignJson<'d> {
                 phases: code.phases(),
                 first_multiplier: code.first_multiplier(),
                 t_lag_us: (0..code.sensors()).filter_map(|x| schedule.t_lag(x)).map(Micros::as_micros).collect(),
+                together: together.iter().map(members).collect(),
             },
             value_us: schedule.period().as_micros(),
             bound_us: period_bound.as_micros(),
@@ -166,41 +159,48 @@ impl<'d> From<&'d HoppingDesign> for DesignJson<'d> {
 pub(crate) fn describe_design(
     name: &str,
     spec: &RingSpec,
-    requirements: &PhaseRequirements<'_>,
+    requirements: &Requirements<'_>,
     design: &HoppingDesign,
 ) -> String {
-    let HoppingDesign { schedule, period_bound, width_bound, reason } = design;
+    let HoppingDesign { schedule, period_bound, width_bound, reason, .. } = design;
     let (code, report) = (schedule.code(), schedule.verify(requirements));
     let mut table = new_table();
+    let age = if code.is_welch() { "the same period" } else { "every age" };
+    let of_which = format!("none that separates sound of {age}");
     let proof = if design.proven() {
-        "proven: none that separates sound of every age is shorter".to_owned()
+        format!("proven: {of_which} is shorter")
     } else {
-        format!("not proven: none that separates sound of every age is shorter than {period_bound}")
+        format!("not proven: {of_which} is shorter than {period_bound}")
     };
     table.add_row(["period", &schedule.period().to_string(), &proof]);
     let cycle = u64::from(code.phases()) * u64::from(schedule.period().as_micros());
     table.add_row(["phases", &code.phases().to_string(), &format!("a cycle of {} ms", cycle / 1000)]);
     table.add_row(["separation", &code.step().to_string(), &criterion(requirements)]);
-    table.add_row([
-        "width of the code".to_owned(),
-        code.width().to_string(),
-        format!("no code that separates sound of every age is narrower than {width_bound}"),
-    ]);
+    let width = format!("no code that separates sound of {age} is narrower than {width_bound}");
+    table.add_row(["width of the code", &code.width().to_string(), &width]);
     if let Some(interval) = report.min_interval() {
-        let needed = format!("needed: {}", requirements.min_interval);
+        let own = requirements.uneven.is_some_and(|uneven| !uneven.intervals.is_empty());
+        let needed =
+            format!("needed: {}{}", requirements.min_interval, if own { ", or what the pair asks for" } else { "" });
         table.add_row(["smallest interval", &interval.value.to_string(), &needed]);
     }
     if let Some(refire) = report.min_refire() {
-        let seen = f64::from(spec.c.distance_mm(requirements.audible.window)) / 1000.0;
+        let seen = f64::from(spec.c.distance_mm(requirements.window)) / 1000.0;
         let listening = format!("{seen:.2} m; no sensor fires again within {}", refire.value);
-        table.add_row(["listening", &requirements.audible.window.to_string(), &listening]);
+        table.add_row(["listening", &requirements.window.to_string(), &listening]);
     }
     let rate = 1e6 / f64::from(schedule.period().as_micros());
     table.add_row(["readings", &format!("{rate:.1} a second"), "of each sensor, solo periods not counted"]);
+    let odometry = match spec.speed_mm_s {
+        Some(speed) if speed > 0 => {
+            "T_delta is that of a robot that stands: while it drives, each poll needs the change that odometry expects.\n"
+        }
+        _ => "",
+    };
     format!(
-        "{name}: {} sensors, {}\n{table}\n\nThe bound is set by {reason}.\n\n{}",
+        "{name}: {} sensors, {}\n{table}\n\nThe bound is set by {reason}.\n{odometry}\n{}",
         spec.sensors,
         requirements.layout,
-        schedule.to_toml()
+        design.phases().to_toml().unwrap_or_default()
     )
 }

@@ -104,7 +104,6 @@ BAD: list[tuple[Callable[[], Any], type[Exception], str]] = [
         "over_reals = 1; expected True or False",
     ),
     (lambda: eeruf.design(4, 1, 1, 1, phases=68), eeruf.ArgumentError, "phases = 68; expected a whole number from 2"),
-    (lambda: eeruf.design(4, 1, 1, 1, phases=5, stale_echo=True), eeruf.HoppingError, "stale_echo = true; expected"),
     (lambda: ANY.design(4, 1, 1, 1, margin_us=9), eeruf.ArgumentError, "margin_us = 9; expected no margin without"),
     (
         lambda: ANY.design(4, 1, 1, 1, shared_lines=[(0, 1)], phases=5),

@@ -3,12 +3,11 @@
 
 use crate::hopping::{HoppingCode, HoppingSchedule};
 use crate::own_limits::EachSensor;
-use crate::phases::{PhaseRequirements, PhaseViolation};
 use crate::requirements::Requirements;
 use crate::schedule::{Schedule, ScheduleError};
 use crate::time::Micros;
 use crate::verified::VerifiedSchedule;
-use crate::verify::ViolationKind;
+use crate::verify::{Violation, ViolationKind};
 
 /// A [`VerifiedSchedule`] that is verified while the program is compiled: a table that breaks a condition does not
 /// build.
@@ -142,18 +141,24 @@ pub const fn __checked<const K: usize>(
     match schedule {
         Ok(schedule) => match schedule.verify(requirements).verified() {
             Ok(verified) => verified,
-            Err(violation) => match violation.kind {
-                ViolationKind::CrosstalkA => panic!("two sensors' crosstalk would be accepted, Eq. (13a)"),
-                ViolationKind::CrosstalkB => panic!("two sensors' crosstalk would be accepted, Eq. (13b)"),
-                ViolationKind::StaleEcho => panic!("a sensor's stale echo would be accepted, Eq. (13b) with x = y"),
-                ViolationKind::Interval => panic!("two neighbours fire closer together than min_interval, Sec. 3.1 c"),
-                ViolationKind::Window => panic!("a sensor fires again while it still listens, T_wind"),
-                ViolationKind::SharedLine => panic!("a sensor fires while another one listens on the same echo line"),
-                ViolationKind::Refire => panic!("a sensor is triggered again sooner than it may be"),
-                ViolationKind::Together => panic!("two sensors that must fire together do not"),
-            },
+            Err(violation) => refuse(violation),
         },
         Err(error) => panic!("{}", error.as_str()),
+    }
+}
+
+/// Panics, which is a compile error.
+const fn refuse(violation: Violation) -> ! {
+    match violation.kind {
+        ViolationKind::CrosstalkA => panic!("two sensors' crosstalk would be accepted, Eq. (13a)"),
+        ViolationKind::CrosstalkB => panic!("two sensors' crosstalk would be accepted, Eq. (13b)"),
+        ViolationKind::Crosstalk => panic!("two sensors' crosstalk would be accepted, Eqs. (13a), (13b)"),
+        ViolationKind::StaleEcho => panic!("a sensor's stale echo would be accepted, Eq. (13b) with x = y"),
+        ViolationKind::Interval => panic!("two neighbours fire closer together than min_interval, Sec. 3.1 c"),
+        ViolationKind::Window => panic!("a sensor fires again while it still listens, T_wind"),
+        ViolationKind::SharedLine => panic!("a sensor fires while another one listens on the same echo line"),
+        ViolationKind::Refire => panic!("a sensor is triggered again sooner than it may be"),
+        ViolationKind::Together => panic!("two sensors that must fire together do not"),
     }
 }
 
@@ -173,7 +178,7 @@ pub const fn __micros<const K: usize>(us: [u32; K]) -> [Micros; K] {
 /// the whole call.
 ///
 /// ```
-/// use eeruf_core::{Micros, hopping::HoppingSchedule, hopping_schedule, phases::{PhaseCriterion, PhaseRequirements}};
+/// use eeruf_core::{Criterion, Micros, Requirements, hopping::HoppingSchedule, hopping_schedule};
 ///
 /// const RING: HoppingSchedule<4> = hopping_schedule! {
 ///     period_us: 60_000,
@@ -181,10 +186,11 @@ pub const fn __micros<const K: usize>(us: [u32; K]) -> [Micros; K] {
 ///     phases: 5,
 ///     first_multiplier: 1,
 ///     t_lag_us: [0, 14_000, 28_000, 42_000],
-///     meets: PhaseRequirements {
-///         criterion: PhaseCriterion::Margin(Micros::new(90)),
+///     meets: Requirements {
+///         criterion: Criterion::Margin(Micros::new(90)),
 ///         min_interval: Micros::from_millis(12),
-///         ..PhaseRequirements::new(Micros::new(150), Micros::from_millis(36))
+///         window: Micros::from_millis(36),
+///         ..Requirements::new(Micros::new(150))
 ///     },
 /// };
 /// assert_eq!(RING.code().phases(), 5);
@@ -193,7 +199,7 @@ pub const fn __micros<const K: usize>(us: [u32; K]) -> [Micros; K] {
 /// The same table does not compile when 240 us are to keep a `t_delta` of 150 us apart as (13) asks, with 301 us:
 ///
 /// ```compile_fail
-/// use eeruf_core::{Micros, hopping::HoppingSchedule, hopping_schedule, phases::PhaseRequirements};
+/// use eeruf_core::{Micros, Requirements, hopping::HoppingSchedule, hopping_schedule};
 ///
 /// const RING: HoppingSchedule<4> = hopping_schedule! {
 ///     period_us: 60_000,
@@ -201,9 +207,34 @@ pub const fn __micros<const K: usize>(us: [u32; K]) -> [Micros; K] {
 ///     phases: 5,
 ///     first_multiplier: 1,
 ///     t_lag_us: [0, 14_000, 28_000, 42_000],
-///     meets: PhaseRequirements::new(Micros::new(150), Micros::from_millis(36)),
+///     meets: Requirements { window: Micros::from_millis(36), ..Requirements::new(Micros::new(150)) },
 /// };
 /// # assert_eq!(RING.code().phases(), 5);
+/// ```
+///
+/// Where sensors are not all alike, `each_meets` gives the schedule and the limits of each sensor, for
+/// [`HoppingRing::with_limits`](crate::hopping::HoppingRing::with_limits):
+///
+/// ```
+/// use eeruf_core::{EachSensor, Micros, Requirements, Uneven, hopping::HoppingSchedule, hopping_schedule};
+///
+/// const RING: (HoppingSchedule<3>, EachSensor<3>) = hopping_schedule! {
+///     period_us: 40_000,
+///     step_us: 301,
+///     phases: 4,
+///     first_multiplier: 1,
+///     t_lag_us: [0, 20_000, 20_000],
+///     each_meets: Requirements {
+///         window: Micros::from_millis(30),
+///         uneven: Some(Uneven {
+///             window: &[Micros::from_millis(30), Micros::from_millis(9), Micros::from_millis(9)],
+///             together: &[0b110],
+///             ..Uneven::NONE
+///         }),
+///         ..Requirements::new(Micros::new(150))
+///     },
+/// };
+/// assert_eq!(RING.0.t_lag(1), RING.0.t_lag(2));
 /// ```
 #[macro_export]
 macro_rules! hopping_schedule {
@@ -214,6 +245,25 @@ macro_rules! hopping_schedule {
         first_multiplier: $first:expr,
         t_lag_us: $t_lag:expr,
         meets: $requirements:expr $(,)?
+    ) => {
+        const {
+            $crate::__checked_hopping(
+                $crate::Micros::new($period),
+                $crate::Micros::new($step),
+                [$phases, $first],
+                $crate::__micros($t_lag),
+                &$requirements,
+            )
+            .0
+        }
+    };
+    (
+        period_us: $period:expr,
+        step_us: $step:expr,
+        phases: $phases:expr,
+        first_multiplier: $first:expr,
+        t_lag_us: $t_lag:expr,
+        each_meets: $requirements:expr $(,)?
     ) => {
         const {
             $crate::__checked_hopping(
@@ -234,8 +284,8 @@ pub const fn __checked_hopping<const K: usize>(
     step: Micros,
     [phases, first]: [u8; 2],
     t_lag: [Micros; K],
-    requirements: &PhaseRequirements<'_>,
-) -> HoppingSchedule<K> {
+    requirements: &Requirements<'_>,
+) -> (HoppingSchedule<K>, EachSensor<K>) {
     let code = match HoppingCode::of(K, phases, first, step) {
         Ok(code) => code,
         Err(error) => panic!("{}", error.as_str()),
@@ -244,11 +294,8 @@ pub const fn __checked_hopping<const K: usize>(
         Ok(schedule) => schedule,
         Err(error) => panic!("{}", error.as_str()),
     };
-    match schedule.verify(requirements).violations().advance() {
-        None => schedule,
-        Some(PhaseViolation::Crosstalk { .. }) => panic!("two sensors' crosstalk would be believed"),
-        Some(PhaseViolation::StaleEcho { .. }) => panic!("a sensor's stale echo would be believed"),
-        Some(PhaseViolation::Interval { .. }) => panic!("two neighbours fire closer together than min_interval"),
-        Some(PhaseViolation::Window { .. }) => panic!("a sensor fires again while it still listens"),
+    match schedule.limits(requirements) {
+        Ok(limits) => (schedule, limits),
+        Err(violation) => refuse(violation),
     }
 }

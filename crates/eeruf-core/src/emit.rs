@@ -57,9 +57,10 @@ struct RustSource<'r, const K: usize> {
 impl<const K: usize> fmt::Display for RustSource<'_, K> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { schedule, requirements } = self;
-        let Requirements { t_delta, criterion, min_interval, layout, window, stale_echo, uneven } = requirements;
+        let uneven = &requirements.uneven;
         let (each, uneven_too) = if uneven.is_some() { ("EachSensor, ", "Uneven, ") } else { ("", "") };
-        write!(f, "use eeruf_core::{{Criterion, {each}Layout, Micros, Requirements, ")?;
+        let criterion = if requirements.criterion == Criterion::Exact { "" } else { "Criterion, " };
+        write!(f, "use eeruf_core::{{{criterion}{each}Layout, Micros, Requirements, ")?;
         writeln!(f, "{uneven_too}VerifiedSchedule, schedule}};\n")?;
         writeln!(f, "// {}; {}.", Summary(schedule), Promise(requirements))?;
         let sensors = schedule.sensors();
@@ -78,22 +79,40 @@ impl<const K: usize> fmt::Display for RustSource<'_, K> {
             writeln!(f, "    t_fire_a_us: [{}],", Numbers(|| schedule.fire_times(Phase::A)))?;
             writeln!(f, "    t_fire_b_us: [{}],", Numbers(|| schedule.fire_times(Phase::B)))?;
         }
+        writeln!(f, "{}}};", Meets(requirements))
+    }
+}
+
+/// Requirements as the last field of a macro, in Rust.
+pub(crate) struct Meets<'r>(pub(crate) &'r Requirements<'r>);
+
+impl fmt::Display for Meets<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let &Requirements { t_delta, criterion, min_interval, layout, window, blanking, audible, .. } = self.0;
+        let Requirements { stale_echo, uneven, .. } = self.0;
         writeln!(f, "    {}: Requirements {{", if uneven.is_some() { "each_meets" } else { "meets" })?;
-        writeln!(f, "        t_delta: Micros::new({}),", Grouped(*t_delta))?;
-        let criterion = match criterion {
-            Criterion::Exact => "Exact",
-            Criterion::Paper => "Paper",
-        };
-        writeln!(f, "        criterion: Criterion::{criterion},")?;
-        writeln!(f, "        min_interval: Micros::new({}),", Grouped(*min_interval))?;
-        writeln!(f, "        layout: {},", RustLayout(*layout))?;
-        writeln!(f, "        window: Micros::new({}),", Grouped(*window))?;
-        writeln!(f, "        stale_echo: {stale_echo},")?;
-        match uneven {
-            None => writeln!(f, "        uneven: None,")?,
-            Some(uneven) => write!(f, "{}", UnevenSource(uneven))?,
+        match criterion {
+            Criterion::Exact => {}
+            Criterion::Paper => writeln!(f, "        criterion: Criterion::Paper,")?,
+            Criterion::Margin(margin) => {
+                writeln!(f, "        criterion: Criterion::Margin(Micros::new({})),", Grouped(margin))?;
+            }
         }
-        writeln!(f, "    }},\n}};")
+        writeln!(f, "        min_interval: Micros::new({}),", Grouped(min_interval))?;
+        writeln!(f, "        layout: {},", RustLayout(layout))?;
+        writeln!(f, "        window: Micros::new({}),", Grouped(window))?;
+        if blanking != Micros::ZERO {
+            writeln!(f, "        blanking: Micros::new({}),", Grouped(blanking))?;
+        }
+        if let Some(audible) = audible {
+            writeln!(f, "        audible: Some(Micros::new({})),", Grouped(audible))?;
+        }
+        writeln!(f, "        stale_echo: {stale_echo},")?;
+        if let Some(uneven) = uneven {
+            write!(f, "{}", UnevenSource(uneven))?;
+        }
+        writeln!(f, "        ..Requirements::new(Micros::new({}))", Grouped(t_delta))?;
+        writeln!(f, "    }},")
     }
 }
 
@@ -108,7 +127,9 @@ impl fmt::Display for RustLayout<'_> {
             Layout::Blocks(n) => write!(f, "Layout::Blocks({n})"),
             Layout::Graph(rows) => {
                 write!(f, "Layout::Graph(&[")?;
-                for (place, row) in rows.iter().enumerate() {
+                // Sensors beyond the last row have no neighbours of their own.
+                let used = rows.iter().rposition(|&row| row != 0).map_or(0, |last| last + 1);
+                for (place, row) in rows.iter().take(used).enumerate() {
                     write!(f, "{}{row:#x}", if place == 0 { "" } else { ", " })?;
                 }
                 write!(f, "])")
@@ -147,7 +168,7 @@ impl<const K: usize> fmt::Display for Summary<'_, K> {
 }
 
 /// Requirements that the schedule was designed for.
-struct Promise<'r>(&'r Requirements<'r>);
+pub(crate) struct Promise<'r>(pub(crate) &'r Requirements<'r>);
 
 impl fmt::Display for Promise<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

@@ -29,15 +29,14 @@ impl Requirements<'_> {
         }
     }
 
-    /// The separation that two sensors need, `2 t_delta + 1 us` by the larger of their `t_delta`; twice the same sensor
-    /// for its stale echoes. `None` for two that fire together.
+    /// The separation that two sensors need, by the larger of their `t_delta`; twice the same sensor for its stale
+    /// echoes. `None` for two that fire together.
     pub const fn separation_of(&self, x: usize, y: usize) -> Option<Micros> {
         if x != y && self.fire_together(x, y) {
             return None;
         }
         let (one, other) = (self.t_delta_of(x), self.t_delta_of(y));
-        let larger = if one.as_micros() > other.as_micros() { one } else { other };
-        Some(larger.saturating_add(larger).saturating_add(Micros::new(1)))
+        Some(self.criterion.separation(longer(one, other)))
     }
 
     /// The least time between the firings of two of this many sensors; `None` if they need none.
@@ -61,6 +60,14 @@ impl Requirements<'_> {
         match self.uneven {
             Some(uneven) => x != y && Uneven::in_one(uneven.shared_lines, x, y),
             None => false,
+        }
+    }
+
+    /// Sets of sensors that must fire at the same instants.
+    pub(crate) const fn together(&self) -> &[u64] {
+        match &self.uneven {
+            Some(uneven) => uneven.together,
+            None => &[],
         }
     }
 

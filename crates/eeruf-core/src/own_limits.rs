@@ -53,6 +53,13 @@ pub trait LimitsInUse: Clone + fmt::Debug + sealed::Sealed {
         true
     }
 
+    /// The first of the sensors that one fires together with, or itself.
+    #[doc(hidden)]
+    #[inline(always)]
+    fn leader_of(&self, sensor: u8) -> u8 {
+        sensor
+    }
+
     /// The most that the schedule was verified for, if sensors have limits of their own.
     #[doc(hidden)]
     #[inline]
@@ -163,6 +170,30 @@ impl<const K: usize> EachSensor<K> {
 }
 
 impl<const K: usize> sealed::Sealed for EachSensor<K> {}
+
+/// Of a plan that keeps them for ever.
+impl<const K: usize> LimitsInUse for EachSensor<K> {
+    #[inline]
+    fn limits_of(&self, sensor: u8) -> Option<SensorLimits> {
+        self.of(sensor)
+    }
+
+    fn hears(&self, receiver: u8, emitter: u8) -> bool {
+        self.hears(receiver, emitter)
+    }
+
+    fn leader_of(&self, sensor: u8) -> u8 {
+        match self.groups.get(usize::from(sensor)) {
+            // Of at most 64.
+            Some(&group) if group > 0 => self.groups.iter().position(|&other| other == group).unwrap_or(0) as u8,
+            _ => sensor,
+        }
+    }
+
+    fn most(&self) -> Option<&VerifiedFor> {
+        self.most()
+    }
+}
 
 impl<const K: usize> OwnLimits for EachSensor<K> {
     type InUse<'s> = EachInUse<'s, K>;

@@ -41,6 +41,38 @@ pub enum Criterion {
     /// waits.
     #[default]
     Exact,
+    /// [`Exact`](Self::Exact), but crosstalk must move by `T_delta` and this margin instead of `2 T_delta + 1 us`: the
+    /// margin is all that jitter, lateness and a path that changes may use.
+    Margin(Micros),
+}
+
+impl Criterion {
+    /// The separation that a `t_delta` needs.
+    pub(crate) const fn separation(self, t_delta: Micros) -> Micros {
+        match self {
+            Self::Paper | Self::Exact => t_delta.saturating_add(t_delta).saturating_add(Micros::new(1)),
+            // Crosstalk that moves by no more than `T_delta` is supported.
+            Self::Margin(Micros::ZERO) => t_delta.saturating_add(Micros::new(1)),
+            Self::Margin(margin) => t_delta.saturating_add(margin),
+        }
+    }
+
+    /// The largest `t_delta` that a separation allows, if any.
+    pub(crate) const fn max_t_delta(self, separation: Micros) -> Option<Micros> {
+        let us = separation.as_micros();
+        let most = match self {
+            Self::Paper | Self::Exact => match us.checked_sub(1) {
+                Some(twice) => Some(twice / 2),
+                None => None,
+            },
+            Self::Margin(Micros::ZERO) => us.checked_sub(1),
+            Self::Margin(margin) => us.checked_sub(margin.as_micros()),
+        };
+        match most {
+            Some(most) => Some(Micros::new(most)),
+            None => None,
+        }
+    }
 }
 
 /// Everything a schedule is to be checked against.
@@ -67,7 +99,12 @@ pub struct Requirements<'a> {
     pub layout: Layout<'a>,
     /// `T_wind`, for which a sensor listens: it must not fire again earlier.
     pub window: Micros,
-    /// Also reject a sensor's own echo from the period before: `2 |d| > 2 T_delta` for each sensor.
+    /// Deaf time of a sensor after it has fired. Two phases reject sound whenever it arrives, and do not ask.
+    pub blanking: Micros,
+    /// R: how long sound is audible; `None` for the window. Two phases reject sound of every age, and do not ask.
+    pub audible: Option<Micros>,
+    /// Also reject a sensor's own echo from an earlier period, however long its path: `2 |d| > 2 T_delta` for each
+    /// sensor with two phases.
     pub stale_echo: bool,
     /// Needs of single sensors and pairs, where they are not all alike.
     pub uneven: Option<Uneven<'a>>,
@@ -82,14 +119,16 @@ impl Requirements<'_> {
             min_interval: Micros::ZERO,
             layout: Layout::Line(4),
             window: Micros::ZERO,
+            blanking: Micros::ZERO,
+            audible: None,
             stale_echo: false,
             uneven: None,
         }
     }
 
-    /// The separation that the `t_delta` of all needs: `2 t_delta + 1 us`.
+    /// The separation that the `t_delta` of all needs: `2 t_delta + 1 us`, or `t_delta` and the margin.
     pub const fn separation(&self) -> Micros {
-        self.t_delta.saturating_add(self.t_delta).saturating_add(Micros::new(1))
+        self.criterion.separation(self.t_delta)
     }
 }
 
@@ -187,7 +226,7 @@ impl<const K: usize> Schedule<K> {
     pub const fn separation(&self, criterion: Criterion) -> Option<Separation> {
         let by_shift = closest(&self.shift_sizes(), self.sensors());
         match criterion {
-            Criterion::Exact => by_shift,
+            Criterion::Exact | Criterion::Margin(_) => by_shift,
             Criterion::Paper => match (by_shift, closest(&self.wait_sums(), self.sensors())) {
                 (Some(d), Some(s)) if s.value.as_micros() < d.value.as_micros() => Some(s),
                 _ => by_shift,
@@ -223,7 +262,7 @@ impl<const K: usize> Schedule<K> {
     /// The left sides of (13a) and (13b) for one pair, written out.
     pub(crate) const fn left_sides(&self, criterion: Criterion, x: usize, y: usize) -> (Micros, Micros) {
         let (even, odd) = match criterion {
-            Criterion::Exact => {
+            Criterion::Exact | Criterion::Margin(_) => {
                 let (dx, dy) = (self.shift_us(x), self.shift_us(y));
                 (dx - dy, dx + dy)
             }
@@ -272,6 +311,7 @@ impl fmt::Display for Criterion {
         f.write_str(match self {
             Self::Paper => "paper",
             Self::Exact => "exact",
+            Self::Margin(_) => "margin",
         })
     }
 }

@@ -131,7 +131,12 @@ impl<const K: usize> Verification<'_, K> {
         }
         let periods = if stale_echo { 2 } else { 1 };
         let audible = Micros::new(periods * schedule.period().as_micros());
-        let verified_for = VerifiedFor { t_delta, min_interval, window, separation, path_change: None, audible };
+        let path_change = match requirements.criterion {
+            Criterion::Paper | Criterion::Exact => None,
+            // Crosstalk moves by more than both together.
+            Criterion::Margin(margin) => Some(margin.saturating_sub(Micros::new(1))),
+        };
+        let verified_for = VerifiedFor { t_delta, min_interval, window, separation, path_change, audible };
         Ok(VerifiedSchedule { schedule: schedule.with_verified_for(verified_for), own_limits: Alike })
     }
 
@@ -165,11 +170,8 @@ impl<const K: usize> Verification<'_, K> {
             }
             x += 1;
         }
-        let together = match &requirements.uneven {
-            Some(uneven) => uneven.together,
-            None => &[],
-        };
-        let own_limits = EachSensor::new(verified.verified_for(), schedule.sensors(), limits, spare, together);
+        let (sensors, together) = (schedule.sensors(), requirements.together());
+        let own_limits = EachSensor::new(verified.verified_for(), sensors, limits, spare, together);
         Ok(VerifiedSchedule { schedule: verified.schedule, own_limits })
     }
 }

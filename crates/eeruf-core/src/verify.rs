@@ -83,10 +83,7 @@ impl<'r, const K: usize> Verification<'r, K> {
                 x += 1;
             }
         }
-        match separation.checked_sub(1) {
-            Some(twice) => Some(Micros::new(twice / 2)),
-            None => None,
-        }
+        self.requirements.criterion.max_t_delta(Micros::new(separation))
     }
 
     /// The smallest interval between neighbours, or, where pairs have intervals of their own, between two that need
@@ -155,6 +152,8 @@ pub enum ViolationKind {
     Refire,
     /// Two sensors that must fire together do not.
     Together,
+    /// Crosstalk would pass in two of many phases.
+    Crosstalk,
 }
 
 impl ViolationKind {
@@ -163,6 +162,7 @@ impl ViolationKind {
         match self {
             Self::CrosstalkA => "crosstalk_a",
             Self::CrosstalkB => "crosstalk_b",
+            Self::Crosstalk => "crosstalk",
             Self::StaleEcho => "stale_echo",
             Self::Interval => "interval",
             Self::Window => "window",
@@ -177,11 +177,25 @@ impl ViolationKind {
         match self {
             Self::CrosstalkA => "Eq. (13a)",
             Self::CrosstalkB | Self::StaleEcho => "Eq. (13b)",
+            Self::Crosstalk => "Eqs. (13a), (13b) for many phases",
             Self::Interval => "Sec. 3.1 c",
             Self::Window | Self::SharedLine => "T_wind",
             Self::Refire => "refire",
             Self::Together => "together",
         }
+    }
+}
+
+impl Violation {
+    /// Sound of many phases.
+    fn sound(&self, f: &mut fmt::Formatter<'_>, x: u8, y: u8) -> fmt::Result {
+        let Self { phases: (m, n), ages: (i, j), value, required, .. } = self;
+        write!(
+            f,
+            "sound of sensor {x} moves by {value} for sensor {y} from phase {m} ({i} periods old) to phase {n} ({j} \
+             periods old); to be rejected it needs at least {required} ({})",
+            self.kind.source()
+        )
     }
 }
 
@@ -193,8 +207,12 @@ pub struct Violation {
     pub kind: ViolationKind,
     /// The sensors concerned, from 0; twice the same if it concerns one.
     pub sensors: (u8, u8),
-    /// The phases in which they fire; both `a` where the requirement compares phases.
+    /// The phases in which they fire; of crosstalk and stale echoes those in which they are heard, both `a` with two
+    /// phases.
     pub phases: (Phase, Phase),
+    /// Of crosstalk and stale echoes in many phases: how many periods before the sound was sent, in each; -1 if in the
+    /// period after. Else 0.
+    pub ages: (i8, i8),
     /// The time found.
     pub value: Micros,
     /// The least time that would do; for two that must fire together the only one, 0.
@@ -212,6 +230,8 @@ impl fmt::Display for Violation {
                 "crosstalk between sensors {x} and {y} moves by {value} from one reading to the next; \
                  to be rejected it needs at least {required} ({source})"
             ),
+            ViolationKind::Crosstalk => self.sound(f, x, y),
+            ViolationKind::StaleEcho if self.phases.0 != self.phases.1 => self.sound(f, x, y),
             ViolationKind::StaleEcho => write!(
                 f,
                 "an echo of sensor {x} from the period before moves by {value} from one reading to the next; \
@@ -342,6 +362,7 @@ impl<const K: usize> Violations<'_, K> {
                     kind: ViolationKind::Together,
                     sensors,
                     phases,
+                    ages: (0, 0),
                     value: apart,
                     required: Micros::ZERO,
                 });
@@ -351,7 +372,7 @@ impl<const K: usize> Violations<'_, K> {
         if value.as_micros() >= required.as_micros() {
             return None;
         }
-        Some(Violation { kind, sensors, phases, value, required })
+        Some(Violation { kind, sensors, phases, ages: (0, 0), value, required })
     }
 }
 

@@ -215,8 +215,8 @@ mod everything_public_has_a_format {
         formats::<(HoppingCode, HoppingSchedule<12>, HoppingSettings, HoppingListening, HoppingError)>();
         formats::<(HoppingRing<12>, HoppingRing<12, 8>)>();
         formats::<(EchoTracker<12>, TrackerSettings, TrackerError, Firing, RateFilter<12>, Survey)>();
-        formats::<(PhaseTable<'_, 12>, PhaseRequirements<'_>, PhaseCriterion, Audible)>();
-        formats::<(PhaseVerification<'_>, PhaseViolation, PhaseViolations<'_>, PhaseSeparation, PhaseInterval)>();
+        formats::<(HoppingRing<12, 4, EachSensor<12>>, PhaseTable<'_, 12>)>();
+        formats::<(PhaseVerification<'_>, PhaseSeparation)>();
         formats::<(Outcome<()>, ProblemError, SearchError)>();
     }
 }

@@ -14,7 +14,7 @@
 //! | `questions` | what fits into a given period, and the curve of a need |
 //! | [`engine`] | search, proof and preference for rings whose sensors differ |
 //! | `found` | the answer as it is printed in JSON |
-//! | `hopping` | schedules of many phases: the file, and the shortest period |
+//! | `hopping`, `phase_file` | schedules of many phases: the shortest period, and the file |
 //! | `atlas`, `atlas_making` | rings whose shortest period is known; how their file is made |
 //! | `ticks`, `certificate` | the problem in ticks, and the proof, as a text that others check |
 //! | `rooms` | ways of firing the ring, judged in rooms |
@@ -45,6 +45,7 @@ mod hopping;
 mod layout;
 mod limits;
 mod moving;
+mod phase_file;
 mod questions;
 mod reals;
 mod ring;
@@ -59,9 +60,10 @@ pub use each::Each;
 pub use find::{NoSchedule, RingDesign, WhatIf};
 pub use find_uneven::ToSpare;
 pub use found::FoundJson;
-pub use hopping::{HoppingDesign, PhaseFile, PhaseSchedule};
+pub use hopping::HoppingDesign;
 pub use layout::{LayoutKey, LayoutName, OwnedLayout};
 pub use limits::{four, neighbours_in_range, sensors_in_range};
+pub use phase_file::{PhaseFile, PhaseSchedule};
 pub use questions::{CURVE_BUDGET, CURVE_POINTS, CurvePoint, Fit, Need};
 pub use reals::{RealPeriod, over_reals, real_budget};
 pub use ring::{RingFile, RingSpec, robot_ring};

@@ -100,8 +100,7 @@ pub struct RingSpec {
     pub retrigger: Micros,
     /// True if a sensor's own echo from the period before must be rejected too.
     pub stale_echo: bool,
-    /// True if only the modules ask for that. Schedules of many phases, whose step does not move a sensor's own sound,
-    /// do without.
+    /// True if only the modules ask for that. Linear congruences, which do not move a sensor's own sound, do without.
     pub stale_echo_by_module: bool,
     /// The speed of sound.
     pub c: SpeedOfSound,
@@ -152,6 +151,8 @@ impl RingSpec {
             min_interval: self.min_interval,
             layout: self.layout.layout(),
             window: self.window,
+            blanking: Micros::ZERO,
+            audible: None,
             stale_echo: self.stale_echo,
             uneven: self.uneven.as_ref().map(OwnedUneven::uneven),
         };

@@ -70,18 +70,6 @@ impl OwnedUneven {
         Self { refire, ..self.clone() }
     }
 
-    /// The key that a schedule of many phases would not keep, where all listen for the longest `window`.
-    pub(crate) fn not_in_many_phases(&self, window: Micros) -> Option<&'static str> {
-        let later = self.refire.iter().any(|&refire| refire > window);
-        let keys = [
-            (!self.intervals.is_empty(), "intervals_us"),
-            (!self.shared_lines.is_empty(), "shared_lines"),
-            (!self.together.is_empty(), "together"),
-            (later, "retrigger_us"),
-        ];
-        keys.into_iter().find_map(|(is_there, key)| is_there.then_some(key))
-    }
-
     /// The same with other intervals of pairs.
     pub(crate) fn with_intervals(&self, other: impl Fn(Micros) -> Micros) -> Self {
         let intervals = self.intervals.iter().map(|&(x, y, interval)| (x, y, other(interval))).collect();
@@ -122,7 +110,7 @@ impl OwnedUneven {
 }
 
 /// Sets of sensors as bits.
-fn sets(what: &str, groups: &[Vec<usize>], sensors: usize) -> Result<Vec<u64>, String> {
+pub(crate) fn sets(what: &str, groups: &[Vec<usize>], sensors: usize) -> Result<Vec<u64>, String> {
     let set = |group: &Vec<usize>| {
         let mut set = 0_u64;
         for &sensor in group {

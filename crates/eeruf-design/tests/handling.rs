@@ -87,7 +87,7 @@ fn sensors_that_fire_together_by_demand_still_do() {
 #[test]
 fn many_phases_refuse_it_by_name() {
     let spec = RingSpec::from_text(&ring(8, "handling_us = 100")).expect("a ring");
-    let refused = spec.hopping(5, eeruf_core::phases::PhaseCriterion::Margin(Micros::new(90))).expect_err("refused");
+    let refused = spec.hopping(5, eeruf_core::Criterion::Margin(Micros::new(90))).expect_err("refused");
     assert!(refused.starts_with("handling_us"), "{refused}");
 }
 

@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use eeruf_core::{
-    Criterion, MAX_SENSORS, Micros, Requirements,
+    MAX_SENSORS, Micros, Requirements,
     search::{self, PeriodProblem, Progress},
 };
 use eeruf_design::{OwnedUneven, Search, atlas::ATLAS, certificate, over_reals as real_period, real_budget, shortest};
@@ -165,9 +165,9 @@ pub(crate) fn design<'py>(
     let limit = limit.map_or(Duration::MAX, Duration::from_secs_f64);
     let began = Instant::now();
     let work = move |go_on: &mut dyn FnMut(&dyn Fn() -> String) -> bool| {
-        let (criterion, layout) = (Criterion::Exact, layout.layout());
-        let uneven = uneven.as_ref().map(OwnedUneven::uneven);
-        let requirements = Requirements { t_delta, criterion, min_interval, layout, window, stale_echo, uneven };
+        let (layout, uneven) = (layout.layout(), uneven.as_ref().map(OwnedUneven::uneven));
+        let alike = Requirements::new(t_delta);
+        let requirements = Requirements { min_interval, layout, window, stale_echo, uneven, ..alike };
         OwnedUneven::can_fire_together(&requirements, sensors).map_err(ArgumentError::new_err)?;
         let needs = PeriodProblem { sensors, requirements, tick };
         let mut control = |at: &Progress| {

@@ -1,9 +1,6 @@
 //! `HoppingFound`: what `design` with many phases returns, and how it is asked for.
 
-use eeruf_core::{
-    Micros,
-    phases::{Audible, PhaseCriterion, PhaseRequirements},
-};
+use eeruf_core::{Criterion, Micros, Requirements};
 use eeruf_design::HoppingDesign;
 use pyo3::{
     prelude::*,
@@ -29,7 +26,7 @@ use crate::{
 #[pyclass(frozen, eq, get_all, module = "eeruf")]
 #[derive(Clone, PartialEq)]
 pub(crate) struct HoppingFound {
-    /// The schedule: a linear congruence with lags.
+    /// The schedule: a linear congruence with lags, or Welch's sequence where stale echoes must be rejected.
     schedule: HoppingSchedule,
     /// Its period, in microseconds.
     value_us: u32,
@@ -76,15 +73,15 @@ impl HoppingFound {
         let min_interval = micros("min_interval_us", needs.min_interval_us)?;
         let stale_echo = flag("stale_echo", needs.stale_echo, false)?;
         let designed = py.detach(|| {
-            let requirements = PhaseRequirements {
-                t_delta,
-                criterion: margin.map_or(PhaseCriterion::Exact, PhaseCriterion::Margin),
-                audible: Audible::new(window),
+            let requirements = Requirements {
+                criterion: margin.map_or(Criterion::Exact, Criterion::Margin),
+                window,
                 min_interval,
                 layout: layout.layout(),
                 stale_echo,
+                ..Requirements::new(t_delta)
             };
-            HoppingDesign::shortest(sensors, phases, &requirements)
+            HoppingDesign::shortest(sensors, phases, &requirements, false)
         });
         designed.map(Self::from).map_err(HoppingError::new_err)
     }
@@ -101,7 +98,7 @@ pub(crate) fn refuse(given: &[(&str, Option<&Bound<'_, PyAny>>)], expected: &str
 impl From<HoppingDesign> for HoppingFound {
     fn from(design: HoppingDesign) -> Self {
         let proven = design.proven();
-        let HoppingDesign { schedule, period_bound, width_bound, reason } = design;
+        let HoppingDesign { schedule, period_bound, width_bound, reason, .. } = design;
         Self {
             value_us: schedule.period().as_micros(),
             bound_us: period_bound.as_micros(),

@@ -77,13 +77,13 @@ impl OwnedRequirements {
 
     pub(crate) fn requirements(&self) -> Requirements<'_> {
         Requirements {
-            t_delta: self.t_delta,
             criterion: self.criterion,
             min_interval: self.min_interval,
             layout: self.layout.layout(),
             window: self.window,
             stale_echo: self.stale_echo,
             uneven: self.uneven.as_ref().map(OwnedUneven::uneven),
+            ..Requirements::new(self.t_delta)
         }
     }
 }

@@ -4,12 +4,11 @@ use core::hint::black_box;
 
 use eeruf_board::say::leave;
 use eeruf_core::{
-    Instant, Micros, Ring, RingEvent, SensorError,
+    Criterion, Instant, Micros, Requirements, Ring, RingEvent, SensorError,
     flow::{FlowRing, FlowSettings},
     hopping::{HoppingError, HoppingListening, HoppingRing, HoppingSchedule, HoppingSettings},
     hopping_schedule,
     judge::Judge,
-    phases::{PhaseCriterion, PhaseRequirements},
     plan::Plan,
 };
 
@@ -24,11 +23,11 @@ pub const HOPPING_12: HoppingSchedule<12> = hopping_schedule! {
     phases: 16,
     first_multiplier: 1,
     t_lag_us: [0, 8_000, 16_000, 24_000, 32_000, 40_000, 48_000, 56_000, 64_000, 72_000, 80_000, 88_000],
-    meets: PhaseRequirements {
-        criterion: PhaseCriterion::Margin(Micros::new(90)),
+    meets: Requirements {
+        criterion: Criterion::Margin(Micros::new(90)),
         min_interval: Micros::from_millis(4),
-        layout: eeruf_core::Layout::Line(4),
-        ..PhaseRequirements::new(Micros::new(150), Micros::from_millis(36))
+        window: WINDOW,
+        ..Requirements::new(Micros::new(150))
     },
 };
 

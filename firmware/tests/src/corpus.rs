@@ -66,13 +66,11 @@ fn every_schedule_of_the_shared_cases_meets_its_requirements() {
         )
         .expect("a schedule");
         let requirements = Requirements {
-            t_delta: Micros::new((case.separation * case.tick_us - 1) / 2),
-            criterion: Criterion::Exact,
             min_interval: us(case.min_interval),
             layout: case.layout,
             window: us(case.window),
             stale_echo: case.stale_echo,
-            uneven: None,
+            ..Requirements::new(Micros::new((case.separation * case.tick_us - 1) / 2))
         };
         assert_eq!(schedule.verify(&requirements).violations().next(), None);
     }

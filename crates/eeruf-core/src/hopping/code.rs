@@ -168,22 +168,34 @@ impl HoppingCode {
 
     /// Largest shortfall of two firings of a sensor against a period.
     pub const fn longest_drop(&self) -> Micros {
-        let (mut most, mut sensor) = (0, 0);
-        while sensor < self.sensors as usize && !self.is_welch() {
-            let multiplier = self.multiplier(sensor);
-            let drop = if multiplier == 0 { 0 } else { self.phases as u32 - multiplier };
+        // With Welch's sequence all sensors go through the same waits.
+        let all = if self.is_welch() { self.phases } else { self.sensors };
+        let (mut most, mut at) = (0, 0);
+        while at < all {
+            let drop = self.drop_at(at);
             most = if drop > most { drop } else { most };
-            sensor += 1;
+            at += 1;
         }
-        // All sensors go through the same waits.
-        let (mut place, mut left) = (0, self.phases);
-        while left > 0 && self.is_welch() {
-            let next = self.next_place(0, place);
-            let drop = place.saturating_sub(next) as u32;
-            most = if drop > most { drop } else { most };
-            (place, left) = (next, left - 1);
+        Micros::new(most as u32 * self.step.as_micros())
+    }
+
+    /// The same of the sensor with this number.
+    pub const fn drop_of(&self, sensor: u8) -> Micros {
+        if self.is_welch() {
+            self.longest_drop()
+        } else {
+            Micros::new(self.drop_at(sensor) as u32 * self.step.as_micros())
         }
-        Micros::new(most * self.step.as_micros())
+    }
+
+    /// In steps: how much shorter a wait is than the one before, for a place of Welch's sequence or the sensor with
+    /// this number.
+    const fn drop_at(&self, at: u8) -> u8 {
+        if self.is_welch() {
+            return at.saturating_sub(self.times_root(at));
+        }
+        let multiplier = self.multiplier(at as usize) as u8;
+        if multiplier == 0 { 0 } else { self.phases - multiplier }
     }
 
     /// Factor of the phase for a sensor, modulo the number of phases.

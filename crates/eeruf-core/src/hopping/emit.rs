@@ -4,29 +4,30 @@ use core::fmt;
 
 use super::schedule::HoppingSchedule;
 use super::settings::HoppingSettings;
-use crate::emit::{EERUF_VERSION, Grouped, Numbers, RustLayout};
+use crate::emit::{EERUF_VERSION, Grouped, Meets, Numbers, Promise};
 use crate::layout::Layout;
-use crate::phases::{PhaseCriterion, PhaseRequirements};
+use crate::requirements::{Criterion, Requirements};
 use crate::time::Micros;
 use crate::tracker::TrackerSettings;
 
 impl<const K: usize> HoppingSchedule<K> {
     /// A `const RING: HoppingSchedule` in Rust, with the `requirements` for the compiler to check (see
     /// [`hopping_schedule!`](crate::hopping_schedule!)), and the constants `SETTINGS` and `LISTENING` for a
-    /// [`HoppingRing`](super::HoppingRing): the balanced settings with this `t_delta` and these neighbours.
-    pub const fn to_rust<'r>(&'r self, requirements: &'r PhaseRequirements<'r>) -> impl fmt::Display {
+    /// [`HoppingRing`](super::HoppingRing): the balanced settings with this `t_delta` and these neighbours. Where
+    /// sensors are not all alike, `RING` holds their limits too.
+    pub const fn to_rust<'r>(&'r self, requirements: &'r Requirements<'r>) -> impl fmt::Display {
         HoppingRust { schedule: self, requirements }
     }
 
     /// A C99 header that includes nothing but `<stdint.h>`, with the firing times of each phase; with `eeruf.h` before
     /// it, also the constant `eeruf_hopping_config` for `eeruf_hopping_init`, with the settings of
     /// [`to_rust`](Self::to_rust).
-    pub const fn to_c<'r>(&'r self, requirements: &'r PhaseRequirements<'r>) -> impl fmt::Display {
+    pub const fn to_c<'r>(&'r self, requirements: &'r Requirements<'r>) -> impl fmt::Display {
         HoppingHeader { schedule: self, requirements }
     }
 
     /// A file of an Arduino sketch with the constant `name` for `eeruf_hopping_init`, as in [`to_c`](Self::to_c).
-    pub const fn to_arduino<'r>(&'r self, requirements: &'r PhaseRequirements<'r>, name: &'r str) -> impl fmt::Display {
+    pub const fn to_arduino<'r>(&'r self, requirements: &'r Requirements<'r>, name: &'r str) -> impl fmt::Display {
         HoppingTab { schedule: self, requirements, name }
     }
 
@@ -43,48 +44,40 @@ impl<const K: usize> HoppingSchedule<K> {
 /// A hopping schedule in Rust: see [`HoppingSchedule::to_rust`].
 struct HoppingRust<'r, const K: usize> {
     schedule: &'r HoppingSchedule<K>,
-    requirements: &'r PhaseRequirements<'r>,
+    requirements: &'r Requirements<'r>,
 }
 
 impl<const K: usize> fmt::Display for HoppingRust<'_, K> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { schedule, requirements } = self;
-        let PhaseRequirements { t_delta, criterion, audible, min_interval, layout, stale_echo } = requirements;
-        let code = schedule.code();
-        writeln!(f, "use eeruf_core::{{\n    Layout, Micros,")?;
+        let (code, uneven) = (schedule.code(), requirements.uneven.is_some());
+        let (each, uneven_too) = if uneven { ("EachSensor, ", ", Uneven") } else { ("", "") };
+        let criterion = if requirements.criterion == Criterion::Exact { "" } else { "Criterion, " };
+        writeln!(f, "use eeruf_core::{{\n    {criterion}{each}Layout, Micros, Requirements{uneven_too},")?;
         writeln!(f, "    hopping::{{HoppingListening, HoppingSchedule, HoppingSettings}},\n    hopping_schedule,")?;
-        writeln!(f, "    judge::TrackerSettings,\n    phases::{{Audible, PhaseCriterion, PhaseRequirements}},\n}};\n")?;
+        writeln!(f, "    judge::TrackerSettings,\n}};\n")?;
         writeln!(f, "// {},", Summary(schedule))?;
         writeln!(f, "// {}.", Promise(requirements))?;
         writeln!(
             f,
             "#[allow(long_running_const_eval, reason = \"all pairs of neighbours are checked in all phases\")]"
         )?;
-        writeln!(f, "pub const RING: HoppingSchedule<{}> = hopping_schedule! {{", code.sensors())?;
+        let sensors = code.sensors();
+        if uneven {
+            write!(f, "pub const RING: (HoppingSchedule<{sensors}>, EachSensor<{sensors}>)")?;
+        } else {
+            write!(f, "pub const RING: HoppingSchedule<{sensors}>")?;
+        }
+        writeln!(f, " = hopping_schedule! {{")?;
         writeln!(f, "    period_us: {},", Grouped(schedule.period()))?;
         writeln!(f, "    step_us: {},", Grouped(code.step()))?;
         writeln!(f, "    phases: {},", code.phases())?;
         writeln!(f, "    first_multiplier: {},", code.first_multiplier())?;
         writeln!(f, "    t_lag_us: [{}],", Numbers(|| schedule.lags()))?;
-        writeln!(f, "    meets: PhaseRequirements {{")?;
-        writeln!(f, "        t_delta: Micros::new({}),", Grouped(*t_delta))?;
-        match criterion {
-            PhaseCriterion::Exact => writeln!(f, "        criterion: PhaseCriterion::Exact,")?,
-            PhaseCriterion::Margin(margin) => {
-                writeln!(f, "        criterion: PhaseCriterion::Margin(Micros::new({})),", Grouped(*margin))?;
-            }
-        }
-        writeln!(f, "        audible: Audible {{")?;
-        writeln!(f, "            window: Micros::new({}),", Grouped(audible.window))?;
-        writeln!(f, "            blanking: Micros::new({}),", Grouped(audible.blanking))?;
-        writeln!(f, "            reach: Micros::new({}),", Grouped(audible.reach))?;
-        writeln!(f, "        }},")?;
-        writeln!(f, "        min_interval: Micros::new({}),", Grouped(*min_interval))?;
-        writeln!(f, "        layout: {},", RustLayout(*layout))?;
-        writeln!(f, "        stale_echo: {stale_echo},")?;
-        writeln!(f, "    }},\n}};\n")?;
+        writeln!(f, "{}}};\n", Meets(requirements))?;
         let HoppingSettings { tracker, neighbours, .. } = settings(requirements);
-        writeln!(f, "// For `HoppingRing::hopping`; QUICK, DRIVING and MAPS are other sets of settings.")?;
+        let call = if uneven { "with_limits" } else { "hopping" };
+        writeln!(f, "// For `HoppingRing::{call}`; QUICK, DRIVING and MAPS are other sets of settings.")?;
         writeln!(f, "pub const SETTINGS: HoppingSettings = HoppingSettings::BALANCED")?;
         write!(f, "    .with_tracker(\n        TrackerSettings::BALANCED")?;
         let TrackerSettings { t_delta, near, tentative_within, .. } = tracker;
@@ -92,18 +85,19 @@ impl<const K: usize> fmt::Display for HoppingRust<'_, K> {
             write!(f, "\n            .with_{name}(Micros::new({}))", Grouped(time))?;
         }
         writeln!(f, ",\n    )\n    .with_neighbours({neighbours});\n")?;
+        let &Requirements { window, blanking, audible, .. } = *requirements;
         write!(f, "pub const LISTENING: HoppingListening = ")?;
-        if audible.blanking == Micros::ZERO && audible.reach == audible.window {
-            return writeln!(f, "HoppingListening::new(Micros::new({}));", Grouped(audible.window));
+        if blanking == Micros::ZERO && audible.is_none() {
+            return writeln!(f, "HoppingListening::new(Micros::new({}));", Grouped(window));
         }
-        writeln!(f, "HoppingListening::new(Micros::new({}))", Grouped(audible.window))?;
-        writeln!(f, "    .with_blanking(Micros::new({}))", Grouped(audible.blanking))?;
-        writeln!(f, "    .with_reach(Micros::new({}));", Grouped(audible.reach))
+        writeln!(f, "HoppingListening::new(Micros::new({}))", Grouped(window))?;
+        writeln!(f, "    .with_blanking(Micros::new({}))", Grouped(blanking))?;
+        writeln!(f, "    .with_reach(Micros::new({}));", Grouped(audible.unwrap_or(window)))
     }
 }
 
 /// The balanced settings for such a ring.
-fn settings(requirements: &PhaseRequirements<'_>) -> HoppingSettings {
+fn settings(requirements: &Requirements<'_>) -> HoppingSettings {
     let (balanced, t_delta) = (TrackerSettings::BALANCED, requirements.t_delta);
     let near = balanced.near.max(t_delta);
     let tracker =
@@ -118,7 +112,7 @@ fn settings(requirements: &PhaseRequirements<'_>) -> HoppingSettings {
 /// A hopping schedule as a C header: see [`HoppingSchedule::to_c`].
 struct HoppingHeader<'r, const K: usize> {
     schedule: &'r HoppingSchedule<K>,
-    requirements: &'r PhaseRequirements<'r>,
+    requirements: &'r Requirements<'r>,
 }
 
 impl<const K: usize> fmt::Display for HoppingHeader<'_, K> {
@@ -132,7 +126,7 @@ impl<const K: usize> fmt::Display for HoppingHeader<'_, K> {
         writeln!(f, "#define EERUF_PHASES {}", code.phases())?;
         writeln!(f, "#define EERUF_PERIOD_US {}u", schedule.period().as_micros())?;
         writeln!(f, "#define EERUF_T_DELTA_US {}u", requirements.t_delta.as_micros())?;
-        writeln!(f, "#define EERUF_WINDOW_US {}u\n", requirements.audible.window.as_micros())?;
+        writeln!(f, "#define EERUF_WINDOW_US {}u\n", requirements.window.as_micros())?;
         writeln!(f, "static const uint32_t eeruf_t_fire_us[EERUF_PHASES][EERUF_SENSORS] = {{")?;
         for phase in 0..code.phases() {
             write!(f, "    {{")?;
@@ -150,7 +144,7 @@ impl<const K: usize> fmt::Display for HoppingHeader<'_, K> {
 /// A hopping schedule as a file of an Arduino sketch: see [`HoppingSchedule::to_arduino`].
 struct HoppingTab<'r, const K: usize> {
     schedule: &'r HoppingSchedule<K>,
-    requirements: &'r PhaseRequirements<'r>,
+    requirements: &'r Requirements<'r>,
     name: &'r str,
 }
 
@@ -166,14 +160,14 @@ impl<const K: usize> fmt::Display for HoppingTab<'_, K> {
 /// The constant of type `EerufHoppingConfig`, and the lags it points to.
 struct Constant<'r, const K: usize> {
     schedule: &'r HoppingSchedule<K>,
-    requirements: &'r PhaseRequirements<'r>,
+    requirements: &'r Requirements<'r>,
     name: &'r str,
 }
 
 impl<const K: usize> fmt::Display for Constant<'_, K> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { schedule, requirements, name } = self;
-        let (code, audible, all) = (schedule.code(), requirements.audible, settings(requirements));
+        let (code, all, window) = (schedule.code(), settings(requirements), requirements.window);
         write!(f, "static const uint32_t {name}_lag_us[] = {{")?;
         for (sensor, lag) in schedule.lags().enumerate() {
             write!(f, "{}{}u", if sensor == 0 { "" } else { ", " }, lag.as_micros())?;
@@ -185,7 +179,8 @@ impl<const K: usize> fmt::Display for Constant<'_, K> {
         writeln!(f, "static const EerufHoppingConfig {name} = {{")?;
         let (step, period) = (code.step().as_micros(), schedule.period().as_micros());
         writeln!(f, "    {EERUF_VERSION}, {}, {}, {step}u, {period}u, {name}_lag_us,", code.sensors(), code.phases())?;
-        let times = [audible.window, audible.blanking, audible.reach, all.shift_interval].map(Micros::as_micros);
+        let reach = requirements.audible.unwrap_or(window);
+        let times = [window, requirements.blanking, reach, all.shift_interval].map(Micros::as_micros);
         let [window, blanking, reach, shift_interval] = times;
         write!(f, "    {window}u, {blanking}u, {reach}u, {shift_interval}u,")?;
         let TrackerSettings { t_delta, near, tentative_within, votes, score_limit, .. } = all.tracker;
@@ -227,16 +222,6 @@ impl<const K: usize> fmt::Display for Summary<'_, K> {
     }
 }
 
-/// Requirements that a schedule was designed for.
-struct Promise<'s>(&'s PhaseRequirements<'s>);
-
-impl fmt::Display for Promise<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let PhaseRequirements { t_delta, audible, min_interval, layout, .. } = self.0;
-        write!(f, "t_delta = {t_delta}, {layout} at least {min_interval} apart, listening for {}", audible.window)
-    }
-}
-
 #[cfg(test)]
 mod tests {
     extern crate std;
@@ -250,10 +235,11 @@ mod tests {
         let code = HoppingCode::shortest(3, 2, Micros::new(301)).unwrap();
         let lags = [0, 9_000, 18_000, 0].map(Micros::new);
         let schedule = HoppingSchedule::<4>::new(code, Micros::from_millis(40), lags).unwrap();
-        let requirements = PhaseRequirements {
+        let requirements = Requirements {
             min_interval: Micros::from_millis(8),
             layout: Layout::Ring(2),
-            ..PhaseRequirements::new(Micros::new(150), Micros::from_millis(36))
+            window: Micros::from_millis(36),
+            ..Requirements::new(Micros::new(150))
         };
         assert_eq!(
             schedule.to_toml().to_string(),
@@ -277,12 +263,12 @@ mod tests {
         assert!(tab.contains("PORT_lag_us[] = {0u, 9000u, 18000u};"), "{tab}");
         assert!(tab.contains("{150, 400, 60, 5, 6, 2, 6, 2, 0},\n    84, 5, 3, 0, 8, 2, 2,\n};"), "{tab}");
         // What may not be less than T_delta, or more, follows it.
-        let wide = PhaseRequirements { t_delta: Micros::new(500), ..requirements };
+        let wide = Requirements { t_delta: Micros::new(500), ..requirements };
         assert!(schedule.to_c(&wide).to_string().contains("{500, 500, 60,"));
-        let narrow = PhaseRequirements { t_delta: Micros::new(40), ..requirements };
+        let narrow = Requirements { t_delta: Micros::new(40), ..requirements };
         assert!(schedule.to_rust(&narrow).to_string().contains(".with_tentative_within(Micros::new(40)),"));
         let mut deaf = requirements;
-        deaf.audible.blanking = Micros::new(900);
+        deaf.blanking = Micros::new(900);
         let rust = schedule.to_rust(&deaf).to_string();
         assert!(
             rust.ends_with("    .with_blanking(Micros::new(900))\n    .with_reach(Micros::new(36_000));\n"),
@@ -292,7 +278,7 @@ mod tests {
         let rust = schedule.to_rust(&requirements).to_string();
         assert!(rust.ends_with("HoppingListening = HoppingListening::new(Micros::new(36_000));\n"), "{rust}");
         let mut far = requirements;
-        far.audible.reach = Micros::from_millis(50);
+        far.audible = Some(Micros::from_millis(50));
         let rust = schedule.to_rust(&far).to_string();
         assert!(
             rust.ends_with("    .with_blanking(Micros::new(0))\n    .with_reach(Micros::new(50_000));\n"),

@@ -79,6 +79,11 @@ pub enum HoppingError {
         /// The longest lag that leaves room for the code.
         most: Micros,
     },
+    /// Lags that are drawn anew do not keep what sensors and pairs need of their own.
+    Shift {
+        /// After how many readings that do not fit.
+        shift_after: u8,
+    },
     /// A setting of the tracker.
     Tracker(TrackerError),
     /// Settings by which the ring listens.
@@ -113,6 +118,7 @@ impl HoppingError {
             Self::Period { .. } => "the period must be longer than the code is wide, and no longer than 268 s",
             Self::Window { .. } => "a listening window is at most 16711.679 ms",
             Self::Lag { .. } => "each sensor must fire inside its period",
+            Self::Shift { .. } => "lags stay where sensors have limits of their own",
             Self::Tracker(_) => "a setting of the tracker is out of its range",
             Self::Ring(_) => "the ring cannot listen like that",
         }
@@ -149,6 +155,11 @@ impl fmt::Display for HoppingError {
             Self::Lag { sensor, lag, most } => {
                 write!(f, "a lag of {lag} for sensor {}; expected at most {most}", sensor + first)
             }
+            Self::Shift { shift_after } => write!(
+                f,
+                "shift_after {shift_after}; expected 0 where sensors have limits of their own, which new lags would \
+                 not keep"
+            ),
             Self::Tracker(error) => error.fmt(f),
             Self::Ring(error) => error.fmt(f),
         }

@@ -21,6 +21,7 @@ mod tests;
 mod turn;
 mod weighed;
 
+use crate::own_limits::{Alike, LimitsInUse};
 use crate::ring::{Ring, RingConfig};
 use crate::time::Instant;
 use crate::tracker::EchoTracker;
@@ -63,7 +64,10 @@ pub use weighed::Weighed;
 /// assert!(accepted > 400);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub type HoppingRing<const K: usize, const H: usize = 4> = Ring<HoppingPlan<K>, EchoTracker<K, H>, K, 1, 1>;
+///
+/// `U` is [`EachSensor`](crate::EachSensor) where sensors have limits of their own.
+pub type HoppingRing<const K: usize, const H: usize = 4, U = Alike> =
+    Ring<HoppingPlan<K, U>, EchoTracker<K, H>, K, 1, 1>;
 
 impl<const K: usize, const H: usize> HoppingRing<K, H> {
     /// A ring that hops in time and begins at `now`. The seed is for the draws of new lags.
@@ -78,8 +82,27 @@ impl<const K: usize, const H: usize> HoppingRing<K, H> {
         seed: u32,
         now: Instant,
     ) -> Result<Self, HoppingError> {
+        Self::with_limits(schedule, Alike, settings, listening, seed, now)
+    }
+}
+
+impl<const K: usize, const H: usize, U: LimitsInUse> HoppingRing<K, H, U> {
+    /// As [`hopping`](HoppingRing::hopping), for sensors that have limits of their own, by [`HoppingSchedule::limits`]
+    /// or [`hopping_schedule!`](crate::hopping_schedule!) with `each_meets`.
+    ///
+    /// # Errors
+    /// As there, and as for [`HoppingPlan::with_limits`].
+    #[inline(always)]
+    pub fn with_limits(
+        schedule: &HoppingSchedule<K>,
+        own_limits: U,
+        settings: HoppingSettings,
+        listening: HoppingListening,
+        seed: u32,
+        now: Instant,
+    ) -> Result<Self, HoppingError> {
         let tracker = EchoTracker::new(settings.tracker)?;
-        let plan = HoppingPlan::new(schedule, settings, listening, seed, now)?;
+        let plan = HoppingPlan::with_limits(schedule, own_limits, settings, listening, seed, now)?;
         let config = RingConfig::new().with_window(listening.window).with_blanking(listening.blanking);
         Ok(Self::judged_by(plan, tracker, config, now)?)
     }

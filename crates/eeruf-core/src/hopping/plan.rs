@@ -9,6 +9,7 @@ use super::settings::{HoppingListening, HoppingSettings, Pace};
 use super::turn::{DISABLED, FIRED, SETTLED, SOLO, Turn};
 use super::weighed::Weighed;
 use crate::judging::{Firing, Heard, Judge};
+use crate::own_limits::{Alike, LimitsInUse, SensorLimits};
 use crate::plan::{Limits, Plan, Upcoming};
 use crate::reading::{ReadingKind, Verdict};
 use crate::schedule::Phase;
@@ -34,7 +35,7 @@ const NOBODY: u8 = u8::MAX;
 // In this order: a Cortex-M0 reaches only the first 31 bytes of a structure, and the first 31 of its words, in one
 // instruction. What a firing needs comes first.
 #[repr(C)]
-pub struct HoppingPlan<const K: usize> {
+pub struct HoppingPlan<const K: usize, U = Alike> {
     /// The sensor that fires next, or [`NOBODY`].
     next: u8,
     /// Number of this period's sensors that have fired, and of those that fire in it.
@@ -73,6 +74,7 @@ pub struct HoppingPlan<const K: usize> {
     /// `t_delta`.
     tolerated: u16,
     pub(super) turns: [Turn; K],
+    pub(super) own_limits: U,
 }
 
 impl<const K: usize> HoppingPlan<K> {
@@ -90,7 +92,29 @@ impl<const K: usize> HoppingPlan<K> {
         seed: u32,
         now: Instant,
     ) -> Result<Self, HoppingError> {
+        Self::with_limits(schedule, Alike, settings, listening, seed, now)
+    }
+}
+
+impl<const K: usize, U: LimitsInUse> HoppingPlan<K, U> {
+    /// As [`new`](HoppingPlan::new), for sensors that have limits of their own:
+    /// [`HoppingSchedule::limits`] gives them. `listening` says the most for all.
+    ///
+    /// # Errors
+    /// As there, by the limits of each sensor; also for lags that are to be drawn anew, which would not keep them.
+    pub fn with_limits(
+        schedule: &HoppingSchedule<K>,
+        own_limits: U,
+        settings: HoppingSettings,
+        listening: HoppingListening,
+        seed: u32,
+        now: Instant,
+    ) -> Result<Self, HoppingError> {
         let code = schedule.code();
+        let verified_for = own_limits.most();
+        if verified_for.is_some() && settings.shift_after > 0 {
+            return Err(HoppingError::Shift { shift_after: settings.shift_after });
+        }
         let t_delta = settings.tracker.t_delta;
         if code.step() <= t_delta {
             return Err(HoppingError::TDelta { t_delta, step: code.step() });
@@ -100,7 +124,17 @@ impl<const K: usize> HoppingPlan<K> {
             return Err(HoppingError::Votes { votes, phases: code.phases() });
         }
         // The sensor must have stopped listening, and a path must not read the same with two ages.
-        let least = listening.window.saturating_add(code.longest_drop()).max(code.two_ages());
+        let least = match verified_for {
+            None => listening.window.saturating_add(code.longest_drop()),
+            Some(_) => {
+                let window = |x: u8| own_limits.limits_of(x).map_or(listening.window, |limits| limits.window);
+                let fires_after =
+                    |x: u8| window(x).min(listening.window).saturating_add(code.drop_of(own_limits.leader_of(x)));
+                // At most 64 sensors.
+                (0..code.sensors() as u8).map(fires_after).max().unwrap_or_default()
+            }
+        };
+        let least = least.max(code.two_ages());
         if schedule.period() < least {
             return Err(HoppingError::Period { period: schedule.period(), least });
         }
@@ -131,15 +165,17 @@ impl<const K: usize> HoppingPlan<K> {
             period: schedule.period(),
             random: SmallRandom::new(seed),
             window,
-            dies: listening.dies(),
+            dies: listening.dies().max(verified_for.map_or(Micros::ZERO, |most| most.min_interval)),
             pace: Pace::of(&settings),
             // A track may be off by as much as its readings, and a step is at most 65,535 us.
             tolerated: (schedule.code().step().abs_diff(settings.tracker.t_delta).as_micros().saturating_sub(1) / 2)
                 as u16,
             turns: core::array::from_fn(|sensor| {
                 let lag = schedule.t_lag(sensor).unwrap_or(Micros::ZERO);
-                Turn::new(lag, code.place(schedule.turn(sensor), 0))
+                // At most 64 sensors.
+                Turn::new(lag, code.place(schedule.turn(own_limits.leader_of(sensor as u8).into()), 0))
             }),
+            own_limits,
         };
         // No sensor has fired.
         plan.plan(|_| now);
@@ -275,7 +311,7 @@ impl<const K: usize> HoppingPlan<K> {
     }
 }
 
-impl<const K: usize> Plan for HoppingPlan<K> {
+impl<const K: usize, U: LimitsInUse> Plan for HoppingPlan<K, U> {
     fn deadline(&self) -> Instant {
         self.due
     }
@@ -342,7 +378,7 @@ impl<const K: usize> Plan for HoppingPlan<K> {
         let code = self.code;
         self.phase = if self.phase + 1 < code.phases() { self.phase + 1 } else { 0 };
         for (sensor, turn) in (0..).zip(self.turns.iter_mut().take(code.sensors())) {
-            turn.place = code.next_place(sensor, turn.place);
+            turn.place = code.next_place(self.own_limits.leader_of(sensor), turn.place);
         }
         self.clear_period();
         (phase, left_out)
@@ -414,6 +450,13 @@ impl<const K: usize> Plan for HoppingPlan<K> {
             turn.set(SETTLED, false);
         }
         self.start = now;
+        if let Some(most) = self.own_limits.most() {
+            // What pairs keep between their firings they keep across a restart, unless the clock has jumped.
+            let settled = self.last_fired + most.min_interval;
+            if !now.has_reached(settled) && settled.since(now) <= most.min_interval {
+                self.start = settled;
+            }
+        }
         self.break_off();
         self.clear_period();
     }
@@ -426,6 +469,15 @@ impl<const K: usize> Plan for HoppingPlan<K> {
 
     fn limits(&self) -> Limits<'_> {
         Limits { longest_window: self.min_refire(), verified_for: None, audible: None }
+    }
+
+    fn hears(&self, receiver: u8, emitter: u8) -> bool {
+        self.own_limits.hears(receiver, emitter)
+    }
+
+    #[inline]
+    fn limits_of(&self, sensor: u8) -> Option<SensorLimits> {
+        self.own_limits.limits_of(sensor)
     }
 
     fn min_refire(&self) -> Micros {

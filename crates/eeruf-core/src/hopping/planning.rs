@@ -3,6 +3,7 @@
 use super::plan::{CATCHES_UP, HoppingPlan};
 use super::schedule::longest_lag;
 use super::turn::{DISABLED, FIRED, SETTLED, SOLO, Turn};
+use crate::own_limits::LimitsInUse;
 use crate::time::{Instant, Micros};
 
 /// A whole solo period, and the most that is saved up.
@@ -11,7 +12,7 @@ const MOST: u16 = 2 * ONE;
 /// Number of lags that are drawn in search of one that keeps the neighbours' interval.
 const DRAWS: u8 = 8;
 
-impl<const K: usize> HoppingPlan<K> {
+impl<const K: usize, U: LimitsInUse> HoppingPlan<K, U> {
     /// Decides who fires in the period that has begun. `fired` says when a sensor that has fired last did.
     pub(super) fn plan(&mut self, fired: impl Fn(u8) -> Instant) {
         self.since_solo = self.since_solo.saturating_add(1);
@@ -34,7 +35,7 @@ impl<const K: usize> HoppingPlan<K> {
         // At most 64 sensors.
         for sensor in 0..self.code.sensors() as u8 {
             let Some(turn) = self.turns.get(usize::from(sensor)) else { break };
-            if !turn.is(DISABLED) && self.offset(sensor) >= self.rests_for(turn, fired(sensor)) {
+            if !turn.is(DISABLED) && self.offset(sensor) >= self.rests_for(sensor, turn, fired(sensor)) {
                 self.insert(sensor);
             }
         }
@@ -57,7 +58,8 @@ impl<const K: usize> HoppingPlan<K> {
         // The last firing may have been late past the period's end. A clock that has jumped says nothing about it.
         let at = if silent <= self.dies.saturating_add(CATCHES_UP) { silent } else { Micros::ZERO };
         // Its own last firing is among those that it waits for, but its window may be longer.
-        let at = at.max(self.turns.get(usize::from(sensor)).map_or(Micros::MAX, |turn| self.rests_for(turn, fired)));
+        let at =
+            at.max(self.turns.get(usize::from(sensor)).map_or(Micros::MAX, |turn| self.rests_for(sensor, turn, fired)));
         self.earned -= ONE;
         self.since_solo = 0;
         (self.kind, self.solo_at) = (FIRED | SOLO | SETTLED, at);
@@ -70,11 +72,13 @@ impl<const K: usize> HoppingPlan<K> {
 
     /// Time after the start of the period in which a sensor that has last `fired` then must not fire yet, since it
     /// still listens.
-    fn rests_for(&self, turn: &Turn, fired: Instant) -> Micros {
-        let rested = fired + self.window;
+    fn rests_for(&self, sensor: u8, turn: &Turn, fired: Instant) -> Micros {
+        let own = self.own_limits.limits_of(sensor);
+        let rest = own.map_or(self.window, |limits| limits.window.min(self.window));
+        let rested = fired + rest;
         let rests = if self.start.has_reached(rested) { Micros::ZERO } else { rested.since(self.start) };
         // It may have fired late past the period's end. A clock that has jumped says nothing about when that was.
-        let is_known = turn.is(FIRED) && rests <= self.window.saturating_add(CATCHES_UP);
+        let is_known = turn.is(FIRED) && rests <= rest.saturating_add(CATCHES_UP);
         if is_known { rests } else { Micros::ZERO }
     }
 

@@ -2,9 +2,12 @@
 
 use super::code::HoppingCode;
 use super::error::HoppingError;
-use crate::phases::{PhaseRequirements, PhaseSeparation, PhaseTable, PhaseVerification};
-use crate::schedule::{MAX_PERIOD, Phase};
+use crate::own_limits::{EachSensor, SensorLimits};
+use crate::phases::{PhaseSeparation, PhaseTable, PhaseVerification};
+use crate::requirements::Requirements;
+use crate::schedule::{MAX_PERIOD, MAX_SENSORS, Phase, VerifiedFor};
 use crate::time::Micros;
+use crate::verify::Violation;
 
 /// When the sensors of a [`HoppingRing`](super::HoppingRing) fire: each once a period, at its lag plus the wait of the
 /// code. `K` is the most sensors that it has room for; the code says how many there are.
@@ -73,14 +76,20 @@ impl<const K: usize> HoppingSchedule<K> {
     /// The firing times as a table of `M` phases, for [`PhaseTable`](crate::phases::PhaseTable): of the code's first
     /// `M`, or from the first again if there are more. Sensors that are not there fire at once.
     pub const fn table<const M: usize>(&self) -> [[Micros; K]; M] {
+        self.table_together(&[])
+    }
+
+    /// As [`table`](Self::table), where these sets of sensors fire together, bit x for sensor x: they share the waits
+    /// of the first of them, and must share its lag.
+    pub const fn table_together<const M: usize>(&self, together: &[u64]) -> [[Micros; K]; M] {
         let mut table = [[Micros::ZERO; K]; M];
         let mut phase = 0;
         while phase < M {
             let mut sensor = 0;
-            while sensor < self.code.sensors() {
-                if let Some(t_fire) = self.t_fire((phase % self.code.phases() as usize) as u8, sensor) {
-                    table[phase][sensor] = t_fire;
-                }
+            while sensor < self.code.sensors() && sensor < K {
+                let (number, turn) =
+                    ((phase % self.code.phases() as usize) as u8, self.turn(first_of(together, sensor)));
+                table[phase][sensor] = self.lags[sensor].saturating_add(self.code.wait(turn, number));
                 sensor += 1;
             }
             phase += 1;
@@ -88,32 +97,56 @@ impl<const K: usize> HoppingSchedule<K> {
         table
     }
 
-    /// Checks the schedule. That crosstalk moves by the step is proven (`docs/explanation/theory.md`, section 9.1) and
-    /// not worked out again where the period is at least twice the code and a step, so that this is cheap enough for
-    /// the compiler; [`PhaseTable::verify`] works it out.
-    pub const fn verify<'r>(&self, requirements: &'r PhaseRequirements<'r>) -> PhaseVerification<'r> {
-        let rows = self.table::<{ HoppingCode::MAX_PHASES as usize }>();
+    /// Checks the schedule: every limit, pair and phase. Sensors that must fire together share the waits of the first
+    /// of them. That crosstalk moves by the step is proven (`docs/explanation/theory.md`, section 9.1) and not worked
+    /// out again where the period is at least twice the code and a step, so that this is cheap enough for the compiler;
+    /// [`PhaseTable::verify`] works it out.
+    pub const fn verify<'r>(&self, requirements: &'r Requirements<'r>) -> PhaseVerification<'r> {
+        let rows = self.table_together::<{ HoppingCode::MAX_PHASES as usize }>(requirements.together());
         let (cycle, _) = rows.split_at(self.code.phases() as usize);
         let table = PhaseTable::new(self.period, cycle).with_sensors(self.code.sensors());
-        let separation = if self.code.sensors() < 2 {
-            None
-        } else if self.period.as_micros() < self.code.two_ages().as_micros() || self.hears_the_same(requirements) {
-            table.separation(&requirements.audible)
-        } else {
-            // All pairs and phases are alike.
-            let phases = (Phase(0), Phase(1));
-            Some(PhaseSeparation { value: self.code.step(), sensors: (0, 1), phases, ages: (0, 0) })
+        // All pairs and phases are alike.
+        let step =
+            PhaseSeparation { value: self.code.step(), sensors: (0, 1), phases: (Phase(0), Phase(1)), ages: (0, 0) };
+        let is_proven =
+            self.period.as_micros() >= self.code.two_ages().as_micros() && !self.hears_the_same(requirements);
+        table.verify_with(if is_proven { Some(step) } else { None }, requirements)
+    }
+
+    /// The limits of each sensor for a [`HoppingPlan`](super::HoppingPlan), if the schedule meets the requirements.
+    ///
+    /// # Errors
+    /// The first [`Violation`] if it does not.
+    pub const fn limits(&self, requirements: &Requirements<'_>) -> Result<EachSensor<K>, Violation> {
+        if let Some(violation) = self.verify(requirements).first_violation() {
+            return Err(violation);
+        }
+        let sensors = self.code.sensors();
+        let (t_delta, min_interval, window) = requirements.strictest(sensors);
+        let audible = match requirements.audible {
+            Some(audible) => audible,
+            None => requirements.window,
         };
-        let stale = if requirements.stale_echo { table.stale_separation(&requirements.audible) } else { None };
-        PhaseVerification::new(requirements, separation, stale, &table)
+        let separation = self.code.step();
+        let verified_for = VerifiedFor { t_delta, min_interval, window, separation, path_change: None, audible };
+        let mut limits = [SensorLimits { t_delta: Micros::ZERO, window: Micros::ZERO }; K];
+        let mut x = 0;
+        while x < sensors && x < K {
+            limits[x] = SensorLimits { t_delta: requirements.t_delta_of(x), window: requirements.window_of(x) };
+            x += 1;
+        }
+        Ok(EachSensor::new(verified_for, sensors, limits, Micros::ZERO, requirements.together()))
     }
 
     /// Returns true if the sound of the sensor that fires before another, from the period before, is still audible:
     /// with Welch's sequence it moves as the other does.
-    const fn hears_the_same(&self, requirements: &PhaseRequirements<'_>) -> bool {
-        let (audible, period) = (&requirements.audible, self.period.as_micros());
-        let dies = audible.reach.saturating_sub(audible.blanking).as_micros();
-        self.code.is_welch() && (dies > period || audible.window.as_micros() > period)
+    const fn hears_the_same(&self, requirements: &Requirements<'_>) -> bool {
+        let reach = match requirements.audible {
+            Some(audible) => audible,
+            None => requirements.window,
+        };
+        let (dies, period) = (reach.saturating_sub(requirements.blanking).as_micros(), self.period.as_micros());
+        self.code.is_welch() && (dies > period || requirements.window.as_micros() > period)
     }
 
     /// The code.
@@ -147,7 +180,7 @@ impl<const K: usize> HoppingSchedule<K> {
 
     /// The place of a sensor in the code: in the order of lags for Welch's sequence, so that only the sensor that fires
     /// before it, in the period before, moves as it does.
-    pub(super) const fn turn(&self, sensor: usize) -> usize {
+    pub(crate) const fn turn(&self, sensor: usize) -> usize {
         if !self.code.is_welch() || sensor >= K {
             return sensor;
         }
@@ -161,6 +194,18 @@ impl<const K: usize> HoppingSchedule<K> {
         }
         turn
     }
+}
+
+/// The first sensor of the set that a sensor fires together with, or itself.
+const fn first_of(together: &[u64], sensor: usize) -> usize {
+    let mut at = 0;
+    while at < together.len() {
+        if sensor < MAX_SENSORS && together[at] >> sensor & 1 == 1 {
+            return together[at].trailing_zeros() as usize;
+        }
+        at += 1;
+    }
+    sensor
 }
 
 /// The longest lag that leaves room for a code in a period.

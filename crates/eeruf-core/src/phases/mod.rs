@@ -13,16 +13,16 @@
 
 mod verify;
 
-use crate::layout::Layout;
+use crate::requirements::{Interval, Requirements, shorter};
 use crate::schedule::{MAX_SENSORS, Phase};
 use crate::time::Micros;
 
-pub use verify::{PhaseCriterion, PhaseRequirements, PhaseVerification, PhaseViolation, PhaseViolations};
+pub use verify::PhaseVerification;
 
 /// Firing times of any number of phases, to be checked: a row for each phase, a number for each sensor.
 ///
 /// ```
-/// use eeruf_core::{Micros, hopping::{HoppingCode, HoppingSchedule}, phases::{Audible, PhaseTable}};
+/// use eeruf_core::{Micros, Requirements, hopping::{HoppingCode, HoppingSchedule}, phases::PhaseTable};
 /// const TIMES: [[Micros; 4]; 6] = {
 ///     let Ok(code) = HoppingCode::new(4, 2, Micros::new(301)) else { panic!() };
 ///     let Ok(ring) = HoppingSchedule::<4>::spread(code, Micros::from_millis(60)) else { panic!() };
@@ -31,7 +31,7 @@ pub use verify::{PhaseCriterion, PhaseRequirements, PhaseVerification, PhaseViol
 /// // Checked when it is compiled.
 /// const SAFE: bool = {
 ///     let table = PhaseTable::new(Micros::from_millis(60), &TIMES);
-///     match table.separation(&Audible::new(Micros::from_millis(36))) {
+///     match table.separation(&Requirements { window: Micros::from_millis(36), ..Requirements::new(Micros::ZERO) }) {
 ///         Some(least) => least.value.as_micros() >= 301,
 ///         None => true,
 ///     }
@@ -46,25 +46,6 @@ pub struct PhaseTable<'a, const K: usize> {
     t_fire: &'a [[Micros; K]],
 }
 
-/// The audible part of a path.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Audible {
-    /// Listening time of a sensor after it has fired.
-    pub window: Micros,
-    /// Deaf time before that.
-    pub blanking: Micros,
-    /// After how long no sound is heard any more; sound that is four periods old never is.
-    pub reach: Micros,
-}
-
-impl Audible {
-    /// This window, no blanking, and sound that is heard for as long as the window.
-    pub const fn new(window: Micros) -> Self {
-        Self { window, blanking: Micros::ZERO, reach: window }
-    }
-}
-
 /// The least shift of crosstalk, and where it occurs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -77,18 +58,6 @@ pub struct PhaseSeparation {
     pub phases: (Phase, Phase),
     /// Number of periods before the sound was sent, in each: -1 if in the period after, while it still listened.
     pub ages: (i8, i8),
-}
-
-/// The shortest time between two firings, and where.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct PhaseInterval {
-    /// The interval.
-    pub value: Micros,
-    /// The two sensors, from 0; twice the same where a sensor fires again.
-    pub sensors: (u8, u8),
-    /// The phases in which they fire.
-    pub phases: (Phase, Phase),
 }
 
 /// The ages that can matter: a sensor listens into the next period, and a path is at most three periods old.
@@ -123,15 +92,15 @@ impl<'a, const K: usize> PhaseTable<'a, K> {
     }
 
     /// The least by which a path from one sensor to another moves from one phase to another, over all ages in which it
-    /// can be heard; `None` if no path can be heard in two phases. Takes `25 (K M)^2` steps.
-    pub const fn separation(&self, audible: &Audible) -> Option<PhaseSeparation> {
-        let mut least: Option<PhaseSeparation> = None;
-        let mut x = 0;
+    /// can be heard by what the requirements say of windows, blanking and audible sound; `None` if no path can be heard
+    /// in two phases. Two that must fire together do not count. Takes `25 (K M)^2` steps.
+    pub const fn separation(&self, requirements: &Requirements<'_>) -> Option<PhaseSeparation> {
+        let (mut least, mut x): (Option<PhaseSeparation>, usize) = (None, 0);
         while x < self.sensors() {
             let mut y = 0;
             while y < self.sensors() {
-                if x != y {
-                    least = self.closer(least, x, y, audible);
+                if x != y && !requirements.fire_together(x, y) {
+                    least = closer(least, self.separation_of(x, y, requirements));
                 }
                 y += 1;
             }
@@ -140,43 +109,41 @@ impl<'a, const K: usize> PhaseTable<'a, K> {
         least
     }
 
-    /// The same of a sensor's own sound from earlier periods: by how much a stale echo moves at least. `None` if none
-    /// can be heard in two phases. Sound that is a whole cycle old does not move, and does not count.
-    pub const fn stale_separation(&self, audible: &Audible) -> Option<PhaseSeparation> {
-        let mut least: Option<PhaseSeparation> = None;
-        let mut x = 0;
+    /// The same of a sensor's own sound from earlier periods, however long its path: by how much a stale echo moves at
+    /// least. Sound that is a whole cycle old does not move, and does not count.
+    pub const fn stale_separation(&self, requirements: &Requirements<'_>) -> Option<PhaseSeparation> {
+        let (mut least, mut x): (Option<PhaseSeparation>, usize) = (None, 0);
         while x < self.sensors() {
-            least = self.closer(least, x, x, audible);
+            least = closer(least, self.separation_of(x, x, requirements));
             x += 1;
         }
         least
     }
 
-    /// As far as a pair goes.
-    const fn closer(
-        &self,
-        mut least: Option<PhaseSeparation>,
-        x: usize,
-        y: usize,
-        audible: &Audible,
-    ) -> Option<PhaseSeparation> {
+    /// As far as a path from x to y goes.
+    const fn separation_of(&self, x: usize, y: usize, requirements: &Requirements<'_>) -> Option<PhaseSeparation> {
+        let reach = match requirements.audible {
+            _ if x == y => Micros::MAX,
+            Some(audible) => audible,
+            None => requirements.window,
+        };
+        let heard = Heard {
+            window: requirements.window_of(y).as_micros() as i64,
+            blanking: requirements.blanking.as_micros() as i64,
+            reach: reach.as_micros() as i64,
+        };
+        let mut least: Option<PhaseSeparation> = None;
         let events = self.phases() * AGES.len();
         let mut one = 0;
         while one < events {
             let mut other = (one / AGES.len() + 1) * AGES.len();
             while other < events {
                 let (a, b) = (self.offset(x, y, one), self.offset(x, y, other));
-                if (x != y || self.is_stale(one) && self.is_stale(other)) && together(a, b, audible) {
+                if (x != y || self.is_stale(one) && self.is_stale(other)) && heard.together(a, b) {
                     let value = Micros::new(a.abs_diff(b) as u32);
-                    let closer = match least {
-                        Some(least) => value.as_micros() < least.value.as_micros(),
-                        None => true,
-                    };
-                    if closer {
-                        let phases = (Phase((one / AGES.len()) as u8), Phase((other / AGES.len()) as u8));
-                        let ages = (AGES[one % AGES.len()], AGES[other % AGES.len()]);
-                        least = Some(PhaseSeparation { value, sensors: (x as u8, y as u8), phases, ages });
-                    }
+                    let phases = (Phase((one / AGES.len()) as u8), Phase((other / AGES.len()) as u8));
+                    let ages = (AGES[one % AGES.len()], AGES[other % AGES.len()]);
+                    least = closer(least, Some(PhaseSeparation { value, sensors: (x as u8, y as u8), phases, ages }));
                 }
                 other += 1;
             }
@@ -200,7 +167,7 @@ impl<'a, const K: usize> PhaseTable<'a, K> {
 
     /// The shortest time between two firings of one sensor, over all phases and the end of the cycle; `None` without
     /// phases or sensors.
-    pub const fn min_refire(&self) -> Option<PhaseInterval> {
+    pub const fn min_refire(&self) -> Option<Interval> {
         let mut least = None;
         let mut x = 0;
         while x < self.sensors() {
@@ -214,16 +181,16 @@ impl<'a, const K: usize> PhaseTable<'a, K> {
         least
     }
 
-    /// The smallest interval between the firings of two neighbours, within a period and from one to the next; `None`
-    /// without neighbours.
-    pub const fn min_interval(&self, layout: Layout<'_>) -> Option<PhaseInterval> {
+    /// The smallest interval between the firings of two that need one, within a period and from one to the next; `None`
+    /// without any.
+    pub const fn min_interval(&self, requirements: &Requirements<'_>) -> Option<Interval> {
         let mut least = None;
         let mut x = 0;
         while x < self.sensors() {
             let mut y = 0;
             while y < self.sensors() {
                 let mut phase = 0;
-                while layout.neighbours(self.sensors(), x, y) && phase < self.phases() {
+                while requirements.interval_of(self.sensors(), x, y).is_some() && phase < self.phases() {
                     least = shorter(least, self.between(x, phase, y, phase));
                     least = shorter(least, self.between(x, phase, y, phase + 1));
                     phase += 1;
@@ -236,28 +203,42 @@ impl<'a, const K: usize> PhaseTable<'a, K> {
     }
 
     /// Between a firing of x and one of y, of the same period or the next.
-    const fn between(&self, x: usize, phase: usize, y: usize, next: usize) -> PhaseInterval {
-        let wrapped = next % self.phases();
-        let (f_x, f_y) = (self.t_fire[phase][x].as_micros(), self.t_fire[wrapped][y].as_micros());
-        let periods = (next - phase) as u64 * self.period.as_micros() as u64;
-        let apart = (f_y as u64 + periods).abs_diff(f_x as u64);
+    const fn between(&self, x: usize, phase: usize, y: usize, next: usize) -> Interval {
+        let apart = self.after(x, phase, y, next).unsigned_abs();
         let value = Micros::new(if apart > u32::MAX as u64 { u32::MAX } else { apart as u32 });
-        PhaseInterval { value, sensors: (x as u8, y as u8), phases: (Phase(phase as u8), Phase(wrapped as u8)) }
+        let phases = (Phase(phase as u8), Phase((next % self.phases()) as u8));
+        Interval { value, sensors: (x as u8, y as u8), phases }
+    }
+
+    /// Time from a firing of x to one of y, of the same period or the next, in microseconds; negative if y's is before.
+    const fn after(&self, x: usize, phase: usize, y: usize, next: usize) -> i64 {
+        let (f_x, f_y) = (self.t_fire[phase][x].as_micros(), self.t_fire[next % self.phases()][y].as_micros());
+        f_y as i64 + (next - phase) as i64 * self.period.as_micros() as i64 - f_x as i64
     }
 }
 
-/// Returns true if some path is heard with both offsets: one that is no longer than `reach` and arrives in the window.
-const fn together(a: i64, b: i64, audible: &Audible) -> bool {
-    let (window, blanking) = (audible.window.as_micros() as i64, audible.blanking.as_micros() as i64);
-    let (low, high) = if a < b { (a, b) } else { (b, a) };
-    // The length lies in blanking - g .. window - g for both, and in 0 .. reach.
-    let (shortest, longest) = (blanking - low, window - high);
-    shortest <= longest && shortest <= audible.reach.as_micros() as i64 && longest >= 0
+/// The audible part of a path, in microseconds.
+struct Heard {
+    window: i64,
+    blanking: i64,
+    reach: i64,
 }
 
-const fn shorter(least: Option<PhaseInterval>, next: PhaseInterval) -> Option<PhaseInterval> {
-    match least {
-        Some(least) if least.value.as_micros() <= next.value.as_micros() => Some(least),
-        _ => Some(next),
+impl Heard {
+    /// Returns true if some path is heard with both offsets: one that is no longer than `reach` and arrives in the
+    /// window.
+    const fn together(&self, a: i64, b: i64) -> bool {
+        let (low, high) = if a < b { (a, b) } else { (b, a) };
+        // The length lies in blanking - g .. window - g for both, and in 0 .. reach.
+        let (shortest, longest) = (self.blanking - low, self.window - high);
+        shortest <= longest && shortest <= self.reach && longest >= 0
+    }
+}
+
+const fn closer(least: Option<PhaseSeparation>, next: Option<PhaseSeparation>) -> Option<PhaseSeparation> {
+    match (least, next) {
+        (Some(one), Some(other)) if one.value.as_micros() <= other.value.as_micros() => least,
+        (_, None) => least,
+        _ => next,
     }
 }

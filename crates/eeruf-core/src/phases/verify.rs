@@ -1,103 +1,143 @@
 //! [`PhaseVerification`]: whether firing times of many phases keep what is asked of them, and what they do not.
 
-use core::fmt;
-
-use super::{Audible, PhaseInterval, PhaseSeparation, PhaseTable};
-use crate::layout::Layout;
+use super::{PhaseSeparation, PhaseTable, closer};
+use crate::requirements::{Interval, Requirements};
 use crate::time::Micros;
-
-/// The shift of crosstalk that is required from phase to phase.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub enum PhaseCriterion {
-    /// `2 T_delta + 1 us`, as in (13a) and (13b).
-    Exact,
-    /// `T_delta` and this margin: it is all that jitter and lateness may use. A
-    /// [`HoppingRing`](crate::hopping::HoppingRing) lets a reading whose firing was later by more than half of it
-    /// support nothing.
-    Margin(Micros),
-}
-
-/// Requirements on firing times of many phases.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct PhaseRequirements<'a> {
-    /// `T_delta`: a reading supports a track that it differs from by no more.
-    pub t_delta: Micros,
-    /// The shift that crosstalk must have.
-    pub criterion: PhaseCriterion,
-    /// The audible part of a path. No sensor may fire again within its window.
-    pub audible: Audible,
-    /// The least time between the firings of two neighbours (Sec. 3.1 c).
-    pub min_interval: Micros,
-    /// Pairs of neighbours.
-    pub layout: Layout<'a>,
-    /// True if a sensor's own sound from earlier periods must move too.
-    pub stale_echo: bool,
-}
-
-impl PhaseRequirements<'_> {
-    /// The exact criterion; four neighbours of a line, which keep no interval; sound that is heard for as long as the
-    /// window.
-    pub const fn new(t_delta: Micros, window: Micros) -> Self {
-        Self {
-            t_delta,
-            criterion: PhaseCriterion::Exact,
-            audible: Audible::new(window),
-            min_interval: Micros::ZERO,
-            layout: Layout::Line(4),
-            stale_echo: false,
-        }
-    }
-
-    /// `D`: by how much crosstalk must move from phase to phase.
-    pub const fn separation(&self) -> Micros {
-        match self.criterion {
-            PhaseCriterion::Exact => self.t_delta.saturating_add(self.t_delta).saturating_add(Micros::new(1)),
-            // Crosstalk that moves by no more than `T_delta` is supported.
-            PhaseCriterion::Margin(Micros::ZERO) => self.t_delta.saturating_add(Micros::new(1)),
-            PhaseCriterion::Margin(margin) => self.t_delta.saturating_add(margin),
-        }
-    }
-}
+use crate::verify::{Violation, ViolationKind};
 
 impl<const K: usize> PhaseTable<'_, K> {
-    /// Checks the table, in `25 (K M)^2` steps.
-    pub const fn verify<'r>(&self, requirements: &'r PhaseRequirements<'r>) -> PhaseVerification<'r> {
-        let audible = &requirements.audible;
-        let stale = if requirements.stale_echo { self.stale_separation(audible) } else { None };
-        PhaseVerification::new(requirements, self.separation(audible), stale, self)
+    /// Checks the table, in `25 (K M)^2` steps: every limit, pair, phase and age.
+    pub const fn verify<'r>(&self, requirements: &'r Requirements<'r>) -> PhaseVerification<'r> {
+        self.verify_with(None, requirements)
     }
+
+    /// The same where it is proven that crosstalk of all pairs moves by at least so much.
+    pub(crate) const fn verify_with<'r>(
+        &self,
+        proven: Option<PhaseSeparation>,
+        requirements: &'r Requirements<'r>,
+    ) -> PhaseVerification<'r> {
+        let (mut worst, mut separation, mut stale) = ([None; KINDS], None, None);
+        let mut x = 0;
+        while x < self.sensors() {
+            let mut y = 0;
+            while y < self.sensors() {
+                let stale_echo = x == y;
+                if let (Some(required), true) =
+                    (requirements.separation_of(x, y), !stale_echo || requirements.stale_echo)
+                {
+                    let found = match proven {
+                        Some(proven) if !stale_echo => Some(PhaseSeparation { sensors: (x as u8, y as u8), ..proven }),
+                        _ => self.separation_of(x, y, requirements),
+                    };
+                    if stale_echo {
+                        stale = closer(stale, found);
+                        worst[1] = worse(worst[1], moves(ViolationKind::StaleEcho, found, required));
+                    } else {
+                        separation = closer(separation, found);
+                        worst[0] = worse(worst[0], moves(ViolationKind::Crosstalk, found, required));
+                    }
+                }
+                y += 1;
+            }
+            x += 1;
+        }
+        let (min_interval, min_refire) = (self.min_interval(requirements), self.min_refire());
+        let worst = self.times(requirements, worst);
+        PhaseVerification { requirements, separation, stale, min_interval, min_refire, worst }
+    }
+
+    /// The worst violations of what does not depend on crosstalk.
+    const fn times(&self, requirements: &Requirements<'_>, mut worst: Worst) -> Worst {
+        let sensors = self.sensors();
+        let mut x = 0;
+        while x < sensors {
+            let mut phase = 0;
+            while phase < self.phases() {
+                let refire = self.between(x, phase, x, phase + 1);
+                worst[3] = worse(worst[3], lasts(ViolationKind::Window, refire, requirements.window_of(x)));
+                worst[5] = worse(worst[5], lasts(ViolationKind::Refire, refire, requirements.refire_of(x)));
+                let mut y = 0;
+                while y < sensors {
+                    let (within, next) = (self.between(x, phase, y, phase), self.between(x, phase, y, phase + 1));
+                    if let Some(required) = requirements.interval_of(sensors, x, y) {
+                        worst[2] = worse(worst[2], lasts(ViolationKind::Interval, within, required));
+                        worst[2] = worse(worst[2], lasts(ViolationKind::Interval, next, required));
+                    }
+                    if requirements.share_a_line(x, y) {
+                        // The first firing of y that is no sooner than that of x.
+                        let follows = if self.after(x, phase, y, phase) >= 0 { within } else { next };
+                        let window = requirements.window_of(x);
+                        worst[4] = worse(worst[4], lasts(ViolationKind::SharedLine, follows, window));
+                    }
+                    if requirements.fire_together(x, y) && within.value.as_micros() > 0 {
+                        worst[6] = worse(worst[6], Some(violation(ViolationKind::Together, within, Micros::ZERO)));
+                    }
+                    y += 1;
+                }
+                phase += 1;
+            }
+            x += 1;
+        }
+        worst
+    }
+}
+
+/// Crosstalk, stale echoes, intervals, windows, shared lines, refire times, sensors that fire together.
+const KINDS: usize = 7;
+
+/// The worst violation of each kind.
+type Worst = [Option<Violation>; KINDS];
+
+/// Sound that does not move as far as it must.
+const fn moves(kind: ViolationKind, found: Option<PhaseSeparation>, required: Micros) -> Option<Violation> {
+    match found {
+        Some(PhaseSeparation { value, sensors, phases, ages }) if value.as_micros() < required.as_micros() => {
+            Some(Violation { kind, sensors, phases, ages, value, required })
+        }
+        _ => None,
+    }
+}
+
+/// Firings that are closer than they may be.
+const fn lasts(kind: ViolationKind, found: Interval, required: Micros) -> Option<Violation> {
+    if found.value.as_micros() < required.as_micros() { Some(violation(kind, found, required)) } else { None }
+}
+
+const fn violation(kind: ViolationKind, found: Interval, required: Micros) -> Violation {
+    let Interval { value, sensors, phases } = found;
+    Violation { kind, sensors, phases, ages: (0, 0), value, required }
+}
+
+/// The violation that is further from what is required; the first of equal ones.
+const fn worse(worst: Option<Violation>, next: Option<Violation>) -> Option<Violation> {
+    match (worst, next) {
+        (Some(one), Some(other)) if short_by(one) >= short_by(other) => worst,
+        (_, None) => worst,
+        _ => next,
+    }
+}
+
+const fn short_by(violation: Violation) -> u32 {
+    violation.value.as_micros().abs_diff(violation.required.as_micros())
 }
 
 /// Findings on firing times of many phases, against the requirements.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct PhaseVerification<'r> {
-    requirements: &'r PhaseRequirements<'r>,
+    requirements: &'r Requirements<'r>,
     separation: Option<PhaseSeparation>,
     stale: Option<PhaseSeparation>,
-    min_interval: Option<PhaseInterval>,
-    min_refire: Option<PhaseInterval>,
+    min_interval: Option<Interval>,
+    min_refire: Option<Interval>,
+    worst: Worst,
 }
 
-impl<'r> PhaseVerification<'r> {
-    pub(crate) const fn new<const K: usize>(
-        requirements: &'r PhaseRequirements<'r>,
-        separation: Option<PhaseSeparation>,
-        stale: Option<PhaseSeparation>,
-        table: &PhaseTable<'_, K>,
-    ) -> Self {
-        let min_interval = table.min_interval(requirements.layout);
-        Self { requirements, separation, stale, min_interval, min_refire: table.min_refire() }
-    }
-
+impl PhaseVerification<'_> {
     /// Returns true if every requirement holds.
     pub const fn ok(&self) -> bool {
-        self.violation(0).is_none()
-            && self.violation(1).is_none()
-            && self.violation(2).is_none()
-            && self.violation(3).is_none()
+        self.first_violation().is_none()
     }
 
     /// The least shift of crosstalk, and where it occurs; `None` if no path can be heard in two phases.
@@ -110,200 +150,39 @@ impl<'r> PhaseVerification<'r> {
         self.stale
     }
 
-    /// The smallest interval between neighbours; `None` without neighbours.
-    pub const fn min_interval(&self) -> Option<PhaseInterval> {
+    /// The smallest interval between neighbours, or between pairs that need one of their own; `None` without any.
+    pub const fn min_interval(&self) -> Option<Interval> {
         self.min_interval
     }
 
     /// The shortest time between two firings of one sensor; `None` without sensors.
-    pub const fn min_refire(&self) -> Option<PhaseInterval> {
+    pub const fn min_refire(&self) -> Option<Interval> {
         self.min_refire
     }
 
-    /// The largest `t_delta` at which crosstalk - and stale echoes, if asked for - move far enough by the criterion;
-    /// `None` if none is, or if nothing limits it.
+    /// The largest `t_delta` at which crosstalk - and stale echoes, if asked for - move far enough by the criterion, if
+    /// all sensors have the same; `None` if none is, or if nothing limits it.
     pub const fn max_t_delta(&self) -> Option<Micros> {
-        let least = match (self.separation, self.stale) {
-            (Some(one), Some(other)) if other.value.as_micros() < one.value.as_micros() => other.value,
-            (Some(one), _) | (None, Some(one)) => one.value,
-            (None, None) => return None,
-        };
-        let most = match self.requirements.criterion {
-            PhaseCriterion::Exact => match least.as_micros().checked_sub(1) {
-                Some(twice) => Some(twice / 2),
-                None => None,
-            },
-            PhaseCriterion::Margin(Micros::ZERO) => least.as_micros().checked_sub(1),
-            PhaseCriterion::Margin(margin) => least.as_micros().checked_sub(margin.as_micros()),
-        };
-        match most {
-            Some(most) => Some(Micros::new(most)),
+        match closer(self.separation, self.stale) {
+            Some(least) => self.requirements.criterion.max_t_delta(least.value),
             None => None,
         }
     }
 
     /// Violations, the worst of each kind.
-    pub const fn violations(&self) -> PhaseViolations<'r> {
-        PhaseViolations { verification: *self, next: 0 }
+    pub fn violations(&self) -> impl Iterator<Item = Violation> {
+        self.worst.into_iter().flatten()
     }
 
-    const fn violation(&self, check: u8) -> Option<PhaseViolation> {
-        let requirements = self.requirements;
-        let separation = requirements.separation();
-        match check {
-            0 => match self.separation {
-                Some(found) if found.value.as_micros() < separation.as_micros() => {
-                    Some(PhaseViolation::Crosstalk { found, required: separation })
-                }
-                _ => None,
-            },
-            1 => match self.stale {
-                Some(found) if found.value.as_micros() < separation.as_micros() => {
-                    Some(PhaseViolation::StaleEcho { found, required: separation })
-                }
-                _ => None,
-            },
-            2 => match self.min_interval {
-                Some(found) if found.value.as_micros() < requirements.min_interval.as_micros() => {
-                    Some(PhaseViolation::Interval { found, required: requirements.min_interval })
-                }
-                _ => None,
-            },
-            _ => match self.min_refire {
-                Some(found) if found.value.as_micros() < requirements.audible.window.as_micros() => {
-                    Some(PhaseViolation::Window { found, required: requirements.audible.window })
-                }
-                _ => None,
-            },
-        }
-    }
-}
-
-/// One requirement that firing times of many phases do not keep.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[non_exhaustive]
-pub enum PhaseViolation {
-    /// Crosstalk would be believed.
-    Crosstalk {
-        /// The least by which it moves.
-        found: PhaseSeparation,
-        /// The shift required.
-        required: Micros,
-    },
-    /// A sensor's own echo from an earlier period would be believed.
-    StaleEcho {
-        /// The least by which it moves.
-        found: PhaseSeparation,
-        /// The shift required.
-        required: Micros,
-    },
-    /// Two neighbours fire too close together: Sec. 3.1 c.
-    Interval {
-        /// The smallest interval.
-        found: PhaseInterval,
-        /// The least that would do.
-        required: Micros,
-    },
-    /// A sensor fires again while it still listens.
-    Window {
-        /// The shortest time between two firings of a sensor.
-        found: PhaseInterval,
-        /// The window.
-        required: Micros,
-    },
-}
-
-impl PhaseViolation {
-    /// A short name, as `--json` and Python spell it.
-    pub const fn as_str(&self) -> &'static str {
-        match self {
-            Self::Crosstalk { .. } => "crosstalk",
-            Self::StaleEcho { .. } => "stale_echo",
-            Self::Interval { .. } => "interval",
-            Self::Window { .. } => "window",
-        }
-    }
-
-    /// Where the requirement comes from.
-    pub const fn source(&self) -> &'static str {
-        match self {
-            Self::Crosstalk { .. } => "Eqs. (13a), (13b) for many phases",
-            Self::StaleEcho { .. } => "Eq. (13b) with x = y",
-            Self::Interval { .. } => "Sec. 3.1 c",
-            Self::Window { .. } => "T_wind",
-        }
-    }
-}
-
-impl fmt::Display for PhaseViolation {
-    /// Sensors from 1; from 0 with `{:#}`. Phases from 0.
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let first = u8::from(!f.alternate());
-        match self {
-            Self::Crosstalk { found, required } | Self::StaleEcho { found, required } => {
-                let PhaseSeparation { value, sensors: (x, y), phases: (m, n), ages: (i, j) } = found;
-                write!(
-                    f,
-                    "sound of sensor {} moves by {value} for sensor {} from phase {} ({i} periods old) to phase {} \
-                     ({j} periods old); expected {required}",
-                    x + first,
-                    y + first,
-                    m.0,
-                    n.0
-                )
+    /// The first of them.
+    pub const fn first_violation(&self) -> Option<Violation> {
+        let mut kind = 0;
+        while kind < KINDS {
+            if self.worst[kind].is_some() {
+                return self.worst[kind];
             }
-            Self::Interval { found, required } => {
-                let PhaseInterval { value, sensors: (x, y), phases: (m, n) } = found;
-                write!(
-                    f,
-                    "neighbours {} in phase {} and {} in phase {} fire {value} apart; expected {required}",
-                    x + first,
-                    m.0,
-                    y + first,
-                    n.0
-                )
-            }
-            Self::Window { found, required } => {
-                let PhaseInterval { value, sensors: (x, _), phases: (m, n) } = found;
-                write!(
-                    f,
-                    "sensor {} fires {value} after itself from phase {} to phase {}; expected its window of {required}",
-                    x + first,
-                    m.0,
-                    n.0
-                )
-            }
-        }
-    }
-}
-
-/// Violations: see [`PhaseVerification::violations`].
-#[derive(Clone, Copy, Debug)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct PhaseViolations<'r> {
-    verification: PhaseVerification<'r>,
-    next: u8,
-}
-
-impl PhaseViolations<'_> {
-    /// The next one; `Iterator::next` for constants.
-    pub const fn advance(&mut self) -> Option<PhaseViolation> {
-        while self.next < 4 {
-            let found = self.verification.violation(self.next);
-            self.next += 1;
-            if found.is_some() {
-                return found;
-            }
+            kind += 1;
         }
         None
-    }
-}
-
-impl Iterator for PhaseViolations<'_> {
-    type Item = PhaseViolation;
-
-    fn next(&mut self) -> Option<PhaseViolation> {
-        self.advance()
     }
 }

@@ -13,7 +13,7 @@ pub const MAX_PHASES: usize = 8;
 /// the clock, beyond which two instants have no order.
 pub const MAX_PERIOD: Micros = Micros::new(1 << 28);
 
-/// One of the phases of a schedule, counted from 0 and printed `a`, `b`, ...
+/// One of the phases of a schedule, counted from 0 and printed `a`, `b`, .., `z`, `aa`, ..
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -28,6 +28,10 @@ impl Phase {
 
 impl fmt::Display for Phase {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}", char::from(b'a'.saturating_add(self.0)))
+        let letter = |number: u8| char::from(b'a'.saturating_add(number));
+        match self.0 / 26 {
+            0 => write!(f, "{}", letter(self.0)),
+            many => write!(f, "{}{}", letter(many - 1), letter(self.0 % 26)),
+        }
     }
 }

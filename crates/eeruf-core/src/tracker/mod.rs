@@ -82,7 +82,7 @@ impl<const K: usize, const H: usize> EchoTracker<K, H> {
     pub fn push(&mut self, sensor: usize, t_echo: Option<Micros>, firing: Firing) -> Result<Verdict, TrackerError> {
         let settings = &self.settings;
         match self.sensors.get_mut(sensor) {
-            Some(tracks) => Ok(tracks.push(Heard::new(t_echo, firing), settings)),
+            Some(tracks) => Ok(tracks.push(Heard::new(t_echo, firing), settings.t_delta, settings)),
             None => Err(TrackerError::Sensor { sensor, sensors: K }),
         }
     }
@@ -144,7 +144,10 @@ impl<const K: usize, const H: usize> Judge for EchoTracker<K, H> {
     #[inline(always)]
     fn judge(&mut self, heard: &judging::Heard<'_>, _: &impl Sounds) -> Verdict {
         match self.sensors.get_mut(usize::from(heard.sensor)) {
-            Some(tracks) => tracks.push(Heard::new(heard.echoes.first().copied(), heard.firing), &self.settings),
+            Some(tracks) => {
+                let read = Heard::new(heard.echoes.first().copied(), heard.firing);
+                tracks.push(read, heard.t_delta, &self.settings)
+            }
             None => heard.unjudged(None),
         }
     }

@@ -138,13 +138,13 @@ impl<const H: usize> SensorTracks<H> {
         if surplus < -(MOST_SURPLUS as i32) { UNKNOWN } else { surplus as i8 }
     }
 
-    /// Takes in a reading.
-    pub(super) fn push(&mut self, heard: Heard, settings: &TrackerSettings) -> Verdict {
+    /// Takes in a reading, which supports tracks within `t_delta`.
+    pub(super) fn push(&mut self, heard: Heard, t_delta: Micros, settings: &TrackerSettings) -> Verdict {
         let Heard { t_echo, phase, solo, steady, change_us } = heard;
         let phase = bit(phase);
-        self.learn(t_echo, change_us, settings.t_delta);
+        self.learn(t_echo, change_us, t_delta);
         self.shift(change_us);
-        let (mut confirmed, nearest) = self.confirmed_and_nearest(t_echo, settings.t_delta.as_micros());
+        let (mut confirmed, nearest) = self.confirmed_and_nearest(t_echo, t_delta.as_micros());
         let near = settings.near.as_micros();
         let is_near = confirmed.abs_diff(t_echo) <= near;
         let previous = self.tracks.get(nearest).map_or(confirmed, Track::t_echo);

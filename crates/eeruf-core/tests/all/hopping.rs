@@ -3,11 +3,11 @@
 //! fixed time later.
 
 use eeruf_core::{
-    Instant, MAX_PERIOD, Micros, Phase, ReadingKind, Ring, RingEvent, Tally,
+    Instant, MAX_PERIOD, Micros, Phase, ReadingKind, Requirements, Ring, RingEvent, Tally,
     flow::{FlowRing, FlowSettings},
     hopping::{HoppingCode, HoppingError, HoppingListening, HoppingRing, HoppingSchedule, HoppingSettings},
     judge::Judge,
-    phases::{Audible, PhaseRequirements, PhaseTable},
+    phases::PhaseTable,
     plan::Plan,
 };
 use proptest::prelude::*;
@@ -357,10 +357,11 @@ fn table_says_when_each_sensor_fires() {
 #[test]
 fn proven_separation_is_what_trying_phases_finds() {
     // Sound is heard for many periods: paths read with two ages.
-    let audible = Audible { reach: Micros::new(20_000), ..Audible::new(Micros::new(800)) };
-    let requirements = PhaseRequirements { audible, ..PhaseRequirements::new(Micros::new(100), audible.window) };
+    let window = Micros::new(800);
+    let requirements =
+        Requirements { window, audible: Some(Micros::new(20_000)), ..Requirements::new(Micros::new(100)) };
     // No path is heard in two phases.
-    let short = PhaseRequirements::new(Micros::new(100), Micros::new(200));
+    let short = Requirements { window: Micros::new(200), ..Requirements::new(Micros::new(100)) };
     let mut least = Micros::MAX;
     let codes = (2..=4).flat_map(|sensors| [HoppingCode::new, HoppingCode::shortest].map(|of| (sensors, of)));
     for (sensors, of) in codes {
@@ -370,7 +371,7 @@ fn proven_separation_is_what_trying_phases_finds() {
             let schedule = HoppingSchedule::<4>::spread(code, Micros::new(period)).unwrap();
             let table = schedule.table::<67>();
             let cycle = PhaseTable::new(schedule.period(), &table[..code.phases().into()]).with_sensors(sensors);
-            let tried = cycle.separation(&requirements.audible).map(|separation| separation.value);
+            let tried = cycle.separation(&requirements).map(|separation| separation.value);
             let says = schedule.verify(&requirements).separation().map(|separation| separation.value);
             assert_eq!(says, tried, "{sensors} sensors, {period} us");
             if !code.is_welch() {

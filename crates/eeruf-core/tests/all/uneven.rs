@@ -265,7 +265,7 @@ fn uneven_schedule_is_written_with_all_needs() {
     let requirements = Requirements { uneven: Some(uneven), ..Requirements::new(Micros::new(999)) };
     let rust = schedule.to_rust(&requirements).to_string();
     for line in [
-        "use eeruf_core::{Criterion, EachSensor, Layout, Micros, Requirements, Uneven, VerifiedSchedule, schedule};",
+        "use eeruf_core::{EachSensor, Layout, Micros, Requirements, Uneven, VerifiedSchedule, schedule};",
         "pub const RING: VerifiedSchedule<2, 2, EachSensor<2>> = schedule! {",
         "            window: &[Micros::new(50_000), Micros::new(12_000)],",
         "            intervals: &[(0, 1, Micros::new(15_000))],",

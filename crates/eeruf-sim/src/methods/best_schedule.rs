@@ -1,7 +1,7 @@
 //! The best schedule for a robot's ring: the shortest period that guarantees what the robot's own schedule does.
 
 use eeruf_core::{
-    Criterion, Layout, MAX_SENSORS, Micros, Requirements,
+    Layout, MAX_SENSORS, Micros, Requirements,
     search::{PeriodProblem, Progress, SearchError, design},
 };
 use std::ops::ControlFlow;
@@ -30,13 +30,11 @@ pub fn requirements_of(robot: &Robot) -> Requirements<'static> {
     let layout = layout_of(robot);
     let interval = own.and_then(|schedule| schedule.min_interval(layout));
     Requirements {
-        t_delta: robot.t_delta,
-        criterion: Criterion::Exact,
         min_interval: interval.map_or(Micros::ZERO, |interval| interval.value),
         layout,
         window: robot.window,
         stale_echo: true,
-        uneven: None,
+        ..Requirements::new(robot.t_delta)
     }
 }
 

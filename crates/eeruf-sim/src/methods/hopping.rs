@@ -1,7 +1,7 @@
 //! A ring that hops in time: core's own, for a robot.
 
 use eeruf_core::{
-    MAX_SENSORS, Micros,
+    Criterion, EachSensor, MAX_SENSORS, Micros, Requirements,
     hopping::{HoppingCode, HoppingListening, HoppingRing, HoppingSchedule},
 };
 
@@ -17,6 +17,9 @@ const TURN_US: u32 = 10_000;
 
 /// A hopping ring, no larger than needed.
 pub(super) fn hopping<'s>(start: &RingStart<'s>) -> Started<'s> {
+    if let Some(given) = start.hopping_schedule.as_ref().filter(|_| start.robot.is_uneven()) {
+        return uneven(start, given);
+    }
     match start.robot.sensors.len() {
         ..=8 => ring::<8>(start),
         9..=24 => ring::<24>(start),
@@ -27,10 +30,7 @@ pub(super) fn hopping<'s>(start: &RingStart<'s>) -> Started<'s> {
 fn ring<'s, const K: usize>(start: &RingStart<'s>) -> Started<'s> {
     let Robot { ref sensors, period, window, blanking, neighbours, .. } = *start.robot;
     let schedule = if let Some(given) = start.hopping_schedule {
-        if given.code().sensors() != sensors.len() {
-            let (schedule, sensors) = (given.code().sensors(), sensors.len());
-            return Err(StartError::Sensors { schedule, sensors });
-        }
+        of_all(&given, sensors.len())?;
         let lags = core::array::from_fn(|sensor| given.t_lag(sensor).unwrap_or_default());
         HoppingSchedule::<K>::new(*given.code(), given.period(), lags)?
     } else {
@@ -44,4 +44,25 @@ fn ring<'s, const K: usize>(start: &RingStart<'s>) -> Started<'s> {
     let listening = HoppingListening::new(window).with_blanking(blanking);
     let seed = start.random.of(0).bits() as u32;
     Ok(Box::new(HoppingRing::<K>::hopping(&schedule, settings, listening, seed, start.now)?))
+}
+
+/// Refuses a schedule of another number of sensors.
+fn of_all(given: &HoppingSchedule<MAX_SENSORS>, sensors: usize) -> Result<(), StartError> {
+    let schedule = given.code().sensors();
+    if schedule == sensors { Ok(()) } else { Err(StartError::Sensors { schedule, sensors }) }
+}
+
+/// A ring that hops by the robot's limits of each sensor: the schedule must keep them, and each sensor compares by no
+/// more than its own `T_delta` and the tracker's.
+fn uneven<'s>(start: &RingStart<'s>, given: &HoppingSchedule<MAX_SENSORS>) -> Started<'s> {
+    let Robot { ref sensors, window, blanking, .. } = *start.robot;
+    of_all(given, sensors.len())?;
+    let most = start.hopping.tracker.t_delta;
+    let limits: EachSensor<MAX_SENSORS> = start.robot.asking(most, |requirements| {
+        given.limits(&Requirements { criterion: Criterion::Margin(Micros::ZERO), blanking, ..*requirements })
+    })?;
+    let listening = HoppingListening::new(window).with_blanking(blanking);
+    let seed = start.random.of(0).bits() as u32;
+    let ring = HoppingRing::<MAX_SENSORS, 4, _>::with_limits(given, limits, start.hopping, listening, seed, start.now)?;
+    Ok(Box::new(ring))
 }

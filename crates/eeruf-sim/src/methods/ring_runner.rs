@@ -8,7 +8,7 @@ use eeruf_core::{
     flow::{FlowPlan, FlowSettings},
     hopping::{HoppingError, HoppingPlan, HoppingSchedule, HoppingSettings, Weighed},
     judge::{AgreementRing, Judge},
-    plan::{EachInUse, ImmediateRefiring, Plan, ScheduledFiring},
+    plan::{EachInUse, ImmediateRefiring, LimitsInUse, Plan, ScheduledFiring},
 };
 
 use super::firing::{OwnError, PeriodFiring};
@@ -74,7 +74,7 @@ impl<'s> SimulatedPlan<'s> for TableFiring<'s> {
     }
 }
 
-impl<const K: usize> SimulatedPlan<'_> for HoppingPlan<K> {
+impl<const K: usize, U: LimitsInUse + Send> SimulatedPlan<'_> for HoppingPlan<K, U> {
     fn weighed(&self, sensor: u8, expected_change_us: i32) -> Option<Weighed> {
         HoppingPlan::weighed(self, sensor, expected_change_us)
     }

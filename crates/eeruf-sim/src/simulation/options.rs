@@ -26,7 +26,7 @@ pub struct Options {
     /// default is [`HoppingSettings::BALANCED`].
     pub hopping: HoppingSettings,
     /// Schedule of [`Method::EerufHopping`](crate::Method::EerufHopping), of as many sensors as every robot has; `None`
-    /// for even lags over the robot's period.
+    /// for even lags over the robot's period. Where a robot's sensors have limits of their own it must keep them.
     pub hopping_schedule: Option<HoppingSchedule<MAX_SENSORS>>,
     /// Settings of [`Method::Flow`](crate::Method::Flow); the robot's period is its shortest cycle. The
     /// default is [`FlowSettings::DEFAULT`].

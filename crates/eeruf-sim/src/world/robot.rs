@@ -150,16 +150,20 @@ impl Robot {
         &self,
         schedule: &AnySchedule,
     ) -> Result<VerifiedSchedule<MAX_SENSORS, 2, EachSensor<MAX_SENSORS>>, Violation> {
-        let t_delta: Vec<_> = self.limits.iter().map(|limits| limits.t_delta).collect();
+        self.asking(Micros::MAX, |requirements| schedule.verify(requirements).verified_each())
+    }
+
+    /// The answer to what its sensors need, with no `t_delta` above `most`.
+    pub(crate) fn asking<T>(&self, most: Micros, answer: impl FnOnce(&Requirements<'_>) -> T) -> T {
+        let t_delta: Vec<_> = self.limits.iter().map(|limits| limits.t_delta.min(most)).collect();
         let window: Vec<_> = self.limits.iter().map(|limits| limits.window).collect();
         let uneven = Uneven { t_delta: &t_delta, window: &window, together: &self.together, ..Uneven::NONE };
-        let requirements = Requirements {
+        answer(&Requirements {
             layout: Layout::Line(1),
             window: self.window,
             uneven: self.is_uneven().then_some(uneven),
-            ..Requirements::new(self.t_delta)
-        };
-        schedule.verify(&requirements).verified_each()
+            ..Requirements::new(self.t_delta.min(most))
+        })
     }
 
     /// The same robot with its sensors at these heights in metres, one each; where all are at [`DEFAULT_HEIGHT_M`],

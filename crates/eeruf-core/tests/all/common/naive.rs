@@ -38,7 +38,9 @@ pub fn pair_holds(problem: &Problem<'_>, x: usize, y: usize, a: &[u32], b: &[u32
             ((xa - ya).abs() - (xb - yb).abs()).abs() >= d && ((xa - yb).abs() - (xb - ya).abs()).abs() >= d
         }
         // (10a) and (10b).
-        Criterion::Exact => ((xa - xb) - (ya - yb)).abs() >= d && ((xa - xb) + (ya - yb)).abs() >= d,
+        Criterion::Exact | Criterion::Margin(_) => {
+            ((xa - xb) - (ya - yb)).abs() >= d && ((xa - xb) + (ya - yb)).abs() >= d
+        }
     };
     separate && (problem.conflicts[x] >> y & 1 == 0 || interval(problem, x, y, a, b) >= i64::from(problem.interval))
 }

@@ -110,7 +110,8 @@ pub(crate) fn start_all<'a>(
         let first = channels.first_of(index);
         let sensors = first..first + robot.sensors.len();
         let keeps_limits = |plan: &FiringPlan| plan.own_limits != EachSensor::NONE || !plan.ladder.is_empty();
-        let has_limits = plan.as_ref().is_some_and(keeps_limits);
+        let hops_by_them = *method == Method::EerufHopping && options.hopping_schedule.is_some();
+        let has_limits = plan.as_ref().is_some_and(|plan| hops_by_them || keeps_limits(plan));
         let limits = if has_limits { &robot.limits[..] } else { &[] };
         let hearing_of = |sensor: usize| {
             let hearing = Hearing::new(world, robot, sensor, method.echoes(), refire, true_ns);

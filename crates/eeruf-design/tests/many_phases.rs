@@ -1,0 +1,186 @@
+//! Every ring of `rings/` with many phases, from its file to readings: the schedule keeps each limit and pair.
+
+use std::f64::consts::TAU;
+
+use eeruf_core::{Criterion, Micros, Phase, ReadingKind, Requirements, Uneven, conditions::ViolationKind};
+use eeruf_core::{hopping::HoppingSettings, judge::TrackerSettings};
+use eeruf_design::{PhaseFile, PhaseSchedule, RingSpec, parse};
+use eeruf_sim::{Air, Cause, Method, Noise, Options, Pose, Robot, Scene, Transducer, Wall, World, simulate};
+
+/// Name, file, and the longest period that many phases may take, in microseconds.
+const RINGS: [(&str, &str, u32); 8] = [
+    ("paper-12", include_str!("../../../rings/paper-12.toml"), 132_000),
+    ("ring-24", include_str!("../../../rings/ring-24.toml"), 250_000),
+    ("round-16", include_str!("../../../rings/round-16.toml"), 99_100),
+    ("car-12", include_str!("../../../rings/car-12.toml"), 55_000),
+    ("hc-sr04-8", include_str!("../../../rings/hc-sr04-8.toml"), 63_400),
+    ("hc-sr04-8-two-multiplexers", include_str!("../../../rings/hc-sr04-8-two-multiplexers.toml"), 70_000),
+    ("labmate-8", include_str!("../../../rings/labmate-8.toml"), 49_700),
+    ("mower-8-and-4", include_str!("../../../rings/mower-8-and-4.toml"), 69_000),
+];
+
+fn spec(text: &str) -> RingSpec {
+    RingSpec::from_text(text).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn read(text: &str) -> PhaseSchedule {
+    parse::<PhaseFile>(text).expect("a file").schedule().expect("a schedule")
+}
+
+/// A square room of 4 m with the ring in it, where its file or a circle says.
+fn room(spec: &RingSpec, period: Micros) -> World {
+    let ring = spec.robot_ring();
+    let circle = Robot::ring(Pose::identity(), spec.sensors, TAU / spec.sensors as f64, 0.2, Transducer::HC_SR04);
+    let poses = if ring.poses.is_empty() { circle.sensors } else { ring.poses.clone() };
+    let mut robot = ring.robot(Pose::identity(), Some(poses)).expect("a robot");
+    robot.period = period;
+    let corners = [(-2.0, -2.0), (2.0, -2.0), (2.0, 2.0), (-2.0, 2.0), (-2.0, -2.0)];
+    let walls = corners.windows(2).map(|ends| Wall::new(ends[0].0, ends[0].1, ends[1].0, ends[1].1)).collect();
+    let scene = Scene::new(walls, vec![], Air::default()).expect("a scene");
+    World::new(scene, vec![robot], Noise::default()).expect("a world")
+}
+
+#[test]
+fn every_ring_hops_from_file_to_readings() {
+    for (name, text, longest) in RINGS {
+        let spec = spec(text);
+        let design = spec.hopping(4, Criterion::Exact).unwrap_or_else(|error| panic!("{name}: {error}"));
+        let requirements = spec.phase_requirements(Criterion::Exact);
+        let file = design.phases().to_toml().expect("it hops");
+        let schedule = read(&file);
+        assert_eq!(schedule, design.phases(), "{name}");
+        let report = schedule.verify(&requirements);
+        assert_eq!(report.first_violation(), None, "{name}");
+        let period = schedule.period().as_micros();
+        assert!(period <= longest && schedule.period() >= design.period_bound, "{name}: {period} us");
+        // The ring of core, under simulated time.
+        let hops = schedule.hopping().copied().expect("it hops");
+        let t_delta = requirements.t_delta;
+        let near = TrackerSettings::BALANCED.near.max(t_delta);
+        let within = TrackerSettings::BALANCED.tentative_within.min(t_delta);
+        let tracker = TrackerSettings::BALANCED.with_t_delta(t_delta).with_near(near).with_tentative_within(within);
+        let hopping = HoppingSettings::BALANCED.with_tracker(tracker);
+        let options = Options { hopping, hopping_schedule: Some(hops), ..Options::periods(60) };
+        let readings = simulate(&room(&spec, schedule.period()), Method::EerufHopping, &options)
+            .unwrap_or_else(|e| panic!("{name}: {e}"));
+        let believed = |k: &usize| matches!(readings.kind[*k], ReadingKind::Accepted);
+        let accepted: Vec<_> = (0..readings.len()).filter(believed).collect();
+        let foreign = accepted.iter().filter(|&&k| readings.cause[k] == Cause::Crosstalk).count();
+        assert!(accepted.len() > readings.len() / 5, "{name}: {} of {}", accepted.len(), readings.len());
+        assert!(foreign * 10 < accepted.len(), "{name}: {foreign} of {}", accepted.len());
+        for k in 0..readings.len() {
+            let window = requirements.window_of(readings.sensor[k].into()).as_micros();
+            assert!(!(readings.t_echo_us[k] > f64::from(window)), "{name}: {}", readings.t_echo_us[k]);
+        }
+        if let [first, ..] = schedule.together() {
+            // Those that fire together do so at the very same instants.
+            let (x, y) = (first.trailing_zeros() as u8, 63 - first.leading_zeros() as u8);
+            let times = |sensor: u8| -> Vec<f64> {
+                (0..readings.len())
+                    .filter(|&k| {
+                        readings.sensor[k] == sensor && readings.weighed[k].is_some_and(|weighed| !weighed.solo)
+                    })
+                    .map(|k| readings.fired_s[k])
+                    .collect()
+            };
+            let (of_x, of_y) = (times(x), times(y));
+            assert!(of_x.iter().filter(|&at| of_y.contains(at)).count() > 30, "{name}");
+        }
+    }
+}
+
+/// The firing times of a schedule, to change one.
+fn table(schedule: &PhaseSchedule) -> Vec<Vec<u32>> {
+    let row = |phase| {
+        let time = |sensor| schedule.t_fire(Phase(phase as u8), sensor).expect("it is there").as_micros();
+        (0..schedule.sensors()).map(time).collect()
+    };
+    (0..schedule.phases()).map(row).collect()
+}
+
+/// The kinds of violations of a table whose sensor fires `later` in one phase.
+fn broken(schedule: &PhaseSchedule, asked: &Requirements<'_>, at: (usize, usize), later: u32) -> Vec<ViolationKind> {
+    let mut times = table(schedule);
+    times[at.0][at.1] += later;
+    let file = format!("period_us = {}\nt_fire_us = {times:?}", schedule.period().as_micros());
+    read(&file).verify(asked).violations().map(|violation| violation.kind).collect()
+}
+
+// Each limit by itself, tightened by a microsecond beyond what the schedule has, is refused.
+#[test]
+fn each_limit_of_car_and_mower_is_kept_in_every_phase() {
+    for (name, text, _) in RINGS.into_iter().filter(|(name, ..)| ["car-12", "mower-8-and-4"].contains(name)) {
+        let spec = spec(text);
+        let schedule = spec.hopping(4, Criterion::Exact).expect("a schedule").phases();
+        let asked = spec.phase_requirements(Criterion::Exact);
+        let uneven = asked.uneven.expect("it is uneven");
+        assert_eq!(schedule.verify(&asked).violations().count(), 0, "{name}");
+        let rows = table(&schedule);
+        let period = schedule.period().as_micros();
+        let phases = rows.len();
+        let refires = |x: usize| (0..phases).map(move |m| (m, (m + 1) % phases)).map(move |(m, n)| (x, m, n));
+        for x in 0..spec.sensors {
+            // The window of one sensor alone.
+            let shortest = refires(x).map(|(x, m, n)| rows[n][x] + period - rows[m][x]).min().expect("phases");
+            let mut windows = uneven.window.to_vec();
+            windows[x] = Micros::new(shortest + 1);
+            let wider = Requirements { uneven: Some(Uneven { window: &windows, ..uneven }), ..asked };
+            let kinds: Vec<_> = schedule.verify(&wider).violations().map(|found| found.kind).collect();
+            assert!(kinds.contains(&ViolationKind::Window), "{name} {x}: {kinds:?}");
+            // The time until it may be triggered again.
+            let mut refire = vec![Micros::ZERO; spec.sensors];
+            refire[x] = Micros::new(shortest + 1);
+            let later = Requirements { uneven: Some(Uneven { refire: &refire, ..uneven }), ..asked };
+            let kinds: Vec<_> = schedule.verify(&later).violations().map(|found| found.kind).collect();
+            assert_eq!(kinds, [ViolationKind::Refire], "{name} {x}");
+            // Its t_delta: crosstalk moves by the step of the code, and by no more.
+            let step = schedule.hopping().expect("it hops").code().step().as_micros();
+            let mut t_deltas = uneven.t_delta.to_vec();
+            t_deltas[x] = Micros::new(step.div_ceil(2));
+            let coarser = Requirements { uneven: Some(Uneven { t_delta: &t_deltas, ..uneven }), ..asked };
+            let kinds: Vec<_> = schedule.verify(&coarser).violations().map(|found| found.kind).collect();
+            assert!(kinds.contains(&ViolationKind::Crosstalk), "{name} {x}: {kinds:?}");
+        }
+        // The interval of each pair that has one of its own, in the phase in which it is shortest.
+        let apart = |x: usize, y: usize| {
+            let of = |m: usize| {
+                let next = (m + 1) % phases;
+                let across = [rows[next][y] + period - rows[m][x], rows[next][x] + period - rows[m][y]];
+                across.into_iter().chain([rows[m][x].abs_diff(rows[m][y])])
+            };
+            (0..phases).flat_map(of).min().expect("phases")
+        };
+        for (at, &(x, y, interval)) in uneven.intervals.iter().enumerate() {
+            let shortest = apart(x.into(), y.into());
+            assert!(shortest >= interval.as_micros(), "{name}: {x} {y}");
+            let mut intervals = uneven.intervals.to_vec();
+            intervals[at].2 = Micros::new(shortest + 1);
+            let longer = Requirements { uneven: Some(Uneven { intervals: &intervals, ..uneven }), ..asked };
+            let kinds: Vec<_> = schedule.verify(&longer).violations().map(|found| found.kind).collect();
+            assert_eq!(kinds, [ViolationKind::Interval], "{name}: {x} {y}");
+        }
+        // A sensor of a group that fires 1 us later in one phase.
+        if let Some(set) = uneven.together.first() {
+            let kinds = broken(&schedule, &asked, (3, set.trailing_zeros() as usize), 1);
+            assert!(kinds.contains(&ViolationKind::Together), "{name}: {kinds:?}");
+        }
+    }
+}
+
+#[test]
+fn sensors_on_a_shared_line_wait_for_its_window_in_every_phase() {
+    let (_, text, _) = RINGS.into_iter().find(|(name, ..)| name.ends_with("multiplexers")).expect("it is there");
+    let spec = spec(text);
+    let schedule = spec.hopping(4, Criterion::Exact).expect("a schedule").phases();
+    let asked = spec.phase_requirements(Criterion::Exact);
+    assert_eq!(schedule.verify(&asked).first_violation(), None);
+    // 0 and 4 are no neighbours, and share a line.
+    let rows = table(&schedule);
+    let after = |m: usize| rows[m][4].abs_diff(rows[m][0]);
+    let (phase, apart) = (0..rows.len()).map(|m| (m, after(m))).min_by_key(|&(_, apart)| apart).expect("phases");
+    assert!(apart >= asked.window_of(0).min(asked.window_of(4)).as_micros());
+    let (first, later) = if rows[phase][0] < rows[phase][4] { (0, 4) } else { (4, 0) };
+    let short = apart - asked.window_of(first).as_micros() + 1;
+    let kinds = broken(&schedule, &asked, (phase, first), short);
+    assert!(kinds.contains(&ViolationKind::SharedLine), "{first} {later}: {kinds:?}");
+}

@@ -472,6 +472,7 @@ EerufStatus eeruf_filter_forget(EerufFilter *filter) {
    nothing of the one kind is linked where only the other is polled; HOPS asks the ring. */
 #if EERUF_HOPPING
 #define HOPS(ring) ((ring)->schedule == NULL)
+#define OWN(ring) ((ring)->schedule_before) /* limits of a hopping ring, which changes to no schedule */
 #define STRIDE(ring) ((ring)->stride) /* hopping rings have shorter EerufHopSensors */
 static void fire_hop(EerufRing *ring, uint8_t sensor, uint32_t now_us);
 static void end_hopping_period(EerufRing *ring, uint32_t now_us);
@@ -2206,7 +2207,8 @@ static void weigh(EerufHoppingRing *hopping, uint8_t sensor, bool steady, int32_
     const uint32_t t_echo_us = reading->t_echo_us;
     const uint16_t phase = phase_bit(hopper->phase);
     const uint8_t votes = how->tentative_votes, least = change_us != 0 ? MOVING_VOTES : 0;
-    const uint8_t nearest = nearest_track(hopper, t_echo_us, how->t_delta_us);
+    const uint16_t t_delta_us = t_delta_of(&hopping->ring, sensor);
+    const uint8_t nearest = nearest_track(hopper, t_echo_us, t_delta_us);
     const EerufTrack *believed = believed_of(hopper);
     /* A copy: the tracks move below. Without one no echo is as late. */
     const bool believes = believed != NULL;
@@ -2285,19 +2287,24 @@ static uint8_t times_root(uint8_t place, uint8_t root, uint8_t cycle) {
     return (uint8_t)(product - 1u);
 }
 
-/* By how much less than a period two firings of a sensor are apart at most. */
-static uint32_t longest_drop(const EerufHoppingConfig *config, uint8_t cycle, uint8_t root, uint8_t first) {
-    uint8_t x, most = 0, place = 0;
-    for (x = 0; x < config->sensors && root == 0; x++) {
-        const uint8_t multiplier = (uint8_t)((x + first) % cycle);
-        if (multiplier != 0 && cycle - multiplier > most) most = (uint8_t)(cycle - multiplier);
-    }
-    for (x = 0; x < cycle && root != 0; x++) {
+/* By how much less than a period two firings of a sensor are apart at most, in steps. With Welch's sequence all go
+   through the same places. */
+static uint8_t drop_of(uint8_t sensor, uint8_t cycle, uint8_t root, uint8_t first) {
+    uint8_t place, most = (uint8_t)((sensor + first) % cycle);
+    if (root == 0) return most == 0 ? 0 : (uint8_t)(cycle - most);
+    for (place = 0, most = 0; place < cycle; place++) {
         const uint8_t next = times_root(place, root, cycle);
         if (place > next && place - next > most) most = (uint8_t)(place - next);
-        place = next;
     }
-    return most * config->step_us;
+    return most;
+}
+
+/* The first of the sensors that one fires together with, or itself: they share its places in the code. */
+static uint8_t leader_of(const EerufLimits *limits, uint8_t sensor) {
+    uint8_t leader = 0;
+    if (limits == NULL || READ8(limits[sensor].group) == 0) return sensor;
+    while (READ8(limits[leader].group) != READ8(limits[sensor].group)) leader++;
+    return leader;
 }
 
 /* Where a sensor is in Welch's sequence: each is a phase behind the one before it in the order of lags. */
@@ -2306,6 +2313,7 @@ static uint8_t welch_place(const EerufHoppingRing *hopping, uint8_t sensor) {
     uint8_t other, left = (uint8_t)(hopping->cycle + hopping->phase);
     uint8_t place = (uint8_t)(hopping->first - 1u);
     if (hopping->root == 0) return 0;
+    sensor = leader_of(limits_of(OWN(&hopping->ring)), sensor);
     for (other = 0; other < hopping->ring.count; other++)
         if (hoppers[other].lag_us < hoppers[sensor].lag_us ||
             (hoppers[other].lag_us == hoppers[sensor].lag_us && other < sensor))
@@ -2327,11 +2335,12 @@ static OUT_OF_LINE uint32_t offset_of(const EerufHoppingRing *hopping, uint8_t s
 /* The next phase. In a linear congruence a sensor's place is its multiplier times the phase, modulo the cycle; all are
    less than that, but for the multiplier, which is less than twice as much. */
 static void next_phase(EerufHoppingRing *hopping) {
+    const EerufLimits *limits = limits_of(OWN(&hopping->ring));
     const uint8_t cycle = hopping->cycle;
     uint8_t x;
     hopping->phase = hopping->phase + 1u < cycle ? (uint8_t)(hopping->phase + 1u) : 0;
     for (x = 0; x < hopping->ring.count; x++) {
-        uint8_t place = (uint8_t)(x + hopping->first);
+        uint8_t place = (uint8_t)(leader_of(limits, x) + hopping->first);
         if (hopping->root != 0) {
             hopping->hoppers[x].place = times_root(hopping->hoppers[x].place, hopping->root, cycle);
             continue;
@@ -2388,7 +2397,8 @@ static OUT_OF_LINE uint32_t wait_after(const EerufHoppingRing *hopping, uint32_t
 static uint32_t rests_for(const EerufHoppingRing *hopping, uint8_t sensor) {
     const EerufHopper *hopper = &hopping->hoppers[sensor];
     const uint32_t fired_us = sensor_of(&hopping->ring, sensor)->fired_us[0];
-    return hopper->flags & HAS_FIRED ? wait_after(hopping, fired_us, hopping->rest_us) : 0;
+    const uint32_t rest_us = allowed_window(OWN(&hopping->ring), sensor, hopping->rest_us);
+    return hopper->flags & HAS_FIRED ? wait_after(hopping, fired_us, rest_us) : 0;
 }
 
 static bool is_disabled(const EerufHoppingRing *hopping, uint8_t sensor) {
@@ -2611,6 +2621,12 @@ static void restart_hopping(EerufRing *ring, uint32_t now_us) {
     EerufHoppingRing *hopping = hopping_of(ring);
     unsettle(hopping);
     hopping->start_us = now_us;
+    if (OWN(ring) != NULL) {
+        /* What pairs keep between their firings they keep across a restart, unless the clock has jumped. */
+        const uint32_t gap_us = READ32(OWN(ring)->min_interval_us);
+        const uint32_t waits_us = ring->last_fired_us + gap_us - now_us;
+        if (waits_us <= gap_us) hopping->start_us += waits_us;
+    }
     break_off(hopping);
     plan(hopping);
 }
@@ -2648,11 +2664,13 @@ static EerufStatus has_room(const EerufHoppingRing *hopping, size_t ring_size, u
 /* What hopping and flow rings begin with, once their settings are in their ranges. */
 static EerufStatus set_up_hopping(EerufHoppingRing *hopping, EerufHopSensor *sensors, EerufHopper *hoppers,
                                   uint8_t count_of_sensors, const EerufTrackerSettings *tracker, uint32_t step_us,
-                                  uint32_t window_us, uint32_t blanking_us, uint32_t now_us) {
+                                  uint32_t window_us, uint32_t blanking_us, uint32_t now_us,
+                                  const EerufSchedule *own) {
     EerufStatus status;
     uint8_t x;
     memset(hopping, 0, sizeof *hopping);
     set_up(&hopping->ring, NULL, sensors, count_of_sensors, sizeof *sensors, now_us);
+    OWN(&hopping->ring) = own;
     hopping->ring.hook = correct_hop;
     status = listen(&hopping->ring, tracker->t_delta_us, window_us, blanking_us);
     if (status != EERUF_OK) return status;
@@ -2702,12 +2720,13 @@ EerufStatus eeruf_hopping_init(EerufHoppingRing *hopping, size_t ring_size, Eeru
                                size_t sensors_size, EerufHopper *hoppers, size_t hoppers_size,
                                const EerufHoppingConfig *config, uint32_t now_us) {
     EerufStatus status;
-    uint32_t width_us, least_us, room_us;
+    uint32_t width_us, least_us = 0, room_us;
     uint8_t x, cycle, root = 0, first = 1;
     if (hopping == NULL || sensors == NULL || hoppers == NULL || config == NULL) return EERUF_ERR_NULL;
     if (config->version != EERUF_VERSION) return EERUF_ERR_VERSION;
     status = has_room(hopping, ring_size, config->sensors, sensors_size, hoppers_size);
     if (status != EERUF_OK) return status;
+    if (config->own != NULL && READ8(config->own->sensors) != config->sensors) return EERUF_ERR_SENSORS;
     if (!is_between(config->phases, 2, 67)) return EERUF_ERR_PHASES;
     if (config->step_us == 0 || config->step_us > UINT16_MAX) return EERUF_ERR_STEP;
     if (config->code == 0) {
@@ -2730,15 +2749,20 @@ EerufStatus eeruf_hopping_init(EerufHoppingRing *hopping, size_t ring_size, Eeru
         if (config->lag_us[x] >= room_us) return EERUF_ERR_LAG;
     status = tracker_is_fine(&config->tracker);
     if (status != EERUF_OK) return status;
+    /* New lags would not keep what sensors and pairs need of their own. */
+    if (config->own != NULL && config->shift_after > 0) return EERUF_ERR_HOPPING;
     if (config->step_us <= config->tracker.t_delta_us) return EERUF_ERR_T_DELTA;
     if (config->tracker.votes > cycle) return EERUF_ERR_VOTES;
     /* The sensor must have stopped listening, and a path must not read the same with two ages. */
-    least_us = add32(config->window_us, longest_drop(config, cycle, root, first));
+    for (x = 0; x < config->sensors; x++) {
+        const uint32_t drop = drop_of(leader_of(limits_of(config->own), x), cycle, root, first);
+        least_us = longer(least_us, add32(allowed_window(config->own, x, config->window_us), drop * config->step_us));
+    }
     if (config->period_us < longer(least_us, 2 * width_us + config->step_us)) return EERUF_ERR_PERIOD;
     if (config->window_us > EERUF_HOPPING_MAX_WINDOW_US) return EERUF_ERR_WINDOW;
 
     status = set_up_hopping(hopping, sensors, hoppers, config->sensors, &config->tracker, config->step_us,
-                            config->window_us, config->blanking_us, now_us);
+                            config->window_us, config->blanking_us, now_us, config->own);
     if (status != EERUF_OK) return status;
     hopping->plan = choose;
     hopping->judged = judged_hop;
@@ -2747,6 +2771,8 @@ EerufStatus eeruf_hopping_init(EerufHoppingRing *hopping, size_t ring_size, Eeru
     hopping->first = first;
     hopping->period_us = config->period_us;
     hopping->by.hop.dies_us = dies_after(config->window_us, config->blanking_us, config->reach_us);
+    if (config->own != NULL)
+        hopping->by.hop.dies_us = longer(hopping->by.hop.dies_us, READ32(config->own->min_interval_us));
     hopping->by.hop.random = config->seed == 0 ? 0x9e3779b9u : config->seed;
     hopping->by.hop.shift_interval_us = config->shift_interval_us;
     hopping->by.hop.solo_rate = config->solo_rate;
@@ -2798,7 +2824,7 @@ EerufStatus eeruf_hopping_poll(EerufHoppingRing *hopping, uint32_t now_us, const
         const int32_t change = change_us == NULL ? 0 : change_us[event->sensor];
         reading->previous_us = EERUF_NO_ECHO;
         if (reading->kind == EERUF_READING_FIRST)
-            learn(hopper, reading->t_echo_us, change, hopping->tracker.t_delta_us);
+            learn(hopper, reading->t_echo_us, change, t_delta_of(&hopping->ring, event->sensor));
         else hopper->last_us = EERUF_NO_ECHO;
         shift_tracks(hopper, change);
         if (reading->kind == EERUF_READING_FIRST)
@@ -3084,7 +3110,7 @@ EerufStatus eeruf_flow_init(EerufHoppingRing *hopping, size_t ring_size, EerufHo
     if (config->shortest_cycle_us < config->window_us + width_us) return EERUF_ERR_PERIOD;
     if (config->shortest_cycle_us > EERUF_MAX_PERIOD_US) return EERUF_ERR_PERIOD;
     status = set_up_hopping(hopping, sensors, hoppers, n, &config->tracker, config->step_us, config->window_us,
-                            config->blanking_us, now_us);
+                            config->blanking_us, now_us, NULL);
     if (status != EERUF_OK) return status;
     hopping->plan = plan_flow;
     hopping->judged = judged_flow;

@@ -565,23 +565,23 @@ typedef struct EerufHoppingConfig {
     uint8_t solo_after;          /* firings with nothing accepted */
     uint8_t solo_spacing, shift_after, shift_spacing;
     uint8_t neighbours;
-    uint8_t code;                /* 0; or, with `phases` exactly, a prime or one less: 1 + the multiplier of
-                                    sensor 0, as schedules that `eeruf` writes have it */
+    uint8_t code;                /* 0; or 1 + the multiplier of sensor 0, with `phases` exactly, as `eeruf` writes it */
+    const EerufSchedule *own;    /* limits, where sensors are not all alike, as `eeruf` writes them; or null */
 } EerufHoppingConfig;
 
 /* The settings of most robots, of those that must stop early, of those that drive, and of those that make maps. */
 #define EERUF_HOPPING_BALANCED(sensors, period_us, window_us)                                                          \
     {EERUF_VERSION, sensors, 5, 240, period_us, NULL, window_us, 0, window_us, 8000, 1,                                \
-     {150, 400, 60, 5, 6, 2, 6, 2, 0}, 84, 5, 3, 0, 8, 4, 0}
+     {150, 400, 60, 5, 6, 2, 6, 2, 0}, 84, 5, 3, 0, 8, 4, 0, NULL}
 #define EERUF_HOPPING_QUICK(sensors, period_us, window_us)                                                             \
     {EERUF_VERSION, sensors, 5, 240, period_us, NULL, window_us, 0, window_us, 8000, 1,                                \
-     {150, 400, 100, 4, 6, 2, 6, 2, 0}, 100, 4, 2, 0, 8, 4, 0}
+     {150, 400, 100, 4, 6, 2, 6, 2, 0}, 100, 4, 2, 0, 8, 4, 0, NULL}
 #define EERUF_HOPPING_DRIVING(sensors, period_us, window_us)                                                           \
     {EERUF_VERSION, sensors, 5, 240, period_us, NULL, window_us, 0, window_us, 8000, 1,                                \
-     {150, 400, 60, 5, 6, 2, 6, 2, 0}, 0, 5, 3, 0, 8, 4, 0}
+     {150, 400, 60, 5, 6, 2, 6, 2, 0}, 0, 5, 3, 0, 8, 4, 0, NULL}
 #define EERUF_HOPPING_MAPS(sensors, period_us, window_us)                                                              \
     {EERUF_VERSION, sensors, 5, 240, period_us, NULL, window_us, 0, window_us, 8000, 1,                                \
-     {150, 400, 60, 5, 7, 1, 6, 0, 0}, 28, 8, 6, 0, 24, 4, 0}
+     {150, 400, 60, 5, 7, 1, 6, 0, 0}, 28, 8, 6, 0, 24, 4, 0, NULL}
 
 /* What a hopping ring has of each sensor in place of an EerufSensor: its last firing is enough. 16 bytes on an AVR. Not
    for the caller. */

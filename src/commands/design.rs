@@ -431,13 +431,6 @@ fn many_phases(args: &Args, spec: &RingSpec, phases: u8) -> Result<Answer, Input
     let criterion = args.margin_us.map_or(Criterion::Exact, |us| Criterion::Margin(Micros::new(us)));
     let design = spec.hopping(phases, criterion).map_err(bad)?;
     let requirements = spec.phase_requirements(criterion);
-    if spec.uneven.is_some() && matches!(args.form(), Some(Form::C | Form::Arduino)) {
-        return Err(bad(
-            "limits of single sensors or pairs; expected --emit toml or rust with --phases: the C library \
-                        keeps one window and one T_delta for all sensors of a ring that hops"
-                .to_owned(),
-        ));
-    }
     if let Some(file) = &args.svg {
         draw::hopping_diagram(&design.phases(), &requirements).save(file)?;
     }

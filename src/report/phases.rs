@@ -193,7 +193,8 @@ pub(crate) fn describe_design(
     table.add_row(["readings", &format!("{rate:.1} a second"), "of each sensor, solo periods not counted"]);
     let odometry = match spec.speed_mm_s {
         Some(speed) if speed > 0 => {
-            "T_delta is that of a robot that stands: while it drives, each poll needs the change that odometry expects.\n"
+            "T_delta is that of a robot that stands: while it drives, each poll needs the change that odometry \
+             expects.\n"
         }
         _ => "",
     };

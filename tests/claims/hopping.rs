@@ -227,6 +227,51 @@ fn emitted_rust_and_c_compile_without_warning() {
     }
 }
 
+// The same in C: the four that look down hear nothing beyond half a metre, and fire two by two when the table says.
+#[test]
+fn emitted_limits_drive_a_hopping_ring_in_c() {
+    let c = eeruf(&["design", "rings/mower-8-and-4.toml", "--phases", "4", "--emit", "c"]).out;
+    let (folder, header) = Scratch::new("schedule.h", &c);
+    let main = "static EerufHoppingRing ring;
+        static EerufHopSensor sensors[EERUF_SENSORS];
+        static EerufHopper hoppers[EERUF_SENSORS];
+        static uint32_t fired[EERUF_SENSORS], accepted[EERUF_SENSORS];
+        int main(void) {
+            EerufEvent event;
+            EerufHoppingConfig other = eeruf_hopping_config;
+            uint32_t at = 0, x, period = 0;
+            other.shift_after = 3;
+            if (eeruf_hopping_init(&ring, sizeof ring, sensors, sizeof sensors, hoppers, sizeof hoppers, &other, 0) !=
+                EERUF_ERR_HOPPING)
+                return 1;
+            other.shift_after = other.solo_rate = 0;
+            if (eeruf_hopping_init(&ring, sizeof ring, sensors, sizeof sensors, hoppers, sizeof hoppers, &other, 0) !=
+                EERUF_OK)
+                return 2;
+            while (period < 100) {
+                if (eeruf_hopping_poll(&ring, at, NULL, &event) != EERUF_EVENT) {
+                    at = eeruf_ring_deadline(&ring.ring);
+                } else if (event.kind == EERUF_EVENT_FIRE) {
+                    fired[event.sensor] = at - period * EERUF_PERIOD_US;
+                    eeruf_ring_echo(&ring.ring, event.sensor, at + 8000);
+                } else if (event.kind == EERUF_EVENT_PERIOD) {
+                    for (x = 0; x < EERUF_SENSORS; x++)
+                        if (fired[x] != eeruf_t_fire_us[period % EERUF_PHASES][x]) return 3;
+                    period++;
+                } else if (event.u.reading.kind == EERUF_READING_ACCEPTED) {
+                    accepted[event.sensor]++;
+                }
+            }
+            for (x = 0; x < EERUF_SENSORS; x++)
+                if ((accepted[x] > 50) != (eeruf_window_us[x] > 8000u)) return 4;
+            return 0;
+        }";
+    let with_library = format!("#include <eeruf.h>\n#include \"{}\"\n{main}\n", header.display());
+    for language in [&["gcc", "-std=c99"][..], &["g++", "-xc++", "-std=c++11"]] {
+        compile_and_run(&folder, &with_library, &[language, &["c/eeruf.c"]].concat());
+    }
+}
+
 // A ring that hops on an arduino is set up by what is emitted for it.
 #[test]
 fn hopping_ring_is_set_up_by_its_emitted_arduino_file() {

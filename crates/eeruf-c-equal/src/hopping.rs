@@ -3,8 +3,9 @@
 use crate::tracking::{self, status_of};
 use crate::{C, Do, Random};
 use eeruf_core::{
-    Instant, Micros,
-    hopping::{HoppingCode, HoppingListening, HoppingRing, HoppingSchedule, HoppingSettings},
+    Criterion, EachSensor, Instant, Layout, Micros, Requirements, Uneven,
+    hopping::{HoppingCode, HoppingError, HoppingListening, HoppingRing, HoppingSchedule, HoppingSettings},
+    plan::{Alike, LimitsInUse},
 };
 
 fn settings(r: &Random) -> HoppingSettings {
@@ -21,6 +22,32 @@ fn settings(r: &Random) -> HoppingSettings {
         settings.neighbours = r.within(0, 5) as u8;
     }
     settings
+}
+
+/// Limits of each sensor that a schedule keeps, and as numbers for C; none where it does not keep those that were drawn.
+fn own_limits<const K: usize>(
+    r: &Random,
+    schedule: &HoppingSchedule<K>,
+    (t_delta, window): (Micros, u32),
+    together: &[u64],
+) -> Option<(EachSensor<K>, Vec<u32>)> {
+    let t_deltas = [(); K].map(|()| Micros::new(r.within(1, t_delta.as_micros())));
+    let windows = [(); K].map(|()| Micros::new(r.one_of(&[window, r.within(1, window)])));
+    let requirements = Requirements {
+        criterion: Criterion::Margin(Micros::ZERO),
+        layout: Layout::Line(1),
+        window: Micros::new(window),
+        uneven: Some(Uneven { t_delta: &t_deltas, window: &windows, together, ..Uneven::NONE }),
+        ..Requirements::new(t_delta)
+    };
+    let limits = schedule.limits(&requirements).ok()?;
+    // What a pair keeps is the longest window.
+    let mut numbers = vec![windows.iter().map(|window| window.as_micros()).max().unwrap_or(0)];
+    for sensor in 0..K {
+        let group = together.iter().position(|set| set >> sensor & 1 == 1).map_or(0, |group| group as u32 + 1);
+        numbers.extend([windows[sensor].as_micros(), t_deltas[sensor].as_micros(), group]);
+    }
+    Some((limits, numbers))
 }
 
 /// One hopping ring for up to 4,000 steps, or until there are no numbers left; how many events it had.
@@ -47,7 +74,7 @@ pub fn run<const K: usize>(r: &Random) -> u64 {
     numbers.extend(
         [s.solo_rate, s.solo_after, s.solo_spacing, s.shift_after, s.shift_spacing, s.neighbours].map(u32::from),
     );
-    let lags: Option<[Micros; K]> = r.once_in(2).then(|| [(); K].map(|()| Micros::new(r.within(0, period / 2))));
+    let mut lags: Option<[Micros; K]> = r.once_in(2).then(|| [(); K].map(|()| Micros::new(r.within(0, period / 2))));
     // Mostly the ordinary code, else any, and the one whose period may be shortest.
     let any_code = HoppingCode::of(K, phases, r.one_of(&[0, r.within(0, 70) as u8]), Micros::new(step));
     let shortest = HoppingCode::shortest(K, phases, Micros::new(step));
@@ -55,17 +82,46 @@ pub fn run<const K: usize>(r: &Random) -> u64 {
         (0, Ok(code), _) | (1, _, Ok(code)) => (code.phases(), 1 + code.first_multiplier(), Ok(*code)),
         _ => (phases, 0, HoppingCode::new(K, phases, Micros::new(step))),
     };
+    // Some sensors fire together.
+    let mut together = vec![];
+    if let (Some(lags), true) = (&mut lags, K > 2 && r.once_in(2)) {
+        let (x, y) = (r.within(0, K as u32 / 2 - 1) as usize, r.within(K as u32 / 2, K as u32 - 1) as usize);
+        lags[y] = lags[x];
+        together.push(1 << x | 1 << y);
+    }
     numbers.push(code.into());
     numbers.extend(lags.iter().flatten().map(|lag| lag.as_micros()));
-    let status = c.hopping(K as u8, phases, &numbers, start);
-    let rust = rust.and_then(|code| {
-        let schedule = match lags {
-            Some(lags) => HoppingSchedule::<K>::new(code, Micros::new(period), lags)?,
-            None => HoppingSchedule::spread(code, Micros::new(period))?,
-        };
-        HoppingRing::<K>::hopping(&schedule, s, listening, random_seed, Instant::from_micros(start))
+    let schedule = rust.and_then(|code| match lags {
+        Some(lags) => HoppingSchedule::<K>::new(code, Micros::new(period), lags),
+        None => HoppingSchedule::spread(code, Micros::new(period)),
     });
-    let ring = match rust {
+    let limits = schedule.as_ref().ok().filter(|_| r.once_in(2));
+    let limits = limits.and_then(|schedule| own_limits(r, schedule, (t.t_delta, window), &together));
+    let own = limits.as_ref().map_or(&[][..], |(_, numbers)| numbers);
+    let status = c.hopping(K as u8, phases, &numbers, own, start);
+    let now = Instant::from_micros(start);
+    match limits {
+        Some((limits, _)) => {
+            let ring = schedule
+                .and_then(|it| HoppingRing::<K, 4, _>::with_limits(&it, limits, s, listening, random_seed, now));
+            compare(r, c, status, ring, (window, start))
+        }
+        None => {
+            let ring = schedule.and_then(|it| HoppingRing::<K>::hopping(&it, s, listening, random_seed, now));
+            compare::<K, Alike>(r, c, status, ring, (window, start))
+        }
+    }
+}
+
+/// Runs both, if they are made.
+fn compare<const K: usize, U: LimitsInUse>(
+    r: &Random,
+    c: C,
+    status: i32,
+    ring: Result<HoppingRing<K, 4, U>, HoppingError>,
+    (window, start): (u32, u32),
+) -> u64 {
+    let ring = match ring {
         Ok(ring) => ring,
         Err(error) => {
             assert_eq!(status, status_of(&error), "{r}: {error}");
@@ -73,7 +129,7 @@ pub fn run<const K: usize>(r: &Random) -> u64 {
         }
     };
     assert_eq!(status, 0, "{r}");
-    let weighed = |ring: &HoppingRing<K>, sensor| ring.plan().weighed(sensor, 0);
+    let weighed = |ring: &HoppingRing<K, 4, U>, sensor| ring.plan().weighed(sensor, 0);
     tracking::run(r, c, ring, window, start, weighed, |c, ring, at| {
         for sensor in 0..K as u8 {
             assert_eq!(Some(Micros::new(c.lag_us(sensor))), ring.plan().t_lag(sensor.into()), "{at}");

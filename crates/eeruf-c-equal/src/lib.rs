@@ -233,12 +233,15 @@ impl C {
         (rung, permille)
     }
 
-    /// `eeruf_hopping_init`, with the numbers in the order that `shim.c` names.
-    pub fn hopping(&mut self, sensors: u8, phases: u8, numbers: &[u32], now_us: u32) -> i32 {
+    /// `eeruf_hopping_init`, with the numbers in the order that `shim.c` names; `own` are the limits of each sensor, or
+    /// empty.
+    pub fn hopping(&mut self, sensors: u8, phases: u8, numbers: &[u32], own: &[u32], now_us: u32) -> i32 {
         assert!(numbers.len() == 23 || numbers.len() == 23 + usize::from(sensors));
+        assert!(own.is_empty() || own.len() == 1 + 3 * usize::from(sensors));
         let has_lags = u8::from(numbers.len() > 23);
+        let own = if own.is_empty() { core::ptr::null() } else { own.as_ptr() };
         // SAFETY: as many numbers as are read.
-        unsafe { shim::shim_hopping(self.0, sensors, phases, numbers.as_ptr(), has_lags, now_us) }
+        unsafe { shim::shim_hopping(self.0, sensors, phases, numbers.as_ptr(), has_lags, own, now_us) }
     }
 
     /// `eeruf_flow_init`, with the numbers in the order that `shim.c` names.

@@ -62,19 +62,25 @@ int shim_schedule(Handle *handle, uint32_t period_us, uint8_t sensors, uint8_t p
     return status;
 }
 
+/* Of each sensor: window, t_delta and group. */
+static EerufLimits *limits_of(uint8_t sensors, const uint32_t *own) {
+    EerufLimits *limits = (EerufLimits *)calloc(sensors, sizeof *limits);
+    uint8_t x;
+    for (x = 0; x < sensors; x++, own += 3) {
+        limits[x].window_us = own[0];
+        limits[x].t_delta_us = (uint16_t)own[1];
+        limits[x].group = (uint8_t)own[2];
+    }
+    return limits;
+}
+
 int shim_verify(Handle *handle, unsigned number, uint32_t t_delta_us, uint32_t min_interval_us, uint32_t window_us,
                 uint8_t layout, uint8_t neighbours, uint8_t stale_echo, const uint32_t *own, uint32_t *out) {
     EerufSchedule *schedule = handle->schedules[number];
     EerufRequirements needs = {t_delta_us, min_interval_us, window_us, layout, neighbours, stale_echo, NULL};
     EerufStatus status;
-    uint8_t x;
     if (own != NULL) {
-        EerufLimits *limits = (EerufLimits *)calloc(schedule->sensors, sizeof *limits);
-        for (x = 0; x < schedule->sensors; x++, own += 3) {
-            limits[x].window_us = own[0];
-            limits[x].t_delta_us = (uint16_t)own[1];
-            limits[x].group = (uint8_t)own[2];
-        }
+        EerufLimits *limits = limits_of(schedule->sensors, own);
         free(handle->limits[number]);
         handle->limits[number] = limits;
         needs.limits = limits;
@@ -262,9 +268,10 @@ static void make_room(Handle *handle, uint8_t sensors) {
 }
 
 /* `numbers`: step, period, window, blanking, reach, shift interval, seed; then the tracker's nine; then solo rate,
-   after and spacing, shift after and spacing, neighbours, code; then one lag for each sensor, or none. */
+   after and spacing, shift after and spacing, neighbours, code; then one lag for each sensor, or none. `own`: the time
+   that any pair keeps; then window, t_delta and group of each sensor; or null. */
 int shim_hopping(Handle *handle, uint8_t sensors, uint8_t phases, const uint32_t *numbers, uint8_t has_lags,
-                 uint32_t now_us) {
+                 const uint32_t *own, uint32_t now_us) {
     const uint32_t *rest = numbers + 16;
     EerufHoppingConfig config = EERUF_HOPPING_BALANCED(0, 0, 0);
     config.sensors = sensors;
@@ -285,6 +292,14 @@ int shim_hopping(Handle *handle, uint8_t sensors, uint8_t phases, const uint32_t
     config.neighbours = (uint8_t)rest[5];
     config.code = (uint8_t)rest[6];
     config.lag_us = has_lags ? rest + 7 : NULL;
+    if (own != NULL) {
+        EerufSchedule *schedule = (EerufSchedule *)calloc(1, sizeof *schedule);
+        schedule->sensors = sensors;
+        schedule->min_interval_us = *own++;
+        schedule->limits = handle->limits[handle->schedule_count] = limits_of(sensors, own);
+        handle->schedules[handle->schedule_count++] = schedule;
+        config.own = schedule;
+    }
     make_room(handle, sensors);
     return eeruf_hopping_init(handle->hopping, sizeof(EerufHoppingRing), handle->hop_sensors,
                               sensors * sizeof(EerufHopSensor), handle->hoppers, sensors * sizeof(EerufHopper),

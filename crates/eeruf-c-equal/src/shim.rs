@@ -46,6 +46,7 @@ unsafe extern "C" {
         phases: u8,
         numbers: *const u32,
         has_lags: u8,
+        own: *const u32,
         now_us: u32,
     ) -> i32;
     pub(crate) fn shim_flow(handle: *mut c_void, sensors: u8, numbers: *const u32, now_us: u32) -> i32;

@@ -28,6 +28,7 @@ pub(crate) fn status_of(error: &HoppingError) -> i32 {
         HoppingError::Ring(RingError::Blanking { .. }) => -18,
         HoppingError::Ring(RingError::CoarseTDelta { .. }) => -19,
         HoppingError::Window { .. } => -17,
+        HoppingError::Shift { .. } => -27,
         _ => unreachable!("{error}"),
     }
 }

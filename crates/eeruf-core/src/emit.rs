@@ -7,8 +7,8 @@ mod c;
 
 use core::fmt;
 
-pub(crate) use c::EERUF_VERSION;
 use c::{ArduinoTab, CHeader};
+pub(crate) use c::{CLimits, EERUF_VERSION, OfSensor, Plain};
 
 use crate::layout::Layout;
 use crate::requirements::{Criterion, Requirements};

@@ -108,7 +108,7 @@ fn hop(seed: u64) -> u64 {
         [settings.solo_rate, settings.solo_after, settings.solo_spacing, settings.shift_after, settings.shift_spacing];
     numbers.extend(paces.map(u32::from));
     numbers.extend([settings.neighbours, 0].map(u32::from));
-    assert_eq!(c.hopping(EIGHT, 5, &numbers, start), 0);
+    assert_eq!(c.hopping(EIGHT, 5, &numbers, &[], start), 0);
     let mut recorder = Recorder::<8>::new("board of sixteen letters");
     let mut world = World::new(r, EIGHT, 36_000);
     world.now = start;

@@ -4,7 +4,7 @@ use core::fmt;
 
 use super::{Promise, Summary};
 use crate::layout::Layout;
-use crate::own_limits::SensorLimits;
+use crate::own_limits::{EachSensor, SensorLimits};
 use crate::requirements::Requirements;
 use crate::schedule::{Phase, Schedule, VerifiedFor};
 use crate::time::Micros;
@@ -20,7 +20,7 @@ pub(super) struct CHeader<'r, const K: usize> {
 }
 
 /// The need of one sensor.
-type OfSensor<'r> = fn(&Requirements<'r>, usize) -> Micros;
+pub(crate) type OfSensor<'r> = fn(&Requirements<'r>, usize) -> Micros;
 
 impl<'r, const K: usize> fmt::Display for CHeader<'r, K> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -113,13 +113,12 @@ impl<const K: usize> fmt::Display for Constant<'_, K> {
         let stale_echo = u8::from(requirements.stale_echo);
         let times = [schedule.period(), schedule.min_refire(), t_delta, min_interval, window, separation];
         if let Some(each) = each {
-            writeln!(f, "}};\nstatic const EerufLimits {name}_limits[] EERUF_FLASH = {{")?;
-            for (x, group) in (0..sensors as u8).zip(each.groups()) {
-                let Some(SensorLimits { t_delta, window }) = each.of(x) else { continue };
-                writeln!(f, "    {{{}u, {}u, {group}}},", window.as_micros(), t_delta.as_micros())?;
-            }
+            writeln!(f, "}};")?;
+            write!(f, "{}", CLimits { name, sensors, limits: each })?;
+            writeln!(f, "static const EerufSchedule {name} EERUF_FLASH = {{")?;
+        } else {
+            writeln!(f, "}};\nstatic const EerufSchedule {name} EERUF_FLASH = {{")?;
         }
-        writeln!(f, "}};\nstatic const EerufSchedule {name} EERUF_FLASH = {{")?;
         writeln!(f, "    {EERUF_VERSION}, {sensors}, 2, {name}_order, {name}_gap_us,")?;
         writeln!(f, "    {},", Plain(|| times.into_iter().map(|time| (time.as_micros(), "u"))))?;
         match path_change {
@@ -136,8 +135,27 @@ impl<const K: usize> fmt::Display for Constant<'_, K> {
     }
 }
 
+/// The limits of each sensor as a constant.
+pub(crate) struct CLimits<'r, const K: usize> {
+    pub(crate) name: &'r str,
+    pub(crate) sensors: usize,
+    pub(crate) limits: &'r EachSensor<K>,
+}
+
+impl<const K: usize> fmt::Display for CLimits<'_, K> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { name, sensors, limits } = *self;
+        writeln!(f, "static const EerufLimits {name}_limits[] EERUF_FLASH = {{")?;
+        for (x, group) in (0..sensors as u8).zip(limits.groups()) {
+            let Some(SensorLimits { t_delta, window }) = limits.of(x) else { continue };
+            writeln!(f, "    {{{}u, {}u, {group}}},", window.as_micros(), t_delta.as_micros())?;
+        }
+        writeln!(f, "}};")
+    }
+}
+
 /// Numbers, each with what follows it, separated by commas.
-struct Plain<F>(F);
+pub(crate) struct Plain<F>(pub(crate) F);
 
 impl<F: Fn() -> I, I: Iterator<Item = (u32, &'static str)>> fmt::Display for Plain<F> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

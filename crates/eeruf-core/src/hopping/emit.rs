@@ -2,11 +2,14 @@
 
 use core::fmt;
 
+use super::code::HoppingCode;
 use super::schedule::HoppingSchedule;
 use super::settings::HoppingSettings;
-use crate::emit::{EERUF_VERSION, Grouped, Meets, Numbers, Promise};
+use crate::emit::{CLimits, EERUF_VERSION, Grouped, Meets, Numbers, OfSensor, Plain, Promise};
 use crate::layout::Layout;
+use crate::own_limits::EachSensor;
 use crate::requirements::{Criterion, Requirements};
+use crate::schedule::VerifiedFor;
 use crate::time::Micros;
 use crate::tracker::TrackerSettings;
 
@@ -125,15 +128,22 @@ impl<const K: usize> fmt::Display for HoppingHeader<'_, K> {
         writeln!(f, "#define EERUF_SENSORS {}", code.sensors())?;
         writeln!(f, "#define EERUF_PHASES {}", code.phases())?;
         writeln!(f, "#define EERUF_PERIOD_US {}u", schedule.period().as_micros())?;
+        if requirements.uneven.is_some() {
+            writeln!(f, "/* The largest of all sensors; each one's own follow. */")?;
+        }
         writeln!(f, "#define EERUF_T_DELTA_US {}u", requirements.t_delta.as_micros())?;
         writeln!(f, "#define EERUF_WINDOW_US {}u\n", requirements.window.as_micros())?;
+        let own: [(&str, OfSensor<'_>); 2] =
+            [("t_delta", Requirements::t_delta_of), ("window", Requirements::window_of)];
+        for (name, of) in own.into_iter().filter(|_| requirements.uneven.is_some()) {
+            let times = Plain(|| (0..code.sensors()).map(move |x| (of(requirements, x).as_micros(), "u")));
+            writeln!(f, "static const uint32_t eeruf_{name}_us[EERUF_SENSORS] = {{{times}}};")?;
+        }
         writeln!(f, "static const uint32_t eeruf_t_fire_us[EERUF_PHASES][EERUF_SENSORS] = {{")?;
-        for phase in 0..code.phases() {
-            write!(f, "    {{")?;
-            for (sensor, time) in (0..code.sensors()).filter_map(|sensor| schedule.t_fire(phase, sensor)).enumerate() {
-                write!(f, "{}{}u", if sensor == 0 { "" } else { ", " }, time.as_micros())?;
-            }
-            writeln!(f, "}}, /* phase {phase} */")?;
+        let cycle = schedule.table_together::<{ HoppingCode::MAX_PHASES as usize }>(requirements.together());
+        for (phase, times) in cycle.iter().take(code.phases().into()).enumerate() {
+            let times = Plain(|| times.iter().take(code.sensors()).map(|time| (time.as_micros(), "u")));
+            writeln!(f, "    {{{times}}}, /* phase {phase} */")?;
         }
         writeln!(f, "}};\n\n#ifdef EERUF_H /* with eeruf.h before this file: for eeruf_hopping_init */")?;
         write!(f, "{}", Constant { schedule, requirements, name: "eeruf_hopping_config" })?;
@@ -168,13 +178,15 @@ impl<const K: usize> fmt::Display for Constant<'_, K> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { schedule, requirements, name } = self;
         let (code, all, window) = (schedule.code(), settings(requirements), requirements.window);
-        write!(f, "static const uint32_t {name}_lag_us[] = {{")?;
-        for (sensor, lag) in schedule.lags().enumerate() {
-            write!(f, "{}{}u", if sensor == 0 { "" } else { ", " }, lag.as_micros())?;
+        let lags = Plain(|| schedule.lags().map(|lag| (lag.as_micros(), "u")));
+        writeln!(f, "static const uint32_t {name}_lag_us[] = {{{lags}}};")?;
+        let limits = schedule.limits(requirements).ok().filter(|_| requirements.uneven.is_some());
+        if let Some(limits) = &limits {
+            write!(f, "{}", OwnLimits { schedule, limits, name })?;
         }
         writeln!(
             f,
-            "}};\n/* The settings of most robots; EERUF_HOPPING_QUICK, _DRIVING and _MAPS in eeruf.h have others. */"
+            "/* The settings of most robots; EERUF_HOPPING_QUICK, _DRIVING and _MAPS in eeruf.h have others. */"
         )?;
         writeln!(f, "static const EerufHoppingConfig {name} = {{")?;
         let (step, period) = (code.step().as_micros(), schedule.period().as_micros());
@@ -190,7 +202,34 @@ impl<const K: usize> fmt::Display for Constant<'_, K> {
         writeln!(f, "{solo_contradiction}, {tentative_votes}, {memory}}},")?;
         let HoppingSettings { solo_rate, solo_after, solo_spacing, shift_after, shift_spacing, neighbours, .. } = all;
         write!(f, "    {solo_rate}, {solo_after}, {solo_spacing}, {shift_after}, {shift_spacing}, {neighbours}, ")?;
-        writeln!(f, "{},\n}};", 1 + code.first_multiplier())
+        write!(f, "{}, ", 1 + code.first_multiplier())?;
+        if limits.is_some() { writeln!(f, "&{name}_own,\n}};") } else { writeln!(f, "0,\n}};") }
+    }
+}
+
+/// The limits of each sensor, and what of a schedule goes with them.
+struct OwnLimits<'r, const K: usize> {
+    schedule: &'r HoppingSchedule<K>,
+    limits: &'r EachSensor<K>,
+    name: &'r str,
+}
+
+impl<const K: usize> fmt::Display for OwnLimits<'_, K> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { schedule, limits, name } = self;
+        let Some(most) = limits.most() else { return Ok(()) };
+        let sensors = schedule.code().sensors();
+        write!(f, "{}", CLimits { name, sensors, limits })?;
+        let VerifiedFor { t_delta, min_interval, window, separation, audible, .. } = *most;
+        let times = [schedule.period(), window, t_delta, min_interval, window, separation];
+        writeln!(f, "static const EerufSchedule {name}_own EERUF_FLASH = {{")?;
+        writeln!(f, "    {EERUF_VERSION}, {sensors}, 0, 0, 0,")?;
+        writeln!(f, "    {},", Plain(|| times.into_iter().map(|time| (time.as_micros(), "u"))))?;
+        writeln!(
+            f,
+            "    EERUF_AS_T_DELTA, {}u,\n    1, EERUF_LAYOUT_OTHER, 0, 0, {name}_limits,\n}};",
+            audible.as_micros()
+        )
     }
 }
 
@@ -261,7 +300,7 @@ mod tests {
         );
         let tab = schedule.to_arduino(&requirements, "PORT").to_string();
         assert!(tab.contains("PORT_lag_us[] = {0u, 9000u, 18000u};"), "{tab}");
-        assert!(tab.contains("{150, 400, 60, 5, 6, 2, 6, 2, 0},\n    84, 5, 3, 0, 8, 2, 2,\n};"), "{tab}");
+        assert!(tab.contains("{150, 400, 60, 5, 6, 2, 6, 2, 0},\n    84, 5, 3, 0, 8, 2, 2, 0,\n};"), "{tab}");
         // What may not be less than T_delta, or more, follows it.
         let wide = Requirements { t_delta: Micros::new(500), ..requirements };
         assert!(schedule.to_c(&wide).to_string().contains("{500, 500, 60,"));

@@ -24,7 +24,7 @@ fn settings(r: &Random) -> HoppingSettings {
     settings
 }
 
-/// Limits of each sensor that a schedule keeps, and as numbers for C; none where it does not keep those that were drawn.
+/// Limits of each sensor, and the same as numbers for C; `None` where the schedule does not keep those that were drawn.
 fn own_limits<const K: usize>(
     r: &Random,
     schedule: &HoppingSchedule<K>,

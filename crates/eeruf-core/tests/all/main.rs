@@ -24,6 +24,7 @@ mod hopping_settings;
 mod immediate;
 mod lateness;
 mod listening;
+mod pairs;
 mod period_corpus;
 mod period_edges;
 mod period_limits;

@@ -748,7 +748,7 @@ class HoppingFound:
     ) -> HoppingFound: ...
     @property
     def schedule(self) -> HoppingSchedule:
-        """The schedule: a linear congruence with lags."""
+        """The schedule: a linear congruence with lags, or Welch's sequence where stale echoes must be rejected."""
     @property
     def value_us(self) -> int:
         """Its period, in microseconds."""

@@ -39,9 +39,9 @@ use crate::report::watch::Watch;
 /// set up with where that is the way recommended, else the shortest schedule of two phases, as --period-only and --emit
 /// toml always do.
 ///
-/// With --phases it is one of many phases, for a ring that hops in time and whose sensors do not stay blind: a linear
-/// congruence with lags, and the bound that holds for any such schedule; --emit rust, c and arduino then write all that
-/// a hopping ring is set up with.
+/// With --phases it is one of many phases, for a ring that hops in time and whose sensors do not stay blind: a code
+/// with lags that keep all needs, and the bound that holds for any such schedule; --emit rust, c and arduino then write
+/// all that a hopping ring is set up with.
 ///
 /// The ring file says how many sensors there are (sensors, layout, neighbours) and what they need: t_delta_us,
 /// min_interval_us, window_us; or jitter_us and speed_m_s, crosstalk_range_m, max_range_m and retrigger_us,

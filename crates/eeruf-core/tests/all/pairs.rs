@@ -31,7 +31,7 @@ static CORNER: VerifiedSchedule<2, 2, EachSensor<2>> = schedule! {
     each_meets: LIMITS,
 };
 
-/// Echoes of a sensor's firing by its number: one that is never twice the same, a wall, and one beyond the short window.
+/// Echoes of a sensor's firing by its number: one that never repeats, a wall, and one beyond the short window.
 fn echoes(sensor: u8, firing: u32) -> [Micros; 3] {
     let wall = if sensor == 0 { 30_000 } else { 10_000 };
     [Micros::new(3_000 + 2_500 * (firing % 3)), Micros::new(wall), Micros::new(wall + 10_000)]

@@ -3,8 +3,7 @@
 use std::path::PathBuf;
 
 use eeruf_logs::{
-    Diagnosis, Fault, FieldChoice, Firing, FiringLog, FoundPath, Options, PathSettings, RangeUnit, Settings, Table,
-    TimeUnit,
+    Diagnosis, FieldChoice, Firing, FiringLog, FoundPath, Options, PathSettings, RangeUnit, Settings, Table, TimeUnit,
 };
 use numpy::PyReadonlyArray1;
 use pyo3::{create_exception, prelude::*, types::PyDict};
@@ -311,19 +310,13 @@ pub(crate) fn diagnose<'py>(
     out.set_item("sender", read_only(py, sender.into_iter())?)?;
     out.set_item("travel_us", read_only(py, travel_us.into_iter())?)?;
     out.set_item("sure", read_only(py, sure.into_iter())?)?;
-    out.set_item("faults", found.faults.iter().filter_map(fault).collect::<Vec<_>>())?;
+    let faults = found.faults.iter().map(|fault| (fault.kind(), fault.sensors()));
+    out.set_item("faults", faults.collect::<Vec<_>>())?;
+    out.set_item("silent", found.silent())?;
+    out.set_item("missing", found.missing())?;
+    out.set_item("moved", found.moved)?;
     out.set_item("most_offsets", found.most_offsets)?;
     Ok(out)
-}
-
-/// The name of a fault, and its sensors.
-fn fault(fault: &Fault) -> Option<(&'static str, Vec<u8>)> {
-    match *fault {
-        Fault::Deaf { sensor, .. } => Some(("deaf", vec![sensor])),
-        Fault::Chattering { sensor, .. } => Some(("chattering", vec![sensor])),
-        Fault::Swapped { sensors: (a, b), .. } => Some(("swapped", vec![a, b])),
-        _ => None,
-    }
 }
 
 /// Finds from the columns of a measuring run who hears whom.

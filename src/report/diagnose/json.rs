@@ -37,18 +37,24 @@ pub(crate) fn json(found: &Found<'_>) -> Value {
     let faults: Vec<_> = diagnosis
         .faults
         .iter()
-        .map(|fault| match *fault {
-            Fault::Deaf { sensor, echoes, is_heard } => {
-                object!({"kind": "deaf", "sensors": [sensor], "echoes": share(echoes), "is_heard": is_heard})
+        .map(|fault| {
+            let mut object = object!({"kind": fault.kind(), "sensors": fault.sensors()});
+            let more = match *fault {
+                Fault::Deaf { echoes, is_heard, .. } => object!({"echoes": share(echoes), "is_heard": is_heard}),
+                Fault::Losing { lost, .. } => object!({"lost": share(lost)}),
+                Fault::Chattering { wandering, .. } => object!({"wandering": share(wandering)}),
+                Fault::Swapped { exchanged, as_it_is, accidents, .. } => object!({
+                    "exchanged": share(exchanged), "as_it_is": share(as_it_is), "accidents": accidents,
+                }),
+                Fault::Late { late_us, delayed, as_it_is, accidents, .. } => object!({
+                    "late_us": late_us, "delayed": share(delayed), "as_it_is": share(as_it_is), "accidents": accidents,
+                }),
+                _ => Value::Null,
+            };
+            if let (Value::Object(object), Value::Object(more)) = (&mut object, more) {
+                object.extend(more);
             }
-            Fault::Chattering { sensor, wandering } => {
-                object!({"kind": "chattering", "sensors": [sensor], "wandering": share(wandering)})
-            }
-            Fault::Swapped { sensors, exchanged, as_it_is, accidents } => object!({
-                "kind": "swapped", "sensors": [sensors.0, sensors.1], "exchanged": share(exchanged),
-                "as_it_is": share(as_it_is), "accidents": accidents,
-            }),
-            _ => Value::Null,
+            object
         })
         .collect();
     let alignment = found.alignment.map(|alignment| {
@@ -67,7 +73,8 @@ pub(crate) fn json(found: &Found<'_>) -> Value {
         "clock": found.log.clock, "firings": found.log.firings.len(), "phases": found.phases(),
         "rejected": found.rejected().map(|(rejected, _)| rejected),
         "rejected_foreign": found.rejected().map(|(_, named)| named),
-        "most_offsets": diagnosis.most_offsets,
+        "most_offsets": diagnosis.most_offsets, "moved": diagnosis.moved,
+        "silent": diagnosis.silent(), "missing": diagnosis.missing(),
         "paths": paths, "sensors": hearing, "faults": faults, "timing": timing, "alignment": alignment,
         "advice": found.advice(),
     })

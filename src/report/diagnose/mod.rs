@@ -67,6 +67,12 @@ impl Found<'_> {
                     format!("look at the echo line of sensor {}: its sound goes out", sensor + 1)
                 }
                 Fault::Deaf { sensor, .. } => format!("look at sensor {}, its supply and its lines", sensor + 1),
+                Fault::Losing { sensor, .. } => {
+                    format!("look at the contacts of sensor {} and at its receiver", sensor + 1)
+                }
+                Fault::Late { sensor, late_us, .. } => {
+                    format!("trigger sensor {} {late_us:.0} us sooner, or find what delays it", sensor + 1)
+                }
                 Fault::Chattering { sensor, .. } => {
                     format!("disable sensor {} until its echo line is quiet", sensor + 1)
                 }
@@ -75,6 +81,15 @@ impl Found<'_> {
                 }
                 _ => continue,
             });
+        }
+        for sensor in self.diagnosis.silent() {
+            advice.push(format!("hold a board before sensor {} and record again: it may be deaf", sensor + 1));
+        }
+        for sensor in self.diagnosis.missing() {
+            advice.push(format!("hold a board before sensor {} and record again: it may lose echoes", sensor + 1));
+        }
+        if self.diagnosis.moved {
+            advice.push("record a minute of a robot that stands".to_owned());
         }
         if self.phases() <= 2 {
             advice.push(

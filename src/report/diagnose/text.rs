@@ -7,10 +7,14 @@ use eeruf_logs::{Fault, FoundPath, Share};
 use super::Found;
 use crate::report::table::markdown;
 
+/// Clocks that differ by more are said to.
+const APART_PPM: f64 = 10.0;
+
 /// The whole diagnosis.
 pub(crate) fn describe(found: &Found<'_>) -> String {
     let mut text = head(found);
     faults(found, &mut text);
+    open(found, &mut text);
     sensors(found, &mut text);
     paths(found, &mut text);
     let advice = found.advice();
@@ -42,7 +46,10 @@ fn head(found: &Found<'_>) -> String {
         );
     }
     let most = diagnosis.most_offsets;
-    if diagnosis.paths.is_empty() {
+    if diagnosis.moved && diagnosis.paths.is_empty() {
+        text +=
+            "No sender can be named, and nothing can be said of blind sensors: ranges change while the robot moves.\n";
+    } else if diagnosis.paths.is_empty() {
         _ = writeln!(
             text,
             "No sender can be named, and nothing can be said of blind sensors. Two sensors' firings stand at {most} \
@@ -80,6 +87,9 @@ fn head(found: &Found<'_>) -> String {
                 timing.jitter_us,
                 timing.late_99_us
             );
+            if timing.drift_ppm.abs() > 1.96 * timing.drift_error_ppm + APART_PPM {
+                _ = writeln!(text, "The clocks of log and schedule are {:.1} ppm apart.", timing.drift_ppm.abs());
+            }
         }
         None => {
             if let Some(scatter) = scatter_us(&diagnosis.paths) {
@@ -101,16 +111,33 @@ fn faults(found: &Found<'_>, text: &mut String) {
         _ = match *fault {
             Fault::Deaf { sensor, echoes, is_heard } => writeln!(
                 text,
-                "Sensor {} is deaf: an echo in {} of {} firings (95 %: under {:.1} %), while most others hear; {}.",
+                "Sensor {} is deaf: an echo in {} of {} firings (95 %: under {:.1} %), where it should hear; {}.",
                 sensor + 1,
                 echoes.count,
                 echoes.of,
                 100.0 * echoes.interval_95().1,
                 if is_heard { "others hear its sound" } else { "nobody hears its sound either" }
             ),
+            Fault::Losing { sensor, lost } => writeln!(
+                text,
+                "Sensor {} loses echoes at random: {} of those that it should hear, when the ring fires alike.",
+                sensor + 1,
+                percent(lost),
+            ),
+            Fault::Late { sensor, late_us, delayed, as_it_is, accidents } => writeln!(
+                text,
+                "Sensor {} fires {late_us:.0} us later than the log says: {} of {} paths take as long back as there with \
+                 that delay, {} of {} as it is ({accidents:.1e} such sensors expected by accident).",
+                sensor + 1,
+                delayed.count,
+                delayed.of,
+                as_it_is.count,
+                as_it_is.of
+            ),
             Fault::Chattering { sensor, wandering } => writeln!(
                 text,
-                "Sensor {} chatters: {} of its echoes fit no path and do not come back when the ring fires alike.",
+                "Sensor {} chatters: in {} of its firings an echo fits no path and does not come back when the ring fires \
+                 alike.",
                 sensor + 1,
                 percent(wandering),
             ),
@@ -127,6 +154,27 @@ fn faults(found: &Found<'_>, text: &mut String) {
             ),
             _ => Ok(()),
         };
+    }
+}
+
+/// Suspicions that the log neither confirms nor rules out.
+fn open(found: &Found<'_>, text: &mut String) {
+    for sensor in found.diagnosis.silent() {
+        _ = writeln!(
+            text,
+            "Sensor {} hears nothing: nothing is in its range, or it is deaf. This log cannot tell.",
+            sensor + 1
+        );
+    }
+    for sensor in found.diagnosis.missing() {
+        _ = writeln!(
+            text,
+            "Sensor {} misses echoes at random: it loses them, or they are just at its threshold. This log cannot tell.",
+            sensor + 1
+        );
+    }
+    if found.diagnosis.moved {
+        *text += "The robot moved: no lost echo, noise, wire or trigger can be named.\n";
     }
 }
 

@@ -143,6 +143,8 @@ impl Broken {
         let pair = |of: (u8, u8)| [[sensor, other], [other, sensor]].contains(&[of.0.into(), of.1.into()]);
         match (self, found) {
             (Self::Deaf | Self::Loses(_), &Found::Deaf { sensor: of, .. })
+            | (Self::Loses(_), &Found::Losing { sensor: of, .. })
+            | (Self::LateTrigger, &Found::Late { sensor: of, .. })
             | (Self::Noise(_), &Found::Chattering { sensor: of, .. }) => usize::from(of) == sensor,
             (Self::EchoWires, &Found::Swapped { sensors, .. }) => pair(sensors),
             _ => false,

@@ -1,6 +1,7 @@
 //! Rates of detection of `diagnose`: of each of the simulator's faults by strength, and false alarms of healthy
 //! rings, in alcoves of Set I and in other rooms, standing and driving:
-//! `cargo run --release -p eeruf-logs --example fault_rates -- [FIRST [PLACES [PHYSICS [METHOD]]]]`.
+//! `cargo run --release -p eeruf-logs --example fault_rates -- [FIRST [PLACES [PHYSICS [METHOD [ROBOTS]]]]]`,
+//! where ROBOTS are those that `stand`, those that `drive`, or `both`.
 //!
 //! The simulator decides which logs count, before `diagnose` sees any: `truth.rs`.
 
@@ -52,17 +53,27 @@ fn main() -> Result<(), Box<dyn Error>> {
     let (first, places): (u64, u64) = (next("20000").parse()?, next("50").parse()?);
     let physics_name = next("plain");
     let (physics, method): (Physics, Method) = (physics_name.parse()?, next("eeruf_hopping").parse()?);
-    let columns = [
+    let robots = next("both");
+    let columns: Vec<_> = [
         ("alcove, stands", Place::Alcove, Robots::Stand),
         ("alcove, drives", Place::Alcove, Robots::Drive),
         ("room, stands", Place::Room, Robots::Stand),
         ("room, drives", Place::Room, Robots::Drive),
-    ];
+    ]
+    .into_iter()
+    .filter(|column| match robots.as_str() {
+        "stand" => column.2 == Robots::Stand,
+        "drive" => column.2 == Robots::Drive,
+        _ => true,
+    })
+    .collect();
+    let names: Vec<_> = columns.iter().map(|column| column.0).collect();
+    let names = names.join(" | ");
     println!(
         "{places} alcoves and {places} rooms from {first} on, {method}, physics {physics_name}; 95 % intervals.\n"
     );
     let rows: Vec<_> = Broken::ALL.into_iter().filter(|broken| broken.applies(method)).collect();
-    let mut table = vec![[Cell::default(); 4]; rows.len()];
+    let mut table = vec![vec![Cell::default(); columns.len()]; rows.len()];
     for (column, &(_, place, robots)) in columns.iter().enumerate() {
         let numbers: Vec<_> = (first..first + places).collect();
         let all = sweep(&numbers, |&number| {
@@ -75,15 +86,17 @@ fn main() -> Result<(), Box<dyn Error>> {
             table.iter_mut().zip(outcomes?).for_each(|(row, outcome)| row[column].add(outcome));
         }
     }
-    println!("| fault | {} |", columns.map(|column| column.0).join(" | "));
+    println!("| fault | {names} |");
     println!("|---|{}", "---|".repeat(columns.len()));
     for (broken, cells) in rows.iter().zip(&table) {
-        println!("| {} | {} |", broken.name(), cells.map(|cell| percent(cell.counted())).join(" | "));
+        let cells: Vec<_> = cells.iter().map(|cell| percent(cell.counted())).collect();
+        println!("| {} | {} |", broken.name(), cells.join(" | "));
     }
-    println!("\n| logs left out, and with another sensor blamed | {} |", columns.map(|column| column.0).join(" | "));
+    println!("\n| logs left out, and with another sensor blamed | {names} |");
     println!("|---|{}", "---|".repeat(columns.len()));
     for (broken, cells) in rows.iter().zip(&table) {
-        let cells = cells.map(|cell| format!("{}, {} of {}", cell.left_out, cell.blamed, cell.logs - cell.left_out));
+        let blamed = |cell: &Cell| format!("{}, {} of {}", cell.left_out, cell.blamed, cell.logs - cell.left_out);
+        let cells: Vec<_> = cells.iter().map(blamed).collect();
         println!("| {} | {} |", broken.name(), cells.join(" | "));
     }
     Ok(())

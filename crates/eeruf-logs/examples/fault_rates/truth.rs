@@ -12,6 +12,8 @@ const HEARD: u32 = 20;
 const LOUD_DB: f64 = 6.0;
 /// A deaf sensor would hear in this share of the firings if it were not.
 const HEARS: f64 = 0.2;
+/// A reading that comes less early than this, in microseconds, is not changed.
+const CHANGED_US: f64 = 150.0;
 /// More noise than this is none that a ring could be diagnosed with, in 1/s.
 const MOST_NOISE_PER_S: f64 = 2000.0;
 /// Places of its way at which the own echo of a robot that drives is weighed.
@@ -44,7 +46,7 @@ impl Truth {
             truth.firings[sensor] += 1;
             truth.echoes[sensor] += u32::from(!echo.is_nan());
             let until = if echo.is_nan() { window } else { echo };
-            truth.listens_s[sensor].push(1e-6 * (until - blanking).max(0.0));
+            truth.listens_s[sensor].push(1e-6 * (until - CHANGED_US - blanking).max(0.0));
             if readings.cause[k] == Cause::Crosstalk {
                 truth.foreign[sensor] += 1;
                 if let Some(path) = readings.path_of(k) {

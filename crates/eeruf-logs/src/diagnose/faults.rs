@@ -1,14 +1,21 @@
-//! Broken parts: sensors that hear nothing, that chatter, or whose lines are swapped.
+//! Broken parts: sensors that hear nothing, that lose echoes, that chatter, whose lines are swapped or whose triggers
+//! are late.
+//!
+//! Nothing in range is not deaf, and an echo at its threshold is not a bad contact. A sensor is called broken where the
+//! log rules that out: others hear its sound loudly, and it does not hear theirs along the same paths; or all others
+//! hear in nearly every firing, so that the room has no open side.
 
+use super::alike::Alike;
+use super::reciprocity::{Wiring, wiring};
 use super::sensors::{Hearing, Share};
-use super::statistics::{ln_at_least, median};
+use super::timeline::Timeline;
 use super::{FoundPath, Settings};
 
 /// Something that is broken, with what speaks for it.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Fault {
-    /// A sensor hears nothing, while most others do: it is deaf, or its echo line is open, or nothing is in its range.
+    /// A sensor hears nothing that it should: it is deaf, or its echo line is open.
     Deaf {
         /// The sensor, from 0.
         sensor: u8,
@@ -17,11 +24,18 @@ pub enum Fault {
         /// True if others hear its sound, so that it is not its trigger.
         is_heard: bool,
     },
+    /// A sensor misses echoes at random: a bad contact, or a receiver that is nearly deaf.
+    Losing {
+        /// The sensor, from 0.
+        sensor: u8,
+        /// Firings without an echo, of those after one with an echo at which the ring fired alike.
+        lost: Share,
+    },
     /// A sensor's echoes come from nowhere and at any time.
     Chattering {
         /// The sensor, from 0.
         sensor: u8,
-        /// Echoes that fit no path and do not come back when the ring fires alike.
+        /// Firings whose echo fits no path and does not come back when the ring fires alike.
         wandering: Share,
     },
     /// The echo lines of two sensors are swapped, or their triggers. Sound takes the same time from x to y as from y to
@@ -29,91 +43,159 @@ pub enum Fault {
     Swapped {
         /// The two sensors, from 0.
         sensors: (u8, u8),
-        /// Number of paths of these two that have their like in the other direction if the lines are exchanged, of how
-        /// many.
+        /// Paths that are heard back if the lines are exchanged, of those that should be.
         exchanged: Share,
         /// The same as the log stands.
         as_it_is: Share,
-        /// Number of such pairs that are expected in a whole ring by accident.
+        /// Number of explanations as good that are expected in a whole ring by accident.
+        accidents: f64,
+    },
+    /// A sensor fires later than the log says. Its sound takes longer to the others than theirs to it.
+    Late {
+        /// The sensor, from 0.
+        sensor: u8,
+        /// Delay of its trigger, in microseconds.
+        late_us: f64,
+        /// Paths that are heard back with this delay, of those that should be.
+        delayed: Share,
+        /// The same as the log stands.
+        as_it_is: Share,
+        /// Number of explanations as good that are expected in a whole ring by accident.
         accidents: f64,
     },
 }
 
-/// A sensor with fewer firings is not judged.
-const FEW: u32 = 50;
-/// A deaf sensor has an echo in fewer of its firings, and the others in more.
-const DEAF: f64 = 0.02;
-const OTHERS_HEAR: f64 = 0.2;
-/// Echoes of a chattering sensor that wander: of all of them, and as a multiple of the others' median share, at least.
-const CHATTERS: f64 = 0.1;
-const AS_OTHERS: f64 = 4.0;
-
-/// Rooms are regular: this share of paths must have their like only if lines are exchanged, and this share be without
-/// it else.
-const MATCHES: u32 = 3;
-
-pub(super) fn faults(paths: &[FoundPath], hearing: &[Hearing], settings: &Settings) -> Vec<Fault> {
-    let mut faults = Vec::new();
-    for of in hearing.iter().filter(|of| of.echoes.of >= FEW) {
-        let others = || hearing.iter().filter(|other| other.sensor != of.sensor);
-        let hear = others().filter(|other| other.echoes.value() > OTHERS_HEAR).count();
-        let sensor = of.sensor;
-        if of.echoes.interval_95().1 < DEAF && 2 * hear > others().count() {
-            let is_heard = paths.iter().any(|path| path.sender == sensor && path.receiver != sensor);
-            faults.push(Fault::Deaf { sensor, echoes: of.echoes, is_heard });
-        }
-        // Where nothing is named in the whole ring, nothing can be said of one sensor.
-        let usual = median(&mut others().map(|other| other.wandering.value()).collect::<Vec<_>>());
-        let least = of.wandering.interval_95().0;
-        if of.wandering.of >= FEW && least > CHATTERS && least > AS_OTHERS * usual {
-            faults.push(Fault::Chattering { sensor, wandering: of.wandering });
+impl Fault {
+    /// The name, as `--json` and Python give it.
+    pub const fn kind(&self) -> &'static str {
+        match self {
+            Self::Deaf { .. } => "deaf",
+            Self::Losing { .. } => "losing",
+            Self::Chattering { .. } => "chattering",
+            Self::Swapped { .. } => "swapped",
+            Self::Late { .. } => "late",
         }
     }
-    let sensors = hearing.len() as u8;
-    let pairs = f64::from(sensors) * f64::from(sensors.saturating_sub(1)) / 2.0;
-    for a in 0..sensors {
-        for b in a + 1..sensors {
-            let (as_it_is, by_accident) = reciprocal(paths, None, (a, b), settings);
-            let (exchanged, _) = reciprocal(paths, Some((a, b)), (a, b), settings);
-            let accidents = pairs * ln_at_least(exchanged.count, exchanged.of, by_accident).exp();
-            let speaks = exchanged.count >= MATCHES && as_it_is.of >= MATCHES && exchanged.count > 3 * as_it_is.count;
-            if accidents < settings.accidents && speaks {
-                faults.push(Fault::Swapped { sensors: (a, b), exchanged, as_it_is, accidents });
-            }
+
+    /// The sensors that have it, from 0.
+    pub fn sensors(&self) -> Vec<u8> {
+        match *self {
+            Self::Deaf { sensor, .. }
+            | Self::Losing { sensor, .. }
+            | Self::Chattering { sensor, .. }
+            | Self::Late { sensor, .. } => vec![sensor],
+            Self::Swapped { sensors: (one, other), .. } => vec![one, other],
         }
+    }
+}
+
+/// A sensor with fewer firings is not judged.
+const FEW: u32 = 50;
+/// A deaf sensor has an echo in fewer of its firings.
+const DEAF: f64 = 0.02;
+/// A room without an open side is heard by all others in this share of their firings.
+const CLOSED: f64 = 0.9;
+/// A sensor that hears so few of the arrivals that it should is broken, of this many.
+const ANSWERS: f64 = 0.75;
+const ARRIVALS: u32 = 20;
+/// A sensor that loses echoes hears one in fewer of the firings at which it should, of this many.
+const KEEPS: f64 = 0.8;
+const COMPARED: u32 = 8;
+/// Misses at random come as often after a miss as after an echo; those of a sound that fades come in runs.
+const RANDOM: f64 = 0.1;
+const RUNS: f64 = 0.3;
+/// Firings of a chattering sensor whose echoes wander, at least.
+const CHATTERS: f64 = 0.045;
+/// Noise has no memory; who walks by makes echoes wander one after the other.
+const EPISODES: f64 = 2.0;
+/// Not more than one other sensor does so this much as often.
+const AS_OTHERS: f64 = 0.4;
+
+pub(super) fn faults(
+    paths: &[FoundPath],
+    hearing: &[Hearing],
+    alike: &[Alike],
+    timeline: &Timeline,
+    settings: &Settings,
+    moved: bool,
+) -> Vec<Fault> {
+    let mut faults = Vec::new();
+    for (of, like) in hearing.iter().zip(alike).filter(|(of, _)| of.echoes.of >= FEW) {
+        let sensor = of.sensor;
+        let mut others = hearing.iter().filter(|other| other.sensor != sensor);
+        let is_closed = hearing.len() > 2 && others.all(|other| other.echoes.value() > CLOSED);
+        let misses_others = like.answers.of >= ARRIVALS && like.answers.interval_95().1 < ANSWERS;
+        let fades_slowly = alike.iter().any(|other| other.runs() > RUNS);
+        if of.is_silent && (is_closed || misses_others) {
+            let is_heard = paths.iter().any(|path| path.sender == sensor && path.receiver != sensor);
+            faults.push(Fault::Deaf { sensor, echoes: of.echoes, is_heard });
+        } else if !moved && of.misses_at_random && (is_closed || misses_others || fades_slowly) {
+            let Share { count, of } = like.repeats;
+            faults.push(Fault::Losing { sensor, lost: Share { count: of - count, of } });
+        }
+        // Who walks by makes echoes of several sensors wander, for a while.
+        let as_much = |other: &&Alike| other.wandering.value() > AS_OTHERS * like.wandering.value();
+        let [after_none, after_one] = like.wanders_after;
+        let alone = alike.iter().filter(as_much).count() <= 2
+            && after_one.interval_95().0 < EPISODES * after_none.interval_95().1;
+        if !moved && alone && like.wandering.of >= FEW && like.wanders_steadily > CHATTERS {
+            faults.push(Fault::Chattering { sensor, wandering: like.wandering });
+        }
+    }
+    if moved {
+        return faults;
+    }
+    let blames = |fault: &Fault| match *fault {
+        Fault::Deaf { sensor, .. } | Fault::Losing { sensor, .. } | Fault::Chattering { sensor, .. } => Some(sensor),
+        _ => None,
+    };
+    let broken: Vec<_> = faults.iter().filter_map(blames).collect();
+    match wiring(paths, timeline, &broken, settings) {
+        Some((Wiring::Swapped(a, b), score, as_it_is, accidents)) => faults.push(Fault::Swapped {
+            sensors: (a, b),
+            exchanged: score.share(),
+            as_it_is: as_it_is.share(),
+            accidents,
+        }),
+        Some((Wiring::Late(sensor, late_us), score, as_it_is, accidents)) => {
+            faults.push(Fault::Late { sensor, late_us, delayed: score.share(), as_it_is: as_it_is.share(), accidents });
+        }
+        _ => {}
     }
     faults
 }
 
-/// Of the paths between one of two sensors and another, how many have their like in the other direction, if the echo
-/// lines of two sensors are exchanged; and the mean chance of that by accident.
-fn reciprocal(paths: &[FoundPath], exchanged: Option<(u8, u8)>, of: (u8, u8), settings: &Settings) -> (Share, f64) {
-    let listens = |path: &FoundPath| match exchanged {
-        Some((a, b)) if path.receiver == a => b,
-        Some((a, b)) if path.receiver == b => a,
-        _ => path.receiver,
-    };
-    let concerns = |sensor: u8| sensor == of.0 || sensor == of.1;
-    let (mut count, mut all, mut accident) = (0, 0, 0.0);
-    for path in paths {
-        let (sender, receiver) = (path.sender, listens(path));
-        // Each path and its like count once.
-        if sender >= receiver || !(concerns(sender) || concerns(receiver)) {
-            continue;
-        }
-        let back = paths.iter().filter(|back| (back.sender, listens(back)) == (receiver, sender));
-        let (mut ways, mut is_matched) = (0, false);
-        for back in back {
-            ways += 1;
-            let error = 4.0 * path.travel_error_us.hypot(back.travel_error_us) + 5.0;
-            is_matched |= (back.travel_us - path.travel_us).abs() <= error.min(f64::from(settings.tolerance_us));
-        }
-        if ways > 0 {
-            all += 1;
-            count += u32::from(is_matched);
-            // Paths of one pair are spread over some 20 ms.
-            accident += (f64::from(ways) * f64::from(2 * settings.tolerance_us) / 20_000.0).min(1.0);
-        }
+/// Returns true if a sensor hears nothing: out of range, or deaf.
+pub(super) fn is_silent(echoes: Share) -> bool {
+    echoes.of >= FEW && echoes.interval_95().1 < DEAF
+}
+
+/// Returns true if a sensor misses echoes at random: it loses them, or they are at its threshold and fade anew at every
+/// firing.
+pub(super) fn misses_at_random(like: &Alike) -> bool {
+    let hears_others = like.answers.of >= ARRIVALS && like.answers.interval_95().0 > ANSWERS;
+    like.repeats.of >= COMPARED
+        && like.repeats.interval_95().1 < KEEPS
+        && !hears_others
+        && like.repeats.differs(like.returns).abs() < RANDOM
+        && like.after[1].differs(like.after[0]).abs() < RANDOM
+}
+
+impl Alike {
+    /// By how much surely more often a sensor hears after an echo than after a miss.
+    fn runs(&self) -> f64 {
+        if self.after.iter().any(|share| share.of < ARRIVALS) { 0.0 } else { self.after[1].differs(self.after[0]) }
     }
-    (Share { count, of: all }, accident / f64::from(all.max(1)))
+}
+
+impl Share {
+    /// By how much two shares surely differ, within two standard errors.
+    fn differs(self, other: Self) -> f64 {
+        let variance = |share: Self| {
+            let value = share.value();
+            (value * (1.0 - value) + 0.02) / f64::from(share.of.max(1))
+        };
+        let by = self.value() - other.value();
+        (by.abs() - 2.0 * (variance(self) + variance(other)).sqrt()).max(0.0).copysign(by)
+    }
 }

@@ -15,8 +15,10 @@
 //! be named.
 
 mod align;
+mod alike;
 mod faults;
 mod naming;
+mod reciprocity;
 mod search;
 mod sensors;
 mod statistics;
@@ -25,6 +27,7 @@ mod timing;
 
 use crate::firings::FiringLog;
 pub use align::{AlignError, Alignment, align};
+use alike::alike;
 pub use faults::Fault;
 use faults::faults;
 pub use naming::Named;
@@ -92,8 +95,29 @@ pub struct Diagnosis {
     pub hearing: Vec<Hearing>,
     /// Broken parts.
     pub faults: Vec<Fault>,
+    /// True if ranges that recurred at the beginning are not there at the end: the robot moved, and faults that show in
+    /// what repeats cannot be told.
+    pub moved: bool,
     /// The most offsets at which a reading could come from a firing of another sensor, over all pairs.
     pub most_offsets: u32,
+}
+
+impl Diagnosis {
+    /// The sensors that hear nothing and are not called deaf: nothing is in their range, or they are.
+    pub fn silent(&self) -> Vec<u8> {
+        self.open(|of| of.is_silent)
+    }
+
+    /// The sensors that miss echoes at random and are not called broken: they lose them, or these are at their
+    /// threshold and fade anew at every firing.
+    pub fn missing(&self) -> Vec<u8> {
+        self.open(|of| of.misses_at_random)
+    }
+
+    fn open(&self, is: impl Fn(&Hearing) -> bool) -> Vec<u8> {
+        let is_named = |sensor: u8| self.faults.iter().any(|fault| fault.sensors().contains(&sensor));
+        self.hearing.iter().filter(|of| is(of) && !is_named(of.sensor)).map(|of| of.sensor).collect()
+    }
 }
 
 /// Finds the paths of a ring, names the sender of each reading where that is sure enough, and says what is broken.
@@ -111,8 +135,12 @@ pub fn diagnose(log: &FiringLog, settings: &Settings) -> Diagnosis {
         name_senders(receiver, &found, &timeline, settings, &mut named, &mut fits_none);
         paths.extend(found);
     }
-    let hearing = hearing(log, &paths, &named, &fits_none, settings.tolerance_us);
-    let faults = faults(&paths, &hearing, settings);
+    let tolerance = i64::from(settings.tolerance_us.max(1));
+    let sensors = 0..log.sensors() as u8;
+    let alike: Vec<_> = sensors.map(|sensor| alike(sensor, &paths, &timeline, &fits_none, tolerance)).collect();
+    let hearing = hearing(log, &paths, &named, &fits_none, &alike);
+    let moved = timeline.moved();
+    let faults = faults(&paths, &hearing, &alike, &timeline, settings, moved);
     let most_offsets = timeline.most_offsets(settings.tolerance_us.into());
-    Diagnosis { paths, named, hearing, faults, most_offsets }
+    Diagnosis { paths, named, hearing, faults, moved, most_offsets }
 }

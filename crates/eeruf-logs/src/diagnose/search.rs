@@ -8,6 +8,8 @@ use super::{FoundPath, Settings};
 
 /// The half width of the stretch of echo times over which the density of accidental readings is taken, in microseconds.
 const NEAR_US: i64 = 2000;
+/// Fewer firings of a receiver show no path.
+const FEWEST: usize = 20;
 /// The most paths to one receiver.
 const MOST_PATHS: usize = 60;
 /// A path supports an offset if it is heard in this share of the readings there that nothing earlier hid: a loud path,
@@ -58,6 +60,9 @@ struct Search<'a> {
 /// All paths to a receiver.
 pub(super) fn paths_to(receiver: u8, timeline: &Timeline, settings: &Settings) -> Vec<FoundPath> {
     let heard = timeline.heard_by(receiver);
+    if heard.len() < FEWEST {
+        return Vec::new();
+    }
     let silent = heard.iter().filter(|heard| heard.echo_us.is_none()).count();
     let tolerance = i64::from(settings.tolerance_us);
     let explained = vec![false; heard.len()];

@@ -1,9 +1,11 @@
 //! Sounds of each sensor: its own echo, others' sound, or what no path explains; and the phases in which it is blind.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::BTreeMap;
 
+use super::alike::Alike;
+use super::faults::{is_silent, misses_at_random};
 use super::{FoundPath, Named};
-use crate::firings::{Firing, FiringLog};
+use crate::firings::FiringLog;
 
 /// A share of a number of trials, with its 95 % interval.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,6 +17,13 @@ pub struct Share {
 }
 
 impl Share {
+    pub(super) const NONE: Self = Self { count: 0, of: 0 };
+
+    pub(super) fn add(&mut self, counts: bool) {
+        self.count += u32::from(counts);
+        self.of += 1;
+    }
+
     /// The share itself; 0 of nothing.
     pub fn value(&self) -> f64 {
         f64::from(self.count) / f64::from(self.of.max(1))
@@ -50,8 +59,12 @@ pub struct Hearing {
     /// Firings with an echo that fits no path, of those with an echo.
     pub unexplained: Share,
     /// Firings whose echo fits no path and does not even come back at the same time when the ring fires alike: of those
-    /// with an echo in a phase and beside firings that there were four times at least.
+    /// at which it fired alike four times at least.
     pub wandering: Share,
+    /// True if it hears nothing: nothing is in its range, or it is deaf.
+    pub is_silent: bool,
+    /// True if it misses echoes at random: it loses them, or they are at its threshold.
+    pub misses_at_random: bool,
     /// True if its own echo was found as a path.
     pub has_own_path: bool,
     /// The phases in which it fired at least five times and its own echo was never first, with the number of firings.
@@ -66,9 +79,10 @@ pub(super) fn hearing(
     paths: &[FoundPath],
     named: &[Option<Named>],
     fits_none: &[bool],
-    tolerance_us: u32,
+    alike: &[Alike],
 ) -> Vec<Hearing> {
-    (0..log.sensors() as u8).map(|sensor| of_sensor(sensor, log, paths, named, fits_none, tolerance_us)).collect()
+    let sensors = (0..log.sensors() as u8).zip(alike);
+    sensors.map(|(sensor, alike)| of_sensor(sensor, log, paths, named, fits_none, alike)).collect()
 }
 
 fn of_sensor(
@@ -77,7 +91,7 @@ fn of_sensor(
     paths: &[FoundPath],
     named: &[Option<Named>],
     fits_none: &[bool],
-    tolerance_us: u32,
+    alike: &Alike,
 ) -> Hearing {
     let (mut firings, mut echoes, mut own, mut foreign, mut unexplained) = (0, 0, 0, 0, 0);
     // By phase: firings, and own echoes among them.
@@ -103,39 +117,13 @@ fn of_sensor(
         foreign: Share { count: foreign, of: firings },
         unnamed: Share { count: echoes.saturating_sub(own + foreign), of: echoes },
         unexplained: Share { count: unexplained, of: echoes },
-        wandering: wandering(sensor, log, fits_none, tolerance_us),
+        wandering: alike.wandering,
         has_own_path,
+        is_silent: is_silent(Share { count: echoes, of: firings }),
+        misses_at_random: misses_at_random(alike),
         // Where nothing is known of its own echo, nothing is known of its phases.
         blind_phases: if has_own_path { phases.iter().filter_map(blind).collect() } else { Vec::new() },
     }
-}
-
-/// Firings whose echo fits no path and does not repeat. Sound along a path that was not found comes back at the same
-/// time whenever the ring fires alike; noise does not.
-fn wandering(sensor: u8, log: &FiringLog, fits_none: &[bool], tolerance_us: u32) -> Share {
-    // Without any tolerance firings stand alike to the microsecond.
-    let tolerance = i64::from(tolerance_us.max(1));
-    // Alike: the same phase, and the last two others that fired before the edge stand alike.
-    let mut alike = HashMap::<_, Vec<(i64, bool)>>::new();
-    for (place, firing) in log.firings.iter().enumerate().filter(|(_, firing)| firing.sensor == sensor) {
-        let Some(echo_us) = firing.t_echo_us.map(i64::from) else { continue };
-        let until = log.firings.partition_point(|other| other.fired_us <= firing.fired_us + echo_us);
-        let before = log.firings[..until].iter().rev().filter(|other| other.sensor != sensor).take(2);
-        let stand = |other: &Firing| (other.sensor, (other.fired_us - firing.fired_us).div_euclid(2 * tolerance));
-        let key = (firing.phase, before.map(stand).collect::<Vec<_>>());
-        alike.entry(key).or_default().push((echo_us, fits_none[place]));
-    }
-    let mut share = Share { count: 0, of: 0 };
-    for mut group in alike.into_values().filter(|group| group.len() >= 4) {
-        group.sort_unstable();
-        share.of += group.len() as u32;
-        for (place, &(echo_us, fits_none)) in group.iter().enumerate() {
-            let near = |other: Option<&(i64, bool)>| other.is_some_and(|other| (other.0 - echo_us).abs() <= tolerance);
-            let repeats = near(group.get(place + 1)) || place > 0 && near(group.get(place - 1));
-            share.count += u32::from(fits_none && !repeats);
-        }
-    }
-    share
 }
 
 #[cfg(test)]
@@ -152,23 +140,5 @@ mod tests {
         near(Share { count: 81, of: 263 }, (0.2553, 0.3662));
         near(Share { count: 15, of: 148 }, (0.0624, 0.1605));
         near(Share { count: 0, of: 20 }, (0.0, 0.1611));
-    }
-
-    #[test]
-    fn without_any_tolerance_edges_repeat_to_the_microsecond() {
-        let firing = |period: u32| Firing {
-            sensor: 0,
-            fired_us: 100_000 * i64::from(period),
-            period,
-            phase: 0,
-            t_echo_us: Some(if period == 3 { 7_001 } else { 7_000 }),
-            rejected: None,
-            weighed: None,
-        };
-        let log = FiringLog::new("board", (0..6).map(firing).collect());
-        assert_eq!(wandering(0, &log, &[true; 6], 0), Share { count: 0, of: 6 });
-        let far = Firing { t_echo_us: Some(9_000), ..firing(6) };
-        let log = FiringLog::new("board", (0..6).map(firing).chain([far]).collect());
-        assert_eq!(wandering(0, &log, &[true; 7], 0), Share { count: 1, of: 7 });
     }
 }

@@ -45,6 +45,42 @@ impl Timeline {
         &self.heard[usize::from(receiver)]
     }
 
+    /// Returns true if ranges that recur in the first third of the log do not come back in the last one, at most of the
+    /// sensors that have any.
+    pub(super) fn moved(&self) -> bool {
+        /// Echoes this close are of one thing that stands, in microseconds.
+        const SAME_US: i64 = 75;
+        /// A range that comes so often in a third recurs.
+        const RECURS: f64 = 0.1;
+        const FEWEST: usize = 10;
+        const PARTS: usize = 3;
+        let (mut stay, mut all) = (0, 0);
+        for heard in &self.heard {
+            let third = heard.len() / 3;
+            let sorted = |part: &[Heard]| {
+                let mut times: Vec<i64> = part.iter().filter_map(|heard| heard.echo_us).collect();
+                times.sort_unstable();
+                times
+            };
+            let (first, last) = (sorted(&heard[..third]), sorted(&heard[heard.len() - third..]));
+            let near = |times: &[i64], us: i64| {
+                times.partition_point(|&at| at <= us + SAME_US) - times.partition_point(|&at| at < us - SAME_US)
+            };
+            // The most crowded range of the first third that is there in each part of it: that of a thing that stands,
+            // and not of another's sound at lags that hold for a while.
+            let parts: Vec<_> = heard[..third].chunks((third / PARTS).max(1)).take(PARTS).map(sorted).collect();
+            let lasts = |us: &i64| {
+                let enough = RECURS * third as f64 / PARTS as f64;
+                parts.iter().all(|part| near(part, *us) as f64 >= enough)
+            };
+            let lasting = first.iter().copied().filter(lasts).map(|us| (near(&first, us), us));
+            let Some((crowd, at)) = lasting.max().filter(|&(crowd, _)| crowd >= FEWEST) else { continue };
+            all += 1;
+            stay += u32::from(8 * near(&last, at) >= crowd);
+        }
+        all > 1 && 2 * stay < all
+    }
+
     /// The most different offsets at which one sensor may hear another's sound.
     pub(super) fn most_offsets(&self, tolerance_us: i64) -> u32 {
         let mut most = 0;

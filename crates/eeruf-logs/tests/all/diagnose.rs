@@ -26,10 +26,22 @@ struct World {
     receivers: [usize; SENSORS],
     deaf: Option<usize>,
     chatters: Option<usize>,
+    /// The sensor that loses every other echo.
+    loses: Option<usize>,
+    /// The sensor that fires 1 ms late.
+    late: Option<usize>,
 }
 
 impl World {
-    const HEALTHY: Self = Self { phases: 7, shifts: true, receivers: [0, 1, 2, 3, 4, 5], deaf: None, chatters: None };
+    const HEALTHY: Self = Self {
+        phases: 7,
+        shifts: true,
+        receivers: [0, 1, 2, 3, 4, 5],
+        deaf: None,
+        chatters: None,
+        loses: None,
+        late: None,
+    };
 
     /// The log of this many periods, and whose sound each reading is.
     fn log(&self, seed: u64, periods: i64) -> (FiringLog, Vec<Option<usize>>) {
@@ -57,6 +69,7 @@ impl World {
         fired.sort_unstable();
         let mut edges: Vec<Vec<(i64, usize)>> = vec![vec![]; SENSORS];
         for &(at, x, ..) in &fired {
+            let at = at + if self.late == Some(x) { 1_000 } else { 0 };
             for (line, edges) in edges.iter_mut().enumerate() {
                 for travel in travel[x][self.receivers[line]] {
                     // The last of three echoes fades now and then.
@@ -71,7 +84,7 @@ impl World {
         for (at, sensor, period, phase) in fired {
             let first = edges[sensor].partition_point(|edge| edge.0 < at + 2_000);
             let mut heard = edges[sensor].get(first).filter(|edge| edge.0 <= at + WINDOW).copied();
-            if self.deaf == Some(sensor) {
+            if self.deaf == Some(sensor) || self.loses == Some(sensor) && random.below(2) == 0 {
                 heard = None;
             }
             let mut sender = heard.map(|edge| edge.1);
@@ -144,6 +157,35 @@ fn a_deaf_sensor_is_named_and_whether_others_hear_it() {
     }
     // What one sends may always come too late.
     assert!(heard >= 4, "{heard}");
+}
+
+#[test]
+fn a_sensor_that_loses_every_other_echo_is_named() {
+    for sensor in 0..SENSORS {
+        let (log, _) = World { loses: Some(sensor), ..World::HEALTHY }.log(1, 400);
+        let faults = diagnose(&log, &Settings::default()).faults;
+        let [Fault::Losing { sensor: found, lost }] = faults[..] else { panic!("{faults:?}") };
+        assert_eq!(usize::from(found), sensor);
+        assert!((lost.value() - 0.5).abs() < 0.1, "{lost:?}");
+    }
+}
+
+#[test]
+fn a_late_trigger_is_named_with_its_delay() {
+    for sensor in 0..SENSORS {
+        let (log, _) = World { late: Some(sensor), ..World::HEALTHY }.log(1, 1000);
+        let faults = diagnose(&log, &Settings::default()).faults;
+        let [Fault::Late { sensor: found, late_us, delayed, as_it_is, .. }] = faults[..] else { panic!("{faults:?}") };
+        assert_eq!(usize::from(found), sensor);
+        assert!((late_us - 1000.0).abs() < 30.0 && delayed.value() > as_it_is.value(), "{faults:?}");
+    }
+}
+
+// Fewer than 20 firings show no path.
+#[test]
+fn a_few_firings_show_no_path() {
+    let (log, _) = World::HEALTHY.log(1, 19);
+    assert_eq!(diagnose(&log, &Settings::default()).paths, []);
 }
 
 #[test]

@@ -327,6 +327,8 @@ static void hopping_rings(void) {
     const EerufHoppingConfig fine = EERUF_HOPPING_BALANCED(SENSORS, 60000, 36000);
     const uint32_t late[SENSORS] = {0, 1, 2, 59040};
     const size_t r = sizeof hopping, s = sizeof hop_sensors, h = sizeof hoppers;
+    static EerufLimits limits[SENSORS];
+    static EerufSchedule own;
     EerufHoppingConfig config = fine;
     EXPECT(eeruf_hopping_poll(NULL, 0, NULL, &event), EERUF_ERR_NULL);
     EXPECT(eeruf_hopping_poll(&hopping, 0, NULL, &event), EERUF_ERR_NOT_READY);
@@ -370,6 +372,18 @@ static void hopping_rings(void) {
     EXPECT(hop(r, s, h, &config), EERUF_ERR_VOTES);
     WITH(tracker.near_us, 149, EERUF_ERR_TRACKER);
     WITH(blanking_us, 36000, EERUF_ERR_BLANKING);
+    /* Limits for another number of sensors; new lags, which would not keep them; deaf for as long as one listens. */
+    WITH(own, &own, EERUF_ERR_SENSORS);
+    own.sensors = SENSORS;
+    own.limits = limits;
+    limits[1].window_us = 900;
+    limits[0].window_us = limits[2].window_us = limits[3].window_us = 36000;
+    WITH(own, &own, EERUF_OK);
+    config.shift_after = 1;
+    EXPECT(hop(r, s, h, &config), EERUF_ERR_HOPPING);
+    config.shift_after = 0;
+    config.blanking_us = 900;
+    EXPECT(hop(r, s, h, &config), EERUF_ERR_BLANKING);
     config = fine;
     config.period_us = 30000000;
     config.window_us = EERUF_HOPPING_MAX_WINDOW_US;

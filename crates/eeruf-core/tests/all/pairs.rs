@@ -108,6 +108,35 @@ fn many_phases_go_with_several_echoes_and_with_limits() {
     assert!(first.iter().flatten().all(|time| [3_000, 5_500, 8_000].contains(time)), "{first:?}");
 }
 
+// What any sensor or pair keeps between firings passes before a ring that restarts fires again.
+#[test]
+fn restart_of_hopping_ring_keeps_the_longest_gap() {
+    let code = HoppingCode::shortest(2, 5, Micros::new(2_801)).unwrap();
+    let lags = [0, 20_000].map(Micros::new);
+    let schedule = HoppingSchedule::<2>::new(code, Micros::from_millis(70), lags).unwrap();
+    let limits = schedule.limits(&LIMITS).unwrap();
+    let listening = HoppingListening::new(Micros::from_millis(50));
+    let settings = HoppingSettings::DRIVING.with_tracker(TrackerSettings::BALANCED);
+    let next_firing = |after_ms: u32| {
+        let mut ring = HoppingRing::<2, 4, _>::with_limits(&schedule, limits, settings, listening, 1, BEGIN).unwrap();
+        let fires = |event: Option<RingEvent>| matches!(event, Some(RingEvent::Fire { .. }));
+        let first = ring.next_deadline();
+        assert!(fires(ring.poll(first)));
+        ring.restart(first + Micros::from_millis(after_ms));
+        loop {
+            let now = ring.next_deadline();
+            while let Some(event) = ring.poll(now) {
+                if fires(Some(event)) {
+                    return now.since(first);
+                }
+            }
+        }
+    };
+    assert_eq!(next_firing(1), Micros::from_millis(50));
+    assert_eq!(next_firing(49), Micros::from_millis(50));
+    assert_eq!(next_firing(63), Micros::from_millis(63));
+}
+
 #[test]
 fn limits_go_with_adaptation() {
     let slower = schedule! {

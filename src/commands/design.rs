@@ -163,8 +163,18 @@ enum Form {
 struct Answered<'a> {
     #[serde(flatten)]
     found: FoundJson,
+    period: PeriodJson,
     #[serde(flatten)]
     rooms: Option<RoomsOrNot<'a>>,
+}
+
+/// The shortest period in short, beside the ways of firing.
+#[derive(Serialize)]
+struct PeriodJson {
+    value_us: Option<u32>,
+    bound_us: Option<u32>,
+    proven: bool,
+    reason: Option<String>,
 }
 
 /// Nodes for the same ring with odometry, which is a remark.
@@ -260,7 +270,9 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
             let real_period_us = real.as_ref().map(|real| real.period_us);
             let real_proven = real.as_ref().map(|real| real.proven);
             let found = FoundJson { real_period_us, real_proven, ..design.json(seconds) };
-            print_line(to_json(&Answered { found, rooms: rooms.as_ref().map(RoomsOrNot::of) }))?;
+            let FoundJson { value_us, bound_us, proven, .. } = found;
+            let period = PeriodJson { value_us, bound_us, proven, reason: found.reason.clone() };
+            print_line(to_json(&Answered { found, period, rooms: rooms.as_ref().map(RoomsOrNot::of) }))?;
         }
         None => {
             let name = args.file.display().to_string();

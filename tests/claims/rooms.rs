@@ -28,6 +28,7 @@ fn four_lines_get_a_way_with_its_figures_in_each_room() {
     assert!(answer["schedule"].is_object() && answer["proven"] == true);
     assert_eq!(answer["ways"][0]["way"], "sequential");
     let best = way(&answer, answer["recommended"].as_str().expect("a way"));
+    assert_eq!((&answer["period"]["value_us"], &answer["period"]["proven"]), (&answer["value_us"], &answer["proven"]));
     for room in ROOMS {
         let figures = &best["rooms"][room];
         let shares = ["belief_right", "unknown", "phantom", "too_far", "faint"];

@@ -82,7 +82,7 @@ enum Says {
     NoAnswer,
 }
 
-/// What Ring8 says of a faulty module, before a wall and before nothing; its other modules read their walls.
+/// Checks the words of Ring8 about a faulty module, before a wall and before nothing; its others read their walls.
 fn faults_are_no_free_space(library: &Path, world: &Path) -> Result<(), Trouble> {
     const FAULTY: usize = 3;
     let sketch = build::example(library, &build::core(Board::Uno)?, "Ring8")?;

@@ -4459,7 +4459,7 @@ class Batch:
         """Number of sensors of each world's first robot."""
     @property
     def state(self) -> BatchState:
-        """What all worlds look like now.
+        """The state of all worlds now.
 
         Example:
             >>> from eeruf import experiments, sim
@@ -4524,8 +4524,8 @@ class Batch:
 
 @final
 class BatchState:
-    """What the worlds of a :class:`Batch` look like at one moment: arrays with a row for each world, and of what concerns
-    sensors a column for each sensor of its first robot. The arrays are read-only.
+    """The worlds of a :class:`Batch` at one moment: arrays with a row for each world, and of what concerns sensors a column
+    for each sensor of its first robot. The arrays are read-only.
 
     Example:
         >>> from eeruf import experiments, sim

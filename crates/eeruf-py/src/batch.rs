@@ -55,7 +55,7 @@ pub(crate) struct Batch {
 struct Member {
     asked: Asked,
     simulation: Simulation,
-    /// What is known by each sensor of the first robot.
+    /// The latest of each sensor of the first robot.
     known: Vec<Known>,
     /// True once a sensor went into something solid.
     has_crashed: bool,
@@ -127,7 +127,7 @@ fn of_world(index: usize) -> impl Fn(SimulationError) -> PyErr {
 }
 
 impl Batch {
-    /// What all worlds look like now.
+    /// The state of all worlds.
     fn look(worlds: &[Member]) -> PyResult<BatchState> {
         let mut state = BatchState::with_room(worlds.len(), worlds.first().map_or(0, |world| world.known.len()));
         for (index, world) in worlds.iter().enumerate() {
@@ -297,7 +297,7 @@ impl Batch {
         })
     }
 
-    /// What all worlds look like now.
+    /// The state of all worlds now.
     ///
     /// Example:
     ///     >>> from eeruf import experiments, sim

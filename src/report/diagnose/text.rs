@@ -126,8 +126,8 @@ fn faults(found: &Found<'_>, text: &mut String) {
             ),
             Fault::Late { sensor, late_us, delayed, as_it_is, accidents } => writeln!(
                 text,
-                "Sensor {} fires {late_us:.0} us later than the log says: {} of {} paths take as long back as there with \
-                 that delay, {} of {} as it is ({accidents:.1e} such sensors expected by accident).",
+                "Sensor {} fires {late_us:.0} us later than the log says: {} of {} paths take as long back as there \
+                 with that delay, {} of {} as it is ({accidents:.1e} such sensors expected by accident).",
                 sensor + 1,
                 delayed.count,
                 delayed.of,

@@ -13,7 +13,7 @@ const BEFORE_US: i64 = 40_000;
 const SAME_US: i64 = 60;
 /// Stretches as wide to each side that a path is compared with.
 const AROUND: i64 = 5;
-/// A path is so many times as crowded as the usual one of these.
+/// A path is this many times as crowded as the usual one of these.
 const CROWDS: f64 = 3.0;
 /// A reading whose neighbours in time are this near follows a thing that moves, or that fades, in microseconds.
 const FOLLOWS_US: i64 = 200;
@@ -24,7 +24,7 @@ const PARTS: usize = 40;
 /// Fewer firings alike say nothing of each other.
 const FEWEST: usize = 4;
 
-/// What repeats in the readings of one sensor.
+/// Readings of one sensor that repeat.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Alike {
     /// Firings with an echo, of those after one with an echo at which the ring fired alike.

@@ -182,14 +182,14 @@ pub(super) fn misses_at_random(like: &Alike) -> bool {
 }
 
 impl Alike {
-    /// By how much surely more often a sensor hears after an echo than after a miss.
+    /// The share by which a sensor surely hears more often after an echo than after a miss.
     fn runs(&self) -> f64 {
         if self.after.iter().any(|share| share.of < ARRIVALS) { 0.0 } else { self.after[1].differs(self.after[0]) }
     }
 }
 
 impl Share {
-    /// By how much two shares surely differ, within two standard errors.
+    /// The difference that two shares surely have, within two standard errors.
     fn differs(self, other: Self) -> f64 {
         let variance = |share: Self| {
             let value = share.value();

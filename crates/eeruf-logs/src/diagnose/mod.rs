@@ -96,7 +96,7 @@ pub struct Diagnosis {
     /// Broken parts.
     pub faults: Vec<Fault>,
     /// True if ranges that recurred at the beginning are not there at the end: the robot moved, and faults that show in
-    /// what repeats cannot be told.
+    /// what repeats cannot be named.
     pub moved: bool,
     /// The most offsets at which a reading could come from a firing of another sensor, over all pairs.
     pub most_offsets: u32,

@@ -88,8 +88,8 @@ struct Problem {
     radius: f64,
 }
 
-/// A difference of the two angles, in radians, after which Newton's method has come as near as rounding lets it: what is
-/// left is of its square.
+/// A difference of the two angles, in radians, after which Newton's method has come as near as rounding lets it: what
+/// is left is of its square.
 const LAST: f64 = 1e-9;
 
 impl Problem {
@@ -157,8 +157,9 @@ fn rotated(direction: Vector, angle: f64) -> Vector {
 
 /// Source, one circle, another circle, receiver: the two specular points of the path that bounces once at each.
 ///
-/// Newton's method moves both points at once. Where it does not settle, as between circles that nearly touch, one circle
-/// after the other is solved with the other's point held, which always does: a convex circle spreads what it reflects.
+/// Newton's method moves both points at once. Where it does not settle, as between circles that nearly touch, one
+/// circle after the other is solved with the other's point held, which always does: a convex circle spreads what it
+/// reflects.
 pub fn alhazen_twice(
     source: Point,
     receiver: Point,

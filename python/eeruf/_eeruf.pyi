@@ -4524,8 +4524,8 @@ class Batch:
 
 @final
 class BatchState:
-    """The worlds of a :class:`Batch` at one moment: arrays with a row for each world, and of what concerns sensors a column
-    for each sensor of its first robot. The arrays are read-only.
+    """The worlds of a :class:`Batch` at one moment: arrays with a row for each world, and of what concerns sensors a
+    column for each sensor of its first robot. The arrays are read-only.
 
     Example:
         >>> from eeruf import experiments, sim

@@ -136,8 +136,8 @@ fn faults(found: &Found<'_>, text: &mut String) {
             ),
             Fault::Chattering { sensor, wandering } => writeln!(
                 text,
-                "Sensor {} chatters: in {} of its firings an echo fits no path and does not come back when the ring fires \
-                 alike.",
+                "Sensor {} chatters: in {} of its firings an echo fits no path and does not come back when the ring \
+                 fires alike.",
                 sensor + 1,
                 percent(wandering),
             ),
@@ -169,7 +169,8 @@ fn open(found: &Found<'_>, text: &mut String) {
     for sensor in found.diagnosis.missing() {
         _ = writeln!(
             text,
-            "Sensor {} misses echoes at random: it loses them, or they are just at its threshold. This log cannot tell.",
+            "Sensor {} misses echoes at random: it loses them, or they are just at its threshold. This log cannot \
+             tell.",
             sensor + 1
         );
     }

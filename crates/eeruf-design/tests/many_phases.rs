@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use eeruf_core::{Criterion, Micros, Phase, ReadingKind, Requirements, Uneven, conditions::ViolationKind};
+use eeruf_core::{Criterion, Micros, Phase, Requirements, Uneven, conditions::ViolationKind};
 use eeruf_core::{hopping::HoppingSettings, judge::TrackerSettings};
 use eeruf_design::{PhaseFile, PhaseSchedule, RingSpec, parse};
 use eeruf_sim::{Air, Cause, Method, Noise, Options, Pose, Robot, Scene, Transducer, Wall, World, simulate};
@@ -27,17 +27,17 @@ fn read(text: &str) -> PhaseSchedule {
     parse::<PhaseFile>(text).expect("a file").schedule().expect("a schedule")
 }
 
-/// A square room of 4 m with the ring in it, where its file or a circle says.
-fn room(spec: &RingSpec, period: Micros) -> World {
-    let ring = spec.robot_ring();
+/// A corridor of 3 m with the ring in it, where its file or its layout says, else on a circle, and no more jitter than
+/// its `t_delta` is for.
+fn corridor(spec: &RingSpec, period: Micros, t_delta: Micros) -> World {
     let circle = Robot::ring(Pose::identity(), spec.sensors, TAU / spec.sensors as f64, 0.2, Transducer::HC_SR04);
-    let poses = if ring.poses.is_empty() { circle.sensors } else { ring.poses.clone() };
-    let mut robot = ring.robot(Pose::identity(), Some(poses)).expect("a robot");
+    let of_layout = || spec.robot_ring().robot(Pose::identity(), Some(circle.sensors)).expect("a robot");
+    let mut robot = spec.room_robot().map_or_else(|_| of_layout(), |of_file| of_file.robot);
     robot.period = period;
-    let corners = [(-2.0, -2.0), (2.0, -2.0), (2.0, 2.0), (-2.0, 2.0), (-2.0, -2.0)];
-    let walls = corners.windows(2).map(|ends| Wall::new(ends[0].0, ends[0].1, ends[1].0, ends[1].1)).collect();
+    let walls = vec![Wall::new(-9.0, -1.5, 9.0, -1.5), Wall::new(9.0, 1.5, -9.0, 1.5)];
     let scene = Scene::new(walls, vec![], Air::default()).expect("a scene");
-    World::new(scene, vec![robot], Noise::default()).expect("a world")
+    let noise = Noise { jitter_us_rms: f64::from(t_delta.as_micros()) / 20.0, ..Noise::default() };
+    World::new(scene, vec![robot], noise).expect("a world")
 }
 
 #[test]
@@ -61,9 +61,9 @@ fn every_ring_hops_from_file_to_readings() {
         let tracker = TrackerSettings::BALANCED.with_t_delta(t_delta).with_near(near).with_tentative_within(within);
         let hopping = HoppingSettings::BALANCED.with_tracker(tracker);
         let options = Options { hopping, hopping_schedule: Some(hops), ..Options::periods(60) };
-        let readings = simulate(&room(&spec, schedule.period()), Method::EerufHopping, &options)
+        let readings = simulate(&corridor(&spec, schedule.period(), t_delta), Method::EerufHopping, &options)
             .unwrap_or_else(|e| panic!("{name}: {e}"));
-        let believed = |k: &usize| matches!(readings.kind[*k], ReadingKind::Accepted);
+        let believed = |k: &usize| readings.is_accepted(*k);
         let accepted: Vec<_> = (0..readings.len()).filter(believed).collect();
         let foreign = accepted.iter().filter(|&&k| readings.cause[k] == Cause::Crosstalk).count();
         assert!(accepted.len() > readings.len() / 5, "{name}: {} of {}", accepted.len(), readings.len());

@@ -120,12 +120,12 @@ fn faults_are_no_free_space(library: &Path, world: &Path) -> Result<(), Trouble>
             println!("| {fault} | {place} | {} | {clear} | {silent} | {least} |", distances(FAULTY));
             let found = [distances(FAULTY), clear, silent];
             let fine = match expected {
-                Says::Wall => found[0] > 40 && found[1..] == [0, 0],
-                Says::Clear => found[1] > 40 && found[0] + found[2] == 0,
-                Says::NoAnswer if fault == "stuck" => found[2] > 35 && found[1] < UNTIL_STUCK && found[0] == 0,
-                Says::NoAnswer => found[2] > 35 && found[..2] == [0, 0],
+                Says::Wall => found[0] > 26 && found[1..] == [0, 0],
+                Says::Clear => found[1] > 26 && found[0] + found[2] == 0,
+                Says::NoAnswer if fault == "stuck" => found[2] > 20 && found[1] < UNTIL_STUCK && found[0] == 0,
+                Says::NoAnswer => found[2] > 22 && found[..2] == [0, 0],
             };
-            if !fine || least < 40 {
+            if !fine || least < 27 {
                 return Err(Trouble::Failed(format!(
                     "{fault} before {place}: expected {expected:?} of module {FAULTY}"
                 )));

@@ -163,7 +163,8 @@ enum Form {
 struct Answered<'a> {
     #[serde(flatten)]
     found: FoundJson,
-    period: PeriodJson,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    period: Option<PeriodJson>,
     #[serde(flatten)]
     rooms: Option<RoomsOrNot<'a>>,
 }
@@ -272,6 +273,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
             let found = FoundJson { real_period_us, real_proven, ..design.json(seconds) };
             let FoundJson { value_us, bound_us, proven, .. } = found;
             let period = PeriodJson { value_us, bound_us, proven, reason: found.reason.clone() };
+            let period = rooms.is_some().then_some(period);
             print_line(to_json(&Answered { found, period, rooms: rooms.as_ref().map(RoomsOrNot::of) }))?;
         }
         None => {

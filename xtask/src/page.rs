@@ -89,7 +89,7 @@ fn shrink(from: &Path, to: &Path) -> Result<(), Trouble> {
         return Ok(());
     }
     if output(Command::new("wasm-opt").arg("--version")).is_some() {
-        return run(Command::new("wasm-opt").arg("-O2").args(FEATURES).arg(from).arg("-o").arg(to));
+        return run(Command::new("wasm-opt").arg("-Os").args(FEATURES).arg(from).arg("-o").arg(to));
     }
     println!("no wasm-opt, so the engine is a little larger; try: apt install binaryen");
     fs::copy(from, to).map(drop).map_err(|error| failed(&from.display().to_string(), &error))

@@ -4471,8 +4471,8 @@ class Batch:
 
         Args:
             seconds: how long, 0 to 10^9.
-            v_m_s: the first robots' speed ahead from now on, in m/s, -50 to 50: a number, or one for each world. Without
-                it they go on as before.
+            v_m_s: the first robots' speed ahead from now on, in m/s, -50 to 50: a number, or one for each world.
+                Without it they go on as before.
             w_rad_s: their rate of turn, counter-clockwise, in rad/s; given together with ``v_m_s``.
 
         Returns:

@@ -105,7 +105,7 @@ const COMPARED: u32 = 8;
 const RANDOM: f64 = 0.1;
 const RUNS: f64 = 0.3;
 /// Firings of a chattering sensor whose echoes wander, at least.
-const CHATTERS: f64 = 0.045;
+const CHATTERS: f64 = 0.065;
 /// Noise has no memory; who walks by makes echoes wander one after the other.
 const EPISODES: f64 = 2.0;
 /// Not more than one other sensor does so this much as often.

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use clap::ValueEnum;
-use eeruf_core::{Criterion, Micros, Requirements, hopping::HoppingListening};
+use eeruf_core::{Criterion, Layout, Micros, Requirements, hopping::HoppingListening};
 use eeruf_design::{LayoutKey, LayoutName, PhaseSchedule, RingSpec};
 use eeruf_sim::AnySchedule;
 
@@ -120,6 +120,20 @@ impl LayoutArg {
     }
 }
 
+impl Args {
+    /// The requirements that the options state.
+    fn requirements<'a>(&self, layout: Layout<'a>, criterion: Criterion) -> Requirements<'a> {
+        Requirements {
+            criterion,
+            min_interval: Micros::new(self.min_interval_us),
+            layout,
+            window: Micros::new(self.window_us),
+            stale_echo: self.stale_echo,
+            ..Requirements::new(Micros::new(self.t_delta_us))
+        }
+    }
+}
+
 pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     warn_of_option("--t-delta-us", "t_delta_us", args.t_delta_us)?;
     warn_of_option("--min-interval-us", "min_interval_us", args.min_interval_us)?;
@@ -145,15 +159,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     }
     let layout = args.layout.key().owned(args.neighbours, schedule.sensors());
     let layout = layout.map_err(|message| InputError::new(&args.file, None, message))?;
-    let requirements = Requirements {
-        criterion,
-        min_interval: Micros::new(args.min_interval_us),
-        layout: layout.layout(),
-        window: Micros::new(args.window_us),
-        stale_echo: args.stale_echo,
-        ..Requirements::new(Micros::new(args.t_delta_us))
-    };
-    answer(args, &schedule, &requirements)
+    answer(args, &schedule, &args.requirements(layout.layout(), criterion))
 }
 
 /// Prints what was found.
@@ -189,14 +195,7 @@ fn many_phases(args: &Args, schedule: &PhaseSchedule) -> Result<Answer, InputErr
         spec.phase_requirements(criterion)
     } else {
         layout = args.layout.key().owned(args.neighbours, schedule.sensors()).map_err(bad)?;
-        Requirements {
-            criterion,
-            min_interval: Micros::new(args.min_interval_us),
-            layout: layout.layout(),
-            window: Micros::new(args.window_us),
-            stale_echo: args.stale_echo,
-            ..Requirements::new(Micros::new(args.t_delta_us))
-        }
+        args.requirements(layout.layout(), criterion)
     };
     let requirements = Requirements {
         blanking: Micros::new(args.blanking_us),

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import math
-import resource
-import sys
 from typing import Any
 
 import eeruf
@@ -101,8 +99,9 @@ def test_batch_takes_no_callables_that_hold_the_lock() -> None:
         sim.Batch(WALLS, own)
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="asks the system for the memory in use")
 def test_memory_stays_flat_over_resets() -> None:
+    # Windows has none.
+    resource = pytest.importorskip("resource")
     batch = sim.Batch(WALLS)
     for _ in range(50):
         batch.reset()
@@ -126,7 +125,7 @@ def test_vector_environment_repeats_and_begins_anew() -> None:
             observed, reward, terminated, truncated, info = many.step(np.array([[1.0, 0.02]] * 4, np.float32))
             over = terminated | truncated
             assert many.observation_space.contains(observed)
-            assert (reward[terminated] < -8).all() or (reward[terminated] > 9).any()
+            assert ((reward[terminated] < -8) | (reward[terminated] > 9)).all()
             if over.any():
                 ends += int(over.sum())
                 assert all((final is not None) == ended for final, ended in zip(info["final_obs"], over))

@@ -79,7 +79,7 @@ pub enum HoppingError {
         /// The longest lag that leaves room for the code.
         most: Micros,
     },
-    /// Lags that are drawn anew do not keep what sensors and pairs need of their own.
+    /// Redrawn lags do not keep the limits of single sensors and pairs.
     Shift {
         /// After how many readings that do not fit.
         shift_after: u8,

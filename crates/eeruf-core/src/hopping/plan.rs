@@ -101,7 +101,7 @@ impl<const K: usize, U: LimitsInUse> HoppingPlan<K, U> {
     /// [`HoppingSchedule::limits`] gives them. `listening` says the most for all.
     ///
     /// # Errors
-    /// As there, by the limits of each sensor; also for lags that are to be drawn anew, which would not keep them.
+    /// As there, by the limits of each sensor; also for lags that are redrawn, which would not keep them.
     pub fn with_limits(
         schedule: &HoppingSchedule<K>,
         own_limits: U,

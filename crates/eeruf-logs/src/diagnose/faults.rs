@@ -170,8 +170,8 @@ pub(super) fn is_silent(echoes: Share) -> bool {
     echoes.of >= FEW && echoes.interval_95().1 < DEAF
 }
 
-/// Returns true if a sensor misses echoes at random: it loses them, or they are at its threshold and fade anew at every
-/// firing.
+/// Returns true if a sensor misses echoes at random: it loses them, or they are at its threshold and fade
+/// independently at every firing.
 pub(super) fn misses_at_random(like: &Alike) -> bool {
     let hears_others = like.answers.of >= ARRIVALS && like.answers.interval_95().0 > ANSWERS;
     like.repeats.of >= COMPARED

@@ -109,7 +109,7 @@ impl Diagnosis {
     }
 
     /// The sensors that miss echoes at random and are not called broken: they lose them, or these are at their
-    /// threshold and fade anew at every firing.
+    /// threshold and fade independently at every firing.
     pub fn missing(&self) -> Vec<u8> {
         self.open(|of| of.misses_at_random)
     }

@@ -91,7 +91,7 @@ pub(super) fn wiring(
             && involves(other) != involves(wiring)
     });
     let gained = best.confirmed - as_it_is.confirmed;
-    // Of the paths that it concerns, as far as they were contradicted or are confirmed anew.
+    // Of the paths that it concerns, those that were contradicted before or are confirmed now.
     let of = gained + best.contradicted + as_it_is.contradicted;
     let accidents = wirings.len() as f64 * ln_at_least(gained, of, chance).exp();
     (!is_open && accidents < settings.accidents).then_some((wiring, best, as_it_is, accidents))

@@ -5,6 +5,7 @@ use super::audibility::Audibility;
 use super::error::PathsError;
 use super::limits::{Limits, Matters};
 use super::paths::Paths;
+use super::poles::Asked;
 use super::tracer::{Heights, Tracer};
 use crate::{
     acoustics::Transducer,
@@ -198,14 +199,18 @@ impl CrosstalkMatrix {
                     &self.positions,
                     heights,
                     coupled,
-                    false,
+                    Asked::Once,
                     &mut self.straight,
                 )
             } else {
                 Ok(())
             };
             let traced = traced.and_then(|()| {
-                let again = emitter > 0;
+                let asked = match emitter {
+                    _ if emitters.len() == 1 => Asked::Once,
+                    0 => Asked::First,
+                    _ => Asked::Again,
+                };
                 tracer.trace_audible(
                     audibility,
                     matters,
@@ -214,7 +219,7 @@ impl CrosstalkMatrix {
                     &self.positions,
                     heights,
                     limits,
-                    again,
+                    asked,
                     &mut self.found,
                 )
             });

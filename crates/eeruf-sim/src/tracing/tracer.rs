@@ -7,7 +7,7 @@ use super::edges::{EdgeQuery, EdgeSearch};
 use super::error::PathsError;
 use super::limits::{DEFAULT_FREQUENCY_HZ, Limits, MAX_BEAMS, MAX_ORDER, Matters};
 use super::paths::Paths;
-use super::poles::{PoleQuery, PoleSearch};
+use super::poles::{Asked, PoleQuery, PoleSearch};
 use super::ranking::{Found, Ranking};
 use super::write::InRoom;
 use crate::{
@@ -151,11 +151,10 @@ impl Tracer {
         limits: Limits,
         paths: &mut Paths,
     ) -> Result<(), PathsError> {
-        self.trace_audible(None, None, scene, source, receivers, heights, limits, false, paths)
+        self.trace_audible(None, None, scene, source, receivers, heights, limits, Asked::Once, paths)
     }
 
-    /// As [`trace`](Self::trace), without paths that are certainly too faint or do not matter. `again` says that all is
-    /// as it was when this was called before, but for the source.
+    /// As [`trace`](Self::trace), without paths that are certainly too faint or do not matter.
     #[expect(clippy::too_many_arguments, reason = "one question")]
     pub(crate) fn trace_audible(
         &mut self,
@@ -166,7 +165,7 @@ impl Tracer {
         receivers: &[Point],
         heights: Heights<'_>,
         limits: Limits,
-        again: bool,
+        asked: Asked,
         paths: &mut Paths,
     ) -> Result<(), PathsError> {
         paths.clear();
@@ -179,7 +178,7 @@ impl Tracer {
             self.tree.drop_faint(audibility, by_length, receivers);
         }
         let (tree, budget, stop) = (&self.tree, MAX_BEAMS, &self.stop);
-        let query = PoleQuery { scene, tree, source, limits: at_poles, audibility, again, budget, stop };
+        let query = PoleQuery { scene, tree, source, limits: at_poles, audibility, asked, budget, stop };
         if !self.poles.search(&query, receivers) {
             return Err(self.incomplete());
         }
@@ -240,6 +239,7 @@ impl Tracer {
             poles: scene.poles(),
             // A pole that is the only bounce is looked for without beams.
             pole_triangles: if at_poles.max_order > 1 { &scene.pole_triangles } else { &[] },
+            pole_order: at_poles.max_order,
             max_order: limits.max_order,
             max_length_m: limits.max_length_m,
             budget: MAX_BEAMS,

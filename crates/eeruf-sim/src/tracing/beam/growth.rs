@@ -12,7 +12,10 @@ pub(crate) struct Growth<'a> {
     pub(crate) mesh: &'a Mesh,
     pub(crate) mirrors: &'a [Mirror],
     pub(crate) poles: &'a [Pole],
+    /// Triangles in which the poles lie that are looked for.
     pub(crate) pole_triangles: &'a [(u32, u32)],
+    /// Poles are looked for in beams of lower order than this.
+    pub(crate) pole_order: u32,
     pub(crate) max_order: u32,
     pub(crate) max_length_m: f64,
     pub(crate) budget: usize,

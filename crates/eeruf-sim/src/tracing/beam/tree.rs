@@ -256,8 +256,10 @@ impl BeamTree {
             target = next;
             let ahead = at - beam.image;
             if what & POLE != 0 {
-                let cone = PoleCone { pole: what & !POLE, triangle, beam: index, left, right };
-                self.pass_pole(growth, ahead, cone);
+                if beam.order < growth.pole_order {
+                    let cone = PoleCone { pole: what & !POLE, triangle, beam: index, left, right };
+                    self.pass_pole(growth, ahead, cone);
+                }
             } else if cone_holds(left, right, ahead) {
                 let length = ahead.norm();
                 if length <= growth.max_length_m {

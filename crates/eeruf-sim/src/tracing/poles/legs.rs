@@ -1,17 +1,17 @@
-//! The ways from a transducer to the poles: the cones of its beam tree that pass one, and how loud they are there at
-//! most.
+//! The ways from a transducer to the poles: the beams of its tree that pass one, and how loud they are there at most.
 
 use crate::{
-    geometry::Point,
-    scene::Scene,
+    geometry::{Point, Vector},
+    scene::{Mesh, Scene},
     tracing::audibility::Aim,
     tracing::beam::{Beam, BeamTree, PoleCone},
 };
 
-/// One way from a transducer to a pole.
+/// One way from a transducer to a pole: a beam that passes it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Leg {
-    pub(super) cone: PoleCone,
+    pub(super) pole: u32,
+    pub(super) beam: u32,
     pub(super) image: Point,
     pub(super) order: u32,
     pub(super) turn: f64,
@@ -20,20 +20,22 @@ pub(super) struct Leg {
     /// From the image to the pole's axis, and at least to its surface, in metres.
     pub(super) far_m: f64,
     pub(super) least_m: f64,
+    /// The beam's cones through triangles in which the pole stands.
+    cones: [u32; 2],
 }
 
-impl Leg {
-    /// The same for the same pole and triangle.
-    pub(super) fn key(&self) -> (u32, u32) {
-        (self.cone.pole, self.cone.triangle)
-    }
+/// All ways from a transducer: by pole, of each those of low order first.
+#[derive(Debug, Default)]
+pub(super) struct Legs {
+    pub(super) legs: Vec<Leg>,
+    cones: Vec<PoleCone>,
 }
 
 /// All ways from a receiver, found backwards.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct Home {
     pub(super) beams: Vec<Beam>,
-    pub(super) legs: Vec<Leg>,
+    pub(super) legs: Legs,
     /// Poles in plain sight.
     pub(super) in_sight: Vec<Seen>,
 }
@@ -47,24 +49,60 @@ pub(super) struct Seen {
     pub(super) least_m: f64,
 }
 
-/// Writes the ways of a grown tree. Without an aim everything may be loud.
-pub(super) fn legs_of(tree: &BeamTree, scene: &Scene, aim: Option<Aim<'_>>, legs: &mut Vec<Leg>) {
-    legs.clear();
-    legs.extend(tree.pole_cones.iter().map(|&cone| {
-        let beam = &tree.beams[cone.beam as usize];
-        let pole = &scene.poles()[cone.pole as usize];
-        let far_m = (beam.image - pole.centre).norm();
-        let square = aim.map_or(1.0, |aim| aim.towards_pole(beam.image, beam.axis, pole, beam.reflection_gain));
-        let least_m = (far_m - pole.radius_m).max(0.0);
-        Leg { cone, image: beam.image, order: beam.order, turn: beam.turn, square, far_m, least_m }
-    }));
+impl Home {
+    /// Writes the ways of a tree that was grown from the receiver.
+    pub(super) fn fill(&mut self, tree: &BeamTree, scene: &Scene, aim: Option<Aim<'_>>) {
+        self.beams.clone_from(&tree.beams);
+        self.legs.fill(tree, scene, aim);
+        self.in_sight.clear();
+        self.in_sight.extend(self.legs.in_sight());
+    }
 }
 
-/// The poles that a transducer's own, unreflected cones pass.
-pub(super) fn in_sight(legs: &[Leg], poles: &mut Vec<Seen>) {
-    poles.clear();
-    let seen = |leg: &Leg| Seen { pole: leg.cone.pole, square: leg.square, least_m: leg.least_m };
-    poles.extend(legs.iter().filter(|leg| leg.cone.beam == 0).map(seen));
-    poles.sort_unstable_by_key(|seen| seen.pole);
-    poles.dedup_by_key(|seen| seen.pole);
+impl Legs {
+    /// Writes the ways of a grown tree. Without an aim everything may be loud.
+    pub(super) fn fill(&mut self, tree: &BeamTree, scene: &Scene, aim: Option<Aim<'_>>) {
+        let Self { legs, cones } = self;
+        cones.clone_from(&tree.pole_cones);
+        cones.sort_unstable_by_key(|cone| (cone.pole, cone.beam));
+        legs.clear();
+        let mut next = 0;
+        legs.extend(cones.chunk_by(|one, other| (one.pole, one.beam) == (other.pole, other.beam)).map(|of_beam| {
+            let PoleCone { pole, beam, .. } = of_beam[0];
+            let Beam { image, order, turn, axis, reflection_gain, .. } = tree.beams[beam as usize];
+            let of = &scene.poles()[pole as usize];
+            let far_m = (image - of.centre).norm();
+            let square = aim.map_or(1.0, |aim| aim.towards_pole(image, axis, of, reflection_gain));
+            let start = next;
+            next += of_beam.len() as u32;
+            let least_m = (far_m - of.radius_m).max(0.0);
+            Leg { pole, beam, image, order, turn, square, far_m, least_m, cones: [start, next] }
+        }));
+    }
+
+    /// The poles that the transducer's own, unreflected beam passes.
+    pub(super) fn in_sight(&self) -> impl Iterator<Item = Seen> {
+        let unreflected = self.legs.iter().filter(|leg| leg.beam == 0);
+        unreflected.map(|leg| Seen { pole: leg.pole, square: leg.square, least_m: leg.least_m })
+    }
+
+    /// The ways to one pole.
+    pub(super) fn to(&self, pole: u32) -> &[Leg] {
+        let start = self.legs.partition_point(|leg| leg.pole < pole);
+        let end = start + self.legs[start..].partition_point(|leg| leg.pole == pole);
+        &self.legs[start..end]
+    }
+
+    /// The leg's cones that hold a point seen from its image.
+    fn holding(&self, leg: &Leg, ahead: Vector) -> impl Iterator<Item = &PoleCone> + Clone {
+        let [start, end] = leg.cones.map(|cone| cone as usize);
+        self.cones[start..end].iter().filter(move |cone| cone.holds(ahead))
+    }
+
+    /// Returns true if a point of a pole's surface is seen along this way and another one in one triangle.
+    pub(super) fn meet(&self, leg: &Leg, others: &Self, other: &Leg, at: Point, mesh: &Mesh) -> bool {
+        let theirs = others.holding(other, at - other.image);
+        let is_seen = |cone: &PoleCone| theirs.clone().any(|their| their.triangle == cone.triangle);
+        self.holding(leg, at - leg.image).any(|cone| is_seen(cone) && mesh.touches(cone.triangle, at))
+    }
 }

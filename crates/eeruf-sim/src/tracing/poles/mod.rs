@@ -10,10 +10,10 @@ use super::limits::Limits;
 use crate::{
     acoustics::pole_spread,
     geometry::{Point, Specular, Vector, alhazen, alhazen_twice, wrap_angle},
-    scene::{Bounce, Scene},
+    scene::{Bounce, Pole, Scene},
     threads::Stop,
 };
-use legs::{Home, Leg, Seen, in_sight, legs_of};
+use legs::{Home, Leg, Legs, Seen};
 pub(super) use shadow::is_shaded;
 
 /// The most problems of Alhazen that one question may try, some ten seconds.
@@ -47,12 +47,29 @@ pub(crate) struct PoleQuery<'a> {
     pub(crate) limits: Limits,
     /// Audibility, if what is certainly too faint may be left out.
     pub(crate) audibility: Option<&'a Audibility>,
-    /// True if scene, receivers, limits and audibility are those of the last query, but for the source.
-    pub(crate) again: bool,
+    pub(crate) asked: Asked,
     /// Largest number of beams and paths.
     pub(crate) budget: usize,
     /// Ends it early.
     pub(crate) stop: &'a Stop,
+}
+
+/// How often the same is asked: of a scene, receivers, limits and audibility, but for the source.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Asked {
+    Once,
+    /// Of several times for the first.
+    First,
+    Again,
+}
+
+/// Two poles, of which the source sees the first.
+#[derive(Clone, Copy, Debug)]
+struct Pair {
+    /// Its place among the [firsts](PoleSearch::firsts).
+    first: u32,
+    last: u32,
+    between_m: f64,
 }
 
 /// One receiver of a query.
@@ -67,13 +84,20 @@ struct Receiver {
 pub(crate) struct PoleSearch {
     pub(crate) found: Vec<PolePath>,
     bounces: Vec<Bounce>,
-    from_source: Vec<Leg>,
+    from_source: Legs,
     back: BeamTree,
     /// Of each receiver of this query, and of the last one if that asked the same.
     homes: Vec<Home>,
+    /// Number of those that are of now; the others are kept for their memory.
+    grown: usize,
     triangles: [Vec<u32>; 2],
-    /// Poles in plain sight of the source.
+    /// From each pole's surface to the nearest receiver, at least, in metres.
+    nearest_m: Vec<f64>,
+    /// Poles in plain sight of the source, and those over which in turn it may be heard.
     firsts: Vec<Seen>,
+    pairs: Vec<Pair>,
+    /// Triangles of the poles over which the source may be heard.
+    wanted: Vec<(u32, u32)>,
     /// Problems of Alhazen tried so far.
     tried: usize,
 }
@@ -97,24 +121,32 @@ impl PoleSearch {
             self.one_pole(query, receivers);
             return !stop.is_stopped();
         }
-        if !query.again {
-            self.homes.clear();
+        if query.asked != Asked::Again {
+            self.grown = 0;
         }
-        legs_of(tree, scene, audibility.map(Audibility::of_source), &mut self.from_source);
-        // Within one key the beams stay in the order of their tree, lowest order first.
-        self.from_source.sort_by_key(|leg| (leg.key(), leg.cone.beam));
-        in_sight(&self.from_source, &mut self.firsts);
+        self.from_source.fill(tree, scene, audibility.map(Audibility::of_source));
+        self.nearest_m.clear();
+        self.nearest_m.extend(scene.poles().iter().map(|pole| nearest_m(pole, receivers)));
+        if !self.pair_poles(audibility, scene, budget) {
+            return false;
+        }
         if let Some(audibility) = audibility {
-            self.drop_faint(audibility, scene, receivers);
+            self.drop_faint(audibility, scene);
+        }
+        if query.asked == Asked::Once {
+            self.choose_poles(scene);
+            if self.wanted.is_empty() {
+                return true;
+            }
         }
         for (index, &at) in receivers.iter().enumerate() {
             let receiver = Receiver { index: index as u32, at };
-            if self.homes.len() <= index && !self.grow_home(query, receiver) {
+            if self.grown <= index && !self.grow_home(query, receiver) {
                 return false;
             }
             let homes = core::mem::take(&mut self.homes);
             let home = &homes[index];
-            for behind in &home.legs {
+            for behind in &home.legs.legs {
                 self.join(query, home, behind, receiver);
             }
             let spent = self.found.len() > budget || self.tried > MAX_TRIED || stop.is_stopped();
@@ -130,19 +162,47 @@ impl PoleSearch {
     }
 
     /// Forgets the source's ways to poles over which no receiver hears it, however near it is and wherever it heads.
-    fn drop_faint(&mut self, audibility: &Audibility, scene: &Scene, receivers: &[Point]) {
-        let nearest_m = |pole: u32| {
-            let pole = &scene.poles()[pole as usize];
-            let far_m = receivers.iter().map(|at| (at - pole.centre).norm()).fold(f64::INFINITY, f64::min);
-            (far_m - pole.radius_m).max(0.0)
-        };
-        let (mut last, mut after_m) = (u32::MAX, 0.0);
-        self.from_source.retain(|leg| {
-            if leg.cone.pole != last {
-                (last, after_m) = (leg.cone.pole, nearest_m(leg.cone.pole));
-            }
-            audibility.may_hear_pole(leg.square, scene.poles()[last as usize].radius_m, leg.least_m, after_m)
+    fn drop_faint(&mut self, audibility: &Audibility, scene: &Scene) {
+        let Self { from_source, nearest_m, .. } = self;
+        from_source.legs.retain(|leg| {
+            let pole = leg.pole as usize;
+            audibility.may_hear_pole(leg.square, scene.poles()[pole].radius_m, leg.least_m, nearest_m[pole])
         });
+    }
+
+    /// Pairs the poles in plain sight with those from which sound may still be heard, however near a receiver is and
+    /// wherever it heads. Returns whether these are all.
+    fn pair_poles(&mut self, audibility: Option<&Audibility>, scene: &Scene, budget: usize) -> bool {
+        self.firsts.clear();
+        self.firsts.extend(self.from_source.in_sight());
+        self.pairs.clear();
+        for (index, first) in self.firsts.iter().enumerate() {
+            let before = &scene.poles()[first.pole as usize];
+            for (last, after) in scene.poles().iter().enumerate().filter(|(last, _)| *last != first.pole as usize) {
+                let between_m = (before.centre - after.centre).norm() - before.radius_m - after.radius_m;
+                let pair = Pair { first: index as u32, last: last as u32, between_m: between_m.max(0.0) };
+                let nearest = Seen { pole: pair.last, square: 1.0, least_m: self.nearest_m[last] };
+                if pair.may_be_heard(audibility, scene, first, &nearest) {
+                    self.pairs.push(pair);
+                }
+            }
+            if self.pairs.len() > budget {
+                return false;
+            }
+        }
+        true
+    }
+
+    /// Chooses the poles from which the source's sound may be heard.
+    fn choose_poles(&mut self, scene: &Scene) {
+        let is_heard =
+            |last: u32| !self.from_source.to(last).is_empty() || self.pairs.iter().any(|pair| pair.last == last);
+        self.wanted.clear();
+        for triangles in scene.pole_triangles.chunk_by(|one, next| one.1 == next.1) {
+            if triangles.first().is_some_and(|&(_, pole)| is_heard(pole)) {
+                self.wanted.extend(triangles);
+            }
+        }
     }
 
     /// Grows a receiver's ways to the poles, backwards. Returns whether they are all.
@@ -153,7 +213,8 @@ impl PoleSearch {
             mesh: &scene.mesh,
             mirrors: &scene.mirrors,
             poles: scene.poles(),
-            pole_triangles: &scene.pole_triangles,
+            pole_triangles: if query.asked == Asked::Once { &self.wanted } else { &scene.pole_triangles },
+            pole_order: limits.max_order,
             max_order: limits.max_order - 1,
             max_length_m: limits.max_length_m,
             budget,
@@ -162,35 +223,31 @@ impl PoleSearch {
             stop,
         };
         let complete = self.back.grow(&growth, receiver.at, &[]);
-        let mut home = Home { beams: Vec::new(), legs: Vec::new(), in_sight: Vec::new() };
-        legs_of(&self.back, scene, aim, &mut home.legs);
-        in_sight(&home.legs, &mut home.in_sight);
-        home.beams.extend_from_slice(&self.back.beams);
-        self.homes.push(home);
+        if self.homes.len() == self.grown {
+            self.homes.push(Home::default());
+        }
+        self.homes[self.grown].fill(&self.back, scene, aim);
+        self.grown += 1;
         complete
     }
 
     /// Joins one of a receiver's ways to a pole with all of the source's.
     fn join(&mut self, query: &PoleQuery<'_>, home: &Home, behind: &Leg, receiver: Receiver) {
         let PoleQuery { scene, limits, audibility, stop, .. } = *query;
-        let radius_m = scene.poles()[behind.cone.pole as usize].radius_m;
-        let start = self.from_source.partition_point(|leg| leg.key() < behind.key());
-        for index in start..self.from_source.len() {
-            let before = self.from_source[index];
-            if before.key() != behind.key()
-                || before.order + behind.order >= limits.max_order
-                || self.tried > MAX_TRIED
-                || self.is_stopped(stop)
-            {
+        let radius_m = scene.poles()[behind.pole as usize].radius_m;
+        let from_source = core::mem::take(&mut self.from_source);
+        for before in from_source.to(behind.pole) {
+            if before.order + behind.order >= limits.max_order || self.tried > MAX_TRIED || self.is_stopped(stop) {
                 break;
             }
             let may_be_heard = audibility.is_none_or(|audibility| {
                 audibility.may_hear_pole(before.square * behind.square, radius_m, before.least_m, behind.least_m)
             });
             if may_be_heard {
-                self.between(query, &before, home, behind, receiver);
+                self.between(query, &from_source, before, home, behind, receiver);
             }
         }
+        self.from_source = from_source;
     }
 
     /// True to end; looked at now and then.
@@ -199,11 +256,20 @@ impl PoleSearch {
     }
 
     /// One pole between a beam of the source and a beam of the receiver.
-    fn between(&mut self, query: &PoleQuery<'_>, before: &Leg, home: &Home, behind: &Leg, receiver: Receiver) {
+    fn between(
+        &mut self,
+        query: &PoleQuery<'_>,
+        from_source: &Legs,
+        before: &Leg,
+        home: &Home,
+        behind: &Leg,
+        receiver: Receiver,
+    ) {
         let PoleQuery { scene, tree, limits, .. } = *query;
         let order = before.order + 1 + behind.order;
-        let pole = &scene.poles()[before.cone.pole as usize];
-        if before.far_m + behind.far_m > limits.max_length_m + 2.0 * pole.radius_m {
+        let pole = &scene.poles()[before.pole as usize];
+        let far_m = before.far_m + behind.far_m;
+        if far_m > limits.max_length_m + 2.0 * pole.radius_m {
             return;
         }
         self.tried += 1;
@@ -211,18 +277,14 @@ impl PoleSearch {
             return;
         };
         let length_m = hit.before_m + hit.after_m;
-        if length_m > limits.max_length_m
-            || !before.cone.holds(hit.point - before.image)
-            || !behind.cone.holds(hit.point - behind.image)
-            || !scene.mesh.touches(before.cone.triangle, hit.point)
-        {
+        if length_m > limits.max_length_m || !from_source.meet(before, &home.legs, behind, hit.point, &scene.mesh) {
             return;
         }
         let start = self.bounces.len();
-        tree.push_chain(before.cone.beam, &mut self.bounces);
+        tree.push_chain(before.beam, &mut self.bounces);
         self.bounces[start..].reverse();
-        self.bounces.push(Bounce::Pole(before.cone.pole));
-        push_chain(&home.beams, behind.cone.beam, &mut self.bounces);
+        self.bounces.push(Bounce::Pole(before.pole));
+        push_chain(&home.beams, behind.beam, &mut self.bounces);
         let departure_rad = unfolded(hit.point - before.image, before.order, before.turn);
         let arrival_rad = unfolded(hit.point - behind.image, behind.order, behind.turn);
         self.push(receiver, order, [departure_rad, arrival_rad], &[(hit, pole.radius_m)], start);
@@ -262,40 +324,34 @@ impl PoleSearch {
     fn two_poles(&mut self, query: &PoleQuery<'_>, lasts: &[Seen], receiver: Receiver) {
         let PoleQuery { scene, source, limits, audibility, stop, .. } = *query;
         let (at, poles) = (receiver.at, scene.poles());
-        for index in 0..self.firsts.len() {
+        for index in 0..self.pairs.len() {
             if stop.is_stopped() {
                 return;
             }
-            let before = self.firsts[index];
-            for after in lasts.iter().filter(|after| after.pole != before.pole) {
-                let (a, b) = (before.pole, after.pole);
-                let (first, second) = (&poles[a as usize], &poles[b as usize]);
-                let may_be_heard = audibility.is_none_or(|audibility| {
-                    let radii_m = [first.radius_m, second.radius_m];
-                    let between_m = (first.centre - second.centre).norm() - first.radius_m - second.radius_m;
-                    let legs_m = [before.least_m, between_m.max(0.0), after.least_m];
-                    audibility.may_hear_two_poles(before.square * after.square, radii_m, legs_m)
-                });
-                if !may_be_heard {
-                    continue;
-                }
-                self.tried += 1;
-                let circles = ((first.centre, first.radius_m), (second.centre, second.radius_m));
-                let Some((one, two)) = alhazen_twice(source, at, circles.0, circles.1) else {
-                    continue;
-                };
-                if one.before_m + two.before_m + two.after_m > limits.max_length_m
-                    || !scene.mesh.sees(source, one.point, &mut self.triangles)
-                    || !scene.mesh.sees(one.point, two.point, &mut self.triangles)
-                    || !scene.mesh.sees(two.point, at, &mut self.triangles)
-                {
-                    continue;
-                }
-                let start = self.bounces.len();
-                self.bounces.extend([Bounce::Pole(a), Bounce::Pole(b)]);
-                let angles = [unfolded(one.point - source, 0, 0.0), unfolded(two.point - at, 0, 0.0)];
-                self.push(receiver, 2, angles, &[(one, circles.0.1), (two, circles.1.1)], start);
+            let pair = self.pairs[index];
+            let before = self.firsts[pair.first as usize];
+            let Ok(seen) = lasts.binary_search_by_key(&pair.last, |seen| seen.pole) else { continue };
+            if !pair.may_be_heard(audibility, scene, &before, &lasts[seen]) {
+                continue;
             }
+            let (a, b) = (before.pole, pair.last);
+            let (first, second) = (&poles[a as usize], &poles[b as usize]);
+            self.tried += 1;
+            let circles = ((first.centre, first.radius_m), (second.centre, second.radius_m));
+            let Some((one, two)) = alhazen_twice(source, at, circles.0, circles.1) else {
+                continue;
+            };
+            if one.before_m + two.before_m + two.after_m > limits.max_length_m
+                || !scene.mesh.sees(source, one.point, &mut self.triangles)
+                || !scene.mesh.sees(one.point, two.point, &mut self.triangles)
+                || !scene.mesh.sees(two.point, at, &mut self.triangles)
+            {
+                continue;
+            }
+            let start = self.bounces.len();
+            self.bounces.extend([Bounce::Pole(a), Bounce::Pole(b)]);
+            let angles = [unfolded(one.point - source, 0, 0.0), unfolded(two.point - at, 0, 0.0)];
+            self.push(receiver, 2, angles, &[(one, circles.0.1), (two, circles.1.1)], start);
         }
     }
 
@@ -325,6 +381,27 @@ impl PoleSearch {
             cos_incidence,
             bounces: (start as u32, self.bounces.len() as u32),
         });
+    }
+}
+
+/// The way from a pole's surface to the nearest receiver, at least, in metres.
+fn nearest_m(pole: &Pole, receivers: &[Point]) -> f64 {
+    let far_m = receivers.iter().map(|at| (at - pole.centre).norm()).fold(f64::INFINITY, f64::min);
+    (far_m - pole.radius_m).max(0.0)
+}
+
+impl Pair {
+    /// Returns true if sound may be heard that comes from the second pole to a receiver.
+    fn may_be_heard(&self, audibility: Option<&Audibility>, scene: &Scene, first: &Seen, after: &Seen) -> bool {
+        let Self { last, between_m, .. } = *self;
+        audibility.is_none_or(|audibility| {
+            let radii_m = [first.pole, last].map(|pole| scene.poles()[pole as usize].radius_m);
+            audibility.may_hear_two_poles(
+                first.square * after.square,
+                radii_m,
+                [first.least_m, between_m, after.least_m],
+            )
+        })
     }
 }
 

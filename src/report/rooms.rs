@@ -37,12 +37,13 @@ impl Described<'_> {
             _ = writeln!(text, "Assumed: {assumed}.");
         }
         let Some(base) = judgement.ways.first() else { return text };
-        let header = ["way", "right %", "phantom %", "right echoes/s", "x one by one", "foreign %", "blind", "limits"];
+        let header = ["way", "right %", "phantom %", "echoes/s", "times", "foreign %", "blind", "limits"];
         let row = |way: &JudgedWay| self.row(way, base);
         _ = writeln!(text, "\n{}", markdown(&header, judgement.ways.iter().map(row)));
         text.push_str(
             "right: share of time in which the last believed reading, at most 0.6 s old, is right within 0.5 ms \
-             (8.6 cm); phantom: in which it is foreign sound. foreign, blind: share of foreign sound in what was \
+             (8.6 cm); phantom: in which it is foreign sound. echoes/s: accepted and right, all sensors together; \
+             times: the same as a multiple of one by one's. foreign, blind: share of foreign sound in what was \
              believed, and sensors that are right under 5 % of the time, in the median room of the worst kind. limits: \
              the first kind of room in which foreign sound exceeds its limit, or own wrong echoes those of one by one \
              by a point, or a sensor is blind that one by one is not.\n",

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::process::{Command, Output};
 
 /// Runs a line of a shell in a folder, with the program under its own name.
-fn shell(line: &str, folder: &Path) -> Output {
+pub(crate) fn shell(line: &str, folder: &Path) -> Output {
     let program = Path::new(env!("CARGO_BIN_EXE_eeruf")).parent().unwrap();
     let path = std::env::var("PATH").unwrap();
     let mut sh = Command::new("sh");
@@ -13,7 +13,7 @@ fn shell(line: &str, folder: &Path) -> Output {
 }
 
 /// The commands in a document's listings for a shell, but those that install or build.
-fn commands(document: &str) -> Vec<String> {
+pub(crate) fn commands(document: &str) -> Vec<String> {
     let text = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(document)).unwrap();
     let listings = text.split("```sh\n").skip(1).filter_map(|rest| rest.split("```").next());
     let lines = listings.flat_map(str::lines).filter(|line| !line.starts_with("cargo ") && !line.starts_with("pip "));
@@ -71,8 +71,9 @@ fn strangers_find_their_ways_from_readme_and_type_what_works() {
 /// The cell of a table's row under a heading.
 fn cell(out: &str, row: &str, heading: &str) -> String {
     let cells = |line: &str| line.split('|').map(|cell| cell.trim().to_owned()).collect::<Vec<_>>();
-    let head = out.lines().map(cells).find(|head| head.iter().any(|cell| cell == heading)).unwrap();
-    let row = out.lines().map(cells).find(|cells| cells.get(1).is_some_and(|name| name == row)).unwrap();
+    let mut lines = out.lines().map(cells);
+    let head = lines.find(|head| head.iter().any(|cell| cell == heading)).unwrap();
+    let row = lines.find(|cells| cells.get(1).is_some_and(|name| name == row)).unwrap();
     row[head.iter().position(|cell| cell == heading).unwrap()].clone()
 }
 

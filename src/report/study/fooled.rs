@@ -82,7 +82,7 @@ impl Fooled {
         }
         let mut table = Table::new();
         table.load_style(presets::ASCII_MARKDOWN);
-        let columns = ["sensor", "took the sound of", "order", "by way of", "m"].map(str::to_owned);
+        let columns = ["sensor", "heard", "order", "by way of", "m"].map(str::to_owned);
         table.set_header(columns.into_iter().chain(self.methods.iter().map(Method::to_string)));
         for ((receiver, emitter, _, bounces), row) in self.rows.iter().take(ROWS) {
             let who = match emitter {

@@ -34,7 +34,7 @@ pub(crate) fn describe(file: &Path, world: &World, study: &Study) -> String {
             robot.window,
             robot.t_delta,
         );
-        _ = writeln!(text, "{}", table(&runs));
+        text += &tables(&runs);
         let fooled = Fooled::of(&runs, index, TOLERANCE_US);
         text += &fooled.describe();
         text += &verdict(&runs, sensors);
@@ -50,47 +50,48 @@ pub(crate) fn describe(file: &Path, world: &World, study: &Study) -> String {
     text
 }
 
-fn table(runs: &[Readings]) -> Table {
-    let header = [
-        "method",
-        "wrong, % of all",
-        "% of accepted",
-        "rejected %",
-        "good lost %",
-        "age ms, median",
-        "99 %",
-        "accepted/s",
-        "starved",
-        "belief right %",
-        "unknown",
-        "phantom",
-        "too far",
-        "faint",
-        "right echoes/s",
-        "blind",
-    ];
-    let row = |summary: Summary| {
-        let or_none = |share: Option<f64>| share.map_or_else(|| "-".to_owned(), fine_percent);
-        vec![
-            summary.method.to_string(),
-            fine_percent(summary.wrong_of_all),
-            or_none(summary.wrong_of_accepted),
-            fine_percent(summary.rejected),
-            or_none(summary.good_lost),
-            format!("{:.0}", summary.age_ms.median),
-            format!("{:.0}", summary.age_ms.p99),
-            format!("{:.1}", summary.readings_per_s),
-            if summary.starved == 0 { "-".to_owned() } else { summary.starved.to_string() },
-            fine_percent(summary.belief.right),
-            fine_percent(summary.belief.unknown),
-            fine_percent(summary.belief.phantom),
-            fine_percent(summary.belief.too_far),
-            fine_percent(summary.belief.faint),
-            format!("{:.1}", summary.right_echoes_per_s),
-            if summary.blind == 0 { "-".to_owned() } else { summary.blind.to_string() },
+/// Three tables, each narrow enough for a page: readings, how often and how fresh, belief.
+fn tables(runs: &[Readings]) -> String {
+    let summaries: Vec<Summary> = runs.iter().map(Readings::summary).collect();
+    let share = |share: Option<f64>| share.map_or_else(|| "-".to_owned(), fine_percent);
+    let count = |count: usize| if count == 0 { "-".to_owned() } else { count.to_string() };
+    let readings = |of: &Summary| {
+        [fine_percent(of.wrong_of_all), share(of.wrong_of_accepted), fine_percent(of.rejected), share(of.good_lost)]
+    };
+    let rates = |of: &Summary| {
+        [
+            format!("{:.0}", of.age_ms.median),
+            format!("{:.0}", of.age_ms.p99),
+            format!("{:.1}", of.readings_per_s),
+            format!("{:.1}", of.right_echoes_per_s),
+            count(of.starved),
+            count(of.blind),
         ]
     };
-    markdown(&header, runs.iter().map(|readings| row(readings.summary())))
+    let belief = |of: &Summary| {
+        let shares = &of.belief;
+        [shares.right, shares.unknown, shares.phantom, shares.too_far, shares.faint].map(fine_percent)
+    };
+    [
+        table(&summaries, ["method", "wrong, % of all", "% of accepted", "rejected %", "good lost %"], readings),
+        table(
+            &summaries,
+            ["method", "age ms, median", "99 %", "accepted/s", "right echoes/s", "starved", "blind"],
+            rates,
+        ),
+        table(&summaries, ["method", "belief right %", "unknown", "phantom", "too far", "faint"], belief),
+    ]
+    .map(|table| format!("\n{table}\n"))
+    .concat()
+}
+
+fn table<const H: usize, const N: usize>(
+    summaries: &[Summary],
+    header: [&str; H],
+    cells: impl Fn(&Summary) -> [String; N],
+) -> Table {
+    let row = |summary: &Summary| core::iter::once(summary.method.to_string()).chain(cells(summary)).collect();
+    markdown(&header, summaries.iter().map(row))
 }
 
 /// The table in words: why alternate, and what it costs.

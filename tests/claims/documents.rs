@@ -7,20 +7,26 @@
 use std::path::{Path, PathBuf};
 
 use crate::common::eeruf;
+use crate::newcomers::{commands, shell};
 
 const PRINTED_BY: &str = "<!-- printed by: eeruf ";
 const END: &str = "<!-- end -->";
 
-/// The Markdown files below a folder.
-fn documents(folder: &Path) -> Vec<PathBuf> {
+/// The files below a folder whose names have one of the endings.
+fn files(folder: &Path, endings: &[&str]) -> Vec<PathBuf> {
     let entries = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
     entries
         .flat_map(|path| match path.is_dir() {
-            true => documents(&path),
+            true => files(&path, endings),
             false => vec![path],
         })
-        .filter(|path| path.extension().is_some_and(|ending| ending == "md"))
+        .filter(|path| endings.iter().any(|ending| path.extension().is_some_and(|of| of == *ending)))
         .collect()
+}
+
+/// The Markdown files below a folder.
+fn documents(folder: &Path) -> Vec<PathBuf> {
+    files(folder, &["md"])
 }
 
 #[test]
@@ -61,13 +67,98 @@ fn every_picture_in_the_docs_is_small() {
     assert!(pictures >= 10, "{pictures}");
 }
 
+// Pictures by the program are drawn again and compared byte by byte; each picture is shown by a document.
+#[test]
+fn pictures_are_what_their_commands_draw() {
+    let (page, root) = ("docs/project/pictures.md", Path::new(env!("CARGO_MANIFEST_DIR")));
+    let read = |path: &Path| std::fs::read_to_string(path).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    assert!(shell("eeruf examples .", folder.path()).status.success());
+    for command in commands(page) {
+        let output = shell(&command, folder.path());
+        assert!(output.stderr.is_empty(), "{command}: {}", String::from_utf8_lossy(&output.stderr));
+    }
+    let (kept, mut drawn) = (root.join("docs/pictures"), 0);
+    let shown = documents(&root.join("docs")).iter().map(|document| read(document)).collect::<String>();
+    let shown = shown + &read(&root.join("README.md"));
+    for picture in files(&kept, &["png", "svg"]) {
+        let name = picture.strip_prefix(&kept).unwrap().to_str().unwrap();
+        assert!(shown.contains(&format!("pictures/{name})")), "{name}: no document shows it");
+        let Ok(fresh) = std::fs::read(folder.path().join(name)) else {
+            assert!(read(&root.join(page)).contains(&format!("`{name}`")), "{name}: {page} does not name it");
+            continue;
+        };
+        drawn += 1;
+        if std::env::var_os("EERUF_WRITE").is_some() {
+            std::fs::write(&picture, fresh).unwrap();
+        } else {
+            assert!(fresh == std::fs::read(&picture).unwrap(), "{name}: its command draws another picture ({page})");
+        }
+    }
+    assert!(drawn >= 10, "{drawn}");
+}
+
+/// The words of a text, as `wc -w` counts them.
+fn words(text: &str) -> usize {
+    text.split_whitespace().count()
+}
+
 #[test]
 fn user_path_has_at_most_20_000_words() {
     let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs");
     let mut path = documents(&docs.join("tutorial"));
     path.extend(documents(&docs.join("how-to")));
     path.push(docs.join("faq.md"));
-    let words = path.iter().map(|document| std::fs::read_to_string(document).unwrap().split_whitespace().count());
-    let words: usize = words.sum();
+    let words: usize = path.iter().map(|document| words(&std::fs::read_to_string(document).unwrap())).sum();
     assert!(words <= 20_000, "{words}; figures and diaries belong into docs/log");
+}
+
+/// A text without the parts from one mark to another.
+fn without(text: &str, begin: &str, end: &str) -> String {
+    let mut parts = text.split(begin);
+    let first = parts.next().unwrap().to_owned();
+    parts.fold(first, |kept, part| kept + part.split_once(end).unwrap().1)
+}
+
+// Counted: every document in docs/ but docs/log, tables and printed parts included. Not counted: in docs/reference,
+// what a program printed or what is a listing of a file; the READMEs of crates, examples and libraries; and the files
+// at the repository's root (README, ARCHITECTURE, CONTRIBUTING, CHANGELOG and the like).
+#[test]
+fn documents_have_at_most_45_000_words() {
+    let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs");
+    let counted = documents(&docs).into_iter().filter(|document| !document.starts_with(docs.join("log")));
+    let words = counted.map(|document| {
+        let mut text = std::fs::read_to_string(&document).unwrap();
+        if document.starts_with(docs.join("reference")) {
+            text = without(&text, "<!-- printed by", END);
+            text = without(&text, "<!-- listing: ", "\n```\n");
+        }
+        words(&text)
+    });
+    let words: usize = words.sum();
+    assert!(words <= 45_000, "{words}; say a thing once, and link to it");
+}
+
+// Rows of tables that users read, as they stand in the source.
+#[test]
+fn tables_of_users_have_at_most_100_columns() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let folders = ["docs/tutorial", "docs/how-to", "docs/explanation"];
+    let mut read = folders.iter().flat_map(|folder| documents(&root.join(folder))).collect::<Vec<_>>();
+    read.extend(
+        ["README.md", "docs/README.md", "docs/faq.md", "docs/glossary.md", "docs/paper.md"].map(|x| root.join(x)),
+    );
+    let (mut rows, mut wide) = (0, String::new());
+    for document in read {
+        let (text, mut code) = (std::fs::read_to_string(&document).unwrap(), false);
+        for (line, row) in (1..).zip(text.lines()) {
+            code ^= row.starts_with("```");
+            let is_row = row.starts_with('|') && !code;
+            rows += usize::from(is_row);
+            if is_row && row.chars().count() > 100 {
+                wide += &format!("\n{}:{line}: {} columns", document.display(), row.chars().count());
+            }
+        }
+    }
+    assert!(rows > 200 && wide.is_empty(), "{rows} rows{wide}\nexpected at most 100 columns: split it, or make a list");
 }

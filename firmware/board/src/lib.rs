@@ -10,6 +10,9 @@
 //! Each module has the same functions: a clock in microseconds, a one-shot alarm that does nothing but end a sleep, a
 //! second timer whose interrupt stands for an edge on an echo line, and a counter for measuring. [`fake_sensors`] plays
 //! the sensors, [`say`] prints through the debugger.
+//!
+//! A further board takes a file `src/NAME.rs`, a line below, its target and memory in `build.rs`, a runner in
+//! `firmware/.cargo/config.toml`, and a row of `BOARDS` in `xtask/src/firmware.rs`.
 #![no_std]
 
 #[cfg_attr(board = "microbit", path = "microbit.rs")]

@@ -3279,6 +3279,7 @@ class _RobotChanges(TypedDict, total=False):
     together: Iterable[Iterable[_Int]]
     transducer: _Module | Sequence[_Module] | None
     audible_us: _Int | None
+    path_change_us: _Int | None
     firing: dict[str, object] | None
     ring: str | PathLike[str] | None
 
@@ -3315,8 +3316,10 @@ class Robot:
         min_refire_us: with immediate refiring, how long a sensor rests between its echo and its next firing.
         audible_us: how long sound is heard after it was sent, as far as methods that fire one by one allow for it; what
             its modules say where ``module`` is given, or else no longer than sensors listen.
+        path_change_us: P: by how much, at most, the path of a foreign sound changes from one reading to the next, where
+            a table fires the ring, at most 65,534 us; None for ``t_delta_us``.
         ring: the path of a ring file, for ``eeruf design``, that gives modules, windows, ``T_delta``, sensors that fire
-            together and neighbours, unless these are given here.
+            together, neighbours, ``path_change_us`` and ``audible_us``, unless these are given here.
         firing: a dict with the keys of ``[firing]`` in scene files, such as ``{"turn_us": 33_000}``, for the methods
             that fire as sketches and modules do.
         start_us: when the ring begins to fire, by its own clock.
@@ -3374,6 +3377,7 @@ class Robot:
         together: Iterable[Iterable[_Int]] = (),
         transducer: _Module | Sequence[_Module] | None = None,
         audible_us: _Int | None = None,
+        path_change_us: _Int | None = None,
         firing: dict[str, object] | None = None,
         ring: str | PathLike[str] | None = None,
     ) -> Robot: ...
@@ -3447,6 +3451,9 @@ class Robot:
     @property
     def audible_us(self) -> int:
         """Time for which sound is heard after it was sent, in microseconds; 0 for as long as sensors listen."""
+    @property
+    def path_change_us(self) -> int | None:
+        """Change of a foreign sound's path from one reading to the next, in microseconds; None for ``t_delta_us``."""
     @property
     def firing(self) -> dict[str, object]:
         """Firing by sketches and modules: a dict of what differs from the default."""

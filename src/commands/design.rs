@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use clap::ValueEnum;
 use eeruf_core::search::{Progress, SearchError};
-use eeruf_core::{Criterion, Micros, Requirements, hopping::HoppingListening};
+use eeruf_core::{Criterion, Micros, hopping::HoppingListening};
 use eeruf_design::atlas::ATLAS;
 use eeruf_design::{CURVE_BUDGET, FoundJson, Need, RealPeriod, RingDesign, RingSpec, Search, real_budget};
 
@@ -45,7 +45,8 @@ use crate::report::watch::Watch;
 ///
 /// The ring file says how many sensors there are (sensors, layout, neighbours) and what they need: t_delta_us,
 /// min_interval_us, window_us; or jitter_us and speed_m_s, crosstalk_range_m, max_range_m and retrigger_us,
-/// temperature_c; and handling_us, for which the controller fires nothing else. module names the modules, one for all
+/// temperature_c; and handling_us, for which the controller fires nothing else; path_change_us and audible_us, by how
+/// much the path of foreign sound changes and how long it is heard. module names the modules, one for all
 /// or a list, whose range and rest hold where max_range_m and retrigger_us are not given.
 /// t_delta_us, jitter_us, window_us, max_range_m and retrigger_us may be lists with a number for each
 /// sensor; intervals_us = [[x, y, us], ..] gives pairs an interval of their own, shared_lines = [[x, y], ..] names
@@ -253,7 +254,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     };
     match args.form() {
         Some(form @ (Form::Toml | Form::Rust | Form::C | Form::Arduino)) => {
-            let table = || emit(&spec.modules, form, &design.schedule, &requirements);
+            let table = || emit(&design.spec, form, &design.schedule);
             match &way {
                 Some(Ok(Some(way))) if way.method == Method::Flow => emit_flow(&spec.modules, form, way)?,
                 Some(Ok(Some(way))) if way.method != Method::Eeruf => {
@@ -353,21 +354,30 @@ fn emit_settings(modules: &[Module], form: Form, min_refire: Micros) -> Result<(
     Ok(())
 }
 
-/// Prints a schedule in a form, after the modules that it is for.
-fn emit(
-    modules: &[Module],
-    form: Form,
-    schedule: &AnySchedule,
-    requirements: &Requirements<'_>,
-) -> Result<(), InputError> {
+/// Prints a schedule in a form, after the modules that it is for and before how a ring listens to them.
+fn emit(spec: &RingSpec, form: Form, schedule: &AnySchedule) -> Result<(), InputError> {
+    let (modules, requirements) = (&spec.modules, spec.table_requirements());
     emit_modules(modules, form)?;
     match form {
         Form::Toml => print(schedule.to_toml())?,
-        Form::Rust => print(schedule.to_rust(requirements))?,
-        Form::C => print(schedule.to_c(requirements))?,
-        Form::Arduino => print(schedule.to_arduino(requirements, "RING"))?,
+        Form::Rust => print(schedule.to_rust(&requirements))?,
+        Form::C => print(schedule.to_c(&requirements))?,
+        Form::Arduino => print(schedule.to_arduino(&requirements, "RING"))?,
         // Whoever asks for JSON gets more than the schedule.
         Form::Json => {}
+    }
+    let deaf_us = modules.iter().map(|module| module.blanking_us).min().unwrap_or(0);
+    match form {
+        Form::Rust if deaf_us > 0 => print_line(format!(
+            "\n// For `Ring::new(&RING, CONFIG, now)`: modules are deaf after firing.\npub const CONFIG: \
+             eeruf_core::RingConfig = eeruf_core::RingConfig::new().with_blanking(Micros::new({deaf_us}));"
+        ))?,
+        Form::C if deaf_us > 0 => print_line(format!(
+            "\n/* For an EerufConfig: modules are deaf after firing. */\n#define EERUF_RING_CONFIG {{EERUF_VERSION, 2, \
+             0, 0, {deaf_us}, 0, 0}}"
+        ))?,
+        // The Arduino library hears pulses, whose beginning is not heard anyway.
+        _ => {}
     }
     emit_settings(modules, form, schedule.min_refire())
 }
@@ -395,7 +405,7 @@ fn fit(args: &Args, spec: &RingSpec, period: Micros) -> Result<Answer, InputErro
     }
     match (args.form(), &schedule) {
         (Some(Form::Json), _) => print_line(to_json(&fit_json(&fit, seconds)))?,
-        (Some(form), Some(schedule)) => emit(&spec.modules, form, schedule, &requirements)?,
+        (Some(form), Some(schedule)) => emit(&fit.spec, form, schedule)?,
         (Some(_), None) => tell(format!("{}: no schedule of {period} that meets all needs\n", args.file.display()))?,
         (None, _) => tell(describe_fit(&args.file.display().to_string(), spec, period, &fit, seconds))?,
     }

@@ -75,12 +75,13 @@ pub(crate) fn describe(
             format!("beyond every t_delta, then every interval, then every refire time; {whose}"),
         ]);
     }
+    let listens = design.spec.table_requirements();
     table.add_row([
         "listening".to_owned(),
-        span(spec.sensors, |sensor| requirements.window_of(sensor)),
+        span(spec.sensors, |sensor| listens.window_of(sensor)),
         format!(
             "{:.2} m; no sensor fires again within {}",
-            f64::from(spec.c.distance_mm(requirements.window)) / 1000.0,
+            f64::from(spec.c.distance_mm(listens.window)) / 1000.0,
             report.min_refire()
         ),
     ]);

@@ -14,6 +14,7 @@ mod inputs;
 mod keys;
 mod logs;
 mod newcomers;
+mod one_ring;
 mod output;
 mod program;
 mod provoked;

@@ -27,7 +27,7 @@ const ROOM: &str = "seed = 2\nmax_order = 2\n[[wall]]\nclosed = true\n\
                     points_m = [[-2.5, -1.8], [2.6, -1.8], [2.6, 1.7], [-2.5, 1.7]]\n";
 
 /// A scene in which the robot of a ring file stands, with more keys of the robot.
-fn scene(ring: &str, more: &str) -> Result<World, String> {
+pub(crate) fn scene(ring: &str, more: &str) -> Result<World, String> {
     let text = format!("{ROOM}[[robot]]\npose = {{ x_m = 0, y_m = 0 }}\nring = {ring:?}\n{more}\n");
     World::from_text_with(Path::new("rings/scene.toml"), &text, robot_ring).map_err(|error| error.to_string())
 }

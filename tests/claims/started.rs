@@ -8,15 +8,15 @@ use crate::common::{Scratch, eeruf, json};
 const ROOT: &str = env!("CARGO_MANIFEST_DIR");
 
 /// The ring files for `design`, not the tables of the paper.
-fn rings() -> Vec<PathBuf> {
+pub(crate) fn rings() -> Vec<PathBuf> {
     let folder = std::fs::read_dir(Path::new(ROOT).join("rings")).unwrap();
     let files = folder.map(|entry| entry.unwrap().path());
     files.filter(|file| !file.file_stem().unwrap().to_str().unwrap().starts_with("table-")).collect()
 }
 
-/// Builds and runs `start.c` with a table, or with what a flow ring is set up with; `Err` with what it says if it does
-/// not start.
-fn start(table: &str, schedule: &str, settings: &str) -> Result<(), String> {
+/// Builds and runs a program of `emitted/` with a table, or with what a flow ring is set up with, and the constants of
+/// these names in it; its output, which is the error if it fails.
+pub(crate) fn run_c(source: &str, table: &str, [schedule, settings]: [&str; 2]) -> Result<String, String> {
     let (folder, header) = Scratch::new("ring.h", table);
     // Arduino's class is not what is tried, but the table and the library below it.
     std::fs::write(folder.path().join("EerufArduino.h"), "#include \"eeruf.h\"\n").unwrap();
@@ -25,16 +25,24 @@ fn start(table: &str, schedule: &str, settings: &str) -> Result<(), String> {
     gcc.args(["-std=c99", "-Wall", "-Wextra", "-Werror", "-Wno-unused", "-Ic"]).arg("-I").arg(folder.path());
     let kind = if flows(table) { "FLOW" } else { "SCHEDULE" };
     gcc.arg(format!("-D{kind}={schedule}")).arg(format!("-DTABLE=\"{}\"", header.display()));
-    if table.contains(settings) {
-        gcc.arg(format!("-DSETTINGS={settings}"));
+    for (name, constant) in [("SETTINGS", settings), ("CONFIG", "EERUF_RING_CONFIG")] {
+        if table.contains(constant) {
+            gcc.arg(format!("-D{name}={constant}"));
+        }
     }
-    gcc.args(["tests/claims/emitted/start.c", "c/eeruf.c", "-o"]).arg(&program).current_dir(ROOT);
+    gcc.arg(format!("tests/claims/emitted/{source}.c")).args(["c/eeruf.c", "-o"]).arg(&program).current_dir(ROOT);
     let built = gcc.output().expect("gcc runs");
     if !built.status.success() {
         return Err(String::from_utf8_lossy(&built.stderr).into_owned());
     }
     let ran = Command::new(program).output().expect("it was built");
-    if ran.status.success() { Ok(()) } else { Err(String::from_utf8_lossy(&ran.stdout).into_owned()) }
+    let said = String::from_utf8_lossy(&ran.stdout).into_owned();
+    if ran.status.success() { Ok(said) } else { Err(said) }
+}
+
+/// Runs `start.c`; `Err` with what it says if the ring does not start.
+fn start(table: &str, schedule: &str, settings: &str) -> Result<(), String> {
+    run_c("start", table, [schedule, settings]).map(drop)
 }
 
 fn flows(emitted: &str) -> bool {
@@ -42,7 +50,8 @@ fn flows(emitted: &str) -> bool {
 }
 
 /// Forms in which a ring file is emitted: form, name of the constant, name of the modules' settings.
-const FORMS: [[&str; 3]; 2] = [["c", "eeruf_schedule", "EERUF_MODULES"], ["arduino", "RING", "RING_MODULES"]];
+pub(crate) const FORMS: [[&str; 3]; 2] =
+    [["c", "eeruf_schedule", "EERUF_MODULES"], ["arduino", "RING", "RING_MODULES"]];
 
 #[test]
 fn recommended_ways_are_emitted_start_and_fire() {

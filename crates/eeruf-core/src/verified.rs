@@ -130,7 +130,11 @@ impl<const K: usize> Verification<'_, K> {
             x += 1;
         }
         let periods = if stale_echo { 2 } else { 1 };
-        let audible = Micros::new(periods * schedule.period().as_micros());
+        let longest = Micros::new(periods * schedule.period().as_micros());
+        let audible = match requirements.audible {
+            Some(asked) if asked.as_micros() > 0 => shorter(asked, longest),
+            _ => longest,
+        };
         let path_change = match requirements.criterion {
             Criterion::Paper | Criterion::Exact => None,
             // Crosstalk moves by more than both together.

@@ -113,6 +113,10 @@ impl RingSpec {
         if self.handling != Micros::ZERO {
             return Err("handling_us in a ring file for many phases; expected it for two phases only".to_owned());
         }
+        if self.path_change.is_some() {
+            let expected = "expected --margin-us, which is what a path may change by and lateness, less 1 us";
+            return Err(format!("path_change_us in a ring file for many phases; {expected}"));
+        }
         HoppingDesign::shortest(self.sensors, phases, &self.phase_requirements(criterion), self.hops_moving())
     }
 }

@@ -19,6 +19,9 @@ const USUAL_JITTER_US: u32 = 100;
 /// ms between neighbours.
 const USUAL_CROSSTALK_RANGE_M: f64 = 2.57;
 
+/// The longest that a ring takes sound to be audible, 67 s.
+const MOST_AUDIBLE_US: u32 = 1 << 26;
+
 const fn one_millisecond() -> u32 {
     1000
 }
@@ -52,6 +55,9 @@ pub struct RingFile {
     retrigger_us: Option<Each<u32>>,
     /// The time that the controller needs for one firing; no two are closer.
     handling_us: Option<u32>,
+    /// P, where it is less than `T_delta`, and R, where it is not the module's.
+    path_change_us: Option<u32>,
+    audible_us: Option<u32>,
     temperature_c: Option<f64>,
     /// Where each sensor is on the robot, or the arc on which they stand, for scenes.
     poses: Option<Vec<PlaceFile>>,
@@ -110,7 +116,12 @@ pub struct RingSpec {
     pub speed_mm_s: Option<u32>,
     /// The time that the controller needs for one firing: it gives two that are closer than this one after the other.
     pub handling: Micros,
-    /// The module of each sensor, where the file names them.
+    /// P: by how much, at most, the path of a foreign sound changes from one reading to the next on a robot that stands;
+    /// `None` for `t_delta`.
+    pub path_change: Option<Micros>,
+    /// R: how long sound is audible, where the file says it.
+    pub audible: Option<Micros>,
+    /// The module of each sensor, where the file names them; it rests for as long as the file says.
     pub modules: Vec<Module>,
     /// Where each sensor is on the robot, if the file says it.
     pub poses: Vec<Pose>,
@@ -140,7 +151,8 @@ impl RingSpec {
     pub fn covering(&self, t_delta: Micros) -> Self {
         let more = t_delta.saturating_sub(self.t_delta);
         let uneven = self.uneven.as_ref().map(|uneven| uneven.covering(more));
-        Self { t_delta, uneven, ..self.clone() }
+        let path_change = self.path_change.map(|change| change.saturating_add(more));
+        Self { t_delta, uneven, path_change, ..self.clone() }
     }
 
     /// Requirements on a schedule.
@@ -152,11 +164,20 @@ impl RingSpec {
             layout: self.layout.layout(),
             window: self.window,
             blanking: Micros::ZERO,
-            audible: None,
+            audible: self.audible,
             stale_echo: self.stale_echo,
             uneven: self.uneven.as_ref().map(OwnedUneven::uneven),
         };
         PeriodProblem { sensors: self.sensors, requirements, tick: self.tick }
+    }
+
+    /// Requirements as a table of two phases hands them to the ring that fires by it, which listens no longer than for
+    /// the range and allows for P.
+    pub fn table_requirements(&self) -> Requirements<'_> {
+        let requirements = self.problem().requirements;
+        let more = |path_change: Micros| path_change.saturating_add(Micros::new(1));
+        let criterion = self.path_change.map_or(requirements.criterion, |change| Criterion::Margin(more(change)));
+        Requirements { criterion, window: requirements.window.min(self.listening), ..requirements }
     }
 
     /// The ring as scenes take it.
@@ -175,6 +196,8 @@ impl RingSpec {
             together: requirements.uneven.map_or(vec![], |uneven| uneven.together.to_vec()),
             speed_m_s: f64::from(self.speed_mm_s.unwrap_or(0)) / 1e3,
             neighbours: self.neighbours,
+            path_change: self.path_change,
+            audible: self.audible,
         }
     }
 }
@@ -253,7 +276,7 @@ impl RingFile {
             (None, None) if self.module.is_some() => metres("crosstalk_range_m", USUAL_CROSSTALK_RANGE_M)?,
             _ => return Err("expected either min_interval_us or crosstalk_range_m".to_owned()),
         };
-        let modules = self.module.as_ref().map(|modules| modules.list(sensors)).transpose()?.unwrap_or_default();
+        let mut modules = self.module.as_ref().map(|modules| modules.list(sensors)).transpose()?.unwrap_or_default();
         let of_modules = self.module.as_ref().filter(|_| self.window_us.is_none());
         let max_range_m = self.max_range_m.clone().or(of_modules.map(|them| each(them, Module::sees_to_m)));
         let retrigger_us = self.retrigger_us.clone().or(of_modules.map(|them| each(them, |module| module.rest_us)));
@@ -270,6 +293,24 @@ impl RingFile {
                 return Err(message.to_owned());
             }
         };
+        if let Some(rest) = &self.retrigger_us {
+            for (module, rest_us) in modules.iter_mut().zip(rest.list("retrigger_us", sensors)?) {
+                module.rest_us = rest_us;
+            }
+        }
+        let path_change = self.path_change_us.map(Micros::new);
+        let least_t_delta = t_delta.iter().copied().min().unwrap_or_default();
+        if let Some(change) = path_change.filter(|&change| change == Micros::ZERO || change > least_t_delta) {
+            return Err(format!(
+                "path_change_us = {}; expected 1 to the smallest T_delta of a robot that stands, {}; a larger T_delta \
+                 allows more",
+                change.as_micros(),
+                least_t_delta.as_micros()
+            ));
+        }
+        if let Some(us) = self.audible_us.filter(|us| !(1..=MOST_AUDIBLE_US).contains(us)) {
+            return Err(format!("audible_us = {us}; expected 1 to {MOST_AUDIBLE_US}"));
+        }
         let lists = [self.t_delta_us.as_ref(), self.jitter_us.as_ref(), self.window_us.as_ref()];
         let are_lists = lists.into_iter().chain([retrigger_us.as_ref()]).flatten().any(Each::is_list)
             || max_range_m.as_ref().is_some_and(Each::is_list);
@@ -301,6 +342,8 @@ impl RingFile {
             t_delta: largest_t_delta,
             speed_mm_s,
             handling: Micros::new(self.handling_us.unwrap_or(0)),
+            path_change,
+            audible: self.audible_us.map(Micros::new),
             modules,
             poses: self.poses()?,
             uneven,

@@ -52,6 +52,8 @@ impl Arguments<'_, '_> {
             t_delta,
             speed_mm_s: None,
             handling: Micros::ZERO,
+            path_change: None,
+            audible: None,
             modules: vec![],
             poses: vec![],
             uneven: self.uneven.owned(sensors, t_deltas, windows)?,

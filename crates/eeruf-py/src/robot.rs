@@ -52,8 +52,10 @@ use crate::{
 ///     min_refire_us: with immediate refiring, how long a sensor rests between its echo and its next firing.
 ///     audible_us: how long sound is heard after it was sent, as far as methods that fire one by one allow for it; what
 ///         its modules say where ``module`` is given, or else no longer than sensors listen.
+///     path_change_us: P: by how much, at most, the path of a foreign sound changes from one reading to the next, where
+///         a table fires the ring, at most 65,534 us; None for ``t_delta_us``.
 ///     ring: the path of a ring file, for ``eeruf design``, that gives modules, windows, ``T_delta``, sensors that fire
-///         together and neighbours, unless these are given here.
+///         together, neighbours, ``path_change_us`` and ``audible_us``, unless these are given here.
 ///     firing: a dict with the keys of ``[firing]`` in scene files, such as ``{"turn_us": 33_000}``, for the methods
 ///         that fire as sketches and modules do.
 ///     start_us: when the ring begins to fire, by its own clock.
@@ -143,6 +145,7 @@ impl Robot {
         all.set_item("min_refire_us", self.min_refire_us())?;
         all.set_item("start_us", self.start_us())?;
         all.set_item("audible_us", self.audible_us())?;
+        all.set_item("path_change_us", self.path_change_us())?;
         all.set_item("firing", self.firing(py)?)?;
         all.set_item("schedule", self.schedule())?;
         all.set_item("neighbours", self.neighbours())?;
@@ -232,15 +235,15 @@ impl Robot {
         window_us=None, blanking_us=None, min_refire_us=None, start_us=None, schedule=None, neighbours=None,
         consecutive=None, odometry=None, velocity_m_s=None, turn_rad_s=None, waypoints_m=None,
         speed_m_s=None, clock_offset_us=None, clock_drift_ppm=None, body=None, beam=None, coupling_db=None,
-        height_m=None, together=None, transducer=None, audible_us=None, firing=None,
-        ring=None
+        height_m=None, together=None, transducer=None, audible_us=None, path_change_us=None,
+        firing=None, ring=None
     ))]
     #[pyo3(text_signature = "(pose, sensors=None, spacing_rad=None, radius_m=None, module=\"polaroid-6500\", *, \
             gain=\"constant\", period_us=60000, t_delta_us=500, window_us=36000, blanking_us=None, \
             min_refire_us=36000, start_us=0, schedule=None, neighbours=4, consecutive=2, odometry=False, \
             velocity_m_s=None, turn_rad_s=None, waypoints_m=None, speed_m_s=None, clock_offset_us=0, \
             clock_drift_ppm=0.0, body=None, beam=None, coupling_db=None, height_m=0.3, together=(), transducer=None, \
-            audible_us=None, firing=None, ring=None)")]
+            audible_us=None, path_change_us=None, firing=None, ring=None)")]
     #[expect(clippy::too_many_arguments, reason = "keyword arguments")]
     fn new(
         pose: &Bound<'_, PyAny>,
@@ -272,6 +275,7 @@ impl Robot {
         together: Option<&Bound<'_, PyAny>>,
         transducer: Option<&Bound<'_, PyAny>>,
         audible_us: Option<&Bound<'_, PyAny>>,
+        path_change_us: Option<&Bound<'_, PyAny>>,
         firing: Option<&Bound<'_, PyAny>>,
         ring: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
@@ -330,6 +334,7 @@ impl Robot {
         };
         if let Some(module) = module {
             robot = robot.with_modules(modules(name, module, count)?);
+            robot.audible = file.as_ref().and_then(|file| file.audible).unwrap_or(robot.audible);
         }
         let gain = gain.map(|gain| choice("gain", Some(gain), &GainProfile::NAMES)).transpose()?;
         let beam = beam.map(|beam| choice("beam", Some(beam), &Beam::NAMES)).transpose()?;
@@ -378,6 +383,9 @@ impl Robot {
         set("min_refire_us", min_refire_us, &mut robot.min_refire)?;
         set("start_us", start_us, &mut robot.start)?;
         set("audible_us", audible_us, &mut robot.audible)?;
+        if let Some(change) = path_change_us {
+            robot.path_change = Some(micros("path_change_us", change)?);
+        }
         robot.firing = firing.map_or(Ok(Sketch::default()), |firing| sketch("firing", firing))?;
         if neighbours.is_some() || ring.is_none() {
             robot.neighbours = requirements::neighbours(neighbours)?;
@@ -539,6 +547,12 @@ impl Robot {
     #[getter]
     fn audible_us(&self) -> u32 {
         self.robot.audible.as_micros()
+    }
+
+    /// Change of a foreign sound's path from one reading to the next, in microseconds; None for ``t_delta_us``.
+    #[getter]
+    fn path_change_us(&self) -> Option<u32> {
+        self.robot.path_change.map(Micros::as_micros)
     }
 
     /// Firing by sketches and modules: a dict of what differs from the default.

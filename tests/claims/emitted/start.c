@@ -19,7 +19,11 @@ static EerufRing *const ring = &flow.ring;
 #else
 #define PERIODS 4u
 #define COUNT SCHEDULE.sensors
-#define ECHO_US 2000u
+#define ECHO_US (2000u + config.blanking_us)
+#ifndef CONFIG
+#define CONFIG EERUF_CONFIG
+#endif
+static const EerufConfig config = CONFIG;
 static EerufRing table;
 static EerufSensor sensors[MOST];
 static EerufRing *const ring = &table;
@@ -36,7 +40,6 @@ static EerufStatus start(uint32_t now_us) {
 #ifdef FLOW
     return eeruf_flow_init(&flow, sizeof flow, sensors, sizeof sensors, hoppers, sizeof hoppers, &FLOW, now_us);
 #else
-    const EerufConfig config = EERUF_CONFIG;
     const EerufStatus status = eeruf_schedule_check(&SCHEDULE);
     if (status != EERUF_OK) return status;
     return eeruf_ring_init(&table, sizeof table, sensors, sizeof sensors, &SCHEDULE, &config, now_us);

@@ -200,7 +200,8 @@ pub(super) type Started<'s> = Result<Box<dyn RingRunner<'s> + 's>, StartError>;
 /// Settings by which a robot's ring listens and compares.
 pub(super) fn config_of(robot: &Robot) -> RingConfig {
     let &Robot { t_delta, window, blanking, consecutive, .. } = robot;
-    let listens = RingConfig::new().with_t_delta(t_delta).with_window(window).with_blanking(blanking);
+    let mut listens = RingConfig::new().with_t_delta(t_delta).with_window(window).with_blanking(blanking);
+    listens.path_change = robot.path_change;
     listens.with_consecutive(consecutive)
 }
 

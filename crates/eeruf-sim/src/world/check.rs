@@ -146,6 +146,10 @@ pub(super) fn check(scene: &Scene, index: usize, robot: &Robot) -> Result<(), Wo
     if robot.audible > MAX_PERIOD {
         return fail("audible_us", f64::from(robot.audible.as_micros()), "0 to 268435456");
     }
+    // More is beyond what a ring takes.
+    if let Some(change) = robot.path_change.filter(|change| change.as_micros() >= u32::from(u16::MAX)) {
+        return fail("path_change_us", f64::from(change.as_micros()), "0 to 65534");
+    }
     for (sensor, limits) in robot.limits.iter().enumerate() {
         let window = limits.window;
         if robot.limits.len() != robot.sensors.len() {

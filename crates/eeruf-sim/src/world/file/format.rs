@@ -268,6 +268,7 @@ pub(super) struct RobotFile {
     pub(super) blanking_us: Option<EachFile>,
     pub(super) min_refire_us: Option<u32>,
     pub(super) audible_us: Option<u32>,
+    pub(super) path_change_us: Option<u32>,
     pub(super) firing: Option<SketchFile>,
     pub(super) neighbours: Option<u8>,
     pub(super) consecutive: Option<u8>,

@@ -22,6 +22,10 @@ pub struct RobotRing {
     pub speed_m_s: f64,
     /// Number of adjacent sensors that must not fire close together.
     pub neighbours: u8,
+    /// By how much the path of a foreign sound changes from one reading to the next; `None` for `T_delta`.
+    pub path_change: Option<Micros>,
+    /// How long sound is audible; `None` for what modules say.
+    pub audible: Option<Micros>,
 }
 
 /// A reader of ring files: from the text to what it says, or a message that names the key, its value and what is
@@ -58,11 +62,13 @@ impl RobotRing {
         }
         robot.together = self.together.clone();
         robot.neighbours = self.neighbours;
+        robot.path_change = self.path_change;
+        robot.audible = self.audible.unwrap_or(robot.audible);
         Ok(robot)
     }
 }
 
-/// Adds to a robot's `T_delta` what its readings change from one firing of a sensor to the next at most when it drives
+/// Adds to a robot's `T_delta`, and to its `path_change`, what its readings change from one firing of a sensor to the next at most when it drives
 /// so fast without odometry: `2 v (T_p + max |d|) / c` by its schedule, or as much of its period as the paper's waits
 /// span.
 pub fn cover_motion(robot: &mut Robot, speed_m_s: f64) {
@@ -77,6 +83,7 @@ pub fn cover_motion(robot: &mut Robot, speed_m_s: f64) {
     let more = (2.0 * speed_m_s * f64::from(gap.as_micros()) / Air::default().speed_of_sound()).ceil();
     let more = Micros::new(more as u32);
     robot.t_delta = robot.t_delta.saturating_add(more);
+    robot.path_change = robot.path_change.map(|change| change.saturating_add(more));
     for limits in &mut robot.limits {
         limits.t_delta = limits.t_delta.saturating_add(more);
     }

@@ -33,7 +33,7 @@ pub(super) fn robot(
         return Err(fail("patience", gone.to_owned()));
     }
     let pose = file.pose.pose();
-    let mut speed_m_s = 0.0;
+    let (mut speed_m_s, mut audible) = (0.0, None);
     let mut robot = match (&file.ring, &file.sensors) {
         (Some(RingKey::Arc(ring)), None) => {
             // Checked here, before as many poses are made.
@@ -46,7 +46,7 @@ pub(super) fn robot(
             let beside = source.beside(name)?;
             let ring = read_ring(&beside.text);
             let ring = ring.map_err(|message| WorldFileError { file: beside.file, line: None, message })?;
-            speed_m_s = ring.speed_m_s;
+            (speed_m_s, audible) = (ring.speed_m_s, ring.audible);
             let poses = sensors.as_ref().map(|sensors| sensors.iter().map(|sensor| sensor.pose()).collect());
             ring.robot(pose, poses).map_err(|message| fail("ring", format!(": {name}: {message}")))?
         }
@@ -58,6 +58,7 @@ pub(super) fn robot(
     if let Some(modules) = &file.module {
         let modules = modules.list(robot.sensors.len()).map_err(|message| fail("module", format!(": {message}")))?;
         robot = robot.with_modules(modules);
+        robot.audible = audible.unwrap_or(robot.audible);
     }
     let mut pattern = robot.module_of(0);
     for (key, word) in [("gain", &file.gain), ("beam", &file.beam)] {
@@ -156,6 +157,7 @@ pub(super) fn robot(
     }
     set(&mut robot.min_refire, file.min_refire_us);
     set(&mut robot.audible, file.audible_us);
+    robot.path_change = file.path_change_us.map(Micros::new).or(robot.path_change);
     if let Some(firing) = file.firing.as_ref().or(firing) {
         robot.firing = sketch(source, firing)?;
     }

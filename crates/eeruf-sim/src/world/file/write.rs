@@ -231,6 +231,9 @@ fn robot_table(robot: &Robot) -> Table {
     for (key, time) in times {
         set(&mut table, key, i64::from(time.as_micros()));
     }
+    if let Some(change) = robot.path_change {
+        set(&mut table, "path_change_us", i64::from(change.as_micros()));
+    }
     if !robot.blankings.is_empty() {
         let each = robot.blankings.iter().map(|blanking| i64::from(blanking.as_micros()));
         set(&mut table, "blanking_us", each.collect::<Vec<_>>());

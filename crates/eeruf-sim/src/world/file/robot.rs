@@ -102,7 +102,8 @@ pub(super) fn robot(
         robot.clock = Clock { offset_us: clock.offset_us, drift_ppm: clock.drift_ppm };
     }
     if let Some(schedule) = &file.schedule {
-        robot.schedule = Some(self::schedule(source, schedule)?);
+        let schedule = self::schedule(source, schedule)?;
+        (robot.schedule, robot.period) = (Some(schedule), schedule.period());
     }
     let set = |field: &mut Micros, value: Option<u32>| *field = value.map_or(*field, Micros::new);
     set(&mut robot.start, file.start_us);

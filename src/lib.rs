@@ -7,8 +7,9 @@
 
 // Doc comments of arguments are what --help prints in a terminal, where backticks only disturb.
 #![allow(clippy::doc_markdown)]
-// Standard output has one writer, `console`: `println!` would panic where the disk is full.
-#![deny(clippy::print_stdout)]
+// Standard output and standard error have one writer, `console`: `println!` and `eprintln!` would panic where the disk
+// is full.
+#![deny(clippy::print_stdout, clippy::print_stderr)]
 
 mod commands;
 mod console;
@@ -18,10 +19,11 @@ mod report;
 
 use std::ffi::OsString;
 
-use clap::Parser;
+use clap::{CommandFactory as _, FromArgMatches as _};
 
 use crate::commands::{Answer, Cli};
 use crate::files::error::InputError;
+use crate::files::implausible::warn_of_options;
 pub use crate::files::mcap::Recording;
 
 /// Runs the program with these arguments, of which the first is its own name, and gives its exit code: 0 for yes, 1 for
@@ -33,14 +35,15 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     sigpipe::reset();
     console::set(console::Settings::default());
     let arguments: Vec<OsString> = arguments.into_iter().collect();
-    let cli = match Cli::try_parse_from(&arguments) {
-        Ok(cli) => cli,
+    let parsed = Cli::command().try_get_matches_from(&arguments);
+    let (cli, matches) = match parsed.and_then(|matches| Ok((Cli::from_arg_matches(&matches)?, matches))) {
+        Ok(parsed) => parsed,
         Err(error) => {
             return not_parsed(&error, &arguments);
         }
     };
     console::set(cli.output.settings());
-    match cli.verb.run() {
+    match warn_of_options(&matches).and_then(|()| cli.verb.run()) {
         Ok(Answer::Yes) => 0,
         Ok(Answer::No) => 1,
         Ok(Answer::NotDecided) => 3,
@@ -53,8 +56,7 @@ fn not_parsed(error: &clap::Error, arguments: &[OsString]) -> u8 {
     let words: Vec<_> = arguments.iter().map(|word| word.to_string_lossy().into_owned()).collect();
     console::set(commands::arguments::settings(&words));
     if error.use_stderr() {
-        console::error(commands::arguments::describe(error, &words));
-        return 2;
+        return failed(&commands::arguments::describe(error, &words));
     }
     console::tell(error.render()).map_or_else(|error| failed(&error.into()), |()| 0)
 }

@@ -6,7 +6,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
-use eeruf_logs::{Echo, FiringLog, LogError, Options, RangeUnit, Report, Table, TimeUnit, read_log, read_text};
+use eeruf_logs::{Echo, FiringLog, Options, RangeUnit, Report, Table, TimeUnit, read_log, read_text};
 
 use crate::one_line;
 
@@ -59,7 +59,7 @@ fn read(file: &Path) {
 fn said(report: &Report) {
     assert!(report.damage.len() <= 101);
     for damage in &report.damage {
-        one_line(&damage.message);
+        one_line(damage.message());
     }
     assert_eq!(report.names().len(), report.sensors.len());
 }
@@ -122,7 +122,7 @@ fn rows(bytes: &[u8], file: &Path, options: &Options) {
 }
 
 /// An error of a line that there is.
-fn line(error: &LogError, bytes: &[u8]) {
+fn line(error: &eeruf_files::FileError, bytes: &[u8]) {
     let lines = bytes.iter().filter(|&&byte| matches!(byte, b'\n' | b'\r')).count() as u64 + 1;
     assert!(error.line().is_none_or(|line| line <= lines), "{error} of {lines} lines");
     one_line(&error.to_string());

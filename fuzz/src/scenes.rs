@@ -25,7 +25,7 @@ pub fn check(bytes: &[u8]) {
         }
         Err(error) => {
             let lines = text.matches('\n').count() + 1;
-            assert!(error.line.is_none_or(|line| (1..=lines).contains(&line)), "{error} of {lines} lines");
+            assert!(error.line().is_none_or(|line| (1..=lines).contains(&line)), "{error} of {lines} lines");
             one_line(&error.to_string());
         }
     }

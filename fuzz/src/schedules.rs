@@ -2,7 +2,8 @@
 //! or an error of one line.
 
 use eeruf_core::Phase;
-use eeruf_design::{PhaseFile, RingSpec, parse};
+use eeruf_design::{PhaseFile, RingSpec};
+use eeruf_files::parse;
 use eeruf_sim::ScheduleFile;
 
 use crate::one_line;

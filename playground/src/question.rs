@@ -59,5 +59,5 @@ fn json<T: Serialize>(answer: Result<T, String>) -> String {
 
 /// The world that a scene's text describes.
 fn world(scene: &str) -> Result<World, String> {
-    World::from_text(Path::new("scene"), scene).map_err(|error| error.message)
+    World::from_text(Path::new("scene"), scene).map_err(|error| error.message().to_owned())
 }

@@ -183,7 +183,7 @@ class LogError(EerufError):
         >>> import eeruf
         >>> eeruf.logs.read_log("no.bag")
         Traceback (most recent call last):
-        eeruf.LogError: no.bag: No such file or directory (os error 2)
+        eeruf.LogError: no.bag: No such file or directory (os error 2); expected a file that exists
     """
 
 class SearchError(EerufError):
@@ -343,7 +343,7 @@ class Schedule:
 
         Raises:
             ArgumentError: not a path.
-            ScheduleError: no such file, or as for :meth:`from_toml`.
+            ScheduleError: no such file, a file of another kind, or as for :meth:`from_toml`.
 
         Example:
             >>> import eeruf, pathlib, tempfile

@@ -1,4 +1,4 @@
-//! Errors in the arguments, in the style of all others: `thing: value; expected X`, then the next command.
+//! Errors in the arguments, as the same report as all others: `thing: value; expected X`, then the next command.
 
 use std::path::PathBuf;
 use std::time::Duration;
@@ -7,6 +7,7 @@ use clap::builder::{PathBufValueParser, TypedValueParser};
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 
 use crate::console::Settings;
+use crate::files::error::InputError;
 
 /// The options of output among arguments that were not parsed.
 pub(crate) fn settings(words: &[String]) -> Settings {
@@ -36,53 +37,73 @@ pub(crate) fn picture() -> impl TypedValueParser<Value = PathBuf> {
     })
 }
 
-/// Returns what is wrong with the arguments.
-pub(crate) fn describe(error: &clap::Error, words: &[String]) -> String {
+/// Returns the error in the arguments.
+pub(crate) fn describe(error: &clap::Error, words: &[String]) -> InputError {
     let context = |kind| error.get(kind).map(text).filter(|text| !text.is_empty());
-    let thing = context(ContextKind::InvalidArg).or_else(|| context(ContextKind::InvalidSubcommand));
-    let thing = thing.unwrap_or_else(|| "arguments".to_owned());
+    let thing = context(ContextKind::InvalidArg).unwrap_or_else(|| "arguments".to_owned());
     let value = context(ContextKind::InvalidValue).unwrap_or_default();
     let among = context(ContextKind::ValidValue).or_else(|| context(ContextKind::ValidSubcommand));
-    let prior = context(ContextKind::PriorArg);
     let suggested = [ContextKind::SuggestedArg, ContextKind::SuggestedSubcommand, ContextKind::SuggestedValue]
         .into_iter()
         .find_map(context);
     let why = std::error::Error::source(error).map(ToString::to_string);
-    let mut said = match (error.kind(), why) {
-        (ErrorKind::ValueValidation, Some(why)) => format!("{thing}: `{value}`; {}", expected(&why)),
-        (ErrorKind::InvalidValue, _) if value.is_empty() => format!("{thing}: no value; expected one"),
-        (ErrorKind::InvalidValue, _) => format!("{thing}: `{value}`; expected a value of its list"),
-        (ErrorKind::InvalidSubcommand, _) => format!("`{thing}`; expected a command"),
+    // A negative number looks like an option; the word before it is the one to blame.
+    let negative = || thing.parse::<f64>().ok().and_then(|_| before(words, &thing)).map(|option| (option, &thing));
+    let (thing, found) = match (error.kind(), why) {
+        (ErrorKind::ValueValidation, Some(why)) => (thing, format!("`{value}`; {}", expected(&why))),
+        (ErrorKind::InvalidValue, _) if value.is_empty() => (thing, "no value; expected one".to_owned()),
+        (ErrorKind::InvalidValue, _) => (thing, format!("`{value}`; expected a value of its list")),
+        (ErrorKind::InvalidSubcommand, _) => {
+            let word = context(ContextKind::InvalidSubcommand).unwrap_or_default();
+            ("command".to_owned(), format!("`{word}`; expected one that exists"))
+        }
         (ErrorKind::MissingSubcommand | ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand, _) => {
-            "no command; expected one".to_owned()
+            ("command".to_owned(), "missing; expected one".to_owned())
         }
-        (ErrorKind::UnknownArgument, _) => format!("{thing}: unknown; expected an option or argument of the command"),
-        (ErrorKind::MissingRequiredArgument, _) => format!("{thing}: missing; expected a value"),
-        (ErrorKind::ArgumentConflict, _) => match prior {
-            Some(prior) if prior == thing => format!("{thing}: given more than once; expected once"),
-            Some(prior) => format!("{thing}: given with {prior}; expected one of the two"),
-            None => format!("{thing}: given with others; expected alone"),
+        (ErrorKind::UnknownArgument, _) => match negative() {
+            Some((option, value)) => (option, format!("`{value}`; expected no negative number")),
+            None => (thing, "unknown; expected an option or argument of the command".to_owned()),
         },
-        (ErrorKind::TooManyValues, _) => format!("{thing}: `{value}` is one value too many; expected fewer"),
-        (ErrorKind::TooFewValues | ErrorKind::WrongNumberOfValues, _) => {
-            format!("{thing}: wrong number of values; expected as many as its help says")
+        (ErrorKind::MissingRequiredArgument, _) => (thing, "missing; expected a value".to_owned()),
+        (ErrorKind::ArgumentConflict, _) => {
+            let found = match context(ContextKind::PriorArg) {
+                Some(prior) if prior == thing => "given more than once; expected once".to_owned(),
+                Some(prior) => format!("given with {prior}; expected one of the two"),
+                None => "given with others; expected alone".to_owned(),
+            };
+            (thing, found)
         }
-        (ErrorKind::InvalidUtf8, _) => "arguments: not UTF-8; expected text".to_owned(),
-        _ => format!("{thing}: `{value}`; expected what the help says"),
+        (ErrorKind::TooManyValues, _) => (thing, format!("`{value}` is one value too many; expected fewer")),
+        (ErrorKind::TooFewValues | ErrorKind::WrongNumberOfValues, _) => {
+            let count = |kind| context(kind).unwrap_or_else(|| "another number of".to_owned());
+            let (actual, needed) = (count(ContextKind::ActualNumValues), count(ContextKind::ExpectedNumValues));
+            (thing, format!("{actual} values; expected {needed}"))
+        }
+        (ErrorKind::InvalidUtf8, _) => (thing, "not UTF-8; expected text".to_owned()),
+        _ => (thing, format!("`{value}`; expected what the help says")),
     };
-    if let Some(among) = among {
-        said += &format!(": {among}");
-    }
-    if let Some(suggested) = suggested {
-        said += &format!("; did you mean {suggested}?");
-    }
-    said + "; see `" + &help(words) + "`"
+    let among = among.map_or(String::new(), |among| format!(": {among}"));
+    let suggested = suggested.map_or(String::new(), |suggested| format!("; did you mean {suggested}?"));
+    InputError::new(thing, format!("{found}{among}{suggested}; see `{}`", help(words)))
+}
+
+/// The option before a word, if one is there.
+fn before(words: &[String], word: &str) -> Option<String> {
+    let pair = words.windows(2).find(|pair| pair[1] == word)?;
+    pair[0].starts_with("--").then(|| pair[0].clone())
 }
 
 /// The command whose help describes the arguments.
 fn help(words: &[String]) -> String {
-    let is_verb = |word: &&String| <super::Cli as clap::CommandFactory>::command().find_subcommand(word).is_some();
-    words.iter().find(is_verb).map_or("eeruf --help".to_owned(), |verb| format!("eeruf {verb} --help"))
+    let program = <super::Cli as clap::CommandFactory>::command();
+    let (mut command, mut path) = (&program, "eeruf".to_owned());
+    for word in words.iter().skip(1) {
+        if let Some(below) = command.find_subcommand(word) {
+            command = below;
+            path = format!("{path} {word}");
+        }
+    }
+    path + " --help"
 }
 
 /// The reason in the words of a user.
@@ -91,7 +112,7 @@ fn expected(why: &str) -> String {
         return why[at..].to_owned();
     }
     if let Some((_, range)) = why.split_once(" is not in ") {
-        return format!("expected a number in {range}");
+        return format!("expected a number from {}", range.replace("..=", " to "));
     }
     if why.contains("invalid digit") || why.contains("cannot parse") {
         return "expected a whole number from 0 on".to_owned();

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 
 use eeruf_design::atlas::{ATLAS, Ring, Row, all_rings, is_in_shard, rows};
 use eeruf_design::atlas_making::{header, make};
+use eeruf_files::FileError;
 
 use super::answer::Answer;
 use super::arguments::picture;
@@ -53,7 +54,7 @@ fn share(text: &str) -> Result<Shard, String> {
 pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     let answer = args.file.as_ref().map_or(Ok(Answer::Yes), |file| search(args, file))?;
     let text = match &args.file {
-        Some(file) => read(file).map_err(|error| InputError::new(file, None, error))?,
+        Some(file) => read(file).map_err(|error| FileError::reading(file, &error))?,
         None => ATLAS.to_owned(),
     };
     match (&args.file, &args.svg) {
@@ -66,7 +67,14 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
 
 /// Searches the rings of the share that are not in the file yet.
 fn search(args: &Args, path: &Path) -> Result<Answer, InputError> {
-    let bad = |error: std::io::Error| InputError::new(path, None, error);
+    let bad = |error: std::io::Error| FileError::writing(path, &error);
+    let found = read(path).map_err(bad)?;
+    if found.contains('\n') && !found.starts_with(header()) && rows(&found).next().is_none() {
+        return Err(InputError::new(
+            path,
+            "no row of an atlas; expected a file that `eeruf atlas` wrote, or a new name",
+        ));
+    }
     let rings: Vec<Ring> = all_rings().into_iter().filter(|ring| ring.sensors <= args.most_sensors).collect();
     end_last_line(path).map_err(bad)?;
     let done: BTreeSet<Ring> = rows(&read(path).map_err(bad)?).map(|row| row.ring).collect();
@@ -77,7 +85,7 @@ fn search(args: &Args, path: &Path) -> Result<Answer, InputError> {
         if !watch.go_on(|| format!("{number} of {} rings, now {ring}", left.len())) {
             return Ok(Answer::No);
         }
-        let row = make(ring).map_err(|what| InputError::new(path, None, format!("{ring}: {what}")))?;
+        let row = make(ring).map_err(|what| InputError::new(path, format!("{ring}: {what}")))?;
         // One call for the whole line, so that lines of several processes do not mix.
         let mut file = OpenOptions::new().append(true).create(true).open(path).map_err(bad)?;
         file.write_all(format!("{row}\n").as_bytes()).map_err(bad)?;

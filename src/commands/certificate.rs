@@ -7,6 +7,7 @@ use eeruf_check::check;
 use eeruf_design::{RingDesign, certificate};
 
 use super::answer::Answer;
+use crate::console::{error, note};
 use crate::files::error::InputError;
 use crate::files::write::write;
 use crate::report::watch::Watch;
@@ -56,7 +57,7 @@ impl Written {
         let texts = match &self.texts {
             Ok(texts) => texts,
             Err(why) => {
-                eprintln!("eeruf: {}: not written: {why}", file.display());
+                error(format_args!("{}: not written: {why}", file.display()));
                 return Ok(Answer::No);
             }
         };
@@ -66,7 +67,7 @@ impl Written {
             write(&file, text)?;
             names.push(file.display().to_string());
         }
-        eprintln!("{}: {}{condition}", names.join(", "), self.claim);
+        note(format_args!("{}: {}{condition}", names.join(", "), self.claim));
         Ok(Answer::Yes)
     }
 }

@@ -1,6 +1,5 @@
 //! `eeruf dataset`: simulated readings with what caused each of them.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use eeruf_sim::experiments::set_one::{Alcove, SetOneOptions, world_of};
@@ -11,7 +10,7 @@ use serde_json::json;
 use super::answer::Answer;
 use crate::files::error::InputError;
 use crate::files::truth::{readings_csv, track_csv};
-use crate::files::write::write;
+use crate::files::write::{make_folder, write};
 use crate::report::json::to_json;
 use crate::report::watch::Watch;
 
@@ -30,7 +29,7 @@ pub(crate) struct Args {
     /// Number of courses of Set II
     #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u64).range(..=1000))]
     courses: u64,
-    /// The number of the first alcove and of the first course
+    /// Number of the first alcove and of the first course
     #[arg(long, value_name = "N", default_value_t = 60_000)]
     first: u64,
     /// Number of periods of 60 ms in each alcove
@@ -52,8 +51,10 @@ enum Job {
 }
 
 pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
-    let bad = |error: &dyn std::fmt::Display| InputError::new(&args.out, None, error);
-    let end = |count: u64| args.first.checked_add(count).ok_or_else(|| bad(&"--first is too large"));
+    let end = |count: u64| {
+        let refused = || format!("{}; expected at most {}", args.first, u64::MAX - count);
+        args.first.checked_add(count).ok_or_else(|| InputError::new("--first", refused()))
+    };
     let (alcoves, courses) = (args.first..end(args.alcoves)?, args.first..end(args.courses)?);
     let each = |number: u64| METHODS.map(|method| (number, method));
     let mut jobs: Vec<_> = alcoves.flat_map(each).map(|(number, method)| Job::Alcove(number, method)).collect();
@@ -88,13 +89,13 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
 
 fn folder(args: &Args, kind: &str, number: u64) -> Result<PathBuf, InputError> {
     let folder = args.out.join(kind).join(number.to_string());
-    fs::create_dir_all(&folder).map_err(|error| InputError::new(&folder, None, error))?;
+    make_folder(&folder)?;
     Ok(folder)
 }
 
 fn alcove(args: &Args, number: u64, method: Method, go_on: &dyn Fn(f64) -> bool) -> Result<(), InputError> {
     let folder = folder(args, "alcoves", number)?;
-    let bad = |error: &dyn std::fmt::Display| InputError::new(&folder, None, error);
+    let bad = |error: &dyn std::fmt::Display| InputError::new(&folder, error);
     let options = SetOneOptions { physics: args.physics, ..SetOneOptions::default() };
     let world = world_of(&options, &Alcove::random(number), &method.into());
     let world = world.map_err(|error| bad(&error))?.with_seed(number);
@@ -108,7 +109,7 @@ fn alcove(args: &Args, number: u64, method: Method, go_on: &dyn Fn(f64) -> bool)
 
 fn course(args: &Args, number: u64, method: Method, go_on: &dyn Fn(f64) -> bool) -> Result<(), InputError> {
     let folder = folder(args, "courses", number)?;
-    let bad = |error: &dyn std::fmt::Display| InputError::new(&folder, None, error);
+    let bad = |error: &dyn std::fmt::Display| InputError::new(&folder, error);
     let options = SetTwoOptions { physics: args.physics, ..SetTwoOptions::default() };
     let driven = drive(&options, &method.into(), number, go_on).map_err(|error| bad(&error))?;
     if method == METHODS[0] {

@@ -18,7 +18,7 @@ use super::answer::Answer;
 use super::arguments::{picture, seconds};
 use super::certificate::{self, CertificateForm, Written};
 use super::rooms::{self, RoomArgs};
-use crate::console::{print, print_line, tell};
+use crate::console::{error as console_error, note, print, print_line, tell};
 use crate::files::error::InputError;
 use crate::files::ring::read_ring;
 use crate::files::write::write;
@@ -58,7 +58,7 @@ pub(crate) struct Args {
     /// The ring
     #[arg(value_name = "RING.toml")]
     file: PathBuf,
-    /// Print only the schedule, in this form
+    /// Print only the schedule, in this form; by default a description
     #[arg(long, value_enum, value_name = "FORM")]
     emit: Option<Form>,
     /// The same as --emit json
@@ -82,31 +82,32 @@ pub(crate) struct Args {
     /// prove
     #[arg(long, default_value_t = 1_000_000, value_name = "NODES")]
     certificate_budget: usize,
-    /// At least this many phases, 2 to 67: a schedule for a ring that hops in time
+    /// At least this many phases, 2 to 67: a schedule for a ring that hops in time; by default two phases that alternate
     #[arg(long, value_name = "M", value_parser = clap::value_parser!(u8).range(2..=67),
           conflicts_with_all = ["certificate", "certificate_over_reals", "budget", "time_limit"])]
     phases: Option<u8>,
     /// Many phases: crosstalk need move by T_delta and this margin alone, which is all that jitter and lateness may
-    /// use, instead of 2 T_delta + 1
-    #[arg(long, value_name = "N", requires = "phases")]
+    /// use, in microseconds; by default 2 T_delta + 1
+    #[arg(long, value_name = "US", requires = "phases")]
     margin_us: Option<u32>,
     /// Largest number of nodes to search before giving the best schedule so far; 50 million by default, 20,000 for each
     /// point of a curve
     #[arg(long, value_name = "NODES")]
     budget: Option<u64>,
-    /// Find what fits into a period of this many microseconds instead of the shortest: whether the ring's needs do, and
-    /// the largest T_delta. Exit code 1 if they do not, 3 if that was not decided
+    /// Find what fits into this period, in microseconds: whether the ring's needs do, and the largest T_delta; by default
+    /// the shortest period. Exit code 1 if they do not, 3 if that was not decided
     #[arg(long, value_name = "US", conflicts_with_all = ["certificate", "certificate_over_reals", "phases", "curve"])]
     period: Option<u32>,
-    /// Print the shortest period for 20 values of one need, from a tenth of the ring's own to twice as much
+    /// Print the shortest period for 20 values of one need, from a tenth of the ring's own to twice as much; by default
+    /// for its own alone
     #[arg(long, value_enum, value_name = "NEED",
           conflicts_with_all = ["certificate", "certificate_over_reals", "phases", "emit", "svg"])]
     curve: Option<CurveOf>,
     /// Search even where the atlas knows the shortest period
     #[arg(long)]
     no_atlas: bool,
-    /// Time limit of the command, in seconds, before it gives the best schedule so far; the certificate then has what
-    /// time is left, and states the bound that follows without a search if there is none
+    /// Time limit of the command, in seconds, before it gives the best schedule so far; by default none. The certificate
+    /// then has what time is left, and states the bound that follows without a search if there is none
     #[arg(long, value_name = "S", value_parser = seconds)]
     time_limit: Option<Duration>,
     /// Find the shortest period and judge nothing in rooms
@@ -189,7 +190,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     if let Some(phases) = args.phases {
         return many_phases(args, &spec, phases);
     }
-    let bad = |error: SearchError| InputError::new(&args.file, None, error);
+    let bad = |error: SearchError| InputError::new(&args.file, error);
     if let Some(period) = args.period {
         return fit(args, &spec, Micros::new(period));
     }
@@ -242,12 +243,12 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     let certified = match (&args.certificate_over_reals, real.as_ref().and_then(|real| real.certificate.as_ref())) {
         (Some(file), Some(text)) => {
             write(file, text)?;
-            eprintln!("{}: {}", file.display(), certificate::claim_of(text));
+            note(format_args!("{}: {}", file.display(), certificate::claim_of(text)));
             certified
         }
         (Some(file), None) => {
             let why = "no proof over the reals that a certificate can state was found";
-            eprintln!("eeruf: {}: not written: {why}", file.display());
+            console_error(format_args!("{}: not written: {why}", file.display()));
             Answer::No
         }
         _ => certified,
@@ -389,7 +390,7 @@ fn fit(args: &Args, spec: &RingSpec, period: Micros) -> Result<Answer, InputErro
     let mut control = |progress: &Progress| watch.control_flow(|| format!("{} nodes", progress.nodes));
     let fit = spec
         .fit(period, args.budget.unwrap_or(BUDGET), &mut control)
-        .map_err(|error| InputError::new(&args.file, None, error))?;
+        .map_err(|error| InputError::new(&args.file, error))?;
     drop(watch);
     let seconds = began.elapsed().as_secs_f64();
     let requirements = fit.spec.problem().requirements;
@@ -419,7 +420,7 @@ fn curve_of(args: &Args, spec: &RingSpec, need: Need) -> Result<Answer, InputErr
     let mut control = |progress: &Progress| watch.control_flow(|| format!("{} nodes of a point", progress.nodes));
     let atlas = if args.no_atlas { "" } else { ATLAS };
     let search = Search { budget: args.budget.unwrap_or(CURVE_BUDGET), what_if: false, atlas };
-    let points = spec.curve(need, &search, &mut control).map_err(|error| InputError::new(&args.file, None, error))?;
+    let points = spec.curve(need, &search, &mut control).map_err(|error| InputError::new(&args.file, error))?;
     drop(watch);
     let seconds = began.elapsed().as_secs_f64();
     if args.json {
@@ -451,7 +452,7 @@ fn over_reals(args: &Args, design: &RingDesign, watch: &mut Watch) -> Option<Rea
 }
 
 fn many_phases(args: &Args, spec: &RingSpec, phases: u8) -> Result<Answer, InputError> {
-    let bad = |message: String| InputError::new(&args.file, None, message);
+    let bad = |message: String| InputError::new(&args.file, message);
     let criterion = args.margin_us.map_or(Criterion::Exact, |us| Criterion::Margin(Micros::new(us)));
     let design = spec.hopping(phases, criterion).map_err(bad)?;
     let requirements = spec.phase_requirements(criterion);

@@ -3,13 +3,14 @@
 use std::path::PathBuf;
 
 use eeruf_core::{Micros, Phase};
+use eeruf_files::Kind;
 use eeruf_logs::{Alignment, FiringLog, Settings, Timing, align, diagnose, timing};
 
 use super::answer::Answer;
 use super::arguments::picture;
+use super::log_args::positive;
 use crate::console::{print_line, tell};
 use crate::files::error::InputError;
-use crate::files::kind::expect_log;
 use crate::files::toml::{FoundSchedule, read_any_schedule, read_schedule};
 use crate::report::diagnose::{Found, describe, json, who_fools_whom};
 use crate::report::json::to_json;
@@ -33,15 +34,15 @@ pub(crate) struct Args {
     /// the log has none
     #[arg(long, value_name = "SCHEDULE.toml")]
     schedule: Option<PathBuf>,
-    /// Largest difference between a reading and what a path predicts: about four times the jitter
-    #[arg(long, value_name = "N", default_value_t = 75, value_parser = clap::value_parser!(u32).range(1..=5000))]
+    /// Largest difference between a reading and what a path predicts, in microseconds: about four times the jitter
+    #[arg(long, value_name = "US", default_value_t = 75, value_parser = clap::value_parser!(u32).range(1..=5000))]
     tolerance_us: u32,
-    /// For how long sound is followed
-    #[arg(long, value_name = "N", default_value_t = 80_000)]
+    /// Time for which sound is followed, in microseconds
+    #[arg(long, value_name = "US", default_value_t = 80_000)]
     #[arg(value_parser = clap::value_parser!(u32).range(1000..=1_000_000))]
     max_travel_us: u32,
-    /// In m/s, for the lengths of paths
-    #[arg(long, default_value_t = 343.2, value_name = "C")]
+    /// Speed of sound in m/s, for the lengths of paths
+    #[arg(long, default_value_t = 343.2, value_name = "M/S", value_parser = positive)]
     speed_of_sound: f64,
     /// Draw who fools whom, as SVG or, if the name ends in .png, as PNG
     #[arg(long, value_name = "FILE", value_parser = picture())]
@@ -52,11 +53,7 @@ pub(crate) struct Args {
 }
 
 pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
-    if !(args.speed_of_sound > 0.0 && args.speed_of_sound.is_finite()) {
-        let message = format!("--speed-of-sound {}; expected a number above zero", args.speed_of_sound);
-        return Err(InputError::new(&args.file, None, message));
-    }
-    expect_log(&args.file)?;
+    Kind::expect_log(&args.file)?;
     let mut log = FiringLog::read(&args.file)?;
     let settings =
         Settings { tolerance_us: args.tolerance_us, max_travel_us: args.max_travel_us, ..Settings::default() };
@@ -85,7 +82,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
         tell(describe(&found))?;
     }
     if let Some(damage) = &log.damage {
-        return Err(InputError::new(&args.file, None, damage));
+        return Err(InputError::new(&args.file, damage));
     }
     Ok(if diagnosis.faults.is_empty() { Answer::Yes } else { Answer::No })
 }
@@ -94,7 +91,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
 fn aligned(args: &Args, log: &FiringLog) -> Result<(FiringLog, Alignment), InputError> {
     let Some(file) = &args.schedule else {
         let message = "no instants of firing; expected a column `fired_us`, or --schedule, the fixed one of the ring";
-        return Err(InputError::new(&args.file, None, message));
+        return Err(InputError::new(&args.file, message));
     };
     let found = match read_any_schedule(file)? {
         FoundSchedule::Two(schedule) => {
@@ -109,7 +106,7 @@ fn aligned(args: &Args, log: &FiringLog) -> Result<(FiringLog, Alignment), Input
             align(log, args.tolerance_us, (schedule.period().as_micros(), phases), fires_at)
         }
     };
-    found.map_err(|error| InputError::new(&args.file, None, format!("against {}: {error}", file.display())))
+    found.map_err(|error| InputError::new(&args.file, format!("against {}: {error}", file.display())))
 }
 
 fn timing_of(args: &Args, log: &FiringLog) -> Result<Option<Timing>, InputError> {
@@ -120,5 +117,5 @@ fn timing_of(args: &Args, log: &FiringLog) -> Result<Option<Timing>, InputError>
         fires.map(Micros::as_micros)
     };
     let found = timing(log, schedule.period().as_micros(), fires_at);
-    found.map(Some).map_err(|error| InputError::new(&args.file, None, format!("against {}: {error}", file.display())))
+    found.map(Some).map_err(|error| InputError::new(&args.file, format!("against {}: {error}", file.display())))
 }

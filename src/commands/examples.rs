@@ -1,13 +1,12 @@
 //! `eeruf examples`: the example files, written where they are wanted.
 
-use std::fs;
 use std::path::PathBuf;
 
 use super::answer::Answer;
 use crate::console::print_line;
 use crate::examples;
 use crate::files::error::InputError;
-use crate::files::write::write;
+use crate::files::write::{make_folder, write};
 
 /// List the example scenes and rings and the checker of certificates in Python, or write them into a folder, where the
 /// commands of the documents then run.
@@ -30,7 +29,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
             continue;
         }
         if let Some(folder) = file.parent() {
-            fs::create_dir_all(folder).map_err(|error| InputError::new(folder, None, error))?;
+            make_folder(folder)?;
         }
         write(&file, text)?;
         print_line(file.display())?;

@@ -2,17 +2,17 @@
 
 use std::path::Path;
 
-use eeruf_logs::{Damage, FieldChoice, Options, RangeUnit, Report, Table, TimeUnit};
+use eeruf_logs::{FieldChoice, Options, RangeUnit, Report, Table, TimeUnit};
 
-use crate::console::warning;
 use crate::files::error::InputError;
+use crate::files::implausible::warn;
 
 /// Options for reading a log. What is not given is guessed, and `eeruf logs` lists each guess.
 #[derive(clap::Args)]
 #[command(next_help_heading = "The log")]
 pub(crate) struct LogArgs {
-    /// In m/s, to turn ranges back into echo times
-    #[arg(long, default_value_t = 343.2, value_name = "C", value_parser = positive)]
+    /// Speed of sound in m/s, to turn ranges back into echo times
+    #[arg(long, default_value_t = 343.2, value_name = "M/S", value_parser = positive)]
     pub(crate) speed_of_sound: f64,
     /// Text: the range in metres from which on a value means that there was no echo
     #[arg(long, default_value_t = 5.0, value_name = "M", value_parser = positive)]
@@ -21,28 +21,31 @@ pub(crate) struct LogArgs {
     /// 0, numbers below 0, and a greatest number that repeats
     #[arg(long, value_name = "VALUE", allow_hyphen_values = true)]
     no_echo: Vec<String>,
-    /// Text: the names of the columns in their order, parted by commas, in place of a header; `-` leaves one out
+    /// Text: the names of the columns in their order, parted by commas; `-` leaves one out; by default
+    /// the log's header
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     columns: Vec<String>,
-    /// Text: the column with the time
+    /// Text: the column with the time; by default guessed
     #[arg(long, value_name = "COLUMN")]
     time: Option<String>,
-    /// Text: the unit of the time
+    /// Text: the unit of the time; by default guessed
     #[arg(long, value_name = "UNIT")]
     time_unit: Option<TimeName>,
-    /// Text: a column with ranges; may be given several times
+    /// Text: a column with ranges; may be given several times; by default guessed
     #[arg(long, value_name = "COLUMN")]
     range: Vec<String>,
-    /// Text: the unit of the ranges; us are microseconds from firing to echo
+    /// Text: the unit of the ranges; us are microseconds from firing to echo; by default guessed
     #[arg(long, value_name = "UNIT")]
     range_unit: Option<RangeName>,
-    /// Text: the column that says whose reading a row is; needs one column with ranges
+    /// Text: the column that says whose reading a row is; needs one column with ranges; by default
+    /// guessed
     #[arg(long, value_name = "COLUMN")]
     sensor: Option<String>,
-    /// Bags: read this topic only, whatever its type; may be given several times
+    /// Bags: read this topic only, whatever its type; may be given several times; by default all topics with ranges
     #[arg(long, value_name = "TOPIC")]
     topic: Vec<String>,
-    /// Bags: read numbers of a field as ranges in a unit, as `--field /sonars distance_mm[] mm`
+    /// Bags: read numbers of a field as ranges in a unit, as `--field /sonars distance_mm[] mm`; by default
+    /// ranges are messages of their own types
     #[arg(long, num_args = 3, value_names = ["TOPIC", "FIELD", "UNIT"])]
     field: Vec<String>,
 }
@@ -87,7 +90,7 @@ impl From<TimeName> for TimeUnit {
     }
 }
 
-fn positive(text: &str) -> Result<f64, String> {
+pub(crate) fn positive(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(value) if value > 0.0 && f64::is_finite(value) => Ok(value),
         _ => Err("expected a number above zero".to_owned()),
@@ -95,12 +98,11 @@ fn positive(text: &str) -> Result<f64, String> {
 }
 
 impl LogArgs {
-    /// The options as the reader takes them; `file` stands in errors.
-    pub(crate) fn options(&self, file: &Path) -> Result<Options, InputError> {
+    /// The options as the reader takes them.
+    pub(crate) fn options(&self) -> Result<Options, InputError> {
         let field = |parts: &[String]| -> Result<FieldChoice, InputError> {
             let unit = <RangeName as clap::ValueEnum>::from_str(&parts[2], true).map_err(|_| {
-                let message = format!("--field {}: unit `{}`; expected m, cm, mm, in or us", parts[0], parts[2]);
-                InputError::new(file, None, message)
+                InputError::new("--field", format!("{}: unit `{}`; expected m, cm, mm, in or us", parts[0], parts[2]))
             })?;
             Ok(FieldChoice { topic: parts[0].clone(), path: parts[1].clone(), unit: unit.into() })
         };
@@ -127,19 +129,15 @@ impl LogArgs {
 /// Warns of what was read and seems wrong, and fails with what could not be read, or with what was found where no
 /// sensor is.
 pub(crate) fn tell_damage(file: &Path, report: &Report) -> Result<(), InputError> {
-    report.warnings.iter().for_each(warning);
-    let at = |damage: &Damage| {
-        damage.at.map_or_else(|| damage.message.clone(), |at| format!("at byte {at}: {}", damage.message))
-    };
-    let damage = match &report.damage[..] {
-        [] => None,
-        [first] => Some((first, at(first))),
+    for warning in &report.warnings {
+        warn(InputError::new(file, warning))?;
+    }
+    match &report.damage[..] {
+        [] => {}
+        [first] => return Err(first.clone().into()),
         [first, rest @ ..] => {
-            Some((first, format!("{}; and {} more places that cannot be read", at(first), rest.len())))
+            return Err(first.clone().and(format_args!("and {} more places that cannot be read", rest.len())).into());
         }
-    };
-    if let Some((first, message)) = damage {
-        return Err(InputError::new(&first.file, first.line, message));
     }
     if report.sensors.is_empty() {
         let found = match &left_out(report)[..] {

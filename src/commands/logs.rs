@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
+use eeruf_files::Kind;
 use eeruf_logs::{Doctor, Examination, Reading, Report, read_log};
 use serde::Serialize;
 
@@ -10,7 +11,6 @@ use super::answer::Answer;
 use super::log_args::{LogArgs, left_out, tell_damage};
 use crate::console::{print_line, tell};
 use crate::files::error::InputError;
-use crate::files::kind::expect_log;
 use crate::report::json::to_json;
 use crate::report::table::markdown;
 
@@ -105,9 +105,9 @@ impl Sensor {
 }
 
 pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
-    expect_log(&args.file)?;
+    Kind::expect_log(&args.file)?;
     let mut sensors: Vec<Sensor> = vec![];
-    let options = args.log.options(&args.file)?;
+    let options = args.log.options()?;
     let mut doctor = Doctor::new(options.speed_of_sound);
     let report = read_log(&args.file, &options, |known, reading| {
         doctor.push(reading);

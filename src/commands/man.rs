@@ -1,14 +1,15 @@
 //! `eeruf man`: the pages for `man`, one for the program and one for each verb, or one document.
 
-use std::fs;
 use std::path::PathBuf;
 
 use clap::CommandFactory as _;
+use eeruf_files::FileError;
 
 use super::Cli;
 use super::answer::Answer;
 use crate::console::print;
 use crate::files::error::InputError;
+use crate::files::write::make_folder;
 
 /// Write the manual's pages, one for the program and one for each verb.
 #[derive(clap::Args)]
@@ -23,9 +24,8 @@ pub(crate) struct Args {
 
 pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     if let Some(folder) = &args.folder {
-        fs::create_dir_all(folder)
-            .and_then(|()| clap_mangen::generate_to(Cli::command(), folder))
-            .map_err(|error| InputError::new(folder, None, error))?;
+        make_folder(folder)?;
+        clap_mangen::generate_to(Cli::command(), folder).map_err(|error| FileError::writing(folder, &error))?;
     }
     if args.markdown {
         let options = clap_markdown::MarkdownOptions::new().show_footer(false).title("Verbs and options".to_owned());

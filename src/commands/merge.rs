@@ -5,6 +5,7 @@ use std::fs;
 use std::path::PathBuf;
 
 use clap::Parser;
+use eeruf_files::FileError;
 
 use super::answer::Answer;
 use super::experiment::{Part, Shard, merged};
@@ -26,10 +27,13 @@ pub(crate) struct Args {
 pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     let mut parts: BTreeMap<u64, (&PathBuf, Part)> = BTreeMap::new();
     for file in &args.files {
-        let refused = |what: String| InputError::new(file, None, what);
-        let text = fs::read_to_string(file).map_err(|error| InputError::reading(file, &error))?;
+        let refused = |what: String| InputError::new(file, what);
+        let text = fs::read_to_string(file).map_err(|error| FileError::reading(file, &error))?;
         let part: Part = serde_json::from_str(&text).map_err(|error| {
-            refused(format!("{error}; expected what `eeruf experiment .. --shard I/N` prints, whole"))
+            let (line, why) = (error.line() as u64, error.to_string());
+            let why = why.split(" at line ").next().unwrap_or_default();
+            let message = format!("{why}; expected what `eeruf experiment .. --shard I/N` prints, whole");
+            FileError::new(file, message).at_line(Some(line))
         })?;
         if part.eeruf != Part::VERSION {
             let (theirs, ours) = (&part.eeruf, Part::VERSION);
@@ -52,7 +56,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     }
     // There is one file at least.
     let Some((file, first)) = parts.values().next() else { return Ok(Answer::No) };
-    let refused = |what: String| InputError::new(file, None, what);
+    let refused = |what: String| InputError::new(file, what);
     let missing: Vec<_> = (1..=first.shard.of).filter(|part| !parts.contains_key(part)).collect();
     if let Some(&next) = missing.first() {
         let (count, of) = (missing.len(), first.shard.of);

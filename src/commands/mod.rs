@@ -2,6 +2,13 @@
 //!
 //! Commands read with `files`, ask the libraries, and hand what they found to `report`; neither knows of them.
 
+/// The end of a command's help: an example, and the exit codes.
+macro_rules! help {
+    ($example:literal, $codes:literal) => {
+        concat!("Example:\n  eeruf ", $example, "\n\nExit codes: ", $codes, "; 74 the output cannot be written")
+    };
+}
+
 mod answer;
 pub(crate) mod arguments;
 mod atlas;
@@ -84,13 +91,6 @@ impl OutputArgs {
         };
         Settings { quiet: self.quiet, deny_warnings: self.deny_warnings, wide: self.wide, colour }
     }
-}
-
-/// The end of a command's help: an example, and the exit codes.
-macro_rules! help {
-    ($example:literal, $codes:literal) => {
-        concat!("Example:\n  eeruf ", $example, "\n\nExit codes: ", $codes, "; 74 the output cannot be written")
-    };
 }
 
 #[derive(Subcommand)]
@@ -176,5 +176,110 @@ impl Verb {
             Self::Man(args) => man::run(args),
             Self::Licenses(args) => licenses::run(args),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::builder::ValueRange;
+    use clap::{Arg, Command, CommandFactory as _};
+
+    use super::{Cli, GROUPS, Parser as _};
+
+    /// Names of values that are a unit or a kind; a number without a unit is named by its help.
+    const KINDS: [&str; 29] = [
+        "US",
+        "S",
+        "M",
+        "M/S",
+        "PERCENT",
+        "NODES",
+        "SEED",
+        "I/N",
+        "DIR",
+        "FILE",
+        "FILE.mcap",
+        "LOG",
+        "LOG.csv",
+        "RING.toml",
+        "SCENE.toml",
+        "SCENE.toml|DIR",
+        "SCHEDULE.toml",
+        "NAME,..",
+        "NAMES",
+        "COLUMN",
+        "VALUE",
+        "TOPIC",
+        "UNIT",
+        "WHEN",
+        "PRESET",
+        "LAYOUT",
+        "GAIN",
+        "PILOT,..",
+        "HEIGHT",
+    ];
+
+    /// Calls with every command without commands below it, and its path.
+    fn each_leaf(command: &Command, path: &str, see: &mut dyn FnMut(&Command, &str)) {
+        if command.get_subcommands().next().is_none() {
+            see(command, path);
+        }
+        for below in command.get_subcommands().filter(|below| below.get_name() != "help") {
+            each_leaf(below, &format!("{path} {}", below.get_name()), see);
+        }
+    }
+
+    /// The faults of an option's help.
+    fn faults(command: &Command, arg: &Arg) -> Vec<&'static str> {
+        let help = arg.get_long_help().or(arg.get_help()).map(ToString::to_string).unwrap_or_default();
+        let kind = arg.get_value_names().map_or("", |names| names[0].as_str());
+        let words = arg.get_possible_values();
+        let is_number =
+            ["N", "M", "K"].contains(&kind) && ["umber", "this many"].iter().any(|word| help.contains(word));
+        let is_kind = !words.is_empty() || is_number || KINDS.contains(&kind);
+        let is_us = arg.get_id().as_str().ends_with("_us") || arg.get_id() == "period";
+        let is_file = ["FILE", "DIR", ".mcap", ".csv", ".toml"].iter().any(|of| kind.contains(of));
+        let is_shown = !arg.get_default_values().is_empty() && !arg.is_hide_default_value_set();
+        let is_list = arg.get_num_args().is_some_and(|range| range.max_values() == usize::MAX);
+        let excludes = command.get_arg_conflicts_with(arg);
+        [
+            ("no unit or kind", is_kind),
+            ("microseconds that it does not name", !is_us || (kind == "US" && help.contains("microseconds"))),
+            ("no default", is_file || is_shown || help.contains("default") || arg.is_required_set()),
+            ("a list that swallows files", !is_list || excludes.iter().any(|other| other.is_positional())),
+        ]
+        .into_iter()
+        .filter_map(|(fault, held)| (!held).then_some(fault))
+        .collect()
+    }
+
+    #[test]
+    fn every_option_with_a_value_says_its_unit_and_default() {
+        let (mut options, mut wrong) = (0, vec![]);
+        let mut program = Cli::command();
+        program.build();
+        each_leaf(&program, "eeruf", &mut |command, path| {
+            let takes = |arg: &&Arg| arg.get_num_args() != Some(ValueRange::EMPTY) && arg.get_long().is_some();
+            for arg in command.get_arguments().filter(takes) {
+                options += 1;
+                wrong.extend(faults(command, arg).into_iter().map(|fault| format!("{path} {arg}: {fault}")));
+            }
+        });
+        assert!(options > 120, "{options}");
+        assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    }
+
+    #[test]
+    fn every_command_has_an_example_that_parses_and_exit_codes() {
+        each_leaf(&Cli::command(), "eeruf", &mut |command, path| {
+            let help = command.get_after_help().map(ToString::to_string).unwrap_or_default();
+            let (example, codes) = help.split_once("\n\nExit codes: 0 ").unwrap_or_else(|| panic!("{path}: {help}"));
+            let example = example.strip_prefix("Example:\n  ").unwrap_or_else(|| panic!("{path}: {help}"));
+            assert!(example.starts_with(path) && codes.contains("74"), "{path}: {help}");
+            let words = example.split(" > ").next().unwrap_or_default().split(' ');
+            assert!(Cli::try_parse_from(words).is_ok(), "{example}");
+            let verb = path.split(' ').nth(1).unwrap_or_default();
+            assert!(GROUPS.contains(verb), "{verb}");
+        });
     }
 }

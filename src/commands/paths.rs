@@ -22,7 +22,7 @@ pub(crate) struct Args {
     /// The scene
     #[arg(value_name = "SCENE.toml")]
     file: PathBuf,
-    /// The most bounces, if not the scene's max_order
+    /// Largest number of bounces; by default the scene's max_order
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=i64::from(MAX_ORDER)))]
     order: Option<u32>,
     /// Print one JSON object
@@ -33,7 +33,7 @@ pub(crate) struct Args {
 pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     let world = read_world(&args.file)?;
     let max_order = args.order.unwrap_or(world.max_order());
-    let bad = |error| InputError::new(&args.file, None, error);
+    let bad = |error| InputError::new(&args.file, error);
     let paths = critical_paths(&world, max_order).map_err(|error| bad(error.to_string()))?;
     if args.json {
         print_line(to_json(&paths))?;

@@ -6,6 +6,7 @@ use eeruf_core::{
     EchoFilter, Instant, Micros, ReadingKind, SensorError,
     judge::{FilterError, RateFilter, Verdict},
 };
+use eeruf_files::Kind;
 use eeruf_logs::{Echo, McapWriter, Reading, Report, Sensor, read_log};
 
 use super::answer::Answer;
@@ -15,8 +16,6 @@ use super::log_args::{LogArgs, left_out, tell_damage};
 use super::replay_hopping::replay_hopping;
 use crate::console::{print_line, tell};
 use crate::files::error::InputError;
-use crate::files::implausible::warn_of_option;
-use crate::files::kind::expect_log;
 use crate::report::draw;
 use crate::report::json::to_json;
 use crate::report::replay::{Column, Counted, Counts, Firing, Replay, table};
@@ -34,11 +33,12 @@ pub(crate) struct Args {
     /// The log
     #[arg(value_name = "LOG")]
     file: PathBuf,
-    /// T_delta: consecutive readings that differ by no more are near-identical; with --hopping by default that of the
-    /// settings
-    #[arg(long, value_name = "N", required_unless_present = "hopping")]
+    /// T_delta in microseconds: consecutive readings that differ by no more are near-identical; with --hopping by default
+    /// that of the settings
+    #[arg(long, value_name = "US", required_unless_present = "hopping")]
     t_delta_us: Option<u32>,
-    /// The log is that of a hopping ring's firings: run the tracker over it, with these settings
+    /// The log is that of a hopping ring's firings: run the tracker over it, with these settings; by default it
+    /// is a log of ranges
     #[arg(long, value_name = "SETTING")]
     #[arg(conflicts_with_all = ["no_echo_m", "consecutive", "max_speed", "time", "time_unit", "no_echo", "columns"])]
     #[arg(conflicts_with_all = ["range", "range_unit", "sensor", "svg", "topic", "field"])]
@@ -46,9 +46,10 @@ pub(crate) struct Args {
     /// Number of consecutive readings that must agree
     #[arg(long, default_value_t = 2, value_name = "N", value_parser = clap::value_parser!(u8).range(2..=8))]
     consecutive: u8,
-    /// Without odometry, for a robot that drives at up to V m/s: instead of two readings that agree, three must lie on
-    /// a line, within t_delta, so that echoes may change at any constant rate; the log must have times
-    #[arg(long, value_name = "V", value_parser = speed, conflicts_with = "consecutive")]
+    /// Without odometry, for a robot that drives at up to this speed in m/s: instead of two readings that agree, three
+    /// must lie on a line, within t_delta, so that echoes may change at any constant rate; the log must have times. By
+    /// default the robot stands or readings are compensated
+    #[arg(long, value_name = "M/S", value_parser = speed, conflicts_with = "consecutive")]
     max_speed: Option<f64>,
     #[command(flatten)]
     log: LogArgs,
@@ -73,8 +74,7 @@ fn speed(text: &str) -> Result<f64, String> {
 }
 
 pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
-    expect_log(&args.file)?;
-    warn_of_option("--t-delta-us", "t_delta_us", args.t_delta_us.unwrap_or_default())?;
+    Kind::expect_log(&args.file)?;
     if let Some(hopping) = args.hopping {
         let mut settings = hopping.settings().tracker;
         if let Some(t_delta) = args.t_delta_us.map(Micros::new) {
@@ -86,8 +86,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
         return replay_hopping(&args.file, settings, args.log.speed_of_sound, args.out.as_deref(), args.json);
     }
     let mut replayed = Replayed::new(args)?;
-    let report =
-        read_log(&args.file, &args.log.options(&args.file)?, |sensors, reading| replayed.reading(sensors, reading))?;
+    let report = read_log(&args.file, &args.log.options()?, |sensors, reading| replayed.reading(sensors, reading))?;
     if let Some(error) = replayed.failed.take() {
         return Err(error);
     }
@@ -226,7 +225,7 @@ impl Clock {
 
 impl Replayed {
     fn new(args: &Args) -> Result<Self, InputError> {
-        let bad = |error: FilterError| InputError::new(&args.file, None, error);
+        let bad = |error: FilterError| InputError::new(&args.file, error);
         Ok(Self {
             sensors: Vec::new(),
             fresh: Filter::new(args).map_err(bad)?,
@@ -253,7 +252,7 @@ impl Replayed {
         if let Some(at_ns) = reading.at_ns {
             let broken = of.note_time(at_ns);
             if broken {
-                of.filter.forget().map_err(|error| InputError::new(&self.log, None, error))?;
+                of.filter.forget().map_err(|error| InputError::new(&self.log, error))?;
             }
         }
         let kind = of.kind(reading, self.speed_of_sound, &self.log)?;
@@ -276,7 +275,7 @@ impl Filtered {
         // Each filter has one sensor, so that it knows it.
         if reading.at_ns.is_none() && matches!(self.filter, Filter::Rate(_)) {
             let message = "a reading without a time; --max-speed needs --time COLUMN for CSV";
-            return Err(InputError::new(log, None, message));
+            return Err(InputError::new(log, message));
         }
         let at_ns = reading.at_ns.unwrap_or(0);
         let pushed = |verdict: Result<Verdict, _>| verdict.map(|verdict| Some(verdict.kind));
@@ -291,12 +290,12 @@ impl Filtered {
                 let t_echo_us = (2e6 * range_m / speed_of_sound).round();
                 if t_echo_us >= f64::from(u32::MAX) {
                     let message = format!("a range of {range_m} m; expected one that sound covers within an hour");
-                    return Err(InputError::new(log, None, message));
+                    return Err(InputError::new(log, message));
                 }
                 pushed(self.filter.push(at_ns, Some(Micros::new(t_echo_us as u32))))
             }
         }
-        .map_err(|error| InputError::new(log, None, error))
+        .map_err(|error| InputError::new(log, error))
     }
 
     /// Returns true if the time breaks the comparison with the reading before.
@@ -320,7 +319,7 @@ fn write(
     log: &Path,
 ) -> Result<(), InputError> {
     if reading.at_ns.is_none() {
-        return Err(InputError::new(log, None, "a reading without a time; --out needs --time COLUMN for CSV"));
+        return Err(InputError::new(log, "a reading without a time; --out needs --time COLUMN for CSV"));
     }
     let topic = sensor.beam.map_or_else(|| sensor.topic.clone(), |beam| format!("{}/beam_{beam}", sensor.topic));
     out.range(&topic, &sensor.frame, reading)?;

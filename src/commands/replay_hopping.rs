@@ -22,7 +22,7 @@ pub(crate) fn replay_hopping(
     json: bool,
 ) -> Result<Answer, InputError> {
     let log = FiringLog::read(file)?;
-    let verdicts = replay(&log, settings).map_err(|error| InputError::new(file, None, error))?;
+    let verdicts = replay(&log, settings).map_err(|error| InputError::new(file, error))?;
     let mut counted: Vec<Counted> = (0..log.sensors()).map(|_| Counted::default()).collect();
     let (mut known, mut same) = (0, 0);
     for (firing, verdict) in log.firings.iter().zip(&verdicts) {
@@ -60,7 +60,7 @@ pub(crate) fn replay_hopping(
     }
     match log.damage {
         None => Ok(Answer::Yes),
-        Some(damage) => Err(InputError::new(file, None, damage)),
+        Some(damage) => Err(InputError::new(file, damage)),
     }
 }
 
@@ -78,7 +78,7 @@ fn write(
     speed_of_sound: f64,
 ) -> Result<(), InputError> {
     if log.lacks_instants {
-        return Err(InputError::new(file, None, "no column `fired_us`; --out needs to know when sensors fired"));
+        return Err(InputError::new(file, "no column `fired_us`; --out needs to know when sensors fired"));
     }
     let mut out = McapWriter::create(out)?;
     let metres = |us: u32| 0.5e-6 * f64::from(us) * speed_of_sound;

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
 use eeruf_design::{RingDesign, RingSpec, RoomsAnswer, RoomsAsked};
+use eeruf_files::FileError;
 use eeruf_sim::experiments::rooms::{DRIVING_S, RoomGroup, RoomPlan, RoomWay};
 
 use super::answer::Answer;
@@ -22,10 +23,10 @@ pub(crate) struct RoomArgs {
     /// where the scene's first robot does
     #[arg(long, value_name = "SCENE.toml|DIR")]
     rooms: Vec<PathBuf>,
-    /// The number of rooms of each kind; 6 by default
+    /// Number of rooms of each kind; 6 by default
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1000))]
     places: Option<u64>,
-    /// The number of the first room of each kind; 0 by default. Ways are chosen on numbers below 2000; report those
+    /// Number of the first room of each kind; 0 by default. Ways are chosen on numbers below 2000; report those
     /// from 20000 on
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(..=1_000_000_000))]
     first: Option<u64>,
@@ -61,7 +62,7 @@ impl RoomArgs {
 pub(crate) fn study(args: &RoomArgs, file: &Path, as_json: bool) -> Result<Answer, InputError> {
     let spec = read_ring(file)?;
     let mut watch = Watch::new();
-    let design = spec.shortest_to_study().map_err(|error| InputError::new(file, None, error))?;
+    let design = spec.shortest_to_study().map_err(|error| InputError::new(file, error))?;
     let judged = judged(args, &spec, design.as_ref(), &mut watch)?;
     drop(watch);
     match as_json {
@@ -117,14 +118,14 @@ fn own_rooms(paths: &[PathBuf]) -> Result<Vec<RoomGroup>, InputError> {
     let mut files = vec![];
     for path in paths {
         if path.is_dir() {
-            let bad = |error: std::io::Error| InputError::new(path, None, error);
+            let bad = |error: std::io::Error| FileError::reading(path, &error);
             let entries = std::fs::read_dir(path).map_err(bad)?;
             let mut inside: Vec<_> =
                 entries.map(|entry| entry.map(|entry| entry.path())).collect::<Result<_, _>>().map_err(bad)?;
             inside.retain(|file| file.extension().is_some_and(|ending| ending == "toml"));
             inside.sort();
             if inside.is_empty() {
-                return Err(InputError::new(path, None, "no file that ends in .toml; expected scenes"));
+                return Err(InputError::new(path, "no file that ends in .toml; expected scenes"));
             }
             files.extend(inside);
         } else {
@@ -137,10 +138,8 @@ fn own_rooms(paths: &[PathBuf]) -> Result<Vec<RoomGroup>, InputError> {
 /// A scene as a room.
 fn scene(file: &Path, number: u64) -> Result<RoomGroup, InputError> {
     let world = read_world(file)?;
-    let robot = world
-        .robots()
-        .first()
-        .ok_or_else(|| InputError::new(file, None, "no robot; expected one, for the ring's place"))?;
+    let robot =
+        world.robots().first().ok_or_else(|| InputError::new(file, "no robot; expected one, for the ring's place"))?;
     // As far as the scene's robot drives in that time.
     let way_m = robot.motion.at(&robot.pose, DRIVING_S).pose.translation.vector - robot.pose.translation.vector;
     let scene = world.scene();

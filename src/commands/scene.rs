@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use eeruf_files::Kind;
 use eeruf_sim::{Air, Noise, OccupancyGrid, Physics, Scene, world_file};
 
 use super::answer::Answer;
@@ -18,7 +19,7 @@ pub(crate) struct Args {
     /// The map
     #[arg(value_name = "MAP.yaml")]
     file: PathBuf,
-    /// Largest distance of walls from the edges of the occupied cells, in metres; one and a half cells if not given,
+    /// Largest distance of walls from the edges of the occupied cells, in metres; by default one and a half cells,
     /// which makes the stair straight that a slanted wall becomes in cells
     #[arg(long, value_name = "M", value_parser = tolerance)]
     tolerance_m: Option<f64>,
@@ -32,10 +33,11 @@ fn tolerance(text: &str) -> Result<f64, String> {
 }
 
 pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
-    let grid = OccupancyGrid::read(&args.file).map_err(|error| InputError::new(error.file(), None, error.message()))?;
+    Kind::Map.read(&args.file)?;
+    let grid = OccupancyGrid::read(&args.file)?;
     let tolerance_m = args.tolerance_m.unwrap_or(grid.default_tolerance_m());
     let walls = grid.walls(tolerance_m);
-    let bad = |error: eeruf_sim::SceneError| InputError::new(&args.file, None, error);
+    let bad = |error: eeruf_sim::SceneError| InputError::new(&args.file, error);
     let (count, [columns, rows]) = (walls.len(), grid.size());
     let scene = Scene::new(walls, vec![], Air::default()).map_err(bad)?;
     print_line(format_args!(

@@ -32,13 +32,13 @@ pub(crate) struct Args {
     #[arg(long, conflicts_with = "best")]
     count: bool,
     /// Find the table with the largest smallest interval, or with the largest T_delta; pareto: all tables of which no
-    /// other has more of one without less of the other
+    /// other has more of one without less of the other; by default any table
     #[arg(long, value_enum, value_name = "WHAT")]
     best: Option<Best>,
-    /// Largest number of nodes to search
+    /// Largest number of nodes to search; by default no limit
     #[arg(long, default_value_t = u64::MAX, hide_default_value = true, value_name = "NODES")]
     budget: u64,
-    /// Time limit of the command, in seconds
+    /// Time limit of the command, in seconds; by default none
     #[arg(long, value_name = "S", value_parser = seconds)]
     time_limit: Option<Duration>,
     /// Print one JSON object
@@ -67,7 +67,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
         best => find(args, &spec, best, &mut watch),
     };
     drop(watch);
-    let (answer, text) = found.map_err(|error| InputError::new(&args.file, None, error))?;
+    let (answer, text) = found.map_err(|error| InputError::new(&args.file, error))?;
     if args.json {
         print_line(text)?;
     } else {

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
 
+use eeruf_files::Kind;
 use eeruf_sim::{
     Method, Options, Physics, SimulationError, Sketch, World, shortest_schedule_for, simulate_while, sweep,
 };
@@ -13,7 +14,6 @@ use super::rooms::{self, RoomArgs};
 use crate::console::{print_line, tell};
 use crate::files::error::InputError;
 use crate::files::firings::write_firings;
-use crate::files::kind::Kind;
 use crate::files::mcap::{Stage, write_mcap};
 use crate::files::toml::read_world;
 use crate::report::json::to_json;
@@ -36,7 +36,7 @@ pub(crate) struct Args {
     /// The scene; or a ring, which is judged in rooms
     #[arg(value_name = "SCENE.toml|RING.toml")]
     file: PathBuf,
-    /// For how many of the first robot's periods; by default 2000, or 250 if anything moves
+    /// Number of the first robot's periods; by default 2000, or 250 if anything moves
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
     periods: Option<u32>,
     /// Draw SVG pictures into this folder: scene, timing, readings and methods
@@ -55,13 +55,13 @@ pub(crate) struct Args {
     /// Print one JSON object
     #[arg(long)]
     json: bool,
-    /// Simulate only these methods, separated by commas: eeruf,sequential
+    /// Simulate only these methods, separated by commas: eeruf,sequential; by default all that fit the scene
     #[arg(long = "method", value_name = "NAME,..", value_delimiter = ',')]
     methods: Vec<Method>,
-    /// Another seed than the scene's
-    #[arg(long, value_name = "N")]
+    /// Seed of all that is random, a whole number; by default the scene's
+    #[arg(long, value_name = "SEED")]
     seed: Option<u64>,
-    /// Other effects than the scene's: plain, or default (see docs/explanation/physics.md)
+    /// Effects that are simulated: plain or default (see docs/explanation/physics.md); by default the scene's
     #[arg(long, value_name = "PRESET")]
     physics: Option<Physics>,
     #[command(flatten)]
@@ -93,7 +93,8 @@ const BUDGET: u64 = 20_000;
 
 pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     let refuse = |option: &str, of: &str| {
-        Err(InputError::new(&args.file, None, format!("{option}: given; expected it with {of} alone")))
+        let file = args.file.display();
+        Err(InputError::new(option, format!("given with {file}; expected it with {of} alone")))
     };
     if Kind::of_file(&args.file) == Some(Kind::Ring) {
         return match args.of_scenes() {
@@ -106,12 +107,11 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     }
     let mut world = read_world(&args.file)?;
     if let Some(physics) = args.physics {
-        world = world.with_physics(physics).map_err(|error| InputError::new(&args.file, None, error))?;
+        world = world.with_physics(physics).map_err(|error| InputError::new(&args.file, error))?;
     }
     if args.log.is_some() && args.methods.len() != 1 {
-        let message =
-            format!("--log with {} methods; expected one --method, whose firings it writes", args.methods.len());
-        return Err(InputError::new(&args.file, None, message));
+        let message = format!("{} methods; expected one --method, whose firings it writes", args.methods.len());
+        return Err(InputError::new("--log", message));
     }
     let study = study(args, &world)?;
     if let (Some(file), Some(readings)) = (&args.log, study.runs.first()) {
@@ -136,7 +136,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
 fn study(args: &Args, world: &World) -> Result<Study, InputError> {
     let sketched = world.robots().iter().any(|robot| robot.firing != Sketch::default());
     let methods = chosen(&args.methods, sketched);
-    let bad = |error: &dyn std::fmt::Display| InputError::new(&args.file, None, error);
+    let bad = |error: &dyn std::fmt::Display| InputError::new(&args.file, error);
     let mut watch = Watch::new();
     let best = if methods.contains(&Method::EerufBest) {
         let robot = world.robots().first().ok_or_else(|| bad(&"no robot"))?;

@@ -1,22 +1,24 @@
 //! `eeruf survey`: who hears whom, from a measuring run.
 
+use std::fs;
 use std::path::{Path, PathBuf};
 
 use eeruf_core::{Micros, survey::SurveyPlan};
+use eeruf_files::Kind;
 use eeruf_logs::{FiringLog, PathSettings, Surveyed, survey};
 use eeruf_sim::{Physics, World};
 
 use super::answer::Answer;
 use super::arguments::picture;
+use super::log_args::positive;
 use crate::console::{print_line, tell};
 use crate::files::error::InputError;
 use crate::files::firings::csv;
-use crate::files::kind::expect_log;
 use crate::files::survey::{TruePath, simulate, true_paths};
 use crate::files::toml::read_world;
 use crate::files::write::write;
 use crate::report::json::to_json;
-use crate::report::survey::{Found, RingTerms, Scenes, describe, json, ring_file, who_hears_whom};
+use crate::report::survey::{FROM, Found, RingTerms, Scenes, describe, json, ring_file, who_hears_whom};
 
 /// Say from a measuring run which sensors hear each other, along paths of which length and how sure, and write a ring
 /// file for `design`.
@@ -37,36 +39,37 @@ pub(crate) struct Args {
     /// Write the simulated log
     #[arg(long, value_name = "LOG.csv", requires = "simulate")]
     out: Option<PathBuf>,
-    /// Simulated: other effects than the scene's: plain, or default (see docs/explanation/physics.md)
+    /// Simulated: plain or default effects (see docs/explanation/physics.md); by default the scene's
     #[arg(long, value_name = "PRESET", requires = "simulate")]
     physics: Option<Physics>,
-    /// Simulated: how many times there are between the two of a pair, from 0 on
+    /// Simulated: number of times between the two of a pair, from 0 on
     #[arg(long, value_name = "N", default_value_t = 20, requires = "simulate")]
     #[arg(value_parser = clap::value_parser!(u8).range(2..))]
     leads: u8,
-    /// Simulated: from each of these times to the next
-    #[arg(long, value_name = "N", default_value_t = 750, requires = "simulate")]
+    /// Simulated: from each of these times to the next, in microseconds
+    #[arg(long, value_name = "US", default_value_t = 750, requires = "simulate")]
     #[arg(value_parser = clap::value_parser!(u32).range(10..=100_000))]
     lead_step_us: u32,
-    /// Largest difference between edges of one path: about four times the jitter
-    #[arg(long, value_name = "N", default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..=5000))]
+    /// Largest difference between edges of one path, in microseconds: about four times the jitter
+    #[arg(long, value_name = "US", default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..=5000))]
     tolerance_us: u32,
     /// Write a ring file for `design`, in which the pairs that hear each other are neighbours, each with an interval of
     /// its own
     #[arg(long, value_name = "RING.toml")]
     ring: Option<PathBuf>,
-    /// Sensors that hear each other within this time are neighbours; what comes later is left to alternating waits
-    #[arg(long, value_name = "N", default_value_t = 15_000)]
+    /// Sensors that hear each other within this time, in microseconds, are neighbours; what comes later is left to
+    /// alternating waits
+    #[arg(long, value_name = "US", default_value_t = 15_000)]
     #[arg(value_parser = clap::value_parser!(u32).range(1000..=120_000))]
     until_us: u32,
-    /// The ring file's t_delta_us
-    #[arg(long, value_name = "N", default_value_t = 999, requires = "ring")]
+    /// The ring file's t_delta_us, in microseconds
+    #[arg(long, value_name = "US", default_value_t = 999, requires = "ring")]
     t_delta_us: u32,
-    /// The ring file's window_us, if not the longest echo time of the log
-    #[arg(long, value_name = "N", requires = "ring")]
+    /// The ring file's window_us, in microseconds; by default the longest echo time of the log
+    #[arg(long, value_name = "US", requires = "ring")]
     window_us: Option<u32>,
-    /// In m/s, for the lengths of paths
-    #[arg(long, default_value_t = 343.2, value_name = "C")]
+    /// Speed of sound in m/s, for the lengths of paths
+    #[arg(long, default_value_t = 343.2, value_name = "M/S", value_parser = positive)]
     speed_of_sound: f64,
     /// Draw who hears whom, as SVG or, if the name ends in .png, as PNG
     #[arg(long, value_name = "FILE", value_parser = picture())]
@@ -78,10 +81,6 @@ pub(crate) struct Args {
 
 pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     let file = args.file.as_ref().or(args.simulate.first()).map_or(Path::new(""), PathBuf::as_path);
-    if !(args.speed_of_sound > 0.0 && args.speed_of_sound.is_finite()) {
-        let message = format!("--speed-of-sound {}; expected a number above zero", args.speed_of_sound);
-        return Err(InputError::new(file, None, message));
-    }
     if args.simulate.len() > 1 {
         return several(args);
     }
@@ -89,7 +88,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     let (log, truth) = match simulated {
         Some((log, truth, physics)) => (log, Some((truth, physics))),
         None => {
-            expect_log(file)?;
+            Kind::expect_log(file)?;
             (FiringLog::read(file)?, None)
         }
     };
@@ -101,6 +100,12 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
             window_us: args.window_us.unwrap_or(surveyed.window_us.next_multiple_of(1000)),
             tolerance_us: args.tolerance_us,
         };
+        // `verify --ring` reads such a file: one that is no survey's is likely meant so, and stays.
+        let is_foreign = fs::read_to_string(ring).is_ok_and(|text| !text.is_empty() && !text.starts_with(FROM));
+        if is_foreign {
+            let message = "a file that no survey wrote; expected a new name: `--ring` writes a ring file";
+            return Err(InputError::new(ring, message));
+        }
         write(ring, ring_file(&found, &terms))?;
     }
     if let Some(file) = &args.svg {
@@ -112,7 +117,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
         tell(describe(&found))?;
     }
     match &log.damage {
-        Some(damage) => Err(InputError::new(file, None, damage)),
+        Some(damage) => Err(InputError::new(file, damage)),
         None => Ok(Answer::Yes),
     }
 }
@@ -136,7 +141,7 @@ fn found<'a>(
 fn several(args: &Args) -> Result<Answer, InputError> {
     let alone = [("--out", args.out.is_some()), ("--ring", args.ring.is_some()), ("--svg", args.svg.is_some())];
     if let Some((name, _)) = alone.into_iter().chain([("--json", args.json)]).find(|(_, given)| *given) {
-        return Err(InputError::new(&args.simulate[0], None, format!("{name} with several scenes; expected one")));
+        return Err(InputError::new(name, format!("{} scenes; expected one", args.simulate.len())));
     }
     let mut lines = Scenes::default();
     for scene in &args.simulate {
@@ -150,7 +155,7 @@ fn several(args: &Args) -> Result<Answer, InputError> {
 
 /// The log of a simulated survey, the paths that there are, and the name of the physics.
 fn simulated(args: &Args, scene: &Path) -> Result<(FiringLog, Vec<TruePath>, String), InputError> {
-    let bad = |error: &dyn std::fmt::Display| InputError::new(scene, None, error);
+    let bad = |error: &dyn std::fmt::Display| InputError::new(scene, error);
     let mut world: World = read_world(scene)?;
     if let Some(physics) = args.physics {
         world = world.with_physics(physics).map_err(|error| bad(&error))?;

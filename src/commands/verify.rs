@@ -11,7 +11,6 @@ use eeruf_sim::AnySchedule;
 use super::answer::Answer;
 use crate::console::{print_line, tell};
 use crate::files::error::InputError;
-use crate::files::implausible::warn_of_option;
 use crate::files::ring::read_ring;
 use crate::files::toml::{FoundSchedule, read_any_schedule};
 use crate::report::json::to_json;
@@ -31,11 +30,11 @@ pub(crate) struct Args {
     /// phases: period_us with step_us, phases, t_lag_us, or with t_fire_us, a list for each phase
     #[arg(value_name = "SCHEDULE.toml")]
     file: PathBuf,
-    /// T_delta: readings that differ by no more are near-identical
-    #[arg(long, default_value_t = 0, value_name = "N")]
+    /// T_delta in microseconds: readings that differ by no more are near-identical
+    #[arg(long, default_value_t = 0, value_name = "US")]
     t_delta_us: u32,
-    /// The least time between the firings of two neighbours
-    #[arg(long, default_value_t = 0, value_name = "N")]
+    /// The least time between the firings of two neighbours, in microseconds
+    #[arg(long, default_value_t = 0, value_name = "US")]
     min_interval_us: u32,
     /// Number of adjacent sensors that are neighbours
     #[arg(long, default_value_t = 4, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=64))]
@@ -46,8 +45,8 @@ pub(crate) struct Args {
     /// Reading of (13a), (13b)
     #[arg(long, value_enum, default_value_t = CriterionArg::Exact)]
     criterion: CriterionArg,
-    /// T_wind: how long a sensor listens
-    #[arg(long, default_value_t = 0, value_name = "N")]
+    /// T_wind: how long a sensor listens, in microseconds
+    #[arg(long, default_value_t = 0, value_name = "US")]
     window_us: u32,
     /// Also reject a sensor's own echo from the period before
     #[arg(long)]
@@ -59,14 +58,14 @@ pub(crate) struct Args {
     ])]
     ring: Option<PathBuf>,
     /// Many phases: crosstalk need move by T_delta and this margin alone, which is all that jitter and lateness may
-    /// use, instead of 2 T_delta + 1
-    #[arg(long, value_name = "N")]
+    /// use, in microseconds; by default 2 T_delta + 1
+    #[arg(long, value_name = "US")]
     margin_us: Option<u32>,
-    /// Many phases: for how long a sensor is deaf after it has fired
-    #[arg(long, default_value_t = 0, value_name = "N")]
+    /// Many phases: for how long a sensor is deaf after it has fired, in microseconds
+    #[arg(long, default_value_t = 0, value_name = "US")]
     blanking_us: u32,
-    /// Many phases: after how long no sound is heard any more; by default the window
-    #[arg(long, value_name = "N")]
+    /// Many phases: after how long no sound is heard any more, in microseconds; by default the window
+    #[arg(long, value_name = "US")]
     reach_us: Option<u32>,
     /// Print one JSON object
     #[arg(long)]
@@ -135,16 +134,19 @@ impl Args {
 }
 
 pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
-    warn_of_option("--t-delta-us", "t_delta_us", args.t_delta_us)?;
-    warn_of_option("--min-interval-us", "min_interval_us", args.min_interval_us)?;
-    warn_of_option("--window-us", "window_us", args.window_us)?;
     let schedule = match read_any_schedule(&args.file)? {
         FoundSchedule::Two(schedule) => schedule,
         FoundSchedule::Many(schedule) => return many_phases(args, &schedule),
     };
-    if let Some(margin) = args.margin_us {
-        let message = format!("--margin-us {margin}; expected a schedule of many phases: step_us or t_fire_us");
-        return Err(InputError::new(&args.file, None, message));
+    let of_many_phases = [
+        ("--margin-us", args.margin_us),
+        ("--blanking-us", Some(args.blanking_us).filter(|us| *us > 0)),
+        ("--reach-us", args.reach_us),
+    ];
+    if let Some((option, us)) = of_many_phases.into_iter().find_map(|(option, us)| Some((option, us?))) {
+        let file = args.file.display();
+        let message = format!("{us}; expected a schedule of many phases, with step_us or t_fire_us; {file} has two");
+        return Err(InputError::new(option, message));
     }
     let criterion = match args.criterion {
         CriterionArg::Exact => Criterion::Exact,
@@ -158,7 +160,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
         return answer(args, &schedule, &requirements);
     }
     let layout = args.layout.key().owned(args.neighbours, schedule.sensors());
-    let layout = layout.map_err(|message| InputError::new(&args.file, None, message))?;
+    let layout = layout.map_err(|message| InputError::new(&args.file, message))?;
     answer(args, &schedule, &args.requirements(layout.layout(), criterion))
 }
 
@@ -178,15 +180,15 @@ fn ring_of(file: &Path, sensors: usize) -> Result<RingSpec, InputError> {
     let spec = read_ring(file)?;
     if spec.sensors != sensors {
         let message = format!("{} sensors; expected the {sensors} of the schedule", spec.sensors);
-        return Err(InputError::new(file, None, message));
+        return Err(InputError::new(file, message));
     }
     Ok(spec)
 }
 
 fn many_phases(args: &Args, schedule: &PhaseSchedule) -> Result<Answer, InputError> {
-    let bad = |message: String| InputError::new(&args.file, None, message);
+    let bad = |message: String| InputError::new(&args.file, message);
     if matches!(args.criterion, CriterionArg::Paper) {
-        return Err(bad("--criterion paper; expected exact, or --margin-us N, for many phases".to_owned()));
+        return Err(InputError::new("--criterion", "paper; expected exact, or --margin-us US, for many phases"));
     }
     let criterion = args.margin_us.map_or(Criterion::Exact, |margin| Criterion::Margin(Micros::new(margin)));
     let (spec, layout);
@@ -204,11 +206,14 @@ fn many_phases(args: &Args, schedule: &PhaseSchedule) -> Result<Answer, InputErr
     };
     let (window, most) = (requirements.window, HoppingListening::MAX_WINDOW);
     if window == Micros::ZERO {
-        return Err(bad("--window-us 0; expected how long a sensor listens: without it nothing is heard".to_owned()));
+        return Err(InputError::new(
+            "--window-us",
+            "0; expected how long a sensor listens: without it nothing is heard",
+        ));
     }
     if schedule.hopping().is_some() && window > most {
         let (window, most) = (window.as_micros(), most.as_micros());
-        return Err(bad(format!("--window-us {window}; expected at most {most} for a ring that hops")));
+        return Err(InputError::new("--window-us", format!("{window}; expected at most {most} for a ring that hops")));
     }
     let report = schedule.verify(&requirements);
     if args.json {

@@ -9,5 +9,5 @@ mod say;
 mod settings;
 
 pub(crate) use out::{OutputError, print, print_line, tell};
-pub(crate) use say::{error, warning};
+pub(crate) use say::{error, note, warning};
 pub(crate) use settings::{Settings, set, settings};

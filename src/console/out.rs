@@ -53,8 +53,10 @@ pub(crate) fn print_line(text: impl fmt::Display) -> Result<(), OutputError> {
 /// # Errors
 /// The output is closed, or cannot take the text.
 pub(crate) fn tell(text: impl fmt::Display) -> Result<(), OutputError> {
+    let text = text.to_string();
     match settings().out_width() {
-        Some(width) => print(fit(&text.to_string(), width)),
-        None => print(text),
+        Some(width) => print(fit(&text, width)),
+        // Tables pad their last column.
+        None => print(text.split('\n').map(str::trim_end).collect::<Vec<_>>().join("\n")),
     }
 }

@@ -15,6 +15,11 @@ pub(crate) fn error(message: impl fmt::Display) {
     say("eeruf: ", RED, &message);
 }
 
+/// Prints what was done beside the answer, such as a file that was written.
+pub(crate) fn note(message: impl fmt::Display) {
+    say("", "", &message);
+}
+
 /// Prints a warning, unless the user wants none.
 pub(crate) fn warning(message: impl fmt::Display) {
     if !settings().quiet {
@@ -29,7 +34,7 @@ fn say(prefix: &str, colour: &str, message: &dyn fmt::Display) {
         Some(width) => wrap_line(&mut text, &line, width),
         None => text = line + "\n",
     }
-    if settings().is_err_coloured() && text.starts_with(prefix) {
+    if settings().is_err_coloured() && !prefix.is_empty() && text.starts_with(prefix) {
         text = format!("{colour}{prefix}{PLAIN}{}", &text[prefix.len()..]);
     }
     // Standard error is the last place to say anything: where it is closed, there is none.

@@ -53,6 +53,6 @@ pub(crate) fn write_firings(file: &Path, readings: &Readings) -> Result<(), Inpu
 /// A log as CSV; `file` stands in errors.
 pub(crate) fn csv(log: &FiringLog, file: &Path) -> Result<Vec<u8>, InputError> {
     let mut text = Vec::new();
-    log.write(&mut text).map_err(|error| InputError::new(file, None, error))?;
+    log.write(&mut text).map_err(|error| InputError::new(file, error))?;
     Ok(text)
 }

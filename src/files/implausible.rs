@@ -2,6 +2,9 @@
 
 use std::path::Path;
 
+use clap::ArgMatches;
+use clap::parser::ValueSource;
+use eeruf_files::FileError;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
@@ -24,9 +27,17 @@ const fn plausible(key: &'static str, from: f64, to: f64, why: &'static str) -> 
 const MICROSECONDS: &str = "likely milliseconds: times are microseconds";
 const METRES: &str = "likely centimetres or millimetres: lengths are metres";
 
-/// In any file: a key has one meaning.
-const PLAUSIBLE: [Plausible; 26] = [
+/// In any file and among the options of any command: a key has one meaning.
+const PLAUSIBLE: [Plausible; 34] = [
     plausible("period_us", 2_000.0, 60e6, MICROSECONDS),
+    plausible("period", 2_000.0, 60e6, MICROSECONDS),
+    plausible("reach_us", 1_000.0, 10e6, MICROSECONDS),
+    plausible("until_us", 1_000.0, 1e6, MICROSECONDS),
+    plausible("no_echo_m", 0.05, 60.0, METRES),
+    plausible("tolerance_m", 0.0, 2.0, METRES),
+    plausible("height_m", 0.0, 20.0, METRES),
+    plausible("length_m", 0.01, 200.0, METRES),
+    plausible("speed_of_sound", 250.0, 450.0, "speeds are metres per second: sound in air has 343 at 20 degrees"),
     plausible("window_us", 1_000.0, 1e6, MICROSECONDS),
     plausible("retrigger_us", 1_000.0, 10e6, MICROSECONDS),
     plausible("min_interval_us", 200.0, 5e9, MICROSECONDS),
@@ -68,7 +79,7 @@ pub(crate) fn warn_of(file: &Path, text: &str) -> Result<(), InputError> {
     in_table(table.get_ref(), &mut found);
     for (at, message) in found {
         let line = 1 + text.get(..at).map_or(0, |before| before.matches('\n').count() as u64);
-        warn(InputError::new(file, Some(line), message))?;
+        warn(FileError::new(file, message).at_line(Some(line)).into())?;
     }
     Ok(())
 }
@@ -82,13 +93,23 @@ pub(crate) fn warn(warning: InputError) -> Result<(), InputError> {
     Ok(())
 }
 
-/// Warns about an implausible value of an option, which means what the key means in files.
+/// Warns about implausible values of options, which mean what the keys of their names mean in files.
 ///
 /// # Errors
-/// The warning, if warnings are denied.
-pub(crate) fn warn_of_option(option: &str, key: &str, value: u32) -> Result<(), InputError> {
-    let found = message(key, value.into());
-    found.map_or(Ok(()), |message| warn(InputError::new(Path::new(option), None, message)))
+/// The first of them, if warnings are denied.
+pub(crate) fn warn_of_options(matches: &ArgMatches) -> Result<(), InputError> {
+    for key in PLAUSIBLE.iter().map(|plausible| plausible.key) {
+        let is_given = matches.try_contains_id(key).is_ok_and(|is_given| is_given)
+            && matches.value_source(key) == Some(ValueSource::CommandLine);
+        let values = if is_given { matches.get_raw(key) } else { None };
+        for value in values.into_iter().flatten() {
+            let number = value.to_str().and_then(|value| value.parse().ok());
+            if let Some(message) = number.and_then(|number| message(key, number)) {
+                warn(InputError::new(format!("--{}", key.replace('_', "-")), message))?;
+            }
+        }
+    }
+    matches.subcommand().map_or(Ok(()), |(_, matches)| warn_of_options(matches))
 }
 
 /// Collects the implausible values of a table and of those within it, with their places.

@@ -7,7 +7,8 @@ use std::path::Path;
 use std::sync::Arc;
 
 use eeruf_core::ReadingKind;
-use eeruf_logs::{LogError, Marker, McapWriter, Placement, Reading, Shape, Transform};
+use eeruf_files::FileError;
+use eeruf_logs::{Marker, McapWriter, Placement, Reading, Shape, Transform};
 use eeruf_sim::experiments::set_two::Place;
 use eeruf_sim::{HeardPath, Moment, Point, Pose, Readings, Scene, SensorId, Simulation, Vector, World};
 
@@ -146,7 +147,7 @@ impl Recording {
     ///
     /// # Errors
     /// If it cannot be written.
-    pub fn create(file: &Path, simulation: &Simulation) -> Result<Self, LogError> {
+    pub fn create(file: &Path, simulation: &Simulation) -> Result<Self, FileError> {
         let mut out = McapWriter::create(file)?;
         let (world, since_s) = simulation.world_now();
         scene(&mut out, world.scene(), simulation.time_s())?;
@@ -158,7 +159,7 @@ impl Recording {
     ///
     /// # Errors
     /// If the file cannot be written.
-    pub fn add(&mut self, simulation: &Simulation, read: &Readings) -> Result<(), LogError> {
+    pub fn add(&mut self, simulation: &Simulation, read: &Readings) -> Result<(), FileError> {
         let (world, since_s) = simulation.world_now();
         if !self.scenes.last().is_some_and(|(known, _)| Arc::ptr_eq(known, world)) {
             scene(&mut self.out, world.scene(), since_s)?;
@@ -181,7 +182,7 @@ impl Recording {
     ///
     /// # Errors
     /// If the file cannot be written.
-    pub fn finish(self) -> Result<(), LogError> {
+    pub fn finish(self) -> Result<(), FileError> {
         self.out.finish()
     }
 }
@@ -204,7 +205,7 @@ fn marker(namespace: &str, id: usize, shape: Shape, colour: [f32; 4], lifetime_n
 }
 
 /// Walls and poles, in the place of those before.
-fn scene(out: &mut McapWriter, scene: &Scene, time_s: f64) -> Result<(), LogError> {
+fn scene(out: &mut McapWriter, scene: &Scene, time_s: f64) -> Result<(), FileError> {
     const COLOUR: [f32; 4] = [0.2, 0.2, 0.25, 1.0];
     let walls = scene.walls().iter().flat_map(|wall| [wall.from, wall.to]);
     let walls = Shape::Lines(walls.map(|end| [end.x, end.y, 0.0]).collect(), 0.02);
@@ -218,7 +219,7 @@ fn scene(out: &mut McapWriter, scene: &Scene, time_s: f64) -> Result<(), LogErro
 }
 
 /// Where robots and sensors are at a moment: transforms, and each robot's odometry, without error.
-fn poses(out: &mut McapWriter, stage: &Stage<'_>, time_s: f64) -> Result<(), LogError> {
+fn poses(out: &mut McapWriter, stage: &Stage<'_>, time_s: f64) -> Result<(), FileError> {
     let now = at_ns(time_s);
     let transform = |parent: &str, child: &str, pose: &Pose| Transform {
         parent: parent.to_owned(),
@@ -243,7 +244,7 @@ fn poses(out: &mut McapWriter, stage: &Stage<'_>, time_s: f64) -> Result<(), Log
 
 /// Each reading as a range, what the method accepts beside it, its path, and the firings of the first robot as
 /// `diagnose` reads them.
-fn readings(out: &mut McapWriter, stage: &Stage<'_>, run: &Readings) -> Result<(), LogError> {
+fn readings(out: &mut McapWriter, stage: &Stage<'_>, run: &Readings) -> Result<(), FileError> {
     let world = stage.world;
     let mut order: Vec<_> = (0..run.len()).collect();
     order.sort_by(|&a, &b| run.fired_s[a].total_cmp(&run.fired_s[b]));

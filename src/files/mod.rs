@@ -5,7 +5,6 @@
 pub(crate) mod error;
 pub(crate) mod firings;
 pub(crate) mod implausible;
-pub(crate) mod kind;
 pub(crate) mod mcap;
 pub(crate) mod ring;
 pub(crate) mod survey;

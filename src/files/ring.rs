@@ -3,9 +3,9 @@
 use std::path::Path;
 
 use eeruf_design::{RingFile, RingSpec};
+use eeruf_files::Kind;
 
 use super::error::InputError;
-use super::kind::Kind;
 use super::toml::read_toml;
 
 /// Reads a ring file.

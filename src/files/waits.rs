@@ -5,10 +5,10 @@ use std::path::Path;
 use eeruf_core::search::WaitProblem;
 use eeruf_core::{Criterion, Micros};
 use eeruf_design::{LayoutKey, OwnedLayout, four, neighbours_in_range, sensors_in_range};
+use eeruf_files::Kind;
 use serde::Deserialize;
 
 use super::error::InputError;
-use super::kind::Kind;
 use super::toml::read_toml;
 
 /// A ring file for `search`: the paper's problem.

@@ -1,16 +1,13 @@
-//! The documents: the small tables are what the program prints, and their pictures exist.
+//! The documents: their examples are what the program prints, and their pictures exist.
 //!
-//! `<!-- printed by: eeruf ARGUMENTS -->` stands before what the program prints, `<!-- end -->` after it. What takes
-//! long is marked `printed by (large):` and left to `cargo xtask reprint --check`, other commands than `eeruf` to
-//! `cargo xtask test`.
+//! In a block `console` a line that begins with `$ ` is run, from the root of the repository, and what follows is what
+//! it prints; `...` and `[..]` stand for what may differ. What takes long is marked `printed by (large):` and left to
+//! `cargo xtask reprint --check`, other commands than `eeruf` to `cargo xtask test`.
 
 use std::path::{Path, PathBuf};
 
 use crate::common::eeruf;
 use crate::newcomers::{commands, shell};
-
-const PRINTED_BY: &str = "<!-- printed by: eeruf ";
-const END: &str = "<!-- end -->";
 
 /// The files below a folder whose names have one of the endings.
 fn files(folder: &Path, endings: &[&str]) -> Vec<PathBuf> {
@@ -29,25 +26,18 @@ fn documents(folder: &Path) -> Vec<PathBuf> {
     files(folder, &["md"])
 }
 
+// TRYCMD=overwrite writes what the program prints now into the documents.
 #[test]
-fn the_small_tables_in_the_docs_are_what_the_commands_print() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let mut documents = documents(&root.join("docs"));
-    documents.push(root.join("README.md"));
-    let mut verbs = Vec::new();
-    for document in documents {
-        let text = std::fs::read_to_string(&document).unwrap();
-        for block in text.split(PRINTED_BY).skip(1) {
-            let (command, rest) = block.split_once(" -->\n").unwrap();
-            let (expected, _) = rest.split_once(END).unwrap();
-            let words: Vec<&str> = command.split_whitespace().collect();
-            assert_eq!(eeruf(&words).out.trim(), expected.trim(), "{}: {command}", document.display());
-            verbs.push(words[..2].join(" "));
-        }
-    }
-    for verb in ["experiment set-one", "experiment set-two"] {
-        assert!(verbs.iter().any(|checked| checked == verb), "{verbs:?}");
-    }
+fn examples_in_documents_are_what_the_program_prints() {
+    let program = Path::new(env!("CARGO_BIN_EXE_eeruf"));
+    trycmd::TestCases::new().register_bin("eeruf", program).case("README.md").case("docs/**/*.md");
+}
+
+// SNAPSHOTS=overwrite writes the reference anew.
+#[test]
+fn reference_of_options_is_what_the_program_prints() {
+    let reference = snapbox::file!["../../docs/reference/options.md"].raw();
+    snapbox::assert_data_eq!(eeruf(&["man", "--markdown"]).out, reference);
 }
 
 #[test]
@@ -121,16 +111,18 @@ fn without(text: &str, begin: &str, end: &str) -> String {
 }
 
 // Counted: every document in docs/ but docs/log, tables and printed parts included. Not counted: in docs/reference,
-// what a program printed or what is a listing of a file; the READMEs of crates, examples and libraries; and the files
+// options.md, which the program prints, and what is printed or a listing of a file elsewhere; the READMEs of crates, examples and libraries; and the files
 // at the repository's root (README, ARCHITECTURE, CONTRIBUTING, CHANGELOG and the like).
 #[test]
 fn documents_have_at_most_45_000_words() {
     let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs");
-    let counted = documents(&docs).into_iter().filter(|document| !document.starts_with(docs.join("log")));
+    let counted = documents(&docs).into_iter().filter(|document| {
+        !document.starts_with(docs.join("log")) && *document != docs.join("reference/options.md")
+    });
     let words = counted.map(|document| {
         let mut text = std::fs::read_to_string(&document).unwrap();
         if document.starts_with(docs.join("reference")) {
-            text = without(&text, "<!-- printed by", END);
+            text = without(&text, "<!-- printed by", "<!-- end -->");
             text = without(&text, "<!-- listing: ", "\n```\n");
         }
         words(&text)

@@ -8,7 +8,7 @@ fn bad_input_gets_one_line_with_its_place() {
     let cases = [
         (
             "period_us = 100000\nt_lag_us = [0]\nt_wait_a_us = [1, 2]\nt_wait_b_us = [1]\n",
-            ": t_wait_a_us has 2 numbers; expected 1, as many as t_lag_us",
+            ", line 3: t_wait_a_us has 2 numbers; expected 1, as many as t_lag_us",
         ),
         (
             "period_us = 100\nt_fire_a_us = [10, 100]\nt_fire_b_us = [1, 2]\n",
@@ -16,12 +16,15 @@ fn bad_input_gets_one_line_with_its_place() {
         ),
         (
             "period_us = 100000\nt_fire_a_us = [0]\n",
-            ": expected either t_lag_us, t_wait_a_us and t_wait_b_us, or t_fire_a_us and t_fire_b_us, \
+            ", line 2: expected either t_lag_us, t_wait_a_us and t_wait_b_us, or t_fire_a_us and t_fire_b_us, \
              one number for each sensor",
         ),
         ("period_us = 100000\nt_fire_a_us = [0]\nt_fire_b_us = [-3]\n", ", line 3: "),
-        ("period_us = 100000\nt_fires_a_us = [0]\n", ", line 2: unknown field `t_fires_a_us`, expected one of "),
-        ("period_us = 0\nt_fire_a_us = [0]\nt_fire_b_us = [0]\n", ": a period of 0 us; expected 1 us to 268435.456 ms"),
+        ("period_us = 100000\nt_fires_a_us = [0]\n", ", line 2: t_fires_a_us: unknown key; expected one of "),
+        (
+            "period_us = 0\nt_fire_a_us = [0]\nt_fire_b_us = [0]\n",
+            ", line 1: a period of 0 us; expected 1 us to 268435.456 ms",
+        ),
         ("period_us = 9\nt_fire_a_us = []\nt_fire_b_us = []\n", ": 0 sensors; expected 1 to 64"),
         ("period_us = \n", ", line 1: "),
     ];
@@ -58,21 +61,24 @@ fn impossible_rings_get_one_clear_line() {
     let ring =
         |line: &str| format!("sensors = 8\nt_delta_us = 999\nmin_interval_us = 15000\nwindow_us = 30000\n{line}\n");
     let cases = [
-        (ring("").replace("sensors = 8", "sensors = 0"), ": 0 sensors; expected 1 to 64"),
-        (ring("").replace("sensors = 8", "sensors = 65"), ": 65 sensors; expected 1 to 64"),
-        (ring("neighbours = 0"), ": neighbours = 0; expected 1 to 64"),
+        (ring("").replace("sensors = 8", "sensors = 0"), ", line 1: 0 sensors; expected 1 to 64"),
+        (ring("").replace("sensors = 8", "sensors = 65"), ", line 1: 65 sensors; expected 1 to 64"),
+        (ring("neighbours = 0"), ", line 5: neighbours = 0; expected 1 to 64"),
         (ring("tick_us = 0"), ": a tick of 0 us; expected 1 us or more"),
-        (ring("").replace("30000", "0"), ": a listening window of 0 us; expected window_us or max_range_m above zero"),
-        (ring("max_range_m = 3.0"), ": expected either window_us, or max_range_m with or without retrigger_us"),
-        (ring("jitter_us = 3"), ": expected either t_delta_us, or jitter_us with or without speed_m_s"),
+        (
+            ring("").replace("30000", "0"),
+            ", line 4: a listening window of 0 us; expected window_us or max_range_m above zero",
+        ),
+        (ring("max_range_m = 3.0"), ", line 4: expected either window_us, or max_range_m with or without retrigger_us"),
+        (ring("jitter_us = 3"), ", line 2: expected either t_delta_us, or jitter_us with or without speed_m_s"),
         (ring("layout = \"star\""), ", line 5: "),
-        (ring("layout = [[0, 8]]"), ": layout: neighbours [0, 8]; expected two different sensors from 0 to 7"),
+        (ring("layout = [[0, 8]]"), ", line 5: layout: neighbours [0, 8]; expected two different sensors from 0 to 7"),
         (ring("").replace("15000", "4294967295") + "tick_us = 1\n", ": firing one by one already takes "),
         (
             ring("").replace("15000", "4000000000"),
             ": firing one by one already takes 32000 s; expected at most 268435.456 ms, so a shorter interval",
         ),
-        (ring("").replace("= 8", "= -8"), ", line 1: invalid value: integer `-8`, expected a whole number from 0 on"),
+        (ring("").replace("= 8", "= -8"), ", line 1: sensors: integer `-8`; expected a whole number from 0 on"),
     ];
     for (contents, expected) in cases {
         let (_folder, file) = Scratch::new("ring.toml", &contents);

@@ -49,10 +49,31 @@ fn full_disk_is_exit_74_and_a_sentence() {
 #[test]
 #[cfg(target_os = "linux")]
 fn full_disk_under_a_named_file_is_exit_74() {
-    for option in ["--svg", "--certificate"] {
-        let outcome = run(&["design", "rings/paper-12.toml", "--period-only", option, "/dev/full"], Stdio::null());
+    let design = ["design", "rings/paper-12.toml", "--period-only"];
+    let study = ["study", "scenes/alcove.toml", "--method=eeruf", "--periods=2"];
+    let runs = [(&design[..], "--svg"), (&design, "--certificate"), (&study, "--log"), (&study, "--mcap")];
+    for (words, option) in runs {
+        let outcome = run(&[words, &[option, "/dev/full"]].concat(), Stdio::null());
         let err = String::from_utf8_lossy(&outcome.stderr);
         assert!(outcome.status.code() == Some(74) && err.starts_with("eeruf: /dev/full: No space left"), "{err}");
+    }
+}
+
+// Errors, warnings and notes need a place; without one the exit code is what is left of them.
+#[test]
+#[cfg(target_os = "linux")]
+fn full_standard_error_is_no_panic() {
+    let folder = tempfile::tempdir().expect("a folder for temporary files");
+    let file = folder.path().join("ring.cert");
+    let file = file.to_str().expect("UTF-8");
+    let design: &[&str] = &["design", "rings/paper-12.toml", "--period-only", "--certificate", file];
+    let warned: &[&str] = &["verify", "rings/table-i-d.toml", "--t-delta-us", "2"];
+    for (words, code) in [(design, 0), (warned, 0), (&["verify", "none.toml"], 2), (&["--none"], 2)] {
+        let full = OpenOptions::new().write(true).open("/dev/full").expect("a device of Linux");
+        let mut command = Command::new(PROGRAM);
+        let status =
+            command.args(words).current_dir(env!("CARGO_MANIFEST_DIR")).stdout(Stdio::null()).stderr(full).status();
+        assert_eq!(status.expect("the program was built beside this test").code(), Some(code), "{words:?}");
     }
 }
 

@@ -209,7 +209,7 @@ fn bad_scenes_get_one_line_with_their_place() {
         ),
         (&within, "robot 1 touches wall 0"),
         ("seed = 1\n", "0 robots; expected 1 to 64"),
-        ("sede = 1\n", "line 1: unknown field `sede`"),
+        ("sede = 1\n", "line 1: sede: unknown key"),
     ];
     for (text, says) in cases {
         let (_folder, file) = Scratch::new("bad.toml", text);

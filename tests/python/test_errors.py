@@ -2,6 +2,7 @@
 
 import math
 from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
 from typing import Any, Callable
 
 import eeruf
@@ -22,6 +23,7 @@ ANYTHING = st.one_of(
     st.lists(st.integers(-1, 2**33), max_size=3),
 )
 
+RING = Path(__file__).parents[2] / "rings/paper-12.toml"
 # For what a type checker would not let through.
 ANY: Any = eeruf
 WALL = sim.Scene([[0, 0, 1, 0]])
@@ -182,6 +184,10 @@ BAD: list[tuple[Callable[[], Any], type[Exception], str]] = [
     (lambda: ANY.sim.Scene.from_toml(3), eeruf.ArgumentError, "text = 3; expected a scene in TOML; read_toml"),
     (lambda: eeruf.Schedule.read_toml("nowhere.toml"), eeruf.ScheduleError, "nowhere.toml: No such file"),
     (lambda: sim.Scene.read_toml("nowhere.toml"), eeruf.SceneError, "nowhere.toml"),
+    # The report of the program: line, key, value and expectation, and which kind a file is.
+    (lambda: eeruf.Schedule.from_toml("period_us = -1"), eeruf.ScheduleError, "line 1: period_us: integer `-1`; "),
+    (lambda: eeruf.Schedule.read_toml(RING), eeruf.ScheduleError, "ring for `eeruf design`; expected a schedule"),
+    (lambda: sim.Scene.read_toml(RING), eeruf.SceneError, "this is a ring for `eeruf design`; expected a scene"),
     (lambda: sim.Scene.read_toml(3), eeruf.ArgumentError, "path = 3"),  # type: ignore[arg-type]
     (lambda: WALL.paths((0, -1), [(1, -1)], 1001), eeruf.PathsError, "paths up to order 1001; expected at most 1000"),
     (lambda: WALL.paths((0, -1), [(1, -1)], 1, math.nan), eeruf.ArgumentError, "max_length_m = nan"),

@@ -223,7 +223,7 @@ def test_faults_are_said_by_the_words_of_scene_files() -> None:
     for fault, message in [
         ({"kind": "bat"}, 'kind is "bat"; expected lost, noise'),
         ({"kind": "lost"}, 'no share; expected one with kind "lost"'),
-        ({"kind": "cut", "since": 1}, "unknown field `since`"),
+        ({"kind": "cut", "since": 1}, "since: unknown key"),
         ({"kind": "cut", "sensors": object()}, "a number, a text, a list or a dict of these"),
         (3, "a sequence of dicts"),
     ]:
@@ -255,7 +255,7 @@ def test_how_a_ring_is_fired_today_is_said_in_code_as_in_a_file() -> None:
         assert np.array_equal(readings.fired_s, sim.simulate(again, method, periods=30).fired_s)
         first = np.sort(readings.fired_s[readings.sensor == 0])
         assert np.diff(first).min() > shortest_s, method
-    with pytest.raises(eeruf.ArgumentError, match="firing: unknown field `turns_us`, expected one of `timeout_us`"):
+    with pytest.raises(eeruf.ArgumentError, match="firing: turns_us: unknown key; expected one of `timeout_us`"):
         robot.replace(firing={"turns_us": 1})
     with pytest.raises(eeruf.SceneError, match="timeout_us is 40000; expected 1 to window_us"):
         sim.Scene(WALLS, robots=[robot.replace(firing={"timeout_us": 40_000})])

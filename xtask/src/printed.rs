@@ -18,8 +18,8 @@ const FENCE: &str = "```text\n";
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Which {
     All,
-    /// Those that are neither large nor by `eeruf`, whose small ones the program's own tests compare.
-    SmallOfOthers,
+    /// Those that are not large.
+    Small,
 }
 
 /// The mark of a printed part.
@@ -59,7 +59,7 @@ pub(crate) fn check(documents: &[String], which: Which) -> Result<(), Trouble> {
     for document in documents {
         for block in blocks(&read(document)?, PRINTED_BY)? {
             let mark = mark(&block)?;
-            if which == Which::SmallOfOthers && (mark.large || mark.command.starts_with("eeruf ")) {
+            if which == Which::Small && mark.large {
                 continue;
             }
             let printed = output_of(mark.command)?;

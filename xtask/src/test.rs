@@ -58,7 +58,7 @@ pub(crate) fn run_all(nothing_skipped: bool) -> ExitCode {
         run_cargo(&[&["test", "--workspace", "--locked"], &benches[..]].concat())
     });
     steps.step("small tables in the documents", || {
-        crate::printed::check(&crate::printed::documents()?, crate::printed::Which::SmallOfOthers)
+        crate::printed::check(&crate::printed::documents()?, crate::printed::Which::Small)
     });
     steps.step("tests of the core's conversions and formats", || {
         let features = "defmt,embassy-time,fugit,serde";

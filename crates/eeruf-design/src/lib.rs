@@ -3,7 +3,6 @@
 //!
 //! | file | content |
 //! |---|---|
-//! | `text` | TOML, and what is wrong with it in one line |
 //! | `limits`, `layout` | what numbers a ring file may hold; how the sensors stand |
 //! | `each`, `uneven` | one number for all sensors or one for each; what sensors need that are not alike |
 //! | `ring` | the ring file, turned into what a schedule must meet |
@@ -27,7 +26,7 @@
 //! let design = spec.shortest(&Search::default(), &mut ()).map_err(|error| error.to_string())??;
 //! let period = design.found.value;
 //! assert_eq!(period.map(|period| period.as_micros()), Some(66_000));
-//! assert_eq!(RingSpec::from_text("sensors = 65").unwrap_err().message, "65 sensors; expected 1 to 64");
+//! assert_eq!(RingSpec::from_text("sensors = 65").unwrap_err().to_string(), "line 1: 65 sensors; expected 1 to 64");
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
@@ -51,7 +50,6 @@ mod reals;
 mod ring;
 mod rooms;
 mod shortest;
-mod text;
 mod ticks;
 mod uneven;
 mod what_if_uneven;
@@ -69,7 +67,6 @@ pub use reals::{RealPeriod, over_reals, real_budget};
 pub use ring::{RingFile, RingSpec, robot_ring};
 pub use rooms::{RoomRobot, RoomsAnswer, RoomsAsked, RoomsJson};
 pub use shortest::{Search, Shortest, shortest};
-pub use text::{TextError, parse};
 pub use uneven::OwnedUneven;
 
 /// The listing of the crate's README compiles and holds.

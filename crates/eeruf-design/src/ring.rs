@@ -2,6 +2,7 @@
 
 use eeruf_core::search::PeriodProblem;
 use eeruf_core::{Criterion, Micros, Requirements, SensorLimits, SpeedOfSound};
+use eeruf_files::{FileError, build};
 use eeruf_modules::{Module, ModulesFile};
 use eeruf_sim::{Pose, Robot, RobotRing, Transducer, Vector};
 use serde::Deserialize;
@@ -9,7 +10,6 @@ use serde::Deserialize;
 use crate::each::Each;
 use crate::layout::{LayoutKey, OwnedLayout};
 use crate::limits::{four, neighbours_in_range, number, sensors_in_range};
-use crate::text::{TextError, parse};
 use crate::uneven::OwnedUneven;
 
 /// Repeatability of readings of one wall on a robot that stands, for a file that names its modules and no jitter: a
@@ -142,8 +142,8 @@ impl RingSpec {
     ///
     /// # Errors
     /// The first thing wrong with it.
-    pub fn from_text(text: &str) -> Result<Self, TextError> {
-        Ok(parse::<RingFile>(text)?.spec()?)
+    pub fn from_text(text: &str) -> Result<Self, FileError> {
+        build(text, |file: RingFile| file.spec())
     }
 
     /// The same ring where `t_delta` must cover this much; where sensors have their own, each as much more.
@@ -212,14 +212,10 @@ impl RingSpec {
 /// let text = "sensors = 2\nmodule = \"ping\"\njitter_us = 100\nmin_interval_us = 0\nspacing_deg = 30\nradius_m = 0.2";
 /// let ring = eeruf_design::robot_ring(text)?;
 /// assert_eq!((ring.modules[1].name, ring.limits[1].t_delta.as_micros()), ("ping", 100));
-/// # Ok::<(), String>(())
+/// # Ok::<(), eeruf_files::FileError>(())
 /// ```
-pub fn robot_ring(text: &str) -> Result<RobotRing, String> {
-    let at = |error: TextError| match error.line {
-        Some(line) => format!("line {line}: {}", error.message),
-        None => error.message,
-    };
-    Ok(RingSpec::from_text(text).map_err(at)?.robot_ring())
+pub fn robot_ring(text: &str) -> Result<RobotRing, FileError> {
+    Ok(RingSpec::from_text(text)?.robot_ring())
 }
 
 impl RingFile {

@@ -4,7 +4,8 @@ use std::f64::consts::TAU;
 
 use eeruf_core::{Criterion, Micros, Phase, Requirements, Uneven, conditions::ViolationKind};
 use eeruf_core::{hopping::HoppingSettings, judge::TrackerSettings};
-use eeruf_design::{PhaseFile, PhaseSchedule, RingSpec, parse};
+use eeruf_design::{PhaseFile, PhaseSchedule, RingSpec};
+use eeruf_files::parse;
 use eeruf_sim::{Air, Cause, Method, Noise, Options, Pose, Robot, Scene, Transducer, Wall, World, simulate};
 
 /// Name, file, and the longest period that many phases may take, in microseconds.

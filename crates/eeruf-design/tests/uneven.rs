@@ -150,17 +150,17 @@ fn file_error_names_key_value_and_expectation() {
         ),
     ] {
         let error = RingSpec::from_text(&format!("{ring}{more}")).unwrap_err();
-        assert_eq!(error.message, expected);
+        assert_eq!(error.message(), expected);
     }
-    let with = |text: &str| RingSpec::from_text(text).unwrap_err().message;
+    let with = |text: &str| RingSpec::from_text(text).unwrap_err().message().to_owned();
     let list = "sensors = 4\nt_delta_us = 99\nmin_interval_us = 5000\nwindow_us = [9000, 9000]";
     assert_eq!(with(list), "window_us: 2 values; expected one for all, or one for each of 4 sensors");
     let zero = "sensors = 2\nt_delta_us = 99\nmin_interval_us = 5000\nwindow_us = [9000, 0]";
     assert_eq!(with(zero), "a listening window of 0 us; expected window_us or max_range_m above zero");
     let text = with("sensors = 2\nt_delta_us = \"99\"\nmin_interval_us = 5000\nwindow_us = 9000");
-    assert_eq!(text, "invalid type: string \"99\", expected a number, or a list of one for each sensor");
+    assert_eq!(text, "t_delta_us: string \"99\"; expected a number, or a list of one for each sensor");
     let negative = with("sensors = 2\nt_delta_us = [99, -1]\nmin_interval_us = 5000\nwindow_us = 9000");
-    assert_eq!(negative, "invalid value: integer `-1`, expected a whole number from 0 to 4294967295");
+    assert_eq!(negative, "t_delta_us: integer `-1`; expected a whole number from 0 to 4294967295");
     let long = read("sensors = 2\nt_delta_us = 99\nmin_interval_us = 4_000_000_000\nwindow_us = [9, 9]\ntick_us = 1");
     let error = long.shortest(&Search::default(), &mut ()).unwrap_err().to_string();
     assert!(error.starts_with("firing one by one already takes") && error.ends_with("use a coarser tick"), "{error}");
@@ -187,7 +187,7 @@ fn modules_say_how_far_sensors_see_and_how_long_they_rest() {
     let spec = read(&format!("{RING}{mixed}"));
     assert_eq!(spec.modules.iter().map(|module| module.name).collect::<Vec<_>>(), ["hc-sr04", "ping", "ping"]);
     let wrong = RingSpec::from_text(&format!("{RING}module = [\"ping\"]")).unwrap_err();
-    assert_eq!(wrong.message, "module: 1 modules; expected one for all, or one for each of 3 sensors");
+    assert_eq!(wrong.message(), "module: 1 modules; expected one for all, or one for each of 3 sensors");
     let none = RingSpec::from_text(RING).unwrap_err();
-    assert_eq!(none.message, "expected either window_us, or max_range_m with or without retrigger_us, or module");
+    assert_eq!(none.message(), "expected either window_us, or max_range_m with or without retrigger_us, or module");
 }

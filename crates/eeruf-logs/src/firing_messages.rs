@@ -9,10 +9,10 @@ use ::mcap::sans_io::linear_reader::{LinearReadEvent, LinearReader, LinearReader
 use serde_json::{Value, json};
 
 use crate::bytes::Bytes;
-use crate::error::LogError;
 use crate::firings::{Firing, FiringLog, MAX_SENSORS, was_rejected};
 use crate::message::cdr_bytes;
 use crate::weighed::Weighed;
+use eeruf_files::FileError;
 
 /// The type of the messages in ROS 2.
 pub(crate) const FIRING: &str = "eeruf_msgs/msg/Firing";
@@ -78,14 +78,14 @@ fn of_cdr(data: &[u8]) -> Option<Value> {
 }
 
 /// Reads the firings of a file, as far as it is whole.
-pub(crate) fn read(file: &Path) -> Result<FiringLog, LogError> {
-    let mut input = BufReader::new(File::open(file).map_err(|error| LogError::new(file, error))?);
+pub(crate) fn read(file: &Path) -> Result<FiringLog, FileError> {
+    let mut input = BufReader::new(File::open(file).map_err(|error| FileError::reading(file, &error))?);
     let mut reader = LinearReader::new_with_options(LinearReaderOptions::default().with_emit_chunks(false));
     let mut of = Found::default();
     while let Some(event) = reader.next_event() {
         match event {
             Ok(LinearReadEvent::ReadRequest(wanted)) => {
-                let read = input.read(reader.insert(wanted)).map_err(|error| LogError::new(file, error))?;
+                let read = input.read(reader.insert(wanted)).map_err(|error| FileError::reading(file, &error))?;
                 reader.notify_read(read);
             }
             Ok(LinearReadEvent::Record { data, opcode }) => of.record(opcode, data, file)?,
@@ -114,7 +114,7 @@ struct Found {
 }
 
 impl Found {
-    fn record(&mut self, opcode: u8, data: &[u8], file: &Path) -> Result<(), LogError> {
+    fn record(&mut self, opcode: u8, data: &[u8], file: &Path) -> Result<(), FileError> {
         let Ok(record) = ::mcap::parse_record(opcode, data) else {
             self.damage = Some("a record does not have the fields of its kind".to_owned());
             return Ok(());
@@ -144,7 +144,7 @@ impl Found {
                     let bad = || {
                         let text = message.as_ref().map(Value::to_string);
                         let text = text.unwrap_or_else(|| String::from_utf8_lossy(&data).into_owned());
-                        LogError::new(file, format!("topic {topic}: {text}; {expected}"))
+                        FileError::new(file, format!("topic {topic}: {text}; {expected}"))
                     };
                     let firing = firing.ok_or_else(bad)?;
                     let field = |name: &str| message.as_ref().and_then(|message| message.get(name));
@@ -161,10 +161,10 @@ impl Found {
         Ok(())
     }
 
-    fn log(self, file: &Path) -> Result<FiringLog, LogError> {
+    fn log(self, file: &Path) -> Result<FiringLog, FileError> {
         if self.firings.is_empty() {
             let why = self.damage.map_or(String::new(), |damage| format!("; {damage}"));
-            return Err(LogError::new(
+            return Err(FileError::new(
                 file,
                 format!("no firings: expected messages of the type {FIRING}, or {JSON_FIRING} in JSON{why}"),
             ));
@@ -172,7 +172,7 @@ impl Found {
         if self.used.len() > 1 {
             let topics = self.channels.into_iter().filter(|channel| self.used.contains(&channel.0));
             let topics = topics.map(|channel| channel.1).collect::<Vec<_>>().join(", ");
-            return Err(LogError::new(file, format!("firings of several rings: {topics}; expected one topic")));
+            return Err(FileError::new(file, format!("firings of several rings: {topics}; expected one topic")));
         }
         let clock = if self.clock.is_empty() { "unnamed" } else { &self.clock };
         Ok(FiringLog { listened: self.listened, damage: self.damage, ..FiringLog::new(clock, self.firings) })

@@ -4,10 +4,10 @@
 use std::io::Read;
 use std::path::Path;
 
-use crate::error::LogError;
 use crate::firings::{Firing, FiringLog, MAX_SENSORS, was_rejected};
 use crate::text::{Line, Separator, Source, is_comment, is_no_echo, json, number, prefix, separated};
 use crate::weighed::Columns;
+use eeruf_files::FileError;
 
 const NEEDED: [&str; 4] = ["sensor", "period", "phase", "t_echo_us"];
 /// The columns that are read, in the order in which rows of JSON have them.
@@ -159,8 +159,8 @@ fn same_name(name: &str) -> String {
 }
 
 /// Reads a log; `file` stands in errors.
-pub(crate) fn read(input: impl Read, file: &Path) -> Result<FiringLog, LogError> {
-    let failed = |error| LogError::new(file, error);
+pub(crate) fn read(input: impl Read, file: &Path) -> Result<FiringLog, FileError> {
+    let failed = |error: std::io::Error| FileError::reading(file, &error);
     let mut source = Source::new(Box::new(input)).map_err(failed)?;
     let mut sample = vec![];
     while sample.len() < 200 {
@@ -168,7 +168,7 @@ pub(crate) fn read(input: impl Read, file: &Path) -> Result<FiringLog, LogError>
         sample.push(line);
     }
     let header = Header::of(&sample, matches!(source, Source::Objects(_)));
-    let header = header.map_err(|message| LogError::new(file, message))?;
+    let header = header.map_err(|message| FileError::new(file, message))?;
     let clock = sample.iter().find_map(|line| line.text.trim().strip_prefix('#')).unwrap_or_default().trim();
     let clock = clock.trim_start_matches("clock:").trim();
     let mut rows = Rows::new(header, if clock.is_empty() { "unnamed" } else { clock });
@@ -247,11 +247,11 @@ impl Rows {
         Ok(())
     }
 
-    fn log(mut self, file: &Path) -> Result<FiringLog, LogError> {
+    fn log(mut self, file: &Path) -> Result<FiringLog, FileError> {
         if self.firings.is_empty() {
             return Err(match self.first_damage {
-                Some((line, why)) => LogError::at_line(file, Some(line), why),
-                None => LogError::new(file, "no firings"),
+                Some((line, why)) => FileError::new(file, why).at_line(Some(line)),
+                None => FileError::new(file, "no firings"),
             });
         }
         if self.lacks_instants {

@@ -26,9 +26,9 @@ use std::path::Path;
 
 use eeruf_core::ReadingKind;
 
-use crate::error::LogError;
 use crate::firing_text;
 use crate::weighed::{Columns, Weighed, kind_named};
+use eeruf_files::FileError;
 
 /// One firing of one sensor.
 #[derive(Clone, Debug, PartialEq)]
@@ -95,7 +95,7 @@ impl FiringLog {
     ///
     /// # Errors
     /// As [`read`](Self::read).
-    pub fn read_from(input: impl Read, file: &Path) -> Result<Self, LogError> {
+    pub fn read_from(input: impl Read, file: &Path) -> Result<Self, FileError> {
         firing_text::read(input, file)
     }
 

@@ -5,7 +5,7 @@ use std::fs::File;
 use std::io::{self, Read, Write as _};
 use std::path::Path;
 
-use crate::error::LogError;
+use eeruf_files::FileError;
 
 /// A form that is recognised.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -86,8 +86,8 @@ impl Form {
     }
 
     /// Reads the first bytes of a file.
-    pub(crate) fn of_file(file: &Path) -> Result<Self, LogError> {
-        let failed = |error| LogError::new(file, error);
+    pub(crate) fn of_file(file: &Path) -> Result<Self, FileError> {
+        let failed = |error: io::Error| FileError::reading(file, &error);
         let mut first = Vec::new();
         File::open(file).map_err(failed)?.take(512).read_to_end(&mut first).map_err(failed)?;
         Ok(Self::of(&first, file))
@@ -194,7 +194,7 @@ impl Foreign {
     }
 
     /// Says what the file is, and how to turn it into what is read: lines of Python, parted by semicolons.
-    pub(crate) fn refuse(self, file: &Path) -> LogError {
+    pub(crate) fn refuse(self, file: &Path) -> FileError {
         let path = file.display().to_string().replace(['\\', '"'], "_");
         let rows = |kind: &str, head: &str, row: &str| {
             format!(
@@ -227,6 +227,6 @@ impl Foreign {
             Self::Binary => "MCAP, a ROS 1 or ROS 2 bag, or text, also packed by gzip, bzip2 or zstd".to_owned(),
         };
         let then = if matches!(self, Self::Binary | Self::Xz) { "" } else { "; then `eeruf logs log.csv`" };
-        LogError::new(file, format!("{}, which eeruf does not read; expected {how}{then}", self.name()))
+        FileError::new(file, format!("{}, which eeruf does not read; expected {how}{then}", self.name()))
     }
 }

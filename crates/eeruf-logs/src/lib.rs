@@ -36,7 +36,6 @@ mod cdr;
 mod chunks;
 mod diagnose;
 mod doctor;
-mod error;
 mod firing_files;
 mod firing_messages;
 mod firing_text;
@@ -64,12 +63,13 @@ use std::fs::File;
 use std::io::{BufReader, Read};
 use std::path::Path;
 
+use eeruf_files::FileError;
+
 pub use diagnose::{
     AlignError, Alignment, Diagnosis, Fault, FoundPath, Hearing, Named, Settings, Share, Timing, TimingError, align,
     diagnose, timing,
 };
 pub use doctor::{Doctor, Examination, Verdict};
-pub use error::{Damage, LogError};
 pub use firings::{Firing, FiringLog};
 pub use options::{FieldChoice, Options, RangeUnit, Table, TimeUnit};
 pub use pattern::{FiringPattern, Pattern};
@@ -90,7 +90,11 @@ pub use write::McapWriter;
 /// # Errors
 /// A file that cannot be opened, a folder without bag files, a form that is known and not read, or an option that does
 /// not fit the log. Of a log that is damaged, what can be read is.
-pub fn read_log(file: &Path, options: &Options, mut each: impl FnMut(&[Sensor], &Reading)) -> Result<Report, LogError> {
+pub fn read_log(
+    file: &Path,
+    options: &Options,
+    mut each: impl FnMut(&[Sensor], &Reading),
+) -> Result<Report, FileError> {
     let mut sink = sink::Sink::new(options, &mut each);
     if file.is_dir() {
         "a ROS 2 bag".clone_into(&mut sink.report.form);
@@ -110,8 +114,8 @@ fn read_form(
     form: form::Form,
     options: &Options,
     sink: &mut sink::Sink<'_>,
-) -> Result<(), LogError> {
-    let failed = |error: std::io::Error| LogError::new(name, error);
+) -> Result<(), FileError> {
+    let failed = |error: std::io::Error| FileError::reading(name, &error);
     match form {
         form::Form::Mcap => mcap::read(file, false, sink),
         form::Form::Ros1 => ros1::read(file, sink),
@@ -133,8 +137,8 @@ fn read_unpacked(
     packing: form::Packing,
     options: &Options,
     sink: &mut sink::Sink<'_>,
-) -> Result<(), LogError> {
-    let failed = |error: std::io::Error| LogError::new(name, error);
+) -> Result<(), FileError> {
+    let failed = |error: std::io::Error| FileError::reading(name, &error);
     let (mut first, mut error) = (Vec::new(), None);
     form::UntilError::new(&mut input, &mut error).take(512).read_to_end(&mut first).map_err(failed)?;
     let stem = name.file_stem().map_or(name, Path::new);
@@ -148,7 +152,7 @@ fn read_unpacked(
             form.name().clone_into(&mut sink.report.form);
             serial::read(form::UntilError::new(input, &mut error), name, options, sink)?;
         }
-        form::Form::Packed(_) => return Err(LogError::new(name, "packed twice; expected once: unpack it first")),
+        form::Form::Packed(_) => return Err(FileError::new(name, "packed twice; expected once: unpack it first")),
         form::Form::Text => {}
         form::Form::Foreign(foreign) => return Err(foreign.refuse(name)),
         form::Form::Mcap | form::Form::Ros1 | form::Form::Sqlite => {
@@ -174,7 +178,7 @@ pub fn read_text(
     file: &Path,
     options: &Options,
     mut each: impl FnMut(&[Sensor], &Reading),
-) -> Result<Report, LogError> {
+) -> Result<Report, FileError> {
     let mut sink = sink::Sink::new(options, &mut each);
     text::read(input, file, options, &mut sink)?;
     Ok(sink.finish(file))

@@ -10,10 +10,10 @@ use std::path::Path;
 
 use crate::bytes::{Bytes, Order};
 use crate::chunks::Chunks;
-use crate::error::LogError;
 use crate::message::Encoding;
 use crate::sink::{Sink, Topic};
 use crate::unzstd::{LARGEST_MESSAGE, Unzstd};
+use eeruf_files::FileError;
 
 pub(crate) const MAGIC: [u8; 8] = [0x89, b'M', b'C', b'A', b'P', 0x30, b'\r', b'\n'];
 
@@ -47,8 +47,8 @@ struct State {
 }
 
 /// Reads a file to its end, or to where it cannot be read any further.
-pub(crate) fn read(file: &Path, packed: bool, sink: &mut Sink<'_>) -> Result<(), LogError> {
-    let failed = |error| LogError::new(file, error);
+pub(crate) fn read(file: &Path, packed: bool, sink: &mut Sink<'_>) -> Result<(), FileError> {
+    let failed = |error: io::Error| FileError::reading(file, &error);
     let mut opened = File::open(file).map_err(failed)?;
     let size = opened.metadata().map_err(failed)?.len();
     let mut state = State { packed, ..State::default() };

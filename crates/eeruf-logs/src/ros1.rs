@@ -10,9 +10,9 @@ use std::path::Path;
 
 use crate::bytes::{Bytes, Order};
 use crate::chunks::Chunks;
-use crate::error::LogError;
 use crate::message::Encoding;
 use crate::sink::{Sink, Topic};
+use eeruf_files::FileError;
 
 pub(crate) const MAGIC: &[u8; 13] = b"#ROSBAG V2.0\n";
 
@@ -80,8 +80,8 @@ struct State {
 }
 
 /// Reads a bag to its end, or to where it cannot be read any further.
-pub(crate) fn read(file: &Path, sink: &mut Sink<'_>) -> Result<(), LogError> {
-    let failed = |error| LogError::new(file, error);
+pub(crate) fn read(file: &Path, sink: &mut Sink<'_>) -> Result<(), FileError> {
+    let failed = |error: io::Error| FileError::reading(file, &error);
     let mut opened = File::open(file).map_err(failed)?;
     let size = opened.metadata().map_err(failed)?.len();
     let mut state = State::default();
@@ -103,7 +103,7 @@ pub(crate) fn read(file: &Path, sink: &mut Sink<'_>) -> Result<(), LogError> {
         // No record reaches into the next chunk.
         let (begin, known) = (at, state.chunks.after(at, size));
         let end = known.unwrap_or(size);
-        let mut part = |into: &mut Vec<u8>| -> Result<bool, LogError> {
+        let mut part = |into: &mut Vec<u8>| -> Result<bool, FileError> {
             into.clear();
             let mut length = [0; 4];
             if end - at < 4 {

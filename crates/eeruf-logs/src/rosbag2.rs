@@ -5,11 +5,11 @@ use std::path::{Path, PathBuf};
 use rusqlite::{Connection, OpenFlags};
 use saphyr::{LoadableYamlNode, Yaml};
 
-use crate::error::LogError;
 use crate::form::{self, Form};
 use crate::message::Encoding;
 use crate::sink::{Sink, Topic};
 use crate::unzstd::{LARGEST_MESSAGE, Unzstd};
+use eeruf_files::FileError;
 
 pub(crate) const SQLITE_MAGIC: &[u8; 16] = b"SQLite format 3\0";
 
@@ -24,7 +24,7 @@ struct Metadata {
 }
 
 /// Reads all files of a bag.
-pub(crate) fn read(folder: &Path, sink: &mut Sink<'_>) -> Result<(), LogError> {
+pub(crate) fn read(folder: &Path, sink: &mut Sink<'_>) -> Result<(), FileError> {
     let metadata = folder.join("metadata.yaml");
     let found = match std::fs::read_to_string(&metadata) {
         Ok(text) => match Metadata::of(&text) {
@@ -52,7 +52,7 @@ pub(crate) fn read(folder: &Path, sink: &mut Sink<'_>) -> Result<(), LogError> {
             _ => read_packed(&file, sink),
         };
         if let Err(error) = read {
-            sink.damage(error.file(), None, error.message());
+            sink.note(error);
         }
     }
     if sink.report.damage.len() == damage {
@@ -62,17 +62,17 @@ pub(crate) fn read(folder: &Path, sink: &mut Sink<'_>) -> Result<(), LogError> {
 }
 
 /// Reads a file of a bag that is compressed as a whole.
-fn read_packed(file: &Path, sink: &mut Sink<'_>) -> Result<(), LogError> {
-    let failed = |error| LogError::new(file, error);
+fn read_packed(file: &Path, sink: &mut Sink<'_>) -> Result<(), FileError> {
+    let failed = |error: std::io::Error| FileError::reading(file, &error);
     let Form::Packed(packing) = Form::of_file(file)? else {
-        return Err(LogError::new(file, "a file of unknown kind; expected .mcap or .db3, also packed by zstd"));
+        return Err(FileError::new(file, "a file of unknown kind; expected .mcap or .db3, also packed by zstd"));
     };
     let input = packing.unpack(std::fs::File::open(file).map_err(failed)?).map_err(failed)?;
     let (unpacked, error) = form::to_file(input, "bag").map_err(failed)?;
     match Form::of_file(unpacked.path())? {
         Form::Mcap => crate::mcap::read(unpacked.path(), false, sink)?,
         Form::Sqlite => read_sqlite(unpacked.path(), false, sink)?,
-        other => return Err(LogError::new(file, format!("{} within; expected MCAP or SQLite", other.name()))),
+        other => return Err(FileError::new(file, format!("{} within; expected MCAP or SQLite", other.name()))),
     }
     if let Some(error) = error {
         sink.damage(file, None, format!("it cannot be unpacked to its end: {error}; what comes before was read"));
@@ -96,8 +96,8 @@ impl Metadata {
 }
 
 /// The bag files of a folder, in the order of the numbers at the end of their names.
-fn bag_files(folder: &Path) -> Result<Vec<PathBuf>, LogError> {
-    let failed = |error| LogError::new(folder, error);
+fn bag_files(folder: &Path) -> Result<Vec<PathBuf>, FileError> {
+    let failed = |error: std::io::Error| FileError::reading(folder, &error);
     let mut files = Vec::new();
     for entry in std::fs::read_dir(folder).map_err(failed)? {
         let file = entry.map_err(failed)?.path();
@@ -106,7 +106,7 @@ fn bag_files(folder: &Path) -> Result<Vec<PathBuf>, LogError> {
         }
     }
     if files.is_empty() {
-        return Err(LogError::new(folder, "no .mcap and no .db3 file; expected the folder of a ROS 2 bag"));
+        return Err(FileError::new(folder, "no .mcap and no .db3 file; expected the folder of a ROS 2 bag"));
     }
     files.sort_by_key(|file| {
         let name = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
@@ -118,10 +118,10 @@ fn bag_files(folder: &Path) -> Result<Vec<PathBuf>, LogError> {
 }
 
 /// Reads a bag file in `SQLite`. Rows come in the order in which they were written.
-pub(crate) fn read_sqlite(file: &Path, packed: bool, sink: &mut Sink<'_>) -> Result<(), LogError> {
-    let failed = |error: rusqlite::Error| LogError::new(file, format!("as an SQLite bag: {error}"));
+pub(crate) fn read_sqlite(file: &Path, packed: bool, sink: &mut Sink<'_>) -> Result<(), FileError> {
+    let failed = |error: rusqlite::Error| FileError::new(file, format!("as an SQLite bag: {error}"));
     if !file.is_file() {
-        return Err(LogError::new(file, "no such file"));
+        return Err(FileError::new(file, "no such file"));
     }
     let flags = OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_NO_MUTEX;
     let database = Connection::open_with_flags(file, flags).map_err(failed)?;

@@ -5,12 +5,12 @@ use std::path::Path;
 
 use eeruf_serial::{Decoder, Firing as Frame, FrameError, Message};
 
-use crate::error::LogError;
 use crate::firings::{Firing, FiringLog};
 use crate::options::{Options, RangeUnit};
 use crate::reading::{Reading, Sensor};
 use crate::sink::Sink;
 use crate::weighed::Weighed;
+use eeruf_files::FileError;
 
 /// Returns true if there are two whole frames, whose check sums fit, and more of them than damaged ones.
 pub(crate) fn is_serial(first: &[u8]) -> bool {
@@ -86,7 +86,7 @@ fn frames(mut input: impl Read, mut each: impl FnMut(Frame, i64)) -> io::Result<
 }
 
 /// Reads ranges; `file` stands in errors.
-pub(crate) fn read(input: impl Read, file: &Path, options: &Options, sink: &mut Sink<'_>) -> Result<(), LogError> {
+pub(crate) fn read(input: impl Read, file: &Path, options: &Options, sink: &mut Sink<'_>) -> Result<(), FileError> {
     let metres = RangeUnit::Us.metres(options.speed_of_sound);
     let mut sensors = [None; 256];
     let line = frames(input, |firing, at_us| {
@@ -108,7 +108,7 @@ pub(crate) fn read(input: impl Read, file: &Path, options: &Options, sink: &mut 
             variance: None,
         });
     });
-    let line = line.map_err(|error| LogError::new(file, error))?;
+    let line = line.map_err(|error| FileError::reading(file, &error))?;
     if let Some(damage) = line.damage() {
         sink.damage(file, None, damage);
     }
@@ -116,7 +116,7 @@ pub(crate) fn read(input: impl Read, file: &Path, options: &Options, sink: &mut 
 }
 
 /// Reads firings; `file` stands in errors.
-pub(crate) fn firings(input: impl Read, file: &Path) -> Result<FiringLog, LogError> {
+pub(crate) fn firings(input: impl Read, file: &Path) -> Result<FiringLog, FileError> {
     let mut firings = vec![];
     let line = frames(input, |firing, at| {
         firings.push(Firing {
@@ -136,9 +136,9 @@ pub(crate) fn firings(input: impl Read, file: &Path) -> Result<FiringLog, LogErr
             }),
         });
     });
-    let line = line.map_err(|error| LogError::new(file, error))?;
+    let line = line.map_err(|error| FileError::reading(file, &error))?;
     if firings.is_empty() {
-        return Err(LogError::new(file, "frames of the serial line, and no firing among them"));
+        return Err(FileError::new(file, "frames of the serial line, and no firing among them"));
     }
     let damage = line.damage();
     let clock = if line.clock.is_empty() { "unnamed" } else { &line.clock };

@@ -4,11 +4,11 @@ use std::collections::HashSet;
 use std::fmt;
 use std::path::Path;
 
-use crate::error::Damage;
 use crate::message::{Encoding, Kind, MAX_BEAMS, Undecoded};
 use crate::options::{Options, RangeUnit};
 use crate::pattern::{FiringPattern, Stamps};
 use crate::reading::{Echo, Reading, Sensor};
+use eeruf_files::FileError;
 
 /// Contents of a log, and what of it could not be read.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -20,7 +20,7 @@ pub struct Report {
     /// Number of messages with readings there that were (rows, of a CSV file).
     pub messages: u64,
     /// Damage, as far as it is known.
-    pub damage: Vec<Damage>,
+    pub damage: Vec<FileError>,
     /// Topics without readings, with their types, and how many topics had none at all.
     pub skipped: Vec<Skipped>,
     /// Guesses about what the log does not say.
@@ -315,18 +315,18 @@ impl<'a> Sink<'a> {
 
     /// A line of a text cannot be read.
     pub(crate) fn damaged_line(&mut self, file: &Path, line: u64, message: impl fmt::Display) {
-        let listed = self.report.damage.len();
-        self.damage(file, None, message);
-        if let Some(damage) = self.report.damage.get_mut(listed) {
-            damage.line = Some(line);
-        }
+        self.note(FileError::new(file, message).at_line(Some(line)));
     }
 
     /// A part of a file cannot be read.
     pub(crate) fn damage(&mut self, file: &Path, at: Option<u64>, message: impl fmt::Display) {
+        self.note(FileError::new(file, message).at_byte(at));
+    }
+
+    /// Lists damage, as far as there is room for it.
+    pub(crate) fn note(&mut self, damage: FileError) {
         if self.report.damage.len() < LISTED {
-            let message = message.to_string().replace('\n', "; ");
-            self.report.damage.push(Damage { file: file.to_owned(), at, line: None, message });
+            self.report.damage.push(damage);
         } else {
             self.more_damage += 1;
         }
@@ -335,7 +335,7 @@ impl<'a> Sink<'a> {
     pub(crate) fn finish(mut self, file: &Path) -> Report {
         if self.more_damage > 0 {
             let message = format!("{} more places that cannot be read", self.more_damage);
-            self.report.damage.push(Damage { file: file.to_owned(), at: None, line: None, message });
+            self.report.damage.push(FileError::new(file, message));
         }
         self.report.firing = self.stamps.pattern(self.report.sensors.len(), self.one_time_a_row && !self.has_own_times);
         self.report

@@ -1,7 +1,6 @@
 //! Writes MCAP with messages of ROS 2, in CDR: `sensor_msgs/msg/Range` as of Iron, poses, markers, firings.
 
 use std::collections::BTreeMap;
-use std::fmt;
 use std::fs::File;
 use std::io::BufWriter;
 use std::path::{Path, PathBuf};
@@ -10,10 +9,10 @@ use ::mcap::records::MessageHeader;
 use ::mcap::{WriteOptions, Writer};
 
 use crate::cdr::Cdr;
-use crate::error::LogError;
 use crate::firings::Firing;
 use crate::reading::Reading;
 use crate::ros2::{self, Marker, Transform, Type};
+use eeruf_files::FileError;
 
 /// An MCAP file, open for writing.
 pub struct McapWriter {
@@ -26,29 +25,33 @@ pub struct McapWriter {
     message: Vec<u8>,
 }
 
+/// A failure to write, from the crate that writes.
+fn unwritten(file: &Path, error: &::mcap::McapError) -> FileError {
+    match error {
+        ::mcap::McapError::Io(error) => FileError::writing(file, error),
+        _ => FileError::new(file, error),
+    }
+}
+
 impl McapWriter {
     /// Creates the file.
     ///
     /// # Errors
     /// If it cannot be written.
-    pub fn create(file: &Path) -> Result<Self, LogError> {
-        let opened = File::create(file).map_err(|error| LogError::new(file, error))?;
+    pub fn create(file: &Path) -> Result<Self, FileError> {
+        let opened = File::create(file).map_err(|error| FileError::writing(file, &error))?;
         let options = WriteOptions::new().profile("ros2").library("eeruf");
-        let failed = |error: ::mcap::McapError| LogError::new(file, error);
+        let failed = |error| unwritten(file, &error);
         let writer = Writer::with_options(BufWriter::new(opened), options).map_err(failed)?;
         let (schemas, channels) = (BTreeMap::new(), BTreeMap::new());
         Ok(Self { file: file.to_owned(), writer, schemas, channels, message: Vec::new() })
-    }
-
-    fn failed(&self, error: impl fmt::Display) -> LogError {
-        LogError::new(&self.file, error)
     }
 
     /// Writes a reading onto a topic, at time 0 if it has none. A frame is at most 4 GB long.
     ///
     /// # Errors
     /// If the file cannot be written.
-    pub fn range(&mut self, topic: &str, frame: &str, reading: &Reading) -> Result<(), LogError> {
+    pub fn range(&mut self, topic: &str, frame: &str, reading: &Reading) -> Result<(), FileError> {
         let at_ns = reading.at_ns.unwrap_or(0);
         self.write(topic, &ros2::RANGE, at_ns, |out| ros2::range(out, frame, reading))
     }
@@ -58,7 +61,7 @@ impl McapWriter {
     ///
     /// # Errors
     /// If the file cannot be written.
-    pub fn firing(&mut self, topic: &str, clock: &str, at_ns: u64, firing: &Firing) -> Result<(), LogError> {
+    pub fn firing(&mut self, topic: &str, clock: &str, at_ns: u64, firing: &Firing) -> Result<(), FileError> {
         self.write(topic, &ros2::FIRINGS, at_ns, |out| ros2::firing(out, at_ns, clock, firing))
     }
 
@@ -66,7 +69,7 @@ impl McapWriter {
     ///
     /// # Errors
     /// If the file cannot be written.
-    pub fn transforms(&mut self, topic: &str, at_ns: u64, transforms: &[Transform]) -> Result<(), LogError> {
+    pub fn transforms(&mut self, topic: &str, at_ns: u64, transforms: &[Transform]) -> Result<(), FileError> {
         self.write(topic, &ros2::TRANSFORMS, at_ns, |out| ros2::transforms(out, at_ns, transforms))
     }
 
@@ -81,7 +84,7 @@ impl McapWriter {
         of: &Transform,
         linear_m_s: [f64; 3],
         angular_rad_s: [f64; 3],
-    ) -> Result<(), LogError> {
+    ) -> Result<(), FileError> {
         self.write(topic, &ros2::ODOMETRY, at_ns, |out| ros2::odometry(out, at_ns, of, linear_m_s, angular_rad_s))
     }
 
@@ -89,11 +92,11 @@ impl McapWriter {
     ///
     /// # Errors
     /// If the file cannot be written.
-    pub fn markers(&mut self, topic: &str, at_ns: u64, markers: &[Marker]) -> Result<(), LogError> {
+    pub fn markers(&mut self, topic: &str, at_ns: u64, markers: &[Marker]) -> Result<(), FileError> {
         self.write(topic, &ros2::MARKERS, at_ns, |out| ros2::markers(out, at_ns, markers))
     }
 
-    fn write(&mut self, topic: &str, of: &Type, at_ns: u64, encode: impl FnOnce(&mut Cdr)) -> Result<(), LogError> {
+    fn write(&mut self, topic: &str, of: &Type, at_ns: u64, encode: impl FnOnce(&mut Cdr)) -> Result<(), FileError> {
         let mut message = Cdr::begin(std::mem::take(&mut self.message));
         encode(&mut message);
         self.message = message.bytes();
@@ -102,27 +105,27 @@ impl McapWriter {
                 Some(&schema) => schema,
                 None => {
                     let added = self.writer.add_schema(of.name, "ros2msg", of.definition().as_bytes());
-                    let schema = added.map_err(|error| self.failed(error))?;
+                    let schema = added.map_err(|error| unwritten(&self.file, &error))?;
                     self.schemas.insert(of.name, schema);
                     schema
                 }
             };
             let added = self.writer.add_channel(schema, topic, "cdr", &BTreeMap::new());
-            let channel = added.map_err(|error| self.failed(error))?;
+            let channel = added.map_err(|error| unwritten(&self.file, &error))?;
             self.channels.insert(topic.to_owned(), (channel, 0));
         }
         let Some((channel, sequence)) = self.channels.get_mut(topic) else { return Ok(()) };
         *sequence = sequence.wrapping_add(1);
         let (channel_id, sequence) = (*channel, *sequence);
         let header = MessageHeader { channel_id, sequence, log_time: at_ns, publish_time: at_ns };
-        self.writer.write_to_known_channel(&header, &self.message).map_err(|error| LogError::new(&self.file, error))
+        self.writer.write_to_known_channel(&header, &self.message).map_err(|error| unwritten(&self.file, &error))
     }
 
     /// Writes what is left, and the index.
     ///
     /// # Errors
     /// If the file cannot be written.
-    pub fn finish(mut self) -> Result<(), LogError> {
-        self.writer.finish().map(drop).map_err(|error| LogError::new(&self.file, error))
+    pub fn finish(mut self) -> Result<(), FileError> {
+        self.writer.finish().map(drop).map_err(|error| unwritten(&self.file, &error))
     }
 }

@@ -120,7 +120,7 @@ Example:
     >>> eeruf.sim.Scene([[0, 0, 0, 0]])
     Traceback (most recent call last):
     eeruf.SceneError: wall 0 is 0 m long; expected at least 0.000001 m
-" from eeruf_sim::SceneError, eeruf_sim::WorldError, eeruf_sim::WorldFileError;
+" from eeruf_sim::SceneError, eeruf_sim::WorldError, eeruf_files::FileError;
     PathsError "Paths that cannot be found.
 
 Example:

@@ -143,8 +143,8 @@ impl HoppingSchedule {
     #[pyo3(signature = (text))]
     fn from_toml(text: &Bound<'_, PyAny>) -> PyResult<Self> {
         let text = arguments::text("text", text, "a schedule in TOML")?;
-        let file = eeruf_design::parse::<PhaseFile>(&text).map_err(|error| HoppingError::new_err(error.to_string()))?;
-        let schedule = file.schedule().map_err(HoppingError::new_err)?;
+        let schedule = eeruf_files::build(&text, |file: PhaseFile| file.schedule());
+        let schedule = schedule.map_err(|error| HoppingError::new_err(error.to_string()))?;
         let hopping = schedule.hopping().copied().map(Self);
         hopping.ok_or_else(|| HoppingError::new_err("t_fire_us; expected step_us, phases and t_lag_us, to hop by"))
     }

@@ -26,7 +26,7 @@ Example:
     >>> import eeruf
     >>> eeruf.logs.read_log(\"no.bag\")
     Traceback (most recent call last):
-    eeruf.LogError: no.bag: No such file or directory (os error 2)
+    eeruf.LogError: no.bag: No such file or directory (os error 2); expected a file that exists
 "
 );
 

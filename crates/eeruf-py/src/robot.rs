@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use eeruf_core::{Micros, SensorLimits};
 use eeruf_design::RingSpec;
+use eeruf_files::Kind;
 use eeruf_sim::{Beam, Clock, GainProfile, Motion, Point, Sketch, Transducer, world::cover_motion};
 use pyo3::{
     prelude::*,
@@ -198,9 +199,8 @@ pub(crate) fn sketch(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Sketch> {
 /// The ring of a ring file.
 pub(crate) fn ring_file(path: &Bound<'_, PyAny>) -> PyResult<RingSpec> {
     let path: PathBuf = path.extract().map_err(|_| wrong("ring", shown(path), "the path of a ring file"))?;
-    let failed = |message: &dyn std::fmt::Display| ArgumentError::new_err(format!("{}: {message}", path.display()));
-    let text = std::fs::read_to_string(&path).map_err(|error| failed(&error))?;
-    RingSpec::from_text(&text).map_err(|error| failed(&error))
+    let ring = |text: String| RingSpec::from_text(&text).map_err(|error| error.in_file(&path));
+    Kind::Ring.read(&path).and_then(ring).map_err(|error| ArgumentError::new_err(error.to_string()))
 }
 
 fn refused_ring(message: &str) -> PyErr {

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use eeruf_design::robot_ring;
+use eeruf_files::Kind;
 use eeruf_sim::{
     Air, DEFAULT_HEIGHT_M, Faces, Limits, Pole, Wall, World, WorldParts, world::DEFAULT_ORDER, world_file,
 };
@@ -243,8 +244,7 @@ impl Scene {
     #[pyo3(signature = (path))]
     fn read_toml(path: &Bound<'_, PyAny>) -> PyResult<Self> {
         let path: PathBuf = path.extract().map_err(|_| wrong("path", shown(path), "the path of a scene in TOML"))?;
-        let text = std::fs::read_to_string(&path)
-            .map_err(|error| SceneError::new_err(format!("{}: {error}", path.display())))?;
+        let text = Kind::Scene.read(&path).map_err(Raise::raise)?;
         Self::from_text(&path, &text)
     }
 

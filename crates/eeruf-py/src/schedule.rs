@@ -1,9 +1,9 @@
 //! `Schedule`.
 
-use std::fmt::Display;
 use std::path::PathBuf;
 
 use eeruf_core::{Micros, Phase};
+use eeruf_files::{Kind, build};
 use eeruf_sim::{AnySchedule, ScheduleFile};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
@@ -141,9 +141,8 @@ impl Schedule {
     #[pyo3(signature = (text))]
     fn from_toml(text: &Bound<'_, PyAny>) -> PyResult<Self> {
         let text = arguments::text("text", text, "a schedule in TOML")?;
-        let file: ScheduleFile =
-            toml::from_str(&text).map_err(|error| ScheduleError::new_err(error.message().to_owned()))?;
-        file.schedule().map(Self).map_err(ScheduleError::new_err)
+        let schedule = build(&text, |file: ScheduleFile| file.schedule());
+        schedule.map(Self).map_err(|error| ScheduleError::new_err(error.to_string()))
     }
 
     /// Read a schedule file, such as those in the folder ``rings``.
@@ -153,7 +152,7 @@ impl Schedule {
     ///
     /// Raises:
     ///     ArgumentError: not a path.
-    ///     ScheduleError: no such file, or as for :meth:`from_toml`.
+    ///     ScheduleError: no such file, a file of another kind, or as for :meth:`from_toml`.
     ///
     /// Example:
     ///     >>> import eeruf, pathlib, tempfile
@@ -165,10 +164,9 @@ impl Schedule {
     #[pyo3(signature = (path))]
     fn read_toml(path: &Bound<'_, PyAny>) -> PyResult<Self> {
         let path: PathBuf = path.extract().map_err(|_| wrong("path", shown(path), "the path of a schedule in TOML"))?;
-        let refused = |error: &dyn Display| ScheduleError::new_err(format!("{}: {error}", path.display()));
-        let text = std::fs::read_to_string(&path).map_err(|error| refused(&error))?;
-        let file: ScheduleFile = toml::from_str(&text).map_err(|error| refused(&error.message()))?;
-        file.schedule().map(Self).map_err(|error| refused(&error))
+        let read = |text: String| build(&text, |file: ScheduleFile| file.schedule());
+        let schedule = Kind::Schedule.read(&path).and_then(|text| read(text).map_err(|error| error.in_file(&path)));
+        schedule.map(Self).map_err(|error| ScheduleError::new_err(error.to_string()))
     }
 
     /// Read a schedule as :meth:`to_json` writes it, with the keys of :meth:`from_toml`.

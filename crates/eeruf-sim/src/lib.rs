@@ -78,7 +78,7 @@ pub use acoustics::{
     rigid_cylinder_form,
 };
 pub use geometry::{Moment, Point, Pose, Specular, Vector, alhazen, alhazen_twice};
-pub use maps::{MapError, OccupancyGrid};
+pub use maps::OccupancyGrid;
 pub use methods::{
     BestSchedule, Firing, FiringPeriod, Method, OwnError, UnknownMethod, best_schedule_for, requirements_of,
     shortest_schedule_for, table_i_d_for,
@@ -103,7 +103,7 @@ pub use tracing::{
 };
 pub use world::{
     AnySchedule, Clock, Fault, FaultKind, FiringTable, LineEdge, Motion, Noise, Random, ReadRing, Robot, RobotRing,
-    ScheduleFile, Sketch, World, WorldError, WorldFileError, WorldParts, line_edges, ring_of, world_file,
+    ScheduleFile, Sketch, World, WorldError, WorldParts, line_edges, ring_of, world_file,
 };
 
 /// The listing of the crate's README compiles and holds.

@@ -1,7 +1,6 @@
 //! Arguments of both sets, and how both show their progress.
 
 use std::fmt;
-use std::fs;
 use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
 
@@ -11,6 +10,7 @@ use eeruf_sim::{GainProfile, Physics, Room};
 
 use super::shard::Shard;
 use crate::files::error::InputError;
+use crate::files::write::make_folder;
 use crate::report::draw::Picture;
 use crate::report::watch::Watch;
 
@@ -20,7 +20,7 @@ pub(crate) const BUDGET: u64 = 300_000;
 /// Arguments of both sets.
 #[derive(clap::Args)]
 pub(crate) struct Common {
-    /// Number of geometries or courses
+    /// Number of geometries, courses or placings; by default that of the paper
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=100_000))]
     pub(crate) seeds: Option<u64>,
     /// The number of the first geometry or course; parameters were tuned on numbers below 2000
@@ -29,13 +29,13 @@ pub(crate) struct Common {
     /// Effects that are simulated: default or plain (see docs/explanation/physics.md)
     #[arg(long, value_name = "PRESET", default_value = "default")]
     pub(crate) physics: Physics,
-    /// True if rings hear floor and ceiling: flat, or a room 2.6 m high with sensors at 0.3 m
+    /// Floor and ceiling: flat for none, or room, 2.6 m high with sensors at 0.3 m
     #[arg(long, value_name = "HEIGHT", default_value = "flat")]
     height: Height,
     /// Growth of the receivers' gain: constant, square_root, linear, stepped or polaroid_6500
     #[arg(long, value_name = "GAIN", default_value = "constant", value_parser = gain)]
     pub(crate) gain: GainProfile,
-    /// Run the I-th of N parts, and print what `eeruf merge` makes the whole of
+    /// Run the I-th of N parts, and print what `eeruf merge` makes the whole of; by default all
     #[arg(long, value_name = "I/N", conflicts_with_all = ["json", "svg", "png"])]
     pub(crate) shard: Option<Shard>,
     /// Print one JSON object
@@ -84,7 +84,7 @@ impl Common {
     pub(crate) fn draw(&self, name: &str, picture: impl Fn() -> Picture) -> Result<(), InputError> {
         for (folder, ending) in [(&self.svg, "svg"), (&self.png, "png")] {
             if let Some(folder) = folder {
-                fs::create_dir_all(folder).map_err(|error| InputError::new(folder, None, error))?;
+                make_folder(folder)?;
                 picture().save(&folder.join(name).with_extension(ending))?;
             }
         }
@@ -99,7 +99,7 @@ pub(crate) fn designing(progress: &Progress) -> String {
 
 /// An experiment has no file; what is wrong with it is said after its name.
 pub(crate) fn bad(set: &'static str) -> impl Fn(&dyn fmt::Display) -> InputError {
-    move |error| InputError::new(set.as_ref(), None, error)
+    move |error| InputError::new(set, error)
 }
 
 /// Watches a run of several threads.

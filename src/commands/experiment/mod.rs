@@ -23,11 +23,20 @@ pub(crate) struct Args {
 
 #[derive(clap::Subcommand)]
 enum Set {
-    #[command(name = "set-one")]
+    #[command(name = "set-one", after_help = help!(
+        "experiment set-one --seeds 20 --method sequential,eeruf",
+        "0 repeated; 2 bad input"
+    ))]
     One(set_one::Args),
-    #[command(name = "set-two")]
+    #[command(name = "set-two", after_help = help!(
+        "experiment set-two --seeds 5 --method conventional,eeruf",
+        "0 repeated; 2 bad input"
+    ))]
     Two(set_two::Args),
-    #[command(name = "set-three")]
+    #[command(name = "set-three", after_help = help!(
+        "experiment set-three --seeds 5 --method sequential,driving",
+        "0 repeated; 2 bad input"
+    ))]
     Three(set_three::Args),
 }
 

@@ -27,7 +27,7 @@ use crate::report::watch::Watch;
 pub(crate) struct Args {
     #[command(flatten)]
     common: Common,
-    /// Simulate only these methods, separated by commas: eeruf,sequential
+    /// Simulate only these methods, separated by commas: eeruf,sequential; by default all of the paper and ours
     #[arg(long = "method", value_name = "NAME,..", value_delimiter = ',')]
     methods: Vec<Method>,
     /// Number of sensors the ring has

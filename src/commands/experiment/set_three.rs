@@ -26,7 +26,7 @@ pub(crate) struct Args {
     /// drive. By default simultaneous, sequential, sequential_votes, dither, eeruf, eeruf_hopping, driving and flow
     #[arg(long = "method", value_name = "NAME,..", value_delimiter = ',')]
     methods: Vec<Entry>,
-    /// For how many periods each placing is simulated
+    /// Number of periods for which each placing is simulated
     #[arg(long, value_name = "N", default_value_t = SetThreeOptions::default().periods)]
     #[arg(value_parser = clap::value_parser!(u32).range(10..=100_000))]
     periods: u32,

@@ -45,7 +45,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "SETTING", default_value = "driving")]
     hopping: Hopping,
     /// Let another robot with 24 sensors fire 24 times in 80 ms in a corner of the lab: behind the start, or ahead,
-    /// where all sensors face it
+    /// where all sensors face it; by default there is none
     #[arg(long, value_name = "WHERE", num_args = 0..=1, default_missing_value = "behind")]
     second_robot: Option<Corner>,
     /// The platform's highest speed in m/s

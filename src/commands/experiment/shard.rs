@@ -85,7 +85,7 @@ pub(super) fn runs_of<R: DeserializeOwned>(
     file: &Path,
     runs: &Runs,
 ) -> Result<Vec<Vec<R>>, InputError> {
-    let refused = |what: String| InputError::new(file, None, what);
+    let refused = |what: String| InputError::new(file, what);
     let of = |method: &Entry| {
         let of = runs.get(method.name()).map_or(&[][..], Vec::as_slice);
         if of.len() as u64 != seeds {

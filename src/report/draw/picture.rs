@@ -127,7 +127,7 @@ impl Picture {
     /// Writes it: PNG if the file's name ends so, or else SVG.
     pub(crate) fn save(&self, file: &Path) -> Result<(), InputError> {
         if file.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("png")) {
-            let png = self.to_png().map_err(|error| InputError::new(file, None, error))?;
+            let png = self.to_png().map_err(|error| InputError::new(file, error))?;
             return write(file, png);
         }
         write(file, self.to_svg())

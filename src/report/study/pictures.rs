@@ -1,13 +1,13 @@
 //! The pictures of a study: which methods, which sensor and which stretch of time show most.
 
 use std::collections::BTreeMap;
-use std::fs;
 use std::path::Path;
 
 use eeruf_sim::{Cause, HeardPath, Method, Point, Readings, SensorId, Summary, World};
 
 use super::found::{Study, TOLERANCE_US, of_robot};
 use crate::files::error::InputError;
+use crate::files::write::make_folder;
 use crate::report::draw::{self, DrawnPath, Panel};
 
 /// The most paths that are drawn for one method.
@@ -18,7 +18,7 @@ const SHOWN_READINGS: usize = 70;
 /// Draws `scene`, `timing`, `readings`, `methods`, and `blind` where a sensor that is blind under EERUF comes to see
 /// under time hopping, with this ending into a folder, which is made if need be.
 pub(crate) fn pictures(folder: &Path, ending: &str, world: &World, study: &Study) -> Result<(), InputError> {
-    fs::create_dir_all(folder).map_err(|error| InputError::new(folder, None, error))?;
+    make_folder(folder)?;
     let file = |name: &str| folder.join(name).with_extension(ending);
     let summaries: Vec<Summary> = study.runs.iter().map(Readings::summary).collect();
     draw::methods_chart("Firing methods in the same scene, on the same seed", &summaries).save(&file("methods"))?;

@@ -14,7 +14,7 @@ use crate::files::survey::TruePath;
 pub(crate) use compared::Scenes;
 use compared::{Compared, compare};
 pub(crate) use picture::who_hears_whom;
-pub(crate) use ring::{RingTerms, ring_file};
+pub(crate) use ring::{FROM, RingTerms, ring_file};
 pub(crate) use text::describe;
 
 /// A survey's log and what was found in it.

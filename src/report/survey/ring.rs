@@ -12,6 +12,9 @@ pub(crate) struct RingTerms {
     pub(crate) tolerance_us: u32,
 }
 
+/// Beginning of the ring files that a survey writes.
+pub(crate) const FROM: &str = "# From the survey ";
+
 /// The pairs that hear each other as neighbours, each with the time after which the other's sound has passed.
 pub(crate) fn ring_file(found: &Found<'_>, terms: &RingTerms) -> String {
     let conflicts = found.surveyed.conflicts(found.until_us);
@@ -19,7 +22,7 @@ pub(crate) fn ring_file(found: &Found<'_>, terms: &RingTerms) -> String {
     let intervals: Vec<_> = conflicts.iter().map(|&(x, y, travel_us)| (x, y, round(travel_us))).collect();
     let longest = intervals.iter().map(|interval| interval.2).max().unwrap_or(0);
     let mut text = format!(
-        "# From the survey {}: sensors (from 0) that hear each other within {} us are neighbours, each pair with the\n\
+        "{FROM}{}: sensors (from 0) that hear each other within {} us are neighbours, each pair with the\n\
          # time after which the other's sound has passed. It holds where it was measured: survey where echoes are \
          many.\n\
          sensors = {}\nt_delta_us = {}\nwindow_us = {}\nmin_interval_us = {longest}\n",

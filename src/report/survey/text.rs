@@ -23,8 +23,10 @@ pub(crate) fn describe(found: &Found<'_>) -> String {
     // Writing to a string does not fail.
     _ = writeln!(
         text,
-        "{} paths, {expected:.4} of them expected to be accidents; of {edges} edges {strays} fit none.\n",
+        "{} paths, {:.4} of them expected to be accidents; of {edges} edges {strays} fit none.\n",
         surveyed.paths.len(),
+        // Not -0.0, which a sum of none is.
+        expected + 0.0,
     );
     own(found, &mut text);
     foreign(found, &mut text);

@@ -71,7 +71,7 @@ pub struct Examination {
 /// let report = read_text(text.as_bytes(), "log".as_ref(), &options, |_, reading| doctor.push(reading))?;
 /// let found = doctor.examine(&report.firing, &report.names());
 /// assert_eq!(found.verdict, Verdict::NoneSeen, "{:?}", found.reasons);
-/// # Ok::<(), eeruf_logs::LogError>(())
+/// # Ok::<(), eeruf_files::FileError>(())
 /// ```
 pub struct Doctor {
     speed_of_sound: f64,

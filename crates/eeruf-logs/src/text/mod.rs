@@ -15,9 +15,9 @@ mod value;
 use std::io::Read;
 use std::path::Path;
 
-use crate::error::LogError;
 use crate::options::Options;
 use crate::sink::Sink;
+use eeruf_files::FileError;
 
 pub(crate) use lines::{Line, Source};
 pub(crate) use recognise::is_comment;
@@ -33,8 +33,8 @@ pub(crate) fn range_unit(name: &str) -> Option<crate::options::RangeUnit> {
 const SAMPLE: (usize, usize) = (1000, 1 << 18);
 
 /// Reads a text; `file` stands in errors.
-pub(crate) fn read(input: impl Read, file: &Path, options: &Options, sink: &mut Sink<'_>) -> Result<(), LogError> {
-    let failed = |error| LogError::new(file, error);
+pub(crate) fn read(input: impl Read, file: &Path, options: &Options, sink: &mut Sink<'_>) -> Result<(), FileError> {
+    let failed = |error: std::io::Error| FileError::reading(file, &error);
     let mut source = Source::new(Box::new(input)).map_err(failed)?;
     let (mut sample, mut bytes) = (vec![], 0);
     while sample.len() < SAMPLE.0 && bytes < SAMPLE.1 {
@@ -43,7 +43,7 @@ pub(crate) fn read(input: impl Read, file: &Path, options: &Options, sink: &mut 
         sample.push(line);
     }
     if sample.iter().all(|line| line.text.trim().is_empty()) && sample.len() < SAMPLE.0 {
-        return Err(LogError::new(file, "the file is empty; expected lines with readings"));
+        return Err(FileError::new(file, "the file is empty; expected lines with readings"));
     }
     let plan = recognise::recognise(file, &sample, matches!(source, Source::Objects(_)), options)?;
     sink.report.form.clone_from(&plan.form);

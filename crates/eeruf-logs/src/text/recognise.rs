@@ -3,9 +3,9 @@
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::path::Path;
 
-use crate::error::LogError;
 use crate::options::{Options, RangeUnit, TimeUnit};
 use crate::sink::{Guess, Skipped};
+use eeruf_files::FileError;
 
 use super::column::Column;
 use super::lines::Line;
@@ -89,7 +89,7 @@ fn strip(sample: &[Line]) -> Stripped<'_> {
 }
 
 /// Recognises a log by its first lines.
-pub(super) fn recognise(file: &Path, sample: &[Line], is_document: bool, options: &Options) -> Result<Plan, LogError> {
+pub(super) fn recognise(file: &Path, sample: &[Line], is_document: bool, options: &Options) -> Result<Plan, FileError> {
     let Stripped { lines, has_prefix } = strip(sample);
     let (shape, decimal_comma) = if is_document { (Shape::Json, false) } else { shape_of(&lines) };
     let mut plan = Plan {
@@ -202,7 +202,7 @@ impl Plan {
         lines: &[(u64, &str)],
         separator: Separator,
         options: &Options,
-    ) -> Result<Vec<Option<RangeUnit>>, LogError> {
+    ) -> Result<Vec<Option<RangeUnit>>, FileError> {
         let comma = self.decimal_comma;
         let rows: Vec<_> =
             lines.iter().filter_map(|&(number, text)| Some((number, shape::separated(text, separator)?))).collect();
@@ -258,7 +258,7 @@ impl Plan {
             if options.table.columns.len() != width {
                 let given = options.table.columns.len();
                 let message = format!("--columns: {given} names; expected {width}, as many as the rows have columns");
-                return Err(LogError::new(file, message));
+                return Err(FileError::new(file, message));
             }
             names = Some(options.table.columns.clone());
         } else {
@@ -337,13 +337,13 @@ impl Plan {
         }
     }
 
-    fn place(&self, file: &Path, name: &String) -> Result<usize, LogError> {
+    fn place(&self, file: &Path, name: &String) -> Result<usize, FileError> {
         let names = || self.columns.iter().map(|column| column.name.as_str()).collect::<Vec<_>>().join(", ");
         let found = self.columns.iter().position(|column| column.name == *name);
-        found.ok_or_else(|| LogError::new(file, format!("no column `{name}`; expected one of: {}", names())))
+        found.ok_or_else(|| FileError::new(file, format!("no column `{name}`; expected one of: {}", names())))
     }
 
-    fn roles(&mut self, file: &Path, options: &Options) -> Result<(), LogError> {
+    fn roles(&mut self, file: &Path, options: &Options) -> Result<(), FileError> {
         let table = &options.table;
         let ranges = table.ranges.iter().map(|name| self.place(file, name)).collect::<Result<Vec<_>, _>>()?;
         let time = table.time.as_ref().map(|name| self.place(file, name)).transpose()?;
@@ -473,7 +473,7 @@ impl Plan {
         self.time = chosen.into_iter().map(|index| (index, TimeUnit::S)).collect();
     }
 
-    fn sensor_column(&mut self, file: &Path, asked: Option<usize>, asked_ranges: &[usize]) -> Result<(), LogError> {
+    fn sensor_column(&mut self, file: &Path, asked: Option<usize>, asked_ranges: &[usize]) -> Result<(), FileError> {
         let of = |role: &Role| -> Vec<usize> {
             (0..self.columns.len()).filter(|&index| self.columns[index].role == *role).collect()
         };
@@ -492,7 +492,7 @@ impl Plan {
         });
         if asked.is_some() && ranges.len() != 1 {
             let message = format!("{} columns with ranges; with a column of sensors expected is one", ranges.len());
-            return Err(LogError::new(file, message));
+            return Err(FileError::new(file, message));
         }
         let is_alone = ranges.is_empty() && of(&Role::Empty).is_empty() && asked_ranges.is_empty();
         for index in named {

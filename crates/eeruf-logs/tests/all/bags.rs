@@ -117,7 +117,7 @@ fn bag_in_several_files_is_read_in_order() {
     std::fs::remove_file(&metadata).unwrap();
     let without = read(&bag, &Options::default()).unwrap();
     assert_eq!((without.1.len(), without.0.damage.len()), (whole.1.len(), 1));
-    assert!(without.0.damage[0].message.ends_with("all bag files of the folder are read"));
+    assert!(without.0.damage[0].message().ends_with("all bag files of the folder are read"));
 }
 
 #[test]

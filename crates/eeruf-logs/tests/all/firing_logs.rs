@@ -109,7 +109,7 @@ fn frames_of_the_serial_line_are_readings_and_firings() {
     std::fs::write(&file, &frames.concat()[4..]).unwrap();
     let (report, readings) = read(&file, &Options::default()).unwrap();
     assert_eq!(readings.len(), 28);
-    assert_eq!(report.damage[0].message, "frames: 1 damaged, 2 missing by their numbers");
+    assert_eq!(report.damage[0].message(), "frames: 1 damaged, 2 missing by their numbers");
     let log = FiringLog::read(&file).unwrap();
     assert_eq!(log.damage.as_deref(), Some("frames: 1 damaged, 2 missing by their numbers"));
 }

@@ -12,7 +12,8 @@ mod written;
 
 use std::path::{Path, PathBuf};
 
-use eeruf_logs::{LogError, Options, Reading, Report, Sensor, read_log};
+use eeruf_files::FileError;
+use eeruf_logs::{Options, Reading, Report, Sensor, read_log};
 
 /// The bags that `write_bags.py` writes.
 const BAGS: [&str; 10] = [
@@ -51,7 +52,7 @@ fn bag(name: &str, folder: &Path) -> PathBuf {
 }
 
 /// All readings of a log.
-fn read(file: &Path, options: &Options) -> Result<(Report, Vec<Reading>), LogError> {
+fn read(file: &Path, options: &Options) -> Result<(Report, Vec<Reading>), FileError> {
     let mut readings = Vec::new();
     let mut met = Vec::<Sensor>::new();
     let report = read_log(file, options, |sensors, reading| {

@@ -42,7 +42,7 @@ fn read(bytes: &[u8]) -> Vec<(String, f64)> {
         Ok(report) => {
             let lines = bytes.iter().filter(|&&byte| byte == b'\n' || byte == b'\r').count() as u64 + 1;
             assert!(report.messages <= lines && report.damage.len() <= 101);
-            assert!(report.damage.iter().all(|damage| !damage.message.contains('\n')));
+            assert!(report.damage.iter().all(|damage| !damage.message().contains('\n')));
         }
         Err(error) => assert!(!error.to_string().contains('\n')),
     }

@@ -51,8 +51,8 @@ fn of_two_chunks_a_damaged_one_takes_nothing_from_the_other() {
     let mut read = 0;
     let report = read_log(&file, &Options::default(), |_, _| read += 1).unwrap();
     assert_eq!(report.damage.len(), 2, "{:?}", report.damage);
-    assert!(report.damage[0].message.starts_with("a chunk is lost: "), "{}", report.damage[0]);
+    assert!(report.damage[0].message().starts_with("a chunk is lost: "), "{}", report.damage[0]);
     assert!(read > 0 && read < messages, "{read}");
     let lost = format!("{} of the {messages} messages that it counts were not found", messages - read);
-    assert_eq!(report.damage[1].message, lost);
+    assert_eq!(report.damage[1].message(), lost);
 }

@@ -3,8 +3,9 @@
 use std::fs;
 use std::path::Path;
 
+use eeruf_files::FileError;
+
 use super::contours::contours;
-use super::error::MapError;
 use super::{pgm, simplify, yaml};
 use crate::scene::Wall;
 
@@ -29,12 +30,12 @@ impl OccupancyGrid {
     ///
     /// # Errors
     /// The first thing found wrong, with the file that it is in.
-    pub fn read(file: &Path) -> Result<Self, MapError> {
-        let text = fs::read_to_string(file).map_err(|error| MapError::new(file, error))?;
-        let head = yaml::read(&text).map_err(|message| MapError::new(file, message))?;
+    pub fn read(file: &Path) -> Result<Self, FileError> {
+        let text = fs::read_to_string(file).map_err(|error| FileError::reading(file, &error))?;
+        let head = yaml::read(&text).map_err(|message| FileError::new(file, message))?;
         let image = file.parent().unwrap_or(Path::new("")).join(&head.image);
-        let bytes = fs::read(&image).map_err(|error| MapError::new(&image, error))?;
-        let picture = pgm::read(&bytes).map_err(|message| MapError::new(&image, message))?;
+        let bytes = fs::read(&image).map_err(|error| FileError::reading(&image, &error))?;
+        let picture = pgm::read(&bytes).map_err(|message| FileError::new(&image, message))?;
         let is_occupied = |&bright: &f32| {
             let bright = f64::from(bright);
             (if head.negate { bright } else { 1.0 - bright }) > head.occupied_thresh
@@ -98,7 +99,7 @@ mod tests {
     use crate::scene::{Air, Scene};
 
     /// A map in a folder of its own.
-    fn map(name: &str, yaml: &str, pgm: &[u8]) -> Result<OccupancyGrid, MapError> {
+    fn map(name: &str, yaml: &str, pgm: &[u8]) -> Result<OccupancyGrid, FileError> {
         let folder = std::env::temp_dir().join(format!("eeruf-map-{}-{name}", std::process::id()));
         fs::create_dir_all(&folder).unwrap();
         fs::write(folder.join("map.pgm"), pgm).unwrap();
@@ -143,7 +144,7 @@ mod tests {
         let error = |name, yaml: &str, pgm: &[u8]| map(name, yaml, pgm).unwrap_err().to_string();
         assert!(error("a", "image: no.pgm\nresolution: 1\norigin: [0, 0, 0]", b"").contains("no.pgm: "));
         assert!(error("b", &YAML.replace("0.5", "0"), b"").contains("map.yaml: resolution = 0; expected above 0"));
-        assert!(error("d", &format!("{YAML}mode: \"a\\nb\"\n"), b"").contains("mode = a\\nb; expected"));
+        assert!(error("d", &format!("{YAML}mode: \"a\\nb\"\n"), b"").contains("mode = a; b; expected"));
         assert!(error("c", YAML, b"P5 2 2 255\n").contains("map.pgm: 0 bytes of pixels; 2 x 2 need 4"));
     }
 }

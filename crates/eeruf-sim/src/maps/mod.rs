@@ -2,11 +2,9 @@
 //! it), becomes walls. It uses `scene`; nothing but callers uses it.
 
 mod contours;
-mod error;
 mod grid;
 mod pgm;
 mod simplify;
 mod yaml;
 
-pub use error::MapError;
 pub use grid::OccupancyGrid;

@@ -19,7 +19,7 @@ pub use clock::{Clock, MAX_DRIFT_PPM};
 pub use error::WorldError;
 pub(crate) use fault::scene_with;
 pub use fault::{Fault, FaultKind, LineEdge, line_edges};
-pub use file::{ReadRing, RobotRing, ScheduleFile, WorldFileError, WorldParts, cover_motion, heading_rad, world_file};
+pub use file::{ReadRing, RobotRing, ScheduleFile, WorldParts, cover_motion, heading_rad, world_file};
 pub use motion::{MAX_SPEED, Motion};
 pub(crate) use noise::{FARTHEST, Normal};
 pub use noise::{Noise, Random};

@@ -85,17 +85,17 @@ fn patience_of_an_older_file_is_refused_by_name() {
 #[test]
 fn an_unknown_field_or_word_is_named_with_its_line() {
     let unknown = robot_error("windw_us = 3");
-    assert!(
-        unknown.starts_with("w.toml, line 6: unknown field `windw_us`, expected one of `pose`, `ring`"),
-        "{unknown}"
-    );
+    assert!(unknown.starts_with("w.toml, line 6: windw_us: unknown key; expected one of `pose`, `ring`"), "{unknown}");
     let preset = robot_error("transducer = \"bat\"");
     assert!(
         preset.starts_with("w.toml, line 6: module: no preset \"bat\"; expected polaroid-6500, hc-sr04, "),
         "{preset}"
     );
     let negative = robot_error("period_us = -5");
-    assert!(negative.starts_with("w.toml, line 6: invalid value: integer `-5`, expected u32"), "{negative}");
+    assert!(
+        negative.starts_with("w.toml, line 6: period_us: integer `-5`; expected a whole number from 0 to 4294967295"),
+        "{negative}"
+    );
     let missing = World::from_toml(Path::new("no-such.toml")).unwrap_err().to_string();
     assert!(missing.starts_with("no-such.toml: "), "{missing}");
 }

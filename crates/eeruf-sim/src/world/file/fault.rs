@@ -1,11 +1,12 @@
 //! The faults of a world file: `[[fault]]`, with a kind and what that needs.
 
+use eeruf_files::FileError;
 use serde::Deserialize;
 use toml::{Spanned, Table, Value};
 
 use super::robot::schedule;
 use super::schedule_file::ScheduleFile;
-use super::source::{Source, WorldFileError};
+use super::source::Source;
 use crate::world::fault::{Fault, FaultKind};
 
 #[derive(Clone, Deserialize)]
@@ -78,7 +79,7 @@ impl FaultFile {
 }
 
 /// Builds the fault with this index.
-pub(super) fn fault(source: &Source, index: usize, entry: &Spanned<FaultFile>) -> Result<Fault, WorldFileError> {
+pub(super) fn fault(source: &Source, index: usize, entry: &Spanned<FaultFile>) -> Result<Fault, FileError> {
     let file = entry.get_ref();
     let fail =
         |field, message: String| source.error(Some(entry.span()), field, format!("fault {}: {message}", index + 1));
@@ -203,9 +204,9 @@ impl Fault {
         let mut file = Table::new();
         file.insert("fault".to_owned(), Value::Array(tables.into_iter().map(Value::Table).collect()));
         let source = Source { file: "faults".into(), text: file.to_string() };
-        let faults: Faults = toml::from_str(&source.text).map_err(|error| error.message().to_owned())?;
+        let faults: Faults = source.toml().map_err(|error| error.message().to_owned())?;
         let each = faults.fault.iter().enumerate().map(|(index, entry)| fault(&source, index, entry));
-        each.collect::<Result<_, _>>().map_err(|error| error.message)
+        each.collect::<Result<_, _>>().map_err(|error| error.message().to_owned())
     }
 
     /// The table of `[[fault]]` in a scene file that says this.

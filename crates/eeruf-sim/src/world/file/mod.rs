@@ -14,6 +14,7 @@ mod write;
 use core::ops::Range;
 use std::path::Path;
 
+use eeruf_files::FileError;
 use toml::Spanned;
 
 use super::error::WorldError;
@@ -31,7 +32,6 @@ use source::Source;
 
 pub use ring_file::{ReadRing, RobotRing, cover_motion};
 pub use schedule_file::ScheduleFile;
-pub use source::WorldFileError;
 pub use write::{heading_rad, world_file};
 
 impl World {
@@ -40,7 +40,7 @@ impl World {
     ///
     /// # Errors
     /// The first thing found wrong.
-    pub fn from_toml(file: &Path) -> Result<Self, WorldFileError> {
+    pub fn from_toml(file: &Path) -> Result<Self, FileError> {
         Self::parse(&Source::read(file)?, no_reader)
     }
 
@@ -61,7 +61,7 @@ impl World {
     /// let error = World::from_text("pillars.toml".as_ref(), text).unwrap_err();
     /// assert_eq!(error.to_string(), "pillars.toml, line 6: robot 1 has 65 sensors; expected 1 to 64");
     /// ```
-    pub fn from_text(file: &Path, text: &str) -> Result<Self, WorldFileError> {
+    pub fn from_text(file: &Path, text: &str) -> Result<Self, FileError> {
         Self::from_text_with(file, text, no_reader)
     }
 
@@ -69,11 +69,11 @@ impl World {
     ///
     /// # Errors
     /// As [`from_toml`](Self::from_toml).
-    pub fn from_text_with(file: &Path, text: &str, read_ring: ReadRing) -> Result<Self, WorldFileError> {
+    pub fn from_text_with(file: &Path, text: &str, read_ring: ReadRing) -> Result<Self, FileError> {
         Self::parse(&Source { file: file.to_owned(), text: text.to_owned() }, read_ring)
     }
 
-    fn parse(source: &Source, read_ring: ReadRing) -> Result<Self, WorldFileError> {
+    fn parse(source: &Source, read_ring: ReadRing) -> Result<Self, FileError> {
         let file: WorldFile = source.toml()?;
         let WorldParts { scene, robots, noise, physics, max_order, seed, faults } =
             WorldParts::of(source, &file, read_ring)?;
@@ -119,9 +119,9 @@ impl WorldParts {
     /// assert_eq!((parts.scene.poles().len(), parts.robots.len()), (1, 0));
     /// let again = WorldParts::from_text("again.toml".as_ref(), &parts.to_toml())?;
     /// assert_eq!(again.to_toml(), parts.to_toml());
-    /// # Ok::<(), eeruf_sim::WorldFileError>(())
+    /// # Ok::<(), eeruf_files::FileError>(())
     /// ```
-    pub fn from_text(file: &Path, text: &str) -> Result<Self, WorldFileError> {
+    pub fn from_text(file: &Path, text: &str) -> Result<Self, FileError> {
         Self::from_text_with(file, text, no_reader)
     }
 
@@ -129,12 +129,12 @@ impl WorldParts {
     ///
     /// # Errors
     /// As [`World::from_text`].
-    pub fn from_text_with(file: &Path, text: &str, read_ring: ReadRing) -> Result<Self, WorldFileError> {
+    pub fn from_text_with(file: &Path, text: &str, read_ring: ReadRing) -> Result<Self, FileError> {
         let source = Source { file: file.to_owned(), text: text.to_owned() };
         Self::of(&source, &source.toml()?, read_ring)
     }
 
-    fn of(source: &Source, file: &WorldFile, read_ring: ReadRing) -> Result<Self, WorldFileError> {
+    fn of(source: &Source, file: &WorldFile, read_ring: ReadRing) -> Result<Self, FileError> {
         let scene = scene(source, file)?;
         let mut robots = Vec::new();
         for (index, entry) in file.robots.iter().enumerate() {

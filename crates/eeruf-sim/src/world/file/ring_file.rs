@@ -1,6 +1,7 @@
 //! Robots out of ring files, whose reader the caller brings: it knows more of rings than a simulator needs.
 
 use eeruf_core::{MAX_SENSORS, Micros, Phase, SensorLimits};
+use eeruf_files::FileError;
 use eeruf_modules::Module;
 
 use crate::{acoustics::Transducer, geometry::Pose, scene::Air, world::robot::Robot};
@@ -28,15 +29,15 @@ pub struct RobotRing {
     pub audible: Option<Micros>,
 }
 
-/// A reader of ring files: from the text to what it says, or a message that names the key, its value and what is
-/// expected.
-pub type ReadRing = fn(&str) -> Result<RobotRing, String>;
+/// A reader of ring files: from the text to the robot, or an error that names no file.
+pub type ReadRing = fn(&str) -> Result<RobotRing, FileError>;
 
 /// The reader of who has none.
-pub(super) fn no_reader(_: &str) -> Result<RobotRing, String> {
-    Err("a ring file, which this reader of scenes does not know; expected a table with sensors, spacing_deg and \
-         radius_m. `eeruf study` and Python read ring files"
-        .to_owned())
+pub(super) fn no_reader(_: &str) -> Result<RobotRing, FileError> {
+    Err(FileError::in_text(
+        "a ring file, which this reader of scenes does not know; expected a table with sensors, spacing_deg and \
+         radius_m. `eeruf study` and Python read ring files",
+    ))
 }
 
 impl RobotRing {

@@ -1,6 +1,7 @@
 //! The robots of a world file.
 
 use eeruf_core::{MAX_SENSORS, Micros, SensorLimits};
+use eeruf_files::{FileError, explain};
 use eeruf_modules::Value;
 use serde::Deserialize;
 use toml::Spanned;
@@ -9,7 +10,7 @@ use super::format::{EachFile, HeightsFile, MotionFile, RingKey, RobotFile, radia
 use super::ring_file::{ReadRing, cover_motion};
 use super::schedule_file::ScheduleFile;
 use super::sketch::{SketchFile, sketch};
-use super::source::{Source, WorldFileError};
+use super::source::Source;
 use crate::{
     acoustics::Transducer,
     geometry::{Point, Vector},
@@ -23,7 +24,7 @@ pub(super) fn robot(
     entry: &Spanned<RobotFile>,
     firing: Option<&SketchFile>,
     read_ring: ReadRing,
-) -> Result<Robot, WorldFileError> {
+) -> Result<Robot, FileError> {
     let file = entry.get_ref();
     let fail =
         |field, message: String| source.error(Some(entry.span()), field, format!("robot {}{message}", index + 1));
@@ -45,7 +46,7 @@ pub(super) fn robot(
         (Some(RingKey::File(name)), sensors) => {
             let beside = source.beside(name)?;
             let ring = read_ring(&beside.text);
-            let ring = ring.map_err(|message| WorldFileError { file: beside.file, line: None, message })?;
+            let ring = ring.map_err(|error| error.in_file(&beside.file))?;
             (speed_m_s, audible) = (ring.speed_m_s, ring.audible);
             let poses = sensors.as_ref().map(|sensors| sensors.iter().map(|sensor| sensor.pose()).collect());
             ring.robot(pose, poses).map_err(|message| fail("ring", format!(": {name}: {message}")))?
@@ -169,13 +170,13 @@ pub(super) fn robot(
 }
 
 /// A schedule in the file itself, or the name of a file beside it.
-pub(super) fn schedule(source: &Source, value: &Spanned<toml::Value>) -> Result<AnySchedule, WorldFileError> {
+pub(super) fn schedule(source: &Source, value: &Spanned<toml::Value>) -> Result<AnySchedule, FileError> {
     let here = |message: String| source.error(Some(value.span()), "", format!("schedule: {message}"));
     if let toml::Value::String(name) = value.get_ref() {
         let source = source.beside(name)?;
         let file: ScheduleFile = source.toml()?;
         return file.schedule().map_err(|message| source.error(None, "", message));
     }
-    let file = ScheduleFile::deserialize(value.get_ref().clone()).map_err(|error| here(error.message().to_owned()))?;
+    let file = ScheduleFile::deserialize(value.get_ref().clone()).map_err(|error| here(explain(&error)))?;
     file.schedule().map_err(here)
 }

@@ -1,13 +1,14 @@
 //! The walls, poles and air of a world file.
 
+use eeruf_files::FileError;
 use toml::Spanned;
 
 use super::format::{FacesFile, WorldFile, material};
-use super::source::{Source, WorldFileError};
+use super::source::Source;
 use crate::scene::{Air, Faces, Material, Pole, Scene, SceneError, Wall};
 
 /// Builds the scene.
-pub(super) fn scene(source: &Source, file: &WorldFile) -> Result<Scene, WorldFileError> {
+pub(super) fn scene(source: &Source, file: &WorldFile) -> Result<Scene, FileError> {
     let mut walls = Vec::new();
     // The entry that each wall came from.
     let mut entries = Vec::new();

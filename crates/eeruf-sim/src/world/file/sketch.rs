@@ -4,11 +4,12 @@ use eeruf_core::{
     MAX_SENSORS, Micros,
     hopping::{HoppingCode, HoppingSchedule},
 };
+use eeruf_files::{FileError, explain};
 use serde::Deserialize;
 use toml::{Spanned, Table, Value};
 
 use super::schedule_file::ScheduleFile;
-use super::source::{Source, WorldFileError};
+use super::source::Source;
 use super::write::set;
 use crate::world::sketch::{FiringTable, Sketch};
 
@@ -41,7 +42,7 @@ struct PhasesFile {
 }
 
 /// A table `[firing]`.
-pub(super) fn sketch(source: &Source, file: &SketchFile) -> Result<Sketch, WorldFileError> {
+pub(super) fn sketch(source: &Source, file: &SketchFile) -> Result<Sketch, FileError> {
     let default = Sketch::default();
     let us = |time: Option<u32>| Micros::new(time.unwrap_or(0));
     let table = file.schedule.as_ref().map(|value| {
@@ -54,7 +55,7 @@ pub(super) fn sketch(source: &Source, file: &SketchFile) -> Result<Sketch, World
             value => (source.clone(), value.as_table().cloned().unwrap_or_default()),
         };
         let line = (file == source.file).then(|| source.line(value.span(), ""));
-        let error = |message| WorldFileError { file, line, message: format!("schedule: {message}") };
+        let error = |message| FileError::new(&file, format!("schedule: {message}")).at_line(line);
         table_of(text).map_err(error)
     });
     Ok(Sketch {
@@ -74,7 +75,7 @@ pub(super) fn sketch(source: &Source, file: &SketchFile) -> Result<Sketch, World
 fn table_of(table: Table) -> Result<FiringTable, String> {
     let micros = |us: &[u32]| us.iter().copied().map(Micros::new).collect::<Vec<_>>();
     if ["t_fire_us", "step_us"].iter().any(|&key| table.contains_key(key)) {
-        let file = PhasesFile::deserialize(table).map_err(|error| error.message().to_owned())?;
+        let file = PhasesFile::deserialize(table).map_err(|error| explain(&error))?;
         let period = Micros::new(file.period_us);
         return match (&file.t_fire_us, file.step_us, file.phases, &file.t_lag_us) {
             (Some(rows), None, None, None) if file.first_multiplier.is_none() => {
@@ -94,7 +95,7 @@ fn table_of(table: Table) -> Result<FiringTable, String> {
             _ => Err("expected either t_fire_us, one list for each phase, or step_us, phases and t_lag_us".to_owned()),
         };
     }
-    let file = ScheduleFile::deserialize(table).map_err(|error| error.message().to_owned())?;
+    let file = ScheduleFile::deserialize(table).map_err(|error| explain(&error))?;
     let schedule = file.schedule()?;
     let row = |phase| (0..schedule.sensors()).map(|x| schedule.t_fire(phase, x).unwrap_or_default()).collect();
     Ok(FiringTable { period: schedule.period(), rows: [eeruf_core::Phase::A, eeruf_core::Phase::B].map(row).into() })
@@ -115,8 +116,8 @@ impl Sketch {
     /// ```
     pub fn from_table(table: &Table) -> Result<Self, String> {
         let source = Source { file: "firing".into(), text: table.to_string() };
-        let file: SketchFile = toml::from_str(&source.text).map_err(|error| error.message().to_owned())?;
-        sketch(&source, &file).map_err(|error| error.message)
+        let file: SketchFile = source.toml().map_err(|error| error.message().to_owned())?;
+        sketch(&source, &file).map_err(|error| error.message().to_owned())
     }
 
     /// The table `[firing]` in a scene file that says this: what differs from the default.

@@ -3,11 +3,11 @@
 use std::fs;
 use std::path::Path;
 
-use super::error::InputError;
+use crate::FileError;
 
-/// A kind of file that a command reads.
+/// A kind of file that a command of `eeruf` reads.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Kind {
+pub enum Kind {
     /// A schedule: firing times or waits.
     Schedule,
     /// A ring of `design`.
@@ -24,7 +24,7 @@ pub(crate) enum Kind {
 
 impl Kind {
     /// Returns the kind that a file looks like, if it looks like one.
-    pub(crate) fn of(file: &Path, text: &str) -> Option<Self> {
+    pub fn of(file: &Path, text: &str) -> Option<Self> {
         match file.extension().map(|ending| ending.to_string_lossy().to_lowercase()).as_deref() {
             Some("csv" | "mcap" | "bag" | "db3") => return Some(Self::Log),
             Some("yaml" | "yml") => return Some(Self::Map),
@@ -53,7 +53,7 @@ impl Kind {
     }
 
     /// Returns the kind that a file looks like; none for one that cannot be read as text.
-    pub(crate) fn of_file(file: &Path) -> Option<Self> {
+    pub fn of_file(file: &Path) -> Option<Self> {
         fs::read_to_string(file).ok().and_then(|text| Self::of(file, &text))
     }
 
@@ -83,21 +83,40 @@ impl Kind {
     ///
     /// # Errors
     /// The kind found, the kind expected, and the command that reads the kind found.
-    pub(crate) fn expect(self, file: &Path, text: &str) -> Result<(), String> {
+    ///
+    /// ```
+    /// use eeruf_files::Kind;
+    /// let error = Kind::Scene.expect("ring.toml".as_ref(), "sensors = 8").unwrap_err().to_string();
+    /// assert!(error.ends_with("expected a scene; did you mean `eeruf design ring.toml`?"), "{error}");
+    /// ```
+    pub fn expect(self, file: &Path, text: &str) -> Result<(), FileError> {
         let Some(found) = Self::of(file, text).filter(|found| *found != self) else { return Ok(()) };
-        let (is, command) = (found.name(), found.command());
-        Err(format!("this is {is}; expected {}; did you mean `eeruf {command} {}`?", self.name(), file.display()))
+        let (is, expected, command) = (found.name(), self.name(), found.command());
+        let message = format!("this is {is}; expected {expected}; did you mean `eeruf {command} {}`?", file.display());
+        Err(FileError::new(file, message))
     }
-}
 
-/// Refuses a TOML file or a map where a log is expected.
-///
-/// # Errors
-/// The kind found, and the command that reads it.
-pub(crate) fn expect_log(file: &Path) -> Result<(), InputError> {
-    fs::metadata(file).map_err(|error| InputError::reading(file, &error))?;
-    let is_toml = file.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml"));
-    // What cannot be read gets its error from the reader of logs.
-    let text = if is_toml { fs::read_to_string(file).unwrap_or_default() } else { String::new() };
-    Kind::Log.expect(file, &text).map_err(|message| InputError::new(file, None, message))
+    /// Reads a text file of this kind.
+    ///
+    /// # Errors
+    /// The file cannot be read, is no text, or is certainly of another kind.
+    pub fn read(self, file: &Path) -> Result<String, FileError> {
+        // The name of a log says what it is, and not every log is text.
+        self.expect(file, "")?;
+        let text = fs::read_to_string(file).map_err(|error| FileError::reading(file, &error))?;
+        self.expect(file, &text)?;
+        Ok(text)
+    }
+
+    /// Refuses a TOML file or a map where a log is expected.
+    ///
+    /// # Errors
+    /// The file cannot be read, or the kind found and the command that reads it.
+    pub fn expect_log(file: &Path) -> Result<(), FileError> {
+        fs::metadata(file).map_err(|error| FileError::reading(file, &error))?;
+        let is_toml = file.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml"));
+        // What cannot be read gets its error from the reader of logs.
+        let text = if is_toml { fs::read_to_string(file).unwrap_or_default() } else { String::new() };
+        Self::Log.expect(file, &text)
+    }
 }

@@ -1,0 +1,14 @@
+//! Errors in the files of eeruf: the file, the place in it, then `thing: value; expected X`, in one line.
+//!
+//! The program, the libraries and the Python package report errors in files by the one type [`FileError`]. [`Kind`]
+//! recognises a file before it is parsed; with the feature `toml`, `parse` reads TOML.
+
+mod error;
+mod kind;
+#[cfg(feature = "toml")]
+mod parse;
+
+pub use error::FileError;
+pub use kind::Kind;
+#[cfg(feature = "toml")]
+pub use parse::{build, explain, parse};

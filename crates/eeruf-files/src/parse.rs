@@ -1,0 +1,197 @@
+//! TOML, with line, key, value and expectation in the errors.
+
+use std::fmt;
+
+use serde::de::DeserializeOwned;
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+use crate::FileError;
+
+/// Types of Rust, and what a user writes for them.
+const TYPES: [(&str, &str); 5] = [
+    ("usize", "a whole number from 0 on"),
+    ("u64", "a whole number from 0 on"),
+    ("u32", "a whole number from 0 to 4294967295"),
+    ("u8", "a whole number from 0 to 255"),
+    ("f64", "a number"),
+];
+/// The least likeness, out of 1, of a key that was meant.
+const ALIKE: f64 = 0.85;
+
+/// Reads a TOML text.
+///
+/// # Errors
+/// The first thing wrong with it, with its line and key.
+///
+/// ```
+/// #[derive(Debug, serde::Deserialize)]
+/// struct Ring { sensors: usize }
+/// let error = eeruf_files::parse::<Ring>("# a ring\nsensors = -4").unwrap_err();
+/// assert_eq!(error.to_string(), "line 2: sensors: integer `-4`; expected a whole number from 0 on");
+/// # let _ = |ring: Ring| ring.sensors;
+/// ```
+pub fn parse<T: DeserializeOwned>(text: &str) -> Result<T, FileError> {
+    toml::from_str(text).map_err(|error| {
+        let span = error.span();
+        let line = span.as_ref().map(|span| line_at(text, span.start));
+        let table = DeTable::parse(text).ok();
+        let key = span.as_ref().and_then(|span| key_at(table.as_ref()?.get_ref(), span.start));
+        let found = span.and_then(|span| text.get(span)).unwrap_or_default();
+        FileError::in_text(message(key, found, error.message())).at_line(line)
+    })
+}
+
+/// Reads a TOML text and builds its meaning.
+///
+/// # Errors
+/// As [`parse`], or the builder's message, at the line of the first key that it names.
+///
+/// ```
+/// #[derive(serde::Deserialize)]
+/// struct Ring { tick_us: u32 }
+/// let positive = |ring: Ring| if ring.tick_us > 0 { Ok(ring) } else { Err("a tick of 0 us; expected 1 or more") };
+/// let error = eeruf_files::build("# a ring\ntick_us = 0", positive).err().unwrap();
+/// assert_eq!(error.to_string(), "line 2: a tick of 0 us; expected 1 or more");
+/// ```
+pub fn build<T: DeserializeOwned, B, E: fmt::Display>(
+    text: &str,
+    builder: impl FnOnce(T) -> Result<B, E>,
+) -> Result<B, FileError> {
+    builder(parse(text)?).map_err(|error| {
+        let message = error.to_string();
+        let line = DeTable::parse(text).ok().and_then(|table| {
+            let keys: Vec<_> = table.get_ref().keys().map(|key| (key.get_ref().as_ref(), key.span().start)).collect();
+            let is_named = |key: &str, word: &str| key == word || key.strip_suffix("_us") == Some(word);
+            let found = message.split("; expected").next().unwrap_or_default();
+            let mut words = found.split(|c: char| !(c.is_alphanumeric() || c == '_'));
+            words.find_map(|word| keys.iter().find(|(key, _)| is_named(key, word)).map(|(_, at)| line_at(text, *at)))
+        });
+        FileError::in_text(message).at_line(line)
+    })
+}
+
+/// The line of a byte, counted from 1.
+fn line_at(text: &str, byte: usize) -> u64 {
+    1 + text.get(..byte).map_or(0, |before| before.matches('\n').count() as u64)
+}
+
+/// The error in a value of TOML that was parsed before, as `thing: value; expected X`.
+pub fn explain(error: &toml::de::Error) -> String {
+    message(None, "", error.message())
+}
+
+/// The key whose value stands at a byte of the text.
+fn key_at<'a>(table: &'a DeTable<'_>, at: usize) -> Option<&'a str> {
+    table.iter().find_map(|(key, value)| in_value(key.get_ref(), value, at))
+}
+
+fn in_value<'a>(key: &'a str, value: &'a Spanned<DeValue<'_>>, at: usize) -> Option<&'a str> {
+    let span = value.span();
+    match value.get_ref() {
+        // The span of a table may end with its header.
+        DeValue::Table(table) => key_at(table, at).or_else(|| (span.start == at).then_some(key)),
+        DeValue::Array(array) => {
+            let within = array.iter().find_map(|value| in_value(key, value, at));
+            within.or_else(|| span.contains(&at).then_some(key))
+        }
+        _ => span.contains(&at).then_some(key),
+    }
+}
+
+/// The parser's message as `thing: value; expected X`.
+fn message(key: Option<&str>, found: &str, error: &str) -> String {
+    let bare = |name: &str| name.trim_matches('`').to_owned();
+    if let Some((name, keys)) = error.strip_prefix("unknown field ").and_then(|rest| rest.split_once(", ")) {
+        let name = bare(name);
+        let known = keys.split('`').skip(1).step_by(2).map(|known| (known, strsim::jaro_winkler(known, &name)));
+        let meant = known.filter(|(_, alike)| *alike >= ALIKE).max_by(|one, other| one.1.total_cmp(&other.1));
+        let meant = meant.map_or(String::new(), |(known, _)| format!("; did you mean `{known}`?"));
+        let keys = keys.replace("there are no fields", "expected none");
+        return format!("{name}: unknown key; {keys}{meant}");
+    }
+    if error == "duplicate key" {
+        return format!("{found}: set twice; expected each key once");
+    }
+    if let Some(name) = error.strip_prefix("missing field ") {
+        let place = key.map_or(String::new(), |key| format!(" in {key}"));
+        return format!("{}: missing{place}; expected the key to be set", bare(name));
+    }
+    // Of a value that fits none of several types the parser names the types alone.
+    if let Some(expected) = error.strip_prefix("expected ").filter(|_| !found.is_empty() && !found.contains('\n')) {
+        return format!("{}`{found}`; expected {expected}", key.map_or(String::new(), |key| format!("{key}: ")));
+    }
+    let error = ["invalid type: ", "invalid value: ", "invalid ", "unknown variant "]
+        .into_iter()
+        .find_map(|kind| error.strip_prefix(kind))
+        .filter(|_| key.is_some() || error.contains(", expected "))
+        .unwrap_or(error);
+    let (found, expected) = error.rsplit_once(", expected ").unwrap_or((error, ""));
+    let expected = TYPES.iter().find(|(name, _)| *name == expected).map_or(expected, |(_, words)| words);
+    let values = ["an array of length ", "a tuple of size "].iter().find_map(|list| expected.strip_prefix(list));
+    let values = values.map(|count| format!("{count} values"));
+    let expected = values.as_deref().unwrap_or(if expected.starts_with("struct ") { "a table" } else { expected });
+    let expected = match expected {
+        "" if error.contains("expected ") => String::new(),
+        "" => "; expected TOML".to_owned(),
+        expected => format!("; expected {expected}"),
+    };
+    let key = key.map_or(String::new(), |key| format!("{key}: "));
+    // What the libraries say of a value may name its key.
+    format!("{}{found}{expected}", if found.starts_with(&key) { "" } else { &key })
+}
+
+#[cfg(test)]
+mod tests {
+    use serde::Deserialize;
+
+    use super::parse;
+
+    #[derive(Debug, Deserialize)]
+    #[serde(deny_unknown_fields)]
+    #[expect(dead_code, reason = "read by serde alone")]
+    struct Ring {
+        sensors: usize,
+        layout: Option<Layout>,
+        #[serde(default)]
+        walls: Vec<Wall>,
+    }
+
+    #[derive(Debug, Deserialize)]
+    #[serde(rename_all = "lowercase")]
+    enum Layout {
+        Line,
+        Ring,
+    }
+
+    #[derive(Debug, Deserialize)]
+    #[serde(deny_unknown_fields)]
+    #[expect(dead_code, reason = "read by serde alone")]
+    struct Wall {
+        points_m: [f64; 2],
+    }
+
+    #[test]
+    fn errors_name_line_key_value_and_expectation() {
+        let cases = [
+            ("sensors = -4", "line 1: sensors: integer `-4`; expected a whole number from 0 on"),
+            ("sensors = \"4\"", "line 1: sensors: string \"4\"; expected a whole number from 0 on"),
+            ("sensors = 4\nlayout = \"star\"", "line 2: layout: `star`; expected `line` or `ring`"),
+            ("", "line 1: sensors: missing; expected the key to be set"),
+            (
+                "sensor = 4",
+                "line 1: sensor: unknown key; expected one of `sensors`, `layout`, `walls`; did you mean \
+                            `sensors`?",
+            ),
+            ("sensors = 4\nspeed = 3", "line 2: speed: unknown key; expected one of `sensors`, `layout`, `walls`"),
+            ("sensors = 4\n[[walls]]\n", "line 2: points_m: missing in walls; expected the key to be set"),
+            ("sensors = 4\n[[walls]]\npoints_m = [1, true]", "line 3: points_m: boolean `true`; expected a number"),
+            ("sensors = 4\n[[walls]]\npoints_m = 1", "line 3: points_m: integer `1`; expected 2 values"),
+            ("sensors = 4\nsensors = 5", "line 2: sensors: set twice; expected each key once"),
+            ("sensors", "line 1: key with no value; expected `=`"),
+        ];
+        for (text, expected) in cases {
+            assert_eq!(parse::<Ring>(text).unwrap_err().to_string(), expected, "{text}");
+        }
+    }
+}

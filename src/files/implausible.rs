@@ -25,10 +25,11 @@ const fn plausible(key: &'static str, from: f64, to: f64, why: &'static str) -> 
 }
 
 const MICROSECONDS: &str = "likely milliseconds: times are microseconds";
+const BOUNCES: &str = "each bounce multiplies the paths; 4 to 6 suffice in most rooms";
 const METRES: &str = "likely centimetres or millimetres: lengths are metres";
 
 /// In any file and among the options of any command: a key has one meaning.
-const PLAUSIBLE: [Plausible; 34] = [
+const PLAUSIBLE: [Plausible; 35] = [
     plausible("period_us", 2_000.0, 60e6, MICROSECONDS),
     plausible("period", 2_000.0, 60e6, MICROSECONDS),
     plausible("reach_us", 1_000.0, 10e6, MICROSECONDS),
@@ -62,7 +63,8 @@ const PLAUSIBLE: [Plausible; 34] = [
     plausible("turn_deg_s", 0.0, 720.0, "expected degrees per second"),
     plausible("fading_db_rms", 0.0, 20.0, "fading is in dB, 1 to 3 in most rooms"),
     plausible("jitter_us_rms", 0.0, 5_000.0, MICROSECONDS),
-    plausible("max_order", 0.0, 12.0, "each bounce multiplies the paths; 4 to 6 suffice in most rooms"),
+    plausible("max_order", 0.0, 12.0, BOUNCES),
+    plausible("order", 0.0, 12.0, BOUNCES),
 ];
 
 /// Lists of firing times and waits, which are implausible only if all of them are small.
@@ -169,7 +171,9 @@ fn message(key: &str, number: f64) -> Option<String> {
     let size = number.abs();
     let is_plausible = size == 0.0 || (plausible.from..=plausible.to).contains(&size);
     let Plausible { from, to, why, .. } = plausible;
-    (!is_plausible).then(|| format!("{number}; expected {from} to {to}; {why}"))
+    // A number of 300 digits says no more than its power of ten.
+    let shown = if size < 1e12 { number.to_string() } else { format!("{number:e}") };
+    (!is_plausible).then(|| format!("{shown}; expected {from} to {to}; {why}"))
 }
 
 fn numbers_of(value: &DeValue<'_>, numbers: &mut Vec<f64>) {

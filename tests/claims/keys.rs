@@ -61,7 +61,7 @@ fn figures_of_modules_are_those_in_the_document() {
 fn keys_of_ring_files_are_those_in_the_document() {
     let documented: BTreeSet<_> =
         rows("docs/reference/ring-files.md", "# Keys of ring files").iter().flat_map(|row| quoted(&row[0])).collect();
-    assert_eq!(documented, expected(&RingSpec::from_text("unknown = 1").unwrap_err().message()));
+    assert_eq!(documented, expected(RingSpec::from_text("unknown = 1").unwrap_err().message()));
 }
 
 #[test]

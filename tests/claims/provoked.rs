@@ -236,7 +236,7 @@ const REFUSED_RUNS: [(&[&str], &str); 72] = [
 ];
 
 /// Legal and implausible input, and its warning.
-const IMPLAUSIBLE: [Spoilt<'static>; 21] = [
+const IMPLAUSIBLE: [Spoilt<'static>; 23] = [
     ("design", RING, "window_us = 30000", "window_us = 30", "window_us: 30; expected 1000 to 1000000; likely millis"),
     ("design", RING, "min_interval_us = 15000", "min_interval_us = 15", "min_interval_us: 15; expected 200 to"),
     ("design", RING, "t_delta_us = 900", "t_delta_us = 1", "t_delta_us: 1; expected 20 to 20000; T_delta is in micro"),
@@ -261,6 +261,8 @@ const IMPLAUSIBLE: [Spoilt<'static>; 21] = [
     ("verify --min-interval-us 15", SCHEDULE, "", "", "--min-interval-us: 15; expected 200 to"),
     ("design --period 1000", RING, "", "", "--period: 1000; expected 2000 to 60000000; likely milliseconds"),
     ("paths", SCENE, "t_delta_us = 200", "height_m = 100.0", "height_m: 100; expected 0 to 20; likely centimetres"),
+    ("paths --order 20", SCENE, "", "", "--order: 20; expected 0 to 12; each bounce multiplies the paths"),
+    ("paths", SCENE, "t_delta_us = 200", "height_m = 1e300", "height_m: 1e300; expected 0 to 20"),
     ("logs --speed-of-sound 34", LOG, "", "", "--speed-of-sound: 34; expected 250 to 450; speeds are metres"),
     ("logs --no-echo-m 500", LOG, "", "", "--no-echo-m: 500; expected 0.05 to 60; likely centimetres"),
     ("replay --t-delta-us 500 --speed-of-sound 34320", LOG, "", "", "--speed-of-sound: 34320; expected 250 to 450"),

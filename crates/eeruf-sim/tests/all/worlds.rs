@@ -88,7 +88,7 @@ fn an_unknown_field_or_word_is_named_with_its_line() {
     assert!(unknown.starts_with("w.toml, line 6: windw_us: unknown key; expected one of `pose`, `ring`"), "{unknown}");
     let preset = robot_error("transducer = \"bat\"");
     assert!(
-        preset.starts_with("w.toml, line 6: module: no preset \"bat\"; expected polaroid-6500, hc-sr04, "),
+        preset.starts_with("w.toml, line 6: transducer: module: no preset \"bat\"; expected polaroid-6500, hc-sr04, "),
         "{preset}"
     );
     let negative = robot_error("period_us = -5");

@@ -49,7 +49,7 @@ fn unknown_method_and_speed_are_refused_in_words() {
     for (words, says) in [
         (["experiment", "set-one", "--method", "eruf"], "`eruf`; expected simultaneous"),
         (["experiment", "set-two", "--speed", "9"], "expected 0.1 to 5"),
-        (["experiment", "set-two", "--seeds", "0"], "1..=100000"),
+        (["experiment", "set-two", "--seeds", "0"], "a number from 1 to 100000"),
     ] {
         let outcome = eeruf(&words);
         assert_eq!(outcome.code, Some(2));

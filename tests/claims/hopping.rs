@@ -112,7 +112,7 @@ fn what_is_wrong_with_a_file_of_many_phases_is_said_in_one_line() {
     let cases = [
         (
             "step_us = 240\nphases = 9\nt_lag_us = [0, 0]\n",
-            ": 9 phases; expected a prime that is no less than the sensors",
+            ", line 3: 9 phases; expected a prime that is no less than the sensors",
         ),
         (
             "step_us = 240\nphases = 11\nt_lag_us = [0, 60000]\n",
@@ -120,13 +120,13 @@ fn what_is_wrong_with_a_file_of_many_phases_is_said_in_one_line() {
         ),
         (
             "step_us = 240\nphases = 11\n",
-            ": expected either step_us, phases and t_lag_us, one number for each sensor, or",
+            ", line 2: expected either step_us, phases and t_lag_us, one number for each sensor, or",
         ),
-        ("t_fire_us = [[0, 1], [2]]\n", ": t_fire_us[1] has 1 numbers; expected 2, as many as t_fire_us[0]"),
-        ("t_fire_us = [[0, 60000], [2, 3]]\n", ": t_fire_us[0][1] is 60000; expected less than period_us"),
-        ("t_fire_us = [[0, 1]]\n", ": t_fire_us has 1 phases; expected 2 to 67"),
+        ("t_fire_us = [[0, 1], [2]]\n", ", line 2: t_fire_us[1] has 1 numbers; expected 2, as many as t_fire_us[0]"),
+        ("t_fire_us = [[0, 60000], [2, 3]]\n", ", line 2: t_fire_us[0][1] is 60000; expected less than period_us"),
+        ("t_fire_us = [[0, 1]]\n", ", line 2: t_fire_us has 1 phases; expected 2 to 67"),
         ("t_fire_us = [[], []]\n", ": 0 sensors; expected 1 to 64"),
-        ("t_fire_us = [[0, 1], [2, 3]]\nstep_us = 9\n", ": expected either step_us, phases and t_lag_us"),
+        ("t_fire_us = [[0, 1], [2, 3]]\nstep_us = 9\n", ", line 3: expected either step_us, phases and t_lag_us"),
         ("t_fire_us = [[0, 1], [2, -3]]\n", ", line 2: "),
     ];
     for (keys, expected) in cases {
@@ -142,7 +142,7 @@ fn what_is_wrong_with_a_file_of_many_phases_is_said_in_one_line() {
     // It is judged, and not refused.
     assert_eq!(outcome.code, Some(1), "{}", outcome.err);
     let outcome = eeruf(&["verify", file.to_str().unwrap(), "--t-delta-us", "150", "--window-us", "16711680"]);
-    let expected = ": --window-us 16711680; expected at most 16711679 for a ring that hops";
+    let expected = "--window-us: 16711680; expected at most 16711679 for a ring that hops";
     assert!(outcome.code == Some(2) && outcome.err.contains(expected), "{}", outcome.err);
     let text = std::fs::read_to_string("tests/data/hopping-8.toml").unwrap();
     let (_folder, file) = Scratch::new("wide.toml", &text.replace("window_us = 36_000", "window_us = 20_000_000"));

@@ -92,8 +92,14 @@ fn own_scenes_are_rooms_and_options_of_scenes_are_refused() {
     let rooms = way(&answer, "flow")["rooms"].as_object().unwrap();
     assert_eq!(rooms.keys().collect::<Vec<_>>(), ["alcove", "lab"]);
     for (words, said) in [
-        (["study", "rings/hc-sr04-8.toml", "--periods", "5"], "--periods: given; expected it with a scene alone"),
-        (["study", "scenes/alcove.toml", "--places", "5"], "--places: given; expected it with a ring file alone"),
+        (
+            ["study", "rings/hc-sr04-8.toml", "--periods", "5"],
+            "--periods: given with rings/hc-sr04-8.toml; expected it with a scene alone",
+        ),
+        (
+            ["study", "scenes/alcove.toml", "--places", "5"],
+            "--places: given with scenes/alcove.toml; expected it with a ring file alone",
+        ),
         (["study", "rings/hc-sr04-8.toml", "--rooms", "rings/paper-12.toml"], "expected a scene"),
         (["study", "rings/hc-sr04-8.toml", "--rooms", "docs"], "no file that ends in .toml; expected scenes"),
     ] {

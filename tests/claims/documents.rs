@@ -116,9 +116,9 @@ fn without(text: &str, begin: &str, end: &str) -> String {
 #[test]
 fn documents_have_at_most_45_000_words() {
     let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs");
-    let counted = documents(&docs).into_iter().filter(|document| {
-        !document.starts_with(docs.join("log")) && *document != docs.join("reference/options.md")
-    });
+    let counted = documents(&docs)
+        .into_iter()
+        .filter(|document| !document.starts_with(docs.join("log")) && *document != docs.join("reference/options.md"));
     let words = counted.map(|document| {
         let mut text = std::fs::read_to_string(&document).unwrap();
         if document.starts_with(docs.join("reference")) {

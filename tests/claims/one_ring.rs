@@ -408,7 +408,7 @@ fn every_key_of_a_ring_file_reaches_its_ring() {
     ] {
         let (key, _) = more.split_once(" =").unwrap();
         let without: Vec<_> = ALIKE.lines().filter(|line| !line.starts_with(key)).collect();
-        let error = RingSpec::from_text(&format!("{}\n{more}", without.join("\n"))).unwrap_err().message;
-        assert!(error.starts_with(expected), "{error}");
+        let error = RingSpec::from_text(&format!("{}\n{more}", without.join("\n"))).unwrap_err();
+        assert!(error.message().starts_with(expected), "{error}");
     }
 }

@@ -6,23 +6,20 @@ use cargo_metadata::{MetadataCommand, TargetKind};
 
 use crate::changed;
 use crate::listings;
-use crate::steps::{Steps, Trouble, run};
+use crate::steps::{Steps, Trouble, run, run_component};
 
 pub(crate) fn run_quick() -> ExitCode {
     let mut steps = Steps::default();
-    steps.step("formatting", || cargo(&["fmt", "--all", "--check"]));
+    steps.step("formatting", || run_component("rustfmt", &["fmt", "--all", "--check"]));
     steps.step("rules of the house", crate::house::check);
     steps.step("listings of the documents", listings::check_all);
     steps.step("links of the documents", crate::links::check_documents);
     steps.step("clippy", || {
-        cargo(&["clippy", "--quiet", "--workspace", "--all-targets", "--locked", "--", "--deny", "warnings"])
+        let args = ["clippy", "--quiet", "--workspace", "--all-targets", "--locked", "--", "--deny", "warnings"];
+        run_component("clippy", &args)
     });
     steps.step("unit tests of what changed", unit_tests_of_what_changed);
     steps.finish(false)
-}
-
-fn cargo(args: &[&str]) -> Result<(), Trouble> {
-    run(Command::new("cargo").args(args))
 }
 
 fn unit_tests_of_what_changed() -> Result<(), Trouble> {

@@ -65,6 +65,15 @@ pub(crate) fn run(command: &mut Command) -> Result<(), Trouble> {
     }
 }
 
+/// Runs a command of cargo that comes with a component of the toolchain; it is skipped where that is not installed.
+pub(crate) fn run_component(component: &str, args: &[&str]) -> Result<(), Trouble> {
+    let name = args.first().copied().unwrap_or_default();
+    if output(Command::new("cargo").args([name, "--version"])).is_none() {
+        return Err(Trouble::Skipped(format!("no cargo {name}; try: rustup component add {component}")));
+    }
+    run(Command::new("cargo").args(args))
+}
+
 /// The output of a command, or `None` if it cannot be run or fails.
 pub(crate) fn output(command: &mut Command) -> Option<String> {
     let output = command.output().ok().filter(|output| output.status.success())?;

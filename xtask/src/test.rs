@@ -5,7 +5,7 @@ use std::process::{Command, ExitCode};
 
 use cargo_metadata::{Metadata, MetadataCommand, Package};
 
-use crate::steps::{Steps, Trouble, output, run};
+use crate::steps::{Steps, Trouble, output, run, run_component};
 use crate::toolchain::{cargo_for_target, cargo_of_version};
 
 /// The smallest core that firmware runs on; the others are tried with the firmware itself.
@@ -13,12 +13,13 @@ const BARE_TARGETS: [&str; 1] = ["thumbv6m-none-eabi"];
 
 pub(crate) fn run_all(nothing_skipped: bool) -> ExitCode {
     let mut steps = Steps::default();
-    steps.step("formatting", || run_cargo(&["fmt", "--all", "--check"]));
+    steps.step("formatting", || run_component("rustfmt", &["fmt", "--all", "--check"]));
     steps.step("rules of the house", crate::house::check);
     steps.step("listings of the documents", crate::listings::check_all);
     steps.step("links of the documents", crate::links::check_documents);
     steps.step("clippy", || {
-        run_cargo(&["clippy", "--workspace", "--all-targets", "--locked", "--", "--deny", "warnings"])
+        let args = ["clippy", "--workspace", "--all-targets", "--locked", "--", "--deny", "warnings"];
+        run_component("clippy", &args)
     });
     let metadata = match MetadataCommand::new().no_deps().exec() {
         Ok(metadata) => metadata,

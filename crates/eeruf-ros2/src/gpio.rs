@@ -51,8 +51,8 @@ impl GpioRing {
     }
 
     fn of(text: &str) -> Result<Self, String> {
-        let module = eeruf_design::robot_ring(text)?.modules.first().copied();
         let spec = RingSpec::from_text(text).map_err(|error| error.message().to_owned())?;
+        let module = spec.robot_ring().modules.first().copied();
         let problem: PeriodProblem<'_> = spec.problem();
         let search = Search { budget: BUDGET, ..Search::default() };
         let found = shortest(&problem, &search, &mut ()).map_err(|error| error.to_string())?;

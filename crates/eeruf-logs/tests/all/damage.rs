@@ -199,6 +199,6 @@ fn missing_messages_of_a_bag_are_counted() {
     assert_eq!(database.execute(&format!("DELETE FROM messages WHERE id = {row}"), []).unwrap(), 1);
     drop(database);
     let (report, readings) = read(&bag, &Options::default()).unwrap();
-    let said: Vec<_> = report.damage.iter().map(|damage| damage.message()).collect();
+    let said: Vec<_> = report.damage.iter().map(eeruf_files::FileError::message).collect();
     assert_eq!((readings.len(), &said[..]), (11, &["1 of the 12 messages that it counts were not found"][..]));
 }

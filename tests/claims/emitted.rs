@@ -8,11 +8,11 @@ mod car_12;
 #[path = "emitted/flow_8.rs"]
 mod flow_8;
 #[expect(unreachable_pub)]
+#[path = "emitted/multiplexers_8.rs"]
+mod multiplexers_8;
+#[expect(unreachable_pub)]
 #[path = "emitted/paper_12.rs"]
 mod paper_12;
-#[expect(unreachable_pub)]
-#[path = "emitted/round_16.rs"]
-mod round_16;
 
 use eeruf_core::{Instant, Micros, Ring, RingConfig, RingEvent, flow::FlowRing};
 
@@ -32,11 +32,11 @@ fn an_emitted_table_drives_a_ring() {
     assert_eq!(fired, [2; 12]);
 }
 
-// A Polaroid's blanking goes with the table.
+// The modules' blanking goes with the table.
 #[test]
 fn emitted_table_is_deaf_as_its_modules() {
-    let ring = Ring::<_, _, 16>::new(&round_16::RING, round_16::CONFIG, Instant::default()).unwrap();
-    assert_eq!((ring.blanking(), ring.window()), (Micros::new(2_380), Micros::from_millis(36)));
+    let ring = Ring::<_, _, 8>::new(&multiplexers_8::RING, multiplexers_8::CONFIG, Instant::default()).unwrap();
+    assert_eq!((ring.blanking(), ring.window_of(0)), (Micros::new(117), Micros::new(14_569)));
 }
 
 #[test]

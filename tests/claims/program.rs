@@ -252,8 +252,9 @@ fn emitted_rust_and_c_compile_without_warning() {
     assert_eq!(rust, include_str!("emitted/paper_12.rs"), "eeruf design rings/paper-12.toml --period-only --emit rust");
     let rust = eeruf(&["design", "rings/car-12.toml", "--period-only", "--emit", "rust"]).out;
     assert_eq!(rust, include_str!("emitted/car_12.rs"), "eeruf design rings/car-12.toml --period-only --emit rust");
-    let rust = eeruf(&["design", "rings/round-16.toml", "--period-only", "--emit", "rust"]).out;
-    assert_eq!(rust, include_str!("emitted/round_16.rs"), "eeruf design rings/round-16.toml --period-only --emit rust");
+    let ring = "rings/hc-sr04-8-two-multiplexers.toml";
+    let rust = eeruf(&["design", ring, "--period-only", "--emit", "rust"]).out;
+    assert_eq!(rust, include_str!("emitted/multiplexers_8.rs"), "eeruf design {ring} --period-only --emit rust");
     let c = eeruf(&["design", "rings/paper-12.toml", "--period-only", "--emit", "c"]).out;
     let (folder, header) = Scratch::new("schedule.h", &c);
     let user = folder.path().join("user.c");

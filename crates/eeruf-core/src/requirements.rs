@@ -101,9 +101,9 @@ pub struct Requirements<'a> {
     pub window: Micros,
     /// Deaf time of a sensor after it has fired. Two phases reject sound whenever it arrives, and do not ask.
     pub blanking: Micros,
-    /// R: how long sound is audible; `None` for the window. Two phases reject sound of every age; a ring that fires late
-    /// looks no further back than this, or than one period (two with `stale_echo`) where that is shorter or this is
-    /// `None`.
+    /// R: how long sound is audible; `None` for the window. Two phases reject sound of every age; a ring that fires
+    /// late looks no further back than this, or than one period (two with `stale_echo`) where that is shorter or this
+    /// is `None`.
     pub audible: Option<Micros>,
     /// Also reject a sensor's own echo from an earlier period, however long its path: `2 |d| > 2 T_delta` for each
     /// sensor with two phases.

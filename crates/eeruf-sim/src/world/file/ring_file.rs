@@ -69,9 +69,9 @@ impl RobotRing {
     }
 }
 
-/// Adds to a robot's `T_delta`, and to its `path_change`, what its readings change from one firing of a sensor to the next at most when it drives
-/// so fast without odometry: `2 v (T_p + max |d|) / c` by its schedule, or as much of its period as the paper's waits
-/// span.
+/// Adds to a robot's `T_delta`, and to its `path_change`, what its readings change from one firing of a sensor to the
+/// next at most when it drives so fast without odometry: `2 v (T_p + max |d|) / c` by its schedule, or as much of its
+/// period as the paper's waits span.
 pub fn cover_motion(robot: &mut Robot, speed_m_s: f64) {
     let gap = robot.schedule.map_or_else(
         || Micros::new((u64::from(robot.period.as_micros()) * 5 / 4) as u32),

@@ -82,7 +82,8 @@ pub(crate) struct Args {
     /// prove
     #[arg(long, default_value_t = 1_000_000, value_name = "NODES")]
     certificate_budget: usize,
-    /// At least this many phases, 2 to 67: a schedule for a ring that hops in time; by default two phases that alternate
+    /// At least this many phases, 2 to 67: a schedule for a ring that hops in time; by default two phases that
+    /// alternate
     #[arg(long, value_name = "M", value_parser = clap::value_parser!(u8).range(2..=67),
           conflicts_with_all = ["certificate", "certificate_over_reals", "budget", "time_limit"])]
     phases: Option<u8>,
@@ -94,8 +95,8 @@ pub(crate) struct Args {
     /// point of a curve
     #[arg(long, value_name = "NODES")]
     budget: Option<u64>,
-    /// Find what fits into this period, in microseconds: whether the ring's needs do, and the largest T_delta; by default
-    /// the shortest period. Exit code 1 if they do not, 3 if that was not decided
+    /// Find what fits into this period, in microseconds: whether the ring's needs do, and the largest T_delta; by
+    /// default the shortest period. Exit code 1 if they do not, 3 if that was not decided
     #[arg(long, value_name = "US", conflicts_with_all = ["certificate", "certificate_over_reals", "phases", "curve"])]
     period: Option<u32>,
     /// Print the shortest period for 20 values of one need, from a tenth of the ring's own to twice as much; by default
@@ -106,8 +107,8 @@ pub(crate) struct Args {
     /// Search even where the atlas knows the shortest period
     #[arg(long)]
     no_atlas: bool,
-    /// Time limit of the command, in seconds, before it gives the best schedule so far; by default none. The certificate
-    /// then has what time is left, and states the bound that follows without a search if there is none
+    /// Time limit of the command, in seconds, before it gives the best schedule so far; by default none. The
+    /// certificate then has what time is left, and states the bound that follows without a search if there is none
     #[arg(long, value_name = "S", value_parser = seconds)]
     time_limit: Option<Duration>,
     /// Find the shortest period and judge nothing in rooms

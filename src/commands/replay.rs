@@ -33,8 +33,8 @@ pub(crate) struct Args {
     /// The log
     #[arg(value_name = "LOG")]
     file: PathBuf,
-    /// T_delta in microseconds: consecutive readings that differ by no more are near-identical; with --hopping by default
-    /// that of the settings
+    /// T_delta in microseconds: consecutive readings that differ by no more are near-identical; with --hopping by
+    /// default that of the settings
     #[arg(long, value_name = "US", required_unless_present = "hopping")]
     t_delta_us: Option<u32>,
     /// The log is that of a hopping ring's firings: run the tracker over it, with these settings; by default it

@@ -111,8 +111,9 @@ fn without(text: &str, begin: &str, end: &str) -> String {
 }
 
 // Counted: every document in docs/ but docs/log, tables and printed parts included. Not counted: in docs/reference,
-// options.md, which the program prints, and what is printed or a listing of a file elsewhere; the READMEs of crates, examples and libraries; and the files
-// at the repository's root (README, ARCHITECTURE, CONTRIBUTING, CHANGELOG and the like).
+// options.md, which the program prints, and what is printed or a listing of a file elsewhere; the READMEs of crates,
+// examples and libraries; and the files at the repository's root (README, ARCHITECTURE, CONTRIBUTING, CHANGELOG and
+// the like).
 #[test]
 fn documents_have_at_most_45_000_words() {
     let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs");

@@ -45,7 +45,7 @@ path_change_us = 90
 audible_us = 40_000
 "#;
 
-/// What a ring file says, key by key.
+/// The values of a ring file, key by key.
 struct Said {
     file: toml::Table,
     sensors: usize,
@@ -100,7 +100,7 @@ impl Said {
         said.unwrap_or_else(|| vec![100.0; self.sensors])
     }
 
-    /// What readings change by motion between two firings of a sensor by this table.
+    /// Change of readings by motion between two firings of a sensor by this table.
     fn motion_us(&self, table: &Table) -> f64 {
         let [a, b] = &table.fire;
         let apart = a.iter().zip(b).map(|(a, b)| a.abs_diff(*b)).max().unwrap();
@@ -365,8 +365,7 @@ fn says_the_same_everywhere(file: &str) -> bool {
     assert_eq!((one(&rust, "with_blanking("), c.get("blanking").map(|us| us[0])), (deaf, deaf), "{file}");
     let apart = said
         .us("min_interval_us")
-        .map(f64::from)
-        .unwrap_or_else(|| 2e6 * said.each("crosstalk_range_m").map_or(2.57, |range| range[0]) / 343.2);
+        .map_or_else(|| 2e6 * said.each("crosstalk_range_m").map_or(2.57, |range| range[0]) / 343.2, f64::from);
     assert!(close(&[one(&rust, "min_interval: Micros::new(").unwrap()], &[apart]), "{file}: {apart}");
     let bits = |set: &Vec<u32>| set.iter().fold(0, |bits, sensor| bits | 1 << sensor);
     for (key, name) in [("shared_lines", "shared_lines: &["), ("together", "together: &[")] {

@@ -54,7 +54,7 @@ pub(crate) struct PoleQuery<'a> {
     pub(crate) stop: &'a Stop,
 }
 
-/// How often the same is asked: of a scene, receivers, limits and audibility, but for the source.
+/// Place of a query among those with the same scene, receivers, limits and audibility, each with a source of its own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Asked {
     Once,

@@ -23,9 +23,9 @@ pub struct RobotRing {
     pub speed_m_s: f64,
     /// Number of adjacent sensors that must not fire close together.
     pub neighbours: u8,
-    /// By how much the path of a foreign sound changes from one reading to the next; `None` for `T_delta`.
+    /// Change of the path of a foreign sound from one reading to the next, at most; `None` for `T_delta`.
     pub path_change: Option<Micros>,
-    /// How long sound is audible; `None` for what modules say.
+    /// Time for which sound is audible; `None` for what modules say.
     pub audible: Option<Micros>,
 }
 

@@ -6,7 +6,8 @@
     target/python/bin/python benches/python/overhead.py
 
 Each call is timed by the best of many runs; what Python adds is the difference. Then: how much longer than `pass` a process
-runs that imports eeruf, and how long Ctrl-C takes to end long work. Nothing else should run beside it.
+runs that imports eeruf, how many steps and resets a batch does on one core, and how long Ctrl-C takes to end long work. Nothing
+else should run beside it.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ from typing import Any, Callable
 
 import eeruf
 import numpy as np
-from eeruf import sim
+from eeruf import experiments, sim
 
 ROOT = Path(__file__).resolve().parents[2]
 NEEDS: dict[str, Any] = {"t_delta_us": 999, "min_interval_us": 15_000, "window_us": 36_000}
@@ -82,6 +83,20 @@ def step(**own: Any) -> float:
     return best(many) / 10_000
 
 
+def batch(order: int) -> tuple[float, float]:
+    """Return how many steps of 60 ms, and resets, a batch does in a second on one core, among eight poles."""
+    scenes = [scene.replace(poles=scene.poles[:8], max_order=order) for scene in experiments.courses(0, 16)]
+    many = sim.Batch(scenes, threads=1)
+
+    def steps() -> None:
+        many.reset()
+        for _ in range(20):
+            many.step(0.06, v_m_s=0.3, w_rad_s=0.1)
+
+    reset_s = best(many.reset)
+    return 20 * len(scenes) / (best(steps) - reset_s), len(scenes) / reset_s
+
+
 def beyond_pass_ms(what: str) -> float:
     """Return how much longer a fresh interpreter runs that imports something than one that does nothing, in milliseconds.
 
@@ -134,6 +149,10 @@ def main() -> None:
         there = rust[name]
         added, ratio = 1e6 * (here - there), here / there
         print(f"| {name} | {1e6 * there:.1f} us | {1e6 * here:.1f} us | {ratio:.2f} | {added:.1f} us |")
+    print("\n| a batch of 16, order | steps of 60 ms a second and core | resets |\n|---|---|---|")
+    for order in (2, 6):
+        steps_per_s, resets_per_s = batch(order)
+        print(f"| {order} | {steps_per_s:.0f} | {resets_per_s:.0f} |")
     names = ("eeruf", "numpy", "numpy, eeruf")
     alone_ms, numpy_ms, both_ms = (beyond_pass_ms(f"import {name}") for name in names)
     print(

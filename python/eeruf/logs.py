@@ -255,8 +255,8 @@ class Diagnosis:
     firing ``sender`` is whose sound its reading is, -1 where that is not sure, ``travel_us`` how long it travelled, ``sure`` how sure
     that is. ``faults`` are ``("deaf", [sensor])``, ``("losing", [sensor])``, ``("chattering", [sensor])``, ``("late", [sensor])`` and
     ``("swapped", [one, other])``. Sensors in ``silent`` hear nothing, those in ``missing`` miss echoes at random, and the log cannot
-    tell why. ``moved`` is true if the robot moved, ``None`` if too few ranges recur to tell; then no wire, trigger, loss or chatter is
-    named. ``most_offsets`` is at how many offsets two firings stand to each other at most; below about five nothing can be named.
+    tell why. ``moved`` is true if the robot moved; then no wire, trigger, loss or chatter is named.
+    ``most_offsets`` is at how many offsets two firings stand to each other at most; below about five nothing can be named.
 
     Example:
         >>> import eeruf
@@ -273,7 +273,7 @@ class Diagnosis:
     faults: list[tuple[str, list[int]]]
     silent: list[int]
     missing: list[int]
-    moved: bool | None
+    moved: bool
     most_offsets: int
 
 

@@ -171,13 +171,12 @@ impl RingSpec {
         PeriodProblem { sensors: self.sensors, requirements, tick: self.tick }
     }
 
-    /// Requirements as a table of two phases hands them to the ring that fires by it, which listens no longer than for
-    /// the range and allows for P.
+    /// Requirements as a table of two phases hands them to the ring that fires by it, which allows for P.
     pub fn table_requirements(&self) -> Requirements<'_> {
         let requirements = self.problem().requirements;
         let more = |path_change: Micros| path_change.saturating_add(Micros::new(1));
         let criterion = self.path_change.map_or(requirements.criterion, |change| Criterion::Margin(more(change)));
-        Requirements { criterion, window: requirements.window.min(self.listening), ..requirements }
+        Requirements { criterion, ..requirements }
     }
 
     /// The ring as scenes take it.

@@ -88,7 +88,7 @@ impl Found<'_> {
         for sensor in self.diagnosis.missing() {
             advice.push(format!("hold a board before sensor {} and record again: it may lose echoes", sensor + 1));
         }
-        if self.diagnosis.moved != Some(false) {
+        if self.diagnosis.moved {
             advice.push("record a minute of a robot that stands".to_owned());
         }
         if self.phases() <= 2 {

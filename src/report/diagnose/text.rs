@@ -46,7 +46,7 @@ fn head(found: &Found<'_>) -> String {
         );
     }
     let most = diagnosis.most_offsets;
-    if diagnosis.moved == Some(true) && diagnosis.paths.is_empty() {
+    if diagnosis.moved && diagnosis.paths.is_empty() {
         text +=
             "No sender can be named, and nothing can be said of blind sensors: ranges change while the robot moves.\n";
     } else if diagnosis.paths.is_empty() {
@@ -174,13 +174,9 @@ fn open(found: &Found<'_>, text: &mut String) {
             sensor + 1
         );
     }
-    *text += match found.diagnosis.moved {
-        Some(false) => "",
-        Some(true) => "The robot moved: no lost echo, noise, wire or trigger can be named.\n",
-        None => {
-            "Too few ranges recur to know that the robot stood: no lost echo, noise, wire or trigger can be named.\n"
-        }
-    };
+    if found.diagnosis.moved {
+        *text += "The robot moved: no lost echo, noise, wire or trigger can be named.\n";
+    }
 }
 
 fn sensors(found: &Found<'_>, text: &mut String) {

@@ -108,6 +108,8 @@ const RANDOM: f64 = 0.1;
 const RUNS: f64 = 0.3;
 /// Firings of a chattering sensor whose echoes wander, at least.
 const CHATTERS: f64 = 0.065;
+/// Noise has no memory; who walks by makes echoes wander one after the other.
+const EPISODES: f64 = 2.0;
 /// Not more than one other sensor does so this much as often.
 const AS_OTHERS: f64 = 0.4;
 
@@ -117,7 +119,7 @@ pub(super) fn faults(
     alike: &[Alike],
     timeline: &Timeline,
     settings: &Settings,
-    stood: bool,
+    moved: bool,
 ) -> Vec<Fault> {
     let mut faults = Vec::new();
     for (of, like) in hearing.iter().zip(alike).filter(|(of, _)| of.echoes.of >= FEW) {
@@ -125,7 +127,7 @@ pub(super) fn faults(
         let mut others = hearing.iter().filter(|other| other.sensor != sensor);
         let is_closed = hearing.len() > 2 && others.all(|other| other.echoes.value() > CLOSED);
         let misses_others = like.answers.of >= ARRIVALS && like.answers.interval_95().1 < ANSWERS;
-        let stands = stood && of.echoes.of >= SHORT;
+        let stands = !moved && of.echoes.of >= SHORT;
         let fades_slowly = alike.iter().any(|other| other.runs() > RUNS);
         if of.is_silent && (is_closed || misses_others) {
             let is_heard = paths.iter().any(|path| path.sender == sensor && path.receiver != sensor);
@@ -134,15 +136,16 @@ pub(super) fn faults(
             let Share { count, of } = like.repeats;
             faults.push(Fault::Losing { sensor, lost: Share { count: of - count, of } });
         }
-        // Noise has no memory; who walks by makes echoes of several sensors wander, for a while.
+        // Who walks by makes echoes of several sensors wander, for a while.
         let as_much = |other: &&Alike| other.wandering.value() > AS_OTHERS * like.wandering.value();
         let [after_none, after_one] = like.wanders_after;
-        let alone = alike.iter().filter(as_much).count() <= 2 && after_one.interval_95().0 < after_none.interval_95().1;
+        let alone = alike.iter().filter(as_much).count() <= 2
+            && after_one.interval_95().0 < EPISODES * after_none.interval_95().1;
         if stands && alone && like.wandering.of >= FEW && like.wanders_steadily > CHATTERS {
             faults.push(Fault::Chattering { sensor, wandering: like.wandering });
         }
     }
-    if !stood {
+    if moved {
         return faults;
     }
     let blames = |fault: &Fault| match *fault {

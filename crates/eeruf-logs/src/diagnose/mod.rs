@@ -95,9 +95,9 @@ pub struct Diagnosis {
     pub hearing: Vec<Hearing>,
     /// Broken parts.
     pub faults: Vec<Fault>,
-    /// True if ranges that recurred at the beginning are not there at the end: the robot moved; none if too
-    /// few recurred to tell. Faults that show in what repeats are named where it is known that the robot stood.
-    pub moved: Option<bool>,
+    /// True if ranges that recurred at the beginning are not there at the end: the robot moved, and faults that show in
+    /// what repeats cannot be named.
+    pub moved: bool,
     /// The most offsets at which a reading could come from a firing of another sensor, over all pairs.
     pub most_offsets: u32,
 }
@@ -140,7 +140,7 @@ pub fn diagnose(log: &FiringLog, settings: &Settings) -> Diagnosis {
     let alike: Vec<_> = sensors.map(|sensor| alike(sensor, &paths, &timeline, &fits_none, tolerance)).collect();
     let hearing = hearing(log, &paths, &named, &fits_none, &alike);
     let moved = timeline.moved();
-    let faults = faults(&paths, &hearing, &alike, &timeline, settings, moved == Some(false));
+    let faults = faults(&paths, &hearing, &alike, &timeline, settings, moved);
     let most_offsets = timeline.most_offsets(settings.tolerance_us.into());
     Diagnosis { paths, named, hearing, faults, moved, most_offsets }
 }

@@ -45,17 +45,16 @@ impl Timeline {
         &self.heard[usize::from(receiver)]
     }
 
-    /// True if ranges that recur in the first third of the log do not come back in the last one, at most of the sensors
-    /// that have any; false if they do at half of all that mostly hear something. A wall along which the robot drives
-    /// stays as far: where others hear much that does not recur, nobody knows.
-    pub(super) fn moved(&self) -> Option<bool> {
+    /// Returns true if ranges that recur in the first third of the log do not come back in the last one, at most of the
+    /// sensors that have any.
+    pub(super) fn moved(&self) -> bool {
         /// Echoes this close are of one thing that stands, in microseconds.
         const SAME_US: i64 = 75;
         /// A range that comes so often in a third recurs.
         const RECURS: f64 = 0.1;
         const FEWEST: usize = 10;
         const PARTS: usize = 3;
-        let (mut stay, mut all, mut hear) = (0, 0, 0);
+        let (mut stay, mut all) = (0, 0);
         for heard in &self.heard {
             let third = heard.len() / 3;
             let sorted = |part: &[Heard]| {
@@ -64,7 +63,6 @@ impl Timeline {
                 times
             };
             let (first, last) = (sorted(&heard[..third]), sorted(&heard[heard.len() - third..]));
-            hear += u32::from(2 * first.len() > third);
             let near = |times: &[i64], us: i64| {
                 times.partition_point(|&at| at <= us + SAME_US) - times.partition_point(|&at| at < us - SAME_US)
             };
@@ -80,7 +78,7 @@ impl Timeline {
             all += 1;
             stay += u32::from(8 * near(&last, at) >= crowd);
         }
-        if all > 1 && 2 * stay < all { Some(true) } else { (stay > 0 && 2 * stay >= hear).then_some(false) }
+        all > 1 && 2 * stay < all
     }
 
     /// The most different offsets at which one sensor may hear another's sound.

@@ -267,8 +267,7 @@ fn scene_says(file: &str, text: &str, said: &Said, emitted: &str, table: &Table)
     let window = us(&|x| limits(x).map_or(robot.window, |limits| limits.window));
     let t_delta = us(&|x| limits(x).map_or(robot.t_delta, |limits| limits.t_delta));
     let listens = table.rest.as_ref().unwrap();
-    let in_scene: Vec<_> = window.iter().map(|us| f64::from(*us)).collect();
-    assert!(close(&in_scene, &said.windows_us()), "{file}: {window:?} {:?}", said.windows_us());
+    assert!(close(&window, &said.windows_us()), "{file}: {window:?} {:?}", said.windows_us());
     let emitted_t_delta: Vec<_> = listens.t_delta.iter().map(|us| f64::from(*us)).collect();
     assert!(close(&t_delta, &emitted_t_delta), "{file}: {t_delta:?} {emitted_t_delta:?}");
     let path_change: Vec<_> = robot.path_change.iter().map(|change| change.as_micros()).collect();

@@ -198,7 +198,7 @@ test("bad input is one sentence that names the thing, the value and what is expe
       /^no method `eruf`; expected simultaneous, /,
     ],
     [{ ask: "run", scene: robot, method: "eeruf", periods: 0, shown_s: 1 }, "0 periods; expected 1 to 100000"],
-    [{ ask: "design", ring: "sensors = 0" }, "0 sensors; expected 1 to 64"],
+    [{ ask: "design", ring: "sensors = 0" }, "line 1: 0 sensors; expected 1 to 64"],
     [{ ask: "design", ring: 'sensors = "many"' }, /^line 1: sensors: string "many"; expected a whole number/],
     [{ ask: "sing" }, /^unknown variant `sing`/],
   ];

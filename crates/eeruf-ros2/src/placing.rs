@@ -29,7 +29,7 @@ impl Placing {
         }
         let wrong = |why: String| format!("ring: {}: {why}", file.display());
         let text = fs::read_to_string(&file).map_err(|error| wrong(error.to_string()))?;
-        let ring = eeruf_design::robot_ring(&text).map_err(|error| wrong(error.message().to_owned()))?;
+        let ring = eeruf_design::robot_ring(&text).map_err(|error| format!("ring: {}", error.in_file(&file)))?;
         if ring.poses.is_empty() {
             return Err(wrong("no places of sensors; expected poses, or spacing_deg and radius_m".to_owned()));
         }

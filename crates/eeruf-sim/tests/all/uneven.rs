@@ -32,7 +32,7 @@ fn world(text: &str) -> Result<World, String> {
 fn uneven_sensors_hear_as_far_as_their_windows() {
     let robot = world(WORLD).unwrap();
     assert_eq!(robot.robots()[0].window, Micros::from_millis(18));
-    let readings = simulate(&robot, Method::Eeruf, &Options::periods(400)).unwrap();
+    let readings = simulate(&robot, Method::Eeruf, &Options::periods(800)).unwrap();
     let (mut accepted, mut longest, mut all) = ([0; 4], [0.0_f64; 4], [0; 4]);
     for (at, &sensor) in readings.sensor.iter().enumerate() {
         let sensor = usize::from(sensor);

@@ -63,15 +63,6 @@ pub(crate) enum Asked {
     Again,
 }
 
-/// Two poles, of which the source sees the first.
-#[derive(Clone, Copy, Debug)]
-struct Pair {
-    /// Its place among the [firsts](PoleSearch::firsts).
-    first: u32,
-    last: u32,
-    between_m: f64,
-}
-
 /// One receiver of a query.
 #[derive(Clone, Copy)]
 struct Receiver {
@@ -93,9 +84,10 @@ pub(crate) struct PoleSearch {
     triangles: [Vec<u32>; 2],
     /// From each pole's surface to the nearest receiver, at least, in metres.
     nearest_m: Vec<f64>,
-    /// Poles in plain sight of the source, and those over which in turn it may be heard.
+    /// Poles in plain sight of the source, from which it may be heard over another one; and those others, by their
+    /// numbers.
     firsts: Vec<Seen>,
-    pairs: Vec<Pair>,
+    seconds: Vec<bool>,
     /// Triangles of the poles over which the source may be heard.
     wanted: Vec<(u32, u32)>,
     /// Problems of Alhazen tried so far.
@@ -127,9 +119,7 @@ impl PoleSearch {
         self.from_source.fill(tree, scene, audibility.map(Audibility::of_source));
         self.nearest_m.clear();
         self.nearest_m.extend(scene.poles().iter().map(|pole| nearest_m(pole, receivers)));
-        if !self.pair_poles(audibility, scene, budget) {
-            return false;
-        }
+        self.pair_poles(audibility, scene);
         if let Some(audibility) = audibility {
             self.drop_faint(audibility, scene);
         }
@@ -170,33 +160,31 @@ impl PoleSearch {
         });
     }
 
-    /// Pairs the poles in plain sight with those from which sound may still be heard, however near a receiver is and
-    /// wherever it heads. Returns whether these are all.
-    fn pair_poles(&mut self, audibility: Option<&Audibility>, scene: &Scene, budget: usize) -> bool {
-        self.firsts.clear();
-        self.firsts.extend(self.from_source.in_sight());
-        self.pairs.clear();
-        for (index, first) in self.firsts.iter().enumerate() {
-            let before = &scene.poles()[first.pole as usize];
-            for (last, after) in scene.poles().iter().enumerate().filter(|(last, _)| *last != first.pole as usize) {
-                let between_m = (before.centre - after.centre).norm() - before.radius_m - after.radius_m;
-                let pair = Pair { first: index as u32, last: last as u32, between_m: between_m.max(0.0) };
-                let nearest = Seen { pole: pair.last, square: 1.0, least_m: self.nearest_m[last] };
-                if pair.may_be_heard(audibility, scene, first, &nearest) {
-                    self.pairs.push(pair);
+    /// Chooses the poles over which in turn sound may be heard, however near a receiver is and wherever it heads.
+    fn pair_poles(&mut self, audibility: Option<&Audibility>, scene: &Scene) {
+        let Self { from_source, nearest_m, firsts, seconds, .. } = self;
+        firsts.clear();
+        firsts.extend(from_source.in_sight());
+        seconds.clear();
+        seconds.resize(scene.poles().len(), audibility.is_none());
+        if audibility.is_none() {
+            return;
+        }
+        firsts.retain(|first| {
+            let mut is_first = false;
+            for (last, is_second) in seconds.iter_mut().enumerate() {
+                let nearest = Seen { pole: last as u32, square: 1.0, least_m: nearest_m[last] };
+                if may_hear_two(audibility, scene, first, &nearest) {
+                    (is_first, *is_second) = (true, true);
                 }
             }
-            if self.pairs.len() > budget {
-                return false;
-            }
-        }
-        true
+            is_first
+        });
     }
 
     /// Chooses the poles from which the source's sound may be heard.
     fn choose_poles(&mut self, scene: &Scene) {
-        let is_heard =
-            |last: u32| !self.from_source.to(last).is_empty() || self.pairs.iter().any(|pair| pair.last == last);
+        let is_heard = |last: u32| self.seconds[last as usize] || !self.from_source.to(last).is_empty();
         self.wanted.clear();
         for triangles in scene.pole_triangles.chunk_by(|one, next| one.1 == next.1) {
             if triangles.first().is_some_and(|&(_, pole)| is_heard(pole)) {
@@ -324,34 +312,34 @@ impl PoleSearch {
     fn two_poles(&mut self, query: &PoleQuery<'_>, lasts: &[Seen], receiver: Receiver) {
         let PoleQuery { scene, source, limits, audibility, stop, .. } = *query;
         let (at, poles) = (receiver.at, scene.poles());
-        for index in 0..self.pairs.len() {
+        for index in 0..self.firsts.len() {
             if stop.is_stopped() {
                 return;
             }
-            let pair = self.pairs[index];
-            let before = self.firsts[pair.first as usize];
-            let Ok(seen) = lasts.binary_search_by_key(&pair.last, |seen| seen.pole) else { continue };
-            if !pair.may_be_heard(audibility, scene, &before, &lasts[seen]) {
-                continue;
+            let before = self.firsts[index];
+            for after in lasts {
+                if !may_hear_two(audibility, scene, &before, after) {
+                    continue;
+                }
+                let (a, b) = (before.pole, after.pole);
+                let (first, second) = (&poles[a as usize], &poles[b as usize]);
+                self.tried += 1;
+                let circles = ((first.centre, first.radius_m), (second.centre, second.radius_m));
+                let Some((one, two)) = alhazen_twice(source, at, circles.0, circles.1) else {
+                    continue;
+                };
+                if one.before_m + two.before_m + two.after_m > limits.max_length_m
+                    || !scene.mesh.sees(source, one.point, &mut self.triangles)
+                    || !scene.mesh.sees(one.point, two.point, &mut self.triangles)
+                    || !scene.mesh.sees(two.point, at, &mut self.triangles)
+                {
+                    continue;
+                }
+                let start = self.bounces.len();
+                self.bounces.extend([Bounce::Pole(a), Bounce::Pole(b)]);
+                let angles = [unfolded(one.point - source, 0, 0.0), unfolded(two.point - at, 0, 0.0)];
+                self.push(receiver, 2, angles, &[(one, circles.0.1), (two, circles.1.1)], start);
             }
-            let (a, b) = (before.pole, pair.last);
-            let (first, second) = (&poles[a as usize], &poles[b as usize]);
-            self.tried += 1;
-            let circles = ((first.centre, first.radius_m), (second.centre, second.radius_m));
-            let Some((one, two)) = alhazen_twice(source, at, circles.0, circles.1) else {
-                continue;
-            };
-            if one.before_m + two.before_m + two.after_m > limits.max_length_m
-                || !scene.mesh.sees(source, one.point, &mut self.triangles)
-                || !scene.mesh.sees(one.point, two.point, &mut self.triangles)
-                || !scene.mesh.sees(two.point, at, &mut self.triangles)
-            {
-                continue;
-            }
-            let start = self.bounces.len();
-            self.bounces.extend([Bounce::Pole(a), Bounce::Pole(b)]);
-            let angles = [unfolded(one.point - source, 0, 0.0), unfolded(two.point - at, 0, 0.0)];
-            self.push(receiver, 2, angles, &[(one, circles.0.1), (two, circles.1.1)], start);
         }
     }
 
@@ -390,19 +378,15 @@ fn nearest_m(pole: &Pole, receivers: &[Point]) -> f64 {
     (far_m - pole.radius_m).max(0.0)
 }
 
-impl Pair {
-    /// Returns true if sound may be heard that comes from the second pole to a receiver.
-    fn may_be_heard(&self, audibility: Option<&Audibility>, scene: &Scene, first: &Seen, after: &Seen) -> bool {
-        let Self { last, between_m, .. } = *self;
-        audibility.is_none_or(|audibility| {
-            let radii_m = [first.pole, last].map(|pole| scene.poles()[pole as usize].radius_m);
-            audibility.may_hear_two_poles(
-                first.square * after.square,
-                radii_m,
-                [first.least_m, between_m, after.least_m],
-            )
+/// Returns true if sound may be heard that bounces at these two poles in turn, which are not the same.
+fn may_hear_two(audibility: Option<&Audibility>, scene: &Scene, before: &Seen, after: &Seen) -> bool {
+    before.pole != after.pole
+        && audibility.is_none_or(|audibility| {
+            let [first, second] = [before.pole, after.pole].map(|pole| &scene.poles()[pole as usize]);
+            let between_m = (first.centre - second.centre).norm() - first.radius_m - second.radius_m;
+            let legs_m = [before.least_m, between_m.max(0.0), after.least_m];
+            audibility.may_hear_two_poles(before.square * after.square, [first.radius_m, second.radius_m], legs_m)
         })
-    }
 }
 
 /// The direction at the source of what is `ahead` in the image's world.

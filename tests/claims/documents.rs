@@ -33,7 +33,7 @@ fn examples_in_documents_are_what_the_program_prints() {
     trycmd::TestCases::new().register_bin("eeruf", program).case("README.md").case("docs/**/*.md");
 }
 
-// SNAPSHOTS=overwrite writes the reference anew.
+// SNAPSHOTS=overwrite writes what the program prints now into the reference.
 #[test]
 fn reference_of_options_is_what_the_program_prints() {
     let reference = snapbox::file!["../../docs/reference/options.md"].raw();

@@ -88,7 +88,7 @@ fn run_cargo(args: &[&str]) -> Result<(), Trouble> {
 }
 
 fn each_feature_alone(metadata: &Metadata) -> Result<(), Trouble> {
-    // What firmware links. All others are built alone by `cargo xtask release --dry-run`, from what would be published.
+    // Firmware links the core. `cargo xtask release --dry-run` builds each other crate alone, out of its tarball.
     let is_core = |package: &&Package| package.name.as_str() == "eeruf-core";
     for package in metadata.workspace_packages().into_iter().filter(is_core) {
         run_cargo(&["check", "--package", &package.name, "--locked", "--no-default-features"])?;

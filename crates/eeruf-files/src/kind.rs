@@ -115,7 +115,7 @@ impl Kind {
     pub fn expect_log(file: &Path) -> Result<(), FileError> {
         fs::metadata(file).map_err(|error| FileError::reading(file, &error))?;
         let is_toml = file.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml"));
-        // What cannot be read gets its error from the reader of logs.
+        // The reader of logs reports a file that cannot be read.
         let text = if is_toml { fs::read_to_string(file).unwrap_or_default() } else { String::new() };
         Self::Log.expect(file, &text)
     }

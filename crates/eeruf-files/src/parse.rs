@@ -137,7 +137,7 @@ fn message(key: Option<&str>, found: &str, error: &str) -> String {
         expected => format!("; expected {expected}"),
     };
     let key = key.map_or(String::new(), |key| format!("{key}: "));
-    // What the libraries say of a value may name its key.
+    // An error of the libraries about a value may name its key.
     format!("{}{found}{expected}", if found.starts_with(&key) { "" } else { &key })
 }
 

@@ -71,11 +71,6 @@ pub(crate) struct Plan {
     short: bool,
 }
 
-impl Plan {
-    /// For the checks of every change.
-    pub(crate) const SHORT: Self = Self { write: false, short: true };
-}
-
 pub(crate) fn arduino(plan: &Plan, steps: &mut Steps) {
     steps.step("tables of the Arduino library", || tables::check(plan.write));
     steps.step("tables of the examples", crate::examples::tables);

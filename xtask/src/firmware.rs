@@ -46,9 +46,6 @@ pub(crate) struct Plan {
 }
 
 impl Plan {
-    /// For the checks of every change.
-    pub(crate) const COMPARE: Self = Self { write: false, board: None };
-
     /// Returns true if it is for all boards; then the programs are linted, too.
     pub(crate) fn is_whole(&self) -> bool {
         self.board.is_none()

@@ -5,11 +5,14 @@ use std::process::{Command, ExitCode};
 
 use cargo_metadata::{Metadata, MetadataCommand, Package};
 
-use crate::steps::{Steps, Trouble, output, run, run_component};
+use crate::steps::{Beside, Steps, Trouble, output, run, run_component};
 use crate::toolchain::{cargo_for_target, cargo_of_version};
 
 /// The smallest core that firmware runs on; the others are tried with the firmware itself.
 const BARE_TARGETS: [&str; 1] = ["thumbv6m-none-eabi"];
+
+/// Steps on emulated processors: of one thread each, and built away from the workspace, so that the others do not wait.
+const BESIDE: [&[&str]; 4] = [&["firmware"], &["arduino", "--short"], &["c"], &["micropython"]];
 
 pub(crate) fn run_all(nothing_skipped: bool) -> ExitCode {
     let mut steps = Steps::default();
@@ -28,6 +31,7 @@ pub(crate) fn run_all(nothing_skipped: bool) -> ExitCode {
             return steps.finish(nothing_skipped);
         }
     };
+    let beside = Beside::begin(&BESIDE);
     steps.step("each feature of the core alone", || each_feature_alone(&metadata));
     for target in BARE_TARGETS {
         steps.step(&format!("eeruf-core without an operating system ({target})"), || {
@@ -35,7 +39,6 @@ pub(crate) fn run_all(nothing_skipped: bool) -> ExitCode {
             run(cargo.args(["build", "--package", "eeruf-core", "--release", "--locked", "--target", target]))
         });
     }
-    steps.step("lint of the firmware", crate::firmware::lint);
     // What the default compiler can build, Clippy has just built with it.
     let default = version_of_default();
     for (version, packages) in packages_by_version(&metadata) {
@@ -67,12 +70,8 @@ pub(crate) fn run_all(nothing_skipped: bool) -> ExitCode {
             ["--lib", "--test", "formats", "--locked", "--features", features, "--", "interop", "serde", "format"];
         run_cargo(&[&["test", "--package", "eeruf-core"], &tests[..]].concat())
     });
-    steps.step("C library", crate::c::c);
-    crate::arduino::arduino(&crate::arduino::Plan::SHORT, &mut steps);
-    steps.step("MicroPython", crate::micropython::micropython);
     steps.step("Python package", crate::python::python);
     steps.step("page in a browser", || crate::page::page(crate::page::Tests::Short));
-    steps.step("firmware on emulated boards", || crate::firmware::firmware(&crate::firmware::Plan::COMPARE));
     steps.step("ROS 2 node", crate::ros2::ros2);
     steps.step("ROS 2 package", crate::ros2::package);
     steps.step("documentation", || {
@@ -80,6 +79,7 @@ pub(crate) fn run_all(nothing_skipped: bool) -> ExitCode {
             .args(["doc", "--workspace", "--no-deps", "--locked"])
             .env("RUSTDOCFLAGS", "--deny warnings"))
     });
+    steps.join(beside);
     steps.finish(nothing_skipped)
 }
 

@@ -4107,7 +4107,12 @@ class FiredReading:
         (4, 1, 0.014)
     """
     def __new__(
-        cls, reading: Reading, t_echoes_us: Iterable[_Int], fired_s: float = 0.0, expected_change_us: _Int = 0
+        cls,
+        reading: Reading,
+        t_echoes_us: Iterable[_Int],
+        fired_s: float = 0.0,
+        expected_change_us: _Int = 0,
+        levels_db: Iterable[float] = (),
     ) -> FiredReading: ...
     @property
     def reading(self) -> Reading:
@@ -4116,6 +4121,11 @@ class FiredReading:
     def t_echoes_us(self) -> tuple[int, ...]:
         """The times of its echoes after firing, in microseconds, earliest first: a tuple of one at most, but of up to
         eight under ``"multi_echo"``.
+        """
+    @property
+    def levels_db(self) -> tuple[float, ...]:
+        """The levels of its echoes over the receiver's threshold at full gain, in dB, as a module reports them that has
+        amplitudes: a tuple as long as ``t_echoes_us``, or empty where nobody knows.
         """
     @property
     def fired_s(self) -> float:

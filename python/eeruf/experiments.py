@@ -280,7 +280,7 @@ def _numbers(first: int, n: int) -> range:
     for name, value in (("first", first), ("n", n)):
         if not _is_whole(value) or value < 0:
             raise _eeruf.ArgumentError(f"{name} = {value!r:.60}; expected a whole number from 0 on")
-    return range(first, first + n)
+    return range(operator.index(first), operator.index(first) + operator.index(n))
 
 
 def _is_whole(value: object) -> bool:
@@ -294,7 +294,7 @@ def _is_whole(value: object) -> bool:
 def _checked(first: int, seeds: int, tune: bool) -> None:
     """Refuse to tune on seeds that figures are reported on."""
     # What is no number is refused elsewhere.
-    if tune and _is_whole(first) and _is_whole(seeds) and first + seeds > FIRST:
+    if tune and _is_whole(first) and _is_whole(seeds) and operator.index(first) + operator.index(seeds) > FIRST:
         raise _eeruf.ExperimentError(
             f"seeds up to {first + seeds - 1} with tune=True; expected seeds below {FIRST}, such as first=0: "
             "figures are reported on those from there on"

@@ -248,7 +248,7 @@ def calls(c: Chance) -> list[Callable[[], Any]]:
         lambda: ANY.Report(a(), a(), a(), a(), a()),
         lambda: ANY.Found(a(), a(), a(), a(), a(), a()),
         lambda: ANY.HoppingFound(m(HOPPING), m(60_000), m(60_000), m(True), m("proven"), m(240), m(240)).to_dict(),
-        lambda: ANY.sim.FiredReading(m(ANY.Reading(3, "first", 9_000)), m([9_000]), m(0.5), m(0)).to_dict(),
+        lambda: ANY.sim.FiredReading(m(ANY.Reading(3, "first", 9_000)), m([9_000]), m(0.5), m(0), m([3.0])).to_dict(),
         lambda: ANY.check_certificate(a()),
         lambda: ANY.sim.Material(m(0.9), m(0.0)),
         lambda: ANY.sim.Noise(fading_db_rms=m(1.0), jitter_us_rms=m(1.0), bursts_per_s=m(1.0), burst_db=m(1.0)),

@@ -68,6 +68,28 @@ def test_a_firing_of_ones_own_by_a_methods_schedule_gives_the_same_readings() ->
     assert len(periods) > 30
 
 
+def level_and_amplitude(far: float) -> tuple[float, float]:
+    """The only level at which an echo of a wall so far off is heard, and the amplitude of its path."""
+    robot = sim.Robot((0, 0, math.pi / 2), sensors=1, spacing_rad=0.1, radius_m=0.0)
+    room = sim.Scene([[5, far, -5, far]], robots=[robot], noise=False)
+    seen: list[sim.FiredReading] = []
+
+    def believe(firing: sim.FiredReading) -> eeruf.Reading:
+        seen.append(firing)
+        return firing.reading
+
+    sim.Simulation(room, "sequential", filter=believe).step(1.0)
+    (level,) = {level for firing in seen for level in firing.levels_db}
+    assert all(len(firing.levels_db) == len(firing.t_echoes_us) for firing in seen)
+    return level, room.paths((0, 0), [(0, 0)], 1).amplitude[0]
+
+
+def test_a_filter_sees_the_level_of_an_echo_as_its_path_has_it() -> None:
+    (near, here), (far, there) = level_and_amplitude(1.0), level_and_amplitude(2.5)
+    assert near - far == pytest.approx(20 * math.log10(here / there), abs=1e-4)
+    assert near - far > 8.0
+
+
 def test_a_filter_sees_what_its_sensor_heard_and_its_verdict_is_recorded() -> None:
     seen: list[sim.FiredReading] = []
 

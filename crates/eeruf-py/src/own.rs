@@ -39,6 +39,7 @@ pub(crate) struct FiredReading {
     #[pyo3(get)]
     reading: Reading,
     t_echoes_us: Vec<u32>,
+    levels_db: Vec<f32>,
     /// When it fired, in seconds.
     #[pyo3(get)]
     fired_s: f64,
@@ -50,17 +51,27 @@ pub(crate) struct FiredReading {
 #[pymethods]
 impl FiredReading {
     #[new]
-    #[pyo3(signature = (reading, t_echoes_us, fired_s=None, expected_change_us=None))]
-    #[pyo3(text_signature = "(reading, t_echoes_us, fired_s=0.0, expected_change_us=0)")]
+    #[pyo3(signature = (reading, t_echoes_us, fired_s=None, expected_change_us=None, levels_db=None))]
+    #[pyo3(text_signature = "(reading, t_echoes_us, fired_s=0.0, expected_change_us=0, levels_db=())")]
     fn new(
         reading: &Bound<'_, PyAny>,
         t_echoes_us: &Bound<'_, PyAny>,
         fired_s: Option<&Bound<'_, PyAny>>,
         expected_change_us: Option<&Bound<'_, PyAny>>,
+        levels_db: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
         let reading = crate::arguments::instance::<Reading>("reading", reading, "an eeruf.Reading")?.get().clone();
         let echoes = crate::arguments::times_of("t_echoes_us", t_echoes_us, "echo")?;
+        let each = |(place, level): (usize, Bound<'_, PyAny>)| {
+            number(&format!("levels_db[{place}]"), &level, -1e3..=1e3).map(|level| level as f32)
+        };
+        let expected = "a sequence of levels, one for each echo, or none";
+        let levels = levels_db.map_or(Ok(vec![]), |levels| items("levels_db", levels, expected))?;
+        if !levels.is_empty() && levels.len() != echoes.len() {
+            return Err(wrong("levels_db", format!("{} levels of {} echoes", levels.len(), echoes.len()), expected));
+        }
         Ok(Self {
+            levels_db: levels.into_iter().enumerate().map(each).collect::<PyResult<_>>()?,
             reading,
             t_echoes_us: echoes.into_iter().map(Micros::as_micros).collect(),
             fired_s: crate::arguments::number_or("fired_s", fired_s, 0.0, f64::MIN..=f64::MAX)?,
@@ -80,6 +91,13 @@ impl FiredReading {
         PyTuple::new(py, &self.t_echoes_us)
     }
 
+    /// The levels of its echoes over the receiver's threshold at full gain, in dB, as a module reports them that has
+    /// amplitudes: a tuple as long as ``t_echoes_us``, or empty where nobody knows.
+    #[getter]
+    fn levels_db<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        PyTuple::new(py, &self.levels_db)
+    }
+
     /// Its fields by their names: a dict of plain values.
     ///
     /// Example:
@@ -88,23 +106,25 @@ impl FiredReading {
     ///     >>> eeruf.sim.FiredReading(reading, (9_000,)).to_dict()["t_echoes_us"]
     ///     [9000]
     fn to_dict<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
-        let fields = crate::fields::to_dict(slf, &["reading", "t_echoes_us", "fired_s", "expected_change_us"])?;
+        let names = ["reading", "t_echoes_us", "fired_s", "expected_change_us", "levels_db"];
+        let fields = crate::fields::to_dict(slf, &names)?;
         fields.set_item("reading", slf.getattr("reading")?.call_method0("to_dict")?)?;
         Ok(fields)
     }
 
     fn __repr__(slf: &Bound<'_, Self>) -> PyResult<String> {
         let Self { fired_s, expected_change_us, .. } = slf.get();
-        let (reading, echoes) = (slf.getattr("reading")?.repr()?, slf.getattr("t_echoes_us")?.repr()?);
+        let [reading, echoes, levels] = ["reading", "t_echoes_us", "levels_db"].map(|name| slf.getattr(name)?.repr());
         Ok(format!(
-            "FiredReading(reading={reading}, t_echoes_us={echoes}, fired_s={fired_s:?}, \
-             expected_change_us={expected_change_us})"
+            "FiredReading(reading={}, t_echoes_us={}, fired_s={fired_s:?}, expected_change_us={expected_change_us}, \
+             levels_db={})",
+            reading?, echoes?, levels?
         ))
     }
 
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
-        let Self { reading, t_echoes_us, fired_s, expected_change_us } = slf.get().clone();
-        let fields = (reading, t_echoes_us, fired_s, expected_change_us).into_pyobject(slf.py())?;
+        let Self { reading, t_echoes_us, fired_s, expected_change_us, levels_db } = slf.get().clone();
+        let fields = (reading, t_echoes_us, fired_s, expected_change_us, levels_db).into_pyobject(slf.py())?;
         Ok((slf.get_type().into_any(), fields))
     }
 }
@@ -388,6 +408,7 @@ impl Filter for OwnFilter {
                 t_echoes_us: firing.echoes.iter().map(|echo| echo.t_echo().as_micros()).collect(),
                 fired_s: firing.fired_s,
                 expected_change_us: firing.expected_change_us,
+                levels_db: firing.echoes.iter().map(Echo::level_db).collect(),
             };
             let returned = callable.call1((fired,))?;
             let (kind, t_echo) = kind_and_t_echo(&returned)?;

@@ -58,6 +58,11 @@ impl Echo {
         Micros::new(self.t_echo_us)
     }
 
+    /// Its level over the receiver's threshold at full gain, in dB: as a module that reports amplitudes hears it.
+    pub const fn level_db(&self) -> f32 {
+        self.arrival.level_over_threshold_db
+    }
+
     /// The same sound at another time: what a filter makes of it that smooths.
     #[must_use]
     pub const fn at(self, t_echo: Micros) -> Self {

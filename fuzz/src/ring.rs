@@ -11,7 +11,8 @@
 //! - each firing gives one reading, with the sensor's own phase, period and echo, before that sensor fires again and as
 //!   soon as it is known;
 //! - a late edge gives at most one reading more;
-//! - what is accepted was heard in as many firings running as must agree; when nothing disturbed the comparison,
+//! - what is accepted was heard in as many firings running as must agree, and no firings of any sensor explain two of
+//!   them as foreign sound; what is ambiguous is explained by whom it names; when nothing disturbed the comparison,
 //!   nothing else is said;
 //! - a firing that came later than its poll moves all that follow, and its echo times count from then;
 //! - nobody fires while the ring is paused, and what cannot be listened for is refused, nothing else;
@@ -119,7 +120,14 @@ pub fn check(input: &Input) {
     let begin = now;
     let mut model = Model {
         now,
-        listening: Listening { t_delta, window, blanking, consecutive: usize::from(config.consecutive) },
+        listening: Listening {
+            t_delta,
+            window,
+            blanking,
+            consecutive: usize::from(config.consecutive),
+            path_change: ring.path_change_of(0),
+            audible: ring.audible(),
+        },
         enabled: [true; SENSORS],
         schedule: &first,
         next_schedule: None,
@@ -236,8 +244,8 @@ pub fn check(input: &Input) {
             }
             Step::TDelta(us) => {
                 let t_delta = Micros::new((*us).into());
-                let changed = Listening { t_delta, ..model.listening };
                 let done = ring.set_t_delta(t_delta).is_ok();
+                let changed = Listening { t_delta, path_change: ring.path_change_of(0), ..model.listening };
                 model.listen(done, changed);
                 continue;
             }

@@ -24,7 +24,7 @@ pub fn check(bytes: &[u8]) {
             assert!(!robots.is_empty() && robots.iter().all(|robot| (1..=64).contains(&robot.sensors.len())));
         }
         Err(error) => {
-            let lines = text.matches('\n').count() + 1;
+            let lines = text.matches('\n').count() as u64 + 1;
             assert!(error.line().is_none_or(|line| (1..=lines).contains(&line)), "{error} of {lines} lines");
             one_line(&error.to_string());
         }

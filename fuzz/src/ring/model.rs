@@ -1,11 +1,36 @@
 //! Events that the ring may emit, derived from what happened to it.
 
-use eeruf_core::{Instant, Micros, PeriodStats, Phase, Reading, ReadingKind, Schedule, Tally};
+use eeruf_core::{Instant, Micros, PeriodStats, Phase, Reading, ReadingKind, Schedule, Tally, judge::Explanation};
 
 use super::SENSORS;
 
 /// True if a restart keeps the intervals between different sensors too.
 const RESTARTS_KEEP_INTERVALS: bool = true;
+
+/// By how much the ring's stamps may be off, in microseconds.
+const STAMPS: u64 = 64;
+
+/// A reading that counts in comparisons.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Heard {
+    /// `Some(None)` stands for silence, `None` for nothing known.
+    echo: Option<Option<u32>>,
+    /// When it fired.
+    fired: u64,
+    t_delta: u32,
+    /// Something foreign explains it together with the one before.
+    ambiguous: bool,
+}
+
+impl Heard {
+    fn agrees(&self, before: &Self) -> bool {
+        match (before.echo, self.echo) {
+            (Some(Some(s)), Some(Some(t))) => s.abs_diff(t) <= self.t_delta,
+            (Some(None), Some(None)) => true,
+            _ => false,
+        }
+    }
+}
 
 /// A firing whose reading is not yet out.
 #[derive(Clone, Copy, Debug)]
@@ -26,6 +51,8 @@ pub(super) struct Listening {
     pub(super) window: Micros,
     pub(super) blanking: Micros,
     pub(super) consecutive: usize,
+    pub(super) path_change: Micros,
+    pub(super) audible: Micros,
 }
 
 #[derive(Clone, Debug, Default)]
@@ -36,9 +63,10 @@ pub(super) struct Sensor {
     pub(super) late: Option<u32>,
     pub(super) had_late: bool,
     pub(super) last_fired: Option<Last>,
-    /// The echoes of the firings before, newest last, as far as they count; `Some(None)` stands for silence, `None` for
-    /// nothing known. Each with the `t_delta` it was compared with.
-    pub(super) heard: Vec<(Option<Option<u32>>, u32)>,
+    /// All instants at which it fired.
+    pub(super) fired: Vec<u64>,
+    /// The readings before, newest last, as far as they count.
+    pub(super) heard: Vec<Heard>,
     /// Readings since the comparison was last disturbed.
     pub(super) undisturbed: u32,
     pub(super) age: Option<u16>,
@@ -156,6 +184,25 @@ impl<'s> Model<'s> {
             Some(Open { at: self.now, phase: self.phase, period: self.period, echo: None, early: None, stuck: false });
         (sensor.emitted, sensor.had_late) = (None, false);
         sensor.last_fired = Some(fired);
+        sensor.fired.push(self.now);
+    }
+
+    /// Returns true if firings of sensor `x` explain two readings of sensor `y` as one path that changes by no more than
+    /// `change` (docs/explanation/theory.md, 2.1).
+    fn explains(&self, x: usize, y: usize, before: Heard, now: Heard, change: u64) -> bool {
+        let audible = u64::from(self.listening.audible.as_micros()) + change.saturating_sub(self.change());
+        let heard = |reading: Heard| reading.fired + u64::from(reading.echo.flatten().unwrap_or(0));
+        let lengths = |reading: Heard| {
+            let own = (x == y).then_some(reading.fired);
+            let fired = self.sensors[x].fired.iter().copied().filter(move |&fired| own != Some(fired));
+            fired.filter_map(move |fired| heard(reading).checked_sub(fired)).filter(move |&length| length <= audible)
+        };
+        lengths(before).any(|one| lengths(now).any(|other| one.abs_diff(other) <= change))
+    }
+
+    /// P: by how much a path may change.
+    fn change(&self) -> u64 {
+        self.listening.path_change.as_micros().into()
     }
 
     pub(super) fn emitted(&mut self, reading: &Reading) {
@@ -189,21 +236,24 @@ impl<'s> Model<'s> {
                 (Some(echo), None)
             }
         };
-        sensor.heard.push((heard, listening.t_delta.as_micros()));
+        let ambiguous = reading.kind == ReadingKind::Ambiguous;
+        let heard_now = Heard { echo: heard, fired: open.at, t_delta: listening.t_delta.as_micros(), ambiguous };
+        let last = sensor.heard.last().copied();
+        sensor.heard.push(heard_now);
         sensor.undisturbed += 1;
-        let agree = |pair: &[(Option<Option<u32>>, u32)]| match pair {
-            [(Some(Some(s)), _), (Some(Some(t)), t_delta)] => s.abs_diff(*t) <= *t_delta,
-            [(Some(None), _), (Some(None), _)] => true,
-            _ => false,
-        };
+        let agree = |pair: &[Heard]| matches!(pair, [before, now] if now.agrees(before) && !now.ambiguous);
         let running = 1 + sensor.heard.windows(2).rev().take_while(|pair| agree(pair)).count();
         let enough = running >= listening.consecutive;
-        let before = sensor.heard.len().checked_sub(2).and_then(|place| sensor.heard[place].0).flatten();
+        let before = last.and_then(|last| last.echo).flatten();
+        let pair = last.filter(|last| heard.flatten().is_some() && heard_now.agrees(last));
+        self.explained(reading, pair.map(|last| (last, heard_now)));
+        let sensor = &mut self.sensors[x];
         let possible: &[ReadingKind] = match (kind, heard.flatten()) {
             (Some(ReadingKind::Stuck), _) => &[ReadingKind::Stuck],
             (Some(_), _) => &[ReadingKind::TooEarly],
             (None, None) if enough => &[ReadingKind::Clear, ReadingKind::NoEcho],
             (None, None) => &[ReadingKind::NoEcho],
+            (None, Some(_)) if ambiguous => &[ReadingKind::Ambiguous],
             (None, Some(_)) if enough => &[ReadingKind::Accepted, ReadingKind::Repeated, ReadingKind::First],
             (None, Some(_)) if running > 1 => &[ReadingKind::Repeated, ReadingKind::First],
             (None, Some(_)) if before.is_some() => &[ReadingKind::Rejected, ReadingKind::First],
@@ -224,6 +274,29 @@ impl<'s> Model<'s> {
         assert_eq!(reading.age, sensor.age);
         sensor.emitted = Some(open);
         self.tally.count(reading.kind);
+    }
+
+    /// Holds what the ring says of two readings that agree, if they do, against all firings there were: nothing explains
+    /// what is believed, and what is ambiguous is explained by whom it names.
+    fn explained(&self, reading: &Reading, pair: Option<(Heard, Heard)>) {
+        let y = usize::from(reading.sensor);
+        let explains = |x: usize, slack: u64| {
+            pair.is_some_and(|(before, now)| self.explains(x, y, before, now, self.change() + slack))
+        };
+        match (reading.kind, reading.explained_by) {
+            (ReadingKind::Accepted | ReadingKind::Repeated, None) => {
+                let by = (0..SENSORS).find(|&x| explains(x, 0));
+                assert_eq!(by, None, "{reading:?} is explained; {pair:?}");
+            }
+            (ReadingKind::Ambiguous, Some(Explanation::Sensor(x))) => {
+                assert!(explains(x.into(), STAMPS), "{reading:?} is not explained; {pair:?}");
+            }
+            // A firing that the ring has forgotten.
+            (ReadingKind::Ambiguous, Some(Explanation::History)) => {
+                assert!(pair.is_some(), "{reading:?} does not agree")
+            }
+            (kind, by) => assert!(kind != ReadingKind::Ambiguous && by.is_none(), "{reading:?}"),
+        }
     }
 
     pub(super) fn edge(&mut self, x: usize, at: u64) {
@@ -270,6 +343,8 @@ impl<'s> Model<'s> {
         let later = at > last.at;
         (open.at, last.at) = (at, at);
         self.sensors[x].last_fired = self.last;
+        self.sensors[x].fired.pop();
+        self.sensors[x].fired.push(at);
         if later {
             // As where a firing is polled late: by how much is for the ring to judge.
             self.invalidate();

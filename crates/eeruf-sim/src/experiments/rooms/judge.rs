@@ -271,6 +271,8 @@ fn with_other_gain(robot: &Robot) -> Robot {
 const OWN_WRONG_MORE: f64 = 0.01;
 /// Ways whose shares of right belief differ by less are equal, and the one with more right echoes is better.
 const AS_GOOD: f64 = 0.01;
+/// One by one, which takes no library, is as good as a way with less than this many times its right echoes.
+const WORTH_A_LIBRARY: f64 = 1.2;
 
 impl JudgedWay {
     /// The share of time in which what is believed is right, over all kinds of rooms.
@@ -304,15 +306,18 @@ impl JudgedWay {
 }
 
 /// The way that is right most of the time among those that keep to the shares asked for; of several as good, the one
-/// with most right echoes. Where none keeps to them, the one that is right most of the time.
+/// with most right echoes, but one by one if that has hardly fewer. Where none keeps to them, the one that is right most
+/// of the time.
 fn recommend(ways: &[JudgedWay], wrong: f64) -> (Option<usize>, bool) {
     let Some(base) = ways.first() else { return (None, false) };
     let best_of = |among: &dyn Fn(&JudgedWay) -> bool| {
         let fit: Vec<_> = ways.iter().enumerate().filter(|(_, way)| among(way)).collect();
         let most = fit.iter().filter_map(|(_, way)| way.belief_right()).reduce(f64::max)?;
         let as_good = fit.iter().filter(|(_, way)| way.belief_right().is_some_and(|right| right >= most - AS_GOOD));
-        let by_echoes = as_good.map(|(index, way)| (*index, way.echoes_against(base).unwrap_or(0.0)));
-        by_echoes.reduce(|one, next| if next.1 > one.1 { next } else { one }).map(|(index, _)| index)
+        let by_echoes: Vec<_> = as_good.map(|(index, way)| (*index, way.echoes_against(base).unwrap_or(0.0))).collect();
+        let (index, times) = by_echoes.iter().copied().reduce(|one, next| if next.1 > one.1 { next } else { one })?;
+        let one_by_one = by_echoes.iter().any(|&(index, _)| index == 0);
+        Some(if one_by_one && times < WORTH_A_LIBRARY { 0 } else { index })
     };
     match best_of(&|way| way.rooms.is_ok() && way.fails_in(base, wrong).is_none()) {
         Some(index) => (Some(index), true),
@@ -357,6 +362,9 @@ mod tests {
         let base = Ok([USUAL; 2]);
         assert_eq!(chosen(&[base, Ok([right(0.95, 9.0); 2]), Ok([right(0.8, 99.0); 2])]), (Some(1), true));
         assert_eq!(chosen(&[base, Ok([right(0.95, 9.0); 2]), Ok([right(0.945, 20.0); 2])]), (Some(2), true));
+        // Hardly more echoes than one by one are not worth a library.
+        assert_eq!(chosen(&[base, Ok([right(0.905, 11.5); 2])]), (Some(0), true));
+        assert_eq!(chosen(&[base, Ok([right(0.905, 12.5); 2])]), (Some(1), true));
         // What cannot fire is passed over.
         assert_eq!(chosen(&[base, Err("too fast")]), (Some(0), true));
         assert_eq!(chosen(&[Err("too fast")]), (None, false));

@@ -139,7 +139,8 @@ mod tests {
         let mut steps = Steps::default();
         steps.count(
             "c",
-            "=== a\nFAILED  of a tool\n=== a: FAILED: exit status: 1\n\nFAILED  a: exit status: 1\nSKIPPED b: no gcc\n3 passed, 1 failed, 1 skipped\n",
+            "=== a\nFAILED  of a tool\n=== a: FAILED: exit status: 1\n\nFAILED  a: exit status: 1\nSKIPPED b: no gcc\n\
+             3 passed, 1 failed, 1 skipped\n",
         );
         assert_eq!(
             (steps.passed, &steps.failed[..], &steps.skipped[..]),

@@ -7,7 +7,7 @@ use super::SENSORS;
 /// True if a restart keeps the intervals between different sensors too.
 const RESTARTS_KEEP_INTERVALS: bool = true;
 
-/// By how much the ring's stamps may be off, in microseconds.
+/// Error of the ring's stamps at most, in microseconds.
 const STAMPS: u64 = 64;
 
 /// A reading that counts in comparisons.
@@ -187,8 +187,8 @@ impl<'s> Model<'s> {
         sensor.fired.push(self.now);
     }
 
-    /// Returns true if firings of sensor `x` explain two readings of sensor `y` as one path that changes by no more than
-    /// `change` (docs/explanation/theory.md, 2.1).
+    /// Returns true if firings of sensor `x` explain two readings of sensor `y` as one path that changes by no more
+    /// than `change` (docs/explanation/theory.md, 2.1).
     fn explains(&self, x: usize, y: usize, before: Heard, now: Heard, change: u64) -> bool {
         let audible = u64::from(self.listening.audible.as_micros()) + change.saturating_sub(self.change());
         let heard = |reading: Heard| reading.fired + u64::from(reading.echo.flatten().unwrap_or(0));
@@ -276,8 +276,8 @@ impl<'s> Model<'s> {
         self.tally.count(reading.kind);
     }
 
-    /// Holds what the ring says of two readings that agree, if they do, against all firings there were: nothing explains
-    /// what is believed, and what is ambiguous is explained by whom it names.
+    /// Holds what the ring says of two readings that agree, if they do, against all firings there were: nothing
+    /// explains what is believed, and what is ambiguous is explained by whom it names.
     fn explained(&self, reading: &Reading, pair: Option<(Heard, Heard)>) {
         let y = usize::from(reading.sensor);
         let explains = |x: usize, slack: u64| {

@@ -306,8 +306,8 @@ impl JudgedWay {
 }
 
 /// The way that is right most of the time among those that keep to the shares asked for; of several as good, the one
-/// with most right echoes, but one by one if that has hardly fewer. Where none keeps to them, the one that is right most
-/// of the time.
+/// with most right echoes, but one by one if that has hardly fewer. Where none keeps to them, the one that is right
+/// most of the time.
 fn recommend(ways: &[JudgedWay], wrong: f64) -> (Option<usize>, bool) {
     let Some(base) = ways.first() else { return (None, false) };
     let best_of = |among: &dyn Fn(&JudgedWay) -> bool| {

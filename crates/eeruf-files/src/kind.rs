@@ -1,6 +1,7 @@
 //! The kind of a file, recognised by its name and its keys before it is parsed.
 
 use std::fs;
+use std::io::Read as _;
 use std::path::Path;
 
 use crate::FileError;
@@ -27,7 +28,11 @@ impl Kind {
     pub fn of(file: &Path, text: &str) -> Option<Self> {
         match file.extension().map(|ending| ending.to_string_lossy().to_lowercase()).as_deref() {
             Some("csv" | "mcap" | "bag" | "db3") => return Some(Self::Log),
-            Some("yaml" | "yml") => return Some(Self::Map),
+            // Messages are printed as YAML too.
+            Some("yaml" | "yml") => {
+                let is_map = text.lines().any(|line| line.starts_with("image:") || line.starts_with("resolution:"));
+                return is_map.then_some(Self::Map);
+            }
             _ => {}
         }
         let line = |line: &str| line.split('#').next().unwrap_or("").trim().to_owned();
@@ -114,9 +119,14 @@ impl Kind {
     /// The file cannot be read, or the kind found and the command that reads it.
     pub fn expect_log(file: &Path) -> Result<(), FileError> {
         fs::metadata(file).map_err(|error| FileError::reading(file, &error))?;
-        let is_toml = file.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml"));
+        let ending = file.extension().map(|ending| ending.to_string_lossy().to_lowercase());
+        let is_ours = matches!(ending.as_deref(), Some("toml" | "yaml" | "yml"));
         // The reader of logs reports a file that cannot be read.
-        let text = if is_toml { fs::read_to_string(file).unwrap_or_default() } else { String::new() };
+        let mut text = Vec::new();
+        if is_ours && let Ok(file) = fs::File::open(file) {
+            _ = file.take(1 << 16).read_to_end(&mut text);
+        }
+        let text = String::from_utf8_lossy(&text);
         Self::Log.expect(file, &text)
     }
 }

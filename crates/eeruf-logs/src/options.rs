@@ -76,6 +76,8 @@ pub enum RangeUnit {
     Mm,
     /// Inches.
     In,
+    /// Feet.
+    Ft,
     /// Microseconds from firing to echo, there and back.
     Us,
 }
@@ -102,6 +104,7 @@ impl RangeUnit {
             Self::Cm => 1e-2,
             Self::Mm => 1e-3,
             Self::In => 0.0254,
+            Self::Ft => 0.3048,
             Self::Us => 0.5e-6 * speed_of_sound,
         }
     }
@@ -112,6 +115,7 @@ impl RangeUnit {
             Self::Cm => "centimetres",
             Self::Mm => "millimetres",
             Self::In => "inches",
+            Self::Ft => "feet",
             Self::Us => "microseconds",
         }
     }

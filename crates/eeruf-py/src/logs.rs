@@ -86,6 +86,7 @@ pub(crate) fn read_log<'py>(
         ("cm", RangeUnit::Cm),
         ("mm", RangeUnit::Mm),
         ("in", RangeUnit::In),
+        ("ft", RangeUnit::Ft),
         ("us", RangeUnit::Us),
     ];
     let path = log_file(path)?;

@@ -100,7 +100,9 @@ impl Plan {
             ranges.iter().flat_map(|column| column.distinct.keys().filter(is_word)).cloned().collect();
         said.extend(words);
         if ranges.iter().any(|column| column.empties > 0) {
-            said.push("an empty cell".to_owned());
+            said.push(
+                if self.one_a_row { "an empty cell is another sensor's row" } else { "an empty cell" }.to_owned(),
+            );
         }
         said.push(format!("{} m and more", options.no_echo_m));
         self.guesses.push(guess("no echo", said.join(", "), "--no-echo, --no-echo-m"));

@@ -1,8 +1,10 @@
-//! Lines of a text, whatever ends them and in whatever encoding, and the objects of a JSON document.
+//! Lines of a text, whatever ends them and in whatever encoding, the objects of a JSON document, and messages as
+//! `ros2 topic echo` and `rostopic echo` print them.
 
 use std::collections::VecDeque;
 use std::io::{self, BufRead, BufReader, Read};
 
+use super::{messages, shape};
 use crate::bytes::Order;
 
 /// A longer line is lost.
@@ -24,6 +26,7 @@ pub(crate) struct Line {
 pub(crate) enum Source<'a> {
     Lines(Lines<'a>),
     Objects(Objects<'a>),
+    Messages(Lines<'a>),
 }
 
 impl<'a> Source<'a> {
@@ -45,15 +48,22 @@ impl<'a> Source<'a> {
             Some(order) => BufReader::new(Box::new(Utf16 { input, order, out: VecDeque::new(), high: None })),
         };
         let start = String::from_utf8_lossy(input.fill_buf()?).into_owned();
+        if messages::are_in(&start) {
+            return Ok(Self::Messages(Lines { input, number: 0, pending: VecDeque::new() }));
+        }
         let mut start = start.trim_start().chars();
         let is_document = match start.next() {
             Some('[') => matches!(start.as_str().trim_start().chars().next(), Some('{' | '[')),
-            // An object on one line is one of JSON lines.
-            Some('{') => !start.as_str().lines().next().unwrap_or_default().contains('}'),
+            // Objects on lines of their own are JSON lines.
+            Some('{') => {
+                let mut lines = start.as_str().lines();
+                let first = lines.next().unwrap_or_default();
+                !first.contains('}') || !lines.any(|line| line.trim_start().starts_with('{'))
+            }
             _ => false,
         };
         Ok(if is_document {
-            Self::Objects(Objects { input, number: 1 })
+            Self::Objects(Objects { input, number: 1, rows: VecDeque::new() })
         } else {
             Self::Lines(Lines { input, number: 0, pending: VecDeque::new() })
         })
@@ -62,7 +72,17 @@ impl<'a> Source<'a> {
     pub(crate) fn next(&mut self) -> io::Result<Option<Line>> {
         match self {
             Self::Lines(lines) => lines.next(),
-            Self::Objects(objects) => objects.next(),
+            Self::Objects(objects) => objects.next_row(),
+            Self::Messages(lines) => messages::next(lines),
+        }
+    }
+
+    /// The form of a text that is records and no lines.
+    pub(crate) const fn of_records(&self) -> Option<&'static str> {
+        match self {
+            Self::Lines(_) => None,
+            Self::Objects(_) => Some("JSON, a document"),
+            Self::Messages(_) => Some("messages, as `ros2 topic echo` prints them"),
         }
     }
 }
@@ -108,7 +128,7 @@ pub(crate) struct Lines<'a> {
 }
 
 impl Lines<'_> {
-    fn next(&mut self) -> io::Result<Option<Line>> {
+    pub(super) fn next(&mut self) -> io::Result<Option<Line>> {
         if let Some(line) = self.pending.pop_front() {
             return Ok(Some(line));
         }
@@ -155,9 +175,23 @@ impl Lines<'_> {
 pub(crate) struct Objects<'a> {
     input: BufReader<Box<dyn Read + 'a>>,
     number: u64,
+    /// Of an object of columns.
+    rows: VecDeque<Line>,
 }
 
 impl Objects<'_> {
+    /// The next record; an object of columns gives its rows.
+    fn next_row(&mut self) -> io::Result<Option<Line>> {
+        if self.rows.is_empty() {
+            let Some(line) = self.next()? else { return Ok(None) };
+            match shape::rows_of_columns(&line.text) {
+                Some(rows) => self.rows.extend(rows.into_iter().map(|text| Line { text, ..line.clone() })),
+                None => return Ok(Some(line)),
+            }
+        }
+        Ok(self.rows.pop_front())
+    }
+
     fn next(&mut self) -> io::Result<Option<Line>> {
         // Brackets that are open since the record began.
         let (mut record, mut open, mut is_text, mut is_escaped): (Vec<u8>, Vec<u8>, _, _) =

@@ -6,6 +6,7 @@
 mod column;
 mod guesses;
 mod lines;
+mod messages;
 mod names;
 mod recognise;
 mod rows;
@@ -45,7 +46,7 @@ pub(crate) fn read(input: impl Read, file: &Path, options: &Options, sink: &mut 
     if sample.iter().all(|line| line.text.trim().is_empty()) && sample.len() < SAMPLE.0 {
         return Err(FileError::new(file, "the file is empty; expected lines with readings"));
     }
-    let plan = recognise::recognise(file, &sample, matches!(source, Source::Objects(_)), options)?;
+    let plan = recognise::recognise(file, &sample, source.of_records(), options)?;
     sink.report.form.clone_from(&plan.form);
     sink.report.guesses.extend(plan.guesses.iter().cloned());
     sink.report.skipped.extend(plan.skipped.iter().cloned());

@@ -46,7 +46,7 @@ const TIMES: [&str; 21] = [
 const WHOLE_TIMES: [&str; 12] =
     ["t", "ts", "ms", "us", "ns", "s", "sec", "msec", "usec", "milliseconds", "microseconds", "nanoseconds"];
 const ECHOES: [&str; 5] = ["echo", "flight", "pulse", "duration", "travel"];
-const RANGES: [&str; 14] = [
+const RANGES: [&str; 16] = [
     "range",
     "ranges",
     "distance",
@@ -61,8 +61,10 @@ const RANGES: [&str; 14] = [
     "ping",
     "abstand",
     "entfernung",
+    "value",
+    "values",
 ];
-const SENSORS: [&str; 14] = [
+const SENSORS: [&str; 15] = [
     "sensor",
     "id",
     "name",
@@ -74,11 +76,12 @@ const SENSORS: [&str; 14] = [
     "sensor_id",
     "sensorid",
     "frame_id",
+    "entity_id",
     "source",
     "instance",
     "device",
 ];
-const OTHERS: [&str; 90] = [
+const OTHERS: [&str; 95] = [
     "battery",
     "bat",
     "voltage",
@@ -93,6 +96,7 @@ const OTHERS: [&str; 90] = [
     "seq",
     "sequence",
     "index",
+    "entry",
     "idx",
     "count",
     "counter",
@@ -166,6 +170,10 @@ const OTHERS: [&str; 90] = [
     "pir",
     "button",
     "led",
+    "type",
+    "orientation",
+    "unit",
+    "units",
     "given",
     "solo",
     "steady",
@@ -192,7 +200,13 @@ fn words(name: &str) -> Vec<String> {
     words
 }
 
+/// By the last part of a path; where that says nothing, by all of it.
 pub(crate) fn meaning(name: &str) -> Meaning {
+    let last = name.rsplit_once('.').map_or(Meaning::Vague, |(_, last)| meaning_of(last));
+    if last == Meaning::Vague { meaning_of(name) } else { last }
+}
+
+fn meaning_of(name: &str) -> Meaning {
     let words = words(name);
     let has = |of: &[&str]| words.iter().any(|word| of.contains(&word.as_str()));
     let whole = name.trim().trim_start_matches('%').to_lowercase();
@@ -211,7 +225,9 @@ pub(crate) fn meaning(name: &str) -> Meaning {
     if has(&["fired"]) || (is_time && !is_echo) {
         return Meaning::Time;
     }
-    if has(&OTHERS) || whole == "changes" || whole == "expected_us" || whole == "sends" {
+    // The distance now, beside its limits.
+    let is_distance_now = has(&RANGES) && has(&["current"]);
+    if has(&OTHERS) && !is_distance_now || whole == "changes" || whole == "expected_us" || whole == "sends" {
         return Meaning::Other;
     }
     if SENSORS.contains(&whole.as_str()) || has(&["frame"]) && has(&["id"]) {
@@ -293,6 +309,14 @@ mod tests {
             ("sensor", Meaning::Sensor),
             ("Sensor 1", Meaning::Vague),
             ("distance_cm", Meaning::Range),
+            ("DISTANCE_SENSOR.current_distance", Meaning::Range),
+            ("DISTANCE_SENSOR.min_distance", Meaning::Least),
+            ("DISTANCE_SENSOR.id", Meaning::Sensor),
+            ("DISTANCE_SENSOR.type", Meaning::Other),
+            ("distance.value", Meaning::Range),
+            ("us.left", Meaning::Vague),
+            ("entity_id", Meaning::Sensor),
+            ("entry_id", Meaning::Other),
         ] {
             assert_eq!(meaning(name), expected, "{name}");
         }

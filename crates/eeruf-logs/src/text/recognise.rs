@@ -45,6 +45,8 @@ pub(super) struct Plan {
     pub(super) columns: Vec<Column>,
     pub(super) by_name: HashMap<String, usize>,
     pub(super) header: Option<Vec<String>>,
+    /// A header, a comment or the form of the rows names the columns.
+    has_names: bool,
     /// Lines before this one are no rows.
     pub(super) rows_from: u64,
     pub(super) time: Vec<(usize, TimeUnit)>,
@@ -52,6 +54,8 @@ pub(super) struct Plan {
     /// Sensors that a column names, as often as is needed to trust them.
     pub(super) known: BTreeSet<String>,
     pub(super) no_echo: NoEcho,
+    /// Each row is of one sensor: the empty cells of the others are no silence.
+    pub(super) one_a_row: bool,
     pub(super) is_first_cut: bool,
     /// The names that nearly each line of pairs has.
     pub(super) usual_names: Option<Vec<String>>,
@@ -62,7 +66,13 @@ pub(super) struct Plan {
 
 pub(crate) fn is_comment(text: &str) -> bool {
     let text = text.trim_start();
-    text.is_empty() || text.starts_with('#') || text.starts_with("//") || text.to_lowercase().starts_with("sep=")
+    // MATLAB's; `%time` begins a header.
+    let is_percent = text.starts_with("% ") || text == "%";
+    text.is_empty()
+        || text.starts_with('#')
+        || is_percent
+        || text.starts_with("//")
+        || text.to_lowercase().starts_with("sep=")
 }
 
 pub(super) fn guess(what: &str, value: impl Into<String>, option: &str) -> Guess {
@@ -89,9 +99,14 @@ fn strip(sample: &[Line]) -> Stripped<'_> {
 }
 
 /// Recognises a log by its first lines.
-pub(super) fn recognise(file: &Path, sample: &[Line], is_document: bool, options: &Options) -> Result<Plan, FileError> {
+pub(super) fn recognise(
+    file: &Path,
+    sample: &[Line],
+    records: Option<&str>,
+    options: &Options,
+) -> Result<Plan, FileError> {
     let Stripped { lines, has_prefix } = strip(sample);
-    let (shape, decimal_comma) = if is_document { (Shape::Json, false) } else { shape_of(&lines) };
+    let (shape, decimal_comma) = if records.is_some() { (Shape::Json, false) } else { shape_of(&lines) };
     let mut plan = Plan {
         shape,
         has_prefix,
@@ -99,11 +114,13 @@ pub(super) fn recognise(file: &Path, sample: &[Line], is_document: bool, options
         columns: vec![],
         by_name: HashMap::new(),
         header: None,
+        has_names: false,
         rows_from: 0,
         time: vec![],
         sensor: None,
         known: BTreeSet::new(),
         no_echo: NoEcho::default(),
+        one_a_row: false,
         is_first_cut: false,
         usual_names: None,
         form: String::new(),
@@ -118,7 +135,7 @@ pub(super) fn recognise(file: &Path, sample: &[Line], is_document: bool, options
         }
     };
     plan.form = match shape {
-        Shape::Json if is_document => "JSON, a document".to_owned(),
+        Shape::Json if let Some(form) = records => form.to_owned(),
         Shape::Json => "JSON, an object a line".to_owned(),
         Shape::Keyed => "text, pairs of name and value".to_owned(),
         Shape::Separated(Separator::None) => "text, one value a line".to_owned(),
@@ -128,6 +145,7 @@ pub(super) fn recognise(file: &Path, sample: &[Line], is_document: bool, options
         plan.guesses.push(guess("time", "before each line, as a serial monitor or a logger writes it", "--time"));
     }
     plan.roles(file, options)?;
+    plan.one_a_row = plan.is_one_a_row(&lines);
     plan.range_units(&units, options);
     plan.no_echoes(options);
     plan.times(options);
@@ -186,6 +204,32 @@ fn shape_of(lines: &[(u64, &str)]) -> (Shape, bool) {
     (Shape::Separated(best.1), best.2)
 }
 
+/// What `ros2 topic echo --csv` prints of a Range, whose last field came with Jazzy.
+const ECHOED_RANGE: [&str; 9] = [
+    "header.stamp.sec",
+    "header.stamp.nanosec",
+    "header.frame_id",
+    "radiation_type",
+    "field_of_view",
+    "min_range",
+    "max_range",
+    "range",
+    "variance",
+];
+
+fn is_echoed_range(rows: &[(u64, Vec<String>)], width: usize) -> bool {
+    let is_one = |row: &Vec<String>| {
+        let number = |index: usize| value::number(row.get(index)?, false);
+        let whole = |index: usize, most: f64| {
+            number(index).is_some_and(|number| number.fract() == 0.0 && (0.0..=most).contains(&number))
+        };
+        let limits = number(4).is_some() && number(5).zip(number(6)).is_some_and(|(least, most)| least < most);
+        row.len() == width && whole(0, 1e10) && whole(1, 1e9) && number(2).is_none() && whole(3, 1.0) && limits
+    };
+    let fit = rows.iter().filter(|(_, row)| is_one(row)).count();
+    (8..=9).contains(&width) && !rows.is_empty() && fit * 10 >= rows.len() * 8
+}
+
 /// The number that comes most often.
 fn usual(numbers: impl Iterator<Item = usize>) -> usize {
     let mut counts = BTreeMap::new();
@@ -235,7 +279,7 @@ impl Plan {
         if names.is_none() {
             // A comment may name the columns.
             let comments = sample.iter().rev().filter(|line| line.number < first_number);
-            let mut comments = comments.filter_map(|line| line.text.trim().strip_prefix('#'));
+            let mut comments = comments.filter_map(|line| line.text.trim().strip_prefix(['#', '%']));
             names = comments.find_map(|text| {
                 let row = shape::separated(text.trim(), separator)?;
                 (row.len() == width && width > 1 && is_header(&row)).then_some(row)
@@ -254,6 +298,11 @@ impl Plan {
             let why = format!("{ignored} lines before the readings, without any");
             self.skipped.push(Skipped { topic: "the beginning".to_owned(), why, messages: 0 });
         }
+        let is_echoed = names.is_none() && is_echoed_range(&rows[first..], width);
+        if is_echoed {
+            names = Some(ECHOED_RANGE[..width].iter().map(|&name| name.to_owned()).collect());
+        }
+        self.has_names = names.is_some();
         if !options.table.columns.is_empty() {
             if options.table.columns.len() != width {
                 let given = options.table.columns.len();
@@ -264,6 +313,7 @@ impl Plan {
         } else {
             let said = match (&names, header) {
                 (Some(names), Some(_)) => names.join(", "),
+                (Some(_), None) if is_echoed => "that of `ros2 topic echo --csv` for sensor_msgs/Range".to_owned(),
                 (Some(names), None) => format!("{}, from a comment", names.join(", ")),
                 (None, _) => format!("none; {width} columns, named by their places"),
             };
@@ -351,8 +401,10 @@ impl Plan {
         let has_time = self.has_prefix
             || time.is_some()
             || self.columns.iter().any(|column| names::meaning(&column.name) == Meaning::Time);
-        let has_header =
-            self.header.is_some() || !table.columns.is_empty() || !matches!(self.shape, Shape::Separated(_));
+        let has_header = self.header.is_some()
+            || self.has_names
+            || !table.columns.is_empty()
+            || !matches!(self.shape, Shape::Separated(_));
         for index in 0..self.columns.len() {
             let column = &self.columns[index];
             let is_place = column.name.is_empty() || column.name.starts_with("Unnamed") || !has_header;
@@ -388,7 +440,15 @@ impl Plan {
             column.is_numeric = column.texts + column.calendars == 0 && !column.numbers.is_empty();
             column.role = role;
         }
+        // Home Assistant's name for a measured value.
+        if self.columns.iter().all(|column| !matches!(column.role, Role::Range | Role::Empty)) {
+            let is_state = |column: &&mut Column| column.name == "state" && column.is_range();
+            self.columns.iter_mut().filter(is_state).for_each(|column| column.role = Role::Range);
+        }
         self.time_columns(time);
+        if ranges.is_empty() {
+            self.one_range_beside_a_sensor();
+        }
         self.sensor_column(file, sensor, &ranges)?;
         let other = |column: &&Column| column.role == Role::Other && column.is_numeric && ranges.is_empty();
         let skipped = self.columns.iter().filter(other).map(|column| Skipped {
@@ -398,6 +458,36 @@ impl Plan {
         });
         self.skipped.extend(skipped);
         Ok(())
+    }
+
+    /// Where a row names its sensor, it has one range: what is called so, and no number without a meaning beside it.
+    fn one_range_beside_a_sensor(&mut self) {
+        let is_called_range =
+            |column: &Column| column.role == Role::Range && names::meaning(&column.name) == Meaning::Range;
+        let is_sensor = |column: &Column| column.role == Role::Sensor && column.distinct.len() > 1;
+        let one = self.columns.iter().filter(|column| is_called_range(column)).count() == 1;
+        if one && self.columns.iter().any(is_sensor) {
+            let others =
+                self.columns.iter_mut().filter(|column| column.role == Role::Range && !is_called_range(column));
+            others.for_each(|column| column.role = Role::Other);
+        }
+    }
+
+    /// Returns true if nearly each row of a table has one range and empty cells for the other sensors.
+    fn is_one_a_row(&self, lines: &[(u64, &str)]) -> bool {
+        let Shape::Separated(separator) = self.shape else { return false };
+        let is_of_sensor = |column: &Column| matches!(column.role, Role::Range | Role::Empty);
+        if self.columns.iter().filter(|column| is_of_sensor(column)).count() < 2 {
+            return false;
+        }
+        let rows = lines.iter().filter(|line| line.0 >= self.rows_from);
+        let rows: Vec<_> = rows.filter_map(|(_, text)| shape::separated(text, separator)).collect();
+        let ranges = |row: &Vec<String>| {
+            let cells = self.columns.iter().zip(row).filter(|(column, _)| is_of_sensor(column));
+            cells.filter(|(_, cell)| !cell.is_empty()).count()
+        };
+        let single = rows.iter().filter(|row| ranges(row) == 1).count();
+        rows.len() >= 8 && single * 20 >= rows.len() * 19
     }
 
     /// A column that counts rows.
@@ -459,10 +549,10 @@ impl Plan {
                 })?;
                 Some(vec![one, other])
             });
-            let best = usable
-                .iter()
-                .copied()
-                .max_by_key(|&index| (names::preference(&self.columns[index].name), std::cmp::Reverse(index)));
+            let best = usable.iter().copied().max_by_key(|&index| {
+                let column = &self.columns[index];
+                (column.distinct.len() > 1, names::preference(&column.name), std::cmp::Reverse(index))
+            });
             pair.unwrap_or_else(|| best.into_iter().collect())
         };
         for index in times {

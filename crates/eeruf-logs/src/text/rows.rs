@@ -66,7 +66,6 @@ impl<'a, 's, 'e> Rows<'a, 's, 'e> {
                 }
             }
         }
-        rows.sink.one_time_a_row = rows.plan.sensor.is_none();
         rows
     }
 
@@ -225,6 +224,7 @@ impl<'a, 's, 'e> Rows<'a, 's, 'e> {
         for (index, own) in cells {
             let column = &self.plan.columns[*index];
             match column.role {
+                Role::Range if own.is_empty() && self.plan.one_a_row => continue,
                 Role::Range => {}
                 Role::Empty if own.is_empty() => continue,
                 Role::Empty => {
@@ -244,6 +244,7 @@ impl<'a, 's, 'e> Rows<'a, 's, 'e> {
         if found.is_empty() {
             return Err(Unread::Other);
         }
+        self.sink.one_time_a_row |= found.len() > 1;
         for index in begun {
             let name = self.plan.columns[index].name.clone();
             self.plan.columns[index].role = Role::Range;

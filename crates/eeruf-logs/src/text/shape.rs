@@ -56,6 +56,15 @@ fn without_brackets(line: &str) -> &str {
     inner.unwrap_or(line)
 }
 
+/// A cell without the bracket of a list that begins or ends in it.
+fn without_half_brackets(cell: &str) -> &str {
+    match (cell.contains(['[', '(']), cell.contains([']', ')'])) {
+        (true, false) => cell.trim_start_matches(['[', '(', ' ']),
+        (false, true) => cell.trim_end_matches([']', ')', ' ']),
+        _ => cell,
+    }
+}
+
 /// The cells of a line, without quotes and spaces around them; nothing if a quote is not closed.
 pub(crate) fn separated(line: &str, separator: Separator) -> Option<Vec<String>> {
     let line = without_brackets(line.trim_matches([' ', '\u{feff}']));
@@ -66,7 +75,7 @@ pub(crate) fn separated(line: &str, separator: Separator) -> Option<Vec<String>>
         });
     };
     if !line.contains('"') {
-        return Some(line.split(letter).map(|cell| cell.trim().to_owned()).collect());
+        return Some(line.split(letter).map(|cell| without_half_brackets(cell.trim()).to_owned()).collect());
     }
     let (mut cells, mut cell, mut is_quoted) = (vec![], String::new(), false);
     let mut letters = line.chars().peekable();
@@ -82,15 +91,19 @@ pub(crate) fn separated(line: &str, separator: Separator) -> Option<Vec<String>>
     (!is_quoted).then_some(cells)
 }
 
-/// The pairs of a line of `name: value` or `name=value`; nothing if it holds anything else.
+/// The pairs of a line of `name: value` or `name=value`, or of a dict as Python prints it; nothing if it holds anything
+/// else.
 pub(crate) fn keyed(line: &str) -> Option<Vec<(String, String)>> {
     const BETWEEN: [char; 6] = [',', ';', '|', '\t', ' ', '&'];
-    let (mut rest, mut pairs) = (line, vec![]);
+    let dict = line.trim().strip_prefix('{').and_then(|inner| inner.strip_suffix('}'));
+    let (mut rest, mut pairs) = (dict.unwrap_or(line), vec![]);
     while let Some(at) = rest.find([':', '=']) {
         let key = rest[..at].trim_matches(BETWEEN);
-        if key.is_empty() || key.chars().count() > 40 || !key.chars().any(char::is_alphabetic) {
+        let key = if dict.is_some() { key.trim_matches(['\'', '"']) } else { key };
+        if key.is_empty() || key.chars().count() > 40 {
             return None;
         }
+        let is_equal = rest[at..].starts_with('=');
         let after = rest[at + 1..].trim_start_matches([' ', '\t', '=', '>']);
         let phrase = ["out of range", "no echo", "time out"]
             .iter()
@@ -118,6 +131,12 @@ pub(crate) fn keyed(line: &str) -> Option<Vec<(String, String)>> {
             text = format!("{text} {word}");
             rest = &spaced[word.len()..];
         }
+        // A number before `=`, or before a value with a unit, is a sensor's; before anything else a part of a time.
+        let is_number = key.len() <= 2 && key.bytes().all(|byte| byte.is_ascii_digit());
+        let is_named = key.chars().any(char::is_alphabetic);
+        if !is_named && !(is_number && (is_equal || value::with_unit(&text, true)?.1.is_some())) {
+            return None;
+        }
         pairs.push((key.to_owned(), text));
     }
     (!pairs.is_empty() && !rest.contains(char::is_alphanumeric)).then_some(pairs)
@@ -133,6 +152,28 @@ pub(crate) fn json(text: &str) -> Option<Vec<(String, String)>> {
         _ => return None,
     }
     Some(pairs)
+}
+
+/// The rows of an object of columns, each a list or, as pandas writes it, an object by the number of the row: objects
+/// of their own. Nothing if it holds anything else.
+pub(crate) fn rows_of_columns(text: &str) -> Option<Vec<String>> {
+    let Json::Object(columns) = serde_json::from_str(text.trim()).ok()? else { return None };
+    let is_cell = |cell: &&Json| !cell.is_array() && !cell.is_object();
+    let cells = |column: &Json| -> Option<Vec<Json>> {
+        let cells: Vec<_> = match column {
+            Json::Array(cells) => cells.iter().collect(),
+            Json::Object(cells) => (0..cells.len()).map(|n| cells.get(&n.to_string())).collect::<Option<_>>()?,
+            _ => return None,
+        };
+        cells.iter().all(is_cell).then(|| cells.into_iter().cloned().collect())
+    };
+    let columns: Vec<_> = columns.iter().map(|(name, column)| Some((name, cells(column)?))).collect::<Option<_>>()?;
+    let rows = columns.first()?.1.len();
+    if columns.len() < 2 || rows < 2 || columns.iter().any(|(_, cells)| cells.len() != rows) {
+        return None;
+    }
+    let row = |n: usize| columns.iter().map(|(name, cells)| ((*name).clone(), cells[n].clone())).collect();
+    Some((0..rows).map(|n| Json::Object(row(n)).to_string()).collect())
 }
 
 fn flatten(path: &str, value: &Json, pairs: &mut Vec<(String, String)>) {
@@ -174,6 +215,9 @@ mod tests {
         assert_eq!(pairs("Ping: out of range"), some(&["Ping|out of range"]));
         assert_eq!(pairs("a=40,5 b=80,1"), some(&["a|40,5", "b|80,1"]));
         assert_eq!(pairs("left: "), some(&["left|"]));
+        assert_eq!(pairs("0=79cm 1=119 cm"), some(&["0|79cm", "1|119 cm"]));
+        assert_eq!(pairs("0: 79cm 1: out of range"), None);
+        assert_eq!(pairs("{'t': 0.05, 'left': None}"), some(&["t|0.05", "left|None"]));
         for line in ["40,80", "12:00:01", "left: 40 of many", "hello"] {
             assert_eq!(pairs(line), None, "{line}");
         }
@@ -183,6 +227,8 @@ mod tests {
     fn separated_lines_keep_what_is_quoted() {
         assert_eq!(separated("\"40,5\", 80 ", Separator::Comma).unwrap(), ["40,5", "80"]);
         assert_eq!(separated("[40, 80]", Separator::Comma).unwrap(), ["40", "80"]);
+        assert_eq!(separated("(0.1, [40, 80])", Separator::Comma).unwrap(), ["0.1", "40", "80"]);
+        assert_eq!(separated("t, left [cm]", Separator::Comma).unwrap(), ["t", "left [cm]"]);
         assert_eq!(separated("\"40,5, 80", Separator::Comma), None);
     }
 }

@@ -76,6 +76,7 @@ pub(crate) fn unit(word: &str) -> Option<RangeUnit> {
         "cm" | "cms" | "centimeter" | "centimeters" | "centimetre" | "centimetres" => RangeUnit::Cm,
         "mm" | "millimeter" | "millimeters" | "millimetre" | "millimetres" => RangeUnit::Mm,
         "in" | "inch" | "inches" | "\"" => RangeUnit::In,
+        "ft" | "foot" | "feet" => RangeUnit::Ft,
         "us" | "µs" | "μs" | "usec" | "microseconds" | "microsecond" => RangeUnit::Us,
         _ => return None,
     })
@@ -95,6 +96,7 @@ pub(crate) fn range(text: &str, decimal_comma: bool) -> Option<(Value, Option<Ra
 /// Nanoseconds of a date, a time of day, or both.
 pub(crate) fn calendar_ns(text: &str) -> Option<u64> {
     let text = text.trim();
+    let text = text.strip_suffix(" UTC").unwrap_or(text);
     if let Some(ns) = time_of_day_ns(text) {
         return Some(ns);
     }
@@ -159,9 +161,34 @@ fn time_of_day_ns(text: &str) -> Option<u64> {
     Some(s * 1_000_000_000 + ns)
 }
 
+/// `Jan 31 12:00:01 robot node[7]: `, as syslog begins a line, in a year without a name.
+fn syslog(line: &str) -> Option<(u64, &str)> {
+    const MONTHS: [&str; 12] = ["Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec"];
+    let word = |text: &'_ str| text.find(' ').map(|end| (end, text[end..].trim_start().len()));
+    let month = 1 + MONTHS.iter().position(|name| line.starts_with(name))?;
+    let rest = line.get(3..)?.strip_prefix(' ')?.trim_start();
+    let (end, left) = word(rest)?;
+    let day = days(&format!("1970-{month}-{}", &rest[..end]))?;
+    let rest = &rest[rest.len() - left..];
+    let (end, left) = word(rest)?;
+    let at = time_of_day_ns(&rest[..end])?;
+    let (_, said) = rest[rest.len() - left..].split_once(": ")?;
+    Some((u64::try_from(day).ok()? * 86_400_000_000_000 + at, said.trim_start()))
+}
+
+/// `I (1234) tag: `, as ESP-IDF begins a line: milliseconds since the start.
+fn esp_idf(line: &str) -> Option<(u64, &str)> {
+    let (ms, rest) = line.strip_prefix(['E', 'W', 'I', 'D', 'V'])?.strip_prefix(" (")?.split_once(") ")?;
+    let (_, said) = rest.split_once(": ")?;
+    Some((ms.parse::<u64>().ok()?.checked_mul(1_000_000)?, said.trim_start()))
+}
+
 /// A time before the readings of a line, as serial monitors, loggers and `dmesg` write it, and the rest of the line.
 pub(crate) fn prefix(line: &str) -> Option<(u64, &str)> {
     let line = line.trim_start();
+    if let Some(found) = esp_idf(line).or_else(|| syslog(line)) {
+        return Some(found);
+    }
     let (time, rest) = if let Some(inner) = line.strip_prefix('[') {
         let (inner, rest) = inner.split_once(']')?;
         let is_level = !inner.is_empty() && inner.trim().bytes().all(|byte| byte.is_ascii_alphabetic());
@@ -184,6 +211,11 @@ pub(crate) fn prefix(line: &str) -> Option<(u64, &str)> {
         }
     };
     let rest = rest.trim_start();
+    let rest = rest.strip_prefix("UTC").unwrap_or(rest);
+    // The first cell of a table.
+    if rest.starts_with([',', ';']) {
+        return None;
+    }
     let rest = ["->", ">", ":", "- "].iter().find_map(|arrow| rest.strip_prefix(arrow)).unwrap_or(rest).trim_start();
     let levels = ["INFO ", "DEBUG ", "WARNING ", "WARN "];
     let rest = levels.iter().find_map(|level| rest.strip_prefix(level)).unwrap_or(rest).trim_start();
@@ -204,6 +236,7 @@ mod tests {
             "02.01.2024 12:00:01",
             "2024-01-02T13:00:01+01:00",
             "2024-01-02 12:00:01,000",
+            "2024-01-02 12:00:01 UTC",
         ] {
             assert_eq!(calendar_ns(text), Some(s), "{text}");
         }
@@ -226,6 +259,12 @@ mod tests {
         }
         assert_eq!(prefix("[  12.5] left: 4"), Some((12_500_000_000, "left: 4")));
         assert_eq!(prefix("2024-01-02 12:00:01,000 INFO a=1"), Some((1_704_196_801_000_000_000, "a=1")));
+        assert_eq!(prefix("I (1250) sonar: left: 40"), Some((1_250_000_000, "left: 40")));
+        let first = 43_201_100_000_000;
+        assert_eq!(prefix("Jan 01 12:00:01.100 robot sonar[7]: a=1"), Some((first, "a=1")));
+        assert_eq!(prefix("Jan  2 12:00:01.1 robot sonar: a=1"), Some((first + 86_400_000_000_000, "a=1")));
+        assert_eq!(prefix("2024-01-02 12:00:01 UTC,40,80"), None);
+        assert_eq!(prefix("January,left,right"), None);
         assert_eq!(prefix("left: 40 right: 80"), None);
         assert_eq!(prefix("12:00:01.100,40,80"), None);
     }

@@ -28,7 +28,7 @@ fn said(bytes: &[u8], options: &Options) -> (String, Option<f64>, Report) {
 /// Name, text, sensors, and seconds between the first two readings.
 type Form = (&'static str, &'static str, &'static str, Option<f64>);
 
-const FORMS: [Form; 46] = [
+const FORMS: [Form; 65] = [
     ("comma", "left,right\n40,80\n41,81\n", "left: 0.4 0.41; right: 0.8 0.81", None),
     ("semicolon", "left;right\n40;80\n41;81\n", "left: 0.4 0.41; right: 0.8 0.81", None),
     ("tab", "left\tright\n40\t80\n41\t81\n", "left: 0.4 0.41; right: 0.8 0.81", None),
@@ -107,6 +107,115 @@ const FORMS: [Form; 46] = [
         "us.left: 0.4 0.41",
         Some(0.1),
     ),
+    ("NewPing's example", "0=40cm 1=80cm \n0=41cm 1=0cm \n0=40cm 1=81cm \n", "0: 0.4 0.41 0.4; 1: 0.8 - 0.81", None),
+    (
+        "Python's print of a dict",
+        "{'t': 0.1, 'left': 40.5, 'right': None}\n{'t': 0.2, 'left': 41.5, 'right': 81.0}\n",
+        "left: 0.405 0.415; right: - 0.81",
+        Some(0.1),
+    ),
+    (
+        "ros2 topic echo",
+        "header:\n  stamp:\n    sec: 7\n    nanosec: 0\n  frame_id: us_1\nradiation_type: 0\nfield_of_view: 0.5\n\
+         min_range: 0.02\nmax_range: 4.0\nrange: 1.25\n---\nheader:\n  stamp:\n    sec: 7\n    nanosec: 60000000\n  \
+         frame_id: us_1\nradiation_type: 0\nfield_of_view: 0.5\nmin_range: 0.02\nmax_range: 4.0\nrange: .inf\n---\n",
+        "us_1: 1.25 -",
+        Some(0.06),
+    ),
+    (
+        "rostopic echo",
+        "header: \n  seq: 1\n  stamp: \n    secs: 7\n    nsecs:         0\n  frame_id: \"us1\"\nradiation_type: 0\n\
+         field_of_view: 0.5\nmin_range: 0.02\nmax_range: 4.0\nrange: 1.25\n---\nheader: \n  seq: 2\n  stamp: \n    \
+         secs: 7\n    nsecs:  60000000\n  frame_id: \"us1\"\nradiation_type: 0\nfield_of_view: 0.5\nmin_range: 0.02\n\
+         max_range: 4.0\nrange: 1.5\n---\n",
+        "us1: 1.25 1.5",
+        Some(0.06),
+    ),
+    (
+        "ros2 topic echo --csv",
+        "7,0,us_1,0,0.26,0.02,4.0,1.25\n7,60000000,us_1,0,0.26,0.02,4.0,1.5\n",
+        "us_1: 1.25 1.5",
+        Some(0.06),
+    ),
+    (
+        "one sensor a row",
+        "t,a,b\n0.0,40,\n0.1,,80\n0.2,41,\n0.3,,81\n0.4,40,\n0.5,,80\n0.6,41,\n0.7,,81\n",
+        "a: 0.4 0.41 0.4 0.41; b: 0.8 0.81 0.8 0.81",
+        Some(0.2),
+    ),
+    (
+        "mavlogdump",
+        "timestamp,DISTANCE_SENSOR.time_boot_ms,DISTANCE_SENSOR.min_distance,DISTANCE_SENSOR.max_distance,\
+         DISTANCE_SENSOR.current_distance,DISTANCE_SENSOR.type,DISTANCE_SENSOR.id,DISTANCE_SENSOR.orientation\n\
+         1700000000.00,0,2,400,40,1,0,0\n1700000000.03,30,2,400,80,1,1,2\n1700000000.06,60,2,400,41,1,0,0\n",
+        "0: 0.4 0.41; 1: 0.8",
+        Some(0.06),
+    ),
+    ("ESP-IDF", "I (50) us: left: 40 cm\nI (110) us: left: 41 cm\n", "left: 0.4 0.41", Some(0.06)),
+    (
+        "syslog",
+        "Jan  2 12:00:01.100 robot us[7]: left=40cm\nJan  2 12:00:01.160 robot us[7]: left=41cm\n",
+        "left: 0.4 0.41",
+        Some(0.06),
+    ),
+    ("feet", "t (ms),Distance (ft)\n0,1.5\n60,2\n", "Distance (ft): 0.457 0.61", Some(0.06)),
+    (
+        "Home Assistant",
+        "entity_id,state,last_changed\nsensor.us_1,40.5,2026-01-01T14:00:00.000000+00:00\n\
+         sensor.us_1,41.5,2026-01-01T14:00:00.060000+00:00\n",
+        "sensor.us_1: 0.405 0.415",
+        Some(0.06),
+    ),
+    (
+        "InfluxDB",
+        "#datatype,string,long,dateTime:RFC3339,dateTime:RFC3339,double,string,string\n\
+         ,result,table,_start,_time,_value,_field,sensor\n\
+         ,,0,2026-01-01T00:00:00Z,2026-01-01T14:00:00.00Z,0.40,range,a\n\
+         ,,1,2026-01-01T00:00:00Z,2026-01-01T14:00:00.03Z,0.80,range,b\n\
+         ,,0,2026-01-01T00:00:00Z,2026-01-01T14:00:00.06Z,0.41,range,a\n",
+        "a: 0.4 0.41; b: 0.8",
+        Some(0.06),
+    ),
+    (
+        "ThingSpeak",
+        "created_at,entry_id,field1,field2\n2026-01-01 14:00:00 UTC,1,40,80\n2026-01-01 14:00:15 UTC,2,41,81\n\
+         2026-01-01 14:00:30 UTC,3,40,80\n",
+        "field1: 0.4 0.41 0.4; field2: 0.8 0.81 0.8",
+        Some(15.0),
+    ),
+    (
+        "Python's print of a tuple",
+        "(0.1, [40, 80])\n(0.2, [41, 81])\n(0.3, [40, 80])\n",
+        "column 2: 0.4 0.41 0.4; column 3: 0.8 0.81 0.8",
+        Some(0.1),
+    ),
+    (
+        "MATLAB",
+        "% run 3\n% t[s] d1[m] d2[m]\n0.10 0.40 0.80\n0.20 0.41 0.81\n",
+        "d1[m]: 0.4 0.41; d2[m]: 0.8 0.81",
+        Some(0.1),
+    ),
+    (
+        "JSON, a list in an object on one line",
+        "{\"robot\":\"x\",\"readings\":[{\"t\":0.1,\"id\":\"a\",\"cm\":40},\
+     {\"t\":0.2,\"id\":\"a\",\"cm\":41}]}",
+        "a: 0.4 0.41",
+        Some(0.1),
+    ),
+    (
+        "JSON of columns",
+        "{\"t\":[0.1,0.2],\"left\":[40,41],\"right\":[80,null]}",
+        "left: 0.4 0.41; right: 0.8 -",
+        Some(0.1),
+    ),
+    ("JSON of pandas", "{\"t\":{\"0\":0.1,\"1\":0.2},\"left\":{\"0\":40,\"1\":41}}", "left: 0.4 0.41", Some(0.1)),
+    (
+        "sensor and distance as objects",
+        "{\"t\":0.0,\"sensor\":{\"id\":\"a\"},\"distance\":{\"value\":40.5,\"unit\":\"cm\"}}\n\
+         {\"t\":0.1,\"sensor\":{\"id\":\"a\"},\"distance\":{\"value\":41.5,\"unit\":\"cm\"}}\n",
+        "a: 0.405 0.415",
+        Some(0.1),
+    ),
 ];
 
 #[test]
@@ -118,6 +227,30 @@ fn each_form_gives_its_right_answer() {
         let is_near = step.zip(seconds).is_none_or(|(step, seconds)| (step - seconds).abs() < 1e-6);
         assert!(is_near && step.is_some() == seconds.is_some(), "{name}: {seconds:?} {:#?}", report.guesses);
         assert!(!report.form.is_empty() && report.guesses.iter().all(|guess| guess.option.starts_with("--")), "{name}");
+    }
+}
+
+// A message that nothing ends may be cut in the middle of a number.
+#[test]
+fn message_that_is_not_ended_gives_no_reading() {
+    let text = "range: 0.40\n---\nrange: 0.41\n---\nrange: 0.4";
+    let (said, _, report) = said(text.as_bytes(), &Options::default());
+    assert_eq!(said, "range: 0.4 0.41");
+    assert_eq!(report.damage.len(), 1);
+}
+
+#[test]
+fn lines_and_rows_of_one_sensor_each_show_the_firing_pattern() {
+    let line = |n: u32| format!("12:00:{:02}.{:03} -> Sensor {}: 40 cm\n", n / 20, n % 20 * 50, n % 4 + 1);
+    let row = |n: u32| {
+        format!("{},{}40{}\n", f64::from(n) * 0.05, ",".repeat(n as usize % 4), ",".repeat(3 - n as usize % 4))
+    };
+    let lines: String = (0..400).map(line).collect();
+    let rows = "t,a,b,c,d\n".to_owned() + &(0..400).map(row).collect::<String>();
+    let at_once = "t,a,b,c,d\n".to_owned()
+        + &(0..100).map(|n| format!("{},40,40,40,40\n", f64::from(n) * 0.2)).collect::<String>();
+    for (text, expected) in [(lines, Pattern::InTurn), (rows, Pattern::InTurn), (at_once, Pattern::Unknown)] {
+        assert_eq!(said(text.as_bytes(), &Options::default()).2.firing.pattern, expected, "{}", &text[..40]);
     }
 }
 

@@ -1,0 +1,121 @@
+//! Messages as `ros2 topic echo` and `rostopic echo` print them: maps by indentation, each ended by a line of `---`.
+
+use std::io;
+
+use serde_json::{Map, Value as Json};
+
+use super::lines::{Line, Lines};
+use super::value;
+
+/// A message with more text is lost.
+const LONGEST: usize = 1 << 20;
+
+/// Returns true for the beginning of such a text.
+pub(super) fn are_in(start: &str) -> bool {
+    let key = |line: &str| entry(line).is_some_and(|(key, _)| line.starts_with(key));
+    let mut lines = start.lines().filter(|line| !line.trim().is_empty()).skip_while(|line| !key(line));
+    lines.next().is_some() && lines.any(|line| line.trim_end() == "---") && !start.trim_start().starts_with('{')
+}
+
+/// The next message, as a JSON object of its values by their paths. One that nothing ends stays text, which is no
+/// object: it may be cut.
+pub(super) fn next(lines: &mut Lines<'_>) -> io::Result<Option<Line>> {
+    let (mut message, mut first, mut bytes) = (vec![], 0, 0);
+    while let Some(line) = lines.next()? {
+        if line.text.trim_end() == "---" {
+            if message.is_empty() {
+                continue;
+            }
+            let is_too_long = bytes > LONGEST;
+            return Ok(Some(Line { number: first, text: object(&message).to_string(), is_ended: true, is_too_long }));
+        }
+        if message.is_empty() {
+            first = line.number;
+        }
+        bytes += line.text.len();
+        if bytes <= LONGEST && !line.text.trim().is_empty() {
+            message.push(line.text);
+        }
+    }
+    let text = message.join("\n");
+    Ok((!message.is_empty()).then_some(Line { number: first, text, is_ended: false, is_too_long: bytes > LONGEST }))
+}
+
+/// A key and what follows it on the line, of `key: value` or `key:`.
+fn entry(line: &str) -> Option<(&str, &str)> {
+    let (key, value) = line.trim().split_once(':')?;
+    let is_key = !key.is_empty() && key.bytes().all(|byte| byte.is_ascii_alphanumeric() || byte == b'_');
+    (is_key && (value.is_empty() || value.starts_with(' '))).then_some((key, value.trim()))
+}
+
+fn object(message: &[String]) -> Json {
+    let mut values = Map::new();
+    // Keys that are open, each with its indentation, and the number of elements of a list below it.
+    let mut open: Vec<(usize, String, usize)> = vec![];
+    for line in message {
+        let indentation = line.len() - line.trim_start().len();
+        let (element, rest) = match line.trim_start().strip_prefix("- ") {
+            Some(rest) => (true, rest.trim()),
+            None => (false, line.trim()),
+        };
+        // An element of a list may stand below its key without indentation.
+        open.retain(|(at, ..)| *at < indentation || (element && *at == indentation));
+        let path = |open: &[(usize, String, usize)]| open.last().map_or(String::new(), |(_, path, _)| path.clone());
+        let mut parent = path(&open);
+        if element && let Some((_, list, n)) = open.last_mut() {
+            parent = format!("{list}[{n}]");
+            *n += 1;
+            open.push((indentation + 1, parent.clone(), 0));
+        }
+        match entry(rest) {
+            Some((key, text)) => {
+                let path = if parent.is_empty() { key.to_owned() } else { format!("{parent}.{key}") };
+                if !text.is_empty() {
+                    values.insert(path.clone(), scalar(text));
+                }
+                open.push((indentation + 2 * usize::from(element), path, 0));
+            }
+            None if element => _ = values.insert(parent, scalar(rest)),
+            None => {}
+        }
+    }
+    Json::Object(values)
+}
+
+/// A value: a list in brackets, a number, or text without quotes and without the dot before `inf` and `nan`.
+fn scalar(text: &str) -> Json {
+    let is_parsed = text.starts_with('[') || value::number(text, false).is_some();
+    let parsed = if is_parsed { serde_json::from_str(text).ok() } else { None };
+    parsed.unwrap_or_else(|| {
+        let plain = text.trim_matches(['\'', '"']);
+        let is_word = ["inf", "nan"].iter().any(|word| plain.to_lowercase().ends_with(word));
+        Json::String(if is_word { plain.replacen('.', "", 1) } else { plain.to_owned() })
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn message_becomes_its_values_by_their_paths() {
+        let message = "header:\n  stamp:\n    sec: 7\n    nanosec: 50\n  frame_id: us_1\nrange: .inf\nranges:\n- 0.5\n- 1.5\n\
+                       data: [1, 2]\nlist:\n- a: 1\n  b: 2\n- a: 3\nname: ''";
+        let lines: Vec<_> = message.lines().map(str::to_owned).collect();
+        let expected = serde_json::json!({
+            "header.stamp.sec": 7, "header.stamp.nanosec": 50, "header.frame_id": "us_1", "range": "inf",
+            "ranges[0]": 0.5, "ranges[1]": 1.5, "data": [1, 2], "list[0].a": 1, "list[0].b": 2, "list[1].a": 3,
+            "name": "",
+        });
+        assert_eq!(object(&lines), expected);
+    }
+
+    #[test]
+    fn text_is_messages_only_with_a_line_that_ends_one() {
+        assert!(are_in("range: 0.5\n---\nrange: 0.6\n"));
+        assert!(are_in("\nheader: \n  seq: 1\n---\n"));
+        for text in ["range: 0.5\nrange: 0.6\n", "left,right\n---\n", "{\"a\": 1}\n---\n", "12:00:01 -> 4\n---\n"] {
+            assert!(!are_in(text), "{text}");
+        }
+    }
+}

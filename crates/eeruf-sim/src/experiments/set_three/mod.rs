@@ -3,7 +3,8 @@
 //! The paper claims that a ring also rejects what other robots send (Sec. 5), and measures it for no two that are
 //! alike. Here rings of twelve sensors all round, of one period, window and table, stand, meet or follow each other in
 //! a corridor and in a hall; nothing but the phase and the drift of their clocks tells them apart. The rooms, places
-//! and drifts are choices.
+//! and drifts are choices. As [rings are fired today](crate::Method::is_sketch) they have two arrays of six, four
+//! groups of three, and modules that rest for 65 ms, a Polaroid 6500's; else the defaults of [`Sketch`](crate::Sketch).
 
 mod figures;
 mod placing;

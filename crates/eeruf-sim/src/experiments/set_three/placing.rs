@@ -10,7 +10,7 @@ use crate::{
     experiments::set_one::RADIUS_M,
     geometry::{Pose, Vector},
     scene::{Air, Faces, Scene, SceneError, Wall},
-    world::{Clock, Motion, Random, Robot},
+    world::{Clock, Motion, Random, Robot, Sketch},
 };
 
 /// Number of sensors of a ring, evenly around the robot: as many as the paper's table.
@@ -102,6 +102,7 @@ impl Placing {
                 motion: if drives { Motion::Constant { velocity, turn_rad_s: 0.0 } } else { Motion::Still },
                 odometry: drives,
                 period: PERIOD,
+                firing: Sketch { rest: Some(ring.module_rest()), ..Sketch::default() },
                 ..ring
             }
         });

@@ -420,7 +420,9 @@ def set_three(
 ) -> SetThree:
     """Set III: two to six robots with the same ring stand, meet or follow each other in a corridor or a hall.
 
-    Nothing but the phases and drifts of their clocks tells them apart. Runs on all cores; Ctrl-C ends it.
+    Nothing but the phases and drifts of their clocks tells them apart. As rings are fired today (``in_turn``, ``arrays``, ``groups``,
+    ``sync_line``, ``free_running``, ``table``) they have two arrays of six, four groups of three, and modules that rest for 65 ms.
+    Runs on all cores; Ctrl-C ends it.
 
     Args:
         seeds: how many placings, 1 to 100,000.

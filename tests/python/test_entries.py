@@ -117,6 +117,21 @@ def test_schedules_settings_and_sketches_are_those_given() -> None:
     assert both.runs["designed"][0].summary == sim.simulate(SCENE, designed, 50).summary()
 
 
+def test_robots_of_one_make_fire_as_rings_are_fired_today() -> None:
+    today = ["in_turn", "arrays", "groups", "sync_line", "free_running", "table"]
+    # A ping timer as long as the window is one by one.
+    timer = sim.Method("in_turn", label="timer", sketch={"turn_us": 36_001})
+    methods: list[Any] = [*today, timer, "sequential"]
+    table = experiments.set_three(4, periods=20, methods=methods)
+    spreads = {name: figures.others_of_accepted for name, figures in table.methods.items()}
+    others = {name: spread.mean for name, spread in spreads.items() if spread is not None}
+    assert list(others) == [*today, "timer", "sequential"]
+    assert all(others[name] > 0.1 for name in today)
+    for one, other in zip(table.runs["timer"], table.runs["sequential"]):
+        assert one.others_of_accepted == other.others_of_accepted
+        assert one.right_echoes_per_s == other.right_echoes_per_s
+
+
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [

@@ -8,6 +8,9 @@ use eeruf_sim::experiments::set_three::{Arrangement, Brief, Figures, Group, PERI
 use crate::report::percent::{fine_percent, median};
 use crate::report::table::markdown;
 
+/// The most methods that one table has columns for.
+const WIDEST: usize = 8;
+
 pub(crate) fn describe(found: &SetThree) -> String {
     let mut text = format!(
         "Set III: {} placings from {} on of two to six robots, {} periods of {} each, physics: {}{};\n\
@@ -30,9 +33,15 @@ pub(crate) fn describe(found: &SetThree) -> String {
     _ = writeln!(text, "{}", markdown(&header, found.methods.iter().map(|(way, figures)| accepted(way, figures))));
     let header = ["% of the time", "right", "unknown", "phantom", "too far", "faint"];
     _ = writeln!(text, "\n{}", markdown(&header, found.methods.iter().map(|(way, figures)| belief(way, figures))));
-    let mut header = vec!["others, % of accepted / belief right %".to_owned(), "placings".to_owned()];
-    header.extend(found.methods.iter().map(|(way, _)| way.to_string()));
-    _ = writeln!(text, "\n{}", markdown(&header, found.groups.iter().map(group)));
+    // Many methods stand in several tables of about the same width.
+    let methods = found.methods.len().max(1);
+    let columns = methods.div_ceil(methods.div_ceil(WIDEST));
+    for (at, part) in found.methods.chunks(columns).enumerate() {
+        let mut header = vec!["others, % of accepted / belief right %", "placings"];
+        header.extend(part.iter().map(|(way, _)| way.as_str()));
+        let rows = found.groups.iter().map(|of| group(of, of.methods.iter().skip(at * columns).take(columns)));
+        _ = writeln!(text, "\n{}", markdown(&header, rows));
+    }
     text
 }
 
@@ -71,7 +80,7 @@ fn belief(way: &str, figures: &Figures) -> Vec<String> {
     [way.to_string()].into_iter().chain(shares.map(with_interval)).collect()
 }
 
-fn group(group: &Group) -> Vec<String> {
+fn group<'g>(group: &'g Group, methods: impl Iterator<Item = &'g (String, Brief)>) -> Vec<String> {
     let place = group.place.map(|place| match place {
         Place::Corridor => "corridor, ",
         Place::Hall => "hall, ",
@@ -84,7 +93,7 @@ fn group(group: &Group) -> Vec<String> {
     let robots = group.robots.map(|robots| format!("{robots} robots"));
     let name = [place.map(str::to_owned), arrangement.map(str::to_owned), robots];
     let mut row = vec![name.into_iter().flatten().collect::<String>(), group.placings.to_string()];
-    row.extend(group.methods.iter().map(|(_, brief)| briefly(brief)));
+    row.extend(methods.map(|(_, brief)| briefly(brief)));
     row
 }
 

@@ -332,15 +332,24 @@ fn emit_flow(modules: &[Module], form: Form, way: &RoomWay) -> Result<(), InputE
 }
 
 /// Prints the settings of a driver for the modules of a table in C, if they are alike and answer by a pulse: those that
-/// may be triggered again sooner than the module says have it from the ring file, whose table keeps it.
+/// may be triggered again sooner than the module says have it from the ring file, whose table keeps it. A driver takes
+/// one kind of module; a comment in Rust and C lists the sensors that are of another.
 fn emit_settings(modules: &[Module], form: Form, min_refire: Micros) -> Result<(), InputError> {
+    let Some(module) = modules.first() else { return Ok(()) };
+    let others = (0..).zip(modules).filter(|&(_, other)| other != module);
+    let others: Vec<_> = others.map(|(sensor, _): (usize, _)| sensor.to_string()).collect();
+    if !others.is_empty() && !matches!(form, Form::Toml | Form::Json) {
+        print_line("")?;
+        let others = others.join(", ");
+        return comment(
+            form,
+            &format!("No settings of one driver: sensors {others} are of another kind than sensor 0."),
+        );
+    }
     let name = match form {
         Form::C => "EERUF_MODULES",
         Form::Arduino => "RING_MODULES",
         Form::Toml | Form::Rust | Form::Json => return Ok(()),
-    };
-    let Some(module) = modules.first().filter(|first| modules.iter().all(|module| module == *first)) else {
-        return Ok(());
     };
     let Some(PulseTimes { deaf_us, shortest_us, latest_rise_us, longest_us, longest_hold_us }) = module.pulse_times()
     else {

@@ -328,7 +328,9 @@ fn driver_says(file: &str, text: &str, said: &Said, table: &Table, c: &BTreeMap<
         assert_eq!(ring.path_change_of(sensor).as_micros(), path_change, "{file}");
     }
     assert_eq!(ring.audible().as_micros(), c["audible"][0], "{file}");
-    let Some(settings) = settings(said, table) else { return false };
+    let settings = settings(said, table);
+    assert_eq!(settings.is_some(), c.contains_key("settings"), "{file}");
+    let Some(settings) = settings else { return false };
     let Settings { deaf, shortest, latest_rise, longest, longest_hold, min_retrigger, trigger, .. } = settings;
     let times = [deaf, shortest, latest_rise, longest, longest_hold, min_retrigger].map(Micros::as_micros);
     let times = [&times[..], &[settings.missing_after.into(), trigger.as_micros()]].concat();
@@ -340,6 +342,16 @@ fn driver_says(file: &str, text: &str, said: &Said, table: &Table, c: &BTreeMap<
     true
 }
 
+/// A driver has the settings of one kind of module: for several, a table has none and lists the sensors.
+fn names_other_kinds(file: &str, form: &str, emitted: &str, said: &Said) {
+    let others = said.modules.iter().enumerate().filter(|&(_, module)| *module != said.modules[0]);
+    let others: Vec<_> = others.map(|(sensor, _)| sensor.to_string()).collect();
+    let reason = emitted.lines().find_map(|line| line.split_once("No settings of one driver: sensors "));
+    let expected = (!others.is_empty()).then(|| format!("{} are of another kind than sensor 0.", others.join(", ")));
+    let reason = reason.map(|(_, reason)| reason.trim_end_matches(" */"));
+    assert_eq!(reason, expected.as_deref(), "{file}: {form}");
+}
+
 /// Asks all for what they make of a ring file; true if the driver is one of them.
 fn says_the_same_everywhere(file: &str) -> bool {
     let text = std::fs::read_to_string(file).unwrap();
@@ -349,9 +361,12 @@ fn says_the_same_everywhere(file: &str) -> bool {
         assert_eq!(emitted.code, Some(0), "{file}: {}", emitted.err);
         emitted.out
     };
-    let (toml, rust) = (emit("toml"), emit("rust"));
-    let (table, c) = of_c(&emit("c"), 0);
-    let (arduino, by_arduino) = of_c(&emit("arduino"), 1);
+    let [toml, rust, c, arduino] = ["toml", "rust", "c", "arduino"].map(emit);
+    for (form, emitted) in [("rust", &rust), ("c", &c), ("arduino", &arduino)] {
+        names_other_kinds(file, form, emitted, &said);
+    }
+    let (table, c) = of_c(&c, 0);
+    let (arduino, by_arduino) = of_c(&arduino, 1);
     let listens = table.rest.as_ref().unwrap();
     // Every form is the same table for the same sensors.
     assert_eq!(of_toml(&toml), Table { rest: None, fire: table.fire.clone(), ..table }, "{file}");
@@ -406,7 +421,11 @@ fn shipped_ring_file_says_the_same_everywhere() {
 
 #[test]
 fn every_key_of_a_ring_file_reaches_its_ring() {
-    for (text, has_driver) in [(MIXED, false), (ALIKE, true)] {
+    // The car whose front modules are of another make than the others.
+    let front = std::iter::repeat_n("jsn-sr04t", 4);
+    let makes: Vec<_> = front.chain(std::iter::repeat_n("hc-sr04", 8)).collect();
+    let car = format!("module = {makes:?}\n{}", include_str!("../../rings/car-12.toml"));
+    for (text, has_driver) in [(MIXED, false), (ALIKE, true), (&car, false)] {
         let (_folder, file) = Scratch::new("ring.toml", text);
         assert_eq!(says_the_same_everywhere(file.to_str().unwrap()), has_driver, "{text}");
     }

@@ -58,6 +58,18 @@ fn unknown_method_and_speed_are_refused_in_words() {
 }
 
 #[test]
+fn nine_methods_stand_in_two_tables_of_groups() {
+    let methods = "simultaneous,sequential,conventional,in_turn,arrays,groups,sync_line,free_running,table";
+    let set = ["experiment", "set-three", "--seeds", "1", "--periods", "10", "--method", methods];
+    let printed = eeruf(&set).out;
+    let headers = printed.lines().filter(|line| line.contains("placings |"));
+    let tables: Vec<Vec<&str>> = headers.map(|line| line.split('|').map(str::trim).skip(3).collect()).collect();
+    let names: Vec<&str> = methods.split(',').collect();
+    let expected: Vec<Vec<&str>> = [&names[..5], &names[5..]].map(|names| [names, &[""]].concat()).into();
+    assert_eq!(tables, expected);
+}
+
+#[test]
 fn merged_parts_equal_the_whole_run() {
     for set in [
         &["set-one", "--seeds", "5", "--method", "eeruf,median,flow"][..],

@@ -35,7 +35,7 @@ pub(crate) enum LineFault {
 
 impl LineFault {
     /// The faults of [`FAULTY`] that it is made of, from this time on.
-    fn faults(self, from_s: f64) -> Vec<Fault> {
+    pub(crate) fn faults(self, from_s: f64) -> Vec<Fault> {
         let kinds = match self {
             Self::None => vec![],
             Self::Missing => vec![FaultKind::Missing],

@@ -332,3 +332,25 @@ impl Run {
         Ok(change)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    // A scene cannot have the board's own: nothing is wrong with sound or lines.
+    #[test]
+    fn each_fault_is_of_a_line_or_of_the_board() {
+        let well = Fault::None.orders(PERIODS);
+        for fault in Fault::ALL {
+            if let Fault::Line(line) = fault {
+                assert!(!line.faults(0.0).is_empty(), "{fault}");
+                assert_eq!(fault.orders(PERIODS), well, "{fault}");
+            } else {
+                assert_ne!(fault.orders(PERIODS), well, "{fault}");
+            }
+        }
+        assert_eq!(Fault::Stall.orders(PERIODS).stall, STALL);
+        // 50 s before its end, of 100 s.
+        assert_eq!(Fault::Wrap.orders(PERIODS).start, Instant::from_micros(50_000_000_u32.wrapping_neg()));
+    }
+}

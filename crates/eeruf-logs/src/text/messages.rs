@@ -99,7 +99,8 @@ mod tests {
 
     #[test]
     fn message_becomes_its_values_by_their_paths() {
-        let message = "header:\n  stamp:\n    sec: 7\n    nanosec: 50\n  frame_id: us_1\nrange: .inf\nranges:\n- 0.5\n- 1.5\n\
+        let message = "header:\n  stamp:\n    sec: 7\n    nanosec: 50\n  frame_id: us_1\nrange: .inf\n\
+                       ranges:\n- 0.5\n- 1.5\n\
                        data: [1, 2]\nlist:\n- a: 1\n  b: 2\n- a: 3\nname: ''";
         let lines: Vec<_> = message.lines().map(str::to_owned).collect();
         let expected = serde_json::json!({

@@ -204,7 +204,7 @@ fn shape_of(lines: &[(u64, &str)]) -> (Shape, bool) {
     (Shape::Separated(best.1), best.2)
 }
 
-/// What `ros2 topic echo --csv` prints of a Range, whose last field came with Jazzy.
+/// Columns that `ros2 topic echo --csv` prints of a Range, whose last came with Iron.
 const ECHOED_RANGE: [&str; 9] = [
     "header.stamp.sec",
     "header.stamp.nanosec",

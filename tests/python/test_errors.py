@@ -1,6 +1,7 @@
 """Whatever is wrong raises one clear error, and nothing panics."""
 
 import math
+import time
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any, Callable
@@ -375,3 +376,71 @@ AX = matplotlib.figure.Figure().subplots()
 FEW = sim.simulate(ROOM, periods=3)
 STANDING = eeruf.experiments.set_one(1, readings=8, methods=["eeruf"])
 DRIVING = eeruf.experiments.set_two(1, methods=["eeruf"])
+
+
+class Reenters:
+    """A number whose conversion calls the object that is being called."""
+
+    def __init__(self, call: Callable[[], Any]) -> None:
+        self.call = call
+
+    def __index__(self) -> int:
+        self.call()
+        return 0
+
+    def __rshift__(self, _: int) -> int:
+        return 0
+
+    def __float__(self) -> float:
+        self.call()
+        return 0.5
+
+
+SCHEDULE = eeruf.HoppingSchedule(8, 60_000, 240)
+STATEFUL: list[tuple[Any, Callable[[Any, Any], Any], Callable[[Any], Any]]] = [
+    (eeruf.Ring(tables.TABLE_I_D, 500, window_us=36_000), lambda of, at: of.echo(at, at), lambda of: of.pause()),
+    (eeruf.HoppingRing(SCHEDULE, window_us=30_000), lambda of, at: of.echo(at, at), lambda of: of.resume()),
+    (eeruf.nav.Himm(), lambda of, at: of.echo((0, 0, 0), at), lambda of: of.move_to((0, 0))),
+    (eeruf.SensorWatch(4), lambda of, at: of.state(at, at), lambda of: of.observe(eeruf.Fire(0), 0)),
+    (
+        eeruf.Adaptation([tables.TABLE_I_D], 500),
+        lambda of, at: of.max_speed_m_s(at),
+        lambda of: of.adapt(eeruf.Ring(tables.TABLE_I_D, 500, window_us=36_000), eeruf.Fire(0)),
+    ),
+]
+
+
+@pytest.mark.parametrize(("of", "call", "within"), STATEFUL, ids=[type(of).__name__ for of, _, _ in STATEFUL])
+def test_a_call_within_a_call_works_or_is_an_error_of_ours(
+    of: Any, call: Callable[[Any, Any], Any], within: Callable[[Any], Any]
+) -> None:
+    outcomes: list[str] = []
+
+    def again() -> None:
+        try:
+            within(of)
+            outcomes.append("it works")
+        except Exception as error:
+            outcomes.append(f"{type(error).__name__}: {error}")
+
+    call(of, Reenters(again))
+    name = type(of).__name__
+    busy = f"EerufError: this {name} is in use by another call; expected one at a time: one {name} a thread, or a lock"
+    assert outcomes and set(outcomes) <= {"it works", busy}
+    within(of)
+
+
+def test_two_threads_get_answers_or_an_error_with_advice() -> None:
+    ring = eeruf.Ring(tables.TABLE_I_D, 500, window_us=36_000)
+
+    def fire() -> None:
+        for at in range(2_000):
+            try:
+                ring.echo(Reenters(lambda: time.sleep(0)), at)
+                ring.poll(at)
+            except eeruf.EerufError as error:
+                assert "one Ring a thread, or a lock" in str(error)
+
+    with ThreadPoolExecutor(2) as threads:
+        for done in [threads.submit(fire) for _ in range(2)]:
+            done.result()

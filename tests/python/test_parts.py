@@ -201,7 +201,9 @@ def test_a_second_call_at_a_time_is_told_what_to_do(busy: Any, push: Any) -> Non
             try:
                 push(busy)
             except eeruf.EerufError as error:
-                assert re.match(r"an Echo(Filter|Tracker) in use by another call; expected one at a time", str(error))
+                assert re.match(
+                    r"this Echo(Filter|Tracker) is in use by another call; expected one at a time", str(error)
+                )
                 refused += 1
     assert refused > 0 and len(many.result()) == len(echoes)
     assert push(busy).kind in eeruf.KINDS

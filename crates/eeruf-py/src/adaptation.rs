@@ -9,6 +9,7 @@ use pyo3::prelude::*;
 use crate::{
     arguments::{instance, items, micros, number, whole_or, wrong},
     errors::Raise,
+    exclusive::Exclusive,
     ring::Ring,
     ring_events::to_core,
     schedule::Schedule,
@@ -60,9 +61,9 @@ self_cell::self_cell!(
 ///     ...         _ = adaptation.adapt(ring, event)
 ///     >>> adaptation.rejection_rate > 0.9, adaptation.schedule == slow
 ///     (True, True)
-#[pyclass(module = "eeruf")]
+#[pyclass(frozen, module = "eeruf")]
 pub(crate) struct Adaptation {
-    adaptation: Owned,
+    adaptation: Exclusive<Owned>,
 }
 
 /// Of a fraction of 1, in thousandths.
@@ -109,7 +110,8 @@ impl Adaptation {
             (adaptation.window, adaptation.patience) = (window, patience);
             Ok(adaptation)
         });
-        Ok(Self { adaptation: adaptation.map_err(|error: eeruf_core::adaptation::LadderError| error.raise())? })
+        let adaptation = adaptation.map_err(|error: eeruf_core::adaptation::LadderError| error.raise())?;
+        Ok(Self { adaptation: Exclusive::new("Adaptation", adaptation) })
     }
 
     /// Take in an event of a ring, and change the ring to another schedule when the present one should be left. Only
@@ -133,32 +135,34 @@ impl Adaptation {
     ///     >>> adaptation.adapt(ring, ring.poll(ring.next_deadline_us))
     ///     False
     #[pyo3(signature = (ring, event))]
-    fn adapt(&mut self, ring: &Bound<'_, PyAny>, event: &Bound<'_, PyAny>) -> PyResult<bool> {
+    fn adapt(&self, ring: &Bound<'_, PyAny>, event: &Bound<'_, PyAny>) -> PyResult<bool> {
         let ring = instance::<Ring>("ring", ring, "an eeruf.Ring")?;
         let RingEvent::PeriodEnded(stats) = to_core("event", event)? else { return Ok(false) };
-        let mut ring = ring.try_borrow_mut()?;
-        self.adaptation.with_dependent_mut(|_, on| on.adapt(&stats, |schedule| ring.0.change_to(schedule.schedule())))
+        let mut ring = ring.get().0.get()?;
+        let mut adaptation = self.adaptation.get()?;
+        adaptation.with_dependent_mut(|_, on| on.adapt(&stats, |schedule| ring.change_to(schedule.schedule())))
     }
 
     /// The rung in use, 0 for the shortest period.
     #[getter]
-    fn rung(&self) -> usize {
-        self.adaptation.borrow_dependent().advice(Micros::ZERO, SpeedOfSound::AT_20_CELSIUS).rung
+    fn rung(&self) -> PyResult<usize> {
+        Ok(self.adaptation.get()?.borrow_dependent().advice(Micros::ZERO, SpeedOfSound::AT_20_CELSIUS).rung)
     }
 
     /// The schedule in use.
     #[getter]
-    fn schedule(&self) -> Schedule {
+    fn schedule(&self) -> PyResult<Schedule> {
         // It is always on one of its rungs.
-        Schedule(*self.adaptation.borrow_owner()[self.rung()].schedule())
+        let rung = self.rung()?;
+        Ok(Schedule(*self.adaptation.get()?.borrow_owner()[rung].schedule()))
     }
 
     /// The share of the readings that were compared and rejected in the last whole window; None before, or if nothing
     /// was compared in it.
     #[getter]
-    fn rejection_rate(&self) -> Option<f64> {
-        let advice = self.adaptation.borrow_dependent().advice(Micros::ZERO, SpeedOfSound::AT_20_CELSIUS);
-        advice.rejection_permille.map(|permille| f64::from(permille) / 1e3)
+    fn rejection_rate(&self) -> PyResult<Option<f64>> {
+        let advice = self.adaptation.get()?.borrow_dependent().advice(Micros::ZERO, SpeedOfSound::AT_20_CELSIUS);
+        Ok(advice.rejection_permille.map(|permille| f64::from(permille) / 1e3))
     }
 
     /// The fastest motion, in m/s, at which good readings still pass on the rung in use: a reading changes by
@@ -180,11 +184,11 @@ impl Adaptation {
         let t_delta = micros("t_delta_us", t_delta_us)?;
         let c = sound_m_s.map_or(Ok(343.2), |c| number("sound_m_s", c, 100.0..=1e3))?;
         let c = SpeedOfSound::from_mm_per_s((1e3 * c).round() as u32);
-        Ok(f64::from(self.adaptation.borrow_dependent().advice(t_delta, c).max_speed_mm_s) / 1e3)
+        Ok(f64::from(self.adaptation.get()?.borrow_dependent().advice(t_delta, c).max_speed_mm_s) / 1e3)
     }
 
-    fn __repr__(&self) -> String {
-        let rungs = self.adaptation.borrow_owner().len();
-        format!("<Adaptation: rung {} of {rungs}, {:?}>", self.rung(), self.schedule().0.period().as_micros())
+    fn __repr__(&self) -> PyResult<String> {
+        let rungs = self.adaptation.get()?.borrow_owner().len();
+        Ok(format!("<Adaptation: rung {} of {rungs}, {:?}>", self.rung()?, self.schedule()?.0.period().as_micros()))
     }
 }

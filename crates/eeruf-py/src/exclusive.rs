@@ -25,8 +25,9 @@ impl<T> Exclusive<T> {
             Err(TryLockError::Poisoned(poisoned)) => Ok(poisoned.into_inner()),
             Err(TryLockError::WouldBlock) => {
                 let name = self.name;
-                let advice =
-                    format!("an {name} in use by another call; expected one at a time: one {name} a thread, or a lock");
+                let advice = format!(
+                    "this {name} is in use by another call; expected one at a time: one {name} a thread, or a lock"
+                );
                 Err(EerufError::new_err(advice))
             }
         }

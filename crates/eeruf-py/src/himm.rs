@@ -8,6 +8,7 @@ use pyo3::prelude::*;
 use crate::{
     arguments::{flag, instance, number, number_or, whole_or},
     columns::read_only,
+    exclusive::Exclusive,
     pose::{point_of, pose_of, to_pose},
     readings::Readings,
 };
@@ -36,9 +37,9 @@ const FARTHEST_M: f64 = 1e3;
 ///     >>> grid.echo((0.05, 0.05, 0.0), range_m=1.0)
 ///     >>> grid.value((1.05, 0.05)), grid.value((9.0, 0.0))
 ///     (3, None)
-#[pyclass(module = "eeruf.nav")]
+#[pyclass(frozen, module = "eeruf.nav")]
 pub(crate) struct Himm {
-    pub(crate) grid: eeruf_sim::Himm,
+    pub(crate) grid: Exclusive<eeruf_sim::Himm>,
 }
 
 fn metres(name: &str, value: Option<&Bound<'_, PyAny>>, default: f64) -> PyResult<f64> {
@@ -65,32 +66,33 @@ impl Himm {
         let cell_m = number_or("cell_m", cell_m, 0.1, 1e-3..=1e3)?;
         let mut grid = eeruf_sim::Himm::new(side, cell_m);
         grid.growth = flag("growth", growth, false)?;
-        Ok(Self { grid })
+        Ok(Self { grid: Exclusive::new("Himm", grid) })
     }
 
     /// Number of cells the window has on a side.
     #[getter]
-    fn side(&self) -> usize {
-        self.grid.side()
+    fn side(&self) -> PyResult<usize> {
+        Ok(self.grid.get()?.side())
     }
 
     /// Width of a cell, in metres.
     #[getter]
-    fn cell_m(&self) -> f64 {
-        self.grid.cell_m()
+    fn cell_m(&self) -> PyResult<f64> {
+        Ok(self.grid.get()?.cell_m())
     }
 
     /// Returns true if cells beside certain ones grow faster.
     #[getter]
-    fn growth(&self) -> bool {
-        self.grid.growth
+    fn growth(&self) -> PyResult<bool> {
+        Ok(self.grid.get()?.growth)
     }
 
     /// Extent of the window: (least x, greatest x, least y, greatest y) in metres, as ``imshow`` takes it.
     #[getter]
-    fn extent_m(&self) -> (f64, f64, f64, f64) {
-        let (corner, width) = (self.grid.corner(), self.grid.side() as f64 * self.grid.cell_m());
-        (corner.x, corner.x + width, corner.y, corner.y + width)
+    fn extent_m(&self) -> PyResult<(f64, f64, f64, f64)> {
+        let grid = self.grid.get()?;
+        let (corner, width) = (grid.corner(), grid.side() as f64 * grid.cell_m());
+        Ok((corner.x, corner.x + width, corner.y, corner.y + width))
     }
 
     /// Move the window so that a place is in its middle cell. Cells that leave it are forgotten, those that enter are
@@ -109,8 +111,9 @@ impl Himm {
     ///     >>> grid.value((9.0, 0.0)), grid.value((0.0, 0.0))
     ///     (0, None)
     #[pyo3(signature = (place))]
-    fn move_to(&mut self, place: &Bound<'_, PyAny>) -> PyResult<()> {
-        self.grid.move_to(point_of("place", place)?);
+    fn move_to(&self, place: &Bound<'_, PyAny>) -> PyResult<()> {
+        let place = point_of("place", place)?;
+        self.grid.get()?.move_to(place);
         Ok(())
     }
 
@@ -133,14 +136,15 @@ impl Himm {
     ///     [[0.05, 0.95, 15.0]]
     #[pyo3(signature = (sensor, range_m, near_m=None), text_signature = "($self, sensor, range_m, near_m=0.0)")]
     fn echo(
-        &mut self,
+        &self,
         sensor: &Bound<'_, PyAny>,
         range_m: &Bound<'_, PyAny>,
         near_m: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<()> {
         let (at, heading) = axis(sensor)?;
         let range_m = number("range_m", range_m, 0.0..=FARTHEST_M)?;
-        self.grid.echo(at, heading, metres("near_m", near_m, 0.0)?, range_m);
+        let near_m = metres("near_m", near_m, 0.0)?;
+        self.grid.get()?.echo(at, heading, near_m, range_m);
         Ok(())
     }
 
@@ -163,14 +167,15 @@ impl Himm {
     ///     2
     #[pyo3(signature = (sensor, range_m, near_m=None), text_signature = "($self, sensor, range_m, near_m=0.0)")]
     fn clear(
-        &mut self,
+        &self,
         sensor: &Bound<'_, PyAny>,
         range_m: &Bound<'_, PyAny>,
         near_m: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<()> {
         let (at, heading) = axis(sensor)?;
         let range_m = number("range_m", range_m, 0.0..=FARTHEST_M)?;
-        self.grid.clear(at, heading, metres("near_m", near_m, 0.0)?, range_m);
+        let near_m = metres("near_m", near_m, 0.0)?;
+        self.grid.get()?.clear(at, heading, near_m, range_m);
         Ok(())
     }
 
@@ -199,7 +204,7 @@ impl Himm {
     #[pyo3(signature = (readings, range_m=None, near_m=None, *, robot=None, sound_m_s=None))]
     #[pyo3(text_signature = "($self, readings, range_m=3.0, near_m=0.0, *, robot=0, sound_m_s=343.2)")]
     fn enter(
-        &mut self,
+        &self,
         readings: &Bound<'_, PyAny>,
         range_m: Option<&Bound<'_, PyAny>>,
         near_m: Option<&Bound<'_, PyAny>>,
@@ -210,13 +215,14 @@ impl Himm {
         let (range_m, near_m) = (metres("range_m", range_m, 3.0)?, metres("near_m", near_m, 0.0)?);
         let robot = whole_or("robot", robot, 0, 0..=u16::MAX)?;
         let c = number_or("sound_m_s", sound_m_s, Air::default().speed_of_sound(), 100.0..=1e3)?;
+        let mut grid = self.grid.get()?;
         for reading in (0..taken.len()).filter(|&reading| taken.robot[reading] == robot && taken.is_accepted(reading)) {
             let (at, heading) = (Point::new(taken.x_m[reading], taken.y_m[reading]), taken.heading_rad[reading]);
             let echo_m = 0.5e-6 * c * taken.t_echo_us[reading];
             if taken.kind[reading] == ReadingKind::Clear || echo_m > range_m {
-                self.grid.clear(at, heading, near_m, range_m);
+                grid.clear(at, heading, near_m, range_m);
             } else {
-                self.grid.echo(at, heading, near_m, echo_m);
+                grid.echo(at, heading, near_m, echo_m);
             }
         }
         Ok(())
@@ -239,7 +245,8 @@ impl Himm {
     ///     0
     #[pyo3(signature = (point))]
     fn value(&self, point: &Bound<'_, PyAny>) -> PyResult<Option<u8>> {
-        Ok(self.grid.value(point_of("point", point)?))
+        let point = point_of("point", point)?;
+        Ok(self.grid.get()?.value(point))
     }
 
     /// The cells that are not empty.
@@ -252,7 +259,8 @@ impl Himm {
     ///     >>> nav.Himm().cells().shape
     ///     (0, 3)
     fn cells<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let cells: Vec<f64> = self.occupied().flat_map(|(at, value)| [at.x, at.y, f64::from(value)]).collect();
+        let cells: Vec<f64> =
+            occupied(&*self.grid.get()?).flat_map(|(at, value)| [at.x, at.y, f64::from(value)]).collect();
         let rows = cells.len() / 3;
         Ok(PyArray1::from_vec(py, cells).reshape([rows, 3])?.readwrite().make_nonwriteable().as_any().clone())
     }
@@ -269,9 +277,10 @@ impl Himm {
     ///     >>> grid.to_numpy().tolist()
     ///     [[0, 0, 0], [0, 0, 3], [0, 0, 0]]
     fn to_numpy<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let (side, corner, cell_m) = (self.grid.side(), self.grid.corner(), self.grid.cell_m());
+        let grid = self.grid.get()?;
+        let (side, corner, cell_m) = (grid.side(), grid.corner(), grid.cell_m());
         let mut values = vec![0_i8; side * side];
-        for (at, value) in self.occupied() {
+        for (at, value) in occupied(&grid) {
             let index = |along: f64| ((along / cell_m).floor() as usize).min(side - 1);
             // At most 15.
             values[index(at.y - corner.y) * side + index(at.x - corner.x)] = value as i8;
@@ -279,17 +288,15 @@ impl Himm {
         read_only(py, values.into_iter())?.call_method1("reshape", (side, side))
     }
 
-    fn __repr__(&self) -> String {
-        let (x, to_x, y, to_y) = self.extent_m();
-        format!("<Himm: {0} x {0} cells, x {x:.2} to {to_x:.2} m, y {y:.2} to {to_y:.2} m>", self.grid.side())
+    fn __repr__(&self) -> PyResult<String> {
+        let ((x, to_x, y, to_y), side) = (self.extent_m()?, self.side()?);
+        Ok(format!("<Himm: {side} x {side} cells, x {x:.2} to {to_x:.2} m, y {y:.2} to {to_y:.2} m>"))
     }
 }
 
-impl Himm {
-    fn occupied(&self) -> impl Iterator<Item = (Point, u8)> + '_ {
-        let half = 0.5 * self.grid.side() as f64 * self.grid.cell_m();
-        let corner = self.grid.corner();
-        // Twice as many as are there, whichever cell the middle is taken to lie in.
-        self.grid.occupied(Point::new(corner.x + half, corner.y + half), 2 * self.grid.side())
-    }
+fn occupied(grid: &eeruf_sim::Himm) -> impl Iterator<Item = (Point, u8)> + '_ {
+    let half = 0.5 * grid.side() as f64 * grid.cell_m();
+    let corner = grid.corner();
+    // Twice as many as are there, whichever cell the middle is taken to lie in.
+    grid.occupied(Point::new(corner.x + half, corner.y + half), 2 * grid.side())
 }

@@ -6,6 +6,7 @@ use pyo3::{prelude::*, types::PyTuple};
 use crate::{
     arguments::{instance, micros, whole, whole_or},
     errors::Raise,
+    exclusive::Exclusive,
     hopping_schedule::HoppingSchedule,
     hopping_settings::HoppingSettings,
     moments::{expected_changes, instant, until},
@@ -48,21 +49,21 @@ type Core = eeruf_core::hopping::HoppingRing<MAX_SENSORS>;
 ///     ...             kinds.append(event.kind)
 ///     >>> kinds == ["first"] * 8 + ["tentative"] * 16 + ["accepted"] * 16
 ///     True
-#[pyclass(module = "eeruf")]
+#[pyclass(frozen, module = "eeruf")]
 pub(crate) struct HoppingRing {
-    ring: Box<Core>,
+    ring: Exclusive<Box<Core>>,
+    sensors: u8,
     schedule: HoppingSchedule,
     settings: HoppingSettings,
 }
 
 impl HoppingRing {
     fn sensor(&self, sensor: &Bound<'_, PyAny>) -> PyResult<u8> {
-        // At most 64.
-        whole("sensor", sensor, 0..=self.ring.sensors() as u8 - 1)
+        whole("sensor", sensor, 0..=self.sensors - 1)
     }
 
-    fn change(&mut self, change: impl FnOnce(&mut Core) -> Result<(), SensorError>) -> PyResult<()> {
-        change(&mut self.ring).map_err(Raise::raise)
+    fn change(&self, change: impl FnOnce(&mut Core) -> Result<(), SensorError>) -> PyResult<()> {
+        change(&mut **self.ring.get()?).map_err(Raise::raise)
     }
 }
 
@@ -92,7 +93,14 @@ impl HoppingRing {
         let settings = HoppingSettings::of("settings", settings)?;
         let schedule = instance::<HoppingSchedule>("schedule", schedule, "an eeruf.HoppingSchedule")?.get().clone();
         let ring = Core::hopping(&schedule.0, settings, listening, seed, now).map_err(Raise::raise)?;
-        Ok(Self { ring: Box::new(ring), schedule, settings: HoppingSettings(settings) })
+        // At most 64.
+        let sensors = ring.sensors() as u8;
+        Ok(Self {
+            ring: Exclusive::new("HoppingRing", Box::new(ring)),
+            sensors,
+            schedule,
+            settings: HoppingSettings(settings),
+        })
     }
 
     /// The next event at a time. Call again until there is none, then wait until ``next_deadline_us``.
@@ -119,20 +127,21 @@ impl HoppingRing {
     ///     Fire(sensor=0, phase=0, due_us=0)
     #[pyo3(signature = (now_us, expected_change_us=None))]
     fn poll<'py>(
-        &mut self,
+        &self,
         now_us: &Bound<'py, PyAny>,
         expected_change_us: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Option<Bound<'py, PyAny>>> {
         let (py, now) = (now_us.py(), instant("now_us", now_us)?);
-        let changes = expected_changes(expected_change_us, self.ring.sensors())?;
+        let changes = expected_changes(expected_change_us, self.sensors.into())?;
         let change = |sensor: u8| changes.get(usize::from(sensor)).copied().unwrap_or(0);
-        self.ring.poll_expecting(now, change).map(|event| to_python(py, &event)).transpose()
+        let event = self.ring.get()?.poll_expecting(now, change);
+        event.map(|event| to_python(py, &event)).transpose()
     }
 
     /// When to poll next, in microseconds of the clock that wraps at 2^32; in the past if an event is pending.
     #[getter]
-    fn next_deadline_us(&self) -> u32 {
-        self.ring.next_deadline().as_micros()
+    fn next_deadline_us(&self) -> PyResult<u32> {
+        Ok(self.ring.get()?.next_deadline().as_micros())
     }
 
     /// Time to wait before polling next, in microseconds, right across the clock's wrap: 0 if an event is pending.
@@ -153,7 +162,8 @@ impl HoppingRing {
     ///     8430
     #[pyo3(signature = (now_us))]
     fn wait_us(&self, now_us: &Bound<'_, PyAny>) -> PyResult<u32> {
-        Ok(until(self.ring.next_deadline(), instant("now_us", now_us)?))
+        let now = instant("now_us", now_us)?;
+        Ok(until(self.ring.get()?.next_deadline(), now))
     }
 
     /// Its schedule, with the lags of the start.
@@ -171,14 +181,15 @@ impl HoppingRing {
     /// The lag of each sensor as it is now, in microseconds.
     #[getter]
     fn t_lag_us<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
-        let lags = (0..self.ring.sensors()).filter_map(|sensor| self.ring.plan().t_lag(sensor));
+        let ring = self.ring.get()?;
+        let lags = (0..ring.sensors()).filter_map(|sensor| ring.plan().t_lag(sensor));
         PyTuple::new(py, lags.map(Micros::as_micros).collect::<Vec<_>>())
     }
 
     /// The sensor that the present period belongs to alone, from 0; None if it belongs to all.
     #[getter]
-    fn solo(&self) -> Option<u8> {
-        self.ring.plan().solo()
+    fn solo(&self) -> PyResult<Option<u8>> {
+        Ok(self.ring.get()?.plan().solo())
     }
 
     /// The confirmed echo time of a sensor.
@@ -200,7 +211,8 @@ impl HoppingRing {
     ///     True
     #[pyo3(signature = (sensor))]
     fn confirmed_us(&self, sensor: &Bound<'_, PyAny>) -> PyResult<Option<u32>> {
-        Ok(self.ring.judge().confirmed(self.sensor(sensor)?.into()).map(Micros::as_micros))
+        let sensor = self.sensor(sensor)?.into();
+        Ok(self.ring.get()?.judge().confirmed(sensor).map(Micros::as_micros))
     }
 
     /// Returns true if it is confirmed that nothing is in a sensor's range.
@@ -219,7 +231,8 @@ impl HoppingRing {
     ///     False
     #[pyo3(signature = (sensor))]
     fn is_clear(&self, sensor: &Bound<'_, PyAny>) -> PyResult<bool> {
-        Ok(self.ring.judge().is_clear(self.sensor(sensor)?.into()))
+        let sensor = self.sensor(sensor)?.into();
+        Ok(self.ring.get()?.judge().is_clear(sensor))
     }
 
     /// An edge on the echo line of a sensor. Edges may come in any order, at any time, wanted or not.
@@ -241,7 +254,7 @@ impl HoppingRing {
     ///     >>> ring.poll(6_000).t_echo_us
     ///     6000
     #[pyo3(signature = (sensor, at_us))]
-    fn echo(&mut self, sensor: &Bound<'_, PyAny>, at_us: &Bound<'_, PyAny>) -> PyResult<()> {
+    fn echo(&self, sensor: &Bound<'_, PyAny>, at_us: &Bound<'_, PyAny>) -> PyResult<()> {
         let (sensor, at) = (self.sensor(sensor)?, instant("at_us", at_us)?);
         self.change(|ring| ring.echo(sensor, at))
     }
@@ -267,7 +280,7 @@ impl HoppingRing {
     ///     >>> ring.poll(6_000).t_echo_us
     ///     5900
     #[pyo3(signature = (sensor, at_us))]
-    fn fired(&mut self, sensor: &Bound<'_, PyAny>, at_us: &Bound<'_, PyAny>) -> PyResult<()> {
+    fn fired(&self, sensor: &Bound<'_, PyAny>, at_us: &Bound<'_, PyAny>) -> PyResult<()> {
         let (sensor, at) = (self.sensor(sensor)?, instant("at_us", at_us)?);
         self.change(|ring| ring.fired(sensor, at))
     }
@@ -292,7 +305,7 @@ impl HoppingRing {
     ///     >>> event.sensor, event.kind
     ///     (0, 'stuck')
     #[pyo3(signature = (sensor))]
-    fn stuck(&mut self, sensor: &Bound<'_, PyAny>) -> PyResult<()> {
+    fn stuck(&self, sensor: &Bound<'_, PyAny>) -> PyResult<()> {
         let sensor = self.sensor(sensor)?;
         self.change(|ring| ring.stuck(sensor))
     }
@@ -313,7 +326,7 @@ impl HoppingRing {
     ///     >>> ring.is_enabled(0)
     ///     False
     #[pyo3(signature = (sensor))]
-    fn disable(&mut self, sensor: &Bound<'_, PyAny>) -> PyResult<()> {
+    fn disable(&self, sensor: &Bound<'_, PyAny>) -> PyResult<()> {
         let sensor = self.sensor(sensor)?;
         self.change(|ring| ring.disable(sensor))
     }
@@ -335,7 +348,7 @@ impl HoppingRing {
     ///     >>> ring.is_enabled(0)
     ///     True
     #[pyo3(signature = (sensor))]
-    fn enable(&mut self, sensor: &Bound<'_, PyAny>) -> PyResult<()> {
+    fn enable(&self, sensor: &Bound<'_, PyAny>) -> PyResult<()> {
         let sensor = self.sensor(sensor)?;
         self.change(|ring| ring.enable(sensor))
     }
@@ -356,7 +369,8 @@ impl HoppingRing {
     ///     True
     #[pyo3(signature = (sensor))]
     fn is_enabled(&self, sensor: &Bound<'_, PyAny>) -> PyResult<bool> {
-        Ok(self.ring.is_enabled(self.sensor(sensor)?))
+        let sensor = self.sensor(sensor)?;
+        Ok(self.ring.get()?.is_enabled(sensor))
     }
 
     /// Let no sensor fire until :meth:`resume`. Readings of firings under way are still emitted, and periods go on.
@@ -368,8 +382,9 @@ impl HoppingRing {
     ///     >>> ring.pause()
     ///     >>> type(ring.poll(ring.next_deadline_us)).__name__
     ///     'PeriodEnded'
-    fn pause(&mut self) {
-        self.ring.pause();
+    fn pause(&self) -> PyResult<()> {
+        self.ring.get()?.pause();
+        Ok(())
     }
 
     /// Let sensors fire again, as of the next period. What was known of their echoes is forgotten.
@@ -383,14 +398,15 @@ impl HoppingRing {
     ///     >>> _ = ring.poll(ring.next_deadline_us)  # the period ends
     ///     >>> type(ring.poll(ring.next_deadline_us)).__name__
     ///     'Fire'
-    fn resume(&mut self) {
-        self.ring.resume();
+    fn resume(&self) -> PyResult<()> {
+        self.ring.get()?.resume();
+        Ok(())
     }
 
     /// Number of sensors it has.
     #[getter]
-    fn sensors(&self) -> usize {
-        self.ring.sensors()
+    fn sensors(&self) -> u8 {
+        self.sensors
     }
 
     /// Start again at a time, or as soon as the last firings allow: after a long sleep. Firings under way are dropped.
@@ -409,13 +425,13 @@ impl HoppingRing {
     ///     >>> ring.wait_us(3_600_000_000)
     ///     0
     #[pyo3(signature = (now_us))]
-    fn restart(&mut self, now_us: &Bound<'_, PyAny>) -> PyResult<()> {
+    fn restart(&self, now_us: &Bound<'_, PyAny>) -> PyResult<()> {
         let now = instant("now_us", now_us)?;
-        self.ring.restart(now);
+        self.ring.get()?.restart(now);
         Ok(())
     }
 
-    fn __repr__(&self) -> String {
-        format!("<HoppingRing: {} sensors, next deadline at {} us>", self.ring.sensors(), self.next_deadline_us())
+    fn __repr__(&self) -> PyResult<String> {
+        Ok(format!("<HoppingRing: {} sensors, next deadline at {} us>", self.sensors, self.next_deadline_us()?))
     }
 }

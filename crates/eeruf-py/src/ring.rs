@@ -4,6 +4,7 @@ use pyo3::prelude::*;
 
 use crate::{
     arguments::{flag, instance, micros},
+    exclusive::Exclusive,
     moments::{expected_changes, instant, until},
     owned_ring::OwnedRing,
     requirements::{RequirementArguments, UnevenArguments},
@@ -58,8 +59,14 @@ use crate::{
 ///     >>> ring = eeruf.Ring(found.schedule, shared_lines=[(0, 2)], **needs)
 ///     >>> ring.t_delta_us, ring.window_us
 ///     (1500, 36000)
-#[pyclass(module = "eeruf")]
-pub(crate) struct Ring(pub(crate) OwnedRing);
+#[pyclass(frozen, module = "eeruf")]
+pub(crate) struct Ring(pub(crate) Exclusive<OwnedRing>);
+
+impl Ring {
+    fn of(ring: OwnedRing) -> Self {
+        Self(Exclusive::new("Ring", ring))
+    }
+}
 
 #[pymethods]
 impl Ring {
@@ -93,9 +100,9 @@ impl Ring {
         let [t_delta, window] = needs.most();
         let config = config(t_delta, window, blanking_us, consecutive, &Sound { path_change_us, audible_us })?;
         if needs.is_uneven() {
-            return OwnedRing::uneven(fires, needs, config, begins(now_us)?).map(Self);
+            return OwnedRing::uneven(fires, needs, config, begins(now_us)?).map(Self::of);
         }
-        OwnedRing::new(fires, config, begins(now_us)?)?.verified().map(Self)
+        OwnedRing::new(fires, config, begins(now_us)?)?.verified().map(Self::of)
     }
 
     /// A ring whose schedule was not verified. Crosstalk that it repeats, as constant waits do, makes readings
@@ -140,7 +147,7 @@ impl Ring {
         let (t_delta, window) = (micros("t_delta_us", t_delta_us)?, micros("window_us", window_us)?);
         let config = config(t_delta, window, blanking_us, consecutive, &Sound { path_change_us, audible_us })?;
         let schedule = instance::<Schedule>("schedule", schedule, "an eeruf.Schedule")?.get().0;
-        OwnedRing::new(schedule, config, begins(now_us)?).map(Self)
+        OwnedRing::new(schedule, config, begins(now_us)?).map(Self::of)
     }
 
     /// The next event at a time. Call again until there is none, then wait until ``next_deadline_us``.
@@ -167,25 +174,26 @@ impl Ring {
     ///     Fire(sensor=0, phase=0, due_us=24000)
     #[pyo3(signature = (now_us, expected_change_us=None))]
     fn poll<'py>(
-        &mut self,
+        &self,
         now_us: &Bound<'py, PyAny>,
         expected_change_us: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Option<Bound<'py, PyAny>>> {
         let (py, now) = (now_us.py(), instant("now_us", now_us)?);
-        let changes = expected_changes(expected_change_us, self.0.ring().sensors())?;
+        let sensors = self.0.get()?.ring().sensors();
+        let changes = expected_changes(expected_change_us, sensors)?;
         let change = |sensor: u8| changes.get(usize::from(sensor)).copied().unwrap_or(0);
-        let event = self.0.poll(now, change);
+        let event = self.0.get()?.poll(now, change);
         event.map(|event| to_python(py, &event)).transpose()
     }
 
-    fn __repr__(&self) -> String {
-        format!("<Ring: {} sensors, next deadline at {} us>", self.sensors(), self.next_deadline_us())
+    fn __repr__(&self) -> PyResult<String> {
+        Ok(format!("<Ring: {} sensors, next deadline at {} us>", self.sensors()?, self.next_deadline_us()?))
     }
 
     /// When to poll next, in microseconds of the clock that wraps at 2^32; in the past if an event is pending.
     #[getter]
-    fn next_deadline_us(&self) -> u32 {
-        self.0.ring().next_deadline().as_micros()
+    fn next_deadline_us(&self) -> PyResult<u32> {
+        Ok(self.0.get()?.ring().next_deadline().as_micros())
     }
 
     /// Time to wait before polling next, in microseconds: 0 if an event is pending.
@@ -206,13 +214,14 @@ impl Ring {
     ///     (24000, 0)
     #[pyo3(signature = (now_us))]
     fn wait_us(&self, now_us: &Bound<'_, PyAny>) -> PyResult<u32> {
-        Ok(until(self.0.ring().next_deadline(), instant("now_us", now_us)?))
+        let now = instant("now_us", now_us)?;
+        Ok(until(self.0.get()?.ring().next_deadline(), now))
     }
 
     /// Schedule of the present period.
     #[getter]
-    fn schedule(&self) -> Schedule {
-        Schedule(*self.0.ring().schedule())
+    fn schedule(&self) -> PyResult<Schedule> {
+        Ok(Schedule(*self.0.get()?.ring().schedule()))
     }
 
     /// Fire by another schedule when the present period ends. ``t_delta_us`` and ``window_us``
@@ -235,84 +244,86 @@ impl Ring {
     ///     >>> ring.schedule.period_us
     ///     80000
     #[pyo3(signature = (schedule))]
-    fn change_schedule(&mut self, schedule: &Bound<'_, PyAny>) -> PyResult<()> {
-        self.0.change_to(&instance::<Schedule>("schedule", schedule, "an eeruf.Schedule")?.get().0)
+    fn change_schedule(&self, schedule: &Bound<'_, PyAny>) -> PyResult<()> {
+        let schedule = &instance::<Schedule>("schedule", schedule, "an eeruf.Schedule")?.get().0;
+        self.0.get()?.change_to(schedule)
     }
 
     /// ``T_delta``, in microseconds. It can be changed while the ring runs.
     #[getter]
-    fn t_delta_us(&self) -> u32 {
-        self.0.ring().t_delta().as_micros()
+    fn t_delta_us(&self) -> PyResult<u32> {
+        Ok(self.0.get()?.ring().t_delta().as_micros())
     }
 
     #[setter]
-    fn set_t_delta_us(&mut self, t_delta_us: &Bound<'_, PyAny>) -> PyResult<()> {
+    fn set_t_delta_us(&self, t_delta_us: &Bound<'_, PyAny>) -> PyResult<()> {
         let t_delta = micros("t_delta_us", t_delta_us)?;
-        self.0.set_t_delta(t_delta)
+        self.0.get()?.set_t_delta(t_delta)
     }
 
     /// ``T_wind``, in microseconds. It can be changed while the ring runs, also for firings that are under way.
     #[getter]
-    fn window_us(&self) -> u32 {
-        self.0.ring().window().as_micros()
+    fn window_us(&self) -> PyResult<u32> {
+        Ok(self.0.get()?.ring().window().as_micros())
     }
 
     #[setter]
-    fn set_window_us(&mut self, window_us: &Bound<'_, PyAny>) -> PyResult<()> {
+    fn set_window_us(&self, window_us: &Bound<'_, PyAny>) -> PyResult<()> {
         let window = micros("window_us", window_us)?;
-        self.0.change(|ring| ring.set_window(window))
+        self.0.get()?.change(|ring| ring.set_window(window))
     }
 
     /// For how long after firing edges are no echoes, in microseconds. It can be changed while the ring runs.
     #[getter]
-    fn blanking_us(&self) -> u32 {
-        self.0.ring().blanking().as_micros()
+    fn blanking_us(&self) -> PyResult<u32> {
+        Ok(self.0.get()?.ring().blanking().as_micros())
     }
 
     #[setter]
-    fn set_blanking_us(&mut self, blanking_us: &Bound<'_, PyAny>) -> PyResult<()> {
+    fn set_blanking_us(&self, blanking_us: &Bound<'_, PyAny>) -> PyResult<()> {
         let blanking = micros("blanking_us", blanking_us)?;
-        self.0.change(|ring| ring.set_blanking(blanking))
+        self.0.get()?.change(|ring| ring.set_blanking(blanking))
     }
 
     /// P, by how much the path of a foreign sound may change from one reading to the next, in microseconds. It can be
     /// changed while the ring runs: as the robot's speed changes, for example.
     #[getter]
-    fn path_change_us(&self) -> u32 {
-        let ring = self.0.ring();
+    fn path_change_us(&self) -> PyResult<u32> {
+        let owned = self.0.get()?;
+        let ring = owned.ring();
         // At most 64 sensors; their own t_delta where it was not said.
-        (0..ring.sensors() as u8).map(|sensor| ring.path_change_of(sensor).as_micros()).max().unwrap_or(0)
+        Ok((0..ring.sensors() as u8).map(|sensor| ring.path_change_of(sensor).as_micros()).max().unwrap_or(0))
     }
 
     #[setter]
-    fn set_path_change_us(&mut self, path_change_us: &Bound<'_, PyAny>) -> PyResult<()> {
+    fn set_path_change_us(&self, path_change_us: &Bound<'_, PyAny>) -> PyResult<()> {
         let path_change = micros("path_change_us", path_change_us)?;
-        self.0.change(|ring| ring.set_path_change(path_change))
+        self.0.get()?.change(|ring| ring.set_path_change(path_change))
     }
 
     /// R, how long sound is audible, in microseconds. It can be changed while the ring runs.
     #[getter]
-    fn audible_us(&self) -> u32 {
-        self.0.ring().audible().as_micros()
+    fn audible_us(&self) -> PyResult<u32> {
+        Ok(self.0.get()?.ring().audible().as_micros())
     }
 
     #[setter]
-    fn set_audible_us(&mut self, audible_us: &Bound<'_, PyAny>) -> PyResult<()> {
+    fn set_audible_us(&self, audible_us: &Bound<'_, PyAny>) -> PyResult<()> {
         let audible = micros("audible_us", audible_us)?;
-        self.0.change(|ring| ring.set_audible(audible))
+        self.0.get()?.change(|ring| ring.set_audible(audible))
     }
 
     /// Earliest time after its firing at which a reading without an echo is emitted, in microseconds: for modules that
     /// report by a bus or a pulse's width after their window has closed. 0: when it closes.
     #[getter]
-    fn report_after_us(&self) -> u32 {
-        self.0.ring().report_after().as_micros()
+    fn report_after_us(&self) -> PyResult<u32> {
+        Ok(self.0.get()?.ring().report_after().as_micros())
     }
 
     #[setter]
-    fn set_report_after_us(&mut self, report_after_us: &Bound<'_, PyAny>) -> PyResult<()> {
+    fn set_report_after_us(&self, report_after_us: &Bound<'_, PyAny>) -> PyResult<()> {
         let report_after = micros("report_after_us", report_after_us)?;
-        self.0.change(|ring| ring.set_report_after(report_after))
+        self.0.get()?.change(|ring| ring.set_report_after(report_after))
     }
 
     /// The firings to come, up to the end of the next period: for hardware that fires by itself.
@@ -326,14 +337,14 @@ impl Ring {
     ///     >>> ring = eeruf.Ring(eeruf.tables.TABLE_I_D, t_delta_us=500, window_us=36_000)
     ///     >>> [(fire.sensor, fire.due_us) for fire in ring.upcoming()[:4]]
     ///     [(0, 24000), (4, 24000), (8, 24000), (1, 49000)]
-    fn upcoming(&self) -> Vec<Fire> {
-        self.0.ring().upcoming().map(Fire::of).collect()
+    fn upcoming(&self) -> PyResult<Vec<Fire>> {
+        Ok(self.0.get()?.ring().upcoming().map(Fire::of).collect())
     }
 
     /// The number of sensors.
     #[getter]
-    fn sensors(&self) -> usize {
-        self.0.ring().sensors()
+    fn sensors(&self) -> PyResult<usize> {
+        Ok(self.0.get()?.ring().sensors())
     }
 
     /// An edge on the echo line of a sensor. Edges may come in any order, at any time, wanted or not.
@@ -354,9 +365,9 @@ impl Ring {
     ///     >>> ring.poll(33_000).t_echo_us
     ///     9000
     #[pyo3(signature = (sensor, at_us))]
-    fn echo(&mut self, sensor: &Bound<'_, PyAny>, at_us: &Bound<'_, PyAny>) -> PyResult<()> {
-        let (sensor, at) = (self.0.sensor(sensor)?, instant("at_us", at_us)?);
-        self.0.change(|ring| ring.echo(sensor, at))
+    fn echo(&self, sensor: &Bound<'_, PyAny>, at_us: &Bound<'_, PyAny>) -> PyResult<()> {
+        let (sensor, at) = (self.0.get()?.sensor(sensor)?, instant("at_us", at_us)?);
+        self.0.get()?.change(|ring| ring.echo(sensor, at))
     }
 
     /// Corrects when a sensor last fired: by what a timer captured, for example. Optional: echo times count from then,
@@ -379,9 +390,9 @@ impl Ring {
     ///     >>> ring.poll(33_000).t_echo_us
     ///     8900
     #[pyo3(signature = (sensor, at_us))]
-    fn fired(&mut self, sensor: &Bound<'_, PyAny>, at_us: &Bound<'_, PyAny>) -> PyResult<()> {
-        let (sensor, at) = (self.0.sensor(sensor)?, instant("at_us", at_us)?);
-        self.0.change(|ring| ring.fired(sensor, at))
+    fn fired(&self, sensor: &Bound<'_, PyAny>, at_us: &Bound<'_, PyAny>) -> PyResult<()> {
+        let (sensor, at) = (self.0.get()?.sensor(sensor)?, instant("at_us", at_us)?);
+        self.0.get()?.change(|ring| ring.fired(sensor, at))
     }
 
     /// The echo line of a sensor was already high when it was to fire: the firing just emitted counts as ``"stuck"``.
@@ -403,9 +414,9 @@ impl Ring {
     ///     >>> event.sensor, event.kind
     ///     (0, 'stuck')
     #[pyo3(signature = (sensor))]
-    fn stuck(&mut self, sensor: &Bound<'_, PyAny>) -> PyResult<()> {
-        let sensor = self.0.sensor(sensor)?;
-        self.0.change(|ring| ring.stuck(sensor))
+    fn stuck(&self, sensor: &Bound<'_, PyAny>) -> PyResult<()> {
+        let sensor = self.0.get()?.sensor(sensor)?;
+        self.0.get()?.change(|ring| ring.stuck(sensor))
     }
 
     /// The state of the space before a sensor, at the time of the last poll.
@@ -426,7 +437,9 @@ impl Ring {
     ///     State(kind='unknown', t_echo_us=None, age_us=0, why='no_firing', explained_by=None)
     #[pyo3(signature = (sensor))]
     fn state(&self, sensor: &Bound<'_, PyAny>) -> PyResult<State> {
-        Ok(State::of(&self.0.watch, self.0.sensor(sensor)?, self.0.now))
+        let sensor = self.0.get()?.sensor(sensor)?;
+        let ring = self.0.get()?;
+        Ok(State::of(&ring.watch, sensor, ring.now))
     }
 
     /// Hand in what hardware or a protocol measured of a sensor's last firing, before its reading is emitted: see
@@ -448,9 +461,10 @@ impl Ring {
     ///     >>> ring.poll(40_000).t_echo_us
     ///     9000
     #[pyo3(signature = (sensor, t_echo_us))]
-    fn measured(&mut self, sensor: &Bound<'_, PyAny>, t_echo_us: Option<&Bound<'_, PyAny>>) -> PyResult<()> {
-        let (sensor, t_echo) = (self.0.sensor(sensor)?, t_echo_us.map(|us| micros("t_echo_us", us)).transpose()?);
-        self.0.change(|ring| ring.measured(sensor, t_echo))
+    fn measured(&self, sensor: &Bound<'_, PyAny>, t_echo_us: Option<&Bound<'_, PyAny>>) -> PyResult<()> {
+        let (sensor, t_echo) =
+            (self.0.get()?.sensor(sensor)?, t_echo_us.map(|us| micros("t_echo_us", us)).transpose()?);
+        self.0.get()?.change(|ring| ring.measured(sensor, t_echo))
     }
 
     /// Ask silence for a witness, from the next firing on: a firing without an echo is then ``"unanswered"``, which is
@@ -465,8 +479,9 @@ impl Ring {
     ///     >>> event.kind, ring.state(event.sensor).kind
     ///     ('unanswered', 'unanswered')
     #[expect(clippy::redundant_closure_for_method_calls, reason = "the method is of rings of one lifetime")]
-    fn expect_answers(&mut self) {
-        self.0.with(|ring| ring.expect_answers());
+    fn expect_answers(&self) -> PyResult<()> {
+        self.0.get()?.with(|ring| ring.expect_answers());
+        Ok(())
     }
 
     /// A sensor has shown that it listens for the echo of its last firing, such as by a line that rises.
@@ -488,9 +503,9 @@ impl Ring {
     ///     >>> event.kind
     ///     'no_echo'
     #[pyo3(signature = (sensor, answered=None), text_signature = "($self, sensor, answered=True)")]
-    fn answered(&mut self, sensor: &Bound<'_, PyAny>, answered: Option<&Bound<'_, PyAny>>) -> PyResult<()> {
-        let (sensor, answered) = (self.0.sensor(sensor)?, flag("answered", answered, true)?);
-        self.0.change(|ring| if answered { ring.answered(sensor) } else { ring.unanswered(sensor) })
+    fn answered(&self, sensor: &Bound<'_, PyAny>, answered: Option<&Bound<'_, PyAny>>) -> PyResult<()> {
+        let (sensor, answered) = (self.0.get()?.sensor(sensor)?, flag("answered", answered, true)?);
+        self.0.get()?.change(|ring| if answered { ring.answered(sensor) } else { ring.unanswered(sensor) })
     }
 
     /// Forget what is known of a sensor's echo, so that its next reading is compared with nothing: the last one was not
@@ -507,9 +522,9 @@ impl Ring {
     ///     >>> ring = eeruf.Ring(eeruf.tables.TABLE_I_D, t_delta_us=500, window_us=36_000)
     ///     >>> ring.forget(3)
     #[pyo3(signature = (sensor))]
-    fn forget(&mut self, sensor: &Bound<'_, PyAny>) -> PyResult<()> {
-        let sensor = self.0.sensor(sensor)?;
-        self.0.change(|ring| ring.forget(sensor))
+    fn forget(&self, sensor: &Bound<'_, PyAny>) -> PyResult<()> {
+        let sensor = self.0.get()?.sensor(sensor)?;
+        self.0.get()?.change(|ring| ring.forget(sensor))
     }
 
     /// Stop a sensor from firing. The reading of a firing that is under way is still emitted.
@@ -527,9 +542,9 @@ impl Ring {
     ///     >>> ring.is_enabled(0)
     ///     False
     #[pyo3(signature = (sensor))]
-    fn disable(&mut self, sensor: &Bound<'_, PyAny>) -> PyResult<()> {
-        let sensor = self.0.sensor(sensor)?;
-        self.0.change(|ring| ring.disable(sensor))
+    fn disable(&self, sensor: &Bound<'_, PyAny>) -> PyResult<()> {
+        let sensor = self.0.get()?.sensor(sensor)?;
+        self.0.get()?.change(|ring| ring.disable(sensor))
     }
 
     /// Let a sensor fire again, from its next turn on. Its readings from before are forgotten.
@@ -548,9 +563,9 @@ impl Ring {
     ///     >>> ring.is_enabled(0)
     ///     True
     #[pyo3(signature = (sensor))]
-    fn enable(&mut self, sensor: &Bound<'_, PyAny>) -> PyResult<()> {
-        let sensor = self.0.sensor(sensor)?;
-        self.0.change(|ring| ring.enable(sensor))
+    fn enable(&self, sensor: &Bound<'_, PyAny>) -> PyResult<()> {
+        let sensor = self.0.get()?.sensor(sensor)?;
+        self.0.get()?.change(|ring| ring.enable(sensor))
     }
 
     /// Returns true if a sensor fires.
@@ -568,7 +583,8 @@ impl Ring {
     ///     True
     #[pyo3(signature = (sensor))]
     fn is_enabled(&self, sensor: &Bound<'_, PyAny>) -> PyResult<bool> {
-        Ok(self.0.ring().is_enabled(self.0.sensor(sensor)?))
+        let sensor = self.0.get()?.sensor(sensor)?;
+        Ok(self.0.get()?.ring().is_enabled(sensor))
     }
 
     /// Let no sensor fire until :meth:`resume`. Readings of firings under way are still emitted, and periods go on.
@@ -580,8 +596,9 @@ impl Ring {
     ///     >>> type(ring.poll(ring.next_deadline_us)).__name__
     ///     'PeriodEnded'
     #[expect(clippy::redundant_closure_for_method_calls, reason = "the method is of rings of one lifetime")]
-    fn pause(&mut self) {
-        self.0.with(|ring| ring.pause());
+    fn pause(&self) -> PyResult<()> {
+        self.0.get()?.with(|ring| ring.pause());
+        Ok(())
     }
 
     /// Let sensors fire again, as of the next period. Readings from before are forgotten.
@@ -595,8 +612,9 @@ impl Ring {
     ///     >>> type(ring.poll(ring.next_deadline_us)).__name__
     ///     'Fire'
     #[expect(clippy::redundant_closure_for_method_calls, reason = "the method is of rings of one lifetime")]
-    fn resume(&mut self) {
-        self.0.with(|ring| ring.resume());
+    fn resume(&self) -> PyResult<()> {
+        self.0.get()?.with(|ring| ring.resume());
+        Ok(())
     }
 
     /// Start again with phase a at a time, or as soon as the last firings allow: after a long sleep. Firings under way
@@ -615,9 +633,9 @@ impl Ring {
     ///     >>> ring.wait_us(3_600_000_000)
     ///     24000
     #[pyo3(signature = (now_us))]
-    fn restart(&mut self, now_us: &Bound<'_, PyAny>) -> PyResult<()> {
+    fn restart(&self, now_us: &Bound<'_, PyAny>) -> PyResult<()> {
         let now = instant("now_us", now_us)?;
-        self.0.with(|ring| ring.restart(now));
+        self.0.get()?.with(|ring| ring.restart(now));
         Ok(())
     }
 }

@@ -11,6 +11,7 @@ use pyo3::{
 
 use crate::{
     arguments::{choice, whole, whole_or, whole_or_none},
+    exclusive::Exclusive,
     fields::to_dict,
     moments::instant,
     ring_arguments::begins,
@@ -45,9 +46,9 @@ use crate::{
 ///     [Blind(sensor=5, firings=4)]
 ///     >>> watch.state(4, now_us).t_echo_us, watch.state(5, now_us).kind
 ///     (9000, 'unknown')
-#[pyclass(module = "eeruf")]
+#[pyclass(frozen, module = "eeruf")]
 pub(crate) struct SensorWatch {
-    watch: eeruf_core::watch::SensorWatch<MAX_SENSORS>,
+    watch: Exclusive<eeruf_core::watch::SensorWatch<MAX_SENSORS>>,
     sensors: u8,
 }
 
@@ -63,7 +64,8 @@ impl SensorWatch {
     ) -> PyResult<Self> {
         let sensors = whole("sensors", sensors, 1..=MAX_SENSORS as u8)?;
         let blind_after = whole_or("blind_after", blind_after, 20, 0..=u8::MAX)?;
-        Ok(Self { watch: eeruf_core::watch::SensorWatch::new(blind_after, begins(now_us)?), sensors })
+        let watch = eeruf_core::watch::SensorWatch::new(blind_after, begins(now_us)?);
+        Ok(Self { watch: Exclusive::new("SensorWatch", watch), sensors })
     }
 
     /// Number of sensors it watches.
@@ -91,9 +93,9 @@ impl SensorWatch {
     ///     >>> watch.observe(eeruf.Reading(3, "rejected", 9_000, 7_000), now_us=100_000)
     ///     Blind(sensor=3, firings=1)
     #[pyo3(signature = (event, now_us))]
-    fn observe(&mut self, event: &Bound<'_, PyAny>, now_us: &Bound<'_, PyAny>) -> PyResult<Option<Blind>> {
+    fn observe(&self, event: &Bound<'_, PyAny>, now_us: &Bound<'_, PyAny>) -> PyResult<Option<Blind>> {
         let (event, now) = (to_core("event", event)?, instant("now_us", now_us)?);
-        let blind = self.watch.observe(&event, now);
+        let blind = self.watch.get()?.observe(&event, now);
         Ok(blind.map(|blind| Blind { sensor: blind.sensor, firings: blind.firings }))
     }
 
@@ -115,7 +117,7 @@ impl SensorWatch {
     #[pyo3(signature = (sensor, now_us))]
     fn state(&self, sensor: &Bound<'_, PyAny>, now_us: &Bound<'_, PyAny>) -> PyResult<State> {
         let (sensor, now) = (whole("sensor", sensor, 0..=self.sensors - 1)?, instant("now_us", now_us)?);
-        Ok(State::of(&self.watch, sensor, now))
+        Ok(State::of(&*self.watch.get()?, sensor, now))
     }
 
     fn __repr__(&self) -> String {

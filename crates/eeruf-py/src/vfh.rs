@@ -1,5 +1,7 @@
 //! `nav.Vfh`: the vector field histogram, and the `Steering` that comes of it.
 
+use std::sync::MutexGuard;
+
 use eeruf_sim::{Point, navigation::SECTORS};
 use pyo3::{
     prelude::*,
@@ -48,8 +50,8 @@ const TURN_GAIN: f64 = 3.0;
 #[pyclass(frozen, module = "eeruf.nav")]
 pub(crate) struct Vfh(eeruf_sim::Vfh);
 
-fn grid_of<'a>(grid: &'a Bound<'_, PyAny>) -> PyResult<PyRef<'a, Himm>> {
-    Ok(instance::<Himm>("grid", grid, "an eeruf.nav.Himm")?.try_borrow()?)
+fn grid_of<'a>(grid: &'a Bound<'_, PyAny>) -> PyResult<MutexGuard<'a, eeruf_sim::Himm>> {
+    instance::<Himm>("grid", grid, "an eeruf.nav.Himm")?.get().grid.get()
 }
 
 #[pymethods]
@@ -153,7 +155,7 @@ impl Vfh {
     ///     0
     #[pyo3(signature = (grid, place))]
     fn histogram<'py>(&self, grid: &Bound<'py, PyAny>, place: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
-        let smoothed = self.0.smoothed(&self.0.histogram(&grid_of(grid)?.grid, point_of("place", place)?));
+        let smoothed = self.0.smoothed(&self.0.histogram(&*grid_of(grid)?, point_of("place", place)?));
         read_only(place.py(), smoothed.into_iter())
     }
 
@@ -182,7 +184,7 @@ impl Vfh {
         target: &Bound<'_, PyAny>,
     ) -> PyResult<Option<Steering>> {
         let (place, target): (Point, Point) = (point_of("place", place)?, point_of("target", target)?);
-        Ok(self.0.steer(&grid_of(grid)?.grid, place, target).map(|steering| Steering {
+        Ok(self.0.steer(&*grid_of(grid)?, place, target).map(|steering| Steering {
             direction_rad: steering.direction_rad,
             valley: (steering.valley.first, steering.valley.sectors),
             trapped: steering.trapped,
@@ -223,7 +225,7 @@ impl Vfh {
         let turn_rad_s = number_or("turn_rad_s", turn_rad_s, 0.0, -50.0..=50.0)?;
         let turn_gain = number_or("turn_gain", turn_gain, TURN_GAIN, 0.0..=100.0)?;
         let turn_most = self.0.turn_max_rad_s;
-        Ok(self.0.drive(&grid_of(grid)?.grid, &pose, target, turn_rad_s, turn_gain, turn_most))
+        Ok(self.0.drive(&*grid_of(grid)?, &pose, target, turn_rad_s, turn_gain, turn_most))
     }
 
     fn __repr__(&self) -> String {

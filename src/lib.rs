@@ -25,6 +25,7 @@ use crate::commands::{Answer, Cli};
 use crate::files::error::InputError;
 use crate::files::implausible::warn_of_options;
 pub use crate::files::mcap::Recording;
+use crate::files::outputs::check_outputs;
 
 /// Runs the program with these arguments, of which the first is its own name, and gives its exit code: 0 for yes, 1 for
 /// no (not verified, infeasible), 2 for bad input, which is named in one line on standard error, 3 if a search ended
@@ -43,7 +44,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
         }
     };
     console::set(cli.output.settings());
-    match warn_of_options(&matches).and_then(|()| cli.verb.run()) {
+    match check_outputs(&matches).and_then(|()| warn_of_options(&matches)).and_then(|()| cli.verb.run()) {
         Ok(Answer::Yes) => 0,
         Ok(Answer::No) => 1,
         Ok(Answer::NotDecided) => 3,

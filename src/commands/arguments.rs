@@ -37,6 +37,15 @@ pub(crate) fn picture() -> impl TypedValueParser<Value = PathBuf> {
     })
 }
 
+/// Parses the name of a folder of pictures.
+pub(crate) fn picture_folder() -> impl TypedValueParser<Value = PathBuf> {
+    PathBufValueParser::new().try_map(|folder| {
+        let ending = folder.extension().map(|ending| ending.to_string_lossy().to_lowercase());
+        let is_picture = ending.is_some_and(|ending| ["svg", "png", "jpg", "jpeg", "pdf"].contains(&&*ending));
+        if is_picture { Err("expected the name of a folder, for several pictures") } else { Ok(folder) }
+    })
+}
+
 /// Returns the error in the arguments.
 pub(crate) fn describe(error: &clap::Error, words: &[String]) -> InputError {
     let context = |kind| error.get(kind).map(text).filter(|text| !text.is_empty());

@@ -68,7 +68,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
 /// Searches the rings of the share that are not in the file yet.
 fn search(args: &Args, path: &Path) -> Result<Answer, InputError> {
     let bad = |error: std::io::Error| FileError::writing(path, &error);
-    let found = read(path).map_err(bad)?;
+    let found = read(path).map_err(|error| FileError::reading(path, &error))?;
     if found.contains('\n') && !found.starts_with(header()) && rows(&found).next().is_none() {
         return Err(InputError::new(
             path,

@@ -56,6 +56,9 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
         args.first.checked_add(count).ok_or_else(|| InputError::new("--first", refused()))
     };
     let (alcoves, courses) = (args.first..end(args.alcoves)?, args.first..end(args.courses)?);
+    if alcoves.is_empty() && courses.is_empty() {
+        return Err(InputError::new("--alcoves", "0, and --courses: 0; expected one or more of either"));
+    }
     let each = |number: u64| METHODS.map(|method| (number, method));
     let mut jobs: Vec<_> = alcoves.flat_map(each).map(|(number, method)| Job::Alcove(number, method)).collect();
     jobs.extend(courses.flat_map(each).map(|(number, method)| Job::Course(number, method)));

@@ -11,6 +11,7 @@ use super::arguments::picture;
 use super::log_args::positive;
 use crate::console::{print_line, tell};
 use crate::files::error::InputError;
+use crate::files::implausible::read_firings;
 use crate::files::toml::{FoundSchedule, read_any_schedule, read_schedule};
 use crate::report::diagnose::{Found, describe, json, who_fools_whom};
 use crate::report::json::to_json;
@@ -54,7 +55,7 @@ pub(crate) struct Args {
 
 pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     Kind::expect_log(&args.file)?;
-    let mut log = FiringLog::read(&args.file)?;
+    let mut log = read_firings(&args.file)?;
     let settings =
         Settings { tolerance_us: args.tolerance_us, max_travel_us: args.max_travel_us, ..Settings::default() };
     let (mut timing, mut alignment) = (None, None);

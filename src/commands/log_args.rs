@@ -134,9 +134,11 @@ pub(crate) fn tell_damage(file: &Path, report: &Report) -> Result<(), InputError
     }
     match &report.damage[..] {
         [] => {}
-        [first] => return Err(first.clone().into()),
         [first, rest @ ..] => {
-            return Err(first.clone().and(format_args!("and {} more places that cannot be read", rest.len())).into());
+            let is_said = first.message().contains("expected ");
+            let first = if is_said { first.clone() } else { first.clone().and("expected a whole and undamaged log") };
+            let more = || format!("and {} more places that cannot be read", rest.len());
+            return Err(if rest.is_empty() { first } else { first.and(more()) }.into());
         }
     }
     if report.sensors.is_empty() {

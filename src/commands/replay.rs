@@ -274,7 +274,7 @@ impl Filtered {
     fn kind(&mut self, reading: &Reading, speed_of_sound: f64, log: &Path) -> Result<Option<ReadingKind>, InputError> {
         // Each filter has one sensor, so that it knows it.
         if reading.at_ns.is_none() && matches!(self.filter, Filter::Rate(_)) {
-            let message = "a reading without a time; --max-speed needs --time COLUMN for CSV";
+            let message = "a reading without a time; expected --time COLUMN for a table, as --max-speed needs times";
             return Err(InputError::new(log, message));
         }
         let at_ns = reading.at_ns.unwrap_or(0);
@@ -319,7 +319,10 @@ fn write(
     log: &Path,
 ) -> Result<(), InputError> {
     if reading.at_ns.is_none() {
-        return Err(InputError::new(log, "a reading without a time; --out needs --time COLUMN for CSV"));
+        return Err(InputError::new(
+            log,
+            "a reading without a time; expected --time COLUMN for a table, as --out needs times",
+        ));
     }
     let topic = sensor.beam.map_or_else(|| sensor.topic.clone(), |beam| format!("{}/beam_{beam}", sensor.topic));
     out.range(&topic, &sensor.frame, reading)?;

@@ -11,6 +11,7 @@ use eeruf_logs::{Firing, FiringLog, McapWriter, Reading, replay};
 use super::answer::Answer;
 use crate::console::{print_line, tell};
 use crate::files::error::InputError;
+use crate::files::implausible::read_firings;
 use crate::report::json::to_json;
 use crate::report::replay::{Counted, Counts, Replay, hopping_table};
 
@@ -21,7 +22,7 @@ pub(crate) fn replay_hopping(
     out: Option<&Path>,
     json: bool,
 ) -> Result<Answer, InputError> {
-    let log = FiringLog::read(file)?;
+    let log = read_firings(file)?;
     let verdicts = replay(&log, settings).map_err(|error| InputError::new(file, error))?;
     let mut counted: Vec<Counted> = (0..log.sensors()).map(|_| Counted::default()).collect();
     let (mut known, mut same) = (0, 0);

@@ -9,6 +9,7 @@ use eeruf_sim::{
 };
 
 use super::answer::Answer;
+use super::arguments::picture_folder;
 use super::methods::chosen;
 use super::rooms::{self, RoomArgs};
 use crate::console::{print_line, tell};
@@ -40,10 +41,10 @@ pub(crate) struct Args {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
     periods: Option<u32>,
     /// Draw SVG pictures into this folder: scene, timing, readings and methods
-    #[arg(long, value_name = "DIR")]
+    #[arg(long, value_name = "DIR", value_parser = picture_folder())]
     svg: Option<PathBuf>,
     /// Draw the same pictures as PNG
-    #[arg(long, value_name = "DIR")]
+    #[arg(long, value_name = "DIR", value_parser = picture_folder())]
     png: Option<PathBuf>,
     /// Write every firing of the first robot and what it heard as CSV, or MCAP if the name ends in .mcap, for `eeruf
     /// diagnose`; needs one --method

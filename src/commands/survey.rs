@@ -14,6 +14,7 @@ use super::log_args::positive;
 use crate::console::{print_line, tell};
 use crate::files::error::InputError;
 use crate::files::firings::csv;
+use crate::files::implausible::read_firings;
 use crate::files::survey::{TruePath, simulate, true_paths};
 use crate::files::toml::read_world;
 use crate::files::write::write;
@@ -89,7 +90,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
         Some((log, truth, physics)) => (log, Some((truth, physics))),
         None => {
             Kind::expect_log(file)?;
-            (FiringLog::read(file)?, None)
+            (read_firings(file)?, None)
         }
     };
     let surveyed = survey(&log, &settings(args));

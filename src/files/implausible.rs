@@ -1,89 +1,31 @@
-//! Warnings about input that is legal and implausible: milliseconds for microseconds, centimetres for metres.
+//! Warnings about input that is legal and implausible.
 
 use std::path::Path;
 
 use clap::ArgMatches;
 use clap::parser::ValueSource;
-use eeruf_files::FileError;
-use toml::Spanned;
-use toml::de::{DeTable, DeValue};
+use eeruf_files::{doubt, doubted_keys, doubts_in};
+use eeruf_logs::FiringLog;
 
 use super::error::InputError;
 use crate::console;
-
-/// The plausible values of a key; zero means that nothing is asked for, and is plausible.
-struct Plausible {
-    key: &'static str,
-    from: f64,
-    to: f64,
-    /// The likely cause of a value outside, and what is expected.
-    why: &'static str,
-}
-
-const fn plausible(key: &'static str, from: f64, to: f64, why: &'static str) -> Plausible {
-    Plausible { key, from, to, why }
-}
-
-const MICROSECONDS: &str = "likely milliseconds: times are microseconds";
-const BOUNCES: &str = "each bounce multiplies the paths; 4 to 6 suffice in most rooms";
-const METRES: &str = "likely centimetres or millimetres: lengths are metres";
-
-/// In any file and among the options of any command: a key has one meaning.
-const PLAUSIBLE: [Plausible; 35] = [
-    plausible("period_us", 2_000.0, 60e6, MICROSECONDS),
-    plausible("period", 2_000.0, 60e6, MICROSECONDS),
-    plausible("reach_us", 1_000.0, 10e6, MICROSECONDS),
-    plausible("until_us", 1_000.0, 1e6, MICROSECONDS),
-    plausible("no_echo_m", 0.05, 60.0, METRES),
-    plausible("tolerance_m", 0.0, 2.0, METRES),
-    plausible("height_m", 0.0, 20.0, METRES),
-    plausible("length_m", 0.01, 200.0, METRES),
-    plausible("speed_of_sound", 250.0, 450.0, "speeds are metres per second: sound in air has 343 at 20 degrees"),
-    plausible("window_us", 1_000.0, 1e6, MICROSECONDS),
-    plausible("retrigger_us", 1_000.0, 10e6, MICROSECONDS),
-    plausible("min_interval_us", 200.0, 5e9, MICROSECONDS),
-    plausible("t_delta_us", 20.0, 20_000.0, "T_delta is in microseconds, a few hundred for most modules"),
-    plausible("jitter_us", 2.0, 5_000.0, "jitter is in microseconds, 50 to 400 for most modules"),
-    plausible("wait_max_us", 200.0, 10e6, MICROSECONDS),
-    plausible("blanking_us", 10.0, 50_000.0, MICROSECONDS),
-    plausible("tick_us", 1.0, 100_000.0, "firing times are multiples of the tick, 100 to 1000 us for most rings"),
-    plausible("max_range_m", 0.05, 30.0, METRES),
-    plausible("crosstalk_range_m", 0.05, 60.0, METRES),
-    plausible("radius_m", 0.001, 20.0, METRES),
-    plausible("points_m", 0.0, 200.0, METRES),
-    plausible("at_m", 0.0, 200.0, METRES),
-    plausible("waypoints_m", 0.0, 200.0, METRES),
-    plausible("x_m", 0.0, 200.0, METRES),
-    plausible("y_m", 0.0, 200.0, METRES),
-    plausible("speed_m_s", 0.01, 20.0, "likely mm/s or km/h: speeds are metres per second"),
-    plausible("velocity_m_s", 0.0, 20.0, "likely mm/s or km/h: speeds are metres per second"),
-    plausible("temperature_c", 0.0, 60.0, "likely kelvin or Fahrenheit: temperatures are degrees Celsius"),
-    plausible("heading_deg", 0.0, 360.0, "expected -360 to 360 degrees"),
-    plausible("drift_ppm", 0.0, 10_000.0, "drift is in millionths; crystals drift by 10 to 100"),
-    plausible("turn_deg_s", 0.0, 720.0, "expected degrees per second"),
-    plausible("fading_db_rms", 0.0, 20.0, "fading is in dB, 1 to 3 in most rooms"),
-    plausible("jitter_us_rms", 0.0, 5_000.0, MICROSECONDS),
-    plausible("max_order", 0.0, 12.0, BOUNCES),
-    plausible("order", 0.0, 12.0, BOUNCES),
-];
-
-/// Lists of firing times and waits, which are implausible only if all of them are small.
-const LISTS: [&str; 6] = ["t_lag_us", "t_wait_a_us", "t_wait_b_us", "t_fire_a_us", "t_fire_b_us", "t_fire_us"];
 
 /// Warns about every implausible value of a TOML file.
 ///
 /// # Errors
 /// The first of them, if warnings are denied.
 pub(crate) fn warn_of(file: &Path, text: &str) -> Result<(), InputError> {
-    // A text that is no TOML gets its error where it is parsed.
-    let Ok(table) = DeTable::parse(text) else { return Ok(()) };
-    let mut found = vec![];
-    in_table(table.get_ref(), &mut found);
-    for (at, message) in found {
-        let line = 1 + text.get(..at).map_or(0, |before| before.matches('\n').count() as u64);
-        warn(FileError::new(file, message).at_line(Some(line)).into())?;
-    }
-    Ok(())
+    doubts_in(text).into_iter().try_for_each(|found| warn(found.in_file(file).into()))
+}
+
+/// Reads a log of firings, and warns about implausible times in it.
+///
+/// # Errors
+/// The log cannot be read; or the first of the warnings, if they are denied.
+pub(crate) fn read_firings(file: &Path) -> Result<FiringLog, InputError> {
+    let log = FiringLog::read(file)?;
+    log.doubts().into_iter().try_for_each(|doubt| warn(InputError::new(file, doubt)))?;
+    Ok(log)
 }
 
 /// Prints a warning, or returns it as an error where warnings are denied.
@@ -100,94 +42,16 @@ pub(crate) fn warn(warning: InputError) -> Result<(), InputError> {
 /// # Errors
 /// The first of them, if warnings are denied.
 pub(crate) fn warn_of_options(matches: &ArgMatches) -> Result<(), InputError> {
-    for key in PLAUSIBLE.iter().map(|plausible| plausible.key) {
+    for key in doubted_keys() {
         let is_given = matches.try_contains_id(key).is_ok_and(|is_given| is_given)
             && matches.value_source(key) == Some(ValueSource::CommandLine);
         let values = if is_given { matches.get_raw(key) } else { None };
         for value in values.into_iter().flatten() {
             let number = value.to_str().and_then(|value| value.parse().ok());
-            if let Some(message) = number.and_then(|number| message(key, number)) {
+            if let Some(message) = number.and_then(|number| doubt(key, number)) {
                 warn(InputError::new(format!("--{}", key.replace('_', "-")), message))?;
             }
         }
     }
     matches.subcommand().map_or(Ok(()), |(_, matches)| warn_of_options(matches))
-}
-
-/// Collects the implausible values of a table and of those within it, with their places.
-fn in_table(table: &DeTable<'_>, found: &mut Vec<(usize, String)>) {
-    for (key, value) in table {
-        let (key, at) = (key.get_ref().as_ref(), key.span().start);
-        in_value(key, at, value, found);
-        if key == "spacing_deg" {
-            spacing(table, at, found);
-        }
-    }
-}
-
-fn in_value(key: &str, at: usize, value: &Spanned<DeValue<'_>>, found: &mut Vec<(usize, String)>) {
-    match value.get_ref() {
-        DeValue::Table(table) => in_table(table, found),
-        DeValue::Array(array) => {
-            array.iter().filter_map(|value| value.get_ref().as_table()).for_each(|table| in_table(table, found));
-            let mut numbers = vec![];
-            numbers_of(value.get_ref(), &mut numbers);
-            if LISTS.contains(&key) {
-                let largest = numbers.iter().copied().fold(0.0, f64::max);
-                if largest > 0.0 && largest < 200.0 {
-                    found.push((at, format!("{key}: {largest} us at most; expected 200 us or more; {MICROSECONDS}")));
-                }
-            } else if let Some(message) = numbers.iter().find_map(|&number| message(key, number)) {
-                found.push((at, format!("{key}: {message}")));
-            }
-        }
-        other => {
-            let message = number(other).and_then(|number| message(key, number));
-            found.extend(message.map(|message| (at, format!("{key}: {message}"))));
-        }
-    }
-}
-
-/// Sensors that a spacing puts into one place, or one that is likely in radians.
-fn spacing(table: &DeTable<'_>, at: usize, found: &mut Vec<(usize, String)>) {
-    let of = |key: &str| table.get(key).and_then(|value| number(value.get_ref()));
-    let (Some(spacing), Some(sensors)) = (of("spacing_deg"), of("sensors")) else { return };
-    if sensors < 2.0 {
-        return;
-    }
-    if spacing != 0.0 && spacing.abs() < 1.0 {
-        let why = "likely radians: the spacing is in degrees";
-        found.push((at, format!("spacing_deg: {spacing}; expected 1 to {:.1}; {why}", 360.0 / sensors)));
-    } else if spacing.abs() * (sensors - 1.0) >= 360.0 {
-        let most = 360.0 / sensors;
-        let why =
-            format!("{sensors} sensors go around more than once; likely the whole circle: a full ring has {most}");
-        found.push((at, format!("spacing_deg: {spacing}; expected at most {most:.1}; {why}")));
-    }
-}
-
-fn message(key: &str, number: f64) -> Option<String> {
-    let plausible = PLAUSIBLE.iter().find(|plausible| plausible.key == key)?;
-    let size = number.abs();
-    let is_plausible = size == 0.0 || (plausible.from..=plausible.to).contains(&size);
-    let Plausible { from, to, why, .. } = plausible;
-    // A number of 300 digits says no more than its power of ten.
-    let shown = if size < 1e12 { number.to_string() } else { format!("{number:e}") };
-    (!is_plausible).then(|| format!("{shown}; expected {from} to {to}; {why}"))
-}
-
-fn numbers_of(value: &DeValue<'_>, numbers: &mut Vec<f64>) {
-    match value.as_array() {
-        Some(array) => array.iter().for_each(|value| numbers_of(value.get_ref(), numbers)),
-        None => numbers.extend(number(value)),
-    }
-}
-
-fn number(value: &DeValue<'_>) -> Option<f64> {
-    let text = match value {
-        DeValue::Integer(integer) if integer.radix() == 10 => integer.as_str(),
-        DeValue::Float(float) => float.as_str(),
-        _ => return None,
-    };
-    text.parse().ok().filter(|number: &f64| number.is_finite())
 }

@@ -6,6 +6,7 @@ pub(crate) mod error;
 pub(crate) mod firings;
 pub(crate) mod implausible;
 pub(crate) mod mcap;
+pub(crate) mod outputs;
 pub(crate) mod ring;
 pub(crate) mod survey;
 pub(crate) mod toml;

@@ -2,7 +2,6 @@
 
 use std::path::Path;
 
-use eeruf_core::{Micros, Requirements};
 use eeruf_design::{PhaseFile, PhaseSchedule, robot_ring};
 use eeruf_files::{Kind, build};
 use eeruf_sim::{AnySchedule, ScheduleFile, World};
@@ -49,18 +48,8 @@ pub(crate) fn read_world(file: &Path) -> Result<World, InputError> {
     let text = Kind::Scene.read(file)?;
     let world = World::from_text_with(file, &text, robot_ring)?;
     warn_of(file, &text)?;
-    for (number, robot) in (1..).zip(world.robots()) {
-        let Some(schedule) = &robot.schedule else { continue };
-        let nothing_asked = Requirements::new(Micros::ZERO);
-        let report = schedule.verify(&nothing_asked);
-        let Some(most) = report.max_t_delta().filter(|&most| most < robot.t_delta) else { continue };
-        let message = format!(
-            "robot {number}: t_delta_us: {}; expected at most {}, what its schedule rejects; crosstalk passes; see \
-             `eeruf verify`",
-            robot.t_delta.as_micros(),
-            most.as_micros()
-        );
-        warn(InputError::new(file, message))?;
+    for (robot, doubt) in world.doubts() {
+        warn(InputError::new(file, format!("robot {}: {doubt}", robot + 1)))?;
     }
     Ok(world)
 }

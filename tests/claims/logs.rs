@@ -35,7 +35,7 @@ fn replay_writes_accepted_ranges_by_rep_117() {
     let (_folder, log) = Scratch::new("log.csv", "left\n1.0\n1.5\n");
     let without = eeruf(&["replay", log.to_str().unwrap(), "--t-delta-us", "100", "--out", path]);
     assert_eq!((without.code, without.out.as_str()), (Some(2), ""));
-    assert!(without.err.ends_with("a reading without a time; --out needs --time COLUMN for CSV\n"), "{}", without.err);
+    assert!(without.err.ends_with("expected --time COLUMN for a table, as --out needs times\n"), "{}", without.err);
 }
 
 #[test]
@@ -405,7 +405,7 @@ fn fast_wall_is_accepted_with_a_rate() {
     let (_folder, log) = Scratch::new("log.csv", "ahead\n1.0\n1.5\n");
     let without = eeruf(&["replay", log.to_str().unwrap(), "--t-delta-us", "300", "--max-speed", "1"]);
     assert!(
-        without.err.ends_with("a reading without a time; --max-speed needs --time COLUMN for CSV\n"),
+        without.err.ends_with("expected --time COLUMN for a table, as --max-speed needs times\n"),
         "{}",
         without.err
     );

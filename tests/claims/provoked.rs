@@ -50,11 +50,13 @@ const SCHEDULE: &str = "period_us = 100000\nt_fire_a_us = [0, 20000]\nt_fire_b_u
 const SCENE: &str = "[[wall]]\npoints_m = [[1.0, -2.0], [1.0, 2.0]]\n[[robot]]\npose = { x_m = 0.0, y_m = 0.0 }\n\
     ring = { \
                      sensors = 4, spacing_deg = 15, radius_m = 0.3 }\nperiod_us = 60_000\nt_delta_us = 200\n";
+const FIRINGS: &str = "sensor,fired_us,period,phase,t_echo_us\n0,0,0,0,5000\n1,20000,1,0,6\n";
+const MAP: &str = "image: cell.pgm\nresolution: 0.05\norigin: [0, 0, 0]\n";
 const LOG: &str = "a,b\n1.0,2.0\n1.0,2.0\n1.1,2.1\n";
 
 /// The files of the corpus, beside those that are right.
 fn write_files(folder: &Path) {
-    let files: [(&str, &[u8]); 15] = [
+    let files: [(&str, &[u8]); 20] = [
         ("ring.toml", RING.as_bytes()),
         ("waits.toml", WAITS.as_bytes()),
         ("schedule.toml", SCHEDULE.as_bytes()),
@@ -62,6 +64,11 @@ fn write_files(folder: &Path) {
         ("log.csv", LOG.as_bytes()),
         ("firings.csv", b"sensor,fired_us,period,phase,t_echo_us\n0,0,0,0,5000\n1,20000,1,0,6000\n"),
         ("map.yaml", b"image: none.pgm\nresolution: 0.05\n"),
+        ("none.firings.csv", b"sensor,fired_us,period,phase,t_echo_us\n"),
+        ("negative.csv", b"sensor,fired_us,period,phase,t_echo_us\n0,0,0,0,-5\n"),
+        ("cell.pgm", b"P2 2 2 1 0 0 0 1\n"),
+        ("empty.yaml", b""),
+        ("empty.bag", b""),
         ("empty.toml", b""),
         ("empty.csv", b""),
         ("latin.toml", b"sensors = \xff\xfe\n"),
@@ -142,7 +149,7 @@ const REFUSED_FILES: [Spoilt<'static>; 45] = [
 ];
 
 /// Wrong arguments and wrong files.
-const REFUSED_RUNS: [(&[&str], &str); 72] = [
+const REFUSED_RUNS: [(&[&str], &str); 92] = [
     (&[], "command: missing; expected one"),
     (&["desing", "ring.toml"], "command: `desing`; expected one that exists; did you mean design?"),
     (&["design"], "<RING.toml>: missing; expected a value"),
@@ -232,11 +239,31 @@ const REFUSED_RUNS: [(&[&str], &str); 72] = [
     (&["dataset", "out", "--first", "18446744073709551615"], "--first: 18446744073709551615; expected at most"),
     (&["verify", "schedule.toml", "--reach-us", "5000"], "--reach-us: 5000; expected a schedule of many phases"),
     (&["study", "scene.toml", "--places", "2"], "--places: given with scene.toml; expected it with a ring file alone"),
+    (&["replay", "log.csv", "--t-delta-us", "500", "--out", "log.csv"], "expected another file than the one that is"),
+    (&["study", "scene.toml", "--method", "eeruf", "--log", "scene.toml"], "--log: scene.toml; expected another file"),
+    (&["design", "ring.toml", "--certificate", "ring.toml"], "--certificate: ring.toml; expected another file"),
+    (&["design", "ring.toml", "--certificate", "folder.toml"], "folder.toml; expected a file, not a folder"),
+    (&["design", "ring.toml", "--certificate", "no/c"], "no/c: No such file or directory (os error 2); expected a fol"),
+    (&["study", "scene.toml", "--svg", "out.jpg"], "--svg <DIR>: `out.jpg`; expected the name of a folder"),
+    (&["replay", "log.csv", "--t-delta-us", "500", "--max-speed", "1"], "a reading without a time; expected --time"),
+    (&["replay", "log.csv", "--t-delta-us", "500", "--out", "x.mcap"], "a reading without a time; expected --time"),
+    (&["replay", "log.csv", "log.csv", "--t-delta-us", "500"], "log.csv: unknown; expected an option"),
+    (&["logs", "empty.bag"], "the first bytes are not those of a ROS 1 bag of format 2.0; expected a whole"),
+    (&["logs", "no.mcap"], "the first bytes are not those of MCAP; expected a whole and undamaged log"),
+    (&["logs", "log.csv", "--range", "nope"], "no column `nope`; expected one of: a, b"),
+    (&["diagnose", "none.firings.csv"], "none.firings.csv: 0 firings; expected one or more"),
+    (&["diagnose", "negative.csv"], "negative.csv, line 2: column t_echo_us: `-5`; expected microseconds, or nothing"),
+    (&["diagnose", "firings.csv", "--schedule", "schedule.toml"], "fewer than ten periods; expected ten or more"),
+    (&["dataset", "out", "--alcoves", "0", "--courses", "0"], "--alcoves: 0, and --courses: 0; expected one or more"),
+    (&["atlas", "latin.toml"], "latin.toml: stream did not contain valid UTF-8; expected text in UTF-8"),
+    (&["scene", "empty.yaml"], "empty.yaml: no keys; expected image, resolution and origin"),
+    (&["examples", "log.csv"], "log.csv/checker: Not a directory (os error 20); expected a file that can be written"),
+    (&["survey", "firings.csv", "--simulate", "scene.toml"], "given with --simulate"),
     (&["study", "scene.toml", "--seed", "-1"], "--seed: `-1`; expected no negative number"),
 ];
 
 /// Legal and implausible input, and its warning.
-const IMPLAUSIBLE: [Spoilt<'static>; 23] = [
+const IMPLAUSIBLE: [Spoilt<'static>; 26] = [
     ("design", RING, "window_us = 30000", "window_us = 30", "window_us: 30; expected 1000 to 1000000; likely millis"),
     ("design", RING, "min_interval_us = 15000", "min_interval_us = 15", "min_interval_us: 15; expected 200 to"),
     ("design", RING, "t_delta_us = 900", "t_delta_us = 1", "t_delta_us: 1; expected 20 to 20000; T_delta is in micro"),
@@ -265,6 +292,9 @@ const IMPLAUSIBLE: [Spoilt<'static>; 23] = [
     ("paths", SCENE, "t_delta_us = 200", "height_m = 1e300", "height_m: 1e300; expected 0 to 20"),
     ("logs --speed-of-sound 34", LOG, "", "", "--speed-of-sound: 34; expected 250 to 450; speeds are metres"),
     ("logs --no-echo-m 500", LOG, "", "", "--no-echo-m: 500; expected 0.05 to 60; likely centimetres"),
+    ("diagnose", FIRINGS, "5000", "5", "column t_echo_us: at most 6; expected 200 or more; likely milliseconds"),
+    ("survey", FIRINGS, "20000", "20", "column fired_us: mean steps of 20; expected 200 or more; likely milliseconds"),
+    ("scene", MAP, "0.05", "50", "resolution: 50; expected 0.001 to 1; likely centimetres"),
     ("replay --t-delta-us 500 --speed-of-sound 34320", LOG, "", "", "--speed-of-sound: 34320; expected 250 to 450"),
 ];
 
@@ -281,7 +311,11 @@ fn joined(text: &str) -> String {
 fn spoil<'a>(folder: &Path, (words, text, old, new, _): Spoilt<'a>) -> Vec<&'a str> {
     assert!(text.contains(old), "{old}");
     let spoilt = if old.is_empty() { text.to_owned() } else { text.replacen(old, new, 1) };
-    let name = if text == LOG { "spoilt.csv" } else { "spoilt.toml" };
+    let name = match text {
+        LOG | FIRINGS => "spoilt.csv",
+        MAP => "spoilt.yaml",
+        _ => "spoilt.toml",
+    };
     fs::write(folder.join(name), spoilt).expect("the folder can be written to");
     let mut words: Vec<_> = words.split(' ').collect();
     words.insert(1, name);
@@ -328,11 +362,16 @@ fn provoked_errors_name_thing_value_and_expectation() {
         }
     }
     assert!(faulty.is_empty(), "{}", faulty.join("\n"));
+    let read = |name: &str| fs::read_to_string(folder.path().join(name)).expect("what is read stays");
+    assert_eq!([read("log.csv"), read("ring.toml"), read("scene.toml")], [LOG, RING, SCENE]);
+    #[cfg(unix)]
+    assert!(run(folder.path(), &["verify", "/dev/zero"], 80).err.contains("64 MiB or more; expected a smaller file"));
 }
 
 #[test]
 fn implausible_input_warns_unless_quiet() {
     let folder = tempfile::tempdir().expect("a folder for temporary files");
+    write_files(folder.path());
     for spoilt in IMPLAUSIBLE {
         let words = spoil(folder.path(), spoilt);
         let of = format!("{} {}", spoilt.0, spoilt.3);

@@ -41,6 +41,7 @@ impl FileError {
             ErrorKind::NotFound => "expected a file that exists",
             ErrorKind::InvalidData => "expected text in UTF-8",
             ErrorKind::IsADirectory => "expected a file",
+            ErrorKind::FileTooLarge => "expected a smaller file",
             _ => "expected a file that can be read",
         };
         Self::new(file, format!("{error}; {advice}"))

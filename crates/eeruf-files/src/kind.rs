@@ -1,10 +1,13 @@
 //! The kind of a file, recognised by its name and its keys before it is parsed.
 
 use std::fs;
-use std::io::Read as _;
+use std::io::{self, ErrorKind, Read as _};
 use std::path::Path;
 
 use crate::FileError;
+
+/// The size from which on a file is no text of ours; some, such as `/dev/zero`, never end.
+const TOO_LARGE: u64 = 1 << 26;
 
 /// A kind of file that a command of `eeruf` reads.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -59,7 +62,7 @@ impl Kind {
 
     /// Returns the kind that a file looks like; none for one that cannot be read as text.
     pub fn of_file(file: &Path) -> Option<Self> {
-        fs::read_to_string(file).ok().and_then(|text| Self::of(file, &text))
+        read_text(file).ok().and_then(|text| Self::of(file, &text))
     }
 
     fn name(self) -> &'static str {
@@ -108,7 +111,7 @@ impl Kind {
     pub fn read(self, file: &Path) -> Result<String, FileError> {
         // The name of a log says what it is, and not every log is text.
         self.expect(file, "")?;
-        let text = fs::read_to_string(file).map_err(|error| FileError::reading(file, &error))?;
+        let text = read_text(file).map_err(|error| FileError::reading(file, &error))?;
         self.expect(file, &text)?;
         Ok(text)
     }
@@ -129,4 +132,14 @@ impl Kind {
         let text = String::from_utf8_lossy(&text);
         Self::Log.expect(file, &text)
     }
+}
+
+/// Reads a text up to the size that files of ours have.
+fn read_text(file: &Path) -> io::Result<String> {
+    let mut text = String::new();
+    let size = fs::File::open(file)?.take(TOO_LARGE).read_to_string(&mut text)?;
+    if size as u64 == TOO_LARGE {
+        return Err(io::Error::new(ErrorKind::FileTooLarge, "64 MiB or more"));
+    }
+    Ok(text)
 }

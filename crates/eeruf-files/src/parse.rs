@@ -72,13 +72,25 @@ pub fn build<T: DeserializeOwned, B, E: fmt::Display>(
 }
 
 /// The line of a byte, counted from 1.
-fn line_at(text: &str, byte: usize) -> u64 {
+pub(crate) fn line_at(text: &str, byte: usize) -> u64 {
     1 + text.get(..byte).map_or(0, |before| before.matches('\n').count() as u64)
 }
 
 /// The error in a value of TOML that was parsed before, as `thing: value; expected X`.
 pub fn explain(error: &toml::de::Error) -> String {
     message(None, "", error.message())
+}
+
+/// The error in a JSON text, in the words of its parser, `what at line N column M`.
+///
+/// ```
+/// let error = eeruf_files::explain_json("missing field `period_us` at line 1 column 2");
+/// assert_eq!(error.to_string(), "line 1: period_us: missing; expected the key to be set");
+/// ```
+pub fn explain_json(error: &str) -> FileError {
+    let (what, at) = error.rsplit_once(" at line ").unwrap_or((error, ""));
+    let line = at.split(' ').next().and_then(|line| line.parse().ok());
+    FileError::in_text(message(None, "", what).replace("expected TOML", "expected JSON")).at_line(line)
 }
 
 /// The key whose value stands at a byte of the text.

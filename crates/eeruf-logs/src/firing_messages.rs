@@ -166,7 +166,7 @@ impl Found {
             let why = self.damage.map_or(String::new(), |damage| format!("; {damage}"));
             return Err(FileError::new(
                 file,
-                format!("no firings: expected messages of the type {FIRING}, or {JSON_FIRING} in JSON{why}"),
+                format!("0 firings; expected messages of the type {FIRING}, or {JSON_FIRING} in JSON{why}"),
             ));
         }
         if self.used.len() > 1 {

@@ -251,7 +251,7 @@ impl Rows {
         if self.firings.is_empty() {
             return Err(match self.first_damage {
                 Some((line, why)) => FileError::new(file, why).at_line(Some(line)),
-                None => FileError::new(file, "no firings"),
+                None => FileError::new(file, "0 firings; expected one or more"),
             });
         }
         if self.lacks_instants {

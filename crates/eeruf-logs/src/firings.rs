@@ -99,6 +99,23 @@ impl FiringLog {
         firing_text::read(input, file)
     }
 
+    /// Warnings of times that are legal and implausible: milliseconds for microseconds.
+    pub fn doubts(&self) -> Vec<String> {
+        /// Sound that comes sooner is ringing of the transducer; sensors of a ring fire less often.
+        const LEAST_US: i64 = 200;
+        let echo = self.firings.iter().filter_map(|firing| firing.t_echo_us).max().map(i64::from);
+        let span = self.firings.last().zip(self.firings.first()).map(|(last, first)| last.fired_us - first.fired_us);
+        let between = span.map(|span| span / (self.firings.len() as i64 - 1).max(1));
+        [("t_echo_us", "at most", echo), ("fired_us", "mean steps of", between)]
+            .into_iter()
+            .filter_map(|(key, of, us)| Some((key, of, us.filter(|us| (1..LEAST_US).contains(us))?)))
+            .map(|(key, of, us)| {
+                let why = "likely milliseconds: times are microseconds";
+                format!("column {key}: {of} {us}; expected {LEAST_US} or more; {why}")
+            })
+            .collect()
+    }
+
     /// Writes the log as it is read. What the ring made of a reading is written as `rejected` or `other`, unless the
     /// kind is known.
     ///

@@ -60,7 +60,7 @@ impl fmt::Display for TimingError {
                 let percent = 100.0 * share;
                 write!(f, "its periods last {percent:.1} % of the schedule's; expected 90 to 110 %")
             }
-            Self::Short => write!(f, "fewer than ten periods"),
+            Self::Short => write!(f, "fewer than ten periods; expected ten or more"),
         }
     }
 }

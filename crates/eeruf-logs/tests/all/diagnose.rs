@@ -338,5 +338,5 @@ fn log_is_read_as_written_and_its_clock_may_wrap() {
         said(&format!("{header}1,0,0,0,-5\n")),
         "log, line 3: column t_echo_us: `-5`; expected microseconds, or nothing"
     );
-    assert_eq!(said(header), "log: no firings");
+    assert_eq!(said(header), "log: 0 firings; expected one or more");
 }

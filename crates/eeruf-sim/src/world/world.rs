@@ -1,6 +1,8 @@
 //! A world: a scene with robots in it, how noisy it is, and the seed that decides all that is random. Checked once, so
 //! that a simulation has nothing left to refuse but what a method asks for.
 
+use eeruf_core::{Micros, Requirements};
+
 use super::check::{check, check_apart, check_heights};
 use super::error::WorldError;
 use super::fault::{Fault, FaultKind, scene_with};
@@ -166,6 +168,18 @@ impl World {
     /// The robots, at least one.
     pub fn robots(&self) -> &[Robot] {
         &self.robots
+    }
+
+    /// Robots, from 0, whose `t_delta` is above what their schedules reject, each with a warning that says so.
+    pub fn doubts(&self) -> Vec<(usize, String)> {
+        let nothing_asked = Requirements::new(Micros::ZERO);
+        let doubt = |(index, robot): (usize, &Robot)| {
+            let most = robot.schedule.as_ref()?.verify(&nothing_asked).max_t_delta();
+            let (most, t_delta) = (most.filter(|&most| most < robot.t_delta)?.as_micros(), robot.t_delta.as_micros());
+            let expected = format!("expected at most {most}, what its schedule rejects; crosstalk passes");
+            Some((index, format!("t_delta_us: {t_delta}; {expected}; see `eeruf verify`")))
+        };
+        self.robots.iter().enumerate().filter_map(doubt).collect()
     }
 
     /// Its effects.

@@ -116,6 +116,18 @@ class EerufError(ValueError):
         sensors = 65; expected a whole number from 1 to 64
     """
 
+class EerufWarning(UserWarning):
+    """Input that is legal and implausible, such as milliseconds for microseconds; a ``UserWarning``.
+
+    Example:
+        >>> import eeruf, warnings
+        >>> with warnings.catch_warnings():
+        ...     warnings.simplefilter("error", eeruf.EerufWarning)
+        ...     eeruf.Ring(eeruf.tables.TABLE_I_D, t_delta_us=500, window_us=36)
+        Traceback (most recent call last):
+        eeruf.EerufWarning: window_us = 36; expected 1000 to 1000000; likely milliseconds: times are microseconds
+    """
+
 class ArgumentError(EerufError):
     """An argument of the wrong type, shape or range, which it names.
 

@@ -2,6 +2,7 @@
 
 import math
 import time
+import warnings
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any, Callable
@@ -143,7 +144,8 @@ BAD: list[tuple[Callable[[], Any], type[Exception], str]] = [
         'criterion = \'strict\'; expected "exact" or "paper"',
     ),
     (lambda: eeruf.Schedule.from_toml("period_us ="), eeruf.ScheduleError, "."),
-    (lambda: eeruf.Schedule.from_json("{}"), eeruf.ScheduleError, "period_us"),
+    (lambda: eeruf.Schedule.from_json("{}"), eeruf.ScheduleError, "line 1: period_us: missing; expected the key"),
+    (lambda: eeruf.Schedule.from_json(""), eeruf.ScheduleError, "line 1: EOF while parsing a value; expected JSON"),
     (lambda: ANY.Schedule.from_json(b"{}"), eeruf.ArgumentError, "text = b'{}'; expected a schedule in JSON"),
     (lambda: tables.TABLE_I_D.scaled(1, 0), eeruf.ScheduleError, "0"),
     (lambda: eeruf.Schedule(10, (), (), ()), eeruf.ScheduleError, "0 sensors"),
@@ -444,3 +446,48 @@ def test_two_threads_get_answers_or_an_error_with_advice() -> None:
     with ThreadPoolExecutor(2) as threads:
         for done in [threads.submit(fire) for _ in range(2)]:
             done.result()
+
+
+ABOVE = eeruf.Schedule.from_firing(60_000, [0, 20_000], [100, 20_400])
+IMPLAUSIBLE: list[tuple[Callable[[], Any], str]] = [
+    (lambda: tables.TABLE_I_D.verify(999, window_us=36), "window_us = 36; expected 1000 to 1000000; likely milli"),
+    (lambda: eeruf.EchoFilter(4, 5), "t_delta_us = 5; expected 20 to 20000; T_delta is in microseconds"),
+    (lambda: sim.Robot((0, 0, 0), 8, 0.26, 30.0), "radius_m = 30; expected 0.001 to 20; likely centimetres"),
+    (lambda: sim.Robot((0, 0, 0), 8, 4.0, 0.3), "spacing_rad = 4; expected 0 to 3.2; radians from one sensor"),
+    (lambda: sim.Robot((0, 0, 0), 8, 2 * math.pi, 0.3), "spacing_rad = 6.28.*not degrees or the whole circle"),
+    (lambda: WALL.paths((0, -1), [(1, -1)], 20), "max_order = 20; expected 0 to 12; each bounce"),
+    (
+        lambda: eeruf.Schedule.from_toml(ABOVE.to_toml().replace("60_000", "90_000_000")),
+        "line 1: period_us: 90000000; expected 2000 to",
+    ),
+    (
+        lambda: sim.Scene([[5, 2, -5, 2]], robots=[sim.Robot((0, 0, 0), 2, 0.3, 0.3, t_delta_us=900, schedule=ABOVE)]),
+        "robot 0: t_delta_us: 900; expected at most .*, what its schedule rejects",
+    ),
+    (
+        lambda: sim.Scene.from_toml("[[wall]]\npoints_m = [[0, 0], [0, 500]]"),
+        "line 2: points_m: 500; expected 0 to 200",
+    ),
+]
+
+
+@pytest.mark.parametrize(("call", "message"), IMPLAUSIBLE, ids=[message for _, message in IMPLAUSIBLE])
+def test_implausible_input_warns(call: Callable[[], Any], message: str) -> None:
+    with pytest.warns(eeruf.EerufWarning, match=message):
+        call()
+
+
+def test_implausible_logs_warn(tmp_path: Path) -> None:
+    log = tmp_path / "firings.csv"
+    log.write_text("sensor,fired_us,period,phase,t_echo_us\n0,0,0,0,5\n1,20,1,0,6\n")
+    with pytest.warns(eeruf.EerufWarning, match="column t_echo_us: at most 6; expected 200 or more; likely milli"):
+        eeruf.read_firings(log)
+
+
+def test_plausible_input_does_not_warn() -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        for name in eeruf.EXAMPLES:
+            if name.startswith("scenes/"):
+                sim.Scene.from_toml(eeruf.example(name))
+        eeruf.Ring(tables.TABLE_I_D, 500, window_us=36_000)

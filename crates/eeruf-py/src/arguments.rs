@@ -7,7 +7,7 @@ use eeruf_core::Micros;
 use numpy::{PyReadonlyArray2, prelude::*};
 use pyo3::prelude::*;
 
-use crate::errors::ArgumentError;
+use crate::errors::{ArgumentError, warn};
 
 /// `NAME = VALUE; expected EXPECTED`.
 pub(crate) fn wrong(name: &str, value: impl Display, expected: impl Display) -> PyErr {
@@ -29,10 +29,18 @@ pub(crate) fn whole<T: TryFrom<i128> + TryInto<i128> + Copy>(
     let (least, most) = (bound(range.start()), bound(range.end()));
     // No bool: `sensors=True` is a slip, not a number.
     let number = if value.is_instance_of::<pyo3::types::PyBool>() { None } else { value.extract::<i128>().ok() };
-    number
-        .filter(|number| (least..=most).contains(number))
-        .and_then(|number| T::try_from(number).ok())
-        .ok_or_else(|| wrong(name, shown(value), format_args!("a whole number from {least} to {most}")))
+    let within = number.filter(|number| (least..=most).contains(number));
+    let (number, within) = within
+        .and_then(|number| Some((number, T::try_from(number).ok()?)))
+        .ok_or_else(|| wrong(name, shown(value), format_args!("a whole number from {least} to {most}")))?;
+    plausible(name, number as f64, value.py())?;
+    Ok(within)
+}
+
+/// Warns of a value that is legal and implausible.
+fn plausible(name: &str, number: f64, py: Python<'_>) -> PyResult<()> {
+    let key = name.split_once('[').map_or(name, |(list, _)| list);
+    eeruf_files::doubt(key, number).map_or(Ok(()), |doubt| warn(py, format_args!("{name} = {doubt}")))
 }
 
 /// A time in whole microseconds.
@@ -80,6 +88,15 @@ pub(crate) fn choice<T: Copy>(name: &str, value: Option<&Bound<'_, PyAny>>, of: 
     })
 }
 
+/// A value of a type that Python's values turn into, or none.
+pub(crate) fn of_type<'a, 'py, T: FromPyObject<'a, 'py>>(
+    name: &str,
+    value: Option<&'a Bound<'py, PyAny>>,
+    expected: &str,
+) -> PyResult<Option<T>> {
+    value.map(|value| value.extract().map_err(|_| wrong(name, shown(value), expected))).transpose()
+}
+
 /// An instance of one of our classes.
 pub(crate) fn instance<'a, 'py, T: pyo3::PyTypeInfo>(
     name: &str,
@@ -101,7 +118,7 @@ pub(crate) fn items<'py>(name: &str, value: &Bound<'py, PyAny>, expected: &str) 
 /// A number within a range, which `NaN` is not.
 pub(crate) fn number(name: &str, value: &Bound<'_, PyAny>, range: RangeInclusive<f64>) -> PyResult<f64> {
     match value.extract::<f64>() {
-        Ok(number) if range.contains(&number) => Ok(number),
+        Ok(number) if range.contains(&number) => plausible(name, number, value.py()).map(|()| number),
         _ => Err(wrong(name, shown(value), format_args!("a number from {} to {}", range.start(), range.end()))),
     }
 }

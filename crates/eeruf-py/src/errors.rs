@@ -1,12 +1,14 @@
 //! One exception for each enum of errors in Rust, with the same messages. All are `EerufError`s, and that is a
 //! `ValueError`.
 
+use std::ffi::CString;
 use std::fmt::Display;
+use std::path::Path;
 
 use eeruf_sim::SimulationError as SimulatorError;
 use pyo3::{
     create_exception,
-    exceptions::{PyMemoryError, PyValueError},
+    exceptions::{PyMemoryError, PyUserWarning, PyValueError},
     prelude::*,
 };
 
@@ -25,6 +27,34 @@ Example:
     sensors = 65; expected a whole number from 1 to 64
 "
 );
+
+create_exception!(
+    eeruf,
+    EerufWarning,
+    PyUserWarning,
+    "Input that is legal and implausible, such as milliseconds for microseconds; a ``UserWarning``.
+
+Example:
+    >>> import eeruf, warnings
+    >>> with warnings.catch_warnings():
+    ...     warnings.simplefilter(\"error\", eeruf.EerufWarning)
+    ...     eeruf.Ring(eeruf.tables.TABLE_I_D, t_delta_us=500, window_us=36)
+    Traceback (most recent call last):
+    eeruf.EerufWarning: window_us = 36; expected 1000 to 1000000; likely milliseconds: times are microseconds
+"
+);
+
+/// Warns of something implausible; an error if the user made warnings errors.
+pub(crate) fn warn(py: Python<'_>, message: impl Display) -> PyResult<()> {
+    // Reports escape control characters, so that a zero is rare.
+    let message = CString::new(message.to_string().replace('\0', "?")).unwrap_or_default();
+    PyErr::warn(py, &py.get_type::<EerufWarning>(), &message, 1)
+}
+
+/// Warns of the implausible values of a file.
+pub(crate) fn warn_of(py: Python<'_>, file: &Path, text: &str) -> PyResult<()> {
+    eeruf_files::doubts_in(text).into_iter().try_for_each(|found| warn(py, found.in_file(file)))
+}
 
 macro_rules! errors {
     ($($name:ident $doc:literal $(from $($rust:ty),+)?;)*) => {$(

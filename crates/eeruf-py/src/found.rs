@@ -10,7 +10,7 @@ use pyo3::{
 };
 
 use crate::{
-    arguments::{flag, instance, number, text, whole, whole_or_none},
+    arguments::{flag, instance, number, of_type, text, whole, whole_or_none},
     fields::to_dict,
     schedule::Schedule,
 };
@@ -122,11 +122,11 @@ impl Found {
         seconds: &Bound<'_, PyAny>,
         reason: Option<&Bound<'_, PyAny>>,
         certificate: Option<&Bound<'_, PyAny>>,
-        real_period_us: Option<(u64, u64)>,
-        real_proven: Option<bool>,
+        real_period_us: Option<&Bound<'_, PyAny>>,
+        real_proven: Option<&Bound<'_, PyAny>>,
         from_atlas: Option<&Bound<'_, PyAny>>,
-        spare_us: Option<(u32, u32, u32)>,
-        spare_proven: Option<(bool, bool, bool)>,
+        spare_us: Option<&Bound<'_, PyAny>>,
+        spare_proven: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
         let schedule = schedule.map(|schedule| instance::<Schedule>("schedule", schedule, "an eeruf.Schedule"));
         Ok(Self {
@@ -138,11 +138,11 @@ impl Found {
             seconds: number("seconds", seconds, 0.0..=f64::INFINITY)?,
             reason: reason.map(|reason| text("reason", reason, "why")).transpose()?,
             certificate: certificate.map(|proof| text("certificate", proof, "a certificate")).transpose()?,
-            real_period_us,
-            real_proven,
+            real_period_us: of_type("real_period_us", real_period_us, "a fraction of two whole numbers")?,
+            real_proven: of_type("real_proven", real_proven, "True, False or None")?,
             from_atlas: flag("from_atlas", from_atlas, false)?,
-            spare_us,
-            spare_proven,
+            spare_us: of_type("spare_us", spare_us, "three whole numbers of microseconds")?,
+            spare_proven: of_type("spare_proven", spare_proven, "three of True and False")?,
         })
     }
 

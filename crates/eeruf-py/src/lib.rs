@@ -75,8 +75,8 @@ mod _eeruf {
         batch_state::BatchState,
         design::{check_certificate, design},
         errors::{
-            ArgumentError, CertificateError, EerufError, ExperimentError, FilterError, HoppingError, PathsError,
-            RingError, SceneError, ScheduleError, SearchError, SimulationError,
+            ArgumentError, CertificateError, EerufError, EerufWarning, ExperimentError, FilterError, HoppingError,
+            PathsError, RingError, SceneError, ScheduleError, SearchError, SimulationError,
         },
         experiments::{alcove, course, difference, figures, recommend, room, set_one, set_three, set_two, speed_sweep},
         filter::EchoFilter,

@@ -9,9 +9,9 @@ use numpy::PyReadonlyArray1;
 use pyo3::{create_exception, prelude::*, types::PyDict};
 
 use crate::{
-    arguments::{choice, items, micros, shown, text, wrong},
+    arguments::{choice, flag, items, micros, shown, text, wrong},
     columns::read_only,
-    errors::{ArgumentError, EerufError},
+    errors::{ArgumentError, EerufError, warn},
     hopping_settings::tracker_settings,
     watch::in_background,
 };
@@ -60,6 +60,10 @@ fn field_choices(fields: &Bound<'_, PyAny>, units: &[(&str, RangeUnit)]) -> PyRe
     items("fields", fields, expected)?.iter().map(field).collect()
 }
 
+fn warn_of_each(py: Python<'_>, warnings: Vec<String>) -> PyResult<()> {
+    warnings.into_iter().try_for_each(|warning| warn(py, warning))
+}
+
 /// The ranges of a log, as columns, with sensors, damage and what was left out.
 #[pyfunction]
 #[pyo3(name = "_read_log")]
@@ -78,7 +82,7 @@ pub(crate) fn read_log<'py>(
     columns: &Bound<'py, PyAny>,
     topics: &Bound<'py, PyAny>,
     fields: &Bound<'py, PyAny>,
-    judged: bool,
+    judged: &Bound<'py, PyAny>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let times = [("s", TimeUnit::S), ("ms", TimeUnit::Ms), ("us", TimeUnit::Us), ("ns", TimeUnit::Ns)];
     let units = [
@@ -108,7 +112,7 @@ pub(crate) fn read_log<'py>(
         no_echo: texts("no_echo", no_echo, "values that mean no echo, as texts")?,
         topics: texts("topics", topics, "the names of topics")?,
         fields: field_choices(fields, &units)?,
-        judged,
+        judged: flag("judged", Some(judged), false)?,
     };
     let (readings, report) = in_background(py, None, move |_| {
         let mut readings = Vec::new();
@@ -121,6 +125,7 @@ pub(crate) fn read_log<'py>(
         }
         Ok((readings, report))
     })?;
+    warn_of_each(py, report.warnings.clone())?;
     let out = PyDict::new(py);
     let column = |of: fn(&eeruf_logs::Reading) -> f64| read_only(py, readings.iter().map(of));
     out.set_item("sensor", read_only(py, readings.iter().map(|reading| reading.sensor as i64))?)?;
@@ -150,6 +155,7 @@ pub(crate) fn read_log<'py>(
 pub(crate) fn read_firings<'py>(path: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyDict>> {
     let (py, path) = (path.py(), log_file(path)?);
     let log = in_background(py, None, move |_| FiringLog::read(&path).map_err(raise))?;
+    warn_of_each(py, log.doubts())?;
     let rows = log.firings.iter().map(|row| (row, true)).chain(log.listened.iter().map(|row| (row, false)));
     let rows: Vec<_> = rows.collect();
     let out = PyDict::new(py);
@@ -184,6 +190,7 @@ pub(crate) fn replay<'py>(
         let verdicts = eeruf_logs::replay(&log, settings).map_err(failed)?;
         Ok((log, verdicts))
     })?;
+    warn_of_each(py, log.doubts())?;
     let out = PyDict::new(py);
     let column = |of: fn(&Firing) -> i64| read_only(py, log.firings.iter().map(of));
     out.set_item("sensor", column(|row| row.sensor.into())?)?;

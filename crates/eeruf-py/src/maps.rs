@@ -7,7 +7,7 @@ use pyo3::prelude::*;
 
 use crate::{
     arguments::{number, shown, wrong},
-    errors::{Raise, SceneError},
+    errors::{Raise, SceneError, warn},
     scene::Scene,
 };
 
@@ -38,9 +38,13 @@ use crate::{
 #[pyfunction]
 #[pyo3(signature = (path, *, tolerance_m=None))]
 pub(crate) fn read_map(path: &Bound<'_, PyAny>, tolerance_m: Option<&Bound<'_, PyAny>>) -> PyResult<Scene> {
+    let py = path.py();
     let path: PathBuf = path.extract().map_err(|_| wrong("path", shown(path), "the path of a map's YAML file"))?;
     let tolerance_m = tolerance_m.map(|value| number("tolerance_m", value, 0.0..=1000.0)).transpose()?;
     let grid = OccupancyGrid::read(&path).map_err(|error| SceneError::new_err(error.to_string()))?;
+    if let Some(doubt) = eeruf_files::doubt("resolution", grid.cell_m()) {
+        warn(py, format_args!("{}: resolution: {doubt}", path.display()))?;
+    }
     let walls = grid.walls(tolerance_m.unwrap_or(grid.default_tolerance_m()));
     let scene = eeruf_sim::Scene::new(walls, vec![], Air::default()).map_err(Raise::raise)?;
     let (noise, physics) = (Noise::default(), Physics::DEFAULT);

@@ -18,7 +18,7 @@ use crate::{
     arguments::{self, instance, matrix, number, points_in_space, shown, whole, whole_or, wrong},
     contents::Contents,
     drawing,
-    errors::{Raise, SceneError},
+    errors::{Raise, SceneError, warn, warn_of},
     faults,
     paths::{Ends, Paths},
     robot::Robot,
@@ -100,13 +100,18 @@ impl Scene {
                 .and_then(|world| world.with_physics(physics))
                 .and_then(|world| world.with_max_order(max_order))
                 .and_then(|world| world.with_faults(faults.clone()));
-            Contents::World(Arc::new(world.map_err(Raise::raise)?.with_seed(seed)))
+            let world = world.map_err(Raise::raise)?.with_seed(seed);
+            for (robot, doubt) in world.doubts() {
+                Python::attach(|py| warn(py, format_args!("robot {robot}: {doubt}")))?;
+            }
+            Contents::World(Arc::new(world))
         };
         Ok(Self { contents: Arc::new(contents), robots, noise, physics, faults, seed, max_order })
     }
 
     fn from_text(name: &Path, text: &str) -> PyResult<Self> {
         let parts = WorldParts::from_text_with(name, text, robot_ring).map_err(Raise::raise)?;
+        Python::attach(|py| warn_of(py, name, text))?;
         let robots: Vec<_> = parts.robots.iter().map(Robot::of).collect();
         if !robots.is_empty() {
             // For the line that is to blame, where the world is.

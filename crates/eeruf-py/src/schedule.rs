@@ -1,16 +1,16 @@
 //! `Schedule`.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use eeruf_core::{Micros, Phase};
-use eeruf_files::{Kind, build};
+use eeruf_files::{Kind, build, explain_json};
 use eeruf_sim::{AnySchedule, ScheduleFile};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
 use crate::{
     arguments::{self, micros, shown, times, whole, wrong},
-    errors::{Raise, ScheduleError},
+    errors::{Raise, ScheduleError, warn_of},
     fields::to_dict,
     hopping_schedule::HoppingSchedule,
     report::Report,
@@ -47,6 +47,16 @@ pub(crate) struct Schedule(pub(crate) AnySchedule);
 
 fn tuple<'py>(py: Python<'py>, times: &[Micros]) -> PyResult<Bound<'py, PyTuple>> {
     PyTuple::new(py, times.iter().map(|time| time.as_micros()))
+}
+
+impl Schedule {
+    /// Reads a text, of a file or of none.
+    fn of_text(py: Python<'_>, file: &Path, text: &str) -> PyResult<Self> {
+        let schedule = build(text, |file: ScheduleFile| file.schedule());
+        let schedule = schedule.map_err(|error| ScheduleError::new_err(error.in_file(file).to_string()))?;
+        warn_of(py, file, text)?;
+        Ok(Self(schedule))
+    }
 }
 
 #[pymethods]
@@ -140,9 +150,9 @@ impl Schedule {
     #[staticmethod]
     #[pyo3(signature = (text))]
     fn from_toml(text: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let py = text.py();
         let text = arguments::text("text", text, "a schedule in TOML")?;
-        let schedule = build(&text, |file: ScheduleFile| file.schedule());
-        schedule.map(Self).map_err(|error| ScheduleError::new_err(error.to_string()))
+        Self::of_text(py, Path::new(""), &text)
     }
 
     /// Read a schedule file, such as those in the folder ``rings``.
@@ -163,10 +173,10 @@ impl Schedule {
     #[staticmethod]
     #[pyo3(signature = (path))]
     fn read_toml(path: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let py = path.py();
         let path: PathBuf = path.extract().map_err(|_| wrong("path", shown(path), "the path of a schedule in TOML"))?;
-        let read = |text: String| build(&text, |file: ScheduleFile| file.schedule());
-        let schedule = Kind::Schedule.read(&path).and_then(|text| read(text).map_err(|error| error.in_file(&path)));
-        schedule.map(Self).map_err(|error| ScheduleError::new_err(error.to_string()))
+        let text = Kind::Schedule.read(&path).map_err(|error| ScheduleError::new_err(error.to_string()))?;
+        Self::of_text(py, &path, &text)
     }
 
     /// Read a schedule as :meth:`to_json` writes it, with the keys of :meth:`from_toml`.
@@ -186,8 +196,8 @@ impl Schedule {
     #[pyo3(signature = (text))]
     fn from_json(text: &Bound<'_, PyAny>) -> PyResult<Self> {
         let text = arguments::text("text", text, "a schedule in JSON")?;
-        let file: ScheduleFile =
-            serde_json::from_str(&text).map_err(|error| ScheduleError::new_err(error.to_string()))?;
+        let bad = |error: serde_json::Error| ScheduleError::new_err(explain_json(&error.to_string()).to_string());
+        let file: ScheduleFile = serde_json::from_str(&text).map_err(bad)?;
         file.schedule().map(Self).map_err(ScheduleError::new_err)
     }
 

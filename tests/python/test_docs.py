@@ -158,7 +158,7 @@ def test_each_of_the_twelve_tasks_takes_fewer_than_fifteen_lines_and_runs_as_a_s
 def test_the_listings_of_a_document_run_from_top_to_bottom(
     document: str, least: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    # Ray has 70 MB: its listing is run by hand (docs/project/testing.md).
+    # Ray has 70 MB: its listing is run by hand, last with 2.60.
     blocks = [block for block in listings(document) if block not in TASKS and "import ray" not in block]
     assert len(blocks) >= least
     shutil.copytree(ROOT / "scenes", tmp_path / "scenes")

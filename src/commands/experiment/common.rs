@@ -8,6 +8,7 @@ use eeruf_core::search::Progress;
 use eeruf_sim::experiments::FIRST;
 use eeruf_sim::{GainProfile, Physics, Room};
 
+use super::super::arguments::picture_folder;
 use super::shard::Shard;
 use crate::files::error::InputError;
 use crate::files::write::make_folder;
@@ -42,10 +43,10 @@ pub(crate) struct Common {
     #[arg(long)]
     pub(crate) json: bool,
     /// Draw SVG pictures into this folder
-    #[arg(long, value_name = "DIR")]
+    #[arg(long, value_name = "DIR", value_parser = picture_folder())]
     svg: Option<PathBuf>,
     /// Draw the same pictures as PNG
-    #[arg(long, value_name = "DIR")]
+    #[arg(long, value_name = "DIR", value_parser = picture_folder())]
     png: Option<PathBuf>,
 }
 

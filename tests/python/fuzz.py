@@ -18,6 +18,7 @@ import random
 import sys
 import tempfile
 import time
+import warnings
 from collections import Counter
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
@@ -578,6 +579,8 @@ def used() -> Used:
 def fuzz(number: int, seed: int, *, report_every: int = 0) -> tuple[Counter[str], list[Used]]:
     """So many calls; how they ended, and what was used after a tenth of them, after each further tenth, and at the end."""
     chance, ended, tenths = Chance(seed), Counter[str](), list[Used]()
+    # Python keeps each warning that it has shown.
+    warnings.simplefilter("ignore", eeruf.EerufWarning)
     began = time.monotonic()
     table = calls(chance)
     for call in range(number):

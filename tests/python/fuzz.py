@@ -8,9 +8,11 @@ is compared, when what is no longer needed has been given back to the system. En
 from __future__ import annotations
 
 import argparse
+import contextlib
 import ctypes
 import faulthandler
 import gc
+import importlib
 import io
 import math
 import pickle
@@ -579,6 +581,10 @@ def used() -> Used:
 def fuzz(number: int, seed: int, *, report_every: int = 0) -> tuple[Counter[str], list[Used]]:
     """So many calls; how they ended, and what was used after a tenth of them, after each further tenth, and at the end."""
     chance, ended, tenths = Chance(seed), Counter[str](), list[Used]()
+    # What calls import is no growth.
+    for name in ("pandas", "polars", "pyarrow", "xarray", "dask.array", "distributed", "matplotlib.pyplot"):
+        with contextlib.suppress(ImportError):
+            importlib.import_module(name)
     # Python keeps each warning that it has shown.
     warnings.simplefilter("ignore", eeruf.EerufWarning)
     began = time.monotonic()

@@ -7,8 +7,12 @@ from collections.abc import Iterator
 import pytest
 
 
-def pytest_configure() -> None:
-    """Let Ctrl-C reach what is tested: what a shell starts in the background ignores it, and so do its children."""
+def pytest_configure(config: pytest.Config) -> None:
+    """Let Ctrl-C reach what is tested: what a shell starts in the background ignores it, and so do its children.
+
+    Small numbers, of which the wheel warns, are usual in tests.
+    """
+    config.addinivalue_line("filterwarnings", "ignore::eeruf.EerufWarning")
     if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
         signal.signal(signal.SIGINT, signal.default_int_handler)
 

@@ -38,6 +38,7 @@ pub(crate) fn python() -> Result<(), Trouble> {
     // What Python is held against: the program, and the paths of the corpus.
     let (program, rust_side) = (crate::program::program()?, crate::program::example("rust_side")?);
     let mut tests = tool("pytest");
+    tests.args(["--numprocesses", "auto"]);
     tests.env("EERUF_WHEEL", &wheel).env("EERUF_PROGRAM", program).env("EERUF_RUST_SIDE", rust_side);
     run(&mut tests)
 }

@@ -57,8 +57,9 @@ def best(call: Callable[[], Any], clock: Callable[[], float] = time.perf_counter
 
 def calls() -> dict[str, Callable[[], Any]]:
     """Return the cases of `rust_side.rs`, to the number."""
-    wall = sim.Scene([[5, 2, -5, 2]])
-    alcove = sim.Scene([[0.85, 0, 0.85, 1.39], [0.85, 1.39, -0.85, 1.39], [-0.85, 1.39, -0.85, 0]])
+    wall = sim.Scene([[5, 2, -5, 2]], physics="plain")
+    walls = [[0.85, 0, 0.85, 1.39], [0.85, 1.39, -0.85, 1.39], [-0.85, 1.39, -0.85, 0]]
+    alcove = sim.Scene(walls, physics="plain")
     eight = np.array([[0.05 * k, 0.3] for k in range(8)])
     echoes = (9_000.0 + np.arange(1_000_000) * 7 % 600).reshape(-1, 8)
     return {

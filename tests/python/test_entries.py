@@ -292,7 +292,8 @@ def test_a_killed_sweep_resumes_from_its_folder(tmp_path: Path) -> None:
     with subprocess.Popen([sys.executable, script]) as process:
         try:
             deadline = time.monotonic() + 60
-            while not (log.exists() and "20004" in log.read_text()):
+            # The third part is under way, and the second is kept.
+            while not (log.exists() and "20004" in log.read_text() and (folder / "000001.pickle").exists()):
                 assert time.monotonic() < deadline and process.poll() is None
                 time.sleep(0.05)
         finally:

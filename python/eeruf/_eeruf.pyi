@@ -4137,7 +4137,7 @@ class FiredReading:
     @property
     def levels_db(self) -> tuple[float, ...]:
         """The levels of its echoes over the receiver's threshold at full gain, in dB, as a module reports them that has
-        amplitudes: a tuple as long as ``t_echoes_us``, or empty where nobody knows.
+        amplitudes: a tuple as long as ``t_echoes_us``, or empty where they are unknown.
         """
     @property
     def fired_s(self) -> float:

@@ -64,6 +64,7 @@ enum RangeName {
     Cm,
     Mm,
     In,
+    Ft,
     Us,
 }
 
@@ -74,6 +75,7 @@ impl From<RangeName> for RangeUnit {
             RangeName::Cm => Self::Cm,
             RangeName::Mm => Self::Mm,
             RangeName::In => Self::In,
+            RangeName::Ft => Self::Ft,
             RangeName::Us => Self::Us,
         }
     }

@@ -11,7 +11,7 @@ use crate::toolchain::{cargo_for_target, cargo_of_version};
 /// The smallest core that firmware runs on; the others are tried with the firmware itself.
 const BARE_TARGETS: [&str; 1] = ["thumbv6m-none-eabi"];
 
-/// Steps on emulated processors: of one thread each, and built away from the workspace, so that the others do not wait.
+/// Steps that take one thread most of the time: on emulated processors, and of C.
 const BESIDE: [&[&str]; 4] = [&["firmware"], &["arduino", "--short"], &["c"], &["micropython"]];
 
 pub(crate) fn run_all(nothing_skipped: bool) -> ExitCode {

@@ -92,7 +92,7 @@ impl FiredReading {
     }
 
     /// The levels of its echoes over the receiver's threshold at full gain, in dB, as a module reports them that has
-    /// amplitudes: a tuple as long as ``t_echoes_us``, or empty where nobody knows.
+    /// amplitudes: a tuple as long as ``t_echoes_us``, or empty where they are unknown.
     #[getter]
     fn levels_db<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         PyTuple::new(py, &self.levels_db)

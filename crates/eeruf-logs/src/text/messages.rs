@@ -10,15 +10,16 @@ use super::value;
 /// A message with more text is lost.
 const LONGEST: usize = 1 << 20;
 
-/// Returns true for the beginning of such a text.
+/// Returns true for the beginning of such a text: keys and elements of lists alone, up to a line that ends them.
 pub(super) fn are_in(start: &str) -> bool {
-    let key = |line: &str| entry(line).is_some_and(|(key, _)| line.starts_with(key));
-    let mut lines = start.lines().filter(|line| !line.trim().is_empty()).skip_while(|line| !key(line));
-    lines.next().is_some() && lines.any(|line| line.trim_end() == "---") && !start.trim_start().starts_with('{')
+    let is_key = |line: &&str| entry(line).is_some_and(|(key, _)| line.starts_with(key));
+    let lines = start.lines().filter(|line| !line.trim().is_empty()).skip_while(|line| !is_key(line));
+    let mut lines = lines.skip_while(|line| is_part(line)).peekable();
+    lines.peek().is_some_and(|line| line.trim_end() == "---")
 }
 
-/// The next message, as a JSON object of its values by their paths. One that nothing ends stays text, which is no
-/// object: it may be cut.
+/// The next message, as a JSON object of its values by their paths. One that is damaged, or that nothing ends and that
+/// may be cut, stays text, which is no object.
 pub(super) fn next(lines: &mut Lines<'_>) -> io::Result<Option<Line>> {
     let (mut message, mut first, mut bytes) = (vec![], 0, 0);
     while let Some(line) = lines.next()? {
@@ -27,7 +28,8 @@ pub(super) fn next(lines: &mut Lines<'_>) -> io::Result<Option<Line>> {
                 continue;
             }
             let is_too_long = bytes > LONGEST;
-            return Ok(Some(Line { number: first, text: object(&message).to_string(), is_ended: true, is_too_long }));
+            let text = object(&message).map_or_else(|| message.join("\n"), |object| object.to_string());
+            return Ok(Some(Line { number: first, text, is_ended: true, is_too_long }));
         }
         if message.is_empty() {
             first = line.number;
@@ -48,11 +50,21 @@ fn entry(line: &str) -> Option<(&str, &str)> {
     (is_key && (value.is_empty() || value.starts_with(' '))).then_some((key, value.trim()))
 }
 
-fn object(message: &[String]) -> Json {
+/// Returns true for a line that a message may have.
+fn is_part(line: &str) -> bool {
+    entry(line).is_some() || line.trim_start().starts_with("- ")
+}
+
+/// The values of a message; nothing for one with a line that has no key, or with a key that comes twice, as where the
+/// line between two messages is lost.
+fn object(message: &[String]) -> Option<Json> {
     let mut values = Map::new();
     // Keys that are open, each with its indentation, and the number of elements of a list below it.
     let mut open: Vec<(usize, String, usize)> = vec![];
     for line in message {
+        if !is_part(line) {
+            return None;
+        }
         let indentation = line.len() - line.trim_start().len();
         let (element, rest) = match line.trim_start().strip_prefix("- ") {
             Some(rest) => (true, rest.trim()),
@@ -67,19 +79,19 @@ fn object(message: &[String]) -> Json {
             *n += 1;
             open.push((indentation + 1, parent.clone(), 0));
         }
-        match entry(rest) {
+        let (path, text) = match entry(rest) {
             Some((key, text)) => {
                 let path = if parent.is_empty() { key.to_owned() } else { format!("{parent}.{key}") };
-                if !text.is_empty() {
-                    values.insert(path.clone(), scalar(text));
-                }
-                open.push((indentation + 2 * usize::from(element), path, 0));
+                open.push((indentation + 2 * usize::from(element), path.clone(), 0));
+                (path, text)
             }
-            None if element => _ = values.insert(parent, scalar(rest)),
-            None => {}
+            None => (parent, rest),
+        };
+        if !text.is_empty() && values.insert(path, scalar(text)).is_some() {
+            return None;
         }
     }
-    Json::Object(values)
+    Some(Json::Object(values))
 }
 
 /// A value: a list in brackets, a number, or text without quotes and without the dot before `inf` and `nan`.
@@ -108,14 +120,24 @@ mod tests {
             "ranges[0]": 0.5, "ranges[1]": 1.5, "data": [1, 2], "list[0].a": 1, "list[0].b": 2, "list[1].a": 3,
             "name": "",
         });
-        assert_eq!(object(&lines), expected);
+        assert_eq!(object(&lines), Some(expected));
+        for damaged in ["range: 0.5\nrange: 0.6", "frame_id: a\nra", "range: 0.5\n- 1\n- 2\n 7"] {
+            let lines: Vec<_> = damaged.lines().map(str::to_owned).collect();
+            assert_eq!(object(&lines), None, "{damaged}");
+        }
     }
 
     #[test]
     fn text_is_messages_only_with_a_line_that_ends_one() {
         assert!(are_in("range: 0.5\n---\nrange: 0.6\n"));
         assert!(are_in("\nheader: \n  seq: 1\n---\n"));
-        for text in ["range: 0.5\nrange: 0.6\n", "left,right\n---\n", "{\"a\": 1}\n---\n", "12:00:01 -> 4\n---\n"] {
+        for text in [
+            "range: 0.5\nrange: 0.6\n",
+            "left,right\n---\n",
+            "{\"a\": 1}\n---\n",
+            "12:00:01 -> 4\n---\n",
+            "run: 1\nSensor 1: 4 cm\n---\n",
+        ] {
             assert!(!are_in(text), "{text}");
         }
     }

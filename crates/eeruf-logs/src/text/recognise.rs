@@ -91,6 +91,7 @@ fn strip(sample: &[Line]) -> Stripped<'_> {
     let with = lines.iter().filter(|(_, text)| value::prefix(text).is_some_and(|(_, rest)| !rest.is_empty())).count();
     let first = lines.first().map_or("", |line| line.1);
     let is_header = value::prefix(first).is_none()
+        && !first.contains([':', '='])
         && names::meaning(first.split([' ', '\t', ',', ';']).next().unwrap_or_default()) == Meaning::Time;
     let has_prefix = with > 0 && with * 10 >= lines.len() * 6 && !is_header;
     let strip =

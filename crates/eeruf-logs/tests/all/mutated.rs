@@ -29,6 +29,19 @@ fn logs() -> Vec<String> {
         rows(&|row| format!("12:00:{:02}.100 -> {},{}", row, value(row, 0), value(row, 1))),
         "time,sensor,cm\n".to_owned()
             + &rows(&|row| format!("{},{},{}", 1000 + row, ["a", "b"][row % 2], value(row, 0))),
+        rows(&|row| {
+            let stamp = format!("stamp:\n    sec: 7\n    nanosec: {}", 100_000_000 + row);
+            format!("header:\n  {stamp}\n  frame_id: {}\nrange: 0.{}\n---", ["us_a", "us_b"][row % 2], value(row, 0))
+        }),
+        rows(&|row| format!("0={}cm 1={}cm ", value(row, 0), value(row, 1))),
+        rows(&|row| format!("{{'t': {}, 'left': {}}}", 1000 + row, value(row, 0))),
+        rows(&|row| format!("I ({}) us: left: {}", 1000 + row, value(row, 0))),
+        rows(&|row| format!("Jan 12 12:00:{:02} robot us[7]: left={}", row, value(row, 0))),
+        "t,left,right\n".to_owned()
+            + &rows(&|row| {
+                let own = value(row, 0);
+                if row % 2 == 0 { format!("{},{own},", 1000 + row) } else { format!("{},,{own}", 1000 + row) }
+            }),
     ]
 }
 

@@ -17,8 +17,8 @@ use crate::report::table::markdown;
 /// Say what a log holds: its form, its sensors, how they fire, each guess with the option that overrides it, and
 /// whether sensors read each other's sound.
 ///
-/// Reads MCAP, ROS 1 and ROS 2 bags, tables with any separator, lines of pairs of name and value, JSON, what `ros2 topic
-/// echo` prints, and each of them packed by gzip, bzip2 or zstd. `replay` reads the same, and Python's `read_log`.
+/// Reads MCAP, ROS 1 and ROS 2 bags, tables with any separator, lines of pairs of name and value, JSON, what
+/// `ros2 topic echo` prints, and each of them packed by gzip, bzip2 or zstd. `replay` reads the same, and Python's `read_log`.
 ///
 /// The exit code is 1 if no sensor is found.
 #[derive(clap::Args)]

@@ -18,7 +18,8 @@ use crate::report::table::markdown;
 /// whether sensors read each other's sound.
 ///
 /// Reads MCAP, ROS 1 and ROS 2 bags, tables with any separator, lines of pairs of name and value, JSON, what
-/// `ros2 topic echo` prints, and each of them packed by gzip, bzip2 or zstd. `replay` reads the same, and Python's `read_log`.
+/// `ros2 topic echo` prints, and each of them packed by gzip, bzip2 or zstd. `replay` reads the same, and Python's
+/// `read_log`.
 ///
 /// The exit code is 1 if no sensor is found.
 #[derive(clap::Args)]

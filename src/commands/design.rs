@@ -98,6 +98,7 @@ pub(crate) struct Args {
     /// Find what fits into this period, in microseconds: whether the ring's needs do, and the largest T_delta; by
     /// default the shortest period. Exit code 1 if they do not, 3 if that was not decided
     #[arg(long, value_name = "US", conflicts_with_all = ["certificate", "certificate_over_reals", "phases", "curve"])]
+    #[arg(value_parser = clap::value_parser!(u32).range(1..))]
     period: Option<u32>,
     /// Print the shortest period for 20 values of one need, from a tenth of the ring's own to twice as much; by default
     /// for its own alone

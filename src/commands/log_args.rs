@@ -104,7 +104,7 @@ impl LogArgs {
     pub(crate) fn options(&self) -> Result<Options, InputError> {
         let field = |parts: &[String]| -> Result<FieldChoice, InputError> {
             let unit = <RangeName as clap::ValueEnum>::from_str(&parts[2], true).map_err(|_| {
-                InputError::new("--field", format!("{}: unit `{}`; expected m, cm, mm, in or us", parts[0], parts[2]))
+                InputError::new("--field", format!("{}: unit `{}`; expected m, cm, mm, in, ft or us", parts[0], parts[2]))
             })?;
             Ok(FieldChoice { topic: parts[0].clone(), path: parts[1].clone(), unit: unit.into() })
         };
@@ -128,12 +128,16 @@ impl LogArgs {
     }
 }
 
-/// Warns of what was read and seems wrong, and fails with what could not be read, or with what was found where no
-/// sensor is.
+/// Warns of what was read and seems wrong.
+///
+/// # Errors
+/// The first of the warnings, if they are denied.
+pub(crate) fn warn_of_log(file: &Path, report: &Report) -> Result<(), InputError> {
+    report.warnings.iter().try_for_each(|warning| warn(InputError::new(file, warning)))
+}
+
+/// Fails with what could not be read, or with what was found where no sensor is.
 pub(crate) fn tell_damage(file: &Path, report: &Report) -> Result<(), InputError> {
-    for warning in &report.warnings {
-        warn(InputError::new(file, warning))?;
-    }
     match &report.damage[..] {
         [] => {}
         [first, rest @ ..] => {

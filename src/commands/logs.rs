@@ -8,7 +8,7 @@ use eeruf_logs::{Doctor, Examination, Reading, Report, read_log};
 use serde::Serialize;
 
 use super::answer::Answer;
-use super::log_args::{LogArgs, left_out, tell_damage};
+use super::log_args::{LogArgs, left_out, tell_damage, warn_of_log};
 use crate::console::{print_line, tell};
 use crate::files::error::InputError;
 use crate::report::json::to_json;
@@ -126,6 +126,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
         }
         sensors[reading.sensor].count(reading);
     })?;
+    warn_of_log(&args.file, &report)?;
     sensors.iter_mut().zip(report.names()).for_each(|(sensor, name)| sensor.name = name);
     let found = found(&report, sensors, doctor.examine(&report.firing, &report.names()));
     if args.json {

@@ -6,6 +6,7 @@ use std::path::PathBuf;
 
 use clap::Parser;
 use eeruf_files::FileError;
+use serde_json::error::Category;
 
 use super::answer::Answer;
 use super::experiment::{Part, Shard, merged};
@@ -31,7 +32,13 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
         let text = fs::read_to_string(file).map_err(|error| FileError::reading(file, &error))?;
         let part: Part = serde_json::from_str(&text).map_err(|error| {
             let (line, why) = (error.line() as u64, error.to_string());
-            let why = why.split(" at line ").next().unwrap_or_default();
+            let why = match error.classify() {
+                Category::Eof => "JSON that ends early".to_owned(),
+                Category::Data => {
+                    format!("JSON of another kind: {}", why.split(" at line ").next().unwrap_or_default())
+                }
+                Category::Syntax | Category::Io => "no JSON".to_owned(),
+            };
             let message = format!("{why}; expected what `eeruf experiment .. --shard I/N` prints, whole");
             FileError::new(file, message).at_line(Some(line))
         })?;

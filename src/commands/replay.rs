@@ -12,10 +12,11 @@ use eeruf_logs::{Echo, McapWriter, Reading, Report, Sensor, read_log};
 use super::answer::Answer;
 use super::arguments::picture;
 use super::hopping::Hopping;
-use super::log_args::{LogArgs, left_out, tell_damage};
+use super::log_args::{LogArgs, left_out, tell_damage, warn_of_log};
 use super::replay_hopping::replay_hopping;
 use crate::console::{print_line, tell};
 use crate::files::error::InputError;
+use crate::files::implausible::warn;
 use crate::report::draw;
 use crate::report::json::to_json;
 use crate::report::replay::{Column, Counted, Counts, Firing, Replay, table};
@@ -75,6 +76,10 @@ fn speed(text: &str) -> Result<f64, String> {
 
 pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     Kind::expect_log(&args.file)?;
+    if args.t_delta_us == Some(0) {
+        let message = "0; expected 20 to 20000; no two echoes of one wall come at the same microsecond";
+        warn(InputError::new("--t-delta-us", message))?;
+    }
     if let Some(hopping) = args.hopping {
         let mut settings = hopping.settings().tracker;
         if let Some(t_delta) = args.t_delta_us.map(Micros::new) {
@@ -90,6 +95,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     if let Some(error) = replayed.failed.take() {
         return Err(error);
     }
+    warn_of_log(&args.file, &report)?;
     if let Some(out) = replayed.out.take() {
         out.finish()?;
     }

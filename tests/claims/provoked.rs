@@ -149,7 +149,7 @@ const REFUSED_FILES: [Spoilt<'static>; 45] = [
 ];
 
 /// Wrong arguments and wrong files.
-const REFUSED_RUNS: [(&[&str], &str); 92] = [
+const REFUSED_RUNS: [(&[&str], &str); 93] = [
     (&[], "command: missing; expected one"),
     (&["desing", "ring.toml"], "command: `desing`; expected one that exists; did you mean design?"),
     (&["design"], "<RING.toml>: missing; expected a value"),
@@ -230,7 +230,7 @@ const REFUSED_RUNS: [(&[&str], &str); 92] = [
         "expected a number from 45000 to 1000000; see `eeruf experiment set-one",
     ),
     (&["merge"], "<FILE>...: missing; expected a value"),
-    (&["merge", "log.csv"], "log.csv, line 1: expected value; expected what `eeruf experiment .. --shard I/N` prints"),
+    (&["merge", "log.csv"], "log.csv, line 1: no JSON; expected what `eeruf experiment .. --shard I/N` prints"),
     (&["atlas", "ring.toml", "--most-sensors", "2"], "ring.toml: no row of an atlas; expected a file that"),
     (
         &["scene", "ring.toml"],
@@ -258,12 +258,13 @@ const REFUSED_RUNS: [(&[&str], &str); 92] = [
     (&["atlas", "latin.toml"], "latin.toml: stream did not contain valid UTF-8; expected text in UTF-8"),
     (&["scene", "empty.yaml"], "empty.yaml: no keys; expected image, resolution and origin"),
     (&["examples", "log.csv"], "log.csv/checker: Not a directory (os error 20); expected a file that can be written"),
+    (&["design", "ring.toml", "--period", "0"], "--period <US>: `0`; expected a number from 1 to 4294967295"),
     (&["survey", "firings.csv", "--simulate", "scene.toml"], "given with --simulate"),
     (&["study", "scene.toml", "--seed", "-1"], "--seed: `-1`; expected no negative number"),
 ];
 
 /// Legal and implausible input, and its warning.
-const IMPLAUSIBLE: [Spoilt<'static>; 26] = [
+const IMPLAUSIBLE: [Spoilt<'static>; 30] = [
     ("design", RING, "window_us = 30000", "window_us = 30", "window_us: 30; expected 1000 to 1000000; likely millis"),
     ("design", RING, "min_interval_us = 15000", "min_interval_us = 15", "min_interval_us: 15; expected 200 to"),
     ("design", RING, "t_delta_us = 900", "t_delta_us = 1", "t_delta_us: 1; expected 20 to 20000; T_delta is in micro"),
@@ -294,6 +295,16 @@ const IMPLAUSIBLE: [Spoilt<'static>; 26] = [
     ("logs --no-echo-m 500", LOG, "", "", "--no-echo-m: 500; expected 0.05 to 60; likely centimetres"),
     ("diagnose", FIRINGS, "5000", "5", "column t_echo_us: at most 6; expected 200 or more; likely milliseconds"),
     ("survey", FIRINGS, "20000", "20", "column fired_us: mean steps of 20; expected 200 or more; likely milliseconds"),
+    (
+        "logs --topic /sonar",
+        LOG,
+        "",
+        "",
+        "--topic has no effect; expected a log that it could choose from; this one has",
+    ),
+    ("replay --t-delta-us 500 --field /sonar data cm", LOG, "", "", "--field has no effect"),
+    ("logs --range-unit mm", LOG, "", "", "2 millimetres, 0.002 m; expected 0.01 to 25 m from an ultrasonic sensor"),
+    ("replay --t-delta-us 0", LOG, "", "", "--t-delta-us: 0; expected 20 to 20000"),
     ("scene", MAP, "0.05", "50", "resolution: 50; expected 0.001 to 1; likely centimetres"),
     ("replay --t-delta-us 500 --speed-of-sound 34320", LOG, "", "", "--speed-of-sound: 34320; expected 250 to 450"),
 ];

@@ -65,7 +65,7 @@ const PLAUSIBLE: [Plausible; 38] = [
     plausible("order", 0.0, 12.0, BOUNCES),
 ];
 
-/// Lists of firing times and waits, which are implausible only if all of them are small.
+/// Lists of firing times and waits.
 const LISTS: [&str; 6] = ["t_lag_us", "t_wait_a_us", "t_wait_b_us", "t_fire_a_us", "t_fire_b_us", "t_fire_us"];
 
 /// Returns the keys whose values may be implausible: the names of options and arguments too.
@@ -106,14 +106,7 @@ fn in_value(key: &str, at: usize, value: &Spanned<DeValue<'_>>, found: &mut Vec<
             array.iter().filter_map(|value| value.get_ref().as_table()).for_each(|table| in_table(table, found));
             let mut numbers = vec![];
             numbers_of(value.get_ref(), &mut numbers);
-            if LISTS.contains(&key) {
-                let largest = numbers.iter().copied().fold(0.0, f64::max);
-                if largest > 0.0 && largest < 200.0 {
-                    found.push((at, format!("{key}: {largest} us at most; expected 200 us or more; {MICROSECONDS}")));
-                }
-            } else if let Some(message) = numbers.iter().find_map(|&number| doubt(key, number)) {
-                found.push((at, format!("{key}: {message}")));
-            }
+            found.extend(doubt_list(key, &numbers).map(|message| (at, format!("{key}: {message}"))));
         }
         other => {
             let message = number(other).and_then(|number| doubt(key, number));
@@ -154,6 +147,21 @@ pub fn doubt(key: &str, number: f64) -> Option<String> {
     // A number of 300 digits says no more than its power of ten.
     let shown = if size < 1e12 { number.to_string() } else { format!("{number:e}") };
     (!is_plausible).then(|| format!("{shown}; expected {from} to {to}; {why}"))
+}
+
+/// As [`doubt`], for a list: firing times and waits are implausible only if all of them are small.
+///
+/// ```
+/// assert_eq!(eeruf_files::doubt_list("t_lag_us", &[0.0, 15_000.0]), None);
+/// assert!(eeruf_files::doubt_list("t_lag_us", &[0.0, 15.0]).unwrap().starts_with("15 us at most; expected 200 us"));
+/// ```
+pub fn doubt_list(key: &str, numbers: &[f64]) -> Option<String> {
+    if !LISTS.contains(&key) {
+        return numbers.iter().find_map(|&number| doubt(key, number));
+    }
+    let largest = numbers.iter().copied().fold(0.0, f64::max);
+    let is_small = largest > 0.0 && largest < 200.0;
+    is_small.then(|| format!("{largest} us at most; expected 200 us or more; {MICROSECONDS}"))
 }
 
 fn numbers_of(value: &DeValue<'_>, numbers: &mut Vec<f64>) {

@@ -13,7 +13,7 @@ mod parse;
 
 pub use error::FileError;
 #[cfg(feature = "toml")]
-pub use implausible::{doubt, doubted_keys, doubts_in};
+pub use implausible::{doubt, doubt_list, doubted_keys, doubts_in};
 pub use kind::Kind;
 #[cfg(feature = "toml")]
 pub use parse::{build, explain, explain_json, parse};

@@ -98,6 +98,7 @@ pub fn read_log(
     let mut sink = sink::Sink::new(options, &mut each);
     if file.is_dir() {
         "a ROS 2 bag".clone_into(&mut sink.report.form);
+        sink.has(options::Parts::Topics);
         rosbag2::read(file, &mut sink)?;
         return Ok(sink.finish(file));
     }
@@ -116,6 +117,9 @@ fn read_form(
     sink: &mut sink::Sink<'_>,
 ) -> Result<(), FileError> {
     let failed = |error: std::io::Error| FileError::reading(name, &error);
+    if matches!(form, form::Form::Mcap | form::Form::Ros1 | form::Form::Sqlite) {
+        sink.has(options::Parts::Topics);
+    }
     match form {
         form::Form::Mcap => mcap::read(file, false, sink),
         form::Form::Ros1 => ros1::read(file, sink),

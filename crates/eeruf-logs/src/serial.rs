@@ -6,7 +6,7 @@ use std::path::Path;
 use eeruf_serial::{Decoder, Firing as Frame, FrameError, Message};
 
 use crate::firings::{Firing, FiringLog};
-use crate::options::{Options, RangeUnit};
+use crate::options::{Options, Parts, RangeUnit};
 use crate::reading::{Reading, Sensor};
 use crate::sink::Sink;
 use crate::weighed::Weighed;
@@ -87,6 +87,7 @@ fn frames(mut input: impl Read, mut each: impl FnMut(Frame, i64)) -> io::Result<
 
 /// Reads ranges; `file` stands in errors.
 pub(crate) fn read(input: impl Read, file: &Path, options: &Options, sink: &mut Sink<'_>) -> Result<(), FileError> {
+    sink.has(Parts::Frames);
     let metres = RangeUnit::Us.metres(options.speed_of_sound);
     let mut sensors = [None; 256];
     let line = frames(input, |firing, at_us| {

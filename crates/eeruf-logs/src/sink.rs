@@ -5,7 +5,7 @@ use std::fmt;
 use std::path::Path;
 
 use crate::message::{Encoding, Kind, MAX_BEAMS, Undecoded};
-use crate::options::{Options, RangeUnit};
+use crate::options::{Options, Parts, RangeUnit};
 use crate::pattern::{FiringPattern, Stamps};
 use crate::reading::{Echo, Reading, Sensor};
 use eeruf_files::FileError;
@@ -122,6 +122,11 @@ impl<'a> Sink<'a> {
             one_time_a_row: false,
             has_own_times: false,
         }
+    }
+
+    /// Warns of options that choose from parts which the log does not have.
+    pub(crate) fn has(&mut self, parts: Parts) {
+        self.report.warnings.extend(self.options.without_effect(parts));
     }
 
     /// A topic by its name, the name of its type, the text of its schema if there is one, and its encoding.

@@ -142,7 +142,12 @@ pub(crate) fn times(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Vec<Micros
 pub(crate) fn times_of(name: &str, value: &Bound<'_, PyAny>, each: &str) -> PyResult<Vec<Micros>> {
     let expected = format!("a sequence of whole numbers of microseconds, one for each {each}");
     let items = items(name, value, &expected)?.into_iter().enumerate();
-    items.map(|(index, item)| micros(&format!("{name}[{index}]"), &item)).collect()
+    let times = items.map(|(index, item)| micros(&format!("{name}[{index}]"), &item)).collect::<PyResult<Vec<_>>>()?;
+    let numbers: Vec<_> = times.iter().map(|time| f64::from(time.as_micros())).collect();
+    if let Some(doubt) = eeruf_files::doubt_list(name, &numbers) {
+        warn(value.py(), format_args!("{name}: {doubt}"))?;
+    }
+    Ok(times)
 }
 
 /// An array in order, aligned and of this type: as it is, if it is so, else a copy. Whoever unpickles buffers of their

@@ -44,7 +44,9 @@ impl Plan {
         for &index in &unnamed {
             self.columns[index].unit = unit;
         }
-        if asked.is_none() {
+        if let Some(unit) = asked {
+            self.doubt(unit, options);
+        } else {
             let of_ranges = self.columns.iter().filter(|column| column.role == Role::Range);
             let mut found: Vec<&str> = of_ranges.map(|column| column.unit.name()).collect();
             found.dedup();
@@ -53,6 +55,27 @@ impl Plan {
                 _ => ", by names or units beside the values".to_owned(),
             };
             self.guesses.push(guess("range unit", found.join(", ") + &why, "--range-unit"));
+        }
+    }
+
+    /// Warns of a unit in which most ranges are nearer than ultrasonic sensors begin to hear, or farther than they do.
+    fn doubt(&mut self, unit: RangeUnit, options: &Options) {
+        const PLAUSIBLE_M: std::ops::RangeInclusive<f64> = 0.01..=25.0;
+        let ranges = self.columns.iter().filter(|column| column.role == Role::Range);
+        let mut values: Vec<_> =
+            ranges.flat_map(|column| column.numbers.iter().copied()).filter(|&n| n > 0.0).collect();
+        values.sort_by(f64::total_cmp);
+        let Some(median) = values.get(values.len() / 2) else { return };
+        let metres = median * unit.metres(options.speed_of_sound);
+        if !PLAUSIBLE_M.contains(&metres) {
+            let name = unit.name();
+            self.implausible = Some(format!(
+                "a median range of {median} {name}, {:.3} m; expected {} to {} m from an ultrasonic sensor; if the \
+                 values are not {name}, leave out --range-unit",
+                metres,
+                PLAUSIBLE_M.start(),
+                PLAUSIBLE_M.end()
+            ));
         }
     }
 

@@ -16,7 +16,7 @@ mod value;
 use std::io::Read;
 use std::path::Path;
 
-use crate::options::Options;
+use crate::options::{Options, Parts};
 use crate::sink::Sink;
 use eeruf_files::FileError;
 
@@ -48,7 +48,9 @@ pub(crate) fn read(input: impl Read, file: &Path, options: &Options, sink: &mut 
     }
     let plan = recognise::recognise(file, &sample, source.of_records(), options)?;
     sink.report.form.clone_from(&plan.form);
+    sink.has(Parts::Columns);
     sink.report.guesses.extend(plan.guesses.iter().cloned());
+    sink.report.warnings.extend(plan.implausible.clone());
     sink.report.skipped.extend(plan.skipped.iter().cloned());
     let mut rows = rows::Rows::new(file, plan, options, sink);
     for line in sample {

@@ -61,6 +61,8 @@ pub(super) struct Plan {
     pub(super) usual_names: Option<Vec<String>>,
     pub(super) form: String,
     pub(super) guesses: Vec<Guess>,
+    /// A warning of ranges that no ultrasonic sensor has.
+    pub(super) implausible: Option<String>,
     pub(super) skipped: Vec<Skipped>,
 }
 
@@ -126,6 +128,7 @@ pub(super) fn recognise(
         usual_names: None,
         form: String::new(),
         guesses: vec![],
+        implausible: None,
         skipped: vec![],
     };
     let units = match shape {

@@ -33,6 +33,18 @@ fn examples_in_documents_are_what_the_program_prints() {
     trycmd::TestCases::new().register_bin("eeruf", program).case("README.md").case("docs/**/*.md");
 }
 
+// The log is what `cargo xtask reprint --check` compares.
+#[test]
+fn answers_quoted_by_a_guide_stand_in_the_log() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let read = |path: &str| std::fs::read_to_string(root.join(path)).unwrap();
+    let (guide, log) = (read("docs/how-to/design.md"), read("docs/log/rooms.md"));
+    let blocks = guide.split("```text\n").skip(1).filter_map(|rest| rest.split("```").next());
+    let quoted: Vec<_> = blocks.filter(|block| block.contains(": recommended: ")).collect();
+    assert_eq!(quoted.len(), 1, "{quoted:?}");
+    assert!(log.contains(quoted[0]), "docs/log/rooms.md does not have\n{}", quoted[0]);
+}
+
 // SNAPSHOTS=overwrite writes what the program prints now into the reference.
 #[test]
 fn reference_of_options_is_what_the_program_prints() {

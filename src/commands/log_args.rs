@@ -104,7 +104,10 @@ impl LogArgs {
     pub(crate) fn options(&self) -> Result<Options, InputError> {
         let field = |parts: &[String]| -> Result<FieldChoice, InputError> {
             let unit = <RangeName as clap::ValueEnum>::from_str(&parts[2], true).map_err(|_| {
-                InputError::new("--field", format!("{}: unit `{}`; expected m, cm, mm, in, ft or us", parts[0], parts[2]))
+                InputError::new(
+                    "--field",
+                    format!("{}: unit `{}`; expected m, cm, mm, in, ft or us", parts[0], parts[2]),
+                )
             })?;
             Ok(FieldChoice { topic: parts[0].clone(), path: parts[1].clone(), unit: unit.into() })
         };

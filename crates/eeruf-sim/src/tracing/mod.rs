@@ -6,6 +6,7 @@ mod beam;
 mod bounce_points;
 mod crosstalk;
 mod edges;
+mod ends;
 mod error;
 mod limits;
 mod panels;

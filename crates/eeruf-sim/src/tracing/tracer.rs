@@ -4,6 +4,7 @@ use super::audibility::Audibility;
 use super::beam::{BeamTree, Growth};
 use super::bounce_points::Corners;
 use super::edges::{EdgeQuery, EdgeSearch};
+use super::ends::Ends;
 use super::error::PathsError;
 use super::limits::{DEFAULT_FREQUENCY_HZ, Limits, MAX_BEAMS, MAX_ORDER, Matters};
 use super::paths::Paths;
@@ -62,6 +63,7 @@ pub struct Tracer {
     pub stop: Stop,
     /// Loss in the air, for the air and the frequency asked for last.
     loss: Option<(Air, f64, f64)>,
+    ends: Ends,
     pub(super) tree: BeamTree,
     pub(super) poles: PoleSearch,
     pub(super) around: EdgeSearch,
@@ -94,6 +96,7 @@ impl Tracer {
             pole_order: MAX_ORDER,
             stop: Stop::default(),
             loss: None,
+            ends: Ends::default(),
             tree: BeamTree::default(),
             poles: PoleSearch::default(),
             around: EdgeSearch::default(),
@@ -177,8 +180,8 @@ impl Tracer {
             let by_length = matters.filter(|_| scene.room().is_none());
             self.tree.drop_faint(audibility, by_length, receivers);
         }
-        let (tree, budget, stop) = (&self.tree, MAX_BEAMS, &self.stop);
-        let query = PoleQuery { scene, tree, source, limits: at_poles, audibility, asked, budget, stop };
+        let (tree, ends, budget, stop) = (&self.tree, &self.ends, MAX_BEAMS, &self.stop);
+        let query = PoleQuery { scene, tree, source, ends, limits: at_poles, audibility, asked, budget, stop };
         if !self.poles.search(&query, receivers) {
             return Err(self.incomplete());
         }
@@ -187,7 +190,7 @@ impl Tracer {
             let wave_number = core::f64::consts::TAU * self.frequency_hz / scene.air().speed_of_sound();
             let burst_m = f64::from(self.burst_cycles) * core::f64::consts::TAU / wave_number;
             let joined_m = self.narrow_panels.then_some(burst_m);
-            let query = EdgeQuery { scene, audibility, source, receivers, limits, wave_number, joined_m };
+            let query = EdgeQuery { scene, audibility, source, receivers, ends, limits, wave_number, joined_m };
             if !self.around.search(&query, &self.stop) {
                 return Err(PathsError::Stopped);
             }
@@ -230,8 +233,11 @@ impl Tracer {
         at_poles: Limits,
     ) -> Result<(), PathsError> {
         check(scene, source, receivers, limits)?;
+        self.ends.find(&scene.mesh, source, receivers);
         if self.pole_shadows {
-            core::iter::once(&source).chain(receivers).try_for_each(|&at| check_free(scene, at))?;
+            check_free(scene, source, self.ends.of_source())?;
+            let mut each = receivers.iter().enumerate();
+            each.try_for_each(|(receiver, &at)| check_free(scene, at, self.ends.of_receiver(receiver)))?;
         }
         let growth = Growth {
             mesh: &scene.mesh,
@@ -247,7 +253,11 @@ impl Tracer {
             aim: audibility.map(Audibility::of_source),
             stop: &self.stop,
         };
-        if self.tree.grow(&growth, source, receivers) { Ok(()) } else { Err(self.incomplete()) }
+        if self.tree.grow(&growth, (source, self.ends.of_source()), receivers, &self.ends) {
+            Ok(())
+        } else {
+            Err(self.incomplete())
+        }
     }
 
     /// Why not all was found.
@@ -293,11 +303,11 @@ fn check(scene: &Scene, source: Point, receivers: &[Point], limits: Limits) -> R
 }
 
 /// Returns true if a point is in the open: in no pole, no pillar, and not outside the room.
-fn check_free(scene: &Scene, at: Point) -> Result<(), PathsError> {
+fn check_free(scene: &Scene, at: Point, triangles: &[u32]) -> Result<(), PathsError> {
     let pole = scene.poles().iter().position(|pole| (at - pole.centre).norm() < pole.radius_m);
     let what = match pole {
         Some(pole) => Contact::Pole(pole),
-        None if scene.is_solid(at) => Contact::Solid,
+        None if scene.mesh.is_solid_at(triangles) => Contact::Solid,
         None => return Ok(()),
     };
     Err(PathsError::Inside { at: [at.x, at.y], what })

@@ -200,15 +200,14 @@ impl Mesh {
         self.covers(point) && self.solid[self.locate(point) as usize]
     }
 
-    /// Returns true if the straight segment between two points meets no wall.
-    pub(crate) fn sees(&self, from: Point, to: Point, [starts, goals]: &mut [Vec<u32>; 2]) -> bool {
-        self.containing(from, starts);
-        self.containing(to, goals);
-        self.sees_between(from, starts, to, goals)
+    /// The same of a point whose triangles are known, see [`containing`](Self::containing).
+    pub(crate) fn is_solid_at(&self, triangles: &[u32]) -> bool {
+        triangles.first().is_some_and(|&triangle| self.solid[triangle as usize])
     }
 
-    /// The same of points whose triangles are known, see [`containing`](Self::containing).
-    pub(crate) fn sees_between(&self, from: Point, starts: &[u32], to: Point, goals: &[u32]) -> bool {
+    /// Returns true if the straight segment between two points meets no wall; with the triangles that
+    /// [contain](Self::containing) each.
+    pub(crate) fn sees(&self, from: Point, starts: &[u32], to: Point, goals: &[u32]) -> bool {
         if starts.iter().any(|triangle| goals.contains(triangle)) {
             return true;
         }

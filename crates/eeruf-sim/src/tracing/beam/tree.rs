@@ -6,6 +6,7 @@ use super::{Beam, PoleCone, VisibleImage, cone_holds};
 use crate::{
     geometry::{Point, SAME_DIRECTION, TOUCH_M, Vector, cross},
     scene::{Beyond, Exit, Gate, NONE},
+    tracing::ends::Ends,
 };
 
 /// Number of beams that lie between two looks at whether to stop.
@@ -50,19 +51,24 @@ pub(crate) struct BeamTree {
     heads: Vec<u32>,
     targets: Vec<Target>,
     stack: Vec<Cone>,
-    triangles: Vec<u32>,
     block: ReceiverBlock,
 }
 
 impl BeamTree {
-    /// Grows the tree of a source. All points must be covered by the mesh. Returns whether it is whole: neither
-    /// the budget was spent nor the work stopped.
-    pub(crate) fn grow(&mut self, growth: &Growth<'_>, source: Point, receivers: &[Point]) -> bool {
+    /// Grows the tree of a source in these triangles. Returns whether it is whole: neither the budget was spent nor the
+    /// work stopped.
+    pub(crate) fn grow(
+        &mut self,
+        growth: &Growth<'_>,
+        (source, triangles): (Point, &[u32]),
+        receivers: &[Point],
+        ends: &Ends,
+    ) -> bool {
         self.beams.clear();
         self.visible_images.clear();
         self.pole_cones.clear();
-        self.set_targets(growth, receivers);
-        let complete = self.spread(growth, source);
+        self.set_targets(growth, receivers, ends);
+        let complete = self.spread(growth, source, triangles);
         for target in &self.targets {
             self.heads[target.triangle as usize] = NONE;
         }
@@ -70,18 +76,15 @@ impl BeamTree {
         complete
     }
 
-    fn set_targets(&mut self, growth: &Growth<'_>, receivers: &[Point]) {
+    fn set_targets(&mut self, growth: &Growth<'_>, receivers: &[Point], ends: &Ends) {
         if self.heads.len() < growth.mesh.len() {
             self.heads.resize(growth.mesh.len(), NONE);
         }
-        let mut triangles = core::mem::take(&mut self.triangles);
         for (receiver, &at) in receivers.iter().enumerate() {
-            growth.mesh.containing(at, &mut triangles);
-            for &triangle in &triangles {
+            for &triangle in ends.of_receiver(receiver) {
                 self.put(at, receiver as u32, triangle);
             }
         }
-        self.triangles = triangles;
         for &(triangle, pole) in growth.pole_triangles {
             self.put(growth.poles[pole as usize].centre, POLE | pole, triangle);
         }
@@ -95,7 +98,7 @@ impl BeamTree {
         self.targets.push(target);
     }
 
-    fn spread(&mut self, growth: &Growth<'_>, source: Point) -> bool {
+    fn spread(&mut self, growth: &Growth<'_>, source: Point, triangles: &[u32]) -> bool {
         self.beams.push(Beam {
             image: source,
             left: Vector::zeros(),
@@ -109,10 +112,7 @@ impl BeamTree {
             axis: growth.aim.map_or(Vector::zeros(), |aim| aim.axis()),
             reach_m: growth.aim.map_or(f64::INFINITY, |aim| aim.longest_m()).min(growth.max_length_m),
         });
-        let mut triangles = core::mem::take(&mut self.triangles);
-        growth.mesh.containing(source, &mut triangles);
-        self.leave(growth, source, &triangles);
-        self.triangles = triangles;
+        self.leave(growth, source, triangles);
         let mut next = 1;
         while let Some(&beam) = self.beams.get(next) {
             let size = self.beams.len() + self.visible_images.len() + self.pole_cones.len();

@@ -13,7 +13,7 @@ impl EdgeSearch {
     /// by less than a burst: the reflection has them already. Of a surface beside the point of reflection it makes one
     /// way of two.
     pub(super) fn join(&mut self, query: &EdgeQuery<'_>, burst_m: f64) {
-        let EdgeQuery { scene, receivers, .. } = *query;
+        let EdgeQuery { scene, receivers, ends, .. } = *query;
         self.places.clear();
         self.places.resize(self.wanted.len() * receivers.len(), NONE);
         for (place, path) in self.found.iter().enumerate() {
@@ -47,10 +47,12 @@ impl EdgeSearch {
                     let late = |place: usize| self.found[place].length_m - seen.length_m >= burst_m;
                     let here = places.map(|place| place.filter(|place| !late(*place)));
                     let point = surface.on + surface.along * seen.point_m;
-                    if here != [None; 2]
-                        && scene.mesh.sees(query.source, point, &mut self.triangles)
-                        && scene.mesh.sees(receivers[receiver], point, &mut self.triangles)
-                    {
+                    if here == [None; 2] {
+                        continue;
+                    }
+                    scene.mesh.containing(point, &mut self.triangles);
+                    let sees = |from, starts| scene.mesh.sees(from, starts, point, &self.triangles);
+                    if sees(query.source, ends.of_source()) && sees(receivers[receiver], ends.of_receiver(receiver)) {
                         here.into_iter().flatten().for_each(|place| gone[place] = true);
                     }
                 } else if let [Some(a), Some(b)] = places {

@@ -3,6 +3,7 @@
 mod join;
 
 use super::audibility::Audibility;
+use super::ends::Ends;
 use super::limits::Limits;
 use crate::{
     acoustics::{LOUDEST_PANEL, edge_diffraction},
@@ -44,9 +45,8 @@ impl EdgePath {
 #[derive(Debug, Default)]
 pub(crate) struct EdgeSearch {
     pub(crate) found: Vec<EdgePath>,
-    triangles: [Vec<u32>; 2],
-    /// The triangles of each receiver, found when they are asked for.
-    homes: Vec<Vec<u32>>,
+    /// The triangles of a point on a surface.
+    triangles: Vec<u32>,
     /// The edges that are looked at, in order.
     wanted: Vec<u32>,
     // Kept between questions for their memory.
@@ -64,6 +64,7 @@ pub(crate) struct EdgeQuery<'a> {
     pub(crate) audibility: Option<&'a Audibility>,
     pub(crate) source: Point,
     pub(crate) receivers: &'a [Point],
+    pub(crate) ends: &'a Ends,
     pub(crate) limits: Limits,
     /// In rad/m.
     pub(crate) wave_number: f64,
@@ -102,8 +103,6 @@ impl EdgeSearch {
     fn choose(&mut self, query: &EdgeQuery<'_>) {
         let EdgeQuery { scene, audibility, source, receivers, .. } = *query;
         let edges = scene.edges();
-        self.homes.resize(receivers.len(), Vec::new());
-        self.homes.iter_mut().for_each(Vec::clear);
         self.wanted.clear();
         let Some(audibility) = audibility else {
             self.wanted.extend(0..edges.len() as u32);
@@ -137,22 +136,12 @@ impl EdgeSearch {
         }
     }
 
-    /// Returns true if a receiver sees an edge.
-    fn is_seen_by(&mut self, scene: &Scene, edge: usize, receiver: usize, at: Point) -> bool {
-        let home = &mut self.homes[receiver];
-        if home.is_empty() {
-            scene.mesh.containing(at, home);
-        }
-        scene.mesh.sees_between(at, home, scene.edges()[edge].at, scene.triangles_at(edge))
-    }
-
     fn search_each(&mut self, query: &EdgeQuery<'_>, stop: &Stop) -> bool {
-        let EdgeQuery { scene, audibility, source, receivers, limits, wave_number, .. } = *query;
+        let EdgeQuery { scene, audibility, source, receivers, ends, limits, wave_number, .. } = *query;
         self.found.clear();
         if limits.max_order == 0 {
             return true;
         }
-        scene.mesh.containing(source, &mut self.triangles[0]);
         let wanted = core::mem::take(&mut self.wanted);
         for index in wanted.iter().map(|&edge| edge as usize) {
             let edge = &scene.edges()[index];
@@ -174,12 +163,11 @@ impl EdgeSearch {
                 if length_m > limits.max_length_m || !audibility.is_none_or(heard) {
                     continue;
                 }
-                let starts = &self.triangles[0];
-                let sees = || scene.mesh.sees_between(source, starts, edge.at, scene.triangles_at(index));
-                if !*in_sight.get_or_insert_with(sees) {
+                let sees = |from, starts| scene.mesh.sees(from, starts, edge.at, scene.triangles_at(index));
+                if !*in_sight.get_or_insert_with(|| sees(source, ends.of_source())) {
                     break;
                 }
-                if !self.is_seen_by(scene, index, receiver, at) {
+                if !sees(at, ends.of_receiver(receiver)) {
                     continue;
                 }
                 let bent = edge_diffraction(wave_number, edge.outside_rad, from_rad, to_rad).abs();

@@ -29,6 +29,8 @@ pub(super) struct Leg {
 pub(super) struct Legs {
     pub(super) legs: Vec<Leg>,
     cones: Vec<PoleCone>,
+    /// Where the next cone of each pole goes.
+    next: Vec<u32>,
 }
 
 /// All ways from a receiver, found backwards.
@@ -50,10 +52,10 @@ pub(super) struct Seen {
 }
 
 impl Home {
-    /// Writes the ways of a tree that was grown from the receiver.
-    pub(super) fn fill(&mut self, tree: &BeamTree, scene: &Scene, aim: Option<Aim<'_>>) {
-        self.beams.clone_from(&tree.beams);
+    /// Takes the ways of a tree that was grown from the receiver, and its beams.
+    pub(super) fn fill(&mut self, tree: &mut BeamTree, scene: &Scene, aim: Option<Aim<'_>>) {
         self.legs.fill(tree, scene, aim);
+        core::mem::swap(&mut self.beams, &mut tree.beams);
         self.in_sight.clear();
         self.in_sight.extend(self.legs.in_sight());
     }
@@ -62,9 +64,8 @@ impl Home {
 impl Legs {
     /// Writes the ways of a grown tree. Without an aim everything may be loud.
     pub(super) fn fill(&mut self, tree: &BeamTree, scene: &Scene, aim: Option<Aim<'_>>) {
-        let Self { legs, cones } = self;
-        cones.clone_from(&tree.pole_cones);
-        cones.sort_unstable_by_key(|cone| (cone.pole, cone.beam));
+        self.take_by_pole(&tree.pole_cones, scene.poles().len());
+        let Self { legs, cones, .. } = self;
         legs.clear();
         let mut next = 0;
         legs.extend(cones.chunk_by(|one, other| (one.pole, one.beam) == (other.pole, other.beam)).map(|of_beam| {
@@ -78,6 +79,22 @@ impl Legs {
             let least_m = (far_m - of.radius_m).max(0.0);
             Leg { pole, beam, image, order, turn, square, far_m, least_m, cones: [start, next] }
         }));
+    }
+
+    /// Takes a tree's cones, which are in the order of its beams, with those of each pole together.
+    fn take_by_pole(&mut self, of: &[PoleCone], poles: usize) {
+        let Self { cones, next, .. } = self;
+        next.clear();
+        next.resize(poles + 1, 0);
+        of.iter().for_each(|cone| next[cone.pole as usize + 1] += 1);
+        (0..poles).for_each(|pole| next[pole + 1] += next[pole]);
+        cones.clear();
+        cones.extend_from_slice(of);
+        for cone in of {
+            let place = &mut next[cone.pole as usize];
+            cones[*place as usize] = *cone;
+            *place += 1;
+        }
     }
 
     /// The poles that the transducer's own, unreflected beam passes.

@@ -6,6 +6,7 @@ mod shadow;
 
 use super::audibility::Audibility;
 use super::beam::{BeamTree, Growth, push_chain};
+use super::ends::Ends;
 use super::limits::Limits;
 use crate::{
     acoustics::pole_spread,
@@ -44,6 +45,7 @@ pub(crate) struct PoleQuery<'a> {
     pub(crate) scene: &'a Scene,
     pub(crate) tree: &'a BeamTree,
     pub(crate) source: Point,
+    pub(crate) ends: &'a Ends,
     pub(crate) limits: Limits,
     /// Audibility, if what is certainly too faint may be left out.
     pub(crate) audibility: Option<&'a Audibility>,
@@ -81,6 +83,7 @@ pub(crate) struct PoleSearch {
     homes: Vec<Home>,
     /// Number of those that are of now; the others are kept for their memory.
     grown: usize,
+    /// The triangles of points on poles.
     triangles: [Vec<u32>; 2],
     /// From each pole's surface to the nearest receiver, at least, in metres.
     nearest_m: Vec<f64>,
@@ -195,7 +198,7 @@ impl PoleSearch {
 
     /// Grows a receiver's ways to the poles, backwards. Returns whether they are all.
     fn grow_home(&mut self, query: &PoleQuery<'_>, receiver: Receiver) -> bool {
-        let PoleQuery { scene, limits, audibility, budget, stop, .. } = *query;
+        let PoleQuery { scene, ends, limits, audibility, budget, stop, .. } = *query;
         let aim = audibility.and_then(|audibility| audibility.of_receiver(receiver.index as usize));
         let growth = Growth {
             mesh: &scene.mesh,
@@ -210,11 +213,12 @@ impl PoleSearch {
             aim,
             stop,
         };
-        let complete = self.back.grow(&growth, receiver.at, &[]);
+        let here = (receiver.at, ends.of_receiver(receiver.index as usize));
+        let complete = self.back.grow(&growth, here, &[], ends);
         if self.homes.len() == self.grown {
             self.homes.push(Home::default());
         }
-        self.homes[self.grown].fill(&self.back, scene, aim);
+        self.homes[self.grown].fill(&mut self.back, scene, aim);
         self.grown += 1;
         complete
     }
@@ -280,7 +284,8 @@ impl PoleSearch {
 
     /// Source, one pole, receiver, both in sight of it: no trees are needed.
     fn one_pole(&mut self, query: &PoleQuery<'_>, receivers: &[Point]) {
-        let PoleQuery { scene, source, limits, audibility, stop, .. } = *query;
+        let PoleQuery { scene, source, ends, limits, audibility, stop, .. } = *query;
+        let mesh = &scene.mesh;
         for (index, pole) in scene.poles().iter().enumerate() {
             if stop.is_stopped() {
                 return;
@@ -294,9 +299,13 @@ impl PoleSearch {
                     continue;
                 }
                 let Some(hit) = alhazen(source, at, pole.centre, pole.radius_m) else { continue };
-                if hit.before_m + hit.after_m > limits.max_length_m
-                    || !scene.mesh.sees(source, hit.point, &mut self.triangles)
-                    || !scene.mesh.sees(hit.point, at, &mut self.triangles)
+                if hit.before_m + hit.after_m > limits.max_length_m {
+                    continue;
+                }
+                let triangles = &mut self.triangles[0];
+                mesh.containing(hit.point, triangles);
+                if !mesh.sees(source, ends.of_source(), hit.point, triangles)
+                    || !mesh.sees(hit.point, triangles, at, ends.of_receiver(receiver))
                 {
                     continue;
                 }
@@ -310,8 +319,8 @@ impl PoleSearch {
 
     /// Source, one pole, another pole, receiver, all in sight of each other.
     fn two_poles(&mut self, query: &PoleQuery<'_>, lasts: &[Seen], receiver: Receiver) {
-        let PoleQuery { scene, source, limits, audibility, stop, .. } = *query;
-        let (at, poles) = (receiver.at, scene.poles());
+        let PoleQuery { scene, source, ends, limits, audibility, stop, .. } = *query;
+        let (at, poles, mesh) = (receiver.at, scene.poles(), &scene.mesh);
         for index in 0..self.firsts.len() {
             if stop.is_stopped() {
                 return;
@@ -328,10 +337,15 @@ impl PoleSearch {
                 let Some((one, two)) = alhazen_twice(source, at, circles.0, circles.1) else {
                     continue;
                 };
-                if one.before_m + two.before_m + two.after_m > limits.max_length_m
-                    || !scene.mesh.sees(source, one.point, &mut self.triangles)
-                    || !scene.mesh.sees(one.point, two.point, &mut self.triangles)
-                    || !scene.mesh.sees(two.point, at, &mut self.triangles)
+                if one.before_m + two.before_m + two.after_m > limits.max_length_m {
+                    continue;
+                }
+                let [at_one, at_two] = &mut self.triangles;
+                mesh.containing(one.point, at_one);
+                mesh.containing(two.point, at_two);
+                if !mesh.sees(source, ends.of_source(), one.point, at_one)
+                    || !mesh.sees(one.point, at_one, two.point, at_two)
+                    || !mesh.sees(two.point, at_two, at, ends.of_receiver(receiver.index as usize))
                 {
                     continue;
                 }

@@ -191,12 +191,13 @@ impl Heard {
         // also fire alone at times.
         let evenly = 10 * least + 20 >= 7 * most && least >= 5 * self.seconds;
         let all_fire = self.firings.len() == example.modules && evenly;
-        if all_fire && self.ignored == 0 && self.accepted > 2 * self.seconds {
+        let is_right = 100 * self.wrong <= self.accepted;
+        if all_fire && is_right && self.ignored == 0 && self.accepted > 2 * self.seconds {
             return Ok(());
         }
         Err(Trouble::Failed(format!(
-            "{}: firings {:?}, {} triggers ignored, {} readings accepted in {} s",
-            example.name, self.firings, self.ignored, self.accepted, self.seconds
+            "{}: firings {:?}, {} triggers ignored, {} readings accepted in {} s, {} of them wrong",
+            example.name, self.firings, self.ignored, self.accepted, self.seconds, self.wrong
         )))
     }
 }

@@ -1,6 +1,7 @@
 // Four HC-SR04 modules with trigger and echo on one pin each, 2 to 5, for a robot that asks now and then what is before
 // it: twenty times a second it says of each module what stands there, for how long, or why that is not known.
 #include <EerufTables.h>
+#include <EerufInterrupts.h>
 
 const uint8_t PINS[] = {2, 3, 4, 5};
 EerufSonar<4> sonar(EERUF_HC_SR04_4, PINS);
@@ -10,6 +11,7 @@ uint32_t said;
 void setup() {
   Serial.begin(115200);
   if (!sonar.begin()) Serial.println(F("wrong table"));
+  if (!eerufInterrupts(sonar)) Serial.println(F("an echo pin has no interrupt"));
   sonar.watch(states);
 }
 

@@ -2,13 +2,16 @@
 
 use std::path::Path;
 
-use eeruf_design::{RingFile, RingSpec};
+use eeruf_design::RingSpec;
 use eeruf_files::Kind;
 
 use super::error::InputError;
-use super::toml::read_toml;
+use super::implausible::warn_of;
 
 /// Reads a ring file.
 pub(crate) fn read_ring(file: &Path) -> Result<RingSpec, InputError> {
-    read_toml(file, Kind::Ring, |ring: RingFile| ring.spec())
+    let text = Kind::Ring.read(file)?;
+    let spec = RingSpec::in_file(file, &text)?;
+    warn_of(file, &text)?;
+    Ok(spec)
 }

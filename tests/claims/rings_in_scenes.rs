@@ -7,6 +7,8 @@ use eeruf_core::{Micros, ReadingKind};
 use eeruf_design::{RingSpec, Search, robot_ring};
 use eeruf_sim::{Method, Options, World, simulate};
 
+use crate::common::Scratch;
+
 /// The mower's sensors: eight around the hull, four over its front edge.
 const MOWER: [[f64; 3]; 12] = [
     [0.35, 0.0, 0.0],
@@ -115,7 +117,41 @@ fn what_a_ring_file_leaves_open_is_asked_for() {
         ("poses = [{ x_m = 0, y_m = 0 }]", "poses has 1 places; expected 2, as many as sensors"),
         ("spacing_deg = 20", "expected either poses, or spacing_deg and radius_m"),
     ] {
-        let error = robot_ring(&format!("sensors = 2\nt_delta_us = 9\nmin_interval_us = 0\nwindow_us = 9\n{wrong}"));
+        let text = format!("sensors = 2\nt_delta_us = 9\nmin_interval_us = 0\nwindow_us = 9\n{wrong}");
+        let error = robot_ring(Path::new("ring.toml"), &text);
         assert!(error.unwrap_err().message().contains(expected), "{wrong}");
     }
+}
+
+// A scene's robot stands as high as its ring file or the URDF beside it says, unless the scene says otherwise.
+#[test]
+fn scenes_take_places_and_heights_of_ring_files() {
+    let (_scratch, urdf) = Scratch::new(
+        "robot.urdf",
+        "<robot name='r'><link name='base_footprint'/><link name='base_link'/><link name='a'/><link name='b'/>\
+         <joint name='up' type='fixed'><parent link='base_footprint'/><child link='base_link'/><origin xyz='0 0 0.1'/>\
+         </joint><joint name='to a' type='fixed'><parent link='base_link'/><child link='a'/><origin xyz='0.2 0.1 0.3'/>\
+         </joint><joint name='to b' type='fixed'><parent link='base_link'/><child link='b'/>\
+         <origin xyz='0.2 -0.1 0.5' rpy='0 0 -0.5'/></joint></robot>",
+    );
+    let folder = urdf.parent().unwrap();
+    let ring = "sensors = 2\nmodule = \"ping\"\nurdf = \"robot.urdf\"\nlinks = [\"a\", \"b\"]\n";
+    std::fs::write(folder.join("ring.toml"), ring).unwrap();
+    let world = |more: &str| {
+        let text = format!("{ROOM}[[robot]]\npose = {{ x_m = 0, y_m = 0 }}\nring = \"ring.toml\"\n{more}\n");
+        World::from_text_with(&folder.join("scene.toml"), &text, robot_ring)
+    };
+    let heights = |more: &str| {
+        let world = world(more).unwrap_or_else(|error| panic!("{error}"));
+        [0, 1].map(|sensor| (100.0 * world.robots()[0].height_m(sensor)).round())
+    };
+    assert_eq!(heights(""), [40.0, 60.0]);
+    assert_eq!(heights("height_m = 0.25"), [25.0, 25.0]);
+    assert_eq!(heights("sensors = [{ x_m = 0, y_m = 0 }, { x_m = 0, y_m = 0.1 }]"), [30.0, 30.0]);
+    let world_of_urdf = world("").unwrap();
+    let sensors = &world_of_urdf.robots()[0].sensors;
+    assert!((sensors[1].translation.y + 0.1).abs() + (sensors[1].rotation.angle() + 0.5).abs() < 1e-12);
+    std::fs::write(folder.join("ring.toml"), ring.replace("\"b\"", "\"c\"")).unwrap();
+    let error = world("").unwrap_err().to_string();
+    assert!(error.contains("ring.toml, line 4: links: no `c` in ") && !error.contains("scene.toml"), "{error}");
 }

@@ -6,6 +6,7 @@
 //! | `limits`, `layout` | what numbers a ring file may hold; how the sensors stand |
 //! | `each`, `uneven` | one number for all sensors or one for each; what sensors need that are not alike |
 //! | `ring` | the ring file, turned into what a schedule must meet |
+//! | `places`, `urdf` | where the sensors are on the robot |
 //! | `shortest`, `find_uneven` | the shortest period for that |
 //! | `find`, `what_if_uneven` | the design of a ring, and what would make it shorter |
 //! | `moving` | the shortest period of a ring that moves |
@@ -45,6 +46,7 @@ mod layout;
 mod limits;
 mod moving;
 mod phase_file;
+mod places;
 mod questions;
 mod reals;
 mod ring;
@@ -52,6 +54,8 @@ mod rooms;
 mod shortest;
 mod ticks;
 mod uneven;
+#[cfg(feature = "urdf")]
+mod urdf;
 mod what_if_uneven;
 
 pub use each::Each;
@@ -62,9 +66,10 @@ pub use hopping::HoppingDesign;
 pub use layout::{LayoutKey, LayoutName, OwnedLayout};
 pub use limits::{four, neighbours_in_range, sensors_in_range};
 pub use phase_file::{PhaseFile, PhaseSchedule};
+pub use places::Places;
 pub use questions::{CURVE_BUDGET, CURVE_POINTS, CurvePoint, Fit, Need};
 pub use reals::{RealPeriod, over_reals, real_budget};
-pub use ring::{RingFile, RingSpec, robot_ring};
+pub use ring::{RingSpec, robot_ring};
 pub use rooms::{RoomRobot, RoomsAnswer, RoomsAsked, RoomsJson};
 pub use shortest::{Search, Shortest, shortest};
 pub use uneven::OwnedUneven;

@@ -1,15 +1,18 @@
 //! Ring files: what a designer knows of a ring, turned into what a schedule must meet.
 
+use std::path::Path;
+
 use eeruf_core::search::PeriodProblem;
 use eeruf_core::{Criterion, Micros, Requirements, SensorLimits, SpeedOfSound};
 use eeruf_files::{FileError, build};
 use eeruf_modules::{Module, ModulesFile};
-use eeruf_sim::{Pose, Robot, RobotRing, Transducer, Vector};
+use eeruf_sim::RobotRing;
 use serde::Deserialize;
 
 use crate::each::Each;
 use crate::layout::{LayoutKey, OwnedLayout};
 use crate::limits::{four, neighbours_in_range, number, sensors_in_range};
+use crate::places::{PlaceFile, Places};
 use crate::uneven::OwnedUneven;
 
 /// Repeatability of readings of one wall on a robot that stands, for a file that names its modules and no jitter: a
@@ -29,8 +32,8 @@ const fn one_millisecond() -> u32 {
 /// A ring file for `design`: times in microseconds, or what a designer knows instead of them.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct RingFile {
-    sensors: usize,
+pub(crate) struct RingFile {
+    pub(crate) sensors: usize,
     #[serde(default = "four")]
     neighbours: u8,
     #[serde(default)]
@@ -59,10 +62,14 @@ pub struct RingFile {
     path_change_us: Option<u32>,
     audible_us: Option<u32>,
     temperature_c: Option<f64>,
-    /// Where each sensor is on the robot, or the arc on which they stand, for scenes.
-    poses: Option<Vec<PlaceFile>>,
-    spacing_deg: Option<f64>,
-    radius_m: Option<f64>,
+    /// Where each sensor is on the robot, or the arc on which they stand, or the robot's URDF and their links in it.
+    pub(crate) poses: Option<Vec<PlaceFile>>,
+    pub(crate) spacing_deg: Option<f64>,
+    pub(crate) radius_m: Option<f64>,
+    pub(crate) urdf: Option<String>,
+    pub(crate) links: Option<Vec<String>>,
+    /// Height of the robot's base above the floor.
+    pub(crate) base_height_m: Option<f64>,
     /// Pairs of sensors with an interval of their own.
     #[serde(default)]
     intervals_us: Vec<(usize, usize, u32)>,
@@ -72,16 +79,6 @@ pub struct RingFile {
     /// Sensors that fire at the same instants.
     #[serde(default)]
     together: Vec<Vec<usize>>,
-}
-
-/// Where a sensor is on its robot.
-#[derive(Clone, Copy, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct PlaceFile {
-    x_m: f64,
-    y_m: f64,
-    #[serde(default)]
-    heading_deg: f64,
 }
 
 /// Requirements of a ring file.
@@ -124,7 +121,7 @@ pub struct RingSpec {
     /// The module of each sensor, where the file names them; it rests for as long as the file says.
     pub modules: Vec<Module>,
     /// Where each sensor is on the robot, if the file says it.
-    pub poses: Vec<Pose>,
+    pub places: Places,
     /// Needs of single sensors and pairs, where they are not all alike.
     pub uneven: Option<OwnedUneven>,
 }
@@ -138,12 +135,20 @@ fn each<T>(modules: &ModulesFile, figure: impl Fn(&Module) -> T) -> Each<T> {
 }
 
 impl RingSpec {
-    /// Reads the text of a ring file.
+    /// Reads the text of a ring file that names no URDF.
     ///
     /// # Errors
     /// The first thing wrong with it.
     pub fn from_text(text: &str) -> Result<Self, FileError> {
-        build(text, |file: RingFile| file.spec())
+        build(text, |ring: RingFile| ring.spec(None))
+    }
+
+    /// Reads the text of this ring file. A URDF that it names is looked for beside it.
+    ///
+    /// # Errors
+    /// The first thing wrong with it, in the file.
+    pub fn in_file(file: &Path, text: &str) -> Result<Self, FileError> {
+        build(text, |ring: RingFile| ring.spec(Some(file))).map_err(|error| error.in_file(file))
     }
 
     /// The same ring where `t_delta` must cover this much; where sensors have their own, each as much more.
@@ -189,7 +194,8 @@ impl RingSpec {
         });
         RobotRing {
             sensors: self.sensors,
-            poses: self.poses.clone(),
+            poses: self.places.poses.clone(),
+            heights_m: self.places.heights_m(),
             modules: self.modules.clone(),
             limits: limits.collect(),
             together: requirements.uneven.map_or(vec![], |uneven| uneven.together.to_vec()),
@@ -209,41 +215,17 @@ impl RingSpec {
 ///
 /// ```
 /// let text = "sensors = 2\nmodule = \"ping\"\njitter_us = 100\nmin_interval_us = 0\nspacing_deg = 30\nradius_m = 0.2";
-/// let ring = eeruf_design::robot_ring(text)?;
+/// let ring = eeruf_design::robot_ring("ring.toml".as_ref(), text)?;
 /// assert_eq!((ring.modules[1].name, ring.limits[1].t_delta.as_micros()), ("ping", 100));
 /// # Ok::<(), eeruf_files::FileError>(())
 /// ```
-pub fn robot_ring(text: &str) -> Result<RobotRing, FileError> {
-    Ok(RingSpec::from_text(text)?.robot_ring())
+pub fn robot_ring(file: &Path, text: &str) -> Result<RobotRing, FileError> {
+    Ok(RingSpec::in_file(file, text)?.robot_ring())
 }
 
 impl RingFile {
-    /// Where its sensors are, if it says that.
-    fn poses(&self) -> Result<Vec<Pose>, String> {
-        match (&self.poses, self.spacing_deg, self.radius_m) {
-            (None, None, None) => Ok(vec![]),
-            (Some(poses), None, None) if poses.len() == self.sensors => {
-                let pose =
-                    |place: &PlaceFile| Pose::new(Vector::new(place.x_m, place.y_m), place.heading_deg.to_radians());
-                Ok(poses.iter().map(pose).collect())
-            }
-            (Some(poses), None, None) => {
-                Err(format!("poses has {} places; expected {}, as many as sensors", poses.len(), self.sensors))
-            }
-            (None, Some(spacing), Some(radius)) => {
-                let spacing = number("spacing_deg", spacing, -360.0, 360.0)?.to_radians();
-                let radius = number("radius_m", radius, 0.0, 1000.0)?;
-                Ok(Robot::ring(Pose::identity(), self.sensors, spacing, radius, Transducer::HC_SR04).sensors)
-            }
-            _ => Err("expected either poses, or spacing_deg and radius_m, or none of them".to_owned()),
-        }
-    }
-
-    /// Requirements of the file.
-    ///
-    /// # Errors
-    /// The first thing wrong with it: the key, its value and what is expected.
-    pub fn spec(&self) -> Result<RingSpec, String> {
+    /// Requirements of the ring in this file, or in none: the first thing wrong is an error.
+    fn spec(&self, file: Option<&Path>) -> Result<RingSpec, String> {
         sensors_in_range(self.sensors)?;
         neighbours_in_range(self.neighbours)?;
         let celsius = number("temperature_c", self.temperature_c.unwrap_or(20.0), -100.0, 100.0)?;
@@ -340,7 +322,7 @@ impl RingFile {
             path_change,
             audible: self.audible_us.map(Micros::new),
             modules,
-            poses: self.poses()?,
+            places: self.places(file)?,
             uneven,
         };
         OwnedUneven::can_fire_together(&spec.problem().requirements, sensors)?;

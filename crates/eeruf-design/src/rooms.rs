@@ -38,9 +38,9 @@ impl RingSpec {
     /// # Errors
     /// A layout of pairs without places, which no robot follows from.
     pub fn room_robot(&self) -> Result<RoomRobot, String> {
-        let mut assumed = vec![];
+        let mut assumed = self.places.assumed.clone();
         let mut ring = self.robot_ring();
-        let places = if self.poses.is_empty() {
+        let places = if self.places.poses.is_empty() {
             let spacing_deg = match self.layout.layout() {
                 Layout::Ring(_) => 360.0 / self.sensors as f64,
                 Layout::Line(_) => SPACING_DEG.min(360.0 / self.sensors as f64),

@@ -16,4 +16,4 @@ pub use error::FileError;
 pub use implausible::{doubt, doubt_list, doubted_keys, doubts_in};
 pub use kind::Kind;
 #[cfg(feature = "toml")]
-pub use parse::{build, explain, explain_json, parse};
+pub use parse::{build, explain, explain_json, meant, parse};

@@ -71,6 +71,17 @@ pub fn build<T: DeserializeOwned, B, E: fmt::Display>(
     })
 }
 
+/// The name that an unknown one was meant to be, if one is like it.
+///
+/// ```
+/// assert_eq!(eeruf_files::meant("sensor", ["layout", "sensors"].into_iter()), Some("sensors"));
+/// ```
+pub fn meant<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Option<&'a str> {
+    let likeness = known.map(|known| (known, strsim::jaro_winkler(known, name)));
+    let likely = likeness.filter(|(_, alike)| *alike >= ALIKE);
+    likely.max_by(|one, other| one.1.total_cmp(&other.1)).map(|(known, _)| known)
+}
+
 /// The line of a byte, counted from 1.
 pub(crate) fn line_at(text: &str, byte: usize) -> u64 {
     1 + text.get(..byte).map_or(0, |before| before.matches('\n').count() as u64)
@@ -116,9 +127,8 @@ fn message(key: Option<&str>, found: &str, error: &str) -> String {
     let bare = |name: &str| name.trim_matches('`').to_owned();
     if let Some((name, keys)) = error.strip_prefix("unknown field ").and_then(|rest| rest.split_once(", ")) {
         let name = bare(name);
-        let known = keys.split('`').skip(1).step_by(2).map(|known| (known, strsim::jaro_winkler(known, &name)));
-        let meant = known.filter(|(_, alike)| *alike >= ALIKE).max_by(|one, other| one.1.total_cmp(&other.1));
-        let meant = meant.map_or(String::new(), |(known, _)| format!("; did you mean `{known}`?"));
+        let meant = meant(&name, keys.split('`').skip(1).step_by(2));
+        let meant = meant.map_or(String::new(), |known| format!("; did you mean `{known}`?"));
         let keys = keys.replace("there are no fields", "expected none");
         return format!("{name}: unknown key; {keys}{meant}");
     }

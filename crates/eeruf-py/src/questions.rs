@@ -6,7 +6,7 @@ use eeruf_core::{
     Micros, SpeedOfSound,
     search::{Found as CoreFound, Progress},
 };
-use eeruf_design::{CURVE_BUDGET, CurvePoint, LayoutKey, LayoutName, Need, OwnedUneven, RingSpec, Search};
+use eeruf_design::{CURVE_BUDGET, CurvePoint, LayoutKey, LayoutName, Need, OwnedUneven, Places, RingSpec, Search};
 use pyo3::{prelude::*, types::PyList};
 
 use crate::{
@@ -55,7 +55,7 @@ impl Arguments<'_, '_> {
             path_change: None,
             audible: None,
             modules: vec![],
-            poses: vec![],
+            places: Places::default(),
             uneven: self.uneven.owned(sensors, t_deltas, windows)?,
         };
         OwnedUneven::can_fire_together(&spec.problem().requirements, sensors).map_err(ArgumentError::new_err)?;

@@ -177,8 +177,7 @@ impl Robot {
 }
 
 /// One height for all sensors, or one for each, in metres.
-fn heights(value: Option<&Bound<'_, PyAny>>, sensors: usize) -> PyResult<Vec<f64>> {
-    let Some(value) = value else { return Ok(vec![]) };
+fn heights(value: &Bound<'_, PyAny>, sensors: usize) -> PyResult<Vec<f64>> {
     if value.extract::<f64>().is_ok() {
         return Ok(vec![number("height_m", value, 0.0..=1e3)?; sensors]);
     }
@@ -199,7 +198,7 @@ pub(crate) fn sketch(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Sketch> {
 /// The ring of a ring file.
 pub(crate) fn ring_file(path: &Bound<'_, PyAny>) -> PyResult<RingSpec> {
     let path: PathBuf = path.extract().map_err(|_| wrong("ring", shown(path), "the path of a ring file"))?;
-    let ring = |text: String| RingSpec::from_text(&text).map_err(|error| error.in_file(&path));
+    let ring = |text: String| RingSpec::in_file(&path, &text);
     Kind::Ring.read(&path).and_then(ring).map_err(|error| ArgumentError::new_err(error.to_string()))
 }
 
@@ -398,8 +397,13 @@ impl Robot {
             drift_ppm: clock_drift_ppm.map_or(Ok(0.0), |drift| number("clock_drift_ppm", drift, -1e3..=1e3))?,
         };
         robot.body = body.map(outline).transpose()?;
-        let heights_m = heights(height_m, robot.sensors.len())?;
-        let mut robot = robot.with_heights(heights_m);
+        let mut robot = match height_m {
+            None => robot,
+            Some(given) => {
+                let heights_m = heights(given, robot.sensors.len())?;
+                robot.with_heights(heights_m)
+            }
+        };
         robot.coupling_db = coupling_db.map(|level| number("coupling_db", level, -200.0..=0.0)).transpose()?;
         if let (Some(schedule), None) = (robot.schedule, period_us) {
             robot.period = schedule.period();

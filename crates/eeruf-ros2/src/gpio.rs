@@ -46,12 +46,13 @@ pub(crate) struct GpioRing {
 impl GpioRing {
     /// Finds the schedule of a ring file, as `eeruf design` does.
     pub(crate) fn design(file: &Path) -> Result<Self, String> {
-        let text = fs::read_to_string(file).map_err(|error| format!("ring: {}: {error}", file.display()))?;
-        Self::of(&text).map_err(|error| format!("ring: {}: {error}", file.display()))
+        let wrong = |why: String| format!("ring: {}: {why}", file.display());
+        let text = fs::read_to_string(file).map_err(|error| wrong(error.to_string()))?;
+        let spec = RingSpec::in_file(file, &text).map_err(|error| format!("ring: {error}"))?;
+        Self::of(&spec).map_err(wrong)
     }
 
-    fn of(text: &str) -> Result<Self, String> {
-        let spec = RingSpec::from_text(text).map_err(|error| error.message().to_owned())?;
+    fn of(spec: &RingSpec) -> Result<Self, String> {
         let module = spec.robot_ring().modules.first().copied();
         let problem: PeriodProblem<'_> = spec.problem();
         let search = Search { budget: BUDGET, ..Search::default() };
@@ -311,7 +312,7 @@ mod tests {
 
     /// The readings of 40 periods, by sensor, and the health at their end.
     fn read(start_us: u64) -> (Vec<OfSensor>, Vec<u8>) {
-        let ring = GpioRing::of(RING).unwrap();
+        let ring = GpioRing::of(&RingSpec::from_text(RING).unwrap()).unwrap();
         assert_eq!(ring.sensors, SENSORS);
         let modules = Modules { now_us: Cell::new(start_us), edges: RefCell::default(), triggered: RefCell::default() };
         let (mut readings, mut healths, mut next) = (vec![vec![]; 5], vec![], 0);
@@ -359,7 +360,7 @@ mod tests {
 
     #[test]
     fn module_without_pulses_is_refused() {
-        let error = GpioRing::of(&RING.replace("hc-sr04", "srf08")).err().unwrap();
+        let error = GpioRing::of(&RingSpec::from_text(&RING.replace("hc-sr04", "srf08")).unwrap()).err().unwrap();
         assert!(error.contains("srf08") && error.contains("expected one that answers by a pulse"), "{error}");
     }
 }

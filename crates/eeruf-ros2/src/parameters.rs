@@ -103,7 +103,7 @@ parameters! {
     method: String = "eeruf".to_owned(), "eeruf";
     /// The scene's frame in the simulation.
     map_frame: String = "map".to_owned(), "map";
-    /// A ring file with poses: number and places of the sensors, for /tf_static, the cloud and MAVLink.
+    /// A ring file with poses or a URDF: number and places of the sensors, for /tf_static, the cloud, MAVLink.
     ring: PathBuf = PathBuf::new(), "\"\"";
     /// The number of sensors, if no ring file says it.
     sensors: u8 = 8, "8";
@@ -113,7 +113,7 @@ parameters! {
     frame_ids: Vec<String> = Vec::new(), "[]";
     /// The robot's frame, in which the ring file has the poses.
     base_frame: String = "base_link".to_owned(), "base_link";
-    /// The height of the sensors above it.
+    /// The height of the sensors above it, if the ring file has none.
     height_m: f64 = 0.0, "0.0";
     /// The full width of a sensor's beam.
     field_of_view_rad: f32 = 0.52, "0.52";

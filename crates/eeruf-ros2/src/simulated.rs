@@ -132,7 +132,7 @@ mod tests {
     #[test]
     fn robot_of_a_scene_reads_and_drives_at_the_walls_pace() {
         let world = Arc::new(World::from_text("scene.toml".as_ref(), SCENE).unwrap());
-        assert_eq!(placing(&world, 0.1).0.len(), 4);
+        assert_eq!(placing(&world, 0.1).places.len(), 4);
         let mut simulator = Simulator::new(Arc::clone(&world), "eeruf").unwrap();
         simulator.drive(0.5, 0.0).unwrap();
         let mut read = Vec::new();

@@ -20,7 +20,7 @@ use crate::board_line::nanoseconds;
 use crate::cli::Setup;
 use crate::diagnosis::Status;
 use crate::parameters::{Parameters, Source};
-use crate::placing::Place;
+use crate::placing::{Place, Placing};
 use crate::range::Distance;
 use crate::ros_args::RosArgs;
 use crate::simulated::Course;
@@ -123,9 +123,9 @@ impl Ros {
         };
         let frame_id = |sensor| Parameters::name_of(&parameters.frame_ids, "sonar_", sensor);
         let frame_ids: Vec<String> = (0..parameters.sensors).map(frame_id).collect();
-        let places = setup.placing.0.clone();
-        let placed =
-            (!places.is_empty()).then(|| node.placed(places, &parameters.base_frame, &frame_ids)).transpose()?;
+        let placing = &setup.placing;
+        let placed = (!placing.places.is_empty()).then(|| node.placed(placing, &parameters.base_frame, &frame_ids));
+        let placed = placed.transpose()?;
         let frames = [&parameters.map_frame, &parameters.base_frame];
         let scene = setup.world.as_ref().map(|_| Scene::open(&mut node, frames[0], frames[1])).transpose()?;
         Ok(Self {
@@ -253,7 +253,7 @@ impl Topics<'_> {
     }
 
     /// Publishes where the sensors are, once and for all.
-    fn placed(&mut self, places: Vec<Place>, base_frame: &str, frame_ids: &[String]) -> Result<Placed, String> {
+    fn placed(&mut self, placing: &Placing, base_frame: &str, frame_ids: &[String]) -> Result<Placed, String> {
         let cloud = self.publisher("~/points", ["sensor_msgs", "PointCloud2"], &PUBLISHING)?;
         let transforms = self.publisher("/tf_static", ["tf2_msgs", "TFMessage"], &LATCHED)?;
         let stamp = Time::from_nanoseconds(nanoseconds());
@@ -265,8 +265,9 @@ impl Topics<'_> {
                 rotation: Quaternion::from_yaw(place.yaw_rad),
             },
         };
-        let message = TfMessage { transforms: places.iter().zip(frame_ids).map(transform).collect() };
+        let message = TfMessage { transforms: placing.frames(frame_ids).map(transform).collect() };
         transforms.publish(message).map_err(|error| format!("/tf_static: {error}"))?;
+        let places = placing.places.clone();
         Ok(Placed { places, base_frame: base_frame.to_owned(), cloud, _transforms: transforms })
     }
 }

@@ -1,5 +1,7 @@
 //! Robots out of ring files, whose reader the caller brings: it knows more of rings than a simulator needs.
 
+use std::path::Path;
+
 use eeruf_core::{MAX_SENSORS, Micros, Phase, SensorLimits};
 use eeruf_files::FileError;
 use eeruf_modules::Module;
@@ -13,6 +15,8 @@ pub struct RobotRing {
     pub sensors: usize,
     /// Where each stands on the robot; empty if the file does not say it.
     pub poses: Vec<Pose>,
+    /// Height of each above the floor in metres; empty if the file does not say it.
+    pub heights_m: Vec<f64>,
     /// The module of each sensor; empty if the file names none.
     pub modules: Vec<Module>,
     /// Window and `T_delta` of each sensor.
@@ -29,12 +33,13 @@ pub struct RobotRing {
     pub audible: Option<Micros>,
 }
 
-/// A reader of ring files: from the text to the robot, or an error that names no file.
-pub type ReadRing = fn(&str) -> Result<RobotRing, FileError>;
+/// A reader of ring files: from the file and its text to the robot.
+pub type ReadRing = fn(&Path, &str) -> Result<RobotRing, FileError>;
 
 /// The reader of who has none.
-pub(super) fn no_reader(_: &str) -> Result<RobotRing, FileError> {
-    Err(FileError::in_text(
+pub(super) fn no_reader(file: &Path, _: &str) -> Result<RobotRing, FileError> {
+    Err(FileError::new(
+        file,
         "a ring file, which this reader of scenes does not know; expected a table with sensors, spacing_deg and \
          radius_m. `eeruf study` and Python read ring files",
     ))
@@ -46,6 +51,7 @@ impl RobotRing {
     /// # Errors
     /// The key that is missing, or does not fit its number of sensors.
     pub fn robot(&self, pose: Pose, poses: Option<Vec<Pose>>) -> Result<Robot, String> {
+        let heights_m = if poses.is_none() { self.heights_m.clone() } else { vec![] };
         let poses = poses.unwrap_or_else(|| self.poses.clone());
         if poses.is_empty() {
             return Err("it does not say where sensors stand; expected poses or spacing_deg and radius_m in it, or \
@@ -55,7 +61,9 @@ impl RobotRing {
         if poses.len() != self.sensors || self.sensors > MAX_SENSORS || self.limits.len() != self.sensors {
             return Err(format!("{} places of sensors; expected {}, as many as it has", poses.len(), self.sensors));
         }
-        let mut robot = Robot::with_sensors(pose, poses, Transducer::POLAROID_6500).with_modules(self.modules.clone());
+        let mut robot = Robot::with_sensors(pose, poses, Transducer::POLAROID_6500)
+            .with_modules(self.modules.clone())
+            .with_heights(heights_m);
         robot.window = self.limits.iter().map(|limits| limits.window).max().unwrap_or(robot.window);
         robot.t_delta = self.limits.iter().map(|limits| limits.t_delta).max().unwrap_or(robot.t_delta);
         if self.limits.iter().any(|limits| *limits != self.limits[0]) {

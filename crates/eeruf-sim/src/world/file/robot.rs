@@ -45,8 +45,7 @@ pub(super) fn robot(
         }
         (Some(RingKey::File(name)), sensors) => {
             let beside = source.beside(name)?;
-            let ring = read_ring(&beside.text);
-            let ring = ring.map_err(|error| error.in_file(&beside.file))?;
+            let ring = read_ring(&beside.file, &beside.text)?;
             (speed_m_s, audible) = (ring.speed_m_s, ring.audible);
             let poses = sensors.as_ref().map(|sensors| sensors.iter().map(|sensor| sensor.pose()).collect());
             ring.robot(pose, poses).map_err(|message| fail("ring", format!(": {name}: {message}")))?
@@ -93,12 +92,14 @@ pub(super) fn robot(
         robot.body = Some(body.body().map_err(|message| fail("body", format!(": body: {message}")))?);
     }
     robot.coupling_db = file.coupling_db;
-    let heights_m = match &file.height_m {
-        None => vec![],
-        Some(HeightsFile::All(height_m)) => vec![*height_m; robot.sensors.len()],
-        Some(HeightsFile::Of(list)) => list.clone(),
+    robot = match &file.height_m {
+        None => robot,
+        Some(HeightsFile::All(height_m)) => {
+            let heights_m = vec![*height_m; robot.sensors.len()];
+            robot.with_heights(heights_m)
+        }
+        Some(HeightsFile::Of(list)) => robot.with_heights(list.clone()),
     };
-    robot = robot.with_heights(heights_m);
     if let Some(clock) = &file.clock {
         robot.clock = Clock { offset_us: clock.offset_us, drift_ppm: clock.drift_ppm };
     }

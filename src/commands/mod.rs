@@ -203,7 +203,7 @@ mod tests {
         "LOG.csv",
         "RING.toml",
         "SCENE.toml",
-        "SCENE.toml|DIR",
+        "SCENE.toml|MAP.yaml|DIR",
         "SCHEDULE.toml",
         "NAME,..",
         "NAMES",

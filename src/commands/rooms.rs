@@ -1,15 +1,17 @@
 //! The ways of firing a ring, judged in rooms: the first part of `eeruf design`'s answer.
 
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
 use eeruf_design::{RingDesign, RingSpec, RoomsAnswer, RoomsAsked};
-use eeruf_files::FileError;
+use eeruf_files::{FileError, Kind};
 use eeruf_sim::experiments::rooms::{DRIVING_S, RoomGroup, RoomPlan, RoomWay};
 
 use super::answer::Answer;
 use crate::console::{print_line, tell};
 use crate::files::error::InputError;
+use crate::files::map::read_map;
 use crate::files::ring::read_ring;
 use crate::files::toml::read_world;
 use crate::report::json::to_json;
@@ -19,15 +21,15 @@ use crate::report::watch::Watch;
 /// Options for judging ways of firing in rooms.
 #[derive(clap::Args)]
 pub(crate) struct RoomArgs {
-    /// Judge ways of firing in these scenes instead of the rooms of the set: files, or folders of them. The ring stands
-    /// where the scene's first robot does
-    #[arg(long, value_name = "SCENE.toml|DIR")]
+    /// Judge ways of firing in these scenes and maps instead of the rooms of the set: files, or folders of them. The
+    /// ring stands where the scene's first robot does, and at --places of a map that are free
+    #[arg(long, value_name = "SCENE.toml|MAP.yaml|DIR")]
     rooms: Vec<PathBuf>,
-    /// Number of rooms of each kind; 6 by default
+    /// Number of rooms of each kind, and of places in each map; 6 by default
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1000))]
     places: Option<u64>,
-    /// Number of the first room of each kind; 0 by default. Ways are chosen on numbers below 2000; report those
-    /// from 20000 on
+    /// Number of the first room of each kind, or place in each map; 0 by default. Ways are chosen on numbers below
+    /// 2000; report those from 20000 on
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(..=1_000_000_000))]
     first: Option<u64>,
     /// The largest share of foreign sound in what is believed, in per cent, of a way that is recommended; 3 by
@@ -80,7 +82,7 @@ pub(crate) fn judged(
     design: Option<&RingDesign>,
     watch: &mut Watch,
 ) -> Result<Result<RoomsAnswer, String>, InputError> {
-    let asked = asked(args)?;
+    let asked = asked(args, spec)?;
     let watch = Mutex::new(watch);
     Ok(spec.judge_in_rooms(design, &asked, &|share| goes_on(&watch, share)))
 }
@@ -92,17 +94,20 @@ pub(crate) fn recommended(
     design: &RingDesign,
     watch: &mut Watch,
 ) -> Result<Result<Option<RoomWay>, String>, InputError> {
-    let asked = asked(args)?;
+    let asked = asked(args, spec)?;
     let watch = Mutex::new(watch);
     Ok(spec.recommended_in_rooms(Some(design), &asked, &|share| goes_on(&watch, share)))
 }
 
-fn asked(args: &RoomArgs) -> Result<RoomsAsked, InputError> {
+fn asked(args: &RoomArgs, spec: &RingSpec) -> Result<RoomsAsked, InputError> {
     let default = RoomsAsked::default();
+    let (places, first) = (args.places.unwrap_or(default.places), args.first.unwrap_or(default.first));
+    // A ring without places is refused where it is judged.
+    let radius_m = spec.room_robot().map_or(0.0, |robot| robot.robot.radius_m());
     Ok(RoomsAsked {
-        own: own_rooms(&args.rooms)?,
-        places: args.places.unwrap_or(default.places),
-        first: args.first.unwrap_or(default.first),
+        own: own_rooms(&args.rooms, first..first.saturating_add(places), radius_m)?,
+        places,
+        first,
         driving: args.driving,
         wrong: args.wrong.map_or(default.wrong, |percent| percent / 100.0),
     })
@@ -113,8 +118,8 @@ fn goes_on(watch: &Mutex<&mut Watch>, share: f64) -> bool {
     watch.go_on(|| format!("rooms: {:.0} % done", 100.0 * share))
 }
 
-/// The scenes that were named, as rooms.
-fn own_rooms(paths: &[PathBuf]) -> Result<Vec<RoomGroup>, InputError> {
+/// The scenes and maps that were named, as rooms for a robot of this radius.
+fn own_rooms(paths: &[PathBuf], numbers: Range<u64>, radius_m: f64) -> Result<Vec<RoomGroup>, InputError> {
     let mut files = vec![];
     for path in paths {
         if path.is_dir() {
@@ -122,17 +127,34 @@ fn own_rooms(paths: &[PathBuf]) -> Result<Vec<RoomGroup>, InputError> {
             let entries = std::fs::read_dir(path).map_err(bad)?;
             let mut inside: Vec<_> =
                 entries.map(|entry| entry.map(|entry| entry.path())).collect::<Result<_, _>>().map_err(bad)?;
-            inside.retain(|file| file.extension().is_some_and(|ending| ending == "toml"));
+            inside.retain(|file| file.extension().is_some_and(|ending| ending == "toml") || is_map(file));
             inside.sort();
             if inside.is_empty() {
-                return Err(InputError::new(path, "no file that ends in .toml; expected scenes"));
+                return Err(InputError::new(path, "no file that ends in .toml, and no map; expected scenes or maps"));
             }
             files.extend(inside);
         } else {
             files.push(path.clone());
         }
     }
-    files.iter().zip(0..).map(|(file, number)| scene(file, number)).collect()
+    let room = |(file, number): (&PathBuf, u64)| {
+        if !is_map(file) {
+            return scene(file, number);
+        }
+        let grid = read_map(file)?;
+        let group = RoomGroup::of_map(name_of(file), &grid, numbers.clone(), radius_m);
+        group.map_err(|error| InputError::new(file, error))
+    };
+    files.iter().zip(0..).map(room).collect()
+}
+
+fn is_map(file: &Path) -> bool {
+    Kind::of_file(file) == Some(Kind::Map)
+}
+
+/// A file's name in tables.
+fn name_of(file: &Path) -> String {
+    file.file_stem().map_or_else(|| file.display().to_string(), |stem| stem.to_string_lossy().into_owned())
 }
 
 /// A scene as a room.
@@ -144,6 +166,5 @@ fn scene(file: &Path, number: u64) -> Result<RoomGroup, InputError> {
     let way_m = robot.motion.at(&robot.pose, DRIVING_S).pose.translation.vector - robot.pose.translation.vector;
     let scene = world.scene();
     let plan = RoomPlan::own(number, scene.walls().to_vec(), scene.poles().to_vec(), robot.pose, way_m.norm());
-    let name = file.file_stem().map_or_else(|| file.display().to_string(), |stem| stem.to_string_lossy().into_owned());
-    Ok(RoomGroup { name, rooms: vec![plan] })
+    Ok(RoomGroup { name: name_of(file), rooms: vec![plan] })
 }

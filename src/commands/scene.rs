@@ -2,13 +2,12 @@
 
 use std::path::PathBuf;
 
-use eeruf_files::{Kind, doubt};
-use eeruf_sim::{Air, Noise, OccupancyGrid, Physics, Scene, world_file};
+use eeruf_sim::{Air, Noise, Physics, Scene, world_file};
 
 use super::answer::Answer;
 use crate::console::{print, print_line};
 use crate::files::error::InputError;
-use crate::files::implausible::warn;
+use crate::files::map::read_map;
 
 /// Print a scene file whose walls are the outlines in an occupancy grid, as the ROS map_server saves it: a YAML file
 /// that names a PGM picture beside it.
@@ -34,11 +33,7 @@ fn tolerance(text: &str) -> Result<f64, String> {
 }
 
 pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
-    Kind::Map.read(&args.file)?;
-    let grid = OccupancyGrid::read(&args.file)?;
-    if let Some(doubt) = doubt("resolution", grid.cell_m()) {
-        warn(InputError::new(&args.file, format!("resolution: {doubt}")))?;
-    }
+    let grid = read_map(&args.file)?;
     let tolerance_m = args.tolerance_m.unwrap_or(grid.default_tolerance_m());
     let walls = grid.walls(tolerance_m);
     let bad = |error: eeruf_sim::SceneError| InputError::new(&args.file, error);

@@ -5,6 +5,7 @@
 pub(crate) mod error;
 pub(crate) mod firings;
 pub(crate) mod implausible;
+pub(crate) mod map;
 pub(crate) mod mcap;
 pub(crate) mod outputs;
 pub(crate) mod ring;

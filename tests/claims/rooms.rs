@@ -46,6 +46,30 @@ fn four_lines_get_a_way_with_its_figures_in_each_room() {
     assert!(!period.contains("recommended") && period.contains("5.5 cm of range"), "{period}");
 }
 
+// A map of a robot is a room with as many places as asked for, in files and in folders.
+#[test]
+fn maps_are_rooms_with_places_by_their_numbers() {
+    let (_scratch, file) = Scratch::new("ring.toml", "sensors = 3\nmodule = 'hc-sr04'\n");
+    let ring = file.to_str().unwrap();
+    let figures = |more: &[&str]| {
+        let answer = json(&[&["study", ring, "--json", "--places", "1", "--rooms"], more].concat());
+        way(&answer, "simultaneous")["rooms"].clone()
+    };
+    let first = figures(&["tests/data/maps/flat.yaml"]);
+    assert!(first["flat"]["right_echoes_per_s"].as_f64().is_some_and(|rate| rate > 0.0), "{first}");
+    assert_eq!(first.as_object().map(serde_json::Map::len), Some(1));
+    assert_eq!(figures(&["tests/data/maps"]), first);
+    assert_ne!(figures(&["tests/data/maps/flat.yaml", "--first", "1"]), first);
+    let both = figures(&["tests/data/maps/flat.yaml", "--rooms", "scenes/wall.toml"]);
+    assert_eq!((&both["flat"], both.as_object().map(serde_json::Map::len)), (&first["flat"], Some(2)));
+    let said = eeruf(&["study", ring, "--places", "2", "--rooms", "tests/data/maps/flat.yaml"]).out;
+    assert!(said.contains("In 2 rooms"), "{said}");
+    std::fs::write(&file, "sensors = 3\nmodule = 'hc-sr04'\nspacing_deg = 30\nradius_m = 3\n").unwrap();
+    let wide = eeruf(&["study", ring, "--rooms", "tests/data/maps/flat.yaml"]);
+    let error = wide.err.lines().last().unwrap_or_default();
+    assert!(error.starts_with("eeruf: tests/data/maps/flat.yaml: ") && error.contains("6.00 m wide"), "{}", wide.err);
+}
+
 // Way recommended keeps foreign sound low where all at once does not.
 #[test]
 fn recommended_way_keeps_foreign_sound_low() {
@@ -101,7 +125,10 @@ fn own_scenes_are_rooms_and_options_of_scenes_are_refused() {
             "--places: given with scenes/alcove.toml; expected it with a ring file alone",
         ),
         (["study", "rings/hc-sr04-8.toml", "--rooms", "rings/paper-12.toml"], "expected a scene"),
-        (["study", "rings/hc-sr04-8.toml", "--rooms", "docs"], "no file that ends in .toml; expected scenes"),
+        (
+            ["study", "rings/hc-sr04-8.toml", "--rooms", "docs"],
+            "no file that ends in .toml, and no map; expected scenes or maps",
+        ),
     ] {
         let refused = eeruf(&words);
         assert!(refused.code == Some(2) && refused.err.contains(said), "{words:?}: {}", refused.err);

@@ -9,13 +9,19 @@ use super::contours::contours;
 use super::{pgm, simplify, yaml};
 use crate::scene::Wall;
 
-/// Occupied cells of a square grid, and where the grid lies.
+/// The grey of cells of which nothing is known, as `map_saver` writes it, is this probability and a little; newer
+/// versions of it write a `free_thresh` above.
+const UNKNOWN: f64 = 0.196;
+
+/// Occupied and free cells of a square grid, and where the grid lies.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OccupancyGrid {
     width: usize,
     height: usize,
     /// Row by row, the lowest first.
     occupied: Vec<bool>,
+    /// Those that are known to be free.
+    free: Vec<bool>,
     cell_m: f64,
     /// Where the lower left corner is, in metres, and the grid's heading, in radians.
     origin: [f64; 3],
@@ -23,10 +29,12 @@ pub struct OccupancyGrid {
 
 impl OccupancyGrid {
     /// Reads a map as the ROS `map_server` saves it: a YAML file that names a picture beside it. A cell is occupied if
-    /// it is with a probability above `occupied_thresh`; one of which nothing is known is not.
+    /// it is with a probability above `occupied_thresh`, and free if it is with one below `free_thresh`; one of which
+    /// nothing is known is neither.
     ///
     /// The keys are `image` (a PGM), `resolution` (metres per pixel), `origin` (x, y in metres and yaw in radians of
-    /// the lower left corner), and if need be `negate`, `occupied_thresh` and `mode` (`trinary` or `scale`).
+    /// the lower left corner), and if need be `negate`, `occupied_thresh`, `free_thresh` and `mode` (`trinary` or
+    /// `scale`).
     ///
     /// # Errors
     /// The first thing found wrong, with the file that it is in.
@@ -36,15 +44,14 @@ impl OccupancyGrid {
         let image = file.parent().unwrap_or(Path::new("")).join(&head.image);
         let bytes = fs::read(&image).map_err(|error| FileError::reading(&image, &error))?;
         let picture = pgm::read(&bytes).map_err(|message| FileError::new(&image, message))?;
-        let is_occupied = |&bright: &f32| {
-            let bright = f64::from(bright);
-            (if head.negate { bright } else { 1.0 - bright }) > head.occupied_thresh
-        };
+        let chance = |bright: f32| if head.negate { f64::from(bright) } else { 1.0 - f64::from(bright) };
+        let free_thresh = head.free_thresh.min(UNKNOWN).min(head.occupied_thresh);
         // A picture's first row is the highest.
-        let rows = picture.pixels.chunks_exact(picture.width).rev();
-        let occupied = rows.flat_map(|row| row.iter().map(is_occupied)).collect();
+        let rows = || picture.pixels.chunks_exact(picture.width).rev().flatten();
+        let occupied = rows().map(|&bright| chance(bright) > head.occupied_thresh).collect();
+        let free = rows().map(|&bright| chance(bright) < free_thresh).collect();
         let (width, height) = (picture.width, picture.height);
-        Ok(Self { width, height, occupied, cell_m: head.resolution_m, origin: head.origin })
+        Ok(Self { width, height, occupied, free, cell_m: head.resolution_m, origin: head.origin })
     }
 
     /// Columns and rows.
@@ -62,6 +69,47 @@ impl OccupancyGrid {
         column < self.width && row < self.height && self.occupied[row * self.width + column]
     }
 
+    /// The middles of all cells that are known to be free, in metres.
+    pub fn free_m(&self) -> Vec<[f64; 2]> {
+        let cells = self.free.iter().enumerate().filter(|(_, free)| **free);
+        cells.map(|(cell, _)| self.place([cell % self.width, cell / self.width].map(|at| at as f64 + 0.5))).collect()
+    }
+
+    /// Returns true if all cells within this distance of a point, in metres, are known to be free.
+    ///
+    /// Nothing outside the grid is.
+    pub fn is_free_around(&self, [x, y]: [f64; 2], radius_m: f64) -> bool {
+        let [left, low, yaw] = self.origin;
+        let (sin, cos) = (libm::sin(yaw), libm::cos(yaw));
+        let (along, aside) = (x - left, y - low);
+        let at = [cos * along + sin * aside, cos * aside - sin * along].map(|m| m / self.cell_m);
+        let radius = radius_m / self.cell_m;
+        let [columns, rows] = at.map(|at| (at - radius).floor() as i64..=(at + radius).floor() as i64);
+        let off = |cell: i64, at: f64| (cell as f64 - at).max(at - cell as f64 - 1.0).max(0.0);
+        let is_free = |column: i64, row: i64| {
+            let inside = |at: i64, size: usize| usize::try_from(at).ok().filter(|&at| at < size);
+            let cell = inside(column, self.width).zip(inside(row, self.height));
+            cell.is_some_and(|(column, row)| self.free[row * self.width + column])
+        };
+        rows.into_iter().all(|row| {
+            let mut near = columns.clone().filter(|&column| libm::hypot(off(column, at[0]), off(row, at[1])) < radius);
+            near.all(|column| is_free(column, row))
+        })
+    }
+
+    /// The direction of its rows, in radians.
+    pub fn heading_rad(&self) -> f64 {
+        self.origin[2]
+    }
+
+    /// The place of a point of the grid, counted in cells from its corner, in metres.
+    fn place(&self, cells: [f64; 2]) -> [f64; 2] {
+        let [x, y, yaw] = self.origin;
+        let (sin, cos) = (libm::sin(yaw), libm::cos(yaw));
+        let [along, aside] = cells.map(|cells| cells * self.cell_m);
+        [x + cos * along - sin * aside, y + sin * along + cos * aside]
+    }
+
     /// The tolerance to take unless there is a reason for another, in metres: one and a half cells. The corners of the
     /// stair that a straight wall becomes in cells lie in a strip `sqrt(2)` cells wide at most, so that this makes it
     /// straight again.
@@ -77,12 +125,7 @@ impl OccupancyGrid {
     pub fn walls(&self, tolerance_m: f64) -> Vec<Wall> {
         let tolerance = if tolerance_m > 0.0 { tolerance_m / self.cell_m } else { 0.0 };
         let outlines = contours(self.width, self.height, |column, row| self.is_occupied(column, row));
-        let [x, y, yaw] = self.origin;
-        let (sin, cos) = (libm::sin(yaw), libm::cos(yaw));
-        let place = |corner: [i64; 2]| {
-            let [along, aside] = corner.map(|cells| cells as f64 * self.cell_m);
-            [x + cos * along - sin * aside, y + sin * along + cos * aside]
-        };
+        let place = |corner: [i64; 2]| self.place(corner.map(|cells| cells as f64));
         let closed = simplify::simplified(&outlines, tolerance).into_iter().map(|corners| {
             let mut places: Vec<_> = corners.into_iter().map(place).collect();
             places.extend(places.first().copied());
@@ -123,6 +166,21 @@ mod tests {
         let scene = Scene::new(walls, vec![], Air::default()).unwrap();
         assert!(!scene.is_solid(Point::new(11.0, 21.0)) && scene.is_solid(Point::new(10.25, 21.0)));
         assert!(!scene.is_solid(Point::new(9.0, 21.0)));
+    }
+
+    #[test]
+    fn free_space_is_what_is_known_to_be_free() {
+        // Newer maps have a free_thresh above the grey of what nobody knows.
+        for more in ["", "free_thresh: 0.25\n", "free_thresh: 0.1\n"] {
+            let text = format!("{}{more}", YAML.replace("0]", "1.5707963267948966]"));
+            let grid = map("free", &text, b"P2 4 2 255 255 255 205 0 255 255 255 255").unwrap();
+            assert_eq!(grid.free_m().len(), 6, "{more}");
+            // The grid's rows run along y.
+            assert!(grid.is_free_around([9.5, 20.5], 0.5) && !grid.is_free_around([9.5, 20.5], 0.51));
+            assert!(!grid.is_free_around([9.5, 21.0], 0.3) && grid.is_free_around([9.75, 21.75], 0.2));
+            assert!(!grid.is_free_around([9.25, 21.25], 0.1));
+        }
+        assert_eq!(map("none", &format!("{YAML}free_thresh: 0\n"), b"P2 1 1 1 1").unwrap().free_m().len(), 0);
     }
 
     #[test]

@@ -2,6 +2,9 @@
 
 use saphyr::{LoadableYamlNode, Scalar, Yaml};
 
+/// The `free_thresh` of files without one, as in ROS.
+const FREE_THRESH: f64 = 0.196;
+
 /// Contents of the file.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Head {
@@ -14,9 +17,11 @@ pub(super) struct Head {
     pub(super) negate: bool,
     /// A cell that is occupied with a higher probability is.
     pub(super) occupied_thresh: f64,
+    /// A cell that is occupied with a lower probability is free.
+    pub(super) free_thresh: f64,
 }
 
-/// Reads the file. What only other programs need (`free_thresh`) is left alone.
+/// Reads the file. What only other programs need is left alone.
 pub(super) fn read(text: &str) -> Result<Head, String> {
     let documents = Yaml::load_from_str(text).map_err(|error| error.to_string())?;
     let Some(file) = documents.first().filter(|file| file.is_mapping()) else {
@@ -44,11 +49,15 @@ pub(super) fn read(text: &str) -> Result<Head, String> {
     if !(0.0..1.0).contains(&occupied_thresh) {
         return Err(format!("occupied_thresh = {occupied_thresh}; expected 0 to below 1"));
     }
+    let free_thresh = get("free_thresh").map_or(FREE_THRESH, number);
+    if !(0.0..=1.0).contains(&free_thresh) {
+        return Err(format!("free_thresh = {free_thresh}; expected 0 to 1"));
+    }
     match get("mode").map(|mode| mode.as_str().unwrap_or_default()) {
         None | Some("trinary" | "scale") => {}
         Some(other) => return Err(format!("mode = {other}; expected trinary or scale")),
     }
-    Ok(Head { image: image.to_owned(), resolution_m, origin: [x, y, yaw], negate, occupied_thresh })
+    Ok(Head { image: image.to_owned(), resolution_m, origin: [x, y, yaw], negate, occupied_thresh, free_thresh })
 }
 
 /// A number, or none.
@@ -79,7 +88,7 @@ mod tests {
     fn a_file_as_map_saver_writes_it_is_read() {
         let head = read(FILE).unwrap();
         assert_eq!((&*head.image, head.resolution_m, head.origin), ("lab.pgm", 0.05, [-10.0, 2.5, 0.0]));
-        assert!(!head.negate && head.occupied_thresh == 0.65);
+        assert!(!head.negate && head.occupied_thresh == 0.65 && head.free_thresh == 0.196);
         assert!(read(&FILE.replace("negate: 0", "negate: 1")).unwrap().negate);
     }
 
@@ -93,6 +102,7 @@ mod tests {
             ("[-10, 2.5, 0.0]", "[1, 2, 1e9]", "expected numbers from -100000"),
             ("negate: 0", "negate: 7", "negate = 7; expected 0 or 1"),
             ("occupied_thresh: 0.65", "occupied_thresh: 2", "occupied_thresh = 2"),
+            ("free_thresh: 0.196", "free_thresh: -1", "free_thresh = -1; expected 0 to 1"),
             ("negate: 0", "mode: raw", "mode = raw; expected trinary or scale"),
             (FILE, "", "no keys"),
             (FILE, "a: [", ""),

@@ -10,6 +10,7 @@ mod corpus_reader;
 mod facts;
 mod image_source;
 mod kept;
+mod map_rooms;
 mod modules;
 mod open;
 mod own;

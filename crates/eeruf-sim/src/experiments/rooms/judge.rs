@@ -10,6 +10,7 @@ use crate::experiments::progress::Progress;
 use crate::experiments::spread::Spread;
 use crate::{
     acoustics::{GainProfile, Physics},
+    maps::OccupancyGrid,
     results::{Belief, Readings, Summary, quantile},
     scene::Room,
     simulation::{Options, SimulationError, simulate_while},
@@ -54,6 +55,30 @@ impl RoomGroup {
     pub fn of_kind(kind: RoomKind, numbers: core::ops::Range<u64>, radius_m: f64) -> Self {
         let rooms = numbers.map(|number| RoomPlan::random(kind, number, radius_m)).collect();
         Self { name: kind.to_string(), rooms }
+    }
+
+    /// Places in a map, as [`of_kind`](Self::of_kind) has rooms of a kind: half of the robots stand square to it. They
+    /// are drawn from what is known to be free.
+    ///
+    /// # Errors
+    /// The width for which no free space was found.
+    pub fn of_map(
+        name: String,
+        grid: &OccupancyGrid,
+        numbers: core::ops::Range<u64>,
+        radius_m: f64,
+    ) -> Result<Self, String> {
+        let (free, walls) = (grid.free_m(), grid.walls(grid.default_tolerance_m()));
+        let rooms = numbers.map(|number| {
+            RoomPlan::in_map(grid, &free, &walls, number, radius_m).ok_or_else(|| {
+                let cells = free.len();
+                format!(
+                    "{cells} free cells; expected some with space around them for a robot {:.2} m wide",
+                    2.0 * radius_m
+                )
+            })
+        });
+        Ok(Self { name, rooms: rooms.collect::<Result<_, _>>()? })
     }
 }
 

@@ -8,6 +8,7 @@ use serde::{Serialize, Serializer};
 
 use crate::{
     geometry::{Point, Pose, Vector},
+    maps::OccupancyGrid,
     scene::{Air, Pole, Scene, SceneError, Wall},
     world::{Clock, Motion, Noise, Random, Robot, World, WorldError},
 };
@@ -16,6 +17,11 @@ use crate::{
 pub const VERSION: u32 = 1;
 /// Simulated time of a robot that drives, in seconds, and has way to drive.
 pub const DRIVING_S: f64 = 8.0;
+
+/// The key of what is random about places in maps, beside those of the kinds.
+const MAP: u64 = 100;
+/// The most places in a map of which one must be wide enough.
+const MOST_DRAWN: u32 = 100_000;
 
 /// Free space that is kept around a robot, in metres.
 const CLEARANCE_M: f64 = 0.2;
@@ -172,16 +178,6 @@ impl Draft {
         solids.chain(poles).fold(walls, f64::min)
     }
 
-    /// Distance that a robot of this radius can drive from a place, up to what it drives.
-    fn way_m(&self, from: Vector, direction: Vector, radius_m: f64) -> f64 {
-        const STEP_M: f64 = 0.05;
-        let free = |step: &u32| {
-            let at = from + direction * (STEP_M * f64::from(*step));
-            self.free_m([at.x, at.y]) >= radius_m
-        };
-        STEP_M * f64::from((1..=200).take_while(free).count() as u32)
-    }
-
     /// The roomiest of some places drawn in the middle part of the room.
     fn place(&self, random: &mut Random, share: f64, radius_m: f64) -> Vector {
         let mut best = ([0.0; 2], f64::NEG_INFINITY);
@@ -204,6 +200,23 @@ impl Draft {
         let outer = [[-x, -y], [x, -y], [x, y], [-x, y], [-x, -y]];
         Wall::polyline(&outer).chain(self.solids.iter().flat_map(|solid| solid.walls())).collect()
     }
+}
+
+/// The direction of the longest way from a place, and its length in metres, up to what a robot drives.
+fn longest_way(from: Vector, directions: &[f64], is_free: impl Fn(Vector) -> bool) -> (Vector, f64) {
+    const STEP_M: f64 = 0.05;
+    let ways = directions.iter().map(|&rad| {
+        let direction = Vector::new(libm::cos(rad), libm::sin(rad));
+        let is_free = |step: &u32| is_free(from + direction * (STEP_M * f64::from(*step)));
+        (direction, STEP_M * f64::from((1..=200).take_while(is_free).count() as u32))
+    });
+    let longest = ways.reduce(|one, next| if next.1 > one.1 { next } else { one });
+    longest.unwrap_or((Vector::new(1.0, 0.0), 0.0))
+}
+
+/// All round.
+fn directions() -> Vec<f64> {
+    (0..16).map(|k| TAU * f64::from(k) / 16.0).collect()
 }
 
 impl RoomPlan {
@@ -239,12 +252,9 @@ impl RoomPlan {
         // Away from the other robot along a corridor, and where most room is elsewhere.
         let directions = match kind {
             RoomKind::Meeting => vec![PI],
-            _ => (0..16).map(|k| TAU * f64::from(k) / 16.0).collect(),
+            _ => directions(),
         };
-        let ways = directions.into_iter().map(|rad: f64| Vector::new(libm::cos(rad), libm::sin(rad)));
-        let ways = ways.map(|direction| (direction, draft.way_m(at, direction, radius_m)));
-        let way = ways.reduce(|one, next| if next.1 > one.1 { next } else { one });
-        let way = way.unwrap_or((Vector::new(1.0, 0.0), 0.0));
+        let way = longest_way(at, &directions, |at| draft.free_m([at.x, at.y]) >= radius_m);
         Self { number, walls: draft.walls(), poles: draft.poles, pose, other, way, turns: true }
     }
 
@@ -267,6 +277,31 @@ impl RoomPlan {
             way: (Vector::new(0.0, -1.0), 10.0),
             turns: false,
         }
+    }
+
+    /// The place that a number stands for in a map, one of those that are `free`, for a robot that needs a circle of
+    /// this radius; none if no free space as wide is found. The walls are the map's.
+    pub(super) fn in_map(
+        grid: &OccupancyGrid,
+        free: &[[f64; 2]],
+        walls: &[Wall],
+        number: u64,
+        radius_m: f64,
+    ) -> Option<Self> {
+        // Walls lie a little off the cells' edges.
+        let needs_m = radius_m + grid.default_tolerance_m().max(CLEARANCE_M);
+        let is_free = |at: Vector| grid.is_free_around([at.x, at.y], needs_m);
+        let mut random = Random::new(number).of(MAP);
+        let tilt = random.between(-2.0, 2.0).to_radians();
+        let square = grid.heading_rad() + FRAC_PI_2 * (random.bits() % 4) as f64 + tilt;
+        let any = random.between(0.0, TAU);
+        // As in the set: half of the robots stand square to the map.
+        let heading = if number.is_multiple_of(2) { square } else { any };
+        let drawn = (0..MOST_DRAWN).filter_map(|_| free.get(random.bits().checked_rem(free.len() as u64)? as usize));
+        let at = drawn.map(|&[x, y]| Vector::new(x, y)).find(|&at| is_free(at))?;
+        let way = longest_way(at, &directions(), is_free);
+        let (pose, walls) = (Pose::new(at, heading), walls.to_vec());
+        Some(Self { number, walls, poles: vec![], pose, other: None, way, turns: true })
     }
 
     /// A room of the caller's own, with the robot at a place, from which it can drive this far ahead.

@@ -51,6 +51,11 @@ use crate::report::watch::Watch;
 /// t_delta_us, jitter_us, window_us, max_range_m and retrigger_us may be lists with a number for each
 /// sensor; intervals_us = [[x, y, us], ..] gives pairs an interval of their own, shared_lines = [[x, y], ..] names
 /// sensors on one echo line, together = [[x, y], ..] those that fire at the same instants. Sensors count from 0 in it.
+/// poses, or spacing_deg and radius_m, or urdf and links say where sensors are. With them and module, a ring stands all
+/// round unless layout says otherwise, and pairs that cannot hear each other are no neighbours: neither straight nor
+/// off one wall or object, at any angle and as far as crosstalk_range_m, in the module's strongest fading. The robot's
+/// body lets nothing through, and other frequencies are not heard. Sound over several walls is rejected as ever. Pairs
+/// in layout hold as they are, as for sensors on bare posts.
 /// Among all schedules with that period it prefers a larger T_delta, then a larger smallest interval, then evener
 /// firing. Exit code 0 if there is a schedule, 1 if there is none, 2 for bad input.
 #[derive(clap::Args)]

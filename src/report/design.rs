@@ -120,6 +120,7 @@ pub(crate) fn describe(
     table.add_row(["search".to_owned(), format!("{:.1} ms", 1000.0 * seconds), from]);
 
     let mut text = format!("{name}: {} sensors, {}\n{table}\n", spec.sensors, requirements.layout);
+    text += &not_neighbours(spec);
     _ = writeln!(text, "\nNot shorter because of {}.", design.reason);
     if !what_if.is_empty() {
         _ = writeln!(text, "\n{}", ways_to_get_faster(what_if, period));
@@ -128,6 +129,25 @@ pub(crate) fn describe(
     text += &timing::diagram(schedule, requirements);
     _ = writeln!(text, "\n{}", schedule.to_toml());
     text
+}
+
+/// The pairs that are no neighbours by their places, as people count sensors.
+fn not_neighbours(spec: &RingSpec) -> String {
+    const NAMED: usize = 6;
+    let pairs = &spec.not_neighbours;
+    if pairs.is_empty() {
+        return String::new();
+    }
+    let named =
+        pairs.iter().take(NAMED).map(|(x, y)| format!("{} and {}", x + 1, y + 1)).collect::<Vec<_>>().join(", ");
+    let more = if pairs.len() > NAMED { ", .." } else { "" };
+    let range_m = f64::from(spec.c.distance_mm(spec.min_interval)) / 1000.0;
+    let (count, plural) = (pairs.len(), if pairs.len() == 1 { "" } else { "s" });
+    format!(
+        "\nFrom their places {count} pair{plural} of {} adjacent sensors hear nothing of each other off walls up to \
+         {range_m:.2} m, and may fire close together: {named}{more}.\n",
+        spec.neighbours
+    )
 }
 
 /// The cost of the tick: a period for exact needs, whose proof holds for ticks of any length.

@@ -164,6 +164,39 @@ fn every_shipped_ring_is_proven_with_a_picture() {
     }
 }
 
+// Pairs that hear nothing of each other where they stand are said, and ask for no interval.
+#[test]
+fn pairs_that_do_not_hear_each_other_are_said() {
+    let ring = "sensors = 8\nmodule = \"hc-sr04\"\nretrigger_us = 0\nmax_range_m = 1\n";
+    let (_scratch, file) = Scratch::new("ring.toml", &format!("{ring}spacing_deg = 45\nradius_m = 0.2\n"));
+    let file = file.to_str().unwrap();
+    let placed = eeruf(&["design", file, "--period-only"]).out;
+    assert!(placed.contains("8 sensors, 3 adjacent sensors of a ring"), "{placed}");
+    assert!(placed.contains("From their places 8 pairs of 4 adjacent sensors hear nothing of each other"), "{placed}");
+    assert!(placed.contains("up to 2.57 m, and may fire close together: 1 and 4, 1 and 6, "), "{placed}");
+    let period = || json(&["design", file, "--period-only", "--json"])["value_us"].as_u64().unwrap();
+    let with_places = period();
+    std::fs::write(file, format!("{ring}layout = \"ring\"\n")).unwrap();
+    assert!(with_places < period(), "{with_places}");
+    assert!(!eeruf(&["design", file, "--period-only"]).out.contains("From their places"));
+}
+
+#[test]
+fn rings_of_the_files_keep_their_neighbours() {
+    let spec = |text: &str| RingSpec::from_text(text).unwrap_or_else(|error| panic!("{error}\n{text}"));
+    let read = |name: &str| std::fs::read_to_string(name).unwrap();
+    for name in ["rings/round-16.toml", "rings/car-12.toml", "rings/hc-sr04-8.toml", "tests/data/pioneer-16.toml"] {
+        let spec = spec(&read(name));
+        assert!(spec.not_neighbours.is_empty(), "{name}: {:?}", spec.not_neighbours);
+    }
+    // Of a car whose file asks for more, bumpers are none.
+    let car = read("rings/car-12.toml");
+    let spec = spec(&car.replace("neighbours = 3", "neighbours = 6\nmodule = \"jsn-sr04t\""));
+    let neighbours = |x, y| spec.layout.layout().neighbours(12, x, y);
+    assert!((0..11).all(|x| neighbours(x, x + 1)), "{:?}", spec.not_neighbours);
+    assert!(!neighbours(2, 7) && spec.not_neighbours.contains(&(2, 7)), "{:?}", spec.not_neighbours);
+}
+
 #[test]
 fn ring_file_scene_and_emitted_table_say_the_same_of_a_module() {
     let scene = World::from_toml(Path::new("scenes/alcove-hc-sr04.toml")).unwrap();

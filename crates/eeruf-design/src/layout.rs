@@ -55,7 +55,35 @@ impl OwnedLayout {
     }
 }
 
+impl OwnedLayout {
+    /// The same where only those are neighbours of which these rows say that they hear each other, and the pairs that
+    /// are none now.
+    pub(crate) fn of_those_that_hear(self, hearing: &[u64]) -> (Self, Vec<(usize, usize)>) {
+        let sensors = hearing.len();
+        let rows = self.layout().rows(sensors);
+        let heard = |x: usize, y: usize| hearing[x] >> y & 1 == 1;
+        let pairs = (0..sensors).flat_map(|x| (x + 1..sensors).map(move |y| (x, y)));
+        let deaf: Vec<_> = pairs.filter(|&(x, y)| rows[x] >> y & 1 == 1 && !heard(x, y)).collect();
+        if deaf.is_empty() {
+            return (self, deaf);
+        }
+        let mut kept = rows.to_vec();
+        kept.iter_mut().zip(hearing).for_each(|(row, hearing)| *row &= hearing);
+        // One with a name says more, and is searched faster.
+        let named = (1..=self.neighbours).flat_map(|neighbours| {
+            [LayoutName::Line, LayoutName::Ring].map(|name| Self { name: Some(name), neighbours, rows: vec![] })
+        });
+        let same = named.into_iter().find(|named| named.layout().rows(sensors)[..] == kept[..]);
+        (same.unwrap_or(Self { name: None, neighbours: self.neighbours, rows: kept }), deaf)
+    }
+}
+
 impl LayoutKey {
+    /// Returns true if its pairs follow from a number of neighbours.
+    pub(crate) fn counts_neighbours(&self) -> bool {
+        !matches!(self, Self::Pairs(_))
+    }
+
     /// The layout of this many sensors, of which this many adjacent ones are neighbours.
     ///
     /// # Errors

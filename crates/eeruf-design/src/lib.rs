@@ -6,7 +6,7 @@
 //! | `limits`, `layout` | what numbers a ring file may hold; how the sensors stand |
 //! | `each`, `uneven` | one number for all sensors or one for each; what sensors need that are not alike |
 //! | `ring` | the ring file, turned into what a schedule must meet |
-//! | `places`, `urdf` | where the sensors are on the robot |
+//! | `places`, `urdf`, `hearing` | where the sensors are on the robot, and which hear each other there |
 //! | `shortest`, `find_uneven` | the shortest period for that |
 //! | `find`, `what_if_uneven` | the design of a ring, and what would make it shorter |
 //! | `moving` | the shortest period of a ring that moves |
@@ -41,6 +41,7 @@ mod find;
 mod find_uneven;
 mod found;
 mod handling;
+mod hearing;
 mod hopping;
 mod layout;
 mod limits;

@@ -6,11 +6,12 @@ use eeruf_core::search::PeriodProblem;
 use eeruf_core::{Criterion, Micros, Requirements, SensorLimits, SpeedOfSound};
 use eeruf_files::{FileError, build};
 use eeruf_modules::{Module, ModulesFile};
-use eeruf_sim::RobotRing;
+use eeruf_sim::{Air, Pose, RobotRing};
 use serde::Deserialize;
 
 use crate::each::Each;
-use crate::layout::{LayoutKey, OwnedLayout};
+use crate::hearing::hearing;
+use crate::layout::{LayoutKey, LayoutName, OwnedLayout};
 use crate::limits::{four, neighbours_in_range, number, sensors_in_range};
 use crate::places::{PlaceFile, Places};
 use crate::uneven::OwnedUneven;
@@ -92,6 +93,8 @@ pub struct RingSpec {
     pub layout: OwnedLayout,
     /// Number of adjacent sensors that must not fire close together.
     pub neighbours: u8,
+    /// Pairs that would be neighbours by their number, and are none: they do not hear each other where they stand.
+    pub not_neighbours: Vec<(usize, usize)>,
     /// The least time between the firings of two neighbours (Sec. 3.1 c).
     pub min_interval: Micros,
     /// `T_wind`: how long a sensor listens; the longest where sensors have their own.
@@ -224,6 +227,26 @@ pub fn robot_ring(file: &Path, text: &str) -> Result<RobotRing, FileError> {
 }
 
 impl RingFile {
+    /// The layout, less the pairs that do not hear each other off walls as far as `crosstalk_m`, where the file names
+    /// modules and their places. A ring then stands all round unless it says otherwise: who hears whom is known.
+    fn neighbours_by_places(
+        &self,
+        poses: &[Pose],
+        modules: &[Module],
+        air: Air,
+        crosstalk_m: f64,
+    ) -> Result<(OwnedLayout, Vec<(usize, usize)>), String> {
+        let layout = |key: &LayoutKey| key.owned(self.neighbours, self.sensors);
+        if poses.is_empty() || modules.is_empty() || crosstalk_m == 0.0 || !self.layout.counts_neighbours() {
+            return Ok((layout(&self.layout)?, vec![]));
+        }
+        let widest = match self.layout {
+            LayoutKey::Unsaid => layout(&LayoutKey::Named(LayoutName::Ring))?,
+            _ => layout(&self.layout)?,
+        };
+        Ok(widest.of_those_that_hear(&hearing(poses, modules, air, crosstalk_m)))
+    }
+
     /// Requirements of the ring in this file, or in none: the first thing wrong is an error.
     fn spec(&self, file: Option<&Path>) -> Result<RingSpec, String> {
         sensors_in_range(self.sensors)?;
@@ -304,11 +327,16 @@ impl RingFile {
         let (listening, retrigger) = (largest(&window), if is_uneven { Micros::ZERO } else { largest(&refire) });
         let uneven = || OwnedUneven::new(sensors, [t_delta, window, refire], intervals, lines, together);
         let uneven = is_uneven.then(uneven).transpose()?;
+        let places = self.places(file)?;
+        let crosstalk_m = f64::from(c.distance_mm(min_interval)) / 1e3;
+        let (layout, not_neighbours) =
+            self.neighbours_by_places(&places.poses, &modules, Air::at(celsius), crosstalk_m)?;
         let spec = RingSpec {
             sensors: self.sensors,
             tick: Micros::new(self.tick_us),
-            layout: self.layout.owned(self.neighbours, self.sensors)?,
+            layout,
             neighbours: self.neighbours,
+            not_neighbours,
             min_interval,
             window: largest_window,
             listening,
@@ -322,7 +350,7 @@ impl RingFile {
             path_change,
             audible: self.audible_us.map(Micros::new),
             modules,
-            places: self.places(file)?,
+            places,
             uneven,
         };
         OwnedUneven::can_fire_together(&spec.problem().requirements, sensors)?;

@@ -42,6 +42,7 @@ impl Arguments<'_, '_> {
             tick: Micros::new(whole_or("tick_us", self.tick_us, 1000, 1..=u32::MAX)?),
             layout,
             neighbours,
+            not_neighbours: vec![],
             min_interval: micros("min_interval_us", self.min_interval_us)?,
             window,
             listening: window,

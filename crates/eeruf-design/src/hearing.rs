@@ -1,0 +1,197 @@
+//! Pairs of sensors that can hear each other from where they stand, straight or off one wall.
+
+use core::f64::consts::TAU;
+
+use eeruf_modules::Module;
+use eeruf_sim::{Air, Beam, Piston, Pose, Transducer, Vector};
+
+/// Directions and distances at which sound is turned back between two sensors.
+const DIRECTIONS: u32 = 180;
+const DISTANCES: u32 = 40;
+/// The nearest of these distances, in metres.
+const NEAREST_M: f64 = 0.01;
+/// Amplitude that a narrow panel returns at most, relative to a wall (`docs/explanation/physics.md`).
+const LOUDEST_PANEL: f64 = 1.35;
+/// Degrees off the axis are rounded down to whole ones, but for what rounding errors take from a right angle.
+const SAME_DEG: f64 = 1e-9;
+
+/// A sensor as others hear it.
+struct Heard<'a> {
+    pose: &'a Pose,
+    transducer: Transducer,
+    absorption_db_per_m: f64,
+    /// The amplitude that is just heard now and then.
+    floor: f64,
+    /// The most that leaves or arrives at this many degrees off the axis, or more.
+    pattern: Vec<f64>,
+}
+
+impl<'a> Heard<'a> {
+    fn new(pose: &'a Pose, module: &Module, air: Air) -> Self {
+        let transducer = Transducer::of(module);
+        let absorption_db_per_m = air.absorption_db_per_m(transducer.frequency_hz);
+        // The body that it stands on.
+        let piston = Piston { beam: Beam::CutAt90, ..transducer.piston(air) };
+        let mut pattern: Vec<f64> = (0..=180_u32)
+            .map(|deg| {
+                let within =
+                    (0..4).map(|quarter| piston.pattern((f64::from(deg) + 0.25 * f64::from(quarter)).to_radians()));
+                within.fold(0.0, f64::max)
+            })
+            .collect();
+        for deg in (0..180).rev() {
+            pattern[deg] = pattern[deg].max(pattern[deg + 1]);
+        }
+        let length_m = 2.0 * f64::from(module.hears_to_mm) / 1e3;
+        let floor = lost(absorption_db_per_m, length_m);
+        Self { pose, transducer, absorption_db_per_m, floor, pattern }
+    }
+
+    /// Share of the sound in the direction of a point, and the distance to it.
+    fn towards(&self, point: Vector) -> (f64, f64) {
+        let way = self.pose.inverse_transform_vector(&(point - self.pose.translation.vector));
+        let deg = libm::atan2(way.y, way.x).abs().to_degrees() + SAME_DEG;
+        (self.pattern[deg as usize], way.norm())
+    }
+
+    /// Returns true if it hears another one whose sound is turned back at this point.
+    fn hears(&self, other: &Self, point: Vector, farthest_m: f64) -> bool {
+        let ((departs, out_m), (arrives, back_m)) = (other.towards(point), self.towards(point));
+        let length_m = out_m + back_m;
+        let amplitude = LOUDEST_PANEL * departs * arrives * lost(other.absorption_db_per_m, length_m);
+        length_m <= 2.0 * farthest_m && amplitude >= self.floor
+    }
+}
+
+/// The amplitude after this way, relative to that after 1 m without absorption.
+fn lost(absorption_db_per_m: f64, length_m: f64) -> f64 {
+    libm::exp10(-absorption_db_per_m * length_m / 20.0) / length_m
+}
+
+/// For each sensor the bit set of those that hear it or that it hears: straight, or off one wall or object as far as
+/// `farthest_m`, however that stands, in a module's strongest fading. They stand on a body, which lets nothing through:
+/// a sensor sends and hears nothing behind it.
+pub(crate) fn hearing(poses: &[Pose], modules: &[Module], air: Air, farthest_m: f64) -> Vec<u64> {
+    let sensors: Vec<_> = poses.iter().zip(modules).map(|(pose, module)| Heard::new(pose, module, air)).collect();
+    let mut rows = vec![0; sensors.len()];
+    for (x, one) in sensors.iter().enumerate() {
+        for (y, other) in sensors.iter().enumerate().skip(x + 1) {
+            if one.transducer.hears(&other.transducer) && hear(one, other, farthest_m) {
+                rows[x] |= 1 << y;
+                rows[y] |= 1 << x;
+            }
+        }
+    }
+    rows
+}
+
+fn hear(one: &Heard<'_>, other: &Heard<'_>, farthest_m: f64) -> bool {
+    let middle = 0.5 * (one.pose.translation.vector + other.pose.translation.vector);
+    // Any point turns sound back, by a wall through it that stands as it must.
+    let mut points = (0..DISTANCES).flat_map(|step| {
+        let share = f64::from(step) / f64::from(DISTANCES - 1);
+        let away_m = NEAREST_M * libm::pow(farthest_m.max(NEAREST_M) / NEAREST_M, share);
+        (0..DIRECTIONS).map(move |step| {
+            let rad = TAU * f64::from(step) / f64::from(DIRECTIONS);
+            middle + away_m * Vector::new(libm::cos(rad), libm::sin(rad))
+        })
+    });
+    let hear_at = |point| one.hears(other, point, farthest_m) || other.hears(one, point, farthest_m);
+    // The middle is on the straight way, if there is one.
+    let apart_m = (one.pose.translation.vector - other.pose.translation.vector).norm();
+    (apart_m > NEAREST_M && hear_at(middle)) || points.any(hear_at)
+}
+
+#[cfg(test)]
+mod tests {
+    use eeruf_modules::{HC_SR04, POLAROID_6500};
+    use eeruf_sim::{CrosstalkMatrix, CrosstalkQuery, Limits, Random, Robot, Scene, Tracer, Wall};
+
+    use super::*;
+    use crate::RingSpec;
+
+    /// Two sensors on the edge of a robot of this radius, this far apart in heading.
+    fn two(apart_deg: f64, radius_m: f64, modules: [Module; 2]) -> bool {
+        let pose = |deg: f64| {
+            let rad = deg.to_radians();
+            Pose::new(radius_m * Vector::new(rad.cos(), rad.sin()), rad)
+        };
+        hearing(&[pose(0.0), pose(apart_deg)], &modules, Air::default(), 2.57)[0] != 0
+    }
+
+    #[test]
+    fn back_to_back_is_deaf_and_side_by_side_is_not() {
+        for radius_m in [0.0, 0.05, 0.2, 1.0] {
+            for module in [HC_SR04, POLAROID_6500] {
+                assert!(!two(180.0, radius_m, [module; 2]), "{} {radius_m}", module.name);
+                assert!(two(30.0, radius_m, [module; 2]), "{} {radius_m}", module.name);
+            }
+            // 40 and 49.4 kHz.
+            assert!(!two(30.0, radius_m, [HC_SR04, POLAROID_6500]));
+        }
+        assert!(two(90.0, 0.2, [HC_SR04; 2]) && !two(135.0, 0.2, [HC_SR04; 2]));
+    }
+
+    // By the simulator's own tracer: no wall as near as the limit lets two hear each other that are said not to.
+    #[test]
+    fn no_wall_near_by_joins_a_deaf_pair() {
+        let (air, farthest_m) = (Air::default(), 1.5);
+        let (mut random, mut tracer, mut matrix) = (Random::new(7), Tracer::new(), CrosstalkMatrix::new());
+        let (mut heard, mut deaf) = (0, 0);
+        for (module, sensors) in [(HC_SR04, 8), (POLAROID_6500, 9), (HC_SR04, 13)] {
+            let transducer = Transducer::of(&module);
+            for radius_m in [0.1, 0.3] {
+                let ring = Robot::ring(Pose::identity(), sensors, TAU / sensors as f64, radius_m, transducer).sensors;
+                let rows = hearing(&ring, &vec![module; sensors], air, farthest_m);
+                deaf += rows.iter().map(|row| sensors as u32 - 1 - row.count_ones()).sum::<u32>();
+                // What fading lifts five sigma is heard.
+                let floor = transducer.detection_floor(air) * libm::exp10(-5.0 * 1.5 / 20.0);
+                let (gain, beam) = (eeruf_sim::GainProfile::Constant, Beam::CutAt90);
+                let transducer = Transducer { gain, beam, ..transducer };
+                for _ in 0..200 {
+                    let turned = Pose::new(Vector::zeros(), random.between(0.0, TAU));
+                    let away_m = random.between(radius_m + 0.01, farthest_m);
+                    let corner = |y: f64| {
+                        let at = turned * eeruf_sim::Point::new(away_m, y);
+                        [at.x, at.y]
+                    };
+                    let wall = Wall::polyline(&[corner(-20.0), corner(20.0)]).collect();
+                    let scene = Scene::new(wall, vec![], air).unwrap();
+                    let limits = Limits { max_length_m: 2.0 * farthest_m, ..Limits::order(1) };
+                    let query = CrosstalkQuery::new(&scene, &ring, &transducer, limits, floor);
+                    matrix.compute(&mut tracer, &query).unwrap();
+                    for path in matrix.paths().iter().filter(|path| path.emitter != path.receiver) {
+                        heard += 1;
+                        assert!(rows[path.emitter as usize] >> path.receiver & 1 == 1, "{} {path:?}", module.name);
+                    }
+                }
+            }
+        }
+        assert!(heard > 1000 && deaf > 60, "{heard} {deaf}");
+    }
+
+    fn spec(text: &str) -> RingSpec {
+        RingSpec::from_text(text).unwrap_or_else(|error| panic!("{error}\n{text}"))
+    }
+
+    #[test]
+    fn deaf_pairs_of_a_ring_are_no_neighbours() {
+        let ring = "sensors = 8\nmodule = \"hc-sr04\"\nmin_interval_us = 9_000\n";
+        let arc = "spacing_deg = 45\nradius_m = 0.2\n";
+        let without = spec(&format!("{ring}layout = \"ring\""));
+        let with = spec(&format!("{ring}{arc}"));
+        assert_eq!(without.layout.layout().to_string(), "4 adjacent sensors of a ring");
+        // 135 degrees apart.
+        assert_eq!(with.layout.layout().to_string(), "3 adjacent sensors of a ring");
+        assert_eq!((without.not_neighbours.len(), with.not_neighbours.len()), (0, 8));
+        assert!(with.not_neighbours.contains(&(0, 3)) && with.not_neighbours.contains(&(0, 5)));
+        // Pairs that a file names are its own.
+        let named = spec(&format!("{ring}{arc}layout = [[0, 4]]"));
+        assert!(named.layout.layout().neighbours(8, 0, 4) && named.not_neighbours.is_empty());
+        // A pair back to back asks for no interval.
+        let poses = "poses = [{ x_m = 0.1, y_m = 0 }, { x_m = -0.1, y_m = 0, heading_deg = 180 }]";
+        let pair = spec(&format!("{}{poses}", ring.replace('8', "2")));
+        assert!(!pair.layout.layout().neighbours(2, 0, 1));
+        assert_eq!(pair.not_neighbours, [(0, 1)]);
+    }
+}

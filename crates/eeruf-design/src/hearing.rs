@@ -144,7 +144,7 @@ mod tests {
                 let ring = Robot::ring(Pose::identity(), sensors, TAU / sensors as f64, radius_m, transducer).sensors;
                 let rows = hearing(&ring, &vec![module; sensors], air, farthest_m);
                 deaf += rows.iter().map(|row| sensors as u32 - 1 - row.count_ones()).sum::<u32>();
-                // What fading lifts five sigma is heard.
+                // Sound that fading lifts by five sigma is heard.
                 let floor = transducer.detection_floor(air) * libm::exp10(-5.0 * 1.5 / 20.0);
                 let (gain, beam) = (eeruf_sim::GainProfile::Constant, Beam::CutAt90);
                 let transducer = Transducer { gain, beam, ..transducer };

@@ -170,7 +170,7 @@ mod tests {
 
     #[test]
     fn free_space_is_what_is_known_to_be_free() {
-        // Newer maps have a free_thresh above the grey of what nobody knows.
+        // Newer maps have a free_thresh above the grey of unknown cells.
         for more in ["", "free_thresh: 0.25\n", "free_thresh: 0.1\n"] {
             let text = format!("{}{more}", YAML.replace("0]", "1.5707963267948966]"));
             let grid = map("free", &text, b"P2 4 2 255 255 255 205 0 255 255 255 255").unwrap();

@@ -37,7 +37,7 @@ fn places_in_a_map_are_free_and_of_their_numbers() {
     assert!(rooms.iter().all(|&places| places > 60), "{rooms:?}");
     assert!((150..180).contains(&square), "{square}");
     assert_eq!(flat(7..8, 0.15).unwrap()[0], plans[7]);
-    // What is wider than a room has no place.
+    // A robot wider than the free space has no place.
     let error = flat(0..1, 2.0).unwrap_err();
     assert!(error.ends_with("free cells; expected some with space around them for a robot 4.00 m wide"), "{error}");
 }

@@ -46,6 +46,9 @@ pub(crate) fn json(found: &Found<'_>) -> Value {
                 Fault::Swapped { exchanged, as_it_is, accidents, .. } => object!({
                     "exchanged": share(exchanged), "as_it_is": share(as_it_is), "accidents": accidents,
                 }),
+                Fault::Exchanged { together, alone, accidents, .. } => object!({
+                    "together": share(together), "alone": share(alone), "accidents": accidents,
+                }),
                 Fault::Late { late_us, delayed, as_it_is, accidents, .. } => object!({
                     "late_us": late_us, "delayed": share(delayed), "as_it_is": share(as_it_is), "accidents": accidents,
                 }),

@@ -76,7 +76,7 @@ impl Found<'_> {
                 Fault::Chattering { sensor, .. } => {
                     format!("disable sensor {} until its echo line is quiet", sensor + 1)
                 }
-                Fault::Swapped { sensors: (a, b), .. } => {
+                Fault::Swapped { sensors: (a, b), .. } | Fault::Exchanged { sensors: (a, b), .. } => {
                     format!("exchange the echo lines (or the triggers) of sensors {} and {}", a + 1, b + 1)
                 }
                 _ => continue,

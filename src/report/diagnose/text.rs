@@ -152,6 +152,19 @@ fn faults(found: &Found<'_>, text: &mut String) {
                 as_it_is.count,
                 as_it_is.of
             ),
+            Fault::Exchanged { sensors: (silent, other), together, alone, accidents } => writeln!(
+                text,
+                "Sensors {} and {} are mis-wired, their echo lines exchanged: {} hears nothing, and {} hears in {} of \
+                 its firings while {} listens, and in {} of its others ({accidents:.1e} such pairs expected by \
+                 accident).",
+                silent + 1,
+                other + 1,
+                silent + 1,
+                other + 1,
+                percent(together),
+                silent + 1,
+                percent(alone),
+            ),
             _ => Ok(()),
         };
     }

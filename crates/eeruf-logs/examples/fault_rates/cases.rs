@@ -146,7 +146,7 @@ impl Broken {
             | (Self::Loses(_), &Found::Losing { sensor: of, .. })
             | (Self::LateTrigger, &Found::Late { sensor: of, .. })
             | (Self::Noise(_), &Found::Chattering { sensor: of, .. }) => usize::from(of) == sensor,
-            (Self::EchoWires, &Found::Swapped { sensors, .. }) => pair(sensors),
+            (Self::EchoWires, &(Found::Swapped { sensors, .. } | Found::Exchanged { sensors, .. })) => pair(sensors),
             _ => false,
         }
     }

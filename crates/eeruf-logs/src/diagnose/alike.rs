@@ -3,8 +3,8 @@
 use std::collections::{BTreeMap, HashMap};
 
 use super::FoundPath;
-use super::sensors::Share;
-use super::statistics::median;
+use super::share::Share;
+use super::statistics::{ln_at_least, median};
 use super::timeline::{Heard, Timeline};
 
 /// Others that fired so long before are still heard, in microseconds.
@@ -19,10 +19,27 @@ const CROWDS: f64 = 3.0;
 const FOLLOWS_US: i64 = 200;
 /// Among fewer firings alike two echoes at one time are no accident.
 const MANY: usize = 20;
+/// Half of the stretch of travel times that a faint path is compared with, in microseconds.
+const STRETCH_US: i64 = 2000;
+/// The probability that an echo that wanders counts as one of a faint path.
+const ACCIDENT: f64 = 0.001;
 /// Parts of a log of which the median says how much a sensor chatters.
 const PARTS: usize = 40;
 /// Fewer firings alike say nothing of each other.
 const FEWEST: usize = 4;
+
+/// A sensor that hears so few of the arrivals that it should is broken, of this many.
+const ANSWERS: f64 = 0.75;
+const ARRIVALS: u32 = 20;
+/// A sensor that loses echoes hears one in fewer of the firings at which it should, of this many.
+const KEEPS: f64 = 0.8;
+const COMPARED: u32 = 8;
+/// More echoes behind the usual one show that this one fades.
+const BEHIND: f64 = 0.3;
+/// An echo of its own is there to be heard in more of the firings that can be compared, whatever others do.
+const MOSTLY: f64 = 0.4;
+/// Misses at random come as often after a miss as after an echo; those of a sound that fades come in runs.
+const RANDOM: f64 = 0.1;
 
 /// Readings of one sensor that repeat.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -40,8 +57,39 @@ pub(super) struct Alike {
     /// Firings with an echo by that of the sensor's firing just before, without and with one, where any firing alike
     /// has an echo.
     pub(super) after: [Share; 2],
+    /// Firings with an echo where the one before had it, of all but the first: others' sound moves from firing to
+    /// firing, its own does not.
+    pub(super) steady: Share,
+    /// Echoes behind the one that comes most often when the ring fires alike, of all that do not come before it. Where
+    /// an echo is lost, what is behind it is lost with it; where it fades, that is heard.
+    pub(super) behind: Share,
     /// Arrivals that it should hear, as others hear its own sound along these paths, and that it heard.
     pub(super) answers: Share,
+}
+
+impl Alike {
+    /// Returns true if it hears the arrivals that it should.
+    fn hears_others(&self) -> bool {
+        self.answers.of >= ARRIVALS && self.answers.interval_95().0 > ANSWERS
+    }
+
+    /// Returns true if it does not hear the arrivals that it should.
+    pub(super) fn misses_others(&self) -> bool {
+        self.answers.of >= ARRIVALS && self.answers.interval_95().1 < ANSWERS
+    }
+
+    /// Returns true if it misses echoes at random: it loses them, or they are at its threshold and fade independently
+    /// at every firing.
+    pub(super) fn misses_at_random(&self) -> bool {
+        let compared = f64::from(self.repeats.of + self.returns.of);
+        self.repeats.of >= COMPARED
+            && self.repeats.interval_95().1 < KEEPS
+            && !self.hears_others()
+            && self.repeats.differs(self.returns).abs() < RANDOM
+            && self.after[1].differs(self.after[0]).abs() < RANDOM
+            && self.behind.value() < BEHIND
+            && compared > MOSTLY * f64::from(self.wandering.of)
+    }
 }
 
 /// Compares the firings of a sensor.
@@ -70,9 +118,12 @@ pub(super) fn alike(
         wanders_steadily: 0.0,
         wanders_after: [Share::NONE; 2],
         after: [Share::NONE; 2],
+        steady: Share::NONE,
+        behind: Share::NONE,
         answers: answers(receiver, paths, timeline, tolerance),
     };
     let mut wanders = BTreeMap::new();
+    let mut wanderers = Vec::new();
     // Firings at which something is there to be heard.
     let mut is_sound = HashMap::new();
     for group in groups.values().filter(|group| group.len() >= FEWEST) {
@@ -85,10 +136,15 @@ pub(super) fn alike(
             let of = if two[0].echo_us.is_some() { &mut all.repeats } else { &mut all.returns };
             of.add(two[1].echo_us.is_some());
         }
+        behind(&echoes, &mut all.behind);
         is_sound.extend(group.iter().map(|firing| (firing.firing, firing.echo_us.is_some())));
         for firing in wandering(&echoes, group.len()).filter(|firing| fits_none[firing.firing]) {
-            wanders.insert(firing.firing, true);
+            wanderers.push(*firing);
         }
+    }
+    let is_path = faint(receiver, &wanderers, timeline);
+    for (firing, is_path) in wanderers.iter().zip(is_path) {
+        wanders.insert(firing.firing, !is_path);
     }
     let part_of = |part: &[Heard]| {
         let mut share = Share::NONE;
@@ -100,6 +156,8 @@ pub(super) fn alike(
         heard.chunks(heard.len().div_ceil(PARTS).max(1)).map(|part| part_of(part).value()).collect();
     all.wanders_steadily = median(&mut parts);
     for two in heard.windows(2) {
+        let stays = two[0].echo_us.zip(two[1].echo_us).is_some_and(|(a, b)| (a - b).abs() <= FOLLOWS_US);
+        all.steady.add(stays);
         if let [Some(before), Some(after)] = [0, 1].map(|k| wanders.get(&two[k].firing)) {
             all.wanders_after[usize::from(*before)].add(*after);
         }
@@ -108,6 +166,14 @@ pub(super) fn alike(
         }
     }
     all
+}
+
+/// Counts the echoes of firings alike that come behind the one that comes most often, of those that do not come before.
+fn behind(echoes: &[&Heard], share: &mut Share) {
+    let times = || echoes.iter().filter_map(|firing| firing.echo_us);
+    let near = |us: i64| times().filter(|other| (other - us).abs() <= SAME_US).count();
+    let Some(most) = times().max_by_key(|&us| near(us)) else { return };
+    times().filter(|us| us + SAME_US >= most).for_each(|us| share.add(us > most + SAME_US));
 }
 
 /// Of echoes in order of time, among this many firings alike, those that neither come at a time at which others crowd
@@ -122,10 +188,7 @@ fn wandering<'a>(echoes: &'a [&'a Heard], firings: usize) -> impl Iterator<Item 
             |from: i64, to: i64| sorted.partition_point(|&us| us <= to) - sorted.partition_point(|&us| us < from);
         let near = within(us - SAME_US, us + SAME_US);
         // The usual crowd of a stretch around: noise crowds it as much, another path a part of it.
-        let mut around: Vec<_> = (1..=AROUND)
-            .flat_map(|k| [k, -k])
-            .map(|k| within(us + (2 * k - 1) * SAME_US + 1, us + (2 * k + 1) * SAME_US))
-            .collect();
+        let mut around = crowds(us, within);
         around.sort_unstable();
         near >= least && near as f64 >= CROWDS * around[around.len() / 2] as f64
     };
@@ -140,6 +203,46 @@ fn wandering<'a>(echoes: &'a [&'a Heard], firings: usize) -> impl Iterator<Item 
         (!recurs && !follows(place)).then_some(*firing)
     };
     echoes.iter().enumerate().filter_map(wanders)
+}
+
+/// The crowds of the stretches around a time, next to the one in which it lies.
+fn crowds(us: i64, within: impl Fn(i64, i64) -> usize) -> Vec<usize> {
+    let places = (1..=AROUND).flat_map(|k| [k, -k]);
+    places.map(|k| within(us + (2 * k - 1) * SAME_US + 1, us + (2 * k + 1) * SAME_US)).collect()
+}
+
+/// Marks echoes that come along a path too faint to be found: others among them took the same time from a firing of
+/// one sensor, the receiver's own or another's, significantly more than the stretch around it gives by accident.
+fn faint(receiver: u8, wanderers: &[Heard], timeline: &Timeline) -> Vec<bool> {
+    // By source: the time from its firing to an echo, and which echo.
+    let mut travels = vec![Vec::new(); timeline.sensors()];
+    for (place, firing) in wanderers.iter().enumerate() {
+        let Some(echo_us) = firing.echo_us else { continue };
+        for (fired_us, sensor) in timeline.before(firing.fired_us + echo_us) {
+            if sensor != receiver || fired_us == firing.fired_us {
+                travels[usize::from(sensor)].push((firing.fired_us + echo_us - fired_us, place));
+            }
+        }
+    }
+    let ln_limit = (ACCIDENT / timeline.sensors() as f64).ln();
+    let mut is_path = vec![false; wanderers.len()];
+    for travels in &mut travels {
+        travels.sort_unstable();
+        let within = |from: i64, to: i64| {
+            travels.partition_point(|&(at, _)| at <= to) - travels.partition_point(|&(at, _)| at < from)
+        };
+        let share = SAME_US as f64 / STRETCH_US as f64;
+        for &(us, place) in travels.iter() {
+            let near = within(us - SAME_US, us + SAME_US);
+            let stretch = within(us - STRETCH_US, us + STRETCH_US);
+            let mut around = crowds(us, within);
+            around.sort_unstable();
+            let second = around[around.len() - 2];
+            is_path[place] |= near as f64 >= CROWDS * second as f64
+                && ln_at_least(near as u32 - 1, stretch as u32 - 1, share) < ln_limit;
+        }
+    }
+    is_path
 }
 
 /// Arrivals at a sensor along paths on which others hear its own sound loudly, of which it should hear as many: heard,

@@ -6,9 +6,11 @@
 //! hear in nearly every firing, so that the room has no open side.
 
 use super::alike::Alike;
-use super::reciprocity::{Wiring, wiring};
-use super::sensors::{Hearing, Share};
+use super::reciprocity::{Wiring, contradicted, wiring};
+use super::sensors::{FEW, Hearing};
+use super::share::Share;
 use super::timeline::Timeline;
+use super::together::{Together, together};
 use super::{FoundPath, Settings};
 
 /// Something that is broken, with what speaks for it.
@@ -50,6 +52,19 @@ pub enum Fault {
         /// Number of explanations as good that are expected in a whole ring by accident.
         accidents: f64,
     },
+    /// The echo lines of two sensors are exchanged, whose modules listen only after their own triggers. One line is
+    /// silent, and the other has echoes only while the silent sensor listens.
+    Exchanged {
+        /// The silent sensor and the other, from 0.
+        sensors: (u8, u8),
+        /// Firings of the other with an echo, of those at which both listen for a while.
+        together: Share,
+        /// The same of its other firings.
+        alone: Share,
+        /// Number of such pairs expected in a whole ring by accident, if the other's echoes do not depend on the silent
+        /// sensor.
+        accidents: f64,
+    },
     /// A sensor fires later than the log says. Its sound takes longer to the others than theirs to it.
     Late {
         /// The sensor, from 0.
@@ -72,7 +87,7 @@ impl Fault {
             Self::Deaf { .. } => "deaf",
             Self::Losing { .. } => "losing",
             Self::Chattering { .. } => "chattering",
-            Self::Swapped { .. } => "swapped",
+            Self::Swapped { .. } | Self::Exchanged { .. } => "swapped",
             Self::Late { .. } => "late",
         }
     }
@@ -84,32 +99,26 @@ impl Fault {
             | Self::Losing { sensor, .. }
             | Self::Chattering { sensor, .. }
             | Self::Late { sensor, .. } => vec![sensor],
-            Self::Swapped { sensors: (one, other), .. } => vec![one, other],
+            Self::Swapped { sensors: (one, other), .. } | Self::Exchanged { sensors: (one, other), .. } => {
+                vec![one, other]
+            }
         }
     }
 }
 
-/// A sensor with fewer firings is not judged.
-const FEW: u32 = 50;
 /// In a log with fewer of each a robot that drives along a wall looks like one that stands.
 const SHORT: u32 = 200;
-/// A deaf sensor has an echo in fewer of its firings.
-const DEAF: f64 = 0.02;
 /// A room without an open side is heard by all others in this share of their firings.
-const CLOSED: f64 = 0.9;
-/// A sensor that hears so few of the arrivals that it should is broken, of this many.
-const ANSWERS: f64 = 0.75;
-const ARRIVALS: u32 = 20;
-/// A sensor that loses echoes hears one in fewer of the firings at which it should, of this many.
-const KEEPS: f64 = 0.8;
-const COMPARED: u32 = 8;
-/// Misses at random come as often after a miss as after an echo; those of a sound that fades come in runs.
-const RANDOM: f64 = 0.1;
-const RUNS: f64 = 0.3;
+const CLOSED: f64 = 0.8;
+const CLOSED_BY_TWO: f64 = 0.9;
+/// The mean share of their firings whose echo stays is larger: it is their own.
+const OWN: f64 = 0.5;
 /// Firings of a chattering sensor whose echoes wander, at least.
 const CHATTERS: f64 = 0.065;
-/// Noise has no memory; who walks by makes echoes wander one after the other.
+/// Noise has no memory; who walks by makes echoes wander one after the other. With more phases lags move, and how often
+/// noise comes first changes with them.
 const EPISODES: f64 = 2.0;
+const EPISODES_OF_TWO: f64 = 1.0;
 /// Not more than one other sensor does so this much as often.
 const AS_OTHERS: f64 = 0.4;
 
@@ -122,25 +131,34 @@ pub(super) fn faults(
     moved: bool,
 ) -> Vec<Fault> {
     let mut faults = Vec::new();
+    let contradicted = contradicted(paths, timeline, settings);
+    let is_contradicted = |sensor: u8| contradicted.iter().any(|path| [path.0, path.1].contains(&sensor));
+    let silent = hearing.iter().filter(|of| of.is_silent).count();
     for (of, like) in hearing.iter().zip(alike).filter(|(of, _)| of.echoes.of >= FEW) {
         let sensor = of.sensor;
-        let mut others = hearing.iter().filter(|other| other.sensor != sensor);
-        let is_closed = hearing.len() > 2 && others.all(|other| other.echoes.value() > CLOSED);
-        let misses_others = like.answers.of >= ARRIVALS && like.answers.interval_95().1 < ANSWERS;
+        // Another sensor that hears only while this one listens, if this is the only one that is silent.
+        let pair = (of.is_silent && silent == 1 && !moved).then(|| together(sensor, timeline, settings)).flatten();
+        let is_other = |of: &Hearing| of.sensor != sensor && pair.is_none_or(|pair| of.sensor != pair.sensor);
+        let others: Vec<_> = hearing.iter().zip(alike).filter(|(of, _)| is_other(of)).collect();
+        let is_closed = is_closed(&others, timeline.has_many_phases);
+        let misses_others = like.misses_others();
         let stands = !moved && of.echoes.of >= SHORT;
-        let fades_slowly = alike.iter().any(|other| other.runs() > RUNS);
-        if of.is_silent && (is_closed || misses_others) {
+        let exchanged = pair.filter(|pair| is_closed || is_contradicted(sensor) || is_contradicted(pair.sensor));
+        if let Some(Together { sensor: other, with: together, without: alone, accidents }) = exchanged {
+            faults.push(Fault::Exchanged { sensors: (sensor, other), together, alone, accidents });
+        } else if of.is_silent && (is_closed || misses_others || is_contradicted(sensor)) {
             let is_heard = paths.iter().any(|path| path.sender == sensor && path.receiver != sensor);
             faults.push(Fault::Deaf { sensor, echoes: of.echoes, is_heard });
-        } else if stands && of.misses_at_random && (is_closed || misses_others || fades_slowly) {
+        } else if stands && of.misses_at_random && (is_closed || misses_others) {
             let Share { count, of } = like.repeats;
             faults.push(Fault::Losing { sensor, lost: Share { count: of - count, of } });
         }
         // Who walks by makes echoes of several sensors wander, for a while.
         let as_much = |other: &&Alike| other.wandering.value() > AS_OTHERS * like.wandering.value();
         let [after_none, after_one] = like.wanders_after;
+        let episodes = if timeline.has_many_phases { EPISODES } else { EPISODES_OF_TWO };
         let alone = alike.iter().filter(as_much).count() <= 2
-            && after_one.interval_95().0 < EPISODES * after_none.interval_95().1;
+            && after_one.interval_95().0 < episodes * after_none.interval_95().1;
         if stands && alone && like.wandering.of >= FEW && like.wanders_steadily > CHATTERS {
             faults.push(Fault::Chattering { sensor, wandering: like.wandering });
         }
@@ -148,11 +166,7 @@ pub(super) fn faults(
     if moved {
         return faults;
     }
-    let blames = |fault: &Fault| match *fault {
-        Fault::Deaf { sensor, .. } | Fault::Losing { sensor, .. } | Fault::Chattering { sensor, .. } => Some(sensor),
-        _ => None,
-    };
-    let broken: Vec<_> = faults.iter().filter_map(blames).collect();
+    let broken: Vec<_> = faults.iter().flat_map(Fault::sensors).collect();
     match wiring(paths, timeline, &broken, settings) {
         Some((Wiring::Swapped(a, b), score, as_it_is, accidents)) => faults.push(Fault::Swapped {
             sensors: (a, b),
@@ -168,37 +182,11 @@ pub(super) fn faults(
     faults
 }
 
-/// Returns true if a sensor hears nothing: out of range, or deaf.
-pub(super) fn is_silent(echoes: Share) -> bool {
-    echoes.of >= FEW && echoes.interval_95().1 < DEAF
-}
-
-/// Returns true if a sensor misses echoes at random: it loses them, or they are at its threshold and fade
-/// independently at every firing.
-pub(super) fn misses_at_random(like: &Alike) -> bool {
-    let hears_others = like.answers.of >= ARRIVALS && like.answers.interval_95().0 > ANSWERS;
-    like.repeats.of >= COMPARED
-        && like.repeats.interval_95().1 < KEEPS
-        && !hears_others
-        && like.repeats.differs(like.returns).abs() < RANDOM
-        && like.after[1].differs(like.after[0]).abs() < RANDOM
-}
-
-impl Alike {
-    /// The share by which a sensor surely hears more often after an echo than after a miss.
-    fn runs(&self) -> f64 {
-        if self.after.iter().any(|share| share.of < ARRIVALS) { 0.0 } else { self.after[1].differs(self.after[0]) }
-    }
-}
-
-impl Share {
-    /// The difference that two shares surely have, within two standard errors.
-    fn differs(self, other: Self) -> f64 {
-        let variance = |share: Self| {
-            let value = share.value();
-            (value * (1.0 - value) + 0.02) / f64::from(share.of.max(1))
-        };
-        let by = self.value() - other.value();
-        (by.abs() - 2.0 * (variance(self) + variance(other)).sqrt()).max(0.0).copysign(by)
-    }
+/// Returns true if a room has no open side: these sensors all hear, and mostly their own echoes. With two phases
+/// others' sound recurs like an own echo, so that all must hear the more often.
+fn is_closed(others: &[(&Hearing, &Alike)], has_many_phases: bool) -> bool {
+    let steady: f64 = others.iter().map(|(_, like)| like.steady.value()).sum();
+    let (hears, is_own) =
+        if has_many_phases { (CLOSED, steady > OWN * others.len() as f64) } else { (CLOSED_BY_TWO, true) };
+    others.len() > 1 && is_own && others.iter().all(|(of, _)| of.echoes.value() > hears)
 }

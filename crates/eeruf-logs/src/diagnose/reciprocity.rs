@@ -3,7 +3,7 @@
 //! Along a loud path from x to y, y's sound must reach x after the same time whenever nothing earlier hides it. Each
 //! path is held against the readings of its sender; an explanation is taken if it leaves no contradiction.
 
-use super::sensors::Share;
+use super::share::Share;
 use super::statistics::ln_at_least;
 use super::timeline::Timeline;
 use super::{FoundPath, Settings};
@@ -17,6 +17,8 @@ const CONFIRMED: f64 = 0.5;
 const CONTRADICTED: f64 = 0.15;
 /// A trigger that is less late than this, in microseconds, does not show beside the scatter of faint echoes.
 const LEAST_LATE_US: f64 = 300.0;
+/// A longer delay is another path, in microseconds.
+const MOST_LATE_US: f64 = 5000.0;
 /// No sensor hears others sooner after it fired, in microseconds.
 const DEAF_US: i64 = 3000;
 
@@ -36,12 +38,26 @@ pub(super) enum Wiring {
 pub(super) struct Score {
     pub(super) confirmed: u32,
     pub(super) contradicted: u32,
+    /// The natural logarithm of the probability that as many paths that are heard back seem contradicted.
+    ln_accident: f64,
 }
 
 impl Score {
     pub(super) fn share(self) -> Share {
         Share { count: self.confirmed, of: self.confirmed + self.contradicted }
     }
+}
+
+fn loud(paths: &[FoundPath]) -> impl Iterator<Item = &FoundPath> {
+    paths.iter().filter(|path| path.heard >= LOUD && path.readings >= FEW)
+}
+
+/// The loud paths on which nothing is heard back, as the log stands: their senders and receivers. A healthy ring has
+/// none.
+pub(super) fn contradicted(paths: &[FoundPath], timeline: &Timeline, settings: &Settings) -> Vec<(u8, u8)> {
+    let tolerance = i64::from(settings.tolerance_us.max(1));
+    let is_contradicted = |path: &&FoundPath| score(&[path], Wiring::AsItIs, timeline, tolerance).contradicted > 0;
+    loud(paths).filter(is_contradicted).map(|path| (path.sender, path.receiver)).collect()
 }
 
 /// The explanation that leaves no contradiction where the log as it stands has some, with its score, that of the log as
@@ -53,11 +69,8 @@ pub(super) fn wiring(
     settings: &Settings,
 ) -> Option<(Wiring, Score, Score, f64)> {
     let tolerance = i64::from(settings.tolerance_us.max(1));
-    let is_loud = |path: &&FoundPath| {
-        let is_whole = |sensor: &u8| !broken.contains(sensor);
-        path.heard >= LOUD && path.readings >= FEW && is_whole(&path.sender) && is_whole(&path.receiver)
-    };
-    let loud: Vec<_> = paths.iter().filter(is_loud).collect();
+    let is_whole = |path: &&FoundPath| !broken.contains(&path.sender) && !broken.contains(&path.receiver);
+    let loud: Vec<_> = loud(paths).filter(is_whole).collect();
     let score = |wiring| score(&loud, wiring, timeline, tolerance);
     let as_it_is = score(Wiring::AsItIs);
     if as_it_is.contradicted == 0 {
@@ -67,7 +80,9 @@ pub(super) fn wiring(
     let mut wirings: Vec<_> = (0..sensors).flat_map(|a| (a + 1..sensors).map(move |b| Wiring::Swapped(a, b))).collect();
     for path in &loud {
         let back = loud.iter().filter(|back| (back.sender, back.receiver) == (path.receiver, path.sender));
-        let late = back.map(|back| path.travel_us - back.travel_us).filter(|&late| late >= LEAST_LATE_US);
+        let late = back
+            .map(|back| path.travel_us - back.travel_us)
+            .filter(|late| (LEAST_LATE_US..MOST_LATE_US).contains(late));
         wirings.extend(late.filter(|_| path.sender != path.receiver).map(|late| Wiring::Late(path.sender, late)));
     }
     // By accident a reading is near a prediction as often as its tolerance is of the stretch of usual echoes.
@@ -93,7 +108,11 @@ pub(super) fn wiring(
     let gained = best.confirmed - as_it_is.confirmed;
     // Of the paths that it concerns, those that were contradicted before or are confirmed now.
     let of = gained + best.contradicted + as_it_is.contradicted;
-    let accidents = wirings.len() as f64 * ln_at_least(gained, of, chance).exp();
+    let accidents = match wiring {
+        // The delay is what makes two paths agree, so that they do says nothing: that they contradict each other does.
+        Wiring::Late(..) => loud.len() as f64 * as_it_is.ln_accident.exp(),
+        _ => wirings.len() as f64 * ln_at_least(gained, of, chance).exp(),
+    };
     (!is_open && accidents < settings.accidents).then_some((wiring, best, as_it_is, accidents))
 }
 
@@ -122,7 +141,10 @@ fn score(loud: &[&FoundPath], wiring: Wiring, timeline: &Timeline, tolerance: i6
         }
         let share = heard.value() / path.heard;
         score.confirmed += u32::from(share >= CONFIRMED);
-        score.contradicted += u32::from(share < CONTRADICTED);
+        if share < CONTRADICTED {
+            score.contradicted += 1;
+            score.ln_accident += ln_at_least(heard.of - heard.count, heard.of, 1.0 - CONFIRMED * path.heard);
+        }
     }
     score
 }

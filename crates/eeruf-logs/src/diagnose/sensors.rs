@@ -3,45 +3,9 @@
 use std::collections::BTreeMap;
 
 use super::alike::Alike;
-use super::faults::{is_silent, misses_at_random};
+use super::share::Share;
 use super::{FoundPath, Named};
 use crate::firings::FiringLog;
-
-/// A share of a number of trials, with its 95 % interval.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Share {
-    /// Number of sensors.
-    pub count: u32,
-    /// Of how many.
-    pub of: u32,
-}
-
-impl Share {
-    pub(super) const NONE: Self = Self { count: 0, of: 0 };
-
-    pub(super) fn add(&mut self, counts: bool) {
-        self.count += u32::from(counts);
-        self.of += 1;
-    }
-
-    /// The share itself; 0 of nothing.
-    pub fn value(&self) -> f64 {
-        f64::from(self.count) / f64::from(self.of.max(1))
-    }
-
-    /// The 95 % interval by Wilson's score, which holds for small counts too.
-    pub fn interval_95(&self) -> (f64, f64) {
-        const Z: f64 = 1.959_964;
-        let n = f64::from(self.of);
-        if self.of == 0 {
-            return (0.0, 1.0);
-        }
-        let share = self.value();
-        let middle = (share + Z * Z / (2.0 * n)) / (1.0 + Z * Z / n);
-        let half = Z / (1.0 + Z * Z / n) * (share * (1.0 - share) / n + Z * Z / (4.0 * n * n)).sqrt();
-        ((middle - half).max(0.0), (middle + half).min(1.0))
-    }
-}
 
 /// Sounds of one sensor.
 #[derive(Clone, Debug, PartialEq)]
@@ -71,8 +35,12 @@ pub struct Hearing {
     pub blind_phases: Vec<(u8, u32)>,
 }
 
+/// A sensor with fewer firings is not judged.
+pub(super) const FEW: u32 = 50;
+/// A deaf sensor has an echo in fewer of its firings.
+const DEAF: f64 = 0.02;
 /// Fewer firings in a phase say nothing about it.
-const FEW: u32 = 5;
+const FEW_IN_PHASE: u32 = 5;
 
 pub(super) fn hearing(
     log: &FiringLog,
@@ -109,7 +77,8 @@ fn of_sensor(
         phase.1 += u32::from(is_own);
     }
     let has_own_path = paths.iter().any(|path| (path.sender, path.receiver) == (sensor, sensor));
-    let blind = |(&phase, &(fired, own)): (&u8, &(u32, u32))| (own == 0 && fired >= FEW).then_some((phase, fired));
+    let blind =
+        |(&phase, &(fired, own)): (&u8, &(u32, u32))| (own == 0 && fired >= FEW_IN_PHASE).then_some((phase, fired));
     Hearing {
         sensor,
         echoes: Share { count: echoes, of: firings },
@@ -120,25 +89,13 @@ fn of_sensor(
         wandering: alike.wandering,
         has_own_path,
         is_silent: is_silent(Share { count: echoes, of: firings }),
-        misses_at_random: misses_at_random(alike),
+        misses_at_random: alike.misses_at_random(),
         // Where nothing is known of its own echo, nothing is known of its phases.
         blind_phases: if has_own_path { phases.iter().filter_map(blind).collect() } else { Vec::new() },
     }
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn intervals_are_wilsons() {
-        let near = |share: Share, expected: (f64, f64)| {
-            let (low, high) = share.interval_95();
-            assert!((low - expected.0).abs() < 5e-5 && (high - expected.1).abs() < 5e-5, "{low} {high}");
-        };
-        // Newcombe (1998), Table I: 81 of 263, 15 of 148, 0 of 20.
-        near(Share { count: 81, of: 263 }, (0.2553, 0.3662));
-        near(Share { count: 15, of: 148 }, (0.0624, 0.1605));
-        near(Share { count: 0, of: 20 }, (0.0, 0.1611));
-    }
+/// Returns true if a sensor hears nothing: out of range, or deaf.
+fn is_silent(echoes: Share) -> bool {
+    echoes.of >= FEW && echoes.interval_95().1 < DEAF
 }

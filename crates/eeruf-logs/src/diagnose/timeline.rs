@@ -22,6 +22,8 @@ pub(super) struct Timeline {
     /// The longest echo time of any reading: for so long sensors listen, at least.
     pub(super) window_us: i64,
     max_travel_us: i64,
+    /// True if the ring fires in more than two phases, so that others' sound moves from firing to firing.
+    pub(super) has_many_phases: bool,
 }
 
 impl Timeline {
@@ -33,7 +35,8 @@ impl Timeline {
             heard[usize::from(firing.sensor)].push(Heard { firing: place, fired_us: firing.fired_us, echo_us });
         }
         let window_us = log.firings.iter().filter_map(|firing| firing.t_echo_us).max().unwrap_or(0).into();
-        Self { firings, heard, window_us, max_travel_us: settings.max_travel_us.into() }
+        let has_many_phases = log.firings.iter().any(|firing| firing.phase > 1);
+        Self { firings, heard, window_us, has_many_phases, max_travel_us: settings.max_travel_us.into() }
     }
 
     pub(super) fn sensors(&self) -> usize {

@@ -1,0 +1,109 @@
+//! `diagnose` on logs of the simulator: rings in alcoves and other rooms, whole and with one fault. `fault_rates` counts
+//! over many such logs.
+
+use eeruf_logs::{Fault, Firing, FiringLog, Settings, diagnose};
+use eeruf_sim::experiments::rooms::{RoomKind, RoomPlan};
+use eeruf_sim::experiments::set_one::Alcove;
+use eeruf_sim::{FaultKind, Method, Noise, Options, Physics, World, simulate};
+
+/// A place and its number.
+#[derive(Clone, Copy, Debug)]
+enum Place {
+    Alcove(u64),
+    Room(u64),
+}
+
+use Place::{Alcove as InAlcove, Room as InRoom};
+
+/// Faults that the diagnosis finds in the log of a ring that hops for a minute, some sensors of which have a fault.
+fn found(place: Place, fault: Option<(FaultKind, &[u8])>) -> Vec<Fault> {
+    const ROOMS: [RoomKind; 6] =
+        [RoomKind::Corridor, RoomKind::Office, RoomKind::Hall, RoomKind::Clutter, RoomKind::Garage, RoomKind::Aisle];
+    let (InAlcove(number) | InRoom(number)) = place;
+    let alcove = Alcove::random(number);
+    let robot = alcove.robot();
+    let world = match place {
+        InAlcove(_) => {
+            let scene = alcove.scene().unwrap();
+            World::new(scene, vec![robot], Noise::default()).unwrap().with_seed(number)
+        }
+        InRoom(_) => {
+            let kind = ROOMS[(number % ROOMS.len() as u64) as usize];
+            RoomPlan::random(kind, number, robot.radius_m()).world(&robot, 0.0).unwrap()
+        }
+    };
+    let faults = fault.map(|(kind, sensors)| eeruf_sim::Fault::new(kind).of_sensors(sensors));
+    let world = world.with_physics(Physics::PLAIN).unwrap().with_faults(faults.into_iter().collect()).unwrap();
+    let options = Options { seed: Some(number), ..Options::periods(1000) };
+    let readings = simulate(&world, Method::EerufHopping, &options).unwrap();
+    let firing = |k: usize| Firing {
+        sensor: readings.sensor[k],
+        fired_us: (1e6 * readings.fired_s[k]).round() as i64,
+        period: readings.period[k],
+        phase: readings.phase[k],
+        t_echo_us: (!readings.earliest_us[k].is_nan()).then(|| readings.earliest_us[k] as u32),
+        rejected: Some(readings.kind[k].is_rejected()),
+        weighed: None,
+    };
+    let log = FiringLog::new("simulation", (0..readings.len()).map(firing).collect());
+    diagnose(&log, &Settings::default()).faults
+}
+
+// In each of these a rule that looks at one sensor alone sees a fault: a sensor faces a doorway, hears a wall at its
+// threshold, or hears others along paths too faint to be found.
+#[test]
+fn healthy_rings_have_no_fault() {
+    for place in [1004, 1041].map(InAlcove) {
+        assert_eq!(found(place, None), [], "{place:?}");
+    }
+    for place in [1005, 1015, 1033, 1036, 1050, 1054, 1060, 1095].map(InRoom) {
+        assert_eq!(found(place, None), [], "{place:?}");
+    }
+}
+
+#[test]
+fn a_cut_echo_line_is_deaf() {
+    let cut = [(InAlcove(1000), 4), (InAlcove(1001), 6), (InAlcove(1008), 6), (InAlcove(1027), 4), (InAlcove(1039), 1)];
+    for (place, sensor) in cut {
+        let faults = found(place, Some((FaultKind::Cut, &[sensor])));
+        assert!(matches!(faults[..], [Fault::Deaf { sensor: of, .. }] if of == sensor), "{place:?}: {faults:?}");
+    }
+}
+
+#[test]
+fn a_sensor_that_loses_nine_echoes_of_ten_is_named() {
+    for (place, sensor) in [(InAlcove(1000), 4), (InAlcove(1009), 0), (InAlcove(1020), 3), (InAlcove(1039), 1)] {
+        let faults = found(place, Some((FaultKind::Lost { share: 0.9 }, &[sensor])));
+        let [Fault::Losing { sensor: of, lost }] = faults[..] else { panic!("{place:?}: {faults:?}") };
+        assert!(of == sensor && (lost.value() - 0.9).abs() < 0.1, "{place:?}: {faults:?}");
+    }
+}
+
+// Of modules that time their own echoes one line falls silent, and the other has nothing to hear while that one rests.
+#[test]
+fn exchanged_echo_lines_of_modules_that_time_themselves_are_named() {
+    let wires = [
+        (InAlcove(1002), [0, 6]),
+        (InAlcove(1025), [7, 1]),
+        (InAlcove(1040), [0, 6]),
+        (InRoom(1001), [6, 5]),
+        (InRoom(1036), [6, 0]),
+    ];
+    for (place, sensors) in wires {
+        let faults = found(place, Some((FaultKind::EchoWires, &sensors)));
+        let [Fault::Exchanged { sensors: of, together, alone, accidents }] = faults[..] else {
+            panic!("{place:?}: {faults:?}")
+        };
+        assert!([(sensors[0], sensors[1]), (sensors[1], sensors[0])].contains(&of), "{place:?}: {faults:?}");
+        assert!(alone.value() < 0.02 && together.value() > 0.5 && accidents < 0.01, "{place:?}: {faults:?}");
+    }
+}
+
+#[test]
+fn a_late_trigger_is_named_by_what_its_sender_hears() {
+    for (place, sensor) in [(InAlcove(1027), 4), (InAlcove(1075), 1), (InRoom(1024), 5), (InRoom(1058), 2)] {
+        let faults = found(place, Some((FaultKind::LateTrigger { us: 1000 }, &[sensor])));
+        let [Fault::Late { sensor: of, late_us, .. }] = faults[..] else { panic!("{place:?}: {faults:?}") };
+        assert!(of == sensor && (late_us - 1000.0).abs() < 5.0, "{place:?}: {faults:?}");
+    }
+}

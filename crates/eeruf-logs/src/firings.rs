@@ -21,14 +21,11 @@
 //! [`McapWriter::firing`](crate::McapWriter::firing) writes, or one `eeruf.Firing` in JSON, with the columns as its
 //! fields and the clock's name as a field `clock`.
 
-use std::io::{Read, Write};
-use std::path::Path;
+use std::io::Write;
 
 use eeruf_core::ReadingKind;
 
-use crate::firing_text;
 use crate::weighed::{Columns, Weighed, kind_named};
-use eeruf_files::FileError;
 
 /// One firing of one sensor.
 #[derive(Clone, Debug, PartialEq)]
@@ -89,14 +86,6 @@ impl FiringLog {
     pub fn new(clock: &str, mut firings: Vec<Firing>) -> Self {
         firings.sort_by_key(|firing| firing.fired_us);
         Self { clock: clock.to_owned(), firings, ..Self::default() }
-    }
-
-    /// Reads a log in text from any reader; `file` stands in errors.
-    ///
-    /// # Errors
-    /// As [`read`](Self::read).
-    pub fn read_from(input: impl Read, file: &Path) -> Result<Self, FileError> {
-        firing_text::read(input, file)
     }
 
     /// Warnings of times that are legal and implausible: milliseconds for microseconds.

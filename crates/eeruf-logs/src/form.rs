@@ -7,6 +7,8 @@ use std::path::Path;
 
 use eeruf_files::FileError;
 
+const SQLITE_MAGIC: &[u8; 16] = b"SQLite format 3\0";
+
 /// A form that is recognised.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Form {
@@ -50,7 +52,7 @@ impl Form {
             Self::Mcap
         } else if starts(crate::ros1::MAGIC) {
             Self::Ros1
-        } else if starts(crate::rosbag2::SQLITE_MAGIC) {
+        } else if starts(SQLITE_MAGIC) {
             Self::Sqlite
         } else if crate::serial::is_serial(first) {
             Self::Serial

@@ -9,6 +9,7 @@ use crate::bytes::{Bytes, Order};
 use crate::options::{Options, RangeUnit};
 use crate::reading::Reading;
 use crate::schema::{Header, Schema};
+use crate::text::names;
 
 /// Encoding of a topic's messages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -134,8 +135,8 @@ impl Kind {
 
     fn numbers(schema: Schema, path: &str, unit: Option<RangeUnit>) -> Self {
         let parts = path.split('.').map(|name| name.trim_end_matches("[]").to_owned()).collect();
-        let unit = unit
-            .or_else(|| crate::text::range_unit(path.rsplit('.').next().unwrap_or_default().trim_end_matches("[]")));
+        let name = || path.rsplit('.').next().unwrap_or_default().trim_end_matches("[]");
+        let unit = unit.or_else(|| names::range_unit(name()).map(|unit| unit.0));
         Self::Numbers(Rc::new(Numbers { schema, path: parts, unit, is_single: !path.contains("[]") }))
     }
 

@@ -11,8 +11,6 @@ use crate::sink::{Sink, Topic};
 use crate::unzstd::{LARGEST_MESSAGE, Unzstd};
 use eeruf_files::FileError;
 
-pub(crate) const SQLITE_MAGIC: &[u8; 16] = b"SQLite format 3\0";
-
 /// Contents of `metadata.yaml`.
 #[derive(Default)]
 struct Metadata {

@@ -4,8 +4,20 @@ use std::collections::BTreeMap;
 
 use crate::options::RangeUnit;
 
-use super::recognise::Role;
 use super::value::{self, Value};
+
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum Role {
+    /// A sensor's ranges.
+    Range,
+    Time,
+    Sensor,
+    Least,
+    Most,
+    Other,
+    /// Without a value so far.
+    Empty,
+}
 
 /// A column: its name and role, and its first values counted by kind.
 #[derive(Clone, Debug)]

@@ -4,9 +4,9 @@ use std::collections::BTreeSet;
 
 use crate::options::{Options, RangeUnit, TimeUnit};
 
-use super::column::Column;
+use super::column::{Column, Role};
 use super::names;
-use super::recognise::{Plan, Role, guess};
+use super::recognise::{Plan, guess};
 use super::value;
 
 impl Plan {

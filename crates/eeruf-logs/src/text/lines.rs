@@ -1,11 +1,12 @@
-//! Lines of a text, whatever ends them and in whatever encoding, the objects of a JSON document, and messages as
-//! `ros2 topic echo` and `rostopic echo` print them.
+//! Lines of a text, whatever ends them, and the objects of a JSON document.
 
 use std::collections::VecDeque;
 use std::io::{self, BufRead, BufReader, Read};
 
-use super::{messages, shape};
-use crate::bytes::Order;
+use super::shape;
+
+/// The bytes of a text.
+pub(super) type Input<'a> = BufReader<Box<dyn Read + 'a>>;
 
 /// A longer line is lost.
 const LONGEST_LINE: usize = 1 << 16;
@@ -23,111 +24,18 @@ pub(crate) struct Line {
     pub(crate) is_too_long: bool,
 }
 
-pub(crate) enum Source<'a> {
-    Lines(Lines<'a>),
-    Objects(Objects<'a>),
-    Messages(Lines<'a>),
-}
-
-impl<'a> Source<'a> {
-    pub(crate) fn new(input: Box<dyn Read + 'a>) -> io::Result<Self> {
-        let mut input = BufReader::with_capacity(1 << 16, input);
-        let first = input.fill_buf()?;
-        let (skip, utf16) = match first {
-            [0xff, 0xfe, ..] => (2, Some(Order::Little)),
-            [0xfe, 0xff, ..] => (2, Some(Order::Big)),
-            [0xef, 0xbb, 0xbf, ..] => (3, None),
-            // Text of the first kind has its zeroes at odd places.
-            [one, 0, two, 0, ..] if *one != 0 && *two != 0 => (0, Some(Order::Little)),
-            [0, one, 0, two, ..] if *one != 0 && *two != 0 => (0, Some(Order::Big)),
-            _ => (0, None),
-        };
-        input.consume(skip);
-        let mut input: BufReader<Box<dyn Read + 'a>> = match utf16 {
-            None => BufReader::new(Box::new(input)),
-            Some(order) => BufReader::new(Box::new(Utf16 { input, order, out: VecDeque::new(), high: None })),
-        };
-        let start = String::from_utf8_lossy(input.fill_buf()?).into_owned();
-        if messages::are_in(&start) {
-            return Ok(Self::Messages(Lines { input, number: 0, pending: VecDeque::new() }));
-        }
-        let mut start = start.trim_start().chars();
-        let is_document = match start.next() {
-            Some('[') => matches!(start.as_str().trim_start().chars().next(), Some('{' | '[')),
-            // Objects on lines of their own are JSON lines.
-            Some('{') => {
-                let mut lines = start.as_str().lines();
-                let first = lines.next().unwrap_or_default();
-                !first.contains('}') || !lines.any(|line| line.trim_start().starts_with('{'))
-            }
-            _ => false,
-        };
-        Ok(if is_document {
-            Self::Objects(Objects { input, number: 1, rows: VecDeque::new() })
-        } else {
-            Self::Lines(Lines { input, number: 0, pending: VecDeque::new() })
-        })
-    }
-
-    pub(crate) fn next(&mut self) -> io::Result<Option<Line>> {
-        match self {
-            Self::Lines(lines) => lines.next(),
-            Self::Objects(objects) => objects.next_row(),
-            Self::Messages(lines) => messages::next(lines),
-        }
-    }
-
-    /// The form of a text that is records and no lines.
-    pub(crate) const fn of_records(&self) -> Option<&'static str> {
-        match self {
-            Self::Lines(_) => None,
-            Self::Objects(_) => Some("JSON, a document"),
-            Self::Messages(_) => Some("messages, as `ros2 topic echo` prints them"),
-        }
-    }
-}
-
-/// Transcodes UTF-16 to UTF-8.
-struct Utf16<R> {
-    input: R,
-    order: Order,
-    out: VecDeque<u8>,
-    high: Option<u16>,
-}
-
-impl<R: Read> Read for Utf16<R> {
-    fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
-        while self.out.is_empty() {
-            let mut pairs = Vec::new();
-            (&mut self.input).take(1 << 13).read_to_end(&mut pairs)?;
-            if pairs.is_empty() && self.high.is_none() {
-                return Ok(0);
-            }
-            let unit = |pair: &[u8]| match (self.order, pair) {
-                (Order::Little, &[low, high]) => u16::from_le_bytes([low, high]),
-                (Order::Big, &[high, low]) => u16::from_be_bytes([high, low]),
-                _ => 0xfffd,
-            };
-            let is_end = pairs.is_empty();
-            let mut units: Vec<u16> = self.high.take().into_iter().chain(pairs.chunks(2).map(unit)).collect();
-            if !is_end && units.last().is_some_and(|last| (0xd800..0xdc00).contains(last)) {
-                self.high = units.pop();
-            }
-            let text: String = char::decode_utf16(units).map(|letter| letter.unwrap_or('\u{fffd}')).collect();
-            self.out.extend(text.bytes());
-        }
-        self.out.read(into)
-    }
-}
-
 /// Lines that end by `\n`, `\r\n` or `\r`.
 pub(crate) struct Lines<'a> {
-    input: BufReader<Box<dyn Read + 'a>>,
+    input: Input<'a>,
     number: u64,
     pending: VecDeque<Line>,
 }
 
-impl Lines<'_> {
+impl<'a> Lines<'a> {
+    pub(super) fn new(input: Input<'a>) -> Self {
+        Self { input, number: 0, pending: VecDeque::new() }
+    }
+
     pub(super) fn next(&mut self) -> io::Result<Option<Line>> {
         if let Some(line) = self.pending.pop_front() {
             return Ok(Some(line));
@@ -173,15 +81,19 @@ impl Lines<'_> {
 /// The objects of a JSON document: elements of its arrays, or objects one after the other. Arrays within an array are
 /// such elements too.
 pub(crate) struct Objects<'a> {
-    input: BufReader<Box<dyn Read + 'a>>,
+    input: Input<'a>,
     number: u64,
     /// Of an object of columns.
     rows: VecDeque<Line>,
 }
 
-impl Objects<'_> {
+impl<'a> Objects<'a> {
+    pub(super) fn new(input: Input<'a>) -> Self {
+        Self { input, number: 1, rows: VecDeque::new() }
+    }
+
     /// The next record; an object of columns gives its rows.
-    fn next_row(&mut self) -> io::Result<Option<Line>> {
+    pub(super) fn next_row(&mut self) -> io::Result<Option<Line>> {
         if self.rows.is_empty() {
             let Some(line) = self.next()? else { return Ok(None) };
             match shape::rows_of_columns(&line.text) {

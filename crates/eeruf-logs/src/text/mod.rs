@@ -7,10 +7,11 @@ mod column;
 mod guesses;
 mod lines;
 mod messages;
-mod names;
+pub(crate) mod names;
 mod recognise;
 mod rows;
 mod shape;
+mod source;
 mod value;
 
 use std::io::Read;
@@ -20,15 +21,11 @@ use crate::options::{Options, Parts};
 use crate::sink::Sink;
 use eeruf_files::FileError;
 
-pub(crate) use lines::{Line, Source};
+pub(crate) use lines::Line;
 pub(crate) use recognise::is_comment;
 pub(crate) use shape::{Separator, json, separated};
+pub(crate) use source::Source;
 pub(crate) use value::{is_no_echo, number, prefix};
-
-/// The unit of ranges that a name says.
-pub(crate) fn range_unit(name: &str) -> Option<crate::options::RangeUnit> {
-    names::range_unit(name).map(|unit| unit.0)
-}
 
 /// As many lines, and as many bytes, are looked at before the first reading.
 const SAMPLE: (usize, usize) = (1000, 1 << 18);

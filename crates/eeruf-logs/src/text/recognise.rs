@@ -7,7 +7,7 @@ use crate::options::{Options, RangeUnit, TimeUnit};
 use crate::sink::{Guess, Skipped};
 use eeruf_files::FileError;
 
-use super::column::Column;
+use super::column::{Column, Role};
 use super::lines::Line;
 use super::names::{self, Meaning};
 use super::shape::{self, Separator, Shape};
@@ -15,19 +15,6 @@ use super::value;
 
 /// The sensors of one log.
 pub(super) const MOST_SENSORS: usize = 4096;
-
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) enum Role {
-    /// A sensor's ranges.
-    Range,
-    Time,
-    Sensor,
-    Least,
-    Most,
-    Other,
-    /// Without a value so far.
-    Empty,
-}
 
 /// Numbers that mean that there was no echo.
 #[derive(Clone, Debug, Default)]

@@ -7,9 +7,9 @@ use crate::options::{Options, TimeUnit};
 use crate::reading::{Reading, Sensor};
 use crate::sink::{Sink, Skipped};
 
-use super::column::Column;
+use super::column::{Column, Role};
 use super::lines::Line;
-use super::recognise::{MOST_SENSORS, Plan, Role, is_comment};
+use super::recognise::{MOST_SENSORS, Plan, is_comment};
 use super::shape::{self, Shape};
 use super::value::{self, Value};
 

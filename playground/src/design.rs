@@ -8,7 +8,7 @@ use eeruf_core::{Micros, Phase};
 use eeruf_design::{FoundJson, RingDesign, RingSpec, Search, WhatIf};
 use serde::Serialize;
 
-use crate::exports::progress;
+use crate::progress::progress;
 
 /// Budget of nodes for a search on the page, and where there are more sensors than [`FEW`], each of whose nodes costs
 /// many times as much: a minute or so.

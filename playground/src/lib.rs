@@ -11,6 +11,7 @@
 
 mod design;
 mod exports;
+mod progress;
 mod question;
 mod run;
 mod trace;

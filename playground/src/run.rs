@@ -7,7 +7,7 @@ use eeruf_sim::{
 };
 use serde::Serialize;
 
-use crate::exports::progress;
+use crate::progress::progress;
 use crate::trace::pairs;
 
 /// Budget of nodes for the search for `eeruf_best`, as in `eeruf study`.

@@ -48,6 +48,7 @@ mod limits;
 mod moving;
 mod phase_file;
 mod places;
+mod placing;
 mod questions;
 mod reals;
 mod ring;

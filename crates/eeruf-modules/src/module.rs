@@ -1,6 +1,7 @@
 //! [`Module`]: an ultrasonic transducer with its electronics, in whole numbers.
 
-use crate::presets::HC_SR04_CLONE;
+/// A clone of the HC-SR04 holds its line for as long without an echo, in microseconds.
+pub(crate) const CLONE_HOLDS_US: u32 = 200_000;
 
 /// A ranging module. Change what differs from a preset, by field or by [`set`](Self::set).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -169,8 +170,7 @@ impl Module {
     pub const fn pulse_times(&self) -> Option<PulseTimes> {
         let NoEcho::Holds { us: hold_us } = self.no_echo else { return None };
         // Among modules of one name there are clones.
-        let clone_us = HC_SR04_CLONE.no_echo.hold_us();
-        let longest_us = if hold_us > clone_us { hold_us } else { clone_us };
+        let longest_us = if hold_us > CLONE_HOLDS_US { hold_us } else { CLONE_HOLDS_US };
         let (longest_us, longest_hold_us) = (hold_us / 19 * 18, longest_us / 4 * 5);
         Some(PulseTimes { deaf_us: 100, shortest_us: 100, latest_rise_us: 2000, longest_us, longest_hold_us })
     }

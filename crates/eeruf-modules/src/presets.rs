@@ -1,6 +1,6 @@
 //! The presets, and where each of their figures comes from.
 
-use crate::module::{Beam, Gain, Interface, Module, NoEcho};
+use crate::module::{Beam, CLONE_HOLDS_US, Gain, Interface, Module, NoEcho};
 
 /// Where a figure comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -91,7 +91,7 @@ pub const HC_SR04_CLONE: Module = Module {
     gain: Gain::Constant,
     radius_um: 8_000,
     beam: Beam::Continuous,
-    no_echo: NoEcho::Holds { us: 200_000 },
+    no_echo: NoEcho::Holds { us: CLONE_HOLDS_US },
     rest_us: 210_000,
     trigger_us: 10,
     interface: Interface::PulseWidth,

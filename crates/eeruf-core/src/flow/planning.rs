@@ -1,7 +1,7 @@
 //! The gaps of the next cycle of a flow ring.
 
 use super::plan::{FlowPlan, NOBODY};
-use super::settings::Pace;
+use super::settings::{Pace, in_units};
 use super::slot::{FIRED, QUIET_US, Slot};
 use crate::hopping::CATCHES_UP;
 use crate::plan::Plan;
@@ -203,27 +203,4 @@ impl<const K: usize> FlowPlan<K> {
             }
         }
     }
-}
-
-/// The distance in the ring from one firing to the next: neighbours hear each other loudest.
-pub(super) const fn stride(sensors: u8) -> u8 {
-    let mut stride = if sensors > 6 { sensors / 3 + 1 } else { 1 };
-    while !coprime(stride, sensors) {
-        stride += 1;
-    }
-    stride
-}
-
-const fn coprime(mut a: u8, mut b: u8) -> bool {
-    // By subtraction: small processors do not divide.
-    while b > 0 && a > 0 {
-        if a < b { b -= a } else { a -= b }
-    }
-    a + b <= 1
-}
-
-/// A time in whole units, rounded up.
-pub(super) const fn in_units(time: u32, unit: u32) -> u32 {
-    let unit = if unit > 0 { unit } else { 1 };
-    time.saturating_add(unit - 1) / unit
 }

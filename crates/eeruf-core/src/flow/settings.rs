@@ -1,6 +1,5 @@
 //! [`FlowSettings`]: how a flow ring spaces its firings and weighs its readings.
 
-use super::planning::{in_units, stride};
 use super::slot::{QUIET_US, quiet};
 use crate::schedule::MAX_PERIOD;
 use crate::time::Micros;
@@ -113,4 +112,27 @@ impl Pace {
             per_quiet: if unit > QUIET_US { u32::MAX / unit } else { 0 },
         }
     }
+}
+
+/// The distance in the ring from one firing to the next: neighbours hear each other loudest.
+const fn stride(sensors: u8) -> u8 {
+    let mut stride = if sensors > 6 { sensors / 3 + 1 } else { 1 };
+    while !coprime(stride, sensors) {
+        stride += 1;
+    }
+    stride
+}
+
+const fn coprime(mut a: u8, mut b: u8) -> bool {
+    // By subtraction: small processors do not divide.
+    while b > 0 && a > 0 {
+        if a < b { b -= a } else { a -= b }
+    }
+    a + b <= 1
+}
+
+/// A time in whole units, rounded up.
+pub(super) const fn in_units(time: u32, unit: u32) -> u32 {
+    let unit = if unit > 0 { unit } else { 1 };
+    time.saturating_add(unit - 1) / unit
 }

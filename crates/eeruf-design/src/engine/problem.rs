@@ -1,7 +1,5 @@
 //! The problem in whole ticks, a claim about its period, and the problem that the engine works on.
 
-use crate::engine::schedule;
-
 /// The needs of a ring in ticks, as a certificate states them. Sensors count from 0.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Problem {
@@ -84,7 +82,7 @@ impl Claim {
             within("firing time", times, 0, self.period - 1)?;
         }
         within("bound", &[self.bound], 1, self.period)?;
-        if schedule::keeps(&self.problem, self.period, &self.fire) {
+        if self.problem.is_kept_by(self.period, &self.fire) {
             Ok(())
         } else {
             Err("a schedule that does not keep the needs".to_owned())

@@ -7,7 +7,6 @@ use crate::engine::branching::choose;
 use crate::engine::descent::{Case, Choice, Random};
 use crate::engine::problem::{Merged, Problem};
 use crate::engine::rules::propagate;
-use crate::engine::schedule;
 use crate::engine::state::{Mark, State, event};
 use crate::engine::symmetry::Assumptions;
 
@@ -201,7 +200,7 @@ impl Search {
         let times = |time: &dyn Fn(usize, usize) -> i32| -> FiringTimes {
             [0, 1].map(|phase| self.merged.of_sensor.iter().map(|&one| time(one, phase).max(0) as u32).collect())
         };
-        let serve = |times: &FiringTimes| schedule::keeps(&self.problem, period, times);
+        let serve = |times: &FiringTimes| self.problem.is_kept_by(period, times);
         Some(times(&earliest)).filter(serve).or_else(|| Some(times(&latest)).filter(serve))
     }
 }

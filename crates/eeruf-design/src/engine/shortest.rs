@@ -4,7 +4,6 @@
 use crate::engine::construct::{Times, constructed};
 use crate::engine::counting::least_period;
 use crate::engine::problem::{MAX_NUMBER, Problem};
-use crate::engine::schedule;
 use crate::engine::search::{Decided, FiringTimes, Search};
 
 /// The shortest period found, in ticks.
@@ -84,7 +83,7 @@ impl Run {
         let search = Search::new(problem);
         let fire = constructed_times(problem)?;
         let period = period_of(problem, &fire);
-        if period > MAX_NUMBER || !schedule::keeps(problem, period, &fire) {
+        if period > MAX_NUMBER || !problem.is_kept_by(period, &fire) {
             return None;
         }
         let bound = least_period(search.merged()).max(one_after_the_other(problem)).clamp(1, period);
@@ -289,7 +288,7 @@ fn images(problem: &Problem, [a, b]: &FiringTimes) -> Vec<FiringTimes> {
     let reflected = (0..sensors).map(|about| (0..sensors).map(|x| (about + sensors - x) % sensors).collect());
     let images = turned.chain(reflected).map(|image| [a, b].map(|times| image.iter().map(|&x| times[x]).collect()));
     let images = images.flat_map(|[a, b]: FiringTimes| [[a.clone(), b.clone()], [b, a]]);
-    images.filter(|fire| schedule::keeps(problem, period_of(problem, fire), fire)).collect()
+    images.filter(|fire| problem.is_kept_by(period_of(problem, fire), fire)).collect()
 }
 
 /// The constructed schedule. `None` if sensors that fire together must keep a gap.

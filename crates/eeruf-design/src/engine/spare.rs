@@ -2,7 +2,6 @@
 //! windows, each by the same for all sensors.
 
 use crate::engine::problem::Problem;
-use crate::engine::schedule;
 use crate::engine::search::{Decided, FiringTimes, Search};
 
 /// A schedule that keeps more than the problem asks for.
@@ -70,9 +69,7 @@ fn grow(
     let mut effort = 8 * Search::new(problem).depth();
     loop {
         // What these times keep anyway.
-        while spare.more[need] < most
-            && schedule::keeps(&harder(problem, with(spare.more, need, 1)), period, &spare.fire)
-        {
+        while spare.more[need] < most && harder(problem, with(spare.more, need, 1)).is_kept_by(period, &spare.fire) {
             spare.more[need] += 1;
         }
         let room = most - spare.more[need];

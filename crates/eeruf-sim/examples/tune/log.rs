@@ -7,7 +7,7 @@ use std::path::Path;
 
 use eeruf_sim::Method;
 
-use crate::search::{Round, Score};
+use crate::score::{Round, Score};
 
 /// Owner of a score: method, round, number of the candidate.
 type Key = (String, usize, usize);

@@ -8,6 +8,7 @@ mod draw;
 mod log;
 mod multi_echo;
 mod print;
+mod score;
 mod search;
 #[cfg(test)]
 mod tests;
@@ -19,6 +20,7 @@ use eeruf_sim::experiments::set_two::{Course, SetTwoOptions, steered_as};
 use eeruf_sim::{Method, Physics, Robot, best_schedule_for};
 
 use log::Log;
+use score::ROUNDS;
 use search::{Search, Tuned};
 
 /// Budget of nodes for the search of the schedule of `eeruf_best`; it is proven shortest long before.
@@ -38,7 +40,7 @@ fn pilots(folder: &Path) -> Result<String, Box<dyn Error>> {
     let options = SetTwoOptions { physics: Physics::PLAIN, ..SetTwoOptions::default() };
     let robot = Robot { t_delta: options.t_delta, ..Course::random(0).robot() };
     let options = SetTwoOptions { best: Some(best_schedule_for(&robot, BUDGET, |_| true)?), ..options };
-    let mut log = Log::open(folder, &search::ROUNDS)?;
+    let mut log = Log::open(folder, &ROUNDS)?;
     let mut found: Vec<(Method, Tuned)> = Vec::new();
     // Those that are driven by default first, as they are what a search that is stopped early should have.
     let (first, others): (Vec<_>, Vec<_>) = Method::ALL
@@ -46,10 +48,10 @@ fn pilots(folder: &Path) -> Result<String, Box<dyn Error>> {
         .filter(|&of| steered_as(of) == of)
         .partition(|&of| options.methods.contains(&of.into()));
     for method in first.into_iter().chain(others) {
-        let tuned = Search { rounds: &search::ROUNDS, options: &options, method }.run(&mut log)?;
+        let tuned = Search { rounds: &ROUNDS, options: &options, method }.run(&mut log)?;
         eprintln!("{}", print::row(method, &tuned));
         found.push((method, tuned));
     }
     found.sort_by_key(|(method, _)| *method);
-    Ok(print::source(&search::ROUNDS, &found))
+    Ok(print::source(&ROUNDS, &found))
 }

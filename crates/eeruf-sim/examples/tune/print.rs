@@ -2,7 +2,8 @@
 
 use eeruf_sim::Method;
 
-use crate::search::{Round, Tuned};
+use crate::score::Round;
+use crate::search::Tuned;
 
 /// The file.
 pub(crate) fn source(rounds: &[Round], found: &[(Method, Tuned)]) -> String {

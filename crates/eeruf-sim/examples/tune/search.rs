@@ -10,35 +10,7 @@ use eeruf_sim::experiments::set_two::{Ending, Pilots, SECOND_AHEAD, SECOND_BEHIN
 
 use crate::draw::{Candidate, candidate};
 use crate::log::Log;
-
-/// Numbers of pilots and of courses that each drives, alone, behind a second robot and ahead of one. Courses of a round
-/// come after those of the round before.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Round {
-    pub(crate) pilots: usize,
-    pub(crate) courses: u64,
-}
-
-/// Budget of each method: 48 pilots, and 2,880 courses driven.
-pub(crate) const ROUNDS: [Round; 3] =
-    [Round { pilots: 48, courses: 8 }, Round { pilots: 12, courses: 24 }, Round { pilots: 4, courses: 72 }];
-
-/// Score of a pilot on a round's courses.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Score {
-    /// Number of courses it finished alone, with a second robot behind, and with one ahead.
-    pub(crate) finished: [u32; 3],
-    /// For how long it drove on those that it finished, in seconds.
-    pub(crate) time_s: f64,
-}
-
-impl Score {
-    /// A finished course counts 1, and four seconds longer on it as much as a fortieth of one. All three places count
-    /// alike, as each has as many courses.
-    fn value(&self) -> f64 {
-        f64::from(self.finished.iter().sum::<u32>()) - self.time_s / 160.0
-    }
-}
+use crate::score::{Round, Score};
 
 /// Result of a search.
 #[derive(Clone, Copy, Debug, PartialEq)]

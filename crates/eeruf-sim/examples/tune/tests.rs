@@ -9,7 +9,8 @@ use eeruf_sim::{Entry, Method, Physics};
 use crate::draw::candidate;
 use crate::log::Log;
 use crate::print::{row, source};
-use crate::search::{Round, Score, Search, Tuned};
+use crate::score::{ROUNDS, Round, Score};
+use crate::search::{Search, Tuned};
 
 const SMALL: [Round; 2] = [Round { pilots: 3, courses: 1 }, Round { pilots: 2, courses: 2 }];
 
@@ -82,7 +83,7 @@ fn pilots_in_the_source_are_as_printed() {
     let methods: Vec<_> = Method::ALL.into_iter().filter(|&method| steered_as(method) == method).collect();
     assert_eq!(rows.len(), methods.len());
     let found: Vec<_> = methods.into_iter().zip(&rows).map(|(method, row)| (method, read(method, row))).collect();
-    assert_eq!(file, source(&crate::search::ROUNDS, &found));
+    assert_eq!(file, source(&ROUNDS, &found));
     for (method, tuned) in found {
         let (drawn, driven) = (tuned.pilot.piloting(), Pilots::Own.of(method));
         assert_eq!(drawn, driven, "{method}");
@@ -95,6 +96,6 @@ fn read(method: Method, line: &str) -> Tuned {
     let finished: Vec<u32> = finished.collect();
     let score = Score { finished: [finished[0], finished[1], finished[2]], time_s: 0.0 };
     let tuned = |number| Tuned { number, pilot: candidate(number), score };
-    let candidates = 0..crate::search::ROUNDS[0].pilots;
+    let candidates = 0..ROUNDS[0].pilots;
     candidates.map(tuned).find(|tuned| line.trim() == row(method, tuned)).expect("a line that the search can print")
 }

@@ -2,7 +2,8 @@
 
 use core::fmt;
 
-use super::room::MAX_CEILING_M;
+/// The highest ceiling, in metres.
+pub(crate) const MAX_CEILING_M: f64 = 1000.0;
 
 /// The most walls a scene may have: a choice of memory.
 pub const MAX_WALLS: usize = 10_000_000;

@@ -1,12 +1,10 @@
 //! A room's height: floor and ceiling, between which walls and poles stand upright.
 
-use super::error::SceneError;
+use super::error::{MAX_CEILING_M, SceneError};
 use super::material::Material;
 
 /// The height of a sensor that none is given for, in metres: a choice, about that of a small robot's ring.
 pub const DEFAULT_HEIGHT_M: f64 = 0.3;
-/// The highest ceiling, in metres.
-pub(crate) const MAX_CEILING_M: f64 = 1000.0;
 
 /// Floor and ceiling. Walls and poles reach from one to the other, so that every path is one of the plan's with bounces
 /// at floor and ceiling in turn.

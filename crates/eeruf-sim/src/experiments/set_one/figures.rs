@@ -2,8 +2,8 @@
 
 use serde::Serialize;
 
+use super::run::Run;
 use super::step::{Latency, NewStep};
-use super::table::Run;
 use crate::{
     experiments::spread::{Spread, interval_95, mean},
     results::Summary,

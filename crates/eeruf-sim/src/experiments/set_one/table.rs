@@ -1,10 +1,11 @@
 //! Set I over many geometries: every method's figures, and how they spread.
 
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 
 use super::alcove::Alcove;
 use super::figures::Figures;
 use super::options::SetOneOptions;
+use super::run::Run;
 use super::step::{self, Steps};
 use crate::experiments::by_name::{by_name, named, transposed};
 use crate::experiments::conditions::Conditions;
@@ -13,7 +14,6 @@ use crate::experiments::progress::Progress;
 use crate::{
     acoustics::Physics,
     methods::Method,
-    results::Summary,
     simulation::{Entry, Options},
     threads::{Stop, sweep},
     world::{Robot, World, WorldError},
@@ -43,18 +43,6 @@ pub struct SetOne {
     /// For each method, the result in each geometry.
     #[serde(skip)]
     pub runs: Vec<Vec<Run>>,
-}
-
-/// The result of one geometry under one method.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Run {
-    /// The geometry's number, which seeds all that is random.
-    pub seed: u64,
-    /// The figures of the alcove as it is.
-    pub summary: Summary,
-    /// Those of its back wall going to and fro.
-    #[serde(flatten)]
-    pub steps: Steps,
 }
 
 /// Runs Set I: every geometry under each method, on all cores.

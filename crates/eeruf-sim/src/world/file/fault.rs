@@ -4,8 +4,7 @@ use eeruf_files::FileError;
 use serde::Deserialize;
 use toml::{Spanned, Table, Value};
 
-use super::robot::schedule;
-use super::schedule_file::ScheduleFile;
+use super::schedule_file::{ScheduleFile, schedule};
 use super::source::Source;
 use crate::world::fault::{Fault, FaultKind};
 

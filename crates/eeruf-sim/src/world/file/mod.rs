@@ -9,6 +9,7 @@ mod scene;
 mod schedule_file;
 mod sketch;
 mod source;
+mod table;
 mod write;
 
 use core::ops::Range;

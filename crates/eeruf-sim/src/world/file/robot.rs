@@ -1,20 +1,19 @@
 //! The robots of a world file.
 
 use eeruf_core::{MAX_SENSORS, Micros, SensorLimits};
-use eeruf_files::{FileError, explain};
+use eeruf_files::FileError;
 use eeruf_modules::Value;
-use serde::Deserialize;
 use toml::Spanned;
 
 use super::format::{EachFile, HeightsFile, MotionFile, RingKey, RobotFile, radians};
 use super::ring_file::{ReadRing, cover_motion};
-use super::schedule_file::ScheduleFile;
+use super::schedule_file;
 use super::sketch::{SketchFile, sketch};
 use super::source::Source;
 use crate::{
     acoustics::Transducer,
     geometry::{Point, Vector},
-    world::{clock::Clock, motion::Motion, robot::AnySchedule, robot::Robot},
+    world::{clock::Clock, motion::Motion, robot::Robot},
 };
 
 /// Builds the robot with this index, which fires as all do unless it says how.
@@ -104,7 +103,7 @@ pub(super) fn robot(
         robot.clock = Clock { offset_us: clock.offset_us, drift_ppm: clock.drift_ppm };
     }
     if let Some(schedule) = &file.schedule {
-        let schedule = self::schedule(source, schedule)?;
+        let schedule = schedule_file::schedule(source, schedule)?;
         (robot.schedule, robot.period) = (Some(schedule), schedule.period());
     }
     let set = |field: &mut Micros, value: Option<u32>| *field = value.map_or(*field, Micros::new);
@@ -168,16 +167,4 @@ pub(super) fn robot(
     robot.consecutive = file.consecutive.unwrap_or(robot.consecutive);
     robot.odometry = file.odometry;
     Ok(robot)
-}
-
-/// A schedule in the file itself, or the name of a file beside it.
-pub(super) fn schedule(source: &Source, value: &Spanned<toml::Value>) -> Result<AnySchedule, FileError> {
-    let here = |message: String| source.error(Some(value.span()), "", format!("schedule: {message}"));
-    if let toml::Value::String(name) = value.get_ref() {
-        let source = source.beside(name)?;
-        let file: ScheduleFile = source.toml()?;
-        return file.schedule().map_err(|message| source.error(None, "", message));
-    }
-    let file = ScheduleFile::deserialize(value.get_ref().clone()).map_err(|error| here(explain(&error)))?;
-    file.schedule().map_err(here)
 }

@@ -1,8 +1,11 @@
 //! Schedules in files: either lags and waits, or firing times, in whole microseconds, one number for each sensor.
 
 use eeruf_core::{Micros, Phase, ScheduleError};
+use eeruf_files::{FileError, explain};
 use serde::{Deserialize, Serialize};
+use toml::Spanned;
 
+use super::source::Source;
 use crate::world::robot::AnySchedule;
 
 /// A schedule as it stands in a file.
@@ -27,6 +30,18 @@ pub struct ScheduleFile {
     t_fire_a_us: Option<Vec<u32>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     t_fire_b_us: Option<Vec<u32>>,
+}
+
+/// A schedule in the file itself, or the name of a file beside it.
+pub(super) fn schedule(source: &Source, value: &Spanned<toml::Value>) -> Result<AnySchedule, FileError> {
+    let here = |message: String| source.error(Some(value.span()), "", format!("schedule: {message}"));
+    if let toml::Value::String(name) = value.get_ref() {
+        let source = source.beside(name)?;
+        let file: ScheduleFile = source.toml()?;
+        return file.schedule().map_err(|message| source.error(None, "", message));
+    }
+    let file = ScheduleFile::deserialize(value.get_ref().clone()).map_err(|error| here(explain(&error)))?;
+    file.schedule().map_err(here)
 }
 
 impl ScheduleFile {

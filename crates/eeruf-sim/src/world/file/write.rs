@@ -6,6 +6,7 @@ use toml::{Table, Value};
 
 use super::fault::fault_table;
 use super::schedule_file::ScheduleFile;
+use super::table::set;
 use crate::{
     acoustics::{Physics, Transducer},
     geometry::Pose,
@@ -93,10 +94,6 @@ pub fn world_file(
     list(&mut file, "robot", robots.iter().map(|robot| Value::Table(robot_table(robot))).collect());
     list(&mut file, "fault", faults.iter().map(|fault| Value::Table(fault_table(fault))).collect());
     file.to_string()
-}
-
-pub(super) fn set(table: &mut Table, key: &str, value: impl Into<Value>) {
-    table.insert(key.to_owned(), value.into());
 }
 
 fn list(table: &mut Table, key: &str, entries: Vec<Value>) {

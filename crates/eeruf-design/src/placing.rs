@@ -1,0 +1,96 @@
+//! The keys of a ring file that say where its sensors are: one by one, on an arc, or as links of the robot's URDF.
+
+use std::path::Path;
+
+use eeruf_sim::{Pose, Robot, Transducer, Vector};
+use serde::Deserialize;
+
+use crate::limits::number;
+use crate::places::Places;
+
+/// The place of a sensor in a ring file.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct PlaceFile {
+    x_m: f64,
+    y_m: f64,
+    z_m: Option<f64>,
+    #[serde(default)]
+    heading_deg: f64,
+}
+
+/// The keys of a ring of so many sensors.
+pub(crate) struct PlaceKeys<'a> {
+    pub(crate) sensors: usize,
+    pub(crate) poses: Option<&'a [PlaceFile]>,
+    pub(crate) spacing_deg: Option<f64>,
+    pub(crate) radius_m: Option<f64>,
+    pub(crate) urdf: Option<&'a str>,
+    pub(crate) links: Option<&'a [String]>,
+    pub(crate) base_height_m: Option<f64>,
+}
+
+impl PlaceKeys<'_> {
+    /// The places of its sensors. A URDF is looked for beside `file`, the ring's own.
+    pub(crate) fn places(&self, file: Option<&Path>) -> Result<Places, String> {
+        let base_height_m = self.base_height_m.map(|m| number("base_height_m", m, 0.0, 100.0)).transpose()?;
+        let (key, mut places) = match (self.poses, self.spacing_deg, self.radius_m, self.urdf, self.links) {
+            (None, None, None, None, None) => return Ok(Places::default()),
+            (Some(poses), None, None, None, None) => ("poses", self.listed(poses)?),
+            (None, Some(spacing), Some(radius), None, None) => {
+                let spacing = number("spacing_deg", spacing, -360.0, 360.0)?.to_radians();
+                let radius = number("radius_m", radius, 0.0, 1000.0)?;
+                let robot = Robot::ring(Pose::identity(), self.sensors, spacing, radius, Transducer::HC_SR04);
+                ("base_height_m", Places { poses: robot.sensors, ..Places::default() })
+            }
+            (None, None, None, Some(urdf), Some(links)) => ("links", self.linked(file, urdf, links)?),
+            (None, None, None, Some(urdf), None) => {
+                return Err(format!("urdf = {urdf:?} without links; expected the link of each sensor, in their order"));
+            }
+            _ => {
+                let expected = "either poses, or spacing_deg and radius_m, or urdf and links, or none of them";
+                return Err(format!("expected {expected}"));
+            }
+        };
+        if let Some(base_height_m) = base_height_m {
+            places.base_height_m = base_height_m;
+            places.z_m.resize(self.sensors, 0.0);
+            places.assumed.clear();
+        }
+        if let Some((sensor, m)) = places.heights_m().iter().enumerate().find(|(_, m)| !(**m > 0.0 && **m <= 100.0)) {
+            return Err(format!(
+                "{key}: sensor {sensor} is {m} m above the floor; expected above 0 to 100: base_height_m says how \
+                 high the base is, where z is 0"
+            ));
+        }
+        Ok(places)
+    }
+
+    fn listed(&self, poses: &[PlaceFile]) -> Result<Places, String> {
+        if poses.len() != self.sensors {
+            return Err(format!("poses has {} places; expected {}, as many as sensors", poses.len(), self.sensors));
+        }
+        let pose = |place: &PlaceFile| Pose::new(Vector::new(place.x_m, place.y_m), place.heading_deg.to_radians());
+        let is_high = poses.iter().any(|place| place.z_m.is_some());
+        let z_m = if is_high { poses.iter().map(|place| place.z_m.unwrap_or(0.0)).collect() } else { vec![] };
+        Ok(Places { poses: poses.iter().map(pose).collect(), z_m, ..Places::default() })
+    }
+
+    fn linked(&self, file: Option<&Path>, urdf: &str, links: &[String]) -> Result<Places, String> {
+        if links.len() != self.sensors {
+            return Err(format!("links has {} names; expected {}, as many as sensors", links.len(), self.sensors));
+        }
+        if let Some(link) = links.iter().enumerate().find(|(at, link)| links[..*at].contains(link)) {
+            return Err(format!("links: `{}` twice; expected a link for each sensor", link.1));
+        }
+        let Some(file) = file else {
+            return Err(format!(
+                "urdf = {urdf:?} is looked for beside the ring file; expected poses in a ring without one"
+            ));
+        };
+        #[cfg(feature = "urdf")]
+        return crate::urdf::places(&file.parent().unwrap_or(Path::new("")).join(urdf), links);
+        #[cfg(not(feature = "urdf"))]
+        Err(format!("urdf = {urdf:?} in {}; expected poses: this program reads no URDF", file.display()))
+    }
+}

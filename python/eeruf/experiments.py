@@ -11,7 +11,8 @@ import json
 import operator
 from typing import TYPE_CHECKING, Any, Literal, overload
 
-from eeruf import _eeruf, _results
+from eeruf import _eeruf, _making
+from eeruf._making import compare, concat
 from eeruf._results import (
     AlcoveRun,
     Difference,
@@ -30,8 +31,6 @@ from eeruf._results import (
     SpeedStep,
     SpeedSweep,
     Spread,
-    compare,
-    concat,
 )
 
 if TYPE_CHECKING:
@@ -340,7 +339,7 @@ def set_one(
 
     """
     _checked(first, seeds, tune)
-    return _results.set_one(*_eeruf._set_one(seeds, first, readings, methods, progress, physics))
+    return _making.set_one(*_eeruf._set_one(seeds, first, readings, methods, progress, physics))
 
 
 def set_two(
@@ -404,7 +403,7 @@ def set_two(
     asked = _asked(
         seeds, methods, second_robot, speed_m_s, odometry, t_delta_us, first, pilot, odometry_noise, physics, bodies
     )
-    return _results.set_two(*_eeruf._set_two(asked, progress))
+    return _making.set_two(*_eeruf._set_two(asked, progress))
 
 
 def set_three(
@@ -449,7 +448,7 @@ def set_three(
 
     """
     _checked(first, seeds, tune)
-    return _results.set_three(*_eeruf._set_three(seeds, first, periods, methods, progress, physics, height))
+    return _making.set_three(*_eeruf._set_three(seeds, first, periods, methods, progress, physics, height))
 
 
 def speed_sweep(
@@ -503,7 +502,7 @@ def speed_sweep(
     asked = _asked(
         seeds, methods, second_robot, 1.0, odometry, t_delta_us, first, pilot, odometry_noise, physics, bodies
     )
-    return _results.speed_sweep(_eeruf._speed_sweep(speeds_m_s, asked, progress))
+    return _making.speed_sweep(_eeruf._speed_sweep(speeds_m_s, asked, progress))
 
 
 def _asked(*values: object) -> dict[str, object]:

@@ -238,7 +238,7 @@ impl Readings {
         let tolerance_us = tolerance(tolerance_us)?;
         let summary = py.detach(|| self.readings.summary_within(tolerance_us));
         let json = serde_json::to_string(&summary).map_err(|error| ArgumentError::new_err(error.to_string()))?;
-        py.import("eeruf._results")?.call_method1("summary", (json,))
+        py.import("eeruf._making")?.call_method1("summary", (json,))
     }
 
     /// All arrays, one entry for each reading, by their names: a dict.

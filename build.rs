@@ -12,7 +12,7 @@ fn main() {
 /// The commit: of the tarball as cargo noted it there, else of the clone; none where neither is at hand.
 fn commit() -> Option<String> {
     if let Ok(noted) = std::fs::read_to_string(".cargo_vcs_info.json") {
-        // Named only where it is: a file that is missing counts as changed, and all would be built anew each time.
+        // Named only where it is: a file that is missing counts as changed, and all would be rebuilt each time.
         println!("cargo::rerun-if-changed=.cargo_vcs_info.json");
         let (_, rest) = noted.split_once("\"sha1\": \"")?;
         return rest.get(..7).map(str::to_owned);

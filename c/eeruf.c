@@ -182,7 +182,7 @@ static bool are_neighbours(uint8_t layout, uint8_t n, uint8_t sensors, uint8_t x
     }
 }
 
-/* By how much earlier a sensor fires in phase b than in phase a, each time after the start of its period. */
+/* The lead of a sensor's firing in phase b over that in phase a, each after the start of its period. */
 static int32_t shift_of(const EerufSchedule *schedule, uint8_t sensor) {
     return (int32_t)fires_at(schedule, 0, sensor) - (int32_t)fires_at(schedule, 1, sensor);
 }
@@ -1058,7 +1058,7 @@ static EerufStatus poll(EerufRing *ring, uint32_t now_us, const int32_t *change_
     bool fires = false;
     if (event == NULL) return EERUF_ERR_NULL;
     if (!is_due && !emits) {
-        /* The clock has jumped, or nobody polled for half a turn of it. */
+        /* The clock has jumped, or the ring was not polled for half a turn of it. */
         if (0u - late_us > (hops ? horizon_of_hopping(ring) : horizon_of_table(ring))) restart(ring, now_us, hops);
         return EERUF_OK;
     }
@@ -1927,7 +1927,7 @@ EerufStatus eeruf_hc_sr04_edges(EerufHcSr04 *modules, EerufEdges *edges) {
     if (modules == NULL) return EERUF_ERR_NULL;
     if (modules->ready != READY) return EERUF_ERR_NOT_READY;
     while ((status = eeruf_edges_pop(edges, &edge)) == EERUF_OK)
-        /* An edge of a line that the ring does not have concerns nobody here. */
+        /* An edge of a line that the ring does not have is ignored. */
         (void)eeruf_hc_sr04_edge(modules, edge.sensor, edge.high, edge.at_us);
     return status == EERUF_EMPTY ? (EerufStatus)EERUF_OK : status;
 }

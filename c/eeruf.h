@@ -138,8 +138,8 @@ typedef struct EerufSchedule {
     uint32_t t_delta_us;    /* (13a) and (13b) hold for it; the largest, as the window, where sensors have limits */
     uint32_t min_interval_us;
     uint32_t window_us;
-    uint32_t separation_us; /* by how much crosstalk moves at least from one reading to the next */
-    uint32_t path_change_us; /* P: by how much a path of sound may change meanwhile, or EERUF_AS_T_DELTA */
+    uint32_t separation_us; /* least shift of crosstalk from one reading to the next */
+    uint32_t path_change_us; /* P: the largest change of a path of sound meanwhile, or EERUF_AS_T_DELTA */
     uint32_t audible_us;    /* R: for how long sound may be heard after its firing */
     uint8_t verified;
     uint8_t layout;         /* EERUF_LAYOUT_.. */
@@ -558,7 +558,7 @@ typedef struct EerufHoppingConfig {
     uint32_t window_us;          /* at most EERUF_HOPPING_MAX_WINDOW_US */
     uint32_t blanking_us;
     uint32_t reach_us;           /* after how long no sound is heard any more */
-    uint32_t shift_interval_us;  /* what neighbours keep when a lag is drawn anew */
+    uint32_t shift_interval_us;  /* what neighbours keep when a lag is redrawn */
     uint32_t seed;               /* of the draws */
     EerufTrackerSettings tracker;
     uint8_t solo_rate;           /* what of a solo period each period earns, in 1/256 */

@@ -136,7 +136,7 @@ static inline size_t eeruf_frame_of_event(EerufSerial *line, const EerufRing *ri
 }
 
 /* The frame that an event makes, and its size; 0 if it makes none. Hand in every event, with the `now_us` of its poll.
-   `modules` may be null where nobody knows how the sensors are. */
+   `modules` may be null where the sensors' health is unknown. */
 static inline size_t eeruf_serial_event(EerufSerial *line, const EerufRing *ring, const EerufHcSr04 *modules,
                                         const EerufEvent *event, uint32_t now_us, uint8_t *bytes) {
     return eeruf_frame_of_event(line, ring, modules, event, NULL, now_us, bytes);

@@ -1,4 +1,4 @@
-"""Packs a wheel anew, alike in whatever folder it was built: `python repack.py WHEEL`.
+"""Repacks a wheel, alike in whatever folder it was built: `python repack.py WHEEL`.
 
 The bill of materials that maturin writes names packages by the folder that they were built in; here they are named
 from the repository's root.
@@ -40,5 +40,5 @@ with zipfile.ZipFile(packed, "w") as new:
         entry = zipfile.ZipInfo(info.filename, info.date_time)
         entry.external_attr = info.external_attr
         new.writestr(entry, contents[info.filename], zipfile.ZIP_DEFLATED, 9)
-print(f"{wheel.name}: {wheel.stat().st_size} bytes, packed anew {packed.stat().st_size}")
+print(f"{wheel.name}: {wheel.stat().st_size} bytes, repacked {packed.stat().st_size}")
 packed.replace(wheel)

@@ -252,7 +252,7 @@ class Ring:
     #    timetable there is none, and the ring does not search (docs/explanation/theory.md, section 2.1). --
 
     def set_path_change(self, path_change_us):
-        """Sets by how much a path of foreign sound may change from one reading to the next, None for `t_delta_us`."""
+        """Sets the largest change of a foreign sound's path from one reading to the next, None for `t_delta_us`."""
         if path_change_us is not None and not 0 <= path_change_us < 0xFFFF:
             raise ValueError("path_change_us = %d: 0 to 65534 expected" % path_change_us)
         self.path_change_us = path_change_us

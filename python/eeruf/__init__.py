@@ -173,7 +173,7 @@ def show_versions() -> None:
 
 
 if not TYPE_CHECKING:
-    # On first use: nobody who does not need them should wait for them, or for what they import.
+    # On first use: a program without them need not wait for them, or for what they import.
     _MODULES = ("experiments", "logs", "plot")
     _FUNCTIONS = {"sweep": "_sweep"} | dict.fromkeys(
         ("diagnose", "read_firings", "read_log", "replay", "survey"), "logs"

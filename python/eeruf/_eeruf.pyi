@@ -316,7 +316,7 @@ class Schedule:
         Args:
             sensors: how many, 1 to 64.
             period_us: the period, ``T_p``.
-            step_us: by how much crosstalk moves at least, 1 to 65535.
+            step_us: the least shift of crosstalk, 1 to 65535.
             phases: at least this many, 2 to 67; by default the 5 that confirm an echo.
             t_lag_us: the lag of each sensor; by default they are spread evenly over the period.
 
@@ -1278,7 +1278,7 @@ class EchoFilter:
         Args:
             sensor: which one, from 0.
             t_echo_us: the time of its echo after firing in whole microseconds, or None for no echo.
-            expected_change_us: by how much a good reading should differ from the one before, from the robot's own
+            expected_change_us: expected change of a good reading from the one before, by the robot's own
                 motion: ``-2 v dt / c`` for an object approached at ``v``.
 
         Returns:
@@ -1365,7 +1365,7 @@ class HoppingSchedule:
     Args:
         sensors: how many, 1 to 64.
         period_us: the period, ``T_p``; it must exceed the width of the code.
-        step_us: by how much crosstalk moves at least, 1 to 65535.
+        step_us: the least shift of crosstalk, 1 to 65535.
         phases: at least this many, 2 to 67, as far as there are; there are more than sensors, and one less than a
             prime. By default at least the 5 that confirm an echo.
         t_lag_us: the lag of each sensor; by default they are spread evenly over the period.
@@ -1493,7 +1493,7 @@ class HoppingSettings:
 
     Example:
         >>> import eeruf
-        >>> settings = eeruf.HoppingSettings("quick", shift_after=5)  # lags are drawn anew
+        >>> settings = eeruf.HoppingSettings("quick", shift_after=5)  # lags are redrawn
         >>> settings.votes, settings.shift_after
         (4, 5)
         >>> settings
@@ -1599,7 +1599,7 @@ class EchoTracker:
             sensor: which one, from 0.
             phase: the phase in which it fired, 0 to 255.
             t_echo_us: the time of its echo after firing in whole microseconds, or None for no echo.
-            expected_change_us: by how much a good reading should have changed since this sensor's firing before, from
+            expected_change_us: expected change of a good reading since this sensor's firing before, by
                 the robot's own motion: ``-2 v dt / c`` for an object approached at ``v``.
             solo: whether no other sensor's sound could be heard.
             steady: whether firings were so punctual that crosstalk moved as the schedule says; else it supports
@@ -1690,7 +1690,7 @@ class EchoTracker:
         """
     def firing_changed(self) -> None:
         """Say that firing times have changed against each other otherwise than by the phase, such as by a new lag: what is
-        not confirmed begins anew.
+        not confirmed starts over.
 
         Example:
             >>> import eeruf
@@ -1858,7 +1858,7 @@ class Ring:
         window_us: ``T_wind``: how long a sensor listens after it has fired, 1 or more. One for all, or a sequence.
         blanking_us: edges sooner than this after firing are ringing of the transducer, not echoes.
         consecutive: the number of consecutive readings that must agree, 2 to 8.
-        path_change_us: P: by how much, at most, the path of a foreign sound changes from one reading to the next, at
+        path_change_us: P: the largest change of a foreign sound's path from one reading to the next, at
             most 65,534; None for ``t_delta_us``. Less makes fewer readings ambiguous where firings are late.
         audible_us: R: how long sound is audible, at most 67 s; None for one period.
         refire_us: how soon a sensor may be triggered again, as for :func:`design`. With this, with those below or with
@@ -1929,7 +1929,7 @@ class Ring:
             window_us: how long a sensor listens after it has fired, 1 or more.
             blanking_us: edges sooner than this after firing are no echoes.
             consecutive: the number of consecutive readings that must agree, 2 to 8.
-            path_change_us: P: by how much, at most, the path of a foreign sound changes from one reading to the next,
+            path_change_us: P: the largest change of a foreign sound's path from one reading to the next,
                 at most 65,534; None for ``t_delta_us``. Less makes fewer readings ambiguous where firings are late.
             audible_us: R: how long sound is audible, at most 67 s; None for one period.
 
@@ -1990,12 +1990,12 @@ class Ring:
         """For how long after firing edges are no echoes, in microseconds. It can be changed while the ring runs."""
     @property
     def path_change_us(self) -> int:
-        """P, by how much the path of a foreign sound may change from one reading to the next, in microseconds. It can be
+        """P, the largest change of a foreign sound's path from one reading to the next, in microseconds. It can be
         changed while the ring runs: as the robot's speed changes, for example.
         """
     @path_change_us.setter
     def path_change_us(self, value: _Int, /) -> None:
-        """P, by how much the path of a foreign sound may change from one reading to the next, in microseconds. It can be
+        """P, the largest change of a foreign sound's path from one reading to the next, in microseconds. It can be
         changed while the ring runs: as the robot's speed changes, for example.
         """
     @property
@@ -2058,7 +2058,7 @@ class Ring:
 
         Args:
             now_us: the present, 0 or more.
-            expected_change_us: for each sensor, by how much a good reading should differ from the one before, from the
+            expected_change_us: for each sensor, the expected change of a good reading from the one before, by the
                 robot's own motion: ``-2 v dt / c`` for an object approached at ``v``. None for a robot that stands.
 
         Returns:
@@ -2402,7 +2402,7 @@ class HoppingRing:
 
         Args:
             now_us: the present, 0 or more.
-            expected_change_us: for each sensor, by how much a good reading should differ from the one before, from the
+            expected_change_us: for each sensor, the expected change of a good reading from the one before, by the
                 robot's own motion: ``-2 v dt / c`` for an object approached at ``v``. None for a robot that stands.
 
         Returns:
@@ -3224,8 +3224,8 @@ class Noise:
     """Noise of a scene.
 
     Args:
-        fading_db_rms: by how much each arrival's level fades or grows, in dB, 0 to 20.
-        jitter_us_rms: by how much each arrival is early or late, in microseconds, 0 to 10,000.
+        fading_db_rms: rms change of each arrival's level, in dB, 0 to 20.
+        jitter_us_rms: rms error of each arrival's time, in microseconds, 0 to 10,000.
         bursts_per_s: how many bursts from outside are heard in a second, 0 to 10,000.
         burst_db: how far they are above what is just heard, in dB, -200 to 200.
 
@@ -3328,7 +3328,7 @@ class Robot:
         min_refire_us: with immediate refiring, how long a sensor rests between its echo and its next firing.
         audible_us: how long sound is heard after it was sent, as far as methods that fire one by one allow for it; what
             its modules say where ``module`` is given, or else no longer than sensors listen.
-        path_change_us: P: by how much, at most, the path of a foreign sound changes from one reading to the next, where
+        path_change_us: P: the largest change of a foreign sound's path from one reading to the next, where
             a table fires the ring, at most 65,534 us; None for ``t_delta_us``.
         ring: the path of a ring file, for ``eeruf design``, that gives modules, windows, ``T_delta``, sensors that fire
             together, neighbours, ``path_change_us`` and ``audible_us``, unless these are given here.
@@ -3345,7 +3345,7 @@ class Robot:
         speed_m_s: how fast it does so, in m/s.
         clock_offset_us: what its clock shows at the start.
         transducer: an older name of ``module``.
-        clock_drift_ppm: by how much its clock goes too fast, in millionths.
+        clock_drift_ppm: rate error of its clock, positive if fast, in millionths.
 
     Raises:
         ArgumentError: something of the wrong type or out of range, or two kinds of motion at once.
@@ -3840,7 +3840,7 @@ class Readings:
         """Where the sensor stood when it fired, in metres of the scene: float64."""
     @property
     def heading_rad(self) -> NDArray[np.float64]:
-        """Whither the sensor looked when it fired, in radians of the scene, counter-clockwise from the x axis: float64."""
+        """The sensor's heading when it fired, in radians of the scene, counter-clockwise from the x axis: float64."""
     @property
     def kind(self) -> NDArray[np.int8]:
         """Verdict of the method, an index into ``eeruf.KINDS``: int8."""
@@ -3880,7 +3880,7 @@ class Readings:
         """Returns true if what the reading says is wrong, accepted.
 
         Args:
-            tolerance_us: by how much it may miss the reference, in microseconds.
+            tolerance_us: largest difference from the reference, in microseconds.
 
         Returns:
             Array of bool.
@@ -3899,7 +3899,7 @@ class Readings:
         """The figures that are always reported together.
 
         Args:
-            tolerance_us: by how much a reading may miss the reference, in microseconds.
+            tolerance_us: largest difference of a reading from the reference, in microseconds.
 
         Returns:
             A ``Summary``.
@@ -4351,7 +4351,7 @@ class Simulation:
     def set_pose(self, robot: _Int, pose: _Pose) -> None:
         """Put a robot at another place, whatever is in between. It goes on at the speeds set last, or else stands.
 
-        A ring with odometry takes the leap for a drive. Nobody looks whether the robot stands free: see
+        A ring with odometry takes the leap for a drive. Whether the robot stands free is not checked: see
         ``RobotState.touches``.
 
         Args:
@@ -4372,7 +4372,7 @@ class Simulation:
     def reset(self, seed: _Int | None = None) -> None:
         """Begin again: time 0, robots at their first poses, the scene and the schedules of the start.
 
-        What the method makes (``make_filter``, ``make_firing``) is made anew; callables that were arguments go on being
+        What the method makes (``make_filter``, ``make_firing``) is remade; callables that were arguments go on being
         called as they are. An MCAP file that is being written ends.
 
         Args:
@@ -4420,7 +4420,7 @@ class Simulation:
         """
     def change_scene(self, scene: Scene) -> None:
         """From now on sound travels among these walls and poles and in this air: obstacles have moved. Sound that is on
-        its way arrives as it would have before. Nobody looks whether the robots stand free in it.
+        its way arrives as it would have before. Whether the robots stand free in it is not checked.
 
         Args:
             scene: whose robots, noise, seed, order and physics do not count: those of the simulation stay.
@@ -4749,14 +4749,7 @@ def _course(number: _Int, physics: _Physics) -> Scene: ...
 def _room(
     kind: str, number: _Int, ring: str | PathLike[str], driving: bool, physics: _Physics, height: _Height
 ) -> Scene: ...
-def _recommend(
-    ring: str | PathLike[str],
-    places: _Int,
-    first: _Int,
-    driving: bool,
-    wrong: float,
-    progress: _Progress,
-) -> str: ...
+def _recommend(ring: str | PathLike[str], asked: dict[str, object], progress: _Progress) -> str: ...
 def _speed_sweep(speeds_m_s: Sequence[float], asked: dict[str, object], progress: _Progress) -> str: ...
 def _readings_from_columns(
     method: str,

@@ -238,7 +238,7 @@ def _run(
             if report is not None:
                 report(len(found) / len(cases), f"{len(found)} of {len(cases)}")
     finally:
-        # After an error or Ctrl-C nobody waits for the rest.
+        # After an error or Ctrl-C the rest is not waited for.
         for future in futures:
             future.cancel()
     return [found[index] for index in range(len(cases))]

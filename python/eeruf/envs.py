@@ -64,7 +64,7 @@ def _observed(state: _eeruf.BatchState) -> NDArray[np.float32]:
 
 
 class CourseVectorEnv(VectorEnv[NDArray[np.float32], NDArray[np.float32], NDArray[Any]]):
-    """Many courses at once, stepped on all cores. One that is over begins anew in the same step, in another course.
+    """Many courses at once, stepped on all cores. One that is over starts over in the same step, in another course.
 
     Args:
         num_envs: how many, 1 or more.
@@ -111,7 +111,7 @@ class CourseVectorEnv(VectorEnv[NDArray[np.float32], NDArray[np.float32], NDArra
         self._x_m = np.full(num_envs, _START_X_M)
 
     def _begin(self, worlds: NDArray[np.bool_]) -> _eeruf.BatchState:
-        """Begin anew in these worlds, in courses that are drawn."""
+        """Start over in these worlds, in courses that are drawn."""
         drawn = self.np_random.integers(len(self._courses), size=int(worlds.sum()))
         seeds = self.np_random.integers(2**63, size=len(drawn)).tolist()
         self._x_m[worlds] = _START_X_M
@@ -120,7 +120,7 @@ class CourseVectorEnv(VectorEnv[NDArray[np.float32], NDArray[np.float32], NDArra
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[NDArray[np.float32], dict[str, Any]]:
-        """Begin anew in all worlds."""
+        """Start over in all worlds."""
         super().reset(seed=seed, options=options)
         state = self._begin(np.ones(self.num_envs, bool))
         return _observed(state), self._info(state)
@@ -189,7 +189,7 @@ class CourseEnv(gymnasium.Env[NDArray[np.float32], NDArray[np.float32]]):
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[NDArray[np.float32], dict[str, Any]]:
-        """Begin anew, in another course."""
+        """Start over, in another course."""
         super().reset(seed=seed)
         # What this one draws decides what is drawn beneath.
         observed, info = self._one.reset(seed=int(self.np_random.integers(2**31)))

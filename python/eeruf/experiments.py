@@ -109,7 +109,7 @@ class Scenes:
             raise _eeruf.ArgumentError(f'kind = {kind!r}; expected "alcove" or "course"')
         if not isinstance(numbers, range) or (len(numbers) and min(numbers[0], numbers[-1]) < 0):
             raise _eeruf.ArgumentError(f"numbers = {numbers!r:.60}; expected a range of numbers from 0 on")
-        # What is wrong with the effects is said at once.
+        # Errors in the effects come at once.
         _eeruf._alcove(0, physics)
         self.kind, self.numbers, self.physics = kind, numbers, physics
 
@@ -237,6 +237,7 @@ def rooms(
 def recommend(
     ring: str | PathLike[str],
     *,
+    rooms: dict[str, _eeruf.Scene] | None = None,
     places: int = 6,
     first: int = 0,
     driving: bool = False,
@@ -247,6 +248,8 @@ def recommend(
 
     Args:
         ring: the path of a ring file.
+        rooms: scenes of your own by their names, in each of which the ring stands where the first robot does; by default rooms of
+            eight kinds.
         places: rooms of each kind, 1 to 1,000.
         first: the number of the first room of each kind; ways are chosen on numbers below 2,000, and reported from :data:`FIRST` on.
         driving: whether the robot drives.
@@ -269,9 +272,14 @@ def recommend(
         >>> answer = eeruf.experiments.recommend(ring, places=1)
         >>> answer["ways"][0]["way"], sorted(answer["ways"][0]["rooms"])[:2]
         ('sequential', ['aisle', 'alcove'])
+        >>> walls = [[-2, -2, 2, -2], [2, -2, 2, 2], [2, 2, -2, 2], [-2, 2, -2, -2]]
+        >>> box = eeruf.sim.Scene(walls, robots=[eeruf.sim.Robot((0, 0, 0), sensors=[(0.2, 0, 0)])])
+        >>> list(eeruf.experiments.recommend(ring, rooms={"box": box})["ways"][0]["rooms"])
+        ['box']
 
     """
-    answer: dict[str, Any] = json.loads(_eeruf._recommend(ring, places, first, driving, wrong, progress))
+    asked = {"rooms": rooms, "places": places, "first": first, "driving": driving, "wrong": wrong}
+    answer: dict[str, Any] = json.loads(_eeruf._recommend(ring, asked, progress))
     return answer
 
 
@@ -292,7 +300,7 @@ def _is_whole(value: object) -> bool:
 
 def _checked(first: int, seeds: int, tune: bool) -> None:
     """Refuse to tune on seeds that figures are reported on."""
-    # What is no number is refused elsewhere.
+    # A non-number is refused elsewhere.
     if tune and _is_whole(first) and _is_whole(seeds) and operator.index(first) + operator.index(seeds) > FIRST:
         raise _eeruf.ExperimentError(
             f"seeds up to {first + seeds - 1} with tune=True; expected seeds below {FIRST}, such as first=0: "

@@ -50,7 +50,7 @@ def _column(name: str, values: ArrayLike, dtype: type[_Number]) -> NDArray[_Numb
     import numpy as np
 
     try:
-        # What is no number makes one that is refused when it is looked at.
+        # A non-number makes one that is refused when it is looked at.
         with np.errstate(invalid="ignore"):
             column = np.asarray(values).astype(dtype, order="C")
     except (TypeError, ValueError, OverflowError):
@@ -467,7 +467,7 @@ def diagnose(
 
     Args:
         log: a file, or firings.
-        tolerance_us: by how much a reading may differ from what a path predicts, about four times the jitter.
+        tolerance_us: largest difference of a reading from what a path predicts, about four times the jitter.
         max_travel_us: for how long sound is followed.
 
     Raises:
@@ -494,7 +494,7 @@ def survey(log: Firings | str | os.PathLike[str], *, tolerance_us: int = 100, un
 
     Args:
         log: a file, or firings.
-        tolerance_us: by how much edges of one path may differ, about four times the jitter.
+        tolerance_us: largest difference between edges of one path, about four times the jitter.
         until_us: pairs that hear each other within this time are conflicts.
 
     Raises:

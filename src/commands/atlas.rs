@@ -16,7 +16,7 @@ use crate::files::error::InputError;
 use crate::report::draw;
 use crate::report::watch::Watch;
 
-/// Make the atlas: shortest periods of rings of 2 to 32 sensors, each with its schedule, which `design` answers from.
+/// Make the atlas of shortest periods that `design` answers from: rings of 2 to 32 sensors, each with its schedule.
 ///
 /// Rows are appended to FILE one by one, so that it can be ended at any time and takes up where it stopped. Any number
 /// of processes may write to the same file at once, on one machine, each with its share: --shard 1/3, 2/3, 3/3. When
@@ -116,7 +116,7 @@ fn end_last_line(path: &Path) -> std::io::Result<()> {
     if last == *b"\n" { Ok(()) } else { file.write_all(b"\n") }
 }
 
-/// Writes the file anew in its order, if no ring is missing: under another name, so that it is always whole.
+/// Rewrites the file in its order, if no ring is missing: under another name, so that it is always whole.
 fn sort_if_complete(file: &Path, rings: &[Ring]) -> std::io::Result<()> {
     let sorted: BTreeMap<Ring, Row> = rows(&read(file)?).map(|row| (row.ring, row)).collect();
     if !rings.iter().all(|ring| sorted.contains_key(ring)) {

@@ -8,7 +8,7 @@ use super::answer::Answer;
 use crate::console::print;
 use crate::files::error::InputError;
 
-/// Print the script that lets a shell complete verbs and options
+/// Print a shell's completions of verbs and options
 ///
 /// bash: eeruf completions bash > ~/.local/share/bash-completion/completions/eeruf
 ///

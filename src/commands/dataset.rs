@@ -14,8 +14,9 @@ use crate::files::write::{make_folder, write};
 use crate::report::json::to_json;
 use crate::report::watch::Watch;
 
-/// Write simulated readings with ground truth, in alcoves and on courses of poles: what each sensor read, what it would
-/// have read alone, and whose sound it was.
+/// Write simulated readings with ground truth, in alcoves and on courses of poles.
+///
+/// For each reading: what the sensor would have read alone, and whose sound it was.
 ///
 /// docs/how-to/dataset.md is its data card. The same arguments write the same files.
 #[derive(clap::Args)]

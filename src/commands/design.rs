@@ -32,32 +32,23 @@ use crate::report::watch::Watch;
 
 /// Find the way of firing a ring that is right most of the time in rooms, and the shortest period, proven.
 ///
-/// The ring is fired by every way: one by one, at once, in groups, in two phases, by time hopping and flow, in seeded
-/// rooms (corridor, office, hall, clutter, alcove, garage, aisle, and beside another robot of the same make), standing
-/// or --driving. The way recommended is right most of the time among those that keep foreign sound below --wrong and
-/// leave no sensor blind, and the answer lists what it depends on. --emit rust, c and arduino write what a flow ring is
-/// set up with where that is the way recommended, else the shortest schedule of two phases, as --period-only and --emit
-/// toml always do.
+/// The ring is fired in every way (one by one, at once, in groups, in two phases, by time hopping, by flow) in seeded
+/// rooms of eight kinds, standing or --driving. The way recommended is right most of the time among those that keep
+/// foreign sound below --wrong and leave no sensor blind. The answer lists what it depends on.
 ///
-/// With --phases it is one of many phases, for a ring that hops in time and whose sensors do not stay blind: a code
-/// with lags that keep all needs, and the bound that holds for any such schedule; --emit rust, c and arduino then write
-/// all that a hopping ring is set up with.
+/// --emit rust, c and arduino write the settings of a flow ring where that is the way recommended, else the shortest
+/// schedule of two phases, as --period-only and --emit toml always do. Among schedules of one period it prefers a
+/// larger T_delta, then a larger smallest interval, then evener firing.
 ///
-/// The ring file says how many sensors there are (sensors, layout, neighbours) and what they need: t_delta_us,
-/// min_interval_us, window_us; or jitter_us and speed_m_s, crosstalk_range_m, max_range_m and retrigger_us,
-/// temperature_c; and handling_us, for which the controller fires nothing else; path_change_us and audible_us, by how
-/// much the path of foreign sound changes and how long it is heard. module names the modules, one for all
-/// or a list, whose range and rest hold where max_range_m and retrigger_us are not given.
-/// t_delta_us, jitter_us, window_us, max_range_m and retrigger_us may be lists with a number for each
-/// sensor; intervals_us = [[x, y, us], ..] gives pairs an interval of their own, shared_lines = [[x, y], ..] names
-/// sensors on one echo line, together = [[x, y], ..] those that fire at the same instants. Sensors count from 0 in it.
-/// poses, or spacing_deg and radius_m, or urdf and links say where sensors are. With them and module, a ring stands all
-/// round unless layout says otherwise, and pairs that cannot hear each other are no neighbours: neither straight nor
-/// off one wall or object, at any angle and as far as crosstalk_range_m, in the module's strongest fading. The robot's
-/// body lets nothing through, and other frequencies are not heard. Sound over several walls is rejected as ever. Pairs
-/// in layout hold as they are, as for sensors on bare posts.
-/// Among all schedules with that period it prefers a larger T_delta, then a larger smallest interval, then evener
-/// firing. Exit code 0 if there is a schedule, 1 if there is none, 2 for bad input.
+/// With --phases the schedule has many phases, for a ring that hops in time and whose sensors do not stay blind; --emit
+/// rust, c and arduino then write all settings of a hopping ring.
+///
+/// Four lines are enough for a ring file: sensors, module, layout and speed_m_s. The sensors' places (spacing_deg and
+/// radius_m, or poses, or urdf and links) make the answer the robot's own. Instead of the module it may give times
+/// (t_delta_us, min_interval_us, window_us), or what they follow from (jitter_us, speed_m_s, crosstalk_range_m,
+/// max_range_m, retrigger_us, temperature_c). Other keys are for sensors that are not all alike, share lines or fire
+/// together, for slow controllers and for layouts: docs/reference/ring-files.md has all. Sensors count from 0 in it.
+/// Pairs that cannot hear each other, by module and places, are no neighbours, unless layout names them.
 #[derive(clap::Args)]
 pub(crate) struct Args {
     /// The ring
@@ -176,6 +167,9 @@ struct Answered<'a> {
     period: Option<PeriodJson>,
     #[serde(flatten)]
     rooms: Option<RoomsOrNot<'a>>,
+    /// Neighbours by their number that do not hear each other where they stand.
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
+    not_neighbours: &'a [(usize, usize)],
 }
 
 /// The shortest period in short, beside the ways of firing.
@@ -283,7 +277,8 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
             let FoundJson { value_us, bound_us, proven, .. } = found;
             let period = PeriodJson { value_us, bound_us, proven, reason: found.reason.clone() };
             let period = rooms.is_some().then_some(period);
-            print_line(to_json(&Answered { found, period, rooms: rooms.as_ref().map(RoomsOrNot::of) }))?;
+            let rooms = rooms.as_ref().map(RoomsOrNot::of);
+            print_line(to_json(&Answered { found, period, rooms, not_neighbours: &spec.not_neighbours }))?;
         }
         None => {
             let name = args.file.display().to_string();

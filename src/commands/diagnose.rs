@@ -16,8 +16,10 @@ use crate::files::toml::{FoundSchedule, read_any_schedule, read_schedule};
 use crate::report::diagnose::{Found, describe, json, who_fools_whom};
 use crate::report::json::to_json;
 
-/// Say from a ring's own log which sensors fool each other, along paths of which length, since when and how sure;
-/// which are blind in which phases; what is broken; and what to change.
+/// Find in a ring's own log which sensors fool each other, and what is broken.
+///
+/// It prints along paths of which length, since when and how sure; which sensors are blind in which phases; and what to
+/// change.
 ///
 /// The log is CSV with the columns sensor, fired_us, period, phase and t_echo_us, one row for each firing: when it was,
 /// in microseconds of one clock, and the raw time to the first echo, empty without one. Sensors, periods and phases

@@ -8,8 +8,9 @@ use crate::examples;
 use crate::files::error::InputError;
 use crate::files::write::{make_folder, write};
 
-/// List the example scenes and rings and the checker of certificates in Python, or write them into a folder, where the
-/// commands of the documents then run.
+/// List the example scenes and rings, or write them into a folder.
+///
+/// The checker of certificates in Python is among them. The commands of the documents run in that folder.
 #[derive(clap::Args)]
 pub(crate) struct Args {
     /// Write scenes/, rings/ and checker/ into this folder; files that are there already stay as they are

@@ -14,7 +14,7 @@ const TEXTS: [(&str, &str); 3] = [
     ("What others wrote", include_str!("../../LICENSE-THIRD-PARTY.txt")),
 ];
 
-/// Print the licences of this program and of what is within it that others wrote
+/// Print the licences of this program and its dependencies
 #[derive(clap::Args)]
 pub(crate) struct Args {}
 

@@ -14,8 +14,9 @@ use crate::files::error::InputError;
 use crate::report::json::to_json;
 use crate::report::table::markdown;
 
-/// Say what a log holds: its form, its sensors, how they fire, each guess with the option that overrides it, and
-/// whether sensors read each other's sound.
+/// Recognise a log: its form, sensors and firing pattern, and whether sensors hear each other.
+///
+/// Each guess is printed with the option that overrides it.
 ///
 /// Reads MCAP, ROS 1 and ROS 2 bags, tables with any separator, lines of pairs of name and value, JSON, what
 /// `ros2 topic echo` prints, and each of them packed by gzip, bzip2 or zstd. `replay` reads the same, and Python's

@@ -11,7 +11,7 @@ use crate::console::print;
 use crate::files::error::InputError;
 use crate::files::write::make_folder;
 
-/// Write the manual's pages, one for the program and one for each verb.
+/// Write man pages, one for the program and one for each verb.
 #[derive(clap::Args)]
 pub(crate) struct Args {
     /// Folder for the pages, as ~/.local/share/man/man1

@@ -13,8 +13,7 @@ use super::experiment::{Part, Shard, merged};
 use super::{Cli, Verb};
 use crate::files::error::InputError;
 
-/// Put the parts that `eeruf experiment --shard` printed together: the output is that of the undivided run, bit for
-/// bit.
+/// Join the parts that `eeruf experiment --shard` printed: bit for bit the undivided run.
 #[derive(clap::Args)]
 pub(crate) struct Args {
     /// The parts, in any order

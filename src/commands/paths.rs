@@ -12,11 +12,10 @@ use crate::report::bounces::{by_way_of, wall_numbers};
 use crate::report::json::to_json;
 use crate::report::paths::PathsJson;
 
-/// List every critical path of the first robot's ring: all paths between its sensors.
+/// List the critical paths of a ring: all paths of sound between the sensors of a scene's first robot.
 ///
 /// A path counts if its sound is loud enough to be heard, under the scene's own physics and with other robots' bodies,
-/// as in a simulation. Sensors are printed from 1; walls and poles from 0, as in
-/// files.
+/// as in a simulation. Sensors are printed from 1; walls and poles from 0, as in files.
 #[derive(clap::Args)]
 pub(crate) struct Args {
     /// The scene

@@ -28,7 +28,7 @@ use crate::report::replay::{Column, Counted, Counts, Firing, Replay, table};
 ///
 /// The log is whatever `eeruf logs` reads: MCAP, ROS 1 and ROS 2 bags, tables, lines of pairs, JSON. Of a damaged log
 /// all is read that can be, what cannot is said, and the exit code is 2. A gap in a sensor's times, and a clock that
-/// steps back, begin its comparison anew. The last line says how the sensors fire, and what agreement proves for that.
+/// steps back, start its comparison over. The last line says how the sensors fire, and what agreement proves for that.
 #[derive(clap::Args)]
 pub(crate) struct Args {
     /// The log

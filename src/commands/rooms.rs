@@ -6,7 +6,7 @@ use std::sync::{Mutex, PoisonError};
 
 use eeruf_design::{RingDesign, RingSpec, RoomsAnswer, RoomsAsked};
 use eeruf_files::{FileError, Kind};
-use eeruf_sim::experiments::rooms::{DRIVING_S, RoomGroup, RoomPlan, RoomWay};
+use eeruf_sim::experiments::rooms::{RoomGroup, RoomWay};
 
 use super::answer::Answer;
 use crate::console::{print_line, tell};
@@ -139,7 +139,8 @@ fn own_rooms(paths: &[PathBuf], numbers: Range<u64>, radius_m: f64) -> Result<Ve
     }
     let room = |(file, number): (&PathBuf, u64)| {
         if !is_map(file) {
-            return scene(file, number);
+            let room = RoomGroup::of_world(name_of(file), number, &read_world(file)?);
+            return room.ok_or_else(|| InputError::new(file, "no robot; expected one, for the ring's place"));
         }
         let grid = read_map(file)?;
         let group = RoomGroup::of_map(name_of(file), &grid, numbers.clone(), radius_m);
@@ -155,16 +156,4 @@ fn is_map(file: &Path) -> bool {
 /// A file's name in tables.
 fn name_of(file: &Path) -> String {
     file.file_stem().map_or_else(|| file.display().to_string(), |stem| stem.to_string_lossy().into_owned())
-}
-
-/// A scene as a room.
-fn scene(file: &Path, number: u64) -> Result<RoomGroup, InputError> {
-    let world = read_world(file)?;
-    let robot =
-        world.robots().first().ok_or_else(|| InputError::new(file, "no robot; expected one, for the ring's place"))?;
-    // As far as the scene's robot drives in that time.
-    let way_m = robot.motion.at(&robot.pose, DRIVING_S).pose.translation.vector - robot.pose.translation.vector;
-    let scene = world.scene();
-    let plan = RoomPlan::own(number, scene.walls().to_vec(), scene.poles().to_vec(), robot.pose, way_m.norm());
-    Ok(RoomGroup { name: name_of(file), rooms: vec![plan] })
 }

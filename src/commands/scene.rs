@@ -9,11 +9,11 @@ use crate::console::{print, print_line};
 use crate::files::error::InputError;
 use crate::files::map::read_map;
 
-/// Print a scene file whose walls are the outlines in an occupancy grid, as the ROS map_server saves it: a YAML file
-/// that names a PGM picture beside it.
+/// Turn an occupancy grid into a scene file.
 ///
-/// Add robots to it, and study it. A cell is occupied if it is with a probability above the file's occupied_thresh; one
-/// of which nothing is known is not.
+/// The grid is what ROS's map_server saves, a YAML file that names a PGM picture beside it; the walls are its outlines.
+/// A cell is occupied if its probability is above the file's occupied_thresh; an unknown one is not. Add robots to the
+/// scene, and study it.
 #[derive(clap::Args)]
 pub(crate) struct Args {
     /// The map

@@ -18,7 +18,7 @@ use crate::report::json::to_json;
 use crate::report::search::{CountJson, FrontJson, NOT_DECIDED, describe, describe_front};
 use crate::report::watch::Watch;
 
-/// Find tables of waits as the paper does: lags are given, waits lie on a grid.
+/// Find tables of waits on a grid, with given lags, as the paper does.
 ///
 /// The file gives sensors, period_us, wait_max_us, tick_us, t_delta_us, and if need be t_lag_us, min_interval_us,
 /// neighbours, layout and criterion. Without an option it prints one table. Exit code 0 if there is a table, 1 if it is

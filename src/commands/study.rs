@@ -23,7 +23,7 @@ use crate::report::study::json::StudyJson;
 use crate::report::study::{pictures, text};
 use crate::report::watch::Watch;
 
-/// Simulate every firing method in a scene, on the same seed: which readings were wrong, and who was fooled by whom.
+/// Simulate every firing method in a scene: which readings are wrong, and who fools whom.
 ///
 /// The methods: simultaneous, sequential, sequential_votes (one by one, two of three readings agree), far_groups,
 /// dither, conventional (constant lags, every echo accepted), comparison (constant lags, consecutive readings
@@ -87,7 +87,7 @@ impl Args {
 }
 
 const PERIODS: u32 = 2000;
-/// Paths have to be found anew for every firing then.
+/// Paths have to be found again for every firing then.
 const PERIODS_IF_MOVING: u32 = 250;
 /// Budget of nodes for the search for `eeruf_best`.
 const BUDGET: u64 = 20_000;

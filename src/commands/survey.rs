@@ -21,8 +21,7 @@ use crate::files::write::write;
 use crate::report::json::to_json;
 use crate::report::survey::{FROM, Found, RingTerms, Scenes, describe, json, ring_file, who_hears_whom};
 
-/// Say from a measuring run which sensors hear each other, along paths of which length and how sure, and write a ring
-/// file for `design`.
+/// Find from a measuring run which sensors hear each other, and write a ring file for `design`.
 ///
 /// In the run each sensor fires alone, then each ordered pair with several times between the two, after silence:
 /// eeruf_core::survey::Survey does so, and the Arduino example Survey. What moves in a sensor with the time between is

@@ -17,7 +17,7 @@ use crate::report::json::to_json;
 use crate::report::phases;
 use crate::report::verify::{ReportJson, describe};
 
-/// Check a schedule: do crosstalk readings always move by more than 2 T_delta, and do neighbours keep their distance?
+/// Check a schedule: does crosstalk shift by more than 2 T_delta, and do neighbours keep their distance?
 ///
 /// Prints the separation under both readings of Eqs. (13a), (13b), the largest T_delta, the smallest interval between
 /// neighbours and the shortest time between two firings of one sensor, and names every violation. Exit code 0 if the

@@ -36,7 +36,7 @@ impl InputError {
         self.code
     }
 
-    /// Returns true if nobody is left to read about it: the reader of standard output has gone.
+    /// Returns true if the reader of standard output has gone.
     pub(crate) fn is_silent(&self) -> bool {
         self.is_silent
     }

@@ -17,7 +17,7 @@ pub(crate) struct Column {
 #[derive(Default)]
 pub(crate) struct Counted {
     pub(crate) tally: Tally<u32>,
-    /// Readings that are no number.
+    /// Non-numeric readings.
     pub(crate) invalid: u64,
     /// When the first and the latest reading were, in nanoseconds.
     pub(crate) between_ns: Option<(u64, u64)>,

@@ -6,7 +6,7 @@ use serde_json::Value;
 const ROOMS: [&str; 8] = ["corridor", "office", "hall", "clutter", "alcove", "garage", "aisle", "meeting"];
 
 fn number(value: &Value) -> f64 {
-    value.as_f64().unwrap_or_else(|| panic!("{value} is no number"))
+    value.as_f64().unwrap_or_else(|| panic!("{value} is not a number"))
 }
 
 fn way<'a>(answer: &'a Value, name: &str) -> &'a Value {
@@ -92,8 +92,11 @@ fn two_sensors_back_to_back_need_no_eeruf() {
                 poses = [{ x_m = 0.1, y_m = 0, heading_deg = 0 }, \
                 { x_m = -0.1, y_m = 0, heading_deg = 180 }]\n";
     let (_scratch, file) = Scratch::new("ring.toml", ring);
-    let said = eeruf(&["design", file.to_str().unwrap(), "--places", "3"]).out;
+    let file = file.to_str().unwrap();
+    let said = eeruf(&["design", file, "--places", "3"]).out;
     assert!(said.contains("You do not need eeruf here"), "{said}");
+    let answer = json(&["design", file, "--period-only", "--json"]);
+    assert_eq!(answer["not_neighbours"].to_string(), "[[0,1]]");
 }
 
 #[test]

@@ -22,7 +22,7 @@ const METHODS: [&str; 15] = [
 ];
 
 fn number(value: &Value) -> f64 {
-    value.as_f64().unwrap_or_else(|| panic!("{value} is no number"))
+    value.as_f64().unwrap_or_else(|| panic!("{value} is not a number"))
 }
 
 // Eeruf believes next to no crosstalk where constant lags believe it with and without comparing.

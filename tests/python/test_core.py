@@ -19,7 +19,7 @@ import pytest
 from eeruf import Schedule, nav, sim, tables
 
 
-def test_what_compares_equal_pickles_and_prints_so_that_it_can_be_pasted() -> None:
+def test_equal_values_pickle_and_print_as_code() -> None:
     found = eeruf.design(4, t_delta_us=999, min_interval_us=15_000, window_us=36_000)
     report = tables.TABLE_I_D.verify(1_500, min_interval_us=18_000)
     assert not report.ok
@@ -57,7 +57,7 @@ def test_what_compares_equal_pickles_and_prints_so_that_it_can_be_pasted() -> No
         assert eval(repr(value), names) == value
 
 
-def test_what_the_tick_costs_is_a_fraction_that_is_proven_and_survives_a_pickle() -> None:
+def test_cost_of_the_tick_is_a_proven_fraction_and_pickles() -> None:
     found = eeruf.design(12, 999, 15_000, 45_000, over_reals=True)
     assert (found.value_us, found.real_period_us, found.real_proven) == (70_000, (69_499, 1), True)
     assert pickle.loads(pickle.dumps(found)) == found
@@ -67,7 +67,7 @@ def test_what_the_tick_costs_is_a_fraction_that_is_proven_and_survives_a_pickle(
     assert without.schedule == found.schedule
 
 
-def test_a_certificate_of_design_is_checked_and_survives_a_pickle() -> None:
+def test_a_certificate_of_design_is_checked_and_pickles() -> None:
     found = eeruf.design(8, 999, 15_000, 30_000, certificate=True)
     assert found.certificate is not None
     assert eeruf.check_certificate(found.certificate) == found.value_us == 63_000
@@ -77,7 +77,7 @@ def test_a_certificate_of_design_is_checked_and_survives_a_pickle() -> None:
     assert eeruf.design(8, 999, 15_000, 30_000).certificate is None
 
 
-def test_a_certificate_that_proves_less_is_an_error_that_says_what_it_proves() -> None:
+def test_a_certificate_that_proves_less_names_what_it_proves() -> None:
     certificate = eeruf.design(8, 999, 15_000, 30_000, certificate=True).certificate
     assert certificate is not None
     lines = certificate.splitlines(keepends=True)
@@ -87,7 +87,7 @@ def test_a_certificate_that_proves_less_is_an_error_that_says_what_it_proves() -
         eeruf.check_certificate(3)  # type: ignore[arg-type]
 
 
-def test_a_time_limit_ends_a_search_with_schedule_bound_and_certificate() -> None:
+def test_a_time_limit_leaves_schedule_bound_and_certificate() -> None:
     # Not proven within half a million nodes.
     found = eeruf.design(11, 999, 15_000, 15_000, layout="ring", time_limit_s=0.1, certificate=True)
     assert not found.proven
@@ -134,7 +134,7 @@ def test_the_front_of_tables_spans_the_two_bests() -> None:
         assert table.verify(t_delta_us, interval_us, criterion="paper").ok
 
 
-def test_the_papers_table_leaves_neighbours_17_ms_and_separates_by_2_ms() -> None:
+def test_the_papers_table_has_17_ms_and_separates_by_2_ms() -> None:
     report = tables.TABLE_I_D.verify(999, min_interval_us=15_000)
     assert report.ok
     assert (report.min_interval_us, report.separation_us, report.max_t_delta_us) == (17_000, 2_000, 999)
@@ -178,7 +178,7 @@ def test_many_readings_at_once_are_judged_as_one_by_one() -> None:
     assert {"accepted", "rejected", "no_echo", "clear", "first"} == {eeruf.KINDS[kind] for kind in np.unique(together)}
 
 
-def test_pushing_many_leaves_the_array_alone_and_takes_any_that_numpy_can_convert() -> None:
+def test_push_many_takes_any_array_and_changes_none() -> None:
     echoes = np.array([[9_000.0, 7_000.0], [9_100.0, np.nan]])
     before = echoes.copy()
     expected = eeruf.EchoFilter(2, 500).push_many(echoes)
@@ -217,7 +217,7 @@ def test_a_million_readings_are_read_in_place() -> None:
     assert peak > 8_000_000
 
 
-def test_a_filter_of_several_echoes_judges_single_ones_as_one_of_single_echoes_does() -> None:
+def test_multi_echo_filter_judges_single_echoes_alike() -> None:
     chance = np.random.default_rng(2)
     echoes = np.where(chance.random((300, 3)) < 0.2, np.nan, chance.integers(0, 3, (300, 3)) * 300 + 9_000.0)
     one, several = eeruf.EchoFilter(3, 500), eeruf.EchoFilter(3, 500, echoes=8)
@@ -324,7 +324,7 @@ def test_threads_run_side_by_side_without_the_interpreter_lock() -> None:
             search.result(timeout=60)
 
 
-def test_sensors_that_are_not_all_alike_are_designed_verified_and_certified() -> None:
+def test_uneven_rings_are_designed_verified_and_certified() -> None:
     needs: dict[str, Any] = {
         "t_delta_us": [999, 999, 1500, 499],
         "min_interval_us": 8_000,
@@ -344,7 +344,7 @@ def test_sensors_that_are_not_all_alike_are_designed_verified_and_certified() ->
     assert {violation.kind for violation in longer.violations} == {"shared_line", "window"}
 
 
-def test_an_interval_of_a_pair_and_the_time_until_a_sensor_may_be_triggered_again_are_kept() -> None:
+def test_a_pairs_interval_and_a_sensors_rest_are_kept() -> None:
     found = eeruf.design(2, 499, 0, 9_000, neighbours=1, intervals_us=[(0, 1, 4_000)], refire_us=[40_000, 9_000])
     assert found.value_us == 40_000 and found.schedule is not None
     kinds = {violation.kind for violation in found.schedule.verify(499, refire_us=90_000).violations}

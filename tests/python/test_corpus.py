@@ -110,7 +110,7 @@ def test_points_run_from_source_to_receiver() -> None:
         assert points[-1].tolist() == case["receivers"][int(paths.receiver[path])]
 
 
-def test_the_best_table_of_the_paper_keeps_neighbours_19_ms_apart() -> None:
+def test_the_papers_best_table_keeps_neighbours_19_ms_apart() -> None:
     search = eeruf.WaitSearch(12, 100_000, 24_000, 1000, t_delta_us=999, min_interval_us=15_000, criterion="exact")
     found = search.best("interval")
     assert found.proven

@@ -125,7 +125,7 @@ TASKS = re.findall(
 )
 
 
-def test_each_of_the_twelve_tasks_takes_fewer_than_fifteen_lines_and_runs_as_a_script(tmp_path: Path) -> None:
+def test_each_task_takes_fewer_than_15_lines_and_runs(tmp_path: Path) -> None:
     assert len(TASKS) == 12
     shutil.copytree(ROOT / "scenes", tmp_path / "scenes")
 

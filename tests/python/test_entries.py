@@ -152,7 +152,7 @@ def test_what_a_method_does_not_take_is_refused(arguments: dict[str, Any], messa
         ANY.sim.Method(**arguments)
 
 
-def test_what_own_code_raises_comes_out_of_simulations_and_experiments() -> None:
+def test_errors_of_own_code_come_out_of_experiments() -> None:
     class Weary(Exception):
         pass
 
@@ -338,7 +338,7 @@ def part(first: int, methods: Any) -> experiments.SetOne:
     return experiments.set_one(2, first=first, readings=400, methods=list(methods))
 
 
-def test_the_documents_own_filter_takes_15_lines_and_its_comparison_five() -> None:
+def test_own_filter_takes_15_lines_and_its_comparison_five() -> None:
     text = (ROOT / "docs/how-to/method.md").read_text()
     entry, comparison = re.findall(r"^```python\n(.*?)^```$", text, flags=re.M | re.S)[:2]
     assert len(entry.strip().splitlines()) <= 15 and len(comparison.strip().splitlines()) <= 5

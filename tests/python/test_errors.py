@@ -66,7 +66,7 @@ BAD: list[tuple[Callable[[], Any], type[Exception], str]] = [
     (lambda: eeruf.experiments.set_one(0), eeruf.ArgumentError, "seeds = 0"),
     (lambda: ANY.experiments.set_one(1, methods=["loud"]), eeruf.ArgumentError, "no method `loud`"),
     (lambda: eeruf.experiments.set_one(1, methods=[]), eeruf.ExperimentError, "no methods"),
-    # The same for what is no number at all, and for everything that came later.
+    # The same for what is not a number at all, and for everything that came later.
     (lambda: ANY.design("4", 1, 1, 1), eeruf.ArgumentError, "sensors = '4'; expected a whole number from 1 to 64"),
     (lambda: ANY.design(4.0, 1, 1, 1), eeruf.ArgumentError, "sensors = 4.0"),
     (lambda: ANY.design(True, 1, 1, 1), eeruf.ArgumentError, "sensors = True"),
@@ -259,7 +259,7 @@ BAD: list[tuple[Callable[[], Any], type[Exception], str]] = [
 
 
 @pytest.mark.parametrize(("call", "error", "message"), BAD, ids=[message for _, _, message in BAD])
-def test_bad_input_is_refused_with_its_name_value_and_expectation(
+def test_bad_input_is_refused_by_name_value_and_expectation(
     call: Callable[[], Any], error: type[Exception], message: str
 ) -> None:
     with pytest.raises(error, match=message) as raised:
@@ -343,7 +343,7 @@ def test_the_simulator_never_panics_whatever_it_is_given(array: Any, other: Any,
 
 @settings(deadline=None, max_examples=50)
 @given(ARRAY, st.lists(SMALL, min_size=6, max_size=6))
-def test_experiments_sweeps_and_figures_never_panic_whatever_they_are_given(array: Any, arguments: list[Any]) -> None:
+def test_experiments_sweeps_and_figures_never_panic(array: Any, arguments: list[Any]) -> None:
     one, two, three, four, *_ = arguments
     refuse(
         lambda: ANY.experiments.set_one(one, readings=two, methods=three or ["eeruf"], progress=four),

@@ -49,7 +49,7 @@ def test_a_congruence_is_the_formula_for_every_number_of_sensors() -> None:
         assert schedule.width_us == 240 * (q - 1)
 
 
-def test_a_schedule_is_welchs_sequence_for_every_number_of_sensors() -> None:
+def test_schedules_are_welchs_sequence_for_every_ring() -> None:
     for sensors in (2, 7, 12, 24, 64):
         schedule = HoppingSchedule(sensors, 400_000, 240)
         q, m, x = schedule.phases + 1, np.arange(schedule.phases)[:, None], np.arange(sensors)
@@ -67,7 +67,7 @@ def test_two_phases_of_a_congruence_are_a_schedule_of_the_paper() -> None:
     assert Schedule.from_firing(PERIOD_US, times[0].tolist(), times[1].tolist()).verify(498).ok
 
 
-def test_what_compares_equal_hashes_pickles_and_prints_so_that_it_can_be_pasted() -> None:
+def test_equal_values_hash_pickle_and_print_as_code() -> None:
     names = {"HoppingSchedule": HoppingSchedule, "HoppingSettings": HoppingSettings}
     for value in (
         EIGHT,
@@ -108,7 +108,7 @@ def test_every_setting_can_be_changed_and_read_back() -> None:
 
 
 @pytest.mark.parametrize("settings", ["balanced", "quick", "driving", "maps"])
-def test_a_sensor_that_always_hears_another_first_is_not_fooled_and_sees_its_wall(settings: str) -> None:
+def test_a_masked_sensor_is_not_fooled_and_sees_its_wall(settings: str) -> None:
     # Sensor 1 fires 7.2 ms after sensor 0, 2.2 ms less or more: its sound arrives 3 to 8 ms into the window, before the
     # wall's echo.
     ring = HoppingRing(EIGHT, HoppingSettings(settings), window_us=WINDOW_US, blanking_us=1_000)  # type: ignore[arg-type]
@@ -131,7 +131,7 @@ def test_a_ring_that_hears_nothing_says_clear() -> None:
     assert all(ring.is_clear(sensor) and ring.confirmed_us(sensor) is None for sensor in range(8))
 
 
-def test_the_same_seed_gives_the_same_lags_and_another_seed_others() -> None:
+def test_the_same_seed_gives_the_same_lags_another_others() -> None:
     def lags(seed: int) -> tuple[int, ...]:
         ring = HoppingRing(EIGHT, HoppingSettings(shift_after=5, shift_interval_us=0), window_us=WINDOW_US, seed=seed)
         state = 1
@@ -172,7 +172,7 @@ def test_many_readings_at_once_are_judged_as_one_by_one() -> None:
     assert len(np.unique(together)) > 3
 
 
-def test_a_firing_that_was_not_steady_supports_nothing_and_one_alone_is_tentative_at_once() -> None:
+def test_unsteady_firings_support_nothing_solo_ones_at_once() -> None:
     tracker = eeruf.EchoTracker(1)
     assert {tracker.push(0, phase, 9_000, steady=False).kind for phase in range(11)} == {"first"}
     assert tracker.push(0, 0, 9_000, solo=True).kind == "tentative"
@@ -180,7 +180,7 @@ def test_a_firing_that_was_not_steady_supports_nothing_and_one_alone_is_tentativ
     assert tracker.push(0, 0, 9_000).kind == "first"
 
 
-def test_each_error_names_what_is_wrong_from_sensor_0_and_what_is_expected() -> None:
+def test_each_error_counts_sensors_from_0_and_says_expected() -> None:
     for make, error, text in (
         (lambda: HoppingSchedule(65, 60_000, 240), eeruf.ArgumentError, "sensors = 65; expected"),
         (lambda: HoppingSchedule(2, 60_000, 240, 70), eeruf.ArgumentError, "phases = 70; expected"),

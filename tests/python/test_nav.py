@@ -22,7 +22,7 @@ def hits(readings: sim.Readings) -> Any:
     return readings.x_m[right] + range_m * np.cos(heading), readings.y_m[right] + range_m * np.sin(heading)
 
 
-def test_readings_of_a_robot_that_stands_know_where_each_sensor_is() -> None:
+def test_readings_of_a_standing_robot_know_their_places() -> None:
     places = [(0.1, 0.05, 0.3), (-0.1, 0.0, math.pi), (0.0, -0.2, -1.2)]
     robot = sim.Robot((0.5, -0.25, 2.0), places, module="hc-sr04", window_us=24_000)
     readings = sim.simulate(sim.Scene(ROOM, robots=[robot]), periods=10)
@@ -35,7 +35,7 @@ def test_readings_of_a_robot_that_stands_know_where_each_sensor_is() -> None:
         assert np.sin(readings.heading_rad[of]) == pytest.approx(math.sin(2.0 + heading))
 
 
-def test_readings_of_a_robot_that_moves_know_where_each_sensor_was_when_it_fired() -> None:
+def test_readings_of_a_moving_robot_know_their_places() -> None:
     robot = sim.Robot((-1, 0, 0), 1, 0.0, 0.2, velocity_m_s=(0.3, 0.1))
     readings = sim.simulate(sim.Scene(ROOM, robots=[robot]), "simultaneous", periods=40)
     assert readings.x_m == pytest.approx(-1 + 0.2 + 0.3 * readings.fired_s)
@@ -60,7 +60,7 @@ def test_where_readings_looked_and_how_far_gives_the_walls() -> None:
     assert (np.abs(off_m) < 0.05).mean() > 0.3
 
 
-def test_where_readings_looked_stays_with_them_in_files_frames_and_pickles(tmp_path: Any) -> None:
+def test_places_stay_in_files_frames_and_pickles(tmp_path: Any) -> None:
     readings = sim.simulate(sim.Scene(ROOM, robots=[sim.Robot((0, 0, 0.5), 4, 0.3, 0.2)]), periods=5)
     readings.save(tmp_path / "readings.npz")
     loaded = sim.Readings.load(tmp_path / "readings.npz")

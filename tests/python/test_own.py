@@ -35,16 +35,14 @@ def paper(echoes: int = 1) -> Callable[[sim.FiredReading], eeruf.Reading]:
 @pytest.mark.parametrize(
     ("under", "like", "echoes"), [("eeruf", "eeruf", 1), ("conventional", "comparison", 1), ("multi_echo",) * 2 + (8,)]
 )
-def test_a_filter_of_ones_own_that_does_what_a_methods_does_gives_the_same_readings(
-    under: Any, like: Any, echoes: int
-) -> None:
+def test_own_filter_like_a_methods_gives_its_readings(under: Any, like: Any, echoes: int) -> None:
     own = sim.Simulation(scene(), under, filter=paper(echoes)).step(3.0)
     assert same(own, sim.Simulation(scene(), like).step(3.0))
     assert own.is_accepted.any()
     assert not own.is_accepted.all()
 
 
-def test_a_filter_that_hands_on_what_the_ring_made_of_it_changes_nothing() -> None:
+def test_a_filter_that_hands_on_verdicts_changes_nothing() -> None:
     own = sim.Simulation(scene(odometry=True), "eeruf", filter=lambda firing: firing.reading)
     own.set_velocity(0, 0.05, 0.2)
     built_in = sim.Simulation(scene(odometry=True), "eeruf")
@@ -52,7 +50,7 @@ def test_a_filter_that_hands_on_what_the_ring_made_of_it_changes_nothing() -> No
     assert same(own.step(2.0), built_in.step(2.0))
 
 
-def test_a_firing_of_ones_own_by_a_methods_schedule_gives_the_same_readings() -> None:
+def test_own_firing_by_a_methods_schedule_gives_its_readings() -> None:
     table = eeruf.tables.TABLE_I_D.scaled(3, 5)
     robot = sim.Robot((-0.26, 0.17, 1.65), 12, 0.2, 0.3, schedule=table)
     room = sim.Scene(ALCOVE, robots=[robot])
@@ -90,7 +88,7 @@ def test_a_filter_sees_the_level_of_an_echo_as_its_path_has_it() -> None:
     assert near - far > 8.0
 
 
-def test_a_filter_sees_what_its_sensor_heard_and_its_verdict_is_recorded() -> None:
+def test_a_filter_sees_its_sensor_and_its_verdict_is_kept() -> None:
     seen: list[sim.FiredReading] = []
 
     def late(firing: sim.FiredReading) -> Any:
@@ -170,7 +168,7 @@ def test_what_is_not_a_callable_is_refused() -> None:
         ANY.sim.Simulation(scene(), firing={1: print})
 
 
-def test_what_a_callable_raises_comes_out_of_the_step_and_the_simulation_goes_on() -> None:
+def test_errors_of_callables_leave_the_simulation_going() -> None:
     class Weary(Exception):
         pass
 
@@ -202,7 +200,7 @@ def test_what_a_callable_raises_comes_out_of_the_step_and_the_simulation_goes_on
         lambda world: world.change_scene(scene()),
     ],
 )
-def test_a_callable_that_asks_its_own_simulation_is_refused_instead_of_waiting_for_ever(
+def test_a_callable_that_asks_its_own_simulation_is_refused(
     call: Callable[[sim.Simulation], object],
 ) -> None:
     worlds: list[sim.Simulation] = []

@@ -34,7 +34,7 @@ def same(one: sim.Readings, other: sim.Readings) -> bool:
     )
 
 
-def test_slices_masks_and_indices_take_the_same_readings_of_every_column() -> None:
+def test_slices_masks_and_indices_take_whole_readings() -> None:
     mask = READINGS.is_accepted & READINGS.is_wrong()
     for key in (slice(3, 90, 4), mask, np.flatnonzero(mask)[::-1], [5, 2, 2], slice(0, 0)):
         some = READINGS[key]

@@ -75,7 +75,7 @@ def test_a_course_shows_poles_grid_track_and_the_last_place() -> None:
     assert ax.get_title(loc="left").startswith(f"conventional, course 20000: {ending} ")
 
 
-def test_a_run_alone_is_drawn_as_well_and_what_is_none_is_refused() -> None:
+def test_a_run_alone_is_drawn_and_other_values_are_refused() -> None:
     found = experiments.set_two(seeds=1, methods=["eeruf"])
     assert plot.course(found.runs["eeruf"][0]).get_title(loc="left").startswith("course 20000: finished after")
     for arguments, message in [
@@ -88,7 +88,7 @@ def test_a_run_alone_is_drawn_as_well_and_what_is_none_is_refused() -> None:
         plot.course({"methods": {}})  # type: ignore[arg-type]
 
 
-def test_the_ways_of_foreign_sound_lead_from_the_sensor_that_sent_it_to_the_one_that_believed_it() -> None:
+def test_ways_of_foreign_sound_lead_from_sender_to_believer() -> None:
     scene = sim.Scene.from_toml(eeruf.example("scenes/two-hc-sr04.toml"))
     ax = plot.scene(scene, readings=sim.simulate(scene, "simultaneous", periods=20))
     (way,) = [line for line in ax.lines if len(np.asarray(line.get_xdata())) == 3]
@@ -110,7 +110,7 @@ def test_readings_that_were_believed_and_wrong_are_marked() -> None:
     assert (drawn["accepted, and wrong"], drawn["accepted"], drawn["not accepted"]) == (20, 0, 0)
 
 
-def test_a_film_shows_sound_on_its_way_and_the_readings_that_come_of_it() -> None:
+def test_a_film_shows_sound_and_the_readings_that_come_of_it() -> None:
     scene = sim.Scene.from_toml(eeruf.example("scenes/two-hc-sr04.toml"))
     film = plot.animation(scene, sim.simulate(scene, "simultaneous", periods=4), frames=30)
     dots, discs = [], set()

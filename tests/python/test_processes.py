@@ -43,7 +43,7 @@ if child:
 
 
 @pytest.mark.parametrize("method", ["fork", "spawn", "forkserver"])
-def test_a_pool_of_processes_of_any_kind_finishes_after_the_experiments_have_run(method: str, tmp_path: Path) -> None:
+def test_a_pool_of_any_kind_finishes_after_experiments(method: str, tmp_path: Path) -> None:
     done = run(
         f"""
 import functools, multiprocessing, eeruf
@@ -60,7 +60,7 @@ if __name__ == "__main__":
     assert done.stdout == "True\n", done.stderr
 
 
-def test_a_sweep_starts_processes_afresh_for_functions_of_others_and_threads_for_its_own(tmp_path: Path) -> None:
+def test_a_sweep_chooses_threads_or_fresh_processes(tmp_path: Path) -> None:
     done = run(
         """
 import os, eeruf
@@ -82,7 +82,7 @@ if __name__ == "__main__":
     assert [len(found) for found in eeruf.sweep(paths, [[(1, 0)], [(1, 0), (2, 0)]])] == [4, 8]
 
 
-def test_errors_and_progress_come_as_they_happen_not_in_the_order_of_the_cases() -> None:
+def test_errors_and_progress_come_as_they_happen() -> None:
     from concurrent.futures import ThreadPoolExecutor
 
     gate = threading.Event()
@@ -157,7 +157,7 @@ def threads_of_the_process() -> int:
     return len(os.listdir("/proc/self/task"))
 
 
-def test_a_simulation_that_does_not_fit_into_memory_is_a_memory_error_in_time(tmp_path: Path) -> None:
+def test_a_simulation_too_large_for_memory_is_a_memory_error(tmp_path: Path) -> None:
     done = run(
         """
 import resource, eeruf
@@ -186,7 +186,7 @@ print(sum(len(block) for block in sim.simulate_blocks(scene, periods=1000, block
     assert lines[3] == "8000"
 
 
-def test_blocks_are_the_simulation_and_the_next_one_needs_no_more_memory() -> None:
+def test_blocks_are_the_simulation_in_level_memory() -> None:
     whole = sim.simulate(ROOM, "conventional", periods=30, seed=4).columns()
     blocks = [
         block.columns() for block in sim.simulate_blocks(ROOM, "conventional", periods=30, seed=4, block_periods=7)

@@ -40,7 +40,7 @@ def fires(events: list[Any]) -> int:
     return sum(isinstance(event, eeruf.Fire) for event in events)
 
 
-def test_a_paused_ring_fires_nobody_until_it_goes_on_and_then_compares_with_nothing_from_before() -> None:
+def test_a_paused_ring_fires_nothing_and_starts_over() -> None:
     ring = eeruf.Ring(tables.TABLE_I_D, 500, window_us=36_000)
     assert fires(run(ring, period_ended)) == 12
     run(ring, period_ended)
@@ -68,7 +68,7 @@ def test_a_schedule_is_changed_when_the_period_ends() -> None:
         assert ring.schedule == schedule
 
 
-def test_a_ring_refuses_a_schedule_that_does_not_reject_crosstalk_and_one_without_crosstalk_in_mind_takes_it() -> None:
+def test_a_ring_refuses_a_schedule_that_lets_crosstalk_in() -> None:
     constant = eeruf.Schedule(100_000, tables.TABLE_I_D.t_lag_us, (0,) * 12, (0,) * 12)
     ring = eeruf.Ring(tables.TABLE_I_D, 500, window_us=36_000)
     with pytest.raises(eeruf.RingError, match=r"\(13a\)"):
@@ -129,7 +129,7 @@ def test_what_a_ring_cannot_be_changed_to_leaves_it_as_it_was(name: str, value: 
     assert (ring.t_delta_us, ring.window_us, ring.blanking_us) == (500, 36_000, 400)
 
 
-def test_a_larger_t_delta_is_refused_if_the_next_schedule_does_not_bear_it() -> None:
+def test_a_t_delta_too_large_for_the_next_schedule_is_refused() -> None:
     ring = eeruf.Ring(tables.TABLE_I_D, 500, window_us=36_000)
     ring.change_schedule(FAST)
     with pytest.raises(eeruf.RingError, match=r"\(13"):
@@ -147,7 +147,7 @@ def test_a_ring_starts_again_after_a_long_sleep() -> None:
 
 
 @pytest.mark.parametrize("hops", [False, True])
-def test_a_sensor_that_hears_echoes_none_of_which_is_accepted_is_told_once(hops: bool) -> None:
+def test_a_sensor_without_accepted_echoes_is_reported_once(hops: bool) -> None:
     hopping = eeruf.HoppingSchedule(12, 60_000, 240)
     ring: Any = (
         eeruf.HoppingRing(hopping, eeruf.HoppingSettings("balanced", shift_after=0), window_us=36_000)
@@ -184,7 +184,7 @@ def test_a_watch_refuses_what_is_no_event_and_no_sensor() -> None:
         watch.state(4, 0)
 
 
-def test_a_ring_knows_what_stands_before_each_sensor_and_silence_needs_a_witness() -> None:
+def test_a_ring_knows_states_and_silence_needs_a_witness() -> None:
     ring = eeruf.Ring(tables.TABLE_I_D, 500, window_us=36_000)
     ring.expect_answers()
     ended = 0
@@ -226,7 +226,7 @@ def test_a_noisy_ring_slows_down_and_a_calm_one_speeds_up() -> None:
     assert adaptation.rejection_rate == 0.0
 
 
-def test_a_change_that_the_ring_refuses_leaves_the_adaptation_on_its_rung() -> None:
+def test_a_refused_change_leaves_the_adaptation_on_its_rung() -> None:
     ladder = [FAST, tables.TABLE_I_D]
     ring = eeruf.Ring(FAST, 500, window_us=36_000)
     adaptation = eeruf.Adaptation([ladder[0].scaled(5, 6), ladder[0]], 400, window_periods=1)
@@ -258,7 +258,7 @@ def test_what_is_no_ladder_is_refused(call: Any, error: type[Exception], message
         call()
 
 
-def test_each_sensor_of_an_uneven_ring_listens_as_long_as_it_may_also_by_another_schedule() -> None:
+def test_sensors_of_uneven_rings_keep_their_own_windows() -> None:
     needs: dict[str, Any] = {"t_delta_us": [999, 999, 1500, 1500], "window_us": [36_000, 36_000, 12_000, 12_000]}
     found = eeruf.design(4, min_interval_us=15_000, shared_lines=[(0, 2)], **needs)
     assert found.schedule is not None

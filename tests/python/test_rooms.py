@@ -24,6 +24,16 @@ def test_recommendation_is_the_programs() -> None:
     assert names[0] == "sequential" and answer["recommended"] in names
 
 
+def test_own_rooms_are_scenes_by_name() -> None:
+    """As the program takes them from files."""
+    alcove = RING.parents[1] / "scenes" / "alcove-hc-sr04.toml"
+    answer = experiments.recommend(RING, rooms={alcove.stem: sim.Scene.read_toml(alcove)})
+    words = ["study", str(RING), "--rooms", str(alcove), "--json"]
+    printed = subprocess.run([sys.executable, "-m", "eeruf", *words], capture_output=True, check=False).stdout
+    assert answer == json.loads(printed)
+    assert list(answer["ways"][0]["rooms"]) == [alcove.stem]
+
+
 def test_rooms_are_scenes_of_the_rings_robot() -> None:
     """With its modules in place, the same for the same number, driving where asked."""
     one, other = experiments.rooms(RING, 5, 2, kind="clutter")
@@ -45,6 +55,16 @@ def test_wrong_arguments_are_named() -> None:
         experiments.recommend("none.toml")
     with pytest.raises(eeruf.ArgumentError, match="places = 0; expected a whole number from 1 to 1000"):
         experiments.recommend(RING, places=0)
+    empty = sim.Scene([[5, 2, -5, 2]])
+    for rooms, said in [
+        ([empty], "rooms = .*; expected scenes by name, a dict"),
+        ({}, "rooms = {}; expected scenes by name, a dict"),
+        ({"hall": 1}, "rooms = .*; expected scenes by name, a dict"),
+    ]:
+        with pytest.raises(eeruf.ArgumentError, match=said):
+            ANY.recommend(RING, rooms=rooms)
+    with pytest.raises(eeruf.SceneError, match="a scene of 0 robots; expected 1 or more"):
+        experiments.recommend(RING, rooms={"hall": empty})
     mower = RING.with_name("mower-8-and-4.toml")
     with pytest.raises(eeruf.ArgumentError, match="does not say where its sensors are"):
         experiments.recommend(mower)

@@ -44,7 +44,7 @@ def same(one: sim.Scene, other: sim.Scene) -> bool:
     return all(mine[name].tobytes() == theirs[name].tobytes() for name in mine)
 
 
-def test_a_scene_written_and_read_again_or_pickled_gives_the_same_readings(tmp_path: Path) -> None:
+def test_a_written_or_pickled_scene_gives_the_same_readings(tmp_path: Path) -> None:
     again = sim.Scene.from_toml(EVERYTHING.to_toml())
     assert again.to_toml() == EVERYTHING.to_toml()
     (tmp_path / "scene.toml").write_text(EVERYTHING.to_toml())
@@ -118,7 +118,7 @@ def test_what_does_not_fit_together_is_refused() -> None:
             call()
 
 
-def test_a_notebook_shows_walls_poles_robots_and_where_sensors_look() -> None:
+def test_a_notebook_shows_walls_poles_robots_and_headings() -> None:
     svg = EVERYTHING._repr_svg_()
     assert svg.count("<line") == 4 + 6 + 2
     assert svg.count("<circle") == 2 + 2
@@ -134,7 +134,7 @@ def test_errors_count_robots_and_sensors_from_0_as_code_does() -> None:
         eeruf.Schedule.from_firing(40_000, [0, 50_000], [0, 2_000])
 
 
-def test_physics_and_bodies_are_given_in_several_ways_and_refused_by_name() -> None:
+def test_physics_and_bodies_take_several_forms() -> None:
     assert sim.Scene(WALLS).physics == "default"
     assert sim.Scene(WALLS, physics={"preset": "plain"}).physics == "plain"
     for physics in ("full", 3, {"preset": "full"}, {"fading": 1.0}):
@@ -332,7 +332,7 @@ def test_a_mower_in_code_reads_what_it_reads_from_a_file(tmp_path: Path) -> None
 
 
 @pytest.mark.parametrize("path", RINGS, ids=lambda path: path.stem)
-def test_a_shipped_ring_file_is_the_same_robot_in_code_and_in_a_scene(path: Path, tmp_path: Path) -> None:
+def test_a_ring_file_is_the_same_robot_in_code_and_in_a_scene(path: Path, tmp_path: Path) -> None:
     text = path.read_text()
     sensors = re.search(r"^sensors = (\d+)$", text, re.MULTILINE)
     assert sensors

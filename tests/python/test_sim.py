@@ -25,7 +25,7 @@ def same(one: sim.Readings, other: sim.Readings) -> bool:
     )
 
 
-def test_the_same_seed_gives_the_same_readings_and_another_others() -> None:
+def test_the_same_seed_gives_the_same_readings_only() -> None:
     scene = sim.Scene.read_toml(SCENES / "alcove.toml")
     first = sim.simulate(scene, "eeruf", periods=50, seed=7)
     assert same(first, sim.simulate(scene, "eeruf", periods=50, seed=7))
@@ -56,7 +56,7 @@ def test_scenes_robots_and_readings_pickle() -> None:
         assert copy.summary() == readings.summary()
 
 
-def test_columns_count_in_signed_numbers_and_are_views_that_cannot_be_written_to() -> None:
+def test_columns_are_signed_read_only_views() -> None:
     readings = sim.simulate(sim.Scene.read_toml(SCENES / "alcove.toml"), periods=40_000)
     assert (np.diff(readings.period * 60_000) >= 0).all()
     assert (readings.sensor - 5).min() == -5
@@ -208,7 +208,7 @@ def test_readings_are_saved_loaded_and_streamed(tmp_path: Path) -> None:
     assert table["path"].null_count == int((readings.path < 0).sum())
 
 
-def test_codes_have_names_in_data_frames_and_what_is_missing_is_null() -> None:
+def test_codes_have_names_and_missing_values_are_null() -> None:
     readings = sim.simulate(sim.Scene.read_toml(SCENES / "alcove.toml"), periods=40)
     names = [eeruf.KINDS[code] for code in readings.kind]
     pandas, polars = readings.to_pandas(), readings.to_polars()
@@ -234,7 +234,7 @@ def test_readings_become_a_polars_frame() -> None:
     assert frame["t_echo_us"].fill_null(np.nan).to_list() == pytest.approx(readings.t_echo_us.tolist(), nan_ok=True)
 
 
-def test_every_reading_of_crosstalk_knows_its_path_and_keeps_it_in_a_pickle() -> None:
+def test_readings_of_crosstalk_know_their_paths_and_pickle() -> None:
     # A threshold detector would hear faint echoes later than their sound arrives.
     scene = sim.Scene.read_toml(SCENES / "alcove.toml").replace(physics="plain")
     readings = sim.simulate(scene, "conventional", periods=100)

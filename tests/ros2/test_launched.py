@@ -97,7 +97,7 @@ def points(cloud):
     return list(struct.iter_unpack("<fffBBxxf", bytes(cloud.data)))
 
 
-def test_everything_is_received_under_the_names_that_a_launch_gives(participant, launched):
+def test_everything_is_received_under_the_launchs_names(participant, launched):
     for n in range(30):
         launched.board.fire([1.0 + 0.01 * n, "clear", "too_early", "unanswered" if n >= 10 else 2.0])
         time.sleep(0.05)

@@ -140,7 +140,7 @@ def test_unanswered_is_never_free(ring, said):
         assert (face is not None and face[1] == 0.02) == (said == "obstacle")
 
 
-def test_what_is_too_close_is_an_obstacle_and_ambiguous_is_unknown(ring):
+def test_too_close_is_an_obstacle_and_ambiguous_is_unknown(ring):
     ring = ring()
     ring.show(all_but(4, "too_early"))
     at = clockwise(4)
@@ -150,7 +150,7 @@ def test_what_is_too_close_is_an_obstacle_and_ambiguous_is_unknown(ring):
     assert ring.px4.bins[at // 10] is None and ring.px4.bins[clockwise(3) // 10] == math.inf
 
 
-def test_silent_sensor_is_an_obstacle_and_a_ring_that_knows_nothing_says_nothing(ring):
+def test_silent_sensor_is_an_obstacle_unknown_says_nothing(ring):
     ring = ring(silent_after_s=0.3)
     # The board says nothing more of the last sensor.
     begun = time.monotonic()

@@ -242,7 +242,7 @@ def assert_ranges(node, expected):
         assert len({(message.header.stamp.sec, message.header.stamp.nanosec) for message in heard}) == len(heard)
 
 
-def test_a_ring_in_the_emulator_arrives_as_ros_2_and_its_stuck_line_and_a_bad_cable_as_diagnostics(
+def test_an_emulated_ring_and_its_faults_arrive_as_ros_2(
     tmp_path, participant, processes
 ):
     cable = Cable(swallow=frozenset(range(400, 460, 10)), flip=frozenset(range(405, 450, 10)))
@@ -309,7 +309,7 @@ def assert_mavlink(mavlink, expected):
         ("missing", f"sensor {FAULTY + 1}", ERROR, "missing: nothing comes from its line"),
     ],
 )
-def test_a_late_board_and_a_missing_sensor_are_named_and_clear_is_the_maximum_if_asked_for(
+def test_a_late_board_and_a_missing_sensor_are_named(
     tmp_path, participant, processes, fault, about, level, message
 ):
     node, readings, _, _, mavlink = run(tmp_path, participant, processes, fault, 50, clear_as="max_range")

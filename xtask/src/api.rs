@@ -102,7 +102,7 @@ fn types_at_two_places(api: &str) -> Vec<String> {
 /// All public items of a crate, one a line; not what every type has by itself.
 fn interface(name: &str) -> Result<String, Trouble> {
     let mut cargo = cargo_of_version(RUST)?;
-    // JSON is not stable. In a folder of its own, since build scripts run anew where this variable comes and goes.
+    // JSON is not stable. In a folder of its own, since build scripts run again where this variable comes and goes.
     cargo.env("RUSTC_BOOTSTRAP", "1").env("CARGO_TARGET_DIR", "target/api");
     cargo.args(["rustdoc", "--quiet", "--locked", "--package", name, "--lib", "--all-features", "--"]);
     run(cargo.args(["-Zunstable-options", "--output-format", "json", "--cap-lints", "allow"]))?;

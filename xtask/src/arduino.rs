@@ -63,7 +63,7 @@ fn failed(what: &str) -> impl Fn(std::io::Error) -> Trouble + '_ {
 /// Parts to run.
 #[derive(clap::Args)]
 pub(crate) struct Plan {
-    /// Write the tables anew instead of comparing them
+    /// Rewrite the tables instead of comparing them
     #[arg(long)]
     write: bool,
     /// Run two of the examples for 3 s instead of all for 20 s

@@ -46,7 +46,7 @@ use clap::{Parser, Subcommand};
 
 use crate::steps::{Steps, Trouble};
 
-/// The project's own commands: check everything, a part, or what changed; print the tables of the documents anew.
+/// The project's own commands: check everything, a part, or what changed; reprint the tables of the documents.
 #[derive(Parser)]
 #[command(bin_name = "cargo xtask", max_term_width = 100)]
 struct Cli {

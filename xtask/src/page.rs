@@ -82,7 +82,7 @@ fn build() -> Result<(), Trouble> {
     Ok(())
 }
 
-/// Makes the engine smaller where `wasm-opt` is installed, if it was built anew.
+/// Makes the engine smaller where `wasm-opt` is installed, if it was rebuilt.
 fn shrink(from: &Path, to: &Path) -> Result<(), Trouble> {
     let changed = |path: &Path| path.metadata().and_then(|about| about.modified()).ok();
     if changed(to).is_some_and(|to| changed(from).is_some_and(|from| from < to)) {

@@ -135,7 +135,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn steps_of_a_command_beside_are_counted_by_the_end_of_its_output() {
+    fn steps_of_a_command_beside_are_counted_by_its_last_lines() {
         let mut steps = Steps::default();
         steps.count(
             "c",

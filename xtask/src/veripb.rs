@@ -91,7 +91,7 @@ fn judge(program: &Path, name: &str, ring: &str, rows: &mut String) -> Result<Du
             return Err(Trouble::Failed(format!("{}: VeriPB accepts it {what}", broken.display())));
         }
     }
-    // Without intervals there is a schedule, so nobody can refute that model.
+    // Without intervals there is a schedule, so that model cannot be refuted.
     let less = path("less.opb");
     let is_order = |line: &str| line.contains("~oa") || line.contains("~ob");
     let lines = model_text.lines().map(|line| if is_order(line) { loosened(line) } else { line.to_owned() });

@@ -100,7 +100,7 @@ pub trait Judge {
     }
     /// Forgets the readings of a sensor, so that its next one is compared with nothing. The age goes on.
     fn forget(&mut self, sensor: u8);
-    /// The ring begins anew: sound from before may still be heard, and what a sensor hears next is compared with
+    /// The ring starts over: sound from before may still be heard, and what a sensor hears next is compared with
     /// nothing. Ages go on.
     fn restart(&mut self);
     /// A sensor's last firing, which is judged already, was this much later than it seemed; negative for earlier.

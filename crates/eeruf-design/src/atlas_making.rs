@@ -26,7 +26,7 @@ pub fn header() -> &'static str {
 /// Searches a ring. The row depends on nothing but the ring.
 ///
 /// # Errors
-/// A ring that makes no sense, in words.
+/// Why a ring is invalid, in words.
 pub fn make(ring: &Ring) -> Result<Row, String> {
     let problem = ring.problem();
     let words = |error: SearchError| error.to_string();

@@ -19,7 +19,7 @@ pub(crate) struct PlaceFile {
     heading_deg: f64,
 }
 
-/// The keys of a ring of so many sensors.
+/// The keys of a ring of this many sensors.
 pub(crate) struct PlaceKeys<'a> {
     pub(crate) sensors: usize,
     pub(crate) poses: Option<&'a [PlaceFile]>,

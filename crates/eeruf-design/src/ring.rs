@@ -117,7 +117,7 @@ pub struct RingSpec {
     pub speed_mm_s: Option<u32>,
     /// The time that the controller needs for one firing: it gives two that are closer than this one after the other.
     pub handling: Micros,
-    /// P: by how much, at most, the path of a foreign sound changes from one reading to the next on a robot that
+    /// P: the largest change of a foreign sound's path from one reading to the next on a robot that
     /// stands; `None` for `t_delta`.
     pub path_change: Option<Micros>,
     /// R: how long sound is audible, where the file says it.

@@ -21,7 +21,7 @@ impl OwnedUneven {
     /// the requirements say.
     ///
     /// # Errors
-    /// The first thing that makes no sense.
+    /// The first invalid thing.
     pub fn new(
         sensors: usize,
         [t_delta, window, refire]: [Vec<Micros>; 3],

@@ -63,7 +63,7 @@ impl<P: Plan, J: Judge, T: OutputPin, I: InputPin, D: DelayNs, const K: usize, c
     /// closes on an edge that came in time, however long the main loop was busy elsewhere.
     pub fn poll_with_edges<const N: usize>(&mut self, edges: &EdgeQueue<N>, now: Instant) -> Option<RingEvent> {
         while let Some(edge) = edges.pop() {
-            // An edge of a line that the ring does not have concerns nobody here.
+            // An edge of a line that the ring does not have is ignored.
             _ = self.edge(edge);
         }
         self.poll(now)
@@ -106,7 +106,7 @@ impl<P: Plan, J: Judge, T, I, D, const K: usize, const H: usize> HcSr04Ring<Ring
 
     /// As [`poll`](Self::poll) at the instant `at` at which hardware has triggered the sensor that was due, by
     /// [`Ring::upcoming`]: it is not triggered again. Call until there is no event, after all edges up to `at` and
-    /// before all later ones. Nobody has seen if the line was low: a sensor that still held it counts as unanswered.
+    /// before all later ones. The line was not seen to be low: a sensor that still held it counts as unanswered.
     pub fn poll_triggered(&mut self, at: Instant) -> Option<RingEvent> {
         let event = self.ring.poll(at)?;
         if let RingEvent::Fire { sensor, .. } = event {

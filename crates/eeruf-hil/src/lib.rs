@@ -48,7 +48,7 @@ pub const STEP: Micros = Micros::new(652);
 /// # Errors
 /// None with these numbers.
 pub fn hopping_ring(now: Instant) -> Result<HoppingRing<SENSORS>, HoppingError> {
-    // Lags that are drawn anew, so that boards and host are compared in that too.
+    // Lags that are redrawn, so that boards and host are compared in that too.
     let settings = HoppingSettings::BALANCED.with_shift_after(5);
     let code = HoppingCode::new(SENSORS, settings.tracker.votes, STEP)?;
     let schedule = HoppingSchedule::spread(code, Micros::from_millis(100))?;

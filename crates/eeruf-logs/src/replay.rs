@@ -47,7 +47,7 @@ impl From<TrackerError> for ReplayError {
 
 /// The verdicts of an [`EchoTracker`] with these settings on each firing of a log, in the order of
 /// [`firings`](FiringLog::firings). With the settings of the ring that was logged, and from its start, that is what the
-/// ring made of it, to the last bit; a sensor that was enabled again begins anew in the ring, which the log does not
+/// ring made of it, to the last bit; a sensor that was enabled again starts over in the ring, which the log does not
 /// say.
 ///
 /// The log must say how each reading was weighed ([`Weighed`](crate::Weighed)). Readings that it calls `too_early`,

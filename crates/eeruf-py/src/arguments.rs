@@ -1,4 +1,4 @@
-//! Arguments: what is wrong with one is said by name, with its value and what is expected.
+//! Arguments: errors name the argument, its value and what is expected.
 
 use core::fmt::Display;
 use std::ops::RangeInclusive;

@@ -7,7 +7,7 @@ use eeruf_sim::{
     LabMate, Physics, Robot, WorldParts,
     experiments::{
         Difference, FIRST,
-        rooms::{RoomKind, RoomPlan},
+        rooms::{RoomGroup, RoomKind, RoomPlan},
         set_one::{self as first_set, Alcove, READINGS, SetOneOptions},
         set_three::{self as third_set, SetThreeOptions},
         set_two::{
@@ -192,25 +192,34 @@ pub(crate) fn room(
     Scene::of(WorldParts { scene, robots, noise, physics, max_order: DEFAULT_ORDER, seed, faults }, shown)
 }
 
+/// Rooms in which a ring is judged, as Python gives them.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub(crate) struct InRooms<'py> {
+    rooms: Option<Bound<'py, PyAny>>,
+    places: Bound<'py, PyAny>,
+    first: Bound<'py, PyAny>,
+    driving: Bound<'py, PyAny>,
+    wrong: Bound<'py, PyAny>,
+}
+
 /// Ways of firing a ring file's ring, judged in rooms, as `eeruf study RING.toml --json` prints them.
 #[pyfunction]
-#[pyo3(name = "_recommend", signature = (ring, places, first, driving, wrong, progress))]
+#[pyo3(name = "_recommend", signature = (ring, asked, progress))]
 pub(crate) fn recommend(
     py: Python<'_>,
     ring: &Bound<'_, PyAny>,
-    places: &Bound<'_, PyAny>,
-    first: &Bound<'_, PyAny>,
-    driving: &Bound<'_, PyAny>,
-    wrong: &Bound<'_, PyAny>,
+    asked: InRooms<'_>,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<String> {
     let spec = ring_file(ring)?;
+    let InRooms { rooms, places, first, driving, wrong } = asked;
     let asked = RoomsAsked {
-        own: vec![],
-        places: whole("places", places, 1..=1000)?,
-        first: whole("first", first, 0..=1_000_000_000)?,
-        driving: flag("driving", Some(driving), false)?,
-        wrong: number("wrong", wrong, 0.0..=1.0)?,
+        own: rooms.as_ref().map(own_rooms).transpose()?.unwrap_or_default(),
+        places: whole("places", &places, 1..=1000)?,
+        first: whole("first", &first, 0..=1_000_000_000)?,
+        driving: flag("driving", Some(&driving), false)?,
+        wrong: number("wrong", &wrong, 0.0..=1.0)?,
     };
     in_background(py, progress, move |background| {
         let design = spec.shortest_to_study().map_err(|error| ArgumentError::new_err(error.to_string()))?;
@@ -218,6 +227,21 @@ pub(crate) fn recommend(
         let answer = spec.judge_in_rooms(design.as_ref(), &asked, &keep_going).map_err(ArgumentError::new_err)?;
         json(&answer.json())
     })
+}
+
+/// Scenes by their names, as rooms for a ring that stands where their first robot does.
+fn own_rooms(rooms: &Bound<'_, PyAny>) -> PyResult<Vec<RoomGroup>> {
+    let refused = || ArgumentError::new_err(format!("rooms = {}; expected scenes by name, a dict", shown(rooms)));
+    let scenes = rooms.cast::<PyDict>().map_err(|_| refused())?;
+    let room = |(number, (name, scene)): (u64, (Bound<'_, PyAny>, Bound<'_, PyAny>))| -> PyResult<RoomGroup> {
+        let (name, scene): (String, PyRef<'_, Scene>) =
+            (name.extract().map_err(|_| refused())?, scene.extract().map_err(|_| refused())?);
+        RoomGroup::of_world(name, number, scene.world()?).ok_or_else(refused)
+    };
+    if scenes.is_empty() {
+        return Err(refused());
+    }
+    (0..).zip(scenes.iter()).map(room).collect()
 }
 
 fn scene_of(scene: eeruf_sim::Scene, robot: Robot, max_order: u32, seed: u64, physics: Physics) -> PyResult<Scene> {

@@ -110,7 +110,7 @@ impl HoppingRing {
     ///
     /// Args:
     ///     now_us: the present, 0 or more.
-    ///     expected_change_us: for each sensor, by how much a good reading should differ from the one before, from the
+    ///     expected_change_us: for each sensor, the expected change of a good reading from the one before, by the
     ///         robot's own motion: ``-2 v dt / c`` for an object approached at ``v``. None for a robot that stands.
     ///
     /// Returns:

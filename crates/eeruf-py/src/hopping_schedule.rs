@@ -29,7 +29,7 @@ use crate::{
 /// Args:
 ///     sensors: how many, 1 to 64.
 ///     period_us: the period, ``T_p``; it must exceed the width of the code.
-///     step_us: by how much crosstalk moves at least, 1 to 65535.
+///     step_us: the least shift of crosstalk, 1 to 65535.
 ///     phases: at least this many, 2 to 67, as far as there are; there are more than sensors, and one less than a
 ///         prime. By default at least the 5 that confirm an echo.
 ///     t_lag_us: the lag of each sensor; by default they are spread evenly over the period.

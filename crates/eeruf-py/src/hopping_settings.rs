@@ -27,7 +27,7 @@ const NAMED: [(&str, Core); 4] =
 ///
 /// Example:
 ///     >>> import eeruf
-///     >>> settings = eeruf.HoppingSettings("quick", shift_after=5)  # lags are drawn anew
+///     >>> settings = eeruf.HoppingSettings("quick", shift_after=5)  # lags are redrawn
 ///     >>> settings.votes, settings.shift_after
 ///     (4, 5)
 ///     >>> settings

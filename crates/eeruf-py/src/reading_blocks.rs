@@ -88,7 +88,7 @@ pub(crate) fn simulate_blocks(
     let readings = expected_readings(&asked.world, block_periods.min(asked.options.periods));
     let bytes = eeruf_sim::Readings::bytes_for(readings);
     memory::check(&format!("{readings} readings"), bytes, "so fewer block_periods")?;
-    // What is wrong with it is said now, not with the first block.
+    // Errors come now, not with the first block.
     Watch::new(progress)?;
     let own = own::own(scene.py(), None, None, asked.chosen.makers.as_deref(), asked.world.robots())?;
     let simulation = Simulation::new_from(scene.py(), asked, own, true, None)?;

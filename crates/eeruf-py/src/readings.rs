@@ -111,7 +111,7 @@ impl Readings {
         self.columns.get(py, 14, self.readings.y_m.iter().copied())
     }
 
-    /// Whither the sensor looked when it fired, in radians of the scene, counter-clockwise from the x axis: float64.
+    /// The sensor's heading when it fired, in radians of the scene, counter-clockwise from the x axis: float64.
     #[getter]
     fn heading_rad<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.columns.get(py, 15, self.readings.heading_rad.iter().copied())
@@ -196,7 +196,7 @@ impl Readings {
     /// Returns true if what the reading says is wrong, accepted.
     ///
     /// Args:
-    ///     tolerance_us: by how much it may miss the reference, in microseconds.
+    ///     tolerance_us: largest difference from the reference, in microseconds.
     ///
     /// Returns:
     ///     Array of bool.
@@ -219,7 +219,7 @@ impl Readings {
     /// The figures that are always reported together.
     ///
     /// Args:
-    ///     tolerance_us: by how much a reading may miss the reference, in microseconds.
+    ///     tolerance_us: largest difference of a reading from the reference, in microseconds.
     ///
     /// Returns:
     ///     A ``Summary``.

@@ -27,7 +27,7 @@ use crate::{
 ///     window_us: ``T_wind``: how long a sensor listens after it has fired, 1 or more. One for all, or a sequence.
 ///     blanking_us: edges sooner than this after firing are ringing of the transducer, not echoes.
 ///     consecutive: the number of consecutive readings that must agree, 2 to 8.
-///     path_change_us: P: by how much, at most, the path of a foreign sound changes from one reading to the next, at
+///     path_change_us: P: the largest change of a foreign sound's path from one reading to the next, at
 ///         most 65,534; None for ``t_delta_us``. Less makes fewer readings ambiguous where firings are late.
 ///     audible_us: R: how long sound is audible, at most 67 s; None for one period.
 ///     refire_us: how soon a sensor may be triggered again, as for :func:`design`. With this, with those below or with
@@ -115,7 +115,7 @@ impl Ring {
     ///     window_us: how long a sensor listens after it has fired, 1 or more.
     ///     blanking_us: edges sooner than this after firing are no echoes.
     ///     consecutive: the number of consecutive readings that must agree, 2 to 8.
-    ///     path_change_us: P: by how much, at most, the path of a foreign sound changes from one reading to the next,
+    ///     path_change_us: P: the largest change of a foreign sound's path from one reading to the next,
     ///         at most 65,534; None for ``t_delta_us``. Less makes fewer readings ambiguous where firings are late.
     ///     audible_us: R: how long sound is audible, at most 67 s; None for one period.
     ///
@@ -157,7 +157,7 @@ impl Ring {
     ///
     /// Args:
     ///     now_us: the present, 0 or more.
-    ///     expected_change_us: for each sensor, by how much a good reading should differ from the one before, from the
+    ///     expected_change_us: for each sensor, the expected change of a good reading from the one before, by the
     ///         robot's own motion: ``-2 v dt / c`` for an object approached at ``v``. None for a robot that stands.
     ///
     /// Returns:
@@ -285,7 +285,7 @@ impl Ring {
         self.0.get()?.change(|ring| ring.set_blanking(blanking))
     }
 
-    /// P, by how much the path of a foreign sound may change from one reading to the next, in microseconds. It can be
+    /// P, the largest change of a foreign sound's path from one reading to the next, in microseconds. It can be
     /// changed while the ring runs: as the robot's speed changes, for example.
     #[getter]
     fn path_change_us(&self) -> PyResult<u32> {

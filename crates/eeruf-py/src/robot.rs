@@ -53,7 +53,7 @@ use crate::{
 ///     min_refire_us: with immediate refiring, how long a sensor rests between its echo and its next firing.
 ///     audible_us: how long sound is heard after it was sent, as far as methods that fire one by one allow for it; what
 ///         its modules say where ``module`` is given, or else no longer than sensors listen.
-///     path_change_us: P: by how much, at most, the path of a foreign sound changes from one reading to the next, where
+///     path_change_us: P: the largest change of a foreign sound's path from one reading to the next, where
 ///         a table fires the ring, at most 65,534 us; None for ``t_delta_us``.
 ///     ring: the path of a ring file, for ``eeruf design``, that gives modules, windows, ``T_delta``, sensors that fire
 ///         together, neighbours, ``path_change_us`` and ``audible_us``, unless these are given here.
@@ -70,7 +70,7 @@ use crate::{
 ///     speed_m_s: how fast it does so, in m/s.
 ///     clock_offset_us: what its clock shows at the start.
 ///     transducer: an older name of ``module``.
-///     clock_drift_ppm: by how much its clock goes too fast, in millionths.
+///     clock_drift_ppm: rate error of its clock, positive if fast, in millionths.
 ///
 /// Raises:
 ///     ArgumentError: something of the wrong type or out of range, or two kinds of motion at once.

@@ -108,7 +108,7 @@ impl Schedule {
     /// Args:
     ///     sensors: how many, 1 to 64.
     ///     period_us: the period, ``T_p``.
-    ///     step_us: by how much crosstalk moves at least, 1 to 65535.
+    ///     step_us: the least shift of crosstalk, 1 to 65535.
     ///     phases: at least this many, 2 to 67; by default the 5 that confirm an echo.
     ///     t_lag_us: the lag of each sensor; by default they are spread evenly over the period.
     ///

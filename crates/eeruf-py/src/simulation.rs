@@ -352,7 +352,7 @@ impl Simulation {
 
     /// Put a robot at another place, whatever is in between. It goes on at the speeds set last, or else stands.
     ///
-    /// A ring with odometry takes the leap for a drive. Nobody looks whether the robot stands free: see
+    /// A ring with odometry takes the leap for a drive. Whether the robot stands free is not checked: see
     /// ``RobotState.touches``.
     ///
     /// Args:
@@ -380,7 +380,7 @@ impl Simulation {
 
     /// Begin again: time 0, robots at their first poses, the scene and the schedules of the start.
     ///
-    /// What the method makes (``make_filter``, ``make_firing``) is made anew; callables that were arguments go on being
+    /// What the method makes (``make_filter``, ``make_firing``) is remade; callables that were arguments go on being
     /// called as they are. An MCAP file that is being written ends.
     ///
     /// Args:
@@ -456,7 +456,7 @@ impl Simulation {
     }
 
     /// From now on sound travels among these walls and poles and in this air: obstacles have moved. Sound that is on
-    /// its way arrives as it would have before. Nobody looks whether the robots stand free in it.
+    /// its way arrives as it would have before. Whether the robots stand free in it is not checked.
     ///
     /// Args:
     ///     scene: whose robots, noise, seed, order and physics do not count: those of the simulation stay.

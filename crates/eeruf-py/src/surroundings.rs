@@ -97,8 +97,8 @@ pub(crate) fn materials(
 /// Noise of a scene.
 ///
 /// Args:
-///     fading_db_rms: by how much each arrival's level fades or grows, in dB, 0 to 20.
-///     jitter_us_rms: by how much each arrival is early or late, in microseconds, 0 to 10,000.
+///     fading_db_rms: rms change of each arrival's level, in dB, 0 to 20.
+///     jitter_us_rms: rms error of each arrival's time, in microseconds, 0 to 10,000.
 ///     bursts_per_s: how many bursts from outside are heard in a second, 0 to 10,000.
 ///     burst_db: how far they are above what is just heard, in dB, -200 to 200.
 ///

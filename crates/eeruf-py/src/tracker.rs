@@ -78,7 +78,7 @@ impl EchoTracker {
     ///     sensor: which one, from 0.
     ///     phase: the phase in which it fired, 0 to 255.
     ///     t_echo_us: the time of its echo after firing in whole microseconds, or None for no echo.
-    ///     expected_change_us: by how much a good reading should have changed since this sensor's firing before, from
+    ///     expected_change_us: expected change of a good reading since this sensor's firing before, by
     ///         the robot's own motion: ``-2 v dt / c`` for an object approached at ``v``.
     ///     solo: whether no other sensor's sound could be heard.
     ///     steady: whether firings were so punctual that crosstalk moved as the schedule says; else it supports
@@ -236,7 +236,7 @@ impl EchoTracker {
     }
 
     /// Say that firing times have changed against each other otherwise than by the phase, such as by a new lag: what is
-    /// not confirmed begins anew.
+    /// not confirmed starts over.
     ///
     /// Example:
     ///     >>> import eeruf

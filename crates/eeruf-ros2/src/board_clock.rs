@@ -7,7 +7,7 @@ use eeruf_core::{Instant, Micros};
 
 /// Least time for which an offset counts, in microseconds of the board.
 const KEPT_US: i64 = 5_000_000;
-/// A board whose clock goes wrong by so much has started anew.
+/// A board whose clock goes wrong by so much has restarted.
 const RESTART_NS: i64 = 2_000_000_000;
 
 #[derive(Debug, Default)]

@@ -23,7 +23,7 @@ const AGAIN: Duration = Duration::from_secs(1);
 /// Time that a read waits.
 const PATIENCE: Duration = Duration::from_millis(200);
 
-/// Listens until nobody takes what comes any more.
+/// Listens until the receiver is gone.
 pub(crate) fn listen(port: String, baud: u32, to: Sender<FromLine>) {
     thread::spawn(move || {
         loop {
@@ -53,7 +53,7 @@ fn open(port: &str, baud: u32) -> std::io::Result<SerialPort> {
     Ok(line)
 }
 
-/// Reads until the line fails, or nobody listens any more.
+/// Reads until the line fails, or the receiver is gone.
 fn read(line: &SerialPort, to: &Sender<FromLine>) -> std::io::Result<()> {
     let mut decoder = Decoder::default();
     let mut bytes = [0; 1024];

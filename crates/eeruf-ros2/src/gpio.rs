@@ -108,7 +108,7 @@ impl GpioRing {
     }
 }
 
-/// Opens the lines and fires in a thread of its own until nobody takes what comes.
+/// Opens the lines and fires in a thread of its own until the receiver is gone.
 #[cfg(target_os = "linux")]
 pub(crate) fn listen(
     ring: GpioRing,

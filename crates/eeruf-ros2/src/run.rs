@@ -166,7 +166,7 @@ impl EerufNode {
 
     fn frame(&mut self, Received { sequence, message }: Received, at_ns: i64) -> Result<(), String> {
         if let Some(last) = self.sequence.replace(sequence) {
-            // A board that started anew begins with 0.
+            // A board that restarted begins with 0.
             let missing = sequence.wrapping_sub(last).wrapping_sub(1);
             self.diagnosis.lost(if sequence == 0 { 0 } else { missing });
         }
@@ -241,7 +241,7 @@ impl EerufNode {
                         explained_by: None,
                         weighed: None,
                     };
-                    // Whose clock it is nobody knows; the message has just come.
+                    // The stamp's clock is unknown; the message has just come.
                     self.firing(&firing, nanoseconds())?;
                 }
                 Ok(Heard::Range { sensor, distance: Some(distance) }) => {
@@ -317,7 +317,7 @@ impl EerufNode {
                 self.diagnosis.unsent();
             }
         } else {
-            // Without ROS nobody else says it.
+            // Without ROS nothing else reports it.
             let wrong = report.iter().filter(|status| status.level != Level::Ok);
             let wrong: Vec<_> = wrong.map(|status| format!("{}: {}", status.about, status.message)).collect();
             self.say_once(&if wrong.is_empty() { "all is well".to_owned() } else { wrong.join("; ") });

@@ -33,7 +33,7 @@ impl<const K: usize> Recorder<K> {
     }
 
     /// The frame that an event makes, if it makes one; hand in every event, with the `now` of its poll. `health` says
-    /// how a sensor is, as `eeruf_hc_sr04::Health as u8` (0 for well; all 0 where nobody knows), and `edges_lost` how
+    /// how a sensor is, as `eeruf_hc_sr04::Health as u8` (0 for well; all 0 where it is unknown), and `edges_lost` how
     /// many edges found their queue full; both are asked for at a period's end only.
     pub fn event(
         &mut self,

@@ -68,7 +68,7 @@ pub(crate) fn run<P: Plan, J: Judge, const H: usize, E>(
         let deadline = ring.next_deadline();
         host.say(Record::deadline(deadline));
         eeruf_board::set_alarm(deadline);
-        // The alarm may have gone off before we sleep, and then wakes nobody.
+        // The alarm may have gone off before we sleep, and then wakes nothing.
         eeruf_board::sleep_unless(|| !EDGES.is_empty() || eeruf_board::now().has_reached(deadline));
     }
 }

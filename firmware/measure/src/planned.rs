@@ -37,7 +37,7 @@ pub const HOPPING_12: HoppingSchedule<12> = hopping_schedule! {
 /// As [`HoppingRing::hopping`].
 #[inline(always)]
 pub fn hopping<const K: usize>(schedule: &HoppingSchedule<K>, now: Instant) -> Result<HoppingRing<K>, HoppingError> {
-    // Lags that are drawn anew, so that it is measured what that costs.
+    // Lags that are redrawn, so that it is measured what that costs.
     let settings = HoppingSettings::BALANCED.with_shift_after(5);
     HoppingRing::hopping(schedule, settings, HoppingListening::new(WINDOW), 1, now)
 }

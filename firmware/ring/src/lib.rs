@@ -20,7 +20,7 @@ pub fn run<const K: usize, const N: usize>(
         }
         let deadline = ring.next_deadline();
         eeruf_board::set_alarm(deadline);
-        // The alarm may have gone off before we sleep, and then wakes nobody.
+        // The alarm may have gone off before we sleep, and then wakes nothing.
         eeruf_board::sleep_unless(|| !edges.is_empty() || eeruf_board::now().has_reached(deadline));
     }
 }

@@ -77,7 +77,7 @@ fn every_schedule_of_the_shared_cases_meets_its_requirements() {
 }
 
 /// The paper's waits (24 ms in phase a; 0, 2, .., 22 ms in phase b), in any order over the sensors.
-fn exactly_one_rearrangement_of_table_i_keeps_19_ms_between_any_four_adjacent_sensors() {
+fn one_rearrangement_of_table_i_keeps_19_ms_among_any_four() {
     let lag: [u32; 12] = core::array::from_fn(|x| 25 * (x as u32 % 4));
     let pairs: [(u32, u32); 12] = core::array::from_fn(|x| (24, 2 * x as u32));
     let conflicts = Layout::Line(4).rows(12);
@@ -99,7 +99,7 @@ fn exactly_one_rearrangement_of_table_i_keeps_19_ms_between_any_four_adjacent_se
 }
 
 /// Walls 0.9 m to 2.8 m away: sensor `x` hears its echo after `5 + x` ms.
-fn a_ring_accepts_standing_walls_from_the_second_period_on_through_a_wrap_of_the_clock() {
+fn ring_accepts_walls_from_period_two_on_through_a_clock_wrap() {
     let config = RingConfig::new().with_window(Micros::from_millis(36));
     let mut ring: ScheduledRing<12> =
         Ring::new(&PAPER_12, config, Instant::from_micros(u32::MAX - 1_000_000)).expect("a ring");
@@ -166,8 +166,8 @@ fn main() -> ! {
         tables_i_b_and_i_d_are_separated_by_2_ms_and_i_a_by_nothing,
         table_i_d_keeps_19_ms_in_its_blocks_and_17_ms_on_the_line,
         every_schedule_of_the_shared_cases_meets_its_requirements,
-        exactly_one_rearrangement_of_table_i_keeps_19_ms_between_any_four_adjacent_sensors,
-        a_ring_accepts_standing_walls_from_the_second_period_on_through_a_wrap_of_the_clock,
+        one_rearrangement_of_table_i_keeps_19_ms_among_any_four,
+        ring_accepts_walls_from_period_two_on_through_a_clock_wrap,
         readings_that_alternate_as_crosstalk_does_are_all_rejected,
     ])
 }

@@ -200,7 +200,7 @@ impl<'s> Model<'s> {
         lengths(before).any(|one| lengths(now).any(|other| one.abs_diff(other) <= change))
     }
 
-    /// P: by how much a path may change.
+    /// P: the largest change of a path.
     fn change(&self) -> u64 {
         self.listening.path_change.as_micros().into()
     }
@@ -376,7 +376,7 @@ impl<'s> Model<'s> {
         }
     }
 
-    /// Another schedule, or the same anew.
+    /// Another schedule, or the same again.
     pub(super) fn new_epoch(&mut self, schedule: &'s Schedule<SENSORS>) {
         self.before = Some(self.schedule);
         self.epoch += 1;

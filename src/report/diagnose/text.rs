@@ -116,7 +116,7 @@ fn faults(found: &Found<'_>, text: &mut String) {
                 echoes.count,
                 echoes.of,
                 100.0 * echoes.interval_95().1,
-                if is_heard { "others hear its sound" } else { "nobody hears its sound either" }
+                if is_heard { "others hear its sound" } else { "no other hears its sound either" }
             ),
             Fault::Losing { sensor, lost } => writeln!(
                 text,

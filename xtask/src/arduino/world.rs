@@ -58,7 +58,7 @@ fn echo_times(modules: usize) -> Result<(PathBuf, BTreeMap<usize, u32>), Trouble
         .ok_or_else(|| Trouble::Failed("the example echo_times failed".to_owned()))?
         + "\n";
     if sensors.is_none() && fs::read_to_string(KEPT).map_err(failed(KEPT))? != times {
-        let why = format!("{KEPT} is not what the example echo_times says of {SCENE}; write it anew");
+        let why = format!("{KEPT} is not what the example echo_times says of {SCENE}; rewrite it");
         return Err(Trouble::Failed(why));
     }
     let mut own_mm = BTreeMap::new();

@@ -167,7 +167,7 @@ impl<const K: usize> FlowPlan<K> {
         self.due = self.start + after;
     }
 
-    /// Lets nobody fire for what is left of the cycle, if the ring is paused.
+    /// Lets no sensor fire for the rest of the cycle, if the ring is paused.
     pub(super) fn obey_pause(&mut self) {
         if self.paused {
             self.planned = self.place;

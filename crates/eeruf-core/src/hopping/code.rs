@@ -1,4 +1,4 @@
-//! [`HoppingCode`]: by how much each sensor's firing moves from phase to phase, Welch's Costas sequence or a linear
+//! [`HoppingCode`]: the shift of each sensor's firing from phase to phase, Welch's Costas sequence or a linear
 //! congruence.
 
 use super::error::HoppingError;

@@ -44,7 +44,7 @@ pub struct HoppingPlan<const K: usize, U = Alike> {
     pub(super) phase: u8,
     /// Flags of each sensor that fires in it: [`FIRED`], [`SOLO`] and [`SETTLED`].
     pub(super) kind: u8,
-    /// Lags have changed or the timetable broke off, and nobody has taken note.
+    /// Lags have changed or the timetable broke off, and the tracker does not know yet.
     pub(super) changed: bool,
     /// The number of times that somebody has, modulo 256.
     changes: u8,
@@ -253,7 +253,7 @@ impl<const K: usize, U: LimitsInUse> HoppingPlan<K, U> {
         self.due = self.start + turn.map_or(self.length, |turn| self.offset(turn.order));
     }
 
-    /// Another period: nobody fires until it is planned.
+    /// Another period: no sensor fires until it is planned.
     fn clear_period(&mut self) {
         self.place = 0;
         self.planned = 0;
@@ -262,7 +262,7 @@ impl<const K: usize, U: LimitsInUse> HoppingPlan<K, U> {
         self.find_due();
     }
 
-    /// Lets nobody fire for what is left of the period, if the ring is paused.
+    /// Lets no sensor fire for the rest of the period, if the ring is paused.
     pub(super) fn obey_pause(&mut self) {
         if self.paused {
             self.planned = self.place;

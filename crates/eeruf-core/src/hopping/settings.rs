@@ -94,7 +94,7 @@ impl HoppingSettings {
         Self { shift_spacing, ..self }
     }
 
-    /// Keeping this much between neighbours where lags are drawn anew.
+    /// Keeping this much between neighbours where lags are redrawn.
     #[must_use]
     pub const fn with_shift_interval(self, shift_interval: Micros) -> Self {
         Self { shift_interval, ..self }
@@ -143,7 +143,7 @@ pub struct HoppingListening {
     pub window: Micros,
     /// Edges sooner than this after firing are ringing of the transducer, not echoes.
     pub blanking: Micros,
-    /// After how long no sound is heard any more. A sensor fires alone once all else is silent, and nobody else until
+    /// After how long no sound is heard any more. A sensor fires alone once all else is silent, and no other until
     /// its own sound is.
     pub reach: Micros,
 }

@@ -66,7 +66,7 @@ pub trait Plan {
         let due = self.deadline();
         if !now.has_reached(due) {
             if due.since(now) > self.horizon() {
-                // The clock has jumped, or nobody polled for half a turn of it.
+                // The clock has jumped, or the ring was not polled for half a turn of it.
                 self.restart(now);
                 self.begin_period(|_| now);
             }

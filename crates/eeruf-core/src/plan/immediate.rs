@@ -179,7 +179,7 @@ impl<const K: usize, const M: usize> Plan for ImmediateRefiring<'_, K, M> {
     fn restart(&mut self, now: Instant) {
         self.period_start = now;
         self.phase = 0;
-        // Nobody waits for longer, unless the clock has jumped.
+        // No sensor waits for longer, unless the clock has jumped.
         let longest = self.min_refire.max(self.schedule.period());
         for (x, turn) in self.sensors.iter_mut().enumerate() {
             let mut at = now + self.schedule.t_fire(Phase::A, x).unwrap_or(Micros::ZERO);

@@ -51,7 +51,7 @@ impl<'s, const N: usize, const M: usize, U: LimitsInUse, J: Judge, const K: usiz
 impl<'s, const N: usize, const M: usize, J: Judge, const K: usize, const E: usize, const H: usize>
     Ring<ScheduledFiring<'s, N, M>, J, K, E, H>
 {
-    /// As [`change_schedule`](Ring::change_schedule), to a schedule that nobody has verified.
+    /// As [`change_schedule`](Ring::change_schedule), to an unverified schedule.
     ///
     /// # Errors
     /// [`RingError::Window`] if a sensor would fire again while it still listens.
@@ -117,7 +117,7 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
         Ok(())
     }
 
-    /// Sets P, by how much a path of foreign sound may change from one reading to the next (see
+    /// Sets P, the largest change of a foreign sound's path from one reading to the next (see
     /// [`RingConfig::path_change`](super::RingConfig::path_change)): as the robot's speed changes, for example.
     ///
     /// # Errors

@@ -29,7 +29,7 @@ pub struct RingConfig<const E: usize = 1> {
     pub blanking: Micros,
     /// The number of consecutive readings that must agree, 2 to 8.
     pub consecutive: u8,
-    /// P: by how much, at most, the length in time of a foreign sound's path changes from one reading to the next.
+    /// P: the largest change, in time, of the length of a foreign sound's path from one reading to the next.
     /// Crosstalk that changes by no more is never accepted. `None` for `T_delta`, as in the paper. A robot that moves
     /// at `v` needs its jitter and `2 v dt / c`; less than `T_delta` makes fewer readings ambiguous where firings are
     /// late. At most 65,534 us.

@@ -108,7 +108,7 @@ pub(super) struct Pair {
     pub(super) heard: [Instant; 2],
     /// `R`: how long sound is audible.
     pub(super) audible: Micros,
-    /// `P`: by how much a path may change from the first to the second.
+    /// `P`: the largest change of a path from the first to the second.
     pub(super) path_change: Micros,
 }
 

@@ -132,7 +132,7 @@ impl Listening {
         (self.path_change != AS_T_DELTA).then_some(Micros::new(self.path_change.into()))
     }
 
-    /// P: by how much a path may change from one reading of a sensor to the next.
+    /// P: the largest change of a path from one reading of a sensor to the next.
     pub(super) fn path_change_of<P: Plan>(&self, plan: &P, sensor: u8) -> Micros {
         match self.asked_path_change() {
             Some(path_change) => path_change,

@@ -463,7 +463,7 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
         self.listening.window_of(&self.plan, sensor)
     }
 
-    /// P: by how much, at most, the path of foreign sound to a sensor changes from one of its readings to the next.
+    /// P: the largest change of a foreign sound's path to a sensor from one of its readings to the next.
     pub fn path_change_of(&self, sensor: u8) -> Micros {
         self.listening.path_change_of(&self.plan, sensor)
     }

@@ -58,7 +58,7 @@ pub struct Schedule<const K: usize, const M: usize = 2> {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(C)]
 struct Firings<const K: usize> {
-    /// The sensors by firing time; then nobody (255).
+    /// The sensors by firing time; then 255.
     order: [u8; K],
     /// Time from the firing before to each, of the first from the start of the period; then `after_last`.
     gap: [Micros; K],

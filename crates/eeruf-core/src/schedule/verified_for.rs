@@ -17,7 +17,7 @@ pub struct VerifiedFor {
     pub window: Micros,
     /// The least shift of crosstalk from one reading to the next, `2 t_delta + 1 us` or more.
     pub separation: Micros,
-    /// P: by how much, at most, a path may change from one reading to the next; `None` for as much as `t_delta`.
+    /// P: the largest change of a path from one reading to the next; `None` for as much as `t_delta`.
     pub path_change: Option<Micros>,
     /// R: how long sound may be audible.
     pub audible: Micros,

@@ -1,4 +1,4 @@
-//! Why a search cannot start: times off the grid, or a problem that makes no sense.
+//! Why a search cannot start: times off the grid, or an invalid problem.
 
 use core::fmt;
 
@@ -27,7 +27,7 @@ pub enum SearchError {
     },
     /// The layout names a sensor out of range.
     Layout(LayoutError),
-    /// The problem makes no sense or is too large.
+    /// The problem is invalid or too large.
     Problem(ProblemError),
     /// Even firing one by one takes longer than [`MAX_PERIOD`].
     TooLong {

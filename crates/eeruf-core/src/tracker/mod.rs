@@ -128,7 +128,7 @@ impl<const K: usize, const H: usize> EchoTracker<K, H> {
     }
 
     /// Firing times have changed against each other otherwise than by the phase, such as by a new lag: what supported a
-    /// track so far cannot be compared with what will. Tracks that are confirmed stay so; all others begin anew.
+    /// track so far cannot be compared with what will. Tracks that are confirmed stay so; all others start over.
     pub fn firing_changed(&mut self) {
         for tracks in &mut self.sensors {
             tracks.firing_changed();

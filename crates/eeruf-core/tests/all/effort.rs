@@ -1,5 +1,5 @@
 //! Steps of each search for its answer, the same on each machine: written down in `tests/data/search-effort.txt`. A
-//! change that makes it take other steps shows there what it costs or saves. `EERUF_WRITE=1` writes the file anew.
+//! change that makes it take other steps shows there what it costs or saves. `EERUF_WRITE=1` rewrites the file.
 
 use std::fmt::{Debug, Write as _};
 use std::ops::ControlFlow;
@@ -216,7 +216,7 @@ fn each_search_takes_the_steps_that_are_written_down() {
     }
     let kept = std::fs::read_to_string(FILE).unwrap_or_default();
     for (kept, now) in kept.lines().zip(now.lines()) {
-        assert_eq!(now, kept, "the search takes other steps than are written down; EERUF_WRITE=1 writes them anew");
+        assert_eq!(now, kept, "the search takes other steps than are written down; EERUF_WRITE=1 rewrites them");
     }
     assert_eq!(now.lines().count(), kept.lines().count(), "EERUF_WRITE=1 writes what is asked now");
 }

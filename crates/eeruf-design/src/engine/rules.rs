@@ -34,7 +34,7 @@ pub(crate) fn propagate(state: &mut State, merged: &Merged) -> Result<(), Refute
     }
 }
 
-/// Rule 2: if y cannot come `gap` after x, then x comes after y. Only rows of the matrix that changed can say so anew.
+/// Rule 2: if y cannot come `gap` after x, then x comes after y. Only rows of the matrix that changed can say so again.
 fn orders(state: &mut State, merged: &Merged) -> Result<bool, Refuted> {
     let mut news = false;
     while let Some(changed) = state.bounds.take_changed() {

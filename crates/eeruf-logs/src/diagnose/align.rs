@@ -94,7 +94,7 @@ const ACCIDENTS: f64 = 0.01;
 /// of both steps, and explains up to a fifth; that is more than accidents do.
 const EXPLAINS: f64 = 1.0 / 3.0;
 /// This many moves would say whether it is the schedule. Two phases give fewer: a sensor mostly reads its own echo in
-/// one and another's sound in the other, and that move depends on lengths of paths, which nobody knows.
+/// one and another's sound in the other, and that move depends on unknown lengths of paths.
 const ENOUGH: u32 = 20;
 
 /// Puts the firings of a log where a fixed schedule of this many phases has them: the period in microseconds, and when
@@ -133,7 +133,7 @@ pub fn align(
     jumps(&series, tolerance)?;
     let observed = moves(&readings, tolerance);
     let sensors = log.sensors() as u8;
-    // By how much x's sound moves in y from a phase to the next one.
+    // The shift of x's sound in y from a phase to the next one.
     let due = |x: u8, y: u8, phase: u8, rotation: u8| {
         let at = |sensor, phase: u8| fires_at(sensor, phase).map(i64::from);
         let from = (phase + rotation) % phases;

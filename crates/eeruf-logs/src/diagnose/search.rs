@@ -255,7 +255,7 @@ impl Search<'_> {
                 fewest = all;
             }
         }
-        // A single sensor fools nobody but itself.
+        // A single sensor fools only itself.
         let offsets = if fewest.0 == u32::MAX { (1, 1) } else { fewest };
         (offsets, accident)
     }

@@ -23,12 +23,13 @@ pub(super) struct Together {
 
 /// Fewer firings of a kind say nothing.
 const FEW: u32 = 20;
-/// So many echoes may come otherwise: noise.
+/// The share of echoes that may come otherwise, as noise does.
 const OTHERWISE: f64 = 0.02;
 /// No sensor hears sooner after it fired, in microseconds.
 const DEAF_US: i64 = 500;
 
-/// The only sensor whose echoes all come while a silent one listens, and that hears nothing when that one does not fire.
+/// The only sensor whose echoes all come while a silent one listens, and that hears nothing when that one does not
+/// fire.
 pub(super) fn together(silent: u8, timeline: &Timeline, settings: &Settings) -> Option<Together> {
     let others = (0..timeline.sensors() as u8).filter(|&sensor| sensor != silent);
     let mut found = others.filter_map(|sensor| with(sensor, silent, timeline));

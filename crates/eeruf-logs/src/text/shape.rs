@@ -95,6 +95,9 @@ pub(crate) fn separated(line: &str, separator: Separator) -> Option<Vec<String>>
 /// else.
 pub(crate) fn keyed(line: &str) -> Option<Vec<(String, String)>> {
     const BETWEEN: [char; 6] = [',', ';', '|', '\t', ' ', '&'];
+    if !line.contains([':', '=']) {
+        return worded(line);
+    }
     let dict = line.trim().strip_prefix('{').and_then(|inner| inner.strip_suffix('}'));
     let (mut rest, mut pairs) = (dict.unwrap_or(line), vec![]);
     while let Some(at) = rest.find([':', '=']) {
@@ -140,6 +143,22 @@ pub(crate) fn keyed(line: &str) -> Option<Vec<(String, String)>> {
         pairs.push((key.to_owned(), text));
     }
     (!pairs.is_empty() && !rest.contains(char::is_alphanumeric)).then_some(pairs)
+}
+
+/// The pairs of a line of names and values by turns, as `left 80 cm right none`; nothing if there are fewer than two.
+fn worded(line: &str) -> Option<Vec<(String, String)>> {
+    let mut cells = line.split_whitespace().peekable();
+    let mut pairs: Vec<(String, String)> = vec![];
+    while let Some(name) = cells.next() {
+        let is_name = name.starts_with(char::is_alphabetic) && !value::is_no_echo(name) && value::unit(name).is_none();
+        let text = cells.next()?;
+        if !is_name || pairs.iter().any(|(known, _)| known == name) || value::range(text, true).is_none() {
+            return None;
+        }
+        let unit = cells.next_if(|unit| value::number(text, true).is_some() && value::unit(unit).is_some());
+        pairs.push((name.to_owned(), unit.map_or_else(|| text.to_owned(), |unit| format!("{text} {unit}"))));
+    }
+    (pairs.len() > 1).then_some(pairs)
 }
 
 /// The values of a JSON object by their paths, or of an array by their places; nothing if it is neither.
@@ -218,7 +237,10 @@ mod tests {
         assert_eq!(pairs("0=79cm 1=119 cm"), some(&["0|79cm", "1|119 cm"]));
         assert_eq!(pairs("0: 79cm 1: out of range"), None);
         assert_eq!(pairs("{'t': 0.05, 'left': None}"), some(&["t|0.05", "left|None"]));
-        for line in ["40,80", "12:00:01", "left: 40 of many", "hello"] {
+        assert_eq!(pairs("left 40 right 80"), some(&["left|40", "right|80"]));
+        assert_eq!(pairs("left 40 cm right none"), some(&["left|40 cm", "right|none"]));
+        let lines = ["40,80", "12:00:01", "left: 40 of many", "hello", "left 40", "left 40 right", "left 40 left 80"];
+        for line in lines.into_iter().chain(["sensor 1 40 cm", "0.1 left 40", "left right 40 80"]) {
             assert_eq!(pairs(line), None, "{line}");
         }
     }

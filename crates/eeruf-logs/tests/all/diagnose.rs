@@ -20,7 +20,7 @@ impl Random {
 struct World {
     /// Number of phases; 2 to 7.
     phases: i64,
-    /// True if lags are drawn anew every 50 periods.
+    /// True if lags are redrawn every 50 periods.
     shifts: bool,
     /// The sensor whose receiver is at the end of each echo line.
     receivers: [usize; SENSORS],

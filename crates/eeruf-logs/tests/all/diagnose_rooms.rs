@@ -1,5 +1,5 @@
-//! `diagnose` on logs of the simulator: rings in alcoves and other rooms, whole and with one fault. `fault_rates` counts
-//! over many such logs.
+//! `diagnose` on logs of the simulator: rings in alcoves and other rooms, whole and with one fault. `fault_rates`
+//! counts over many such logs.
 
 use eeruf_logs::{Fault, Firing, FiringLog, Settings, diagnose};
 use eeruf_sim::experiments::rooms::{RoomKind, RoomPlan};
@@ -81,7 +81,7 @@ fn a_sensor_that_loses_nine_echoes_of_ten_is_named() {
 
 // Of modules that time their own echoes one line falls silent, and the other has nothing to hear while that one rests.
 #[test]
-fn exchanged_echo_lines_of_modules_that_time_themselves_are_named() {
+fn exchanged_lines_of_self_timing_modules_are_named() {
     let wires = [
         (InAlcove(1002), [0, 6]),
         (InAlcove(1025), [7, 1]),

@@ -28,11 +28,12 @@ fn said(bytes: &[u8], options: &Options) -> (String, Option<f64>, Report) {
 /// Name, text, sensors, and seconds between the first two readings.
 type Form = (&'static str, &'static str, &'static str, Option<f64>);
 
-const FORMS: [Form; 65] = [
+const FORMS: [Form; 66] = [
     ("comma", "left,right\n40,80\n41,81\n", "left: 0.4 0.41; right: 0.8 0.81", None),
     ("semicolon", "left;right\n40;80\n41;81\n", "left: 0.4 0.41; right: 0.8 0.81", None),
     ("tab", "left\tright\n40\t80\n41\t81\n", "left: 0.4 0.41; right: 0.8 0.81", None),
     ("bar", "left|right\n40|80\n41|81\n", "left: 0.4 0.41; right: 0.8 0.81", None),
+    ("names and values by turns", "left 40 right 80\nleft 41 right 81\n", "left: 0.4 0.41; right: 0.8 0.81", None),
     ("spaces", "left right\n 40  80\n 41  81\n", "left: 0.4 0.41; right: 0.8 0.81", None),
     ("CRLF", "left,right\r\n40,80\r\n41,81\r\n", "left: 0.4 0.41; right: 0.8 0.81", None),
     ("CR", "left,right\r40,80\r41,81\r", "left: 0.4 0.41; right: 0.8 0.81", None),

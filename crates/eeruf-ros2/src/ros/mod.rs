@@ -37,7 +37,7 @@ use scene::Scene;
 pub(crate) enum Heard {
     /// A row of raw echo times.
     Firing { sensor: u8, fired_us: u32, period: u32, phase: u8, t_echo_us: u32 },
-    /// A range of a sensor: what it says of the world, or `None` if it is no number.
+    /// A range of a sensor: what it says of the world, or `None` if it is not a number.
     Range { sensor: u8, distance: Option<Distance> },
 }
 

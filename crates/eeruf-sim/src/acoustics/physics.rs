@@ -28,7 +28,7 @@ pub struct Physics {
     /// late.
     pub range_walk: bool,
     /// For how long a path fades in the same way, in seconds: the time after which the correlation has fallen to 1/e.
-    /// At 0 every firing fades anew, and by its number among the firings of its sensor.
+    /// At 0 every firing fades on its own, and by its number among the firings of its sensor.
     pub fading_time_s: f64,
 }
 

@@ -1,4 +1,4 @@
-//! Random dither: the conventional lags plus a wait drawn anew for each sensor in each period.
+//! Random dither: the conventional lags plus a wait redrawn for each sensor in each period.
 
 use eeruf_core::{Micros, Phase};
 

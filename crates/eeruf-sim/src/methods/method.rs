@@ -108,7 +108,7 @@ methods! {
         ring: ring_runner::scheduled::<1, AGREEMENT_ALONE>,
         belief: Belief::All,
     }
-    /// The conventional lags plus a wait drawn anew for each sensor in each period, from as wide a range as the paper's
+    /// The conventional lags plus a wait redrawn for each sensor in each period, from as wide a range as the paper's
     /// waits span. Consecutive readings are compared.
     Dither = "dither" {
         schedule: schedules::conventional,

@@ -85,7 +85,7 @@ pub struct Readings {
     pub x_m: Vec<f64>,
     /// Where the sensor stood when it fired, in metres of the scene.
     pub y_m: Vec<f64>,
-    /// Whither it looked then, in radians of the scene, counter-clockwise from the x axis, in (-pi, pi].
+    /// Its heading then, in radians of the scene, counter-clockwise from the x axis, in (-pi, pi].
     pub heading_rad: Vec<f64>,
     /// Verdict of the method on the reading. Methods that believe everything know [`ReadingKind::Accepted`] and
     /// [`ReadingKind::Clear`].

@@ -85,7 +85,7 @@ pub enum SceneError {
         /// Its height in metres.
         ceiling_m: f64,
     },
-    /// A material of floor or ceiling that makes no sense.
+    /// An invalid material of floor or ceiling.
     RoomMaterial {
         /// One of the two.
         surface: &'static str,

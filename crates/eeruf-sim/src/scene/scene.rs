@@ -87,7 +87,7 @@ impl Scene {
     /// [`Scene::new`] makes it.
     ///
     /// # Errors
-    /// [`SceneError::Ceiling`] or [`SceneError::RoomMaterial`] for a room that makes no sense.
+    /// [`SceneError::Ceiling`] or [`SceneError::RoomMaterial`] for an invalid room.
     pub fn with_room(self, room: Option<Room>) -> Result<Self, SceneError> {
         room.as_ref().map_or(Ok(()), Room::check)?;
         Ok(Self { room, ..self })

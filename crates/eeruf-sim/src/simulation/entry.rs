@@ -21,7 +21,7 @@ use crate::{
     world::{AnySchedule, Robot, Sketch, World},
 };
 
-/// Makes the caller's own firings and filters anew for each simulation.
+/// Makes the caller's own firings and filters again for each simulation.
 pub trait MakeOwn: fmt::Debug + Send + Sync {
     /// The firings and filters of these robots, the first of a world.
     ///

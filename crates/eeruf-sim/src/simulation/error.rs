@@ -77,7 +77,7 @@ pub enum SimulationError {
         /// Number of robots in the world.
         robots: usize,
     },
-    /// A number that makes no sense.
+    /// An invalid number.
     Number {
         /// The name of the number.
         what: &'static str,

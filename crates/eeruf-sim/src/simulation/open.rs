@@ -299,7 +299,7 @@ impl Simulation {
     }
 
     /// From now on sound travels among these walls and poles and in this air: obstacles have moved. Sound that is on
-    /// its way arrives as it would have before. Nobody looks whether robots stand free in it.
+    /// its way arrives as it would have before. Whether robots stand free in it is not checked.
     ///
     /// # Errors
     /// [`SimulationError::Paths`] if a sensor is within something solid or out of the scene's reach. Everything then
@@ -337,7 +337,7 @@ impl Simulation {
     }
 
     /// Where a robot is or was at a time, and how fast it went: at most ten seconds before it was last steered, as long
-    /// ago as you like if nobody steered it, and not later than now.
+    /// ago as you like if it was not steered, and not later than now.
     ///
     /// # Errors
     /// No such robot, or another time.

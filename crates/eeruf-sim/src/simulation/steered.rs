@@ -21,7 +21,7 @@ pub(super) struct Steered<'w> {
 #[derive(Clone, Default)]
 struct Legs {
     legs: VecDeque<Leg>,
-    /// Before this nobody knows any more.
+    /// Times before this one are forgotten.
     known_since: u64,
 }
 

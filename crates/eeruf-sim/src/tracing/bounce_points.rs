@@ -101,7 +101,7 @@ impl Corners {
 }
 
 /// The parts of a path in which walls are only mirrors, from one of its ends or poles or edges, which make the sound
-/// spread anew, to the next: the first and the last corner of each.
+/// spread again, to the next: the first and the last corner of each.
 pub(super) fn parts(bounces: &[Bounce]) -> impl Iterator<Item = (usize, usize)> + '_ {
     let anew = (1..).zip(bounces).filter(|(_, bounce)| !matches!(bounce, Bounce::Wall(_))).map(|(corner, _)| corner);
     let last = bounces.len() + 1;

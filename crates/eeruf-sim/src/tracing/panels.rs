@@ -11,7 +11,7 @@ use crate::{
 /// several make a path louder, it is still no louder than one can.
 ///
 /// `corners` are those of the path, ends included. An edge of a wall limits it by how much longer the way by that edge
-/// is, with the path's other walls as mirrors: up to its ends, or to the next pole, which makes the sound spread anew.
+/// is, with the path's other walls as mirrors: up to its ends, or to the next pole, which makes the sound spread again.
 pub(super) fn share_of_walls(scene: &Scene, corners: &[Point], bounces: &[Bounce], wavelength_m: f64) -> f64 {
     let mut share = 1.0;
     for (start, end) in parts(bounces) {

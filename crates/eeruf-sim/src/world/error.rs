@@ -27,7 +27,7 @@ pub enum WorldError {
         /// Number of sensors it has.
         sensors: usize,
     },
-    /// A number that makes no sense.
+    /// An invalid number.
     Field {
         /// The robot.
         robot: usize,
@@ -38,7 +38,7 @@ pub enum WorldError {
         /// The expectation.
         expected: &'static str,
     },
-    /// A fault that makes no sense.
+    /// An invalid fault.
     Fault {
         /// The fault.
         fault: usize,
@@ -99,7 +99,7 @@ pub enum WorldError {
         /// The robots.
         robots: (usize, usize),
     },
-    /// A number of the physics that makes no sense.
+    /// An invalid number of the physics.
     Physics {
         /// The field, by its name in files.
         field: &'static str,
@@ -117,7 +117,7 @@ pub enum WorldError {
         /// Least distance allowed.
         least_m: f64,
     },
-    /// A number of the noise that makes no sense.
+    /// An invalid number of the noise.
     Noise {
         /// The field, by its name in files.
         field: &'static str,

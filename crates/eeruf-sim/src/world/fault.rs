@@ -239,7 +239,7 @@ impl Fault {
         }
     }
 
-    /// Finds what makes no sense of it.
+    /// Finds what is invalid in it.
     pub(super) fn check(&self, index: usize, robots: &[Robot]) -> Result<(), WorldError> {
         let fail = |field, value, expected| Err(WorldError::Fault { fault: index, field, value, expected });
         let Some(robot) = robots.get(self.robot) else {

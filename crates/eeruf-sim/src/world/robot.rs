@@ -83,7 +83,7 @@ pub struct Robot {
     /// The time for which sound is heard after it was sent, as far as methods that fire one by one allow for it: that
     /// of its modules where they are [given](Self::with_modules). The default is 0: no longer than sensors listen.
     pub audible: Micros,
-    /// P: by how much, at most, the path of a foreign sound changes from one reading to the next, for rings that fire
+    /// P: the largest change of a foreign sound's path from one reading to the next, for rings that fire
     /// by tables. `None`, as by default, for [`t_delta`](Self::t_delta).
     pub path_change: Option<Micros>,
     /// Sets of sensors that its own schedule fires together, bit x for sensor x.

@@ -99,7 +99,7 @@ impl World {
     /// The same world with other effects.
     ///
     /// # Errors
-    /// [`WorldError::Physics`] for a number that makes no sense.
+    /// [`WorldError::Physics`] for an invalid number.
     pub fn with_physics(self, physics: Physics) -> Result<Self, WorldError> {
         if !(0.0..=MAX_FADING_TIME_S).contains(&physics.fading_time_s) {
             let (value, expected) = (physics.fading_time_s, "0 to 3600");
@@ -111,7 +111,7 @@ impl World {
     /// The same world between floor and ceiling, or flat without them.
     ///
     /// # Errors
-    /// [`WorldError`] for a room that makes no sense, or a sensor that is not between floor and ceiling.
+    /// [`WorldError`] for an invalid room, or a sensor that is not between floor and ceiling.
     pub fn with_room(self, room: Option<Room>) -> Result<Self, WorldError> {
         let scene = self.scene.with_room(room)?;
         self.robots.iter().enumerate().try_for_each(|(index, robot)| check_heights(&scene, index, robot))?;
@@ -124,7 +124,7 @@ impl World {
         Self { seed, ..self }
     }
 
-    /// The same world with another scene, in which nobody looks whether the robots stand free.
+    /// The same world with another scene, without a check that the robots stand free.
     pub(crate) fn with_scene(&self, scene: Scene) -> Self {
         let &Self { ref robots, noise, max_order, pole_order, physics, seed, ref faults, .. } = self;
         let (robots, faults) = (robots.clone(), faults.clone());
@@ -134,7 +134,7 @@ impl World {
     /// The same world, in which these things go wrong.
     ///
     /// # Errors
-    /// [`WorldError::Fault`] for one that makes no sense, [`WorldError`] for a door or a leg that the scene has no room
+    /// [`WorldError::Fault`] for an invalid one, [`WorldError`] for a door or a leg that the scene has no room
     /// for somewhere on its way.
     pub fn with_faults(self, faults: Vec<Fault>) -> Result<Self, WorldError> {
         faults.iter().enumerate().try_for_each(|(index, fault)| fault.check(index, &self.robots))?;

@@ -1,11 +1,11 @@
-//! Why a problem in ticks, or a question about it, makes no sense.
+//! Why a problem in ticks, or a question about it, is invalid.
 
 use core::fmt;
 
 use super::Members;
 use crate::schedule::MAX_SENSORS;
 
-/// Why a problem, or a question about it, makes no sense. Sensors are counted from 0 here and printed from 1.
+/// Why a problem, or a question about it, is invalid. Sensors are counted from 0 here and printed from 1.
 /// `{:#}` counts from 0 where `{}` counts from 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]

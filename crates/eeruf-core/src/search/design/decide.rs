@@ -20,7 +20,7 @@ pub struct Decided {
 /// Returns true if there is a schedule with a period of `period` ticks, within `budget` nodes.
 ///
 /// # Errors
-/// If the problem makes no sense, the period is 0 or too long, or the memory is smaller than
+/// If the problem is invalid, the period is 0 or too long, or the memory is smaller than
 /// [`memory_words`](super::memory_words).
 pub fn decide<C: Control>(
     problem: &Problem<'_>,

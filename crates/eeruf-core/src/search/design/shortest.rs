@@ -39,7 +39,7 @@ impl Shortest {
 /// schedule: firing one by one. The answer depends on nothing but the problem and the budget.
 ///
 /// # Errors
-/// If the problem makes no sense, or the memory is smaller than [`memory_words`](super::memory_words).
+/// If the problem is invalid, or the memory is smaller than [`memory_words`](super::memory_words).
 pub fn shortest<C: Control>(
     problem: &Problem<'_>,
     budget: u64,

@@ -57,6 +57,16 @@ impl RoomGroup {
         Self { name: kind.to_string(), rooms }
     }
 
+    /// The room of a world, for a ring that stands where the world's first robot does, and drives as far as that one
+    /// would; none for a world without a robot.
+    pub fn of_world(name: String, number: u64, world: &World) -> Option<Self> {
+        let robot = world.robots().first()?;
+        let way_m = robot.motion.at(&robot.pose, DRIVING_S).pose.translation.vector - robot.pose.translation.vector;
+        let scene = world.scene();
+        let plan = RoomPlan::own(number, scene.walls().to_vec(), scene.poles().to_vec(), robot.pose, way_m.norm());
+        Some(Self { name, rooms: vec![plan] })
+    }
+
     /// Places in a map, as [`of_kind`](Self::of_kind) has rooms of a kind: half of the robots stand square to it. They
     /// are drawn from what is known to be free.
     ///

@@ -241,6 +241,6 @@ fn direction(way: Vector) -> f64 {
 
 /// The sector that a direction lies in.
 pub fn sector_of(direction_rad: f64) -> usize {
-    // Rounding may take a direction just below none to a full turn; what is no number counts as none.
+    // Rounding may take a direction just below none to a full turn; a non-number counts as none.
     (direction_rad.rem_euclid(TAU) / SECTOR_RAD) as usize % SECTORS
 }

@@ -1,5 +1,5 @@
 //! The channels of a world: every path from each emitter to each receiver that can be loud enough, computed once while
-//! nothing moves, and for each firing anew otherwise.
+//! nothing moves, and again for each firing otherwise.
 
 mod bodies;
 mod hearing_range;

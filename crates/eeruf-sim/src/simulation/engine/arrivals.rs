@@ -15,7 +15,7 @@ const FADING: u64 = 4;
 
 /// Fading and jitter of sound on its way.
 pub(crate) struct Propagation {
-    /// For what each firing draws anew.
+    /// For what each firing draws again.
     random: Random,
     /// For what is a process in time.
     fading: Random,
@@ -24,7 +24,7 @@ pub(crate) struct Propagation {
     jitter_ns: f32,
     /// No arrival is heard earlier or later by more, in nanoseconds.
     slack: u64,
-    /// From one knot of the fading to the next, in nanoseconds; 0 if each firing draws anew.
+    /// From one knot of the fading to the next, in nanoseconds; 0 if each firing draws again.
     knot_ns: u64,
 }
 

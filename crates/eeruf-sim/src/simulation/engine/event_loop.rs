@@ -388,7 +388,7 @@ impl<'a, K: Kinematics> EventLoop<'a, K> {
         now: u64,
     ) -> Result<(), PathsError> {
         if self.channels.moves() {
-            // Paths are looked for anew, which takes as long as many events.
+            // Paths are searched for again, which takes as long as many events.
             self.until_call = self.until_call.saturating_sub(EVENTS_PER_CALL / 64);
         }
         self.fired_before[triggered] = self.fired[triggered];

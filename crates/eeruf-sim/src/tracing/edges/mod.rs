@@ -178,7 +178,7 @@ impl EdgeSearch {
                     length_m,
                     departure_rad: libm::atan2(out.y, out.x),
                     arrival_rad: libm::atan2(home.y, home.x),
-                    // The series is no number where two of its poles meet.
+                    // The series is not a number where two of its poles meet.
                     spread: if spread < most { spread } else { most },
                     unbounded: Some([spread, wave_number]),
                     at: edge.at,

@@ -15,7 +15,7 @@ use crate::{
 /// ```
 ///
 /// `corners` are those of the path, ends included. Walls are mirrors, so `d1` and `d2` are counted along the path,
-/// bounces at walls and all, up to its ends or to the next pole or edge, which makes the sound spread anew.
+/// bounces at walls and all, up to its ends or to the next pole or edge, which makes the sound spread again.
 pub(in crate::tracing) fn is_shaded(scene: &Scene, corners: &[Point], bounces: &[Bounce], wavelength_m: f64) -> bool {
     for (start, end) in parts(bounces) {
         let whole_m: f64 = corners[start..=end].windows(2).map(|leg| (leg[1] - leg[0]).norm()).sum();

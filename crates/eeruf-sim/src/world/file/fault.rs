@@ -186,7 +186,7 @@ impl Fault {
     /// The faults that these tables say, with the keys of `[[fault]]` in a scene file.
     ///
     /// # Errors
-    /// What is wrong with the first that makes no sense.
+    /// The error of the first invalid one.
     ///
     /// ```
     /// use eeruf_sim::Fault;

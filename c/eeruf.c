@@ -49,7 +49,7 @@ uint16_t eeruf_version(void) {
     return EERUF_VERSION;
 }
 
-/* Whether `now` is `deadline` or up to half a turn of the clock past it. */
+/* True if `now` is `deadline` or up to half a turn of the clock past it. */
 static bool has_reached(uint32_t now, uint32_t deadline) {
     return now - deadline < HALF_TURN;
 }
@@ -196,19 +196,19 @@ static uint32_t moves_by(const EerufSchedule *schedule, uint8_t x, uint8_t y) {
     return x == y ? odd : shorter(even, odd);
 }
 
-/* What one sensor needs. */
+/* The needs of one sensor. */
 static uint32_t own_t_delta(const EerufLimits *limits, uint8_t sensor, uint32_t t_delta_us) {
     return limits == NULL ? t_delta_us : READ16(limits[sensor].t_delta_us);
 }
 
 
-/* Whether two sensors fire together, and so are declared not to hear each other. */
+/* True if two sensors fire together, and so are declared not to hear each other. */
 static bool fire_together(const EerufLimits *limits, uint8_t x, uint8_t y) {
     if (limits == NULL || x == y || READ8(limits[x].group) == 0) return false;
     return READ8(limits[x].group) == READ8(limits[y].group);
 }
 
-/* Whether the schedule meets requirements; also the largest t_delta and window, and by how much crosstalk moves at
+/* True if the schedule meets requirements; also the largest t_delta and window, and by how much crosstalk moves at
    least: as much more than that t_delta as the pair with the least to spare has. */
 static EerufStatus meets(const EerufSchedule *schedule, EerufRequirements *needs, uint32_t *separation_us) {
     const EerufLimits *limits = needs->limits;
@@ -254,7 +254,7 @@ static EerufStatus meets(const EerufSchedule *schedule, EerufRequirements *needs
             }
         }
     }
-    /* How long the longest that anybody keeps between two firings takes is not said by neighbours alone. */
+    /* The longest time that any sensor keeps between two firings does not follow from neighbours alone. */
     if (limits != NULL) needs->layout = EERUF_LAYOUT_OTHER;
     for (x = 0; x < sensors && limits != NULL; x++)
         needs->min_interval_us = longer(needs->min_interval_us, READ32(limits[x].window_us));
@@ -353,7 +353,7 @@ EerufStatus eeruf_schedule_check(const EerufSchedule *schedule) {
 
 /* ---- The filter ---- */
 
-/* How many readings in a row an echo was in, up to `consecutive`; 0 where nothing is known. */
+/* Number of readings in a row that an echo was in, up to `consecutive`; 0 where nothing is known. */
 #define RUN 0x0fu
 #define DISABLED 0x80u /* of a ring's sensor, kept in the same byte */
 
@@ -394,7 +394,7 @@ static bool near_identical(uint32_t echo_us, uint32_t previous_us, int32_t chang
     return apart(echo_us, previous_us + (uint32_t)change_us) <= t_delta_us;
 }
 
-/* Whether a reading agrees with the one before. */
+/* True if a reading agrees with the one before. */
 static bool agrees(const EerufFilter *filter, uint16_t t_delta_us, uint32_t t_echo_us, int32_t change_us) {
     return (filter->state & RUN) != 0 && near_identical(t_echo_us, filter->known_us, change_us, t_delta_us);
 }
@@ -519,7 +519,7 @@ static void count(EerufRing *ring, uint8_t kind) {
 #define WATCHED 6u
 #define ALWAYS UINT8_MAX /* nothing is proven of the timetable, so that each reading is asked about */
 
-/* What a schedule allows its sensors one by one; null for a hopping ring, or if it was the same before. */
+/* Limits that a schedule gives its sensors one by one; null for a hopping ring, or if it was the same before. */
 static OUT_OF_LINE const EerufLimits *limits_of(const EerufSchedule *schedule) {
     return schedule == NULL ? NULL : READ_POINTER(const EerufLimits *, schedule->limits);
 }
@@ -588,14 +588,14 @@ static OUT_OF_LINE void fired_late(EerufRing *ring, uint16_t late_us, bool hops)
 }
 
 #if EERUF_FIRINGS > 1
-/* Whether a sensor does not hear another, by the schedule and by the one before. */
+/* True if a sensor does not hear another, by the schedule and by the one before. */
 static bool is_deaf_to(const EerufRing *ring, uint8_t receiver, uint8_t emitter) {
     return fire_together(limits_of(ring->schedule), receiver, emitter) &&
            (ring->schedule_before == NULL || fire_together(limits_of(ring->schedule_before), receiver, emitter));
 }
 
-/* Whose sound could be both the echo that a sensor heard `first_us` after the firing before its last one and the one
-   that it heard `second_us` after its last. */
+/* The sensor whose sound could be both echoes of a receiver: the one heard `first_us` after the firing before its last, and
+   the one heard `second_us` after its last. */
 static OUT_OF_LINE uint8_t explanation(const EerufRing *ring, uint8_t receiver, uint32_t first_us,
                                        uint32_t second_us) {
     const EerufSensor *own = sensor_of(ring, receiver);
@@ -687,7 +687,7 @@ static OUT_OF_LINE void begin_period(EerufRing *ring, uint8_t phase) {
     turn(ring);
 }
 
-/* How long to stay silent after the last firing so that a period which was not verified against it may begin. */
+/* Time to stay silent after the last firing so that a period which was not verified against it may begin. */
 static uint32_t settling_time(const EerufSchedule *schedule) {
     const uint32_t least = is_verified(schedule) ? READ32(schedule->min_interval_us) : READ32(schedule->period_us);
     return longer(least, READ32(schedule->min_refire_us));
@@ -741,7 +741,7 @@ static EerufStatus has_sensor(const EerufRing *ring, uint8_t sensor) {
     return status == EERUF_OK && sensor >= ring->count ? (EerufStatus)EERUF_ERR_SENSOR : status;
 }
 
-/* Whether a schedule allows to listen and compare so. */
+/* True if a schedule allows such listening and comparing. */
 static EerufStatus allows(const EerufSchedule *schedule, uint32_t t_delta_us, uint32_t window_us) {
     if (is_verified(schedule)) {
         if (t_delta_us > READ32(schedule->t_delta_us)) return EERUF_ERR_T_DELTA;
@@ -753,7 +753,7 @@ static EerufStatus allows(const EerufSchedule *schedule, uint32_t t_delta_us, ui
     return window_us > READ32(schedule->min_refire_us) || window_us >= HALF_TURN ? EERUF_ERR_WINDOW : EERUF_OK;
 }
 
-/* Whether the shortest window that a schedule allows is long enough, for this many sensors. */
+/* True if the shortest window that a schedule allows is long enough, for this many sensors. */
 static EerufStatus can_hear(const EerufSchedule *schedule, uint8_t sensors, uint32_t t_delta_us, uint32_t window_us,
                             uint32_t blanking_us) {
     uint8_t x;
@@ -822,7 +822,7 @@ static EerufStatus init(EerufRing *ring, size_t ring_size, EerufSensor *sensors,
     if (!is_verified(schedule) && window_us == 0) return EERUF_ERR_UNVERIFIED;
     if (t_delta_us == 0) t_delta_us = READ32(schedule->t_delta_us);
     if (window_us == 0) window_us = READ32(schedule->window_us);
-    /* What a table was verified for it allows. */
+    /* A table allows what it was verified for. */
     if (config->t_delta_us != 0 || config->window_us != 0) status = allows(schedule, t_delta_us, window_us);
     if (status != EERUF_OK) return status;
     set_up(ring, schedule, sensors, count_of_sensors, sizeof *sensors, now_us);
@@ -855,7 +855,7 @@ EerufStatus eeruf_ring_init_unverified(EerufRing *ring, size_t ring_size, EerufS
     return init(ring, ring_size, sensors, sensors_size, schedule, config, now_us, false);
 }
 
-/* Whether a reading will be emitted without a further firing: one is pending or there is an oldest. In one byte, since
+/* True if a reading will be emitted without a further firing: one is pending or there is an oldest. In one byte, since
    two branches take more. */
 static bool has_pending(const EerufRing *ring) {
     return (uint8_t)(ring->pending | (ring->oldest ^ NOBODY)) != 0;
@@ -1180,7 +1180,7 @@ EerufStatus eeruf_ring_echo(EerufRing *ring, uint8_t sensor, uint32_t at_us) {
     return status;
 }
 
-/* Whether a sensor may have fired at another instant than it was polled for: after its firing before. */
+/* True if a sensor may have fired at another instant than it was polled for: after its firing before. */
 static bool may_have_fired(const EerufRing *ring, const EerufSensor *sensor, uint32_t at_us) {
     (void)ring;
     if (HOPS(ring)) return has_reached(at_us, sensor->fired_us[0]);
@@ -2025,7 +2025,7 @@ static void forget_tracks(EerufHopper *hopper) {
     hopper->observed = UNKNOWN;
 }
 
-/* What is not confirmed cannot be compared with what comes. */
+/* Unconfirmed echoes cannot be compared with later ones. */
 static void firing_changed(EerufHoppingRing *hopping) {
     uint8_t x, place;
     for (x = 0; x < hopping->ring.count; x++) {
@@ -2118,7 +2118,7 @@ static void contradict(EerufTrack *track, uint16_t phase, bool solo, const Eeruf
     miss(track, phase, how);
 }
 
-/* Whether one is replaced before the other. */
+/* True if one is replaced before the other. */
 static bool ranks_below(const EerufTrack *one, const EerufTrack *other) {
     const uint8_t differs = one->flags ^ other->flags;
     if (differs & TRACK_CONFIRMED) return !(one->flags & TRACK_CONFIRMED);
@@ -2167,7 +2167,7 @@ static void shift_tracks(EerufHopper *hopper, int32_t change_us) {
     change_us += change_us * hopper->surplus / WHOLE;
     for (place = 0; place < EERUF_HYPOTHESES; place++) {
         uint32_t *held = &hopper->tracks[place].t_echo_us;
-        /* What is before the firing wraps, to what is later than all. */
+        /* A time before the firing wraps, and is later than all. */
         const uint32_t moved_us = *held + (uint32_t)change_us;
         if (*held != EERUF_NO_ECHO && moved_us <= EERUF_HOPPING_MAX_WINDOW_US) *held = moved_us;
     }
@@ -2287,7 +2287,7 @@ static uint8_t times_root(uint8_t place, uint8_t root, uint8_t cycle) {
     return (uint8_t)(product - 1u);
 }
 
-/* By how much less than a period two firings of a sensor are apart at most, in steps. With Welch's sequence all go
+/* The most by which two firings of a sensor are closer than a period, in steps. With Welch's sequence all go
    through the same places. */
 static uint8_t drop_of(uint8_t sensor, uint8_t cycle, uint8_t root, uint8_t first) {
     uint8_t place, most = (uint8_t)((sensor + first) % cycle);
@@ -2376,7 +2376,7 @@ static void note_hop(EerufHoppingRing *hopping, uint16_t late_us) {
     if (late_us > hopping->most_late[0]) hopping->most_late[0] = late_us;
 }
 
-/* Whether a firing this late differs from all others of three periods by no more than is tolerated. */
+/* True if a firing this late differs from all others of three periods by no more than is tolerated. */
 static bool is_steady(const EerufHoppingRing *hopping, uint16_t late_us) {
     uint8_t i;
     for (i = 0; i < 3; i++) {
@@ -2386,14 +2386,14 @@ static bool is_steady(const EerufHoppingRing *hopping, uint16_t late_us) {
     return true;
 }
 
-/* How long after the start of the period so much time has passed since a firing, which may have been late past the end
+/* Time in the period at which so much time has passed since a firing, which may have been late past the end
    of its period. A clock that has jumped says nothing about when that was. */
 static OUT_OF_LINE uint32_t wait_after(const EerufHoppingRing *hopping, uint32_t fired_us, uint32_t passes_us) {
     const uint32_t waits = fired_us + passes_us - hopping->start_us;
     return waits > HALF_TURN || waits > passes_us + CATCHES_UP_US ? 0 : waits;
 }
 
-/* How long after the start of the period a sensor must not fire yet, since it still listens, or rests. */
+/* Time after the start of the period before which a sensor must not fire, since it still listens, or rests. */
 static uint32_t rests_for(const EerufHoppingRing *hopping, uint8_t sensor) {
     const EerufHopper *hopper = &hopping->hoppers[sensor];
     const uint32_t fired_us = sensor_of(&hopping->ring, sensor)->fired_us[0];
@@ -2449,7 +2449,7 @@ static uint32_t draw(EerufHoppingRing *hopping, uint32_t most) {
     return drawn;
 }
 
-/* Whether a sensor with this lag keeps the interval from its neighbours, in every phase and across the period's end. */
+/* True if a sensor with this lag keeps the interval from its neighbours, in every phase and across the period's end. */
 static bool keeps_interval(const EerufHoppingRing *hopping, uint8_t sensor, uint32_t lag_us) {
     const uint32_t least = add32(hopping->by.hop.shift_interval_us, code_width(hopping));
     uint8_t x;
@@ -2491,11 +2491,11 @@ static void shift_all(EerufHoppingRing *hopping) {
     hopping->by.hop.since_shift = 0;
     hopping->changed = 1;
     for (x = 0; x < hopping->ring.count && hopping->root != 0; x++) hopping->hoppers[x].place = welch_place(hopping, x);
-    /* What is pending was fired with the lags of before. */
+    /* Pending sensors were fired with the lags of before. */
     unsettle(hopping);
 }
 
-/* Who would fire in the period that begins. */
+/* The sensors that would fire in the period that begins. */
 static void choose(EerufHoppingRing *hopping) {
     EerufHopPlan *hop = &hopping->by.hop;
     EerufHopper *hoppers = hopping->hoppers, *place;
@@ -2622,7 +2622,7 @@ static void restart_hopping(EerufRing *ring, uint32_t now_us) {
     unsettle(hopping);
     hopping->start_us = now_us;
     if (OWN(ring) != NULL) {
-        /* What pairs keep between their firings they keep across a restart, unless the clock has jumped. */
+        /* Pairs keep their intervals across a restart, unless the clock has jumped. */
         const uint32_t gap_us = READ32(OWN(ring)->min_interval_us);
         const uint32_t waits_us = ring->last_fired_us + gap_us - now_us;
         if (waits_us <= gap_us) hopping->start_us += waits_us;
@@ -2652,7 +2652,7 @@ static uint8_t narrowest_cycle(uint8_t sensors, uint8_t phases) {
     return (uint8_t)(prime - 1u);
 }
 
-/* Whether a ring of this many sensors has the memory it needs. */
+/* True if a ring of this many sensors has the memory it needs. */
 static EerufStatus has_room(const EerufHoppingRing *hopping, size_t ring_size, uint8_t count_of_sensors,
                             size_t sensors_size, size_t hoppers_size) {
     if (ring_size != sizeof *hopping) return EERUF_ERR_MEMORY;
@@ -2661,7 +2661,7 @@ static EerufStatus has_room(const EerufHoppingRing *hopping, size_t ring_size, u
     return hoppers_size / sizeof(EerufHopper) < count_of_sensors ? EERUF_ERR_MEMORY : EERUF_OK;
 }
 
-/* What hopping and flow rings begin with, once their settings are in their ranges. */
+/* The beginning of hopping and flow rings, once their settings are in their ranges. */
 static EerufStatus set_up_hopping(EerufHoppingRing *hopping, EerufHopSensor *sensors, EerufHopper *hoppers,
                                   uint8_t count_of_sensors, const EerufTrackerSettings *tracker, uint32_t step_us,
                                   uint32_t window_us, uint32_t blanking_us, uint32_t now_us,
@@ -2791,7 +2791,7 @@ EerufStatus eeruf_hopping_init(EerufHoppingRing *hopping, size_t ring_size, Eeru
     return EERUF_OK;
 }
 
-/* Whether what a sensor hears of its last firing moves as the code says. */
+/* True if what a sensor hears of its last firing moves as the code says. */
 static bool was_steady(const EerufHoppingRing *hopping, const EerufHopper *hopper) {
     return (hopper->flags & SETTLED) && is_steady(hopping, hopper->late_us);
 }

@@ -41,7 +41,7 @@
 #define EERUF_HOPPING 1
 #endif
 
-/* How many firings a ring by a table remembers of each sensor, 4 bytes each: 1 to 32, the same for library and program.
+/* Firings that a ring by a table remembers of each sensor, 4 bytes each: 1 to 32, the same for library and program.
    Four suffice where sound is audible for no longer than a period; readings that sound of a forgotten firing might
    explain are ambiguous. With 1 agreement alone decides, and crosstalk that repeats is accepted: a baseline. */
 #ifndef EERUF_FIRINGS
@@ -64,7 +64,7 @@
 extern "C" {
 #endif
 
-/* What a call came to: 0 and above is fine. */
+/* The result of a call: 0 and above is fine. */
 typedef int8_t EerufStatus;
 enum {
     EERUF_OK = 0,
@@ -118,7 +118,7 @@ enum { EERUF_LAYOUT_LINE = 0, EERUF_LAYOUT_RING = 1, EERUF_LAYOUT_BLOCKS = 2, EE
 
 #define EERUF_AS_T_DELTA UINT32_MAX /* a path of sound changes by as much as the receiver's t_delta */
 
-/* What one sensor may do, where they are not all alike. */
+/* The limits of one sensor, where they are not all alike. */
 typedef struct EerufLimits {
     uint32_t window_us;   /* for how long it listens; in requirements 0 for as long as the schedule allows */
     uint16_t t_delta_us;  /* what counts as the same echo */
@@ -134,7 +134,7 @@ typedef struct EerufSchedule {
     const uint32_t *gap_us; /* [phases][sensors + 1]: from each firing to the one before; from the last to the end */
     uint32_t period_us;     /* T_p */
     uint32_t min_refire_us; /* the shortest time between two firings of one sensor */
-    /* What it was verified for: all zero if it was not. */
+    /* The requirements it was verified for: all zero if it was not. */
     uint32_t t_delta_us;    /* (13a) and (13b) hold for it; the largest, as the window, where sensors have limits */
     uint32_t min_interval_us;
     uint32_t window_us;
@@ -148,7 +148,7 @@ typedef struct EerufSchedule {
     const EerufLimits *limits; /* of each sensor, where they are not all alike; else null */
 } EerufSchedule;
 
-/* What a schedule is to be verified for. */
+/* Requirements that a schedule is verified for. */
 typedef struct EerufRequirements {
     uint32_t t_delta_us, min_interval_us, window_us; /* no window: as long as the schedule allows */
     uint8_t layout, neighbours, stale_echo;
@@ -176,7 +176,7 @@ EerufStatus eeruf_schedule_check(const EerufSchedule *schedule);
 #define EERUF_NO_ECHO UINT32_MAX
 #define EERUF_NEVER UINT16_MAX /* the age of a sensor none of whose readings was ever accepted */
 
-/* What came of one firing. */
+/* The outcome of one firing. */
 enum {
     EERUF_READING_FIRST = 0,    /* an echo with nothing to compare it with */
     EERUF_READING_ACCEPTED = 1, /* near-identical to the one before (Eq. 11): it counts */
@@ -236,7 +236,7 @@ typedef struct EerufSensor {
     uint32_t fired_us[EERUF_FIRINGS]; /* the last first */
 } EerufSensor;
 
-/* How a ring listens and compares. */
+/* Settings of a ring's listening and comparing. */
 typedef struct EerufConfig {
     uint16_t version;     /* EERUF_VERSION */
     uint8_t consecutive;  /* how many readings in a row must agree, 2 to 8 */
@@ -254,7 +254,7 @@ enum {
     EERUF_EVENT_PERIOD = 2   /* a period has ended */
 };
 
-/* What happened since the end of the period before. Times of lateness stop at 65,535 us. */
+/* Counts since the end of the period before. Times of lateness stop at 65,535 us. */
 typedef struct EerufPeriod {
     uint16_t max_late_us;  /* the latest poll for a firing or the end */
     uint16_t sum_late_us;  /* by which the timetable got longer */
@@ -332,10 +332,10 @@ EerufStatus eeruf_ring_stuck(EerufRing *ring, uint8_t sensor);
 EerufStatus eeruf_ring_expect_answers(EerufRing *ring);
 EerufStatus eeruf_ring_answered(EerufRing *ring, uint8_t sensor);
 EerufStatus eeruf_ring_unanswered(EerufRing *ring, uint8_t sensor); /* takes it back: that was a disturbance */
-/* What hardware or a protocol measured of a sensor's last firing, before its reading is emitted: the echo time, or
+/* Takes what hardware or a protocol measured of a sensor's firing, before its reading is emitted: the echo time, or
    EERUF_NO_ECHO if it listened and heard nothing. */
 EerufStatus eeruf_ring_measured(EerufRing *ring, uint8_t sensor, uint32_t t_echo_us);
-/* What is known of a sensor's echo is not what it seemed: its next reading is compared with nothing. Ages go on. */
+/* Forgets a sensor's echo, which is not what it seemed: its next reading is compared with nothing. Ages go on. */
 EerufStatus eeruf_ring_forget(EerufRing *ring, uint8_t sensor);
 
 EerufStatus eeruf_ring_enable(EerufRing *ring, uint8_t sensor, bool enabled); /* from its next turn on */
@@ -350,7 +350,7 @@ EerufStatus eeruf_ring_change_to_unverified(EerufRing *ring, const EerufSchedule
 EerufStatus eeruf_ring_set_t_delta(EerufRing *ring, uint32_t t_delta_us);
 EerufStatus eeruf_ring_set_window(EerufRing *ring, uint32_t window_us);
 EerufStatus eeruf_ring_set_blanking(EerufRing *ring, uint32_t blanking_us);
-/* How long after its firing a reading without an echo is emitted at the soonest, for modules that report by a bus or a
+/* The soonest time after its firing at which a reading without an echo comes, for modules that report by a bus or a
    pulse's width after their window has closed: at most the time until a sensor fires again. 0: when it closes. */
 EerufStatus eeruf_ring_set_report_after(EerufRing *ring, uint32_t report_after_us);
 /* P, at most 65,534 us: for a robot that moves at v its jitter and 2 v dt / c. Less than t_delta makes fewer readings
@@ -468,7 +468,7 @@ enum {
 };
 const char *eeruf_health_name(uint8_t health); /* "stuck high"; not linked unless called */
 
-/* What the modules need, in microseconds: EERUF_HC_SR04, or EERUF_MODULES of a table whose ring file names them. */
+/* The modules' times, in microseconds: EERUF_HC_SR04, or EERUF_MODULES of a table whose ring file names them. */
 typedef struct EerufHcSr04Settings {
     uint16_t version;          /* EERUF_VERSION */
     uint16_t deaf_us;          /* edges sooner after the trigger are the trigger itself, seen through the cable */
@@ -519,14 +519,14 @@ EerufStatus eeruf_hc_sr04_edges(EerufHcSr04 *modules, EerufEdges *edges);
 EerufStatus eeruf_hc_sr04_edges_until(EerufHcSr04 *modules, EerufEdges *edges, uint32_t until_us);
 /* The width of a module's pulse, from hardware that measures it: instead of edges, before the reading is emitted. */
 EerufStatus eeruf_hc_sr04_pulse(EerufHcSr04 *modules, uint8_t sensor, uint32_t width_us);
-/* Whether the line of a sensor is worth looking at, for those who sample lines: it was triggered, and its pulse is not
+/* True if the line of a sensor is worth looking at, for those who sample lines: it was triggered, and its pulse is not
    over. `was_high`, if not null: the level it had last. */
 bool eeruf_hc_sr04_awaits(const EerufHcSr04 *modules, uint8_t sensor, bool *was_high);
 /* As eeruf_ring_fired, where the trigger was given later than the poll said. */
 EerufStatus eeruf_hc_sr04_fired(EerufHcSr04 *modules, uint8_t sensor, uint32_t at_us);
 /* As eeruf_ring_change_schedule. */
 EerufStatus eeruf_hc_sr04_change_schedule(EerufHcSr04 *modules, const EerufSchedule *schedule);
-/* How a module was at its last complete firing; EERUF_HEALTH_MISSING for one that is not there. */
+/* The health of a module at its last complete firing; EERUF_HEALTH_MISSING for one that is not there. */
 uint8_t eeruf_hc_sr04_health(const EerufHcSr04 *modules, uint8_t sensor);
 
 #if EERUF_HOPPING
@@ -535,7 +535,7 @@ uint8_t eeruf_hc_sr04_health(const EerufHcSr04 *modules, uint8_t sensor);
 #define EERUF_HYPOTHESES 4
 #define EERUF_HOPPING_MAX_WINDOW_US 16711679u /* echoes are told apart up to it, as in Rust, which keeps 24 bits */
 
-/* How readings are weighed: begin with one of the three sets below. */
+/* Weights of readings: begin with one of the three sets below. */
 typedef struct EerufTrackerSettings {
     uint16_t t_delta_us; /* a reading supports a track within it; less than the step of the code */
     uint16_t near_us;    /* one this near a confirmed track is accepted; at least t_delta */
@@ -547,7 +547,7 @@ typedef struct EerufTrackerSettings {
     uint8_t memory;      /* for this many firings without support a confirmed echo is remembered; 0: it is forgotten */
 } EerufTrackerSettings;
 
-/* How a hopping ring fires, listens and believes. */
+/* Settings of a hopping ring's firing, listening and belief. */
 typedef struct EerufHoppingConfig {
     uint16_t version;            /* EERUF_VERSION */
     uint8_t sensors;             /* 1 to 64 */
@@ -583,7 +583,7 @@ typedef struct EerufHoppingConfig {
     {EERUF_VERSION, sensors, 5, 240, period_us, NULL, window_us, 0, window_us, 8000, 1,                                \
      {150, 400, 60, 5, 7, 1, 6, 0, 0}, 28, 8, 6, 0, 24, 4, 0, NULL}
 
-/* What a hopping ring has of each sensor in place of an EerufSensor: its last firing is enough. 16 bytes on an AVR. Not
+/* State of each sensor of a hopping ring in place of an EerufSensor: its last firing is enough. 16 bytes on an AVR. Not
    for the caller. */
 typedef struct EerufHopSensor {
     uint32_t echo_us;
@@ -608,14 +608,14 @@ typedef struct EerufHopper {
     EerufTrack tracks[EERUF_HYPOTHESES];
 } EerufHopper;
 
-/* What only a ring that hops has. Not for the caller. */
+/* State of hopping rings alone. Not for the caller. */
 typedef struct EerufHopPlan {
     uint32_t shift_interval_us, dies_us, random;
     uint16_t earned;
     uint8_t solo_rate, solo_after, solo_spacing, shift_after, shift_spacing, neighbours, since_solo, since_shift;
 } EerufHopPlan;
 
-/* What only a flow ring has; gaps and cycles in units of its grid. Not for the caller. */
+/* State of flow rings alone; gaps and cycles in units of its grid. Not for the caller. */
 typedef struct EerufFlowPlan {
     uint32_t unit_us, per_quiet, length, shortest, longest;
     uint16_t travel_us, fastest_us;
@@ -659,12 +659,12 @@ uint32_t eeruf_hopping_lag_us(const EerufHoppingRing *ring, uint8_t sensor);
 #define EERUF_WEIGHED_SOLO 1u   /* no other sensor's sound could be heard */
 #define EERUF_WEIGHED_STEADY 2u /* firings were so punctual that crosstalk moved as the code says */
 uint8_t eeruf_hopping_weighed(const EerufHoppingRing *ring, uint8_t sensor);
-/* How often firing times have changed against each other otherwise than by the phase, modulo 256. */
+/* Number of times that firing times changed against each other otherwise than by the phase, modulo 256. */
 uint8_t eeruf_hopping_changes(const EerufHoppingRing *ring);
 
 /* ---- Flow: one sensor after the other, each with as much quiet around its firing as it has needed ---- */
 
-/* How a flow ring fires, listens and believes (docs/explanation/flow.md). */
+/* Settings of a flow ring's firing, listening and belief (docs/explanation/flow.md). */
 typedef struct EerufFlowConfig {
     uint16_t version;           /* EERUF_VERSION */
     uint8_t sensors;            /* 1 to 64 */

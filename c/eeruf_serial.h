@@ -82,7 +82,7 @@ static inline size_t eeruf_frame_end(EerufFrame *frame) {
     return (size_t)frame->length + 1;
 }
 
-/* How a hopping ring weighed a reading; null for other rings. Not for the caller. */
+/* A hopping ring's weighing of a reading; null for other rings. Not for the caller. */
 typedef struct EerufWeighed {
     uint8_t how, changes;
     int32_t change_us;

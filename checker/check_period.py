@@ -87,7 +87,7 @@ class Problem:
                     require(min(waits) >= gap, f"sensor {y} fires too soon after sensor {x}")
 
 class Node:
-    """What is known at a node. M[i][j] bounds t[j] - t[i]: 2 v says "at most v", 2 v - 1 "less than v" (not in whole
+    """Knowledge at a node. M[i][j] bounds t[j] - t[i]: 2 v says "at most v", 2 v - 1 "less than v" (not in whole
     ticks); event 0 is the start of a phase, 1 + 2 x is x in phase a, 2 + 2 x in phase b. low[x] bounds |d[x]|: 2 v says
     "at least v", 2 v + 1 "more than v". below[y] are those with a smaller |d|, as bits. Rules only tighten, and more if
     given more, so all orders of applying them end in the same state: the fixpoint."""
@@ -207,7 +207,7 @@ def beyond(values, own=()):
     return min(bound - 2 * (span - D) for bound, span, D in zip(bounds, spans[len(own):], narrowest[len(own):]))
 
 def root(lines, problem):
-    """What holds at the root. A permutation that keeps the problem takes schedules to schedules; if it keeps earlier
+    """Knowledge at the root. A permutation that keeps the problem takes schedules to schedules; if it keeps earlier
     orbits and their greatest, it keeps what was assumed of them. So any of an orbit may have its greatest |d|. To
     exchange the phases turns all d to -d: one d is not negative. To reverse time as well keeps all d, and y before x in
     both phases becomes x before y: assume that it is not so. That needs gaps alike both ways."""
@@ -270,7 +270,7 @@ def branching(lines, node):
     return cases
 
 def check(text):
-    """What the certificate proves, in words; raises Refused."""
+    """Returns the certificate's claim in words; raises Refused."""
     problem = Problem(lines := Lines(text))
     node, waiting = root(lines, problem), []  # open nodes with the cases still to come; the tree is in preorder
     while node or waiting:

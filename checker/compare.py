@@ -130,7 +130,7 @@ def mutated(dice, certificate):
 
 
 def verdicts(binaries, certificate):
-    """What the two checkers say: the words of acceptance, or the line of refusal."""
+    """Returns what the two checkers say: the words of acceptance, or the line of refusal."""
     try:
         here = check_period.check(certificate)
     except check_period.Refused as error:
@@ -144,7 +144,7 @@ def verdicts(binaries, certificate):
 
 
 def holds(binaries, certificate, is_tiny):
-    """Whether the claim is true: the schedule was checked longhand already."""
+    """Returns true if the claim is true: the schedule was checked longhand already."""
     problem = check_period.Problem(check_period.Lines(certificate))
     if is_tiny and problem.bound < 16:
         return problem.bound == 1 or schedule(problem, problem.bound - 1) is None

@@ -38,7 +38,7 @@ def corners_of(kind: int, rng: np.random.Generator) -> list[tuple[float, float]]
 
 
 def is_inside(point: tuple[float, float], corners: list[tuple[float, float]]) -> bool:
-    """Whether a point is in a polygon and away from the lines of its corners."""
+    """Return true if a point is in a polygon and away from the lines of its corners."""
     inside = False
     for (x1, y1), (x2, y2) in zip(corners, [*corners[1:], corners[0]]):
         if min(abs(point[0] - x1), abs(point[1] - y1)) < MARGIN_M:

@@ -75,7 +75,7 @@ def ring_file(ring: dict) -> str:
 
 
 def gap(ring: dict, x: int, y: int) -> int:
-    """How long after x sensor y must not fire."""
+    """Return the time after x in which sensor y must not fire."""
     apart = abs(x - y)
     if ring["layout"] == "ring":
         apart = min(apart, ring["sensors"] - apart)

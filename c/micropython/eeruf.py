@@ -373,7 +373,7 @@ class Ring:
         return self._emit_at if pends and not self._reached(self._emit_at, self._due) else self._due
 
     def state(self, x, now_us):
-        """What is before a sensor: (kind, t_echo_us, age_us, why, explained_by). The kind is "obstacle", with its echo time;
+        """Returns what is before a sensor: (kind, t_echo_us, age_us, why, explained_by). The kind is "obstacle", with its echo time;
         "clear"; "too_close"; "unanswered"; or "unknown" with why: "no_firing", "unsure", "rejected" or "ambiguous". The age
         is the time since that was last confirmed, or for which nothing is known, up to half a turn of the clock. One reading
         that does not confirm an obstacle leaves it, two in a row do not; any echo ends "clear"."""
@@ -586,7 +586,7 @@ class Ring:
             self._sensors[x].unanswered = not answered
 
     def measured(self, x, t_echo_us):
-        """What hardware or a protocol measured of a sensor's last firing, before its reading is emitted: the echo time, or None
+        """Takes what hardware or a protocol measured of a sensor's last firing, before its reading is emitted: the echo time, or None
         if it listened and heard nothing."""
         if t_echo_us is None:
             self.answered(x)
@@ -594,7 +594,7 @@ class Ring:
             self.echo(x, (self._sensors[x].firings[0] + t_echo_us) & self._mask)
 
     def forget(self, x):
-        """What is known of a sensor's echo is not what it seemed: its next reading is compared with nothing."""
+        """Forgets a sensor's echo, which is not what it seemed: its next reading is compared with nothing."""
         self._sensors[x].forget()
 
     def enable(self, x, enabled=True):

@@ -1,4 +1,4 @@
-"""Whether eeruf.py says of the corpus what the Rust crate eeruf-core says: python3 test_corpus.py [corpus.txt].
+"""Compares eeruf.py over the corpus with what the Rust crate eeruf-core says: python3 test_corpus.py [corpus.txt].
 
 It runs under MicroPython too. What the lines mean stands in crates/eeruf-core/tests/all/corpus.rs."""
 
@@ -25,7 +25,7 @@ def flat(event):
 
 
 def check(lines):
-    """How many events were compared."""
+    """Number of events that were compared."""
     count = rings = 0
     for number, line in enumerate(lines, 1):
         words = line.split()

@@ -1,4 +1,4 @@
-"""What ``progress=True`` shows."""
+"""Progress bars of ``progress=True``."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What pickles name to make things again."""
+"""Functions by which pickles make things again."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What simulations and experiments find, as frozen classes: a figure has the same name in each of them, and in the program's JSON."""
+"""Results of simulations and experiments, as frozen classes: a figure has the same name in each of them, and in the program's JSON."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ def _plain(value: object) -> object:
 
 
 class Result:
-    """What all results can do."""
+    """Methods of all results."""
 
     def to_dict(self) -> dict[str, object]:
         """Return the fields by their names, with results as dicts and arrays as lists, for JSON and data frames.
@@ -72,7 +72,7 @@ class Result:
 
 @dataclass(frozen=True)
 class Summary(Result):
-    """How good a method was: the figures that are always reported together. Shares are fractions of 1.
+    """The figures of a method that are always reported together. Shares are fractions of 1.
 
     Example:
         >>> from eeruf import sim
@@ -86,9 +86,9 @@ class Summary(Result):
     method: Method
     """The method, one of ``eeruf.sim.METHODS``."""
     readings: int
-    """How many readings there were."""
+    """Number of readings."""
     accepted: int
-    """How many of them were accepted."""
+    """Number of accepted readings."""
     wrong_of_all: float
     """Share of all readings that were accepted and wrong: what does harm."""
     crosstalk_of_all: float
@@ -122,16 +122,16 @@ class Summary(Result):
     readings_per_s: float
     """Accepted readings in a second, all sensors together."""
     starved: int
-    """How many sensors had fewer than 5 % of their readings accepted."""
+    """Number of sensors that had fewer than 5 % of their readings accepted."""
     blind: int
-    """How many sensors were right under 5 % of the times they fired."""
+    """Number of sensors that were right under 5 % of the times they fired."""
     starved_in_part: int
-    """How many of the starved read right in one phase and not in another."""
+    """Number of the starved that read right in one phase and not in another."""
 
 
 @dataclass(frozen=True)
 class Spread(Result):
-    """How a figure spreads over geometries.
+    """The spread of a figure over geometries.
 
     Example:
         >>> import eeruf
@@ -160,7 +160,7 @@ class Spread(Result):
 
 @dataclass(frozen=True)
 class Latency(Result):
-    """How soon a sensor reads right again after a wall has moved.
+    """The time until a sensor reads right again after a wall has moved.
 
     Example:
         >>> import eeruf
@@ -171,7 +171,7 @@ class Latency(Result):
     """
 
     steps: int
-    """How many steps of sensors were counted."""
+    """Number of steps of sensors."""
     median: int | None
     """Half of the steps are seen within as many periods; None if more than half never are."""
     p90: int | None
@@ -184,7 +184,7 @@ class Latency(Result):
 
 @dataclass(frozen=True)
 class NewStep(Result):
-    """How soon a wall is read right that comes nearer for the first time, so that no memory of places helps.
+    """The time until a wall is read right that comes nearer for the first time, so that no memory of places helps.
 
     Example:
         >>> import eeruf
@@ -195,7 +195,7 @@ class NewStep(Result):
     """
 
     steps: int
-    """How many steps of sensors were counted."""
+    """Number of steps of sensors."""
     median_ms: float | None
     """Half of the steps are seen within this time, in milliseconds; None if more than half never are."""
     p90_ms: float | None
@@ -261,11 +261,11 @@ class SetOneFigures(Result):
     starved_in_part: float
     """Mean number of starved sensors that read right in one phase and not in another."""
     nearer: Latency | None
-    """How soon the back wall is read right again when it has come nearer."""
+    """The time until the back wall is read right again when it has come nearer."""
     farther: Latency | None
-    """How soon it is when it has gone away as far."""
+    """The same when it has gone away as far."""
     new_step: NewStep | None
-    """How soon it is when it comes nearer for the first time."""
+    """The same when it comes nearer for the first time."""
 
 
 # What of a summary is no figure.
@@ -363,7 +363,7 @@ class PlacingRun(Result):
 
 @dataclass(frozen=True)
 class Difference(Result):
-    """How a figure differs between two methods on the same scenes, scene by scene.
+    """The difference of a figure between two methods, scene by scene.
 
     Example:
         >>> import eeruf
@@ -395,7 +395,7 @@ class Difference(Result):
 
 @dataclass(frozen=True)
 class SetOne(Result):
-    """What ``eeruf.experiments.set_one`` finds; ``to_dict`` is what ``eeruf experiment set-one --json`` prints.
+    """The result of ``eeruf.experiments.set_one``; ``to_dict`` is what ``eeruf experiment set-one --json`` prints.
 
     Example:
         >>> import eeruf
@@ -408,11 +408,11 @@ class SetOne(Result):
     first: int
     """The first geometry's number."""
     seeds: int
-    """How many geometries."""
+    """Number of geometries."""
     physics: _Physics
     """Which effects of sound were computed: a preset's name, or each effect."""
     sensors: int
-    """How many sensors the ring had."""
+    """Number of sensors of the ring."""
     period_us: int
     """The period, in microseconds."""
     periods: int
@@ -425,7 +425,7 @@ class SetOne(Result):
 
 @dataclass(frozen=True, eq=False)
 class Run(Result):
-    """What came of one course of Set II under one method. Equal runs have equal numbers throughout; runs pickle.
+    """The outcome of one course of Set II under one method. Equal runs have equal numbers throughout; runs pickle.
 
     Example:
         >>> import eeruf
@@ -442,25 +442,25 @@ class Run(Result):
     time_s: float
     """For how long the robot drove, in seconds."""
     way_m: float
-    """How far it drove, in metres."""
+    """The distance it drove, in metres."""
     top_speed_m_s: float
     """Its highest speed, in m/s."""
     nearest_m: float
-    """How near its outline came to a pole, in metres; infinite if it never came near one."""
+    """The least distance of its outline from a pole, in metres; infinite if it never came near one."""
     readings: int
-    """How many readings its sensors took."""
+    """Number of readings of its sensors."""
     rejected_readings: int
-    """How many of them were not accepted."""
+    """Number of these that were not accepted."""
     wrong_readings: int
-    """How many were accepted and wrong."""
+    """Number of these that were accepted and wrong."""
     phantom_echoes: int
-    """How many echoes were entered into the grid where nothing is."""
+    """Number of echoes that were entered into the grid where nothing is."""
     phantom_cells: int
-    """How many cells of the grid are certain in the end though nothing is there."""
+    """Number of cells of the grid that are certain in the end though nothing is there."""
     poles_passed: int
-    """How many poles the robot came within 1 m of."""
+    """Number of poles that the robot came within 1 m of."""
     poles_unseen: int
-    """How many of them never had an echo entered into the grid."""
+    """Number of these that never had an echo entered into the grid."""
     track: NDArray[np.float64] = field(repr=False)
     """Where it drove, every 30 ms: rows of time (s), x, y (m), heading (rad) and speed (m/s); shape (n, 5)."""
     grid: NDArray[np.float64] = field(repr=False)
@@ -506,7 +506,7 @@ class Run(Result):
         }
 
     def __eq__(self, other: object) -> bool:
-        """Whether all fields are equal, arrays by their elements."""
+        """Return true if all fields are equal, arrays by their elements."""
         if not isinstance(other, Run):
             return NotImplemented
         import numpy as np
@@ -526,9 +526,9 @@ class SetTwoFigures(Result):
     """
 
     courses: int
-    """How many courses."""
+    """Number of courses."""
     finished: int
-    """How many were finished without contact."""
+    """Number that were finished without contact."""
     finished_95: tuple[float, float]
     """Where the share of finished courses lies with 95 % confidence, by Wilson's interval."""
     contacts: int
@@ -540,7 +540,7 @@ class SetTwoFigures(Result):
     top_speed_m_s: float
     """The highest speed in any course, in m/s."""
     nearest_m: float
-    """How near a pole came to the robot's outline: the mean over the courses, in metres."""
+    """The least distance of a pole from the robot's outline: the mean over the courses, in metres."""
     wrong_of_all: float
     """Share of all readings that were accepted and wrong."""
     rejected: float
@@ -557,7 +557,7 @@ class SetTwoFigures(Result):
 
 @dataclass(frozen=True)
 class SetTwo(Result):
-    """What ``eeruf.experiments.set_two`` finds; ``to_dict`` is what ``eeruf experiment set-two --json`` prints, and the runs.
+    """The result of ``eeruf.experiments.set_two``; ``to_dict`` is what ``eeruf experiment set-two --json`` prints, and the runs.
 
     Example:
         >>> import eeruf
@@ -570,13 +570,13 @@ class SetTwo(Result):
     first: int
     """The first course's number."""
     pilot: _PilotName
-    """Who steered."""
+    """The pilot that steered."""
     physics: _Physics
     """Which effects of sound were computed: a preset's name, or each effect."""
     bodies: bool
-    """Whether robots had bodies."""
+    """True if robots had bodies."""
     seeds: int
-    """How many courses."""
+    """Number of courses."""
     second_robot_m: tuple[float, float] | None
     """Where another robot stood and fired, in metres."""
     speed_m_s: float
@@ -611,7 +611,7 @@ class SpeedStep(Result):
 
 @dataclass(frozen=True)
 class SpeedSweep(Result):
-    """What ``eeruf.experiments.speed_sweep`` finds.
+    """The result of ``eeruf.experiments.speed_sweep``.
 
     Example:
         >>> import eeruf
@@ -624,17 +624,17 @@ class SpeedSweep(Result):
     first: int
     """The first course's number."""
     pilot: _PilotName
-    """Who steered."""
+    """The pilot that steered."""
     physics: _Physics
     """Which effects of sound were computed: a preset's name, or each effect."""
     bodies: bool
-    """Whether robots had bodies."""
+    """True if robots had bodies."""
     seeds: int
-    """How many courses."""
+    """Number of courses."""
     second_robot_m: tuple[float, float] | None
     """Where another robot stood and fired, in metres."""
     steps: tuple[SpeedStep, ...]
-    """What came of it at each speed."""
+    """The outcome at each speed."""
     borne_m_s: Mapping[str, float | None]
     """For each method the highest of the speeds at which 95 % of the courses were finished; None if there is none."""
 
@@ -708,15 +708,15 @@ class SetThreeGroup(Result):
     """
 
     placings: int
-    """How many placings these are."""
+    """Number of these placings."""
     methods: Mapping[str, SetThreeBrief]
     """By name, over these placings."""
     place: Literal["corridor", "hall"] | None = None
     """Where they are; None for anywhere."""
     arrangement: Literal["standing", "meeting", "following"] | None = None
-    """How the robots are to each other; None for anyhow."""
+    """The robots' arrangement; None for any."""
     robots: int | None = None
-    """How many robots there are; None for any number."""
+    """Number of robots; None for any."""
 
 
 @dataclass(frozen=True)
@@ -734,11 +734,11 @@ class SetThree(Result):
     first: int
     """The first placing's number."""
     seeds: int
-    """How many placings."""
+    """Number of placings."""
     physics: _Physics
     """Which effects the rooms had."""
     periods: int
-    """How many periods each was simulated for."""
+    """Number of periods for which each was simulated."""
     methods: Mapping[str, SetThreeFigures]
     """By name, over all placings; ``"driving"`` is time hopping by its settings for robots that drive."""
     groups: tuple[SetThreeGroup, ...]
@@ -746,4 +746,4 @@ class SetThree(Result):
     runs: Mapping[str, list[PlacingRun]] = field(repr=False)
     """For each method the result in each placing, in their order."""
     height: Literal["flat", "room"] = "flat"
-    """Whether the rings heard floor and ceiling."""
+    """``"room"`` if the rings heard floor and ceiling."""

@@ -125,14 +125,14 @@ class _Kept:
 
 
 def _named(function: Any) -> Any:
-    """What a function is called, and the arguments that it is bound to."""
+    """Return a function's name, and the arguments that it is bound to."""
     if isinstance(function, functools.partial):
         return _named(function.func), function.args, function.keywords
     return getattr(function, "__module__", ""), getattr(function, "__qualname__", type(function).__qualname__)
 
 
 def _equal(one: Any, other: Any) -> bool:
-    """Whether two cases are the same; arrays by their elements."""
+    """Return true if two cases are the same; arrays by their elements."""
     if isinstance(one, (tuple, list)) and type(one) is type(other):
         return len(one) == len(other) and all(map(_equal, one, other))
     if isinstance(one, dict) and isinstance(other, dict):
@@ -144,7 +144,7 @@ def _equal(one: Any, other: Any) -> bool:
 
 
 def _is_own(function: Callable[..., Any]) -> bool:
-    """Whether it is a function or a method of eeruf's, which lets go of the interpreter lock."""
+    """Return true for a function or a method of eeruf's, which lets go of the interpreter lock."""
     while isinstance(function, functools.partial):
         function = function.func
     owner = getattr(function, "__self__", None)

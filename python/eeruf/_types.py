@@ -1,4 +1,4 @@
-"""What results hold, for type checkers."""
+"""Types of what results hold."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class HeardPaths(TypedDict):
 
 
 class FlowSettings(TypedDict, total=False):
-    """What of the settings of the method ``flow`` differs from its default, as :class:`eeruf.sim.Method` takes it."""
+    """Settings of the method ``flow`` that differ from its default, as :class:`eeruf.sim.Method` takes it."""
 
     step_us: int
     shortest_gap_us: int

@@ -249,7 +249,7 @@ class Firings(_Columns):
 
 @dataclass(frozen=True, eq=False)
 class Diagnosis:
-    """What a log says about a ring.
+    """A diagnosis of a ring from its log.
 
     ``paths`` are columns of equal length, by receiver, best supported first; a sensor's own echo is a path from itself. For each
     firing ``sender`` is whose sound its reading is, -1 where that is not sure, ``travel_us`` how long it travelled, ``sure`` how sure
@@ -279,7 +279,7 @@ class Diagnosis:
 
 @dataclass(frozen=True, eq=False)
 class Replayed(_Columns):
-    """What the tracker of a hopping ring makes of each firing of the ring's log: arrays of equal length, by time of firing.
+    """A hopping ring's tracker over each firing of the ring's log: arrays of equal length, by time of firing.
 
     ``kind`` is an index into ``eeruf.KINDS``, as is ``logged``, what the log says that the ring made of it (-1 where it does not
     say). ``age`` is how many firings of the sensor ago a reading was last accepted, -1 if none was. ``damage`` says what of the file
@@ -311,7 +311,7 @@ class Replayed(_Columns):
 
 @dataclass(frozen=True, eq=False)
 class Surveyed:
-    """What a measuring run found.
+    """The result of a measuring run.
 
     ``paths`` as in :class:`Diagnosis`; ``conflicts`` are ``(x, y, us)``: pairs that hear each other in time, and the longest such
     travel time. ``[(x, y) for x, y, _ in conflicts]`` is a ``layout`` for :func:`eeruf.design`.

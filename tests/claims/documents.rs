@@ -106,6 +106,17 @@ fn words(text: &str) -> usize {
 }
 
 #[test]
+fn each_document_is_a_page_of_the_site() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let summary = std::fs::read_to_string(root.join("site/SUMMARY.md")).unwrap();
+    let docs = root.join("docs");
+    for document in documents(&docs) {
+        let page = document.strip_prefix(&docs).unwrap().to_str().unwrap().replace('\\', "/");
+        assert!(page == "README.md" || summary.contains(&format!("({page})")), "{page}");
+    }
+}
+
+#[test]
 fn user_path_has_at_most_20_000_words() {
     let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs");
     let mut path = documents(&docs.join("tutorial"));

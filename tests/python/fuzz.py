@@ -139,7 +139,7 @@ class Chance:
         return thing if not isinstance(thing, (int, np.integer, float)) or thing != thing or thing < most else -1
 
     def mostly(self, good: Any) -> Any:
-        """What is good, most of the time."""
+        """Good values, most of the time."""
         return good if self.random.random() < 0.7 else self.anything()
 
     def one_wrong(self, good: dict[str, Any]) -> dict[str, Any]:
@@ -165,7 +165,7 @@ class Chance:
         return self.mostly(good)
 
     def uneven(self) -> dict[str, Any]:
-        """What only an uneven ring needs, some of it or none."""
+        """Arguments of uneven rings, some or none."""
         all_of_it = {
             "refire_us": self.each(60_000),
             "intervals_us": self.mostly([(0, 1, 20_000), (self.anything(), 2, 1_000)][: self.random.randrange(3)]),
@@ -365,7 +365,7 @@ def method(c: Chance) -> Any:
 
 
 def tried(call: Callable[..., Any], *arguments: Any) -> Any:
-    """What a call returns; None where it refuses its arguments, as it may."""
+    """The result of a call; None where it refuses its arguments, as it may."""
     try:
         return call(*arguments)
     except eeruf.EerufError as error:
@@ -423,7 +423,7 @@ def run(c: Chance, live: Any, adaptation: Any) -> None:
 
 
 def disturb(c: Chance, live: Any, now: int) -> None:
-    """What may happen to a ring of either kind between two polls."""
+    """Something that may happen to a ring of either kind between two polls."""
     tried(c.random.choice([live.disable, live.enable, live.stuck, live.is_enabled]), c.mostly(1))
     tried(live.wait_us, c.anything())
     c.random.choice([live.pause, live.resume, live.resume, lambda: tried(live.restart, c.mostly(now))])()
@@ -525,7 +525,7 @@ def tampered(c: Chance) -> Any:
 
 
 class Used(NamedTuple):
-    """What a process uses when all that it no longer needs has been given back."""
+    """Memory of a process when all that it no longer needs has been given back."""
 
     resident_mb: float
     """Of the machine's memory, with what lies idle between used pieces."""
@@ -561,13 +561,13 @@ class _MallInfo(ctypes.Structure):
 
 
 def resident_mb() -> float:
-    """How much of the machine's memory the process has, on Linux."""
+    """The process's memory, on Linux."""
     status = Path("/proc/self/status").read_text() if sys.platform == "linux" else "VmRSS: 0"
     return int(status.split("VmRSS:")[1].split()[0]) / 1024
 
 
 def used() -> Used:
-    """What is used now, on Linux with glibc; elsewhere zeros for what cannot be known."""
+    """Memory used now, on Linux with glibc; elsewhere zeros for what cannot be known."""
     gc.collect()
     libc, heap_bytes = ctypes.CDLL(None), 0
     if hasattr(libc, "mallinfo2"):
@@ -614,7 +614,7 @@ def fuzz(number: int, seed: int, *, report_every: int = 0) -> tuple[Counter[str]
 
 
 def grown(tenths: list[Used]) -> Used:
-    """What came in the second half of the run."""
+    """Growth in the second half of the run."""
     half, end = tenths[4], tenths[-1]
     return Used(end.resident_mb - half.resident_mb, end.heap_mb - half.heap_mb, end.objects - half.objects)
 

@@ -17,7 +17,7 @@ READINGS = sim.simulate(SCENE, "conventional", 100)
 
 
 def lengths_m(readings: sim.Readings) -> list[float]:
-    """How far the sound of each reading came; paths may be numbered otherwise."""
+    """The length of each reading's path; paths may be numbered otherwise."""
     return [float(readings.paths["length_m"][path]) if path >= 0 else 0.0 for path in readings.path[:200]]
 
 

@@ -18,7 +18,7 @@ ROOT = Path(__file__).parents[2]
 
 @functools.lru_cache
 def printed(*words: str) -> str:
-    """What the program prints as JSON."""
+    """The program's JSON."""
     path = os.environ.get("EERUF_PROGRAM")
     assert path is not None, "EERUF_PROGRAM names the program; `cargo xtask python` sets it"
     run = subprocess.run([path, *words, "--json"], cwd=ROOT, capture_output=True, text=True)

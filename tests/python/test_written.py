@@ -1,4 +1,4 @@
-"""What the program writes is read by the readers that others use."""
+"""The program's files are read by the readers that others use."""
 
 import subprocess
 import sys

@@ -1,4 +1,4 @@
-"""What ArduPilot and PX4 make of the messages, by the rules that docs/how-to/autopilots.md states with their sources."""
+"""ArduPilot's and PX4's reading of the messages, by the rules that docs/how-to/autopilots.md states with their sources."""
 
 import math
 

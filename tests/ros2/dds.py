@@ -194,7 +194,7 @@ def reader(participant, name, kind, qos=RELIABLE):
 
 
 def taken(reader, kind):
-    """What has come. When the node leaves, Cyclone DDS says so in samples that are none."""
+    """Samples that have come. When the node leaves, Cyclone DDS says so in samples that are none."""
     return [sample for sample in reader.take(N=1000) if isinstance(sample, kind)]
 
 

@@ -170,7 +170,7 @@ class Board:
         self.thread.start()
 
     def readings(self):
-        """What the ring on the host read, which the harness has compared with the board's."""
+        """Readings of the ring on the host, which the harness has compared with the board's."""
         said, errors = self.process.communicate(timeout=PATIENCE_S)
         assert self.process.returncode == 0, errors
         self.thread.join()
@@ -219,7 +219,7 @@ def run(tmp_path, participant, processes, fault, periods, cable=None, **given):
 
 
 def expected_ranges(readings, hit, clear):
-    """What each sensor's topic must say, without the frames that the cable hit."""
+    """Messages that each sensor's topic must have, without the frames that the cable hit."""
     expected = [[] for _ in range(SENSORS)]
     for row in readings:
         sensor, kind = int(row["sensor"]), row["reading"]
@@ -335,7 +335,7 @@ def too_close_until_heard(node, write):
 
 
 def after_too_close(node, awaited):
-    """What the node says after that, when it has said this many ranges of each sensor."""
+    """Output of the node after that, when it has said this many ranges of each sensor."""
 
     def ranges():
         node.take()

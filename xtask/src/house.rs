@@ -1,5 +1,5 @@
-//! Rules for sources that no linter has: lengths of lines and files, words that say too little, and openings of doc
-//! comments. CONTRIBUTING.md has the reasons.
+//! Rules for sources that no linter has: in Rust lengths of lines and files and words that say too little, everywhere
+//! openings of doc comments. CONTRIBUTING.md has the reasons.
 
 use std::fmt::Write as _;
 use std::process::Command;
@@ -29,34 +29,41 @@ const OPENINGS: [&str; 7] = ["What ", "Whether ", "How ", "Who ", "Whom ", "Whos
 const PHRASES: [(&str, &str, &str); 2] =
     [("so ma", "ny", "the number, or `this many`"), ("is not the", "re", "`out of range`, or `missing`")];
 
-/// Looks through every Rust file of the repository.
+/// Looks through every source in Rust, Python and C of the repository.
 pub(crate) fn check() -> Result<(), Trouble> {
-    let listed = output(Command::new("git").args(["ls-files", "*.rs"]));
+    let listed = output(Command::new("git").args(["ls-files", "*.rs", "*.py", "*.pyi", "*.c", "*.h", "*.cpp"]));
     let listed = listed.ok_or_else(|| Trouble::Failed("git ls-files: no answer".to_owned()))?;
     let mut broken = String::new();
     for file in listed.lines() {
         let text = std::fs::read_to_string(file).map_err(|error| Trouble::Failed(format!("{file}: {error}")))?;
-        for (line, what) in broken_rules(&text) {
+        let broken_rules = if file.ends_with(".rs") { broken_rules(&text) } else { wrong_openings(&text) };
+        for (line, what) in broken_rules {
             _ = write!(broken, "\n{file}:{line}: {what}");
         }
     }
     if broken.is_empty() { Ok(()) } else { Err(Trouble::Failed(broken)) }
 }
 
-/// The lines of a file that break a rule, counted from 1, and which.
-fn broken_rules(text: &str) -> Vec<(usize, String)> {
-    let mut broken = Vec::new();
+/// The lines at which a doc comment begins otherwise than it should, counted from 1.
+fn wrong_openings(text: &str) -> Vec<(usize, String)> {
     let mut was_doc = false;
-    for (line, words) in (1..).zip(text.lines()) {
-        let doc = words.trim_start().strip_prefix("///").or_else(|| words.trim_start().strip_prefix("//!"));
-        let opening = doc.filter(|_| !was_doc).map(str::trim_start);
-        if let Some(opening) = OPENINGS.iter().find(|word| opening.is_some_and(|doc| doc.starts_with(**word))) {
-            broken.push((
-                line,
-                format!("a doc comment that begins with `{}`; expected a noun or a verb", opening.trim()),
-            ));
-        }
+    let wrong = |(line, words): (usize, &str)| {
+        let words = words.trim_start();
+        let doc = words.strip_prefix("///").or_else(|| words.strip_prefix("//!"));
+        let begins =
+            doc.filter(|_| !was_doc).or_else(|| ["\"\"\"", "/*"].iter().find_map(|mark| words.strip_prefix(mark)));
         was_doc = doc.is_some();
+        let begins = begins?.trim_start();
+        let opening = OPENINGS.iter().find(|word| begins.starts_with(**word))?;
+        Some((line, format!("a doc comment that begins with `{}`; expected a noun or a verb", opening.trim())))
+    };
+    (1..).zip(text.lines()).filter_map(wrong).collect()
+}
+
+/// The lines of a file in Rust that break a rule, counted from 1, and which.
+fn broken_rules(text: &str) -> Vec<(usize, String)> {
+    let mut broken = wrong_openings(text);
+    for (line, words) in (1..).zip(text.lines()) {
         for (start, end, plain) in PHRASES {
             let phrase = [start, end].concat();
             if words.to_lowercase().contains(&phrase) {
@@ -108,6 +115,7 @@ mod tests {
     fn doc_comment_begins_with_a_noun_or_a_verb() {
         assert_eq!(lines_of("/// Whether it fires.\nfn a() {}\n/// The time.\n/// How it is found.\nfn b() {}\n"), [1]);
         assert_eq!(lines_of("//! What it is.\n"), [1]);
+        assert_eq!(lines_of("\"\"\"Whether it fires.\"\"\"\n    /* How it fires. */\n/* The time. */\n"), [1, 2]);
         assert_eq!(lines_of(&["// for so ma", "ny sensors"].concat()), [1]);
     }
 }

@@ -76,7 +76,7 @@ static int index_of(char port) {
     return port - 'A';
 }
 
-/* Whether the Uno itself holds a pin high. */
+/* True if the Uno itself holds a pin high. */
 static int is_driven_high(int pin) {
     const int port = index_of(port_of(pin));
     return (ports[port] & directions[port]) >> bit_of(pin) & 1;
@@ -117,7 +117,7 @@ static void set_line(struct Module *module, int high) {
                   (uint32_t)high);
 }
 
-/* How long a module holds its line when nothing comes, in microseconds. */
+/* Time for which a module holds its line when nothing comes, in microseconds. */
 static uint32_t held_us(const struct Module *module) {
     return module - modules == faulty ? 1000u * hold_ms : 38000u;
 }

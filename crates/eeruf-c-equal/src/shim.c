@@ -171,7 +171,7 @@ uint32_t shim_deadline(const Handle *handle) {
     return eeruf_ring_deadline(handle->ring);
 }
 
-/* What a ring can be asked while it runs, by number. */
+/* Questions to a running ring, by number. */
 int shim_do(Handle *handle, unsigned what, uint8_t sensor, uint32_t value) {
     EerufRing *ring = handle->ring;
     switch (what) {

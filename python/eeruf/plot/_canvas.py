@@ -1,4 +1,4 @@
-"""What all figures share: axes, colours, and checks of arguments."""
+"""Common parts of all figures: axes, colours, and checks of arguments."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What one sensor read."""
+"""Figures of one sensor's readings."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def readings(
     count: int = 100,
     ax: Axes | None = None,
 ) -> Axes:
-    """What one sensor read over time: what the method accepted, rightly or wrongly, what it rejected, and what the sensor reads alone.
+    """One sensor's readings over time: what the method accepted, rightly or wrongly, what it rejected, and what the sensor reads alone.
 
     Args:
         readings: of ``eeruf.sim.simulate``.

@@ -278,7 +278,7 @@ def recommend(
         ['box']
 
     """
-    asked = {"rooms": rooms, "places": places, "first": first, "driving": driving, "wrong": wrong}
+    asked: dict[str, object] = {"rooms": rooms, "places": places, "first": first, "driving": driving, "wrong": wrong}
     answer: dict[str, Any] = json.loads(_eeruf._recommend(ring, asked, progress))
     return answer
 

@@ -18,8 +18,8 @@ use crate::report::json::to_json;
 
 /// Find in a ring's own log which sensors fool each other, and what is broken.
 ///
-/// It prints along paths of which length, since when and how sure; which sensors are blind in which phases; and what to
-/// change.
+/// For each path: its length, since when it is heard and how sure it is. Also the phases in which sensors are blind,
+/// and what to change.
 ///
 /// The log is CSV with the columns sensor, fired_us, period, phase and t_echo_us, one row for each firing: when it was,
 /// in microseconds of one clock, and the raw time to the first echo, empty without one. Sensors, periods and phases

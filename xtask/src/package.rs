@@ -28,7 +28,7 @@ pub(crate) fn package(steps: &mut Steps) {
             for verb in ["build", "test"] {
                 let mut cargo = Command::new("cargo");
                 cargo.args([verb, "--all-features", "--manifest-path"]).arg(&manifest);
-                // What is built here is not debugged, and it would take gigabytes.
+                // Debug information is of no use here, and takes gigabytes.
                 cargo.env("CARGO_PROFILE_DEV_DEBUG", "0").env("CARGO_TARGET_DIR", folder().join("target"));
                 run(cargo.current_dir(folder()))?;
             }

@@ -74,7 +74,7 @@ fn no_schedule_beats_the_shortest_in_the_model() {
         let proven = prove(&claim, 100_000, |_| true).unwrap_or_else(|error| panic!("seed {seed}: {error}"));
         check(&proven.model, &proven.proof).unwrap_or_else(|why| panic!("seed {seed}: {why}\n{claim:?}"));
         assert_eq!(proven.model, model(&claim.problem, claim.period - 1), "seed {seed}");
-        // What trying all schedules found is a solution of the model of its period, which cannot be refuted.
+        // A schedule found by trying all solves the model of its period, which cannot be refuted.
         let next = model(&claim.problem, claim.period);
         assert!(allows(&next, &claim.problem, &claim.fire), "seed {seed}: {claim:?}");
         assert!(check(&next, &proven.proof).is_err(), "seed {seed}: the proof is of another period");

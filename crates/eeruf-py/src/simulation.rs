@@ -380,7 +380,7 @@ impl Simulation {
 
     /// Begin again: time 0, robots at their first poses, the scene and the schedules of the start.
     ///
-    /// What the method makes (``make_filter``, ``make_firing``) is remade; callables that were arguments go on being
+    /// Parts made by ``make_filter`` and ``make_firing`` are remade; callables that were arguments go on being
     /// called as they are. An MCAP file that is being written ends.
     ///
     /// Args:

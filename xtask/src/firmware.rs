@@ -80,10 +80,14 @@ pub(crate) fn lint() -> Result<(), Trouble> {
     run(cargo(microbit)?.args(strict).args(["--target", microbit.target, "--", "--deny", "warnings"]))
 }
 
-/// `cargo` for a board, in the firmware's own workspace.
+/// `cargo` for a board, in the firmware's own workspace. Where stacks are read, the compiler writes down each frame,
+/// beside the program, by an unstable option.
 fn cargo(board: &Board) -> Result<Command, Trouble> {
     let mut cargo = cargo_for_target(board.target)?;
     cargo.current_dir("firmware");
+    if stack::is_read_on(board) {
+        cargo.env("RUSTC_BOOTSTRAP", "1").env("RUSTFLAGS", "-Clink-arg=-Tlink.x -Zemit-stack-sizes");
+    }
     Ok(cargo)
 }
 

@@ -6,10 +6,7 @@ use std::process::{Command, ExitCode};
 use cargo_metadata::{Metadata, MetadataCommand, Package};
 
 use crate::steps::{Beside, Steps, Trouble, output, run, run_component};
-use crate::toolchain::{cargo_for_target, cargo_of_version};
-
-/// The smallest core that firmware runs on; the others are tried with the firmware itself.
-const BARE_TARGETS: [&str; 1] = ["thumbv6m-none-eabi"];
+use crate::toolchain::cargo_of_version;
 
 /// Steps that take one thread most of the time: on emulated processors, and of C.
 const BESIDE: [&[&str]; 4] = [&["firmware"], &["arduino", "--short"], &["c"], &["micropython"]];
@@ -33,12 +30,6 @@ pub(crate) fn run_all(nothing_skipped: bool) -> ExitCode {
     };
     let beside = Beside::begin(&BESIDE);
     steps.step("each feature of the core alone", || each_feature_alone(&metadata));
-    for target in BARE_TARGETS {
-        steps.step(&format!("eeruf-core without an operating system ({target})"), || {
-            let mut cargo = cargo_for_target(target)?;
-            run(cargo.args(["build", "--package", "eeruf-core", "--release", "--locked", "--target", target]))
-        });
-    }
     // What the default compiler can build, Clippy has just built with it.
     let default = version_of_default();
     for (version, packages) in packages_by_version(&metadata) {
@@ -55,7 +46,10 @@ pub(crate) fn run_all(nothing_skipped: bool) -> ExitCode {
         });
     }
     steps.step("public items", crate::api::api);
-    steps.step("tests and doctests", || run_cargo(&["test", "--workspace", "--locked"]));
+    // Without the examples, which Clippy has compiled and whoever needs one builds.
+    steps.step("tests and doctests", || {
+        ["--tests", "--doc"].iter().try_for_each(|of| run_cargo(&["test", "--workspace", "--locked", of]))
+    });
     // With the features of the whole workspace, as built for the tests; those of instructions need a runner.
     steps.step("benches, each once", || {
         let benches = ["design", "paths", "simulation", "wait"].map(|name| ["--bench", name]).concat();

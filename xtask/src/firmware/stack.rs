@@ -2,10 +2,9 @@
 //! each frame, the disassembly says who calls whom.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::{Path, PathBuf};
 
-use super::{Board, cargo, llvm};
-use crate::steps::{Trouble, run};
+use super::{BOARDS, Board, cargo, image, llvm};
+use crate::steps::Trouble;
 
 /// The functions of a ring of two phases, as the measured program exports them.
 pub(super) const RING: [&str; 8] = [
@@ -25,27 +24,24 @@ pub(super) const TRACKING_RING: [&str; 2] = ["ring_new", "ring_poll"];
 /// Target of a call through a pointer.
 const POINTER: &str = "a function by its pointer";
 
+/// Stacks are read off Thumb code.
+pub(super) fn is_read_on(board: &Board) -> bool {
+    BOARDS[..2].iter().any(|known| known.name == board.name)
+}
+
 /// The worst stack of each function of a program, in bytes.
 pub(super) fn stack<const N: usize>(
     board: &Board,
     program: &str,
     functions: [&'static str; N],
 ) -> Result<[(&'static str, u64); N], Trouble> {
-    let mut cargo = cargo(board)?;
-    let builds_core = cargo.get_program() == "/usr/bin/cargo";
-    let target_dir = cargo.get_envs().find(|(key, _)| *key == "CARGO_TARGET_DIR").and_then(|(_, value)| value);
-    let target_dir = target_dir.map_or(PathBuf::from("target"), PathBuf::from).join("stack");
-    cargo.args(["build", "--quiet", "--release", "--locked", "--target", board.target]);
-    cargo.args(["--package", "eeruf-measure", "--bin", program]);
-    // An unstable option of the compiler.
-    cargo.env("RUSTC_BOOTSTRAP", "1").env("CARGO_TARGET_DIR", &target_dir);
-    run(cargo.env("RUSTFLAGS", "-Clink-arg=-Tlink.x -Zemit-stack-sizes"))?;
-    let image = Path::new("firmware").join(target_dir).join(board.target).join("release").join(program);
+    // Rustup's core says nothing of its frames; where it was built here, all must be known.
+    let all_known = cargo(board)?.get_program() == "/usr/bin/cargo";
+    let image = image(board, program)?;
     let calls = Program::new(
         &llvm("readelf", &["--stack-sizes"], &image)?,
         &llvm("objdump", &["-d", "--no-show-raw-insn"], &image)?,
-        // Rustup's core says nothing of its frames; where it was built here, all must be known.
-        builds_core,
+        all_known,
     );
     let mut worst = functions.map(|name| (name, 0));
     for (name, bytes) in &mut worst {

@@ -102,7 +102,7 @@ pub(super) fn measure(only: Option<&str>) -> Result<(Tables, Vec<String>), Troub
                 over.extend(costs.over(budget)?);
             }
         }
-        if has_stacks(board) {
+        if stack::is_read_on(board) {
             for (function, bytes) in stack::stack(board, "size-12", stack::RING)? {
                 stacks += &format!("| {} | `{function}` | {bytes} |\n", board.name);
                 if is_budgeted(board) && bytes > STACK {
@@ -153,11 +153,6 @@ fn is_budgeted(board: &Board) -> bool {
     board.name == BOARDS[0].name
 }
 
-/// Stacks are read off Thumb code.
-fn has_stacks(board: &Board) -> bool {
-    BOARDS[..2].iter().any(|known| known.name == board.name)
-}
-
 /// Rows of the lines `name fewest most`.
 fn of_calls(board: &Board, said: &str) -> Result<String, Trouble> {
     let mut text = String::new();
@@ -205,7 +200,7 @@ impl Costs {
         let [calls, size] = budget.programs;
         let (with, bare) = (sections(board, size)?, sections(board, "size-bare")?);
         let stack = || stack::stack(board, size, stack::TRACKING_RING);
-        let stack = has_stacks(board).then(stack).transpose()?.map(|of| of.map(|(_, bytes)| bytes));
+        let stack = stack::is_read_on(board).then(stack).transpose()?.map(|of| of.map(|(_, bytes)| bytes));
         let calls = run_image(board, calls, 10)?;
         Ok(Self { calls, flash: with.0 - bare.0, ram: with.1 - bare.1, stack })
     }

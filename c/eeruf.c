@@ -1685,7 +1685,7 @@ EerufStatus eeruf_edges_push(EerufEdges *edges, uint8_t sensor, bool high, uint3
     if (sensor > 127) return EERUF_ERR_SENSOR;
     pushed = edges->pushed;
     if ((uint8_t)(pushed - edges->popped) > edges->mask) {
-        if (edges->lost < UINT8_MAX) edges->lost = (uint8_t)(edges->lost + 1u);
+        edges->lost = (uint8_t)(edges->lost + 1u);
         return EERUF_ERR_MEMORY;
     }
     place = &edges->places[pushed & edges->mask];

@@ -447,7 +447,7 @@ typedef struct EerufEdges {
     uint16_t ready;
     EerufEdge *places;
     uint8_t mask;
-    volatile uint8_t pushed, popped, lost; /* `lost`: how many found the queue full; stops at 255 */
+    volatile uint8_t pushed, popped, lost; /* `lost`: how many found the queue full; wraps at 256 */
 } EerufEdges;
 
 EerufStatus eeruf_edges_init(EerufEdges *edges, size_t edges_size, EerufEdge *places, size_t places_size);

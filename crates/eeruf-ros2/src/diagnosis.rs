@@ -58,6 +58,7 @@ struct Interval {
     damaged: u32,
     lost: u32,
     max_late: Micros,
+    edges_lost: u32,
     unsent: u32,
 }
 
@@ -75,8 +76,9 @@ pub(crate) struct Diagnosis {
     /// Reason why whole frames cannot be used.
     foreign: Option<String>,
     board_sensors: Option<u8>,
-    edges_lost: u8,
-    edges_lost_before: u8,
+    /// The board's last period, and its count of lost edges then, which wraps.
+    counted: Option<(u32, u8)>,
+    total_edges_lost: u64,
     total_damaged: u64,
     total_lost: u64,
 }
@@ -100,8 +102,8 @@ impl Diagnosis {
             line_lost: Some("not yet open".to_owned()),
             foreign: None,
             board_sensors: None,
-            edges_lost: 0,
-            edges_lost_before: 0,
+            counted: None,
+            total_edges_lost: 0,
             total_damaged: 0,
             total_lost: 0,
         }
@@ -136,9 +138,17 @@ impl Diagnosis {
     }
 
     /// Takes the board's frame at a period's end.
-    pub(crate) fn period(&mut self, max_late: Micros, edges_lost: u8, health: &[u8]) {
+    pub(crate) fn period(&mut self, period: u32, max_late: Micros, edges_lost: u8, health: &[u8]) {
         self.interval.max_late = self.interval.max_late.max(max_late);
-        self.edges_lost = edges_lost;
+        let more = match self.counted.replace((period, edges_lost)) {
+            // What was lost before anyone listened is no news.
+            None => 0,
+            Some((before, counted)) if before < period => edges_lost.wrapping_sub(counted),
+            // The board has started again.
+            Some(_) => edges_lost,
+        };
+        self.interval.edges_lost += u32::from(more);
+        self.total_edges_lost += u64::from(more);
         for (sensor, &health) in self.sensors.iter_mut().zip(health) {
             sensor.health = health;
         }
@@ -203,7 +213,6 @@ impl Diagnosis {
         let sensors = (0..).zip(&self.sensors).map(|(number, sensor)| self.sensor(now_s, number, sensor));
         report.extend(sensors);
         self.foreign = None;
-        self.edges_lost_before = self.edges_lost;
         report
     }
 
@@ -237,14 +246,14 @@ impl Diagnosis {
         let late = interval.max_late.as_micros();
         let (level, message) = if late > self.late_us {
             (Level::Warn, format!("late: a firing came {late} us after it was due; more than {} us", self.late_us))
-        } else if self.edges_lost != self.edges_lost_before {
+        } else if interval.edges_lost > 0 {
             (Level::Warn, "the board loses edges: its queue was full".to_owned())
         } else {
             (Level::Ok, "well".to_owned())
         };
         let values = vec![
             ("latest firing since the last report, us", late.to_string()),
-            ("edges that the board lost, 255 for all more", self.edges_lost.to_string()),
+            ("edges that the board lost, in all", self.total_edges_lost.to_string()),
         ];
         Status { level, about: "timing".to_owned(), message, values }
     }
@@ -364,14 +373,15 @@ mod tests {
             (0, Level::Error, "the", |diagnosis| diagnosis.hello(9)),
             (0, Level::Warn, "dropped", |diagnosis| diagnosis.lost(3)),
             (0, Level::Warn, "dropped", Diagnosis::damaged),
-            (1, Level::Warn, "late", |diagnosis| diagnosis.period(Micros::new(1_001), 0, &[0, 0])),
-            (1, Level::Warn, "the", |diagnosis| diagnosis.period(Micros::ZERO, 1, &[0, 0])),
-            (2, Level::Error, "stuck", |diagnosis| diagnosis.period(Micros::ZERO, 0, &[2, 0])),
-            (3, Level::Error, "missing", |diagnosis| diagnosis.period(Micros::ZERO, 0, &[0, 1])),
+            (1, Level::Warn, "late", |diagnosis| diagnosis.period(1, Micros::new(1_001), 9, &[0, 0])),
+            (1, Level::Warn, "the", |diagnosis| diagnosis.period(1, Micros::ZERO, 10, &[0, 0])),
+            (2, Level::Error, "stuck", |diagnosis| diagnosis.period(1, Micros::ZERO, 9, &[2, 0])),
+            (3, Level::Error, "missing", |diagnosis| diagnosis.period(1, Micros::ZERO, 9, &[0, 1])),
         ];
         for (place, level, word, fault) in faults {
             let mut diagnosis = diagnosis();
             both(&mut diagnosis, 0.5, ReadingKind::Accepted);
+            diagnosis.period(0, Micros::ZERO, 9, &[0, 0]);
             fault(&mut diagnosis);
             let mut expected = [well(), well(), sees(), sees()];
             expected[place] = (level, word.to_owned());
@@ -379,7 +389,8 @@ mod tests {
             both(&mut diagnosis, 1.5, ReadingKind::Accepted);
             diagnosis.line_opened();
             diagnosis.hello(2);
-            diagnosis.period(Micros::ZERO, diagnosis.edges_lost, &[0, 0]);
+            let counted = diagnosis.counted.map_or(0, |(_, edges_lost)| edges_lost);
+            diagnosis.period(2, Micros::ZERO, counted, &[0, 0]);
             assert_eq!(said(&mut diagnosis, 2.0), [well(), well(), sees(), sees()], "after {word}");
         }
     }
@@ -411,6 +422,17 @@ mod tests {
         assert_eq!(state(&[(5404.5, ReadingKind::Unanswered)], 5405.0), said("unanswered", "0.5"));
     }
 
+    // The board's count wraps, and begins anew where the board does.
+    #[test]
+    fn lost_edges_are_counted_past_256_and_a_restart() {
+        let mut diagnosis = diagnosis();
+        let frames = [(7, 250, 0), (8, 250, 0), (9, 3, 9), (10, 2, 264), (0, 0, 264), (1, 5, 269), (0, 4, 273)];
+        for (period, edges_lost, total) in frames {
+            diagnosis.period(period, Micros::ZERO, edges_lost, &[0, 0]);
+            assert_eq!(diagnosis.total_edges_lost, total, "period {period}");
+        }
+    }
+
     #[test]
     fn broken_or_silent_sensor_is_unanswered() {
         let mut diagnosis = diagnosis();
@@ -421,7 +443,7 @@ mod tests {
         let clear = View::Sees(Distance::Clear);
         assert_eq!(views(&diagnosis, 1.0), [clear, clear]);
         for (health, expected) in [(1, View::Unanswered), (2, View::Unanswered), (5, View::Unanswered), (3, clear)] {
-            diagnosis.period(Micros::ZERO, 0, &[health, 0]);
+            diagnosis.period(0, Micros::ZERO, 0, &[health, 0]);
             assert_eq!(views(&diagnosis, 1.0), [expected, clear], "health {health}");
         }
         diagnosis.reading(1.4, 1, ReadingKind::Unanswered, None, Micros::ZERO, None);

@@ -32,7 +32,7 @@ pub(crate) trait Lines {
     fn delay_us(&self, us: u32);
     /// The next edge of an echo line. Waits for it until this instant, and not at all if that has passed.
     fn next_edge(&self, until_us: u64) -> Result<Option<Edge>, String>;
-    /// The number of edges that were lost so far.
+    /// The number of edges that were lost so far, modulo 256.
     fn lost(&self) -> u8;
 }
 

@@ -176,8 +176,8 @@ impl EerufNode {
                 self.diagnosis.hello(sensors);
                 Ok(())
             }
-            Message::Period { max_late, edges_lost, health, .. } => {
-                self.diagnosis.period(max_late, edges_lost, &health);
+            Message::Period { period, max_late, edges_lost, health } => {
+                self.diagnosis.period(period, max_late, edges_lost, &health);
                 Ok(())
             }
             Message::Firing(firing) => {

@@ -31,7 +31,7 @@ pub enum Message {
         period: u32,
         /// The latest firing in it.
         max_late: Micros,
-        /// Number of edges that got lost on the board since it started; stops at 255.
+        /// Number of edges that got lost on the board since it started, modulo 256.
         edges_lost: u8,
         /// Health of each sensor, as `eeruf_hc_sr04::Health` counts.
         health: Vec<u8>,

@@ -67,8 +67,8 @@ impl Encoder {
         content.finish()
     }
 
-    /// A period has ended: its number, its latest firing, how many edges got lost on the board since it started (stops
-    /// at 255), and how each sensor is, as `eeruf_hc_sr04::Health` counts.
+    /// A period has ended: its number, its latest firing, how many edges got lost on the board since it started (modulo
+    /// 256), and how each sensor is, as `eeruf_hc_sr04::Health` counts.
     pub fn period(
         &mut self,
         period: u32,

@@ -82,7 +82,7 @@ impl Lines for Chip {
         }
         let event = self.echoes.read_edge_event().map_err(failed)?;
         let missing = event.seqno.wrapping_sub(self.last.replace(event.seqno)).wrapping_sub(1);
-        self.lost.set(self.lost.get().saturating_add(u8::try_from(missing).unwrap_or(u8::MAX)));
+        self.lost.set(self.lost.get().wrapping_add(missing as u8));
         let sensor = self.echo_lines.iter().position(|&line| line == event.offset);
         Ok(sensor.map(|sensor| Edge {
             sensor: sensor as u8,

@@ -57,7 +57,7 @@ class Board:
         self.now += us
 
     def look(self, line):
-        """The level of a line. Of two edges that have just come only the first: no gap is too short to be hit by a look."""
+        """The level of a line. Of two edges that have just come only the first, so that a look hits every gap."""
         due = [edge for edge in self.ahead if edge[1] == line and edge[0] <= self.now]
         for edge in due:
             self.ahead.remove(edge)

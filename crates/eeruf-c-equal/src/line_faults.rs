@@ -1,4 +1,5 @@
-//! Faults of one echo line: a ring of HC-SR04 modules, in Rust and in C, among the edges of `tests/data/line-faults.txt`.
+//! Faults of one echo line: a ring of HC-SR04 modules in Rust and in C, among the edges of
+//! `tests/data/line-faults.txt`.
 
 use std::cell::{Cell, RefCell};
 use std::convert::Infallible;

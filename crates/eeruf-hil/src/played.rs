@@ -13,8 +13,8 @@ pub(crate) struct PlayedLines {
 }
 
 impl PlayedLines {
-    /// Reads one entry for each sensor, parted by commas: the pin, counted from 0, and edges such as `+450` and `-6280*`,
-    /// which rises, or falls without an interrupt.
+    /// Reads one entry for each sensor, parted by commas: the pin, counted from 0, and edges such as `+450`, which
+    /// rises, and `-6280*`, which falls without an interrupt.
     ///
     /// # Errors
     /// Names an entry that is otherwise, or the number of entries.

@@ -480,7 +480,7 @@ typedef struct EerufHcSr04Settings {
     uint8_t missing_after;     /* firings in a row without a pulse, after which a module counts as missing */
     uint8_t trigger_us;        /* how long the trigger is high; for whoever raises it */
 } EerufHcSr04Settings;
-#define EERUF_HC_SR04 {EERUF_VERSION, 100, 100, 2000, 36000, 250000, 60000, 3, 10}
+#define EERUF_HC_SR04 {EERUF_VERSION, 100, 100, 1400, 36000, 250000, 60000, 3, 10}
 
 /* One echo line: 8 bytes on an AVR. Not for the caller. */
 typedef struct EerufLine {

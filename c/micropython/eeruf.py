@@ -630,6 +630,7 @@ class HcSr04Ring:
     # Of an HC-SR04; a subclass for another module has its own.
     DEAF_US, SHORTEST_US, LONGEST_US = 100, 100, 36000
     MIN_RETRIGGER_US, TRIGGER_US = 60000, 10
+    LATEST_RISE_US = 1400  # a line that is still low then is not raised by its trigger: exchanged wires, or a disturbance
     LONGEST_HOLD_US = 250000  # a line that rose and is high no longer than this listens still: clones hold 200 ms
     SOON_US = 1000  # what is due so soon is waited for: modules that fire late by differing times compare less
 
@@ -663,6 +664,9 @@ class HcSr04Ring:
         self._rose = [None] * len(pins)
         self._awaits = [False] * len(pins)
 
+    def _since_firing(self, x, now):
+        return self._time.ticks_diff(now, self.ring._sensors[x].firings[0])
+
     def _sample(self):
         for x, awaits in enumerate(self._awaits):
             if not awaits:
@@ -670,18 +674,23 @@ class HcSr04Ring:
             high = self._echoes[x].value()
             now = self._time.ticks_us()
             rose = self._rose[x]
-            fired = self.ring._sensors[x].firings[0]
+            if (high == 1) == (rose is not None):
+                if rose is None and self._since_firing(x, now) > self.LATEST_RISE_US:
+                    self._awaits[x] = False
+                continue
+            if self._echoes[x].value() != high:
+                continue  # a spike or a gap
             if rose is None:
-                if high and self._time.ticks_diff(now, fired) >= self.DEAF_US:
+                if self._since_firing(x, now) >= self.DEAF_US:
                     self._rose[x] = now
                     self.ring.answered(x)
-            elif not high:
+            else:
                 width = self._time.ticks_diff(now, rose)
                 self._rose[x] = None
                 if width >= self.SHORTEST_US:
                     self._awaits[x] = False
                     if width < self.LONGEST_US:
-                        self.ring.echo(x, self._time.ticks_add(fired, width))
+                        self.ring.measured(x, width)
                 else:
                     self.ring.answered(x, False)
 

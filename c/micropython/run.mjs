@@ -1,25 +1,28 @@
-// Runs eeruf.py's tests in MicroPython's WebAssembly build: node run.mjs FOLDER_OF_MICROPYTHON corpus.txt
+// Runs eeruf.py's tests in MicroPython's WebAssembly build: node run.mjs FOLDER_OF_MICROPYTHON corpus.txt line-faults.txt
 import { readFileSync } from "node:fs";
 import { dirname, join, resolve } from "node:path";
 import { fileURLToPath, pathToFileURL } from "node:url";
 
 const here = dirname(fileURLToPath(import.meta.url));
-const [folder, corpus] = process.argv.slice(2);
+const [folder, corpus, faults] = process.argv.slice(2);
 const { loadMicroPython } = await import(pathToFileURL(resolve(folder, "micropython.mjs")));
 const micropython = await loadMicroPython({ heapsize: 4 * 1024 * 1024 });
-for (const name of ["eeruf.py", "test_corpus.py", "test_modules.py"]) {
+for (const name of ["eeruf.py", "line_faults.py", "test_corpus.py", "test_line_faults.py", "test_modules.py"]) {
   micropython.FS.writeFile(`/${name}`, readFileSync(join(here, name)));
 }
 micropython.FS.writeFile("/corpus.txt", readFileSync(corpus));
+micropython.FS.writeFile("/line-faults.txt", readFileSync(faults));
 try {
   micropython.runPython(`
 import sys
 sys.path.append("/")
-import test_corpus, test_modules
+import test_corpus, test_line_faults, test_modules
 print(sys.implementation.name, ".".join(str(n) for n in sys.implementation.version[:3]))
 with open("/corpus.txt") as corpus:
     test_corpus.main(corpus.read())
 test_modules.main()
+with open("/line-faults.txt") as faults:
+    print(len(test_line_faults.check(faults.read())), "faults of a line")
 `);
 } catch (error) {
   // Without the source of the build, which is one line of 100 kB.

@@ -155,14 +155,14 @@ def firings(contents):
 class Board:
     """The ring in the emulator, at the pace of the clock on the wall, and the reference's readings."""
 
-    def __init__(self, processes, folder, line, fault, periods, cable):
+    def __init__(self, processes, folder, line, faults, periods, cable):
         address = str(folder / "board")
         with socket.socket(socket.AF_UNIX) as listener:
             listener.bind(address)
             listener.listen()
             listener.settimeout(PATIENCE_S)
             emulator = [part.replace("SERIAL", f"unix:{address}") for part in EMULATOR]
-            command = [HARNESS, SCENE, "--one", fault, str(periods), "--board", "lm3s6965", *emulator]
+            command = [HARNESS, SCENE, *faults, str(periods), "--board", "lm3s6965", *emulator]
             self.process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
             processes.append(self.process)
             board, _ = listener.accept()
@@ -188,8 +188,8 @@ class Mavlink:
             self.messages.append(message)
 
 
-def run(tmp_path, participant, processes, fault, periods, cable=None, **given):
-    """A ring with a fault for this many periods; the node, what the reference read, the cable, the log, and MAVLink."""
+def run(tmp_path, participant, processes, faults, periods, cable=None, **given):
+    """A ring with what the harness is asked for, for this many periods; the node, what the reference read, the cable, the log, and MAVLink."""
     cable, mavlink = cable or Cable(), Mavlink()
     line, terminal = os.openpty()
     tty.setraw(terminal)
@@ -197,7 +197,7 @@ def run(tmp_path, participant, processes, fault, periods, cable=None, **given):
     file = parameters(tmp_path, **given)
     outputs = ["--log", str(log), "--mavlink", mavlink.to]
     node = Node(participant, processes, "--params-file", file, "--port", os.ttyname(terminal), *outputs)
-    board = Board(processes, tmp_path, line, fault, periods, cable)
+    board = Board(processes, tmp_path, line, faults, periods, cable)
     while board.process.poll() is None:
         node.take()
         mavlink.take()
@@ -246,7 +246,7 @@ def test_an_emulated_ring_and_its_faults_arrive_as_ros_2(
     tmp_path, participant, processes
 ):
     cable = Cable(swallow=frozenset(range(400, 460, 10)), flip=frozenset(range(405, 450, 10)))
-    node, readings, cable, log, mavlink = run(tmp_path, participant, processes, "stuck", 120, cable)
+    node, readings, cable, log, mavlink = run(tmp_path, participant, processes, ["--one", "stuck"], 120, cable)
 
     hit = set(firings(cable.hit))
     assert len(cable.hit) == 11 and len(hit) >= 8
@@ -312,7 +312,7 @@ def assert_mavlink(mavlink, expected):
 def test_a_late_board_and_a_missing_sensor_are_named(
     tmp_path, participant, processes, fault, about, level, message
 ):
-    node, readings, _, _, mavlink = run(tmp_path, participant, processes, fault, 50, clear_as="max_range")
+    node, readings, _, _, mavlink = run(tmp_path, participant, processes, ["--one", fault], 50, clear_as="max_range")
     assert_ranges(node, expected_ranges(readings, set(), 4.0))
     assert any(r[about].level == level and r[about].message.startswith(message) for r in node.reports)
     pictures = [m for m in mavlink.messages if m.get_type() == "OBSTACLE_DISTANCE"]

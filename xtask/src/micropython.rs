@@ -1,5 +1,5 @@
-//! `c/micropython/`: what it says of the shared corpus and on simulated modules, in MicroPython's WebAssembly build and
-//! in CPython.
+//! `c/micropython/`: what it says of the shared corpus, on simulated modules and of faults of a line, in MicroPython's
+//! WebAssembly build and in CPython.
 
 use std::path::Path;
 use std::process::Command;
@@ -16,7 +16,7 @@ pub(crate) fn micropython() -> Result<(), Trouble> {
         }
     }
     let folder = Path::new(FOLDER);
-    for test in ["test_corpus.py", "test_modules.py"] {
+    for test in ["test_corpus.py", "test_modules.py", "test_line_faults.py"] {
         run(Command::new("python3").current_dir(folder).arg("-B").arg(test))?;
     }
     run(Command::new("npm").current_dir(folder).args(["ci", "--ignore-scripts", "--no-audit", "--no-fund"]))?;

@@ -7,6 +7,7 @@
 pub mod core_side;
 pub mod flow;
 pub mod hopping;
+pub mod line_faults;
 pub mod modules;
 mod random;
 pub mod ring;

@@ -8,6 +8,8 @@ use eeruf_hil::{Ahead, MOST_AHEAD, SENSORS};
 use eeruf_sim::modules::HC_SR04;
 use eeruf_sim::{Fault, FaultKind, LockStep, World, line_edges};
 
+use crate::played::PlayedLines;
+
 /// The sensor that has the faults, from 0.
 pub(crate) const FAULTY: u8 = 2;
 /// From the trigger's fall to the rise of the line, when the sound has been sent.
@@ -88,6 +90,9 @@ pub(crate) struct Lines<'w> {
     world: LockStep<'w>,
     fault: LineFault,
     faults: Vec<Fault>,
+    /// The edges that the lines have instead of those that the world gives.
+    played: Option<PlayedLines>,
+    /// By the pin at which the line is.
     lines: [Line; SENSORS],
     /// A reading of the board's clock, and which microsecond since the start that was.
     clock: (Instant, u64),
@@ -99,7 +104,13 @@ impl<'w> Lines<'w> {
     pub(crate) fn new(world: &'w World, fault: LineFault, start: Instant) -> Result<Self, String> {
         let world = LockStep::new(world).map_err(|error| error.to_string())?;
         let faults = if fault == LineFault::StuckHigh { vec![] } else { fault.faults(0.0) };
-        Ok(Self { world, fault, faults, lines: Default::default(), clock: (start, 0), latest: Micros::ZERO })
+        let (lines, clock) = (Default::default(), (start, 0));
+        Ok(Self { world, fault, faults, played: None, lines, clock, latest: Micros::ZERO })
+    }
+
+    /// Plays these edges instead of those that the world gives.
+    pub(crate) fn with_played(self, played: Option<PlayedLines>) -> Self {
+        Self { played, ..self }
     }
 
     /// Microseconds since the start, without the clock's wrap: `at` is less than half an hour from what was asked
@@ -114,11 +125,16 @@ impl<'w> Lines<'w> {
     /// A sensor is triggered.
     pub(crate) fn trigger(&mut self, sensor: u8, at: Instant) -> Result<(), String> {
         let at = self.since_start(at);
-        self.all_noticed(sensor)?;
-        let x = usize::from(sensor);
+        let pin = self.played.as_ref().map_or(sensor, |played| played.pin_of(sensor));
+        if self.played.is_some() && self.is_high(pin, at) {
+            // A module whose line is high does not hear its trigger.
+            return Ok(());
+        }
+        self.all_noticed(pin)?;
+        let x = usize::from(pin);
         let time_s = (at + RISE_US) as f64 * 1e-6;
         let missing = |fault: &Fault| fault.kind == FaultKind::Missing && fault.is_of(0, sensor) && fault.is_at(time_s);
-        if !self.faults.iter().any(missing) {
+        if self.played.is_none() && !self.faults.iter().any(missing) {
             self.world.fire(x, (at + RISE_US) * 1000).map_err(|error| error.to_string())?;
         }
         let line = self.lines.get_mut(x).ok_or_else(|| format!("there is no sensor {}", sensor + 1))?;
@@ -129,11 +145,19 @@ impl<'w> Lines<'w> {
         Ok(())
     }
 
+    /// Returns true if the line at a pin is high.
+    fn is_high(&self, pin: u8, at: u64) -> bool {
+        self.edges(pin).iter().rev().find(|&&(edge_at, ..)| edge_at <= at).is_some_and(|&(_, high, _)| high)
+    }
+
     /// The edges of a line after its last trigger, as far as is known: when, whether it rises, whether the interrupt is
     /// lost.
     fn edges(&self, sensor: u8) -> Vec<(u64, bool, bool)> {
         let Some(&line) = self.lines.get(usize::from(sensor)) else { return Vec::new() };
         let Some(triggered) = line.triggered_us else { return Vec::new() };
+        if let Some(played) = &self.played {
+            return played.at_pin(sensor).iter().map(|&(after, high, lost)| (triggered + after, high, lost)).collect();
+        }
         let rise = triggered + RISE_US;
         let fall = self.world.hears_at_ns(sensor.into()).map_or(rise + TIME_OUT_US, |ns| ns / 1000);
         let edges = line_edges(&self.faults, 0, sensor, line.firings, rise, fall);

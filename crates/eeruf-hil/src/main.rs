@@ -8,10 +8,14 @@
 //!
 //! `eeruf-hil SCENE --one FAULT PERIODS --board NAME EMULATOR ..`: one run at the pace of the clock on the wall, as it
 //! is needed to test what listens to the board's serial line. Prints what the ring read, as CSV.
+//!
+//! `eeruf-hil SCENE --lines LINES PERIODS --board NAME EMULATOR ..`: the same where the lines play edges instead of
+//! what the scene gives: for each sensor its pin and edges, in microseconds after its trigger, as `2 +450 -6280*`.
 
 mod control;
 mod emulator;
 mod lines;
+mod played;
 mod reference;
 mod run;
 
@@ -22,7 +26,8 @@ use eeruf_core::ReadingKind;
 use eeruf_sim::{Method, Options, Readings, World, simulate, sweep};
 
 use crate::lines::FAULTY;
-use crate::run::{Fault, PERIODS, Pace, Run, run, run_hopping};
+use crate::played::PlayedLines;
+use crate::run::{Fault, PERIODS, Pace, Run, run, run_hopping, run_played};
 
 /// In this scene no sensor of the hopping ring has fewer of its readings believed.
 const LEAST_BELIEVED: f64 = 0.5;
@@ -38,12 +43,16 @@ fn main() -> ExitCode {
         parts.filter_map(<[String]>::split_first).map(|(name, emulator)| (&**name, emulator)).collect();
     let Some(scene) = scene.filter(|_| !boards.is_empty()) else {
         eprintln!(
-            "usage: eeruf-hil SCENE [--hopping | --one FAULT PERIODS] --board NAME EMULATOR [ARGUMENT ..] [--board ..]"
+            "usage: eeruf-hil SCENE [--hopping | --one FAULT PERIODS | --lines LINES PERIODS] --board NAME EMULATOR \
+             [ARGUMENT ..] [--board ..]"
         );
         return ExitCode::from(2);
     };
     let outcome = match (arguments.get(1..4), &boards[..]) {
         (Some([one, fault, periods]), &[(_, emulator)]) if one == "--one" => one_run(scene, fault, periods, emulator),
+        (Some([option, lines, periods]), &[(_, emulator)]) if option == "--lines" => {
+            played_run(scene, lines, periods, emulator)
+        }
         _ if arguments.get(1).is_some_and(|argument| argument == "--hopping") => hopping_table(scene, &boards),
         _ => tables(scene, &boards),
     };
@@ -63,21 +72,36 @@ fn one_run(scene: &str, fault: &str, periods: &str, emulator: &[String]) -> Resu
     let known = Fault::named(fault).ok_or_else(|| {
         format!("fault {fault}; expected none, missing, stuck, chatters, interrupts-lost, stall or wrap")
     })?;
-    let periods = periods.parse().map_err(|_| format!("{periods} periods; expected a number"))?;
-    let world = World::from_toml(Path::new(scene)).map_err(|error| error.to_string())?;
-    let run = run(&world, known, periods, Pace::Wall, emulator)?;
+    let (world, periods) = (world_of(scene)?, number_of(periods)?);
+    Ok(csv(&run(&world, known, periods, Pace::Wall, emulator)?))
+}
+
+fn played_run(scene: &str, lines: &str, periods: &str, emulator: &[String]) -> Result<String, String> {
+    let (lines, world) = (PlayedLines::read(lines)?, world_of(scene)?);
+    Ok(csv(&run_played(&world, lines, number_of(periods)?, emulator)?))
+}
+
+fn world_of(scene: &str) -> Result<World, String> {
+    World::from_toml(Path::new(scene)).map_err(|error| error.to_string())
+}
+
+fn number_of(periods: &str) -> Result<u32, String> {
+    periods.parse().map_err(|_| format!("{periods} periods; expected a number"))
+}
+
+fn csv(run: &Run) -> String {
     let rows = run.read.iter().flatten().map(|reading| {
         let t_echo = reading.t_echo.map(|t_echo| t_echo.as_micros().to_string()).unwrap_or_default();
         format!("{},{},{},{t_echo}\n", reading.sensor, reading.period, reading.kind)
     });
-    Ok(format!("sensor,period,reading,t_echo_us\n{}", rows.collect::<String>()))
+    format!("sensor,period,reading,t_echo_us\n{}", rows.collect::<String>())
 }
 
 /// One row without a fault, and the rows of all faults.
 type Rows = (String, String);
 
 fn tables(scene: &str, boards: &[Board<'_>]) -> Result<String, String> {
-    let world = World::from_toml(Path::new(scene)).map_err(|error| error.to_string())?;
+    let world = world_of(scene)?;
     let simulated = simulate(&world, Method::Eeruf, &Options::periods(PERIODS)).map_err(|error| error.to_string())?;
     let rows = |&(board, emulator): &Board<'_>| -> Result<Rows, String> {
         rows(&world, &simulated, board, emulator).map_err(|error| format!("{board}: {error}"))
@@ -123,7 +147,7 @@ fn fault_row(board: &str, fault: Fault, faulty: &Run, fault_free: &Run) -> Resul
 }
 
 fn hopping_table(scene: &str, boards: &[Board<'_>]) -> Result<String, String> {
-    let world = World::from_toml(Path::new(scene)).map_err(|error| error.to_string())?;
+    let world = world_of(scene)?;
     let rows = |&(board, emulator): &Board<'_>| -> Result<String, String> {
         let mut rows = String::new();
         for fault in [Fault::None].into_iter().chain(Fault::ALL) {

@@ -10,6 +10,7 @@ use eeruf_sim::{Readings, World};
 use crate::control::Control;
 use crate::emulator::Emulator;
 use crate::lines::{FAULTY, LineFault, Lines};
+use crate::played::PlayedLines;
 use crate::reference::{AnyRing, Read, Reference, Session};
 
 /// For how many periods each run of the tables lasts.
@@ -110,19 +111,25 @@ pub(crate) enum Pace {
 /// against the control.
 pub(crate) fn run(world: &World, fault: Fault, periods: u32, pace: Pace, emulator: &[String]) -> Result<Run, String> {
     let make = |now| Ring::new(&SCHEDULE, CONFIG, now).map_err(|error| error.to_string());
-    run_ring(world, fault, periods, pace, emulator, make, true)
+    run_ring(world, (fault, None), periods, pace, emulator, make, true)
+}
+
+/// A run of that board, at the pace of the clock on the wall, whose lines play these edges.
+pub(crate) fn run_played(world: &World, lines: PlayedLines, periods: u32, emulator: &[String]) -> Result<Run, String> {
+    let make = |now| Ring::new(&SCHEDULE, CONFIG, now).map_err(|error| error.to_string());
+    run_ring(world, (Fault::None, Some(lines)), periods, Pace::Wall, emulator, make, false)
 }
 
 /// A run of a board whose ring hops. It has no control: whose turn it is to fire alone, and which lag moves, depends on
 /// what all sensors hear, so that a ring without the fault fires at other times.
 pub(crate) fn run_hopping(world: &World, fault: Fault, periods: u32, emulator: &[String]) -> Result<Run, String> {
     let make = |now| hopping_ring(now).map_err(|error| error.to_string());
-    run_ring(world, fault, periods, Pace::Free, emulator, make, false)
+    run_ring(world, (fault, None), periods, Pace::Free, emulator, make, false)
 }
 
 fn run_ring<P: Plan, J: Judge, const H: usize>(
     world: &World,
-    fault: Fault,
+    (fault, played): (Fault, Option<PlayedLines>),
     periods: u32,
     pace: Pace,
     emulator: &[String],
@@ -132,7 +139,8 @@ fn run_ring<P: Plan, J: Judge, const H: usize>(
     let orders = fault.orders(periods);
     let line_fault = if let Fault::Line(fault) = fault { fault } else { LineFault::None };
     let pace = (pace == Pace::Wall).then_some(orders.start);
-    let session = Session::new(Emulator::start(emulator, orders)?, Lines::new(world, line_fault, orders.start)?, pace);
+    let lines = Lines::new(world, line_fault, orders.start)?.with_played(played);
+    let session = Session::new(Emulator::start(emulator, orders)?, lines, pace);
     let outcome = (|| {
         // The first thing that a board says is when it set up its ring.
         let now = session.borrow_mut().expect(Topic::Deadline, 0)?.instant();

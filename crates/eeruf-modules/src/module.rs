@@ -156,7 +156,7 @@ pub struct PulseTimes {
     /// Shorter pulses are no echoes: 100 us is 17 mm, less than these modules can measure.
     pub shortest_us: u32,
     /// A line that rises later after the trigger was not raised by it, as of exchanged wires. An HC-SR04 takes half a
-    /// millisecond; this is a choice.
+    /// millisecond, so that one which fires a millisecond later raises a line later than this, a choice.
     pub latest_rise_us: u32,
     /// Pulses as long as this are the module's own time-out, which may be a nineteenth short: no echo.
     pub longest_us: u32,
@@ -172,6 +172,6 @@ impl Module {
         // Among modules of one name there are clones.
         let longest_us = if hold_us > CLONE_HOLDS_US { hold_us } else { CLONE_HOLDS_US };
         let (longest_us, longest_hold_us) = (hold_us / 19 * 18, longest_us / 4 * 5);
-        Some(PulseTimes { deaf_us: 100, shortest_us: 100, latest_rise_us: 2000, longest_us, longest_hold_us })
+        Some(PulseTimes { deaf_us: 100, shortest_us: 100, latest_rise_us: 1400, longest_us, longest_hold_us })
     }
 }

@@ -2,6 +2,7 @@
 //! accepted there is lost to lateness of the sketch, not to sound.
 
 use std::collections::BTreeMap;
+use std::env;
 use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
@@ -63,20 +64,25 @@ pub(super) fn run(library: &Path, short: bool) -> Result<(), Trouble> {
     faults_are_no_free_space(library, &world)
 }
 
-/// Faults of one module's line, as `world.c` names them, and what Ring8 says of that module before a wall and before
-/// nothing: a distance, clear, or that it does not answer.
-const FAULTS: [(&str, [Says; 2]); 9] = [
-    ("cut", [Says::NoAnswer, Says::NoAnswer]),
-    ("deaf", [Says::NoAnswer, Says::NoAnswer]),
-    ("glitch-high", [Says::NoAnswer, Says::NoAnswer]),
-    ("glitch-low", [Says::Wall, Says::Clear]),
+/// Faults of one module's line: as `world.c` names them, and as the file does.
+const FAULTS: [(&str, &str); 9] = [
+    ("cut", "no power"),
+    ("deaf", "cut wire"),
+    ("glitch-high", "glitch high, cut wire"),
+    ("glitch-low", "glitch low"),
     // Until it has been high for longer than any clone holds it, such a line still listens.
-    ("stuck", [Says::NoAnswer, Says::NoAnswer]),
-    ("exchanged", [Says::NoAnswer, Says::NoAnswer]),
-    ("hold-66", [Says::Wall, Says::Clear]),
-    ("hold-130", [Says::Wall, Says::Clear]),
-    ("hold-200", [Says::Wall, Says::Clear]),
+    ("stuck", "held for ever"),
+    ("exchanged", "exchanged, 20 ms apart"),
+    ("hold-66", "hold of 66 ms"),
+    ("hold-130", "hold of 130 ms"),
+    ("hold-200", "hold of 200 ms"),
 ];
+/// Surroundings of the module, as the file names them.
+const PLACES: [&str; 2] = ["wall", "nothing"];
+/// The faults of all languages, and the table of the outcomes, of which this column is compared.
+const FILE: &str = "tests/data/line-faults.txt";
+const LOG: &str = "docs/log/line-faults.md";
+const COLUMN: &str = "Arduino";
 /// Readings that a line may take to show its fault: the time that a clone holds it, in periods.
 const UNTIL_STUCK: usize = 4;
 
@@ -87,7 +93,54 @@ enum Says {
     NoAnswer,
 }
 
-/// Checks the words of Ring8 about a faulty module, before a wall and before nothing; its others read their walls.
+impl Says {
+    /// The state that the file has for a fault in this place. A clone before a wall is as one that is healthy.
+    fn of(file: &str, fault: &str, place: &str) -> Result<Self, Trouble> {
+        let names = if place == "wall" && fault.starts_with("hold of") { "healthy" } else { fault };
+        let rows = file.lines().filter(|line| !line.starts_with('#')).map(|line| cells(line));
+        let mut rows = rows.filter(|row| row.first() == Some(&names) && row.len() == 6);
+        let row = rows.find(|row| [place, "either"].contains(&row[1]));
+        match row.and_then(|row| row[4].split_whitespace().next()) {
+            Some("obstacle") => Ok(Self::Wall),
+            Some("clear") => Ok(Self::Clear),
+            Some("unanswered" | "held") => Ok(Self::NoAnswer),
+            _ => Err(Trouble::Failed(format!("{FILE} has no {names} before {place}"))),
+        }
+    }
+}
+
+/// The cells of a line.
+fn cells(line: &str) -> Vec<&str> {
+    line.trim_matches('|').split('|').map(str::trim).collect()
+}
+
+/// The document whose table has these cells in the column, by fault and surroundings; rows of a fault that it has once
+/// take the sum.
+fn with_column(document: &str, said: &[(&str, &str, [usize; 3])]) -> Result<String, Trouble> {
+    let head = document.lines().find(|line| line.starts_with("| fault")).map(cells).unwrap_or_default();
+    let column = head.iter().position(|&name| name == COLUMN);
+    let column = column.ok_or_else(|| Trouble::Failed(format!("{LOG} has no column {COLUMN}")))?;
+    let mut text = String::new();
+    for line in document.lines() {
+        let mut row = cells(line);
+        let of_row = said.iter().filter(|(fault, place, _)| {
+            line.starts_with('|') && row.len() > column && row[0] == *fault && [*place, "either"].contains(&row[1])
+        });
+        let sum = of_row.map(|&(.., counts)| counts).reduce(|a, b| [a[0] + b[0], a[1] + b[1], a[2] + b[2]]);
+        let Some([right, all, lies]) = sum else {
+            text += line;
+            text.push('\n');
+            continue;
+        };
+        let cell = format!("{right} of {all}, {lies}");
+        row[column] = &cell;
+        _ = writeln!(text, "| {} |", row.join(" | "));
+    }
+    Ok(text)
+}
+
+/// Checks the words of Ring8 about a faulty module, before a wall and before nothing; its others read their walls. The
+/// table of the log has what is said; `EERUF_WRITE` writes it.
 fn faults_are_no_free_space(library: &Path, world: &Path) -> Result<(), Trouble> {
     const FAULTY: usize = 3;
     let sketch = build::example(library, &build::core(Board::Uno)?, "Ring8")?;
@@ -96,10 +149,14 @@ fn faults_are_no_free_space(library: &Path, world: &Path) -> Result<(), Trouble>
         "\n| fault of module {FAULTY} | before | distances | clear | no answer | others' distances, least of each |"
     );
     println!("|---|---|---:|---:|---:|---:|");
-    for (fault, expected) in FAULTS {
-        for (place, expected) in ["a wall", "nothing"].into_iter().zip(expected) {
+    let (file, document) =
+        (fs::read_to_string(FILE).map_err(failed(FILE))?, fs::read_to_string(LOG).map_err(failed(LOG))?);
+    let mut outcomes = vec![];
+    for (fault, name) in FAULTS {
+        for place in PLACES {
+            let expected = Says::of(&file, name, place)?;
             let ways = Path::new(TARGET).join("faults.txt");
-            let walls = (1..=8).filter(|&module| module != FAULTY || place == "a wall");
+            let walls = (1..=8).filter(|&module| module != FAULTY || place == "wall");
             let walls = walls.map(|module| format!("{0} {0} {1}\n", module - 1, EQUAL_US + 500 * module as u32));
             fs::write(&ways, walls.collect::<String>()).map_err(failed("target"))?;
             let pins = triggers.iter().chain(echoes).map(ToString::to_string);
@@ -122,8 +179,11 @@ fn faults_are_no_free_space(library: &Path, world: &Path) -> Result<(), Trouble>
             // The wires of the one after it are exchanged with its own.
             let others = (1..=8).filter(|&module| module != FAULTY && (fault != "exchanged" || module != FAULTY + 1));
             let least = others.map(distances).min().unwrap_or(0);
-            println!("| {fault} | {place} | {} | {clear} | {silent} | {least} |", distances(FAULTY));
+            println!("| {name} | {place} | {} | {clear} | {silent} | {least} |", distances(FAULTY));
             let found = [distances(FAULTY), clear, silent];
+            // While a line that is stuck may listen, its silence has evidence.
+            let lies = if expected == Says::Clear || fault == "stuck" { 0 } else { clear };
+            outcomes.push((name, place, [found[expected as usize], found.iter().sum(), lies]));
             let fine = match expected {
                 Says::Wall => found[0] > 26 && found[1..] == [0, 0],
                 Says::Clear => found[1] > 26 && found[0] + found[2] == 0,
@@ -132,12 +192,19 @@ fn faults_are_no_free_space(library: &Path, world: &Path) -> Result<(), Trouble>
             };
             if !fine || least < 27 {
                 return Err(Trouble::Failed(format!(
-                    "{fault} before {place}: expected {expected:?} of module {FAULTY}"
+                    "{name} before {place}: expected {expected:?} of module {FAULTY}"
                 )));
             }
         }
     }
-    Ok(())
+    let said = with_column(&document, &outcomes)?;
+    if env::var_os("EERUF_WRITE").is_some() {
+        fs::write(LOG, said).map_err(failed(LOG))
+    } else if said == document {
+        Ok(())
+    } else {
+        Err(Trouble::Failed(format!("{LOG} is not what Ring8 says; EERUF_WRITE=1 writes it")))
+    }
 }
 
 /// The sketch for as many modules as there are pins.

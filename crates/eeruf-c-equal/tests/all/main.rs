@@ -3,6 +3,7 @@
 //! Each test compares 200,000 events; with `EERUF_C_EVENTS=10000000` as many as that.
 
 mod constants;
+mod line_faults;
 mod parts;
 mod serial;
 mod settings;

@@ -1,0 +1,178 @@
+"""Faults of one echo line of a HcSr04Ring, which samples lines: python3 test_line_faults.py [FAULTS [TABLE]].
+
+Free space is never said without evidence, and each state is right after two readings. It runs under MicroPython too."""
+
+import sys
+
+from eeruf import ACCEPTED, CLEAR, KIND, SENSOR, HcSr04Ring, Schedule
+from line_faults import FAULTY, cell, read, with_column
+
+PERIODS = 40
+COLUMN = "MicroPython"
+TURN = 1 << 30  # of a board's clock
+STEP_US = 20  # between two looks at the clock
+TOLERANCE_US = 120  # by which a sampled width may be wrong
+WALL = [(450, True, False), (6280, False, False)]
+NOTHING = [(450, True, False), (38450, False, False)]
+
+
+class Board:
+    """`time` and `machine`: pin x triggers module x, whose line is at pin 10 + x, and plays these edges."""
+
+    IN, OUT = 0, 1
+
+    def __init__(self, start, fault):
+        board = self
+        self.now, self.fault, self.levels, self.ahead, self.changed = start, fault, [False] * 4, [], start
+
+        class Pin:
+            IN, OUT = 0, 1
+
+            def __init__(self, number):
+                self.number, self.level = number, 0
+
+            def init(self, mode, value=None):
+                pass
+
+            def value(self, level=None):
+                if level is None:
+                    return int(board.look(self.number - 10))
+                if self.level and not level:
+                    board.triggered(self.number)
+                self.level = level
+
+        self.Pin = Pin
+
+    def ticks_us(self):
+        self.now += STEP_US
+        return self.now % TURN
+
+    def ticks_diff(self, one, other):
+        return (one - other + TURN // 2) % TURN - TURN // 2
+
+    def ticks_add(self, ticks, more):
+        return (ticks + more) % TURN
+
+    def sleep_us(self, us):
+        self.now += us
+
+    def look(self, line):
+        """The level of a line. Of two edges that have just come only the first, so that a look hits every gap."""
+        due = [edge for edge in self.ahead if edge[1] == line and edge[0] <= self.now]
+        for edge in due:
+            self.ahead.remove(edge)
+            self.levels[line], self.changed = edge[2], self.now
+            if self.now - edge[0] < 3 * STEP_US:
+                break
+        return self.levels[line]
+
+    def triggered(self, x):
+        fault, line, edges = self.fault, x, WALL
+        if x == FAULTY:
+            edges = fault.edges
+        elif x == fault.partner:
+            edges = NOTHING
+        if fault.partner is not None and x in (FAULTY, fault.partner):
+            line = FAULTY + fault.partner - x
+        # A module whose line is high does not hear its trigger.
+        if not self.look(line):
+            self.ahead += [(self.now + us, line, high) for us, high, _ in edges]
+            self.ahead.sort()
+
+    def skip(self, deadline):
+        """Skips the time in which nothing happens, once all lines were looked at."""
+        if self.now - self.changed < 10 * STEP_US:
+            return
+        to = self.now + self.ticks_diff(deadline, self.now % TURN) - 5 * STEP_US
+        ahead = [at for at, _, _ in self.ahead if at > self.now - 3 * STEP_US]
+        if ahead:
+            to = min(to, ahead[0] - 4 * STEP_US - self.now % 7)
+        self.now = max(self.now, to)
+
+
+class Forgetful(HcSr04Ring):
+    """A program that triggers the faulty sensor by itself, and never says so."""
+
+    def _trigger(self, x):
+        if x == FAULTY:
+            self._triggers[x].value(1)
+            self._triggers[x].value(0)
+        else:
+            super()._trigger(x)
+
+
+def run(period_us, t_fire_us, fault):
+    """The readings of the faulty sensor, and of the one that its wire is exchanged with: (kind, state)."""
+    # The clock wraps in each run.
+    board = Board(TURN - 1000000, fault)
+    schedule = Schedule(period_us, t_fire_us).verify(240)
+    ring = (Forgetful if fault.forgotten else HcSr04Ring)(
+        schedule, [0, 1, 2, 3], [10, 11, 12, 13], machine=board, time=board, window_us=40000
+    )
+    end, said = board.now + PERIODS * period_us, {FAULTY: [], fault.partner: []}
+    while board.now < end:
+        reading = ring.read()
+        if reading is None:
+            board.skip(ring.ring.deadline())
+        elif reading[SENSOR] in said:
+            x = reading[SENSOR]
+            said[x].append((reading[KIND], ring.state(x)))
+    return said[FAULTY], said[fault.partner]
+
+
+def is_clear(said):
+    return said[0] == CLEAR or said[1][0] == "clear"
+
+
+def is_right(said, says):
+    kind, state = said
+    if says[0] == "obstacle":
+        return kind == ACCEPTED and state[0] == "obstacle" and abs(state[1] - int(says[1])) <= TOLERANCE_US
+    if says[0] == "clear":
+        return kind == CLEAR and state[0] == "clear"
+    return not is_clear(said) and state[0] == {"held": "unanswered"}.get(says[0], says[0])
+
+
+def check(text):
+    """The table's cells, by name and surroundings."""
+    period_us, t_fire_us, faults = read(text)
+    cells = {}
+    for fault in faults:
+        name, says = fault.name + ", before " + fault.before, fault.samples
+        faulty, partner = run(period_us, t_fire_us, fault)
+        # For 250 ms a line that rose has evidence.
+        until_right = 3 if says[0] == "held" else 2
+        has_evidence = {"clear": len(faulty), "held": until_right}.get(says[0], 0)
+        lies = sum([is_clear(said) for said in faulty[has_evidence:] + partner])
+        if lies or len(faulty) < PERIODS - 2:
+            raise AssertionError("%s: clear without evidence in %d of %d readings" % (name, lies, len(faulty)))
+        wrong = [said for said in faulty[until_right:] if not is_right(said, says)]
+        if wrong:
+            raise AssertionError("%s: not %r %d times, such as %r" % (name, says, len(wrong), wrong[0]))
+        count = len(faulty) - until_right
+        said = cell(count - len(wrong), count, lies)
+        cells[fault.name, fault.before] = said if fault.says == says else says[0] + ": " + said
+    return cells
+
+
+def main(text, document):
+    """The document whose table has what was said."""
+    cells = check(text)
+    print("%d faults of a line: never clear without evidence" % len(cells))
+    return with_column(document, COLUMN, cells)
+
+
+if __name__ == "__main__":
+    import os
+
+    paths = sys.argv[1:] + ["../../tests/data/line-faults.txt", "../../docs/log/line-faults.md"][len(sys.argv) - 1 :]
+    with open(paths[0]) as faults:
+        text = faults.read()
+    with open(paths[1]) as table:
+        document = table.read()
+    written = main(text, document)
+    if "EERUF_WRITE" in os.environ:
+        with open(paths[1], "w") as table:
+            table.write(written)
+    elif written != document:
+        raise SystemExit("%s is not what MicroPython says; EERUF_WRITE=1 writes it" % paths[1])

@@ -1,0 +1,129 @@
+//! Faults of one echo line, in Rust and in C: never free space without evidence, and the right state of each.
+
+use std::collections::BTreeSet;
+
+use eeruf_c_equal::line_faults::{Fault, Faults, Outcome, Says, outcomes};
+
+const FAULTS: &str = include_str!("../../../../tests/data/line-faults.txt");
+const LANGUAGES: [&str; 2] = ["Rust", "C"];
+const LOG: &str = "../../docs/log/line-faults.md";
+
+/// Hands each fault's outcome in each language to a check.
+fn each(mut check: impl FnMut(&str, &Fault, &Outcome)) {
+    let faults = Faults::read(FAULTS);
+    for fault in &faults.faults {
+        for (language, outcome) in LANGUAGES.iter().zip(outcomes(&faults, fault)) {
+            check(language, fault, &outcome);
+        }
+    }
+}
+
+/// Readings after which a state must be right.
+fn until_right(fault: &Fault) -> usize {
+    // For 250 ms, three firings, a line that rose has evidence.
+    if fault.says == Says::Held { 3 } else { 2 }
+}
+
+fn right(fault: &Fault, outcome: &Outcome) -> usize {
+    outcome.faulty[until_right(fault)..].iter().filter(|said| said.is(fault.says)).count()
+}
+
+/// Number of readings that call the space free without evidence, of both sensors if wires are exchanged.
+fn lies(fault: &Fault, outcome: &Outcome) -> usize {
+    let witnessed = match fault.says {
+        Says::Clear => outcome.faulty.len(),
+        Says::Held => until_right(fault),
+        _ => 0,
+    };
+    outcome.faulty.iter().skip(witnessed).chain(&outcome.partner).filter(|said| said.is_clear()).count()
+}
+
+#[test]
+fn faulty_line_is_never_clear_without_evidence() {
+    each(|language, fault, outcome| {
+        assert!(outcome.faulty.len() > 97, "{language}, {}", fault.name);
+        assert_eq!(lies(fault, outcome), 0, "{language}, {}, before {}", fault.name, fault.before);
+    });
+}
+
+#[test]
+fn state_is_right_within_two_answered_firings() {
+    each(|language, fault, outcome| {
+        let after = &outcome.faulty[until_right(fault)..];
+        let wrong = after.iter().find(|said| !said.is(fault.says));
+        assert_eq!(wrong, None, "{language}, {}, before {}", fault.name, fault.before);
+    });
+}
+
+// A clone that holds its line for longer is as healthy as a module that does for 38 ms.
+#[test]
+fn healthy_module_is_well_and_clear_before_nothing() {
+    let mut healthy = 0;
+    each(|language, fault, outcome| {
+        if fault.name == "healthy" || fault.name.starts_with("hold of") {
+            healthy += 1;
+            let right = outcome.faulty[2..].iter().filter(|said| said.is_well && said.is(fault.says)).count();
+            assert!(100 * right >= 99 * (outcome.faulty.len() - 2), "{language}, {}: {right}", fault.name);
+        }
+    });
+    assert_eq!(healthy, 5 * LANGUAGES.len());
+}
+
+#[test]
+fn file_has_each_fault_that_the_ring_must_name() {
+    let faults = Faults::read(FAULTS).faults;
+    let names: BTreeSet<&str> = faults.iter().map(|fault| &*fault.name).collect();
+    // Besides holds of 38 ms, which is a healthy module's.
+    let expected = [
+        "cut wire",
+        "exchanged, 1 ms apart",
+        "exchanged, 20 ms apart",
+        "forgotten call",
+        "glitch high",
+        "glitch high, cut wire",
+        "glitch low",
+        "healthy",
+        "held for ever",
+        "hold of 130 ms",
+        "hold of 200 ms",
+        "hold of 66 ms",
+        "lost falling edge",
+        "lost rising edge",
+        "no power",
+    ];
+    assert_eq!(names, BTreeSet::from(expected));
+}
+
+/// The cells of a row of a table.
+fn cells(line: &str) -> Vec<&str> {
+    line.trim_matches('|').split('|').map(str::trim).collect()
+}
+
+/// The document whose table has what was said in these languages.
+fn with_outcomes(document: &str) -> String {
+    let head = document.lines().find(|line| line.starts_with("| fault")).map(cells).expect("a table of faults");
+    let mut lines: Vec<String> = document.lines().map(str::to_owned).collect();
+    each(|language, fault, outcome| {
+        let column = head.iter().position(|name| *name == language).expect("a column for each language");
+        let (fault_and_place, all) = ([&*fault.name, &*fault.before], outcome.faulty.len() - until_right(fault));
+        let of_fault = |line: &&mut String| line.starts_with('|') && cells(line).starts_with(&fault_and_place);
+        let line = lines.iter_mut().find(of_fault).unwrap_or_else(|| panic!("no row of {fault_and_place:?}"));
+        let mut row = cells(line);
+        let cell = format!("{} of {all}, {}", right(fault, outcome), lies(fault, outcome));
+        row[column] = &cell;
+        *line = format!("| {} |", row.join(" | "));
+    });
+    lines.join("\n") + "\n"
+}
+
+// EERUF_WRITE=1 writes it.
+#[test]
+fn table_in_the_log_is_what_rust_and_c_say() {
+    let stands = std::fs::read_to_string(LOG).unwrap();
+    let said = with_outcomes(&stands);
+    if std::env::var_os("EERUF_WRITE").is_some() {
+        std::fs::write(LOG, said).unwrap();
+    } else {
+        assert!(said == stands, "{LOG} is not what Rust and C say; EERUF_WRITE=1 writes it:\n{said}");
+    }
+}

@@ -1,0 +1,103 @@
+"""Faults of echo lines, on an emulated board, as the node publishes them: never free space without evidence.
+
+Each sensor of the board has another fault of tests/data/line-faults.txt. The table is that of docs/log/line-faults.md.
+"""
+
+import math
+import os
+import sys
+from pathlib import Path
+
+import pytest
+
+sys.path.append("c/micropython")
+
+from line_faults import cell, read, with_column
+from test_node import SENSORS, expected_ranges, participant, processes, run  # noqa: F401
+
+FAULTS, LOG, COLUMN = Path("tests/data/line-faults.txt"), Path("docs/log/line-faults.md"), "ROS 2"
+PERIODS = 15
+# No two sensors of the board fire 1 ms apart.
+NOT_PLAYED = "exchanged, 1 ms apart"
+NOTHING = "+450 -38450"
+# Kinds of readings by the state that they leave.
+KINDS = {
+    "obstacle": {"accepted"},
+    "clear": {"clear"},
+    "unanswered": {"unanswered", "stuck"},
+    "unknown": {"first", "no_echo", "rejected"},
+}
+
+
+def boards():
+    """For each run of a board the line of each sensor, and the faults with their sensors."""
+    lines, placed = [], []
+    for fault in read(FAULTS.read_text())[2]:
+        if fault.name == NOT_PLAYED:
+            continue
+        needed = 1 if fault.partner is None else 2
+        if len(lines) + needed > SENSORS:
+            yield filled(lines), placed
+            lines, placed = [], []
+        sensor, words = len(lines), fault.words
+        placed.append((sensor, fault))
+        if fault.forgotten:
+            # The board looks at every line; no interrupt hands it the edges of this one.
+            words = [word.rstrip("*") + "*" for word in words]
+        lines.append(" ".join([str(sensor + needed - 1), *words]))
+        if fault.partner is not None:
+            lines.append(f"{sensor} {NOTHING}")
+    yield filled(lines), placed
+
+
+def filled(lines):
+    return ",".join(lines + [f"{sensor} {NOTHING}" for sensor in range(len(lines), SENSORS)])
+
+
+def outcome(sensor, fault, rows, node, pictures):
+    """Numbers of right readings, of readings, and of messages that call the space free without evidence."""
+    state = "unanswered" if fault.says[0] == "held" else fault.says[0]
+    until_right = 3 if fault.says[0] == "held" else 2
+    after = rows[until_right:]
+    right = sum(row["reading"] in KINDS[state] for row in after)
+    if state == "obstacle":
+        metres = int(fault.says[1]) * 343.2e-6 / 2
+        assert all(abs(message.range - metres) < 0.01 for message in node.ranges[sensor]), fault.name
+    # What the diagnostics and the picture of all sectors say in the end.
+    values = {value.key: value.value for value in node.reports[-1][f"sensor {sensor + 1}"].values}
+    assert values["state"].startswith(state), (fault.name, values)
+    sector = (-45 * sensor % 360 + 20) % 360 // 5
+    shown = [picture.distances[sector] for picture in pictures]
+    assert (shown[-1] == 401) == (state == "clear") and (shown[-1] == 2) == (state == "unanswered"), (fault.name, shown)
+    free = sum(message.range == math.inf for message in node.ranges[sensor])
+    lies = 0 if state == "clear" else free + shown.count(401)
+    if fault.says[0] == "held":
+        # The first readings have evidence; pictures show them until the next.
+        assert free <= until_right, free
+        lies = 0
+    if fault.partner is not None:
+        lies += sum(message.range == math.inf for message in node.ranges[sensor + 1])
+    return right, len(after), lies
+
+
+def test_line_fault_is_published_as_free_space_nowhere(tmp_path, participant, processes):
+    cells = {}
+    for number, (lines, placed) in enumerate(boards()):
+        folder = tmp_path / str(number)
+        folder.mkdir()
+        node, readings, _, _, mavlink = run(folder, participant, processes, ["--lines", lines], PERIODS)
+        for heard, awaited in zip(node.ranges, expected_ranges(readings, set(), math.inf)):
+            assert [message.range for message in heard] == pytest.approx(awaited, abs=0.002)
+        pictures = [message for message in mavlink.messages if message.get_type() == "OBSTACLE_DISTANCE"]
+        assert pictures
+        for sensor, fault in placed:
+            rows = [row for row in readings if int(row["sensor"]) == sensor]
+            right, count, lies = outcome(sensor, fault, rows, node, pictures)
+            cells[fault.name, fault.before] = cell(right, count, lies)
+            assert (right, lies) == (count, 0) and count > PERIODS - 5, (fault.name, fault.before, right, count, lies)
+    document = LOG.read_text()
+    written = with_column(document, COLUMN, cells)
+    if "EERUF_WRITE" in os.environ:
+        LOG.write_text(written)
+    else:
+        assert written == document, f"{LOG} is not what the node says; EERUF_WRITE=1 writes it"

@@ -39,6 +39,7 @@ mod test;
 mod toolchain;
 mod tune;
 mod veripb;
+mod zephyr;
 
 use std::process::ExitCode;
 

@@ -16,8 +16,7 @@ class FastDds:
     def __init__(self, program, domain):
         command = [program, str(domain)]
         self.process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
-        # A node that starts meanwhile may lose its port for acknowledgements to this participant, and RustDDS then
-        # announces it all the same.
+        # Its ports are open.
         assert self.process.stdout.readline() == "ready\n"
         self.readers = {}
         self.thread = threading.Thread(target=self.hear)

@@ -6,6 +6,7 @@ Cyclone DDS and Fast DDS must each receive all of it, and a cut wire is free spa
 import math
 import os
 import signal
+import socket
 import struct
 import subprocess
 import time
@@ -162,6 +163,29 @@ def test_transforms_reach_those_who_come_late(participant, launched):
         assert (place.x, place.y, place.z) == pytest.approx((x, y, 0.15))
         assert (turn.x, turn.y) == (0.0, 0.0)
         assert 2 * math.degrees(math.atan2(turn.z, turn.w)) == pytest.approx(heading)
+
+
+def port_for_acknowledgements():
+    """A socket that has the port of the next participant for user traffic, not the one for discovery."""
+    for number in range(20):
+        discovery, user = (socket.socket(socket.AF_INET, socket.SOCK_DGRAM) for _ in range(2))
+        try:
+            discovery.bind(("0.0.0.0", 7400 + 250 * DOMAIN + 10 + 2 * number))
+            user.bind(("0.0.0.0", 7400 + 250 * DOMAIN + 11 + 2 * number))
+            return user
+        except OSError:
+            user.close()
+        finally:
+            discovery.close()
+    raise AssertionError("no free number for a participant")
+
+
+def test_port_that_another_program_has_is_passed_over(participant, tmp_path):
+    with port_for_acknowledgements():
+        launched = Launched(participant, tmp_path, *ARGUMENTS)
+        late = reader(participant, "/tf_static", TFMessage, LATCHED)
+        until("the transforms", launched.process, lambda: taken(late, TFMessage))
+        launched.end()
 
 
 @pytest.mark.parametrize(

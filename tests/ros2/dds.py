@@ -1,4 +1,4 @@
-"""Messages of ROS 2 as Cyclone DDS takes them, and readers for them, on the loopback interface."""
+"""Messages of ROS 2 as Cyclone DDS takes them, and readers for them, of Fast DDS too, on the loopback interface."""
 
 import os
 import time
@@ -17,6 +17,8 @@ from cyclonedds.idl.types import array, float32, float64, int32, sequence, uint8
 from cyclonedds.sub import DataReader
 from cyclonedds.topic import Topic
 from cyclonedds.util import duration
+
+from fast_dds import FastDds
 
 NODE = os.environ["EERUF_ROS2"]
 # Ports of higher domains are among those that the system gives away.
@@ -190,6 +192,8 @@ LATCHED = Qos(
 
 def reader(participant, name, kind, qos=RELIABLE):
     """A reader of the topic with this full name."""
+    if isinstance(participant, FastDds):
+        return participant.reader(f"rt{name}", kind, latched=qos is LATCHED)
     return DataReader(participant, Topic(participant, f"rt{name}", kind, qos=qos), qos=qos)
 
 

@@ -1,4 +1,5 @@
-//! The C library in `c/`: strict compilers, what a caller may do wrong, equality with the Rust crates under sanitizers.
+//! The C library in `c/`: strict compilers, what a caller may do wrong, the sample for Zephyr, equality with the Rust
+//! crates under sanitizers.
 
 use std::path::Path;
 use std::process::Command;
@@ -44,6 +45,7 @@ pub(crate) fn c() -> Result<(), Trouble> {
         run(Command::new(compiler).args(*language).args(STRICT).args(sources).arg(&program))?;
         run(&mut Command::new(program))?;
     }
+    crate::zephyr::sample()?;
     equal_under_sanitizers()
 }
 

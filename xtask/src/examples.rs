@@ -33,23 +33,29 @@ pub(crate) fn examples(only: Option<&str>, steps: &mut Steps) {
     }
 }
 
-/// The table of each: building them takes minutes, and a better table must not be forgotten in them until then.
+/// The table of each, and of the sample for Zephyr: building them takes minutes, and a better table must not be
+/// forgotten in them until then.
 pub(crate) fn tables() -> Result<(), Trouble> {
-    BOARDS.into_iter().try_for_each(|(board, _)| table(board))
+    BOARDS.into_iter().try_for_each(|(board, _)| table(board))?;
+    is_designed("c", Path::new("examples/nucleo-f401/ring.toml"), Path::new("c/zephyr/samples/ring/src/ring.h"))
 }
 
-/// `src/ring.rs` is what `eeruf design` says of `ring.toml`.
 fn table(board: &str) -> Result<(), Trouble> {
     let folder = Path::new("examples").join(board);
-    let failed = |why: &dyn std::fmt::Display| Trouble::Failed(format!("{}: {why}", folder.display()));
+    is_designed("rust", &folder.join("ring.toml"), &folder.join("src/ring.rs"))
+}
+
+/// A table is what `eeruf design` says of a ring file.
+fn is_designed(language: &str, ring: &Path, table: &Path) -> Result<(), Trouble> {
+    let failed = |why: &dyn std::fmt::Display| Trouble::Failed(format!("{}: {why}", table.display()));
     let mut design = Command::new(crate::program::program()?);
-    let design = output(design.arg("design").arg(folder.join("ring.toml")).args(["--period-only", "--emit", "rust"]));
-    let design = design.ok_or_else(|| failed(&"eeruf design ring.toml failed"))?;
-    let stands = fs::read_to_string(folder.join("src/ring.rs")).map_err(|error| failed(&error))?;
+    let design = output(design.arg("design").arg(ring).args(["--period-only", "--emit", language]));
+    let design = design.ok_or_else(|| failed(&format!("eeruf design {} failed", ring.display())))?;
+    let stands = fs::read_to_string(table).map_err(|error| failed(&error))?;
     if stands.trim() == design {
         return Ok(());
     }
-    Err(failed(&"src/ring.rs is not what eeruf design says of ring.toml"))
+    Err(failed(&format!("not what eeruf design says of {}", ring.display())))
 }
 
 /// The program for the Uno, built.

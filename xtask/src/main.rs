@@ -39,6 +39,7 @@ mod test;
 mod toolchain;
 mod tune;
 mod veripb;
+mod zephyr;
 
 use std::process::ExitCode;
 
@@ -88,8 +89,8 @@ enum Verb {
     },
     /// Build the wheel and test it: types, examples, and against what Rust says
     Python,
-    /// Run a ring on an emulated board, its serial line and the ROS 2 node, and listen with Cyclone DDS and pymavlink;
-    /// build ros2/ with colcon
+    /// Run a ring on an emulated board, its serial line and the ROS 2 node, and listen with Cyclone DDS, Fast DDS and
+    /// pymavlink; build ros2/ with colcon
     Ros2,
     /// Pack the Debian package of eeruf-ros2 with its systemd unit into target/deb
     Deb(deb::Plan),

@@ -30,9 +30,11 @@ pub(crate) fn python() -> Result<(), Trouble> {
     let wheel = only_file(&wheels)?;
     sources_are_whole(&python, &home)?;
     run(tool("pip").args(["install", "--quiet", "--force-reinstall", "--no-deps"]).arg(&wheel))?;
-    run(tool("ruff").args(["check", "python", "tests/python", "benches/python", "benches/leaderboard"]))?;
-    run(tool("ruff").args(["format", "--check", "python", "tests/python", "benches/python", "benches/leaderboard"]))?;
-    run(tool("mypy").args(["tests/python", "benches/python", "benches/leaderboard/leaderboard.py"]))?;
+    let sources = ["python", "tests/python", "benches/python", "benches/leaderboard", "examples/raspberry-pi"];
+    run(tool("ruff").arg("check").args(sources))?;
+    run(tool("ruff").args(["format", "--check"]).args(sources))?;
+    let typed = ["tests/python", "benches/python", "benches/leaderboard/leaderboard.py", "examples/raspberry-pi"];
+    run(tool("mypy").args(typed))?;
     run(tool("mypy.stubtest").args(["eeruf", "--ignore-missing-stub", "--mypy-config-file", "pyproject.toml"]))?;
     fresh(Path::new("python3"), &wheel)?;
     // What Python is held against: the program, and the paths of the corpus.

@@ -1,5 +1,5 @@
 //! `cargo xtask ros2`: the ring of `firmware/hil` on an emulated board, its serial line, the node `eeruf-ros2`, and
-//! Cyclone DDS and pymavlink, which must receive what the ring read. Then `ros2/` as a package of ROS 2.
+//! Cyclone DDS, Fast DDS and pymavlink, which must receive what the ring read. Then `ros2/` as a package of ROS 2.
 
 use std::env::consts::EXE_SUFFIX;
 use std::fs;
@@ -17,6 +17,7 @@ pub(crate) fn ros2() -> Result<(), Trouble> {
     }
     let emulator = crate::firmware::serial_board()?;
     let python = environment()?;
+    let fast_dds = fast_dds();
     let programs = ["eeruf-ros2", "eeruf-hil", "eeruf"];
     crate::program::build(&programs.map(|program| ["--bin", program]).concat())?;
     let mut tests = Command::new(python);
@@ -25,7 +26,26 @@ pub(crate) fn ros2() -> Result<(), Trouble> {
         let path = absolute(format!("target/debug/{program}{EXE_SUFFIX}"));
         tests.env(variable, path.map_err(|error| Trouble::Failed(error.to_string()))?);
     }
-    run(&mut tests)
+    if let Ok(program) = &fast_dds {
+        tests.env("EERUF_FAST_DDS", program);
+    }
+    run(&mut tests)?;
+    // Without it, all but its tests have passed.
+    fast_dds.map(drop)
+}
+
+/// Compiles the listener that uses Fast DDS, against the version that Debian has.
+fn fast_dds() -> Result<PathBuf, Trouble> {
+    let headers = ["-xc++", "-E", "-include", "fastcdr/Cdr.h", "-include", "fastrtps/config.h", "/dev/null"];
+    if output(Command::new("g++").args(headers)).is_none() {
+        let packages = "g++ libfastrtps-dev libfastcdr-dev";
+        return Err(Trouble::Skipped(format!("tests of Fast DDS: it is not installed; try: apt install {packages}")));
+    }
+    let program = absolute("target/ros2/fast_dds").map_err(|error| Trouble::Failed(error.to_string()))?;
+    let strict = ["-std=c++17", "-Wall", "-Wextra", "-Werror"];
+    let libraries = ["-lfastrtps", "-lfastcdr", "-o"];
+    run(Command::new("g++").args(strict).arg("tests/ros2/fast_dds.cpp").args(libraries).arg(&program))?;
+    Ok(program)
 }
 
 /// Builds `ros2/` with colcon and ament as Debian has them, around the program that is already built, and looks at what

@@ -2,17 +2,17 @@
 
 mod cloud;
 mod messages;
+mod participant;
 mod scene;
 
 use std::env;
 use std::fmt::Display;
-use std::net::{IpAddr, Ipv4Addr};
 use std::time::Duration;
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-use ros2_client::dds::rustdds::{DomainParticipantBuilder, Topic};
+use ros2_client::dds::rustdds::Topic;
 use ros2_client::qos::{Durability, History, WhenFull};
 use ros2_client::{Context, MessageTypeName, Name, Node, NodeName, NodeOptions, Publisher, QosProfile, Subscription};
 
@@ -89,16 +89,10 @@ const LATCHED: QosProfile =
 const LISTENING: QosProfile = QosProfile::subscription_default().history(History::KeepLast { depth: 64 });
 
 impl Ros {
-    /// Joins the domain `ROS_DOMAIN_ID`; on this machine alone where `ROS_LOCALHOST_ONLY` is 1 or
-    /// `ROS_AUTOMATIC_DISCOVERY_RANGE` is `LOCALHOST`.
+    /// Joins the domain `ROS_DOMAIN_ID`.
     pub(crate) fn open(setup: &Setup, args: &RosArgs) -> Result<Self, String> {
         let parameters = &setup.parameters;
-        let mut participant = DomainParticipantBuilder::new(domain()?);
-        let is = |variable: &str, value: &str| env::var(variable).is_ok_and(|set| set == value);
-        if is("ROS_LOCALHOST_ONLY", "1") || is("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST") {
-            participant = participant.with_only_networks([IpAddr::V4(Ipv4Addr::LOCALHOST)]);
-        }
-        let participant = participant.build().map_err(wrong("DDS"))?;
+        let participant = participant::join(domain()?)?;
         let context = Context::from_domain_participant(participant).map_err(wrong("DDS"))?;
         let node_name = NodeName::new(args.namespace(), args.node()).map_err(wrong(&args.full_name()))?;
         let options = NodeOptions::new().enable_rosout(false).start_parameter_services(false);

@@ -1,0 +1,149 @@
+/* A ring of HC-SR04 modules on Zephyr. Interrupts stamp the edges of the echo lines, the main thread fires by the table
+ * in ring.h, and once a second the log says what is before each module. The table is written by
+ *
+ *   eeruf design examples/nucleo-f401/ring.toml --period-only --emit c */
+#include <zephyr/device.h>
+#include <zephyr/devicetree.h>
+#include <zephyr/drivers/gpio.h>
+#include <zephyr/kernel.h>
+#include <zephyr/logging/log.h>
+
+#include <eeruf.h>
+
+#include "ring.h"
+
+LOG_MODULE_REGISTER(ring, LOG_LEVEL_INF);
+
+#define RING DT_COMPAT_GET_ANY_STATUS_OKAY(eeruf_hc_sr04_ring)
+
+/* A sleep ends with a tick, up to two later than asked for; that long is waited for instead. */
+#define WAIT_US (2 * 1000000 / CONFIG_SYS_CLOCK_TICKS_PER_SEC + 50)
+#define REPORT_PERIODS (1000000 / EERUF_PERIOD_US)
+
+static const struct gpio_dt_spec triggers[] = {
+    DT_FOREACH_PROP_ELEM_SEP(RING, trigger_gpios, GPIO_DT_SPEC_GET_BY_IDX, (,))};
+static const struct gpio_dt_spec echoes[] = {
+    DT_FOREACH_PROP_ELEM_SEP(RING, echo_gpios, GPIO_DT_SPEC_GET_BY_IDX, (,))};
+BUILD_ASSERT(ARRAY_SIZE(triggers) == EERUF_SENSORS, "trigger-gpios: expected a pin for each sensor of ring.h");
+BUILD_ASSERT(ARRAY_SIZE(echoes) == EERUF_SENSORS, "echo-gpios: expected a pin for each sensor of ring.h");
+
+static struct gpio_callback callbacks[EERUF_SENSORS];
+static EerufRing ring;
+static EerufSensor sensors[EERUF_SENSORS];
+static EerufHcSr04 modules;
+static EerufLine lines[EERUF_SENSORS];
+static EerufEdges edges;
+static EerufEdge places[64];
+static EerufWatch watch;
+static EerufWatched watched[EERUF_SENSORS];
+static const EerufHcSr04Settings settings = EERUF_HC_SR04;
+
+/* Microseconds that wrap at 32 bits. The counter of cycles wraps sooner, so that its steps are added up: call it at
+   least once each 2^32 cycles, which are 51 s at 84 MHz. */
+static uint32_t now_us(void) {
+    static uint32_t cycles_before, us;
+    static uint64_t rest; /* of a microsecond, in 1/1,000,000 of a cycle */
+    const uint32_t cycles_per_s = (uint32_t)sys_clock_hw_cycles_per_sec();
+    const unsigned int key = irq_lock();
+    const uint32_t cycles = k_cycle_get_32();
+    rest += (uint64_t)(cycles - cycles_before) * 1000000u;
+    cycles_before = cycles;
+    us += (uint32_t)(rest / cycles_per_s);
+    rest %= cycles_per_s;
+    const uint32_t now = us;
+    irq_unlock(key);
+    return now;
+}
+
+/* One callback for each echo line. Interrupts of two ports must not interrupt one another here. */
+static void on_edge(const struct device *port, struct gpio_callback *callback, gpio_port_pins_t pins) {
+    ARG_UNUSED(port);
+    ARG_UNUSED(pins);
+    const unsigned int key = irq_lock();
+    const uint8_t sensor = (uint8_t)(callback - callbacks);
+    const uint32_t at_us = now_us();
+    (void)eeruf_edges_push(&edges, sensor, gpio_pin_get_dt(&echoes[sensor]) > 0, at_us);
+    irq_unlock(key);
+}
+
+static int open_pins(void) {
+    for (uint8_t sensor = 0; sensor < EERUF_SENSORS; sensor++) {
+        const struct gpio_dt_spec *trigger = &triggers[sensor], *echo = &echoes[sensor];
+        if (!gpio_is_ready_dt(trigger) || !gpio_is_ready_dt(echo)) return -ENODEV;
+        int status = gpio_pin_configure_dt(trigger, GPIO_OUTPUT_INACTIVE);
+        if (status == 0) status = gpio_pin_configure_dt(echo, GPIO_INPUT);
+        gpio_init_callback(&callbacks[sensor], on_edge, BIT(echo->pin));
+        if (status == 0) status = gpio_add_callback_dt(echo, &callbacks[sensor]);
+        if (status == 0) status = gpio_pin_interrupt_configure_dt(echo, GPIO_INT_EDGE_BOTH);
+        if (status != 0) return status;
+    }
+    return 0;
+}
+
+static EerufStatus begin(void) {
+    const EerufConfig config = EERUF_CONFIG;
+    const uint32_t now = now_us();
+    EerufStatus status =
+        eeruf_ring_init(&ring, sizeof ring, sensors, sizeof sensors, &eeruf_schedule, &config, now);
+    if (status == EERUF_OK)
+        status = eeruf_hc_sr04_init(&modules, sizeof modules, lines, sizeof lines, &ring, &settings);
+    if (status == EERUF_OK) status = eeruf_edges_init(&edges, sizeof edges, places, sizeof places);
+    if (status == EERUF_OK) status = eeruf_watch_init(&watch, sizeof watch, watched, sizeof watched, now);
+    return status;
+}
+
+static void fire(uint8_t sensor) {
+    const int level = gpio_pin_get_dt(&echoes[sensor]);
+    if (level < 0) {
+        (void)eeruf_hc_sr04_cannot_read(&modules, sensor);
+        return;
+    }
+    if (eeruf_hc_sr04_fire(&modules, sensor, level > 0) != EERUF_OK) return;
+    int status = gpio_pin_set_dt(&triggers[sensor], 1);
+    k_busy_wait(settings.trigger_us);
+    if (status == 0) status = gpio_pin_set_dt(&triggers[sensor], 0);
+    if (status != 0) (void)eeruf_hc_sr04_cannot_write(&modules, sensor);
+}
+
+static void report(uint32_t now) {
+    for (uint8_t sensor = 0; sensor < EERUF_SENSORS; sensor++) {
+        EerufState state;
+        (void)eeruf_watch_state(&watch, sensor, now, &state);
+        if (state.kind == EERUF_STATE_OBSTACLE)
+            LOG_INF("%u: %u mm", sensor + 1u, (unsigned int)eeruf_distance_mm(state.t_echo_us, EERUF_SOUND_20C));
+        else
+            LOG_INF("%u: %s", sensor + 1u, eeruf_state_name(state.kind));
+    }
+}
+
+static void sleep_until_us(uint32_t deadline_us) {
+    int32_t left_us = (int32_t)(deadline_us - now_us());
+    if (left_us > WAIT_US) (void)k_usleep(left_us - WAIT_US);
+    left_us = (int32_t)(deadline_us - now_us());
+    if (left_us > 0) k_busy_wait((uint32_t)left_us);
+}
+
+int main(void) {
+    const EerufStatus status = begin();
+    if (status != EERUF_OK) {
+        LOG_ERR("ring.h: status %d", status);
+        return status;
+    }
+    const int error = open_pins();
+    if (error != 0) {
+        LOG_ERR("pins: error %d", error);
+        return error;
+    }
+    for (;;) {
+        EerufEvent event;
+        /* Before the edges are taken: then no window closes on an edge that came in time. */
+        const uint32_t now = now_us();
+        (void)eeruf_hc_sr04_edges(&modules, &edges);
+        while (eeruf_ring_poll(&ring, now, &event) == EERUF_EVENT) {
+            if (event.kind == EERUF_EVENT_FIRE) fire(event.sensor);
+            (void)eeruf_watch_event(&watch, &event, now);
+            if (event.kind == EERUF_EVENT_PERIOD && event.period % REPORT_PERIODS == 0) report(now);
+        }
+        sleep_until_us(eeruf_ring_deadline(&ring));
+    }
+}

@@ -19,7 +19,7 @@ ECHO_LINES = [23, 24, 25, 16]
 SOUND_MM_PER_US = 0.3432
 # Times of an HC-SR04, in microseconds. Its line rises 450 us after the trigger; later than LATEST_RISE_US it was raised
 # by something else. A pulse as long as LONGEST_US is its time-out: it heard nothing. Clones hold their line 200 ms.
-TRIGGER_US, LATEST_RISE_US, SHORTEST_US, LONGEST_US, LONGEST_HOLD_US = 10, 2_000, 100, 36_000, 250_000
+TRIGGER_US, LATEST_RISE_US, SHORTEST_US, LONGEST_US, LONGEST_HOLD_US = 10, 1_400, 100, 36_000, 250_000
 WINDOW_US = LONGEST_US + 1_000
 # Polled for without sleeping: a process that sleeps wakes up late.
 SOON_US = 500

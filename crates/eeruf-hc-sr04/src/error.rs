@@ -30,7 +30,7 @@ impl fmt::Display for SetupError {
         match self {
             Self::Retrigger { min_refire, min_retrigger } => write!(
                 f,
-                "a sensor of this schedule fires again after {min_refire}; an HC-SR04 needs at least {min_retrigger}"
+                "a sensor of this schedule fires again after {min_refire}; its module needs at least {min_retrigger}"
             ),
             Self::Ring(error) => error.fmt(f),
         }

@@ -1,4 +1,4 @@
-//! [`Health`]: what the echo line of a sensor says about the sensor.
+//! [`Health`]: what the line or the answers of a sensor say about the sensor.
 
 use core::fmt;
 
@@ -9,15 +9,16 @@ pub enum Health {
     /// Its line answers, or it has not been asked often enough to know.
     #[default]
     Well,
-    /// Nothing comes from its line when it is triggered: no sensor there, a cut wire, or no interrupts at all.
+    /// Nothing comes from it when it is triggered: no sensor there, a cut wire, or no interrupts at all.
     Missing,
     /// Its line was high when it was to be triggered.
     StuckHigh,
-    /// Several pulses followed one trigger.
+    /// Several pulses or answers followed one trigger, or an invalid one.
     Chatters,
-    /// Its line fell without having risen, or rose and was low again without having fallen: edges get lost on the way.
+    /// Its line fell without having risen, or rose and was low again without having fallen: edges get lost on the way;
+    /// or a part of its answer did.
     LosesEdges,
-    /// One of its pins reported an error.
+    /// One of its pins, its bus or its serial line reported an error.
     PinError,
 }
 

@@ -15,6 +15,8 @@
 //!
 //! The ring can also be a [`HoppingRing`](eeruf_core::hopping::HoppingRing), of which no sensor stays blind.
 //!
+//! Modules that measure by themselves and report a value, over I2C, a serial line or by a pulse, are in [`measuring`].
+//!
 //! It is a crate beside `eeruf-core` and not a feature of it, because core has no dependencies at all and a major
 //! version of `embedded-hal` must not become a major version of core.
 //!
@@ -47,6 +49,7 @@ mod error;
 mod health;
 mod line;
 mod lines;
+pub mod measuring;
 mod ring;
 mod settings;
 

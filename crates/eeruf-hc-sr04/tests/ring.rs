@@ -235,6 +235,6 @@ fn a_schedule_that_triggers_a_sensor_too_soon_is_refused() {
     let ring = || Ring::unverified(&schedule, CONFIG, Instant::default()).unwrap();
     let error: Result<Driver<'_>, _> = HcSr04Ring::new(ring(), pins(), NoopDelay, Settings::default());
     let Err(error @ SetupError::Retrigger { .. }) = error else { panic!("not refused") };
-    assert_eq!(error.to_string(), "a sensor of this schedule fires again after 58 ms; an HC-SR04 needs at least 60 ms");
+    assert_eq!(error.to_string(), "a sensor of this schedule fires again after 58 ms; its module needs at least 60 ms");
     unused.done();
 }

@@ -1,0 +1,141 @@
+//! [`Us100`]: a module on a serial line.
+
+use eeruf_core::{Micros, SpeedOfSound};
+use embedded_io::{Read, ReadReady, Write};
+
+use super::{Fault, Measured, Measures};
+use crate::modules::{Module, US_100};
+
+/// The command that asks for a distance.
+const RANGE: u8 = 0x55;
+/// Most bytes that are taken from a line at once, a choice: more is no answer, and the loop has other things to do.
+const MOST_BYTES: usize = 32;
+/// Most errors of a line that are passed over when it is cleared, a choice.
+const MOST_ERRORS: usize = 8;
+/// Time from one read of the line to the next, a choice. The receive buffer holds an answer of two bytes far longer.
+const READ_EVERY: Micros = Micros::from_millis(5);
+
+/// A US-100 with its jumper set, on a serial line of 9600 baud.
+///
+/// The byte 0x55 asks for a distance, and two bytes answer, high byte first, in millimetres ("US-100 with RT-Thread
+/// MicroPython", cnblogs 9486575). The burst leaves a millisecond after the poll, when that byte is through, for all
+/// modules alike. The module takes up to 100 ms, and the driver waits for all of them: what an earlier measurement sent
+/// late must not count. It drops what comes sooner than the echo that it tells of. An answer is one distance, or the
+/// same twice.
+///
+/// **Nothing in range** is a distance beyond [`sees_to_mm`](Module::sees_to_mm), a choice, as no document says; beyond
+/// what sound travels within 100 ms it is invalid. The answer has no check sum: a flipped bit that leaves a possible
+/// distance is for the judge of the ring, which wants readings that agree.
+///
+/// **Speed of sound.** The module makes millimetres of time by its own thermometer. This driver makes times of them by
+/// [`SpeedOfSound::AT_20_CELSIUS`], 343.2 m/s, or the one of [`with_speed`](Self::with_speed). Convert readings by the
+/// same and they are the module's millimetres again. The echo times are off by 0.18 % for each degree.
+#[derive(Debug)]
+pub struct Us100<P> {
+    port: P,
+    speed: SpeedOfSound,
+    bytes: [u8; 4],
+    count: usize,
+    /// An answer came sooner than its own echo, or than the module can know that there is none: an earlier one's.
+    is_stale: bool,
+    /// The line reported an error since the start.
+    broken: bool,
+}
+
+impl<P: Read + ReadReady + Write> Us100<P> {
+    /// A module on this port, whose `write` takes one byte without waiting.
+    pub const fn new(port: P) -> Self {
+        let speed = SpeedOfSound::AT_20_CELSIUS;
+        Self { port, speed, bytes: [0; 4], count: 0, is_stale: false, broken: false }
+    }
+
+    /// With another speed of sound, such as that of the air's temperature.
+    #[must_use]
+    pub fn with_speed(self, speed: SpeedOfSound) -> Self {
+        Self { speed, ..self }
+    }
+
+    /// Takes the port back.
+    pub fn release(self) -> P {
+        self.port
+    }
+
+    /// Reads what has come, up to an error. Returns false if there may be more.
+    fn read(&mut self, since: Micros) -> Result<bool, P::Error> {
+        for _ in 0..MOST_BYTES {
+            let mut byte = [0];
+            if !self.port.read_ready()? || self.port.read(&mut byte)? == 0 {
+                return Ok(true);
+            }
+            if let (Some(place), [byte]) = (self.bytes.get_mut(self.count), byte) {
+                *place = byte;
+            }
+            self.count = self.count.saturating_add(1);
+            if self.count == 2 && since < self.t_echo().min(self.speed.echo_time(US_100.sees_to_mm)) {
+                (self.count, self.is_stale) = (0, true);
+            }
+        }
+        Ok(false)
+    }
+
+    fn mm(&self) -> u32 {
+        let [high, low, ..] = self.bytes;
+        u16::from_be_bytes([high, low]).into()
+    }
+
+    fn t_echo(&self) -> Micros {
+        self.speed.echo_time(self.mm())
+    }
+
+    fn decode(&self) -> Result<Measured, Fault> {
+        let [high, low, high_again, low_again] = self.bytes;
+        match self.count {
+            0 if !self.is_stale => return Err(Fault::NoAnswer),
+            1 => return Err(Fault::Truncated),
+            2 => {}
+            4 if [high, low] == [high_again, low_again] => {}
+            _ => return Err(Fault::Invalid),
+        }
+        let t_echo = self.t_echo();
+        if t_echo < Micros::new(US_100.blanking_us) || t_echo > Micros::new(US_100.report_us) {
+            return Err(Fault::Invalid);
+        }
+        Ok(if self.mm() > US_100.sees_to_mm { Measured::Nothing } else { Measured::Echo(t_echo) })
+    }
+}
+
+impl<P: Read + ReadReady + Write> Measures for Us100<P> {
+    fn module(&self) -> &Module {
+        &US_100
+    }
+
+    fn start(&mut self) -> Result<Micros, Fault> {
+        // Errors of the line are as old as the bytes that are thrown away.
+        let mut drained = Err(Fault::Bus);
+        for _ in 0..MOST_ERRORS {
+            drained = match self.read(Micros::ZERO) {
+                Ok(true) => Ok(()),
+                Ok(false) => Err(Fault::Invalid),
+                Err(_) => Err(Fault::Bus),
+            };
+            if drained != Err(Fault::Bus) {
+                break;
+            }
+        }
+        (self.count, self.is_stale, self.broken) = (0, false, false);
+        drained?;
+        match self.port.write(&[RANGE]) {
+            Ok(1) => Ok(READ_EVERY),
+            _ => Err(Fault::Bus),
+        }
+    }
+
+    fn result(&mut self, since: Micros) -> Result<Measured, Fault> {
+        self.broken |= self.read(since).is_err();
+        let reports = Micros::new(US_100.report_us);
+        if since < reports {
+            return Ok(Measured::NotYet(reports.min(since.saturating_add(READ_EVERY))));
+        }
+        if self.broken { Err(Fault::Bus) } else { self.decode() }
+    }
+}

@@ -44,3 +44,23 @@ impl Scratch {
         self.0.path()
     }
 }
+
+/// A compiler of C, which whoever builds Rust has.
+pub(crate) const C: &[&str] = &["gcc", "-std=c99"];
+
+/// A compiler of C++, if there is one; `cargo xtask c` is skipped, and says so, where there is none.
+pub(crate) fn cpp() -> Option<&'static [&'static str]> {
+    let language: &[&str] = &["g++", "-xc++", "-std=c++11"];
+    Command::new(language[0]).arg("--version").output().is_ok().then_some(language)
+}
+
+/// Compiles a program, without a warning, and runs it; it ends well.
+pub(crate) fn compile_and_run(folder: &Scratch, text: &str, compiler: &[&str]) {
+    let (user, program) = (folder.path().join("user.c"), folder.path().join("user"));
+    std::fs::write(&user, text).unwrap();
+    let strict = ["-Wall", "-Wextra", "-Wpedantic", "-Werror", "-Ic", "-I"];
+    let mut command = Command::new(compiler[0]);
+    command.args(strict).arg(folder.path()).args(&compiler[1..]).arg(&user).arg("-o").arg(&program);
+    assert!(command.status().unwrap().success(), "{compiler:?}");
+    assert!(Command::new(program).status().unwrap().success(), "{compiler:?}");
+}

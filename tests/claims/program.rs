@@ -8,7 +8,7 @@ use eeruf_design::RingSpec;
 use eeruf_sim::World;
 use eeruf_sim::modules::Module;
 
-use crate::common::{Scratch, eeruf, json};
+use crate::common::{C, Scratch, compile_and_run, cpp, eeruf, json};
 
 #[test]
 fn table_i_d_is_verified_up_to_999_us_and_not_at_1000() {
@@ -290,26 +290,10 @@ fn emitted_rust_and_c_compile_without_warning() {
     assert_eq!(rust, include_str!("emitted/multiplexers_8.rs"), "eeruf design {ring} --period-only --emit rust");
     let c = eeruf(&["design", "rings/paper-12.toml", "--period-only", "--emit", "c"]).out;
     let (folder, header) = Scratch::new("schedule.h", &c);
-    let user = folder.path().join("user.c");
-    std::fs::write(
-        &user,
-        format!(
-            "#include \"{}\"\nint main(void) {{ return eeruf_t_fire_us[1][EERUF_SENSORS - 1] >= EERUF_PERIOD_US; }}\n",
-            header.display()
-        ),
-    )
-    .unwrap();
-    for (compiler, standard) in [("gcc", "-std=c99"), ("g++", "-std=c++11")] {
-        let language = if compiler == "gcc" { "c" } else { "c++" };
-        let built = Command::new(compiler)
-            .args([standard, "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-x", language])
-            .arg(&user)
-            .arg("-o")
-            .arg(folder.path().join("user"))
-            .status()
-            .expect("a C compiler");
-        assert!(built.success(), "{compiler}");
-        assert!(Command::new(folder.path().join("user")).status().unwrap().success());
+    let main = "int main(void) { return eeruf_t_fire_us[1][EERUF_SENSORS - 1] >= EERUF_PERIOD_US; }";
+    let user = format!("#include \"{}\"\n{main}\n", header.display());
+    for language in [C].into_iter().chain(cpp()) {
+        compile_and_run(&folder, &user, language);
     }
 }
 
@@ -424,7 +408,7 @@ fn ctrl_c_ends_a_long_design_with_the_best_schedule_so_far() {
         .unwrap();
     // Long enough to begin, on a busy machine too.
     std::thread::sleep(Duration::from_secs(2));
-    let signalled = Command::new("kill").args(["-INT", &search.id().to_string()]).status().unwrap();
+    let signalled = Command::new("sh").args(["-c", &format!("kill -INT {}", search.id())]).status().unwrap();
     assert!(signalled.success());
     let outcome = search.wait_with_output().unwrap();
     let out = String::from_utf8(outcome.stdout).unwrap();

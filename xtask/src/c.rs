@@ -29,9 +29,8 @@ pub(crate) fn need(tool: &str, package: &str) -> Result<(), Trouble> {
 }
 
 pub(crate) fn c() -> Result<(), Trouble> {
-    for (compiler, package) in [("avr-gcc", "gcc-avr avr-libc"), ("arm-none-eabi-gcc", "gcc-arm-none-eabi")] {
-        need(compiler, package)?;
-    }
+    let needed = [("g++", "g++"), ("avr-gcc", "gcc-avr avr-libc"), ("arm-none-eabi-gcc", "gcc-arm-none-eabi")];
+    needed.iter().try_for_each(|(compiler, package)| need(compiler, package))?;
     let target = Path::new("target/c");
     std::fs::create_dir_all(target).map_err(|error| Trouble::Failed(error.to_string()))?;
     let object = target.join("eeruf.o");

@@ -141,7 +141,7 @@ impl Diagnosis {
     pub(crate) fn period(&mut self, period: u32, max_late: Micros, edges_lost: u8, health: &[u8]) {
         self.interval.max_late = self.interval.max_late.max(max_late);
         let more = match self.counted.replace((period, edges_lost)) {
-            // What was lost before anyone listened is no news.
+            // Losses before anyone listened are no news.
             None => 0,
             Some((before, counted)) if before < period => edges_lost.wrapping_sub(counted),
             // The board has started again.
@@ -422,7 +422,7 @@ mod tests {
         assert_eq!(state(&[(5404.5, ReadingKind::Unanswered)], 5405.0), said("unanswered", "0.5"));
     }
 
-    // The board's count wraps, and begins anew where the board does.
+    // The board's count wraps, and starts from 0 with the board.
     #[test]
     fn lost_edges_are_counted_past_256_and_a_restart() {
         let mut diagnosis = diagnosis();

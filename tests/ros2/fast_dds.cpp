@@ -6,6 +6,7 @@
  * The end of the input ends the program. */
 #include <cmath>
 #include <cstdint>
+#include <initializer_list>
 #include <iostream>
 #include <memory>
 #include <mutex>
@@ -108,17 +109,21 @@ public:
     template <typename Inner> void sequence(const char *name, Inner inner) {
         uint32_t length;
         cdr >> length;
+        list(name, length, inner);
+    }
+    template <uint32_t LENGTH, typename Inner> void array(const char *name, Inner inner) { list(name, LENGTH, inner); }
+    /* Bytes that follow the last field; at most three, which pad the message. */
+    size_t left() const { return buffer.getBufferSize() - cdr.getSerializedDataLength(); }
+    std::string said() const { return json.str(); }
+
+private:
+    template <typename Inner> void list(const char *name, uint32_t length, Inner inner) {
         key(name);
         open('[');
         for (uint32_t i = 0; i < length; i++)
             inner(*this);
         close(']');
     }
-    /* Bytes that follow the last field; at most three, which pad the message. */
-    size_t left() const { return buffer.getBufferSize() - cdr.getSerializedDataLength(); }
-    std::string said() const { return json.str(); }
-
-private:
     void key(const char *name) {
         json << separator;
         separator = ", ";
@@ -193,22 +198,46 @@ void diagnostics(Fields &in) {
     });
 }
 
+void numbers(Fields &in, const char *name, std::initializer_list<const char *> keys) {
+    in.structure(name, [keys](Fields &in) {
+        for (const char *key : keys)
+            in.number<double>(key);
+    });
+}
+
 void transforms(Fields &in) {
     in.sequence("transforms", [](Fields &in) {
         in.structure(nullptr, [](Fields &in) {
             header(in);
             in.text("child_frame_id");
             in.structure("transform", [](Fields &in) {
-                in.structure("translation", [](Fields &in) {
-                    for (const char *name : {"x", "y", "z"})
-                        in.number<double>(name);
-                });
-                in.structure("rotation", [](Fields &in) {
-                    for (const char *name : {"x", "y", "z", "w"})
-                        in.number<double>(name);
-                });
+                numbers(in, "translation", {"x", "y", "z"});
+                numbers(in, "rotation", {"x", "y", "z", "w"});
             });
         });
+    });
+}
+
+void covariance(Fields &in) {
+    in.array<36>("covariance", [](Fields &in) { in.number<double>(nullptr); });
+}
+
+void odometry(Fields &in) {
+    header(in);
+    in.text("child_frame_id");
+    in.structure("pose", [](Fields &in) {
+        in.structure("pose", [](Fields &in) {
+            numbers(in, "position", {"x", "y", "z"});
+            numbers(in, "orientation", {"x", "y", "z", "w"});
+        });
+        covariance(in);
+    });
+    in.structure("twist", [](Fields &in) {
+        in.structure("twist", [](Fields &in) {
+            numbers(in, "linear", {"x", "y", "z"});
+            numbers(in, "angular", {"x", "y", "z"});
+        });
+        covariance(in);
     });
 }
 
@@ -222,6 +251,7 @@ const Message MESSAGES[] = {
     {"sensor_msgs::msg::dds_::PointCloud2_", point_cloud},
     {"diagnostic_msgs::msg::dds_::DiagnosticArray_", diagnostics},
     {"tf2_msgs::msg::dds_::TFMessage_", transforms},
+    {"nav_msgs::msg::dds_::Odometry_", odometry},
 };
 
 /* Writes a line that no other thread's line runs into. */

@@ -13,6 +13,7 @@ import time
 
 import pytest
 
+from board import SerialBoard
 from dds import (
     DOMAIN,
     ERROR,
@@ -29,10 +30,6 @@ from dds import (
     taken,
     until,
 )
-from cyclonedds.domain import DomainParticipant
-
-from board import SerialBoard
-from fast_dds import FastDds
 
 UNKNOWN, OBSTACLE, CLEAR, TOO_CLOSE, UNANSWERED = range(5)
 # Places of four sensors: x, y, heading in degrees.
@@ -45,20 +42,8 @@ poses = [
 """ + "".join(f"    {{ x_m = {x}, y_m = {y}, heading_deg = {heading} }},\n" for x, y, heading in PLACES) + "]\n"
 
 
-@pytest.fixture(params=["cyclone_dds", "fast_dds"])
-def participant(request):
-    if request.param == "cyclone_dds":
-        yield DomainParticipant(DOMAIN)
-        return
-    if "EERUF_FAST_DDS" not in os.environ:
-        pytest.skip("Fast DDS is not installed")
-    listener = FastDds(os.environ["EERUF_FAST_DDS"], DOMAIN)
-    yield listener
-    listener.close()
-
-
 class Launched:
-    def __init__(self, participant, folder, *arguments):
+    def __init__(self, listener, folder, *arguments):
         self.board = SerialBoard(len(PLACES))
         ring = folder / "ring.toml"
         ring.write_text(RING)
@@ -68,9 +53,9 @@ class Launched:
         command = [NODE, "--ros-args", "-r", "__node:=sonars", "-r", "__ns:=/robot_1", "--params-file", str(parameters)]
         self.process = subprocess.Popen([*command, *arguments], env=environment(), stderr=subprocess.PIPE, text=True)
         names = ["front_left", "sonars/sonar_2", "sonars/sonar_3", "sonars/sonar_4"]
-        self.ranges = [reader(participant, f"/robot_1/{name}", Range) for name in names]
-        self.cloud = reader(participant, "/robot_1/sonars/points", PointCloud2)
-        self.diagnostics = reader(participant, "/diagnostics", DiagnosticArray)
+        self.ranges = [reader(listener, f"/robot_1/{name}", Range) for name in names]
+        self.cloud = reader(listener, "/robot_1/sonars/points", PointCloud2)
+        self.diagnostics = reader(listener, "/diagnostics", DiagnosticArray)
         everything = [*self.ranges, self.cloud, self.diagnostics]
         found = lambda: all(each.get_matched_publications() for each in everything)
         until("discovery of the node", self.process, found)
@@ -91,8 +76,8 @@ ARGUMENTS = ["-r", "~/sonar_1:=front_left", "-p", "base_frame:=robot_1/base", "-
 
 
 @pytest.fixture
-def launched(participant, tmp_path):
-    node = Launched(participant, tmp_path, *ARGUMENTS, "-p", "frame_ids:=[fl, fr, rr, rl]")
+def launched(listener, tmp_path):
+    node = Launched(listener, tmp_path, *ARGUMENTS, "-p", "frame_ids:=[fl, fr, rr, rl]")
     yield node
     node.end()
 
@@ -107,7 +92,7 @@ def points(cloud):
     return list(struct.iter_unpack("<fffBBxxf", bytes(cloud.data)))
 
 
-def test_everything_is_received_under_the_launchs_names(participant, launched):
+def test_everything_is_received_under_the_launchs_names(listener, launched):
     for n in range(30):
         launched.board.fire([1.0 + 0.01 * n, "clear", "too_early", "unanswered" if n >= 10 else 2.0])
         time.sleep(0.05)
@@ -150,9 +135,9 @@ def test_everything_is_received_under_the_launchs_names(participant, launched):
     assert [status.message.split(",")[0] for status in said] == ["obstacle", "clear", "too close"]
 
 
-def test_transforms_reach_those_who_come_late(participant, launched):
+def test_transforms_reach_those_who_come_late(listener, launched):
     time.sleep(0.5)
-    late = reader(participant, "/tf_static", TFMessage, LATCHED)
+    late = reader(listener, "/tf_static", TFMessage, LATCHED)
     heard = []
     until("the transforms", launched.process, lambda: heard.extend(taken(late, TFMessage)) or heard)
     (message,) = heard
@@ -180,10 +165,10 @@ def port_for_acknowledgements():
     raise AssertionError("no free number for a participant")
 
 
-def test_port_that_another_program_has_is_passed_over(participant, tmp_path):
+def test_port_that_another_program_has_is_passed_over(listener, tmp_path):
     with port_for_acknowledgements():
-        launched = Launched(participant, tmp_path, *ARGUMENTS)
-        late = reader(participant, "/tf_static", TFMessage, LATCHED)
+        launched = Launched(listener, tmp_path, *ARGUMENTS)
+        late = reader(listener, "/tf_static", TFMessage, LATCHED)
         until("the transforms", launched.process, lambda: taken(late, TFMessage))
         launched.end()
 

@@ -44,6 +44,7 @@ from dds import (
     taken,
     until,
 )
+from fast_dds import FastDds
 from cyclonedds.domain import DomainParticipant
 from cyclonedds.pub import DataWriter
 from cyclonedds.topic import Topic
@@ -79,21 +80,17 @@ def parameters(folder, **given):
     return str(file)
 
 
-class Node:
-    """The node as a process, and what Cyclone DDS hears of it."""
+class Heard:
+    """The ranges of each sensor and the diagnostics that one participant hears."""
 
-    def __init__(self, participant, processes, *arguments, sensors=SENSORS):
-        self.process = subprocess.Popen([NODE, *arguments], env=environment(), stderr=subprocess.PIPE, text=True)
-        processes.append(self.process)
+    def __init__(self, participant, sensors):
         self.readers = [reader(participant, f"/eeruf/sonar_{sensor + 1}", Range) for sensor in range(sensors)]
         self.diagnostics = reader(participant, "/diagnostics", DiagnosticArray)
         self.ranges = [[] for _ in range(sensors)]
         self.reports = []
-        everything = [*self.readers, self.diagnostics]
-        self.until("discovery of the node", lambda: all(reader.get_matched_publications() for reader in everything))
 
-    def until(self, what, holds):
-        until(what, self.process, holds)
+    def is_matched(self):
+        return all(reader.get_matched_publications() for reader in [*self.readers, self.diagnostics])
 
     def take(self):
         for heard, reader in zip(self.ranges, self.readers):
@@ -101,12 +98,57 @@ class Node:
         for report in taken(self.diagnostics, DiagnosticArray):
             self.reports.append({status.name.removeprefix("eeruf: "): status for status in report.status})
 
+    def said(self):
+        """All of it, in a form that compares."""
+        stamp = lambda message: (message.header.stamp.sec, message.header.stamp.nanosec, message.header.frame_id)
+        numbers = lambda m: (m.radiation_type, m.field_of_view, m.min_range, m.max_range, m.range, m.variance)
+        values = lambda status: [(value.key, value.value) for value in status.values]
+        status = lambda status: (status.level, status.message, status.hardware_id, values(status))
+        ranges = [[(*stamp(message), *numbers(message)) for message in heard] for heard in self.ranges]
+        return ranges, [{name: status(each) for name, each in report.items()} for report in self.reports]
+
+
+class Node:
+    """The node as a process. Cyclone DDS hears it, and Fast DDS, where it is installed, must hear the same."""
+
+    def __init__(self, participant, processes, *arguments, sensors=SENSORS):
+        self.process = subprocess.Popen([NODE, *arguments], env=environment(), stderr=subprocess.PIPE, text=True)
+        processes.append(self.process)
+        self.heard = Heard(participant, sensors)
+        self.fast_dds = FastDds(os.environ["EERUF_FAST_DDS"], DOMAIN) if "EERUF_FAST_DDS" in os.environ else None
+        self.listeners = [self.heard]
+        if self.fast_dds:
+            processes.append(self.fast_dds.process)
+            self.listeners.append(Heard(self.fast_dds, sensors))
+        self.until("discovery of the node", lambda: all(each.is_matched() for each in self.listeners))
+
+    @property
+    def ranges(self):
+        return self.heard.ranges
+
+    @property
+    def reports(self):
+        return self.heard.reports
+
+    def until(self, what, holds):
+        until(what, self.process, holds)
+
+    def take(self):
+        for each in self.listeners:
+            each.take()
+
     def end(self):
+        # What was sent last is still on its way.
+        time.sleep(0.2)
         self.process.send_signal(signal.SIGINT)
         said = self.process.communicate(timeout=PATIENCE_S)[1]
         assert self.process.returncode == 0, said
         assert said.endswith("eeruf-ros2: ended\n"), said
+        if self.fast_dds:
+            self.fast_dds.close()
         self.take()
+        for other in self.listeners[1:]:
+            assert other.said() == self.heard.said()
 
 
 def unpacked(frame):

@@ -177,3 +177,10 @@ def test_picture_of_a_second_says_what_the_simulator_says(tmp_path: Path) -> Non
     ]
     assert counts[0] == counts[1]
     assert len(counts[0]) == 6
+
+
+def test_pictures_of_wiring_are_those_of_the_tables(tmp_path: Path) -> None:
+    subprocess.run([sys.executable, ROOT / "docs/pictures/wiring.py", tmp_path], check=True)
+    drawn = {picture.stem: picture.read_text() for picture in tmp_path.glob("*.svg")}
+    assert drawn == {each.parent.name: each.read_text() for each in ROOT.glob("examples/*/wiring.svg")}
+    assert len(drawn) == 5

@@ -746,7 +746,7 @@ class HoppingFound:
         >>> found = eeruf.design(8, t_delta_us=150, min_interval_us=0, window_us=36_000, phases=5)
         >>> found.schedule.phases, found.value_us, found.proven
         (11, 38107, True)
-        >>> ring = eeruf.HoppingRing(found.schedule, window_us=36_000)
+        >>> ring = eeruf.Ring.hopping(found.schedule, window_us=36_000)
     """
     def __new__(
         cls,
@@ -848,7 +848,7 @@ def design(
         over_reals: whether to say what the tick costs: in ``Found.real_period_us`` the shortest period in
             ticks of any length, for the needs in exact microseconds, and in ``Found.real_proven`` whether
             none is shorter. Only where the period in ticks is proven.
-        phases: at least this many, 2 to 67: a schedule for a :class:`HoppingRing`, as ``eeruf design --phases`` finds
+        phases: at least this many, 2 to 67: a schedule for a :meth:`Ring.hopping`, as ``eeruf design --phases`` finds
             it. Then times are whole microseconds, of lists the largest counts, and nothing below ``stale_echo`` may be
             given but ``margin_us``.
         margin_us: with ``phases``: crosstalk need move by ``T_delta`` and this margin alone, which is all that jitter
@@ -928,7 +928,7 @@ def design(
         over_reals: whether to say what the tick costs: in ``Found.real_period_us`` the shortest period in
             ticks of any length, for the needs in exact microseconds, and in ``Found.real_proven`` whether
             none is shorter. Only where the period in ticks is proven.
-        phases: at least this many, 2 to 67: a schedule for a :class:`HoppingRing`, as ``eeruf design --phases`` finds
+        phases: at least this many, 2 to 67: a schedule for a :meth:`Ring.hopping`, as ``eeruf design --phases`` finds
             it. Then times are whole microseconds, of lists the largest counts, and nothing below ``stale_echo`` may be
             given but ``margin_us``.
         margin_us: with ``phases``: crosstalk need move by ``T_delta`` and this margin alone, which is all that jitter
@@ -1848,7 +1848,8 @@ class Ring:
     """Plan and filter together, as the firmware runs them: the caller passes the time and gets back what to do.
 
     Moments are microseconds on a clock that wraps at 2^32, as on a small microcontroller; larger numbers are taken
-    modulo that.
+    modulo that. ``Ring(schedule)`` fires by a schedule and compares two readings; :meth:`flow` and :meth:`hopping`
+    give rings that fire otherwise and count votes.
 
     Args:
         schedule: when the sensors fire.
@@ -1929,9 +1930,8 @@ class Ring:
             window_us: how long a sensor listens after it has fired, 1 or more.
             blanking_us: edges sooner than this after firing are no echoes.
             consecutive: the number of consecutive readings that must agree, 2 to 8.
-            path_change_us: P: the largest change of a foreign sound's path from one reading to the next,
-                at most 65,534; None for ``t_delta_us``. Less makes fewer readings ambiguous where firings are late.
-            audible_us: R: how long sound is audible, at most 67 s; None for one period.
+            path_change_us: P, at most 65,534; None for ``t_delta_us``.
+            audible_us: R, at most 67 s; None for one period.
 
         Raises:
             ArgumentError: something of the wrong type or out of range.
@@ -1943,9 +1943,96 @@ class Ring:
             >>> eeruf.Ring.unverified(constant, 500, window_us=36_000).poll(0)
             Fire(sensor=0, phase=0, due_us=0)
         """
+    @staticmethod
+    def hopping(
+        schedule: HoppingSchedule,
+        settings: HoppingSettings | _Hopping = "balanced",
+        now_us: _Int = 0,
+        *,
+        window_us: _Int,
+        blanking_us: _Int = 0,
+        reach_us: _Int | None = None,
+        seed: _Int = 1,
+    ) -> Ring:
+        """A ring that hops in time: its readings can also be ``"tentative"``, and no sensor stays blind.
+
+        A sensor that hears nothing of its own gets a period in which it fires alone. ``docs/explanation/hopping.md``
+        has the rules, what they bring, and what is not promised.
+
+        Args:
+            schedule: a :class:`HoppingSchedule`.
+            settings: a :class:`HoppingSettings`, or the name of one.
+            now_us: when the first period begins.
+            window_us: ``T_wind``: how long a sensor listens after it has fired, 1 to 16,711,679.
+            blanking_us: edges sooner than this after firing are ringing of the transducer, not echoes.
+            reach_us: after how long no sound is heard any more; by default the window.
+            seed: of the draws of new lags, below 2^32.
+
+        Raises:
+            ArgumentError: something of the wrong type or out of range.
+            HoppingError: a ``T_delta`` that is not below the schedule's step, a period too short for window and code,
+                a window that is too long or ends within the blanking time.
+
+        Example:
+            >>> import eeruf
+            >>> schedule = eeruf.HoppingSchedule(sensors=8, period_us=60_000, step_us=240)
+            >>> eeruf.Ring.hopping(schedule, "quick", window_us=36_000).poll(0)
+            Fire(sensor=0, phase=0, due_us=0)
+        """
+    @staticmethod
+    def flow(
+        sensors: _Int,
+        settings: FlowSettings | None = None,
+        now_us: _Int = 0,
+        *,
+        window_us: _Int,
+        blanking_us: _Int = 0,
+        reach_us: _Int | None = None,
+    ) -> Ring:
+        """A ring by flow: each sensor gets as much quiet around its firing as it has needed, and votes confirm an echo.
+        ``docs/explanation/flow.md`` says for whom.
+
+        Args:
+            sensors: how many, 1 to 64.
+            settings: a dict of what differs from the default, as :class:`eeruf.sim.Method` takes it.
+            now_us: when the first cycle begins.
+            window_us: as for :meth:`hopping`, as are the others.
+            blanking_us: edges sooner than this after firing are no echoes.
+            reach_us: after how long no sound is heard any more; by default the window.
+
+        Raises:
+            ArgumentError: something of the wrong type or out of range.
+            HoppingError: settings that contradict each other or the window.
+
+        Example:
+            >>> import eeruf
+            >>> ring = eeruf.Ring.flow(8, {"rest_us": 60_000}, window_us=36_000)
+            >>> ring.poll(ring.next_deadline_us).sensor
+            0
+        """
+    @property
+    def t_lag_us(self) -> tuple[int, ...]:
+        """The lag of each sensor as it is now, in microseconds; empty where a ring does not hop."""
+    @property
+    def solo(self) -> int | None:
+        """The sensor that the present period belongs to alone, from 0; None if it belongs to all."""
+    def confirmed_us(self, sensor: _Int) -> int | None:
+        """The echo that votes have confirmed of a sensor, in microseconds; None for none, or where none are counted.
+
+        Args:
+            sensor: which one, from 0.
+
+        Raises:
+            ArgumentError: no such sensor.
+
+        Example:
+            >>> import eeruf
+            >>> eeruf.Ring.flow(2, window_us=36_000).confirmed_us(0) is None  # nothing has been heard yet
+            True
+        """
     @property
     def schedule(self) -> Schedule:
-        """Schedule of the present period."""
+        """Schedule of the present period, of a ring that fires by one."""
     def change_schedule(self, schedule: Schedule) -> None:
         """Fire by another schedule when the present period ends. ``t_delta_us`` and ``window_us``
         stay, and so does what each sensor needs where they are not all alike.
@@ -1972,10 +2059,10 @@ class Ring:
         """The number of sensors."""
     @property
     def t_delta_us(self) -> int:
-        """``T_delta``, in microseconds. It can be changed while the ring runs."""
+        """``T_delta``, in microseconds. It can be changed while the ring runs, if it fires by a :class:`Schedule`."""
     @t_delta_us.setter
     def t_delta_us(self, value: _Int, /) -> None:
-        """``T_delta``, in microseconds. It can be changed while the ring runs."""
+        """``T_delta``, in microseconds. It can be changed while the ring runs, if it fires by a :class:`Schedule`."""
     @property
     def window_us(self) -> int:
         """``T_wind``, in microseconds. It can be changed while the ring runs, also for firings that are under way."""
@@ -1990,20 +2077,20 @@ class Ring:
         """For how long after firing edges are no echoes, in microseconds. It can be changed while the ring runs."""
     @property
     def path_change_us(self) -> int:
-        """P, the largest change of a foreign sound's path from one reading to the next, in microseconds. It can be
-        changed while the ring runs: as the robot's speed changes, for example.
+        """P, the largest change of a foreign sound's path from one reading to the next, in microseconds, of a ring by a
+        schedule. It can be changed while the ring runs: as the robot's speed changes, for example.
         """
     @path_change_us.setter
     def path_change_us(self, value: _Int, /) -> None:
-        """P, the largest change of a foreign sound's path from one reading to the next, in microseconds. It can be
-        changed while the ring runs: as the robot's speed changes, for example.
+        """P, the largest change of a foreign sound's path from one reading to the next, in microseconds, of a ring by a
+        schedule. It can be changed while the ring runs: as the robot's speed changes, for example.
         """
     @property
     def audible_us(self) -> int:
-        """R, how long sound is audible, in microseconds. It can be changed while the ring runs."""
+        """R, how long sound is audible, in microseconds, of a ring by a schedule. It can be changed while the ring runs."""
     @audible_us.setter
     def audible_us(self, value: _Int, /) -> None:
-        """R, how long sound is audible, in microseconds. It can be changed while the ring runs."""
+        """R, how long sound is audible, in microseconds, of a ring by a schedule. It can be changed while the ring runs."""
     @property
     def report_after_us(self) -> int:
         """Earliest time after its firing at which a reading without an echo is emitted, in microseconds: for modules that
@@ -2309,307 +2396,6 @@ class Ring:
         """
 
 @final
-class HoppingRing:
-    """A ring that hops in time, as the firmware runs it: used as a :class:`Ring`; its readings can also be
-    ``"tentative"``.
-
-    No sensor stays blind: one that hears nothing of its own gets a period in which it fires alone, and one whose
-    readings keep disagreeing draws a new lag. ``docs/explanation/hopping.md`` has the rules, what they bring, and what
-    is not promised.
-
-    Args:
-        schedule: a :class:`HoppingSchedule`.
-        settings: a :class:`HoppingSettings`, or the name of one.
-        now_us: when the first period begins.
-        window_us: ``T_wind``: how long a sensor listens after it has fired, 1 to 16,711,679.
-        blanking_us: edges sooner than this after firing are ringing of the transducer, not echoes.
-        reach_us: after how long no sound is heard any more; by default the window.
-        seed: of the draws of new lags, below 2^32.
-
-    Raises:
-        ArgumentError: something of the wrong type or out of range.
-        HoppingError: a ``T_delta`` that is not below the schedule's step, a period too short for window and code, a
-            window that is too long or ends within the blanking time.
-
-    Example:
-        >>> import eeruf
-        >>> schedule = eeruf.HoppingSchedule(sensors=8, period_us=60_000, step_us=240)
-        >>> ring, kinds = eeruf.HoppingRing(schedule, "quick", window_us=36_000), []
-        >>> while len(kinds) < 40:
-        ...     now_us = ring.next_deadline_us
-        ...     while event := ring.poll(now_us):
-        ...         if isinstance(event, eeruf.Fire):
-        ...             ring.echo(event.sensor, now_us + 12_000)  # a wall 2 m away
-        ...         elif isinstance(event, eeruf.Reading):
-        ...             kinds.append(event.kind)
-        >>> kinds == ["first"] * 8 + ["tentative"] * 16 + ["accepted"] * 16
-        True
-    """
-    def __new__(
-        cls,
-        schedule: HoppingSchedule,
-        settings: HoppingSettings | _Hopping = "balanced",
-        now_us: _Int = 0,
-        *,
-        window_us: _Int,
-        blanking_us: _Int = 0,
-        reach_us: _Int | None = None,
-        seed: _Int = 1,
-    ) -> HoppingRing: ...
-    @property
-    def schedule(self) -> HoppingSchedule:
-        """Its schedule, with the lags of the start."""
-    @property
-    def sensors(self) -> int:
-        """Number of sensors it has."""
-    @property
-    def settings(self) -> HoppingSettings:
-        """Its settings for firing and weighing readings."""
-    @property
-    def t_lag_us(self) -> tuple[int, ...]:
-        """The lag of each sensor as it is now, in microseconds."""
-    @property
-    def solo(self) -> int | None:
-        """The sensor that the present period belongs to alone, from 0; None if it belongs to all."""
-    @property
-    def next_deadline_us(self) -> int:
-        """When to poll next, in microseconds of the clock that wraps at 2^32; in the past if an event is pending."""
-    def wait_us(self, now_us: _Int) -> int:
-        """Time to wait before polling next, in microseconds, right across the clock's wrap: 0 if an event is pending.
-
-        Args:
-            now_us: the present, 0 or more.
-
-        Raises:
-            ArgumentError: not such a time.
-
-        Example:
-            >>> import eeruf
-            >>> schedule = eeruf.HoppingSchedule(sensors=8, period_us=60_000, step_us=240)
-            >>> ring = eeruf.HoppingRing(schedule, window_us=36_000)
-            >>> ring.poll(0).sensor
-            0
-            >>> ring.wait_us(0)
-            8430
-        """
-    def poll(
-        self, now_us: _Int, expected_change_us: Iterable[_Int] | None = None
-    ) -> Fire | Reading | PeriodEnded | None:
-        """The next event at a time. Call again until there is none, then wait until ``next_deadline_us``.
-
-        Hand in the echoes you know of before you poll: one that comes after the poll that closed its window is not
-        heard.
-
-        Args:
-            now_us: the present, 0 or more.
-            expected_change_us: for each sensor, the expected change of a good reading from the one before, by the
-                robot's own motion: ``-2 v dt / c`` for an object approached at ``v``. None for a robot that stands.
-
-        Returns:
-            A ``Fire``, a ``Reading``, a ``PeriodEnded``, or None if there is nothing to do now.
-
-        Raises:
-            ArgumentError: not such a time, or not one change for each sensor.
-
-        Example:
-            >>> import eeruf
-            >>> schedule = eeruf.HoppingSchedule(sensors=8, period_us=60_000, step_us=240)
-            >>> ring = eeruf.HoppingRing(schedule, window_us=36_000)
-            >>> ring.poll(0)
-            Fire(sensor=0, phase=0, due_us=0)
-        """
-    def confirmed_us(self, sensor: _Int) -> int | None:
-        """The confirmed echo time of a sensor.
-
-        Args:
-            sensor: which one, from 0.
-
-        Returns:
-            Microseconds; None if none is confirmed, and where it is confirmed that nothing is in range (``is_clear``).
-
-        Raises:
-            ArgumentError: no such sensor.
-
-        Example:
-            >>> import eeruf
-            >>> schedule = eeruf.HoppingSchedule(sensors=8, period_us=60_000, step_us=240)
-            >>> ring = eeruf.HoppingRing(schedule, window_us=36_000)
-            >>> ring.confirmed_us(3) is None
-            True
-        """
-    def is_clear(self, sensor: _Int) -> bool:
-        """Returns true if it is confirmed that nothing is in a sensor's range.
-
-        Args:
-            sensor: which one, from 0.
-
-        Raises:
-            ArgumentError: no such sensor.
-
-        Example:
-            >>> import eeruf
-            >>> schedule = eeruf.HoppingSchedule(sensors=8, period_us=60_000, step_us=240)
-            >>> ring = eeruf.HoppingRing(schedule, window_us=36_000)
-            >>> ring.is_clear(3)
-            False
-        """
-    def echo(self, sensor: _Int, at_us: _Int) -> None:
-        """An edge on the echo line of a sensor. Edges may come in any order, at any time, wanted or not.
-
-        Args:
-            sensor: which one, from 0.
-            at_us: when, 0 or more.
-
-        Raises:
-            ArgumentError: no such sensor or time.
-
-        Example:
-            >>> import eeruf
-            >>> schedule = eeruf.HoppingSchedule(sensors=8, period_us=60_000, step_us=240)
-            >>> ring = eeruf.HoppingRing(schedule, window_us=36_000)
-            >>> ring.poll(0).sensor
-            0
-            >>> ring.echo(0, 6_000)
-            >>> ring.poll(6_000).t_echo_us
-            6000
-        """
-    def fired(self, sensor: _Int, at_us: _Int) -> None:
-        """The sensor of the last ``Fire`` has really fired at this time, later than the poll said. Optional: echo times
-        count from then.
-
-        Args:
-            sensor: which one, from 0.
-            at_us: when, 0 or more; a time before the poll is ignored.
-
-        Raises:
-            ArgumentError: no such sensor or time.
-
-        Example:
-            >>> import eeruf
-            >>> schedule = eeruf.HoppingSchedule(sensors=8, period_us=60_000, step_us=240)
-            >>> ring = eeruf.HoppingRing(schedule, window_us=36_000)
-            >>> ring.poll(0).sensor
-            0
-            >>> ring.fired(0, 100)
-            >>> ring.echo(0, 6_000)
-            >>> ring.poll(6_000).t_echo_us
-            5900
-        """
-    def stuck(self, sensor: _Int) -> None:
-        """The echo line of a sensor was already high when it was to fire: the firing just emitted counts as ``"stuck"``.
-
-        Args:
-            sensor: which one, from 0.
-
-        Raises:
-            ArgumentError: no such sensor.
-
-        Example:
-            >>> import eeruf
-            >>> schedule = eeruf.HoppingSchedule(sensors=8, period_us=60_000, step_us=240)
-            >>> ring = eeruf.HoppingRing(schedule, window_us=36_000)
-            >>> ring.poll(0).sensor
-            0
-            >>> ring.stuck(0)
-            >>> while not isinstance(event := ring.poll(ring.next_deadline_us), eeruf.Reading):
-            ...     pass
-            >>> event.sensor, event.kind
-            (0, 'stuck')
-        """
-    def disable(self, sensor: _Int) -> None:
-        """Stop a sensor from firing. The reading of a firing that is under way is still emitted.
-
-        Args:
-            sensor: which one, from 0.
-
-        Raises:
-            ArgumentError: no such sensor.
-
-        Example:
-            >>> import eeruf
-            >>> schedule = eeruf.HoppingSchedule(sensors=8, period_us=60_000, step_us=240)
-            >>> ring = eeruf.HoppingRing(schedule, window_us=36_000)
-            >>> ring.disable(0)
-            >>> ring.is_enabled(0)
-            False
-        """
-    def enable(self, sensor: _Int) -> None:
-        """Let a sensor fire again, from the next period on. What was known of its echo is forgotten.
-
-        Args:
-            sensor: which one, from 0.
-
-        Raises:
-            ArgumentError: no such sensor.
-
-        Example:
-            >>> import eeruf
-            >>> schedule = eeruf.HoppingSchedule(sensors=8, period_us=60_000, step_us=240)
-            >>> ring = eeruf.HoppingRing(schedule, window_us=36_000)
-            >>> ring.disable(0)
-            >>> ring.enable(0)
-            >>> ring.is_enabled(0)
-            True
-        """
-    def is_enabled(self, sensor: _Int) -> bool:
-        """Returns true if a sensor fires.
-
-        Args:
-            sensor: which one, from 0.
-
-        Raises:
-            ArgumentError: no such sensor.
-
-        Example:
-            >>> import eeruf
-            >>> schedule = eeruf.HoppingSchedule(sensors=8, period_us=60_000, step_us=240)
-            >>> ring = eeruf.HoppingRing(schedule, window_us=36_000)
-            >>> ring.is_enabled(7)
-            True
-        """
-    def pause(self) -> None:
-        """Let no sensor fire until :meth:`resume`. Readings of firings under way are still emitted, and periods go on.
-
-        Example:
-            >>> import eeruf
-            >>> schedule = eeruf.HoppingSchedule(sensors=8, period_us=60_000, step_us=240)
-            >>> ring = eeruf.HoppingRing(schedule, window_us=36_000)
-            >>> ring.pause()
-            >>> type(ring.poll(ring.next_deadline_us)).__name__
-            'PeriodEnded'
-        """
-    def resume(self) -> None:
-        """Let sensors fire again, as of the next period. What was known of their echoes is forgotten.
-
-        Example:
-            >>> import eeruf
-            >>> schedule = eeruf.HoppingSchedule(sensors=8, period_us=60_000, step_us=240)
-            >>> ring = eeruf.HoppingRing(schedule, window_us=36_000)
-            >>> ring.pause()
-            >>> ring.resume()
-            >>> _ = ring.poll(ring.next_deadline_us)  # the period ends
-            >>> type(ring.poll(ring.next_deadline_us)).__name__
-            'Fire'
-        """
-    def restart(self, now_us: _Int) -> None:
-        """Start again at a time, or as soon as the last firings allow: after a long sleep. Firings under way are dropped.
-
-        Args:
-            now_us: the present, 0 or more.
-
-        Raises:
-            ArgumentError: not such a time.
-
-        Example:
-            >>> import eeruf
-            >>> schedule = eeruf.HoppingSchedule(sensors=8, period_us=60_000, step_us=240)
-            >>> ring = eeruf.HoppingRing(schedule, window_us=36_000)
-            >>> ring.restart(3_600_000_000)
-            >>> ring.wait_us(3_600_000_000)
-            0
-        """
-
-@final
 class SensorWatch:
     """Watches the events of a ring, a hopping one too: what is known of the space before each sensor now, and which
     sensors hear echoes none of which is accepted.
@@ -2648,7 +2434,7 @@ class SensorWatch:
         """Take in what a poll returned. Observe every event, or at least readings and the ends of periods.
 
         Args:
-            event: of ``Ring.poll`` or ``HoppingRing.poll``.
+            event: of ``Ring.poll``.
             now_us: the time of that poll, 0 or more.
 
         Returns:

@@ -241,7 +241,8 @@ def calls(c: Chance) -> list[Callable[[], Any]]:
         lambda: ANY.EchoTracker(m(2), m(150), settings=m("maps")).push(m(0), m(3), m(9_000), m(0), solo=m(True)),
         lambda: ANY.EchoTracker(2).push_many(m([3]), m([[9_000, 9_000]])),
         lambda: tracker(c),
-        lambda: ANY.HoppingRing(a(), a(), window_us=m(36_000)),
+        lambda: ANY.Ring.hopping(a(), a(), window_us=m(36_000)),
+        lambda: ANY.Ring.flow(m(8), m({"rest_us": 60_000}), m(0), window_us=m(36_000), blanking_us=a(), reach_us=a()),
         lambda: hopping_ring(c),
         lambda: ANY.Fire(a()),
         lambda: c.random.choice([ANY.PeriodEnded, sim.RobotState, nav.Steering])(a(), a()).to_dict(),
@@ -490,14 +491,14 @@ def hopping_ring(c: Chance) -> None:
     """A hopping ring that is polled and disturbed at any time."""
     m, r = c.mostly, c.random
     good = {"settings": "quick", "now_us": 0, "window_us": 36_000, "blanking_us": 0, "reach_us": None, "seed": 1}
-    live = ANY.HoppingRing(HOPPING, **c.one_wrong(good))
+    live = ANY.Ring.hopping(HOPPING, **c.one_wrong(good))
     now = 0
     for _ in range(r.choice([3, 12, 40])):
         now = r.choice([live.next_deadline_us, now, now + r.randrange(90_000)])
         tried(live.poll, m(now), m(None))
         live.wait_us(now)
         tried(r.choice([live.echo, live.echo, live.fired]), m(r.randrange(8)), m(now + 9_000))
-        tried(r.choice([live.confirmed_us, live.is_clear]), m(3))
+        tried(r.choice([live.confirmed_us, live.state]), m(3))
         if r.random() < 0.2:
             disturb(c, live, now)
 

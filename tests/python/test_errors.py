@@ -401,7 +401,7 @@ class Reenters:
 SCHEDULE = eeruf.HoppingSchedule(8, 60_000, 240)
 STATEFUL: list[tuple[Any, Callable[[Any, Any], Any], Callable[[Any], Any]]] = [
     (eeruf.Ring(tables.TABLE_I_D, 500, window_us=36_000), lambda of, at: of.echo(at, at), lambda of: of.pause()),
-    (eeruf.HoppingRing(SCHEDULE, window_us=30_000), lambda of, at: of.echo(at, at), lambda of: of.resume()),
+    (eeruf.Ring.hopping(SCHEDULE, window_us=30_000), lambda of, at: of.echo(at, at), lambda of: of.resume()),
     (eeruf.nav.Himm(), lambda of, at: of.echo((0, 0, 0), at), lambda of: of.move_to((0, 0))),
     (eeruf.SensorWatch(4), lambda of, at: of.state(at, at), lambda of: of.observe(eeruf.Fire(0), 0)),
     (

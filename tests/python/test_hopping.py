@@ -6,7 +6,7 @@ from typing import Any
 import eeruf
 import numpy as np
 import pytest
-from eeruf import HoppingRing, HoppingSchedule, HoppingSettings, Schedule
+from eeruf import HoppingSchedule, HoppingSettings, Ring, Schedule
 
 ANY: Any = eeruf
 
@@ -15,7 +15,7 @@ EIGHT = HoppingSchedule(sensors=8, period_us=PERIOD_US, step_us=240)
 
 
 def run(
-    ring: HoppingRing, periods: int, *, own_us: int | None, path: tuple[int, int, int] | None = None
+    ring: Ring, periods: int, *, own_us: int | None, path: tuple[int, int, int] | None = None
 ) -> list[eeruf.Reading]:
     """The readings of a ring whose sensors hear a wall, and perhaps a path (from, to, microseconds)."""
     readings, pending = list[eeruf.Reading](), list[tuple[int, int]]()
@@ -111,7 +111,7 @@ def test_every_setting_can_be_changed_and_read_back() -> None:
 def test_a_masked_sensor_is_not_fooled_and_sees_its_wall(settings: str) -> None:
     # Sensor 1 fires 7.2 ms after sensor 0, 2.2 ms less or more: its sound arrives 3 to 8 ms into the window, before the
     # wall's echo.
-    ring = HoppingRing(EIGHT, HoppingSettings(settings), window_us=WINDOW_US, blanking_us=1_000)  # type: ignore[arg-type]
+    ring = Ring.hopping(EIGHT, HoppingSettings(settings), window_us=WINDOW_US, blanking_us=1_000)  # type: ignore[arg-type]
     readings = run(ring, 300, own_us=12_000, path=(0, 1, 13_000))
     believed = {reading.t_echo_us for reading in readings if reading.kind in ("accepted", "tentative")}
     assert believed == {12_000}
@@ -121,19 +121,66 @@ def test_a_masked_sensor_is_not_fooled_and_sees_its_wall(settings: str) -> None:
         assert (ring.confirmed_us(1), accepted) == (None, 0)
     else:
         assert ring.confirmed_us(1) == 12_000 and accepted >= 20
-    assert not ring.is_clear(1)
+    assert ring.state(1).kind != "clear"
 
 
 def test_a_ring_that_hears_nothing_says_clear() -> None:
-    ring = HoppingRing(EIGHT, window_us=WINDOW_US)
+    ring = Ring.hopping(EIGHT, window_us=WINDOW_US)
     silent = [reading.kind for reading in run(ring, 30, own_us=None)]
     assert silent[-8:] == ["clear"] * 8
-    assert all(ring.is_clear(sensor) and ring.confirmed_us(sensor) is None for sensor in range(8))
+    assert all(ring.state(sensor).kind == "clear" and ring.confirmed_us(sensor) is None for sensor in range(8))
+
+
+def test_a_ring_by_flow_gives_quiet_to_the_sensor_that_is_fooled() -> None:
+    # Sensor 0's sound reaches sensor 3, which fires next, before its wall's echo, until it gets quiet.
+    ring = Ring.flow(8, {"rest_us": 60_000}, window_us=WINDOW_US, blanking_us=1_000)
+    readings = run(ring, 300, own_us=12_000, path=(0, 3, 13_000))
+    assert {reading.t_echo_us for reading in readings if reading.kind in ("accepted", "tentative")} == {12_000}
+    assert all(ring.confirmed_us(sensor) == 12_000 for sensor in range(8))
+    late = [reading.kind for reading in readings[-80:] if reading.sensor == 3]
+    # What is believed gives quiet back, and is fooled again.
+    assert late.count("accepted") >= 0.4 * len(late)
+
+
+def test_hardware_reports_to_rings_that_count_votes() -> None:
+    hops, flows = Ring.hopping(EIGHT, window_us=WINDOW_US), Ring.flow(8, {"rest_us": 60_000}, window_us=WINDOW_US)
+    flows.report_after_us = 40_000
+    for ring in (hops, flows):
+        ring.expect_answers()
+        kinds, promised = list[tuple[int, str]](), set[int]()
+        while len(kinds) < 400:
+            now_us = ring.next_deadline_us
+            promised |= {fire.sensor for fire in ring.upcoming()}
+            while event := ring.poll(now_us):
+                if isinstance(event, eeruf.Fire) and event.sensor < 6:
+                    ring.measured(event.sensor, 9_000 if event.sensor < 3 else None)
+                elif isinstance(event, eeruf.Reading):
+                    kinds.append((event.sensor, event.kind))
+        assert promised == set(range(8))
+        said = [{kind for sensor, kind in kinds[-80:] if sensor == each} for each in range(8)]
+        assert said == [{"accepted"}] * 3 + [{"clear"}] * 3 + [{"unanswered"}] * 2
+        assert [ring.state(sensor).kind for sensor in (0, 3, 7)] == ["obstacle", "clear", "unanswered"]
+
+
+def test_a_ring_that_counts_votes_has_no_schedule_to_change() -> None:
+    ring = Ring.flow(8, window_us=WINDOW_US)
+    assert ring.t_delta_us == HoppingSettings().t_delta_us and ring.t_lag_us == () and ring.solo is None
+    for wrong in (
+        lambda: ring.schedule,
+        lambda: ring.path_change_us,
+        lambda: setattr(ring, "t_delta_us", 100),
+        lambda: setattr(ring, "audible_us", 100_000),
+        lambda: ring.change_schedule(eeruf.tables.TABLE_I_D),
+    ):
+        with pytest.raises(
+            eeruf.RingError, match=r"of a ring that counts votes; expected a ring by an eeruf\.Schedule"
+        ):
+            wrong()
 
 
 def test_the_same_seed_gives_the_same_lags_another_others() -> None:
     def lags(seed: int) -> tuple[int, ...]:
-        ring = HoppingRing(EIGHT, HoppingSettings(shift_after=5, shift_interval_us=0), window_us=WINDOW_US, seed=seed)
+        ring = Ring.hopping(EIGHT, HoppingSettings(shift_after=5, shift_interval_us=0), window_us=WINDOW_US, seed=seed)
         state = 1
         for _ in range(3_000):
             now_us = ring.next_deadline_us
@@ -151,7 +198,7 @@ def test_the_same_seed_gives_the_same_lags_another_others() -> None:
 def test_the_tracker_alone_is_the_one_in_the_ring() -> None:
     # No lag moves and no sensor gets a solo period, so that the phases follow each other.
     settings = HoppingSettings(solo_rate=0, shift_after=0)
-    readings = run(HoppingRing(EIGHT, settings, window_us=WINDOW_US), 60, own_us=12_000, path=(0, 1, 19_000))
+    readings = run(Ring.hopping(EIGHT, settings, window_us=WINDOW_US), 60, own_us=12_000, path=(0, 1, 19_000))
     tracker = eeruf.EchoTracker(8, settings=settings)
     for reading in readings:
         assert reading.phase is not None
@@ -191,19 +238,21 @@ def test_each_error_counts_sensors_from_0_and_says_expected() -> None:
         (lambda: eeruf.EchoTracker(2).push(2, 0, 9_000), eeruf.ArgumentError, "sensor = 2; expected"),
         (lambda: eeruf.EchoTracker(2).push_many([0], [[1, 2], [1, 2]]), eeruf.ArgumentError, "2 phases"),
         (
-            lambda: HoppingRing(EIGHT, HoppingSettings(t_delta_us=240), window_us=WINDOW_US),
+            lambda: Ring.hopping(EIGHT, HoppingSettings(t_delta_us=240), window_us=WINDOW_US),
             eeruf.HoppingError,
             "240 us",
         ),
         (
-            lambda: HoppingRing(HoppingSchedule(2, PERIOD_US, 240, 2), window_us=WINDOW_US),
+            lambda: Ring.hopping(HoppingSchedule(2, PERIOD_US, 240, 2), window_us=WINDOW_US),
             eeruf.HoppingError,
             "5 votes to confirm an echo; expected at most 4",
         ),
-        (lambda: HoppingRing(EIGHT, window_us=60_000), eeruf.HoppingError, "a period of 60 ms; expected 61.2 ms"),
-        (lambda: HoppingRing(EIGHT, window_us=100, blanking_us=100), eeruf.HoppingError, "blanking"),
+        (lambda: ANY.Ring.flow(8, {"rest": 1}, window_us=9_000), eeruf.ArgumentError, "no setting rest of flow"),
+        (lambda: Ring.flow(8, {"step_us": 100}, window_us=9_000), eeruf.HoppingError, "100 us"),
+        (lambda: Ring.hopping(EIGHT, window_us=60_000), eeruf.HoppingError, "a period of 60 ms; expected 61.2 ms"),
+        (lambda: Ring.hopping(EIGHT, window_us=100, blanking_us=100), eeruf.HoppingError, "blanking"),
         (
-            lambda: HoppingRing(HoppingSchedule(8, 30_000_000, 240), window_us=16_711_680),
+            lambda: Ring.hopping(HoppingSchedule(8, 30_000_000, 240), window_us=16_711_680),
             eeruf.HoppingError,
             "a listening window of 16711.68 ms; expected at most 16711.679 ms",
         ),

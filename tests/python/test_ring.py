@@ -13,7 +13,7 @@ FAST = tables.TABLE_I_D.scaled(3, 5)
 
 
 def run(
-    ring: eeruf.Ring | eeruf.HoppingRing,
+    ring: eeruf.Ring,
     until: Callable[[Any], bool],
     t_echo_us: Callable[[eeruf.Fire], int | None] = lambda fire: 9_000,
     see: Callable[[Any, int], object] = lambda event, now_us: None,
@@ -150,7 +150,7 @@ def test_a_ring_starts_again_after_a_long_sleep() -> None:
 def test_a_sensor_without_accepted_echoes_is_reported_once(hops: bool) -> None:
     hopping = eeruf.HoppingSchedule(12, 60_000, 240)
     ring: Any = (
-        eeruf.HoppingRing(hopping, eeruf.HoppingSettings("balanced", shift_after=0), window_us=36_000)
+        eeruf.Ring.hopping(hopping, eeruf.HoppingSettings("balanced", shift_after=0), window_us=36_000)
         if hops
         else eeruf.Ring(tables.TABLE_I_D, 500, window_us=36_000)
     )

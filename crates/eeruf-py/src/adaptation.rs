@@ -140,7 +140,7 @@ impl Adaptation {
         let RingEvent::PeriodEnded(stats) = to_core("event", event)? else { return Ok(false) };
         let mut ring = ring.get().0.get()?;
         let mut adaptation = self.adaptation.get()?;
-        adaptation.with_dependent_mut(|_, on| on.adapt(&stats, |schedule| ring.change_to(schedule.schedule())))
+        adaptation.with_dependent_mut(|_, on| on.adapt(&stats, |schedule| ring.change_schedule(schedule.schedule())))
     }
 
     /// The rung in use, 0 for the shortest period.

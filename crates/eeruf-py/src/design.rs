@@ -61,7 +61,7 @@ const FEW_SENSORS: usize = 12;
 ///     over_reals: whether to say what the tick costs: in ``Found.real_period_us`` the shortest period in
 ///         ticks of any length, for the needs in exact microseconds, and in ``Found.real_proven`` whether
 ///         none is shorter. Only where the period in ticks is proven.
-///     phases: at least this many, 2 to 67: a schedule for a :class:`HoppingRing`, as ``eeruf design --phases`` finds
+///     phases: at least this many, 2 to 67: a schedule for a :meth:`Ring.hopping`, as ``eeruf design --phases`` finds
 ///         it. Then times are whole microseconds, of lists the largest counts, and nothing below ``stale_echo`` may be
 ///         given but ``margin_us``.
 ///     margin_us: with ``phases``: crosstalk need move by ``T_delta`` and this margin alone, which is all that jitter

@@ -22,7 +22,7 @@ use crate::{
 ///     >>> found = eeruf.design(8, t_delta_us=150, min_interval_us=0, window_us=36_000, phases=5)
 ///     >>> found.schedule.phases, found.value_us, found.proven
 ///     (11, 38107, True)
-///     >>> ring = eeruf.HoppingRing(found.schedule, window_us=36_000)
+///     >>> ring = eeruf.Ring.hopping(found.schedule, window_us=36_000)
 #[pyclass(frozen, eq, get_all, module = "eeruf")]
 #[derive(Clone, PartialEq)]
 pub(crate) struct HoppingFound {

@@ -24,10 +24,10 @@ mod experiments;
 mod faults;
 mod fields;
 mod filter;
+mod flow_settings;
 mod found;
 mod himm;
 mod hopping_found;
-mod hopping_ring;
 mod hopping_schedule;
 mod hopping_settings;
 mod logs;
@@ -49,6 +49,7 @@ mod requirements;
 mod ring;
 mod ring_arguments;
 mod ring_events;
+mod ring_methods;
 mod robot;
 mod robot_state;
 mod scene;
@@ -83,7 +84,6 @@ mod _eeruf {
         found::Found,
         himm::Himm,
         hopping_found::HoppingFound,
-        hopping_ring::HoppingRing,
         hopping_schedule::HoppingSchedule,
         hopping_settings::HoppingSettings,
         logs::{LogError, diagnose, read_firings, read_log, replay, survey},

@@ -3,7 +3,6 @@
 
 use std::sync::Arc;
 
-use eeruf_core::{Micros, flow::FlowSettings};
 use eeruf_sim::{BestSchedule, Entry, Method as Named, Robot, best_schedule_for};
 use pyo3::{
     PyTraverseError, PyVisit,
@@ -12,8 +11,9 @@ use pyo3::{
 };
 
 use crate::{
-    arguments::{instance, items, shown, text, whole, wrong},
+    arguments::{instance, items, shown, text, wrong},
     errors::{ArgumentError, Raise},
+    flow_settings,
     hopping_schedule::HoppingSchedule,
     hopping_settings::HoppingSettings,
     own::{Made, Makers},
@@ -71,38 +71,6 @@ fn by_name(argument: &str, name: &Bound<'_, PyAny>) -> PyResult<Entry> {
     name.parse().map_err(|error: eeruf_sim::UnknownMethod| ArgumentError::new_err(error.to_string()))
 }
 
-/// The settings of flow that differ from its default.
-fn flow(value: &Bound<'_, PyAny>) -> PyResult<FlowSettings> {
-    let expected = "a dict such as {\"masked_adds_us\": 5_000} for the method flow";
-    let mut settings = FlowSettings::DEFAULT;
-    for (key, value) in value.cast::<PyDict>().map_err(|_| wrong("settings", shown(value), expected))? {
-        let key = text("key of settings", &key, "the name of a setting of flow")?;
-        let field: &mut Micros = match key.as_str() {
-            "unserved_after" => {
-                settings.unserved_after = whole(&key, &value, 1..=u8::MAX)?;
-                continue;
-            }
-            "step_us" => &mut settings.step,
-            "shortest_gap_us" => &mut settings.shortest_gap,
-            "masked_adds_us" => &mut settings.masked_adds,
-            "believed_takes_us" => &mut settings.believed_takes,
-            "unserved_adds_us" => &mut settings.unserved_adds,
-            "shortest_cycle_us" => &mut settings.shortest_cycle,
-            "rest_us" => &mut settings.rest,
-            "lead_us" => &mut settings.lead,
-            "longest_cycle_us" => &mut settings.longest_cycle,
-            "travel_us" => &mut settings.travel,
-            _ => {
-                let names = "step_us, shortest_gap_us, masked_adds_us, believed_takes_us, unserved_adds_us, \
-                             unserved_after, shortest_cycle_us, rest_us, lead_us, longest_cycle_us, travel_us";
-                return Err(ArgumentError::new_err(format!("no setting {key} of flow; expected one of {names}")));
-            }
-        };
-        *field = Micros::new(whole(&key, &value, 0..=u32::MAX)?);
-    }
-    Ok(settings)
-}
-
 #[pymethods]
 impl Method {
     #[new]
@@ -146,7 +114,7 @@ impl Method {
         if let Some(given) = settings {
             entry = match method {
                 Named::EerufHopping => entry.with_hopping(HoppingSettings::of("settings", Some(given))?),
-                Named::Flow => entry.with_flow(flow(given)?),
+                Named::Flow => entry.with_flow(flow_settings::of(Some(given))?),
                 _ => return Err(refused("settings", given, "eeruf_hopping and flow take some")),
             };
         }

@@ -1,19 +1,14 @@
 //! A ring with the schedules that it borrows, so that it can change from one to another.
 
 use eeruf_core::{
-    EachSensor, Instant, MAX_SENSORS, Micros, Requirements, RingConfig, RingEvent, ScheduledRing,
+    EachSensor, Instant, MAX_SENSORS, Micros, Requirements, RingConfig, ScheduledRing,
     plan::{EachInUse, ScheduledFiring},
-    watch::SensorWatch,
 };
 use eeruf_sim::AnySchedule;
 use elsa::sync::FrozenVec;
 use pyo3::prelude::*;
 
-use crate::{
-    arguments::{whole, wrong},
-    errors::Raise,
-    requirements::OwnedRequirements,
-};
+use crate::{arguments::wrong, errors::Raise, requirements::OwnedRequirements};
 
 /// A ring that fires by a schedule, whether sensors are alike or not.
 pub(crate) type TableRing<'s> = ScheduledRing<'s, MAX_SENSORS, 1, EachInUse<'s, MAX_SENSORS>>;
@@ -52,10 +47,6 @@ pub(crate) struct OwnedRing {
     promise: Promise,
     /// Schedule from the end of the present period on.
     next: Box<AnySchedule>,
-    /// The state of each sensor by its events.
-    pub(crate) watch: SensorWatch<MAX_SENSORS>,
-    /// The instant of the last poll, or of the beginning.
-    pub(crate) now: Instant,
 }
 
 /// Returns true if a schedule rejects crosstalk.
@@ -87,8 +78,7 @@ impl OwnedRing {
             let (schedule, own_limits) = &*schedules.first;
             TableRing::with_plan(ScheduledFiring::with_limits(schedule, own_limits, now), config, now)
         });
-        let watch = SensorWatch::new(0, now);
-        Ok(Self { ring: ring.map_err(Raise::raise)?, promise, next, watch, now })
+        Ok(Self { ring: ring.map_err(Raise::raise)?, promise, next })
     }
 
     /// With a schedule that need not reject crosstalk.
@@ -113,12 +103,6 @@ impl OwnedRing {
         Ok(Self { promise: Promise::TDelta, ..self })
     }
 
-    /// The number of one of its sensors.
-    pub(crate) fn sensor(&self, sensor: &Bound<'_, PyAny>) -> PyResult<u8> {
-        // At most 64.
-        whole("sensor", sensor, 0..=self.ring().sensors() as u8 - 1)
-    }
-
     pub(crate) fn ring(&self) -> &TableRing<'_> {
         self.ring.borrow_dependent()
     }
@@ -127,30 +111,13 @@ impl OwnedRing {
         self.ring.with_dependent_mut(|_, ring| call(ring))
     }
 
-    /// The next event, if there is one.
-    pub(crate) fn poll(&mut self, now: Instant, change: impl FnMut(u8) -> i32) -> Option<RingEvent> {
-        let event = self.with(|ring| ring.poll_expecting(now, change));
-        self.now = now;
-        if let Some(event) = &event {
-            _ = self.watch.observe(event, now);
-        }
-        event
-    }
-
-    pub(crate) fn change<E: Raise>(
-        &mut self,
-        change: impl FnOnce(&mut TableRing<'_>) -> Result<(), E>,
-    ) -> PyResult<()> {
-        self.with(change).map_err(Raise::raise)
-    }
-
     /// Compares with another `t_delta`, at which what it fires by must reject crosstalk.
     pub(crate) fn set_t_delta(&mut self, t_delta: Micros) -> PyResult<()> {
         if matches!(self.promise, Promise::TDelta) {
             verify(self.ring().schedule(), t_delta)?;
             verify(&self.next, t_delta)?;
         }
-        self.change(|ring| ring.set_t_delta(t_delta))
+        self.with(|ring| ring.set_t_delta(t_delta)).map_err(Raise::raise)
     }
 
     /// Fires by another schedule when the present period ends.

@@ -1,6 +1,6 @@
 //! Settings that a `Ring` is made with, from Python's arguments.
 
-use eeruf_core::{Instant, Micros, RingConfig};
+use eeruf_core::{Instant, Micros, RingConfig, hopping::HoppingListening};
 use pyo3::prelude::*;
 
 use crate::{
@@ -35,4 +35,16 @@ pub(crate) fn config(
 /// When a ring begins, by default at 0.
 pub(crate) fn begins(now_us: Option<&Bound<'_, PyAny>>) -> PyResult<Instant> {
     now_us.map_or(Ok(Instant::from_micros(0)), |now| instant("now_us", now))
+}
+
+/// Window, blanking time and reach of a ring that counts votes.
+pub(crate) fn listening(
+    window_us: &Bound<'_, PyAny>,
+    blanking_us: Option<&Bound<'_, PyAny>>,
+    reach_us: Option<&Bound<'_, PyAny>>,
+) -> PyResult<HoppingListening> {
+    let window = micros("window_us", window_us)?;
+    Ok(HoppingListening::new(window)
+        .with_blanking(blanking_us.map_or(Ok(Micros::ZERO), |value| micros("blanking_us", value))?)
+        .with_reach(reach_us.map_or(Ok(window), |value| micros("reach_us", value))?))
 }

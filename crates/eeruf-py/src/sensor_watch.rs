@@ -77,7 +77,7 @@ impl SensorWatch {
     /// Take in what a poll returned. Observe every event, or at least readings and the ends of periods.
     ///
     /// Args:
-    ///     event: of ``Ring.poll`` or ``HoppingRing.poll``.
+    ///     event: of ``Ring.poll``.
     ///     now_us: the time of that poll, 0 or more.
     ///
     /// Returns:

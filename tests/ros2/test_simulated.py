@@ -109,8 +109,10 @@ def test_simulated_robot_reads_drives_and_says_the_truth(tmp_path, listener):
     (transform,) = heard[transforms][-1].transforms
     assert (transform.header.frame_id, transform.child_frame_id) == ("map", "base_link")
     assert transform.transform.translation.x == pytest.approx(x, abs=1e-9)
-    for each in (transforms, true_clouds):
-        assert list(map(stamp, heard[each])) == list(map(stamp, heard[truth]))
+    stamps = [list(map(stamp, heard[each])) for each in (truth, transforms, true_clouds)]
+    # The node may have left between two of them.
+    shortest = min(map(len, stamps))
+    assert all(each[:shortest] == stamps[0][:shortest] and len(each) <= shortest + 1 for each in stamps)
     assert abs(len(heard[truth]) - len(heard[clouds])) <= 1
 
     # The first and the last sensor look 15 degrees off the wall's normal, those between 5.

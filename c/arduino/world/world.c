@@ -13,7 +13,7 @@
  * echo wire is cut; `glitch-high`, cut, with a spike of 5 us on its line 3 ms after each trigger; `glitch-low`, its pulse has
  * a gap of 5 us after 2 ms; `spike`, a spike of 5 us on its line 0.25 ms after each trigger; `lost-rise`, `lost-fall`, the
  * interrupts of pins are masked while its line rises or falls; `stuck`, its line stays high; `latched`, so it does without an
- * echo, until the sketch pulls it low; `hold-N`, it holds its line for N ms without an echo; `exchanged-N`, its echo wire and
+ * echo, until the sketch pulls it low, and hears none in the first second; `hold-N`, it holds its line for N ms without an echo; `exchanged-N`, its echo wire and
  * module N's are exchanged.
  *
  * A module whose trigger falls sends its sound 450 us later and raises its line, until the first sound reaches it, its
@@ -132,7 +132,7 @@ static uint32_t held_us(const struct Module *module) {
 }
 
 static void on_arrival(struct Module *module, const struct Module *emitter, unsigned firing) {
-    if (has(module, STUCK)) return;
+    if (has(module, STUCK) || (has(module, LATCHED) && avr->cycle < avr->frequency)) return;
     if (!module->line_high || avr->cycle - module->rose < avr_usec_to_cycles(avr, 150)) return;
     set_line(module, 0);
     if (says_pulses)

@@ -58,6 +58,6 @@ mod settings;
 pub use eeruf_modules as modules;
 pub use error::SetupError;
 pub use health::Health;
-pub use lines::Pins;
+pub use lines::{FlexPin, Pins};
 pub use ring::HcSr04Ring;
 pub use settings::Settings;

@@ -11,7 +11,7 @@ use embedded_hal::digital::{InputPin, OutputPin};
 use crate::error::SetupError;
 use crate::health::Health;
 use crate::line::Shown;
-use crate::lines::{Lines, Pins, Trigger};
+use crate::lines::{FlexPin, Lines, Pins, Trigger};
 use crate::settings::Settings;
 
 /// A ring whose firings are triggers on pins and whose echoes are pulses on lines: a [`Ring`] of any plan and judge,
@@ -67,6 +67,18 @@ impl<P: Plan, J: Judge, T: OutputPin, I: InputPin, D: DelayNs, const K: usize, c
             _ = self.edge(edge);
         }
         self.poll(now)
+    }
+}
+
+impl<R, T, I: FlexPin, D: DelayNs, const K: usize> HcSr04Ring<R, T, I, D, K> {
+    /// Pulls the line of a sensor low for [`Settings::recovery`] if it is stuck high, and returns true if it was; call
+    /// it after each [`RingEvent::Fire`]. Some modules hold their line for ever after a lost echo, until it is pulled
+    /// low. The firing is [`Stuck`](eeruf_core::ReadingKind::Stuck) all the same; the next one triggers the module if
+    /// its line stays low.
+    ///
+    /// Module and pin drive against each other meanwhile: put a resistor of 1 kOhm into the line.
+    pub fn recover(&mut self, sensor: u8) -> bool {
+        self.lines.recover(sensor)
     }
 }
 

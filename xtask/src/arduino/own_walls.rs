@@ -212,6 +212,7 @@ fn faults_are_no_free_space(library: &Path, world: &Path) -> Result<(), Trouble>
     println!("|---|---|---:|---:|---:|---:|---:|");
     let mut outcomes = faults_of_ring8(library, world, &file)?;
     outcomes.extend(faults_of_edges(library, world, &file)?);
+    latched_line_recovers(library, world)?;
     let said = with_column(&document, &outcomes)?;
     if env::var_os("EERUF_WRITE").is_some() {
         fs::write(LOG, said).map_err(failed(LOG))
@@ -294,6 +295,44 @@ fn faults_of_edges(library: &Path, world: &Path, file: &str) -> Result<Vec<Outco
         }
     }
     Ok(outcomes)
+}
+
+/// Checks Ring8 with a module that hears nothing in the first second and then holds its line until it is pulled low:
+/// without `recover()` it never answers, with it the module measures its wall.
+fn latched_line_recovers(library: &Path, world: &Path) -> Result<(), Trouble> {
+    const FAULTY: usize = 3;
+    const BEGIN: &str = "if (!eerufInterrupts(sonar))";
+    let name = "examples/Ring8/Ring8.ino";
+    let text = fs::read_to_string(library.join(name)).map_err(failed(name))?;
+    let recovers = text.replace(BEGIN, &format!("sonar.recover();\n  {BEGIN}"));
+    if recovers == text {
+        return Err(Trouble::Failed(format!("{name} has no {BEGIN}")));
+    }
+    let core = build::core(Board::Uno)?;
+    let walls: Vec<_> = (1..=8).map(|module| Some(EQUAL_US + 500 * module)).collect();
+    let mut found = [[0; 4]; 2];
+    let (mut flash, mut is_wrong) = ([0; 2], false);
+    for (((name, text), found), flash) in
+        [("Ring8Stuck", &text), ("Ring8Recovers", &recovers)].into_iter().zip(&mut found).zip(&mut flash)
+    {
+        let source = Source { name, text, board: Board::Uno, ours: true, defines: &[] };
+        let sketch = build::sketch(&source, &library.join("src"), &core)?;
+        let said = with_fault(world, &sketch.elf, &format!("latched:{FAULTY}"), 4, &walls, &ALL)?;
+        (*found, *flash) = (said_of(&said, FAULTY), sketch.flash);
+        // Once it measures its wall again, nothing is free.
+        let of_module = said.lines().filter_map(|line| line.trim().strip_prefix(&format!("{FAULTY} ")));
+        let since = of_module.skip_while(|rest| rest.parse::<u32>().is_err());
+        is_wrong |= since.into_iter().any(|rest| rest == "clear");
+        print_row(name, "latched line, wall", *found, said_of(&said, 1)[Says::Wall as usize]);
+    }
+    println!("flash of Ring8: {} B, with recover() {} B", flash[0], flash[1]);
+    let [[never, held, ..], [walls, clear, silent, _]] = found;
+    // Each hold of 250 ms in the first second is three readings.
+    let is_stuck = never == 0 && held < UNTIL_STUCK;
+    if is_wrong || !is_stuck || walls < 40 || clear > 3 * UNTIL_STUCK || silent == 0 {
+        return Err(Trouble::Failed(format!("a latched line without and with recover(): {found:?}")));
+    }
+    Ok(())
 }
 
 /// The lines of a sketch without the first two of a module.

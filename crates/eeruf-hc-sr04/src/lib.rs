@@ -48,6 +48,7 @@
 
 pub mod capture;
 mod error;
+mod hands_on;
 mod health;
 mod line;
 mod lines;

@@ -3,12 +3,13 @@
 use eeruf_core::{
     EchoFilter, Edge, EdgeQueue, Instant, Micros, Ring, RingError, RingEvent, SensorError, VerifiedSchedule,
     judge::Judge,
-    plan::{LimitsInUse, OwnLimits, Plan, ScheduledFiring, Upcoming},
+    plan::{LimitsInUse, OwnLimits, Plan, ScheduledFiring},
 };
 use embedded_hal::delay::DelayNs;
 use embedded_hal::digital::{InputPin, OutputPin};
 
 use crate::error::SetupError;
+use crate::hands_on::hands_on;
 use crate::health::Health;
 use crate::line::Shown;
 use crate::lines::{FlexPin, Lines, Pins, Trigger};
@@ -190,45 +191,9 @@ impl<P: Plan, J: Judge, T, I, D, const K: usize, const H: usize> HcSr04Ring<Ring
         self.lines.health(sensor)
     }
 
-    /// The ring.
-    pub const fn ring(&self) -> &Ring<P, J, K, 1, H> {
-        &self.ring
-    }
-
-    /// As [`Ring::disable`].
-    ///
-    /// # Errors
-    /// [`SensorError`] for a sensor out of range.
-    pub fn disable(&mut self, sensor: u8) -> Result<(), SensorError> {
-        self.ring.disable(sensor)
-    }
-
-    /// As [`Ring::enable`].
-    ///
-    /// # Errors
-    /// [`SensorError`] for a sensor out of range.
-    pub fn enable(&mut self, sensor: u8) -> Result<(), SensorError> {
-        self.ring.enable(sensor)
-    }
-
-    /// As [`Ring::pause`].
-    pub fn pause(&mut self) {
-        self.ring.pause();
-    }
-
-    /// As [`Ring::resume`].
-    pub fn resume(&mut self) {
-        self.ring.resume();
-    }
-
     /// As [`Ring::restart`].
     pub fn restart(&mut self, now: Instant) {
         self.ring.restart(now);
-    }
-
-    /// As [`Ring::upcoming`].
-    pub fn upcoming(&self) -> impl Iterator<Item = Upcoming> {
-        self.ring.upcoming()
     }
 
     /// As [`Ring::set_report_after`].
@@ -284,3 +249,5 @@ impl<'s, U: LimitsInUse, J: Judge, T, I, D, const K: usize, const M: usize, cons
         Ok(self.ring.change_schedule(schedule)?)
     }
 }
+
+hands_on!(HcSr04Ring, T, I, D);

@@ -1,6 +1,9 @@
 //! Rings on peripherals that trigger and capture: a PIO whose program is run by the cycle, the receiver of an RMT, the
 //! capture registers of a timer. The loop comes late, and results come late, get lost, or come twice.
 
+#[path = "shared/random.rs"]
+mod random;
+
 use std::collections::VecDeque;
 
 use eeruf_core::{Instant, Micros, ReadingKind, Ring, RingConfig, RingEvent, ScheduledRing, Tally, tables::PAPER_12};
@@ -9,23 +12,13 @@ use eeruf_hc_sr04::capture::{
 };
 use eeruf_hc_sr04::{Health, Settings, SetupError};
 
+use random::Random;
+
 const K: usize = 12;
 const BEGIN: Instant = Instant::from_micros(u32::MAX - 700_000);
 
 fn us(us: u32) -> Micros {
     Micros::new(us)
-}
-
-/// xorshift32.
-struct Random(u32);
-
-impl Random {
-    fn up_to(&mut self, most: u32) -> u32 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 17;
-        self.0 ^= self.0 << 5;
-        self.0 % (most + 1)
-    }
 }
 
 /// The space before a module, or a fault of its line.

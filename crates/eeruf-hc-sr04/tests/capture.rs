@@ -672,10 +672,13 @@ fn late_loop_accepts_walls_and_clears_space() {
         (pulse, if sensor % 2 == 1 { Trouble::Late } else { Trouble::None })
     };
     each(space, 120, |by, tallies, health| {
+        let (mut all_right, mut all) = (0, 0);
         for (sensor, tally) in tallies.iter().enumerate() {
             let right = tally.of(if sensor < 8 { ReadingKind::Accepted } else { ReadingKind::Clear });
             assert!(fired(tally) > 115 && 100 * right >= 99 * (fired(tally) - 1), "{by}, sensor {sensor}: {tally:?}");
+            (all_right, all) = (all_right + right, all + fired(tally));
         }
+        println!("{by}: {all_right} of {all} readings right");
         assert_eq!(health, [Health::Well; K], "{by}");
     });
 }

@@ -9,10 +9,10 @@ const RISES_AFTER: Micros = Micros::new(450);
 
 /// A module on a receiver of an ESP32's RMT, which holds up to `N` symbols: the edges by what it received.
 ///
-/// A symbol is two levels, each with how long it lasted; 0 marks the level at the end, when the line had not changed for
-/// the idle threshold. Set that above the longest echo and below what a healthy module holds its line for: a line that
-/// is high for as long is free space. Start the receiver with each trigger. The time of the first edge is unknown and
-/// set to 450 us after the trigger, so exchanged wires go unseen.
+/// A symbol is two levels, each with how long it lasted; 0 marks the level at the end, when the line had not changed
+/// for the idle threshold. Set that above the longest echo and below what a healthy module holds its line for: a line
+/// that is high for as long is free space. Start the receiver with each trigger. The time of the first edge is unknown
+/// and set to 450 us after the trigger, so exchanged wires go unseen.
 ///
 /// ```
 /// use eeruf_core::{Instant, Micros};
@@ -44,8 +44,8 @@ impl<const N: usize> RmtLine<N> {
         Self { tick, idle, symbols: [0; N], levels: 0, next: 0, at: Instant::from_micros(0), was_high: false }
     }
 
-    /// Takes in what was received of the firing at `fired`, once all edges of an earlier reception are out. Symbols that
-    /// have no room are lost.
+    /// Takes in what was received of the firing at `fired`, once all edges of an earlier reception are out. Symbols
+    /// that have no room are lost.
     pub fn received(&mut self, fired: Instant, symbols: &[u32]) {
         self.levels = 2 * symbols.len().min(N);
         (self.next, self.at, self.was_high) = (0, fired + RISES_AFTER, false);

@@ -161,7 +161,7 @@ fn shorted_line_is_pulled_each_time_and_stays_stuck() {
 
 // Nothing is ever in range: the module latches again each time, and every other firing has evidence.
 #[test]
-fn module_that_latches_each_time_is_not_pulled_while_it_listens() {
+fn module_that_latches_again_is_not_pulled_while_it_listens() {
     let (kinds, _, _, pulled) = run(u32::MAX, true, false);
     assert_eq!(pulled as usize, count(&kinds, ReadingKind::Stuck));
     assert!((25..60).contains(&pulled), "{pulled}: {kinds:?}");

@@ -262,11 +262,14 @@ fn faults_of_edges(library: &Path, world: &Path, file: &str) -> Result<Vec<Outco
     let text = fs::read_to_string(EDGE_SKETCH).map_err(failed(EDGE_SKETCH))?;
     let text = format!("{}\n{text}", table_of(file)?);
     let core = build::core(Board::Uno)?;
+    let sketch = |name, defines| {
+        let source = Source { name, text: &text, board: Board::Uno, ours: true, defines };
+        build::sketch(&source, &library.join("src"), &core)
+    };
+    let (whole, forgetful) = (sketch("edges", &[])?, sketch("edgesForgotten", &["-DFORGOTTEN"])?);
     let mut outcomes = vec![];
     for (fault, name, places) in EDGE_FAULTS {
-        let defines: &[&str] = if name == FORGOTTEN { &["-DFORGOTTEN"] } else { &[] };
-        let source = Source { name: "edges", text: &text, board: Board::Uno, ours: true, defines };
-        let sketch = build::sketch(&source, &library.join("src"), &core)?;
+        let sketch = if name == FORGOTTEN { &forgetful } else { &whole };
         for &place in places {
             let expected = Says::of(file, name, place)?;
             let faulty = match place {

@@ -1819,6 +1819,13 @@ EerufStatus eeruf_hc_sr04_fire(EerufHcSr04 *modules, uint8_t sensor, bool line_i
     return begin_firing(modules, sensor, line_is_high ? EERUF_HEALTH_STUCK_HIGH : EERUF_HEALTH_WELL);
 }
 
+bool eeruf_hc_sr04_is_stuck(const EerufHcSr04 *modules, uint8_t sensor) {
+    uint8_t state;
+    if (has_line(modules, sensor) != EERUF_OK) return false;
+    state = modules->lines[sensor].state;
+    return (state & PULSE) == IDLE && state >> HEALTH_AT == EERUF_HEALTH_STUCK_HIGH;
+}
+
 EerufStatus eeruf_hc_sr04_triggered(EerufHcSr04 *modules, uint8_t sensor) {
     const EerufStatus status = has_line(modules, sensor);
     const EerufLine *line;

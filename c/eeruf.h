@@ -506,6 +506,12 @@ EerufStatus eeruf_hc_sr04_init(EerufHcSr04 *modules, size_t modules_size, EerufL
    the settings' trigger_us. EERUF_DO_NOT_TRIGGER: leave it alone; the line is stuck, or the module has heard nothing
    yet and holds it. With one pin for both, read it before it is an output. */
 EerufStatus eeruf_hc_sr04_fire(EerufHcSr04 *modules, uint8_t sensor, bool line_is_high);
+/* True after EERUF_DO_NOT_TRIGGER for a line that is stuck, not for a module that still listens. Some modules hold their
+   line for ever after a lost echo, until it is pulled low: if its pin can drive, and a resistor of 1 kOhm in the line
+   limits the current, make it an output, low, for EERUF_RECOVERY_US, and an input again. The reading is
+   EERUF_READING_STUCK all the same; the next firing triggers the module if its line stays low. */
+bool eeruf_hc_sr04_is_stuck(const EerufHcSr04 *modules, uint8_t sensor);
+#define EERUF_RECOVERY_US 200
 /* Instead, if a timer or other hardware has triggered it: then nobody has seen whether its line was low, and a module
    that still held it counts as unanswered. */
 EerufStatus eeruf_hc_sr04_triggered(EerufHcSr04 *modules, uint8_t sensor);

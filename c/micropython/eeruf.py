@@ -632,6 +632,9 @@ class HcSr04Ring:
     MIN_RETRIGGER_US, TRIGGER_US = 60000, 10
     LATEST_RISE_US = 1400  # a line that is still low then is not raised by its trigger: exchanged wires, or a disturbance
     LONGEST_HOLD_US = 250000  # a line that rose and is high no longer than this listens still: clones hold 200 ms
+    # A stuck line is pulled low for so long, such as 200 us, if this is not 0: some modules hold it for ever after a lost
+    # echo. It needs a resistor of 1 kOhm, since module and pin drive against each other.
+    RECOVERY_US = 0
     SOON_US = 1000  # what is due so soon is waited for: modules that fire late by differing times compare less
 
     def __init__(self, schedule, pins, echoes=None, machine=None, time=None, **ring):
@@ -707,6 +710,10 @@ class HcSr04Ring:
         self._rose[x], self._awaits[x] = None, False
         if high:
             self.ring.stuck(x)
+            if self.RECOVERY_US:
+                self._echoes[x].init(self._pin.OUT, value=0)
+                self._time.sleep_us(self.RECOVERY_US)
+                self._echoes[x].init(self._pin.IN)
             return
         if self._one_pin:
             pin.init(self._pin.OUT, value=0)

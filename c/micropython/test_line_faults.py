@@ -4,7 +4,7 @@ Free space is never said without evidence, and each state is right after two rea
 
 import sys
 
-from eeruf import ACCEPTED, CLEAR, KIND, SENSOR, HcSr04Ring, Schedule
+from eeruf import ACCEPTED, CLEAR, KIND, SENSOR, STUCK, HcSr04Ring, Schedule
 from line_faults import FAULTY, cell, read, with_column
 
 PERIODS = 40
@@ -24,6 +24,7 @@ class Board:
     def __init__(self, start, fault):
         board = self
         self.now, self.fault, self.levels, self.ahead, self.changed = start, fault, [False] * 4, [], start
+        self.driven, self.pulled = set(), 0
 
         class Pin:
             IN, OUT = 0, 1
@@ -32,7 +33,11 @@ class Board:
                 self.number, self.level = number, 0
 
             def init(self, mode, value=None):
-                pass
+                if self.number >= 10 and mode == board.OUT:
+                    board.driven.add(self.number - 10)
+                    board.pulled += 1
+                else:
+                    board.driven.discard(self.number - 10)
 
             def value(self, level=None):
                 if level is None:
@@ -55,6 +60,9 @@ class Board:
 
     def sleep_us(self, us):
         self.now += us
+        # A line that is driven low meanwhile stays low, if its module lets go.
+        for line in self.driven:
+            self.levels[line] = False
 
     def look(self, line):
         """The level of a line. Of two edges that have just come only the first, so that a look hits every gap."""
@@ -69,7 +77,8 @@ class Board:
     def triggered(self, x):
         fault, line, edges = self.fault, x, WALL
         if x == FAULTY:
-            edges = fault.edges
+            # Once it was pulled low it hears again.
+            edges = WALL if self.pulled else fault.edges
         elif x == fault.partner:
             edges = NOTHING
         if fault.partner is not None and x in (FAULTY, fault.partner):
@@ -101,12 +110,16 @@ class Forgetful(HcSr04Ring):
             super()._trigger(x)
 
 
-def run(period_us, t_fire_us, fault):
+class Recovering(HcSr04Ring):
+    RECOVERY_US = 200
+
+
+def run(period_us, t_fire_us, fault, kind=HcSr04Ring):
     """The readings of the faulty sensor, and of the one that its wire is exchanged with: (kind, state)."""
     # The clock wraps in each run.
     board = Board(TURN - 1000000, fault)
     schedule = Schedule(period_us, t_fire_us).verify(240)
-    ring = (Forgetful if fault.forgotten else HcSr04Ring)(
+    ring = (Forgetful if fault.forgotten else kind)(
         schedule, [0, 1, 2, 3], [10, 11, 12, 13], machine=board, time=board, window_us=40000
     )
     end, said = board.now + PERIODS * period_us, {FAULTY: [], fault.partner: []}
@@ -155,9 +168,22 @@ def check(text):
     return cells
 
 
+def check_recovery(text):
+    """A line that is held until it is pulled low: stuck once, then a wall."""
+    period_us, t_fire_us, faults = read(text)
+    held = [fault for fault in faults if fault.name == "held for ever"][0]
+    readings, _ = run(period_us, t_fire_us, held, Recovering)
+    kinds = [kind for kind, _ in readings]
+    stuck = kinds.index(STUCK)
+    wrong = [said for said in readings[stuck + 3 :] if not is_right(said, ["obstacle", "5830"])]
+    if stuck > 3 or kinds.count(STUCK) != 1 or wrong or any([is_clear(said) for said in readings[stuck:]]):
+        raise AssertionError("a line that is pulled low: %r" % kinds)
+
+
 def main(text, document):
     """The document whose table has what was said."""
     cells = check(text)
+    check_recovery(text)
     print("%d faults of a line: never clear without evidence" % len(cells))
     return with_column(document, COLUMN, cells)
 

@@ -272,6 +272,10 @@ static void modules(void) {
     EXPECT(eeruf_hc_sr04_fire(&four, SENSORS, false), EERUF_ERR_SENSOR);
     EXPECT(eeruf_hc_sr04_fire(&four, 0, true), EERUF_DO_NOT_TRIGGER);
     EXPECT(eeruf_hc_sr04_health(&four, 0), EERUF_HEALTH_STUCK_HIGH);
+    EXPECT(eeruf_hc_sr04_is_stuck(&four, 0), true);
+    EXPECT(eeruf_hc_sr04_is_stuck(&four, 1), false);
+    EXPECT(eeruf_hc_sr04_is_stuck(&four, SENSORS), false);
+    EXPECT(eeruf_hc_sr04_is_stuck(NULL, 0), false);
     EXPECT(eeruf_hc_sr04_cannot_read(&none, 0), EERUF_ERR_NOT_READY);
     EXPECT(eeruf_hc_sr04_cannot_write(&four, SENSORS), EERUF_ERR_SENSOR);
     EXPECT(eeruf_hc_sr04_edge(NULL, 0, true, 0), EERUF_ERR_NULL);

@@ -103,9 +103,21 @@ EerufState EerufModules::state(uint8_t sensor) const {
     return state;
 }
 
+void EerufModules::pullLow(EerufModules &self, uint8_t sensor) {
+    const uint8_t echo = self.echoes_[sensor];
+    if (!eeruf_hc_sr04_is_stuck(&self.modules_, sensor)) return;
+    drive(echo, false);
+    setOutput(echo, true);
+    delayMicroseconds(self.recovery_);
+    setOutput(echo, false);
+}
+
 // Unless the line is high.
 void EerufModules::fire(uint8_t sensor) {
-    if (eeruf_hc_sr04_fire(&modules_, sensor, EerufPin::isHigh(echoes_[sensor])) != EERUF_OK) return;
+    if (eeruf_hc_sr04_fire(&modules_, sensor, EerufPin::isHigh(echoes_[sensor])) != EERUF_OK) {
+        if (onStuck_ != nullptr) onStuck_(*this, sensor);
+        return;
+    }
     EerufPin::trigger(triggers_[sensor], echoes_[sensor], modules_.settings->trigger_us);
 }
 

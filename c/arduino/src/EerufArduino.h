@@ -66,6 +66,12 @@ public:
         adaptation_ = &adaptation;
         onPeriod_ = climb; // by pointers, so that what a sketch does not use is not linked
     }
+    // Pulls the line of a module that is stuck high low for this many microseconds before its next firing: some modules
+    // hold it for ever after a lost echo. Put 1 kOhm into each line before, since module and pin drive against each other.
+    void recover(uint16_t us = EERUF_RECOVERY_US) {
+        recovery_ = us;
+        onStuck_ = pullLow;
+    }
     // Takes edges from this queue, which interrupts fill, instead of sampling the lines.
     void use(EerufEdges &edges) {
         edges_ = &edges;
@@ -93,6 +99,7 @@ private:
     static void drain(EerufModules &self);
     static void climb(EerufModules &self, const EerufEvent &event);
     static void watchEvent(EerufModules &self, const EerufEvent &event, uint32_t now);
+    static void pullLow(EerufModules &self, uint8_t sensor);
     void fire(uint8_t sensor);
 
     const EerufSchedule *schedule_;
@@ -103,12 +110,14 @@ private:
     EerufEdges *edges_;
     EerufWatch *watch_ = nullptr;
     void (*collect_)(EerufModules &) = sample;
+    void (*onStuck_)(EerufModules &, uint8_t) = nullptr;
     void (*onPeriod_)(EerufModules &, const EerufEvent &) = nullptr;
     void (*onReading_)(EerufModules &, const EerufEvent &, uint32_t) = nullptr;
     void (*onEvent_)(EerufModules &, const EerufEvent &, uint32_t) = nullptr;
     EerufRing ring_;
     EerufHcSr04 modules_;
     EerufReading reading_;
+    uint16_t recovery_;
     uint8_t count_, sensor_;
     EerufStatus status_ = EERUF_ERR_NOT_READY;
 };

@@ -5,14 +5,16 @@
  * ECHO_TIMES has a line for each way that sound takes: emitter, receiver, microseconds; `crates/eeruf-sim`'s example
  * echo_times writes it. Pins are the Uno's numbers, or with --mega those of a Mega 2560; the same pin twice is a module
  * with one pin. What the sketch says on its serial line goes to standard output; then come lines that begin with
- * `world`: firings of each module, triggers that came while its line was high, how deep the stack ever was in bytes, and which
- * share of the time, in millionths, passed in interrupts. With --pulses there is also a line for each pulse that sound
+ * `world`: firings of each module, triggers that came while its line was high, how often its latched line was pulled low, how
+ * deep the stack ever was in bytes, and which share of the time, in millionths, passed in interrupts. With --pulses there is also a line for each pulse that sound
  * has ended: the module from 1, and whose sound it was: `own`, `earlier` for its own from an earlier firing, `foreign`.
  *
  * With --fault a module, counted from 1, has a fault: `cut`, its trigger is not connected, or it has no power; `deaf`, its
  * echo wire is cut; `glitch-high`, cut, with a spike of 5 us on its line 3 ms after each trigger; `glitch-low`, its pulse has
- * a gap of 5 us after 2 ms; `stuck`, its line stays high; `hold-N`, it holds its line for N ms without an echo; `exchanged`,
- * its echo wire and the next module's are exchanged.
+ * a gap of 5 us after 2 ms; `spike`, a spike of 5 us on its line 0.25 ms after each trigger; `lost-rise`, `lost-fall`, the
+ * interrupts of pins are masked while its line rises or falls; `stuck`, its line stays high; `latched`, so it does without an
+ * echo, until the sketch pulls it low, and hears none in the first second; `hold-N`, it holds its line for N ms without an echo; `exchanged-N`, its echo wire and
+ * module N's are exchanged.
  *
  * A module whose trigger falls sends its sound 450 us later and raises its line, until the first sound reaches it, its
  * own or another's, or until 38 ms are over. It is deaf for the first 150 us. Time is the board's own, to the cycle. */
@@ -40,13 +42,14 @@ static struct Module {
     int trigger, echo;
     int triggered, line_high;
     avr_cycle_count_t rose, fired;
-    unsigned firings, ignored, glitches;
+    unsigned firings, ignored, glitches, pulled;
 } modules[MODULES];
 static int says_pulses;
-enum Fault { NONE, CUT, DEAF, GLITCH_HIGH, GLITCH_LOW, STUCK, EXCHANGED };
+enum Fault { NONE, CUT, DEAF, GLITCH_HIGH, GLITCH_LOW, SPIKE, LOST_RISE, LOST_FALL, STUCK, LATCHED };
 static enum Fault fault;
 static int faulty = -1; /* the module with the fault, if one has one */
 static unsigned hold_ms = 38; /* the faulty module's */
+static int partner = -1; /* the module with its echo wire */
 static int module_count;
 
 /* The pins of a board from 0 on, each by its port and bit; the last are A0 to A5 of an Uno, A0 to A15 of a Mega. */
@@ -109,12 +112,18 @@ static int has(const struct Module *module, enum Fault which) {
     return fault == which && module - modules == faulty;
 }
 
+#define EIMSK 0x3d
+
 static void set_line(struct Module *module, int high) {
+    const uint8_t external = avr->data[EIMSK], changes = avr->data[PCICR];
     module->line_high = high;
     if (has(module, DEAF)) return;
+    if (has(module, high ? LOST_RISE : LOST_FALL)) avr->data[EIMSK] = avr->data[PCICR] = 0;
     note_change(module->echo);
     avr_raise_irq(avr_io_getirq(avr, AVR_IOCTL_IOPORT_GETIRQ(port_of(module->echo)), bit_of(module->echo)),
                   (uint32_t)high);
+    avr->data[EIMSK] = external;
+    avr->data[PCICR] = changes;
 }
 
 /* Time for which a module holds its line when nothing comes, in microseconds. */
@@ -123,7 +132,7 @@ static uint32_t held_us(const struct Module *module) {
 }
 
 static void on_arrival(struct Module *module, const struct Module *emitter, unsigned firing) {
-    if (has(module, STUCK)) return;
+    if (has(module, STUCK) || (has(module, LATCHED) && avr->cycle < avr->frequency)) return;
     if (!module->line_high || avr->cycle - module->rose < avr_usec_to_cycles(avr, 150)) return;
     set_line(module, 0);
     if (says_pulses)
@@ -194,9 +203,15 @@ static avr_cycle_count_t on_burst(avr_t *a, avr_cycle_count_t when, void *param)
         sounds[sound_count].firing = module->firings;
         sounds[sound_count++].module = &modules[ways[way].receiver];
     }
-    if (!has(module, STUCK)) avr_cycle_timer_register_usec(a, held_us(module), on_time_out, module);
+    if (!has(module, STUCK) && !has(module, LATCHED)) avr_cycle_timer_register_usec(a, held_us(module), on_time_out, module);
     if (has(module, GLITCH_LOW)) avr_cycle_timer_register_usec(a, 2000, on_glitch, module);
     return 0;
+}
+
+/* True if the Uno itself holds a pin low. */
+static int is_driven_low(int pin) {
+    const int port = index_of(port_of(pin));
+    return (~ports[port] & directions[port]) >> bit_of(pin) & 1;
 }
 
 /* A port's outputs or directions have changed. */
@@ -205,6 +220,10 @@ static void look_at_triggers(void) {
     for (i = 0; i < module_count; i++) {
         struct Module *module = &modules[i];
         const int high = is_driven_high(module->trigger);
+        if (has(module, LATCHED) && module->line_high && is_driven_low(module->echo)) {
+            module->pulled++;
+            set_line(module, 0);
+        }
         if (high == (module->triggered == 1)) continue;
         note_change(module->trigger);
         if (high && !module->triggered) {
@@ -215,6 +234,7 @@ static void look_at_triggers(void) {
             /* Too short for a module. Data sheets ask for 10 us, of which delayMicroseconds(10) may take a little off. */
             if (avr->cycle - module->fired < avr_usec_to_cycles(avr, 9)) continue;
             if (has(module, GLITCH_HIGH)) avr_cycle_timer_register_usec(avr, 3000, on_glitch, module);
+            if (has(module, SPIKE) && !module->line_high) avr_cycle_timer_register_usec(avr, 250, on_glitch, module);
             if (has(module, CUT) || has(module, GLITCH_HIGH)) continue;
             if (module->line_high) {
                 module->ignored++;
@@ -260,12 +280,14 @@ static void on_interrupt(struct avr_irq_t *irq, uint32_t value, void *param) {
 
 /* `KIND:MODULE`. */
 static int read_fault(const char *text) {
-    static const char *const kinds[] = {"", "cut", "deaf", "glitch-high", "glitch-low", "stuck", "exchanged"};
+    static const char *const kinds[] = {"",          "cut",       "deaf",  "glitch-high", "glitch-low", "spike",
+                                        "lost-rise", "lost-fall", "stuck", "latched"};
     const char *colon = strchr(text, ':');
     size_t kind;
     if (colon == NULL || (faulty = atoi(colon + 1) - 1) < 0) return 0;
     if (strncmp(text, "hold-", 5) == 0) return (hold_ms = (unsigned)atoi(text + 5)) > 0;
-    for (kind = CUT; kind <= EXCHANGED; kind++)
+    if (strncmp(text, "exchanged-", 10) == 0) return (partner = atoi(text + 10) - 1) >= 0;
+    for (kind = CUT; kind <= LATCHED; kind++)
         if (strlen(kinds[kind]) == (size_t)(colon - text) && strncmp(text, kinds[kind], strlen(kinds[kind])) == 0) {
             fault = (enum Fault)kind;
             return 1;
@@ -320,10 +342,10 @@ int main(int argc, char **argv) {
             return 2;
         }
     }
-    if (fault == EXCHANGED && faulty + 1 < module_count) {
+    if (partner >= 0 && partner < module_count && faulty < module_count) {
         const int echo = modules[faulty].echo;
-        modules[faulty].echo = modules[faulty + 1].echo;
-        modules[faulty + 1].echo = echo;
+        modules[faulty].echo = modules[partner].echo;
+        modules[partner].echo = echo;
     }
     if (!read_ways(argv[3]) || elf_read_firmware(argv[1], &firmware) != 0) {
         fprintf(stderr, "%s or %s cannot be read\n", argv[1], argv[3]);
@@ -361,6 +383,8 @@ int main(int argc, char **argv) {
     for (i = 0; i < module_count; i++) printf(" %u", modules[i].firings);
     printf("\nworld ignored");
     for (i = 0; i < module_count; i++) printf(" %u", modules[i].ignored);
+    printf("\nworld pulled low");
+    for (i = 0; i < module_count; i++) printf(" %u", modules[i].pulled);
     printf("\nworld stack %u\n", deepest_stack);
     printf("world interrupts %u\n", (unsigned)(interrupted * 1000000u / avr->cycle));
     return 0;

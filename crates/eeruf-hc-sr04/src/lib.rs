@@ -15,7 +15,8 @@
 //!
 //! The ring can also be a [`HoppingRing`](eeruf_core::hopping::HoppingRing), of which no sensor stays blind.
 //!
-//! Modules that measure by themselves and report a value, over I2C, a serial line or by a pulse, are in [`measuring`].
+//! Where hardware triggers the modules and times their lines, such as PIO, RMT or a timer, see [`capture`]. Modules
+//! that measure by themselves and report a value, over I2C, a serial line or by a pulse, are in [`measuring`].
 //!
 //! It is a crate beside `eeruf-core` and not a feature of it, because core has no dependencies at all and a major
 //! version of `embedded-hal` must not become a major version of core.
@@ -45,7 +46,9 @@
 //! ```
 #![no_std]
 
+pub mod capture;
 mod error;
+mod hands_on;
 mod health;
 mod line;
 mod lines;
@@ -56,6 +59,6 @@ mod settings;
 pub use eeruf_modules as modules;
 pub use error::SetupError;
 pub use health::Health;
-pub use lines::Pins;
+pub use lines::{FlexPin, Pins};
 pub use ring::HcSr04Ring;
 pub use settings::Settings;

@@ -19,6 +19,21 @@ pub struct Pins<T, I> {
     pub echo: I,
 }
 
+/// An echo pin that can also drive its line, as pins do that change between input and output.
+pub trait FlexPin: InputPin {
+    /// Drives the line low.
+    ///
+    /// # Errors
+    /// The pin's own.
+    fn drive_low(&mut self) -> Result<(), Self::Error>;
+
+    /// Makes the pin an input again.
+    ///
+    /// # Errors
+    /// The pin's own.
+    fn release(&mut self) -> Result<(), Self::Error>;
+}
+
 /// The pins of `K` sensors, and what their lines show.
 #[derive(Debug)]
 pub(crate) struct Lines<T, I, D, const K: usize> {
@@ -105,6 +120,24 @@ impl<T: OutputPin, I: InputPin, D: DelayNs, const K: usize> Lines<T, I, D, K> {
             line.health = Health::PinError;
         }
         Trigger::Given { lost_an_edge }
+    }
+}
+
+impl<T, I: FlexPin, D: DelayNs, const K: usize> Lines<T, I, D, K> {
+    /// Pulls the line of a sensor low whose trigger was withheld since it is stuck. Returns true if it was.
+    pub(crate) fn recover(&mut self, sensor: u8) -> bool {
+        let x = usize::from(sensor);
+        let (Some(line), Some(pins)) = (self.lines.get_mut(x), self.pins.get_mut(x)) else { return false };
+        if (line.pulse, line.health) != (Pulse::Idle, Health::StuckHigh) {
+            return false;
+        }
+        let driven = pins.echo.drive_low();
+        self.delay.delay_us(self.settings.recovery.as_micros());
+        // Also after an error: the pin must not go on driving.
+        if pins.echo.release().is_err() || driven.is_err() {
+            line.health = Health::PinError;
+        }
+        true
     }
 }
 

@@ -3,15 +3,16 @@
 use eeruf_core::{
     EchoFilter, Edge, EdgeQueue, Instant, Micros, Ring, RingError, RingEvent, SensorError, VerifiedSchedule,
     judge::Judge,
-    plan::{LimitsInUse, OwnLimits, Plan, ScheduledFiring, Upcoming},
+    plan::{LimitsInUse, OwnLimits, Plan, ScheduledFiring},
 };
 use embedded_hal::delay::DelayNs;
 use embedded_hal::digital::{InputPin, OutputPin};
 
 use crate::error::SetupError;
+use crate::hands_on::hands_on;
 use crate::health::Health;
 use crate::line::Shown;
-use crate::lines::{Lines, Pins, Trigger};
+use crate::lines::{FlexPin, Lines, Pins, Trigger};
 use crate::settings::Settings;
 
 /// A ring whose firings are triggers on pins and whose echoes are pulses on lines: a [`Ring`] of any plan and judge,
@@ -67,6 +68,18 @@ impl<P: Plan, J: Judge, T: OutputPin, I: InputPin, D: DelayNs, const K: usize, c
             _ = self.edge(edge);
         }
         self.poll(now)
+    }
+}
+
+impl<R, T, I: FlexPin, D: DelayNs, const K: usize> HcSr04Ring<R, T, I, D, K> {
+    /// Pulls the line of a sensor low for [`Settings::recovery`] if it is stuck high, and returns true if it was; call
+    /// it after each [`RingEvent::Fire`]. Some modules hold their line for ever after a lost echo, until it is pulled
+    /// low. The firing is [`Stuck`](eeruf_core::ReadingKind::Stuck) all the same; the next one triggers the module if
+    /// its line stays low.
+    ///
+    /// Module and pin drive against each other meanwhile: put a resistor of 1 kOhm into the line.
+    pub fn recover(&mut self, sensor: u8) -> bool {
+        self.lines.recover(sensor)
     }
 }
 
@@ -178,45 +191,9 @@ impl<P: Plan, J: Judge, T, I, D, const K: usize, const H: usize> HcSr04Ring<Ring
         self.lines.health(sensor)
     }
 
-    /// The ring.
-    pub const fn ring(&self) -> &Ring<P, J, K, 1, H> {
-        &self.ring
-    }
-
-    /// As [`Ring::disable`].
-    ///
-    /// # Errors
-    /// [`SensorError`] for a sensor out of range.
-    pub fn disable(&mut self, sensor: u8) -> Result<(), SensorError> {
-        self.ring.disable(sensor)
-    }
-
-    /// As [`Ring::enable`].
-    ///
-    /// # Errors
-    /// [`SensorError`] for a sensor out of range.
-    pub fn enable(&mut self, sensor: u8) -> Result<(), SensorError> {
-        self.ring.enable(sensor)
-    }
-
-    /// As [`Ring::pause`].
-    pub fn pause(&mut self) {
-        self.ring.pause();
-    }
-
-    /// As [`Ring::resume`].
-    pub fn resume(&mut self) {
-        self.ring.resume();
-    }
-
     /// As [`Ring::restart`].
     pub fn restart(&mut self, now: Instant) {
         self.ring.restart(now);
-    }
-
-    /// As [`Ring::upcoming`].
-    pub fn upcoming(&self) -> impl Iterator<Item = Upcoming> {
-        self.ring.upcoming()
     }
 
     /// As [`Ring::set_report_after`].
@@ -272,3 +249,5 @@ impl<'s, U: LimitsInUse, J: Judge, T, I, D, const K: usize, const M: usize, cons
         Ok(self.ring.change_schedule(schedule)?)
     }
 }
+
+hands_on!(HcSr04Ring, T, I, D);

@@ -24,6 +24,9 @@ pub struct Settings {
     pub longest_hold: Micros,
     /// No sensor may be triggered again sooner.
     pub min_retrigger: Micros,
+    /// Time for which [`recover`](crate::HcSr04Ring::recover) pulls a stuck line low, a choice: 200 us, as sketches on
+    /// forum.arduino.cc (524295) do.
+    pub recovery: Micros,
     /// After this many firings in a row without a pulse a sensor counts as missing.
     pub missing_after: u8,
 }
@@ -47,6 +50,7 @@ impl Settings {
             longest: Micros::new(times.longest_us),
             longest_hold: Micros::new(times.longest_hold_us),
             min_retrigger: Micros::new(module.rest_us),
+            recovery: Micros::new(200),
             missing_after: 3,
         })
     }

@@ -1,26 +1,19 @@
 //! Modules that a timer triggers while the loop is late, whose lines are stamped or whose pulses are measured by
 //! hardware, with results that come late, get lost, or come twice.
 
+#[path = "shared/random.rs"]
+mod random;
+
 use eeruf_core::{
     Edge, Instant, Micros, ReadingKind, Ring, RingConfig, RingEvent, ScheduledRing, SensorError, Tally,
     tables::PAPER_12,
 };
 use eeruf_hc_sr04::{HcSr04Ring, Health, Settings};
 
+use random::Random;
+
 const K: usize = 12;
 type Driver = HcSr04Ring<ScheduledRing<'static, K>, (), (), (), K>;
-
-/// xorshift32.
-struct Random(u32);
-
-impl Random {
-    fn up_to(&mut self, most: u32) -> u32 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 17;
-        self.0 ^= self.0 << 5;
-        self.0 % (most + 1)
-    }
-}
 
 /// The answer of a module to a trigger.
 #[derive(Clone, Copy, Debug, PartialEq)]

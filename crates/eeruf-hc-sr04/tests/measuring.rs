@@ -1,35 +1,22 @@
 //! Rings of four modules that measure by themselves, in simulated time: an SRF08 on I2C, a US-100 on a serial line, an
 //! MB1010 by pulse width. Each fake behaves as its data sheet says, and has faults.
 
+#[path = "shared/four.rs"]
+mod four;
+#[path = "shared/random.rs"]
+mod random;
+
 use std::cell::RefCell;
 use std::collections::VecDeque;
 use std::rc::Rc;
 
-use eeruf_core::{
-    Instant, Layout, Micros, Reading, ReadingKind, Requirements, Ring, RingConfig, RingEvent, ScheduledRing,
-    VerifiedSchedule, schedule,
-};
+use eeruf_core::{Instant, Micros, Reading, ReadingKind, RingEvent};
 use eeruf_hc_sr04::Health;
 use eeruf_hc_sr04::measuring::{Mb1010, Measures, MeasuringRing, Srf08, Us100};
 use embedded_hal::i2c::{ErrorKind, NoAcknowledgeSource, Operation};
 use embedded_hal_mock::eh1::delay::NoopDelay;
-
-const K: usize = 4;
-const WINDOW: Micros = Micros::from_millis(33);
-
-/// A table that leaves each module 115 ms, as `eeruf design` gives it.
-const TABLE: VerifiedSchedule<K> = schedule! {
-    period_us: 124_000,
-    t_fire_a_us: [9_000, 37_000, 68_000, 96_000],
-    t_fire_b_us: [0, 37_000, 65_000, 102_000],
-    meets: Requirements {
-        min_interval: Micros::new(8_000),
-        layout: Layout::Line(4),
-        window: Micros::new(115_000),
-        stale_echo: false,
-        ..Requirements::new(Micros::new(1_000))
-    },
-};
+use four::{BEGIN, K, ring};
+use random::Random;
 
 /// The space before a module.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -81,7 +68,7 @@ type Script = Rc<dyn Fn(u8, u32) -> (Space, Trouble)>;
 /// State that the fakes share: the time, in microseconds, and the script.
 struct World {
     now: u64,
-    random: u32,
+    random: Random,
     script: Script,
     firings: [u32; K],
     /// Pulses to hand in: when they end, of which sensor, and how wide.
@@ -89,21 +76,13 @@ struct World {
 }
 
 impl World {
-    /// xorshift32.
-    fn up_to(&mut self, most: u32) -> u32 {
-        self.random ^= self.random << 13;
-        self.random ^= self.random >> 17;
-        self.random ^= self.random << 5;
-        self.random % (most + 1)
-    }
-
     /// A sensor is started: its echo time with some jitter, and its trouble.
     fn start(&mut self, sensor: u8) -> (Option<u32>, Trouble) {
         let firing = &mut self.firings[usize::from(sensor)];
         let (space, trouble) = (self.script)(sensor, *firing);
         *firing += 1;
         match space {
-            Space::Wall(us) => (Some(us + self.up_to(30)), trouble),
+            Space::Wall(us) => (Some(us + self.random.up_to(30)), trouble),
             Space::Free => (None, trouble),
         }
     }
@@ -318,20 +297,19 @@ impl Fake for Mb1010<RxFake, NoopDelay> {
     }
 }
 
-const BEGIN: u64 = u32::MAX as u64 - 700_000;
-
 fn instant(us: u64) -> Instant {
     Instant::from_micros(us as u32)
 }
 
-fn ring() -> ScheduledRing<'static, K> {
-    static RING: VerifiedSchedule<K> = TABLE;
-    Ring::new(&RING, RingConfig::new().with_window(WINDOW), instant(BEGIN)).unwrap()
-}
-
 /// Runs a loop that comes round up to `late` microseconds late: each sensor's readings, and its health.
 fn run<M: Fake>(periods: u32, script: &Script, late: u32) -> ([Vec<Reading>; K], [Health; K]) {
-    let world = World { now: BEGIN, random: 2_000, script: script.clone(), firings: [0; K], pulses: vec![] };
+    let world = World {
+        now: BEGIN.as_micros().into(),
+        random: Random(2_000),
+        script: script.clone(),
+        firings: [0; K],
+        pulses: vec![],
+    };
     let world = Rc::new(RefCell::new(world));
     let modules = std::array::from_fn(|x| M::of(&world, x as u8));
     let mut ring = MeasuringRing::new(ring(), modules).unwrap();
@@ -343,7 +321,7 @@ fn run<M: Fake>(periods: u32, script: &Script, late: u32) -> ([Vec<Reading>; K],
             // A deadline in the past is due at once.
             let wait = if wait > u32::MAX / 2 { 0 } else { wait };
             let next = world.pulses.iter().map(|&(at, ..)| at).min().unwrap_or(u64::MAX).max(world.now);
-            world.now = (world.now + u64::from(wait)).min(next) + u64::from(world.up_to(late));
+            world.now = (world.now + u64::from(wait)).min(next) + u64::from(world.random.up_to(late));
             world.now
         };
         let pulses = std::mem::take(&mut world.borrow_mut().pulses);

@@ -1,13 +1,15 @@
 //! Modules that measure by themselves, one call at a time, and their ring with modules that answer by a script.
 
+#[path = "shared/four.rs"]
+mod four;
+#[path = "shared/random.rs"]
+mod random;
+
 use std::cell::RefCell;
 use std::collections::VecDeque;
 use std::rc::Rc;
 
-use eeruf_core::{
-    Instant, Layout, Micros, ReadingKind, Requirements, Ring, RingConfig, RingEvent, ScheduledRing, SensorError,
-    SpeedOfSound, VerifiedSchedule, schedule,
-};
+use eeruf_core::{Instant, Micros, ReadingKind, Ring, RingConfig, RingEvent, ScheduledRing, SensorError, SpeedOfSound};
 use eeruf_hc_sr04::measuring::{Fault, Mb1010, Measured, Measures, MeasuringRing, Srf08, Us100};
 use eeruf_hc_sr04::modules::{Module, SRF08, US_100};
 use eeruf_hc_sr04::{Health, SetupError};
@@ -16,6 +18,8 @@ use embedded_hal_mock::eh1::MockError;
 use embedded_hal_mock::eh1::delay::NoopDelay;
 use embedded_hal_mock::eh1::digital::{Mock as Pin, State, Transaction as Level};
 use embedded_hal_mock::eh1::i2c::{Mock as Bus, Transaction};
+use four::{BEGIN, K, ring};
+use random::Random;
 
 const fn ms(ms: u32) -> Micros {
     Micros::from_millis(ms)
@@ -183,28 +187,6 @@ fn mb1010_reports_echo_nothing_and_faults() {
     }
 }
 
-const K: usize = 4;
-
-/// A table that leaves each module 115 ms, as `eeruf design` gives it.
-static TABLE: VerifiedSchedule<K> = schedule! {
-    period_us: 124_000,
-    t_fire_a_us: [9_000, 37_000, 68_000, 96_000],
-    t_fire_b_us: [0, 37_000, 65_000, 102_000],
-    meets: Requirements {
-        min_interval: Micros::new(8_000),
-        layout: Layout::Line(4),
-        window: Micros::new(115_000),
-        stale_echo: false,
-        ..Requirements::new(Micros::new(1_000))
-    },
-};
-
-const BEGIN: Instant = Instant::from_micros(u32::MAX - 700_000);
-
-fn ring() -> ScheduledRing<'static, K> {
-    Ring::new(&TABLE, RingConfig::new().with_window(ms(33)), BEGIN).unwrap()
-}
-
 /// A module of a caller's own with the same answer each time, after 20 ms.
 #[derive(Debug)]
 struct Scripted {
@@ -365,18 +347,6 @@ fn due_firing_waits_for_no_answer() {
         }
     }
     assert!(fired > 500, "{fired} by {now:?}");
-}
-
-/// xorshift32.
-struct Random(u32);
-
-impl Random {
-    fn up_to(&mut self, most: u32) -> u32 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 17;
-        self.0 ^= self.0 << 5;
-        self.0 % (most + 1)
-    }
 }
 
 // Whatever is done to a ring, and however its clock jumps: a dead module is never clear, nor is a wall.

@@ -1,5 +1,5 @@
-//! Eight HC-SR04 modules on a Raspberry Pi Pico. Interrupts stamp the edges of the echo lines with the time; the main
-//! task fires, listens, and says once a second over USB what it sees.
+//! Eight HC-SR04 modules on a Raspberry Pi Pico, one on each state machine of its two PIOs. They fire and time the
+//! echoes by themselves; the main task tells them when, and says once a second over USB what is there.
 #![no_std]
 #![no_main]
 
@@ -8,20 +8,21 @@ mod ring;
 use core::fmt;
 
 use eeruf_core::{
-    Edge, EdgeQueue, Instant, Micros, Ring, RingConfig, RingEvent, SpeedOfSound,
+    Instant, Micros, Ring, RingConfig, RingEvent, SpeedOfSound,
     watch::{SensorState, SensorWatch},
 };
-use eeruf_hc_sr04::{HcSr04Ring, Pins, Settings};
-use embassy_executor::{InterruptExecutor, Spawner};
-use embassy_futures::select::select;
-use embassy_rp::gpio::{AnyPin, Input, Level, Output, Pull};
-use embassy_rp::interrupt::{self, InterruptExt, Priority};
-use embassy_rp::peripherals::USB;
-use embassy_rp::usb::{Driver, InterruptHandler};
-use embassy_rp::{Peri, bind_interrupts};
-use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
-use embassy_sync::signal::Signal;
-use embassy_time::{Delay, Timer};
+use eeruf_hc_sr04::Settings;
+use eeruf_hc_sr04::capture::{CaptureRing, Captures, LineEdge, PIO_HZ, PIO_PROGRAM, PioLine};
+use embassy_executor::Spawner;
+use embassy_rp::Peri;
+use embassy_rp::bind_interrupts;
+use embassy_rp::gpio::Pull;
+use embassy_rp::peripherals::{PIO0, PIO1, USB};
+use embassy_rp::pio::program::{ArrayVec, PioVersion, Program, SideSet, Wrap};
+use embassy_rp::pio::{self, Common, Config, Direction, Instance, LoadedProgram, Pio, PioPin, StateMachine};
+use embassy_rp::pio_programs::clock_divider::calculate_pio_clock_divider;
+use embassy_rp::usb::{self, Driver};
+use embassy_time::Timer;
 use panic_halt as _;
 use ring::RING;
 
@@ -29,50 +30,93 @@ const SENSORS: usize = 8;
 /// Of air at 20 degrees Celsius.
 const SOUND: SpeedOfSound = SpeedOfSound::at_celsius_tenths(200);
 const SECOND: Micros = Micros::from_millis(1000);
+/// Time for which a line is watched: more than the window, and 11 ms less than the 60 ms after which a module may fire
+/// again.
+const LISTENS: Micros = Micros::from_millis(45);
 
 bind_interrupts!(struct Irqs {
-    USBCTRL_IRQ => InterruptHandler<USB>;
+    USBCTRL_IRQ => usb::InterruptHandler<USB>;
+    PIO0_IRQ_0 => pio::InterruptHandler<PIO0>;
+    PIO1_IRQ_0 => pio::InterruptHandler<PIO1>;
 });
-
-/// From the tasks that stamp edges to the main task.
-static EDGES: EdgeQueue<32> = EdgeQueue::new();
-static EDGE: Signal<CriticalSectionRawMutex, ()> = Signal::new();
-
-/// Runs the tasks that stamp edges, in an interrupt, so that nothing the main task does makes a stamp late.
-static STAMPS: InterruptExecutor = InterruptExecutor::new();
-
-#[embassy_rp::interrupt]
-unsafe fn SWI_IRQ_1() {
-    // SAFETY: this is the interrupt that the executor was started with.
-    unsafe { STAMPS.on_interrupt() }
-}
 
 /// The low 32 bits of embassy's clock.
 fn now() -> Instant {
     Instant::from_micros(embassy_time::Instant::now().as_micros() as u32)
 }
 
-async fn sleep_until(deadline: Instant) {
-    let now = now();
-    if !now.has_reached(deadline) {
-        Timer::after_micros(deadline.since(now).as_micros().into()).await;
-    }
-}
-
-/// Stamps the edges of one echo line.
-#[embassy_executor::task(pool_size = SENSORS)]
-async fn stamp(sensor: u8, mut line: Input<'static>) {
-    loop {
-        line.wait_for_any_edge().await;
-        EDGES.push(Edge { sensor, high: line.is_high(), at: now() });
-        EDGE.signal(());
-    }
-}
-
 /// Sends what is logged to the computer at the other end of the USB cable.
 #[embassy_executor::task]
-async fn usb(driver: Driver<'static, USB>) {
+async fn log_over_usb(driver: Driver<'static, USB>) {
     embassy_usb_logger::run!(1024, log::LevelFilter::Info, driver);
+}
+
+/// The FIFOs of a state machine, whichever it is.
+trait Fifos {
+    fn push(&mut self, word: u32);
+    fn pull(&mut self) -> Option<u32>;
+}
+
+impl<P: Instance, const N: usize> Fifos for StateMachine<'_, P, N> {
+    fn push(&mut self, word: u32) {
+        // It takes two words a firing, and has room for four.
+        self.tx().push(word);
+    }
+
+    fn pull(&mut self) -> Option<u32> {
+        self.rx().try_pull()
+    }
+}
+
+/// A state machine for each module.
+struct Modules<'m> {
+    machines: [&'m mut dyn Fifos; SENSORS],
+    lines: [PioLine; SENSORS],
+}
+
+impl Captures for Modules<'_> {
+    fn fire(&mut self, sensor: u8, at: Instant, _: Instant) -> Option<Instant> {
+        let (machine, line) = (self.machines.get_mut(usize::from(sensor))?, self.lines.get_mut(usize::from(sensor))?);
+        // No interrupt may come between the clock and the words that count from it.
+        critical_section::with(|_| {
+            let (words, at) = line.fire(at, now())?;
+            words.into_iter().for_each(|word| machine.push(word));
+            Some(at)
+        })
+    }
+
+    fn edge(&mut self, sensor: u8, _: Instant) -> Option<LineEdge> {
+        let (machine, line) = (self.machines.get_mut(usize::from(sensor))?, self.lines.get_mut(usize::from(sensor))?);
+        loop {
+            if let Some(edge) = line.edge(machine.pull()?) {
+                return Some(edge);
+            }
+        }
+    }
+}
+
+/// Starts a state machine with the pins of a module.
+fn start<'d, P: Instance, const N: usize>(
+    machine: &mut StateMachine<'d, P, N>,
+    common: &mut Common<'d, P>,
+    program: &LoadedProgram<'d, P>,
+    trigger: Peri<'d, impl PioPin + 'd>,
+    echo: Peri<'d, impl PioPin + 'd>,
+) {
+    let (trigger, mut echo) = (common.make_pio_pin(trigger), common.make_pio_pin(echo));
+    echo.set_pull(Pull::Down);
+    let mut config = Config::default();
+    config.use_program(program, &[]);
+    config.set_set_pins(&[&trigger]);
+    config.set_in_pins(&[&echo]);
+    config.set_jmp_pin(&echo);
+    config.shift_out.direction = pio::ShiftDirection::Right;
+    config.shift_in.direction = pio::ShiftDirection::Left;
+    config.clock_divider = calculate_pio_clock_divider(PIO_HZ);
+    machine.set_pin_dirs(Direction::Out, &[&trigger]);
+    machine.set_pin_dirs(Direction::In, &[&echo]);
+    machine.set_config(&config);
+    machine.set_enable(true);
 }
 
 /// The distances of what stood before each sensor within the last second, in millimetres; `free` where nothing is in
@@ -101,65 +145,57 @@ impl fmt::Display for Distances<'_> {
 #[embassy_executor::main]
 async fn main(spawner: Spawner) {
     let p = embassy_rp::init(Default::default());
-    spawner.spawn(usb(Driver::new(p.USB, Irqs)).expect("it is spawned once"));
+    spawner.spawn(log_over_usb(Driver::new(p.USB, Irqs)).expect("it is spawned once"));
 
-    let triggers: [Peri<'static, AnyPin>; SENSORS] = [
-        p.PIN_0.into(),
-        p.PIN_1.into(),
-        p.PIN_2.into(),
-        p.PIN_3.into(),
-        p.PIN_4.into(),
-        p.PIN_5.into(),
-        p.PIN_6.into(),
-        p.PIN_7.into(),
-    ];
-    let echoes: [Peri<'static, AnyPin>; SENSORS] = [
-        p.PIN_8.into(),
-        p.PIN_9.into(),
-        p.PIN_10.into(),
-        p.PIN_11.into(),
-        p.PIN_12.into(),
-        p.PIN_13.into(),
-        p.PIN_14.into(),
-        p.PIN_15.into(),
-    ];
-
-    interrupt::SWI_IRQ_1.set_priority(Priority::P2);
-    let stamps = STAMPS.start(interrupt::SWI_IRQ_1);
-    let lines = echoes.map(|pin| {
-        // SAFETY: the driver and the task that stamps both only read the line.
-        let same = unsafe { pin.clone_unchecked() };
-        (Input::new(same, Pull::Down), Input::new(pin, Pull::Down))
-    });
-    let mut sensor = 0;
-    let lines = lines.map(|(stamped, read)| {
-        stamps.spawn(stamp(sensor, stamped).expect("there is a task for each sensor"));
-        sensor += 1;
-        read
-    });
-    let mut lines = lines.into_iter();
-    let pins = triggers.map(|trigger| Pins {
-        trigger: Output::new(trigger, Level::Low),
-        echo: lines.next().expect("there are as many lines as triggers"),
-    });
+    let program = Program {
+        code: ArrayVec::from(PIO_PROGRAM),
+        origin: None,
+        wrap: Wrap { source: PIO_PROGRAM.len() as u8 - 1, target: 0 },
+        side_set: SideSet::default(),
+        version: PioVersion::V0,
+    };
+    let (mut one, mut two) = (Pio::new(p.PIO0, Irqs), Pio::new(p.PIO1, Irqs));
+    let (in_one, in_two) = (one.common.load_program(&program), two.common.load_program(&program));
+    start(&mut one.sm0, &mut one.common, &in_one, p.PIN_0, p.PIN_8);
+    start(&mut one.sm1, &mut one.common, &in_one, p.PIN_1, p.PIN_9);
+    start(&mut one.sm2, &mut one.common, &in_one, p.PIN_2, p.PIN_10);
+    start(&mut one.sm3, &mut one.common, &in_one, p.PIN_3, p.PIN_11);
+    start(&mut two.sm0, &mut two.common, &in_two, p.PIN_4, p.PIN_12);
+    start(&mut two.sm1, &mut two.common, &in_two, p.PIN_5, p.PIN_13);
+    start(&mut two.sm2, &mut two.common, &in_two, p.PIN_6, p.PIN_14);
+    start(&mut two.sm3, &mut two.common, &in_two, p.PIN_7, p.PIN_15);
+    let modules = Modules {
+        machines: [
+            &mut one.sm0,
+            &mut one.sm1,
+            &mut one.sm2,
+            &mut one.sm3,
+            &mut two.sm0,
+            &mut two.sm1,
+            &mut two.sm2,
+            &mut two.sm3,
+        ],
+        lines: [PioLine::new(LISTENS); SENSORS],
+    };
 
     let config = RingConfig::new().with_window(Micros::from_millis(40));
     let ring = Ring::new(&RING, config, now()).expect("the table was verified for such a window");
-    let mut ring = HcSr04Ring::new(ring, pins, Delay, Settings::default()).expect("the table lets modules rest");
+    let mut ring = CaptureRing::new(ring, Settings::default(), modules).expect("the table lets modules rest");
     let mut watch = SensorWatch::<SENSORS>::new(0, now());
-    let (mut said, mut latest) = (now(), Micros::ZERO);
+    let (mut said, mut late) = (now(), Micros::ZERO);
     loop {
-        while let Some(event) = ring.poll_with_edges(&EDGES, now()) {
+        while let Some(event) = ring.poll(now()) {
             let now = now();
             watch.observe(&event, now);
             if let RingEvent::PeriodEnded(stats) = event {
-                latest = latest.max(stats.max_late);
+                late = late.max(stats.sum_late);
                 if now.since(said) >= SECOND {
-                    log::info!("{} mm; latest firing {} us late", Distances { watch: &watch, now }, latest.as_micros());
-                    (said, latest) = (now, Micros::ZERO);
+                    log::info!("{} mm; firings {} us late", Distances { watch: &watch, now }, late.as_micros());
+                    (said, late) = (now, Micros::ZERO);
                 }
             }
         }
-        select(sleep_until(ring.next_deadline()), EDGE.wait()).await;
+        // Firings and edges wait for nobody.
+        Timer::after_millis(2).await;
     }
 }

@@ -8,6 +8,8 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
+use eeruf_core::{Micros, Requirements, Schedule};
+
 use super::build::{self, Board, Source};
 use super::{ALL, TARGET, failed, world};
 use crate::c::need;
@@ -66,17 +68,37 @@ pub(super) fn run(library: &Path, short: bool) -> Result<(), Trouble> {
 
 /// Faults of one module's line: as `world.c` names them, and as the file does.
 const FAULTS: [(&str, &str); 9] = [
-    ("cut", "no power"),
-    ("deaf", "cut wire"),
-    ("glitch-high", "glitch high, cut wire"),
-    ("glitch-low", "glitch low"),
+    ("cut:3", "no power"),
+    ("deaf:3", "cut wire"),
+    ("glitch-high:3", "glitch high, cut wire"),
+    ("glitch-low:3", "glitch low"),
     // Until it has been high for longer than any clone holds it, such a line still listens.
-    ("stuck", "held for ever"),
-    ("exchanged", "exchanged, 20 ms apart"),
-    ("hold-66", "hold of 66 ms"),
-    ("hold-130", "hold of 130 ms"),
-    ("hold-200", "hold of 200 ms"),
+    (STUCK, "held for ever"),
+    ("exchanged-4:3", "exchanged, 20 ms apart"),
+    ("hold-66:3", "hold of 66 ms"),
+    ("hold-130:3", "hold of 130 ms"),
+    ("hold-200:3", "hold of 200 ms"),
 ];
+const STUCK: &str = "stuck:3";
+/// Those of a sketch to which each line's interrupt hands in the level that it sees, by the table of the file.
+const EDGE_FAULTS: [(&str, &str, &[&str]); 6] = [
+    ("hold-38:2", "healthy", &PLACES),
+    ("lost-rise:2", "lost rising edge", &PLACES),
+    ("lost-fall:2", "lost falling edge", &PLACES),
+    ("spike:2", "glitch high", &PLACES),
+    ("hold-38:2", FORGOTTEN, &PLACES),
+    ("exchanged-4:2", "exchanged, 1 ms apart", &["wall", "near wall", "nothing"]),
+];
+const FORGOTTEN: &str = "forgotten call";
+const EDGE_SKETCH: &str = "c/arduino/world/edges.ino";
+/// Pins of its triggers, then of its echoes.
+const EDGE_PINS: [u8; 8] = [4, 5, 6, 7, 8, 2, 14, 3];
+/// Echo times of the file's walls, in microseconds: those of the sensors that are well, and the near one.
+const WALL_US: u32 = 5_830;
+const NEAR_US: u32 = 500;
+/// Distance of the walls, and how far a sketch may be off it.
+const WALL_MM: u32 = 1000;
+const OFF_MM: u32 = 10;
 /// Surroundings of the module, as the file names them.
 const PLACES: [&str; 2] = ["wall", "nothing"];
 /// The faults of all languages, and the table of the outcomes, of which this column is compared.
@@ -91,22 +113,62 @@ enum Says {
     Wall,
     Clear,
     NoAnswer,
+    Unsure,
+}
+
+/// Rows of the file's table, without its comments.
+fn rows(file: &str) -> impl Iterator<Item = Vec<&str>> {
+    file.lines().filter(|line| !line.starts_with('#')).map(cells)
 }
 
 impl Says {
     /// The state that the file has for a fault in this place. A clone before a wall is as one that is healthy.
     fn of(file: &str, fault: &str, place: &str) -> Result<Self, Trouble> {
         let names = if place == "wall" && fault.starts_with("hold of") { "healthy" } else { fault };
-        let rows = file.lines().filter(|line| !line.starts_with('#')).map(|line| cells(line));
-        let mut rows = rows.filter(|row| row.first() == Some(&names) && row.len() == 6);
+        let mut rows = rows(file).filter(|row| row.first() == Some(&names) && row.len() == 6);
         let row = rows.find(|row| [place, "either"].contains(&row[1]));
         match row.and_then(|row| row[4].split_whitespace().next()) {
             Some("obstacle") => Ok(Self::Wall),
             Some("clear") => Ok(Self::Clear),
             Some("unanswered" | "held") => Ok(Self::NoAnswer),
+            Some("unknown") => Ok(Self::Unsure),
             _ => Err(Trouble::Failed(format!("{FILE} has no {names} before {place}"))),
         }
     }
+}
+
+/// Lines of a sketch about one module: distances, clear, no answer, unsure, as [`Says`] has them.
+fn said_of(said: &str, module: usize) -> [usize; 4] {
+    let prefix = format!("{module} ");
+    let mut counts = [0; 4];
+    for rest in said.lines().filter_map(|line| line.trim().strip_prefix(&prefix)) {
+        match rest {
+            "clear" => counts[Says::Clear as usize] += 1,
+            "does not answer" => counts[Says::NoAnswer as usize] += 1,
+            "unsure" => counts[Says::Unsure as usize] += 1,
+            distance if distance.parse::<u32>().is_ok() => counts[Says::Wall as usize] += 1,
+            _ => {}
+        }
+    }
+    counts
+}
+
+/// The words of a sketch about modules, one of which has a fault, each before a wall of its own at this echo time.
+fn with_fault(
+    world: &Path,
+    elf: &Path,
+    fault: &str,
+    seconds: u32,
+    walls: &[Option<u32>],
+    pins: &[u8],
+) -> Result<String, Trouble> {
+    let ways = Path::new(TARGET).join("faults.txt");
+    let way = |(module, us): (usize, &Option<u32>)| us.map(|us| format!("{module} {module} {us}\n"));
+    fs::write(&ways, walls.iter().enumerate().filter_map(way).collect::<String>()).map_err(failed("target"))?;
+    let mut run = Command::new(world);
+    run.args(["--fault", fault]).arg(elf).arg(seconds.to_string()).arg(&ways).arg(walls.len().to_string());
+    run.args(pins.iter().map(ToString::to_string));
+    output(&mut run).ok_or_else(|| Trouble::Failed(format!("{}, {fault}, did not run", elf.display())))
 }
 
 /// The cells of a line.
@@ -114,9 +176,12 @@ fn cells(line: &str) -> Vec<&str> {
     line.trim_matches('|').split('|').map(str::trim).collect()
 }
 
+/// A fault, its surroundings, and its readings: those that are right, all, and those without evidence.
+type Outcome = (&'static str, &'static str, [usize; 3]);
+
 /// The document whose table has these cells in the column, by fault and surroundings; rows of a fault that it has once
 /// take the sum.
-fn with_column(document: &str, said: &[(&str, &str, [usize; 3])]) -> Result<String, Trouble> {
+fn with_column(document: &str, said: &[Outcome]) -> Result<String, Trouble> {
     let head = document.lines().find(|line| line.starts_with("| fault")).map(cells).unwrap_or_default();
     let column = head.iter().position(|&name| name == COLUMN);
     let column = column.ok_or_else(|| Trouble::Failed(format!("{LOG} has no column {COLUMN}")))?;
@@ -139,72 +204,175 @@ fn with_column(document: &str, said: &[(&str, &str, [usize; 3])]) -> Result<Stri
     Ok(text)
 }
 
-/// Checks the words of Ring8 about a faulty module, before a wall and before nothing; its others read their walls. The
-/// table of the log has what is said; `EERUF_WRITE` writes it.
+/// Checks the words of sketches about a faulty module. The table of the log has what is said; `EERUF_WRITE` writes it.
 fn faults_are_no_free_space(library: &Path, world: &Path) -> Result<(), Trouble> {
-    const FAULTY: usize = 3;
-    let sketch = build::example(library, &build::core(Board::Uno)?, "Ring8")?;
-    let (triggers, echoes) = ALL.split_at(8);
-    println!(
-        "\n| fault of module {FAULTY} | before | distances | clear | no answer | others' distances, least of each |"
-    );
-    println!("|---|---|---:|---:|---:|---:|");
-    let (file, document) =
-        (fs::read_to_string(FILE).map_err(failed(FILE))?, fs::read_to_string(LOG).map_err(failed(LOG))?);
-    let mut outcomes = vec![];
-    for (fault, name) in FAULTS {
-        for place in PLACES {
-            let expected = Says::of(&file, name, place)?;
-            let ways = Path::new(TARGET).join("faults.txt");
-            let walls = (1..=8).filter(|&module| module != FAULTY || place == "wall");
-            let walls = walls.map(|module| format!("{0} {0} {1}\n", module - 1, EQUAL_US + 500 * module as u32));
-            fs::write(&ways, walls.collect::<String>()).map_err(failed("target"))?;
-            let pins = triggers.iter().chain(echoes).map(ToString::to_string);
-            let mut run = Command::new(world);
-            run.arg("--fault")
-                .arg(format!("{fault}:{FAULTY}"))
-                .arg(&sketch.elf)
-                .arg("3")
-                .arg(&ways)
-                .arg("8")
-                .args(pins);
-            let said = output(&mut run).ok_or_else(|| Trouble::Failed(format!("Ring8, {fault}, did not run")))?;
-            let count = |module: usize, what: &dyn Fn(&str) -> bool| {
-                let rest = |line: &str| line.trim().strip_prefix(&format!("{module} ")).is_some_and(what);
-                said.lines().filter(|line| rest(line)).count()
-            };
-            let distances = |module| count(module, &|rest| rest.parse::<u32>().is_ok());
-            let clear = count(FAULTY, &|rest| rest == "clear");
-            let silent = count(FAULTY, &|rest| rest == "does not answer");
-            // The wires of the one after it are exchanged with its own.
-            let others = (1..=8).filter(|&module| module != FAULTY && (fault != "exchanged" || module != FAULTY + 1));
-            let least = others.map(distances).min().unwrap_or(0);
-            println!("| {name} | {place} | {} | {clear} | {silent} | {least} |", distances(FAULTY));
-            let found = [distances(FAULTY), clear, silent];
-            // While a line that is stuck may listen, its silence has evidence.
-            let lies = if expected == Says::Clear || fault == "stuck" { 0 } else { clear };
-            outcomes.push((name, place, [found[expected as usize], found.iter().sum(), lies]));
-            let fine = match expected {
-                Says::Wall => found[0] > 26 && found[1..] == [0, 0],
-                Says::Clear => found[1] > 26 && found[0] + found[2] == 0,
-                Says::NoAnswer if fault == "stuck" => found[2] > 20 && found[1] < UNTIL_STUCK && found[0] == 0,
-                Says::NoAnswer => found[2] > 22 && found[..2] == [0, 0],
-            };
-            if !fine || least < 27 {
-                return Err(Trouble::Failed(format!(
-                    "{name} before {place}: expected {expected:?} of module {FAULTY}"
-                )));
-            }
-        }
-    }
+    let file = fs::read_to_string(FILE).map_err(failed(FILE))?;
+    let document = fs::read_to_string(LOG).map_err(failed(LOG))?;
+    println!("\n| fault | before | distances | clear | no answer | unsure | others' distances, least of each |");
+    println!("|---|---|---:|---:|---:|---:|---:|");
+    let mut outcomes = faults_of_ring8(library, world, &file)?;
+    outcomes.extend(faults_of_edges(library, world, &file)?);
+    latched_line_recovers(library, world)?;
     let said = with_column(&document, &outcomes)?;
     if env::var_os("EERUF_WRITE").is_some() {
         fs::write(LOG, said).map_err(failed(LOG))
     } else if said == document {
         Ok(())
     } else {
-        Err(Trouble::Failed(format!("{LOG} is not what Ring8 says; EERUF_WRITE=1 writes it")))
+        Err(Trouble::Failed(format!("{LOG} is not what the sketches say; EERUF_WRITE=1 writes it")))
     }
+}
+
+/// Ring8 with a faulty module before a wall and before nothing; its others read their walls.
+fn faults_of_ring8(library: &Path, world: &Path, file: &str) -> Result<Vec<Outcome>, Trouble> {
+    const FAULTY: usize = 3;
+    let sketch = build::example(library, &build::core(Board::Uno)?, "Ring8")?;
+    let mut outcomes = vec![];
+    for (fault, name) in FAULTS {
+        for place in PLACES {
+            let expected = Says::of(file, name, place)?;
+            let wall = |module| (module != FAULTY || place == "wall").then_some(EQUAL_US + 500 * module as u32);
+            let walls: Vec<_> = (1..=8).map(wall).collect();
+            let said = with_fault(world, &sketch.elf, fault, 3, &walls, &ALL)?;
+            // The wires of the one after it are exchanged with its own.
+            let exchanged = fault.starts_with("exchanged");
+            let others = (1..=8).filter(|&module| module != FAULTY && !(exchanged && module == FAULTY + 1));
+            let least = others.map(|module| said_of(&said, module)[Says::Wall as usize]).min().unwrap_or(0);
+            let found = said_of(&said, FAULTY);
+            print_row(name, place, found, least);
+            // Until the health of a line shows its fault, the sketch is unsure.
+            let [distances, clear, silent, unsure] = found;
+            let (right, all) = (found[expected as usize], distances + clear + silent);
+            // While a line that is stuck may listen, its silence has evidence.
+            let lies = if expected == Says::Clear || fault == STUCK { 0 } else { clear };
+            outcomes.push((name, place, [right, all, lies]));
+            let fine =
+                if fault == STUCK { right > 20 && right + clear == all && clear < UNTIL_STUCK } else { right == all };
+            if !fine || least < 27 || all < 23 || unsure > UNTIL_STUCK {
+                return Err(unexpected(name, place, expected));
+            }
+        }
+    }
+    Ok(outcomes)
+}
+
+/// The sketch of `c/arduino/world` with the faults that interrupts by level can have; its readings after the second.
+fn faults_of_edges(library: &Path, world: &Path, file: &str) -> Result<Vec<Outcome>, Trouble> {
+    const FAULTY: usize = 2;
+    let text = fs::read_to_string(EDGE_SKETCH).map_err(failed(EDGE_SKETCH))?;
+    let text = format!("{}\n{text}", table_of(file)?);
+    let core = build::core(Board::Uno)?;
+    let sketch = |name, defines| {
+        let source = Source { name, text: &text, board: Board::Uno, ours: true, defines };
+        build::sketch(&source, &library.join("src"), &core)
+    };
+    let (whole, forgetful) = (sketch("edges", &[])?, sketch("edgesForgotten", &["-DFORGOTTEN"])?);
+    let mut outcomes = vec![];
+    for (fault, name, places) in EDGE_FAULTS {
+        let sketch = if name == FORGOTTEN { &forgetful } else { &whole };
+        for &place in places {
+            let expected = Says::of(file, name, place)?;
+            let faulty = match place {
+                "wall" => Some(WALL_US),
+                "near wall" => Some(NEAR_US),
+                _ => None,
+            };
+            let exchanged = fault.starts_with("exchanged");
+            let walls = [Some(WALL_US), faulty, Some(WALL_US), Some(WALL_US).filter(|_| !exchanged)];
+            let said = with_fault(world, &sketch.elf, fault, 5, &walls, &EDGE_PINS)?;
+            let [least, other] = [1, 3].map(|module| said_of(&said, module)[Says::Wall as usize]);
+            let least = least.min(other);
+            let after = after_the_second(&said, FAULTY);
+            let found = said_of(&after, FAULTY);
+            let is_wrong = |line: &str| {
+                let mm = line.trim().strip_prefix(&format!("{FAULTY} ")).and_then(|rest| rest.parse().ok());
+                mm.is_some_and(|mm: u32| mm.abs_diff(WALL_MM) > OFF_MM)
+            };
+            print_row(name, place, found, least);
+            let (right, all) = (found[expected as usize], found.iter().sum());
+            let lies = if expected == Says::Clear { 0 } else { found[Says::Clear as usize] };
+            outcomes.push((name, place, [right, all, lies]));
+            if right != all || all < 45 || least < 47 || after.lines().any(is_wrong) {
+                return Err(unexpected(name, place, expected));
+            }
+        }
+    }
+    Ok(outcomes)
+}
+
+/// Checks Ring8 with a module that hears nothing in the first second and then holds its line until it is pulled low:
+/// without `recover()` it never answers, with it the module measures its wall.
+fn latched_line_recovers(library: &Path, world: &Path) -> Result<(), Trouble> {
+    const FAULTY: usize = 3;
+    const BEGIN: &str = "if (!eerufInterrupts(sonar))";
+    let name = "examples/Ring8/Ring8.ino";
+    let text = fs::read_to_string(library.join(name)).map_err(failed(name))?;
+    let recovers = text.replace(BEGIN, &format!("sonar.recover();\n  {BEGIN}"));
+    if recovers == text {
+        return Err(Trouble::Failed(format!("{name} has no {BEGIN}")));
+    }
+    let core = build::core(Board::Uno)?;
+    let walls: Vec<_> = (1..=8).map(|module| Some(EQUAL_US + 500 * module)).collect();
+    let mut found = [[0; 4]; 2];
+    let (mut flash, mut is_wrong) = ([0; 2], false);
+    for (((name, text), found), flash) in
+        [("Ring8Stuck", &text), ("Ring8Recovers", &recovers)].into_iter().zip(&mut found).zip(&mut flash)
+    {
+        let source = Source { name, text, board: Board::Uno, ours: true, defines: &[] };
+        let sketch = build::sketch(&source, &library.join("src"), &core)?;
+        let said = with_fault(world, &sketch.elf, &format!("latched:{FAULTY}"), 4, &walls, &ALL)?;
+        (*found, *flash) = (said_of(&said, FAULTY), sketch.flash);
+        // Once it measures its wall again, nothing is free.
+        let of_module = said.lines().filter_map(|line| line.trim().strip_prefix(&format!("{FAULTY} ")));
+        let since = of_module.skip_while(|rest| rest.parse::<u32>().is_err());
+        is_wrong |= since.into_iter().any(|rest| rest == "clear");
+        print_row(name, "latched line, wall", *found, said_of(&said, 1)[Says::Wall as usize]);
+    }
+    println!("flash of Ring8: {} B, with recover() {} B", flash[0], flash[1]);
+    let [[never, held, ..], [walls, clear, silent, _]] = found;
+    // Each hold of 250 ms in the first second is three readings.
+    let is_stuck = never == 0 && held < UNTIL_STUCK;
+    if is_wrong || !is_stuck || walls < 40 || clear > 3 * UNTIL_STUCK || silent == 0 {
+        return Err(Trouble::Failed(format!("a latched line without and with recover(): {found:?}")));
+    }
+    Ok(())
+}
+
+/// The lines of a sketch without the first two of a module.
+fn after_the_second(said: &str, module: usize) -> String {
+    let prefix = format!("{module} ");
+    let mut left = 2;
+    let is_kept = |line: &&str| {
+        let is_first = left > 0 && line.trim().starts_with(&prefix);
+        left -= u32::from(is_first);
+        !is_first
+    };
+    said.lines().filter(is_kept).map(|line| format!("{line}\n")).collect()
+}
+
+fn print_row(name: &str, place: &str, found: [usize; 4], least: usize) {
+    let [distances, clear, silent, unsure] = found;
+    println!("| {name} | {place} | {distances} | {clear} | {silent} | {unsure} | {least} |");
+}
+
+fn unexpected(name: &str, place: &str, expected: Says) -> Trouble {
+    Trouble::Failed(format!("{name} before {place}: expected {expected:?} of the faulty module"))
+}
+
+/// The file's schedule, as a table for a sketch.
+fn table_of(file: &str) -> Result<String, Trouble> {
+    let wrong = || Trouble::Failed(format!("{FILE}: expected a schedule of 4 sensors in 2 phases"));
+    let row = rows(file).find(|row| row.first() == Some(&"schedule")).ok_or_else(wrong)?;
+    let &[_, period, a, b] = &row[..] else { return Err(wrong()) };
+    let times = |words: &str| {
+        let times: Option<Vec<_>> = words.split_whitespace().map(|us| us.parse().ok().map(Micros::new)).collect();
+        times.and_then(|times| <[Micros; 4]>::try_from(times).ok()).ok_or_else(wrong)
+    };
+    let period = Micros::new(period.parse().map_err(|_| wrong())?);
+    let requirements = Requirements::new(Micros::new(240));
+    let schedule = Schedule::<4>::from_firing(period, [times(a)?, times(b)?]).map_err(|_| wrong())?;
+    // It stands in the sketch itself.
+    Ok(schedule.to_arduino(&requirements, "LINE_FAULTS").to_string().replace("#pragma once\n", ""))
 }
 
 /// The sketch for as many modules as there are pins.

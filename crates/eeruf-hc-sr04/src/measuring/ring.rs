@@ -1,13 +1,10 @@
 //! [`MeasuringRing`]: a ring of modules that measure by themselves.
 
-use eeruf_core::{
-    Instant, Micros, ReadingKind, Ring, RingEvent, SensorError,
-    judge::Judge,
-    plan::{Plan, Upcoming},
-};
+use eeruf_core::{Instant, Micros, ReadingKind, Ring, RingEvent, judge::Judge, plan::Plan};
 
 use super::{Fault, Measured, Measures};
 use crate::error::SetupError;
+use crate::hands_on::hands_on;
 use crate::health::Health;
 use crate::settings::Settings;
 
@@ -211,42 +208,6 @@ impl<P: Plan, J: Judge, M: Measures, const K: usize, const H: usize> MeasuringRi
         self.modules.get_mut(usize::from(sensor))
     }
 
-    /// The ring.
-    pub const fn ring(&self) -> &Ring<P, J, K, 1, H> {
-        &self.ring
-    }
-
-    /// As [`Ring::upcoming`].
-    pub fn upcoming(&self) -> impl Iterator<Item = Upcoming> {
-        self.ring.upcoming()
-    }
-
-    /// As [`Ring::disable`].
-    ///
-    /// # Errors
-    /// [`SensorError`] for a sensor out of range.
-    pub fn disable(&mut self, sensor: u8) -> Result<(), SensorError> {
-        self.ring.disable(sensor)
-    }
-
-    /// As [`Ring::enable`].
-    ///
-    /// # Errors
-    /// [`SensorError`] for a sensor out of range.
-    pub fn enable(&mut self, sensor: u8) -> Result<(), SensorError> {
-        self.ring.enable(sensor)
-    }
-
-    /// As [`Ring::pause`].
-    pub fn pause(&mut self) {
-        self.ring.pause();
-    }
-
-    /// As [`Ring::resume`].
-    pub fn resume(&mut self) {
-        self.ring.resume();
-    }
-
     /// As [`Ring::restart`]. Results of measurements under way are dropped.
     pub fn restart(&mut self, now: Instant) {
         for state in &mut self.states {
@@ -255,3 +216,5 @@ impl<P: Plan, J: Judge, M: Measures, const K: usize, const H: usize> MeasuringRi
         self.ring.restart(now);
     }
 }
+
+hands_on!(MeasuringRing, M);

@@ -1,0 +1,150 @@
+//! [`PioLine`]: a module on a PIO state machine.
+
+use eeruf_core::{Instant, Micros};
+
+use super::LineEdge;
+
+/// Conditions of a jump, and where `in` takes its bits from.
+const ALWAYS: u16 = 0;
+const X_COUNTS_DOWN: u16 = 2;
+const PIN: u16 = 6;
+const PINS: u16 = 0;
+const X: u16 = 1;
+const Y: u16 = 2;
+const NULL: u16 = 3;
+const OSR: u16 = 7;
+
+const fn jmp(condition: u16, to: u16) -> u16 {
+    condition << 5 | to
+}
+
+const fn shift_in(source: u16, bits: u16) -> u16 {
+    0x4000 | source << 5 | bits
+}
+
+const fn wait(cycles: u16) -> u16 {
+    cycles << 8
+}
+
+const PULL: u16 = 0x80A0;
+const PUSH_UNLESS_FULL: u16 = 0x8000;
+const MOV_X_OSR: u16 = 0xA027;
+const OUT_X_24: u16 = 0x6038;
+const SET_Y_1: u16 = 0xE041;
+const SET_PINS_1: u16 = 0xE001;
+const SET_PINS_0: u16 = 0xE000;
+
+/// Clock of the state machine that runs [`PIO_PROGRAM`], in Hz.
+pub const PIO_HZ: u32 = 2_000_000;
+
+/// Program of a PIO state machine that triggers a module and reports the edges of its line. It wraps from its last
+/// instruction to its first.
+///
+/// It runs at [`PIO_HZ`] with the trigger as its only `set` pin, the echo line as its first `in` pin and its `jmp` pin,
+/// `out` shifting to the right, `in` to the left, without autopull and autopush.
+///
+/// A firing takes the two words of [`PioLine::fire`]: microseconds to wait; then in the low 24 bits microseconds to
+/// listen, above them a tag. It reports a word for each edge, and one when it has listened: the tag, 23 bits of the
+/// microseconds that were left, all ones at the end, and in the lowest bit the level. A full FIFO loses words and never
+/// delays it.
+pub const PIO_PROGRAM: [u16; 26] = {
+    const LOW: u16 = 8;
+    const ROSE: u16 = 11;
+    const HIGH: u16 = 15;
+    const STILL_HIGH: u16 = 21;
+    const END: u16 = 22;
+    [
+        PULL,
+        MOV_X_OSR,
+        jmp(X_COUNTS_DOWN, 2) | wait(1),
+        PULL,
+        SET_Y_1,
+        SET_PINS_1 | wait(19),
+        SET_PINS_0,
+        OUT_X_24,
+        // LOW
+        jmp(PIN, ROSE),
+        jmp(X_COUNTS_DOWN, LOW),
+        jmp(ALWAYS, END),
+        // ROSE
+        shift_in(OSR, 8),
+        shift_in(X, 23),
+        shift_in(Y, 1),
+        PUSH_UNLESS_FULL,
+        // HIGH
+        jmp(PIN, STILL_HIGH),
+        shift_in(OSR, 8),
+        shift_in(X, 23),
+        shift_in(NULL, 1),
+        PUSH_UNLESS_FULL,
+        jmp(ALWAYS, LOW),
+        // STILL_HIGH
+        jmp(X_COUNTS_DOWN, HIGH),
+        // END
+        shift_in(OSR, 8),
+        shift_in(X, 23),
+        shift_in(PINS, 1),
+        PUSH_UNLESS_FULL,
+    ]
+};
+
+/// Time from the words of a firing to its trigger, beside the wait that they ask for.
+const STARTS_AFTER: u32 = 3;
+/// Time that a caller has to hand the words over, a choice.
+const HANDING_OVER: u32 = 5;
+/// Time from the start of the trigger, of 10 us, until the count begins.
+const COUNTS_AFTER: Micros = Micros::new(11);
+/// The count at the end, below the tag.
+const ENDED: u32 = 0x7F_FFFF;
+
+/// A module on a PIO state machine that runs [`PIO_PROGRAM`]: the words that fire it, and the edges by its words.
+///
+/// Widths are exact to 3 us, since the program counts microseconds and not while it reports an edge. Words that come
+/// late are as good; those of an earlier firing, which the tag tells, are dropped.
+#[derive(Clone, Copy, Debug)]
+pub struct PioLine {
+    fired: Instant,
+    listens: Micros,
+    tag: u8,
+    is_busy: bool,
+}
+
+impl PioLine {
+    /// A module whose line is watched for this long after its trigger, of which up to 8 s count: for the window and
+    /// half a millisecond, and at least 11 ms less than the time until it fires again.
+    pub const fn new(listens: Micros) -> Self {
+        let listens = if listens.as_micros() < ENDED { listens } else { Micros::new(ENDED - 1) };
+        Self { fired: Instant::from_micros(0), listens, tag: 0, is_busy: false }
+    }
+
+    /// The words that have the module triggered at an instant, or now if that is past, and when that is. Hand them over
+    /// at once. `None` while the state machine listens: it would begin to wait when it has listened.
+    pub fn fire(&mut self, at: Instant, now: Instant) -> Option<([u32; 2], Instant)> {
+        // The word that ends a firing may have got lost.
+        let listened = self.listens.saturating_add(Micros::from_millis(1));
+        if self.is_busy && now.since(self.fired) < listened {
+            return None;
+        }
+        let soonest = now + Micros::new(HANDING_OVER + STARTS_AFTER);
+        let at = if soonest.has_reached(at) { soonest } else { at };
+        self.tag = self.tag.wrapping_add(1);
+        (self.fired, self.is_busy) = (at, true);
+        let waits = at.since(now).as_micros().saturating_sub(STARTS_AFTER);
+        Some(([waits, u32::from(self.tag) << 24 | self.listens.as_micros()], at))
+    }
+
+    /// The edge that a word of the state machine reports; `None` for the end of a firing, and for what an earlier one
+    /// left.
+    pub fn edge(&mut self, word: u32) -> Option<LineEdge> {
+        let (left, tag) = (word >> 1 & ENDED, word >> 24);
+        if tag != u32::from(self.tag) {
+            return None;
+        }
+        if left == ENDED {
+            self.is_busy = false;
+            return None;
+        }
+        let passed = Micros::new(self.listens.as_micros().checked_sub(left)?);
+        Some(LineEdge { high: word & 1 == 1, at: self.fired + COUNTS_AFTER + passed })
+    }
+}

@@ -1,0 +1,125 @@
+//! [`CaptureRing`]: a ring whose modules hardware triggers and times.
+
+use eeruf_core::{Edge, Instant, Micros, Ring, RingEvent, judge::Judge, plan::Plan};
+
+use super::{Captures, LineEdge};
+use crate::error::SetupError;
+use crate::ring::HcSr04Ring;
+use crate::settings::Settings;
+
+/// Firings go to the hardware this long ahead, a choice: a loop may come as late, less the time for which the hardware
+/// is busy with a sensor.
+const AHEAD: Micros = Micros::from_millis(10);
+
+/// A ring of modules on hardware that triggers them and captures their edges, such as PIO, RMT or a timer.
+///
+/// The loop may come late by some milliseconds: firings are as exact as the hardware, and what it reports is judged as
+/// if the loop had been there.
+#[derive(Debug)]
+pub struct CaptureRing<R, C, const K: usize> {
+    ring: HcSr04Ring<R, (), (), (), K>,
+    hardware: C,
+    /// Firings that the hardware has, in their order, and their number.
+    armed: [(u8, Instant); K],
+    count: usize,
+    /// The last of them is later than it was due: all others move with it, once it has fired.
+    is_late: bool,
+    is_held: bool,
+    /// An edge of each sensor that is later than the ring has been polled for.
+    waiting: [Option<LineEdge>; K],
+}
+
+impl<P: Plan, J: Judge, C: Captures, const K: usize, const H: usize> CaptureRing<Ring<P, J, K, 1, H>, C, K> {
+    /// Puts a ring on hardware. Readings without an echo are emitted when the hardware has reported.
+    ///
+    /// # Errors
+    /// [`SetupError::Retrigger`] as for [`HcSr04Ring::new`], and [`SetupError::Ring`] if a sensor fires again before
+    /// the hardware has reported.
+    pub fn new(ring: Ring<P, J, K, 1, H>, settings: Settings, hardware: C) -> Result<Self, SetupError> {
+        let mut ring = HcSr04Ring::by_hardware(ring, settings)?;
+        ring.set_report_after(hardware.reports_within())?;
+        let armed = [(0, Instant::from_micros(0)); K];
+        Ok(Self { ring, hardware, armed, count: 0, is_late: false, is_held: false, waiting: [None; K] })
+    }
+
+    /// As [`Ring::poll`]: call until there is no event. [`RingEvent::Fire`] is for information, and may come some
+    /// milliseconds after the firing.
+    pub fn poll(&mut self, now: Instant) -> Option<RingEvent> {
+        self.arm(now);
+        let until = self.until(now);
+        for (sensor, waiting) in (0..).zip(&mut self.waiting) {
+            loop {
+                *waiting = waiting.take().or_else(|| self.hardware.edge(sensor, now));
+                let Some(LineEdge { high, at }) = waiting.filter(|edge| until.has_reached(edge.at)) else { break };
+                *waiting = None;
+                // The ring has it, or ignores what its hardware has beyond.
+                _ = self.ring.edge(Edge { sensor, high, at });
+            }
+        }
+        let event = self.ring.poll_triggered(until)?;
+        if let RingEvent::Fire { .. } = event {
+            self.armed.rotate_left(1.min(K));
+            self.count = self.count.saturating_sub(1);
+            self.is_late &= self.count > 0;
+        }
+        Some(event)
+    }
+
+    /// Hands the firings to the hardware that it should have by now.
+    fn arm(&mut self, now: Instant) {
+        while !self.is_held && !self.is_late {
+            let Some(next) = self.ring.upcoming().nth(self.count) else { return };
+            let Some(place) = self.armed.get_mut(self.count) else { return };
+            if !(now + AHEAD).has_reached(next.due) {
+                return;
+            }
+            let Some(at) = self.hardware.fire(next.sensor, next.due, now) else { return };
+            *place = (next.sensor, at);
+            self.count += 1;
+            self.is_late = at != next.due;
+        }
+    }
+
+    /// The instant up to which the present has happened for the ring: the next firing's, and not beyond one that the
+    /// hardware has not made.
+    fn until(&self, now: Instant) -> Instant {
+        let fires = self.armed.first().filter(|_| self.count > 0).map(|&(_, at)| at);
+        match fires {
+            Some(at) if now.has_reached(at) => at,
+            _ => match self.ring.upcoming().next() {
+                Some(next) if now.has_reached(next.due) => Instant::from_micros(next.due.as_micros().wrapping_sub(1)),
+                _ => now,
+            },
+        }
+    }
+
+    /// When to poll next: as [`Ring::next_deadline`], or when a firing is to go to the hardware. In the past if an
+    /// event is pending, or the hardware is busy with a sensor that is to fire.
+    pub fn next_deadline(&self) -> Instant {
+        let deadline = self.ring.next_deadline();
+        let next = self.ring.upcoming().nth(self.count).filter(|_| !self.is_held && !self.is_late);
+        let arms = next.map(|next| Instant::from_micros(next.due.as_micros().wrapping_sub(AHEAD.as_micros())));
+        arms.filter(|arms| deadline.has_reached(*arms)).unwrap_or(deadline)
+    }
+
+    /// Hands no further firings to the hardware, or does so again.
+    pub fn hold(&mut self, is_held: bool) {
+        self.is_held = is_held;
+    }
+
+    /// The driver, to pause or change it; `None` while the hardware has a firing to make. [Hold](Self::hold) the ring
+    /// and poll until it is there.
+    pub fn driver_mut(&mut self) -> Option<&mut HcSr04Ring<Ring<P, J, K, 1, H>, (), (), (), K>> {
+        if self.count == 0 { Some(&mut self.ring) } else { None }
+    }
+
+    /// The driver.
+    pub const fn driver(&self) -> &HcSr04Ring<Ring<P, J, K, 1, H>, (), (), (), K> {
+        &self.ring
+    }
+
+    /// Takes the hardware back.
+    pub fn into_hardware(self) -> C {
+        self.hardware
+    }
+}

@@ -1,0 +1,51 @@
+//! `hands_on!`: calls that every driver hands on to its ring.
+
+/// Implements them for a driver whose first parameter is its ring and whose last is the number of sensors.
+macro_rules! hands_on {
+    ($driver:ident, $($parameter:ident),+) => {
+        impl<P, J, $($parameter,)+ const K: usize, const H: usize>
+            $driver<eeruf_core::Ring<P, J, K, 1, H>, $($parameter,)+ K>
+        where
+            P: eeruf_core::plan::Plan,
+            J: eeruf_core::judge::Judge,
+        {
+            /// The ring.
+            pub const fn ring(&self) -> &eeruf_core::Ring<P, J, K, 1, H> {
+                &self.ring
+            }
+
+            /// As [`Ring::upcoming`](eeruf_core::Ring::upcoming).
+            pub fn upcoming(&self) -> impl Iterator<Item = eeruf_core::plan::Upcoming> {
+                self.ring.upcoming()
+            }
+
+            /// As [`Ring::disable`](eeruf_core::Ring::disable).
+            ///
+            /// # Errors
+            /// [`SensorError`](eeruf_core::SensorError) for a sensor out of range.
+            pub fn disable(&mut self, sensor: u8) -> Result<(), eeruf_core::SensorError> {
+                self.ring.disable(sensor)
+            }
+
+            /// As [`Ring::enable`](eeruf_core::Ring::enable).
+            ///
+            /// # Errors
+            /// [`SensorError`](eeruf_core::SensorError) for a sensor out of range.
+            pub fn enable(&mut self, sensor: u8) -> Result<(), eeruf_core::SensorError> {
+                self.ring.enable(sensor)
+            }
+
+            /// As [`Ring::pause`](eeruf_core::Ring::pause).
+            pub fn pause(&mut self) {
+                self.ring.pause();
+            }
+
+            /// As [`Ring::resume`](eeruf_core::Ring::resume).
+            pub fn resume(&mut self) {
+                self.ring.resume();
+            }
+        }
+    };
+}
+
+pub(crate) use hands_on;

@@ -131,8 +131,8 @@ class Flow:
         unit_us = self.unit_us = width_us + 2 * step_us
         # Nothing of a firing is heard in a window that opens so much later.
         dies_us = max((window_us if reach_us is None else reach_us) - blanking_us, window_us) + 1
-        self.most = _quiet(dies_us + width_us)
-        self.least = min(_quiet(shortest_gap_us), self.most)
+        self.least = _quiet(shortest_gap_us)
+        self.most = max(_quiet(dies_us + width_us), self.least)
         self.masked_adds, self.believed_takes = _quiet(masked_adds_us), _quiet(believed_takes_us)
         self.unserved_adds, self.unserved_after = _quiet(unserved_adds_us), max(unserved_after, 1)
         self.least_gap = min(max(_in_units(self.least * _QUIET_US, unit_us), 1), 255)

@@ -117,8 +117,8 @@ impl<const K: usize> EachSensor<K> {
     pub const NONE: Self =
         Self { most: None, limits: [SensorLimits { t_delta: Micros::MAX, window: Micros::MAX }; K], groups: [0; K] };
 
-    /// For [`FlowRing::with_limits`](crate::flow::FlowRing::with_limits), with sets of sensors that fire together, bit x
-    /// for sensor x. A ring by a table refuses it, since no table is verified for it.
+    /// For [`FlowRing::with_limits`](crate::flow::FlowRing::with_limits), with sets of sensors that fire together, bit
+    /// x for sensor x. A ring by a table refuses it, since no table is verified for it.
     pub const fn for_flow(limits: [SensorLimits; K], together: &[u64]) -> Self {
         const NOTHING: VerifiedFor = VerifiedFor {
             t_delta: Micros::ZERO,

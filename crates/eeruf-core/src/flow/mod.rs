@@ -24,8 +24,8 @@ use crate::tracker::EchoTracker;
 pub use plan::FlowPlan;
 pub use settings::FlowSettings;
 
-/// A ring of up to `K` sensors that fires by flow, with `H` hypotheses for each and up to `E` echoes of a firing. `U` is
-/// [`EachSensor`](crate::EachSensor) where sensors have limits of their own.
+/// A ring of up to `K` sensors that fires by flow, with `H` hypotheses for each and up to `E` echoes of a firing. `U`
+/// is [`EachSensor`](crate::EachSensor) where sensors have limits of their own.
 pub type FlowRing<const K: usize, const H: usize = 4, const E: usize = 1, U = Alike> =
     Ring<FlowPlan<K, U>, EchoTracker<K, H>, K, E, 1>;
 

@@ -178,13 +178,16 @@ impl<const K: usize, U: LimitsInUse> FlowPlan<K, U> {
     /// Sorts a key in among the first `count`, the largest first. They are kept where firing times are, which are
     /// decided next.
     fn sort_in(&mut self, count: u8, key: u16) {
-        let mut key = key;
-        for slot in self.slots.iter_mut().take(usize::from(count)) {
-            if slot.at < key {
-                core::mem::swap(&mut slot.at, &mut key);
+        let mut rank = usize::from(count);
+        // From the end, where most stay: of those that are unserved for as long the first in order come first.
+        while let Some([before, slot]) = rank.checked_sub(1).and_then(|first| self.slots.get_mut(first..=rank)) {
+            if before.at >= key {
+                break;
             }
+            slot.at = before.at;
+            rank -= 1;
         }
-        if let Some(slot) = self.slots.get_mut(usize::from(count)) {
+        if let Some(slot) = self.slots.get_mut(rank) {
             slot.at = key;
         }
     }

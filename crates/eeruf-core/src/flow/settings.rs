@@ -60,9 +60,9 @@ impl FlowSettings {
 }
 
 impl FlowSettings {
-    /// The limits of each sensor for [`FlowPlan::with_limits`](super::FlowPlan::with_limits): its window, its `t_delta`,
-    /// of which no more counts than the tracker's, and the sensors that it fires together with. All other requirements
-    /// are for tables.
+    /// The limits of each sensor for [`FlowPlan::with_limits`](super::FlowPlan::with_limits): its window, its
+    /// `t_delta`, of which no more counts than the tracker's, and the sensors that it fires together with. All other
+    /// requirements are for tables.
     ///
     /// # Errors
     /// [`UnevenError`] if what single sensors need is invalid for this many sensors.

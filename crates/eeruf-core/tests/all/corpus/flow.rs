@@ -143,7 +143,7 @@ fn run<const K: usize>(r: &mut Random, text: &mut Text) {
     }
 }
 
-/// What happens at and after a firing.
+/// Events at and after a firing.
 fn fired<const K: usize>(
     r: &mut Random,
     text: &mut Text,

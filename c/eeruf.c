@@ -2400,12 +2400,16 @@ static OUT_OF_LINE uint32_t wait_after(const EerufHoppingRing *hopping, uint32_t
     return waits > HALF_TURN || waits > passes_us + CATCHES_UP_US ? 0 : waits;
 }
 
-/* Time after the start of the period before which a sensor must not fire, since it still listens, or rests. */
-static uint32_t rests_for(const EerufHoppingRing *hopping, uint8_t sensor) {
+/* Time after the start of the period before which a sensor must not fire, since it rests for `rest_us`. */
+static uint32_t rests_for(const EerufHoppingRing *hopping, uint8_t sensor, uint32_t rest_us) {
     const EerufHopper *hopper = &hopping->hoppers[sensor];
     const uint32_t fired_us = sensor_of(&hopping->ring, sensor)->fired_us[0];
-    const uint32_t rest_us = allowed_window(OWN(&hopping->ring), sensor, hopping->rest_us);
     return hopper->flags & HAS_FIRED ? wait_after(hopping, fired_us, rest_us) : 0;
+}
+
+/* The same in a ring that hops, where a sensor rests while it listens. */
+static uint32_t listens_for(const EerufHoppingRing *hopping, uint8_t sensor) {
+    return rests_for(hopping, sensor, allowed_window(OWN(&hopping->ring), sensor, hopping->rest_us));
 }
 
 static bool is_disabled(const EerufHoppingRing *hopping, uint8_t sensor) {
@@ -2429,7 +2433,7 @@ static uint8_t longest_unserved(const EerufHoppingRing *hopping) {
 static void plan_solo(EerufHoppingRing *hopping, uint8_t sensor) {
     /* Its own last firing is among those that it waits for, but its window may be longer. */
     const uint32_t at_us =
-        longer(wait_after(hopping, hopping->ring.last_fired_us, hopping->by.hop.dies_us), rests_for(hopping, sensor));
+        longer(wait_after(hopping, hopping->ring.last_fired_us, hopping->by.hop.dies_us), listens_for(hopping, sensor));
     hopping->by.hop.earned = (uint16_t)(hopping->by.hop.earned - ONE_SOLO);
     hopping->by.hop.since_solo = 0;
     hopping->solo_at_us = at_us;
@@ -2523,7 +2527,7 @@ static void choose(EerufHoppingRing *hopping) {
     hopping->fires_as = hop->since_shift > 0 ? HAS_FIRED | SETTLED : HAS_FIRED;
     for (x = 0; x < hopping->ring.count; x++) {
         const uint32_t offset = offset_of(hopping, x);
-        if (is_disabled(hopping, x) || offset < rests_for(hopping, x)) continue;
+        if (is_disabled(hopping, x) || offset < listens_for(hopping, x)) continue;
         /* Insertion by firing time; sensors that fire together keep their order. */
         place = &hoppers[hopping->planned++];
         for (; place > hoppers && offset_of(hopping, place[-1].order) > offset; place--)
@@ -2957,24 +2961,45 @@ static uint8_t sensor_after(const EerufHoppingRing *hopping, uint8_t sensor) {
 }
 
 /* Raises a gap to what this quiet needs, by at most `left` units; returns what is left of them. */
-static uint32_t raise_gap(EerufHoppingRing *hopping, uint8_t place, uint8_t quiet, uint32_t left) {
+static uint16_t raise_gap(EerufHoppingRing *hopping, uint8_t place, uint8_t quiet, uint16_t left) {
     uint8_t *gap = gap_at(hopping, place);
-    const uint8_t more = (uint8_t)shorter(less8(gap_for(&hopping->by.flow, quiet), *gap), left);
+    const uint8_t more = (uint8_t)fewer16(less8(gap_for(&hopping->by.flow, quiet), *gap), left);
     *gap = (uint8_t)(*gap + more);
-    return left - more;
+    return (uint16_t)(left - more);
 }
 
-/* Gives all the least gap, and what is left of `most` units to whoever has been unserved for longest. */
-static void share_out(EerufHoppingRing *hopping, uint32_t most) {
-    EerufHopper *hoppers = hopping->hoppers;
+/* The last place of those that fire together with this one: the gaps between them are none. */
+static uint8_t last_with(EerufHoppingRing *hopping, uint8_t place) {
+    while (*gap_at(hopping, place) == 0) place++;
+    return place;
+}
+
+/* Gives all the least gap, and what is left of this many units what each needs before and after it, in the order that
+   is kept where lags are decided next; returns what is left then. */
+static OUT_OF_LINE uint16_t give_gaps(EerufHoppingRing *hopping, uint16_t left) {
     const uint8_t least = hopping->by.flow.least_gap, planned = hopping->planned;
-    const uint32_t least_sum = (uint32_t)least * planned;
-    uint32_t left = most > least_sum ? most - least_sum : 0;
     uint8_t place, rank;
-    /* Sorted by insertion, those that are unserved for as long in their order; kept where lags are decided next. */
     for (place = 0; place < planned; place++) {
-        const uint8_t unserved = firing_at(hopping, place)->unserved;
+        if (*gap_at(hopping, place) == 0) continue;
         *gap_at(hopping, place) = least;
+        left = less16(left, least);
+    }
+    for (rank = 0; rank < planned && left > 0; rank++) {
+        const EerufHopper *hopper = firing_at(hopping, (uint8_t)hopping->hoppers[rank].lag_us);
+        uint8_t first = place = (uint8_t)hopping->hoppers[rank].lag_us;
+        while (first > 0 && *gap_at(hopping, (uint8_t)(first - 1u)) == 0) first--;
+        left = raise_gap(hopping, (uint8_t)((first == 0 ? planned : first) - 1u), hopper->quiet_before, left);
+        left = raise_gap(hopping, last_with(hopping, place), hopper->quiet_after, left);
+    }
+    return left;
+}
+
+/* Sorts those first that have been unserved for longest. */
+static void sort_by_need(EerufHoppingRing *hopping) {
+    EerufHopper *hoppers = hopping->hoppers;
+    uint8_t place, rank;
+    for (place = 1; place < hopping->planned; place++) {
+        const uint8_t unserved = firing_at(hopping, place)->unserved;
         for (rank = place; rank > 0; rank--) {
             const uint32_t before = hoppers[rank - 1u].lag_us;
             if (firing_at(hopping, (uint8_t)before)->unserved >= unserved) break;
@@ -2982,27 +3007,6 @@ static void share_out(EerufHoppingRing *hopping, uint32_t most) {
         }
         hoppers[rank].lag_us = place;
     }
-    for (rank = 0; rank < planned && left > 0; rank++) {
-        const EerufHopper *hopper;
-        place = (uint8_t)hoppers[rank].lag_us;
-        hopper = firing_at(hopping, place);
-        left = raise_gap(hopping, (uint8_t)((place == 0 ? planned : place) - 1u), hopper->quiet_before, left);
-        left = raise_gap(hopping, place, hopper->quiet_after, left);
-    }
-}
-
-/* Gives each firing the gap to the next that the sensors on both sides need, within `most` units in all. */
-static void give_gaps(EerufHoppingRing *hopping, uint32_t most) {
-    uint8_t place, previous = (uint8_t)(hopping->planned - 1u);
-    uint32_t sum = 0;
-    for (place = 0; place < hopping->planned; place++) {
-        const uint8_t after = firing_at(hopping, previous)->quiet_after;
-        const uint8_t gap = gap_for(&hopping->by.flow, larger8(after, firing_at(hopping, place)->quiet_before));
-        *gap_at(hopping, previous) = gap;
-        sum += gap;
-        previous = place;
-    }
-    if (sum > most) share_out(hopping, most);
 }
 
 /* Adds the gaps up to firing times; a sensor that still listens waits. */
@@ -3014,13 +3018,17 @@ static void place_firings(EerufHoppingRing *hopping) {
         const uint8_t sensor = hopping->hoppers[place].order;
         EerufHopper *hopper = &hopping->hoppers[sensor];
         uint32_t rests_us, offset_us;
+        uint8_t other = place;
         hopper->lag_us = at * flow->unit_us;
-        rests_us = rests_for(hopping, sensor);
+        rests_us = rests_for(hopping, sensor, hopping->rest_us);
         offset_us = offset_of(hopping, sensor);
         if (rests_us > offset_us) {
             at += in_units(rests_us - offset_us, flow->unit_us);
             hopper->lag_us = at * flow->unit_us;
         }
+        /* Those that fire together wait for each other. */
+        for (; other > 0 && *gap_at(hopping, (uint8_t)(other - 1u)) == 0; other--)
+            firing_at(hopping, (uint8_t)(other - 1u))->lag_us = hopper->lag_us;
         at += *gap_at(hopping, place);
     }
     flow->length = longer(at, flow->shortest);
@@ -3038,21 +3046,38 @@ static uint32_t longest_cycle(const EerufFlowPlan *flow) {
 /* Decides on the cycle that begins. */
 static void plan_flow(EerufHoppingRing *hopping) {
     const uint32_t most = longest_cycle(&hopping->by.flow);
+    const EerufLimits *limits = limits_of(OWN(&hopping->ring));
     uint8_t sensor = 0, left;
     hopping->by.flow.fastest_us = 0;
     for (left = hopping->ring.count; left > 0; left--) {
-        if (!is_disabled(hopping, sensor)) hopping->hoppers[hopping->planned++].order = sensor;
+        uint8_t other;
+        /* Those that fire together in the place of the first of them. */
+        for (other = sensor; other < hopping->ring.count; other++) {
+            if (leader_of(limits, other) == sensor && !is_disabled(hopping, other)) {
+                EerufHopper *place = &hopping->hoppers[hopping->planned];
+                place->order = other;
+                place->lag_us = hopping->planned;
+                *gap_at(hopping, hopping->planned++) = 0;
+            }
+            if (limits == NULL) break;
+        }
+        if (hopping->planned > 0) *gap_at(hopping, (uint8_t)(hopping->planned - 1u)) = 1;
         sensor = sensor_after(hopping, sensor);
     }
-    give_gaps(hopping, most);
+    /* Gaps of a byte, for at most 64 sensors. */
+    if ((uint16_t)(UINT16_MAX - give_gaps(hopping, UINT16_MAX)) > most) {
+        sort_by_need(hopping);
+        (void)give_gaps(hopping, narrow(most));
+    }
     place_firings(hopping);
 }
 
-/* The gap after a sensor's firing in this cycle, as planned. */
+/* Time from a sensor's firing in this cycle to the next of any that it does not fire together with, as planned. */
 static uint32_t gap_after(EerufHoppingRing *hopping, uint8_t sensor) {
     uint8_t place;
     for (place = 0; place < hopping->planned; place++)
-        if (hopping->hoppers[place].order == sensor) return *gap_at(hopping, place) * hopping->by.flow.unit_us;
+        if (hopping->hoppers[place].order == sensor)
+            return *gap_at(hopping, last_with(hopping, place)) * hopping->by.flow.unit_us;
     return 0;
 }
 
@@ -3109,6 +3134,7 @@ EerufStatus eeruf_flow_init(EerufHoppingRing *hopping, size_t ring_size, EerufHo
     status = has_room(hopping, ring_size, n, sensors_size, hoppers_size);
     if (status == EERUF_OK) status = tracker_is_fine(&config->tracker);
     if (status != EERUF_OK) return status;
+    if (config->own != NULL && READ8(config->own->sensors) != n) return EERUF_ERR_SENSORS;
     if (config->step_us == 0 || config->step_us > UINT16_MAX) return EERUF_ERR_STEP;
     if (config->step_us <= config->tracker.t_delta_us) return EERUF_ERR_T_DELTA;
     if (config->window_us > EERUF_HOPPING_MAX_WINDOW_US) return EERUF_ERR_WINDOW;
@@ -3117,7 +3143,7 @@ EerufStatus eeruf_flow_init(EerufHoppingRing *hopping, size_t ring_size, EerufHo
     if (config->shortest_cycle_us < config->window_us + width_us) return EERUF_ERR_PERIOD;
     if (config->shortest_cycle_us > EERUF_MAX_PERIOD_US) return EERUF_ERR_PERIOD;
     status = set_up_hopping(hopping, sensors, hoppers, n, &config->tracker, config->step_us, config->window_us,
-                            config->blanking_us, now_us, NULL);
+                            config->blanking_us, now_us, config->own);
     if (status != EERUF_OK) return status;
     hopping->plan = plan_flow;
     hopping->judged = judged_flow;
@@ -3129,8 +3155,8 @@ EerufStatus eeruf_flow_init(EerufHoppingRing *hopping, size_t ring_size, EerufHo
     unit_us = flow->unit_us = width_us + 2 * config->step_us;
     /* Nothing of a firing is heard in a window that opens so much later; the waits of two may bring them closer. */
     least_us = dies_after(config->window_us, config->blanking_us, config->reach_us);
-    flow->most = quiet_of(add32(least_us, width_us));
-    flow->least = smaller8(quiet_of(config->shortest_gap_us), flow->most);
+    flow->least = quiet_of(config->shortest_gap_us);
+    flow->most = larger8(quiet_of(add32(least_us, width_us)), flow->least);
     flow->masked_adds = quiet_of(config->masked_adds_us);
     flow->believed_takes = quiet_of(config->believed_takes_us);
     flow->unserved_adds = quiet_of(config->unserved_adds_us);

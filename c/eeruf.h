@@ -686,12 +686,13 @@ typedef struct EerufFlowConfig {
     uint32_t longest_cycle_us;  /* of a robot that stands */
     uint32_t travel_us;         /* change of an echo by odometry that a cycle may bring */
     EerufTrackerSettings tracker;
+    const EerufSchedule *own;   /* limits, where sensors are not all alike, as `eeruf` writes them; or null */
 } EerufFlowConfig;
 
 /* For every robot. */
 #define EERUF_FLOW(sensors, window_us)                                                                                 \
     {EERUF_VERSION, sensors, 3, 240, window_us, 0, window_us, 7500, 4000, 1500, 6000, 60000, 0, 0, 400000, 380,        \
-     {150, 400, 60, 5, 6, 2, 6, 2, 5}}
+     {150, 400, 60, 5, 6, 2, 6, 2, 5}, NULL}
 
 /* Makes a flow ring that begins at `now_us`; all else is as with a hopping ring. No sensor fires alone in a cycle. */
 EerufStatus eeruf_flow_init(EerufHoppingRing *ring, size_t ring_size, EerufHopSensor *sensors, size_t sensors_size,

@@ -118,8 +118,8 @@ class Schedule:
 
 
 class _Sensor:
-    def __init__(self, long_ago_us):
-        self.firings = [long_ago_us] * _REMEMBERED  # the latest first
+    def __init__(self, long_ago_us, remembered=_REMEMBERED):
+        self.firings = [long_ago_us] * remembered  # the latest first
         self.phase = self.period = self.score = 0
         self.age = NEVER
         self.enabled = True
@@ -142,7 +142,7 @@ class _Sensor:
         self.known_us, self.score, self.confirmed = None, 0, False
 
     def forget_firings(self, long_ago_us):
-        for i in range(_REMEMBERED):
+        for i in range(len(self.firings)):
             self.firings[i] = long_ago_us
 
     def drop(self, long_ago_us):
@@ -175,34 +175,15 @@ class Ring:
         longest = schedule.window_us if schedule.verified else schedule.min_refire_us
         if window_us > longest:
             raise ValueError("window_us = %d: at most %d" % (window_us, longest))
-        if not 0 <= blanking_us < min(window_us, 1 << 16):
-            raise ValueError("blanking_us = %d: less than the window of %d us expected" % (blanking_us, window_us))
-        if not 0 <= t_delta_us < min(window_us, 1 << 16):
-            raise ValueError("t_delta_us = %d: less than the window of %d us expected" % (t_delta_us, window_us))
         if not 2 <= consecutive <= 8:
             raise ValueError("consecutive = %d: 2 to 8 expected" % consecutive)
-        self._mask, self._half = (1 << clock_bits) - 1, 1 << (clock_bits - 1)
-        # Longer ago than any sound is heard; by how much a clock may step back; the longest that sound can be heard.
-        self._long_ago, self._step_back = 1 << (clock_bits - 2), 1 << min(20, clock_bits - 4)
+        self._listen(t_delta_us, window_us, blanking_us, clock_bits)
         self._max_audible = 1 << min(26, clock_bits - 4)
         if 6 * schedule.period_us > self._half:
             raise ValueError("period_us = %d: too long for a clock of %d bits" % (schedule.period_us, clock_bits))
         self.schedule = schedule
-        self.t_delta_us, self.window_us, self.blanking_us = t_delta_us, window_us, blanking_us
         self.consecutive = consecutive
-        # How long after its firing a reading without an echo is emitted at the soonest, for modules that report after their
-        # window has closed: by a bus, or a pulse that hardware measures.
-        self.report_after_us = 0
-        self.expects_answers = False  # whether silence counts only where `answered` says that the sensor listened
-        self._known_from = (now_us - self._long_ago) & self._mask  # firings before are not known
-        self._sensors = [_Sensor(self._known_from) for _ in range(schedule.sensors)]
-        for sensor in self._sensors:
-            sensor.seen_at = now_us
-        self._oldest, self._pending, self._emit_at = NOBODY, 0, now_us
-        self._period = 0
-        self._tally = [0] * len(READING_NAMES)
-        # At how many more ends of periods an irregular firing can be heard; this period's lateness.
-        self._watched = self._latest = self._total = 0
+        self._begin([_Sensor(self._known_at(now_us)) for _ in range(schedule.sensors)], now_us)
         self.path_change_us = None
         self.set_audible(min(schedule.audible_us, self._max_audible) if audible_us is None else audible_us)
         self.set_path_change(path_change_us)
@@ -211,6 +192,34 @@ class Ring:
         self._last_fired = (now_us - schedule._settling_us()) & self._mask
         self._due = now_us
         self._begin_period(0)
+
+    def _listen(self, t_delta_us, window_us, blanking_us, clock_bits):
+        if not 0 <= blanking_us < min(window_us, 1 << 16):
+            raise ValueError("blanking_us = %d: less than the window of %d us expected" % (blanking_us, window_us))
+        if not 0 <= t_delta_us < min(window_us, 1 << 16):
+            raise ValueError("t_delta_us = %d: less than the window of %d us expected" % (t_delta_us, window_us))
+        self.t_delta_us, self.window_us, self.blanking_us = t_delta_us, window_us, blanking_us
+        self._mask, self._half = (1 << clock_bits) - 1, 1 << (clock_bits - 1)
+        # Longer ago than any sound is heard; by how much a clock may step back.
+        self._long_ago, self._step_back = 1 << (clock_bits - 2), 1 << min(20, clock_bits - 4)
+
+    def _known_at(self, now_us):
+        return (now_us - self._long_ago) & self._mask
+
+    def _begin(self, sensors, now_us):
+        # How long after its firing a reading without an echo is emitted at the soonest, for modules that report after their
+        # window has closed: by a bus, or a pulse that hardware measures.
+        self.report_after_us = 0
+        self.expects_answers = False  # whether silence counts only where `answered` says that the sensor listened
+        self._known_from = self._known_at(now_us)  # firings before are not known
+        self._sensors = sensors
+        for sensor in sensors:
+            sensor.seen_at = now_us
+        self._oldest, self._pending, self._emit_at = NOBODY, 0, now_us
+        self._period = 0
+        self._tally = [0] * len(READING_NAMES)
+        # At how many more ends of periods an irregular firing can be heard; this period's lateness.
+        self._watched = self._latest = self._total = 0
 
     def _reached(self, now_us, deadline_us):
         return (now_us - deadline_us) & self._mask < self._half
@@ -427,7 +436,7 @@ class Ring:
         sensor.can_emit = sensor.outside = sensor.stuck = False
         sensor.unanswered = self.expects_answers
         firings = sensor.firings
-        for i in range(_REMEMBERED - 1, 0, -1):
+        for i in range(len(firings) - 1, 0, -1):
             firings[i] = firings[i - 1]
         firings[0] = now_us
         if late_us:
@@ -435,6 +444,9 @@ class Ring:
         if self._oldest == NOBODY:
             self._oldest = x
             self._emit_when_oldest_ends()
+        self._has_fired(sensor, now_us)
+
+    def _has_fired(self, sensor, now_us):
         self._last_fired = self._due = now_us
         self._turn()
 
@@ -493,7 +505,9 @@ class Ring:
             sensor.can_emit, sensor.echo_us = False, None
         self._emit_when_oldest_ends()
         self._count(kind)
-        return (READING, x, sensor.phase, sensor.period, kind, echo, previous, sensor.age, explained_by)
+        # Rust and C keep the lowest three bits of the period; of an edge that is later they say a later one.
+        period = (self._period - (self._period - sensor.period & 7)) & 0xFFFFFFFF
+        return (READING, x, sensor.phase, period, kind, echo, previous, sensor.age, explained_by)
 
     def _count(self, kind):
         self._tally[kind] = min(self._tally[kind] + 1, 255)
@@ -615,11 +629,14 @@ class Ring:
         else:
             self._last_fired, self._due = (now_us - settling) & self._mask, now_us
         self._begin_period(0)
-        for sensor in self._sensors:
-            sensor.drop((now_us - self._long_ago) & self._mask)
-        self._oldest, self._pending = NOBODY, 0
-        # Sound from before may still be heard.
+        # Sound from before may still be heard. A sensor that was said to fire a little later still does.
         self._known_from = now_us
+        for sensor in self._sensors:
+            fired_us = sensor.firings[0]
+            if (fired_us - self._known_from - 1) & self._mask < self._step_back:
+                self._known_from = fired_us
+            sensor.drop(self._known_at(now_us))
+        self._oldest, self._pending = NOBODY, 0
         self._disturb()
 
 
@@ -635,6 +652,7 @@ class HcSr04Ring:
     # A stuck line is pulled low for so long, such as 200 us, if this is not 0: some modules hold it for ever after a lost
     # echo. It needs a resistor of 1 kOhm, since module and pin drive against each other.
     RECOVERY_US = 0
+    RING = Ring
     SOON_US = 1000  # what is due so soon is waited for: modules that fire late by differing times compare less
 
     def __init__(self, schedule, pins, echoes=None, machine=None, time=None, **ring):
@@ -661,9 +679,10 @@ class HcSr04Ring:
         while time.ticks_diff(1 << bits - 1, 0) > 0:
             bits += 1
         ring.setdefault("clock_bits", bits)
-        self.ring = Ring(schedule, time.ticks_us(), **ring)
+        self.ring = self.RING(schedule, time.ticks_us(), **ring)
         # A line that does not rise is no free space.
         self.ring.expects_answers = True
+        self.change_us = None  # as of `Ring.poll`, for a robot that moves
         self._rose = [None] * len(pins)
         self._awaits = [False] * len(pins)
 
@@ -737,7 +756,7 @@ class HcSr04Ring:
         while 0 < diff(self.ring.deadline(), now) <= self.SOON_US:
             now = ticks()
             self._sample()
-        event = self.ring.poll(now)
+        event = self.ring.poll(now, self.change_us)
         if event is None:
             return None
         if event[0] == FIRE:

@@ -7,7 +7,8 @@ const here = dirname(fileURLToPath(import.meta.url));
 const [folder, corpus, faults] = process.argv.slice(2);
 const { loadMicroPython } = await import(pathToFileURL(resolve(folder, "micropython.mjs")));
 const micropython = await loadMicroPython({ heapsize: 4 * 1024 * 1024 });
-for (const name of ["eeruf.py", "line_faults.py", "test_corpus.py", "test_line_faults.py", "test_modules.py"]) {
+const sources = ["eeruf.py", "eeruf_flow.py", "line_faults.py"];
+for (const name of [...sources, "test_corpus.py", "test_line_faults.py", "test_modules.py"]) {
   micropython.FS.writeFile(`/${name}`, readFileSync(join(here, name)));
 }
 micropython.FS.writeFile("/corpus.txt", readFileSync(corpus));

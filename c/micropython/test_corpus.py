@@ -5,6 +5,7 @@ It runs under MicroPython too. What the lines mean stands in crates/eeruf-core/t
 import sys
 
 from eeruf import HISTORY, READING, Ring, Schedule
+from eeruf_flow import Flow, FlowRing
 
 NONE = 0xFFFFFFFF
 LAYOUTS = ("line", "ring", "blocks")
@@ -27,12 +28,13 @@ def flat(event):
 def check(lines):
     """Number of events that were compared."""
     count = rings = 0
+    change = None
     for number, line in enumerate(lines, 1):
         words = line.split()
         what = words[0]
         n = [int(word) for word in words[1:]]
         if what == "P":
-            event = flat(ring.poll(n[0]))  # noqa: F821
+            event = flat(ring.poll(n[0], change))  # noqa: F821
             said = [ring.deadline()] + event  # noqa: F821
             if said != n[1:]:
                 raise AssertionError("line %d: %r, not %r" % (number, said, n[1:]))
@@ -57,6 +59,28 @@ def check(lines):
             ring.set_audible(n[0])  # noqa: F821
         elif what == "R":
             ring.restart(n[0])  # noqa: F821
+        elif what == "M":
+            change = n
+        elif what == "Z":
+            ring.pause(n[0] == 1)  # noqa: F821
+        elif what == "B":
+            ring.forget(n[0])  # noqa: F821
+        elif what == "G":
+            ring.expects_answers = True  # noqa: F821
+        elif what == "Y":
+            ring.answered(n[0], n[1] == 1)  # noqa: F821
+        elif what == "Q":
+            said = ring.quiet_us(n[0])  # noqa: F821
+            if list(said) != n[1:]:
+                raise AssertionError("line %d: quiet %r, not %r" % (number, said, n[1:]))
+        elif what == "U":
+            said = [number for firing in ring.upcoming() for number in firing]  # noqa: F821
+            if said != n:
+                raise AssertionError("line %d: upcoming %r, not %r" % (number, said, n))
+        elif what == "W":
+            ring = FlowRing(Flow(*n[:-1]), n[-1])
+            change = None
+            rings += 1
         elif what == "S":
             sensors = (len(n) - 2) // n[1]
             schedule = Schedule(n[0], [n[2 + m * sensors : 2 + (m + 1) * sensors] for m in range(n[1])])

@@ -4,6 +4,7 @@ from eeruf import (
     ACCEPTED, AGE, AMBIGUOUS, CLEAR, EXPLAINED_BY, FIRST, HISTORY, KIND, REJECTED, SENSOR, STUCK, T_ECHO, UNANSWERED,
     HcSr04Ring, Ring, Schedule,
 )  # fmt: skip
+from eeruf_flow import Flow, FlowRing, HcSr04FlowRing
 
 PERIOD = 1 << 30
 
@@ -196,6 +197,84 @@ def timed():
     return kinds
 
 
+def flow():
+    """Modules that fire by flow: a wall, nothing in range, a cut wire; the clock wraps."""
+    start = PERIOD - 2000000
+    clock = Clock(start)
+    machine = Machine(clock, {4: 5200, 5: 38000, 6: 9000}, (), cut=(6,))
+    ring = HcSr04FlowRing(Flow(3, 37000, rest_us=60000), [4, 5, 6], machine=machine, time=clock)
+    kinds = [[], [], []]
+    while clock.now - start < 4000000:
+        reading = ring.read()
+        if reading is not None:
+            kinds[reading[SENSOR]].append(reading[KIND])
+    for x, kind in enumerate((ACCEPTED, CLEAR, UNANSWERED)):
+        # 64 cycles of 61 ms; five firings confirm.
+        if len(kinds[x]) < 60 or kinds[x].count(kind) < len(kinds[x]) - 5:
+            raise AssertionError("flow: sensor %d: %r" % (x, kinds[x]))
+
+
+class SlowClock(Clock):
+    """Each look at it takes 0.05 to 0.15 ms."""
+
+    def ticks_us(self):
+        self.now += 50 + self.now * 7919 % 101
+        return self.now % PERIOD
+
+
+def slow(step_us):
+    """Share of accepted readings, in %, of eight modules that a slow loop fires by flow."""
+    clock = SlowClock(0)
+    machine = Machine(clock, {pin: 4000 + 1500 * pin for pin in range(4, 12)}, ())
+    flow = Flow(8, 37000, rest_us=60000, lead_us=20000, step_us=step_us)
+    ring = HcSr04FlowRing(flow, list(range(4, 12)), machine=machine, time=clock)
+    kinds = []
+    while clock.now < 8000000:
+        reading = ring.read()
+        if reading is not None:
+            kinds.append(reading[KIND])
+    return 100 * kinds.count(ACCEPTED) // len(kinds)
+
+
+def crosstalk():
+    """The sound of others that a sensor hears before its own is never accepted; its quiet grows until it hears its own."""
+    ring, now = FlowRing(Flow(6, 30000), PERIOD - 5000000, clock_bits=30), PERIOD - 5000000
+    path, own, accepted, total, heard = 4000, 25000, [0, 0], 0, []
+    while total < 400:
+        now = ring.deadline()
+        for at, x in [sound for sound in heard if (now - sound[0]) % PERIOD < PERIOD // 2]:
+            heard.remove((at, x))
+            ring.echo(x, at)
+        event = ring.poll(now)
+        if event is None or event[0] == 2:
+            continue
+        if event[0] == 0:
+            heard.append(((now + own) % PERIOD, event[1]))
+            if event[1] != 2:
+                heard.append(((now + path) % PERIOD, 2))
+        elif event[SENSOR] == 2:
+            total += 1
+            if event[KIND] == ACCEPTED:
+                accepted[abs(event[T_ECHO] - own) > 400] += 1
+    if accepted[1] or accepted[0] < 100 or ring.quiet_us(2)[0] < 2 * ring.quiet_us(0)[0]:
+        raise AssertionError("crosstalk: %d own and %d foreign of %d" % (accepted[0], accepted[1], total))
+    for settings, said in (
+        ({"t_delta_us": 0}, "t_delta_us = 0: 1 to 65535 expected"),
+        ({"step_us": 150}, "step_us = 150: 151 to 65535 expected"),
+        ({"tentative_votes": 1}, "tentative_votes = 1: 0, or 2 to 15 expected"),
+        (
+            {"shortest_cycle_us": 30000},
+            "shortest_cycle_us = 30000: at least the window and the code, 32160 us, expected",
+        ),
+    ):
+        try:
+            found = Flow(6, 30000, **settings)
+        except ValueError as error:
+            found = str(error)
+        if found != said:
+            raise AssertionError("%r: %r" % (settings, found))
+
+
 def room():
     """A schedule has 1 to 64 sensors, as in Rust and in C."""
     for sensors, refused in ((64, False), (65, True), (256, True)):
@@ -213,6 +292,10 @@ def main():
     silence()
     ambiguous()
     timed()
+    flow()
+    if slow(240) > 5 or slow(1200) < 85:
+        raise AssertionError("slow: %d %% and %d %% accepted" % (slow(240), slow(1200)))
+    crosstalk()
     room()
     for start in (0, PERIOD - 1000000):
         firings, accepted, stuck = run(start, ())

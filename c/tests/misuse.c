@@ -412,6 +412,9 @@ static EerufStatus flow(size_t ring_size, size_t sensors_size, size_t hoppers_si
 }
 
 static void flow_rings(void) {
+    static EerufLimits limits[SENSORS];
+    static EerufSchedule own;
+    uint8_t x;
     const EerufFlowConfig fine = EERUF_FLOW(SENSORS, 36000);
     const size_t r = sizeof hopping, s = sizeof hop_sensors, h = sizeof hoppers;
     uint32_t before = 0, after = 0;
@@ -439,6 +442,11 @@ static void flow_rings(void) {
     WITH(shortest_cycle_us, 37199, EERUF_ERR_PERIOD);
     WITH(shortest_cycle_us, EERUF_MAX_PERIOD_US + 1, EERUF_ERR_PERIOD);
     WITH(blanking_us, 36000, EERUF_ERR_BLANKING);
+    WITH(own, &own, EERUF_ERR_SENSORS);
+    own.sensors = SENSORS;
+    own.limits = limits;
+    for (x = 0; x < SENSORS; x++) limits[x].window_us = 36000;
+    WITH(own, &own, EERUF_OK);
     WITH(unserved_after, 0, EERUF_OK);
     WITH(shortest_cycle_us, 37200, EERUF_OK);
     EXPECT(flow(r, s, h, &fine), EERUF_OK);

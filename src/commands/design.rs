@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use clap::ValueEnum;
 use eeruf_core::search::{Progress, SearchError};
-use eeruf_core::{Criterion, Micros, hopping::HoppingListening};
+use eeruf_core::{Criterion, EachSensor, Micros, SensorLimits, hopping::HoppingListening};
 use eeruf_design::atlas::ATLAS;
 use eeruf_design::{CURVE_BUDGET, FoundJson, Need, RealPeriod, RingDesign, RingSpec, Search, real_budget};
 
@@ -258,7 +258,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
         Some(form @ (Form::Toml | Form::Rust | Form::C | Form::Arduino)) => {
             let table = || emit(&design.spec, form, &design.schedule);
             match &way {
-                Some(Ok(Some(way))) if way.method == Method::Flow => emit_flow(&spec.modules, form, way)?,
+                Some(Ok(Some(way))) if way.method == Method::Flow => emit_flow(args, &design.spec, form, way)?,
                 Some(Ok(Some(way))) if way.method != Method::Eeruf => {
                     comment(form, &format!("In rooms {} is right most of the time, which this is not", way.title()))?;
                     table()?;
@@ -317,16 +317,33 @@ fn comment(form: Form, line: &str) -> Result<(), InputError> {
 }
 
 /// Prints what a ring is set up with that fires by flow, as it was judged in rooms.
-fn emit_flow(modules: &[Module], form: Form, way: &RoomWay) -> Result<(), InputError> {
-    let Robot { ref sensors, window, blanking, period, .. } = way.robot;
+fn emit_flow(args: &Args, spec: &RingSpec, form: Form, way: &RoomWay) -> Result<(), InputError> {
+    let Robot { ref sensors, window, blanking, period, ref limits, ref together, .. } = way.robot;
+    let (sensors, modules) = (sensors.len(), &spec.modules);
     let mut settings = way.options.flow;
     settings.shortest_cycle = period;
-    let (sensors, listening) = (sensors.len(), HoppingListening::new(window).with_blanking(blanking));
+    let needs = spec.problem().requirements;
+    let settings = settings.keeping(sensors, &needs).map_err(|error| InputError::new(&args.file, error))?;
+    let listening = HoppingListening::new(window).with_blanking(blanking);
+    let is_alike = together.is_empty() && limits.iter().all(|of| of.window == window);
+    let own_limits = if is_alike {
+        EachSensor::NONE
+    } else {
+        // No more counts than what its judge compares by.
+        let t_delta = settings.tracker.t_delta;
+        EachSensor::<64>::for_flow(
+            std::array::from_fn(|sensor| SensorLimits {
+                window: limits.get(sensor).map_or(window, |of| of.window.min(window)),
+                t_delta: limits.get(sensor).map_or(t_delta, |of| of.t_delta.min(t_delta)),
+            }),
+            together,
+        )
+    };
     emit_modules(modules, form)?;
     match form {
-        Form::Rust => print(settings.to_rust(sensors, listening))?,
-        Form::C => print(settings.to_c(sensors, listening))?,
-        Form::Arduino => print(settings.to_arduino(sensors, listening, "RING"))?,
+        Form::Rust => print(settings.to_rust(sensors, listening, &own_limits))?,
+        Form::C => print(settings.to_c(sensors, listening, &own_limits))?,
+        Form::Arduino => print(settings.to_arduino(sensors, listening, &own_limits, "RING"))?,
         Form::Toml | Form::Json => {}
     }
     emit_settings(modules, form, settings.rest.max(window))

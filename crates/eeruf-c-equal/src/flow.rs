@@ -1,11 +1,13 @@
 //! Flow rings.
 
+use crate::hopping::numbers_of;
 use crate::tracking::{self, status_of};
 use crate::{C, Random};
 use eeruf_core::{
-    Instant, Micros,
+    EachSensor, Instant, Micros, Requirements, Uneven,
     flow::{FlowRing, FlowSettings},
-    hopping::HoppingListening,
+    hopping::{HoppingError, HoppingListening},
+    plan::{Alike, LimitsInUse},
 };
 
 fn settings(r: &Random) -> FlowSettings {
@@ -29,6 +31,25 @@ fn settings(r: &Random) -> FlowSettings {
     settings
 }
 
+/// Limits of each sensor, and the same as numbers for C. Some fire together: two sets at most.
+fn own_limits<const K: usize>(r: &Random, settings: &FlowSettings, window: u32) -> (EachSensor<K>, Vec<u32>) {
+    let t_deltas = [(); K].map(|()| Micros::new(r.within(1, settings.tracker.t_delta.as_micros())));
+    let windows = [(); K].map(|()| Micros::new(r.one_of(&[window, window, r.within(1, window)])));
+    let mut together = vec![0, 0, 0];
+    for sensor in 0..K {
+        together[r.one_of(&[0, 0, 1, 2])] |= 1 << sensor;
+    }
+    let together: Vec<u64> = together.into_iter().skip(1).filter(|set: &u64| set.count_ones() > 1).collect();
+    let uneven = Uneven { t_delta: &t_deltas, window: &windows, together: &together, ..Uneven::NONE };
+    let requirements = Requirements {
+        window: Micros::new(window),
+        uneven: Some(uneven),
+        ..Requirements::new(settings.tracker.t_delta)
+    };
+    let limits = FlowSettings::limits(K, &requirements).expect("one value for each sensor, and sets that are apart");
+    (limits, numbers_of(0, &windows, &t_deltas, &together))
+}
+
 /// One flow ring for up to 4,000 steps, or until there are no numbers left; the number of its events.
 ///
 /// # Panics
@@ -49,8 +70,31 @@ pub fn run<const K: usize>(r: &Random) -> u64 {
     numbers.extend([s.step].into_iter().chain(gaps).map(Micros::as_micros));
     numbers.extend([s.shortest_cycle, s.longest_cycle, s.rest, s.lead, s.travel].map(Micros::as_micros));
     numbers.extend(tracking::numbers(&s.tracker));
-    let status = c.flow(K as u8, &numbers, start);
-    let ring = match FlowRing::<K>::flow(K, s, listening, Instant::from_micros(start)) {
+    let now = Instant::from_micros(start);
+    if r.once_in(2) {
+        let (limits, own) = own_limits::<K>(r, &s, window);
+        let status = c.flow(K as u8, &numbers, &own, start);
+        return compare(
+            r,
+            c,
+            status,
+            FlowRing::<K, 4, 1, _>::with_limits(K, limits, s, listening, now),
+            (window, start),
+        );
+    }
+    let status = c.flow(K as u8, &numbers, &[], start);
+    compare::<K, Alike>(r, c, status, FlowRing::flow(K, s, listening, now), (window, start))
+}
+
+/// Runs both, if they are made.
+fn compare<const K: usize, U: LimitsInUse>(
+    r: &Random,
+    c: C,
+    status: i32,
+    ring: Result<FlowRing<K, 4, 1, U>, HoppingError>,
+    (window, start): (u32, u32),
+) -> u64 {
+    let ring = match ring {
         Ok(ring) => ring,
         Err(error) => {
             assert_eq!(status, status_of(&error), "{r}: {error}");
@@ -58,7 +102,7 @@ pub fn run<const K: usize>(r: &Random) -> u64 {
         }
     };
     assert_eq!(status, 0, "{r}");
-    let weighed = |ring: &FlowRing<K>, sensor| ring.plan().weighed(sensor, 0);
+    let weighed = |ring: &FlowRing<K, 4, 1, U>, sensor| ring.plan().weighed(sensor, 0);
     tracking::run(r, c, ring, window, start, weighed, |c, ring, at| {
         for sensor in 0..=K as u8 {
             let quiet = ring.plan().quiet(sensor).map(|(before, after)| [before, after].map(Micros::as_micros));

@@ -42,12 +42,18 @@ fn own_limits<const K: usize>(
     };
     let limits = schedule.limits(&requirements).ok()?;
     // What a pair keeps is the longest window.
-    let mut numbers = vec![windows.iter().map(|window| window.as_micros()).max().unwrap_or(0)];
-    for sensor in 0..K {
+    let interval = windows.iter().max().map_or(0, |window| window.as_micros());
+    Some((limits, numbers_of(interval, &windows, &t_deltas, together)))
+}
+
+/// Limits as numbers for C: what a pair keeps, then window, `t_delta` and group of each sensor.
+pub(crate) fn numbers_of(interval_us: u32, windows: &[Micros], t_deltas: &[Micros], together: &[u64]) -> Vec<u32> {
+    let mut numbers = vec![interval_us];
+    for (sensor, (window, t_delta)) in windows.iter().zip(t_deltas).enumerate() {
         let group = together.iter().position(|set| set >> sensor & 1 == 1).map_or(0, |group| group as u32 + 1);
-        numbers.extend([windows[sensor].as_micros(), t_deltas[sensor].as_micros(), group]);
+        numbers.extend([window.as_micros(), t_delta.as_micros(), group]);
     }
-    Some((limits, numbers))
+    numbers
 }
 
 /// One hopping ring for up to 4,000 steps, or until there are no numbers left; how many events it had.

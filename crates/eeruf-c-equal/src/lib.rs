@@ -245,11 +245,14 @@ impl C {
         unsafe { shim::shim_hopping(self.0, sensors, phases, numbers.as_ptr(), has_lags, own, now_us) }
     }
 
-    /// `eeruf_flow_init`, with the numbers in the order that `shim.c` names.
-    pub fn flow(&mut self, sensors: u8, numbers: &[u32], now_us: u32) -> i32 {
+    /// `eeruf_flow_init`, with the numbers in the order that `shim.c` names; `own` are the limits of each sensor, or
+    /// empty.
+    pub fn flow(&mut self, sensors: u8, numbers: &[u32], own: &[u32], now_us: u32) -> i32 {
         assert_eq!(numbers.len(), 23);
+        assert!(own.is_empty() || own.len() == 1 + 3 * usize::from(sensors));
+        let own = if own.is_empty() { core::ptr::null() } else { own.as_ptr() };
         // SAFETY: as many numbers as are read.
-        unsafe { shim::shim_flow(self.0, sensors, numbers.as_ptr(), now_us) }
+        unsafe { shim::shim_flow(self.0, sensors, numbers.as_ptr(), own, now_us) }
     }
 
     /// `eeruf_flow_quiet_us`: before and after; `None` for a sensor that is out of range.

@@ -267,6 +267,18 @@ static void make_room(Handle *handle, uint8_t sensors) {
     handle->ring = &handle->hopping->ring;
 }
 
+/* A schedule with nothing but limits, or null. `own` as for `shim_hopping`. */
+static const EerufSchedule *own_limits(Handle *handle, uint8_t sensors, const uint32_t *own) {
+    EerufSchedule *schedule;
+    if (own == NULL) return NULL;
+    schedule = (EerufSchedule *)calloc(1, sizeof *schedule);
+    schedule->sensors = sensors;
+    schedule->min_interval_us = *own++;
+    schedule->limits = handle->limits[handle->schedule_count] = limits_of(sensors, own);
+    handle->schedules[handle->schedule_count++] = schedule;
+    return schedule;
+}
+
 /* `numbers`: step, period, window, blanking, reach, shift interval, seed; then the tracker's nine; then solo rate,
    after and spacing, shift after and spacing, neighbours, code; then one lag for each sensor, or none. `own`: the time
    that any pair keeps; then window, t_delta and group of each sensor; or null. */
@@ -292,14 +304,7 @@ int shim_hopping(Handle *handle, uint8_t sensors, uint8_t phases, const uint32_t
     config.neighbours = (uint8_t)rest[5];
     config.code = (uint8_t)rest[6];
     config.lag_us = has_lags ? rest + 7 : NULL;
-    if (own != NULL) {
-        EerufSchedule *schedule = (EerufSchedule *)calloc(1, sizeof *schedule);
-        schedule->sensors = sensors;
-        schedule->min_interval_us = *own++;
-        schedule->limits = handle->limits[handle->schedule_count] = limits_of(sensors, own);
-        handle->schedules[handle->schedule_count++] = schedule;
-        config.own = schedule;
-    }
+    config.own = own_limits(handle, sensors, own);
     make_room(handle, sensors);
     return eeruf_hopping_init(handle->hopping, sizeof(EerufHoppingRing), handle->hop_sensors,
                               sensors * sizeof(EerufHopSensor), handle->hoppers, sensors * sizeof(EerufHopper),
@@ -307,8 +312,8 @@ int shim_hopping(Handle *handle, uint8_t sensors, uint8_t phases, const uint32_t
 }
 
 /* `numbers`: window, blanking, reach, unserved after, step, shortest gap, masked adds, believed takes, unserved adds,
-   shortest cycle, longest cycle, rest, lead, travel; then the tracker's nine. */
-int shim_flow(Handle *handle, uint8_t sensors, const uint32_t *numbers, uint32_t now_us) {
+   shortest cycle, longest cycle, rest, lead, travel; then the tracker's nine. `own` as for `shim_hopping`. */
+int shim_flow(Handle *handle, uint8_t sensors, const uint32_t *numbers, const uint32_t *own, uint32_t now_us) {
     EerufFlowConfig config = EERUF_FLOW(0, 0);
     config.sensors = sensors;
     config.window_us = numbers[0];
@@ -326,6 +331,7 @@ int shim_flow(Handle *handle, uint8_t sensors, const uint32_t *numbers, uint32_t
     config.lead_us = numbers[12];
     config.travel_us = numbers[13];
     config.tracker = tracker_of(numbers + 14);
+    config.own = own_limits(handle, sensors, own);
     make_room(handle, sensors);
     return eeruf_flow_init(handle->hopping, sizeof(EerufHoppingRing), handle->hop_sensors,
                            sensors * sizeof(EerufHopSensor), handle->hoppers, sensors * sizeof(EerufHopper), &config,

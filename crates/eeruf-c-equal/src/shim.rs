@@ -49,7 +49,8 @@ unsafe extern "C" {
         own: *const u32,
         now_us: u32,
     ) -> i32;
-    pub(crate) fn shim_flow(handle: *mut c_void, sensors: u8, numbers: *const u32, now_us: u32) -> i32;
+    pub(crate) fn shim_flow(handle: *mut c_void, sensors: u8, numbers: *const u32, own: *const u32, now_us: u32)
+    -> i32;
     pub(crate) fn shim_quiet(handle: *const c_void, sensor: u8, out: *mut u32) -> i32;
     pub(crate) fn shim_hopping_of(handle: *const c_void, sensor: u8, what: u8) -> u32;
     pub(crate) fn shim_filter(

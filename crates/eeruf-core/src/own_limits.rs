@@ -117,6 +117,20 @@ impl<const K: usize> EachSensor<K> {
     pub const NONE: Self =
         Self { most: None, limits: [SensorLimits { t_delta: Micros::MAX, window: Micros::MAX }; K], groups: [0; K] };
 
+    /// For [`FlowRing::with_limits`](crate::flow::FlowRing::with_limits), with sets of sensors that fire together, bit
+    /// x for sensor x. A ring by a table refuses it, since no table is verified for it.
+    pub const fn for_flow(limits: [SensorLimits; K], together: &[u64]) -> Self {
+        const NOTHING: VerifiedFor = VerifiedFor {
+            t_delta: Micros::ZERO,
+            min_interval: Micros::ZERO,
+            window: Micros::ZERO,
+            separation: Micros::ZERO,
+            path_change: None,
+            audible: Micros::ZERO,
+        };
+        Self { most: Some(NOTHING), ..Self::new(NOTHING, K, limits, Micros::ZERO, together) }
+    }
+
     /// With what a schedule of this many sensors was verified for, if they were all alike, and sets of sensors that
     /// fire together, bit x for sensor x.
     pub(crate) const fn new(
@@ -134,7 +148,7 @@ impl<const K: usize> EachSensor<K> {
             window = longer(window, limits[sensor].window);
             let mut group = 0;
             while group < together.len() {
-                if together[group] >> sensor & 1 == 1 {
+                if sensor < 64 && together[group] >> sensor & 1 == 1 {
                     // Groups are disjoint, so there are at most 32.
                     groups[sensor] = group as u8 + 1;
                 }

@@ -15,7 +15,7 @@ fn tracker_numbers(of: &TrackerSettings) -> Vec<u32> {
 #[test]
 fn flow_settings_of_c_are_those_of_the_core() {
     let (_, after) = include_str!("../../../../c/eeruf.h").split_once("#define EERUF_FLOW(").unwrap();
-    let (body, _) = after.split_once("}}").unwrap();
+    let (body, _) = after.split_once(", NULL}").unwrap();
     let of = FlowSettings::DEFAULT;
     let gaps = [of.shortest_gap, of.masked_adds, of.believed_takes, of.unserved_adds];
     let cycles = [of.shortest_cycle, of.rest, of.lead, of.longest_cycle, of.travel];

@@ -3,30 +3,43 @@
 use core::fmt;
 
 use super::settings::FlowSettings;
-use crate::emit::{EERUF_VERSION, Grouped};
+use crate::emit::{CLimits, EERUF_VERSION, Grouped};
 use crate::hopping::HoppingListening;
+use crate::own_limits::{EachSensor, SensorLimits};
 use crate::time::Micros;
 use crate::tracker::TrackerSettings;
 
 impl FlowSettings {
-    /// Rust: the constants `SENSORS`, `SETTINGS` and `LISTENING` for [`FlowRing::flow`](super::FlowRing::flow).
-    pub const fn to_rust(&self, sensors: usize, listening: HoppingListening) -> impl fmt::Display {
-        FlowRust(FlowSource { settings: self, sensors, listening })
-    }
-
-    /// A C99 header with the constant `eeruf_flow_config` for `eeruf_flow_init`, to be included after `eeruf.h`.
-    pub const fn to_c(&self, sensors: usize, listening: HoppingListening) -> impl fmt::Display {
-        FlowHeader(FlowSource { settings: self, sensors, listening })
-    }
-
-    /// A file of an Arduino sketch with the constant `name`, as in [`to_c`](Self::to_c).
-    pub const fn to_arduino<'r>(
+    /// Rust: the constants `SENSORS`, `SETTINGS` and `LISTENING` for [`FlowRing::flow`](super::FlowRing::flow); where
+    /// sensors have limits of their own also `LIMITS` for [`FlowRing::with_limits`](super::FlowRing::with_limits).
+    pub const fn to_rust<'r, const K: usize>(
         &'r self,
         sensors: usize,
         listening: HoppingListening,
+        limits: &'r EachSensor<K>,
+    ) -> impl fmt::Display {
+        FlowRust(FlowSource { settings: self, sensors, listening, limits })
+    }
+
+    /// A C99 header with the constant `eeruf_flow_config` for `eeruf_flow_init`, to be included after `eeruf.h`.
+    pub const fn to_c<'r, const K: usize>(
+        &'r self,
+        sensors: usize,
+        listening: HoppingListening,
+        limits: &'r EachSensor<K>,
+    ) -> impl fmt::Display {
+        FlowHeader(FlowSource { settings: self, sensors, listening, limits })
+    }
+
+    /// A file of an Arduino sketch with the constant `name`, as in [`to_c`](Self::to_c).
+    pub const fn to_arduino<'r, const K: usize>(
+        &'r self,
+        sensors: usize,
+        listening: HoppingListening,
+        limits: &'r EachSensor<K>,
         name: &'r str,
     ) -> impl fmt::Display {
-        FlowTab { source: FlowSource { settings: self, sensors, listening }, name }
+        FlowTab { source: FlowSource { settings: self, sensors, listening, limits }, name }
     }
 
     /// Its times by their names.
@@ -47,30 +60,37 @@ impl FlowSettings {
 }
 
 /// Settings of a flow ring.
-struct FlowSource<'r> {
+struct FlowSource<'r, const K: usize> {
     settings: &'r FlowSettings,
     sensors: usize,
     listening: HoppingListening,
+    limits: &'r EachSensor<K>,
 }
 
-impl fmt::Display for FlowSource<'_> {
+impl<const K: usize> fmt::Display for FlowSource<'_, K> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { settings, sensors, listening } = self;
+        let Self { settings, sensors, listening, .. } = self;
         write!(f, "{sensors} sensors that fire by flow, in cycles of at least {},", settings.shortest_cycle)?;
         write!(f, " listening for {}", listening.window)
     }
 }
 
 /// In Rust: see [`FlowSettings::to_rust`].
-struct FlowRust<'r>(FlowSource<'r>);
+struct FlowRust<'r, const K: usize>(FlowSource<'r, K>);
 
-impl fmt::Display for FlowRust<'_> {
+impl<const K: usize> fmt::Display for FlowRust<'_, K> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let FlowSource { settings, sensors, listening } = &self.0;
+        let FlowSource { settings, sensors, listening, limits } = &self.0;
         let usual = FlowSettings::DEFAULT;
-        writeln!(f, "use eeruf_core::{{Micros, flow::FlowSettings, hopping::HoppingListening}};\n")?;
+        let own = limits.most().is_some();
+        let (names, call) = if own {
+            ("EachSensor, Micros, SensorLimits", "4, 1, _>::with_limits(SENSORS, LIMITS, SETTINGS, LISTENING, now)")
+        } else {
+            ("Micros", "SENSORS>::flow(SENSORS, SETTINGS, LISTENING, now)")
+        };
+        writeln!(f, "use eeruf_core::{{{names}, flow::FlowSettings, hopping::HoppingListening}};\n")?;
         writeln!(f, "// {}.", self.0)?;
-        writeln!(f, "// For `FlowRing::<SENSORS>::flow(SENSORS, SETTINGS, LISTENING, now)`.")?;
+        writeln!(f, "// For `FlowRing::<{}{call}`.", if own { "SENSORS, " } else { "" })?;
         writeln!(f, "pub const SENSORS: usize = {sensors};\n")?;
         writeln!(f, "pub const SETTINGS: FlowSettings = {{\n    let mut settings = FlowSettings::DEFAULT;")?;
         for ((name, time), (_, usual)) in settings.times().into_iter().zip(usual.times()) {
@@ -91,7 +111,23 @@ impl fmt::Display for FlowRust<'_> {
         writeln!(f, "    settings\n}};\n")?;
         let [window, blanking, reach] = [listening.window, listening.blanking, listening.reach].map(Grouped);
         write!(f, "pub const LISTENING: HoppingListening =\n    HoppingListening::new(Micros::new({window}))")?;
-        writeln!(f, ".with_blanking(Micros::new({blanking})).with_reach(Micros::new({reach}));")
+        writeln!(f, ".with_blanking(Micros::new({blanking})).with_reach(Micros::new({reach}));")?;
+        if !own {
+            return Ok(());
+        }
+        writeln!(f, "\n#[rustfmt::skip]\npub const LIMITS: EachSensor<SENSORS> = EachSensor::for_flow(\n    [")?;
+        for SensorLimits { t_delta, window } in (0..*sensors as u8).filter_map(|x| limits.of(x)) {
+            let (t_delta, window) = (Grouped(t_delta), Grouped(window));
+            writeln!(f, "        SensorLimits {{ t_delta: Micros::new({t_delta}), window: Micros::new({window}) }},")?;
+        }
+        write!(f, "    ],\n    &[")?;
+        let groups = || limits.groups().iter().take(*sensors).enumerate();
+        let last = groups().map(|(_, &group)| group).max().unwrap_or(0);
+        for group in 1..=last {
+            let set = groups().filter(|&(_, &of)| of == group).fold(0_u64, |set, (x, _)| set | 1 << x);
+            write!(f, "{}{set:#b}", if group == 1 { "" } else { ", " })?;
+        }
+        writeln!(f, "],\n);")
     }
 }
 
@@ -112,9 +148,9 @@ fn numbers(tracker: &TrackerSettings) -> [(&'static str, u32); 9] {
 }
 
 /// As a C header: see [`FlowSettings::to_c`].
-struct FlowHeader<'r>(FlowSource<'r>);
+struct FlowHeader<'r, const K: usize>(FlowSource<'r, K>);
 
-impl fmt::Display for FlowHeader<'_> {
+impl<const K: usize> fmt::Display for FlowHeader<'_, K> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let FlowSource { sensors, listening, .. } = &self.0;
         writeln!(f, "/* {}.\n   For eeruf_flow_init; include eeruf.h before it. */", self.0)?;
@@ -128,12 +164,12 @@ impl fmt::Display for FlowHeader<'_> {
 }
 
 /// As a file of an Arduino sketch: see [`FlowSettings::to_arduino`].
-struct FlowTab<'r> {
-    source: FlowSource<'r>,
+struct FlowTab<'r, const K: usize> {
+    source: FlowSource<'r, K>,
     name: &'r str,
 }
 
-impl fmt::Display for FlowTab<'_> {
+impl<const K: usize> fmt::Display for FlowTab<'_, K> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { source, name } = self;
         writeln!(f, "// {source}.\n#pragma once\n#include <EerufArduino.h>\n")?;
@@ -142,16 +178,27 @@ impl fmt::Display for FlowTab<'_> {
 }
 
 /// The constant of type `EerufFlowConfig`.
-struct Constant<'r> {
-    source: &'r FlowSource<'r>,
+struct Constant<'r, const K: usize> {
+    source: &'r FlowSource<'r, K>,
     name: &'r str,
 }
 
-impl fmt::Display for Constant<'_> {
+impl<const K: usize> fmt::Display for Constant<'_, K> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let FlowSource { settings, sensors, listening } = self.source;
+        let FlowSource { settings, sensors, listening, limits } = self.source;
+        let name = self.name;
+        let own = limits.most().is_some();
+        if own {
+            write!(f, "{}", CLimits { name, sensors: *sensors, limits })?;
+            writeln!(f, "static const EerufSchedule {name}_own EERUF_FLASH = {{")?;
+            writeln!(
+                f,
+                "    {EERUF_VERSION}, {sensors}, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, EERUF_LAYOUT_OTHER, 0, 0,"
+            )?;
+            writeln!(f, "    {name}_limits,\n}};")?;
+        }
         let [step, times @ ..] = settings.times().map(|(_, time)| time.as_micros());
-        writeln!(f, "static const EerufFlowConfig {} = {{", self.name)?;
+        writeln!(f, "static const EerufFlowConfig {name} = {{")?;
         write!(f, "    {EERUF_VERSION}, {sensors}, {}, {step}u,", settings.unserved_after)?;
         for time in [listening.window, listening.blanking, listening.reach] {
             write!(f, " {}u,", time.as_micros())?;
@@ -164,7 +211,7 @@ impl fmt::Display for Constant<'_> {
         for (place, (_, number)) in numbers(&settings.tracker).into_iter().enumerate() {
             write!(f, "{}{number}", if place == 0 { "" } else { ", " })?;
         }
-        writeln!(f, "}},\n}};")
+        if own { writeln!(f, "}},\n    &{name}_own,\n}};") } else { writeln!(f, "}},\n    0,\n}};") }
     }
 }
 
@@ -174,6 +221,7 @@ mod tests {
     use super::*;
     use std::string::ToString;
 
+    const ALIKE: EachSensor<1> = EachSensor::NONE;
     const LISTENING: HoppingListening = HoppingListening::new(Micros::new(37_000)).with_blanking(Micros::new(300));
 
     #[test]
@@ -181,7 +229,7 @@ mod tests {
         let mut settings = FlowSettings::DEFAULT;
         settings.rest = Micros::from_millis(60);
         settings.tracker = settings.tracker.with_t_delta(Micros::new(100)).with_memory(9);
-        let text = settings.to_rust(8, LISTENING).to_string();
+        let text = settings.to_rust(8, LISTENING, &ALIKE).to_string();
         assert!(text.contains("pub const SENSORS: usize = 8;\n"), "{text}");
         let sets: std::vec::Vec<_> = text.lines().filter(|line| line.starts_with("    settings.")).collect();
         let expected = [
@@ -195,14 +243,26 @@ mod tests {
     }
 
     #[test]
+    fn limits_of_each_sensor_are_written() {
+        let of = |us, window| SensorLimits { t_delta: Micros::new(us), window: Micros::new(window) };
+        let limits = EachSensor::for_flow([of(150, 37_000), of(90, 12_000), of(150, 37_000)], &[0b101]);
+        let text = FlowSettings::DEFAULT.to_c(3, LISTENING, &limits).to_string();
+        let own = "eeruf_flow_config_limits[] EERUF_FLASH = {\n    {37000u, 150u, 1},\n    {12000u, 90u, 0},\n";
+        assert!(text.contains(own) && text.contains("    &eeruf_flow_config_own,\n};\n"), "{text}");
+        let text = FlowSettings::DEFAULT.to_rust(3, LISTENING, &limits).to_string();
+        assert!(text.contains("        SensorLimits { t_delta: Micros::new(90), window: Micros::new(12_000) },\n"));
+        assert!(text.ends_with("    ],\n    &[0b101],\n);\n"), "{text}");
+    }
+
+    #[test]
     fn c_has_all_settings_in_their_order() {
-        let text = FlowSettings::DEFAULT.to_c(12, LISTENING).to_string();
+        let text = FlowSettings::DEFAULT.to_c(12, LISTENING, &ALIKE).to_string();
         assert!(text.contains("#define EERUF_SENSORS 12\n#define EERUF_WINDOW_US 37000u\n"), "{text}");
         let constant = "= {\n    3, 12, 3, 240u, 37000u, 300u, 37000u,\n    \
                         7500u, 4000u, 1500u, 6000u, 60000u, 0u, 0u, 400000u, 380u,\n    \
-                        {150, 400, 60, 5, 6, 2, 6, 2, 5},\n};\n";
+                        {150, 400, 60, 5, 6, 2, 6, 2, 5},\n    0,\n};\n";
         assert!(text.contains(&std::format!("EerufFlowConfig eeruf_flow_config {constant}")), "{text}");
-        let text = FlowSettings::DEFAULT.to_arduino(12, LISTENING, "RING").to_string();
+        let text = FlowSettings::DEFAULT.to_arduino(12, LISTENING, &ALIKE, "RING").to_string();
         assert!(
             text.ends_with(&std::format!("#include <EerufArduino.h>\n\nstatic const EerufFlowConfig RING {constant}"))
         );

@@ -16,6 +16,7 @@ mod slot;
 mod tests;
 
 use crate::hopping::{HoppingError, HoppingListening};
+use crate::own_limits::{Alike, LimitsInUse};
 use crate::ring::{Ring, RingConfig};
 use crate::time::Instant;
 use crate::tracker::EchoTracker;
@@ -23,9 +24,10 @@ use crate::tracker::EchoTracker;
 pub use plan::FlowPlan;
 pub use settings::FlowSettings;
 
-/// A ring of up to `K` sensors that fires by flow, with `H` hypotheses for each and up to `E` echoes of a firing.
-pub type FlowRing<const K: usize, const H: usize = 4, const E: usize = 1> =
-    Ring<FlowPlan<K>, EchoTracker<K, H>, K, E, 1>;
+/// A ring of up to `K` sensors that fires by flow, with `H` hypotheses for each and up to `E` echoes of a firing. `U`
+/// is [`EachSensor`](crate::EachSensor) where sensors have limits of their own.
+pub type FlowRing<const K: usize, const H: usize = 4, const E: usize = 1, U = Alike> =
+    Ring<FlowPlan<K, U>, EchoTracker<K, H>, K, E, 1>;
 
 impl<const K: usize, const H: usize, const E: usize> FlowRing<K, H, E> {
     /// A ring of `sensors` sensors that begins at `now`.
@@ -39,8 +41,26 @@ impl<const K: usize, const H: usize, const E: usize> FlowRing<K, H, E> {
         listening: HoppingListening,
         now: Instant,
     ) -> Result<Self, HoppingError> {
+        Self::with_limits(sensors, Alike, settings, listening, now)
+    }
+}
+
+impl<const K: usize, const H: usize, const E: usize, U: LimitsInUse> FlowRing<K, H, E, U> {
+    /// As [`flow`](FlowRing::flow), for sensors that have limits of their own, by [`FlowSettings::limits`]. What
+    /// `listening` and the tracker's `t_delta` say is the most for all.
+    ///
+    /// # Errors
+    /// As there.
+    #[inline(always)]
+    pub fn with_limits(
+        sensors: usize,
+        own_limits: U,
+        settings: FlowSettings,
+        listening: HoppingListening,
+        now: Instant,
+    ) -> Result<Self, HoppingError> {
         let tracker = EchoTracker::new(settings.tracker)?;
-        let plan = FlowPlan::new(sensors, settings, listening, now)?;
+        let plan = FlowPlan::with_limits(sensors, own_limits, settings, listening, now)?;
         let config = RingConfig::new().with_window(listening.window).with_blanking(listening.blanking);
         Ok(Self::judged_by(plan, tracker, config.with_echoes::<E>(), now)?)
     }

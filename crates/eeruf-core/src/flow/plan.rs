@@ -4,6 +4,7 @@ use super::settings::{FlowSettings, Pace};
 use super::slot::{DISABLED, QUIET_US, Slot};
 use crate::hopping::{CATCHES_UP, HoppingCode, HoppingError, HoppingListening, Lateness, Weighed};
 use crate::judging::{Firing, Heard, Judge};
+use crate::own_limits::{Alike, LimitsInUse, SensorLimits};
 use crate::plan::{Limits, Plan, Upcoming};
 use crate::reading::{ReadingKind, Verdict};
 use crate::schedule::{MAX_PERIOD, Phase};
@@ -16,7 +17,7 @@ pub(super) const NOBODY: u8 = u8::MAX;
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(C)]
-pub struct FlowPlan<const K: usize> {
+pub struct FlowPlan<const K: usize, U = Alike> {
     /// The sensor that fires next, or [`NOBODY`].
     next: u8,
     /// Firings of this cycle so far, and all of them.
@@ -41,6 +42,7 @@ pub struct FlowPlan<const K: usize> {
     pub(super) rest: Micros,
     pub(super) pace: Pace,
     pub(super) slots: [Slot; K],
+    pub(super) own_limits: U,
 }
 
 impl<const K: usize> FlowPlan<K> {
@@ -52,6 +54,23 @@ impl<const K: usize> FlowPlan<K> {
     /// window and code or longer than [`MAX_PERIOD`].
     pub fn new(
         sensors: usize,
+        settings: FlowSettings,
+        listening: HoppingListening,
+        now: Instant,
+    ) -> Result<Self, HoppingError> {
+        Self::with_limits(sensors, Alike, settings, listening, now)
+    }
+}
+
+impl<const K: usize, U: LimitsInUse> FlowPlan<K, U> {
+    /// As [`new`](FlowPlan::new), for sensors that have limits of their own, by [`FlowSettings::limits`]. Those that
+    /// fire together do so at one instant, with the quiet that any of them needs; all else fires at other times.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn with_limits(
+        sensors: usize,
+        own_limits: U,
         settings: FlowSettings,
         listening: HoppingListening,
         now: Instant,
@@ -96,6 +115,7 @@ impl<const K: usize> FlowPlan<K> {
             slots: [Slot::new(pace.least); K],
             code,
             pace,
+            own_limits,
         };
         let mut sensor = 0;
         for turn in 0..sensors {
@@ -104,6 +124,15 @@ impl<const K: usize> FlowPlan<K> {
                 slot.place = code.place(turn, 0);
             }
             sensor = plan.sensor_after(sensor);
+        }
+        for sensor in 0..sensors as u8 {
+            let leader = plan.own_limits.leader_of(sensor);
+            if leader != sensor {
+                let place = plan.slots.get(usize::from(leader)).map_or(0, |slot| slot.place);
+                if let Some(slot) = plan.slots.get_mut(usize::from(sensor)) {
+                    slot.place = place;
+                }
+            }
         }
         plan.plan(|_| now);
         Ok(plan)
@@ -214,7 +243,7 @@ const fn unit_of(code: &HoppingCode) -> u32 {
     (code.phases() as u32 + 1) * code.step().as_micros()
 }
 
-impl<const K: usize> Plan for FlowPlan<K> {
+impl<const K: usize, U: LimitsInUse> Plan for FlowPlan<K, U> {
     fn deadline(&self) -> Instant {
         self.due
     }
@@ -345,6 +374,15 @@ impl<const K: usize> Plan for FlowPlan<K> {
         Limits { longest_window: self.min_refire(), verified_for: None, audible: None }
     }
 
+    fn hears(&self, receiver: u8, emitter: u8) -> bool {
+        self.own_limits.hears(receiver, emitter)
+    }
+
+    #[inline]
+    fn limits_of(&self, sensor: u8) -> Option<SensorLimits> {
+        self.own_limits.limits_of(sensor)
+    }
+
     fn min_refire(&self) -> Micros {
         self.rest
     }
@@ -356,7 +394,7 @@ impl<const K: usize> Plan for FlowPlan<K> {
     }
 }
 
-impl<const K: usize> FlowPlan<K> {
+impl<const K: usize, U: LimitsInUse> FlowPlan<K, U> {
     /// Raises a sensor's quiet if others fooled it or nothing of it is believed, lowers it if its reading is.
     fn learn(&mut self, heard: &Heard<'_>, verdict: &Verdict, judge: &impl Judge) {
         let sensor = heard.sensor;
@@ -399,9 +437,9 @@ impl<const K: usize> FlowPlan<K> {
         }
     }
 
-    /// Time from a sensor's firing in this cycle to the next of any sensor, as planned.
+    /// Time from a sensor's firing in this cycle to the next of any that it does not fire together with, as planned.
     fn gap_after(&self, sensor: u8) -> Micros {
-        let place = (0..self.planned).find(|&place| self.order(place) == sensor);
+        let place = (0..self.planned).find(|&place| self.order(place) == sensor).map(|place| self.last_with(place));
         let gap = place.and_then(|place| self.slots.get(usize::from(place))).map_or(0, |slot| slot.gap);
         Micros::new(u32::from(gap) * self.unit())
     }

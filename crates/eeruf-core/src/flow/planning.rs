@@ -4,10 +4,11 @@ use super::plan::{FlowPlan, NOBODY};
 use super::settings::{Pace, in_units};
 use super::slot::{FIRED, QUIET_US, Slot};
 use crate::hopping::CATCHES_UP;
+use crate::own_limits::LimitsInUse;
 use crate::plan::Plan;
 use crate::time::{Instant, Micros};
 
-impl<const K: usize> FlowPlan<K> {
+impl<const K: usize, U: LimitsInUse> FlowPlan<K, U> {
     /// Decides on the cycle that has begun. `fired` says when a sensor that has fired last did.
     pub(super) fn plan(&mut self, fired: impl Fn(u8) -> Instant) {
         let most = self.longest_cycle();
@@ -54,7 +55,44 @@ impl<const K: usize> FlowPlan<K> {
         if next >= sensors { next - sensors } else { next }
     }
 
-    /// Lists the sensors that fire.
+    /// Returns true if the firing in this place of the order and the next are of sensors that fire together: the gap
+    /// between them is none.
+    #[inline(always)]
+    fn is_with_next(&self, place: u8) -> bool {
+        self.own_limits.most().is_some() && self.slots.get(usize::from(place)).is_some_and(|slot| slot.gap == 0)
+    }
+
+    /// The first place of those that fire together with this one.
+    #[inline(always)]
+    fn first_with(&self, place: u8) -> u8 {
+        let mut first = place;
+        while first > 0 && self.is_with_next(first - 1) {
+            first -= 1;
+        }
+        first
+    }
+
+    /// The last place of those that fire together with this one.
+    #[inline(always)]
+    pub(super) fn last_with(&self, place: u8) -> u8 {
+        let mut last = place;
+        while self.is_with_next(last) {
+            last += 1;
+        }
+        last
+    }
+
+    /// The most that any sensor needs of those that fire in these places.
+    #[inline(always)]
+    fn most_of(&self, first: u8, last: u8, need: impl Fn(&Slot) -> u8) -> u8 {
+        let mut most = self.sensor_at(first).map_or(0, &need);
+        for place in first + 1..=last {
+            most = most.max(self.sensor_at(place).map_or(0, &need));
+        }
+        most
+    }
+
+    /// Lists the sensors that fire: those that fire together in the place of the first of them.
     fn put_in_order(&mut self) {
         if self.in_order != NOBODY {
             self.planned = self.in_order;
@@ -63,10 +101,16 @@ impl<const K: usize> FlowPlan<K> {
         self.planned = 0;
         let mut sensor = 0;
         for _ in 0..self.code.sensors() {
-            if self.is_enabled(sensor) {
-                if let Some(slot) = self.slots.get_mut(usize::from(self.planned)) {
-                    slot.order = sensor;
-                    self.planned += 1;
+            if self.own_limits.leader_of(sensor) == sensor {
+                self.list(sensor);
+                if self.own_limits.most().is_some() {
+                    for other in sensor + 1..self.code.sensors() as u8 {
+                        if self.own_limits.leader_of(other) == sensor {
+                            self.list(other);
+                        }
+                    }
+                    // Any but 0, which is the gap to the next of those that fire together.
+                    self.set_gap(self.planned.wrapping_sub(1), 1);
                 }
             }
             sensor = self.sensor_after(sensor);
@@ -74,17 +118,31 @@ impl<const K: usize> FlowPlan<K> {
         self.in_order = self.planned;
     }
 
+    /// Lists a sensor next, if it fires.
+    #[inline(always)]
+    fn list(&mut self, sensor: u8) {
+        if self.is_enabled(sensor) {
+            if let Some(slot) = self.slots.get_mut(usize::from(self.planned)) {
+                (slot.order, slot.gap) = (sensor, 0);
+                self.planned += 1;
+            }
+        }
+    }
+
     /// Gives each firing the gap to the next that the sensors on both sides need, within `most` units in all.
     fn give_gaps(&mut self, most: u32) {
         let last = self.planned.saturating_sub(1);
         let (mut sum, mut previous) = (0, last);
-        let mut after = self.sensor_at(last).map_or(0, |slot| slot.after);
-        for place in 0..self.planned {
-            let Some(&Slot { before, after: own_after, .. }) = self.sensor_at(place) else { continue };
+        let mut after = self.most_of(self.first_with(last), last, |slot| slot.after);
+        let mut place = 0;
+        while place < self.planned {
+            let end = self.last_with(place);
+            let before = self.most_of(place, end, |slot| slot.before);
             let gap = self.gap_for(after.max(before));
             self.set_gap(previous, gap);
             sum += u32::from(gap);
-            (previous, after) = (place, own_after);
+            after = self.most_of(place, end, |slot| slot.after);
+            (previous, place) = (end, end + 1);
         }
         if sum > most {
             self.share_out(most);
@@ -94,13 +152,15 @@ impl<const K: usize> FlowPlan<K> {
     /// Gives all the least gap, and what is left to whoever has been unserved for longest.
     fn share_out(&mut self, most: u32) {
         let least = self.pace.least_gap;
+        let mut left = most;
         for place in 0..self.planned {
-            self.set_gap(place, least);
+            let gap = if self.is_with_next(place) { 0 } else { least };
+            left = left.saturating_sub(gap.into());
+            self.set_gap(place, gap);
             let unserved = self.sensor_at(place).map_or(0, |slot| slot.unserved);
             // Of those that are unserved for as long, the first in order. There are at most 64.
             self.sort_in(place, u16::from(unserved) << 8 | u16::from(u8::MAX - place));
         }
-        let mut left = most.saturating_sub(u32::from(least) * u32::from(self.planned));
         for rank in 0..self.planned {
             if left == 0 {
                 return;
@@ -108,22 +168,26 @@ impl<const K: usize> FlowPlan<K> {
             let key = self.slots.get(usize::from(rank)).map_or(0, |slot| slot.at);
             let place = u8::MAX - (key & 0xff) as u8;
             let Some(&Slot { before, after, .. }) = self.sensor_at(place) else { continue };
-            let previous = if place == 0 { self.planned - 1 } else { place - 1 };
+            let first = self.first_with(place);
+            let previous = if first == 0 { self.planned - 1 } else { first - 1 };
             left = self.raise_gap(previous, before, left);
-            left = self.raise_gap(place, after, left);
+            left = self.raise_gap(self.last_with(place), after, left);
         }
     }
 
     /// Sorts a key in among the first `count`, the largest first. They are kept where firing times are, which are
     /// decided next.
     fn sort_in(&mut self, count: u8, key: u16) {
-        let mut key = key;
-        for slot in self.slots.iter_mut().take(usize::from(count)) {
-            if slot.at < key {
-                core::mem::swap(&mut slot.at, &mut key);
+        let mut rank = usize::from(count);
+        // From the end, where most stay: of those that are unserved for as long the first in order come first.
+        while let Some([before, slot]) = rank.checked_sub(1).and_then(|first| self.slots.get_mut(first..=rank)) {
+            if before.at >= key {
+                break;
             }
+            slot.at = before.at;
+            rank -= 1;
         }
-        if let Some(slot) = self.slots.get_mut(usize::from(count)) {
+        if let Some(slot) = self.slots.get_mut(rank) {
             slot.at = key;
         }
     }
@@ -166,8 +230,14 @@ impl<const K: usize> FlowPlan<K> {
         let most = self.rest.saturating_add(CATCHES_UP).as_micros();
         for place in 0..self.planned {
             let sensor = self.order(place);
-            if u32::from(at) * unit < most {
-                let rests = self.rests_for(sensor, fired(sensor));
+            // Sensors that fire together wait for each other.
+            let is_first = place == 0 || !self.is_with_next(place - 1);
+            if is_first && u32::from(at) * unit < most {
+                let mut rests = self.rests_for(sensor, fired(sensor));
+                for other in place + 1..=self.last_with(place) {
+                    let other = self.order(other);
+                    rests = rests.max(self.rests_for(other, fired(other)));
+                }
                 let waits = self.slots.get(usize::from(sensor)).map_or(0, |slot| u32::from(slot.place));
                 let offset = u32::from(at) * unit + waits * self.code.step().as_micros();
                 let short = rests.as_micros().saturating_sub(offset);

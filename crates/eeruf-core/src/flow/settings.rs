@@ -1,9 +1,13 @@
 //! [`FlowSettings`]: how a flow ring spaces its firings and weighs its readings.
 
-use super::slot::{QUIET_US, quiet};
+use super::slot::{LONGEST_QUIET, QUIET_US, quiet};
+use crate::hopping::{CATCHES_UP, HoppingCode, HoppingError};
+use crate::own_limits::{EachSensor, SensorLimits};
+use crate::requirements::Requirements;
 use crate::schedule::MAX_PERIOD;
 use crate::time::Micros;
 use crate::tracker::TrackerSettings;
+use crate::uneven::UnevenError;
 
 /// The gaps of a [`FlowRing`](super::FlowRing) and the weights of its readings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -55,6 +59,52 @@ impl FlowSettings {
     };
 }
 
+impl FlowSettings {
+    /// The limits of each sensor for [`FlowPlan::with_limits`](super::FlowPlan::with_limits): its window, its
+    /// `t_delta`, of which no more counts than the tracker's, and the sensors that it fires together with. All other
+    /// requirements are for tables.
+    ///
+    /// # Errors
+    /// [`UnevenError`] if what single sensors need is invalid for this many sensors.
+    pub fn limits<const K: usize>(
+        sensors: usize,
+        requirements: &Requirements<'_>,
+    ) -> Result<EachSensor<K>, UnevenError> {
+        let Some(uneven) = requirements.uneven else { return Ok(EachSensor::NONE) };
+        uneven.check(sensors)?;
+        let none = SensorLimits { t_delta: Micros::MAX, window: Micros::MAX };
+        let limits = core::array::from_fn(|x| match x < sensors {
+            true => SensorLimits { t_delta: requirements.t_delta_of(x), window: requirements.window_of(x) },
+            false => none,
+        });
+        Ok(EachSensor::for_flow(limits, requirements.together()))
+    }
+
+    /// These settings with what modules need that are not all alike: the rest of the one that rests for longest, since
+    /// each fires once a cycle, and where sensors share an echo line, gaps in which each has stopped listening.
+    ///
+    /// # Errors
+    /// [`HoppingError`] as for [`HoppingCode::new`], or for a shared line on which a sensor listens for longer than the
+    /// longest gap.
+    pub fn keeping(mut self, sensors: usize, requirements: &Requirements<'_>) -> Result<Self, HoppingError> {
+        let Some(uneven) = requirements.uneven else { return Ok(self) };
+        self.rest = uneven.refire.iter().copied().fold(self.rest, Micros::max);
+        let shares = |x: usize| uneven.shared_lines.iter().any(|line| line >> x & 1 == 1);
+        let listens = (0..sensors).filter(|&x| shares(x)).map(|x| requirements.window_of(x)).max();
+        if let Some(window) = listens {
+            // Waits bring two firings closer by the width of the code, lateness by what is caught up with.
+            let code = HoppingCode::new(sensors, self.tracker.votes, self.step)?;
+            let closer = code.width().saturating_add(CATCHES_UP).saturating_add(Micros::new(QUIET_US));
+            let most = LONGEST_QUIET.saturating_sub(closer);
+            if window > most {
+                return Err(HoppingError::Window { window, most });
+            }
+            self.shortest_gap = self.shortest_gap.max(window.saturating_add(closer));
+        }
+        Ok(self)
+    }
+}
+
 impl Default for FlowSettings {
     fn default() -> Self {
         Self::DEFAULT
@@ -91,8 +141,8 @@ pub(super) struct Pace {
 impl Pace {
     /// `longest`: the most quiet that helps; `unit`: that of the grid.
     pub(super) fn of(settings: &FlowSettings, sensors: u8, longest: Micros, unit: u32) -> Self {
-        let most = quiet(longest);
-        let least = quiet(settings.shortest_gap).min(most);
+        let least = quiet(settings.shortest_gap);
+        let most = quiet(longest).max(least);
         let unit = unit.max(1);
         let shortest = settings.shortest_cycle.as_micros();
         Self {

@@ -30,6 +30,9 @@ pub(super) struct Slot {
 /// The unit of quiet, in microseconds.
 pub(super) const QUIET_US: u32 = 256;
 
+/// The most quiet that a byte holds.
+pub(super) const LONGEST_QUIET: Micros = Micros::new(255 * QUIET_US);
+
 /// A time in units of quiet.
 pub(super) const fn quiet(time: Micros) -> u8 {
     let units = time.as_micros() / QUIET_US;

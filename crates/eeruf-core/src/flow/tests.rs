@@ -4,10 +4,14 @@ extern crate std;
 
 use super::*;
 use crate::judge::{EchoTracker, Firing, Heard, Judge};
+use crate::own_limits::{EachSensor, LimitsInUse, SensorLimits};
 use crate::plan::{Plan, check_plan};
 use crate::reading::{ReadingKind, Verdict};
+use crate::requirements::Requirements;
+use crate::ring::RingEvent;
 use crate::schedule::Phase;
 use crate::time::Micros;
+use crate::uneven::Uneven;
 use std::vec::Vec;
 
 const WINDOW: Micros = Micros::from_millis(36);
@@ -31,8 +35,8 @@ fn judge() -> impl Judge {
 
 /// Fires a cycle on time; `hears` gives each sensor's echo and the kind of its reading. Returns who fired when, after
 /// the start of the cycle, and the cycle's length.
-fn cycle<const K: usize>(
-    plan: &mut FlowPlan<K>,
+fn cycle<const K: usize, U: LimitsInUse>(
+    plan: &mut FlowPlan<K, U>,
     fired: &mut [Instant; K],
     expected_change_us: i32,
     hears: impl Fn(u8) -> (u32, ReadingKind),
@@ -225,6 +229,144 @@ fn a_cycle_that_is_planned_ahead_fires_at_the_same_instants() {
         assert_eq!(cycle(&mut early, &mut fired_early, 0, hears), (seen, length - 11 * 256));
     }
     assert_eq!(fired, fired_early);
+}
+
+fn limits<const K: usize>(together: &[u64]) -> EachSensor<K> {
+    EachSensor::for_flow([SensorLimits { t_delta: Micros::new(150), window: WINDOW }; K], together)
+}
+
+#[test]
+fn sensors_of_one_group_fire_at_one_instant() {
+    let now = Instant::from_micros(0);
+    let groups = [0b1_0001, 0b1000_1100];
+    let mut plan =
+        FlowPlan::<8, _>::with_limits(8, limits::<8>(&groups), FlowSettings::DEFAULT, listening(), now).unwrap();
+    let mut fired = [now; 8];
+    for number in 0..300_u32 {
+        // 1 m/s now and then, so that gaps have to be shared out.
+        let change = if number % 100 < 40 { -580 } else { 0 };
+        let (seen, length) = cycle(&mut plan, &mut fired, change, |sensor| {
+            if (u32::from(sensor) * 7 + number) % 11 < 5 { MASKED(sensor) } else { WELL(sensor) }
+        });
+        let order = seen.iter().map(|(sensor, _)| *sensor).collect::<Vec<_>>();
+        assert_eq!(order, [0, 4, 6, 1, 2, 3, 7, 5]);
+        for (place, pair) in seen.windows(2).enumerate() {
+            let [(x, before), (y, after)] = pair else { unreachable!() };
+            let together = groups.iter().any(|group| group >> x & group >> y & 1 == 1);
+            // The least gap of 7.5 ms, less what waits bring closer.
+            let apart = after - before;
+            assert!(
+                if together { apart == 0 } else { apart > 7_500 - 2_400 },
+                "cycle {number}, place {place}: {seen:?}"
+            );
+        }
+        assert!(seen.len() == 8 && length - seen[7].1 > 7_500 - 2_400, "{seen:?}");
+    }
+    // What one of them needs all get.
+    let masked = |sensor| if sensor == 7 { MASKED(sensor) } else { WELL(sensor) };
+    for _ in 0..30 {
+        cycle(&mut plan, &mut fired, 0, masked);
+    }
+    let (seen, length) = cycle(&mut plan, &mut fired, 0, masked);
+    let at = seen.iter().find(|(sensor, _)| *sensor == 2).unwrap().1;
+    let before = seen.iter().map(|seen| seen.1).filter(|&other| other < at).max().unwrap_or(0);
+    let after = seen.iter().map(|seen| seen.1).filter(|&other| other > at).min().unwrap_or(length);
+    assert!(at - before > 36_000 && after - at > 33_620, "{seen:?}");
+}
+
+#[test]
+fn flow_with_limits_keeps_what_plans_promise() {
+    for groups in [&[][..], &[0b11][..], &[0b1010, 0b10_0101][..], &[0b11_1111][..]] {
+        let now = Instant::from_micros(u32::MAX - 1_000_000);
+        let mut plan =
+            FlowPlan::<6, _>::with_limits(6, limits::<6>(groups), FlowSettings::DEFAULT, listening(), now).unwrap();
+        check_plan(&mut plan, now, 3_000, 5).unwrap();
+    }
+}
+
+/// The kinds of readings of three sensors that each hear something after these times, one after the other.
+fn kinds_of(limits: EachSensor<3>, echoes_us: [&[u32]; 3], cycles: usize) -> [Vec<ReadingKind>; 3] {
+    let now = Instant::from_micros(0);
+    let mut ring = FlowRing::<3, 4, 1, _>::with_limits(3, limits, FlowSettings::DEFAULT, listening(), now).unwrap();
+    let mut kinds = [Vec::new(), Vec::new(), Vec::new()];
+    while kinds[2].len() < cycles {
+        let now = ring.next_deadline();
+        while let Some(event) = ring.poll(now) {
+            match event {
+                RingEvent::Fire { sensor, .. } => {
+                    let heard = echoes_us[usize::from(sensor)];
+                    let after = heard[kinds[usize::from(sensor)].len() % heard.len()];
+                    ring.echo(sensor, now + Micros::new(after)).unwrap();
+                }
+                RingEvent::Reading(reading) => kinds[usize::from(reading.sensor)].push(reading.kind),
+                RingEvent::PeriodEnded(_) => {}
+            }
+        }
+    }
+    kinds
+}
+
+#[test]
+fn each_sensor_has_its_own_window_and_t_delta() {
+    let of = |t_delta, window| SensorLimits { t_delta: Micros::new(t_delta), window: Micros::new(window) };
+    let echoes: [&[u32]; 3] = [&[12_000], &[12_000, 12_120], &[12_000, 12_120]];
+    let own = EachSensor::for_flow([of(150, 10_000), of(150, 36_000), of(50, 36_000)], &[]);
+    let [short, wide, narrow] = kinds_of(own, echoes, 40);
+    // What comes after a window is late; silence is confirmed.
+    assert!(short[8..].iter().all(|kind| *kind == ReadingKind::Clear), "{short:?}");
+    assert!(wide[8..].iter().all(|kind| *kind == ReadingKind::Accepted), "{wide:?}");
+    let alike = EachSensor::for_flow([of(150, 36_000); 3], &[]);
+    let [far, _, agrees] = kinds_of(alike, echoes, 40);
+    assert!(far[8..].iter().chain(&agrees[8..]).all(|kind| *kind == ReadingKind::Accepted), "{far:?} {agrees:?}");
+    // 60 us from the middle of both, which neither supports.
+    assert!(narrow.iter().all(|kind| *kind != ReadingKind::Accepted), "{narrow:?}");
+}
+
+#[test]
+fn sensors_on_one_line_never_listen_at_once() {
+    let windows = [30, 30, 12, 12, 36, 30].map(Micros::from_millis);
+    let refire = [0, 0, 0, 70, 0, 0].map(Micros::from_millis);
+    let uneven = Uneven { window: &windows, refire: &refire, shared_lines: &[0b11_0011], ..Uneven::NONE };
+    let requirements = Requirements { window: WINDOW, uneven: Some(uneven), ..Requirements::new(Micros::new(150)) };
+    let now = Instant::from_micros(0);
+    let settings = FlowSettings::DEFAULT.keeping(6, &requirements).unwrap();
+    assert_eq!(settings.rest, Micros::from_millis(70));
+    let limits = FlowSettings::limits::<6>(6, &requirements).unwrap();
+    let mut plan = FlowPlan::<6, _>::with_limits(6, limits, settings, listening(), now).unwrap();
+    let (mut fired, mut last) = ([now; 6], None::<(Instant, u8)>);
+    for number in 0..200_u32 {
+        let change = if number % 50 < 20 { -2_000 } else { 0 };
+        let (seen, _) = cycle(&mut plan, &mut fired, change, |sensor| {
+            if (u32::from(sensor) + number) % 3 == 0 { MASKED(sensor) } else { WELL(sensor) }
+        });
+        for (sensor, at) in seen.into_iter().map(|(sensor, _)| (sensor, fired[usize::from(sensor)])) {
+            if 0b11_0011 >> sensor & 1 == 0 {
+                continue;
+            }
+            if let Some((before, other)) = last.replace((at, sensor)) {
+                assert!(
+                    at.since(before) > windows[usize::from(other)].saturating_add(Micros::new(1_000)),
+                    "{other}, then {sensor}"
+                );
+            }
+        }
+    }
+    let long = [Micros::from_millis(64); 6];
+    let uneven = Uneven { window: &long, shared_lines: &[0b11], ..Uneven::NONE };
+    let requirements = Requirements { uneven: Some(uneven), ..requirements };
+    assert!(matches!(FlowSettings::DEFAULT.keeping(6, &requirements), Err(HoppingError::Window { .. })));
+}
+
+// What is allowed without a table does not make a table a verified one.
+#[test]
+fn a_table_refuses_the_limits_of_a_flow_ring() {
+    let firing = [[0, 5, 40], [2, 12, 24]].map(|phase| phase.map(Micros::from_millis));
+    let schedule = crate::Schedule::<3>::from_firing(Micros::from_millis(60), firing).unwrap();
+    let (limits, now) = (limits::<3>(&[]), Instant::from_micros(0));
+    let plan = crate::plan::ScheduledFiring::with_limits(&schedule, &limits, now);
+    let config = RingConfig::new().with_t_delta(Micros::new(100)).with_window(Micros::from_millis(10));
+    let ring = Ring::<_, crate::EchoFilter<3>, 3>::with_plan(plan, config, now);
+    assert!(matches!(ring, Err(crate::RingError::TDelta { .. })));
 }
 
 #[test]

@@ -7,9 +7,11 @@
 //! corrected firings `F`, sensors enabled or not `N`, restarts `R`, another path change `C` or `audible` `A`, and polls
 //! `P` with the deadline after it and the event, if there is one. `O`: the state before a sensor at an instant: kind,
 //! echo, age, reason, explanation. 2^32 - 1 stands for no echo, and where a ring listens for the default; as the
-//! explanation of a reading 254 stands for history and 255 for none.
+//! explanation of a reading 254 stands for history and 255 for none. Flow rings follow: see [`flow`].
 
-use std::fmt::Write;
+mod flow;
+
+use std::fmt::{Display, Write};
 
 use eeruf_core::{
     EchoFilter, Instant, Layout, Micros, PeriodStats, Phase, Reading, ReadingKind, Requirements, Ring, RingConfig,
@@ -26,8 +28,9 @@ const FILE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../c/tests/corpus.tx
 /// Rings in the file beside those of [`RARE`]; `EERUF_RINGS` of them for a longer comparison.
 const RINGS: u64 = 40;
 /// Seeds of rings in which a port differs if it gets a border of the rule wrong: of `audible`, of `path_change`, of the
-/// lateness to spare, of the periods for which an irregular firing counts, of a restart, of what is proven.
-const RARE: [u64; 9] = [67, 86, 449, 672, 1043, 1494, 2369, 2505, 2893];
+/// lateness to spare, of the periods for which an irregular firing counts, of the period of a late edge, of restarts,
+/// of what is proven.
+const RARE: [u64; 11] = [67, 86, 390, 449, 672, 1043, 1494, 1984, 2369, 2505, 2893];
 const STEPS: u32 = 64;
 const NONE: u32 = u32::MAX;
 
@@ -38,6 +41,10 @@ struct Text(String);
 
 impl Text {
     fn add(&mut self, kind: char, numbers: impl IntoIterator<Item = u32>) {
+        self.add_signed(kind, numbers);
+    }
+
+    fn add_signed<N: Display>(&mut self, kind: char, numbers: impl IntoIterator<Item = N>) {
         self.0.push(kind);
         for number in numbers {
             write!(self.0, " {number}").unwrap();
@@ -339,6 +346,9 @@ fn corpus_file_matches_core() {
             _ => run_two_phases(&mut r, &mut text),
         }
     }
+    for seed in (0..rings.div_ceil(8)).chain(flow::RARE) {
+        flow::run_any(&mut Random(seed), &mut text);
+    }
     let Text(text) = text;
     if std::env::var_os("EERUF_WRITE").is_some() {
         std::fs::write(FILE, &text).expect("the corpus can be written");
@@ -347,7 +357,7 @@ fn corpus_file_matches_core() {
     let readings =
         || text.lines().filter_map(|line| line.strip_prefix("P ")).filter(|line| line.split(' ').count() == 11);
     let has = |place: usize, value: &str| readings().any(|line| line.split(' ').nth(place) == Some(value));
-    for kind in [0, 1, 2, 3, 4, 5, 6, 7, 8, 10] {
+    for kind in 0..ReadingKind::ALL.len() {
         assert!(has(6, &kind.to_string()), "no reading of kind {kind}");
     }
     for state in 0..5 {

@@ -1,0 +1,66 @@
+//! A ring file of sensors that are not all alike, to the readings of the flow ring that it describes.
+
+use eeruf_core::{
+    Instant, Micros, ReadingKind, RingEvent,
+    flow::{FlowRing, FlowSettings},
+    hopping::HoppingListening,
+};
+use eeruf_design::RingSpec;
+
+const RING: &str = "
+    sensors = 5
+    layout = \"line\"
+    neighbours = 2
+    crosstalk_range_m = 2.0
+    max_range_m = [4.0, 4.0, 1.0, 1.0, 4.0]
+    jitter_us = 100
+    retrigger_us = [45_000, 45_000, 70_000, 45_000, 45_000]
+    together = [[2, 3]]
+    intervals_us = [[2, 3, 0]]
+    shared_lines = [[0, 4]]
+    tick_us = 100
+";
+const FIRINGS: usize = 60;
+
+/// Before each a wall at 12 ms, beyond the range of two.
+#[test]
+fn ring_file_of_mixed_sensors_fires_by_flow() {
+    let spec = RingSpec::from_text(RING).expect("a ring");
+    let (requirements, robot) = (spec.problem().requirements, spec.robot_ring());
+    let settings = FlowSettings::DEFAULT.keeping(5, &requirements).expect("gaps in range");
+    let limits = eeruf_core::EachSensor::<5>::for_flow(robot.limits.clone().try_into().unwrap(), &robot.together);
+    let window = robot.limits.iter().map(|limits| limits.window).max().unwrap();
+    let now = Instant::from_micros(0);
+    let listening = HoppingListening::new(window);
+    let mut ring = FlowRing::<5, 4, 1, _>::with_limits(5, limits, settings, listening, now).expect("a ring");
+    let mut fired = [const { vec![] }; 5];
+    let mut kinds = [const { vec![] }; 5];
+    while fired.iter().any(|fired| fired.len() < FIRINGS) {
+        let now = ring.next_deadline();
+        while let Some(event) = ring.poll(now) {
+            match event {
+                RingEvent::Fire { sensor, .. } => {
+                    fired[usize::from(sensor)].push(now);
+                    ring.echo(sensor, now + Micros::from_millis(12)).unwrap();
+                }
+                RingEvent::Reading(reading) => kinds[usize::from(reading.sensor)].push(reading.kind),
+                RingEvent::PeriodEnded(_) => {}
+            }
+        }
+    }
+    for (sensor, (kinds, fired)) in kinds.iter().zip(&fired).enumerate() {
+        let last = if matches!(sensor, 2 | 3) { ReadingKind::Clear } else { ReadingKind::Accepted };
+        assert!(kinds[8..FIRINGS - 1].iter().all(|kind| *kind == last), "{sensor}: {kinds:?}");
+        // The module that rests for longest says how soon all fire again.
+        let soonest = fired.windows(2).map(|pair| pair[1].since(pair[0])).min().unwrap();
+        assert!(soonest >= Micros::from_millis(70), "{sensor}: {soonest}");
+    }
+    assert_eq!(fired[2], fired[3]);
+    let (mut one, mut other) = (fired[0].iter().peekable(), fired[4].iter().peekable());
+    let mut before = *one.next().unwrap();
+    while let (Some(&&x), Some(&&y)) = (one.peek(), other.peek()) {
+        let next = if x.has_reached(y) { *other.next().unwrap() } else { *one.next().unwrap() };
+        assert!(next.since(before) > window, "{before:?}, then {next:?}");
+        before = next;
+    }
+}

@@ -362,6 +362,11 @@ class Ring:
             if (self._due - now_us) & self._mask > self._horizon():
                 self.restart(now_us)  # the clock has jumped
             return None
+        return self._advance(now_us, change_us, is_due)
+
+    def _advance(self, now_us, change_us, is_due):
+        # Apart from `poll`, which mostly finds nothing due: MicroPython keeps the variables of larger functions in the
+        # heap, and finding room there takes longer the fuller it is.
         x = self._next
         fires = is_due and x != NOBODY
         if not fires:
@@ -690,31 +695,33 @@ class HcSr04Ring:
         return self._time.ticks_diff(now, self.ring._sensors[x].firings[0])
 
     def _sample(self):
-        for x, awaits in enumerate(self._awaits):
-            if not awaits:
-                continue
-            high = self._echoes[x].value()
-            now = self._time.ticks_us()
-            rose = self._rose[x]
-            if (high == 1) == (rose is not None):
-                if rose is None and self._since_firing(x, now) > self.LATEST_RISE_US:
+        # Small and without objects of its own, for the same reason as `Ring.poll`.
+        for x in range(len(self._awaits)):
+            if self._awaits[x]:
+                high = self._echoes[x].value()
+                now = self._time.ticks_us()
+                if (high == 1) == (self._rose[x] is None):
+                    self._edge(x, high, now)
+                elif not high and self._since_firing(x, now) > self.LATEST_RISE_US:
                     self._awaits[x] = False
-                continue
-            if self._echoes[x].value() != high:
-                continue  # a spike or a gap
-            if rose is None:
-                if self._since_firing(x, now) >= self.DEAF_US:
-                    self._rose[x] = now
-                    self.ring.answered(x)
+
+    def _edge(self, x, high, now):
+        if self._echoes[x].value() != high:
+            return  # a spike or a gap
+        rose = self._rose[x]
+        if rose is None:
+            if self._since_firing(x, now) >= self.DEAF_US:
+                self._rose[x] = now
+                self.ring.answered(x)
+        else:
+            width = self._time.ticks_diff(now, rose)
+            self._rose[x] = None
+            if width >= self.SHORTEST_US:
+                self._awaits[x] = False
+                if width < self.LONGEST_US:
+                    self.ring.measured(x, width)
             else:
-                width = self._time.ticks_diff(now, rose)
-                self._rose[x] = None
-                if width >= self.SHORTEST_US:
-                    self._awaits[x] = False
-                    if width < self.LONGEST_US:
-                        self.ring.measured(x, width)
-                else:
-                    self.ring.answered(x, False)
+                self.ring.answered(x, False)
 
     def _trigger(self, x):
         pin, rose, high = self._triggers[x], self._rose[x], self._echoes[x].value()

@@ -210,7 +210,9 @@ impl<'s> World<'s> {
     /// The length of a path, which never changes by more than it may: such that the receiver reads what it read before,
     /// if that can be.
     fn length(&mut self, receiver: usize, least: u32, at: u64) -> u32 {
-        let most = self.sound.path_change as u32 - 2 * STEPS;
+        // A step of the clock between the two sounds changes what the ring sees of it as well.
+        let steps = if self.course.clock_steps > 0 { STEPS } else { 0 };
+        let most = self.sound.path_change as u32 - steps;
         let drawn = least + self.random.up_to(most);
         let Some(last) = self.last_echo[receiver] else { return drawn };
         let wanted = (self.last_fired[receiver] + u64::from(last)).checked_sub(at);

@@ -747,6 +747,8 @@ class HcSr04Ring:
         pin.value(1)
         self._time.sleep_us(self.TRIGGER_US)
         pin.value(0)
+        # What is compared is what was fired, and since the poll some time has passed.
+        self.ring.fired(x, self._time.ticks_us())
         if self._one_pin:
             pin.init(self._pin.IN)
 

@@ -639,8 +639,3 @@ class HcSr04FlowRing(HcSr04Ring):
     While the robot moves, set `change_us` to the list that `Ring.poll` takes."""
 
     RING = FlowRing
-
-    def _trigger(self, x):
-        # Lateness is what decides whether crosstalk moved as the code says, also that of this call.
-        HcSr04Ring._trigger(self, x)
-        self.ring.fired(x, self._time.ticks_us())

@@ -99,6 +99,32 @@ def silence():
         raise AssertionError("silence: %r" % kinds)
 
 
+def triggers():
+    """A firing counts from its trigger, however long the lines took to ask before it."""
+    clock = Clock(0)
+    machine = Machine(clock, {4: 1200, 5: 5800, 6: 23000}, ())
+    value = machine.Pin.value
+
+    def slowly(pin, level=None):
+        clock.now += 100
+        return value(pin, level)
+
+    machine.Pin.value = slowly
+    schedule = Schedule(62000, [[2000, 22000, 42000], [0, 22000, 43000]]).verify(387, 14569, 60000, 3)
+    ring = HcSr04Ring(schedule, [4, 5, 6], machine=machine, time=clock)
+    triggered = [None, None, None]
+    while clock.now < 2000000:
+        ring.read()
+        for x, pin in enumerate(ring._triggers):
+            if pin.fired != triggered[x]:
+                triggered[x] = pin.fired
+                off = clock.ticks_diff(ring.ring._sensors[x].firings[0], pin.fired % PERIOD)
+                if not 0 <= off <= 20:
+                    raise AssertionError("module %d: its firing counts from %d us after its trigger" % (x, off))
+    if None in triggered:
+        raise AssertionError("triggers: %r" % triggered)
+
+
 def border():
     """Two readings agree up to t_delta, and not beyond (Eq. 11)."""
     ring = Ring(Schedule(62000, [[2000], [0]]).verify(387), 0)
@@ -289,6 +315,7 @@ def room():
 
 def main():
     border()
+    triggers()
     silence()
     ambiguous()
     timed()

@@ -4,6 +4,7 @@
 //! compiler wrote down. The budgets of a Cortex-M0 with twelve sensors are checked.
 
 mod in_the_loop;
+mod rings;
 mod stack;
 mod tables;
 

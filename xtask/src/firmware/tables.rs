@@ -2,7 +2,9 @@
 
 use std::process::Command;
 
-use super::{BOARDS, Board, build, c_example, cargo, expect, in_the_loop, on_target_tests, run_image, sections, stack};
+use super::{
+    BOARDS, Board, build, c_example, cargo, expect, in_the_loop, on_target_tests, rings, run_image, sections, stack,
+};
 use crate::measured::{self, Tables};
 use crate::steps::{Trouble, output};
 
@@ -129,6 +131,7 @@ pub(super) fn measure(only: Option<&str>) -> Result<(Tables, Vec<String>), Troub
     }
     if only.is_none() {
         c_example(lm3s6965)?;
+        rings::start(lm3s6965)?;
         tables.insert("in a simulated world", in_the_loop::run()?);
         tables.insert("hopping in a simulated world", in_the_loop::run_hopping()?);
     }

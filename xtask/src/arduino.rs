@@ -5,6 +5,7 @@ mod build;
 mod library;
 mod newping;
 mod own_walls;
+mod pace;
 mod survey;
 mod tables;
 mod world;
@@ -75,6 +76,7 @@ pub(crate) fn arduino(plan: &Plan, steps: &mut Steps) {
     steps.step("tables of the Arduino library", || tables::check(plan.write));
     steps.step("tables of the examples", crate::examples::tables);
     steps.step("Arduino library", || pack().and_then(|library| examples(&library, plan.short)));
+    steps.step("pace of sketches", || pace::run(&Path::new(TARGET).join("libraries/Eeruf")));
     steps.step("ready tables before walls", || own_walls::run(&Path::new(TARGET).join("libraries/Eeruf"), plan.short));
 }
 

@@ -147,6 +147,12 @@ bool EerufModules::read() {
     return event.kind == EERUF_EVENT_READING;
 }
 
+bool EerufModules::tooSlow() {
+    if (ring_.latest_us <= 1000 || ::micros() - told_ < 1000000) return false;
+    told_ = ::micros();
+    return true;
+}
+
 uint16_t EerufModules::millimetres(uint32_t soundMmPerS) const {
     if (reading_.t_echo_us == EERUF_NO_ECHO) return 0;
     // c t / 2 in 32 bits, which holds for these modules: no echo is longer than 36 ms. eeruf_distance_mm takes any.

@@ -53,6 +53,10 @@ public:
     EerufState state(uint8_t sensor) const;
     // How a module is: EERUF_HEALTH_..
     uint8_t health(uint8_t sensor) const { return eeruf_hc_sr04_health(&modules_, sensor); }
+    // True if loop() is too slow, at most once a second: a firing of this period came more than a millisecond late. Late
+    // firings make readings cost more time, and ambiguous. late() has the microseconds.
+    bool tooSlow();
+    uint16_t late() const { return ring_.latest_us; }
     // Stops a module, or lets it fire again.
     bool enable(uint8_t sensor, bool enabled = true) { return eeruf_ring_enable(&ring_, sensor, enabled) == EERUF_OK; }
     // Fires no module, or all again.
@@ -117,6 +121,7 @@ private:
     EerufRing ring_;
     EerufHcSr04 modules_;
     EerufReading reading_;
+    uint32_t told_ = 0;
     uint16_t recovery_;
     uint8_t count_, sensor_;
     EerufStatus status_ = EERUF_ERR_NOT_READY;

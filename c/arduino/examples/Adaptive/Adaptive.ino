@@ -1,5 +1,6 @@
 // Eight HC-SR04 modules with one pin each (2 to 9), fired more slowly where too many readings are rejected, and faster
 // again when it is calm: one of three tables, looked at again every 16 periods.
+// One read() takes up to 0.8 ms on an Uno.
 #include <EerufTables.h>
 
 const uint8_t PINS[] = {2, 3, 4, 5, 6, 7, 8, 9};

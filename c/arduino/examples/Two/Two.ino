@@ -1,6 +1,7 @@
 // Two HC-SR04 modules side by side: triggers on 4 and 5, echoes on 2 and 3, whose interrupts time the echoes to some
 // microseconds while loop() does other things for 0.3 ms. The longer that takes the later modules fire, and the more
 // readings the other module's sound could explain.
+// One read() takes up to 0.5 ms on an Uno.
 #include <EerufTables.h>
 
 const uint8_t TRIGGERS[] = {4, 5};
@@ -22,6 +23,7 @@ void setup() {
 }
 
 void loop() {
+  if (sonar.tooSlow()) Serial.println(F("loop() is too slow: modules fire late"));
   if (sonar.read() && sonar.accepted()) {
     Serial.print(sonar.sensor() + 1);
     Serial.print(' ');

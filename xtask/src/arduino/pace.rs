@@ -20,7 +20,7 @@ const TOO_SLOW: &str = "too slow";
 /// Times each call, and says a time that is longer than all before.
 const TIMED: &str = "bool timed() {
   const uint32_t began = micros();
-  const bool told = sonar.read();
+  const bool is_reading = sonar.read();
   const uint32_t took = micros() - began;
   static uint32_t longest;
   if (took > longest) {
@@ -28,7 +28,7 @@ const TIMED: &str = "bool timed() {
     Serial.print(F(\"longest \"));
     Serial.println(took);
   }
-  return told;
+  return is_reading;
 }
 
 void setup() {";
@@ -36,7 +36,7 @@ void setup() {";
 pub(super) fn run(library: &Path) -> Result<(), Trouble> {
     need("avr-g++", "gcc-avr avr-libc binutils-avr arduino-core-avr")?;
     let world = world::build()?;
-    println!("| sketch | longest read() | it states | told that it is too slow, with 3 ms of other work |");
+    println!("| sketch | longest read() | it states | says that it is too slow, with 3 ms of other work |");
     println!("|---|---:|---:|---:|");
     for (number, name) in SKETCHES.into_iter().enumerate() {
         let example = EXAMPLES.iter().find(|example| example.name == name);
@@ -74,7 +74,7 @@ pub(super) fn run(library: &Path) -> Result<(), Trouble> {
     Ok(())
 }
 
-/// What a sketch says among modules that are each before a wall of their own.
+/// The output of a sketch among modules that are each before a wall of their own.
 fn heard(library: &Path, world: &Path, example: &Example, name: &str, text: &str) -> Result<String, Trouble> {
     let source = Source { name, text, board: Board::Uno, ours: true, defines: &[] };
     let sketch = build::sketch(&source, &library.join("src"), &build::core(Board::Uno)?)?;

@@ -1,5 +1,5 @@
-//! Each file of `rings/` as firmware has it: emitted for C and for Arduino, by its table and as it is recommended, built
-//! for a Cortex-M3, and run there until each sensor has fired and had its wall accepted.
+//! Each file of `rings/` as firmware has it: emitted for C and for Arduino, by its table and as it is recommended,
+//! built for a Cortex-M3, and run there until each sensor has fired and had its wall accepted.
 
 use std::fs;
 use std::path::Path;

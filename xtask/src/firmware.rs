@@ -13,7 +13,7 @@ use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
 use crate::measured;
-use crate::steps::{Trouble, output, run};
+use crate::steps::{Trouble, output, run, run_component};
 use crate::toolchain::cargo_for_target;
 
 struct Board {
@@ -68,7 +68,7 @@ pub(crate) fn firmware(plan: &Plan) -> Result<(), Trouble> {
 
 /// Formatting, and Clippy for all but RTIC's program, which is of another target.
 pub(crate) fn lint() -> Result<(), Trouble> {
-    run(Command::new("cargo").current_dir("firmware").args(["fmt", "--all", "--check"]))?;
+    run_component("rustfmt", &["fmt", "--all", "--check", "--manifest-path", "firmware/Cargo.toml"])?;
     let [microbit, ..] = &BOARDS;
     let debian = cargo(microbit)?.get_program() == "/usr/bin/cargo";
     if debian && !Path::new("/usr/bin/cargo-clippy").exists() {

@@ -88,6 +88,7 @@ class Heard:
         self.diagnostics = reader(participant, "/diagnostics", DiagnosticArray)
         self.ranges = [[] for _ in range(sensors)]
         self.reports = []
+        self.stamps = []
 
     def is_matched(self):
         return all(reader.get_matched_publications() for reader in [*self.readers, self.diagnostics])
@@ -96,16 +97,18 @@ class Heard:
         for heard, reader in zip(self.ranges, self.readers):
             heard += taken(reader, Range)
         for report in taken(self.diagnostics, DiagnosticArray):
+            self.stamps.append((report.header.stamp.sec, report.header.stamp.nanosec))
             self.reports.append({status.name.removeprefix("eeruf: "): status for status in report.status})
 
-    def said(self):
-        """All of it, in a form that compares."""
+    def said(self, since):
+        """All ranges, and the reports since this stamp, in a form that compares."""
         stamp = lambda message: (message.header.stamp.sec, message.header.stamp.nanosec, message.header.frame_id)
         numbers = lambda m: (m.radiation_type, m.field_of_view, m.min_range, m.max_range, m.range, m.variance)
         values = lambda status: [(value.key, value.value) for value in status.values]
         status = lambda status: (status.level, status.message, status.hardware_id, values(status))
         ranges = [[(*stamp(message), *numbers(message)) for message in heard] for heard in self.ranges]
-        return ranges, [{name: status(each) for name, each in report.items()} for report in self.reports]
+        reports = [report for stamp, report in zip(self.stamps, self.reports) if stamp >= since]
+        return ranges, [{name: status(each) for name, each in report.items()} for report in reports]
 
 
 class Node:
@@ -121,6 +124,8 @@ class Node:
             processes.append(self.fast_dds.process)
             self.listeners.append(Heard(self.fast_dds, sensors))
         self.until("discovery of the node", lambda: all(each.is_matched() for each in self.listeners))
+        # The node matches readers in the order in which they were made: whom a report reaches, ranges reach, too.
+        self.until("a report to all", lambda: self.take() or all(each.reports for each in self.listeners))
 
     @property
     def ranges(self):
@@ -138,8 +143,9 @@ class Node:
             each.take()
 
     def end(self):
-        # What was sent last is still on its way.
-        same = lambda: all(each.said() == self.heard.said() for each in self.listeners)
+        # One of the two may have joined some reports before the other, and what was sent last is still on its way.
+        since = max(each.stamps[0] for each in self.listeners)
+        same = lambda: all(each.said(since) == self.heard.said(since) for each in self.listeners)
         self.until("the same heard by all", lambda: self.take() or same())
         self.process.send_signal(signal.SIGINT)
         said = self.process.communicate(timeout=PATIENCE_S)[1]
@@ -148,9 +154,10 @@ class Node:
         if self.fast_dds:
             self.fast_dds.close()
         self.take()
-        ranges, reports = self.heard.said()
+        ranges, reports = self.heard.said(since)
+        assert reports
         for other in self.listeners[1:]:
-            other_ranges, other_reports = other.said()
+            other_ranges, other_reports = other.said(since)
             assert other_ranges == ranges
             # A diagnosis that the node sends as it leaves may reach one of the two.
             both = min(len(reports), len(other_reports))

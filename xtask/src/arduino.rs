@@ -138,6 +138,7 @@ fn examples(library: &Path, short: bool) -> Result<(), Trouble> {
     heard.is_plausible(&IN_RUST)?;
     println!("| `{}`, in Rust | {flash} | {ram} | {} |", IN_RUST.name, heard.row());
     let sketch = build::example(library, &core, "Survey")?;
+    newping::builds(library, &core)?;
     if short {
         return Ok(());
     }

@@ -80,7 +80,11 @@ impl Described<'_> {
         let mut text = format!("{name}: recommended: {}{title}, right {:.1} % of the time", way.way.name, right(way));
         _ = writeln!(text, ", {:.0} right echoes a second.", echoes(way));
         if way != base {
-            _ = writeln!(text, "One by one: {:.1} % and {:.0}.", right(base), echoes(base));
+            _ = write!(text, "One by one: {:.1} % and {:.0}", right(base), echoes(base));
+            if let Some((times, [low, high])) = way.echoes_against(base).zip(way.times_95) {
+                _ = write!(text, "; over kinds of rooms the factor is {times:.2} ({low:.2} to {high:.2})");
+            }
+            text.push_str(".\n");
         }
         if PLAIN.contains(&way.way.name) {
             text.push_str("You do not need eeruf here: no other way is right for a point more of the time.\n");
@@ -106,6 +110,14 @@ impl Described<'_> {
         }
         if let Some(worst) = way.rooms.iter().flatten().map(|figures| figures.belief_right_worst).reduce(f64::min) {
             _ = writeln!(text, "In the worst room it is right {:.0} % of the time.", 100.0 * worst);
+        }
+        let [least, most] = way.blind_90;
+        if most > 0.0 {
+            let to = if least < most { format!("{least} to {most}") } else { most.to_string() };
+            let sensors = way.way.robot.sensors.len();
+            _ = writeln!(text, "In 9 of 10 rooms {to} of its {sensors} sensors are blind.");
+        } else {
+            text.push_str("In 9 of 10 rooms none of its sensors is blind.\n");
         }
         text
     }

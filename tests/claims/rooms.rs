@@ -36,12 +36,19 @@ fn four_lines_get_a_way_with_its_figures_in_each_room() {
         assert!((sum - 1.0).abs() < 1e-6, "{room}: {figures}");
         assert!(number(&figures["right_echoes_per_s"]) >= 0.0 && number(&figures["blind"]) >= 0.0);
     }
+    // Eight rooms, one of each kind: 90 % of them are all.
+    let blind = ROOMS.map(|room| number(&best["rooms"][room]["blind"]));
+    let [least, most] = [0, 1].map(|end| number(&best["blind_90"][end]));
+    assert_eq!(least, blind.iter().copied().fold(f64::MAX, f64::min).floor());
+    assert_eq!(most, blind.iter().copied().fold(0.0, f64::max).ceil());
     assert_eq!(answer["elsewhere"].as_array().map(Vec::len), Some(3));
     // The same question has the same answer.
     let again = json(&["study", ring, "--places", "1", "--json"]);
     assert_eq!(again["ways"], answer["ways"]);
     let said = eeruf(&["design", ring, "--places", "1"]).out;
     assert!(said.contains("recommended: ") && said.contains("period"), "{said}");
+    let sensors = if most == 0.0 { "none of its sensors is blind.\n" } else { "of its 8 sensors are blind.\n" };
+    assert!(said.contains(sensors), "{said}");
     let period = eeruf(&["design", ring, "--period-only"]).out;
     assert!(!period.contains("recommended") && period.contains("5.5 cm of range"), "{period}");
 }

@@ -269,6 +269,8 @@ impl Serialize for WaysJson<'_> {
             way: way.way.name,
             title: way.way.title(),
             not_possible: way.rooms.as_ref().err(),
+            blind_90: way.rooms.is_ok().then_some(way.blind_90),
+            times_95: way.times_95,
             rooms: FiguresJson { groups: self.groups, way },
         }))
     }
@@ -280,6 +282,10 @@ struct WayJson<'a> {
     title: &'static str,
     #[serde(skip_serializing_if = "Option::is_none")]
     not_possible: Option<&'a String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    blind_90: Option<[f64; 2]>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    times_95: Option<[f64; 2]>,
     rooms: FiguresJson<'a>,
 }
 

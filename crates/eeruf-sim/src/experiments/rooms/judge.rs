@@ -126,6 +126,11 @@ pub struct JudgedWay {
     pub way: RoomWay,
     /// Its figures in each group of rooms, in the order asked for; or why it cannot fire this ring.
     pub rooms: Result<Vec<RoomFigures>, String>,
+    /// Least and largest number of blind sensors in 90 % of all rooms judged. Zeros if it cannot fire the ring.
+    pub blind_90: [f64; 2],
+    /// [`echoes_against`](Self::echoes_against) the first way lies here with 95 % confidence: for rooms of these kinds,
+    /// by how much they differ. None if one of the two cannot fire the ring, or no kind has two rooms.
+    pub times_95: Option<[f64; 2]>,
 }
 
 /// Ways of firing judged in rooms.
@@ -266,8 +271,11 @@ pub fn judge(
     if progress.stopped() {
         return Err(ExperimentError::Stopped);
     }
+    let of_way = |index| runs.iter().skip(index).step_by(ways.len()).cloned().collect::<Result<Vec<Run>, String>>();
+    let base = of_way(0).ok();
+    let sizes: Vec<usize> = rooms.iter().map(|group| group.rooms.len()).collect();
     let judged = |(index, way): (usize, &RoomWay)| {
-        let of_way: Result<Vec<Run>, String> = runs.iter().skip(index).step_by(ways.len()).cloned().collect();
+        let of_way = of_way(index);
         let by_group = |mut of_way: &[Run]| {
             let mut figures = Vec::with_capacity(rooms.len());
             for group in rooms {
@@ -277,11 +285,49 @@ pub fn judge(
             }
             figures
         };
-        JudgedWay { way: way.clone(), rooms: of_way.map(|of_way| by_group(&of_way)) }
+        let blind_90 = of_way.as_ref().map_or([0.0; 2], |runs| blind_90(runs));
+        let times_95 = of_way.as_ref().ok().zip(base.as_ref()).and_then(|(own, base)| times_95(own, base, &sizes));
+        JudgedWay { way: way.clone(), rooms: of_way.map(|of_way| by_group(&of_way)), blind_90, times_95 }
     };
     let ways: Vec<_> = ways.iter().enumerate().map(judged).collect();
     let (recommended, keeps) = recommend(&ways, asked.wrong);
     Ok(Judgement { ways, recommended, keeps })
+}
+
+/// The numbers of blind sensors between which 90 % of rooms lie. Rooms with several robots have fractions.
+fn blind_90(runs: &[Run]) -> [f64; 2] {
+    let mut blind: Vec<f64> = runs.iter().map(|run| run.blind).collect();
+    [libm::floor(quantile(&mut blind, 0.05)), libm::ceil(quantile(&mut blind, 0.95))]
+}
+
+/// Added to right echoes a second before they are divided, so that ways that hear none are equal.
+const NO_ECHOES: f64 = 0.1;
+
+/// The 95 % interval of the factor of right echoes, from how rooms of a kind differ in it.
+fn times_95(own: &[Run], base: &[Run], sizes: &[usize]) -> Option<[f64; 2]> {
+    let (mut own, mut base) = (own, base);
+    let (mut sum, mut variance, mut measured) = (0.0, 0.0, false);
+    for &size in sizes {
+        let ((own_here, own_rest), (base_here, base_rest)) =
+            (own.split_at_checked(size)?, base.split_at_checked(size)?);
+        (own, base) = (own_rest, base_rest);
+        let rooms = size as f64;
+        let echoes = |runs: &[Run]| runs.iter().map(|run| run.right_echoes_per_s).sum::<f64>() / rooms + NO_ECHOES;
+        let (own_mean, base_mean) = (echoes(own_here), echoes(base_here));
+        sum += libm::log(own_mean / base_mean);
+        if size < 2 {
+            continue;
+        }
+        measured = true;
+        // To first order the logarithm moves by this with each room; its mean is 0.
+        let moved = own_here.iter().zip(base_here).map(|(own, base)| {
+            (own.right_echoes_per_s + NO_ECHOES) / own_mean - (base.right_echoes_per_s + NO_ECHOES) / base_mean
+        });
+        variance += moved.map(|moved| moved * moved).sum::<f64>() / (rooms * (rooms - 1.0));
+    }
+    let kinds = sizes.len() as f64;
+    let reach = 1.96 * libm::sqrt(variance) / kinds;
+    measured.then(|| [-reach, reach].map(|reach| libm::exp(sum / kinds + reach)))
 }
 
 /// A room with the robot in it.
@@ -320,8 +366,7 @@ impl JudgedWay {
     pub fn echoes_against(&self, other: &Self) -> Option<f64> {
         let (Ok(own), Ok(others)) = (&self.rooms, &other.rooms) else { return None };
         let ratio = |(own, other): (&RoomFigures, &RoomFigures)| {
-            // Where neither hears an echo, they are equal.
-            libm::log((own.right_echoes_per_s + 0.1) / (other.right_echoes_per_s + 0.1))
+            libm::log((own.right_echoes_per_s + NO_ECHOES) / (other.right_echoes_per_s + NO_ECHOES))
         };
         let logs = own.iter().zip(others).map(ratio).sum::<f64>();
         Some(libm::exp(logs / own.len() as f64))
@@ -379,6 +424,9 @@ mod tests {
         age_p99_ms: 100.0,
     };
 
+    const RUN: Run =
+        Run { belief: USUAL.belief, right_echoes_per_s: 1.0, foreign: 0.0, own: 0.0, blind: 0.0, age_p99_ms: 1.0 };
+
     fn right(right: f64, echoes: f64) -> RoomFigures {
         RoomFigures { belief: Belief { right, ..USUAL.belief }, right_echoes_per_s: echoes, ..USUAL }
     }
@@ -388,7 +436,8 @@ mod tests {
         let way = RoomWay::all(&robot, None)[0].clone();
         let judged = figures
             .iter()
-            .map(|rooms| JudgedWay { way: way.clone(), rooms: rooms.map(Vec::from).map_err(str::to_owned) });
+            .map(|rooms| (way.clone(), rooms.map(Vec::from).map_err(str::to_owned)))
+            .map(|(way, rooms)| JudgedWay { way, rooms, blind_90: [0.0; 2], times_95: None });
         recommend(&judged.collect::<Vec<_>>(), 0.03)
     }
 
@@ -422,6 +471,30 @@ mod tests {
         let base = RoomFigures { foreign_of_believed: 0.5, ..USUAL };
         let worse = RoomFigures { foreign_of_believed: 0.04, ..good };
         assert_eq!(chosen(&[Ok([base; 2]), Ok([good, worse])]), (Some(1), false));
+    }
+
+    #[test]
+    fn blind_sensors_of_the_worst_twentieth_of_rooms_do_not_count() {
+        let run = |blind| Run { blind, ..RUN };
+        let of =
+            |many: usize| blind_90(&(0..40).map(|room| run(if room < many { 3.5 } else { 1.0 })).collect::<Vec<_>>());
+        assert_eq!((of(0), of(2), of(3), of(40)), ([1.0, 1.0], [1.0, 1.0], [1.0, 4.0], [3.0, 4.0]));
+    }
+
+    // The factor is 2 in each room of one kind, and 1 or 4 in those of the other.
+    #[test]
+    fn interval_of_a_factor_comes_from_rooms_that_differ_in_it() {
+        let runs = |echoes: &[f64]| -> Vec<Run> {
+            echoes.iter().map(|echoes| Run { right_echoes_per_s: echoes - NO_ECHOES, ..RUN }).collect()
+        };
+        let base = runs(&[1.0, 5.0, 2.0, 2.0]);
+        let [low, high] = times_95(&runs(&[2.0, 10.0]), &base[..2], &[2]).unwrap();
+        assert!((low - 2.0).abs() < 1e-9 && (high - 2.0).abs() < 1e-9, "{low} to {high}");
+        let [low, high] = times_95(&runs(&[2.0, 10.0, 2.0, 8.0]), &base, &[2, 2]).unwrap();
+        // The second kind's rooms stand 0.6 from their mean: so is its standard error, and that of both is half of it.
+        assert!((high / low - libm::exp(2.0 * 1.96 * 0.3)).abs() < 1e-9, "{low} to {high}");
+        assert!(((high * low).sqrt() - 5.0_f64.sqrt()).abs() < 1e-9, "{low} to {high}");
+        assert_eq!(times_95(&runs(&[2.0]), &base[..1], &[1]), None);
     }
 
     // Judgement is the same on any number of threads and stops when asked.

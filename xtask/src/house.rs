@@ -34,7 +34,10 @@ const EMITTED: &str = "tests/claims/emitted/";
 
 /// Looks through every source in Rust, Python and C of the repository.
 pub(crate) fn check() -> Result<(), Trouble> {
-    let listed = output(Command::new("git").args(["ls-files", "*.rs", "*.py", "*.pyi", "*.c", "*.h", "*.cpp"]));
+    // Files that are about to be added, too.
+    let listing = ["ls-files", "--cached", "--others", "--exclude-standard"];
+    let sources = ["*.rs", "*.py", "*.pyi", "*.c", "*.h", "*.cpp"];
+    let listed = output(Command::new("git").args(listing).args(sources));
     let listed = listed.ok_or_else(|| Trouble::Failed("git ls-files: no answer".to_owned()))?;
     let mut broken = String::new();
     for file in listed.lines() {

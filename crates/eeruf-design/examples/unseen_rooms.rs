@@ -1,8 +1,8 @@
-//! What `eeruf design` says of random rings, against what happens in rooms that it has not seen: sound from an earlier
-//! firing that is believed, the number of blind sensors, which ones they are, and the factor beside one by one.
+//! Random rings in rooms that `eeruf design` has not seen, against its words: sound from an earlier firing that is
+//! believed, the number of blind sensors, which ones they are, and the factor beside one by one.
 //!
-//! `cargo run --release -p eeruf-design --example unseen_rooms -- [RINGS [FIRST [PLACES]]]`: 100 rings, rooms from number
-//! 20,000 on, 3 places in each of the eight kinds.
+//! `cargo run --release -p eeruf-design --example unseen_rooms -- [RINGS [FIRST [PLACES]]]`: 100 rings, rooms from
+//! number 20,000 on, 3 places in each of the eight kinds.
 
 use std::ops::Range;
 
@@ -42,7 +42,7 @@ fn ring(random: &mut Random) -> (String, String) {
     (format!("{sensors} {name}, {layout}"), file)
 }
 
-/// What one way did in one room.
+/// Figures of one way in one room.
 struct Seen {
     right_echoes_per_s: f64,
     believed: usize,
@@ -81,7 +81,7 @@ fn right_share(readings: &Readings, sensor: usize) -> f64 {
 
 /// A ring in rooms that its judgement has not seen.
 struct Unseen {
-    /// What the recommended way did in each, and the right echoes of one by one.
+    /// Figures of the recommended way in each, and the right echoes of one by one.
     rooms: Vec<(Seen, f64)>,
     /// The same shares in a run with other noise.
     foretold: Vec<Vec<f64>>,
@@ -172,8 +172,8 @@ impl Counts {
         println!("- blind: as many as was said in {:.1} % of rooms", share(self.in_interval, self.rooms));
         for (limit, (called, hits)) in FORETOLD.iter().zip(self.foretold) {
             println!(
-                "- blind, called so where under {:.0} % are right with other noise: {hits} of {} ({:.1} %), and {:.1} % of \
-                 {called} are",
+                "- blind, called so where under {:.0} % are right with other noise: {hits} of {} ({:.1} %), and {:.1} \
+                 % of {called} are",
                 100.0 * limit,
                 self.blind,
                 share(hits, self.blind),

@@ -80,11 +80,14 @@ impl Described<'_> {
         let mut text = format!("{name}: recommended: {}{title}, right {:.1} % of the time", way.way.name, right(way));
         _ = writeln!(text, ", {:.0} right echoes a second.", echoes(way));
         if way != base {
-            _ = write!(text, "One by one: {:.1} % and {:.0}", right(base), echoes(base));
+            _ = writeln!(text, "One by one: {:.1} % and {:.0}.", right(base), echoes(base));
             if let Some((times, [low, high])) = way.echoes_against(base).zip(way.times_95) {
-                _ = write!(text, "; over kinds of rooms the factor is {times:.2} ({low:.2} to {high:.2})");
+                let name = way.way.name;
+                _ = writeln!(
+                    text,
+                    "By kinds of rooms, {name} has {times:.2} times its right echoes ({low:.2} to {high:.2})."
+                );
             }
-            text.push_str(".\n");
         }
         if PLAIN.contains(&way.way.name) {
             text.push_str("You do not need eeruf here: no other way is right for a point more of the time.\n");

@@ -91,6 +91,14 @@ fn recommended_way_keeps_foreign_sound_low() {
     let base = way(&answer, "sequential");
     assert!(mean(best, "belief_right") > mean(base, "belief_right") - 0.02);
     assert!(mean(best, "right_echoes_per_s") > 2.0 * mean(base, "right_echoes_per_s"));
+    // The geometric mean over kinds of rooms, between its limits; of one by one to itself it is 1.
+    let echoes = |way: &Value, room| number(&way["rooms"][room]["right_echoes_per_s"]) + 0.1;
+    let times =
+        ROOMS.map(|room| (echoes(best, room) / echoes(base, room)).ln()).iter().sum::<f64>() / ROOMS.len() as f64;
+    let limits = |way: &Value| [0, 1].map(|end| number(&way["times_95"][end]).ln());
+    let [low, high] = limits(best);
+    assert!(low < times && times < high && high - low < 0.5, "{low} {times} {high}");
+    assert_eq!(limits(base), [0.0, 0.0]);
 }
 
 #[test]

@@ -92,10 +92,8 @@ struct Unseen {
 impl Unseen {
     fn of(best: &JudgedWay, base: &JudgedWay, numbers: Range<u64>) -> Self {
         let radius_m = best.way.robot.radius_m();
-        let numbered = |number| RoomKind::ALL.map(|kind| (kind, number));
-        let mut plans: Vec<_> = numbers.clone().flat_map(numbered).collect();
-        plans.sort_by_key(|&(kind, _)| RoomKind::ALL.iter().position(|&other| other == kind));
-        let plans: Vec<_> = plans.iter().map(|&(kind, number)| RoomPlan::random(kind, number, radius_m)).collect();
+        let of_kind = |kind| numbers.clone().map(move |number| RoomPlan::random(kind, number, radius_m));
+        let plans: Vec<_> = RoomKind::ALL.into_iter().flat_map(of_kind).collect();
         let seed = numbers.end;
         Self {
             rooms: sweep(&plans, |room| (seen(room, &best.way, seed), seen(room, &base.way, seed).right_echoes_per_s)),

@@ -102,7 +102,7 @@ impl Row {
         let name = format!("{}{modules}", self.sketch);
         let modules = format!("-DMODULES={modules}");
         let defines: Vec<&str> = self.defines.iter().copied().chain([&*modules]).collect();
-        // What is not ours is compiled without our warnings.
+        // Code of others is compiled without our warnings.
         let ours = self.is_ours();
         let source = Source { name: &name, text: self.text, board: Board::Uno, ours, defines: &defines };
         build::sketch(&source, library, core)

@@ -151,6 +151,7 @@ impl Judgement {
     }
 
     /// The judgement without some groups of rooms, named by their index; none if no group is left out, or none left.
+    /// [`JudgedWay::blind_90`] and [`JudgedWay::times_95`] stay those of all rooms.
     pub fn without(&self, left_out: impl Fn(usize) -> bool, wrong: f64) -> Option<Self> {
         let mut ways = self.ways.clone();
         let mut fewer = false;

@@ -1,12 +1,25 @@
-//! Names the version and the commit that the program is built from, for `eeruf --version`.
+//! Names the version and the commit that the program is built from, for `eeruf --version`, and takes in the notices of
+//! what others wrote, for `eeruf licenses`.
 
+use std::path::Path;
 use std::process::Command;
+
+/// Made for a release by `cargo xtask notices`, and no part of the repository.
+const NOTICES: &str = "LICENSE-THIRD-PARTY.txt";
 
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");
     let version = std::env::var("CARGO_PKG_VERSION").expect("cargo sets it");
     let version = commit().map_or_else(|| version.clone(), |commit| format!("{version} ({commit})"));
     println!("cargo::rustc-env=EERUF_VERSION={version}");
+    let notices = std::fs::read_to_string(NOTICES);
+    if notices.is_ok() {
+        // As below: not where it is missing.
+        println!("cargo::rerun-if-changed={NOTICES}");
+    }
+    let without = "This program was built without them; the programs and wheels of a release print them here.\n";
+    let taken = Path::new(&std::env::var("OUT_DIR").expect("cargo sets it")).join("notices.txt");
+    std::fs::write(taken, notices.as_deref().unwrap_or(without)).expect("a folder to write into");
 }
 
 /// The commit: of the tarball as cargo noted it there, else of the clone; none where neither is at hand.
@@ -23,7 +36,7 @@ fn commit() -> Option<String> {
     };
     // A clone of something else that this one lies in, as a vendored copy does, says nothing of us.
     let root = git(&["rev-parse", "--show-toplevel"])?;
-    if std::path::Path::new(&root).canonicalize().ok()? != std::env::current_dir().ok()?.canonicalize().ok()? {
+    if Path::new(&root).canonicalize().ok()? != std::env::current_dir().ok()?.canonicalize().ok()? {
         return None;
     }
     // Each commit and each change of branch adds a line there.

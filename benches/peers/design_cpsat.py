@@ -1,7 +1,7 @@
 """The shortest period by OR-tools CP-SAT, against `eeruf-core` in the same run.
 
-    cargo build --release -p eeruf-core --example shortest_periods
-    python benches/peers/design_cpsat.py target/release/examples/shortest_periods [--sensors 8,12] [--limit 300]
+    cargo build --release -p eeruf-lab
+    python benches/peers/design_cpsat.py target/release/eeruf-lab [--sensors 8,12] [--limit 300]
 
 Prints one line per instance: both answers, both times and the ratio. A time-out counts as the limit. The model is the strongest we could write:
 |d| and the sum of both times as variables of their own, an ordered chain of |d| by an assignment of ranks (channelled by `AddInverse` and
@@ -88,7 +88,7 @@ def main() -> None:
     parser.add_argument("--workers", type=int, default=2)
     args = parser.parse_args()
     output = subprocess.run(
-        [args.program, "1", "2", args.sensors, "4", args.layouts], check=True, capture_output=True, text=True
+        [args.program, "shortest-periods", "1", "2", args.sensors, "4", args.layouts], check=True, capture_output=True, text=True
     ).stdout
     product, count = 1.0, 0
     print("layout sensors window | eeruf period bound ms | CP-SAT period bound s status | times faster")

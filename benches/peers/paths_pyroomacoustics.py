@@ -2,7 +2,7 @@
 """Times eeruf-sim's path finder against pyroomacoustics 0.10.1, both single thread, in one run.
 
     python3 -m venv VENV && VENV/bin/pip install pyroomacoustics==0.10.1
-    cargo build --release -p eeruf-sim --example time_paths
+    cargo build --release -p eeruf-lab
     VENV/bin/python benches/peers/paths_pyroomacoustics.py
 
 Core against core: pyroomacoustics' compiled `image_source_model` of one source with eight receivers against the images that
@@ -53,10 +53,10 @@ def peer(case, order):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--ours", default=ROOT / "target/release/examples/time_paths", help="the built example")
+    parser.add_argument("--ours", default=ROOT / "target/release/eeruf-lab", help="the built lab")
     options = parser.parse_args()
     corpus = {case["id"]: case for case in json.loads((ROOT / "tests/data/critical-paths.json").read_text())["cases"]}
-    ours = json.loads(subprocess.run([options.ours], check=True, capture_output=True, text=True).stdout)
+    ours = json.loads(subprocess.run([options.ours, "time-paths"], check=True, capture_output=True, text=True).stdout)
     print(
         f"pyroomacoustics {pra.__version__} against eeruf-sim, one source, 8 receivers, single thread, best of many runs"
     )

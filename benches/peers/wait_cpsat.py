@@ -1,7 +1,7 @@
 """Counts of small wait-time problems by OR-tools CP-SAT, enumerating all solutions, next to eeruf's counting search.
 
     python -m venv VENV && VENV/bin/pip install ortools
-    cargo build --release -p eeruf-core --example wait_count
+    cargo build --release -p eeruf-lab
     VENV/bin/python benches/peers/wait_cpsat.py [--largest COUNT] [--limit SECONDS]
 
 Every case of tests/data/wait-tables.json up to `--largest` tables is solved by both in one run. The model is the strongest we know:
@@ -112,7 +112,7 @@ def eeruf(case):
         )
     ]
     out = subprocess.run(
-        [ROOT / "target/release/examples/wait_count", *map(str, words)], check=True, capture_output=True, text=True
+        [ROOT / "target/release/eeruf-lab", "wait-count", *map(str, words)], check=True, capture_output=True, text=True
     ).stdout.split()
     return float(out[1]), int(out[0])
 

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Times the Python package against the same calls in Rust, in one run, and prints a table.
 
-    cargo xtask python                                             # makes target/python, with the wheel in it
-    cargo build --profile wheel -p eeruf-sim --example rust_side   # the same calls in Rust, built as the wheel is
+    cargo xtask python                          # makes target/python, with the wheel in it
+    cargo build --profile wheel -p eeruf-lab    # the same calls in Rust, built as the wheel is
     target/python/bin/python benches/python/overhead.py
 
 Each call is timed by the best of many runs; what Python adds is the difference. Then: how much longer than `pass` a process
@@ -140,9 +140,10 @@ except KeyboardInterrupt:
 def main() -> None:
     """Print the tables."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--rust", default=ROOT / "target/wheel/examples/rust_side", help="the built example")
+    parser.add_argument("--rust", default=ROOT / "target/wheel/eeruf-lab", help="the built lab")
     options = parser.parse_args()
-    rust = json.loads(subprocess.run([options.rust, "times"], check=True, capture_output=True, text=True).stdout)
+    times_of_rust = subprocess.run([options.rust, "rust-side", "times"], check=True, capture_output=True, text=True)
+    rust = json.loads(times_of_rust.stdout)
     print("| call | Rust | Python | ratio | Python adds |\n|---|---|---|---|---|")
     times = {name: best(call) for name, call in calls().items()}
     times |= {"step, one reading": step(), "step, own filter": step(filter=lambda firing: firing.reading)}

@@ -5,13 +5,11 @@ use crate::console::print_line;
 use crate::files::error::InputError;
 
 /// In the order in which they are printed.
-const TEXTS: [(&str, &str); 3] = [
-    (
-        "eeruf: MIT or Apache-2.0, as you like (the text of the latter is below, among what others wrote)",
-        include_str!("../../LICENSE-MIT"),
-    ),
+const TEXTS: [(&str, &str); 4] = [
+    ("eeruf: MIT or Apache-2.0, as you like", include_str!("../../LICENSE-MIT")),
+    ("Or Apache-2.0", include_str!("../../LICENSE-APACHE")),
     ("The letters in its pictures: Bitstream-Vera", include_str!("../report/draw/font/LICENSE")),
-    ("What others wrote", include_str!("../../LICENSE-THIRD-PARTY.txt")),
+    ("What others wrote", include_str!(concat!(env!("OUT_DIR"), "/notices.txt"))),
 ];
 
 /// Print the licences of this program and its dependencies

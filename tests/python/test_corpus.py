@@ -34,9 +34,9 @@ def test_every_path_of_the_corpus_is_found(case: dict[str, Any]) -> None:
 @functools.cache
 def rust() -> Any:
     """Rust's figures for the corpus, to the last bit."""
-    program = os.environ.get("EERUF_RUST_SIDE")
-    assert program is not None, "EERUF_RUST_SIDE names the example rust_side; `cargo xtask python` sets it"
-    return json.loads(subprocess.run([program, "paths"], check=True, capture_output=True).stdout)
+    program = os.environ.get("EERUF_LAB")
+    assert program is not None, "EERUF_LAB names the built eeruf-lab; `cargo xtask python` sets it"
+    return json.loads(subprocess.run([program, "rust-side", "paths"], check=True, capture_output=True).stdout)
 
 
 @pytest.mark.parametrize("case", corpus("critical-paths.json")["cases"], ids=lambda case: str(case["id"]))

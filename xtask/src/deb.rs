@@ -3,6 +3,7 @@
 use std::error::Error;
 use std::ffi::OsStr;
 use std::fs;
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf, absolute};
 use std::process::Command;
 
@@ -69,9 +70,16 @@ fn pack(program: Option<&Path>) -> Result<PathBuf, Trouble> {
     run(Command::new("strip").arg(&installed))?;
     copy("packaging/deb/eeruf-ros2.service", &root.join(UNIT), 0o644)?;
     copy("crates/eeruf-ros2/config/eeruf.yaml", &root.join("etc/eeruf/eeruf.yaml"), 0o644)?;
-    let notices = ["LICENSE-MIT", "LICENSE-APACHE", "LICENSE-THIRD-PARTY.txt"];
-    let texts: Result<Vec<_>, _> = notices.iter().map(fs::read_to_string).collect();
-    write(&root.join("usr/share/doc/eeruf-ros2/copyright"), texts.map_err(failed)?.join("\n\n").as_bytes(), 0o644)?;
+    let mut terms = Vec::new();
+    for file in ["LICENSE-MIT", "LICENSE-APACHE", "LICENSE-THIRD-PARTY.txt"] {
+        match fs::read_to_string(file) {
+            Err(error) if error.kind() == ErrorKind::NotFound => {
+                println!("the package has no {file}: `cargo xtask notices` makes it, for one that goes to others");
+            }
+            text => terms.push(text.map_err(failed)?),
+        }
+    }
+    write(&root.join("usr/share/doc/eeruf-ros2/copyright"), terms.join("\n\n").as_bytes(), 0o644)?;
     let ask = |program: &str, arguments: &[&str]| {
         let said = output(Command::new(program).args(arguments));
         said.ok_or_else(|| failed(format!("{program} {}: no answer", arguments.join(" "))))

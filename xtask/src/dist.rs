@@ -50,6 +50,7 @@ pub(crate) fn dist(plan: &Plan, steps: &mut Steps) {
     if !tools_there {
         return;
     }
+    steps.step("notices", crate::release::notices);
     let (mut first, mut answers) = (Vec::new(), None);
     for (target, system) in TARGETS {
         if !plan.targets.is_empty() && !plan.targets.iter().any(|wanted| wanted == target) {
@@ -240,6 +241,10 @@ fn again(first: &[(&str, &str, PathBuf)]) -> Result<(), Trouble> {
         fs::remove_dir_all(&folder).map_err(|error| Trouble::Failed(format!("{}: {error}", folder.display())))?;
     }
     run(Command::new("git").args(["clone", "--quiet", "."]).arg(&folder))?;
+    let notices = "LICENSE-THIRD-PARTY.txt";
+    if Path::new(notices).exists() {
+        fs::copy(notices, folder.join(notices)).map_err(|error| Trouble::Failed(format!("{notices}: {error}")))?;
+    }
     let mut differ = Vec::new();
     for (target, system, one) in first {
         let other = if system.is_empty() { program(&folder, target)? } else { wheel(&folder, target, system)? };

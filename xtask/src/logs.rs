@@ -52,8 +52,7 @@ fn bags(topics: u32, messages: [u32; 2]) -> Result<(), Trouble> {
 
 /// The verdicts of `eeruf logs` on logs of alcoves, which fail if they break what docs/how-to/logs.md promises.
 fn doctor(physics: &str) -> Result<(), Trouble> {
-    let example = ["run", "--quiet", "--release", "-p", "eeruf-logs", "--example", "doctor_alcoves", "--"];
-    run(Command::new("cargo").args(example).args(["20000", "100", "1000", physics]))
+    run(Command::new("cargo").args(["lab", "doctor-alcoves", "20000", "100", "1000", physics]))
 }
 
 /// A virtual environment with `rosbags`; its Python.
@@ -73,9 +72,9 @@ fn environment() -> Result<PathBuf, Trouble> {
 /// Names of senders, held against the simulator's knowledge: of three fifths of the rejected foreign readings at 99 %
 /// precision where hops are many; of none where there are two phases.
 fn senders(method: &str, physics: &str) -> Result<(), Trouble> {
-    let example = crate::program::example("diagnose_alcoves")?;
-    let Some(said) = output(Command::new(example).args(["40000", "200", method, "1000", physics])) else {
-        return Err(Trouble::Failed("diagnose_alcoves ended with an error".to_owned()));
+    let lab = ["lab", "diagnose-alcoves", "40000", "200", method, "1000", physics];
+    let Some(said) = output(Command::new("cargo").args(lab)) else {
+        return Err(Trouble::Failed("cargo lab diagnose-alcoves ended with an error".to_owned()));
     };
     println!("{said}");
     // "named rightly: 300757, 80.5 % of those" and "named: 300874, of which rightly 99.96 %".

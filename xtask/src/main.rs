@@ -22,10 +22,8 @@ mod logs;
 mod materials;
 mod measured;
 mod micropython;
-mod notices;
 mod package;
 mod page;
-mod periods;
 mod printed;
 mod program;
 mod python;
@@ -37,7 +35,6 @@ mod site;
 mod steps;
 mod test;
 mod toolchain;
-mod tune;
 mod veripb;
 mod zephyr;
 
@@ -130,29 +127,12 @@ enum Verb {
     Dist(dist::Plan),
     /// Write what is in each published crate, as a bill of materials, into target/materials
     Materials,
-    /// Hold the notices of what others wrote in program and wheel against what cargo-about finds
-    Notices {
-        /// Write LICENSE-THIRD-PARTY.txt instead
-        #[arg(long)]
-        write: bool,
-    },
+    /// Write the notices of what others wrote in program and wheel into LICENSE-THIRD-PARTY.txt, which both then carry
+    Notices,
     /// Build the documents as one book, with the page and the references for Rust and Python, and follow every link
     Site,
     /// Do everything of a release but uploading, and print what a person must still do (many minutes)
     Release(release::Plan),
-    /// Find the pilots of Set II, and what several echoes are compared by in Set I, and put them into the source (an
-    /// hour; takes up where it stopped)
-    Tune {
-        /// Only compare
-        #[arg(long)]
-        check: bool,
-    },
-    /// Print the table of shortest periods that docs/log/search.md shows
-    Periods {
-        /// Arguments for the example `shortest_periods` of eeruf-core
-        #[arg(value_name = "ARGUMENT")]
-        arguments: Vec<String>,
-    },
 }
 
 fn main() -> ExitCode {
@@ -210,17 +190,6 @@ fn main() -> ExitCode {
             Some(document) => printed::reprint(&document),
             None => printed::check(&printed::documents()?, printed::Which::All),
         }),
-        Verb::Tune { check } => one_step("what the experiments are run with", || tune::tune(check)),
-        Verb::Periods { arguments } => match periods::table(&arguments) {
-            Ok(table) => {
-                print!("{table}");
-                ExitCode::SUCCESS
-            }
-            Err(Trouble::Failed(why) | Trouble::Skipped(why)) => {
-                eprintln!("{why}");
-                ExitCode::FAILURE
-            }
-        },
         Verb::Certificates(plan) => {
             let mut steps = Steps::default();
             certificates::run_all(&plan, &mut steps);
@@ -243,7 +212,7 @@ fn main() -> ExitCode {
             steps.finish(true)
         }
         Verb::Materials => one_step("bills of materials", materials::materials),
-        Verb::Notices { write } => one_step("notices", || notices::notices(write)),
+        Verb::Notices => one_step("notices", release::notices),
         Verb::Site => {
             let mut steps = Steps::default();
             site::site(&mut steps);

@@ -62,7 +62,7 @@ pub(crate) fn check(documents: &[String], which: Which) -> Result<(), Trouble> {
             if which == Which::Small && mark.large {
                 continue;
             }
-            let printed = output_of(mark.command)?;
+            let printed = output_of(&mark)?;
             let compared =
                 |text: &str| if mark.decimals_are_timings { without_decimals(text) } else { text.to_owned() };
             if compared(unfenced(block.body)) == compared(printed.trim()) {
@@ -80,7 +80,7 @@ pub(crate) fn check(documents: &[String], which: Which) -> Result<(), Trouble> {
 /// Puts what the commands of a document print now in place of what stands there.
 pub(crate) fn reprint(document: &str) -> Result<(), Trouble> {
     let fresh = replaced(&read(document)?, PRINTED_BY, |block| {
-        let printed = output_of(mark(block)?.command)?;
+        let printed = output_of(&mark(block)?)?;
         let fenced = block.body.trim().starts_with(FENCE);
         Ok(if fenced { format!("{FENCE}{}\n```", printed.trim_end()) } else { printed })
     })?;
@@ -97,8 +97,9 @@ fn read(document: &str) -> Result<String, Trouble> {
     fs::read_to_string(document).map_err(|error| Trouble::Failed(format!("{document}: {error}")))
 }
 
-/// Standard output of a command.
-fn output_of(command: &str) -> Result<String, Trouble> {
+/// Standard output of a command. Where it is not large, the lab is built as the tests are, not once more.
+fn output_of(mark: &Mark<'_>) -> Result<String, Trouble> {
+    let command = mark.command;
     println!("{command}");
     let failed = |why: &dyn std::fmt::Display| Trouble::Failed(format!("{command}: {why}"));
     let mut words = command.split_whitespace();
@@ -107,6 +108,10 @@ fn output_of(command: &str) -> Result<String, Trouble> {
             let program = ["build", "--quiet", "--release", "--locked", "--package", "eeruf", "--bin", "eeruf"];
             run(Command::new("cargo").args(program))?;
             Command::new("target/release/eeruf")
+        }
+        Some("cargo") if !mark.large && words.clone().next() == Some("lab") => {
+            words.next();
+            Command::new(crate::program::lab()?)
         }
         Some("cargo") => Command::new("cargo"),
         _ => return Err(failed(&"expected eeruf or cargo")),

@@ -38,10 +38,10 @@ pub(crate) fn python() -> Result<(), Trouble> {
     run(tool("mypy.stubtest").args(["eeruf", "--ignore-missing-stub", "--mypy-config-file", "pyproject.toml"]))?;
     fresh(Path::new("python3"), &wheel)?;
     // What Python is held against: the program, and the paths of the corpus.
-    let (program, rust_side) = (crate::program::program()?, crate::program::example("rust_side")?);
+    let (program, lab) = (crate::program::program()?, crate::program::lab()?);
     let mut tests = tool("pytest");
     tests.args(["--numprocesses", "auto"]);
-    tests.env("EERUF_WHEEL", &wheel).env("EERUF_PROGRAM", program).env("EERUF_RUST_SIDE", rust_side);
+    tests.env("EERUF_WHEEL", &wheel).env("EERUF_PROGRAM", program).env("EERUF_LAB", lab);
     run(&mut tests)
 }
 

@@ -3,6 +3,7 @@
 use std::fs;
 use std::path::Path;
 use std::process::{Command, ExitCode};
+use std::time::SystemTime;
 
 use cargo_metadata::MetadataCommand;
 
@@ -59,13 +60,29 @@ pub(crate) fn release(_plan: &Plan) -> ExitCode {
             None => Err(Trouble::Skipped("no cargo-deny; try: cargo install cargo-deny --locked".to_owned())),
         }
     });
-    steps.step("notices", || crate::notices::notices(false));
+    steps.step("notices", notices);
     steps.step("public items", crate::api::api);
     steps.step("bills of materials", crate::materials::materials);
     crate::package::package(&mut steps);
     steps.step("wheel and source distribution", || crate::python::distributions(Path::new("target/release-files")));
     println!("{}", REMAINS.replace("{VERSION}", &version));
     steps.finish(false)
+}
+
+/// Writes the notices of what others wrote and is in program and wheel, as cargo-about finds it.
+pub(crate) fn notices() -> Result<(), Trouble> {
+    if output(Command::new("cargo").args(["about", "--version"])).is_none() {
+        let install = "cargo install cargo-about --locked --features cli";
+        return Err(Trouble::Skipped(format!("no cargo-about; try: {install}")));
+    }
+    // The wheel has the whole program within.
+    let of = ["--manifest-path", "crates/eeruf-py/Cargo.toml", "--config", "packaging/notices/about.toml"];
+    let to = ["--output-file", "LICENSE-THIRD-PARTY.txt", "packaging/notices/notices.hbs"];
+    run(Command::new("cargo").args(["about", "generate", "--locked", "--fail"]).args(of).args(to))?;
+    // Where the program was built without them, its build does not look for them.
+    let touched =
+        fs::File::options().append(true).open("build.rs").and_then(|file| file.set_modified(SystemTime::now()));
+    touched.map_err(|error| Trouble::Failed(format!("build.rs: {error}")))
 }
 
 /// The version, where all files that state it agree.

@@ -53,12 +53,11 @@ pub(super) fn build() -> Result<PathBuf, Trouble> {
 /// module should measure.
 fn echo_times(modules: usize) -> Result<(PathBuf, BTreeMap<usize, u32>), Trouble> {
     let sensors = (modules > 8).then(|| modules.to_string());
-    let example = crate::program::example("echo_times")?;
-    let times = output(Command::new(example).arg(SCENE).args(&sensors))
-        .ok_or_else(|| Trouble::Failed("the example echo_times failed".to_owned()))?
+    let times = output(Command::new(crate::program::lab()?).args(["echo-times", SCENE]).args(&sensors))
+        .ok_or_else(|| Trouble::Failed("eeruf-lab echo-times failed".to_owned()))?
         + "\n";
     if sensors.is_none() && fs::read_to_string(KEPT).map_err(failed(KEPT))? != times {
-        let why = format!("{KEPT} is not what the example echo_times says of {SCENE}; rewrite it");
+        let why = format!("{KEPT} is not what `cargo lab echo-times {SCENE}` prints; rewrite it");
         return Err(Trouble::Failed(why));
     }
     let mut own_mm = BTreeMap::new();

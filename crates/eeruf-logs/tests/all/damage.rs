@@ -4,17 +4,8 @@ use std::path::{Path, PathBuf};
 
 use eeruf_logs::{McapWriter, Options, Reading};
 
+use crate::random::Random;
 use crate::{BAGS, bag, read};
-
-/// Pseudo-random numbers, the same on every machine.
-struct Random(u64);
-
-impl Random {
-    fn below(&mut self, limit: usize) -> usize {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        ((self.0 >> 33) % limit as u64) as usize
-    }
-}
 
 /// The file of a bag that holds its messages.
 fn data_file(bag: &Path) -> PathBuf {

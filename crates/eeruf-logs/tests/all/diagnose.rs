@@ -2,19 +2,11 @@
 
 use eeruf_logs::{AlignError, Diagnosis, Fault, Firing, FiringLog, Settings, TimingError, align, diagnose, timing};
 
+use crate::random::Random;
+
 const SENSORS: usize = 6;
 const PERIOD: i64 = 60_000;
 const WINDOW: i64 = 36_000;
-
-/// Pseudo-random numbers, the same on every machine.
-struct Random(u64);
-
-impl Random {
-    fn below(&mut self, limit: i64) -> i64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        ((self.0 >> 33) % limit as u64) as i64
-    }
-}
 
 /// The ring and its faults.
 struct World {

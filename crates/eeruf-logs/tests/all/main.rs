@@ -8,6 +8,7 @@ mod diagnose_rooms;
 mod firing_logs;
 mod forms;
 mod mutated;
+mod random;
 mod survey;
 mod written;
 

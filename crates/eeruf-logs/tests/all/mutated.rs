@@ -5,15 +5,7 @@ use std::path::Path;
 
 use eeruf_logs::{Options, read_text};
 
-/// Pseudo-random numbers, the same on every machine.
-struct Random(u64);
-
-impl Random {
-    fn below(&mut self, limit: usize) -> usize {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        ((self.0 >> 33) % limit.max(1) as u64) as usize
-    }
-}
+use crate::random::Random;
 
 /// Logs of 40 rows whose values have three digits each, so that a part of one is none of them.
 fn logs() -> Vec<String> {

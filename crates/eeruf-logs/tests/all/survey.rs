@@ -3,19 +3,11 @@
 use eeruf_core::{Micros, survey::SurveyPlan};
 use eeruf_logs::{Firing, FiringLog, McapWriter, PathSettings, survey};
 
+use crate::random::Random;
+
 const SENSORS: usize = 5;
 const DEAD: i64 = 1_500;
 const WINDOW: i64 = 30_000;
-
-/// Pseudo-random numbers, the same on every machine.
-struct Random(u64);
-
-impl Random {
-    fn below(&mut self, limit: i64) -> i64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        ((self.0 >> 33) % limit as u64) as i64
-    }
-}
 
 /// Travel times of sound from the first index to the second.
 type Travel = [[Vec<i64>; SENSORS]; SENSORS];

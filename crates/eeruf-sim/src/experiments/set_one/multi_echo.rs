@@ -15,7 +15,7 @@ pub struct MultiEcho {
 }
 
 impl MultiEcho {
-    /// The best of the grid that `cargo xtask tune` tries on alcoves below 2,000, by what is wrong and what is lost
+    /// The best of the grid that `cargo lab tune` tries on alcoves below 2,000, by what is wrong and what is lost
     /// together.
     pub const TUNED: Self = Self { consecutive: 2, t_delta: Micros::new(200) };
 

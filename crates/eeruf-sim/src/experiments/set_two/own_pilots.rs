@@ -1,4 +1,4 @@
-//! The pilots that `cargo xtask tune` found, one for each method; it prints this file: change none by hand.
+//! The pilots that `cargo lab tune` found, one for each method; it prints this file: change none by hand.
 //!
 //! 48 pilots on courses 0 to 7,
 //! the best 12 on courses 8 to 31,

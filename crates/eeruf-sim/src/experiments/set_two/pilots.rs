@@ -13,7 +13,7 @@ use crate::{
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 #[non_exhaustive]
 pub enum Pilots {
-    /// Each method has a pilot of its own, all found by the same search at the same cost: `cargo xtask tune`, on
+    /// Each method has a pilot of its own, all found by the same search at the same cost: `cargo lab tune`, on
     /// courses below 2,000, scored equally alone, behind a second robot and ahead of one. The default.
     #[default]
     Own,

@@ -1,0 +1,108 @@
+//! Success of `diagnose` at naming the senders of rejected readings, in alcoves of Set I, where the simulator knows
+//! them: `cargo lab diagnose-alcoves [FIRST [ALCOVES [METHOD [PERIODS
+//! [PHYSICS]]]]]`.
+
+use std::error::Error;
+
+use eeruf_core::ReadingKind;
+use eeruf_logs::{Firing, FiringLog, Settings, diagnose};
+use eeruf_sim::experiments::set_one::Alcove;
+use eeruf_sim::{Cause, Method, Options, Physics, Readings, quantile, simulate, sweep};
+
+/// Counts over the readings of one alcove, or of all.
+#[derive(Clone, Copy, Default)]
+struct Counts {
+    /// Rejected readings that foreign sound caused.
+    foreign: usize,
+    /// Of these, named with the right sender.
+    right: usize,
+    /// Rejected readings that were said to be foreign.
+    named: usize,
+    /// Rejected readings.
+    rejected: usize,
+    /// Paths that were found, and how many of them no sound took.
+    paths: usize,
+    accidental: usize,
+    /// Number of faults reported; nothing is broken.
+    faults: usize,
+}
+
+fn log_of(readings: &Readings) -> FiringLog {
+    let firing = |k: usize| Firing {
+        sensor: readings.sensor[k],
+        fired_us: (1e6 * readings.fired_s[k]).round() as i64,
+        period: readings.period[k],
+        phase: readings.phase[k],
+        t_echo_us: (!readings.earliest_us[k].is_nan()).then(|| readings.earliest_us[k] as u32),
+        rejected: Some(readings.kind[k].is_rejected()),
+        weighed: None,
+    };
+    FiringLog { firings: (0..readings.len()).map(firing).collect(), ..FiringLog::default() }
+}
+
+fn count(number: u64, method: Method, periods: u32, physics: Physics) -> Result<Counts, String> {
+    let failed = |error: &dyn Error| format!("alcove {number}: {error}");
+    let world = Alcove::random(number).world().map_err(|error| failed(&error))?;
+    let world = world.with_physics(physics).map_err(|error| failed(&error))?;
+    let readings = simulate(&world, method, &Options::periods(periods)).map_err(|error| failed(&error))?;
+    // Readings come in the order in which windows end; a log is in the order of firings.
+    let mut order: Vec<_> = (0..readings.len()).collect();
+    let at_us = |k: usize| (1e6 * readings.fired_s[k]).round() as i64;
+    order.sort_by_key(|&k| at_us(k));
+    let mut log = log_of(&readings);
+    log.firings = order.iter().map(|&k| log.firings[k].clone()).collect();
+    let diagnosis = diagnose(&log, &Settings::default());
+    let mut counts = Counts { paths: diagnosis.paths.len(), faults: diagnosis.faults.len(), ..Counts::default() };
+    for (&k, named) in order.iter().zip(&diagnosis.named) {
+        if readings.kind[k] != ReadingKind::Rejected {
+            continue;
+        }
+        counts.rejected += 1;
+        let sender = readings.path_of(k).map(|path| path.emitter.sensor);
+        let foreign = readings.cause[k] == Cause::Crosstalk;
+        counts.foreign += usize::from(foreign);
+        if let Some(named) = named.filter(|named| named.sender != readings.sensor[k]) {
+            counts.named += 1;
+            counts.right += usize::from(foreign && sender == Some(named.sender));
+        }
+    }
+    let c = world.scene().air().speed_of_sound();
+    let is_real = |path: &&eeruf_logs::FoundPath| {
+        readings.paths.iter().any(|heard| {
+            let travel_us = 1e6 * heard.length_m / c;
+            (heard.emitter.sensor, heard.receiver.sensor) == (path.sender, path.receiver)
+                && (travel_us - path.travel_us).abs() < 75.0
+        })
+    };
+    counts.accidental = counts.paths - diagnosis.paths.iter().filter(is_real).count();
+    Ok(counts)
+}
+
+pub(crate) fn main(arguments: &[String]) -> crate::Answer {
+    let mut arguments = arguments.iter();
+    let mut next = |default: &str| arguments.next().map_or_else(|| default.to_owned(), String::clone);
+    let (first, alcoves): (u64, u64) = (next("20000").parse()?, next("200").parse()?);
+    let (method, periods): (Method, u32) = (next("eeruf_hopping").parse()?, next("1000").parse()?);
+    let physics = next("plain");
+    let effects: Physics = physics.parse()?;
+    let numbers: Vec<_> = (first..first + alcoves).collect();
+    let all = sweep(&numbers, |&number| count(number, method, periods, effects))
+        .into_iter()
+        .collect::<Result<Vec<_>, _>>()?;
+    let sum = |of: fn(&Counts) -> usize| all.iter().map(of).sum::<usize>();
+    let (foreign, right, named) = (sum(|c| c.foreign), sum(|c| c.right), sum(|c| c.named));
+    let percent = |part: usize, of: usize| 100.0 * part as f64 / of.max(1) as f64;
+    println!("{alcoves} alcoves from {first} on, {method}, {periods} periods each, physics {physics}");
+    println!("rejected readings: {}, of which foreign sound caused {foreign}", sum(|c| c.rejected));
+    println!("named rightly: {right}, {:.1} % of those", percent(right, foreign));
+    println!("named: {named}, of which rightly {:.2} %", percent(right, named));
+    let mut shares: Vec<_> = all.iter().filter(|c| c.foreign >= 50).map(|c| percent(c.right, c.foreign)).collect();
+    let shares: Vec<_> = [0.1, 0.5, 0.9].map(|share| format!("{:.0}", quantile(&mut shares, share))).into();
+    println!("share named rightly, 10 % / median / 90 % of the alcoves: {} %", shares.join(" / "));
+    let mut wrong: Vec<_> = all.iter().map(|c| c.named - c.right).collect();
+    wrong.sort_unstable();
+    println!("wrong names in an alcove: median {}, most {}", wrong[wrong.len() / 2], wrong[wrong.len() - 1]);
+    println!("paths: {}, of which no sound took {}", sum(|c| c.paths), sum(|c| c.accidental));
+    println!("said to be broken, where nothing is: {}", sum(|c| c.faults));
+    Ok(())
+}

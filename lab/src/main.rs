@@ -1,0 +1,117 @@
+//! The lab: measurements that the documents quote, and searches whose results stand in the sources.
+//!
+//! `cargo lab` lists them. None of it is published, nor needed by who uses eeruf.
+
+mod constant_depth;
+#[path = "../../crates/eeruf-sim/tests/common/corpus.rs"]
+mod corpus;
+mod diagnose_alcoves;
+mod doctor_alcoves;
+mod echo_times;
+mod fault_rates;
+mod flow_rooms;
+mod four_worlds;
+mod hopping_ablation;
+mod hopping_limits;
+mod modules;
+mod narrow_panels;
+mod prove;
+mod ray_casts;
+mod rust_side;
+mod shortest_periods;
+mod swinging;
+mod time_paths;
+mod time_physics;
+mod time_scenes;
+mod tune;
+mod twins;
+mod typical_alcove;
+mod unseen_rooms;
+mod wait_count;
+mod without_odometry;
+
+use std::error::Error;
+use std::process::ExitCode;
+
+/// Success, or the reason why there is nothing to print.
+type Answer = Result<(), Box<dyn Error>>;
+
+/// A command: its name, its arguments, what it prints.
+type Command = (&'static str, &'static str, &'static str, fn(&[String]) -> Answer);
+
+const COMMANDS: [Command; 26] = [
+    ("constant-depth", "", "angles at which a wall is heard, by distance and gain", constant_depth::main),
+    (
+        "diagnose-alcoves",
+        "[FIRST [ALCOVES [METHOD [PERIODS [PHYSICS]]]]]",
+        "senders that diagnose names",
+        diagnose_alcoves::main,
+    ),
+    ("doctor-alcoves", "[FIRST [ALCOVES [PERIODS [PHYSICS]]]]", "verdicts of eeruf logs", doctor_alcoves::main),
+    ("echo-times", "SCENE.toml [SENSORS]", "ways of sound in a scene, for simulated boards", echo_times::main),
+    (
+        "fault-rates",
+        "[FIRST [PLACES [PHYSICS [METHOD [ROBOTS]]]]]",
+        "faults that diagnose names, and false alarms",
+        fault_rates::main,
+    ),
+    ("flow-rooms", "[ROOMS [FIRST [PHYSICS]]]", "flow beside hopping and one by one", flow_rooms::main),
+    ("four-worlds", "", "Sets I and II, flat and in a room, with two gains", four_worlds::main),
+    (
+        "hopping-ablation",
+        "[SEEDS [FIRST [PHYSICS]]]",
+        "Set I with each part of hopping left out",
+        hopping_ablation::main,
+    ),
+    ("hopping-limits", "", "hopping when late, and beliefs by accident", hopping_limits::main),
+    ("modules", "", "tables of docs/reference/modules.md", modules::main),
+    ("narrow-panels", "", "panels narrower than a Fresnel zone", narrow_panels::main),
+    ("periods", "", "table of shortest periods", shortest_periods::table),
+    ("prove", "FILE [NODES]", "a certificate's proof, completed", prove::main),
+    ("ray-casts", "", "exactness of ray casts", ray_casts::main),
+    ("rust-side", "paths | times", "what Python is held against", rust_side::main),
+    (
+        "shortest-periods",
+        "[TICKS [SEPARATION [SENSORS [NEIGHBOURS [LAYOUTS [BUDGET [WINDOWS]]]]]]]",
+        "shortest periods and their cost",
+        shortest_periods::main,
+    ),
+    ("swinging", "[ALCOVES [FIRST [PHYSICS [SPEED [TURN]]]]]", "robots that swing before alcoves", swinging::main),
+    ("time-paths", "[SCENE]", "time of the path finder", time_paths::main),
+    ("time-physics", "[EFFECT stands|moves]", "cost of each effect of the physics", time_physics::main),
+    ("time-scenes", "[SCENE [RUNS]]", "time of expensive scenes", time_scenes::main),
+    ("tune", "[--check]", "settings of the experiments, into the sources (an hour)", tune::main),
+    ("twins", "[SECONDS]", "rings with one limit changed, beside even ones", twins::main),
+    ("typical-alcove", "[SCENE.toml]", "the typical alcove of Set I", typical_alcove::main),
+    ("unseen-rooms", "[RINGS [FIRST [PLACES]]]", "eeruf design's words in other rooms", unseen_rooms::main),
+    (
+        "wait-count",
+        "SENSORS PERIOD LONGEST GROUP SEPARATION INTERVAL NEIGHBOURS CRITERION LAYOUT",
+        "tables of wait times, counted",
+        wait_count::main,
+    ),
+    (
+        "without-odometry",
+        "[ROOMS [FIRST [PHYSICS [SENSORS [PERIOD_MS]]]]]",
+        "driving by stamps alone",
+        without_odometry::main,
+    ),
+];
+
+fn main() -> ExitCode {
+    let words: Vec<String> = std::env::args().skip(1).collect();
+    let asked = words.split_first().and_then(|(name, arguments)| {
+        COMMANDS.iter().find(|(known, ..)| known == name).map(|command| (command, arguments))
+    });
+    let Some(((name, usage, _, run), arguments)) = asked else {
+        for (name, usage, about, _) in COMMANDS {
+            println!("{name} {usage}\n    {about}");
+        }
+        return if words.is_empty() { ExitCode::SUCCESS } else { ExitCode::from(2) };
+    };
+    if let Err(error) = run(arguments) {
+        eprintln!("{name}: {error}; usage: cargo lab {name} {usage}");
+        return ExitCode::FAILURE;
+    }
+    ExitCode::SUCCESS
+}

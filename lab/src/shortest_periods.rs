@@ -1,0 +1,104 @@
+//! The table of shortest periods with what each cost, for 8 to 24 sensors in a line and in a ring unless asked otherwise.
+//!
+//!     cargo lab shortest-periods [TICKS_PER_MS [SEPARATION_MS [SENSORS,.. [NEIGHBOURS [LAYOUT,.. [BUDGET [WINDOW_MS,..]]]]]]]
+//!     cargo lab periods
+//!
+//! The first prints columns, which `benches/peers/design_cpsat.py` reads; the second the table of docs/log/search.md.
+
+use std::time::Instant;
+
+use eeruf_core::Layout;
+use eeruf_core::search::design::{Problem, Shortest, memory_words, shortest};
+
+/// Windows of the table, in milliseconds.
+const WINDOWS_MS: &str = "15,30,45,60";
+
+/// A ring of the table.
+struct Ring {
+    layout: String,
+    sensors: usize,
+    window_ms: u32,
+}
+
+fn list<T: std::str::FromStr>(text: &str) -> Vec<T> {
+    text.split(',').filter_map(|item| item.parse().ok()).collect()
+}
+
+/// Searches every ring that is asked for, and hands on what was found and the milliseconds that it took.
+fn search(arguments: &[String], mut found: impl FnMut(Ring, Shortest, f64)) -> crate::Answer {
+    let argument = |i: usize, default: &'static str| arguments.get(i).map_or(default, String::as_str);
+    let (ticks, separation_ms): (u32, u32) = (argument(0, "1").parse()?, argument(1, "2").parse()?);
+    let (neighbours, budget): (u8, u64) = (argument(3, "4").parse()?, argument(5, "100000000").parse()?);
+    for layout in list::<String>(argument(4, "line,ring")) {
+        for sensors in list::<usize>(argument(2, "8,12,16,24")) {
+            let rows = match layout.as_str() {
+                "ring" => Layout::Ring(neighbours),
+                "blocks" => Layout::Blocks(neighbours),
+                _ => Layout::Line(neighbours),
+            }
+            .rows(sensors);
+            let mut memory = vec![0; memory_words(sensors)];
+            for window_ms in list::<u32>(argument(6, WINDOWS_MS)) {
+                let problem = Problem {
+                    sensors,
+                    conflicts: &rows[..sensors],
+                    separation: separation_ms * ticks,
+                    interval: 15 * ticks,
+                    window: window_ms * ticks,
+                    stale_echo: false,
+                };
+                let begin = Instant::now();
+                let shortest = shortest(&problem, budget, &mut memory, &mut ())?;
+                let ms = begin.elapsed().as_secs_f64() * 1e3;
+                found(Ring { layout: layout.clone(), sensors, window_ms }, shortest, ms);
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Prints the columns, a line for each ring.
+pub(crate) fn main(arguments: &[String]) -> crate::Answer {
+    println!("layout sensors window period bound nodes milliseconds reason");
+    let (mut times, begin) = (Vec::new(), Instant::now());
+    search(arguments, |Ring { layout, sensors, window_ms }, found, ms| {
+        times.push(ms);
+        let Shortest { period, bound, nodes, explanation, .. } = found;
+        println!("{layout} {sensors} {window_ms} {period} {bound} {nodes} {ms:.2} {explanation}");
+    })?;
+    times.sort_by(f64::total_cmp);
+    let (median, longest) = (times[times.len() / 2], times[times.len() - 1]);
+    println!("# median {median:.2} ms, longest {longest:.2} ms, all {:.3} s", begin.elapsed().as_secs_f64());
+    Ok(())
+}
+
+/// Prints the table: a row for each ring, a column for each window; period in ms, and in brackets nodes and
+/// milliseconds.
+pub(crate) fn table(_: &[String]) -> crate::Answer {
+    let windows: Vec<_> = list::<u32>(WINDOWS_MS).iter().map(|window_ms| format!("{window_ms} ms")).collect();
+    print!("| ring | {} |\n|---|{}", windows.join(" | "), "---|".repeat(windows.len()));
+    let mut last = String::new();
+    search(&[], |Ring { layout, sensors, .. }, found, ms| {
+        let ring = format!("{layout} {sensors}");
+        if ring != last {
+            print!("\n| {ring} |");
+            last = ring;
+        }
+        print!(" {} ({} / {ms:.1}) |", found.period, with_commas(found.nodes));
+    })?;
+    println!();
+    Ok(())
+}
+
+/// 41355 as 41,355.
+fn with_commas(number: u64) -> String {
+    let digits = number.to_string();
+    let mut text = String::new();
+    for (index, digit) in digits.chars().enumerate() {
+        if index > 0 && (digits.len() - index).is_multiple_of(3) {
+            text.push(',');
+        }
+        text.push(digit);
+    }
+    text
+}

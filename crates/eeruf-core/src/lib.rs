@@ -36,15 +36,14 @@
 //! | measure which sensors hear each other | [`survey`] |
 //! | get edges from an interrupt to the main loop | [`EdgeQueue`] |
 //! | turn echo times into distances | [`SpeedOfSound`] |
-//! | find a schedule | [`search`], or the program `eeruf` |
+//! | find a schedule | the crate `eeruf-search`, or the program `eeruf` |
 //!
 //! The crate is `no_std` and uses no allocator, no floats and no clock: the caller passes `now` in and sleeps until the
 //! deadline it gets back, so the same code runs in an interrupt, in a simulator and in a test. Sensors are counted from
 //! 0 in code and printed from 1, as in the paper.
 //!
-//! Features: `search`, on by default, is the search for schedules, which firmware with a table can leave out (for an
-//! AVR it must). The others are off by default, for crates that firmware already uses: `defmt` (formats), `serde`
-//! (schedules, readings and times), `fugit` and `embassy-time` (conversions of times).
+//! Features, off by default, for crates that firmware already uses: `defmt` (formats), `serde` (schedules, readings and
+//! times), `fugit` and `embassy-time` (conversions of times).
 //!
 //! Equations and sections are those of J. Borenstein and Y. Koren, *Error Eliminating Rapid Ultrasonic Firing for
 //! Mobile Robot Obstacle Avoidance*, IEEE Transactions on Robotics and Automation 11(1), February 1995, pp. 132-138.
@@ -58,6 +57,7 @@ mod filter;
 pub mod flow;
 pub mod hopping;
 mod interop;
+mod judge_error;
 mod judging;
 mod layout;
 mod needs;
@@ -68,8 +68,6 @@ mod reading;
 mod requirements;
 mod ring;
 mod schedule;
-#[cfg(feature = "search")]
-pub mod search;
 mod sensor_error;
 mod sensor_set;
 mod sound;
@@ -101,11 +99,12 @@ pub use verified::VerifiedSchedule;
 
 /// Judges of readings: the trait [`Judge`](judge::Judge), and those beside [`EchoFilter`].
 pub mod judge {
-    pub use crate::filter::{FilterError, RateFilter};
+    pub use crate::filter::RateFilter;
+    pub use crate::judge_error::JudgeError;
     pub use crate::judging::{Agreement, Firing, Heard, Judge, Sounds};
     pub use crate::reading::{Explanation, Verdict};
     pub use crate::ring::AgreementRing;
-    pub use crate::tracker::{EchoTracker, TrackerError, TrackerSettings};
+    pub use crate::tracker::{EchoTracker, TrackerSettings};
 }
 
 /// The findings of [`Schedule::verify`], and what they are made of.
@@ -114,7 +113,7 @@ pub mod conditions {
     pub use crate::requirements::{Interval, Separation};
     pub use crate::schedule::VerifiedFor;
     pub use crate::uneven::UnevenError;
-    pub use crate::verify::{Verification, Violation, ViolationKind, Violations};
+    pub use crate::verify::{Verification, Violation, ViolationKind};
 }
 
 /// The proofs: `docs/explanation/theory.md`, for reading here.

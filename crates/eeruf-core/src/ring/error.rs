@@ -3,7 +3,7 @@
 use core::fmt;
 
 use super::history::MAX_AUDIBLE;
-use crate::filter::FilterError;
+use crate::judge_error::JudgeError;
 use crate::schedule::MAX_SENSORS;
 use crate::time::Micros;
 
@@ -75,11 +75,11 @@ pub enum RingError {
     /// The schedule was not verified, so that `t_delta` and the window cannot be taken from it.
     Unverified,
     /// The filter cannot compare this many readings.
-    Filter(FilterError),
+    Filter(JudgeError),
 }
 
-impl From<FilterError> for RingError {
-    fn from(error: FilterError) -> Self {
+impl From<JudgeError> for RingError {
+    fn from(error: JudgeError) -> Self {
         Self::Filter(error)
     }
 }

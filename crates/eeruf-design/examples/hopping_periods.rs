@@ -7,8 +7,9 @@ use std::{env, error::Error, fs};
 use eeruf_core::{Criterion, Micros, Requirements};
 use eeruf_design::RingSpec;
 
-/// Orders that are tried from each of three starts.
-const ORDERS: usize = 20_000;
+/// Starts of the search, the first of them with a random order, and the orders that are tried from each.
+const STARTS: usize = 12;
+const ORDERS: usize = 5_000;
 
 /// The waits of one sensor, in steps, phase by phase.
 type Column = Vec<i64>;
@@ -98,6 +99,19 @@ impl Ring {
         high
     }
 
+    /// Neighbours in the order of the first free turn of each unit.
+    fn by_turns(&self) -> Vec<usize> {
+        let mut turns: Vec<usize> = vec![];
+        for unit in 0..self.units.len() {
+            let taken: Vec<usize> =
+                (0..unit).filter(|&other| self.gap[other][unit] > 0).map(|other| turns[other]).collect();
+            turns.push((0..).find(|turn| !taken.contains(turn)).unwrap_or(0));
+        }
+        let mut order: Vec<usize> = (0..turns.len()).collect();
+        order.sort_by_key(|&unit| (turns[unit], unit));
+        order
+    }
+
     /// The shortest period that is found with a code, in milliseconds.
     fn search(&self, code: &Code) -> f64 {
         let units = self.units.len();
@@ -109,10 +123,12 @@ impl Ring {
             (random >> 11) as usize % bound
         };
         let mut best = i64::MAX;
-        for _ in 0..3 {
-            let mut order: Vec<usize> = (0..units).collect();
-            (1..units).rev().for_each(|at| order.swap(at, below(at + 1)));
-            let mut dealt: Vec<usize> = (0..units).collect();
+        for start in 0..STARTS {
+            let mut order = self.by_turns();
+            if start == 0 {
+                (1..units).rev().for_each(|at| order.swap(at, below(at + 1)));
+            }
+            let mut dealt: Vec<usize> = (0..units).map(|unit| (unit + start) % code.columns.len()).collect();
             let mut period = 1 << 28;
             for _ in 0..ORDERS {
                 let before = (order.clone(), dealt.clone());

@@ -74,14 +74,11 @@ pub enum RingError {
     },
     /// The schedule was not verified, so that `t_delta` and the window cannot be taken from it.
     Unverified,
-    /// The filter cannot compare this many readings.
-    Filter(JudgeError),
-}
-
-impl From<JudgeError> for RingError {
-    fn from(error: JudgeError) -> Self {
-        Self::Filter(error)
-    }
+    /// Too few or too many consecutive readings to compare.
+    Consecutive {
+        /// The number asked for.
+        consecutive: u8,
+    },
 }
 
 impl fmt::Display for RingError {
@@ -121,7 +118,8 @@ impl fmt::Display for RingError {
             Self::Unverified => {
                 f.write_str("a schedule that was not verified; expected both t_delta and window in the configuration")
             }
-            Self::Filter(error) => error.fmt(f),
+            // As the judge says it.
+            &Self::Consecutive { consecutive } => JudgeError::Consecutive { consecutive }.fmt(f),
         }
     }
 }

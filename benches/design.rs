@@ -4,7 +4,7 @@
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use eeruf_core::Layout;
-use eeruf_search::design::{Problem, memory_words, shortest};
+use eeruf_core::search::design::{Problem, memory_words, shortest};
 
 fn table(c: &mut Criterion) {
     for (name, ticks) in [("design", 1), ("design, tick 0.1 ms", 10)] {

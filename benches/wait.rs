@@ -3,7 +3,7 @@
 
 #![allow(missing_docs)]
 
-#[path = "../crates/eeruf-search/tests/all/common/mod.rs"]
+#[path = "../crates/eeruf-core/tests/all/common/mod.rs"]
 mod common;
 
 use std::hint::black_box;
@@ -13,7 +13,7 @@ use common::Owned;
 use common::naive::Layout;
 use common::tables::{Case, File};
 use criterion::{Criterion, criterion_group};
-use eeruf_search::wait::{Budget, COUNT_WORDS, MEMORY_WORDS, Objective, Problem};
+use eeruf_core::search::wait::{Budget, COUNT_WORDS, MEMORY_WORDS, Objective, Problem};
 
 /// The problems counted: those of the shared tables with many tables, and two of more nodes.
 fn counts() -> Vec<Case> {

@@ -1,6 +1,6 @@
 """The shortest period by OR-tools CP-SAT, against `eeruf-core` in the same run.
 
-    cargo build --release -p eeruf-search --example shortest_periods
+    cargo build --release -p eeruf-core --example shortest_periods
     python benches/peers/design_cpsat.py target/release/examples/shortest_periods [--sensors 8,12] [--limit 300]
 
 Prints one line per instance: both answers, both times and the ratio. A time-out counts as the limit. The model is the strongest we could write:

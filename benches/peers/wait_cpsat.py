@@ -1,7 +1,7 @@
 """Counts of small wait-time problems by OR-tools CP-SAT, enumerating all solutions, next to eeruf's counting search.
 
     python -m venv VENV && VENV/bin/pip install ortools
-    cargo build --release -p eeruf-search --example wait_count
+    cargo build --release -p eeruf-core --example wait_count
     VENV/bin/python benches/peers/wait_cpsat.py [--largest COUNT] [--limit SECONDS]
 
 Every case of tests/data/wait-tables.json up to `--largest` tables is solved by both in one run. The model is the strongest we know:

@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 
 use eeruf_core::{Micros, Phase};
 use eeruf_design::{FoundJson, RingDesign, RingSpec, Search, WhatIf};
-use eeruf_search::{Progress, SearchError};
+use eeruf_core::search::{Progress, SearchError};
 use serde::Serialize;
 
 use crate::progress::progress;

@@ -68,7 +68,7 @@ pub(crate) fn run(world: &World, method: Method, periods: u32, shown_s: f64) -> 
     }
     let [robot] = world.robots() else { return Err(format!("{} robots; expected one", world.robots().len())) };
     let best = if method == Method::EerufBest {
-        let keep_going = |at: &eeruf_search::Progress| {
+        let keep_going = |at: &eeruf_core::search::Progress| {
             progress(f64::NAN, at.nodes as f64);
             true
         };

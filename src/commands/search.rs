@@ -6,8 +6,8 @@ use std::time::{Duration, Instant};
 use clap::ValueEnum;
 use eeruf_core::MAX_SENSORS;
 use eeruf_design::FoundJson;
-use eeruf_search::wait::{Budget, COUNT_WORDS, Objective, memory_words};
-use eeruf_search::{Found, FrontTable, Outcome, Progress, SearchError, WaitSearch};
+use eeruf_core::search::wait::{Budget, COUNT_WORDS, Objective, memory_words};
+use eeruf_core::search::{Found, FrontTable, Outcome, Progress, SearchError, WaitSearch};
 
 use super::answer::Answer;
 use super::arguments::seconds;

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use comfy_table::{Table, presets};
 use eeruf_core::{MAX_SENSORS, Micros};
-use eeruf_search::{Found, FrontTable};
+use eeruf_core::search::{Found, FrontTable};
 use eeruf_sim::ScheduleFile;
 use serde::Serialize;
 

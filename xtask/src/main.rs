@@ -149,7 +149,7 @@ enum Verb {
     },
     /// Print the table of shortest periods that docs/log/search.md shows
     Periods {
-        /// Arguments for the example `shortest_periods` of eeruf-search
+        /// Arguments for the example `shortest_periods` of eeruf-core
         #[arg(value_name = "ARGUMENT")]
         arguments: Vec<String>,
     },

@@ -8,7 +8,7 @@ use crate::steps::{Trouble, output};
 /// One row for each ring, one column for each window: period in ms, and in brackets nodes and milliseconds.
 pub(crate) fn table(arguments: &[String]) -> Result<String, Trouble> {
     // Not in release: the tests have built it, and its timings are not compared.
-    let example = ["run", "--quiet", "--locked", "--package", "eeruf-search"];
+    let example = ["run", "--quiet", "--locked", "--package", "eeruf-core"];
     let mut cargo = Command::new("cargo");
     cargo.args(example).args(["--example", "shortest_periods", "--"]).args(arguments);
     let columns = output(&mut cargo).ok_or_else(|| Trouble::Failed("the example shortest_periods fails".to_owned()))?;

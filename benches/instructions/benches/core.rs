@@ -3,10 +3,10 @@
 
 use std::hint::black_box;
 
+use eeruf_core::search::wait::{Budget, Objective, memory_words};
+use eeruf_core::search::{PeriodProblem, WaitProblem, WaitSearch, design};
 use eeruf_core::tables::PAPER_12;
 use eeruf_core::{Criterion, EchoFilter, Instant, Layout, Micros, Requirements, Ring, RingConfig, RingEvent};
-use eeruf_search::wait::{Budget, Objective, memory_words};
-use eeruf_search::{PeriodProblem, WaitProblem, WaitSearch, design};
 use gungraun::{library_benchmark, library_benchmark_group, main};
 
 /// The shortest period of a ring with a separation of 2 ms, neighbours 15 ms apart, proven.

@@ -36,14 +36,15 @@
 //! | measure which sensors hear each other | [`survey`] |
 //! | get edges from an interrupt to the main loop | [`EdgeQueue`] |
 //! | turn echo times into distances | [`SpeedOfSound`] |
-//! | find a schedule | the crate `eeruf-search`, or the program `eeruf` |
+//! | find a schedule | [`search`], or the program `eeruf` |
 //!
 //! The crate is `no_std` and uses no allocator, no floats and no clock: the caller passes `now` in and sleeps until the
 //! deadline it gets back, so the same code runs in an interrupt, in a simulator and in a test. Sensors are counted from
 //! 0 in code and printed from 1, as in the paper.
 //!
-//! Features, off by default, for crates that firmware already uses: `defmt` (formats), `serde` (schedules, readings and
-//! times), `fugit` and `embassy-time` (conversions of times).
+//! Features: `search`, on by default, is the search for schedules, which firmware with a table can leave out (for an
+//! AVR it must). The others are off by default, for crates that firmware already uses: `defmt` (formats), `serde`
+//! (schedules, readings and times), `fugit` and `embassy-time` (conversions of times).
 //!
 //! Equations and sections are those of J. Borenstein and Y. Koren, *Error Eliminating Rapid Ultrasonic Firing for
 //! Mobile Robot Obstacle Avoidance*, IEEE Transactions on Robotics and Automation 11(1), February 1995, pp. 132-138.
@@ -68,6 +69,8 @@ mod reading;
 mod requirements;
 mod ring;
 mod schedule;
+#[cfg(feature = "search")]
+pub mod search;
 mod sensor_error;
 mod sensor_set;
 mod sound;

@@ -7,7 +7,7 @@ use std::time::Instant;
 use eeruf_core::Layout;
 use eeruf_design::engine::Problem;
 use eeruf_design::engine::shortest::shortest;
-use eeruf_search::design::{self, memory_words};
+use eeruf_core::search::design::{self, memory_words};
 
 const KINDS: [&str; 7] = ["even", "window +", "window -", "gap +", "gap -", "separation +", "separation -"];
 

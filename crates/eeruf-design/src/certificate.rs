@@ -1,7 +1,7 @@
 //! The certificate of a design: of the search it uses only the schedule and the bound.
 
 use eeruf_core::Micros;
-use eeruf_search::PeriodProblem;
+use eeruf_core::search::PeriodProblem;
 use eeruf_sim::AnySchedule;
 
 use crate::engine::prove::{NoProof, prove_what_can_be};

@@ -2,7 +2,7 @@
 //! engine.
 
 use eeruf_core::{MAX_SENSORS, Micros};
-use eeruf_search::{Control, Found, GridError, Outcome, PeriodProblem, ProblemError, Progress, SearchError};
+use eeruf_core::search::{Control, Found, GridError, Outcome, PeriodProblem, ProblemError, Progress, SearchError};
 use eeruf_sim::AnySchedule;
 
 use crate::engine::MAX_NUMBER;

@@ -12,7 +12,7 @@
 //! apart, which bounds `max |d|` from below and so gives the least `t_delta` of a period.
 
 use eeruf_core::{MAX_SENSORS, Micros};
-use eeruf_search::{Control, Found, Outcome, PeriodProblem, SearchError, design};
+use eeruf_core::search::{Control, Found, Outcome, PeriodProblem, SearchError, design};
 use eeruf_sim::AnySchedule;
 
 use crate::find::{NoSchedule, RingDesign};

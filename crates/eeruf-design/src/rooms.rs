@@ -3,7 +3,7 @@
 use core::f64::consts::TAU;
 
 use eeruf_core::Layout;
-use eeruf_search::SearchError;
+use eeruf_core::search::SearchError;
 use eeruf_sim::experiments::ExperimentError;
 use eeruf_sim::experiments::rooms::{
     Condition, JudgedWay, Judgement, RoomGroup, RoomKind, RoomWay, RoomsOptions, judge,

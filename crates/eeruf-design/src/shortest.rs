@@ -1,7 +1,7 @@
 //! The shortest period for what a schedule must meet: out of the atlas where it knows it, else by search.
 
 use eeruf_core::MAX_SENSORS;
-use eeruf_search::{Control, Found, PeriodProblem, Preferred, SearchError, ShortestPeriod, design};
+use eeruf_core::search::{Control, Found, PeriodProblem, Preferred, SearchError, ShortestPeriod, design};
 use eeruf_sim::AnySchedule;
 
 use crate::atlas;

@@ -1,7 +1,7 @@
 //! Changes that would shorten the period of an uneven ring: one need of all sensors relaxed at a time.
 
 use eeruf_core::Micros;
-use eeruf_search::{Control, SearchError};
+use eeruf_core::search::{Control, SearchError};
 
 use crate::find::{WhatIf, less};
 use crate::find_uneven::shortest_uneven;

@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use eeruf_core::{Criterion, MAX_SENSORS, Micros};
-use eeruf_search::{
+use eeruf_core::search::{
     self as search, FrontTable, Outcome, Progress, SearchError, WaitProblem,
     wait::{self, Budget, Enumeration, Objective},
 };

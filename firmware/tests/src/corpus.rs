@@ -8,8 +8,8 @@ use eeruf_core::{
     ScheduledRing, Tally,
 };
 use eeruf_on_target::{run, tests};
-use eeruf_search::Outcome;
-use eeruf_search::wait::{Budget, Problem, Search};
+use eeruf_core::search::Outcome;
+use eeruf_core::search::wait::{Budget, Problem, Search};
 
 eeruf_board::say_panic!();
 eeruf_board::interrupts!(eeruf_board::clear_alarm, eeruf_board::clear_echo);

@@ -4,7 +4,7 @@ use std::fmt;
 use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
 
-use eeruf_search::Progress;
+use eeruf_core::search::Progress;
 use eeruf_sim::experiments::FIRST;
 use eeruf_sim::{GainProfile, Physics, Room};
 

@@ -1,6 +1,7 @@
-//! The paper's claims, rings, plans and judges against shared tables, slow and obvious models, and their own limits, in
-//! one binary.
+//! The paper's claims, and the searches against shared tables, slow and obvious judges, and their own limits, in one
+//! binary.
 
+mod brute_force;
 mod by_hardware;
 mod claims;
 mod common;
@@ -9,6 +10,7 @@ mod conditions_naive;
 mod contract;
 mod corpus;
 mod edges;
+mod effort;
 mod fired;
 // A binary of its own where the features are tested by themselves; here too, for mutants.
 #[cfg(feature = "serde")]
@@ -23,6 +25,12 @@ mod immediate;
 mod lateness;
 mod listening;
 mod pairs;
+mod period_corpus;
+mod period_edges;
+mod period_limits;
+mod period_small;
+mod period_ticks;
+mod period_variants;
 mod phases;
 mod plans_and_judges;
 mod promises;
@@ -32,4 +40,8 @@ mod theory;
 mod tracker_naive;
 mod uneven;
 mod uneven_ring;
+mod wait_answers;
+mod wait_limits;
+mod wait_small;
+mod wait_tables;
 mod watch;

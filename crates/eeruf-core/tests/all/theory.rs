@@ -4,9 +4,9 @@
 //! Claims with a test of their own are not repeated: (13a), (13b) pair by pair, the rearrangements of Table I, nested
 //! loops for tables of waits, and that every period of `tests/data/shortest-periods.json` is the shortest.
 
+use eeruf_core::search::{Found, PeriodProblem, WaitProblem, WaitSearch, design, wait};
 use eeruf_core::tables::{TABLE_I_B, TABLE_I_C, TABLE_I_D, THE_ONE_WITH_19_MS};
 use eeruf_core::{Criterion, Layout, Micros, Phase, Requirements, Schedule, conditions::Interval};
-use eeruf_search::{Found, PeriodProblem, WaitProblem, WaitSearch, design, wait};
 
 const THEORY: &str = include_str!("../../../../docs/explanation/theory.md");
 

@@ -1,14 +1,14 @@
 //! Uneven rings: what single sensors and pairs need, against a judge that lays all firings of five periods on one line
 //! of time.
 
+use eeruf_core::search::PeriodProblem;
+use eeruf_core::search::design::memory_words;
 use eeruf_core::{
     EachSensor, Layout, Micros, Requirements, Schedule, Uneven, VerifiedSchedule,
     conditions::{UnevenError, Verification, ViolationKind},
     schedule,
     tables::TABLE_I_D,
 };
-use eeruf_search::PeriodProblem;
-use eeruf_search::design::memory_words;
 
 use crate::common::random::Random;
 

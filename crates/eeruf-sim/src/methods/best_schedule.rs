@@ -1,7 +1,7 @@
 //! The best schedule for a robot's ring: the shortest period that guarantees what the robot's own schedule does.
 
 use eeruf_core::{Layout, MAX_SENSORS, Micros, Requirements};
-use eeruf_search::{PeriodProblem, Progress, SearchError, design};
+use eeruf_core::search::{PeriodProblem, Progress, SearchError, design};
 use std::ops::ControlFlow;
 
 use super::schedules::table_i_d_for;
@@ -61,7 +61,7 @@ pub fn shortest_schedule_for(
 /// use eeruf_sim::{best_schedule_for, experiments::set_one::Alcove};
 /// let best = best_schedule_for(&Alcove::random(0).robot(), 100_000, |_| true)?;
 /// assert!(best.proven && best.schedule.period().as_micros() < 60_000);
-/// # Ok::<(), eeruf_search::SearchError>(())
+/// # Ok::<(), eeruf_core::search::SearchError>(())
 /// ```
 pub fn best_schedule_for(
     robot: &Robot,

@@ -7,11 +7,11 @@
 mod model;
 mod world;
 
+use eeruf_core::search::{PeriodProblem, design};
 use eeruf_core::tables::{TABLE_I_B, TABLE_I_D};
 use eeruf_core::{
     Instant, Layout, Micros, ReadingKind, Requirements, Ring, RingConfig, RingEvent, Schedule, VerifiedSchedule,
 };
-use eeruf_search::{PeriodProblem, design};
 
 use crate::common::random::Random;
 use model::Sound;

@@ -1,0 +1,20 @@
+//! Results that a search gives back to the user, in microseconds.
+
+use crate::schedule::Schedule;
+use crate::time::Micros;
+
+/// The best schedule that a search came to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Found<const K: usize> {
+    /// The schedule; `None` if there is none, or none was found within the budget.
+    pub schedule: Option<Schedule<K>>,
+    /// The value that was optimised: the period, the smallest interval or `t_delta`.
+    pub value: Option<Micros>,
+    /// No schedule is better than this; `None` if it is proven that there is none.
+    pub bound: Option<Micros>,
+    /// True if no better schedule exists (or none at all, without a schedule).
+    pub proven: bool,
+    /// Nodes visited: the same on each machine.
+    pub nodes: u64,
+}

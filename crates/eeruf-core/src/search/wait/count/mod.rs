@@ -1,0 +1,69 @@
+//! Number of tables: depth first over the sensors, with what was counted before kept in memory.
+//!
+//! What the sensors already placed mean to those still to come is little: which `|d|` (and `s`) are still free, and
+//! which waits remain to each sensor that conflicts with one of them. Two partial tables that leave the same remainder
+//! have the same number of completions, so it is counted once and kept. The last sensor is not visited pair by pair:
+//! for each free `|d|` the waits left to it are the common bits of three words.
+//!
+//! The memory lent holds only remainders. It is compared word by word, never by a hash alone, so any amount gives the
+//! exact count, even none; when it is full, older entries give way. Exchanging the phases changes neither `|d|` nor
+//! `s`, so a remainder and its exchange share one entry.
+//!
+//! Waits above 63 ticks do not fit the words; such problems are counted one table at a time.
+
+mod bits;
+mod memo;
+mod walk;
+
+use super::{Budget, Search};
+use crate::search::common::Outcome;
+use bits::MASK_MAX;
+use walk::Counting;
+
+/// A sensible amount of memory for [`Search::count`] where there is plenty, in words (4 MiB): a choice.
+/// With less the count is the same, and slower: 1 KiB where `usize` has 16 bits.
+pub const COUNT_WORDS: usize = 1 << if usize::BITS > 16 { 20 } else { 8 };
+
+/// The outcome of counting.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Count {
+    /// Exhausted: the count is exact. Found: the limit was reached, there are at least as many. Budget spent: this many
+    /// were counted before the search stopped.
+    pub outcome: Outcome,
+    /// The number of tables.
+    pub count: u128,
+    /// Nodes visited; the tables of the last sensor are not visited one by one.
+    pub nodes: u64,
+}
+
+impl Search<'_> {
+    /// Counts the tables; stops early when there are `limit` or more. More `memory` makes it faster ([`COUNT_WORDS`]);
+    /// it may be empty.
+    ///
+    /// Without a limit, a count beyond `u128` ends with [`Outcome::Found`] at its maximum.
+    pub fn count(&self, limit: Option<u128>, memory: &mut [u32], budget: &mut Budget<'_>) -> Count {
+        let before = budget.nodes();
+        let limit = limit.unwrap_or(u128::MAX);
+        // Beyond capacity nothing needs setting up; what passes has D at most wait_max, or a single sensor.
+        let (outcome, count) = if self.problem.is_beyond_capacity() {
+            (Outcome::Exhausted, 0)
+        } else if self.problem.wait_max > MASK_MAX {
+            count_one_by_one(self, limit, budget)
+        } else {
+            Counting::new(&self.problem, memory).run(limit, budget)
+        };
+        Count { outcome, count, nodes: budget.nodes() - before }
+    }
+}
+
+fn count_one_by_one(search: &Search<'_>, limit: u128, budget: &mut Budget<'_>) -> (Outcome, u128) {
+    let mut tables = search.enumerate();
+    let mut count = 0;
+    while count < limit {
+        match tables.advance(budget) {
+            Outcome::Found(()) => count += 1,
+            outcome => return (outcome, count),
+        }
+    }
+    (Outcome::Found(()), count)
+}

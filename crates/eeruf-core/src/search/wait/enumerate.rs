@@ -1,0 +1,128 @@
+//! Enumerates every table, one at a time, in lexicographic order of `a_0, b_0, a_1, b_1, ..`.
+
+use super::{Budget, Problem, Search};
+use crate::requirements::Criterion;
+use crate::schedule::MAX_SENSORS;
+use crate::search::common::{Members, Outcome, ProblemError};
+
+/// Walks all tables. Its trail is the table itself; it takes no memory from the caller.
+#[derive(Debug, Clone)]
+pub struct Enumeration<'p> {
+    problem: Problem<'p>,
+    a: [u32; MAX_SENSORS],
+    b: [u32; MAX_SENSORS],
+    /// Sensors below this one have waits that fit together; `None` when all tables were handed out.
+    depth: Option<usize>,
+    /// The present table was handed out: the next one starts after it.
+    handed_out: bool,
+}
+
+impl<'p> Search<'p> {
+    /// Enumeration tables, in lexicographic order of `a_0, b_0, a_1, b_1, ..`.
+    #[must_use]
+    pub fn enumerate(&self) -> Enumeration<'p> {
+        Enumeration {
+            problem: self.problem,
+            a: [0; MAX_SENSORS],
+            b: [0; MAX_SENSORS],
+            depth: Some(0),
+            handed_out: false,
+        }
+    }
+}
+
+// Indices are sensors, below `lag.len() <= MAX_SENSORS`.
+impl Enumeration<'_> {
+    /// Writes the waits of the next table, in ticks, to `a` and `b`; `Exhausted` after the last. After `BudgetSpent`
+    /// the walk goes on where it stopped.
+    ///
+    /// # Errors
+    /// [`ProblemError::Short`] if `a` or `b` is too short.
+    pub fn next_into(
+        &mut self,
+        budget: &mut Budget<'_>,
+        a: &mut [u32],
+        b: &mut [u32],
+    ) -> Result<Outcome, ProblemError> {
+        let sensors = self.problem.lag.len();
+        Search::check_length("a", a.len(), sensors)?;
+        Search::check_length("b", b.len(), sensors)?;
+        let outcome = self.advance(budget);
+        if outcome == Outcome::Found(()) {
+            a[..sensors].copy_from_slice(&self.a[..sensors]);
+            b[..sensors].copy_from_slice(&self.b[..sensors]);
+        }
+        Ok(outcome)
+    }
+
+    /// Moves to the next table.
+    pub(super) fn advance(&mut self, budget: &mut Budget<'_>) -> Outcome {
+        let last = self.problem.lag.len() - 1;
+        let Some(mut k) = self.depth else {
+            return Outcome::Exhausted;
+        };
+        if core::mem::take(&mut self.handed_out) {
+            self.b[k] += 1;
+        }
+        loop {
+            if !budget.enter() {
+                self.depth = Some(k);
+                return Outcome::BudgetSpent;
+            }
+            if self.seek(k) {
+                if k == last {
+                    (self.depth, self.handed_out) = (Some(k), true);
+                    return Outcome::Found(());
+                }
+                k += 1;
+                (self.a[k], self.b[k]) = (0, 0);
+            } else {
+                let Some(above) = k.checked_sub(1) else {
+                    self.depth = None;
+                    return Outcome::Exhausted;
+                };
+                k = above;
+                self.b[k] += 1;
+            }
+        }
+    }
+
+    /// Moves sensor `k` to its next pair of waits, itself included, that fits the sensors before it.
+    fn seek(&mut self, k: usize) -> bool {
+        let wait_max = self.problem.wait_max;
+        while self.a[k] <= wait_max {
+            if self.in_time(k, 0) {
+                while self.b[k] <= wait_max {
+                    if self.is_separate(k) && self.in_time(k, 1) {
+                        return true;
+                    }
+                    self.b[k] += 1;
+                }
+            }
+            self.a[k] += 1;
+            self.b[k] = 0;
+        }
+        false
+    }
+
+    /// Returns true if sensor `k` fires `I` away from the sensors before it, in one phase.
+    fn in_time(&self, k: usize, phase: usize) -> bool {
+        let Problem { period, lag, interval, conflicts, .. } = self.problem;
+        let (own, other) = if phase == 0 { (&self.a, &self.b) } else { (&self.b, &self.a) };
+        let time = lag[k] + own[k];
+        Members(conflicts[k]).take_while(|&j| j < k).all(|j| {
+            time.abs_diff(lag[j] + own[j]) >= interval && period - time.abs_diff(lag[j] + other[j]) >= interval
+        })
+    }
+
+    /// Returns true if `|d|` (and `s`) of sensor `k` lie `D` from those of the sensors before it.
+    fn is_separate(&self, k: usize) -> bool {
+        let separation = self.problem.separation;
+        let (d, s) = (self.a[k].abs_diff(self.b[k]), self.a[k] + self.b[k]);
+        let paper = self.problem.criterion == Criterion::Paper;
+        (0..k).all(|j| {
+            d.abs_diff(self.a[j].abs_diff(self.b[j])) >= separation
+                && (!paper || s.abs_diff(self.a[j] + self.b[j]) >= separation)
+        })
+    }
+}

@@ -1,0 +1,142 @@
+//! The problem of the waits in ticks, its check, and what waits achieve.
+
+use crate::requirements::Criterion;
+use crate::schedule::MAX_SENSORS;
+use crate::search::common::{Members, ProblemError, check_conflicts};
+
+/// The longest period, in ticks: sums of a few times then stay far inside 32 bits.
+pub const MAX_PERIOD: u32 = 1 << 27;
+
+/// The wait-time problem, all times in ticks.
+#[derive(Debug, Clone, Copy)]
+pub struct Problem<'a> {
+    /// The period `T_p`.
+    pub period: u32,
+    /// The lag of each sensor; its length is the number of sensors.
+    pub lag: &'a [u32],
+    /// The longest wait: waits are 0 ..= `wait_max`.
+    pub wait_max: u32,
+    /// The separation `D`.
+    pub separation: u32,
+    /// The smallest interval `I` between firings of two conflicting sensors.
+    pub interval: u32,
+    /// Row `i` has bit `j` set when sensors `i` and `j` conflict; symmetric, diagonal clear.
+    pub conflicts: &'a [u64],
+    /// The reading of (13a) and (13b) that holds.
+    pub criterion: Criterion,
+}
+
+impl Problem<'_> {
+    /// Returns true if the values `|d|` cannot lie `D` apart, which needs `D (K - 1) <= wait_max`, or two sensors
+    /// cannot fire `I` apart, of which one fires before and after the other on the circle of `2 T_p`.
+    pub(super) fn is_beyond_capacity(&self) -> bool {
+        let packed = u64::from(self.separation) * (self.lag.len() as u64).saturating_sub(1);
+        let conflict = self.conflicts.iter().any(|&row| row != 0);
+        packed > u64::from(self.wait_max) || conflict && self.interval > self.period
+    }
+}
+
+/// A checked [`Problem`], ready to be searched.
+#[derive(Debug, Clone, Copy)]
+pub struct Search<'a> {
+    pub(super) problem: Problem<'a>,
+}
+
+impl<'a> Search<'a> {
+    /// Checks the problem.
+    ///
+    /// # Errors
+    /// [`ProblemError`] for a number of sensors, period, lag or conflict outside its range. An infeasible problem is
+    /// not an error: the searches prove that.
+    pub fn new(problem: Problem<'a>) -> Result<Self, ProblemError> {
+        let Problem { period, lag, wait_max, conflicts, .. } = problem;
+        let sensors = lag.len();
+        if sensors == 0 || sensors > MAX_SENSORS {
+            return Err(ProblemError::Sensors(sensors));
+        }
+        if period == 0 || period > MAX_PERIOD {
+            return Err(ProblemError::Period { period, most: MAX_PERIOD });
+        }
+        for (sensor, &lag) in lag.iter().enumerate() {
+            if u64::from(lag) + u64::from(wait_max) >= u64::from(period) {
+                return Err(ProblemError::OutsidePeriod { sensor, lag, wait_max, period });
+            }
+        }
+        check_conflicts(sensors, conflicts)?;
+        Ok(Self { problem })
+    }
+
+    /// The problem as given.
+    #[must_use]
+    pub const fn problem(&self) -> &Problem<'a> {
+        &self.problem
+    }
+
+    /// The number of sensors `K`.
+    #[must_use]
+    pub const fn sensors(&self) -> usize {
+        self.problem.lag.len()
+    }
+
+    /// The same problem with another separation and interval.
+    #[must_use]
+    pub const fn with(&self, separation: u32, interval: u32) -> Self {
+        Self { problem: Problem { separation, interval, ..self.problem } }
+    }
+
+    /// The smallest interval between firings of conflicting sensors for these waits, in ticks, at most the period
+    /// (which it is when nothing conflicts). Zero if there are fewer waits than sensors.
+    #[must_use]
+    pub fn smallest_interval(&self, a: &[u32], b: &[u32]) -> u32 {
+        let Problem { period, lag, conflicts, .. } = self.problem;
+        let mut smallest = period;
+        for (i, &row) in conflicts.iter().enumerate() {
+            for j in Members(row).take_while(|&j| j < i) {
+                let time = |wait: &[u32], k: usize| Some(lag.get(k)?.saturating_add(*wait.get(k)?));
+                let (Some(ai), Some(bi), Some(aj), Some(bj)) = (time(a, i), time(b, i), time(a, j), time(b, j)) else {
+                    return 0;
+                };
+                smallest = smallest.min(gap(period, [ai, bi], [aj, bj]));
+            }
+        }
+        smallest
+    }
+
+    /// The least distance between the values `|d|` (and, by [`Criterion::Paper`], between the values `s`) of any two
+    /// sensors, in ticks; `wait_max` for a single sensor.
+    #[must_use]
+    pub fn separation_of(&self, a: &[u32], b: &[u32]) -> u32 {
+        let mut least = self.problem.wait_max;
+        for i in 0..self.sensors().min(a.len()).min(b.len()) {
+            for j in 0..i {
+                // Indices below the lengths of both slices.
+                least = least.min(a[i].abs_diff(b[i]).abs_diff(a[j].abs_diff(b[j])));
+                if self.problem.criterion == Criterion::Paper {
+                    let s = |k: usize| a[k].saturating_add(b[k]);
+                    least = least.min(s(i).abs_diff(s(j)));
+                }
+            }
+        }
+        least
+    }
+
+    /// Refuses a slice that is too short.
+    pub(super) fn check_length(what: &'static str, given: usize, needed: usize) -> Result<(), ProblemError> {
+        if given < needed { Err(ProblemError::Short { what, given, needed }) } else { Ok(()) }
+    }
+}
+
+/// The least distance between a firing of x and one of y on the circle of two periods; `x` and `y` are the firing times
+/// within phase a and phase b.
+pub(super) const fn gap(period: u32, x: [u32; 2], y: [u32; 2]) -> u32 {
+    let same = {
+        let (a, b) = (x[0].abs_diff(y[0]), x[1].abs_diff(y[1]));
+        if a < b { a } else { b }
+    };
+    // Firing times lie within their period, so opposite phases are period -+ difference apart.
+    let opposite = {
+        let (a, b) = (period.saturating_sub(x[0].abs_diff(y[1])), period.saturating_sub(x[1].abs_diff(y[0])));
+        if a < b { a } else { b }
+    };
+    if same < opposite { same } else { opposite }
+}

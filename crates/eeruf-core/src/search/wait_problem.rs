@@ -1,0 +1,324 @@
+//! The paper's question, in microseconds: lags are given, and for each sensor two waits are sought.
+
+use core::fmt;
+
+use super::common::Outcome;
+use super::error::SearchError;
+use super::found::Found;
+use super::grid::Grid;
+use super::wait::{Best, Budget, Count, Enumeration, Objective, Pareto, ParetoPoint, Problem, Search};
+use crate::layout::Layout;
+use crate::requirements::Criterion;
+use crate::schedule::{MAX_SENSORS, Schedule};
+use crate::time::Micros;
+
+/// Requirements on a table of waits (Sec. 3.1).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct WaitProblem<'a> {
+    /// The number of sensors, 1 to 64.
+    pub sensors: usize,
+    /// `T_p`, a whole number of ticks.
+    pub period: Micros,
+    /// Waits are 0, one tick, two ticks, .. up to this.
+    pub wait_max: Micros,
+    /// The grid of the waits.
+    pub tick: Micros,
+    /// `T_lag` of each sensor, in whole ticks; `None` spreads each group of [`neighbours`](Self::neighbours) sensors
+    /// over the period, as Table I-a does.
+    pub t_lag: Option<&'a [Micros]>,
+    /// `T_delta`: near-identical readings differ by no more.
+    pub t_delta: Micros,
+    /// The least time between the firings of two neighbours.
+    pub min_interval: Micros,
+    /// Number of adjacent sensors in a group of the default lags.
+    pub neighbours: u8,
+    /// Pairs of neighbours.
+    pub layout: Layout<'a>,
+    /// The reading of (13a), (13b).
+    pub criterion: Criterion,
+}
+
+/// A search for tables of waits, in memory that the caller lends ([`wait::memory_words`](super::wait::memory_words)).
+///
+/// ```
+/// use eeruf_core::search::{WaitProblem, WaitSearch, wait};
+/// use eeruf_core::{Criterion, Layout, Micros};
+///
+/// let problem = WaitProblem {
+///     sensors: 12,
+///     period: Micros::from_millis(100),
+///     wait_max: Micros::from_millis(24),
+///     tick: Micros::from_millis(1),
+///     t_lag: None,
+///     t_delta: Micros::new(999),
+///     min_interval: Micros::from_millis(15),
+///     neighbours: 4,
+///     layout: Layout::Line(4),
+///     criterion: Criterion::Exact,
+/// };
+/// let search = WaitSearch::new(&problem)?;
+/// let mut memory = vec![0; wait::memory_words(12)];
+/// let best = search.best::<12>(wait::Objective::Interval, &mut memory, &mut wait::Budget::unlimited())?;
+/// // n I + D (K - 1) <= T_p: no table keeps any four neighbours further apart than 19 ms.
+/// assert_eq!(best.value, Some(Micros::from_millis(19)));
+/// assert!(best.proven);
+/// # Ok::<(), eeruf_core::search::SearchError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct WaitSearch {
+    grid: Grid,
+    sensors: usize,
+    period: u32,
+    wait_max: u32,
+    separation: u32,
+    interval: u32,
+    criterion: Criterion,
+    lag: [u32; MAX_SENSORS],
+    rows: [u64; MAX_SENSORS],
+}
+
+/// Why there is no table.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Infeasible {
+    /// `t_delta` alone cannot be met.
+    Separation {
+        /// K.
+        sensors: usize,
+        /// D, what `t_delta` problem between two values `|d|`.
+        separation: Micros,
+        /// The longest wait.
+        wait_max: Micros,
+    },
+    /// The smallest interval alone cannot be met.
+    Interval {
+        /// I.
+        interval: Micros,
+        /// The longest wait.
+        wait_max: Micros,
+        /// `T_p`.
+        period: Micros,
+    },
+    /// Neither of them, as far as known, is to blame alone.
+    Together,
+}
+
+impl fmt::Display for Infeasible {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Separation { sensors, separation, wait_max } => write!(
+                f,
+                "t_delta alone cannot be met: {sensors} sensors need waits that differ by amounts \
+                 {separation} apart from each other, and no wait is longer than {wait_max}"
+            ),
+            Self::Interval { interval, wait_max, period } => write!(
+                f,
+                "the smallest interval alone cannot be met: with these lags and waits of at most \
+                 {wait_max}, neighbours cannot keep {interval} in a period of {period}"
+            ),
+            Self::Together => f.write_str("t_delta and the smallest interval cannot be met together"),
+        }
+    }
+}
+
+impl WaitSearch {
+    /// Checks the problem and puts it on the grid.
+    ///
+    /// # Errors
+    /// [`SearchError`] if a number is out of range, a period or lag is not a whole number of ticks, or a sensor could
+    /// fire after its period has ended.
+    pub fn new(problem: &WaitProblem<'_>) -> Result<Self, SearchError> {
+        let grid = Grid::new(problem.tick)?;
+        let sensors = problem.t_lag.map_or(problem.sensors, <[Micros]>::len);
+        if problem.sensors == 0 || problem.sensors > MAX_SENSORS || sensors != problem.sensors {
+            return Err(SearchError::Lags { sensors: problem.sensors, lags: sensors });
+        }
+        problem.layout.check(sensors)?;
+        let mut lag = [0; MAX_SENSORS];
+        for (x, lag) in lag.iter_mut().enumerate().take(sensors) {
+            *lag = match problem.t_lag {
+                Some(lags) => grid.exactly("a lag", lags.get(x).copied().unwrap_or(Micros::ZERO))?,
+                None => grid.exactly("a lag", default_lag(problem, x))?,
+            };
+        }
+        let search = Self {
+            grid,
+            sensors,
+            period: grid.exactly("the period", problem.period)?,
+            wait_max: grid.at_most(problem.wait_max),
+            separation: grid.separation(problem.t_delta),
+            interval: grid.at_least(problem.min_interval),
+            criterion: problem.criterion,
+            lag,
+            rows: problem.layout.rows(sensors),
+        };
+        search.ticks()?;
+        Ok(search)
+    }
+
+    /// The same question in ticks, for what this type does not offer: assignments and the Pareto front.
+    ///
+    /// # Errors
+    /// None after [`WaitSearch::new`], which has checked already.
+    pub fn ticks(&self) -> Result<Search<'_>, SearchError> {
+        Ok(Search::new(Problem {
+            period: self.period,
+            lag: self.lag.get(..self.sensors).unwrap_or(&[]),
+            wait_max: self.wait_max,
+            separation: self.separation,
+            interval: self.interval,
+            conflicts: self.rows.get(..self.sensors).unwrap_or(&[]),
+            criterion: self.criterion,
+        })?)
+    }
+
+    /// A table, or the proof that there is none, or neither if the budget is spent.
+    ///
+    /// # Errors
+    /// [`SearchError`] for too little memory or a capacity `K` below the number of sensors.
+    pub fn first<const K: usize>(
+        &self,
+        memory: &mut [u32],
+        budget: &mut Budget<'_>,
+    ) -> Result<(Outcome, Option<Schedule<K>>), SearchError> {
+        let (mut a, mut b) = ([0; MAX_SENSORS], [0; MAX_SENSORS]);
+        let outcome = self.ticks()?.first(memory, budget, &mut a, &mut b)?;
+        let schedule = if outcome == Outcome::Found(()) { Some(self.schedule(&a, &b)?) } else { None };
+        Ok((outcome, schedule))
+    }
+
+    /// Names the need, separation or interval, that cannot be met, if there is no table: one of them at a time is
+    /// searched, within the budget for both.
+    ///
+    /// # Errors
+    /// As for [`first`](Self::first).
+    pub fn why_none(&self, memory: &mut [u32], budget: &mut Budget<'_>) -> Result<Infeasible, SearchError> {
+        let search = self.ticks()?;
+        let (mut a, mut b) = ([0; MAX_SENSORS], [0; MAX_SENSORS]);
+        let mut without =
+            |separation, interval| search.with(separation, interval).first(memory, budget, &mut a, &mut b);
+        if without(self.separation, 0)? == Outcome::Exhausted {
+            let (separation, wait_max) = (self.grid.time(self.separation), self.grid.time(self.wait_max));
+            return Ok(Infeasible::Separation { sensors: self.sensors, separation, wait_max });
+        }
+        if without(0, self.interval)? == Outcome::Exhausted {
+            let (interval, wait_max) = (self.grid.time(self.interval), self.grid.time(self.wait_max));
+            return Ok(Infeasible::Interval { interval, wait_max, period: self.grid.time(self.period) });
+        }
+        Ok(Infeasible::Together)
+    }
+
+    /// Number of tables, exactly; it stops when it has counted `limit`.
+    ///
+    /// # Errors
+    /// None after [`WaitSearch::new`].
+    pub fn count(
+        &self,
+        limit: Option<u128>,
+        memory: &mut [u32],
+        budget: &mut Budget<'_>,
+    ) -> Result<Count, SearchError> {
+        Ok(self.ticks()?.count(limit, memory, budget))
+    }
+
+    /// The table with the largest smallest interval or the largest `t_delta`; the other one as in the problem.
+    ///
+    /// # Errors
+    /// As for [`first`](Self::first).
+    pub fn best<const K: usize>(
+        &self,
+        objective: Objective,
+        memory: &mut [u32],
+        budget: &mut Budget<'_>,
+    ) -> Result<Found<K>, SearchError> {
+        let (mut a, mut b) = ([0; MAX_SENSORS], [0; MAX_SENSORS]);
+        let best @ Best { value, bound, nodes, .. } = self.ticks()?.best(objective, memory, budget, &mut a, &mut b)?;
+        let time = |ticks| match objective {
+            Objective::Interval => Some(self.grid.time(ticks)),
+            Objective::Separation => self.grid.t_delta(ticks),
+        };
+        let schedule = if value.is_some() { Some(self.schedule(&a, &b)?) } else { None };
+        let bound = if best.outcome == Outcome::Exhausted { None } else { time(bound) };
+        Ok(Found { schedule, value: value.and_then(time), bound, proven: best.proven(), nodes })
+    }
+
+    /// The Pareto front: the tables of which no other has a larger smallest interval without a smaller `t_delta`, both
+    /// at least those of the problem.
+    ///
+    /// # Errors
+    /// None after [`WaitSearch::new`].
+    pub fn pareto<'s, 'm>(&'s self, memory: &'m mut [u32]) -> Result<WaitFront<'s, 'm>, SearchError> {
+        Ok(WaitFront { search: self, front: self.ticks()?.pareto(memory) })
+    }
+
+    /// All tables, one after the other: each [`Enumeration::next_into`] gives the waits of one in ticks, for
+    /// [`schedule`](Self::schedule) to make a schedule of.
+    ///
+    /// # Errors
+    /// None after [`WaitSearch::new`].
+    pub fn enumerate(&self) -> Result<Enumeration<'_>, SearchError> {
+        Ok(self.ticks()?.enumerate())
+    }
+
+    /// The schedule with these waits, in ticks.
+    ///
+    /// # Errors
+    /// [`SearchError::Schedule`] if there are fewer waits than sensors, if they are too long, or for a capacity `K`
+    /// below the number of sensors.
+    pub fn schedule<const K: usize>(&self, wait_a: &[u32], wait_b: &[u32]) -> Result<Schedule<K>, SearchError> {
+        let waits = |ticks: &'_ [u32]| ticks.len().min(self.sensors);
+        self.grid.schedule(
+            self.period,
+            self.lag.get(..self.sensors).unwrap_or(&[]),
+            wait_a.get(..waits(wait_a)).unwrap_or(&[]),
+            wait_b.get(..waits(wait_b)).unwrap_or(&[]),
+        )
+    }
+}
+
+/// A walk along the Pareto front of interval and `t_delta`, from the largest interval to the largest `t_delta`.
+#[derive(Debug)]
+pub struct WaitFront<'s, 'm> {
+    search: &'s WaitSearch,
+    front: Pareto<'s, 'm>,
+}
+
+/// A table of the Pareto front.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FrontTable<const K: usize> {
+    /// The table.
+    pub schedule: Schedule<K>,
+    /// The smallest interval between neighbours; no table with at least this `t_delta` has a larger one.
+    pub min_interval: Micros,
+    /// `T_delta`; no table with at least this interval has a larger one. `None` if two readings of the table are alike.
+    pub t_delta: Option<Micros>,
+}
+
+impl WaitFront<'_, '_> {
+    /// Finds the next table; `Exhausted` after the last, `BudgetSpent` if the budget ended before it was proven.
+    ///
+    /// # Errors
+    /// As for [`WaitSearch::first`].
+    pub fn find_next<const K: usize>(
+        &mut self,
+        budget: &mut Budget<'_>,
+    ) -> Result<Outcome<FrontTable<K>>, SearchError> {
+        let (mut a, mut b) = ([0; MAX_SENSORS], [0; MAX_SENSORS]);
+        let (outcome, point) = self.front.next_into(budget, &mut a, &mut b)?;
+        let Some(ParetoPoint { interval, separation }) = point else {
+            return Ok(if outcome == Outcome::Exhausted { Outcome::Exhausted } else { Outcome::BudgetSpent });
+        };
+        let schedule = self.search.schedule(&a, &b)?;
+        let grid = self.search.grid;
+        let table = FrontTable { schedule, min_interval: grid.time(interval), t_delta: grid.t_delta(separation) };
+        Ok(Outcome::Found(table))
+    }
+}
+
+/// Table I-a: sensor `x` of a group of `n` lags by `x mod n` parts in `n` of the period.
+fn default_lag(problem: &WaitProblem<'_>, x: usize) -> Micros {
+    let n = u64::from(problem.neighbours.max(1));
+    let part = u64::from(problem.period.as_micros()) * (x as u64 % n) / n;
+    // Below the period.
+    Micros::new(part as u32)
+}

@@ -1,0 +1,74 @@
+//! Cost of a problem in nodes: larger neighbourhoods, and the same problem in finer ticks.
+
+use eeruf_core::search::design::{Problem, memory_words, shortest};
+
+use crate::common::naive::{self, Layout};
+use crate::common::naive_period::{assert_serves, paper_12};
+
+// The half ring of twelve runs at 65 ms and also in microseconds.
+#[test]
+fn half_ring_of_twelve_runs_at_65_ms() {
+    let rows = naive::conflicts(Layout::Line, 12, 4);
+    let mut memory = vec![0; memory_words(12)];
+    for scale in [1, 1000] {
+        let problem = paper_12(&rows, scale);
+        let found = shortest(&problem, u64::MAX, &mut memory, &mut ()).unwrap();
+        assert_eq!((found.period, found.proven()), (65 * scale, true));
+        assert_serves(&problem, found.period, &found.firing);
+    }
+}
+
+// A tick of a microsecond needs little more nodes than one of a millisecond.
+#[test]
+fn microsecond_ticks_need_few_more_nodes() {
+    let rows = naive::conflicts(Layout::Ring, 8, 4);
+    let mut memory = vec![0; memory_words(8)];
+    for scale in [1, 100, 1000] {
+        let problem = Problem { sensors: 8, window: 30 * scale, ..paper_12(&rows, scale) };
+        let found = shortest(&problem, 20_000, &mut memory, &mut ()).unwrap();
+        assert_eq!((found.period, found.bound), (65 * scale, 65 * scale));
+        assert_serves(&problem, found.period, &found.firing);
+    }
+}
+
+// Ticks of a tenth of a millisecond cost at most three times the nodes.
+#[test]
+fn tenth_ticks_cost_at_most_three_times_the_nodes() {
+    let (mut coarse, mut fine) = (0, 0);
+    for layout in [Layout::Line, Layout::Ring] {
+        for sensors in [8, 12, 16, 24] {
+            let rows = naive::conflicts(layout, sensors, 4);
+            let mut memory = vec![0; memory_words(sensors)];
+            for window in [15, 30, 45, 60] {
+                let mut nodes = |scale| {
+                    let problem = Problem { sensors, window: window * scale, ..paper_12(&rows, scale) };
+                    let found = shortest(&problem, u64::MAX, &mut memory, &mut ()).unwrap();
+                    assert!(found.proven());
+                    assert_serves(&problem, found.period, &found.firing);
+                    found.nodes
+                };
+                coarse += nodes(1);
+                fine += nodes(10);
+            }
+        }
+    }
+    assert!(fine <= 3 * coarse, "{coarse} and {fine}");
+}
+
+#[test]
+fn larger_neighbourhoods_are_proven_within_few_nodes() {
+    for (sensors, neighbours, layout, separation, window, period) in [
+        (8, 6, Layout::Line, 2, 15, 91),
+        (12, 6, Layout::Line, 2, 15, 93),
+        (12, 6, Layout::Ring, 2, 15, 96),
+        (15, 5, Layout::Ring, 1, 30, 79),
+        (10, 5, Layout::Blocks, 1, 15, 76),
+    ] {
+        let rows = naive::conflicts(layout, sensors, neighbours);
+        let problem = Problem { sensors, conflicts: &rows, separation, interval: 15, window, stale_echo: false };
+        let mut memory = vec![0; memory_words(sensors)];
+        let found = shortest(&problem, 40_000, &mut memory, &mut ()).unwrap();
+        assert_eq!((found.period, found.bound), (period, period), "{problem:?}");
+        assert_serves(&problem, found.period, &found.firing);
+    }
+}

@@ -1,0 +1,144 @@
+//! Owned random wait-time problems, where plain nested loops can say everything: found or not, every count, the best
+//! values and the front.
+
+use crate::common::Owned;
+use crate::common::naive::{self, Layout};
+use eeruf_core::Criterion;
+use eeruf_core::search::Outcome;
+use eeruf_core::search::wait::{Budget, MEMORY_WORDS, Objective, ParetoPoint, Problem, Search};
+use proptest::prelude::*;
+
+/// A line, a ring, blocks or any graph; lags in groups or anyhow.
+fn tiny() -> impl Strategy<Value = Owned> {
+    (
+        1_usize..=4,
+        0_u32..=5,
+        0_u32..=3,
+        0_u32..=9,
+        any::<bool>(),
+        0..4_u8,
+        1_usize..=4,
+        any::<u16>(),
+        prop::option::of(1_usize..=4),
+    )
+        .prop_flat_map(|(sensors, wait_max, separation, interval, paper, layout, neighbours, edges, group)| {
+            let period = wait_max + 1..wait_max + 30;
+            let lags = prop::collection::vec(any::<u32>(), sensors);
+            (period, lags).prop_map(move |(period, lags)| {
+                let lag = lags
+                    .iter()
+                    .enumerate()
+                    .map(|(i, &lag)| match group {
+                        Some(group) => ((i % group) as u32 * period / group as u32).min(period - 1 - wait_max),
+                        None => lag % (period - wait_max),
+                    })
+                    .collect();
+                let conflicts = match layout {
+                    0 => naive::conflicts(Layout::Line, sensors, neighbours),
+                    1 => naive::conflicts(Layout::Ring, sensors, neighbours),
+                    2 => naive::conflicts(Layout::Blocks, sensors, neighbours),
+                    _ => naive::conflicts_where(sensors, |x, y| edges >> (x * (x - 1) / 2 + y) & 1 == 1),
+                };
+                let criterion = if paper { Criterion::Paper } else { Criterion::Exact };
+                Owned { period, lag, wait_max, separation, interval, conflicts, criterion }
+            })
+        })
+}
+
+/// The interval and separation of every table of a problem without demands, those that dominate only, greatest interval
+/// first.
+fn naive_front(tiny: &Owned) -> Vec<ParetoPoint> {
+    let search = Search::new(tiny.problem()).unwrap();
+    let mut points: Vec<(u32, u32)> = Vec::new();
+    naive::for_each(&tiny.problem(), &mut |a, b| {
+        let value = |ok: &dyn Fn(u32) -> bool, most: u32| (0..=most).rev().find(|&value| ok(value)).unwrap();
+        let interval = value(&|interval| naive::holds(&Problem { interval, ..*search.problem() }, a, b), tiny.period);
+        let separation =
+            value(&|separation| naive::holds(&Problem { separation, ..*search.problem() }, a, b), tiny.wait_max);
+        if !points.contains(&(interval, separation)) {
+            points.push((interval, separation));
+        }
+    });
+    let mut front: Vec<ParetoPoint> = points
+        .iter()
+        .filter(|p| !points.iter().any(|q| q != *p && q.0 >= p.0 && q.1 >= p.1))
+        .map(|&(interval, separation)| ParetoPoint { interval, separation })
+        .collect();
+    front.sort_by_key(|point| std::cmp::Reverse(point.interval));
+    front
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 150, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn nested_loops_agree_on_found_exhausted_and_count(tiny in tiny()) {
+        let problem = tiny.problem();
+        let search = Search::new(problem).unwrap();
+        let count = naive::count(&problem);
+        let mut memory = vec![0; MEMORY_WORDS];
+        let (mut a, mut b) = ([0; 64], [0; 64]);
+        let outcome = search.first(&mut memory, &mut Budget::unlimited(), &mut a, &mut b).unwrap();
+        prop_assert_eq!(outcome, if count > 0 { Outcome::Found(()) } else { Outcome::Exhausted });
+        prop_assert!(outcome == Outcome::Exhausted || naive::holds(&problem, &a, &b));
+        // No memory, so little that entries give way all the time, and plenty.
+        for words in [0, 60, 5000] {
+            let counted = search.count(None, &mut vec![7; words], &mut Budget::unlimited());
+            prop_assert_eq!((counted.outcome, counted.count), (Outcome::Exhausted, count), "{} words", words);
+        }
+        let mut all = search.enumerate();
+        let mut seen = Vec::new();
+        while all.next_into(&mut Budget::unlimited(), &mut a, &mut b).unwrap() == Outcome::Found(()) {
+            seen.push((a[..tiny.lag.len()].to_vec(), b[..tiny.lag.len()].to_vec()));
+        }
+        let mut expected = Vec::new();
+        naive::for_each(&problem, &mut |a, b| expected.push((a.to_vec(), b.to_vec())));
+        prop_assert_eq!(seen, expected);
+    }
+
+    #[test]
+    fn nested_loops_agree_on_the_best_values_and_the_front(tiny in tiny()) {
+        let tiny = Owned {
+            lag: tiny.lag.iter().take(3).copied().collect(),
+            conflicts: tiny.conflicts.iter().take(3).map(|row| row & 7).collect(),
+            ..tiny
+        };
+        let problem = tiny.problem();
+        let search = Search::new(problem).unwrap();
+        let mut memory = vec![0; MEMORY_WORDS];
+        let (mut a, mut b) = ([0; 64], [0; 64]);
+        let front = naive_front(&tiny);
+        let best = search.best(Objective::Interval, &mut memory, &mut Budget::unlimited(), &mut a, &mut b).unwrap();
+        prop_assert!(best.proven());
+        if tiny.conflicts.iter().any(|&row| row != 0) {
+            prop_assert_eq!(best.value, front.first().map(|point| point.interval));
+        } else {
+            prop_assert_eq!(best.value.is_some(), !front.is_empty());
+        }
+        if let Some(interval) = best.value {
+            let at = &Problem { interval, ..problem };
+            prop_assert!(naive::holds(at, &a, &b));
+        }
+        let best = search.best(Objective::Separation, &mut memory, &mut Budget::unlimited(), &mut a, &mut b).unwrap();
+        prop_assert!(best.proven());
+        prop_assert_eq!(best.value.is_some(), !front.is_empty());
+        if let (Some(separation), true) = (best.value, tiny.lag.len() > 1) {
+            prop_assert_eq!(Some(separation), front.last().map(|point| point.separation));
+            let at = &Problem { separation, ..problem };
+            prop_assert!(naive::holds(at, &a, &b));
+        }
+        if tiny.lag.len() > 1 && tiny.conflicts.iter().any(|&row| row != 0) {
+            let mut walk = search.pareto(&mut memory);
+            let mut points = Vec::new();
+            while let (Outcome::Found(()), Some(point)) =
+                walk.next_into(&mut Budget::unlimited(), &mut a, &mut b).unwrap()
+            {
+                let ParetoPoint { interval, separation } = point;
+                let at = &Problem { interval, separation, ..problem };
+            prop_assert!(naive::holds(at, &a, &b));
+                points.push(point);
+            }
+            prop_assert_eq!(points, front);
+        }
+    }
+}

@@ -5,9 +5,9 @@
 use std::time::Instant;
 
 use eeruf_core::Layout;
-use eeruf_core::search::design::{self, memory_words};
 use eeruf_design::engine::Problem;
 use eeruf_design::engine::shortest::shortest;
+use eeruf_core::search::design::{self, memory_words};
 
 const KINDS: [&str; 7] = ["even", "window +", "window -", "gap +", "gap -", "separation +", "separation -"];
 

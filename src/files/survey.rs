@@ -35,14 +35,13 @@ pub(crate) fn simulate(world: &World, plan: SurveyPlan) -> Result<FiringLog, Pat
                     fired_us[usize::from(sensor)] = now_us;
                 }
                 // What it heard cannot change any more: its window is over.
-                SurveyEvent::Row(row) => {
-                    let fired = fired_us[usize::from(row.sensor)];
-                    let heard =
-                        outside.hears_at_ns(row.sensor.into()).map(|at| Micros::new((at / 1000 - fired) as u32));
+                SurveyEvent::Row { sensor, slot, .. } => {
+                    let fired = fired_us[usize::from(sensor)];
+                    let heard = outside.hears_at_ns(sensor.into()).map(|at| Micros::new((at / 1000 - fired) as u32));
                     firings.push(Firing {
-                        sensor: row.sensor,
+                        sensor,
                         fired_us: fired as i64,
-                        period: row.slot,
+                        period: slot,
                         phase: 0,
                         t_echo_us: heard.filter(|&heard| heard < plan.window()).map(Micros::as_micros),
                         rejected: None,

@@ -86,7 +86,7 @@ pub fn status_of(error: &RingError) -> i32 {
         RingError::Window { .. } => -17,
         RingError::Blanking { .. } => -18,
         RingError::CoarseTDelta { .. } => -19,
-        RingError::Filter(_) => -20,
+        RingError::Consecutive { .. } => -20,
         RingError::Audible { .. } => -29,
         RingError::PathChange { .. } => -30,
         _ => unreachable!("{error}"),

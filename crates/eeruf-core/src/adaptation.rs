@@ -3,48 +3,15 @@
 
 use core::fmt;
 
-use crate::own_limits::Alike;
+use crate::hopping::HoppingSchedule;
 use crate::reading::{ReadingKind, Tally};
 use crate::ring::PeriodStats;
 use crate::sound::SpeedOfSound;
 use crate::time::Micros;
 use crate::verified::VerifiedSchedule;
 
-/// Verified schedules for one ring, from the shortest period to the longest.
-#[derive(Clone, Copy, Debug)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Ladder<'s, const K: usize, L = Alike> {
-    rungs: &'s [VerifiedSchedule<K, 2, L>],
-}
-
-impl<'s, const K: usize, L> Ladder<'s, K, L> {
-    /// A ladder of these rungs. Each was verified for itself; a ring changes only to those that allow its own `t_delta`
-    /// and window.
-    ///
-    /// # Errors
-    /// [`LadderError`] if there is no rung, if a period is not longer than the one before, or if the number of sensors
-    /// changes.
-    pub fn new(rungs: &'s [VerifiedSchedule<K, 2, L>]) -> Result<Self, LadderError> {
-        let Some(first) = rungs.first() else { return Err(LadderError::Empty) };
-        let mut before: Option<&VerifiedSchedule<K, 2, L>> = None;
-        for (rung, schedule) in rungs.iter().enumerate() {
-            if schedule.sensors() != first.sensors() {
-                let (sensors, expected) = (schedule.sensors(), first.sensors());
-                return Err(LadderError::Sensors { rung, sensors, expected });
-            }
-            if let Some(before) = before {
-                if schedule.period() <= before.period() {
-                    return Err(LadderError::Order { rung, period: schedule.period(), before: before.period() });
-                }
-            }
-            before = Some(schedule);
-        }
-        Ok(Self { rungs })
-    }
-}
-
 /// Watches the rejection rate over windows of some periods, and says when to change to another schedule of a
-/// [`Ladder`].
+/// *ladder*: verified schedules for one ring, from the shortest period to the longest.
 ///
 /// One noisy window moves one rung up, to a longer period; only several calm windows running move one rung down. Give
 /// it the [`PeriodStats`] of a [`Ring`](crate::Ring) that began with the shortest period, and the ring's
@@ -52,12 +19,12 @@ impl<'s, const K: usize, L> Ladder<'s, K, L> {
 ///
 /// ```
 /// use eeruf_core::{
-///     Instant, Requirements, Ring, RingConfig, RingEvent, adaptation::{Adaptation, Ladder}, tables::TABLE_I_D,
+///     Instant, Requirements, Ring, RingConfig, RingEvent, adaptation::Adaptation, tables::TABLE_I_D,
 /// };
 /// # use eeruf_core::Micros;
 /// let requirements = Requirements::new(Micros::new(599));
 /// let rungs = [TABLE_I_D.scaled(3, 5)?, TABLE_I_D].map(|table| table.verify(&requirements).verified().expect("met"));
-/// let mut adaptation = Adaptation::new(Ladder::new(&rungs)?);
+/// let mut adaptation = Adaptation::new(&rungs)?;
 /// let mut ring = Ring::new(&rungs[0], RingConfig::new().with_window(Micros::from_millis(36)), Instant::default())?;
 /// if let Some(RingEvent::PeriodEnded(stats)) = ring.poll(ring.next_deadline()) {
 ///     adaptation.adapt(&stats, |schedule| ring.change_schedule(schedule))?;
@@ -66,8 +33,8 @@ impl<'s, const K: usize, L> Ladder<'s, K, L> {
 /// ```
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Adaptation<'s, const K: usize, L = Alike> {
-    ladder: Ladder<'s, K, L>,
+pub struct Adaptation<'s, R> {
+    rungs: &'s [R],
     rung: usize,
     /// Above this rejection rate, in thousandths, it fires more slowly. Default: 300, a choice of ours; the paper names
     /// none.
@@ -84,24 +51,51 @@ pub struct Adaptation<'s, const K: usize, L = Alike> {
     rejection_permille: Option<u16>,
 }
 
-/// Advice of [`Adaptation`] on the present schedule.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Advice {
-    /// The rung in use, 0 for the shortest period.
-    pub rung: usize,
-    /// The rejection rate of the last whole window, in thousandths; `None` before, or if nothing was compared in it.
-    pub rejection_permille: Option<u16>,
-    /// The fastest motion, in mm/s, at which good readings still pass (see
-    /// [`Schedule::max_speed_mm_s`](crate::Schedule::max_speed_mm_s)).
-    pub max_speed_mm_s: u32,
+impl<'s, const K: usize, const M: usize, L> Adaptation<'s, VerifiedSchedule<K, M, L>> {
+    /// Starts on the lowest of these rungs, the shortest period. Each was verified for itself; a ring changes only to
+    /// those that allow its own `t_delta` and window.
+    ///
+    /// # Errors
+    /// [`LadderError`] if there is no rung, if a period is not longer than the one before, or if the number of sensors
+    /// changes.
+    pub fn new(rungs: &'s [VerifiedSchedule<K, M, L>]) -> Result<Self, LadderError> {
+        Self::of(rungs, |rung| (rung.sensors(), rung.period()))
+    }
+
+    /// The fastest motion, in mm/s, at which good readings of a ring with this `t_delta` still pass on the rung in use,
+    /// where sound travels at `c` (see [`Schedule::max_speed_mm_s`](crate::Schedule::max_speed_mm_s)).
+    pub fn max_speed_mm_s(&self, t_delta: Micros, c: SpeedOfSound) -> u32 {
+        self.rungs.get(self.rung).map_or(0, |schedule| schedule.max_speed_mm_s(t_delta, c.mm_per_s()))
+    }
 }
 
-impl<'s, const K: usize, L> Adaptation<'s, K, L> {
-    /// Starts on the lowest rung, the shortest period.
-    pub fn new(ladder: Ladder<'s, K, L>) -> Self {
-        Self {
-            ladder,
+impl<'s, const K: usize> Adaptation<'s, HoppingSchedule<K>> {
+    /// As [`new`](Adaptation::new), for a ring that hops in time: `adapt` then calls its
+    /// [`change_hopping`](crate::Ring::change_hopping).
+    ///
+    /// # Errors
+    /// As there.
+    pub fn hopping(rungs: &'s [HoppingSchedule<K>]) -> Result<Self, LadderError> {
+        Self::of(rungs, |rung| (rung.code().sensors(), rung.period()))
+    }
+}
+
+impl<'s, R> Adaptation<'s, R> {
+    /// `needs` says how many sensors a rung has, and its period.
+    fn of(rungs: &'s [R], needs: impl Fn(&R) -> (usize, Micros)) -> Result<Self, LadderError> {
+        let Some((expected, _)) = rungs.first().map(&needs) else { return Err(LadderError::Empty) };
+        let mut before = None;
+        for (rung, (sensors, period)) in rungs.iter().map(&needs).enumerate() {
+            if sensors != expected {
+                return Err(LadderError::Sensors { rung, sensors, expected });
+            }
+            match before {
+                Some(before) if period <= before => return Err(LadderError::Order { rung, period, before }),
+                _ => before = Some(period),
+            }
+        }
+        Ok(Self {
+            rungs,
             rung: 0,
             noisy_permille: 300,
             calm_permille: 100,
@@ -111,7 +105,7 @@ impl<'s, const K: usize, L> Adaptation<'s, K, L> {
             calm_windows: 0,
             tally: Tally::default(),
             rejection_permille: None,
-        }
+        })
     }
 
     /// Takes in one period, and asks for `change` to another schedule when the present one should be left. It stays on
@@ -123,7 +117,7 @@ impl<'s, const K: usize, L> Adaptation<'s, K, L> {
     pub fn adapt<Refused>(
         &mut self,
         stats: &PeriodStats,
-        change: impl FnOnce(&'s VerifiedSchedule<K, 2, L>) -> Result<(), Refused>,
+        change: impl FnOnce(&'s R) -> Result<(), Refused>,
     ) -> Result<bool, Refused> {
         for kind in [ReadingKind::Accepted, ReadingKind::Rejected, ReadingKind::Repeated, ReadingKind::Ambiguous] {
             for _ in 0..stats.tally.of(kind) {
@@ -137,7 +131,7 @@ impl<'s, const K: usize, L> Adaptation<'s, K, L> {
         self.periods = 0;
         self.rejection_permille = core::mem::take(&mut self.tally).rejection_permille();
         let rung = self.next_rung();
-        let Some(schedule) = self.ladder.rungs.get(rung) else { return Ok(false) };
+        let Some(schedule) = self.rungs.get(rung) else { return Ok(false) };
         if rung == self.rung {
             return Ok(false);
         }
@@ -152,7 +146,7 @@ impl<'s, const K: usize, L> Adaptation<'s, K, L> {
         match self.rejection_permille {
             Some(rate) if rate > self.noisy_permille => {
                 self.calm_windows = 0;
-                (self.rung + 1).min(self.ladder.rungs.len() - 1)
+                (self.rung + 1).min(self.rungs.len() - 1)
             }
             Some(rate) if rate <= self.calm_permille => {
                 self.calm_windows = self.calm_windows.saturating_add(1);
@@ -165,17 +159,18 @@ impl<'s, const K: usize, L> Adaptation<'s, K, L> {
         }
     }
 
-    /// Limits of the present schedule for a ring with this `t_delta`, where sound travels at `c`.
-    pub fn advice(&self, t_delta: Micros, c: SpeedOfSound) -> Advice {
-        let max_speed_mm_s = match self.ladder.rungs.get(self.rung) {
-            Some(schedule) => schedule.max_speed_mm_s(t_delta, c.mm_per_s()),
-            None => 0,
-        };
-        Advice { rung: self.rung, rejection_permille: self.rejection_permille, max_speed_mm_s }
+    /// The rung in use, 0 for the shortest period.
+    pub const fn rung(&self) -> usize {
+        self.rung
+    }
+
+    /// The rejection rate of the last whole window, in thousandths; `None` before, or if nothing was compared in it.
+    pub const fn rejection_permille(&self) -> Option<u16> {
+        self.rejection_permille
     }
 }
 
-/// Why schedules do not make a [`Ladder`]. Rungs are counted from 0 in code and printed from 1.
+/// Why schedules do not make a ladder. Rungs are counted from 0 in code and printed from 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -243,7 +238,11 @@ mod tests {
     }
 
     /// The periods after which the schedule changes, and its new period in ms.
-    fn changes(adaptation: &mut Adaptation<'_, 12>, stats: PeriodStats, periods: usize) -> std::vec::Vec<(usize, u32)> {
+    fn changes(
+        adaptation: &mut Adaptation<'_, VerifiedSchedule<12>>,
+        stats: PeriodStats,
+        periods: usize,
+    ) -> std::vec::Vec<(usize, u32)> {
         let mut changes = std::vec![];
         for n in 1..=periods {
             let change = |schedule: &VerifiedSchedule<12>| {
@@ -258,19 +257,19 @@ mod tests {
     #[test]
     fn a_noisy_window_slows_down_and_four_calm_ones_speed_up() {
         let rungs = rungs();
-        let mut adaptation = Adaptation::new(Ladder::new(&rungs).unwrap());
+        let mut adaptation = Adaptation::new(&rungs).unwrap();
         assert_eq!(changes(&mut adaptation, period(6, 6), 64), [(16, 80), (32, 100)]);
         assert_eq!(changes(&mut adaptation, period(9, 3), 160), []);
         assert_eq!(changes(&mut adaptation, period(12, 0), 160), [(64, 80), (128, 60)]);
-        let advice = adaptation.advice(REQUIREMENTS.t_delta, SpeedOfSound::AT_20_CELSIUS);
-        assert_eq!(advice, Advice { rung: 0, rejection_permille: Some(0), max_speed_mm_s: 1381 });
+        assert_eq!((adaptation.rung(), adaptation.rejection_permille()), (0, Some(0)));
+        assert_eq!(adaptation.max_speed_mm_s(REQUIREMENTS.t_delta, SpeedOfSound::AT_20_CELSIUS), 1381);
     }
 
     // Noisy is more than the one limit and calm no more than the other.
     #[test]
     fn noisy_and_calm_are_beyond_their_limits() {
         let rungs = rungs();
-        let mut adaptation = Adaptation::new(Ladder::new(&rungs).unwrap());
+        let mut adaptation = Adaptation::new(&rungs).unwrap();
         assert_eq!(changes(&mut adaptation, period(70, 30), 160), []);
         assert_eq!(changes(&mut adaptation, period(69, 31), 32), [(16, 80), (32, 100)]);
         assert_eq!(changes(&mut adaptation, period(89, 11), 160), []);
@@ -280,22 +279,22 @@ mod tests {
     #[test]
     fn silence_is_neither_noisy_nor_calm() {
         let rungs = rungs();
-        let mut adaptation = Adaptation::new(Ladder::new(&rungs).unwrap());
+        let mut adaptation = Adaptation::new(&rungs).unwrap();
         changes(&mut adaptation, period(0, 12), 32);
         assert_eq!(changes(&mut adaptation, period(0, 0), 1000), []);
-        assert_eq!(adaptation.advice(REQUIREMENTS.t_delta, SpeedOfSound::AT_20_CELSIUS).rung, 2);
+        assert_eq!(adaptation.rung(), 2);
     }
 
     // A change that the ring refuses leaves the rung and is asked for again.
     #[test]
     fn refused_change_leaves_rung_and_is_asked_again() {
         let rungs = rungs();
-        let mut adaptation = Adaptation::new(Ladder::new(&rungs).unwrap());
+        let mut adaptation = Adaptation::new(&rungs).unwrap();
         for window in 0..3 {
             for n in 1..=16 {
                 let refused = adaptation.adapt(&period(6, 6), |_| Err(window));
                 assert_eq!(refused, if n < 16 { Ok(false) } else { Err(window) });
-                assert_eq!(adaptation.advice(Micros::ZERO, SpeedOfSound::AT_20_CELSIUS).rung, 0);
+                assert_eq!(adaptation.rung(), 0);
             }
         }
         assert_eq!(changes(&mut adaptation, period(6, 6), 16), [(16, 80)]);
@@ -303,7 +302,7 @@ mod tests {
 
     #[test]
     fn a_ladder_takes_schedules_only_in_order() {
-        let error = |rungs: &[VerifiedSchedule<12>]| Ladder::new(rungs).unwrap_err().to_string();
+        let error = |rungs: &[VerifiedSchedule<12>]| Adaptation::new(rungs).unwrap_err().to_string();
         let [fast, middle, _] = rungs();
         assert_eq!(error(&[]), "a ladder without schedules; expected at least one");
         assert_eq!(error(&[middle, fast]), "rung 2 has a period of 60 ms; expected more than the 80 ms before it");

@@ -58,6 +58,7 @@ mod filter;
 pub mod flow;
 pub mod hopping;
 mod interop;
+mod judge_error;
 mod judging;
 mod layout;
 mod needs;
@@ -101,11 +102,12 @@ pub use verified::VerifiedSchedule;
 
 /// Judges of readings: the trait [`Judge`](judge::Judge), and those beside [`EchoFilter`].
 pub mod judge {
-    pub use crate::filter::{FilterError, RateFilter};
+    pub use crate::filter::RateFilter;
+    pub use crate::judge_error::JudgeError;
     pub use crate::judging::{Agreement, Firing, Heard, Judge, Sounds};
     pub use crate::reading::{Explanation, Verdict};
     pub use crate::ring::AgreementRing;
-    pub use crate::tracker::{EchoTracker, TrackerError, TrackerSettings};
+    pub use crate::tracker::{EchoTracker, TrackerSettings};
 }
 
 /// The findings of [`Schedule::verify`], and what they are made of.
@@ -114,7 +116,7 @@ pub mod conditions {
     pub use crate::requirements::{Interval, Separation};
     pub use crate::schedule::VerifiedFor;
     pub use crate::uneven::UnevenError;
-    pub use crate::verify::{Verification, Violation, ViolationKind, Violations};
+    pub use crate::verify::{Verification, Violation, ViolationKind};
 }
 
 /// The proofs: `docs/explanation/theory.md`, for reading here.

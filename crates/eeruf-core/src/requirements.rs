@@ -134,14 +134,28 @@ impl Requirements<'_> {
     }
 }
 
-/// The two sensors that come closest to failing (13a), (13b), and by how much they hold.
+/// The least shift of crosstalk from one reading to another, and where it occurs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Separation {
-    /// The smaller left side of the two conditions.
+    /// The shift; with two phases the smaller left side of (13a) and (13b).
     pub value: Micros,
-    /// The sensors, from 0, the smaller number first.
+    /// The sensors, from 0: with two phases the smaller number first, with many the one that sends and the one that
+    /// hears.
     pub sensors: (u8, u8),
+    /// The two phases in which the sound is heard; both `a` with two phases.
+    pub phases: (Phase, Phase),
+    /// Number of periods before the sound was sent, in each: -1 if in the period after, while the sensor still
+    /// listened; 0 with two phases, which reject sound of every age.
+    pub ages: (i8, i8),
+}
+
+impl Separation {
+    /// That of two sensors with two phases.
+    pub(crate) const fn of_two_phases(value: Micros, x: usize, y: usize) -> Self {
+        let sensors = if x < y { (x as u8, y as u8) } else { (y as u8, x as u8) };
+        Self { value, sensors, phases: (Phase::A, Phase::A), ages: (0, 0) }
+    }
 }
 
 /// Two firings of neighbours, one after the other.
@@ -301,7 +315,7 @@ const fn closest<const K: usize>(values: &[u32; K], sensors: usize) -> Option<Se
             None => true,
         };
         if smaller {
-            least = Some(Separation { value, sensors: if x < y { (x as u8, y as u8) } else { (y as u8, x as u8) } });
+            least = Some(Separation::of_two_phases(value, x, y));
         }
         at += 1;
     }

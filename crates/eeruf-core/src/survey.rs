@@ -9,24 +9,14 @@
 use crate::schedule::MAX_SENSORS;
 use crate::time::{Instant, Micros};
 
-/// The firings of one slot.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct SurveySlot {
-    /// The sensor that fires at the slot's start, from 0.
-    pub first: u8,
-    /// The one that fires after it, and how long after.
-    pub second: Option<(u8, Micros)>,
-}
-
 /// The firings of a survey, and their times.
 ///
 /// ```
-/// use eeruf_core::{Micros, survey::{SurveyPlan, SurveySlot}};
+/// use eeruf_core::{Micros, survey::SurveyPlan};
 /// let plan = SurveyPlan::new(8);
-/// assert_eq!(plan.slot(0), Some(SurveySlot { first: 0, second: None }));
-/// let last = SurveySlot { first: 7, second: Some((6, Micros::new(19 * 750))) };
-/// assert_eq!((plan.slot(plan.slots() - 1), plan.slot(plan.slots())), (Some(last), None));
+/// assert!(plan.firings(0).eq([(0, Micros::ZERO)]));
+/// assert!(plan.firings(plan.slots() - 1).eq([(7, Micros::ZERO), (6, Micros::new(19 * 750))]));
+/// assert_eq!(plan.firings(plan.slots()).count(), 0);
 /// assert_eq!(plan.duration_us(), 122_694_000); // two minutes
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -111,41 +101,28 @@ impl SurveyPlan {
         Micros::new(self.lead_step.as_micros().saturating_mul(number as u32))
     }
 
-    /// The firings of a slot, counted from 0.
-    pub const fn slot(&self, number: u32) -> Option<SurveySlot> {
-        if number >= self.slots() {
-            return None;
-        }
-        let alone = self.alone();
-        if number < alone {
-            return Some(SurveySlot { first: (number % self.sensors as u32) as u8, second: None });
-        }
-        // Leads change slowest: what is repeated from one to the next is not what just happened.
-        let others = self.sensors as u32 - 1;
-        let pairs = self.sensors as u32 * others;
-        let (lead, pair) = ((number - alone) / pairs, (number - alone) % pairs);
-        let (first, other) = ((pair / others) as u8, (pair % others) as u8);
-        let second = if other >= first { other + 1 } else { other };
-        Some(SurveySlot { first, second: Some((second, self.lead(lead as u8))) })
+    /// The firings of a slot, counted from 0: one or two sensors, and how long after the start of the slot each fires;
+    /// none beyond the last slot.
+    pub fn firings(&self, slot: u32) -> impl Iterator<Item = (u8, Micros)> + use<> {
+        let (alone, sensors) = (self.alone(), u32::from(self.sensors));
+        let (first, second) = if slot >= self.slots() {
+            (None, None)
+        } else if slot < alone {
+            (Some((slot % sensors) as u8), None)
+        } else {
+            // Leads change slowest: what is repeated from one to the next is not what just happened.
+            let others = sensors - 1;
+            let (lead, pair) = ((slot - alone) / (sensors * others), (slot - alone) % (sensors * others));
+            let (first, other) = ((pair / others) as u8, (pair % others) as u8);
+            let second = if other >= first { other + 1 } else { other };
+            (Some(first), Some((second, self.lead(lead as u8))))
+        };
+        first.map(|sensor| (sensor, Micros::ZERO)).into_iter().chain(second)
     }
 }
 
 const fn at_most_ten_seconds(time: Micros) -> Micros {
     if time.as_micros() > LONGEST { Micros::new(LONGEST) } else { time }
-}
-
-/// One line of a survey's log.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct SurveyRow {
-    /// The sensor, from 0.
-    pub sensor: u8,
-    /// When it fired.
-    pub fired: Instant,
-    /// The slot: the log's `period`.
-    pub slot: u32,
-    /// From firing to the first edge, if there was one within the window.
-    pub t_echo: Option<Micros>,
 }
 
 /// A step that a survey asks for, or a measurement.
@@ -158,7 +135,16 @@ pub enum SurveyEvent {
         sensor: u8,
     },
     /// A line for the log.
-    Row(SurveyRow),
+    Row {
+        /// The sensor, from 0.
+        sensor: u8,
+        /// When it fired.
+        fired: Instant,
+        /// The slot: the log's `period`.
+        slot: u32,
+        /// From firing to the first edge, if there was one within the window.
+        t_echo: Option<Micros>,
+    },
 }
 
 /// A sensor in a slot.
@@ -182,8 +168,8 @@ struct Listener {
 /// assert_eq!(survey.poll(at(0)), Some(SurveyEvent::Fire { sensor: 0 }));
 /// survey.echo(0, at(5_800));
 /// assert_eq!(survey.poll(at(5_900)), None);
-/// let Some(SurveyEvent::Row(row)) = survey.poll(survey.next_deadline().unwrap()) else { panic!() };
-/// assert_eq!((row.sensor, row.t_echo), (0, Some(Micros::new(5_800))));
+/// let Some(SurveyEvent::Row { sensor, t_echo, .. }) = survey.poll(survey.next_deadline().unwrap()) else { panic!() };
+/// assert_eq!((sensor, t_echo), (0, Some(Micros::new(5_800))));
 /// ```
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -205,10 +191,8 @@ impl Survey {
     fn enter_slot(&mut self) {
         let begins = self.begins;
         let listener = |sensor, due| Listener { sensor, due, fired: None, t_echo: None, is_logged: false };
-        self.listeners = self.plan.slot(self.slot).map_or([None; 2], |slot| {
-            let second = slot.second.map(|(sensor, lead)| listener(sensor, begins + lead));
-            [Some(listener(slot.first, begins)), second]
-        });
+        let mut firings = self.plan.firings(self.slot).map(|(sensor, after)| listener(sensor, begins + after));
+        self.listeners = [firings.next(), firings.next()];
     }
 
     /// Returns what is to be done now, or was measured; call again until there is nothing. A poll that comes late, by
@@ -231,8 +215,7 @@ impl Survey {
         self.listeners.iter_mut().flatten().find_map(|listener| {
             let fired = listener.fired.filter(|_| !listener.is_logged && now.has_reached(listener.due))?;
             listener.is_logged = true;
-            let row = SurveyRow { sensor: listener.sensor, fired, slot, t_echo: listener.t_echo };
-            Some(SurveyEvent::Row(row))
+            Some(SurveyEvent::Row { sensor: listener.sensor, fired, slot, t_echo: listener.t_echo })
         })
     }
 

@@ -102,7 +102,7 @@ impl<const K: usize> Verification<'_, K> {
     /// ```
     pub const fn verified(&self) -> Result<VerifiedSchedule<K>, Violation> {
         let (schedule, requirements) = (self.schedule(), self.requirements());
-        if let Some(violation) = self.violations().advance() {
+        if let Some(violation) = self.first_violation() {
             return Err(violation);
         }
         let min_refire = schedule.min_refire();

@@ -35,7 +35,7 @@ impl<'r, const K: usize> Verification<'r, K> {
 
     /// Returns true if every requirement holds.
     pub const fn ok(&self) -> bool {
-        self.violations().advance().is_none()
+        self.first_violation().is_none()
     }
 
     /// The two sensors closest together by (13a), (13b); `None` for a single sensor. Two that must fire together need
@@ -56,7 +56,7 @@ impl<'r, const K: usize> Verification<'r, K> {
                     None => true,
                 };
                 if is_less && !self.requirements.fire_together(x, y) {
-                    least = Some(Separation { value, sensors: (x as u8, y as u8) });
+                    least = Some(Separation::of_two_phases(value, x, y));
                 }
                 y += 1;
             }
@@ -122,8 +122,17 @@ impl<'r, const K: usize> Verification<'r, K> {
 
     /// Every violation: first (13a), then (13b), stale echoes, intervals, windows, shared echo lines,
     /// sensors triggered too soon, and sensors that must fire together.
-    pub const fn violations(&self) -> Violations<'r, K> {
+    pub const fn violations(&self) -> impl Iterator<Item = Violation> + Clone + use<'r, K> {
+        self.one_by_one()
+    }
+
+    const fn one_by_one(&self) -> Violations<'r, K> {
         Violations { verification: *self, check: 0, x: 0, y: 0, phase: 0 }
+    }
+
+    /// The first violation.
+    pub const fn first_violation(&self) -> Option<Violation> {
+        self.one_by_one().advance()
     }
 }
 
@@ -272,9 +281,8 @@ impl fmt::Display for Violation {
 }
 
 /// The violations of a [`Verification`], one after the other.
-#[derive(Clone, Copy, Debug)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Violations<'r, const K: usize> {
+#[derive(Clone)]
+struct Violations<'r, const K: usize> {
     verification: Verification<'r, K>,
     check: u8,
     x: usize,
@@ -284,7 +292,7 @@ pub struct Violations<'r, const K: usize> {
 
 impl<const K: usize> Violations<'_, K> {
     /// `Iterator::next` as a `const fn`, so that a table can be checked when it is compiled.
-    pub(crate) const fn advance(&mut self) -> Option<Violation> {
+    const fn advance(&mut self) -> Option<Violation> {
         while self.check < 10 {
             let found = self.examine();
             self.step();

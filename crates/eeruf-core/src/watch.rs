@@ -22,7 +22,7 @@ use crate::time::{Instant, Micros};
 ///             ring.echo(sensor, now + Micros::from_millis(9))?;
 ///         }
 ///         if let Some(blind) = watch.observe(&event, now) {
-///             panic!("nothing accepted of sensor {} for {} echoes", blind.sensor + 1, blind.firings);
+///             panic!("nothing accepted of sensor {} for 20 echoes", blind + 1);
 ///         }
 ///     }
 /// }
@@ -95,16 +95,6 @@ pub enum Doubt {
     Ambiguous(Explanation),
 }
 
-/// A sensor that hears echoes, and none was accepted for this many firings.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Blind {
-    /// The sensor, from 0.
-    pub sensor: u8,
-    /// For how many firings with an echo nothing was accepted.
-    pub firings: u8,
-}
-
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 struct Watched {
@@ -138,12 +128,12 @@ impl<const K: usize> SensorWatch<K> {
         Self { sensors: [nothing; K], blind_after }
     }
 
-    /// Takes in an event that a poll at `now` returned. Returns a sensor that has just become blind; it is returned
-    /// once, and again only after something was accepted or confirmed clear.
+    /// Takes in an event that a poll at `now` returned. Returns a sensor (from 0) that has just become blind; it is
+    /// returned once, and again only after something was accepted or confirmed clear.
     ///
     /// Observe every event, or at least readings and the ends of periods, since ages are kept within what the clock can
     /// tell there.
-    pub fn observe(&mut self, event: &RingEvent, now: Instant) -> Option<Blind> {
+    pub fn observe(&mut self, event: &RingEvent, now: Instant) -> Option<u8> {
         match event {
             RingEvent::Fire { .. } => None,
             RingEvent::PeriodEnded(_) => {
@@ -158,7 +148,7 @@ impl<const K: usize> SensorWatch<K> {
                 let sensor = self.sensors.get_mut(usize::from(reading.sensor))?;
                 sensor.read(reading, now);
                 let blind = sensor.counts(reading.kind, self.blind_after);
-                blind.then_some(Blind { sensor: reading.sensor, firings: self.blind_after })
+                blind.then_some(reading.sensor)
             }
         }
     }

@@ -2,8 +2,13 @@
 
 use std::f64::consts::TAU;
 
-use eeruf_core::{Criterion, Micros, Phase, Requirements, Uneven, conditions::ViolationKind};
-use eeruf_core::{hopping::HoppingSettings, judge::TrackerSettings};
+use eeruf_core::{
+    Criterion, Instant, MAX_SENSORS, Micros, Phase, ReadingKind, Requirements, RingEvent, Uneven,
+    adaptation::Adaptation,
+    conditions::ViolationKind,
+    hopping::{HoppingListening, HoppingRing, HoppingSchedule, HoppingSettings},
+    judge::TrackerSettings,
+};
 use eeruf_design::{PhaseFile, PhaseSchedule, RingSpec};
 use eeruf_files::parse;
 use eeruf_sim::{Air, Cause, Method, Noise, Options, Pose, Robot, Scene, Transducer, Wall, World, simulate};
@@ -88,6 +93,107 @@ fn every_ring_hops_from_file_to_readings() {
             assert!(of_x.iter().filter(|&at| of_y.contains(at)).count() > 30, "{name}");
         }
     }
+}
+
+/// No lags give a code a shorter period than this. Over a cycle the waits of any two sensors differ by every residue of
+/// the code's prime once, as a positive number of steps or as a negative one, and by 0 at the mean: of half the phases
+/// positive, so that one wait is longer than the other by half the phases or more, either way round. Of n neighbours
+/// that take turns, each loses as much beside its interval.
+fn lags_need(spec: &RingSpec, schedule: &PhaseSchedule) -> Micros {
+    let requirements = spec.phase_requirements(Criterion::Exact);
+    let sensors = spec.sensors;
+    let gap = |x, y| requirements.gap_after(sensors, x, y).min(requirements.gap_after(sensors, y, x)).as_micros();
+    let leads = |x: usize| (0..x).all(|other| !requirements.fire_together(other, x));
+    let mut gaps: Vec<_> = (0..sensors).flat_map(|y| (0..y).map(move |x| (x, y))).map(|(x, y)| gap(x, y)).collect();
+    gaps.retain(|&gap| gap > 0);
+    let code = *schedule.hopping().expect("it hops").code();
+    let loss = u32::from(code.phases() / 2) * code.step().as_micros();
+    let members = |least: u32, from: usize| {
+        let mut members = vec![from];
+        for x in (0..sensors).filter(|&x| x != from && leads(x)) {
+            if members.iter().all(|&member| gap(member, x) >= least) {
+                members.push(x);
+            }
+        }
+        members.len() as u32
+    };
+    let of = |&least: &u32| {
+        let most = (0..sensors).filter(|&x| leads(x)).map(|from| members(least, from)).max().unwrap_or(0);
+        most * (least + loss)
+    };
+    Micros::new(gaps.iter().map(of).max().unwrap_or(0))
+}
+
+// No period is shorter than its code needs, and those of the paper's ring and the ring of 24 are beyond 1.5 times that of
+// two phases whatever the lags.
+#[test]
+fn long_periods_are_those_that_codes_need() {
+    // Two phases, of docs/explanation/hopping.md, in microseconds.
+    let two_phases = |name| match name {
+        "paper-12" => Some(65_000),
+        "ring-24" => Some(76_000),
+        _ => None,
+    };
+    for (name, text, _) in RINGS {
+        let spec = spec(text);
+        let schedule = spec.hopping(4, Criterion::Exact).expect("a schedule").phases();
+        let (needs, found) = (lags_need(&spec, &schedule), schedule.period());
+        println!("{name}: found {found}, needs {needs}");
+        assert!(found >= needs, "{name}: {found}, {needs}");
+        assert!(two_phases(name).is_none_or(|us| 2 * needs.as_micros() > 3 * us), "{name}: {needs}");
+    }
+}
+
+// Of a ring file come two schedules with one code; the ring changes to the slower one, and what it then believes is its
+// own.
+#[test]
+fn ring_of_a_file_hops_and_adapts() {
+    let (_, text, _) = RINGS.into_iter().find(|(name, ..)| *name == "hc-sr04-8").expect("it is there");
+    let spec = spec(text);
+    let requirements = spec.phase_requirements(Criterion::Exact);
+    let schedule = spec.hopping(4, Criterion::Exact).expect("a schedule").phases();
+    let fast = *schedule.hopping().expect("it hops");
+    let slower = fast.period().saturating_add(fast.period());
+    let slow = HoppingSchedule::<MAX_SENSORS>::spread(*fast.code(), slower).expect("a longer period");
+    assert!(slow.verify(&requirements).ok());
+    let rungs = [fast, slow];
+    let mut adaptation = Adaptation::hopping(&rungs).expect("a ladder");
+    let t_delta = requirements.t_delta;
+    let near = TrackerSettings::BALANCED.near.max(t_delta);
+    let within = TrackerSettings::BALANCED.tentative_within.min(t_delta);
+    let tracker = TrackerSettings::BALANCED.with_t_delta(t_delta).with_near(near).with_tentative_within(within);
+    let settings = HoppingSettings::BALANCED.with_tracker(tracker);
+    let listening = HoppingListening::new(requirements.window_of(0));
+    let mut ring =
+        HoppingRing::<MAX_SENSORS>::hopping(&fast, settings, listening, 1, Instant::default()).expect("a ring");
+    // Something else each time as long as the period is short, then a wall at 1.5 m.
+    let (mut firings, mut accepted) = (0, [0; 8]);
+    for _ in 0..20_000 {
+        let now = ring.next_deadline();
+        while let Some(event) = ring.poll(now) {
+            match event {
+                RingEvent::Fire { sensor, .. } => {
+                    firings += 1;
+                    let other = 1_000 + 1_900 * (firings * 7 % 10);
+                    let t_echo = Micros::new(if adaptation.rung() == 0 { other } else { 8_700 });
+                    ring.echo(sensor, now + t_echo).expect("a sensor of the ring");
+                }
+                RingEvent::Reading(reading) if reading.kind == ReadingKind::Accepted => {
+                    assert_eq!(reading.t_echo, Some(Micros::new(8_700)), "{reading:?}");
+                    accepted[usize::from(reading.sensor)] += 1;
+                }
+                RingEvent::Reading(_) => {}
+                RingEvent::PeriodEnded(stats) => {
+                    adaptation.adapt(&stats, |schedule| ring.change_hopping(schedule)).expect("the same code");
+                }
+            }
+        }
+        if accepted.iter().all(|&accepted| accepted > 20) {
+            break;
+        }
+    }
+    assert!(accepted.iter().all(|&accepted| accepted > 20), "{accepted:?}");
+    assert_eq!(adaptation.rung(), 1);
 }
 
 /// The firing times of a schedule, to change one.

@@ -3,8 +3,8 @@
 use core::fmt;
 
 use eeruf_core::{
-    MAX_SENSORS, Micros, Phase, ReadingKind,
-    judge::{EchoTracker, Firing, TrackerError, TrackerSettings, Verdict},
+    MAX_SENSORS, Micros, Phase, ReadingKind, SensorError,
+    judge::{EchoTracker, Firing, JudgeError, TrackerSettings, Verdict},
 };
 
 use crate::firings::FiringLog;
@@ -13,7 +13,9 @@ use crate::firings::FiringLog;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ReplayError {
     /// A setting is out of its range.
-    Tracker(TrackerError),
+    Tracker(JudgeError),
+    /// A sensor that no tracker has room for.
+    Sensor(SensorError),
     /// The log does not say how a reading was weighed.
     Weighed {
         /// The sensor, from 0.
@@ -27,6 +29,7 @@ impl fmt::Display for ReplayError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Tracker(error) => error.fmt(f),
+            Self::Sensor(error) => error.fmt(f),
             Self::Weighed { sensor, period } => write!(
                 f,
                 "the firing of sensor {} in period {period} does not say how it was weighed; expected columns solo, \
@@ -39,9 +42,15 @@ impl fmt::Display for ReplayError {
 
 impl core::error::Error for ReplayError {}
 
-impl From<TrackerError> for ReplayError {
-    fn from(error: TrackerError) -> Self {
+impl From<JudgeError> for ReplayError {
+    fn from(error: JudgeError) -> Self {
         Self::Tracker(error)
+    }
+}
+
+impl From<SensorError> for ReplayError {
+    fn from(error: SensorError) -> Self {
+        Self::Sensor(error)
     }
 }
 

@@ -1,8 +1,7 @@
 //! `Adaptation`: adaptive scheduling (end of Sec. 3.1).
 
 use eeruf_core::{
-    MAX_SENSORS, Micros, Requirements, RingEvent, SpeedOfSound, VerifiedSchedule,
-    adaptation::{Adaptation as Core, Ladder},
+    MAX_SENSORS, Requirements, RingEvent, SpeedOfSound, VerifiedSchedule, adaptation::Adaptation as Core,
 };
 use pyo3::prelude::*;
 
@@ -15,7 +14,7 @@ use crate::{
     schedule::Schedule,
 };
 
-type OnLadder<'s> = Core<'s, MAX_SENSORS>;
+type OnLadder<'s> = Core<'s, VerifiedSchedule<MAX_SENSORS>>;
 
 self_cell::self_cell!(
     /// The adaptation, with the rungs that it borrows.
@@ -105,7 +104,7 @@ impl Adaptation {
         let window = whole_or("window_periods", window_periods, 16, 1..=u8::MAX)?;
         let patience = whole_or("patience", patience, 4, 1..=u8::MAX)?;
         let adaptation = Owned::try_new(rungs, |rungs| {
-            let mut adaptation = Core::new(Ladder::new(rungs)?);
+            let mut adaptation = Core::new(rungs)?;
             (adaptation.noisy_permille, adaptation.calm_permille) = (noisy, calm);
             (adaptation.window, adaptation.patience) = (window, patience);
             Ok(adaptation)
@@ -146,7 +145,7 @@ impl Adaptation {
     /// The rung in use, 0 for the shortest period.
     #[getter]
     fn rung(&self) -> PyResult<usize> {
-        Ok(self.adaptation.get()?.borrow_dependent().advice(Micros::ZERO, SpeedOfSound::AT_20_CELSIUS).rung)
+        Ok(self.adaptation.get()?.borrow_dependent().rung())
     }
 
     /// The schedule in use.
@@ -161,8 +160,8 @@ impl Adaptation {
     /// was compared in it.
     #[getter]
     fn rejection_rate(&self) -> PyResult<Option<f64>> {
-        let advice = self.adaptation.get()?.borrow_dependent().advice(Micros::ZERO, SpeedOfSound::AT_20_CELSIUS);
-        Ok(advice.rejection_permille.map(|permille| f64::from(permille) / 1e3))
+        let permille = self.adaptation.get()?.borrow_dependent().rejection_permille();
+        Ok(permille.map(|permille| f64::from(permille) / 1e3))
     }
 
     /// The fastest motion, in m/s, at which good readings still pass on the rung in use: a reading changes by
@@ -184,7 +183,7 @@ impl Adaptation {
         let t_delta = micros("t_delta_us", t_delta_us)?;
         let c = sound_m_s.map_or(Ok(343.2), |c| number("sound_m_s", c, 100.0..=1e3))?;
         let c = SpeedOfSound::from_mm_per_s((1e3 * c).round() as u32);
-        Ok(f64::from(self.adaptation.get()?.borrow_dependent().advice(t_delta, c).max_speed_mm_s) / 1e3)
+        Ok(f64::from(self.adaptation.get()?.borrow_dependent().max_speed_mm_s(t_delta, c)) / 1e3)
     }
 
     fn __repr__(&self) -> PyResult<String> {

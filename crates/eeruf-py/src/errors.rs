@@ -5,6 +5,7 @@ use std::ffi::CString;
 use std::fmt::Display;
 use std::path::Path;
 
+use eeruf_core::judge::JudgeError;
 use eeruf_sim::SimulationError as SimulatorError;
 use pyo3::{
     create_exception,
@@ -77,6 +78,15 @@ fn from_zero(error: &impl Display) -> String {
     format!("{error:#}")
 }
 
+impl Raise for JudgeError {
+    fn raise(self) -> PyErr {
+        match self {
+            Self::Setting { .. } => HoppingError::new_err(from_zero(&self)),
+            _ => FilterError::new_err(from_zero(&self)),
+        }
+    }
+}
+
 impl Raise for SimulatorError {
     fn raise(self) -> PyErr {
         match self {
@@ -110,7 +120,7 @@ Example:
     >>> eeruf.EchoFilter(4, 500, consecutive=9)
     Traceback (most recent call last):
     eeruf.FilterError: 9 consecutive readings; expected 2 to 8
-" from eeruf_core::judge::FilterError;
+";
     RingError "A ring that cannot listen as asked.
 
 Example:
@@ -126,7 +136,7 @@ Example:
     >>> eeruf.HoppingSchedule(8, 2_000, 240)
     Traceback (most recent call last):
     eeruf.HoppingError: a period of 2 ms; expected 2.161 ms to 268435.456 ms
-" from eeruf_core::hopping::HoppingError, eeruf_core::judge::TrackerError;
+" from eeruf_core::hopping::HoppingError;
     SearchError "Needs that make no sense or are too large to search.
 
 Example:

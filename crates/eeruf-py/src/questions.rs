@@ -2,11 +2,9 @@
 
 use std::time::Instant;
 
-use eeruf_core::{
-    Micros, SpeedOfSound,
-    search::{Found as CoreFound, Progress},
-};
+use eeruf_core::{Micros, SpeedOfSound};
 use eeruf_design::{CURVE_BUDGET, CurvePoint, LayoutKey, LayoutName, Need, OwnedUneven, Places, RingSpec, Search};
+use eeruf_core::search::{Found as FoundSchedule, Progress};
 use pyo3::{prelude::*, types::PyList};
 
 use crate::{
@@ -148,7 +146,7 @@ pub(crate) fn fit(
         spec.fit(period, budget, &mut control).map_err(Raise::raise)
     });
     let fit = watch.outcome(fit)?;
-    let found = CoreFound {
+    let found = FoundSchedule {
         schedule: fit.schedule,
         value: fit.t_delta,
         bound: fit.bound,

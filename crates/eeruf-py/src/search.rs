@@ -2,12 +2,10 @@
 
 use std::time::Instant;
 
-use eeruf_core::{
-    Criterion, MAX_SENSORS, Micros,
-    search::{
-        self, FrontTable, Outcome, Progress, SearchError, WaitProblem,
-        wait::{self, Budget, Enumeration, Objective},
-    },
+use eeruf_core::{Criterion, MAX_SENSORS, Micros};
+use eeruf_core::search::{
+    self as search, FrontTable, Outcome, Progress, SearchError, WaitProblem,
+    wait::{self, Budget, Enumeration, Objective},
 };
 use pyo3::prelude::*;
 

@@ -50,6 +50,7 @@ use crate::{
 pub(crate) struct SensorWatch {
     watch: Exclusive<eeruf_core::watch::SensorWatch<MAX_SENSORS>>,
     sensors: u8,
+    blind_after: u8,
 }
 
 #[pymethods]
@@ -65,7 +66,7 @@ impl SensorWatch {
         let sensors = whole("sensors", sensors, 1..=MAX_SENSORS as u8)?;
         let blind_after = whole_or("blind_after", blind_after, 20, 0..=u8::MAX)?;
         let watch = eeruf_core::watch::SensorWatch::new(blind_after, begins(now_us)?);
-        Ok(Self { watch: Exclusive::new("SensorWatch", watch), sensors })
+        Ok(Self { watch: Exclusive::new("SensorWatch", watch), sensors, blind_after })
     }
 
     /// Number of sensors it watches.
@@ -96,7 +97,7 @@ impl SensorWatch {
     fn observe(&self, event: &Bound<'_, PyAny>, now_us: &Bound<'_, PyAny>) -> PyResult<Option<Blind>> {
         let (event, now) = (to_core("event", event)?, instant("now_us", now_us)?);
         let blind = self.watch.get()?.observe(&event, now);
-        Ok(blind.map(|blind| Blind { sensor: blind.sensor, firings: blind.firings }))
+        Ok(blind.map(|sensor| Blind { sensor, firings: self.blind_after }))
     }
 
     /// The state of the space before a sensor.

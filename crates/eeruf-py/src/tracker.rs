@@ -1,9 +1,6 @@
 //! `EchoTracker`.
 
-use eeruf_core::{
-    MAX_SENSORS, Micros, Phase,
-    judge::{Firing, TrackerError},
-};
+use eeruf_core::{MAX_SENSORS, Micros, Phase, SensorError, judge::Firing};
 use numpy::{PyArray1, PyArray2, prelude::*};
 use pyo3::prelude::*;
 
@@ -168,7 +165,7 @@ impl EchoTracker {
             }
             Ok(())
         });
-        pushed.map_err(|error: TrackerError| error.raise())?;
+        pushed.map_err(|error: SensorError| error.raise())?;
         PyArray1::from_vec(py, kinds).reshape([rows, self.sensors])
     }
 

@@ -15,12 +15,12 @@
 
 mod agreement;
 mod echoes;
-mod error;
 mod rate;
 #[cfg(test)]
 mod tests;
 mod tracker;
 
+use crate::judge_error::JudgeError;
 use crate::judging::{Heard, Judge, Sounds};
 use crate::reading::{ReadingKind, Verdict};
 use crate::sensor_error::SensorError;
@@ -29,7 +29,6 @@ use crate::time::Micros;
 pub(crate) use agreement::{Consecutive, Tolerance};
 use echoes::LATEST;
 pub(crate) use echoes::{NO_ECHO, heard, insert, shift};
-pub use error::FilterError;
 pub use rate::RateFilter;
 use tracker::Tracker;
 
@@ -57,8 +56,8 @@ impl<const K: usize, const E: usize> EchoFilter<K, E> {
     /// of the one before.
     ///
     /// # Errors
-    /// [`FilterError::Consecutive`] unless 2 to 8 readings are compared.
-    pub const fn new(t_delta: Micros, consecutive: u8) -> Result<Self, FilterError> {
+    /// [`JudgeError::Consecutive`] unless 2 to 8 readings are compared.
+    pub const fn new(t_delta: Micros, consecutive: u8) -> Result<Self, JudgeError> {
         match Consecutive::new(consecutive) {
             Ok(consecutive) => Ok(Self::of(Tolerance::new(t_delta, consecutive))),
             Err(error) => Err(error),

@@ -1,6 +1,6 @@
 //! [`RateFilter`]: three consecutive readings on a line, for a robot that moves and has no odometry.
 
-use super::error::FilterError;
+use crate::judge_error::JudgeError;
 use crate::judging::{Heard, Judge, NoSounds, Sounds};
 use crate::reading::{Explanation, ReadingKind, Verdict};
 use crate::sensor_error::SensorError;
@@ -79,10 +79,10 @@ impl<const K: usize> RateFilter<K> {
     /// for a robot that drives at up to v: what is faster is no echo, which makes accidents rarer.
     ///
     /// # Errors
-    /// [`FilterError::Rate`] for more than 400,000 us/s.
-    pub const fn new(t_delta: Micros, us_per_s: u32) -> Result<Self, FilterError> {
+    /// [`JudgeError::Rate`] for more than 400,000 us/s.
+    pub const fn new(t_delta: Micros, us_per_s: u32) -> Result<Self, JudgeError> {
         if us_per_s > Self::MOST_US_PER_S {
-            return Err(FilterError::Rate { us_per_s });
+            return Err(JudgeError::Rate { us_per_s });
         }
         Ok(Self { sensors: [Line::NEW; K], t_delta, us_per_s })
     }

@@ -2,9 +2,9 @@
 
 use core::fmt;
 
+use crate::judge_error::JudgeError;
 use crate::ring::RingError;
 use crate::time::Micros;
-use crate::tracker::TrackerError;
 
 /// Why a ring cannot hop as asked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -84,14 +84,16 @@ pub enum HoppingError {
         /// After how many readings that do not fit.
         shift_after: u8,
     },
+    /// A ring in use changes to a schedule of another code.
+    OtherCode,
     /// A setting of the tracker.
-    Tracker(TrackerError),
+    Tracker(JudgeError),
     /// Settings by which the ring listens.
     Ring(RingError),
 }
 
-impl From<TrackerError> for HoppingError {
-    fn from(error: TrackerError) -> Self {
+impl From<JudgeError> for HoppingError {
+    fn from(error: JudgeError) -> Self {
         Self::Tracker(error)
     }
 }
@@ -119,6 +121,7 @@ impl HoppingError {
             Self::Window { .. } => "a listening window is at most 16711.679 ms",
             Self::Lag { .. } => "each sensor must fire inside its period",
             Self::Shift { .. } => "lags stay where sensors have limits of their own",
+            Self::OtherCode => "a ring in use keeps its code",
             Self::Tracker(_) => "a setting of the tracker is out of its range",
             Self::Ring(_) => "the ring cannot listen like that",
         }
@@ -160,6 +163,7 @@ impl fmt::Display for HoppingError {
                 "shift_after {shift_after}; expected 0 where sensors have limits of their own, which new lags would \
                  not keep"
             ),
+            Self::OtherCode => f.write_str("a schedule of another code; expected that of the ring's own schedule"),
             Self::Tracker(error) => error.fmt(f),
             Self::Ring(error) => error.fmt(f),
         }

@@ -21,6 +21,7 @@ mod tests;
 mod turn;
 mod weighed;
 
+use crate::judging::Judge;
 use crate::own_limits::{Alike, LimitsInUse};
 use crate::ring::{Ring, RingConfig};
 use crate::time::Instant;
@@ -105,5 +106,19 @@ impl<const K: usize, const H: usize, U: LimitsInUse> HoppingRing<K, H, U> {
         let plan = HoppingPlan::with_limits(schedule, own_limits, settings, listening, seed, now)?;
         let config = RingConfig::new().with_window(listening.window).with_blanking(listening.blanking);
         Ok(Self::judged_by(plan, tracker, config, now)?)
+    }
+}
+
+impl<J: Judge, const K: usize, const E: usize, const H: usize, U: LimitsInUse> Ring<HoppingPlan<K, U>, J, K, E, H> {
+    /// Changes to the lags and the period of another schedule with the same code, as adaptation asks for when a period
+    /// has ended (see [`Adaptation`](crate::adaptation::Adaptation)). The period that has begun begins anew once all
+    /// sound from before has died, which takes a window and `reach` at most; what is confirmed starts over. Where
+    /// sensors have limits of their own, both schedules must meet the same requirements.
+    ///
+    /// # Errors
+    /// [`HoppingError::OtherCode`], or [`HoppingError::Period`] for a period that is shorter than window and code
+    /// together, or than twice the code and a step. The ring then goes on as before.
+    pub fn change_hopping(&mut self, schedule: &HoppingSchedule<K>) -> Result<(), HoppingError> {
+        self.change_plan(|plan| plan.change_schedule(schedule))
     }
 }

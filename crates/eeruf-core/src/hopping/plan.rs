@@ -123,18 +123,7 @@ impl<const K: usize, U: LimitsInUse> HoppingPlan<K, U> {
         if votes > code.phases() {
             return Err(HoppingError::Votes { votes, phases: code.phases() });
         }
-        // The sensor must have stopped listening, and a path must not read the same with two ages.
-        let least = match verified_for {
-            None => listening.window.saturating_add(code.longest_drop()),
-            Some(_) => {
-                let window = |x: u8| own_limits.limits_of(x).map_or(listening.window, |limits| limits.window);
-                let fires_after =
-                    |x: u8| window(x).min(listening.window).saturating_add(code.drop_of(own_limits.leader_of(x)));
-                // At most 64 sensors.
-                (0..code.sensors() as u8).map(fires_after).max().unwrap_or_default()
-            }
-        };
-        let least = least.max(code.two_ages());
+        let least = shortest_period(code, &own_limits, listening.window);
         if schedule.period() < least {
             return Err(HoppingError::Period { period: schedule.period(), least });
         }
@@ -180,6 +169,38 @@ impl<const K: usize, U: LimitsInUse> HoppingPlan<K, U> {
         // No sensor has fired.
         plan.plan(|_| now);
         Ok(plan)
+    }
+
+    /// Takes the lags and the period of another schedule with the same code. The period that has begun begins anew, once
+    /// all sound from before has died; for sensors that have limits of their own both schedules must meet the same
+    /// requirements.
+    pub(super) fn change_schedule(&mut self, schedule: &HoppingSchedule<K>) -> Result<(), HoppingError> {
+        if *schedule.code() != self.code {
+            return Err(HoppingError::OtherCode);
+        }
+        let least = shortest_period(&self.code, &self.own_limits, self.window);
+        if schedule.period() < least {
+            return Err(HoppingError::Period { period: schedule.period(), least });
+        }
+        let rings_for = self.rings_for();
+        if rings_for <= self.length.saturating_add(self.dies) {
+            self.start += rings_for;
+        } else {
+            // A clock that has jumped says nothing about when anything fired.
+            self.break_off();
+        }
+        self.period = schedule.period();
+        for (sensor, turn) in self.turns.iter_mut().enumerate() {
+            turn.lag = schedule.t_lag(sensor).unwrap_or_default();
+            // At most 64 sensors.
+            let leader = self.own_limits.leader_of(sensor as u8);
+            turn.place = self.code.place(schedule.turn(leader.into()), self.phase);
+            // What is pending was fired by the schedule of before.
+            turn.set(SETTLED, false);
+        }
+        self.changed = true;
+        self.clear_period();
+        Ok(())
     }
 
     /// The lag of a sensor as it is now; `None` for one that is out of range.
@@ -309,6 +330,21 @@ impl<const K: usize, U: LimitsInUse> HoppingPlan<K, U> {
         self.lateness.break_off();
         self.changed = true;
     }
+}
+
+/// The shortest period at which each sensor has stopped listening when it fires again, and no path reads the same with
+/// two ages.
+fn shortest_period(code: &HoppingCode, own_limits: &impl LimitsInUse, window: Micros) -> Micros {
+    let rests = match own_limits.most() {
+        None => window.saturating_add(code.longest_drop()),
+        Some(_) => {
+            let own = |x: u8| own_limits.limits_of(x).map_or(window, |limits| limits.window.min(window));
+            let fires_after = |x: u8| own(x).saturating_add(code.drop_of(own_limits.leader_of(x)));
+            // At most 64 sensors.
+            (0..code.sensors() as u8).map(fires_after).max().unwrap_or_default()
+        }
+    };
+    rests.max(code.two_ages())
 }
 
 impl<const K: usize, U: LimitsInUse> Plan for HoppingPlan<K, U> {

@@ -3,8 +3,8 @@
 use super::code::HoppingCode;
 use super::error::HoppingError;
 use crate::own_limits::{EachSensor, SensorLimits};
-use crate::phases::{PhaseSeparation, PhaseTable, PhaseVerification};
-use crate::requirements::Requirements;
+use crate::phases::{PhaseTable, PhaseVerification};
+use crate::requirements::{Requirements, Separation};
 use crate::schedule::{MAX_PERIOD, MAX_SENSORS, Phase, VerifiedFor};
 use crate::time::Micros;
 use crate::verify::Violation;
@@ -106,8 +106,7 @@ impl<const K: usize> HoppingSchedule<K> {
         let (cycle, _) = rows.split_at(self.code.phases() as usize);
         let table = PhaseTable::new(self.period, cycle).with_sensors(self.code.sensors());
         // All pairs and phases are alike.
-        let step =
-            PhaseSeparation { value: self.code.step(), sensors: (0, 1), phases: (Phase(0), Phase(1)), ages: (0, 0) };
+        let step = Separation { value: self.code.step(), sensors: (0, 1), phases: (Phase(0), Phase(1)), ages: (0, 0) };
         let is_proven =
             self.period.as_micros() >= self.code.two_ages().as_micros() && !self.hears_the_same(requirements);
         table.verify_with(if is_proven { Some(step) } else { None }, requirements)

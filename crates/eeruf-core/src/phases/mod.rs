@@ -13,7 +13,7 @@
 
 mod verify;
 
-use crate::requirements::{Interval, Requirements, shorter};
+use crate::requirements::{Interval, Requirements, Separation, shorter};
 use crate::schedule::{MAX_SENSORS, Phase};
 use crate::time::Micros;
 
@@ -44,20 +44,6 @@ pub struct PhaseTable<'a, const K: usize> {
     sensors: u8,
     period: Micros,
     t_fire: &'a [[Micros; K]],
-}
-
-/// The least shift of crosstalk, and where it occurs.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct PhaseSeparation {
-    /// The shift.
-    pub value: Micros,
-    /// The sensor that sends and the one that hears, from 0.
-    pub sensors: (u8, u8),
-    /// The two phases in which it hears.
-    pub phases: (Phase, Phase),
-    /// Number of periods before the sound was sent, in each: -1 if in the period after, while it still listened.
-    pub ages: (i8, i8),
 }
 
 /// The ages that can matter: a sensor listens into the next period, and a path is at most three periods old.
@@ -94,8 +80,8 @@ impl<'a, const K: usize> PhaseTable<'a, K> {
     /// The least by which a path from one sensor to another moves from one phase to another, over all ages in which it
     /// can be heard by what the requirements say of windows, blanking and audible sound; `None` if no path can be heard
     /// in two phases. Two that must fire together do not count. Takes `25 (K M)^2` steps.
-    pub const fn separation(&self, requirements: &Requirements<'_>) -> Option<PhaseSeparation> {
-        let (mut least, mut x): (Option<PhaseSeparation>, usize) = (None, 0);
+    pub const fn separation(&self, requirements: &Requirements<'_>) -> Option<Separation> {
+        let (mut least, mut x): (Option<Separation>, usize) = (None, 0);
         while x < self.sensors() {
             let mut y = 0;
             while y < self.sensors() {
@@ -111,8 +97,8 @@ impl<'a, const K: usize> PhaseTable<'a, K> {
 
     /// The same of a sensor's own sound from earlier periods, however long its path: by how much a stale echo moves at
     /// least. Sound that is a whole cycle old does not move, and does not count.
-    pub const fn stale_separation(&self, requirements: &Requirements<'_>) -> Option<PhaseSeparation> {
-        let (mut least, mut x): (Option<PhaseSeparation>, usize) = (None, 0);
+    pub const fn stale_separation(&self, requirements: &Requirements<'_>) -> Option<Separation> {
+        let (mut least, mut x): (Option<Separation>, usize) = (None, 0);
         while x < self.sensors() {
             least = closer(least, self.separation_of(x, x, requirements));
             x += 1;
@@ -121,7 +107,7 @@ impl<'a, const K: usize> PhaseTable<'a, K> {
     }
 
     /// As far as a path from x to y goes.
-    const fn separation_of(&self, x: usize, y: usize, requirements: &Requirements<'_>) -> Option<PhaseSeparation> {
+    const fn separation_of(&self, x: usize, y: usize, requirements: &Requirements<'_>) -> Option<Separation> {
         let reach = match requirements.audible {
             _ if x == y => Micros::MAX,
             Some(audible) => audible,
@@ -132,7 +118,7 @@ impl<'a, const K: usize> PhaseTable<'a, K> {
             blanking: requirements.blanking.as_micros() as i64,
             reach: reach.as_micros() as i64,
         };
-        let mut least: Option<PhaseSeparation> = None;
+        let mut least: Option<Separation> = None;
         let events = self.phases() * AGES.len();
         let mut one = 0;
         while one < events {
@@ -143,7 +129,7 @@ impl<'a, const K: usize> PhaseTable<'a, K> {
                     let value = Micros::new(a.abs_diff(b) as u32);
                     let phases = (Phase((one / AGES.len()) as u8), Phase((other / AGES.len()) as u8));
                     let ages = (AGES[one % AGES.len()], AGES[other % AGES.len()]);
-                    least = closer(least, Some(PhaseSeparation { value, sensors: (x as u8, y as u8), phases, ages }));
+                    least = closer(least, Some(Separation { value, sensors: (x as u8, y as u8), phases, ages }));
                 }
                 other += 1;
             }
@@ -235,7 +221,7 @@ impl Heard {
     }
 }
 
-const fn closer(least: Option<PhaseSeparation>, next: Option<PhaseSeparation>) -> Option<PhaseSeparation> {
+const fn closer(least: Option<Separation>, next: Option<Separation>) -> Option<Separation> {
     match (least, next) {
         (Some(one), Some(other)) if one.value.as_micros() <= other.value.as_micros() => least,
         (_, None) => least,

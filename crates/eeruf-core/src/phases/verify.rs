@@ -1,7 +1,7 @@
 //! [`PhaseVerification`]: whether firing times of many phases keep what is asked of them, and what they do not.
 
-use super::{PhaseSeparation, PhaseTable, closer};
-use crate::requirements::{Interval, Requirements};
+use super::{PhaseTable, closer};
+use crate::requirements::{Interval, Requirements, Separation};
 use crate::time::Micros;
 use crate::verify::{Violation, ViolationKind};
 
@@ -14,7 +14,7 @@ impl<const K: usize> PhaseTable<'_, K> {
     /// The same where it is proven that crosstalk of all pairs moves by at least so much.
     pub(crate) const fn verify_with<'r>(
         &self,
-        proven: Option<PhaseSeparation>,
+        proven: Option<Separation>,
         requirements: &'r Requirements<'r>,
     ) -> PhaseVerification<'r> {
         let (mut worst, mut separation, mut stale) = ([None; KINDS], None, None);
@@ -27,7 +27,7 @@ impl<const K: usize> PhaseTable<'_, K> {
                     (requirements.separation_of(x, y), !stale_echo || requirements.stale_echo)
                 {
                     let found = match proven {
-                        Some(proven) if !stale_echo => Some(PhaseSeparation { sensors: (x as u8, y as u8), ..proven }),
+                        Some(proven) if !stale_echo => Some(Separation { sensors: (x as u8, y as u8), ..proven }),
                         _ => self.separation_of(x, y, requirements),
                     };
                     if stale_echo {
@@ -90,9 +90,9 @@ const KINDS: usize = 7;
 type Worst = [Option<Violation>; KINDS];
 
 /// Sound that does not move as far as it must.
-const fn moves(kind: ViolationKind, found: Option<PhaseSeparation>, required: Micros) -> Option<Violation> {
+const fn moves(kind: ViolationKind, found: Option<Separation>, required: Micros) -> Option<Violation> {
     match found {
-        Some(PhaseSeparation { value, sensors, phases, ages }) if value.as_micros() < required.as_micros() => {
+        Some(Separation { value, sensors, phases, ages }) if value.as_micros() < required.as_micros() => {
             Some(Violation { kind, sensors, phases, ages, value, required })
         }
         _ => None,
@@ -127,8 +127,8 @@ const fn short_by(violation: Violation) -> u32 {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct PhaseVerification<'r> {
     requirements: &'r Requirements<'r>,
-    separation: Option<PhaseSeparation>,
-    stale: Option<PhaseSeparation>,
+    separation: Option<Separation>,
+    stale: Option<Separation>,
     min_interval: Option<Interval>,
     min_refire: Option<Interval>,
     worst: Worst,
@@ -141,12 +141,12 @@ impl PhaseVerification<'_> {
     }
 
     /// The least shift of crosstalk, and where it occurs; `None` if no path can be heard in two phases.
-    pub const fn separation(&self) -> Option<PhaseSeparation> {
+    pub const fn separation(&self) -> Option<Separation> {
         self.separation
     }
 
     /// The least shift of a stale echo; `None` if none can be heard, or if it was not asked for.
-    pub const fn stale_separation(&self) -> Option<PhaseSeparation> {
+    pub const fn stale_separation(&self) -> Option<Separation> {
         self.stale
     }
 

@@ -74,6 +74,17 @@ impl<P: Plan, const K: usize, const E: usize, const H: usize> Ring<P, EchoFilter
 }
 
 impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, J, K, E, H> {
+    /// Changes the plan, which then decides on the period that has begun.
+    pub(crate) fn change_plan<Refused>(
+        &mut self,
+        change: impl FnOnce(&mut P) -> Result<(), Refused>,
+    ) -> Result<(), Refused> {
+        change(&mut self.plan)?;
+        self.disturb();
+        self.begin_period();
+        Ok(())
+    }
+
     /// Sets the listening window, also of firings in progress.
     ///
     /// # Errors

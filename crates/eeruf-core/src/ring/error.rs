@@ -3,7 +3,7 @@
 use core::fmt;
 
 use super::history::MAX_AUDIBLE;
-use crate::filter::FilterError;
+use crate::judge_error::JudgeError;
 use crate::schedule::MAX_SENSORS;
 use crate::time::Micros;
 
@@ -74,14 +74,11 @@ pub enum RingError {
     },
     /// The schedule was not verified, so that `t_delta` and the window cannot be taken from it.
     Unverified,
-    /// The filter cannot compare this many readings.
-    Filter(FilterError),
-}
-
-impl From<FilterError> for RingError {
-    fn from(error: FilterError) -> Self {
-        Self::Filter(error)
-    }
+    /// Too few or too many consecutive readings to compare.
+    Consecutive {
+        /// The number asked for.
+        consecutive: u8,
+    },
 }
 
 impl fmt::Display for RingError {
@@ -121,7 +118,8 @@ impl fmt::Display for RingError {
             Self::Unverified => {
                 f.write_str("a schedule that was not verified; expected both t_delta and window in the configuration")
             }
-            Self::Filter(error) => error.fmt(f),
+            // As the judge says it.
+            &Self::Consecutive { consecutive } => JudgeError::Consecutive { consecutive }.fmt(f),
         }
     }
 }

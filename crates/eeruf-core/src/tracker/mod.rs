@@ -9,18 +9,18 @@
 //! The room uses readings and times; it knows nothing of schedules. Rules and measurements:
 //! `docs/explanation/hopping.md`.
 
-mod error;
 mod sensor;
 mod settings;
 #[cfg(test)]
 mod tests;
 mod track;
 
+use crate::judge_error::JudgeError;
 use crate::judging::{self, Firing, Judge, Sounds};
 use crate::reading::{ReadingKind, Verdict};
+use crate::sensor_error::SensorError;
 use crate::time::Micros;
 
-pub use error::TrackerError;
 use sensor::{Heard, SensorTracks};
 pub use settings::TrackerSettings;
 use track::LATEST;
@@ -44,7 +44,7 @@ pub(crate) const LATEST_ECHO: Micros = Micros::new(LATEST);
 /// let kinds = [4, 5, 6, 7, 8].map(|phase| push(phase, 9_000));
 /// assert_eq!(kinds[1]?, ReadingKind::Tentative);
 /// assert_eq!(kinds[4]?, ReadingKind::Accepted);
-/// # Ok::<(), eeruf_core::judge::TrackerError>(())
+/// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -57,8 +57,8 @@ impl<const K: usize, const H: usize> EchoTracker<K, H> {
     /// A tracker that knows nothing yet.
     ///
     /// # Errors
-    /// [`TrackerError::Setting`] for a setting out of its range.
-    pub const fn new(settings: TrackerSettings) -> Result<Self, TrackerError> {
+    /// [`JudgeError::Setting`] for a setting out of its range.
+    pub const fn new(settings: TrackerSettings) -> Result<Self, JudgeError> {
         match settings.check() {
             Ok(()) => Ok(Self { sensors: [SensorTracks::NEW; K], settings }),
             Err(error) => Err(error),
@@ -78,12 +78,12 @@ impl<const K: usize, const H: usize> EchoTracker<K, H> {
     /// [`Rejected`](ReadingKind::Rejected) or [`NoEcho`](ReadingKind::NoEcho).
     ///
     /// # Errors
-    /// [`TrackerError::Sensor`] for a sensor out of range.
-    pub fn push(&mut self, sensor: usize, t_echo: Option<Micros>, firing: Firing) -> Result<Verdict, TrackerError> {
+    /// [`SensorError`] for a sensor out of range.
+    pub fn push(&mut self, sensor: usize, t_echo: Option<Micros>, firing: Firing) -> Result<Verdict, SensorError> {
         let settings = &self.settings;
         match self.sensors.get_mut(sensor) {
             Some(tracks) => Ok(tracks.push(Heard::new(t_echo, firing), settings.t_delta, settings)),
-            None => Err(TrackerError::Sensor { sensor, sensors: K }),
+            None => Err(SensorError::new(u8::try_from(sensor).unwrap_or(u8::MAX), K)),
         }
     }
 
@@ -91,17 +91,17 @@ impl<const K: usize, const H: usize> EchoTracker<K, H> {
     /// supported or contradicted, and the age grows; tracks move by `expected_change_us`, as in a [`Firing`].
     ///
     /// # Errors
-    /// [`TrackerError::Sensor`] for a sensor out of range.
+    /// [`SensorError`] for a sensor out of range.
     pub fn skip(
         &mut self,
         sensor: usize,
         kind: ReadingKind,
         t_echo: Option<Micros>,
         expected_change_us: i32,
-    ) -> Result<Verdict, TrackerError> {
+    ) -> Result<Verdict, SensorError> {
         match self.sensors.get_mut(sensor) {
             Some(tracks) => Ok(tracks.skip(kind, t_echo, expected_change_us)),
-            None => Err(TrackerError::Sensor { sensor, sensors: K }),
+            None => Err(SensorError::new(u8::try_from(sensor).unwrap_or(u8::MAX), K)),
         }
     }
 

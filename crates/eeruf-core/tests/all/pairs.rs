@@ -3,8 +3,10 @@
 use eeruf_core::{
     EachSensor, EchoFilter, Instant, Micros, ReadingKind, Requirements, Ring, RingConfig, RingEvent, Uneven,
     VerifiedSchedule,
-    adaptation::{Adaptation, Ladder},
-    hopping::{HoppingCode, HoppingListening, HoppingPlan, HoppingRing, HoppingSchedule, HoppingSettings},
+    adaptation::Adaptation,
+    hopping::{
+        HoppingCode, HoppingError, HoppingListening, HoppingPlan, HoppingRing, HoppingSchedule, HoppingSettings,
+    },
     judge::{Judge, TrackerSettings},
     plan::{EachInUse, Plan, ScheduledFiring},
     schedule,
@@ -146,7 +148,7 @@ fn limits_go_with_adaptation() {
         each_meets: LIMITS,
     };
     let rungs = [CORNER, slower];
-    let mut adaptation = Adaptation::new(Ladder::new(&rungs).unwrap());
+    let mut adaptation = Adaptation::new(&rungs).unwrap();
     let mut ring: Ring<ScheduledFiring<'_, 2, 2, EachInUse<'_, 2>>, _, 2> =
         Ring::new(&rungs[0], RingConfig::new(), BEGIN).unwrap();
     accepted(&mut ring, 1, |ring, event| {
@@ -159,13 +161,70 @@ fn limits_go_with_adaptation() {
     assert_eq!((ring.window_of(0), ring.window_of(1)), (Micros::from_millis(50), Micros::from_millis(12)));
 }
 
+// A ring that hops goes to a longer period with the same code, and back, and believes no sound of another sensor.
+#[test]
+fn many_phases_go_with_adaptation() {
+    let code = HoppingCode::new(4, 2, Micros::new(301)).unwrap();
+    let rung = |ms| HoppingSchedule::<4>::spread(code, Micros::from_millis(ms)).unwrap();
+    let rungs = [rung(45), rung(60), rung(90)];
+    let mut adaptation = Adaptation::hopping(&rungs).unwrap();
+    // What the sensor of foreign sound has rejected is no reason to slow down.
+    adaptation.calm_permille = 300;
+    let listening = HoppingListening::new(Micros::from_millis(36));
+    let mut ring = HoppingRing::<4>::hopping(&rungs[0], HoppingSettings::BALANCED, listening, 1, BEGIN).unwrap();
+    let (mut periods, mut fired, mut firings) = (vec![], [BEGIN; 4], 0);
+    // For ten seconds something else each time, then a wall; and sound of sensor 0 along one path, for sensor 2.
+    let noisy = |now: Instant| now.since(BEGIN) < Micros::from_millis(10_000);
+    while ring.next_deadline().since(BEGIN) < Micros::from_millis(60_000) {
+        let now = ring.next_deadline();
+        while let Some(event) = ring.poll(now) {
+            match event {
+                RingEvent::Fire { sensor, .. } => {
+                    firings += 1;
+                    let own = now.since(fired[usize::from(sensor)]);
+                    assert!(firings <= 4 || own >= listening.window, "{sensor} {now:?}");
+                    fired[usize::from(sensor)] = now;
+                    let other = Micros::new(5_000 + 1_700 * (firings * 7 % 16));
+                    let wall = if noisy(now) { other } else { Micros::new(20_000) };
+                    if sensor != 2 {
+                        ring.echo(sensor, now + wall).unwrap();
+                    }
+                    let path = Micros::new(31_000).saturating_sub(now.since(fired[0]));
+                    if sensor == 2 && !noisy(now) && firings > 4 && path > Micros::ZERO {
+                        ring.echo(sensor, now + path).unwrap();
+                    }
+                }
+                RingEvent::Reading(reading) => {
+                    let is_foreign = reading.sensor == 2 && reading.kind == ReadingKind::Accepted;
+                    assert!(!is_foreign, "{reading:?}");
+                }
+                RingEvent::PeriodEnded(stats) => {
+                    let changed = adaptation.adapt(&stats, |schedule| ring.change_hopping(schedule)).unwrap();
+                    if changed {
+                        periods.push(rungs[adaptation.rung()].period().as_micros() / 1000);
+                        let lags = (0..4).map(|sensor| ring.plan().t_lag(sensor));
+                        assert!(lags.eq((0..4).map(|sensor| rungs[adaptation.rung()].t_lag(sensor))));
+                    }
+                }
+            }
+        }
+    }
+    assert_eq!(periods, [60, 90, 60, 45]);
+    // Another code, and a period for which the ring listens too long, are refused, and change nothing.
+    let other =
+        HoppingSchedule::<4>::spread(HoppingCode::new(4, 2, Micros::new(302)).unwrap(), Micros::from_millis(60));
+    assert_eq!(ring.change_hopping(&other.unwrap()), Err(HoppingError::OtherCode));
+    assert!(matches!(ring.change_hopping(&rung(36)), Err(HoppingError::Period { .. })));
+    assert_eq!(ring.plan().t_lag(3), rungs[0].t_lag(3));
+}
+
 #[test]
 fn several_echoes_go_with_adaptation() {
     let requirements = Requirements::new(Micros::new(599));
     let rungs =
         [TABLE_I_D.scaled(3, 5).unwrap(), TABLE_I_D].map(|table| table.verify(&requirements).verified().unwrap());
     let run = |heard| {
-        let mut adaptation = Adaptation::new(Ladder::new(&rungs).unwrap());
+        let mut adaptation = Adaptation::new(&rungs).unwrap();
         let config = RingConfig::new().with_window(Micros::from_millis(40)).with_echoes::<3>();
         let mut ring: Ring<ScheduledFiring<'_, 12>, _, 12, 3> = Ring::new(&rungs[0], config, BEGIN).unwrap();
         let accepted = accepted(&mut ring, heard, |ring, event| {

@@ -3,7 +3,7 @@
 use eeruf_core::{
     EachSensor, EchoFilter, Instant, Layout, Micros, ReadingKind, Requirements, Ring, RingConfig, RingError, RingEvent,
     Schedule, Uneven, VerifiedSchedule,
-    adaptation::{Adaptation, Ladder},
+    adaptation::Adaptation,
     plan::{ScheduledFiring, check_plan},
     tables::TABLE_I_D,
 };
@@ -347,7 +347,7 @@ fn ring_changes_between_even_and_uneven_schedules() {
 #[test]
 fn a_ladder_takes_rungs_for_sensors_that_are_not_alike() {
     let rungs = [corners(), farther()];
-    let mut adaptation = Adaptation::new(Ladder::new(&rungs).unwrap());
+    let mut adaptation = Adaptation::new(&rungs).unwrap();
     (adaptation.window, adaptation.noisy_permille) = (2, 0);
     let config = RingConfig::new().with_window(Micros::from_millis(50)).with_t_delta(Micros::new(1_900));
     let mut ring: Ring<_, _, 4> = Ring::new(&rungs[0], config, Instant::from_micros(0)).unwrap();

@@ -32,9 +32,8 @@ fn log(travel: &Travel, random: &mut Random, strays: i64) -> FiringLog {
     let mut firings = vec![];
     for slot in 0..plan.slots() {
         let begins = 110_000 * i64::from(slot);
-        let fires = plan.slot(slot).unwrap();
-        let second = fires.second.map(|(sensor, lead)| (sensor, begins + i64::from(lead.as_micros())));
-        let fired: Vec<_> = [Some((fires.first, begins)), second].into_iter().flatten().collect();
+        let after = |(sensor, after): (u8, Micros)| (sensor, begins + i64::from(after.as_micros()));
+        let fired: Vec<_> = plan.firings(slot).map(after).collect();
         for &(sensor, at) in &fired {
             let edges = fired.iter().flat_map(|&(other, sent)| {
                 travel[usize::from(other)][usize::from(sensor)].iter().map(move |travel| sent + travel - at)

@@ -1,8 +1,7 @@
 //! A ring that moves along a ladder of scaled schedules as the rejection rate asks for (end of Sec. 3.1).
 
 use eeruf_core::{
-    EachSensor, EchoFilter, Instant, MAX_SENSORS, Ring, RingEvent,
-    adaptation::{Adaptation, Ladder},
+    EachSensor, EchoFilter, Instant, MAX_SENSORS, Ring, RingEvent, VerifiedSchedule, adaptation::Adaptation,
     conditions::Violation,
 };
 
@@ -12,7 +11,7 @@ use crate::world::{AnySchedule, Robot};
 /// A ring that moves along a ladder of schedules (end of Sec. 3.1).
 struct AdaptiveRing<'s> {
     ring: Ring<TableFiring<'s>, EchoFilter<MAX_SENSORS>, MAX_SENSORS>,
-    adaptation: Adaptation<'s, MAX_SENSORS, EachSensor<MAX_SENSORS>>,
+    adaptation: Adaptation<'s, VerifiedSchedule<MAX_SENSORS, 2, EachSensor<MAX_SENSORS>>>,
 }
 
 impl<'s> RingRunner<'s> for AdaptiveRing<'s> {
@@ -49,10 +48,10 @@ pub(super) fn plan(robot: &Robot, base: AnySchedule) -> Result<FiringPlan, Start
 
 /// A ring on its ladder.
 pub(super) fn adaptive<'s>(start: &RingStart<'s>) -> Started<'s> {
-    let ladder = Ladder::new(&start.plan.ladder).map_err(StartError::Ladder)?;
+    let adaptation = Adaptation::new(&start.plan.ladder).map_err(StartError::Ladder)?;
     // A ladder has a rung.
     let ring = Ring::new(&start.plan.ladder[0], start.config(), start.now)?;
-    Ok(Box::new(AdaptiveRing { ring, adaptation: Adaptation::new(ladder) }))
+    Ok(Box::new(AdaptiveRing { ring, adaptation }))
 }
 
 impl From<Violation> for StartError {

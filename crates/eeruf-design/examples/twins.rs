@@ -74,8 +74,8 @@ fn main() {
     }
     for (kind, ((all, open, ratios), worst)) in KINDS.iter().zip(sums.into_iter().zip(worst)) {
         println!(
-            "# {kind}: {all:.2} s, {open} open; times core, where less than 20 ms counts as 20: geometric mean {:.2}, at \
-             most {worst:.1}",
+            "# {kind}: {all:.2} s, {open} open; times core, less than 20 ms counts as 20: geometric mean {:.2}, \
+             at most {worst:.1}",
             (ratios / f64::from(rings)).exp()
         );
     }

@@ -8,7 +8,7 @@
 use crate::engine::descent::Case;
 use crate::engine::problem::{Merged, Problem};
 
-/// The most windows to distinguish cases of: beyond, a search of the problem itself takes no longer.
+/// The most windows and pairs to raise: beyond, a search of the problem itself takes no longer.
 const MOST: usize = 8;
 
 /// A problem with limits raised.
@@ -19,7 +19,7 @@ pub(crate) struct Raised {
 }
 
 impl Raised {
-    /// The problem with windows and gaps raised to what most have. `None` if none is lower.
+    /// The problem with windows and gaps raised to what most have. `None` if none or many are lower.
     pub(crate) fn of(problem: &Problem) -> Option<Self> {
         let (window, gap) = (problem.usual_window()?, problem.usual_gap().unwrap_or(0));
         let sensors: Vec<usize> = (0..problem.sensors()).filter(|&x| problem.window[x] < window).collect();
@@ -28,9 +28,10 @@ impl Raised {
             gaps: problem.gaps.iter().map(|&(x, y, to, from)| (x, y, to.max(gap), from.max(gap))).collect(),
             ..problem.clone()
         };
-        let only_windows = raised.gaps == problem.gaps && sensors.len() <= MOST;
-        let windows = only_windows.then_some((sensors, window));
-        (raised != *problem).then_some(Self { problem: raised, windows })
+        let pairs = raised.gaps.iter().zip(&problem.gaps).filter(|(to, from)| to != from).count();
+        let count = sensors.len() + pairs;
+        let windows = (pairs == 0).then_some((sensors, window));
+        (1..=MOST).contains(&count).then_some(Self { problem: raised, windows })
     }
 
     /// Returns true if it serves for proofs.

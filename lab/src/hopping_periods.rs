@@ -1,8 +1,8 @@
 //! How long periods of many phases must be: the shortest with the codes that a ring has, with Welch's sequence of every
 //! root, and with congruences whose multipliers are dealt out freely, each by the same search for orders and lags.
-//! `cargo run --release -p eeruf-design --example hopping_periods RING.toml ..` prints a row for docs/log/hopping.md.
+//! `cargo lab hopping-periods RING.toml ..` prints a row for docs/log/hopping.md.
 
-use std::{env, error::Error, fs};
+use std::fs;
 
 use eeruf_core::{Criterion, Micros, Requirements};
 use eeruf_design::RingSpec;
@@ -186,10 +186,10 @@ fn welch(prime: i64, root: i64) -> Option<Column> {
     is_primitive.then(|| powers.iter().map(|power| power - 1).collect())
 }
 
-fn main() -> Result<(), Box<dyn Error>> {
+pub(crate) fn main(arguments: &[String]) -> crate::Answer {
     println!("| ring | as designed | Welch, any root | any multipliers |\n|---|---:|---:|---:|");
-    for file in env::args().skip(1) {
-        let spec = RingSpec::from_text(&fs::read_to_string(&file)?)?;
+    for file in arguments {
+        let spec = RingSpec::from_text(&fs::read_to_string(file)?)?;
         let designed = spec.hopping(4, Criterion::Exact)?.schedule.period();
         let ring = Ring::of(spec.sensors, &spec.phase_requirements(Criterion::Exact));
         let sensors = spec.sensors as i64;

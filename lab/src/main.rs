@@ -2,6 +2,7 @@
 //!
 //! `cargo lab` lists them. None of it is published, nor needed by who uses eeruf.
 
+mod clock;
 mod constant_depth;
 #[path = "../../crates/eeruf-sim/tests/common/corpus.rs"]
 mod corpus;
@@ -13,8 +14,10 @@ mod flow_rooms;
 mod four_worlds;
 mod hopping_ablation;
 mod hopping_limits;
+mod hopping_periods;
 mod modules;
 mod narrow_panels;
+mod open_rings;
 mod prove;
 mod ray_casts;
 mod rust_side;
@@ -26,6 +29,7 @@ mod time_scenes;
 mod tune;
 mod twins;
 mod typical_alcove;
+mod uneven_rings;
 mod unseen_rooms;
 mod wait_count;
 mod without_odometry;
@@ -39,7 +43,7 @@ type Answer = Result<(), Box<dyn Error>>;
 /// A command: its name, its arguments, what it prints.
 type Command = (&'static str, &'static str, &'static str, fn(&[String]) -> Answer);
 
-const COMMANDS: [Command; 26] = [
+const COMMANDS: [Command; 29] = [
     ("constant-depth", "", "angles at which a wall is heard, by distance and gain", constant_depth::main),
     (
         "diagnose-alcoves",
@@ -64,8 +68,10 @@ const COMMANDS: [Command; 26] = [
         hopping_ablation::main,
     ),
     ("hopping-limits", "", "hopping when late, and beliefs by accident", hopping_limits::main),
+    ("hopping-periods", "RING.toml ..", "periods of many phases, by kinds of codes", hopping_periods::main),
     ("modules", "", "tables of docs/reference/modules.md", modules::main),
     ("narrow-panels", "", "panels narrower than a Fresnel zone", narrow_panels::main),
+    ("open-rings", "[SECONDS [FILE [PART/PARTS]]]", "rings that the atlas leaves open", open_rings::main),
     ("periods", "", "table of shortest periods", shortest_periods::table),
     ("prove", "FILE [NODES]", "a certificate's proof, completed", prove::main),
     ("ray-casts", "", "exactness of ray casts", ray_casts::main),
@@ -83,6 +89,7 @@ const COMMANDS: [Command; 26] = [
     ("tune", "[--check]", "settings of the experiments, into the sources (an hour)", tune::main),
     ("twins", "[SECONDS]", "rings with one limit changed, beside even ones", twins::main),
     ("typical-alcove", "[SCENE.toml]", "the typical alcove of Set I", typical_alcove::main),
+    ("uneven-rings", "[RINGS [SECONDS]]", "random rings for a race with peers", uneven_rings::main),
     ("unseen-rooms", "[RINGS [FIRST [PLACES]]]", "eeruf design's words in other rooms", unseen_rooms::main),
     (
         "wait-count",

@@ -8,8 +8,8 @@
 
 use std::{hint::black_box, sync::Arc, time::Instant};
 
-use eeruf_core::{EchoFilter, Layout, MAX_SENSORS, Micros, Requirements};
 use eeruf_core::search::{PeriodProblem, design};
+use eeruf_core::{EchoFilter, Layout, MAX_SENSORS, Micros, Requirements};
 use eeruf_sim::{
     Air, Filter, Filtered, FiredReading, Method, Noise, Options, Own, OwnError, Pose, Robot, Scene, Simulation, Stop,
     Transducer, Wall, World,

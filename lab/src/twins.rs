@@ -1,13 +1,13 @@
 //! Prints what the table of `docs/explanation/search.md` costs core's search of even rings and the engine, and what it
-//! costs where one limit of one sensor or pair is a tick more or less: `cargo lab twins
-//! [SECONDS]`, for each ring at most.
-
-use std::time::Instant;
+//! costs where one limit of one sensor or pair is a tick more or less: `cargo lab twins [SECONDS]`, for each ring at most.
+//! Times are those of a core.
 
 use eeruf_core::Layout;
+use eeruf_core::search::design::{self, memory_words};
 use eeruf_design::engine::Problem;
 use eeruf_design::engine::shortest::shortest;
-use eeruf_core::search::design::{self, memory_words};
+
+use crate::clock::core_seconds;
 
 const KINDS: [&str; 7] = ["even", "window +", "window -", "gap +", "gap -", "separation +", "separation -"];
 
@@ -29,8 +29,8 @@ fn twin(even: &Problem, kind: &str) -> Problem {
 pub(crate) fn main(arguments: &[String]) -> crate::Answer {
     let seconds: f64 = arguments.first().map_or(Ok(10.0), |text| text.parse())?;
     println!("layout sensors window | core: period nodes ms | {}: period[bound] nodes ms", KINDS.join(", "));
-    // Of each kind: seconds, open rings, the logarithms of the times to core's, and the same where 20 ms is the least.
-    let mut sums = [(0.0, 0, 0.0, 0.0); KINDS.len()];
+    // Of each kind: seconds, open rings, and the logarithms of the times to core's, where 20 ms is the least.
+    let mut sums = [(0.0, 0, 0.0); KINDS.len()];
     let (mut rings, mut worst) = (0, [0.0_f64; KINDS.len()]);
     for layout in ["line", "ring"] {
         for (sensors, window) in [8, 12, 16, 24].iter().flat_map(|&k| [15, 30, 45, 60].map(|window| (k, window))) {
@@ -39,9 +39,9 @@ pub(crate) fn main(arguments: &[String]) -> crate::Answer {
             let problem =
                 design::Problem { sensors, conflicts, separation: 2, interval: 15, window, stale_echo: false };
             let mut memory = vec![0; memory_words(sensors)];
-            let begin = Instant::now();
+            let begin = core_seconds();
             let found = design::shortest(&problem, u64::MAX, &mut memory, &mut ()).expect("the table makes sense");
-            let core = begin.elapsed().as_secs_f64() * 1e3;
+            let core = (core_seconds() - begin) * 1e3;
             print!("{layout} {sensors} {window} | {} {} {core:.1}", found.period, found.nodes);
             let pairs = (0..sensors).flat_map(|x| (x + 1..sensors).map(move |y| (x, y)));
             let even = Problem {
@@ -55,28 +55,26 @@ pub(crate) fn main(arguments: &[String]) -> crate::Answer {
             };
             rings += 1;
             for (kind, (sum, worst)) in KINDS.iter().zip(sums.iter_mut().zip(&mut worst)) {
-                let begin = Instant::now();
-                let mut go_on = |_: &_| begin.elapsed().as_secs_f64() < seconds;
+                let begin = core_seconds();
+                let mut go_on = |_: &_| core_seconds() - begin < seconds;
                 let found = shortest(&twin(&even, kind), u64::MAX, &mut go_on).expect("there is a schedule");
-                let own = begin.elapsed().as_secs_f64() * 1e3;
+                let own = (core_seconds() - begin) * 1e3;
                 let open = if found.bound < found.period { format!("[{}]", found.bound) } else { String::new() };
                 print!(" | {}{open} {} {own:.1}", found.period, found.nodes);
                 let floored = own.max(20.0) / core.max(20.0);
-                let (all, left_open, ratios, with_floor) = *sum;
+                let (all, left_open, ratios) = *sum;
                 let left_open = left_open + u32::from(!open.is_empty());
-                *sum = (all + own / 1e3, left_open, ratios + (own / core.max(0.01)).ln(), with_floor + floored.ln());
+                *sum = (all + own / 1e3, left_open, ratios + floored.ln());
                 *worst = worst.max(floored);
             }
             println!();
         }
     }
-    for (kind, ((all, open, ratios, with_floor), worst)) in KINDS.iter().zip(sums.into_iter().zip(worst)) {
-        let mean = |sum: f64| (sum / f64::from(rings)).exp();
+    for (kind, ((all, open, ratios), worst)) in KINDS.iter().zip(sums.into_iter().zip(worst)) {
         println!(
-            "# {kind}: {all:.2} s, {open} open; times core: geometric mean {:.2}; {:.2} and at most {worst:.1} where \
-             less than 20 ms counts as 20",
-            mean(ratios),
-            mean(with_floor)
+            "# {kind}: {all:.2} s, {open} open; times core, less than 20 ms counts as 20: geometric mean {:.2}, \
+             at most {worst:.1}",
+            (ratios / f64::from(rings)).exp()
         );
     }
     Ok(())

@@ -89,8 +89,9 @@ fn keeps(problem: &Problem, period: u32, more: [u32; 3]) -> bool {
 
 #[test]
 fn spare_is_that_of_trying_all_schedules() {
+    let cases = std::env::var("EERUF_CASES").map_or(150, |cases| cases.parse().expect("a number"));
     let (mut solved, mut spared) = (0, [0; 3]);
-    for seed in 0..150 {
+    for seed in 0..cases {
         let problem = random_problem(&mut Random(seed + 1));
         let Some((period, fire)) = shortest(&problem, if problem.sensors() <= 3 { 11 } else { 7 }) else { continue };
         // One tick more, so that there is a choice.
@@ -106,8 +107,9 @@ fn spare_is_that_of_trying_all_schedules() {
         {
             assert!(!keeps(&problem, period + 1, better), "seed {seed}: need {need} could grow: {spare:?} {problem:?}");
         }
-        solved += 1;
+        solved += 1_u64;
         (0..3).for_each(|need| spared[need] += spare.more[need]);
     }
-    assert!(solved > 50 && spared.iter().all(|more| *more > 10), "{solved} solved, spared {spared:?}");
+    println!("{solved} of {cases} problems, spared {spared:?}");
+    assert!(solved * 3 > cases && spared.iter().all(|more| *more > 10), "{solved} solved, spared {spared:?}");
 }

@@ -68,8 +68,14 @@ fn naive_front(tiny: &Owned) -> Vec<ParetoPoint> {
     front
 }
 
+/// The number of problems of each test: `EERUF_BRUTE_FORCE`, or 150.
+fn config() -> ProptestConfig {
+    let cases = std::env::var("EERUF_BRUTE_FORCE").map_or(150, |cases| cases.parse().expect("a number"));
+    ProptestConfig { cases, failure_persistence: None, ..ProptestConfig::default() }
+}
+
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 150, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(config())]
 
     #[test]
     fn nested_loops_agree_on_found_exhausted_and_count(tiny in tiny()) {

@@ -70,12 +70,13 @@ impl Branching {
     }
 }
 
-/// Chooses a branching, if anything is left: firing orders first, sensor by sensor, all of phase a, then all of
-/// phase b; then signs, ranks and values of d.
-pub(crate) fn choose(state: &State, merged: &Merged) -> Option<Branching> {
+/// Chooses a branching, if anything is left: firing orders first, sensor by sensor in this sequence, all of phase a,
+/// then all of phase b; then signs, ranks and values of d.
+pub(crate) fn choose(state: &State, merged: &Merged, sequence: &[usize]) -> Option<Branching> {
     let count = merged.count();
-    for y in 0..count {
-        for (phase, x) in (0..2).flat_map(|phase| (0..y).map(move |x| (phase, x))) {
+    for (rank, &y) in sequence.iter().enumerate() {
+        for (phase, &x) in (0..2).flat_map(|phase| sequence[..rank].iter().map(move |x| (phase, x))) {
+            let (x, y) = (x.min(y), x.max(y));
             let order = Branching::Order(phase, x, y);
             if merged.gap[x][y] > 0 && !order.is_decided(state, merged) {
                 return Some(order);

@@ -43,7 +43,7 @@ pub(crate) fn least_period(merged: &Merged) -> u32 {
 
 /// **Capacity.** The |d| of those with a window of R at least lie apart, so that the largest of them is at least their
 /// width, and that sensor fires twice within T - |d|.
-fn capacity(merged: &Merged) -> u32 {
+pub(crate) fn capacity(merged: &Merged) -> u32 {
     let mut by_window: Vec<usize> = (0..merged.count()).collect();
     by_window.sort_unstable_by_key(|&x| -merged.window[x]);
     let (mut width, mut narrowest, mut best) = (0, i32::MAX, 1);

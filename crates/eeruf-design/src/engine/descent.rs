@@ -3,10 +3,10 @@
 //! The case that comes first matters only for how soon a schedule is found: it is drawn from a fixed seed, copied from
 //! a schedule for another period or from the sensors next to it, or the one that leaves the others most room.
 
-use crate::engine::bounds::Refuted;
+use crate::engine::bounds::{Bound, Refuted};
 use crate::engine::branching::Branching;
 use crate::engine::construct::Times;
-use crate::engine::counting::members;
+use crate::engine::counting::{capacity, members};
 use crate::engine::problem::Merged;
 use crate::engine::rules::propagate;
 use crate::engine::state::{State, event, step};
@@ -18,6 +18,8 @@ pub(crate) enum Case {
     Of(Branching, usize),
     /// Of these, x has the largest |d|, and d is negative or not.
     Largest { x: usize, negative: bool, of: u64 },
+    /// |d_x| is at least this.
+    Wide { x: usize, least: Bound },
 }
 
 impl Case {
@@ -28,6 +30,10 @@ impl Case {
             Self::Largest { x, negative, of } => {
                 members(of & !(1 << x)).for_each(|y| _ = state.learn_below(y, x));
                 state.learn_most(x, !negative, if negative { -step(merged) } else { 0 })?;
+                propagate(state, merged)
+            }
+            Self::Wide { x, least } => {
+                state.learn_low(x, least)?;
                 propagate(state, merged)
             }
         }
@@ -57,6 +63,12 @@ pub(crate) struct Choice {
     pub(crate) random: Option<Random>,
     /// The times of a schedule with another period.
     pub(crate) guide: Option<Times>,
+    /// The sensors that the guide says nothing of (*large neighbourhood search*, Shaw 1998), as bits.
+    free: u64,
+    /// True if separations differ, and the |d| of this period leave no room.
+    has_wide: bool,
+    /// True if a sensor with a large separation shall have the largest |d|.
+    prefers_wide: bool,
     /// Orders are copied from the sensors so much further along.
     shift: usize,
     /// The sensor with the largest |d|, and the sensors in the order in which their firing orders are decided then.
@@ -64,7 +76,7 @@ pub(crate) struct Choice {
 }
 
 impl Choice {
-    pub(crate) fn new(merged: &Merged, random: Option<Random>, guide: Option<Times>) -> Self {
+    pub(crate) fn new(merged: &Merged, period: u32, guide: Option<Times>) -> Self {
         let clique = |x: usize| {
             let mut clique = vec![x];
             for &y in merged.neighbours[x].iter().filter(|&&y| y > x) {
@@ -74,8 +86,26 @@ impl Choice {
             }
             clique.len()
         };
+        let has_wide = capacity(merged) == period && merged.separation.iter().any(|&own| own != merged.separation[0]);
         let shift = (0..merged.count()).map(clique).max().unwrap_or(1);
-        Self { random, guide, shift, sequence: None }
+        Self { random: None, guide, free: 0, has_wide, prefers_wide: false, shift, sequence: None }
+    }
+
+    /// Begins another descent: by chance, or along the guide but for some sensors next to each other.
+    pub(crate) fn restart(&mut self, seed: u64, guide: Option<Times>, count: usize) {
+        let mut random = Random::new(seed);
+        self.free = 0;
+        self.prefers_wide = self.has_wide && random.below(2) == 0;
+        if guide.is_some() {
+            let (first, length) = (random.below(count as u32) as usize, 2 + random.below(count as u32 / 2) as usize);
+            self.free = (first..first + length).fold(0, |free, x| free | 1 << (x % count));
+        }
+        (self.random, self.guide) = (Some(random), guide);
+    }
+
+    /// The guide's times of sensor x.
+    fn guide_of(&self, x: usize) -> Option<[i32; 2]> {
+        self.guide.as_ref().filter(|_| self.free >> x & 1 == 0).map(|guide| guide[x])
     }
 
     /// The cases of the next branching, the first to try last. `None` if nothing is left.
@@ -83,7 +113,7 @@ impl Choice {
         let all = u64::MAX >> (64 - merged.count());
         let above = |x: usize, set: u64| members(set).all(|y| y == x || state.is_below(y, x));
         let top = (0..merged.count()).find(|&x| above(x, all));
-        let Some(top) = top else { return Some(self.largest(state, all, true)) };
+        let Some(top) = top else { return Some(self.largest(state, merged, all, true)) };
         if let Some(cases) = self.order(state, merged, top) {
             return Some(cases);
         }
@@ -91,8 +121,8 @@ impl Choice {
         while let Some(x) = members(unranked).find(|&x| above(x, unranked)) {
             let sign = Branching::Sign(x);
             if !sign.is_decided(state, merged) {
-                let first = match &self.guide {
-                    Some(guide) => usize::from(guide[x][0] < guide[x][1]),
+                let first = match self.guide_of(x) {
+                    Some([a, b]) => usize::from(a < b),
                     None => usize::from(state.most(x, true) > state.most(x, false)),
                 };
                 return Some([1 - first, first].map(|case| Case::Of(sign, case)).into());
@@ -100,7 +130,7 @@ impl Choice {
             unranked &= !(1 << x);
         }
         if unranked != 0 {
-            return Some(self.largest(state, unranked, false));
+            return Some(self.largest(state, merged, unranked, false));
         }
         let open = (0..merged.count()).filter(|&x| state.low[x] < state.high(x)).min_by_key(|&x| state.low[x])?;
         let least = Branching::Split(open, (state.low[open] / 2) as u32);
@@ -108,7 +138,7 @@ impl Choice {
     }
 
     /// The sensors that may have the largest |d| of these, with either sign.
-    fn largest(&mut self, state: &State, of: u64, is_top: bool) -> Vec<Case> {
+    fn largest(&mut self, state: &State, merged: &Merged, of: u64, is_top: bool) -> Vec<Case> {
         let is_lower = |x: usize| members(of).any(|y| y != x && state.is_below(x, y));
         let mut cases = Vec::new();
         for x in members(of).filter(|&x| !is_lower(x)) {
@@ -121,21 +151,27 @@ impl Choice {
         }
         let parts = |case: &Case| match *case {
             Case::Largest { x, negative, .. } => (x, negative),
-            Case::Of(..) => (0, false),
+            _ => (0, false),
         };
         let preferred = |case: &Case| {
             let (x, negative) = parts(case);
-            if let Some(guide) = &self.guide {
-                let d = guide[x][0] - guide[x][1];
+            if let Some([a, b]) = self.guide_of(x) {
+                let d = a - b;
                 return (d.abs(), if (d < 0) == negative { 1 } else { 0 }, -(x as i32));
             }
-            let room = if is_top { 0 } else { state.low[x] };
+            // At the top a large separation takes room on one side only.
+            let room = match (is_top, self.prefers_wide) {
+                (true, true) => merged.separation[x],
+                (true, false) => 0,
+                (false, _) => state.low[x],
+            };
             (room, i32::from(!negative), -(x as i32))
         };
         cases.sort_by_key(preferred);
         if let Some(random) = &mut self.random
+            && self.guide.is_none()
             && cases.len() > 1
-            && (is_top || random.below(2) == 0)
+            && (is_top && !self.prefers_wide || random.below(2) == 0)
         {
             let (last, drawn) = (cases.len() - 1, random.below(cases.len() as u32) as usize);
             cases.swap(drawn, last);
@@ -180,8 +216,11 @@ impl Choice {
     /// True if x fires before y by the guide, or by the order of the sensors one clique further along; `None` where
     /// neither says.
     fn pattern(&self, state: &State, merged: &Merged, x: usize, y: usize, phase: usize) -> Option<bool> {
-        if let Some(guide) = &self.guide {
-            return Some(guide[x][phase] < guide[y][phase]);
+        if let (Some(x), Some(y)) = (self.guide_of(x), self.guide_of(y)) {
+            return Some(x[phase] < y[phase]);
+        }
+        if self.guide.is_some() {
+            return None;
         }
         let count = merged.count();
         for shift in [self.shift, 2 * count - self.shift] {
@@ -200,7 +239,7 @@ impl Choice {
 }
 
 /// Sensors from `first` on, each the one with the most gaps to those before it.
-fn sequence(merged: &Merged, first: usize) -> Vec<usize> {
+pub(crate) fn sequence(merged: &Merged, first: usize) -> Vec<usize> {
     let (mut sequence, mut taken) = (vec![first], 1_u64 << first);
     while sequence.len() < merged.count() {
         let known = |x: usize| merged.neighbours[x].iter().filter(|&&y| taken >> y & 1 == 1).count();

@@ -9,6 +9,7 @@
 //! | `branching`, `symmetry` | case distinctions; assumptions at the root |
 //! | `schedule` | a schedule, checked longhand |
 //! | `descent` | the branchings of short descents, which look for schedules |
+//! | `raised` | the ring that most sensors ask for, and the cases beside it |
 //! | `search`, `shortest`, `spare` | one period, the shortest, the schedule with most to spare |
 //! | `prove` | certificates |
 //! | `orders`, `linear`, `reals` | the shortest period over the reals |
@@ -38,6 +39,7 @@ mod linear;
 mod orders;
 mod problem;
 pub mod prove;
+mod raised;
 pub mod reals;
 mod rules;
 mod schedule;

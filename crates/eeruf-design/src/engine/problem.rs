@@ -170,6 +170,22 @@ impl Problem {
         (even != counts).then_some(even)
     }
 
+    /// The window that most sensors have.
+    pub(crate) fn usual_window(&self) -> Option<u32> {
+        most_common(self.window.clone())
+    }
+
+    /// The gap that most pairs have.
+    pub(crate) fn usual_gap(&self) -> Option<u32> {
+        most_common(self.gaps.iter().flat_map(|&(.., after_x, after_y)| [after_x, after_y]).collect())
+    }
+
+    /// Returns true if this even ring asks for less than most sensors and pairs of the problem do.
+    pub(crate) fn asks_for_less(&self, problem: &Self) -> bool {
+        let usual = |of: &Self| [of.usual_window(), of.usual_gap(), most_common(of.separation.clone())];
+        usual(self) != usual(problem)
+    }
+
     pub(crate) fn merged(&self) -> Merged {
         let mut of_sensor: Vec<usize> = (0..self.sensors()).collect();
         for group in &self.together {
@@ -205,6 +221,12 @@ impl Problem {
         let least_apart = 2 * ascending.get(1).or(ascending.first()).copied().unwrap_or(0);
         Merged { of_sensor, separation, window, stale_echo, over_reals, gap, pairs, neighbours, least_apart }
     }
+}
+
+/// The number that comes most often, of several the largest.
+fn most_common(mut numbers: Vec<u32>) -> Option<u32> {
+    numbers.sort_unstable();
+    numbers.chunk_by(|a, b| a == b).max_by_key(|alike| alike.len()).map(|alike| alike[0])
 }
 
 impl Merged {

@@ -103,12 +103,13 @@ pub(crate) fn prove_but(
     let mut text = claim.head() + &assumptions.lines();
     let Ok(mut state) = assumptions.root(&merged, claim.bound) else { return Ok(text + "end\n") };
     let firsts = merged.firsts();
+    let sequence: Vec<usize> = (0..merged.count()).collect();
     let between = nodes_between(claim.problem.sensors());
     let mut nodes = 1;
     let mut open: Vec<(Mark, Branching)> = Vec::new();
     let mut holds = true;
     loop {
-        let (branching, case) = match if holds { choose(&state, &merged) } else { None } {
+        let (branching, case) = match if holds { choose(&state, &merged, &sequence) } else { None } {
             Some(branching) => {
                 text += &branching.line(&firsts);
                 open.push((state.mark(), branching));

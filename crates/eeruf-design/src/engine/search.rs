@@ -4,7 +4,8 @@
 use core::cell::OnceCell;
 
 use crate::engine::branching::choose;
-use crate::engine::descent::{Case, Choice, Random};
+use crate::engine::construct::Times;
+use crate::engine::descent::{Case, Choice, sequence};
 use crate::engine::problem::{Merged, Problem};
 use crate::engine::rules::propagate;
 use crate::engine::state::{Mark, State, event};
@@ -92,10 +93,21 @@ impl Search {
 
     /// Decides whether some firing times have this period, by at most `budget` nodes of a full search.
     pub fn decide(&mut self, period: u32, budget: u64, go_on: &mut dyn FnMut(u64) -> bool) -> Decided {
+        self.decide_cases(period, budget, None, go_on)
+    }
+
+    /// The same where only these cases are left.
+    pub(crate) fn decide_cases(
+        &mut self,
+        period: u32,
+        budget: u64,
+        cases: Option<Vec<Case>>,
+        go_on: &mut dyn FnMut(u64) -> bool,
+    ) -> Decided {
         let assumptions = self.assumptions.get_or_init(|| Assumptions::of(&self.problem.with_separations_that_count()));
         let Ok(mut state) = assumptions.root(&self.merged, period + 1) else { return Decided::Refuted };
         state.goes_further = !self.merged.over_reals;
-        self.walk(period, &mut state, budget, None, go_on)
+        self.walk(period, &mut state, budget, cases, None, go_on)
     }
 
     /// Looks for firing times of this period by at most `budget` nodes: first by a search along the guide, the times
@@ -113,11 +125,11 @@ impl Search {
         let unit = self.unit();
         let end = self.nodes.saturating_add(budget);
         let firsts = self.merged.firsts();
-        let guide = guide.map(|[a, b]| firsts.iter().map(|&x| [a[x] as i32, b[x] as i32]).collect());
-        let mut choice = Choice::new(&self.merged, None, guide);
+        let guide: Option<Times> = guide.map(|[a, b]| firsts.iter().map(|&x| [a[x] as i32, b[x] as i32]).collect());
+        let mut choice = Choice::new(&self.merged, period, guide.clone());
         let mut least = unit.max(budget / 8).min(budget);
         for descent in 1.. {
-            let decided = self.walk(period, &mut state, least, Some(&mut choice), go_on);
+            let decided = self.walk(period, &mut state, least, None, Some(&mut choice), go_on);
             if decided != Decided::Open {
                 return decided;
             }
@@ -125,8 +137,8 @@ impl Search {
                 break;
             }
             state.undo(root);
-            choice.random = Some(Random::new(seed.wrapping_add(descent)));
-            choice.guide = None;
+            let along = guide.clone().filter(|_| descent % 2 == 0);
+            choice.restart(seed.wrapping_add(descent), along, self.merged.count());
             least = (unit * luby(descent)).min(end - self.nodes);
         }
         Decided::Open
@@ -150,13 +162,18 @@ impl Search {
         period: u32,
         state: &mut State,
         budget: u64,
+        first: Option<Vec<Case>>,
         mut choice: Option<&mut Choice>,
         go_on: &mut dyn FnMut(u64) -> bool,
     ) -> Decided {
         let end = self.nodes.saturating_add(budget);
         // What was known where cases are left, and these.
         let mut open: Vec<(Mark, Vec<Case>)> = Vec::new();
-        let mut holds = true;
+        let start =
+            first.iter().flatten().find_map(|case| if let Case::Wide { x, .. } = *case { Some(x) } else { None });
+        let along = start.map_or((0..self.merged.count()).collect(), |x| sequence(&self.merged, x));
+        let mut holds = first.is_none();
+        open.extend(first.map(|cases| (state.mark(), cases)));
         loop {
             if holds {
                 if let Some(times) = self.reading(period, state) {
@@ -164,9 +181,8 @@ impl Search {
                 }
                 let cases = match &mut choice {
                     Some(choice) => choice.cases(state, &self.merged),
-                    None => {
-                        choose(state, &self.merged).map(|branching| [1, 0].map(|case| Case::Of(branching, case)).into())
-                    }
+                    None => choose(state, &self.merged, &along)
+                        .map(|branching| [1, 0].map(|case| Case::Of(branching, case)).into()),
                 };
                 // Nothing left to branch on is a schedule too, in whole ticks.
                 let Some(cases) = cases else { return Decided::Open };

@@ -4,6 +4,7 @@
 use crate::engine::construct::{Times, constructed};
 use crate::engine::counting::least_period;
 use crate::engine::problem::{MAX_NUMBER, Problem};
+use crate::engine::raised::Raised;
 use crate::engine::search::{Decided, FiringTimes, Search};
 
 /// The shortest period found, in ticks.
@@ -61,6 +62,10 @@ struct Run {
     coarse: Option<(Box<Run>, u32)>,
     /// The even ring that asks for no more.
     even: Option<Box<Run>>,
+    /// True if that asks for less than most sensors do.
+    is_even_weak: bool,
+    /// The problem with few windows raised to what most sensors have.
+    raised: Option<(Box<Run>, Raised)>,
     /// Nodes of runs that ended.
     ended: u64,
     /// The bound that follows without distinguishing cases.
@@ -89,11 +94,25 @@ impl Run {
         let bound = least_period(search.merged()).max(one_after_the_other(problem)).clamp(1, period);
         let found = Shortest { period, fire, bound, nodes: 0, without_cases: false };
         let (limit, is_guide, ended) = (u64::MAX, false, 0);
-        let mut run = Self { search, found, limit, is_guide, coarse: None, even: None, ended, bound_of_rules: bound };
+        let mut run = Self {
+            search,
+            found,
+            limit,
+            is_guide,
+            coarse: None,
+            even: None,
+            is_even_weak: false,
+            raised: None,
+            ended,
+            bound_of_rules: bound,
+        };
         run.bound_by_rules();
         if run.is_open() {
             let even = if is_first { problem.evened() } else { None };
+            run.is_even_weak = even.as_ref().is_some_and(|even| even.asks_for_less(problem));
             run.even = even.and_then(|even| Self::new(&even, false)).map(Box::new);
+            let raised = if is_first { Raised::of(problem) } else { None };
+            run.raised = raised.and_then(|raised| Some((Box::new(Self::new(&raised.problem, false)?), raised)));
             let coarse = in_coarse_ticks(problem);
             run.coarse = coarse.and_then(|(coarse, ticks)| Some((Box::new(Self::new(&coarse, is_first)?), ticks)));
         }
@@ -142,7 +161,9 @@ impl Run {
             let before = self.nodes();
             even.limit = self.limit.saturating_sub(before) / 2;
             let found = self.found.clone();
-            let best = even.found.period;
+            let (best, best_known) = (even.found.period, self.found.period);
+            // Once it has shorter periods than the best, it hardly helps to refute these.
+            let effort = if self.is_even_weak && even.found.period < best_known { effort / 8 } else { effort };
             let round = even.round(effort, &mut |nodes, _| ask(before + nodes, &found));
             self.found.bound = self.found.bound.max(even.found.bound.min(self.found.period));
             if even.found.period < best {
@@ -156,6 +177,23 @@ impl Run {
             } else {
                 self.ended += even.nodes();
             }
+            round?;
+        }
+        if let Some((mut raised, windows)) = self.raised.take() {
+            let before = self.nodes();
+            raised.limit = self.limit.saturating_sub(before) / 2;
+            let found = self.found.clone();
+            let best = raised.found.period;
+            let is_worth_it = windows.has_cases() || raised.nodes() <= self.search.nodes();
+            let round = if raised.is_open() && is_worth_it {
+                raised.round(effort, &mut |nodes, _| ask(before + nodes, &found))
+            } else {
+                Ok(())
+            };
+            if raised.found.period < best {
+                self.offer(raised.found.fire.clone(), true);
+            }
+            self.raised = Some((raised, windows));
             round?;
         }
         if self.is_guide { self.bisect(effort, ask) } else { self.gallop(effort, ask) }
@@ -173,7 +211,8 @@ impl Run {
     /// The nodes of this search and of those that help it.
     fn nodes(&self) -> u64 {
         let coarse = self.coarse.as_ref().map_or(0, |(coarse, _)| coarse.nodes());
-        self.ended + self.search.nodes() + coarse + self.even.as_ref().map_or(0, |even| even.nodes())
+        let raised = self.raised.as_ref().map_or(0, |(raised, _)| raised.nodes());
+        self.ended + self.search.nodes() + coarse + raised + self.even.as_ref().map_or(0, |even| even.nodes())
     }
 
     fn sensors(&self) -> u64 {
@@ -232,9 +271,11 @@ impl Run {
     /// Searches all of a period. Returns true if that is decided.
     fn decide(&mut self, period: u32, effort: u64, ask: Ask<'_>) -> Result<bool, Stopped> {
         let (before, effort) = (self.nodes() - self.search.nodes(), self.affordable(effort));
-        let Self { search, found, .. } = self;
+        let Self { search, found, raised, .. } = self;
         let nodes = search.nodes();
-        let decided = search.decide(period, effort, &mut |nodes| ask(before + nodes, found));
+        let raised = raised.as_ref().filter(|(raised, _)| period < raised.found.bound);
+        let cases = raised.and_then(|(_, raised)| raised.cases(search.merged(), period));
+        let decided = search.decide_cases(period, effort, cases, &mut |nodes| ask(before + nodes, found));
         if decided == Decided::Refuted && search.nodes() == nodes {
             self.bound_of_rules = self.bound_of_rules.max(period + 1);
         }

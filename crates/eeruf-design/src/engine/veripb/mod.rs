@@ -61,6 +61,7 @@ pub fn prove(claim: &Claim, budget: usize, mut go_on: impl FnMut(usize) -> bool)
     }
     let merged = claim.problem.merged();
     let model = Model::new(&merged, claim.bound as i32 - 1);
+    let sequence: Vec<usize> = (0..merged.count()).collect();
     let mut proof = Proof::new(&model);
     let mut reached = Known::new(&mut proof)
         .and_then(|mut known| symmetry::assume(&mut proof, &mut known, &claim.problem).map(|()| known));
@@ -71,7 +72,7 @@ pub fn prove(claim: &Claim, budget: usize, mut go_on: impl FnMut(usize) -> bool)
     loop {
         match reached {
             Ok(known) => {
-                let Some(branching) = choose(&known.state, &merged) else {
+                let Some(branching) = choose(&known.state, &merged, &sequence) else {
                     return Err(NoProof::Feasible([0, 1].map(|phase| {
                         let times =
                             merged.of_sensor.iter().map(|&one| -known.state.bounds.at(event(one, phase), 0) / 2);

@@ -1,0 +1,69 @@
+//! Prints random rings of 16 to 32 sensors that differ, and what the engine finds: `cargo lab uneven-rings
+//! [RINGS [SECONDS]]`. A line of JSON each, in ticks: the problem, period, bound and the seconds
+//! of a core; `benches/peers/uneven_race.py` reads them.
+
+use eeruf_design::engine::Problem;
+use eeruf_design::engine::shortest::shortest;
+
+use crate::clock::core_seconds;
+
+/// A generator of pseudo-random numbers, the same on every machine (xorshift64*).
+struct Random(u64);
+
+impl Random {
+    /// A number from `least` to `most`.
+    fn within(&mut self, least: u32, most: u32) -> u32 {
+        self.0 ^= self.0 >> 12;
+        self.0 ^= self.0 << 25;
+        self.0 ^= self.0 >> 27;
+        least + ((self.0.wrapping_mul(0x2545_F491_4F6C_DD1D) >> 33) % u64::from(most - least + 1)) as u32
+    }
+}
+
+/// Two to four neighbours, 15 ticks apart but one pair in four, windows of 15 to 45 ticks, separations of 1 to 3.
+fn draw(seed: u64) -> Problem {
+    let mut random = Random(seed);
+    (0..10).for_each(|_| _ = random.within(0, 1));
+    let (sensors, neighbours) = (random.within(16, 32) as usize, random.within(2, 4) as usize);
+    let is_ring = random.within(0, 1) == 1;
+    let mut gaps = Vec::new();
+    for x in 0..sensors {
+        for y in x + 1..sensors {
+            if y - x < neighbours || is_ring && sensors - (y - x) < neighbours {
+                let gap = if random.within(0, 3) == 0 { random.within(10, 20) } else { 15 };
+                gaps.push((x, y, gap, gap));
+            }
+        }
+    }
+    Problem {
+        tick_us: (1000, 1),
+        separation: (0..sensors).map(|_| random.within(1, 3)).collect(),
+        window: (0..sensors).map(|_| random.within(15, 45)).collect(),
+        stale_echo: false,
+        over_reals: false,
+        together: Vec::new(),
+        gaps,
+    }
+}
+
+pub(crate) fn main(arguments: &[String]) -> crate::Answer {
+    let rings: u64 = arguments.first().map_or(Ok(20), |text| text.parse())?;
+    let seconds: f64 = arguments.get(1).map_or(Ok(60.0), |text| text.parse())?;
+    for seed in 20_000..20_000 + rings {
+        let problem = draw(seed);
+        let begin = core_seconds();
+        let found = shortest(&problem, u64::MAX, &mut |_| core_seconds() - begin < seconds);
+        let found = found.ok_or("no schedule")?;
+        let gaps: Vec<[u32; 4]> = problem.gaps.iter().map(|&(x, y, to, from)| [x as u32, y as u32, to, from]).collect();
+        println!(
+            "{{\"separation\": {:?}, \"window\": {:?}, \"gaps\": {gaps:?}, \"period\": {}, \"bound\": {}, \
+             \"seconds\": {}}}",
+            problem.separation,
+            problem.window,
+            found.period,
+            found.bound,
+            core_seconds() - begin
+        );
+    }
+    Ok(())
+}

@@ -2,6 +2,8 @@
 //! each.
 //!
 //!     cargo run --release -p eeruf-sim --example four_worlds
+//!
+//! With the argument `interference` sounds within a burst of each other add.
 
 use eeruf_sim::experiments::set_one::{SetOneOptions, set_one};
 use eeruf_sim::experiments::set_two::{SetTwoOptions, set_two};
@@ -31,12 +33,15 @@ fn table(columns: &[Vec<String>]) {
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let percent = |share: Option<f64>| share.map_or("-".to_owned(), |share| format!("{:.1}", 100.0 * share));
+    let interference = std::env::args().nth(1).is_some_and(|name| name == "interference");
+    let physics = Physics { interference, ..Physics::DEFAULT };
     let mut alcoves = Vec::new();
     let mut courses = Vec::new();
     for (_, room, gain) in WORLDS {
         let transducer = Transducer { gain, ..Transducer::POLAROID_6500 };
         let methods = Entry::all(METHODS);
-        let asked = SetOneOptions { seeds: ALCOVES, steps: 0, methods, room, transducer, ..SetOneOptions::default() };
+        let asked =
+            SetOneOptions { seeds: ALCOVES, steps: 0, methods, room, transducer, physics, ..SetOneOptions::default() };
         let found = set_one(&asked, &|_| true)?;
         let cell = |figures: &experiments::set_one::Figures| {
             let [wrong, lost] = [figures.wrong_of_all, figures.good_lost].map(|spread| spread.map(|it| it.median));
@@ -44,7 +49,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         };
         alcoves.push(found.methods.iter().map(|(_, figures)| cell(figures)).collect());
         let methods = Entry::all(METHODS);
-        let asked = SetTwoOptions { seeds: COURSES, methods, room, gain, ..SetTwoOptions::default() };
+        let asked = SetTwoOptions { seeds: COURSES, methods, room, gain, physics, ..SetTwoOptions::default() };
         let found = set_two(&asked, &|_| true)?;
         let cell = |figures: &experiments::set_two::Figures| {
             format!(

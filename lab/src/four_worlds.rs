@@ -1,7 +1,9 @@
 //! Set I and Set II in four worlds, flat or in a room, with the constant gain or with the Polaroid's own: a table for
 //! each.
 //!
-//!     cargo lab four-worlds
+//!     cargo lab four-worlds [interference]
+//!
+//! With `interference` sounds within a burst of each other add.
 
 use eeruf_sim::experiments::set_one::{SetOneOptions, set_one};
 use eeruf_sim::experiments::set_two::{SetTwoOptions, set_two};
@@ -29,14 +31,17 @@ fn table(columns: &[Vec<String>]) {
     println!();
 }
 
-pub(crate) fn main(_: &[String]) -> crate::Answer {
+pub(crate) fn main(arguments: &[String]) -> crate::Answer {
     let percent = |share: Option<f64>| share.map_or("-".to_owned(), |share| format!("{:.1}", 100.0 * share));
+    let interference = arguments.first().is_some_and(|word| word == "interference");
+    let physics = Physics { interference, ..Physics::DEFAULT };
     let mut alcoves = Vec::new();
     let mut courses = Vec::new();
     for (_, room, gain) in WORLDS {
         let transducer = Transducer { gain, ..Transducer::POLAROID_6500 };
         let methods = Entry::all(METHODS);
-        let asked = SetOneOptions { seeds: ALCOVES, steps: 0, methods, room, transducer, ..SetOneOptions::default() };
+        let asked =
+            SetOneOptions { seeds: ALCOVES, steps: 0, methods, room, transducer, physics, ..SetOneOptions::default() };
         let found = set_one(&asked, &|_| true)?;
         let cell = |figures: &experiments::set_one::Figures| {
             let [wrong, lost] = [figures.wrong_of_all, figures.good_lost].map(|spread| spread.map(|it| it.median));
@@ -44,7 +49,7 @@ pub(crate) fn main(_: &[String]) -> crate::Answer {
         };
         alcoves.push(found.methods.iter().map(|(_, figures)| cell(figures)).collect());
         let methods = Entry::all(METHODS);
-        let asked = SetTwoOptions { seeds: COURSES, methods, room, gain, ..SetTwoOptions::default() };
+        let asked = SetTwoOptions { seeds: COURSES, methods, room, gain, physics, ..SetTwoOptions::default() };
         let found = set_two(&asked, &|_| true)?;
         let cell = |figures: &experiments::set_two::Figures| {
             format!(

@@ -60,7 +60,7 @@ const COMMANDS: [Command; 29] = [
         fault_rates::main,
     ),
     ("flow-rooms", "[ROOMS [FIRST [PHYSICS]]]", "flow beside hopping and one by one", flow_rooms::main),
-    ("four-worlds", "", "Sets I and II, flat and in a room, with two gains", four_worlds::main),
+    ("four-worlds", "[interference]", "Sets I and II, flat and in a room, with two gains", four_worlds::main),
     (
         "hopping-ablation",
         "[SEEDS [FIRST [PHYSICS]]]",

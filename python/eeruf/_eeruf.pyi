@@ -3333,7 +3333,7 @@ class Scene:
         seed: of the noise, 0 to 2^64 - 1.
         max_order: how many bounces :func:`simulate` follows; 6 unless it is given.
         physics: ``"plain"``, ``"default"``, or a dict of what differs from a ``preset``: ``shadows``, ``edges``,
-            ``narrow_panels``, ``range_walk`` (each True or False), ``fading_time_s``; see
+            ``narrow_panels``, ``range_walk``, ``interference`` (each True or False), ``fading_time_s``; see
     ``docs/explanation/physics.md``.
         height: ``"flat"``, all sound in one plane; ``"room"``, between a floor and a ceiling at 2.6 m; or a dict of
             what differs from that room: ``ceiling_m``, and ``floor`` and ``ceiling`` as in ``materials``.

@@ -26,7 +26,7 @@ EVERYTHING = sim.Scene(
     noise=sim.Noise(fading_db_rms=2.0, bursts_per_s=3.0),
     seed=2**64 - 1,
     max_order=4,
-    physics={"preset": "default", "narrow_panels": False, "fading_time_s": 0.4},
+    physics={"preset": "default", "narrow_panels": False, "interference": True, "fading_time_s": 0.4},
     height={"ceiling_m": 2.2, "floor": sim.Material(0.8, 0.0001)},
     robots=[
         sim.Robot((0, 0, 0.3), 6, 0.4, 0.1, "hc_sr04", gain="linear", blanking_us=300, odometry=True,
@@ -72,7 +72,14 @@ def test_all_that_a_scene_was_made_of_can_be_read() -> None:
     assert (EVERYTHING.open, EVERYTHING.two_sided, EVERYTHING.seed, EVERYTHING.max_order) == ([1], [3], 2**64 - 1, 4)
     assert EVERYTHING.materials[2] == sim.Material(0.7, 0.0002)
     assert EVERYTHING.pole_materials == [sim.Material(0.9)] * 2
-    effects = {"shadows": True, "edges": True, "narrow_panels": False, "range_walk": True, "fading_time_s": 0.4}
+    effects = {
+        "shadows": True,
+        "edges": True,
+        "narrow_panels": False,
+        "range_walk": True,
+        "interference": True,
+        "fading_time_s": 0.4,
+    }
     assert EVERYTHING.physics == effects
     assert EVERYTHING.noise == sim.Noise(fading_db_rms=2.0, bursts_per_s=3.0)
     moving, driving = EVERYTHING.robots

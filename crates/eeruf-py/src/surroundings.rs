@@ -182,8 +182,8 @@ pub(crate) fn noise(value: Option<&Bound<'_, PyAny>>) -> PyResult<eeruf_sim::Noi
     }
 }
 
-const PHYSICS: &str = "\"plain\", \"default\", or a dict with preset, shadows, edges, narrow_panels, range_walk \
-                       or fading_time_s";
+const PHYSICS: &str = "\"plain\", \"default\", or a dict with preset, shadows, edges, narrow_panels, range_walk, \
+                       interference or fading_time_s";
 
 /// Effects of a scene: a preset's name, or what differs from one.
 pub(crate) fn physics(value: Option<&Bound<'_, PyAny>>) -> PyResult<Physics> {
@@ -203,6 +203,7 @@ pub(crate) fn physics(value: Option<&Bound<'_, PyAny>>) -> PyResult<Physics> {
                 physics.narrow_panels = flag("narrow_panels", Some(&change), physics.narrow_panels)?;
             }
             Ok("range_walk") => physics.range_walk = flag("range_walk", Some(&change), physics.range_walk)?,
+            Ok("interference") => physics.interference = flag("interference", Some(&change), physics.interference)?,
             Ok("fading_time_s") => physics.fading_time_s = number("fading_time_s", &change, 0.0..=3600.0)?,
             _ => return Err(refused(value)),
         }
@@ -260,6 +261,7 @@ pub(crate) fn shown_physics<'py>(py: Python<'py>, physics: &Physics) -> PyResult
     all.set_item("edges", physics.edges)?;
     all.set_item("narrow_panels", physics.narrow_panels)?;
     all.set_item("range_walk", physics.range_walk)?;
+    all.set_item("interference", physics.interference)?;
     all.set_item("fading_time_s", physics.fading_time_s)?;
     Ok(all.into_any())
 }

@@ -27,6 +27,10 @@ pub struct Physics {
     /// True if a threshold detector hears faint echoes later. An echo just at the threshold is heard a whole burst
     /// late.
     pub range_walk: bool,
+    /// True if sounds of one firing that reach a receiver within a burst of each other add as phasors, by the phases
+    /// of the carrier, and the envelope of the sum crosses the threshold; that has `range_walk` in it. Otherwise each
+    /// is heard on its own. No preset has it.
+    pub interference: bool,
     /// For how long a path fades in the same way, in seconds: the time after which the correlation has fallen to 1/e.
     /// At 0 every firing fades on its own, and by its number among the firings of its sensor.
     pub fading_time_s: f64,
@@ -36,12 +40,25 @@ impl Physics {
     /// The simplest physics, which the simulator began with and methods were tuned under: poles of any thickness are
     /// transparent, edges are silent, a wall returns as much however narrow it is, an echo is heard at its onset
     /// however faint it is, and each arrival fades on its own.
-    pub const PLAIN: Self =
-        Self { shadows: false, edges: false, narrow_panels: false, range_walk: false, fading_time_s: 0.0 };
+    pub const PLAIN: Self = Self {
+        shadows: false,
+        edges: false,
+        narrow_panels: false,
+        range_walk: false,
+        interference: false,
+        fading_time_s: 0.0,
+    };
 
-    /// The default of worlds: everything on, with the numbers that `docs/explanation/physics.md` gives reasons for.
-    pub const DEFAULT: Self =
-        Self { shadows: true, edges: true, narrow_panels: true, range_walk: true, fading_time_s: 1.0 };
+    /// The default of worlds: everything on but `interference`, with the numbers that `docs/explanation/physics.md`
+    /// gives reasons for.
+    pub const DEFAULT: Self = Self {
+        shadows: true,
+        edges: true,
+        narrow_panels: true,
+        range_walk: true,
+        interference: false,
+        fading_time_s: 1.0,
+    };
 
     /// The presets by their names.
     pub const PRESETS: [(&'static str, Self); 2] = [("plain", Self::PLAIN), ("default", Self::DEFAULT)];
@@ -55,6 +72,11 @@ impl Physics {
     pub(crate) fn fades_slowly(&self) -> bool {
         self.fading_time_s > 0.0
     }
+
+    /// Returns true if an echo is heard when its envelope has risen to the threshold.
+    pub(crate) fn rises(&self) -> bool {
+        self.range_walk || self.interference
+    }
 }
 
 /// The preset's name, or what each effect is.
@@ -62,10 +84,10 @@ impl fmt::Display for Physics {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match (self.name(), self) {
             (Some(name), _) => f.write_str(name),
-            (None, Self { shadows, edges, narrow_panels, range_walk, fading_time_s }) => write!(
+            (None, Self { shadows, edges, narrow_panels, range_walk, interference, fading_time_s }) => write!(
                 f,
                 "shadows {shadows}, edges {edges}, narrow_panels {narrow_panels}, range_walk {range_walk}, \
-                 fading_time_s {fading_time_s}"
+                 interference {interference}, fading_time_s {fading_time_s}"
             ),
         }
     }
@@ -77,11 +99,12 @@ impl Serialize for Physics {
         if let Some(name) = self.name() {
             return serializer.serialize_str(name);
         }
-        let mut effects = serializer.serialize_struct("Physics", 5)?;
+        let mut effects = serializer.serialize_struct("Physics", 6)?;
         effects.serialize_field("shadows", &self.shadows)?;
         effects.serialize_field("edges", &self.edges)?;
         effects.serialize_field("narrow_panels", &self.narrow_panels)?;
         effects.serialize_field("range_walk", &self.range_walk)?;
+        effects.serialize_field("interference", &self.interference)?;
         effects.serialize_field("fading_time_s", &self.fading_time_s)?;
         effects.end()
     }

@@ -20,8 +20,8 @@ pub struct Specular {
 /// circle in between.
 ///
 /// As the point moves from the source's direction towards the receiver's, the angle of incidence seen from the source
-/// grows and the one seen from the receiver falls, so their difference has one root. Newton's method finds it, with
-/// rotations of the normal in place of angles; bisection takes over where a step would leave the bracket.
+/// grows and the one seen from the receiver falls, so their difference has one root. Newton's method finds it from
+/// `start`, with rotations of the normal in place of angles; bisection takes over where a step would leave the bracket.
 ///
 /// ```
 /// use eeruf_sim::{Point, alhazen};
@@ -30,7 +30,7 @@ pub struct Specular {
 /// assert!((echo.before_m + echo.after_m - 3.992).abs() < 1e-15);
 /// ```
 pub fn alhazen(source: Point, receiver: Point, centre: Point, radius_m: f64) -> Option<Specular> {
-    specular(source, receiver, centre, balance(source, receiver, (centre, radius_m), None)?)
+    specular(source, receiver, centre, balance(source, receiver, (centre, radius_m))?)
 }
 
 /// The reflection at the point of a circle that has this normal; none where the circle is in between.
@@ -54,9 +54,8 @@ struct Normal {
     radius_m: f64,
 }
 
-/// The point of the circle with equal angles, in sight or not, sought from a guess on; none when a point is not outside
-/// the circle.
-fn balance(source: Point, receiver: Point, circle: (Point, f64), guess: Option<Normal>) -> Option<Normal> {
+/// The point of the circle with equal angles, in sight or not; none when a point is not outside the circle.
+fn balance(source: Point, receiver: Point, circle: (Point, f64)) -> Option<Normal> {
     let (centre, radius_m) = circle;
     let (to_source, to_receiver) = (source - centre, receiver - centre);
     let (far_s, far_r) = (to_source.norm(), to_receiver.norm());
@@ -69,9 +68,7 @@ fn balance(source: Point, receiver: Point, circle: (Point, f64), guess: Option<N
     let left = if cross(ahead, to_receiver) < 0.0 { -perpendicular(ahead) } else { perpendicular(ahead) };
     let receiver = Vector::new(ahead.dot(&to_receiver), left.dot(&to_receiver).max(0.0));
     let problem = Problem { source: far_s, receiver, far_r, radius: radius_m };
-    let guess =
-        guess.map_or_else(|| problem.guess(), |guess| Vector::new(ahead.dot(&guess.unit), left.dot(&guess.unit)));
-    let found = problem.solve(guess);
+    let found = problem.solve();
     // Rounding of the rotations is not left in it.
     Some(Normal { unit: (ahead * found.x + left * found.y).normalize(), radius_m })
 }
@@ -93,18 +90,9 @@ struct Problem {
 const LAST: f64 = 1e-9;
 
 impl Problem {
-    /// A direction between both, nearer to the one that is nearer to the circle.
-    fn guess(&self) -> Vector {
-        let (weight_s, weight_r) = (1.0 - self.radius / self.source, 1.0 - self.radius / self.far_r);
-        let between = Vector::new(weight_r, 0.0) + self.receiver * (weight_s / self.far_r);
-        let length = between.norm();
-        // Straight behind each other with the circle in between, they leave no direction between.
-        if length > LAST * (weight_s + weight_r) { between / length } else { Vector::new(0.0, 1.0) }
-    }
-
-    fn solve(&self, guess: Vector) -> Vector {
+    fn solve(&self) -> Vector {
         let (mut low, mut high) = (Vector::new(1.0, 0.0), self.receiver / self.far_r);
-        let mut normal = if Self::holds(low, high, guess) { guess } else { self.guess() };
+        let mut normal = start(Vector::new(self.source, 0.0), self.receiver, self.radius);
         for _ in 0..100 {
             let along_s = self.source * normal.x - self.radius;
             let across_s = self.source * normal.y;
@@ -158,8 +146,8 @@ fn rotated(direction: Vector, angle: f64) -> Vector {
 /// Source, one circle, another circle, receiver: the two specular points of the path that bounces once at each.
 ///
 /// Newton's method moves both points at once. Where it does not settle, as between circles that nearly touch, one
-/// circle after the other is solved with the other's point held, which always does: a convex circle spreads what it
-/// reflects.
+/// circle after the other is solved with the other's point held: where all legs are in sight, the length is strictly
+/// convex in both points together, and each solution is its minimum in one of them.
 pub fn alhazen_twice(
     source: Point,
     receiver: Point,
@@ -174,22 +162,28 @@ pub fn alhazen_twice(
         return None;
     }
     let facing = [first.0 - aside * (first.1 / apart), second.0 + aside * (second.1 / apart)];
-    let guesses = [guess(source, facing[1], first), guess(facing[0], receiver, second)];
+    let starts = [(source, facing[1], first), (facing[0], receiver, second)]
+        .map(|(here, there, (centre, radius_m))| start(here - centre, there - centre, radius_m));
     let seen = |normals: [Normal; 2]| {
         let one = specular(source, second.0 + normals[1].unit * second.1, first.0, normals[0])?;
         Some((one, specular(one.point, receiver, second.0, normals[1])?))
     };
     let circles = [first, second];
-    let found = both_at_once(source, receiver, circles, guesses).and_then(seen);
+    let found = both_at_once(source, receiver, circles, starts).and_then(seen);
     // Angles balance at hidden points too, where Newton's method may end.
     found.or_else(|| one_after_the_other(source, receiver, circles, facing[1], apart).and_then(seen))
 }
 
-/// A direction between two points as seen from a circle, nearer to the one that is nearer to it.
-fn guess(here: Point, there: Point, (centre, radius_m): (Point, f64)) -> Vector {
-    let (to_here, to_there) = (here - centre, there - centre);
+/// The normal to begin with for two points as seen from a circle's centre: between them, nearer to the one that is
+/// nearer to the circle. It is exact for a flat mirror, of which the circle is as large as can be, and for a circle that
+/// is small against both distances.
+fn start(to_here: Vector, to_there: Vector, radius_m: f64) -> Vector {
     let (far_here, far_there) = (to_here.norm(), to_there.norm());
-    (to_here * ((far_there - radius_m) / far_here) + to_there * ((far_here - radius_m) / far_there)).normalize()
+    let [near_here, near_there] = [far_here, far_there].map(|far| 1.0 - radius_m / far);
+    let between = to_here * (near_there / far_here) + to_there * (near_here / far_there);
+    let length = between.norm();
+    // Straight behind each other with the circle in between, they leave no direction between.
+    if length > LAST * (near_here + near_there) { between / length } else { perpendicular(to_here / far_here) }
 }
 
 /// Newton's method for both normals; none where it does not settle.
@@ -261,15 +255,14 @@ fn one_after_the_other(
     mut on_second: Point,
     apart: f64,
 ) -> Option<[Normal; 2]> {
-    let (mut at_first, mut at_second) = (None, None);
     let mut last_step = f64::INFINITY;
     for _ in 0..200 {
         // On the way a point may be hidden; only the answer must be seen.
-        let one = balance(source, on_second, first, at_first)?;
-        let two = balance(first.0 + one.unit * first.1, receiver, second, at_second)?;
+        let one = balance(source, on_second, first)?;
+        let two = balance(first.0 + one.unit * first.1, receiver, second)?;
         let next = second.0 + two.unit * second.1;
         let step = (next - on_second).norm();
-        (on_second, at_first, at_second) = (next, Some(one), Some(two));
+        on_second = next;
         // Steps shrink until rounding stops them.
         if step == 0.0 || (step < 1e-12 * apart && step >= last_step) {
             return Some([one, two]);
@@ -319,6 +312,126 @@ mod tests {
             }
         }
         assert!(settled > 15_000 && worst < 1e-13, "{settled} {worst}");
+    }
+
+    /// The normal with equal angles by bisection of the angle between the directions to both points.
+    fn bisected(source: Point, receiver: Point, centre: Point, radius_m: f64) -> Vector {
+        let [to_source, to_receiver] = [source - centre, receiver - centre];
+        let side = if cross(to_source, to_receiver) < 0.0 { -1.0 } else { 1.0 };
+        let (mut low, mut high) = (0.0, libm::atan2(cross(to_source, to_receiver).abs(), to_source.dot(&to_receiver)));
+        let normal = |turn: f64| {
+            let (sin, cos) = libm::sincos(side * turn);
+            let ahead = to_source.normalize();
+            Vector::new(cos * ahead.x - sin * ahead.y, sin * ahead.x + cos * ahead.y)
+        };
+        while high - low > 1e-16 {
+            let middle = 0.5 * (low + high);
+            if middle <= low || middle >= high {
+                break;
+            }
+            let ahead = normal(middle);
+            let at = centre + ahead * radius_m;
+            let off = |end: Point| libm::atan2(cross(ahead, end - at).abs(), ahead.dot(&(end - at)));
+            *(if off(source) > off(receiver) { &mut high } else { &mut low }) = middle;
+        }
+        normal(0.5 * (low + high))
+    }
+
+    /// A point that is this far outside a circle.
+    fn outside(random: &mut crate::world::Random, centre: Point, radius_m: f64, gap_m: f64) -> Point {
+        let (sin, cos) = libm::sincos(random.between(-4.0, 4.0));
+        centre + Vector::new(cos, sin) * (radius_m + gap_m)
+    }
+
+    // From wires to walls, from a micrometre off to a hundred metres, and with both points in nearly one direction.
+    #[test]
+    fn specular_point_is_the_bisected_one() {
+        let mut random = crate::world::Random::new(2);
+        let (mut seen, mut worst) = (0, 0.0_f64);
+        for number in 0..20_000 {
+            let centre = Point::new(random.between(-5.0, 5.0), random.between(-5.0, 5.0));
+            let mut wide = |low: f64, high: f64| libm::exp10(random.between(low, high));
+            let [radius_m, near_m, far_m] = [wide(-4.0, 3.0), wide(-6.0, 2.0), wide(-6.0, 2.0)];
+            let source = outside(&mut random, centre, radius_m, near_m);
+            let receiver = match number % 4 {
+                0 => centre + (source - centre) * ((radius_m + far_m) / (radius_m + near_m)),
+                1 => source + Vector::new(1e-7, -2e-7),
+                _ => outside(&mut random, centre, radius_m, far_m),
+            };
+            if (receiver - centre).norm() <= radius_m {
+                continue;
+            }
+            let expected = bisected(source, receiver, centre, radius_m);
+            let at = centre + expected * radius_m;
+            let lit = |end: Point| expected.dot(&(end - at).normalize());
+            // On the limit of the shadow rounding decides.
+            if lit(source).abs() < 1e-5 || lit(receiver).abs() < 1e-5 {
+                continue;
+            }
+            let found = alhazen(source, receiver, centre, radius_m);
+            assert_eq!(found.is_some(), lit(source) > 0.0 && lit(receiver) > 0.0, "{source} {receiver} {radius_m}");
+            if let Some(found) = found {
+                (seen, worst) = (seen + 1, worst.max((found.point - at).norm()));
+            }
+        }
+        assert!(seen > 10_000 && worst < 1e-9, "{seen} {worst:e}");
+    }
+
+    /// The path over two circles by trying all points of the second, with the first solved by bisection: its length.
+    fn tried(source: Point, receiver: Point, circles: [(Point, f64); 2]) -> Option<f64> {
+        let [first, second] = circles;
+        // How far the angles at the second point are from balance, if all legs are in sight, and the length.
+        let try_at = |turn: f64| {
+            let two = Vector::new(libm::cos(turn), libm::sin(turn));
+            let on_second = second.0 + two * second.1;
+            let one = bisected(source, on_second, first.0, first.1);
+            let on_first = first.0 + one * first.1;
+            let legs = [source - on_first, on_second - on_first, receiver - on_second];
+            let lit = one.dot(&legs[0]) > 0.0
+                && one.dot(&legs[1]) > 0.0
+                && two.dot(&legs[1]) < 0.0
+                && two.dot(&legs[2]) > 0.0;
+            let excess = cross(two, -legs[1].normalize()) + cross(two, legs[2].normalize());
+            lit.then(|| (excess, legs.map(|leg| leg.norm()).iter().sum::<f64>()))
+        };
+        const STEPS: i32 = 300;
+        let turns = (0..=STEPS).map(|k| core::f64::consts::TAU * f64::from(k) / f64::from(STEPS));
+        let tries: Vec<_> = turns.map(|turn| (turn, try_at(turn))).collect();
+        tries.windows(2).find_map(|pair| {
+            let [(mut low, before), (mut high, after)] = [pair[0], pair[1]];
+            let (before, after) = (before?.0, after?.0);
+            if before * after > 0.0 {
+                return None;
+            }
+            for _ in 0..60 {
+                let middle = 0.5 * (low + high);
+                *(if try_at(middle)?.0 * before > 0.0 { &mut low } else { &mut high }) = middle;
+            }
+            try_at(0.5 * (low + high)).map(|found| found.1)
+        })
+    }
+
+    #[test]
+    fn path_over_two_poles_is_found_by_trying_all() {
+        let mut random = crate::world::Random::new(3);
+        let (mut seen, mut worst) = (0, 0.0_f64);
+        for number in 0..300 {
+            let first = Point::new(random.between(-5.0, 5.0), random.between(-5.0, 5.0));
+            let mut wide = |low: f64, high: f64| libm::exp10(random.between(low, high));
+            let (radii, gap_m) = ([wide(-3.0, 0.5), wide(-3.0, 0.5)], wide(-5.0, 0.7));
+            let near_m = [wide(-5.0, 0.7), wide(-5.0, 0.7)];
+            let second = outside(&mut random, first, radii[0] + radii[1], gap_m);
+            let circles = [(first, radii[0]), (second, radii[1])];
+            let ends = [0, 1].map(|end| outside(&mut random, circles[end].0, circles[end].1, near_m[end]));
+            let found = alhazen_twice(ends[0], ends[1], circles[0], circles[1]);
+            let length_m = found.map(|(one, two)| one.before_m + two.before_m + two.after_m);
+            if let Some(expected) = tried(ends[0], ends[1], circles) {
+                let length_m = length_m.unwrap_or(f64::INFINITY);
+                (seen, worst) = (seen + 1, worst.max((length_m - expected).abs()));
+                assert!((length_m - expected).abs() < 1e-9, "{number}: {length_m} {expected} {ends:?} {circles:?}");
+            }
+        }
+        assert!(seen > 60, "{seen} {worst:e}");
     }
 
     proptest! {

@@ -38,11 +38,11 @@ struct Row {
     plan: fn(&Robot, AnySchedule) -> Result<FiringPlan, StartError>,
     /// Number of echoes of a firing that a sensor reports.
     echoes: usize,
-    /// Least time until a sensor may fire again.
-    refire: fn(&Robot) -> Micros,
+    /// Least time until a sensor, by its number, may fire again.
+    refire: fn(&Robot, &AnySchedule, usize) -> Micros,
 }
 
-/// Defaults of a row: one schedule, one echo, no firing while the sensor listens.
+/// Defaults of a row: one schedule, one echo, no firing sooner than that schedule has it.
 const DEFAULT: Row = Row {
     name: "",
     eeruf: false,
@@ -52,7 +52,7 @@ const DEFAULT: Row = Row {
     belief: Belief::Repeated,
     plan: |_, schedule| Ok(FiringPlan::new(schedule)),
     echoes: 1,
-    refire: |robot| robot.window,
+    refire: |_, schedule, sensor| schedules::soonest_refire(schedule, sensor),
 };
 
 /// Makes the enum, its list and its rows from the table.
@@ -114,6 +114,7 @@ methods! {
         schedule: schedules::conventional,
         ring: dither::dithered,
         belief: Belief::Repeated,
+        refire: |robot, _, _| robot.window,
     }
     /// Constant lags (Table I-a): neighbours fire `T_p / n` apart, every period alike. Every echo is believed.
     Conventional = "conventional" {
@@ -140,7 +141,7 @@ methods! {
         schedule: schedules::refiring,
         ring: ring_runner::immediate,
         belief: Belief::Repeated,
-        refire: |robot| robot.min_refire,
+        refire: |robot, _, _| robot.min_refire,
     }
     /// Scheduled firing (Fig. 3) by the robot's own schedule, or else by the paper's table at the robot's period (see
     /// [`table_i_d_for`](crate::table_i_d_for)). Consecutive readings are compared.
@@ -167,6 +168,7 @@ methods! {
         ring: adaptive::adaptive,
         belief: Belief::Repeated,
         plan: adaptive::plan,
+        refire: |robot, _, _| robot.window,
     }
     /// Time hopping: the waits move through a cycle of many phases, and an echo is believed that readings from several
     /// phases support ([`HoppingRing`](eeruf_core::hopping::HoppingRing)). With solo periods, for robots that stand, a
@@ -176,6 +178,7 @@ methods! {
         schedule: schedules::conventional,
         ring: hopping::hopping,
         belief: Belief::Repeated,
+        refire: |robot, _, _| robot.window,
     }
     /// Flow: one sensor after the other, each with as much quiet around its firing as it has needed, and an echo is
     /// believed that several phases support ([`FlowRing`](eeruf_core::flow::FlowRing)). The robot's period is the
@@ -185,6 +188,7 @@ methods! {
         schedule: schedules::conventional,
         ring: flow::flow,
         belief: Belief::Repeated,
+        refire: |robot, _, _| robot.window,
     }
     /// As [`Eeruf`](Self::Eeruf), with sensors that report up to eight echoes of a firing: the earliest that repeats is
     /// believed.
@@ -203,7 +207,7 @@ methods! {
         schedule: schedules::together,
         ring: sketch::in_turn,
         belief: Belief::AsSketched,
-        refire: |_| Micros::ZERO,
+        refire: |_, _, _| Micros::ZERO,
     }
     /// Arrays side by side, each as [`InTurn`](Self::InTurn).
     Arrays = "arrays" {
@@ -211,7 +215,7 @@ methods! {
         schedule: schedules::together,
         ring: sketch::arrays,
         belief: Belief::AsSketched,
-        refire: |_| Micros::ZERO,
+        refire: |_, _, _| Micros::ZERO,
     }
     /// As [`InTurn`](Self::InTurn), with groups of sensors that fire together.
     Groups = "groups" {
@@ -219,7 +223,7 @@ methods! {
         schedule: schedules::together,
         ring: sketch::groups,
         belief: Belief::AsSketched,
-        refire: |_| Micros::ZERO,
+        refire: |_, _, _| Micros::ZERO,
     }
     /// Modules that share a trigger: all at once, again when the slowest has answered and rested.
     SyncLine = "sync_line" {
@@ -227,7 +231,7 @@ methods! {
         schedule: schedules::together,
         ring: sketch::sync_line,
         belief: Belief::AsSketched,
-        refire: |_| Micros::ZERO,
+        refire: |_, _, _| Micros::ZERO,
     }
     /// Modules that fire themselves, each by a clock of its own.
     FreeRunning = "free_running" {
@@ -235,7 +239,7 @@ methods! {
         schedule: schedules::together,
         ring: sketch::free_running,
         belief: Belief::AsSketched,
-        refire: |_| Micros::ZERO,
+        refire: |_, _, _| Micros::ZERO,
     }
     /// By a table of any number of phases, the robot's own schedule unless the sketch has one.
     Table = "table" {
@@ -243,6 +247,7 @@ methods! {
         schedule: schedules::own,
         ring: sketch::table,
         belief: Belief::AsSketched,
+        refire: |robot, _, _| robot.window,
     }
 }
 
@@ -278,9 +283,9 @@ impl Method {
         self.row().echoes
     }
 
-    /// Least time until a sensor may fire again.
-    pub(crate) fn soonest_refire(self, robot: &Robot) -> Micros {
-        (self.row().refire)(robot)
+    /// Least time until a sensor may fire again, as long as its ring keeps to this schedule.
+    pub(crate) fn soonest_refire(self, robot: &Robot, schedule: &AnySchedule, sensor: usize) -> Micros {
+        (self.row().refire)(robot, schedule, sensor)
     }
 
     /// The schedule that a robot's ring starts with.

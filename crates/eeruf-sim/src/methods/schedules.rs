@@ -58,6 +58,12 @@ pub(super) fn refiring(query: &ScheduleQuery<'_>) -> Made {
     AnySchedule::from_slices(period.saturating_add(min_refire), table.t_lag(), [&longer(Phase::A), &longer(Phase::B)])
 }
 
+/// The shortest time between two firings of a sensor by a schedule.
+pub(super) fn soonest_refire(schedule: &AnySchedule, sensor: usize) -> Micros {
+    let after = [Phase::A, Phase::B].map(|phase| schedule.refire_after(phase, sensor));
+    after.into_iter().flatten().min().unwrap_or(schedule.min_refire())
+}
+
 /// Sensors in turns, each turn as long as they listen, and where their modules are known as long as those hear, and a
 /// round no shorter than those rest.
 fn in_turns(robot: &Robot, turns: usize) -> Made {

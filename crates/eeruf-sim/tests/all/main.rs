@@ -9,6 +9,7 @@ mod corpus;
 mod corpus_reader;
 mod facts;
 mod image_source;
+mod interference;
 mod kept;
 mod map_rooms;
 mod modules;

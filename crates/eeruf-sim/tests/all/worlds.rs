@@ -130,7 +130,7 @@ fn an_unknown_method_is_answered_with_the_list_of_all() {
 fn world_file_round_trips_bit_for_bit() {
     let walls = [[-2.0, -2.0], [2.0, -2.0], [2.0, 2.0], [-2.0, 2.0], [-2.0, -2.0]];
     let outline = Outline::new(&[[-0.2, -0.1], [0.2, -0.1], [0.1, 0.2]]).unwrap();
-    let odd = Physics { fading_time_s: 0.3, narrow_panels: false, ..Physics::DEFAULT };
+    let odd = Physics { fading_time_s: 0.3, narrow_panels: false, interference: true, ..Physics::DEFAULT };
     for number in 0..38_u32 {
         let physics = [Physics::PLAIN, Physics::DEFAULT, odd][number as usize % 3];
         let turned = 0.37 * f64::from(number) - 5.0;

@@ -7,6 +7,9 @@ use crate::{
     world::{FARTHEST, World},
 };
 
+/// Sound that is farther below the threshold is not counted where arrivals add. A choice.
+const HEARD_TOGETHER_DB: f64 = 10.0;
+
 /// Sound that a kind of transducer hears of a kind in this world.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct HearingRange {
@@ -14,7 +17,7 @@ pub(super) struct HearingRange {
     hearing: Transducer,
     /// The amplitude that is just heard.
     pub(super) floor: f64,
-    /// The same if the strongest fading lifts it.
+    /// The same if the strongest fading lifts it, or others that come within a burst.
     pub(super) faintest: f64,
     /// The longest path that is heard then, in metres.
     pub(super) longest_m: f64,
@@ -24,10 +27,17 @@ impl HearingRange {
     pub(super) fn new(sending: &Transducer, hearing: &Transducer, world: &World) -> Self {
         let air = world.scene().air();
         let floor = hearing.detection_floor(air);
-        let faintest = floor / libm::exp10(world.noise().fading_db_rms * f64::from(FARTHEST) / 20.0);
+        let fading_db = world.noise().fading_db_rms * f64::from(FARTHEST);
+        let below_db = if world.physics().interference { fading_db.max(HEARD_TOGETHER_DB) } else { fading_db };
+        let faintest = floor / libm::exp10(below_db / 20.0);
         let loudest = if world.physics().narrow_panels { LOUDEST_PANEL } else { 1.0 };
         let longest_m = longest_audible_m(sending, air, faintest / loudest);
         Self { sending: *sending, hearing: *hearing, floor, faintest, longest_m }
+    }
+
+    /// Of what is sent.
+    pub(super) fn frequency_hz(&self) -> f64 {
+        self.sending.frequency_hz
     }
 
     pub(super) fn is_of(&self, sending: &Transducer, hearing: &Transducer) -> bool {

@@ -9,7 +9,7 @@ use core::ops::Deref;
 use std::sync::Arc;
 
 use super::kinematics::Kinematics;
-use super::receiver::{Hearing, NEVER};
+use super::receiver::{Envelope, Hearing, NEVER, Wave};
 use crate::{
     acoustics::{GainProfile, Transducer},
     geometry::{Pose, Vector},
@@ -34,12 +34,26 @@ pub(crate) struct Channel {
     pub(crate) key: u64,
     /// Travelling time in nanoseconds.
     pub(crate) delay: u64,
+    /// Phase of the carrier when the sound begins to arrive, as a share of a turn.
+    pub(crate) turn: f32,
     /// Level above the detection floor, the receiver's gain left out.
     pub(crate) level_over_threshold_db: f32,
 }
 
+impl Channel {
+    /// Its sound, beginning at a time with a level, of which bursts are as long as this to its receiver.
+    pub(crate) fn wave(&self, onset: u64, level_over_threshold_db: f32, burst: u64) -> Wave {
+        let Self { receiver, path, turn, .. } = *self;
+        Wave { receiver: receiver as usize, onset, burst, turn, path, level_over_threshold_db }
+    }
+}
+
 /// Returns true if sound may matter that reaches a sensor at about a time, give or take a slack, in true nanoseconds.
 pub(crate) type Arrives<'a> = &'a dyn Fn(usize, u64, u64) -> bool;
+
+/// Phase of what an edge sends back to the side that the sound came from, as a share of a turn: that of Keller's
+/// coefficient, `-exp(-j pi / 4)`.
+const EDGE_TURN: f64 = 0.375;
 
 /// A world in which sound travels, borrowed or shared.
 #[derive(Clone)]
@@ -156,6 +170,18 @@ impl<'w> Channels<'w> {
     /// [`NEVER`].
     pub(crate) fn reference(&self, sensor: usize, hearing: &Hearing) -> u64 {
         let own = self.from(sensor).iter().filter(|channel| channel.receiver as usize == sensor);
+        if self.world.physics().interference {
+            let mut sum = Envelope::default();
+            let burst = hearing.rise_ns.ceil() as u64;
+            own.for_each(|channel| sum.push(channel.wave(channel.delay, channel.level_over_threshold_db, burst)));
+            let mut earliest = NEVER;
+            sum.rises(0, |_, arrival| {
+                let heard = hearing.late(&arrival, 0).map(|late| arrival.onset + late);
+                let heard = heard.filter(|heard| (hearing.blanking..=hearing.window).contains(heard));
+                earliest = earliest.min(heard.unwrap_or(NEVER));
+            });
+            return earliest;
+        }
         let heard = own.filter_map(|channel| {
             let late = hearing.lateness(channel.level_over_threshold_db, channel.delay)?;
             Some(channel.delay + late).filter(|heard| (hearing.blanking..=hearing.window).contains(heard))
@@ -322,14 +348,19 @@ impl<'w> Channels<'w> {
             let query = CrosstalkQuery::new(scene, &sensors, &flat, limits, range.faintest);
             let heights_m = [emitters, &listeners].map(|sensors| self.heights_of(scene, sensors));
             let query = CrosstalkQuery { coupling, heights_m: heights_m.each_ref().map(Vec::as_slice), ..query };
-            let (velocities, c) = (&self.velocities, world.scene().air().speed_of_sound());
+            let c = world.scene().air().speed_of_sound();
+            // A receiver that moves is reached this share of the time earlier or later at most.
+            let slack_of = |&sensor: &usize| {
+                let speed = self.velocities[sensor].norm();
+                (sensor, speed / (c - speed))
+            };
+            let slacks: Vec<(usize, f64)> = listeners.iter().map(slack_of).collect();
             let by_length = matters.map(|(now, arrives)| {
-                let listeners = &listeners;
+                let slacks = &slacks;
                 move |listener: usize, length_m: f64| {
-                    let Some(&sensor) = listeners.get(listener) else { return true };
-                    let (speed, time_s) = (velocities[sensor].norm(), length_m / c);
-                    // A receiver that moves is reached so much earlier or later at most.
-                    let slack_s = time_s * speed / (c - speed);
+                    let Some(&(sensor, slack)) = slacks.get(listener) else { return true };
+                    let time_s = length_m / c;
+                    let slack_s = time_s * slack;
                     !(slack_s >= 0.0) || arrives(sensor, now + (time_s * 1e9) as u64, (slack_s * 1e9) as u64 + 2)
                 }
             });
@@ -380,12 +411,16 @@ impl<'w> Channels<'w> {
         let c = self.world.scene().air().speed_of_sound();
         let met = reception_at(path.length_m, [path.arrival_rad, path.elevations_rad[1]], velocity, c)?;
         let level_over_threshold_db = 20.0 * libm::log10(path.amplitude / range.floor);
+        // Walls, poles, floor and ceiling are hard and keep the phase.
+        let bent = self.bounces.iter().filter(|bounce| matches!(bounce, Bounce::Edge(_))).count();
+        let turns = bent as f64 * EDGE_TURN - met.time_s * range.frequency_hz();
         let path = self.paths.number(ends.map(|end| self.ids[end]), path, &self.bounces);
         Some(Channel {
             receiver: receiver as u32,
             path,
             key: self.paths.key(path),
             delay: (met.time_s * 1e9).round() as u64,
+            turn: (turns - turns.floor()) as f32,
             level_over_threshold_db: level_over_threshold_db as f32,
         })
     }

@@ -5,7 +5,7 @@ use core::f32::consts::FRAC_PI_2;
 
 use crate::acoustics::Transducer;
 use crate::simulation::channels::Channel;
-use crate::simulation::receiver::{Arrival, EXTERNAL, NEVER, Receiver};
+use crate::simulation::receiver::{Arrival, EXTERNAL, Envelope, NEVER, Receiver};
 use crate::world::{FARTHEST, Noise, Normal, Random, World};
 
 // What the streams of random numbers are for.
@@ -24,6 +24,10 @@ pub(crate) struct Propagation {
     jitter_ns: f32,
     /// No arrival is heard earlier or later by more, in nanoseconds.
     slack: u64,
+    /// Sounds that add, where they do.
+    sum: Option<Envelope>,
+    /// Length of the burst of each sensor in nanoseconds, where sounds add.
+    bursts: Vec<u64>,
     /// From one knot of the fading to the next, in nanoseconds; 0 if each firing draws again.
     knot_ns: u64,
 }
@@ -37,8 +41,14 @@ impl Propagation {
         let (noise, physics) = (world.noise(), world.physics());
         let jitter_ns = (noise.jitter_us_rms * 1000.0) as f32;
         let burst_ns = |transducer: Transducer| (transducer.burst_s() * 1e9).ceil() as u64;
-        let bursts = world.robots().iter().flat_map(|robot| robot.transducers().map(burst_ns));
-        let walk = if physics.range_walk { bursts.max().unwrap_or(0) } else { 0 };
+        let bursts = || world.robots().iter().flat_map(|robot| robot.transducers().map(burst_ns));
+        let longest = bursts().max().unwrap_or(0);
+        let walk = match (physics.interference, physics.range_walk) {
+            // A sum may cross the threshold as long as its last sound lasts.
+            (true, _) => 2 * longest,
+            (false, true) => longest,
+            (false, false) => 0,
+        };
         Self {
             random: seed.of(ARRIVALS),
             fading: seed.of(FADING),
@@ -46,6 +56,8 @@ impl Propagation {
             fading_db: noise.fading_db_rms as f32,
             jitter_ns,
             slack: (jitter_ns * FARTHEST).ceil() as u64 + walk,
+            sum: physics.interference.then(Envelope::default),
+            bursts: if physics.interference { bursts().collect() } else { Vec::new() },
             knot_ns: if physics.fades_slowly() { (physics.fading_time_s / CORRELATED * 1e9).ceil() as u64 } else { 0 },
         }
     }
@@ -65,7 +77,7 @@ impl Propagation {
     /// left out.
     #[inline]
     pub(crate) fn send(
-        &self,
+        &mut self,
         [emitter, firing]: [u64; 2],
         now: u64,
         channels: &[Channel],
@@ -86,11 +98,18 @@ impl Propagation {
                 self.faded(channel.key, now)
             };
             let level_over_threshold_db = channel.level_over_threshold_db + self.fading_db * fades;
-            if level_over_threshold_db >= 0.0 {
+            if level_over_threshold_db >= 0.0 || self.sum.is_some() {
                 let onset = nominal.saturating_add_signed((self.jitter_ns * shifts) as i64).max(now + 1);
                 let path = channel.path;
-                arrive(number, receiver, Arrival { onset, at: onset, sent: now, path, level_over_threshold_db });
+                let arrival = Arrival { onset, at: onset, sent: now, path, level_over_threshold_db, rise: None };
+                match &mut self.sum {
+                    None => arrive(number, receiver, arrival),
+                    Some(sum) => sum.push(channel.wave(onset, level_over_threshold_db, self.bursts[number])),
+                }
             }
+        }
+        if let Some(sum) = &mut self.sum {
+            sum.rises(now, |number, arrival| arrive(number, &mut receivers[number], arrival));
         }
     }
 
@@ -150,6 +169,7 @@ impl Bursts {
             sent: now,
             path: EXTERNAL,
             level_over_threshold_db,
+            rise: None,
         })
     }
 }

@@ -99,7 +99,7 @@ impl<'a, K: Kinematics> EventLoop<'a, K> {
         let seed = Random::new(options.seed.unwrap_or(world.seed()));
         let channels =
             Channels::new(world, &kinematics, stop.clone()).map_err(|error| SimulationError::paths(0, error))?;
-        let rings = start_all(world, plans, options, &channels, seed, own)?;
+        let rings = start_all(world, plans, options, &channels, seed, own, end.is_some())?;
         let sensors = channels.ids().len();
         let longest = rings.iter().map(RunningRing::longest_window).max().unwrap_or(0);
         let (ids, robots) = (channels.ids(), world.robots());

@@ -174,7 +174,7 @@ impl<'a> Faults<'a> {
             let is_sound = matches!(fault.kind, FaultKind::Noise { .. } | FaultKind::UniformNoise { .. });
             let level_over_threshold_db = if is_sound { NOISE_DB } else { GLITCH_DB };
             let at = now + after.max(1);
-            heard.push(Arrival { onset: at, at, sent: now, path: EXTERNAL, level_over_threshold_db });
+            heard.push(Arrival { onset: at, at, sent: now, path: EXTERNAL, level_over_threshold_db, rise: None });
         }
         heard
     }

@@ -72,7 +72,7 @@ pub(crate) fn plans(
     world.robots().iter().enumerate().map(plan).collect()
 }
 
-/// Starts every robot's ring as planned.
+/// Starts every robot's ring as planned; nobody gives it another schedule if it `keeps_schedules`.
 pub(crate) fn start_all<'a>(
     world: &'a World,
     plans: &'a [Plan],
@@ -80,7 +80,9 @@ pub(crate) fn start_all<'a>(
     channels: &Channels<'_>,
     seed: Random,
     own: &mut Own,
+    keeps_schedules: bool,
 ) -> Result<Vec<RunningRing<'a>>, SimulationError> {
+    let steady = keeps_schedules && world.faults().is_empty();
     let mut rings = Vec::with_capacity(plans.len());
     for (index, (robot, (method, plan))) in world.robots().iter().zip(plans).enumerate() {
         let mut clock = Ticker::new(robot.clock);
@@ -104,9 +106,11 @@ pub(crate) fn start_all<'a>(
         };
         let ring = ring.map_err(|error| SimulationError::start(index, *method, error))?;
         let true_ns = |time: Micros| clock.true_ns(time.as_micros());
-        // Two ticks less, since the clock rounds.
-        let soonest = if plan.is_some() { method.soonest_refire(robot) } else { robot.window };
-        let refire = true_ns(soonest).saturating_sub(2000);
+        let soonest = |sensor: usize| match plan {
+            Some(plan) if steady => method.soonest_refire(robot, &plan.schedule, sensor),
+            Some(plan) => method.soonest_refire(robot, &plan.schedule, sensor).min(robot.window),
+            None => robot.window,
+        };
         let first = channels.first_of(index);
         let sensors = first..first + robot.sensors.len();
         let keeps_limits = |plan: &FiringPlan| plan.own_limits != EachSensor::NONE || !plan.ladder.is_empty();
@@ -114,9 +118,12 @@ pub(crate) fn start_all<'a>(
         let has_limits = plan.as_ref().is_some_and(|plan| hops_by_them || keeps_limits(plan));
         let limits = if has_limits { &robot.limits[..] } else { &[] };
         let hearing_of = |sensor: usize| {
+            // Two ticks less, since the clock rounds.
+            let refire = true_ns(soonest(sensor)).saturating_sub(2000);
             let hearing = Hearing::new(world, robot, sensor, method.echoes(), refire, true_ns);
+            // A later firing is deaf at first, too.
+            let hearing = Hearing { refire: if steady { refire + hearing.blanking } else { refire }, ..hearing };
             match limits.get(sensor).map(|limits| true_ns(limits.window)) {
-                // Two ticks less, since the clock rounds.
                 Some(window) => Hearing { window, refire: window.saturating_sub(2000), ..hearing },
                 None => hearing,
             }

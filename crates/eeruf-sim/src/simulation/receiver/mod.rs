@@ -4,6 +4,7 @@
 //! several echoes goes on listening after a dead time of one burst. Arrivals that may still matter to a later firing
 //! are kept.
 
+mod envelope;
 #[cfg(test)]
 mod tests;
 
@@ -14,6 +15,7 @@ use crate::{
     methods::MAX_ECHOES,
     world::{Robot, World},
 };
+pub(crate) use envelope::{Envelope, Rise, Wave};
 
 /// No moment of any simulation.
 pub(crate) const NEVER: u64 = u64::MAX;
@@ -23,7 +25,7 @@ pub(crate) const EXTERNAL: u32 = u32::MAX - 1;
 /// Sound that reaches a sensor. Times are true nanoseconds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Arrival {
-    /// When it begins.
+    /// When it begins; of a sum when the first of its sounds does.
     pub(crate) onset: u64,
     /// When it is heard: at its onset, or as much later as its receiver takes.
     pub(crate) at: u64,
@@ -33,6 +35,8 @@ pub(crate) struct Arrival {
     pub(crate) path: u32,
     /// Level above the detection floor, fading included, the receiver's gain left out.
     pub(crate) level_over_threshold_db: f32,
+    /// Its envelope, if it is a stretch of several sounds' sum.
+    pub(crate) rise: Option<Rise>,
 }
 
 /// An echo that was handed to the ring. It knows what it came from, and does not say so.
@@ -49,7 +53,7 @@ pub struct Echo {
 impl Echo {
     const NONE: Self = Self {
         t_echo_us: 0,
-        arrival: Arrival { onset: 0, at: 0, sent: 0, path: EXTERNAL, level_over_threshold_db: 0.0 },
+        arrival: Arrival { onset: 0, at: 0, sent: 0, path: EXTERNAL, level_over_threshold_db: 0.0, rise: None },
         of_this_firing: false,
     };
 
@@ -75,7 +79,7 @@ impl Echo {
 pub(crate) struct Hearing {
     pub(crate) blanking: u64,
     pub(crate) window: u64,
-    /// No sensor fires again within this time of firing.
+    /// No later firing hears anything within this time of firing.
     pub(crate) refire: u64,
     /// Dead time after each echo of a sensor that reports several.
     pub(crate) dead_time: u64,
@@ -108,7 +112,7 @@ impl Hearing {
             echoes,
             gain: transducer.gain,
             gain_full_s: 2.0 * transducer.max_range_m / world.scene().air().speed_of_sound(),
-            rise_ns: if world.physics().range_walk { burst_ns } else { 0.0 },
+            rise_ns: if world.physics().rises() { burst_ns } else { 0.0 },
         }
     }
 
@@ -132,8 +136,14 @@ impl Hearing {
         Some(if self.rise_ns > 0.0 { (self.rise_ns * libm::exp10(-0.05 * level_db)) as u64 } else { 0 })
     }
 
-    fn late(&self, arrival: &Arrival, fired: u64) -> Option<u64> {
-        self.lateness(arrival.level_over_threshold_db, arrival.onset.saturating_sub(fired))
+    /// The same of an arrival, for a receiver that fired at this time.
+    #[inline]
+    pub(crate) fn late(&self, arrival: &Arrival, fired: u64) -> Option<u64> {
+        let after = arrival.onset.saturating_sub(fired);
+        match arrival.rise {
+            None => self.lateness(arrival.level_over_threshold_db, after),
+            Some(rise) => rise.crosses(1.0 / gain_at(self.gain, after as f64 * 1e-9, self.gain_full_s)),
+        }
     }
 }
 
@@ -217,7 +227,8 @@ impl Receiver {
     #[inline]
     pub(crate) fn insert(&mut self, arrival: Arrival, hearing: &Hearing) {
         let late = hearing.late(&arrival, self.fired);
-        let arrival = Arrival { at: arrival.onset + late.unwrap_or(0), ..arrival };
+        let begins = arrival.rise.map_or(0, |rise| rise.after.into());
+        let arrival = Arrival { at: arrival.onset + late.unwrap_or(begins), ..arrival };
         let in_window = arrival.at >= self.open && arrival.at <= self.until;
         if !in_window || late.is_none() {
             // Whether a later firing hears it is decided then.

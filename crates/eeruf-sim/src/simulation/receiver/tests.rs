@@ -12,7 +12,7 @@ const HEARING: Hearing = Hearing {
 };
 
 fn arrival(at: u64, level_over_threshold_db: f32) -> Arrival {
-    Arrival { onset: at, at, sent: 0, path: at as u32, level_over_threshold_db }
+    Arrival { onset: at, at, sent: 0, path: at as u32, level_over_threshold_db, rise: None }
 }
 
 fn hears(hearing: &Hearing, arrivals: &[(u64, f32)]) -> Vec<u64> {

@@ -90,6 +90,7 @@ pub(super) struct PhysicsTable {
     edges: Option<bool>,
     narrow_panels: Option<bool>,
     range_walk: Option<bool>,
+    interference: Option<bool>,
     fading_time_s: Option<f64>,
 }
 
@@ -104,6 +105,7 @@ impl PhysicsFile {
                     edges: table.edges.unwrap_or(base.edges),
                     narrow_panels: table.narrow_panels.unwrap_or(base.narrow_panels),
                     range_walk: table.range_walk.unwrap_or(base.range_walk),
+                    interference: table.interference.unwrap_or(base.interference),
                     fading_time_s: table.fading_time_s.unwrap_or(base.fading_time_s),
                 })
             }

@@ -50,6 +50,7 @@ pub fn world_file(
             set(&mut effects, "edges", physics.edges);
             set(&mut effects, "narrow_panels", physics.narrow_panels);
             set(&mut effects, "range_walk", physics.range_walk);
+            set(&mut effects, "interference", physics.interference);
             set(&mut effects, "fading_time_s", physics.fading_time_s);
             set(&mut file, "physics", effects);
         }

@@ -117,8 +117,8 @@ impl<const K: usize, U: LimitsInUse> FlowPlan<K, U> {
             pace,
             own_limits,
         };
-        // In the order of firing, from its end: only the sensor that fires before another, in the cycle before, moves as
-        // that does. The first one's place is 0.
+        // In the order of firing, from its end: only the sensor that fires before another, in the cycle before, moves
+        // as that does. The first one's place is 0.
         let (mut sensor, mut place) = (0, 0);
         for turn in (1..plan.code.phases()).rev() {
             place = plan.code.next_place(0, place);

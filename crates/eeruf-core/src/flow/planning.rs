@@ -9,7 +9,7 @@ use crate::plan::Plan;
 use crate::time::{Instant, Micros};
 
 impl<const K: usize, U: LimitsInUse> FlowPlan<K, U> {
-    /// Decides on the cycle that has begun. `rests` says for how long after the cycle's start a sensor must not fire yet.
+    /// Decides on the cycle that has begun. `rests` says for how long after its start a sensor must not fire yet.
     #[inline(always)]
     pub(super) fn plan(&mut self, rests: impl Fn(&Self, u8) -> Micros) {
         self.decide_gaps();

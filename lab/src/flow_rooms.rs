@@ -1,5 +1,5 @@
 //! Flow beside hopping and one-by-one firing in rooms, standing and driving: shares of the time in which what is
-//! believed is right, and of the time in which it is foreign sound.
+//! believed is right, and of the time in which it is foreign sound; and of readings, those that were crosstalk.
 //!
 //! `cargo lab flow-rooms [ROOMS [FIRST [PHYSICS]]]`
 
@@ -96,7 +96,7 @@ fn run(
     physics: Physics,
     method: Method,
     hopping: HoppingSettings,
-) -> Result<Belief, Box<dyn std::error::Error + Send + Sync>> {
+) -> Result<(Belief, f64), Box<dyn std::error::Error + Send + Sync>> {
     let mut random = Random::new(number);
     let (scene, pose) = (kind.draw)(&mut random)?;
     let ring = Robot::ring(pose, kind.sensors, 15f64.to_radians(), 0.3, Transducer::POLAROID_6500);
@@ -107,7 +107,8 @@ fn run(
     };
     let robot = Robot { odometry: true, motion, ..ring };
     let world = World::new(scene, vec![robot], Noise::default())?.with_physics(physics)?.with_seed(number);
-    Ok(simulate(&world, method, &Options { hopping, ..Options::periods(PERIODS) })?.summary().belief)
+    let summary = simulate(&world, method, &Options { hopping, ..Options::periods(PERIODS) })?.summary();
+    Ok((summary.belief, summary.crosstalk_of_all))
 }
 
 pub(crate) fn main(arguments: &[String]) -> crate::Answer {
@@ -124,19 +125,27 @@ pub(crate) fn main(arguments: &[String]) -> crate::Answer {
         ("flow", Method::Flow, HoppingSettings::BALANCED),
     ];
     println!("{rooms} of each from {first} on, {physics}: % right (95 % interval), foreign.\n");
-    println!("| room | {} |", methods.map(|(name, ..)| name).join(" | "));
-    println!("|---|{}", "---:|".repeat(methods.len()));
+    let head =
+        format!("| room | {} |\n|---|{}", methods.map(|(name, ..)| name).join(" | "), "---:|".repeat(methods.len()));
+    println!("{head}");
+    let mut crosstalk =
+        format!("Readings that were believed and crosstalk, % in the room at the 90th percentile.\n\n{head}\n");
     for kind in &KINDS {
         let mut cells = Vec::new();
+        crosstalk += &format!("| {} |", kind.name);
         for (_, method, hopping) in methods {
-            let beliefs = sweep(&numbers, |&number| run(kind, number, physics, method, hopping));
-            let beliefs = beliefs.into_iter().collect::<Result<Vec<_>, _>>().map_err(|error| error.to_string())?;
-            let percent = |of: fn(&Belief) -> f64| Spread::of(beliefs.iter().map(|belief| 100.0 * of(belief)));
+            let runs = sweep(&numbers, |&number| run(kind, number, physics, method, hopping));
+            let runs = runs.into_iter().collect::<Result<Vec<_>, _>>().map_err(|error| error.to_string())?;
+            let percent = |of: fn(&Belief) -> f64| Spread::of(runs.iter().map(|(belief, _)| 100.0 * of(belief)));
             let (Some(right), Some(foreign)) = (percent(|of| of.right), percent(|of| of.phantom)) else { continue };
             let [low, high] = right.mean_95;
             cells.push(format!("{:.1} ({low:.1}-{high:.1}), {:.2}", right.mean, foreign.mean));
+            let of_readings = Spread::of(runs.iter().map(|(_, crosstalk)| 100.0 * crosstalk));
+            crosstalk += &of_readings.map_or_else(String::new, |spread| format!(" {:.2} |", spread.p90));
         }
+        crosstalk += "\n";
         println!("| {} | {} |", kind.name, cells.join(" | "));
     }
+    println!("\n{crosstalk}");
     Ok(())
 }

@@ -62,6 +62,7 @@ public:
         } while (eeruf_ring_due(&ring_.ring) - now - 1 < SOON_US);
         if (eeruf_hopping_poll(&ring_, now, changes, &event) != EERUF_EVENT) return false;
         if (event.kind == EERUF_EVENT_FIRE) fire(event.sensor);
+        if (onEvent_ != nullptr) (void)onEvent_(watch_, &event, now);
         return true;
     }
 
@@ -78,6 +79,17 @@ public:
         return micros() == EERUF_NO_ECHO ? 0 : (micros() * (soundMmPerS / 8) + 125000) / 250000;
     }
 
+    // Keeps the state before each module, which state() then asks for, in EerufStates<N>.
+    void watch(EerufWatch &watch) {
+        watch_ = &watch;
+        onEvent_ = eeruf_watch_event; // by a pointer, so that a sketch that does not watch links none of it
+    }
+    // What is before a module now, since when, and why nothing is known; EERUF_WHY_NO_FIRING without watch().
+    EerufState state(uint8_t sensor) const {
+        EerufState state = {EERUF_NO_ECHO, 0, EERUF_STATE_UNKNOWN, EERUF_WHY_NO_FIRING, EERUF_BY_NOTHING};
+        (void)eeruf_watch_state(watch_, sensor, ::micros(), &state);
+        return state;
+    }
     // How a module is: EERUF_HEALTH_..
     uint8_t health(uint8_t sensor) const { return eeruf_hc_sr04_health(&modules_, sensor); }
     // Stops a module, or lets it fire again.
@@ -108,6 +120,8 @@ private:
 
     const uint8_t *triggers_, *echoes_;
     EerufEdges *edges_ = nullptr;
+    EerufWatch *watch_ = nullptr;
+    EerufStatus (*onEvent_)(EerufWatch *, const EerufEvent *, uint32_t) = nullptr;
     EerufHoppingRing ring_;
     EerufHcSr04 modules_;
     EerufHopSensor sensors_[N];

@@ -98,6 +98,10 @@ pub trait Judge {
     fn believed(&self, _sensor: u8) -> Option<Micros> {
         None
     }
+    /// Returns true if an echo comes before what it believes of a sensor now, silence too: it is none of its own.
+    fn comes_before_belief(&self, sensor: u8, t_echo: Micros) -> bool {
+        self.believed(sensor).map_or_else(|| self.is_clear(sensor), |believed| t_echo < believed)
+    }
     /// Forgets the readings of a sensor, so that its next one is compared with nothing. The age goes on.
     fn forget(&mut self, sensor: u8);
     /// The ring starts over: sound from before may still be heard, and what a sensor hears next is compared with

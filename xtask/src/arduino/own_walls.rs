@@ -213,6 +213,7 @@ fn faults_are_no_free_space(library: &Path, world: &Path) -> Result<(), Trouble>
     let mut outcomes = faults_of_ring8(library, world, &file)?;
     outcomes.extend(faults_of_edges(library, world, &file)?);
     latched_line_recovers(library, world)?;
+    flow_says_states(library, world)?;
     let said = with_column(&document, &outcomes)?;
     if env::var_os("EERUF_WRITE").is_some() {
         fs::write(LOG, said).map_err(failed(LOG))
@@ -334,6 +335,43 @@ fn latched_line_recovers(library: &Path, world: &Path) -> Result<(), Trouble> {
     let is_stuck = never == 0 && held < UNTIL_STUCK;
     if is_wrong || !is_stuck || walls < 40 || clear > 3 * UNTIL_STUCK || silent == 0 {
         return Err(Trouble::Failed(format!("a latched line without and with recover(): {found:?}")));
+    }
+    Ok(())
+}
+
+/// Checks States4 with a flow ring in place of its table: a module before nothing is clear, one without power does not
+/// answer, and the others keep saying their walls.
+fn flow_says_states(library: &Path, world: &Path) -> Result<(), Trouble> {
+    const SHOWN: usize = 3;
+    let name = "examples/States4/States4.ino";
+    let mut text = fs::read_to_string(library.join(name)).map_err(failed(name))?;
+    for (of_table, of_flow) in [
+        ("EerufTables.h", "EerufFlow.h"),
+        ("EerufSonar<4> sonar(EERUF_HC_SR04_4, PINS)", "EerufFlow<4> sonar(PINS)"),
+        ("  if (sonar.tooSlow()) Serial.println(F(\"loop() is too slow: modules fire late\"));\n", ""),
+        ("has not answered for ms: ", "does not answer\\n"),
+    ] {
+        let replaced = text.replace(of_table, of_flow);
+        if replaced == text {
+            return Err(Trouble::Failed(format!("{name} has no {of_table}")));
+        }
+        text = replaced;
+    }
+    let source = Source { name: "FlowStates4", text: &text, board: Board::Uno, ours: true, defines: &[] };
+    let sketch = build::sketch(&source, &library.join("src"), &build::core(Board::Uno)?)?;
+    println!("flash of States4 with a flow ring: {} B", sketch.flash);
+    let pins = &ALL[..4];
+    let walls = [Some(EQUAL_US), Some(EQUAL_US + 500), None, Some(EQUAL_US + 1000)];
+    for (fault, expected) in [("hold-38:3", Says::Clear), ("cut:3", Says::NoAnswer)] {
+        let said = with_fault(world, &sketch.elf, fault, 4, &walls, pins)?;
+        let found = said_of(&said, SHOWN);
+        let least = [1, 2, 4].map(|module| said_of(&said, module)[Says::Wall as usize]).into_iter().min();
+        print_row("flow, States4", fault, found, least.unwrap_or(0));
+        // Twenty times a second each; readings take the first few cycles.
+        let (right, all): (usize, usize) = (found[expected as usize], found.iter().sum());
+        if least < Some(50) || right < 50 || right + found[Says::Unsure as usize] != all {
+            return Err(Trouble::Failed(format!("{fault}: a flow ring's state() says {found:?}")));
+        }
     }
     Ok(())
 }

@@ -117,13 +117,17 @@ impl<const K: usize, U: LimitsInUse> FlowPlan<K, U> {
             pace,
             own_limits,
         };
-        let mut sensor = 0;
-        for turn in 0..sensors {
-            if let Some(slot) = plan.slots.get_mut(usize::from(sensor)) {
-                // In the order of firing: only the sensor that fires before it, in the cycle before, moves as it does.
-                slot.place = code.place(turn, 0);
+        // In the order of firing, from its end: only the sensor that fires before another, in the cycle before, moves
+        // as that does. The first one's place is 0.
+        let (mut sensor, mut place) = (0, 0);
+        for turn in (1..plan.code.phases()).rev() {
+            place = plan.code.next_place(0, place);
+            if usize::from(turn) < sensors {
+                sensor = plan.sensor_before(sensor);
+                if let Some(slot) = plan.slots.get_mut(usize::from(sensor)) {
+                    slot.place = place;
+                }
             }
-            sensor = plan.sensor_after(sensor);
         }
         for sensor in 0..sensors as u8 {
             let leader = plan.own_limits.leader_of(sensor);
@@ -134,7 +138,7 @@ impl<const K: usize, U: LimitsInUse> FlowPlan<K, U> {
                 }
             }
         }
-        plan.plan(|_| now);
+        plan.plan(|_, _| Micros::ZERO);
         Ok(plan)
     }
 
@@ -161,9 +165,15 @@ impl<const K: usize, U: LimitsInUse> FlowPlan<K, U> {
     /// A sensor's firing in this cycle, after its start.
     #[inline(always)]
     pub(super) fn offset(&self, sensor: u8) -> Micros {
-        let Some(slot) = self.slots.get(usize::from(sensor)) else { return Micros::MAX };
-        let grid = u32::from(slot.at) * self.unit();
-        Micros::new(grid + u32::from(slot.place) * self.code.step().as_micros())
+        self.slots.get(usize::from(sensor)).map_or(Micros::MAX, |slot| self.offset_at(sensor, slot.at))
+    }
+
+    /// The same if it fired at this place of the grid.
+    #[inline(always)]
+    pub(super) fn offset_at(&self, sensor: u8, at: u16) -> Micros {
+        let place = self.slots.get(usize::from(sensor)).map_or(0, |slot| slot.place);
+        // Below 2^32: a place is below the number of phases, so that the sum is within a unit more than the grid's.
+        Micros::new(u32::from(at) * self.unit() + u32::from(place) * self.code.step().as_micros())
     }
 
     /// One unit of the grid, in microseconds: the code and a step.
@@ -189,7 +199,7 @@ impl<const K: usize, U: LimitsInUse> FlowPlan<K, U> {
     }
 
     /// Finds who fires next, and when; or when the cycle ends.
-    #[inline(always)]
+    #[inline(never)]
     pub(super) fn find_due(&mut self) {
         self.next = if self.place < self.planned { self.order(self.place) } else { NOBODY };
         let after = if self.next == NOBODY { self.cycle().saturating_sub(self.lead()) } else { self.offset(self.next) };
@@ -311,7 +321,7 @@ impl<const K: usize, U: LimitsInUse> Plan for FlowPlan<K, U> {
     }
 
     fn begin_period(&mut self, fired: impl Fn(u8) -> Instant) {
-        self.plan(fired);
+        self.plan(|plan, sensor| plan.rests_for(sensor, fired(sensor)));
     }
 
     #[inline(always)]
@@ -423,8 +433,7 @@ impl<const K: usize, U: LimitsInUse> FlowPlan<K, U> {
             raise = (pace.unserved_adds, pace.unserved_adds);
         }
         if let Some(&echo) = heard.echoes.first() {
-            let masked = judge.believed(sensor).map_or_else(|| judge.is_clear(sensor), |believed| echo < believed);
-            if masked {
+            if judge.comes_before_belief(sensor, echo) {
                 raise.0 = pace.masked_adds.saturating_add(raise.0);
                 if echo > self.gap_after(sensor) {
                     raise.1 = pace.masked_adds.saturating_add(raise.1);

@@ -9,14 +9,20 @@ use crate::plan::Plan;
 use crate::time::{Instant, Micros};
 
 impl<const K: usize, U: LimitsInUse> FlowPlan<K, U> {
-    /// Decides on the cycle that has begun. `fired` says when a sensor that has fired last did.
-    pub(super) fn plan(&mut self, fired: impl Fn(u8) -> Instant) {
+    /// Decides on the cycle that has begun. `rests` says for how long after its start a sensor must not fire yet.
+    #[inline(always)]
+    pub(super) fn plan(&mut self, rests: impl Fn(&Self, u8) -> Micros) {
+        self.decide_gaps();
+        self.place_firings(rests);
+        self.obey_pause();
+    }
+
+    #[inline(never)]
+    fn decide_gaps(&mut self) {
         let most = self.longest_cycle();
         self.fastest = 0;
         self.put_in_order();
         self.give_gaps(most);
-        self.place_firings(fired);
-        self.obey_pause();
     }
 
     /// The longest that this cycle may take, in units: the shorter the faster the robot moved in the last.
@@ -55,6 +61,12 @@ impl<const K: usize, U: LimitsInUse> FlowPlan<K, U> {
         if next >= sensors { next - sensors } else { next }
     }
 
+    /// The sensor before one in that order.
+    pub(super) fn sensor_before(&self, sensor: u8) -> u8 {
+        let stride = self.pace.stride;
+        if sensor >= stride { sensor - stride } else { sensor + self.code.sensors() as u8 - stride }
+    }
+
     /// Returns true if the firing in this place of the order and the next are of sensors that fire together: the gap
     /// between them is none.
     #[inline(always)]
@@ -82,14 +94,18 @@ impl<const K: usize, U: LimitsInUse> FlowPlan<K, U> {
         last
     }
 
-    /// The most that any sensor needs of those that fire in these places.
+    /// The most quiet before and after that any sensor needs of those that fire in these places.
     #[inline(always)]
-    fn most_of(&self, first: u8, last: u8, need: impl Fn(&Slot) -> u8) -> u8 {
-        let mut most = self.sensor_at(first).map_or(0, &need);
-        for place in first + 1..=last {
-            most = most.max(self.sensor_at(place).map_or(0, &need));
+    fn needs(&self, first: u8, last: u8) -> (u8, u8) {
+        let of = |place| self.sensor_at(place).map_or((0, 0), |slot| (slot.before, slot.after));
+        let ((mut before, mut after), mut place) = (of(first), first);
+        // No range: the compiler does not see that it is empty where no sensors fire together.
+        while place < last {
+            place += 1;
+            let other = of(place);
+            (before, after) = (before.max(other.0), after.max(other.1));
         }
-        most
+        (before, after)
     }
 
     /// Lists the sensors that fire: those that fire together in the place of the first of them.
@@ -133,16 +149,15 @@ impl<const K: usize, U: LimitsInUse> FlowPlan<K, U> {
     fn give_gaps(&mut self, most: u32) {
         let last = self.planned.saturating_sub(1);
         let (mut sum, mut previous) = (0, last);
-        let mut after = self.most_of(self.first_with(last), last, |slot| slot.after);
+        let (_, mut after) = self.needs(self.first_with(last), last);
         let mut place = 0;
         while place < self.planned {
             let end = self.last_with(place);
-            let before = self.most_of(place, end, |slot| slot.before);
+            let (before, own_after) = self.needs(place, end);
             let gap = self.gap_for(after.max(before));
             self.set_gap(previous, gap);
             sum += u32::from(gap);
-            after = self.most_of(place, end, |slot| slot.after);
-            (previous, place) = (end, end + 1);
+            (previous, place, after) = (end, end + 1, own_after);
         }
         if sum > most {
             self.share_out(most);
@@ -151,34 +166,45 @@ impl<const K: usize, U: LimitsInUse> FlowPlan<K, U> {
 
     /// Gives all the least gap, and what is left to whoever has been unserved for longest.
     fn share_out(&mut self, most: u32) {
-        let least = self.pace.least_gap;
+        let Pace { least, least_gap, .. } = self.pace;
         let mut left = most;
-        for place in 0..self.planned {
-            let gap = if self.is_with_next(place) { 0 } else { least };
-            left = left.saturating_sub(gap.into());
-            self.set_gap(place, gap);
-            let unserved = self.sensor_at(place).map_or(0, |slot| slot.unserved);
-            // Of those that are unserved for as long, the first in order. There are at most 64.
-            self.sort_in(place, u16::from(unserved) << 8 | u16::from(u8::MAX - place));
-        }
-        for rank in 0..self.planned {
-            if left == 0 {
-                return;
+        for slot in self.slots.iter_mut().take(self.planned.into()) {
+            // Between sensors that fire together there is none.
+            if slot.gap > 0 {
+                slot.gap = least_gap;
+                left = left.saturating_sub(least_gap.into());
             }
-            let key = self.slots.get(usize::from(rank)).map_or(0, |slot| slot.at);
+        }
+        if left == 0 {
+            return;
+        }
+        let mut in_need = 0;
+        for place in 0..self.planned {
+            let Some(&Slot { before, after, unserved, .. }) = self.sensor_at(place) else { continue };
+            if before > least || after > least {
+                // Of those that are unserved for as long, the first in order. There are at most 64.
+                self.sort_in(in_need, u16::from(unserved) << 8 | u16::from(u8::MAX - place));
+                in_need += 1;
+            }
+        }
+        let mut rank = 0;
+        while left > 0 && rank < in_need {
+            let key = self.slots.get(rank).map_or(0, |slot| slot.at);
             let place = u8::MAX - (key & 0xff) as u8;
-            let Some(&Slot { before, after, .. }) = self.sensor_at(place) else { continue };
+            let Some(&Slot { before, after, .. }) = self.sensor_at(place) else { return };
             let first = self.first_with(place);
             let previous = if first == 0 { self.planned - 1 } else { first - 1 };
             left = self.raise_gap(previous, before, left);
             left = self.raise_gap(self.last_with(place), after, left);
+            rank += 1;
         }
     }
 
     /// Sorts a key in among the first `count`, the largest first. They are kept where firing times are, which are
     /// decided next.
-    fn sort_in(&mut self, count: u8, key: u16) {
-        let mut rank = usize::from(count);
+    #[inline(always)]
+    fn sort_in(&mut self, count: usize, key: u16) {
+        let mut rank = count;
         // From the end, where most stay: of those that are unserved for as long the first in order come first.
         while let Some([before, slot]) = rank.checked_sub(1).and_then(|first| self.slots.get_mut(first..=rank)) {
             if before.at >= key {
@@ -194,6 +220,9 @@ impl<const K: usize, U: LimitsInUse> FlowPlan<K, U> {
 
     /// Raises a gap to what this quiet needs, by at most `left` units; returns what is left of them.
     fn raise_gap(&mut self, place: u8, quiet: u8, left: u32) -> u32 {
+        if quiet <= self.pace.least {
+            return left;
+        }
         let gap = self.gap_for(quiet);
         match self.slots.get_mut(usize::from(place)) {
             Some(slot) if slot.gap < gap => {
@@ -223,7 +252,8 @@ impl<const K: usize, U: LimitsInUse> FlowPlan<K, U> {
     }
 
     /// Adds the gaps up to firing times.
-    fn place_firings(&mut self, fired: impl Fn(u8) -> Instant) {
+    #[inline(always)]
+    fn place_firings(&mut self, rests: impl Fn(&Self, u8) -> Micros) {
         // Gaps of a byte for at most 64 sensors, and a window.
         let (mut at, unit) = (0_u16, self.unit());
         // No sensor has to wait for longer after the cycle's start.
@@ -233,14 +263,12 @@ impl<const K: usize, U: LimitsInUse> FlowPlan<K, U> {
             // Sensors that fire together wait for each other.
             let is_first = place == 0 || !self.is_with_next(place - 1);
             if is_first && u32::from(at) * unit < most {
-                let mut rests = self.rests_for(sensor, fired(sensor));
-                for other in place + 1..=self.last_with(place) {
-                    let other = self.order(other);
-                    rests = rests.max(self.rests_for(other, fired(other)));
+                let (mut rest, mut other) = (rests(self, sensor), place);
+                while self.is_with_next(other) {
+                    other += 1;
+                    rest = rest.max(rests(self, self.order(other)));
                 }
-                let waits = self.slots.get(usize::from(sensor)).map_or(0, |slot| u32::from(slot.place));
-                let offset = u32::from(at) * unit + waits * self.code.step().as_micros();
-                let short = rests.as_micros().saturating_sub(offset);
+                let short = rest.saturating_sub(self.offset_at(sensor, at)).as_micros();
                 if short > 0 {
                     at = at.saturating_add(u16::try_from(in_units(short, unit)).unwrap_or(u16::MAX));
                 }
@@ -254,7 +282,7 @@ impl<const K: usize, U: LimitsInUse> FlowPlan<K, U> {
     }
 
     /// Time after the cycle's start for which a sensor that has last `fired` then must not fire yet.
-    fn rests_for(&self, sensor: u8, fired: Instant) -> Micros {
+    pub(super) fn rests_for(&self, sensor: u8, fired: Instant) -> Micros {
         let rested = fired + self.rest;
         let rests = if self.start.has_reached(rested) { Micros::ZERO } else { rested.since(self.start) };
         let has_fired = self.slots.get(usize::from(sensor)).is_some_and(|slot| slot.is(FIRED));

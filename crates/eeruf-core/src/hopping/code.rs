@@ -219,8 +219,8 @@ impl HoppingCode {
     /// `g` times one more than a place, modulo `q`, less one. Roots are small: at most 6.
     const fn times_root(&self, place: u8) -> u8 {
         let (q, number) = (self.phases + 1, place + 1);
-        let (mut product, mut left) = (0, self.root);
-        while left > 0 {
+        let (mut product, mut left) = (number, self.root);
+        while left > 1 {
             product += number;
             product = if product >= q { product - q } else { product };
             left -= 1;

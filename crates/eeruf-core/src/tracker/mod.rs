@@ -129,6 +129,8 @@ impl<const K: usize, const H: usize> EchoTracker<K, H> {
 
     /// Firing times have changed against each other otherwise than by the phase, such as by a new lag: what supported a
     /// track so far cannot be compared with what will. Tracks that are confirmed stay so; all others start over.
+    #[cold]
+    #[inline(never)]
     pub fn firing_changed(&mut self) {
         for tracks in &mut self.sensors {
             tracks.firing_changed();
@@ -170,6 +172,10 @@ impl<const K: usize, const H: usize> Judge for EchoTracker<K, H> {
 
     fn believed(&self, sensor: u8) -> Option<Micros> {
         self.confirmed(sensor.into())
+    }
+
+    fn comes_before_belief(&self, sensor: u8, t_echo: Micros) -> bool {
+        self.sensors.get(usize::from(sensor)).is_some_and(|tracks| tracks.comes_before_belief(t_echo))
     }
 
     fn forget(&mut self, sensor: u8) {

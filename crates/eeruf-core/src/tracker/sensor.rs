@@ -83,12 +83,17 @@ impl<const H: usize> SensorTracks<H> {
     #[inline(always)]
     fn shift(&mut self, expected_us: i32) {
         if expected_us != 0 {
-            let most = if expected_us < 0 { i16::MIN } else { i16::MAX };
-            let expected_us = i32::from(i16::try_from(expected_us).unwrap_or(most));
-            let change_us = expected_us + expected_us * i32::from(self.surplus) / WHOLE as i32;
-            for track in &mut self.tracks {
-                track.shift(change_us);
-            }
+            self.shift_tracks(expected_us);
+        }
+    }
+
+    #[inline(never)]
+    fn shift_tracks(&mut self, expected_us: i32) {
+        let most = if expected_us < 0 { i16::MIN } else { i16::MAX };
+        let expected_us = i32::from(i16::try_from(expected_us).unwrap_or(most));
+        let change_us = expected_us + expected_us * i32::from(self.surplus) / WHOLE as i32;
+        for track in &mut self.tracks {
+            track.shift(change_us);
         }
     }
 
@@ -207,6 +212,13 @@ impl<const H: usize> SensorTracks<H> {
         self.confirmed() == SILENCE
     }
 
+    /// Returns true if something is confirmed and an echo comes before it, silence too.
+    pub(super) fn comes_before_belief(&self, t_echo: Micros) -> bool {
+        let confirmed = self.confirmed();
+        // No echo is as late as silence.
+        confirmed != NOTHING && t_echo.as_micros().min(LATEST) < confirmed
+    }
+
     /// The echo time that counts now; `None` if none is confirmed, and if it is confirmed that nothing is in range.
     pub(super) fn reference(&self) -> Option<Micros> {
         duration(self.confirmed())
@@ -214,7 +226,13 @@ impl<const H: usize> SensorTracks<H> {
 
     /// The earliest confirmed track, [`SILENCE`] among them, or [`NOTHING`].
     fn confirmed(&self) -> u32 {
-        self.tracks.iter().map(Track::confirmed).min().unwrap_or(NOTHING)
+        let mut earliest = NOTHING;
+        for track in &self.tracks {
+            if track.is_confirmed() {
+                earliest = earliest.min(track.t_echo());
+            }
+        }
+        earliest
     }
 
     /// The [confirmed](Self::confirmed) track, and the place of the track that is nearest to a reading and within

@@ -91,10 +91,10 @@ impl Track {
 
     /// Order of replacement: the less, the sooner. First what is not confirmed, then by score, then by age.
     pub(super) const fn rank(&self) -> u32 {
-        let confirmed = (self.close_and_flags & CONFIRMED) as u32;
-        let score = (self.score_and_solo & SCORE) as u32;
-        let remembered = (self.close_and_flags & REMEMBERED != 0) as u32;
-        (confirmed << 24) | (remembered << 16) | (score << 8) | (AGE - (self.echo_and_age & AGE))
+        let (flags, score) = (self.close_and_flags as u32, (self.score_and_solo & SCORE) as u32);
+        // Confirmed, then remembered; below them four bits of the score and eight of the age.
+        let known = (flags & CONFIRMED as u32) << 13 | (flags & REMEMBERED as u32) << 10;
+        known | (score << 8) | (AGE - (self.echo_and_age & AGE))
     }
 
     /// Distance of a reading from it.

@@ -3,9 +3,9 @@
 use std::cell::RefCell;
 use std::ops::ControlFlow;
 
+use eeruf_core::search::{Progress, SearchError};
 use eeruf_core::{Micros, Phase};
 use eeruf_design::{FoundJson, RingDesign, RingSpec, Search, WhatIf};
-use eeruf_core::search::{Progress, SearchError};
 use serde::Serialize;
 
 use crate::progress::progress;

@@ -4,10 +4,10 @@ use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use clap::ValueEnum;
+use eeruf_core::search::{Progress, SearchError};
 use eeruf_core::{Criterion, EachSensor, Micros, SensorLimits, hopping::HoppingListening};
 use eeruf_design::atlas::ATLAS;
 use eeruf_design::{CURVE_BUDGET, FoundJson, Need, RealPeriod, RingDesign, RingSpec, Search, real_budget};
-use eeruf_core::search::{Progress, SearchError};
 
 use eeruf_sim::experiments::rooms::RoomWay;
 use eeruf_sim::modules::{Module, PulseTimes};

@@ -5,9 +5,9 @@ use std::time::{Duration, Instant};
 
 use clap::ValueEnum;
 use eeruf_core::MAX_SENSORS;
-use eeruf_design::FoundJson;
 use eeruf_core::search::wait::{Budget, COUNT_WORDS, Objective, memory_words};
 use eeruf_core::search::{Found, FrontTable, Outcome, Progress, SearchError, WaitSearch};
+use eeruf_design::FoundJson;
 
 use super::answer::Answer;
 use super::arguments::seconds;

@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
+use eeruf_core::search::WaitProblem;
 use eeruf_core::{Criterion, Micros};
 use eeruf_design::{LayoutKey, OwnedLayout, four, neighbours_in_range, sensors_in_range};
 use eeruf_files::Kind;
-use eeruf_core::search::WaitProblem;
 use serde::Deserialize;
 
 use super::error::InputError;

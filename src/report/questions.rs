@@ -2,8 +2,8 @@
 
 use comfy_table::{Table, presets};
 use eeruf_core::Micros;
-use eeruf_design::{CurvePoint, Fit, FoundJson, Need, RingSpec};
 use eeruf_core::search::Found;
+use eeruf_design::{CurvePoint, Fit, FoundJson, Need, RingSpec};
 use serde::Serialize;
 
 use super::timing;

@@ -3,8 +3,8 @@
 use std::fmt::Write as _;
 
 use comfy_table::{Table, presets};
-use eeruf_core::{MAX_SENSORS, Micros};
 use eeruf_core::search::{Found, FrontTable};
+use eeruf_core::{MAX_SENSORS, Micros};
 use eeruf_sim::ScheduleFile;
 use serde::Serialize;
 

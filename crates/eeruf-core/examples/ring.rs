@@ -33,7 +33,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let now = ring.next_deadline(); // firmware sleeps until then
         while let Some(event) = ring.poll(now) {
             if let Some(blind) = watch.observe(&event, now) {
-                println!("sensor {} is blind", blind.sensor + 1);
+                println!("sensor {} is blind", blind + 1);
             }
             match event {
                 // Firmware raises the trigger line; the echo line's interrupt calls `echo` when its edge comes.

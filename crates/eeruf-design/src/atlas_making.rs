@@ -1,7 +1,7 @@
 //! Makes a row of the atlas: the search, and its certificate.
 
-use eeruf_core::{MAX_SENSORS, Micros, Phase};
 use eeruf_core::search::{SearchError, design};
+use eeruf_core::{MAX_SENSORS, Micros, Phase};
 use sha2::{Digest, Sha256};
 
 use crate::atlas::{Ring, Row};

@@ -3,8 +3,8 @@
 use std::error::Error;
 use std::fmt;
 
-use eeruf_core::{Layout, MAX_SENSORS, Micros, Requirements};
 use eeruf_core::search::{Control, Found, PeriodProblem, Preferred, SearchError, design};
+use eeruf_core::{Layout, MAX_SENSORS, Micros, Requirements};
 use eeruf_sim::{AnySchedule, ScheduleFile};
 
 use crate::find_uneven::ToSpare;

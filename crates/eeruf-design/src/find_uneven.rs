@@ -1,8 +1,8 @@
 //! The shortest period of sensors that are not all alike, and the schedule to prefer of those that have it, by the
 //! engine.
 
-use eeruf_core::{MAX_SENSORS, Micros};
 use eeruf_core::search::{Control, Found, GridError, Outcome, PeriodProblem, ProblemError, Progress, SearchError};
+use eeruf_core::{MAX_SENSORS, Micros};
 use eeruf_sim::AnySchedule;
 
 use crate::engine::MAX_NUMBER;

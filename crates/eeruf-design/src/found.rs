@@ -1,7 +1,7 @@
 //! Results of a search, as JSON.
 
-use eeruf_core::{MAX_SENSORS, Micros};
 use eeruf_core::search::Found;
+use eeruf_core::{MAX_SENSORS, Micros};
 use eeruf_sim::ScheduleFile;
 use serde::Serialize;
 

@@ -11,8 +11,8 @@
 //! The second is a refire time, so the searches for rings that stand decide a region. All `|d|` lie a separation
 //! apart, which bounds `max |d|` from below and so gives the least `t_delta` of a period.
 
-use eeruf_core::{MAX_SENSORS, Micros};
 use eeruf_core::search::{Control, Found, Outcome, PeriodProblem, SearchError, design};
+use eeruf_core::{MAX_SENSORS, Micros};
 use eeruf_sim::AnySchedule;
 
 use crate::find::{NoSchedule, RingDesign};

@@ -1,7 +1,7 @@
 //! Questions beside the shortest period: what fits into a given one, and what each need costs.
 
-use eeruf_core::{MAX_SENSORS, Micros};
 use eeruf_core::search::{Control, GridError, Outcome, ProblemError, SearchError, design};
+use eeruf_core::{MAX_SENSORS, Micros};
 use eeruf_sim::AnySchedule;
 
 use crate::engine::MAX_NUMBER;

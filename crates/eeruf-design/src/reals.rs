@@ -2,8 +2,8 @@
 //!
 //! A schedule in ticks of any length keeps these needs, so no tick, however fine, beats a period proven here.
 
-use eeruf_core::{Micros, Phase};
 use eeruf_core::search::PeriodProblem;
+use eeruf_core::{Micros, Phase};
 use eeruf_sim::AnySchedule;
 
 use crate::engine::reals::shortest_over_reals;

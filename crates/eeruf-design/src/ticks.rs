@@ -1,7 +1,7 @@
 //! A problem and a schedule in the whole ticks of a certificate, of sensors that are alike or not.
 
-use eeruf_core::{Micros, Phase};
 use eeruf_core::search::PeriodProblem;
+use eeruf_core::{Micros, Phase};
 use eeruf_sim::AnySchedule;
 
 use crate::engine::{Claim, Problem};

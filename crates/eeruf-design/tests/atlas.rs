@@ -3,9 +3,9 @@
 
 use eeruf_check::check;
 use eeruf_core::Micros;
+use eeruf_core::search::design;
 use eeruf_design::atlas::{ATLAS, Neighbourhood, Ring, Row, all_rings, answer, rows};
 use eeruf_design::atlas_making::{certificate_of, hash_of, header};
-use eeruf_core::search::design;
 
 /// A small generator of pseudo-random numbers, the same on every machine (xorshift64*).
 struct Random(u64);

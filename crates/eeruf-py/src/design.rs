@@ -2,9 +2,9 @@
 
 use std::time::{Duration, Instant};
 
+use eeruf_core::search::{self as search, PeriodProblem, Progress};
 use eeruf_core::{MAX_SENSORS, Micros, Requirements};
 use eeruf_design::{OwnedUneven, Search, atlas::ATLAS, certificate, over_reals as real_period, real_budget, shortest};
-use eeruf_core::search::{self as search, PeriodProblem, Progress};
 use pyo3::prelude::*;
 
 use crate::{

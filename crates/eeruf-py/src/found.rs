@@ -2,9 +2,9 @@
 
 use std::time::Instant;
 
+use eeruf_core::search;
 use eeruf_core::{MAX_SENSORS, Micros};
 use eeruf_design::{RealPeriod, ToSpare};
-use eeruf_core::search;
 use pyo3::{
     prelude::*,
     types::{PyDict, PyTuple},

@@ -2,9 +2,9 @@
 
 use std::time::Instant;
 
+use eeruf_core::search::{Found as FoundSchedule, Progress};
 use eeruf_core::{Micros, SpeedOfSound};
 use eeruf_design::{CURVE_BUDGET, CurvePoint, LayoutKey, LayoutName, Need, OwnedUneven, Places, RingSpec, Search};
-use eeruf_core::search::{Found as FoundSchedule, Progress};
 use pyo3::{prelude::*, types::PyList};
 
 use crate::{

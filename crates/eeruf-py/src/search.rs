@@ -2,11 +2,11 @@
 
 use std::time::Instant;
 
-use eeruf_core::{Criterion, MAX_SENSORS, Micros};
 use eeruf_core::search::{
     self as search, FrontTable, Outcome, Progress, SearchError, WaitProblem,
     wait::{self, Budget, Enumeration, Objective},
 };
+use eeruf_core::{Criterion, MAX_SENSORS, Micros};
 use pyo3::prelude::*;
 
 use crate::{

@@ -10,10 +10,10 @@ use std::rc::Rc;
 #[cfg(target_os = "linux")]
 use std::{sync::mpsc::Sender, thread};
 
+use eeruf_core::search::PeriodProblem;
 use eeruf_core::{Edge, Instant, MAX_SENSORS, Micros, Ring, RingConfig, RingEvent, VerifiedSchedule};
 use eeruf_design::{RingSpec, Search, shortest};
 use eeruf_hc_sr04::{HcSr04Ring, Pins, Settings};
-use eeruf_core::search::PeriodProblem;
 use eeruf_serial::{Firing, Message, Received};
 use embedded_hal::delay::DelayNs;
 use embedded_hal::digital::{Error, ErrorKind, ErrorType, InputPin, OutputPin};

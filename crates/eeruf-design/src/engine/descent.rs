@@ -18,7 +18,7 @@ pub(crate) enum Case {
     Of(Branching, usize),
     /// Of these, x has the largest |d|, and d is negative or not.
     Largest { x: usize, negative: bool, of: u64 },
-    /// |d_x| is at least this.
+    /// `|d_x|` is at least this.
     Wide { x: usize, least: Bound },
 }
 

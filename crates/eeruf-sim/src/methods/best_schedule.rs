@@ -1,7 +1,7 @@
 //! The best schedule for a robot's ring: the shortest period that guarantees what the robot's own schedule does.
 
-use eeruf_core::{Layout, MAX_SENSORS, Micros, Requirements};
 use eeruf_core::search::{PeriodProblem, Progress, SearchError, design};
+use eeruf_core::{Layout, MAX_SENSORS, Micros, Requirements};
 use std::ops::ControlFlow;
 
 use super::schedules::table_i_d_for;

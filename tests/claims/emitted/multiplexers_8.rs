@@ -4,8 +4,8 @@ use eeruf_core::{EachSensor, Layout, Micros, Requirements, Uneven, VerifiedSched
 // 8 sensors, T_p = 61.5 ms; 3 adjacent sensors of a ring at least 8.741 ms apart, and what each sensor and pair needs.
 pub const RING: VerifiedSchedule<8, 2, EachSensor<8>> = schedule! {
     period_us: 61_500,
-    t_fire_a_us: [16_500, 25_500, 46_500, 57_500, 31_500, 10_500, 0, 42_000],
-    t_fire_b_us: [0, 11_500, 31_000, 56_500, 46_000, 26_500, 15_000, 41_500],
+    t_fire_a_us: [61_000, 45_500, 30_000, 61_000, 15_000, 30_500, 46_000, 15_000],
+    t_fire_b_us: [44_500, 29_500, 14_500, 60_000, 29_500, 44_500, 59_500, 14_500],
     each_meets: Requirements {
         min_interval: Micros::new(8_741),
         layout: Layout::Ring(3),

@@ -2,14 +2,14 @@
 #![no_std]
 #![no_main]
 
+use eeruf_core::search::Outcome;
+use eeruf_core::search::wait::{Budget, Problem, Search};
 use eeruf_core::tables::{PAPER_12, TABLE_I_A, TABLE_I_B, TABLE_I_C, TABLE_I_D, THE_ONE_WITH_19_MS};
 use eeruf_core::{
     Criterion, Instant, Layout, Micros, Phase, ReadingKind, Requirements, Ring, RingConfig, RingEvent, Schedule,
     ScheduledRing, Tally,
 };
 use eeruf_on_target::{run, tests};
-use eeruf_core::search::Outcome;
-use eeruf_core::search::wait::{Budget, Problem, Search};
 
 eeruf_board::say_panic!();
 eeruf_board::interrupts!(eeruf_board::clear_alarm, eeruf_board::clear_echo);

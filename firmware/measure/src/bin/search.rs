@@ -5,9 +5,9 @@
 
 use eeruf_board::say;
 use eeruf_board::say::leave;
-use eeruf_core::{Criterion, Layout};
 use eeruf_core::search::Outcome;
 use eeruf_core::search::wait::{Budget, Problem, Search};
+use eeruf_core::{Criterion, Layout};
 
 eeruf_board::say_panic!();
 eeruf_board::interrupts!(eeruf_board::clear_alarm, eeruf_board::clear_echo);

@@ -1,5 +1,5 @@
-//! Completes a certificate: FILE ends with the line `no_period_below`, the whole goes to standard output. Fails when the
-//! claim is false or the tree would need more than NODES nodes (a million by default).
+//! Completes a certificate: FILE ends with the line `no_period_below`, the whole goes to standard output. Fails when
+//! the claim is false or the tree would need more than NODES nodes (a million by default).
 //!
 //!     cargo lab prove FILE [NODES]
 

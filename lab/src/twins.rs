@@ -1,6 +1,6 @@
-//! Prints what the table of `docs/explanation/search.md` costs core's search of even rings and the engine, and what it
-//! costs where one limit of one sensor or pair is a tick more or less: `cargo lab twins [SECONDS]`, for each ring at most.
-//! Times are those of a core.
+//! Cost of the table of `docs/explanation/search.md` for core's search of even rings and for the engine, and where one
+//! limit of one sensor or pair is a tick more or less: `cargo lab twins [SECONDS]`, for each ring at most. Times are
+//! those of a core.
 
 use eeruf_core::Layout;
 use eeruf_core::search::design::{self, memory_words};

@@ -124,8 +124,8 @@ fn lags_need(spec: &RingSpec, schedule: &PhaseSchedule) -> Micros {
     Micros::new(gaps.iter().map(of).max().unwrap_or(0))
 }
 
-// No period is shorter than its code needs, and those of the paper's ring and the ring of 24 are beyond 1.5 times that of
-// two phases whatever the lags.
+// No period is shorter than its code needs, and those of the paper's ring and the ring of 24 are beyond 1.5 times that
+// of two phases whatever the lags.
 #[test]
 fn long_periods_are_those_that_codes_need() {
     // Two phases, of docs/explanation/hopping.md, in microseconds.

@@ -1,4 +1,4 @@
-//! Search for what the experiments' methods are run with: a pilot for each method of Set II, and what several echoes are
+//! Search for settings of the experiments' methods: a pilot for each method of Set II, and what several echoes are
 //! compared by in Set I. It goes into the source of `eeruf-sim`; with `--check` it is only compared (an hour).
 //!
 //!     cargo lab tune [--check]

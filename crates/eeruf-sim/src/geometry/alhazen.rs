@@ -174,9 +174,9 @@ pub fn alhazen_twice(
     found.or_else(|| one_after_the_other(source, receiver, circles, facing[1], apart).and_then(seen))
 }
 
-/// The normal to begin with for two points as seen from a circle's centre: between them, nearer to the one that is
-/// nearer to the circle. It is exact for a flat mirror, of which the circle is as large as can be, and for a circle that
-/// is small against both distances.
+/// The first normal to try for two points as seen from a circle's centre: between them, nearer to the one that is
+/// nearer to the circle. It is exact for a flat mirror, of which the circle is as large as can be, and for a circle
+/// that is small against both distances.
 fn start(to_here: Vector, to_there: Vector, radius_m: f64) -> Vector {
     let (far_here, far_there) = (to_here.norm(), to_there.norm());
     let [near_here, near_there] = [far_here, far_there].map(|far| 1.0 - radius_m / far);

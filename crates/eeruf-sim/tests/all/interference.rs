@@ -8,7 +8,8 @@ use eeruf_sim::*;
 const MODULE: Transducer = Transducer::POLAROID_6500;
 const ADDING: Physics = Physics { interference: true, ..Physics::PLAIN };
 
-/// One sensor, at this distance from a long wall and this height, turned from it by an angle, with nothing else but floor and ceiling.
+/// One sensor, at this distance from a long wall and this height, turned from it by an angle, with nothing else but
+/// floor and ceiling.
 fn before_a_wall([distance_m, height_m, heading_rad]: [f64; 3], gain: GainProfile, physics: Physics) -> World {
     let wall = Wall::new(distance_m, -20.0, distance_m, 20.0);
     let scene = Scene::new(vec![wall], vec![], Air::default()).unwrap().with_room(Some(Room::DEFAULT)).unwrap();

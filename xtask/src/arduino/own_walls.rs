@@ -360,10 +360,10 @@ fn flow_says_states(library: &Path, world: &Path) -> Result<(), Trouble> {
     let source = Source { name: "FlowStates4", text: &text, board: Board::Uno, ours: true, defines: &[] };
     let sketch = build::sketch(&source, &library.join("src"), &build::core(Board::Uno)?)?;
     println!("flash of States4 with a flow ring: {} B", sketch.flash);
-    let pins = &ALL[..4];
+    let pins = [&ALL[..4], &ALL[..4]].concat();
     let walls = [Some(EQUAL_US), Some(EQUAL_US + 500), None, Some(EQUAL_US + 1000)];
     for (fault, expected) in [("hold-38:3", Says::Clear), ("cut:3", Says::NoAnswer)] {
-        let said = with_fault(world, &sketch.elf, fault, 4, &walls, pins)?;
+        let said = with_fault(world, &sketch.elf, fault, 4, &walls, &pins)?;
         let found = said_of(&said, SHOWN);
         let least = [1, 2, 4].map(|module| said_of(&said, module)[Says::Wall as usize]).into_iter().min();
         print_row("flow, States4", fault, found, least.unwrap_or(0));

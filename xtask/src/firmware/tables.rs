@@ -35,7 +35,7 @@ const HOPPING: Budget = Budget {
         ("period_ended", 3003),
         ("new_lags", 24_354),
     ],
-    flash: 8728,
+    flash: 8788,
     ram: 928,
     stack: 332,
 };
@@ -50,7 +50,7 @@ const FLOW: Budget = Budget {
         ("reading_moving", 1416),
         ("period_ended", 4237),
     ],
-    flash: 8936,
+    flash: 9052,
     ram: 916,
     stack: 372,
 };

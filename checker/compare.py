@@ -2,7 +2,7 @@
 """Gives both checkers the same mutated certificates: they must refuse at the same line, or both accept a claim that
 still holds. python3 compare.py BIN_FOLDER COUNT [SEED] [CERTIFICATE ...]
 
-BIN_FOLDER holds eeruf-check and eeruf-lab. Without certificates, tiny random problems are made and proven; their
+BIN_FOLDER holds eeruf-check and examples/prove. Without certificates, tiny random problems are made and proven; their
 mutated claims are judged by trying all schedules. Those of given certificates are judged by a fresh proof.
 """
 import collections
@@ -80,7 +80,7 @@ def prove(binaries, head):
     with tempfile.NamedTemporaryFile("w", suffix=".txt") as file:
         file.write("\n".join(head) + "\n")
         file.flush()
-        done = subprocess.run([os.path.join(binaries, "eeruf-lab"), "prove", file.name], capture_output=True, text=True)
+        done = subprocess.run([os.path.join(binaries, "examples", "prove"), file.name], capture_output=True, text=True)
     return done.stdout if done.returncode == 0 else None
 
 

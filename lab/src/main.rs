@@ -18,7 +18,6 @@ mod hopping_periods;
 mod modules;
 mod narrow_panels;
 mod open_rings;
-mod prove;
 mod ray_casts;
 mod rust_side;
 mod shortest_periods;
@@ -43,7 +42,7 @@ type Answer = Result<(), Box<dyn Error>>;
 /// A command: its name, its arguments, what it prints.
 type Command = (&'static str, &'static str, &'static str, fn(&[String]) -> Answer);
 
-const COMMANDS: [Command; 29] = [
+const COMMANDS: [Command; 28] = [
     ("constant-depth", "", "angles at which a wall is heard, by distance and gain", constant_depth::main),
     (
         "diagnose-alcoves",
@@ -73,7 +72,6 @@ const COMMANDS: [Command; 29] = [
     ("narrow-panels", "", "panels narrower than a Fresnel zone", narrow_panels::main),
     ("open-rings", "[SECONDS [FILE [PART/PARTS]]]", "rings that the atlas leaves open", open_rings::main),
     ("periods", "", "table of shortest periods", shortest_periods::table),
-    ("prove", "FILE [NODES]", "a certificate's proof, completed", prove::main),
     ("ray-casts", "", "exactness of ray casts", ray_casts::main),
     ("rust-side", "paths | times", "what Python is held against", rust_side::main),
     (

@@ -35,8 +35,8 @@ struct Group {
 pub(crate) fn run_all(plan: &Plan, steps: &mut Steps) {
     steps.step("build", || {
         fs::create_dir_all(FOLDER).map_err(|error| Trouble::Failed(format!("{FOLDER}: {error}")))?;
-        let packages = ["-p", "eeruf", "-p", "eeruf-check", "-p", "eeruf-lab"];
-        run(Command::new("cargo").args(["build", "--release", "--locked", "--bins"]).args(packages))
+        run(Command::new("cargo").args(["build", "--release", "--locked", "-p", "eeruf"]))?;
+        run(Command::new("cargo").args(["build", "--release", "--locked", "-p", "eeruf-check", "--bins", "--examples"]))
     });
     let groups = [
         Group { name: "the table, ticks of 1 ms", rings: table(&TABLE, 1000), by_python: true },

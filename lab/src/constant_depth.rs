@@ -1,7 +1,9 @@
 //! Regions of constant depth: how far a Polaroid 6500 may turn from a smooth wall and still hear it, by distance and
 //! gain. `docs/explanation/physics.md` compares them with what is published.
 //!
-//!     cargo lab constant-depth
+//! ```text
+//! cargo lab constant-depth
+//! ```
 
 use eeruf_sim::*;
 

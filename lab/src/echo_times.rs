@@ -1,6 +1,8 @@
 //! After which times a ring's sensors hear each other, and themselves, in a scene: for `c/arduino/world/world.c`.
 //!
-//!     cargo lab echo-times SCENE.toml [SENSORS]
+//! ```text
+//! cargo lab echo-times SCENE.toml [SENSORS]
+//! ```
 //!
 //! One line for each way that is loud enough: emitter, receiver (from 0), time in microseconds. With `SENSORS` the
 //! first robot's ring has as many, evenly around it.

@@ -1,7 +1,9 @@
 //! Set I and Set II in four worlds, flat or in a room, with the constant gain or with the Polaroid's own: a table for
 //! each.
 //!
-//!     cargo lab four-worlds [interference]
+//! ```text
+//! cargo lab four-worlds [interference]
+//! ```
 //!
 //! With `interference` sounds within a burst of each other add.
 

@@ -1,7 +1,9 @@
 //! Answers of Rust and their durations, for Python to be held against. Prints one JSON object.
 //!
-//!     cargo lab rust-side paths    every critical path of the shared corpus
-//!     cargo lab rust-side times    seconds of one call of `design`, `paths` and `push_many`'s work and of one step
+//! ```text
+//! cargo lab rust-side paths    every critical path of the shared corpus
+//! cargo lab rust-side times    seconds of one call of `design`, `paths` and `push_many`'s work and of one step
+//! ```
 //!
 //! `benches/python/overhead.py` times the same calls from Python; `tests/python/test_corpus.py` compares the paths bit
 //! for bit.

@@ -1,8 +1,10 @@
 //! The table of shortest periods with their cost, for 8 to 24 sensors in a line and in a ring unless asked otherwise.
 //!
-//!     cargo lab shortest-periods [TICKS_PER_MS [SEPARATION_MS [SENSORS,.. [NEIGHBOURS [LAYOUT,.. [BUDGET
-//!         [WINDOW_MS,..]]]]]]]
-//!     cargo lab periods
+//! ```text
+//! cargo lab shortest-periods [TICKS_PER_MS [SEPARATION_MS [SENSORS,.. [NEIGHBOURS [LAYOUT,.. [BUDGET
+//!     [WINDOW_MS,..]]]]]]]
+//! cargo lab periods
+//! ```
 //!
 //! The first prints columns, which `benches/peers/design_cpsat.py` reads; the second the table of docs/log/search.md.
 

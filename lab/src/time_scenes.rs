@@ -2,7 +2,9 @@
 //! world that moves, and Set II, under `default` and under `plain`. The same file, built against another commit, prints
 //! that commit's times.
 //!
-//!     cargo lab time-scenes [SCENE [RUNS]]
+//! ```text
+//! cargo lab time-scenes [SCENE [RUNS]]
+//! ```
 //!
 //! With the beginning of a scene's name only that one is timed, this many times.
 

@@ -1,7 +1,9 @@
 //! Search for settings of the experiments' methods: a pilot for each method of Set II, and what several echoes are
 //! compared by in Set I. It goes into the source of `eeruf-sim`; with `--check` it is only compared (an hour).
 //!
-//!     cargo lab tune [--check]
+//! ```text
+//! cargo lab tune [--check]
+//! ```
 //!
 //! What was tried is kept in `target/tune` and not tried again, also if the search was stopped; whoever changes the
 //! simulator deletes that folder first. With other physics, other constants come out.

@@ -5,9 +5,11 @@
 use std::error::Error;
 
 use eeruf_core::ReadingKind;
-use eeruf_logs::{Firing, FiringLog, Settings, diagnose};
+use eeruf_logs::{FiringLog, Settings, diagnose};
 use eeruf_sim::experiments::set_one::Alcove;
-use eeruf_sim::{Cause, Method, Options, Physics, Readings, quantile, simulate, sweep};
+use eeruf_sim::{Cause, Method, Options, Physics, quantile, simulate, sweep};
+
+use crate::firings::firing_of;
 
 /// Counts over the readings of one alcove, or of all.
 #[derive(Clone, Copy, Default)]
@@ -27,19 +29,6 @@ struct Counts {
     faults: usize,
 }
 
-fn log_of(readings: &Readings) -> FiringLog {
-    let firing = |k: usize| Firing {
-        sensor: readings.sensor[k],
-        fired_us: (1e6 * readings.fired_s[k]).round() as i64,
-        period: readings.period[k],
-        phase: readings.phase[k],
-        t_echo_us: (!readings.earliest_us[k].is_nan()).then(|| readings.earliest_us[k] as u32),
-        rejected: Some(readings.kind[k].is_rejected()),
-        weighed: None,
-    };
-    FiringLog { firings: (0..readings.len()).map(firing).collect(), ..FiringLog::default() }
-}
-
 fn count(number: u64, method: Method, periods: u32, physics: Physics) -> Result<Counts, String> {
     let failed = |error: &dyn Error| format!("alcove {number}: {error}");
     let world = Alcove::random(number).world().map_err(|error| failed(&error))?;
@@ -49,8 +38,8 @@ fn count(number: u64, method: Method, periods: u32, physics: Physics) -> Result<
     let mut order: Vec<_> = (0..readings.len()).collect();
     let at_us = |k: usize| (1e6 * readings.fired_s[k]).round() as i64;
     order.sort_by_key(|&k| at_us(k));
-    let mut log = log_of(&readings);
-    log.firings = order.iter().map(|&k| log.firings[k].clone()).collect();
+    let firings = order.iter().map(|&k| firing_of(&readings, k)).collect();
+    let log = FiringLog { firings, ..FiringLog::default() };
     let diagnosis = diagnose(&log, &Settings::default());
     let mut counts = Counts { paths: diagnosis.paths.len(), faults: diagnosis.faults.len(), ..Counts::default() };
     for (&k, named) in order.iter().zip(&diagnosis.named) {

@@ -10,6 +10,7 @@ mod diagnose_alcoves;
 mod doctor_alcoves;
 mod echo_times;
 mod fault_rates;
+mod firings;
 mod flow_rooms;
 mod four_worlds;
 mod hopping_ablation;

@@ -3,7 +3,7 @@
 use std::error::Error;
 
 use eeruf_core::{Micros, Phase};
-use eeruf_logs::{Fault as Found, Firing, FiringLog, Settings, diagnose, timing};
+use eeruf_logs::{Fault as Found, FiringLog, Settings, diagnose, timing};
 use eeruf_sim::experiments::rooms::RoomKind::{Aisle, Clutter, Corridor, Garage, Hall, Office};
 use eeruf_sim::experiments::rooms::{RoomKind, RoomPlan};
 use eeruf_sim::experiments::set_one::Alcove;
@@ -11,6 +11,8 @@ use eeruf_sim::{
     AnySchedule, Fault, FaultKind, Method, Motion, Options, Physics, Random, Readings, Vector, World, simulate,
     table_i_d_for,
 };
+
+use crate::firings::firing_of;
 
 use super::truth::{SENSORS, Truth};
 
@@ -205,18 +207,10 @@ fn world(number: u64, place: Place, robots: Robots, physics: Physics) -> Result<
     Ok(world.with_physics(physics)?)
 }
 
-/// The log of a ring, as its firmware would write it.
+/// The log of the first robot's ring.
 fn log_of(readings: &Readings) -> FiringLog {
-    let firing = |k: usize| Firing {
-        sensor: readings.sensor[k],
-        fired_us: (1e6 * readings.fired_s[k]).round() as i64,
-        period: readings.period[k],
-        phase: readings.phase[k],
-        t_echo_us: (!readings.earliest_us[k].is_nan()).then(|| readings.earliest_us[k] as u32),
-        rejected: Some(readings.kind[k].is_rejected()),
-        weighed: None,
-    };
-    FiringLog::new("simulation", (0..readings.len()).filter(|&k| readings.robot[k] == 0).map(firing).collect())
+    let of_first = (0..readings.len()).filter(|&k| readings.robot[k] == 0);
+    FiringLog::new("simulation", of_first.map(|k| firing_of(readings, k)).collect())
 }
 
 /// A log with its fault.

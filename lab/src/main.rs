@@ -35,6 +35,7 @@ mod wait_count;
 mod without_odometry;
 
 use std::error::Error;
+use std::io::Write as _;
 use std::process::ExitCode;
 
 /// Success, or the reason why there is nothing to print.
@@ -110,10 +111,14 @@ fn main() -> ExitCode {
         COMMANDS.iter().find(|(known, ..)| known == name).map(|command| (command, arguments))
     });
     let Some(((name, usage, _, run), arguments)) = asked else {
-        for (name, usage, about, _) in COMMANDS {
-            println!("{name} {usage}\n    {about}");
+        if let Some(name) = words.first() {
+            eprintln!("{name}: no command of the lab; `cargo lab` lists them");
+            return ExitCode::from(2);
         }
-        return if words.is_empty() { ExitCode::SUCCESS } else { ExitCode::from(2) };
+        // Whoever reads the list may stop before its end.
+        let list = COMMANDS.map(|(name, usage, about, _)| format!("{name} {usage}\n    {about}\n")).concat();
+        _ = std::io::stdout().write_all(list.as_bytes());
+        return ExitCode::SUCCESS;
     };
     if let Err(error) = run(arguments) {
         eprintln!("{name}: {error}; usage: cargo lab {name} {usage}");

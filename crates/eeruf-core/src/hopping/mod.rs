@@ -111,7 +111,7 @@ impl<const K: usize, const H: usize, U: LimitsInUse> HoppingRing<K, H, U> {
 
 impl<J: Judge, const K: usize, const E: usize, const H: usize, U: LimitsInUse> Ring<HoppingPlan<K, U>, J, K, E, H> {
     /// Changes to the lags and the period of another schedule with the same code, as adaptation asks for when a period
-    /// has ended (see [`Adaptation`](crate::adaptation::Adaptation)). The period that has begun begins anew once all
+    /// has ended (see [`Adaptation`](crate::adaptation::Adaptation)). The period that has begun starts again once all
     /// sound from before has died, which takes a window and `reach` at most; what is confirmed starts over. Where
     /// sensors have limits of their own, both schedules must meet the same requirements.
     ///

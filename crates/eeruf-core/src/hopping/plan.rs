@@ -171,7 +171,7 @@ impl<const K: usize, U: LimitsInUse> HoppingPlan<K, U> {
         Ok(plan)
     }
 
-    /// Takes the lags and the period of another schedule with the same code. The period that has begun begins anew,
+    /// Takes the lags and the period of another schedule with the same code. The period that has begun starts again,
     /// once all sound from before has died; for sensors that have limits of their own both schedules must meet the
     /// same requirements.
     pub(super) fn change_schedule(&mut self, schedule: &HoppingSchedule<K>) -> Result<(), HoppingError> {

@@ -27,7 +27,7 @@ pub(crate) fn reflected(
     let unit = |angle: f64| Vector::new(libm::cos(angle), libm::sin(angle));
     let mut product = 1.0;
     let mut follow = |mut direction: Vector, wall: u32| {
-        let mirror = &scene.mirrors[wall as usize];
+        let mirror = &scene.mirrors()[wall as usize];
         let material = scene.walls()[wall as usize].material;
         product *= material.amplitude(wave_number, mirror.cos_incidence(direction));
         direction = mirror.turned(direction);

@@ -45,7 +45,7 @@ impl Scene {
             let segment = self.segment(wall);
             meets(&at, shape, &ParryPose::IDENTITY, &segment)
         };
-        let wall = self.wall_boxes.intersect_aabb(&reach).map(|wall| wall as usize);
+        let wall = self.wall_boxes().intersect_aabb(&reach).map(|wall| wall as usize);
         if let Some(wall) = wall.filter(|&wall| !self.walls()[wall].is_open() && touches(wall)).min() {
             return Some(Contact::Wall(wall));
         }
@@ -70,7 +70,7 @@ impl Scene {
     pub fn cast_ray(&self, from: Point, heading_rad: f64, max_m: f64, skip: Option<usize>) -> Option<(usize, f64)> {
         let (sin, cos) = libm::sincos(heading_rad);
         let ray = Ray::new(from.coords.into(), [cos, sin].into());
-        let hit = self.wall_boxes.cast_ray(&ray, max_m, |wall, best| {
+        let hit = self.wall_boxes().cast_ray(&ray, max_m, |wall, best| {
             let wall = wall as usize;
             if Some(wall) == skip {
                 return None;

@@ -11,28 +11,38 @@ use super::pole::Pole;
 use super::room::Room;
 use super::wall::Wall;
 use crate::geometry::{Mirror, Point, TOUCH_M};
+use parry2d_f64::bounding_volume::Aabb;
 use parry2d_f64::partitioning::{Bvh, BvhBuildStrategy};
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 /// Walls, poles and air, checked and ready for questions.
 #[derive(Debug)]
 pub struct Scene {
-    walls: Vec<Wall>,
+    /// Shared by scenes that differ in their poles alone.
+    built: Arc<Built>,
     poles: Vec<Pole>,
     air: Air,
     room: Option<Room>,
-    pub(crate) mesh: Mesh,
-    pub(crate) mirrors: Vec<Mirror>,
-    pub(crate) wall_boxes: Bvh,
     /// Overlaps of triangles and poles' discs: (triangle, pole).
     pub(crate) pole_triangles: Vec<(u32, u32)>,
+    /// True if any surface is rough.
+    pub(crate) rough: bool,
+}
+
+/// Walls, with what is derived from them once.
+#[derive(Debug)]
+struct Built {
+    walls: Vec<Wall>,
+    mesh: Mesh,
+    mirrors: Vec<Mirror>,
+    boxes: Bvh,
     edges: Vec<Edge>,
     /// The triangles that each edge is a corner of; found when first asked for.
     edge_triangles: OnceLock<Vec<Box<[u32]>>>,
+    /// The edges by place; likewise.
+    edge_boxes: OnceLock<Bvh>,
     /// Extents of walls; found when first asked for.
     extents: OnceLock<Extents>,
-    /// True if any surface is rough.
-    pub(crate) rough: bool,
 }
 
 impl Scene {
@@ -54,33 +64,46 @@ impl Scene {
         air.check()?;
         check_walls(&walls)?;
         check_poles(&poles)?;
-        let wall_boxes =
+        let boxes =
             Bvh::from_iter(BvhBuildStrategy::Binned, walls.iter().enumerate().map(|(i, wall)| (i, wall_box(wall))));
-        let (vertices, pieces) = join_walls(&walls, &wall_boxes)?;
+        let (vertices, pieces) = join_walls(&walls, &boxes)?;
         let edges = edges_of(&vertices, &pieces, &walls);
         let mesh = Mesh::build(vertices, &pieces, &walls, poles.iter().map(|pole| pole.centre))?;
         let mirrors = walls.iter().map(|wall| Mirror::through(wall.from, wall.to, wall.material.reflection)).collect();
-        let materials = walls.iter().map(|wall| wall.material).chain(poles.iter().map(|pole| pole.material));
-        let rough = materials.into_iter().any(|material| material.roughness_m > 0.0);
-        let mut pole_triangles = Vec::new();
-        for (index, pole) in poles.iter().enumerate() {
-            let near = mesh.near(pole.centre, pole.radius_m * (1.0 + 1e-9));
-            pole_triangles.extend(near.into_iter().map(|triangle| (triangle, index as u32)));
+        let (edge_triangles, edge_boxes, extents) = (OnceLock::new(), OnceLock::new(), OnceLock::new());
+        let built = Built { walls, mesh, mirrors, boxes, edges, edge_triangles, edge_boxes, extents };
+        Ok(Self::over(Arc::new(built), poles, air))
+    }
+
+    fn over(built: Arc<Built>, poles: Vec<Pole>, air: Air) -> Self {
+        let rough = built.walls.iter().any(|wall| wall.material.roughness_m > 0.0);
+        let none = Self { built, poles: Vec::new(), air, room: None, pole_triangles: Vec::new(), rough };
+        none.among(poles)
+    }
+
+    /// Puts these poles behind its own.
+    fn among(mut self, more: Vec<Pole>) -> Self {
+        for (index, pole) in (self.poles.len() as u32..).zip(&more) {
+            let near = self.built.mesh.near(pole.centre, pole.radius_m * (1.0 + 1e-9));
+            self.pole_triangles.extend(near.into_iter().map(|triangle| (triangle, index)));
+            self.rough |= pole.material.roughness_m > 0.0;
         }
-        Ok(Self {
-            walls,
-            poles,
-            air,
-            room: None,
-            mesh,
-            mirrors,
-            wall_boxes,
-            pole_triangles,
-            edges,
-            edge_triangles: OnceLock::new(),
-            extents: OnceLock::new(),
-            rough,
-        })
+        self.poles.extend(more);
+        self
+    }
+
+    /// The same scene with more poles, over the same mesh; over a new one where a pole is beyond that.
+    pub(crate) fn with_more_poles(&self, more: Vec<Pole>) -> Result<Self, SceneError> {
+        let Self { built, air, room, rough, .. } = self;
+        if !more.iter().all(|pole| built.mesh.covers(pole.centre)) {
+            let poles = [&self.poles, &more[..]].concat();
+            return Self::new(built.walls.clone(), poles, *air)?.with_room(*room);
+        }
+        let (poles, pole_triangles) = (self.poles.clone(), self.pole_triangles.clone());
+        let (built, air, room, rough) = (Arc::clone(built), *air, *room, *rough);
+        let scene = Self { built, poles, air, room, pole_triangles, rough }.among(more);
+        check_poles(&scene.poles)?;
+        Ok(scene)
     }
 
     /// The same scene between floor and ceiling, or flat without them: all sound in one plane, as
@@ -100,7 +123,7 @@ impl Scene {
 
     /// The walls, in the order given.
     pub fn walls(&self) -> &[Wall] {
-        &self.walls
+        &self.built.walls
     }
 
     /// The poles, in the order given.
@@ -111,15 +134,30 @@ impl Scene {
     /// The free ends of walls and the corners that jut out, which sound bends around if
     /// [`Physics::edges`](crate::Physics::edges) says so. Those of solid regions, seen from within, are among them.
     pub fn edges(&self) -> &[Edge] {
-        &self.edges
+        &self.built.edges
+    }
+
+    pub(crate) fn mesh(&self) -> &Mesh {
+        &self.built.mesh
+    }
+
+    /// The mirrors of the walls.
+    pub(crate) fn mirrors(&self) -> &[Mirror] {
+        &self.built.mirrors
+    }
+
+    /// The boxes around the walls.
+    pub(crate) fn wall_boxes(&self) -> &Bvh {
+        &self.built.boxes
     }
 
     /// The triangles that an edge is a corner of.
     pub(crate) fn triangles_at(&self, edge: usize) -> &[u32] {
-        let of_all = self.edge_triangles.get_or_init(|| {
+        let built = &*self.built;
+        let of_all = built.edge_triangles.get_or_init(|| {
             let mut triangles = Vec::new();
-            let each = self.edges.iter().map(|edge| {
-                self.mesh.containing(edge.at, &mut triangles);
+            let each = built.edges.iter().map(|edge| {
+                built.mesh.containing(edge.at, &mut triangles);
                 triangles.as_slice().into()
             });
             each.collect()
@@ -127,12 +165,22 @@ impl Scene {
         of_all.get(edge).map_or(&[], |triangles| triangles)
     }
 
+    /// The places of the edges.
+    pub(crate) fn edge_boxes(&self) -> &Bvh {
+        let Built { edges, edge_boxes, .. } = &*self.built;
+        edge_boxes.get_or_init(|| {
+            let each = edges.iter().map(|edge| edge.at.coords.into());
+            Bvh::from_iter(BvhBuildStrategy::Binned, each.map(|at| Aabb::new(at, at)).enumerate())
+        })
+    }
+
     /// Extents of walls, for [`Physics::narrow_panels`](crate::Physics::narrow_panels).
     pub(crate) fn extents(&self) -> &Extents {
-        self.extents.get_or_init(|| {
+        let Built { walls, boxes, edges, extents, .. } = &*self.built;
+        extents.get_or_init(|| {
             // The same walls were joined when the scene was made.
-            let (vertices, pieces) = join_walls(&self.walls, &self.wall_boxes).unwrap_or_default();
-            Extents::new(&vertices, &pieces, &self.walls, &self.edges)
+            let (vertices, pieces) = join_walls(walls, boxes).unwrap_or_default();
+            Extents::new(&vertices, &pieces, walls, edges)
         })
     }
 
@@ -144,7 +192,7 @@ impl Scene {
     /// Returns true if a point lies inside something solid: within a pillar, or outside a closed room. A point in a
     /// pole is not; see [`contact`](Self::contact).
     pub fn is_solid(&self, point: Point) -> bool {
-        self.mesh.is_solid(point)
+        self.built.mesh.is_solid(point)
     }
 }
 
@@ -193,4 +241,29 @@ fn check_poles(poles: &[Pole]) -> Result<(), SceneError> {
         }
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Material;
+
+    #[test]
+    fn poles_added_later_are_as_those_from_the_start() {
+        let walls: Vec<_> = Wall::polyline(&[[0.0, 0.0], [6.0, 0.0], [6.0, 4.0], [0.0, 4.0], [0.0, 0.0]]).collect();
+        let rough = Material { roughness_m: 1e-3, ..Material::SMOOTH };
+        let poles = [[1.0, 1.0], [4.5, 1.2], [0.3, 3.8]].map(|[x, y]| Pole::new(x, y, 0.25));
+        let poles = [poles[0], poles[1], Pole { material: rough, ..poles[2] }];
+        let scene =
+            |poles: &[Pole]| Scene::new(walls.clone(), poles.to_vec(), Air::default())?.with_room(Some(Room::DEFAULT));
+        let (whole, first) = (scene(&poles).unwrap(), scene(&poles[..1]).unwrap());
+        let more = first.with_more_poles(poles[1..].to_vec()).unwrap();
+        assert_eq!(more.pole_triangles, whole.pole_triangles);
+        assert_eq!((more.poles(), more.room(), more.rough), (whole.poles(), whole.room(), true));
+        // Beyond the mesh, which ends a kilometre and more from the walls.
+        let far = Pole::new(5000.0, 0.0, 0.25);
+        assert!(first.with_more_poles(vec![far]).unwrap().mesh().covers(far.centre));
+        let same = first.with_more_poles(vec![poles[0]]).unwrap_err().to_string();
+        assert!(same.contains("poles 0 and 1"), "{same}");
+    }
 }

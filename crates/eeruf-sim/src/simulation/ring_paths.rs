@@ -44,7 +44,7 @@ impl World {
         let Some(of) = self.robots().get(robot) else { return Ok(matrix) };
         let sensors: Vec<Pose> = self.sensors(robot, 0.0).collect();
         let poses: Vec<Pose> = self.robots().iter().map(|robot| robot.motion.at(&robot.pose, 0.0).pose).collect();
-        let bodies = Bodies::new(self);
+        let mut bodies = Bodies::new(self);
         let own = of.body.map(|_| robot);
         let furnished = if bodies.any() { bodies.scene(self, &poses, &sensors, [own; 2])? } else { None };
         let scene = furnished.as_ref().map_or(self.scene(), |furnished| &furnished.scene);

@@ -22,7 +22,7 @@ impl Scene {
         let bounces = Bounce::in_plan(bounces);
         let mirrors = |bounces: &[Bounce]| -> Option<Vec<&Mirror>> {
             let walls = bounces.iter().map(|bounce| match *bounce {
-                Bounce::Wall(wall) => self.mirrors.get(wall as usize),
+                Bounce::Wall(wall) => self.mirrors().get(wall as usize),
                 _ => None,
             });
             walls.collect()
@@ -76,7 +76,7 @@ impl Corners {
             return Some(&self.corners);
         }
         let mirror = |bounce: &Bounce| match *bounce {
-            Bounce::Wall(wall) => scene.mirrors.get(wall as usize),
+            Bounce::Wall(wall) => scene.mirrors().get(wall as usize),
             _ => None,
         };
         self.images.clear();

@@ -233,15 +233,15 @@ impl Tracer {
         at_poles: Limits,
     ) -> Result<(), PathsError> {
         check(scene, source, receivers, limits)?;
-        self.ends.find(&scene.mesh, source, receivers);
+        self.ends.find(scene.mesh(), source, receivers);
         if self.pole_shadows {
             check_free(scene, source, self.ends.of_source())?;
             let mut each = receivers.iter().enumerate();
             each.try_for_each(|(receiver, &at)| check_free(scene, at, self.ends.of_receiver(receiver)))?;
         }
         let growth = Growth {
-            mesh: &scene.mesh,
-            mirrors: &scene.mirrors,
+            mesh: scene.mesh(),
+            mirrors: scene.mirrors(),
             poles: scene.poles(),
             // A pole that is the only bounce is looked for without beams.
             pole_triangles: if at_poles.max_order > 1 { &scene.pole_triangles } else { &[] },
@@ -284,17 +284,17 @@ impl Tracer {
 }
 
 fn check(scene: &Scene, source: Point, receivers: &[Point], limits: Limits) -> Result<(), PathsError> {
-    let reach_m = scene.mesh.reach_m;
+    let reach_m = scene.mesh().reach_m;
     if limits.max_order > MAX_ORDER {
         return Err(PathsError::Order { max_order: limits.max_order });
     }
     if limits.max_length_m.is_nan() || limits.max_length_m <= 0.0 {
         return Err(PathsError::Length { max_length_m: limits.max_length_m });
     }
-    if !scene.mesh.covers(source) {
+    if !scene.mesh().covers(source) {
         return Err(PathsError::Source { at: [source.x, source.y], reach_m });
     }
-    match receivers.iter().position(|&at| !scene.mesh.covers(at)) {
+    match receivers.iter().position(|&at| !scene.mesh().covers(at)) {
         Some(receiver) => {
             Err(PathsError::Receiver { receiver, at: [receivers[receiver].x, receivers[receiver].y], reach_m })
         }
@@ -307,7 +307,7 @@ fn check_free(scene: &Scene, at: Point, triangles: &[u32]) -> Result<(), PathsEr
     let pole = scene.poles().iter().position(|pole| (at - pole.centre).norm() < pole.radius_m);
     let what = match pole {
         Some(pole) => Contact::Pole(pole),
-        None if scene.mesh.is_solid_at(triangles) => Contact::Solid,
+        None if scene.mesh().is_solid_at(triangles) => Contact::Solid,
         None => return Ok(()),
     };
     Err(PathsError::Inside { at: [at.x, at.y], what })

@@ -108,19 +108,22 @@ fn a_body_shades_one_robot_from_another() {
 // A body moves with its robot and ends the run where it touches.
 #[test]
 fn moving_body_ends_the_run_where_it_touches() {
-    let coming = |velocity: f64| Robot {
+    let coming = |velocity: f64, body| Robot {
         motion: Motion::Constant { velocity: Vector::new(velocity, 0.0), turn_rad_s: 0.0 },
-        body: Some(Body::Disc(0.3)),
+        body: Some(body),
         ..single(2.0, 0.0, 0.0)
     };
-    let world = |velocity| before_a_wall(vec![single(0.0, 0.0, 0.0), coming(velocity)]).unwrap();
-    let readings = run(&world(-0.5));
-    let own: Vec<_> = (0..readings.len()).filter(|&k| readings.robot[k] == 0).collect();
-    for &k in &own {
-        let distance_m = 1.7 - 0.5 * readings.fired_s[k];
-        assert!((readings.reference_us[k] * 1e-6 * C / 2.0 - distance_m).abs() < 2e-3, "{k}");
+    let world = |velocity, body| before_a_wall(vec![single(0.0, 0.0, 0.0), coming(velocity, body)]).unwrap();
+    for body in [Body::Disc(0.3), Body::Box(0.6, 0.6)] {
+        let readings = run(&world(-0.5, body));
+        let own: Vec<_> = (0..readings.len()).filter(|&k| readings.robot[k] == 0).collect();
+        for &k in &own {
+            let distance_m = 1.7 - 0.5 * readings.fired_s[k];
+            assert!((readings.reference_us[k] * 1e-6 * C / 2.0 - distance_m).abs() < 2e-3, "{body:?}, {k}");
+        }
     }
-    let error = simulate(&world(2.0), Method::Conventional, &Options::periods(60)).unwrap_err().to_string();
+    let error =
+        simulate(&world(2.0, Body::Disc(0.3)), Method::Conventional, &Options::periods(60)).unwrap_err().to_string();
     let expected = "s: the body of robot 2 touches a wall, a pole, another robot's body or one of its sensors; \
                     expected it clear of them";
     assert!(error.ends_with(expected), "{error}");

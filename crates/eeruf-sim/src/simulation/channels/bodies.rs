@@ -3,7 +3,7 @@
 
 use crate::{
     geometry::{Point, Pose},
-    scene::{Body, Bounce, Material, Pole, Scene, Wall},
+    scene::{Body, Bounce, Material, Pole, Scene, SceneError, Wall},
     tracing::PathsError,
     world::World,
 };
@@ -14,6 +14,8 @@ pub(in crate::simulation) struct Bodies {
     /// For each robot, its first side and its disc.
     first: Vec<[u32; 2]>,
     any: bool,
+    /// The world's scene with these sides in it, of late: of robots that stand they are the same from firing to firing.
+    sided: Vec<(Vec<Wall>, Scene)>,
 }
 
 /// A scene with bodies in it.
@@ -39,7 +41,8 @@ impl Bodies {
                 None => {}
             }
         }
-        Self { first, any: world.robots().iter().any(|robot| robot.body.is_some()) }
+        let any = world.robots().iter().any(|robot| robot.body.is_some());
+        Self { first, any, sided: Vec::new() }
     }
 
     /// True if there are any.
@@ -49,14 +52,14 @@ impl Bodies {
 
     /// The world's scene with the bodies of all robots but these; none if nothing is to be added.
     pub(in crate::simulation) fn scene(
-        &self,
+        &mut self,
         world: &World,
         poses: &[Pose],
         sensors: &[Pose],
         without: [Option<usize>; 2],
     ) -> Result<Option<Furnished>, PathsError> {
         let scene = world.scene();
-        let (mut walls, mut poles) = (scene.walls().to_vec(), scene.poles().to_vec());
+        let (mut sides, mut discs) = (Vec::new(), Vec::new());
         let (mut wall_numbers, mut pole_numbers) = (Vec::new(), Vec::new());
         let bodies = world.robots().iter().enumerate().filter(|(robot, _)| !without.contains(&Some(*robot)));
         let bodies: Vec<_> = bodies.filter_map(|(robot, of)| of.body.map(|body| (robot, body))).collect();
@@ -70,22 +73,38 @@ impl Bodies {
             }
             let [first_wall, disc] = self.first[robot];
             if let Body::Disc(radius_m) = body {
-                poles.push(Pole { centre: Point::from(pose.translation.vector), radius_m, material: Material::SMOOTH });
+                discs.push(Pole { centre: Point::from(pose.translation.vector), radius_m, material: Material::SMOOTH });
                 pole_numbers.push(disc);
             } else {
-                walls.extend(Wall::polyline(&body.walls_around(pose)));
+                sides.extend(Wall::polyline(&body.walls_around(pose)));
                 wall_numbers.extend((first_wall..).take(body.sides()));
             }
         }
-        if bodies.is_empty() {
-            return Ok(None);
-        }
+        let Some(&(robot, _)) = bodies.first() else { return Ok(None) };
         let own = [scene.walls().len(), scene.poles().len()];
         // What touches nothing makes a scene.
-        let robot = bodies.first().map_or(0, |body| body.0);
-        let built = Scene::new(walls, poles, scene.air()).and_then(|built| built.with_room(scene.room().copied()));
-        let scene = built.map_err(|_| PathsError::Body { robot })?;
+        let furnished = self.with_sides(scene, sides).and_then(|sided| sided.with_more_poles(discs));
+        let scene = furnished.map_err(|_| PathsError::Body { robot })?;
         Ok(Some(Furnished { scene, own, walls: wall_numbers, poles: pole_numbers }))
+    }
+
+    fn with_sides<'s>(&'s mut self, scene: &'s Scene, sides: Vec<Wall>) -> Result<&'s Scene, SceneError> {
+        if sides.is_empty() {
+            return Ok(scene);
+        }
+        let known = self.sided.iter().position(|(of, _)| *of == sides);
+        let index = match known {
+            Some(index) => index,
+            None => {
+                let walls = [scene.walls(), &sides].concat();
+                let built = Scene::new(walls, scene.poles().to_vec(), scene.air())?.with_room(scene.room().copied())?;
+                // One for each robot that may be left out.
+                self.sided.truncate(self.first.len());
+                self.sided.insert(0, (sides, built));
+                0
+            }
+        };
+        Ok(self.sided.get(index).map_or(scene, |(_, sided)| sided))
     }
 }
 

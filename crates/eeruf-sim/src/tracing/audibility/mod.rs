@@ -162,6 +162,11 @@ impl Audibility {
         sent >= least && sent * self.heard(plan[1] * cos_elevation) >= least
     }
 
+    /// The longest path, in metres, after which sound may be heard that is no louder than `most` over its length.
+    pub(crate) fn reach_m(&self, most: f64) -> f64 {
+        self.reach.at((most * most).min(1.0))
+    }
+
     /// Returns true if sound that leaves in the direction `out` may be heard after `least_m` or more, if it is no
     /// louder than `most` over its length but for the patterns.
     #[inline]

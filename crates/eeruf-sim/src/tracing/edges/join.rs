@@ -50,8 +50,8 @@ impl EdgeSearch {
                     if here == [None; 2] {
                         continue;
                     }
-                    scene.mesh.containing(point, &mut self.triangles);
-                    let sees = |from, starts| scene.mesh.sees(from, starts, point, &self.triangles);
+                    scene.mesh().containing(point, &mut self.triangles);
+                    let sees = |from, starts| scene.mesh().sees(from, starts, point, &self.triangles);
                     if sees(query.source, ends.of_source()) && sees(receivers[receiver], ends.of_receiver(receiver)) {
                         here.into_iter().flatten().for_each(|place| gone[place] = true);
                     }

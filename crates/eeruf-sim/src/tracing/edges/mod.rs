@@ -8,9 +8,10 @@ use super::limits::Limits;
 use crate::{
     acoustics::{LOUDEST_PANEL, edge_diffraction},
     geometry::{Point, TOUCH_M, Vector},
-    scene::{NONE, Scene},
+    scene::{MAX_COORDINATE_M, NONE, Scene},
     threads::Stop,
 };
+use parry2d_f64::bounding_volume::Aabb;
 
 /// A path around an edge.
 #[derive(Clone, Copy, Debug)]
@@ -103,7 +104,10 @@ impl EdgeSearch {
     fn choose(&mut self, query: &EdgeQuery<'_>) {
         let EdgeQuery { scene, audibility, source, receivers, .. } = *query;
         let edges = scene.edges();
-        self.wanted.clear();
+        for edge in self.wanted.drain(..) {
+            self.chosen[edge as usize] = NONE;
+        }
+        self.chosen.resize(edges.len(), NONE);
         let Some(audibility) = audibility else {
             self.wanted.extend(0..edges.len() as u32);
             self.chosen.clear();
@@ -113,26 +117,30 @@ impl EdgeSearch {
         let count = receivers.len().max(1) as f64;
         let middle = Point::from(receivers.iter().fold(Vector::zeros(), |sum, at| sum + at.coords) / count);
         let spread_m = receivers.iter().map(|at| (at - middle).norm()).fold(0.0, f64::max);
-        self.chosen.clear();
-        self.chosen.resize(edges.len(), NONE);
-        for (index, edge) in edges.iter().enumerate() {
+        // An edge further away leads to no receiver on a way that is short enough.
+        let loudest = MOST * LOUDEST_PANEL;
+        let there_and_back_m = audibility.reach_m(loudest) + (source - middle).norm() + spread_m;
+        let half = Vector::repeat((0.5 * there_and_back_m + TOUCH_M).min(3.0 * MAX_COORDINATE_M));
+        let square = Aabb::new((source.coords - half).into(), (source.coords + half).into());
+        for index in scene.edge_boxes().intersect_aabb(&square) {
+            let edge = &edges[index as usize];
             let out = edge.at - source;
             let least_m = out.norm() + ((edge.at - middle).norm() - spread_m).max(0.0);
-            if !audibility.may_ensonify(MOST * LOUDEST_PANEL, out, least_m) {
+            if !audibility.may_ensonify(loudest, out, least_m) {
                 continue;
             }
-            self.chosen[index] = 0;
+            self.wanted.push(index);
             if query.joined_m.is_some() {
                 let extents = scene.extents();
-                let surfaces = extents.at_edge(index).iter().map(|&surface| &extents.surfaces[surface as usize]);
-                for other in surfaces.flat_map(|surface| surface.ends).flatten().filter_map(|end| end.edge) {
-                    self.chosen[other as usize] = 0;
-                }
+                let surfaces =
+                    extents.at_edge(index as usize).iter().map(|&surface| &extents.surfaces[surface as usize]);
+                self.wanted.extend(surfaces.flat_map(|surface| surface.ends).flatten().filter_map(|end| end.edge));
             }
         }
-        for (edge, place) in (0..).zip(&mut self.chosen).filter(|(_, place)| **place != NONE) {
-            *place = self.wanted.len() as u32;
-            self.wanted.push(edge);
+        self.wanted.sort_unstable();
+        self.wanted.dedup();
+        for (place, &edge) in (0..).zip(&self.wanted) {
+            self.chosen[edge as usize] = place;
         }
     }
 
@@ -163,7 +171,7 @@ impl EdgeSearch {
                 if length_m > limits.max_length_m || !audibility.is_none_or(heard) {
                     continue;
                 }
-                let sees = |from, starts| scene.mesh.sees(from, starts, edge.at, scene.triangles_at(index));
+                let sees = |from, starts| scene.mesh().sees(from, starts, edge.at, scene.triangles_at(index));
                 if !*in_sight.get_or_insert_with(|| sees(source, ends.of_source())) {
                     break;
                 }

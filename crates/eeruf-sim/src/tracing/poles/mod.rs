@@ -201,8 +201,8 @@ impl PoleSearch {
         let PoleQuery { scene, ends, limits, audibility, budget, stop, .. } = *query;
         let aim = audibility.and_then(|audibility| audibility.of_receiver(receiver.index as usize));
         let growth = Growth {
-            mesh: &scene.mesh,
-            mirrors: &scene.mirrors,
+            mesh: scene.mesh(),
+            mirrors: scene.mirrors(),
             poles: scene.poles(),
             pole_triangles: if query.asked == Asked::Once { &self.wanted } else { &scene.pole_triangles },
             pole_order: limits.max_order,
@@ -269,7 +269,7 @@ impl PoleSearch {
             return;
         };
         let length_m = hit.before_m + hit.after_m;
-        if length_m > limits.max_length_m || !from_source.meet(before, &home.legs, behind, hit.point, &scene.mesh) {
+        if length_m > limits.max_length_m || !from_source.meet(before, &home.legs, behind, hit.point, scene.mesh()) {
             return;
         }
         let start = self.bounces.len();
@@ -285,7 +285,7 @@ impl PoleSearch {
     /// Source, one pole, receiver, both in sight of it: no trees are needed.
     fn one_pole(&mut self, query: &PoleQuery<'_>, receivers: &[Point]) {
         let PoleQuery { scene, source, ends, limits, audibility, stop, .. } = *query;
-        let mesh = &scene.mesh;
+        let mesh = scene.mesh();
         for (index, pole) in scene.poles().iter().enumerate() {
             if stop.is_stopped() {
                 return;
@@ -320,7 +320,7 @@ impl PoleSearch {
     /// Source, one pole, another pole, receiver, all in sight of each other.
     fn two_poles(&mut self, query: &PoleQuery<'_>, lasts: &[Seen], receiver: Receiver) {
         let PoleQuery { scene, source, ends, limits, audibility, stop, .. } = *query;
-        let (at, poles, mesh) = (receiver.at, scene.poles(), &scene.mesh);
+        let (at, poles, mesh) = (receiver.at, scene.poles(), scene.mesh());
         for index in 0..self.firsts.len() {
             if stop.is_stopped() {
                 return;

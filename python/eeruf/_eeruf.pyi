@@ -3080,6 +3080,7 @@ class _RobotChanges(TypedDict, total=False):
     path_change_us: _Int | None
     firing: dict[str, object] | None
     ring: str | PathLike[str] | None
+    fleet_number: _Int
 
 @final
 class Robot:
@@ -3132,6 +3133,7 @@ class Robot:
         clock_offset_us: what its clock shows at the start.
         transducer: an older name of ``module``.
         clock_drift_ppm: rate error of its clock, positive if fast, in millionths.
+        fleet_number: its number among robots of one make, 0 to 255, by which flow tells six of them apart.
 
     Raises:
         ArgumentError: something of the wrong type or out of range, or two kinds of motion at once.
@@ -3178,6 +3180,7 @@ class Robot:
         path_change_us: _Int | None = None,
         firing: dict[str, object] | None = None,
         ring: str | PathLike[str] | None = None,
+        fleet_number: _Int = 0,
     ) -> Robot: ...
     def replace(self, **changes: Unpack[_RobotChanges]) -> Robot:
         """The same robot, but for these arguments.
@@ -3288,6 +3291,9 @@ class Robot:
     @property
     def clock_drift_ppm(self) -> float:
         """Drift of its clock (positive: too fast), in millionths."""
+    @property
+    def fleet_number(self) -> int:
+        """Its number among robots of one make, by which flow tells them apart."""
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...
 
@@ -4526,6 +4532,7 @@ def _set_three(
     progress: _Progress,
     physics: _Physics,
     height: object,
+    numbered: bool,
 ) -> tuple[str, str]: ...
 def _set_two(asked: dict[str, object], progress: _Progress) -> tuple[str, dict[str, list[dict[str, object]]]]: ...
 def _figures(set: int, runs: str) -> str: ...

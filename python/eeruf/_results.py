@@ -747,3 +747,5 @@ class SetThree(Result):
     """For each method the result in each placing, in their order."""
     height: Literal["flat", "room"] = "flat"
     """``"room"`` if the rings heard floor and ceiling."""
+    numbered: bool = False
+    """Whether the robots of a placing had fleet numbers of their own."""

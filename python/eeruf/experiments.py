@@ -422,6 +422,7 @@ def set_three(
     first: int = FIRST,
     physics: _Physics = "default",
     height: Literal["flat", "room"] | dict[str, object] = "flat",
+    numbered: bool = False,
     tune: bool = False,
     progress: _Progress = None,
 ) -> SetThree:
@@ -438,6 +439,7 @@ def set_three(
         first: the first placing's number.
         physics: as the argument of ``eeruf.sim.Scene``.
         height: as the argument of ``eeruf.sim.Scene``.
+        numbered: whether the robots of a placing have fleet numbers, 0, 1 and so on, by which flow tells them apart.
         tune: whether parameters are chosen by the result. Seeds from :data:`FIRST` on are then refused: they are for reports.
         progress: True for a bar (tqdm if it is installed), or a callable that takes the share done and a text.
 
@@ -456,7 +458,7 @@ def set_three(
 
     """
     _checked(first, seeds, tune)
-    return _making.set_three(*_eeruf._set_three(seeds, first, periods, methods, progress, physics, height))
+    return _making.set_three(*_eeruf._set_three(seeds, first, periods, methods, progress, physics, height, numbered))
 
 
 def speed_sweep(

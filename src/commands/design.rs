@@ -111,6 +111,10 @@ pub(crate) struct Args {
     /// Find the shortest period and judge nothing in rooms
     #[arg(long, conflicts_with_all = ["rooms", "places", "first", "wrong", "driving"])]
     period_only: bool,
+    /// Number of this robot among robots of one make, which flow tells apart: six differ, 0 to 5; with --emit, by
+    /// default 0
+    #[arg(long, value_name = "N", requires = "emit", default_value_t = 0, hide_default_value = true)]
+    fleet_number: u8,
     #[command(flatten)]
     in_rooms: RoomArgs,
 }
@@ -254,6 +258,11 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
         }
         _ => certified,
     };
+    let by_flow = matches!(&way, Some(Ok(Some(way))) if way.method == Method::Flow);
+    if args.fleet_number != 0 && !by_flow {
+        let expected = "fleet number: expected a ring for which flow is recommended; tables do not tell robots apart";
+        return Err(InputError::new(&args.file, expected));
+    }
     match args.form() {
         Some(form @ (Form::Toml | Form::Rust | Form::C | Form::Arduino)) => {
             let table = || emit(&design.spec, form, &design.schedule);
@@ -320,7 +329,7 @@ fn comment(form: Form, line: &str) -> Result<(), InputError> {
 fn emit_flow(args: &Args, spec: &RingSpec, form: Form, way: &RoomWay) -> Result<(), InputError> {
     let Robot { ref sensors, window, blanking, period, ref limits, ref together, .. } = way.robot;
     let (sensors, modules) = (sensors.len(), &spec.modules);
-    let mut settings = way.options.flow;
+    let mut settings = way.options.flow.with_fleet_number(args.fleet_number);
     settings.shortest_cycle = period;
     let needs = spec.problem().requirements;
     let settings = settings.keeping(sensors, &needs).map_err(|error| InputError::new(&args.file, error))?;

@@ -72,7 +72,7 @@ pub(crate) fn set_one(
 
 /// Set III over many placings: the table, and the runs of each method.
 #[pyfunction]
-#[pyo3(name = "_set_three", signature = (seeds, first, periods, methods, progress, physics, height))]
+#[pyo3(name = "_set_three", signature = (seeds, first, periods, methods, progress, physics, height, numbered))]
 #[expect(clippy::too_many_arguments, reason = "keyword arguments")]
 pub(crate) fn set_three(
     py: Python<'_>,
@@ -83,6 +83,7 @@ pub(crate) fn set_three(
     progress: Option<&Bound<'_, PyAny>>,
     physics: Option<&Bound<'_, PyAny>>,
     height: Option<&Bound<'_, PyAny>>,
+    numbered: bool,
 ) -> PyResult<(String, String)> {
     let default = SetThreeOptions::default();
     let (methods, made) = methods_of(methods, default.methods)?;
@@ -94,6 +95,7 @@ pub(crate) fn set_three(
         physics: surroundings::physics(physics)?,
         room: surroundings::height(height)?,
         gain: default.gain,
+        numbered,
     };
     in_background(py, progress, move |background| {
         let keep_going = |done| background.go_on(Some(done), || format!("{} placings", asked.seeds));

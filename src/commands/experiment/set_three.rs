@@ -32,6 +32,9 @@ pub(crate) struct Args {
     #[arg(long, value_name = "N", default_value_t = SetThreeOptions::default().periods)]
     #[arg(value_parser = clap::value_parser!(u32).range(10..=100_000))]
     periods: u32,
+    /// Give the robots of a placing fleet numbers, 0, 1 and so on, by which flow tells them apart; by default all have 0
+    #[arg(long)]
+    numbered: bool,
 }
 
 const SEEDS: u64 = 200;
@@ -67,6 +70,7 @@ fn options(args: &Args) -> SetThreeOptions {
         physics: args.common.physics,
         room: args.common.room(),
         gain: args.common.gain,
+        numbered: args.numbered,
     }
 }
 
@@ -76,6 +80,7 @@ fn words(args: &Args) -> Vec<String> {
     words.insert(0, "set-three".to_owned());
     let methods: Vec<_> = options(args).methods.iter().map(Entry::to_string).collect();
     words.extend(["--method".to_owned(), methods.join(","), "--periods".to_owned(), args.periods.to_string()]);
+    words.extend(args.numbered.then(|| "--numbered".to_owned()));
     words
 }
 

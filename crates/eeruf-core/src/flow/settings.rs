@@ -60,6 +60,29 @@ impl FlowSettings {
 }
 
 impl FlowSettings {
+    /// How much the step of the code differs from a fleet number to the next.
+    const STEP_OF_NUMBER: Micros = Micros::new(40);
+    /// How many numbers differ.
+    const NUMBERS: u8 = 6;
+
+    /// These settings for the robot with this number among robots of one make that hear each other: 0 to 5 have steps
+    /// 40 us apart, larger ones are counted from 0 again.
+    ///
+    /// Two robots with the same step can read each other alike in every phase of a cycle. With unlike numbers, whatever
+    /// their offset, and with a `t_delta` of 150 us, no more phases agree than 4 up to 11 sensors, 5 up to 15, 6 up to
+    /// 17, 7 up to 21 and 9 up to 27 (`docs/explanation/theory.md`, section 9); five make an echo believed.
+    ///
+    /// ```
+    /// use eeruf_core::{Micros, flow::FlowSettings};
+    /// assert_eq!(FlowSettings::DEFAULT.with_fleet_number(2).step, Micros::new(320));
+    /// ```
+    #[must_use]
+    pub const fn with_fleet_number(mut self, number: u8) -> Self {
+        let more = (number % Self::NUMBERS) as u32 * Self::STEP_OF_NUMBER.as_micros();
+        self.step = self.step.saturating_add(Micros::new(more));
+        self
+    }
+
     /// The limits of each sensor for [`FlowPlan::with_limits`](super::FlowPlan::with_limits): its window, its
     /// `t_delta`, of which no more counts than the tracker's, and the sensors that it fires together with. All other
     /// requirements are for tables.

@@ -3,6 +3,7 @@
 extern crate std;
 
 use super::*;
+use crate::hopping::HoppingCode;
 use crate::judge::{EchoTracker, Firing, Heard, Judge};
 use crate::own_limits::{EachSensor, LimitsInUse, SensorLimits};
 use crate::plan::{Plan, check_plan};
@@ -15,6 +16,37 @@ use crate::uneven::Uneven;
 use std::vec::Vec;
 
 const WINDOW: Micros = Micros::from_millis(36);
+
+/// The most phases of a cycle in which sound of a robot with one step reads alike at a robot with another, whatever their
+/// offset: within `t_delta`.
+fn phases_alike(sensors: usize, [sends, hears]: [u8; 2]) -> usize {
+    let code = |number| {
+        let settings = FlowSettings::DEFAULT.with_fleet_number(number);
+        HoppingCode::new(sensors, settings.tracker.votes, settings.step).unwrap()
+    };
+    let (sends, hears) = (code(sends), code(hears));
+    let alike = |apart: u8| {
+        let wait = |code: &HoppingCode, phase| code.wait(0, phase % code.phases()).as_micros() as i32;
+        let mut reads: Vec<_> =
+            (0..hears.phases()).map(|phase| wait(&sends, phase + apart) - wait(&hears, phase)).collect();
+        reads.sort_unstable();
+        let t_delta = FlowSettings::DEFAULT.tracker.t_delta.as_micros() as i32;
+        let within = |from: &i32| reads.iter().filter(|read| (*from..=from + t_delta).contains(read)).count();
+        reads.iter().map(within).max().unwrap()
+    };
+    (0..hears.phases()).map(alike).max().unwrap()
+}
+
+// Numbers 0 to 5, of which each two are tried; with the same number all phases agree.
+#[test]
+fn few_phases_of_unlike_fleet_numbers_read_alike() {
+    for (sensors, most) in [(6, 4), (11, 4), (15, 5), (17, 6), (21, 7), (27, 9)] {
+        let pairs = (0..6).flat_map(|one| (0..6).map(move |other| [one, other]));
+        let found = pairs.filter(|[one, other]| one != other).map(|pair| phases_alike(sensors, pair)).max();
+        assert_eq!(found, Some(most), "{sensors} sensors");
+        assert!(phases_alike(sensors, [2, 8]) > 5, "a number counted from 0 again");
+    }
+}
 
 fn listening() -> HoppingListening {
     HoppingListening::new(WINDOW).with_blanking(Micros::new(2_380))

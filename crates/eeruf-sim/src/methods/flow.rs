@@ -18,8 +18,8 @@ pub(super) fn flow<'s>(start: &RingStart<'s>) -> Started<'s> {
 }
 
 fn ring<'s, const K: usize>(start: &RingStart<'s>) -> Started<'s> {
-    let Robot { ref sensors, window, blanking, .. } = *start.robot;
-    let mut settings = start.flow;
+    let Robot { ref sensors, window, blanking, fleet_number, .. } = *start.robot;
+    let mut settings = start.flow.with_fleet_number(fleet_number);
     settings.shortest_cycle = start.robot.period;
     let listening = HoppingListening::new(window).with_blanking(blanking);
     Ok(Box::new(FlowRing::<K, TRACKS>::flow(sensors.len(), settings, listening, start.now)?))

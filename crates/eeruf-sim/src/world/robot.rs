@@ -50,6 +50,9 @@ pub struct Robot {
     pub motion: Motion,
     /// Its clock.
     pub clock: Clock,
+    /// Its number among robots of one make, by which it fires flow: see
+    /// [`FlowSettings::with_fleet_number`](eeruf_core::flow::FlowSettings::with_fleet_number).
+    pub fleet_number: u8,
     /// When its ring begins to fire, by its own clock, after the start of the simulation.
     pub start: Micros,
     /// The schedule that the `eeruf` methods use; `None` for the paper's own (see
@@ -122,6 +125,7 @@ impl Robot {
             pose,
             motion: Motion::Still,
             clock: Clock::default(),
+            fleet_number: 0,
             start: Micros::ZERO,
             schedule: None,
             period: Micros::from_millis(60),

@@ -35,6 +35,8 @@ pub struct SetThreeOptions {
     pub room: Option<Room>,
     /// The growth of the receivers' gain. The default is constant.
     pub gain: GainProfile,
+    /// True if the robots of a placing have fleet numbers from 0 on, by which flow tells them apart. The default is false.
+    pub numbered: bool,
 }
 
 /// The methods that Set III compares unless others are asked for.
@@ -55,6 +57,7 @@ impl Default for SetThreeOptions {
             physics: Physics::DEFAULT,
             room: None,
             gain: GainProfile::Constant,
+            numbered: false,
         }
     }
 }
@@ -73,6 +76,8 @@ pub struct SetThree {
     pub conditions: Conditions,
     /// Periods that each was simulated for.
     pub periods: u32,
+    /// True if the robots of a placing had fleet numbers of their own.
+    pub numbered: bool,
     /// The methods in the order asked for, with their figures over all placings.
     #[serde(serialize_with = "by_name")]
     pub methods: Vec<(String, Figures)>,
@@ -151,12 +156,12 @@ pub fn set_three(
 impl SetThree {
     /// The table of runs that were made as asked: for each method one for each placing.
     pub fn of(asked: &SetThreeOptions, runs: Vec<Vec<Run>>) -> Self {
-        let &SetThreeOptions { first, seeds, periods, physics, .. } = asked;
+        let &SetThreeOptions { first, seeds, periods, physics, numbered, .. } = asked;
         let methods = named(&asked.methods, runs.iter().map(|runs| Figures::of(runs)));
         let conditions = Conditions::of(asked.room.as_ref(), asked.gain);
         let names: Vec<_> = asked.methods.iter().map(Entry::name).collect();
         let groups = group(&names, &runs);
-        Self { first, seeds, physics, conditions, periods, methods, groups, runs }
+        Self { first, seeds, physics, conditions, periods, numbered, methods, groups, runs }
     }
 }
 
@@ -193,7 +198,10 @@ pub fn group(names: &[&str], runs: &[Vec<Run>]) -> Vec<Group> {
 /// # Errors
 /// [`WorldError`] for a placing that cannot be.
 pub fn world_of(asked: &SetThreeOptions, placing: &Placing, entry: &Entry) -> Result<World, WorldError> {
-    let robot = |robot: &Robot| entry.robot(robot.clone().with_pattern(Some(asked.gain), None));
-    let robots = placing.robots.iter().map(robot).collect();
+    let robot = |(number, robot): (u8, &Robot)| {
+        let fleet_number = if asked.numbered { number } else { 0 };
+        entry.robot(Robot { fleet_number, ..robot.clone().with_pattern(Some(asked.gain), None) })
+    };
+    let robots = (0..).zip(&placing.robots).map(robot).collect();
     World::new(placing.scene()?.with_room(asked.room)?, robots, Noise::default())?.with_physics(asked.physics)
 }

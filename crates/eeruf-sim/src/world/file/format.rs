@@ -260,6 +260,8 @@ pub(super) struct RobotFile {
     pub(super) body: Option<BodyFile>,
     pub(super) motion: Option<MotionFile>,
     pub(super) clock: Option<ClockFile>,
+    #[serde(default)]
+    pub(super) fleet_number: u8,
     pub(super) schedule: Option<Spanned<toml::Value>>,
     pub(super) start_us: Option<u32>,
     pub(super) period_us: Option<u32>,

@@ -1,25 +1,45 @@
 """The shortest period of rings of 16 to 32 sensors that differ: `eeruf-design`, OR-tools CP-SAT and Z3, a thread each.
 
     cargo lab uneven-rings 20 60 > target/uneven.jsonl
-    python benches/peers/uneven_race.py target/uneven.jsonl [--limit 60]
+    python benches/peers/uneven_race.py target/uneven.jsonl [--limit 60] [--z3 4]
 
-Both models are the definition (docs/reference/certificate.md, "The problem"). Seconds are those of a core; who has not
-proven an answer at the limit counts with the seconds that it had. Prints a line a ring and the geometric means of the
-ratios. Ends where two answers contradict each other.
+Both models are the definition (docs/reference/certificate.md, "The problem"). Seconds are those of a core. Prints a
+line a ring: period, bound, and the seconds until that period was found, or until it was proven; then two geometric
+means of ratios: of the times until the peer's last period or a shorter one was found, and of the times until the answer
+was proven, a limit counting as the seconds spent; less than 5 ms counts as 5. Ends where two answers contradict each
+other.
 """
 
 import argparse
 import json
 import math
 import pathlib
+import threading
 import time
 
 import z3
 from ortools.sat.python import cp_model
 
 
-def cp_sat(ring: dict, limit: float) -> tuple[int, int, float]:
-    """Period, bound and seconds of CP-SAT; a period of 0 where it has none."""
+Steps = list[tuple[float, int]]
+
+
+class Watch(cp_model.CpSolverSolutionCallback):
+    """The periods found, each with the seconds until then."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.begin, self.steps = time.process_time(), []
+
+    def seconds(self) -> float:
+        return time.process_time() - self.begin
+
+    def on_solution_callback(self) -> None:
+        self.steps.append((self.seconds(), round(self.objective_value)))
+
+
+def cp_sat(ring: dict, limit: float) -> tuple[int, float, Steps]:
+    """Bound, seconds and steps of CP-SAT."""
     m, count = cp_model.CpModel(), len(ring["window"])
     most = 2 * sum(max(gap[2:]) for gap in ring["gaps"]) + max(ring["window"])
     period = m.new_int_var(1, most, "")
@@ -43,15 +63,23 @@ def cp_sat(ring: dict, limit: float) -> tuple[int, int, float]:
     m.minimize(period)
     solver = cp_model.CpSolver()
     solver.parameters.num_workers = 1
-    solver.parameters.max_time_in_seconds = limit
-    begin = time.process_time()
-    status = solver.solve(m)
-    found = round(solver.objective_value) if status in (cp_model.OPTIMAL, cp_model.FEASIBLE) else 0
-    return found, math.ceil(solver.best_objective_bound - 1e-6), time.process_time() - begin
+    watch, done = Watch(), threading.Event()
+
+    def stop_at_limit() -> None:
+        while not done.wait(0.05):
+            if watch.seconds() > limit:
+                solver.stop_search()
+
+    thread = threading.Thread(target=stop_at_limit)
+    thread.start()
+    solver.solve(m, watch)
+    done.set()
+    thread.join()
+    return math.ceil(solver.best_objective_bound - 1e-6), watch.seconds(), watch.steps
 
 
-def z3_opt(ring: dict, limit: float) -> tuple[int, int, float]:
-    """Period, bound and seconds of Z3, by a period below the last found until there is none."""
+def z3_opt(ring: dict, limit: float) -> tuple[int, float, Steps]:
+    """Bound, seconds and steps of Z3, by a period below the last found until there is none."""
     solver, count = z3.Solver(), len(ring["window"])
     period = z3.Int("period")
     a, b = ([z3.Int(f"{phase}{x}") for x in range(count)] for phase in "ab")
@@ -65,40 +93,47 @@ def z3_opt(ring: dict, limit: float) -> tuple[int, int, float]:
         for t, u in ((a, b), (b, a)):
             solver.add(z3.Or(t[y] - t[x] >= to, t[x] - t[y] >= back))
             solver.add(period + u[y] - t[x] >= to, period + u[x] - t[y] >= back)
-    begin, end, found = time.process_time(), time.monotonic() + limit, 0
-    while (left := end - time.monotonic()) > 0:
+    begin, steps = time.process_time(), []
+    while (left := begin + limit - time.process_time()) > 0:
         solver.set("timeout", max(1, int(1000 * left)))
         status = solver.check()
         if status == z3.unsat:
-            return found, found, time.process_time() - begin
-        if status != z3.sat:
-            break
-        found = solver.model()[period].as_long()
-        solver.add(period < found)
-    return found, 0, time.process_time() - begin
+            return steps[-1][1], time.process_time() - begin, steps
+        if status == z3.sat:
+            found = solver.model()[period].as_long()
+            steps.append((time.process_time() - begin, found))
+            solver.add(period < found)
+    return 0, time.process_time() - begin, steps
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("rings", type=pathlib.Path)
     parser.add_argument("--limit", type=float, default=60.0, help="seconds for each ring and solver")
+    parser.add_argument("--z3", type=int, default=0, help="number of rings that Z3 gets too")
     args = parser.parse_args()
-    peers = {"CP-SAT": cp_sat, "Z3": z3_opt}
-    logarithms, proven = dict.fromkeys(peers, 0.0), dict.fromkeys(["eeruf", *peers], 0)
     rings = [json.loads(line) for line in args.rings.read_text().splitlines()]
-    for ring in rings:
-        own = [(ring["period"], ring["bound"], ring["seconds"])]
-        proven["eeruf"] += ring["period"] == ring["bound"]
-        for name, solve in peers.items():
-            found, bound, seconds = solve(ring, args.limit)
-            own.append((found, bound, seconds))
-            proven[name] += found == bound > 0
-            logarithms[name] += math.log(max(seconds, 0.001) / max(ring["seconds"], 0.001))
-            assert bound <= ring["period"] and (found == 0 or ring["bound"] <= found), (ring, name, found, bound)
-        print(f"{len(ring['window'])} sensors:", *(f"{f} [{b}] {s:.2f} s" for f, b, s in own), sep="  ", flush=True)
-    for name, total in logarithms.items():
-        print(f"{name}: {math.exp(total / len(rings)):.1f} times as long, geometric mean of {len(rings)}")
-    print("proven:", proven)
+    logarithms: dict[str, list[tuple[float, float]]] = {"CP-SAT": [], "Z3": []}
+    for at, ring in enumerate(rings):
+        own, bound, spent = ring["steps"], ring["bound"], ring["seconds"]
+        print(f"{len(ring['window'])} sensors:  {told(own, bound, spent)}", end="", flush=True)
+        for name, solve in [("CP-SAT", cp_sat), ("Z3", z3_opt)][: 2 if at < args.z3 else 1]:
+            its_bound, its_spent, steps = solve(ring, args.limit)
+            assert its_bound <= ring["period"] and all(bound <= found for _, found in steps), (ring, name, steps)
+            last, found = steps[-1] if steps else (its_spent, math.inf)
+            soon = next((seconds for seconds, period in own if period <= found), spent)
+            ratios = [max(its, 0.005) / max(ours, 0.005) for its, ours in ((last, soon), (its_spent, spent))]
+            logarithms[name].append((math.log(ratios[0]), math.log(ratios[1])))
+            print(f"  {name} {told(steps, its_bound, its_spent)}, as short after {soon:.3f} s", end="", flush=True)
+        print()
+    for name, ratios in logarithms.items():
+        for what, each in zip(("found", "proven or given up"), zip(*ratios)):
+            print(f"{name}, {what}: {math.exp(sum(each) / len(each)):.1f} times as long, mean of {len(each)} rings")
+
+
+def told(steps: Steps, bound: int, spent: float) -> str:
+    seconds, period = steps[-1] if steps else (spent, 0)
+    return f"{period} [{bound}] {spent if period == bound else seconds:.2f} s"
 
 
 if __name__ == "__main__":

@@ -89,7 +89,7 @@ const COMMANDS: [Command; 28] = [
     ("tune", "[--check]", "settings of the experiments, into the sources (an hour)", tune::main),
     ("twins", "[SECONDS]", "rings with one limit changed, beside even ones", twins::main),
     ("typical-alcove", "[SCENE.toml]", "the typical alcove of Set I", typical_alcove::main),
-    ("uneven-rings", "[RINGS [SECONDS]]", "random rings for a race with peers", uneven_rings::main),
+    ("uneven-rings", "[RINGS [SECONDS [FIRST]]]", "random rings for a race with peers", uneven_rings::main),
     ("unseen-rooms", "[RINGS [FIRST [PLACES]]]", "eeruf design's words in other rooms", unseen_rooms::main),
     (
         "wait-count",

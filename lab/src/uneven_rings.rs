@@ -1,6 +1,6 @@
 //! Prints random rings of 16 to 32 sensors that differ, and what the engine finds: `cargo lab uneven-rings
-//! [RINGS [SECONDS]]`. A line of JSON each, in ticks: the problem, period, bound and the seconds
-//! of a core; `benches/peers/uneven_race.py` reads them.
+//! [RINGS [SECONDS [FIRST]]]`, from this seed on. A line of JSON each, in ticks: the problem, period, bound, the
+//! seconds of a core, and each period found with the seconds until then; `benches/peers/uneven_race.py` reads them.
 
 use eeruf_design::engine::Problem;
 use eeruf_design::engine::shortest::shortest;
@@ -49,20 +49,30 @@ fn draw(seed: u64) -> Problem {
 pub(crate) fn main(arguments: &[String]) -> crate::Answer {
     let rings: u64 = arguments.first().map_or(Ok(20), |text| text.parse())?;
     let seconds: f64 = arguments.get(1).map_or(Ok(60.0), |text| text.parse())?;
-    for seed in 20_000..20_000 + rings {
+    let first: u64 = arguments.get(2).map_or(Ok(20_000), |text| text.parse())?;
+    for seed in first..first + rings {
         let problem = draw(seed);
-        let begin = core_seconds();
-        let found = shortest(&problem, u64::MAX, &mut |_| core_seconds() - begin < seconds);
+        let (begin, mut steps) = (core_seconds(), Vec::<(f64, u32)>::new());
+        let mut step = |period: u32| {
+            let since = core_seconds() - begin;
+            if steps.last().is_none_or(|(_, last)| period < *last) {
+                steps.push((since, period));
+            }
+            since
+        };
+        let found = shortest(&problem, u64::MAX, &mut |so_far| step(so_far.best) < seconds);
         let found = found.ok_or("no schedule")?;
+        let seconds = step(found.period);
+        let steps: Vec<String> = steps.iter().map(|(since, period)| format!("[{since}, {period}]")).collect();
         let gaps: Vec<[u32; 4]> = problem.gaps.iter().map(|&(x, y, to, from)| [x as u32, y as u32, to, from]).collect();
         println!(
             "{{\"separation\": {:?}, \"window\": {:?}, \"gaps\": {gaps:?}, \"period\": {}, \"bound\": {}, \
-             \"seconds\": {}}}",
+             \"seconds\": {seconds}, \"steps\": [{}]}}",
             problem.separation,
             problem.window,
             found.period,
             found.bound,
-            core_seconds() - begin
+            steps.join(", ")
         );
     }
     Ok(())

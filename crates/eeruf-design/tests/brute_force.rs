@@ -10,6 +10,10 @@ use eeruf_design::engine::shortest::{self, Shortest};
 use eeruf_design::engine::spare::most_to_spare;
 use eeruf_design::engine::{Claim, Problem};
 
+fn from_environment(name: &str, usual: u64) -> u64 {
+    std::env::var(name).map_or(usual, |number| number.parse().expect("a number"))
+}
+
 /// The shortest period, with a schedule, by trying all firing times.
 fn shortest(problem: &Problem, most: u32) -> Option<(u32, [Vec<u32>; 2])> {
     (1..=most).find_map(|period| feasible(problem, period).map(|fire| (period, fire)))
@@ -33,9 +37,9 @@ fn agree(seed: u64, problem: &Problem, most: u32) -> usize {
 // The period proven shortest is the one that trying all schedules gives.
 #[test]
 fn proven_period_is_that_of_trying_all_schedules() {
-    let cases = std::env::var("EERUF_CASES").map_or(300, |cases| cases.parse().expect("a number"));
+    let (first, cases) = (from_environment("EERUF_FIRST", 0), from_environment("EERUF_CASES", 300));
     let (mut solved, mut nodes) = (0, 0);
-    for seed in 0..cases {
+    for seed in first..first + cases {
         let mut random = Random(seed + 1);
         let problem = random_problem(&mut random);
         let most = if problem.sensors() <= 3 { 13 } else { 9 };
@@ -49,9 +53,9 @@ fn proven_period_is_that_of_trying_all_schedules() {
 
 #[test]
 fn the_search_finds_the_period_that_trying_all_schedules_gives() {
-    let cases = std::env::var("EERUF_CASES").map_or(300, |cases| cases.parse().expect("a number"));
+    let (first, cases) = (from_environment("EERUF_FIRST", 0), from_environment("EERUF_CASES", 300));
     let (mut solved, mut hopeless) = (0, 0);
-    for seed in 0..cases {
+    for seed in first..first + cases {
         let mut random = Random(seed + 1);
         let problem = random_problem(&mut random);
         let most = if problem.sensors() <= 3 { 13 } else { 9 };
@@ -89,9 +93,9 @@ fn keeps(problem: &Problem, period: u32, more: [u32; 3]) -> bool {
 
 #[test]
 fn spare_is_that_of_trying_all_schedules() {
-    let cases = std::env::var("EERUF_CASES").map_or(150, |cases| cases.parse().expect("a number"));
+    let (first, cases) = (from_environment("EERUF_FIRST", 0), from_environment("EERUF_CASES", 150));
     let (mut solved, mut spared) = (0, [0; 3]);
-    for seed in 0..cases {
+    for seed in first..first + cases {
         let problem = random_problem(&mut Random(seed + 1));
         let Some((period, fire)) = shortest(&problem, if problem.sensors() <= 3 { 11 } else { 7 }) else { continue };
         // One tick more, so that there is a choice.

@@ -111,3 +111,17 @@ fn random_rings_proven_by_more_rules_are_certified_by_fewer() {
         certify(&format!("seed {seed}"), problem, 200_000);
     }
 }
+
+// A ring of 26 sensors that all differ: after 20,000 nodes descents alone have 98 ticks, repairs 75.
+#[test]
+fn repairs_shorten_rings_whose_sensors_all_differ() {
+    let mut random = Random(5);
+    let mut draw = |least: u32, most: u32| least + random.below(most - least + 1);
+    let mut problem = even("ring", 26, [1, 15, 15]);
+    problem.separation.iter_mut().for_each(|own| *own = draw(1, 3));
+    problem.window.iter_mut().for_each(|own| *own = draw(15, 45));
+    problem.gaps.iter_mut().filter(|_| draw(0, 3) == 0).for_each(|gap| gap.2 = 12);
+    let found = shortest(&problem, 20_000, &mut |_| true).expect("there is a schedule");
+    println!("{} [{}]", found.period, found.bound);
+    assert!(found.period <= 77, "{found:?}");
+}

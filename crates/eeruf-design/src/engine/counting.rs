@@ -38,7 +38,42 @@ pub(crate) fn members(mut set: u64) -> impl Iterator<Item = usize> {
 
 /// A period below which there is no schedule, by counting.
 pub(crate) fn least_period(merged: &Merged) -> u32 {
-    capacity(merged).max(of_even(merged))
+    capacity(merged).max(in_sequence(merged)).max(of_even(merged))
+}
+
+/// **Sequence.** In ascending order each `|d|` is at least the larger of two separations above the one before: the
+/// least period over all sequences, by the sensors taken and the separation of the last. Of equal separations the
+/// longest window comes first, as exchanging two changes no distance. 1 where that takes too long.
+fn in_sequence(merged: &Merged) -> u32 {
+    let mut separations = merged.separation.clone();
+    separations.sort_unstable();
+    separations.dedup();
+    let windows = separations.iter().map(|own| {
+        let alike = (0..merged.count()).filter(|&x| merged.separation[x] == *own);
+        let mut windows: Vec<i32> = alike.map(|x| merged.window[x]).collect();
+        windows.sort_unstable_by_key(|window| -window);
+        windows
+    });
+    let (windows, kinds) = (windows.collect::<Vec<_>>(), separations.len());
+    let states = windows.iter().fold(kinds, |states, alike| states.saturating_mul(alike.len() + 1));
+    if states > 1 << 15 {
+        return 1;
+    }
+    // The least period less the last |d|, by the numbers taken in mixed radix and the kind of the last.
+    let mut rest = vec![0; states];
+    for (taken, last) in (0..states / kinds).rev().flat_map(|taken| (0..kinds).map(move |last| (taken, last))) {
+        let mut next = 1;
+        let periods = windows.iter().zip(&separations).enumerate().filter_map(|(kind, (alike, &own))| {
+            let radix = next;
+            next *= alike.len() + 1;
+            let window = alike.get(taken / radix % (alike.len() + 1))?;
+            let first = if merged.stale_echo { (own + 1) / 2 } else { 0 };
+            let apart = if taken == 0 { first } else { own.max(separations[last]) };
+            Some(apart + rest[(taken + radix) * kinds + kind].max(*window))
+        });
+        rest[taken * kinds + last] = periods.min().unwrap_or(0);
+    }
+    rest.first().map_or(1, |&period| period as u32)
 }
 
 /// **Capacity.** The |d| of those with a window of R at least lie apart, so that the largest of them is at least their
@@ -225,4 +260,36 @@ fn permutes(room: &mut [i32]) -> bool {
         free |= 1 << to[from];
     }
     true
+}
+
+#[cfg(test)]
+mod tests {
+    use super::in_sequence;
+    use crate::engine::descent::Random;
+    use crate::engine::problem::Problem;
+
+    /// The least period of those with a bit in `left`, less the last |d|, whose separation is given, by trying all.
+    fn tried(problem: &Problem, left: u64, last: Option<u32>) -> u32 {
+        let after = |x: usize| {
+            let own = problem.separation[x];
+            let first = if problem.stale_echo { own.div_ceil(2) } else { 0 };
+            let apart = last.map_or(first, |last| last.max(own));
+            apart + problem.window[x].max(tried(problem, left & !(1 << x), Some(own)))
+        };
+        super::members(left).map(after).min().unwrap_or(0)
+    }
+
+    #[test]
+    fn least_over_sequences_is_that_of_trying_all() {
+        let mut random = Random::new(1);
+        for case in 0..300 {
+            let sensors = 1 + random.below(6) as usize;
+            let separation: Vec<u32> = (0..sensors).map(|_| 1 + random.below(5)).collect();
+            let window = (0..sensors).map(|_| 1 + random.below(20)).collect();
+            let (stale_echo, over_reals, together, gaps) = (random.below(2) == 1, false, Vec::new(), Vec::new());
+            let problem = Problem { tick_us: (1, 1), separation, window, stale_echo, over_reals, together, gaps };
+            let all = tried(&problem, (1 << sensors) - 1, None);
+            assert_eq!(in_sequence(&problem.merged()), all, "case {case}: {problem:?}");
+        }
+    }
 }

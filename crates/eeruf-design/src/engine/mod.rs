@@ -9,6 +9,7 @@
 //! | `branching`, `symmetry` | case distinctions; assumptions at the root |
 //! | `schedule` | a schedule, checked longhand |
 //! | `descent` | the branchings of short descents, which look for schedules |
+//! | `repair` | a local search for schedules |
 //! | `raised` | the ring that most sensors ask for, and the cases beside it |
 //! | `search`, `shortest`, `spare` | one period, the shortest, the schedule with most to spare |
 //! | `prove` | certificates |
@@ -41,6 +42,7 @@ mod problem;
 pub mod prove;
 mod raised;
 pub mod reals;
+mod repair;
 mod rules;
 mod schedule;
 pub mod search;

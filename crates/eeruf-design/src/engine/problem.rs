@@ -170,20 +170,15 @@ impl Problem {
         (even != counts).then_some(even)
     }
 
-    /// The window that most sensors have.
-    pub(crate) fn usual_window(&self) -> Option<u32> {
-        most_common(self.window.clone())
+    /// All windows, separations and gaps.
+    pub(crate) fn limits(&self) -> [Vec<u32>; 3] {
+        let gaps = self.gaps.iter().flat_map(|&(.., after_x, after_y)| [after_x, after_y]).collect();
+        [self.window.clone(), self.separation.clone(), gaps]
     }
 
-    /// The gap that most pairs have.
-    pub(crate) fn usual_gap(&self) -> Option<u32> {
-        most_common(self.gaps.iter().flat_map(|&(.., after_x, after_y)| [after_x, after_y]).collect())
-    }
-
-    /// Returns true if this even ring asks for less than most sensors and pairs of the problem do.
-    pub(crate) fn asks_for_less(&self, problem: &Self) -> bool {
-        let usual = |of: &Self| [of.usual_window(), of.usual_gap(), most_common(of.separation.clone())];
-        usual(self) != usual(problem)
+    /// Returns true if one kind of limit has no value that half of the sensors or pairs have.
+    pub(crate) fn is_mixed(&self) -> bool {
+        self.limits().into_iter().any(|limits| most_common(&limits).is_some_and(|(_, alike)| 2 * alike < limits.len()))
     }
 
     pub(crate) fn merged(&self) -> Merged {
@@ -223,10 +218,10 @@ impl Problem {
     }
 }
 
-/// The number that comes most often, of several the largest.
-fn most_common(mut numbers: Vec<u32>) -> Option<u32> {
-    numbers.sort_unstable();
-    numbers.chunk_by(|a, b| a == b).max_by_key(|alike| alike.len()).map(|alike| alike[0])
+/// The number that comes most often, of several the largest, and how often.
+pub(crate) fn most_common(numbers: &[u32]) -> Option<(u32, usize)> {
+    let often = |number: u32| numbers.iter().filter(|other| **other == number).count();
+    numbers.iter().map(|&number| (number, often(number))).max_by_key(|&(number, often)| (often, number))
 }
 
 impl Merged {

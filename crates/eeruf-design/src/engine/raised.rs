@@ -6,7 +6,7 @@
 //! says much of where it lies. Of gaps that says too little: eight cases for a pair cost more than they save.
 
 use crate::engine::descent::Case;
-use crate::engine::problem::{Merged, Problem};
+use crate::engine::problem::{Merged, Problem, most_common};
 
 /// The most windows and pairs to raise: beyond, a search of the problem itself takes no longer.
 const MOST: usize = 8;
@@ -21,7 +21,8 @@ pub(crate) struct Raised {
 impl Raised {
     /// The problem with windows and gaps raised to what most have. `None` if none or many are lower.
     pub(crate) fn of(problem: &Problem) -> Option<Self> {
-        let (window, gap) = (problem.usual_window()?, problem.usual_gap().unwrap_or(0));
+        let [windows, _, gaps] = problem.limits();
+        let (window, gap) = (most_common(&windows)?.0, most_common(&gaps).map_or(0, |(gap, _)| gap));
         let sensors: Vec<usize> = (0..problem.sensors()).filter(|&x| problem.window[x] < window).collect();
         let raised = Problem {
             window: problem.window.iter().map(|&own| own.max(window)).collect(),

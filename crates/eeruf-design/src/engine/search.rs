@@ -7,6 +7,7 @@ use crate::engine::branching::choose;
 use crate::engine::construct::Times;
 use crate::engine::descent::{Case, Choice, sequence};
 use crate::engine::problem::{Merged, Problem};
+use crate::engine::repair::{PAIRS, Repair};
 use crate::engine::rules::propagate;
 use crate::engine::state::{Mark, State, event};
 use crate::engine::symmetry::Assumptions;
@@ -140,6 +141,26 @@ impl Search {
             let along = guide.clone().filter(|_| descent % 2 == 0);
             choice.restart(seed.wrapping_add(descent), along, self.merged.count());
             least = (unit * luby(descent)).min(end - self.nodes);
+        }
+        Decided::Open
+    }
+
+    /// Looks for firing times by repairing these, at the cost of at most `budget` nodes.
+    pub(crate) fn repair(&mut self, repair: &mut Repair, budget: u64, go_on: &mut dyn FnMut(u64) -> bool) -> Decided {
+        let end = self.nodes.saturating_add(budget);
+        let (period, pairs) = (repair.period as u32, (repair.period as u64).pow(2));
+        let (nodes, moves) = (pairs.div_ceil(PAIRS), PAIRS.div_ceil(pairs.max(1)));
+        while self.nodes < end {
+            for _ in 0..moves {
+                if repair.step(&self.merged) {
+                    let kept = Some(repair.fire(&self.merged)).filter(|fire| self.problem.is_kept_by(period, fire));
+                    return kept.map_or(Decided::Open, Decided::Found);
+                }
+            }
+            self.nodes += nodes;
+            if (self.nodes / nodes).is_multiple_of(self.between) && !go_on(self.nodes) {
+                return Decided::Stopped;
+            }
         }
         Decided::Open
     }

@@ -5,6 +5,7 @@ use crate::engine::construct::{Times, constructed};
 use crate::engine::counting::least_period;
 use crate::engine::problem::{MAX_NUMBER, Problem};
 use crate::engine::raised::Raised;
+use crate::engine::repair::Repair;
 use crate::engine::search::{Decided, FiringTimes, Search};
 
 /// The shortest period found, in ticks.
@@ -49,6 +50,8 @@ pub fn shortest(problem: &Problem, budget: u64, go_on: &mut dyn FnMut(&SoFar) ->
 
 /// The nodes of the first round for each sensor.
 const EFFORT: u64 = 16;
+/// The efforts that go into repairs at one period.
+const REPAIRS: u64 = 4;
 
 /// The search for one problem.
 struct Run {
@@ -62,8 +65,8 @@ struct Run {
     coarse: Option<(Box<Run>, u32)>,
     /// The even ring that asks for no more.
     even: Option<Box<Run>>,
-    /// True if that asks for less than most sensors do.
-    is_even_weak: bool,
+    /// True if schedules are looked for by repairs too.
+    is_mixed: bool,
     /// The problem with few windows raised to what most sensors have.
     raised: Option<(Box<Run>, Raised)>,
     /// Nodes of runs that ended.
@@ -101,15 +104,14 @@ impl Run {
             is_guide,
             coarse: None,
             even: None,
-            is_even_weak: false,
+            is_mixed: is_first && problem.is_mixed(),
             raised: None,
             ended,
             bound_of_rules: bound,
         };
         run.bound_by_rules();
         if run.is_open() {
-            let even = if is_first { problem.evened() } else { None };
-            run.is_even_weak = even.as_ref().is_some_and(|even| even.asks_for_less(problem));
+            let even = if is_first && !run.is_mixed { problem.evened() } else { None };
             run.even = even.and_then(|even| Self::new(&even, false)).map(Box::new);
             let raised = if is_first { Raised::of(problem) } else { None };
             run.raised = raised.and_then(|raised| Some((Box::new(Self::new(&raised.problem, false)?), raised)));
@@ -138,6 +140,10 @@ impl Run {
 
     /// One round: what is open of the coarse ticks and of the even ring, then of the problem itself.
     fn round(&mut self, effort: u64, ask: Ask<'_>) -> Result<(), Stopped> {
+        // Where few limits differ, the rings beside have the schedules.
+        if self.is_mixed {
+            self.repair(REPAIRS * effort, ask)?;
+        }
         if let Some((mut coarse, ticks)) = self.coarse.take() {
             let before = self.nodes();
             // At most half of all nodes go into this.
@@ -161,9 +167,7 @@ impl Run {
             let before = self.nodes();
             even.limit = self.limit.saturating_sub(before) / 2;
             let found = self.found.clone();
-            let (best, best_known) = (even.found.period, self.found.period);
-            // Once it has shorter periods than the best, it hardly helps to refute these.
-            let effort = if self.is_even_weak && even.found.period < best_known { effort / 8 } else { effort };
+            let best = even.found.period;
             let round = even.round(effort, &mut |nodes, _| ask(before + nodes, &found));
             self.found.bound = self.found.bound.max(even.found.bound.min(self.found.period));
             if even.found.period < best {
@@ -197,6 +201,23 @@ impl Run {
             round?;
         }
         if self.is_guide { self.bisect(effort, ask) } else { self.gallop(effort, ask) }
+    }
+
+    /// Goes down from the best schedule by repairs, in steps that halve where they find nothing.
+    fn repair(&mut self, effort: u64, ask: Ask<'_>) -> Result<(), Stopped> {
+        let mut step = ((self.found.period - self.found.bound) / 8).max(1);
+        while step > 0 && self.is_open() {
+            let (before, effort) = (self.nodes() - self.search.nodes(), self.affordable(effort));
+            let Self { search, found, .. } = self;
+            let mut repair = Repair::new(search.merged(), found.period - step, &found.fire, search.nodes());
+            match search.repair(&mut repair, effort, &mut |nodes| ask(before + nodes, found)) {
+                Decided::Found(fire) => self.offer(fire, true),
+                Decided::Stopped => return Err(Stopped),
+                Decided::Refuted | Decided::Open => step /= 2,
+            }
+            step = step.min(self.found.period - self.found.bound);
+        }
+        Ok(())
     }
 
     /// Takes these times if they serve at a shorter period.

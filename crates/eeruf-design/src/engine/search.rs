@@ -145,12 +145,13 @@ impl Search {
         Decided::Open
     }
 
-    /// Looks for firing times by repairing these, at the cost of at most `budget` nodes.
+    /// Looks for firing times by repairing these, at the cost of at most `budget` nodes: not at all where ticks are so
+    /// fine that a move costs more.
     pub(crate) fn repair(&mut self, repair: &mut Repair, budget: u64, go_on: &mut dyn FnMut(u64) -> bool) -> Decided {
         let end = self.nodes.saturating_add(budget);
         let (period, pairs) = (repair.period as u32, (repair.period as u64).pow(2));
         let (nodes, moves) = (pairs.div_ceil(PAIRS), PAIRS.div_ceil(pairs.max(1)));
-        while self.nodes < end {
+        while self.nodes.saturating_add(nodes) <= end {
             for _ in 0..moves {
                 if repair.step(&self.merged) {
                     let kept = Some(repair.fire(&self.merged)).filter(|fire| self.problem.is_kept_by(period, fire));

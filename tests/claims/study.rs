@@ -25,6 +25,22 @@ fn number(value: &Value) -> f64 {
     value.as_f64().unwrap_or_else(|| panic!("{value} is not a number"))
 }
 
+// Two methods in one are simulated where they are asked for by name, and no two are the same.
+#[test]
+fn pairs_of_methods_are_simulated_by_name() {
+    let pairs = "eeruf_hopping,multi_echo,adaptive_hopping,adaptive_multi_echo,hopping_multi_echo";
+    let study = json(&["study", "scenes/alcove.toml", "--periods", "400", "--json", "--method", pairs]);
+    let figures = |method: &str| {
+        let of = &study["methods"][method];
+        let figures = ["wrong_of_accepted", "rejected", "readings_per_s"].map(|figure| number(&of[figure]));
+        assert!(figures[2] > 10.0, "{method}: {figures:?}");
+        figures
+    };
+    let all: Vec<_> = pairs.split(',').map(figures).collect();
+    assert_eq!(study["methods"].as_object().unwrap().len(), all.len());
+    assert!((1..all.len()).all(|at| !all[..at].contains(&all[at])), "{all:?}");
+}
+
 // Eeruf believes next to no crosstalk where constant lags believe it with and without comparing.
 #[test]
 fn eeruf_believes_next_to_no_crosstalk() {

@@ -57,8 +57,8 @@ pub(crate) fn numbers_of(interval_us: u32, windows: &[Micros], t_deltas: &[Micro
     numbers
 }
 
-/// What a ring changes to: the schedule that it began with, and up to three others, now and then of another code, or with
-/// too short a period.
+/// The schedules that a ring changes to: the one that it began with, and up to three others, now and then of another
+/// code, or with too short a period.
 fn rungs<const K: usize>(r: &Random, c: &mut C, first: HoppingSchedule<K>, code: u8) -> Vec<HoppingSchedule<K>> {
     let mut rungs = vec![first];
     let mut period = first.period().as_micros();

@@ -6,7 +6,7 @@ use eeruf_core::{
     Criterion, Instant, MAX_SENSORS, Micros, Phase, ReadingKind, Requirements, RingEvent, Uneven,
     adaptation::Adaptation,
     conditions::ViolationKind,
-    hopping::{HoppingListening, HoppingRing, HoppingSchedule, HoppingSettings},
+    hopping::{HoppingListening, HoppingRing, HoppingSettings},
     judge::TrackerSettings,
 };
 use eeruf_design::{PhaseFile, PhaseSchedule, RingSpec};

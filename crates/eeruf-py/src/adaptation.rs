@@ -168,7 +168,7 @@ impl Adaptation {
         let window = whole_or("window_periods", window_periods, 16, 1..=u8::MAX)?;
         let patience = whole_or("patience", patience, 4, 1..=u8::MAX)?;
         let settings = Settings { noisy, calm, window, patience };
-        let hops = schedules.first().is_some_and(|first| first.is_instance_of::<HoppingSchedule>());
+        let hops = schedules.first().is_some_and(PyAnyMethods::is_instance_of::<HoppingSchedule>);
         let adaptation: Result<_, LadderError> = if hops {
             let rungs = named().map(|(name, of)| hopping_rung(&name, of, t_delta)).collect::<PyResult<_>>()?;
             OfHopping::try_new(rungs, |rungs| Core::hopping(rungs).map(|on| settings.set(on))).map(Owned::Hopping)

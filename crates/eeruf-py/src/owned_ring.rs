@@ -27,6 +27,7 @@ struct Schedules {
 }
 
 /// The ring for sensors of one echo, or of several.
+#[expect(clippy::large_enum_variant, reason = "every ring is behind a pointer of its own")]
 pub(crate) enum AnyTableRing<'s> {
     One(TableRing<'s, 1>),
     Several(TableRing<'s, MAX_ECHOES>),

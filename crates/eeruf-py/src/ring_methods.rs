@@ -1,6 +1,6 @@
 //! The methods of `Ring`.
 
-use eeruf_core::Micros;
+use eeruf_core::{Micros, hopping::HoppingPlan};
 use pyo3::{prelude::*, types::PyTuple};
 
 use crate::{
@@ -279,7 +279,7 @@ impl Ring {
     /// The sensor that the present period belongs to alone, from 0; None if it belongs to all.
     #[getter]
     fn solo(&self) -> PyResult<Option<u8>> {
-        Ok(self.0.get()?.hop_plan().and_then(|plan| plan.solo()))
+        Ok(self.0.get()?.hop_plan().and_then(HoppingPlan::solo))
     }
 
     /// The echo that votes have confirmed of a sensor, in microseconds; None for none, or where none are counted.

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #define READY ((uint16_t)(0x4500u + EERUF_VERSION))
+#define READY_TO_HOP ((uint16_t)(READY + 0x100u)) /* adaptation of rings that hop */
 #define NOBODY 255u
 #define HALF_TURN 0x80000000u /* of the clock: beyond it two instants have no order */
 
@@ -43,6 +44,12 @@ SIZE_IS(EerufLine, 8);
 #define OUT_OF_LINE __attribute__((noinline))
 #else
 #define OUT_OF_LINE
+#endif
+/* What adapting rings need once more, so that all others are not larger for it. */
+#if defined(__GNUC__)
+#define IN_LINE inline __attribute__((always_inline))
+#else
+#define IN_LINE
 #endif
 
 uint16_t eeruf_version(void) {
@@ -1578,6 +1585,19 @@ uint32_t eeruf_echo_time_us(uint32_t distance_mm, uint32_t c_mm_s) {
 
 /* ---- Adaptation ---- */
 
+/* With settings of ours, on the first of so many rungs. */
+static IN_LINE void begin_adaptation(EerufAdaptation *adaptation, const void *ladder, uint8_t rungs, uint16_t ready) {
+    memset(adaptation, 0, sizeof *adaptation);
+    adaptation->ladder = ladder;
+    adaptation->rungs = rungs;
+    adaptation->noisy_permille = 300;
+    adaptation->calm_permille = 100;
+    adaptation->window = 16;
+    adaptation->patience = 4;
+    adaptation->rejection_permille = UINT16_MAX;
+    adaptation->ready = ready;
+}
+
 EerufStatus eeruf_adaptation_init(EerufAdaptation *adaptation, size_t adaptation_size,
                                   const EerufSchedule *const *ladder, uint8_t rungs) {
     uint8_t rung;
@@ -1593,20 +1613,12 @@ EerufStatus eeruf_adaptation_init(EerufAdaptation *adaptation, size_t adaptation
         if (READ8(ladder[rung]->sensors) != READ8(ladder[0]->sensors)) return EERUF_ERR_LADDER;
         if (READ8(ladder[rung]->phases) != READ8(ladder[0]->phases)) return EERUF_ERR_LADDER;
     }
-    memset(adaptation, 0, sizeof *adaptation);
-    adaptation->ladder = ladder;
-    adaptation->rungs = rungs;
-    adaptation->noisy_permille = 300;
-    adaptation->calm_permille = 100;
-    adaptation->window = 16;
-    adaptation->patience = 4;
-    adaptation->rejection_permille = UINT16_MAX;
-    adaptation->ready = READY;
+    begin_adaptation(adaptation, ladder, rungs, READY);
     return EERUF_OK;
 }
 
 /* The rung for the window that has just ended. One in which nothing was compared is neither noisy nor calm. */
-static uint8_t next_rung(EerufAdaptation *adaptation) {
+static IN_LINE uint8_t next_rung(EerufAdaptation *adaptation) {
     const uint16_t rate = adaptation->rejection_permille;
     const uint8_t rung = adaptation->rung;
     if (rate != UINT16_MAX && rate <= adaptation->noisy_permille && rate <= adaptation->calm_permille) {
@@ -1618,12 +1630,13 @@ static uint8_t next_rung(EerufAdaptation *adaptation) {
     return rung + 1u < adaptation->rungs ? (uint8_t)(rung + 1u) : rung;
 }
 
-EerufStatus eeruf_adaptation_period(EerufAdaptation *adaptation, EerufRing *ring, const EerufEvent *event) {
+/* Takes in the end of a period: EERUF_EVENT, and the rung, if the ring should change to another. */
+static IN_LINE EerufStatus take_period(EerufAdaptation *adaptation, const EerufRing *ring, const EerufEvent *event,
+                               uint16_t ready, uint8_t *rung) {
     EerufStatus status;
     uint32_t compared;
-    uint8_t rung;
     if (adaptation == NULL || event == NULL) return EERUF_ERR_NULL;
-    if (adaptation->ready != READY) return EERUF_ERR_NOT_READY;
+    if (adaptation->ready != ready) return EERUF_ERR_NOT_READY;
     status = is_ready(ring);
     if (status != EERUF_OK) return status;
     if (event->kind != EERUF_EVENT_PERIOD) return EERUF_ERR_RANGE;
@@ -1638,10 +1651,17 @@ EerufStatus eeruf_adaptation_period(EerufAdaptation *adaptation, EerufRing *ring
     adaptation->rejection_permille = UINT16_MAX;
     if (compared > 0) adaptation->rejection_permille = (uint16_t)(1000 * (uint32_t)adaptation->rejected / compared);
     adaptation->accepted = adaptation->rejected = adaptation->repeated = 0;
-    rung = next_rung(adaptation);
-    if (rung == adaptation->rung) return EERUF_OK;
+    *rung = next_rung(adaptation);
+    if (*rung == adaptation->rung) return EERUF_OK;
     adaptation->calm_windows = 0;
-    status = eeruf_ring_change_schedule(ring, adaptation->ladder[rung]);
+    return EERUF_EVENT;
+}
+
+EerufStatus eeruf_adaptation_period(EerufAdaptation *adaptation, EerufRing *ring, const EerufEvent *event) {
+    uint8_t rung = 0;
+    EerufStatus status = take_period(adaptation, ring, event, READY, &rung);
+    if (status != EERUF_EVENT) return status;
+    status = eeruf_ring_change_schedule(ring, ((const EerufSchedule *const *)adaptation->ladder)[rung]);
     if (status != EERUF_OK) return status;
     adaptation->rung = rung;
     return EERUF_EVENT;
@@ -2296,7 +2316,7 @@ static uint8_t times_root(uint8_t place, uint8_t root, uint8_t cycle) {
 
 /* The most by which two firings of a sensor are closer than a period, in steps. With Welch's sequence all go
    through the same places. */
-static uint8_t drop_of(uint8_t sensor, uint8_t cycle, uint8_t root, uint8_t first) {
+static IN_LINE uint8_t drop_of(uint8_t sensor, uint8_t cycle, uint8_t root, uint8_t first) {
     uint8_t place, most = (uint8_t)((sensor + first) % cycle);
     if (root == 0) return most == 0 ? 0 : (uint8_t)(cycle - most);
     for (place = 0, most = 0; place < cycle; place++) {
@@ -2655,7 +2675,7 @@ static EerufStatus tracker_is_fine(const EerufTrackerSettings *how) {
 }
 
 /* A Welch code for this many sensors, of at least this many phases. */
-static uint8_t narrowest_cycle(uint8_t sensors, uint8_t phases) {
+static IN_LINE uint8_t narrowest_cycle(uint8_t sensors, uint8_t phases) {
     uint8_t prime = phases > sensors + 1u ? phases : (uint8_t)(sensors + 1u);
     if (prime < 67) prime++;
     if (prime < 5) prime = 5; /* two phases would be those of a linear congruence */
@@ -2712,6 +2732,27 @@ static void begin_hopping(EerufHoppingRing *hopping) {
     hopping->ring.ready = READY;
 }
 
+/* The shortest period: a sensor must have stopped listening when it fires again, and a path must not read the same with
+   two ages. */
+static IN_LINE uint32_t shortest_period(const EerufSchedule *own, uint8_t sensors, uint32_t window_us, uint32_t step_us,
+                                        uint8_t cycle, uint8_t root, uint8_t first) {
+    uint32_t least_us = (2u * cycle - 1u) * step_us;
+    uint8_t x;
+    for (x = 0; x < sensors; x++) {
+        const uint32_t drop = drop_of(leader_of(limits_of(own), x), cycle, root, first);
+        least_us = longer(least_us, add32(allowed_window(own, x, window_us), drop * step_us));
+    }
+    return least_us;
+}
+
+/* The lags of a config, or even ones, in what the code leaves of the period: x room / n, in 32 bits. */
+static IN_LINE void take_lags(EerufHopper *hoppers, const EerufHoppingConfig *config, uint32_t room_us) {
+    const uint8_t n = config->sensors;
+    uint8_t x;
+    for (x = 0; x < n; x++)
+        hoppers[x].lag_us = config->lag_us != NULL ? config->lag_us[x] : x * (room_us / n) + x * (room_us % n) / n;
+}
+
 /* The hook of a ring that hops, for a reading and the change that odometry expected. Neither silence nor another lag
    helps a sensor whose line is stuck, or that does not answer: it costs the others nothing. */
 static void judged_hop(EerufHoppingRing *hopping, uint8_t sensor, const EerufReading *reading, int32_t change_us) {
@@ -2731,7 +2772,7 @@ EerufStatus eeruf_hopping_init(EerufHoppingRing *hopping, size_t ring_size, Eeru
                                size_t sensors_size, EerufHopper *hoppers, size_t hoppers_size,
                                const EerufHoppingConfig *config, uint32_t now_us) {
     EerufStatus status;
-    uint32_t width_us, least_us = 0, room_us;
+    uint32_t width_us, room_us;
     uint8_t x, cycle, root = 0, first = 1;
     if (hopping == NULL || sensors == NULL || hoppers == NULL || config == NULL) return EERUF_ERR_NULL;
     if (config->version != EERUF_VERSION) return EERUF_ERR_VERSION;
@@ -2764,12 +2805,9 @@ EerufStatus eeruf_hopping_init(EerufHoppingRing *hopping, size_t ring_size, Eeru
     if (config->own != NULL && config->shift_after > 0) return EERUF_ERR_HOPPING;
     if (config->step_us <= config->tracker.t_delta_us) return EERUF_ERR_T_DELTA;
     if (config->tracker.votes > cycle) return EERUF_ERR_VOTES;
-    /* The sensor must have stopped listening, and a path must not read the same with two ages. */
-    for (x = 0; x < config->sensors; x++) {
-        const uint32_t drop = drop_of(leader_of(limits_of(config->own), x), cycle, root, first);
-        least_us = longer(least_us, add32(allowed_window(config->own, x, config->window_us), drop * config->step_us));
-    }
-    if (config->period_us < longer(least_us, 2 * width_us + config->step_us)) return EERUF_ERR_PERIOD;
+    if (config->period_us <
+        shortest_period(config->own, config->sensors, config->window_us, config->step_us, cycle, root, first))
+        return EERUF_ERR_PERIOD;
     if (config->window_us > EERUF_HOPPING_MAX_WINDOW_US) return EERUF_ERR_WINDOW;
 
     status = set_up_hopping(hopping, sensors, hoppers, config->sensors, &config->tracker, config->step_us,
@@ -2794,10 +2832,7 @@ EerufStatus eeruf_hopping_init(EerufHoppingRing *hopping, size_t ring_size, Eeru
     hopping->by.hop.neighbours = config->neighbours;
     hopping->horizon_us = add32(hopping->by.hop.dies_us, hopping->by.hop.dies_us);
     hopping->horizon_us = add32(2 * config->period_us, hopping->horizon_us);
-    for (x = 0; x < config->sensors; x++) {
-        const uint8_t n = config->sensors; /* x room / n, in 32 bits */
-        hoppers[x].lag_us = config->lag_us != NULL ? config->lag_us[x] : x * (room_us / n) + x * (room_us % n) / n;
-    }
+    take_lags(hoppers, config, room_us);
     begin_hopping(hopping);
     return EERUF_OK;
 }
@@ -2877,6 +2912,72 @@ EerufStatus eeruf_hopping_restart(EerufHoppingRing *hopping, uint32_t now_us) {
     const EerufStatus status = has_hopper(hopping, 0);
     if (status == EERUF_OK) restart(&hopping->ring, now_us, true);
     return status;
+}
+
+EerufStatus eeruf_hopping_change(EerufHoppingRing *hopping, const EerufHoppingConfig *config) {
+    const EerufStatus status = has_hopper(hopping, 0);
+    uint32_t room_us, waits_us;
+    uint8_t x;
+    if (status != EERUF_OK) return status;
+    if (config == NULL) return EERUF_ERR_NULL;
+    if (config->version != EERUF_VERSION) return EERUF_ERR_VERSION;
+    if (hopping->plan != choose) return EERUF_ERR_HOPPING;
+    if (!is_between(config->phases, 2, 67)) return EERUF_ERR_PHASES;
+    if (config->sensors != hopping->ring.count || config->step_us != hopping->step_us) return EERUF_ERR_LADDER;
+    if ((config->code == 0 ? narrowest_cycle(config->sensors, config->phases) : config->phases) != hopping->cycle)
+        return EERUF_ERR_LADDER;
+    if ((config->code == 0 ? 1u : config->code - 1u) != hopping->first || (config->code == 0 && hopping->root == 0))
+        return EERUF_ERR_LADDER;
+    if (config->period_us <= code_width(hopping) || config->period_us > EERUF_MAX_PERIOD_US) return EERUF_ERR_PERIOD;
+    room_us = config->period_us - code_width(hopping);
+    for (x = 0; x < config->sensors && config->lag_us != NULL; x++)
+        if (config->lag_us[x] >= room_us) return EERUF_ERR_LAG;
+    if (config->period_us < shortest_period(OWN(&hopping->ring), config->sensors, hopping->rest_us, hopping->step_us,
+                                            hopping->cycle, hopping->root, hopping->first))
+        return EERUF_ERR_PERIOD;
+
+    /* Once all sound from before has died. A clock that has jumped says nothing about when anything fired. */
+    waits_us = hopping->ring.last_fired_us + hopping->by.hop.dies_us - hopping->start_us;
+    if (waits_us > HALF_TURN) waits_us = 0;
+    if (waits_us <= add32(hopping->length_us, hopping->by.hop.dies_us)) hopping->start_us += waits_us;
+    else break_off(hopping);
+    hopping->horizon_us = hopping->horizon_us - 2 * hopping->period_us + 2 * config->period_us;
+    hopping->period_us = config->period_us;
+    take_lags(hopping->hoppers, config, room_us);
+    for (x = 0; x < hopping->ring.count && hopping->root != 0; x++) hopping->hoppers[x].place = welch_place(hopping, x);
+    /* What is pending was fired by the schedule of before. */
+    unsettle(hopping);
+    hopping->changed = 1;
+    plan(hopping);
+    return EERUF_OK;
+}
+
+EerufStatus eeruf_hopping_adaptation_init(EerufAdaptation *adaptation, size_t adaptation_size,
+                                          const EerufHoppingConfig *const *ladder, uint8_t rungs) {
+    uint8_t rung;
+    if (adaptation == NULL || ladder == NULL) return EERUF_ERR_NULL;
+    if (adaptation_size != sizeof *adaptation) return EERUF_ERR_MEMORY;
+    if (rungs == 0) return EERUF_ERR_LADDER;
+    for (rung = 0; rung < rungs; rung++) {
+        if (ladder[rung] == NULL) return EERUF_ERR_NULL;
+        if (ladder[rung]->version != EERUF_VERSION) return EERUF_ERR_VERSION;
+        if (ladder[rung]->sensors != ladder[0]->sensors) return EERUF_ERR_LADDER;
+        if (rung > 0 && ladder[rung]->period_us <= ladder[rung - 1]->period_us) return EERUF_ERR_LADDER;
+    }
+    begin_adaptation(adaptation, ladder, rungs, READY_TO_HOP);
+    return EERUF_OK;
+}
+
+EerufStatus eeruf_hopping_adaptation_period(EerufAdaptation *adaptation, EerufHoppingRing *hopping,
+                                            const EerufEvent *event) {
+    uint8_t rung = 0;
+    EerufStatus status = has_hopper(hopping, 0);
+    if (status == EERUF_OK) status = take_period(adaptation, &hopping->ring, event, READY_TO_HOP, &rung);
+    if (status != EERUF_EVENT) return status;
+    status = eeruf_hopping_change(hopping, ((const EerufHoppingConfig *const *)adaptation->ladder)[rung]);
+    if (status != EERUF_OK) return status;
+    adaptation->rung = rung;
+    return EERUF_EVENT;
 }
 
 uint32_t eeruf_hopping_confirmed_us(const EerufHoppingRing *hopping, uint8_t sensor) {

@@ -362,7 +362,7 @@ EerufStatus eeruf_ring_set_audible(EerufRing *ring, uint32_t audible_us);
 
 typedef struct EerufAdaptation {
     uint16_t ready;
-    const EerufSchedule *const *ladder; /* verified schedules, from the shortest period to the longest; in RAM */
+    const void *ladder; /* schedules, or configs of a ring that hops, from the shortest period to the longest; in RAM */
     uint8_t rungs, rung;
     uint16_t noisy_permille;     /* above this rejection rate it fires more slowly: 300 */
     uint16_t calm_permille;      /* up to this one a window is calm: 100 */
@@ -373,7 +373,7 @@ typedef struct EerufAdaptation {
     uint16_t rejection_permille; /* of the last whole window, UINT16_MAX if nothing was compared in it */
 } EerufAdaptation;
 
-/* Begins on the first rung, which the ring began with. The four settings may be changed then. */
+/* Begins on the first rung, which the ring began with: verified schedules. The four settings may be changed then. */
 EerufStatus eeruf_adaptation_init(EerufAdaptation *adaptation, size_t adaptation_size,
                                   const EerufSchedule *const *ladder, uint8_t rungs);
 /* Takes in an EERUF_EVENT_PERIOD and changes the ring's schedule where it should be; EERUF_EVENT if it has. */
@@ -643,8 +643,7 @@ typedef struct EerufHoppingRing {
 
 /* Makes a hopping ring that begins at `now_us`. Both arrays have a place for each sensor of the config. Poll it with
    eeruf_hopping_poll, and hand in echoes, late firings and stuck lines with the functions of its `ring`; the others
-   return EERUF_ERR_HOPPING: enabling, pause and restart have functions of their own, and there is no schedule to
-   change. */
+   return EERUF_ERR_HOPPING: enabling, pause, restart and other lags and periods have functions of their own. */
 EerufStatus eeruf_hopping_init(EerufHoppingRing *ring, size_t ring_size, EerufHopSensor *sensors,
                                size_t sensors_size, EerufHopper *hoppers, size_t hoppers_size,
                                const EerufHoppingConfig *config, uint32_t now_us);
@@ -655,6 +654,15 @@ EerufStatus eeruf_hopping_enable(EerufHoppingRing *ring, uint8_t sensor, bool en
 /* No sensor fires until it is unset, and then as of the next period; periods go on. Then all tracks are forgotten. */
 EerufStatus eeruf_hopping_pause(EerufHoppingRing *ring, bool paused);
 EerufStatus eeruf_hopping_restart(EerufHoppingRing *ring, uint32_t now_us); /* as eeruf_ring_restart */
+/* Changes to the lags and the period of another config with the same code; no more of it counts. The period that has
+   begun starts again when all sound from before has died; what is confirmed starts over. Where sensors have limits of
+   their own, both must meet them. */
+EerufStatus eeruf_hopping_change(EerufHoppingRing *ring, const EerufHoppingConfig *config);
+/* As eeruf_adaptation_init and eeruf_adaptation_period, for a ring that hops and configs with the same code. */
+EerufStatus eeruf_hopping_adaptation_init(EerufAdaptation *adaptation, size_t adaptation_size,
+                                          const EerufHoppingConfig *const *ladder, uint8_t rungs);
+EerufStatus eeruf_hopping_adaptation_period(EerufAdaptation *adaptation, EerufHoppingRing *ring,
+                                            const EerufEvent *event);
 /* The echo time that is confirmed, or EERUF_NO_ECHO if none is or nothing is in range. */
 uint32_t eeruf_hopping_confirmed_us(const EerufHoppingRing *ring, uint8_t sensor);
 /* The sensor that the present period belongs to alone, or 255. */

@@ -407,6 +407,58 @@ static void hopping_rings(void) {
     EXPECT(eeruf_ring_change_schedule(&hopping.ring, &schedule), EERUF_ERR_HOPPING);
 }
 
+/* Of the ring that hopping_rings has left. */
+static void hopping_adaptations(void) {
+    const EerufHoppingConfig fine = EERUF_HOPPING_BALANCED(SENSORS, 60000, 36000);
+    const uint32_t late[SENSORS] = {0, 1, 2, 59040};
+    EerufHoppingConfig slow = fine, config;
+    const EerufHoppingConfig *ladder[2];
+    EerufAdaptation adaptation;
+    memset(&adaptation, 0, sizeof adaptation);
+    event.kind = EERUF_EVENT_PERIOD;
+    slow.period_us = 90000;
+    EXPECT(eeruf_hopping_change(NULL, &slow), EERUF_ERR_NULL);
+    EXPECT(eeruf_hopping_change(&hopping, NULL), EERUF_ERR_NULL);
+#undef WITH
+#define WITH(field, value, status)                                                                                     \
+    config = fine;                                                                                                     \
+    config.field = value;                                                                                              \
+    EXPECT(eeruf_hopping_change(&hopping, &config), status)
+    WITH(version, EERUF_VERSION + 1, EERUF_ERR_VERSION);
+    WITH(phases, 1, EERUF_ERR_PHASES);
+    WITH(phases, 68, EERUF_ERR_PHASES);
+    WITH(phases, 9, EERUF_ERR_LADDER);
+    WITH(sensors, SENSORS - 1, EERUF_ERR_LADDER);
+    WITH(step_us, 241, EERUF_ERR_LADDER);
+    WITH(code, 2, EERUF_ERR_LADDER);
+    WITH(period_us, 1200, EERUF_ERR_PERIOD);
+    WITH(period_us, EERUF_MAX_PERIOD_US + 1, EERUF_ERR_PERIOD);
+    WITH(lag_us, late, EERUF_ERR_LAG);
+    WITH(period_us, 36000, EERUF_ERR_PERIOD);
+    WITH(phases, 6, EERUF_OK); /* its six phases by another name */
+    EXPECT(eeruf_hopping_lag_us(&hopping, 3), 44100);
+    EXPECT(eeruf_hopping_change(&hopping, &slow), EERUF_OK);
+    EXPECT(eeruf_hopping_lag_us(&hopping, 3), 66600);
+    ladder[0] = &slow;
+    ladder[1] = &fine;
+    EXPECT(eeruf_hopping_adaptation_init(NULL, sizeof adaptation, ladder, 2), EERUF_ERR_NULL);
+    EXPECT(eeruf_hopping_adaptation_init(&adaptation, sizeof adaptation, NULL, 2), EERUF_ERR_NULL);
+    EXPECT(eeruf_hopping_adaptation_init(&adaptation, sizeof adaptation - 1, ladder, 2), EERUF_ERR_MEMORY);
+    EXPECT(eeruf_hopping_adaptation_init(&adaptation, sizeof adaptation, ladder, 0), EERUF_ERR_LADDER);
+    EXPECT(eeruf_hopping_adaptation_init(&adaptation, sizeof adaptation, ladder, 2), EERUF_ERR_LADDER);
+    EXPECT(eeruf_hopping_adaptation_period(&adaptation, &hopping, &event), EERUF_ERR_NOT_READY);
+    ladder[1] = NULL;
+    EXPECT(eeruf_hopping_adaptation_init(&adaptation, sizeof adaptation, ladder, 2), EERUF_ERR_NULL);
+    EXPECT(eeruf_hopping_adaptation_init(&adaptation, sizeof adaptation, ladder, 1), EERUF_OK);
+    EXPECT(eeruf_adaptation_period(&adaptation, &hopping.ring, &event), EERUF_ERR_NOT_READY);
+    EXPECT(eeruf_hopping_adaptation_period(NULL, &hopping, &event), EERUF_ERR_NULL);
+    EXPECT(eeruf_hopping_adaptation_period(&adaptation, NULL, &event), EERUF_ERR_NULL);
+    EXPECT(eeruf_hopping_adaptation_period(&adaptation, &hopping, NULL), EERUF_ERR_NULL);
+    EXPECT(eeruf_hopping_adaptation_period(&adaptation, &hopping, &event), EERUF_OK);
+    event.kind = EERUF_EVENT_FIRE;
+    EXPECT(eeruf_hopping_adaptation_period(&adaptation, &hopping, &event), EERUF_ERR_RANGE);
+}
+
 static EerufStatus flow(size_t ring_size, size_t sensors_size, size_t hoppers_size, const EerufFlowConfig *config) {
     return eeruf_flow_init(&hopping, ring_size, hop_sensors, sensors_size, hoppers, hoppers_size, config, 0);
 }
@@ -416,6 +468,7 @@ static void flow_rings(void) {
     static EerufSchedule own;
     uint8_t x;
     const EerufFlowConfig fine = EERUF_FLOW(SENSORS, 36000);
+    const EerufHoppingConfig hops = EERUF_HOPPING_BALANCED(SENSORS, 60000, 36000);
     const size_t r = sizeof hopping, s = sizeof hop_sensors, h = sizeof hoppers;
     uint32_t before = 0, after = 0;
     EerufFlowConfig config = fine;
@@ -455,6 +508,7 @@ static void flow_rings(void) {
     EXPECT(eeruf_flow_quiet_us(&hopping, SENSORS, &before, &after), EERUF_ERR_SENSOR);
     EXPECT(eeruf_flow_quiet_us(&hopping, 0, &before, &after), EERUF_OK);
     EXPECT(before, 7424); /* whole units of 256 us */
+    EXPECT(eeruf_hopping_change(&hopping, &hops), EERUF_ERR_HOPPING);
     EXPECT(eeruf_hopping_solo(&hopping), 255);
     EXPECT(eeruf_ring_pause(&hopping.ring, true), EERUF_ERR_HOPPING);
 }
@@ -664,6 +718,7 @@ int main(void) {
     by_hardware();
 #if EERUF_HOPPING
     hopping_rings();
+    hopping_adaptations();
     flow_rings();
 #endif
     printf("%d wrong\n", wrong);

@@ -53,6 +53,9 @@ _MethodName = Literal[
     "eeruf_hopping",
     "flow",
     "multi_echo",
+    "adaptive_hopping",
+    "adaptive_multi_echo",
+    "hopping_multi_echo",
     "in_turn",
     "arrays",
     "groups",
@@ -1411,6 +1414,23 @@ class HoppingSchedule:
             >>> HoppingSchedule.from_toml(keys).phases
             5
         """
+    def scaled(self, num: _Int, den: _Int) -> HoppingSchedule:
+        """Multiply the period and the lags by a fraction, each rounded to the nearest microsecond; the code stays, so that a
+        ring may change to it.
+
+        Args:
+            num: its numerator.
+            den: its denominator. If the fraction is 1 or more, it keeps all that the schedule keeps.
+
+        Raises:
+            ArgumentError: no whole numbers.
+            HoppingError: the times make no schedule, such as a period too short for the code.
+
+        Example:
+            >>> import eeruf
+            >>> eeruf.HoppingSchedule(sensors=8, period_us=60_000, step_us=240).scaled(3, 2).period_us
+            90000
+        """
     def to_toml(self) -> str:
         """Write a schedule file, as the program reads it.
 
@@ -1868,6 +1888,8 @@ class Ring:
         intervals_us: pairs of sensors with the least time between their firings: ``[(0, 4, 9000)]``.
         shared_lines: groups of sensors on one echo line, ``[(0, 3), (1, 4)]``: none fires while another listens.
         together: groups of sensors that fire at the same instants, declared not to hear each other.
+        several_echoes: each sensor reports several echoes of a firing; of up to eight the earliest that repeats is
+            accepted.
 
     Raises:
         ArgumentError: something of the wrong type or out of range.
@@ -1907,6 +1929,7 @@ class Ring:
         intervals_us: Iterable[tuple[_Int, _Int, _Int]] | None = None,
         shared_lines: Iterable[Sequence[_Int]] | None = None,
         together: Iterable[Sequence[_Int]] | None = None,
+        several_echoes: bool = False,
     ) -> Ring: ...
     @staticmethod
     def unverified(
@@ -1949,10 +1972,16 @@ class Ring:
         settings: HoppingSettings | _Hopping = "balanced",
         now_us: _Int = 0,
         *,
-        window_us: _Int,
+        window_us: _Each,
         blanking_us: _Int = 0,
         reach_us: _Int | None = None,
         seed: _Int = 1,
+        t_delta_us: _Each | None = None,
+        refire_us: _Each | None = None,
+        intervals_us: Iterable[tuple[_Int, _Int, _Int]] | None = None,
+        shared_lines: Iterable[Sequence[_Int]] | None = None,
+        together: Iterable[Sequence[_Int]] | None = None,
+        several_echoes: bool = False,
     ) -> Ring:
         """A ring that hops in time: its readings can also be ``"tentative"``, and no sensor stays blind.
 
@@ -1963,13 +1992,20 @@ class Ring:
             schedule: a :class:`HoppingSchedule`.
             settings: a :class:`HoppingSettings`, or the name of one.
             now_us: when the first period begins.
-            window_us: ``T_wind``: how long a sensor listens after it has fired, 1 to 16,711,679.
+            window_us: ``T_wind``: how long a sensor listens after it has fired, 1 to 16,711,679; one for all, or each.
             blanking_us: edges sooner than this after firing are ringing of the transducer, not echoes.
             reach_us: after how long no sound is heard any more; by default the window.
             seed: of the draws of new lags, below 2^32.
+            t_delta_us: for each sensor, where they are not all alike: at most the settings'.
+            refire_us: as for ``Ring``, as are the next three: what the schedule must keep of each sensor.
+            intervals_us: pairs with the least time between their firings.
+            shared_lines: groups of sensors on one echo line.
+            together: groups of sensors that fire at the same instants.
+            several_echoes: as for ``Ring``: two readings are then compared, and no votes counted.
 
         Raises:
             ArgumentError: something of the wrong type or out of range.
+            RingError: the schedule breaks what a sensor needs.
             HoppingError: a ``T_delta`` that is not below the schedule's step, a period too short for window and code,
                 a window that is too long or ends within the blanking time.
 
@@ -2033,15 +2069,16 @@ class Ring:
     @property
     def schedule(self) -> Schedule:
         """Schedule of the present period, of a ring that fires by one."""
-    def change_schedule(self, schedule: Schedule) -> None:
-        """Fire by another schedule when the present period ends. ``t_delta_us`` and ``window_us``
-        stay, and so does what each sensor needs where they are not all alike.
+    def change_schedule(self, schedule: Schedule | HoppingSchedule) -> None:
+        """Fire by another schedule when the present period ends; a ring that hops does when all sound from before has died.
+        ``t_delta_us`` and ``window_us`` stay, and so does what each sensor needs where they are not all alike.
 
         Args:
-            schedule: of as many sensors.
+            schedule: of as many sensors; a :class:`HoppingSchedule` of the same code for a ring that hops.
 
         Raises:
             ArgumentError: no schedule, or not of as many sensors.
+            HoppingError: another code, or a period that is too short to hop.
             RingError: a sensor would fire again while it still listens, or the schedule does not reject crosstalk at
                 this ``t_delta_us``, or breaks what a sensor needs. The ring goes on as before.
 
@@ -2194,8 +2231,7 @@ class Ring:
         Example:
             >>> import eeruf
             >>> ring = eeruf.Ring(eeruf.tables.TABLE_I_D, t_delta_us=500, window_us=36_000)
-            >>> [ring.poll(24_000).sensor for _ in range(3)]  # one of each group of four
-            [0, 4, 8]
+            >>> _ = [ring.poll(24_000) for _ in range(3)]  # one of each group of four fires
             >>> ring.fired(0, 24_100)
             >>> ring.echo(0, 33_000)
             >>> ring.poll(33_000).t_echo_us
@@ -2213,8 +2249,7 @@ class Ring:
         Example:
             >>> import eeruf
             >>> ring = eeruf.Ring(eeruf.tables.TABLE_I_D, t_delta_us=500, window_us=36_000)
-            >>> [ring.poll(24_000).sensor for _ in range(3)]  # one of each group of four
-            [0, 4, 8]
+            >>> _ = [ring.poll(24_000) for _ in range(3)]  # one of each group of four fires
             >>> ring.stuck(0)
             >>> while not isinstance(event := ring.poll(ring.next_deadline_us), eeruf.Reading):
             ...     pass
@@ -2268,8 +2303,7 @@ class Ring:
         Example:
             >>> import eeruf
             >>> ring = eeruf.Ring(eeruf.tables.TABLE_I_D, t_delta_us=500, window_us=36_000)
-            >>> [ring.poll(24_000).sensor for _ in range(3)]  # one of each group of four
-            [0, 4, 8]
+            >>> _ = [ring.poll(24_000) for _ in range(3)]  # one of each group of four fires
             >>> ring.measured(4, 9_000)
             >>> ring.poll(40_000).t_echo_us
             9000
@@ -2555,8 +2589,8 @@ class Adaptation:
     only several calm windows running move one rung down.
 
     Args:
-        schedules: the rungs, of equally many sensors, from the shortest period to the longest. The ring begins with
-            the first.
+        schedules: the rungs, of equally many sensors, from the shortest period to the longest, each a ``Schedule``; or,
+            for a ring that hops, a ``HoppingSchedule`` of the same code. The ring begins with the first.
         t_delta_us: ``T_delta`` of the ring, at which each must reject crosstalk.
         noisy: above this rejection rate, a fraction of 1, it fires more slowly.
         calm: up to this rejection rate a window is calm.
@@ -2566,6 +2600,7 @@ class Adaptation:
     Raises:
         ArgumentError: something of the wrong type or out of range.
         RingError: a schedule does not reject crosstalk at this ``t_delta_us``.
+        HoppingError: a step that is no more than ``t_delta_us``.
         ScheduleError: the schedules are no ladder.
 
     Example:
@@ -2586,7 +2621,7 @@ class Adaptation:
     """
     def __new__(
         cls,
-        schedules: Iterable[Schedule],
+        schedules: Iterable[Schedule] | Iterable[HoppingSchedule],
         t_delta_us: _Int,
         *,
         noisy: float = 0.3,
@@ -2608,6 +2643,7 @@ class Adaptation:
         Raises:
             ArgumentError: no ring, no event, or a ring of other sensors.
             RingError: the ring refuses the schedule. Both then go on as before.
+            HoppingError: the same of a ring that hops.
 
         Example:
             >>> import eeruf
@@ -2620,7 +2656,7 @@ class Adaptation:
     def rung(self) -> int:
         """The rung in use, 0 for the shortest period."""
     @property
-    def schedule(self) -> Schedule:
+    def schedule(self) -> Schedule | HoppingSchedule:
         """The schedule in use."""
     @property
     def rejection_rate(self) -> float | None:
@@ -2637,6 +2673,7 @@ class Adaptation:
 
         Raises:
             ArgumentError: out of range.
+            RingError: the ladder is one of a ring that hops: votes, not two readings, decide what passes.
 
         Example:
             >>> import eeruf
@@ -3965,8 +4002,8 @@ class Method:
             for robots that drive.
         label: the name in results and tables; by default ``name``. No two methods of one experiment have the same.
         schedule: what the ring fires by: a ``Schedule`` for methods that fire by the robot's own, a ``HoppingSchedule``
-            for ``eeruf_hopping``. Its sensors must be as many as the robot's.
-        settings: a ``HoppingSettings`` or its name for ``eeruf_hopping``; for ``flow`` a dict of what differs from its
+            for those that hop. Its sensors must be as many as the robot's.
+        settings: a ``HoppingSettings`` or its name for methods that hop; for ``flow`` a dict of what differs from its
             default: ``step_us``, ``shortest_gap_us``, ``masked_adds_us``, ``believed_takes_us``, ``unserved_adds_us``,
             ``unserved_after``, ``shortest_cycle_us``, ``rest_us``, ``lead_us``, ``longest_cycle_us``, ``travel_us``.
         sketch: a dict as the argument ``firing`` of :class:`Robot`, for methods that fire as sketches and modules do.

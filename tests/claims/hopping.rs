@@ -270,6 +270,62 @@ fn emitted_limits_drive_a_hopping_ring_in_c() {
     }
 }
 
+// In C the ring of a file slows down while all is noise, to the emitted lags and period half as long again, and speeds up
+// before a wall; it keeps the limits of each sensor.
+#[test]
+fn emitted_limits_hop_and_adapt_in_c() {
+    let c = eeruf(&["design", "rings/mower-8-and-4.toml", "--phases", "4", "--emit", "c"]).out;
+    let (folder, header) = Scratch::new("schedule.h", &c);
+    let main = "static EerufHoppingRing ring;
+        static EerufHopSensor sensors[EERUF_SENSORS];
+        static EerufHopper hoppers[EERUF_SENSORS];
+        static EerufHoppingConfig fast, slow;
+        static const EerufHoppingConfig *const ladder[2] = {&fast, &slow};
+        static EerufAdaptation adaptation;
+        static uint32_t lag_us[EERUF_SENSORS], accepted[EERUF_SENSORS];
+        int main(void) {
+            EerufEvent event;
+            uint32_t at = 0, x, noise = 0, changes = 0, period = 0;
+            fast = eeruf_hopping_config;
+            fast.solo_rate = 0;
+            slow = fast;
+            for (x = 0; x < EERUF_SENSORS; x++) lag_us[x] = fast.lag_us[x] * 3 / 2;
+            slow.lag_us = lag_us;
+            slow.period_us = EERUF_PERIOD_US * 3 / 2;
+            if (eeruf_hopping_init(&ring, sizeof ring, sensors, sizeof sensors, hoppers, sizeof hoppers, &fast, 0) !=
+                EERUF_OK)
+                return 1;
+            if (eeruf_hopping_adaptation_init(&adaptation, sizeof adaptation, ladder, 2) != EERUF_OK) return 2;
+            while (period < 400) {
+                if (eeruf_hopping_poll(&ring, at, NULL, &event) != EERUF_EVENT) {
+                    at = eeruf_ring_deadline(&ring.ring);
+                } else if (event.kind == EERUF_EVENT_FIRE) {
+                    noise = (noise + 3700) % 9000;
+                    eeruf_ring_echo(&ring.ring, event.sensor, at + (period < 40 ? 1000 + noise : 8000));
+                } else if (event.kind == EERUF_EVENT_PERIOD) {
+                    EerufStatus changed = eeruf_hopping_adaptation_period(&adaptation, &ring, &event);
+                    if (changed < 0) return 3;
+                    changes += changed == EERUF_EVENT;
+                    for (x = 0; x < EERUF_SENSORS; x++)
+                        if (eeruf_hopping_lag_us(&ring, (uint8_t)x) != ladder[adaptation.rung]->lag_us[x]) return 4;
+                    if (period == 40 && adaptation.rung != 1) return 5;
+                    period++;
+                } else if (event.u.reading.kind == EERUF_READING_ACCEPTED && period > 40) {
+                    if (event.u.reading.t_echo_us != 8000u) return 6;
+                    accepted[event.sensor]++;
+                }
+            }
+            if (changes != 2 || adaptation.rung != 0) return 7;
+            for (x = 0; x < EERUF_SENSORS; x++)
+                if ((accepted[x] > 200) != (eeruf_window_us[x] > 8000u)) return 8;
+            return 0;
+        }";
+    let with_library = format!("#include <eeruf.h>\n#include \"{}\"\n{main}\n", header.display());
+    for language in [C].into_iter().chain(cpp()) {
+        compile_and_run(&folder, &with_library, &[language, &["c/eeruf.c"]].concat());
+    }
+}
+
 // A ring that hops on an arduino is set up by what is emitted for it.
 #[test]
 fn hopping_ring_is_set_up_by_its_emitted_arduino_file() {

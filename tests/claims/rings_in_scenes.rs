@@ -3,11 +3,11 @@
 
 use std::path::Path;
 
-use eeruf_core::{Micros, ReadingKind};
+use eeruf_core::{Criterion, Micros, ReadingKind};
 use eeruf_design::{RingSpec, Search, robot_ring};
 use eeruf_sim::{Method, Options, World, simulate};
 
-use crate::common::Scratch;
+use crate::common::{Scratch, eeruf, json};
 
 /// The mower's sensors: eight around the hull, four over its front edge.
 const MOWER: [[f64; 3]; 12] = [
@@ -73,6 +73,36 @@ fn car_and_mower_fire_as_their_ring_files_say() {
         let accepted = (0..readings.len()).filter(|&k| readings.kind[k] == ReadingKind::Accepted);
         let believed: std::collections::BTreeSet<_> = accepted.map(|k| readings.sensor[k]).collect();
         assert!(believed.len() >= 4, "{name}: {believed:?}");
+    }
+}
+
+// Each sensor of a car listens for its own window also where it reports several echoes, or its ring adapts.
+#[test]
+fn limits_of_a_car_go_with_echoes_and_adaptation() {
+    let car = format!("{}/rings/car-12.toml", env!("CARGO_MANIFEST_DIR"));
+    let spec = RingSpec::from_text(&std::fs::read_to_string(&car).unwrap()).unwrap();
+    let asked = spec.phase_requirements(Criterion::Exact);
+    let table = eeruf(&["design", &car, "--period-only", "--emit", "toml"]).out;
+    let robot = format!("[[robot]]\npose = {{ x_m = 0, y_m = 0 }}\nring = {car:?}\n[robot.schedule]\n{table}");
+    let (folder, file) = Scratch::new("scene.toml", &format!("{ROOM}{robot}"));
+    let log = folder.path().join("log.csv");
+    for method in ["eeruf", "multi_echo", "adaptive", "adaptive_multi_echo"] {
+        let arguments =
+            ["study", file.to_str().unwrap(), "--periods", "300", "--method", method, "--json", "--quiet", "--log"];
+        let study = json(&[&arguments[..], &[log.to_str().unwrap()]].concat());
+        let accepted = study["methods"][method]["accepted"].as_u64().unwrap();
+        let text = std::fs::read_to_string(&log).unwrap();
+        let mut longest = [0; 12];
+        for row in text.lines().skip(2) {
+            let row: Vec<_> = row.split(',').collect();
+            let sensor: usize = row[0].parse().unwrap();
+            longest[sensor] = longest[sensor].max(row[4].parse().unwrap_or(0));
+        }
+        assert!(accepted > 300, "{method}: {accepted}");
+        for (sensor, longest) in longest.into_iter().enumerate() {
+            let window = asked.window_of(sensor).as_micros();
+            assert!(longest > 0 && longest <= window, "{method}, sensor {sensor}: {longest} of {window}");
+        }
     }
 }
 

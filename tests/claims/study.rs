@@ -25,6 +25,25 @@ fn number(value: &Value) -> f64 {
     value.as_f64().unwrap_or_else(|| panic!("{value} is not a number"))
 }
 
+// Two methods in one are simulated where they are asked for by name. With several echoes nothing is rejected here, so that
+// the ring that adapts stays as it is; no others are the same.
+#[test]
+fn pairs_of_methods_are_simulated_by_name() {
+    let pairs = "eeruf_hopping,multi_echo,adaptive_hopping,adaptive_multi_echo,hopping_multi_echo";
+    let study = json(&["study", "scenes/alcove.toml", "--periods", "400", "--json", "--method", pairs]);
+    let figures = |method: &str| {
+        let of = &study["methods"][method];
+        let figures = ["wrong_of_accepted", "rejected", "readings_per_s"].map(|figure| number(&of[figure]));
+        assert!(figures[2] > 10.0, "{method}: {figures:?}");
+        figures
+    };
+    let all: Vec<_> = pairs.split(',').map(figures).collect();
+    assert_eq!(study["methods"].as_object().unwrap().len(), all.len());
+    let [hopping, several, adaptive, adaptive_several, hopping_several] = all[..] else { panic!("{all:?}") };
+    assert_eq!(adaptive_several, several);
+    assert!(adaptive != hopping && hopping_several != several && hopping_several != hopping, "{all:?}");
+}
+
 // Eeruf believes next to no crosstalk where constant lags believe it with and without comparing.
 #[test]
 fn eeruf_believes_next_to_no_crosstalk() {

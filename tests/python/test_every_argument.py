@@ -108,6 +108,7 @@ RIGHT_OF: dict[str, dict[str, Any]] = {
     "eeruf.State": {"kind": "obstacle"},
     "eeruf.Violation": {"kind": "window", "sensors": (0, 1), "phases": ("a", "b")},
     "eeruf.HoppingFound": {"schedule": HOPPING},
+    "eeruf.Ring.hopping": {"schedule": HOPPING},
     "eeruf.sim.Readings.from_arrays": {"sensor": [0], "fired_s": [0.0], "t_echo_us": [5_000.0]},
     "eeruf.sim.Robot": {"sensors": 8, "spacing_rad": 0.26, "radius_m": 0.3},
     "eeruf.experiments.Scenes": {"kind": "alcove"},

@@ -103,7 +103,7 @@ fn compare<const K: usize, U: LimitsInUse>(
     };
     assert_eq!(status, 0, "{r}");
     let weighed = |ring: &FlowRing<K, 4, 1, U>, sensor| ring.plan().weighed(sensor, 0);
-    tracking::run(r, c, ring, window, start, weighed, |c, ring, at| {
+    tracking::run(r, c, ring, window, start, weighed, |c, ring, _, at| {
         for sensor in 0..=K as u8 {
             let quiet = ring.plan().quiet(sensor).map(|(before, after)| [before, after].map(Micros::as_micros));
             assert_eq!(c.quiet_us(sensor), quiet, "{at}");

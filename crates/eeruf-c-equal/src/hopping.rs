@@ -4,6 +4,7 @@ use crate::tracking::{self, status_of};
 use crate::{C, Do, Random};
 use eeruf_core::{
     Criterion, EachSensor, Instant, Layout, Micros, Requirements, Uneven,
+    adaptation::Adaptation,
     hopping::{HoppingCode, HoppingError, HoppingListening, HoppingRing, HoppingSchedule, HoppingSettings},
     plan::{Alike, LimitsInUse},
 };
@@ -56,6 +57,31 @@ pub(crate) fn numbers_of(interval_us: u32, windows: &[Micros], t_deltas: &[Micro
     numbers
 }
 
+/// The schedules that a ring changes to: the one that it began with, and up to three others, now and then of another
+/// code, or with too short a period.
+fn rungs<const K: usize>(r: &Random, c: &mut C, first: HoppingSchedule<K>, code: u8) -> Vec<HoppingSchedule<K>> {
+    let mut rungs = vec![first];
+    let mut period = first.period().as_micros();
+    for _ in 0..r.within(0, 3) {
+        period = r.one_of(&[period.saturating_add(r.duration(60_000)), r.within(period / 2, period)]);
+        let (of, other) = (first.code(), HoppingCode::new(K, r.within(2, 20) as u8, first.code().step()));
+        let (of, number) = match other {
+            Ok(other) if r.once_in(8) => (other, 0),
+            _ => (*of, code),
+        };
+        let lags: Option<[Micros; K]> = r.once_in(2).then(|| [(); K].map(|()| Micros::new(r.within(0, period / 2))));
+        let schedule = match lags {
+            Some(lags) => HoppingSchedule::<K>::new(of, Micros::new(period), lags),
+            None => HoppingSchedule::spread(of, Micros::new(period)),
+        };
+        let Ok(schedule) = schedule else { continue };
+        let lags: Vec<u32> = lags.iter().flatten().map(|lag| lag.as_micros()).collect();
+        c.hopping_rung(of.phases(), number, of.step().as_micros(), period, &lags);
+        rungs.push(schedule);
+    }
+    rungs
+}
+
 /// One hopping ring for up to 4,000 steps, or until there are no numbers left; how many events it had.
 ///
 /// # Panics
@@ -106,15 +132,16 @@ pub fn run<const K: usize>(r: &Random) -> u64 {
     let own = limits.as_ref().map_or(&[][..], |(_, numbers)| numbers);
     let status = c.hopping(K as u8, phases, &numbers, own, start);
     let now = Instant::from_micros(start);
+    let rungs = schedule.as_ref().map_or(vec![], |&schedule| rungs(r, &mut c, schedule, code));
     match limits {
         Some((limits, _)) => {
             let ring = schedule
                 .and_then(|it| HoppingRing::<K, 4, _>::with_limits(&it, limits, s, listening, random_seed, now));
-            compare(r, c, status, ring, (window, start))
+            compare(r, c, status, ring, &rungs, (window, start))
         }
         None => {
             let ring = schedule.and_then(|it| HoppingRing::<K>::hopping(&it, s, listening, random_seed, now));
-            compare::<K, Alike>(r, c, status, ring, (window, start))
+            compare::<K, Alike>(r, c, status, ring, &rungs, (window, start))
         }
     }
 }
@@ -122,9 +149,10 @@ pub fn run<const K: usize>(r: &Random) -> u64 {
 /// Runs both, if they are made.
 fn compare<const K: usize, U: LimitsInUse>(
     r: &Random,
-    c: C,
+    mut c: C,
     status: i32,
     ring: Result<HoppingRing<K, 4, U>, HoppingError>,
+    rungs: &[HoppingSchedule<K>],
     (window, start): (u32, u32),
 ) -> u64 {
     let ring = match ring {
@@ -136,10 +164,41 @@ fn compare<const K: usize, U: LimitsInUse>(
     };
     assert_eq!(status, 0, "{r}");
     let weighed = |ring: &HoppingRing<K, 4, U>, sensor| ring.plan().weighed(sensor, 0);
-    tracking::run(r, c, ring, window, start, weighed, |c, ring, at| {
+    let mut adaptation = adaptation(r, &mut c, rungs);
+    tracking::run(r, c, ring, window, start, weighed, |c, ring, stats, at| {
+        let Some(stats) = stats else {
+            let number = r.within(0, rungs.len() as u32 - 1);
+            let changed = ring.change_hopping(&rungs[number as usize]);
+            assert_eq!(c.call(Do::ChangeHopping, 0, number), changed.map_or_else(|error| status_of(&error), |()| 0));
+            return;
+        };
+        if let Some(adaptation) = &mut adaptation {
+            let changed = adaptation.adapt(stats, |schedule| ring.change_hopping(schedule));
+            let expected = changed.map_or_else(|error| status_of(&error), i32::from);
+            assert_eq!(c.call(Do::Adapt, 0, 0), expected, "{at}");
+            let permille = adaptation.rejection_permille().unwrap_or(u16::MAX);
+            assert_eq!(c.rung(), (adaptation.rung() as u32, permille.into()), "{at}");
+        }
         for sensor in 0..K as u8 {
             assert_eq!(Some(Micros::new(c.lag_us(sensor))), ring.plan().t_lag(sensor.into()), "{at}");
         }
         assert_eq!(c.call(Do::Solo, 0, 0) & 255, ring.plan().solo().map_or(255, i32::from), "{at}");
     })
+}
+
+/// The same ladder in both, if it is one.
+fn adaptation<'s, const K: usize>(
+    r: &Random,
+    c: &mut C,
+    rungs: &'s [HoppingSchedule<K>],
+) -> Option<Adaptation<'s, HoppingSchedule<K>>> {
+    let (window, patience) = (r.within(0, 6) as u8, r.within(0, 3) as u8);
+    let (noisy, calm) = (r.within(0, 500) as u16, r.within(0, 500) as u16);
+    let status = c.adaptation(window, patience, noisy, calm);
+    let adaptation = Adaptation::hopping(rungs);
+    assert_eq!(status, if adaptation.is_ok() { 0 } else { -22 }, "{r}");
+    let mut adaptation = adaptation.ok()?;
+    (adaptation.window, adaptation.patience) = (window, patience);
+    (adaptation.noisy_permille, adaptation.calm_permille) = (noisy, calm);
+    Some(adaptation)
 }

@@ -60,6 +60,7 @@ pub enum Do {
     Triggered,
     Pulse,
     SetReportAfter,
+    ChangeHopping,
     Solo,
 }
 
@@ -220,7 +221,8 @@ impl C {
         unsafe { shim::shim_modules(self.0, min_retrigger_us, shortest_us) }
     }
 
-    /// `eeruf_adaptation_init` with all schedules made, and its settings.
+    /// `eeruf_adaptation_init` with all schedules made, or `eeruf_hopping_adaptation_init` with all configs, and its
+    /// settings.
     pub fn adaptation(&mut self, window: u8, patience: u8, noisy: u16, calm: u16) -> i32 {
         // SAFETY: schedules that were made.
         unsafe { shim::shim_adaptation(self.0, window, patience, noisy, calm) }
@@ -243,6 +245,14 @@ impl C {
         let own = if own.is_empty() { core::ptr::null() } else { own.as_ptr() };
         // SAFETY: as many numbers as are read.
         unsafe { shim::shim_hopping(self.0, sensors, phases, numbers.as_ptr(), has_lags, own, now_us) }
+    }
+
+    /// Another config, number 1 to 3, for `eeruf_hopping_change`: as the first but for phases, code, step, period and
+    /// lags, one for each sensor or none.
+    pub fn hopping_rung(&mut self, phases: u8, code: u8, step_us: u32, period_us: u32, lag_us: &[u32]) {
+        let lag_us = if lag_us.is_empty() { core::ptr::null() } else { lag_us.as_ptr() };
+        // SAFETY: a hopping ring that was made, and a number for each of its sensors.
+        unsafe { shim::shim_hopping_rung(self.0, phases, code, step_us, period_us, lag_us) }
     }
 
     /// `eeruf_flow_init`, with the numbers in the order that `shim.c` names; `own` are the limits of each sensor, or

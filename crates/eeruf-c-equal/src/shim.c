@@ -15,6 +15,10 @@ typedef struct Handle {
     EerufHoppingRing *hopping;
     EerufHopSensor *hop_sensors;
     EerufHopper *hoppers;
+    EerufHoppingConfig configs[4];
+    const EerufHoppingConfig *rungs[4];
+    uint32_t lag_us[4][EERUF_MAX_SENSORS];
+    uint8_t rung_count;
     EerufHcSr04 modules;
     EerufHcSr04Settings settings;
     EerufLine *lines;
@@ -199,7 +203,10 @@ int shim_do(Handle *handle, unsigned what, uint8_t sensor, uint32_t value) {
     case 15: return eeruf_hc_sr04_change_schedule(&handle->modules, handle->schedules[value]);
     case 16: return eeruf_hc_sr04_health(&handle->modules, sensor);
     case 17: return eeruf_ring_is_enabled(ring, sensor);
-    case 18: return eeruf_adaptation_period(&handle->adaptation, ring, &handle->last);
+    case 18:
+        if (handle->hopping != NULL)
+            return eeruf_hopping_adaptation_period(&handle->adaptation, handle->hopping, &handle->last);
+        return eeruf_adaptation_period(&handle->adaptation, ring, &handle->last);
     case 19: return eeruf_ring_set_path_change(ring, value);
     case 20: return eeruf_ring_set_audible(ring, value);
     case 21: return (int)eeruf_ring_fired_at(ring, sensor);
@@ -211,6 +218,7 @@ int shim_do(Handle *handle, unsigned what, uint8_t sensor, uint32_t value) {
     case 27: return eeruf_hc_sr04_triggered(&handle->modules, sensor);
     case 28: return eeruf_hc_sr04_pulse(&handle->modules, sensor, value);
     case 29: return eeruf_ring_set_report_after(ring, value);
+    case 30: return eeruf_hopping_change(handle->hopping, &handle->configs[value]);
     default: return eeruf_hopping_solo(handle->hopping);
     }
 }
@@ -229,8 +237,12 @@ int shim_modules(Handle *handle, uint32_t min_retrigger_us, uint16_t shortest_us
 
 int shim_adaptation(Handle *handle, uint8_t window, uint8_t patience, uint16_t noisy, uint16_t calm) {
     const EerufSchedule *const *ladder = (const EerufSchedule *const *)handle->schedules;
-    const EerufStatus status = eeruf_adaptation_init(&handle->adaptation, sizeof handle->adaptation, ladder,
-                                                     (uint8_t)handle->schedule_count);
+    const EerufStatus status =
+        handle->hopping != NULL
+            ? eeruf_hopping_adaptation_init(&handle->adaptation, sizeof handle->adaptation, handle->rungs,
+                                            handle->rung_count)
+            : eeruf_adaptation_init(&handle->adaptation, sizeof handle->adaptation, ladder,
+                                    (uint8_t)handle->schedule_count);
     handle->adaptation.window = window;
     handle->adaptation.patience = patience;
     handle->adaptation.noisy_permille = noisy;
@@ -279,6 +291,31 @@ static const EerufSchedule *own_limits(Handle *handle, uint8_t sensors, const ui
     return schedule;
 }
 
+/* Keeps a config, and its lags if it has any: a rung of the ladder. */
+static const EerufHoppingConfig *keep_config(Handle *handle, const EerufHoppingConfig *config) {
+    EerufHoppingConfig *kept = &handle->configs[handle->rung_count];
+    uint32_t *lag_us = handle->lag_us[handle->rung_count];
+    *kept = *config;
+    if (config->lag_us != NULL) {
+        memcpy(lag_us, config->lag_us, config->sensors * sizeof *lag_us);
+        kept->lag_us = lag_us;
+    }
+    handle->rungs[handle->rung_count++] = kept;
+    return kept;
+}
+
+/* Another rung, like the first but for phases, code, step, period and lags, null for even ones. */
+void shim_hopping_rung(Handle *handle, uint8_t phases, uint8_t code, uint32_t step_us, uint32_t period_us,
+                       const uint32_t *lag_us) {
+    EerufHoppingConfig config = handle->configs[0];
+    config.phases = phases;
+    config.code = code;
+    config.step_us = step_us;
+    config.period_us = period_us;
+    config.lag_us = lag_us;
+    (void)keep_config(handle, &config);
+}
+
 /* `numbers`: step, period, window, blanking, reach, shift interval, seed; then the tracker's nine; then solo rate,
    after and spacing, shift after and spacing, neighbours, code; then one lag for each sensor, or none. `own`: the time
    that any pair keeps; then window, t_delta and group of each sensor; or null. */
@@ -308,7 +345,7 @@ int shim_hopping(Handle *handle, uint8_t sensors, uint8_t phases, const uint32_t
     make_room(handle, sensors);
     return eeruf_hopping_init(handle->hopping, sizeof(EerufHoppingRing), handle->hop_sensors,
                               sensors * sizeof(EerufHopSensor), handle->hoppers, sensors * sizeof(EerufHopper),
-                              &config, now_us);
+                              keep_config(handle, &config), now_us);
 }
 
 /* `numbers`: window, blanking, reach, unserved after, step, shortest gap, masked adds, believed takes, unserved adds,

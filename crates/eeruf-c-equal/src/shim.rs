@@ -49,6 +49,14 @@ unsafe extern "C" {
         own: *const u32,
         now_us: u32,
     ) -> i32;
+    pub(crate) fn shim_hopping_rung(
+        handle: *mut c_void,
+        phases: u8,
+        code: u8,
+        step_us: u32,
+        period_us: u32,
+        lag_us: *const u32,
+    );
     pub(crate) fn shim_flow(handle: *mut c_void, sensors: u8, numbers: *const u32, own: *const u32, now_us: u32)
     -> i32;
     pub(crate) fn shim_quiet(handle: *const c_void, sensor: u8, out: *mut u32) -> i32;

@@ -5,7 +5,7 @@ use crate::world::{World, same};
 use crate::{C, Do, Random};
 use eeruf_core::hopping::{HoppingError, Weighed};
 use eeruf_core::{
-    Instant, Micros, Ring, RingError, RingEvent,
+    Instant, Micros, PeriodStats, Ring, RingError, RingEvent,
     judge::{EchoTracker, TrackerSettings},
     plan::Plan,
     watch::SensorWatch,
@@ -29,6 +29,7 @@ pub(crate) fn status_of(error: &HoppingError) -> i32 {
         HoppingError::Ring(RingError::CoarseTDelta { .. }) => -19,
         HoppingError::Window { .. } => -17,
         HoppingError::Shift { .. } => -27,
+        HoppingError::OtherCode => -22,
         _ => unreachable!("{error}"),
     }
 }
@@ -59,6 +60,7 @@ pub(crate) fn numbers(t: &TrackerSettings) -> [u32; 9] {
 }
 
 /// Runs a ring in both languages for up to 4,000 steps, or until there are no numbers left; the number of its events.
+/// `plan_step` does what is for this plan alone: at odd times, and with the figures of a period that has ended.
 ///
 /// # Panics
 /// Where C and Rust differ.
@@ -69,7 +71,7 @@ pub(crate) fn run<P: Plan, const K: usize>(
     window: u32,
     start: u32,
     weighed: impl Fn(&TrackingRing<P, K>, u8) -> Option<Weighed>,
-    plans_alike: impl Fn(&mut C, &TrackingRing<P, K>, &str),
+    mut plan_step: impl FnMut(&mut C, &mut TrackingRing<P, K>, Option<&PeriodStats>, &str),
 ) -> u64 {
     let (origin, mut count) = (r, 0);
     let mut world = World::new(r.clone(), K as u8, window);
@@ -98,7 +100,7 @@ pub(crate) fn run<P: Plan, const K: usize>(
         let r = &world.random;
         if r.once_in(100) {
             let sensor = r.within(0, K as u32) as u8;
-            match r.within(0, 12) {
+            match r.within(0, 13) {
                 0..3 => same(&mut c, Do::Enable, sensor, 0, ring.disable(sensor)),
                 3..8 => same(&mut c, Do::Enable, sensor, 1, ring.enable(sensor)),
                 8 => {
@@ -109,6 +111,7 @@ pub(crate) fn run<P: Plan, const K: usize>(
                     ring.pause();
                     same::<()>(&mut c, Do::Pause, 0, 1, Ok(()));
                 }
+                13 => plan_step(&mut c, &mut ring, None, &format!("{origin}, step {step}")),
                 10 | 11 => {
                     ring.resume();
                     same::<()>(&mut c, Do::Pause, 0, 0, Ok(()));
@@ -168,9 +171,7 @@ pub(crate) fn run<P: Plan, const K: usize>(
                     let how = u32::from(of.solo) | u32::from(of.steady) << 1;
                     assert_eq!(c.weighed(reading.sensor), (how, u32::from(of.changes)), "{}", at());
                 }
-                RingEvent::PeriodEnded(_) => {
-                    plans_alike(&mut c, &ring, &at());
-                }
+                RingEvent::PeriodEnded(stats) => plan_step(&mut c, &mut ring, Some(&stats), &at()),
             }
         }
     }

@@ -6,7 +6,7 @@ use eeruf_core::{
     Criterion, Instant, MAX_SENSORS, Micros, Phase, ReadingKind, Requirements, RingEvent, Uneven,
     adaptation::Adaptation,
     conditions::ViolationKind,
-    hopping::{HoppingListening, HoppingRing, HoppingSchedule, HoppingSettings},
+    hopping::{HoppingListening, HoppingRing, HoppingSettings},
     judge::TrackerSettings,
 };
 use eeruf_design::{PhaseFile, PhaseSchedule, RingSpec};
@@ -61,6 +61,11 @@ fn every_ring_hops_from_file_to_readings() {
         assert!(period <= longest && schedule.period() >= design.period_bound, "{name}: {period} us");
         // The ring of core, under simulated time.
         let hops = schedule.hopping().copied().expect("it hops");
+        // What it adapts to keeps all that it keeps.
+        for (num, den) in [(4, 3), (5, 3), (1_001, 1_000)] {
+            let slower = hops.scaled(num, den).expect("a schedule");
+            assert_eq!(slower.verify(&requirements).first_violation(), None, "{name}: {num}/{den}");
+        }
         let t_delta = requirements.t_delta;
         let near = TrackerSettings::BALANCED.near.max(t_delta);
         let within = TrackerSettings::BALANCED.tentative_within.min(t_delta);
@@ -153,9 +158,7 @@ fn ring_of_a_file_hops_and_adapts() {
     let requirements = spec.phase_requirements(Criterion::Exact);
     let schedule = spec.hopping(4, Criterion::Exact).expect("a schedule").phases();
     let fast = *schedule.hopping().expect("it hops");
-    let slower = fast.period().saturating_add(fast.period());
-    let slow = HoppingSchedule::<MAX_SENSORS>::spread(*fast.code(), slower).expect("a longer period");
-    assert!(slow.verify(&requirements).ok());
+    let slow = fast.scaled(2, 1).expect("a longer period");
     let rungs = [fast, slow];
     let mut adaptation = Adaptation::hopping(&rungs).expect("a ladder");
     let t_delta = requirements.t_delta;

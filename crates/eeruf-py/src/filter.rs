@@ -9,6 +9,7 @@ use crate::{
     columns::room,
     errors::{ArgumentError, Raise},
     exclusive::Exclusive,
+    owned_ring::MAX_ECHOES,
     requirements,
     ring_events::Reading,
 };
@@ -46,9 +47,6 @@ pub(crate) struct EchoFilter {
     #[pyo3(get)]
     echoes: usize,
 }
-
-/// Most echoes of one firing.
-const MAX_ECHOES: usize = 8;
 
 /// For sensors that report one echo, which is smaller and faster, or several.
 enum Filter {

@@ -149,6 +149,27 @@ impl HoppingSchedule {
         hopping.ok_or_else(|| HoppingError::new_err("t_fire_us; expected step_us, phases and t_lag_us, to hop by"))
     }
 
+    /// Multiply the period and the lags by a fraction, each rounded to the nearest microsecond; the code stays, so that a
+    /// ring may change to it.
+    ///
+    /// Args:
+    ///     num: its numerator.
+    ///     den: its denominator. If the fraction is 1 or more, it keeps all that the schedule keeps.
+    ///
+    /// Raises:
+    ///     ArgumentError: no whole numbers.
+    ///     HoppingError: the times make no schedule, such as a period too short for the code.
+    ///
+    /// Example:
+    ///     >>> import eeruf
+    ///     >>> eeruf.HoppingSchedule(sensors=8, period_us=60_000, step_us=240).scaled(3, 2).period_us
+    ///     90000
+    #[pyo3(signature = (num, den))]
+    fn scaled(&self, num: &Bound<'_, PyAny>, den: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let (num, den) = (whole("num", num, 0..=u32::MAX)?, whole("den", den, 0..=u32::MAX)?);
+        self.0.scaled(num, den).map(Self).map_err(Raise::raise)
+    }
+
     /// Write a schedule file, as the program reads it.
     ///
     /// Example:

@@ -35,8 +35,8 @@ const EXPECTED: &str = "a name of eeruf.sim.METHODS, or an eeruf.sim.Method";
 ///         for robots that drive.
 ///     label: the name in results and tables; by default ``name``. No two methods of one experiment have the same.
 ///     schedule: what the ring fires by: a ``Schedule`` for methods that fire by the robot's own, a ``HoppingSchedule``
-///         for ``eeruf_hopping``. Its sensors must be as many as the robot's.
-///     settings: a ``HoppingSettings`` or its name for ``eeruf_hopping``; for ``flow`` a dict of what differs from its
+///         for those that hop. Its sensors must be as many as the robot's.
+///     settings: a ``HoppingSettings`` or its name for methods that hop; for ``flow`` a dict of what differs from its
 ///         default: ``step_us``, ``shortest_gap_us``, ``masked_adds_us``, ``believed_takes_us``, ``unserved_adds_us``,
 ///         ``unserved_after``, ``shortest_cycle_us``, ``rest_us``, ``lead_us``, ``longest_cycle_us``, ``travel_us``.
 ///     sketch: a dict as the argument ``firing`` of :class:`Robot`, for methods that fire as sketches and modules do.
@@ -98,9 +98,14 @@ impl Method {
         };
         if let Some(given) = schedule {
             entry = match (method, given.cast::<HoppingSchedule>(), given.cast::<Schedule>()) {
-                (Named::EerufHopping, Ok(hopping), _) => entry.with_hopping_schedule(hopping.get().0),
+                (_, Ok(hopping), _) if method.hops() => entry.with_hopping_schedule(hopping.get().0),
                 (
-                    Named::Eeruf | Named::Adaptive | Named::MultiEcho | Named::EerufBest | Named::Table,
+                    Named::Eeruf
+                    | Named::Adaptive
+                    | Named::MultiEcho
+                    | Named::AdaptiveMultiEcho
+                    | Named::EerufBest
+                    | Named::Table,
                     _,
                     Ok(schedule),
                 ) => entry.with_schedule(schedule.get().0),
@@ -113,7 +118,7 @@ impl Method {
         }
         if let Some(given) = settings {
             entry = match method {
-                Named::EerufHopping => entry.with_hopping(HoppingSettings::of("settings", Some(given))?),
+                _ if method.hops() => entry.with_hopping(HoppingSettings::of("settings", Some(given))?),
                 Named::Flow => entry.with_flow(flow_settings::of(Some(given))?),
                 _ => return Err(refused("settings", given, "eeruf_hopping and flow take some")),
             };
@@ -217,7 +222,7 @@ impl Chosen {
         let method = argument.and_then(|value| value.cast::<Method>().ok()).map(Bound::get);
         let Some(Method { schedule, sketch, entry, .. }) = method else { return Ok(scene.clone()) };
         // A schedule of hopping is none of the robot's.
-        let schedule = schedule.as_ref().filter(|_| entry.method() != Named::EerufHopping);
+        let schedule = schedule.as_ref().filter(|_| !entry.method().hops());
         if schedule.is_none() && sketch.is_none() {
             return Ok(scene.clone());
         }

@@ -185,25 +185,31 @@ pub(crate) fn each(name: &str, value: &Bound<'_, PyAny>, least: u32) -> PyResult
 impl RequirementArguments<'_, '_> {
     /// Checked; without `t_delta_us` it is the most that `schedule` allows.
     pub(crate) fn owned(&self, schedule: &AnySchedule) -> PyResult<OwnedRequirements> {
+        let mut requirements = self.of(schedule.sensors(), Micros::ZERO)?;
+        if self.t_delta_us.is_none() {
+            requirements.t_delta = schedule.verify(&requirements.requirements()).max_t_delta().unwrap_or(Micros::ZERO);
+        }
+        Ok(requirements)
+    }
+
+    /// Checked, for this many sensors; without `t_delta_us` it is this.
+    pub(crate) fn of(&self, sensors: usize, t_delta: Micros) -> PyResult<OwnedRequirements> {
         let or_zero =
             |name, value: Option<&Bound<'_, PyAny>>| value.map_or(Ok(Micros::ZERO), |value| micros(name, value));
         let each_or_zero = |name, value: Option<&Bound<'_, PyAny>>| {
             value.map_or(Ok((Micros::ZERO, vec![])), |value| each(name, value, 0))
         };
-        let (t_delta, t_deltas) = each_or_zero("t_delta_us", self.t_delta_us)?;
+        let (t_delta, t_deltas) =
+            self.t_delta_us.map_or(Ok((t_delta, vec![])), |value| each("t_delta_us", value, 0))?;
         let (window, windows) = each_or_zero("window_us", self.window_us)?;
-        let mut requirements = OwnedRequirements {
+        Ok(OwnedRequirements {
             t_delta,
             min_interval: or_zero("min_interval_us", self.min_interval_us)?,
-            layout: OwnedLayout::new(self.layout, neighbours(self.neighbours)?, schedule.sensors())?,
+            layout: OwnedLayout::new(self.layout, neighbours(self.neighbours)?, sensors)?,
             criterion: criterion(self.criterion)?,
             window,
             stale_echo: flag("stale_echo", self.stale_echo, false)?,
-            uneven: self.uneven.owned(schedule.sensors(), t_deltas, windows)?,
-        };
-        if self.t_delta_us.is_none() {
-            requirements.t_delta = schedule.verify(&requirements.requirements()).max_t_delta().unwrap_or(Micros::ZERO);
-        }
-        Ok(requirements)
+            uneven: self.uneven.owned(sensors, t_deltas, windows)?,
+        })
     }
 }

@@ -1,23 +1,25 @@
 //! `Ring`: by a schedule, hopping, or by flow.
 
 use eeruf_core::{
-    Instant, MAX_SENSORS, Micros, RingEvent,
+    Criterion, EachSensor, EchoFilter, Instant, MAX_SENSORS, Micros, Requirements, Ring as CoreRing, RingConfig,
+    RingEvent,
     flow::FlowRing,
-    hopping::{HoppingListening, HoppingRing},
+    hopping::{HoppingListening, HoppingPlan, HoppingRing, HoppingSchedule as CoreHopping},
     watch::SensorWatch,
 };
 use eeruf_sim::AnySchedule;
 use pyo3::prelude::*;
 
 use crate::{
-    arguments::{instance, whole},
+    arguments::{instance, whole, wrong},
     errors::{Raise, RingError},
     exclusive::Exclusive,
     flow_settings,
     hopping_schedule::HoppingSchedule,
     hopping_settings::HoppingSettings,
-    owned_ring::OwnedRing,
-    requirements,
+    owned_ring::{MAX_ECHOES, OwnedRing},
+    requirements::{self, OwnedRequirements, RequirementArguments},
+    schedule::Schedule,
 };
 
 /// Plan and filter together, as the firmware runs them: the caller passes the time and gets back what to do.
@@ -43,6 +45,8 @@ use crate::{
 ///     intervals_us: pairs of sensors with the least time between their firings: ``[(0, 4, 9000)]``.
 ///     shared_lines: groups of sensors on one echo line, ``[(0, 3), (1, 4)]``: none fires while another listens.
 ///     together: groups of sensors that fire at the same instants, declared not to hear each other.
+///     several_echoes: each sensor reports several echoes of a firing; of up to eight the earliest that repeats is
+///         accepted.
 ///
 /// Raises:
 ///     ArgumentError: something of the wrong type or out of range.
@@ -75,25 +79,64 @@ impl Ring {
     }
 }
 
-/// The three kinds, and the `t_delta` by which two count votes.
+/// The plan of a ring that hops, whether sensors are alike or not.
+type HopPlan = HoppingPlan<MAX_SENSORS, EachSensor<MAX_SENSORS>>;
+type VotingRing = HoppingRing<MAX_SENSORS, 4, EachSensor<MAX_SENSORS>>;
+type ComparingRing = CoreRing<HopPlan, EchoFilter<MAX_SENSORS, MAX_ECHOES>, MAX_SENSORS, MAX_ECHOES>;
+
+/// The kinds, and the `t_delta` by which two count votes.
 pub(crate) enum Fires {
     BySchedule(Box<OwnedRing>),
-    Hopping(Box<HoppingRing<MAX_SENSORS>>, Micros),
+    Hopping(Box<VotingRing>, Micros, SensorNeeds),
+    HoppingByEchoes(Box<ComparingRing>, SensorNeeds),
     ByFlow(Box<FlowRing<MAX_SENSORS>>, Micros),
+}
+
+/// Needs of the sensors of a ring that hops, where they are not all alike.
+pub(crate) struct SensorNeeds {
+    needs: Option<Box<OwnedRequirements>>,
+    listening: HoppingListening,
+}
+
+impl SensorNeeds {
+    /// The limits of each sensor, if a schedule keeps them.
+    fn limits(&self, schedule: &CoreHopping<MAX_SENSORS>) -> PyResult<EachSensor<MAX_SENSORS>> {
+        let Some(needs) = &self.needs else { return Ok(EachSensor::NONE) };
+        let HoppingListening { blanking, reach, .. } = self.listening;
+        let criterion = Criterion::Margin(Micros::ZERO);
+        let asked = Requirements { criterion, blanking, audible: Some(reach), ..needs.requirements() };
+        schedule.limits(&asked).map_err(Raise::raise)
+    }
 }
 
 impl Fires {
     pub(crate) fn hopping(
         schedule: &Bound<'_, PyAny>,
         settings: Option<&Bound<'_, PyAny>>,
+        needs: &RequirementArguments<'_, '_>,
         listening: HoppingListening,
-        seed: u32,
+        (several, seed): (bool, u32),
         now: Instant,
     ) -> PyResult<Self> {
         let settings = HoppingSettings::of("settings", settings)?;
         let schedule = &instance::<HoppingSchedule>("schedule", schedule, "an eeruf.HoppingSchedule")?.get().0;
-        let ring = HoppingRing::hopping(schedule, settings, listening, seed, now).map_err(Raise::raise)?;
-        Ok(Self::Hopping(Box::new(ring), settings.tracker.t_delta))
+        let t_delta = settings.tracker.t_delta;
+        let owned = needs.of(schedule.code().sensors(), t_delta)?;
+        if needs.t_delta_us.is_some() && !owned.is_uneven() {
+            let us = owned.most()[0].as_micros();
+            return Err(wrong("t_delta_us", us, "one for each sensor; settings have that of all"));
+        }
+        let needs = SensorNeeds { needs: owned.is_uneven().then(|| Box::new(owned)), listening };
+        let limits = needs.limits(schedule)?;
+        if several {
+            let plan = HopPlan::with_limits(schedule, limits, settings, listening, seed, now).map_err(Raise::raise)?;
+            let config = RingConfig::new().with_t_delta(t_delta).with_window(listening.window);
+            let config = config.with_blanking(listening.blanking).with_echoes::<MAX_ECHOES>();
+            let ring = ComparingRing::with_plan(plan, config, now).map_err(Raise::raise)?;
+            return Ok(Self::HoppingByEchoes(Box::new(ring), needs));
+        }
+        let ring = VotingRing::with_limits(schedule, limits, settings, listening, seed, now).map_err(Raise::raise)?;
+        Ok(Self::Hopping(Box::new(ring), t_delta, needs))
     }
 
     pub(crate) fn by_flow(
@@ -120,11 +163,9 @@ pub(crate) struct AnyRing {
 macro_rules! ask {
     ($any:expr, |$ring:ident| $call:expr) => {
         match &$any.fires {
-            $crate::ring::Fires::BySchedule(owned) => {
-                let $ring = owned.ring();
-                $call
-            }
-            $crate::ring::Fires::Hopping($ring, _) => $call,
+            $crate::ring::Fires::BySchedule(owned) => $crate::owned_ring::table!(owned.ring(), |$ring| $call),
+            $crate::ring::Fires::Hopping($ring, ..) => $call,
+            $crate::ring::Fires::HoppingByEchoes($ring, _) => $call,
             $crate::ring::Fires::ByFlow($ring, _) => $call,
         }
     };
@@ -134,14 +175,24 @@ macro_rules! ask {
 macro_rules! act {
     ($any:expr, |$ring:ident| $call:expr) => {
         match &mut $any.fires {
-            $crate::ring::Fires::BySchedule(owned) => owned.with(|$ring| $call),
-            $crate::ring::Fires::Hopping($ring, _) => $call,
+            $crate::ring::Fires::BySchedule(owned) => owned.with(|any| $crate::owned_ring::table!(any, |$ring| $call)),
+            $crate::ring::Fires::Hopping($ring, ..) => $call,
+            $crate::ring::Fires::HoppingByEchoes($ring, _) => $call,
             $crate::ring::Fires::ByFlow($ring, _) => $call,
         }
     };
 }
 
-pub(crate) use {act, ask};
+/// Does something to the sensor that a caller names.
+macro_rules! of_sensor {
+    ($this:expr, $sensor:ident, |$ring:ident| $call:expr) => {{
+        let mut any = $this.0.get()?;
+        let $sensor = any.sensor($sensor)?;
+        $crate::ring::AnyRing::raised($crate::ring::act!(any, |$ring| $call))
+    }};
+}
+
+pub(crate) use {act, ask, of_sensor};
 
 impl AnyRing {
     pub(crate) fn new(fires: Fires, now: Instant) -> Self {
@@ -175,27 +226,40 @@ impl AnyRing {
             Fires::Hopping(..) | Fires::ByFlow(..) => Err(RingError::new_err(format!(
                 "{what} of a ring that counts votes; expected a ring by an eeruf.Schedule: this one has settings"
             ))),
+            Fires::HoppingByEchoes(..) => Err(RingError::new_err(format!(
+                "{what} of a ring that hops; expected a ring by an eeruf.Schedule: this one has settings"
+            ))),
         }
     }
 
     pub(crate) fn t_delta(&self) -> Micros {
         match &self.fires {
-            Fires::BySchedule(owned) => owned.ring().t_delta(),
-            Fires::Hopping(_, t_delta) | Fires::ByFlow(_, t_delta) => *t_delta,
+            Fires::BySchedule(owned) => owned.t_delta(),
+            Fires::HoppingByEchoes(ring, _) => ring.t_delta(),
+            Fires::Hopping(_, t_delta, _) | Fires::ByFlow(_, t_delta) => *t_delta,
+        }
+    }
+
+    /// The plan of a ring that hops.
+    pub(crate) fn hop_plan(&self) -> Option<&HopPlan> {
+        match &self.fires {
+            Fires::Hopping(ring, ..) => Some(ring.plan()),
+            Fires::HoppingByEchoes(ring, _) => Some(ring.plan()),
+            Fires::BySchedule(_) | Fires::ByFlow(..) => None,
         }
     }
 
     /// The lags of a ring that hops, as they are now.
     pub(crate) fn lags(&self) -> impl Iterator<Item = Micros> {
-        let hopping = if let Fires::Hopping(ring, _) = &self.fires { Some(ring.plan()) } else { None };
+        let hopping = self.hop_plan();
         (0..self.sensors()).filter_map(move |sensor| hopping?.t_lag(sensor))
     }
 
     /// The echo that votes have confirmed.
     pub(crate) fn confirmed(&self, sensor: u8) -> Option<Micros> {
         match &self.fires {
-            Fires::BySchedule(_) => None,
-            Fires::Hopping(ring, _) => ring.judge().confirmed(sensor.into()),
+            Fires::BySchedule(_) | Fires::HoppingByEchoes(..) => None,
+            Fires::Hopping(ring, ..) => ring.judge().confirmed(sensor.into()),
             Fires::ByFlow(ring, _) => ring.judge().confirmed(sensor.into()),
         }
     }
@@ -203,6 +267,27 @@ impl AnyRing {
     /// Fires by another schedule when the present period ends.
     pub(crate) fn change_schedule(&mut self, schedule: &AnySchedule) -> PyResult<()> {
         self.by_schedule("schedule")?.change_to(schedule)
+    }
+
+    /// Hops by another schedule with the same code, once all sound from before has died.
+    pub(crate) fn change_hopping(&mut self, schedule: &CoreHopping<MAX_SENSORS>) -> PyResult<()> {
+        let changed = match &mut self.fires {
+            Fires::Hopping(ring, _, needs) => needs.limits(schedule).map(|_| ring.change_hopping(schedule)),
+            Fires::HoppingByEchoes(ring, needs) => needs.limits(schedule).map(|_| ring.change_hopping(schedule)),
+            Fires::BySchedule(_) | Fires::ByFlow(..) => {
+                return Err(RingError::new_err("an eeruf.HoppingSchedule for a ring that does not hop by one"));
+            }
+        };
+        Self::raised(changed?)
+    }
+
+    /// The same for whichever schedule it is.
+    pub(crate) fn change(&mut self, schedule: &Bound<'_, PyAny>) -> PyResult<()> {
+        if let Ok(hopping) = schedule.cast::<HoppingSchedule>() {
+            return self.change_hopping(&hopping.get().0);
+        }
+        let expected = "an eeruf.Schedule, or an eeruf.HoppingSchedule for a ring that hops";
+        self.change_schedule(&instance::<Schedule>("schedule", schedule, expected)?.get().0)
     }
 
     /// Raises what a change of the ring answers.

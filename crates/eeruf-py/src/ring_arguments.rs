@@ -6,6 +6,7 @@ use pyo3::prelude::*;
 use crate::{
     arguments::{micros, whole_or},
     moments::instant,
+    requirements::each,
 };
 
 /// Limits of sound, as Python gives them.
@@ -37,13 +38,13 @@ pub(crate) fn begins(now_us: Option<&Bound<'_, PyAny>>) -> PyResult<Instant> {
     now_us.map_or(Ok(Instant::from_micros(0)), |now| instant("now_us", now))
 }
 
-/// Window, blanking time and reach of a ring that counts votes.
+/// Window, the longest where there is one for each sensor, blanking time and reach of a ring that hops or flows.
 pub(crate) fn listening(
     window_us: &Bound<'_, PyAny>,
     blanking_us: Option<&Bound<'_, PyAny>>,
     reach_us: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<HoppingListening> {
-    let window = micros("window_us", window_us)?;
+    let (window, _) = each("window_us", window_us, 0)?;
     Ok(HoppingListening::new(window)
         .with_blanking(blanking_us.map_or(Ok(Micros::ZERO), |value| micros("blanking_us", value))?)
         .with_reach(reach_us.map_or(Ok(window), |value| micros("reach_us", value))?))

@@ -1,14 +1,14 @@
 //! The methods of `Ring`.
 
-use eeruf_core::Micros;
+use eeruf_core::{Micros, hopping::HoppingPlan};
 use pyo3::{prelude::*, types::PyTuple};
 
 use crate::{
     arguments::{flag, instance, micros, whole_or},
     moments::{expected_changes, instant, until},
-    owned_ring::OwnedRing,
+    owned_ring::{OwnedRing, table},
     requirements::{RequirementArguments, UnevenArguments},
-    ring::{AnyRing, Fires, Ring, act, ask},
+    ring::{AnyRing, Fires, Ring, act, ask, of_sensor},
     ring_arguments::{Sound, begins, config, listening},
     ring_events::{Fire, to_python},
     schedule::Schedule,
@@ -16,14 +16,15 @@ use crate::{
 };
 
 #[pymethods]
+#[expect(clippy::too_many_arguments, reason = "keyword arguments")]
 impl Ring {
     #[new]
     #[pyo3(signature = (schedule, t_delta_us, now_us=None, *, window_us, blanking_us=None, consecutive=None,
-        path_change_us=None, audible_us=None, refire_us=None, intervals_us=None, shared_lines=None, together=None))]
+        path_change_us=None, audible_us=None, refire_us=None, intervals_us=None, shared_lines=None, together=None,
+        several_echoes=None))]
     #[pyo3(text_signature = "(schedule, t_delta_us, now_us=0, *, window_us, blanking_us=0, consecutive=2, \
             path_change_us=None, audible_us=None, refire_us=None, intervals_us=None, shared_lines=None, \
-            together=None)")]
-    #[expect(clippy::too_many_arguments, reason = "keyword arguments")]
+            together=None, several_echoes=False)")]
     fn new(
         schedule: &Bound<'_, PyAny>,
         t_delta_us: &Bound<'_, PyAny>,
@@ -37,6 +38,7 @@ impl Ring {
         intervals_us: Option<&Bound<'_, PyAny>>,
         shared_lines: Option<&Bound<'_, PyAny>>,
         together: Option<&Bound<'_, PyAny>>,
+        several_echoes: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
         let fires = instance::<Schedule>("schedule", schedule, "an eeruf.Schedule")?.get().0;
         let needs = RequirementArguments {
@@ -46,11 +48,11 @@ impl Ring {
         let needs = needs.owned(&fires)?;
         let [t_delta, window] = needs.most();
         let config = config(t_delta, window, blanking_us, consecutive, &Sound { path_change_us, audible_us })?;
-        let now = begins(now_us)?;
+        let (several, now) = (flag("several_echoes", several_echoes, false)?, begins(now_us)?);
         let ring = if needs.is_uneven() {
-            OwnedRing::uneven(fires, needs, config, now)?
+            OwnedRing::uneven(fires, needs, config, several, now)?
         } else {
-            OwnedRing::new(fires, config, now)?.verified()?
+            OwnedRing::new(fires, config, several, now)?.verified()?
         };
         Ok(Self::of(Fires::BySchedule(Box::new(ring)), now))
     }
@@ -82,7 +84,6 @@ impl Ring {
         path_change_us=None, audible_us=None))]
     #[pyo3(text_signature = "(schedule, t_delta_us, now_us=0, *, window_us, blanking_us=0, consecutive=2, \
             path_change_us=None, audible_us=None)")]
-    #[expect(clippy::too_many_arguments, reason = "keyword arguments")]
     fn unverified(
         schedule: &Bound<'_, PyAny>,
         t_delta_us: &Bound<'_, PyAny>,
@@ -97,7 +98,7 @@ impl Ring {
         let config = config(t_delta, window, blanking_us, consecutive, &Sound { path_change_us, audible_us })?;
         let schedule = instance::<Schedule>("schedule", schedule, "an eeruf.Schedule")?.get().0;
         let now = begins(now_us)?;
-        Ok(Self::of(Fires::BySchedule(Box::new(OwnedRing::new(schedule, config, now)?)), now))
+        Ok(Self::of(Fires::BySchedule(Box::new(OwnedRing::new(schedule, config, false, now)?)), now))
     }
 
     /// A ring that hops in time: its readings can also be ``"tentative"``, and no sensor stays blind.
@@ -109,13 +110,20 @@ impl Ring {
     ///     schedule: a :class:`HoppingSchedule`.
     ///     settings: a :class:`HoppingSettings`, or the name of one.
     ///     now_us: when the first period begins.
-    ///     window_us: ``T_wind``: how long a sensor listens after it has fired, 1 to 16,711,679.
+    ///     window_us: ``T_wind``: how long a sensor listens after it has fired, 1 to 16,711,679; one for all, or each.
     ///     blanking_us: edges sooner than this after firing are ringing of the transducer, not echoes.
     ///     reach_us: after how long no sound is heard any more; by default the window.
     ///     seed: of the draws of new lags, below 2^32.
+    ///     t_delta_us: for each sensor, where they are not all alike: at most the settings'.
+    ///     refire_us: as for ``Ring``, as are the next three: what the schedule must keep of each sensor.
+    ///     intervals_us: pairs with the least time between their firings.
+    ///     shared_lines: groups of sensors on one echo line.
+    ///     together: groups of sensors that fire at the same instants.
+    ///     several_echoes: as for ``Ring``: two readings are then compared, and no votes counted.
     ///
     /// Raises:
     ///     ArgumentError: something of the wrong type or out of range.
+    ///     RingError: the schedule breaks what a sensor needs.
     ///     HoppingError: a ``T_delta`` that is not below the schedule's step, a period too short for window and code,
     ///         a window that is too long or ends within the blanking time.
     ///
@@ -126,10 +134,11 @@ impl Ring {
     ///     Fire(sensor=0, phase=0, due_us=0)
     #[staticmethod]
     #[pyo3(signature = (
-        schedule, settings=None, now_us=None, *, window_us, blanking_us=None, reach_us=None, seed=None
-    ))]
+        schedule, settings=None, now_us=None, *, window_us, blanking_us=None, reach_us=None, seed=None, t_delta_us=None,
+        refire_us=None, intervals_us=None, shared_lines=None, together=None, several_echoes=None))]
     #[pyo3(text_signature = "(schedule, settings=\"balanced\", now_us=0, *, window_us, blanking_us=0, \
-            reach_us=None, seed=1)")]
+            reach_us=None, seed=1, t_delta_us=None, refire_us=None, intervals_us=None, shared_lines=None, \
+            together=None, several_echoes=False)")]
     fn hopping(
         schedule: &Bound<'_, PyAny>,
         settings: Option<&Bound<'_, PyAny>>,
@@ -138,10 +147,20 @@ impl Ring {
         blanking_us: Option<&Bound<'_, PyAny>>,
         reach_us: Option<&Bound<'_, PyAny>>,
         seed: Option<&Bound<'_, PyAny>>,
+        t_delta_us: Option<&Bound<'_, PyAny>>,
+        refire_us: Option<&Bound<'_, PyAny>>,
+        intervals_us: Option<&Bound<'_, PyAny>>,
+        shared_lines: Option<&Bound<'_, PyAny>>,
+        together: Option<&Bound<'_, PyAny>>,
+        several_echoes: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
         let (listening, now) = (listening(window_us, blanking_us, reach_us)?, begins(now_us)?);
-        let seed = whole_or("seed", seed, 1, 0..=u32::MAX)?;
-        Ok(Self::of(Fires::hopping(schedule, settings, listening, seed, now)?, now))
+        let draws = (flag("several_echoes", several_echoes, false)?, whole_or("seed", seed, 1, 0..=u32::MAX)?);
+        let needs = RequirementArguments {
+            uneven: UnevenArguments { refire_us, intervals_us, shared_lines, together },
+            ..RequirementArguments::alike(t_delta_us, None, None, None, None, (Some(window_us), None))
+        };
+        Ok(Self::of(Fires::hopping(schedule, settings, &needs, listening, draws, now)?, now))
     }
 
     /// A ring by flow: each sensor gets as much quiet around its firing as it has needed, and votes confirm an echo.
@@ -240,7 +259,6 @@ impl Ring {
     ///     >>> ring = eeruf.Ring(eeruf.tables.TABLE_I_D, t_delta_us=500, window_us=36_000, now_us=2**32 - 1_000)
     ///     >>> ring.wait_us(2**32 - 1_000), ring.wait_us(2**32 + 23_000)
     ///     (24000, 0)
-    #[pyo3(signature = (now_us))]
     fn wait_us(&self, now_us: &Bound<'_, PyAny>) -> PyResult<u32> {
         let now = instant("now_us", now_us)?;
         Ok(until(ask!(self.0.get()?, |ring| ring.next_deadline()), now))
@@ -249,7 +267,7 @@ impl Ring {
     /// Schedule of the present period, of a ring that fires by one.
     #[getter]
     fn schedule(&self) -> PyResult<Schedule> {
-        Ok(Schedule(*self.0.get()?.by_schedule("schedule")?.ring().schedule()))
+        Ok(Schedule(*self.0.get()?.by_schedule("schedule")?.schedule()))
     }
 
     /// The lag of each sensor as it is now, in microseconds; empty where a ring does not hop.
@@ -261,7 +279,7 @@ impl Ring {
     /// The sensor that the present period belongs to alone, from 0; None if it belongs to all.
     #[getter]
     fn solo(&self) -> PyResult<Option<u8>> {
-        Ok(if let Fires::Hopping(ring, _) = &self.0.get()?.fires { ring.plan().solo() } else { None })
+        Ok(self.0.get()?.hop_plan().and_then(HoppingPlan::solo))
     }
 
     /// The echo that votes have confirmed of a sensor, in microseconds; None for none, or where none are counted.
@@ -276,20 +294,20 @@ impl Ring {
     ///     >>> import eeruf
     ///     >>> eeruf.Ring.flow(2, window_us=36_000).confirmed_us(0) is None  # nothing has been heard yet
     ///     True
-    #[pyo3(signature = (sensor))]
     fn confirmed_us(&self, sensor: &Bound<'_, PyAny>) -> PyResult<Option<u32>> {
         let any = self.0.get()?;
         Ok(any.confirmed(any.sensor(sensor)?).map(Micros::as_micros))
     }
 
-    /// Fire by another schedule when the present period ends. ``t_delta_us`` and ``window_us``
-    /// stay, and so does what each sensor needs where they are not all alike.
+    /// Fire by another schedule when the present period ends; a ring that hops does when all sound from before has died.
+    /// ``t_delta_us`` and ``window_us`` stay, and so does what each sensor needs where they are not all alike.
     ///
     /// Args:
-    ///     schedule: of as many sensors.
+    ///     schedule: of as many sensors; a :class:`HoppingSchedule` of the same code for a ring that hops.
     ///
     /// Raises:
     ///     ArgumentError: no schedule, or not of as many sensors.
+    ///     HoppingError: another code, or a period that is too short to hop.
     ///     RingError: a sensor would fire again while it still listens, or the schedule does not reject crosstalk at
     ///         this ``t_delta_us``, or breaks what a sensor needs. The ring goes on as before.
     ///
@@ -301,10 +319,8 @@ impl Ring {
     ///     ...     pass
     ///     >>> ring.schedule.period_us
     ///     80000
-    #[pyo3(signature = (schedule))]
     fn change_schedule(&self, schedule: &Bound<'_, PyAny>) -> PyResult<()> {
-        let schedule = &instance::<Schedule>("schedule", schedule, "an eeruf.Schedule")?.get().0;
-        self.0.get()?.change_schedule(schedule)
+        self.0.get()?.change(schedule)
     }
 
     /// ``T_delta``, in microseconds. It can be changed while the ring runs, if it fires by a :class:`Schedule`.
@@ -348,27 +364,29 @@ impl Ring {
     #[getter]
     fn path_change_us(&self) -> PyResult<u32> {
         let mut any = self.0.get()?;
-        let ring = any.by_schedule("path_change_us")?.ring();
+        let (sensors, owned) = (any.sensors() as u8, any.by_schedule("path_change_us")?);
         // At most 64 sensors; their own t_delta where it was not said.
-        Ok((0..ring.sensors() as u8).map(|sensor| ring.path_change_of(sensor).as_micros()).max().unwrap_or(0))
+        let of = |sensor| table!(owned.ring(), |ring| ring.path_change_of(sensor).as_micros());
+        Ok((0..sensors).map(of).max().unwrap_or(0))
     }
 
     #[setter]
     fn set_path_change_us(&self, path_change_us: &Bound<'_, PyAny>) -> PyResult<()> {
         let path_change = micros("path_change_us", path_change_us)?;
-        AnyRing::raised(self.0.get()?.by_schedule("path_change_us")?.with(|ring| ring.set_path_change(path_change)))
+        let (mut any, what) = (self.0.get()?, "path_change_us");
+        AnyRing::raised(any.by_schedule(what)?.with(|of| table!(of, |ring| ring.set_path_change(path_change))))
     }
 
     /// R, how long sound is audible, in microseconds, of a ring by a schedule. It can be changed while the ring runs.
     #[getter]
     fn audible_us(&self) -> PyResult<u32> {
-        Ok(self.0.get()?.by_schedule("audible_us")?.ring().audible().as_micros())
+        Ok(table!(self.0.get()?.by_schedule("audible_us")?.ring(), |ring| ring.audible().as_micros()))
     }
 
     #[setter]
     fn set_audible_us(&self, audible_us: &Bound<'_, PyAny>) -> PyResult<()> {
-        let audible = micros("audible_us", audible_us)?;
-        AnyRing::raised(self.0.get()?.by_schedule("audible_us")?.with(|ring| ring.set_audible(audible)))
+        let (audible, mut any) = (micros("audible_us", audible_us)?, self.0.get()?);
+        AnyRing::raised(any.by_schedule("audible_us")?.with(|of| table!(of, |ring| ring.set_audible(audible))))
     }
 
     /// Earliest time after its firing at which a reading without an echo is emitted, in microseconds: for modules that
@@ -422,7 +440,6 @@ impl Ring {
     ///     >>> ring.echo(0, 33_000)
     ///     >>> ring.poll(33_000).t_echo_us
     ///     9000
-    #[pyo3(signature = (sensor, at_us))]
     fn echo(&self, sensor: &Bound<'_, PyAny>, at_us: &Bound<'_, PyAny>) -> PyResult<()> {
         let (sensor, at) = (self.0.get()?.sensor(sensor)?, instant("at_us", at_us)?);
         AnyRing::raised(act!(self.0.get()?, |ring| ring.echo(sensor, at)))
@@ -441,13 +458,11 @@ impl Ring {
     /// Example:
     ///     >>> import eeruf
     ///     >>> ring = eeruf.Ring(eeruf.tables.TABLE_I_D, t_delta_us=500, window_us=36_000)
-    ///     >>> [ring.poll(24_000).sensor for _ in range(3)]  # one of each group of four
-    ///     [0, 4, 8]
+    ///     >>> _ = [ring.poll(24_000) for _ in range(3)]  # one of each group of four fires
     ///     >>> ring.fired(0, 24_100)
     ///     >>> ring.echo(0, 33_000)
     ///     >>> ring.poll(33_000).t_echo_us
     ///     8900
-    #[pyo3(signature = (sensor, at_us))]
     fn fired(&self, sensor: &Bound<'_, PyAny>, at_us: &Bound<'_, PyAny>) -> PyResult<()> {
         let (sensor, at) = (self.0.get()?.sensor(sensor)?, instant("at_us", at_us)?);
         AnyRing::raised(act!(self.0.get()?, |ring| ring.fired(sensor, at)))
@@ -464,17 +479,14 @@ impl Ring {
     /// Example:
     ///     >>> import eeruf
     ///     >>> ring = eeruf.Ring(eeruf.tables.TABLE_I_D, t_delta_us=500, window_us=36_000)
-    ///     >>> [ring.poll(24_000).sensor for _ in range(3)]  # one of each group of four
-    ///     [0, 4, 8]
+    ///     >>> _ = [ring.poll(24_000) for _ in range(3)]  # one of each group of four fires
     ///     >>> ring.stuck(0)
     ///     >>> while not isinstance(event := ring.poll(ring.next_deadline_us), eeruf.Reading):
     ///     ...     pass
     ///     >>> event.sensor, event.kind
     ///     (0, 'stuck')
-    #[pyo3(signature = (sensor))]
     fn stuck(&self, sensor: &Bound<'_, PyAny>) -> PyResult<()> {
-        let sensor = self.0.get()?.sensor(sensor)?;
-        AnyRing::raised(act!(self.0.get()?, |ring| ring.stuck(sensor)))
+        of_sensor!(self, sensor, |ring| ring.stuck(sensor))
     }
 
     /// The state of the space before a sensor, at the time of the last poll.
@@ -493,11 +505,9 @@ impl Ring {
     ///     >>> ring = eeruf.Ring(eeruf.tables.TABLE_I_D, t_delta_us=500, window_us=36_000)
     ///     >>> ring.state(3)
     ///     State(kind='unknown', t_echo_us=None, age_us=0, why='no_firing', explained_by=None)
-    #[pyo3(signature = (sensor))]
     fn state(&self, sensor: &Bound<'_, PyAny>) -> PyResult<State> {
-        let sensor = self.0.get()?.sensor(sensor)?;
         let ring = self.0.get()?;
-        Ok(State::of(&ring.watch, sensor, ring.now))
+        Ok(State::of(&ring.watch, ring.sensor(sensor)?, ring.now))
     }
 
     /// Hand in what hardware or a protocol measured of a sensor's last firing, before its reading is emitted: see
@@ -513,16 +523,14 @@ impl Ring {
     /// Example:
     ///     >>> import eeruf
     ///     >>> ring = eeruf.Ring(eeruf.tables.TABLE_I_D, t_delta_us=500, window_us=36_000)
-    ///     >>> [ring.poll(24_000).sensor for _ in range(3)]  # one of each group of four
-    ///     [0, 4, 8]
+    ///     >>> _ = [ring.poll(24_000) for _ in range(3)]  # one of each group of four fires
     ///     >>> ring.measured(4, 9_000)
     ///     >>> ring.poll(40_000).t_echo_us
     ///     9000
     #[pyo3(signature = (sensor, t_echo_us))]
     fn measured(&self, sensor: &Bound<'_, PyAny>, t_echo_us: Option<&Bound<'_, PyAny>>) -> PyResult<()> {
-        let (sensor, t_echo) =
-            (self.0.get()?.sensor(sensor)?, t_echo_us.map(|us| micros("t_echo_us", us)).transpose()?);
-        AnyRing::raised(act!(self.0.get()?, |ring| ring.measured(sensor, t_echo)))
+        let t_echo = t_echo_us.map(|us| micros("t_echo_us", us)).transpose()?;
+        of_sensor!(self, sensor, |ring| ring.measured(sensor, t_echo))
     }
 
     /// Ask silence for a witness, from the next firing on: a firing without an echo is then ``"unanswered"``, which is
@@ -582,10 +590,8 @@ impl Ring {
     ///     >>> import eeruf
     ///     >>> ring = eeruf.Ring(eeruf.tables.TABLE_I_D, t_delta_us=500, window_us=36_000)
     ///     >>> ring.forget(3)
-    #[pyo3(signature = (sensor))]
     fn forget(&self, sensor: &Bound<'_, PyAny>) -> PyResult<()> {
-        let sensor = self.0.get()?.sensor(sensor)?;
-        AnyRing::raised(act!(self.0.get()?, |ring| ring.forget(sensor)))
+        of_sensor!(self, sensor, |ring| ring.forget(sensor))
     }
 
     /// Stop a sensor from firing. The reading of a firing that is under way is still emitted.
@@ -602,10 +608,8 @@ impl Ring {
     ///     >>> ring.disable(0)
     ///     >>> ring.is_enabled(0)
     ///     False
-    #[pyo3(signature = (sensor))]
     fn disable(&self, sensor: &Bound<'_, PyAny>) -> PyResult<()> {
-        let sensor = self.0.get()?.sensor(sensor)?;
-        AnyRing::raised(act!(self.0.get()?, |ring| ring.disable(sensor)))
+        of_sensor!(self, sensor, |ring| ring.disable(sensor))
     }
 
     /// Let a sensor fire again, from its next turn on. Its readings from before are forgotten.
@@ -623,10 +627,8 @@ impl Ring {
     ///     >>> ring.enable(0)
     ///     >>> ring.is_enabled(0)
     ///     True
-    #[pyo3(signature = (sensor))]
     fn enable(&self, sensor: &Bound<'_, PyAny>) -> PyResult<()> {
-        let sensor = self.0.get()?.sensor(sensor)?;
-        AnyRing::raised(act!(self.0.get()?, |ring| ring.enable(sensor)))
+        of_sensor!(self, sensor, |ring| ring.enable(sensor))
     }
 
     /// Returns true if a sensor fires.
@@ -642,7 +644,6 @@ impl Ring {
     ///     >>> ring = eeruf.Ring(eeruf.tables.TABLE_I_D, t_delta_us=500, window_us=36_000)
     ///     >>> ring.is_enabled(11)
     ///     True
-    #[pyo3(signature = (sensor))]
     fn is_enabled(&self, sensor: &Bound<'_, PyAny>) -> PyResult<bool> {
         let sensor = self.0.get()?.sensor(sensor)?;
         Ok(ask!(self.0.get()?, |ring| ring.is_enabled(sensor)))
@@ -691,7 +692,6 @@ impl Ring {
     ///     >>> ring.restart(3_600_000_000)
     ///     >>> ring.wait_us(3_600_000_000)
     ///     24000
-    #[pyo3(signature = (now_us))]
     fn restart(&self, now_us: &Bound<'_, PyAny>) -> PyResult<()> {
         let now = instant("now_us", now_us)?;
         act!(self.0.get()?, |ring| ring.restart(now));

@@ -5,7 +5,7 @@ use super::error::HoppingError;
 use crate::own_limits::{EachSensor, SensorLimits};
 use crate::phases::{PhaseTable, PhaseVerification};
 use crate::requirements::{Requirements, Separation};
-use crate::schedule::{MAX_PERIOD, MAX_SENSORS, Phase, VerifiedFor};
+use crate::schedule::{MAX_PERIOD, MAX_SENSORS, Phase, VerifiedFor, scale};
 use crate::time::Micros;
 use crate::verify::Violation;
 
@@ -71,6 +71,25 @@ impl<const K: usize> HoppingSchedule<K> {
             sensor += 1;
         }
         Self::new(code, period, lags)
+    }
+
+    /// Proportional scaling of the period and the lags, each rounded to the nearest microsecond; the code stays, so that
+    /// a ring may [change](crate::Ring::change_hopping) to it. With `num` no less than `den` it keeps every interval,
+    /// window, shared line and group that the schedule keeps; else [`verify`](Self::verify) the result.
+    ///
+    /// # Errors
+    /// As for [`HoppingSchedule::new`]; [`HoppingError::Period`] for a `den` of 0.
+    pub const fn scaled(&self, num: u32, den: u32) -> Result<Self, HoppingError> {
+        if den == 0 {
+            return Err(HoppingError::Period { period: Micros::MAX, least: self.code.two_ages() });
+        }
+        let mut lags = self.lags;
+        let mut sensor = 0;
+        while sensor < K {
+            lags[sensor] = scale(lags[sensor], num, den);
+            sensor += 1;
+        }
+        Self::new(self.code, scale(self.period, num, den), lags)
     }
 
     /// The firing times as a table of `M` phases, for [`PhaseTable`](crate::phases::PhaseTable): of the code's first

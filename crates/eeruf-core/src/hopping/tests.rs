@@ -264,3 +264,16 @@ fn code_has_up_to_67_phases_and_a_step_of_16_bits() {
         assert_eq!(HoppingCode::new(2, 2, step), Err(HoppingError::Step { step }));
     }
 }
+
+// Lags and period are scaled to the nearest microsecond, the code stays.
+#[test]
+fn scaled_schedule_keeps_its_code() {
+    let code = HoppingCode::new(3, 2, Micros::new(240)).unwrap();
+    let schedule = HoppingSchedule::<4>::new(code, Micros::new(60_001), [0, 1, 30_001, 0].map(Micros::new)).unwrap();
+    let scaled = schedule.scaled(3, 2).unwrap();
+    assert_eq!((scaled.code(), scaled.period()), (&code, Micros::new(90_002)));
+    assert_eq!([0, 1, 2, 3].map(|x| scaled.t_lag(x).map(Micros::as_micros)), [Some(0), Some(2), Some(45_002), None]);
+    for (num, den) in [(1, 1_000), (u32::MAX, 1), (1, 0)] {
+        assert!(matches!(schedule.scaled(num, den), Err(HoppingError::Period { .. })), "{num}/{den}");
+    }
+}

@@ -1,20 +1,20 @@
-//! A ring that moves along a ladder of scaled schedules as the rejection rate asks for (end of Sec. 3.1).
+//! Rings that move along a ladder of scaled schedules as the rejection rate asks for (end of Sec. 3.1).
 
 use eeruf_core::{
     EachSensor, EchoFilter, Instant, MAX_SENSORS, Ring, RingEvent, VerifiedSchedule, adaptation::Adaptation,
     conditions::Violation,
 };
 
-use super::ring_runner::{FiringPlan, RingRunner, RingStart, StartError, Started, TableFiring};
+use super::ring_runner::{FiringPlan, Hops, RingRunner, RingStart, StartError, Started, TableFiring};
 use crate::world::{AnySchedule, Robot};
 
 /// A ring that moves along a ladder of schedules (end of Sec. 3.1).
-struct AdaptiveRing<'s> {
-    ring: Ring<TableFiring<'s>, EchoFilter<MAX_SENSORS>, MAX_SENSORS>,
+struct AdaptiveRing<'s, const E: usize> {
+    ring: Ring<TableFiring<'s>, EchoFilter<MAX_SENSORS, E>, MAX_SENSORS, E>,
     adaptation: Adaptation<'s, VerifiedSchedule<MAX_SENSORS, 2, EachSensor<MAX_SENSORS>>>,
 }
 
-impl<'s> RingRunner<'s> for AdaptiveRing<'s> {
+impl<'s, const E: usize> RingRunner<'s> for AdaptiveRing<'s, E> {
     fn poll(&mut self, now: Instant, expected_change_us: &dyn Fn(u8) -> i32) -> Option<RingEvent> {
         let event = self.ring.poll_expecting(now, expected_change_us)?;
         if let RingEvent::PeriodEnded(stats) = event {
@@ -34,10 +34,10 @@ impl<'s> RingRunner<'s> for AdaptiveRing<'s> {
 }
 
 /// Rungs of the adaptive method's ladder, times the schedule it starts from.
-const RUNGS: [(u32, u32); 4] = [(5, 6), (1, 1), (4, 3), (5, 3)];
+pub(super) const RUNGS: [(u32, u32); 4] = [(5, 6), (1, 1), (4, 3), (5, 3)];
 
 /// The rungs of a robot's ladder, from the schedule that it starts from.
-pub(super) fn plan(robot: &Robot, base: AnySchedule) -> Result<FiringPlan, StartError> {
+pub(super) fn plan(robot: &Robot, base: AnySchedule, _: &Hops) -> Result<FiringPlan, StartError> {
     let scaled = RUNGS.iter().filter_map(|&(num, den)| base.scaled(num, den).ok());
     let mut ladder: Vec<_> = scaled.filter_map(|rung| robot.verified(&rung).ok()).collect();
     if ladder.is_empty() {
@@ -46,11 +46,11 @@ pub(super) fn plan(robot: &Robot, base: AnySchedule) -> Result<FiringPlan, Start
     Ok(FiringPlan { ladder, ..FiringPlan::new(base) })
 }
 
-/// A ring on its ladder.
-pub(super) fn adaptive<'s>(start: &RingStart<'s>) -> Started<'s> {
+/// A ring on its ladder, with up to `E` echoes of a firing.
+pub(super) fn adaptive<'s, const E: usize>(start: &RingStart<'s>) -> Started<'s> {
     let adaptation = Adaptation::new(&start.plan.ladder).map_err(StartError::Ladder)?;
     // A ladder has a rung.
-    let ring = Ring::new(&start.plan.ladder[0], start.config(), start.now)?;
+    let ring = Ring::new(&start.plan.ladder[0], start.config().with_echoes::<E>(), start.now)?;
     Ok(Box::new(AdaptiveRing { ring, adaptation }))
 }
 

@@ -1,12 +1,18 @@
-//! A ring that hops in time: core's own, for a robot.
+//! Rings that hop in time: core's own, for a robot.
 
 use eeruf_core::{
-    Criterion, EachSensor, MAX_SENSORS, Micros, Requirements,
-    hopping::{HoppingCode, HoppingListening, HoppingRing, HoppingSchedule},
+    Criterion, EachSensor, EchoFilter, Instant, MAX_SENSORS, Micros, Requirements, Ring, RingEvent,
+    adaptation::Adaptation,
+    hopping::{
+        HoppingCode, HoppingError, HoppingListening, HoppingPlan, HoppingRing, HoppingSchedule, HoppingSettings,
+        Weighed,
+    },
 };
 
-use super::ring_runner::{RingStart, StartError, Started};
-use crate::world::Robot;
+use super::adaptive::RUNGS;
+use super::method::MAX_ECHOES;
+use super::ring_runner::{FiringPlan, Hops, REMEMBERED, RingRunner, RingStart, StartError, Started, config_of};
+use crate::world::{AnySchedule, Robot};
 
 /// The least shift of crosstalk from phase to phase: 90 us more than the tracker's `T_delta`, for jitter and lateness.
 const STEP: Micros = Micros::new(240);
@@ -17,10 +23,12 @@ const TURN_US: u32 = 10_000;
 
 /// A hopping ring, no larger than needed.
 pub(super) fn hopping<'s>(start: &RingStart<'s>) -> Started<'s> {
-    if let Some(given) = start.hopping_schedule.as_ref().filter(|_| start.robot.is_uneven()) {
-        return uneven(start, given);
+    let RingStart { robot, hops, .. } = start;
+    if keeps_limits(robot, hops) {
+        let schedule = schedule_of::<MAX_SENSORS>(robot, hops)?;
+        return Ok(Box::new(limited(start, &schedule, own_limits(robot, hops, &schedule)?)?));
     }
-    match start.robot.sensors.len() {
+    match robot.sensors.len() {
         ..=8 => ring::<8>(start),
         9..=24 => ring::<24>(start),
         _ => ring::<MAX_SENSORS>(start),
@@ -28,41 +36,140 @@ pub(super) fn hopping<'s>(start: &RingStart<'s>) -> Started<'s> {
 }
 
 fn ring<'s, const K: usize>(start: &RingStart<'s>) -> Started<'s> {
-    let Robot { ref sensors, period, window, blanking, neighbours, .. } = *start.robot;
-    let schedule = if let Some(given) = start.hopping_schedule {
-        of_all(&given, sensors.len())?;
+    let schedule = schedule_of::<K>(start.robot, &start.hops)?;
+    let settings = start.hops.settings.with_neighbours(start.robot.neighbours);
+    Ok(Box::new(HoppingRing::<K>::hopping(&schedule, settings, listening(start.robot), seed(start), start.now)?))
+}
+
+/// Returns true if its sensors have limits of their own in a schedule that may keep them.
+fn keeps_limits(robot: &Robot, hops: &Hops) -> bool {
+    hops.schedule.is_some() && robot.is_uneven()
+}
+
+/// The schedule that is given, for as many sensors as the robot has, or one of even lags.
+fn schedule_of<const K: usize>(robot: &Robot, hops: &Hops) -> Result<HoppingSchedule<K>, StartError> {
+    let sensors = robot.sensors.len();
+    if let Some(given) = hops.schedule {
+        let schedule = given.code().sensors();
+        if schedule != sensors {
+            return Err(StartError::Sensors { schedule, sensors });
+        }
         let lags = core::array::from_fn(|sensor| given.t_lag(sensor).unwrap_or_default());
-        HoppingSchedule::<K>::new(*given.code(), given.period(), lags)?
-    } else {
-        // Each phase gives one vote.
-        let code = HoppingCode::new(sensors.len(), start.hopping.tracker.votes, STEP)?;
-        let stands = start.hopping.solo_rate > 0;
-        let turns = Micros::new(if stands { TURN_US * sensors.len() as u32 } else { 0 });
-        HoppingSchedule::<K>::spread(code, period.max(turns))?
+        return Ok(HoppingSchedule::<K>::new(*given.code(), given.period(), lags)?);
+    }
+    // Each phase gives one vote.
+    let code = HoppingCode::new(sensors, hops.settings.tracker.votes, STEP)?;
+    let stands = hops.settings.solo_rate > 0;
+    let turns = Micros::new(if stands { TURN_US * sensors as u32 } else { 0 });
+    Ok(HoppingSchedule::<K>::spread(code, robot.period.max(turns))?)
+}
+
+/// The robot's limits of each sensor, if the schedule keeps them; none where sensors are alike. Each compares by no more
+/// than its own `T_delta` and the tracker's.
+fn own_limits(
+    robot: &Robot,
+    hops: &Hops,
+    schedule: &HoppingSchedule<MAX_SENSORS>,
+) -> Result<EachSensor<MAX_SENSORS>, StartError> {
+    if !keeps_limits(robot, hops) {
+        return Ok(EachSensor::NONE);
+    }
+    let blanking = robot.blanking;
+    let limits = robot.asking(hops.settings.tracker.t_delta, |requirements| {
+        schedule.limits(&Requirements { criterion: Criterion::Margin(Micros::ZERO), blanking, ..*requirements })
+    });
+    Ok(limits?)
+}
+
+fn listening(robot: &Robot) -> HoppingListening {
+    HoppingListening::new(robot.window).with_blanking(robot.blanking)
+}
+
+fn seed(start: &RingStart<'_>) -> u32 {
+    start.random.of(0).bits() as u32
+}
+
+/// The settings of a ring by its robot: drawn lags keep no limits, and know the neighbours of a ring without any.
+fn settings_for(start: &RingStart<'_>) -> HoppingSettings {
+    let settings = start.hops.settings;
+    if keeps_limits(start.robot, &start.hops) { settings } else { settings.with_neighbours(start.robot.neighbours) }
+}
+
+/// A ring with these limits.
+fn limited(
+    start: &RingStart<'_>,
+    schedule: &HoppingSchedule<MAX_SENSORS>,
+    limits: EachSensor<MAX_SENSORS>,
+) -> Result<LimitedRing, HoppingError> {
+    LimitedRing::with_limits(schedule, limits, settings_for(start), listening(start.robot), seed(start), start.now)
+}
+
+/// A ring whose sensors may have limits of their own.
+type LimitedRing = HoppingRing<MAX_SENSORS, 4, EachSensor<MAX_SENSORS>>;
+
+/// A ring that hops, with sensors that report several echoes: readings are compared, not voted on.
+pub(super) fn several<'s>(start: &RingStart<'s>) -> Started<'s> {
+    let RingStart { robot, hops, now, .. } = start;
+    let schedule = schedule_of::<MAX_SENSORS>(robot, hops)?;
+    let limits = own_limits(robot, hops, &schedule)?;
+    let plan = HoppingPlan::with_limits(&schedule, limits, settings_for(start), listening(robot), seed(start), *now)?;
+    let config = config_of(robot).with_echoes::<MAX_ECHOES>();
+    Ok(Box::new(Ring::<_, EchoFilter<MAX_SENSORS, MAX_ECHOES>, MAX_SENSORS, MAX_ECHOES, REMEMBERED>::with_plan(
+        plan, config, *now,
+    )?))
+}
+
+/// The ladder of a ring that hops: what it would hop by, scaled, as far as that can be done.
+pub(super) fn plan(robot: &Robot, base: AnySchedule, hops: &Hops) -> Result<FiringPlan, StartError> {
+    let schedule = schedule_of::<MAX_SENSORS>(robot, hops)?;
+    let own_limits = own_limits(robot, hops, &schedule)?;
+    let fits = |rung: &HoppingSchedule<MAX_SENSORS>| {
+        let (settings, now) = (hops.settings, Instant::default());
+        let limits = self::own_limits(robot, hops, rung);
+        limits.is_ok_and(|own| HoppingPlan::with_limits(rung, own, settings, listening(robot), 0, now).is_ok())
     };
-    let settings = start.hopping.with_neighbours(neighbours);
-    let listening = HoppingListening::new(window).with_blanking(blanking);
-    let seed = start.random.of(0).bits() as u32;
-    Ok(Box::new(HoppingRing::<K>::hopping(&schedule, settings, listening, seed, start.now)?))
+    let scaled = RUNGS.iter().filter_map(|&(num, den)| schedule.scaled(num, den).ok());
+    let mut hopping_ladder: Vec<_> = scaled.filter(fits).collect();
+    if hopping_ladder.is_empty() {
+        // Why it cannot hop is said when it starts.
+        hopping_ladder.push(schedule);
+    }
+    Ok(FiringPlan { hopping_ladder, own_limits, ..FiringPlan::new(base) })
 }
 
-/// Refuses a schedule of another number of sensors.
-fn of_all(given: &HoppingSchedule<MAX_SENSORS>, sensors: usize) -> Result<(), StartError> {
-    let schedule = given.code().sensors();
-    if schedule == sensors { Ok(()) } else { Err(StartError::Sensors { schedule, sensors }) }
+/// A ring that hops and moves along a ladder.
+struct AdaptiveHoppingRing<'s> {
+    ring: LimitedRing,
+    adaptation: Adaptation<'s, HoppingSchedule<MAX_SENSORS>>,
 }
 
-/// A ring that hops by the robot's limits of each sensor: the schedule must keep them, and each sensor compares by no
-/// more than its own `T_delta` and the tracker's.
-fn uneven<'s>(start: &RingStart<'s>, given: &HoppingSchedule<MAX_SENSORS>) -> Started<'s> {
-    let Robot { ref sensors, window, blanking, .. } = *start.robot;
-    of_all(given, sensors.len())?;
-    let most = start.hopping.tracker.t_delta;
-    let limits: EachSensor<MAX_SENSORS> = start.robot.asking(most, |requirements| {
-        given.limits(&Requirements { criterion: Criterion::Margin(Micros::ZERO), blanking, ..*requirements })
-    })?;
-    let listening = HoppingListening::new(window).with_blanking(blanking);
-    let seed = start.random.of(0).bits() as u32;
-    let ring = HoppingRing::<MAX_SENSORS, 4, _>::with_limits(given, limits, start.hopping, listening, seed, start.now)?;
-    Ok(Box::new(ring))
+/// A ring on the ladder of its plan.
+pub(super) fn adaptive<'s>(start: &RingStart<'s>) -> Started<'s> {
+    let FiringPlan { hopping_ladder, own_limits, .. } = start.plan;
+    let adaptation = Adaptation::hopping(hopping_ladder).map_err(StartError::Ladder)?;
+    // A ladder has a rung.
+    Ok(Box::new(AdaptiveHoppingRing { ring: limited(start, &hopping_ladder[0], *own_limits)?, adaptation }))
+}
+
+impl<'s> RingRunner<'s> for AdaptiveHoppingRing<'s> {
+    fn poll(&mut self, now: Instant, expected_change_us: &dyn Fn(u8) -> i32) -> Option<RingEvent> {
+        let event = self.ring.poll_expecting(now, expected_change_us)?;
+        if let RingEvent::PeriodEnded(stats) = event {
+            // Every rung has the ring's code and was tried with its window, so this cannot fail.
+            _ = self.adaptation.adapt(&stats, |schedule| self.ring.change_hopping(schedule));
+        }
+        Some(event)
+    }
+
+    fn next_deadline(&self) -> Instant {
+        self.ring.next_deadline()
+    }
+
+    fn echo(&mut self, sensor: u8, at: Instant) {
+        RingRunner::echo(&mut self.ring, sensor, at);
+    }
+
+    fn weighed(&self, sensor: u8, expected_change_us: i32) -> Option<Weighed> {
+        RingRunner::weighed(&self.ring, sensor, expected_change_us)
+    }
 }

@@ -14,7 +14,7 @@ use super::firing::Firing;
 use super::flow;
 use super::hopping;
 use super::planned_ring::planned;
-use super::ring_runner::{self, AGREEMENT_ALONE, ASKS, FiringPlan, RingRunner, RingStart, StartError, Started};
+use super::ring_runner::{self, AGREEMENT_ALONE, ASKS, FiringPlan, Hops, RingRunner, RingStart, StartError, Started};
 use super::schedules::{self, Made, ScheduleQuery};
 use super::sketch;
 use crate::world::{AnySchedule, Robot};
@@ -29,13 +29,17 @@ struct Row {
     eeruf: bool,
     /// True if it fires by a robot's [`Sketch`](crate::Sketch).
     sketch: bool,
+    /// True if it is simulated only where it is asked for.
+    on_demand: bool,
+    /// True if it hops in time.
+    hops: bool,
     /// The schedule that a robot's ring starts with; for dither the lags alone.
     schedule: fn(&ScheduleQuery<'_>) -> Made,
     /// The ring, ready to run.
     ring: for<'s> fn(&RingStart<'s>) -> Started<'s>,
     belief: Belief,
     /// The ring's plan, from that schedule.
-    plan: fn(&Robot, AnySchedule) -> Result<FiringPlan, StartError>,
+    plan: fn(&Robot, AnySchedule, &Hops) -> Result<FiringPlan, StartError>,
     /// Number of echoes of a firing that a sensor reports.
     echoes: usize,
     /// Least time until a sensor, by its number, may fire again.
@@ -47,10 +51,12 @@ const DEFAULT: Row = Row {
     name: "",
     eeruf: false,
     sketch: false,
+    on_demand: false,
+    hops: false,
     schedule: schedules::own,
     ring: ring_runner::scheduled::<1, ASKS>,
     belief: Belief::Repeated,
-    plan: |_, schedule| Ok(FiringPlan::new(schedule)),
+    plan: |_, schedule, _| Ok(FiringPlan::new(schedule)),
     echoes: 1,
     refire: |_, schedule, sensor| schedules::soonest_refire(schedule, sensor),
 };
@@ -165,7 +171,7 @@ methods! {
     Adaptive = "adaptive" {
         eeruf: true,
         schedule: schedules::own,
-        ring: adaptive::adaptive,
+        ring: adaptive::adaptive::<1>,
         belief: Belief::Repeated,
         plan: adaptive::plan,
         refire: |robot, _, _| robot.window,
@@ -175,6 +181,7 @@ methods! {
     /// period is at least 10 ms for each sensor.
     EerufHopping = "eeruf_hopping" {
         eeruf: true,
+        hops: true,
         schedule: schedules::conventional,
         ring: hopping::hopping,
         belief: Belief::Repeated,
@@ -199,6 +206,38 @@ methods! {
         belief: Belief::Repeated,
         plan: ring_runner::plan_own,
         echoes: MAX_ECHOES,
+    }
+    /// As [`EerufHopping`](Self::EerufHopping), moving along a ladder of its schedule, scaled, as the rejection rate asks
+    /// for.
+    AdaptiveHopping = "adaptive_hopping" {
+        eeruf: true,
+        on_demand: true,
+        hops: true,
+        schedule: schedules::conventional,
+        ring: hopping::adaptive,
+        belief: Belief::Repeated,
+        plan: hopping::plan,
+        refire: |robot, _, _| robot.window,
+    }
+    /// As [`Adaptive`](Self::Adaptive), with sensors that report up to eight echoes of a firing.
+    AdaptiveMultiEcho = "adaptive_multi_echo" {
+        eeruf: true,
+        on_demand: true,
+        ring: adaptive::adaptive::<MAX_ECHOES>,
+        plan: adaptive::plan,
+        echoes: MAX_ECHOES,
+        refire: |robot, _, _| robot.window,
+    }
+    /// It fires as [`EerufHopping`](Self::EerufHopping), with sensors that report up to eight echoes of a firing: the
+    /// earliest that repeats is believed, not what has most votes.
+    HoppingMultiEcho = "hopping_multi_echo" {
+        eeruf: true,
+        on_demand: true,
+        hops: true,
+        schedule: schedules::conventional,
+        ring: hopping::several,
+        echoes: MAX_ECHOES,
+        refire: |robot, _, _| robot.window,
     }
     /// One by one, each as soon as the one before has answered or was given up, as the loop of a sketch or a ping timer
     /// fires; see [`Sketch`](crate::Sketch). Every echo is believed, unless that says otherwise.
@@ -268,9 +307,20 @@ impl Method {
         self.row().sketch
     }
 
-    /// The methods that are compared where nothing says how a ring is fired today: all that are no sketch.
+    /// The methods that are compared where nothing says how a ring is fired today: all that are no sketch, and no
+    /// [on demand](Self::is_on_demand).
     pub fn usual() -> impl Iterator<Item = Self> {
-        Self::ALL.into_iter().filter(|method| !method.is_sketch())
+        Self::ALL.into_iter().filter(|method| !method.is_sketch() && !method.is_on_demand())
+    }
+
+    /// Returns true if it is simulated only where it is asked for by name: two methods in one.
+    pub const fn is_on_demand(self) -> bool {
+        self.row().on_demand
+    }
+
+    /// Returns true if it hops in time.
+    pub const fn hops(self) -> bool {
+        self.row().hops
     }
 
     /// Readings that it believes.
@@ -294,8 +344,8 @@ impl Method {
     }
 
     /// The plan of a robot's ring, from the schedule that it starts with.
-    pub(crate) fn plan(self, robot: &Robot, schedule: AnySchedule) -> Result<FiringPlan, StartError> {
-        (self.row().plan)(robot, schedule)
+    pub(crate) fn plan(self, robot: &Robot, schedule: AnySchedule, hops: &Hops) -> Result<FiringPlan, StartError> {
+        (self.row().plan)(robot, schedule, hops)
     }
 
     /// A robot's ring that fires by the caller's own code, ready to run.

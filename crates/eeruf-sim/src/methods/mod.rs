@@ -17,5 +17,5 @@ pub use best_schedule::{BestSchedule, TICK, best_schedule_for, requirements_of, 
 pub use firing::{Firing, FiringPeriod, OwnError};
 pub(crate) use method::{Belief, MAX_ECHOES};
 pub use method::{Method, UnknownMethod};
-pub(crate) use ring_runner::{ChangeError, FiringPlan, RingRunner, RingStart, StartError};
+pub(crate) use ring_runner::{ChangeError, FiringPlan, Hops, RingRunner, RingStart, StartError};
 pub use schedules::table_i_d_for;

@@ -132,14 +132,25 @@ pub(crate) struct FiringPlan {
     pub(crate) schedule: AnySchedule,
     /// Where it adapts, all that it may change to, the first one first.
     pub(crate) ladder: Vec<VerifiedSchedule<MAX_SENSORS, 2, EachSensor<MAX_SENSORS>>>,
+    /// The same of a ring that hops.
+    pub(super) hopping_ladder: Vec<HoppingSchedule<MAX_SENSORS>>,
     /// Limits of each sensor, where they are not all alike.
     pub(crate) own_limits: EachSensor<MAX_SENSORS>,
+}
+
+/// Settings and schedule of a ring that hops.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Hops {
+    /// Its settings.
+    pub(crate) settings: HoppingSettings,
+    /// Its schedule; `None` for even lags.
+    pub(crate) schedule: Option<HoppingSchedule<MAX_SENSORS>>,
 }
 
 impl FiringPlan {
     /// One schedule for sensors that are alike.
     pub(crate) const fn new(schedule: AnySchedule) -> Self {
-        Self { schedule, ladder: vec![], own_limits: EachSensor::NONE }
+        Self { schedule, ladder: vec![], hopping_ladder: vec![], own_limits: EachSensor::NONE }
     }
 }
 
@@ -147,10 +158,7 @@ impl FiringPlan {
 pub(crate) struct RingStart<'s> {
     pub(crate) robot: &'s Robot,
     pub(crate) plan: &'s FiringPlan,
-    /// Settings of a hopping ring.
-    pub(crate) hopping: HoppingSettings,
-    /// Schedule of a hopping ring; `None` for even lags.
-    pub(crate) hopping_schedule: Option<HoppingSchedule<MAX_SENSORS>>,
+    pub(crate) hops: Hops,
     /// Settings of a flow ring.
     pub(crate) flow: FlowSettings,
     pub(crate) random: Random,
@@ -260,7 +268,7 @@ pub(super) fn scheduled<'s, const E: usize, const ASKS: bool>(start: &RingStart<
 }
 
 /// The robot's own schedule, where sensors are not all alike with what each may do.
-pub(super) fn plan_own(robot: &Robot, schedule: AnySchedule) -> Result<FiringPlan, StartError> {
+pub(super) fn plan_own(robot: &Robot, schedule: AnySchedule, _: &Hops) -> Result<FiringPlan, StartError> {
     if !robot.is_uneven() {
         return Ok(FiringPlan::new(schedule));
     }

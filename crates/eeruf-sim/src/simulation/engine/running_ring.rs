@@ -10,7 +10,7 @@ use crate::simulation::options::Options;
 use crate::simulation::receiver::{Hearing, NEVER};
 use crate::{
     geometry::Pose,
-    methods::{FiringPlan, Method, RingRunner, RingStart},
+    methods::{FiringPlan, Hops, Method, RingRunner, RingStart},
     world::{FaultKind, Random, Robot, Ticker, World},
 };
 
@@ -66,7 +66,8 @@ pub(crate) fn plans(
             method,
             error,
         })?;
-        let plan = method.plan(robot, first).map_err(|error| SimulationError::start(index, method, error))?;
+        let hops = Hops { settings: options.hopping, schedule: options.hopping_schedule };
+        let plan = method.plan(robot, first, &hops).map_err(|error| SimulationError::start(index, method, error))?;
         Ok((method, Some(plan)))
     };
     world.robots().iter().enumerate().map(plan).collect()
@@ -97,8 +98,8 @@ pub(crate) fn start_all<'a>(
         let now = clock.instant(start);
         let ring = match (plan, own.take_firing(index)) {
             (Some(plan), None) => {
-                let Options { hopping, hopping_schedule, flow, .. } = *options;
-                method.start(&RingStart { robot, plan, hopping, hopping_schedule, flow, random, now })
+                let hops = Hops { settings: options.hopping, schedule: options.hopping_schedule };
+                method.start(&RingStart { robot, plan, hops, flow: options.flow, random, now })
             }
             (_, Some(firing)) => method.start_own(robot, firing, now),
             // Every robot has one of the two.
@@ -114,7 +115,7 @@ pub(crate) fn start_all<'a>(
         let first = channels.first_of(index);
         let sensors = first..first + robot.sensors.len();
         let keeps_limits = |plan: &FiringPlan| plan.own_limits != EachSensor::NONE || !plan.ladder.is_empty();
-        let hops_by_them = *method == Method::EerufHopping && options.hopping_schedule.is_some();
+        let hops_by_them = method.hops() && options.hopping_schedule.is_some();
         let has_limits = plan.as_ref().is_some_and(|plan| hops_by_them || keeps_limits(plan));
         let limits = if has_limits { &robot.limits[..] } else { &[] };
         let hearing_of = |sensor: usize| {

@@ -45,7 +45,7 @@ SIZE_IS(EerufLine, 8);
 #else
 #define OUT_OF_LINE
 #endif
-/* What adapting rings need once more, so that all others are not larger for it. */
+/* For code that adapting rings need once more: others are no larger for it. */
 #if defined(__GNUC__)
 #define IN_LINE inline __attribute__((always_inline))
 #else
@@ -2945,7 +2945,7 @@ EerufStatus eeruf_hopping_change(EerufHoppingRing *hopping, const EerufHoppingCo
     hopping->period_us = config->period_us;
     take_lags(hopping->hoppers, config, room_us);
     for (x = 0; x < hopping->ring.count && hopping->root != 0; x++) hopping->hoppers[x].place = welch_place(hopping, x);
-    /* What is pending was fired by the schedule of before. */
+    /* Pending firings were those of the schedule of before. */
     unsettle(hopping);
     hopping->changed = 1;
     plan(hopping);

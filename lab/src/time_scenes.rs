@@ -124,8 +124,8 @@ fn bodies_ms(asked: Option<u32>) -> (f64, usize) {
     reading_ms(scene, robots.to_vec(), 6, asked)
 }
 
-/// A building like a map of 2,000 by 2,000 cells of 5 cm: 20 by 20 rooms of 5 m with doors of 0.9 m, whose walls wave by
-/// up to 3 cm: 47,040 walls.
+/// A building like a map of 2,000 by 2,000 cells of 5 cm: 20 by 20 rooms of 5 m with doors of 0.9 m and walls that wave
+/// by up to 3 cm, 47,040 in all.
 fn building_ms(asked: Option<u32>) -> (f64, usize) {
     let (mut drawn, mut walls) = (1_u32, Vec::new());
     for place in 0..840 {

@@ -1415,8 +1415,8 @@ class HoppingSchedule:
             5
         """
     def scaled(self, num: _Int, den: _Int) -> HoppingSchedule:
-        """Multiply the period and the lags by a fraction, each rounded to the nearest microsecond; the code stays, so that a
-        ring may change to it.
+        """Multiply the period and the lags by a fraction, each rounded to the nearest microsecond. The code stays, so
+        a ring may change to it.
 
         Args:
             num: its numerator.
@@ -2070,7 +2070,7 @@ class Ring:
     def schedule(self) -> Schedule:
         """Schedule of the present period, of a ring that fires by one."""
     def change_schedule(self, schedule: Schedule | HoppingSchedule) -> None:
-        """Fire by another schedule when the present period ends; a ring that hops does when all sound from before has died.
+        """Fire by another schedule when the present period ends; a ring that hops does once all sound from before died.
         ``t_delta_us`` and ``window_us`` stay, and so does what each sensor needs where they are not all alike.
 
         Args:

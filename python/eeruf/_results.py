@@ -748,4 +748,4 @@ class SetThree(Result):
     height: Literal["flat", "room"] = "flat"
     """``"room"`` if the rings heard floor and ceiling."""
     numbered: bool = False
-    """Whether the robots of a placing had fleet numbers of their own."""
+    """True if the robots of a placing had fleet numbers of their own."""

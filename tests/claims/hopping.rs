@@ -270,8 +270,8 @@ fn emitted_limits_drive_a_hopping_ring_in_c() {
     }
 }
 
-// In C the ring of a file slows down while all is noise, to the emitted lags and period half as long again, and speeds up
-// before a wall; it keeps the limits of each sensor.
+// In C the ring of a file slows down while all is noise, to the emitted lags and period half as long again, and speeds
+// up before a wall; it keeps the limits of each sensor.
 #[test]
 fn emitted_limits_hop_and_adapt_in_c() {
     let c = eeruf(&["design", "rings/mower-8-and-4.toml", "--phases", "4", "--emit", "c"]).out;

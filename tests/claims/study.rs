@@ -25,8 +25,8 @@ fn number(value: &Value) -> f64 {
     value.as_f64().unwrap_or_else(|| panic!("{value} is not a number"))
 }
 
-// Two methods in one are simulated where they are asked for by name. With several echoes nothing is rejected here, so that
-// the ring that adapts stays as it is; no others are the same.
+// Two methods in one are simulated where they are asked for by name. With several echoes nothing is rejected here, so
+// that the ring that adapts stays as it is; no others are the same.
 #[test]
 fn pairs_of_methods_are_simulated_by_name() {
     let pairs = "eeruf_hopping,multi_echo,adaptive_hopping,adaptive_multi_echo,hopping_multi_echo";

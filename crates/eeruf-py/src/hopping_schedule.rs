@@ -149,8 +149,8 @@ impl HoppingSchedule {
         hopping.ok_or_else(|| HoppingError::new_err("t_fire_us; expected step_us, phases and t_lag_us, to hop by"))
     }
 
-    /// Multiply the period and the lags by a fraction, each rounded to the nearest microsecond; the code stays, so that a
-    /// ring may change to it.
+    /// Multiply the period and the lags by a fraction, each rounded to the nearest microsecond. The code stays, so
+    /// a ring may change to it.
     ///
     /// Args:
     ///     num: its numerator.

@@ -299,7 +299,7 @@ impl Ring {
         Ok(any.confirmed(any.sensor(sensor)?).map(Micros::as_micros))
     }
 
-    /// Fire by another schedule when the present period ends; a ring that hops does when all sound from before has died.
+    /// Fire by another schedule when the present period ends; a ring that hops does once all sound from before died.
     /// ``t_delta_us`` and ``window_us`` stay, and so does what each sensor needs where they are not all alike.
     ///
     /// Args:

@@ -32,7 +32,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "N", default_value_t = SetThreeOptions::default().periods)]
     #[arg(value_parser = clap::value_parser!(u32).range(10..=100_000))]
     periods: u32,
-    /// Give the robots of a placing fleet numbers, 0, 1 and so on, by which flow tells them apart; by default all have 0
+    /// Give robots of a placing fleet numbers, 0, 1 and so on, by which flow tells them apart; by default all have 0
     #[arg(long)]
     numbered: bool,
 }

@@ -3,8 +3,8 @@ use eeruf_core::{EachSensor, Layout, Micros, Requirements, Uneven, VerifiedSched
 // 12 sensors, T_p = 34.1 ms; 3 adjacent sensors of a ring at least 6.993 ms apart, and what each sensor and pair needs.
 pub const RING: VerifiedSchedule<12, 2, EachSensor<12>> = schedule! {
     period_us: 34_100,
-    t_fire_a_us: [17_000, 0, 25_500, 8_500, 17_000, 0, 25_500, 8_500, 17_000, 0, 25_500, 8_500],
-    t_fire_b_us: [13_700, 2_000, 24_800, 13_100, 0, 22_400, 13_900, 2_100, 25_200, 13_400, 4_900, 23_700],
+    t_fire_a_us: [17_000, 0, 8_500, 25_500, 17_000, 34_000, 8_500, 25_500, 17_000, 34_000, 8_500, 25_500],
+    t_fire_b_us: [21_600, 700, 10_500, 22_200, 34_000, 13_400, 21_900, 31_900, 8_400, 22_400, 30_900, 10_300],
     each_meets: Requirements {
         min_interval: Micros::new(6_993),
         layout: Layout::Ring(3),

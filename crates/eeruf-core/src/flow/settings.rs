@@ -60,9 +60,9 @@ impl FlowSettings {
 }
 
 impl FlowSettings {
-    /// How much the step of the code differs from a fleet number to the next.
+    /// The step of the code differs by this from one fleet number to the next.
     const STEP_OF_NUMBER: Micros = Micros::new(40);
-    /// How many numbers differ.
+    /// The number of fleet numbers that differ.
     const NUMBERS: u8 = 6;
 
     /// These settings for the robot with this number among robots of one make that hear each other: 0 to 5 have steps

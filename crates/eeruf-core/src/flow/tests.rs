@@ -17,8 +17,8 @@ use std::vec::Vec;
 
 const WINDOW: Micros = Micros::from_millis(36);
 
-/// The most phases of a cycle in which sound of a robot with one step reads alike at a robot with another, whatever their
-/// offset: within `t_delta`.
+/// The most phases of a cycle in which sound of a robot with one step reads alike at a robot with another, within
+/// `t_delta`, whatever their offset.
 fn phases_alike(sensors: usize, [sends, hears]: [u8; 2]) -> usize {
     let code = |number| {
         let settings = FlowSettings::DEFAULT.with_fleet_number(number);

@@ -73,8 +73,8 @@ impl<const K: usize> HoppingSchedule<K> {
         Self::new(code, period, lags)
     }
 
-    /// Proportional scaling of the period and the lags, each rounded to the nearest microsecond; the code stays, so that
-    /// a ring may [change](crate::Ring::change_hopping) to it. With `num` no less than `den` it keeps every interval,
+    /// Proportional scaling of the period and the lags, each rounded to the nearest microsecond. The code stays, so a
+    /// ring may [change](crate::Ring::change_hopping) to it. With `num` no less than `den` it keeps every interval,
     /// window, shared line and group that the schedule keeps; else [`verify`](Self::verify) the result.
     ///
     /// # Errors

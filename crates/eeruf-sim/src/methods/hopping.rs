@@ -64,8 +64,8 @@ fn schedule_of<const K: usize>(robot: &Robot, hops: &Hops) -> Result<HoppingSche
     Ok(HoppingSchedule::<K>::spread(code, robot.period.max(turns))?)
 }
 
-/// The robot's limits of each sensor, if the schedule keeps them; none where sensors are alike. Each compares by no more
-/// than its own `T_delta` and the tracker's.
+/// The robot's limits of each sensor, if the schedule keeps them; none where sensors are alike. Each compares by no
+/// more than its own `T_delta` and the tracker's.
 fn own_limits(
     robot: &Robot,
     hops: &Hops,

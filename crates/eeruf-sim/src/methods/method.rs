@@ -207,8 +207,7 @@ methods! {
         plan: ring_runner::plan_own,
         echoes: MAX_ECHOES,
     }
-    /// As [`EerufHopping`](Self::EerufHopping), moving along a ladder of its schedule, scaled, as the rejection rate asks
-    /// for.
+    /// As [`EerufHopping`](Self::EerufHopping), moving along a ladder of its schedule, scaled, by the rejection rate.
     AdaptiveHopping = "adaptive_hopping" {
         eeruf: true,
         on_demand: true,

@@ -35,7 +35,7 @@ pub struct SetThreeOptions {
     pub room: Option<Room>,
     /// The growth of the receivers' gain. The default is constant.
     pub gain: GainProfile,
-    /// True if the robots of a placing have fleet numbers from 0 on, by which flow tells them apart. The default is false.
+    /// True if robots of a placing have fleet numbers from 0 on, by which flow tells them apart. The default is false.
     pub numbered: bool,
 }
 

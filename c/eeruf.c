@@ -1585,7 +1585,7 @@ uint32_t eeruf_echo_time_us(uint32_t distance_mm, uint32_t c_mm_s) {
 
 /* ---- Adaptation ---- */
 
-/* With settings of ours, on the first of so many rungs. */
+/* With settings of ours, on the first rung. */
 static IN_LINE void begin_adaptation(EerufAdaptation *adaptation, const void *ladder, uint8_t rungs, uint16_t ready) {
     memset(adaptation, 0, sizeof *adaptation);
     adaptation->ladder = ladder;

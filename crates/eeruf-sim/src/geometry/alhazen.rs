@@ -170,8 +170,11 @@ pub fn alhazen_twice(
     };
     let circles = [first, second];
     let found = both_at_once(source, receiver, circles, starts).and_then(seen);
-    // Angles balance at hidden points too, where Newton's method may end.
-    found.or_else(|| one_after_the_other(source, receiver, circles, facing[1], apart).and_then(seen))
+    // Angles balance at hidden points too, where each of these may end.
+    found.or_else(|| one_after_the_other(source, receiver, circles, facing[1], apart).and_then(seen)).or_else(|| {
+        let [two, one] = one_after_the_other(receiver, source, [second, first], facing[0], apart)?;
+        seen([one, two])
+    })
 }
 
 /// The first normal to try for two points as seen from a circle's centre: between them, nearer to the one that is
@@ -283,6 +286,17 @@ mod tests {
         assert_eq!(alhazen(Point::origin(), Point::new(2.0, 0.1), circle, 0.5), None);
         assert_eq!(alhazen(Point::new(0.9, 0.0), Point::new(2.0, 2.0), circle, 0.5), None);
         assert_eq!(alhazen(Point::new(f64::NAN, 0.0), Point::new(2.0, 2.0), circle, 0.5), None);
+    }
+
+    // Solved from the one end the points of these circles, 9 mm apart, are hidden ones.
+    #[test]
+    fn a_path_over_two_poles_goes_both_ways() {
+        let (here, there) = (Point::new(-0.3119098673, 0.5597605183), Point::new(1.0186739892, 1.2544367654));
+        let small = (Point::new(1.0248976353, -0.7581263519), 0.0078686882);
+        let large = (Point::new(1.0426045299, -0.8440570767), 0.0706651552);
+        let (one, two) = alhazen_twice(here, there, large, small).unwrap();
+        let (back_two, back_one) = alhazen_twice(there, here, small, large).unwrap();
+        assert!((one.point - back_one.point).norm() < 1e-12 && (two.point - back_two.point).norm() < 1e-12);
     }
 
     // Where circles nearly touch, or a point lies close to one, Newton's method and one circle after the other agree.

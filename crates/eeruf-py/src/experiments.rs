@@ -83,7 +83,7 @@ pub(crate) fn set_three(
     progress: Option<&Bound<'_, PyAny>>,
     physics: Option<&Bound<'_, PyAny>>,
     height: Option<&Bound<'_, PyAny>>,
-    numbered: bool,
+    numbered: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<(String, String)> {
     let default = SetThreeOptions::default();
     let (methods, made) = methods_of(methods, default.methods)?;
@@ -95,7 +95,7 @@ pub(crate) fn set_three(
         physics: surroundings::physics(physics)?,
         room: surroundings::height(height)?,
         gain: default.gain,
-        numbered,
+        numbered: flag("numbered", numbered, false)?,
     };
     in_background(py, progress, move |background| {
         let keep_going = |done| background.go_on(Some(done), || format!("{} placings", asked.seeds));

@@ -61,7 +61,7 @@ impl Pilots {
 pub const fn steered_as(method: Method) -> Method {
     match method {
         Method::SequentialVotes => Method::Sequential,
-        Method::Flow | Method::AdaptiveHopping | Method::HoppingMultiEcho => Method::EerufHopping,
+        Method::AdaptiveHopping | Method::HoppingMultiEcho => Method::EerufHopping,
         Method::AdaptiveMultiEcho => Method::MultiEcho,
         sketch if sketch.is_sketch() => Method::Sequential,
         _ => method,

@@ -260,8 +260,9 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     };
     let by_flow = matches!(&way, Some(Ok(Some(way))) if way.method == Method::Flow);
     if args.fleet_number != 0 && !by_flow {
-        let expected = "fleet number: expected a ring for which flow is recommended; tables do not tell robots apart";
-        return Err(InputError::new(&args.file, expected));
+        let number = args.fleet_number;
+        let expected = "expected a ring for which flow is recommended, as tables do not tell robots apart";
+        return Err(InputError::new(&args.file, format_args!("fleet number {number}; {expected}")));
     }
     match args.form() {
         Some(form @ (Form::Toml | Form::Rust | Form::C | Form::Arduino)) => {

@@ -61,7 +61,7 @@ fn every_ring_hops_from_file_to_readings() {
         assert!(period <= longest && schedule.period() >= design.period_bound, "{name}: {period} us");
         // The ring of core, under simulated time.
         let hops = schedule.hopping().copied().expect("it hops");
-        // What it adapts to keeps all that it keeps.
+        // Each schedule that it adapts to keeps the same needs.
         for (num, den) in [(4, 3), (5, 3), (1_001, 1_000)] {
             let slower = hops.scaled(num, den).expect("a schedule");
             assert_eq!(slower.verify(&requirements).first_violation(), None, "{name}: {num}/{den}");

@@ -4,7 +4,8 @@
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use eeruf_core::Layout;
-use eeruf_core::search::design::{Problem, memory_words, shortest};
+use eeruf_period::engine::Problem;
+use eeruf_period::engine::shortest::shortest;
 
 fn table(c: &mut Criterion) {
     for (name, ticks) in [("design", 1), ("design, tick 0.1 ms", 10)] {
@@ -14,19 +15,11 @@ fn table(c: &mut Criterion) {
             for ring in [false, true] {
                 let layout = if ring { Layout::Ring(4) } else { Layout::Line(4) };
                 let rows = layout.rows(sensors);
-                let mut memory = vec![0; memory_words(sensors)];
                 for window in [15, 30, 45, 60] {
-                    let problem = Problem {
-                        sensors,
-                        conflicts: &rows[..sensors],
-                        separation: 2 * ticks,
-                        interval: 15 * ticks,
-                        window: window * ticks,
-                        stale_echo: false,
-                    };
+                    let problem = Problem::alike(&rows[..sensors], 2 * ticks, 15 * ticks, window * ticks);
                     let layout = if ring { "ring" } else { "line" };
                     group.bench_function(BenchmarkId::new(format!("{layout} {sensors}"), window), |b| {
-                        b.iter(|| shortest(&problem, u64::MAX, &mut memory, &mut ()));
+                        b.iter(|| shortest(&problem, u64::MAX, &mut |_| true));
                     });
                 }
             }

@@ -1,10 +1,10 @@
 //! Certificates: none that passes is wrong. Trying all firing times judges those that are small enough.
 
-#[path = "../../crates/eeruf-design/tests/common/mod.rs"]
+#[path = "../../crates/eeruf-period/tests/common/mod.rs"]
 #[allow(unreachable_pub)]
 mod judge;
 
-use eeruf_design::engine::prove::{NoProof, prove};
+use eeruf_period::engine::prove::{NoProof, prove};
 
 use crate::one_line;
 

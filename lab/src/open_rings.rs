@@ -9,25 +9,15 @@ use std::collections::BTreeMap;
 use std::fs::read_to_string;
 
 use eeruf_design::atlas::{ATLAS, Ring, rows};
-use eeruf_design::engine::Problem;
-use eeruf_design::engine::shortest::shortest;
+use eeruf_period::engine::Problem;
+use eeruf_period::engine::shortest::shortest;
 
 use crate::clock::core_seconds;
 
 fn problem(ring: &Ring) -> Problem {
     let sensors = usize::from(ring.sensors);
     let rows = ring.neighbourhood.layout(ring.sensors).rows(sensors);
-    let pairs = (0..sensors).flat_map(|x| (x + 1..sensors).map(move |y| (x, y)));
-    let gap = ring.interval;
-    Problem {
-        tick_us: (1000, 1),
-        separation: vec![ring.separation; sensors],
-        window: vec![ring.window; sensors],
-        stale_echo: false,
-        over_reals: false,
-        together: Vec::new(),
-        gaps: pairs.filter(|&(x, y)| rows[x] >> y & 1 == 1).map(|(x, y)| (x, y, gap, gap)).collect(),
-    }
+    Problem::alike(&rows[..sensors], ring.separation, ring.interval, ring.window)
 }
 
 /// The period and bound of each ring of an earlier list.

@@ -10,8 +10,8 @@
 
 use std::{hint::black_box, sync::Arc, time::Instant};
 
-use eeruf_core::search::{PeriodProblem, design};
 use eeruf_core::{EchoFilter, Layout, MAX_SENSORS, Micros, Requirements};
+use eeruf_period::PeriodProblem;
 use eeruf_sim::{
     Air, Filter, Filtered, FiredReading, Method, Noise, Options, Own, OwnError, Pose, Robot, Scene, Simulation, Stop,
     Transducer, Wall, World,
@@ -99,7 +99,7 @@ fn step(own: impl Fn() -> Own) -> f64 {
 }
 
 /// The work of `eeruf.design`: the shortest period, and of its schedules the one to prefer.
-fn design_of(sensors: usize) -> Option<Micros> {
+fn design_of(sensors: usize) -> Micros {
     let requirements = Requirements {
         min_interval: Micros::from_millis(15),
         layout: Layout::Line(4),
@@ -107,10 +107,9 @@ fn design_of(sensors: usize) -> Option<Micros> {
         ..Requirements::new(Micros::new(999))
     };
     let needs = PeriodProblem { sensors: black_box(sensors), requirements, tick: Micros::from_millis(1) };
-    let mut memory = vec![0; design::memory_words(sensors)];
-    let designed = needs.shortest::<MAX_SENSORS>(50_000_000, &mut memory, &mut ()).expect("a small ring");
-    black_box(needs.prefer(&designed, 100_000, &mut memory, &mut ()).expect("a small ring"));
-    designed.found.value
+    let shortest = needs.shortest(50_000_000, &mut ()).expect("a small ring");
+    black_box(needs.prefer(&shortest.schedule, 30_000, &mut ()).expect("a small ring"));
+    shortest.period()
 }
 
 /// A million readings of 8 sensors, one by one.

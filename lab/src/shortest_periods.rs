@@ -11,7 +11,8 @@
 use std::time::Instant;
 
 use eeruf_core::Layout;
-use eeruf_core::search::design::{Problem, Shortest, memory_words, shortest};
+use eeruf_period::engine::Problem;
+use eeruf_period::engine::shortest::{Shortest, shortest};
 
 /// Windows of the table, in milliseconds.
 const WINDOWS_MS: &str = "15,30,45,60";
@@ -40,18 +41,11 @@ fn search(arguments: &[String], mut found: impl FnMut(Ring, Shortest, f64)) -> c
                 _ => Layout::Line(neighbours),
             }
             .rows(sensors);
-            let mut memory = vec![0; memory_words(sensors)];
             for window_ms in list::<u32>(argument(6, WINDOWS_MS)) {
-                let problem = Problem {
-                    sensors,
-                    conflicts: &rows[..sensors],
-                    separation: separation_ms * ticks,
-                    interval: 15 * ticks,
-                    window: window_ms * ticks,
-                    stale_echo: false,
-                };
+                let (gap, window) = (15 * ticks, window_ms * ticks);
+                let problem = Problem::alike(&rows[..sensors], separation_ms * ticks, gap, window);
                 let begin = Instant::now();
-                let shortest = shortest(&problem, budget, &mut memory, &mut ())?;
+                let shortest = shortest(&problem, budget, &mut |_| true).ok_or("the grid is too fine")?;
                 let ms = begin.elapsed().as_secs_f64() * 1e3;
                 found(Ring { layout: layout.clone(), sensors, window_ms }, shortest, ms);
             }
@@ -62,12 +56,12 @@ fn search(arguments: &[String], mut found: impl FnMut(Ring, Shortest, f64)) -> c
 
 /// Prints the columns, a line for each ring.
 pub(crate) fn main(arguments: &[String]) -> crate::Answer {
-    println!("layout sensors window period bound nodes milliseconds reason");
+    println!("layout sensors window period bound nodes milliseconds");
     let (mut times, begin) = (Vec::new(), Instant::now());
     search(arguments, |Ring { layout, sensors, window_ms }, found, ms| {
         times.push(ms);
-        let Shortest { period, bound, nodes, explanation, .. } = found;
-        println!("{layout} {sensors} {window_ms} {period} {bound} {nodes} {ms:.2} {explanation}");
+        let Shortest { period, bound, nodes, .. } = found;
+        println!("{layout} {sensors} {window_ms} {period} {bound} {nodes} {ms:.2}");
     })?;
     times.sort_by(f64::total_cmp);
     let (median, longest) = (times[times.len() / 2], times[times.len() - 1]);

@@ -2,8 +2,8 @@
 //! [RINGS [SECONDS [FIRST]]]`, from this seed on. A line of JSON each, in ticks: the problem, period, bound, the
 //! seconds of a core, and each period found with the seconds until then; `benches/peers/uneven_race.py` reads them.
 
-use eeruf_design::engine::Problem;
-use eeruf_design::engine::shortest::shortest;
+use eeruf_period::engine::Problem;
+use eeruf_period::engine::shortest::shortest;
 
 use crate::clock::core_seconds;
 

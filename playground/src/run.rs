@@ -73,7 +73,7 @@ pub(crate) fn run(world: &World, method: Method, periods: u32, shown_s: f64) -> 
             true
         };
         let best = shortest_schedule_for(robot, BUDGET, keep_going).map_err(|error| error.to_string())?;
-        best.map(|best| best.schedule)
+        Some(best.schedule)
     } else {
         None
     };

@@ -722,8 +722,8 @@ class Found:
         """True if the atlas of proven rings answered, and nothing was searched."""
     @property
     def spare_us(self) -> tuple[int, int, int] | None:
-        """Of a ring whose sensors are not all alike: what its schedule keeps beyond every ``t_delta``, then every interval
-        and turn on a shared line, then every refire time, in microseconds; else None.
+        """Slack of the schedule beyond every ``t_delta``, then every interval and turn on a shared line, then every
+        refire time, in microseconds; None unless the period is proven.
         """
     @property
     def spare_proven(self) -> tuple[bool, bool, bool] | None:
@@ -820,8 +820,7 @@ def design(
     """Find the schedule with the shortest period for a ring, and prove that none is shorter.
 
     Firing times are free, on a grid of ticks. Among all schedules of the shortest period it prefers a larger
-    ``T_delta``, then a larger smallest interval, then evener firing; where sensors are not all alike it takes the first
-    that it finds. It runs on one core, without the interpreter lock;
+    ``T_delta``, then a larger smallest interval, then evener firing. It runs on one core, without the interpreter lock;
     Ctrl-C ends it.
 
     Args:
@@ -900,8 +899,7 @@ def design(
     """Find the schedule with the shortest period for a ring, and prove that none is shorter.
 
     Firing times are free, on a grid of ticks. Among all schedules of the shortest period it prefers a larger
-    ``T_delta``, then a larger smallest interval, then evener firing; where sensors are not all alike it takes the first
-    that it finds. It runs on one core, without the interpreter lock;
+    ``T_delta``, then a larger smallest interval, then evener firing. It runs on one core, without the interpreter lock;
     Ctrl-C ends it.
 
     Args:

@@ -142,10 +142,10 @@ fn study(args: &Args, world: &World) -> Result<Study, InputError> {
     let mut watch = Watch::new();
     let best = if methods.contains(&Method::EerufBest) {
         let robot = world.robots().first().ok_or_else(|| bad(&"no robot"))?;
-        shortest_schedule_for(robot, BUDGET, |progress| {
+        let best = shortest_schedule_for(robot, BUDGET, |progress| {
             watch.go_on(|| format!("designing eeruf_best, {} nodes", progress.nodes))
-        })
-        .map_err(|error| bad(&error))?
+        });
+        Some(best.map_err(|error| bad(&error))?)
     } else {
         None
     };

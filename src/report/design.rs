@@ -18,7 +18,7 @@ pub(crate) fn describe(
     still: Option<&RingDesign>,
     seconds: f64,
 ) -> String {
-    let RingDesign { schedule, found, preferred, to_spare, what_if, .. } = design;
+    let RingDesign { schedule, found, to_spare, what_if, .. } = design;
     let requirements = &design.spec.problem().requirements;
     let report = schedule.verify(requirements);
     let period = schedule.period();
@@ -46,7 +46,7 @@ pub(crate) fn describe(
                 "needed: {}, {} of range{}",
                 requirements.t_delta,
                 as_range(spec, requirements.t_delta),
-                best(preferred.map(|p| p.t_delta_proven))
+                best(to_spare.map(|spare| spare.proven[0]))
             ),
             Some(_) => format!(
                 "if all sensors had the same; needed: {}, and kept; the largest is {} of range",
@@ -61,13 +61,13 @@ pub(crate) fn describe(
             interval.value.to_string(),
             match &spec.uneven {
                 None => {
-                    format!("needed: {}{}", requirements.min_interval, best(preferred.map(|p| p.min_interval_proven)))
+                    format!("needed: {}{}", requirements.min_interval, best(to_spare.map(|spare| spare.proven[1])))
                 }
                 Some(_) => "between two that need one; all are kept".to_owned(),
             },
         ]);
     }
-    if let Some(ToSpare { t_delta, interval, refire, proven, .. }) = to_spare {
+    if let (Some(ToSpare { t_delta, interval, refire, proven, .. }), Some(_)) = (to_spare, &spec.uneven) {
         let whose = if *proven == [true; 3] { "no schedule of this period has more" } else { "the best found" };
         table.add_row([
             "to spare".to_owned(),
@@ -112,7 +112,7 @@ pub(crate) fn describe(
             format!("{:.2} times Table I-d scaled to the same needs ({:.1} a second)", paper / us, rate(paper)),
         ]);
     }
-    let choice = preferred.map(|p| p.nodes).or(to_spare.map(|spare| spare.nodes)).unwrap_or(0);
+    let choice = to_spare.map_or(0, |spare| spare.nodes);
     let from = match design.from_atlas {
         true => "from the atlas, verified; --no-atlas searches".to_owned(),
         false => format!("{} nodes, and {choice} for the choice", found.nodes),

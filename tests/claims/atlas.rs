@@ -85,5 +85,5 @@ fn atlas_answers_in_any_multiple_tick() {
     let described = eeruf(&["design", "--period-only", "rings/paper-12.toml"]);
     assert!(described.out.contains("from the atlas, verified"), "{}", described.out);
     let searched = eeruf(&["design", "--period-only", "rings/paper-12.toml", "--no-atlas"]);
-    assert!(searched.out.contains("128 nodes, and"), "{}", searched.out);
+    assert!(searched.out.contains("540 nodes, and"), "{}", searched.out);
 }

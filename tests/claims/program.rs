@@ -123,7 +123,9 @@ fn papers_ring_runs_at_65_ms_in_every_form() {
     assert_eq!((&again["schedule"], &again["nodes"]), (&found["schedule"], &found["nodes"]));
     let known = json(&["design", "--period-only", "rings/paper-12.toml", "--json"]);
     assert_eq!((&known["from_atlas"], &again["from_atlas"]), (&true.into(), &false.into()));
-    assert_eq!((&known["schedule"], &known["reason"]), (&found["schedule"], &found["reason"]));
+    // Of the schedules with that period which keep as much, the atlas may hold another.
+    assert_eq!((&known["value_us"], &known["reason"]), (&found["value_us"], &found["reason"]));
+    assert_eq!(known["spare_us"], found["spare_us"]);
     assert_eq!((&known["nodes"], &known["real_period_us"]), (&0.into(), &serde_json::json!([129_995, 2])));
 
     // The schedule file passes what was asked for, and not a microsecond more of separation or window.

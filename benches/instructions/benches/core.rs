@@ -4,9 +4,10 @@
 use std::hint::black_box;
 
 use eeruf_core::search::wait::{Budget, Objective, memory_words};
-use eeruf_core::search::{PeriodProblem, WaitProblem, WaitSearch, design};
+use eeruf_core::search::{WaitProblem, WaitSearch};
 use eeruf_core::tables::PAPER_12;
 use eeruf_core::{Criterion, EchoFilter, Instant, Layout, Micros, Requirements, Ring, RingConfig, RingEvent};
+use eeruf_period::PeriodProblem;
 use gungraun::{library_benchmark, library_benchmark_group, main};
 
 /// The shortest period of a ring with a separation of 2 ms, neighbours 15 ms apart, proven.
@@ -21,10 +22,9 @@ fn design(sensors: usize, layout: Layout<'_>, window_ms: u32, tick: Micros) -> O
         },
         tick,
     };
-    let mut memory = vec![0; design::memory_words(sensors)];
-    let found = black_box(needs).shortest::<24>(u64::MAX, &mut memory, &mut ()).ok()?.found;
-    assert!(found.proven);
-    found.value
+    let found = black_box(needs).shortest(u64::MAX, &mut ()).ok()?;
+    assert!(found.proven());
+    Some(found.period())
 }
 
 // The paper's half ring of twelve.

@@ -1,11 +1,11 @@
 //! `prove FILE [NODES]` completes a certificate: FILE ends with the line `no_period_below`, the whole goes to standard
 //! output. Exit 1 when the claim is false or the tree would need more than NODES nodes (a million by default).
 
-#[path = "../../eeruf-design/tests/common/mod.rs"]
+#[path = "../../eeruf-period/tests/common/mod.rs"]
 mod common;
 
 use eeruf_check::read_claim;
-use eeruf_design::engine::prove::prove;
+use eeruf_period::engine::prove::prove;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {

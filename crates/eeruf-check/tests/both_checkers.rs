@@ -1,10 +1,10 @@
 //! The checker in Python says the same: of certificates of the table, and of mutated ones.
 
-#[path = "../../eeruf-design/tests/common/mod.rs"]
+#[path = "../../eeruf-period/tests/common/mod.rs"]
 mod common;
 
 use eeruf_check::check;
-use eeruf_design::engine::prove::prove;
+use eeruf_period::engine::prove::prove;
 use std::path::Path;
 use std::process::Command;
 

@@ -151,8 +151,8 @@ fn text(path: &Path) -> &str {
 /// The false certificates of an engine with one text replaced.
 fn false_certificates(name: &str, change: [&str; 3]) -> Vec<(PathBuf, String)> {
     let folder = folder(name);
-    copy(&root().join("crates/eeruf-design/src/engine"), &folder.join("engine"), change);
-    let tests = read(&root().join("crates/eeruf-design/tests/common/mod.rs")).replace("eeruf_design::", "crate::");
+    copy(&root().join("crates/eeruf-period/src/engine"), &folder.join("engine"), change);
+    let tests = read(&root().join("crates/eeruf-period/tests/common/mod.rs")).replace("eeruf_period::", "crate::");
     // Without what reads certificates and the table.
     let from = tests.find("/// The claim of a certificate").expect("it converts");
     let to = tests.find("/// A small generator").expect("it has a generator");

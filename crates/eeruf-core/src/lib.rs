@@ -36,13 +36,13 @@
 //! | measure which sensors hear each other | [`survey`] |
 //! | get edges from an interrupt to the main loop | [`EdgeQueue`] |
 //! | turn echo times into distances | [`SpeedOfSound`] |
-//! | find a schedule | [`search`], or the program `eeruf` |
+//! | find a schedule | [`search`], the crate `eeruf-period`, or the program `eeruf` |
 //!
 //! The crate is `no_std` and uses no allocator, no floats and no clock: the caller passes `now` in and sleeps until the
 //! deadline it gets back, so the same code runs in an interrupt, in a simulator and in a test. Sensors are counted from
 //! 0 in code and printed from 1, as in the paper.
 //!
-//! Features: `search`, on by default, is the search for schedules, which firmware with a table can leave out (for an
+//! Features: `search`, on by default, is the search for waits, which firmware with a table can leave out (for an
 //! AVR it must). The others are off by default, for crates that firmware already uses: `defmt` (formats), `serde`
 //! (schedules, readings and times), `fugit` and `embassy-time` (conversions of times).
 //!

@@ -1,12 +1,12 @@
 //! Makes a row of the atlas: the search, and its certificate.
 
-use eeruf_core::search::{SearchError, design};
-use eeruf_core::{MAX_SENSORS, Micros, Phase};
+use eeruf_core::search::SearchError;
+use eeruf_core::{Micros, Phase};
+use eeruf_period::engine::prove::NoProof;
 use sha2::{Digest, Sha256};
 
 use crate::atlas::{Ring, Row};
 use crate::certificate::certify;
-use crate::engine::prove::NoProof;
 
 /// Budget of nodes for the search of a ring, the choice among its shortest schedules, and the proof of its certificate;
 /// with more than 16 sensors fewer, since each costs more.
@@ -30,16 +30,12 @@ pub fn header() -> &'static str {
 pub fn make(ring: &Ring) -> Result<Row, String> {
     let problem = ring.problem();
     let words = |error: SearchError| error.to_string();
-    let mut memory = vec![0; design::memory_words(problem.sensors)];
-    let designed = problem.shortest::<MAX_SENSORS>(scaled(BUDGET, ring), &mut memory, &mut ()).map_err(words)?;
-    let found = &designed.found;
+    let found = problem.shortest(scaled(BUDGET, ring), &mut ()).map_err(words)?;
     let (mut schedule, mut preferred) = (found.schedule, [false; 3]);
-    if found.proven {
-        let best = problem.prefer(&designed, scaled(PREFERENCE_BUDGET, ring), &mut memory, &mut ()).map_err(words)?;
-        preferred = [best.t_delta_proven, best.min_interval_proven, best.min_refire_proven];
-        schedule = Some(best.schedule);
+    if found.proven() {
+        let best = problem.prefer(&schedule, scaled(PREFERENCE_BUDGET, ring), &mut ()).map_err(words)?;
+        (schedule, preferred) = (best.0, best.1.proven);
     }
-    let schedule = schedule.ok_or("no schedule was found")?;
     let ticks = |time: Micros| time.as_micros() / problem.tick.as_micros();
     let fire = [Phase::A, Phase::B].map(|phase| {
         (0..problem.sensors).map(|sensor| ticks(schedule.t_fire(phase, sensor).unwrap_or_default())).collect()
@@ -47,7 +43,7 @@ pub fn make(ring: &Ring) -> Result<Row, String> {
     let row = Row {
         ring: *ring,
         period: ticks(schedule.period()),
-        bound: ticks(found.bound.unwrap_or_default()),
+        bound: ticks(found.bound),
         certified: 0,
         hash: String::new(),
         preferred,

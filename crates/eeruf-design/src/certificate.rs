@@ -1,13 +1,12 @@
 //! The certificate of a design: of the search it uses only the schedule and the bound.
 
 use eeruf_core::Micros;
-use eeruf_core::search::PeriodProblem;
+use eeruf_period::PeriodProblem;
+use eeruf_period::engine::prove::{NoProof, prove_what_can_be};
+use eeruf_period::engine::veripb::{self, VeriPb};
 use eeruf_sim::AnySchedule;
 
-use crate::engine::prove::{NoProof, prove_what_can_be};
-use crate::engine::veripb::{self, VeriPb};
 use crate::find::RingDesign;
-use crate::ticks::claim;
 
 /// The text of the certificate that the design's period is the shortest, or that none is below the search's bound; or
 /// a lower bound, where that proof has more than `budget` nodes or `go_on`, which is given the nodes so far, says no.
@@ -29,7 +28,7 @@ pub fn certify(
     budget: usize,
     go_on: impl FnMut(usize) -> bool,
 ) -> Result<String, NoProof> {
-    prove_what_can_be(&claim(problem, schedule, bound), budget, go_on)
+    prove_what_can_be(&problem.claim(schedule, bound), budget, go_on)
 }
 
 /// The same as a model and a proof for VeriPB, of the period one tick below the bound.
@@ -41,5 +40,5 @@ pub fn prove_to_veripb(
     budget: usize,
     go_on: impl FnMut(usize) -> bool,
 ) -> Result<VeriPb, NoProof> {
-    veripb::prove(&claim(&design.bounding.problem(), &design.schedule, design.bound), budget, go_on)
+    veripb::prove(&design.bounding.problem().claim(&design.schedule, design.bound), budget, go_on)
 }

@@ -3,19 +3,18 @@
 use std::error::Error;
 use std::fmt;
 
-use eeruf_core::search::{Control, Found, PeriodProblem, Preferred, SearchError, design};
-use eeruf_core::{Layout, MAX_SENSORS, Micros, Requirements};
+use eeruf_core::search::{Control, Found, SearchError};
+use eeruf_core::{MAX_SENSORS, Micros};
+use eeruf_period::ToSpare;
 use eeruf_sim::{AnySchedule, ScheduleFile};
 
-use crate::find_uneven::ToSpare;
 use crate::found::FoundJson;
 use crate::ring::RingSpec;
 use crate::shortest::{Search, Shortest, shortest};
+use crate::what_if::WhatIf;
 
 /// The number of larger separations that are tried where firings cannot be moved apart.
 const HANDLING_STEPS: u32 = 8;
-/// Number of nodes it may cost to find out what one need, relaxed, would bring.
-const WHAT_IF_BUDGET: u64 = 20_000;
 
 /// A schedule for a ring file.
 #[derive(Clone, Debug)]
@@ -35,10 +34,7 @@ pub struct RingDesign {
     pub bound: Option<Micros>,
     /// Why it is not shorter, in words.
     pub reason: String,
-    /// The choice among the schedules of that period, if the period is proven and all sensors are alike.
-    pub preferred: Option<Preferred<MAX_SENSORS>>,
-    /// Slack of a schedule for a ring whose sensors are not alike, if the period is proven: of those with this period
-    /// it has the most.
+    /// Slack of the schedule, if the period is proven: of those with this period it has the most.
     pub to_spare: Option<ToSpare>,
     /// True if period and schedule are the atlas's, and nothing was searched.
     pub from_atlas: bool,
@@ -79,28 +75,13 @@ impl fmt::Display for NoSchedule {
 
 impl Error for NoSchedule {}
 
-/// The gain from relaxing one need.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct WhatIf {
-    /// The relaxed need, in words.
-    pub need: String,
-    /// The shortest period with it, or the shortest found.
-    pub period: Option<Micros>,
-    /// True if no schedule with it is shorter.
-    pub proven: bool,
-}
-
 impl RingDesign {
     /// The gain from relaxing one need; nothing where the period is not proven.
     ///
     /// # Errors
     /// As for [`RingSpec::shortest`].
     pub fn what_if(&self, control: &mut impl Control) -> Result<Vec<WhatIf>, SearchError> {
-        match &self.spec.uneven {
-            _ if !self.found.proven => Ok(Vec::new()),
-            Some(_) => self.spec.what_if_uneven(control),
-            None => what_if(&self.spec.problem(), control),
-        }
+        if self.found.proven { self.spec.what_if(control) } else { Ok(Vec::new()) }
     }
 
     /// The answer as `--json` prints it.
@@ -173,7 +154,7 @@ impl RingSpec {
                 (design.spec, design.t_delta) = (self.covering(t_delta), t_delta);
                 // Chosen for what it had to spare before.
                 if apart != design.schedule {
-                    (design.schedule, design.preferred, design.to_spare) = (apart, None, None);
+                    (design.schedule, design.to_spare) = (apart, None);
                 }
                 return Ok(Ok(design));
             }
@@ -198,13 +179,12 @@ impl RingSpec {
         control: &mut impl Control,
     ) -> Result<Result<RingDesign, NoSchedule>, SearchError> {
         let shortest = shortest(&self.problem(), search, control)?;
-        let Some(schedule) = shortest.schedule() else { return Ok(Err(NoSchedule::EndedEarly)) };
-        Ok(Ok(self.design(schedule, shortest, self.clone())))
+        Ok(Ok(self.design(shortest.schedule, shortest, self.clone())))
     }
 
     /// The design of a schedule that serves this ring at its own `t_delta`.
     pub(crate) fn design(&self, schedule: AnySchedule, shortest: Shortest, bounding: Self) -> RingDesign {
-        let Shortest { found, reason, preferred, to_spare, from_atlas } = shortest;
+        let Shortest { found, reason, to_spare, from_atlas, .. } = shortest;
         let t_delta = self.t_delta_needed(&schedule).max(bounding.t_delta);
         let spec = self.covering(t_delta);
         RingDesign {
@@ -215,59 +195,9 @@ impl RingSpec {
             bounding,
             found,
             reason,
-            preferred,
             to_spare,
             from_atlas,
             what_if: Vec::new(),
         }
     }
-}
-
-/// A tenth less, or a tick if that is more, in whole ticks.
-pub(crate) fn less(time: Micros, tick: Micros) -> Micros {
-    let (us, tick) = (time.as_micros(), tick.as_micros().max(1));
-    Micros::new((us - us / 10).min(us.saturating_sub(1)) / tick * tick)
-}
-
-/// Relaxes one need after the other by a tenth, or by one tick if that is more, or by one neighbour.
-fn what_if(problem: &PeriodProblem<'_>, control: &mut impl Control) -> Result<Vec<WhatIf>, SearchError> {
-    let mut memory = vec![0; design::memory_words(problem.sensors)];
-    let Requirements { t_delta, min_interval, window, layout, .. } = problem.requirements;
-    // In whole ticks, as others are rounded up to them.
-    let less = |time: Micros| less(time, problem.tick);
-    let (shorter, listening) = (less(min_interval), less(window));
-    let separation = less(problem.requirements.separation()).as_micros();
-    let nearer = Micros::new(separation.saturating_sub(1) / 2);
-    let mut cases = Vec::new();
-    if shorter < min_interval {
-        let relaxed = Requirements { min_interval: shorter, ..problem.requirements };
-        cases.push((format!("{shorter} instead of {min_interval} between neighbours"), relaxed));
-    }
-    if nearer < t_delta {
-        cases.push((
-            format!("t_delta of {nearer} instead of {t_delta}"),
-            Requirements { t_delta: nearer, ..problem.requirements },
-        ));
-    }
-    if Micros::ZERO < listening && listening < window {
-        let relaxed = Requirements { window: listening, ..problem.requirements };
-        cases.push((format!("listening for {listening} instead of {window}"), relaxed));
-    }
-    let fewer = match layout {
-        Layout::Line(n) if n > 1 => Some((n, Layout::Line(n - 1))),
-        Layout::Ring(n) if n > 1 => Some((n, Layout::Ring(n - 1))),
-        _ => None,
-    };
-    if let Some((n, layout)) = fewer {
-        cases.push((
-            format!("any {} instead of {n} adjacent sensors apart", n - 1),
-            Requirements { layout, ..problem.requirements },
-        ));
-    }
-    let answer = |(need, requirements)| {
-        let relaxed = PeriodProblem { requirements, ..*problem };
-        let found = relaxed.shortest::<MAX_SENSORS>(WHAT_IF_BUDGET, &mut memory, control)?.found;
-        Ok(WhatIf { need, period: found.value, proven: found.proven })
-    };
-    cases.into_iter().map(answer).collect()
 }

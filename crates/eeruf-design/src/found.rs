@@ -29,8 +29,8 @@ pub struct FoundJson {
     /// True if the atlas answered, and nothing was searched; only `design` says it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub from_atlas: Option<bool>,
-    /// Slack of an uneven ring's schedule beyond every `t_delta`, then every interval and turn on a shared line, then
-    /// every refire time; only where that was chosen.
+    /// Slack of the schedule beyond every `t_delta`, then every interval and turn on a shared line, then every refire
+    /// time; only where the period is proven.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub spare_us: Option<[u32; 3]>,
     /// True if no schedule of this period has more, of each.

@@ -7,16 +7,15 @@
 //! | `each`, `uneven` | one number for all sensors or one for each; what sensors need that are not alike |
 //! | `ring` | the ring file, turned into what a schedule must meet |
 //! | `places`, `urdf`, `hearing` | where the sensors are on the robot, and which hear each other there |
-//! | `shortest`, `find_uneven` | the shortest period for that |
-//! | `find`, `what_if_uneven` | the design of a ring, and what would make it shorter |
+//! | `shortest` | the shortest period for that, from the atlas or by `eeruf-period` |
+//! | `find`, `what_if` | the design of a ring, and what would make it shorter |
 //! | `moving` | the shortest period of a ring that moves |
 //! | `handling` | firings apart by what the controller needs for one |
 //! | `questions` | what fits into a given period, and the curve of a need |
-//! | [`engine`] | search, proof and preference for rings whose sensors differ |
 //! | `found` | the answer as it is printed in JSON |
 //! | `hopping`, `phase_file` | schedules of many phases: the shortest period, and the file |
 //! | `atlas`, `atlas_making` | rings whose shortest period is known; how their file is made |
-//! | `ticks`, `certificate` | the problem in ticks, and the proof, as a text that others check |
+//! | `certificate` | the proof, as a text that others check |
 //! | `rooms` | ways of firing the ring, judged in rooms |
 //! | `reals` | what the tick costs: the shortest period over the reals |
 //!
@@ -36,9 +35,7 @@ pub mod atlas;
 pub mod atlas_making;
 pub mod certificate;
 mod each;
-pub mod engine;
 mod find;
-mod find_uneven;
 mod found;
 mod handling;
 mod hearing;
@@ -54,15 +51,14 @@ mod reals;
 mod ring;
 mod rooms;
 mod shortest;
-mod ticks;
 mod uneven;
 #[cfg(feature = "urdf")]
 mod urdf;
-mod what_if_uneven;
+mod what_if;
 
 pub use each::Each;
-pub use find::{NoSchedule, RingDesign, WhatIf};
-pub use find_uneven::ToSpare;
+pub use eeruf_period::{PeriodProblem, ToSpare};
+pub use find::{NoSchedule, RingDesign};
 pub use found::FoundJson;
 pub use hopping::HoppingDesign;
 pub use layout::{LayoutKey, LayoutName, OwnedLayout};
@@ -75,6 +71,7 @@ pub use ring::{RingSpec, robot_ring};
 pub use rooms::{RoomRobot, RoomsAnswer, RoomsAsked, RoomsJson};
 pub use shortest::{Search, Shortest, shortest};
 pub use uneven::OwnedUneven;
+pub use what_if::WhatIf;
 
 /// The listing of the crate's README compiles and holds.
 #[cfg(doctest)]

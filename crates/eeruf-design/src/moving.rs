@@ -11,15 +11,14 @@
 //! The second is a refire time, so the searches for rings that stand decide a region. All `|d|` lie a separation
 //! apart, which bounds `max |d|` from below and so gives the least `t_delta` of a period.
 
-use eeruf_core::search::{Control, Found, Outcome, PeriodProblem, SearchError, design};
-use eeruf_core::{MAX_SENSORS, Micros};
+use eeruf_core::Micros;
+use eeruf_core::search::{Control, Found, Outcome, SearchError};
+use eeruf_period::{PeriodProblem, ToSpare};
 use eeruf_sim::AnySchedule;
 
 use crate::find::{NoSchedule, RingDesign};
-use crate::find_uneven::{ToSpare, decide_uneven, prefer_uneven};
 use crate::ring::RingSpec;
 use crate::shortest::{SPARE_BUDGET, Search, Shortest, shortest};
-use crate::ticks::in_ticks;
 
 /// A `t_delta` from which on not even a second of silence between two firings would be enough.
 const TOO_MUCH: Micros = Micros::from_millis(1000);
@@ -115,21 +114,21 @@ impl<'s> Moving<'s> {
                 return Ok(Err(NoSchedule::TooFast));
             }
             let next = spec.covering(t_delta);
-            let same = in_ticks(&next.problem()) == in_ticks(&bounding.problem());
+            let same = next.problem().in_ticks() == bounding.problem().in_ticks();
             bounding = next;
             if same {
                 break;
             }
             lower = self.standing(&bounding, self.search.atlas, control)?;
         }
-        if let Some(schedule) = lower.schedule().filter(|schedule| spec.serves(schedule)) {
+        if spec.serves(&lower.schedule) {
             lower.found.nodes = self.nodes;
-            return Ok(Ok(spec.design(schedule, lower, bounding)));
+            return Ok(Ok(spec.design(lower.schedule, lower, bounding)));
         }
         // The preferred schedule may fire less evenly than the first that was found.
         if let Some(schedule) = lower.found.schedule.filter(|schedule| spec.serves(schedule)) {
             lower.found.nodes = self.nodes;
-            return Ok(Ok(spec.design(schedule, Shortest { preferred: None, to_spare: None, ..lower }, bounding)));
+            return Ok(Ok(spec.design(schedule, Shortest { to_spare: None, ..lower }, bounding)));
         }
         let bound = lower.found.bound;
         let upper = self.climb(&lower, control)?;
@@ -145,7 +144,7 @@ impl<'s> Moving<'s> {
         let value = Some(schedule.period());
         let proven = bound == value;
         let needs = spec.covering(spec.t_delta_needed(&schedule).max(bounding.t_delta));
-        let (mut schedule, mut preferred, mut to_spare) = (schedule, None, None);
+        let (mut schedule, mut to_spare) = (schedule, None);
         let mut certifiable = (bounding, lower.found.bound);
         if proven {
             // Most are the shortest for their own t_delta too. That can be certified, and of those that are as short
@@ -154,40 +153,37 @@ impl<'s> Moving<'s> {
             if own.found.proven && own.found.value == value {
                 certifiable = (needs.clone(), value);
                 let as_even = |other: &AnySchedule| spec.t_delta_needed(other) <= needs.t_delta;
-                if let Some(other) = own.schedule().filter(as_even) {
-                    (schedule, preferred, to_spare) = (other, own.preferred, own.to_spare);
+                if as_even(&own.schedule) {
+                    (schedule, to_spare) = (own.schedule, own.to_spare);
                 }
             }
             if to_spare.is_none() {
-                (schedule, to_spare) = self.with_most_to_spare(schedule, &needs, control)?;
+                let (preferred, spare) = self.with_most_to_spare(schedule, &needs, control)?;
+                (schedule, to_spare) = (preferred, Some(spare));
             }
         }
         let (bounding, certified) = certifiable;
         let found = Found { schedule: Some(schedule), value, bound, proven, nodes: self.nodes };
-        let shortest = Shortest { found, reason, preferred, to_spare, from_atlas: false };
+        let shortest = Shortest { found, schedule, reason, to_spare, from_atlas: false };
         let design = spec.design(schedule, shortest, bounding);
         Ok(Ok(RingDesign { bound: certified, t_delta: needs.t_delta, spec: needs, ..design }))
     }
 
-    /// Of the schedules of an uneven ring with the period of this one and no larger `t_delta`, the one with most to
-    /// spare.
+    /// Of the schedules with the period of this one and no larger `t_delta`, the one with most to spare.
     pub(crate) fn with_most_to_spare(
         &self,
         schedule: AnySchedule,
         needs: &RingSpec,
         control: &mut impl Control,
-    ) -> Result<(AnySchedule, Option<ToSpare>), SearchError> {
-        if needs.uneven.is_none() {
-            return Ok((schedule, None));
-        }
-        let (preferred, spare) = prefer_uneven(&needs.problem(), &schedule, SPARE_BUDGET, control)?;
+    ) -> Result<(AnySchedule, ToSpare), SearchError> {
+        let (preferred, spare) = needs.problem().prefer(&schedule, SPARE_BUDGET, control)?;
         if self.spec.t_delta_needed(&preferred) <= needs.t_delta {
-            return Ok((preferred, Some(spare)));
+            return Ok((preferred, spare));
         }
         // It fires less evenly. Of those that fire as evenly as this one, only the best found is known.
         let capped = needs.refiring_after(schedule.min_refire());
-        let (preferred, spare) = prefer_uneven(&capped.problem(), &schedule, SPARE_BUDGET, control)?;
-        Ok((preferred, Some(ToSpare { proven: [false; 3], ..spare })))
+        let (preferred, spare) = capped.problem().prefer(&schedule, SPARE_BUDGET, control)?;
+        Ok((preferred, ToSpare { proven: [false; 3], ..spare }))
     }
 
     fn ticks(&self, time: Micros) -> u32 {
@@ -205,7 +201,7 @@ impl<'s> Moving<'s> {
 
     /// The least `max |d|` of any schedule with this `t_delta`: all `|d|` lie a separation apart.
     fn least_change(&self, t_delta: Micros) -> u32 {
-        let ticks = in_ticks(&self.spec.covering(t_delta).problem());
+        let ticks = self.spec.covering(t_delta).problem().in_ticks();
         let is_first =
             |sensor: usize| ticks.together.iter().all(|group| group[0] == sensor || !group.contains(&sensor));
         // A group needs the largest separation of its sensors; one of them bounds that from below.
@@ -246,18 +242,15 @@ impl<'s> Moving<'s> {
 
     /// A schedule that serves: each next one is for the `t_delta` that the last one needs.
     fn climb(&mut self, lower: &Shortest, control: &mut impl Control) -> Result<Option<AnySchedule>, SearchError> {
-        let mut reached = lower.schedule();
-        while let Some(schedule) = reached {
-            if self.spec.serves(&schedule) {
-                break;
-            }
+        let mut schedule = lower.schedule;
+        while !self.spec.serves(&schedule) {
             let t_delta = self.spec.t_delta_needed(&schedule);
             if t_delta > TOO_MUCH {
                 return Ok(None);
             }
-            reached = self.standing(&self.spec.covering(t_delta), "", control)?.schedule();
+            schedule = self.standing(&self.spec.covering(t_delta), "", control)?.schedule;
         }
-        Ok(reached)
+        Ok(Some(schedule))
     }
 
     /// Looks for schedules with periods from `least` to below `end`, that of `best` if there is one: the shortest, the
@@ -270,7 +263,7 @@ impl<'s> Moving<'s> {
         lower_reason: &str,
         control: &mut impl Control,
     ) -> Result<(Option<AnySchedule>, Option<Micros>, String), SearchError> {
-        let window = in_ticks(&self.spec.problem()).window.into_iter().min().unwrap_or(0);
+        let window = self.spec.problem().in_ticks().window.into_iter().min().unwrap_or(0);
         // The region with the shortest periods is at the top.
         let mut open = vec![Region { periods: (least, u32::MAX), changes: (0, u32::MAX) }];
         while let Some(Region { periods: (first, last), changes: (low, high) }) = open.pop() {
@@ -331,12 +324,7 @@ impl<'s> Moving<'s> {
         if budget == 0 {
             return Ok(Outcome::BudgetSpent);
         }
-        let (outcome, nodes) = if problem.requirements.uneven.is_some() {
-            decide_uneven(problem, period, guide, budget, control)?
-        } else {
-            let mut memory = vec![0; design::memory_words(problem.sensors)];
-            problem.decide::<MAX_SENSORS>(self.time(period), budget, &mut memory, control)?
-        };
+        let (outcome, nodes) = problem.decide(self.time(period), guide, budget, control)?;
         self.nodes += nodes;
         Ok(outcome)
     }

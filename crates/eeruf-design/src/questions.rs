@@ -1,10 +1,10 @@
 //! Questions beside the shortest period: what fits into a given one, and what each need costs.
 
-use eeruf_core::search::{Control, GridError, Outcome, ProblemError, SearchError, design};
-use eeruf_core::{MAX_SENSORS, Micros};
+use eeruf_core::Micros;
+use eeruf_core::search::{Control, GridError, Outcome, ProblemError, SearchError};
+use eeruf_period::engine::shortest::MAX_TICKS;
 use eeruf_sim::AnySchedule;
 
-use crate::engine::MAX_NUMBER;
 use crate::find::NoSchedule;
 use crate::moving::Moving;
 use crate::ring::RingSpec;
@@ -75,45 +75,38 @@ impl RingSpec {
             return Err(GridError::OffGrid { what: "the period", time: period, tick: self.tick }.into());
         }
         let ticks = period.as_micros() / tick;
-        if ticks == 0 || ticks > MAX_NUMBER {
-            return Err(SearchError::Problem(ProblemError::Period { period: ticks, most: MAX_NUMBER }));
+        if ticks == 0 || ticks > MAX_TICKS {
+            return Err(SearchError::Problem(ProblemError::Period { period: ticks, most: MAX_TICKS }));
         }
         let search = Search { budget, what_if: false, atlas: "" };
         let mut fit =
             Fit { schedule: None, spec: self.clone(), t_delta: None, bound: None, fits: None, proven: false, nodes: 0 };
-        if self.uneven.is_none() {
-            let mut memory = vec![0; design::memory_words(self.sensors)];
-            let found = self.problem().largest_t_delta::<MAX_SENSORS>(period, budget, &mut memory, control)?;
-            (fit.schedule, fit.t_delta, fit.bound) = (found.schedule, found.value, found.bound);
-            (fit.proven, fit.nodes) = (found.proven, found.nodes);
-            let too_small = found.bound.is_none_or(|bound| bound < self.t_delta);
-            fit.fits = match found.schedule {
-                Some(schedule) if self.serves(&schedule) => Some(true),
-                // Not even what a robot at rest needs.
-                _ if found.proven && too_small => Some(false),
-                _ => None,
-            };
+        let mut moving = Moving::new(self, search);
+        match moving.at(ticks, control)? {
+            Outcome::Found(schedule) => (fit.schedule, fit.fits) = (Some(schedule), Some(true)),
+            Outcome::Exhausted => fit.fits = Some(false),
+            Outcome::BudgetSpent => {}
         }
-        if fit.fits.is_none() {
-            let mut moving = Moving::new(self, search);
-            match moving.at(ticks, control)? {
-                Outcome::Found(schedule) => (fit.schedule, fit.fits) = (Some(schedule), Some(true)),
-                Outcome::Exhausted => fit.fits = Some(false),
-                Outcome::BudgetSpent => {}
-            }
-            fit.nodes += moving.nodes();
-        }
+        fit.nodes = moving.nodes();
         if let Some(schedule) = fit.schedule {
             let needs = self.covering(self.t_delta_needed(&schedule));
-            fit.spec = needs.clone();
-            if self.uneven.is_some() {
-                let (schedule, spare) = Moving::new(self, search).with_most_to_spare(schedule, &needs, control)?;
-                let t_delta = spare.map(|spare| needs.t_delta.saturating_add(spare.t_delta));
-                (fit.schedule, fit.t_delta) = (Some(schedule), t_delta);
-                if spare.is_some_and(|spare| spare.proven[0]) {
-                    (fit.bound, fit.proven) = (t_delta, true);
-                }
+            let (schedule, spare) = moving.with_most_to_spare(schedule, &needs, control)?;
+            fit.nodes += spare.nodes;
+            fit.schedule = Some(schedule);
+            fit.t_delta = match self.uneven {
+                Some(_) => Some(needs.t_delta.saturating_add(spare.t_delta)),
+                // A need that was rounded up to ticks leaves more than whole ticks.
+                None => schedule.verify(&needs.problem().requirements).max_t_delta(),
+            };
+            if spare.proven[0] {
+                (fit.bound, fit.proven) = (fit.t_delta, true);
             }
+            fit.spec = needs;
+        } else if self.uneven.is_none() {
+            let left = budget.saturating_sub(fit.nodes);
+            let largest = self.problem().largest_t_delta(period, left, control)?;
+            (fit.schedule, fit.t_delta, fit.bound) = (largest.schedule, largest.value, largest.bound);
+            (fit.proven, fit.nodes) = (largest.proven, fit.nodes + largest.nodes);
         }
         if self.handling > Micros::ZERO && fit.fits == Some(true) {
             fit.schedule = fit.schedule.and_then(|schedule| self.moved_apart(&schedule));

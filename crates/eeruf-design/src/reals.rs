@@ -2,13 +2,12 @@
 //!
 //! A schedule in ticks of any length keeps these needs, so no tick, however fine, beats a period proven here.
 
-use eeruf_core::search::PeriodProblem;
 use eeruf_core::{Micros, Phase};
 use eeruf_sim::AnySchedule;
 
-use crate::engine::reals::shortest_over_reals;
 use crate::find::RingDesign;
-use crate::ticks::in_ticks;
+use eeruf_period::PeriodProblem;
+use eeruf_period::engine::reals::shortest_over_reals;
 
 /// The shortest period with real firing times in place of whole ticks, for the needs in exact microseconds.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -63,7 +62,7 @@ pub fn over_reals(
     let fire = [Phase::A, Phase::B].map(|phase| {
         (0..problem.sensors).map(|sensor| schedule.t_fire(phase, sensor).unwrap_or_default().as_micros()).collect()
     });
-    let found = shortest_over_reals(&in_ticks(&exact), &fire, budget, go_on)?;
+    let found = shortest_over_reals(&exact.in_ticks(), &fire, budget, go_on)?;
     let (numerator, denominator) = (u64::from(found.period), u64::from(found.denominator));
     let divisor = greatest_common_divisor(numerator, denominator);
     let period_us = (numerator / divisor, denominator / divisor);

@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
-use eeruf_core::search::PeriodProblem;
 use eeruf_core::{Criterion, Micros, Requirements, SensorLimits, SpeedOfSound};
 use eeruf_files::{FileError, build};
 use eeruf_modules::{Module, ModulesFile};
+use eeruf_period::PeriodProblem;
 use eeruf_sim::{Air, Pose, RobotRing};
 use serde::Deserialize;
 

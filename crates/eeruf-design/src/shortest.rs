@@ -1,15 +1,13 @@
 //! The shortest period for what a schedule must meet: out of the atlas where it knows it, else by search.
 
 use eeruf_core::MAX_SENSORS;
-use eeruf_core::search::{Control, Found, PeriodProblem, Preferred, SearchError, ShortestPeriod, design};
+use eeruf_core::search::{Control, Found, SearchError};
+use eeruf_period::{PeriodProblem, ToSpare};
 use eeruf_sim::AnySchedule;
 
 use crate::atlas;
-use crate::find_uneven::{ToSpare, prefer_uneven, shortest_uneven};
 
 /// Budget of nodes for the choice among the shortest schedules.
-const PREFERENCE_BUDGET: u64 = 100_000;
-/// Budget of nodes for the choice among the shortest schedules of an uneven ring.
 pub(crate) const SPARE_BUDGET: u64 = 30_000;
 
 /// The effort of a search.
@@ -34,25 +32,16 @@ impl Default for Search {
 /// Knowledge of the shortest period.
 #[derive(Clone, Debug)]
 pub struct Shortest {
-    /// The shortest period, or the best found.
+    /// The shortest period, or the best found, with the first schedule that has it.
     pub found: Found<MAX_SENSORS>,
+    /// The schedule to prefer.
+    pub schedule: AnySchedule,
     /// Why it is not shorter, in words.
     pub reason: String,
-    /// The choice among the schedules of that period, if the period is proven and all sensors are alike.
-    pub preferred: Option<Preferred<MAX_SENSORS>>,
-    /// Slack of a schedule for a ring whose sensors are not alike, if the period is proven: of those with this period
-    /// it has the most.
+    /// Slack of that schedule, if the period is proven: of those with this period it has the most.
     pub to_spare: Option<ToSpare>,
     /// True if period and schedule are the atlas's, and nothing was searched.
     pub from_atlas: bool,
-}
-
-impl Shortest {
-    /// The schedule that is preferred, or the first found.
-    #[must_use]
-    pub fn schedule(&self) -> Option<AnySchedule> {
-        self.preferred.map_or(self.found.schedule, |preferred| Some(preferred.schedule))
-    }
 }
 
 /// Finds the shortest period; `what_if` does not matter here.
@@ -67,30 +56,22 @@ pub fn shortest(
     if let Some(known) = known(problem, search.atlas)? {
         return Ok(known);
     }
-    if problem.requirements.uneven.is_some() {
-        let (mut found, reason) = shortest_uneven(problem, search.budget, control)?;
-        let mut to_spare = None;
-        if let Some(schedule) = found.schedule.filter(|_| found.proven) {
-            let (schedule, spare) = prefer_uneven(problem, &schedule, SPARE_BUDGET, control)?;
-            (found.schedule, to_spare) = (Some(schedule), Some(spare));
-        }
-        return Ok(Shortest { found, reason, preferred: None, to_spare, from_atlas: false });
+    let shortest = problem.shortest(search.budget, control)?;
+    let found = shortest.found();
+    let (mut schedule, mut to_spare) = (shortest.schedule, None);
+    if found.proven {
+        let (preferred, spare) = problem.prefer(&schedule, SPARE_BUDGET, control)?;
+        (schedule, to_spare) = (preferred, Some(spare));
     }
-    let mut memory = vec![0; design::memory_words(problem.sensors)];
-    let designed: ShortestPeriod<MAX_SENSORS> = problem.shortest(search.budget, &mut memory, control)?;
-    let choose = || problem.prefer(&designed, PREFERENCE_BUDGET, &mut memory, control);
-    let preferred = designed.found.proven.then(choose).transpose()?;
-    let reason = designed.explanation().to_string();
-    Ok(Shortest { found: designed.found, reason, preferred, to_spare: None, from_atlas: false })
+    Ok(Shortest { found, schedule, reason: shortest.reason, to_spare, from_atlas: false })
 }
 
 /// The atlas's entry for a problem, if it has its shortest period.
 fn known(problem: &PeriodProblem<'_>, rows: &str) -> Result<Option<Shortest>, SearchError> {
     let Some((row, schedule)) = atlas::answer(rows, problem) else { return Ok(None) };
     let period = schedule.period();
-    let [t_delta_proven, min_interval_proven, min_refire_proven] = row.preferred;
-    let preferred = Preferred { schedule, t_delta_proven, min_interval_proven, min_refire_proven, nodes: 0 };
+    let to_spare = ToSpare { proven: row.preferred, ..problem.spare_of(&schedule) };
     let found = Found { schedule: Some(schedule), value: Some(period), bound: Some(period), proven: true, nodes: 0 };
-    let reason = problem.why_shortest(period)?.in_ticks_of(problem.tick).to_string();
-    Ok(Some(Shortest { found, reason, preferred: Some(preferred), to_spare: None, from_atlas: true }))
+    let reason = problem.why_shortest(&schedule)?;
+    Ok(Some(Shortest { found, schedule, reason, to_spare: Some(to_spare), from_atlas: true }))
 }

@@ -61,7 +61,7 @@ fn without_it_or_where_no_two_coincide_nothing_changes() {
     let at_once = designed(&ring(4, "")).expect("a schedule");
     let zero = designed(&ring(4, "handling_us = 0")).expect("a schedule");
     assert_eq!(zero.schedule, at_once.schedule);
-    assert!(zero.preferred.is_some());
+    assert!(zero.to_spare.is_some());
 }
 
 #[test]

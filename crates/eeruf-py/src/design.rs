@@ -2,9 +2,11 @@
 
 use std::time::{Duration, Instant};
 
-use eeruf_core::search::{self as search, PeriodProblem, Progress};
+use eeruf_core::search::{self as search, Progress};
 use eeruf_core::{MAX_SENSORS, Micros, Requirements};
-use eeruf_design::{OwnedUneven, Search, atlas::ATLAS, certificate, over_reals as real_period, real_budget, shortest};
+use eeruf_design::{
+    OwnedUneven, PeriodProblem, Search, atlas::ATLAS, certificate, over_reals as real_period, real_budget, shortest,
+};
 use pyo3::prelude::*;
 
 use crate::{
@@ -28,8 +30,7 @@ const FEW_SENSORS: usize = 12;
 /// Find the schedule with the shortest period for a ring, and prove that none is shorter.
 ///
 /// Firing times are free, on a grid of ticks. Among all schedules of the shortest period it prefers a larger
-/// ``T_delta``, then a larger smallest interval, then evener firing; where sensors are not all alike it takes the first
-/// that it finds. It runs on one core, without the interpreter lock;
+/// ``T_delta``, then a larger smallest interval, then evener firing. It runs on one core, without the interpreter lock;
 /// Ctrl-C ends it.
 ///
 /// Args:
@@ -175,7 +176,7 @@ pub(crate) fn design<'py>(
         };
         let shortest =
             shortest(&needs, &Search { budget, what_if: false, atlas }, &mut control).map_err(Raise::raise)?;
-        let found = search::Found { schedule: shortest.schedule(), ..shortest.found };
+        let found = search::Found { schedule: Some(shortest.schedule), ..shortest.found };
         let mut still = |what: &str, nodes| began.elapsed() < limit && go_on(&|| format!("{what}: {nodes} nodes"));
         let proof = certificate.then(|| certify(&needs, &found, |nodes| still("certificate", nodes))).transpose()?;
         let schedule = found.schedule.filter(|_| over_reals && found.proven);

@@ -58,8 +58,8 @@ pub(crate) struct Found {
     /// True if the atlas of proven rings answered, and nothing was searched.
     #[pyo3(get)]
     from_atlas: bool,
-    /// Of a ring whose sensors are not all alike: what its schedule keeps beyond every ``t_delta``, then every interval
-    /// and turn on a shared line, then every refire time, in microseconds; else None.
+    /// Slack of the schedule beyond every ``t_delta``, then every interval and turn on a shared line, then every
+    /// refire time, in microseconds; None unless the period is proven.
     #[pyo3(get)]
     spare_us: Option<(u32, u32, u32)>,
     /// True if no schedule of this period has more, of each; None without them.
@@ -180,9 +180,12 @@ impl Found {
     }
 
     fn __repr__(slf: &Bound<'_, Self>) -> PyResult<String> {
-        let fields = ["schedule", "value_us", "bound_us", "proven", "nodes", "seconds", "reason"];
-        let shown = fields.map(|field| Ok(format!("{field}={}", slf.getattr(field)?.repr()?)));
-        Ok(format!("Found({})", shown.into_iter().collect::<PyResult<Vec<_>>>()?.join(", ")))
+        let mut fields = vec!["schedule", "value_us", "bound_us", "proven", "nodes", "seconds", "reason"];
+        if slf.get().spare_us.is_some() {
+            fields.extend(["spare_us", "spare_proven"]);
+        }
+        let shown = fields.into_iter().map(|field| Ok(format!("{field}={}", slf.getattr(field)?.repr()?)));
+        Ok(format!("Found({})", shown.collect::<PyResult<Vec<_>>>()?.join(", ")))
     }
 
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {

@@ -10,9 +10,8 @@ use std::rc::Rc;
 #[cfg(target_os = "linux")]
 use std::{sync::mpsc::Sender, thread};
 
-use eeruf_core::search::PeriodProblem;
 use eeruf_core::{Edge, Instant, MAX_SENSORS, Micros, Ring, RingConfig, RingEvent, VerifiedSchedule};
-use eeruf_design::{RingSpec, Search, shortest};
+use eeruf_design::{PeriodProblem, RingSpec, Search, shortest};
 use eeruf_hc_sr04::{HcSr04Ring, Pins, Settings};
 use eeruf_serial::{Firing, Message, Received};
 use embedded_hal::delay::DelayNs;
@@ -57,8 +56,7 @@ impl GpioRing {
         let problem: PeriodProblem<'_> = spec.problem();
         let search = Search { budget: BUDGET, ..Search::default() };
         let found = shortest(&problem, &search, &mut ()).map_err(|error| error.to_string())?;
-        let schedule = found.schedule().ok_or_else(|| format!("no schedule: {}", found.reason))?;
-        let verified = schedule.verify(&problem.requirements).verified();
+        let verified = found.schedule.verify(&problem.requirements).verified();
         let settings = match module {
             None => Settings::default(),
             Some(module) => Settings::of(&module)

@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use super::common::ProblemError;
+use super::problem_error::ProblemError;
 use crate::layout::LayoutError;
 use crate::schedule::{MAX_PERIOD, MAX_SENSORS, ScheduleError};
 use crate::time::Micros;
@@ -16,8 +16,6 @@ pub enum SearchError {
     Grid(GridError),
     /// Free firing times are designed under the exact criterion, which needs no waits.
     PaperCriterion,
-    /// Sensors that are not all alike; the crate `eeruf-design` has the search for them.
-    Uneven,
     /// The number of sensors is 0 or above 64, or there is not one lag for each.
     Lags {
         /// The number of sensors.
@@ -76,9 +74,6 @@ impl fmt::Display for SearchError {
             Self::PaperCriterion => {
                 f.write_str("criterion paper for free firing times; expected criterion exact, as there are no waits")
             }
-            Self::Uneven => f.write_str(
-                "sensors that are not all alike; expected them to be: eeruf-design has the search for others",
-            ),
             Self::Lags { sensors, lags } if sensors == lags => {
                 write!(f, "{sensors} sensors; expected 1 to {MAX_SENSORS}")
             }

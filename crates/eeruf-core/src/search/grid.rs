@@ -15,18 +15,6 @@ impl Grid {
         if tick == Micros::ZERO { Err(GridError::NoTick) } else { Ok(Self { tick_us: tick.as_micros() }) }
     }
 
-    /// A grid on which every time lies.
-    pub(super) const FINEST: Self = Self { tick_us: 1 };
-
-    /// The tick in microseconds.
-    pub(super) const fn tick_us(self) -> u64 {
-        self.tick_us as u64
-    }
-
-    pub(super) const fn tick(self) -> Micros {
-        Micros::new(self.tick_us)
-    }
-
     /// The least number of ticks that is no shorter than `time`.
     pub(super) fn at_least(self, time: Micros) -> u32 {
         time.as_micros().div_ceil(self.tick_us)

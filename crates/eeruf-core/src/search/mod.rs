@@ -1,30 +1,28 @@
-//! Search for schedules, exhaustive and proven.
+//! The paper's search for waits, exhaustive and proven.
 //!
-//! - [`PeriodProblem`]: the user's question. Firing times are free; the shortest period is sought, or the largest
-//!   `t_delta` or interval at a given period.
-//! - [`WaitSearch`]: the paper's question. Lags are given, waits are sought on a grid: one table, all, how many, the
-//!   best.
+//! Lags are given, waits are sought on a grid: [`WaitSearch`] finds one table, all, how many, the best. It puts the
+//! question on a grid of ticks and hands it to an engine that knows whole numbers only, [`wait`]: *difference
+//! constraints* with *disjunctive* orders. It works in memory that the caller lends, without recursion or a clock, so
+//! the same question has the same answer on each target. Whatever it returns passes
+//! [`Schedule::verify`](crate::Schedule::verify), which shares nothing with it.
 //!
-//! Both put their question on a grid of ticks and hand it to an engine that knows whole numbers only: [`design`], a
-//! *simple temporal network* with *disjunctive* orders, and [`wait`], *difference constraints* with the same. The
-//! engines share how a search ends ([`Outcome`]), who watches it ([`Control`], [`Progress`]) and why a problem makes no
-//! sense ([`ProblemError`]); they do not know each other.
-//!
-//! The engines work in memory that the caller lends, without recursion or a clock, and the only random numbers come
-//! from a fixed seed, so the same question has the same answer on each target. Whatever they return passes
-//! [`Schedule::verify`](crate::Schedule::verify), which shares nothing with them.
+//! Where firing times are free and the shortest period is sought, the crate `eeruf-period` has the search. How a search
+//! ends ([`Outcome`], [`Found`]), who watches it ([`Control`], [`Progress`]) and why it cannot start ([`SearchError`])
+//! are the same for both.
 
-mod common;
-pub mod design;
+mod control;
 mod error;
 mod found;
 mod grid;
-mod period_problem;
+mod members;
+mod problem_error;
 pub mod wait;
 mod wait_problem;
 
-pub use common::{Control, Outcome, ProblemError, Progress};
+pub use control::{Control, Outcome, Progress};
 pub use error::{GridError, SearchError};
 pub use found::Found;
-pub use period_problem::{PeriodProblem, Preferred, ShortestPeriod};
+use members::Members;
+pub use problem_error::ProblemError;
+use problem_error::check_conflicts;
 pub use wait_problem::{FrontTable, Infeasible, WaitFront, WaitProblem, WaitSearch};

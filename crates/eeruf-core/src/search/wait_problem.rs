@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use super::common::Outcome;
+use super::control::Outcome;
 use super::error::SearchError;
 use super::found::Found;
 use super::grid::Grid;

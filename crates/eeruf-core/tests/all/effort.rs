@@ -1,14 +1,12 @@
-//! Steps of each search for its answer, the same on each machine: written down in `tests/data/search-effort.txt`. A
-//! change that makes it take other steps shows there what it costs or saves. `EERUF_WRITE=1` rewrites the file.
+//! Steps of the search for waits to its answers, the same on each machine: written down in
+//! `tests/data/search-effort.txt`. A change that makes it take other steps shows there what it costs or saves.
+//! `EERUF_WRITE=1` rewrites the file.
 
 use std::fmt::{Debug, Write as _};
 use std::ops::ControlFlow;
 
 use eeruf_core::Criterion;
-use eeruf_core::search::design::{
-    Problem, decide, maximize_interval, maximize_separation, memory_words as period_words, prefer, shortest,
-};
-use eeruf_core::search::wait::{Budget, Objective, memory_words as wait_words};
+use eeruf_core::search::wait::{Budget, Objective, memory_words};
 use eeruf_core::search::{Outcome, Progress};
 
 use crate::common::Owned;
@@ -61,48 +59,11 @@ impl Record {
         writeln!(self.0, "{question}: {says}; {nodes} nodes, {polls} polls, {:08x}", sum as u32).unwrap();
     }
 
-    /// All questions about periods, for one problem.
-    fn ask_periods(&mut self, name: &str, problem: &Problem<'_>) {
-        let mut memory = vec![0; period_words(problem.sensors)];
-        let mut found = None;
-        self.ask(&format!("{name} shortest"), |mut control| {
-            let shortest = shortest(problem, BUDGET, &mut memory, &mut control).unwrap();
-            found = Some(shortest);
-            (format!("{} >= {}", shortest.period, shortest.bound), shortest.nodes, shortest.firing)
-        });
-        let shortest = found.unwrap();
-        self.ask(&format!("{name} prefer"), |mut control| {
-            let preferred = prefer(problem, &shortest, BUDGET, &mut memory, &mut control).unwrap();
-            let optima = [preferred.separation, preferred.interval, preferred.window];
-            let says = optima.map(|optimum| format!("{} <= {}", optimum.value, optimum.bound)).join(", ");
-            (says, preferred.nodes, preferred.firing)
-        });
-        let longer = shortest.period + shortest.period / 8;
-        for objective in [Objective::Interval, Objective::Separation] {
-            self.ask(&format!("{name} {objective:?} at {longer}"), |mut control| {
-                let most = match objective {
-                    Objective::Interval => maximize_interval(problem, longer, BUDGET, &mut memory, &mut control),
-                    Objective::Separation => maximize_separation(problem, longer, BUDGET, &mut memory, &mut control),
-                };
-                let most = most.unwrap();
-                let value = most.found.map(|(value, _)| value);
-                (format!("{value:?} <= {:?}", most.bound), most.nodes, most.found)
-            });
-        }
-        // The longest that is excluded, and the shortest that was found.
-        for period in [shortest.bound.max(2) - 1, shortest.period] {
-            self.ask(&format!("{name} decide {period}"), |mut control| {
-                let decided = decide(problem, period, BUDGET, &mut memory, &mut control).unwrap();
-                (decided.outcome.is_found().to_string(), decided.nodes, decided.outcome)
-            });
-        }
-    }
-
     /// All questions about waits, for one problem.
     fn ask_waits(&mut self, name: &str, owned: &Owned) {
         let sensors = owned.lag.len();
         let search = owned.search();
-        let mut memory = vec![0; wait_words(sensors)];
+        let mut memory = vec![0; memory_words(sensors)];
         let (mut a, mut b) = (vec![0; sensors], vec![0; sensors]);
         self.ask(&format!("{name} first"), |mut control| {
             let mut budget = Budget::nodes_at_most(BUDGET).watched(100, &mut control);
@@ -134,43 +95,10 @@ impl Record {
     }
 }
 
-/// Rings, lines and blocks of the sizes that are built, in ticks of different lengths, and any graphs.
+/// The paper's lags in lines, rings and blocks of the sizes that are built, and any graphs.
 fn ask_all() -> Record {
     let mut record = Record::default();
-    for (layout, sensors, neighbours, scale) in [
-        (Layout::Line, 4, 4, 1),
-        (Layout::Line, 8, 4, 10),
-        (Layout::Line, 9, 3, 1),
-        (Layout::Line, 12, 4, 1),
-        (Layout::Line, 10, 5, 1),
-        (Layout::Ring, 8, 4, 1),
-        (Layout::Ring, 8, 4, 3),
-        (Layout::Ring, 12, 4, 1),
-        (Layout::Ring, 13, 3, 2),
-        (Layout::Ring, 20, 4, 1),
-        (Layout::Blocks, 12, 4, 1),
-        (Layout::Blocks, 8, 3, 4),
-    ] {
-        let rows = naive::conflicts(layout, sensors, neighbours);
-        for (window, extra, stale_echo) in [(30, 0, false), (15, 1, true)] {
-            // With one tick more of separation no coarser tick measures all three.
-            let (separation, interval, window) = (2 * scale + extra, 15 * scale, window * scale);
-            let problem = Problem { sensors, conflicts: &rows, separation, interval, window, stale_echo };
-            record.ask_periods(&format!("{layout:?} {sensors}/{neighbours} x{scale} window {window}"), &problem);
-        }
-    }
     let mut random = Random(20_261_123);
-    for case in 0..24 {
-        let sensors = 3 + random.up_to(7) as usize;
-        let density = 30 + random.up_to(60);
-        let rows = graph(&mut random, sensors, density);
-        let scale = [1, 1, 2, 5][case % 4];
-        let mut any = |least, most| least + random.up_to(most - least);
-        let (separation, interval) = (any(1, 5) * scale, any(3, 20) * scale);
-        let (window, stale_echo) = (any(2, 60) * scale, any(0, 3) == 0);
-        let problem = Problem { sensors, conflicts: &rows, separation, interval, window, stale_echo };
-        record.ask_periods(&format!("graph {case} of {sensors}"), &problem);
-    }
     for (layout, sensors, separation) in [
         (Layout::Line, 4, 3),
         (Layout::Line, 6, 3),

@@ -1,7 +1,6 @@
 //! The paper's claims, and the searches against shared tables, slow and obvious judges, and their own limits, in one
 //! binary.
 
-mod brute_force;
 mod by_hardware;
 mod claims;
 mod common;
@@ -25,12 +24,6 @@ mod immediate;
 mod lateness;
 mod listening;
 mod pairs;
-mod period_corpus;
-mod period_edges;
-mod period_limits;
-mod period_small;
-mod period_ticks;
-mod period_variants;
 mod phases;
 mod plans_and_judges;
 mod promises;

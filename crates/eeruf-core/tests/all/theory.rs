@@ -4,9 +4,10 @@
 //! Claims with a test of their own are not repeated: (13a), (13b) pair by pair, the rearrangements of Table I, nested
 //! loops for tables of waits, and that every period of `tests/data/shortest-periods.json` is the shortest.
 
-use eeruf_core::search::{Found, PeriodProblem, WaitProblem, WaitSearch, design, wait};
+use eeruf_core::search::{Found, WaitProblem, WaitSearch, wait};
 use eeruf_core::tables::{TABLE_I_B, TABLE_I_C, TABLE_I_D, THE_ONE_WITH_19_MS};
 use eeruf_core::{Criterion, Layout, Micros, Phase, Requirements, Schedule, conditions::Interval};
+use eeruf_period::{PeriodProblem, ShortestPeriod};
 
 const THEORY: &str = include_str!("../../../../docs/explanation/theory.md");
 
@@ -41,9 +42,8 @@ fn needs(sensors: usize, layout: Layout<'_>, window: u32) -> PeriodProblem<'_> {
     PeriodProblem { sensors, requirements, tick: ms(1) }
 }
 
-fn shortest(needs: &PeriodProblem<'_>, budget: u64) -> Found<24> {
-    let mut memory = vec![0; design::memory_words(needs.sensors)];
-    needs.shortest(budget, &mut memory, &mut ()).expect("the needs make sense").found
+fn shortest(needs: &PeriodProblem<'_>, budget: u64) -> ShortestPeriod {
+    needs.shortest(budget, &mut ()).expect("the needs make sense")
 }
 
 /// The paper's lags and its period of 100 ms, four neighbours of a line, and waits up to 24 ms.
@@ -126,7 +126,7 @@ fn section_4_table_i_d_rejects_stale_echoes() {
 
 #[test]
 fn section_5_1_the_simple_bounds_are_as_computed() {
-    let bound = |needs: &PeriodProblem<'_>| shortest(needs, 0).bound.unwrap();
+    let bound = |needs: &PeriodProblem<'_>| shortest(needs, 0).bound;
     assert_eq!(bound(&needs(12, Layout::Line(4), 60)), ms(60 + 2 * 11));
     assert_eq!(bound(&needs(4, Layout::Line(4), 15)), ms(60));
     assert!(bound(&needs(10, Layout::Ring(4), 15)) >= ms(75));
@@ -167,7 +167,7 @@ fn section_5_2_construction_serves_at_82_ms() {
     let needs = needs(12, Layout::Line(4), 60);
     let schedule = Schedule::from_firing(ms(82), [a.map(ms), b.map(ms)]).unwrap();
     assert!(schedule.verify(&needs.requirements).ok());
-    assert_eq!(shortest(&needs, 100_000).value, Some(ms(82)));
+    assert_eq!(shortest(&needs, 100_000).period(), ms(82));
 }
 
 // Section 5 3 four neighbours need 60 ms in another order and 66 with a long window.
@@ -181,9 +181,9 @@ fn section_5_3_four_neighbours_need_60_ms() {
     assert_eq!(schedule.separation(Criterion::Exact).unwrap().value, ms(15));
     assert_eq!(schedule.min_refire(), ms(15));
     let found = shortest(&needs_15, 100_000);
-    assert_eq!((found.value, found.proven), (Some(ms(60)), true));
+    assert_eq!((found.period(), found.proven()), (ms(60), true));
     let found = shortest(&needs(4, Layout::Line(4), 60), 100_000);
-    assert_eq!((found.value, found.proven), (Some(ms(60 + 2 * 3)), true));
+    assert_eq!((found.period(), found.proven()), (ms(60 + 2 * 3), true));
 }
 
 /// Values of the formulas of sections 5.1, 5.3 and 5.4 for n = 4, I = 15, D = 2 and R = 15, 30, 45 or 60.
@@ -234,7 +234,7 @@ fn section_5_3_shortest_periods_are_those_of_the_corpus() {
 #[test]
 fn section_5_3_counting_ends_below_four_searched() {
     // Without a node, the bound is what counting says.
-    let bound = |sensors, layout, window| shortest(&needs(sensors, layout, window), 0).bound.unwrap();
+    let bound = |sensors, layout, window| shortest(&needs(sensors, layout, window), 0).bound;
     assert_eq!(bound(12, Layout::Line(4), 45), ms(68));
     assert_eq!(bound(12, Layout::Ring(4), 45), ms(68));
     assert_eq!(bound(8, Layout::Ring(4), 30), ms(64));
@@ -247,7 +247,7 @@ fn section_5_5_finer_ticks_gain_half_a_millisecond() {
     for (tick_us, period_us) in [(1000, 70_000), (100, 69_500)] {
         let needs = PeriodProblem { tick: Micros::new(tick_us), ..needs(12, Layout::Line(4), 45) };
         let found = shortest(&needs, 100_000);
-        assert_eq!((found.value, found.proven), (Some(Micros::new(period_us)), true));
+        assert_eq!((found.period(), found.proven()), (Micros::new(period_us), true));
     }
 }
 

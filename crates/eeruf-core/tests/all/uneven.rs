@@ -1,8 +1,6 @@
 //! Uneven rings: what single sensors and pairs need, against a judge that lays all firings of five periods on one line
 //! of time.
 
-use eeruf_core::search::PeriodProblem;
-use eeruf_core::search::design::memory_words;
 use eeruf_core::{
     EachSensor, Layout, Micros, Requirements, Schedule, Uneven, VerifiedSchedule,
     conditions::{UnevenError, Verification, ViolationKind},
@@ -238,15 +236,6 @@ fn verified_uneven_schedule_allows_each_its_own() {
         ..Requirements::new(Micros::new(499))
     };
     assert_eq!(CORNERS.verify(&late).verified().unwrap_err().kind, ViolationKind::CrosstalkA);
-}
-
-#[test]
-fn the_search_for_sensors_that_are_alike_refuses_others() {
-    let requirements = Requirements { uneven: Some(Uneven::NONE), ..Requirements::new(Micros::new(99)) };
-    let problem = PeriodProblem { sensors: 2, requirements, tick: Micros::from_millis(1) };
-    let mut memory = vec![0; memory_words(2)];
-    let error = problem.shortest::<2>(10, &mut memory, &mut ()).unwrap_err();
-    assert!(error.to_string().starts_with("sensors that are not all alike; expected"), "{error}");
 }
 
 // An uneven schedule is written with all that it was designed for.

@@ -1,6 +1,6 @@
 //! The atlas that comes with this crate, and how a ring is looked up in it.
 
-use eeruf_core::search::PeriodProblem;
+use eeruf_period::PeriodProblem;
 use eeruf_sim::AnySchedule;
 
 use super::rings::Ring;

@@ -3,8 +3,8 @@
 use core::fmt;
 use core::str::FromStr;
 
-use eeruf_core::search::PeriodProblem;
 use eeruf_core::{Layout, MAX_SENSORS, Micros, Requirements};
+use eeruf_period::PeriodProblem;
 
 /// Neighbourhoods.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

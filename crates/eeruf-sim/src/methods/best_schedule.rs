@@ -1,7 +1,8 @@
 //! The best schedule for a robot's ring: the shortest period that guarantees what the robot's own schedule does.
 
-use eeruf_core::search::{PeriodProblem, Progress, SearchError, design};
-use eeruf_core::{Layout, MAX_SENSORS, Micros, Requirements};
+use eeruf_core::search::{Progress, SearchError};
+use eeruf_core::{Layout, Micros, Requirements};
+use eeruf_period::PeriodProblem;
 use std::ops::ControlFlow;
 
 use super::schedules::table_i_d_for;
@@ -37,7 +38,7 @@ pub fn requirements_of(robot: &Robot) -> Requirements<'static> {
 }
 
 /// Searches `budget` nodes for the schedule with the shortest period that meets [`requirements_of`] a robot.
-/// `keep_going` is asked now and then; `None` if it stopped the search before anything was found.
+/// `keep_going` is asked now and then, and may end the search.
 ///
 /// # Errors
 /// [`SearchError`] if the ring is too large to search.
@@ -45,11 +46,9 @@ pub fn shortest_schedule_for(
     robot: &Robot,
     budget: u64,
     keep_going: impl FnMut(&Progress) -> bool,
-) -> Result<Option<BestSchedule>, SearchError> {
-    let (problem, mut memory) = problem_of(robot);
-    let designed = problem.shortest::<MAX_SENSORS>(budget, &mut memory, &mut control(keep_going))?;
-    let proven = designed.found.proven;
-    Ok(designed.found.schedule.map(|schedule| BestSchedule { schedule, proven }))
+) -> Result<BestSchedule, SearchError> {
+    let found = problem_of(robot).shortest(budget, &mut control(keep_going))?;
+    Ok(BestSchedule { schedule: found.schedule, proven: found.proven() })
 }
 
 /// As [`shortest_schedule_for`], and of all schedules of that period the one to prefer, if the period is proven.
@@ -68,23 +67,15 @@ pub fn best_schedule_for(
     budget: u64,
     keep_going: impl FnMut(&Progress) -> bool,
 ) -> Result<BestSchedule, SearchError> {
-    let (problem, mut memory) = problem_of(robot);
-    let mut control = control(keep_going);
-    let designed = problem.shortest::<MAX_SENSORS>(budget, &mut memory, &mut control)?;
-    let proven = designed.found.proven;
-    let found = designed.found.schedule.filter(|_| !proven);
-    let schedule = match found {
-        Some(schedule) => schedule,
-        None => problem.prefer(&designed, budget, &mut memory, &mut control)?.schedule,
-    };
+    let (problem, mut control) = (problem_of(robot), control(keep_going));
+    let found = problem.shortest(budget, &mut control)?;
+    let proven = found.proven();
+    let schedule = if proven { problem.prefer(&found.schedule, budget, &mut control)?.0 } else { found.schedule };
     Ok(BestSchedule { schedule, proven })
 }
 
-/// The question to core's search, and the memory that it needs.
-fn problem_of(robot: &Robot) -> (PeriodProblem<'static>, Vec<i32>) {
-    let sensors = robot.sensors.len();
-    let problem = PeriodProblem { sensors, requirements: requirements_of(robot), tick: TICK };
-    (problem, vec![0; design::memory_words(sensors)])
+fn problem_of(robot: &Robot) -> PeriodProblem<'static> {
+    PeriodProblem { sensors: robot.sensors.len(), requirements: requirements_of(robot), tick: TICK }
 }
 
 fn control(mut keep_going: impl FnMut(&Progress) -> bool) -> impl FnMut(&Progress) -> ControlFlow<()> {

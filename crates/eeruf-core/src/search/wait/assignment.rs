@@ -8,7 +8,7 @@ use super::problem::gap;
 use super::{Best, Budget, Count, Search};
 use crate::requirements::Criterion;
 use crate::schedule::MAX_SENSORS;
-use crate::search::common::{Members, Outcome, ProblemError};
+use crate::search::{Members, Outcome, ProblemError};
 
 /// The problem of assigning given pairs to the sensors.
 #[derive(Debug, Clone, Copy)]

@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use crate::search::common::{Control, Progress};
+use crate::search::{Control, Progress};
 
 /// The budget of a search, and its watcher.
 ///

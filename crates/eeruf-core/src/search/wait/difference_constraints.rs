@@ -7,7 +7,7 @@
 
 use super::Problem;
 use crate::schedule::MAX_SENSORS;
-use crate::search::common::Members;
+use crate::search::Members;
 
 /// Order of two conflicting sensors within one phase.
 #[derive(Clone, Copy, PartialEq, Eq)]

@@ -3,7 +3,7 @@
 use super::{Budget, Problem, Search};
 use crate::requirements::Criterion;
 use crate::schedule::MAX_SENSORS;
-use crate::search::common::{Members, Outcome, ProblemError};
+use crate::search::{Members, Outcome, ProblemError};
 
 /// Walks all tables. Its trail is the table itself; it takes no memory from the caller.
 #[derive(Debug, Clone)]

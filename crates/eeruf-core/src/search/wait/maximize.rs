@@ -7,7 +7,7 @@ use super::feasibility::decide;
 use super::{Budget, Problem, Search};
 use crate::requirements::Criterion;
 use crate::schedule::MAX_SENSORS;
-use crate::search::common::{Outcome, ProblemError};
+use crate::search::{Outcome, ProblemError};
 
 /// The value to maximise.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

@@ -1,7 +1,7 @@
 //! The front of interval and separation: the tables that are better in one only where others are better in the other.
 
 use super::{Budget, Objective, Search};
-use crate::search::common::{Outcome, ProblemError};
+use crate::search::{Outcome, ProblemError};
 
 impl<'p> Search<'p> {
     /// The tables of which no other is better in one of interval and separation without being worse in the other, from

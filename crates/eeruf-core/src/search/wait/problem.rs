@@ -2,7 +2,7 @@
 
 use crate::requirements::Criterion;
 use crate::schedule::MAX_SENSORS;
-use crate::search::common::{Members, ProblemError, check_conflicts};
+use crate::search::{Members, ProblemError, check_conflicts};
 
 /// The longest period, in ticks: sums of a few times then stay far inside 32 bits.
 pub const MAX_PERIOD: u32 = 1 << 27;

@@ -4,7 +4,6 @@
 #![allow(dead_code, missing_docs, unreachable_pub)]
 
 pub mod naive;
-pub mod naive_period;
 pub mod random;
 pub mod tables;
 

@@ -7,11 +7,12 @@
 mod model;
 mod world;
 
-use eeruf_core::search::{PeriodProblem, design};
 use eeruf_core::tables::{TABLE_I_B, TABLE_I_D};
 use eeruf_core::{
     Instant, Layout, Micros, ReadingKind, Requirements, Ring, RingConfig, RingEvent, Schedule, VerifiedSchedule,
 };
+
+use eeruf_period::PeriodProblem;
 
 use crate::common::random::Random;
 use model::Sound;
@@ -46,7 +47,7 @@ fn random_table(random: &mut Random) -> Table {
 }
 
 /// A table that `design` gives for random needs.
-fn designed_table(random: &mut Random, memory: &mut [i32]) -> Table {
+fn designed_table(random: &mut Random) -> Table {
     let sensors = 2 + random.up_to(22) as usize;
     let requirements = Requirements {
         min_interval: Micros::new(500 * random.up_to(30)),
@@ -56,14 +57,13 @@ fn designed_table(random: &mut Random, memory: &mut [i32]) -> Table {
         ..Requirements::new(Micros::new(150 + random.up_to(850)))
     };
     let problem = PeriodProblem { sensors, requirements, tick: Micros::new(500) };
-    let schedule = problem.shortest::<ROOM>(300, memory, &mut ()).unwrap().found.schedule.unwrap();
+    let schedule = roomy(&problem.shortest(300, &mut ()).unwrap().schedule);
     let verified = schedule.verify(&requirements).verified().unwrap();
     Table { schedule, verified: Some(verified), t_delta: requirements.t_delta.as_micros() }
 }
 
 /// Tables of both kinds and the paper's, drawn from a seed.
 fn tables(count: usize, random: &mut Random) -> Vec<Table> {
-    let mut memory = vec![0; design::memory_words(ROOM)];
     let mut tables: Vec<_> = [TABLE_I_B, TABLE_I_D]
         .iter()
         .map(|table| {
@@ -73,7 +73,7 @@ fn tables(count: usize, random: &mut Random) -> Vec<Table> {
         })
         .collect();
     while tables.len() < count {
-        let table = if tables.len() % 2 == 0 { random_table(random) } else { designed_table(random, &mut memory) };
+        let table = if tables.len() % 2 == 0 { random_table(random) } else { designed_table(random) };
         tables.push(table);
     }
     tables

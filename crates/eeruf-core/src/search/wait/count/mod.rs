@@ -16,7 +16,7 @@ mod memo;
 mod walk;
 
 use super::{Budget, Search};
-use crate::search::common::Outcome;
+use crate::search::Outcome;
 use bits::MASK_MAX;
 use walk::Counting;
 

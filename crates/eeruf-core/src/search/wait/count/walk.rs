@@ -5,7 +5,7 @@ use super::bits::{left_by, reach, span, waits_with};
 use super::memo::{Key, Memo, Ticket};
 use crate::requirements::Criterion;
 use crate::schedule::MAX_SENSORS;
-use crate::search::common::{Members, Outcome};
+use crate::search::{Members, Outcome};
 
 /// Values still free for the separations: bit `v` of `d` for `|d| = v`, bit `v` of `s[p]` for `s = 2 v + p`.
 #[derive(Clone, Copy, Default)]

@@ -16,7 +16,7 @@ mod walk;
 use super::{Budget, Problem, Search};
 use crate::requirements::Criterion;
 use crate::schedule::MAX_SENSORS;
-use crate::search::common::{Outcome, ProblemError};
+use crate::search::{Outcome, ProblemError};
 use walk::{Feasibility, Style};
 
 /// Words of memory that suffice for [`first`](super::Search::first), [`best`](super::Search::best) and

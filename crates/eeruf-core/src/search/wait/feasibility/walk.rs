@@ -5,7 +5,7 @@ use super::super::{Budget, Problem};
 use super::branch::Branch;
 use crate::requirements::Criterion;
 use crate::schedule::MAX_SENSORS;
-use crate::search::common::{Members, Outcome};
+use crate::search::{Members, Outcome};
 
 /// The way in which a search walks. Each style is exhaustive in what it looks at; only a tight one does not look at
 /// everything.

@@ -1,0 +1,62 @@
+//! Control over a search: watching and stopping it, and the three ways in which it ends.
+
+use core::ops::ControlFlow;
+
+/// Progress of a search.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub struct Progress {
+    /// Nodes visited so far.
+    pub nodes: u64,
+    /// The best value found so far, in ticks, where one is sought: the shortest period, the largest interval or
+    /// separation.
+    pub best: Option<u32>,
+    /// No value is better than this, in ticks, as far as is proven.
+    pub bound: Option<u32>,
+}
+
+impl Progress {
+    /// A number of nodes, the best value so far and the bound on it, for searches outside this crate.
+    pub const fn new(nodes: u64, best: Option<u32>, bound: Option<u32>) -> Self {
+        Self { nodes, best, bound }
+    }
+}
+
+/// Polled every few milliseconds, or as often as the caller asks. `()` always goes on and costs nothing.
+pub trait Control {
+    /// True to go on, given how far the search has come.
+    fn poll(&mut self, progress: &Progress) -> ControlFlow<()>;
+}
+
+impl Control for () {
+    #[inline(always)]
+    fn poll(&mut self, _: &Progress) -> ControlFlow<()> {
+        ControlFlow::Continue(())
+    }
+}
+
+impl<F: FnMut(&Progress) -> ControlFlow<()>> Control for F {
+    fn poll(&mut self, progress: &Progress) -> ControlFlow<()> {
+        self(progress)
+    }
+}
+
+/// The end of a search. A search that hands its answer out elsewhere, as those for waits do, finds `()`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Outcome<T = ()> {
+    /// Found.
+    Found(T),
+    /// Every possibility was searched or excluded: a proof that there is none, or none left.
+    Exhausted,
+    /// The budget was spent or the caller stopped the search: neither found nor excluded.
+    BudgetSpent,
+}
+
+impl<T> Outcome<T> {
+    /// Returns true if something was found.
+    pub const fn is_found(&self) -> bool {
+        matches!(self, Self::Found(_))
+    }
+}

@@ -1,0 +1,56 @@
+//! The engine: search, proof and preference over one difference-bound matrix.
+//!
+//! | file | content |
+//! |---|---|
+//! | `problem` | the problem in ticks, a claim about its period; groups that fire together as one sensor |
+//! | `bounds`, `state` | the difference-bound matrix; the knowledge at a node |
+//! | `rules` | propagation; in searches by more than a certificate's rules |
+//! | `counting`, `construct` | a bound by counting; schedules without a search |
+//! | `branching`, `symmetry` | case distinctions; assumptions at the root |
+//! | `schedule` | a schedule, checked longhand |
+//! | `descent` | the branchings of short descents, which look for schedules |
+//! | `repair` | a local search for schedules |
+//! | `raised` | the ring that most sensors ask for, and the cases beside it |
+//! | `search`, `shortest`, `spare` | one period, the shortest, the schedule with most to spare |
+//! | `prove` | certificates |
+//! | `orders`, `linear`, `reals` | the shortest period over the reals |
+//! | `veripb` | the same claim as a model and a proof for VeriPB, a checker that others wrote |
+//!
+//! # The engine and the checker
+//!
+//! The crate `eeruf-check` has a matrix, a state and rules of its own, and nothing here is linked to them: a mistake in
+//! one is none in the other. Both state the rules of docs/reference/certificate.md, for a certificate gives the tree
+//! alone, and a checker must come to the same refutations. Where they differ, they do on purpose:
+//!
+//! - The checker reads each assumption about symmetry from the text and verifies it; the engine constructs those that
+//!   turns, reflections and exchanges give, and keeps them as data.
+//! - The checker says which line is wrong and why; the engine asks only whether a schedule keeps the needs.
+//! - The checker replays branchings; the engine chooses them, and in a search takes the times at the bounds for a
+//!   schedule as soon as they serve.
+//! - The checker copies what is known at each node; the engine has one matrix and a log that takes it back.
+//! - In a search the engine concludes more: with `State::goes_further` from Hall intervals. A certificate is written
+//!   without, so a mistake there comes out when one is written.
+
+mod bounds;
+mod branching;
+mod construct;
+pub(crate) mod counting;
+mod descent;
+mod linear;
+mod orders;
+mod problem;
+pub mod prove;
+mod raised;
+pub mod reals;
+mod repair;
+mod rules;
+mod schedule;
+pub mod search;
+pub mod shortest;
+pub mod spare;
+mod state;
+mod symmetry;
+pub mod veripb;
+
+pub use orders::Orders;
+pub use problem::{Claim, MAX_NUMBER, MAX_SENSORS, Problem};

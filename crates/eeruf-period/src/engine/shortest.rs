@@ -1,0 +1,451 @@
+//! The shortest period of a problem, even or uneven: found by bisection with short descents, and proven by a full
+//! search of the period one tick shorter.
+
+use crate::engine::construct::{Times, constructed};
+use crate::engine::counting::least_period;
+use crate::engine::problem::Problem;
+use crate::engine::raised::Raised;
+use crate::engine::repair::Repair;
+use crate::engine::search::{Decided, FiringTimes, Search};
+
+/// The shortest period found, in ticks.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Shortest {
+    /// The period.
+    pub period: u32,
+    /// Firing times with this period.
+    pub fire: FiringTimes,
+    /// No schedule has a shorter period than this; equal to the period where that is proven.
+    pub bound: u32,
+    /// Nodes visited.
+    pub nodes: u64,
+    /// True if every shorter period is refuted without distinguishing cases.
+    pub without_cases: bool,
+}
+
+/// The progress of a search: nodes, the shortest period so far, and the bound below which there is none.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SoFar {
+    /// Nodes visited.
+    pub nodes: u64,
+    /// The shortest period found so far.
+    pub best: u32,
+    /// No period is below this.
+    pub bound: u32,
+}
+
+/// The shortest period, within `budget` nodes and as long as `go_on` says so: it is asked every few milliseconds.
+///
+/// There is always a schedule, firing one by one, unless sensors that fire together must keep a gap or the period is
+/// beyond [`MAX_TICKS`] ticks: then `None`. The answer depends on problem and budget alone.
+#[must_use]
+pub fn shortest(problem: &Problem, budget: u64, go_on: &mut dyn FnMut(&SoFar) -> bool) -> Option<Shortest> {
+    let mut run = Run::new(problem, true)?;
+    run.limit = budget;
+    // Stopped or not, what was found counts.
+    _ = run.search(go_on);
+    let nodes = run.nodes();
+    Some(Shortest { nodes, without_cases: run.found.period == run.bound_of_rules, ..run.found })
+}
+
+/// The longest period that is searched, in ticks: sums of a few such times stay far below what bounds can hold. A
+/// certificate takes no more than [`MAX_NUMBER`](crate::engine::MAX_NUMBER).
+pub const MAX_TICKS: u32 = 1 << 24;
+/// The nodes of the first round for each sensor.
+const EFFORT: u64 = 16;
+/// The rounds that start at the bound, as long as nothing is found.
+const GALLOPS: u32 = 2;
+/// The efforts that go into repairs at one period.
+const REPAIRS: u64 = 4;
+
+/// The search for one problem.
+struct Run {
+    search: Search,
+    found: Shortest,
+    /// The search ends at this many nodes.
+    limit: u64,
+    /// True if the schedule found came from a search, so that it is worth following.
+    is_guide: bool,
+    /// Rounds that started at the bound.
+    gallops: u32,
+    /// The problem in coarser ticks, and their length.
+    coarse: Option<(Box<Run>, u32)>,
+    /// The even ring that asks for no more.
+    even: Option<Box<Run>>,
+    /// True if schedules are looked for by repairs too.
+    is_mixed: bool,
+    /// The problem with few windows raised to what most sensors have.
+    raised: Option<(Box<Run>, Raised)>,
+    /// Nodes of runs that ended.
+    ended: u64,
+    /// The bound that follows without distinguishing cases.
+    bound_of_rules: u32,
+}
+
+/// The caller wanted no more.
+struct Stopped;
+
+/// Asks the caller whether to go on, with the nodes so far and what is found.
+type Ask<'a> = &'a mut dyn FnMut(u64, &Shortest) -> bool;
+
+impl Run {
+    /// Begins with a constructed schedule, and with what counting and the rules alone say. `None` if sensors that fire
+    /// together must keep a gap, or where numbers are too large.
+    fn new(problem: &Problem, is_first: bool) -> Option<Self> {
+        if problem.numbers().any(|number| number > MAX_TICKS) {
+            return None;
+        }
+        let search = Search::new(problem);
+        let fire = constructed_times(problem)?;
+        let period = period_of(problem, &fire);
+        if period > MAX_TICKS || !problem.is_kept_by(period, &fire) {
+            return None;
+        }
+        let bound = least_period(search.merged()).max(one_after_the_other(problem)).clamp(1, period);
+        let found = Shortest { period, fire, bound, nodes: 0, without_cases: false };
+        let (limit, is_guide, ended) = (u64::MAX, false, 0);
+        let mut run = Self {
+            search,
+            found,
+            limit,
+            is_guide,
+            gallops: 0,
+            coarse: None,
+            even: None,
+            is_mixed: is_first && problem.is_mixed(),
+            raised: None,
+            ended,
+            bound_of_rules: bound,
+        };
+        run.bound_by_rules();
+        if run.is_open() {
+            let even = if is_first && !run.is_mixed { problem.evened() } else { None };
+            run.even = even.and_then(|even| Self::new(&even, false)).map(Box::new);
+            let raised = if is_first { Raised::of(problem) } else { None };
+            run.raised = raised.and_then(|raised| Some((Box::new(Self::new(&raised.problem, false)?), raised)));
+            let coarse = in_coarse_ticks(problem);
+            run.coarse = coarse.and_then(|(coarse, ticks)| Some((Box::new(Self::new(&coarse, is_first)?), ticks)));
+        }
+        Some(run)
+    }
+
+    /// Finds and proves, in rounds with growing efforts, as far as budget and caller let it.
+    fn search(&mut self, go_on: &mut dyn FnMut(&SoFar) -> bool) -> Result<(), Stopped> {
+        let mut ask = |nodes: u64, found: &Shortest| go_on(&SoFar { nodes, best: found.period, bound: found.bound });
+        let mut effort = EFFORT * self.sensors();
+        // A bound between two coarse ticks may be met, and then coarse ticks cannot meet it.
+        if let Some((_, ticks)) = &self.coarse
+            && !self.found.bound.is_multiple_of(*ticks)
+        {
+            self.finds(self.found.bound, 4 * effort, &mut ask)?;
+        }
+        while self.is_open() {
+            let in_coarse_ticks = self.coarse.is_some();
+            self.round(effort, &mut ask)?;
+            effort *= 2;
+            if in_coarse_ticks && self.coarse.is_none() {
+                // What is left is to refute a period that is a fine tick shorter, which is no easier.
+                effort = (EFFORT * self.sensors()).max(self.ended / 4);
+            }
+        }
+        Ok(())
+    }
+
+    /// One round: what is open of the coarse ticks and of the even ring, then of the problem itself.
+    fn round(&mut self, effort: u64, ask: Ask<'_>) -> Result<(), Stopped> {
+        // Where few limits differ, the rings beside have the schedules.
+        if self.is_mixed {
+            self.repair(REPAIRS * effort, ask)?;
+        }
+        if let Some((mut coarse, ticks)) = self.coarse.take() {
+            let before = self.nodes();
+            // At most half of all nodes go into this.
+            coarse.limit = (self.limit / 2).saturating_sub(before);
+            let found = self.found.clone();
+            let best = coarse.found.period;
+            let round = coarse.round(effort, &mut |nodes, _| ask(before + nodes, &found));
+            // What coarse ticks find serves in fine ones too. Where fine ones gain anything it is little.
+            if coarse.found.period < best {
+                let times = |times: &Vec<u32>| times.iter().map(|time| time * ticks).collect();
+                self.offer(coarse.found.fire.each_ref().map(times), coarse.is_guide);
+            }
+            if coarse.is_open() {
+                self.coarse = Some((coarse, ticks));
+            } else {
+                self.ended += coarse.nodes();
+            }
+            return round;
+        }
+        if let Some(mut even) = self.even.take() {
+            let before = self.nodes();
+            even.limit = self.limit.saturating_sub(before) / 2;
+            let found = self.found.clone();
+            let best = even.found.period;
+            let round = even.round(effort, &mut |nodes, _| ask(before + nodes, &found));
+            self.found.bound = self.found.bound.max(even.found.bound.min(self.found.period));
+            if even.found.period < best {
+                for image in images(self.search.problem(), &even.found.fire) {
+                    self.offer(image, true);
+                }
+            }
+            // Periods that the even ring has are not refuted by it.
+            if even.is_open() && even.found.period > self.found.bound {
+                self.even = Some(even);
+            } else {
+                self.ended += even.nodes();
+            }
+            round?;
+        }
+        if let Some((mut raised, windows)) = self.raised.take() {
+            let before = self.nodes();
+            raised.limit = self.limit.saturating_sub(before) / 2;
+            let found = self.found.clone();
+            let best = raised.found.period;
+            let is_worth_it = windows.has_cases() || raised.nodes() <= self.search.nodes();
+            let round = if raised.is_open() && is_worth_it {
+                raised.round(effort, &mut |nodes, _| ask(before + nodes, &found))
+            } else {
+                Ok(())
+            };
+            if raised.found.period < best {
+                self.offer(raised.found.fire.clone(), true);
+            }
+            self.raised = Some((raised, windows));
+            round?;
+        }
+        if self.is_guide || self.gallops == GALLOPS {
+            return self.bisect(effort, ask);
+        }
+        self.gallops += 1;
+        self.gallop(effort, ask)
+    }
+
+    /// Goes down from the best schedule by repairs, in steps that halve where they find nothing.
+    fn repair(&mut self, effort: u64, ask: Ask<'_>) -> Result<(), Stopped> {
+        let mut step = ((self.found.period - self.found.bound) / 8).max(1);
+        while step > 0 && self.is_open() {
+            let (before, effort) = (self.nodes() - self.search.nodes(), self.affordable(effort));
+            let Self { search, found, .. } = self;
+            let mut repair = Repair::new(search.merged(), found.period - step, &found.fire, search.nodes());
+            match search.repair(&mut repair, effort, &mut |nodes| ask(before + nodes, found)) {
+                Decided::Found(fire) => self.offer(fire, true),
+                Decided::Stopped => return Err(Stopped),
+                Decided::Refuted | Decided::Open => step /= 2,
+            }
+            step = step.min(self.found.period - self.found.bound);
+        }
+        Ok(())
+    }
+
+    /// Takes these times if they serve at a shorter period.
+    fn offer(&mut self, fire: FiringTimes, is_guide: bool) {
+        let period = period_of(self.search.problem(), &fire);
+        if period < self.found.period || is_guide && !self.is_guide && period == self.found.period {
+            self.improve(fire);
+            self.is_guide = is_guide;
+        }
+    }
+
+    /// The nodes of this search and of those that help it.
+    fn nodes(&self) -> u64 {
+        let coarse = self.coarse.as_ref().map_or(0, |(coarse, _)| coarse.nodes());
+        let raised = self.raised.as_ref().map_or(0, |(raised, _)| raised.nodes());
+        self.ended + self.search.nodes() + coarse + raised + self.even.as_ref().map_or(0, |even| even.nodes())
+    }
+
+    fn sensors(&self) -> u64 {
+        self.search.merged().count() as u64
+    }
+
+    fn is_open(&self) -> bool {
+        self.found.bound < self.found.period && self.nodes() < self.limit
+    }
+
+    /// Starts at the bound, as bounds are often met, and goes up in growing steps until something is found: a far
+    /// longer period is not far easier to find.
+    fn gallop(&mut self, effort: u64, ask: Ask<'_>) -> Result<(), Stopped> {
+        let mut step = ((self.found.period - self.found.bound + 1) >> 8).max(1);
+        let mut period = self.found.bound;
+        for effort in [4 * effort, effort, effort, effort, effort, effort] {
+            if period >= self.found.period || !self.is_open() || self.finds(period, effort, ask)? {
+                return Ok(());
+            }
+            period = period.max(self.found.bound - 1) + step;
+            step *= 2;
+        }
+        if self.is_open() { self.decide(self.found.period - 1, effort, ask).map(drop) } else { Ok(()) }
+    }
+
+    /// The period just below the best decides all: either it has a schedule, or nothing better is there. This tries to
+    /// refute it, and to find something better by bisection.
+    fn bisect(&mut self, effort: u64, ask: Ask<'_>) -> Result<(), Stopped> {
+        let far = |found: &Shortest| found.period - found.bound > found.period / 32;
+        while self.is_open() && far(&self.found) && self.finds(self.found.period - 1, 4 * effort, ask)? {}
+        if !self.is_open() {
+            return Ok(());
+        }
+        self.decide(self.found.period - 1, 16 * effort, ask)?;
+        // The shortest period leaves the least to guess, so it comes first; then bisection.
+        let (mut unknown, mut period) = (self.found.bound - 1, self.found.bound);
+        while unknown + 1 < self.found.period && self.is_open() {
+            if !self.finds(period, effort, ask)? {
+                unknown = period;
+            }
+            period = unknown + (self.found.period - unknown) / 2;
+        }
+        Ok(())
+    }
+
+    /// The highest bound that follows without distinguishing cases: longer periods are no harder, so by bisection.
+    fn bound_by_rules(&mut self) {
+        let (mut open, mut middle) = (self.found.period, self.found.bound);
+        // Most often counting has said as much.
+        while self.found.bound < open {
+            if self.search.is_refuted(middle) {
+                self.found.bound = middle + 1;
+            } else {
+                open = middle;
+            }
+            middle = self.found.bound + (open - self.found.bound) / 2;
+        }
+        self.bound_of_rules = self.found.bound;
+    }
+
+    /// Searches all of a period. Returns true if that is decided.
+    fn decide(&mut self, period: u32, effort: u64, ask: Ask<'_>) -> Result<bool, Stopped> {
+        let (before, effort) = (self.nodes() - self.search.nodes(), self.affordable(effort));
+        let Self { search, found, raised, .. } = self;
+        let nodes = search.nodes();
+        let raised = raised.as_ref().filter(|(raised, _)| period < raised.found.bound);
+        let cases = raised.and_then(|(_, raised)| raised.cases(search.merged(), period));
+        let decided = search.decide_cases(period, effort, cases, &mut |nodes| ask(before + nodes, found));
+        if decided == Decided::Refuted && search.nodes() == nodes {
+            self.bound_of_rules = self.bound_of_rules.max(period + 1);
+        }
+        self.take(period, decided)
+    }
+
+    /// Returns true if a schedule with this period, or a shorter one, is found soon.
+    fn finds(&mut self, period: u32, effort: u64, ask: Ask<'_>) -> Result<bool, Stopped> {
+        let (before, effort) = (self.nodes() - self.search.nodes(), self.affordable(effort));
+        let Self { search, found, .. } = self;
+        let guide = self.is_guide.then_some(&found.fire);
+        let decided = search.find(period, effort, effort << 20, guide, &mut |nodes| ask(before + nodes, found));
+        // Once a schedule is worth following, only the bound is worth raising: refuting longer periods costs more.
+        let is_worth_it = period == self.found.bound;
+        if !self.take(period, decided)? && self.is_open() && is_worth_it {
+            self.decide(period, effort, ask)?;
+        }
+        Ok(self.found.period <= period)
+    }
+
+    fn affordable(&self, effort: u64) -> u64 {
+        effort.min(self.limit.saturating_sub(self.nodes()))
+    }
+
+    /// Takes the outcome for a period. Returns true if it is decided.
+    fn take(&mut self, period: u32, decided: Decided) -> Result<bool, Stopped> {
+        match decided {
+            Decided::Found(fire) => {
+                self.improve(fire);
+                self.is_guide = true;
+            }
+            Decided::Refuted => self.found.bound = self.found.bound.max(period + 1),
+            Decided::Open => return Ok(false),
+            Decided::Stopped => return Err(Stopped),
+        }
+        Ok(true)
+    }
+
+    /// Takes the times at the shortest period at which they serve.
+    fn improve(&mut self, fire: FiringTimes) {
+        self.found.period = period_of(self.search.problem(), &fire).max(self.found.bound);
+        self.found.fire = fire;
+    }
+}
+
+/// The times that come of these by turning, reflecting and exchanging the phases, the first as they are: where sensors
+/// differ, some serve at a shorter period than others.
+fn images(problem: &Problem, [a, b]: &FiringTimes) -> Vec<FiringTimes> {
+    let sensors = problem.sensors();
+    let turned = (0..sensors).map(|by| (0..sensors).map(|x| (x + by) % sensors).collect::<Vec<_>>());
+    let reflected = (0..sensors).map(|about| (0..sensors).map(|x| (about + sensors - x) % sensors).collect());
+    let images = turned.chain(reflected).map(|image| [a, b].map(|times| image.iter().map(|&x| times[x]).collect()));
+    let images = images.flat_map(|[a, b]: FiringTimes| [[a.clone(), b.clone()], [b, a]]);
+    images.filter(|fire| problem.is_kept_by(period_of(problem, fire), fire)).collect()
+}
+
+/// The constructed schedule. `None` if sensors that fire together must keep a gap.
+fn constructed_times(problem: &Problem) -> Option<FiringTimes> {
+    let merged = problem.merged();
+    if problem.gaps.iter().any(|&(x, y, ..)| merged.of_sensor[x] == merged.of_sensor[y]) {
+        return None;
+    }
+    let of = |times: &Times| {
+        [0, 1].map(|phase: usize| merged.of_sensor.iter().map(|&one| times[one][phase] as u32).collect())
+    };
+    Some(of(&constructed(&merged, |times| period_of(problem, &of(times)))))
+}
+
+/// The least period of sensors of which each has a gap to each other, the best of a few such sets.
+///
+/// In two periods each of them fires twice. After each firing of x the next one of the set comes no sooner than the
+/// smallest gap after x, or, if it is x again, than its window. So two periods take at least twice the sum of these.
+/// A tree would have to try all orders for it, so a certificate of it may be too long to be written.
+fn one_after_the_other(problem: &Problem) -> u32 {
+    let merged = problem.merged();
+    let count = merged.count();
+    let has_gaps = |x: usize, y: usize| merged.gap[x][y] > 0 && merged.gap[y][x] > 0;
+    let from = |first: usize| {
+        let mut set = vec![first];
+        for y in (1..count).map(|step| (first + step) % count) {
+            if set.iter().all(|&x| has_gaps(x, y)) {
+                set.push(y);
+            }
+        }
+        let least = |x: usize| {
+            let gaps = set.iter().filter(|&&y| y != x).map(|&y| merged.gap[x][y]);
+            gaps.fold(merged.window[x], i32::min) as u32
+        };
+        set.iter().map(|&x| least(x)).sum()
+    };
+    (0..count).map(from).max().unwrap_or(0)
+}
+
+/// The shortest period at which these very times serve.
+fn period_of(problem: &Problem, [a, b]: &FiringTimes) -> u32 {
+    let mut period = a.iter().chain(b).max().map_or(1, |latest| latest + 1);
+    for (x, window) in problem.window.iter().enumerate() {
+        period = period.max(window + a[x].abs_diff(b[x]));
+    }
+    for &(x, y, after_x, after_y) in &problem.gaps {
+        for (x, y, gap) in [(x, y, after_x), (y, x, after_y)] {
+            period = period.max((a[x] + gap).saturating_sub(b[y])).max((b[x] + gap).saturating_sub(a[y]));
+        }
+    }
+    period
+}
+
+/// The problem in coarser ticks, and how many fine ones they are, if all its times are multiples of that.
+fn in_coarse_ticks(problem: &Problem) -> Option<(Problem, u32)> {
+    let divisor = |a: u32, b: u32| {
+        let (mut a, mut b) = (a, b);
+        while b > 0 {
+            (a, b) = (b, a % b);
+        }
+        a
+    };
+    let ticks = problem.numbers().fold(0, divisor);
+    if ticks < 2 {
+        return None;
+    }
+    let coarse = |times: &[u32]| times.iter().map(|time| time / ticks).collect();
+    let gaps = problem.gaps.iter().map(|&(x, y, after_x, after_y)| (x, y, after_x / ticks, after_y / ticks));
+    let coarse = Problem {
+        separation: coarse(&problem.separation),
+        window: coarse(&problem.window),
+        gaps: gaps.collect(),
+        ..problem.clone()
+    };
+    Some((coarse, ticks))
+}

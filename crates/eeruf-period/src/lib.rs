@@ -1,0 +1,28 @@
+//! The shortest period of a firing schedule for a ring of ultrasonic sensors, proven.
+//!
+//! [`PeriodProblem`] is the user's question, in microseconds: every sensor fires once per period, at any multiple of a
+//! tick; which schedule that meets the [`Requirements`](eeruf_core::Requirements) has the shortest period? Sensors may
+//! be alike or not, share echo lines or fire together. [`engine`] is the search, in whole ticks, and the proofs.
+//!
+//! | To .. | there is |
+//! |---|---|
+//! | find the shortest period | [`PeriodProblem::shortest`] |
+//! | know if a period can be kept | [`PeriodProblem::decide`] |
+//! | choose among the schedules of a period | [`PeriodProblem::prefer`] |
+//! | find the largest `t_delta` of a period | [`PeriodProblem::largest_t_delta`] |
+//! | say why nothing is shorter | [`ShortestPeriod::reason`] |
+//! | prove it to others, or over the reals | [`PeriodProblem::claim`], [`engine::prove`], [`engine::reals`] |
+//!
+//! How a search ends, who watches it and why it cannot start are [`eeruf_core::search`]'s. The same question has the
+//! same answer on each machine: there is no clock, and random numbers come from a fixed seed.
+
+pub mod engine;
+mod period_problem;
+mod reason;
+
+pub use period_problem::{PeriodProblem, ShortestPeriod, ToSpare};
+
+/// The listing of the crate's README compiles and holds.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

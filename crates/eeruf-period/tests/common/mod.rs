@@ -1,0 +1,163 @@
+//! Random problems and a brute force that knows only the definition.
+#![allow(dead_code)]
+
+use eeruf_period::engine::{Claim, Problem};
+
+/// The claim of a certificate as the checker read it.
+pub(crate) fn claim_of(certified: &eeruf_check::Claim) -> Claim {
+    let eeruf_check::Claim { problem, period, fire, bound } = certified.clone();
+    let eeruf_check::Problem { tick_us, separation, window, stale_echo, over_reals, together, gaps } = problem;
+    let problem = Problem { tick_us, separation, window, stale_echo, over_reals, together, gaps };
+    Claim { problem, period, fire, bound }
+}
+
+/// A small generator of pseudo-random numbers, the same on every machine (xorshift64*).
+pub(crate) struct Random(pub(crate) u64);
+
+impl Random {
+    /// A number below `end`.
+    pub(crate) fn below(&mut self, end: u32) -> u32 {
+        self.0 ^= self.0 >> 12;
+        self.0 ^= self.0 << 25;
+        self.0 ^= self.0 >> 27;
+        ((self.0.wrapping_mul(0x2545_F491_4F6C_DD1D) >> 33) % u64::from(end)) as u32
+    }
+
+    /// A number up to this.
+    pub(crate) fn up_to(&mut self, most: u32) -> u32 {
+        self.below(most + 1)
+    }
+
+    /// True once in `n` times.
+    pub(crate) fn once_in(&mut self, n: u32) -> bool {
+        self.below(n) == 0
+    }
+}
+
+/// A tiny problem: even or uneven, with shared lines, groups and stale echoes now and then.
+pub(crate) fn random_problem(random: &mut Random) -> Problem {
+    for _ in 0..10 {
+        random.below(2);
+    }
+    let sensors = 2 + random.below(3) as usize;
+    let is_even = random.once_in(3);
+    let (separation, window, interval) = (1 + random.below(3), 1 + random.below(5), 1 + random.below(3));
+    let pick = |random: &mut Random, most: u32, all: u32| if is_even { all } else { 1 + random.below(most) };
+    let separation: Vec<u32> = (0..sensors).map(|_| pick(random, 3, separation)).collect();
+    let window: Vec<u32> = (0..sensors).map(|_| pick(random, 5, window)).collect();
+    let mut together = Vec::new();
+    if random.once_in(3) && sensors > 2 {
+        let first = random.below(sensors as u32 - 1) as usize;
+        together.push(vec![first, first + 1 + random.below((sensors - first - 1) as u32) as usize]);
+        if sensors == 4 && random.once_in(3) {
+            together.push((0..4).filter(|sensor| !together[0].contains(sensor)).collect());
+        }
+    }
+    let mut gaps = Vec::new();
+    for x in 0..sensors {
+        for y in x + 1..sensors {
+            let joined = together.iter().any(|group: &Vec<usize>| group.contains(&x) && group.contains(&y));
+            if joined || random.once_in(4) {
+                continue;
+            }
+            if !is_even && random.once_in(4) {
+                // A shared line: neither listens while the other does.
+                gaps.push((x, y, window[x], window[y]));
+            } else {
+                let gap = pick(random, 3, interval);
+                gaps.push((x, y, gap, gap));
+            }
+        }
+    }
+    Problem { tick_us: (1, 1), separation, window, stale_echo: random.once_in(3), over_reals: false, together, gaps }
+}
+
+/// A schedule with this period, if there is one: all firing times are tried, sensor by sensor.
+pub(crate) fn feasible(problem: &Problem, period: u32) -> Option<[Vec<u32>; 2]> {
+    let mut fire: Vec<(u32, u32)> = Vec::new();
+    extend(problem, period, &mut fire)
+        .then(|| [fire.iter().map(|times| times.0).collect(), fire.iter().map(|times| times.1).collect()])
+}
+
+fn extend(problem: &Problem, period: u32, fire: &mut Vec<(u32, u32)>) -> bool {
+    if fire.len() == problem.sensors() {
+        return true;
+    }
+    for a in 0..period {
+        for b in 0..period {
+            fire.push((a, b));
+            if last_fits(problem, period, fire) && extend(problem, period, fire) {
+                return true;
+            }
+            fire.pop();
+        }
+    }
+    false
+}
+
+/// Returns true if the last sensor keeps the definition, by itself and with all before it.
+fn last_fits(problem: &Problem, period: u32, fire: &[(u32, u32)]) -> bool {
+    let y = fire.len() - 1;
+    let d = |x: usize| i64::from(fire[x].0) - i64::from(fire[x].1);
+    if i64::from(period) - d(y).abs() < i64::from(problem.window[y]) {
+        return false;
+    }
+    if problem.stale_echo && 2 * d(y).abs() < i64::from(problem.separation[y]) {
+        return false;
+    }
+    (0..y).all(|x| {
+        let joined = problem.together.iter().any(|group| group.contains(&x) && group.contains(&y));
+        let needed = i64::from(problem.separation[x].max(problem.separation[y]));
+        let apart = if joined { fire[x] == fire[y] } else { (d(x).abs() - d(y).abs()).abs() >= needed };
+        apart && gaps_fit(problem, period, fire, x, y)
+    })
+}
+
+/// Lays out five periods of both sensors on one line of time, and looks at each firing's followers.
+fn gaps_fit(problem: &Problem, period: u32, fire: &[(u32, u32)], x: usize, y: usize) -> bool {
+    let line = |x: usize| -> Vec<u32> {
+        (0..5).map(|n| n * period + if n % 2 == 0 { fire[x].0 } else { fire[x].1 }).collect()
+    };
+    let Some(&(_, _, after_x, after_y)) = problem.gaps.iter().find(|gap| (gap.0, gap.1) == (x, y)) else {
+        return true;
+    };
+    let clear = |first: &[u32], second: &[u32], gap: u32| {
+        first.iter().all(|&one| second.iter().all(|&other| other < one || other >= one + gap))
+    };
+    clear(&line(x), &line(y), after_x) && clear(&line(y), &line(x), after_y)
+}
+
+/// The claims of tests/data/shortest-periods.json, with a name each; all times `scale` times as many ticks.
+pub(crate) fn table(scale: u32) -> Vec<(String, Claim)> {
+    let text = include_str!("../../../../tests/data/shortest-periods.json");
+    text.split("{\"sensors\"").skip(1).map(|case| claim(&format!("\"sensors\"{case}"), scale)).collect()
+}
+
+fn claim(case: &str, scale: u32) -> (String, Claim) {
+    let value = |key: &str| case.split(&format!("\"{key}\": ")).nth(1).expect("the key is there");
+    let number = |key: &str| -> u32 {
+        let digits: String = value(key).chars().take_while(char::is_ascii_digit).collect();
+        digits.parse().expect("a number")
+    };
+    let row = |key: &str| -> Vec<u32> {
+        let list = value(key)[1..].split(']').next().expect("a list");
+        list.split(", ").map(|number| scale * number.parse::<u32>().expect("a number")).collect()
+    };
+    let (sensors, neighbours) = (number("sensors") as usize, number("neighbours") as usize);
+    let layout = &value("layout")[1..5];
+    let interval = scale * number("min_interval");
+    let pairs = (0..sensors).flat_map(|x| (x + 1..sensors).map(move |y| (x, y)));
+    let near = |x: usize, y: usize| y - x < neighbours || layout == "ring" && sensors - (y - x) < neighbours;
+    let problem = Problem {
+        tick_us: (number("tick_us"), scale),
+        separation: vec![scale * number("separation"); sensors],
+        window: vec![scale * number("window"); sensors],
+        stale_echo: false,
+        over_reals: false,
+        together: Vec::new(),
+        gaps: pairs.filter(|&(x, y)| near(x, y)).map(|(x, y)| (x, y, interval, interval)).collect(),
+    };
+    let period = scale * number("period");
+    let name = format!("{layout} {sensors}, window {}", number("window"));
+    (name, Claim { problem, period, fire: [row("fire_a"), row("fire_b")], bound: period })
+}

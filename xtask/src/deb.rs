@@ -8,7 +8,6 @@ use anyhow::{Result, ensure};
 use clap::Args;
 use fs_err as fs;
 
-use crate::python::only_file;
 use crate::steps::{empty, need, output, run, run_line};
 
 /// Parts to run.
@@ -28,10 +27,10 @@ pub(crate) fn deb(plan: &Plan) -> Result<()> {
     if !Path::new("LICENSE-THIRD-PARTY.txt").exists() {
         println!("the package has no notices: `cargo xtask notices` makes them, for one that goes to others");
     }
-    let packed = Path::new(HOME).join("packed");
-    empty(&packed)?;
-    run(Command::new("cargo").args(["deb", "--package", "eeruf-ros2", "--locked", "--output"]).arg(&packed))?;
-    let package = absolute(only_file(&packed)?)?;
+    fs::create_dir_all(HOME)?;
+    // It says where the package is.
+    let said = output(Command::new("cargo").args(["deb", "--package", "eeruf-ros2", "--locked", "--output", HOME]))?;
+    let package = absolute(said.lines().last().unwrap_or_default())?;
     println!("{}", package.display());
     verify_unit()?;
     if plan.test { test(&package) } else { Ok(()) }

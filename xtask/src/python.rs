@@ -85,7 +85,7 @@ pub(crate) fn distributions(folder: &Path) -> Result<()> {
 
 /// A virtual environment with these packages of `PyPI`; its Python.
 pub(crate) fn environment(home: &Path, packages: &[&str]) -> Result<PathBuf> {
-    need("python3 -m ensurepip --version", "apt install python3-venv")?;
+    need("python3 -c __import__('ensurepip')", "apt install python3-venv")?;
     let python = interpreter(home);
     if !python.exists() {
         run(Command::new("python3").args(["-m", "venv"]).arg(home))?;

@@ -23,9 +23,10 @@ use clap::{CommandFactory as _, FromArgMatches as _};
 
 use crate::commands::{Answer, Cli};
 use crate::files::error::InputError;
+pub use crate::files::firings::firing;
 use crate::files::implausible::warn_of_options;
 pub use crate::files::mcap::Recording;
-use crate::files::outputs::check_outputs;
+use crate::files::write::check_outputs;
 
 /// Runs the program with these arguments, of which the first is its own name, and gives its exit code: 0 for yes, 1 for
 /// no (not verified, infeasible), 2 for bad input, which is named in one line on standard error, 3 if a search ended

@@ -9,7 +9,7 @@ use eeruf_design::atlas::{ATLAS, Ring, Row, all_rings, is_in_shard, rows};
 use eeruf_design::atlas_making::{header, make};
 use eeruf_files::FileError;
 
-use super::answer::Answer;
+use super::Answer;
 use super::arguments::picture;
 use crate::console::print;
 use crate::files::error::InputError;

@@ -6,7 +6,7 @@ use clap::ValueEnum;
 use eeruf_check::check;
 use eeruf_design::{RingDesign, certificate};
 
-use super::answer::Answer;
+use super::Answer;
 use crate::console::{error, note};
 use crate::files::error::InputError;
 use crate::files::write::write;

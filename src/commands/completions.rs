@@ -3,8 +3,8 @@
 use clap::CommandFactory as _;
 use clap_complete::Shell;
 
+use super::Answer;
 use super::Cli;
-use super::answer::Answer;
 use crate::console::print;
 use crate::files::error::InputError;
 

@@ -7,7 +7,7 @@ use eeruf_sim::experiments::set_two::{SetTwoOptions, drive};
 use eeruf_sim::{Method, Options, Physics, World, simulate_while, sweep, world_file};
 use serde_json::json;
 
-use super::answer::Answer;
+use super::Answer;
 use crate::files::error::InputError;
 use crate::files::truth::{readings_csv, track_csv};
 use crate::files::write::{make_folder, write};

@@ -14,7 +14,7 @@ use eeruf_sim::modules::{Module, PulseTimes};
 use eeruf_sim::{AnySchedule, Method, Robot};
 use serde::Serialize;
 
-use super::answer::Answer;
+use super::Answer;
 use super::arguments::{picture, seconds};
 use super::certificate::{self, CertificateForm, Written};
 use super::rooms::{self, RoomArgs};

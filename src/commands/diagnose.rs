@@ -6,7 +6,7 @@ use eeruf_core::{Micros, Phase};
 use eeruf_files::Kind;
 use eeruf_logs::{Alignment, FiringLog, Settings, Timing, align, diagnose, timing};
 
-use super::answer::Answer;
+use super::Answer;
 use super::arguments::picture;
 use super::log_args::positive;
 use crate::console::{print_line, tell};

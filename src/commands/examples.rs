@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use super::answer::Answer;
+use super::Answer;
 use crate::console::print_line;
 use crate::examples;
 use crate::files::error::InputError;

@@ -1,6 +1,6 @@
 //! `eeruf licenses`: under which terms the program may be used, and what others wrote of it.
 
-use super::answer::Answer;
+use super::Answer;
 use crate::console::print_line;
 use crate::files::error::InputError;
 

@@ -7,7 +7,7 @@ use eeruf_files::Kind;
 use eeruf_logs::{Doctor, Examination, Reading, Report, read_log};
 use serde::Serialize;
 
-use super::answer::Answer;
+use super::Answer;
 use super::log_args::{LogArgs, left_out, tell_damage, warn_of_log};
 use crate::console::{print_line, tell};
 use crate::files::error::InputError;

@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use clap::CommandFactory as _;
 use eeruf_files::FileError;
 
+use super::Answer;
 use super::Cli;
-use super::answer::Answer;
 use crate::console::print;
 use crate::files::error::InputError;
 use crate::files::write::make_folder;

@@ -8,7 +8,7 @@ use clap::Parser;
 use eeruf_files::FileError;
 use serde_json::error::Category;
 
-use super::answer::Answer;
+use super::Answer;
 use super::experiment::{Part, Shard, merged};
 use super::{Cli, Verb};
 use crate::files::error::InputError;

@@ -9,7 +9,6 @@ macro_rules! help {
     };
 }
 
-mod answer;
 pub(crate) mod arguments;
 mod atlas;
 mod certificate;
@@ -19,7 +18,6 @@ mod design;
 mod diagnose;
 mod examples;
 mod experiment;
-mod hopping;
 mod licenses;
 mod log_args;
 mod logs;
@@ -36,7 +34,6 @@ mod study;
 mod survey;
 mod verify;
 
-pub(crate) use answer::Answer;
 use clap::{ColorChoice, Parser, Subcommand};
 
 use crate::console::Settings;
@@ -91,6 +88,16 @@ impl OutputArgs {
         };
         Settings { quiet: self.quiet, deny_warnings: self.deny_warnings, wide: self.wide, colour }
     }
+}
+
+/// Answer of a command, and with it the exit code.
+pub(crate) enum Answer {
+    /// Exit code 0.
+    Yes,
+    /// Not verified, or infeasible: exit code 1.
+    No,
+    /// Budget or time ended the search before its answer: exit code 3.
+    NotDecided,
 }
 
 #[derive(Subcommand)]

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use eeruf_sim::{MAX_ORDER, World};
 
-use super::answer::Answer;
+use super::Answer;
 use crate::console::{print_line, tell};
 use crate::files::error::InputError;
 use crate::files::toml::read_world;

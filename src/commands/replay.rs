@@ -9,10 +9,10 @@ use eeruf_core::{
 use eeruf_files::Kind;
 use eeruf_logs::{Echo, McapWriter, Reading, Report, Sensor, read_log};
 
-use super::answer::Answer;
+use super::Answer;
 use super::arguments::picture;
-use super::hopping::Hopping;
 use super::log_args::{LogArgs, left_out, tell_damage, warn_of_log};
+use super::methods::Hopping;
 use super::replay_hopping::replay_hopping;
 use crate::console::{print_line, tell};
 use crate::files::error::InputError;

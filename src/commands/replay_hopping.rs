@@ -8,7 +8,7 @@ use eeruf_core::{
 };
 use eeruf_logs::{Firing, FiringLog, McapWriter, Reading, replay};
 
-use super::answer::Answer;
+use super::Answer;
 use crate::console::{print_line, tell};
 use crate::files::error::InputError;
 use crate::files::implausible::read_firings;

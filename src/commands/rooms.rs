@@ -8,7 +8,7 @@ use eeruf_design::{RingDesign, RingSpec, RoomsAnswer, RoomsAsked};
 use eeruf_files::{FileError, Kind};
 use eeruf_sim::experiments::rooms::{RoomGroup, RoomWay};
 
-use super::answer::Answer;
+use super::Answer;
 use crate::console::{print_line, tell};
 use crate::files::error::InputError;
 use crate::files::map::read_map;

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use eeruf_sim::{Air, Noise, Physics, Scene, world_file};
 
-use super::answer::Answer;
+use super::Answer;
 use crate::console::{print, print_line};
 use crate::files::error::InputError;
 use crate::files::map::read_map;

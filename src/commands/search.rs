@@ -9,7 +9,7 @@ use eeruf_core::search::wait::{Budget, COUNT_WORDS, Objective, memory_words};
 use eeruf_core::search::{Found, FrontTable, Outcome, Progress, SearchError, WaitSearch};
 use eeruf_design::FoundJson;
 
-use super::answer::Answer;
+use super::Answer;
 use super::arguments::seconds;
 use crate::console::{print_line, tell};
 use crate::files::error::InputError;

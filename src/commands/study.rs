@@ -8,7 +8,7 @@ use eeruf_sim::{
     Method, Options, Physics, SimulationError, Sketch, World, shortest_schedule_for, simulate_while, sweep,
 };
 
-use super::answer::Answer;
+use super::Answer;
 use super::arguments::picture_folder;
 use super::methods::chosen;
 use super::rooms::{self, RoomArgs};

@@ -8,7 +8,7 @@ use eeruf_files::Kind;
 use eeruf_logs::{FiringLog, PathSettings, Surveyed, survey};
 use eeruf_sim::{Physics, World};
 
-use super::answer::Answer;
+use super::Answer;
 use super::arguments::picture;
 use super::log_args::positive;
 use crate::console::{print_line, tell};

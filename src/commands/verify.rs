@@ -8,7 +8,7 @@ use eeruf_core::{Criterion, Layout, Micros, Requirements, hopping::HoppingListen
 use eeruf_design::{LayoutKey, LayoutName, PhaseSchedule, RingSpec};
 use eeruf_sim::AnySchedule;
 
-use super::answer::Answer;
+use super::Answer;
 use crate::console::{print_line, tell};
 use crate::files::error::InputError;
 use crate::files::ring::read_ring;

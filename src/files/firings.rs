@@ -11,8 +11,8 @@ use super::write::write;
 /// The name of the simulation's clock.
 pub(crate) const CLOCK: &str = "simulation, true time";
 
-/// One of the readings, as a log has it.
-pub(crate) fn firing(readings: &Readings, k: usize) -> Firing {
+/// One of the readings of a simulation, as a log of firings has it.
+pub fn firing(readings: &Readings, k: usize) -> Firing {
     Firing {
         sensor: readings.sensor[k],
         fired_us: (1e6 * readings.fired_s[k]).round() as i64,

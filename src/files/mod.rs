@@ -7,7 +7,6 @@ pub(crate) mod firings;
 pub(crate) mod implausible;
 pub(crate) mod map;
 pub(crate) mod mcap;
-pub(crate) mod outputs;
 pub(crate) mod ring;
 pub(crate) mod survey;
 pub(crate) mod toml;

@@ -1,11 +1,41 @@
-//! Writing files and folders that the user asked for.
+//! Writing files and folders that the user asked for, which is checked before the work begins.
 
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
+use clap::ArgMatches;
 use eeruf_files::FileError;
 
 use super::error::InputError;
+
+/// The options that name what is read, and those that name what is written.
+const READ: [&str; 2] = ["file", "simulate"];
+const WRITTEN: [&str; 5] = ["out", "log", "mcap", "svg", "certificate"];
+
+/// Refuses a file to write that is one of those read, that is a folder, or whose folder does not exist.
+pub(crate) fn check_outputs(matches: &ArgMatches) -> Result<(), InputError> {
+    let Some((verb, below)) = matches.subcommand() else { return Ok(()) };
+    let named = |id: &str| below.try_get_many::<PathBuf>(id).ok().flatten().into_iter().flatten();
+    let read: Vec<_> = READ.into_iter().flat_map(named).filter_map(|file| file.canonicalize().ok()).collect();
+    for (id, file) in WRITTEN.into_iter().flat_map(|id| named(id).map(move |file| (id, file))) {
+        let wrong = |why: &str| Err(InputError::new(format!("--{id}"), format!("{}; {why}", file.display())));
+        if file.canonicalize().is_ok_and(|file| read.contains(&file)) {
+            return wrong("expected another file than the one that is read");
+        }
+        // These make their folders.
+        if verb == "dataset" || (id == "svg" && ["study", "set-one", "set-two", "set-three"].contains(&verb)) {
+            continue;
+        }
+        if file.is_dir() {
+            return wrong("expected a file, not a folder");
+        }
+        let folder = file.parent().filter(|folder| *folder != Path::new(""));
+        if let Some(error) = folder.and_then(|folder| folder.metadata().err()) {
+            return Err(FileError::writing(file, &error).into());
+        }
+    }
+    check_outputs(below)
+}
 
 /// Writes a file that the user asked for.
 pub(crate) fn write(file: &Path, contents: impl AsRef<[u8]>) -> Result<(), InputError> {

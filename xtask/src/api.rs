@@ -1,10 +1,12 @@
 //! `cargo xtask api`: the public items of the crates that firmware stands on, listed, counted and held against limits.
 
 use std::collections::BTreeSet;
-use std::fs;
 use std::path::{Path, PathBuf};
 
-use crate::steps::{Trouble, run};
+use anyhow::{Result, ensure};
+use fs_err as fs;
+
+use crate::steps::run;
 use crate::toolchain::cargo_of_version;
 
 /// The crates whose interface is kept small.
@@ -20,12 +22,12 @@ const TYPES: usize = 97;
 
 /// Lists each crate's interface, with all features, and holds that of `eeruf-core` against [`NAMES_AT_ROOT`] and
 /// [`TYPES`]; no type may be under two paths.
-pub(crate) fn api() -> Result<(), Trouble> {
+pub(crate) fn api() -> Result<()> {
     for name in CRATES {
         let file = Path::new(LISTS).join(format!("{name}.txt"));
         let items = interface(name)?;
         println!("{}: {} public items", file.display(), items.lines().count());
-        fs::write(&file, &items).map_err(|error| Trouble::Failed(format!("{}: {error}", file.display())))?;
+        fs::write(&file, &items)?;
         if name == CRATES[0] {
             front_door(&items)?;
         }
@@ -33,19 +35,13 @@ pub(crate) fn api() -> Result<(), Trouble> {
     Ok(())
 }
 
-fn front_door(api: &str) -> Result<(), Trouble> {
+fn front_door(api: &str) -> Result<()> {
     let (names, types, twice) = (names_at_root(api), types(api).count(), types_at_two_places(api));
     println!("eeruf-core: {} names at the root, {types} types", names.len());
-    if names.len() > NAMES_AT_ROOT {
-        let names = names.into_iter().collect::<Vec<_>>().join(", ");
-        return Err(Trouble::Failed(format!("more than {NAMES_AT_ROOT} names at the root of eeruf-core: {names}")));
-    }
-    if types > TYPES {
-        return Err(Trouble::Failed(format!("{types} public types of eeruf-core; expected at most {TYPES}")));
-    }
-    if !twice.is_empty() {
-        return Err(Trouble::Failed(format!("types of eeruf-core under two paths: {}", twice.join(", "))));
-    }
+    let few = names.len() <= NAMES_AT_ROOT;
+    ensure!(few, "more than {NAMES_AT_ROOT} names at the root of eeruf-core: {names:?}");
+    ensure!(types <= TYPES, "{types} public types of eeruf-core; expected at most {TYPES}");
+    ensure!(twice.is_empty(), "types of eeruf-core under two paths: {}", twice.join(", "));
     Ok(())
 }
 
@@ -100,7 +96,7 @@ fn types_at_two_places(api: &str) -> Vec<String> {
 }
 
 /// All public items of a crate, one a line; not what every type has by itself.
-fn interface(name: &str) -> Result<String, Trouble> {
+fn interface(name: &str) -> Result<String> {
     let mut cargo = cargo_of_version(RUST)?;
     // JSON is not stable. In a folder of its own, since build scripts run again where this variable comes and goes.
     cargo.env("RUSTC_BOOTSTRAP", "1").env("CARGO_TARGET_DIR", "target/api");
@@ -111,8 +107,7 @@ fn interface(name: &str) -> Result<String, Trouble> {
         .omit_auto_derived_impls(true)
         .omit_auto_trait_impls(true)
         .omit_blanket_impls(true)
-        .build()
-        .map_err(|error| Trouble::Failed(format!("{name}: {error}")))?;
+        .build()?;
     Ok(api.items().map(|item| format!("{item}\n")).collect())
 }
 

@@ -2,7 +2,7 @@
 //! and run on a simulated Uno among simulated HC-SR04 modules.
 
 mod build;
-mod library;
+mod line_faults;
 mod newping;
 mod own_walls;
 mod pace;
@@ -10,56 +10,66 @@ mod survey;
 mod tables;
 mod world;
 
-use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use build::Board;
-pub(crate) use newping::newping;
+use anyhow::{Context as _, Result};
+use fs_err as fs;
 
-use crate::c::need;
-use crate::steps::{Steps, Trouble, run};
+pub(crate) use self::newping::newping;
+use crate::steps::{Steps, empty, run};
 
 /// Where it is packed, built and run.
 const TARGET: &str = "target/arduino";
 
-/// Wiring of an example, and what it is measured by.
+/// Wiring of an example: a trigger and an echo for each module; and whether it is run where time is short.
 struct Example {
     name: &'static str,
-    modules: usize,
     triggers: &'static [u8],
     echoes: &'static [u8],
-    /// True if it is run where time is short.
     short: bool,
 }
 
-/// `examples/uno`, which is in Rust: wired as Ring8.
-const IN_RUST: Example =
-    Example { name: "examples/uno", modules: 8, triggers: ALL.split_at(8).0, echoes: ALL.split_at(8).1, short: true };
+impl Example {
+    const fn new(name: &'static str, triggers: &'static [u8], echoes: &'static [u8], short: bool) -> Self {
+        Self { name, triggers, echoes, short }
+    }
+
+    /// A ring with one pin for each module.
+    const fn one_pin(name: &'static str, modules: usize, short: bool) -> Self {
+        Self::new(name, ALL.split_at(modules).0, ALL.split_at(modules).0, short)
+    }
+
+    /// A ring of eight modules with two pins each.
+    const fn eight(name: &'static str, short: bool) -> Self {
+        Self::new(name, ALL.split_at(8).0, ALL.split_at(8).1, short)
+    }
+
+    const fn modules(&self) -> usize {
+        self.triggers.len()
+    }
+
+    fn pins(&self) -> Vec<u8> {
+        [self.triggers, self.echoes].concat()
+    }
+}
 
 const ALL: [u8; 16] = [2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17];
 
-const EXAMPLES: [Example; 9] = [
-    Example { name: "Two", modules: 2, triggers: &[4, 5], echoes: &[2, 3], short: false },
-    Example { name: "Ring8", modules: 8, triggers: ALL.split_at(8).0, echoes: ALL.split_at(8).1, short: false },
-    Example {
-        name: "Ring12OnePin",
-        modules: 12,
-        triggers: ALL.split_at(12).0,
-        echoes: ALL.split_at(12).0,
-        short: true,
-    },
-    Example { name: "Flow12", modules: 12, triggers: ALL.split_at(12).0, echoes: ALL.split_at(12).0, short: true },
-    Example { name: "FromNewPing", modules: 3, triggers: &[4, 5, 6], echoes: &[4, 5, 6], short: true },
-    Example { name: "States4", modules: 4, triggers: ALL.split_at(4).0, echoes: ALL.split_at(4).0, short: false },
-    Example { name: "Hopping8", modules: 8, triggers: ALL.split_at(8).0, echoes: ALL.split_at(8).0, short: false },
-    Example { name: "SerialRing8", modules: 8, triggers: ALL.split_at(8).0, echoes: ALL.split_at(8).1, short: true },
-    Example { name: "Adaptive", modules: 8, triggers: ALL.split_at(8).0, echoes: ALL.split_at(8).0, short: false },
-];
+/// `examples/uno`, which is in Rust: wired as Ring8.
+const IN_RUST: Example = Example::eight("examples/uno", true);
 
-fn failed(what: &str) -> impl Fn(std::io::Error) -> Trouble + '_ {
-    move |error| Trouble::Failed(format!("{what}: {error}"))
-}
+const EXAMPLES: [Example; 9] = [
+    Example::new("Two", &[4, 5], &[2, 3], false),
+    Example::eight("Ring8", false),
+    Example::one_pin("Ring12OnePin", 12, true),
+    Example::one_pin("Flow12", 12, true),
+    Example::new("FromNewPing", &[4, 5, 6], &[4, 5, 6], true),
+    Example::one_pin("States4", 4, false),
+    Example::one_pin("Hopping8", 8, false),
+    Example::eight("SerialRing8", true),
+    Example::one_pin("Adaptive", 8, false),
+];
 
 /// Parts to run.
 #[derive(clap::Args)]
@@ -73,75 +83,59 @@ pub(crate) struct Plan {
 }
 
 pub(crate) fn arduino(plan: &Plan, steps: &mut Steps) {
+    let library = Path::new(TARGET).join("libraries/Eeruf");
     steps.step("tables of the Arduino library", || tables::check(plan.write));
     steps.step("tables of the examples", crate::examples::tables);
     steps.step("Arduino library", || pack().and_then(|library| examples(&library, plan.short)));
-    steps.step("pace of sketches", || pace::run(&Path::new(TARGET).join("libraries/Eeruf")));
-    steps.step("ready tables before walls", || own_walls::run(&Path::new(TARGET).join("libraries/Eeruf"), plan.short));
+    steps.step("pace of sketches", || pace::run(&library));
+    steps.step("ready tables before walls", || own_walls::run(&library, plan.short));
+    steps.step("sketches with a faulty module", || line_faults::run(&library));
 }
 
 /// The library as one installs it, its files and those of `c/`: packed as the `.zip` that the IDE takes, and unpacked
 /// into a folder `libraries`, as the IDE does.
-fn pack() -> Result<PathBuf, Trouble> {
+fn pack() -> Result<PathBuf> {
     let target = Path::new(TARGET);
     let (library, libraries) = (target.join("Eeruf"), target.join("libraries"));
-    for folder in [&library, &libraries] {
-        if folder.exists() {
-            fs::remove_dir_all(folder).map_err(failed("the packed library"))?;
-        }
+    empty(&library)?;
+    empty(&libraries)?;
+    let copy = |to: &Path, from: &[&str]| run(Command::new("cp").arg("-r").args(from).arg(to));
+    copy(&library, &["c/arduino/src", "c/arduino/examples", "LICENSE-MIT", "LICENSE-APACHE"])?;
+    let about = ["library.properties", "keywords.txt", "library.json", "README.md"];
+    copy(&library, &about.map(|file| format!("c/arduino/{file}")).each_ref().map(String::as_str))?;
+    copy(&library.join("src"), &["c/eeruf.c", "c/eeruf.h", "c/eeruf_serial.h"])?;
+    let properties = fs::read_to_string(library.join("library.properties"))?;
+    let version = properties.lines().find_map(|line| line.strip_prefix("version="));
+    let zip = format!("Eeruf-{}.zip", version.context("library.properties: no version")?);
+    for arguments in [["-c", &zip, "Eeruf"], ["-e", &zip, "libraries"]] {
+        run(Command::new("python3").args(["-m", "zipfile"]).args(arguments).current_dir(TARGET))?;
     }
-    let source = library.join("src");
-    fs::create_dir_all(&source).map_err(failed("the packed library"))?;
-    fs::create_dir_all(&libraries).map_err(failed("the packed library"))?;
-    for folder in ["src", "examples"] {
-        run(Command::new("cp").args(["-r"]).arg(Path::new("c/arduino").join(folder)).arg(&library))?;
-    }
-    for file in ["library.properties", "keywords.txt", "library.json", "README.md"] {
-        fs::copy(Path::new("c/arduino").join(file), library.join(file)).map_err(failed(file))?;
-    }
-    for file in ["LICENSE-MIT", "LICENSE-APACHE"] {
-        fs::copy(file, library.join(file)).map_err(failed(file))?;
-    }
-    for file in ["eeruf.c", "eeruf.h", "eeruf_serial.h"] {
-        fs::copy(Path::new("c").join(file), source.join(file)).map_err(failed(file))?;
-    }
-    let properties = fs::read_to_string(library.join("library.properties")).map_err(failed("library.properties"))?;
-    let version = library::check(&properties).map_err(Trouble::Failed)?;
-    let zip = format!("Eeruf-{version}.zip");
-    let of_python = ["-m", "zipfile"];
-    run(Command::new("python3").args(of_python).args(["-c", &zip, "Eeruf"]).current_dir(TARGET))?;
-    run(Command::new("python3").args(of_python).args(["-e", &zip, "libraries"]).current_dir(TARGET))?;
     println!("{TARGET}/{zip}");
     Ok(libraries.join("Eeruf"))
 }
 
-fn examples(library: &Path, short: bool) -> Result<(), Trouble> {
-    need("avr-g++", "gcc-avr avr-libc binutils-avr arduino-core-avr")?;
-    need("gcc", "gcc")?;
-    let core = build::core(Board::Uno)?;
+fn examples(library: &Path, short: bool) -> Result<()> {
     let world = world::build()?;
+    let seconds = if short { 3 } else { 20 };
     println!("| sketch | flash | data + bss | stack | firings/s | accepted/s | wrong of accepted |");
     println!("|---|---:|---:|---:|---:|---:|---:|");
     for example in &EXAMPLES {
-        let sketch = build::example(library, &core, example.name)?;
-        if short && !example.short {
-            continue;
+        let sketch = build::example(library, example.name)?;
+        if example.short || !short {
+            let heard = world::hear(&world, &sketch.elf, example, seconds, false)?;
+            heard.is_plausible(example)?;
+            println!("| {} | {} | {} | {} |", example.name, sketch.flash, sketch.ram, heard.row());
         }
-        let seconds = if short { 3 } else { 20 };
-        let heard = world::run(&world, &sketch.elf, example, seconds, false)?;
-        heard.is_plausible(example)?;
-        println!("| {} | {} | {} | {} |", example.name, sketch.flash, sketch.ram, heard.row());
     }
     let elf = crate::examples::uno()?;
     let (flash, ram) = build::size(&elf)?;
-    let heard = world::run(&world, &elf, &IN_RUST, if short { 3 } else { 20 }, false)?;
+    let heard = world::hear(&world, &elf, &IN_RUST, seconds, false)?;
     heard.is_plausible(&IN_RUST)?;
     println!("| `{}`, in Rust | {flash} | {ram} | {} |", IN_RUST.name, heard.row());
-    let sketch = build::example(library, &core, "Survey")?;
-    newping::builds(library, &core)?;
-    if short {
-        return Ok(());
+    let sketch = build::example(library, "Survey")?;
+    newping::builds(library)?;
+    if !short {
+        println!("| Survey | {} | {} | {} |", sketch.flash, sketch.ram, survey::run(&world, &sketch.elf)?);
     }
-    println!("| Survey | {} | {} | {} |", sketch.flash, sketch.ram, survey::run(&world, &sketch.elf)?);
     Ok(())
 }

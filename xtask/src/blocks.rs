@@ -1,6 +1,11 @@
-//! Parts of documents that a program printed: a comment before them says which, `<!-- end -->` ends them.
+//! Parts of documents that are made elsewhere. What a program printed has a comment before it that says which, and
+//! `<!-- end -->` behind it. A listing is a part of a compiled file: `<!-- listing: FILE [from TEXT] [to TEXT] -->` before
+//! a code block says which.
 
-use crate::steps::Trouble;
+use anyhow::{Context as _, Result, ensure};
+use fs_err as fs;
+
+use crate::printed::documents;
 
 const END: &str = "<!-- end -->";
 
@@ -12,16 +17,12 @@ pub(crate) struct Block<'a> {
 }
 
 /// The parts of a text whose comments begin with these words.
-pub(crate) fn blocks<'a>(text: &'a str, begin: &str) -> Result<Vec<Block<'a>>, Trouble> {
+pub(crate) fn blocks<'a>(text: &'a str, begin: &str) -> Result<Vec<Block<'a>>> {
     text.split(begin).skip(1).map(|rest| Ok(split(rest)?.0)).collect()
 }
 
 /// The text with the body of each part replaced by what `fresh` gives for it.
-pub(crate) fn replaced(
-    text: &str,
-    begin: &str,
-    mut fresh: impl FnMut(&Block<'_>) -> Result<String, Trouble>,
-) -> Result<String, Trouble> {
+pub(crate) fn replaced(text: &str, begin: &str, mut fresh: impl FnMut(&Block<'_>) -> Result<String>) -> Result<String> {
     let mut pieces = text.split(begin);
     let mut out = pieces.next().unwrap_or_default().to_owned();
     for piece in pieces {
@@ -31,11 +32,44 @@ pub(crate) fn replaced(
     Ok(out)
 }
 
-fn split(rest: &str) -> Result<(Block<'_>, &str), Trouble> {
-    let failed = |why: &str| Trouble::Failed(why.to_owned());
-    let (label, rest) = rest.split_once(" -->\n").ok_or_else(|| failed("a comment has no end"))?;
-    let (body, after) = rest.split_once(END).ok_or_else(|| failed(&format!("no {END} after {label}")))?;
+fn split(rest: &str) -> Result<(Block<'_>, &str)> {
+    let (label, rest) = rest.split_once(" -->\n").context("a comment has no end")?;
+    let (body, after) = rest.split_once(END).with_context(|| format!("no {END} after {label}"))?;
     Ok((Block { label, body }, after))
+}
+
+/// Compares each listing of every document with its file.
+pub(crate) fn check_listings() -> Result<()> {
+    documents()?.iter().try_for_each(|document| check_listings_of(document))
+}
+
+/// The lines are those from the first that contains the text after `from` to the next that contains the text after
+/// `to`.
+fn check_listings_of(document: &str) -> Result<()> {
+    let text = fs::read_to_string(document)?;
+    let mut rest = text.as_str();
+    let mut listings = 0;
+    while let Some((_, after)) = rest.split_once("<!-- listing: ") {
+        let (what, after) =
+            after.split_once(" -->\n").with_context(|| format!("{document}: a listing comment has no end"))?;
+        let (_, after) = after.split_once('\n').with_context(|| format!("{document}: {what}"))?;
+        let (block, after) = after.split_once("```").with_context(|| format!("{document}: {what}"))?;
+        let (file, range) = what.split_once(" from ").unwrap_or((what, ""));
+        let (from, to) = range.rsplit_once(" to ").unwrap_or((range, ""));
+        let source = fs::read_to_string(file)?;
+        let lines: Vec<&str> = source.lines().collect();
+        let first = lines.iter().position(|line| line.contains(from)).unwrap_or(0);
+        let ends = |line: &&str| !to.is_empty() && line.contains(to);
+        let last = lines.iter().skip(first).position(ends).map_or(lines.len(), |n| first + n + 1);
+        let same = block.trim_end() == lines[first..last].join("\n").trim_end();
+        ensure!(same, "{document}: the listing of {what} differs from the file");
+        listings += 1;
+        rest = after;
+    }
+    if listings > 0 {
+        println!("{document}: {listings} listings are as in their files");
+    }
+    Ok(())
 }
 
 #[cfg(test)]

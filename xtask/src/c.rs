@@ -1,10 +1,14 @@
-//! The C library in `c/`: strict compilers, what a caller may do wrong, the sample for Zephyr, equality with the Rust
-//! crates under sanitizers.
+//! The C library in `c/` and what stands on it: strict compilers, what a caller may do wrong, the sample for Zephyr,
+//! equality with the Rust crates under sanitizers, MicroPython's class.
 
+use std::fmt::Write as _;
 use std::path::Path;
 use std::process::Command;
 
-use crate::steps::{Trouble, output, run};
+use anyhow::{Context as _, Result, bail};
+use fs_err as fs;
+
+use crate::steps::{need, output, run};
 
 const STRICT: [&str; 7] = ["-Wall", "-Wextra", "-Werror", "-pedantic", "-Wconversion", "-Wshadow", "-Ic"];
 /// Compilers and the languages that each takes the library as.
@@ -18,21 +22,18 @@ const COMPILERS: [(&str, &[&str]); 8] = [
     ("avr-g++", &["-mmcu=atmega328p", "-xc++", "-std=gnu++11"]),
     ("arm-none-eabi-gcc", &["-mcpu=cortex-m0", "-mthumb", "-std=c99"]),
 ];
-const SANITIZERS: &str = "-fsanitize=address,undefined";
+const SANITIZERS: [&str; 3] = ["-g", "-fsanitize=address,undefined", "-fno-sanitize-recover=all"];
+/// The sample of `c/zephyr`.
+const SAMPLE: &str = "c/zephyr/samples/ring";
+/// Where MicroPython's class and its tests are.
+const MICROPYTHON: &str = "c/micropython";
 
-/// Returns true if a compiler is installed.
-pub(crate) fn need(tool: &str, package: &str) -> Result<(), Trouble> {
-    match output(Command::new(tool).arg("--version")) {
-        Some(_) => Ok(()),
-        None => Err(Trouble::Skipped(format!("no {tool}; install {package}"))),
-    }
-}
-
-pub(crate) fn c() -> Result<(), Trouble> {
-    let needed = [("g++", "g++"), ("avr-gcc", "gcc-avr avr-libc"), ("arm-none-eabi-gcc", "gcc-arm-none-eabi")];
-    needed.iter().try_for_each(|(compiler, package)| need(compiler, package))?;
+pub(crate) fn c() -> Result<()> {
+    need("g++ --version", "apt install g++")?;
+    need("avr-g++ --version", "apt install gcc-avr avr-libc")?;
+    need("arm-none-eabi-gcc --version", "apt install gcc-arm-none-eabi libnewlib-arm-none-eabi")?;
     let target = Path::new("target/c");
-    std::fs::create_dir_all(target).map_err(|error| Trouble::Failed(error.to_string()))?;
+    fs::create_dir_all(target.join("zephyr"))?;
     let object = target.join("eeruf.o");
     for (compiler, language) in COMPILERS {
         run(Command::new(compiler).args(language).args(STRICT).args(["-Os", "-c", "c/eeruf.c", "-o"]).arg(&object))?;
@@ -40,26 +41,85 @@ pub(crate) fn c() -> Result<(), Trouble> {
     run(Command::new("gcc").args(STRICT).args(["-std=c99", "-c", "c/examples/flow.c", "-o"]).arg(&object))?;
     for (compiler, language) in &COMPILERS[..4] {
         let program = target.join("misuse");
-        let sources = ["c/tests/misuse.c", "c/eeruf.c", SANITIZERS, "-fno-sanitize-recover=all", "-g", "-o"];
-        run(Command::new(compiler).args(*language).args(STRICT).args(sources).arg(&program))?;
+        let sources = ["c/tests/misuse.c", "c/eeruf.c", "-o"];
+        run(Command::new(compiler).args(*language).args(STRICT).args(SANITIZERS).args(sources).arg(&program))?;
         run(&mut Command::new(program))?;
     }
-    crate::zephyr::sample()?;
+    sample(&target.join("zephyr"))?;
     equal_under_sanitizers()
 }
 
+/// The sample for Zephyr on this machine: compiled against declarations of our own, with the pins of its overlay, also
+/// for a Cortex-M4, and run for two minutes of simulated time among HC-SR04 modules. CI cannot install Zephyr itself.
+fn sample(target: &Path) -> Result<()> {
+    let overlay = fs::read_to_string(format!("{SAMPLE}/boards/nucleo_f401re.overlay"))?;
+    fs::write(target.join("overlay.h"), overlay_header(&overlay).with_context(|| format!("overlay of {SAMPLE}"))?)?;
+    let gcc = |compiler: &str, more: &[&str]| {
+        let mut gcc = Command::new(compiler);
+        gcc.args(more).args(STRICT).args(["-std=c17", "-Ic/tests/zephyr/include", "-Itarget/c/zephyr"]);
+        gcc
+    };
+    let main = format!("{SAMPLE}/src/main.c");
+    let compile = ["-Dmain=sample_main", "-c", &main, "-o"];
+    let board = ["-mcpu=cortex-m4", "-mthumb", "-Os"];
+    run(gcc("arm-none-eabi-gcc", &board).args(compile).arg(target.join("sample-m4.o")))?;
+    let (object, program) = (target.join("sample.o"), target.join("ring"));
+    run(gcc("gcc", &SANITIZERS).args(compile).arg(&object))?;
+    run(gcc("gcc", &SANITIZERS).arg(&object).args(["c/tests/zephyr/board.c", "c/eeruf.c", "-o"]).arg(&program))?;
+    run(&mut Command::new(program))
+}
+
+/// The macros that stand for the devicetree: a specification of each pin, and the list of them.
+fn overlay_header(overlay: &str) -> Result<String> {
+    let mut header = "#include <zephyr/device.h>\nextern const struct device ports[8];\n".to_owned();
+    for list in ["trigger_gpios", "echo_gpios"] {
+        let property = list.replace('_', "-");
+        let (_, cells) = overlay.split_once(&format!("{property} =")).with_context(|| format!("no {property}"))?;
+        let (cells, _) = cells.split_once(';').with_context(|| format!("{property} does not end"))?;
+        let mut names = Vec::new();
+        for (index, cell) in cells.split(',').enumerate() {
+            let words = cell.trim().trim_matches(['<', '>']).split_whitespace().collect::<Vec<_>>();
+            let ["&gpioa" | "&gpiob" | "&gpioc", pin, flags] = words[..] else {
+                bail!("{property}: {cell}; expected a port, a pin and flags");
+            };
+            let port = words[0].as_bytes()[5] - b'a';
+            _ = writeln!(header, "#define PIN_{list}_{index} {{&ports[{port}], {pin}, {flags}}}");
+            names.push(format!("macro(node, {list}, {index})"));
+        }
+        let names = names.join(" separator ");
+        _ = writeln!(header, "#define OVERLAY_{list}(node, macro, separator) {names}");
+    }
+    Ok(header)
+}
+
 /// The comparison of `eeruf-c-equal`, with the C side watched for each byte out of place.
-fn equal_under_sanitizers() -> Result<(), Trouble> {
-    let host = output(Command::new("rustc").args(["--print", "host-tuple"]))
-        .ok_or_else(|| Trouble::Failed("rustc does not say its host".to_owned()))?;
-    let asan = output(Command::new("gcc").arg("-print-file-name=libasan.so"))
-        .ok_or_else(|| Trouble::Failed("gcc does not say where its libasan is".to_owned()))?;
+fn equal_under_sanitizers() -> Result<()> {
+    let host = output(Command::new("rustc").args(["--print", "host-tuple"]))?;
+    let asan = output(Command::new("gcc").arg("-print-file-name=libasan.so"))?;
     // With a target named, so that build scripts are built as ever. The sanitizer must be loaded before all else.
     let runner = format!("CARGO_TARGET_{}_RUNNER", host.to_uppercase().replace('-', "_"));
     run(Command::new("cargo")
         .args(["test", "--quiet", "--locked", "--package", "eeruf-c-equal", "--target", &host, "--tests"])
         .args(["--target-dir", "target/c/sanitized"])
-        .env("CFLAGS", format!("{SANITIZERS} -fno-sanitize-recover=all -g"))
+        .env("CFLAGS", SANITIZERS.join(" "))
         .env("RUSTFLAGS", "-Clink-arg=-lasan -Clink-arg=-lubsan")
         .env(runner, format!("env LD_PRELOAD={asan}")))
+}
+
+/// Holds `c/micropython/` against the shared corpus, on simulated modules and with faults of a line, in MicroPython's
+/// WebAssembly build and in CPython.
+pub(crate) fn micropython() -> Result<()> {
+    need("node --version", "apt install nodejs")?;
+    for test in ["test_corpus.py", "test_modules.py", "test_line_faults.py"] {
+        run(Command::new("python3").current_dir(MICROPYTHON).arg("-B").arg(test))?;
+    }
+    npm(MICROPYTHON, "ci --ignore-scripts --no-audit --no-fund")?;
+    npm(MICROPYTHON, "run --silent test")
+}
+
+/// Runs npm in a folder.
+pub(crate) fn npm(folder: &str, words: &str) -> Result<()> {
+    let npm = if cfg!(windows) { "npm.cmd" } else { "npm" };
+    need(&format!("{npm} --version"), "apt install npm")?;
+    run(Command::new(npm).current_dir(folder).args(words.split(' ')))
 }

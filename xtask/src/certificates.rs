@@ -2,12 +2,14 @@
 //! certificates; and gives both the same mutated ones.
 
 use std::fmt::Write as _;
-use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::{Duration, Instant};
 
-use crate::steps::{Steps, Trouble, output, run};
+use anyhow::{Result, ensure};
+use fs_err as fs;
+
+use crate::steps::{Steps, output, run, run_line, stem};
 
 /// Parts to check.
 #[derive(clap::Args)]
@@ -23,7 +25,7 @@ pub(crate) struct Plan {
 const FOLDER: &str = "target/certificates";
 /// The table's intervals and separations, see docs/explanation/search.md.
 const WINDOWS_MS: [u32; 4] = [15, 30, 45, 60];
-const TABLE: [u32; 4] = [8, 12, 16, 24];
+pub(crate) const TABLE: [u32; 4] = [8, 12, 16, 24];
 
 /// Rings that are designed together, and the checkers that judge them.
 struct Group {
@@ -34,9 +36,9 @@ struct Group {
 
 pub(crate) fn run_all(plan: &Plan, steps: &mut Steps) {
     steps.step("build", || {
-        fs::create_dir_all(FOLDER).map_err(|error| Trouble::Failed(format!("{FOLDER}: {error}")))?;
-        run(Command::new("cargo").args(["build", "--release", "--locked", "-p", "eeruf"]))?;
-        run(Command::new("cargo").args(["build", "--release", "--locked", "-p", "eeruf-check", "--bins", "--examples"]))
+        fs::create_dir_all(FOLDER)?;
+        run_line("cargo build --release --locked -p eeruf")?;
+        run_line("cargo build --release --locked -p eeruf-check --bins --examples")
     });
     let groups = [
         Group { name: "the table, ticks of 1 ms", rings: table(&TABLE, 1000), by_python: true },
@@ -48,10 +50,7 @@ pub(crate) fn run_all(plan: &Plan, steps: &mut Steps) {
         "| rings | certificates | nodes | bytes | eeruf-check | check_period.py |\n|---|---|---|---|---|---|\n"
             .to_owned();
     for group in groups {
-        steps.step(group.name, || {
-            rows += &certify(&group)?;
-            Ok(())
-        });
+        rows += &steps.step(group.name, || certify(&group)).unwrap_or_default();
     }
     for (what, given) in [("tiny problems", vec![]), ("the table", mutated())] {
         let name = format!("{} mutated certificates of {what}", plan.mutations / 2);
@@ -65,16 +64,16 @@ pub(crate) fn run_all(plan: &Plan, steps: &mut Steps) {
 }
 
 /// Designs each ring with a certificate, checks all, and gives the row of the table.
-fn certify(group: &Group) -> Result<String, Trouble> {
+fn certify(group: &Group) -> Result<String> {
     let (mut nodes, mut bytes) = (0, 0);
     let (mut in_rust, mut in_python) = (Duration::ZERO, Duration::ZERO);
     for (name, ring) in &group.rings {
         let path = |ending: &str| PathBuf::from(FOLDER).join(format!("{name}.{ending}"));
         let (file, certificate) = (path("toml"), path("txt"));
-        fs::write(&file, ring).map_err(|error| Trouble::Failed(format!("{}: {error}", file.display())))?;
+        fs::write(&file, ring)?;
         let mut design = Command::new("target/release/eeruf");
         design.args(["design", "--emit", "toml", "--certificate"]).arg(&certificate).arg(&file);
-        output(&mut design).ok_or_else(|| Trouble::Failed(format!("no certificate for {}", file.display())))?;
+        output(&mut design)?;
         let text = fs::read_to_string(&certificate).unwrap_or_default();
         bytes += text.len();
         // A binary tree: one leaf more than there are branchings.
@@ -82,15 +81,11 @@ fn certify(group: &Group) -> Result<String, Trouble> {
         nodes += 2 * text.lines().filter(|line| words.iter().any(|word| line.starts_with(word))).count() + 1;
         let said = timed(Command::new("target/release/eeruf-check").arg(&certificate), &mut in_rust)?;
         println!("{name}: {said}");
-        if !said.contains("is the shortest period") {
-            return Err(Trouble::Failed(format!("{name}: {said}")));
-        }
+        ensure!(said.contains("is the shortest period"), "{name}: {said}");
         if group.by_python {
-            let by_python =
-                timed(Command::new("python3").arg("checker/check_period.py").arg(&certificate), &mut in_python)?;
-            if by_python != said {
-                return Err(Trouble::Failed(format!("{name}: check_period.py says {by_python}")));
-            }
+            let mut checker = Command::new("python3");
+            let by_python = timed(checker.arg("checker/check_period.py").arg(&certificate), &mut in_python)?;
+            ensure!(by_python == said, "{name}: check_period.py says {by_python}");
         }
     }
     let seconds = |time: Duration, run: bool| if run { format!("{:.1} s", time.as_secs_f64()) } else { "-".to_owned() };
@@ -99,9 +94,9 @@ fn certify(group: &Group) -> Result<String, Trouble> {
 }
 
 /// Verdict of a checker, and its duration.
-fn timed(command: &mut Command, total: &mut Duration) -> Result<String, Trouble> {
+fn timed(command: &mut Command, total: &mut Duration) -> Result<String> {
     let began = Instant::now();
-    let said = output(command).ok_or_else(|| Trouble::Failed(format!("{command:?} refuses")))?;
+    let said = output(command)?;
     *total += began.elapsed();
     Ok(said)
 }
@@ -128,18 +123,13 @@ fn name(layout: &str, sensors: u32, window_ms: u32, tick_us: u32) -> String {
 
 /// The ring files that users copy.
 pub(crate) fn files() -> Vec<(String, String)> {
-    let mut rings: Vec<(String, String)> = fs::read_dir("rings")
-        .into_iter()
-        .flatten()
-        .filter_map(|entry| {
-            let path = entry.ok()?.path();
-            let is_ring = path.extension().is_some_and(|ending| ending == "toml");
-            let text = fs::read_to_string(&path)
-                .ok()
-                .filter(|text| is_ring && text.contains("sensors =") && !text.contains("wait_max_us"))?;
-            Some((path.file_stem()?.to_string_lossy().into_owned(), text))
-        })
-        .collect();
+    let entries = fs::read_dir("rings").into_iter().flatten().flatten().map(|entry| entry.path());
+    let rings = entries.filter(|path| path.extension().is_some_and(|ending| ending == "toml")).filter_map(|path| {
+        let text = fs::read_to_string(&path).ok()?;
+        let is_searched = text.contains("sensors =") && !text.contains("wait_max_us");
+        is_searched.then(|| (stem(&path), text))
+    });
+    let mut rings: Vec<_> = rings.collect();
     rings.sort();
     rings
 }

@@ -2,15 +2,17 @@
 //! README says, with the table that `eeruf design` writes. That of the Uno is run among simulated modules by `cargo
 //! xtask arduino`; nothing else is run.
 
-use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::{Path, PathBuf, absolute};
 use std::process::Command;
 
-use crate::steps::{Steps, Trouble, output, run};
-use crate::toolchain::cargo_for_target;
+use anyhow::{Result, ensure};
+use fs_err as fs;
+
+use crate::steps::{Steps, output, run};
+use crate::toolchain::{cargo_for_target, is_debian};
 
 /// Their folders, and the targets they are built for.
-const BOARDS: [(&str, &str); 4] = [
+pub(crate) const BOARDS: [(&str, &str); 4] = [
     UNO,
     ("pico", "thumbv6m-none-eabi"),
     ("nucleo-f401", "thumbv7em-none-eabihf"),
@@ -22,11 +24,6 @@ const UNO: (&str, &str) = ("uno", "avr-none");
 /// All of them, or the one that is named.
 pub(crate) fn examples(only: Option<&str>, steps: &mut Steps) {
     let is_asked_for = |board: &str| only.is_none_or(|only| only == board);
-    if !BOARDS.iter().any(|(board, _)| is_asked_for(board)) {
-        let known = BOARDS.map(|(board, _)| board).join(", ");
-        let asked = only.unwrap_or_default();
-        steps.step("examples", || Err(Trouble::Failed(format!("no example {asked}; expected one of {known}"))));
-    }
     for (board, target) in BOARDS.into_iter().filter(|(board, _)| is_asked_for(board)) {
         steps.step(&format!("table of the example {board}"), || table(board));
         steps.step(&format!("example {board}"), || build(board, target).map(drop));
@@ -35,44 +32,38 @@ pub(crate) fn examples(only: Option<&str>, steps: &mut Steps) {
 
 /// The table of each, and of the sample for Zephyr: building them takes minutes, and a better table must not be
 /// forgotten in them until then.
-pub(crate) fn tables() -> Result<(), Trouble> {
+pub(crate) fn tables() -> Result<()> {
     BOARDS.into_iter().try_for_each(|(board, _)| table(board))?;
     is_designed("c", Path::new("examples/nucleo-f401/ring.toml"), Path::new("c/zephyr/samples/ring/src/ring.h"))
 }
 
-fn table(board: &str) -> Result<(), Trouble> {
+fn table(board: &str) -> Result<()> {
     let folder = Path::new("examples").join(board);
     is_designed("rust", &folder.join("ring.toml"), &folder.join("src/ring.rs"))
 }
 
 /// A table is what `eeruf design` says of a ring file.
-fn is_designed(language: &str, ring: &Path, table: &Path) -> Result<(), Trouble> {
-    let failed = |why: &dyn std::fmt::Display| Trouble::Failed(format!("{}: {why}", table.display()));
-    let mut design = Command::new(crate::program::program()?);
-    let design = output(design.arg("design").arg(ring).args(["--period-only", "--emit", language]));
-    let design = design.ok_or_else(|| failed(&format!("eeruf design {} failed", ring.display())))?;
-    let stands = fs::read_to_string(table).map_err(|error| failed(&error))?;
-    if stands.trim() == design {
-        return Ok(());
-    }
-    Err(failed(&format!("not what eeruf design says of {}", ring.display())))
+fn is_designed(language: &str, ring: &Path, table: &Path) -> Result<()> {
+    let mut design = Command::new(crate::toolchain::program()?);
+    let design = output(design.arg("design").arg(ring).args(["--period-only", "--emit", language]))?;
+    let (table, ring) = (table.display(), ring.display());
+    ensure!(fs::read_to_string(table.to_string())?.trim() == design, "{table}: not what eeruf design says of {ring}");
+    Ok(())
 }
 
 /// The program for the Uno, built.
-pub(crate) fn uno() -> Result<PathBuf, Trouble> {
+pub(crate) fn uno() -> Result<PathBuf> {
     let (board, target) = UNO;
     build(board, target).map(|folder| folder.join("eeruf-example-uno.elf"))
 }
 
 /// Builds an example; the folder that the program is in.
-fn build(board: &str, target: &str) -> Result<PathBuf, Trouble> {
+fn build(board: &str, target: &str) -> Result<PathBuf> {
     let folder = Path::new("examples").join(board);
     run(Command::new("cargo").current_dir(&folder).args(["fmt", "--check"]))?;
     let mut cargo = cargo_for_target(target)?;
     // One folder for all, but not for two compilers.
-    let compiler = if cargo.get_program() == "/usr/bin/cargo" { "debian" } else { "rustup" };
-    let shared = std::path::absolute(Path::new("target/examples").join(compiler));
-    let shared = shared.map_err(|error| Trouble::Failed(error.to_string()))?;
+    let shared = absolute(Path::new("target/examples").join(if is_debian(&cargo) { "debian" } else { "rustup" }))?;
     cargo.env("CARGO_TARGET_DIR", &shared).current_dir(&folder);
     run(cargo.args(["build", "--quiet", "--release", "--locked", "--target", target]))?;
     Ok(shared.join(target).join("release"))

@@ -3,18 +3,18 @@
 //! Every figure is an exact count that repeats: instructions under `-icount`, bytes of sections, stack sizes that the
 //! compiler wrote down. The budgets of a Cortex-M0 with twelve sensors are checked.
 
-mod in_the_loop;
-mod rings;
 mod stack;
 mod tables;
 
-use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
-use std::time::{Duration, Instant};
+use std::path::{Path, PathBuf, absolute};
+use std::process::Command;
+
+use anyhow::{Context as _, Result, ensure};
+use fs_err as fs;
 
 use crate::measured;
-use crate::steps::{Trouble, output, run, run_component};
-use crate::toolchain::cargo_for_target;
+use crate::steps::{Steps, need, output, run, run_component, skip};
+use crate::toolchain::{built, cargo_for_target, is_debian, target_folder};
 
 struct Board {
     name: &'static str,
@@ -46,36 +46,32 @@ pub(crate) struct Plan {
     board: Option<String>,
 }
 
-impl Plan {
-    /// Returns true if it is for all boards; then the programs are linted, too.
-    pub(crate) fn is_whole(&self) -> bool {
-        self.board.is_none()
-    }
-}
-
 /// Builds, runs and measures everything, or what there is for one board; prints the tables of
-/// `docs/log/firmware.md`, and compares them with what stands there or writes them.
-pub(crate) fn firmware(plan: &Plan) -> Result<(), Trouble> {
-    let (tables, over) = tables::measure(plan.board.as_deref())?;
-    for (name, table) in &tables {
-        println!("\n{name}:\n\n{table}");
+/// `docs/log/firmware.md`, and compares them with what stands there or writes them. If it is for all boards, the
+/// programs are linted, too.
+pub(crate) fn run_all(plan: &Plan, steps: &mut Steps) {
+    if plan.board.is_none() {
+        steps.step("lint of the firmware", lint);
     }
-    if !over.is_empty() {
-        return Err(Trouble::Failed(over.join("; ")));
-    }
-    if plan.write { measured::write(&tables) } else { measured::check(&tables, plan.board.as_deref()) }
+    steps.step("firmware on emulated boards", || {
+        let (tables, over) = tables::measure(plan.board.as_deref())?;
+        for (name, table) in &tables {
+            println!("\n{name}:\n\n{table}");
+        }
+        ensure!(over.is_empty(), "{}", over.join("; "));
+        if plan.write { measured::write(&tables) } else { measured::check(&tables, plan.board.as_deref()) }
+    });
 }
 
 /// Formatting, and Clippy for all but RTIC's program, which is of another target.
-pub(crate) fn lint() -> Result<(), Trouble> {
-    run_component("rustfmt", &["fmt", "--all", "--check", "--manifest-path", "firmware/Cargo.toml"])?;
+fn lint() -> Result<()> {
+    run_component("rustfmt", "fmt --all --check --manifest-path firmware/Cargo.toml")?;
     let [microbit, ..] = &BOARDS;
-    let debian = cargo(microbit)?.get_program() == "/usr/bin/cargo";
-    if debian && !Path::new("/usr/bin/cargo-clippy").exists() {
-        return Err(Trouble::Skipped(format!(
+    if is_debian(&cargo(microbit)?) && !Path::new("/usr/bin/cargo-clippy").exists() {
+        return skip(format!(
             "no Clippy beside Debian's compiler; try: apt install rust-web-clippy (or rustup target add {})",
             microbit.target
-        )));
+        ));
     }
     let strict = ["clippy", "--quiet", "--release", "--locked", "--workspace", "--exclude", "eeruf-rtic"];
     run(cargo(microbit)?.args(strict).args(["--target", microbit.target, "--", "--deny", "warnings"]))
@@ -83,7 +79,7 @@ pub(crate) fn lint() -> Result<(), Trouble> {
 
 /// `cargo` for a board, in the firmware's own workspace. Where stacks are read, the compiler writes down each frame,
 /// beside the program, by an unstable option.
-fn cargo(board: &Board) -> Result<Command, Trouble> {
+fn cargo(board: &Board) -> Result<Command> {
     let mut cargo = cargo_for_target(board.target)?;
     cargo.current_dir("firmware");
     if stack::is_read_on(board) {
@@ -92,24 +88,22 @@ fn cargo(board: &Board) -> Result<Command, Trouble> {
     Ok(cargo)
 }
 
-fn build(board: &Board, what: &[&str]) -> Result<(), Trouble> {
+fn build(board: &Board, what: &[&str]) -> Result<()> {
     run(cargo(board)?.args(["build", "--quiet", "--release", "--locked", "--target", board.target]).args(what))
 }
 
-fn on_target_tests(board: &Board) -> Result<(), Trouble> {
+fn on_target_tests(board: &Board) -> Result<()> {
     let target = ["test", "--quiet", "--release", "--locked", "--target", board.target];
     run(cargo(board)?.args(target).args(["--package", "eeruf-on-target", "--test", "corpus"]))
 }
 
-fn image(board: &Board, name: &str) -> Result<PathBuf, Trouble> {
+fn image(board: &Board, name: &str) -> Result<PathBuf> {
     let cargo = cargo(board)?;
-    let target_dir = cargo.get_envs().find(|(key, _)| *key == "CARGO_TARGET_DIR").and_then(|(_, value)| value);
-    let target_dir = target_dir.map_or(PathBuf::from("target"), PathBuf::from);
-    Ok(Path::new("firmware").join(target_dir).join(board.target).join("release").join(name))
+    Ok(Path::new("firmware").join(target_folder(&cargo)).join(board.target).join("release").join(name))
 }
 
 /// Runs an image, with `2^shift` ns an instruction; what it says, if it leaves with 0 within five minutes.
-fn run_image(board: &Board, name: &str, shift: u32) -> Result<String, Trouble> {
+fn run_image(board: &Board, name: &str, shift: u32) -> Result<String> {
     qemu(board, &image(board, name)?, shift)
 }
 
@@ -125,67 +119,45 @@ fn emulator(board: &Board, image: &Path, shift: u32) -> Command {
 
 /// The command that runs the ring that speaks over the board's serial line, as a JSON list; `SERIAL` in it stands for
 /// the line.
-pub(crate) fn serial_board() -> Result<String, Trouble> {
+pub(crate) fn serial_board() -> Result<String> {
     let [_, lm3s6965, ..] = &BOARDS;
-    if output(Command::new(lm3s6965.qemu).arg("--version")).is_none() {
-        return Err(Trouble::Skipped(format!("no {}; install qemu-system-arm", lm3s6965.qemu)));
-    }
+    need(&format!("{} --version", lm3s6965.qemu), "apt install qemu-system-arm")?;
     build(lm3s6965, &["--package", "eeruf-hil-board", "--features", "serial", "--bin", "eeruf-serial-board"])?;
-    let image = std::path::absolute(image(lm3s6965, "eeruf-serial-board")?);
-    let image = image.map_err(|error| Trouble::Failed(error.to_string()))?;
-    let image = image.to_str().ok_or_else(|| Trouble::Failed("the path of the clone is no text".to_owned()))?;
+    let image = absolute(image(lm3s6965, "eeruf-serial-board")?)?;
+    let image = image.to_str().context("the path of the clone is no text")?;
     let line = ["-nographic", "-monitor", "none", "-serial", "SERIAL", "-icount", "shift=6,sleep=off"];
     let rest = ["-semihosting-config", "enable=on,target=native", "-kernel", image];
     let command = [&[lm3s6965.qemu][..], lm3s6965.machine, &line, &rest].concat();
     Ok(format!("[{}]", command.iter().map(|part| format!("{part:?}")).collect::<Vec<_>>().join(",")))
 }
 
-fn qemu(board: &Board, image: &Path, shift: u32) -> Result<String, Trouble> {
+fn qemu(board: &Board, image: &Path, shift: u32) -> Result<String> {
     let what = format!("{} on {}", image.display(), board.name);
-    let mut command = emulator(board, image, shift);
-    command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
-    let mut child = command.spawn().map_err(|error| {
-        Trouble::Skipped(format!("{}: {error}; install qemu-system-arm and qemu-system-misc", board.qemu))
-    })?;
-    let deadline = Instant::now() + Duration::from_secs(300);
-    loop {
-        match child.try_wait() {
-            Ok(None) if Instant::now() > deadline => {
-                // It may have ended meanwhile.
-                let _ = child.kill();
-                return Err(Trouble::Failed(format!("{what}: not finished after five minutes")));
-            }
-            Ok(None) => std::thread::sleep(Duration::from_millis(10)),
-            Ok(Some(_)) => break,
-            Err(error) => return Err(Trouble::Failed(format!("{what}: {error}"))),
-        }
-    }
-    let output = child.wait_with_output().map_err(|error| Trouble::Failed(format!("{what}: {error}")))?;
+    need(&format!("{} --version", board.qemu), "apt install qemu-system-arm qemu-system-misc")?;
+    let emulator = emulator(board, image, shift);
+    let mut command = Command::new("timeout");
+    let output = command.arg("300").arg(emulator.get_program()).args(emulator.get_args()).output()?;
     let said = [output.stdout, output.stderr].map(|bytes| String::from_utf8_lossy(&bytes).into_owned()).concat();
     // QEMU complains of a timer that is not yet set; that is harmless.
     let said: String =
         said.lines().filter(|line| !line.contains("Timer with period zero")).map(|line| format!("{line}\n")).collect();
-    if output.status.success() { Ok(said) } else { Err(Trouble::Failed(format!("{what}: {}\n{said}", output.status))) }
+    ensure!(output.status.success(), "{what}: {}\n{said}", output.status);
+    Ok(said)
 }
 
-fn expect(board: &Board, name: &str, shift: u32, what: &str) -> Result<(), Trouble> {
+fn expect(board: &Board, name: &str, shift: u32, what: &str) -> Result<()> {
     let said = run_image(board, name, shift)?;
     print!("{said}");
-    if said.contains(what) {
-        Ok(())
-    } else {
-        Err(Trouble::Failed(format!("{name} on {}: expected {what}", board.name)))
-    }
+    ensure!(said.contains(what), "{name} on {}: expected {what}", board.name);
+    Ok(())
 }
 
 /// The example of the C library, on the host and on a Cortex-M3.
-fn c_example(board: &Board) -> Result<(), Trouble> {
+fn c_example(board: &Board) -> Result<()> {
     let folder = Path::new("firmware/target/c");
-    std::fs::create_dir_all(folder).map_err(|error| Trouble::Failed(error.to_string()))?;
+    fs::create_dir_all(folder)?;
     let design = ["design", "rings/hc-sr04-8.toml", "--period-only", "--emit", "c"];
-    let table = output(Command::new(crate::program::program()?).args(design))
-        .ok_or_else(|| Trouble::Failed("eeruf design rings/hc-sr04-8.toml failed".to_owned()))?;
-    std::fs::write(folder.join("ring.h"), table + "\n").map_err(|error| Trouble::Failed(error.to_string()))?;
+    fs::write(folder.join("ring.h"), output(Command::new(crate::toolchain::program()?).args(design))? + "\n")?;
     let strict = ["-std=c99", "-Wall", "-Wextra", "-Werror", "-Ic", "-Ifirmware/target/c"];
     let sources = ["c/examples/ring.c", "c/eeruf.c", "-o"];
     let host = folder.join("ring");
@@ -201,15 +173,12 @@ fn c_example(board: &Board) -> Result<(), Trouble> {
         .args(["-nostartfiles", "--specs=rdimon.specs", "-T", "c/examples/lm3s6965.ld", "-Wl,--gc-sections"]))?;
     let said = qemu(board, &out, 6)?;
     print!("{said}");
-    if said.contains("c: accepted 792, at 2059 mm") {
-        Ok(())
-    } else {
-        Err(Trouble::Failed(format!("the C example said: {said}")))
-    }
+    ensure!(said.contains("c: accepted 792, at 2059 mm"), "the C example said: {said}");
+    Ok(())
 }
 
 /// Flash and RAM of an image: the sections that are loaded, and those that are not but for the stack.
-fn sections(board: &Board, name: &str) -> Result<(u64, u64), Trouble> {
+fn sections(board: &Board, name: &str) -> Result<(u64, u64)> {
     let image = image(board, name)?;
     let listing = llvm("size", &["-A"], &image)?;
     let (mut flash, mut ram) = (0, 0);
@@ -232,11 +201,21 @@ fn sections(board: &Board, name: &str) -> Result<(u64, u64), Trouble> {
 }
 
 /// Debian's LLVM tools have their version in the name.
-fn llvm(tool: &str, args: &[&str], image: &Path) -> Result<String, Trouble> {
-    for name in [format!("llvm-{tool}-22"), format!("llvm-{tool}")] {
-        if let Some(text) = output(Command::new(name).args(args).arg(image)) {
-            return Ok(text);
-        }
+fn llvm(tool: &str, args: &[&str], image: &Path) -> Result<String> {
+    let mut names = [format!("llvm-{tool}-22"), format!("llvm-{tool}")].into_iter();
+    match names.find(|name| output(Command::new(name).arg("--version")).is_ok()) {
+        Some(name) => output(Command::new(name).args(args).arg(image)),
+        None => skip(format!("no llvm-{tool}; install llvm-22")),
     }
-    Err(Trouble::Skipped(format!("no llvm-{tool}; install llvm-22")))
+}
+
+/// The tables of the boards' rings in the simulated world, in lock step with the host's.
+fn in_the_loop(program: &str, arguments: &[&str]) -> Result<String> {
+    let mut harness = Command::new(built("eeruf-hil")?);
+    harness.arg("scenes/alcove-hc-sr04.toml").args(arguments);
+    for board in &BOARDS {
+        let qemu = emulator(board, &image(board, program)?, 6);
+        harness.args(["--board", board.name]).arg(qemu.get_program()).args(qemu.get_args());
+    }
+    output(&mut harness)
 }

@@ -1,17 +1,15 @@
 //! Links in the documents: each leads to a file of the repository, and to a heading that is there.
 
 use std::collections::BTreeMap;
-use std::fs;
 use std::ops::Range;
 use std::path::{Component, Path, PathBuf};
 use std::process::Command;
 
+use anyhow::{Result, ensure};
+use fs_err as fs;
 use pulldown_cmark::{Event, Parser, Tag, TagEnd};
 
-use crate::steps::{Trouble, output};
-
-/// The order of the book's chapters; mdBook's settings lie beside it.
-pub(crate) const CHAPTERS: &str = "site/SUMMARY.md";
+use crate::steps::output;
 
 /// A link or picture: where it stands in the text, brackets included, and where it leads.
 pub(crate) struct Link {
@@ -20,21 +18,16 @@ pub(crate) struct Link {
 }
 
 /// Follows every link of every document of the repository that leads to a file in it.
-pub(crate) fn check_documents() -> Result<(), Trouble> {
-    let listed = output(Command::new("git").args(["ls-files", "*.md"]));
-    let listed = listed.ok_or_else(|| Trouble::Failed("git ls-files: no answer".to_owned()))?;
+pub(crate) fn check_documents() -> Result<()> {
+    let listed = output(Command::new("git").args(["ls-files", "*.md"]))?;
     let mut texts = BTreeMap::new();
     // What is the book's alone is named as it lies in the book, whose builder looks for each.
     for document in listed.lines().map(Path::new).filter(|document| !document.starts_with("site")) {
-        let text = fs::read_to_string(document).map_err(|error| failed(document, &error))?;
-        texts.insert(document.to_owned(), text);
+        texts.insert(document.to_owned(), fs::read_to_string(document)?);
     }
     let mut broken = Vec::new();
     for (document, text) in &texts {
-        for Link { target, .. } in links(text) {
-            if !within_reach(&target) {
-                continue;
-            }
+        for Link { target, .. } in links(text).into_iter().filter(|link| within_reach(&link.target)) {
             let (file, heading) = parts(document, &target);
             let headings = texts.get(&file).map(|text| headings(text));
             if !file.exists() {
@@ -44,7 +37,8 @@ pub(crate) fn check_documents() -> Result<(), Trouble> {
             }
         }
     }
-    if broken.is_empty() { Ok(()) } else { Err(Trouble::Failed(broken.join("\n"))) }
+    ensure!(broken.is_empty(), "{}", broken.join("\n"));
+    Ok(())
 }
 
 /// Returns true if a link leads into the repository, not to the world.
@@ -102,10 +96,6 @@ fn headings(text: &str) -> Vec<String> {
 fn slug(heading: &str) -> String {
     let kept = heading.chars().filter(|c| c.is_alphanumeric() || matches!(c, ' ' | '-' | '_'));
     kept.flat_map(char::to_lowercase).map(|c| if c == ' ' { '-' } else { c }).collect()
-}
-
-fn failed(what: &Path, error: &std::io::Error) -> Trouble {
-    Trouble::Failed(format!("{}: {error}", what.display()))
 }
 
 #[cfg(test)]

@@ -10,39 +10,31 @@ mod c;
 mod certificates;
 mod changed;
 mod deb;
-#[cfg(test)]
-mod dependencies;
 mod dist;
 mod examples;
 mod firmware;
 mod house;
 mod links;
-mod listings;
 mod logs;
-mod materials;
 mod measured;
-mod micropython;
 mod package;
 mod page;
 mod printed;
-mod program;
 mod python;
-mod quick;
 mod release;
-mod rerun;
 mod ros2;
 mod site;
 mod steps;
 mod test;
 mod toolchain;
 mod veripb;
-mod zephyr;
 
 use std::process::ExitCode;
 
+use anyhow::Result;
 use clap::{Parser, Subcommand};
 
-use crate::steps::{Steps, Trouble};
+use crate::steps::Steps;
 
 /// The project's own commands: check everything, a part, or what changed; reprint the tables of the documents.
 #[derive(Parser)]
@@ -72,8 +64,8 @@ enum Verb {
     Arduino(arduino::Plan),
     /// Build the programs in examples/ that one flashes onto a board (minutes)
     Examples {
-        /// Only this one: uno, pico, nucleo-f401 or esp32-c3
-        #[arg(value_name = "BOARD")]
+        /// Only this one
+        #[arg(value_name = "BOARD", value_parser = examples::BOARDS.map(|(board, _)| board))]
         board: Option<String>,
     },
     /// Run the tests of c/micropython in MicroPython's WebAssembly build and in CPython
@@ -91,8 +83,6 @@ enum Verb {
     Ros2,
     /// Pack the Debian package of eeruf-ros2 with its systemd unit into target/deb
     Deb(deb::Plan),
-    /// Load a recording in Rerun, whose wheel has 170 MB, and see that none of it is raw bytes
-    Rerun,
     /// Replay bags of a million messages, name senders in 200 alcoves, write the data set: the figures of
     /// docs/how-to/logs.md, docs/how-to/diagnose.md and docs/how-to/dataset.md, which are also what must hold (many
     /// minutes)
@@ -118,7 +108,7 @@ enum Verb {
     /// Certify the rings of the tables, and have both checkers judge them and mutated ones (minutes)
     Certificates(certificates::Plan),
     /// Build the proof checker VeriPB, and have it judge the proofs of the table and of rings/ (minutes)
-    Veripb(veripb::Plan),
+    Veripb,
     /// Pack the crates that are published, and build and test each from its tarball, in a folder of its own (minutes)
     Package,
     /// List the public items of eeruf-core and eeruf-hc-sr04 in target/api, and count names and types
@@ -132,98 +122,56 @@ enum Verb {
     /// Build the documents as one book, with the page and the references for Rust and Python, and follow every link
     Site,
     /// Do everything of a release but uploading, and print what a person must still do (many minutes)
-    Release(release::Plan),
+    Release {
+        /// Upload nothing. Only a tag does, through the workflow; this must be said so that nobody expects otherwise
+        #[arg(long, required = true)]
+        dry_run: bool,
+    },
 }
 
 fn main() -> ExitCode {
+    let mut steps = Steps::default();
     match Cli::parse().verb {
-        Verb::Test { quick: true, .. } => quick::run_quick(),
-        Verb::Test { nothing_skipped, .. } => test::run_all(nothing_skipped),
-        Verb::Firmware(plan) => {
-            let mut steps = Steps::default();
-            if plan.is_whole() {
-                steps.step("lint of the firmware", firmware::lint);
-            }
-            steps.step("firmware on emulated boards", || firmware::firmware(&plan));
-            steps.finish(true)
-        }
-        Verb::C => one_step("C library", c::c),
-        Verb::Arduino(plan) => {
-            let mut steps = Steps::default();
-            arduino::arduino(&plan, &mut steps);
-            steps.finish(true)
-        }
-        Verb::Examples { board } => {
-            let mut steps = Steps::default();
-            examples::examples(board.as_deref(), &mut steps);
-            steps.finish(true)
-        }
-        Verb::Micropython => one_step("MicroPython", micropython::micropython),
-        Verb::Newping { folder } => {
-            let mut steps = Steps::default();
-            arduino::newping(&folder, &mut steps);
-            steps.finish(true)
-        }
-        Verb::Python => one_step("Python package", python::python),
+        Verb::Test { quick: true, .. } => return test::run_quick(),
+        Verb::Test { nothing_skipped, .. } => return test::run_all(nothing_skipped),
+        Verb::Firmware(plan) => firmware::run_all(&plan, &mut steps),
+        Verb::C => one(&mut steps, "C library", c::c),
+        Verb::Arduino(plan) => arduino::arduino(&plan, &mut steps),
+        Verb::Examples { board } => examples::examples(board.as_deref(), &mut steps),
+        Verb::Micropython => one(&mut steps, "MicroPython", c::micropython),
+        Verb::Newping { folder } => one(&mut steps, "NewPing beside eeruf", || arduino::newping(&folder)),
+        Verb::Python => one(&mut steps, "Python package", python::python),
         Verb::Ros2 => {
-            let mut steps = Steps::default();
-            steps.step("ROS 2 node", ros2::ros2);
-            steps.step("ROS 2 package", ros2::package);
-            steps.finish(true)
+            one(&mut steps, "ROS 2 node", ros2::ros2);
+            one(&mut steps, "ROS 2 package", ros2::package);
         }
-        Verb::Deb(plan) => one_step("Debian package", || deb::deb(&plan)),
-        Verb::Rerun => one_step("recording in Rerun", rerun::rerun),
-        Verb::Logs => {
-            let mut steps = Steps::default();
-            logs::logs(&mut steps);
-            steps.finish(true)
-        }
-        Verb::Page { test, long } => one_step("the page", || {
+        Verb::Deb(plan) => one(&mut steps, "Debian package", || deb::deb(&plan)),
+        Verb::Logs => logs::logs(&mut steps),
+        Verb::Page { test, long } => one(&mut steps, "the page", || {
             page::page(match (test, long) {
                 (_, true) => page::Tests::Long,
                 (true, false) => page::Tests::Short,
                 (false, false) => page::Tests::No,
             })
         }),
-        Verb::Reprint { check, document } => one_step("what the programs print", || match document {
+        Verb::Reprint { check, document } => one(&mut steps, "what the programs print", || match document {
             Some(document) if check => printed::check(&[document], printed::Which::All),
             Some(document) => printed::reprint(&document),
             None => printed::check(&printed::documents()?, printed::Which::All),
         }),
-        Verb::Certificates(plan) => {
-            let mut steps = Steps::default();
-            certificates::run_all(&plan, &mut steps);
-            steps.finish(true)
-        }
-        Verb::Veripb(plan) => {
-            let mut steps = Steps::default();
-            veripb::run_all(&plan, &mut steps);
-            steps.finish(true)
-        }
-        Verb::Package => {
-            let mut steps = Steps::default();
-            package::package(&mut steps);
-            steps.finish(true)
-        }
-        Verb::Api => one_step("public items", api::api),
-        Verb::Dist(plan) => {
-            let mut steps = Steps::default();
-            dist::dist(&plan, &mut steps);
-            steps.finish(true)
-        }
-        Verb::Materials => one_step("bills of materials", materials::materials),
-        Verb::Notices => one_step("notices", release::notices),
-        Verb::Site => {
-            let mut steps = Steps::default();
-            site::site(&mut steps);
-            steps.finish(true)
-        }
-        Verb::Release(plan) => release::release(&plan),
+        Verb::Certificates(plan) => certificates::run_all(&plan, &mut steps),
+        Verb::Veripb => veripb::run_all(&mut steps),
+        Verb::Package => package::package(&mut steps),
+        Verb::Api => one(&mut steps, "public items", api::api),
+        Verb::Dist(plan) => dist::dist(&plan, &mut steps),
+        Verb::Materials => one(&mut steps, "bills of materials", release::materials),
+        Verb::Notices => one(&mut steps, "notices", release::notices),
+        Verb::Site => site::site(&mut steps),
+        Verb::Release { .. } => release::release(&mut steps),
     }
+    steps.finish(true)
 }
 
-fn one_step(name: &str, run: impl FnOnce() -> Result<(), Trouble>) -> ExitCode {
-    let mut steps = Steps::default();
+fn one(steps: &mut Steps, name: &str, run: impl FnOnce() -> Result<()>) {
     steps.step(name, run);
-    steps.finish(true)
 }

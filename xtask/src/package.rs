@@ -1,12 +1,13 @@
 //! `cargo xtask package`: packs every crate that is published, and builds and tests each from its tarball alone.
 
-use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::Command;
 
+use anyhow::{Result, ensure};
 use cargo_metadata::MetadataCommand;
+use fs_err as fs;
 
-use crate::steps::{Steps, Trouble, run};
+use crate::steps::{Steps, empty, run};
 
 /// Where the tarballs are unpacked: no folder above it has a manifest.
 fn folder() -> PathBuf {
@@ -17,11 +18,7 @@ fn folder() -> PathBuf {
 const LARGEST: u64 = 300_000;
 
 pub(crate) fn package(steps: &mut Steps) {
-    let mut crates = Vec::new();
-    steps.step("tarballs", || {
-        crates = pack()?;
-        Ok(())
-    });
+    let crates = steps.step("tarballs", pack).unwrap_or_default();
     for name in &crates {
         steps.step(&format!("{name} from its tarball"), || {
             let manifest = folder().join(name).join("Cargo.toml");
@@ -38,9 +35,8 @@ pub(crate) fn package(steps: &mut Steps) {
 }
 
 /// Packs all crates and unpacks them, each into a folder of its name; they find each other there.
-fn pack() -> Result<Vec<String>, Trouble> {
-    let failed = |what: &Path, error: std::io::Error| Trouble::Failed(format!("{}: {error}", what.display()));
-    let metadata = MetadataCommand::new().no_deps().exec().map_err(|error| Trouble::Failed(error.to_string()))?;
+fn pack() -> Result<Vec<String>> {
+    let metadata = MetadataCommand::new().no_deps().exec()?;
     let published = metadata.workspace_packages().into_iter().filter(|package| package.publish.is_none());
     let crates: Vec<_> = published.map(|package| (package.name.to_string(), package.version.to_string())).collect();
     let mut cargo = Command::new("cargo");
@@ -50,28 +46,21 @@ fn pack() -> Result<Vec<String>, Trouble> {
     }
     run(&mut cargo)?;
     let folder = folder();
-    if folder.exists() {
-        fs::remove_dir_all(&folder).map_err(|error| failed(&folder, error))?;
-    }
-    fs::create_dir_all(folder.join(".cargo")).map_err(|error| failed(&folder, error))?;
+    empty(&folder)?;
+    fs::create_dir_all(folder.join(".cargo"))?;
     let mut patch = "[patch.crates-io]\n".to_owned();
     for (name, version) in &crates {
         let tarball = metadata.target_directory.join(format!("package/{name}-{version}.crate"));
-        let size = fs::metadata(&tarball).map_err(|error| failed(tarball.as_std_path(), error))?.len();
+        let size = fs::metadata(&tarball)?.len();
         println!("{name}-{version}.crate: {size} bytes");
-        if size > LARGEST {
-            return Err(Trouble::Failed(format!("{tarball}: {size} bytes; expected at most {LARGEST}")));
-        }
+        ensure!(size <= LARGEST, "{tarball}: {size} bytes; expected at most {LARGEST}");
         run(Command::new("tar").args(["-xzf", tarball.as_str(), "-C"]).arg(&folder))?;
-        let unpacked = folder.join(format!("{name}-{version}"));
-        fs::rename(&unpacked, folder.join(name)).map_err(|error| failed(&unpacked, error))?;
+        fs::rename(folder.join(format!("{name}-{version}")), folder.join(name))?;
         // Its own names crates that are not published yet; ours has the same versions of all others.
-        let lock = folder.join(name).join("Cargo.lock");
-        fs::copy("Cargo.lock", &lock).map_err(|error| failed(&lock, error))?;
+        fs::copy("Cargo.lock", folder.join(name).join("Cargo.lock"))?;
         patch += &format!("{name} = {{ path = {:?} }}\n", folder.join(name));
     }
-    let config = folder.join(".cargo/config.toml");
-    fs::write(&config, patch).map_err(|error| failed(&config, error))?;
+    fs::write(folder.join(".cargo/config.toml"), patch)?;
     Ok(crates.into_iter().map(|(name, _)| name).collect())
 }
 

@@ -5,11 +5,13 @@
 //! `<!-- printed by (large, decimals are timings): COMMAND -->`: what takes long, and where numbers with a decimal
 //! point are timings, which are not compared.
 
-use std::fs;
 use std::process::Command;
 
+use anyhow::{Result, anyhow, bail, ensure};
+use fs_err as fs;
+
 use crate::blocks::{Block, blocks, replaced};
-use crate::steps::{Trouble, output, run};
+use crate::steps::{output, run_line};
 
 const PRINTED_BY: &str = "<!-- printed by";
 const FENCE: &str = "```text\n";
@@ -30,8 +32,8 @@ struct Mark<'a> {
     command: &'a str,
 }
 
-fn mark<'a>(block: &Block<'a>) -> Result<Mark<'a>, Trouble> {
-    let bad = || Trouble::Failed(format!("`printed by{}`; expected `printed by (WORDS): COMMAND`", block.label));
+fn mark<'a>(block: &Block<'a>) -> Result<Mark<'a>> {
+    let bad = || anyhow!("`printed by{}`; expected `printed by (WORDS): COMMAND`", block.label);
     let (words, command) = block.label.split_once(": ").ok_or_else(bad)?;
     let words = words.trim().trim_start_matches('(').trim_end_matches(')');
     let mut mark = Mark { large: false, decimals_are_timings: false, command };
@@ -46,18 +48,17 @@ fn mark<'a>(block: &Block<'a>) -> Result<Mark<'a>, Trouble> {
 }
 
 /// README.md, ARCHITECTURE.md, and all documents in `docs`.
-pub(crate) fn documents() -> Result<Vec<String>, Trouble> {
-    let listed = output(Command::new("git").args(["ls-files", "README.md", "ARCHITECTURE.md", "docs/*.md"]));
-    let listed = listed.ok_or_else(|| Trouble::Failed("git ls-files: no answer".to_owned()))?;
+pub(crate) fn documents() -> Result<Vec<String>> {
+    let listed = output(Command::new("git").args(["ls-files", "README.md", "ARCHITECTURE.md", "docs/*.md"]))?;
     Ok(listed.lines().map(str::to_owned).collect())
 }
 
 /// Compares what stands in documents with what their commands print now.
-pub(crate) fn check(documents: &[String], which: Which) -> Result<(), Trouble> {
+pub(crate) fn check(documents: &[String], which: Which) -> Result<()> {
     let mut differ = Vec::new();
     let mut same = 0;
     for document in documents {
-        for block in blocks(&read(document)?, PRINTED_BY)? {
+        for block in blocks(&fs::read_to_string(document)?, PRINTED_BY)? {
             let mark = mark(&block)?;
             if which == Which::Small && mark.large {
                 continue;
@@ -74,17 +75,18 @@ pub(crate) fn check(documents: &[String], which: Which) -> Result<(), Trouble> {
         }
     }
     println!("{same} parts of documents are as printed");
-    if differ.is_empty() { Ok(()) } else { Err(Trouble::Failed(format!("not as printed: {}", differ.join("; ")))) }
+    ensure!(differ.is_empty(), "not as printed: {}", differ.join("; "));
+    Ok(())
 }
 
 /// Puts what the commands of a document print now in place of what stands there.
-pub(crate) fn reprint(document: &str) -> Result<(), Trouble> {
-    let fresh = replaced(&read(document)?, PRINTED_BY, |block| {
+pub(crate) fn reprint(document: &str) -> Result<()> {
+    let fresh = replaced(&fs::read_to_string(document)?, PRINTED_BY, |block| {
         let printed = output_of(&mark(block)?)?;
         let fenced = block.body.trim().starts_with(FENCE);
         Ok(if fenced { format!("{FENCE}{}\n```", printed.trim_end()) } else { printed })
     })?;
-    fs::write(document, fresh).map_err(|error| Trouble::Failed(format!("{document}: {error}")))
+    Ok(fs::write(document, fresh)?)
 }
 
 /// The body of a part without the fence around what is no Markdown.
@@ -93,34 +95,24 @@ fn unfenced(body: &str) -> &str {
     body.strip_prefix(FENCE).map_or(body, |inner| inner.trim_end_matches("```").trim())
 }
 
-fn read(document: &str) -> Result<String, Trouble> {
-    fs::read_to_string(document).map_err(|error| Trouble::Failed(format!("{document}: {error}")))
-}
-
 /// Standard output of a command. Where it is not large, the lab is built as the tests are, not once more.
-fn output_of(mark: &Mark<'_>) -> Result<String, Trouble> {
+fn output_of(mark: &Mark<'_>) -> Result<String> {
     let command = mark.command;
     println!("{command}");
-    let failed = |why: &dyn std::fmt::Display| Trouble::Failed(format!("{command}: {why}"));
     let mut words = command.split_whitespace();
     let mut process = match words.next() {
         Some("eeruf") => {
-            let program = ["build", "--quiet", "--release", "--locked", "--package", "eeruf", "--bin", "eeruf"];
-            run(Command::new("cargo").args(program))?;
+            run_line("cargo build --quiet --release --locked --package eeruf --bin eeruf")?;
             Command::new("target/release/eeruf")
         }
         Some("cargo") if !mark.large && words.clone().next() == Some("lab") => {
             words.next();
-            Command::new(crate::program::lab()?)
+            Command::new(crate::toolchain::lab()?)
         }
         Some("cargo") => Command::new("cargo"),
-        _ => return Err(failed(&"expected eeruf or cargo")),
+        _ => bail!("{command}: expected eeruf or cargo"),
     };
-    let output = process.args(words).output().map_err(|error| failed(&error))?;
-    if !output.status.success() {
-        return Err(failed(&String::from_utf8_lossy(&output.stderr)));
-    }
-    Ok(String::from_utf8_lossy(&output.stdout).into_owned())
+    output(process.args(words))
 }
 
 /// The text with each number that has a decimal point left out, and without the spaces that align columns.

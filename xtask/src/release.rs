@@ -1,13 +1,14 @@
 //! `cargo xtask release --dry-run`: everything of a release but uploading.
 
-use std::fs;
 use std::path::Path;
-use std::process::{Command, ExitCode};
+use std::process::Command;
 use std::time::SystemTime;
 
+use anyhow::{Context as _, Result, anyhow, ensure};
 use cargo_metadata::MetadataCommand;
+use fs_err as fs;
 
-use crate::steps::{Steps, Trouble, output, run};
+use crate::steps::{Steps, empty, need, output, run, run_line};
 
 /// Steps that only a person may take.
 const REMAINS: &str = "
@@ -18,79 +19,77 @@ What remains for a person, in this order (docs/project/releasing.md says how):
   4. publish the draft, and try `pip install eeruf` and `cargo install eeruf` on another machine
 ";
 
-#[derive(clap::Args)]
-pub(crate) struct Plan {
-    /// Upload nothing. Only a tag does, through the workflow; this must be said so that nobody expects otherwise
-    #[arg(long, required = true)]
-    dry_run: bool,
-}
+/// Where the bills of materials lie.
+const BILLS: &str = "target/materials";
 
-pub(crate) fn release(_plan: &Plan) -> ExitCode {
-    let mut steps = Steps::default();
-    let mut version = String::new();
-    steps.step("one version everywhere", || {
-        version = one_version()?;
-        Ok(())
-    });
+pub(crate) fn release(steps: &mut Steps) {
+    let version = steps.step("one version everywhere", one_version).unwrap_or_default();
     steps.step("nothing uncommitted", || {
-        let changed = output(Command::new("git").args(["status", "--porcelain"])).unwrap_or_default();
-        if changed.trim().is_empty() { Ok(()) } else { Err(Trouble::Failed(changed)) }
+        let changed = output(Command::new("git").args(["status", "--porcelain"]))?;
+        ensure!(changed.is_empty(), "{changed}");
+        Ok(())
     });
     steps.step("links of the documents", crate::links::check_documents);
     steps.step("workflow files", || {
-        for (program, version, arguments, install) in [
-            ("actionlint", "-version", &[][..], "go install github.com/rhysd/actionlint/cmd/actionlint@latest"),
-            ("zizmor", "--version", &["--offline", "--min-severity", "medium", ".github"], "pip install zizmor"),
-        ] {
-            if output(Command::new(program).arg(version)).is_none() {
-                return Err(Trouble::Skipped(format!("no {program}; try: {install}")));
-            }
-            run(Command::new(program).args(arguments))?;
-        }
-        Ok(())
+        need("actionlint -version", "go install github.com/rhysd/actionlint/cmd/actionlint@latest")?;
+        run_line("actionlint")?;
+        need("zizmor --version", "pip install zizmor")?;
+        run_line("zizmor --offline --min-severity medium .github")
     });
     steps.step("licences and sources of dependencies", || {
-        match output(Command::new("cargo").args(["deny", "--version"])) {
-            Some(_) => {
-                // Else it looks at the package in the root alone: not at the wheel, not at the ROS 2 node.
-                let check =
-                    ["deny", "--locked", "--workspace", "--log-level", "error", "check", "licenses", "bans", "sources"];
-                run(Command::new("cargo").args(check))
-            }
-            None => Err(Trouble::Skipped("no cargo-deny; try: cargo install cargo-deny --locked".to_owned())),
-        }
+        need("cargo deny --version", "cargo install cargo-deny --locked")?;
+        // Else it looks at the package in the root alone: not at the wheel, not at the ROS 2 node.
+        run_line("cargo deny --locked --workspace --log-level error check licenses bans sources")
     });
     steps.step("notices", notices);
     steps.step("public items", crate::api::api);
-    steps.step("bills of materials", crate::materials::materials);
-    crate::package::package(&mut steps);
+    steps.step("bills of materials", materials);
+    crate::package::package(steps);
     steps.step("wheel and source distribution", || crate::python::distributions(Path::new("target/release-files")));
     println!("{}", REMAINS.replace("{VERSION}", &version));
-    steps.finish(false)
 }
 
 /// Writes the notices of what others wrote and is in program and wheel, as cargo-about finds it.
-pub(crate) fn notices() -> Result<(), Trouble> {
-    if output(Command::new("cargo").args(["about", "--version"])).is_none() {
-        let install = "cargo install cargo-about --locked --features cli";
-        return Err(Trouble::Skipped(format!("no cargo-about; try: {install}")));
-    }
+pub(crate) fn notices() -> Result<()> {
+    need("cargo about --version", "cargo install cargo-about --locked --features cli")?;
     // The wheel has the whole program within.
-    let of = ["--manifest-path", "crates/eeruf-py/Cargo.toml", "--config", "packaging/notices/about.toml"];
-    let to = ["--output-file", "LICENSE-THIRD-PARTY.txt", "packaging/notices/notices.hbs"];
-    run(Command::new("cargo").args(["about", "generate", "--locked", "--fail"]).args(of).args(to))?;
+    run_line(
+        "cargo about generate --locked --fail --manifest-path crates/eeruf-py/Cargo.toml \
+         --config packaging/notices/about.toml --output-file LICENSE-THIRD-PARTY.txt packaging/notices/notices.hbs",
+    )?;
     // Where the program was built without them, its build does not look for them.
-    let touched =
-        fs::File::options().append(true).open("build.rs").and_then(|file| file.set_modified(SystemTime::now()));
-    touched.map_err(|error| Trouble::Failed(format!("build.rs: {error}")))
+    Ok(fs::OpenOptions::new().append(true).open("build.rs")?.file().set_modified(SystemTime::now())?)
+}
+
+/// Writes what is in each published crate, as bills in `CycloneDX`. Packages of the workspace are named from its root,
+/// not from the disk's.
+pub(crate) fn materials() -> Result<()> {
+    need("cargo cyclonedx --version", "cargo install cargo-cyclonedx --locked")?;
+    let metadata = MetadataCommand::new().no_deps().exec()?;
+    // With a time of its own the bill has no number drawn at random either.
+    let time = output(Command::new("git").args(["log", "-1", "--format=%ct"]))?;
+    let mut cargo = Command::new("cargo");
+    cargo.args(["cyclonedx", "--format", "json", "--spec-version", "1.5", "--target", "x86_64-unknown-linux-gnu"]);
+    run(cargo.env("SOURCE_DATE_EPOCH", time))?;
+    empty(BILLS)?;
+    for package in metadata.workspace_packages() {
+        let written = package.manifest_path.with_file_name(format!("{}.cdx.json", package.name));
+        let bill = fs::read_to_string(&written)?
+            .replace(&format!("path+file://{}", metadata.workspace_root), "path+file:///eeruf");
+        fs::remove_file(&written)?;
+        if package.publish.is_none() {
+            fs::write(format!("{BILLS}/{}-{}.cdx.json", package.name, package.version), bill)?;
+        }
+    }
+    Ok(())
 }
 
 /// The version, where all files that state it agree.
-fn one_version() -> Result<String, Trouble> {
-    let metadata = MetadataCommand::new().no_deps().exec().map_err(|error| Trouble::Failed(error.to_string()))?;
+fn one_version() -> Result<String> {
+    let metadata = MetadataCommand::new().no_deps().exec()?;
     let mut wrong = Vec::new();
     let program = metadata.workspace_packages().into_iter().find(|package| package.name == "eeruf");
-    let version = program.ok_or_else(|| Trouble::Failed("no package eeruf".to_owned()))?.version.to_string();
+    let version = program.context("no package eeruf")?.version.to_string();
     for package in metadata.workspace_packages() {
         if package.publish.is_none() && package.version.to_string() != version {
             wrong.push(format!("{} is {}, not {version}", package.name, package.version));
@@ -105,12 +104,12 @@ fn one_version() -> Result<String, Trouble> {
         ("c/idf_component.yml", format!("version: \"{version}\"")),
         ("c/CMakeLists.txt", format!("  project(eeruf VERSION {version} ")),
     ] {
-        let text = fs::read_to_string(file).map_err(|error| Trouble::Failed(format!("{file}: {error}")))?;
+        let text = fs::read_to_string(file)?;
         if !text.lines().any(|line| line.starts_with(&wanted)) {
             wrong.push(format!("{file} has no line that begins with \"{wanted}\""));
         }
     }
-    if wrong.is_empty() { Ok(version) } else { Err(Trouble::Failed(wrong.join("\n"))) }
+    if wrong.is_empty() { Ok(version) } else { Err(anyhow!("{}", wrong.join("\n"))) }
 }
 
 #[cfg(test)]

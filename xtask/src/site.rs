@@ -1,19 +1,19 @@
 //! `cargo xtask site`: the documents as one book, with the page and the references for Rust and Python, every link
 //! followed.
 
-use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::{Path, PathBuf, absolute};
 use std::process::Command;
 
-use crate::links::{CHAPTERS, links, parts, within_reach};
-use crate::steps::{Steps, Trouble, output, run};
+use anyhow::{Result, ensure};
+use fs_err as fs;
+
+use crate::links::{links, parts, within_reach};
+use crate::steps::{Steps, empty, output, run, run_line};
 
 /// The site, for any web server or a disk.
 const SITE: &str = "target/site/book";
 /// Sources of the book.
 const SOURCES: &str = "target/site/src";
-/// Where the book leads to what lies beside it: the references and the page.
-const REFERENCES: &str = "site/references.md";
 /// Where links to sources lead.
 const REPOSITORY: &str = "https://github.com/eeruf/eeruf/blob/main";
 /// The version of mdBook that the site is built with, so that two builds look alike.
@@ -31,53 +31,43 @@ const OUTSIDE: [(&str, &str); 6] = [
 pub(crate) fn site(steps: &mut Steps) {
     steps.step("the book", book);
     steps.step("reference for Rust", || {
-        run(Command::new("cargo").args(["doc", "--workspace", "--no-deps", "--locked"]))?;
-        copy_folder(Path::new("target/doc"), &Path::new(SITE).join("rust"))
+        run_line("cargo doc --workspace --no-deps --locked")?;
+        copy_folder("target/doc/.", &Path::new(SITE).join("rust"))
     });
     steps.step("reference for Python", || crate::python::reference(&Path::new(SITE).join("python")));
     steps.step("the page", || {
         crate::page::page(crate::page::Tests::No)?;
-        copy_folder(Path::new("target/page/folder"), &Path::new(SITE).join("page"))
+        copy_folder("target/page/folder/.", &Path::new(SITE).join("page"))
     });
     steps.step("links of the site", links_lead_somewhere);
     println!("{SITE}/index.html");
 }
 
 /// Copies the documents, with links as the book has them, and builds it.
-fn book() -> Result<(), Trouble> {
+fn book() -> Result<()> {
     let sources = Path::new(SOURCES);
-    if sources.exists() {
-        fs::remove_dir_all(sources).map_err(|error| failed(sources, &error))?;
+    empty(sources)?;
+    copy_folder("docs/.", sources)?;
+    // The order of the chapters, and where the book leads to the references and the page; mdBook's settings lie beside.
+    for name in ["SUMMARY.md", "references.md"] {
+        fs::copy(Path::new("site").join(name), sources.join(name))?;
     }
-    copy_folder(Path::new("docs"), sources)?;
-    write(&sources.join("SUMMARY.md"), &read(Path::new(CHAPTERS))?)?;
-    write(&sources.join("references.md"), &read(Path::new(REFERENCES))?)?;
     for (name, chapter) in OUTSIDE {
-        let text = read(Path::new(name))?;
-        write(&sources.join(chapter), &rewritten(Path::new(name), &text))?;
+        fs::write(sources.join(chapter), rewritten(Path::new(name), &fs::read_to_string(name)?))?;
     }
     for document in files("docs", "md")? {
-        let text = rewritten(&document, &read(&document)?);
-        write(&sources.join(document.strip_prefix("docs").unwrap_or(&document)), &text)?;
+        let text = rewritten(&document, &fs::read_to_string(&document)?);
+        fs::write(sources.join(document.strip_prefix("docs")?), text)?;
     }
-    let site = std::path::absolute(SITE).map_err(|error| failed(Path::new(SITE), &error))?;
-    run(Command::new(mdbook()?).args(["build", "site", "--dest-dir"]).arg(site))
+    run(Command::new(mdbook()?).args(["build", "site", "--dest-dir"]).arg(absolute(SITE)?))
 }
 
-/// mdBook, installed under `target/` where there is none of this version.
-fn mdbook() -> Result<PathBuf, Trouble> {
-    let root = Path::new("target/tools");
-    let ours = root.join("bin/mdbook");
-    for program in [Path::new("mdbook"), &ours] {
-        let version = output(Command::new(program).arg("--version"));
-        if version.is_some_and(|version| version.trim() == format!("mdbook v{MDBOOK}")) {
-            return Ok(program.to_owned());
-        }
-    }
-    let install =
-        ["install", "mdbook", "--locked", "--version", MDBOOK, "--no-default-features", "--features", "search"];
-    run(Command::new("cargo").args(install).arg("--root").arg(root))?;
-    Ok(ours)
+/// mdBook, installed under `target/` unless this version is there.
+fn mdbook() -> Result<PathBuf> {
+    let root = "target/tools";
+    let install = "cargo install mdbook --quiet --locked --no-default-features --features search --version";
+    run_line(&format!("{install} {MDBOOK} --root {root}"))?;
+    Ok(Path::new(root).join("bin/mdbook"))
 }
 
 /// A document with links as they are in the book: to chapters and pictures there, to anything else in the repository.
@@ -106,13 +96,13 @@ fn rewritten(document: &Path, text: &str) -> String {
 }
 
 /// Follows the links of the book's pages that stay within the site.
-fn links_lead_somewhere() -> Result<(), Trouble> {
+fn links_lead_somewhere() -> Result<()> {
     let mut broken = Vec::new();
     for page in files(SITE, "html")? {
         if ["rust", "python", "page"].iter().any(|folder| page.starts_with(Path::new(SITE).join(folder))) {
             continue;
         }
-        let text = read(&page)?;
+        let text = fs::read_to_string(&page)?;
         // Within tags alone: listings show links as well.
         let tags = text.split('<').filter_map(|tag| tag.split('>').next());
         let keys = |tag| ["href=\"", "src=\""].map(|key| str::split(tag, key).nth(1)).into_iter().flatten();
@@ -123,49 +113,19 @@ fn links_lead_somewhere() -> Result<(), Trouble> {
             }
         }
     }
-    if broken.is_empty() { Ok(()) } else { Err(Trouble::Failed(broken.join("\n"))) }
-}
-
-/// The files below a folder that have this ending.
-fn files(folder: impl AsRef<Path>, ending: &str) -> Result<Vec<PathBuf>, Trouble> {
-    let folder = folder.as_ref();
-    let mut found = Vec::new();
-    for entry in fs::read_dir(folder).map_err(|error| failed(folder, &error))? {
-        let path = entry.map_err(|error| failed(folder, &error))?.path();
-        if path.is_dir() {
-            found.extend(files(&path, ending)?);
-        } else if path.extension().is_some_and(|its| its == ending) {
-            found.push(path);
-        }
-    }
-    found.sort();
-    Ok(found)
-}
-
-fn copy_folder(from: &Path, to: &Path) -> Result<(), Trouble> {
-    fs::create_dir_all(to).map_err(|error| failed(to, &error))?;
-    for entry in fs::read_dir(from).map_err(|error| failed(from, &error))? {
-        let entry = entry.map_err(|error| failed(from, &error))?;
-        let (path, to) = (entry.path(), to.join(entry.file_name()));
-        if path.is_dir() {
-            copy_folder(&path, &to)?;
-        } else {
-            fs::copy(&path, &to).map_err(|error| failed(&path, &error))?;
-        }
-    }
+    ensure!(broken.is_empty(), "{}", broken.join("\n"));
     Ok(())
 }
 
-fn read(file: &Path) -> Result<String, Trouble> {
-    fs::read_to_string(file).map_err(|error| failed(file, &error))
+/// The files below a folder that have this ending.
+fn files(folder: &str, ending: &str) -> Result<Vec<PathBuf>> {
+    let found = output(Command::new("find").args([folder, "-name", &format!("*.{ending}")]))?;
+    Ok(found.lines().map(PathBuf::from).collect())
 }
 
-fn write(file: &Path, text: &str) -> Result<(), Trouble> {
-    fs::write(file, text).map_err(|error| failed(file, &error))
-}
-
-fn failed(what: &Path, error: &std::io::Error) -> Trouble {
-    Trouble::Failed(format!("{}: {error}", what.display()))
+fn copy_folder(from: &str, to: &Path) -> Result<()> {
+    fs::create_dir_all(to)?;
+    run(Command::new("cp").args(["-r", from]).arg(to))
 }
 
 #[cfg(test)]

@@ -1,17 +1,30 @@
 //! Steps of a check: each passes, fails, or is skipped with a reason; the last line counts them.
 
-use std::fs::{self, File};
+use anyhow::{Context as _, Result, bail, ensure};
+use std::fmt;
 use std::io;
+use std::path::Path;
 use std::process::{Command, ExitCode};
 use std::thread::{self, JoinHandle};
 use std::time::Instant;
 
-/// Why a step did not pass.
-pub(crate) enum Trouble {
-    /// It ran and failed.
-    Failed(String),
-    /// Something it needs is not installed.
-    Skipped(String),
+use fs_err::{self as fs, File};
+
+/// The error of a step that did not run: something it needs is not installed.
+#[derive(Debug)]
+pub(crate) struct Skipped(String);
+
+impl fmt::Display for Skipped {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+impl std::error::Error for Skipped {}
+
+/// Ends a step as skipped.
+pub(crate) fn skip<T>(why: impl Into<String>) -> Result<T> {
+    Err(Skipped(why.into()).into())
 }
 
 /// Results of all steps so far.
@@ -23,22 +36,25 @@ pub(crate) struct Steps {
 }
 
 impl Steps {
-    /// Runs one step and says how it went. A failure does not keep the others from running.
-    pub(crate) fn step(&mut self, name: &str, run: impl FnOnce() -> Result<(), Trouble>) {
+    /// Runs one step and says how it went. A failure does not keep the others from running. What the step gives, if it
+    /// passed.
+    pub(crate) fn step<T>(&mut self, name: &str, run: impl FnOnce() -> Result<T>) -> Option<T> {
         println!("\n=== {name}");
         let began = Instant::now();
         match run() {
-            Ok(()) => {
+            Ok(given) => {
                 self.passed += 1;
                 println!("=== {name}: passed in {:.0} s", began.elapsed().as_secs_f64());
+                Some(given)
             }
-            Err(Trouble::Failed(why)) => {
-                println!("=== {name}: FAILED: {why}");
-                self.failed.push(format!("{name}: {why}"));
-            }
-            Err(Trouble::Skipped(why)) => {
-                println!("=== {name}: SKIPPED: {why}");
-                self.skipped.push(format!("{name}: {why}"));
+            Err(error) => {
+                let (how, list) = match error.is::<Skipped>() {
+                    true => ("SKIPPED", &mut self.skipped),
+                    false => ("FAILED", &mut self.failed),
+                };
+                println!("=== {name}: {how}: {error:#}");
+                list.push(format!("{name}: {error:#}"));
+                None
             }
         }
     }
@@ -100,34 +116,80 @@ impl Beside {
 fn said_to_file(arguments: &[&str]) -> io::Result<String> {
     fs::create_dir_all("target/beside")?;
     let path = format!("target/beside/{}.log", arguments.join(""));
-    let file = File::create(&path)?;
+    let file = File::create(&path)?.into_parts().0;
     Command::new(std::env::current_exe()?).args(arguments).stdout(file.try_clone()?).stderr(file).status()?;
     Ok(String::from_utf8_lossy(&fs::read(path)?).into_owned())
 }
 
 /// Runs a command with our output; an error names it.
-pub(crate) fn run(command: &mut Command) -> Result<(), Trouble> {
-    let line = format!("{command:?}").replace('"', "");
-    match command.status() {
-        Ok(status) if status.success() => Ok(()),
-        Ok(status) => Err(Trouble::Failed(format!("{line}: {status}"))),
-        Err(error) => Err(Trouble::Failed(format!("{line}: {error}"))),
+pub(crate) fn run(command: &mut Command) -> Result<()> {
+    match command.status().with_context(|| line(command))? {
+        status if status.success() => Ok(()),
+        status => bail!("{}: {status}", line(command)),
+    }
+}
+
+/// Runs a command of words between spaces.
+pub(crate) fn run_line(words: &str) -> Result<()> {
+    run(&mut command(words))
+}
+
+/// A command of words between spaces.
+pub(crate) fn command(words: &str) -> Command {
+    let mut words = words.split_whitespace();
+    let mut command = Command::new(words.next().unwrap_or_default());
+    command.args(words);
+    command
+}
+
+/// The output of a command, without its last line's end.
+pub(crate) fn output(command: &mut Command) -> Result<String> {
+    let output = command.output().with_context(|| line(command))?;
+    if !output.status.success() {
+        bail!("{}: {}\n{}", line(command), output.status, String::from_utf8_lossy(&output.stderr));
+    }
+    Ok(String::from_utf8_lossy(&output.stdout).trim_end().to_owned())
+}
+
+fn line(command: &Command) -> String {
+    format!("{command:?}").replace('"', "")
+}
+
+/// Skips a step unless a program answers, as in `need("npm --version", "apt install npm")`.
+pub(crate) fn need(words: &str, install: &str) -> Result<()> {
+    match output(&mut command(words)) {
+        Ok(_) => Ok(()),
+        Err(_) => skip(format!("`{words}` does not run; try: {install}")),
     }
 }
 
 /// Runs a command of cargo that comes with a component of the toolchain; it is skipped where that is not installed.
-pub(crate) fn run_component(component: &str, args: &[&str]) -> Result<(), Trouble> {
-    let name = args.first().copied().unwrap_or_default();
-    if output(Command::new("cargo").args([name, "--version"])).is_none() {
-        return Err(Trouble::Skipped(format!("no cargo {name}; try: rustup component add {component}")));
-    }
-    run(Command::new("cargo").args(args))
+pub(crate) fn run_component(component: &str, words: &str) -> Result<()> {
+    let name = words.split(' ').next().unwrap_or_default();
+    need(&format!("cargo {name} --version"), &format!("rustup component add {component}"))?;
+    run_line(&format!("cargo {words}"))
 }
 
-/// The output of a command, or `None` if it cannot be run or fails.
-pub(crate) fn output(command: &mut Command) -> Option<String> {
-    let output = command.output().ok().filter(|output| output.status.success())?;
-    Some(String::from_utf8_lossy(&output.stdout).trim().to_owned())
+/// Makes an empty folder, without what an earlier run left in it.
+pub(crate) fn empty(folder: impl AsRef<Path>) -> Result<()> {
+    let folder = folder.as_ref();
+    if folder.exists() {
+        fs::remove_dir_all(folder)?;
+    }
+    Ok(fs::create_dir_all(folder)?)
+}
+
+/// A text with parts replaced, each of which must stand in it.
+pub(crate) fn edited(text: &str, parts: &[(&str, &str)]) -> Result<String> {
+    parts.iter().try_fold(text.to_owned(), |text, (from, to)| {
+        ensure!(text.contains(from), "no `{from}` in the text that it should be replaced in");
+        Ok(text.replace(from, to))
+    })
+}
+
+/// The name of a file without its ending.
+pub(crate) fn stem(path: &Path) -> String {
+    path.file_stem().unwrap_or_default().to_string_lossy().into_owned()
 }
 
 #[cfg(test)]
@@ -155,5 +217,13 @@ mod tests {
             steps.count("c", output);
             assert_eq!((steps.passed, steps.failed.len()), (0, 1), "{output}");
         }
+    }
+
+    #[test]
+    fn a_missing_program_skips_a_step_and_a_failing_one_fails_it() {
+        let mut steps = Steps::default();
+        steps.step("a", || need("no-such-program --version", "nothing"));
+        steps.step("b", || run_line("cargo no-such-command"));
+        assert_eq!((steps.passed, steps.failed.len(), steps.skipped.len()), (0, 1, 1));
     }
 }

@@ -1,39 +1,49 @@
-//! `cargo xtask test`: everything that must hold before a change goes in.
+//! `cargo xtask test`: everything that must hold before a change goes in; with `--quick`, the part that is worth knowing
+//! while one works, in under two minutes.
 
 use std::collections::BTreeMap;
 use std::process::{Command, ExitCode};
 
-use cargo_metadata::{Metadata, MetadataCommand, Package};
+use anyhow::Result;
+use cargo_metadata::{Metadata, MetadataCommand, Package, TargetKind};
 
-use crate::steps::{Beside, Steps, Trouble, output, run, run_component};
-use crate::toolchain::cargo_of_version;
+use crate::changed;
+use crate::steps::{Beside, Steps, run, run_component, run_line};
+use crate::toolchain::{cargo_of_version, version_of};
 
 /// Steps that take one thread most of the time: on emulated processors, and of C.
 const BESIDE: [&[&str]; 4] = [&["firmware"], &["arduino", "--short"], &["c"], &["micropython"]];
 
-pub(crate) fn run_all(nothing_skipped: bool) -> ExitCode {
-    let mut steps = Steps::default();
-    steps.step("formatting", || run_component("rustfmt", &["fmt", "--all", "--check"]));
+/// The first steps of both lanes.
+fn sources(steps: &mut Steps) {
+    steps.step("formatting", || run_component("rustfmt", "fmt --all --check"));
     steps.step("rules of the house", crate::house::check);
-    steps.step("listings of the documents", crate::listings::check_all);
+    steps.step("listings of the documents", crate::blocks::check_listings);
     steps.step("links of the documents", crate::links::check_documents);
     steps.step("clippy", || {
-        let args = ["clippy", "--workspace", "--all-targets", "--locked", "--", "--deny", "warnings"];
-        run_component("clippy", &args)
+        run_component("clippy", "clippy --quiet --workspace --all-targets --locked -- --deny warnings")
     });
-    let metadata = match MetadataCommand::new().no_deps().exec() {
-        Ok(metadata) => metadata,
-        Err(error) => {
-            steps.step("cargo metadata", || Err(Trouble::Failed(error.to_string())));
-            return steps.finish(nothing_skipped);
-        }
+}
+
+pub(crate) fn run_quick() -> ExitCode {
+    let mut steps = Steps::default();
+    sources(&mut steps);
+    steps.step("unit tests of what changed", unit_tests_of_what_changed);
+    steps.finish(false)
+}
+
+pub(crate) fn run_all(nothing_skipped: bool) -> ExitCode {
+    let mut steps = Steps::default();
+    sources(&mut steps);
+    let Some(metadata) = steps.step("cargo metadata", || Ok(MetadataCommand::new().no_deps().exec()?)) else {
+        return steps.finish(nothing_skipped);
     };
     let beside = Beside::begin(&BESIDE);
     steps.step("each feature of the core alone", || each_feature_alone(&metadata));
     // What the default compiler can build, Clippy has just built with it.
-    let default = version_of_default();
+    let default = version_of("rustc").unwrap_or_default();
     for (version, packages) in packages_by_version(&metadata) {
-        if default.as_deref() == Some(&*version) {
+        if default == version {
             continue;
         }
         steps.step(&format!("minimum Rust {version}"), || {
@@ -46,20 +56,19 @@ pub(crate) fn run_all(nothing_skipped: bool) -> ExitCode {
         });
     }
     steps.step("public items", crate::api::api);
-    steps.step("tests and doctests", || run_cargo(&["test", "--workspace", "--locked"]));
+    steps.step("tests and doctests", || run_line("cargo test --workspace --locked"));
     // With the features of the whole workspace, as built for the tests; those of instructions need a runner.
     steps.step("benches, each once", || {
-        let benches = ["design", "paths", "simulation", "wait"].map(|name| ["--bench", name]).concat();
-        run_cargo(&[&["test", "--workspace", "--locked"], &benches[..]].concat())
+        run_line("cargo test --workspace --locked --bench design --bench paths --bench simulation --bench wait")
     });
     steps.step("small tables in the documents", || {
         crate::printed::check(&crate::printed::documents()?, crate::printed::Which::Small)
     });
     steps.step("tests of the core's conversions and formats", || {
-        let features = "defmt,embassy-time,fugit,serde";
-        let tests =
-            ["--lib", "--test", "formats", "--locked", "--features", features, "--", "interop", "serde", "format"];
-        run_cargo(&[&["test", "--package", "eeruf-core"], &tests[..]].concat())
+        run_line(
+            "cargo test --package eeruf-core --lib --test formats --locked \
+             --features defmt,embassy-time,fugit,serde -- interop serde format",
+        )
     });
     steps.step("Python package", crate::python::python);
     steps.step("page in a browser", || crate::page::page(crate::page::Tests::Short));
@@ -74,21 +83,34 @@ pub(crate) fn run_all(nothing_skipped: bool) -> ExitCode {
     steps.finish(nothing_skipped)
 }
 
-fn run_cargo(args: &[&str]) -> Result<(), Trouble> {
-    run(Command::new("cargo").args(args))
+fn unit_tests_of_what_changed() -> Result<()> {
+    let metadata = MetadataCommand::new().no_deps().exec()?;
+    let files = changed::files()?;
+    let packages = changed::packages(&metadata, &files);
+    if packages.is_empty() {
+        println!("no package among {} changed files", files.len());
+        return Ok(());
+    }
+    let mut test = Command::new("cargo");
+    test.args(["test", "--quiet", "--locked", "--bins"]);
+    let has_library = |kind: &TargetKind| matches!(kind, TargetKind::Lib | TargetKind::RLib | TargetKind::CDyLib);
+    if packages.iter().any(|package| package.targets.iter().any(|target| target.kind.iter().any(has_library))) {
+        test.arg("--lib");
+    }
+    for package in packages {
+        println!("{}", package.name);
+        test.args(["--package", &package.name]);
+    }
+    run(&mut test)
 }
 
-fn each_feature_alone(metadata: &Metadata) -> Result<(), Trouble> {
+fn each_feature_alone(metadata: &Metadata) -> Result<()> {
     // Firmware links the core. `cargo xtask release --dry-run` builds each other crate alone, out of its tarball.
-    let is_core = |package: &&Package| package.name.as_str() == "eeruf-core";
-    for package in metadata.workspace_packages().into_iter().filter(is_core) {
-        run_cargo(&["check", "--package", &package.name, "--locked", "--no-default-features"])?;
-        for feature in package.features.keys().filter(|feature| *feature != "default") {
-            let features = ["--no-default-features", "--features", feature];
-            run_cargo(&[&["check", "--package", &package.name, "--locked"], &features[..]].concat())?;
-        }
-    }
-    Ok(())
+    let check = "cargo check --package eeruf-core --locked --no-default-features";
+    run_line(check)?;
+    let core = metadata.workspace_packages().into_iter().find(|package| package.name == "eeruf-core");
+    let features = core.into_iter().flat_map(|package| package.features.keys());
+    features.filter(|feature| *feature != "default").try_for_each(|it| run_line(&format!("{check} --features {it}")))
 }
 
 /// The packages of the workspace by the minimum version of Rust that they declare, as "1.85".
@@ -100,11 +122,4 @@ fn packages_by_version(metadata: &Metadata) -> BTreeMap<String, Vec<&Package>> {
         }
     }
     packages
-}
-
-/// The version of the default compiler, as "1.95".
-fn version_of_default() -> Option<String> {
-    let said = output(Command::new("rustc").arg("--version"))?;
-    let (version, _) = said.strip_prefix("rustc ")?.rsplit_once('.')?;
-    Some(version.split('.').take(2).collect::<Vec<_>>().join("."))
 }

@@ -1,69 +1,115 @@
-//! Compilers by purpose: a declared minimum version, or a target without an operating system.
+//! Cargo by purpose: for a declared minimum version, or a target without an operating system; and what it has built.
 //!
 //! Compilers that come from different places must not share a target directory.
 
 use std::env;
-use std::path::Path;
+use std::env::consts::EXE_SUFFIX;
+use std::path::{Path, PathBuf, absolute};
 use std::process::Command;
 
-use crate::steps::{Trouble, output};
+use anyhow::{Context as _, Result, bail};
+
+use crate::steps::{output, run, skip};
+
+/// Where Debian's compiler is, which builds the standard library from its sources.
+pub(crate) const DEBIAN_CARGO: &str = "/usr/bin/cargo";
+pub(crate) const DEBIAN_RUSTC: &str = "/usr/bin/rustc";
+
+/// The version of a compiler, as "1.95".
+pub(crate) fn version_of(rustc: &str) -> Result<String> {
+    let said = output(Command::new(rustc).arg("--version"))?;
+    let numbers = said.strip_prefix("rustc ").with_context(|| format!("{rustc} --version says {said}"))?;
+    Ok(numbers.split('.').take(2).collect::<Vec<_>>().join("."))
+}
 
 /// A `cargo` that compiles with this minor version of Rust ("1.85").
 ///
 /// That is the default one, one of rustup's, or the compiler that the environment variable `EERUF_RUSTC_1_85` names.
-pub(crate) fn cargo_of_version(version: &str) -> Result<Command, Trouble> {
+pub(crate) fn cargo_of_version(version: &str) -> Result<Command> {
     let is_it = |command: &mut Command| {
-        output(command.arg("--version")).is_some_and(|said| said.starts_with(&format!("rustc {version}.")))
+        output(command.arg("--version")).is_ok_and(|said| said.starts_with(&format!("rustc {version}.")))
     };
+    let mut cargo = Command::new("cargo");
     if is_it(&mut Command::new("rustc")) {
-        return Ok(Command::new("cargo"));
+        return Ok(cargo);
     }
+    cargo.env("CARGO_TARGET_DIR", format!("target/rust-{version}"));
     let variable = format!("EERUF_RUSTC_{}", version.replace('.', "_"));
     if let Some(rustc) = env::var_os(&variable) {
         if !is_it(&mut Command::new(&rustc)) {
-            return Err(Trouble::Failed(format!("{variable} does not name a rustc {version}")));
+            bail!("{variable} does not name a rustc {version}");
         }
-        let mut cargo = Command::new("cargo");
-        cargo.env("RUSTC", rustc).env("CARGO_TARGET_DIR", format!("target/rust-{version}"));
+        cargo.env("RUSTC", rustc);
         return Ok(cargo);
     }
     let toolchain = format!("+{version}");
     if is_it(Command::new("rustc").arg(&toolchain)) {
-        let mut cargo = Command::new("cargo");
-        cargo.arg(toolchain).env("CARGO_TARGET_DIR", format!("target/rust-{version}"));
+        cargo.arg(toolchain);
         return Ok(cargo);
     }
-    Err(Trouble::Skipped(format!("no rustc {version}; try: rustup toolchain install {version}")))
+    skip(format!("no rustc {version}; try: rustup toolchain install {version}"))
+}
+
+/// Returns true if the default compiler has this library, "core" or "std", for a target.
+pub(crate) fn has_library(library: &str, target: &str) -> bool {
+    let folder = output(Command::new("rustc").args(["--print", "target-libdir", "--target", target]));
+    let entries = folder.ok().and_then(|folder| Path::new(&folder).read_dir().ok());
+    let begins = format!("lib{library}-");
+    entries.is_some_and(|mut entries| {
+        entries.any(|entry| entry.is_ok_and(|entry| entry.file_name().to_string_lossy().starts_with(&begins)))
+    })
 }
 
 /// A `cargo` that compiles for a target without an operating system; the caller adds `build --target` and the rest.
 ///
 /// That is rustup's if the target is installed; else Debian's, which builds `core` from its sources, and for
-/// WebAssembly
-/// `std` too.
-pub(crate) fn cargo_for_target(target: &str) -> Result<Command, Trouble> {
-    let libdir = output(Command::new("rustc").args(["--print", "target-libdir", "--target", target]));
-    let has_core = |dir: &str| {
-        let entries = Path::new(dir).read_dir().ok()?;
-        Some(entries.flatten().any(|entry| entry.file_name().to_string_lossy().starts_with("libcore-")))
-    };
-    if libdir.is_some_and(|dir| has_core(&dir) == Some(true)) {
+/// WebAssembly `std` too.
+pub(crate) fn cargo_for_target(target: &str) -> Result<Command> {
+    if has_library("core", target) {
         return Ok(Command::new("cargo"));
     }
-    let debian = ["/usr/bin/cargo", "/usr/bin/rustc", "/usr/lib/rustlib/src/rust/library/core", "/usr/bin/rust-lld"];
+    let debian = [DEBIAN_CARGO, DEBIAN_RUSTC, "/usr/lib/rustlib/src/rust/library/core", "/usr/bin/rust-lld"];
     if debian.iter().all(|path| Path::new(path).exists()) {
-        let mut cargo = Command::new("/usr/bin/cargo");
-        let path = env::var("PATH").unwrap_or_default();
+        let mut cargo = Command::new(DEBIAN_CARGO);
         cargo
-            .env("PATH", format!("/usr/bin:{path}"))
-            .env("RUSTC", "/usr/bin/rustc")
+            .env("PATH", format!("/usr/bin:{}", env::var("PATH").unwrap_or_default()))
+            .env("RUSTC", DEBIAN_RUSTC)
             .env("RUSTC_BOOTSTRAP", "1")
             .env("CARGO_UNSTABLE_BUILD_STD", if target.starts_with("wasm32") { "std,panic_abort" } else { "core" })
             .env("CARGO_TARGET_DIR", "target/debian");
         return Ok(cargo);
     }
-    Err(Trouble::Skipped(format!(
+    skip(format!(
         "no core library for {target}; try: rustup target add {target} (or Debian's rustc-web, cargo-web, rust-web-src \
          and lld-22)"
-    )))
+    ))
+}
+
+/// Returns true if a command is Debian's `cargo`, whose standard library has frames that are known.
+pub(crate) fn is_debian(cargo: &Command) -> bool {
+    cargo.get_program() == DEBIAN_CARGO
+}
+
+/// The folder that a `cargo` of [`cargo_for_target`] builds in, below where it runs.
+pub(crate) fn target_folder(cargo: &Command) -> &'static str {
+    if is_debian(cargo) { "target/debian" } else { "target" }
+}
+
+/// `eeruf`, built.
+pub(crate) fn program() -> Result<PathBuf> {
+    built("eeruf")
+}
+
+/// The program of `cargo lab`, built.
+pub(crate) fn lab() -> Result<PathBuf> {
+    built("eeruf-lab")
+}
+
+/// A binary of the workspace as it was built for the tests: with the features of all packages, since another choice
+/// would build what they stand on once more. A test is among what is built, since only then dependencies have the
+/// features that tests ask for.
+pub(crate) fn built(name: &str) -> Result<PathBuf> {
+    let build = ["build", "--quiet", "--locked", "--workspace", "--test", "line", "--bin", name];
+    run(Command::new("cargo").args(build))?;
+    Ok(absolute(format!("target/debug/{name}{EXE_SUFFIX}"))?)
 }

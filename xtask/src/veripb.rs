@@ -2,82 +2,56 @@
 //! table's rings and of `rings/`, and refuse broken ones.
 
 use std::fmt::Write as _;
-use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::{Duration, Instant};
 
-use crate::certificates::{files, table};
-use crate::steps::{Steps, Trouble, output, run};
+use anyhow::{Result, ensure};
+use fs_err as fs;
 
-/// Parts to check.
-#[derive(clap::Args)]
-pub(crate) struct Plan {
-    /// The program, where it is installed already; otherwise it is built from crates.io into target/veripb
-    #[arg(long, value_name = "FILE")]
-    program: Option<PathBuf>,
-    /// The table's rings with up to this many sensors
-    #[arg(long, default_value_t = 24, value_name = "K")]
-    sensors: u32,
-    /// Ticks, in microseconds
-    #[arg(long, default_value_t = 1000, value_name = "US")]
-    tick_us: u32,
-}
+use crate::certificates::{TABLE, files, table};
+use crate::steps::{Steps, output, run_line};
 
 const FOLDER: &str = "target/veripb";
 /// The version that the formats are written for.
 const VERSION: &str = "3.0.2";
 
-pub(crate) fn run_all(plan: &Plan, steps: &mut Steps) {
-    let installed = PathBuf::from(FOLDER).join("bin/veripb");
-    let program = plan.program.clone().unwrap_or(installed);
+pub(crate) fn run_all(steps: &mut Steps) {
+    let program = Path::new(FOLDER).join("bin/veripb");
     steps.step("build", || {
-        fs::create_dir_all(FOLDER).map_err(|error| Trouble::Failed(format!("{FOLDER}: {error}")))?;
-        run(Command::new("cargo").args(["build", "--release", "--locked", "-p", "eeruf"]))?;
-        if program.exists() {
-            return Ok(());
-        }
+        fs::create_dir_all(FOLDER)?;
+        run_line("cargo build --release --locked -p eeruf")?;
         // `--locked`: with the versions that its authors tested.
-        run(Command::new("cargo").args(["install", "veripb", "--version", VERSION, "--locked", "--root", FOLDER]))
+        run_line(&format!("cargo install veripb --quiet --version {VERSION} --locked --root {FOLDER}"))
     });
-    let sensors: Vec<u32> = [8, 12, 16, 24].into_iter().filter(|sensors| *sensors <= plan.sensors).collect();
     let mut rows = "| ring | nodes | model, bytes | proof, bytes | VeriPB |\n|---|---|---|---|---|\n".to_owned();
     let (mut judged, mut total) = (0, Duration::ZERO);
-    for (name, ring) in table(&sensors, plan.tick_us).into_iter().chain(files()) {
-        steps.step(&name, || {
-            let took = judge(&program, &name, &ring, &mut rows)?;
+    for (name, ring) in table(&TABLE, 1000).into_iter().chain(files()) {
+        if let Some(took) = steps.step(&name, || judge(&program, &name, &ring, &mut rows)) {
             judged += 1;
             total += took;
-            Ok(())
-        });
+        }
     }
-    println!(
-        "\n{rows}\n{judged} proofs accepted in {:.1} s, each that has sums refused when broken",
-        total.as_secs_f64()
-    );
+    let seconds = total.as_secs_f64();
+    println!("\n{rows}\n{judged} proofs accepted in {seconds:.1} s, each that has sums refused when broken");
 }
 
 /// Designs a ring, and has VeriPB accept the proof and refuse three that cannot be one. How long it took to accept it.
-fn judge(program: &Path, name: &str, ring: &str, rows: &mut String) -> Result<Duration, Trouble> {
+fn judge(program: &Path, name: &str, ring: &str, rows: &mut String) -> Result<Duration> {
     let path = |ending: &str| PathBuf::from(FOLDER).join(format!("{name}.{ending}"));
-    let failed = |path: &Path, error: std::io::Error| Trouble::Failed(format!("{}: {error}", path.display()));
-    let write = |path: &Path, text: &str| fs::write(path, text).map_err(|error| failed(path, error));
-    let read = |path: &Path| fs::read_to_string(path).map_err(|error| failed(path, error));
     let [file, model, proof] = ["toml", "opb", "pbp"].map(path);
-    write(&file, ring)?;
+    fs::write(&file, ring)?;
     let mut design = Command::new("target/release/eeruf");
     design.args(["design", "--emit", "toml", "--certificate-form", "veripb", "--certificate"]).arg(&proof).arg(&file);
-    let said = design.output().map_err(|error| failed(&file, error))?;
+    let said = design.output()?;
     let said = String::from_utf8_lossy(&said.stderr).trim().to_owned();
     println!("{said}");
     let nodes =
         said.rsplit("; ").next().and_then(|rest| rest.split_once(" nodes")).map_or("?", |(nodes, _)| nodes).to_owned();
     let began = Instant::now();
-    if !accepts(program, &model, &proof) {
-        return Err(Trouble::Failed(format!("{}: VeriPB refuses it", proof.display())));
-    }
+    ensure!(accepts(program, &model, &proof), "{}: VeriPB refuses it", proof.display());
     let took = began.elapsed();
-    let (model_text, proof_text) = (read(&model)?, read(&proof)?);
+    let (model_text, proof_text) = (fs::read_to_string(&model)?, fs::read_to_string(&proof)?);
     let seconds = took.as_secs_f64();
     let _ = writeln!(rows, "| {name} | {nodes} | {} | {} | {seconds:.1} s |", model_text.len(), proof_text.len());
     // Without sums, unit propagation refutes the model before the first line, so that no line can be wrong.
@@ -86,19 +60,15 @@ fn judge(program: &Path, name: &str, ring: &str, rows: &mut String) -> Result<Du
     }
     let broken = path("broken.pbp");
     for (what, text) in broken_proofs(&proof_text) {
-        write(&broken, &text)?;
-        if accepts(program, &model, &broken) {
-            return Err(Trouble::Failed(format!("{}: VeriPB accepts it {what}", broken.display())));
-        }
+        fs::write(&broken, &text)?;
+        ensure!(!accepts(program, &model, &broken), "{}: VeriPB accepts it {what}", broken.display());
     }
     // Without intervals there is a schedule, so that model cannot be refuted.
     let less = path("less.opb");
     let is_order = |line: &str| line.contains("~oa") || line.contains("~ob");
     let lines = model_text.lines().map(|line| if is_order(line) { loosened(line) } else { line.to_owned() });
-    write(&less, &(lines.collect::<Vec<_>>().join("\n") + "\n"))?;
-    if accepts(program, &less, &proof) {
-        return Err(Trouble::Failed(format!("{}: VeriPB accepts the proof without intervals", less.display())));
-    }
+    fs::write(&less, lines.collect::<Vec<_>>().join("\n") + "\n")?;
+    ensure!(!accepts(program, &less, &proof), "{}: VeriPB accepts the proof without intervals", less.display());
     Ok(took)
 }
 
@@ -133,5 +103,5 @@ fn broken_proofs(proof: &str) -> Vec<(&'static str, String)> {
 
 /// Returns true if VeriPB accepts the proof that the model has no solution.
 fn accepts(program: &Path, model: &Path, proof: &Path) -> bool {
-    output(Command::new(program).arg(model).arg(proof)).is_some_and(|said| said.contains("VERIFIED UNSATISFIABLE"))
+    output(Command::new(program).arg(model).arg(proof)).is_ok_and(|said| said.contains("VERIFIED UNSATISFIABLE"))
 }

@@ -1,22 +1,13 @@
 //! The atlas that comes with the crate.
 #![cfg(feature = "make-atlas")]
 
+mod common;
+
+use common::Random;
 use eeruf_check::check;
 use eeruf_core::Micros;
 use eeruf_design::atlas::{ATLAS, Neighbourhood, Ring, Row, all_rings, answer, rows};
 use eeruf_design::atlas_making::{certificate_of, hash_of, header};
-
-/// A small generator of pseudo-random numbers, the same on every machine (xorshift64*).
-struct Random(u64);
-
-impl Random {
-    fn below(&mut self, end: usize) -> usize {
-        self.0 ^= self.0 >> 12;
-        self.0 ^= self.0 << 25;
-        self.0 ^= self.0 >> 27;
-        ((self.0.wrapping_mul(0x2545_F491_4F6C_DD1D) >> 33) % end as u64) as usize
-    }
-}
 
 #[test]
 fn atlas_has_a_row_for_each_ring_in_order() {
@@ -90,7 +81,7 @@ fn sample_of_atlas_is_proven_again() {
     let all: Vec<Row> = rows(ATLAS).collect();
     let (mut random, mut proven) = (Random(20_001), 0);
     for _ in 0..cases {
-        let row = &all[random.below(all.len())];
+        let row = &all[random.below(all.len() as u32) as usize];
         let text = certificate_of(row).unwrap_or_else(|error| panic!("{row}: {error}"));
         let certified = check(&text).unwrap_or_else(|error| panic!("{row}: {error}"));
         assert_eq!((certified.claim.period, certified.claim.bound), (row.period, row.certified), "{row}");

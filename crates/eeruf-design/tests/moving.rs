@@ -1,20 +1,10 @@
 //! Rings that move: the period that is proven, against all schedules of tiny rings, each at its own `t_delta`.
 
+mod common;
+
+use common::Random;
 use eeruf_core::Micros;
 use eeruf_design::{NoSchedule, RingDesign, RingSpec, Search};
-
-/// A generator of pseudo-random numbers, the same on every machine (xorshift64*).
-struct Random(u64);
-
-impl Random {
-    /// A number below `end`.
-    fn below(&mut self, end: u32) -> u32 {
-        self.0 ^= self.0 >> 12;
-        self.0 ^= self.0 << 25;
-        self.0 ^= self.0 >> 27;
-        ((self.0.wrapping_mul(0x2545_F491_4F6C_DD1D) >> 33) % u64::from(end)) as u32
-    }
-}
 
 fn design(spec: &RingSpec, budget: u64) -> Result<RingDesign, NoSchedule> {
     spec.shortest(&Search { budget, what_if: false, atlas: "" }, &mut ()).expect("it can be searched")

@@ -1,20 +1,10 @@
 //! Claims about finer ticks, against searches in ticks of a tenth.
 
+mod common;
+
+use common::Random;
 use eeruf_core::Micros;
 use eeruf_design::{RingDesign, RingSpec, Search, real_budget};
-
-/// A generator of pseudo-random numbers, the same on every machine (xorshift64*).
-struct Random(u64);
-
-impl Random {
-    /// A number below `end`.
-    fn below(&mut self, end: u32) -> u32 {
-        self.0 ^= self.0 >> 12;
-        self.0 ^= self.0 << 25;
-        self.0 ^= self.0 >> 27;
-        ((self.0.wrapping_mul(0x2545_F491_4F6C_DD1D) >> 33) % u64::from(end)) as u32
-    }
-}
 
 /// A ring file in metres, without its tick.
 fn random_ring(seed: u64) -> String {

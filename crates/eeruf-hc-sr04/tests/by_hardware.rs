@@ -1,16 +1,12 @@
 //! Modules that a timer triggers while the loop is late, whose lines are stamped or whose pulses are measured by
 //! hardware, with results that come late, get lost, or come twice.
 
-#[path = "shared/random.rs"]
-mod random;
-
 use eeruf_core::{
     Edge, Instant, Micros, ReadingKind, Ring, RingConfig, RingEvent, ScheduledRing, SensorError, Tally,
     tables::PAPER_12,
 };
 use eeruf_hc_sr04::{HcSr04Ring, Health, Settings};
-
-use random::Random;
+use fastrand::Rng;
 
 const K: usize = 12;
 type Driver = HcSr04Ring<ScheduledRing<'static, K>, (), (), (), K>;
@@ -33,7 +29,7 @@ enum Answer {
 /// Runs a loop that comes round every 0 to 5 ms, for some periods; `pulses`: hardware measures widths, instead of
 /// stamping edges.
 fn run(pulses: bool, periods: u32, answer: impl Fn(u8, u32) -> Answer) -> ([Tally<u32>; K], [Health; K]) {
-    let mut r = Random(20_000);
+    let mut r = Rng::with_seed(20_000);
     let mut now = Instant::from_micros(u32::MAX - 700_000);
     let ring = Ring::new(&PAPER_12, RingConfig::new().with_window(Micros::from_millis(40)), now).unwrap();
     let mut driver: Driver = HcSr04Ring::by_hardware(ring, Settings::default()).unwrap();
@@ -41,7 +37,7 @@ fn run(pulses: bool, periods: u32, answer: impl Fn(u8, u32) -> Answer) -> ([Tall
     let (mut edges, mut widths): (Vec<Edge>, Vec<(Instant, u8, u32)>) = (vec![], vec![]);
     let (mut tallies, mut ended) = ([Tally::default(); K], 0);
     while ended < periods {
-        now += Micros::new(r.up_to(5_000));
+        now += Micros::new(r.u32(..=5_000));
         loop {
             let timer = driver.upcoming().next().filter(|next| now.has_reached(next.due));
             let until = timer.map_or(now, |next| next.due);
@@ -56,7 +52,7 @@ fn run(pulses: bool, periods: u32, answer: impl Fn(u8, u32) -> Answer) -> ([Tall
                 match event {
                     RingEvent::Fire { sensor, .. } => {
                         let us = |us| until + Micros::new(us);
-                        let jitter = r.up_to(30);
+                        let jitter = r.u32(..=30);
                         let line = match answer(sensor, ended) {
                             Answer::Pulse(width) => vec![(450, true), (450 + width + jitter, false)],
                             Answer::Twice(width) => {

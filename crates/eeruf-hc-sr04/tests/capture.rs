@@ -3,9 +3,8 @@
 
 #[path = "shared/pio.rs"]
 mod pio;
-#[path = "shared/random.rs"]
-mod random;
 
+use fastrand::Rng;
 use std::collections::VecDeque;
 
 use eeruf_core::{Instant, Micros, ReadingKind, Ring, RingConfig, RingEvent, ScheduledRing, Tally, tables::PAPER_12};
@@ -13,7 +12,6 @@ use eeruf_hc_sr04::capture::{CaptureRing, Captured, Captures, LineEdge, PioLine,
 use eeruf_hc_sr04::{Health, Settings, SetupError};
 
 use pio::StateMachine;
-use random::Random;
 
 const K: usize = 12;
 const BEGIN: Instant = Instant::from_micros(u32::MAX - 700_000);
@@ -72,7 +70,7 @@ fn next_if<T>(queue: &mut VecDeque<T>, may_come: impl Fn(&T) -> bool) -> Option<
 /// The modules: the line of each, the faults, and the firings.
 struct Modules {
     answer: fn(u8) -> (Answer, Trouble),
-    random: Random,
+    random: Rng,
     /// Edges of each line by when they come, of which the first rises where `high` is false.
     edges: [VecDeque<Instant>; K],
     high: [bool; K],
@@ -81,7 +79,7 @@ struct Modules {
 
 impl Modules {
     fn new(answer: fn(u8) -> (Answer, Trouble)) -> Self {
-        let random = Random(20_000);
+        let random = Rng::with_seed(20_000);
         Self { answer, random, edges: std::array::from_fn(|_| VecDeque::new()), high: [false; K], reports: 0 }
     }
 
@@ -91,7 +89,7 @@ impl Modules {
         if self.high[x] || !self.edges[x].is_empty() {
             return;
         }
-        let jitter = self.random.up_to(30);
+        let jitter = self.random.u32(..=30);
         self.edges[x].extend((self.answer)(sensor).0.edges(jitter).into_iter().map(|after| at + us(after)));
     }
 
@@ -120,7 +118,7 @@ impl Modules {
     /// Lateness of the next report.
     fn late(&mut self, sensor: u8) -> Micros {
         match self.trouble(sensor) {
-            Trouble::Late => us(self.random.up_to(4_000)),
+            Trouble::Late => us(self.random.u32(..=4_000)),
             Trouble::Stale => us(190_000),
             _ => us(0),
         }
@@ -326,7 +324,7 @@ impl Captures for Timer {
         }
         take(&mut self.modules, now);
         let is_late = match self.modules.trouble(sensor) {
-            Trouble::Late => self.modules.random.up_to(1) == 0,
+            Trouble::Late => self.modules.random.u32(..=1) == 0,
             Trouble::Stale => now.since(since.unwrap_or(now)) < us(90_000),
             _ => false,
         };
@@ -355,10 +353,10 @@ fn driver<C: Captures>(hardware: C) -> Driver<C> {
 
 /// Runs a loop that comes round every 0 to 5 ms, for some periods.
 fn run<C: Captures>(hardware: C, periods: u32) -> ([Tally<u32>; K], [Health; K], C, u32) {
-    let (mut driver, mut random, mut now) = (driver(hardware), Random(20_000), BEGIN);
+    let (mut driver, mut random, mut now) = (driver(hardware), Rng::with_seed(20_000), BEGIN);
     let (mut tallies, mut ended, mut late) = ([Tally::default(); K], 0, 0);
     while ended < periods {
-        now += us(random.up_to(5_000));
+        now += us(random.u32(..=5_000));
         while let Some(event) = driver.poll(now) {
             match event {
                 RingEvent::Fire { .. } => {}
@@ -522,9 +520,9 @@ fn held_ring_lets_its_driver_be_changed() {
 #[test]
 fn ring_knows_each_firing_after_stalls() {
     let mut driver = driver(Timer::new(Modules::new(|sensor| (Answer::Pulse(wall(sensor)), Trouble::None))));
-    let (mut random, mut now, mut fires, mut accepted) = (Random(3), BEGIN, vec![], 0);
+    let (mut random, mut now, mut fires, mut accepted) = (Rng::with_seed(3), BEGIN, vec![], 0);
     for turn in 1..20_000 {
-        now += us(if turn % 100 == 0 { 5_000 + random.up_to(60_000) } else { random.up_to(2_000) });
+        now += us(if turn % 100 == 0 { 5_000 + random.u32(..=60_000) } else { random.u32(..=2_000) });
         while let Some(event) = driver.poll(now) {
             match event {
                 RingEvent::Fire { sensor, .. } => {

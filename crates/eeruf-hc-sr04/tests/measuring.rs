@@ -3,9 +3,8 @@
 
 #[path = "shared/four.rs"]
 mod four;
-#[path = "shared/random.rs"]
-mod random;
 
+use fastrand::Rng;
 use std::cell::RefCell;
 use std::collections::VecDeque;
 use std::rc::Rc;
@@ -16,7 +15,6 @@ use eeruf_hc_sr04::measuring::{Mb1010, Measures, MeasuringRing, Srf08, Us100};
 use embedded_hal::i2c::{ErrorKind, NoAcknowledgeSource, Operation};
 use embedded_hal_mock::eh1::delay::NoopDelay;
 use four::{BEGIN, K, ring};
-use random::Random;
 
 /// The space before a module.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -68,7 +66,7 @@ type Script = Rc<dyn Fn(u8, u32) -> (Space, Trouble)>;
 /// State that the fakes share: the time, in microseconds, and the script.
 struct World {
     now: u64,
-    random: Random,
+    random: Rng,
     script: Script,
     firings: [u32; K],
     /// Pulses to hand in: when they end, of which sensor, and how wide.
@@ -82,7 +80,7 @@ impl World {
         let (space, trouble) = (self.script)(sensor, *firing);
         *firing += 1;
         match space {
-            Space::Wall(us) => (Some(us + self.random.up_to(30)), trouble),
+            Space::Wall(us) => (Some(us + self.random.u32(..=30)), trouble),
             Space::Free => (None, trouble),
         }
     }
@@ -305,7 +303,7 @@ fn instant(us: u64) -> Instant {
 fn run<M: Fake>(periods: u32, script: &Script, late: u32) -> ([Vec<Reading>; K], [Health; K]) {
     let world = World {
         now: BEGIN.as_micros().into(),
-        random: Random(2_000),
+        random: Rng::with_seed(2_000),
         script: script.clone(),
         firings: [0; K],
         pulses: vec![],
@@ -321,7 +319,7 @@ fn run<M: Fake>(periods: u32, script: &Script, late: u32) -> ([Vec<Reading>; K],
             // A deadline in the past is due at once.
             let wait = if wait > u32::MAX / 2 { 0 } else { wait };
             let next = world.pulses.iter().map(|&(at, ..)| at).min().unwrap_or(u64::MAX).max(world.now);
-            world.now = (world.now + u64::from(wait)).min(next) + u64::from(world.random.up_to(late));
+            world.now = (world.now + u64::from(wait)).min(next) + u64::from(world.random.u32(..=late));
             world.now
         };
         let pulses = std::mem::take(&mut world.borrow_mut().pulses);

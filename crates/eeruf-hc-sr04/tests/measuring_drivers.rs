@@ -2,9 +2,8 @@
 
 #[path = "shared/four.rs"]
 mod four;
-#[path = "shared/random.rs"]
-mod random;
 
+use fastrand::Rng;
 use std::cell::RefCell;
 use std::collections::VecDeque;
 use std::rc::Rc;
@@ -19,7 +18,6 @@ use embedded_hal_mock::eh1::delay::NoopDelay;
 use embedded_hal_mock::eh1::digital::{Mock as Pin, State, Transaction as Level};
 use embedded_hal_mock::eh1::i2c::{Mock as Bus, Transaction};
 use four::{BEGIN, K, ring};
-use random::Random;
 
 const fn ms(ms: u32) -> Micros {
     Micros::from_millis(ms)
@@ -355,17 +353,17 @@ fn operations_and_clock_jumps_make_nothing_clear() {
     let answers = [Ok(Measured::Echo(ms(9))), Err(Fault::NoAnswer), Err(Fault::Bus)];
     let modules = std::array::from_fn(|x| Scripted::new(answers[x % 3]));
     let mut ring = MeasuringRing::new(ring(), modules).unwrap();
-    let (mut random, mut now, mut accepted) = (Random(77), BEGIN, 0);
+    let (mut random, mut now, mut accepted) = (Rng::with_seed(77), BEGIN, 0);
     for _ in 0..200_000 {
         let deadline = ring.next_deadline();
-        now = match random.up_to(2_000) {
-            0 => Instant::from_micros(random.up_to(u32::MAX - 1)),
-            1..=20 => now + Micros::new(random.up_to(200_000)),
+        now = match random.u32(..=2_000) {
+            0 => Instant::from_micros(random.u32(..=u32::MAX - 1)),
+            1..=20 => now + Micros::new(random.u32(..=200_000)),
             _ if deadline.has_reached(now) => deadline,
-            _ => now + Micros::new(random.up_to(100)),
+            _ => now + Micros::new(random.u32(..=100)),
         };
-        let sensor = random.up_to(4) as u8;
-        match random.up_to(3_000) {
+        let sensor = random.u32(..=4) as u8;
+        match random.u32(..=3_000) {
             0 => ring.pause(),
             1..=30 => ring.resume(),
             31..=40 => _ = ring.disable(sensor),

@@ -3,6 +3,7 @@
 
 use eeruf_core::{Instant, Micros, ReadingKind, Ring, RingConfig, RingEvent, judge::Explanation, tables::PAPER_12};
 use eeruf_serial::{Decoder, Encoder, Firing, Frame, FrameError, LONGEST_FRAME, Message, Received, Recorder, Weighed};
+use fastrand::Rng;
 use proptest::prelude::*;
 
 fn received(bytes: &[u8]) -> Vec<Result<Received, FrameError>> {
@@ -89,28 +90,16 @@ proptest! {
     }
 }
 
-/// A repeatable source of numbers: xorshift64*.
-struct Numbers(u64);
-
-impl Numbers {
-    fn below(&mut self, bound: usize) -> usize {
-        self.0 ^= self.0 >> 12;
-        self.0 ^= self.0 << 25;
-        self.0 ^= self.0 >> 27;
-        ((self.0.wrapping_mul(0x2545_F491_4F6C_DD1D) >> 33) as usize) % bound
-    }
-}
-
-fn a_minute(numbers: &mut Numbers, frames: usize) -> Vec<Frame> {
+fn a_minute(numbers: &mut Rng, frames: usize) -> Vec<Frame> {
     let mut encoder = Encoder::new();
-    let firing = |n: usize, numbers: &mut Numbers| Firing {
+    let firing = |n: usize, numbers: &mut Rng| Firing {
         sensor: (n % 8) as u8,
         phase: (n / 8 % 2) as u8,
-        kind: ReadingKind::ALL[numbers.below(12)],
+        kind: ReadingKind::ALL[numbers.usize(..12)],
         fired: Instant::from_micros(12_500 * n as u32),
         period: (n / 8) as u32,
-        t_echo: (numbers.below(4) > 0).then(|| Micros::new(numbers.below(30_000) as u32)),
-        late: Micros::new(numbers.below(300) as u32),
+        t_echo: (numbers.usize(..4) > 0).then(|| Micros::new(numbers.usize(..30_000) as u32)),
+        late: Micros::new(numbers.usize(..300) as u32),
         age: Micros::new(30_000),
         explained_by: n.is_multiple_of(5).then_some(Explanation::Sensor((n % 7) as u8)),
         weighed: (n / 8 % 2 == 1).then_some(Weighed { solo: false, steady: true, changes: 3, expected_change_us: -70 }),
@@ -119,29 +108,29 @@ fn a_minute(numbers: &mut Numbers, frames: usize) -> Vec<Frame> {
 }
 
 /// Bits flipped, bytes dropped, made up or repeated, the end lost, or everything made up.
-fn damage(frame: &Frame, numbers: &mut Numbers) -> Vec<u8> {
+fn damage(frame: &Frame, numbers: &mut Rng) -> Vec<u8> {
     let mut bytes = frame.as_bytes().to_vec();
-    match numbers.below(6) {
+    match numbers.usize(..6) {
         0 => {
-            for _ in 0..=numbers.below(8) {
-                let at = numbers.below(bytes.len());
-                bytes[at] ^= 1 << numbers.below(8);
+            for _ in 0..=numbers.usize(..8) {
+                let at = numbers.usize(..bytes.len());
+                bytes[at] ^= 1 << numbers.usize(..8);
             }
         }
         1 => {
-            let from = numbers.below(bytes.len());
-            bytes.drain(from..(from + 1 + numbers.below(6)).min(frame.as_bytes().len()));
+            let from = numbers.usize(..bytes.len());
+            bytes.drain(from..(from + 1 + numbers.usize(..6)).min(frame.as_bytes().len()));
         }
         2 => {
-            let at = numbers.below(bytes.len());
-            bytes.insert(at, numbers.below(256) as u8);
+            let at = numbers.usize(..bytes.len());
+            bytes.insert(at, numbers.usize(..256) as u8);
         }
-        3 => bytes.truncate(numbers.below(bytes.len())),
+        3 => bytes.truncate(numbers.usize(..bytes.len())),
         4 => {
-            let at = numbers.below(bytes.len());
+            let at = numbers.usize(..bytes.len());
             bytes.extend_from_within(at..);
         }
-        _ => bytes.iter_mut().for_each(|byte| *byte = numbers.below(256) as u8),
+        _ => bytes.iter_mut().for_each(|byte| *byte = numbers.usize(..256) as u8),
     }
     bytes
 }
@@ -150,14 +139,14 @@ fn damage(frame: &Frame, numbers: &mut Numbers) -> Vec<u8> {
 /// of those. The numbers here are always the same.
 #[test]
 fn cuts_and_flips_cost_only_the_frames_that_they_hit() {
-    let mut numbers = Numbers(20_000);
+    let mut numbers = Rng::with_seed(20_000);
     let (mut hit, mut never_sent) = (0, 0);
     for _ in 0..4 {
         let frames = a_minute(&mut numbers, 60_000);
         let sent: Vec<_> = frames.iter().flat_map(|frame| received(frame.as_bytes())).collect();
         let (mut line, mut spared) = (Vec::new(), Vec::new());
         for (frame, sent) in frames.iter().zip(&sent) {
-            let hurt = numbers.below(4) == 0;
+            let hurt = numbers.usize(..4) == 0;
             hit += usize::from(hurt);
             // A frame that lost its end takes the next one along.
             if !hurt && line.last().is_none_or(|&byte| byte == 0) {

@@ -11,7 +11,7 @@ use std::path::Path;
 
 pub(super) use shard::{Part, Shard};
 
-use super::answer::Answer;
+use super::Answer;
 use crate::files::error::InputError;
 
 /// Repeat an experiment over many seeded geometries, courses or placings, by every method.

@@ -13,8 +13,7 @@ use eeruf_sim::{Entry, Method, Point, Robot};
 
 use super::common::{BUDGET, Common, bad, designing, watched};
 use super::shard::{Part, Runs, runs_of};
-use crate::commands::hopping::Hopping;
-use crate::commands::methods::chosen;
+use crate::commands::methods::{Hopping, chosen};
 use crate::console::{print_line, tell};
 use crate::files::error::InputError;
 use crate::files::mcap::{Stage, write_mcap};

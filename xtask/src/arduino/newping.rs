@@ -2,13 +2,13 @@
 //!
 //! By hand: NewPing is not free to be kept here, so that a folder with its sources is asked for.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
-use super::build::{self, Board, Source};
-use super::{ALL, Example, failed, pack, world};
-use crate::c::need;
-use crate::steps::{Steps, Trouble};
+use anyhow::{Context as _, Result};
+use fs_err as fs;
+
+use super::build::{self, Board};
+use super::{Example, pack, world};
 
 /// For how long each row runs, in seconds.
 const SECONDS: u32 = 20;
@@ -40,29 +40,24 @@ const ROWS: [Row; 4] = [
     Row { name: "eeruf", sketch: "Eeruf", text: EERUF, defines: &["-DCONSTANT=0", "-DEVERY=0"] },
 ];
 
-/// Compares with the NewPing in this folder.
-pub(crate) fn newping(folder: &Path, steps: &mut Steps) {
-    steps.step("NewPing beside eeruf", || compare(folder));
-}
-
 /// Where NewPing's sources are, and their version.
-fn sources(folder: &Path) -> Result<(PathBuf, String), Trouble> {
+fn sources(folder: &Path) -> Result<(PathBuf, String)> {
     let folder = [folder.to_owned(), folder.join("src")]
         .into_iter()
         .find(|folder| folder.join("NewPing.h").exists() && folder.join("NewPing.cpp").exists())
-        .ok_or_else(|| Trouble::Failed(format!("{}: no NewPing.h and NewPing.cpp in it", folder.display())))?;
-    let header = fs::read_to_string(folder.join("NewPing.h")).map_err(failed("NewPing.h"))?;
+        .with_context(|| format!("{}: no NewPing.h and NewPing.cpp in it", folder.display()))?;
+    let header = fs::read_to_string(folder.join("NewPing.h"))?;
     let version = header
         .split_once("NewPing Library - v")
         .and_then(|(_, rest)| rest.split_whitespace().next())
-        .ok_or_else(|| Trouble::Failed("NewPing.h does not say its version as expected".to_owned()))?;
+        .context("NewPing.h does not say its version as expected")?;
     Ok((folder, version.to_owned()))
 }
 
-fn compare(folder: &Path) -> Result<(), Trouble> {
+/// Compares with the NewPing in this folder.
+pub(crate) fn newping(folder: &Path) -> Result<()> {
     let (newping, version) = sources(folder)?;
-    need("avr-g++", "gcc-avr avr-libc binutils-avr arduino-core-avr")?;
-    let (library, core, world) = (pack()?, build::core(Board::Uno)?, world::build()?);
+    let (library, world) = (pack()?, world::build()?);
     println!("NewPing {version}, {SECONDS} s each");
     println!(
         "| ring | method | flash | data + bss | stack | in interrupts | firings/s | readings/s | right/s | wrong \
@@ -71,26 +66,19 @@ fn compare(folder: &Path) -> Result<(), Trouble> {
     println!("|---|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|");
     for modules in [8, 12] {
         for row in &ROWS {
-            let library = if row.is_ours() { library.join("src") } else { newping.clone() };
-            let sketch = row.build(modules, &library, &core)?;
-            let (pins, _) = ALL.split_at(modules);
-            let example = Example { name: row.name, modules, triggers: pins, echoes: pins, short: false };
-            let heard = world::run(&world, &sketch.elf, &example, SECONDS, true)?;
-            println!(
-                "| {modules} | {} | {} | {} | {} |",
-                row.name,
-                sketch.flash,
-                sketch.ram,
-                heard.row_beside_newping()
-            );
+            let sketch = row.build(modules, if row.is_ours() { &library } else { &newping })?;
+            let example = Example::one_pin(row.name, modules, false);
+            let heard = world::hear(&world, &sketch.elf, &example, SECONDS, true)?;
+            let heard = heard.row_beside_newping();
+            println!("| {modules} | {} | {} | {} | {heard} |", row.name, sketch.flash, sketch.ram);
         }
     }
     Ok(())
 }
 
 /// Builds the sketches that need no NewPing, so that CI knows that they can be built.
-pub(super) fn builds(library: &Path, core: &Path) -> Result<(), Trouble> {
-    ROWS.iter().filter(|row| row.is_ours()).try_for_each(|row| row.build(8, &library.join("src"), core).map(drop))
+pub(super) fn builds(library: &Path) -> Result<()> {
+    ROWS.iter().filter(|row| row.is_ours()).try_for_each(|row| row.build(8, library).map(drop))
 }
 
 impl Row {
@@ -98,13 +86,14 @@ impl Row {
         self.text == EERUF
     }
 
-    fn build(&self, modules: usize, library: &Path, core: &Path) -> Result<build::Sketch, Trouble> {
+    fn build(&self, modules: usize, library: &Path) -> Result<build::Sketch> {
         let name = format!("{}{modules}", self.sketch);
         let modules = format!("-DMODULES={modules}");
-        let defines: Vec<&str> = self.defines.iter().copied().chain([&*modules]).collect();
+        let defines = [self.defines, &[&*modules]].concat();
+        if self.is_ours() {
+            return build::ours(library, Board::Uno, &name, self.text, &defines);
+        }
         // Code of others is compiled without our warnings.
-        let ours = self.is_ours();
-        let source = Source { name: &name, text: self.text, board: Board::Uno, ours, defines: &defines };
-        build::sketch(&source, library, core)
+        build::sketch(library, Board::Uno, &name, self.text, &[&["-w"], &defines[..]].concat())
     }
 }

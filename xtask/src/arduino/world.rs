@@ -1,15 +1,16 @@
 //! The simulated world around an Uno, and what a sketch said in it.
 
 use std::collections::BTreeMap;
-use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use anyhow::{Result, anyhow, bail, ensure};
 use eeruf_core::{ReadingKind, SpeedOfSound};
 use eeruf_serial::{Decoder, Firing, Message, Received};
+use fs_err as fs;
 
-use super::{Example, TARGET, failed};
-use crate::steps::{Trouble, output, run as run_command};
+use super::{Example, TARGET};
+use crate::steps::{need, output, run, skip};
 
 /// The room of the examples, in which modules hear each other.
 const SCENE: &str = "scenes/alcove-hc-sr04.toml";
@@ -19,6 +20,7 @@ pub(super) const KEPT: &str = "c/arduino/world/alcove.txt";
 const OFF_MM: u32 = 50;
 
 /// Figures of a run.
+#[derive(Default)]
 pub(super) struct Heard {
     seconds: u32,
     firings: Vec<u32>,
@@ -27,6 +29,7 @@ pub(super) struct Heard {
     /// The share of the time spent in interrupts, in millionths.
     interrupts: u32,
     accepted: u32,
+    by_module: BTreeMap<usize, u32>,
     wrong: u32,
     /// Of the wrong ones: after a module's own sound that came another way, its own of an earlier firing, another's.
     by_cause: [u32; 3],
@@ -35,30 +38,27 @@ pub(super) struct Heard {
 const CAUSES: [&str; 3] = ["own", "earlier", "foreign"];
 
 /// Builds `c/arduino/world/world.c`.
-pub(super) fn build() -> Result<PathBuf, Trouble> {
+pub(super) fn build() -> Result<PathBuf> {
+    need("gcc --version", "apt install gcc")?;
+    need("avr-g++ --version", "apt install gcc-avr avr-libc binutils-avr arduino-core-avr")?;
     if !Path::new("/usr/include/simavr/sim_avr.h").exists() {
-        return Err(Trouble::Skipped("no simavr; install libsimavr-dev libelf-dev".to_owned()));
+        return skip("no simavr; install libsimavr-dev libelf-dev".to_owned());
     }
     let world = Path::new(TARGET).join("world");
-    run_command(
-        Command::new("gcc")
-            .args(["-std=gnu99", "-O2", "-Wall", "-Wextra", "-Werror", "c/arduino/world/world.c", "-o"])
-            .arg(&world)
-            .args(["-lsimavr", "-lelf"]),
-    )?;
+    run(Command::new("gcc")
+        .args(["-std=gnu99", "-O2", "-Wall", "-Wextra", "-Werror", "c/arduino/world/world.c", "-o"])
+        .arg(&world)
+        .args(["-lsimavr", "-lelf"]))?;
     Ok(world)
 }
 
 /// Paths of sound among the scene's eight modules, or among more of them all around: a file, and the distance that each
 /// module should measure.
-fn echo_times(modules: usize) -> Result<(PathBuf, BTreeMap<usize, u32>), Trouble> {
+fn echo_times(modules: usize) -> Result<(PathBuf, BTreeMap<usize, u32>)> {
     let sensors = (modules > 8).then(|| modules.to_string());
-    let times = output(Command::new(crate::program::lab()?).args(["echo-times", SCENE]).args(&sensors))
-        .ok_or_else(|| Trouble::Failed("eeruf-lab echo-times failed".to_owned()))?
-        + "\n";
-    if sensors.is_none() && fs::read_to_string(KEPT).map_err(failed(KEPT))? != times {
-        let why = format!("{KEPT} is not what `cargo lab echo-times {SCENE}` prints; rewrite it");
-        return Err(Trouble::Failed(why));
+    let times = output(Command::new(crate::toolchain::lab()?).args(["echo-times", SCENE]).args(&sensors))? + "\n";
+    if sensors.is_none() && fs::read_to_string(KEPT)? != times {
+        bail!("{KEPT} is not what `cargo lab echo-times {SCENE}` prints; rewrite it");
     }
     let mut own_mm = BTreeMap::new();
     for line in times.lines() {
@@ -72,70 +72,97 @@ fn echo_times(modules: usize) -> Result<(PathBuf, BTreeMap<usize, u32>), Trouble
         }
     }
     let file = Path::new(TARGET).join(format!("echo-times-{modules}.txt"));
-    fs::write(&file, times).map_err(failed("target"))?;
+    fs::write(&file, times)?;
     Ok((file, own_mm))
+}
+
+/// The command that runs a sketch for some seconds of its own time among modules, between which sound takes the ways of
+/// a file, on these pins: triggers, then echoes.
+pub(super) fn command(world: &Path, options: &[&str], elf: &Path, seconds: u32, ways: &Path, pins: &[u8]) -> Command {
+    let mut command = Command::new(world);
+    command.args(options).arg(elf).arg(seconds.to_string()).arg(ways).arg((pins.len() / 2).to_string());
+    command.args(pins.iter().map(ToString::to_string));
+    command
+}
+
+/// The words of a sketch among modules that are each before a wall of its own at this echo time, or before nothing.
+pub(super) fn before_walls(
+    world: &Path,
+    elf: &Path,
+    options: &[&str],
+    seconds: u32,
+    walls: &[Option<u32>],
+    pins: &[u8],
+) -> Result<String> {
+    let way = |(module, us): (usize, &Option<u32>)| us.map(|us| format!("{module} {module} {us}\n"));
+    let ways = Path::new(TARGET).join("walls.txt");
+    fs::write(&ways, walls.iter().enumerate().filter_map(way).collect::<String>())?;
+    output(&mut command(world, options, elf, seconds, &ways, pins))
 }
 
 /// Runs a sketch for some seconds of its own time. With `causes` the world says what ended each pulse, which it cannot
 /// among a sketch's frames.
-pub(super) fn run(world: &Path, elf: &Path, example: &Example, seconds: u32, causes: bool) -> Result<Heard, Trouble> {
-    let (times, own_mm) = echo_times(example.modules)?;
-    let pins = example.triggers.iter().chain(example.echoes).map(ToString::to_string);
-    let ran = Command::new(world)
-        .args(causes.then_some("--pulses"))
-        .arg(elf)
-        .arg(seconds.to_string())
-        .arg(times)
-        .arg(example.modules.to_string())
-        .args(pins)
-        .output()
-        .ok()
-        .filter(|ran| ran.status.success())
-        .ok_or_else(|| Trouble::Failed(format!("{} did not run", example.name)))?;
+pub(super) fn hear(world: &Path, elf: &Path, example: &Example, seconds: u32, causes: bool) -> Result<Heard> {
+    let (times, own_mm) = echo_times(example.modules())?;
+    let options: &[&str] = if causes { &["--pulses"] } else { &[] };
+    let ran = command(world, options, elf, seconds, &times, &example.pins()).output()?;
+    ensure!(ran.status.success(), "{}: {}", example.name, ran.status);
     let said = String::from_utf8_lossy(&ran.stdout);
-    let mut heard = Heard {
-        seconds,
-        firings: vec![],
-        ignored: 0,
-        stack: 0,
-        interrupts: 0,
-        accepted: 0,
-        wrong: 0,
-        by_cause: [0; 3],
-    };
-    // What ended the last pulse of each module. A sketch says its reading before the module fires again.
-    let mut causes: BTreeMap<usize, usize> = BTreeMap::new();
-    for line in said.lines() {
-        let words: Vec<&str> = line.split_whitespace().collect();
-        let numbers = || words.iter().skip(2).filter_map(|word| word.parse().ok());
-        match words[..] {
-            ["world", "firings", ..] => heard.firings = numbers().collect(),
-            ["world", "ignored", ..] => heard.ignored = numbers().sum(),
-            ["world", "stack", ..] => heard.stack = numbers().sum(),
-            ["world", "interrupts", ..] => heard.interrupts = numbers().sum(),
-            ["world", "pulse", module, cause] => {
-                let cause = CAUSES.iter().position(|known| *known == cause);
-                if let (Ok(module), Some(cause)) = (module.parse(), cause) {
-                    causes.insert(module, cause);
-                }
-            }
-            [module, distance] | [module, distance, "cm"] => {
-                let (Ok(module), Ok(distance)) = (module.parse::<usize>(), distance.parse::<u32>()) else { continue };
-                let mm = if words.len() == 3 { 10 * distance } else { distance };
-                let cause = causes.get(&module).copied();
-                heard.accept(&own_mm, module.wrapping_sub(1), mm, cause);
-            }
-            _ => {}
-        }
-    }
-    heard.frames(&ran.stdout, &own_mm).map_err(|why| Trouble::Failed(format!("{}: {why}", example.name)))?;
+    let mut heard = Heard::of(&said, &own_mm);
+    heard.seconds = seconds;
+    heard.frames(&ran.stdout, &own_mm).map_err(|why| anyhow!("{}: {why}", example.name))?;
     Ok(heard)
 }
 
 impl Heard {
+    /// The figures in the words of a sketch and of the world, with the distance that each module should measure.
+    pub(super) fn of(said: &str, own_mm: &BTreeMap<usize, u32>) -> Self {
+        let mut heard = Self::default();
+        // What ended the last pulse of each module. A sketch says its reading before the module fires again.
+        let mut causes: BTreeMap<usize, usize> = BTreeMap::new();
+        for line in said.lines() {
+            let words: Vec<&str> = line.split_whitespace().collect();
+            let numbers = || words.iter().skip(2).filter_map(|word| word.parse().ok());
+            match words[..] {
+                ["world", "firings", ..] => heard.firings = numbers().collect(),
+                ["world", "ignored", ..] => heard.ignored = numbers().sum(),
+                ["world", "stack", ..] => heard.stack = numbers().sum(),
+                ["world", "interrupts", ..] => heard.interrupts = numbers().sum(),
+                ["world", "pulse", module, cause] => {
+                    let cause = CAUSES.iter().position(|known| *known == cause);
+                    if let (Ok(module), Some(cause)) = (module.parse(), cause) {
+                        causes.insert(module, cause);
+                    }
+                }
+                [module, distance] | [module, distance, "cm"] => {
+                    let (Ok(module), Ok(distance)) = (module.parse::<usize>(), distance.parse::<u32>()) else {
+                        continue;
+                    };
+                    let mm = if words.len() == 3 { 10 * distance } else { distance };
+                    let cause = causes.get(&module).copied();
+                    heard.accept(own_mm, module.wrapping_sub(1), mm, cause);
+                }
+                _ => {}
+            }
+        }
+        heard
+    }
+
+    /// The shares of accepted firings in percent: of all, and of the worst module, which is counted from 1. The first
+    /// firing of each is compared with nothing.
+    pub(super) fn shares(&self) -> (f64, (f64, usize)) {
+        let share = |accepted: u32, compared: u32| 100.0 * f64::from(accepted) / f64::from(compared.max(1));
+        let of = |module: usize| self.by_module.get(&module).copied().unwrap_or(0);
+        let compared = self.firings.iter().map(|fired| fired.saturating_sub(1));
+        let shares = compared.clone().enumerate().map(|(module, compared)| (share(of(module), compared), module + 1));
+        let worst = shares.min_by(|one, other| one.0.total_cmp(&other.0)).unwrap_or((0.0, 0));
+        (share(self.accepted, compared.sum()), worst)
+    }
+
     /// A reading of a module, from 0, and what ended its pulse, if that is known.
     fn accept(&mut self, own_mm: &BTreeMap<usize, u32>, module: usize, mm: u32, cause: Option<usize>) {
         self.accepted += 1;
+        *self.by_module.entry(module).or_default() += 1;
         if own_mm.get(&module).is_none_or(|own| own.abs_diff(mm) > OFF_MM) {
             self.wrong += 1;
             if let Some(count) = cause.and_then(|cause| self.by_cause.get_mut(cause)) {
@@ -183,20 +210,25 @@ impl Heard {
     }
 
     /// Returns true if the sketch did what it is for.
-    pub(super) fn is_plausible(&self, example: &Example) -> Result<(), Trouble> {
+    pub(super) fn is_plausible(&self, example: &Example) -> Result<()> {
         let least = self.firings.iter().min().copied().unwrap_or(0);
         let most = self.firings.iter().max().copied().unwrap_or(0);
         // 8 periods of the slowest table a second, each module once in each, and some 5 cycles of flow; those that hop
         // also fire alone at times.
         let evenly = 10 * least + 20 >= 7 * most && least >= 5 * self.seconds;
-        let all_fire = self.firings.len() == example.modules && evenly;
+        let all_fire = self.firings.len() == example.modules() && evenly;
         let is_right = 100 * self.wrong <= self.accepted;
         if all_fire && is_right && self.ignored == 0 && self.accepted > 2 * self.seconds {
             return Ok(());
         }
-        Err(Trouble::Failed(format!(
+        Err(anyhow!(
             "{}: firings {:?}, {} triggers ignored, {} readings accepted in {} s, {} of them wrong",
-            example.name, self.firings, self.ignored, self.accepted, self.seconds, self.wrong
-        )))
+            example.name,
+            self.firings,
+            self.ignored,
+            self.accepted,
+            self.seconds,
+            self.wrong
+        ))
     }
 }

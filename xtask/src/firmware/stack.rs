@@ -3,8 +3,10 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use anyhow::{Result, anyhow};
+
 use super::{BOARDS, Board, cargo, image, llvm};
-use crate::steps::Trouble;
+use crate::toolchain::is_debian;
 
 /// The functions of a ring of two phases, as the measured program exports them.
 pub(super) const RING: [&str; 8] = [
@@ -34,9 +36,9 @@ pub(super) fn stack<const N: usize>(
     board: &Board,
     program: &str,
     functions: [&'static str; N],
-) -> Result<[(&'static str, u64); N], Trouble> {
+) -> Result<[(&'static str, u64); N]> {
     // Rustup's core says nothing of its frames; where it was built here, all must be known.
-    let all_known = cargo(board)?.get_program() == "/usr/bin/cargo";
+    let all_known = is_debian(&cargo(board)?);
     let image = image(board, program)?;
     let calls = Program::new(
         &llvm("readelf", &["--stack-sizes"], &image)?,
@@ -45,7 +47,7 @@ pub(super) fn stack<const N: usize>(
     );
     let mut worst = functions.map(|name| (name, 0));
     for (name, bytes) in &mut worst {
-        *bytes = calls.worst(name, 0).map_err(|why| Trouble::Failed(format!("{}, {program}: {why}", board.name)))?;
+        *bytes = calls.worst(name, 0).map_err(|why| anyhow!("{}, {program}: {why}", board.name))?;
     }
     Ok(worst)
 }

@@ -3,11 +3,9 @@
 
 mod alhazen;
 mod mirror;
-mod moment;
 mod plane;
 
 pub use alhazen::{Specular, alhazen, alhazen_twice};
 pub(crate) use mirror::Mirror;
-pub use moment::Moment;
-pub use plane::{Point, Pose, TOUCH_M, Vector};
+pub use plane::{Moment, Point, Pose, TOUCH_M, Vector};
 pub(crate) use plane::{SAME_DIRECTION, cross, opposite, wrap_angle};

@@ -3,8 +3,7 @@
 use eeruf_core::{Micros, Phase};
 
 use super::firing::{Firing, FiringPeriod, OwnError};
-use super::planned_ring::planned;
-use super::ring_runner::{AGREEMENT_ALONE, RingStart, Started};
+use super::ring_runner::{AGREEMENT_ALONE, RingStart, Started, planned};
 use super::schedules::widest_dither;
 use crate::world::Random;
 

@@ -13,8 +13,9 @@ use super::dither;
 use super::firing::Firing;
 use super::flow;
 use super::hopping;
-use super::planned_ring::planned;
-use super::ring_runner::{self, AGREEMENT_ALONE, ASKS, FiringPlan, Hops, RingRunner, RingStart, StartError, Started};
+use super::ring_runner::{
+    self, AGREEMENT_ALONE, ASKS, FiringPlan, Hops, RingRunner, RingStart, StartError, Started, planned,
+};
 use super::schedules::{self, Made, ScheduleQuery};
 use super::sketch;
 use crate::world::{AnySchedule, Robot};

@@ -8,7 +8,6 @@ mod firing;
 mod flow;
 mod hopping;
 mod method;
-mod planned_ring;
 mod ring_runner;
 mod schedules;
 mod sketch;

@@ -2,7 +2,7 @@
 //! under simulated time.
 
 use eeruf_core::{
-    EachSensor, Instant, MAX_SENSORS, Ring, RingConfig, RingError, RingEvent, VerifiedSchedule,
+    EachSensor, Instant, MAX_SENSORS, Micros, Ring, RingConfig, RingError, RingEvent, VerifiedSchedule,
     adaptation::LadderError,
     conditions::Violation,
     flow::{FlowPlan, FlowSettings},
@@ -11,7 +11,7 @@ use eeruf_core::{
     plan::{EachInUse, ImmediateRefiring, LimitsInUse, Plan, ScheduledFiring},
 };
 
-use super::firing::{OwnError, PeriodFiring};
+use super::firing::{Firing, OwnError, PeriodFiring};
 use crate::world::{AnySchedule, Random, Robot};
 
 /// A ring of any kind, which can change to schedules that live as long as `'s`.
@@ -279,4 +279,19 @@ pub(super) fn plan_own(robot: &Robot, schedule: AnySchedule, _: &Hops) -> Result
 /// Immediate refiring.
 pub(super) fn immediate<'s>(start: &RingStart<'s>) -> Started<'s> {
     start.run::<_, 1, REFIRED, ASKS>(ImmediateRefiring::new(start.schedule(), start.robot.min_refire, start.now))
+}
+
+/// A robot's ring that fires as it is planned, no sensor again within `refire` of firing, with up to `E` echoes of a
+/// firing; whether its judge `ASKS` what explains a reading.
+pub(super) fn planned<'s, const E: usize, const ASKS: bool>(
+    robot: &Robot,
+    firing: Box<dyn Firing>,
+    refire: Micros,
+    now: Instant,
+) -> Started<'s> {
+    let plan = PeriodFiring::new(firing, robot.sensors.len(), refire, now);
+    if let Some(error) = plan.error() {
+        return Err(StartError::Own(error.clone()));
+    }
+    ring::<_, MAX_SENSORS, E, REMEMBERED, ASKS>(plan, config_of(robot), now)
 }

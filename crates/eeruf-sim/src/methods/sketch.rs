@@ -7,8 +7,7 @@ use eeruf_core::{
 };
 
 use super::firing::{Firing, FiringPeriod, OwnError};
-use super::planned_ring::planned;
-use super::ring_runner::{AGREEMENT_ALONE, REMEMBERED, RingStart, SimulatedPlan, Started, config_of, ring};
+use super::ring_runner::{AGREEMENT_ALONE, REMEMBERED, RingStart, SimulatedPlan, Started, config_of, planned, ring};
 use crate::world::{FiringTable, Robot, Sketch};
 
 /// One sensor after the other, each as soon as the one before has answered or was given up.

@@ -4,12 +4,10 @@
 mod attribution;
 mod belief;
 mod parts;
-mod quantiles;
 mod readings;
 mod summary;
 
 pub use attribution::Attribution;
 pub use belief::{BELIEF_LASTS_S, Belief};
-pub use quantiles::quantile;
 pub use readings::{Cause, HeardPath, NO_PATH, Readings, SensorId};
-pub use summary::{Age, DEFAULT_TOLERANCE_US, Summary};
+pub use summary::{Age, DEFAULT_TOLERANCE_US, Summary, quantile};

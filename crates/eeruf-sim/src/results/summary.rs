@@ -4,7 +4,6 @@
 use serde::{Deserialize, Serialize};
 
 use super::belief::Belief;
-use super::quantiles::quantile;
 use super::readings::{Cause, Readings};
 use crate::methods::Method;
 
@@ -162,4 +161,13 @@ fn count(phases: &mut Phases, phase: u8, is_good: bool) {
 fn differ(phases: &Phases) -> bool {
     let mut mostly_good = phases.iter().filter(|(_, of)| *of > 0).map(|(good, of)| 2 * good > *of);
     mostly_good.next().is_some_and(|first| mostly_good.any(|other| other != first))
+}
+
+/// The value that a share of the others does not exceed; 0 without values. Reorders them.
+pub fn quantile(values: &mut [f64], share: f64) -> f64 {
+    if values.is_empty() {
+        return 0.0;
+    }
+    let rank = ((values.len() as f64 * share).ceil() as usize).clamp(1, values.len()) - 1;
+    *values.select_nth_unstable_by(rank, f64::total_cmp).1
 }

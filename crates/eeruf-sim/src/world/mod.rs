@@ -8,7 +8,6 @@ mod fault;
 mod file;
 mod motion;
 mod noise;
-mod ring;
 mod robot;
 mod sketch;
 #[allow(clippy::module_inception, reason = "the world itself")]
@@ -23,8 +22,7 @@ pub use file::{ReadRing, RobotRing, ScheduleFile, WorldParts, cover_motion, head
 pub use motion::{MAX_SPEED, Motion};
 pub(crate) use noise::{FARTHEST, Normal};
 pub use noise::{Noise, Random};
-pub use ring::ring_of;
 pub(crate) use robot::offset;
-pub use robot::{AnySchedule, MAX_ROBOTS, Robot};
+pub use robot::{AnySchedule, MAX_ROBOTS, Robot, ring_of};
 pub use sketch::{FiringTable, Sketch};
 pub use world::{DEFAULT_ORDER, World};

@@ -1,13 +1,24 @@
-//! A method's figures over all geometries of Set I.
+//! The result of one geometry of Set I under one method, and a method's figures over all geometries.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
-use super::run::Run;
-use super::step::{Latency, NewStep};
+use super::step::{Latency, NewStep, Steps};
 use crate::{
     experiments::spread::{Spread, interval_95, mean},
     results::Summary,
 };
+
+/// The result of one geometry under one method.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Run {
+    /// The geometry's number, which seeds all that is random.
+    pub seed: u64,
+    /// The figures of the alcove as it is.
+    pub summary: Summary,
+    /// Those of its back wall going to and fro.
+    #[serde(flatten)]
+    pub steps: Steps,
+}
 
 /// A method's figures over all geometries; shares are fractions of 1, as in [`Summary`]. `None` where no geometry has a
 /// value.

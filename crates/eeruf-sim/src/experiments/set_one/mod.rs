@@ -9,14 +9,12 @@ mod alcove;
 mod figures;
 mod multi_echo;
 mod options;
-mod run;
 mod step;
 mod table;
 
 pub use alcove::{Alcove, RADIUS_M, SENSORS, SPACING_DEG};
-pub use figures::Figures;
+pub use figures::{Figures, Run};
 pub use multi_echo::MultiEcho;
 pub use options::{READINGS, SetOneOptions};
-pub use run::Run;
 pub use step::{Latency, NewStep, STEP_M, Steps};
 pub use table::{SetOne, set_one, world_of};

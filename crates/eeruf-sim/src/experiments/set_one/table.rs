@@ -3,9 +3,8 @@
 use serde::Serialize;
 
 use super::alcove::Alcove;
-use super::figures::Figures;
+use super::figures::{Figures, Run};
 use super::options::SetOneOptions;
-use super::run::Run;
 use super::step::{self, Steps};
 use crate::experiments::by_name::{by_name, named, transposed};
 use crate::experiments::conditions::Conditions;

@@ -9,7 +9,6 @@ mod scene;
 mod schedule_file;
 mod sketch;
 mod source;
-mod table;
 mod write;
 
 use core::ops::Range;

@@ -10,7 +10,7 @@ use toml::{Spanned, Table, Value};
 
 use super::schedule_file::ScheduleFile;
 use super::source::Source;
-use super::table::set;
+use super::write::set;
 use crate::world::sketch::{FiringTable, Sketch};
 
 #[derive(Clone, Deserialize)]

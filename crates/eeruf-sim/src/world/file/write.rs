@@ -6,7 +6,6 @@ use toml::{Table, Value};
 
 use super::fault::fault_table;
 use super::schedule_file::ScheduleFile;
-use super::table::set;
 use crate::{
     acoustics::{Physics, Transducer},
     geometry::Pose,
@@ -259,4 +258,9 @@ fn robot_table(robot: &Robot) -> Table {
         set(&mut table, "firing", firing);
     }
     table
+}
+
+/// Sets a value under a key.
+pub(super) fn set(table: &mut Table, key: &str, value: impl Into<Value>) {
+    table.insert(key.to_owned(), value.into());
 }

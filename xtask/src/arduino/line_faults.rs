@@ -1,0 +1,307 @@
+//! Sketches on a simulated Uno with a faulty module: its line is never said to be free space, and the others keep
+//! measuring their walls.
+
+use std::env;
+use std::fmt::Write as _;
+use std::path::Path;
+
+use anyhow::{Context as _, Result, anyhow, ensure};
+use eeruf_core::{Micros, Requirements, Schedule};
+use fs_err as fs;
+
+use super::build::{self, Board};
+use super::own_walls::EQUAL_US;
+use super::{ALL, world};
+use crate::measured::cells;
+use crate::steps::edited;
+
+/// Faults of one module's line: as `world.c` names them, and as the file does.
+const FAULTS: [(&str, &str); 9] = [
+    ("cut:3", "no power"),
+    ("deaf:3", "cut wire"),
+    ("glitch-high:3", "glitch high, cut wire"),
+    ("glitch-low:3", "glitch low"),
+    // Until it has been high for longer than any clone holds it, such a line still listens.
+    (STUCK, "held for ever"),
+    ("exchanged-4:3", "exchanged, 20 ms apart"),
+    ("hold-66:3", "hold of 66 ms"),
+    ("hold-130:3", "hold of 130 ms"),
+    ("hold-200:3", "hold of 200 ms"),
+];
+const STUCK: &str = "stuck:3";
+/// Those of a sketch to which each line's interrupt hands in the level that it sees, by the table of the file.
+const EDGE_FAULTS: [(&str, &str, &[&str]); 6] = [
+    ("hold-38:2", "healthy", &PLACES),
+    ("lost-rise:2", "lost rising edge", &PLACES),
+    ("lost-fall:2", "lost falling edge", &PLACES),
+    ("spike:2", "glitch high", &PLACES),
+    ("hold-38:2", FORGOTTEN, &PLACES),
+    ("exchanged-4:2", "exchanged, 1 ms apart", &["wall", "near wall", "nothing"]),
+];
+const FORGOTTEN: &str = "forgotten call";
+const EDGE_SKETCH: &str = "c/arduino/world/edges.ino";
+/// Pins of its triggers, then of its echoes.
+const EDGE_PINS: [u8; 8] = [4, 5, 6, 7, 8, 2, 14, 3];
+/// Echo times of the file's walls, in microseconds: those of the sensors that are well, and the near one.
+const WALL_US: u32 = 5_830;
+const NEAR_US: u32 = 500;
+/// Distance of the walls, and how far a sketch may be off it.
+const WALL_MM: u32 = 1000;
+const OFF_MM: u32 = 10;
+/// Surroundings of the module, as the file names them.
+const PLACES: [&str; 2] = ["wall", "nothing"];
+/// The faults of all languages, and the table of the outcomes, of which this column is compared.
+const FILE: &str = "tests/data/line-faults.txt";
+const LOG: &str = "docs/log/line-faults.md";
+const COLUMN: &str = "Arduino";
+/// Readings that a line may take to show its fault: the time that a clone holds it, in periods.
+const UNTIL_STUCK: usize = 4;
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Says {
+    Wall,
+    Clear,
+    NoAnswer,
+    Unsure,
+}
+
+/// Rows of the file's table, without its comments.
+fn rows(file: &str) -> impl Iterator<Item = Vec<&str>> {
+    file.lines().filter(|line| !line.starts_with('#')).map(cells)
+}
+
+impl Says {
+    /// The state that the file has for a fault in this place. A clone before a wall is as one that is healthy.
+    fn of(file: &str, fault: &str, place: &str) -> Result<Self> {
+        let names = if place == "wall" && fault.starts_with("hold of") { "healthy" } else { fault };
+        let mut rows = rows(file).filter(|row| row.first() == Some(&names) && row.len() == 6);
+        let row = rows.find(|row| [place, "either"].contains(&row[1]));
+        match row.and_then(|row| row[4].split_whitespace().next()) {
+            Some("obstacle") => Ok(Self::Wall),
+            Some("clear") => Ok(Self::Clear),
+            Some("unanswered" | "held") => Ok(Self::NoAnswer),
+            Some("unknown") => Ok(Self::Unsure),
+            _ => Err(anyhow!("{FILE} has no {names} before {place}")),
+        }
+    }
+}
+
+/// The words of a sketch about one module, reading by reading.
+fn words_of(said: &str, module: usize) -> Vec<&str> {
+    let prefix = format!("{module} ");
+    said.lines().filter_map(|line| line.trim().strip_prefix(&prefix)).collect()
+}
+
+/// The number of distances, clear, no answer, unsure, as [`Says`] has them.
+fn counts(words: &[&str]) -> [usize; 4] {
+    let mut counts = [0; 4];
+    for words in words {
+        match *words {
+            "clear" => counts[Says::Clear as usize] += 1,
+            "does not answer" => counts[Says::NoAnswer as usize] += 1,
+            "unsure" => counts[Says::Unsure as usize] += 1,
+            distance if distance.parse::<u32>().is_ok() => counts[Says::Wall as usize] += 1,
+            _ => {}
+        }
+    }
+    counts
+}
+
+/// The fewest distances that a sketch says of one of these modules.
+fn least_distances(said: &str, modules: impl IntoIterator<Item = usize>) -> usize {
+    let distances = |module| counts(&words_of(said, module))[Says::Wall as usize];
+    modules.into_iter().map(distances).min().unwrap_or(0)
+}
+
+/// The words of a sketch about modules, one of which has a fault, each before a wall of its own at this echo time.
+fn with_fault(
+    world: &Path,
+    elf: &Path,
+    fault: &str,
+    seconds: u32,
+    walls: &[Option<u32>],
+    pins: &[u8],
+) -> Result<String> {
+    world::before_walls(world, elf, &["--fault", fault], seconds, walls, pins).with_context(|| fault.to_owned())
+}
+
+/// A fault, its surroundings, and its readings: those that are right, all, and those without evidence.
+type Outcome = (&'static str, &'static str, [usize; 3]);
+
+/// The document whose table has these cells in the column, by fault and surroundings; rows of a fault that it has once
+/// take the sum.
+fn with_column(document: &str, said: &[Outcome]) -> Result<String> {
+    let head = document.lines().find(|line| line.starts_with("| fault")).map(cells).unwrap_or_default();
+    let column = head.iter().position(|&name| name == COLUMN);
+    let column = column.with_context(|| format!("{LOG} has no column {COLUMN}"))?;
+    let mut text = String::new();
+    for line in document.lines() {
+        let mut row = cells(line);
+        let of_row = said.iter().filter(|(fault, place, _)| {
+            line.starts_with('|') && row.len() > column && row[0] == *fault && [*place, "either"].contains(&row[1])
+        });
+        let sum = of_row.map(|&(.., counts)| counts).reduce(|a, b| [a[0] + b[0], a[1] + b[1], a[2] + b[2]]);
+        let Some([right, all, lies]) = sum else {
+            text += line;
+            text.push('\n');
+            continue;
+        };
+        let cell = format!("{right} of {all}, {lies}");
+        row[column] = &cell;
+        _ = writeln!(text, "| {} |", row.join(" | "));
+    }
+    Ok(text)
+}
+
+/// Checks the words of sketches about a faulty module. The table of the log has what is said; `EERUF_WRITE` writes it.
+pub(super) fn run(library: &Path) -> Result<()> {
+    let world = &world::build()?;
+    let file = fs::read_to_string(FILE)?;
+    let document = fs::read_to_string(LOG)?;
+    let mut outcomes = faults_of_ring8(library, world, &file)?;
+    outcomes.extend(faults_of_edges(library, world, &file)?);
+    latched_line_recovers(library, world)?;
+    flow_says_states(library, world)?;
+    let said = with_column(&document, &outcomes)?;
+    if env::var_os("EERUF_WRITE").is_some() {
+        fs::write(LOG, &said)?;
+    }
+    ensure!(fs::read_to_string(LOG)? == said, "{LOG} is not what the sketches say; EERUF_WRITE=1 writes it");
+    Ok(())
+}
+
+/// Ring8 with a faulty module before a wall and before nothing; its others read their walls.
+fn faults_of_ring8(library: &Path, world: &Path, file: &str) -> Result<Vec<Outcome>> {
+    const FAULTY: usize = 3;
+    let sketch = build::example(library, "Ring8")?;
+    let mut outcomes = vec![];
+    for (fault, name) in FAULTS {
+        for place in PLACES {
+            let expected = Says::of(file, name, place)?;
+            let wall = |module| (module != FAULTY || place == "wall").then_some(EQUAL_US + 500 * module as u32);
+            let walls: Vec<_> = (1..=8).map(wall).collect();
+            let said = with_fault(world, &sketch.elf, fault, 3, &walls, &ALL)?;
+            // The wires of the one after it are exchanged with its own.
+            let exchanged = fault.starts_with("exchanged");
+            let others = (1..=8).filter(|&module| module != FAULTY && !(exchanged && module == FAULTY + 1));
+            let least = least_distances(&said, others);
+            let found = counts(&words_of(&said, FAULTY));
+            // Until the health of a line shows its fault, the sketch is unsure.
+            let [distances, clear, silent, unsure] = found;
+            let (right, all) = (found[expected as usize], distances + clear + silent);
+            // While a line that is stuck may listen, its silence has evidence.
+            let lies = if expected == Says::Clear || fault == STUCK { 0 } else { clear };
+            outcomes.push((name, place, [right, all, lies]));
+            let fine =
+                if fault == STUCK { right > 20 && right + clear == all && clear < UNTIL_STUCK } else { right == all };
+            let fine = fine && least >= 27 && all >= 23 && unsure <= UNTIL_STUCK;
+            ensure!(fine, "{name} before {place}: {found:?}, expected {expected:?}; of the others {least}");
+        }
+    }
+    Ok(outcomes)
+}
+
+/// The sketch of `c/arduino/world` with the faults that interrupts by level can have; its readings after the second.
+fn faults_of_edges(library: &Path, world: &Path, file: &str) -> Result<Vec<Outcome>> {
+    const FAULTY: usize = 2;
+    let text = fs::read_to_string(EDGE_SKETCH)?;
+    let text = format!("{}\n{text}", table_of(file)?);
+    let sketch = |name, defines| build::ours(library, Board::Uno, name, &text, defines);
+    let (whole, forgetful) = (sketch("edges", &[])?, sketch("edgesForgotten", &["-DFORGOTTEN"])?);
+    let mut outcomes = vec![];
+    for (fault, name, places) in EDGE_FAULTS {
+        let sketch = if name == FORGOTTEN { &forgetful } else { &whole };
+        for &place in places {
+            let expected = Says::of(file, name, place)?;
+            let faulty = match place {
+                "wall" => Some(WALL_US),
+                "near wall" => Some(NEAR_US),
+                _ => None,
+            };
+            let exchanged = fault.starts_with("exchanged");
+            let walls = [Some(WALL_US), faulty, Some(WALL_US), Some(WALL_US).filter(|_| !exchanged)];
+            let said = with_fault(world, &sketch.elf, fault, 5, &walls, &EDGE_PINS)?;
+            let least = least_distances(&said, [1, 3]);
+            let words = words_of(&said, FAULTY);
+            let after = words.get(2..).unwrap_or_default();
+            let found = counts(after);
+            let mut distances = after.iter().filter_map(|words| words.parse::<u32>().ok());
+            let is_near = distances.all(|mm| mm.abs_diff(WALL_MM) <= OFF_MM);
+            let (right, all) = (found[expected as usize], found.iter().sum());
+            let lies = if expected == Says::Clear { 0 } else { found[Says::Clear as usize] };
+            outcomes.push((name, place, [right, all, lies]));
+            let fine = is_near && right == all && all >= 45 && least >= 47;
+            ensure!(fine, "{name} before {place}: {found:?}, expected {expected:?}; of the others {least}");
+        }
+    }
+    Ok(outcomes)
+}
+
+/// Checks Ring8 with a module that hears nothing in the first second and then holds its line until it is pulled low:
+/// without `recover()` it never answers, with it the module measures its wall.
+fn latched_line_recovers(library: &Path, world: &Path) -> Result<()> {
+    const FAULTY: usize = 3;
+    const BEGIN: &str = "if (!eerufInterrupts(sonar))";
+    let name = "examples/Ring8/Ring8.ino";
+    let text = fs::read_to_string(library.join(name))?;
+    let recovers = edited(&text, &[(BEGIN, &format!("sonar.recover();\n  {BEGIN}"))])?;
+    let walls: Vec<_> = (1..=8).map(|module| Some(EQUAL_US + 500 * module)).collect();
+    let heard = |name: &str, text: &str| {
+        let sketch = build::ours(library, Board::Uno, name, text, &[])?;
+        println!("flash of {name}: {} B", sketch.flash);
+        with_fault(world, &sketch.elf, &format!("latched:{FAULTY}"), 4, &walls, &ALL)
+    };
+    let (without, with) = (heard("Ring8Stuck", &text)?, heard("Ring8Recovers", &recovers)?);
+    let words = words_of(&with, FAULTY);
+    let ([never, held, ..], [walls, clear, silent, _]) = (counts(&words_of(&without, FAULTY)), counts(&words));
+    // Each hold of 250 ms in the first second is three readings.
+    let recovers = walls >= 40 && clear <= 3 * UNTIL_STUCK && silent > 0;
+    // Once it measures its wall again, nothing is free.
+    let is_free = words.iter().skip_while(|rest| rest.parse::<u32>().is_err()).any(|rest| *rest == "clear");
+    ensure!(never == 0 && held < UNTIL_STUCK, "latched line without recover(): {never} distances, {held} clear");
+    ensure!(recovers && !is_free, "latched line with recover(): {walls} distances, {clear} clear, {silent} silent");
+    Ok(())
+}
+
+/// Checks States4 with a flow ring in place of its table: a module before nothing is clear, one without power does not
+/// answer, and the others keep saying their walls.
+fn flow_says_states(library: &Path, world: &Path) -> Result<()> {
+    const SHOWN: usize = 3;
+    let name = "examples/States4/States4.ino";
+    let of_flow = [
+        ("EerufTables.h", "EerufFlow.h"),
+        ("EerufSonar<4> sonar(EERUF_HC_SR04_4, PINS)", "EerufFlow<4> sonar(PINS)"),
+        ("  if (sonar.tooSlow()) Serial.println(F(\"loop() is too slow: modules fire late\"));\n", ""),
+        ("has not answered for ms: ", "does not answer\\n"),
+    ];
+    let text = edited(&fs::read_to_string(library.join(name))?, &of_flow)?;
+    let sketch = build::ours(library, Board::Uno, "FlowStates4", &text, &[])?;
+    println!("flash of States4 with a flow ring: {} B", sketch.flash);
+    let pins = [&ALL[..4], &ALL[..4]].concat();
+    let walls = [Some(EQUAL_US), Some(EQUAL_US + 500), None, Some(EQUAL_US + 1000)];
+    for (fault, expected) in [("hold-38:3", Says::Clear), ("cut:3", Says::NoAnswer)] {
+        let said = with_fault(world, &sketch.elf, fault, 4, &walls, &pins)?;
+        let (found, least) = (counts(&words_of(&said, SHOWN)), least_distances(&said, [1, 2, 4]));
+        // Twenty times a second each; readings take the first few cycles.
+        let (right, all): (usize, usize) = (found[expected as usize], found.iter().sum());
+        let fine = least >= 50 && right >= 50 && right + found[Says::Unsure as usize] == all;
+        ensure!(fine, "{fault}: a flow ring's state() says {found:?}; of the others {least}");
+    }
+    Ok(())
+}
+
+/// The file's schedule, as a table for a sketch.
+fn table_of(file: &str) -> Result<String> {
+    let wrong = || anyhow!("{FILE}: expected a schedule of 4 sensors in 2 phases");
+    let row = rows(file).find(|row| row.first() == Some(&"schedule")).ok_or_else(wrong)?;
+    let &[_, period, a, b] = &row[..] else { return Err(wrong()) };
+    let times = |words: &str| {
+        let times: Option<Vec<_>> = words.split_whitespace().map(|us| us.parse().ok().map(Micros::new)).collect();
+        times.and_then(|times| <[Micros; 4]>::try_from(times).ok()).ok_or_else(wrong)
+    };
+    let period = Micros::new(period.parse().map_err(|_| wrong())?);
+    let requirements = Requirements::new(Micros::new(240));
+    let schedule = Schedule::<4>::from_firing(period, [times(a)?, times(b)?]).map_err(|_| wrong())?;
+    // It stands in the sketch itself.
+    Ok(schedule.to_arduino(&requirements, "LINE_FAULTS").to_string().replace("#pragma once\n", ""))
+}

@@ -65,6 +65,9 @@ pub(crate) enum Broken {
 pub(crate) struct Outcome {
     pub(crate) is_named: bool,
     pub(crate) blames: bool,
+    /// True if it is not named, and `diagnose` says that the log cannot tell: a sensor hears nothing, or misses echoes
+    /// at random, and may be healthy. In a healthy log that holds of any sensor.
+    pub(crate) is_open: bool,
 }
 
 impl Broken {
@@ -265,7 +268,9 @@ impl Case {
 
 /// Verdict of `diagnose` on a log.
 fn outcome(broken: Broken, log: &FiringLog, world: &World, sensors: [usize; 2]) -> Outcome {
-    let found = diagnose(log, &Settings::default()).faults;
+    let diagnosis = diagnose(log, &Settings::default());
+    let open = [diagnosis.silent(), diagnosis.missing()].concat();
+    let found = diagnosis.faults;
     let is_named = match (broken, schedule_of(world)) {
         (Broken::Nothing | Broken::People, _) => !found.is_empty(),
         (Broken::OtherTable | Broken::ClockDrift, Some(schedule)) => {
@@ -283,5 +288,6 @@ fn outcome(broken: Broken, log: &FiringLog, world: &World, sensors: [usize; 2]) 
         _ => found.iter().any(|found| broken.is(found, sensors)),
     };
     let blames = !broken.is_healthy() && found.iter().any(|found| !broken.is(found, sensors));
-    Outcome { is_named, blames }
+    let is_open = !is_named && open.iter().any(|&of| broken.is_healthy() || sensors[0] == usize::from(of));
+    Outcome { is_named, blames, is_open }
 }

@@ -20,6 +20,8 @@ struct Cell {
     named: u32,
     /// Logs in which a sensor is named that has no fault, or another fault than it has.
     blamed: u32,
+    /// Logs that cannot tell the fault from a healthy sensor; for a healthy ring, that have such a sensor.
+    open: u32,
 }
 
 impl Cell {
@@ -33,6 +35,7 @@ impl Cell {
         self.left_out += u32::from(outcome.is_none());
         self.named += u32::from(outcome.is_some_and(|outcome| outcome.is_named));
         self.blamed += u32::from(outcome.is_some_and(|outcome| outcome.blames));
+        self.open += u32::from(outcome.is_some_and(|outcome| outcome.is_open));
     }
 }
 
@@ -90,10 +93,12 @@ pub(crate) fn main(arguments: &[String]) -> crate::Answer {
         let cells: Vec<_> = cells.iter().map(|cell| percent(cell.counted())).collect();
         println!("| {} | {} |", broken.name(), cells.join(" | "));
     }
-    println!("\n| logs left out, and with another sensor blamed | {names} |");
+    println!("\n| logs left out, with another sensor blamed, and that cannot tell | {names} |");
     println!("|---|{}", "---|".repeat(columns.len()));
     for (broken, cells) in rows.iter().zip(&table) {
-        let blamed = |cell: &Cell| format!("{}, {} of {}", cell.left_out, cell.blamed, cell.logs - cell.left_out);
+        let blamed = |cell: &Cell| {
+            format!("{}, {} and {} of {}", cell.left_out, cell.blamed, cell.open, cell.logs - cell.left_out)
+        };
         let cells: Vec<_> = cells.iter().map(blamed).collect();
         println!("| {} | {} |", broken.name(), cells.join(" | "));
     }

@@ -1,6 +1,6 @@
 //! Firings of a sensor at which the ring fired alike, which say what repeats whatever the paths are.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::HashMap;
 
 use super::FoundPath;
 use super::share::Share;
@@ -9,6 +9,8 @@ use super::timeline::{Heard, Timeline};
 
 /// Others that fired so long before are still heard, in microseconds.
 const BEFORE_US: i64 = 40_000;
+/// Sound dies in this time after another sensor fired, in microseconds.
+const ALONE_US: i64 = 30_000;
 /// Readings this close come along one path, in microseconds: the jitter of an edge to both sides.
 const SAME_US: i64 = 60;
 /// Stretches as wide to each side that a path is compared with.
@@ -23,8 +25,14 @@ const MANY: usize = 20;
 const STRETCH_US: i64 = 2000;
 /// The probability that an echo that wanders counts as one of a faint path.
 const ACCIDENT: f64 = 0.001;
-/// Parts of a log of which the median says how much a sensor chatters.
+/// Parts of a log over which the echoes of a chattering sensor are spread as by chance, of as many firings or more.
 const PARTS: usize = 40;
+const FEWEST_OF_PART: usize = 15;
+/// They come in more than this share of the parts, and vary from part to part by no more than this many times what
+/// chance alone makes of it. Nobody is in the way for so much of the time as the last share.
+const COMES: f64 = 0.6;
+const VARIES: f64 = 2.5;
+const OFTEN: f64 = 0.35;
 /// Fewer firings alike say nothing of each other.
 const FEWEST: usize = 4;
 
@@ -50,10 +58,8 @@ pub(super) struct Alike {
     pub(super) returns: Share,
     /// Firings whose echo comes at no time at which others come, of those that can be compared.
     pub(super) wandering: Share,
-    /// The share of these in the median part of the log: who walks by makes echoes wander for a while.
-    pub(super) wanders_steadily: f64,
-    /// Firings whose echo wanders by that of the sensor's firing just before, without and with one.
-    pub(super) wanders_after: [Share; 2],
+    /// True if they are spread over the log as by chance: who walks by makes echoes wander for a while.
+    pub(super) wanders_steadily: bool,
     /// Firings with an echo by that of the sensor's firing just before, without and with one, where any firing alike
     /// has an echo.
     pub(super) after: [Share; 2],
@@ -65,6 +71,10 @@ pub(super) struct Alike {
     pub(super) behind: Share,
     /// Arrivals that it should hear, as others hear its own sound along these paths, and that it heard.
     pub(super) answers: Share,
+    /// Firings with an echo, of those at which no other sound was in the air.
+    pub(super) alone: Share,
+    /// The median echo time, in microseconds.
+    pub(super) echo_us: f64,
 }
 
 impl Alike {
@@ -115,14 +125,21 @@ pub(super) fn alike(
         repeats: Share::NONE,
         returns: Share::NONE,
         wandering: Share::NONE,
-        wanders_steadily: 0.0,
-        wanders_after: [Share::NONE; 2],
+        wanders_steadily: false,
         after: [Share::NONE; 2],
         steady: Share::NONE,
         behind: Share::NONE,
         answers: answers(receiver, paths, timeline, tolerance),
+        alone: Share::NONE,
+        echo_us: median(&mut heard.iter().filter_map(|of| of.echo_us).map(|us| us as f64).collect::<Vec<_>>()),
     };
-    let mut wanders = BTreeMap::new();
+    for firing in heard {
+        let others = timeline.before(firing.fired_us + timeline.window_us);
+        if !others.into_iter().any(|(at, sensor)| sensor != receiver && at > firing.fired_us - ALONE_US) {
+            all.alone.add(firing.echo_us.is_some());
+        }
+    }
+    let mut wanders = HashMap::new();
     let mut wanderers = Vec::new();
     // Firings at which something is there to be heard.
     let mut is_sound = HashMap::new();
@@ -146,26 +163,33 @@ pub(super) fn alike(
     for (firing, is_path) in wanderers.iter().zip(is_path) {
         wanders.insert(firing.firing, !is_path);
     }
-    let part_of = |part: &[Heard]| {
+    let compared: Vec<_> = heard.iter().filter_map(|firing| wanders.get(&firing.firing)).copied().collect();
+    let share_of = |part: &[bool]| {
         let mut share = Share::NONE;
-        part.iter().filter_map(|firing| wanders.get(&firing.firing)).for_each(|&wanders| share.add(wanders));
+        part.iter().for_each(|&wanders| share.add(wanders));
         share
     };
-    all.wandering = part_of(heard);
-    let mut parts: Vec<_> =
-        heard.chunks(heard.len().div_ceil(PARTS).max(1)).map(|part| part_of(part).value()).collect();
-    all.wanders_steadily = median(&mut parts);
+    all.wandering = share_of(&compared);
+    let parts: Vec<_> = compared.chunks(compared.len().div_ceil(PARTS).max(FEWEST_OF_PART)).map(share_of).collect();
+    all.wanders_steadily = is_steady(all.wandering, &parts);
     for two in heard.windows(2) {
         let stays = two[0].echo_us.zip(two[1].echo_us).is_some_and(|(a, b)| (a - b).abs() <= FOLLOWS_US);
         all.steady.add(stays);
-        if let [Some(before), Some(after)] = [0, 1].map(|k| wanders.get(&two[k].firing)) {
-            all.wanders_after[usize::from(*before)].add(*after);
-        }
         if let [Some(before), Some(after)] = [0, 1].map(|k| is_sound.get(&two[k].firing)) {
             all.after[usize::from(*before)].add(*after);
         }
     }
     all
+}
+
+/// Returns true if what counts is spread over the parts as by chance.
+fn is_steady(all: Share, parts: &[Share]) -> bool {
+    let share = all.value();
+    let off = |part: &Share| (part.value() - share).powi(2) * f64::from(part.of);
+    let varies = parts.iter().map(off).sum::<f64>() / (parts.len() as f64 - 1.0);
+    let comes = parts.iter().filter(|part| part.count > 0).count() as f64;
+    let by_chance = varies < VARIES * share * (1.0 - share) || share > OFTEN;
+    comes > COMES * parts.len() as f64 && by_chance
 }
 
 /// Counts the echoes of firings alike that come behind the one that comes most often, of those that do not come before.

@@ -6,9 +6,10 @@
 //! hear in nearly every firing, so that the room has no open side.
 
 use super::alike::Alike;
-use super::reciprocity::{Wiring, contradicted, wiring};
+use super::reciprocity::{Wiring, contradicted, is_unheard, wiring};
 use super::sensors::{FEW, Hearing};
 use super::share::Share;
+use super::statistics::median;
 use super::timeline::Timeline;
 use super::together::{Together, together};
 use super::{FoundPath, Settings};
@@ -111,14 +112,17 @@ const SHORT: u32 = 200;
 /// A room without an open side is heard by all others in this share of their firings.
 const CLOSED: f64 = 0.8;
 const CLOSED_BY_TWO: f64 = 0.9;
-/// The mean share of their firings whose echo stays is larger: it is their own.
+/// The mean share of their firings whose echo stays is larger: it is their own. So is that with an echo of those at
+/// which no other sound is in the air, if these are as many.
 const OWN: f64 = 0.5;
+const FEW_ALONE: u32 = 10;
+/// While a robot drives all others hear in this share of their firings, and on average in the other.
+const TURNS: f64 = 0.3;
+const TURNS_MEAN: f64 = 0.65;
 /// Firings of a chattering sensor whose echoes wander, at least.
-const CHATTERS: f64 = 0.065;
-/// Noise has no memory; who walks by makes echoes wander one after the other. With more phases lags move, and how often
-/// noise comes first changes with them.
-const EPISODES: f64 = 2.0;
-const EPISODES_OF_TWO: f64 = 1.0;
+const CHATTERS: f64 = 0.05;
+/// Echoes that come this many times as late as the usual ones of other sensors are faint.
+const FAR: f64 = 2.0;
 /// Not more than one other sensor does so this much as often.
 const AS_OTHERS: f64 = 0.4;
 
@@ -140,26 +144,29 @@ pub(super) fn faults(
         let pair = (of.is_silent && silent == 1 && !moved).then(|| together(sensor, timeline, settings)).flatten();
         let is_other = |of: &Hearing| of.sensor != sensor && pair.is_none_or(|pair| of.sensor != pair.sensor);
         let others: Vec<_> = hearing.iter().zip(alike).filter(|(of, _)| is_other(of)).collect();
-        let is_closed = is_closed(&others, timeline.has_many_phases);
+        let is_closed = is_closed(&others, timeline.has_many_phases, moved);
         let misses_others = like.misses_others();
+        // An echo at its threshold is missed as one that is lost. In a room in which all hear their own echoes there is
+        // none; with two phases nobody knows whose they are, and faint ones come from far.
+        let is_faint = if timeline.has_many_phases { !hear_own(&others) } else { is_far(like, &others) };
         let stands = !moved && of.echoes.of >= SHORT;
         let exchanged = pair.filter(|pair| is_closed || is_contradicted(sensor) || is_contradicted(pair.sensor));
         if let Some(Together { sensor: other, with: together, without: alone, accidents }) = exchanged {
             faults.push(Fault::Exchanged { sensors: (sensor, other), together, alone, accidents });
-        } else if of.is_silent && (is_closed || misses_others || is_contradicted(sensor)) {
+        } else if of.is_silent
+            && (is_closed && of.echoes.count == 0 || misses_others || is_unheard(sensor, paths, timeline, settings))
+        {
             let is_heard = paths.iter().any(|path| path.sender == sensor && path.receiver != sensor);
             faults.push(Fault::Deaf { sensor, echoes: of.echoes, is_heard });
-        } else if stands && of.misses_at_random && (is_closed || misses_others) {
+        } else if stands && of.misses_at_random && (is_closed && !is_faint || misses_others) {
             let Share { count, of } = like.repeats;
             faults.push(Fault::Losing { sensor, lost: Share { count: of - count, of } });
         }
         // Who walks by makes echoes of several sensors wander, for a while.
         let as_much = |other: &&Alike| other.wandering.value() > AS_OTHERS * like.wandering.value();
-        let [after_none, after_one] = like.wanders_after;
-        let episodes = if timeline.has_many_phases { EPISODES } else { EPISODES_OF_TWO };
-        let alone = alike.iter().filter(as_much).count() <= 2
-            && after_one.interval_95().0 < episodes * after_none.interval_95().1;
-        if stands && alone && like.wandering.of >= FEW && like.wanders_steadily > CHATTERS {
+        let alone = alike.iter().filter(as_much).count() <= 2;
+        let chatters = like.wandering.of >= FEW && like.wandering.value() > CHATTERS && like.wanders_steadily;
+        if stands && alone && chatters {
             faults.push(Fault::Chattering { sensor, wandering: like.wandering });
         }
     }
@@ -182,11 +189,32 @@ pub(super) fn faults(
     faults
 }
 
-/// Returns true if a room has no open side: these sensors all hear, and mostly their own echoes. With two phases
-/// others' sound recurs like an own echo, so that all must hear the more often.
-fn is_closed(others: &[(&Hearing, &Alike)], has_many_phases: bool) -> bool {
+/// Returns true if a sensor's echoes come much later than those of others usually do: what comes from far is faint.
+fn is_far(like: &Alike, others: &[(&Hearing, &Alike)]) -> bool {
+    let mut usual: Vec<_> = others.iter().map(|(_, other)| other.echo_us).collect();
+    like.echo_us > FAR * median(&mut usual)
+}
+
+/// Returns true if sensors mostly hear their own echoes, which stay from firing to firing.
+fn hear_own(others: &[(&Hearing, &Alike)]) -> bool {
     let steady: f64 = others.iter().map(|(_, like)| like.steady.value()).sum();
-    let (hears, is_own) =
-        if has_many_phases { (CLOSED, steady > OWN * others.len() as f64) } else { (CLOSED_BY_TWO, true) };
-    others.len() > 1 && is_own && others.iter().all(|(of, _)| of.echoes.value() > hears)
+    steady > OWN * others.len() as f64
+}
+
+/// Returns true if every sensor of a whole ring would hear there, as these others say. While the robot drives each of
+/// them hears for a while. Where it stands they hear in nearly every firing, and mostly their own echoes, or none of
+/// them falls silent when no other sound is in the air. With two phases others' sound recurs like an own echo, so that
+/// all must hear the more often.
+fn is_closed(others: &[(&Hearing, &Alike)], has_many_phases: bool, moved: bool) -> bool {
+    let all_hear = |share: f64| others.iter().all(|(of, _)| of.echoes.value() > share);
+    let mean = others.iter().map(|(of, _)| of.echoes.value()).sum::<f64>() / others.len() as f64;
+    others.len() > 1
+        && match (moved, has_many_phases) {
+            (true, _) => all_hear(TURNS) && mean > TURNS_MEAN,
+            (false, true) => {
+                let hear_alone = others.iter().all(|(_, like)| like.alone.of < FEW_ALONE || like.alone.value() > OWN);
+                all_hear(CLOSED) && (hear_alone || hear_own(others))
+            }
+            (false, false) => all_hear(CLOSED_BY_TWO),
+        }
 }

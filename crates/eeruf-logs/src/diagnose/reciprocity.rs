@@ -60,6 +60,19 @@ pub(super) fn contradicted(paths: &[FoundPath], timeline: &Timeline, settings: &
     loud(paths).filter(is_contradicted).map(|path| (path.sender, path.receiver)).collect()
 }
 
+/// Returns true if others hear a silent sensor along paths, loud or not, on which it would hear them but for an accident
+/// that happens in one of a thousand logs.
+pub(super) fn is_unheard(silent: u8, paths: &[FoundPath], timeline: &Timeline, settings: &Settings) -> bool {
+    const ACCIDENT: f64 = 0.001;
+    let tolerance = i64::from(settings.tolerance_us.max(1));
+    let ln_accident = |path: &FoundPath| {
+        let heard = heard_at(path.receiver, silent, path.travel_us.round() as i64, timeline, tolerance);
+        ln_at_least(heard.of - heard.count, heard.of, 1.0 - CONFIRMED * path.heard)
+    };
+    let out = paths.iter().filter(|path| path.sender == silent && path.receiver != silent);
+    out.map(ln_accident).sum::<f64>() < ACCIDENT.ln()
+}
+
 /// The explanation that leaves no contradiction where the log as it stands has some, with its score, that of the log as
 /// it stands, and the number of explanations that would fit by accident. Sensors that are broken otherwise say nothing.
 pub(super) fn wiring(

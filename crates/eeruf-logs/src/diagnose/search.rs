@@ -182,7 +182,7 @@ impl Search<'_> {
         for (reading, heard) in self.heard.iter().enumerate() {
             for offset_us in self.offsets(source, heard, self.timeline.window_us) {
                 let predicted = offset_us + travel_us;
-                if predicted < 0 || predicted + self.tolerance > self.timeline.window_us {
+                if predicted < 0 || predicted > self.timeline.window_us {
                     continue;
                 }
                 let off = heard.echo_us.map(|echo_us| echo_us - predicted);

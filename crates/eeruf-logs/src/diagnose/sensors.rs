@@ -97,5 +97,5 @@ fn of_sensor(
 
 /// Returns true if a sensor hears nothing: out of range, or deaf.
 fn is_silent(echoes: Share) -> bool {
-    echoes.of >= FEW && echoes.interval_95().1 < DEAF
+    echoes.of >= FEW && echoes.value() < DEAF
 }

@@ -1,6 +1,9 @@
 //! The firings of a log as the search for paths needs them.
 
+use std::collections::BTreeMap;
+
 use super::Settings;
+use super::share::Share;
 use super::statistics::groups;
 use crate::firings::FiringLog;
 
@@ -10,6 +13,7 @@ pub(super) struct Heard {
     /// Its place in the log.
     pub(super) firing: usize,
     pub(super) fired_us: i64,
+    pub(super) phase: u8,
     /// From firing to edge; `None` without one.
     pub(super) echo_us: Option<i64>,
 }
@@ -32,7 +36,12 @@ impl Timeline {
         let mut heard = vec![Vec::new(); log.sensors()];
         for (place, firing) in log.firings.iter().enumerate() {
             let echo_us = firing.t_echo_us.map(i64::from);
-            heard[usize::from(firing.sensor)].push(Heard { firing: place, fired_us: firing.fired_us, echo_us });
+            heard[usize::from(firing.sensor)].push(Heard {
+                firing: place,
+                fired_us: firing.fired_us,
+                phase: firing.phase,
+                echo_us,
+            });
         }
         let window_us = log.firings.iter().filter_map(|firing| firing.t_echo_us).max().unwrap_or(0).into();
         let has_many_phases = log.firings.iter().any(|firing| firing.phase > 1);
@@ -48,40 +57,29 @@ impl Timeline {
         &self.heard[usize::from(receiver)]
     }
 
-    /// Returns true if ranges that recur in the first third of the log do not come back in the last one, at most of the
-    /// sensors that have any.
+    /// Returns true if readings of the first third of the log do not come back in the last one: of the pairs of firings
+    /// of one sensor, one from each third, that follow another sensor's alike, hardly any have the same echo. Where
+    /// people walk before a ring that stands, more than a quarter have.
     pub(super) fn moved(&self) -> bool {
         /// Echoes this close are of one thing that stands, in microseconds.
         const SAME_US: i64 = 75;
-        /// A range that comes so often in a third recurs.
-        const RECURS: f64 = 0.1;
-        const FEWEST: usize = 10;
-        const PARTS: usize = 3;
-        let (mut stay, mut all) = (0, 0);
-        for heard in &self.heard {
-            let third = heard.len() / 3;
-            let sorted = |part: &[Heard]| {
-                let mut times: Vec<i64> = part.iter().filter_map(|heard| heard.echo_us).collect();
-                times.sort_unstable();
-                times
-            };
-            let (first, last) = (sorted(&heard[..third]), sorted(&heard[heard.len() - third..]));
-            let near = |times: &[i64], us: i64| {
-                times.partition_point(|&at| at <= us + SAME_US) - times.partition_point(|&at| at < us - SAME_US)
-            };
-            // The most crowded range of the first third that is there in each part of it: that of a thing that stands,
-            // and not of another's sound at lags that hold for a while.
-            let parts: Vec<_> = heard[..third].chunks((third / PARTS).max(1)).take(PARTS).map(sorted).collect();
-            let lasts = |us: &i64| {
-                let enough = RECURS * third as f64 / PARTS as f64;
-                parts.iter().all(|part| near(part, *us) as f64 >= enough)
-            };
-            let lasting = first.iter().copied().filter(lasts).map(|us| (near(&first, us), us));
-            let Some((crowd, at)) = lasting.max().filter(|&(crowd, _)| crowd >= FEWEST) else { continue };
-            all += 1;
-            stay += u32::from(8 * near(&last, at) >= crowd);
+        const COMES_BACK: f64 = 0.2;
+        const FEWEST: u32 = 20;
+        let mut alike = BTreeMap::<_, Vec<Option<i64>>>::new();
+        for (sensor, heard) in self.heard.iter().enumerate() {
+            for of in heard {
+                let before = self.before(of.fired_us).find(|&(_, other)| usize::from(other) != sensor);
+                let stands = before.map(|(at, other)| (other, (of.fired_us - at) / (2 * SAME_US)));
+                alike.entry((sensor, of.phase, stands)).or_default().push(of.echo_us);
+            }
         }
-        all > 1 && 2 * stay < all
+        let mut comes_back = Share::NONE;
+        for echoes in alike.values() {
+            let (first, rest) = echoes.split_at(echoes.len() / 3);
+            let pairs = first.iter().zip(&rest[rest.len() - first.len()..]);
+            pairs.filter_map(|(a, b)| a.zip(*b)).for_each(|(a, b)| comes_back.add((a - b).abs() <= SAME_US));
+        }
+        comes_back.of >= FEWEST && comes_back.value() < COMES_BACK
     }
 
     /// The most different offsets at which one sensor may hear another's sound.

@@ -1,6 +1,7 @@
 //! The atlas that comes with the crate.
 #![cfg(feature = "make-atlas")]
 
+#[path = "../../eeruf-period/tests/common/mod.rs"]
 mod common;
 
 use common::Random;

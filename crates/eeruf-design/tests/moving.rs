@@ -1,5 +1,6 @@
 //! Rings that move: the period that is proven, against all schedules of tiny rings, each at its own `t_delta`.
 
+#[path = "../../eeruf-period/tests/common/mod.rs"]
 mod common;
 
 use common::Random;

@@ -1,5 +1,6 @@
 //! Claims about finer ticks, against searches in ticks of a tenth.
 
+#[path = "../../eeruf-period/tests/common/mod.rs"]
 mod common;
 
 use common::Random;

@@ -74,7 +74,7 @@ fn absurd_input_gets_an_error_that_names_it() {
         assert_eq!(problem.shortest(1, &mut ()).unwrap_err().to_string(), words);
     }
     let error = |period| good.decide(period, None, 1, &mut ()).unwrap_err().to_string();
-    assert_eq!(error(Micros::ZERO), "a period of 0 ticks; expected 1 to 1048576");
+    assert_eq!(error(Micros::ZERO), "a period of 0 ticks; expected 1 to 16777216");
     assert_eq!(error(Micros::new(500)), "the period of 500 us; expected a whole number of ticks of 1 ms");
 }
 

@@ -1,6 +1,6 @@
 //! Parts of documents that are made elsewhere. What a program printed has a comment before it that says which, and
-//! `<!-- end -->` behind it. A listing is a part of a compiled file: `<!-- listing: FILE [from TEXT] [to TEXT] -->` before
-//! a code block says which.
+//! `<!-- end -->` behind it. A listing is a part of a compiled file: `<!-- listing: FILE [from TEXT] [to TEXT] -->`
+//! before a code block says which.
 
 use anyhow::{Context as _, Result, ensure};
 use fs_err as fs;

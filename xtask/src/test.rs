@@ -1,5 +1,5 @@
-//! `cargo xtask test`: everything that must hold before a change goes in; with `--quick`, the part that is worth knowing
-//! while one works, in under two minutes.
+//! `cargo xtask test`: everything that must hold before a change goes in; with `--quick`, the part that is worth
+//! knowing while one works, in under two minutes.
 
 use std::collections::BTreeMap;
 use std::process::{Command, ExitCode};

@@ -164,11 +164,6 @@ pub(super) fn alike(
         wanders.insert(firing.firing, !is_path);
     }
     let compared: Vec<_> = heard.iter().filter_map(|firing| wanders.get(&firing.firing)).copied().collect();
-    let share_of = |part: &[bool]| {
-        let mut share = Share::NONE;
-        part.iter().for_each(|&wanders| share.add(wanders));
-        share
-    };
     all.wandering = share_of(&compared);
     let parts: Vec<_> = compared.chunks(compared.len().div_ceil(PARTS).max(FEWEST_OF_PART)).map(share_of).collect();
     all.wanders_steadily = is_steady(all.wandering, &parts);
@@ -180,6 +175,13 @@ pub(super) fn alike(
         }
     }
     all
+}
+
+/// The share of these that are true.
+fn share_of(part: &[bool]) -> Share {
+    let mut share = Share::NONE;
+    part.iter().for_each(|&counts| share.add(counts));
+    share
 }
 
 /// Returns true if what counts is spread over the parts as by chance.

@@ -60,8 +60,8 @@ pub(super) fn contradicted(paths: &[FoundPath], timeline: &Timeline, settings: &
     loud(paths).filter(is_contradicted).map(|path| (path.sender, path.receiver)).collect()
 }
 
-/// Returns true if others hear a silent sensor along paths, loud or not, on which it would hear them but for an accident
-/// that happens in one of a thousand logs.
+/// Returns true if others hear a silent sensor along paths, loud or not, on which it would hear them but for an
+/// accident that happens in one of a thousand logs.
 pub(super) fn is_unheard(silent: u8, paths: &[FoundPath], timeline: &Timeline, settings: &Settings) -> bool {
     const ACCIDENT: f64 = 0.001;
     let tolerance = i64::from(settings.tolerance_us.max(1));

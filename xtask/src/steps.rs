@@ -117,7 +117,9 @@ fn said_to_file(arguments: &[&str]) -> io::Result<String> {
     fs::create_dir_all("target/beside")?;
     let path = format!("target/beside/{}.log", arguments.join(""));
     let file = File::create(&path)?.into_parts().0;
-    Command::new(std::env::current_exe()?).args(arguments).stdout(file.try_clone()?).stderr(file).status()?;
+    // The tests of the workspace may have built this program again, and then the file that runs here has no path.
+    let program = std::env::args_os().next().unwrap_or_else(|| "target/debug/xtask".into());
+    Command::new(program).args(arguments).stdout(file.try_clone()?).stderr(file).status()?;
     Ok(String::from_utf8_lossy(&fs::read(path)?).into_owned())
 }
 

@@ -13,8 +13,8 @@ static const uint8_t EERUF_HC_SR04_2_order[] EERUF_FLASH = {
     0, 1, /* phase b */
 };
 static const uint32_t EERUF_HC_SR04_2_gap_us[] EERUF_FLASH = {
-    1000u, 30000u, 30000u,
     0u, 31000u, 30000u,
+    0u, 30000u, 31000u,
 };
 static const EerufSchedule EERUF_HC_SR04_2 EERUF_FLASH = {
     3, 2, 2, EERUF_HC_SR04_2_order, EERUF_HC_SR04_2_gap_us,
@@ -30,8 +30,8 @@ static const uint8_t EERUF_HC_SR04_3_order[] EERUF_FLASH = {
     0, 1, 2, /* phase b */
 };
 static const uint32_t EERUF_HC_SR04_3_gap_us[] EERUF_FLASH = {
-    2000u, 20000u, 20000u, 20000u,
-    0u, 22000u, 21000u, 19000u,
+    0u, 21000u, 21000u, 20000u,
+    0u, 20000u, 20000u, 22000u,
 };
 static const EerufSchedule EERUF_HC_SR04_3 EERUF_FLASH = {
     3, 3, 2, EERUF_HC_SR04_3_order, EERUF_HC_SR04_3_gap_us,
@@ -60,12 +60,12 @@ static const EerufSchedule EERUF_HC_SR04_4 EERUF_FLASH = {
 // 5 sensors, T_p = 76.5 ms;
 // t_delta = 471 us, 4 adjacent sensors of a ring at least 14.569 ms apart, listening for 60 ms.
 static const uint8_t EERUF_HC_SR04_5_order[] EERUF_FLASH = {
-    1, 0, 2, 3, 4, /* phase a */
-    0, 1, 2, 4, 3, /* phase b */
+    2, 3, 1, 4, 0, /* phase a */
+    3, 2, 1, 0, 4, /* phase b */
 };
 static const uint32_t EERUF_HC_SR04_5_gap_us[] EERUF_FLASH = {
-    1500u, 15000u, 15000u, 15000u, 15000u, 15000u,
-    0u, 15000u, 15000u, 16000u, 15000u, 15500u,
+    15000u, 15000u, 16000u, 15000u, 15000u, 500u,
+    14500u, 15000u, 15000u, 15000u, 15000u, 2000u,
 };
 static const EerufSchedule EERUF_HC_SR04_5 EERUF_FLASH = {
     3, 5, 2, EERUF_HC_SR04_5_order, EERUF_HC_SR04_5_gap_us,
@@ -77,12 +77,12 @@ static const EerufSchedule EERUF_HC_SR04_5 EERUF_FLASH = {
 // 6 sensors, T_p = 91.5 ms;
 // t_delta = 557 us, 4 adjacent sensors of a ring at least 14.569 ms apart, listening for 60 ms.
 static const uint8_t EERUF_HC_SR04_6_order[] EERUF_FLASH = {
-    1, 2, 0, 3, 4, 5, /* phase a */
-    0, 1, 3, 2, 4, 5, /* phase b */
+    3, 2, 5, 1, 4, 0, /* phase a */
+    3, 2, 1, 0, 5, 4, /* phase b */
 };
 static const uint32_t EERUF_HC_SR04_6_gap_us[] EERUF_FLASH = {
-    1000u, 15000u, 15000u, 15000u, 15000u, 15000u, 15500u,
-    0u, 15000u, 15000u, 15000u, 16000u, 16500u, 14000u,
+    0u, 16500u, 15000u, 15000u, 15000u, 15000u, 15000u,
+    0u, 15000u, 15000u, 15500u, 15000u, 15000u, 16000u,
 };
 static const EerufSchedule EERUF_HC_SR04_6 EERUF_FLASH = {
     3, 6, 2, EERUF_HC_SR04_6_order, EERUF_HC_SR04_6_gap_us,
@@ -111,12 +111,12 @@ static const EerufSchedule EERUF_HC_SR04_8 EERUF_FLASH = {
 // 8 sensors, T_p = 100.5 ms;
 // t_delta = 524 us, 4 adjacent sensors of a ring at least 14.569 ms apart, listening for 90 ms.
 static const uint8_t EERUF_HC_SR04_8_SLOWER_order[] EERUF_FLASH = {
-    4, 0, 1, 5, 2, 6, 3, 7, /* phase a */
-    0, 4, 5, 1, 6, 2, 3, 7, /* phase b */
+    0, 4, 1, 5, 2, 6, 3, 7, /* phase a */
+    0, 4, 1, 5, 2, 6, 3, 7, /* phase b */
 };
 static const uint32_t EERUF_HC_SR04_8_SLOWER_gap_us[] EERUF_FLASH = {
-    9000u, 1500u, 22500u, 0u, 22500u, 0u, 22500u, 0u, 22500u,
-    0u, 3000u, 22500u, 3000u, 24000u, 1500u, 24000u, 9000u, 13500u,
+    0u, 1500u, 24000u, 1500u, 24000u, 1500u, 24000u, 1500u, 22500u,
+    0u, 0u, 22500u, 0u, 22500u, 0u, 22500u, 0u, 33000u,
 };
 static const EerufSchedule EERUF_HC_SR04_8_SLOWER EERUF_FLASH = {
     3, 8, 2, EERUF_HC_SR04_8_SLOWER_order, EERUF_HC_SR04_8_SLOWER_gap_us,
@@ -128,12 +128,12 @@ static const EerufSchedule EERUF_HC_SR04_8_SLOWER EERUF_FLASH = {
 // 8 sensors, T_p = 130.5 ms;
 // t_delta = 611 us, 4 adjacent sensors of a ring at least 14.569 ms apart, listening for 120 ms.
 static const uint8_t EERUF_HC_SR04_8_SLOWEST_order[] EERUF_FLASH = {
-    4, 0, 1, 5, 2, 6, 3, 7, /* phase a */
-    0, 4, 5, 1, 2, 6, 3, 7, /* phase b */
+    0, 4, 1, 5, 2, 6, 3, 7, /* phase a */
+    0, 4, 1, 5, 2, 6, 3, 7, /* phase b */
 };
 static const uint32_t EERUF_HC_SR04_8_SLOWEST_gap_us[] EERUF_FLASH = {
-    9000u, 1500u, 30000u, 0u, 30000u, 0u, 30000u, 0u, 30000u,
-    0u, 7500u, 30000u, 3000u, 34500u, 1500u, 31500u, 1500u, 21000u,
+    0u, 1500u, 31500u, 1500u, 31500u, 1500u, 31500u, 1500u, 30000u,
+    0u, 0u, 30000u, 0u, 30000u, 0u, 30000u, 0u, 40500u,
 };
 static const EerufSchedule EERUF_HC_SR04_8_SLOWEST EERUF_FLASH = {
     3, 8, 2, EERUF_HC_SR04_8_SLOWEST_order, EERUF_HC_SR04_8_SLOWEST_gap_us,
@@ -145,8 +145,8 @@ static const EerufSchedule EERUF_HC_SR04_8_SLOWEST EERUF_FLASH = {
 // 10 sensors, T_p = 77.5 ms;
 // t_delta = 474 us, 4 adjacent sensors of a ring at least 14.569 ms apart, listening for 60 ms.
 static const uint8_t EERUF_HC_SR04_10_order[] EERUF_FLASH = {
-    6, 1, 5, 0, 4, 9, 3, 8, 2, 7, /* phase a */
-    0, 6, 1, 5, 8, 4, 9, 3, 7, 2, /* phase b */
+    4, 9, 5, 0, 6, 1, 7, 2, 8, 3, /* phase a */
+    0, 4, 9, 5, 2, 6, 1, 7, 3, 8, /* phase b */
 };
 static const uint32_t EERUF_HC_SR04_10_gap_us[] EERUF_FLASH = {
     0u, 2500u, 12500u, 2500u, 12500u, 2500u, 12500u, 2500u, 12500u, 2500u, 15000u,
@@ -196,16 +196,16 @@ static const EerufSchedule EERUF_HC_SR04_16 EERUF_FLASH = {
 // 24 sensors, T_p = 94.5 ms;
 // t_delta = 576 us, 4 adjacent sensors of a ring at least 14.569 ms apart, listening for 60 ms.
 static const uint8_t EERUF_HC_SR04_24_order[] EERUF_FLASH = {
-    3, 21, 7, 11, 15, 1, 19, 5, 9, 13, 23, 17, 6, 10, 22, 18, 14, 2, 12, 16, 8, 4, 20, 0, /* phase a */
-    15, 11, 19, 3, 23, 7, 13, 9, 21, 1, 5, 17, 4, 8, 0, 16, 20, 12, 2, 6, 18, 10, 22, 14, /* phase b */
+    18, 14, 10, 6, 22, 2, 15, 7, 11, 19, 3, 23, 9, 4, 0, 20, 16, 12, 8, 21, 17, 13, 5, 1, /* phase a */
+    10, 14, 2, 6, 22, 18, 12, 8, 4, 0, 16, 20, 11, 7, 3, 23, 19, 15, 5, 9, 1, 21, 13, 17, /* phase b */
 };
 static const uint32_t EERUF_HC_SR04_24_gap_us[] EERUF_FLASH = {
-    3000u, 4500u, 110u, 1390u, 3000u, 10500u, 4500u, 110u, 1390u, 6000u, 7500u, 4500u, 1500u, 13500u, 1500u, 2890u, 110u, 4500u, 15000u, 1500u, 1500u, 1390u, 110u, 1500u, 3000u,
-    12000u, 1500u, 1500u, 1390u, 110u, 110u, 16390u, 3000u, 110u, 1390u, 110u, 5890u, 13500u, 110u, 110u, 5780u, 110u, 110u, 13280u, 1500u, 4280u, 110u, 110u, 1500u, 10500u,
+    5250u, 110u, 110u, 110u, 110u, 5560u, 13500u, 110u, 1390u, 6000u, 1500u, 1500u, 10500u, 7500u, 1500u, 110u, 7390u, 3000u, 110u, 11890u, 4500u, 3000u, 4390u, 110u, 5250u,
+    9750u, 3000u, 1390u, 110u, 1500u, 3000u, 13500u, 1500u, 1500u, 110u, 2890u, 110u, 14890u, 1390u, 110u, 3000u, 110u, 1390u, 14890u, 110u, 3000u, 110u, 1390u, 1500u, 14250u,
 };
 static const EerufSchedule EERUF_HC_SR04_24 EERUF_FLASH = {
     3, 24, 2, EERUF_HC_SR04_24_order, EERUF_HC_SR04_24_gap_us,
-    94500u, 60220u, 576u, 14569u, 60000u, 1390u,
+    94500u, 60000u, 576u, 14569u, 60000u, 1280u,
     EERUF_AS_T_DELTA, 94500u,
     1, EERUF_LAYOUT_RING, 4, 0, 0,
 };

@@ -8,7 +8,7 @@ use anyhow::{Result, ensure};
 use clap::Args;
 use fs_err as fs;
 
-use crate::steps::{empty, need, output, run, run_line};
+use crate::steps::{command, empty, need, output, run, run_line};
 
 /// Parts to run.
 #[derive(Args)]
@@ -29,7 +29,7 @@ pub(crate) fn deb(plan: &Plan) -> Result<()> {
     }
     fs::create_dir_all(HOME)?;
     // It says where the package is.
-    let said = output(Command::new("cargo").args(["deb", "--package", "eeruf-ros2", "--locked", "--output", HOME]))?;
+    let said = output(&mut command(&format!("cargo deb --package eeruf-ros2 --locked --strip --output {HOME}")))?;
     let package = absolute(said.lines().last().unwrap_or_default())?;
     println!("{}", package.display());
     verify_unit()?;
@@ -56,7 +56,7 @@ fn test(package: &Path) -> Result<()> {
     let python = crate::ros2::environment()?;
     let root = absolute(Path::new(HOME).join("clean"))?;
     let terminals = root.join("dev/pts");
-    // What is mounted there from a run that broke off would be removed, too.
+    // A run that broke off leaves a mount there, and all behind it would be removed, too.
     if output(Command::new("mountpoint").arg("-q").arg(&terminals)).is_ok() {
         run(Command::new("umount").arg(&terminals))?;
     }

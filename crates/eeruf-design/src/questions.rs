@@ -1,8 +1,7 @@
 //! Questions beside the shortest period: what fits into a given one, and what each need costs.
 
 use eeruf_core::Micros;
-use eeruf_core::search::{Control, GridError, Outcome, ProblemError, SearchError};
-use eeruf_period::engine::shortest::MAX_TICKS;
+use eeruf_core::search::{Control, Outcome, SearchError};
 use eeruf_sim::AnySchedule;
 
 use crate::find::NoSchedule;
@@ -67,17 +66,7 @@ impl RingSpec {
     /// # Errors
     /// [`SearchError`] for a period that is no whole number of ticks, and as for [`shortest`](Self::shortest).
     pub fn fit(&self, period: Micros, budget: u64, control: &mut impl Control) -> Result<Fit, SearchError> {
-        let tick = self.tick.as_micros();
-        if tick == 0 {
-            return Err(GridError::NoTick.into());
-        }
-        if !period.as_micros().is_multiple_of(tick) {
-            return Err(GridError::OffGrid { what: "the period", time: period, tick: self.tick }.into());
-        }
-        let ticks = period.as_micros() / tick;
-        if ticks == 0 || ticks > MAX_TICKS {
-            return Err(SearchError::Problem(ProblemError::Period { period: ticks, most: MAX_TICKS }));
-        }
+        let ticks = self.problem().in_whole_ticks(period)?;
         let search = Search { budget, what_if: false, atlas: "" };
         let mut fit =
             Fit { schedule: None, spec: self.clone(), t_delta: None, bound: None, fits: None, proven: false, nodes: 0 };

@@ -5,7 +5,8 @@ use std::io::Read;
 use std::path::Path;
 
 use crate::firings::{Firing, FiringLog, MAX_SENSORS, was_rejected};
-use crate::text::{Line, Separator, Source, is_comment, is_no_echo, json, number, prefix, separated};
+use crate::text::{Line, Separator, Source, is_comment, json, separated};
+use crate::value::{is_no_echo, number, prefix};
 use crate::weighed::Columns;
 use eeruf_files::FileError;
 

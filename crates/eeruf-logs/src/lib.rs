@@ -43,6 +43,7 @@ mod firings;
 mod form;
 mod mcap;
 mod message;
+mod names;
 mod options;
 mod pattern;
 mod reading;
@@ -56,6 +57,7 @@ mod sink;
 mod survey;
 mod text;
 mod unzstd;
+mod value;
 mod weighed;
 mod write;
 

@@ -6,10 +6,10 @@
 use std::rc::Rc;
 
 use crate::bytes::{Bytes, Order};
+use crate::names;
 use crate::options::{Options, RangeUnit};
 use crate::reading::Reading;
 use crate::schema::{Header, Schema};
-use crate::text::names;
 
 /// Encoding of a topic's messages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

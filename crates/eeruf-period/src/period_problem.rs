@@ -288,7 +288,14 @@ impl PeriodProblem<'_> {
         Ok(ticks)
     }
 
-    fn in_whole_ticks(&self, period: Micros) -> Result<u32, SearchError> {
+    /// A period in ticks.
+    ///
+    /// # Errors
+    /// [`SearchError`] if it is not a whole number of ticks, is none, or is too long to be searched.
+    pub fn in_whole_ticks(&self, period: Micros) -> Result<u32, SearchError> {
+        if self.tick == Micros::ZERO {
+            return Err(GridError::NoTick.into());
+        }
         if !period.as_micros().is_multiple_of(self.tick_us()) {
             return Err(GridError::OffGrid { what: "the period", time: period, tick: self.tick }.into());
         }

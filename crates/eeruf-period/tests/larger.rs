@@ -20,6 +20,9 @@ use eeruf_period::engine::search::{Decided, FiringTimes, Search};
 use eeruf_period::engine::spare::most_to_spare;
 use solver::{MOST_TICKS, Needs, brute_force};
 
+/// Enough nodes for all that is asked here; a search that is broken ends, too.
+const BUDGET: u64 = 1_000_000;
+
 /// A line, a ring, blocks, or any graph, with up to five neighbours.
 fn conflicts(sensors: usize, random: &mut Random) -> Vec<u64> {
     let (layout, n) = (random.up_to(3), 1 + random.up_to(4) as usize);
@@ -97,7 +100,7 @@ impl Tally {
 
     /// Asserts that what was found is right and that nothing was kept back.
     fn assert_decided(&mut self, problem: &Alike<'_>, period: u32) {
-        match Search::new(&problem.problem()).decide(period, u64::MAX, &mut |_| true) {
+        match Search::new(&problem.problem()).decide(period, BUDGET, &mut |_| true) {
             Decided::Found(firing) => {
                 assert_meets(problem, period, &firing);
                 self.yes[problem.sensors()] += 1;
@@ -133,7 +136,7 @@ fn for_each_problem(part: u32, seed: u64, mut check: impl FnMut(&Alike<'_>, &mut
 fn no_period_is_shorter_than_the_shortest() {
     let mut tally = Tally::default();
     for_each_problem(100, 1, |problem, _| {
-        let found = problem.shortest(u64::MAX);
+        let found = problem.shortest(BUDGET);
         assert_eq!(found.bound, found.period);
         assert_meets(problem, found.period, &found.fire);
         if found.period > 1 {
@@ -158,12 +161,12 @@ fn preferred_schedule_is_best_in_order() {
     let mut tally = Tally::default();
     let mut better = [0; 3];
     for_each_problem(60, 5, |problem, _| {
-        let found = problem.shortest(u64::MAX);
+        let found = problem.shortest(BUDGET);
         let period = found.period;
         if period > MOST_TICKS {
             return;
         }
-        let best = most_to_spare(&problem.problem(), period, found.fire, u64::MAX, &mut |_| true);
+        let best = most_to_spare(&problem.problem(), period, found.fire, BUDGET, &mut |_| true);
         assert_eq!(best.proven, [true; 3]);
         // Without an interval there is none to grow.
         let has_gaps = problem.interval > 0 && problem.conflicts.iter().any(|&row| row != 0);
@@ -193,7 +196,7 @@ fn preferred_schedule_is_best_in_order() {
 fn one_tick_less_of_a_need_is_decided_rightly() {
     let mut tally = Tally::default();
     for_each_problem(60, 6, |problem, _| {
-        let period = problem.shortest(u64::MAX).period;
+        let period = problem.shortest(BUDGET).period;
         if !(2..=MOST_TICKS).contains(&period) {
             return;
         }

@@ -118,7 +118,7 @@ impl Heard {
     /// The figures in the words of a sketch and of the world, with the distance that each module should measure.
     pub(super) fn of(said: &str, own_mm: &BTreeMap<usize, u32>) -> Self {
         let mut heard = Self::default();
-        // What ended the last pulse of each module. A sketch says its reading before the module fires again.
+        // The cause that ended each module's last pulse; a sketch says its reading before the module fires again.
         let mut causes: BTreeMap<usize, usize> = BTreeMap::new();
         for line in said.lines() {
             let words: Vec<&str> = line.split_whitespace().collect();

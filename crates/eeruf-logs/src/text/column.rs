@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::options::RangeUnit;
 
-use super::value::{self, Value};
+use crate::value::{self, Value};
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Role {

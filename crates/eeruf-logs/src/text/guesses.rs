@@ -5,9 +5,9 @@ use std::collections::BTreeSet;
 use crate::options::{Options, RangeUnit, TimeUnit};
 
 use super::column::{Column, Role};
-use super::names;
 use super::recognise::{Plan, guess};
-use super::value;
+use crate::names;
+use crate::value;
 
 impl Plan {
     pub(super) fn range_units(&mut self, units: &[Option<RangeUnit>], options: &Options) {

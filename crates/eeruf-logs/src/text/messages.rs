@@ -5,7 +5,7 @@ use std::io;
 use serde_json::{Map, Value as Json};
 
 use super::lines::{Line, Lines};
-use super::value;
+use crate::value;
 
 /// A message with more text is lost.
 const LONGEST: usize = 1 << 20;

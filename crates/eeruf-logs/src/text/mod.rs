@@ -7,12 +7,10 @@ mod column;
 mod guesses;
 mod lines;
 mod messages;
-pub(crate) mod names;
 mod recognise;
 mod rows;
 mod shape;
 mod source;
-mod value;
 
 use std::io::Read;
 use std::path::Path;
@@ -25,7 +23,6 @@ pub(crate) use lines::Line;
 pub(crate) use recognise::is_comment;
 pub(crate) use shape::{Separator, json, separated};
 pub(crate) use source::Source;
-pub(crate) use value::{is_no_echo, number, prefix};
 
 /// As many lines, and as many bytes, are looked at before the first reading.
 const SAMPLE: (usize, usize) = (1000, 1 << 18);

@@ -9,9 +9,9 @@ use eeruf_files::FileError;
 
 use super::column::{Column, Role};
 use super::lines::Line;
-use super::names::{self, Meaning};
 use super::shape::{self, Separator, Shape};
-use super::value;
+use crate::names::{self, Meaning};
+use crate::value;
 
 /// The sensors of one log.
 pub(super) const MOST_SENSORS: usize = 4096;

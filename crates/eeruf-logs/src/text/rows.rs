@@ -11,7 +11,7 @@ use super::column::{Column, Role};
 use super::lines::Line;
 use super::recognise::{MOST_SENSORS, Plan, is_comment};
 use super::shape::{self, Shape};
-use super::value::{self, Value};
+use crate::value::{self, Value};
 
 pub(super) struct Rows<'a, 's, 'e> {
     file: &'a Path,

@@ -2,7 +2,7 @@
 
 use serde_json::Value as Json;
 
-use super::value;
+use crate::value;
 
 /// Separation of a line into cells.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

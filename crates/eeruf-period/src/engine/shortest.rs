@@ -144,7 +144,7 @@ impl Run {
             self.round(effort, &mut ask)?;
             effort *= 2;
             if in_coarse_ticks && self.coarse.is_none() {
-                // What is left is to refute a period that is a fine tick shorter, which is no easier.
+                // A period that is a fine tick shorter is left, and no easier to refute.
                 effort = (EFFORT * self.sensors()).max(self.ended / 4);
             }
         }

@@ -2,7 +2,7 @@
 
 use crate::options::{RangeUnit, TimeUnit};
 
-use super::value;
+use crate::value;
 
 /// Meaning of a column by its name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

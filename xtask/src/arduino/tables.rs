@@ -19,11 +19,11 @@ const RESTS: [(u32, &str); 3] = [(60_000, ""), (90_000, "_SLOWER"), (120_000, "_
 const SLOWER: u32 = 8;
 
 /// The ring file of this many modules. Lines that are sampled in `loop()` are up to 0.2 ms late. A board fires a module
-/// in 0.1 ms: for 24 modules firings that coincide are moved apart by that, since one by one they come late by more
-/// than the table has to spare.
+/// in 0.1 ms: for 24 modules firings that coincide are moved apart by half as much again, since one by one they come
+/// late by more than the table has to spare, and a slow loop still finds its walls.
 fn ring(modules: u32, retrigger_us: u32) -> String {
     let neighbours = modules.min(4);
-    let handling = if modules >= 24 { "handling_us = 110\n" } else { "" };
+    let handling = if modules >= 24 { "handling_us = 150\n" } else { "" };
     format!(
         "sensors = {modules}\nlayout = \"ring\"\nneighbours = {neighbours}\nmax_range_m = 4.0\n\
          crosstalk_range_m = 2.5\njitter_us = 200\nspeed_m_s = 0.5\ntick_us = 500\n\

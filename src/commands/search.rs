@@ -5,8 +5,9 @@ use std::time::{Duration, Instant};
 
 use clap::ValueEnum;
 use eeruf_core::MAX_SENSORS;
-use eeruf_core::search::wait::{Budget, COUNT_WORDS, Objective, memory_words};
-use eeruf_core::search::{Found, FrontTable, Outcome, Progress, SearchError, WaitSearch};
+use eeruf_core::search::{
+    Budget, COUNT_WORDS, Found, FrontTable, Objective, Outcome, Progress, SearchError, WaitSearch, memory_words,
+};
 use eeruf_design::FoundJson;
 
 use super::Answer;
@@ -98,7 +99,7 @@ fn count(args: &Args, spec: &WaitSpec, watch: &mut Watch) -> Result<(Answer, Str
     let began = Instant::now();
     let mut watcher = |progress: &Progress| watch.control_flow(|| nodes_so_far(progress));
     let mut budget = Budget::nodes_at_most(args.budget).watched(WATCHED_EVERY, &mut watcher);
-    let count = search.count(None, &mut vec![0; COUNT_WORDS], &mut budget)?;
+    let count = search.count(None, &mut vec![0; COUNT_WORDS], &mut budget);
     let exact = count.outcome == Outcome::Exhausted;
     let answer = answer(count.count > 0, exact);
     if args.json {
@@ -124,14 +125,15 @@ fn find(args: &Args, spec: &WaitSpec, best: Option<Best>, watch: &mut Watch) -> 
     let mut memory = vec![0; memory_words(spec.problem().sensors)];
     let objective = match best {
         Some(Best::Interval) => Some((Objective::Interval, "smallest interval ")),
-        Some(Best::TDelta) => Some((Objective::Separation, "t_delta ")),
+        Some(Best::TDelta) => Some((Objective::TDelta, "t_delta ")),
         Some(Best::Pareto) | None => None,
     };
     let found: Found<MAX_SENSORS> = match objective {
         Some((objective, _)) => search.best(objective, &mut memory, &mut budget)?,
         None => {
-            let (outcome, schedule) = search.first(&mut memory, &mut budget)?;
+            let outcome = search.first(&mut memory, &mut budget)?;
             let (proven, nodes) = (outcome != Outcome::BudgetSpent, budget.nodes());
+            let schedule = if let Outcome::Found(schedule) = outcome { Some(schedule) } else { None };
             Found { schedule, value: None, bound: None, proven, nodes }
         }
     };
@@ -154,7 +156,7 @@ fn front(args: &Args, spec: &WaitSpec, watch: &mut Watch) -> Result<(Answer, Str
     let mut watcher = |progress: &Progress| watch.control_flow(|| nodes_so_far(progress));
     let mut budget = Budget::nodes_at_most(args.budget).watched(WATCHED_EVERY, &mut watcher);
     let mut memory = vec![0; memory_words(spec.problem().sensors)];
-    let mut walk = search.pareto(&mut memory)?;
+    let mut walk = search.pareto(&mut memory);
     let mut tables: Vec<FrontTable<MAX_SENSORS>> = Vec::new();
     let complete = loop {
         match walk.find_next(&mut budget)? {

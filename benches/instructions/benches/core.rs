@@ -3,8 +3,7 @@
 
 use std::hint::black_box;
 
-use eeruf_core::search::wait::{Budget, Objective, memory_words};
-use eeruf_core::search::{WaitProblem, WaitSearch};
+use eeruf_core::search::{Budget, Objective, WaitProblem, WaitSearch, memory_words};
 use eeruf_core::tables::PAPER_12;
 use eeruf_core::{Criterion, EchoFilter, Instant, Layout, Micros, Requirements, Ring, RingConfig, RingEvent};
 use eeruf_period::PeriodProblem;

@@ -6,7 +6,7 @@ use super::control::Outcome;
 use super::error::SearchError;
 use super::found::Found;
 use super::grid::Grid;
-use super::wait::{Best, Budget, Count, Enumeration, Objective, Pareto, ParetoPoint, Problem, Search};
+use super::wait::{Best, Budget, Count, Enumeration, MAX_PERIOD, Objective, Pareto, ParetoPoint, Problem, Search};
 use crate::layout::Layout;
 use crate::requirements::Criterion;
 use crate::schedule::{MAX_SENSORS, Schedule};
@@ -38,10 +38,10 @@ pub struct WaitProblem<'a> {
     pub criterion: Criterion,
 }
 
-/// A search for tables of waits, in memory that the caller lends ([`wait::memory_words`](super::wait::memory_words)).
+/// A search for tables of waits, in memory that the caller lends ([`memory_words`](super::memory_words)).
 ///
 /// ```
-/// use eeruf_core::search::{WaitProblem, WaitSearch, wait};
+/// use eeruf_core::search::{Budget, Objective, WaitProblem, WaitSearch, memory_words};
 /// use eeruf_core::{Criterion, Layout, Micros};
 ///
 /// let problem = WaitProblem {
@@ -57,8 +57,8 @@ pub struct WaitProblem<'a> {
 ///     criterion: Criterion::Exact,
 /// };
 /// let search = WaitSearch::new(&problem)?;
-/// let mut memory = vec![0; wait::memory_words(12)];
-/// let best = search.best::<12>(wait::Objective::Interval, &mut memory, &mut wait::Budget::unlimited())?;
+/// let mut memory = vec![0; memory_words(12)];
+/// let best = search.best::<12>(Objective::Interval, &mut memory, &mut Budget::unlimited())?;
 /// // n I + D (K - 1) <= T_p: no table keeps any four neighbours further apart than 19 ms.
 /// assert_eq!(best.value, Some(Micros::from_millis(19)));
 /// assert!(best.proven);
@@ -85,7 +85,7 @@ pub enum Infeasible {
     Separation {
         /// K.
         sensors: usize,
-        /// D, what `t_delta` problem between two values `|d|`.
+        /// D, the separation of two values `|d|` that `t_delta` needs.
         separation: Micros,
         /// The longest wait.
         wait_max: Micros,
@@ -126,12 +126,14 @@ impl WaitSearch {
     ///
     /// # Errors
     /// [`SearchError`] if a number is out of range, a period or lag is not a whole number of ticks, or a sensor could
-    /// fire after its period has ended.
+    /// fire after its period has ended. An infeasible problem is not an error: the searches prove that.
     pub fn new(problem: &WaitProblem<'_>) -> Result<Self, SearchError> {
-        let grid = Grid::new(problem.tick)?;
-        let sensors = problem.t_lag.map_or(problem.sensors, <[Micros]>::len);
-        if problem.sensors == 0 || problem.sensors > MAX_SENSORS || sensors != problem.sensors {
-            return Err(SearchError::Lags { sensors: problem.sensors, lags: sensors });
+        let (grid, sensors) = (Grid::new(problem.tick)?, problem.sensors);
+        if sensors == 0 || sensors > MAX_SENSORS {
+            return Err(SearchError::Sensors(sensors));
+        }
+        if let Some(lags) = problem.t_lag.map(<[Micros]>::len).filter(|&lags| lags != sensors) {
+            return Err(SearchError::Lags { sensors, lags });
         }
         problem.layout.check(sensors)?;
         let mut lag = [0; MAX_SENSORS];
@@ -141,27 +143,31 @@ impl WaitSearch {
                 None => grid.exactly("a lag", default_lag(problem, x))?,
             };
         }
-        let search = Self {
+        let (period, wait_max) = (grid.exactly("the period", problem.period)?, grid.at_most(problem.wait_max));
+        if period == 0 || period > MAX_PERIOD {
+            return Err(SearchError::Period { period, most: MAX_PERIOD });
+        }
+        for (sensor, &lag) in lag.iter().enumerate().take(sensors) {
+            if u64::from(lag) + u64::from(wait_max) >= u64::from(period) {
+                return Err(SearchError::OutsidePeriod { sensor, lag, wait_max, period });
+            }
+        }
+        Ok(Self {
             grid,
             sensors,
-            period: grid.exactly("the period", problem.period)?,
-            wait_max: grid.at_most(problem.wait_max),
+            period,
+            wait_max,
             separation: grid.separation(problem.t_delta),
             interval: grid.at_least(problem.min_interval),
             criterion: problem.criterion,
             lag,
             rows: problem.layout.rows(sensors),
-        };
-        search.ticks()?;
-        Ok(search)
+        })
     }
 
-    /// The same question in ticks, for what this type does not offer: assignments and the Pareto front.
-    ///
-    /// # Errors
-    /// None after [`WaitSearch::new`], which has checked already.
-    pub fn ticks(&self) -> Result<Search<'_>, SearchError> {
-        Ok(Search::new(Problem {
+    /// The same question in ticks.
+    fn ticks(&self) -> Search<'_> {
+        Search::new(Problem {
             period: self.period,
             lag: self.lag.get(..self.sensors).unwrap_or(&[]),
             wait_max: self.wait_max,
@@ -169,10 +175,10 @@ impl WaitSearch {
             interval: self.interval,
             conflicts: self.rows.get(..self.sensors).unwrap_or(&[]),
             criterion: self.criterion,
-        })?)
+        })
     }
 
-    /// A table, or the proof that there is none, or neither if the budget is spent.
+    /// Finds one table, or proves that there is none.
     ///
     /// # Errors
     /// [`SearchError`] for too little memory or a capacity `K` below the number of sensors.
@@ -180,11 +186,10 @@ impl WaitSearch {
         &self,
         memory: &mut [u32],
         budget: &mut Budget<'_>,
-    ) -> Result<(Outcome, Option<Schedule<K>>), SearchError> {
+    ) -> Result<Outcome<Schedule<K>>, SearchError> {
         let (mut a, mut b) = ([0; MAX_SENSORS], [0; MAX_SENSORS]);
-        let outcome = self.ticks()?.first(memory, budget, &mut a, &mut b)?;
-        let schedule = if outcome == Outcome::Found(()) { Some(self.schedule(&a, &b)?) } else { None };
-        Ok((outcome, schedule))
+        let outcome = self.ticks().first(memory, budget, &mut a, &mut b)?;
+        self.schedule_if_found(outcome, &a, &b)
     }
 
     /// Names the need, separation or interval, that cannot be met, if there is no table: one of them at a time is
@@ -193,7 +198,7 @@ impl WaitSearch {
     /// # Errors
     /// As for [`first`](Self::first).
     pub fn why_none(&self, memory: &mut [u32], budget: &mut Budget<'_>) -> Result<Infeasible, SearchError> {
-        let search = self.ticks()?;
+        let search = self.ticks();
         let (mut a, mut b) = ([0; MAX_SENSORS], [0; MAX_SENSORS]);
         let mut without =
             |separation, interval| search.with(separation, interval).first(memory, budget, &mut a, &mut b);
@@ -208,20 +213,18 @@ impl WaitSearch {
         Ok(Infeasible::Together)
     }
 
-    /// Number of tables, exactly; it stops when it has counted `limit`.
+    /// Counts the tables; stops early when there are `limit` or more. More `memory` makes it faster
+    /// ([`COUNT_WORDS`](super::COUNT_WORDS)); it may be empty.
     ///
-    /// # Errors
-    /// None after [`WaitSearch::new`].
-    pub fn count(
-        &self,
-        limit: Option<u128>,
-        memory: &mut [u32],
-        budget: &mut Budget<'_>,
-    ) -> Result<Count, SearchError> {
-        Ok(self.ticks()?.count(limit, memory, budget))
+    /// Without a limit, a count beyond `u128` ends with [`Outcome::Found`] at its maximum.
+    pub fn count(&self, limit: Option<u128>, memory: &mut [u32], budget: &mut Budget<'_>) -> Count {
+        self.ticks().count(limit, memory, budget)
     }
 
-    /// The table with the largest smallest interval or the largest `t_delta`; the other one as in the problem.
+    /// Finds the table with the largest smallest interval or the largest `t_delta`, the other one as in the problem,
+    /// and proves that none is better.
+    ///
+    /// Without neighbours the interval is the period; a single sensor has the separation `wait_max`.
     ///
     /// # Errors
     /// As for [`first`](Self::first).
@@ -232,10 +235,10 @@ impl WaitSearch {
         budget: &mut Budget<'_>,
     ) -> Result<Found<K>, SearchError> {
         let (mut a, mut b) = ([0; MAX_SENSORS], [0; MAX_SENSORS]);
-        let best @ Best { value, bound, nodes, .. } = self.ticks()?.best(objective, memory, budget, &mut a, &mut b)?;
+        let best @ Best { value, bound, nodes, .. } = self.ticks().best(objective, memory, budget, &mut a, &mut b)?;
         let time = |ticks| match objective {
             Objective::Interval => Some(self.grid.time(ticks)),
-            Objective::Separation => self.grid.t_delta(ticks),
+            Objective::TDelta => self.grid.t_delta(ticks),
         };
         let schedule = if value.is_some() { Some(self.schedule(&a, &b)?) } else { None };
         let bound = if best.outcome == Outcome::Exhausted { None } else { time(bound) };
@@ -244,35 +247,58 @@ impl WaitSearch {
 
     /// The Pareto front: the tables of which no other has a larger smallest interval without a smaller `t_delta`, both
     /// at least those of the problem.
-    ///
-    /// # Errors
-    /// None after [`WaitSearch::new`].
-    pub fn pareto<'s, 'm>(&'s self, memory: &'m mut [u32]) -> Result<WaitFront<'s, 'm>, SearchError> {
-        Ok(WaitFront { search: self, front: self.ticks()?.pareto(memory) })
+    pub fn pareto<'s, 'm>(&'s self, memory: &'m mut [u32]) -> WaitFront<'s, 'm> {
+        WaitFront { search: self, front: self.ticks().pareto(memory) }
     }
 
-    /// All tables, one after the other: each [`Enumeration::next_into`] gives the waits of one in ticks, for
-    /// [`schedule`](Self::schedule) to make a schedule of.
-    ///
-    /// # Errors
-    /// None after [`WaitSearch::new`].
-    pub fn enumerate(&self) -> Result<Enumeration<'_>, SearchError> {
-        Ok(self.ticks()?.enumerate())
+    /// All tables, one after the other, in lexicographic order of `a_0, b_0, a_1, b_1, ..`.
+    pub fn all(&self) -> WaitTables<'_> {
+        WaitTables { search: self, tables: self.ticks().enumerate() }
     }
 
-    /// The schedule with these waits, in ticks.
+    fn schedule_if_found<const K: usize>(
+        &self,
+        outcome: Outcome,
+        wait_a: &[u32; MAX_SENSORS],
+        wait_b: &[u32; MAX_SENSORS],
+    ) -> Result<Outcome<Schedule<K>>, SearchError> {
+        Ok(match outcome {
+            Outcome::Found(()) => Outcome::Found(self.schedule(wait_a, wait_b)?),
+            Outcome::Exhausted => Outcome::Exhausted,
+            Outcome::BudgetSpent => Outcome::BudgetSpent,
+        })
+    }
+
+    /// The schedule with these waits, in ticks; [`SearchError::Schedule`] for a capacity `K` below the number of
+    /// sensors.
+    fn schedule<const K: usize>(
+        &self,
+        wait_a: &[u32; MAX_SENSORS],
+        wait_b: &[u32; MAX_SENSORS],
+    ) -> Result<Schedule<K>, SearchError> {
+        let of_all = |ticks: &'_ [u32; MAX_SENSORS]| ticks.map(|ticks| self.grid.time(ticks));
+        let (lag, a, b) = (of_all(&self.lag), of_all(wait_a), of_all(wait_b));
+        let [lag, a, b] = [&lag, &a, &b].map(|times| times.get(..self.sensors).unwrap_or(times));
+        Ok(Schedule::from_slices(self.grid.time(self.period), lag, [a, b])?)
+    }
+}
+
+/// A walk over all tables. It takes no memory from the caller.
+#[derive(Clone, Debug)]
+pub struct WaitTables<'s> {
+    search: &'s WaitSearch,
+    tables: Enumeration<'s>,
+}
+
+impl WaitTables<'_> {
+    /// Finds the next table; `Exhausted` after the last. After `BudgetSpent` the walk goes on where it stopped.
     ///
     /// # Errors
-    /// [`SearchError::Schedule`] if there are fewer waits than sensors, if they are too long, or for a capacity `K`
-    /// below the number of sensors.
-    pub fn schedule<const K: usize>(&self, wait_a: &[u32], wait_b: &[u32]) -> Result<Schedule<K>, SearchError> {
-        let waits = |ticks: &'_ [u32]| ticks.len().min(self.sensors);
-        self.grid.schedule(
-            self.period,
-            self.lag.get(..self.sensors).unwrap_or(&[]),
-            wait_a.get(..waits(wait_a)).unwrap_or(&[]),
-            wait_b.get(..waits(wait_b)).unwrap_or(&[]),
-        )
+    /// [`SearchError::Schedule`] for a capacity `K` below the number of sensors.
+    pub fn find_next<const K: usize>(&mut self, budget: &mut Budget<'_>) -> Result<Outcome<Schedule<K>>, SearchError> {
+        let outcome = self.tables.advance(budget);
+        let (a, b) = self.tables.waits();
+        self.search.schedule_if_found(outcome, a, b)
     }
 }
 
@@ -295,7 +321,8 @@ pub struct FrontTable<const K: usize> {
 }
 
 impl WaitFront<'_, '_> {
-    /// Finds the next table; `Exhausted` after the last, `BudgetSpent` if the budget ended before it was proven.
+    /// Finds the next table; `Exhausted` after the last, `BudgetSpent` if the budget ended before it was proven. A step
+    /// that ran out of budget may be repeated with a new one.
     ///
     /// # Errors
     /// As for [`WaitSearch::first`].

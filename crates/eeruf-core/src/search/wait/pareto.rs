@@ -1,28 +1,28 @@
 //! The front of interval and separation: the tables that are better in one only where others are better in the other.
 
 use super::{Budget, Objective, Search};
-use crate::search::{Outcome, ProblemError};
+use crate::search::{Outcome, SearchError};
 
 impl<'p> Search<'p> {
     /// The tables of which no other is better in one of interval and separation without being worse in the other, from
     /// the greatest interval to the greatest separation; both at least those of the problem.
-    pub fn pareto<'m>(&self, memory: &'m mut [u32]) -> Pareto<'p, 'm> {
+    pub(crate) fn pareto<'m>(&self, memory: &'m mut [u32]) -> Pareto<'p, 'm> {
         Pareto { search: *self, separation: Some(self.problem().separation), memory }
     }
 }
 
 /// One point of the front, in ticks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct ParetoPoint {
+pub(crate) struct ParetoPoint {
     /// The smallest interval; no table with at least this separation has a greater one.
-    pub interval: u32,
+    pub(crate) interval: u32,
     /// The separation; no table with at least this interval has a greater one.
-    pub separation: u32,
+    pub(crate) separation: u32,
 }
 
 /// Walks the front of interval and separation; each step hands out a table.
 #[derive(Debug)]
-pub struct Pareto<'p, 'm> {
+pub(crate) struct Pareto<'p, 'm> {
     search: Search<'p>,
     /// The separation from which the next point is sought.
     separation: Option<u32>,
@@ -34,13 +34,13 @@ impl Pareto<'_, '_> {
     /// before the point was proven. A step that ran out of budget may be repeated with a new one.
     ///
     /// # Errors
-    /// [`ProblemError::Memory`] if the memory lent, [`ProblemError::Short`] if `a` or `b` is too short.
-    pub fn next_into(
+    /// [`SearchError::Memory`] if the memory lent is too small.
+    pub(crate) fn next_into(
         &mut self,
         budget: &mut Budget<'_>,
         a: &mut [u32],
         b: &mut [u32],
-    ) -> Result<(Outcome, Option<ParetoPoint>), ProblemError> {
+    ) -> Result<(Outcome, Option<ParetoPoint>), SearchError> {
         let Some(from) = self.separation else {
             return Ok((Outcome::Exhausted, None));
         };
@@ -52,7 +52,7 @@ impl Pareto<'_, '_> {
             }
             return Ok((interval.outcome, None));
         };
-        let separation = search.with(from, interval).best(Objective::Separation, self.memory, budget, a, b)?;
+        let separation = search.with(from, interval).best(Objective::TDelta, self.memory, budget, a, b)?;
         let (Outcome::Found(()), Some(separation)) = (separation.outcome, separation.value) else {
             return Ok((Outcome::BudgetSpent, None));
         };

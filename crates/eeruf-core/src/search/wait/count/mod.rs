@@ -20,7 +20,7 @@ use crate::search::Outcome;
 use bits::MASK_MAX;
 use walk::Counting;
 
-/// A sensible amount of memory for [`Search::count`] where there is plenty, in words (4 MiB): a choice.
+/// A sensible amount of memory for [`WaitSearch::count`](crate::search::WaitSearch::count) where there is plenty, in words (4 MiB): a choice.
 /// With less the count is the same, and slower: 1 KiB where `usize` has 16 bits.
 pub const COUNT_WORDS: usize = 1 << if usize::BITS > 16 { 20 } else { 8 };
 
@@ -41,7 +41,7 @@ impl Search<'_> {
     /// it may be empty.
     ///
     /// Without a limit, a count beyond `u128` ends with [`Outcome::Found`] at its maximum.
-    pub fn count(&self, limit: Option<u128>, memory: &mut [u32], budget: &mut Budget<'_>) -> Count {
+    pub(crate) fn count(&self, limit: Option<u128>, memory: &mut [u32], budget: &mut Budget<'_>) -> Count {
         let before = budget.nodes();
         let limit = limit.unwrap_or(u128::MAX);
         // Beyond capacity nothing needs setting up; what passes has D at most wait_max, or a single sensor.

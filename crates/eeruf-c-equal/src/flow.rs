@@ -7,7 +7,7 @@ use eeruf_core::{
     EachSensor, Instant, Micros, Requirements, Uneven,
     flow::{FlowRing, FlowSettings},
     hopping::{HoppingError, HoppingListening},
-    plan::{Alike, LimitsInUse},
+    plan::{Alike, OwnLimits},
 };
 
 fn settings(r: &Random) -> FlowSettings {
@@ -87,7 +87,7 @@ pub fn run<const K: usize>(r: &Random) -> u64 {
 }
 
 /// Runs both, if they are made.
-fn compare<const K: usize, U: LimitsInUse>(
+fn compare<const K: usize, U: OwnLimits>(
     r: &Random,
     c: C,
     status: i32,

@@ -6,7 +6,7 @@ use eeruf_core::{
     Criterion, EachSensor, Instant, Layout, Micros, Requirements, Uneven,
     adaptation::Adaptation,
     hopping::{HoppingCode, HoppingError, HoppingListening, HoppingRing, HoppingSchedule, HoppingSettings},
-    plan::{Alike, LimitsInUse},
+    plan::{Alike, OwnLimits},
 };
 
 fn settings(r: &Random) -> HoppingSettings {
@@ -147,7 +147,7 @@ pub fn run<const K: usize>(r: &Random) -> u64 {
 }
 
 /// Runs both, if they are made.
-fn compare<const K: usize, U: LimitsInUse>(
+fn compare<const K: usize, U: OwnLimits>(
     r: &Random,
     mut c: C,
     status: i32,

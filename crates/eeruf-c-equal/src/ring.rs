@@ -5,7 +5,7 @@ use crate::{C, Do, Needs, OwnNeeds, Random};
 use eeruf_core::{
     EachSensor, EchoFilter, Instant, Layout, Micros, Requirements, Ring, RingConfig, RingError, RingEvent, Schedule,
     Uneven,
-    plan::{EachInUse, Plan, ScheduledFiring},
+    plan::{Plan, ScheduledFiring},
     watch::SensorWatch,
 };
 
@@ -130,7 +130,7 @@ fn change(c: &mut C, what: Do, value: u32, rust: Result<(), RingError>) {
     assert_eq!(c.call(what, 0, value), rust.map_or_else(|error| status_of(&error), |()| 0), "{what:?} {value}");
 }
 
-type Table<'s, const M: usize> = Ring<ScheduledFiring<'s, K, M, EachInUse<'s, K>>, EchoFilter<K>, K>;
+type Table<'s, const M: usize> = Ring<ScheduledFiring<'s, K, M, &'s EachSensor<K>>, EchoFilter<K>, K>;
 
 /// A schedule, and what it allows each sensor.
 type Fires<const M: usize> = (Schedule<K, M>, EachSensor<K>);

@@ -1,11 +1,10 @@
 //! Adaptive scheduling (end of Sec. 3.1): fire more slowly where too much is rejected, and faster again when it is
 //! calm.
 
-use core::fmt;
-
 use crate::hopping::HoppingSchedule;
 use crate::reading::{ReadingKind, Tally};
 use crate::ring::PeriodStats;
+use crate::schedule::ScheduleError;
 use crate::sound::SpeedOfSound;
 use crate::time::Micros;
 use crate::verified::VerifiedSchedule;
@@ -56,9 +55,9 @@ impl<'s, const K: usize, const M: usize, L> Adaptation<'s, VerifiedSchedule<K, M
     /// those that allow its own `t_delta` and window.
     ///
     /// # Errors
-    /// [`LadderError`] if there is no rung, if a period is not longer than the one before, or if the number of sensors
+    /// [`ScheduleError`] if there is no rung, if a period is not longer than the one before, or if the number of sensors
     /// changes.
-    pub fn new(rungs: &'s [VerifiedSchedule<K, M, L>]) -> Result<Self, LadderError> {
+    pub fn new(rungs: &'s [VerifiedSchedule<K, M, L>]) -> Result<Self, ScheduleError> {
         Self::of(rungs, |rung| (rung.sensors(), rung.period()))
     }
 
@@ -75,22 +74,22 @@ impl<'s, const K: usize> Adaptation<'s, HoppingSchedule<K>> {
     ///
     /// # Errors
     /// As there.
-    pub fn hopping(rungs: &'s [HoppingSchedule<K>]) -> Result<Self, LadderError> {
+    pub fn hopping(rungs: &'s [HoppingSchedule<K>]) -> Result<Self, ScheduleError> {
         Self::of(rungs, |rung| (rung.code().sensors(), rung.period()))
     }
 }
 
 impl<'s, R> Adaptation<'s, R> {
     /// `needs` says how many sensors a rung has, and its period.
-    fn of(rungs: &'s [R], needs: impl Fn(&R) -> (usize, Micros)) -> Result<Self, LadderError> {
-        let Some((expected, _)) = rungs.first().map(&needs) else { return Err(LadderError::Empty) };
+    fn of(rungs: &'s [R], needs: impl Fn(&R) -> (usize, Micros)) -> Result<Self, ScheduleError> {
+        let Some((expected, _)) = rungs.first().map(&needs) else { return Err(ScheduleError::NoRung) };
         let mut before = None;
         for (rung, (sensors, period)) in rungs.iter().map(&needs).enumerate() {
             if sensors != expected {
-                return Err(LadderError::Sensors { rung, sensors, expected });
+                return Err(ScheduleError::RungSensors { rung, sensors, expected });
             }
             match before {
-                Some(before) if period <= before => return Err(LadderError::Order { rung, period, before }),
+                Some(before) if period <= before => return Err(ScheduleError::RungOrder { rung, period, before }),
                 _ => before = Some(period),
             }
         }
@@ -169,50 +168,6 @@ impl<'s, R> Adaptation<'s, R> {
         self.rejection_permille
     }
 }
-
-/// Why schedules do not make a ladder. Rungs are counted from 0 in code and printed from 1.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub enum LadderError {
-    /// There is no rung.
-    Empty,
-    /// A rung is not slower than the one before.
-    Order {
-        /// The rung.
-        rung: usize,
-        /// Its period.
-        period: Micros,
-        /// The period of the rung before.
-        before: Micros,
-    },
-    /// A rung has another number of sensors than the first.
-    Sensors {
-        /// The rung.
-        rung: usize,
-        /// Number of sensors it has.
-        sensors: usize,
-        /// Sensors of the first.
-        expected: usize,
-    },
-}
-
-impl fmt::Display for LadderError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let first = usize::from(!f.alternate());
-        match *self {
-            Self::Empty => write!(f, "a ladder without schedules; expected at least one"),
-            Self::Order { rung, period, before } => {
-                write!(f, "rung {} has a period of {period}; expected more than the {before} before it", rung + first)
-            }
-            Self::Sensors { rung, sensors, expected } => {
-                write!(f, "rung {} has {sensors} sensors; expected {expected} as in the first", rung + first)
-            }
-        }
-    }
-}
-
-impl core::error::Error for LadderError {}
 
 #[cfg(test)]
 mod tests {

@@ -5,7 +5,7 @@
 
 use core::fmt;
 
-use crate::requirements::{Interval, Requirements, Separation, shorter};
+use crate::requirements::{Least, Requirements, shorter};
 use crate::schedule::{Phase, Schedule};
 use crate::time::Micros;
 
@@ -40,11 +40,11 @@ impl<'r, const K: usize> Verification<'r, K> {
 
     /// The two sensors closest together by (13a), (13b); `None` for a single sensor. Two that must fire together need
     /// no separation and do not count.
-    pub const fn separation(&self) -> Option<Separation> {
+    pub const fn separation(&self) -> Option<Least> {
         if self.requirements.uneven.is_none() {
             return self.schedule.separation(self.requirements.criterion);
         }
-        let mut least: Option<Separation> = None;
+        let mut least: Option<Least> = None;
         let mut x = 0;
         while x < self.schedule.sensors() {
             let mut y = x + 1;
@@ -56,7 +56,7 @@ impl<'r, const K: usize> Verification<'r, K> {
                     None => true,
                 };
                 if is_less && !self.requirements.fire_together(x, y) {
-                    least = Some(Separation::of_two_phases(value, x, y));
+                    least = Some(Least::of_two_phases(value, x, y));
                 }
                 y += 1;
             }
@@ -88,12 +88,12 @@ impl<'r, const K: usize> Verification<'r, K> {
 
     /// The smallest interval between neighbours, or, where pairs have intervals of their own, between two that need
     /// one; `None` without any.
-    pub const fn min_interval(&self) -> Option<Interval> {
+    pub const fn min_interval(&self) -> Option<Least> {
         let sensors = self.schedule.sensors();
         if self.requirements.uneven.is_none() {
             return self.schedule.min_interval(self.requirements.layout);
         }
-        let mut least: Option<Interval> = None;
+        let mut least: Option<Least> = None;
         let mut x = 0;
         while x < sensors {
             let mut y = 0;

@@ -16,7 +16,7 @@ mod slot;
 mod tests;
 
 use crate::hopping::{HoppingError, HoppingListening};
-use crate::own_limits::{Alike, LimitsInUse};
+use crate::own_limits::{Alike, OwnLimits};
 use crate::ring::{Ring, RingConfig};
 use crate::time::Instant;
 use crate::tracker::EchoTracker;
@@ -45,7 +45,7 @@ impl<const K: usize, const H: usize, const E: usize> FlowRing<K, H, E> {
     }
 }
 
-impl<const K: usize, const H: usize, const E: usize, U: LimitsInUse> FlowRing<K, H, E, U> {
+impl<const K: usize, const H: usize, const E: usize, U: OwnLimits> FlowRing<K, H, E, U> {
     /// As [`flow`](FlowRing::flow), for sensors that have limits of their own, by [`FlowSettings::limits`]. What
     /// `listening` and the tracker's `t_delta` say is the most for all.
     ///

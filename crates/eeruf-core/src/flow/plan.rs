@@ -4,7 +4,7 @@ use super::settings::{FlowSettings, Pace};
 use super::slot::{DISABLED, QUIET_US, Slot};
 use crate::hopping::{CATCHES_UP, HoppingCode, HoppingError, HoppingListening, Lateness, Weighed};
 use crate::judging::{Firing, Heard, Judge};
-use crate::own_limits::{Alike, LimitsInUse, SensorLimits};
+use crate::own_limits::{Alike, OwnLimits, SensorLimits};
 use crate::plan::{Limits, Plan, Upcoming};
 use crate::reading::{ReadingKind, Verdict};
 use crate::schedule::{MAX_PERIOD, Phase};
@@ -62,7 +62,7 @@ impl<const K: usize> FlowPlan<K> {
     }
 }
 
-impl<const K: usize, U: LimitsInUse> FlowPlan<K, U> {
+impl<const K: usize, U: OwnLimits> FlowPlan<K, U> {
     /// As [`new`](FlowPlan::new), for sensors that have limits of their own, by [`FlowSettings::limits`]. Those that
     /// fire together do so at one instant, with the quiet that any of them needs; all else fires at other times.
     ///
@@ -253,7 +253,7 @@ const fn unit_of(code: &HoppingCode) -> u32 {
     (code.phases() as u32 + 1) * code.step().as_micros()
 }
 
-impl<const K: usize, U: LimitsInUse> Plan for FlowPlan<K, U> {
+impl<const K: usize, U: OwnLimits> Plan for FlowPlan<K, U> {
     fn deadline(&self) -> Instant {
         self.due
     }
@@ -404,7 +404,7 @@ impl<const K: usize, U: LimitsInUse> Plan for FlowPlan<K, U> {
     }
 }
 
-impl<const K: usize, U: LimitsInUse> FlowPlan<K, U> {
+impl<const K: usize, U: OwnLimits> FlowPlan<K, U> {
     /// Raises a sensor's quiet if others fooled it or nothing of it is believed, lowers it if its reading is.
     fn learn(&mut self, heard: &Heard<'_>, verdict: &Verdict, judge: &impl Judge) {
         let sensor = heard.sensor;

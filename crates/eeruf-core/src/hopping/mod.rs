@@ -22,7 +22,7 @@ mod turn;
 mod weighed;
 
 use crate::judging::Judge;
-use crate::own_limits::{Alike, LimitsInUse};
+use crate::own_limits::{Alike, OwnLimits};
 use crate::ring::{Ring, RingConfig};
 use crate::time::Instant;
 use crate::tracker::EchoTracker;
@@ -87,7 +87,7 @@ impl<const K: usize, const H: usize> HoppingRing<K, H> {
     }
 }
 
-impl<const K: usize, const H: usize, U: LimitsInUse> HoppingRing<K, H, U> {
+impl<const K: usize, const H: usize, U: OwnLimits> HoppingRing<K, H, U> {
     /// As [`hopping`](HoppingRing::hopping), for sensors that have limits of their own, by [`HoppingSchedule::limits`]
     /// or [`hopping_schedule!`](crate::hopping_schedule!) with `each_meets`.
     ///
@@ -109,7 +109,7 @@ impl<const K: usize, const H: usize, U: LimitsInUse> HoppingRing<K, H, U> {
     }
 }
 
-impl<J: Judge, const K: usize, const E: usize, const H: usize, U: LimitsInUse> Ring<HoppingPlan<K, U>, J, K, E, H> {
+impl<J: Judge, const K: usize, const E: usize, const H: usize, U: OwnLimits> Ring<HoppingPlan<K, U>, J, K, E, H> {
     /// Changes to the lags and the period of another schedule with the same code, as adaptation asks for when a period
     /// has ended (see [`Adaptation`](crate::adaptation::Adaptation)). The period that has begun starts again once all
     /// sound from before has died, which takes a window and `reach` at most; what is confirmed starts over. Where

@@ -9,7 +9,7 @@ use super::settings::{HoppingListening, HoppingSettings, Pace};
 use super::turn::{DISABLED, FIRED, SETTLED, SOLO, Turn};
 use super::weighed::Weighed;
 use crate::judging::{Firing, Heard, Judge};
-use crate::own_limits::{Alike, LimitsInUse, SensorLimits};
+use crate::own_limits::{Alike, OwnLimits, SensorLimits};
 use crate::plan::{Limits, Plan, Upcoming};
 use crate::reading::{ReadingKind, Verdict};
 use crate::schedule::Phase;
@@ -96,7 +96,7 @@ impl<const K: usize> HoppingPlan<K> {
     }
 }
 
-impl<const K: usize, U: LimitsInUse> HoppingPlan<K, U> {
+impl<const K: usize, U: OwnLimits> HoppingPlan<K, U> {
     /// As [`new`](HoppingPlan::new), for sensors that have limits of their own:
     /// [`HoppingSchedule::limits`] gives them. `listening` says the most for all.
     ///
@@ -334,7 +334,7 @@ impl<const K: usize, U: LimitsInUse> HoppingPlan<K, U> {
 
 /// The shortest period at which each sensor has stopped listening when it fires again, and no path reads the same with
 /// two ages.
-fn shortest_period(code: &HoppingCode, own_limits: &impl LimitsInUse, window: Micros) -> Micros {
+fn shortest_period(code: &HoppingCode, own_limits: &impl OwnLimits, window: Micros) -> Micros {
     let rests = match own_limits.most() {
         None => window.saturating_add(code.longest_drop()),
         Some(_) => {
@@ -347,7 +347,7 @@ fn shortest_period(code: &HoppingCode, own_limits: &impl LimitsInUse, window: Mi
     rests.max(code.two_ages())
 }
 
-impl<const K: usize, U: LimitsInUse> Plan for HoppingPlan<K, U> {
+impl<const K: usize, U: OwnLimits> Plan for HoppingPlan<K, U> {
     fn deadline(&self) -> Instant {
         self.due
     }

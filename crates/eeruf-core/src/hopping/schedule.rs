@@ -4,7 +4,7 @@ use super::code::HoppingCode;
 use super::error::HoppingError;
 use crate::own_limits::{EachSensor, SensorLimits};
 use crate::phases::{PhaseTable, PhaseVerification};
-use crate::requirements::{Requirements, Separation};
+use crate::requirements::{Least, Requirements};
 use crate::schedule::{MAX_PERIOD, MAX_SENSORS, Phase, VerifiedFor, scale};
 use crate::time::Micros;
 use crate::verify::Violation;
@@ -125,7 +125,7 @@ impl<const K: usize> HoppingSchedule<K> {
         let (cycle, _) = rows.split_at(self.code.phases() as usize);
         let table = PhaseTable::new(self.period, cycle).with_sensors(self.code.sensors());
         // All pairs and phases are alike.
-        let step = Separation { value: self.code.step(), sensors: (0, 1), phases: (Phase(0), Phase(1)), ages: (0, 0) };
+        let step = Least { value: self.code.step(), sensors: (0, 1), phases: (Phase(0), Phase(1)), ages: (0, 0) };
         let is_proven =
             self.period.as_micros() >= self.code.two_ages().as_micros() && !self.hears_the_same(requirements);
         table.verify_with(if is_proven { Some(step) } else { None }, requirements)

@@ -1,7 +1,7 @@
 //! [`PhaseVerification`]: whether firing times of many phases keep what is asked of them, and what they do not.
 
 use super::{PhaseTable, closer};
-use crate::requirements::{Interval, Requirements, Separation};
+use crate::requirements::{Least, Requirements};
 use crate::time::Micros;
 use crate::verify::{Violation, ViolationKind};
 
@@ -14,7 +14,7 @@ impl<const K: usize> PhaseTable<'_, K> {
     /// The same where it is proven that crosstalk of all pairs moves by at least so much.
     pub(crate) const fn verify_with<'r>(
         &self,
-        proven: Option<Separation>,
+        proven: Option<Least>,
         requirements: &'r Requirements<'r>,
     ) -> PhaseVerification<'r> {
         let (mut worst, mut separation, mut stale) = ([None; KINDS], None, None);
@@ -27,7 +27,7 @@ impl<const K: usize> PhaseTable<'_, K> {
                     (requirements.separation_of(x, y), !stale_echo || requirements.stale_echo)
                 {
                     let found = match proven {
-                        Some(proven) if !stale_echo => Some(Separation { sensors: (x as u8, y as u8), ..proven }),
+                        Some(proven) if !stale_echo => Some(Least { sensors: (x as u8, y as u8), ..proven }),
                         _ => self.separation_of(x, y, requirements),
                     };
                     if stale_echo {
@@ -90,23 +90,21 @@ const KINDS: usize = 7;
 type Worst = [Option<Violation>; KINDS];
 
 /// Sound that does not move as far as it must.
-const fn moves(kind: ViolationKind, found: Option<Separation>, required: Micros) -> Option<Violation> {
+const fn moves(kind: ViolationKind, found: Option<Least>, required: Micros) -> Option<Violation> {
     match found {
-        Some(Separation { value, sensors, phases, ages }) if value.as_micros() < required.as_micros() => {
-            Some(Violation { kind, sensors, phases, ages, value, required })
-        }
-        _ => None,
+        Some(found) => lasts(kind, found, required),
+        None => None,
     }
 }
 
-/// Firings that are closer than they may be.
-const fn lasts(kind: ViolationKind, found: Interval, required: Micros) -> Option<Violation> {
+/// Firings that are closer than they may be, or sound that moves less than it must.
+const fn lasts(kind: ViolationKind, found: Least, required: Micros) -> Option<Violation> {
     if found.value.as_micros() < required.as_micros() { Some(violation(kind, found, required)) } else { None }
 }
 
-const fn violation(kind: ViolationKind, found: Interval, required: Micros) -> Violation {
-    let Interval { value, sensors, phases } = found;
-    Violation { kind, sensors, phases, ages: (0, 0), value, required }
+const fn violation(kind: ViolationKind, found: Least, required: Micros) -> Violation {
+    let Least { value, sensors, phases, ages } = found;
+    Violation { kind, sensors, phases, ages, value, required }
 }
 
 /// The violation that is further from what is required; the first of equal ones.
@@ -127,10 +125,10 @@ const fn short_by(violation: Violation) -> u32 {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct PhaseVerification<'r> {
     requirements: &'r Requirements<'r>,
-    separation: Option<Separation>,
-    stale: Option<Separation>,
-    min_interval: Option<Interval>,
-    min_refire: Option<Interval>,
+    separation: Option<Least>,
+    stale: Option<Least>,
+    min_interval: Option<Least>,
+    min_refire: Option<Least>,
     worst: Worst,
 }
 
@@ -141,22 +139,22 @@ impl PhaseVerification<'_> {
     }
 
     /// The least shift of crosstalk, and where it occurs; `None` if no path can be heard in two phases.
-    pub const fn separation(&self) -> Option<Separation> {
+    pub const fn separation(&self) -> Option<Least> {
         self.separation
     }
 
     /// The least shift of a stale echo; `None` if none can be heard, or if it was not asked for.
-    pub const fn stale_separation(&self) -> Option<Separation> {
+    pub const fn stale_separation(&self) -> Option<Least> {
         self.stale
     }
 
     /// The smallest interval between neighbours, or between pairs that need one of their own; `None` without any.
-    pub const fn min_interval(&self) -> Option<Interval> {
+    pub const fn min_interval(&self) -> Option<Least> {
         self.min_interval
     }
 
     /// The shortest time between two firings of one sensor; `None` without sensors.
-    pub const fn min_refire(&self) -> Option<Interval> {
+    pub const fn min_refire(&self) -> Option<Least> {
         self.min_refire
     }
 

@@ -14,4 +14,4 @@ pub use contract::{Limits, Plan, PlanStep, Upcoming};
 pub use immediate::ImmediateRefiring;
 pub use scheduled::ScheduledFiring;
 
-pub use crate::own_limits::{Alike, EachInUse, LimitsInUse, OwnLimits};
+pub use crate::own_limits::{Alike, OwnLimits};

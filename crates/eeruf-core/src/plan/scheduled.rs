@@ -2,7 +2,7 @@
 
 use super::contract::{Limits, Plan, Upcoming};
 use crate::judging::Firing;
-use crate::own_limits::{Alike, LimitsInUse, OwnLimits, SensorLimits};
+use crate::own_limits::{Alike, InUse, OwnLimits, SensorLimits};
 use crate::schedule::{MAX_SENSORS, Phase, Schedule, VerifiedFor};
 use crate::sensor_set::SensorSet;
 use crate::time::{Instant, Micros, longer};
@@ -43,7 +43,7 @@ pub struct ScheduledFiring<'s, const K: usize, const M: usize = 2, U = Alike> {
     last_fired: Instant,
     disabled: SensorSet,
     next_schedule: Option<&'s Schedule<K, M>>,
-    own_limits: U,
+    own_limits: InUse<U>,
 }
 
 /// Sensors that do not fire.
@@ -62,14 +62,14 @@ impl<'s, const K: usize, const M: usize> ScheduledFiring<'s, K, M> {
     }
 }
 
-impl<'s, const K: usize, const M: usize, U: LimitsInUse> ScheduledFiring<'s, K, M, U> {
+impl<'s, const K: usize, const M: usize, U: OwnLimits> ScheduledFiring<'s, K, M, U> {
     /// As [`new`](ScheduledFiring::new), by a schedule whose sensors may have limits of their own.
-    pub fn verified<L: OwnLimits<InUse<'s> = U>>(schedule: &'s VerifiedSchedule<K, M, L>, now: Instant) -> Self {
+    pub fn verified<L: OwnLimits<Held<'s> = U>>(schedule: &'s VerifiedSchedule<K, M, L>, now: Instant) -> Self {
         Self::with_limits(schedule.schedule(), schedule.own_limits(), now)
     }
 
     /// As [`verified`](Self::verified), of schedule and limits apart.
-    pub fn with_limits<L: OwnLimits<InUse<'s> = U>>(
+    pub fn with_limits<L: OwnLimits<Held<'s> = U>>(
         schedule: &'s Schedule<K, M>,
         own_limits: &'s L,
         now: Instant,
@@ -86,7 +86,7 @@ impl<'s, const K: usize, const M: usize, U: LimitsInUse> ScheduledFiring<'s, K, 
             last_fired: Instant::from_micros(now.as_micros().wrapping_sub(settling)),
             disabled: SensorSet::NONE,
             next_schedule: None,
-            own_limits: own_limits.begin(),
+            own_limits: InUse::begin(own_limits.hold()),
         }
     }
 
@@ -100,14 +100,14 @@ impl<'s, const K: usize, const M: usize, U: LimitsInUse> ScheduledFiring<'s, K, 
     /// Neither schedule was verified against the other, so its first period begins late enough after the last firing to
     /// keep every refire time of the present schedule and every interval that both were verified for, and those of one
     /// that was not verified.
-    pub fn change_schedule<L: OwnLimits<InUse<'s> = U>>(&mut self, schedule: &'s VerifiedSchedule<K, M, L>) {
+    pub fn change_schedule<L: OwnLimits<Held<'s> = U>>(&mut self, schedule: &'s VerifiedSchedule<K, M, L>) {
         self.change_with_limits(schedule.schedule(), schedule.own_limits());
     }
 
     /// As [`change_schedule`](Self::change_schedule), of schedule and limits apart.
-    pub fn change_with_limits<L: OwnLimits<InUse<'s> = U>>(&mut self, schedule: &'s Schedule<K, M>, own_limits: &'s L) {
+    pub fn change_with_limits<L: OwnLimits<Held<'s> = U>>(&mut self, schedule: &'s Schedule<K, M>, own_limits: &'s L) {
         self.next_schedule = Some(schedule);
-        own_limits.change(&mut self.own_limits);
+        self.own_limits.change(own_limits.hold());
     }
 
     /// Turns to the following sensor, its gap after this instant, or to the next enabled one after it; if there is
@@ -185,7 +185,7 @@ impl<const K: usize, const M: usize> Schedule<K, M> {
     }
 }
 
-impl<const K: usize, const M: usize, U: LimitsInUse> Plan for ScheduledFiring<'_, K, M, U> {
+impl<const K: usize, const M: usize, U: OwnLimits> Plan for ScheduledFiring<'_, K, M, U> {
     #[inline]
     fn fire(&mut self, now: Instant) {
         self.last_fired = now;
@@ -306,7 +306,8 @@ impl<const K: usize, const M: usize, U: LimitsInUse> Plan for ScheduledFiring<'_
     }
 
     fn next_limits(&self) -> Option<Limits<'_>> {
-        self.own_limits.next_most().map(Limits::of_most).or_else(|| self.next_schedule.map(Schedule::limits))
+        let next = self.next_schedule?;
+        Some(self.own_limits.next_most().map_or_else(|| next.limits(), Limits::of_most))
     }
 
     fn hears(&self, receiver: u8, emitter: u8) -> bool {

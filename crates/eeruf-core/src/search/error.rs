@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use crate::layout::LayoutError;
+use crate::requirements_error::RequirementsError;
 use crate::schedule::{MAX_PERIOD, MAX_SENSORS, ScheduleError};
 use crate::time::Micros;
 
@@ -34,7 +34,7 @@ pub enum SearchError {
         lags: usize,
     },
     /// The layout names a sensor out of range.
-    Layout(LayoutError),
+    Layout(RequirementsError),
     /// The period is 0 or too long.
     Period {
         /// The period given, in ticks.
@@ -83,8 +83,8 @@ pub enum SearchError {
     Schedule(ScheduleError),
 }
 
-impl From<LayoutError> for SearchError {
-    fn from(error: LayoutError) -> Self {
+impl From<RequirementsError> for SearchError {
+    fn from(error: RequirementsError) -> Self {
         Self::Layout(error)
     }
 }

@@ -8,7 +8,7 @@ use eeruf_core::{
         HoppingCode, HoppingError, HoppingListening, HoppingPlan, HoppingRing, HoppingSchedule, HoppingSettings,
     },
     judge::{Judge, TrackerSettings},
-    plan::{EachInUse, Plan, ScheduledFiring},
+    plan::{Plan, ScheduledFiring},
     schedule,
     tables::TABLE_I_D,
 };
@@ -149,7 +149,7 @@ fn limits_go_with_adaptation() {
     };
     let rungs = [CORNER, slower];
     let mut adaptation = Adaptation::new(&rungs).unwrap();
-    let mut ring: Ring<ScheduledFiring<'_, 2, 2, EachInUse<'_, 2>>, _, 2> =
+    let mut ring: Ring<ScheduledFiring<'_, 2, 2, &EachSensor<2>>, _, 2> =
         Ring::new(&rungs[0], RingConfig::new(), BEGIN).unwrap();
     accepted(&mut ring, 1, |ring, event| {
         if let RingEvent::PeriodEnded(stats) = event {

@@ -6,7 +6,7 @@
 
 use eeruf_core::search::{Budget, Found, Objective, WaitProblem, WaitSearch, memory_words};
 use eeruf_core::tables::{TABLE_I_B, TABLE_I_C, TABLE_I_D, THE_ONE_WITH_19_MS};
-use eeruf_core::{Criterion, Layout, Micros, Phase, Requirements, Schedule, conditions::Interval};
+use eeruf_core::{Criterion, Layout, Micros, Phase, Requirements, Schedule, conditions::Least};
 use eeruf_period::{PeriodProblem, ShortestPeriod};
 
 const THEORY: &str = include_str!("../../../../docs/explanation/theory.md");
@@ -101,7 +101,7 @@ fn section_3_the_marks_on_the_ruler_are_those_of_table_i_d() {
 
 #[test]
 fn section_3_the_smallest_intervals_of_table_i_are_as_tabled() {
-    let closest = |value, sensors, phases| Some(Interval { value: ms(value), sensors, phases });
+    let closest = |value, sensors, phases| Some(Least { value: ms(value), sensors, phases, ages: (0, 0) });
     let (a, b) = (Phase::A, Phase::B);
     for table in [TABLE_I_B, TABLE_I_C] {
         assert_eq!(table.min_interval(Layout::Line(4)), closest(1, (3, 0), (a, b)));

@@ -43,7 +43,7 @@ impl Verify for Schedule<K, 2> {
         assert_eq!(numbers.min_refire_us, self.min_refire().as_micros());
         let c_mm_s = 343_200;
         assert_eq!(numbers.max_speed_mm_s, self.max_speed_mm_s(requirements.t_delta, c_mm_s));
-        match self.verify(&requirements).verified_each() {
+        match self.verified_each(&requirements) {
             Ok(verified) => {
                 assert_eq!(status, 0);
                 let limits: Vec<_> = (0..K as u8).map_while(|x| verified.limits_of(x)).collect();

@@ -22,7 +22,7 @@ use crate::verified::VerifiedSchedule;
 /// };
 /// # use eeruf_core::Micros;
 /// let requirements = Requirements::new(Micros::new(599));
-/// let rungs = [TABLE_I_D.scaled(3, 5)?, TABLE_I_D].map(|table| table.verify(&requirements).verified().expect("met"));
+/// let rungs = [TABLE_I_D.scaled(3, 5)?, TABLE_I_D].map(|table| table.verified(&requirements).expect("met"));
 /// let mut adaptation = Adaptation::new(&rungs)?;
 /// let mut ring = Ring::new(&rungs[0], RingConfig::new().with_window(Micros::from_millis(36)), Instant::default())?;
 /// if let Some(RingEvent::PeriodEnded(stats)) = ring.poll(ring.next_deadline()) {
@@ -181,7 +181,7 @@ mod tests {
     const REQUIREMENTS: Requirements<'static> = Requirements::new(Micros::new(599));
 
     fn rungs() -> [VerifiedSchedule<12>; 3] {
-        let verified = |schedule: Schedule<12>| schedule.verify(&REQUIREMENTS).verified().unwrap();
+        let verified = |schedule: Schedule<12>| schedule.verified(&REQUIREMENTS).unwrap();
         [TABLE_I_D.scaled(3, 5).unwrap(), TABLE_I_D.scaled(4, 5).unwrap(), TABLE_I_D].map(verified)
     }
 
@@ -264,7 +264,7 @@ mod tests {
         assert_eq!(error(&[fast, fast]), "rung 2 has a period of 60 ms; expected more than the 60 ms before it");
         let (lags, waits) = ([0, 20, 40].map(Micros::from_millis), [1, 3, 6].map(Micros::from_millis));
         let few = Schedule::from_slices(Micros::from_millis(100), &lags, [&[Micros::ZERO; 3], &waits]).unwrap();
-        let few = few.verify(&REQUIREMENTS).verified().unwrap();
+        let few = few.verified(&REQUIREMENTS).unwrap();
         assert_eq!(error(&[fast, few]), "rung 2 has 3 sensors; expected 12 as in the first");
     }
 }

@@ -294,8 +294,8 @@ mod tests {
         let period = Micros::from_millis(60);
         let exact = Schedule::<3>::from_firing(period, firing).unwrap();
         let roomy = Schedule::<5>::from_slices(period, &[Micros::ZERO; 3], [&firing[0], &firing[1]]).unwrap();
-        let (exact, roomy) = (exact.verify(&requirements), roomy.verify(&requirements));
-        let (exact, roomy) = (exact.verified_each().unwrap(), roomy.verified_each().unwrap());
+        let exact = exact.verified_each(&requirements).unwrap();
+        let roomy = roomy.verified_each(&requirements).unwrap();
         assert_eq!(exact.own_limits().most(), roomy.own_limits().most());
         for sensor in 0..5 {
             assert_eq!(exact.limits_of(sensor), roomy.limits_of(sensor));

@@ -215,6 +215,6 @@ mod everything_public_has_a_format {
         formats::<(HoppingRing<12>, HoppingRing<12, 8>)>();
         formats::<(EchoTracker<12>, TrackerSettings, Firing, RateFilter<12>, Survey)>();
         formats::<(HoppingRing<12, 4, EachSensor<12>>, PhaseTable<'_, 12>)>();
-        formats::<PhaseVerification<'_>>();
+        formats::<Verification<'_, 12>>();
     }
 }

@@ -82,7 +82,7 @@ impl Settings {
 /// A rung of a ring by tables, which rejects crosstalk.
 fn rung(name: &str, schedule: &Bound<'_, PyAny>, t_delta: Micros) -> PyResult<Rung> {
     let schedule = instance::<Schedule>(name, schedule, "an eeruf.Schedule, as the first is")?.get().0;
-    schedule.verify(&Requirements::new(t_delta)).verified().map_err(Raise::raise)
+    schedule.verified(&Requirements::new(t_delta)).map_err(Raise::raise)
 }
 
 /// A rung of a ring that hops, by which crosstalk moves by more than `t_delta`.

@@ -85,7 +85,7 @@ impl Promise {
             Self::Nothing => Ok((*schedule, EachSensor::NONE)),
             Self::TDelta => verify(schedule, t_delta).map(|()| (*schedule, EachSensor::NONE)),
             Self::EachSensor(needs) => {
-                let verified = schedule.verify(&needs.requirements()).verified_each().map_err(Raise::raise)?;
+                let verified = schedule.verified_each(&needs.requirements()).map_err(Raise::raise)?;
                 Ok((*verified.schedule(), *verified.own_limits()))
             }
         }

@@ -16,8 +16,7 @@ mod verify;
 use crate::requirements::{Least, Requirements, shorter};
 use crate::schedule::{MAX_SENSORS, Phase};
 use crate::time::Micros;
-
-pub use verify::PhaseVerification;
+use crate::verify::closer;
 
 /// Firing times of any number of phases, to be checked: a row for each phase, a number for each sensor.
 ///
@@ -217,13 +216,5 @@ impl Heard {
         // The length lies in blanking - g .. window - g for both, and in 0 .. reach.
         let (shortest, longest) = (self.blanking - low, self.window - high);
         shortest <= longest && shortest <= self.reach && longest >= 0
-    }
-}
-
-const fn closer(least: Option<Least>, next: Option<Least>) -> Option<Least> {
-    match (least, next) {
-        (Some(one), Some(other)) if one.value.as_micros() <= other.value.as_micros() => least,
-        (_, None) => least,
-        _ => next,
     }
 }

@@ -1,13 +1,13 @@
-//! [`PhaseVerification`]: whether firing times of many phases keep what is asked of them, and what they do not.
+//! Verifies firing times of many phases: the worst violation of each kind.
 
-use super::{PhaseTable, closer};
+use super::PhaseTable;
 use crate::requirements::{Least, Requirements};
 use crate::time::Micros;
-use crate::verify::{Violation, ViolationKind};
+use crate::verify::{KINDS, ManyPhases, Verification, Violation, ViolationKind, closer};
 
 impl<const K: usize> PhaseTable<'_, K> {
     /// Checks the table, in `25 (K M)^2` steps: every limit, pair, phase and age.
-    pub const fn verify<'r>(&self, requirements: &'r Requirements<'r>) -> PhaseVerification<'r> {
+    pub const fn verify<'r>(&self, requirements: &'r Requirements<'r>) -> Verification<'r, K> {
         self.verify_with(None, requirements)
     }
 
@@ -16,7 +16,7 @@ impl<const K: usize> PhaseTable<'_, K> {
         &self,
         proven: Option<Least>,
         requirements: &'r Requirements<'r>,
-    ) -> PhaseVerification<'r> {
+    ) -> Verification<'r, K> {
         let (mut worst, mut separation, mut stale) = ([None; KINDS], None, None);
         let mut x = 0;
         while x < self.sensors() {
@@ -44,7 +44,7 @@ impl<const K: usize> PhaseTable<'_, K> {
         }
         let (min_interval, min_refire) = (self.min_interval(requirements), self.min_refire());
         let worst = self.times(requirements, worst);
-        PhaseVerification { requirements, separation, stale, min_interval, min_refire, worst }
+        Verification::of_many(ManyPhases { requirements, separation, stale, min_interval, min_refire, worst })
     }
 
     /// The worst violations of what does not depend on crosstalk.
@@ -83,9 +83,6 @@ impl<const K: usize> PhaseTable<'_, K> {
     }
 }
 
-/// Crosstalk, stale echoes, intervals, windows, shared lines, refire times, sensors that fire together.
-const KINDS: usize = 7;
-
 /// The worst violation of each kind.
 type Worst = [Option<Violation>; KINDS];
 
@@ -118,69 +115,4 @@ const fn worse(worst: Option<Violation>, next: Option<Violation>) -> Option<Viol
 
 const fn short_by(violation: Violation) -> u32 {
     violation.value.as_micros().abs_diff(violation.required.as_micros())
-}
-
-/// Findings on firing times of many phases, against the requirements.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct PhaseVerification<'r> {
-    requirements: &'r Requirements<'r>,
-    separation: Option<Least>,
-    stale: Option<Least>,
-    min_interval: Option<Least>,
-    min_refire: Option<Least>,
-    worst: Worst,
-}
-
-impl PhaseVerification<'_> {
-    /// Returns true if every requirement holds.
-    pub const fn ok(&self) -> bool {
-        self.first_violation().is_none()
-    }
-
-    /// The least shift of crosstalk, and where it occurs; `None` if no path can be heard in two phases.
-    pub const fn separation(&self) -> Option<Least> {
-        self.separation
-    }
-
-    /// The least shift of a stale echo; `None` if none can be heard, or if it was not asked for.
-    pub const fn stale_separation(&self) -> Option<Least> {
-        self.stale
-    }
-
-    /// The smallest interval between neighbours, or between pairs that need one of their own; `None` without any.
-    pub const fn min_interval(&self) -> Option<Least> {
-        self.min_interval
-    }
-
-    /// The shortest time between two firings of one sensor; `None` without sensors.
-    pub const fn min_refire(&self) -> Option<Least> {
-        self.min_refire
-    }
-
-    /// The largest `t_delta` at which crosstalk - and stale echoes, if asked for - move far enough by the criterion, if
-    /// all sensors have the same; `None` if none is, or if nothing limits it.
-    pub const fn max_t_delta(&self) -> Option<Micros> {
-        match closer(self.separation, self.stale) {
-            Some(least) => self.requirements.criterion.max_t_delta(least.value),
-            None => None,
-        }
-    }
-
-    /// Violations, the worst of each kind.
-    pub fn violations(&self) -> impl Iterator<Item = Violation> {
-        self.worst.into_iter().flatten()
-    }
-
-    /// The first of them.
-    pub const fn first_violation(&self) -> Option<Violation> {
-        let mut kind = 0;
-        while kind < KINDS {
-            if self.worst[kind].is_some() {
-                return self.worst[kind];
-            }
-            kind += 1;
-        }
-        None
-    }
 }

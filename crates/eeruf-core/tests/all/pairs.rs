@@ -221,8 +221,7 @@ fn many_phases_go_with_adaptation() {
 #[test]
 fn several_echoes_go_with_adaptation() {
     let requirements = Requirements::new(Micros::new(599));
-    let rungs =
-        [TABLE_I_D.scaled(3, 5).unwrap(), TABLE_I_D].map(|table| table.verify(&requirements).verified().unwrap());
+    let rungs = [TABLE_I_D.scaled(3, 5).unwrap(), TABLE_I_D].map(|table| table.verified(&requirements).unwrap());
     let run = |heard| {
         let mut adaptation = Adaptation::new(&rungs).unwrap();
         let config = RingConfig::new().with_window(Micros::from_millis(40)).with_echoes::<3>();

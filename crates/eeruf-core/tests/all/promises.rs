@@ -26,7 +26,7 @@ fn verified<const K: usize>(period: u32, a: [u32; K], b: [u32; K], min_interval:
         window: ms(5),
         ..Requirements::new(ms(1))
     };
-    schedule.verify(&requirements).verified().unwrap()
+    schedule.verified(&requirements).unwrap()
 }
 
 /// The firings up to some instant.
@@ -226,8 +226,8 @@ fn a_schedule_with_room_for_300_sensors_fires_those_that_it_has() {
 // A ring takes no larger t delta than its schedule was verified for at the start or later.
 #[test]
 fn ring_takes_no_larger_t_delta_than_verified() {
-    let good = TABLE_I_D.verify(&Requirements::new(Micros::new(999))).verified().unwrap();
-    let better = TABLE_I_D.verify(&Requirements::new(Micros::new(500))).verified().unwrap();
+    let good = TABLE_I_D.verified(&Requirements::new(Micros::new(999))).unwrap();
+    let better = TABLE_I_D.verified(&Requirements::new(Micros::new(500))).unwrap();
     let ring = |t_delta| -> Result<ScheduledRing<12>, RingError> {
         Ring::new(&good, RingConfig::new().with_t_delta(t_delta).with_window(ms(40)), Instant::default())
     };
@@ -248,7 +248,7 @@ fn ring_takes_no_larger_t_delta_than_verified() {
 #[test]
 fn ring_listens_no_longer_than_verified() {
     let verified =
-        |window| TABLE_I_D.verify(&Requirements { window, ..Requirements::new(Micros::new(999)) }).verified().unwrap();
+        |window| TABLE_I_D.verified(&Requirements { window, ..Requirements::new(Micros::new(999)) }).unwrap();
     let (long, short) = (verified(ms(50)), verified(ms(40)));
     let refusal = "a listening window of 60 ms; expected at most 50 ms, which the schedule was verified for";
     let ring = Ring::new(&long, RingConfig::new().with_window(ms(60)), Instant::default());
@@ -294,7 +294,7 @@ fn unverified_schedule_needs_t_delta_and_window() {
         );
     }
     // A verified one is held to what it was verified for, by whatever way it comes.
-    let verified = TABLE_I_D.verify(&Requirements::new(Micros::new(999))).verified().unwrap();
+    let verified = TABLE_I_D.verified(&Requirements::new(Micros::new(999))).unwrap();
     assert!(Ring::unverified(&verified, CONFIG, Instant::default()).is_err());
     assert!(Ring::unverified(&verified, RingConfig::new(), Instant::default()).is_ok());
 }

@@ -13,7 +13,7 @@ use common::Owned;
 use common::naive::{Layout, Problem};
 use common::tables::{Case, File};
 use criterion::{Criterion, criterion_group};
-use eeruf_core::search::{Budget, COUNT_WORDS, MEMORY_WORDS, Objective};
+use eeruf_core::search::{Budget, COUNT_WORDS, MEMORY_WORDS};
 
 /// The problems counted: those of the shared tables with many tables, and two of more nodes.
 fn counts() -> Vec<Case> {
@@ -45,7 +45,7 @@ fn best_interval(c: &mut Criterion) {
             c.bench_function(&name, |bench| {
                 bench.iter(|| {
                     let mut budget = Budget::unlimited();
-                    owned.search().best::<64>(Objective::Interval, &mut memory, &mut budget)
+                    owned.search().best_interval::<64>(&mut memory, &mut budget)
                 });
             });
         }
@@ -113,7 +113,7 @@ fn ratios() {
     let mut memory = vec![0; COUNT_WORDS];
     for case in counts() {
         let owned = Owned::of(&case);
-        let (fast, counted) = time(20, || owned.search().count(None, &mut memory, &mut Budget::unlimited()).count);
+        let (fast, counted) = time(20, || owned.search().count(None, &mut memory, &mut Budget::unlimited()).1);
         let (slow, naive) = time(1, || nested_loops(&owned.problem()));
         assert_eq!((counted, u128::from(naive)), (case.count, case.count));
         let ratio = slow / fast;

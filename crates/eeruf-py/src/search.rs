@@ -3,8 +3,8 @@
 use std::time::Instant;
 
 use eeruf_core::search::{
-    self as search, Budget, COUNT_WORDS, FrontTable, Objective, Outcome, Progress, SearchError, WaitProblem,
-    WaitTables as Tables, memory_words,
+    self as search, Budget, COUNT_WORDS, Outcome, Progress, SearchError, WaitProblem, WaitTables as Tables,
+    memory_words,
 };
 use eeruf_core::{Criterion, MAX_SENSORS, Micros};
 use pyo3::prelude::*;
@@ -151,8 +151,8 @@ impl WaitSearch {
     #[pyo3(signature = (limit=None))]
     fn count(&self, py: Python<'_>, limit: Option<&Bound<'_, PyAny>>) -> PyResult<u128> {
         let limit = limit.map(|limit| whole("limit", limit, 1..=u64::MAX)).transpose()?.map(u128::from);
-        let count = |memory: &mut [u32], budget: &mut Budget<'_>| Ok(self.search.count(limit, memory, budget));
-        let count = self.run(py, u64::MAX, count, COUNT_WORDS)?.count;
+        let count = |memory: &mut [u32], budget: &mut Budget<'_>| Ok(self.search.count(limit, memory, budget).1);
+        let count = self.run(py, u64::MAX, count, COUNT_WORDS)?;
         // Core counts the last sensor's tables all at once, and so past the limit.
         Ok(limit.map_or(count, |limit| count.min(limit)))
     }
@@ -197,12 +197,18 @@ impl WaitSearch {
         objective: Option<&Bound<'_, PyAny>>,
         budget: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Found> {
-        let objectives = [("interval", Objective::Interval), ("t_delta", Objective::TDelta)];
-        let objective = choice("objective", objective, &objectives)?;
+        let objectives = [("interval", false), ("t_delta", true)];
+        let of_t_delta = choice("objective", objective, &objectives)?;
         let budget = whole_or("budget", budget, u64::MAX, 1..=u64::MAX)?;
         let words = memory_words(self.sensors);
         let began = Instant::now();
-        let best = |memory: &mut [u32], budget: &mut Budget<'_>| self.search.best(objective, memory, budget);
+        let best = |memory: &mut [u32], budget: &mut Budget<'_>| {
+            if of_t_delta {
+                self.search.best_t_delta(memory, budget)
+            } else {
+                self.search.best_interval(memory, budget)
+            }
+        };
         let found: search::Found<MAX_SENSORS> = self.run(py, budget, best, words)?;
         Ok(Found::of(&found, began, None))
     }
@@ -225,12 +231,14 @@ impl WaitSearch {
     fn pareto(&self, py: Python<'_>) -> PyResult<Vec<(Schedule, u32, Option<u32>)>> {
         let words = memory_words(self.sensors);
         let front = |memory: &mut [u32], budget: &mut Budget<'_>| {
-            let mut walk = self.search.pareto(memory);
             let mut tables = Vec::new();
-            while let Outcome::Found(FrontTable { schedule, min_interval, t_delta }) = walk.find_next(budget)? {
-                tables.push((Schedule(schedule), min_interval.as_micros(), t_delta.map(Micros::as_micros)));
+            while let Outcome::Found(table) = self.search.next_on_front(tables.last(), memory, budget)? {
+                tables.push(table);
             }
-            Ok(tables)
+            let row = |table: &search::FrontTable<MAX_SENSORS>| {
+                (Schedule(table.schedule), table.min_interval.as_micros(), table.t_delta.map(Micros::as_micros))
+            };
+            Ok(tables.iter().map(row).collect())
         };
         self.run(py, u64::MAX, front, words)
     }

@@ -2,7 +2,7 @@
 #![no_std]
 #![no_main]
 
-use eeruf_core::search::{Budget, Objective, WaitProblem, WaitSearch, memory_words};
+use eeruf_core::search::{Budget, WaitProblem, WaitSearch, memory_words};
 use eeruf_core::tables::{PAPER_12, TABLE_I_A, TABLE_I_B, TABLE_I_C, TABLE_I_D, THE_ONE_WITH_19_MS};
 use eeruf_core::{
     Criterion, Instant, Layout, Micros, Phase, ReadingKind, Requirements, Ring, RingConfig, RingEvent, Schedule,
@@ -90,7 +90,7 @@ fn no_table_of_waits_keeps_more_than_19_ms_among_any_four() {
     })
     .expect("a problem");
     let mut memory = [0; memory_words(12)];
-    let best = search.best::<12>(Objective::Interval, &mut memory, &mut Budget::unlimited()).expect("room");
+    let best = search.best_interval::<12>(&mut memory, &mut Budget::unlimited()).expect("room");
     assert_eq!((best.value, best.proven), (Some(Micros::from_millis(19)), true));
     let interval = best.schedule.and_then(|table| table.min_interval(Layout::Line(4))).map(|least| least.value);
     assert_eq!(interval, best.value);

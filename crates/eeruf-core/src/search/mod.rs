@@ -7,8 +7,8 @@
 //! | question | method | how |
 //! |---|---|---|
 //! | is there one? | [`WaitSearch::first`] | ranks of `|d|` over *difference constraints*: the tick does not matter |
-//! | the best interval or `t_delta` | [`WaitSearch::best`] | the same, by bisection |
-//! | the front of both | [`WaitSearch::pareto`] | the best of one, then of the other |
+//! | the best interval or `t_delta` | [`WaitSearch::best_interval`], [`best_t_delta`](WaitSearch::best_t_delta) | the same, by bisection |
+//! | the front of both | [`WaitSearch::next_on_front`] | the best of one, then of the other |
 //! | every one | [`WaitSearch::all`] | depth first over the values, in lexicographic order |
 //! | how many? | [`WaitSearch::count`] | depth first, with what was counted before kept in memory |
 //!
@@ -32,5 +32,5 @@ pub use control::{Control, Outcome, Progress};
 pub use error::SearchError;
 pub use found::Found;
 use members::Members;
-pub use wait::{Budget, COUNT_WORDS, Count, MEMORY_WORDS, Objective, memory_words};
-pub use wait_problem::{FrontTable, Infeasible, WaitFront, WaitProblem, WaitSearch, WaitTables};
+pub use wait::{Budget, COUNT_WORDS, MEMORY_WORDS, memory_words};
+pub use wait_problem::{FrontTable, Infeasible, WaitProblem, WaitSearch, WaitTables};

@@ -6,7 +6,7 @@ use super::control::Outcome;
 use super::error::SearchError;
 use super::found::Found;
 use super::grid::Grid;
-use super::wait::{Best, Budget, Count, Enumeration, MAX_PERIOD, Objective, Pareto, ParetoPoint, Problem, Search};
+use super::wait::{Best, Budget, Enumeration, MAX_PERIOD, Objective, Problem, Search};
 use crate::layout::Layout;
 use crate::requirements::Criterion;
 use crate::schedule::{MAX_SENSORS, Schedule};
@@ -41,7 +41,7 @@ pub struct WaitProblem<'a> {
 /// A search for tables of waits, in memory that the caller lends ([`memory_words`](super::memory_words)).
 ///
 /// ```
-/// use eeruf_core::search::{Budget, Objective, WaitProblem, WaitSearch, memory_words};
+/// use eeruf_core::search::{Budget, WaitProblem, WaitSearch, memory_words};
 /// use eeruf_core::{Criterion, Layout, Micros};
 ///
 /// let problem = WaitProblem {
@@ -58,7 +58,7 @@ pub struct WaitProblem<'a> {
 /// };
 /// let search = WaitSearch::new(&problem)?;
 /// let mut memory = vec![0; memory_words(12)];
-/// let best = search.best::<12>(Objective::Interval, &mut memory, &mut Budget::unlimited())?;
+/// let best = search.best_interval::<12>(&mut memory, &mut Budget::unlimited())?;
 /// // n I + D (K - 1) <= T_p: no table keeps any four neighbours further apart than 19 ms.
 /// assert_eq!(best.value, Some(Micros::from_millis(19)));
 /// assert!(best.proven);
@@ -216,39 +216,83 @@ impl WaitSearch {
     /// Counts the tables; stops early when there are `limit` or more. More `memory` makes it faster
     /// ([`COUNT_WORDS`](super::COUNT_WORDS)); it may be empty.
     ///
-    /// Without a limit, a count beyond `u128` ends with [`Outcome::Found`] at its maximum.
-    pub fn count(&self, limit: Option<u128>, memory: &mut [u32], budget: &mut Budget<'_>) -> Count {
+    /// The count is exact with [`Outcome::Exhausted`], and at least so much with the others: with [`Outcome::Found`] the
+    /// limit was reached, or without one `u128::MAX`.
+    pub fn count(&self, limit: Option<u128>, memory: &mut [u32], budget: &mut Budget<'_>) -> (Outcome, u128) {
         self.ticks().count(limit, memory, budget)
     }
 
-    /// Finds the table with the largest smallest interval or the largest `t_delta`, the other one as in the problem,
-    /// and proves that none is better.
-    ///
-    /// Without neighbours the interval is the period; a single sensor has the separation `wait_max`.
+    /// Finds the table with the largest smallest interval at the `t_delta` of the problem, and proves that none is
+    /// better. Without neighbours the interval is the period.
     ///
     /// # Errors
     /// As for [`first`](Self::first).
-    pub fn best<const K: usize>(
+    pub fn best_interval<const K: usize>(
+        &self,
+        memory: &mut [u32],
+        budget: &mut Budget<'_>,
+    ) -> Result<Found<K>, SearchError> {
+        self.best(Objective::Interval, memory, budget, |ticks| Some(self.grid.time(ticks)))
+    }
+
+    /// Finds the table with the largest `t_delta` at the smallest interval of the problem, and proves that none is
+    /// better. That of a single sensor is limited by `wait_max` alone.
+    ///
+    /// # Errors
+    /// As for [`first`](Self::first).
+    pub fn best_t_delta<const K: usize>(
+        &self,
+        memory: &mut [u32],
+        budget: &mut Budget<'_>,
+    ) -> Result<Found<K>, SearchError> {
+        self.best(Objective::Separation, memory, budget, |ticks| self.grid.t_delta(ticks))
+    }
+
+    fn best<const K: usize>(
         &self,
         objective: Objective,
         memory: &mut [u32],
         budget: &mut Budget<'_>,
+        time: impl Fn(u32) -> Option<Micros>,
     ) -> Result<Found<K>, SearchError> {
         let (mut a, mut b) = ([0; MAX_SENSORS], [0; MAX_SENSORS]);
         let best @ Best { value, bound, nodes, .. } = self.ticks().best(objective, memory, budget, &mut a, &mut b)?;
-        let time = |ticks| match objective {
-            Objective::Interval => Some(self.grid.time(ticks)),
-            Objective::TDelta => self.grid.t_delta(ticks),
-        };
         let schedule = if value.is_some() { Some(self.schedule(&a, &b)?) } else { None };
         let bound = if best.outcome == Outcome::Exhausted { None } else { time(bound) };
         Ok(Found { schedule, value: value.and_then(time), bound, proven: best.proven(), nodes })
     }
 
-    /// The Pareto front: the tables of which no other has a larger smallest interval without a smaller `t_delta`, both
-    /// at least those of the problem.
-    pub fn pareto<'s, 'm>(&'s self, memory: &'m mut [u32]) -> WaitFront<'s, 'm> {
-        WaitFront { search: self, front: self.ticks().pareto(memory) }
+    /// Finds the next table of the Pareto front: the tables of which no other has a larger smallest interval without a
+    /// smaller `t_delta`, both at least those of the problem, from the largest interval to the largest `t_delta`. It
+    /// follows `after`, or is the first; `Exhausted` after the last, `BudgetSpent` if the budget ended before it was
+    /// proven.
+    ///
+    /// # Errors
+    /// As for [`first`](Self::first).
+    pub fn next_on_front<const K: usize>(
+        &self,
+        after: Option<&FrontTable<K>>,
+        memory: &mut [u32],
+        budget: &mut Budget<'_>,
+    ) -> Result<Outcome<FrontTable<K>>, SearchError> {
+        let from = match after {
+            None => self.separation,
+            // A single sensor is at no distance from another: its one table is the whole front.
+            Some(_) if self.sensors == 1 => return Ok(Outcome::Exhausted),
+            Some(&FrontTable { separation: u32::MAX, .. }) => return Ok(Outcome::Exhausted),
+            Some(table) => table.separation + 1,
+        };
+        let (mut a, mut b) = ([0; MAX_SENSORS], [0; MAX_SENSORS]);
+        Ok(match self.ticks().front_from(from, memory, budget, &mut a, &mut b)? {
+            Outcome::Found((interval, separation)) => Outcome::Found(FrontTable {
+                schedule: self.schedule(&a, &b)?,
+                min_interval: self.grid.time(interval),
+                t_delta: self.grid.t_delta(separation),
+                separation,
+            }),
+            Outcome::Exhausted => Outcome::Exhausted,
+            Outcome::BudgetSpent => Outcome::BudgetSpent,
+        })
     }
 
     /// All tables, one after the other, in lexicographic order of `a_0, b_0, a_1, b_1, ..`.
@@ -302,13 +346,6 @@ impl WaitTables<'_> {
     }
 }
 
-/// A walk along the Pareto front of interval and `t_delta`, from the largest interval to the largest `t_delta`.
-#[derive(Debug)]
-pub struct WaitFront<'s, 'm> {
-    search: &'s WaitSearch,
-    front: Pareto<'s, 'm>,
-}
-
 /// A table of the Pareto front.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FrontTable<const K: usize> {
@@ -318,28 +355,7 @@ pub struct FrontTable<const K: usize> {
     pub min_interval: Micros,
     /// `T_delta`; no table with at least this interval has a larger one. `None` if two readings of the table are alike.
     pub t_delta: Option<Micros>,
-}
-
-impl WaitFront<'_, '_> {
-    /// Finds the next table; `Exhausted` after the last, `BudgetSpent` if the budget ended before it was proven. A step
-    /// that ran out of budget may be repeated with a new one.
-    ///
-    /// # Errors
-    /// As for [`WaitSearch::first`].
-    pub fn find_next<const K: usize>(
-        &mut self,
-        budget: &mut Budget<'_>,
-    ) -> Result<Outcome<FrontTable<K>>, SearchError> {
-        let (mut a, mut b) = ([0; MAX_SENSORS], [0; MAX_SENSORS]);
-        let (outcome, point) = self.front.next_into(budget, &mut a, &mut b)?;
-        let Some(ParetoPoint { interval, separation }) = point else {
-            return Ok(if outcome == Outcome::Exhausted { Outcome::Exhausted } else { Outcome::BudgetSpent });
-        };
-        let schedule = self.search.schedule(&a, &b)?;
-        let grid = self.search.grid;
-        let table = FrontTable { schedule, min_interval: grid.time(interval), t_delta: grid.t_delta(separation) };
-        Ok(Outcome::Found(table))
-    }
+    separation: u32,
 }
 
 /// Table I-a: sensor `x` of a group of `n` lags by `x mod n` parts in `n` of the period.

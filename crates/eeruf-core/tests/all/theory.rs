@@ -4,7 +4,7 @@
 //! Claims with a test of their own are not repeated: (13a), (13b) pair by pair, the rearrangements of Table I, nested
 //! loops for tables of waits, and that every period of `tests/data/shortest-periods.json` is the shortest.
 
-use eeruf_core::search::{Budget, Found, Objective, WaitProblem, WaitSearch, memory_words};
+use eeruf_core::search::{Budget, Found, WaitProblem, WaitSearch, memory_words};
 use eeruf_core::tables::{TABLE_I_B, TABLE_I_C, TABLE_I_D, THE_ONE_WITH_19_MS};
 use eeruf_core::{Criterion, Layout, Micros, Phase, Requirements, Schedule, conditions::Least};
 use eeruf_period::{PeriodProblem, ShortestPeriod};
@@ -65,7 +65,7 @@ fn waits(sensors: usize, t_delta_us: u32, tick_us: u32) -> WaitSearch {
 
 fn best_interval(search: &WaitSearch) -> Found<24> {
     let mut memory = vec![0; memory_words(24)];
-    search.best(Objective::Interval, &mut memory, &mut Budget::unlimited()).expect("memory suffices")
+    search.best_interval(&mut memory, &mut Budget::unlimited()).expect("memory suffices")
 }
 
 // Section 2 crosstalk from sensor 1 to 2 of table i d reads what the example says.
@@ -283,7 +283,7 @@ fn section_7_best_interval_takes_few_nodes() {
         criterion: Criterion::Paper,
     };
     let search = WaitSearch::new(&problem).unwrap();
-    assert_eq!(search.count(None, &mut [], &mut Budget::unlimited()).count, 3912);
+    assert_eq!(search.count(None, &mut [], &mut Budget::unlimited()).1, 3912);
 }
 
 #[test]

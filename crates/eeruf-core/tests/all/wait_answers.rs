@@ -1,7 +1,7 @@
 //! Answers of the search for waits beside its tables: that a question without an answer has no bound, and errors in a
 //! question.
 
-use eeruf_core::search::{Budget, MEMORY_WORDS, Objective, WaitProblem, WaitSearch};
+use eeruf_core::search::{Budget, MEMORY_WORDS, WaitProblem, WaitSearch};
 use eeruf_core::{Criterion, Layout, Micros};
 
 fn in_microseconds<'a>(period: Micros, t_lag: Option<&'a [Micros]>) -> WaitProblem<'a> {
@@ -26,11 +26,11 @@ fn best_of_nothing_has_no_bound() {
     // |d| is at most 2 ms, and three sensors that are 2 ms apart need 0, 2 and 4.
     let problem = in_microseconds(Micros::from_millis(60), None);
     let search = WaitSearch::new(&problem).unwrap();
-    let none = search.best::<3>(Objective::Interval, &mut memory, &mut Budget::unlimited()).unwrap();
+    let none = search.best_interval::<3>(&mut memory, &mut Budget::unlimited()).unwrap();
     assert_eq!((none.schedule.is_none(), none.value, none.bound, none.proven), (true, None, None, true));
     let enough = WaitProblem { wait_max: Micros::from_millis(24), ..problem };
     let search = WaitSearch::new(&enough).unwrap();
-    let ended = search.best::<3>(Objective::Interval, &mut memory, &mut Budget::nodes_at_most(1)).unwrap();
+    let ended = search.best_interval::<3>(&mut memory, &mut Budget::nodes_at_most(1)).unwrap();
     assert!(ended.schedule.is_none() && ended.bound.is_some() && !ended.proven, "{ended:?}");
 }
 

@@ -6,7 +6,8 @@ use std::ops::ControlFlow;
 use crate::common::naive::{self, Layout, Problem};
 use crate::common::{holds, search, us};
 use eeruf_core::search::{
-    Budget, COUNT_WORDS, Found, MEMORY_WORDS, Objective, Outcome, Progress, SearchError, WaitProblem, WaitSearch,
+    Budget, COUNT_WORDS, Found, FrontTable, MEMORY_WORDS, Outcome, Progress, SearchError, WaitProblem, WaitSearch,
+    memory_words,
 };
 use eeruf_core::{Criterion, Micros, Schedule};
 
@@ -26,11 +27,12 @@ fn a_spent_budget_says_so_and_proves_nothing() {
     assert_eq!(budget.nodes(), 3);
     assert!(budget.spent());
 
-    let counted = search.count(None, &mut [], &mut Budget::nodes_at_most(100));
-    assert_eq!((counted.outcome, counted.nodes), (Outcome::BudgetSpent, 100));
-    assert!(counted.count < 21_227_232);
+    let mut budget = Budget::nodes_at_most(100);
+    let (outcome, count) = search.count(None, &mut [], &mut budget);
+    assert_eq!((outcome, budget.nodes()), (Outcome::BudgetSpent, 100));
+    assert!(count < 21_227_232);
 
-    let best = search.best::<6>(Objective::Interval, &mut memory, &mut Budget::nodes_at_most(20));
+    let best = search.best_interval::<6>(&mut memory, &mut Budget::nodes_at_most(20));
     let Found { value, bound, proven, nodes, .. } = best.unwrap();
     assert_eq!((proven, nodes), (false, 20));
     assert!(value.is_none_or(|value| value <= us(11)) && bound >= Some(us(11)));
@@ -75,7 +77,7 @@ fn a_watcher_sees_every_so_many_nodes_and_can_cancel() {
     };
     let mut budget = Budget::unlimited().watched(1000, &mut watch);
     let counted = search.count(None, &mut [0; 1000], &mut budget);
-    assert_eq!(counted.outcome, Outcome::BudgetSpent);
+    assert_eq!(counted.0, Outcome::BudgetSpent);
     assert_eq!(seen, [1000, 2000, 3000, 4000, 5000]);
 }
 
@@ -84,11 +86,11 @@ fn a_limit_ends_a_count_early() {
     let conflicts = naive::conflicts(Layout::Blocks, 6, 4);
     let search = search(&six(&conflicts)).unwrap();
     let mut memory = vec![0; COUNT_WORDS];
-    let counted = search.count(Some(1000), &mut memory, &mut Budget::unlimited());
-    assert_eq!(counted.outcome, Outcome::Found(()));
-    assert!((1000..21_227_232).contains(&counted.count));
+    let (outcome, count) = search.count(Some(1000), &mut memory, &mut Budget::unlimited());
+    assert_eq!(outcome, Outcome::Found(()));
+    assert!((1000..21_227_232).contains(&count));
     let whole = search.count(Some(21_227_233), &mut memory, &mut Budget::unlimited());
-    assert_eq!((whole.outcome, whole.count), (Outcome::Exhausted, 21_227_232));
+    assert_eq!(whole, (Outcome::Exhausted, 21_227_232));
 }
 
 #[test]
@@ -97,10 +99,13 @@ fn a_count_is_exact_whatever_the_memory_and_whatever_it_held() {
     let problem = Problem { wait_max: 5, ..six(&conflicts) };
     let search = search(&problem).unwrap();
     let counts: Vec<_> = [0, 1, 50, 1000, 100_000]
-        .map(|words| search.count(None, &mut vec![u32::MAX; words], &mut Budget::unlimited()))
+        .map(|words| {
+            let mut budget = Budget::unlimited();
+            (search.count(None, &mut vec![u32::MAX; words], &mut budget), budget.nodes())
+        })
         .to_vec();
-    assert!(counts.iter().all(|counted| counted.count == counts[0].count && counted.outcome == Outcome::Exhausted));
-    assert!(counts[4].nodes < counts[0].nodes, "memory saves nodes");
+    assert!(counts.iter().all(|&(counted, _)| counted == counts[0].0 && counted.0 == Outcome::Exhausted));
+    assert!(counts[4].1 < counts[0].1, "memory saves nodes");
 }
 
 /// Two sensors whose waits range to `wait_max`.
@@ -122,7 +127,7 @@ fn waits_beyond_the_words_of_the_count_are_counted_all_the_same() {
     for wait_max in [14, 15, 16, 31, 32] {
         let problem = two(wait_max, 55);
         let counted = search(&problem).unwrap().count(None, &mut [0; 500], &mut Budget::unlimited());
-        assert_eq!(counted.count, naive::count(&problem), "{wait_max}");
+        assert_eq!(counted.1, naive::count(&problem), "{wait_max}");
     }
     for wait_max in [62, 63, 64, 65] {
         // An interval that leaves few tables: the walk over them is the judge.
@@ -135,7 +140,7 @@ fn waits_beyond_the_words_of_the_count_are_counted_all_the_same() {
             seen += 1;
         }
         assert!(seen > 0);
-        assert_eq!(counted.count, seen, "{wait_max}");
+        assert_eq!(counted.1, seen, "{wait_max}");
     }
 }
 
@@ -153,7 +158,7 @@ fn sixty_four_sensors_have_a_best_interval() {
         criterion: Criterion::Exact,
     };
     let search = search(&problem).unwrap();
-    let best = search.best::<64>(Objective::Interval, &mut [0; MEMORY_WORDS], &mut Budget::unlimited()).unwrap();
+    let best = search.best_interval::<64>(&mut [0; MEMORY_WORDS], &mut Budget::unlimited()).unwrap();
     // n I + D (K - 1) <= T_p.
     assert_eq!(best.value, Some(us((1000 - 2 * 63) / 4)));
     assert!(holds(&Problem { interval: 218, ..problem }, &best.schedule.unwrap()));
@@ -204,4 +209,25 @@ fn bad_input_gets_one_clear_line() {
     assert_eq!(error, SearchError::Memory { words: 2, needed: 16 });
     let narrow: Result<Outcome<Schedule<1>>, _> = search.first(&mut [0; 16], &mut Budget::unlimited());
     assert!(matches!(narrow, Err(SearchError::Schedule(_))), "{narrow:?}");
+}
+
+// A single sensor is at no distance from another: one table is its whole front.
+#[test]
+fn front_of_single_sensor_is_one_table() {
+    let alone = Problem {
+        period: 10,
+        lag: &[0],
+        wait_max: 9,
+        separation: 2,
+        interval: 3,
+        conflicts: &[0],
+        criterion: Criterion::Paper,
+    };
+    let search = search(&alone).unwrap();
+    let mut next = |after: Option<&FrontTable<1>>| {
+        search.next_on_front(after, &mut [0; memory_words(1)], &mut Budget::unlimited()).unwrap()
+    };
+    let Outcome::Found(only) = next(None) else { panic!("no table") };
+    assert!(holds(&alone, &only.schedule));
+    assert_eq!(next(Some(&only)), Outcome::Exhausted);
 }

@@ -4,7 +4,7 @@
 use crate::common::naive::{self, Layout, Problem};
 use crate::common::{Owned, holds, separation, ticks, waits};
 use eeruf_core::Criterion;
-use eeruf_core::search::{Budget, Found, MEMORY_WORDS, Objective, Outcome};
+use eeruf_core::search::{Budget, Found, FrontTable, MEMORY_WORDS, Outcome};
 use proptest::prelude::*;
 
 /// A line, a ring, blocks or any graph; lags in groups or anyhow.
@@ -85,7 +85,7 @@ proptest! {
         // No memory, so little that entries give way all the time, and plenty.
         for words in [0, 60, 5000] {
             let counted = search.count(None, &mut vec![7; words], &mut Budget::unlimited());
-            prop_assert_eq!((counted.outcome, counted.count), (Outcome::Exhausted, count), "{} words", words);
+            prop_assert_eq!(counted, (Outcome::Exhausted, count), "{} words", words);
         }
         let mut all = search.all();
         let mut seen = Vec::new();
@@ -108,8 +108,8 @@ proptest! {
         let (problem, search) = (tiny.problem(), tiny.search());
         let mut memory = vec![0; MEMORY_WORDS];
         let front = naive_front(&tiny);
-        let mut best = |objective| search.best(objective, &mut memory, &mut Budget::unlimited()).unwrap();
-        let Found::<64> { schedule, value, proven, .. } = best(Objective::Interval);
+        let best = search.best_interval(&mut memory, &mut Budget::unlimited());
+        let Found::<64> { schedule, value, proven, .. } = best.unwrap();
         prop_assert!(proven);
         let apart = tiny.conflicts.iter().any(|&row| row != 0);
         if apart {
@@ -121,7 +121,8 @@ proptest! {
             let at = Problem { interval, ..problem };
             prop_assert!(holds(&at, &table));
         }
-        let Found::<64> { schedule, value, proven, .. } = best(Objective::TDelta);
+        let best = search.best_t_delta(&mut memory, &mut Budget::unlimited());
+        let Found::<64> { schedule, value, proven, .. } = best.unwrap();
         prop_assert!(proven);
         prop_assert_eq!(schedule.is_some(), !front.is_empty());
         if let (Some(separation), Some(table), true) = (value.map(separation), schedule, tiny.lag.len() > 1) {
@@ -130,13 +131,15 @@ proptest! {
             prop_assert!(holds(&at, &table));
         }
         if tiny.lag.len() > 1 && apart {
-            let mut walk = search.pareto(&mut memory);
-            let mut points = Vec::new();
-            while let Outcome::Found(table) = walk.find_next::<64>(&mut Budget::unlimited()).unwrap() {
+            let (mut points, mut before) = (Vec::new(), None::<FrontTable<64>>);
+            while let Outcome::Found(table) =
+                search.next_on_front(before.as_ref(), &mut memory, &mut Budget::unlimited()).unwrap()
+            {
                 let (interval, separation) = (ticks(table.min_interval), separation(table.t_delta.unwrap()));
                 let at = Problem { interval, separation, ..problem };
                 prop_assert!(holds(&at, &table.schedule));
                 points.push((interval, separation));
+                before = Some(table);
             }
             prop_assert_eq!(points, front);
         }

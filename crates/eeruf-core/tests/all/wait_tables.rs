@@ -6,7 +6,7 @@ use crate::common::naive::{self, Layout, Problem};
 use crate::common::tables::File;
 use crate::common::{Owned, holds, ticks, us};
 use eeruf_core::Criterion;
-use eeruf_core::search::{Budget, COUNT_WORDS, Found, MEMORY_WORDS, Objective, Outcome, memory_words};
+use eeruf_core::search::{Budget, COUNT_WORDS, Found, MEMORY_WORDS, Outcome, memory_words};
 
 #[test]
 fn every_count_of_the_shared_tables_comes_out() {
@@ -14,7 +14,7 @@ fn every_count_of_the_shared_tables_comes_out() {
     for case in File::read().cases {
         let owned = Owned::of(&case);
         let count = owned.search().count(None, &mut memory, &mut Budget::unlimited());
-        assert_eq!((count.outcome, count.count), (Outcome::Exhausted, case.count), "{case:?}");
+        assert_eq!(count, (Outcome::Exhausted, case.count), "{case:?}");
     }
 }
 
@@ -47,7 +47,7 @@ fn every_best_interval_of_the_shared_tables_comes_out_proven() {
     let mut memory = vec![0; MEMORY_WORDS];
     for case in File::read().cases {
         let owned = Owned::of(&case);
-        let best: Found<64> = owned.search().best(Objective::Interval, &mut memory, &mut Budget::unlimited()).unwrap();
+        let best: Found<64> = owned.search().best_interval(&mut memory, &mut Budget::unlimited()).unwrap();
         assert!(best.proven, "{case:?}");
         let value = u32::try_from(case.best_interval).ok();
         assert_eq!(best.value, value.map(us), "{case:?} {best:?}");
@@ -61,7 +61,7 @@ fn every_best_interval_of_the_shared_tables_comes_out_proven() {
 fn best_interval(owned: &Owned) -> (u32, u64) {
     let sensors = owned.lag.len();
     let mut memory = vec![0; memory_words(sensors)];
-    let best: Found<64> = owned.search().best(Objective::Interval, &mut memory, &mut Budget::unlimited()).unwrap();
+    let best: Found<64> = owned.search().best_interval(&mut memory, &mut Budget::unlimited()).unwrap();
     let (interval, table) = (ticks(best.value.unwrap()), best.schedule.unwrap());
     assert_eq!((best.proven, best.bound), (true, best.value));
     assert!(holds(&Problem { interval, ..owned.problem() }, &table));

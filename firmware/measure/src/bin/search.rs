@@ -5,7 +5,7 @@
 
 use eeruf_board::say;
 use eeruf_board::say::leave;
-use eeruf_core::search::{Budget, Objective, WaitProblem, WaitSearch, memory_words};
+use eeruf_core::search::{Budget, WaitProblem, WaitSearch, memory_words};
 use eeruf_core::{Criterion, Layout, Micros};
 
 eeruf_board::say_panic!();
@@ -29,7 +29,7 @@ fn main() -> ! {
     let start = eeruf_board::now();
     let Ok(search) = WaitSearch::new(&problem) else { leave(2) };
     let mut memory = [0; memory_words(12)];
-    let Ok(best) = search.best::<12>(Objective::Interval, &mut memory, &mut Budget::unlimited()) else { leave(3) };
+    let Ok(best) = search.best_interval::<12>(&mut memory, &mut Budget::unlimited()) else { leave(3) };
     // 64 ns an instruction.
     let instructions = u64::from(eeruf_board::now().since(start).as_micros()) * 1000 / 64;
     if (best.value, best.proven) != (Some(Micros::from_millis(19)), true) {

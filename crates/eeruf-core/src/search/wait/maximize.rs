@@ -11,11 +11,11 @@ use crate::search::{Outcome, SearchError};
 
 /// The value to maximise.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Objective {
-    /// The smallest interval between neighbours, at the `t_delta` of the problem.
+pub(crate) enum Objective {
+    /// The smallest interval between conflicting sensors, at the separation of the problem.
     Interval,
-    /// `T_delta`, at the smallest interval of the problem.
-    TDelta,
+    /// The separation `D`, at the smallest interval of the problem.
+    Separation,
 }
 
 /// The outcome of a search for the best table.
@@ -64,7 +64,7 @@ impl Search<'_> {
             Objective::Interval if self.problem().conflicts.iter().any(|&row| row != 0) => self.problem().period,
             Objective::Interval => self.problem().period.max(self.problem().interval),
             // Capacity: K values |d| in 0 ..= wait_max.
-            Objective::TDelta => match self.problem().wait_max.checked_div(pairs) {
+            Objective::Separation => match self.problem().wait_max.checked_div(pairs) {
                 Some(most) => most,
                 None => self.problem().wait_max.max(self.problem().separation),
             },
@@ -127,21 +127,21 @@ impl Search<'_> {
     fn least_of(&self, objective: Objective) -> u32 {
         match objective {
             Objective::Interval => self.problem().interval,
-            Objective::TDelta => self.problem().separation,
+            Objective::Separation => self.problem().separation,
         }
     }
 
     fn at(&self, objective: Objective, value: u32) -> Self {
         match objective {
             Objective::Interval => self.with(self.problem().separation, value),
-            Objective::TDelta => self.with(value, self.problem().interval),
+            Objective::Separation => self.with(value, self.problem().interval),
         }
     }
 
     fn value_of(&self, objective: Objective, a: &[u32], b: &[u32]) -> u32 {
         match objective {
             Objective::Interval => self.smallest_interval(a, b),
-            Objective::TDelta => self.separation_of(a, b),
+            Objective::Separation => self.separation_of(a, b),
         }
     }
 }

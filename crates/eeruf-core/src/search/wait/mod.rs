@@ -31,12 +31,10 @@ mod tests;
 use crate::schedule::MAX_SENSORS;
 
 pub use budget::Budget;
-pub use count::{COUNT_WORDS, Count};
+pub use count::COUNT_WORDS;
 pub(crate) use enumerate::Enumeration;
 pub use feasibility::memory_words;
-pub(crate) use maximize::Best;
-pub use maximize::Objective;
-pub(crate) use pareto::{Pareto, ParetoPoint};
+pub(crate) use maximize::{Best, Objective};
 pub(crate) use problem::{MAX_PERIOD, Problem, Search};
 
 /// Words of memory that suffice for every search but counting, with up to [`MAX_SENSORS`] sensors; [`memory_words`]

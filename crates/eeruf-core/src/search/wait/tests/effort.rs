@@ -73,19 +73,19 @@ impl Record {
             let outcome = search.first(&mut memory, &mut budget, &mut a, &mut b).unwrap();
             (format!("{outcome:?}"), budget.nodes(), (&a, &b))
         });
-        for (best_of, objective) in [(Objective::Interval, "Interval"), (Objective::TDelta, "Separation")] {
-            self.ask(&format!("{name} {objective}"), |mut control| {
+        for objective in [Objective::Interval, Objective::Separation] {
+            self.ask(&format!("{name} {objective:?}"), |mut control| {
                 let mut budget = Budget::nodes_at_most(BUDGET).watched(100, &mut control);
-                let best = search.best(best_of, &mut memory, &mut budget, &mut a, &mut b).unwrap();
+                let best = search.best(objective, &mut memory, &mut budget, &mut a, &mut b).unwrap();
                 (format!("{:?} <= {}", best.value, best.bound), best.nodes, (&a, &b))
             });
         }
         for words in [60, 4000] {
             self.ask(&format!("{name} count with {words} words"), |mut control| {
                 let mut budget = Budget::nodes_at_most(10 * BUDGET).watched(1000, &mut control);
-                let counted = search.count(None, &mut vec![0; words], &mut budget);
-                let whole = if counted.outcome == Outcome::Exhausted { "" } else { " or more" };
-                (format!("{}{whole}", counted.count), counted.nodes, ())
+                let (outcome, count) = search.count(None, &mut vec![0; words], &mut budget);
+                let whole = if outcome == Outcome::Exhausted { "" } else { " or more" };
+                (format!("{count}{whole}"), budget.nodes(), ())
             });
         }
     }

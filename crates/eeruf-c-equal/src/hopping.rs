@@ -6,7 +6,7 @@ use eeruf_core::{
     Criterion, EachSensor, Instant, Layout, Micros, Requirements, Uneven,
     adaptation::Adaptation,
     hopping::{HoppingCode, HoppingError, HoppingListening, HoppingRing, HoppingSchedule, HoppingSettings},
-    plan::{Alike, OwnLimits},
+    plan::OwnLimits,
 };
 
 fn settings(r: &Random) -> HoppingSettings {
@@ -141,7 +141,7 @@ pub fn run<const K: usize>(r: &Random) -> u64 {
         }
         None => {
             let ring = schedule.and_then(|it| HoppingRing::<K>::hopping(&it, s, listening, random_seed, now));
-            compare::<K, Alike>(r, c, status, ring, &rungs, (window, start))
+            compare::<K, ()>(r, c, status, ring, &rungs, (window, start))
         }
     }
 }

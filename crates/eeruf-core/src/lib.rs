@@ -87,7 +87,6 @@ pub mod watch;
 pub use checked::{__checked, __checked_each, __checked_hopping, __micros};
 pub use edges::{Edge, EdgeQueue};
 pub use filter::EchoFilter;
-pub use interop::DurationError;
 pub use layout::Layout;
 pub use own_limits::{EachSensor, SensorLimits};
 pub use reading::{ReadingKind, Tally};

@@ -17,7 +17,7 @@ pub struct SensorLimits {
     pub window: Micros,
 }
 
-/// Limits that the sensors of a schedule have of their own: none, [`Alike`], or some for each, [`EachSensor`]. A plan
+/// Limits that the sensors of a schedule have of their own: none, `()`, or some for each, [`EachSensor`]. A plan
 /// that changes from one to another holds references to them, `&EachSensor`.
 pub trait OwnLimits: Copy + fmt::Debug + sealed::Sealed {
     /// The part of them that a plan holds which may change to others.
@@ -62,20 +62,14 @@ mod sealed {
     pub trait Sealed {}
 }
 
+impl sealed::Sealed for () {}
+
 /// No limits of their own: all sensors listen and compare alike.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Alike;
-
-impl sealed::Sealed for Alike {}
-
-impl OwnLimits for Alike {
+impl OwnLimits for () {
     type Held<'s> = Self;
 
     #[inline]
-    fn hold(&self) -> Self {
-        Self
-    }
+    fn hold(&self) {}
 }
 
 /// Limits of its own for each sensor; places beyond the last sensor say nothing.

@@ -2,7 +2,7 @@
 
 use core::ops::Deref;
 
-use crate::own_limits::{Alike, EachSensor, SensorLimits};
+use crate::own_limits::{EachSensor, SensorLimits};
 use crate::requirements::{Criterion, Requirements};
 use crate::schedule::{Schedule, VerifiedFor};
 use crate::time::{Micros, longer, shorter};
@@ -15,7 +15,7 @@ use crate::verify::{Violation, stale_separation};
 /// keeps one by one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct VerifiedSchedule<const K: usize, const M: usize = 2, L = Alike> {
+pub struct VerifiedSchedule<const K: usize, const M: usize = 2, L = ()> {
     schedule: Schedule<K, M>,
     own_limits: L,
 }
@@ -141,7 +141,7 @@ impl<const K: usize> Schedule<K> {
             Criterion::Margin(margin) => Some(margin.saturating_sub(Micros::new(1))),
         };
         let verified_for = VerifiedFor { t_delta, min_interval, window, separation, path_change, audible };
-        Ok(VerifiedSchedule { schedule: schedule.with_verified_for(verified_for), own_limits: Alike })
+        Ok(VerifiedSchedule { schedule: schedule.with_verified_for(verified_for), own_limits: () })
     }
 
     /// The schedule with the proof that it meets the requirements, and with what each sensor allows.

@@ -3,8 +3,7 @@
 use std::time::Instant;
 
 use eeruf_core::search::{
-    self as search, Budget, COUNT_WORDS, Outcome, Progress, SearchError, WaitProblem, WaitTables as Tables,
-    memory_words,
+    self as search, Budget, COUNT_WORDS, Outcome, Progress, SearchError, WaitProblem, memory_words,
 };
 use eeruf_core::{Criterion, MAX_SENSORS, Micros};
 use pyo3::prelude::*;
@@ -168,7 +167,7 @@ impl WaitSearch {
     ///     >>> [table.t_wait_b_us for table in itertools.islice(search.all(), 2)]
     ///     [(0, 2000), (0, 3000)]
     fn all(&self) -> WaitTables {
-        WaitTables(Exclusive::new("iterator of tables", Walk::new(self.search.clone(), search::WaitSearch::all)))
+        WaitTables(Exclusive::new("iterator of tables", Walk { search: self.search.clone(), last: None }))
     }
 
     /// The best table: the one whose smallest interval between neighbours, or whose ``T_delta``, is largest. Ctrl-C
@@ -244,14 +243,11 @@ impl WaitSearch {
     }
 }
 
-self_cell::self_cell!(
-    /// A walk over all tables, with the question that it borrows.
-    struct Walk {
-        owner: search::WaitSearch,
-        #[covariant]
-        dependent: Tables,
-    }
-);
+/// The question, and the last table that was given.
+struct Walk {
+    search: search::WaitSearch,
+    last: Option<eeruf_core::Schedule<MAX_SENSORS>>,
+}
 
 /// All tables of a ``WaitSearch``, one after the other: an iterator that Ctrl-C interrupts.
 ///
@@ -273,10 +269,14 @@ impl WaitTables {
         let (mut watch, mut walk) = (Watch::new(None)?, self.0.get()?);
         let walk = &mut *walk;
         let next = py.detach(|| {
-            walk.with_dependent_mut(|_, tables| {
-                let mut watcher = |_: &Progress| control_flow(watch.go_on(None, String::new));
-                let mut budget = Budget::nodes_at_most(u64::MAX).watched(POLL, &mut watcher);
-                Ok(if let Outcome::Found(table) = tables.find_next(&mut budget)? { Some(table) } else { None })
+            let mut watcher = |_: &Progress| control_flow(watch.go_on(None, String::new));
+            let mut budget = Budget::nodes_at_most(u64::MAX).watched(POLL, &mut watcher);
+            Ok(match walk.search.next_table(walk.last.as_ref(), &mut budget)? {
+                Outcome::Found(table) => {
+                    walk.last = Some(table);
+                    Some(table)
+                }
+                _ => None,
             })
         });
         watch.outcome(next.map(|schedule| schedule.map(Schedule)).map_err(|error: SearchError| error.raise()))

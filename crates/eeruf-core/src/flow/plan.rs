@@ -4,7 +4,7 @@ use super::settings::{FlowSettings, Pace};
 use super::slot::{DISABLED, QUIET_US, Slot};
 use crate::hopping::{CATCHES_UP, HoppingCode, HoppingError, HoppingListening, Lateness, Weighed};
 use crate::judging::{Firing, Heard, Judge};
-use crate::own_limits::{Alike, OwnLimits, SensorLimits};
+use crate::own_limits::{OwnLimits, SensorLimits};
 use crate::plan::{Limits, Plan, Upcoming};
 use crate::reading::{ReadingKind, Verdict};
 use crate::schedule::{MAX_PERIOD, Phase};
@@ -17,7 +17,7 @@ pub(super) const NOBODY: u8 = u8::MAX;
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(C)]
-pub struct FlowPlan<const K: usize, U = Alike> {
+pub struct FlowPlan<const K: usize, U = ()> {
     /// The sensor that fires next, or [`NOBODY`].
     next: u8,
     /// Firings of this cycle so far, and all of them.
@@ -58,7 +58,7 @@ impl<const K: usize> FlowPlan<K> {
         listening: HoppingListening,
         now: Instant,
     ) -> Result<Self, HoppingError> {
-        Self::with_limits(sensors, Alike, settings, listening, now)
+        Self::with_limits(sensors, (), settings, listening, now)
     }
 }
 

@@ -22,7 +22,7 @@ mod turn;
 mod weighed;
 
 use crate::judging::Judge;
-use crate::own_limits::{Alike, OwnLimits};
+use crate::own_limits::OwnLimits;
 use crate::ring::{Ring, RingConfig};
 use crate::time::Instant;
 use crate::tracker::EchoTracker;
@@ -67,8 +67,7 @@ pub use weighed::Weighed;
 /// ```
 ///
 /// `U` is [`EachSensor`](crate::EachSensor) where sensors have limits of their own.
-pub type HoppingRing<const K: usize, const H: usize = 4, U = Alike> =
-    Ring<HoppingPlan<K, U>, EchoTracker<K, H>, K, 1, 1>;
+pub type HoppingRing<const K: usize, const H: usize = 4, U = ()> = Ring<HoppingPlan<K, U>, EchoTracker<K, H>, K, 1, 1>;
 
 impl<const K: usize, const H: usize> HoppingRing<K, H> {
     /// A ring that hops in time and begins at `now`. The seed is for the draws of new lags.
@@ -83,7 +82,7 @@ impl<const K: usize, const H: usize> HoppingRing<K, H> {
         seed: u32,
         now: Instant,
     ) -> Result<Self, HoppingError> {
-        Self::with_limits(schedule, Alike, settings, listening, seed, now)
+        Self::with_limits(schedule, (), settings, listening, seed, now)
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::contract::{Limits, Plan, Upcoming};
 use crate::judging::Firing;
-use crate::own_limits::{Alike, InUse, OwnLimits, SensorLimits};
+use crate::own_limits::{InUse, OwnLimits, SensorLimits};
 use crate::schedule::{MAX_SENSORS, Phase, Schedule, VerifiedFor};
 use crate::sensor_set::SensorSet;
 use crate::time::{Instant, Micros, longer};
@@ -14,12 +14,12 @@ use crate::verified::VerifiedSchedule;
 /// no two firings ever come closer than in the schedule, however late the caller is.
 ///
 /// ```
-/// use eeruf_core::{Instant, Micros, Phase, plan::{Plan, PlanStep, ScheduledFiring}, tables::TABLE_I_D};
+/// use eeruf_core::{Instant, Phase, plan::{Plan, ScheduledFiring, Upcoming}, tables::TABLE_I_D};
 /// let mut plan = ScheduledFiring::new(&TABLE_I_D, Instant::from_micros(0));
 /// let first = plan.deadline();
 /// assert_eq!(first, Instant::from_micros(24_000));
 /// assert_eq!(plan.poll(Instant::from_micros(23_999)), None);
-/// assert_eq!(plan.poll(first), Some(PlanStep::Fire { sensor: 0, phase: Phase::A, late: Micros::ZERO }));
+/// assert_eq!(plan.poll(first), Some(Upcoming { sensor: 0, phase: Phase::A, due: first }));
 /// ```
 ///
 /// Where sensors have limits of their own, each listens and compares as it was verified for; in the first period after
@@ -28,7 +28,7 @@ use crate::verified::VerifiedSchedule;
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 // In this order for the short offsets of a Cortex-M0: see `Ring`.
 #[repr(C)]
-pub struct ScheduledFiring<'s, const K: usize, const M: usize = 2, U = Alike> {
+pub struct ScheduledFiring<'s, const K: usize, const M: usize = 2, U = ()> {
     phase: u8,
     /// Place in the firing order of the sensor after the next one.
     following: u8,
@@ -58,7 +58,7 @@ enum Skips {
 impl<'s, const K: usize, const M: usize> ScheduledFiring<'s, K, M> {
     /// Begins the first period of `schedule` at `now`, with all sensors enabled.
     pub fn new(schedule: &'s Schedule<K, M>, now: Instant) -> Self {
-        Self::with_limits(schedule, &Alike, now)
+        Self::with_limits(schedule, &(), now)
     }
 }
 

@@ -5,7 +5,7 @@ use super::listening::Listening;
 use super::{NOBODY, Ring, RingError};
 use crate::filter::EchoFilter;
 use crate::judging::Judge;
-use crate::own_limits::{Alike, OwnLimits};
+use crate::own_limits::OwnLimits;
 use crate::plan::{Plan, ScheduledFiring};
 use crate::schedule::Schedule;
 use crate::sensor_error::SensorError;
@@ -56,7 +56,7 @@ impl<'s, const N: usize, const M: usize, J: Judge, const K: usize, const E: usiz
     /// # Errors
     /// [`RingError::Window`] if a sensor would fire again while it still listens.
     pub fn change_to_unverified(&mut self, schedule: &'s Schedule<N, M>) -> Result<(), RingError> {
-        self.change_with_limits(schedule, &Alike)
+        self.change_with_limits(schedule, &())
     }
 }
 

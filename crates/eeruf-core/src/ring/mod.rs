@@ -16,7 +16,7 @@ mod steps;
 
 use crate::filter::EchoFilter;
 use crate::judging::{Agreement, Judge};
-use crate::own_limits::{Alike, OwnLimits};
+use crate::own_limits::OwnLimits;
 use crate::plan::{ImmediateRefiring, Plan, ScheduledFiring, Upcoming};
 use crate::reading::{ReadingKind, Tally};
 use crate::schedule::{MAX_SENSORS, Schedule};
@@ -93,7 +93,7 @@ pub struct Ring<P, J, const K: usize, const E: usize = 1, const H: usize = 4> {
 
 /// A [`Ring`] with scheduled firing by a schedule of the paper's kind; `U` is `&`[`EachSensor`]
 /// where sensors have limits of their own.
-pub type ScheduledRing<'s, const K: usize, const E: usize = 1, U = Alike> =
+pub type ScheduledRing<'s, const K: usize, const E: usize = 1, U = ()> =
     Ring<ScheduledFiring<'s, K, 2, U>, EchoFilter<K, E>, K, E>;
 
 /// A [`Ring`] that accepts each reading that agrees with the one before, whoever else's sound explains both: a

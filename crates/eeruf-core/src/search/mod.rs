@@ -9,7 +9,7 @@
 //! | is there one? | [`WaitSearch::first`] | ranks of `|d|` over *difference constraints*: the tick does not matter |
 //! | the best interval or `t_delta` | [`WaitSearch::best_interval`], [`best_t_delta`](WaitSearch::best_t_delta) | the same, by bisection |
 //! | the front of both | [`WaitSearch::next_on_front`] | the best of one, then of the other |
-//! | every one | [`WaitSearch::all`] | depth first over the values, in lexicographic order |
+//! | every one | [`WaitSearch::next_table`] | depth first over the values, in lexicographic order |
 //! | how many? | [`WaitSearch::count`] | depth first, with what was counted before kept in memory |
 //!
 //! [`memory_words`] says how much memory is enough for all but counting, and counting is exact with any amount, faster
@@ -33,4 +33,4 @@ pub use error::SearchError;
 pub use found::Found;
 use members::Members;
 pub use wait::{Budget, COUNT_WORDS, MEMORY_WORDS, memory_words};
-pub use wait_problem::{FrontTable, Infeasible, WaitProblem, WaitSearch, WaitTables};
+pub use wait_problem::{FrontTable, Infeasible, WaitProblem, WaitSearch};

@@ -6,10 +6,10 @@ use super::control::Outcome;
 use super::error::SearchError;
 use super::found::Found;
 use super::grid::Grid;
-use super::wait::{Best, Budget, Enumeration, MAX_PERIOD, Objective, Problem, Search};
+use super::wait::{Best, Budget, MAX_PERIOD, Objective, Problem, Search};
 use crate::layout::Layout;
 use crate::requirements::Criterion;
-use crate::schedule::{MAX_SENSORS, Schedule};
+use crate::schedule::{MAX_SENSORS, Phase, Schedule};
 use crate::time::Micros;
 
 /// Requirements on a table of waits (Sec. 3.1).
@@ -295,9 +295,32 @@ impl WaitSearch {
         })
     }
 
-    /// All tables, one after the other, in lexicographic order of `a_0, b_0, a_1, b_1, ..`.
-    pub fn all(&self) -> WaitTables<'_> {
-        WaitTables { search: self, tables: self.ticks().enumerate() }
+    /// Finds the first of all tables, in lexicographic order of `a_0, b_0, a_1, b_1, ..`, or the one that follows
+    /// `after`; `Exhausted` after the last. It takes no memory from the caller.
+    ///
+    /// # Errors
+    /// [`SearchError::Schedule`] for a capacity `K` below the number of sensors.
+    pub fn next_table<const K: usize>(
+        &self,
+        after: Option<&Schedule<K>>,
+        budget: &mut Budget<'_>,
+    ) -> Result<Outcome<Schedule<K>>, SearchError> {
+        let mut tables = match after {
+            None => self.ticks().enumerate(),
+            Some(table) => {
+                let [a, b] = [Phase::A, Phase::B].map(|phase| {
+                    let mut ticks = [0; MAX_SENSORS];
+                    for (ticks, &wait) in ticks.iter_mut().zip(table.t_wait(phase)) {
+                        *ticks = self.grid.at_most(wait);
+                    }
+                    ticks
+                });
+                self.ticks().enumerate_after(a, b)
+            }
+        };
+        let outcome = tables.advance(budget);
+        let (a, b) = tables.waits();
+        self.schedule_if_found(outcome, a, b)
     }
 
     fn schedule_if_found<const K: usize>(
@@ -324,25 +347,6 @@ impl WaitSearch {
         let (lag, a, b) = (of_all(&self.lag), of_all(wait_a), of_all(wait_b));
         let [lag, a, b] = [&lag, &a, &b].map(|times| times.get(..self.sensors).unwrap_or(times));
         Ok(Schedule::from_slices(self.grid.time(self.period), lag, [a, b])?)
-    }
-}
-
-/// A walk over all tables. It takes no memory from the caller.
-#[derive(Clone, Debug)]
-pub struct WaitTables<'s> {
-    search: &'s WaitSearch,
-    tables: Enumeration<'s>,
-}
-
-impl WaitTables<'_> {
-    /// Finds the next table; `Exhausted` after the last. After `BudgetSpent` the walk goes on where it stopped.
-    ///
-    /// # Errors
-    /// [`SearchError::Schedule`] for a capacity `K` below the number of sensors.
-    pub fn find_next<const K: usize>(&mut self, budget: &mut Budget<'_>) -> Result<Outcome<Schedule<K>>, SearchError> {
-        let outcome = self.tables.advance(budget);
-        let (a, b) = self.tables.waits();
-        self.search.schedule_if_found(outcome, a, b)
     }
 }
 

@@ -4,7 +4,7 @@
 use std::ops::ControlFlow;
 
 use crate::common::naive::{self, Layout, Problem};
-use crate::common::{holds, search, us};
+use crate::common::{holds, search, us, waits};
 use eeruf_core::search::{
     Budget, COUNT_WORDS, Found, FrontTable, MEMORY_WORDS, Outcome, Progress, SearchError, WaitProblem, WaitSearch,
     memory_words,
@@ -38,32 +38,57 @@ fn a_spent_budget_says_so_and_proves_nothing() {
     assert!(value.is_none_or(|value| value <= us(11)) && bound >= Some(us(11)));
 }
 
+/// Three sensors that all conflict.
+const THREE: Problem<'static> = Problem {
+    period: 30,
+    lag: &[0, 10, 20],
+    wait_max: 6,
+    separation: 2,
+    interval: 5,
+    conflicts: &[0b110, 0b101, 0b011],
+    criterion: Criterion::Paper,
+};
+
 #[test]
 fn a_walk_goes_on_after_its_budget_was_spent() {
-    let conflicts = naive::conflicts(Layout::Line, 3, 3);
-    let problem = Problem {
-        period: 30,
-        lag: &[0, 10, 20],
-        wait_max: 6,
-        separation: 2,
-        interval: 5,
-        conflicts: &conflicts,
-        criterion: Criterion::Paper,
-    };
-    let search = search(&problem).unwrap();
-    let mut all = search.all();
-    let (mut seen, mut pauses) = (0, 0);
+    let search = search(&THREE).unwrap();
+    let (mut seen, mut pauses, mut before, mut nodes) = (0, 0, None::<Schedule<3>>, 1);
     loop {
-        match all.find_next::<3>(&mut Budget::nodes_at_most(7)).unwrap() {
-            Outcome::Found(_) => seen += 1,
-            Outcome::BudgetSpent => pauses += 1,
+        match search.next_table(before.as_ref(), &mut Budget::nodes_at_most(nodes)).unwrap() {
+            Outcome::Found(table) => (seen, before, nodes) = (seen + 1, Some(table), 1),
+            Outcome::BudgetSpent => (pauses, nodes) = (pauses + 1, 2 * nodes),
             Outcome::Exhausted => break,
         }
     }
     assert_eq!(seen, 3912);
     assert!(pauses > 0);
     // And stays at its end.
-    assert_eq!(all.find_next::<3>(&mut Budget::unlimited()), Ok(Outcome::Exhausted));
+    assert_eq!(search.next_table(before.as_ref(), &mut Budget::unlimited()), Ok(Outcome::Exhausted));
+}
+
+// What is no table of the problem is followed by the first table that is greater.
+#[test]
+fn walk_goes_on_from_what_is_no_table() {
+    let wide = search(&Problem { separation: 1, interval: 1, wait_max: 8, ..THREE }).unwrap();
+    let search = search(&THREE).unwrap();
+    let in_order = |table: &Schedule<3>| {
+        let [a, b] = waits(table);
+        [a[0], b[0], a[1], b[1], a[2], b[2]]
+    };
+    let next = |search: &WaitSearch, after: Option<&Schedule<3>>| {
+        let next = search.next_table(after, &mut Budget::unlimited()).unwrap();
+        if let Outcome::Found(table) = next { Some(table) } else { None }
+    };
+    let (mut foreign, mut expected, mut skipped) = (next(&wide, None), next(&search, None), 0);
+    while let Some(table) = foreign {
+        while expected.is_some_and(|expected| in_order(&expected) <= in_order(&table)) {
+            expected = next(&search, expected.as_ref());
+        }
+        assert_eq!(next(&search, Some(&table)), expected, "after {table:?}");
+        skipped += u32::from(!holds(&THREE, &table));
+        foreign = next(&wide, Some(&table));
+    }
+    assert!(skipped > 1000, "{skipped}");
 }
 
 #[test]
@@ -134,10 +159,11 @@ fn waits_beyond_the_words_of_the_count_are_counted_all_the_same() {
         let problem = two(wait_max, 96);
         let search = search(&problem).unwrap();
         let counted = search.count(None, &mut [0; 500], &mut Budget::unlimited());
-        let (mut all, mut seen) = (search.all(), 0);
-        while let Ok(Outcome::Found(table)) = all.find_next::<2>(&mut Budget::unlimited()) {
+        let (mut seen, mut before) = (0, None::<Schedule<2>>);
+        while let Ok(Outcome::Found(table)) = search.next_table(before.as_ref(), &mut Budget::unlimited()) {
             assert!(holds(&problem, &table));
             seen += 1;
+            before = Some(table);
         }
         assert!(seen > 0);
         assert_eq!(counted.1, seen, "{wait_max}");
@@ -224,7 +250,7 @@ fn front_of_single_sensor_is_one_table() {
         criterion: Criterion::Paper,
     };
     let search = search(&alone).unwrap();
-    let mut next = |after: Option<&FrontTable<1>>| {
+    let next = |after: Option<&FrontTable<1>>| {
         search.next_on_front(after, &mut [0; memory_words(1)], &mut Budget::unlimited()).unwrap()
     };
     let Outcome::Found(only) = next(None) else { panic!("no table") };

@@ -3,8 +3,8 @@
 
 use crate::common::naive::{self, Layout, Problem};
 use crate::common::{Owned, holds, separation, ticks, waits};
-use eeruf_core::Criterion;
 use eeruf_core::search::{Budget, Found, FrontTable, MEMORY_WORDS, Outcome};
+use eeruf_core::{Criterion, Schedule};
 use proptest::prelude::*;
 
 /// A line, a ring, blocks or any graph; lags in groups or anyhow.
@@ -87,11 +87,11 @@ proptest! {
             let counted = search.count(None, &mut vec![7; words], &mut Budget::unlimited());
             prop_assert_eq!(counted, (Outcome::Exhausted, count), "{} words", words);
         }
-        let mut all = search.all();
-        let mut seen = Vec::new();
-        while let Outcome::Found(table) = all.find_next::<64>(&mut Budget::unlimited()).unwrap() {
+        let (mut seen, mut before) = (Vec::new(), None::<Schedule<64>>);
+        while let Outcome::Found(table) = search.next_table(before.as_ref(), &mut Budget::unlimited()).unwrap() {
             let [a, b] = waits(&table);
             seen.push((a, b));
+            before = Some(table);
         }
         let mut expected = Vec::new();
         naive::for_each(&problem, &mut |a, b| expected.push((a.to_vec(), b.to_vec())));

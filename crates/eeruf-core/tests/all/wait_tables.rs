@@ -5,8 +5,8 @@
 use crate::common::naive::{self, Layout, Problem};
 use crate::common::tables::File;
 use crate::common::{Owned, holds, ticks, us};
-use eeruf_core::Criterion;
 use eeruf_core::search::{Budget, COUNT_WORDS, Found, MEMORY_WORDS, Outcome, memory_words};
+use eeruf_core::{Criterion, Schedule};
 
 #[test]
 fn every_count_of_the_shared_tables_comes_out() {
@@ -31,12 +31,12 @@ fn the_walk_over_all_tables_visits_as_many_as_are_counted() {
     for case in File::read().cases.iter().filter(|case| case.count < 200_000) {
         let owned = Owned::of(case);
         let search = owned.search();
-        let mut all = search.all();
-        let mut seen = 0;
+        let (mut seen, mut before) = (0, None::<Schedule<64>>);
         let mut budget = Budget::unlimited();
-        while let Outcome::Found(table) = all.find_next::<64>(&mut budget).unwrap() {
+        while let Outcome::Found(table) = search.next_table(before.as_ref(), &mut budget).unwrap() {
             assert!(holds(&owned.problem(), &table));
             seen += 1;
+            before = Some(table);
         }
         assert_eq!(seen, case.count, "{case:?}");
     }

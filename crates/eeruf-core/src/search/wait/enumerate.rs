@@ -28,6 +28,17 @@ impl<'p> Search<'p> {
             handed_out: false,
         }
     }
+
+    /// The rest of that walk, after these waits in ticks.
+    pub(crate) fn enumerate_after(&self, a: [u32; MAX_SENSORS], b: [u32; MAX_SENSORS]) -> Enumeration<'p> {
+        let mut rest = Enumeration { a, b, ..self.enumerate() };
+        let sensors = self.sensors();
+        // The first sensor whose waits are none for it goes on from them.
+        let unfit = (0..sensors).find(|&k| !rest.fits(k));
+        rest.depth = Some(unfit.unwrap_or(sensors - 1));
+        rest.handed_out = unfit.is_none();
+        rest
+    }
 }
 
 // Indices are sensors, below `lag.len() <= MAX_SENSORS`.
@@ -67,6 +78,12 @@ impl Enumeration<'_> {
                 self.b[k] += 1;
             }
         }
+    }
+
+    /// Returns true if the waits of sensor `k` are such and fit the sensors before it.
+    fn fits(&self, k: usize) -> bool {
+        let in_range = self.a[k].max(self.b[k]) <= self.problem.wait_max;
+        in_range && self.is_separate(k) && self.in_time(k, 0) && self.in_time(k, 1)
     }
 
     /// Moves sensor `k` to its next pair of waits, itself included, that fits the sensors before it.

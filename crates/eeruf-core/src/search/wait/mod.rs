@@ -32,7 +32,6 @@ use crate::schedule::MAX_SENSORS;
 
 pub use budget::Budget;
 pub use count::COUNT_WORDS;
-pub(crate) use enumerate::Enumeration;
 pub use feasibility::memory_words;
 pub(crate) use maximize::{Best, Objective};
 pub(crate) use problem::{MAX_PERIOD, Problem, Search};

@@ -91,7 +91,7 @@ pub struct Ring<P, J, const K: usize, const E: usize = 1, const H: usize = 4> {
     tally: Tally<u8>,
 }
 
-/// A [`Ring`] with scheduled firing by a schedule of the paper's kind; `U` is `&`[`EachSensor`]
+/// A [`Ring`] with scheduled firing by a schedule of the paper's kind; `U` is `&`[`EachSensor`](crate::EachSensor)
 /// where sensors have limits of their own.
 pub type ScheduledRing<'s, const K: usize, const E: usize = 1, U = ()> =
     Ring<ScheduledFiring<'s, K, 2, U>, EchoFilter<K, E>, K, E>;

@@ -2,7 +2,7 @@
 #![no_std]
 #![no_main]
 
-use eeruf_core::search::{Budget, WaitProblem, WaitSearch, memory_words};
+use eeruf_core::search::{Budget, Outcome, WaitProblem, WaitSearch};
 use eeruf_core::tables::{PAPER_12, TABLE_I_A, TABLE_I_B, TABLE_I_C, TABLE_I_D, THE_ONE_WITH_19_MS};
 use eeruf_core::{
     Criterion, Instant, Layout, Micros, Phase, ReadingKind, Requirements, Ring, RingConfig, RingEvent, Schedule,
@@ -75,25 +75,29 @@ fn every_schedule_of_the_shared_cases_meets_its_requirements() {
     }
 }
 
-fn no_table_of_waits_keeps_more_than_19_ms_among_any_four() {
+/// The example of the proofs, section 7.2.
+fn three_sensors_have_3912_tables_of_waits() {
+    let ms = Micros::from_millis;
     let search = WaitSearch::new(&WaitProblem {
-        sensors: 12,
-        period: Micros::from_millis(100),
-        wait_max: Micros::from_millis(24),
-        tick: Micros::from_millis(1),
-        t_lag: None,
+        sensors: 3,
+        period: ms(30),
+        wait_max: ms(6),
+        tick: ms(1),
+        t_lag: Some(&[ms(0), ms(10), ms(20)]),
         t_delta: Micros::new(999),
-        min_interval: Micros::from_millis(15),
-        neighbours: 4,
-        layout: Layout::Line(4),
-        criterion: Criterion::Exact,
+        min_interval: ms(5),
+        neighbours: 3,
+        layout: Layout::Line(3),
+        criterion: Criterion::Paper,
     })
     .expect("a problem");
-    let mut memory = [0; memory_words(12)];
-    let best = search.best_interval::<12>(&mut memory, &mut Budget::unlimited()).expect("room");
-    assert_eq!((best.value, best.proven), (Some(Micros::from_millis(19)), true));
-    let interval = best.schedule.and_then(|table| table.min_interval(Layout::Line(4))).map(|least| least.value);
-    assert_eq!(interval, best.value);
+    let (mut tables, mut last) = (0, None::<Schedule<3>>);
+    while let Outcome::Found(table) = search.next_table(last.as_ref(), &mut Budget::unlimited()).expect("room") {
+        assert!(table.separation(Criterion::Paper).is_some_and(|least| least.value >= ms(2)));
+        assert!(table.min_interval(Layout::Line(3)).is_some_and(|least| least.value >= ms(5)));
+        (tables, last) = (tables + 1, Some(table));
+    }
+    assert_eq!(tables, 3912);
 }
 
 /// Walls 0.9 m to 2.8 m away: sensor `x` hears its echo after `5 + x` ms.
@@ -164,7 +168,7 @@ fn main() -> ! {
         tables_i_b_and_i_d_are_separated_by_2_ms_and_i_a_by_nothing,
         table_i_d_keeps_19_ms_in_its_blocks_and_17_ms_on_the_line,
         every_schedule_of_the_shared_cases_meets_its_requirements,
-        no_table_of_waits_keeps_more_than_19_ms_among_any_four,
+        three_sensors_have_3912_tables_of_waits,
         ring_accepts_walls_from_period_two_on_through_a_clock_wrap,
         readings_that_alternate_as_crosstalk_does_are_all_rejected,
     ])

@@ -41,7 +41,7 @@ pub(super) fn decide(
     }
     let interval = if conflict { problem.interval } else { 0 };
     let exact = Problem { criterion: Criterion::Exact, interval, ..*problem };
-    let outcome = Feasibility::new(&exact, memory, Style::default()).run(budget, wait);
+    let outcome = walk(&exact, memory, Style::default(), budget, wait);
     if problem.criterion == Criterion::Exact || outcome != Outcome::Found(()) {
         // Without a table under the weaker criterion there is none under the stronger.
         return outcome;
@@ -56,7 +56,7 @@ pub(super) fn decide(
             if style.tight && !tight {
                 continue;
             }
-            let outcome = budget.slice(slice, |budget| Feasibility::new(&paper, memory, style).run(budget, wait));
+            let outcome = budget.slice(slice, |budget| walk(&paper, memory, style, budget, wait));
             match outcome {
                 Outcome::Exhausted if style.tight => tight = false,
                 Outcome::BudgetSpent if !budget.spent() => {}
@@ -65,6 +65,18 @@ pub(super) fn decide(
         }
         slice = slice.saturating_mul(4);
     }
+}
+
+/// One walk. Not inlined, so that no more than one is on the stack.
+#[inline(never)]
+fn walk(
+    problem: &Problem<'_>,
+    memory: &mut [u32],
+    style: Style,
+    budget: &mut Budget<'_>,
+    wait: &mut [i32; 2 * MAX_SENSORS],
+) -> Outcome {
+    Feasibility::new(problem, memory, style).run(budget, wait)
 }
 
 /// Nodes that each style may take in the first round.

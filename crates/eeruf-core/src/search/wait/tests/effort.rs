@@ -1,5 +1,5 @@
 //! Steps of the search for waits to its answers, the same on each machine: written down in
-//! `tests/data/search-effort.txt`. A change that makes it take other steps shows there what it costs or saves.
+//! `effort.txt`. A change that makes it take other steps shows there what it costs or saves.
 //! `EERUF_WRITE=1` rewrites the file.
 
 extern crate std;
@@ -10,13 +10,12 @@ use std::string::String;
 use std::vec::Vec;
 use std::{format, vec};
 
-use super::random::Random;
-use super::{Budget, Objective, Owned, Search, memory_words};
+use super::{Budget, Objective, Owned, Random, Search, memory_words};
 use crate::layout::Layout;
 use crate::requirements::Criterion;
 use crate::search::{Outcome, Progress};
 
-const FILE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/data/search-effort.txt");
+const FILE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/src/search/wait/tests/effort.txt");
 
 /// The nodes that a question may cost.
 const BUDGET: u64 = 3000;

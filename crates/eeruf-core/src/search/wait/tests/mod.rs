@@ -3,9 +3,6 @@
 extern crate std;
 
 mod effort;
-#[allow(unreachable_pub, reason = "shared with the tests outside")]
-#[path = "../../../../tests/all/common/random.rs"]
-mod random;
 
 use std::vec;
 use std::vec::Vec;
@@ -14,7 +11,19 @@ use super::{Budget, Objective, Problem, Search, memory_words};
 use crate::layout::Layout;
 use crate::requirements::Criterion;
 use crate::search::Outcome;
-use random::Random;
+
+/// A seeded pseudo-random sequence, the same on every machine (splitmix64).
+struct Random(u64);
+
+impl Random {
+    /// 0 to `most`.
+    fn up_to(&mut self, most: u32) -> u32 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mixed = (self.0 ^ self.0 >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        let mixed = (mixed ^ mixed >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((mixed ^ mixed >> 31) % (u64::from(most) + 1)) as u32
+    }
+}
 
 /// Owned parts of a problem.
 struct Owned {

@@ -55,8 +55,8 @@ impl<'s, const K: usize, const M: usize, L> Adaptation<'s, VerifiedSchedule<K, M
     /// those that allow its own `t_delta` and window.
     ///
     /// # Errors
-    /// [`ScheduleError`] if there is no rung, if a period is not longer than the one before, or if the number of sensors
-    /// changes.
+    /// [`ScheduleError`] if there is no rung, if a period is not longer than the one before, or if the number of
+    /// sensors changes.
     pub fn new(rungs: &'s [VerifiedSchedule<K, M, L>]) -> Result<Self, ScheduleError> {
         Self::of(rungs, |rung| (rung.sensors(), rung.period()))
     }

@@ -7,7 +7,8 @@
 //! | question | method | how |
 //! |---|---|---|
 //! | is there one? | [`WaitSearch::first`] | ranks of `|d|` over *difference constraints*: the tick does not matter |
-//! | the best interval or `t_delta` | [`WaitSearch::best_interval`], [`best_t_delta`](WaitSearch::best_t_delta) | the same, by bisection |
+//! | the best interval | [`WaitSearch::best_interval`] | the same, by bisection |
+//! | the best `t_delta` | [`WaitSearch::best_t_delta`] | likewise |
 //! | the front of both | [`WaitSearch::next_on_front`] | the best of one, then of the other |
 //! | every one | [`WaitSearch::next_table`] | depth first over the values, in lexicographic order |
 //! | how many? | [`WaitSearch::count`] | depth first, with what was counted before kept in memory |

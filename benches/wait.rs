@@ -1,5 +1,5 @@
-//! Cost of the wait search: the best interval over sensors and ticks, Table I rearranged, and counting against plain
-//! nested loops in the same run (the first lines print the ratio).
+//! Cost of the wait search: the best interval over sensors and ticks, and counting against plain nested loops
+//! in the same run (the first lines print the ratio).
 
 #![allow(missing_docs)]
 
@@ -10,10 +10,10 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use common::Owned;
-use common::naive::Layout;
+use common::naive::{Layout, Problem};
 use common::tables::{Case, File};
 use criterion::{Criterion, criterion_group};
-use eeruf_core::search::wait::{Budget, COUNT_WORDS, MEMORY_WORDS, Objective, Problem};
+use eeruf_core::search::{Budget, COUNT_WORDS, MEMORY_WORDS};
 
 /// The problems counted: those of the shared tables with many tables, and two of more nodes.
 fn counts() -> Vec<Case> {
@@ -38,7 +38,6 @@ fn counts() -> Vec<Case> {
 
 fn best_interval(c: &mut Criterion) {
     let mut memory = vec![0; MEMORY_WORDS];
-    let (mut a, mut b) = ([0; 64], [0; 64]);
     for (sensors, separation) in [(12, 2), (8, 1), (12, 1), (16, 1), (24, 1)] {
         for per_ms in [1, 2, 10] {
             let owned = Owned::paper(sensors, Layout::Line, separation, per_ms, eeruf_core::Criterion::Exact);
@@ -46,23 +45,10 @@ fn best_interval(c: &mut Criterion) {
             c.bench_function(&name, |bench| {
                 bench.iter(|| {
                     let mut budget = Budget::unlimited();
-                    owned.search().best(Objective::Interval, &mut memory, &mut budget, &mut a, &mut b)
+                    owned.search().best_interval::<64>(&mut memory, &mut budget)
                 });
             });
         }
-    }
-}
-
-fn assignment(c: &mut Criterion) {
-    let pairs: Vec<(u32, u32)> = (0..12).map(|k| (24, 2 * k)).collect();
-    let (mut a, mut b) = ([0; 12], [0; 12]);
-    for layout in [Layout::Line, Layout::Ring, Layout::Blocks] {
-        let owned = Owned::paper(12, layout, 2, 1, eeruf_core::Criterion::Paper);
-        let search = owned.search();
-        let arrangements = search.assign(&pairs).unwrap();
-        c.bench_function(&format!("Table I rearranged/{layout:?}"), |bench| {
-            bench.iter(|| arrangements.best_interval(&mut Budget::unlimited(), &mut a, &mut b));
-        });
     }
 }
 
@@ -127,7 +113,7 @@ fn ratios() {
     let mut memory = vec![0; COUNT_WORDS];
     for case in counts() {
         let owned = Owned::of(&case);
-        let (fast, counted) = time(20, || owned.search().count(None, &mut memory, &mut Budget::unlimited()).count);
+        let (fast, counted) = time(20, || owned.search().count(None, &mut memory, &mut Budget::unlimited()).1);
         let (slow, naive) = time(1, || nested_loops(&owned.problem()));
         assert_eq!((counted, u128::from(naive)), (case.count, case.count));
         let ratio = slow / fast;
@@ -136,7 +122,7 @@ fn ratios() {
     }
 }
 
-criterion_group!(benches, best_interval, assignment, count);
+criterion_group!(benches, best_interval, count);
 
 fn main() {
     // Under `cargo test`, which gives no such argument, the benches only have to run.

@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use eeruf_core::{
-    EchoFilter, Instant, Micros, ReadingKind, SensorError,
-    judge::{JudgeError, RateFilter, Verdict},
+    EchoFilter, Instant, Micros, ReadingKind, RingError, SensorError,
+    judge::{RateFilter, Verdict},
 };
 use eeruf_files::Kind;
 use eeruf_logs::{Echo, McapWriter, Reading, Report, Sensor, read_log};
@@ -162,7 +162,7 @@ enum Filter {
 }
 
 impl Filter {
-    fn new(args: &Args) -> Result<Self, JudgeError> {
+    fn new(args: &Args) -> Result<Self, RingError> {
         let t_delta = Micros::new(args.t_delta_us.unwrap_or_default());
         Ok(match args.max_speed {
             None => Self::Plain(EchoFilter::new(t_delta, args.consecutive)?),
@@ -231,7 +231,7 @@ impl Clock {
 
 impl Replayed {
     fn new(args: &Args) -> Result<Self, InputError> {
-        let bad = |error: JudgeError| InputError::new(&args.file, error);
+        let bad = |error: RingError| InputError::new(&args.file, error);
         Ok(Self {
             sensors: Vec::new(),
             fresh: Filter::new(args).map_err(bad)?,

@@ -5,8 +5,9 @@ use std::time::{Duration, Instant};
 
 use clap::ValueEnum;
 use eeruf_core::MAX_SENSORS;
-use eeruf_core::search::wait::{Budget, COUNT_WORDS, Objective, memory_words};
-use eeruf_core::search::{Found, FrontTable, Outcome, Progress, SearchError, WaitSearch};
+use eeruf_core::search::{
+    Budget, COUNT_WORDS, Found, FrontTable, Outcome, Progress, SearchError, WaitSearch, memory_words,
+};
 use eeruf_design::FoundJson;
 
 use super::Answer;
@@ -98,15 +99,15 @@ fn count(args: &Args, spec: &WaitSpec, watch: &mut Watch) -> Result<(Answer, Str
     let began = Instant::now();
     let mut watcher = |progress: &Progress| watch.control_flow(|| nodes_so_far(progress));
     let mut budget = Budget::nodes_at_most(args.budget).watched(WATCHED_EVERY, &mut watcher);
-    let count = search.count(None, &mut vec![0; COUNT_WORDS], &mut budget)?;
-    let exact = count.outcome == Outcome::Exhausted;
-    let answer = answer(count.count > 0, exact);
+    let (outcome, count) = search.count(None, &mut vec![0; COUNT_WORDS], &mut budget);
+    let (exact, nodes) = (outcome == Outcome::Exhausted, budget.nodes());
+    let answer = answer(count > 0, exact);
     if args.json {
-        return Ok((answer, to_json(&CountJson { count: count.count, at_least: !exact })));
+        return Ok((answer, to_json(&CountJson { count, at_least: !exact })));
     }
     let at_least = if exact { "" } else { "at least " };
     let seconds = began.elapsed().as_secs_f64();
-    let mut text = format!("{at_least}{} tables ({} nodes in {seconds:.3} s)\n", count.count, count.nodes);
+    let mut text = format!("{at_least}{count} tables ({nodes} nodes in {seconds:.3} s)\n");
     match answer {
         Answer::No => text += &why_none(&search, &mut vec![0; memory_words(spec.problem().sensors)], watch)?,
         Answer::NotDecided => text += NOT_DECIDED,
@@ -122,17 +123,14 @@ fn find(args: &Args, spec: &WaitSpec, best: Option<Best>, watch: &mut Watch) -> 
     let mut watcher = |progress: &Progress| watch.control_flow(|| nodes_so_far(progress));
     let mut budget = Budget::nodes_at_most(args.budget).watched(WATCHED_EVERY, &mut watcher);
     let mut memory = vec![0; memory_words(spec.problem().sensors)];
-    let objective = match best {
-        Some(Best::Interval) => Some((Objective::Interval, "smallest interval ")),
-        Some(Best::TDelta) => Some((Objective::Separation, "t_delta ")),
-        Some(Best::Pareto) | None => None,
-    };
-    let found: Found<MAX_SENSORS> = match objective {
-        Some((objective, _)) => search.best(objective, &mut memory, &mut budget)?,
-        None => {
-            let (outcome, schedule) = search.first(&mut memory, &mut budget)?;
+    let (what, found): (_, Found<MAX_SENSORS>) = match best {
+        Some(Best::Interval) => ("smallest interval ", search.best_interval(&mut memory, &mut budget)?),
+        Some(Best::TDelta) => ("t_delta ", search.best_t_delta(&mut memory, &mut budget)?),
+        Some(Best::Pareto) | None => {
+            let outcome = search.first(&mut memory, &mut budget)?;
             let (proven, nodes) = (outcome != Outcome::BudgetSpent, budget.nodes());
-            Found { schedule, value: None, bound: None, proven, nodes }
+            let schedule = if let Outcome::Found(schedule) = outcome { Some(schedule) } else { None };
+            ("a table", Found { schedule, value: None, bound: None, proven, nodes })
         }
     };
     let seconds = began.elapsed().as_secs_f64();
@@ -140,7 +138,7 @@ fn find(args: &Args, spec: &WaitSpec, best: Option<Best>, watch: &mut Watch) -> 
     if args.json {
         return Ok((answer, to_json(&FoundJson::new(&found, seconds))));
     }
-    let mut text = format!("{}\n", describe(objective.map_or("a table", |(_, what)| what), &found, seconds));
+    let mut text = format!("{}\n", describe(what, &found, seconds));
     if matches!(answer, Answer::No) {
         text += &why_none(&search, &mut memory, watch)?;
     }
@@ -154,10 +152,9 @@ fn front(args: &Args, spec: &WaitSpec, watch: &mut Watch) -> Result<(Answer, Str
     let mut watcher = |progress: &Progress| watch.control_flow(|| nodes_so_far(progress));
     let mut budget = Budget::nodes_at_most(args.budget).watched(WATCHED_EVERY, &mut watcher);
     let mut memory = vec![0; memory_words(spec.problem().sensors)];
-    let mut walk = search.pareto(&mut memory)?;
     let mut tables: Vec<FrontTable<MAX_SENSORS>> = Vec::new();
     let complete = loop {
-        match walk.find_next(&mut budget)? {
+        match search.next_on_front(tables.last(), &mut memory, &mut budget)? {
             Outcome::Found(table) => tables.push(table),
             outcome => break outcome == Outcome::Exhausted,
         }

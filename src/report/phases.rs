@@ -3,7 +3,10 @@
 use std::fmt::Write as _;
 
 use comfy_table::{Table, presets};
-use eeruf_core::{Criterion, MAX_SENSORS, Micros, Requirements, conditions::Violation, phases::PhaseVerification};
+use eeruf_core::{
+    Criterion, MAX_SENSORS, Micros, Requirements,
+    conditions::{Verification, Violation},
+};
 use eeruf_design::{HoppingDesign, PhaseSchedule, RingSpec};
 use serde::Serialize;
 
@@ -14,7 +17,7 @@ pub(crate) struct ReportJson {
     separation_us: Option<u32>,
     max_t_delta_us: Option<u32>,
     min_interval_us: Option<u32>,
-    min_refire_us: Option<u32>,
+    min_refire_us: u32,
     violations: Vec<ViolationJson>,
 }
 
@@ -42,14 +45,14 @@ impl From<Violation> for ViolationJson {
     }
 }
 
-impl From<&PhaseVerification<'_>> for ReportJson {
-    fn from(report: &PhaseVerification<'_>) -> Self {
+impl From<&Verification<'_, MAX_SENSORS>> for ReportJson {
+    fn from(report: &Verification<'_, MAX_SENSORS>) -> Self {
         Self {
             ok: report.ok(),
             separation_us: report.separation().map(|found| found.value.as_micros()),
             max_t_delta_us: report.max_t_delta().map(Micros::as_micros),
             min_interval_us: report.min_interval().map(|found| found.value.as_micros()),
-            min_refire_us: report.min_refire().map(|found| found.value.as_micros()),
+            min_refire_us: report.min_refire().as_micros(),
             violations: report.violations().map(ViolationJson::from).collect(),
         }
     }
@@ -79,7 +82,7 @@ pub(crate) fn describe(
     name: &str,
     schedule: &PhaseSchedule,
     requirements: &Requirements<'_>,
-    report: &PhaseVerification<'_>,
+    report: &Verification<'_, MAX_SENSORS>,
 ) -> String {
     let mut table = new_table();
     let (value, who) =
@@ -96,9 +99,7 @@ pub(crate) fn describe(
         (us(found.value), format!("sensors {} in phase {m} and {} in phase {n}", x + 1, y + 1))
     });
     table.add_row(["smallest interval", &interval.0, &interval.1]);
-    if let Some(refire) = report.min_refire() {
-        table.add_row(["shortest time between two firings of a sensor", &us(refire.value), "T_wind at most"]);
-    }
+    table.add_row(["shortest time between two firings of a sensor", &us(report.min_refire()), "T_wind at most"]);
     let (sensors, phases) = (schedule.sensors(), schedule.phases());
     let mut text = format!("{name}: {sensors} sensors, {phases} phases, period {}\n{table}\n", us(schedule.period()));
     for violation in report.violations() {
@@ -184,11 +185,9 @@ pub(crate) fn describe_design(
             format!("needed: {}{}", requirements.min_interval, if own { ", or what the pair asks for" } else { "" });
         table.add_row(["smallest interval", &interval.value.to_string(), &needed]);
     }
-    if let Some(refire) = report.min_refire() {
-        let seen = f64::from(spec.c.distance_mm(requirements.window)) / 1000.0;
-        let listening = format!("{seen:.2} m; no sensor fires again within {}", refire.value);
-        table.add_row(["listening", &requirements.window.to_string(), &listening]);
-    }
+    let seen = f64::from(spec.c.distance_mm(requirements.window)) / 1000.0;
+    let listening = format!("{seen:.2} m; no sensor fires again within {}", report.min_refire());
+    table.add_row(["listening", &requirements.window.to_string(), &listening]);
     let rate = 1e6 / f64::from(schedule.period().as_micros());
     table.add_row(["readings", &format!("{rate:.1} a second"), "of each sensor, solo periods not counted"]);
     let odometry = match spec.speed_mm_s {

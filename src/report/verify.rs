@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use comfy_table::{Table, presets};
 use eeruf_core::{
     Criterion, Layout, MAX_SENSORS, Micros, Requirements,
-    conditions::{Interval, Verification},
+    conditions::{Least, Verification},
 };
 use eeruf_sim::AnySchedule;
 use serde::Serialize;
@@ -131,7 +131,7 @@ fn layouts(asked: Layout<'_>) -> Vec<(String, Layout<'_>)> {
     all
 }
 
-fn describe_interval(interval: Interval) -> String {
+fn describe_interval(interval: Least) -> String {
     let (x, y) = (interval.sensors.0 + 1, interval.sensors.1 + 1);
     if interval.phases.0 == interval.phases.1 {
         format!("sensors {x} and {y} in phase {}", interval.phases.0)

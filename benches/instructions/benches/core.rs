@@ -3,8 +3,7 @@
 
 use std::hint::black_box;
 
-use eeruf_core::search::wait::{Budget, Objective, memory_words};
-use eeruf_core::search::{WaitProblem, WaitSearch};
+use eeruf_core::search::{Budget, WaitProblem, WaitSearch, memory_words};
 use eeruf_core::tables::PAPER_12;
 use eeruf_core::{Criterion, EchoFilter, Instant, Layout, Micros, Requirements, Ring, RingConfig, RingEvent};
 use eeruf_period::PeriodProblem;
@@ -74,7 +73,7 @@ fn best_interval_12() -> Option<Micros> {
     };
     let search = WaitSearch::new(&black_box(needs)).ok()?;
     let mut memory = vec![0; memory_words(12)];
-    search.best::<12>(Objective::Interval, &mut memory, &mut Budget::unlimited()).ok()?.value
+    search.best_interval::<12>(&mut memory, &mut Budget::unlimited()).ok()?.value
 }
 
 // A thousand readings of one sensor.

@@ -7,7 +7,7 @@ use eeruf_core::{
     EachSensor, Instant, Micros, Requirements, Uneven,
     flow::{FlowRing, FlowSettings},
     hopping::{HoppingError, HoppingListening},
-    plan::{Alike, LimitsInUse},
+    plan::OwnLimits,
 };
 
 fn settings(r: &Random) -> FlowSettings {
@@ -83,11 +83,11 @@ pub fn run<const K: usize>(r: &Random) -> u64 {
         );
     }
     let status = c.flow(K as u8, &numbers, &[], start);
-    compare::<K, Alike>(r, c, status, FlowRing::flow(K, s, listening, now), (window, start))
+    compare::<K, ()>(r, c, status, FlowRing::flow(K, s, listening, now), (window, start))
 }
 
 /// Runs both, if they are made.
-fn compare<const K: usize, U: LimitsInUse>(
+fn compare<const K: usize, U: OwnLimits>(
     r: &Random,
     c: C,
     status: i32,

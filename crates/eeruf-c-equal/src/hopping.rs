@@ -6,7 +6,7 @@ use eeruf_core::{
     Criterion, EachSensor, Instant, Layout, Micros, Requirements, Uneven,
     adaptation::Adaptation,
     hopping::{HoppingCode, HoppingError, HoppingListening, HoppingRing, HoppingSchedule, HoppingSettings},
-    plan::{Alike, LimitsInUse},
+    plan::OwnLimits,
 };
 
 fn settings(r: &Random) -> HoppingSettings {
@@ -141,13 +141,13 @@ pub fn run<const K: usize>(r: &Random) -> u64 {
         }
         None => {
             let ring = schedule.and_then(|it| HoppingRing::<K>::hopping(&it, s, listening, random_seed, now));
-            compare::<K, Alike>(r, c, status, ring, &rungs, (window, start))
+            compare::<K, ()>(r, c, status, ring, &rungs, (window, start))
         }
     }
 }
 
 /// Runs both, if they are made.
-fn compare<const K: usize, U: LimitsInUse>(
+fn compare<const K: usize, U: OwnLimits>(
     r: &Random,
     mut c: C,
     status: i32,

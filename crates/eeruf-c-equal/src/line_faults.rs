@@ -102,7 +102,7 @@ impl Faults {
         let (period_us, t_fire_us) = (period.parse().unwrap(), [numbers(a), numbers(b)].concat());
         let (times, _) = t_fire_us.as_chunks::<K>();
         let schedule = Schedule::<K>::from_firing(Micros::new(period_us), [times[0], times[1]].map(micros)).unwrap();
-        let schedule = schedule.verify(&Requirements::new(Micros::new(T_DELTA_US))).verified().unwrap();
+        let schedule = schedule.verified(&Requirements::new(Micros::new(T_DELTA_US))).unwrap();
         Self { schedule, period_us, t_fire_us, faults: rows.map(|row| fault(&row)).collect() }
     }
 }

@@ -84,7 +84,7 @@ fn schedules(c: &mut C) -> Vec<VerifiedSchedule<K>> {
             Needs { t_delta_us: 400, min_interval_us: 0, window_us: 0, layout: 0, neighbours: 4, stale_echo: false };
         assert_eq!(c.verify(number as u32, needs, &[]).0, 0);
         let schedule = Schedule::<K>::from_firing(Micros::new(period), rows.map(|row| row.map(Micros::new))).unwrap();
-        schedule.verify(&Requirements::new(Micros::new(400))).verified().unwrap()
+        schedule.verified(&Requirements::new(Micros::new(400))).unwrap()
     });
     made.collect()
 }

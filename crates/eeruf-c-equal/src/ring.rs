@@ -5,7 +5,7 @@ use crate::{C, Do, Needs, OwnNeeds, Random};
 use eeruf_core::{
     EachSensor, EchoFilter, Instant, Layout, Micros, Requirements, Ring, RingConfig, RingError, RingEvent, Schedule,
     Uneven,
-    plan::{EachInUse, Plan, ScheduledFiring},
+    plan::{Plan, ScheduledFiring},
     watch::SensorWatch,
 };
 
@@ -43,7 +43,7 @@ impl Verify for Schedule<K, 2> {
         assert_eq!(numbers.min_refire_us, self.min_refire().as_micros());
         let c_mm_s = 343_200;
         assert_eq!(numbers.max_speed_mm_s, self.max_speed_mm_s(requirements.t_delta, c_mm_s));
-        match self.verify(&requirements).verified_each() {
+        match self.verified_each(&requirements) {
             Ok(verified) => {
                 assert_eq!(status, 0);
                 let limits: Vec<_> = (0..K as u8).map_while(|x| verified.limits_of(x)).collect();
@@ -130,7 +130,7 @@ fn change(c: &mut C, what: Do, value: u32, rust: Result<(), RingError>) {
     assert_eq!(c.call(what, 0, value), rust.map_or_else(|error| status_of(&error), |()| 0), "{what:?} {value}");
 }
 
-type Table<'s, const M: usize> = Ring<ScheduledFiring<'s, K, M, EachInUse<'s, K>>, EchoFilter<K>, K>;
+type Table<'s, const M: usize> = Ring<ScheduledFiring<'s, K, M, &'s EachSensor<K>>, EchoFilter<K>, K>;
 
 /// A schedule, and what it allows each sensor.
 type Fires<const M: usize> = (Schedule<K, M>, EachSensor<K>);

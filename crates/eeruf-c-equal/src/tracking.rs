@@ -22,7 +22,7 @@ pub(crate) fn status_of(error: &HoppingError) -> i32 {
         HoppingError::Step { .. } => -23,
         HoppingError::Period { .. } => -8,
         HoppingError::Lag { .. } => -24,
-        HoppingError::Tracker(_) => -25,
+        HoppingError::Ring(RingError::Setting { .. }) => -25,
         HoppingError::TDelta { .. } => -15,
         HoppingError::Votes { .. } => -28,
         HoppingError::Ring(RingError::Blanking { .. }) => -18,

@@ -1,11 +1,10 @@
 //! Adaptive scheduling (end of Sec. 3.1): fire more slowly where too much is rejected, and faster again when it is
 //! calm.
 
-use core::fmt;
-
 use crate::hopping::HoppingSchedule;
 use crate::reading::{ReadingKind, Tally};
 use crate::ring::PeriodStats;
+use crate::schedule::ScheduleError;
 use crate::sound::SpeedOfSound;
 use crate::time::Micros;
 use crate::verified::VerifiedSchedule;
@@ -23,7 +22,7 @@ use crate::verified::VerifiedSchedule;
 /// };
 /// # use eeruf_core::Micros;
 /// let requirements = Requirements::new(Micros::new(599));
-/// let rungs = [TABLE_I_D.scaled(3, 5)?, TABLE_I_D].map(|table| table.verify(&requirements).verified().expect("met"));
+/// let rungs = [TABLE_I_D.scaled(3, 5)?, TABLE_I_D].map(|table| table.verified(&requirements).expect("met"));
 /// let mut adaptation = Adaptation::new(&rungs)?;
 /// let mut ring = Ring::new(&rungs[0], RingConfig::new().with_window(Micros::from_millis(36)), Instant::default())?;
 /// if let Some(RingEvent::PeriodEnded(stats)) = ring.poll(ring.next_deadline()) {
@@ -56,9 +55,9 @@ impl<'s, const K: usize, const M: usize, L> Adaptation<'s, VerifiedSchedule<K, M
     /// those that allow its own `t_delta` and window.
     ///
     /// # Errors
-    /// [`LadderError`] if there is no rung, if a period is not longer than the one before, or if the number of sensors
-    /// changes.
-    pub fn new(rungs: &'s [VerifiedSchedule<K, M, L>]) -> Result<Self, LadderError> {
+    /// [`ScheduleError`] if there is no rung, if a period is not longer than the one before, or if the number of
+    /// sensors changes.
+    pub fn new(rungs: &'s [VerifiedSchedule<K, M, L>]) -> Result<Self, ScheduleError> {
         Self::of(rungs, |rung| (rung.sensors(), rung.period()))
     }
 
@@ -75,22 +74,22 @@ impl<'s, const K: usize> Adaptation<'s, HoppingSchedule<K>> {
     ///
     /// # Errors
     /// As there.
-    pub fn hopping(rungs: &'s [HoppingSchedule<K>]) -> Result<Self, LadderError> {
+    pub fn hopping(rungs: &'s [HoppingSchedule<K>]) -> Result<Self, ScheduleError> {
         Self::of(rungs, |rung| (rung.code().sensors(), rung.period()))
     }
 }
 
 impl<'s, R> Adaptation<'s, R> {
     /// `needs` says how many sensors a rung has, and its period.
-    fn of(rungs: &'s [R], needs: impl Fn(&R) -> (usize, Micros)) -> Result<Self, LadderError> {
-        let Some((expected, _)) = rungs.first().map(&needs) else { return Err(LadderError::Empty) };
+    fn of(rungs: &'s [R], needs: impl Fn(&R) -> (usize, Micros)) -> Result<Self, ScheduleError> {
+        let Some((expected, _)) = rungs.first().map(&needs) else { return Err(ScheduleError::NoRung) };
         let mut before = None;
         for (rung, (sensors, period)) in rungs.iter().map(&needs).enumerate() {
             if sensors != expected {
-                return Err(LadderError::Sensors { rung, sensors, expected });
+                return Err(ScheduleError::RungSensors { rung, sensors, expected });
             }
             match before {
-                Some(before) if period <= before => return Err(LadderError::Order { rung, period, before }),
+                Some(before) if period <= before => return Err(ScheduleError::RungOrder { rung, period, before }),
                 _ => before = Some(period),
             }
         }
@@ -170,50 +169,6 @@ impl<'s, R> Adaptation<'s, R> {
     }
 }
 
-/// Why schedules do not make a ladder. Rungs are counted from 0 in code and printed from 1.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub enum LadderError {
-    /// There is no rung.
-    Empty,
-    /// A rung is not slower than the one before.
-    Order {
-        /// The rung.
-        rung: usize,
-        /// Its period.
-        period: Micros,
-        /// The period of the rung before.
-        before: Micros,
-    },
-    /// A rung has another number of sensors than the first.
-    Sensors {
-        /// The rung.
-        rung: usize,
-        /// Number of sensors it has.
-        sensors: usize,
-        /// Sensors of the first.
-        expected: usize,
-    },
-}
-
-impl fmt::Display for LadderError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let first = usize::from(!f.alternate());
-        match *self {
-            Self::Empty => write!(f, "a ladder without schedules; expected at least one"),
-            Self::Order { rung, period, before } => {
-                write!(f, "rung {} has a period of {period}; expected more than the {before} before it", rung + first)
-            }
-            Self::Sensors { rung, sensors, expected } => {
-                write!(f, "rung {} has {sensors} sensors; expected {expected} as in the first", rung + first)
-            }
-        }
-    }
-}
-
-impl core::error::Error for LadderError {}
-
 #[cfg(test)]
 mod tests {
     extern crate std;
@@ -226,7 +181,7 @@ mod tests {
     const REQUIREMENTS: Requirements<'static> = Requirements::new(Micros::new(599));
 
     fn rungs() -> [VerifiedSchedule<12>; 3] {
-        let verified = |schedule: Schedule<12>| schedule.verify(&REQUIREMENTS).verified().unwrap();
+        let verified = |schedule: Schedule<12>| schedule.verified(&REQUIREMENTS).unwrap();
         [TABLE_I_D.scaled(3, 5).unwrap(), TABLE_I_D.scaled(4, 5).unwrap(), TABLE_I_D].map(verified)
     }
 
@@ -309,7 +264,7 @@ mod tests {
         assert_eq!(error(&[fast, fast]), "rung 2 has a period of 60 ms; expected more than the 60 ms before it");
         let (lags, waits) = ([0, 20, 40].map(Micros::from_millis), [1, 3, 6].map(Micros::from_millis));
         let few = Schedule::from_slices(Micros::from_millis(100), &lags, [&[Micros::ZERO; 3], &waits]).unwrap();
-        let few = few.verify(&REQUIREMENTS).verified().unwrap();
+        let few = few.verified(&REQUIREMENTS).unwrap();
         assert_eq!(error(&[fast, few]), "rung 2 has 3 sensors; expected 12 as in the first");
     }
 }

@@ -125,7 +125,7 @@ pub const fn __checked_each<const K: usize>(
     requirements: &Requirements<'_>,
 ) -> VerifiedSchedule<K, 2, EachSensor<K>> {
     let schedule = *__checked(schedule, requirements).schedule();
-    match schedule.verify(requirements).verified_each() {
+    match schedule.verified_each(requirements) {
         Ok(verified) => verified,
         // Never: it has just been verified.
         Err(_) => panic!("a schedule that does not meet its requirements"),
@@ -139,7 +139,7 @@ pub const fn __checked<const K: usize>(
     requirements: &Requirements<'_>,
 ) -> VerifiedSchedule<K> {
     match schedule {
-        Ok(schedule) => match schedule.verify(requirements).verified() {
+        Ok(schedule) => match schedule.verified(requirements) {
             Ok(verified) => verified,
             Err(violation) => refuse(violation),
         },

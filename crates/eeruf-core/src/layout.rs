@@ -2,6 +2,7 @@
 
 use core::fmt;
 
+use crate::requirements_error::RequirementsError;
 use crate::schedule::MAX_SENSORS;
 
 /// The arrangement of the sensors, and the number of adjacent ones that count as neighbours.
@@ -21,31 +22,10 @@ pub enum Layout<'a> {
     Graph(&'a [u64]),
 }
 
-/// A pair of neighbours that a ring of this many sensors does not have.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct LayoutError {
-    /// The two sensors, from 0.
-    pub pair: (usize, usize),
-    /// Number of sensors.
-    pub sensors: usize,
-}
-
-impl fmt::Display for LayoutError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let first = usize::from(!f.alternate());
-        let (x, y) = self.pair;
-        let (x, y) = (x.saturating_add(first), y.saturating_add(first));
-        write!(f, "sensors {x} and {y} as neighbours; expected two different ones of {}", self.sensors)
-    }
-}
-
-impl core::error::Error for LayoutError {}
-
 /// The rows of a [`Layout::Graph`] whose neighbours are these pairs of sensors, counted from 0.
 ///
 /// # Errors
-/// [`LayoutError`] for the first pair that names one sensor twice, or one out of range: a layout that was meant
+/// [`RequirementsError`] for the first pair that names one sensor twice, or one out of range: a layout that was meant
 /// for another ring would keep fewer sensors apart than it says.
 ///
 /// ```
@@ -54,19 +34,19 @@ impl core::error::Error for LayoutError {}
 /// assert!(Layout::Graph(&rows).neighbours(3, 2, 1));
 /// let error = neighbour_rows([(1, 2), (2, 3)], 3).unwrap_err();
 /// assert_eq!(error.to_string(), "sensors 3 and 4 as neighbours; expected two different ones of 3");
-/// # Ok::<(), eeruf_core::conditions::LayoutError>(())
+/// # Ok::<(), eeruf_core::conditions::RequirementsError>(())
 /// ```
 pub fn neighbour_rows(
     pairs: impl IntoIterator<Item = (usize, usize)>,
     sensors: usize,
-) -> Result<[u64; MAX_SENSORS], LayoutError> {
+) -> Result<[u64; MAX_SENSORS], RequirementsError> {
     let mut rows = [0_u64; MAX_SENSORS];
     let there = rows.get_mut(..sensors).unwrap_or(&mut []);
     for (x, y) in pairs {
         for (one, other) in [(x, y), (y, x)] {
             match there.get_mut(one) {
                 Some(row) if one != other && other < sensors => *row |= 1 << other,
-                _ => return Err(LayoutError { pair: (x, y), sensors }),
+                _ => return Err(RequirementsError::Neighbours { pair: (x, y), sensors }),
             }
         }
     }
@@ -77,13 +57,13 @@ impl Layout<'_> {
     /// Returns true if all neighbours that a graph names are among `sensors`.
     ///
     /// # Errors
-    /// [`LayoutError`] for the first that is not.
-    pub fn check(&self, sensors: usize) -> Result<(), LayoutError> {
+    /// [`RequirementsError`] for the first that is not.
+    pub fn check(&self, sensors: usize) -> Result<(), RequirementsError> {
         let Layout::Graph(rows) = *self else { return Ok(()) };
         for (x, &row) in rows.iter().enumerate() {
             let strange = (0..MAX_SENSORS).find(|&y| row >> y & 1 == 1 && (x >= sensors || y >= sensors));
             if let Some(y) = strange {
-                return Err(LayoutError { pair: (x, y), sensors });
+                return Err(RequirementsError::Neighbours { pair: (x, y), sensors });
             }
         }
         Ok(())
@@ -162,11 +142,11 @@ mod tests {
     fn a_graph_that_names_a_sensor_which_is_not_there_is_refused() {
         assert_eq!(neighbour_rows([(0, 1), (2, 0)], 3).unwrap()[..4], [0b110, 0b001, 0b001, 0]);
         for (pair, sensors) in [((2, 3), 3), ((3, 2), 3), ((1, 1), 3), ((0, 64), 64), ((usize::MAX, 0), 64)] {
-            assert_eq!(neighbour_rows([(0, 1), pair], sensors), Err(LayoutError { pair, sensors }));
+            assert_eq!(neighbour_rows([(0, 1), pair], sensors), Err(RequirementsError::Neighbours { pair, sensors }));
         }
         let rows = neighbour_rows([(0, 1), (2, 5)], 6).unwrap();
         assert_eq!(Layout::Graph(&rows).check(6), Ok(()));
-        assert_eq!(Layout::Graph(&rows).check(5), Err(LayoutError { pair: (2, 5), sensors: 5 }));
+        assert_eq!(Layout::Graph(&rows).check(5), Err(RequirementsError::Neighbours { pair: (2, 5), sensors: 5 }));
         assert_eq!(Layout::Ring(9).check(2), Ok(()));
     }
 

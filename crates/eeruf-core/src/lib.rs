@@ -58,7 +58,6 @@ mod filter;
 pub mod flow;
 pub mod hopping;
 mod interop;
-mod judge_error;
 mod judging;
 mod layout;
 mod needs;
@@ -67,6 +66,7 @@ pub mod phases;
 pub mod plan;
 mod reading;
 mod requirements;
+mod requirements_error;
 mod ring;
 mod schedule;
 #[cfg(feature = "search")]
@@ -87,7 +87,6 @@ pub mod watch;
 pub use checked::{__checked, __checked_each, __checked_hopping, __micros};
 pub use edges::{Edge, EdgeQueue};
 pub use filter::EchoFilter;
-pub use interop::DurationError;
 pub use layout::Layout;
 pub use own_limits::{EachSensor, SensorLimits};
 pub use reading::{ReadingKind, Tally};
@@ -103,7 +102,6 @@ pub use verified::VerifiedSchedule;
 /// Judges of readings: the trait [`Judge`](judge::Judge), and those beside [`EchoFilter`].
 pub mod judge {
     pub use crate::filter::RateFilter;
-    pub use crate::judge_error::JudgeError;
     pub use crate::judging::{Agreement, Firing, Heard, Judge, Sounds};
     pub use crate::reading::{Explanation, Verdict};
     pub use crate::ring::AgreementRing;
@@ -112,10 +110,10 @@ pub mod judge {
 
 /// The findings of [`Schedule::verify`], and what they are made of.
 pub mod conditions {
-    pub use crate::layout::{LayoutError, neighbour_rows};
-    pub use crate::requirements::{Interval, Separation};
+    pub use crate::layout::neighbour_rows;
+    pub use crate::requirements::Least;
+    pub use crate::requirements_error::RequirementsError;
     pub use crate::schedule::VerifiedFor;
-    pub use crate::uneven::UnevenError;
     pub use crate::verify::{Verification, Violation, ViolationKind};
 }
 

@@ -17,36 +17,26 @@ pub struct SensorLimits {
     pub window: Micros,
 }
 
-/// Limits that the sensors of a schedule have of their own: none, [`Alike`], or some for each, [`EachSensor`].
+/// Limits that the sensors of a schedule have of their own: none, `()`, or some for each, [`EachSensor`]. A plan
+/// that changes from one to another holds references to them, `&EachSensor`.
 pub trait OwnLimits: Copy + fmt::Debug + sealed::Sealed {
-    /// The part of them that a plan holds while it fires.
-    type InUse<'s>: LimitsInUse
+    /// The part of them that a plan holds which may change to others.
+    type Held<'s>: OwnLimits
     where
         Self: 's;
 
-    /// Those of a plan that begins.
+    /// Those that a plan holds.
     #[doc(hidden)]
-    fn begin(&self) -> Self::InUse<'_>;
+    fn hold(&self) -> Self::Held<'_>;
 
-    /// Those of a plan that changes to them when its period ends.
-    #[doc(hidden)]
-    fn change<'s>(&'s self, in_use: &mut Self::InUse<'s>);
-}
-
-/// The limits that a plan fires by at present: [`Alike`] or [`EachInUse`].
-pub trait LimitsInUse: Clone + fmt::Debug + sealed::Sealed {
-    /// The period ends, and with it what the last change was from.
-    #[doc(hidden)]
-    fn end_period(&mut self) {}
-
-    /// The limits of one sensor, in the first period after a change the lesser of both.
+    /// The limits of one sensor; `None` if it has none.
     #[doc(hidden)]
     #[inline]
     fn limits_of(&self, _sensor: u8) -> Option<SensorLimits> {
         None
     }
 
-    /// Returns true if `receiver` can hear `emitter`; in the first period after a change by either.
+    /// Returns true if `receiver` can hear `emitter`.
     #[doc(hidden)]
     #[inline]
     fn hears(&self, _receiver: u8, _emitter: u8) -> bool {
@@ -66,38 +56,20 @@ pub trait LimitsInUse: Clone + fmt::Debug + sealed::Sealed {
     fn most(&self) -> Option<&VerifiedFor> {
         None
     }
-
-    /// The same of the schedule that it changes to.
-    #[doc(hidden)]
-    #[inline]
-    fn next_most(&self) -> Option<&VerifiedFor> {
-        None
-    }
 }
 
 mod sealed {
     pub trait Sealed {}
 }
 
+impl sealed::Sealed for () {}
+
 /// No limits of their own: all sensors listen and compare alike.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Alike;
-
-impl sealed::Sealed for Alike {}
-
-impl LimitsInUse for Alike {}
-
-impl OwnLimits for Alike {
-    type InUse<'s> = Self;
+impl OwnLimits for () {
+    type Held<'s> = Self;
 
     #[inline]
-    fn begin(&self) -> Self {
-        Self
-    }
-
-    #[inline]
-    fn change(&self, _in_use: &mut Self) {}
+    fn hold(&self) {}
 }
 
 /// Limits of its own for each sensor; places beyond the last sensor say nothing.
@@ -185,8 +157,13 @@ impl<const K: usize> EachSensor<K> {
 
 impl<const K: usize> sealed::Sealed for EachSensor<K> {}
 
-/// Of a plan that keeps them for ever.
-impl<const K: usize> LimitsInUse for EachSensor<K> {
+impl<const K: usize> OwnLimits for EachSensor<K> {
+    type Held<'s> = &'s Self;
+
+    fn hold(&self) -> &Self {
+        self
+    }
+
     #[inline]
     fn limits_of(&self, sensor: u8) -> Option<SensorLimits> {
         self.of(sensor)
@@ -209,53 +186,86 @@ impl<const K: usize> LimitsInUse for EachSensor<K> {
     }
 }
 
-impl<const K: usize> OwnLimits for EachSensor<K> {
-    type InUse<'s> = EachInUse<'s, K>;
+impl<const K: usize> sealed::Sealed for &EachSensor<K> {}
 
-    fn begin(&self) -> EachInUse<'_, K> {
-        EachInUse { now: self, before: self, next: None }
-    }
+impl<const K: usize> OwnLimits for &EachSensor<K> {
+    type Held<'s>
+        = Self
+    where
+        Self: 's;
 
-    fn change<'s>(&'s self, in_use: &mut EachInUse<'s, K>) {
-        in_use.next = Some(self);
-    }
-}
-
-/// The limits of each sensor by the schedules of the present period, the one before and the next.
-#[derive(Clone, Copy, Debug)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct EachInUse<'s, const K: usize> {
-    now: &'s EachSensor<K>,
-    /// Its last firings may still be listening.
-    before: &'s EachSensor<K>,
-    next: Option<&'s EachSensor<K>>,
-}
-
-impl<const K: usize> sealed::Sealed for EachInUse<'_, K> {}
-
-impl<const K: usize> LimitsInUse for EachInUse<'_, K> {
-    fn end_period(&mut self) {
-        self.before = self.now;
-        self.now = self.next.take().unwrap_or(self.now);
+    fn hold(&self) -> Self {
+        self
     }
 
     #[inline]
     fn limits_of(&self, sensor: u8) -> Option<SensorLimits> {
-        let (now, before) = (self.now.of(sensor), self.before.of(sensor));
+        self.of(sensor)
+    }
+
+    fn hears(&self, receiver: u8, emitter: u8) -> bool {
+        (**self).hears(receiver, emitter)
+    }
+
+    fn leader_of(&self, sensor: u8) -> u8 {
+        (**self).leader_of(sensor)
+    }
+
+    fn most(&self) -> Option<&VerifiedFor> {
+        (**self).most()
+    }
+}
+
+/// The limits by the schedules of the present period, the one before and the next. Nothing where sensors are alike.
+#[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub(crate) struct InUse<U> {
+    now: U,
+    /// Its last firings may still be listening.
+    before: U,
+    /// Those of the present period if no other schedule begins with the next.
+    next: U,
+}
+
+impl<U: OwnLimits> InUse<U> {
+    /// Those of a plan that begins.
+    pub(crate) fn begin(own_limits: U) -> Self {
+        Self { now: own_limits, before: own_limits, next: own_limits }
+    }
+
+    /// Changes to others when the period ends.
+    pub(crate) fn change(&mut self, own_limits: U) {
+        self.next = own_limits;
+    }
+
+    /// The period ends, and with it what the last change was from.
+    pub(crate) fn end_period(&mut self) {
+        self.before = self.now;
+        self.now = self.next;
+    }
+
+    /// The limits of one sensor, in the first period after a change the lesser of both.
+    #[inline]
+    pub(crate) fn limits_of(&self, sensor: u8) -> Option<SensorLimits> {
+        let (now, before) = (self.now.limits_of(sensor), self.before.limits_of(sensor));
         let (Some(one), Some(other)) = (now, before) else { return now.or(before) };
         Some(SensorLimits { t_delta: one.t_delta.min(other.t_delta), window: one.window.min(other.window) })
     }
 
-    fn hears(&self, receiver: u8, emitter: u8) -> bool {
+    /// Returns true if `receiver` can hear `emitter`; in the first period after a change by either.
+    #[inline]
+    pub(crate) fn hears(&self, receiver: u8, emitter: u8) -> bool {
         self.now.hears(receiver, emitter) || self.before.hears(receiver, emitter)
     }
 
-    fn most(&self) -> Option<&VerifiedFor> {
+    /// The most that the schedule was verified for, if sensors have limits of their own.
+    pub(crate) fn most(&self) -> Option<&VerifiedFor> {
         self.now.most()
     }
 
-    fn next_most(&self) -> Option<&VerifiedFor> {
-        self.next?.most()
+    /// The same of the schedule that it changes to.
+    pub(crate) fn next_most(&self) -> Option<&VerifiedFor> {
+        self.next.most()
     }
 }
 
@@ -278,8 +288,8 @@ mod tests {
         let period = Micros::from_millis(60);
         let exact = Schedule::<3>::from_firing(period, firing).unwrap();
         let roomy = Schedule::<5>::from_slices(period, &[Micros::ZERO; 3], [&firing[0], &firing[1]]).unwrap();
-        let (exact, roomy) = (exact.verify(&requirements), roomy.verify(&requirements));
-        let (exact, roomy) = (exact.verified_each().unwrap(), roomy.verified_each().unwrap());
+        let exact = exact.verified_each(&requirements).unwrap();
+        let roomy = roomy.verified_each(&requirements).unwrap();
         assert_eq!(exact.own_limits().most(), roomy.own_limits().most());
         for sensor in 0..5 {
             assert_eq!(exact.limits_of(sensor), roomy.limits_of(sensor));

@@ -134,47 +134,42 @@ impl Requirements<'_> {
     }
 }
 
-/// The least shift of crosstalk from one reading to another, and where it occurs.
+/// The least shift of crosstalk from one reading to another, or the least interval between two firings, and where it
+/// occurs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Separation {
-    /// The shift; with two phases the smaller left side of (13a) and (13b).
+pub struct Least {
+    /// The shift, with two phases the smaller left side of (13a) and (13b); or the interval.
     pub value: Micros,
-    /// The sensors, from 0: with two phases the smaller number first, with many the one that sends and the one that
-    /// hears.
+    /// The sensors, from 0. Of a shift the one that sends and the one that hears, with two phases the smaller number
+    /// first; of an interval ascending within a period, in firing order across a period's end.
     pub sensors: (u8, u8),
-    /// The two phases in which the sound is heard; both `a` with two phases.
+    /// The two phases in which the sound is heard, both `a` with two phases; or in which the two fire.
     pub phases: (Phase, Phase),
     /// Number of periods before the sound was sent, in each: -1 if in the period after, while the sensor still
-    /// listened; 0 with two phases, which reject sound of every age.
+    /// listened. 0 with two phases, which reject sound of every age, and of an interval.
     pub ages: (i8, i8),
 }
 
-impl Separation {
-    /// That of two sensors with two phases.
+impl Least {
+    /// The separation of two sensors with two phases.
     pub(crate) const fn of_two_phases(value: Micros, x: usize, y: usize) -> Self {
         let sensors = if x < y { (x as u8, y as u8) } else { (y as u8, x as u8) };
         Self { value, sensors, phases: (Phase::A, Phase::A), ages: (0, 0) }
     }
-}
 
-/// Two firings of neighbours, one after the other.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Interval {
-    /// The time between them.
-    pub value: Micros,
-    /// The sensors, from 0: ascending within a period, in firing order across a period's end.
-    pub sensors: (u8, u8),
-    /// The phases in which they fire.
-    pub phases: (Phase, Phase),
+    /// The interval between a firing of x and one of y.
+    pub(crate) const fn interval(value: Micros, x: usize, y: usize, phases: (usize, usize)) -> Self {
+        let phases = (Phase(phases.0 as u8), Phase(phases.1 as u8));
+        Self { value, sensors: (x as u8, y as u8), phases, ages: (0, 0) }
+    }
 }
 
 impl<const K: usize, const M: usize> Schedule<K, M> {
     /// The smallest interval between two neighbours' firings, over all phases and period boundaries; `None` without
     /// neighbours. Takes `M K^2` steps.
-    pub const fn min_interval(&self, layout: Layout<'_>) -> Option<Interval> {
-        let mut least: Option<Interval> = None;
+    pub const fn min_interval(&self, layout: Layout<'_>) -> Option<Least> {
+        let mut least: Option<Least> = None;
         let mut phase = 0;
         while phase < M {
             let mut x = 0;
@@ -197,28 +192,20 @@ impl<const K: usize, const M: usize> Schedule<K, M> {
     }
 
     /// Between the firings of `x` and `y` in one period.
-    pub(crate) const fn interval_within(&self, x: usize, y: usize, phase: usize) -> Interval {
-        Interval {
-            value: self.fire_at(phase, x).abs_diff(self.fire_at(phase, y)),
-            sensors: (x as u8, y as u8),
-            phases: (Phase(phase as u8), Phase(phase as u8)),
-        }
+    pub(crate) const fn interval_within(&self, x: usize, y: usize, phase: usize) -> Least {
+        Least::interval(self.fire_at(phase, x).abs_diff(self.fire_at(phase, y)), x, y, (phase, phase))
     }
 
     /// From the firing of `x` in one period to that of `y` in the next.
-    pub(crate) const fn interval_across(&self, x: usize, y: usize, phase: usize) -> Interval {
+    pub(crate) const fn interval_across(&self, x: usize, y: usize, phase: usize) -> Least {
         let next = (phase + 1) % M;
         let t_fire = self.fire_at(next, y).as_micros() + self.period().as_micros();
-        Interval {
-            value: Micros::new(t_fire - self.fire_at(phase, x).as_micros()),
-            sensors: (x as u8, y as u8),
-            phases: (Phase(phase as u8), Phase(next as u8)),
-        }
+        Least::interval(Micros::new(t_fire - self.fire_at(phase, x).as_micros()), x, y, (phase, next))
     }
 }
 
 /// The shorter of two intervals, if there are two.
-pub(crate) const fn shorter(least: Option<Interval>, next: Interval) -> Option<Interval> {
+pub(crate) const fn shorter(least: Option<Least>, next: Least) -> Option<Least> {
     match least {
         Some(least) if least.value.as_micros() <= next.value.as_micros() => Some(least),
         _ => Some(next),
@@ -239,7 +226,7 @@ impl<const K: usize> Schedule<K> {
 
     /// The smaller left side of (13a), (13b) over all pairs, and the pair that has it; `None` for a single sensor.
     /// Sorts instead of comparing all pairs.
-    pub const fn separation(&self, criterion: Criterion) -> Option<Separation> {
+    pub const fn separation(&self, criterion: Criterion) -> Option<Least> {
         let by_shift = closest(&self.shift_sizes(), self.sensors());
         match criterion {
             Criterion::Exact | Criterion::Margin(_) => by_shift,
@@ -293,7 +280,7 @@ impl<const K: usize> Schedule<K> {
 }
 
 /// The two values that lie closest together, by insertion sort.
-const fn closest<const K: usize>(values: &[u32; K], sensors: usize) -> Option<Separation> {
+const fn closest<const K: usize>(values: &[u32; K], sensors: usize) -> Option<Least> {
     let mut order = [0; K];
     let mut x = 0;
     while x < sensors {
@@ -305,7 +292,7 @@ const fn closest<const K: usize>(values: &[u32; K], sensors: usize) -> Option<Se
         order[at] = x;
         x += 1;
     }
-    let mut least: Option<Separation> = None;
+    let mut least: Option<Least> = None;
     let mut at = 1;
     while at < sensors {
         let (x, y) = (order[at - 1], order[at]);
@@ -315,7 +302,7 @@ const fn closest<const K: usize>(values: &[u32; K], sensors: usize) -> Option<Se
             None => true,
         };
         if smaller {
-            least = Some(Separation::of_two_phases(value, x, y));
+            least = Some(Least::of_two_phases(value, x, y));
         }
         at += 1;
     }

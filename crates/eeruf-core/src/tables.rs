@@ -59,7 +59,7 @@ pub const THE_ONE_WITH_19_MS: Schedule<12> =
 /// longest window, 76 ms: for [`Ring::new`](crate::Ring::new).
 pub const PAPER_12: VerifiedSchedule<12> = {
     let requirements = Requirements { min_interval: Micros::from_millis(17), ..Requirements::new(Micros::new(999)) };
-    match TABLE_I_D.verify(&requirements).verified() {
+    match TABLE_I_D.verified(&requirements) {
         Ok(verified) => verified,
         // Only ever evaluated when this crate is compiled.
         Err(_) => panic!("Table I-d does not keep what the paper says"),

@@ -1,7 +1,6 @@
 //! [`Uneven`]: what sensors of one ring need that are not all alike.
 
-use core::fmt;
-
+use crate::requirements_error::RequirementsError;
 use crate::schedule::MAX_SENSORS;
 use crate::time::Micros;
 
@@ -55,20 +54,20 @@ impl Uneven<'_> {
     /// Returns true if it makes sense for this many sensors.
     ///
     /// # Errors
-    /// The first thing that does not: see [`UnevenError`].
-    pub fn check(&self, sensors: usize) -> Result<(), UnevenError> {
+    /// The first thing that does not: see [`RequirementsError`].
+    pub fn check(&self, sensors: usize) -> Result<(), RequirementsError> {
         for (what, each) in [("t_delta", self.t_delta), ("window", self.window), ("refire", self.refire)] {
             if !each.is_empty() && each.len() != sensors {
-                return Err(UnevenError::Length { what, given: each.len(), sensors });
+                return Err(RequirementsError::Length { what, given: each.len(), sensors });
             }
         }
         for (at, &(x, y, _)) in self.intervals.iter().enumerate() {
             let pair = (usize::from(x), usize::from(y));
             if x == y || pair.0.max(pair.1) >= sensors {
-                return Err(UnevenError::Pair { pair, sensors });
+                return Err(RequirementsError::Pair { pair, sensors });
             }
             if self.intervals.iter().take(at).any(|&(p, q, _)| (p, q) == (x, y) || (q, p) == (x, y)) {
-                return Err(UnevenError::PairTwice { pair });
+                return Err(RequirementsError::PairTwice { pair });
             }
         }
         let there = if sensors >= MAX_SENSORS { u64::MAX } else { (1 << sensors) - 1 };
@@ -76,10 +75,10 @@ impl Uneven<'_> {
             let mut seen = 0;
             for &set in sets {
                 if set & !there != 0 || set.count_ones() < 2 {
-                    return Err(UnevenError::Set { what, set, sensors });
+                    return Err(RequirementsError::Set { what, set, sensors });
                 }
                 if what == "together" && seen & set != 0 {
-                    return Err(UnevenError::TwoGroups { sensor: (seen & set).trailing_zeros() as u8 });
+                    return Err(RequirementsError::TwoGroups { sensor: (seen & set).trailing_zeros() as u8 });
                 }
                 seen |= set;
             }
@@ -99,80 +98,3 @@ impl Uneven<'_> {
         false
     }
 }
-
-/// Reasons why an [`Uneven`] is invalid.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[non_exhaustive]
-pub enum UnevenError {
-    /// There is not one value for each sensor.
-    Length {
-        /// Of what.
-        what: &'static str,
-        /// Number of values.
-        given: usize,
-        /// Number of sensors.
-        sensors: usize,
-    },
-    /// A pair names a sensor out of range, or one twice.
-    Pair {
-        /// The pair, from 0.
-        pair: (usize, usize),
-        /// Number of sensors.
-        sensors: usize,
-    },
-    /// A pair has two intervals.
-    PairTwice {
-        /// The pair, from 0.
-        pair: (usize, usize),
-    },
-    /// A set holds a sensor out of range, or fewer than two.
-    Set {
-        /// Of what.
-        what: &'static str,
-        /// The set, bit x for sensor x.
-        set: u64,
-        /// Number of sensors.
-        sensors: usize,
-    },
-    /// A sensor fires together with two groups.
-    TwoGroups {
-        /// The sensor, from 0.
-        sensor: u8,
-    },
-}
-
-/// `{:#}` counts sensors from 0 where `{}` counts from 1.
-impl fmt::Display for UnevenError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let first = usize::from(!f.alternate());
-        match *self {
-            Self::Length { what, given, sensors } => {
-                write!(f, "{what}: {given} values; expected one for each of {sensors} sensors")
-            }
-            Self::Pair { pair: (x, y), sensors } => {
-                write!(
-                    f,
-                    "intervals: sensors {} and {}; expected two different ones of {sensors}",
-                    x + first,
-                    y + first
-                )
-            }
-            Self::PairTwice { pair: (x, y) } => {
-                write!(f, "intervals: sensors {} and {} twice; expected each pair once", x + first, y + first)
-            }
-            Self::Set { what, set, sensors } => {
-                write!(f, "{what}: sensors")?;
-                for sensor in (0..MAX_SENSORS).filter(|sensor| set >> sensor & 1 == 1) {
-                    write!(f, " {}", sensor + first)?;
-                }
-                write!(f, "; expected two or more different ones of {sensors}")
-            }
-            Self::TwoGroups { sensor } => {
-                write!(f, "together: sensor {} is in two groups; expected one", usize::from(sensor) + first)
-            }
-        }
-    }
-}
-
-impl core::error::Error for UnevenError {}

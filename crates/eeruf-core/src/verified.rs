@@ -2,20 +2,20 @@
 
 use core::ops::Deref;
 
-use crate::own_limits::{Alike, EachSensor, SensorLimits};
+use crate::own_limits::{EachSensor, SensorLimits};
 use crate::requirements::{Criterion, Requirements};
 use crate::schedule::{Schedule, VerifiedFor};
 use crate::time::{Micros, longer, shorter};
-use crate::verify::{Verification, Violation, stale_separation};
+use crate::verify::{Violation, stale_separation};
 
 /// A [`Schedule`] that was verified, and what for: [`schedule!`](crate::schedule!) makes it when the program is
-/// compiled, [`Verification::verified`] at run time. It can be used wherever a schedule can.
+/// compiled, [`Schedule::verified`] at run time. It can be used wherever a schedule can.
 ///
 /// `L` is [`EachSensor`] where sensors have a window and a `t_delta` of their own, which a [`Ring`](crate::Ring) then
 /// keeps one by one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct VerifiedSchedule<const K: usize, const M: usize = 2, L = Alike> {
+pub struct VerifiedSchedule<const K: usize, const M: usize = 2, L = ()> {
     schedule: Schedule<K, M>,
     own_limits: L,
 }
@@ -84,7 +84,7 @@ impl<const K: usize, const M: usize, L> serde::Serialize for VerifiedSchedule<K,
     }
 }
 
-impl<const K: usize> Verification<'_, K> {
+impl<const K: usize> Schedule<K> {
     /// The schedule with the proof that it meets the requirements. Where sensors are not all alike, it holds for all
     /// what every one of them allows: the smallest `t_delta` and window. [`verified_each`](Self::verified_each) keeps
     /// each one's own.
@@ -95,14 +95,14 @@ impl<const K: usize> Verification<'_, K> {
     /// ```
     /// use eeruf_core::{Micros, Requirements, tables::TABLE_I_D};
     /// let asked = Requirements { min_interval: Micros::from_millis(15), ..Requirements::new(Micros::new(999)) };
-    /// let verified = TABLE_I_D.verify(&asked).verified()?;
+    /// let verified = TABLE_I_D.verified(&asked)?;
     /// assert_eq!((verified.t_delta(), verified.period()), (Micros::new(999), Micros::from_millis(100)));
-    /// assert!(TABLE_I_D.verify(&Requirements::new(Micros::new(1000))).verified().is_err());
+    /// assert!(TABLE_I_D.verified(&Requirements::new(Micros::new(1000))).is_err());
     /// # Ok::<(), eeruf_core::conditions::Violation>(())
     /// ```
-    pub const fn verified(&self) -> Result<VerifiedSchedule<K>, Violation> {
-        let (schedule, requirements) = (self.schedule(), self.requirements());
-        if let Some(violation) = self.first_violation() {
+    pub const fn verified(&self, requirements: &Requirements<'_>) -> Result<VerifiedSchedule<K>, Violation> {
+        let schedule = self;
+        if let Some(violation) = self.verify(requirements).first_violation() {
             return Err(violation);
         }
         let min_refire = schedule.min_refire();
@@ -141,19 +141,22 @@ impl<const K: usize> Verification<'_, K> {
             Criterion::Margin(margin) => Some(margin.saturating_sub(Micros::new(1))),
         };
         let verified_for = VerifiedFor { t_delta, min_interval, window, separation, path_change, audible };
-        Ok(VerifiedSchedule { schedule: schedule.with_verified_for(verified_for), own_limits: Alike })
+        Ok(VerifiedSchedule { schedule: schedule.with_verified_for(verified_for), own_limits: () })
     }
 
     /// The schedule with the proof that it meets the requirements, and with what each sensor allows.
     ///
     /// # Errors
     /// The first [`Violation`] if it does not.
-    pub const fn verified_each(&self) -> Result<VerifiedSchedule<K, 2, EachSensor<K>>, Violation> {
-        let verified = match self.verified() {
+    pub const fn verified_each(
+        &self,
+        requirements: &Requirements<'_>,
+    ) -> Result<VerifiedSchedule<K, 2, EachSensor<K>>, Violation> {
+        let schedule = self;
+        let verified = match self.verified(requirements) {
             Ok(verified) => verified,
             Err(violation) => return Err(violation),
         };
-        let (schedule, requirements) = (self.schedule(), self.requirements());
         let mut limits = [SensorLimits { t_delta: Micros::ZERO, window: Micros::ZERO }; K];
         let mut spare = Micros::MAX;
         let mut x = 0;

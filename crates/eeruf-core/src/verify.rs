@@ -5,32 +5,35 @@
 
 use core::fmt;
 
-use crate::requirements::{Interval, Requirements, Separation, shorter};
+use crate::requirements::{Least, Requirements, shorter};
 use crate::schedule::{Phase, Schedule};
 use crate::time::Micros;
 
 impl<const K: usize> Schedule<K> {
     /// Checks the schedule against `requirements`: see [`Verification`].
     pub const fn verify<'r>(&'r self, requirements: &'r Requirements<'r>) -> Verification<'r, K> {
-        Verification { schedule: self, requirements }
+        Verification(Findings::Two(TwoPhases { schedule: self, requirements }))
     }
 }
 
-/// Findings of [`Schedule::verify`].
+/// Findings on firing times, held against requirements: of [`Schedule::verify`], and of many phases of
+/// [`HoppingSchedule::verify`](crate::hopping::HoppingSchedule::verify) and
+/// [`PhaseTable::verify`](crate::phases::PhaseTable::verify).
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Verification<'r, const K: usize> {
-    schedule: &'r Schedule<K>,
-    requirements: &'r Requirements<'r>,
+pub struct Verification<'r, const K: usize>(Findings<'r, K>);
+
+/// Of two phases everything is worked out when it is asked for, so that each violation is found and none stored.
+#[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+enum Findings<'r, const K: usize> {
+    Two(TwoPhases<'r, K>),
+    Many(ManyPhases<'r>),
 }
 
 impl<'r, const K: usize> Verification<'r, K> {
-    pub(crate) const fn schedule(&self) -> &'r Schedule<K> {
-        self.schedule
-    }
-
-    pub(crate) const fn requirements(&self) -> &'r Requirements<'r> {
-        self.requirements
+    pub(crate) const fn of_many(findings: ManyPhases<'r>) -> Self {
+        Self(Findings::Many(findings))
     }
 
     /// Returns true if every requirement holds.
@@ -38,13 +41,88 @@ impl<'r, const K: usize> Verification<'r, K> {
         self.first_violation().is_none()
     }
 
-    /// The two sensors closest together by (13a), (13b); `None` for a single sensor. Two that must fire together need
-    /// no separation and do not count.
-    pub const fn separation(&self) -> Option<Separation> {
+    /// The least shift of crosstalk, and where it occurs: with two phases the two sensors closest together by (13a),
+    /// (13b). Two that must fire together need no separation and do not count. `None` for a single sensor, or if no
+    /// path can be heard in two of many phases.
+    pub const fn separation(&self) -> Option<Least> {
+        match &self.0 {
+            Findings::Two(two) => two.separation(),
+            Findings::Many(many) => many.separation,
+        }
+    }
+
+    /// The least shift of a stale echo; `None` if none can be heard, or if it was not asked for.
+    pub const fn stale_separation(&self) -> Option<Least> {
+        match &self.0 {
+            Findings::Two(two) => two.stale_separation(),
+            Findings::Many(many) => many.stale,
+        }
+    }
+
+    /// The largest `t_delta` at which crosstalk - and stale echoes, if asked for - move far enough by the criterion, if
+    /// all sensors have the same; `None` if none does, or if nothing limits it in many phases.
+    #[doc(alias = "T_delta")]
+    pub const fn max_t_delta(&self) -> Option<Micros> {
+        let (requirements, unlimited) = match &self.0 {
+            Findings::Two(two) => (two.requirements, Micros::MAX),
+            Findings::Many(many) => (many.requirements, Micros::ZERO),
+        };
+        let least = match closer(self.separation(), self.stale_separation()) {
+            Some(least) => least.value,
+            None => unlimited,
+        };
+        requirements.criterion.max_t_delta(least)
+    }
+
+    /// The smallest interval between neighbours, or, where pairs have intervals of their own, between two that need
+    /// one; `None` without any.
+    pub const fn min_interval(&self) -> Option<Least> {
+        match &self.0 {
+            Findings::Two(two) => two.min_interval(),
+            Findings::Many(many) => many.min_interval,
+        }
+    }
+
+    /// The shortest time between two firings of one sensor; [`Micros::MAX`] without sensors.
+    pub const fn min_refire(&self) -> Micros {
+        match &self.0 {
+            Findings::Two(two) => two.schedule.min_refire(),
+            Findings::Many(ManyPhases { min_refire: Some(least), .. }) => least.value,
+            Findings::Many(_) => Micros::MAX,
+        }
+    }
+
+    /// The violations: first crosstalk, by (13a), then by (13b), stale echoes, intervals, windows, shared echo lines,
+    /// sensors triggered too soon, and sensors that must fire together. Of two phases every one, of many the worst of
+    /// each kind.
+    pub const fn violations(&self) -> impl Iterator<Item = Violation> + Clone + use<'r, K> {
+        self.one_by_one()
+    }
+
+    const fn one_by_one(&self) -> Violations<'r, K> {
+        Violations { findings: self.0, check: 0, x: 0, y: 0, phase: 0 }
+    }
+
+    /// The first violation.
+    pub const fn first_violation(&self) -> Option<Violation> {
+        self.one_by_one().advance()
+    }
+}
+
+/// A schedule of two phases, and the requirements.
+#[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+struct TwoPhases<'r, const K: usize> {
+    schedule: &'r Schedule<K>,
+    requirements: &'r Requirements<'r>,
+}
+
+impl<const K: usize> TwoPhases<'_, K> {
+    const fn separation(&self) -> Option<Least> {
         if self.requirements.uneven.is_none() {
             return self.schedule.separation(self.requirements.criterion);
         }
-        let mut least: Option<Separation> = None;
+        let mut least: Option<Least> = None;
         let mut x = 0;
         while x < self.schedule.sensors() {
             let mut y = x + 1;
@@ -56,7 +134,7 @@ impl<'r, const K: usize> Verification<'r, K> {
                     None => true,
                 };
                 if is_less && !self.requirements.fire_together(x, y) {
-                    least = Some(Separation::of_two_phases(value, x, y));
+                    least = Some(Least::of_two_phases(value, x, y));
                 }
                 y += 1;
             }
@@ -65,35 +143,22 @@ impl<'r, const K: usize> Verification<'r, K> {
         least
     }
 
-    /// The largest `t_delta` at which (13a), (13b) - and the stale echo condition, if asked for - hold, if all sensors
-    /// have the same; `None` if none does.
-    #[doc(alias = "T_delta")]
-    pub const fn max_t_delta(&self) -> Option<Micros> {
-        let mut separation = match self.separation() {
-            Some(separation) => separation.value.as_micros(),
-            None => u32::MAX,
-        };
-        if self.requirements.stale_echo {
-            let mut x = 0;
-            while x < self.schedule.sensors() {
-                let stale = stale_separation(self.schedule, x).as_micros();
-                if stale < separation {
-                    separation = stale;
-                }
-                x += 1;
-            }
+    const fn stale_separation(&self) -> Option<Least> {
+        let (mut least, mut x) = (None, 0);
+        while self.requirements.stale_echo && x < self.schedule.sensors() {
+            let value = stale_separation(self.schedule, x);
+            least = closer(least, Some(Least::of_two_phases(value, x, x)));
+            x += 1;
         }
-        self.requirements.criterion.max_t_delta(Micros::new(separation))
+        least
     }
 
-    /// The smallest interval between neighbours, or, where pairs have intervals of their own, between two that need
-    /// one; `None` without any.
-    pub const fn min_interval(&self) -> Option<Interval> {
+    const fn min_interval(&self) -> Option<Least> {
         let sensors = self.schedule.sensors();
         if self.requirements.uneven.is_none() {
             return self.schedule.min_interval(self.requirements.layout);
         }
-        let mut least: Option<Interval> = None;
+        let mut least: Option<Least> = None;
         let mut x = 0;
         while x < sensors {
             let mut y = 0;
@@ -114,25 +179,31 @@ impl<'r, const K: usize> Verification<'r, K> {
         }
         least
     }
+}
 
-    /// The shortest time between two firings of one sensor.
-    pub const fn min_refire(&self) -> Micros {
-        self.schedule.min_refire()
-    }
+/// The findings on many phases, worked out once.
+#[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub(crate) struct ManyPhases<'r> {
+    pub(crate) requirements: &'r Requirements<'r>,
+    pub(crate) separation: Option<Least>,
+    pub(crate) stale: Option<Least>,
+    pub(crate) min_interval: Option<Least>,
+    pub(crate) min_refire: Option<Least>,
+    /// The worst violation of each kind.
+    pub(crate) worst: [Option<Violation>; KINDS],
+}
 
-    /// Every violation: first (13a), then (13b), stale echoes, intervals, windows, shared echo lines,
-    /// sensors triggered too soon, and sensors that must fire together.
-    pub const fn violations(&self) -> impl Iterator<Item = Violation> + Clone + use<'r, K> {
-        self.one_by_one()
-    }
+/// Kinds of violations in many phases: crosstalk, stale echoes, intervals, windows, shared lines, refire times, sensors
+/// that fire together.
+pub(crate) const KINDS: usize = 7;
 
-    const fn one_by_one(&self) -> Violations<'r, K> {
-        Violations { verification: *self, check: 0, x: 0, y: 0, phase: 0 }
-    }
-
-    /// The first violation.
-    pub const fn first_violation(&self) -> Option<Violation> {
-        self.one_by_one().advance()
+/// The lesser of two; the first of equal ones.
+pub(crate) const fn closer(least: Option<Least>, next: Option<Least>) -> Option<Least> {
+    match (least, next) {
+        (Some(one), Some(other)) if one.value.as_micros() <= other.value.as_micros() => least,
+        (_, None) => least,
+        _ => next,
     }
 }
 
@@ -283,7 +354,7 @@ impl fmt::Display for Violation {
 /// The violations of a [`Verification`], one after the other.
 #[derive(Clone)]
 struct Violations<'r, const K: usize> {
-    verification: Verification<'r, K>,
+    findings: Findings<'r, K>,
     check: u8,
     x: usize,
     y: usize,
@@ -293,19 +364,31 @@ struct Violations<'r, const K: usize> {
 impl<const K: usize> Violations<'_, K> {
     /// `Iterator::next` as a `const fn`, so that a table can be checked when it is compiled.
     const fn advance(&mut self) -> Option<Violation> {
-        while self.check < 10 {
-            let found = self.examine();
-            self.step();
-            if found.is_some() {
-                return found;
+        match self.findings {
+            Findings::Two(two) => {
+                while self.check < 10 {
+                    let found = self.examine(&two);
+                    self.step(two.schedule.sensors());
+                    if found.is_some() {
+                        return found;
+                    }
+                }
+            }
+            Findings::Many(many) => {
+                while (self.check as usize) < KINDS {
+                    let found = many.worst[self.check as usize];
+                    self.check += 1;
+                    if found.is_some() {
+                        return found;
+                    }
+                }
             }
         }
         None
     }
 
     /// To the next sensor `y`, then the next `x`, phase and check.
-    const fn step(&mut self) {
-        let sensors = self.verification.schedule.sensors();
+    const fn step(&mut self, sensors: usize) {
         self.y += 1;
         if self.y == sensors {
             self.y = 0;
@@ -321,8 +404,8 @@ impl<const K: usize> Violations<'_, K> {
         }
     }
 
-    const fn examine(&self) -> Option<Violation> {
-        let (schedule, requirements) = (self.verification.schedule, self.verification.requirements);
+    const fn examine(&self, two: &TwoPhases<'_, K>) -> Option<Violation> {
+        let (schedule, requirements) = (two.schedule, two.requirements);
         let (x, y, phase) = (self.x, self.y, self.phase);
         let pair = x < y && phase == 0;
         let phases = (Phase(phase as u8), Phase(phase as u8));

@@ -201,20 +201,20 @@ mod everything_public_has_a_format {
 
     #[test]
     fn each_type_that_firmware_can_hold_can_be_logged() {
-        formats::<(Adaptation<'_, VerifiedSchedule<12>>, LadderError)>();
-        formats::<(Criterion, Interval, Requirements<'_>, Separation, Layout<'_>, LayoutError)>();
-        formats::<(EchoFilter<12>, EchoFilter<12, 8>, JudgeError, ReadingKind, Tally, Verdict)>();
-        formats::<(Edge, DurationError, Instant, Micros, SpeedOfSound, SensorError)>();
+        formats::<(Adaptation<'_, VerifiedSchedule<12>>, RequirementsError)>();
+        formats::<(Criterion, Least, Requirements<'_>, Layout<'_>)>();
+        formats::<(EchoFilter<12>, EchoFilter<12, 8>, ReadingKind, Tally, Verdict)>();
+        formats::<(Edge, Instant, Micros, SpeedOfSound, SensorError)>();
         formats::<(PeriodStats, Reading, RingConfig, RingConfig<8>, RingError, RingEvent)>();
         formats::<(ScheduledRing<'_, 12>, ScheduledRing<'_, 12, 8>, SensorWatch<12>, SensorState)>();
         formats::<(Phase, Schedule<12>, ScheduleError, VerifiedFor, VerifiedSchedule<12>)>();
-        formats::<(BrokenPromise, ImmediateRefiring<'_, 12>, Limits<'_>, ScheduledFiring<'_, 12>, PlanStep)>();
+        formats::<(BrokenPromise, ImmediateRefiring<'_, 12>, Limits<'_>, ScheduledFiring<'_, 12>, Upcoming)>();
         formats::<(Verification<'_, 12>, Violation, ViolationKind)>();
-        formats::<(SensorLimits, Uneven<'_>, UnevenError, Alike, EachSensor<12>)>();
+        formats::<(SensorLimits, Uneven<'_>, EachSensor<12>)>();
         formats::<(HoppingCode, HoppingSchedule<12>, HoppingSettings, HoppingListening, HoppingError)>();
         formats::<(HoppingRing<12>, HoppingRing<12, 8>)>();
         formats::<(EchoTracker<12>, TrackerSettings, Firing, RateFilter<12>, Survey)>();
         formats::<(HoppingRing<12, 4, EachSensor<12>>, PhaseTable<'_, 12>)>();
-        formats::<PhaseVerification<'_>>();
+        formats::<Verification<'_, 12>>();
     }
 }

@@ -2,7 +2,7 @@
 
 use eeruf_core::{
     Layout,
-    conditions::{LayoutError, neighbour_rows},
+    conditions::{RequirementsError, neighbour_rows},
 };
 use serde::Deserialize;
 
@@ -94,11 +94,13 @@ impl LayoutKey {
             &Self::Named(name) => return Ok(OwnedLayout { name: Some(name), neighbours, rows: vec![] }),
             Self::Pairs(pairs) => pairs,
         };
-        let rows =
-            neighbour_rows(pairs.iter().copied(), sensors).map_err(|LayoutError { pair: (x, y), sensors }| {
-                // As the file counts them.
+        let rows = neighbour_rows(pairs.iter().copied(), sensors).map_err(|error| match error {
+            // As the file counts them.
+            RequirementsError::Neighbours { pair: (x, y), sensors } => {
                 format!("layout: neighbours [{x}, {y}]; expected two different sensors from 0 to {}", sensors - 1)
-            })?;
+            }
+            error => format!("layout: {error:#}"),
+        })?;
         Ok(OwnedLayout { name: None, neighbours, rows: rows.to_vec() })
     }
 }

@@ -4,8 +4,9 @@ use core::fmt::Write as _;
 
 use eeruf_core::{
     MAX_SENSORS, Micros, Phase, Requirements,
+    conditions::Verification,
     hopping::{HoppingCode, HoppingSchedule},
-    phases::{PhaseTable, PhaseVerification},
+    phases::PhaseTable,
 };
 use serde::Deserialize;
 
@@ -171,7 +172,7 @@ impl PhaseSchedule {
     }
 
     /// Works out whether it keeps what is asked of it, all limits, pairs, phases and ages: nothing is taken as proven.
-    pub fn verify<'r>(&self, requirements: &'r Requirements<'r>) -> PhaseVerification<'r> {
+    pub fn verify<'r>(&self, requirements: &'r Requirements<'r>) -> Verification<'r, MAX_SENSORS> {
         self.table().verify(requirements)
     }
 }

@@ -1,6 +1,6 @@
 //! Needs of a ring's sensors that are not all alike, as files and callers give them.
 
-use eeruf_core::{MAX_SENSORS, Micros, Requirements, Uneven, conditions::UnevenError};
+use eeruf_core::{MAX_SENSORS, Micros, Requirements, Uneven, conditions::RequirementsError};
 
 /// Windows and tolerances of each sensor, intervals of pairs, shared echo lines, sensors that fire together.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -44,7 +44,7 @@ impl OwnedUneven {
         let together = sets("together", together, sensors)?;
         let owned = Self { t_delta, window, refire, intervals, shared_lines, together };
         owned.uneven().check(sensors).map_err(|error| match error {
-            UnevenError::PairTwice { pair: (x, y) } => {
+            RequirementsError::PairTwice { pair: (x, y) } => {
                 format!("intervals_us: sensors {x} and {y} twice; expected each pair once")
             }
             // As the file counts them.

@@ -32,7 +32,7 @@ fn uneven_rings_are_verified_and_certified() {
         assert_eq!(found.schedule.period(), Micros::new(period_us), "{name}");
         let problem = found.spec.problem();
         assert_eq!(found.schedule.verify(&problem.requirements).violations().next(), None, "{name}");
-        let verified = found.schedule.verify(&problem.requirements).verified_each().expect("it is");
+        let verified = found.schedule.verified_each(&problem.requirements).expect("it is");
         for sensor in 0..spec.sensors {
             let limits = verified.limits_of(sensor as u8).expect("it is there");
             assert_eq!(limits.window, problem.requirements.window_of(sensor), "{name}");

@@ -3,7 +3,7 @@
 use eeruf_core::{
     EchoFilter, Edge, EdgeQueue, Instant, Micros, Ring, RingError, RingEvent, SensorError, VerifiedSchedule,
     judge::Judge,
-    plan::{LimitsInUse, OwnLimits, Plan, ScheduledFiring},
+    plan::{OwnLimits, Plan, ScheduledFiring},
 };
 use embedded_hal::delay::DelayNs;
 use embedded_hal::digital::{InputPin, OutputPin};
@@ -233,7 +233,7 @@ impl<P: Plan, J: Judge, T, I, D, const K: usize, const H: usize> HcSr04Ring<Ring
     }
 }
 
-impl<'s, U: LimitsInUse, J: Judge, T, I, D, const K: usize, const M: usize, const H: usize>
+impl<'s, U: OwnLimits, J: Judge, T, I, D, const K: usize, const M: usize, const H: usize>
     HcSr04Ring<Ring<ScheduledFiring<'s, K, M, U>, J, K, 1, H>, T, I, D, K>
 {
     /// As [`Ring::change_schedule`].
@@ -241,7 +241,7 @@ impl<'s, U: LimitsInUse, J: Judge, T, I, D, const K: usize, const M: usize, cons
     /// # Errors
     /// [`SetupError::Retrigger`] if the schedule fires a sensor again sooner than it may be triggered, and as
     /// [`Ring::change_schedule`]. The ring then goes on as before.
-    pub fn change_schedule<L: OwnLimits<InUse<'s> = U>>(
+    pub fn change_schedule<L: OwnLimits<Held<'s> = U>>(
         &mut self,
         schedule: &'s VerifiedSchedule<K, M, L>,
     ) -> Result<(), SetupError> {

@@ -4,9 +4,7 @@ use core::cell::{Cell, RefCell};
 
 use eeruf_core::{
     EachSensor, EchoFilter, Edge, Instant, Layout, Micros, ReadingKind, Requirements, Ring, RingConfig, RingEvent,
-    Uneven, VerifiedSchedule,
-    plan::{EachInUse, ScheduledFiring},
-    schedule,
+    Uneven, VerifiedSchedule, plan::ScheduledFiring, schedule,
 };
 use eeruf_hc_sr04::{HcSr04Ring, Health, Pins, Settings};
 use embedded_hal::delay::DelayNs;
@@ -116,7 +114,7 @@ impl DelayNs for Delay<'_> {
 }
 
 type Driver<'w> = HcSr04Ring<
-    Ring<ScheduledFiring<'static, 4, 2, EachInUse<'static, 4>>, EchoFilter<4>, 4>,
+    Ring<ScheduledFiring<'static, 4, 2, &'static EachSensor<4>>, EchoFilter<4>, 4>,
     Trigger<'w>,
     Echo<'w>,
     Delay<'w>,

@@ -4,9 +4,7 @@ use core::convert::Infallible;
 
 use eeruf_core::{
     EachSensor, EchoFilter, Edge, Instant, Layout, Micros, ReadingKind, Requirements, Ring, RingConfig, RingEvent,
-    Uneven, VerifiedSchedule,
-    plan::{EachInUse, ScheduledFiring},
-    schedule,
+    Uneven, VerifiedSchedule, plan::ScheduledFiring, schedule,
 };
 use eeruf_hc_sr04::{HcSr04Ring, Pins, Settings, SetupError};
 use embedded_hal_mock::eh1::delay::NoopDelay;
@@ -57,7 +55,7 @@ impl embedded_hal::digital::InputPin for Pin {
 }
 
 type Driver =
-    HcSr04Ring<Ring<ScheduledFiring<'static, 2, 2, EachInUse<'static, 2>>, EchoFilter<2>, 2>, Pin, Pin, NoopDelay, 2>;
+    HcSr04Ring<Ring<ScheduledFiring<'static, 2, 2, &'static EachSensor<2>>, EchoFilter<2>, 2>, Pin, Pin, NoopDelay, 2>;
 
 fn driver(min_retrigger_ms: u32) -> Result<Driver, SetupError> {
     let mut settings = Settings::default();

@@ -57,7 +57,7 @@ impl InputPin for NoPin {
 #[test]
 fn adaptation_changes_the_drivers_schedule() {
     let requirements = Requirements::new(Micros::new(500));
-    let rung = |scale| TABLE_I_D.scaled(scale, 10).unwrap().verify(&requirements).verified().unwrap();
+    let rung = |scale| TABLE_I_D.scaled(scale, 10).unwrap().verified(&requirements).unwrap();
     // The third fires a sensor again after 53 ms, sooner than an HC-SR04 may be triggered.
     for (rungs, allowed) in [([rung(9), rung(10)], true), ([rung(7), rung(8)], false)] {
         let ring = Ring::new(

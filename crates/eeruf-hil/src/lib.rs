@@ -29,7 +29,7 @@ pub const SCHEDULE: VerifiedSchedule<SENSORS> = {
     let wait_b = [ms(18), ms(12), ms(6), ms(0), ms(20), ms(14), ms(8), ms(2)];
     // Only ever evaluated when this crate is compiled.
     let Ok(schedule) = Schedule::new(ms(100), lag, [[ms(24); SENSORS], wait_b]) else { panic!("not a schedule") };
-    match schedule.verify(&Requirements::new(Micros::new(999))).verified() {
+    match schedule.verified(&Requirements::new(Micros::new(999))) {
         Ok(verified) => verified,
         Err(_) => panic!("not a schedule for 999 us"),
     }

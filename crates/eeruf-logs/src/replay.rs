@@ -3,8 +3,8 @@
 use core::fmt;
 
 use eeruf_core::{
-    MAX_SENSORS, Micros, Phase, ReadingKind, SensorError,
-    judge::{EchoTracker, Firing, JudgeError, TrackerSettings, Verdict},
+    MAX_SENSORS, Micros, Phase, ReadingKind, RingError, SensorError,
+    judge::{EchoTracker, Firing, TrackerSettings, Verdict},
 };
 
 use crate::firings::FiringLog;
@@ -13,7 +13,7 @@ use crate::firings::FiringLog;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ReplayError {
     /// A setting is out of its range.
-    Tracker(JudgeError),
+    Tracker(RingError),
     /// A sensor that no tracker has room for.
     Sensor(SensorError),
     /// The log does not say how a reading was weighed.
@@ -42,8 +42,8 @@ impl fmt::Display for ReplayError {
 
 impl core::error::Error for ReplayError {}
 
-impl From<JudgeError> for ReplayError {
-    fn from(error: JudgeError) -> Self {
+impl From<RingError> for ReplayError {
+    fn from(error: RingError) -> Self {
         Self::Tracker(error)
     }
 }

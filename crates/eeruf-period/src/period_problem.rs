@@ -1,6 +1,6 @@
 //! The question in microseconds, and its answers.
 
-use eeruf_core::search::{Control, Found, GridError, Outcome, ProblemError, Progress, SearchError};
+use eeruf_core::search::{Control, Found, Outcome, Progress, SearchError};
 use eeruf_core::{Criterion, MAX_PERIOD, MAX_SENSORS, Micros, Phase, Requirements, Schedule, Uneven};
 
 use crate::engine::search::{Decided, FiringTimes, Search};
@@ -111,7 +111,7 @@ impl PeriodProblem<'_> {
         let mut go_on = |so_far: &SoFar| {
             control.poll(&Progress::new(so_far.nodes, Some(so_far.best), Some(so_far.bound))).is_continue()
         };
-        let too_long = || SearchError::Problem(ProblemError::TooLong { period: one_by_one(&ticks), most: MAX_TICKS });
+        let too_long = || SearchError::TooManyTicks { period: one_by_one(&ticks), most: MAX_TICKS };
         let answer = shortest(&ticks, budget, &mut go_on).ok_or_else(too_long)?;
         Ok(ShortestPeriod {
             schedule: self.schedule(answer.period, &answer.fire)?,
@@ -269,10 +269,10 @@ impl PeriodProblem<'_> {
             return Err(SearchError::PaperCriterion);
         }
         if self.tick == Micros::ZERO {
-            return Err(GridError::NoTick.into());
+            return Err(SearchError::NoTick);
         }
         if !(1..=MAX_SENSORS).contains(&self.sensors) {
-            return Err(ProblemError::Sensors(self.sensors).into());
+            return Err(SearchError::Sensors(self.sensors));
         }
         self.requirements.layout.check(self.sensors)?;
         let most = u64::from(MAX_PERIOD.as_micros());
@@ -294,16 +294,16 @@ impl PeriodProblem<'_> {
     /// [`SearchError`] if it is not a whole number of ticks, is none, or is too long to be searched.
     pub fn in_whole_ticks(&self, period: Micros) -> Result<u32, SearchError> {
         if self.tick == Micros::ZERO {
-            return Err(GridError::NoTick.into());
+            return Err(SearchError::NoTick);
         }
         if !period.as_micros().is_multiple_of(self.tick_us()) {
-            return Err(GridError::OffGrid { what: "the period", time: period, tick: self.tick }.into());
+            return Err(SearchError::OffGrid { what: "the period", time: period, tick: self.tick });
         }
         let ticks = period.as_micros() / self.tick_us();
         if (1..=MAX_TICKS).contains(&ticks) {
             Ok(ticks)
         } else {
-            Err(ProblemError::Period { period: ticks, most: MAX_TICKS }.into())
+            Err(SearchError::Period { period: ticks, most: MAX_TICKS })
         }
     }
 

@@ -1,8 +1,8 @@
 //! `Adaptation`: adaptive scheduling (end of Sec. 3.1).
 
 use eeruf_core::{
-    MAX_SENSORS, Micros, Requirements, RingEvent, SpeedOfSound, VerifiedSchedule,
-    adaptation::{Adaptation as Core, LadderError},
+    MAX_SENSORS, Micros, Requirements, RingEvent, ScheduleError, SpeedOfSound, VerifiedSchedule,
+    adaptation::Adaptation as Core,
     hopping::{HoppingError, HoppingSchedule as CoreHopping},
 };
 use pyo3::prelude::*;
@@ -82,7 +82,7 @@ impl Settings {
 /// A rung of a ring by tables, which rejects crosstalk.
 fn rung(name: &str, schedule: &Bound<'_, PyAny>, t_delta: Micros) -> PyResult<Rung> {
     let schedule = instance::<Schedule>(name, schedule, "an eeruf.Schedule, as the first is")?.get().0;
-    schedule.verify(&Requirements::new(t_delta)).verified().map_err(Raise::raise)
+    schedule.verified(&Requirements::new(t_delta)).map_err(Raise::raise)
 }
 
 /// A rung of a ring that hops, by which crosstalk moves by more than `t_delta`.
@@ -169,7 +169,7 @@ impl Adaptation {
         let patience = whole_or("patience", patience, 4, 1..=u8::MAX)?;
         let settings = Settings { noisy, calm, window, patience };
         let hops = schedules.first().is_some_and(PyAnyMethods::is_instance_of::<HoppingSchedule>);
-        let adaptation: Result<_, LadderError> = if hops {
+        let adaptation: Result<_, ScheduleError> = if hops {
             let rungs = named().map(|(name, of)| hopping_rung(&name, of, t_delta)).collect::<PyResult<_>>()?;
             OfHopping::try_new(rungs, |rungs| Core::hopping(rungs).map(|on| settings.set(on))).map(Owned::Hopping)
         } else {

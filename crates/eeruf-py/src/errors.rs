@@ -5,7 +5,6 @@ use std::ffi::CString;
 use std::fmt::Display;
 use std::path::Path;
 
-use eeruf_core::judge::JudgeError;
 use eeruf_sim::SimulationError as SimulatorError;
 use pyo3::{
     create_exception,
@@ -78,11 +77,12 @@ fn from_zero(error: &impl Display) -> String {
     format!("{error:#}")
 }
 
-impl Raise for JudgeError {
+impl Raise for eeruf_core::RingError {
     fn raise(self) -> PyErr {
         match self {
             Self::Setting { .. } => HoppingError::new_err(from_zero(&self)),
-            _ => FilterError::new_err(from_zero(&self)),
+            Self::Rate { .. } => FilterError::new_err(from_zero(&self)),
+            _ => RingError::new_err(from_zero(&self)),
         }
     }
 }
@@ -112,7 +112,7 @@ Example:
     >>> eeruf.Schedule.from_firing(40_000, [0, 50_000], [0, 2_000])
     Traceback (most recent call last):
     eeruf.ScheduleError: sensor 1 fires 50 ms into phase a; expected less than the period of 40 ms
-" from eeruf_core::ScheduleError, eeruf_core::adaptation::LadderError;
+" from eeruf_core::ScheduleError;
     FilterError "A filter that cannot compare as asked.
 
 Example:
@@ -128,7 +128,7 @@ Example:
     >>> eeruf.Ring(eeruf.tables.TABLE_I_D, 500, window_us=0)
     Traceback (most recent call last):
     eeruf.RingError: a blanking time of 0 us; expected less than the window of 0 us, and at most 65.535 ms
-" from eeruf_core::RingError, eeruf_core::conditions::Violation;
+" from eeruf_core::conditions::Violation;
     HoppingError "A ring that cannot hop as asked, or settings that contradict each other.
 
 Example:

@@ -7,7 +7,7 @@ use pyo3::prelude::*;
 use crate::{
     arguments::{matrix, micros, times_of, whole, whole_or, wrong},
     columns::room,
-    errors::{ArgumentError, Raise},
+    errors::{ArgumentError, FilterError, Raise},
     exclusive::Exclusive,
     owned_ring::MAX_ECHOES,
     requirements,
@@ -82,7 +82,7 @@ impl EchoFilter {
         } else {
             eeruf_core::EchoFilter::new(t_delta, consecutive).map(|filter| Filter::Several(Box::new(filter)))
         };
-        let filter = filter.map_err(Raise::raise)?;
+        let filter = filter.map_err(|error| FilterError::new_err(format!("{error:#}")))?;
         let filter = Exclusive::new("EchoFilter", filter);
         Ok(Self { filter, sensors, t_delta_us: t_delta.as_micros(), consecutive, echoes })
     }

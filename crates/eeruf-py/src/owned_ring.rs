@@ -1,8 +1,7 @@
 //! A ring with the schedules that it borrows, so that it can change from one to another.
 
 use eeruf_core::{
-    EachSensor, EchoFilter, Instant, MAX_SENSORS, Micros, Requirements, Ring, RingConfig,
-    plan::{EachInUse, ScheduledFiring},
+    EachSensor, EchoFilter, Instant, MAX_SENSORS, Micros, Requirements, Ring, RingConfig, plan::ScheduledFiring,
 };
 use eeruf_sim::AnySchedule;
 use elsa::sync::FrozenVec;
@@ -15,7 +14,7 @@ pub(crate) const MAX_ECHOES: usize = 8;
 
 /// A ring that fires by a schedule, whether sensors are alike or not, with up to `E` echoes of a firing.
 pub(crate) type TableRing<'s, const E: usize> =
-    Ring<ScheduledFiring<'s, MAX_SENSORS, 2, EachInUse<'s, MAX_SENSORS>>, EchoFilter<MAX_SENSORS, E>, MAX_SENSORS, E>;
+    Ring<ScheduledFiring<'s, MAX_SENSORS, 2, &'s EachSensor<MAX_SENSORS>>, EchoFilter<MAX_SENSORS, E>, MAX_SENSORS, E>;
 
 /// A schedule, and what it allows each sensor.
 type Kept = (AnySchedule, EachSensor<MAX_SENSORS>);
@@ -86,7 +85,7 @@ impl Promise {
             Self::Nothing => Ok((*schedule, EachSensor::NONE)),
             Self::TDelta => verify(schedule, t_delta).map(|()| (*schedule, EachSensor::NONE)),
             Self::EachSensor(needs) => {
-                let verified = schedule.verify(&needs.requirements()).verified_each().map_err(Raise::raise)?;
+                let verified = schedule.verified_each(&needs.requirements()).map_err(Raise::raise)?;
                 Ok((*verified.schedule(), *verified.own_limits()))
             }
         }

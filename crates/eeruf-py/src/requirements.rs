@@ -2,7 +2,7 @@
 
 use eeruf_core::{
     Criterion, Layout, MAX_SENSORS, Micros, Requirements,
-    conditions::{LayoutError, neighbour_rows},
+    conditions::{RequirementsError, neighbour_rows},
 };
 use eeruf_design::OwnedUneven;
 use eeruf_sim::AnySchedule;
@@ -33,9 +33,14 @@ impl OwnedLayout {
             .try_iter()
             .and_then(|items| PyList::new(layout.py(), items.collect::<PyResult<Vec<_>>>()?)?.extract())
             .map_err(|_| wrong("layout", shown(layout), expected))?;
-        let rows = neighbour_rows(pairs, sensors).map_err(|LayoutError { pair: (x, y), .. }| {
+        let rows = neighbour_rows(pairs, sensors).map_err(|error| {
             let expected = format!("pairs of two different sensors from 0 to {}", sensors - 1);
-            wrong("layout", format_args!("[({x}, {y})]"), expected)
+            match error {
+                RequirementsError::Neighbours { pair: (x, y), .. } => {
+                    wrong("layout", format_args!("[({x}, {y})]"), expected)
+                }
+                _ => wrong("layout", shown(layout), expected),
+            }
         })?;
         Ok(Self::Graph(Box::new(rows)))
     }

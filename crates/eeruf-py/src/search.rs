@@ -3,8 +3,7 @@
 use std::time::Instant;
 
 use eeruf_core::search::{
-    self as search, FrontTable, Outcome, Progress, SearchError, WaitProblem,
-    wait::{self, Budget, Enumeration, Objective},
+    self as search, Budget, COUNT_WORDS, Outcome, Progress, SearchError, WaitProblem, memory_words,
 };
 use eeruf_core::{Criterion, MAX_SENSORS, Micros};
 use pyo3::prelude::*;
@@ -127,9 +126,9 @@ impl WaitSearch {
     ///     >>> table.t_wait_a_us, table.t_wait_b_us
     ///     ((2000, 0), (0, 0))
     fn first(&self, py: Python<'_>) -> PyResult<Option<Schedule>> {
-        let words = wait::memory_words(self.sensors);
+        let words = memory_words(self.sensors);
         let first = self.run(py, u64::MAX, |memory, budget| self.search.first(memory, budget), words)?;
-        Ok(first.1.map(Schedule))
+        Ok(if let Outcome::Found(table) = first { Some(Schedule(table)) } else { None })
     }
 
     /// Number of tables, however many: counted without listing them where that is possible. Ctrl-C ends the search.
@@ -151,8 +150,8 @@ impl WaitSearch {
     #[pyo3(signature = (limit=None))]
     fn count(&self, py: Python<'_>, limit: Option<&Bound<'_, PyAny>>) -> PyResult<u128> {
         let limit = limit.map(|limit| whole("limit", limit, 1..=u64::MAX)).transpose()?.map(u128::from);
-        let count = |memory: &mut [u32], budget: &mut Budget<'_>| self.search.count(limit, memory, budget);
-        let count = self.run(py, u64::MAX, count, wait::COUNT_WORDS)?.count;
+        let count = |memory: &mut [u32], budget: &mut Budget<'_>| Ok(self.search.count(limit, memory, budget).1);
+        let count = self.run(py, u64::MAX, count, COUNT_WORDS)?;
         // Core counts the last sensor's tables all at once, and so past the limit.
         Ok(limit.map_or(count, |limit| count.min(limit)))
     }
@@ -167,11 +166,8 @@ impl WaitSearch {
     ///     >>> search = eeruf.WaitSearch(2, 40_000, 4_000, 1000, t_delta_us=999)
     ///     >>> [table.t_wait_b_us for table in itertools.islice(search.all(), 2)]
     ///     [(0, 2000), (0, 3000)]
-    fn all(&self) -> PyResult<WaitTables> {
-        Ok(WaitTables(Exclusive::new(
-            "iterator of tables",
-            Walk::try_new(self.search.clone(), search::WaitSearch::enumerate).map_err(Raise::raise)?,
-        )))
+    fn all(&self) -> WaitTables {
+        WaitTables(Exclusive::new("iterator of tables", Walk { search: self.search.clone(), last: None }))
     }
 
     /// The best table: the one whose smallest interval between neighbours, or whose ``T_delta``, is largest. Ctrl-C
@@ -200,12 +196,18 @@ impl WaitSearch {
         objective: Option<&Bound<'_, PyAny>>,
         budget: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Found> {
-        let objectives = [("interval", Objective::Interval), ("t_delta", Objective::Separation)];
-        let objective = choice("objective", objective, &objectives)?;
+        let objectives = [("interval", false), ("t_delta", true)];
+        let of_t_delta = choice("objective", objective, &objectives)?;
         let budget = whole_or("budget", budget, u64::MAX, 1..=u64::MAX)?;
-        let words = wait::memory_words(self.sensors);
+        let words = memory_words(self.sensors);
         let began = Instant::now();
-        let best = |memory: &mut [u32], budget: &mut Budget<'_>| self.search.best(objective, memory, budget);
+        let best = |memory: &mut [u32], budget: &mut Budget<'_>| {
+            if of_t_delta {
+                self.search.best_t_delta(memory, budget)
+            } else {
+                self.search.best_interval(memory, budget)
+            }
+        };
         let found: search::Found<MAX_SENSORS> = self.run(py, budget, best, words)?;
         Ok(Found::of(&found, began, None))
     }
@@ -226,27 +228,26 @@ impl WaitSearch {
     ///     >>> [(interval_us, t_delta_us) for _, interval_us, t_delta_us in search.pareto()]
     ///     [(9000, 499), (8000, 999), (7000, 1499)]
     fn pareto(&self, py: Python<'_>) -> PyResult<Vec<(Schedule, u32, Option<u32>)>> {
-        let words = wait::memory_words(self.sensors);
+        let words = memory_words(self.sensors);
         let front = |memory: &mut [u32], budget: &mut Budget<'_>| {
-            let mut walk = self.search.pareto(memory)?;
             let mut tables = Vec::new();
-            while let Outcome::Found(FrontTable { schedule, min_interval, t_delta }) = walk.find_next(budget)? {
-                tables.push((Schedule(schedule), min_interval.as_micros(), t_delta.map(Micros::as_micros)));
+            while let Outcome::Found(table) = self.search.next_on_front(tables.last(), memory, budget)? {
+                tables.push(table);
             }
-            Ok(tables)
+            let row = |table: &search::FrontTable<MAX_SENSORS>| {
+                (Schedule(table.schedule), table.min_interval.as_micros(), table.t_delta.map(Micros::as_micros))
+            };
+            Ok(tables.iter().map(row).collect())
         };
         self.run(py, u64::MAX, front, words)
     }
 }
 
-self_cell::self_cell!(
-    /// A walk over all tables, with the question that it borrows.
-    struct Walk {
-        owner: search::WaitSearch,
-        #[covariant]
-        dependent: Enumeration,
-    }
-);
+/// The question, and the last table that was given.
+struct Walk {
+    search: search::WaitSearch,
+    last: Option<eeruf_core::Schedule<MAX_SENSORS>>,
+}
 
 /// All tables of a ``WaitSearch``, one after the other: an iterator that Ctrl-C interrupts.
 ///
@@ -268,14 +269,14 @@ impl WaitTables {
         let (mut watch, mut walk) = (Watch::new(None)?, self.0.get()?);
         let walk = &mut *walk;
         let next = py.detach(|| {
-            walk.with_dependent_mut(|search, tables| {
-                let (mut a, mut b) = ([0; MAX_SENSORS], [0; MAX_SENSORS]);
-                let mut watcher = |_: &Progress| control_flow(watch.go_on(None, String::new));
-                let mut budget = Budget::nodes_at_most(u64::MAX).watched(POLL, &mut watcher);
-                match tables.next_into(&mut budget, &mut a, &mut b)? {
-                    Outcome::Found(()) => search.schedule(&a, &b).map(Some),
-                    _ => Ok(None),
+            let mut watcher = |_: &Progress| control_flow(watch.go_on(None, String::new));
+            let mut budget = Budget::nodes_at_most(u64::MAX).watched(POLL, &mut watcher);
+            Ok(match walk.search.next_table(walk.last.as_ref(), &mut budget)? {
+                Outcome::Found(table) => {
+                    walk.last = Some(table);
+                    Some(table)
                 }
+                _ => None,
             })
         });
         watch.outcome(next.map(|schedule| schedule.map(Schedule)).map_err(|error: SearchError| error.raise()))

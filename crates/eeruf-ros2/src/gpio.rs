@@ -56,7 +56,7 @@ impl GpioRing {
         let problem: PeriodProblem<'_> = spec.problem();
         let search = Search { budget: BUDGET, ..Search::default() };
         let found = shortest(&problem, &search, &mut ()).map_err(|error| error.to_string())?;
-        let verified = found.schedule.verify(&problem.requirements).verified();
+        let verified = found.schedule.verified(&problem.requirements);
         let settings = match module {
             None => Settings::default(),
             Some(module) => Settings::of(&module)

@@ -25,7 +25,7 @@ pub const fn plain<const K: usize>() -> VerifiedSchedule<K> {
     let Ok(schedule) = Schedule::new(Micros::from_millis(4 * (longest + 1)), t_lag, t_wait) else {
         panic!("not a schedule");
     };
-    match schedule.verify(&Requirements::new(T_DELTA)).verified() {
+    match schedule.verified(&Requirements::new(T_DELTA)) {
         Ok(verified) => verified,
         Err(_) => panic!("not a schedule for 999 us"),
     }

@@ -87,7 +87,7 @@ fn adaptation_climbs_and_descends_alike() {
             assert_eq!(c.schedule(period, K as u8, 2, &flat), 0);
             assert_eq!(c.verify(number as u32, needs, &[]).0, 0);
             let schedule = Schedule::<K>::from_firing(Micros::new(period), [a, b].map(|row| row.map(Micros::new)));
-            rungs.push(schedule.unwrap().verify(&Requirements::new(Micros::new(100))).verified().unwrap());
+            rungs.push(schedule.unwrap().verified(&Requirements::new(Micros::new(100))).unwrap());
         }
         let mut rust = Adaptation::new(&rungs).unwrap();
         (rust.window, rust.patience) = (r.within(0, 20) as u8, r.within(0, 5) as u8);

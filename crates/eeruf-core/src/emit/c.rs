@@ -96,7 +96,7 @@ impl<const K: usize> fmt::Display for Constant<'_, K> {
             let gaps = || ends().zip(begins()).map(|(end, begin)| (end.abs_diff(begin).as_micros(), "u"));
             writeln!(f, "    {},", Plain(gaps))?;
         }
-        let verified = schedule.verify(requirements).verified_each().ok();
+        let verified = schedule.verified_each(requirements).ok();
         let each = verified.as_ref().map(VerifiedSchedule::own_limits).filter(|_| requirements.uneven.is_some());
         let most = each.and_then(|each| each.most().copied());
         let alike = || verified.map(|verified| verified.verified_for());

@@ -1,7 +1,7 @@
 //! [`Tolerance`]: when two readings are near-identical (Eq. 11), and how many consecutive ones must be.
 
 use super::echoes::NO_ECHO;
-use crate::judge_error::JudgeError;
+use crate::ring::RingError;
 use crate::time::Micros;
 
 /// The tolerance of Eq. (11), and the number of consecutive readings that confirm an echo.
@@ -18,9 +18,9 @@ pub(crate) struct Tolerance {
 pub(crate) struct Consecutive(u8);
 
 impl Consecutive {
-    pub(crate) const fn new(consecutive: u8) -> Result<Self, JudgeError> {
+    pub(crate) const fn new(consecutive: u8) -> Result<Self, RingError> {
         if consecutive < 2 || consecutive > 8 {
-            return Err(JudgeError::Consecutive { consecutive });
+            return Err(RingError::Consecutive { consecutive });
         }
         Ok(Self(consecutive))
     }

@@ -20,9 +20,9 @@ mod rate;
 mod tests;
 mod tracker;
 
-use crate::judge_error::JudgeError;
 use crate::judging::{Heard, Judge, Sounds};
 use crate::reading::{ReadingKind, Verdict};
+use crate::ring::RingError;
 use crate::sensor_error::SensorError;
 use crate::time::Micros;
 
@@ -56,8 +56,8 @@ impl<const K: usize, const E: usize> EchoFilter<K, E> {
     /// of the one before.
     ///
     /// # Errors
-    /// [`JudgeError::Consecutive`] unless 2 to 8 readings are compared.
-    pub const fn new(t_delta: Micros, consecutive: u8) -> Result<Self, JudgeError> {
+    /// [`RingError::Consecutive`] unless 2 to 8 readings are compared.
+    pub const fn new(t_delta: Micros, consecutive: u8) -> Result<Self, RingError> {
         match Consecutive::new(consecutive) {
             Ok(consecutive) => Ok(Self::of(Tolerance::new(t_delta, consecutive))),
             Err(error) => Err(error),

@@ -1,8 +1,8 @@
 //! [`RateFilter`]: three consecutive readings on a line, for a robot that moves and has no odometry.
 
-use crate::judge_error::JudgeError;
 use crate::judging::{Heard, Judge, NoSounds, Sounds};
 use crate::reading::{Explanation, ReadingKind, Verdict};
+use crate::ring::RingError;
 use crate::sensor_error::SensorError;
 use crate::time::{Instant, Micros};
 
@@ -79,10 +79,10 @@ impl<const K: usize> RateFilter<K> {
     /// for a robot that drives at up to v: what is faster is no echo, which makes accidents rarer.
     ///
     /// # Errors
-    /// [`JudgeError::Rate`] for more than 400,000 us/s.
-    pub const fn new(t_delta: Micros, us_per_s: u32) -> Result<Self, JudgeError> {
+    /// [`RingError::Rate`] for more than 400,000 us/s.
+    pub const fn new(t_delta: Micros, us_per_s: u32) -> Result<Self, RingError> {
         if us_per_s > Self::MOST_US_PER_S {
-            return Err(JudgeError::Rate { us_per_s });
+            return Err(RingError::Rate { us_per_s });
         }
         Ok(Self { sensors: [Line::NEW; K], t_delta, us_per_s })
     }

@@ -16,7 +16,7 @@ mod slot;
 mod tests;
 
 use crate::hopping::{HoppingError, HoppingListening};
-use crate::own_limits::{Alike, LimitsInUse};
+use crate::own_limits::OwnLimits;
 use crate::ring::{Ring, RingConfig};
 use crate::time::Instant;
 use crate::tracker::EchoTracker;
@@ -26,7 +26,7 @@ pub use settings::FlowSettings;
 
 /// A ring of up to `K` sensors that fires by flow, with `H` hypotheses for each and up to `E` echoes of a firing. `U`
 /// is [`EachSensor`](crate::EachSensor) where sensors have limits of their own.
-pub type FlowRing<const K: usize, const H: usize = 4, const E: usize = 1, U = Alike> =
+pub type FlowRing<const K: usize, const H: usize = 4, const E: usize = 1, U = ()> =
     Ring<FlowPlan<K, U>, EchoTracker<K, H>, K, E, 1>;
 
 impl<const K: usize, const H: usize, const E: usize> FlowRing<K, H, E> {
@@ -41,11 +41,11 @@ impl<const K: usize, const H: usize, const E: usize> FlowRing<K, H, E> {
         listening: HoppingListening,
         now: Instant,
     ) -> Result<Self, HoppingError> {
-        Self::with_limits(sensors, Alike, settings, listening, now)
+        Self::with_limits(sensors, (), settings, listening, now)
     }
 }
 
-impl<const K: usize, const H: usize, const E: usize, U: LimitsInUse> FlowRing<K, H, E, U> {
+impl<const K: usize, const H: usize, const E: usize, U: OwnLimits> FlowRing<K, H, E, U> {
     /// As [`flow`](FlowRing::flow), for sensors that have limits of their own, by [`FlowSettings::limits`]. What
     /// `listening` and the tracker's `t_delta` say is the most for all.
     ///

@@ -4,7 +4,7 @@ use super::settings::{FlowSettings, Pace};
 use super::slot::{DISABLED, QUIET_US, Slot};
 use crate::hopping::{CATCHES_UP, HoppingCode, HoppingError, HoppingListening, Lateness, Weighed};
 use crate::judging::{Firing, Heard, Judge};
-use crate::own_limits::{Alike, LimitsInUse, SensorLimits};
+use crate::own_limits::{OwnLimits, SensorLimits};
 use crate::plan::{Limits, Plan, Upcoming};
 use crate::reading::{ReadingKind, Verdict};
 use crate::schedule::{MAX_PERIOD, Phase};
@@ -17,7 +17,7 @@ pub(super) const NOBODY: u8 = u8::MAX;
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(C)]
-pub struct FlowPlan<const K: usize, U = Alike> {
+pub struct FlowPlan<const K: usize, U = ()> {
     /// The sensor that fires next, or [`NOBODY`].
     next: u8,
     /// Firings of this cycle so far, and all of them.
@@ -58,11 +58,11 @@ impl<const K: usize> FlowPlan<K> {
         listening: HoppingListening,
         now: Instant,
     ) -> Result<Self, HoppingError> {
-        Self::with_limits(sensors, Alike, settings, listening, now)
+        Self::with_limits(sensors, (), settings, listening, now)
     }
 }
 
-impl<const K: usize, U: LimitsInUse> FlowPlan<K, U> {
+impl<const K: usize, U: OwnLimits> FlowPlan<K, U> {
     /// As [`new`](FlowPlan::new), for sensors that have limits of their own, by [`FlowSettings::limits`]. Those that
     /// fire together do so at one instant, with the quiet that any of them needs; all else fires at other times.
     ///
@@ -253,7 +253,7 @@ const fn unit_of(code: &HoppingCode) -> u32 {
     (code.phases() as u32 + 1) * code.step().as_micros()
 }
 
-impl<const K: usize, U: LimitsInUse> Plan for FlowPlan<K, U> {
+impl<const K: usize, U: OwnLimits> Plan for FlowPlan<K, U> {
     fn deadline(&self) -> Instant {
         self.due
     }
@@ -404,7 +404,7 @@ impl<const K: usize, U: LimitsInUse> Plan for FlowPlan<K, U> {
     }
 }
 
-impl<const K: usize, U: LimitsInUse> FlowPlan<K, U> {
+impl<const K: usize, U: OwnLimits> FlowPlan<K, U> {
     /// Raises a sensor's quiet if others fooled it or nothing of it is believed, lowers it if its reading is.
     fn learn(&mut self, heard: &Heard<'_>, verdict: &Verdict, judge: &impl Judge) {
         let sensor = heard.sensor;

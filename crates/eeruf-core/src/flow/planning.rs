@@ -4,11 +4,11 @@ use super::plan::{FlowPlan, NOBODY};
 use super::settings::{Pace, in_units};
 use super::slot::{FIRED, QUIET_US, Slot};
 use crate::hopping::CATCHES_UP;
-use crate::own_limits::LimitsInUse;
+use crate::own_limits::OwnLimits;
 use crate::plan::Plan;
 use crate::time::{Instant, Micros};
 
-impl<const K: usize, U: LimitsInUse> FlowPlan<K, U> {
+impl<const K: usize, U: OwnLimits> FlowPlan<K, U> {
     /// Decides on the cycle that has begun. `rests` says for how long after its start a sensor must not fire yet.
     #[inline(always)]
     pub(super) fn plan(&mut self, rests: impl Fn(&Self, u8) -> Micros) {

@@ -4,10 +4,10 @@ use super::slot::{LONGEST_QUIET, QUIET_US, quiet};
 use crate::hopping::{CATCHES_UP, HoppingCode, HoppingError};
 use crate::own_limits::{EachSensor, SensorLimits};
 use crate::requirements::Requirements;
+use crate::requirements_error::RequirementsError;
 use crate::schedule::MAX_PERIOD;
 use crate::time::Micros;
 use crate::tracker::TrackerSettings;
-use crate::uneven::UnevenError;
 
 /// The gaps of a [`FlowRing`](super::FlowRing) and the weights of its readings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -88,11 +88,11 @@ impl FlowSettings {
     /// requirements are for tables.
     ///
     /// # Errors
-    /// [`UnevenError`] if what single sensors need is invalid for this many sensors.
+    /// [`RequirementsError`] if what single sensors need is invalid for this many sensors.
     pub fn limits<const K: usize>(
         sensors: usize,
         requirements: &Requirements<'_>,
-    ) -> Result<EachSensor<K>, UnevenError> {
+    ) -> Result<EachSensor<K>, RequirementsError> {
         let Some(uneven) = requirements.uneven else { return Ok(EachSensor::NONE) };
         uneven.check(sensors)?;
         let none = SensorLimits { t_delta: Micros::MAX, window: Micros::MAX };

@@ -5,7 +5,7 @@ extern crate std;
 use super::*;
 use crate::hopping::HoppingCode;
 use crate::judge::{EchoTracker, Firing, Heard, Judge};
-use crate::own_limits::{EachSensor, LimitsInUse, SensorLimits};
+use crate::own_limits::{EachSensor, OwnLimits, SensorLimits};
 use crate::plan::{Plan, check_plan};
 use crate::reading::{ReadingKind, Verdict};
 use crate::requirements::Requirements;
@@ -67,7 +67,7 @@ fn judge() -> impl Judge {
 
 /// Fires a cycle on time; `hears` gives each sensor's echo and the kind of its reading. Returns who fired when, after
 /// the start of the cycle, and the cycle's length.
-fn cycle<const K: usize, U: LimitsInUse>(
+fn cycle<const K: usize, U: OwnLimits>(
     plan: &mut FlowPlan<K, U>,
     fired: &mut [Instant; K],
     expected_change_us: i32,

@@ -2,7 +2,6 @@
 
 use core::fmt;
 
-use crate::judge_error::JudgeError;
 use crate::ring::RingError;
 use crate::time::Micros;
 
@@ -86,16 +85,8 @@ pub enum HoppingError {
     },
     /// A ring in use changes to a schedule of another code.
     OtherCode,
-    /// A setting of the tracker.
-    Tracker(JudgeError),
-    /// Settings by which the ring listens.
+    /// Settings by which the ring listens, or its tracker weighs readings.
     Ring(RingError),
-}
-
-impl From<JudgeError> for HoppingError {
-    fn from(error: JudgeError) -> Self {
-        Self::Tracker(error)
-    }
 }
 
 impl From<RingError> for HoppingError {
@@ -122,7 +113,7 @@ impl HoppingError {
             Self::Lag { .. } => "each sensor must fire inside its period",
             Self::Shift { .. } => "lags stay where sensors have limits of their own",
             Self::OtherCode => "a ring in use keeps its code",
-            Self::Tracker(_) => "a setting of the tracker is out of its range",
+            Self::Ring(RingError::Setting { .. }) => "a setting of the tracker is out of its range",
             Self::Ring(_) => "the ring cannot listen like that",
         }
     }
@@ -164,7 +155,6 @@ impl fmt::Display for HoppingError {
                  not keep"
             ),
             Self::OtherCode => f.write_str("a schedule of another code; expected that of the ring's own schedule"),
-            Self::Tracker(error) => error.fmt(f),
             Self::Ring(error) => error.fmt(f),
         }
     }

@@ -22,7 +22,7 @@ mod turn;
 mod weighed;
 
 use crate::judging::Judge;
-use crate::own_limits::{Alike, LimitsInUse};
+use crate::own_limits::OwnLimits;
 use crate::ring::{Ring, RingConfig};
 use crate::time::Instant;
 use crate::tracker::EchoTracker;
@@ -67,8 +67,7 @@ pub use weighed::Weighed;
 /// ```
 ///
 /// `U` is [`EachSensor`](crate::EachSensor) where sensors have limits of their own.
-pub type HoppingRing<const K: usize, const H: usize = 4, U = Alike> =
-    Ring<HoppingPlan<K, U>, EchoTracker<K, H>, K, 1, 1>;
+pub type HoppingRing<const K: usize, const H: usize = 4, U = ()> = Ring<HoppingPlan<K, U>, EchoTracker<K, H>, K, 1, 1>;
 
 impl<const K: usize, const H: usize> HoppingRing<K, H> {
     /// A ring that hops in time and begins at `now`. The seed is for the draws of new lags.
@@ -83,11 +82,11 @@ impl<const K: usize, const H: usize> HoppingRing<K, H> {
         seed: u32,
         now: Instant,
     ) -> Result<Self, HoppingError> {
-        Self::with_limits(schedule, Alike, settings, listening, seed, now)
+        Self::with_limits(schedule, (), settings, listening, seed, now)
     }
 }
 
-impl<const K: usize, const H: usize, U: LimitsInUse> HoppingRing<K, H, U> {
+impl<const K: usize, const H: usize, U: OwnLimits> HoppingRing<K, H, U> {
     /// As [`hopping`](HoppingRing::hopping), for sensors that have limits of their own, by [`HoppingSchedule::limits`]
     /// or [`hopping_schedule!`](crate::hopping_schedule!) with `each_meets`.
     ///
@@ -109,7 +108,7 @@ impl<const K: usize, const H: usize, U: LimitsInUse> HoppingRing<K, H, U> {
     }
 }
 
-impl<J: Judge, const K: usize, const E: usize, const H: usize, U: LimitsInUse> Ring<HoppingPlan<K, U>, J, K, E, H> {
+impl<J: Judge, const K: usize, const E: usize, const H: usize, U: OwnLimits> Ring<HoppingPlan<K, U>, J, K, E, H> {
     /// Changes to the lags and the period of another schedule with the same code, as adaptation asks for when a period
     /// has ended (see [`Adaptation`](crate::adaptation::Adaptation)). The period that has begun starts again once all
     /// sound from before has died, which takes a window and `reach` at most; what is confirmed starts over. Where

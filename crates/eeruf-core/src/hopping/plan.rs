@@ -9,7 +9,7 @@ use super::settings::{HoppingListening, HoppingSettings, Pace};
 use super::turn::{DISABLED, FIRED, SETTLED, SOLO, Turn};
 use super::weighed::Weighed;
 use crate::judging::{Firing, Heard, Judge};
-use crate::own_limits::{Alike, LimitsInUse, SensorLimits};
+use crate::own_limits::{OwnLimits, SensorLimits};
 use crate::plan::{Limits, Plan, Upcoming};
 use crate::reading::{ReadingKind, Verdict};
 use crate::schedule::Phase;
@@ -35,7 +35,7 @@ const NOBODY: u8 = u8::MAX;
 // In this order: a Cortex-M0 reaches only the first 31 bytes of a structure, and the first 31 of its words, in one
 // instruction. What a firing needs comes first.
 #[repr(C)]
-pub struct HoppingPlan<const K: usize, U = Alike> {
+pub struct HoppingPlan<const K: usize, U = ()> {
     /// The sensor that fires next, or [`NOBODY`].
     next: u8,
     /// Number of this period's sensors that have fired, and of those that fire in it.
@@ -92,11 +92,11 @@ impl<const K: usize> HoppingPlan<K> {
         seed: u32,
         now: Instant,
     ) -> Result<Self, HoppingError> {
-        Self::with_limits(schedule, Alike, settings, listening, seed, now)
+        Self::with_limits(schedule, (), settings, listening, seed, now)
     }
 }
 
-impl<const K: usize, U: LimitsInUse> HoppingPlan<K, U> {
+impl<const K: usize, U: OwnLimits> HoppingPlan<K, U> {
     /// As [`new`](HoppingPlan::new), for sensors that have limits of their own:
     /// [`HoppingSchedule::limits`] gives them. `listening` says the most for all.
     ///
@@ -334,7 +334,7 @@ impl<const K: usize, U: LimitsInUse> HoppingPlan<K, U> {
 
 /// The shortest period at which each sensor has stopped listening when it fires again, and no path reads the same with
 /// two ages.
-fn shortest_period(code: &HoppingCode, own_limits: &impl LimitsInUse, window: Micros) -> Micros {
+fn shortest_period(code: &HoppingCode, own_limits: &impl OwnLimits, window: Micros) -> Micros {
     let rests = match own_limits.most() {
         None => window.saturating_add(code.longest_drop()),
         Some(_) => {
@@ -347,7 +347,7 @@ fn shortest_period(code: &HoppingCode, own_limits: &impl LimitsInUse, window: Mi
     rests.max(code.two_ages())
 }
 
-impl<const K: usize, U: LimitsInUse> Plan for HoppingPlan<K, U> {
+impl<const K: usize, U: OwnLimits> Plan for HoppingPlan<K, U> {
     fn deadline(&self) -> Instant {
         self.due
     }

@@ -3,7 +3,7 @@
 use super::plan::{CATCHES_UP, HoppingPlan};
 use super::schedule::longest_lag;
 use super::turn::{DISABLED, FIRED, SETTLED, SOLO, Turn};
-use crate::own_limits::LimitsInUse;
+use crate::own_limits::OwnLimits;
 use crate::time::{Instant, Micros};
 
 /// A whole solo period, and the most that is saved up.
@@ -12,7 +12,7 @@ const MOST: u16 = 2 * ONE;
 /// Number of lags that are drawn in search of one that keeps the neighbours' interval.
 const DRAWS: u8 = 8;
 
-impl<const K: usize, U: LimitsInUse> HoppingPlan<K, U> {
+impl<const K: usize, U: OwnLimits> HoppingPlan<K, U> {
     /// Decides who fires in the period that has begun. `fired` says when a sensor that has fired last did.
     pub(super) fn plan(&mut self, fired: impl Fn(u8) -> Instant) {
         self.since_solo = self.since_solo.saturating_add(1);

@@ -3,11 +3,11 @@
 use super::code::HoppingCode;
 use super::error::HoppingError;
 use crate::own_limits::{EachSensor, SensorLimits};
-use crate::phases::{PhaseTable, PhaseVerification};
-use crate::requirements::{Requirements, Separation};
+use crate::phases::PhaseTable;
+use crate::requirements::{Least, Requirements};
 use crate::schedule::{MAX_PERIOD, MAX_SENSORS, Phase, VerifiedFor, scale};
 use crate::time::Micros;
-use crate::verify::Violation;
+use crate::verify::{Verification, Violation};
 
 /// When the sensors of a [`HoppingRing`](super::HoppingRing) fire: each once a period, at its lag plus the wait of the
 /// code. `K` is the most sensors that it has room for; the code says how many there are.
@@ -120,12 +120,12 @@ impl<const K: usize> HoppingSchedule<K> {
     /// of them. That crosstalk moves by the step is proven (`docs/explanation/theory.md`, section 9.1) and not worked
     /// out again where the period is at least twice the code and a step, so that this is cheap enough for the compiler;
     /// [`PhaseTable::verify`] works it out.
-    pub const fn verify<'r>(&self, requirements: &'r Requirements<'r>) -> PhaseVerification<'r> {
+    pub const fn verify<'r>(&self, requirements: &'r Requirements<'r>) -> Verification<'r, K> {
         let rows = self.table_together::<{ HoppingCode::MAX_PHASES as usize }>(requirements.together());
         let (cycle, _) = rows.split_at(self.code.phases() as usize);
         let table = PhaseTable::new(self.period, cycle).with_sensors(self.code.sensors());
         // All pairs and phases are alike.
-        let step = Separation { value: self.code.step(), sensors: (0, 1), phases: (Phase(0), Phase(1)), ages: (0, 0) };
+        let step = Least { value: self.code.step(), sensors: (0, 1), phases: (Phase(0), Phase(1)), ages: (0, 0) };
         let is_proven =
             self.period.as_micros() >= self.code.two_ages().as_micros() && !self.hears_the_same(requirements);
         table.verify_with(if is_proven { Some(step) } else { None }, requirements)

@@ -13,11 +13,10 @@
 
 mod verify;
 
-use crate::requirements::{Interval, Requirements, Separation, shorter};
+use crate::requirements::{Least, Requirements, shorter};
 use crate::schedule::{MAX_SENSORS, Phase};
 use crate::time::Micros;
-
-pub use verify::PhaseVerification;
+use crate::verify::closer;
 
 /// Firing times of any number of phases, to be checked: a row for each phase, a number for each sensor.
 ///
@@ -80,8 +79,8 @@ impl<'a, const K: usize> PhaseTable<'a, K> {
     /// The least by which a path from one sensor to another moves from one phase to another, over all ages in which it
     /// can be heard by what the requirements say of windows, blanking and audible sound; `None` if no path can be heard
     /// in two phases. Two that must fire together do not count. Takes `25 (K M)^2` steps.
-    pub const fn separation(&self, requirements: &Requirements<'_>) -> Option<Separation> {
-        let (mut least, mut x): (Option<Separation>, usize) = (None, 0);
+    pub const fn separation(&self, requirements: &Requirements<'_>) -> Option<Least> {
+        let (mut least, mut x): (Option<Least>, usize) = (None, 0);
         while x < self.sensors() {
             let mut y = 0;
             while y < self.sensors() {
@@ -97,8 +96,8 @@ impl<'a, const K: usize> PhaseTable<'a, K> {
 
     /// The same of a sensor's own sound from earlier periods, however long its path: by how much a stale echo moves at
     /// least. Sound that is a whole cycle old does not move, and does not count.
-    pub const fn stale_separation(&self, requirements: &Requirements<'_>) -> Option<Separation> {
-        let (mut least, mut x): (Option<Separation>, usize) = (None, 0);
+    pub const fn stale_separation(&self, requirements: &Requirements<'_>) -> Option<Least> {
+        let (mut least, mut x): (Option<Least>, usize) = (None, 0);
         while x < self.sensors() {
             least = closer(least, self.separation_of(x, x, requirements));
             x += 1;
@@ -107,7 +106,7 @@ impl<'a, const K: usize> PhaseTable<'a, K> {
     }
 
     /// As far as a path from x to y goes.
-    const fn separation_of(&self, x: usize, y: usize, requirements: &Requirements<'_>) -> Option<Separation> {
+    const fn separation_of(&self, x: usize, y: usize, requirements: &Requirements<'_>) -> Option<Least> {
         let reach = match requirements.audible {
             _ if x == y => Micros::MAX,
             Some(audible) => audible,
@@ -118,7 +117,7 @@ impl<'a, const K: usize> PhaseTable<'a, K> {
             blanking: requirements.blanking.as_micros() as i64,
             reach: reach.as_micros() as i64,
         };
-        let mut least: Option<Separation> = None;
+        let mut least: Option<Least> = None;
         let events = self.phases() * AGES.len();
         let mut one = 0;
         while one < events {
@@ -129,7 +128,7 @@ impl<'a, const K: usize> PhaseTable<'a, K> {
                     let value = Micros::new(a.abs_diff(b) as u32);
                     let phases = (Phase((one / AGES.len()) as u8), Phase((other / AGES.len()) as u8));
                     let ages = (AGES[one % AGES.len()], AGES[other % AGES.len()]);
-                    least = closer(least, Some(Separation { value, sensors: (x as u8, y as u8), phases, ages }));
+                    least = closer(least, Some(Least { value, sensors: (x as u8, y as u8), phases, ages }));
                 }
                 other += 1;
             }
@@ -153,7 +152,7 @@ impl<'a, const K: usize> PhaseTable<'a, K> {
 
     /// The shortest time between two firings of one sensor, over all phases and the end of the cycle; `None` without
     /// phases or sensors.
-    pub const fn min_refire(&self) -> Option<Interval> {
+    pub const fn min_refire(&self) -> Option<Least> {
         let mut least = None;
         let mut x = 0;
         while x < self.sensors() {
@@ -169,7 +168,7 @@ impl<'a, const K: usize> PhaseTable<'a, K> {
 
     /// The smallest interval between the firings of two that need one, within a period and from one to the next; `None`
     /// without any.
-    pub const fn min_interval(&self, requirements: &Requirements<'_>) -> Option<Interval> {
+    pub const fn min_interval(&self, requirements: &Requirements<'_>) -> Option<Least> {
         let mut least = None;
         let mut x = 0;
         while x < self.sensors() {
@@ -189,11 +188,10 @@ impl<'a, const K: usize> PhaseTable<'a, K> {
     }
 
     /// Between a firing of x and one of y, of the same period or the next.
-    const fn between(&self, x: usize, phase: usize, y: usize, next: usize) -> Interval {
+    const fn between(&self, x: usize, phase: usize, y: usize, next: usize) -> Least {
         let apart = self.after(x, phase, y, next).unsigned_abs();
         let value = Micros::new(if apart > u32::MAX as u64 { u32::MAX } else { apart as u32 });
-        let phases = (Phase(phase as u8), Phase((next % self.phases()) as u8));
-        Interval { value, sensors: (x as u8, y as u8), phases }
+        Least::interval(value, x, y, (phase, next % self.phases()))
     }
 
     /// Time from a firing of x to one of y, of the same period or the next, in microseconds; negative if y's is before.
@@ -218,13 +216,5 @@ impl Heard {
         // The length lies in blanking - g .. window - g for both, and in 0 .. reach.
         let (shortest, longest) = (self.blanking - low, self.window - high);
         shortest <= longest && shortest <= self.reach && longest >= 0
-    }
-}
-
-const fn closer(least: Option<Separation>, next: Option<Separation>) -> Option<Separation> {
-    match (least, next) {
-        (Some(one), Some(other)) if one.value.as_micros() <= other.value.as_micros() => least,
-        (_, None) => least,
-        _ => next,
     }
 }

@@ -1,22 +1,22 @@
-//! [`PhaseVerification`]: whether firing times of many phases keep what is asked of them, and what they do not.
+//! Verifies firing times of many phases: the worst violation of each kind.
 
-use super::{PhaseTable, closer};
-use crate::requirements::{Interval, Requirements, Separation};
+use super::PhaseTable;
+use crate::requirements::{Least, Requirements};
 use crate::time::Micros;
-use crate::verify::{Violation, ViolationKind};
+use crate::verify::{KINDS, ManyPhases, Verification, Violation, ViolationKind, closer};
 
 impl<const K: usize> PhaseTable<'_, K> {
     /// Checks the table, in `25 (K M)^2` steps: every limit, pair, phase and age.
-    pub const fn verify<'r>(&self, requirements: &'r Requirements<'r>) -> PhaseVerification<'r> {
+    pub const fn verify<'r>(&self, requirements: &'r Requirements<'r>) -> Verification<'r, K> {
         self.verify_with(None, requirements)
     }
 
     /// The same where it is proven that crosstalk of all pairs moves by at least so much.
     pub(crate) const fn verify_with<'r>(
         &self,
-        proven: Option<Separation>,
+        proven: Option<Least>,
         requirements: &'r Requirements<'r>,
-    ) -> PhaseVerification<'r> {
+    ) -> Verification<'r, K> {
         let (mut worst, mut separation, mut stale) = ([None; KINDS], None, None);
         let mut x = 0;
         while x < self.sensors() {
@@ -27,7 +27,7 @@ impl<const K: usize> PhaseTable<'_, K> {
                     (requirements.separation_of(x, y), !stale_echo || requirements.stale_echo)
                 {
                     let found = match proven {
-                        Some(proven) if !stale_echo => Some(Separation { sensors: (x as u8, y as u8), ..proven }),
+                        Some(proven) if !stale_echo => Some(Least { sensors: (x as u8, y as u8), ..proven }),
                         _ => self.separation_of(x, y, requirements),
                     };
                     if stale_echo {
@@ -44,7 +44,7 @@ impl<const K: usize> PhaseTable<'_, K> {
         }
         let (min_interval, min_refire) = (self.min_interval(requirements), self.min_refire());
         let worst = self.times(requirements, worst);
-        PhaseVerification { requirements, separation, stale, min_interval, min_refire, worst }
+        Verification::of_many(ManyPhases { requirements, separation, stale, min_interval, min_refire, worst })
     }
 
     /// The worst violations of what does not depend on crosstalk.
@@ -83,30 +83,25 @@ impl<const K: usize> PhaseTable<'_, K> {
     }
 }
 
-/// Crosstalk, stale echoes, intervals, windows, shared lines, refire times, sensors that fire together.
-const KINDS: usize = 7;
-
 /// The worst violation of each kind.
 type Worst = [Option<Violation>; KINDS];
 
 /// Sound that does not move as far as it must.
-const fn moves(kind: ViolationKind, found: Option<Separation>, required: Micros) -> Option<Violation> {
+const fn moves(kind: ViolationKind, found: Option<Least>, required: Micros) -> Option<Violation> {
     match found {
-        Some(Separation { value, sensors, phases, ages }) if value.as_micros() < required.as_micros() => {
-            Some(Violation { kind, sensors, phases, ages, value, required })
-        }
-        _ => None,
+        Some(found) => lasts(kind, found, required),
+        None => None,
     }
 }
 
-/// Firings that are closer than they may be.
-const fn lasts(kind: ViolationKind, found: Interval, required: Micros) -> Option<Violation> {
+/// Firings that are closer than they may be, or sound that moves less than it must.
+const fn lasts(kind: ViolationKind, found: Least, required: Micros) -> Option<Violation> {
     if found.value.as_micros() < required.as_micros() { Some(violation(kind, found, required)) } else { None }
 }
 
-const fn violation(kind: ViolationKind, found: Interval, required: Micros) -> Violation {
-    let Interval { value, sensors, phases } = found;
-    Violation { kind, sensors, phases, ages: (0, 0), value, required }
+const fn violation(kind: ViolationKind, found: Least, required: Micros) -> Violation {
+    let Least { value, sensors, phases, ages } = found;
+    Violation { kind, sensors, phases, ages, value, required }
 }
 
 /// The violation that is further from what is required; the first of equal ones.
@@ -120,69 +115,4 @@ const fn worse(worst: Option<Violation>, next: Option<Violation>) -> Option<Viol
 
 const fn short_by(violation: Violation) -> u32 {
     violation.value.as_micros().abs_diff(violation.required.as_micros())
-}
-
-/// Findings on firing times of many phases, against the requirements.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct PhaseVerification<'r> {
-    requirements: &'r Requirements<'r>,
-    separation: Option<Separation>,
-    stale: Option<Separation>,
-    min_interval: Option<Interval>,
-    min_refire: Option<Interval>,
-    worst: Worst,
-}
-
-impl PhaseVerification<'_> {
-    /// Returns true if every requirement holds.
-    pub const fn ok(&self) -> bool {
-        self.first_violation().is_none()
-    }
-
-    /// The least shift of crosstalk, and where it occurs; `None` if no path can be heard in two phases.
-    pub const fn separation(&self) -> Option<Separation> {
-        self.separation
-    }
-
-    /// The least shift of a stale echo; `None` if none can be heard, or if it was not asked for.
-    pub const fn stale_separation(&self) -> Option<Separation> {
-        self.stale
-    }
-
-    /// The smallest interval between neighbours, or between pairs that need one of their own; `None` without any.
-    pub const fn min_interval(&self) -> Option<Interval> {
-        self.min_interval
-    }
-
-    /// The shortest time between two firings of one sensor; `None` without sensors.
-    pub const fn min_refire(&self) -> Option<Interval> {
-        self.min_refire
-    }
-
-    /// The largest `t_delta` at which crosstalk - and stale echoes, if asked for - move far enough by the criterion, if
-    /// all sensors have the same; `None` if none is, or if nothing limits it.
-    pub const fn max_t_delta(&self) -> Option<Micros> {
-        match closer(self.separation, self.stale) {
-            Some(least) => self.requirements.criterion.max_t_delta(least.value),
-            None => None,
-        }
-    }
-
-    /// Violations, the worst of each kind.
-    pub fn violations(&self) -> impl Iterator<Item = Violation> {
-        self.worst.into_iter().flatten()
-    }
-
-    /// The first of them.
-    pub const fn first_violation(&self) -> Option<Violation> {
-        let mut kind = 0;
-        while kind < KINDS {
-            if self.worst[kind].is_some() {
-                return self.worst[kind];
-            }
-            kind += 1;
-        }
-        None
-    }
 }

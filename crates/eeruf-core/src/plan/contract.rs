@@ -8,30 +8,7 @@ use crate::reading::Verdict;
 use crate::schedule::{Phase, VerifiedFor};
 use crate::time::{Instant, Micros};
 
-/// The step that a plan asks for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub enum PlanStep {
-    /// Fire this sensor, now.
-    Fire {
-        /// The sensor, from 0.
-        sensor: u8,
-        /// The phase its wait belongs to.
-        phase: Phase,
-        /// Time since it was due.
-        late: Micros,
-    },
-    /// A period has ended.
-    PeriodEnded {
-        /// Its phase.
-        phase: Phase,
-        /// True if the next one does not follow on it as the schedule says: another schedule begins, or periods in
-        /// which nothing fired were left out.
-        changed: bool,
-    },
-}
-
-/// A firing to come.
+/// A firing to come, or one that is due.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Upcoming {
@@ -60,25 +37,27 @@ pub struct Limits<'s> {
 /// [`ImmediateRefiring`](super::ImmediateRefiring), [`HoppingPlan`](crate::hopping::HoppingPlan), or one of the
 /// caller's own.
 pub trait Plan {
-    /// The next step of a plan that is run without a ring, if one is due. Call again until there is none.
+    /// The next firing of a plan that is run without a ring, if one is due; periods end as they come. Call again until
+    /// there is none.
     #[inline]
-    fn poll(&mut self, now: Instant) -> Option<PlanStep> {
-        let due = self.deadline();
-        if !now.has_reached(due) {
-            if due.since(now) > self.horizon() {
-                // The clock has jumped, or the ring was not polled for half a turn of it.
-                self.restart(now);
-                self.begin_period(|_| now);
+    fn poll(&mut self, now: Instant) -> Option<Upcoming> {
+        loop {
+            let due = self.deadline();
+            if !now.has_reached(due) {
+                if due.since(now) > self.horizon() {
+                    // The clock has jumped, or the ring was not polled for half a turn of it.
+                    self.restart(now);
+                    self.begin_period(|_| now);
+                }
+                return None;
             }
-            return None;
-        }
-        let Some((sensor, phase)) = self.next_firing() else {
-            let (phase, changed) = self.end_period(now);
+            if let Some((sensor, phase)) = self.next_firing() {
+                self.fire(now);
+                return Some(Upcoming { sensor, phase, due });
+            }
+            self.end_period(now);
             self.begin_period(|_| now);
-            return Some(PlanStep::PeriodEnded { phase, changed });
-        };
-        self.fire(now);
-        Some(PlanStep::Fire { sensor, phase, late: now.since(due) })
+        }
     }
     /// When the next step is due.
     fn deadline(&self) -> Instant;

@@ -44,7 +44,7 @@ struct Turn {
 
 impl<'s, const K: usize, const M: usize> ImmediateRefiring<'s, K, M> {
     /// Begins at `now`. The lags and waits are those of `schedule`; its period only says how often
-    /// [`PlanStep::PeriodEnded`](crate::plan::PlanStep::PeriodEnded) comes. No sensor fires again sooner than
+    /// periods end. No sensor fires again sooner than
     /// `min_refire` after it has fired; more than [`MAX_PERIOD`](crate::MAX_PERIOD) counts as that.
     pub fn new(schedule: &'s Schedule<K, M>, min_refire: Micros, now: Instant) -> Self {
         let sensors = [Turn { at: now, phase: 0 }; K];

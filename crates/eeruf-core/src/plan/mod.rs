@@ -10,8 +10,8 @@ mod immediate;
 mod scheduled;
 
 pub use check::{BrokenPromise, check_plan};
-pub use contract::{Limits, Plan, PlanStep, Upcoming};
+pub use contract::{Limits, Plan, Upcoming};
 pub use immediate::ImmediateRefiring;
 pub use scheduled::ScheduledFiring;
 
-pub use crate::own_limits::{Alike, EachInUse, LimitsInUse, OwnLimits};
+pub use crate::own_limits::OwnLimits;

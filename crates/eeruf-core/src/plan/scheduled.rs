@@ -2,7 +2,7 @@
 
 use super::contract::{Limits, Plan, Upcoming};
 use crate::judging::Firing;
-use crate::own_limits::{Alike, LimitsInUse, OwnLimits, SensorLimits};
+use crate::own_limits::{InUse, OwnLimits, SensorLimits};
 use crate::schedule::{MAX_SENSORS, Phase, Schedule, VerifiedFor};
 use crate::sensor_set::SensorSet;
 use crate::time::{Instant, Micros, longer};
@@ -14,12 +14,12 @@ use crate::verified::VerifiedSchedule;
 /// no two firings ever come closer than in the schedule, however late the caller is.
 ///
 /// ```
-/// use eeruf_core::{Instant, Micros, Phase, plan::{Plan, PlanStep, ScheduledFiring}, tables::TABLE_I_D};
+/// use eeruf_core::{Instant, Phase, plan::{Plan, ScheduledFiring, Upcoming}, tables::TABLE_I_D};
 /// let mut plan = ScheduledFiring::new(&TABLE_I_D, Instant::from_micros(0));
 /// let first = plan.deadline();
 /// assert_eq!(first, Instant::from_micros(24_000));
 /// assert_eq!(plan.poll(Instant::from_micros(23_999)), None);
-/// assert_eq!(plan.poll(first), Some(PlanStep::Fire { sensor: 0, phase: Phase::A, late: Micros::ZERO }));
+/// assert_eq!(plan.poll(first), Some(Upcoming { sensor: 0, phase: Phase::A, due: first }));
 /// ```
 ///
 /// Where sensors have limits of their own, each listens and compares as it was verified for; in the first period after
@@ -28,7 +28,7 @@ use crate::verified::VerifiedSchedule;
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 // In this order for the short offsets of a Cortex-M0: see `Ring`.
 #[repr(C)]
-pub struct ScheduledFiring<'s, const K: usize, const M: usize = 2, U = Alike> {
+pub struct ScheduledFiring<'s, const K: usize, const M: usize = 2, U = ()> {
     phase: u8,
     /// Place in the firing order of the sensor after the next one.
     following: u8,
@@ -43,7 +43,7 @@ pub struct ScheduledFiring<'s, const K: usize, const M: usize = 2, U = Alike> {
     last_fired: Instant,
     disabled: SensorSet,
     next_schedule: Option<&'s Schedule<K, M>>,
-    own_limits: U,
+    own_limits: InUse<U>,
 }
 
 /// Sensors that do not fire.
@@ -58,18 +58,18 @@ enum Skips {
 impl<'s, const K: usize, const M: usize> ScheduledFiring<'s, K, M> {
     /// Begins the first period of `schedule` at `now`, with all sensors enabled.
     pub fn new(schedule: &'s Schedule<K, M>, now: Instant) -> Self {
-        Self::with_limits(schedule, &Alike, now)
+        Self::with_limits(schedule, &(), now)
     }
 }
 
-impl<'s, const K: usize, const M: usize, U: LimitsInUse> ScheduledFiring<'s, K, M, U> {
+impl<'s, const K: usize, const M: usize, U: OwnLimits> ScheduledFiring<'s, K, M, U> {
     /// As [`new`](ScheduledFiring::new), by a schedule whose sensors may have limits of their own.
-    pub fn verified<L: OwnLimits<InUse<'s> = U>>(schedule: &'s VerifiedSchedule<K, M, L>, now: Instant) -> Self {
+    pub fn verified<L: OwnLimits<Held<'s> = U>>(schedule: &'s VerifiedSchedule<K, M, L>, now: Instant) -> Self {
         Self::with_limits(schedule.schedule(), schedule.own_limits(), now)
     }
 
     /// As [`verified`](Self::verified), of schedule and limits apart.
-    pub fn with_limits<L: OwnLimits<InUse<'s> = U>>(
+    pub fn with_limits<L: OwnLimits<Held<'s> = U>>(
         schedule: &'s Schedule<K, M>,
         own_limits: &'s L,
         now: Instant,
@@ -86,7 +86,7 @@ impl<'s, const K: usize, const M: usize, U: LimitsInUse> ScheduledFiring<'s, K, 
             last_fired: Instant::from_micros(now.as_micros().wrapping_sub(settling)),
             disabled: SensorSet::NONE,
             next_schedule: None,
-            own_limits: own_limits.begin(),
+            own_limits: InUse::begin(own_limits.hold()),
         }
     }
 
@@ -100,14 +100,14 @@ impl<'s, const K: usize, const M: usize, U: LimitsInUse> ScheduledFiring<'s, K, 
     /// Neither schedule was verified against the other, so its first period begins late enough after the last firing to
     /// keep every refire time of the present schedule and every interval that both were verified for, and those of one
     /// that was not verified.
-    pub fn change_schedule<L: OwnLimits<InUse<'s> = U>>(&mut self, schedule: &'s VerifiedSchedule<K, M, L>) {
+    pub fn change_schedule<L: OwnLimits<Held<'s> = U>>(&mut self, schedule: &'s VerifiedSchedule<K, M, L>) {
         self.change_with_limits(schedule.schedule(), schedule.own_limits());
     }
 
     /// As [`change_schedule`](Self::change_schedule), of schedule and limits apart.
-    pub fn change_with_limits<L: OwnLimits<InUse<'s> = U>>(&mut self, schedule: &'s Schedule<K, M>, own_limits: &'s L) {
+    pub fn change_with_limits<L: OwnLimits<Held<'s> = U>>(&mut self, schedule: &'s Schedule<K, M>, own_limits: &'s L) {
         self.next_schedule = Some(schedule);
-        own_limits.change(&mut self.own_limits);
+        self.own_limits.change(own_limits.hold());
     }
 
     /// Turns to the following sensor, its gap after this instant, or to the next enabled one after it; if there is
@@ -185,7 +185,7 @@ impl<const K: usize, const M: usize> Schedule<K, M> {
     }
 }
 
-impl<const K: usize, const M: usize, U: LimitsInUse> Plan for ScheduledFiring<'_, K, M, U> {
+impl<const K: usize, const M: usize, U: OwnLimits> Plan for ScheduledFiring<'_, K, M, U> {
     #[inline]
     fn fire(&mut self, now: Instant) {
         self.last_fired = now;
@@ -306,7 +306,8 @@ impl<const K: usize, const M: usize, U: LimitsInUse> Plan for ScheduledFiring<'_
     }
 
     fn next_limits(&self) -> Option<Limits<'_>> {
-        self.own_limits.next_most().map(Limits::of_most).or_else(|| self.next_schedule.map(Schedule::limits))
+        let next = self.next_schedule?;
+        Some(self.own_limits.next_most().map_or_else(|| next.limits(), Limits::of_most))
     }
 
     fn hears(&self, receiver: u8, emitter: u8) -> bool {

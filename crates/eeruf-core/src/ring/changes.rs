@@ -5,14 +5,14 @@ use super::listening::Listening;
 use super::{NOBODY, Ring, RingError};
 use crate::filter::EchoFilter;
 use crate::judging::Judge;
-use crate::own_limits::{Alike, LimitsInUse, OwnLimits};
+use crate::own_limits::OwnLimits;
 use crate::plan::{Plan, ScheduledFiring};
 use crate::schedule::Schedule;
 use crate::sensor_error::SensorError;
 use crate::time::{Instant, Micros};
 use crate::verified::VerifiedSchedule;
 
-impl<'s, const N: usize, const M: usize, U: LimitsInUse, J: Judge, const K: usize, const E: usize, const H: usize>
+impl<'s, const N: usize, const M: usize, U: OwnLimits, J: Judge, const K: usize, const E: usize, const H: usize>
     Ring<ScheduledFiring<'s, N, M, U>, J, K, E, H>
 {
     /// Changes to another schedule when the present period ends (see [`ScheduledFiring::change_schedule`]).
@@ -23,7 +23,7 @@ impl<'s, const N: usize, const M: usize, U: LimitsInUse, J: Judge, const K: usiz
     /// [`RingError::TDelta`] or [`RingError::VerifiedWindow`] if the schedule was verified for less than the ring's
     /// `t_delta` or window; [`RingError::Blanking`] if a sensor would listen no longer than the blanking time. The ring
     /// then goes on as before.
-    pub fn change_schedule<L: OwnLimits<InUse<'s> = U>>(
+    pub fn change_schedule<L: OwnLimits<Held<'s> = U>>(
         &mut self,
         schedule: &'s VerifiedSchedule<N, M, L>,
     ) -> Result<(), RingError> {
@@ -35,7 +35,7 @@ impl<'s, const N: usize, const M: usize, U: LimitsInUse, J: Judge, const K: usiz
     ///
     /// # Errors
     /// As there; [`RingError::Window`] if a sensor would fire again while it still listens.
-    pub fn change_with_limits<L: OwnLimits<InUse<'s> = U>>(
+    pub fn change_with_limits<L: OwnLimits<Held<'s> = U>>(
         &mut self,
         schedule: &'s Schedule<N, M>,
         own_limits: &'s L,
@@ -56,7 +56,7 @@ impl<'s, const N: usize, const M: usize, J: Judge, const K: usize, const E: usiz
     /// # Errors
     /// [`RingError::Window`] if a sensor would fire again while it still listens.
     pub fn change_to_unverified(&mut self, schedule: &'s Schedule<N, M>) -> Result<(), RingError> {
-        self.change_with_limits(schedule, &Alike)
+        self.change_with_limits(schedule, &())
     }
 }
 

@@ -60,8 +60,7 @@ impl<const E: usize> RingConfig<E> {
         let verified_for = plan.limits().verified_for;
         let t_delta = self.t_delta.or(verified_for.map(|verified_for| verified_for.t_delta));
         let t_delta = t_delta.ok_or(RingError::Unverified)?;
-        let too_many = RingError::Consecutive { consecutive: self.consecutive };
-        Ok(Tolerance::new(t_delta, Consecutive::new(self.consecutive).map_err(|_| too_many)?))
+        Ok(Tolerance::new(t_delta, Consecutive::new(self.consecutive)?))
     }
 
     /// With this `t_delta`: at most what the schedule was verified for.

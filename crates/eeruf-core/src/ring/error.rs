@@ -1,16 +1,15 @@
-//! [`RingError`]: why a ring cannot be set up as asked.
+//! [`RingError`]: why a ring, or a judge, cannot be set up as asked.
 
 use core::fmt;
 
 use super::history::MAX_AUDIBLE;
-use crate::judge_error::JudgeError;
 use crate::schedule::MAX_SENSORS;
 use crate::time::Micros;
 
 /// The longest `t_delta` and blanking time, which a ring keeps in two bytes each.
 pub(super) const LONGEST: Micros = Micros::new(u16::MAX as u32);
 
-/// Why a [`Ring`](super::Ring) cannot be set up as asked.
+/// Why a [`Ring`](super::Ring), or a judge, cannot be set up as asked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -79,6 +78,22 @@ pub enum RingError {
         /// The number asked for.
         consecutive: u8,
     },
+    /// A rate for a [`RateFilter`](crate::judge::RateFilter) at which no robot's echoes change.
+    Rate {
+        /// The drift asked for, in microseconds per second.
+        us_per_s: u32,
+    },
+    /// A setting of an [`EchoTracker`](crate::judge::EchoTracker) out of its range; times are in microseconds.
+    Setting {
+        /// Its field in [`TrackerSettings`](crate::judge::TrackerSettings).
+        name: &'static str,
+        /// The value given.
+        value: u32,
+        /// The least that it may be.
+        least: u32,
+        /// The most that it may be.
+        most: u32,
+    },
 }
 
 impl fmt::Display for RingError {
@@ -118,8 +133,9 @@ impl fmt::Display for RingError {
             Self::Unverified => {
                 f.write_str("a schedule that was not verified; expected both t_delta and window in the configuration")
             }
-            // As the judge says it.
-            &Self::Consecutive { consecutive } => JudgeError::Consecutive { consecutive }.fmt(f),
+            Self::Consecutive { consecutive } => write!(f, "{consecutive} consecutive readings; expected 2 to 8"),
+            Self::Rate { us_per_s } => write!(f, "echoes that change by {us_per_s} us/s; expected 0 to 400000 us/s"),
+            Self::Setting { name, value, least, most } => write!(f, "{name} is {value}; expected {least} to {most}"),
         }
     }
 }

@@ -16,7 +16,7 @@ mod steps;
 
 use crate::filter::EchoFilter;
 use crate::judging::{Agreement, Judge};
-use crate::own_limits::{Alike, LimitsInUse, OwnLimits};
+use crate::own_limits::OwnLimits;
 use crate::plan::{ImmediateRefiring, Plan, ScheduledFiring, Upcoming};
 use crate::reading::{ReadingKind, Tally};
 use crate::schedule::{MAX_SENSORS, Schedule};
@@ -91,9 +91,9 @@ pub struct Ring<P, J, const K: usize, const E: usize = 1, const H: usize = 4> {
     tally: Tally<u8>,
 }
 
-/// A [`Ring`] with scheduled firing by a schedule of the paper's kind; `U` is [`EachInUse`](crate::plan::EachInUse)
+/// A [`Ring`] with scheduled firing by a schedule of the paper's kind; `U` is `&`[`EachSensor`](crate::EachSensor)
 /// where sensors have limits of their own.
-pub type ScheduledRing<'s, const K: usize, const E: usize = 1, U = Alike> =
+pub type ScheduledRing<'s, const K: usize, const E: usize = 1, U = ()> =
     Ring<ScheduledFiring<'s, K, 2, U>, EchoFilter<K, E>, K, E>;
 
 /// A [`Ring`] that accepts each reading that agrees with the one before, whoever else's sound explains both: a
@@ -102,7 +102,7 @@ pub type AgreementRing<P, const K: usize, const E: usize = 1> = Ring<P, Agreemen
 
 const NOBODY: u8 = u8::MAX;
 
-impl<'s, const K: usize, const M: usize, U: LimitsInUse, const E: usize>
+impl<'s, const K: usize, const M: usize, U: OwnLimits, const E: usize>
     Ring<ScheduledFiring<'s, K, M, U>, EchoFilter<K, E>, K, E>
 {
     /// A ring with scheduled firing that begins at `now`. It listens and compares as the schedule was verified for,
@@ -111,7 +111,7 @@ impl<'s, const K: usize, const M: usize, U: LimitsInUse, const E: usize>
     ///
     /// # Errors
     /// As for [`Ring::with_plan`].
-    pub fn new<L: OwnLimits<InUse<'s> = U>>(
+    pub fn new<L: OwnLimits<Held<'s> = U>>(
         schedule: &'s VerifiedSchedule<K, M, L>,
         config: RingConfig<E>,
         now: Instant,
@@ -131,7 +131,7 @@ impl<'s, const K: usize, const M: usize, const E: usize> Ring<ScheduledFiring<'s
     }
 }
 
-impl<'s, const K: usize, const M: usize, U: LimitsInUse, J, const E: usize, const H: usize>
+impl<'s, const K: usize, const M: usize, U: OwnLimits, J, const E: usize, const H: usize>
     Ring<ScheduledFiring<'s, K, M, U>, J, K, E, H>
 {
     /// The schedule of the present period.

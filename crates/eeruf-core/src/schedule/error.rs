@@ -5,7 +5,8 @@ use core::fmt;
 use super::limits::{MAX_PERIOD, MAX_PHASES, Phase};
 use crate::time::Micros;
 
-/// Why raw numbers do not make a [`Schedule`](crate::Schedule).
+/// Why raw numbers do not make a [`Schedule`](crate::Schedule), or schedules no ladder for
+/// [`Adaptation`](crate::adaptation::Adaptation).
 /// `{:#}` counts from 0 where `{}` counts from 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
@@ -53,6 +54,26 @@ pub enum ScheduleError {
         /// Its numerator.
         num: u32,
     },
+    /// A ladder of schedules has no rung.
+    NoRung,
+    /// A rung of a ladder is not slower than the one before.
+    RungOrder {
+        /// The rung.
+        rung: usize,
+        /// Its period.
+        period: Micros,
+        /// The period of the rung before.
+        before: Micros,
+    },
+    /// A rung of a ladder has another number of sensors than the first.
+    RungSensors {
+        /// The rung.
+        rung: usize,
+        /// Number of sensors it has.
+        sensors: usize,
+        /// Number of sensors of the first rung.
+        expected: usize,
+    },
 }
 
 impl ScheduleError {
@@ -65,6 +86,9 @@ impl ScheduleError {
             Self::Period { .. } => "a period is 1 us to 268 s",
             Self::Fire { .. } => "each sensor must fire inside its period: t_lag + t_wait < period",
             Self::Scale { .. } => "a scale needs a denominator above zero",
+            Self::NoRung => "a ladder needs a schedule",
+            Self::RungOrder { .. } => "each rung of a ladder needs a longer period than the one before",
+            Self::RungSensors { .. } => "each rung of a ladder needs as many sensors as the first",
         }
     }
 }
@@ -85,6 +109,17 @@ impl fmt::Display for ScheduleError {
                 sensor + first
             ),
             Self::Scale { num } => write!(f, "a scale of {num}/0; expected a denominator above zero"),
+            Self::NoRung => f.write_str("a ladder without schedules; expected at least one"),
+            Self::RungOrder { rung, period, before } => write!(
+                f,
+                "rung {} has a period of {period}; expected more than the {before} before it",
+                rung + usize::from(first)
+            ),
+            Self::RungSensors { rung, sensors, expected } => write!(
+                f,
+                "rung {} has {sensors} sensors; expected {expected} as in the first",
+                rung + usize::from(first)
+            ),
         }
     }
 }

@@ -3,7 +3,7 @@
 use crate::time::Micros;
 
 /// Requirements that a schedule was verified for, where it was. Only
-/// [`Verification::verified`](crate::conditions::Verification::verified) makes one.
+/// [`Schedule::verified`](crate::Schedule::verified) makes one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]

@@ -1,7 +1,6 @@
 //! Between microseconds, in which a ring is described, and the whole ticks of a grid, in which it is searched.
 
-use super::error::{GridError, SearchError};
-use crate::schedule::{MAX_SENSORS, Schedule};
+use super::error::SearchError;
 use crate::time::Micros;
 
 /// A grid of ticks, each at least a microsecond.
@@ -11,8 +10,8 @@ pub(super) struct Grid {
 }
 
 impl Grid {
-    pub(super) fn new(tick: Micros) -> Result<Self, GridError> {
-        if tick == Micros::ZERO { Err(GridError::NoTick) } else { Ok(Self { tick_us: tick.as_micros() }) }
+    pub(super) fn new(tick: Micros) -> Result<Self, SearchError> {
+        if tick == Micros::ZERO { Err(SearchError::NoTick) } else { Ok(Self { tick_us: tick.as_micros() }) }
     }
 
     /// The least number of ticks that is no shorter than `time`.
@@ -26,11 +25,11 @@ impl Grid {
     }
 
     /// A time that must lie on the grid.
-    pub(super) fn exactly(self, what: &'static str, time: Micros) -> Result<u32, GridError> {
+    pub(super) fn exactly(self, what: &'static str, time: Micros) -> Result<u32, SearchError> {
         if time.as_micros() % self.tick_us == 0 {
             Ok(time.as_micros() / self.tick_us)
         } else {
-            Err(GridError::OffGrid { what, time, tick: Micros::new(self.tick_us) })
+            Err(SearchError::OffGrid { what, time, tick: Micros::new(self.tick_us) })
         }
     }
 
@@ -42,29 +41,6 @@ impl Grid {
     /// The largest `t_delta` that a separation in ticks allows; `None` for no separation at all.
     pub(super) fn t_delta(self, separation: u32) -> Option<Micros> {
         self.time(separation).checked_sub(Micros::new(1)).map(|twice| Micros::new(twice.as_micros() / 2))
-    }
-
-    /// The schedule with these lags and waits in ticks.
-    pub(super) fn schedule<const K: usize>(
-        self,
-        period: u32,
-        lags: &[u32],
-        wait_a: &[u32],
-        wait_b: &[u32],
-    ) -> Result<Schedule<K>, SearchError> {
-        let times = |ticks: &[u32]| {
-            let mut times = [Micros::ZERO; MAX_SENSORS];
-            for (time, &ticks) in times.iter_mut().zip(ticks) {
-                *time = self.time(ticks);
-            }
-            times
-        };
-        let (lag, a, b) = (times(lags), times(wait_a), times(wait_b));
-        Ok(Schedule::from_slices(
-            self.time(period),
-            lag.get(..lags.len()).unwrap_or(&lag),
-            [a.get(..wait_a.len()).unwrap_or(&a), b.get(..wait_b.len()).unwrap_or(&b)],
-        )?)
     }
 
     /// A number of ticks as a time; saturates at [`Micros::MAX`].
@@ -86,6 +62,6 @@ mod tests {
             assert!(grid.t_delta(ticks) >= Some(Micros::new(t_delta)));
             assert!(grid.t_delta(ticks - 1) < Some(Micros::new(t_delta)));
         }
-        assert_eq!(Grid::new(Micros::ZERO), Err(GridError::NoTick));
+        assert_eq!(Grid::new(Micros::ZERO), Err(SearchError::NoTick));
     }
 }

@@ -1,10 +1,21 @@
 //! The paper's search for waits, exhaustive and proven.
 //!
-//! Lags are given, waits are sought on a grid: [`WaitSearch`] finds one table, all, how many, the best. It puts the
-//! question on a grid of ticks and hands it to an engine that knows whole numbers only, [`wait`]: *difference
-//! constraints* with *disjunctive* orders. It works in memory that the caller lends, without recursion or a clock, so
-//! the same question has the same answer on each target. Whatever it returns passes
-//! [`Schedule::verify`](crate::Schedule::verify), which shares nothing with it.
+//! Lags are given, waits are sought on a grid: [`WaitSearch`] finds one table, all, how many, the best. It works in
+//! memory that the caller lends, without recursion or a clock, so the same question has the same answer on each target.
+//! Whatever it returns passes [`Schedule::verify`](crate::Schedule::verify), which shares nothing with it.
+//!
+//! | question | method | how |
+//! |---|---|---|
+//! | is there one? | [`WaitSearch::first`] | ranks of `|d|` over *difference constraints*: the tick does not matter |
+//! | the best interval | [`WaitSearch::best_interval`] | the same, by bisection |
+//! | the best `t_delta` | [`WaitSearch::best_t_delta`] | likewise |
+//! | the front of both | [`WaitSearch::next_on_front`] | the best of one, then of the other |
+//! | every one | [`WaitSearch::next_table`] | depth first over the values, in lexicographic order |
+//! | how many? | [`WaitSearch::count`] | depth first, with what was counted before kept in memory |
+//!
+//! [`memory_words`] says how much memory is enough for all but counting, and counting is exact with any amount, faster
+//! with more. What the searches keep on the stack is below 8 KiB (64 KiB in counting) at any size: twelve sensors are
+//! decided in 16 KiB of RAM in total.
 //!
 //! Where firing times are free and the shortest period is sought, the crate `eeruf-period` has the search. How a search
 //! ends ([`Outcome`], [`Found`]), who watches it ([`Control`], [`Progress`]) and why it cannot start ([`SearchError`])
@@ -15,14 +26,12 @@ mod error;
 mod found;
 mod grid;
 mod members;
-mod problem_error;
-pub mod wait;
+mod wait;
 mod wait_problem;
 
 pub use control::{Control, Outcome, Progress};
-pub use error::{GridError, SearchError};
+pub use error::SearchError;
 pub use found::Found;
 use members::Members;
-pub use problem_error::ProblemError;
-use problem_error::check_conflicts;
-pub use wait_problem::{FrontTable, Infeasible, WaitFront, WaitProblem, WaitSearch};
+pub use wait::{Budget, COUNT_WORDS, MEMORY_WORDS, memory_words};
+pub use wait_problem::{FrontTable, Infeasible, WaitProblem, WaitSearch};

@@ -6,10 +6,10 @@ use super::control::Outcome;
 use super::error::SearchError;
 use super::found::Found;
 use super::grid::Grid;
-use super::wait::{Best, Budget, Count, Enumeration, Objective, Pareto, ParetoPoint, Problem, Search};
+use super::wait::{Best, Budget, MAX_PERIOD, Objective, Problem, Search};
 use crate::layout::Layout;
 use crate::requirements::Criterion;
-use crate::schedule::{MAX_SENSORS, Schedule};
+use crate::schedule::{MAX_SENSORS, Phase, Schedule};
 use crate::time::Micros;
 
 /// Requirements on a table of waits (Sec. 3.1).
@@ -38,10 +38,10 @@ pub struct WaitProblem<'a> {
     pub criterion: Criterion,
 }
 
-/// A search for tables of waits, in memory that the caller lends ([`wait::memory_words`](super::wait::memory_words)).
+/// A search for tables of waits, in memory that the caller lends ([`memory_words`](super::memory_words)).
 ///
 /// ```
-/// use eeruf_core::search::{WaitProblem, WaitSearch, wait};
+/// use eeruf_core::search::{Budget, WaitProblem, WaitSearch, memory_words};
 /// use eeruf_core::{Criterion, Layout, Micros};
 ///
 /// let problem = WaitProblem {
@@ -57,8 +57,8 @@ pub struct WaitProblem<'a> {
 ///     criterion: Criterion::Exact,
 /// };
 /// let search = WaitSearch::new(&problem)?;
-/// let mut memory = vec![0; wait::memory_words(12)];
-/// let best = search.best::<12>(wait::Objective::Interval, &mut memory, &mut wait::Budget::unlimited())?;
+/// let mut memory = vec![0; memory_words(12)];
+/// let best = search.best_interval::<12>(&mut memory, &mut Budget::unlimited())?;
 /// // n I + D (K - 1) <= T_p: no table keeps any four neighbours further apart than 19 ms.
 /// assert_eq!(best.value, Some(Micros::from_millis(19)));
 /// assert!(best.proven);
@@ -85,7 +85,7 @@ pub enum Infeasible {
     Separation {
         /// K.
         sensors: usize,
-        /// D, what `t_delta` problem between two values `|d|`.
+        /// D, the separation of two values `|d|` that `t_delta` needs.
         separation: Micros,
         /// The longest wait.
         wait_max: Micros,
@@ -126,12 +126,14 @@ impl WaitSearch {
     ///
     /// # Errors
     /// [`SearchError`] if a number is out of range, a period or lag is not a whole number of ticks, or a sensor could
-    /// fire after its period has ended.
+    /// fire after its period has ended. An infeasible problem is not an error: the searches prove that.
     pub fn new(problem: &WaitProblem<'_>) -> Result<Self, SearchError> {
-        let grid = Grid::new(problem.tick)?;
-        let sensors = problem.t_lag.map_or(problem.sensors, <[Micros]>::len);
-        if problem.sensors == 0 || problem.sensors > MAX_SENSORS || sensors != problem.sensors {
-            return Err(SearchError::Lags { sensors: problem.sensors, lags: sensors });
+        let (grid, sensors) = (Grid::new(problem.tick)?, problem.sensors);
+        if sensors == 0 || sensors > MAX_SENSORS {
+            return Err(SearchError::Sensors(sensors));
+        }
+        if let Some(lags) = problem.t_lag.map(<[Micros]>::len).filter(|&lags| lags != sensors) {
+            return Err(SearchError::Lags { sensors, lags });
         }
         problem.layout.check(sensors)?;
         let mut lag = [0; MAX_SENSORS];
@@ -141,27 +143,31 @@ impl WaitSearch {
                 None => grid.exactly("a lag", default_lag(problem, x))?,
             };
         }
-        let search = Self {
+        let (period, wait_max) = (grid.exactly("the period", problem.period)?, grid.at_most(problem.wait_max));
+        if period == 0 || period > MAX_PERIOD {
+            return Err(SearchError::Period { period, most: MAX_PERIOD });
+        }
+        for (sensor, &lag) in lag.iter().enumerate().take(sensors) {
+            if u64::from(lag) + u64::from(wait_max) >= u64::from(period) {
+                return Err(SearchError::OutsidePeriod { sensor, lag, wait_max, period });
+            }
+        }
+        Ok(Self {
             grid,
             sensors,
-            period: grid.exactly("the period", problem.period)?,
-            wait_max: grid.at_most(problem.wait_max),
+            period,
+            wait_max,
             separation: grid.separation(problem.t_delta),
             interval: grid.at_least(problem.min_interval),
             criterion: problem.criterion,
             lag,
             rows: problem.layout.rows(sensors),
-        };
-        search.ticks()?;
-        Ok(search)
+        })
     }
 
-    /// The same question in ticks, for what this type does not offer: assignments and the Pareto front.
-    ///
-    /// # Errors
-    /// None after [`WaitSearch::new`], which has checked already.
-    pub fn ticks(&self) -> Result<Search<'_>, SearchError> {
-        Ok(Search::new(Problem {
+    /// The same question in ticks.
+    fn ticks(&self) -> Search<'_> {
+        Search::new(Problem {
             period: self.period,
             lag: self.lag.get(..self.sensors).unwrap_or(&[]),
             wait_max: self.wait_max,
@@ -169,10 +175,10 @@ impl WaitSearch {
             interval: self.interval,
             conflicts: self.rows.get(..self.sensors).unwrap_or(&[]),
             criterion: self.criterion,
-        })?)
+        })
     }
 
-    /// A table, or the proof that there is none, or neither if the budget is spent.
+    /// Finds one table, or proves that there is none.
     ///
     /// # Errors
     /// [`SearchError`] for too little memory or a capacity `K` below the number of sensors.
@@ -180,11 +186,10 @@ impl WaitSearch {
         &self,
         memory: &mut [u32],
         budget: &mut Budget<'_>,
-    ) -> Result<(Outcome, Option<Schedule<K>>), SearchError> {
+    ) -> Result<Outcome<Schedule<K>>, SearchError> {
         let (mut a, mut b) = ([0; MAX_SENSORS], [0; MAX_SENSORS]);
-        let outcome = self.ticks()?.first(memory, budget, &mut a, &mut b)?;
-        let schedule = if outcome == Outcome::Found(()) { Some(self.schedule(&a, &b)?) } else { None };
-        Ok((outcome, schedule))
+        let outcome = self.ticks().first(memory, budget, &mut a, &mut b)?;
+        self.schedule_if_found(outcome, &a, &b)
     }
 
     /// Names the need, separation or interval, that cannot be met, if there is no table: one of them at a time is
@@ -193,7 +198,7 @@ impl WaitSearch {
     /// # Errors
     /// As for [`first`](Self::first).
     pub fn why_none(&self, memory: &mut [u32], budget: &mut Budget<'_>) -> Result<Infeasible, SearchError> {
-        let search = self.ticks()?;
+        let search = self.ticks();
         let (mut a, mut b) = ([0; MAX_SENSORS], [0; MAX_SENSORS]);
         let mut without =
             |separation, interval| search.with(separation, interval).first(memory, budget, &mut a, &mut b);
@@ -208,79 +213,141 @@ impl WaitSearch {
         Ok(Infeasible::Together)
     }
 
-    /// Number of tables, exactly; it stops when it has counted `limit`.
+    /// Counts the tables; stops early when there are `limit` or more. More `memory` makes it faster
+    /// ([`COUNT_WORDS`](super::COUNT_WORDS)); it may be empty.
     ///
-    /// # Errors
-    /// None after [`WaitSearch::new`].
-    pub fn count(
-        &self,
-        limit: Option<u128>,
-        memory: &mut [u32],
-        budget: &mut Budget<'_>,
-    ) -> Result<Count, SearchError> {
-        Ok(self.ticks()?.count(limit, memory, budget))
+    /// The count is exact with [`Outcome::Exhausted`], and at least so much otherwise: with [`Outcome::Found`] the limit
+    /// was reached, or without one `u128::MAX`.
+    pub fn count(&self, limit: Option<u128>, memory: &mut [u32], budget: &mut Budget<'_>) -> (Outcome, u128) {
+        self.ticks().count(limit, memory, budget)
     }
 
-    /// The table with the largest smallest interval or the largest `t_delta`; the other one as in the problem.
+    /// Finds the table with the largest smallest interval at the `t_delta` of the problem, and proves that none is
+    /// better. Without neighbours the interval is the period.
     ///
     /// # Errors
     /// As for [`first`](Self::first).
-    pub fn best<const K: usize>(
+    pub fn best_interval<const K: usize>(
+        &self,
+        memory: &mut [u32],
+        budget: &mut Budget<'_>,
+    ) -> Result<Found<K>, SearchError> {
+        self.best(Objective::Interval, memory, budget, |ticks| Some(self.grid.time(ticks)))
+    }
+
+    /// Finds the table with the largest `t_delta` at the smallest interval of the problem, and proves that none is
+    /// better. That of a single sensor is limited by `wait_max` alone.
+    ///
+    /// # Errors
+    /// As for [`first`](Self::first).
+    pub fn best_t_delta<const K: usize>(
+        &self,
+        memory: &mut [u32],
+        budget: &mut Budget<'_>,
+    ) -> Result<Found<K>, SearchError> {
+        self.best(Objective::Separation, memory, budget, |ticks| self.grid.t_delta(ticks))
+    }
+
+    fn best<const K: usize>(
         &self,
         objective: Objective,
         memory: &mut [u32],
         budget: &mut Budget<'_>,
+        time: impl Fn(u32) -> Option<Micros>,
     ) -> Result<Found<K>, SearchError> {
         let (mut a, mut b) = ([0; MAX_SENSORS], [0; MAX_SENSORS]);
-        let best @ Best { value, bound, nodes, .. } = self.ticks()?.best(objective, memory, budget, &mut a, &mut b)?;
-        let time = |ticks| match objective {
-            Objective::Interval => Some(self.grid.time(ticks)),
-            Objective::Separation => self.grid.t_delta(ticks),
-        };
+        let best @ Best { value, bound, nodes, .. } = self.ticks().best(objective, memory, budget, &mut a, &mut b)?;
         let schedule = if value.is_some() { Some(self.schedule(&a, &b)?) } else { None };
         let bound = if best.outcome == Outcome::Exhausted { None } else { time(bound) };
         Ok(Found { schedule, value: value.and_then(time), bound, proven: best.proven(), nodes })
     }
 
-    /// The Pareto front: the tables of which no other has a larger smallest interval without a smaller `t_delta`, both
-    /// at least those of the problem.
+    /// Finds the next table of the Pareto front: the tables of which no other has a larger smallest interval without a
+    /// smaller `t_delta`, both at least those of the problem, from the largest interval to the largest `t_delta`. It
+    /// follows `after`, or is the first; `Exhausted` after the last, `BudgetSpent` if the budget ended before it was
+    /// proven.
     ///
     /// # Errors
-    /// None after [`WaitSearch::new`].
-    pub fn pareto<'s, 'm>(&'s self, memory: &'m mut [u32]) -> Result<WaitFront<'s, 'm>, SearchError> {
-        Ok(WaitFront { search: self, front: self.ticks()?.pareto(memory) })
+    /// As for [`first`](Self::first).
+    pub fn next_on_front<const K: usize>(
+        &self,
+        after: Option<&FrontTable<K>>,
+        memory: &mut [u32],
+        budget: &mut Budget<'_>,
+    ) -> Result<Outcome<FrontTable<K>>, SearchError> {
+        let from = match after {
+            None => self.separation,
+            // A single sensor is at no distance from another: its one table is the whole front.
+            Some(_) if self.sensors == 1 => return Ok(Outcome::Exhausted),
+            Some(&FrontTable { separation: u32::MAX, .. }) => return Ok(Outcome::Exhausted),
+            Some(table) => table.separation + 1,
+        };
+        let (mut a, mut b) = ([0; MAX_SENSORS], [0; MAX_SENSORS]);
+        Ok(match self.ticks().front_from(from, memory, budget, &mut a, &mut b)? {
+            Outcome::Found((interval, separation)) => Outcome::Found(FrontTable {
+                schedule: self.schedule(&a, &b)?,
+                min_interval: self.grid.time(interval),
+                t_delta: self.grid.t_delta(separation),
+                separation,
+            }),
+            Outcome::Exhausted => Outcome::Exhausted,
+            Outcome::BudgetSpent => Outcome::BudgetSpent,
+        })
     }
 
-    /// All tables, one after the other: each [`Enumeration::next_into`] gives the waits of one in ticks, for
-    /// [`schedule`](Self::schedule) to make a schedule of.
+    /// Finds the first of all tables, in lexicographic order of `a_0, b_0, a_1, b_1, ..`, or the one that follows
+    /// `after`; `Exhausted` after the last. It takes no memory from the caller.
     ///
     /// # Errors
-    /// None after [`WaitSearch::new`].
-    pub fn enumerate(&self) -> Result<Enumeration<'_>, SearchError> {
-        Ok(self.ticks()?.enumerate())
+    /// [`SearchError::Schedule`] for a capacity `K` below the number of sensors.
+    pub fn next_table<const K: usize>(
+        &self,
+        after: Option<&Schedule<K>>,
+        budget: &mut Budget<'_>,
+    ) -> Result<Outcome<Schedule<K>>, SearchError> {
+        let mut tables = match after {
+            None => self.ticks().enumerate(),
+            Some(table) => {
+                let [a, b] = [Phase::A, Phase::B].map(|phase| {
+                    let mut ticks = [0; MAX_SENSORS];
+                    for (ticks, &wait) in ticks.iter_mut().zip(table.t_wait(phase)) {
+                        *ticks = self.grid.at_most(wait);
+                    }
+                    ticks
+                });
+                self.ticks().enumerate_after(a, b)
+            }
+        };
+        let outcome = tables.advance(budget);
+        let (a, b) = tables.waits();
+        self.schedule_if_found(outcome, a, b)
     }
 
-    /// The schedule with these waits, in ticks.
-    ///
-    /// # Errors
-    /// [`SearchError::Schedule`] if there are fewer waits than sensors, if they are too long, or for a capacity `K`
-    /// below the number of sensors.
-    pub fn schedule<const K: usize>(&self, wait_a: &[u32], wait_b: &[u32]) -> Result<Schedule<K>, SearchError> {
-        let waits = |ticks: &'_ [u32]| ticks.len().min(self.sensors);
-        self.grid.schedule(
-            self.period,
-            self.lag.get(..self.sensors).unwrap_or(&[]),
-            wait_a.get(..waits(wait_a)).unwrap_or(&[]),
-            wait_b.get(..waits(wait_b)).unwrap_or(&[]),
-        )
+    fn schedule_if_found<const K: usize>(
+        &self,
+        outcome: Outcome,
+        wait_a: &[u32; MAX_SENSORS],
+        wait_b: &[u32; MAX_SENSORS],
+    ) -> Result<Outcome<Schedule<K>>, SearchError> {
+        Ok(match outcome {
+            Outcome::Found(()) => Outcome::Found(self.schedule(wait_a, wait_b)?),
+            Outcome::Exhausted => Outcome::Exhausted,
+            Outcome::BudgetSpent => Outcome::BudgetSpent,
+        })
     }
-}
 
-/// A walk along the Pareto front of interval and `t_delta`, from the largest interval to the largest `t_delta`.
-#[derive(Debug)]
-pub struct WaitFront<'s, 'm> {
-    search: &'s WaitSearch,
-    front: Pareto<'s, 'm>,
+    /// The schedule with these waits, in ticks; [`SearchError::Schedule`] for a capacity `K` below the number of
+    /// sensors.
+    fn schedule<const K: usize>(
+        &self,
+        wait_a: &[u32; MAX_SENSORS],
+        wait_b: &[u32; MAX_SENSORS],
+    ) -> Result<Schedule<K>, SearchError> {
+        let of_all = |ticks: &'_ [u32; MAX_SENSORS]| ticks.map(|ticks| self.grid.time(ticks));
+        let (lag, a, b) = (of_all(&self.lag), of_all(wait_a), of_all(wait_b));
+        let [lag, a, b] = [&lag, &a, &b].map(|times| times.get(..self.sensors).unwrap_or(times));
+        Ok(Schedule::from_slices(self.grid.time(self.period), lag, [a, b])?)
+    }
 }
 
 /// A table of the Pareto front.
@@ -292,27 +359,7 @@ pub struct FrontTable<const K: usize> {
     pub min_interval: Micros,
     /// `T_delta`; no table with at least this interval has a larger one. `None` if two readings of the table are alike.
     pub t_delta: Option<Micros>,
-}
-
-impl WaitFront<'_, '_> {
-    /// Finds the next table; `Exhausted` after the last, `BudgetSpent` if the budget ended before it was proven.
-    ///
-    /// # Errors
-    /// As for [`WaitSearch::first`].
-    pub fn find_next<const K: usize>(
-        &mut self,
-        budget: &mut Budget<'_>,
-    ) -> Result<Outcome<FrontTable<K>>, SearchError> {
-        let (mut a, mut b) = ([0; MAX_SENSORS], [0; MAX_SENSORS]);
-        let (outcome, point) = self.front.next_into(budget, &mut a, &mut b)?;
-        let Some(ParetoPoint { interval, separation }) = point else {
-            return Ok(if outcome == Outcome::Exhausted { Outcome::Exhausted } else { Outcome::BudgetSpent });
-        };
-        let schedule = self.search.schedule(&a, &b)?;
-        let grid = self.search.grid;
-        let table = FrontTable { schedule, min_interval: grid.time(interval), t_delta: grid.t_delta(separation) };
-        Ok(Outcome::Found(table))
-    }
+    separation: u32,
 }
 
 /// Table I-a: sensor `x` of a group of `n` lags by `x mod n` parts in `n` of the period.

@@ -15,9 +15,9 @@ mod settings;
 mod tests;
 mod track;
 
-use crate::judge_error::JudgeError;
 use crate::judging::{self, Firing, Judge, Sounds};
 use crate::reading::{ReadingKind, Verdict};
+use crate::ring::RingError;
 use crate::sensor_error::SensorError;
 use crate::time::Micros;
 
@@ -57,8 +57,8 @@ impl<const K: usize, const H: usize> EchoTracker<K, H> {
     /// A tracker that knows nothing yet.
     ///
     /// # Errors
-    /// [`JudgeError::Setting`] for a setting out of its range.
-    pub const fn new(settings: TrackerSettings) -> Result<Self, JudgeError> {
+    /// [`RingError::Setting`] for a setting out of its range.
+    pub const fn new(settings: TrackerSettings) -> Result<Self, RingError> {
         match settings.check() {
             Ok(()) => Ok(Self { sensors: [SensorTracks::NEW; K], settings }),
             Err(error) => Err(error),

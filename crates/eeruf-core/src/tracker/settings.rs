@@ -1,6 +1,6 @@
 //! [`TrackerSettings`]: how much must agree before an echo is believed, in three named sets.
 
-use crate::judge_error::JudgeError;
+use crate::ring::RingError;
 use crate::time::Micros;
 
 /// Settings by which an [`EchoTracker`](super::EchoTracker) weighs readings. Begin with one of
@@ -109,14 +109,14 @@ impl TrackerSettings {
     /// Checks each setting's range, as [`EchoTracker::new`](super::EchoTracker::new) does.
     ///
     /// # Errors
-    /// [`JudgeError::Setting`] for the first that is not.
-    pub const fn check(&self) -> Result<(), JudgeError> {
+    /// [`RingError::Setting`] for the first that is not.
+    pub const fn check(&self) -> Result<(), RingError> {
         let (t_delta, near) = (self.t_delta.as_micros(), self.near.as_micros());
         let within = self.tentative_within.as_micros();
         macro_rules! expect {
             ($name:literal, $value:expr, $least:expr, $most:expr) => {
                 if $value < $least || $value > $most {
-                    return Err(JudgeError::Setting { name: $name, value: $value, least: $least, most: $most });
+                    return Err(RingError::Setting { name: $name, value: $value, least: $least, most: $most });
                 }
             };
         }
@@ -131,7 +131,7 @@ impl TrackerSettings {
             expect!("tentative_votes", self.tentative_votes as u32, 2, 15);
         }
         if within > t_delta {
-            return Err(JudgeError::Setting { name: "tentative_within", value: within, least: 0, most: t_delta });
+            return Err(RingError::Setting { name: "tentative_within", value: within, least: 0, most: t_delta });
         }
         Ok(())
     }

@@ -2,7 +2,7 @@
 
 use eeruf_core::{
     Criterion, Instant, Layout, Micros, Phase, ReadingKind, Requirements, Schedule, SpeedOfSound,
-    conditions::{Interval, Separation, ViolationKind},
+    conditions::{Least, ViolationKind},
 };
 
 use crate::common::random::Random;
@@ -77,7 +77,7 @@ fn assert_is_smallest<const M: usize>(schedule: &Schedule<SENSORS, M>, layout: L
     let all = intervals(schedule, layout);
     let smallest = all.iter().map(|&(_, _, value)| value).min();
     match schedule.min_interval(layout) {
-        Some(Interval { value, sensors, phases, .. }) => {
+        Some(Least { value, sensors, phases, .. }) => {
             assert_eq!(Some(i64::from(value.as_micros())), smallest, "{layout:?} {schedule:?}");
             assert!(all.contains(&(sensors, phases, value.as_micros().into())));
         }
@@ -107,7 +107,7 @@ fn the_separation_is_the_smallest_left_side_of_all_pairs() {
         for criterion in [Criterion::Exact, Criterion::Paper] {
             let pairs = (0..SENSORS).flat_map(|y| (0..y).map(move |x| (x, y)));
             let least = pairs.flat_map(|(x, y)| left_sides(&schedule, criterion, x, y)).min().unwrap();
-            let Separation { value, sensors: (x, y), .. } = schedule.separation(criterion).unwrap();
+            let Least { value, sensors: (x, y), .. } = schedule.separation(criterion).unwrap();
             assert_eq!(i64::from(value.as_micros()), least, "{criterion} {schedule:?}");
             assert!(x < y);
             let sides = left_sides(&schedule, criterion, x.into(), y.into());

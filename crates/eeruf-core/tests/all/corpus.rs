@@ -142,7 +142,7 @@ fn verify(r: &mut Random, text: &mut Text, schedule: Schedule<K>) -> (Schedule<K
         layout: [Layout::Line, Layout::Ring, Layout::Blocks][layout as usize](neighbours as u8),
         ..Requirements::new(Micros::new(t_delta))
     };
-    let verified = schedule.verify(&requirements).verified().ok();
+    let verified = schedule.verified(&requirements).ok();
     let numbers =
         verified.map(|verified| [verified.verified_for().separation, verified.window()].map(Micros::as_micros));
     let asked = [t_delta, requirements.min_interval.as_micros(), requirements.window.as_micros(), neighbours];

@@ -4,7 +4,7 @@
 use eeruf_core::{
     Micros, RingError,
     hopping::{HoppingCode, HoppingError, HoppingListening, HoppingSettings},
-    judge::{JudgeError, TrackerSettings},
+    judge::TrackerSettings,
 };
 
 #[test]
@@ -62,7 +62,7 @@ fn the_fixed_text_of_each_error_names_what_is_wrong() {
         (HoppingError::Votes { votes: 5, phases: 3 }, "votes"),
         (HoppingError::Period { period: us(1), least: us(2) }, "the period must be longer"),
         (HoppingError::Lag { sensor: 0, lag: us(2), most: us(1) }, "fire inside its period"),
-        (HoppingError::Tracker(JudgeError::Setting { name: "votes", value: 0, least: 1, most: 15 }), "tracker"),
+        (HoppingError::Ring(RingError::Setting { name: "votes", value: 0, least: 1, most: 15 }), "tracker"),
         (HoppingError::Ring(RingError::Sensors { sensors: 2, capacity: 1 }), "listen"),
     ] {
         assert!(error.as_str().contains(named), "{error}: {}", error.as_str());

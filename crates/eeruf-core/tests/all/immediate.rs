@@ -4,7 +4,7 @@
 use eeruf_core::tables::TABLE_I_D;
 use eeruf_core::{
     Instant, Micros, Phase, Schedule,
-    plan::{ImmediateRefiring, Plan, PlanStep},
+    plan::{ImmediateRefiring, Plan, Upcoming},
 };
 
 fn ms(ms: u32) -> Micros {
@@ -25,7 +25,7 @@ fn firings(refiring: &mut ImmediateRefiring<'_, 2>, until: Instant) -> Vec<(u8, 
     let mut fired = vec![];
     while until.has_reached(refiring.deadline()) {
         let now = refiring.deadline();
-        if let Some(PlanStep::Fire { sensor, .. }) = refiring.poll(now) {
+        if let Some(Upcoming { sensor, .. }) = refiring.poll(now) {
             refiring.ended(sensor, now + ms(5));
             fired.push((sensor, now));
         }
@@ -38,7 +38,7 @@ fn firings(refiring: &mut ImmediateRefiring<'_, 2>, until: Instant) -> Vec<(u8, 
 fn late_sensor_waits_for_refire_from_its_firing() {
     let schedule = schedule();
     let mut refiring = ImmediateRefiring::new(&schedule, ms(40), at(0));
-    assert!(matches!(refiring.poll(at(10)), Some(PlanStep::Fire { sensor: 0, .. })));
+    assert!(matches!(refiring.poll(at(10)), Some(Upcoming { sensor: 0, .. })));
     refiring.postpone(0, ms(3));
     refiring.ended(0, at(20));
     assert_eq!((refiring.deadline(), refiring.next_firing()), (at(10 + 3 + 40), Some((0, Phase::B))));
@@ -50,9 +50,9 @@ fn end_of_period_stays_when_listening_sensor_fires() {
     let schedule = schedule();
     let mut refiring = ImmediateRefiring::new(&schedule, ms(120), at(0));
     for now in [10, 55] {
-        assert!(matches!(refiring.poll(at(now)), Some(PlanStep::Fire { .. })));
+        assert!(refiring.poll(at(now)).is_some());
     }
-    assert!(matches!(refiring.poll(at(100)), Some(PlanStep::PeriodEnded { phase: Phase::A, .. })));
+    assert_eq!(refiring.poll(at(100)), None);
     refiring.ended(0, at(101));
     assert_eq!((refiring.deadline(), refiring.next_firing()), (at(10 + 120), Some((0, Phase::B))));
 }

@@ -9,7 +9,6 @@ mod conditions_naive;
 mod contract;
 mod corpus;
 mod edges;
-mod effort;
 mod fired;
 // A binary of its own where the features are tested by themselves; here too, for mutants.
 #[cfg(feature = "serde")]

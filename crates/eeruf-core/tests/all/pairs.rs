@@ -8,7 +8,7 @@ use eeruf_core::{
         HoppingCode, HoppingError, HoppingListening, HoppingPlan, HoppingRing, HoppingSchedule, HoppingSettings,
     },
     judge::{Judge, TrackerSettings},
-    plan::{EachInUse, Plan, ScheduledFiring},
+    plan::{Plan, ScheduledFiring},
     schedule,
     tables::TABLE_I_D,
 };
@@ -149,7 +149,7 @@ fn limits_go_with_adaptation() {
     };
     let rungs = [CORNER, slower];
     let mut adaptation = Adaptation::new(&rungs).unwrap();
-    let mut ring: Ring<ScheduledFiring<'_, 2, 2, EachInUse<'_, 2>>, _, 2> =
+    let mut ring: Ring<ScheduledFiring<'_, 2, 2, &EachSensor<2>>, _, 2> =
         Ring::new(&rungs[0], RingConfig::new(), BEGIN).unwrap();
     accepted(&mut ring, 1, |ring, event| {
         if let RingEvent::PeriodEnded(stats) = event {
@@ -221,8 +221,7 @@ fn many_phases_go_with_adaptation() {
 #[test]
 fn several_echoes_go_with_adaptation() {
     let requirements = Requirements::new(Micros::new(599));
-    let rungs =
-        [TABLE_I_D.scaled(3, 5).unwrap(), TABLE_I_D].map(|table| table.verify(&requirements).verified().unwrap());
+    let rungs = [TABLE_I_D.scaled(3, 5).unwrap(), TABLE_I_D].map(|table| table.verified(&requirements).unwrap());
     let run = |heard| {
         let mut adaptation = Adaptation::new(&rungs).unwrap();
         let config = RingConfig::new().with_window(Micros::from_millis(40)).with_echoes::<3>();

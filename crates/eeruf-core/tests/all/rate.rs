@@ -39,7 +39,7 @@ fn draw(random: &mut Random, t_delta: u32, period: u32, window: u32) -> Firing {
         window: Micros::new(window),
         ..Requirements::new(Micros::new(t_delta))
     };
-    schedule.unwrap().verify(&needs).verified().unwrap();
+    schedule.unwrap().verified(&needs).unwrap();
     firing.map(|fire| fire.map(i64::from))
 }
 

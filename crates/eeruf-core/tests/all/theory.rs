@@ -4,9 +4,9 @@
 //! Claims with a test of their own are not repeated: (13a), (13b) pair by pair, the rearrangements of Table I, nested
 //! loops for tables of waits, and that every period of `tests/data/shortest-periods.json` is the shortest.
 
-use eeruf_core::search::{Found, WaitProblem, WaitSearch, wait};
+use eeruf_core::search::{Budget, Found, WaitProblem, WaitSearch, memory_words};
 use eeruf_core::tables::{TABLE_I_B, TABLE_I_C, TABLE_I_D, THE_ONE_WITH_19_MS};
-use eeruf_core::{Criterion, Layout, Micros, Phase, Requirements, Schedule, conditions::Interval};
+use eeruf_core::{Criterion, Layout, Micros, Phase, Requirements, Schedule, conditions::Least};
 use eeruf_period::{PeriodProblem, ShortestPeriod};
 
 const THEORY: &str = include_str!("../../../../docs/explanation/theory.md");
@@ -64,8 +64,8 @@ fn waits(sensors: usize, t_delta_us: u32, tick_us: u32) -> WaitSearch {
 }
 
 fn best_interval(search: &WaitSearch) -> Found<24> {
-    let mut memory = vec![0; wait::memory_words(24)];
-    search.best(wait::Objective::Interval, &mut memory, &mut wait::Budget::unlimited()).expect("memory suffices")
+    let mut memory = vec![0; memory_words(24)];
+    search.best_interval(&mut memory, &mut Budget::unlimited()).expect("memory suffices")
 }
 
 // Section 2 crosstalk from sensor 1 to 2 of table i d reads what the example says.
@@ -101,7 +101,7 @@ fn section_3_the_marks_on_the_ruler_are_those_of_table_i_d() {
 
 #[test]
 fn section_3_the_smallest_intervals_of_table_i_are_as_tabled() {
-    let closest = |value, sensors, phases| Some(Interval { value: ms(value), sensors, phases });
+    let closest = |value, sensors, phases| Some(Least { value: ms(value), sensors, phases, ages: (0, 0) });
     let (a, b) = (Phase::A, Phase::B);
     for table in [TABLE_I_B, TABLE_I_C] {
         assert_eq!(table.min_interval(Layout::Line(4)), closest(1, (3, 0), (a, b)));
@@ -283,7 +283,7 @@ fn section_7_best_interval_takes_few_nodes() {
         criterion: Criterion::Paper,
     };
     let search = WaitSearch::new(&problem).unwrap();
-    assert_eq!(search.count(None, &mut [], &mut wait::Budget::unlimited()).unwrap().count, 3912);
+    assert_eq!(search.count(None, &mut [], &mut Budget::unlimited()).1, 3912);
 }
 
 #[test]

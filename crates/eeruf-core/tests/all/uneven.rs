@@ -3,7 +3,7 @@
 
 use eeruf_core::{
     EachSensor, Layout, Micros, Requirements, Schedule, Uneven, VerifiedSchedule,
-    conditions::{UnevenError, Verification, ViolationKind},
+    conditions::{RequirementsError, Verification, ViolationKind},
     schedule,
     tables::TABLE_I_D,
 };
@@ -198,7 +198,7 @@ fn what_makes_no_sense_for_a_ring_is_refused_by_what_it_is() {
     }
     assert_eq!(Uneven { shared_lines: &[u64::MAX], ..Uneven::NONE }.check(64), Ok(()));
     let too_few = Uneven { shared_lines: &[u64::MAX], ..Uneven::NONE }.check(63);
-    assert!(matches!(too_few, Err(UnevenError::Set { sensors: 63, .. })));
+    assert!(matches!(too_few, Err(RequirementsError::Set { sensors: 63, .. })));
 }
 
 // A verified schedule allows each sensor its own and all together the least.
@@ -235,7 +235,7 @@ fn verified_uneven_schedule_allows_each_its_own() {
         window: Micros::from_millis(26),
         ..Requirements::new(Micros::new(499))
     };
-    assert_eq!(CORNERS.verify(&late).verified().unwrap_err().kind, ViolationKind::CrosstalkA);
+    assert_eq!(CORNERS.verified(&late).unwrap_err().kind, ViolationKind::CrosstalkA);
 }
 
 // An uneven schedule is written with all that it was designed for.

@@ -35,7 +35,7 @@ fn corners() -> VerifiedSchedule<4, 2, EachSensor<4>> {
         }),
         ..Requirements::new(Micros::new(99))
     };
-    schedule.verify(&requirements).verified_each().expect("it keeps all")
+    schedule.verified_each(&requirements).expect("it keeps all")
 }
 
 #[test]
@@ -111,10 +111,10 @@ fn where_all_are_alike_an_uneven_ring_does_what_a_ring_does() {
         window: Micros::from_millis(30),
         ..Requirements::new(Micros::new(499))
     };
-    let even = TABLE_I_D.verify(&alike).verified().unwrap();
+    let even = TABLE_I_D.verified(&alike).unwrap();
     let windows = [Micros::from_millis(30); 12];
     let each = Uneven { window: &windows, ..Uneven::NONE };
-    let uneven = TABLE_I_D.verify(&Requirements { uneven: Some(each), ..alike }).verified_each().unwrap();
+    let uneven = TABLE_I_D.verified_each(&Requirements { uneven: Some(each), ..alike }).unwrap();
     let begin = Instant::from_micros(u32::MAX - 3_000_000);
     let mut one: Ring<_, _, 12> = Ring::new(&even, RingConfig::new(), begin).unwrap();
     let mut other: Ring<_, _, 12> = Ring::new(&uneven, RingConfig::new(), begin).unwrap();
@@ -220,7 +220,7 @@ fn farther() -> VerifiedSchedule<4, 2, EachSensor<4>> {
         }),
         ..Requirements::new(Micros::new(99))
     };
-    schedule.verify(&requirements).verified_each().expect("it keeps all")
+    schedule.verified_each(&requirements).expect("it keeps all")
 }
 
 // Between two uneven schedules nothing fires or listens sooner or longer than both allow.
@@ -312,7 +312,7 @@ fn ring_changes_between_even_and_uneven_schedules() {
     let uneven = corners();
     let schedule = Schedule::from_firing(Micros::from_millis(70), [ms([0, 16, 32, 48]), ms([4, 26, 47, 50])]).unwrap();
     let alike = Requirements { window: Micros::from_millis(50), ..Requirements::new(Micros::new(999)) };
-    let even = schedule.verify(&alike).verified().unwrap();
+    let even = schedule.verified(&alike).unwrap();
     let (even, own): (_, EachSensor<4>) = (even.schedule(), EachSensor::NONE);
     let config = RingConfig::new().with_window(Micros::from_millis(50)).with_t_delta(Micros::new(999));
     let plan = ScheduledFiring::with_limits(even, &own, Instant::from_micros(0));

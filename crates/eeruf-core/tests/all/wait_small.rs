@@ -1,11 +1,10 @@
 //! Owned random wait-time problems, where plain nested loops can say everything: found or not, every count, the best
 //! values and the front.
 
-use crate::common::Owned;
-use crate::common::naive::{self, Layout};
-use eeruf_core::Criterion;
-use eeruf_core::search::Outcome;
-use eeruf_core::search::wait::{Budget, MEMORY_WORDS, Objective, ParetoPoint, Problem, Search};
+use crate::common::naive::{self, Layout, Problem};
+use crate::common::{Owned, holds, separation, ticks, waits};
+use eeruf_core::search::{Budget, Found, FrontTable, MEMORY_WORDS, Outcome};
+use eeruf_core::{Criterion, Schedule};
 use proptest::prelude::*;
 
 /// A line, a ring, blocks or any graph; lags in groups or anyhow.
@@ -13,7 +12,7 @@ fn tiny() -> impl Strategy<Value = Owned> {
     (
         1_usize..=4,
         0_u32..=5,
-        0_u32..=3,
+        1_u32..=3,
         0_u32..=9,
         any::<bool>(),
         0..4_u8,
@@ -47,24 +46,20 @@ fn tiny() -> impl Strategy<Value = Owned> {
 
 /// The interval and separation of every table of a problem without demands, those that dominate only, greatest interval
 /// first.
-fn naive_front(tiny: &Owned) -> Vec<ParetoPoint> {
-    let search = Search::new(tiny.problem()).unwrap();
+fn naive_front(tiny: &Owned) -> Vec<(u32, u32)> {
+    let problem = tiny.problem();
     let mut points: Vec<(u32, u32)> = Vec::new();
     naive::for_each(&tiny.problem(), &mut |a, b| {
         let value = |ok: &dyn Fn(u32) -> bool, most: u32| (0..=most).rev().find(|&value| ok(value)).unwrap();
-        let interval = value(&|interval| naive::holds(&Problem { interval, ..*search.problem() }, a, b), tiny.period);
-        let separation =
-            value(&|separation| naive::holds(&Problem { separation, ..*search.problem() }, a, b), tiny.wait_max);
+        let interval = value(&|interval| naive::holds(&Problem { interval, ..problem }, a, b), tiny.period);
+        let separation = value(&|separation| naive::holds(&Problem { separation, ..problem }, a, b), tiny.wait_max);
         if !points.contains(&(interval, separation)) {
             points.push((interval, separation));
         }
     });
-    let mut front: Vec<ParetoPoint> = points
-        .iter()
-        .filter(|p| !points.iter().any(|q| q != *p && q.0 >= p.0 && q.1 >= p.1))
-        .map(|&(interval, separation)| ParetoPoint { interval, separation })
-        .collect();
-    front.sort_by_key(|point| std::cmp::Reverse(point.interval));
+    let dominated = |p: &(u32, u32)| points.iter().any(|q| q != p && q.0 >= p.0 && q.1 >= p.1);
+    let mut front: Vec<_> = points.iter().copied().filter(|p| !dominated(p)).collect();
+    front.sort_by_key(|point| std::cmp::Reverse(point.0));
     front
 }
 
@@ -80,22 +75,23 @@ proptest! {
     #[test]
     fn nested_loops_agree_on_found_exhausted_and_count(tiny in tiny()) {
         let problem = tiny.problem();
-        let search = Search::new(problem).unwrap();
+        let search = tiny.search();
         let count = naive::count(&problem);
         let mut memory = vec![0; MEMORY_WORDS];
-        let (mut a, mut b) = ([0; 64], [0; 64]);
-        let outcome = search.first(&mut memory, &mut Budget::unlimited(), &mut a, &mut b).unwrap();
-        prop_assert_eq!(outcome, if count > 0 { Outcome::Found(()) } else { Outcome::Exhausted });
-        prop_assert!(outcome == Outcome::Exhausted || naive::holds(&problem, &a, &b));
+        match search.first::<64>(&mut memory, &mut Budget::unlimited()).unwrap() {
+            Outcome::Found(table) => prop_assert!(count > 0 && holds(&problem, &table)),
+            outcome => prop_assert_eq!((outcome, count), (Outcome::Exhausted, 0)),
+        }
         // No memory, so little that entries give way all the time, and plenty.
         for words in [0, 60, 5000] {
             let counted = search.count(None, &mut vec![7; words], &mut Budget::unlimited());
-            prop_assert_eq!((counted.outcome, counted.count), (Outcome::Exhausted, count), "{} words", words);
+            prop_assert_eq!(counted, (Outcome::Exhausted, count), "{} words", words);
         }
-        let mut all = search.enumerate();
-        let mut seen = Vec::new();
-        while all.next_into(&mut Budget::unlimited(), &mut a, &mut b).unwrap() == Outcome::Found(()) {
-            seen.push((a[..tiny.lag.len()].to_vec(), b[..tiny.lag.len()].to_vec()));
+        let (mut seen, mut before) = (Vec::new(), None::<Schedule<64>>);
+        while let Outcome::Found(table) = search.next_table(before.as_ref(), &mut Budget::unlimited()).unwrap() {
+            let [a, b] = waits(&table);
+            seen.push((a, b));
+            before = Some(table);
         }
         let mut expected = Vec::new();
         naive::for_each(&problem, &mut |a, b| expected.push((a.to_vec(), b.to_vec())));
@@ -109,40 +105,41 @@ proptest! {
             conflicts: tiny.conflicts.iter().take(3).map(|row| row & 7).collect(),
             ..tiny
         };
-        let problem = tiny.problem();
-        let search = Search::new(problem).unwrap();
+        let (problem, search) = (tiny.problem(), tiny.search());
         let mut memory = vec![0; MEMORY_WORDS];
-        let (mut a, mut b) = ([0; 64], [0; 64]);
         let front = naive_front(&tiny);
-        let best = search.best(Objective::Interval, &mut memory, &mut Budget::unlimited(), &mut a, &mut b).unwrap();
-        prop_assert!(best.proven());
-        if tiny.conflicts.iter().any(|&row| row != 0) {
-            prop_assert_eq!(best.value, front.first().map(|point| point.interval));
+        let best = search.best_interval(&mut memory, &mut Budget::unlimited());
+        let Found::<64> { schedule, value, proven, .. } = best.unwrap();
+        prop_assert!(proven);
+        let apart = tiny.conflicts.iter().any(|&row| row != 0);
+        if apart {
+            prop_assert_eq!(value.map(ticks), front.first().map(|point| point.0));
         } else {
-            prop_assert_eq!(best.value.is_some(), !front.is_empty());
+            prop_assert_eq!(value.is_some(), !front.is_empty());
         }
-        if let Some(interval) = best.value {
-            let at = &Problem { interval, ..problem };
-            prop_assert!(naive::holds(at, &a, &b));
+        if let (Some(interval), Some(table)) = (value.map(ticks), schedule) {
+            let at = Problem { interval, ..problem };
+            prop_assert!(holds(&at, &table));
         }
-        let best = search.best(Objective::Separation, &mut memory, &mut Budget::unlimited(), &mut a, &mut b).unwrap();
-        prop_assert!(best.proven());
-        prop_assert_eq!(best.value.is_some(), !front.is_empty());
-        if let (Some(separation), true) = (best.value, tiny.lag.len() > 1) {
-            prop_assert_eq!(Some(separation), front.last().map(|point| point.separation));
-            let at = &Problem { separation, ..problem };
-            prop_assert!(naive::holds(at, &a, &b));
+        let best = search.best_t_delta(&mut memory, &mut Budget::unlimited());
+        let Found::<64> { schedule, value, proven, .. } = best.unwrap();
+        prop_assert!(proven);
+        prop_assert_eq!(schedule.is_some(), !front.is_empty());
+        if let (Some(separation), Some(table), true) = (value.map(separation), schedule, tiny.lag.len() > 1) {
+            prop_assert_eq!(Some(separation), front.last().map(|point| point.1));
+            let at = Problem { separation, ..problem };
+            prop_assert!(holds(&at, &table));
         }
-        if tiny.lag.len() > 1 && tiny.conflicts.iter().any(|&row| row != 0) {
-            let mut walk = search.pareto(&mut memory);
-            let mut points = Vec::new();
-            while let (Outcome::Found(()), Some(point)) =
-                walk.next_into(&mut Budget::unlimited(), &mut a, &mut b).unwrap()
+        if tiny.lag.len() > 1 && apart {
+            let (mut points, mut before) = (Vec::new(), None::<FrontTable<64>>);
+            while let Outcome::Found(table) =
+                search.next_on_front(before.as_ref(), &mut memory, &mut Budget::unlimited()).unwrap()
             {
-                let ParetoPoint { interval, separation } = point;
-                let at = &Problem { interval, separation, ..problem };
-            prop_assert!(naive::holds(at, &a, &b));
-                points.push(point);
+                let (interval, separation) = (ticks(table.min_interval), separation(table.t_delta.unwrap()));
+                let at = Problem { interval, separation, ..problem };
+                prop_assert!(holds(&at, &table.schedule));
+                points.push((interval, separation));
+                before = Some(table);
             }
             prop_assert_eq!(points, front);
         }

@@ -1,13 +1,12 @@
 //! The shared counts and optima of small wait-time problems, and the facts about the paper's own pairs
-//! (`docs/explanation/theory.md`, section 7.3). Plain nested loops and a slow, obvious checker judge what the searches
+//! (`docs/explanation/theory.md`, section 5.2). Plain nested loops and a slow, obvious checker judge what the searches
 //! return.
 
-use crate::common::Owned;
-use crate::common::naive::{self, Layout};
+use crate::common::naive::{self, Layout, Problem};
 use crate::common::tables::File;
-use eeruf_core::Criterion;
-use eeruf_core::search::Outcome;
-use eeruf_core::search::wait::{Budget, COUNT_WORDS, MEMORY_WORDS, Objective, Problem, memory_words};
+use crate::common::{Owned, holds, ticks, us};
+use eeruf_core::search::{Budget, COUNT_WORDS, Found, MEMORY_WORDS, Outcome, memory_words};
+use eeruf_core::{Criterion, Schedule};
 
 #[test]
 fn every_count_of_the_shared_tables_comes_out() {
@@ -15,7 +14,7 @@ fn every_count_of_the_shared_tables_comes_out() {
     for case in File::read().cases {
         let owned = Owned::of(&case);
         let count = owned.search().count(None, &mut memory, &mut Budget::unlimited());
-        assert_eq!((count.outcome, count.count), (Outcome::Exhausted, case.count), "{case:?}");
+        assert_eq!(count, (Outcome::Exhausted, case.count), "{case:?}");
     }
 }
 
@@ -31,13 +30,13 @@ fn plain_nested_loops_agree_on_what_the_shared_tables_mean() {
 fn the_walk_over_all_tables_visits_as_many_as_are_counted() {
     for case in File::read().cases.iter().filter(|case| case.count < 200_000) {
         let owned = Owned::of(case);
-        let (mut a, mut b) = ([0; 64], [0; 64]);
-        let mut all = owned.search().enumerate();
-        let mut seen = 0;
+        let search = owned.search();
+        let (mut seen, mut before) = (0, None::<Schedule<64>>);
         let mut budget = Budget::unlimited();
-        while all.next_into(&mut budget, &mut a, &mut b).unwrap() == Outcome::Found(()) {
-            assert!(naive::holds(&owned.problem(), &a, &b));
+        while let Outcome::Found(table) = search.next_table(before.as_ref(), &mut budget).unwrap() {
+            assert!(holds(&owned.problem(), &table));
             seen += 1;
+            before = Some(table);
         }
         assert_eq!(seen, case.count, "{case:?}");
     }
@@ -48,14 +47,12 @@ fn every_best_interval_of_the_shared_tables_comes_out_proven() {
     let mut memory = vec![0; MEMORY_WORDS];
     for case in File::read().cases {
         let owned = Owned::of(&case);
-        let (mut a, mut b) = ([0; 64], [0; 64]);
-        let best =
-            owned.search().best(Objective::Interval, &mut memory, &mut Budget::unlimited(), &mut a, &mut b).unwrap();
-        assert!(best.proven(), "{case:?}");
-        let value = best.value.map_or(-1, i64::from);
-        assert_eq!(value, case.best_interval, "{case:?} {best:?}");
-        if value >= 0 {
-            assert!(naive::holds(&Problem { interval: value as u32, ..owned.problem() }, &a, &b));
+        let best: Found<64> = owned.search().best_interval(&mut memory, &mut Budget::unlimited()).unwrap();
+        assert!(best.proven, "{case:?}");
+        let value = u32::try_from(case.best_interval).ok();
+        assert_eq!(best.value, value.map(us), "{case:?} {best:?}");
+        if let (Some(interval), Some(table)) = (value, &best.schedule) {
+            assert!(holds(&Problem { interval, ..owned.problem() }, table));
         }
     }
 }
@@ -64,13 +61,12 @@ fn every_best_interval_of_the_shared_tables_comes_out_proven() {
 fn best_interval(owned: &Owned) -> (u32, u64) {
     let sensors = owned.lag.len();
     let mut memory = vec![0; memory_words(sensors)];
-    let (mut a, mut b) = (vec![0; sensors], vec![0; sensors]);
-    let best = owned.search().best(Objective::Interval, &mut memory, &mut Budget::unlimited(), &mut a, &mut b).unwrap();
-    let value = best.value.unwrap();
-    assert_eq!((best.outcome, best.bound), (Outcome::Found(()), value));
-    assert!(naive::holds(&Problem { interval: value, ..owned.problem() }, &a, &b));
-    assert!(!naive::holds(&Problem { interval: value + 1, ..owned.problem() }, &a, &b));
-    (value, best.nodes)
+    let best: Found<64> = owned.search().best_interval(&mut memory, &mut Budget::unlimited()).unwrap();
+    let (interval, table) = (ticks(best.value.unwrap()), best.schedule.unwrap());
+    assert_eq!((best.proven, best.bound), (true, best.value));
+    assert!(holds(&Problem { interval, ..owned.problem() }, &table));
+    assert!(!holds(&Problem { interval: interval + 1, ..owned.problem() }, &table));
+    (interval, best.nodes)
 }
 
 // Waits on a millisecond grid give nineteen milliseconds and finer grids half a millisecond more.
@@ -98,26 +94,36 @@ fn half_the_separation_gives_room_for_more_sensors() {
     }
 }
 
+/// All ways to give the paper's pairs of waits (24 ms in phase a; 0, 2, .. 22 ms in phase b) to the sensors, by
+/// backtracking; `b` holds those of the sensors so far.
+fn rearrange(problem: &Problem<'_>, b: &mut Vec<u32>, see: &mut dyn FnMut(&[u32])) {
+    if b.len() == problem.lag.len() {
+        return see(b);
+    }
+    for wait in (0..problem.lag.len() as u32).map(|k| 2 * k) {
+        let (k, twice) = (b.len(), b.contains(&wait));
+        b.push(wait);
+        if !twice && (0..k).all(|y| naive::pair_holds(problem, k, y, &[24; 12], b)) {
+            rearrange(problem, b, see);
+        }
+        b.pop();
+    }
+}
+
 #[test]
 fn the_rearrangements_of_table_i_come_out() {
     let facts = File::read().rearrangements_of_table_i;
-    let pairs: Vec<(u32, u32)> = (0..12).map(|k| (24, 2 * k)).collect();
     for (layout, counts, best) in
         [(Layout::Line, facts.line, 19), (Layout::Ring, facts.ring, 17), (Layout::Blocks, facts.blocks, 19)]
     {
-        let owned = Owned::paper(12, layout, 2, 1, Criterion::Paper);
-        for (interval, count) in counts {
-            let search = owned.search().with(2, interval);
-            let found = search.assign(&pairs).unwrap().count(&mut Budget::unlimited());
-            assert_eq!((found.outcome, found.count), (Outcome::Exhausted, count), "{layout:?} {interval}");
-        }
-        let (mut a, mut b) = ([0; 12], [0; 12]);
-        let search = owned.search();
-        let found = search.assign(&pairs).unwrap().best_interval(&mut Budget::unlimited(), &mut a, &mut b).unwrap();
-        println!("{layout:?} {found:?}");
-        assert_eq!((found.outcome, found.value, found.bound), (Outcome::Found(()), Some(best), best));
-        if layout == Layout::Line {
-            assert_eq!(b.to_vec(), facts.the_one_with_19_on_a_line.t_wait_b_ms);
+        for (interval, expected) in counts.into_iter().chain([(best + 1, 0)]) {
+            let owned = Owned { interval, ..Owned::paper(12, layout, 2, 1, Criterion::Paper) };
+            let (mut count, mut last) = (0, Vec::new());
+            rearrange(&owned.problem(), &mut Vec::new(), &mut |b| (count, last) = (count + 1, b.to_vec()));
+            assert_eq!(count, expected, "{layout:?} {interval}");
+            if layout == Layout::Line && interval == 19 {
+                assert_eq!(last, facts.the_one_with_19_on_a_line.t_wait_b_ms);
+            }
         }
     }
 }

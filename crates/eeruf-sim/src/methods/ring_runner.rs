@@ -2,13 +2,12 @@
 //! under simulated time.
 
 use eeruf_core::{
-    EachSensor, Instant, MAX_SENSORS, Micros, Ring, RingConfig, RingError, RingEvent, VerifiedSchedule,
-    adaptation::LadderError,
+    EachSensor, Instant, MAX_SENSORS, Micros, Ring, RingConfig, RingError, RingEvent, ScheduleError, VerifiedSchedule,
     conditions::Violation,
     flow::{FlowPlan, FlowSettings},
     hopping::{HoppingError, HoppingPlan, HoppingSchedule, HoppingSettings, Weighed},
     judge::{AgreementRing, Judge},
-    plan::{EachInUse, ImmediateRefiring, LimitsInUse, Plan, ScheduledFiring},
+    plan::{ImmediateRefiring, OwnLimits, Plan, ScheduledFiring},
 };
 
 use super::firing::{Firing, OwnError, PeriodFiring};
@@ -74,7 +73,7 @@ impl<'s> SimulatedPlan<'s> for TableFiring<'s> {
     }
 }
 
-impl<const K: usize, U: LimitsInUse + Send> SimulatedPlan<'_> for HoppingPlan<K, U> {
+impl<const K: usize, U: OwnLimits + Send> SimulatedPlan<'_> for HoppingPlan<K, U> {
     fn weighed(&self, sensor: u8, expected_change_us: i32) -> Option<Weighed> {
         HoppingPlan::weighed(self, sensor, expected_change_us)
     }
@@ -124,7 +123,7 @@ impl<'s, P: SimulatedPlan<'s>, J: Judge + Send, const K: usize, const E: usize, 
 }
 
 /// Firing by a table, whether sensors are alike or not.
-pub(super) type TableFiring<'s> = ScheduledFiring<'s, MAX_SENSORS, 2, EachInUse<'s, MAX_SENSORS>>;
+pub(super) type TableFiring<'s> = ScheduledFiring<'s, MAX_SENSORS, 2, &'s EachSensor<MAX_SENSORS>>;
 
 /// The plan of a robot's ring.
 pub(crate) struct FiringPlan {
@@ -173,7 +172,7 @@ pub(crate) enum StartError {
     /// No schedule of its ladder keeps `t_delta` and window.
     Unverified(Violation),
     /// The schedules make no ladder.
-    Ladder(LadderError),
+    Ladder(ScheduleError),
     /// It cannot hop as asked.
     Hopping(HoppingError),
     /// A schedule for another number of sensors.

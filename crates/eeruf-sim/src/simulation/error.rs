@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use eeruf_core::{RingError, ScheduleError, adaptation::LadderError, conditions::Violation, hopping::HoppingError};
+use eeruf_core::{RingError, ScheduleError, conditions::Violation, hopping::HoppingError};
 
 use crate::methods::{ChangeError, Method, OwnError, StartError};
 use crate::results::Readings;
@@ -44,7 +44,7 @@ pub enum SimulationError {
         /// The robot.
         robot: usize,
         /// Why.
-        error: LadderError,
+        error: ScheduleError,
     },
     /// A robot's ring cannot hop in time under [`Method::EerufHopping`].
     Hopping {

@@ -157,7 +157,7 @@ impl Robot {
         &self,
         schedule: &AnySchedule,
     ) -> Result<VerifiedSchedule<MAX_SENSORS, 2, EachSensor<MAX_SENSORS>>, Violation> {
-        self.asking(Micros::MAX, |requirements| schedule.verify(requirements).verified_each())
+        self.asking(Micros::MAX, |requirements| schedule.verified_each(requirements))
     }
 
     /// The answer to what its sensors need, with no `t_delta` above `most`.

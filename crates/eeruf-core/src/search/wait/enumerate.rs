@@ -3,11 +3,11 @@
 use super::{Budget, Problem, Search};
 use crate::requirements::Criterion;
 use crate::schedule::MAX_SENSORS;
-use crate::search::{Members, Outcome, ProblemError};
+use crate::search::{Members, Outcome};
 
 /// Walks all tables. Its trail is the table itself; it takes no memory from the caller.
 #[derive(Debug, Clone)]
-pub struct Enumeration<'p> {
+pub(crate) struct Enumeration<'p> {
     problem: Problem<'p>,
     a: [u32; MAX_SENSORS],
     b: [u32; MAX_SENSORS],
@@ -18,9 +18,8 @@ pub struct Enumeration<'p> {
 }
 
 impl<'p> Search<'p> {
-    /// Enumeration tables, in lexicographic order of `a_0, b_0, a_1, b_1, ..`.
-    #[must_use]
-    pub fn enumerate(&self) -> Enumeration<'p> {
+    /// A walk over all tables, in lexicographic order of `a_0, b_0, a_1, b_1, ..`.
+    pub(crate) fn enumerate(&self) -> Enumeration<'p> {
         Enumeration {
             problem: self.problem,
             a: [0; MAX_SENSORS],
@@ -29,34 +28,28 @@ impl<'p> Search<'p> {
             handed_out: false,
         }
     }
+
+    /// The rest of that walk, after these waits in ticks.
+    pub(crate) fn enumerate_after(&self, a: [u32; MAX_SENSORS], b: [u32; MAX_SENSORS]) -> Enumeration<'p> {
+        let mut rest = Enumeration { a, b, ..self.enumerate() };
+        let sensors = self.sensors();
+        // The first sensor whose waits are none for it goes on from them.
+        let unfit = (0..sensors).find(|&k| !rest.fits(k));
+        rest.depth = Some(unfit.unwrap_or(sensors - 1));
+        rest.handed_out = unfit.is_none();
+        rest
+    }
 }
 
 // Indices are sensors, below `lag.len() <= MAX_SENSORS`.
 impl Enumeration<'_> {
-    /// Writes the waits of the next table, in ticks, to `a` and `b`; `Exhausted` after the last. After `BudgetSpent`
-    /// the walk goes on where it stopped.
-    ///
-    /// # Errors
-    /// [`ProblemError::Short`] if `a` or `b` is too short.
-    pub fn next_into(
-        &mut self,
-        budget: &mut Budget<'_>,
-        a: &mut [u32],
-        b: &mut [u32],
-    ) -> Result<Outcome, ProblemError> {
-        let sensors = self.problem.lag.len();
-        Search::check_length("a", a.len(), sensors)?;
-        Search::check_length("b", b.len(), sensors)?;
-        let outcome = self.advance(budget);
-        if outcome == Outcome::Found(()) {
-            a[..sensors].copy_from_slice(&self.a[..sensors]);
-            b[..sensors].copy_from_slice(&self.b[..sensors]);
-        }
-        Ok(outcome)
+    /// The waits of the present table, in ticks.
+    pub(crate) const fn waits(&self) -> (&[u32; MAX_SENSORS], &[u32; MAX_SENSORS]) {
+        (&self.a, &self.b)
     }
 
-    /// Moves to the next table.
-    pub(super) fn advance(&mut self, budget: &mut Budget<'_>) -> Outcome {
+    /// Moves to the next table; `Exhausted` after the last. After `BudgetSpent` the walk goes on where it stopped.
+    pub(crate) fn advance(&mut self, budget: &mut Budget<'_>) -> Outcome {
         let last = self.problem.lag.len() - 1;
         let Some(mut k) = self.depth else {
             return Outcome::Exhausted;
@@ -85,6 +78,12 @@ impl Enumeration<'_> {
                 self.b[k] += 1;
             }
         }
+    }
+
+    /// Returns true if the waits of sensor `k` are such and fit the sensors before it.
+    fn fits(&self, k: usize) -> bool {
+        let in_range = self.a[k].max(self.b[k]) <= self.problem.wait_max;
+        in_range && self.is_separate(k) && self.in_time(k, 0) && self.in_time(k, 1)
     }
 
     /// Moves sensor `k` to its next pair of waits, itself included, that fits the sensors before it.

@@ -7,11 +7,11 @@ use super::feasibility::decide;
 use super::{Budget, Problem, Search};
 use crate::requirements::Criterion;
 use crate::schedule::MAX_SENSORS;
-use crate::search::{Outcome, ProblemError};
+use crate::search::{Outcome, SearchError};
 
 /// The value to maximise.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Objective {
+pub(crate) enum Objective {
     /// The smallest interval between conflicting sensors, at the separation of the problem.
     Interval,
     /// The separation `D`, at the smallest interval of the problem.
@@ -20,22 +20,21 @@ pub enum Objective {
 
 /// The outcome of a search for the best table.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Best {
+pub(crate) struct Best {
     /// Found: the value is proven best. Exhausted: there is no table at all. Budget spent: value and bound are what is
     /// known.
-    pub outcome: Outcome,
+    pub(crate) outcome: Outcome,
     /// The best value found, in ticks; the table was written where the caller asked.
-    pub value: Option<u32>,
+    pub(crate) value: Option<u32>,
     /// No table has a greater value, in ticks.
-    pub bound: u32,
+    pub(crate) bound: u32,
     /// Nodes visited.
-    pub nodes: u64,
+    pub(crate) nodes: u64,
 }
 
 impl Best {
     /// Returns true if the value is proven to be the best, or that no table exists.
-    #[must_use]
-    pub fn proven(&self) -> bool {
+    pub(crate) fn proven(&self) -> bool {
         self.outcome != Outcome::BudgetSpent
     }
 }
@@ -47,17 +46,16 @@ impl Search<'_> {
     /// With nothing in conflict the interval is the period; a single sensor has the separation `wait_max`.
     ///
     /// # Errors
-    /// [`ProblemError::Memory`] if `memory` ([`memory_words`](super::memory_words)), [`ProblemError::Short`] if `a` or
-    /// `b` is too short.
-    pub fn best(
+    /// [`SearchError::Memory`] if `memory` is too small ([`memory_words`](super::memory_words)).
+    pub(crate) fn best(
         &self,
         objective: Objective,
         memory: &mut [u32],
         budget: &mut Budget<'_>,
         a: &mut [u32],
         b: &mut [u32],
-    ) -> Result<Best, ProblemError> {
-        self.check(memory, a, b)?;
+    ) -> Result<Best, SearchError> {
+        self.check(memory)?;
         let before = budget.nodes();
         let pairs = self.sensors() as u32 - 1;
         let mut bound = match objective {
@@ -73,7 +71,7 @@ impl Search<'_> {
         };
         if self.problem().criterion == Criterion::Paper {
             // The weaker criterion is decided much faster, and what it excludes is excluded.
-            let exact = Self::new(Problem { criterion: Criterion::Exact, ..*self.problem() })?;
+            let exact = Self::new(Problem { criterion: Criterion::Exact, ..*self.problem() });
             let exact = budget.slice(BOUND_SLICE, |budget| exact.best(objective, memory, budget, a, b))?;
             if exact.outcome == Outcome::Exhausted {
                 return Ok(exact);

@@ -1,29 +1,28 @@
-//! The problem of the waits in ticks, its check, and what waits achieve.
+//! The problem of the waits in ticks, and what waits achieve.
 
 use crate::requirements::Criterion;
-use crate::schedule::MAX_SENSORS;
-use crate::search::{Members, ProblemError, check_conflicts};
+use crate::search::Members;
 
 /// The longest period, in ticks: sums of a few times then stay far inside 32 bits.
-pub const MAX_PERIOD: u32 = 1 << 27;
+pub(crate) const MAX_PERIOD: u32 = 1 << 27;
 
 /// The wait-time problem, all times in ticks.
 #[derive(Debug, Clone, Copy)]
-pub struct Problem<'a> {
+pub(crate) struct Problem<'a> {
     /// The period `T_p`.
-    pub period: u32,
+    pub(crate) period: u32,
     /// The lag of each sensor; its length is the number of sensors.
-    pub lag: &'a [u32],
+    pub(crate) lag: &'a [u32],
     /// The longest wait: waits are 0 ..= `wait_max`.
-    pub wait_max: u32,
+    pub(crate) wait_max: u32,
     /// The separation `D`.
-    pub separation: u32,
+    pub(crate) separation: u32,
     /// The smallest interval `I` between firings of two conflicting sensors.
-    pub interval: u32,
+    pub(crate) interval: u32,
     /// Row `i` has bit `j` set when sensors `i` and `j` conflict; symmetric, diagonal clear.
-    pub conflicts: &'a [u64],
+    pub(crate) conflicts: &'a [u64],
     /// The reading of (13a) and (13b) that holds.
-    pub criterion: Criterion,
+    pub(crate) criterion: Criterion,
 }
 
 impl Problem<'_> {
@@ -38,56 +37,35 @@ impl Problem<'_> {
 
 /// A checked [`Problem`], ready to be searched.
 #[derive(Debug, Clone, Copy)]
-pub struct Search<'a> {
+pub(crate) struct Search<'a> {
     pub(super) problem: Problem<'a>,
 }
 
 impl<'a> Search<'a> {
-    /// Checks the problem.
-    ///
-    /// # Errors
-    /// [`ProblemError`] for a number of sensors, period, lag or conflict outside its range. An infeasible problem is
-    /// not an error: the searches prove that.
-    pub fn new(problem: Problem<'a>) -> Result<Self, ProblemError> {
-        let Problem { period, lag, wait_max, conflicts, .. } = problem;
-        let sensors = lag.len();
-        if sensors == 0 || sensors > MAX_SENSORS {
-            return Err(ProblemError::Sensors(sensors));
-        }
-        if period == 0 || period > MAX_PERIOD {
-            return Err(ProblemError::Period { period, most: MAX_PERIOD });
-        }
-        for (sensor, &lag) in lag.iter().enumerate() {
-            if u64::from(lag) + u64::from(wait_max) >= u64::from(period) {
-                return Err(ProblemError::OutsidePeriod { sensor, lag, wait_max, period });
-            }
-        }
-        check_conflicts(sensors, conflicts)?;
-        Ok(Self { problem })
+    /// Of a problem that was checked: 1 to 64 sensors with symmetric conflicts, which may wait until `wait_max` within
+    /// the period, and a period of at most [`MAX_PERIOD`].
+    pub(crate) const fn new(problem: Problem<'a>) -> Self {
+        Self { problem }
     }
 
     /// The problem as given.
-    #[must_use]
-    pub const fn problem(&self) -> &Problem<'a> {
+    pub(super) const fn problem(&self) -> &Problem<'a> {
         &self.problem
     }
 
     /// The number of sensors `K`.
-    #[must_use]
-    pub const fn sensors(&self) -> usize {
+    pub(super) const fn sensors(&self) -> usize {
         self.problem.lag.len()
     }
 
     /// The same problem with another separation and interval.
-    #[must_use]
-    pub const fn with(&self, separation: u32, interval: u32) -> Self {
+    pub(crate) const fn with(&self, separation: u32, interval: u32) -> Self {
         Self { problem: Problem { separation, interval, ..self.problem } }
     }
 
     /// The smallest interval between firings of conflicting sensors for these waits, in ticks, at most the period
     /// (which it is when nothing conflicts). Zero if there are fewer waits than sensors.
-    #[must_use]
-    pub fn smallest_interval(&self, a: &[u32], b: &[u32]) -> u32 {
+    pub(super) fn smallest_interval(&self, a: &[u32], b: &[u32]) -> u32 {
         let Problem { period, lag, conflicts, .. } = self.problem;
         let mut smallest = period;
         for (i, &row) in conflicts.iter().enumerate() {
@@ -104,8 +82,7 @@ impl<'a> Search<'a> {
 
     /// The least distance between the values `|d|` (and, by [`Criterion::Paper`], between the values `s`) of any two
     /// sensors, in ticks; `wait_max` for a single sensor.
-    #[must_use]
-    pub fn separation_of(&self, a: &[u32], b: &[u32]) -> u32 {
+    pub(super) fn separation_of(&self, a: &[u32], b: &[u32]) -> u32 {
         let mut least = self.problem.wait_max;
         for i in 0..self.sensors().min(a.len()).min(b.len()) {
             for j in 0..i {
@@ -119,16 +96,11 @@ impl<'a> Search<'a> {
         }
         least
     }
-
-    /// Refuses a slice that is too short.
-    pub(super) fn check_length(what: &'static str, given: usize, needed: usize) -> Result<(), ProblemError> {
-        if given < needed { Err(ProblemError::Short { what, given, needed }) } else { Ok(()) }
-    }
 }
 
 /// The least distance between a firing of x and one of y on the circle of two periods; `x` and `y` are the firing times
 /// within phase a and phase b.
-pub(super) const fn gap(period: u32, x: [u32; 2], y: [u32; 2]) -> u32 {
+const fn gap(period: u32, x: [u32; 2], y: [u32; 2]) -> u32 {
     let same = {
         let (a, b) = (x[0].abs_diff(y[0]), x[1].abs_diff(y[1]));
         if a < b { a } else { b }

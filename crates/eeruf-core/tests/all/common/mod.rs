@@ -7,9 +7,9 @@ pub mod naive;
 pub mod random;
 pub mod tables;
 
-use eeruf_core::Criterion;
-use eeruf_core::search::wait::{Problem, Search};
-use naive::Layout;
+use eeruf_core::search::{SearchError, WaitProblem, WaitSearch};
+use eeruf_core::{Criterion, Micros, Phase, Schedule};
+use naive::{Layout, Problem};
 use tables::Case;
 
 /// Owned parts of a problem.
@@ -51,8 +51,8 @@ impl Owned {
         }
     }
 
-    pub fn search(&self) -> Search<'_> {
-        Search::new(self.problem()).unwrap()
+    pub fn search(&self) -> WaitSearch {
+        search(&self.problem()).unwrap()
     }
 
     pub fn problem(&self) -> Problem<'_> {
@@ -66,4 +66,49 @@ impl Owned {
             criterion: self.criterion,
         }
     }
+}
+
+/// A tick is 2 us, so that D ticks are what a `t_delta` of D - 1 us needs: 2 D - 1 us.
+pub const TICK: Micros = Micros::new(2);
+
+pub fn us(ticks: u32) -> Micros {
+    Micros::new(TICK.as_micros() * ticks)
+}
+
+/// Asks in microseconds.
+pub fn search(problem: &Problem<'_>) -> Result<WaitSearch, SearchError> {
+    let lag: Vec<_> = problem.lag.iter().map(|&ticks| us(ticks)).collect();
+    WaitSearch::new(&WaitProblem {
+        sensors: problem.lag.len(),
+        period: us(problem.period),
+        wait_max: us(problem.wait_max),
+        tick: TICK,
+        t_lag: Some(&lag),
+        t_delta: Micros::new(problem.separation - 1),
+        min_interval: us(problem.interval),
+        neighbours: 1,
+        layout: eeruf_core::Layout::Graph(problem.conflicts),
+        criterion: problem.criterion,
+    })
+}
+
+/// The waits of a schedule in ticks, of phase a and of phase b.
+pub fn waits<const K: usize>(schedule: &Schedule<K>) -> [Vec<u32>; 2] {
+    [Phase::A, Phase::B].map(|phase| schedule.t_wait(phase).iter().map(|&wait| ticks(wait)).collect())
+}
+
+/// A time in ticks.
+pub fn ticks(time: Micros) -> u32 {
+    time.as_micros() / TICK.as_micros()
+}
+
+/// The separation in ticks that a largest `t_delta` stands for.
+pub fn separation(t_delta: Micros) -> u32 {
+    t_delta.as_micros() + 1
+}
+
+/// Judges a schedule in ticks.
+pub fn holds<const K: usize>(problem: &Problem<'_>, schedule: &Schedule<K>) -> bool {
+    let [a, b] = waits(schedule);
+    naive::holds(problem, &a, &b)
 }

@@ -1,9 +1,21 @@
 //! A slow, obvious judge of wait tables: (13a) and (13b) pair by pair as printed, firings compared one by one on the
-//! circle, and plain nested loops. It shares nothing with the search but the problem's type.
+//! circle, and plain nested loops. It shares nothing with the search.
 
 use eeruf_core::Criterion;
-use eeruf_core::search::wait::Problem;
 use serde::Deserialize;
+
+/// The wait-time problem, all times in ticks.
+#[derive(Debug, Clone, Copy)]
+pub struct Problem<'a> {
+    pub period: u32,
+    pub lag: &'a [u32],
+    pub wait_max: u32,
+    /// `D`, 1 or more.
+    pub separation: u32,
+    pub interval: u32,
+    pub conflicts: &'a [u64],
+    pub criterion: Criterion,
+}
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]

@@ -58,7 +58,7 @@ fn designed_table(random: &mut Random) -> Table {
     };
     let problem = PeriodProblem { sensors, requirements, tick: Micros::new(500) };
     let schedule = roomy(&problem.shortest(300, &mut ()).unwrap().schedule);
-    let verified = schedule.verify(&requirements).verified().unwrap();
+    let verified = schedule.verified(&requirements).unwrap();
     Table { schedule, verified: Some(verified), t_delta: requirements.t_delta.as_micros() }
 }
 
@@ -68,7 +68,7 @@ fn tables(count: usize, random: &mut Random) -> Vec<Table> {
         .iter()
         .map(|table| {
             let schedule = roomy(table);
-            let verified = schedule.verify(&Requirements::new(Micros::new(999))).verified().ok();
+            let verified = schedule.verified(&Requirements::new(Micros::new(999))).ok();
             Table { schedule, verified, t_delta: 999 }
         })
         .collect();

@@ -20,39 +20,26 @@ use crate::search::Outcome;
 use bits::MASK_MAX;
 use walk::Counting;
 
-/// A sensible amount of memory for [`Search::count`] where there is plenty, in words (4 MiB): a choice.
+/// A sensible amount of memory for [`WaitSearch::count`](crate::search::WaitSearch::count) where there is plenty, in
+/// words (4 MiB): a choice.
 /// With less the count is the same, and slower: 1 KiB where `usize` has 16 bits.
 pub const COUNT_WORDS: usize = 1 << if usize::BITS > 16 { 20 } else { 8 };
-
-/// The outcome of counting.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Count {
-    /// Exhausted: the count is exact. Found: the limit was reached, there are at least as many. Budget spent: this many
-    /// were counted before the search stopped.
-    pub outcome: Outcome,
-    /// The number of tables.
-    pub count: u128,
-    /// Nodes visited; the tables of the last sensor are not visited one by one.
-    pub nodes: u64,
-}
 
 impl Search<'_> {
     /// Counts the tables; stops early when there are `limit` or more. More `memory` makes it faster ([`COUNT_WORDS`]);
     /// it may be empty.
     ///
     /// Without a limit, a count beyond `u128` ends with [`Outcome::Found`] at its maximum.
-    pub fn count(&self, limit: Option<u128>, memory: &mut [u32], budget: &mut Budget<'_>) -> Count {
-        let before = budget.nodes();
+    pub(crate) fn count(&self, limit: Option<u128>, memory: &mut [u32], budget: &mut Budget<'_>) -> (Outcome, u128) {
         let limit = limit.unwrap_or(u128::MAX);
         // Beyond capacity nothing needs setting up; what passes has D at most wait_max, or a single sensor.
-        let (outcome, count) = if self.problem.is_beyond_capacity() {
+        if self.problem.is_beyond_capacity() {
             (Outcome::Exhausted, 0)
         } else if self.problem.wait_max > MASK_MAX {
             count_one_by_one(self, limit, budget)
         } else {
             Counting::new(&self.problem, memory).run(limit, budget)
-        };
-        Count { outcome, count, nodes: budget.nodes() - before }
+        }
     }
 }
 

@@ -16,11 +16,10 @@ mod walk;
 use super::{Budget, Problem, Search};
 use crate::requirements::Criterion;
 use crate::schedule::MAX_SENSORS;
-use crate::search::{Outcome, ProblemError};
+use crate::search::{Outcome, SearchError};
 use walk::{Feasibility, Style};
 
-/// Words of memory that suffice for [`first`](super::Search::first), [`best`](super::Search::best) and
-/// [`pareto`](super::Search::pareto) with this many sensors: 808 bytes for 8, 1,784 for 12.
+/// Words of memory that suffice for every search but counting with this many sensors: 808 bytes for 8, 1,784 for 12.
 #[must_use]
 pub const fn memory_words(sensors: usize) -> usize {
     // Two orders a pair, one order of s a pair, a rank and a value a sensor; two words a branch.
@@ -42,7 +41,7 @@ pub(super) fn decide(
     }
     let interval = if conflict { problem.interval } else { 0 };
     let exact = Problem { criterion: Criterion::Exact, interval, ..*problem };
-    let outcome = Feasibility::new(&exact, memory, Style::default()).run(budget, wait);
+    let outcome = walk(&exact, memory, Style::default(), budget, wait);
     if problem.criterion == Criterion::Exact || outcome != Outcome::Found(()) {
         // Without a table under the weaker criterion there is none under the stronger.
         return outcome;
@@ -57,7 +56,7 @@ pub(super) fn decide(
             if style.tight && !tight {
                 continue;
             }
-            let outcome = budget.slice(slice, |budget| Feasibility::new(&paper, memory, style).run(budget, wait));
+            let outcome = budget.slice(slice, |budget| walk(&paper, memory, style, budget, wait));
             match outcome {
                 Outcome::Exhausted if style.tight => tight = false,
                 Outcome::BudgetSpent if !budget.spent() => {}
@@ -66,6 +65,18 @@ pub(super) fn decide(
         }
         slice = slice.saturating_mul(4);
     }
+}
+
+/// One walk. Not inlined, so that no more than one is on the stack.
+#[inline(never)]
+fn walk(
+    problem: &Problem<'_>,
+    memory: &mut [u32],
+    style: Style,
+    budget: &mut Budget<'_>,
+    wait: &mut [i32; 2 * MAX_SENSORS],
+) -> Outcome {
+    Feasibility::new(problem, memory, style).run(budget, wait)
 }
 
 /// Nodes that each style may take in the first round.
@@ -84,15 +95,15 @@ impl Search<'_> {
     /// in ticks.
     ///
     /// # Errors
-    /// [`ProblemError::Memory`] if `memory`, [`ProblemError::Short`] if `a` or `b` is too short.
-    pub fn first(
+    /// [`SearchError::Memory`] if `memory` is too small.
+    pub(crate) fn first(
         &self,
         memory: &mut [u32],
         budget: &mut Budget<'_>,
         a: &mut [u32],
         b: &mut [u32],
-    ) -> Result<Outcome, ProblemError> {
-        self.check(memory, a, b)?;
+    ) -> Result<Outcome, SearchError> {
+        self.check(memory)?;
         let mut wait = [0; 2 * MAX_SENSORS];
         let outcome = decide(self.problem(), memory, budget, &mut wait);
         if outcome == Outcome::Found(()) {
@@ -101,14 +112,10 @@ impl Search<'_> {
         Ok(outcome)
     }
 
-    /// Checks what the caller lends.
-    pub(super) fn check(&self, memory: &[u32], a: &[u32], b: &[u32]) -> Result<(), ProblemError> {
+    /// Checks the memory that the caller lends.
+    pub(super) fn check(&self, memory: &[u32]) -> Result<(), SearchError> {
         let (words, needed) = (memory.len(), memory_words(self.sensors()));
-        if words < needed {
-            return Err(ProblemError::Memory { words, needed });
-        }
-        Self::check_length("a", a.len(), self.sensors())?;
-        Self::check_length("b", b.len(), self.sensors())
+        if words < needed { Err(SearchError::Memory { words, needed }) } else { Ok(()) }
     }
 
     /// Writes the waits, `a` and `b` alternating, where the caller asked.

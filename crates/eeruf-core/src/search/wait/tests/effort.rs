@@ -1,19 +1,21 @@
 //! Steps of the search for waits to its answers, the same on each machine: written down in
-//! `tests/data/search-effort.txt`. A change that makes it take other steps shows there what it costs or saves.
+//! `effort.txt`. A change that makes it take other steps shows there what it costs or saves.
 //! `EERUF_WRITE=1` rewrites the file.
+
+extern crate std;
 
 use std::fmt::{Debug, Write as _};
 use std::ops::ControlFlow;
+use std::string::String;
+use std::vec::Vec;
+use std::{format, vec};
 
-use eeruf_core::Criterion;
-use eeruf_core::search::wait::{Budget, Objective, memory_words};
-use eeruf_core::search::{Outcome, Progress};
+use super::{Budget, Objective, Owned, Random, Search, memory_words};
+use crate::layout::Layout;
+use crate::requirements::Criterion;
+use crate::search::{Outcome, Progress};
 
-use crate::common::Owned;
-use crate::common::naive::{self, Layout};
-use crate::common::random::Random;
-
-const FILE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/data/search-effort.txt");
+const FILE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/src/search/wait/tests/effort.txt");
 
 /// The nodes that a question may cost.
 const BUDGET: u64 = 3000;
@@ -62,7 +64,7 @@ impl Record {
     /// All questions about waits, for one problem.
     fn ask_waits(&mut self, name: &str, owned: &Owned) {
         let sensors = owned.lag.len();
-        let search = owned.search();
+        let search = Search::new(owned.problem());
         let mut memory = vec![0; memory_words(sensors)];
         let (mut a, mut b) = (vec![0; sensors], vec![0; sensors]);
         self.ask(&format!("{name} first"), |mut control| {
@@ -77,19 +79,12 @@ impl Record {
                 (format!("{:?} <= {}", best.value, best.bound), best.nodes, (&a, &b))
             });
         }
-        // The best table's own pairs, given to other sensors.
-        let pairs: Vec<(u32, u32)> = a.iter().copied().zip(b.iter().copied()).rev().collect();
-        self.ask(&format!("{name} assigned"), |mut control| {
-            let mut budget = Budget::nodes_at_most(BUDGET).watched(100, &mut control);
-            let best = search.assign(&pairs).unwrap().best_interval(&mut budget, &mut a, &mut b).unwrap();
-            (format!("{:?} <= {}", best.value, best.bound), best.nodes, (&a, &b))
-        });
         for words in [60, 4000] {
             self.ask(&format!("{name} count with {words} words"), |mut control| {
                 let mut budget = Budget::nodes_at_most(10 * BUDGET).watched(1000, &mut control);
-                let counted = search.count(None, &mut vec![0; words], &mut budget);
-                let whole = if counted.outcome == Outcome::Exhausted { "" } else { " or more" };
-                (format!("{}{whole}", counted.count), counted.nodes, ())
+                let (outcome, count) = search.count(None, &mut vec![0; words], &mut budget);
+                let whole = if outcome == Outcome::Exhausted { "" } else { " or more" };
+                (format!("{count}{whole}"), budget.nodes(), ())
             });
         }
     }
@@ -99,18 +94,18 @@ impl Record {
 fn ask_all() -> Record {
     let mut record = Record::default();
     let mut random = Random(20_261_123);
-    for (layout, sensors, separation) in [
-        (Layout::Line, 4, 3),
-        (Layout::Line, 6, 3),
-        (Layout::Line, 8, 2),
-        (Layout::Ring, 8, 2),
-        (Layout::Ring, 12, 1),
-        (Layout::Line, 12, 2),
-        (Layout::Blocks, 8, 3),
+    for (layout, name, sensors, separation) in [
+        (Layout::Line(4), "Line", 4, 3),
+        (Layout::Line(4), "Line", 6, 3),
+        (Layout::Line(4), "Line", 8, 2),
+        (Layout::Ring(4), "Ring", 8, 2),
+        (Layout::Ring(4), "Ring", 12, 1),
+        (Layout::Line(4), "Line", 12, 2),
+        (Layout::Blocks(4), "Blocks", 8, 3),
     ] {
         for criterion in [Criterion::Exact, Criterion::Paper] {
-            let owned = Owned::paper(sensors, layout, separation, 1, criterion);
-            record.ask_waits(&format!("waits of {layout:?} {sensors} {criterion:?} D{separation}"), &owned);
+            let owned = Owned::paper(sensors, layout, separation, criterion);
+            record.ask_waits(&format!("waits of {name} {sensors} {criterion:?} D{separation}"), &owned);
         }
     }
     for case in 0..16 {
@@ -133,7 +128,8 @@ fn ask_all() -> Record {
 fn graph(random: &mut Random, sensors: usize, density: u32) -> Vec<u64> {
     let mut drawn = vec![false; sensors * sensors];
     drawn.fill_with(|| random.up_to(99) < density);
-    naive::conflicts_where(sensors, |x, y| drawn[x * sensors + y])
+    let conflict = |x: usize, y: usize| x != y && drawn[x.max(y) * sensors + x.min(y)];
+    (0..sensors).map(|x| (0..sensors).filter(|&y| conflict(x, y)).map(|y| 1 << y).sum()).collect()
 }
 
 #[test]

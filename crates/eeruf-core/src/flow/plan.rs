@@ -471,7 +471,7 @@ fn change_of(heard: &Heard<'_>, verdict: &Verdict) -> u16 {
 
 /// Echoes of a robot that stands differ by about this from one firing to the next.
 const NOISE: Micros = Micros::new(15);
-/// What odometry did not foresee counts 16 times.
+/// Weight of a change that odometry did not foresee: 16.
 const ASTRAY_SHIFT: u32 = 4;
 
 /// Returns true if a number is a multiple of another, above 0. By subtraction: small processors take a hundred

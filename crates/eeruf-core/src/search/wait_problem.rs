@@ -216,7 +216,7 @@ impl WaitSearch {
     /// Counts the tables; stops early when there are `limit` or more. More `memory` makes it faster
     /// ([`COUNT_WORDS`](super::COUNT_WORDS)); it may be empty.
     ///
-    /// The count is exact with [`Outcome::Exhausted`], and at least so much otherwise: with [`Outcome::Found`] the limit
+    /// The count is exact with [`Outcome::Exhausted`], otherwise at least so much: with [`Outcome::Found`] the limit
     /// was reached, or without one `u128::MAX`.
     pub fn count(&self, limit: Option<u128>, memory: &mut [u32], budget: &mut Budget<'_>) -> (Outcome, u128) {
         self.ticks().count(limit, memory, budget)

@@ -264,7 +264,9 @@ fn confirmed_echo_is_remembered_for_longer_while_robot_moves() {
             tracker.push(0, echo, firing).unwrap().kind
         };
         // Less than a surplus could be told from.
-        (5..5 + silent).for_each(|phase| drop(push(phase, None)));
+        for phase in 5..5 + silent {
+            push(phase, None);
+        }
         push(5 + silent, us(9000)) == ReadingKind::Accepted
     };
     for (change, longest) in [(0, 5), (1, 60)] {

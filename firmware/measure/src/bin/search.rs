@@ -1,5 +1,6 @@
 //! The search of the paper's problem on the board: the table of waits with the largest interval between any four
-//! adjacent sensors of twelve, and the proof that none has a larger one. Prints nodes and instructions; for `-icount shift=6`.
+//! adjacent sensors of twelve, and the proof that none has a larger one. Prints nodes and
+//! instructions; for `-icount shift=6`.
 #![no_std]
 #![no_main]
 

@@ -189,7 +189,7 @@ fn cycle_ends_in_time_for_standing_and_moving_robots() {
     assert!((93_600..=100_000).contains(&length), "{length}");
 }
 
-// Where echoes go astray from what odometry foresees, the next cycle is as short as if they had changed by 16 times that.
+// Where echoes go astray from what odometry foresees, the next cycle is short as if they had changed by 16 times that.
 #[test]
 fn echoes_that_odometry_did_not_foresee_shorten_the_cycle() {
     let kinds = [

@@ -2012,9 +2012,6 @@ static uint16_t fewer16(uint16_t one, uint16_t other) {
 #define MOST_SURPLUS 80     /* two readings that show more are not of one echo */
 #define UNKNOWN INT8_MIN    /* readings that show no surplus */
 #define MOVING_VOTES 3u     /* for a tentative echo while odometry moves: any two readings are those of some wall */
-#define MOVING_MEMORY 12u   /* and confirmed echoes are remembered for as many times as long */
-#define NOISE_US 15u        /* by which echoes of a robot that stands differ from one firing to the next */
-#define ASTRAY 16u          /* what odometry did not foresee of a change counts as many times */
 #define DRAWS 8u            /* lags that are drawn in search of one that keeps the neighbours' interval */
 
 /* -- The tracker: which echo of a sensor is its own. A reading within t_delta of a track supports it, and only support
@@ -2094,15 +2091,9 @@ static void miss(EerufTrack *track, uint16_t phase, const EerufTrackerSettings *
     if (how->memory > 0) track->flags |= REMEMBERED;
 }
 
-/* For how many firings an echo is remembered. */
-static uint8_t memory_of(const EerufTrackerSettings *how, bool moving) {
-    const unsigned memory = how->memory * (moving ? MOVING_MEMORY : 1u);
-    return memory > UINT8_MAX ? UINT8_MAX : (uint8_t)memory;
-}
-
 /* Nothing speaks for it any more: it is gone, or remembered if it was confirmed. */
-static void lose(EerufTrack *track, uint8_t memory) {
-    if (!(track->flags & (TRACK_CONFIRMED | REMEMBERED)) || track->age >= memory) {
+static void lose(EerufTrack *track, const EerufTrackerSettings *how) {
+    if (!(track->flags & (TRACK_CONFIRMED | REMEMBERED)) || track->age >= how->memory) {
         /* Were it confirmed still, it would keep its place from all that come. */
         forget_track(track);
         return;
@@ -2119,8 +2110,7 @@ static OUT_OF_LINE void follow(EerufTrack *track, uint32_t t_echo_us, uint32_t b
     track->t_echo_us += t_echo_us > track->t_echo_us ? by_us : 0u - by_us;
 }
 
-static void support(EerufTrack *track, uint32_t t_echo_us, uint16_t phase, bool solo, const EerufTrackerSettings *how,
-                    uint8_t memory) {
+static void support(EerufTrack *track, uint32_t t_echo_us, uint16_t phase, bool solo, const EerufTrackerSettings *how) {
     const bool is_new = (track->phases & phase) == 0;
     const uint32_t distance = between(track->t_echo_us, t_echo_us);
     if (is_new && distance <= how->tentative_within_us && track->close < UINT8_MAX) track->close++;
@@ -2131,7 +2121,7 @@ static void support(EerufTrack *track, uint32_t t_echo_us, uint16_t phase, bool 
         track->score = (uint8_t)(track->score + (solo ? 2u : 1u));
         if (track->score > how->score_limit) track->score = how->score_limit;
     }
-    if ((track->flags & REMEMBERED) && track->age <= memory) {
+    if ((track->flags & REMEMBERED) && track->age <= how->memory) {
         track->flags |= TRACK_CONFIRMED;
         if (track->score < REGAINED) track->score = REGAINED;
     }
@@ -2142,10 +2132,10 @@ static void support(EerufTrack *track, uint32_t t_echo_us, uint16_t phase, bool 
     if (votes_of(track) >= how->votes && track->score >= how->votes) track->flags |= TRACK_CONFIRMED;
 }
 
-static void contradict(EerufTrack *track, uint16_t phase, bool solo, const EerufTrackerSettings *how, uint8_t memory) {
+static void contradict(EerufTrack *track, uint16_t phase, bool solo, const EerufTrackerSettings *how) {
     const uint8_t weight = solo ? how->solo_contradiction : (track->flags & TRACK_CONFIRMED) ? how->contradiction : 1;
     if (track->score <= weight) {
-        lose(track, memory);
+        lose(track, how);
         return;
     }
     track->score = (uint8_t)(track->score - weight);
@@ -2244,7 +2234,6 @@ static void weigh(EerufHoppingRing *hopping, uint8_t sensor, bool steady, int32_
     const uint32_t t_echo_us = reading->t_echo_us;
     const uint16_t phase = phase_bit(hopper->phase);
     const uint8_t votes = how->tentative_votes, least = change_us != 0 ? MOVING_VOTES : 0;
-    const uint8_t memory = memory_of(how, change_us != 0);
     const uint16_t t_delta_us = t_delta_of(&hopping->ring, sensor);
     const uint8_t nearest = nearest_track(hopper, t_echo_us, t_delta_us);
     const EerufTrack *believed = believed_of(hopper);
@@ -2261,7 +2250,7 @@ static void weigh(EerufHoppingRing *hopping, uint8_t sensor, bool steady, int32_
         if (place == nearest) {
             bool earlier;
             uint8_t close;
-            support(track, t_echo_us, phase, solo, how, memory);
+            support(track, t_echo_us, phase, solo, how);
             close = track->flags & CONTRADICTED ? 0 : track->close;
             earlier = (!believes || track->t_echo_us < held_us) && track->t_echo_us != EERUF_NO_ECHO;
             tentative = earlier && votes != 0 && (solo || close >= (votes < least ? least : votes));
@@ -2270,7 +2259,7 @@ static void weigh(EerufHoppingRing *hopping, uint8_t sensor, bool steady, int32_
             grow_older(track);
             follow(track, t_echo_us, between(held_us, t_echo_us) * 3 / 10);
         } else if (t_echo_us > track->t_echo_us) {
-            contradict(track, phase, solo, how, memory);
+            contradict(track, phase, solo, how);
         } else {
             grow_older(track);
             if (track->flags & TRACK_CONFIRMED) miss(track, phase, how);
@@ -3193,22 +3182,11 @@ static uint32_t gap_after(EerufHoppingRing *hopping, uint8_t sensor) {
     return 0;
 }
 
-/* The change that odometry foresaw of a sensor's echo, or a multiple of what it did not foresee. */
-static uint16_t change_of(const EerufReading *reading, int32_t change_us) {
-    uint32_t change = change_us < 0 ? 0u - (uint32_t)change_us : (uint32_t)change_us;
-    if (change != 0 && (reading->kind == EERUF_READING_ACCEPTED || reading->kind == EERUF_READING_TENTATIVE) &&
-        reading->previous_us != EERUF_NO_ECHO) {
-        const uint32_t astray = between(reading->t_echo_us, reading->previous_us);
-        if (astray > NOISE_US && (astray - NOISE_US) * ASTRAY > change) change = (astray - NOISE_US) * ASTRAY;
-    }
-    return narrow(change);
-}
-
 /* Raises a sensor's quiet if others fooled it or nothing of it is believed, lowers it if its reading is. */
 static void judged_flow(EerufHoppingRing *hopping, uint8_t sensor, const EerufReading *reading, int32_t change_us) {
     EerufFlowPlan *flow = &hopping->by.flow;
     EerufHopper *hopper = &hopping->hoppers[sensor];
-    const uint16_t change = change_of(reading, change_us);
+    const uint16_t change = narrow(change_us < 0 ? 0u - (uint32_t)change_us : (uint32_t)change_us);
     const EerufTrack *believed;
     uint8_t before = 0, after = 0;
     if (change > flow->fastest_us) flow->fastest_us = change;

@@ -550,8 +550,7 @@ typedef struct EerufTrackerSettings {
     uint8_t score_limit; /* votes to 15 */
     uint8_t contradiction, solo_contradiction; /* 1 to 15 */
     uint8_t tentative_votes; /* 0 or 2 to 15 */
-    uint8_t memory;      /* for this many firings without support a confirmed echo is remembered, 12 times as many while
-                            odometry moves; 0: it is forgotten */
+    uint8_t memory;      /* for this many firings without support a confirmed echo is remembered; 0: it is forgotten */
 } EerufTrackerSettings;
 
 /* Settings of a hopping ring's firing, listening and belief. */

@@ -35,7 +35,7 @@ pub struct FlowPlan<const K: usize, U = ()> {
     pub(super) code: HoppingCode,
     /// Length of the present cycle, in units of the grid.
     pub(super) length: u32,
-    /// The largest change of an echo in this cycle, by [`change_of`], in microseconds; stops at 65,535.
+    /// The largest change by odometry in this cycle, in microseconds; stops at 65,535.
     pub(super) fastest: u16,
     tolerated: u16,
     /// Least time between two firings of a sensor: while it listens, and rests.
@@ -408,7 +408,8 @@ impl<const K: usize, U: OwnLimits> FlowPlan<K, U> {
     /// Raises a sensor's quiet if others fooled it or nothing of it is believed, lowers it if its reading is.
     fn learn(&mut self, heard: &Heard<'_>, verdict: &Verdict, judge: &impl Judge) {
         let sensor = heard.sensor;
-        self.fastest = self.fastest.max(change_of(heard, verdict));
+        let change = u16::try_from(heard.firing.expected_change_us.unsigned_abs()).unwrap_or(u16::MAX);
+        self.fastest = self.fastest.max(change);
         let pace = self.pace;
         let Some(slot) = self.slots.get_mut(usize::from(sensor)) else { return };
         match verdict.kind {
@@ -452,27 +453,6 @@ impl<const K: usize, U: OwnLimits> FlowPlan<K, U> {
         Micros::new(u32::from(gap) * self.unit())
     }
 }
-
-/// The change that odometry foresaw of a sensor's echo, in microseconds, or a multiple of what it did not foresee: an
-/// echo of a robot that turns goes astray though odometry says that it hardly changes, and is lost if cycles are long.
-#[inline(always)]
-fn change_of(heard: &Heard<'_>, verdict: &Verdict) -> u16 {
-    let foreseen = heard.firing.expected_change_us.unsigned_abs();
-    let mut change = foreseen;
-    if foreseen != 0 && matches!(verdict.kind, ReadingKind::Accepted | ReadingKind::Tentative) {
-        if let (Some(t_echo), Some(previous)) = (verdict.t_echo, verdict.previous) {
-            // Below 2^28.
-            let astray = t_echo.abs_diff(previous).saturating_sub(NOISE).as_micros();
-            change = change.max(astray << ASTRAY_SHIFT);
-        }
-    }
-    u16::try_from(change).unwrap_or(u16::MAX)
-}
-
-/// Echoes of a robot that stands differ by about this from one firing to the next.
-const NOISE: Micros = Micros::new(15);
-/// Weight of a change that odometry did not foresee: 16.
-const ASTRAY_SHIFT: u32 = 4;
 
 /// Returns true if a number is a multiple of another, above 0. By subtraction: small processors take a hundred
 /// instructions to divide.

@@ -189,30 +189,6 @@ fn cycle_ends_in_time_for_standing_and_moving_robots() {
     assert!((93_600..=100_000).contains(&length), "{length}");
 }
 
-// Where echoes go astray from what odometry foresees, the next cycle is short as if they had changed by 16 times that.
-#[test]
-fn echoes_that_odometry_did_not_foresee_shorten_the_cycle() {
-    let kinds = [
-        (ReadingKind::Accepted, -10, 115, 1600),
-        (ReadingKind::Tentative, 10, 115, 1600),
-        (ReadingKind::Accepted, 2000, 115, 2000),
-        (ReadingKind::Accepted, -10, 14, 10),
-        // A robot that stands, and readings that nobody believes.
-        (ReadingKind::Accepted, 0, 115, 0),
-        (ReadingKind::Rejected, -10, 115, 10),
-    ];
-    for (kind, expected_change_us, astray, change) in kinds {
-        let (mut plan, judge) = (plan::<8>(8), judge());
-        let firing = Firing { expected_change_us, ..Firing::new(Phase(0)) };
-        let echoes = [Micros::new(20_000)];
-        let heard =
-            Heard { sensor: 3, fired: Instant::from_micros(0), echoes: &echoes, firing, t_delta: Micros::new(150) };
-        let previous = Some(Micros::new(20_000 + astray));
-        plan.judged(&heard, &Verdict { kind, previous, ..heard.unjudged(None) }, &judge);
-        assert_eq!(plan.fastest, change, "{kind:?} {expected_change_us} {astray}");
-    }
-}
-
 #[test]
 fn who_is_unserved_longest_gets_its_quiet_first() {
     let (mut plan, mut fired) = (plan::<12>(12), [Instant::from_micros(0); 12]);

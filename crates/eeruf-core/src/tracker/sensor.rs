@@ -157,7 +157,6 @@ impl<const H: usize> SensorTracks<H> {
         // Of a robot that moves, any two readings are those of some wall.
         let moving = change_us != 0;
         let tentative_votes = settings.tentative_votes.max(if moving { MOVING_VOTES } else { 0 });
-        let memory = settings.memory_of(moving);
         let mut tentative = false;
         if steady {
             let before = core::mem::replace(&mut confirmed, NOTHING);
@@ -168,7 +167,7 @@ impl<const H: usize> SensorTracks<H> {
                 }
                 let at = track.t_echo();
                 if place == nearest {
-                    track.support(t_echo, phase, solo, settings, memory);
+                    track.support(t_echo, phase, solo, settings);
                     let earlier = track.t_echo() < before.min(SILENCE);
                     let enough = solo || track.close_votes() >= tentative_votes;
                     tentative = earlier && reports_tentative && enough;
@@ -176,7 +175,7 @@ impl<const H: usize> SensorTracks<H> {
                     track.grow_older();
                     track.catch_up(t_echo);
                 } else if t_echo > at {
-                    track.contradict(phase, weights, settings, memory);
+                    track.contradict(phase, weights, settings);
                 } else {
                     track.mask(phase, settings);
                 }

@@ -3,9 +3,6 @@
 use crate::ring::RingError;
 use crate::time::Micros;
 
-/// While odometry moves, confirmed echoes are remembered for this many times as long.
-const MOVING_MEMORY: u8 = 12;
-
 /// Settings by which an [`EchoTracker`](super::EchoTracker) weighs readings. Begin with one of
 /// [`BALANCED`](Self::BALANCED), [`QUICK`](Self::QUICK) and [`MAPS`](Self::MAPS).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,8 +30,7 @@ pub struct TrackerSettings {
     /// Tolerance of their agreement. At most `t_delta`.
     pub tentative_within: Micros,
     /// A confirmed echo that is contradicted or masked is remembered for this many firings without support, and
-    /// confirmed again by a single reading; twelve times as many while odometry moves, since what comes and goes then
-    /// is mostly real. 0: it is forgotten.
+    /// confirmed again by a single reading. 0: it is forgotten.
     pub memory: u8,
 }
 
@@ -142,12 +138,6 @@ impl TrackerSettings {
 }
 
 impl TrackerSettings {
-    /// The [`memory`](Self::memory) of a robot that moves or stands.
-    #[inline(always)]
-    pub(super) const fn memory_of(&self, moving: bool) -> u8 {
-        if moving { self.memory.saturating_mul(MOVING_MEMORY) } else { self.memory }
-    }
-
     /// Scores that a contradiction takes from a track that is not confirmed, and from one that is.
     #[inline(always)]
     pub(super) const fn contradictions(&self, solo: bool) -> (u8, u8) {

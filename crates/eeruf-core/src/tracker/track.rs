@@ -113,8 +113,8 @@ impl Track {
         }
     }
 
-    /// A reading within `t_delta` of it. `memory`: for how many firings it may have been remembered.
-    pub(super) fn support(&mut self, t_echo: u32, bit: u16, solo: bool, settings: &TrackerSettings, memory: u8) {
+    /// A reading within `t_delta` of it.
+    pub(super) fn support(&mut self, t_echo: u32, bit: u16, solo: bool, settings: &TrackerSettings) {
         let new = self.phases & bit == 0;
         let is_close = self.distance(t_echo) <= settings.tentative_within.as_micros();
         if new && is_close && self.close_and_flags < MOST_CLOSE {
@@ -129,7 +129,7 @@ impl Track {
         if new || solo || self.is_confirmed() {
             score = (score + 1 + u8::from(solo)).min(settings.score_limit);
         }
-        let recalled = self.close_and_flags & REMEMBERED != 0 && self.age() <= memory;
+        let recalled = self.close_and_flags & REMEMBERED != 0 && self.age() <= settings.memory;
         if recalled {
             self.close_and_flags |= CONFIRMED;
             score = score.max(REGAINED);
@@ -159,12 +159,12 @@ impl Track {
 
     /// A later reading, or silence: its echo would have come first. It weighs the one if the track is not confirmed,
     /// the other if it is.
-    pub(super) fn contradict(&mut self, bit: u16, weights: (u8, u8), settings: &TrackerSettings, memory: u8) {
+    pub(super) fn contradict(&mut self, bit: u16, weights: (u8, u8), settings: &TrackerSettings) {
         let weight = if self.is_confirmed() { weights.1 } else { weights.0 };
         let score = (self.score_and_solo & SCORE).saturating_sub(weight);
         if score == 0 {
             // Were it confirmed still, it would keep its place from all that come.
-            self.lose(memory);
+            self.lose(settings);
             return;
         }
         // Without its votes of solo periods.
@@ -175,8 +175,8 @@ impl Track {
     }
 
     /// Nothing speaks for it any more: it is gone, or remembered if it was confirmed.
-    fn lose(&mut self, memory: u8) {
-        if self.close_and_flags & (CONFIRMED | REMEMBERED) != 0 && self.age() < memory {
+    fn lose(&mut self, settings: &TrackerSettings) {
+        if self.close_and_flags & (CONFIRMED | REMEMBERED) != 0 && self.age() < settings.memory {
             self.grow_older();
             self.phases = 0;
             self.score_and_solo = 1;

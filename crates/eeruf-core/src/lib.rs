@@ -68,6 +68,7 @@ mod reading;
 mod requirements;
 mod requirements_error;
 mod ring;
+mod ring_error;
 mod schedule;
 #[cfg(feature = "search")]
 pub mod search;
@@ -91,7 +92,8 @@ pub use layout::Layout;
 pub use own_limits::{EachSensor, SensorLimits};
 pub use reading::{ReadingKind, Tally};
 pub use requirements::{Criterion, Requirements};
-pub use ring::{PeriodStats, Reading, Ring, RingConfig, RingError, RingEvent, ScheduledRing};
+pub use ring::{PeriodStats, Reading, Ring, RingConfig, RingEvent, ScheduledRing};
+pub use ring_error::RingError;
 pub use schedule::{MAX_PERIOD, MAX_PHASES, MAX_SENSORS, Phase, Schedule, ScheduleError};
 pub use sensor_error::SensorError;
 pub use sound::SpeedOfSound;

@@ -1,7 +1,7 @@
 //! [`Tolerance`]: when two readings are near-identical (Eq. 11), and how many consecutive ones must be.
 
 use super::echoes::NO_ECHO;
-use crate::ring::RingError;
+use crate::ring_error::RingError;
 use crate::time::Micros;
 
 /// The tolerance of Eq. (11), and the number of consecutive readings that confirm an echo.

@@ -22,7 +22,7 @@ mod tracker;
 
 use crate::judging::{Heard, Judge, Sounds};
 use crate::reading::{ReadingKind, Verdict};
-use crate::ring::RingError;
+use crate::ring_error::RingError;
 use crate::sensor_error::SensorError;
 use crate::time::Micros;
 

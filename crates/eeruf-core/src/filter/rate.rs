@@ -2,7 +2,7 @@
 
 use crate::judging::{Heard, Judge, NoSounds, Sounds};
 use crate::reading::{Explanation, ReadingKind, Verdict};
-use crate::ring::RingError;
+use crate::ring_error::RingError;
 use crate::sensor_error::SensorError;
 use crate::time::{Instant, Micros};
 

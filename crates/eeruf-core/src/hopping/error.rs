@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use crate::ring::RingError;
+use crate::ring_error::RingError;
 use crate::time::Micros;
 
 /// Why a ring cannot hop as asked.

@@ -2,11 +2,12 @@
 
 use super::history::is_just_ahead;
 use super::listening::Listening;
-use super::{NOBODY, Ring, RingError};
+use super::{NOBODY, Ring};
 use crate::filter::EchoFilter;
 use crate::judging::Judge;
 use crate::own_limits::OwnLimits;
 use crate::plan::{Plan, ScheduledFiring};
+use crate::ring_error::RingError;
 use crate::schedule::Schedule;
 use crate::sensor_error::SensorError;
 use crate::time::{Instant, Micros};

@@ -1,8 +1,8 @@
 //! [`RingConfig`]: how a ring listens and compares.
 
-use super::RingError;
 use crate::filter::{Consecutive, Tolerance};
 use crate::plan::Plan;
+use crate::ring_error::RingError;
 use crate::time::Micros;
 
 /// Settings by which a [`Ring`](super::Ring) listens and compares; `E` is the number of echoes that a sensor reports of

@@ -14,8 +14,6 @@
 
 use crate::time::{Instant, Micros};
 
-/// The longest that sound can be said to be audible, about a minute.
-pub(super) const MAX_AUDIBLE: Micros = Micros::new(1 << 26);
 /// Longer ago than any sound is audible: about 18 minutes.
 const LONG_AGO: Micros = Micros::new(1 << 30);
 /// The largest step back of a clock that is not taken for a wrap: about one second.

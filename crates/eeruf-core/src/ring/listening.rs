@@ -1,10 +1,9 @@
 //! [`Listening`]: the listening times and tolerances of a ring; checked, also while it runs.
 
 use super::config::RingConfig;
-use super::error::RingError;
-use super::history::MAX_AUDIBLE;
 use super::sensor::UNANSWERED;
 use crate::plan::{Limits, Plan};
+use crate::ring_error::{MAX_AUDIBLE, RingError};
 use crate::time::Micros;
 
 /// Window, `t_delta` and blanking time, none of them more than the plan allows, and what sound may do.

@@ -5,7 +5,6 @@
 
 mod changes;
 mod config;
-mod error;
 mod events;
 mod fired;
 mod history;
@@ -19,6 +18,7 @@ use crate::judging::{Agreement, Judge};
 use crate::own_limits::OwnLimits;
 use crate::plan::{ImmediateRefiring, Plan, ScheduledFiring, Upcoming};
 use crate::reading::{ReadingKind, Tally};
+use crate::ring_error::RingError;
 use crate::schedule::{MAX_SENSORS, Schedule};
 use crate::sensor_error::SensorError;
 use crate::time::{Instant, Micros};
@@ -30,7 +30,6 @@ use punctuality::Punctuality;
 use sensor::{LISTENING, Noted, STUCK, Sensor, UNANSWERED};
 
 pub use config::RingConfig;
-pub use error::RingError;
 pub use events::{PeriodStats, Reading, RingEvent};
 
 /// A ring of up to `K` sensors: the [`Plan`] `P` decides when each fires, and the [`Judge`] `J` what each reading is

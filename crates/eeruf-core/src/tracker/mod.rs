@@ -17,7 +17,7 @@ mod track;
 
 use crate::judging::{self, Firing, Judge, Sounds};
 use crate::reading::{ReadingKind, Verdict};
-use crate::ring::RingError;
+use crate::ring_error::RingError;
 use crate::sensor_error::SensorError;
 use crate::time::Micros;
 

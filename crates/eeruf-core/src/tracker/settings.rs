@@ -1,6 +1,6 @@
 //! [`TrackerSettings`]: how much must agree before an echo is believed, in three named sets.
 
-use crate::ring::RingError;
+use crate::ring_error::RingError;
 use crate::time::Micros;
 
 /// Settings by which an [`EchoTracker`](super::EchoTracker) weighs readings. Begin with one of

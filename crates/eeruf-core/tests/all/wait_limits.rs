@@ -66,7 +66,7 @@ fn a_walk_goes_on_after_its_budget_was_spent() {
     assert_eq!(search.next_table(before.as_ref(), &mut Budget::unlimited()), Ok(Outcome::Exhausted));
 }
 
-// What is no table of the problem is followed by the first table that is greater.
+// After waits that are no table of the problem comes the first table that is greater.
 #[test]
 fn walk_goes_on_from_what_is_no_table() {
     let wide = search(&Problem { separation: 1, interval: 1, wait_max: 8, ..THREE }).unwrap();

@@ -2,14 +2,15 @@
 
 use core::fmt;
 
-use super::history::MAX_AUDIBLE;
 use crate::schedule::MAX_SENSORS;
 use crate::time::Micros;
 
 /// The longest `t_delta` and blanking time, which a ring keeps in two bytes each.
-pub(super) const LONGEST: Micros = Micros::new(u16::MAX as u32);
+pub(crate) const LONGEST: Micros = Micros::new(u16::MAX as u32);
+/// The longest that sound can be said to be audible, about a minute.
+pub(crate) const MAX_AUDIBLE: Micros = Micros::new(1 << 26);
 
-/// Why a [`Ring`](super::Ring), or a judge, cannot be set up as asked.
+/// Why a [`Ring`](crate::Ring), or a judge, cannot be set up as asked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]

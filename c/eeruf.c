@@ -2012,6 +2012,7 @@ static uint16_t fewer16(uint16_t one, uint16_t other) {
 #define MOST_SURPLUS 80     /* two readings that show more are not of one echo */
 #define UNKNOWN INT8_MIN    /* readings that show no surplus */
 #define MOVING_VOTES 3u     /* for a tentative echo while odometry moves: any two readings are those of some wall */
+#define MOVING_MEMORY 3u    /* and confirmed echoes are remembered for three times as long */
 #define DRAWS 8u            /* lags that are drawn in search of one that keeps the neighbours' interval */
 
 /* -- The tracker: which echo of a sensor is its own. A reading within t_delta of a track supports it, and only support
@@ -2227,8 +2228,15 @@ static void learn(EerufHopper *hopper, uint32_t t_echo_us, int32_t change_us, ui
     hopper->surplus = (int8_t)(known > WHOLE ? WHOLE : known < -WHOLE ? -WHOLE : known);
 }
 
+/* The settings of a robot that moves or stands. */
+static EerufTrackerSettings while_moving(EerufTrackerSettings settings, bool moving) {
+    const unsigned memory = settings.memory * (moving ? MOVING_MEMORY : 1u);
+    settings.memory = (uint8_t)(memory > UINT8_MAX ? UINT8_MAX : memory);
+    return settings;
+}
+
 static void weigh(EerufHoppingRing *hopping, uint8_t sensor, bool steady, int32_t change_us, EerufReading *reading) {
-    const EerufTrackerSettings *how = &hopping->tracker;
+    const EerufTrackerSettings settings = while_moving(hopping->tracker, change_us != 0), *how = &settings;
     EerufHopper *hopper = &hopping->hoppers[sensor];
     const bool solo = (hopper->flags & SOLO) != 0;
     const uint32_t t_echo_us = reading->t_echo_us;

@@ -550,7 +550,8 @@ typedef struct EerufTrackerSettings {
     uint8_t score_limit; /* votes to 15 */
     uint8_t contradiction, solo_contradiction; /* 1 to 15 */
     uint8_t tentative_votes; /* 0 or 2 to 15 */
-    uint8_t memory;      /* for this many firings without support a confirmed echo is remembered; 0: it is forgotten */
+    uint8_t memory;      /* for this many firings without support a confirmed echo is remembered, 3 times as many while
+                            odometry moves; 0: it is forgotten */
 } EerufTrackerSettings;
 
 /* Settings of a hopping ring's firing, listening and belief. */
@@ -699,7 +700,7 @@ typedef struct EerufFlowConfig {
 
 /* For every robot. */
 #define EERUF_FLOW(sensors, window_us)                                                                                 \
-    {EERUF_VERSION, sensors, 3, 240, window_us, 0, window_us, 7500, 4000, 1500, 6000, 60000, 0, 0, 400000, 380,        \
+    {EERUF_VERSION, sensors, 3, 240, window_us, 0, window_us, 7500, 4000, 1500, 6000, 60000, 0, 0, 400000, 260,        \
      {150, 400, 60, 5, 6, 2, 6, 2, 5}, NULL}
 
 /* Makes a flow ring that begins at `now_us`; all else is as with a hopping ring. No sensor fires alone in a cycle. */

@@ -31,6 +31,7 @@ _HYPOTHESES = 4
 _LEAST_CHANGE_US, _MOST_CHANGE_US = 40, 32767  # an expected change outside says nothing of how much of it there is
 _WHOLE, _MOST_SURPLUS = 64, 80  # as much more as is expected; more is not of one echo
 _MOVING_VOTES = 3  # for a tentative echo while odometry moves: any two readings are those of some wall
+_MOVING_MEMORY = 3  # and confirmed echoes are remembered for three times as long
 _REGAINED = 2  # the least score of a track that is confirmed again
 # Places in a track, a hypothesis about a sensor's echo, and its flags.
 _AT, _PHASES, _SCORE, _CLOSE, _FLAGS, _AGE = range(6)
@@ -91,7 +92,7 @@ class Flow:
     def __init__(
         self, sensors, window_us, blanking_us=0, reach_us=None, step_us=240, shortest_gap_us=7500, masked_adds_us=4000,
         believed_takes_us=1500, unserved_adds_us=6000, unserved_after=3, shortest_cycle_us=60000, rest_us=0, lead_us=0,
-        longest_cycle_us=400000, travel_us=380, t_delta_us=150, near_us=400, tentative_within_us=60, votes=5,
+        longest_cycle_us=400000, travel_us=260, t_delta_us=150, near_us=400, tentative_within_us=60, votes=5,
         score_limit=6, contradiction=2, tentative_votes=2, memory=5,
     ):  # fmt: skip
         for name, value, least, most in (
@@ -233,7 +234,7 @@ def _miss(track, phase, how):
             track[_FLAGS] |= _REMEMBERED
 
 
-def _support(track, at_us, phase, how):
+def _support(track, at_us, phase, how, memory):
     is_new = not track[_PHASES] & phase
     way_us = at_us - track[_AT]
     if is_new and abs(way_us) <= how.tentative_within_us and track[_CLOSE] < 255:
@@ -242,7 +243,7 @@ def _support(track, at_us, phase, how):
     # A path repeats itself in its own phase for ever, so that says nothing new of a track yet to be confirmed.
     if is_new or track[_FLAGS] & _CONFIRMED:
         track[_SCORE] = min(track[_SCORE] + 1, how.score_limit)
-    if track[_FLAGS] & _REMEMBERED and track[_AGE] <= how.memory:
+    if track[_FLAGS] & _REMEMBERED and track[_AGE] <= memory:
         track[_FLAGS] |= _CONFIRMED
         track[_SCORE] = max(track[_SCORE], _REGAINED)
     track[_FLAGS] &= ~_REMEMBERED
@@ -254,7 +255,7 @@ def _support(track, at_us, phase, how):
         track[_FLAGS] |= _CONFIRMED
 
 
-def _contradict(track, phase, how):
+def _contradict(track, phase, how, memory):
     """A later reading, or silence: its echo would have come first."""
     weight = how.contradiction if track[_FLAGS] & _CONFIRMED else 1
     if track[_SCORE] > weight:
@@ -262,7 +263,7 @@ def _contradict(track, phase, how):
         track[_FLAGS] |= _CONTRADICTED
         _grow_older(track)
         _miss(track, phase, how)
-    elif track[_FLAGS] & (_CONFIRMED | _REMEMBERED) and track[_AGE] < how.memory:
+    elif track[_FLAGS] & (_CONFIRMED | _REMEMBERED) and track[_AGE] < memory:
         _grow_older(track)
         track[_PHASES], track[_SCORE], track[_CLOSE], track[_FLAGS] = 0, 1, 0, _CONTRADICTED | _REMEMBERED
     else:
@@ -517,6 +518,7 @@ class FlowRing(Ring):
         votes = how.tentative_votes
         if votes and change_us:
             votes = max(votes, _MOVING_VOTES)
+        memory = min(_MOVING_MEMORY * how.memory, 255) if change_us else how.memory
         nearest, within_us = None, self.t_delta_us + 1
         for track in sensor.tracks:
             if track[_SCORE] and abs(track[_AT] - at_us) < within_us:
@@ -530,7 +532,7 @@ class FlowRing(Ring):
                 if not track[_SCORE]:
                     continue
                 if track is nearest:
-                    _support(track, at_us, phase, how)
+                    _support(track, at_us, phase, how, memory)
                     close = 0 if track[_FLAGS] & _CONTRADICTED else track[_CLOSE]
                     earlier = (held_us is None or track[_AT] < held_us) and track[_AT] != _SILENCE
                     tentative = earlier and votes > 0 and close >= votes
@@ -539,7 +541,7 @@ class FlowRing(Ring):
                     _grow_older(track)
                     track[_AT] += _share(3 * (at_us - held_us), 10)
                 elif at_us > track[_AT]:
-                    _contradict(track, phase, how)
+                    _contradict(track, phase, how, memory)
                 else:
                     _grow_older(track)
                     if track[_FLAGS] & _CONFIRMED:

@@ -19,7 +19,7 @@ fn settings(r: &Random) -> FlowSettings {
             *time = Micros::new(r.one_of(&[r.duration(100_000), r.within(0, 20_000)]));
         }
         settings.believed_takes = Micros::new(r.duration(20_000));
-        settings.travel = Micros::new(r.one_of(&[0, 380, r.duration(100_000)]));
+        settings.travel = Micros::new(r.one_of(&[0, 260, r.duration(100_000)]));
     }
     if r.once_in(2) {
         settings.step = Micros::new(r.one_of(&[240, r.duration(900), r.duration(70_000)]));

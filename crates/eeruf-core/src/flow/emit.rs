@@ -259,7 +259,7 @@ mod tests {
         let text = FlowSettings::DEFAULT.to_c(12, LISTENING, &ALIKE).to_string();
         assert!(text.contains("#define EERUF_SENSORS 12\n#define EERUF_WINDOW_US 37000u\n"), "{text}");
         let constant = "= {\n    3, 12, 3, 240u, 37000u, 300u, 37000u,\n    \
-                        7500u, 4000u, 1500u, 6000u, 60000u, 0u, 0u, 400000u, 380u,\n    \
+                        7500u, 4000u, 1500u, 6000u, 60000u, 0u, 0u, 400000u, 260u,\n    \
                         {150, 400, 60, 5, 6, 2, 6, 2, 5},\n    0,\n};\n";
         assert!(text.contains(&std::format!("EerufFlowConfig eeruf_flow_config {constant}")), "{text}");
         let text = FlowSettings::DEFAULT.to_arduino(12, LISTENING, &ALIKE, "RING").to_string();

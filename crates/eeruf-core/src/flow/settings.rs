@@ -55,7 +55,7 @@ impl FlowSettings {
         rest: Micros::ZERO,
         lead: Micros::ZERO,
         longest_cycle: Micros::from_millis(400),
-        travel: Micros::new(380),
+        travel: Micros::new(260),
     };
 }
 

@@ -154,8 +154,9 @@ impl<const H: usize> SensorTracks<H> {
         let is_near = confirmed.abs_diff(t_echo) <= near;
         let previous = self.tracks.get(nearest).map_or(confirmed, Track::t_echo);
         let reports_tentative = settings.tentative_votes != 0;
-        // Of a robot that moves, any two readings are those of some wall.
         let moving = change_us != 0;
+        let settings = &settings.while_moving(moving);
+        // Of a robot that moves, any two readings are those of some wall.
         let tentative_votes = settings.tentative_votes.max(if moving { MOVING_VOTES } else { 0 });
         let mut tentative = false;
         if steady {

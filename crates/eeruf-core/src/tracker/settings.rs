@@ -3,6 +3,9 @@
 use crate::ring_error::RingError;
 use crate::time::Micros;
 
+/// While odometry moves, confirmed echoes are remembered for this many times as long.
+const MOVING_MEMORY: u8 = 3;
+
 /// Settings by which an [`EchoTracker`](super::EchoTracker) weighs readings. Begin with one of
 /// [`BALANCED`](Self::BALANCED), [`QUICK`](Self::QUICK) and [`MAPS`](Self::MAPS).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,7 +33,8 @@ pub struct TrackerSettings {
     /// Tolerance of their agreement. At most `t_delta`.
     pub tentative_within: Micros,
     /// A confirmed echo that is contradicted or masked is remembered for this many firings without support, and
-    /// confirmed again by a single reading. 0: it is forgotten.
+    /// confirmed again by a single reading; three times as many while odometry moves, since echoes of a robot that turns
+    /// come and go. 0: it is forgotten.
     pub memory: u8,
 }
 
@@ -138,6 +142,13 @@ impl TrackerSettings {
 }
 
 impl TrackerSettings {
+    /// These settings of a robot that moves or stands.
+    #[inline(always)]
+    pub(super) const fn while_moving(self, moving: bool) -> Self {
+        let memory = if moving { self.memory.saturating_mul(MOVING_MEMORY) } else { self.memory };
+        Self { memory, ..self }
+    }
+
     /// Scores that a contradiction takes from a track that is not confirmed, and from one that is.
     #[inline(always)]
     pub(super) const fn contradictions(&self, solo: bool) -> (u8, u8) {

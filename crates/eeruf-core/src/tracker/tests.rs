@@ -252,3 +252,25 @@ fn reading_in_place_of_confirmed_silence_is_not_clear() {
     tracker.push(0, Some(Micros::new(9_000)), Firing::new(Phase(5))).unwrap();
     assert!(!tracker.is_clear(0));
 }
+
+// Confirmed, lost to silence, and back after a time: one reading confirms it again as long as it is remembered.
+#[test]
+fn confirmed_echo_is_remembered_for_longer_while_robot_moves() {
+    let returns_after = |silent: u8, expected_change_us| {
+        let mut tracker = EchoTracker::<1>::new(TrackerSettings::BALANCED.with_memory(5)).unwrap();
+        kinds(&mut tracker, [us(9000); 5]);
+        let mut push = |phase: u8, echo| {
+            let firing = Firing { expected_change_us, ..Firing::new(Phase(phase % PHASES)) };
+            tracker.push(0, echo, firing).unwrap().kind
+        };
+        // Less than a surplus could be told from.
+        for phase in 5..5 + silent {
+            push(phase, None);
+        }
+        push(5 + silent, us(9000)) == ReadingKind::Accepted
+    };
+    for (change, longest) in [(0, 5), (1, 15)] {
+        let remembered: Vec<u8> = (3..80).filter(|&silent| returns_after(silent, change)).collect();
+        assert_eq!(remembered, (3..=longest).collect::<Vec<u8>>(), "{change}");
+    }
+}

@@ -151,7 +151,9 @@ impl Naive {
 
     /// The kind of a reading, and the echo time that it is compared with.
     fn push(&mut self, place: Place, firing: Firing) -> (ReadingKind, Place) {
-        let settings = self.settings;
+        // A robot that moves remembers for three times as long.
+        let times = if firing.expected_change_us == 0 { 1 } else { 3 };
+        let settings = self.settings.with_memory(self.settings.memory.saturating_mul(times));
         let (phase, solo) = (firing.phase.0 % 16, firing.solo);
         let last = core::mem::replace(&mut self.last, place);
         let expected = i64::from(firing.expected_change_us);

@@ -25,6 +25,6 @@ pub(super) const OWN: [(Method, Piloting); 14] = [
     (Method::EerufBest, tuned(4, 0.047, 16, 0.7, 250.0, 2.7, 1.9, true)), // 70, 69, 69
     (Method::Adaptive, tuned(1, 0.011, 15, 0.12, 320.0, 1.9, 3.2, true)), // 69, 62, 49
     (Method::EerufHopping, tuned(3, 0.013, 23, 0.23, 390.0, 2.8, 1.5, false)), // 72, 72, 69
-    (Method::Flow, tuned(4, 0.015, 19, 0.25, 100.0, 2.6, 1.45, true)), // 70, 70, 63
+    (Method::Flow, tuned(4, 0.015, 19, 0.25, 100.0, 2.6, 1.45, true)), // 72, 71, 70
     (Method::MultiEcho, tuned(2, 0.1, 21, 0.37, 270.0, 4.7, 1.3, true)), // 72, 72, 72
 ];

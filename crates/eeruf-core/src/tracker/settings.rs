@@ -33,8 +33,8 @@ pub struct TrackerSettings {
     /// Tolerance of their agreement. At most `t_delta`.
     pub tentative_within: Micros,
     /// A confirmed echo that is contradicted or masked is remembered for this many firings without support, and
-    /// confirmed again by a single reading; three times as many while odometry moves, since echoes of a robot that turns
-    /// come and go. 0: it is forgotten.
+    /// confirmed again by a single reading; three times as many while odometry moves, since echoes of a robot that
+    /// turns come and go. 0: it is forgotten.
     pub memory: u8,
 }
 

@@ -93,11 +93,11 @@ pub(crate) fn range(text: &str, decimal_comma: bool) -> Option<(Value, Option<Ra
     if is_no_echo(text) {
         return Some((Value::NoEcho, None));
     }
-    // A phrase before a unit, as formatted output has it: `nan cm`.
-    if let Some((word, own)) = text.rsplit_once(' ').filter(|(word, _)| is_no_echo(word))
-        && let Some(own) = unit(own)
-    {
-        return Some((Value::NoEcho, (!word.is_empty()).then_some(own)));
+    // A word before a unit, as formatted output has it: `nan cm`, `infm`.
+    let glued = text.get(..3).filter(|word| ["inf", "nan"].contains(word)).map(|word| (word, &text[3..]));
+    let spaced = text.rsplit_once(' ').filter(|(word, _)| !word.is_empty() && is_no_echo(word));
+    if let Some(own) = spaced.or(glued).and_then(|(_, own)| unit(own)) {
+        return Some((Value::NoEcho, Some(own)));
     }
     // Beyond what the sensor measures: `>400 cm`, `<2`.
     for (sign, value) in [('>', Value::NoEcho), ('<', Value::TooClose)] {

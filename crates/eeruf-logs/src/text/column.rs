@@ -125,11 +125,12 @@ impl Column {
         self.texts > 0 && self.distinct.keys().all(is_name) && (self.distinct.len() < rows || rows < 3)
     }
 
-    /// Returns true for bytes in hexadecimal digits.
-    pub(super) fn is_bytes(&self) -> bool {
+    /// For two hexadecimal digits in each cell, as tools for buses print bytes: true if some are no plain number.
+    pub(super) fn bytes(&self) -> Option<bool> {
         let is_byte = |text: &String| text.len() == 2 && text.bytes().all(|byte| byte.is_ascii_hexdigit());
-        let has_other = |text: &String| text.starts_with('0') || text.bytes().any(|byte| byte.is_ascii_alphabetic());
-        !self.distinct.is_empty() && self.distinct.keys().all(is_byte) && self.distinct.keys().any(has_other)
+        let is_odd = |text: &String| text.starts_with('0') || text.bytes().any(|byte| byte.is_ascii_alphabetic());
+        let is_all = !self.distinct.is_empty() && self.distinct.keys().all(is_byte);
+        is_all.then(|| self.distinct.keys().any(is_odd))
     }
 
     /// Returns true if numbers of the column have a unit, so that one without it is cut.

@@ -9,7 +9,7 @@ use eeruf_files::FileError;
 
 use super::column::{Column, Role};
 use super::lines::Line;
-use super::shape::{self, Separator, Shape};
+use super::shape::{self, Separator, Shape, is_rule, is_underline};
 use crate::names::{self, Meaning};
 use crate::value;
 
@@ -46,6 +46,8 @@ pub(super) struct Plan {
     pub(super) is_first_cut: bool,
     /// The column that says the unit of its row's range.
     pub(super) unit: Option<usize>,
+    /// The column that says by what a row's sensor measures, and the number of ultrasound.
+    pub(super) medium: Option<(usize, f64)>,
     /// Lines before the header, which a reset repeats.
     pub(super) greetings: BTreeSet<String>,
     /// Lines of dashes part rows or messages; else they are words for no echo.
@@ -80,19 +82,6 @@ struct Stripped<'a> {
     lines: Vec<(u64, &'a str)>,
     has_prefix: bool,
     has_rules: bool,
-}
-
-/// Returns true for a line of dashes, or of another sign, between rows or messages.
-pub(super) fn is_rule(text: &str) -> bool {
-    let text = text.trim();
-    text.len() >= 3
-        && ["-", "=", "*", "_"].iter().any(|sign| text.trim_matches(['|', '+']).replace(sign, "").is_empty())
-}
-
-/// Returns true for the line between a header and its rows, as `sqlite3`, `psql` and Markdown draw it.
-fn is_underline(cells: &[String]) -> bool {
-    let is_part = |cell: &String| cell.trim_matches([':', '+', '-', '=']).is_empty();
-    cells.iter().all(is_part) && cells.iter().any(|cell| cell.contains("--") || cell.contains("=="))
 }
 
 fn strip(sample: &[Line]) -> Stripped<'_> {
@@ -141,6 +130,7 @@ pub(super) fn recognise(
         one_a_row: false,
         is_first_cut: false,
         unit: None,
+        medium: None,
         greetings: BTreeSet::new(),
         has_rules,
         usual_names: None,
@@ -470,6 +460,11 @@ impl Plan {
                 && column.distinct.keys().all(|text| value::unit(text).is_some())
         };
         self.unit = self.columns.iter().position(unit_of_row);
+        // Of `sensor_msgs/Range`, and of MAVLink's and PX4's messages.
+        let ends = |end: &str| self.columns.iter().position(|column| column.name.ends_with(end));
+        let of_mavlink = ends("current_distance").and_then(|_| ends("type"));
+        self.medium = ends("radiation_type").map(|at| (at, 0.0)).or(of_mavlink.map(|at| (at, 1.0)));
+        self.medium = self.medium.filter(|_| table.ranges.is_empty());
         for index in 0..self.columns.len() {
             let column = &self.columns[index];
             let is_place = column.name.is_empty() || column.name.starts_with("Unnamed") || !has_header;
@@ -508,8 +503,9 @@ impl Plan {
             column.role = role;
         }
         // Bytes, as tools for buses print them, are no table.
-        let bytes = self.columns.iter().filter(|column| column.is_bytes()).count();
-        if !has_header && ranges.is_empty() && bytes >= 4 {
+        let bytes: Vec<_> = self.columns.iter().filter_map(Column::bytes).collect();
+        let odd = bytes.iter().filter(|&&is_odd| is_odd).count();
+        if !has_header && ranges.is_empty() && bytes.len() >= 4 && odd >= 2 {
             self.columns.iter_mut().for_each(|column| column.role = Role::Other);
         }
         // Home Assistant's name for a measured value.

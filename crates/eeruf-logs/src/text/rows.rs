@@ -9,8 +9,8 @@ use crate::sink::{Sink, Skipped};
 
 use super::column::{Column, Role};
 use super::lines::Line;
-use super::recognise::{MOST_SENSORS, Plan, is_comment, is_rule};
-use super::shape::{self, Shape};
+use super::recognise::{MOST_SENSORS, Plan, is_comment};
+use super::shape::{self, Shape, is_rule};
 use crate::value::{self, Value};
 
 pub(super) struct Rows<'a, 's, 'e> {
@@ -25,6 +25,8 @@ pub(super) struct Rows<'a, 's, 'e> {
     once: BTreeSet<String>,
     is_first: bool,
     others: u64,
+    /// Rows of sensors that do not measure by sound.
+    of_light: u64,
     unknown: BTreeSet<String>,
     /// Midnights since the log began.
     midnights: u64,
@@ -58,6 +60,7 @@ impl<'a, 's, 'e> Rows<'a, 's, 'e> {
             by_label: HashMap::new(),
             once: BTreeSet::new(),
             others: 0,
+            of_light: 0,
             unknown: BTreeSet::new(),
             midnights: 0,
             latest_ns: 0,
@@ -232,6 +235,12 @@ impl<'a, 's, 'e> Rows<'a, 's, 'e> {
             Some(index) => Some(text(index).filter(|label| !label.is_empty()).ok_or(Unread::Other)?.to_owned()),
             None => None,
         };
+        if let Some((index, ultrasound)) = self.plan.medium
+            && text(index).and_then(|own| value::number(own, false)).is_some_and(|number| number != ultrasound)
+        {
+            self.of_light += 1;
+            return Err(Unread::Other);
+        }
         let unit = match self.plan.unit.and_then(text) {
             Some(own) => Some(value::unit(own).ok_or_else(|| {
                 Unread::Damaged(format!("the unit `{}`; expected one as in the rows before", short(own)))
@@ -373,8 +382,13 @@ impl<'a, 's, 'e> Rows<'a, 's, 'e> {
     /// Tells what was left out.
     pub(super) fn end(self) {
         let skipped = &mut self.sink.report.skipped;
-        if self.others > 0 {
-            let why = format!("{} lines without readings", self.others);
+        if self.of_light > 0 {
+            let column = self.plan.medium.map_or("", |(index, _)| &self.plan.columns[index].name);
+            let (topic, why) = (column.to_owned(), "no ultrasound, by this column; --range reads them".to_owned());
+            skipped.push(Skipped { topic, why, messages: self.of_light });
+        }
+        if self.others > self.of_light {
+            let why = format!("{} lines without readings", self.others - self.of_light);
             skipped.push(Skipped { topic: "the text".to_owned(), why, messages: 0 });
         }
         if !self.unknown.is_empty() {

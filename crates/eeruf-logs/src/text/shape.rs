@@ -49,6 +49,19 @@ impl Separator {
     }
 }
 
+/// Returns true for a line of dashes, or of another sign, between rows or messages.
+pub(super) fn is_rule(text: &str) -> bool {
+    let text = text.trim();
+    text.len() >= 3
+        && ["-", "=", "*", "_"].iter().any(|sign| text.trim_matches(['|', '+']).replace(sign, "").is_empty())
+}
+
+/// Returns true for the line between a header and its rows, as `sqlite3`, `psql` and Markdown draw it.
+pub(super) fn is_underline(cells: &[String]) -> bool {
+    let is_part = |cell: &String| cell.trim_matches([':', '+', '-', '=']).is_empty();
+    cells.iter().all(is_part) && cells.iter().any(|cell| cell.contains("--") || cell.contains("=="))
+}
+
 /// The brackets around a line, as Python prints a list.
 fn without_brackets(line: &str) -> &str {
     // A sentence of NMEA 0183.

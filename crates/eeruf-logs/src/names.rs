@@ -20,164 +20,32 @@ pub(crate) enum Meaning {
     Vague,
 }
 
-const TIMES: [&str; 21] = [
-    "time",
-    "timestamp",
-    "stamp",
-    "millis",
-    "micros",
-    "nanos",
-    "clock",
-    "date",
-    "datetime",
-    "elapsed",
-    "uptime",
-    "epoch",
-    "utc",
-    "zeit",
-    "uhrzeit",
-    "datum",
-    "seconds",
-    "secs",
-    "nsecs",
-    "nanosec",
-    "nsec",
-];
-const WHOLE_TIMES: [&str; 12] =
-    ["t", "ts", "ms", "us", "ns", "s", "sec", "msec", "usec", "milliseconds", "microseconds", "nanoseconds"];
-const ECHOES: [&str; 5] = ["echo", "flight", "pulse", "duration", "travel"];
-const RANGES: [&str; 16] = [
-    "range",
-    "ranges",
-    "distance",
-    "distances",
-    "dist",
-    "sonar",
-    "sonars",
-    "ultrasonic",
-    "ultrasound",
-    "ultrasonics",
-    "hcsr",
-    "ping",
-    "abstand",
-    "entfernung",
-    "value",
-    "values",
-];
-const SENSORS: [&str; 15] = [
-    "sensor",
-    "id",
-    "name",
-    "channel",
-    "ch",
-    "frame",
-    "topic",
-    "sonar",
-    "sensor_id",
-    "sensorid",
-    "frame_id",
-    "entity_id",
-    "source",
-    "instance",
-    "device",
-];
-const OTHERS: [&str; 95] = [
-    "battery",
-    "bat",
-    "voltage",
-    "volt",
-    "volts",
-    "current",
-    "temp",
-    "temperature",
-    "humidity",
-    "hum",
-    "pressure",
-    "seq",
-    "sequence",
-    "index",
-    "entry",
-    "idx",
-    "count",
-    "counter",
-    "row",
-    "line",
-    "mode",
-    "state",
-    "status",
-    "flag",
-    "flags",
-    "ir",
-    "infrared",
-    "laser",
-    "lidar",
-    "speed",
-    "velocity",
-    "vel",
-    "accel",
-    "acc",
-    "gyro",
-    "yaw",
-    "pitch",
-    "roll",
-    "heading",
-    "angle",
-    "theta",
-    "odom",
-    "odometry",
-    "x",
-    "y",
-    "z",
-    "lat",
-    "lon",
-    "alt",
-    "altitude",
-    "encoder",
-    "pwm",
-    "motor",
-    "rssi",
-    "snr",
-    "variance",
-    "covariance",
-    "std",
-    "intensity",
-    "intensities",
-    "radiation",
-    "fov",
-    "period",
-    "phase",
-    "reading",
-    "rate",
-    "size",
-    "stride",
-    "offset",
-    "checksum",
-    "crc",
-    "gain",
-    "strength",
-    "quality",
-    "confidence",
-    "amplitude",
-    "threshold",
-    "event",
-    "error",
-    "err",
-    "message",
-    "msg",
-    "rpm",
-    "light",
-    "ldr",
-    "pir",
-    "button",
-    "led",
-    "type",
-    "orientation",
-    "unit",
-    "units",
-    "given",
-    "solo",
-    "steady",
-];
+const TIMES: &str = "\
+    time timestamp stamp millis micros nanos clock date datetime elapsed uptime epoch utc zeit uhrzeit datum \
+    seconds secs nsecs nanosec nsec";
+const WHOLE_TIMES: &str = "t ts ms us ns s sec msec usec milliseconds microseconds nanoseconds";
+const ECHOES: &str = "echo flight pulse duration travel";
+const RANGES: &str = "\
+    range ranges distance distances dist sonar sonars ultrasonic ultrasound ultrasonics hcsr ping abstand \
+    entfernung value values";
+const SENSORS: &str = "\
+    sensor id name channel ch frame topic sonar sensor_id sensorid frame_id entity_id source instance device \
+    device_id";
+const OTHERS: &str = "\
+    battery bat voltage volt volts current temp temperature humidity hum pressure seq sequence index entry idx \
+    count counter row line mode state status flag flags ir infrared laser lidar speed velocity vel accel acc gyro \
+    yaw pitch roll heading angle theta odom odometry x y z lat lon alt altitude encoder pwm motor rssi snr \
+    variance covariance std intensity intensities radiation fov period phase reading rate size stride offset \
+    checksum crc gain strength quality confidence amplitude threshold event error err message msg rpm light ldr \
+    pir button led type orientation unit units given solo steady batt vbat vcc watt percent soc enc encoders tick \
+    ticks tof sharp acceleration accelerometer gyroscope mag magnetometer imu gps sat ax ay az gx gy gz mx my mz \
+    vx vy vz q servo cmd linear angular valid ok enabled bump bumper touch contact estop hz fps deg degc lux feed \
+    stat orient elevation";
+
+/// Returns true if a list, parted by spaces, has this word.
+fn is_in(list: &str, word: &str) -> bool {
+    list.split(' ').any(|own| own == word)
+}
 
 /// The words of a name, in lower case: `frontLeft_cm2` is `front`, `left`, `cm`, `2`.
 fn words(name: &str) -> Vec<String> {
@@ -208,32 +76,36 @@ pub(crate) fn meaning(name: &str) -> Meaning {
 
 fn meaning_of(name: &str) -> Meaning {
     let words = words(name);
-    let has = |of: &[&str]| words.iter().any(|word| of.contains(&word.as_str()));
+    let has = |of: &str| words.iter().any(|word| is_in(of, word));
     let whole = name.trim().trim_start_matches('%').to_lowercase();
-    let is_echo = has(&ECHOES) || whole == "time_of_flight";
-    if has(&["field"]) && has(&["view"]) || has(&["angle", "increment"]) {
+    // An address on a bus.
+    if whole.starts_with("0x") {
+        return Meaning::Vague;
+    }
+    let is_echo = has(ECHOES) || whole == "time_of_flight";
+    if has("field") && has("view") || has("angle increment") {
         return Meaning::Other;
     }
-    if has(&RANGES) && has(&["min", "minimum"]) {
+    if has(RANGES) && has("min minimum") {
         return Meaning::Least;
     }
-    if has(&RANGES) && has(&["max", "maximum"]) {
+    if has(RANGES) && has("max maximum") {
         return Meaning::Most;
     }
     let without_units: Vec<_> = words.iter().filter(|word| !is_unit(word)).map(String::as_str).collect();
-    let is_time = has(&TIMES) || WHOLE_TIMES.contains(&whole.as_str()) || matches!(without_units[..], ["t" | "ts"]);
-    if has(&["fired"]) || (is_time && !is_echo) {
+    let is_time = has(TIMES) || is_in(WHOLE_TIMES, &whole) || matches!(without_units[..], ["t" | "ts" | "tv"]);
+    if has("fired") || (is_time && !is_echo) {
         return Meaning::Time;
     }
     // The distance now, beside its limits.
-    let is_distance_now = has(&RANGES) && has(&["current"]);
-    if has(&OTHERS) && !is_distance_now || whole == "changes" || whole == "expected_us" || whole == "sends" {
+    let is_distance_now = has(RANGES) && has("current");
+    if has(OTHERS) && !is_distance_now || whole == "changes" || whole == "expected_us" || whole == "sends" {
         return Meaning::Other;
     }
-    if SENSORS.contains(&whole.as_str()) || has(&["frame"]) && has(&["id"]) {
+    if is_in(SENSORS, &whole) || has("frame") && has("id") {
         return Meaning::Sensor;
     }
-    if has(&RANGES) || is_echo {
+    if has(RANGES) || is_echo {
         return Meaning::Range;
     }
     Meaning::Vague
@@ -248,14 +120,14 @@ pub(crate) fn range_unit(name: &str) -> Option<(RangeUnit, bool)> {
     let words = words(name);
     let last = words.last()?;
     if let Some(unit) = value::unit(last).filter(|_| words.len() > 1 || last == "cm" || last == "mm") {
-        return Some((unit, unit != RangeUnit::Us || words.iter().any(|word| ECHOES.contains(&word.as_str()))));
+        return Some((unit, unit != RangeUnit::Us || words.iter().any(|word| is_in(ECHOES, word))));
     }
     // A number after it, as in `cm2`.
     let unit = words.iter().rev().nth(1).and_then(|word| value::unit(word));
     if let Some(unit @ (RangeUnit::Cm | RangeUnit::Mm)) = unit {
         return Some((unit, true));
     }
-    words.iter().any(|word| ECHOES.contains(&word.as_str())).then_some((RangeUnit::Us, false))
+    words.iter().any(|word| is_in(ECHOES, word)).then_some((RangeUnit::Us, false))
 }
 
 fn time_word(word: &str) -> Option<TimeUnit> {

@@ -10,7 +10,7 @@ pub(crate) enum Value {
     TooClose,
 }
 
-const NO_ECHO: [&str; 26] = [
+const NO_ECHO: &[&str] = &[
     "",
     "none",
     "null",
@@ -37,6 +37,12 @@ const NO_ECHO: [&str; 26] = [
     "err",
     "error",
     "undefined",
+    "invalid",
+    "nothing",
+    ".inf",
+    ".nan",
+    "<na>",
+    "#n/a",
 ];
 
 /// Returns true for a word that logs write where no echo came.
@@ -87,16 +93,51 @@ pub(crate) fn range(text: &str, decimal_comma: bool) -> Option<(Value, Option<Ra
     if is_no_echo(text) {
         return Some((Value::NoEcho, None));
     }
-    if ["-inf", "-infinity"].iter().any(|word| text.eq_ignore_ascii_case(word)) {
+    // A word before a unit, as formatted output has it: `nan cm`, `infm`.
+    let glued = text.get(..3).filter(|word| ["inf", "nan"].contains(word)).map(|word| (word, &text[3..]));
+    let spaced = text.rsplit_once(' ').filter(|(word, _)| !word.is_empty() && is_no_echo(word));
+    if let Some(own) = spaced.or(glued).and_then(|(_, own)| unit(own)) {
+        return Some((Value::NoEcho, Some(own)));
+    }
+    // Beyond what the sensor measures: `>400 cm`, `<2`.
+    for (sign, value) in [('>', Value::NoEcho), ('<', Value::TooClose)] {
+        if let Some((_, own)) = text.strip_prefix(sign).and_then(|rest| with_unit(rest.trim_start(), decimal_comma)) {
+            return Some((value, own));
+        }
+    }
+    if ["-inf", "-infinity", "-.inf"].iter().any(|word| text.eq_ignore_ascii_case(word)) {
         return Some((Value::TooClose, None));
     }
     with_unit(text, decimal_comma).map(|(number, unit)| (Value::Number(number), unit))
 }
 
-/// Nanoseconds of a date, a time of day, or both.
+const HOUR_NS: u64 = 3_600_000_000_000;
+const DAY_NS: u64 = 24 * HOUR_NS;
+const MONTHS: [&str; 12] = ["Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec"];
+
+/// Nanoseconds of a date, a time of day, or both, also by a clock of 12 hours or as a number of days and a time.
 pub(crate) fn calendar_ns(text: &str) -> Option<u64> {
     let text = text.trim();
     let text = text.strip_suffix(" UTC").unwrap_or(text);
+    let halves = [(" AM", 0), (" PM", 12), (" am", 0), (" pm", 12)];
+    if let Some((text, noon)) = halves.iter().find_map(|(end, noon)| Some((text.strip_suffix(end)?, *noon))) {
+        let ns = calendar_ns(text)?;
+        let hour = ns % DAY_NS / HOUR_NS;
+        return (1..=12).contains(&hour).then(|| ns - hour * HOUR_NS + (hour % 12 + noon) * HOUR_NS);
+    }
+    if let Some((days, rest)) = text.split_once(" day") {
+        let rest = rest.trim_start_matches(['s', ',', ' ']);
+        let ns = if rest.is_empty() { 0 } else { time_of_day_ns(rest)? };
+        return days.parse::<u64>().ok()?.checked_mul(DAY_NS)?.checked_add(ns);
+    }
+    // As `date` and C print it: `Tue Jan  2 12:00:01 2024`.
+    if text.starts_with(char::is_alphabetic) {
+        let words: Vec<_> = text.split_whitespace().collect();
+        let [_, month, day, time, .., year] = words[..] else { return None };
+        let month = 1 + MONTHS.iter().position(|name| *name == month)?;
+        let day = u64::try_from(days(&format!("{year}-{month}-{day}"))?).ok()?;
+        return day.checked_mul(DAY_NS)?.checked_add(time_of_day_ns(time)?);
+    }
     if let Some(ns) = time_of_day_ns(text) {
         return Some(ns);
     }
@@ -127,14 +168,21 @@ fn zone(time: &str) -> Option<(&str, i64)> {
     Some((&time[..at], if time.as_bytes()[at] == b'-' { -seconds } else { seconds }))
 }
 
-/// Days from 1970 to `2024-01-31`, `2024/01/31` or `31.01.2024`.
+/// Days from 1970 to `2024-01-31`, `2024/01/31`, `31.01.2024` or `1/31/2024`. Of two numbers that may both be a month,
+/// the first is one after a slash, and the second else.
 fn days(date: &str) -> Option<i64> {
     let parts = |by: char| -> Option<[u32; 3]> {
         let mut parts = date.split(by).map(|part| part.parse::<u32>().ok());
         let three = [parts.next()??, parts.next()??, parts.next()??];
         parts.next().is_none().then_some(three)
     };
-    let [year, month, day] = parts('-').or_else(|| parts('/')).or_else(|| parts('.').map(|[d, m, y]| [y, m, d]))?;
+    let (by, three) = ['-', '/', '.'].into_iter().find_map(|by| Some((by, parts(by)?)))?;
+    let [year, month, day] = match three {
+        [year, month, day] if year > 31 => [year, month, day],
+        [month, day, year] if day > 12 || (by == '/' && month <= 12) => [year, month, day],
+        [day, month, year] => [year, month, day],
+    };
+    let year = if by == '/' && (20..100).contains(&year) { 2000 + year } else { year };
     if !(1970..=2200).contains(&year) || !(1..=12).contains(&month) || !(1..=31).contains(&day) {
         return None;
     }
@@ -144,10 +192,13 @@ fn days(date: &str) -> Option<i64> {
     Some(365 * y + y / 4 - y / 100 + y / 400 + of_year - 719_468)
 }
 
-/// `12:00:01.100`, `12:00:01,100` or `12:00:01`.
+/// `12:00:01.100`, `12:00:01,100`, `12:00:01`, or `00:01.1`, as spreadsheets write a short time.
 fn time_of_day_ns(text: &str) -> Option<u64> {
     let mut parts = text.split(':');
-    let (hours, minutes, seconds) = (parts.next()?, parts.next()?, parts.next()?);
+    let (hours, minutes, seconds) = match (parts.next()?, parts.next()?, parts.next()) {
+        (hours, minutes, Some(seconds)) => (hours, minutes, seconds),
+        (minutes, seconds, None) => ("0", minutes, Some(seconds).filter(|text| text.contains('.'))?),
+    };
     let whole = |part: &str, below: u64| {
         let is_whole = (1..=2).contains(&part.len()) && part.bytes().all(|byte| byte.is_ascii_digit());
         part.parse::<u64>().ok().filter(|&number| is_whole && number < below)
@@ -161,9 +212,8 @@ fn time_of_day_ns(text: &str) -> Option<u64> {
     Some(s * 1_000_000_000 + ns)
 }
 
-/// `Jan 31 12:00:01 robot node[7]: `, as syslog begins a line, in a year without a name.
+/// `Jan 31 12:00:01 robot node[7]: `, as syslog begins a line, or the time alone, in a year without a name.
 fn syslog(line: &str) -> Option<(u64, &str)> {
-    const MONTHS: [&str; 12] = ["Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec"];
     let word = |text: &'_ str| text.find(' ').map(|end| (end, text[end..].trim_start().len()));
     let month = 1 + MONTHS.iter().position(|name| line.starts_with(name))?;
     let rest = line.get(3..)?.strip_prefix(' ')?.trim_start();
@@ -172,8 +222,16 @@ fn syslog(line: &str) -> Option<(u64, &str)> {
     let rest = &rest[rest.len() - left..];
     let (end, left) = word(rest)?;
     let at = time_of_day_ns(&rest[..end])?;
-    let (_, said) = rest[rest.len() - left..].split_once(": ")?;
-    Some((u64::try_from(day).ok()? * 86_400_000_000_000 + at, said.trim_start()))
+    let rest = &rest[rest.len() - left..];
+    Some((u64::try_from(day).ok()? * DAY_NS + at, after_program(rest).unwrap_or(rest)))
+}
+
+/// The rest of a line after `robot node[7]: `, a host and a program.
+fn after_program(line: &str) -> Option<&str> {
+    let (before, said) = line.split_once(": ")?;
+    let mut words = before.split_whitespace();
+    let (_, program) = (words.next()?, words.next()?);
+    (program.starts_with(char::is_alphabetic) && words.next().is_none()).then_some(said.trim_start())
 }
 
 /// `I (1234) tag: `, as ESP-IDF begins a line: milliseconds since the start.
@@ -183,43 +241,77 @@ fn esp_idf(line: &str) -> Option<(u64, &str)> {
     Some((ms.parse::<u64>().ok()?.checked_mul(1_000_000)?, said.trim_start()))
 }
 
+const LEVELS: [&str; 7] = ["DEBUG", "INFO", "WARN", "WARNING", "ERROR", "CRITICAL", "FATAL"];
+
+/// A line without the level and the name before it, as Python's logging prints them: `INFO:sonar:left: 40`.
+pub(crate) fn without_level(line: &str) -> &str {
+    let rest = LEVELS.iter().find_map(|level| line.strip_prefix(level)?.strip_prefix(':'));
+    rest.and_then(|rest| rest.split_once(':')).map_or(line, |(_, said)| said.trim_start())
+}
+
+/// Nanoseconds of a time in brackets: a date, seconds, or seconds and those since the line before.
+fn bracketed_ns(inner: &str) -> Option<u64> {
+    let seconds = |text: &str| number(text, false).filter(|&s| text.contains('.') && (0.0..1e10).contains(&s));
+    calendar_ns(inner).or_else(|| {
+        let words: Vec<_> = inner.split_whitespace().map(seconds).collect::<Option<_>>()?;
+        (words.len() <= 2).then(|| words.first().map(|s| (s * 1e9).round() as u64))?
+    })
+}
+
+/// A time at the beginning of a line, without brackets, and the rest of the line.
+fn plain_time(line: &str) -> Option<(u64, &str)> {
+    let is_end = |letter: char| letter.is_whitespace() || letter == '>';
+    let first = line.find(is_end)?;
+    let second = line[first..].trim_start();
+    let second = line.len() - second.len() + second.find(is_end).unwrap_or(second.len());
+    let both = line.get(..second).and_then(|text| Some((calendar_ns(text.trim_end_matches(':'))?, &line[second..])));
+    if both.is_some() {
+        return both;
+    }
+    let (own, rest) = (line[..first].trim_end_matches([':', '-']), &line[first..]);
+    // A date whose time is a part of the next cell.
+    let is_half = !own.contains(':') && rest.trim_start().get(..3).is_some_and(|next| next.contains(':'));
+    // Seconds since 1970, where the values after them are no cells parted by spaces.
+    let seconds = number(own, false).filter(|&s| own.contains('.') && (1e9..1e10).contains(&s));
+    let seconds = seconds.filter(|_| rest.contains([',', ';', ':', '=']));
+    let ns = calendar_ns(own).filter(|_| !is_half).or(seconds.map(|s| (s * 1e9).round() as u64))?;
+    Some((ns, rest))
+}
+
 /// A time before the readings of a line, as serial monitors, loggers and `dmesg` write it, and the rest of the line.
 pub(crate) fn prefix(line: &str) -> Option<(u64, &str)> {
     let line = line.trim_start();
     if let Some(found) = esp_idf(line).or_else(|| syslog(line)) {
         return Some(found);
     }
-    let (time, rest) = if let Some(inner) = line.strip_prefix('[') {
-        let (inner, rest) = inner.split_once(']')?;
-        let is_level = !inner.is_empty() && inner.trim().bytes().all(|byte| byte.is_ascii_alphabetic());
-        if is_level && ["INFO", "DEBUG", "WARN", "ERROR"].contains(&inner.trim()) {
-            return prefix(rest);
+    let (mut time, mut rest) = (None, line);
+    // A level or the name of a node may stand in brackets before the time, and after it.
+    while let Some((inner, after)) = rest.strip_prefix('[').and_then(|inner| inner.split_once(']')) {
+        let (inner, after) = (inner.trim(), after.trim_start());
+        let is_name = inner.starts_with(char::is_alphabetic)
+            && (time.is_none() || LEVELS.contains(&inner) || after.starts_with([':', '[']));
+        match bracketed_ns(inner).filter(|_| time.is_none()) {
+            Some(ns) => time = Some(ns),
+            None if is_name => {}
+            None => break,
         }
-        let inner = inner.trim();
-        let seconds = number(inner, false).filter(|&s| inner.contains('.') && (0.0..1e10).contains(&s));
-        (calendar_ns(inner).or(seconds.map(|s| (s * 1e9).round() as u64))?, rest)
-    } else {
-        let is_end = |letter: char| letter.is_whitespace() || letter == '>';
-        let first = line.find(is_end)?;
-        let second = line[first..].trim_start();
-        let second = line.len() - second.len() + second.find(is_end).unwrap_or(second.len());
-        let both =
-            line.get(..second).and_then(|text| Some((calendar_ns(text.trim_end_matches(':'))?, &line[second..])));
-        match both {
-            Some(found) => found,
-            None => (calendar_ns(line[..first].trim_end_matches([':', '-']))?, &line[first..]),
-        }
-    };
-    let rest = rest.trim_start();
+        rest = after;
+    }
+    if time.is_none() {
+        let (ns, after) = plain_time(rest)?;
+        (time, rest) = (Some(ns), after.trim_start());
+    }
     let rest = rest.strip_prefix("UTC").unwrap_or(rest);
     // The first cell of a table.
     if rest.starts_with([',', ';']) {
         return None;
     }
     let rest = ["->", ">", ":", "- "].iter().find_map(|arrow| rest.strip_prefix(arrow)).unwrap_or(rest).trim_start();
-    let levels = ["INFO ", "DEBUG ", "WARNING ", "WARN "];
-    let rest = levels.iter().find_map(|level| rest.strip_prefix(level)).unwrap_or(rest).trim_start();
-    Some((time, rest))
+    let after_level = |level: &&str| rest.strip_prefix(*level)?.strip_prefix(' ');
+    let after_name = LEVELS.iter().find_map(|level| Some(rest.split_once(&format!(" - {level} - "))?.1));
+    let rest = LEVELS.iter().find_map(after_level).or(after_name).unwrap_or(rest).trim_start();
+    let program = after_program(rest).filter(|said| rest[..rest.len() - said.len()].trim_end().ends_with("]:"));
+    Some((time?, program.unwrap_or(rest)))
 }
 
 #[cfg(test)]

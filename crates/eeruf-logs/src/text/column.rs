@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::options::RangeUnit;
 
+use crate::names;
 use crate::value::{self, Value};
 
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -87,6 +88,51 @@ impl Column {
         numbers > 0 && self.texts + self.calendars <= numbers
     }
 
+    /// Returns true for a column of 0 and 1 alone, which a range in no unit is.
+    pub(super) fn is_flag(&self) -> bool {
+        let is_one = self.numbers.contains(&1.0) && self.numbers.iter().all(|number| [0.0, 1.0].contains(number));
+        is_one && self.numbers.len() > 2 && self.no_echoes + self.units == 0 && names::range_unit(&self.name).is_none()
+    }
+
+    /// Returns true for numbers beyond every range, such as times since 1970.
+    pub(super) fn is_beyond(&self) -> bool {
+        self.numbers.iter().filter(|&&number| number > 1e8).count() * 2 > self.numbers.len()
+    }
+
+    /// Returns true for whole numbers that count from the first sensor to the last again and again.
+    pub(super) fn is_cycle(&self) -> bool {
+        let of = |pick: fn(f64, f64) -> f64| self.numbers.iter().copied().reduce(pick).unwrap_or(0.0);
+        let (least, most, rows) = (of(f64::min), of(f64::max), self.numbers.len());
+        let is_next = |two: &&[f64]| two[1] == two[0] + 1.0 || (two[0] == most && two[1] == least);
+        let distinct = self.distinct.len();
+        let next = self.numbers.windows(2).filter(is_next).count();
+        (2..=64).contains(&distinct)
+            && (0.0..=64.0).contains(&least)
+            && self.texts + self.no_echoes + self.units == 0
+            && rows >= 6.max(2 * distinct)
+            && next * 10 >= (rows - 1) * 9
+    }
+
+    /// Returns true for texts that may name a sensor: no pair, no time, and not each of them once.
+    pub(super) fn is_label(&self) -> bool {
+        let rows: usize = self.distinct.values().sum();
+        let is_name = |text: &String| {
+            let inner = text.trim_start_matches(['[', '(']);
+            !inner.starts_with(|letter: char| letter.is_ascii_digit())
+                && !text.contains('=')
+                && value::unit(text).is_none()
+        };
+        self.texts > 0 && self.distinct.keys().all(is_name) && (self.distinct.len() < rows || rows < 3)
+    }
+
+    /// For two hexadecimal digits in each cell, as tools for buses print bytes: true if some are no plain number.
+    pub(super) fn bytes(&self) -> Option<bool> {
+        let is_byte = |text: &String| text.len() == 2 && text.bytes().all(|byte| byte.is_ascii_hexdigit());
+        let is_odd = |text: &String| text.starts_with('0') || text.bytes().any(|byte| byte.is_ascii_alphabetic());
+        let is_all = !self.distinct.is_empty() && self.distinct.keys().all(is_byte);
+        is_all.then(|| self.distinct.keys().any(is_odd))
+    }
+
     /// Returns true if numbers of the column have a unit, so that one without it is cut.
     pub(super) fn needs_unit(&self) -> bool {
         self.units * 10 >= self.numbers.len() * 8 && self.units > 0
@@ -98,6 +144,12 @@ impl Column {
         let rises = self.numbers.windows(2).filter(|two| two[0] < two[1]).count();
         let rows = self.numbers.len();
         rows >= 3 && others * 10 <= rows && (rows - 1 - rises) * 10 < rows
+    }
+
+    /// Returns true if half of the steps go down, as no clock does, however often it starts anew.
+    pub(super) fn falls_often(&self) -> bool {
+        let falls = self.numbers.windows(2).filter(|two| two[1] < two[0]).count();
+        falls * 2 >= self.numbers.len() && falls > 0
     }
 
     pub(super) fn steps(&self) -> Vec<f64> {

@@ -54,6 +54,10 @@ impl Plan {
                 (Some((least, _)), Some((most, _))) => format!(", by values of {least} to {most}"),
                 _ => ", by names or units beside the values".to_owned(),
             };
+            let why = match self.unit {
+                Some(index) => format!(", each as its row says in column `{}`", self.columns[index].name),
+                None => why,
+            };
             self.guesses.push(guess("range unit", found.join(", ") + &why, "--range-unit"));
         }
     }

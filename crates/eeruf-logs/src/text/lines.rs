@@ -1,5 +1,6 @@
 //! Lines of a text, whatever ends them, and the objects of a JSON document.
 
+use std::borrow::Cow;
 use std::collections::VecDeque;
 use std::io::{self, BufRead, BufReader, Read};
 
@@ -22,6 +23,23 @@ pub(crate) struct Line {
     /// Returns false for a last line that nothing ends, which may be cut.
     pub(crate) is_ended: bool,
     pub(crate) is_too_long: bool,
+}
+
+/// A text without a terminal's sequences for colours: `ESC [`, numbers, `m`.
+fn without_colours(text: &str) -> Cow<'_, str> {
+    if !text.contains("\u{1b}[") {
+        return Cow::Borrowed(text);
+    }
+    let mut parts = text.split("\u{1b}[");
+    let mut plain = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        let rest = part.trim_start_matches(|letter: char| letter.is_ascii_digit() || letter == ';');
+        match rest.strip_prefix('m') {
+            Some(rest) => plain.push_str(rest),
+            None => plain.extend(["\u{1b}[", part]),
+        }
+    }
+    Cow::Owned(plain)
 }
 
 /// Lines that end by `\n`, `\r\n` or `\r`.
@@ -64,7 +82,7 @@ impl<'a> Lines<'a> {
         let is_ended = bytes.last() == Some(&b'\n');
         let text = String::from_utf8_lossy(&bytes);
         let text = text.strip_suffix('\n').unwrap_or(&text);
-        let text = text.trim_end_matches('\r');
+        let text = without_colours(text.trim_end_matches('\r'));
         let mut parts = text.split('\r').peekable();
         let first = parts.next().unwrap_or_default().to_owned();
         let is_last = parts.peek().is_none();

@@ -16,7 +16,7 @@ use std::io::Read;
 use std::path::Path;
 
 use crate::options::{Options, Parts};
-use crate::sink::Sink;
+use crate::sink::{Sink, Skipped};
 use eeruf_files::FileError;
 
 pub(crate) use lines::Line;
@@ -37,10 +37,16 @@ pub(crate) fn read(input: impl Read, file: &Path, options: &Options, sink: &mut 
         bytes += line.text.len();
         sample.push(line);
     }
+    if let Some(form) = source.of_records().filter(|_| sample.is_empty()) {
+        form.clone_into(&mut sink.report.form);
+        let (topic, why) = (form.to_owned(), "no records with ranges".to_owned());
+        sink.report.skipped.push(Skipped { topic, why, messages: 0 });
+        return Ok(());
+    }
     if sample.iter().all(|line| line.text.trim().is_empty()) && sample.len() < SAMPLE.0 {
         return Err(FileError::new(file, "the file is empty; expected lines with readings"));
     }
-    let plan = recognise::recognise(file, &sample, source.of_records(), options)?;
+    let plan = recognise::recognise(file, &sample, (source.of_records(), source.is_of_objects()), options)?;
     sink.report.form.clone_from(&plan.form);
     sink.has(Parts::Columns);
     sink.report.guesses.extend(plan.guesses.iter().cloned());

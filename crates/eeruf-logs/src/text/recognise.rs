@@ -9,7 +9,7 @@ use eeruf_files::FileError;
 
 use super::column::{Column, Role};
 use super::lines::Line;
-use super::shape::{self, Separator, Shape};
+use super::shape::{self, Separator, Shape, is_rule, is_underline};
 use crate::names::{self, Meaning};
 use crate::value;
 
@@ -44,6 +44,14 @@ pub(super) struct Plan {
     /// Each row is of one sensor: the empty cells of the others are no silence.
     pub(super) one_a_row: bool,
     pub(super) is_first_cut: bool,
+    /// The column that says the unit of its row's range.
+    pub(super) unit: Option<usize>,
+    /// The column that says by what a row's sensor measures, and the number of ultrasound.
+    pub(super) medium: Option<(usize, f64)>,
+    /// Lines before the header, which a reset repeats.
+    pub(super) greetings: BTreeSet<String>,
+    /// Lines of dashes part rows or messages; else they are words for no echo.
+    pub(super) has_rules: bool,
     /// The names that nearly each line of pairs has.
     pub(super) usual_names: Option<Vec<String>>,
     pub(super) form: String,
@@ -55,12 +63,13 @@ pub(super) struct Plan {
 
 pub(crate) fn is_comment(text: &str) -> bool {
     let text = text.trim_start();
-    // MATLAB's; `%time` begins a header.
+    // MATLAB's; `%time` begins a header. Weka's begin with `@`.
     let is_percent = text.starts_with("% ") || text == "%";
     text.is_empty()
         || text.starts_with('#')
         || is_percent
         || text.starts_with("//")
+        || text.starts_with('@')
         || text.to_lowercase().starts_with("sep=")
 }
 
@@ -72,31 +81,39 @@ pub(super) fn guess(what: &str, value: impl Into<String>, option: &str) -> Guess
 struct Stripped<'a> {
     lines: Vec<(u64, &'a str)>,
     has_prefix: bool,
+    has_rules: bool,
 }
 
 fn strip(sample: &[Line]) -> Stripped<'_> {
     let lines: Vec<_> =
         sample.iter().filter(|line| !is_comment(&line.text)).map(|line| (line.number, line.text.trim())).collect();
+    let rules = lines.iter().filter(|line| is_rule(line.1)).count();
+    let values = lines.iter().filter(|line| !is_rule(line.1) && value::range(line.1, true).is_some()).count();
+    // Where a line is one value, dashes part messages only if they follow each.
+    let has_rules = rules > 0 && (values * 2 < lines.len() - rules || rules * 2 + 1 >= lines.len());
+    let lines: Vec<_> = lines.into_iter().filter(|line| !(has_rules && is_rule(line.1))).collect();
     let with = lines.iter().filter(|(_, text)| value::prefix(text).is_some_and(|(_, rest)| !rest.is_empty())).count();
     let first = lines.first().map_or("", |line| line.1);
     let is_header = value::prefix(first).is_none()
         && !first.contains([':', '='])
         && names::meaning(first.split([' ', '\t', ',', ';']).next().unwrap_or_default()) == Meaning::Time;
     let has_prefix = with > 0 && with * 10 >= lines.len() * 6 && !is_header;
-    let strip =
-        |(number, text): (u64, _)| (number, value::prefix(text).filter(|_| has_prefix).map_or(text, |found| found.1));
-    Stripped { lines: lines.into_iter().map(strip).collect(), has_prefix }
+    let strip = |(number, text): (u64, _)| {
+        let rest = value::prefix(text).filter(|_| has_prefix).map_or(text, |found| found.1);
+        (number, value::without_level(rest))
+    };
+    Stripped { lines: lines.into_iter().map(strip).collect(), has_prefix, has_rules }
 }
 
 /// Recognises a log by its first lines.
 pub(super) fn recognise(
     file: &Path,
     sample: &[Line],
-    records: Option<&str>,
+    (records, is_of_objects): (Option<&str>, bool),
     options: &Options,
 ) -> Result<Plan, FileError> {
-    let Stripped { lines, has_prefix } = strip(sample);
-    let (shape, decimal_comma) = if records.is_some() { (Shape::Json, false) } else { shape_of(&lines) };
+    let Stripped { lines, has_prefix, has_rules } = strip(sample);
+    let (shape, decimal_comma) = if is_of_objects { (Shape::Json, false) } else { shape_of(&lines) };
     let mut plan = Plan {
         shape,
         has_prefix,
@@ -112,6 +129,10 @@ pub(super) fn recognise(
         no_echo: NoEcho::default(),
         one_a_row: false,
         is_first_cut: false,
+        unit: None,
+        medium: None,
+        greetings: BTreeSet::new(),
+        has_rules,
         usual_names: None,
         form: String::new(),
         guesses: vec![],
@@ -126,7 +147,7 @@ pub(super) fn recognise(
         }
     };
     plan.form = match shape {
-        Shape::Json if let Some(form) = records => form.to_owned(),
+        _ if let Some(form) = records => form.to_owned(),
         Shape::Json => "JSON, an object a line".to_owned(),
         Shape::Keyed => "text, pairs of name and value".to_owned(),
         Shape::Separated(Separator::None) => "text, one value a line".to_owned(),
@@ -208,6 +229,14 @@ const ECHOED_RANGE: [&str; 9] = [
     "variance",
 ];
 
+/// Returns true for rows whose first cell counts them, as statistics programs print tables.
+fn is_numbered(rows: &[(u64, Vec<String>)], width: usize) -> bool {
+    let firsts: Vec<_> =
+        rows.iter().filter(|(_, row)| row.len() == width).map(|(_, row)| row[0].parse::<u64>()).collect();
+    let counts = firsts.windows(2).filter(|two| matches!(two, [Ok(one), Ok(other)] if one + 1 == *other)).count();
+    matches!(firsts.first(), Some(Ok(0 | 1))) && counts * 10 >= (firsts.len() - 1) * 9
+}
+
 fn is_echoed_range(rows: &[(u64, Vec<String>)], width: usize) -> bool {
     let is_one = |row: &Vec<String>| {
         let number = |index: usize| value::number(row.get(index)?, false);
@@ -242,7 +271,19 @@ impl Plan {
         let rows: Vec<_> =
             lines.iter().filter_map(|&(number, text)| Some((number, shape::separated(text, separator)?))).collect();
         let is_number = |text: &String| value::with_unit(text, comma).is_some() || value::calendar_ns(text).is_some();
-        let has_number = |row: &[String]| row.iter().any(is_number);
+        // Numbers may be names of columns, beside one that is called a time.
+        let names_row = rows.iter().position(|(_, row)| row.len() > 1 && row.iter().any(is_number));
+        let names_row = names_row.filter(|&at| {
+            let is_time = |text: &String| !is_number(text) && names::meaning(text) == Meaning::Time;
+            let (_, names) = &rows[at];
+            let below = rows[at + 1..].iter().filter(|(_, row)| row.len() == names.len());
+            let Some(place) = names.iter().position(is_time) else { return false };
+            let mut below = below.map(|(_, row)| is_number(&row[place])).take(3);
+            below.next() == Some(true) && below.all(|number| number)
+        });
+        let names_row = names_row.map(|at| &rows[at].1);
+        let has_number =
+            |row: &[String]| row.iter().any(is_number) && names_row.is_none_or(|names| names.as_slice() != row);
         let width = usual(rows.iter().filter(|(_, row)| has_number(row)).map(|(_, row)| row.len()));
         let first = rows.iter().position(|(_, row)| row.len() == width && has_number(row)).unwrap_or(rows.len());
         let is_header = |row: &[String]| {
@@ -253,7 +294,13 @@ impl Plan {
                 |text: &String| text.is_empty() || value::unit(text).is_some() || names::time_unit(text).is_some();
             row.iter().all(is_unit)
         };
-        let before = &rows[..first];
+        let mut before = &rows[..first];
+        while let [rest @ .., (_, cells)] = before
+            && width > 1
+            && is_underline(cells)
+        {
+            before = rest;
+        }
         let mut header =
             before.iter().rposition(|(_, row)| is_header(row) && (row.len() == width || width <= row.len() + 1));
         let mut units = vec![];
@@ -266,6 +313,13 @@ impl Plan {
             header = Some(at - 1);
         }
         let mut names: Option<Vec<String>> = header.map(|at| before[at].1.clone());
+        // Rows with a name or a number before them, which the header does not have.
+        if let Some(names) = &mut names
+            && names.len() + 1 == width
+            && is_numbered(&rows[first..], width)
+        {
+            names.insert(0, String::new());
+        }
         let first_number = rows.get(first).map_or(u64::MAX, |row| row.0);
         if names.is_none() {
             // A comment may name the columns.
@@ -277,6 +331,7 @@ impl Plan {
             });
         }
         self.rows_from = match header {
+            Some(_) if before.len() < first => first_number,
             Some(at) => rows[at].0 + 1 + u64::from(!units.is_empty()),
             None => {
                 let text = |line: &Line| line.text.contains(|letter: char| letter.is_ascii_digit());
@@ -284,6 +339,9 @@ impl Plan {
             }
         };
         self.header = header.map(|at| before[at].1.clone());
+        let header_line = header.map_or(0, |at| rows[at].0);
+        let greetings = lines.iter().filter(|line| line.0 < header_line).map(|line| line.1.to_owned());
+        self.greetings = greetings.collect();
         let ignored = lines.iter().filter(|line| line.0 + 1 < self.rows_from).count();
         if ignored > 0 {
             let why = format!("{ignored} lines before the readings, without any");
@@ -396,6 +454,17 @@ impl Plan {
             || self.has_names
             || !table.columns.is_empty()
             || !matches!(self.shape, Shape::Separated(_));
+        let unit_of_row = |column: &Column| {
+            (!has_header || names::meaning(&column.name) == Meaning::Other)
+                && !column.distinct.is_empty()
+                && column.distinct.keys().all(|text| value::unit(text).is_some())
+        };
+        self.unit = self.columns.iter().position(unit_of_row);
+        // Of `sensor_msgs/Range`, and of MAVLink's and PX4's messages.
+        let ends = |end: &str| self.columns.iter().position(|column| column.name.ends_with(end));
+        let of_mavlink = ends("current_distance").and_then(|_| ends("type"));
+        self.medium = ends("radiation_type").map(|at| (at, 0.0)).or(of_mavlink.map(|at| (at, 1.0)));
+        self.medium = self.medium.filter(|_| table.ranges.is_empty());
         for index in 0..self.columns.len() {
             let column = &self.columns[index];
             let is_place = column.name.is_empty() || column.name.starts_with("Unnamed") || !has_header;
@@ -422,14 +491,22 @@ impl Plan {
                     Meaning::Vague if is_place && self.is_clock(index) => Role::Time,
                     // The beginning of the header is cut off.
                     Meaning::Vague if !has_time && self.is_clock(index) && self.is_even(index) => Role::Time,
+                    Meaning::Vague if is_place && column.is_cycle() => Role::Sensor,
+                    Meaning::Vague if column.is_flag() || column.is_beyond() => Role::Other,
                     _ if column.is_range() => Role::Range,
-                    Meaning::Vague if !has_header && column.texts > 0 => Role::Sensor,
+                    Meaning::Vague if !has_header && column.is_label() => Role::Sensor,
                     _ => Role::Other,
                 }
             };
             let column = &mut self.columns[index];
             column.is_numeric = column.texts + column.calendars == 0 && !column.numbers.is_empty();
             column.role = role;
+        }
+        // Bytes, as tools for buses print them, are no table.
+        let bytes: Vec<_> = self.columns.iter().filter_map(Column::bytes).collect();
+        let odd = bytes.iter().filter(|&&is_odd| is_odd).count();
+        if !has_header && ranges.is_empty() && bytes.len() >= 4 && odd >= 2 {
+            self.columns.iter_mut().for_each(|column| column.role = Role::Other);
         }
         // Home Assistant's name for a measured value.
         if self.columns.iter().all(|column| !matches!(column.role, Role::Range | Role::Empty)) {
@@ -532,15 +609,22 @@ impl Plan {
                 let other = usable.iter().copied().find(|&other| {
                     let is_calendar = |index: usize| self.columns[index].calendars > 0;
                     let of = |index: usize| self.columns[index].distinct.keys().next().cloned().unwrap_or_default();
-                    let fits =
-                        unit(one) == Some(TimeUnit::S) && unit(other) == Some(TimeUnit::Ns) && stem(one) == stem(other);
+                    // The smaller one is a part of a second.
+                    let is_part = |unit: TimeUnit| {
+                        let below = self.columns[other].numbers.iter().all(|n| n * unit.nanoseconds() < 1e9);
+                        unit == TimeUnit::Ns || (below && self.columns[one].numbers.iter().all(|n| n.fract() == 0.0))
+                    };
+                    let fits = unit(one) == Some(TimeUnit::S)
+                        && unit(other).is_some_and(|unit| unit != TimeUnit::S && is_part(unit))
+                        && stem(one) == stem(other);
                     let is_date =
                         is_calendar(one) && is_calendar(other) && !of(one).contains(':') && of(other).contains(':');
                     fits || (is_date && one != other)
                 })?;
                 Some(vec![one, other])
             });
-            let best = usable.iter().copied().max_by_key(|&index| {
+            let clocks = usable.iter().copied().filter(|&index| !self.columns[index].falls_often());
+            let best = clocks.max_by_key(|&index| {
                 let column = &self.columns[index];
                 (column.distinct.len() > 1, names::preference(&column.name), std::cmp::Reverse(index))
             });
@@ -561,7 +645,10 @@ impl Plan {
         let (ranges, named) = (of(&Role::Range), of(&Role::Sensor));
         let is_label = |index: &usize| {
             let column = &self.columns[*index];
-            column.numbers.iter().all(|number| number.fract() == 0.0) && (1..=64).contains(&column.distinct.len())
+            let is_key = column.name.eq_ignore_ascii_case("id") && column.texts > 2;
+            let is_key = is_key && column.distinct.values().all(|&count| count == 1);
+            let is_whole = column.numbers.iter().all(|number| number.fract() == 0.0);
+            is_whole && !is_key && (1..=64).contains(&column.distinct.len())
         };
         let chosen = asked.or_else(|| {
             let rows = |index: usize| self.columns[index].distinct.values().sum::<usize>();

@@ -3,14 +3,14 @@
 use std::collections::{BTreeSet, HashMap};
 use std::path::Path;
 
-use crate::options::{Options, TimeUnit};
+use crate::options::{Options, RangeUnit, TimeUnit};
 use crate::reading::{Reading, Sensor};
 use crate::sink::{Sink, Skipped};
 
 use super::column::{Column, Role};
 use super::lines::Line;
 use super::recognise::{MOST_SENSORS, Plan, is_comment};
-use super::shape::{self, Shape};
+use super::shape::{self, Shape, is_rule};
 use crate::value::{self, Value};
 
 pub(super) struct Rows<'a, 's, 'e> {
@@ -25,10 +25,15 @@ pub(super) struct Rows<'a, 's, 'e> {
     once: BTreeSet<String>,
     is_first: bool,
     others: u64,
+    /// Rows of sensors that do not measure by sound.
+    of_light: u64,
     unknown: BTreeSet<String>,
     /// Midnights since the log began.
     midnights: u64,
     latest_ns: u64,
+    /// Nanoseconds that a counter of 32 bits has lost, and its time in the row before.
+    wrapped_ns: u64,
+    counted_ns: u64,
 }
 
 /// The cells of a line, each with its column.
@@ -55,9 +60,12 @@ impl<'a, 's, 'e> Rows<'a, 's, 'e> {
             by_label: HashMap::new(),
             once: BTreeSet::new(),
             others: 0,
+            of_light: 0,
             unknown: BTreeSet::new(),
             midnights: 0,
             latest_ns: 0,
+            wrapped_ns: 0,
+            counted_ns: 0,
         };
         if rows.plan.sensor.is_none() {
             for index in 0..rows.plan.columns.len() {
@@ -76,7 +84,8 @@ impl<'a, 's, 'e> Rows<'a, 's, 'e> {
 
     /// Reads one line.
     pub(super) fn line(&mut self, line: &Line) {
-        if is_comment(&line.text) && !line.is_too_long || line.number < self.plan.rows_from {
+        let is_rule = self.plan.has_rules && is_rule(&line.text);
+        if (is_comment(&line.text) || is_rule) && !line.is_too_long || line.number < self.plan.rows_from {
             return;
         }
         match self.cells(line).and_then(|(time, cells)| self.row(line, time, &cells)) {
@@ -108,6 +117,7 @@ impl<'a, 's, 'e> Rows<'a, 's, 'e> {
         } else {
             (None, text)
         };
+        let text = value::without_level(text);
         if std::mem::take(&mut self.is_first) {
             return Err(damaged(format!("`{}` is shorter than the others: its beginning may be cut off", short(text))));
         }
@@ -121,6 +131,12 @@ impl<'a, 's, 'e> Rows<'a, 's, 'e> {
                 let width = self.plan.columns.len();
                 while cells.len() > width && cells.last().is_some_and(String::is_empty) {
                     cells.pop();
+                }
+                // What a reset repeats, and what a database says at the end: `(2 rows)`.
+                let is_remark =
+                    self.plan.greetings.contains(text) || (text.starts_with('(') && text.ends_with(" rows)"));
+                if cells.len() != width && is_remark {
+                    return Err(Unread::Other);
                 }
                 if cells.len() != width {
                     let message = format!("`{}` has {} cells; expected {width}", short(text), cells.len());
@@ -219,6 +235,18 @@ impl<'a, 's, 'e> Rows<'a, 's, 'e> {
             Some(index) => Some(text(index).filter(|label| !label.is_empty()).ok_or(Unread::Other)?.to_owned()),
             None => None,
         };
+        if let Some((index, ultrasound)) = self.plan.medium
+            && text(index).and_then(|own| value::number(own, false)).is_some_and(|number| number != ultrasound)
+        {
+            self.of_light += 1;
+            return Err(Unread::Other);
+        }
+        let unit = match self.plan.unit.and_then(text) {
+            Some(own) => Some(value::unit(own).ok_or_else(|| {
+                Unread::Damaged(format!("the unit `{}`; expected one as in the rows before", short(own)))
+            })?),
+            None => None,
+        };
         let mut found = vec![];
         let mut begun = vec![];
         for (index, own) in cells {
@@ -239,7 +267,7 @@ impl<'a, 's, 'e> Rows<'a, 's, 'e> {
                 }
                 _ => continue,
             }
-            found.push((*index, self.range_m(own, column)?));
+            found.push((*index, self.range_m(own, column, unit)?));
         }
         if found.is_empty() {
             return Err(Unread::Other);
@@ -253,7 +281,7 @@ impl<'a, 's, 'e> Rows<'a, 's, 'e> {
                 format!("a sensor whose first value is in line {}; the empty cells before do not count", line.number);
             self.sink.report.skipped.push(Skipped { topic: name, why, messages: 0 });
         }
-        let at_ns = at_ns.map(|ns| self.after_midnight(ns));
+        let at_ns = at_ns.map(|ns| self.after_midnight(ns)).map(|ns| self.after_wrap(ns));
         let sensor_of_row = label.map(|label| self.labelled(label)).transpose()?;
         self.sink.report.messages += 1;
         for (index, range_m) in found {
@@ -287,6 +315,21 @@ impl<'a, 's, 'e> Rows<'a, 's, 'e> {
         self.latest_ns
     }
 
+    /// Counters of milliseconds and microseconds have 32 bits, and begin again.
+    fn after_wrap(&mut self, ns: u64) -> u64 {
+        /// Sensors do not pause for longer; who does has started anew.
+        const LONGEST_PAUSE_NS: u64 = 10_000_000_000;
+        let [(_, TimeUnit::Ms | TimeUnit::Us)] = self.plan.time[..] else { return ns };
+        let wrap_ns = (self.plan.time[0].1.nanoseconds() as u64) << 32;
+        let (at, latest) = (ns.saturating_add(self.wrapped_ns), self.counted_ns);
+        let pause_ns = at.saturating_add(wrap_ns).checked_sub(latest);
+        if at < latest && pause_ns.is_some_and(|ns| ns < LONGEST_PAUSE_NS) {
+            self.wrapped_ns = self.wrapped_ns.saturating_add(wrap_ns);
+        }
+        self.counted_ns = ns.saturating_add(self.wrapped_ns);
+        self.counted_ns
+    }
+
     /// The sensor with this label; one that the first lines do not have is believed when it comes again.
     fn labelled(&mut self, label: String) -> Result<usize, Unread> {
         if let Some(&sensor) = self.by_label.get(&label) {
@@ -304,7 +347,7 @@ impl<'a, 's, 'e> Rows<'a, 's, 'e> {
     }
 
     /// The range in metres; infinite without echo.
-    fn range_m(&self, text: &str, column: &Column) -> Result<f64, Unread> {
+    fn range_m(&self, text: &str, column: &Column, of_row: Option<RangeUnit>) -> Result<f64, Unread> {
         let (name, unit) = (&column.name, column.unit);
         let no_echo = &self.plan.no_echo;
         if no_echo.words.iter().any(|word| text.eq_ignore_ascii_case(word)) {
@@ -326,7 +369,7 @@ impl<'a, 's, 'e> Rows<'a, 's, 'e> {
             return Ok(f64::INFINITY);
         }
         let asked = self.options.table.range_unit;
-        let range_m = number * asked.or(own_unit).unwrap_or(unit).metres(self.options.speed_of_sound);
+        let range_m = number * asked.or(own_unit).or(of_row).unwrap_or(unit).metres(self.options.speed_of_sound);
         Ok(if range_m < 0.0 {
             f64::NEG_INFINITY
         } else if range_m >= self.options.no_echo_m {
@@ -339,8 +382,13 @@ impl<'a, 's, 'e> Rows<'a, 's, 'e> {
     /// Tells what was left out.
     pub(super) fn end(self) {
         let skipped = &mut self.sink.report.skipped;
-        if self.others > 0 {
-            let why = format!("{} lines without readings", self.others);
+        if self.of_light > 0 {
+            let column = self.plan.medium.map_or("", |(index, _)| &self.plan.columns[index].name);
+            let (topic, why) = (column.to_owned(), "no ultrasound, by this column; --range reads them".to_owned());
+            skipped.push(Skipped { topic, why, messages: self.of_light });
+        }
+        if self.others > self.of_light {
+            let why = format!("{} lines without readings", self.others - self.of_light);
             skipped.push(Skipped { topic: "the text".to_owned(), why, messages: 0 });
         }
         if !self.unknown.is_empty() {

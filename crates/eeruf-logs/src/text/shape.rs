@@ -49,9 +49,27 @@ impl Separator {
     }
 }
 
+/// Returns true for a line of dashes, or of another sign, between rows or messages.
+pub(super) fn is_rule(text: &str) -> bool {
+    let text = text.trim();
+    text.len() >= 3
+        && ["-", "=", "*", "_"].iter().any(|sign| text.trim_matches(['|', '+']).replace(sign, "").is_empty())
+}
+
+/// Returns true for the line between a header and its rows, as `sqlite3`, `psql` and Markdown draw it.
+pub(super) fn is_underline(cells: &[String]) -> bool {
+    let is_part = |cell: &String| cell.trim_matches([':', '+', '-', '=']).is_empty();
+    cells.iter().all(is_part) && cells.iter().any(|cell| cell.contains("--") || cell.contains("=="))
+}
+
 /// The brackets around a line, as Python prints a list.
 fn without_brackets(line: &str) -> &str {
-    let pairs = [('[', ']'), ('(', ')')];
+    // A sentence of NMEA 0183.
+    let sentence = line.strip_prefix('$').and_then(|line| line.rsplit_once('*'));
+    if let Some((inner, _)) = sentence.filter(|(_, sum)| sum.len() == 2) {
+        return inner;
+    }
+    let pairs = [('[', ']'), ('(', ')'), ('<', '>'), ('{', '}')];
     let inner = pairs.iter().find_map(|&(open, close)| line.strip_prefix(open)?.strip_suffix(close));
     inner.unwrap_or(line)
 }
@@ -70,7 +88,7 @@ pub(crate) fn separated(line: &str, separator: Separator) -> Option<Vec<String>>
     let line = without_brackets(line.trim_matches([' ', '\u{feff}']));
     let Some(letter) = separator.letter() else {
         return Some(match separator {
-            Separator::Spaces => line.split_whitespace().map(str::to_owned).collect(),
+            Separator::Spaces => line.split_whitespace().map(|cell| cell.trim_matches('"').to_owned()).collect(),
             _ => vec![line.trim().to_owned()],
         });
     };
@@ -96,7 +114,7 @@ pub(crate) fn separated(line: &str, separator: Separator) -> Option<Vec<String>>
 pub(crate) fn keyed(line: &str) -> Option<Vec<(String, String)>> {
     const BETWEEN: [char; 6] = [',', ';', '|', '\t', ' ', '&'];
     if !line.contains([':', '=']) {
-        return worded(line);
+        return worded(line).or_else(|| glued(line));
     }
     let dict = line.trim().strip_prefix('{').and_then(|inner| inner.strip_suffix('}'));
     let (mut rest, mut pairs) = (dict.unwrap_or(line), vec![]);
@@ -107,7 +125,9 @@ pub(crate) fn keyed(line: &str) -> Option<Vec<(String, String)>> {
             return None;
         }
         let is_equal = rest[at..].starts_with('=');
-        let after = rest[at + 1..].trim_start_matches([' ', '\t', '=', '>']);
+        let after = &rest[at + 1..];
+        let after =
+            after.strip_prefix(['=', '>']).filter(|_| is_equal).unwrap_or(after).trim_start_matches([' ', '\t']);
         let phrase = ["out of range", "no echo", "time out"]
             .iter()
             .find(|phrase| after.get(..phrase.len()).is_some_and(|start| start.eq_ignore_ascii_case(phrase)));
@@ -127,12 +147,19 @@ pub(crate) fn keyed(line: &str) -> Option<Vec<(String, String)>> {
         rest = &after[end..];
         // A unit after a space.
         let spaced = rest.trim_start_matches(' ');
-        let word = &spaced[..spaced.find(|letter: char| !letter.is_alphabetic()).unwrap_or(spaced.len())];
+        let word = &spaced[..spaced.find(BETWEEN).unwrap_or(spaced.len())];
         let follows = spaced[word.len()..].trim_start().chars().next();
-        let is_key = follows.is_some_and(|letter| letter == ':' || letter == '=');
-        if !is_key && value::number(&text, true).is_some() && value::unit(word).is_some() {
+        let is_key = word.contains([':', '=']) || follows.is_some_and(|letter| letter == ':' || letter == '=');
+        // Of another quantity, as in `21.5 C`.
+        let is_unit = value::unit(word).is_some() || word.starts_with('%') || (1..=4).contains(&word.len());
+        let is_unit = is_unit && !word.contains(|letter: char| letter.is_ascii_digit() || letter == '(');
+        if !is_key && !text.is_empty() && value::range(&text, true).is_some() && is_unit {
             text = format!("{text} {word}");
             rest = &spaced[word.len()..];
+        }
+        // A remark, such as the same range in another unit.
+        if let Some((_, after)) = rest.trim_start().strip_prefix('(').and_then(|remark| remark.split_once(')')) {
+            rest = after;
         }
         // A number before `=`, or before a value with a unit, is a sensor's; before anything else a part of a time.
         let is_number = key.len() <= 2 && key.bytes().all(|byte| byte.is_ascii_digit());
@@ -159,6 +186,20 @@ fn worded(line: &str) -> Option<Vec<(String, String)>> {
         pairs.push((name.to_owned(), unit.map_or_else(|| text.to_owned(), |unit| format!("{text} {unit}"))));
     }
     (pairs.len() > 1).then_some(pairs)
+}
+
+/// The pairs of a line of names with values right behind them, as `F40 L80` or `R0756`.
+fn glued(line: &str) -> Option<Vec<(String, String)>> {
+    let mut pairs: Vec<(String, String)> = vec![];
+    for cell in line.split([' ', '\t', ',', ';']).filter(|cell| !cell.is_empty()) {
+        let (name, text) = cell.split_at(cell.find(|letter: char| letter.is_ascii_digit())?);
+        let is_name = (1..=8).contains(&name.len()) && name.bytes().all(|byte| byte.is_ascii_alphabetic());
+        if !is_name || pairs.iter().any(|(known, _)| known == name) || value::with_unit(text, false).is_none() {
+            return None;
+        }
+        pairs.push((name.to_owned(), text.to_owned()));
+    }
+    (!pairs.is_empty()).then_some(pairs)
 }
 
 /// The values of a JSON object by their paths, or of an array by their places; nothing if it is neither.

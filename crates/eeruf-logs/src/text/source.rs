@@ -12,6 +12,8 @@ pub(crate) enum Source<'a> {
     Lines(Lines<'a>),
     Objects(Objects<'a>),
     Messages(Lines<'a>),
+    /// An ArduPilot log as text: many tables in one file, of which one holds ranges.
+    DataFlash(Lines<'a>),
 }
 
 impl<'a> Source<'a> {
@@ -36,6 +38,9 @@ impl<'a> Source<'a> {
         if messages::are_in(&start) {
             return Ok(Self::Messages(Lines::new(input)));
         }
+        if start.starts_with("FMT,") {
+            return Ok(Self::DataFlash(Lines::new(input)));
+        }
         let mut start = start.trim_start().chars();
         let is_document = match start.next() {
             Some('[') => matches!(start.as_str().trim_start().chars().next(), Some('{' | '[')),
@@ -55,6 +60,12 @@ impl<'a> Source<'a> {
             Self::Lines(lines) => lines.next(),
             Self::Objects(objects) => objects.next_row(),
             Self::Messages(lines) => messages::next(lines),
+            Self::DataFlash(lines) => loop {
+                let Some(line) = lines.next()? else { return Ok(None) };
+                if let Some(text) = rangefinder(&line.text) {
+                    return Ok(Some(Line { text, ..line }));
+                }
+            },
         }
     }
 
@@ -64,8 +75,33 @@ impl<'a> Source<'a> {
             Self::Lines(_) => None,
             Self::Objects(_) => Some("JSON, a document"),
             Self::Messages(_) => Some("messages, as `ros2 topic echo` prints them"),
+            Self::DataFlash(_) => Some("RFND of an ArduPilot log"),
         }
     }
+
+    /// Returns true for records of which each is an object.
+    pub(super) const fn is_of_objects(&self) -> bool {
+        matches!(self, Self::Objects(_) | Self::Messages(_))
+    }
+}
+
+/// A row of an ArduPilot log's table `RFND`, or its header. Without an echo the range is none, as its status says.
+fn rangefinder(line: &str) -> Option<String> {
+    if let Some(format) = line.strip_prefix("FMT,") {
+        let mut cells = format.splitn(5, ',').map(str::trim);
+        return (cells.nth(2) == Some("RFND")).then(|| cells.nth(1).map(str::to_owned))?;
+    }
+    let mut cells: Vec<_> = line.strip_prefix("RFND,")?.split(',').map(str::trim).collect();
+    // Time, instance, range, status and orientation: 1 is without data, 2 below and 3 beyond what it measures.
+    if let [_, _, range, status, _, ..] = &mut cells[..] {
+        match *status {
+            "0" | "1" => *range = "none",
+            "2" => *range = "-inf",
+            "3" => *range = "inf",
+            _ => {}
+        }
+    }
+    Some(cells.join(","))
 }
 
 /// Transcodes UTF-16 to UTF-8.

@@ -28,7 +28,7 @@ fn said(bytes: &[u8], options: &Options) -> (String, Option<f64>, Report) {
 /// Name, text, sensors, and seconds between the first two readings.
 type Form = (&'static str, &'static str, &'static str, Option<f64>);
 
-const FORMS: [Form; 66] = [
+const FORMS: [Form; 101] = [
     ("comma", "left,right\n40,80\n41,81\n", "left: 0.4 0.41; right: 0.8 0.81", None),
     ("semicolon", "left;right\n40;80\n41;81\n", "left: 0.4 0.41; right: 0.8 0.81", None),
     ("tab", "left\tright\n40\t80\n41\t81\n", "left: 0.4 0.41; right: 0.8 0.81", None),
@@ -217,6 +217,210 @@ const FORMS: [Form; 66] = [
         "a: 0.405 0.415",
         Some(0.1),
     ),
+    (
+        "Python's logging",
+        "2026-01-01 14:00:00,100 - sonar - INFO - left: 40.1 cm\n2026-01-01 14:00:00,150 - sonar - INFO - le\
+         ft: 41.1 cm\n",
+        "left: 0.401 0.411",
+        Some(0.05),
+    ),
+    (
+        "Python's logging, its usual form",
+        "INFO:sonar:left: 40.1 cm\nINFO:sonar:left: 41.1 cm\n",
+        "left: 0.401 0.411",
+        None,
+    ),
+    (
+        "ros2 launch",
+        "[us_node-1] [INFO] [1700000000.100000000] [us_node]: left: 0.40\n[us_node-1] [INFO] [1700000000.150\
+         000000] [us_node]: left: 0.41\n",
+        "left: 0.4 0.41",
+        Some(0.05),
+    ),
+    (
+        "journalctl",
+        "2026-01-01T14:00:00.00+0100 robot us[7]: left=40cm\n2026-01-01T14:00:00.05+0100 robot us[7]: left=4\
+         1cm\n",
+        "left: 0.4 0.41",
+        Some(0.05),
+    ),
+    (
+        "ts",
+        "Jan 02 12:00:01 40,80\nJan 02 12:00:02 41,81\nJan 02 12:00:03 40,80\n",
+        "column 1: 0.4 0.41 0.4; column 2: 0.8 0.81 0.8",
+        Some(1.0),
+    ),
+    (
+        "Tera Term",
+        "[Tue Jan 02 12:00:01.100 2024] 40,80\n[Tue Jan 02 12:00:01.150 2024] 41,81\n[Tue Jan 02 12:00:01.20\
+         0 2024] 40,80\n",
+        "column 1: 0.4 0.41 0.4; column 2: 0.8 0.81 0.8",
+        Some(0.05),
+    ),
+    (
+        "grabserial",
+        "[1.234567 0.012345] 40,80\n[1.284567 0.050000] 41,81\n[1.334567 0.050000] 40,80\n",
+        "column 1: 0.4 0.41 0.4; column 2: 0.8 0.81 0.8",
+        Some(0.05),
+    ),
+    (
+        "ESP-IDF in colours",
+        "\u{1b}[0;32mI (50) us: left: 40 cm\u{1b}[0m\n\u{1b}[0;32mI (110) us: left: 41 cm\u{1b}[0m\n",
+        "left: 0.4 0.41",
+        Some(0.06),
+    ),
+    ("micros that begin anew", "micros,left\n4294950000,40\n32704,41\n82704,40\n", "left: 0.4 0.41 0.4", Some(0.05)),
+    (
+        "seconds and microseconds",
+        "tv_sec,tv_usec,left\n1700000000,950000,40\n1700000001,0,41\n",
+        "left: 0.4 0.41",
+        Some(0.05),
+    ),
+    (
+        "a clock of 12 hours",
+        "time,left\n1/2/2024 11:59:59 AM,40\n1/2/2024 12:00:00 PM,41\n1/2/2024 12:00:01 PM,40\n",
+        "left: 0.4 0.41 0.4",
+        Some(1.0),
+    ),
+    (
+        "pandas' time differences",
+        "time,left\n0 days 00:00:00,40\n0 days 00:00:00.050000,41\n0 days 00:00:00.100000,40\n",
+        "left: 0.4 0.41 0.4",
+        Some(0.05),
+    ),
+    (
+        "index of dates",
+        ",left,right\n2026-01-01 14:00:00.000000,40.1,80.2\n2026-01-01 14:00:00.050000,40.2,80.3\n",
+        "left: 0.401 0.402; right: 0.802 0.803",
+        Some(0.05),
+    ),
+    (
+        "a unit in each row",
+        "time,sensor,range,unit\n0.0,left,40,cm\n0.1,right,800,mm\n0.2,left,41,cm\n0.3,right,810,mm\n",
+        "left: 0.4 0.41; right: 0.8 0.81",
+        Some(0.2),
+    ),
+    ("ros2 topic echo --field", "1.25\n---\n1.26\n---\n.inf\n---\n1.25\n---\n", "column 1: 1.25 1.26 - 1.25", None),
+    (
+        "DataFlash as text",
+        "FMT, 167, 16, RFND, QBCBB, TimeUS,Instance,Dist,Stat,Orient\nRFND, 1000000, 0, 1.23, 4, 25\nRFND, 1\
+         050000, 0, 7.00, 3, 25\nRFND, 1100000, 0, 0.10, 2, 25\nRFND, 1150000, 0, 0.00, 1, 25\n",
+        "0: 1.23 - < -",
+        Some(0.05),
+    ),
+    (
+        "ulog2csv",
+        "timestamp,device_id,min_distance,max_distance,current_distance,variance,signal_quality,h_fov,v_fov,\
+         q[0],q[1],q[2],q[3],type,orientation\n12345678,8388649,0.2,7.65,1.23,0,-1,0.5,0.5,0,0,0,0,1,25\n1239\
+         5678,8388649,0.2,7.65,1.24,0,-1,0.5,0.5,0,0,0,0,1,25\n12445678,8388649,0.2,7.65,1.23,0,-1,0.5,0.5,0,\
+         0,0,0,1,25\n",
+        "8388649: 1.23 1.24 1.23",
+        Some(0.05),
+    ),
+    (
+        "mavlogdump, a laser",
+        "timestamp,DISTANCE_SENSOR.time_boot_ms,DISTANCE_SENSOR.min_distance,DISTANCE_SENSOR.max_distance,DI\
+         STANCE_SENSOR.current_distance,DISTANCE_SENSOR.type,DISTANCE_SENSOR.id,DISTANCE_SENSOR.orientation\n\
+         1700000000.00,0,2,400,39,0,0,0\n1700000000.03,30,2,400,80,1,1,0\n1700000000.06,60,2,400,38,0,0,0\n17\
+         00000000.09,90,2,400,81,1,1,0\n",
+        "1: 0.8 0.81",
+        Some(0.06),
+    ),
+    (
+        "ros2 topic echo, infrared",
+        "header:\n  stamp:\n    sec: 7\n    nanosec: 0\n  frame_id: us\nradiation_type: 0\nfield_of_view: 0.\
+         5\nmin_range: 0.02\nmax_range: 4.0\nrange: 0.4\n---\nheader:\n  stamp:\n    sec: 7\n    nanosec: 500\
+         00000\n  frame_id: ir\nradiation_type: 1\nfield_of_view: 0.5\nmin_range: 0.02\nmax_range: 4.0\nrange\
+         : 0.8\n---\nheader:\n  stamp:\n    sec: 7\n    nanosec: 100000000\n  frame_id: us\nradiation_type: 0\
+         \nfield_of_view: 0.5\nmin_range: 0.02\nmax_range: 4.0\nrange: 0.41\n---\nheader:\n  stamp:\n    sec: \
+         7\n    nanosec: 150000000\n  frame_id: ir\nradiation_type: 1\nfield_of_view: 0.5\nmin_range: 0.02\nm\
+         ax_range: 4.0\nrange: 0.81\n---\n",
+        "us: 0.4 0.41",
+        Some(0.1),
+    ),
+    (
+        "beyond limits, pairs",
+        "left: 40 cm, right: >400 cm\nleft: <2 cm, right: 80 cm\nleft: 41 cm, right: 81 cm\n",
+        "left: 0.4 < 0.41; right: - 0.8 0.81",
+        None,
+    ),
+    (
+        "beyond limits, cells",
+        "left,right\n40,>400\n<2,80\n41,81\n40,80\n",
+        "left: 0.4 < 0.41 0.4; right: - 0.8 0.81 0.8",
+        None,
+    ),
+    (
+        "words with units",
+        "Left: 40.1 cm Right: -- cm\nLeft: inf cm Right: 80.1 cm\nLeft: nan cm Right: 80.2 cm\nLeft: 40.2 cm \
+         Right: None cm\n",
+        "Left: 0.401 - - 0.402; Right: - 0.801 0.802 -",
+        None,
+    ),
+    (
+        "names before values",
+        "F40 L80 R120\nF41 L81 R121\nF40 L80 R0\n",
+        "F: 0.4 0.41 0.4; L: 0.8 0.81 0.8; R: 1.2 1.21 -",
+        None,
+    ),
+    ("MaxBotix", "R0756\rR0757\rR5000\rR0756\r", "R: 0.756 0.757 - 0.756", None),
+    (
+        "packets in brackets",
+        "<40,80,120>\n<41,81,121>\n<40,80,120>\n",
+        "column 1: 0.4 0.41 0.4; column 2: 0.8 0.81 0.8; column 3: 1.2 1.21 1.2",
+        None,
+    ),
+    (
+        "NMEA 0183",
+        "$SONAR,40,80*2F\r\n$SONAR,41,81*2F\r\n$SONAR,40,80*2F\r\n",
+        "column 2: 0.4 0.41 0.4; column 3: 0.8 0.81 0.8",
+        None,
+    ),
+    (
+        "names that are numbers",
+        "time,0,1,2\n0.0,40,80,120\n0.1,41,81,121\n0.2,40,80,120\n",
+        "0: 0.4 0.41 0.4; 1: 0.8 0.81 0.8; 2: 1.2 1.21 1.2",
+        Some(0.1),
+    ),
+    (
+        "print of pandas",
+        "     t  left  right\n0  0.0    40     80\n1  0.1    41     81\n2  0.2    40     80\n",
+        "left: 0.4 0.41 0.4; right: 0.8 0.81 0.8",
+        Some(0.1),
+    ),
+    (
+        "psql",
+        "  t  | left | right \n-----+------+-------\n 0.0 |   40 |    80\n 0.1 |   41 |    81\n(2 rows)\n",
+        "left: 0.4 0.41; right: 0.8 0.81",
+        Some(0.1),
+    ),
+    (
+        "columns of a robot",
+        "t,us_front,batt_v,enc_l,imu_ax,left_ticks,tof_left,moving,us_front_ok\n0.0,40,11.9,100,0.1,7,39,1,1\
+         \n0.1,41,11.8,107,0.1,9,38,0,1\n0.2,40,11.9,114,0.1,8,39,1,0\n",
+        "us_front: 0.4 0.41 0.4",
+        Some(0.1),
+    ),
+    (
+        "sensors in turn, no header",
+        "1,40\n2,80\n3,120\n1,41\n2,81\n3,121\n1,40\n2,80\n3,120\n",
+        "1: 0.4 0.41 0.4; 2: 0.8 0.81 0.8; 3: 1.2 1.21 1.2",
+        None,
+    ),
+    ("addresses", "0x70: 40 cm\n0x71: 80 cm\n0x70: 41 cm\n0x71: 81 cm\n", "0x70: 0.4 0.41; 0x71: 0.8 0.81", None),
+    ("the range in two units", "Distance: 40 cm (15.7 in)\nDistance: 41 cm (16.1 in)\n", "Distance: 0.4 0.41", None),
+    (
+        "other quantities",
+        "Distance: 40.1 cm, Temp: 21.5 C, Batt: 11.9 V\nDistance: 41.1 cm, Temp: 21.5 C, Batt: 11.9 V\n",
+        "Distance: 0.401 0.411",
+        None,
+    ),
+    (
+        "greeting again",
+        "HC-SR04 test\nmillis,left\n1000,40\n1050,41\nHC-SR04 test\nmillis,left\n20,41\n70,40\n",
+        "left: 0.4 0.41 0.41 0.4",
+        Some(0.05),
+    ),
 ];
 
 #[test]
@@ -338,6 +542,9 @@ fn log_without_sensors_says_what_it_holds() {
         ("hello\nworld\n", "none of them a range"),
         ("t,battery\n1,12.1\n2,12.0\n", "columns t, battery, none of them a range"),
         ("{\"event\":\"start\"}\n", "columns event, none of them a range"),
+        ("Time [s],Channel 0\n0.0000,0\n0.0012,1\n0.0052,0\n", "Channel 0, none of them a range"),
+        ("can0 201 [4] 01 90 03 20\ncan0 201 [4] 01 91 03 21\ncan0 202 [4] 02 91 03 21\n", "none of them a range"),
+        ("FMT, 128, 89, FMT, BBnNZ, Type,Length,Name\nATT, 100, 0.1, 0.2\n", "no records with ranges"),
     ] {
         let (_, _, report) = said(text.as_bytes(), &Options::default());
         assert!(report.sensors.is_empty());

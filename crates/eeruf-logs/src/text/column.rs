@@ -88,9 +88,10 @@ impl Column {
         numbers > 0 && self.texts + self.calendars <= numbers
     }
 
-    /// Returns true for a column of 0 and 1 alone, which a range in no unit is.
+    /// Returns true for a column of `0` and `1` alone, which a range in no unit is; `1.0` may be one in metres.
     pub(super) fn is_flag(&self) -> bool {
-        let is_one = self.numbers.contains(&1.0) && self.numbers.iter().all(|number| [0.0, 1.0].contains(number));
+        let is_one =
+            self.numbers.contains(&1.0) && self.distinct.keys().all(|text| ["0", "1"].contains(&text.as_str()));
         is_one && self.numbers.len() > 2 && self.no_echoes + self.units == 0 && names::range_unit(&self.name).is_none()
     }
 

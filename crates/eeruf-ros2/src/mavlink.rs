@@ -35,7 +35,7 @@ const QUALITY_PERFECT: u8 = 100;
 /// The sectors of `OBSTACLE_DISTANCE`, each five degrees wide.
 const SECTORS: usize = 72;
 const SECTOR_DEG: f32 = 5.0;
-/// The middle of the first sector, clockwise from ahead. `ArduPilot` divides the circle into eight faces of 45 degrees
+/// The middle of the first sector, clockwise from ahead. ArduPilot divides the circle into eight faces of 45 degrees
 /// and keeps the last run of sectors in each: the array begins where a face does, so that no face has two runs.
 const FIRST_SECTOR_DEG: f32 = -20.0;
 /// A sensor covers this much to each side at least: PX4 reads every second sector.

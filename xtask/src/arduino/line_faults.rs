@@ -50,10 +50,9 @@ const WALL_MM: u32 = 1000;
 const OFF_MM: u32 = 10;
 /// Surroundings of the module, as the file names them.
 const PLACES: [&str; 2] = ["wall", "nothing"];
-/// The faults of all languages, and the table of the outcomes, of which this column is compared.
+/// The faults of all languages, and the table of the outcomes, of which one column is compared.
 const FILE: &str = "tests/data/line-faults.txt";
 const LOG: &str = "docs/log/line-faults.md";
-const COLUMN: &str = "Arduino";
 /// Readings that a line may take to show its fault: the time that a clone holds it, in periods.
 const UNTIL_STUCK: usize = 4;
 
@@ -132,8 +131,8 @@ type Outcome = (&'static str, &'static str, [usize; 3]);
 /// take the sum.
 fn with_column(document: &str, said: &[Outcome]) -> Result<String> {
     let head = document.lines().find(|line| line.starts_with("| fault")).map(cells).unwrap_or_default();
-    let column = head.iter().position(|&name| name == COLUMN);
-    let column = column.with_context(|| format!("{LOG} has no column {COLUMN}"))?;
+    let column =
+        head.iter().position(|&name| name == "Arduino").with_context(|| format!("{LOG} has no column Arduino"))?;
     let mut text = String::new();
     for line in document.lines() {
         let mut row = cells(line);

@@ -152,7 +152,7 @@ impl Pair {
     pub(super) fn is_audible_from(&self, instant: Instant) -> bool {
         let [first, _] = self.heard;
         // An instant after the first reading leaves all before it open: its age is negative.
-        first.since(instant).as_micros().cast_signed() < self.audible.as_micros().cast_signed()
+        (first.since(instant).as_micros() as i32) < self.audible.as_micros() as i32
     }
 
     /// The firings whose sound could be heard at an instant, but for one: where they stand, when they were, and the

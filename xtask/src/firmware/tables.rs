@@ -8,13 +8,13 @@ use crate::toolchain::{DEBIAN_RUSTC, is_debian, version_of};
 
 /// Budgets of a ring of twelve on the Cortex-M0: (name in the measured lines, most instructions).
 const INSTRUCTIONS: [(&str, u32); 6] =
-    [("idle_poll", 44), ("fire", 116), ("echo", 69), ("stamp", 60), ("reading", 553), ("reading_late", 3311)];
+    [("idle_poll", 44), ("fire", 116), ("echo", 69), ("stamp", 60), ("reading", 475), ("reading_late", 2198)];
 /// Programs of a ring of twelve that weighs readings by a tracker: instructions and size.
 const HOPPING: [&str; 2] = ["hopping-instructions", "size-hopping-12"];
 const FLOW: [&str; 2] = ["flow-instructions", "size-flow-12"];
 /// Compilers differ: only more than the budget and this part of it fails.
 const LEEWAY: f64 = 0.05;
-const FLASH: u64 = 5048;
+const FLASH: u64 = 4788;
 const RAM: u64 = 12 * 32 + 92;
 const STACK: u64 = 624;
 

@@ -57,46 +57,54 @@ impl<const E: usize> Tracker<E> {
         }
         let before = core::mem::replace(&mut self.known, latest);
         let runs = core::mem::replace(&mut self.runs, [0; E]);
-        let earliest = latest.first().copied().unwrap_or(NO_ECHO);
-        let earliest_before = before.first().copied().and_then(echo_time);
         let most = tolerance.consecutive();
-
-        // Silence counts as an echo of its own, later than all others.
+        let earliest = latest.first().copied().unwrap_or(NO_ECHO);
         let silent = earliest == NO_ECHO;
-        let heard = latest.iter().copied().enumerate().take_while(|&(place, echo)| echo != NO_ECHO || place == 0);
-        // The earliest that is confirmed, or else the earliest that repeats.
-        let mut best = (1, earliest, earliest_before);
-        let mut ambiguous = None;
-        for ((_, echo), now) in heard.zip(&mut self.runs) {
+        // The earliest that is confirmed, or else the earliest that repeats; before there is any the first that foreign
+        // sound explains, or else the earliest.
+        let (mut best_run, mut best, mut matched) = (1, earliest, before.first().copied().unwrap_or(NO_ECHO));
+        let mut explained_by = None;
+        for (place, (&echo, now)) in latest.iter().zip(&mut self.runs).enumerate() {
+            // Silence counts as an echo of its own, later than all others.
+            if echo == NO_ECHO && place > 0 {
+                break;
+            }
             *now = 1;
-            for (&previous, run) in before.iter().zip(runs).take_while(|&(_, run)| run != 0) {
+            for (&previous, &run) in before.iter().zip(&runs) {
+                if run == 0 {
+                    break;
+                }
                 if !tolerance.near_identical(echo, previous, expected_change_us) {
                     continue;
                 }
                 if echo != NO_ECHO {
-                    if let Some(explained_by) = explanation(previous, echo) {
-                        ambiguous = ambiguous.or(Some((echo, previous, explained_by)));
+                    if let Some(by) = explanation(previous, echo) {
+                        if best_run == 1 && explained_by.is_none() {
+                            (best, matched, explained_by) = (echo, previous, Some(by));
+                        }
                         continue;
                     }
                 }
                 *now = (*now).max(run.saturating_add(1).min(most));
-                if best.0 == 1 || (*now == most && best.0 != most) {
-                    best = (*now, echo, echo_time(previous));
+                if best_run == 1 || (*now == most && best_run != most) {
+                    (best_run, best, matched, explained_by) = (*now, echo, previous, None);
                 }
             }
         }
-        let kind = match (best.0, ambiguous) {
-            (run, _) if run == most && silent => ReadingKind::Clear,
-            (run, _) if run == most => ReadingKind::Accepted,
-            _ if silent => ReadingKind::NoEcho,
-            (1, Some((echo, previous, by))) => {
-                return self.verdict(ReadingKind::Ambiguous, echo_time(echo), echo_time(previous), Some(by));
-            }
-            _ if earliest_before.is_none() => ReadingKind::First,
-            (1, None) => ReadingKind::Rejected,
-            _ => ReadingKind::Repeated,
+        let kind = if best_run == most {
+            if silent { ReadingKind::Clear } else { ReadingKind::Accepted }
+        } else if silent {
+            ReadingKind::NoEcho
+        } else if explained_by.is_some() {
+            ReadingKind::Ambiguous
+        } else if matched == NO_ECHO {
+            ReadingKind::First
+        } else if best_run == 1 {
+            ReadingKind::Rejected
+        } else {
+            ReadingKind::Repeated
         };
-        self.verdict(kind, echo_time(best.1), best.2, None)
+        self.verdict(kind, echo_time(best), echo_time(matched), explained_by)
     }
 
     fn verdict(

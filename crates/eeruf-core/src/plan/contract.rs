@@ -33,6 +33,14 @@ pub struct Limits<'s> {
     pub audible: Option<Micros>,
 }
 
+/// Ends the period of a plan that is run without a ring. Out of line, since it is rarer than a firing and needs more
+/// registers.
+#[inline(never)]
+fn end_period_alone<P: Plan + ?Sized>(plan: &mut P, now: Instant) {
+    plan.end_period(now);
+    plan.begin_period(|_| now);
+}
+
 /// Decides when each sensor of a ring fires: [`ScheduledFiring`](super::ScheduledFiring),
 /// [`ImmediateRefiring`](super::ImmediateRefiring), [`HoppingPlan`](crate::hopping::HoppingPlan), or one of the
 /// caller's own.
@@ -55,8 +63,7 @@ pub trait Plan {
                 self.fire(now);
                 return Some(Upcoming { sensor, phase, due });
             }
-            self.end_period(now);
-            self.begin_period(|_| now);
+            end_period_alone(self, now);
         }
     }
     /// When the next step is due.

@@ -40,8 +40,9 @@ impl<const H: usize> Firings<H> {
 
     #[inline]
     pub(super) fn push(&mut self, now: Instant) {
-        let mut at = now;
-        for slot in &mut self.0 {
+        let Some((last, before)) = self.0.split_first_mut() else { return };
+        let mut at = core::mem::replace(last, now);
+        for slot in before {
             core::mem::swap(slot, &mut at);
         }
     }
@@ -52,6 +53,11 @@ impl<const H: usize> Firings<H> {
         if let Some(last) = self.0.first_mut() {
             *last = at;
         }
+    }
+
+    /// The oldest that is remembered: all that is forgotten was fired before.
+    pub(super) const fn oldest(&self) -> Instant {
+        self.0[H - 1]
     }
 
     /// The firing before the last one, if it is remembered.
@@ -75,7 +81,7 @@ impl<const H: usize> Firings<H> {
     pub(super) fn expire(&mut self, now: Instant) -> bool {
         let expired = is_long_ago(self.last(), now);
         if expired {
-            *self = Self::none_before(now);
+            self.0.fill(long_before(now));
         }
         expired
     }
@@ -110,56 +116,43 @@ pub(super) struct Pair {
     pub(super) path_change: Micros,
 }
 
-/// The answer of one sensor's firings to whether they explain two readings.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Answer {
-    /// They do not explain both.
-    No,
-    /// Two of them do.
-    Explained,
-    /// One that is forgotten could be among those that do.
-    Forgotten,
-}
-
 impl Pair {
-    /// Asks if sound of these firings explains both readings. `own`: they are the receiver's.
-    pub(super) fn ask<const H: usize>(&self, firings: &Firings<H>, own: bool) -> Answer {
-        let [first, second] = self.heard;
-        let (audible, path_change) = (self.audible.as_micros(), self.path_change.as_micros());
-        for (earlier, &a) in firings.0.iter().enumerate() {
+    /// Returns true if sound of these firings explains both readings. `own`: they are the receiver's, of which the last
+    /// does not count for the second reading, and the one before it not for the first.
+    // Out of line, where it has all registers of a Cortex-M0 to itself.
+    #[inline(never)]
+    pub(super) fn explains<const H: usize>(&self, firings: &Firings<H>, own: bool) -> bool {
+        let &Self { heard: [first, second], audible, path_change } = self;
+        for earlier in 0..H {
             // The length that the path would have in the first reading. Before it was sent nothing is heard.
-            let length_before = first.since(a).as_micros();
-            if length_before > audible || (own && earlier == 1) {
+            let length_before = first.since(firings.0[earlier]);
+            if length_before > audible {
                 continue;
             }
+            let latest = match (own, earlier) {
+                (false, _) => 0,
+                (true, 1) => continue,
+                (true, _) => 1,
+            };
+            // Both are below a minute, and the change below 66 ms: neither sum nor difference wraps twice.
+            let shortest = length_before.as_micros().wrapping_sub(path_change.as_micros());
             // The later of two firings is before the earlier here; both may be one if the readings are so close.
-            for &b in firings.0.iter().take(earlier + 1).skip(usize::from(own)) {
-                let length = second.since(b).as_micros();
-                // Both are below a minute, and the change below 66 ms: neither sum nor difference wraps twice.
-                let changed = length.wrapping_sub(length_before).wrapping_add(path_change);
-                if length <= audible && changed <= 2 * path_change {
-                    return Answer::Explained;
+            for later in latest..earlier + 1 {
+                let length = second.since(firings.0[later]);
+                let changed = length.as_micros().wrapping_sub(shortest);
+                if changed <= 2 * path_change.as_micros() && length <= audible {
+                    return true;
                 }
             }
         }
-        self.or_forgotten(firings)
-    }
-
-    /// The answer of firings that do not explain both readings.
-    fn or_forgotten<const H: usize>(&self, firings: &Firings<H>) -> Answer {
-        // All that is forgotten was fired before the oldest that is remembered.
-        match firings.0.last() {
-            Some(&oldest) if self.is_audible_from(oldest) => Answer::Forgotten,
-            _ => Answer::No,
-        }
+        false
     }
 
     /// Returns true if sound from before this instant could be in the first reading.
     pub(super) fn is_audible_from(&self, instant: Instant) -> bool {
         let [first, _] = self.heard;
-        let age = first.since(instant).as_micros();
-        // An instant after the first reading leaves all before it open.
-        age < self.audible.as_micros() || age > u32::MAX / 2
+        // An instant after the first reading leaves all before it open: its age is negative.
+        (first.since(instant).as_micros() as i32) < self.audible.as_micros() as i32
     }
 
     /// The firings whose sound could be heard at an instant, but for one: where they stand, when they were, and the
@@ -178,9 +171,9 @@ impl Pair {
             .map(|(place, sent, length)| (place, sent, i64::from(length.as_micros())))
     }
 
-    /// Asks if sound of these firings explains three readings, `third` after the two, by a path that changes at a
-    /// constant rate. `own`: they are the receiver's.
-    pub(super) fn ask_line<const H: usize>(&self, third: Instant, firings: &Firings<H>, own: bool) -> Answer {
+    /// Returns true if sound of these firings explains three readings, `third` after the two, by a path that changes at
+    /// a constant rate. `own`: they are the receiver's.
+    pub(super) fn explains_line<const H: usize>(&self, third: Instant, firings: &Firings<H>, own: bool) -> bool {
         let [first, second] = self.heard;
         let path_change = i64::from(self.path_change.as_micros());
         let own = |place| own.then_some(place);
@@ -191,11 +184,11 @@ impl Pair {
                     let [before, since] = [b.since(a), c.since(b)].map(|time| i64::from(time.as_micros()));
                     let off = (length_b - length_a) * since - (length_c - length_b) * before;
                     if off.abs() <= path_change * (before + since) {
-                        return Answer::Explained;
+                        return true;
                     }
                 }
             }
         }
-        self.or_forgotten(firings)
+        false
     }
 }

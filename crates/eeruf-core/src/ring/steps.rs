@@ -1,6 +1,6 @@
 //! The steps that a poll of a [`Ring`] takes when something is due: fire, emit a reading, end the period.
 
-use super::history::{Answer, Firings, Pair, STEP_BACK, is_long_ago, long_before};
+use super::history::{Firings, Pair, STEP_BACK, is_long_ago, long_before};
 use super::listening::Listening;
 use super::punctuality::PeriodLateness;
 use super::sensor::{Ended, LISTENING, READY, Sensor};
@@ -284,7 +284,7 @@ impl<P: Plan, const E: usize, const H: usize> Memory<'_, P, E, H> {
     fn explain_pair(&self, first: Micros, second: Micros) -> Option<Explanation> {
         let own = self.sensors.get(usize::from(self.receiver))?;
         let pair = self.pair([own.firings.before()? + first, own.fired() + second]);
-        self.ask(&pair, |firings, own| pair.ask(firings, own))
+        self.ask(&pair, |firings, own| pair.explains(firings, own))
     }
 
     #[inline(never)]
@@ -296,7 +296,7 @@ impl<P: Plan, const E: usize, const H: usize> Memory<'_, P, E, H> {
         };
         let pair = self.pair([fired_before + first, fired + second]);
         let third = own.last() + third;
-        self.ask(&pair, |firings, own| pair.ask_line(third, firings, own))
+        self.ask(&pair, |firings, own| pair.explains_line(third, firings, own))
     }
 
     fn pair(&self, heard: [Instant; 2]) -> Pair {
@@ -304,20 +304,19 @@ impl<P: Plan, const E: usize, const H: usize> Memory<'_, P, E, H> {
         Pair { heard, audible: self.listening.audible(), path_change }
     }
 
-    /// Asks all sensors that the receiver can hear, itself among them.
+    /// Asks of all sensors that the receiver can hear, itself among them, if their firings explain what it heard.
     #[inline(always)]
-    fn ask(&self, pair: &Pair, answer: impl Fn(&Firings<H>, bool) -> Answer) -> Option<Explanation> {
-        let mut forgotten = pair.is_audible_from(self.known_from);
-        for (x, sensor) in self.sensors.iter().enumerate().take(self.plan.sensors()) {
-            // At most 64 sensors.
-            let x = x as u8;
-            if self.plan.hears(self.receiver, x) {
-                match answer(&sensor.firings, x == self.receiver) {
-                    Answer::Explained => return Some(Explanation::Sensor(x)),
-                    Answer::Forgotten => forgotten = true,
-                    Answer::No => {}
-                }
+    fn ask(&self, pair: &Pair, explain: impl Fn(&Firings<H>, bool) -> bool) -> Option<Explanation> {
+        let sensors = self.sensors.get(..self.plan.sensors()).unwrap_or(self.sensors);
+        // At most 64 sensors.
+        for (x, sensor) in (0..).zip(sensors) {
+            if self.plan.hears(self.receiver, x) && explain(&sensor.firings, x == self.receiver) {
+                return Some(Explanation::Sensor(x));
             }
+        }
+        let mut forgotten = pair.is_audible_from(self.known_from);
+        for (x, sensor) in (0..).zip(sensors) {
+            forgotten |= self.plan.hears(self.receiver, x) && pair.is_audible_from(sensor.firings.oldest());
         }
         forgotten.then_some(Explanation::History)
     }

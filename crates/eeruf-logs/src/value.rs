@@ -249,10 +249,23 @@ pub(crate) fn without_level(line: &str) -> &str {
     rest.and_then(|rest| rest.split_once(':')).map_or(line, |(_, said)| said.trim_start())
 }
 
-/// Nanoseconds of a time in brackets: a date, seconds, or seconds and those since the line before.
+/// Nanoseconds of a time with its unit: `1.5 s`, `1500ms`.
+fn elapsed_ns(text: &str) -> Option<u64> {
+    let (time, unit) = text.split_at(text.find(char::is_alphabetic)?);
+    let unit_s = match unit {
+        "s" | "sec" => 1.0,
+        "ms" => 1e-3,
+        "us" | "\u{b5}s" => 1e-6,
+        _ => return None,
+    };
+    let time_s = unit_s * number(time.trim_end(), false)?;
+    (0.0..1e10).contains(&time_s).then(|| (time_s * 1e9).round() as u64)
+}
+
+/// Nanoseconds of a time in brackets: a date, seconds, seconds and those since the line before, or a time with a unit.
 fn bracketed_ns(inner: &str) -> Option<u64> {
     let seconds = |text: &str| number(text, false).filter(|&s| text.contains('.') && (0.0..1e10).contains(&s));
-    calendar_ns(inner).or_else(|| {
+    calendar_ns(inner).or_else(|| elapsed_ns(inner)).or_else(|| {
         let words: Vec<_> = inner.split_whitespace().map(seconds).collect::<Option<_>>()?;
         (words.len() <= 2).then(|| words.first().map(|s| (s * 1e9).round() as u64))?
     })
@@ -264,9 +277,15 @@ fn plain_time(line: &str) -> Option<(u64, &str)> {
     let first = line.find(is_end)?;
     let second = line[first..].trim_start();
     let second = line.len() - second.len() + second.find(is_end).unwrap_or(second.len());
-    let both = line.get(..second).and_then(|text| Some((calendar_ns(text.trim_end_matches(':'))?, &line[second..])));
+    // A time with a unit is what a colon ends.
+    let until_colon = |text: &str| text.strip_suffix(':').and_then(elapsed_ns);
+    let time = |text: &str| calendar_ns(text.trim_end_matches(':')).or_else(|| until_colon(text));
+    let both = line.get(..second).and_then(|text| Some((time(text)?, &line[second..])));
     if both.is_some() {
         return both;
+    }
+    if let Some(ns) = until_colon(&line[..first]) {
+        return Some((ns, &line[first..]));
     }
     let (own, rest) = (line[..first].trim_end_matches([':', '-']), &line[first..]);
     // A date whose time is a part of the next cell.

@@ -28,7 +28,7 @@ fn said(bytes: &[u8], options: &Options) -> (String, Option<f64>, Report) {
 /// Name, text, sensors, and seconds between the first two readings.
 type Form = (&'static str, &'static str, &'static str, Option<f64>);
 
-const FORMS: [Form; 101] = [
+const FORMS: [Form; 104] = [
     ("comma", "left,right\n40,80\n41,81\n", "left: 0.4 0.41; right: 0.8 0.81", None),
     ("semicolon", "left;right\n40;80\n41;81\n", "left: 0.4 0.41; right: 0.8 0.81", None),
     ("tab", "left\tright\n40\t80\n41\t81\n", "left: 0.4 0.41; right: 0.8 0.81", None),
@@ -414,6 +414,24 @@ const FORMS: [Form; 101] = [
         "Distance: 40.1 cm, Temp: 21.5 C, Batt: 11.9 V\nDistance: 41.1 cm, Temp: 21.5 C, Batt: 11.9 V\n",
         "Distance: 0.401 0.411",
         None,
+    ),
+    (
+        "milliseconds and a colon",
+        "100 ms: sonar[0]=0.40 m sonar[1]=0.80 m\n150 ms: sonar[0]=0.41 m sonar[1]=0.81 m\n",
+        "sonar[0]: 0.4 0.41; sonar[1]: 0.8 0.81",
+        Some(0.05),
+    ),
+    (
+        "time with its unit",
+        "1.5s: left=40 right=80\n1.6s: left=41 right=81\n",
+        "left: 0.4 0.41; right: 0.8 0.81",
+        Some(0.1),
+    ),
+    (
+        "unit in brackets",
+        "[1500 ms] left=40 right=80\n[1600 ms] left=41 right=81\n",
+        "left: 0.4 0.41; right: 0.8 0.81",
+        Some(0.1),
     ),
     (
         "greeting again",

@@ -153,6 +153,13 @@ impl Column {
         falls * 2 >= self.numbers.len() && falls > 0
     }
 
+    /// Returns true for a column that rises from its first value to the second as it does then: times from 0 on.
+    pub(super) fn begins_evenly(&self) -> bool {
+        let steps = self.steps();
+        let (Some(median), [first, second, ..]) = (steps.get(steps.len() / 2), &self.numbers[..]) else { return false };
+        self.is_rising() && second - first <= 3.0 * median
+    }
+
     pub(super) fn steps(&self) -> Vec<f64> {
         let mut steps: Vec<f64> =
             self.numbers.windows(2).map(|two| two[1] - two[0]).filter(|&step| step > 0.0).collect();

@@ -390,7 +390,7 @@ impl Plan {
         // A log of a serial line begins in the middle of a line.
         if let [(number, first), rest @ ..] = &firsts[..] {
             let is_shorter = rest.iter().all(|(_, other)| first < other) && rest.len() >= 3;
-            self.is_first_cut = self.header.is_none() && *number == 1 && is_shorter;
+            self.is_first_cut = self.header.is_none() && *number == 1 && is_shorter && !self.columns[0].begins_evenly();
         }
         Ok(units)
     }
@@ -564,10 +564,11 @@ impl Plan {
         column.is_rising() && column.steps().iter().all(|&step| (step - 1.0).abs() < 1e-9) && column.numbers[0] < 2.0
     }
 
-    /// A column without a name that rises evenly, to numbers that no range has, is a time.
+    /// The first numbers without a name that rise evenly, to numbers that no range has, are times.
     fn is_clock(&self, index: usize) -> bool {
-        let column = &self.columns[index];
-        if index != 0 || self.columns.len() < 2 || !column.is_rising() {
+        let (before, [column, others @ ..]) = self.columns.split_at(index) else { return false };
+        let is_first = before.iter().all(|other| other.numbers.is_empty());
+        if !is_first || others.is_empty() || !column.is_rising() {
             return false;
         }
         let steps = column.steps();
@@ -576,7 +577,7 @@ impl Plan {
         let middle = column.numbers[column.numbers.len() / 2];
         // Seconds among centimetres.
         let is_small = middle.fract() != 0.0
-            && self.columns[1..]
+            && others
                 .iter()
                 .all(|other| other.numbers.iter().filter(|&&number| number > 0.0).all(|&number| number > 5.0 * middle));
         is_even && (middle >= 500.0 || column.numbers.len() >= 8 || is_small)

@@ -28,7 +28,7 @@ fn said(bytes: &[u8], options: &Options) -> (String, Option<f64>, Report) {
 /// Name, text, sensors, and seconds between the first two readings.
 type Form = (&'static str, &'static str, &'static str, Option<f64>);
 
-const FORMS: [Form; 104] = [
+const FORMS: [Form; 106] = [
     ("comma", "left,right\n40,80\n41,81\n", "left: 0.4 0.41; right: 0.8 0.81", None),
     ("semicolon", "left;right\n40;80\n41;81\n", "left: 0.4 0.41; right: 0.8 0.81", None),
     ("tab", "left\tright\n40\t80\n41\t81\n", "left: 0.4 0.41; right: 0.8 0.81", None),
@@ -414,6 +414,18 @@ const FORMS: [Form; 104] = [
         "Distance: 40.1 cm, Temp: 21.5 C, Batt: 11.9 V\nDistance: 41.1 cm, Temp: 21.5 C, Batt: 11.9 V\n",
         "Distance: 0.401 0.411",
         None,
+    ),
+    (
+        "time from 0 without a header",
+        "0,A,40\n10,B,80\n20,A,41\n30,B,81\n40,A,40\n50,B,80\n60,A,41\n70,B,81\n",
+        "A: 0.4 0.41 0.4 0.41; B: 0.8 0.81 0.8 0.81",
+        Some(0.02),
+    ),
+    (
+        "a word, then times",
+        "SONAR,600,40,80\nSONAR,700,41,81\nSONAR,800,40,80\nSONAR,900,41,81\n",
+        "column 3: 0.4 0.41 0.4 0.41; column 4: 0.8 0.81 0.8 0.81",
+        Some(0.1),
     ),
     (
         "milliseconds and a colon",

@@ -6,7 +6,7 @@ use crate::files::error::InputError;
 
 /// In the order in which they are printed.
 const TEXTS: [(&str, &str); 4] = [
-    ("eeruf: MIT or Apache-2.0, as you like", include_str!("../../LICENSE-MIT")),
+    ("eeruf: MIT or Apache-2.0, at your option", include_str!("../../LICENSE-MIT")),
     ("Or Apache-2.0", include_str!("../../LICENSE-APACHE")),
     ("The letters in its pictures: Bitstream-Vera", include_str!("../report/draw/font/LICENSE")),
     ("What others wrote", include_str!(concat!(env!("OUT_DIR"), "/notices.txt"))),

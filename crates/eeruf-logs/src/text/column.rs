@@ -147,7 +147,7 @@ impl Column {
         rows >= 3 && others * 10 <= rows && (rows - 1 - rises) * 10 < rows
     }
 
-    /// Returns true if half of the steps go down, as no clock does, however often it starts anew.
+    /// Returns true if half of the steps go down, as no clock does, however often it restarts.
     pub(super) fn falls_often(&self) -> bool {
         let falls = self.numbers.windows(2).filter(|two| two[1] < two[0]).count();
         falls * 2 >= self.numbers.len() && falls > 0

@@ -132,7 +132,7 @@ impl<'a, 's, 'e> Rows<'a, 's, 'e> {
                 while cells.len() > width && cells.last().is_some_and(String::is_empty) {
                     cells.pop();
                 }
-                // What a reset repeats, and what a database says at the end: `(2 rows)`.
+                // Lines that a reset repeats, and the end of a database's print: `(2 rows)`.
                 let is_remark =
                     self.plan.greetings.contains(text) || (text.starts_with('(') && text.ends_with(" rows)"));
                 if cells.len() != width && is_remark {

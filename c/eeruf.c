@@ -2229,14 +2229,14 @@ static void learn(EerufHopper *hopper, uint32_t t_echo_us, int32_t change_us, ui
 }
 
 /* The settings of a robot that moves or stands. */
-static EerufTrackerSettings while_moving(EerufTrackerSettings settings, bool moving) {
+static EerufTrackerSettings for_motion(EerufTrackerSettings settings, bool moving) {
     const unsigned memory = settings.memory * (moving ? MOVING_MEMORY : 1u);
     settings.memory = (uint8_t)(memory > UINT8_MAX ? UINT8_MAX : memory);
     return settings;
 }
 
 static void weigh(EerufHoppingRing *hopping, uint8_t sensor, bool steady, int32_t change_us, EerufReading *reading) {
-    const EerufTrackerSettings settings = while_moving(hopping->tracker, change_us != 0), *how = &settings;
+    const EerufTrackerSettings settings = for_motion(hopping->tracker, change_us != 0), *how = &settings;
     EerufHopper *hopper = &hopping->hoppers[sensor];
     const bool solo = (hopper->flags & SOLO) != 0;
     const uint32_t t_echo_us = reading->t_echo_us;

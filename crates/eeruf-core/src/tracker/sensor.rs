@@ -155,7 +155,7 @@ impl<const H: usize> SensorTracks<H> {
         let previous = self.tracks.get(nearest).map_or(confirmed, Track::t_echo);
         let reports_tentative = settings.tentative_votes != 0;
         let moving = change_us != 0;
-        let settings = &settings.while_moving(moving);
+        let settings = &settings.for_motion(moving);
         // Of a robot that moves, any two readings are those of some wall.
         let tentative_votes = settings.tentative_votes.max(if moving { MOVING_VOTES } else { 0 });
         let mut tentative = false;

@@ -144,7 +144,7 @@ impl TrackerSettings {
 impl TrackerSettings {
     /// These settings of a robot that moves or stands.
     #[inline(always)]
-    pub(super) const fn while_moving(self, moving: bool) -> Self {
+    pub(super) const fn for_motion(self, moving: bool) -> Self {
         let memory = if moving { self.memory.saturating_mul(MOVING_MEMORY) } else { self.memory };
         Self { memory, ..self }
     }

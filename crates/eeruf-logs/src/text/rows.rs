@@ -317,7 +317,7 @@ impl<'a, 's, 'e> Rows<'a, 's, 'e> {
 
     /// Counters of milliseconds and microseconds have 32 bits, and begin again.
     fn after_wrap(&mut self, ns: u64) -> u64 {
-        /// Sensors do not pause for longer; who does has started anew.
+        /// The longest pause of a sensor; after a longer one it has restarted.
         const LONGEST_PAUSE_NS: u64 = 10_000_000_000;
         let [(_, TimeUnit::Ms | TimeUnit::Us)] = self.plan.time[..] else { return ns };
         let wrap_ns = (self.plan.time[0].1.nanoseconds() as u64) << 32;

@@ -269,7 +269,7 @@ const FORMS: [Form; 106] = [
         "left: 0.4 0.41",
         Some(0.06),
     ),
-    ("micros that begin anew", "micros,left\n4294950000,40\n32704,41\n82704,40\n", "left: 0.4 0.41 0.4", Some(0.05)),
+    ("micros that wrap", "micros,left\n4294950000,40\n32704,41\n82704,40\n", "left: 0.4 0.41 0.4", Some(0.05)),
     (
         "seconds and microseconds",
         "tv_sec,tv_usec,left\n1700000000,950000,40\n1700000001,0,41\n",

@@ -123,6 +123,7 @@ pub(crate) fn main(arguments: &[String]) -> crate::Answer {
         ("hopping", Method::EerufHopping, HoppingSettings::BALANCED),
         ("driving", Method::EerufHopping, HoppingSettings::DRIVING),
         ("flow", Method::Flow, HoppingSettings::BALANCED),
+        ("flow, several echoes", Method::FlowMultiEcho, HoppingSettings::BALANCED),
     ];
     println!("{rooms} of each from {first} on, {physics}: % right (95 % interval), foreign.\n");
     let head =

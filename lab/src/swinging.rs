@@ -105,6 +105,7 @@ pub(crate) fn main(arguments: &[String]) -> crate::Answer {
         ("eeruf_hopping, balanced", Method::EerufHopping, HoppingSettings::BALANCED),
         ("eeruf_hopping, driving", Method::EerufHopping, HoppingSettings::DRIVING),
         ("flow", Method::Flow, HoppingSettings::BALANCED),
+        ("flow_multi_echo", Method::FlowMultiEcho, HoppingSettings::BALANCED),
     ] {
         let found = sweep(&numbers, |&number| swing(number, world, method, hopping));
         let found: Vec<[f64; 3]> = found.into_iter().flatten().collect();

@@ -56,6 +56,7 @@ _MethodName = Literal[
     "adaptive_hopping",
     "adaptive_multi_echo",
     "hopping_multi_echo",
+    "flow_multi_echo",
     "in_turn",
     "arrays",
     "groups",
@@ -1999,7 +2000,7 @@ class Ring:
             intervals_us: pairs with the least time between their firings.
             shared_lines: groups of sensors on one echo line.
             together: groups of sensors that fire at the same instants.
-            several_echoes: as for ``Ring``: two readings are then compared, and no votes counted.
+            several_echoes: each sensor reports several echoes of a firing, of which up to eight have votes.
 
         Raises:
             ArgumentError: something of the wrong type or out of range.
@@ -2022,6 +2023,7 @@ class Ring:
         window_us: _Int,
         blanking_us: _Int = 0,
         reach_us: _Int | None = None,
+        several_echoes: bool = False,
     ) -> Ring:
         """A ring by flow: each sensor gets as much quiet around its firing as it has needed, and votes confirm an echo.
         ``docs/explanation/flow.md`` says for whom.
@@ -2033,6 +2035,7 @@ class Ring:
             window_us: as for :meth:`hopping`, as are the others.
             blanking_us: edges sooner than this after firing are no echoes.
             reach_us: after how long no sound is heard any more; by default the window.
+            several_echoes: as for :meth:`hopping`.
 
         Raises:
             ArgumentError: something of the wrong type or out of range.

@@ -370,7 +370,7 @@ fn an_emitted_code_drives_a_hopping_ring() {
 fn emitted_limits_drive_a_hopping_ring() {
     let ((schedule, limits), listening) = (&hopping_mower::RING, hopping_mower::LISTENING);
     let start = Instant::default();
-    let ring = HoppingRing::<12, 4, _>::with_limits(schedule, *limits, hopping_mower::SETTINGS, listening, 1, start);
+    let ring = HoppingRing::<12, 4, 1, _>::with_limits(schedule, *limits, hopping_mower::SETTINGS, listening, 1, start);
     let mut ring = ring.unwrap();
     let (mut accepted, mut fired) = ([0; 12], [[0_u32; 12]; 2]);
     while ring.next_deadline().as_micros() < 20_000_000 {
@@ -398,7 +398,7 @@ fn emitted_limits_drive_a_hopping_ring() {
     assert!(accepted[..8].iter().all(|&often| often > 100) && accepted[8..] == [0; 4], "{accepted:?}");
     // New lags would not keep them.
     let draws = hopping_mower::SETTINGS.with_shift_after(3);
-    let refused = HoppingRing::<12, 4, _>::with_limits(schedule, *limits, draws, listening, 1, start).unwrap_err();
+    let refused = HoppingRing::<12, 4, 1, _>::with_limits(schedule, *limits, draws, listening, 1, start).unwrap_err();
     assert!(refused.to_string().starts_with("shift_after 3; expected 0"), "{refused}");
 }
 

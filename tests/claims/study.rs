@@ -29,7 +29,7 @@ fn number(value: &Value) -> f64 {
 // that the ring that adapts stays as it is; no others are the same.
 #[test]
 fn pairs_of_methods_are_simulated_by_name() {
-    let pairs = "eeruf_hopping,multi_echo,adaptive_hopping,adaptive_multi_echo,hopping_multi_echo";
+    let pairs = "eeruf_hopping,multi_echo,adaptive_hopping,adaptive_multi_echo,hopping_multi_echo,flow_multi_echo";
     let study = json(&["study", "scenes/alcove.toml", "--periods", "400", "--json", "--method", pairs]);
     let figures = |method: &str| {
         let of = &study["methods"][method];
@@ -39,9 +39,12 @@ fn pairs_of_methods_are_simulated_by_name() {
     };
     let all: Vec<_> = pairs.split(',').map(figures).collect();
     assert_eq!(study["methods"].as_object().unwrap().len(), all.len());
-    let [hopping, several, adaptive, adaptive_several, hopping_several] = all[..] else { panic!("{all:?}") };
+    let [hopping, several, adaptive, adaptive_several, hopping_several, flow_several] = all[..] else {
+        panic!("{all:?}")
+    };
     assert_eq!(adaptive_several, several);
     assert!(adaptive != hopping && hopping_several != several && hopping_several != hopping, "{all:?}");
+    assert!(flow_several != hopping_several && flow_several[2] > hopping[2], "{all:?}");
 }
 
 // Eeruf believes next to no crosstalk where constant lags believe it with and without comparing.

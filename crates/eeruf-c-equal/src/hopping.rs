@@ -136,7 +136,7 @@ pub fn run<const K: usize>(r: &Random) -> u64 {
     match limits {
         Some((limits, _)) => {
             let ring = schedule
-                .and_then(|it| HoppingRing::<K, 4, _>::with_limits(&it, limits, s, listening, random_seed, now));
+                .and_then(|it| HoppingRing::<K, 4, 1, _>::with_limits(&it, limits, s, listening, random_seed, now));
             compare(r, c, status, ring, &rungs, (window, start))
         }
         None => {
@@ -151,7 +151,7 @@ fn compare<const K: usize, U: OwnLimits>(
     r: &Random,
     mut c: C,
     status: i32,
-    ring: Result<HoppingRing<K, 4, U>, HoppingError>,
+    ring: Result<HoppingRing<K, 4, 1, U>, HoppingError>,
     rungs: &[HoppingSchedule<K>],
     (window, start): (u32, u32),
 ) -> u64 {
@@ -163,7 +163,7 @@ fn compare<const K: usize, U: OwnLimits>(
         }
     };
     assert_eq!(status, 0, "{r}");
-    let weighed = |ring: &HoppingRing<K, 4, U>, sensor| ring.plan().weighed(sensor, 0);
+    let weighed = |ring: &HoppingRing<K, 4, 1, U>, sensor| ring.plan().weighed(sensor, 0);
     let mut adaptation = adaptation(r, &mut c, rungs);
     tracking::run(r, c, ring, window, start, weighed, |c, ring, stats, at| {
         let Some(stats) = stats else {

@@ -214,7 +214,7 @@ mod everything_public_has_a_format {
         formats::<(HoppingCode, HoppingSchedule<12>, HoppingSettings, HoppingListening, HoppingError)>();
         formats::<(HoppingRing<12>, HoppingRing<12, 8>)>();
         formats::<(EchoTracker<12>, TrackerSettings, Firing, RateFilter<12>, Survey)>();
-        formats::<(HoppingRing<12, 4, EachSensor<12>>, PhaseTable<'_, 12>)>();
+        formats::<(HoppingRing<12, 4, 1, EachSensor<12>>, PhaseTable<'_, 12>)>();
         formats::<Verification<'_, 12>>();
     }
 }

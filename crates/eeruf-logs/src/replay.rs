@@ -93,7 +93,7 @@ pub fn replay(log: &FiringLog, settings: TrackerSettings) -> Result<Vec<Verdict>
                 let (solo, steady) = (weighed.solo, weighed.steady);
                 let expected_change_us = weighed.expected_change_us;
                 let of = Firing { phase: Phase(firing.phase), solo, steady, expected_change_us };
-                tracker.push(sensor, t_echo, of)?
+                tracker.push(sensor, t_echo.as_slice(), of)?
             }
         };
     }

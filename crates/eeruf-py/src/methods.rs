@@ -119,7 +119,7 @@ impl Method {
         if let Some(given) = settings {
             entry = match method {
                 _ if method.hops() => entry.with_hopping(HoppingSettings::of("settings", Some(given))?),
-                Named::Flow => entry.with_flow(flow_settings::of(Some(given))?),
+                Named::Flow | Named::FlowMultiEcho => entry.with_flow(flow_settings::of(Some(given))?),
                 _ => return Err(refused("settings", given, "eeruf_hopping and flow take some")),
             };
         }

@@ -1,8 +1,7 @@
 //! `Ring`: by a schedule, hopping, or by flow.
 
 use eeruf_core::{
-    Criterion, EachSensor, EchoFilter, Instant, MAX_SENSORS, Micros, Requirements, Ring as CoreRing, RingConfig,
-    RingEvent,
+    Criterion, EachSensor, Instant, MAX_SENSORS, Micros, Requirements, RingEvent,
     flow::FlowRing,
     hopping::{HoppingListening, HoppingPlan, HoppingRing, HoppingSchedule as CoreHopping},
     watch::SensorWatch,
@@ -81,15 +80,18 @@ impl Ring {
 
 /// The plan of a ring that hops, whether sensors are alike or not.
 type HopPlan = HoppingPlan<MAX_SENSORS, EachSensor<MAX_SENSORS>>;
-type VotingRing = HoppingRing<MAX_SENSORS, 4, EachSensor<MAX_SENSORS>>;
-type ComparingRing = CoreRing<HopPlan, EchoFilter<MAX_SENSORS, MAX_ECHOES>, MAX_SENSORS, MAX_ECHOES>;
+type HopRing<const H: usize, const E: usize> = HoppingRing<MAX_SENSORS, H, E, EachSensor<MAX_SENSORS>>;
+/// Tracks of each sensor that reports one echo of a firing, and of one that reports several.
+const TRACKS: usize = 4;
+const SEVERAL_TRACKS: usize = 12;
 
 /// The kinds, and the `t_delta` by which two count votes.
 pub(crate) enum Fires {
     BySchedule(Box<OwnedRing>),
-    Hopping(Box<VotingRing>, Micros, SensorNeeds),
-    HoppingByEchoes(Box<ComparingRing>, SensorNeeds),
-    ByFlow(Box<FlowRing<MAX_SENSORS>>, Micros),
+    Hopping(Box<HopRing<TRACKS, 1>>, Micros, SensorNeeds),
+    HoppingSeveral(Box<HopRing<SEVERAL_TRACKS, MAX_ECHOES>>, Micros, SensorNeeds),
+    Flow(Box<FlowRing<MAX_SENSORS, TRACKS, 1>>, Micros),
+    FlowSeveral(Box<FlowRing<MAX_SENSORS, SEVERAL_TRACKS, MAX_ECHOES>>, Micros),
 }
 
 /// Needs of the sensors of a ring that hops, where they are not all alike.
@@ -129,25 +131,28 @@ impl Fires {
         let needs = SensorNeeds { needs: owned.is_uneven().then(|| Box::new(owned)), listening };
         let limits = needs.limits(schedule)?;
         if several {
-            let plan = HopPlan::with_limits(schedule, limits, settings, listening, seed, now).map_err(Raise::raise)?;
-            let config = RingConfig::new().with_t_delta(t_delta).with_window(listening.window);
-            let config = config.with_blanking(listening.blanking).with_echoes::<MAX_ECHOES>();
-            let ring = ComparingRing::with_plan(plan, config, now).map_err(Raise::raise)?;
-            return Ok(Self::HoppingByEchoes(Box::new(ring), needs));
+            let ring = HopRing::with_limits(schedule, limits, settings, listening, seed, now).map_err(Raise::raise)?;
+            return Ok(Self::HoppingSeveral(Box::new(ring), t_delta, needs));
         }
-        let ring = VotingRing::with_limits(schedule, limits, settings, listening, seed, now).map_err(Raise::raise)?;
+        let ring = HopRing::with_limits(schedule, limits, settings, listening, seed, now).map_err(Raise::raise)?;
         Ok(Self::Hopping(Box::new(ring), t_delta, needs))
     }
 
-    pub(crate) fn by_flow(
+    pub(crate) fn flow(
         sensors: &Bound<'_, PyAny>,
         settings: Option<&Bound<'_, PyAny>>,
         listening: HoppingListening,
+        several: bool,
         now: Instant,
     ) -> PyResult<Self> {
         let (sensors, settings) = (requirements::sensors(sensors)?, flow_settings::of(settings)?);
+        let t_delta = settings.tracker.t_delta;
+        if several {
+            let ring = FlowRing::flow(sensors, settings, listening, now).map_err(Raise::raise)?;
+            return Ok(Self::FlowSeveral(Box::new(ring), t_delta));
+        }
         let ring = FlowRing::flow(sensors, settings, listening, now).map_err(Raise::raise)?;
-        Ok(Self::ByFlow(Box::new(ring), settings.tracker.t_delta))
+        Ok(Self::Flow(Box::new(ring), t_delta))
     }
 }
 
@@ -165,8 +170,9 @@ macro_rules! ask {
         match &$any.fires {
             $crate::ring::Fires::BySchedule(owned) => $crate::owned_ring::table!(owned.ring(), |$ring| $call),
             $crate::ring::Fires::Hopping($ring, ..) => $call,
-            $crate::ring::Fires::HoppingByEchoes($ring, _) => $call,
-            $crate::ring::Fires::ByFlow($ring, _) => $call,
+            $crate::ring::Fires::HoppingSeveral($ring, ..) => $call,
+            $crate::ring::Fires::Flow($ring, _) => $call,
+            $crate::ring::Fires::FlowSeveral($ring, _) => $call,
         }
     };
 }
@@ -177,8 +183,9 @@ macro_rules! act {
         match &mut $any.fires {
             $crate::ring::Fires::BySchedule(owned) => owned.with(|any| $crate::owned_ring::table!(any, |$ring| $call)),
             $crate::ring::Fires::Hopping($ring, ..) => $call,
-            $crate::ring::Fires::HoppingByEchoes($ring, _) => $call,
-            $crate::ring::Fires::ByFlow($ring, _) => $call,
+            $crate::ring::Fires::HoppingSeveral($ring, ..) => $call,
+            $crate::ring::Fires::Flow($ring, _) => $call,
+            $crate::ring::Fires::FlowSeveral($ring, _) => $call,
         }
     };
 }
@@ -223,11 +230,8 @@ impl AnyRing {
     pub(crate) fn by_schedule(&mut self, what: &str) -> PyResult<&mut OwnedRing> {
         match &mut self.fires {
             Fires::BySchedule(owned) => Ok(owned),
-            Fires::Hopping(..) | Fires::ByFlow(..) => Err(RingError::new_err(format!(
+            _ => Err(RingError::new_err(format!(
                 "{what} of a ring that counts votes; expected a ring by an eeruf.Schedule: this one has settings"
-            ))),
-            Fires::HoppingByEchoes(..) => Err(RingError::new_err(format!(
-                "{what} of a ring that hops; expected a ring by an eeruf.Schedule: this one has settings"
             ))),
         }
     }
@@ -235,8 +239,8 @@ impl AnyRing {
     pub(crate) fn t_delta(&self) -> Micros {
         match &self.fires {
             Fires::BySchedule(owned) => owned.t_delta(),
-            Fires::HoppingByEchoes(ring, _) => ring.t_delta(),
-            Fires::Hopping(_, t_delta, _) | Fires::ByFlow(_, t_delta) => *t_delta,
+            Fires::Hopping(_, t_delta, _) | Fires::HoppingSeveral(_, t_delta, _) => *t_delta,
+            Fires::Flow(_, t_delta) | Fires::FlowSeveral(_, t_delta) => *t_delta,
         }
     }
 
@@ -244,8 +248,8 @@ impl AnyRing {
     pub(crate) fn hop_plan(&self) -> Option<&HopPlan> {
         match &self.fires {
             Fires::Hopping(ring, ..) => Some(ring.plan()),
-            Fires::HoppingByEchoes(ring, _) => Some(ring.plan()),
-            Fires::BySchedule(_) | Fires::ByFlow(..) => None,
+            Fires::HoppingSeveral(ring, ..) => Some(ring.plan()),
+            Fires::BySchedule(_) | Fires::Flow(..) | Fires::FlowSeveral(..) => None,
         }
     }
 
@@ -258,9 +262,11 @@ impl AnyRing {
     /// The echo that votes have confirmed.
     pub(crate) fn confirmed(&self, sensor: u8) -> Option<Micros> {
         match &self.fires {
-            Fires::BySchedule(_) | Fires::HoppingByEchoes(..) => None,
+            Fires::BySchedule(_) => None,
             Fires::Hopping(ring, ..) => ring.judge().confirmed(sensor.into()),
-            Fires::ByFlow(ring, _) => ring.judge().confirmed(sensor.into()),
+            Fires::HoppingSeveral(ring, ..) => ring.judge().confirmed(sensor.into()),
+            Fires::Flow(ring, _) => ring.judge().confirmed(sensor.into()),
+            Fires::FlowSeveral(ring, _) => ring.judge().confirmed(sensor.into()),
         }
     }
 
@@ -273,8 +279,8 @@ impl AnyRing {
     pub(crate) fn change_hopping(&mut self, schedule: &CoreHopping<MAX_SENSORS>) -> PyResult<()> {
         let changed = match &mut self.fires {
             Fires::Hopping(ring, _, needs) => needs.limits(schedule).map(|_| ring.change_hopping(schedule)),
-            Fires::HoppingByEchoes(ring, needs) => needs.limits(schedule).map(|_| ring.change_hopping(schedule)),
-            Fires::BySchedule(_) | Fires::ByFlow(..) => {
+            Fires::HoppingSeveral(ring, _, needs) => needs.limits(schedule).map(|_| ring.change_hopping(schedule)),
+            Fires::BySchedule(_) | Fires::Flow(..) | Fires::FlowSeveral(..) => {
                 return Err(RingError::new_err("an eeruf.HoppingSchedule for a ring that does not hop by one"));
             }
         };

@@ -119,7 +119,7 @@ impl Ring {
     ///     intervals_us: pairs with the least time between their firings.
     ///     shared_lines: groups of sensors on one echo line.
     ///     together: groups of sensors that fire at the same instants.
-    ///     several_echoes: as for ``Ring``: two readings are then compared, and no votes counted.
+    ///     several_echoes: each sensor reports several echoes of a firing, of which up to eight have votes.
     ///
     /// Raises:
     ///     ArgumentError: something of the wrong type or out of range.
@@ -173,6 +173,7 @@ impl Ring {
     ///     window_us: as for :meth:`hopping`, as are the others.
     ///     blanking_us: edges sooner than this after firing are no echoes.
     ///     reach_us: after how long no sound is heard any more; by default the window.
+    ///     several_echoes: as for :meth:`hopping`.
     ///
     /// Raises:
     ///     ArgumentError: something of the wrong type or out of range.
@@ -184,8 +185,10 @@ impl Ring {
     ///     >>> ring.poll(ring.next_deadline_us).sensor
     ///     0
     #[staticmethod]
-    #[pyo3(signature = (sensors, settings=None, now_us=None, *, window_us, blanking_us=None, reach_us=None))]
-    #[pyo3(text_signature = "(sensors, settings=None, now_us=0, *, window_us, blanking_us=0, reach_us=None)")]
+    #[pyo3(signature = (
+        sensors, settings=None, now_us=None, *, window_us, blanking_us=None, reach_us=None, several_echoes=None))]
+    #[pyo3(text_signature = "(sensors, settings=None, now_us=0, *, window_us, blanking_us=0, reach_us=None, \
+            several_echoes=False)")]
     fn flow(
         sensors: &Bound<'_, PyAny>,
         settings: Option<&Bound<'_, PyAny>>,
@@ -193,9 +196,11 @@ impl Ring {
         window_us: &Bound<'_, PyAny>,
         blanking_us: Option<&Bound<'_, PyAny>>,
         reach_us: Option<&Bound<'_, PyAny>>,
+        several_echoes: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
         let (listening, now) = (listening(window_us, blanking_us, reach_us)?, begins(now_us)?);
-        Ok(Self::of(Fires::by_flow(sensors, settings, listening, now)?, now))
+        let several = flag("several_echoes", several_echoes, false)?;
+        Ok(Self::of(Fires::flow(sensors, settings, listening, several, now)?, now))
     }
 
     /// The next event at a time. Call again until there is none, then wait until ``next_deadline_us``.

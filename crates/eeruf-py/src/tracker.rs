@@ -107,7 +107,7 @@ impl EchoTracker {
         let change = whole_or("expected_change_us", expected_change_us, 0, i32::MIN..=i32::MAX)?;
         let (solo, steady) = (flag("solo", solo, false)?, flag("steady", steady, true)?);
         let firing = Firing { phase, solo, steady, expected_change_us: change };
-        let verdict = self.tracker.get()?.push(sensor.into(), t_echo, firing).map_err(Raise::raise)?;
+        let verdict = self.tracker.get()?.push(sensor.into(), t_echo.as_slice(), firing).map_err(Raise::raise)?;
         Ok(Reading::of_tracker(sensor, phase, &verdict))
     }
 
@@ -160,7 +160,7 @@ impl EchoTracker {
                 for ((sensor, &us), kind) in row.iter().enumerate().zip(kinds) {
                     // Rounded to whole microseconds, which core counts in; in range, as was just checked.
                     let echo = (!us.is_nan()).then(|| Micros::new(us.round() as u32));
-                    *kind = tracker.push(sensor, echo, Firing::new(Phase(phase)))?.kind as i8;
+                    *kind = tracker.push(sensor, echo.as_slice(), Firing::new(Phase(phase)))?.kind as i8;
                 }
             }
             Ok(())

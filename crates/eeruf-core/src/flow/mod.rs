@@ -27,7 +27,7 @@ pub use settings::FlowSettings;
 /// A ring of up to `K` sensors that fires by flow, with `H` hypotheses for each and up to `E` echoes of a firing. `U`
 /// is [`EachSensor`](crate::EachSensor) where sensors have limits of their own.
 pub type FlowRing<const K: usize, const H: usize = 4, const E: usize = 1, U = ()> =
-    Ring<FlowPlan<K, U>, EchoTracker<K, H>, K, E, 1>;
+    Ring<FlowPlan<K, U>, EchoTracker<K, H, E>, K, E, 1>;
 
 impl<const K: usize, const H: usize, const E: usize> FlowRing<K, H, E> {
     /// A ring of `sensors` sensors that begins at `now`.

@@ -60,7 +60,7 @@ fn plan<const K: usize>(sensors: usize) -> FlowPlan<K> {
 fn judge() -> impl Judge {
     let mut tracker = EchoTracker::<8>::new(FlowSettings::DEFAULT.tracker).unwrap();
     for (sensor, phase) in (0..8).flat_map(|sensor| (0..5).map(move |phase| (sensor, phase))) {
-        tracker.push(sensor, Some(Micros::from_millis(20)), Firing::new(Phase(phase))).unwrap();
+        tracker.push(sensor, &[Micros::from_millis(20)], Firing::new(Phase(phase))).unwrap();
     }
     tracker
 }

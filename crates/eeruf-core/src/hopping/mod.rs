@@ -36,7 +36,8 @@ pub use schedule::HoppingSchedule;
 pub use settings::{HoppingListening, HoppingSettings};
 pub use weighed::Weighed;
 
-/// A ring of up to `K` sensors that hops in time, with `H` hypotheses for each sensor. It is used like a
+/// A ring of up to `K` sensors that hops in time, with `H` hypotheses for each sensor and up to `E` echoes of a firing.
+/// It is used like a
 /// [`ScheduledRing`](crate::ScheduledRing); its readings are also [`Tentative`](crate::ReadingKind::Tentative).
 ///
 /// One path of fixed length from one sensor to another is never accepted, not even tentatively, however late firings
@@ -67,9 +68,10 @@ pub use weighed::Weighed;
 /// ```
 ///
 /// `U` is [`EachSensor`](crate::EachSensor) where sensors have limits of their own.
-pub type HoppingRing<const K: usize, const H: usize = 4, U = ()> = Ring<HoppingPlan<K, U>, EchoTracker<K, H>, K, 1, 1>;
+pub type HoppingRing<const K: usize, const H: usize = 4, const E: usize = 1, U = ()> =
+    Ring<HoppingPlan<K, U>, EchoTracker<K, H, E>, K, E, 1>;
 
-impl<const K: usize, const H: usize> HoppingRing<K, H> {
+impl<const K: usize, const H: usize, const E: usize> HoppingRing<K, H, E> {
     /// A ring that hops in time and begins at `now`. The seed is for the draws of new lags.
     ///
     /// # Errors
@@ -86,7 +88,7 @@ impl<const K: usize, const H: usize> HoppingRing<K, H> {
     }
 }
 
-impl<const K: usize, const H: usize, U: OwnLimits> HoppingRing<K, H, U> {
+impl<const K: usize, const H: usize, const E: usize, U: OwnLimits> HoppingRing<K, H, E, U> {
     /// As [`hopping`](HoppingRing::hopping), for sensors that have limits of their own, by [`HoppingSchedule::limits`]
     /// or [`hopping_schedule!`](crate::hopping_schedule!) with `each_meets`.
     ///
@@ -104,7 +106,7 @@ impl<const K: usize, const H: usize, U: OwnLimits> HoppingRing<K, H, U> {
         let tracker = EchoTracker::new(settings.tracker)?;
         let plan = HoppingPlan::with_limits(schedule, own_limits, settings, listening, seed, now)?;
         let config = RingConfig::new().with_window(listening.window).with_blanking(listening.blanking);
-        Ok(Self::judged_by(plan, tracker, config, now)?)
+        Ok(Self::judged_by(plan, tracker, config.with_echoes::<E>(), now)?)
     }
 }
 

@@ -11,6 +11,7 @@
 
 mod sensor;
 mod settings;
+mod several;
 #[cfg(test)]
 mod tests;
 mod track;
@@ -21,20 +22,21 @@ use crate::ring_error::RingError;
 use crate::sensor_error::SensorError;
 use crate::time::Micros;
 
-use sensor::{Heard, SensorTracks};
+use sensor::SensorTracks;
 pub use settings::TrackerSettings;
 use track::LATEST;
 
 /// The latest echo that differs from later ones.
 pub(crate) const LATEST_ECHO: Micros = Micros::new(LATEST);
 
-/// Tracks the echoes of up to `K` sensors, with up to `H` hypotheses for each.
+/// Tracks the echoes of up to `K` sensors, with up to `H` hypotheses for each. Of sensors that report up to `E` echoes
+/// of a firing all are weighed; some three tracks for two echoes keep those of other sensors' sounds apart.
 ///
 /// ```
 /// use eeruf_core::{Micros, Phase, ReadingKind, judge::{EchoTracker, Firing, TrackerSettings}};
 /// let mut tracker = EchoTracker::<1>::new(TrackerSettings::BALANCED)?;
 /// let mut push = |phase, us| {
-///     tracker.push(0, Some(Micros::new(us)), Firing::new(Phase(phase))).map(|verdict| verdict.kind)
+///     tracker.push(0, &[Micros::new(us)], Firing::new(Phase(phase))).map(|verdict| verdict.kind)
 /// };
 /// // Crosstalk in one phase is heard again and again, and never believed.
 /// for _ in 0..100 {
@@ -48,12 +50,12 @@ pub(crate) const LATEST_ECHO: Micros = Micros::new(LATEST);
 /// ```
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct EchoTracker<const K: usize, const H: usize = 4> {
+pub struct EchoTracker<const K: usize, const H: usize = 4, const E: usize = 1> {
     sensors: [SensorTracks<H>; K],
     settings: TrackerSettings,
 }
 
-impl<const K: usize, const H: usize> EchoTracker<K, H> {
+impl<const K: usize, const H: usize, const E: usize> EchoTracker<K, H, E> {
     /// A tracker that knows nothing yet.
     ///
     /// # Errors
@@ -70,19 +72,18 @@ impl<const K: usize, const H: usize> EchoTracker<K, H> {
         &self.settings
     }
 
-    /// Takes in one firing of a sensor (from 0): the time of its echo, at most 16.7 s, or `None` without echo. The
-    /// verdict is
+    /// Takes in one firing of a sensor (from 0): the times of its echoes, earliest first, each at most 16.7 s; the first
+    /// `E` count. The verdict is
     /// [`Accepted`](ReadingKind::Accepted) for an echo near the earliest confirmed track, [`Clear`](ReadingKind::Clear)
     /// for confirmed silence, [`Tentative`](ReadingKind::Tentative) for an echo that few readings support so far and
     /// none contradicts, earlier than what is confirmed; else [`First`](ReadingKind::First),
-    /// [`Rejected`](ReadingKind::Rejected) or [`NoEcho`](ReadingKind::NoEcho).
+    /// [`Rejected`](ReadingKind::Rejected) or [`NoEcho`](ReadingKind::NoEcho), of the first echo.
     ///
     /// # Errors
     /// [`SensorError`] for a sensor out of range.
-    pub fn push(&mut self, sensor: usize, t_echo: Option<Micros>, firing: Firing) -> Result<Verdict, SensorError> {
-        let settings = &self.settings;
+    pub fn push(&mut self, sensor: usize, echoes: &[Micros], firing: Firing) -> Result<Verdict, SensorError> {
         match self.sensors.get_mut(sensor) {
-            Some(tracks) => Ok(tracks.push(Heard::new(t_echo, firing), settings.t_delta, settings)),
+            Some(tracks) => Ok(tracks.push_all::<E>(echoes, firing, self.settings.t_delta, &self.settings)),
             None => Err(SensorError::new(u8::try_from(sensor).unwrap_or(u8::MAX), K)),
         }
     }
@@ -138,7 +139,7 @@ impl<const K: usize, const H: usize> EchoTracker<K, H> {
     }
 }
 
-impl<const K: usize, const H: usize> Judge for EchoTracker<K, H> {
+impl<const K: usize, const H: usize, const E: usize> Judge for EchoTracker<K, H, E> {
     fn t_delta(&self) -> Micros {
         self.settings.t_delta
     }
@@ -146,10 +147,7 @@ impl<const K: usize, const H: usize> Judge for EchoTracker<K, H> {
     #[inline(always)]
     fn judge(&mut self, heard: &judging::Heard<'_>, _: &impl Sounds) -> Verdict {
         match self.sensors.get_mut(usize::from(heard.sensor)) {
-            Some(tracks) => {
-                let read = Heard::new(heard.echoes.first().copied(), heard.firing);
-                tracks.push(read, heard.t_delta, &self.settings)
-            }
+            Some(tracks) => tracks.push_all::<E>(heard.echoes, heard.firing, heard.t_delta, &self.settings),
             None => heard.unjudged(None),
         }
     }

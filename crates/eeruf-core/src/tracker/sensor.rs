@@ -8,7 +8,7 @@ use crate::schedule::Phase;
 use crate::time::Micros;
 
 /// No track is confirmed: later than [`SILENCE`], and no reading is near it.
-const NOTHING: u32 = u32::MAX;
+pub(super) const NOTHING: u32 = u32::MAX;
 
 /// The age of a sensor none of whose readings was ever accepted.
 const NEVER: u16 = u16::MAX;
@@ -37,7 +37,7 @@ impl Heard {
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub(super) struct SensorTracks<const H: usize> {
-    tracks: [Track; H],
+    pub(super) tracks: [Track; H],
     /// Firings since the last accepted reading.
     age: u16,
     /// The excess over the expected change, in 1/64 of it, that consecutive readings showed so far:
@@ -48,9 +48,6 @@ pub(super) struct SensorTracks<const H: usize> {
     /// Its last reading; [`SILENCE`] also if that said nothing.
     last: u32,
 }
-
-/// While odometry moves, at least this many phases must support an echo before it is reported as tentative.
-const MOVING_VOTES: u8 = 3;
 
 /// As much more as is expected: a surplus is between none at all and twice as much.
 const WHOLE: u32 = 64;
@@ -81,7 +78,7 @@ impl<const H: usize> SensorTracks<H> {
 
     /// All tracks move with the robot, by the expected change and what there is more of it.
     #[inline(always)]
-    fn shift(&mut self, expected_us: i32) {
+    pub(super) fn shift(&mut self, expected_us: i32) {
         if expected_us != 0 {
             self.shift_tracks(expected_us);
         }
@@ -100,7 +97,7 @@ impl<const H: usize> SensorTracks<H> {
     /// Two pairs of consecutive readings that change alike tell how much of the expected change there really is,
     /// whatever they support: with a wrong share the second would not support what the first did. Crosstalk changes
     /// otherwise from each phase to the next, by more than `t_delta`, where the code is Welch's.
-    fn learn(&mut self, t_echo: u32, expected_us: i32, t_delta: Micros) {
+    pub(super) fn learn(&mut self, t_echo: u32, expected_us: i32, t_delta: Micros) {
         let last = core::mem::replace(&mut self.last, t_echo);
         let observed = Self::surplus_of(last, t_echo, expected_us);
         if observed == UNKNOWN {
@@ -143,8 +140,24 @@ impl<const H: usize> SensorTracks<H> {
         if surplus < -(MOST_SURPLUS as i32) { UNKNOWN } else { surplus as i8 }
     }
 
-    /// Takes in a reading, which supports tracks within `t_delta`.
-    pub(super) fn push(&mut self, heard: Heard, t_delta: Micros, settings: &TrackerSettings) -> Verdict {
+    /// Takes in a firing with its echoes, earliest first, of a sensor that reports up to `E`.
+    #[inline(always)]
+    pub(super) fn push_all<const E: usize>(
+        &mut self,
+        echoes: &[Micros],
+        firing: Firing,
+        t_delta: Micros,
+        settings: &TrackerSettings,
+    ) -> Verdict {
+        if E == 1 {
+            self.push(Heard::new(echoes.first().copied(), firing), t_delta, settings)
+        } else {
+            self.push_several::<E>(echoes, firing, t_delta, settings)
+        }
+    }
+
+    /// Takes in the one reading of a firing, which supports tracks within `t_delta`.
+    fn push(&mut self, heard: Heard, t_delta: Micros, settings: &TrackerSettings) -> Verdict {
         let Heard { t_echo, phase, solo, steady, change_us } = heard;
         let phase = bit(phase);
         self.learn(t_echo, change_us, t_delta);
@@ -156,8 +169,7 @@ impl<const H: usize> SensorTracks<H> {
         let reports_tentative = settings.tentative_votes != 0;
         let moving = change_us != 0;
         let settings = &settings.for_motion(moving);
-        // Of a robot that moves, any two readings are those of some wall.
-        let tentative_votes = settings.tentative_votes.max(if moving { MOVING_VOTES } else { 0 });
+        let tentative_votes = settings.tentative_votes_if(moving);
         let mut tentative = false;
         if steady {
             let before = core::mem::replace(&mut confirmed, NOTHING);
@@ -190,14 +202,7 @@ impl<const H: usize> SensorTracks<H> {
             }
         }
         let is_confirmed = confirmed.abs_diff(t_echo) <= near;
-        let kind = match (is_confirmed, t_echo == SILENCE) {
-            (true, true) => ReadingKind::Clear,
-            (true, false) => ReadingKind::Accepted,
-            (false, true) => ReadingKind::NoEcho,
-            (false, false) if tentative => ReadingKind::Tentative,
-            (false, false) if previous == NOTHING => ReadingKind::First,
-            (false, false) => ReadingKind::Rejected,
-        };
+        let kind = kind_of(t_echo, is_confirmed, tentative, previous);
         self.verdict(kind, duration(t_echo), duration(previous))
     }
 
@@ -226,7 +231,7 @@ impl<const H: usize> SensorTracks<H> {
     }
 
     /// The earliest confirmed track, [`SILENCE`] among them, or [`NOTHING`].
-    fn confirmed(&self) -> u32 {
+    pub(super) fn confirmed(&self) -> u32 {
         let mut earliest = NOTHING;
         for track in &self.tracks {
             if track.is_confirmed() {
@@ -239,7 +244,7 @@ impl<const H: usize> SensorTracks<H> {
     /// The [confirmed](Self::confirmed) track, and the place of the track that is nearest to a reading and within
     /// `t_delta` of it, or `H`.
     #[inline(always)]
-    fn confirmed_and_nearest(&self, t_echo: u32, t_delta: u32) -> (u32, usize) {
+    pub(super) fn confirmed_and_nearest(&self, t_echo: u32, t_delta: u32) -> (u32, usize) {
         let (mut confirmed, mut nearest, mut within) = (NOTHING, H, t_delta + 1);
         for (place, track) in self.tracks.iter().enumerate() {
             if !track.exists() {
@@ -257,12 +262,12 @@ impl<const H: usize> SensorTracks<H> {
     }
 
     /// Begins a track in the place of the weakest, which is returned.
-    fn begin(&mut self, t_echo: u32, phase: u16, solo: bool) -> Track {
+    pub(super) fn begin(&mut self, t_echo: u32, phase: u16, solo: bool) -> Track {
         let weakest = self.tracks.iter_mut().min_by_key(|track| track.rank());
         weakest.map_or(Track::NONE, |weakest| core::mem::replace(weakest, Track::new(t_echo, phase, solo)))
     }
 
-    fn verdict(&mut self, kind: ReadingKind, t_echo: Option<Micros>, previous: Option<Micros>) -> Verdict {
+    pub(super) fn verdict(&mut self, kind: ReadingKind, t_echo: Option<Micros>, previous: Option<Micros>) -> Verdict {
         self.age = match kind {
             ReadingKind::Accepted | ReadingKind::Tentative => 0,
             _ if self.age >= NEVER - 1 => self.age,
@@ -276,7 +281,20 @@ impl<const H: usize> SensorTracks<H> {
     }
 }
 
+/// The kind of a reading by whether it is confirmed or tentative, and by what it was compared with.
+#[inline(always)]
+pub(super) const fn kind_of(t_echo: u32, is_confirmed: bool, is_tentative: bool, previous: u32) -> ReadingKind {
+    match (is_confirmed, t_echo == SILENCE) {
+        (true, true) => ReadingKind::Clear,
+        (true, false) => ReadingKind::Accepted,
+        (false, true) => ReadingKind::NoEcho,
+        (false, false) if is_tentative => ReadingKind::Tentative,
+        (false, false) if previous == NOTHING => ReadingKind::First,
+        (false, false) => ReadingKind::Rejected,
+    }
+}
+
 /// A track's time, unless there is none or it is silence.
-fn duration(t_echo: u32) -> Option<Micros> {
+pub(super) fn duration(t_echo: u32) -> Option<Micros> {
     (t_echo < SILENCE).then_some(Micros::new(t_echo))
 }

@@ -5,6 +5,9 @@ use crate::time::Micros;
 
 /// While odometry moves, confirmed echoes are remembered for this many times as long.
 const MOVING_MEMORY: u8 = 3;
+/// At least this many phases must support an echo before it is reported as tentative while odometry moves, as any two
+/// readings are then those of some wall, and where sensors report several echoes, of which two soon agree.
+const SAFER_VOTES: u8 = 3;
 
 /// Settings by which an [`EchoTracker`](super::EchoTracker) weighs readings. Begin with one of
 /// [`BALANCED`](Self::BALANCED), [`QUICK`](Self::QUICK) and [`MAPS`](Self::MAPS).
@@ -27,8 +30,8 @@ pub struct TrackerSettings {
     /// Score that it takes if the sensor fired alone. 1 to 15.
     pub solo_contradiction: u8,
     /// Number of phases that must support an echo that was never contradicted before it is reported as tentative, or 0
-    /// to report confirmed echoes alone. 0 or 2 to 15; at least three while odometry moves, one if the sensor fired
-    /// alone.
+    /// to report confirmed echoes alone. 0 or 2 to 15; at least three while odometry moves and of sensors that report
+    /// several echoes, one if the sensor fired alone.
     pub tentative_votes: u8,
     /// Tolerance of their agreement. At most `t_delta`.
     pub tentative_within: Micros,
@@ -147,6 +150,12 @@ impl TrackerSettings {
     pub(super) const fn for_motion(self, moving: bool) -> Self {
         let memory = if moving { self.memory.saturating_mul(MOVING_MEMORY) } else { self.memory };
         Self { memory, ..self }
+    }
+
+    /// Number of phases that must support an echo before it is reported as tentative, where two might be chance.
+    #[inline(always)]
+    pub(super) fn tentative_votes_if(&self, any_two_may_agree: bool) -> u8 {
+        self.tentative_votes.max(if any_two_may_agree { SAFER_VOTES } else { 0 })
     }
 
     /// Scores that a contradiction takes from a track that is not confirmed, and from one that is.

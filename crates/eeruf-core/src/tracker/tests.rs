@@ -18,7 +18,9 @@ fn balanced() -> EchoTracker<1> {
 
 /// Pushes one echo time after the other, in phases that follow on each other from 0.
 fn kinds(tracker: &mut EchoTracker<1>, echoes: impl IntoIterator<Item = Option<Micros>>) -> Vec<ReadingKind> {
-    let mut push = |(firing, echo)| tracker.push(0, echo, Firing::new(Phase((firing % usize::from(PHASES)) as u8)));
+    let mut push = |(firing, echo): (usize, Option<Micros>)| {
+        tracker.push(0, echo.as_slice(), Firing::new(Phase((firing % usize::from(PHASES)) as u8)))
+    };
     echoes.into_iter().enumerate().map(|echo| push(echo).unwrap().kind).collect()
 }
 
@@ -36,7 +38,7 @@ fn an_echo_from_two_phases_is_tentative_and_from_five_confirmed() {
 fn echo_in_one_phase_is_never_believed() {
     let mut tracker = balanced();
     for _ in 0..300 {
-        let verdict = tracker.push(0, us(9000), Firing::new(Phase(4))).unwrap();
+        let verdict = tracker.push(0, &[Micros::new(9000)], Firing::new(Phase(4))).unwrap();
         assert!(matches!(verdict.kind, ReadingKind::First | ReadingKind::Rejected));
     }
 }
@@ -48,7 +50,7 @@ fn lone_firing_is_tentative_and_counts_twice() {
     let mut tracker = balanced();
     let mut push = |phase, solo| {
         let firing = Firing { solo, ..Firing::new(Phase(phase)) };
-        tracker.push(0, us(9000), firing).unwrap().kind
+        tracker.push(0, &[Micros::new(9000)], firing).unwrap().kind
     };
     assert_eq!([push(0, true), push(1, true), push(2, false)], [Tentative, Tentative, Accepted]);
 }
@@ -124,7 +126,7 @@ fn accepted_of_a_swing(part: f64) -> usize {
         t_echo += part * f64::from(expected_change_us);
         let of = Firing { expected_change_us, ..Firing::new(Phase((firing % 11) as u8)) };
         let heard = if firing % 3 == 0 { 3000 + 301 * u32::from(firing % 11) } else { t_echo as u32 };
-        let kind = tracker.push(0, us(heard), of).unwrap().kind;
+        let kind = tracker.push(0, &[Micros::new(heard)], of).unwrap().kind;
         *firing >= 100 && kind == ReadingKind::Accepted
     });
     accepted.count()
@@ -147,7 +149,7 @@ fn tracks_move_with_the_robot_also_while_readings_say_nothing() {
         tracker.skip(0, ReadingKind::TooEarly, us(100), -90).unwrap();
     }
     assert_eq!(tracker.confirmed(0), us(8100));
-    assert_eq!(tracker.push(0, us(8100), Firing::new(Phase(0))).unwrap().kind, ReadingKind::Accepted);
+    assert_eq!(tracker.push(0, &[Micros::new(8100)], Firing::new(Phase(0))).unwrap().kind, ReadingKind::Accepted);
 }
 
 // A track stays where a change would move it before the firing or past the latest echo.
@@ -174,7 +176,7 @@ fn the_change_that_odometry_expects_moves_all_tracks() {
     let mut tracker = balanced();
     let push = |(phase, t_echo)| {
         let firing = Firing { expected_change_us: -1000, ..Firing::new(Phase(phase)) };
-        tracker.push(0, us(t_echo), firing).unwrap().kind
+        tracker.push(0, &[Micros::new(t_echo)], firing).unwrap().kind
     };
     let seen: Vec<_> = (0..6).zip((0..6).map(|step| 20_000 - 1000 * step)).map(push).collect();
     assert_eq!(seen[4..], [ReadingKind::Accepted; 2]);
@@ -185,7 +187,7 @@ fn a_firing_that_was_not_steady_supports_nothing() {
     let mut tracker = balanced();
     for phase in 0..PHASES {
         let firing = Firing { steady: false, ..Firing::new(Phase(phase)) };
-        let kind = tracker.push(0, us(9000), firing).unwrap().kind;
+        let kind = tracker.push(0, &[Micros::new(9000)], firing).unwrap().kind;
         assert_eq!(kind, ReadingKind::First);
     }
 }
@@ -196,10 +198,10 @@ fn changed_firing_times_take_unconfirmed_support() {
     let mut tracker = balanced();
     kinds(&mut tracker, [us(9000); 3]);
     tracker.firing_changed();
-    assert_eq!(tracker.push(0, us(9000), Firing::new(Phase(3))).unwrap().kind, ReadingKind::Rejected);
+    assert_eq!(tracker.push(0, &[Micros::new(9000)], Firing::new(Phase(3))).unwrap().kind, ReadingKind::Rejected);
     kinds(&mut tracker, [us(9000); 11]);
     tracker.firing_changed();
-    assert_eq!(tracker.push(0, us(9000), Firing::new(Phase(0))).unwrap().kind, ReadingKind::Accepted);
+    assert_eq!(tracker.push(0, &[Micros::new(9000)], Firing::new(Phase(0))).unwrap().kind, ReadingKind::Accepted);
 }
 
 // The longest times and the largest changes are echoes like any other.
@@ -208,9 +210,9 @@ fn longest_times_and_largest_changes_are_echoes() {
     let mut tracker = balanced();
     for (phase, change) in (0..40).zip([i32::MAX, i32::MIN, 0, 1, -1].into_iter().cycle()) {
         let firing = Firing { expected_change_us: change, ..Firing::new(Phase(phase)) };
-        tracker.push(0, Some(Micros::MAX), firing).unwrap();
-        tracker.push(0, Some(Micros::ZERO), firing).unwrap();
-        tracker.push(0, None, firing).unwrap();
+        tracker.push(0, &[Micros::MAX], firing).unwrap();
+        tracker.push(0, &[Micros::ZERO], firing).unwrap();
+        tracker.push(0, &[], firing).unwrap();
     }
 }
 
@@ -223,7 +225,7 @@ fn each_error_names_what_is_wrong_and_what_is_expected() {
     assert_eq!(with(loose), "tentative_within is 151; expected 0 to 150");
     let few = TrackerSettings { votes: 1, ..TrackerSettings::BALANCED };
     assert_eq!(with(few), "votes is 1; expected 2 to 15");
-    let error = balanced().push(1, None, Firing::new(Phase(0))).unwrap_err();
+    let error = balanced().push(1, &[], Firing::new(Phase(0))).unwrap_err();
     assert_eq!(error.to_string(), "sensor 2; expected 1 to 1");
 }
 
@@ -233,7 +235,7 @@ fn the_tracker_knows_each_sensors_age_as_its_verdicts_say_it() {
     assert_eq!((tracker.age(0), tracker.age(1), tracker.age(2)), (None, None, None));
     for firing in 0..40_u8 {
         let echo = if firing % 10 < 6 { us(9000) } else { None };
-        let verdict = tracker.push(1, echo, Firing::new(Phase(firing % PHASES))).unwrap();
+        let verdict = tracker.push(1, echo.as_slice(), Firing::new(Phase(firing % PHASES))).unwrap();
         assert_eq!(tracker.age(1), verdict.age);
     }
     assert!(tracker.age(1).is_some());
@@ -245,11 +247,11 @@ fn the_tracker_knows_each_sensors_age_as_its_verdicts_say_it() {
 fn reading_in_place_of_confirmed_silence_is_not_clear() {
     let mut tracker = EchoTracker::<1, 1>::new(TrackerSettings::BALANCED).unwrap();
     for phase in 0..5 {
-        tracker.push(0, None, Firing::new(Phase(phase))).unwrap();
+        tracker.push(0, &[], Firing::new(Phase(phase))).unwrap();
         assert_eq!(tracker.is_clear(0), phase == 4);
     }
     // There is room for one track alone.
-    tracker.push(0, Some(Micros::new(9_000)), Firing::new(Phase(5))).unwrap();
+    tracker.push(0, &[Micros::new(9_000)], Firing::new(Phase(5))).unwrap();
     assert!(!tracker.is_clear(0));
 }
 
@@ -259,9 +261,9 @@ fn confirmed_echo_is_remembered_for_longer_while_robot_moves() {
     let returns_after = |silent: u8, expected_change_us| {
         let mut tracker = EchoTracker::<1>::new(TrackerSettings::BALANCED.with_memory(5)).unwrap();
         kinds(&mut tracker, [us(9000); 5]);
-        let mut push = |phase: u8, echo| {
+        let mut push = |phase: u8, echo: Option<Micros>| {
             let firing = Firing { expected_change_us, ..Firing::new(Phase(phase % PHASES)) };
-            tracker.push(0, echo, firing).unwrap().kind
+            tracker.push(0, echo.as_slice(), firing).unwrap().kind
         };
         // Less than a surplus could be told from.
         for phase in 5..5 + silent {

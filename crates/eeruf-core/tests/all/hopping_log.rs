@@ -100,7 +100,7 @@ fn a_tracker_does_from_the_log_what_the_rings_own_did() {
                                     steady: weighed.steady,
                                     expected_change_us: weighed.expected_change_us,
                                 };
-                                twin.push(place, raw[place], firing).unwrap()
+                                twin.push(place, raw[place].as_slice(), firing).unwrap()
                             }
                         };
                         let said = Verdict {

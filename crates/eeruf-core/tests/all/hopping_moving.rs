@@ -28,7 +28,11 @@ fn listening() -> HoppingListening {
 }
 
 /// Returns true if the receiver accepts an echo within this number of periods.
-fn confirms<P: Plan, J: Judge, const K: usize>(mut ring: Ring<P, J, K, 1, 1>, periods: u32, drive: Drive) -> bool {
+fn confirms<P: Plan, J: Judge, const K: usize, const E: usize>(
+    mut ring: Ring<P, J, K, E, 1>,
+    periods: u32,
+    drive: Drive,
+) -> bool {
     let (mut fired_us, mut before_us) = ([None; K], [None; K]);
     let mut ended = 0;
     while ended < periods {
@@ -92,16 +96,17 @@ fn fooled_hopping<const K: usize>(code: HoppingCode, period: Micros, settings: H
 }
 
 /// The same of a flow ring.
-fn fooled_flow<const K: usize>(settings: FlowSettings) -> Vec<(u8, u8, i32)> {
+fn fooled_flow<const K: usize, const H: usize, const E: usize>(settings: FlowSettings) -> Vec<(u8, u8, i32)> {
     fooled::<K>(|drive| {
-        confirms(FlowRing::<K>::flow(K, settings, listening(), Instant::from_micros(0)).unwrap(), 120, drive)
+        confirms(FlowRing::<K, H, E>::flow(K, settings, listening(), Instant::from_micros(0)).unwrap(), 120, drive)
     })
 }
 
 #[test]
 fn no_pair_of_a_flow_ring_is_confirmed_at_any_speed() {
-    assert_eq!(fooled_flow::<8>(FlowSettings::DEFAULT), []);
-    assert_eq!(fooled_flow::<12>(FlowSettings::DEFAULT), []);
+    assert_eq!(fooled_flow::<8, 4, 1>(FlowSettings::DEFAULT), []);
+    assert_eq!(fooled_flow::<12, 4, 1>(FlowSettings::DEFAULT), []);
+    assert_eq!(fooled_flow::<8, 12, 8>(FlowSettings::DEFAULT), []);
 }
 
 #[test]

@@ -102,8 +102,11 @@ fn many_phases_go_with_several_echoes_and_with_limits() {
     let filter = EchoFilter::<2, 3>::new(Micros::new(1_400), 2).unwrap();
     let mut ring = Ring::<_, _, 2, 3, 8>::judged_by(plan(), filter, config, BEGIN).unwrap();
     are_walls(&accepted(&mut ring, 3, |_, _| ()));
+    // By votes, of all of them too.
+    let mut ring = HoppingRing::<2, 8, 3, _>::with_limits(&schedule, limits, settings, listening, 1, BEGIN).unwrap();
+    are_walls(&accepted(&mut ring, 3, |_, _| ()));
     // By votes, of one echo: the wall is masked by what comes first.
-    let mut ring = HoppingRing::<2, 4, _>::with_limits(&schedule, limits, settings, listening, 1, BEGIN).unwrap();
+    let mut ring = HoppingRing::<2, 4, 1, _>::with_limits(&schedule, limits, settings, listening, 1, BEGIN).unwrap();
     assert_eq!((ring.window_of(0), ring.window_of(1)), (Micros::from_millis(50), Micros::from_millis(12)));
     assert_eq!((ring.t_delta_of(0), ring.t_delta_of(1)), (Micros::new(999), Micros::new(1_400)));
     let first = accepted(&mut ring, 1, |_, _| ());
@@ -120,7 +123,8 @@ fn restart_of_hopping_ring_keeps_the_longest_gap() {
     let listening = HoppingListening::new(Micros::from_millis(50));
     let settings = HoppingSettings::DRIVING.with_tracker(TrackerSettings::BALANCED);
     let next_firing = |after_ms: u32| {
-        let mut ring = HoppingRing::<2, 4, _>::with_limits(&schedule, limits, settings, listening, 1, BEGIN).unwrap();
+        let mut ring =
+            HoppingRing::<2, 4, 1, _>::with_limits(&schedule, limits, settings, listening, 1, BEGIN).unwrap();
         let fires = |event: Option<RingEvent>| matches!(event, Some(RingEvent::Fire { .. }));
         let first = ring.next_deadline();
         assert!(fires(ring.poll(first)));

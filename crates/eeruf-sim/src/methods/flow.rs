@@ -2,25 +2,28 @@
 
 use eeruf_core::{MAX_SENSORS, flow::FlowRing, hopping::HoppingListening};
 
-use super::ring_runner::{RingStart, Started};
+use super::method::MAX_ECHOES;
+use super::ring_runner::{RingStart, SEVERAL_TRACKS, Started, TRACKS};
 use crate::world::Robot;
-
-/// Tracks of each sensor where it reports one echo of a firing.
-const TRACKS: usize = 4;
 
 /// A flow ring, no larger than needed.
 pub(super) fn flow<'s>(start: &RingStart<'s>) -> Started<'s> {
     match start.robot.sensors.len() {
-        ..=8 => ring::<8>(start),
-        9..=24 => ring::<24>(start),
-        _ => ring::<MAX_SENSORS>(start),
+        ..=8 => ring::<8, TRACKS, 1>(start),
+        9..=24 => ring::<24, TRACKS, 1>(start),
+        _ => ring::<MAX_SENSORS, TRACKS, 1>(start),
     }
 }
 
-fn ring<'s, const K: usize>(start: &RingStart<'s>) -> Started<'s> {
+/// The same of sensors that report several echoes.
+pub(super) fn several<'s>(start: &RingStart<'s>) -> Started<'s> {
+    ring::<MAX_SENSORS, SEVERAL_TRACKS, MAX_ECHOES>(start)
+}
+
+fn ring<'s, const K: usize, const H: usize, const E: usize>(start: &RingStart<'s>) -> Started<'s> {
     let Robot { ref sensors, window, blanking, fleet_number, .. } = *start.robot;
     let mut settings = start.flow.with_fleet_number(fleet_number);
     settings.shortest_cycle = start.robot.period;
     let listening = HoppingListening::new(window).with_blanking(blanking);
-    Ok(Box::new(FlowRing::<K, TRACKS>::flow(sensors.len(), settings, listening, start.now)?))
+    Ok(Box::new(FlowRing::<K, H, E>::flow(sensors.len(), settings, listening, start.now)?))
 }

@@ -1,7 +1,7 @@
 //! Rings that hop in time: core's own, for a robot.
 
 use eeruf_core::{
-    Criterion, EachSensor, EchoFilter, Instant, MAX_SENSORS, Micros, Requirements, Ring, RingEvent,
+    Criterion, EachSensor, Instant, MAX_SENSORS, Micros, Requirements, RingEvent,
     adaptation::Adaptation,
     hopping::{
         HoppingCode, HoppingError, HoppingListening, HoppingPlan, HoppingRing, HoppingSchedule, HoppingSettings,
@@ -11,7 +11,7 @@ use eeruf_core::{
 
 use super::adaptive::RUNGS;
 use super::method::MAX_ECHOES;
-use super::ring_runner::{FiringPlan, Hops, REMEMBERED, RingRunner, RingStart, StartError, Started, config_of};
+use super::ring_runner::{FiringPlan, Hops, RingRunner, RingStart, SEVERAL_TRACKS, StartError, Started, TRACKS};
 use crate::world::{AnySchedule, Robot};
 
 /// The least shift of crosstalk from phase to phase: 90 us more than the tracker's `T_delta`, for jitter and lateness.
@@ -26,7 +26,7 @@ pub(super) fn hopping<'s>(start: &RingStart<'s>) -> Started<'s> {
     let RingStart { robot, hops, .. } = start;
     if keeps_limits(robot, hops) {
         let schedule = schedule_of::<MAX_SENSORS>(robot, hops)?;
-        return Ok(Box::new(limited(start, &schedule, own_limits(robot, hops, &schedule)?)?));
+        return Ok(Box::new(limited::<TRACKS, 1>(start, &schedule, own_limits(robot, hops, &schedule)?)?));
     }
     match robot.sensors.len() {
         ..=8 => ring::<8>(start),
@@ -96,27 +96,22 @@ fn settings_for(start: &RingStart<'_>) -> HoppingSettings {
 }
 
 /// A ring with these limits.
-fn limited(
+fn limited<const H: usize, const E: usize>(
     start: &RingStart<'_>,
     schedule: &HoppingSchedule<MAX_SENSORS>,
     limits: EachSensor<MAX_SENSORS>,
-) -> Result<LimitedRing, HoppingError> {
+) -> Result<LimitedRing<H, E>, HoppingError> {
     LimitedRing::with_limits(schedule, limits, settings_for(start), listening(start.robot), seed(start), start.now)
 }
 
 /// A ring whose sensors may have limits of their own.
-type LimitedRing = HoppingRing<MAX_SENSORS, 4, EachSensor<MAX_SENSORS>>;
+type LimitedRing<const H: usize = TRACKS, const E: usize = 1> = HoppingRing<MAX_SENSORS, H, E, EachSensor<MAX_SENSORS>>;
 
-/// A ring that hops, with sensors that report several echoes: readings are compared, not voted on.
+/// A ring that hops, with sensors that report several echoes.
 pub(super) fn several<'s>(start: &RingStart<'s>) -> Started<'s> {
-    let RingStart { robot, hops, now, .. } = start;
-    let schedule = schedule_of::<MAX_SENSORS>(robot, hops)?;
-    let limits = own_limits(robot, hops, &schedule)?;
-    let plan = HoppingPlan::with_limits(&schedule, limits, settings_for(start), listening(robot), seed(start), *now)?;
-    let config = config_of(robot).with_echoes::<MAX_ECHOES>();
-    Ok(Box::new(Ring::<_, EchoFilter<MAX_SENSORS, MAX_ECHOES>, MAX_SENSORS, MAX_ECHOES, REMEMBERED>::with_plan(
-        plan, config, *now,
-    )?))
+    let schedule = schedule_of::<MAX_SENSORS>(start.robot, &start.hops)?;
+    let limits = own_limits(start.robot, &start.hops, &schedule)?;
+    Ok(Box::new(limited::<SEVERAL_TRACKS, MAX_ECHOES>(start, &schedule, limits)?))
 }
 
 /// The ladder of a ring that hops: what it would hop by, scaled, as far as that can be done.

@@ -228,14 +228,23 @@ methods! {
         echoes: MAX_ECHOES,
         refire: |robot, _, _| robot.window,
     }
-    /// It fires as [`EerufHopping`](Self::EerufHopping), with sensors that report up to eight echoes of a firing: the
-    /// earliest that repeats is believed, not what has most votes.
+    /// As [`EerufHopping`](Self::EerufHopping), with sensors that report up to eight echoes of a firing, all of which
+    /// have votes.
     HoppingMultiEcho = "hopping_multi_echo" {
         eeruf: true,
         on_demand: true,
         hops: true,
         schedule: schedules::conventional,
         ring: hopping::several,
+        echoes: MAX_ECHOES,
+        refire: |robot, _, _| robot.window,
+    }
+    /// As [`Flow`](Self::Flow), with sensors that report up to eight echoes of a firing, all of which have votes.
+    FlowMultiEcho = "flow_multi_echo" {
+        eeruf: true,
+        on_demand: true,
+        schedule: schedules::conventional,
+        ring: flow::several,
         echoes: MAX_ECHOES,
         refire: |robot, _, _| robot.window,
     }

@@ -241,6 +241,9 @@ pub(super) const ASKS: bool = true;
 pub(super) const AGREEMENT_ALONE: bool = false;
 /// The firings of each sensor that are remembered for whoever asks.
 pub(super) const REMEMBERED: usize = 4;
+/// Tracks of each sensor where a tracker judges, if it reports one echo of a firing, and if several.
+pub(super) const TRACKS: usize = 4;
+pub(super) const SEVERAL_TRACKS: usize = 12;
 /// The same of immediate refiring, in which a sensor may fire many times while another listens once.
 const REFIRED: usize = 16;
 

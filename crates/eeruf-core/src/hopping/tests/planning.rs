@@ -21,7 +21,7 @@ fn judge(is_clear: bool) -> impl Judge {
     let mut tracker = EchoTracker::<8>::new(TrackerSettings::BALANCED).unwrap();
     for (sensor, phase) in (0..8).flat_map(|sensor| (0..if is_clear { 5 } else { 0 }).map(move |phase| (sensor, phase)))
     {
-        tracker.push(sensor, None, Firing::new(Phase(phase))).unwrap();
+        tracker.push(sensor, &[], Firing::new(Phase(phase))).unwrap();
     }
     tracker
 }

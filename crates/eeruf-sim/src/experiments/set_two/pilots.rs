@@ -63,6 +63,7 @@ pub const fn steered_as(method: Method) -> Method {
         Method::SequentialVotes => Method::Sequential,
         Method::AdaptiveHopping | Method::HoppingMultiEcho => Method::EerufHopping,
         Method::AdaptiveMultiEcho => Method::MultiEcho,
+        Method::FlowMultiEcho => Method::Flow,
         sketch if sketch.is_sketch() => Method::Sequential,
         _ => method,
     }

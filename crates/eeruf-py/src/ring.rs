@@ -85,13 +85,13 @@ type HopRing<const H: usize, const E: usize> = HoppingRing<MAX_SENSORS, H, E, Ea
 const TRACKS: usize = 4;
 const SEVERAL_TRACKS: usize = 12;
 
-/// The kinds, and the `t_delta` by which two count votes.
+/// The kinds: by a table, or counting votes of one echo or of several.
 pub(crate) enum Fires {
     BySchedule(Box<OwnedRing>),
-    Hopping(Box<HopRing<TRACKS, 1>>, Micros, SensorNeeds),
-    HoppingSeveral(Box<HopRing<SEVERAL_TRACKS, MAX_ECHOES>>, Micros, SensorNeeds),
-    Flow(Box<FlowRing<MAX_SENSORS, TRACKS, 1>>, Micros),
-    FlowSeveral(Box<FlowRing<MAX_SENSORS, SEVERAL_TRACKS, MAX_ECHOES>>, Micros),
+    Hopping(Box<HopRing<TRACKS, 1>>, SensorNeeds),
+    HoppingSeveral(Box<HopRing<SEVERAL_TRACKS, MAX_ECHOES>>, SensorNeeds),
+    Flow(Box<FlowRing<MAX_SENSORS, TRACKS, 1>>),
+    FlowSeveral(Box<FlowRing<MAX_SENSORS, SEVERAL_TRACKS, MAX_ECHOES>>),
 }
 
 /// Needs of the sensors of a ring that hops, where they are not all alike.
@@ -132,10 +132,10 @@ impl Fires {
         let limits = needs.limits(schedule)?;
         if several {
             let ring = HopRing::with_limits(schedule, limits, settings, listening, seed, now).map_err(Raise::raise)?;
-            return Ok(Self::HoppingSeveral(Box::new(ring), t_delta, needs));
+            return Ok(Self::HoppingSeveral(Box::new(ring), needs));
         }
         let ring = HopRing::with_limits(schedule, limits, settings, listening, seed, now).map_err(Raise::raise)?;
-        Ok(Self::Hopping(Box::new(ring), t_delta, needs))
+        Ok(Self::Hopping(Box::new(ring), needs))
     }
 
     pub(crate) fn flow(
@@ -146,13 +146,12 @@ impl Fires {
         now: Instant,
     ) -> PyResult<Self> {
         let (sensors, settings) = (requirements::sensors(sensors)?, flow_settings::of(settings)?);
-        let t_delta = settings.tracker.t_delta;
         if several {
             let ring = FlowRing::flow(sensors, settings, listening, now).map_err(Raise::raise)?;
-            return Ok(Self::FlowSeveral(Box::new(ring), t_delta));
+            return Ok(Self::FlowSeveral(Box::new(ring)));
         }
         let ring = FlowRing::flow(sensors, settings, listening, now).map_err(Raise::raise)?;
-        Ok(Self::Flow(Box::new(ring), t_delta))
+        Ok(Self::Flow(Box::new(ring)))
     }
 }
 
@@ -171,8 +170,8 @@ macro_rules! ask {
             $crate::ring::Fires::BySchedule(owned) => $crate::owned_ring::table!(owned.ring(), |$ring| $call),
             $crate::ring::Fires::Hopping($ring, ..) => $call,
             $crate::ring::Fires::HoppingSeveral($ring, ..) => $call,
-            $crate::ring::Fires::Flow($ring, _) => $call,
-            $crate::ring::Fires::FlowSeveral($ring, _) => $call,
+            $crate::ring::Fires::Flow($ring) => $call,
+            $crate::ring::Fires::FlowSeveral($ring) => $call,
         }
     };
 }
@@ -184,8 +183,8 @@ macro_rules! act {
             $crate::ring::Fires::BySchedule(owned) => owned.with(|any| $crate::owned_ring::table!(any, |$ring| $call)),
             $crate::ring::Fires::Hopping($ring, ..) => $call,
             $crate::ring::Fires::HoppingSeveral($ring, ..) => $call,
-            $crate::ring::Fires::Flow($ring, _) => $call,
-            $crate::ring::Fires::FlowSeveral($ring, _) => $call,
+            $crate::ring::Fires::Flow($ring) => $call,
+            $crate::ring::Fires::FlowSeveral($ring) => $call,
         }
     };
 }
@@ -239,9 +238,19 @@ impl AnyRing {
     pub(crate) fn t_delta(&self) -> Micros {
         match &self.fires {
             Fires::BySchedule(owned) => owned.t_delta(),
-            Fires::Hopping(_, t_delta, _) | Fires::HoppingSeveral(_, t_delta, _) => *t_delta,
-            Fires::Flow(_, t_delta) | Fires::FlowSeveral(_, t_delta) => *t_delta,
+            Fires::Hopping(ring, _) => ring.judge().settings().t_delta,
+            Fires::HoppingSeveral(ring, _) => ring.judge().settings().t_delta,
+            Fires::Flow(ring) => ring.judge().settings().t_delta,
+            Fires::FlowSeveral(ring) => ring.judge().settings().t_delta,
         }
+    }
+
+    /// The largest P of a sensor, its own `T_delta` where it was not said, of a ring by a schedule.
+    pub(crate) fn path_change(&mut self) -> PyResult<Micros> {
+        // At most 64 sensors.
+        let (sensors, owned) = (self.sensors() as u8, self.by_schedule("path_change_us")?);
+        let of = |sensor| crate::owned_ring::table!(owned.ring(), |ring| ring.path_change_of(sensor));
+        Ok((0..sensors).map(of).max().unwrap_or_default())
     }
 
     /// The plan of a ring that hops.
@@ -265,8 +274,8 @@ impl AnyRing {
             Fires::BySchedule(_) => None,
             Fires::Hopping(ring, ..) => ring.judge().confirmed(sensor.into()),
             Fires::HoppingSeveral(ring, ..) => ring.judge().confirmed(sensor.into()),
-            Fires::Flow(ring, _) => ring.judge().confirmed(sensor.into()),
-            Fires::FlowSeveral(ring, _) => ring.judge().confirmed(sensor.into()),
+            Fires::Flow(ring) => ring.judge().confirmed(sensor.into()),
+            Fires::FlowSeveral(ring) => ring.judge().confirmed(sensor.into()),
         }
     }
 
@@ -278,8 +287,8 @@ impl AnyRing {
     /// Hops by another schedule with the same code, once all sound from before has died.
     pub(crate) fn change_hopping(&mut self, schedule: &CoreHopping<MAX_SENSORS>) -> PyResult<()> {
         let changed = match &mut self.fires {
-            Fires::Hopping(ring, _, needs) => needs.limits(schedule).map(|_| ring.change_hopping(schedule)),
-            Fires::HoppingSeveral(ring, _, needs) => needs.limits(schedule).map(|_| ring.change_hopping(schedule)),
+            Fires::Hopping(ring, needs) => needs.limits(schedule).map(|_| ring.change_hopping(schedule)),
+            Fires::HoppingSeveral(ring, needs) => needs.limits(schedule).map(|_| ring.change_hopping(schedule)),
             Fires::BySchedule(_) | Fires::Flow(..) | Fires::FlowSeveral(..) => {
                 return Err(RingError::new_err("an eeruf.HoppingSchedule for a ring that does not hop by one"));
             }

@@ -198,8 +198,8 @@ impl Ring {
         reach_us: Option<&Bound<'_, PyAny>>,
         several_echoes: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
-        let (listening, now) = (listening(window_us, blanking_us, reach_us)?, begins(now_us)?);
-        let several = flag("several_echoes", several_echoes, false)?;
+        let (several, now) = (flag("several_echoes", several_echoes, false)?, begins(now_us)?);
+        let listening = listening(window_us, blanking_us, reach_us)?;
         Ok(Self::of(Fires::flow(sensors, settings, listening, several, now)?, now))
     }
 
@@ -368,18 +368,13 @@ impl Ring {
     /// schedule. It can be changed while the ring runs: as the robot's speed changes, for example.
     #[getter]
     fn path_change_us(&self) -> PyResult<u32> {
-        let mut any = self.0.get()?;
-        let (sensors, owned) = (any.sensors() as u8, any.by_schedule("path_change_us")?);
-        // At most 64 sensors; their own t_delta where it was not said.
-        let of = |sensor| table!(owned.ring(), |ring| ring.path_change_of(sensor).as_micros());
-        Ok((0..sensors).map(of).max().unwrap_or(0))
+        Ok(self.0.get()?.path_change()?.as_micros())
     }
 
     #[setter]
     fn set_path_change_us(&self, path_change_us: &Bound<'_, PyAny>) -> PyResult<()> {
-        let path_change = micros("path_change_us", path_change_us)?;
-        let (mut any, what) = (self.0.get()?, "path_change_us");
-        AnyRing::raised(any.by_schedule(what)?.with(|of| table!(of, |ring| ring.set_path_change(path_change))))
+        let (change, mut any) = (micros("path_change_us", path_change_us)?, self.0.get()?);
+        AnyRing::raised(any.by_schedule("path_change_us")?.with(|of| table!(of, |ring| ring.set_path_change(change))))
     }
 
     /// R, how long sound is audible, in microseconds, of a ring by a schedule. It can be changed while the ring runs.

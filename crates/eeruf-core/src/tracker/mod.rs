@@ -72,8 +72,8 @@ impl<const K: usize, const H: usize, const E: usize> EchoTracker<K, H, E> {
         &self.settings
     }
 
-    /// Takes in one firing of a sensor (from 0): the times of its echoes, earliest first, each at most 16.7 s; the first
-    /// `E` count. The verdict is
+    /// Takes in one firing of a sensor (from 0) with its echo times, earliest first, each at most 16.7 s; `E` count.
+    /// The verdict is
     /// [`Accepted`](ReadingKind::Accepted) for an echo near the earliest confirmed track, [`Clear`](ReadingKind::Clear)
     /// for confirmed silence, [`Tentative`](ReadingKind::Tentative) for an echo that few readings support so far and
     /// none contradicts, earlier than what is confirmed; else [`First`](ReadingKind::First),

@@ -234,7 +234,7 @@ impl Naive {
         (kind, sounds[sound], previous[sound].flatten())
     }
 
-    /// How much of the expected change there is, from two pairs of consecutive readings that agree about it.
+    /// The share of the expected change that there is, from two pairs of consecutive readings that agree about it.
     fn learn(&mut self, place: Place, expected_us: i32) {
         let last = core::mem::replace(&mut self.last, place);
         let expected = i64::from(expected_us);

@@ -6,7 +6,7 @@ mod clock;
 mod constant_depth;
 #[path = "../../crates/eeruf-sim/tests/common/corpus.rs"]
 mod corpus;
-mod diagnose_alcoves;
+mod diagnose_places;
 mod doctor_alcoves;
 mod echo_times;
 mod fault_rates;
@@ -47,10 +47,10 @@ type Command = (&'static str, &'static str, &'static str, fn(&[String]) -> Answe
 const COMMANDS: [Command; 28] = [
     ("constant-depth", "", "angles at which a wall is heard, by distance and gain", constant_depth::main),
     (
-        "diagnose-alcoves",
-        "[FIRST [ALCOVES [METHOD [PERIODS [PHYSICS]]]]]",
+        "diagnose-places",
+        "[FIRST [PLACES [METHOD [PERIODS [PHYSICS [WHERE]]]]]]",
         "senders that diagnose names",
-        diagnose_alcoves::main,
+        diagnose_places::main,
     ),
     ("doctor-alcoves", "[FIRST [ALCOVES [PERIODS [PHYSICS]]]]", "verdicts of eeruf logs", doctor_alcoves::main),
     ("echo-times", "SCENE.toml [SENSORS]", "ways of sound in a scene, for simulated boards", echo_times::main),

@@ -55,7 +55,7 @@ fn doctor(physics: &str) -> Result<()> {
 /// Names of senders, held against the simulator's knowledge: of three fifths of the rejected foreign readings at 99 %
 /// precision where hops are many; of none where there are two phases.
 fn senders(method: &str, physics: &str) -> Result<()> {
-    let lab = ["lab", "diagnose-alcoves", "40000", "200", method, "1000", physics];
+    let lab = ["lab", "diagnose-places", "40000", "200", method, "1000", physics];
     let said = output(Command::new("cargo").args(lab))?;
     println!("{said}");
     // "named rightly: 300757, 80.5 % of those" and "named: 300874, of which rightly 99.96 %".

@@ -190,7 +190,8 @@ fn people(world: &World, seconds: f64) -> Vec<Fault> {
     faults
 }
 
-fn world(number: u64, place: Place, robots: Robots, physics: Physics) -> Result<World, Box<dyn Error>> {
+/// A robot in a place.
+pub(crate) fn world(number: u64, place: Place, robots: Robots, physics: Physics) -> Result<World, Box<dyn Error>> {
     let alcove = Alcove::random(number);
     let mut robot = alcove.robot();
     let world = match place {

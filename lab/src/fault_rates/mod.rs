@@ -8,7 +8,8 @@
 mod cases;
 mod truth;
 
-use cases::{Broken, Outcome, Place, Robots};
+use cases::{Broken, Outcome};
+pub(crate) use cases::{Place, Robots, world};
 use eeruf_logs::Share;
 use eeruf_sim::{Method, Physics, sweep};
 

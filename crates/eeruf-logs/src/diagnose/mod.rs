@@ -13,10 +13,14 @@
 //! (Bonferroni), and a path counts as found if fewer than [`Settings::accidents`] such paths are expected in the whole
 //! log by accident. That takes many phases, or lags that move: with two phases there are two offsets, and no pair can
 //! be named.
+//!
+//! While the robot drives no time stays. Then a path is a line of a second, and readings are named one by one, by those
+//! around them: `moving`.
 
 mod align;
 mod alike;
 mod faults;
+mod moving;
 mod naming;
 mod reciprocity;
 mod search;
@@ -32,6 +36,7 @@ pub use align::{AlignError, Alignment, align};
 use alike::alike;
 pub use faults::Fault;
 use faults::faults;
+use moving::follow;
 pub use naming::Named;
 use naming::name_senders;
 use search::paths_to;
@@ -69,7 +74,7 @@ pub struct FoundPath {
     pub sender: u8,
     /// The sensor that hears it, from 0.
     pub receiver: u8,
-    /// Travel time of the sound, in microseconds.
+    /// Travel time of the sound, in microseconds; of a path that moves, at the middle of its times.
     pub travel_us: f64,
     /// Standard error of that.
     pub travel_error_us: f64,
@@ -77,7 +82,8 @@ pub struct FoundPath {
     pub scatter_us: f64,
     /// Number of different offsets between the two firings that support it, and of those in which it could be heard.
     pub offsets: (u32, u32),
-    /// Number of paths with as much support that are expected by accident in the whole log.
+    /// Number of paths with as much support that are expected by accident in the whole log. Of a path that moves, the
+    /// probability that the surest of its readings did not come along it.
     pub accidents: f64,
     /// Readings that came along it.
     pub readings: u32,
@@ -85,6 +91,8 @@ pub struct FoundPath {
     pub heard: f64,
     /// The periods of the first and the last reading that came along it.
     pub periods: (u32, u32),
+    /// Rate at which its travel time changes, in microseconds for each second, if the robot drove.
+    pub rate_us_s: Option<f64>,
 }
 
 /// Findings of a log about a ring.
@@ -129,21 +137,25 @@ pub fn diagnose(log: &FiringLog, settings: &Settings) -> Diagnosis {
     let mut paths = Vec::new();
     let mut named = vec![None; log.firings.len()];
     let mut fits_none = vec![false; log.firings.len()];
-    for receiver in 0..log.sensors() as u8 {
-        let mut found = paths_to(receiver, &timeline, settings);
-        for path in &mut found {
-            let period = |place: u32| log.firings.get(place as usize).map_or(0, |firing| firing.period);
-            path.periods = (period(path.periods.0), period(path.periods.1));
+    let moved = timeline.moved();
+    if moved {
+        paths = follow(&timeline, settings, &mut named, &mut fits_none);
+    } else {
+        for receiver in 0..log.sensors() as u8 {
+            let found = paths_to(receiver, &timeline, settings);
+            name_senders(receiver, &found, &timeline, settings, &mut named, &mut fits_none);
+            paths.extend(found);
         }
-        name_senders(receiver, &found, &timeline, settings, &mut named, &mut fits_none);
-        paths.extend(found);
     }
+    let period = |place: u32| log.firings.get(place as usize).map_or(0, |firing| firing.period);
+    paths.iter_mut().for_each(|path| path.periods = (period(path.periods.0), period(path.periods.1)));
     let tolerance = i64::from(settings.tolerance_us.max(1));
     let sensors = 0..log.sensors() as u8;
-    let alike: Vec<_> = sensors.map(|sensor| alike(sensor, &paths, &timeline, &fits_none, tolerance)).collect();
+    // A path that moves is not there for the whole log, as what is held against the way back must be.
+    let standing = if moved { &[] } else { &paths[..] };
+    let alike: Vec<_> = sensors.map(|sensor| alike(sensor, standing, &timeline, &fits_none, tolerance)).collect();
     let hearing = hearing(log, &paths, &named, &fits_none, &alike);
-    let moved = timeline.moved();
-    let faults = faults(&paths, &hearing, &alike, &timeline, settings, moved);
+    let faults = faults(standing, &hearing, &alike, &timeline, settings, moved);
     let most_offsets = timeline.most_offsets(settings.tolerance_us.into());
     Diagnosis { paths, named, hearing, faults, moved, most_offsets }
 }

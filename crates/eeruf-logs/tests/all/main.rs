@@ -4,6 +4,7 @@ mod bags;
 mod csv;
 mod damage;
 mod diagnose;
+mod diagnose_driving;
 mod diagnose_rooms;
 mod firing_logs;
 mod forms;

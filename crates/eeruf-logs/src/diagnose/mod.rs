@@ -151,7 +151,7 @@ pub fn diagnose(log: &FiringLog, settings: &Settings) -> Diagnosis {
     paths.iter_mut().for_each(|path| path.periods = (period(path.periods.0), period(path.periods.1)));
     let tolerance = i64::from(settings.tolerance_us.max(1));
     let sensors = 0..log.sensors() as u8;
-    // A path that moves is not there for the whole log, as what is held against the way back must be.
+    // A path that moves does not last for the whole log, as what is held against the way back must.
     let standing = if moved { &[] } else { &paths[..] };
     let alike: Vec<_> = sensors.map(|sensor| alike(sensor, standing, &timeline, &fits_none, tolerance)).collect();
     let hearing = hearing(log, &paths, &named, &fits_none, &alike);

@@ -200,7 +200,6 @@ impl Adaptation {
     ///     >>> adaptation = eeruf.Adaptation([eeruf.tables.TABLE_I_D], t_delta_us=500)
     ///     >>> adaptation.adapt(ring, ring.poll(ring.next_deadline_us))
     ///     False
-    #[pyo3(signature = (ring, event))]
     fn adapt(&self, ring: &Bound<'_, PyAny>, event: &Bound<'_, PyAny>) -> PyResult<bool> {
         let ring = instance::<Ring>("ring", ring, "an eeruf.Ring")?;
         let RingEvent::PeriodEnded(stats) = to_core("event", event)? else { return Ok(false) };

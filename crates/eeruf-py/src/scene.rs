@@ -20,6 +20,7 @@ use crate::{
     drawing,
     errors::{Raise, SceneError, warn, warn_of},
     faults,
+    fields::{Reduced, attributes, reduce_by_name},
     paths::{Ends, Paths},
     robot::Robot,
     surroundings::{self, Material, Noise},
@@ -119,28 +120,6 @@ impl Scene {
         }
         Self::of(parts, robots)
     }
-
-    /// The keyword arguments that make it again.
-    fn arguments<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let all = PyDict::new(py);
-        all.set_item("walls", self.walls(py)?)?;
-        all.set_item("open", self.open())?;
-        all.set_item("two_sided", self.two_sided())?;
-        all.set_item("poles", self.poles(py)?)?;
-        all.set_item("materials", self.materials())?;
-        all.set_item("pole_materials", self.pole_materials())?;
-        all.set_item("temperature_c", self.temperature_c())?;
-        all.set_item("humidity_percent", self.humidity_percent())?;
-        all.set_item("pressure_kpa", self.pressure_kpa())?;
-        all.set_item("robots", self.robots(py)?)?;
-        all.set_item("noise", self.noise())?;
-        all.set_item("seed", self.seed)?;
-        all.set_item("max_order", self.max_order)?;
-        all.set_item("physics", self.physics(py)?)?;
-        all.set_item("height", self.height(py)?)?;
-        all.set_item("faults", self.faults(py)?)?;
-        Ok(all)
-    }
 }
 
 fn indices(name: &str, value: Option<&Bound<'_, PyAny>>, walls: usize) -> PyResult<Vec<usize>> {
@@ -152,6 +131,26 @@ fn indices(name: &str, value: Option<&Bound<'_, PyAny>>, walls: usize) -> PyResu
         Some(last) => items.iter().map(|item| whole(name, item, 0..=last).map(|index| index as usize)).collect(),
     }
 }
+
+/// The keyword arguments that make a scene again.
+const ARGUMENTS: [&str; 16] = [
+    "walls",
+    "open",
+    "two_sided",
+    "poles",
+    "materials",
+    "pole_materials",
+    "temperature_c",
+    "humidity_percent",
+    "pressure_kpa",
+    "robots",
+    "noise",
+    "seed",
+    "max_order",
+    "physics",
+    "height",
+    "faults",
+];
 
 #[pymethods]
 impl Scene {
@@ -246,7 +245,6 @@ impl Scene {
     ///     >>> len(eeruf.sim.Scene.read_toml(file).walls)
     ///     3
     #[staticmethod]
-    #[pyo3(signature = (path))]
     fn read_toml(path: &Bound<'_, PyAny>) -> PyResult<Self> {
         let path: PathBuf = path.extract().map_err(|_| wrong("path", shown(path), "the path of a scene in TOML"))?;
         let text = Kind::Scene.read(&path).map_err(Raise::raise)?;
@@ -302,7 +300,7 @@ impl Scene {
     ///     (0.0, 3)
     #[pyo3(signature = (**changes))]
     fn replace<'py>(slf: &Bound<'py, Self>, changes: Option<&Bound<'py, PyDict>>) -> PyResult<Bound<'py, PyAny>> {
-        let arguments = slf.get().arguments(slf.py())?;
+        let arguments = attributes(slf, &ARGUMENTS)?;
         if let Some(changes) = changes {
             for (part, depending) in
                 [("walls", &["open", "two_sided", "materials"][..]), ("poles", &["pole_materials"])]
@@ -435,7 +433,6 @@ impl Scene {
     ///     >>> paths.order.tolist(), paths.length_m.tolist()
     ///     ([0, 1], [3.0, 5.0])
     #[pyo3(signature = (source, receivers, max_order, max_length_m=None, *, progress=None))]
-    #[pyo3(text_signature = "($self, source, receivers, max_order, max_length_m=None, *, progress=None)")]
     fn paths(
         slf: &Bound<'_, Self>,
         source: &Bound<'_, PyAny>,
@@ -471,10 +468,8 @@ impl Scene {
         drawing::svg(self.scene(), self.robots.iter().map(|robot| &robot.robot))
     }
 
-    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
-        let py = slf.py();
-        let rebuild = py.import("eeruf._rebuild")?.getattr("scene")?;
-        Ok((rebuild, (slf.get().arguments(py)?,).into_pyobject(py)?))
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
+        reduce_by_name(slf, attributes(slf, &ARGUMENTS)?)
     }
 }
 

@@ -13,7 +13,7 @@ use crate::{
     errors::Raise,
     exclusive::Exclusive,
     found::Found,
-    requirements::{self, OwnedLayout},
+    requirements,
     schedule::Schedule,
     watch::{Watch, control_flow},
 };
@@ -97,7 +97,7 @@ impl WaitSearch {
         let sensors = requirements::sensors(sensors)?;
         let t_lag = t_lag_us.map(|lags| times("t_lag_us", lags)).transpose()?;
         let neighbours = requirements::neighbours(neighbours)?;
-        let layout = OwnedLayout::new(layout, neighbours, sensors)?;
+        let layout = requirements::layout(layout, neighbours, sensors)?;
         let (period, wait_max) = (micros("period_us", period_us)?, micros("wait_max_us", wait_max_us)?);
         let needs = WaitProblem {
             sensors,

@@ -3,10 +3,11 @@
 use eeruf_sim::{Physics, Room};
 use pyo3::{
     prelude::*,
-    types::{PyDict, PyString, PyTuple},
+    types::{PyDict, PyString},
 };
 
 use crate::arguments::{flag, items, number, shown, wrong};
+use crate::fields::{Reduced, attributes, reduce, reduce_by_name, repr};
 
 /// The surface of a wall or a pole.
 ///
@@ -47,6 +48,8 @@ impl Material {
     }
 }
 
+const MATERIAL: [&str; 2] = ["reflection", "roughness_m"];
+
 #[pymethods]
 impl Material {
     #[new]
@@ -57,13 +60,12 @@ impl Material {
         Ok(Self { reflection, roughness_m })
     }
 
-    fn __repr__(&self) -> String {
-        format!("Material(reflection={:?}, roughness_m={:?})", self.reflection, self.roughness_m)
+    fn __repr__(slf: &Bound<'_, Self>) -> PyResult<String> {
+        repr(slf, &MATERIAL)
     }
 
-    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
-        let Self { reflection, roughness_m } = *slf.get();
-        Ok((slf.get_type().into_any(), (reflection, roughness_m).into_pyobject(slf.py())?))
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
+        reduce(slf, &MATERIAL)
     }
 }
 
@@ -129,6 +131,8 @@ impl Noise {
     }
 }
 
+const NOISE: [&str; 4] = ["fading_db_rms", "jitter_us_rms", "bursts_per_s", "burst_db"];
+
 #[pymethods]
 impl Noise {
     #[new]
@@ -152,19 +156,12 @@ impl Noise {
         })
     }
 
-    fn __repr__(&self) -> String {
-        let Self { fading_db_rms, jitter_us_rms, bursts_per_s, burst_db } = self;
-        format!(
-            "Noise(fading_db_rms={fading_db_rms:?}, jitter_us_rms={jitter_us_rms:?}, bursts_per_s={bursts_per_s:?}, \
-             burst_db={burst_db:?})"
-        )
+    fn __repr__(slf: &Bound<'_, Self>) -> PyResult<String> {
+        repr(slf, &NOISE)
     }
 
-    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
-        let py = slf.py();
-        let Self { fading_db_rms, jitter_us_rms, bursts_per_s, burst_db } = *slf.get();
-        let rebuild = py.import("eeruf._rebuild")?.getattr("noise")?;
-        Ok((rebuild, (fading_db_rms, jitter_us_rms, bursts_per_s, burst_db).into_pyobject(py)?))
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
+        reduce_by_name(slf, attributes(slf, &NOISE)?)
     }
 }
 

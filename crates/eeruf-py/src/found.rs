@@ -21,7 +21,7 @@ use crate::{
 ///     >>> found.value_us, found.bound_us, found.proven
 ///     (62000, 62000, True)
 #[pyclass(frozen, eq, module = "eeruf")]
-#[derive(Clone, PartialEq)]
+#[derive(Clone, Default, PartialEq)]
 pub(crate) struct Found {
     schedule: Option<Schedule>,
     /// The optimised value, in microseconds: the period, the smallest interval or ``T_delta``; None without a schedule.
@@ -74,12 +74,7 @@ impl Found {
             nodes: found.nodes,
             seconds: began.elapsed().as_secs_f64(),
             reason,
-            certificate: None,
-            real_period_us: None,
-            real_proven: None,
-            from_atlas: false,
-            spare_us: None,
-            spare_proven: None,
+            ..Self::default()
         }
     }
 

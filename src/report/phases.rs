@@ -6,7 +6,8 @@ use eeruf_core::{Criterion, MAX_SENSORS, Micros, Requirements, conditions::Verif
 use eeruf_design::{HoppingDesign, PhaseSchedule, RingSpec};
 use serde::Serialize;
 
-use super::verify::{new_table, us};
+use super::table::{or_dash, plain};
+use super::verify::us;
 
 /// The criterion in words.
 fn criterion(requirements: &Requirements<'_>) -> String {
@@ -24,7 +25,7 @@ pub(crate) fn describe(
     requirements: &Requirements<'_>,
     report: &Verification<'_, MAX_SENSORS>,
 ) -> String {
-    let mut table = new_table();
+    let mut table = plain();
     let (value, who) =
         report.separation().map_or(("-".to_owned(), "nothing is heard in two phases".to_owned()), |found| {
             let ((x, y), (m, n)) = (found.sensors, found.phases);
@@ -32,7 +33,7 @@ pub(crate) fn describe(
         });
     table.add_row(["separation", &value, &who]);
     table.add_row([String::new(), String::new(), criterion(requirements)]);
-    let t_delta = report.max_t_delta().map_or_else(|| "-".to_owned(), us);
+    let t_delta = or_dash(report.max_t_delta(), us);
     table.add_row(["largest t_delta", &t_delta, ""]);
     let interval = report.min_interval().map_or(("-".to_owned(), "no neighbours".to_owned()), |found| {
         let ((x, y), (m, n)) = (found.sensors, found.phases);
@@ -105,7 +106,7 @@ pub(crate) fn describe_design(
 ) -> String {
     let HoppingDesign { schedule, period_bound, width_bound, reason, .. } = design;
     let (code, report) = (schedule.code(), schedule.verify(requirements));
-    let mut table = new_table();
+    let mut table = plain();
     let age = if code.is_welch() { "the same period" } else { "every age" };
     let of_which = format!("none that separates sound of {age}");
     let proof = if design.proven() {

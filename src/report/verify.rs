@@ -2,13 +2,14 @@
 
 use std::fmt::Write as _;
 
-use comfy_table::{Table, presets};
 use eeruf_core::{
     Criterion, Layout, MAX_SENSORS, Micros, Phase, Requirements,
     conditions::{Least, Verification},
 };
 use eeruf_sim::AnySchedule;
 use serde::Serialize;
+
+use super::table::plain;
 
 /// The report with the names that Python uses; sensors from 0, phases as `P` says them.
 #[derive(Serialize)]
@@ -57,13 +58,6 @@ pub(super) fn us(time: Micros) -> String {
     format!("{} us", time.as_micros())
 }
 
-/// A table without lines.
-pub(super) fn new_table() -> Table {
-    let mut table = Table::new();
-    table.load_style(presets::NOTHING);
-    table
-}
-
 /// Number of violations to print before counting the rest.
 const PRINTED_VIOLATIONS: usize = 10;
 
@@ -73,7 +67,7 @@ pub(crate) fn describe(
     requirements: &Requirements<'_>,
     report: &Verification<'_, MAX_SENSORS>,
 ) -> String {
-    let mut table = new_table();
+    let mut table = plain();
     for criterion in [Criterion::Paper, Criterion::Exact] {
         let chosen = if criterion == requirements.criterion { "" } else { " (not asked for)" };
         let separation =

@@ -48,6 +48,11 @@ pub(crate) fn micros(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Micros> {
     whole(name, value, 0..=u32::MAX).map(Micros::new)
 }
 
+/// A time in whole microseconds, or the default where there is none.
+pub(crate) fn micros_or(name: &str, value: Option<&Bound<'_, PyAny>>, default: Micros) -> PyResult<Micros> {
+    value.map_or(Ok(default), |value| micros(name, value))
+}
+
 /// A whole number, or the default where there is none.
 pub(crate) fn whole_or<T: TryFrom<i128> + TryInto<i128> + Copy>(
     name: &str,

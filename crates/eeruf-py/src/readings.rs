@@ -8,7 +8,7 @@ use pyo3::{
 };
 
 use crate::{
-    arguments::{instance, items, number, shown, wrong},
+    arguments::{instance, items, number_or, shown, wrong},
     columns::{Columns, read_only},
     errors::ArgumentError,
     fields::attributes,
@@ -37,7 +37,7 @@ pub(crate) struct Readings {
 }
 
 fn tolerance(value: Option<&Bound<'_, PyAny>>) -> PyResult<f64> {
-    value.map_or(Ok(eeruf_sim::DEFAULT_TOLERANCE_US), |us| number("tolerance_us", us, 0.0..=f64::INFINITY))
+    number_or("tolerance_us", value, eeruf_sim::DEFAULT_TOLERANCE_US, 0.0..=f64::INFINITY)
 }
 
 impl Readings {

@@ -5,7 +5,7 @@ use eeruf_design::{LayoutKey, LayoutName, OwnedLayout, OwnedUneven};
 use eeruf_sim::AnySchedule;
 use pyo3::{prelude::*, types::PyList};
 
-use crate::arguments::{choice, flag, items, micros, shown, times, whole, whole_or, wrong};
+use crate::arguments::{choice, flag, items, micros_or, shown, times, whole, whole_or, wrong};
 use crate::errors::ArgumentError;
 
 /// A layout by its name, or by its pairs of neighbours; a line where there is none.
@@ -180,8 +180,6 @@ impl RequirementArguments<'_, '_> {
 
     /// Checked, for this many sensors; without `t_delta_us` it is this.
     pub(crate) fn of(&self, sensors: usize, t_delta: Micros) -> PyResult<OwnedRequirements> {
-        let or_zero =
-            |name, value: Option<&Bound<'_, PyAny>>| value.map_or(Ok(Micros::ZERO), |value| micros(name, value));
         let each_or_zero = |name, value: Option<&Bound<'_, PyAny>>| {
             value.map_or(Ok((Micros::ZERO, vec![])), |value| each(name, value, 0))
         };
@@ -190,7 +188,7 @@ impl RequirementArguments<'_, '_> {
         let (window, windows) = each_or_zero("window_us", self.window_us)?;
         Ok(OwnedRequirements {
             t_delta,
-            min_interval: or_zero("min_interval_us", self.min_interval_us)?,
+            min_interval: micros_or("min_interval_us", self.min_interval_us, Micros::ZERO)?,
             layout: layout(self.layout, neighbours(self.neighbours)?, sensors)?,
             criterion: criterion(self.criterion)?,
             window,

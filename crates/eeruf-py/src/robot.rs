@@ -12,7 +12,7 @@ use pyo3::{
 };
 
 use crate::{
-    arguments::{choice, flag, instance, items, micros, number, shown, times, whole, whole_or, wrong},
+    arguments::{choice, flag, instance, items, micros, number, number_or, shown, times, whole, whole_or, wrong},
     body::{outline, shown_body},
     errors::ArgumentError,
     faults::{shown_table, table_of},
@@ -375,8 +375,8 @@ impl Robot {
         robot.odometry = odometry;
         robot.motion = motion(velocity_m_s, turn_rad_s, waypoints_m, speed_m_s)?;
         robot.clock = Clock {
-            offset_us: clock_offset_us.map_or(Ok(0), |offset| whole("clock_offset_us", offset, 0..=u32::MAX))?,
-            drift_ppm: clock_drift_ppm.map_or(Ok(0.0), |drift| number("clock_drift_ppm", drift, -1e3..=1e3))?,
+            offset_us: whole_or("clock_offset_us", clock_offset_us, 0, 0..=u32::MAX)?,
+            drift_ppm: number_or("clock_drift_ppm", clock_drift_ppm, 0.0, -1e3..=1e3)?,
         };
         robot.fleet_number = whole_or("fleet_number", fleet_number, 0, 0..=u8::MAX)?;
         robot.body = body.map(outline).transpose()?;

@@ -15,7 +15,7 @@ use pyo3::{
 };
 
 use crate::{
-    arguments::{self, instance, matrix, number, points_in_space, shown, whole, whole_or, wrong},
+    arguments::{self, instance, matrix, number_or, points_in_space, shown, whole, whole_or, wrong},
     contents::Contents,
     drawing,
     errors::{Raise, SceneError, warn, warn_of},
@@ -206,12 +206,9 @@ impl Scene {
         }
         let default = Air::default();
         let air = Air {
-            temperature_c: temperature_c
-                .map_or(Ok(20.0), |celsius| number("temperature_c", celsius, -100.0..=100.0))?,
-            humidity_percent: humidity_percent
-                .map_or(Ok(default.humidity_percent), |percent| number("humidity_percent", percent, 0.0..=100.0))?,
-            pressure_kpa: pressure_kpa
-                .map_or(Ok(default.pressure_kpa), |kpa| number("pressure_kpa", kpa, 0.0..=1e4))?,
+            temperature_c: number_or("temperature_c", temperature_c, 20.0, -100.0..=100.0)?,
+            humidity_percent: number_or("humidity_percent", humidity_percent, default.humidity_percent, 0.0..=100.0)?,
+            pressure_kpa: number_or("pressure_kpa", pressure_kpa, default.pressure_kpa, 0.0..=1e4)?,
         };
         let expected = "a sequence of eeruf.sim.Robot";
         let given = robots.map_or(Ok(vec![]), |robots| arguments::items("robots", robots, expected))?;
@@ -452,8 +449,7 @@ impl Scene {
         let receivers_m = receivers_m.unwrap_or_else(|| vec![DEFAULT_HEIGHT_M; receivers.len()]);
         let ends = Ends { source: from, source_m, receivers, receivers_m };
         let max_order = whole("max_order", max_order, 0..=u32::MAX)?;
-        let max_length_m =
-            max_length_m.map_or(Ok(f64::INFINITY), |most| number("max_length_m", most, 0.0..=f64::INFINITY))?;
+        let max_length_m = number_or("max_length_m", max_length_m, f64::INFINITY, 0.0..=f64::INFINITY)?;
         let (contents, limits) = (Arc::clone(&slf.get().contents), Limits { max_order, max_length_m });
         Paths::find(slf.as_any(), contents, slf.get().physics, ends, limits, progress)
     }

@@ -9,7 +9,7 @@ use eeruf_core::{Criterion, MAX_SENSORS, Micros};
 use pyo3::prelude::*;
 
 use crate::{
-    arguments::{choice, micros, times, whole, whole_or},
+    arguments::{choice, micros, micros_or, times, whole, whole_or},
     errors::Raise,
     exclusive::Exclusive,
     found::Found,
@@ -106,7 +106,7 @@ impl WaitSearch {
             tick: micros("tick_us", tick_us)?,
             t_lag: t_lag.as_deref(),
             t_delta: micros("t_delta_us", t_delta_us)?,
-            min_interval: min_interval_us.map_or(Ok(Micros::ZERO), |value| micros("min_interval_us", value))?,
+            min_interval: micros_or("min_interval_us", min_interval_us, Micros::ZERO)?,
             neighbours,
             layout: layout.layout(),
             criterion: choice("criterion", criterion, &[("paper", Criterion::Paper), ("exact", Criterion::Exact)])?,

@@ -6,7 +6,7 @@ use pyo3::{
     types::{PyDict, PyString},
 };
 
-use crate::arguments::{flag, items, number, shown, wrong};
+use crate::arguments::{flag, items, number, number_or, shown, wrong};
 use crate::fields::{Reduced, attributes, reduce, reduce_by_name, repr};
 
 /// The surface of a wall or a pole.
@@ -56,7 +56,7 @@ impl Material {
     #[pyo3(signature = (reflection, roughness_m=None), text_signature = "(reflection, roughness_m=0.0)")]
     fn new(reflection: &Bound<'_, PyAny>, roughness_m: Option<&Bound<'_, PyAny>>) -> PyResult<Self> {
         let reflection = number("reflection", reflection, 0.0..=1.0)?;
-        let roughness_m = roughness_m.map_or(Ok(0.0), |roughness| number("roughness_m", roughness, 0.0..=1.0))?;
+        let roughness_m = number_or("roughness_m", roughness_m, 0.0, 0.0..=1.0)?;
         Ok(Self { reflection, roughness_m })
     }
 
@@ -145,14 +145,11 @@ impl Noise {
         burst_db: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
         let default = Self::of(eeruf_sim::Noise::default());
-        let or = |name, value: Option<&Bound<'_, PyAny>>, default, range| {
-            value.map_or(Ok(default), |value| number(name, value, range))
-        };
         Ok(Self {
-            fading_db_rms: or("fading_db_rms", fading_db_rms, default.fading_db_rms, 0.0..=20.0)?,
-            jitter_us_rms: or("jitter_us_rms", jitter_us_rms, default.jitter_us_rms, 0.0..=1e4)?,
-            bursts_per_s: or("bursts_per_s", bursts_per_s, default.bursts_per_s, 0.0..=1e4)?,
-            burst_db: or("burst_db", burst_db, default.burst_db, -200.0..=200.0)?,
+            fading_db_rms: number_or("fading_db_rms", fading_db_rms, default.fading_db_rms, 0.0..=20.0)?,
+            jitter_us_rms: number_or("jitter_us_rms", jitter_us_rms, default.jitter_us_rms, 0.0..=1e4)?,
+            bursts_per_s: number_or("bursts_per_s", bursts_per_s, default.bursts_per_s, 0.0..=1e4)?,
+            burst_db: number_or("burst_db", burst_db, default.burst_db, -200.0..=200.0)?,
         })
     }
 

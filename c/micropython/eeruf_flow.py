@@ -1,5 +1,5 @@
 """Flow in MicroPython: one sensor after the other, each with as much quiet around its firing as it has needed. Beside
-eeruf.py, which a ring by a table needs alone.
+eeruf.py.
 
     from eeruf import ACCEPTED, KIND, SENSOR, T_ECHO
     from eeruf_flow import Flow, HcSr04FlowRing

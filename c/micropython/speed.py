@@ -1,4 +1,5 @@
-"""Speed of eeruf.py on the board that runs this: copy both files there, then `import speed; speed.main()`.
+"""Speed of eeruf.py on the board that runs this: copy it there with eeruf.py and eeruf_schedule.py, then
+`import speed; speed.main()`.
 
 Rings of 3, 8 and 12 modules by the ready tables of the Arduino library, each module before its own wall. No module needs
 to be connected: simulated ones answer, in Python. README.md has a table of what it prints.
@@ -7,7 +8,8 @@ to be connected: simulated ones answer, in Python. README.md has a table of what
 import gc
 import time
 
-from eeruf import ACCEPTED, FIRE, FIRST, KIND, PERIOD, READING_NAMES, SENSOR, HcSr04Ring, Ring, Schedule
+from eeruf import ACCEPTED, FIRE, FIRST, KIND, PERIOD, READING_NAMES, SENSOR, HcSr04Ring, Ring
+from eeruf_schedule import Schedule
 
 # T_p, phases a and b, T_delta, the number of adjacent modules that are kept apart.
 TABLES = (

@@ -4,8 +4,9 @@ It runs under MicroPython too. What the lines mean stands in crates/eeruf-core/t
 
 import sys
 
-from eeruf import HISTORY, READING, Ring, Schedule
+from eeruf import HISTORY, READING, Ring
 from eeruf_flow import Flow, FlowRing
+from eeruf_schedule import Schedule
 
 NONE = 0xFFFFFFFF
 LAYOUTS = ("line", "ring", "blocks")

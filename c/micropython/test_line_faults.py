@@ -4,7 +4,8 @@ Free space is never said without evidence, and each state is right after two rea
 
 import sys
 
-from eeruf import ACCEPTED, CLEAR, KIND, SENSOR, STUCK, HcSr04Ring, Schedule
+from eeruf import ACCEPTED, CLEAR, KIND, SENSOR, STUCK, HcSr04Ring
+from eeruf_schedule import Schedule
 from line_faults import FAULTY, cell, read, with_column
 
 PERIODS = 40

@@ -2,9 +2,10 @@
 
 from eeruf import (
     ACCEPTED, AGE, AMBIGUOUS, CLEAR, EXPLAINED_BY, FIRST, HISTORY, KIND, REJECTED, SENSOR, STUCK, T_ECHO, UNANSWERED,
-    HcSr04Ring, Ring, Schedule,
+    HcSr04Ring, Ring,
 )  # fmt: skip
 from eeruf_flow import Flow, FlowRing, HcSr04FlowRing
+from eeruf_schedule import Schedule
 
 PERIOD = 1 << 30
 

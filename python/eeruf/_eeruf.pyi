@@ -9,7 +9,7 @@ import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 from typing_extensions import Unpack
 
-from eeruf._results import Summary
+from eeruf._summary import Summary
 from eeruf._types import FlowSettings, HeardPaths, ReadingColumns
 from eeruf.logs import Firings
 

@@ -13,7 +13,6 @@ from eeruf._results import (
     Latency,
     NewStep,
     PlacingRun,
-    Result,
     Run,
     SetOne,
     SetOneFigures,
@@ -26,13 +25,11 @@ from eeruf._results import (
     SpeedStep,
     SpeedSweep,
     Spread,
-    Summary,
 )
+from eeruf._summary import Result, Summary
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
-
-    from eeruf._results import SummaryFields
 
 # A method bears a speed at which this share of the courses is finished.
 _BORNE = 0.95
@@ -55,7 +52,7 @@ def _with_pairs(of: _Fields) -> _Fields:
 
 def summary(text: str) -> Summary:
     """Make a summary of what Rust says of it."""
-    return Summary(**cast("SummaryFields", _fields(text)))
+    return Summary(**_fields(text))  # type: ignore[arg-type]
 
 
 def _spreads(of: _Fields) -> _Fields:
@@ -69,7 +66,7 @@ def _spreads(of: _Fields) -> _Fields:
 
 def _alcove_run(of: _Fields) -> AlcoveRun:
     steps = {name: tuple(cast("list[None]", of[name])) for name in ("nearer", "farther", "new_ms")}
-    summary = Summary(**cast("SummaryFields", of["summary"]))
+    summary = Summary(**cast("_Fields", of["summary"]))  # type: ignore[arg-type]
     return AlcoveRun(seed=cast("int", of["seed"]), summary=summary, **steps)
 
 

@@ -1,9 +1,11 @@
-"""Results of simulations and experiments, as frozen classes: a figure has the same name in each of them, and in the program's JSON."""
+"""Results of experiments, as frozen classes: a figure has the same name in each of them, and in the program's JSON."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field, fields
-from typing import TYPE_CHECKING, Literal, TypedDict
+from typing import TYPE_CHECKING, Literal
+
+from eeruf._summary import Result, Summary
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -11,122 +13,10 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from eeruf._eeruf import _MethodName as Method
     from eeruf._eeruf import _Physics
 
     _Ending = Literal["finished", "contact", "time_out"]
     _PilotName = Literal["own", "shared", "published", "published-gro"]
-
-
-class SummaryFields(TypedDict):
-    method: Method
-    readings: int
-    accepted: int
-    wrong_of_all: float
-    crosstalk_of_all: float
-    confirmed_wrong_of_all: float
-    wrong_of_accepted: float | None
-    rejected: float
-    good_lost: float | None
-    wrong_before_filter: float
-    belief_right: float
-    unknown: float
-    phantom: float
-    too_far: float
-    faint: float
-    right_echoes_per_s: float
-    age_ms: float
-    age_p99_ms: float
-    readings_per_s: float
-    starved: int
-    blind: int
-    starved_in_part: int
-
-
-def _plain(value: object) -> object:
-    """As numbers, texts, lists and dicts."""
-    if isinstance(value, Result):
-        return value.to_dict()
-    if isinstance(value, dict):
-        return {name: _plain(of) for name, of in value.items()}
-    if isinstance(value, (list, tuple)):
-        return [_plain(item) for item in value]
-    tolist = getattr(value, "tolist", None)
-    return value if tolist is None else tolist()
-
-
-class Result:
-    """Methods of all results."""
-
-    def to_dict(self) -> dict[str, object]:
-        """Return the fields by their names, with results as dicts and arrays as lists, for JSON and data frames.
-
-        Example:
-            >>> from eeruf.experiments import Spread
-            >>> Spread(0.0, 0.1, 0.5, (0.0, 0.2), (0.4, 0.6), 0.2, (0.1, 0.3)).to_dict()["median_95"]
-            [0.0, 0.2]
-
-        """
-        return {name.name: _plain(getattr(self, name.name)) for name in fields(self)}  # type: ignore[arg-type]
-
-
-@dataclass(frozen=True)
-class Summary(Result):
-    """The figures of a method that are always reported together. Shares are fractions of 1.
-
-    Example:
-        >>> from eeruf import sim
-        >>> robot = sim.Robot((0, 0, 1.57), sensors=8, spacing_rad=0.26, radius_m=0.3)
-        >>> summary = sim.simulate(sim.Scene([[5, 2, -5, 2]], robots=[robot]), periods=100).summary()
-        >>> summary.readings, summary.wrong_of_all < 0.01, summary.to_dict()["method"]
-        (800, True, 'eeruf')
-
-    """
-
-    method: Method
-    """The method, one of ``eeruf.sim.METHODS``."""
-    readings: int
-    """Number of readings."""
-    accepted: int
-    """Number of accepted readings."""
-    wrong_of_all: float
-    """Share of all readings that were accepted and wrong: what does harm."""
-    crosstalk_of_all: float
-    """The part of ``wrong_of_all`` that foreign or stale sound caused."""
-    confirmed_wrong_of_all: float
-    """The part of ``wrong_of_all`` that was confirmed, not only tentative."""
-    wrong_of_accepted: float | None
-    """Share of the accepted readings that were wrong; None if none was accepted."""
-    rejected: float
-    """Share of all readings that were not accepted."""
-    good_lost: float | None
-    """Share of the good readings that were not accepted; None if no reading was good."""
-    wrong_before_filter: float
-    """Share of all readings that would have been wrong without any filter."""
-    belief_right: float
-    """Share of the time in which what was last believed, at most 0.6 s ago, is right."""
-    unknown: float
-    """The share in which nothing is believed."""
-    phantom: float
-    """The share in which it is foreign sound."""
-    too_far: float
-    """The share in which it is an own later echo, or silence where there is an echo."""
-    faint: float
-    """The share in which it is an own nearer echo: faint but real."""
-    right_echoes_per_s: float
-    """Accepted echoes that were right in a second, all sensors together."""
-    age_ms: float
-    """Age of a sensor's last accepted reading, in milliseconds: half of the time it is no older."""
-    age_p99_ms: float
-    """That age, 99 % of the time."""
-    readings_per_s: float
-    """Accepted readings in a second, all sensors together."""
-    starved: int
-    """Number of sensors that had fewer than 5 % of their readings accepted."""
-    blind: int
-    """Number of sensors that were right under 5 % of the times they fired."""
-    starved_in_part: int
-    """Number of the starved that read right in one phase and not in another."""
 
 
 @dataclass(frozen=True)

@@ -34,13 +34,13 @@ if TYPE_CHECKING:
     from typing_extensions import TypeGuard
 
     from eeruf._eeruf import _MethodName
-    from eeruf._results import Summary
+    from eeruf._summary import Summary
 else:
 
     def __getattr__(name: str) -> object:
         # On first use: what makes its like is most of what importing eeruf would cost.
         if name == "Summary":
-            from eeruf._results import Summary
+            from eeruf._summary import Summary
 
             return Summary
         raise AttributeError(f"module 'eeruf.sim' has no attribute {name!r}")

@@ -11,6 +11,7 @@ use eeruf_files::FileError;
 
 use super::Answer;
 use super::arguments::picture;
+use super::experiment::Shard;
 use crate::console::print;
 use crate::files::error::InputError;
 use crate::report::draw;
@@ -31,24 +32,11 @@ pub(crate) struct Args {
     #[arg(long, value_name = "FILE", value_parser = picture())]
     svg: Option<PathBuf>,
     /// Only this share of the rings, of this many
-    #[arg(long, value_name = "I/N", value_parser = share, default_value = "1/1")]
+    #[arg(long, value_name = "I/N", default_value = "1/1")]
     shard: Shard,
     /// Only rings of up to this many sensors
     #[arg(long, value_name = "K", default_value_t = 32, value_parser = clap::value_parser!(u8).range(2..=32))]
     most_sensors: u8,
-}
-
-/// One share of this many, from 0.
-#[derive(Clone, Copy)]
-struct Shard {
-    share: usize,
-    of: usize,
-}
-
-fn share(text: &str) -> Result<Shard, String> {
-    let parts = text.split_once('/').and_then(|(share, of)| Some((share.parse().ok()?, of.parse().ok()?)));
-    let shard = parts.filter(|&(share, of): &(usize, usize)| (1..=of).contains(&share));
-    shard.map(|(share, of)| Shard { share: share - 1, of }).ok_or_else(|| "expected I/N such as 2/3".to_owned())
 }
 
 pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
@@ -79,7 +67,8 @@ fn search(args: &Args, path: &Path) -> Result<Answer, InputError> {
     end_last_line(path).map_err(bad)?;
     let done: BTreeSet<Ring> = rows(&read(path).map_err(bad)?).map(|row| row.ring).collect();
     let mut watch = Watch::new();
-    let numbered = rings.iter().enumerate().filter(|&(number, _)| is_in_shard(number, args.shard.share, args.shard.of));
+    let (share, of) = (args.shard.part as usize - 1, args.shard.of as usize);
+    let numbered = rings.iter().enumerate().filter(|&(number, _)| is_in_shard(number, share, of));
     let left: Vec<&Ring> = numbered.map(|(_, ring)| ring).filter(|ring| !done.contains(ring)).collect();
     for (number, ring) in left.iter().enumerate() {
         if !watch.go_on(|| format!("{number} of {} rings, now {ring}", left.len())) {

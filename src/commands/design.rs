@@ -14,10 +14,10 @@ use eeruf_sim::modules::{Module, PulseTimes};
 use eeruf_sim::{AnySchedule, Method, Robot};
 use serde::Serialize;
 
-use super::Answer;
 use super::arguments::{picture, seconds};
 use super::certificate::{self, CertificateForm, Written};
 use super::rooms::{self, RoomArgs};
+use super::{Answer, show};
 use crate::console::{error as console_error, note, print, print_line, tell};
 use crate::files::error::InputError;
 use crate::files::ring::read_ring;
@@ -461,11 +461,8 @@ fn curve_of(args: &Args, spec: &RingSpec, need: Need) -> Result<Answer, InputErr
     let points = spec.curve(need, &search, &mut control).map_err(|error| InputError::new(&args.file, error))?;
     drop(watch);
     let seconds = began.elapsed().as_secs_f64();
-    if args.json {
-        print_line(to_json(&CurveJson::new(need, &points, seconds)))?;
-    } else {
-        tell(describe_curve(&args.file.display().to_string(), spec, need, &points, seconds))?;
-    }
+    let text = || describe_curve(&args.file.display().to_string(), spec, need, &points, seconds);
+    show(args.json, || CurveJson::new(need, &points, seconds), text)?;
     Ok(Answer::Yes)
 }
 

@@ -6,15 +6,13 @@ use eeruf_core::{Micros, Phase};
 use eeruf_files::Kind;
 use eeruf_logs::{Alignment, FiringLog, Settings, Timing, align, diagnose, timing};
 
-use super::Answer;
 use super::arguments::picture;
 use super::log_args::positive;
-use crate::console::{print_line, tell};
+use super::{Answer, show};
 use crate::files::error::InputError;
 use crate::files::implausible::read_firings;
 use crate::files::toml::{FoundSchedule, read_any_schedule, read_schedule};
 use crate::report::diagnose::{Found, describe, json, who_fools_whom};
-use crate::report::json::to_json;
 
 /// Find in a ring's own log which sensors fool each other, and what is broken.
 ///
@@ -79,11 +77,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     if let Some(file) = &args.svg {
         who_fools_whom(&found).save(file)?;
     }
-    if args.json {
-        print_line(to_json(&json(&found)))?;
-    } else {
-        tell(describe(&found))?;
-    }
+    show(args.json, || json(&found), || describe(&found))?;
     if let Some(damage) = &log.damage {
         return Err(InputError::new(&args.file, damage));
     }

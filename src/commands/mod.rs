@@ -35,9 +35,11 @@ mod survey;
 mod verify;
 
 use clap::{ColorChoice, Parser, Subcommand};
+use serde::Serialize;
 
-use crate::console::Settings;
+use crate::console::{OutputError, Settings, print_line, tell};
 use crate::files::error::InputError;
+use crate::report::json::to_json;
 
 /// The commands by what they are for.
 const GROUPS: &str = "\
@@ -98,6 +100,15 @@ pub(crate) enum Answer {
     No,
     /// Budget or time ended the search before its answer: exit code 3.
     NotDecided,
+}
+
+/// Prints what was found: as one JSON object, or as a text for people.
+fn show<T: Serialize>(
+    as_json: bool,
+    json: impl FnOnce() -> T,
+    text: impl FnOnce() -> String,
+) -> Result<(), OutputError> {
+    if as_json { print_line(to_json(&json())) } else { tell(text()) }
 }
 
 #[derive(Subcommand)]

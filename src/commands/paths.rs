@@ -4,12 +4,10 @@ use std::path::PathBuf;
 
 use eeruf_sim::{MAX_ORDER, World};
 
-use super::Answer;
-use crate::console::{print_line, tell};
+use super::{Answer, show};
 use crate::files::error::InputError;
 use crate::files::toml::read_world;
 use crate::report::bounces::{by_way_of, wall_numbers};
-use crate::report::json::to_json;
 use crate::report::paths::PathsJson;
 
 /// List the critical paths of a ring: all paths of sound between the sensors of a scene's first robot.
@@ -34,16 +32,15 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     let max_order = args.order.unwrap_or(world.max_order());
     let bad = |error| InputError::new(&args.file, error);
     let paths = critical_paths(&world, max_order).map_err(|error| bad(error.to_string()))?;
-    if args.json {
-        print_line(to_json(&paths))?;
-    } else {
-        tell(format!(
+    let text = || {
+        format!(
             "{}: {} critical paths of up to {max_order} bounces; levels in dB above what is just heard\n{}\n",
             args.file.display(),
             paths.order.len(),
             paths.table(),
-        ))?;
-    }
+        )
+    };
+    show(args.json, || &paths, text)?;
     Ok(Answer::Yes)
 }
 

@@ -46,15 +46,7 @@ pub(crate) fn replay_hopping(
     let total = counts.iter().fold(Counts::default(), Counts::plus);
     if json {
         let (damage, as_logged) = (log.damage.iter().cloned().collect(), (known > 0).then_some(same));
-        print_line(to_json(&Replay {
-            total,
-            sensors: counts,
-            as_logged,
-            damage,
-            skipped: vec![],
-            warnings: vec![],
-            firing: None,
-        }))?;
+        print_line(to_json(&Replay { total, sensors: counts, as_logged, damage, ..Replay::default() }))?;
     } else {
         let table = hopping_table(file, settings.t_delta.as_micros(), &counts, &total, (known, same));
         tell(format!("{table}\n"))?;

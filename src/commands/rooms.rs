@@ -8,13 +8,11 @@ use eeruf_design::{RingDesign, RingSpec, RoomsAnswer, RoomsAsked};
 use eeruf_files::{FileError, Kind};
 use eeruf_sim::experiments::rooms::{RoomGroup, RoomWay};
 
-use super::Answer;
-use crate::console::{print_line, tell};
+use super::{Answer, show};
 use crate::files::error::InputError;
 use crate::files::map::read_map;
 use crate::files::ring::read_ring;
 use crate::files::toml::read_world;
-use crate::report::json::to_json;
 use crate::report::rooms::{RoomsOrNot, describe};
 use crate::report::watch::Watch;
 
@@ -67,10 +65,7 @@ pub(crate) fn study(args: &RoomArgs, file: &Path, as_json: bool) -> Result<Answe
     let design = spec.shortest_to_study().map_err(|error| InputError::new(file, error))?;
     let judged = judged(args, &spec, design.as_ref(), &mut watch)?;
     drop(watch);
-    match as_json {
-        true => print_line(to_json(&RoomsOrNot::of(&judged)))?,
-        false => tell(describe(&file.display().to_string(), &judged))?,
-    }
+    show(as_json, || RoomsOrNot::of(&judged), || describe(&file.display().to_string(), &judged))?;
     Ok(if judged.is_ok() { Answer::Yes } else { Answer::No })
 }
 

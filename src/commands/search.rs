@@ -86,21 +86,24 @@ fn answer(found: bool, proven: bool) -> Answer {
     }
 }
 
+/// Searches up to this many nodes, unless the user ends it.
+fn within<T>(nodes: u64, watch: &mut Watch, search: impl FnOnce(&mut Budget<'_>) -> T) -> T {
+    let mut watcher = |progress: &Progress| watch.control_flow(|| format!("{} nodes", progress.nodes));
+    search(&mut Budget::nodes_at_most(nodes).watched(WATCHED_EVERY, &mut watcher))
+}
+
 /// Why there is no table, in a line.
 fn why_none(search: &WaitSearch, memory: &mut [u32], watch: &mut Watch) -> Result<String, SearchError> {
-    let mut watcher = |progress: &Progress| watch.control_flow(|| nodes_so_far(progress));
-    let mut budget = Budget::nodes_at_most(REASON_BUDGET).watched(WATCHED_EVERY, &mut watcher);
-    Ok(format!("{}\n", search.why_none(memory, &mut budget)?))
+    Ok(format!("{}\n", within(REASON_BUDGET, watch, |budget| search.why_none(memory, budget))?))
 }
 
 /// Counts the tables, and says how many.
 fn count(args: &Args, spec: &WaitSpec, watch: &mut Watch) -> Result<(Answer, String), SearchError> {
     let search = WaitSearch::new(&spec.problem())?;
     let began = Instant::now();
-    let mut watcher = |progress: &Progress| watch.control_flow(|| nodes_so_far(progress));
-    let mut budget = Budget::nodes_at_most(args.budget).watched(WATCHED_EVERY, &mut watcher);
-    let (outcome, count) = search.count(None, &mut vec![0; COUNT_WORDS], &mut budget);
-    let (exact, nodes) = (outcome == Outcome::Exhausted, budget.nodes());
+    let ((outcome, count), nodes) =
+        within(args.budget, watch, |budget| (search.count(None, &mut vec![0; COUNT_WORDS], budget), budget.nodes()));
+    let exact = outcome == Outcome::Exhausted;
     let answer = answer(count > 0, exact);
     if args.json {
         return Ok((answer, to_json(&CountJson { count, at_least: !exact })));
@@ -120,19 +123,17 @@ fn count(args: &Args, spec: &WaitSpec, watch: &mut Watch) -> Result<(Answer, Str
 fn find(args: &Args, spec: &WaitSpec, best: Option<Best>, watch: &mut Watch) -> Result<(Answer, String), SearchError> {
     let search = WaitSearch::new(&spec.problem())?;
     let began = Instant::now();
-    let mut watcher = |progress: &Progress| watch.control_flow(|| nodes_so_far(progress));
-    let mut budget = Budget::nodes_at_most(args.budget).watched(WATCHED_EVERY, &mut watcher);
     let mut memory = vec![0; memory_words(spec.problem().sensors)];
-    let (what, found): (_, Found<MAX_SENSORS>) = match best {
-        Some(Best::Interval) => ("smallest interval ", search.best_interval(&mut memory, &mut budget)?),
-        Some(Best::TDelta) => ("t_delta ", search.best_t_delta(&mut memory, &mut budget)?),
+    let (what, found): (_, Found<MAX_SENSORS>) = within(args.budget, watch, |budget| match best {
+        Some(Best::Interval) => Ok(("smallest interval ", search.best_interval(&mut memory, budget)?)),
+        Some(Best::TDelta) => Ok(("t_delta ", search.best_t_delta(&mut memory, budget)?)),
         Some(Best::Pareto) | None => {
-            let outcome = search.first(&mut memory, &mut budget)?;
+            let outcome = search.first(&mut memory, budget)?;
             let (proven, nodes) = (outcome != Outcome::BudgetSpent, budget.nodes());
             let schedule = if let Outcome::Found(schedule) = outcome { Some(schedule) } else { None };
-            ("a table", Found { schedule, value: None, bound: None, proven, nodes })
+            Ok::<_, SearchError>(("a table", Found { schedule, value: None, bound: None, proven, nodes }))
         }
-    };
+    })?;
     let seconds = began.elapsed().as_secs_f64();
     let answer = answer(found.schedule.is_some(), found.proven);
     if args.json {
@@ -149,17 +150,17 @@ fn find(args: &Args, spec: &WaitSpec, best: Option<Best>, watch: &mut Watch) -> 
 fn front(args: &Args, spec: &WaitSpec, watch: &mut Watch) -> Result<(Answer, String), SearchError> {
     let search = WaitSearch::new(&spec.problem())?;
     let began = Instant::now();
-    let mut watcher = |progress: &Progress| watch.control_flow(|| nodes_so_far(progress));
-    let mut budget = Budget::nodes_at_most(args.budget).watched(WATCHED_EVERY, &mut watcher);
     let mut memory = vec![0; memory_words(spec.problem().sensors)];
     let mut tables: Vec<FrontTable<MAX_SENSORS>> = Vec::new();
-    let complete = loop {
-        match search.next_on_front(tables.last(), &mut memory, &mut budget)? {
-            Outcome::Found(table) => tables.push(table),
-            outcome => break outcome == Outcome::Exhausted,
+    let (complete, nodes) = within(args.budget, watch, |budget| {
+        loop {
+            match search.next_on_front(tables.last(), &mut memory, budget)? {
+                Outcome::Found(table) => tables.push(table),
+                outcome => break Ok::<_, SearchError>((outcome == Outcome::Exhausted, budget.nodes())),
+            }
         }
-    };
-    let (nodes, seconds) = (budget.nodes(), began.elapsed().as_secs_f64());
+    })?;
+    let seconds = began.elapsed().as_secs_f64();
     let answer = answer(!tables.is_empty(), complete);
     if args.json {
         return Ok((answer, to_json(&FrontJson::new(&tables, complete, nodes, seconds))));
@@ -169,8 +170,4 @@ fn front(args: &Args, spec: &WaitSpec, watch: &mut Watch) -> Result<(Answer, Str
         text += &why_none(&search, &mut memory, watch)?;
     }
     Ok((answer, text))
-}
-
-fn nodes_so_far(progress: &Progress) -> String {
-    format!("{} nodes", progress.nodes)
 }

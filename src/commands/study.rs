@@ -8,16 +8,14 @@ use eeruf_sim::{
     Method, Options, Physics, SimulationError, Sketch, World, shortest_schedule_for, simulate_while, sweep,
 };
 
-use super::Answer;
 use super::arguments::picture_folder;
 use super::methods::chosen;
 use super::rooms::{self, RoomArgs};
-use crate::console::{print_line, tell};
+use super::{Answer, show};
 use crate::files::error::InputError;
 use crate::files::firings::write_firings;
 use crate::files::mcap::{Stage, write_mcap};
 use crate::files::toml::read_world;
-use crate::report::json::to_json;
 use crate::report::study::found::Study;
 use crate::report::study::json::StudyJson;
 use crate::report::study::{pictures, text};
@@ -127,11 +125,8 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
             pictures::pictures(folder, ending, &world, &study)?;
         }
     }
-    if args.json {
-        print_line(to_json(&StudyJson::new(&args.file, &world, &study)))?;
-    } else {
-        tell(text::describe(&args.file, &world, &study))?;
-    }
+    let text = || text::describe(&args.file, &world, &study);
+    show(args.json, || StudyJson::new(&args.file, &world, &study), text)?;
     Ok(Answer::Yes)
 }
 

@@ -8,17 +8,16 @@ use eeruf_files::Kind;
 use eeruf_logs::{FiringLog, PathSettings, Surveyed, survey};
 use eeruf_sim::{Physics, World};
 
-use super::Answer;
 use super::arguments::picture;
 use super::log_args::positive;
-use crate::console::{print_line, tell};
+use super::{Answer, show};
+use crate::console::tell;
 use crate::files::error::InputError;
 use crate::files::firings::csv;
 use crate::files::implausible::read_firings;
 use crate::files::survey::{TruePath, simulate, true_paths};
 use crate::files::toml::read_world;
 use crate::files::write::write;
-use crate::report::json::to_json;
 use crate::report::survey::{FROM, Found, RingTerms, Scenes, describe, json, ring_file, who_hears_whom};
 
 /// Find from a measuring run which sensors hear each other, and write a ring file for `design`.
@@ -111,11 +110,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     if let Some(file) = &args.svg {
         who_hears_whom(&found).save(file)?;
     }
-    if args.json {
-        print_line(to_json(&json(&found)))?;
-    } else {
-        tell(describe(&found))?;
-    }
+    show(args.json, || json(&found), || describe(&found))?;
     match &log.damage {
         Some(damage) => Err(InputError::new(file, damage)),
         None => Ok(Answer::Yes),

@@ -1,19 +1,16 @@
 //! `eeruf verify`: holds a schedule file against the conditions of the paper.
 
 use std::path::{Path, PathBuf};
-use std::str::FromStr;
 
 use clap::ValueEnum;
 use eeruf_core::{Criterion, Layout, Micros, Requirements, hopping::HoppingListening};
 use eeruf_design::{LayoutKey, LayoutName, PhaseSchedule, RingSpec};
 use eeruf_sim::AnySchedule;
 
-use super::Answer;
-use crate::console::{print_line, tell};
+use super::{Answer, show};
 use crate::files::error::InputError;
 use crate::files::ring::read_ring;
 use crate::files::toml::{FoundSchedule, read_any_schedule};
-use crate::report::json::to_json;
 use crate::report::phases;
 use crate::report::verify::{ReportJson, describe};
 
@@ -40,8 +37,8 @@ pub(crate) struct Args {
     #[arg(long, default_value_t = 4, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=64))]
     neighbours: u8,
     /// Arrangement of the sensors: line, ring, blocks, or the pairs of neighbours themselves, counted from 0: 0-1,1-2
-    #[arg(long, default_value = "line", value_name = "LAYOUT")]
-    layout: LayoutArg,
+    #[arg(long, default_value = "line", value_name = "LAYOUT", value_parser = layout)]
+    layout: LayoutKey,
     /// Reading of (13a), (13b)
     #[arg(long, value_enum, default_value_t = CriterionArg::Exact)]
     criterion: CriterionArg,
@@ -80,42 +77,18 @@ enum CriterionArg {
     Paper,
 }
 
-/// The layout as the command line gives it.
-#[derive(Clone, Debug, PartialEq, Eq)]
-enum LayoutArg {
-    Line,
-    Ring,
-    Blocks,
-    Pairs(Vec<(usize, usize)>),
-}
-
-impl FromStr for LayoutArg {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        match text {
-            "line" => return Ok(Self::Line),
-            "ring" => return Ok(Self::Ring),
-            "blocks" => return Ok(Self::Blocks),
-            _ => {}
-        }
-        let sensor = |text: &str| text.trim().parse().ok();
-        let pair = |pair: &str| {
-            let ends = pair.split_once('-').and_then(|(x, y)| Some((sensor(x)?, sensor(y)?)));
-            ends.ok_or_else(|| format!("`{pair}`; expected line, ring, blocks, or pairs of sensors such as 0-1,1-2"))
-        };
-        text.split(',').map(pair).collect::<Result<_, _>>().map(Self::Pairs)
-    }
-}
-
-impl LayoutArg {
-    fn key(&self) -> LayoutKey {
-        match self {
-            Self::Line => LayoutKey::Named(LayoutName::Line),
-            Self::Ring => LayoutKey::Named(LayoutName::Ring),
-            Self::Blocks => LayoutKey::Named(LayoutName::Blocks),
-            Self::Pairs(pairs) => LayoutKey::Pairs(pairs.clone()),
-        }
+/// Parses a layout by its name, or by its pairs of neighbours.
+fn layout(text: &str) -> Result<LayoutKey, String> {
+    let sensor = |text: &str| text.trim().parse().ok();
+    let pair = |pair: &str| {
+        let ends = pair.split_once('-').and_then(|(x, y)| Some((sensor(x)?, sensor(y)?)));
+        ends.ok_or_else(|| format!("`{pair}`; expected line, ring, blocks, or pairs of sensors such as 0-1,1-2"))
+    };
+    match text {
+        "line" => Ok(LayoutKey::Named(LayoutName::Line)),
+        "ring" => Ok(LayoutKey::Named(LayoutName::Ring)),
+        "blocks" => Ok(LayoutKey::Named(LayoutName::Blocks)),
+        pairs => pairs.split(',').map(pair).collect::<Result<_, _>>().map(LayoutKey::Pairs),
     }
 }
 
@@ -159,7 +132,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
         let requirements = Requirements { criterion, ..spec.problem().requirements };
         return answer(args, &schedule, &requirements);
     }
-    let layout = args.layout.key().owned(args.neighbours, schedule.sensors());
+    let layout = args.layout.owned(args.neighbours, schedule.sensors());
     let layout = layout.map_err(|message| InputError::new(&args.file, message))?;
     answer(args, &schedule, &args.requirements(layout.layout(), criterion))
 }
@@ -167,11 +140,8 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
 /// Prints what was found.
 fn answer(args: &Args, schedule: &AnySchedule, requirements: &Requirements<'_>) -> Result<Answer, InputError> {
     let report = schedule.verify(requirements);
-    if args.json {
-        print_line(to_json(&ReportJson::from(&report)))?;
-    } else {
-        tell(describe(&args.file.display().to_string(), schedule, requirements, &report))?;
-    }
+    let text = || describe(&args.file.display().to_string(), schedule, requirements, &report);
+    show(args.json, || ReportJson::new(&report, |phase| phase.to_string()), text)?;
     Ok(if report.ok() { Answer::Yes } else { Answer::No })
 }
 
@@ -196,7 +166,7 @@ fn many_phases(args: &Args, schedule: &PhaseSchedule) -> Result<Answer, InputErr
         spec = ring_of(file, schedule.sensors())?;
         spec.phase_requirements(criterion)
     } else {
-        layout = args.layout.key().owned(args.neighbours, schedule.sensors()).map_err(bad)?;
+        layout = args.layout.owned(args.neighbours, schedule.sensors()).map_err(bad)?;
         args.requirements(layout.layout(), criterion)
     };
     let requirements = Requirements {
@@ -216,10 +186,7 @@ fn many_phases(args: &Args, schedule: &PhaseSchedule) -> Result<Answer, InputErr
         return Err(InputError::new("--window-us", format!("{window}; expected at most {most} for a ring that hops")));
     }
     let report = schedule.verify(&requirements);
-    if args.json {
-        print_line(to_json(&phases::ReportJson::from(&report)))?;
-    } else {
-        tell(phases::describe(&args.file.display().to_string(), schedule, &requirements, &report))?;
-    }
+    let text = || phases::describe(&args.file.display().to_string(), schedule, &requirements, &report);
+    show(args.json, || ReportJson::new(&report, |phase| phase.0), text)?;
     Ok(if report.ok() { Answer::Yes } else { Answer::No })
 }

@@ -2,12 +2,12 @@
 
 use std::fmt::Write as _;
 
-use comfy_table::{Table, presets};
 use eeruf_core::tables::TABLE_I_D;
 use eeruf_core::{Micros, Phase, Requirements};
 use eeruf_design::{RealPeriod, RingDesign, RingSpec, ToSpare, WhatIf};
 use eeruf_sim::AnySchedule;
 
+use super::table::plain;
 use super::timing;
 
 pub(crate) fn describe(
@@ -22,8 +22,7 @@ pub(crate) fn describe(
     let requirements = &design.spec.problem().requirements;
     let report = schedule.verify(requirements);
     let period = schedule.period();
-    let mut table = Table::new();
-    table.load_style(presets::NOTHING);
+    let mut table = plain();
     let proof = if found.proven {
         format!("proven: no schedule in ticks of {} is shorter", spec.tick)
     } else {
@@ -189,8 +188,7 @@ fn as_range(spec: &RingSpec, time: Micros) -> String {
 
 /// Changes by which the designer may get a shorter period.
 fn ways_to_get_faster(cases: &[WhatIf], period: Micros) -> String {
-    let mut table = Table::new();
-    table.load_style(presets::NOTHING);
+    let mut table = plain();
     for WhatIf { need, period: with, proven } in cases {
         let verdict = match with {
             Some(with) if *with < period && *proven => format!("{with}"),

@@ -2,6 +2,8 @@
 
 use eeruf_sim::experiments::Spread;
 
+use super::table::or_dash;
+
 /// A share in per cent, one digit after the point if it is below ten.
 pub(crate) fn percent(share: f64) -> String {
     let digits = usize::from(share < 0.0995);
@@ -20,10 +22,9 @@ pub(crate) fn fine_percent(share: f64) -> String {
 
 /// 10 %, median and 90 % of shares, in per cent.
 pub(crate) fn percents(spread: Option<Spread>) -> String {
-    spread.map_or_else(
-        || "-".to_owned(),
-        |Spread { p10, median, p90, .. }| format!("{} / {} / {}", percent(p10), percent(median), percent(p90)),
-    )
+    or_dash(spread, |Spread { p10, median, p90, .. }| {
+        format!("{} / {} / {}", percent(p10), percent(median), percent(p90))
+    })
 }
 
 /// Median and 90 % of shares, in per cent, each with its 95 % interval.
@@ -31,21 +32,17 @@ pub(crate) fn percents_95(spread: Option<Spread>) -> String {
     let with = |value, [low, high]: [f64; 2]| {
         format!("{} ({}-{})", fine_percent(value), fine_percent(low), fine_percent(high))
     };
-    spread.map_or_else(
-        || "-".to_owned(),
-        |spread| format!("{}, {}", with(spread.median, spread.median_95), with(spread.p90, spread.p90_95)),
-    )
+    or_dash(spread, |of| format!("{}, {}", with(of.median, of.median_95), with(of.p90, of.p90_95)))
 }
 
 /// The median alone with its 95 % interval.
 pub(crate) fn median_95(spread: Option<Spread>, digits: usize) -> String {
-    spread.map_or_else(
-        || "-".to_owned(),
-        |Spread { median, median_95: [low, high], .. }| format!("{median:.digits$} ({low:.digits$}-{high:.digits$})"),
-    )
+    or_dash(spread, |Spread { median, median_95: [low, high], .. }| {
+        format!("{median:.digits$} ({low:.digits$}-{high:.digits$})")
+    })
 }
 
 /// The median alone.
 pub(crate) fn median(spread: Option<Spread>, digits: usize) -> String {
-    spread.map_or_else(|| "-".to_owned(), |spread| format!("{:.digits$}", spread.median))
+    or_dash(spread, |spread| format!("{:.digits$}", spread.median))
 }

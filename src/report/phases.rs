@@ -2,61 +2,12 @@
 
 use std::fmt::Write as _;
 
-use comfy_table::{Table, presets};
-use eeruf_core::{
-    Criterion, MAX_SENSORS, Micros, Requirements,
-    conditions::{Verification, Violation},
-};
+use eeruf_core::{Criterion, MAX_SENSORS, Micros, Requirements, conditions::Verification};
 use eeruf_design::{HoppingDesign, PhaseSchedule, RingSpec};
 use serde::Serialize;
 
-/// The report, with the names that Python uses; sensors from 0.
-#[derive(Serialize)]
-pub(crate) struct ReportJson {
-    ok: bool,
-    separation_us: Option<u32>,
-    max_t_delta_us: Option<u32>,
-    min_interval_us: Option<u32>,
-    min_refire_us: u32,
-    violations: Vec<ViolationJson>,
-}
-
-#[derive(Serialize)]
-struct ViolationJson {
-    kind: &'static str,
-    sensors: (u8, u8),
-    phases: (u8, u8),
-    value_us: u32,
-    required_us: u32,
-    source: &'static str,
-}
-
-impl From<Violation> for ViolationJson {
-    fn from(violation: Violation) -> Self {
-        let Violation { kind, sensors, phases, value, required, .. } = violation;
-        Self {
-            kind: kind.as_str(),
-            sensors,
-            phases: (phases.0.0, phases.1.0),
-            value_us: value.as_micros(),
-            required_us: required.as_micros(),
-            source: kind.source(),
-        }
-    }
-}
-
-impl From<&Verification<'_, MAX_SENSORS>> for ReportJson {
-    fn from(report: &Verification<'_, MAX_SENSORS>) -> Self {
-        Self {
-            ok: report.ok(),
-            separation_us: report.separation().map(|found| found.value.as_micros()),
-            max_t_delta_us: report.max_t_delta().map(Micros::as_micros),
-            min_interval_us: report.min_interval().map(|found| found.value.as_micros()),
-            min_refire_us: report.min_refire().as_micros(),
-            violations: report.violations().map(ViolationJson::from).collect(),
-        }
-    }
-}
+use super::table::{or_dash, plain};
+use super::verify::us;
 
 /// The criterion in words.
 fn criterion(requirements: &Requirements<'_>) -> String {
@@ -68,23 +19,13 @@ fn criterion(requirements: &Requirements<'_>) -> String {
     }
 }
 
-fn us(time: Micros) -> String {
-    format!("{} us", time.as_micros())
-}
-
-fn new_table() -> Table {
-    let mut table = Table::new();
-    table.load_style(presets::NOTHING);
-    table
-}
-
 pub(crate) fn describe(
     name: &str,
     schedule: &PhaseSchedule,
     requirements: &Requirements<'_>,
     report: &Verification<'_, MAX_SENSORS>,
 ) -> String {
-    let mut table = new_table();
+    let mut table = plain();
     let (value, who) =
         report.separation().map_or(("-".to_owned(), "nothing is heard in two phases".to_owned()), |found| {
             let ((x, y), (m, n)) = (found.sensors, found.phases);
@@ -92,7 +33,7 @@ pub(crate) fn describe(
         });
     table.add_row(["separation", &value, &who]);
     table.add_row([String::new(), String::new(), criterion(requirements)]);
-    let t_delta = report.max_t_delta().map_or_else(|| "-".to_owned(), us);
+    let t_delta = or_dash(report.max_t_delta(), us);
     table.add_row(["largest t_delta", &t_delta, ""]);
     let interval = report.min_interval().map_or(("-".to_owned(), "no neighbours".to_owned()), |found| {
         let ((x, y), (m, n)) = (found.sensors, found.phases);
@@ -165,7 +106,7 @@ pub(crate) fn describe_design(
 ) -> String {
     let HoppingDesign { schedule, period_bound, width_bound, reason, .. } = design;
     let (code, report) = (schedule.code(), schedule.verify(requirements));
-    let mut table = new_table();
+    let mut table = plain();
     let age = if code.is_welch() { "the same period" } else { "every age" };
     let of_which = format!("none that separates sound of {age}");
     let proof = if design.proven() {

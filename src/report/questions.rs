@@ -1,11 +1,11 @@
 //! Schedules that fit into a period, and the curve of a need, as text and as JSON.
 
-use comfy_table::{Table, presets};
 use eeruf_core::Micros;
 use eeruf_core::search::Found;
 use eeruf_design::{CurvePoint, Fit, FoundJson, Need, RingSpec};
 use serde::Serialize;
 
+use super::table::plain;
 use super::timing;
 
 /// Output of `--curve --json`.
@@ -55,8 +55,7 @@ fn name_of(need: Need) -> &'static str {
 /// The answer to `--period`.
 pub(crate) fn describe_fit(name: &str, spec: &RingSpec, period: Micros, fit: &Fit, seconds: f64) -> String {
     let requirements = &fit.spec.problem().requirements;
-    let mut table = Table::new();
-    table.load_style(presets::NOTHING);
+    let mut table = plain();
     let verdict = match fit.fits {
         Some(true) => "a schedule of this period meets all needs",
         Some(false) => "proven: no schedule of this period meets all needs",
@@ -82,8 +81,7 @@ pub(crate) fn describe_fit(name: &str, spec: &RingSpec, period: Micros, fit: &Fi
 
 /// The answer to `--curve`.
 pub(crate) fn describe_curve(name: &str, spec: &RingSpec, need: Need, points: &[CurvePoint], seconds: f64) -> String {
-    let mut table = Table::new();
-    table.load_style(presets::NOTHING);
+    let mut table = plain();
     table.add_row([name_of(need), "period", "readings a second", ""]);
     for point in points {
         let value = match need {

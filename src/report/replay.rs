@@ -28,7 +28,7 @@ pub(crate) struct Counted {
 }
 
 /// Output of `--json`.
-#[derive(Serialize)]
+#[derive(Default, Serialize)]
 pub(crate) struct Replay {
     pub(crate) total: Counts,
     pub(crate) sensors: Vec<Counts>,

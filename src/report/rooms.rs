@@ -6,7 +6,7 @@ use eeruf_design::{RoomsAnswer, RoomsJson};
 use eeruf_sim::experiments::rooms::{Condition, JudgedWay, Judgement, RoomFigures, VERSION};
 use serde::Serialize;
 
-use super::table::markdown;
+use super::table::{markdown, or_dash};
 
 /// The recommended way and its table, or why there is none.
 pub(crate) fn describe(name: &str, judged: &Result<RoomsAnswer, String>) -> String {
@@ -141,7 +141,7 @@ impl Described<'_> {
             format!("{:.1}", 100.0 * mean(|figures| figures.belief.right)),
             format!("{:.2}", 100.0 * mean(|figures| figures.belief.phantom)),
             format!("{:.1}", mean(|figures| figures.right_echoes_per_s)),
-            way.echoes_against(base).map_or_else(|| "-".to_owned(), |times| format!("{times:.2}")),
+            or_dash(way.echoes_against(base), |times| format!("{times:.2}")),
             format!("{:.1}", 100.0 * most(|figures| figures.foreign_of_believed)),
             format!("{}", most(|figures| figures.blind)),
             kept,

@@ -2,11 +2,12 @@
 
 use std::fmt::Write as _;
 
-use comfy_table::{Table, presets};
 use eeruf_core::search::{Found, FrontTable};
 use eeruf_core::{MAX_SENSORS, Micros};
 use eeruf_sim::ScheduleFile;
 use serde::Serialize;
+
+use super::table::plain;
 
 /// The line for a search that ended before its answer, in text.
 pub(crate) const NOT_DECIDED: &str = "not decided: the search ended before it found a table or excluded all; expected \
@@ -71,8 +72,7 @@ pub(crate) fn describe_front(tables: &[FrontTable<MAX_SENSORS>], complete: bool,
         return if complete { format!("{NONE} ({cost})\n") } else { format!("{NOT_DECIDED}({cost})\n") };
     }
     let rest = if complete { "and no others" } else { "the search ended before the others" };
-    let mut values = Table::new();
-    values.load_style(presets::NOTHING);
+    let mut values = plain();
     values.add_row(["smallest interval", "t_delta"]);
     let t_delta = |table: &FrontTable<MAX_SENSORS>| table.t_delta.map_or("none".to_owned(), |time| time.to_string());
     for table in tables {

@@ -1,7 +1,8 @@
-//! A table in Markdown: what it is about at the left, numbers at the right.
+//! Tables in Markdown and without lines, and the mark for a figure that there is not.
 
 use comfy_table::{CellAlignment, Table, presets};
 
+/// A table in Markdown: what it is about at the left, numbers at the right.
 pub(crate) fn markdown<S: AsRef<str>>(header: &[S], rows: impl IntoIterator<Item = Vec<String>>) -> Table {
     let mut table = Table::new();
     table.load_style(presets::ASCII_MARKDOWN);
@@ -11,4 +12,16 @@ pub(crate) fn markdown<S: AsRef<str>>(header: &[S], rows: impl IntoIterator<Item
         column.set_cell_alignment(CellAlignment::Right);
     }
     table
+}
+
+/// A table without lines.
+pub(crate) fn plain() -> Table {
+    let mut table = Table::new();
+    table.load_style(presets::NOTHING);
+    table
+}
+
+/// A figure in words, or a dash where there is none.
+pub(crate) fn or_dash<T>(figure: Option<T>, in_words: impl FnOnce(T) -> String) -> String {
+    figure.map_or_else(|| "-".to_owned(), in_words)
 }

@@ -2,41 +2,42 @@
 
 use std::fmt::Write as _;
 
-use comfy_table::{Table, presets};
 use eeruf_core::{
-    Criterion, Layout, MAX_SENSORS, Micros, Requirements,
+    Criterion, Layout, MAX_SENSORS, Micros, Phase, Requirements,
     conditions::{Least, Verification},
 };
 use eeruf_sim::AnySchedule;
 use serde::Serialize;
 
-/// The report with the names that Python uses; sensors from 0.
+use super::table::plain;
+
+/// The report with the names that Python uses; sensors from 0, phases as `P` says them.
 #[derive(Serialize)]
-pub(crate) struct ReportJson {
+pub(crate) struct ReportJson<P> {
     ok: bool,
     separation_us: Option<u32>,
     max_t_delta_us: Option<u32>,
     min_interval_us: Option<u32>,
     min_refire_us: u32,
-    violations: Vec<ViolationJson>,
+    violations: Vec<ViolationJson<P>>,
 }
 
 #[derive(Serialize)]
-struct ViolationJson {
+struct ViolationJson<P> {
     kind: &'static str,
     sensors: (u8, u8),
-    phases: (String, String),
+    phases: (P, P),
     value_us: u32,
     required_us: u32,
     source: &'static str,
 }
 
-impl From<&Verification<'_, MAX_SENSORS>> for ReportJson {
-    fn from(report: &Verification<'_, MAX_SENSORS>) -> Self {
+impl<P> ReportJson<P> {
+    pub(crate) fn new(report: &Verification<'_, MAX_SENSORS>, phase: impl Fn(Phase) -> P) -> Self {
         let violations = report.violations().map(|violation| ViolationJson {
             kind: violation.kind.as_str(),
             sensors: violation.sensors,
-            phases: (violation.phases.0.to_string(), violation.phases.1.to_string()),
+            phases: (phase(violation.phases.0), phase(violation.phases.1)),
             value_us: violation.value.as_micros(),
             required_us: violation.required.as_micros(),
             source: violation.kind.source(),
@@ -52,6 +53,11 @@ impl From<&Verification<'_, MAX_SENSORS>> for ReportJson {
     }
 }
 
+/// A time as tables have it.
+pub(super) fn us(time: Micros) -> String {
+    format!("{} us", time.as_micros())
+}
+
 /// Number of violations to print before counting the rest.
 const PRINTED_VIOLATIONS: usize = 10;
 
@@ -61,9 +67,7 @@ pub(crate) fn describe(
     requirements: &Requirements<'_>,
     report: &Verification<'_, MAX_SENSORS>,
 ) -> String {
-    let mut table = Table::new();
-    table.load_style(presets::NOTHING);
-    let us = |time: Micros| format!("{} us", time.as_micros());
+    let mut table = plain();
     for criterion in [Criterion::Paper, Criterion::Exact] {
         let chosen = if criterion == requirements.criterion { "" } else { " (not asked for)" };
         let separation =

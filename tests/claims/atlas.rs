@@ -58,7 +58,7 @@ fn a_share_that_makes_no_sense_is_refused() {
     for share in ["0/2", "3/2", "1", "a/b"] {
         let refused = eeruf(&["atlas", file.to_str().unwrap(), "--shard", share]);
         assert_eq!(refused.code, Some(2), "{share}");
-        assert!(refused.err.contains("expected I/N such as 2/3"), "{}", refused.err);
+        assert!(refused.err.contains("expected I/N, such as 2/8"), "{}", refused.err);
     }
 }
 

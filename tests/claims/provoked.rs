@@ -193,7 +193,7 @@ const REFUSED_RUNS: [(&[&str], &str); 93] = [
     (&["experiment", "set-four"], "command: `set-four`; expected one that exists"),
     (&["experiment", "set-one", "--seeds", "0"], "--seeds <N>: `0`; expected a number from 1 to 100000"),
     (&["experiment", "set-two", "--speed", "nan"], "--speed <M/S>: `nan`; expected 0.1 to 5"),
-    (&["atlas", "--shard", "3/2"], "--shard <I/N>: `3/2`; expected I/N such as 2/3"),
+    (&["atlas", "--shard", "3/2"], "--shard <I/N>: `3/2`; expected I/N, such as 2/8"),
     (&["scene", "map.yaml"], "map.yaml: "),
     (&["completions", "cmd"], "<SHELL>: `cmd`; expected a value of its list: bash"),
     (&["verify", "ring.toml"], "this is a ring for `eeruf design`; expected a schedule; did you mean `eeruf design"),

@@ -6,7 +6,7 @@ use eeruf_sim::ScheduleFile;
 use serde::Serialize;
 
 /// Found, as Python names it.
-#[derive(Serialize)]
+#[derive(Default, Serialize)]
 pub struct FoundJson {
     /// The schedule, if there is one.
     pub schedule: Option<ScheduleFile>,
@@ -52,15 +52,9 @@ impl FoundJson {
             value_us: found.value.map(Micros::as_micros),
             bound_us: found.bound.map(Micros::as_micros),
             proven: found.proven,
-            fits: None,
             nodes: found.nodes,
             seconds,
-            reason: None,
-            from_atlas: None,
-            spare_us: None,
-            spare_proven: None,
-            real_period_us: None,
-            real_proven: None,
+            ..Self::default()
         }
     }
 }

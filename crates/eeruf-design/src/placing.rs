@@ -7,6 +7,7 @@ use serde::Deserialize;
 
 use crate::limits::number;
 use crate::places::Places;
+use crate::ring::RingFile;
 
 /// The place of a sensor in a ring file.
 #[derive(Clone, Copy, Debug, Deserialize)]
@@ -19,22 +20,11 @@ pub(crate) struct PlaceFile {
     heading_deg: f64,
 }
 
-/// The keys of a ring of this many sensors.
-pub(crate) struct PlaceKeys<'a> {
-    pub(crate) sensors: usize,
-    pub(crate) poses: Option<&'a [PlaceFile]>,
-    pub(crate) spacing_deg: Option<f64>,
-    pub(crate) radius_m: Option<f64>,
-    pub(crate) urdf: Option<&'a str>,
-    pub(crate) links: Option<&'a [String]>,
-    pub(crate) base_height_m: Option<f64>,
-}
-
-impl PlaceKeys<'_> {
+impl RingFile {
     /// The places of its sensors. A URDF is looked for beside `file`, the ring's own.
     pub(crate) fn places(&self, file: Option<&Path>) -> Result<Places, String> {
         let base_height_m = self.base_height_m.map(|m| number("base_height_m", m, 0.0, 100.0)).transpose()?;
-        let (key, mut places) = match (self.poses, self.spacing_deg, self.radius_m, self.urdf, self.links) {
+        let (key, mut places) = match (&self.poses, self.spacing_deg, self.radius_m, &self.urdf, &self.links) {
             (None, None, None, None, None) => return Ok(Places::default()),
             (Some(poses), None, None, None, None) => ("poses", self.listed(poses)?),
             (None, Some(spacing), Some(radius), None, None) => {

@@ -14,7 +14,7 @@ use crate::hearing::hearing;
 use crate::layout::{LayoutKey, LayoutName, OwnedLayout};
 use crate::limits::{four, neighbours_in_range, number, sensors_in_range};
 use crate::places::Places;
-use crate::placing::{PlaceFile, PlaceKeys};
+use crate::placing::PlaceFile;
 use crate::uneven::OwnedUneven;
 
 /// Repeatability of readings of one wall on a robot that stands, for a file that names its modules and no jitter: a
@@ -35,7 +35,7 @@ const fn one_millisecond() -> u32 {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct RingFile {
-    sensors: usize,
+    pub(crate) sensors: usize,
     #[serde(default = "four")]
     neighbours: u8,
     #[serde(default)]
@@ -65,13 +65,13 @@ pub(crate) struct RingFile {
     audible_us: Option<u32>,
     temperature_c: Option<f64>,
     /// Where each sensor is on the robot, or the arc on which they stand, or the robot's URDF and their links in it.
-    poses: Option<Vec<PlaceFile>>,
-    spacing_deg: Option<f64>,
-    radius_m: Option<f64>,
-    urdf: Option<String>,
-    links: Option<Vec<String>>,
+    pub(crate) poses: Option<Vec<PlaceFile>>,
+    pub(crate) spacing_deg: Option<f64>,
+    pub(crate) radius_m: Option<f64>,
+    pub(crate) urdf: Option<String>,
+    pub(crate) links: Option<Vec<String>>,
     /// Height of the robot's base above the floor.
-    base_height_m: Option<f64>,
+    pub(crate) base_height_m: Option<f64>,
     /// Pairs of sensors with an interval of their own.
     #[serde(default)]
     intervals_us: Vec<(usize, usize, u32)>,
@@ -248,18 +248,6 @@ impl RingFile {
         Ok(widest.of_those_that_hear(&hearing(poses, modules, air, crosstalk_m)))
     }
 
-    fn place_keys(&self) -> PlaceKeys<'_> {
-        PlaceKeys {
-            sensors: self.sensors,
-            poses: self.poses.as_deref(),
-            spacing_deg: self.spacing_deg,
-            radius_m: self.radius_m,
-            urdf: self.urdf.as_deref(),
-            links: self.links.as_deref(),
-            base_height_m: self.base_height_m,
-        }
-    }
-
     /// Requirements of the ring in this file, or in none: the first thing wrong is an error.
     fn spec(&self, file: Option<&Path>) -> Result<RingSpec, String> {
         sensors_in_range(self.sensors)?;
@@ -340,7 +328,7 @@ impl RingFile {
         let (listening, retrigger) = (largest(&window), if is_uneven { Micros::ZERO } else { largest(&refire) });
         let uneven = || OwnedUneven::new(sensors, [t_delta, window, refire], intervals, lines, together);
         let uneven = is_uneven.then(uneven).transpose()?;
-        let places = self.place_keys().places(file)?;
+        let places = self.places(file)?;
         let crosstalk_m = f64::from(c.distance_mm(min_interval)) / 1e3;
         let (layout, not_neighbours) =
             self.neighbours_by_places(&places.poses, &modules, Air::at(celsius), crosstalk_m)?;

@@ -6,7 +6,7 @@ use eeruf_core::Layout;
 use eeruf_core::search::SearchError;
 use eeruf_sim::experiments::ExperimentError;
 use eeruf_sim::experiments::rooms::{
-    Condition, JudgedWay, Judgement, RoomGroup, RoomKind, RoomWay, RoomsOptions, judge,
+    Condition, JudgedWay, Judgement, RoomFigures, RoomGroup, RoomKind, RoomWay, RoomsOptions, judge,
 };
 use eeruf_sim::modules::POLAROID_6500;
 use eeruf_sim::{Pose, Robot, Transducer};
@@ -214,7 +214,7 @@ fn in_words(error: ExperimentError) -> String {
 impl RoomsAnswer {
     /// The answer as JSON has it.
     pub fn json(&self) -> RoomsJson<'_> {
-        let ways = |judgement| WaysJson { groups: &self.groups, judgement };
+        let ways = |judgement| ways_of(&self.groups, judgement);
         let elsewhere = self.elsewhere.iter().map(|(condition, judgement)| ElsewhereJson {
             condition: *condition,
             recommended: name_of(judgement),
@@ -244,7 +244,7 @@ pub struct RoomsJson<'a> {
     pub keeps: bool,
     /// Assumptions where the ring file is silent.
     pub assumed: &'a [String],
-    ways: WaysJson<'a>,
+    ways: Vec<WayJson<'a>>,
     elsewhere: Vec<ElsewhereJson<'a>>,
 }
 
@@ -253,30 +253,10 @@ struct ElsewhereJson<'a> {
     condition: Condition,
     recommended: Option<&'static str>,
     keeps: bool,
-    ways: WaysJson<'a>,
+    ways: Vec<WayJson<'a>>,
 }
 
-/// The ways of a judgement, each with its figures by the names of rooms.
-#[derive(Debug)]
-struct WaysJson<'a> {
-    groups: &'a [(String, usize)],
-    judgement: &'a Judgement,
-}
-
-impl Serialize for WaysJson<'_> {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_seq(self.judgement.ways.iter().map(|way| WayJson {
-            way: way.way.name,
-            title: way.way.title(),
-            not_possible: way.rooms.as_ref().err(),
-            blind_90: way.rooms.is_ok().then_some(way.blind_90),
-            times_95: way.times_95,
-            rooms: FiguresJson { groups: self.groups, way },
-        }))
-    }
-}
-
-#[derive(Serialize)]
+#[derive(Debug, Serialize)]
 struct WayJson<'a> {
     way: &'static str,
     title: &'static str,
@@ -286,19 +266,26 @@ struct WayJson<'a> {
     blind_90: Option<[f64; 2]>,
     #[serde(skip_serializing_if = "Option::is_none")]
     times_95: Option<[f64; 2]>,
-    rooms: FiguresJson<'a>,
+    #[serde(serialize_with = "in_order")]
+    rooms: Vec<(&'a str, &'a RoomFigures)>,
 }
 
-struct FiguresJson<'a> {
-    groups: &'a [(String, usize)],
-    way: &'a JudgedWay,
+/// As an object whose keys keep the order of the rooms.
+fn in_order<S: Serializer>(rooms: &[(&str, &RoomFigures)], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_map(rooms.iter().copied())
 }
 
-impl Serialize for FiguresJson<'_> {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let figures = self.way.rooms.iter().flatten();
-        serializer.collect_map(self.groups.iter().map(|(name, _)| name).zip(figures))
-    }
+/// The ways of a judgement, each with its figures by the names of rooms.
+fn ways_of<'a>(groups: &'a [(String, usize)], judgement: &'a Judgement) -> Vec<WayJson<'a>> {
+    let way = |way: &'a JudgedWay| WayJson {
+        way: way.way.name,
+        title: way.way.title(),
+        not_possible: way.rooms.as_ref().err(),
+        blind_90: way.rooms.is_ok().then_some(way.blind_90),
+        times_95: way.times_95,
+        rooms: groups.iter().map(|(name, _)| &**name).zip(way.rooms.iter().flatten()).collect(),
+    };
+    judgement.ways.iter().map(way).collect()
 }
 
 #[cfg(test)]

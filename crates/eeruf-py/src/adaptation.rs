@@ -8,7 +8,7 @@ use eeruf_core::{
 use pyo3::prelude::*;
 
 use crate::{
-    arguments::{instance, items, micros, number, whole_or, wrong},
+    arguments::{instance, items, micros, number, number_or, whole_or, wrong},
     errors::{Raise, RingError},
     exclusive::Exclusive,
     hopping_schedule::HoppingSchedule,
@@ -200,7 +200,6 @@ impl Adaptation {
     ///     >>> adaptation = eeruf.Adaptation([eeruf.tables.TABLE_I_D], t_delta_us=500)
     ///     >>> adaptation.adapt(ring, ring.poll(ring.next_deadline_us))
     ///     False
-    #[pyo3(signature = (ring, event))]
     fn adapt(&self, ring: &Bound<'_, PyAny>, event: &Bound<'_, PyAny>) -> PyResult<bool> {
         let ring = instance::<Ring>("ring", ring, "an eeruf.Ring")?;
         let RingEvent::PeriodEnded(stats) = to_core("event", event)? else { return Ok(false) };
@@ -257,7 +256,7 @@ impl Adaptation {
     #[pyo3(signature = (t_delta_us, sound_m_s=None), text_signature = "($self, t_delta_us, sound_m_s=343.2)")]
     fn max_speed_m_s(&self, t_delta_us: &Bound<'_, PyAny>, sound_m_s: Option<&Bound<'_, PyAny>>) -> PyResult<f64> {
         let t_delta = micros("t_delta_us", t_delta_us)?;
-        let c = sound_m_s.map_or(Ok(343.2), |c| number("sound_m_s", c, 100.0..=1e3))?;
+        let c = number_or("sound_m_s", sound_m_s, 343.2, 100.0..=1e3)?;
         let c = SpeedOfSound::from_mm_per_s((1e3 * c).round() as u32);
         match &*self.adaptation.get()? {
             Owned::Tables(of) => Ok(f64::from(of.borrow_dependent().max_speed_mm_s(t_delta, c)) / 1e3),

@@ -48,6 +48,11 @@ pub(crate) fn micros(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Micros> {
     whole(name, value, 0..=u32::MAX).map(Micros::new)
 }
 
+/// A time in whole microseconds, or the default where there is none.
+pub(crate) fn micros_or(name: &str, value: Option<&Bound<'_, PyAny>>, default: Micros) -> PyResult<Micros> {
+    value.map_or(Ok(default), |value| micros(name, value))
+}
+
 /// A whole number, or the default where there is none.
 pub(crate) fn whole_or<T: TryFrom<i128> + TryInto<i128> + Copy>(
     name: &str,
@@ -177,22 +182,25 @@ pub(crate) fn points_in_space(
     name: &str,
     value: &Bound<'_, PyAny>,
 ) -> PyResult<(Vec<eeruf_sim::Point>, Option<Vec<f64>>)> {
-    let numpy = value.py().import("numpy")?;
     let expected = "an array of floats of shape (n, 2), or (n, 3) in a scene with height, in metres";
-    let array = numpy.call_method1("atleast_2d", (value,)).map_err(|_| wrong(name, shown(value), expected))?;
+    let array = at_least_2d(name, value, expected)?;
     let columns = array.getattr("shape")?.get_item(1)?.extract::<usize>()?;
     let matrix = matrix(name, &array, if columns == 3 { 3 } else { 2 })?;
-    let rows = matrix.as_array();
-    let points = rows.rows().into_iter().map(|row| eeruf_sim::Point::new(row[0], row[1])).collect();
-    Ok((points, (columns == 3).then(|| rows.rows().into_iter().map(|row| row[2]).collect())))
+    let heights_m = || matrix.as_array().rows().into_iter().map(|row| row[2]).collect();
+    Ok((in_plane(&matrix), (columns == 3).then(heights_m)))
 }
 
 /// A point or several: an array of shape (2,) or (n, 2), in metres.
 pub(crate) fn points(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Vec<eeruf_sim::Point>> {
-    let numpy = value.py().import("numpy")?;
-    let array = numpy
-        .call_method1("atleast_2d", (value,))
-        .map_err(|_| wrong(name, shown(value), "an array of floats of shape (2,) or (n, 2), in metres"))?;
-    let matrix = matrix(name, &array, 2)?;
-    Ok(matrix.as_array().rows().into_iter().map(|row| eeruf_sim::Point::new(row[0], row[1])).collect())
+    let array = at_least_2d(name, value, "an array of floats of shape (2,) or (n, 2), in metres")?;
+    Ok(in_plane(&matrix(name, &array, 2)?))
+}
+
+fn at_least_2d<'py>(name: &str, value: &Bound<'py, PyAny>, expected: &str) -> PyResult<Bound<'py, PyAny>> {
+    let array = value.py().import("numpy")?.call_method1("atleast_2d", (value,));
+    array.map_err(|_| wrong(name, shown(value), expected))
+}
+
+fn in_plane(rows: &PyReadonlyArray2<'_, f64>) -> Vec<eeruf_sim::Point> {
+    rows.as_array().rows().into_iter().map(|row| eeruf_sim::Point::new(row[0], row[1])).collect()
 }

@@ -8,7 +8,7 @@ use pyo3::{PyTraverseError, PyVisit, exceptions::PyRuntimeError, prelude::*};
 use rayon::{ThreadPool, ThreadPoolBuilder, prelude::*};
 
 use crate::{
-    arguments::{items, matrix, native, number, shown, whole, wrong},
+    arguments::{items, matrix, native, number, shown, whole, whole_or, wrong},
     batch_state::{BatchState, Known},
     errors::{Raise, SimulationError as SimulationRefused},
     exclusive::Exclusive,
@@ -216,7 +216,7 @@ impl Batch {
             let name = format!("sensors of the first robot of scenes[{other}]");
             return Err(wrong(&name, sensors_of(&asked[other]), format_args!("{sensors}, as of scenes[0]")));
         }
-        let threads = threads.map_or(Ok(0), |threads| whole("threads", threads, 1..=1024_u32))?;
+        let threads = whole_or("threads", threads, 0, 1..=1024_u32)?;
         let pool = ThreadPoolBuilder::new().num_threads(threads as usize).build();
         let threads = pool.map_err(|error| PyRuntimeError::new_err(format!("no threads to step on: {error}")))?;
         let size = asked.len();

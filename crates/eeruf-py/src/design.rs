@@ -14,7 +14,7 @@ use crate::{
     errors::{ArgumentError, CertificateError, Raise},
     found::Found,
     hopping_found::{HoppingFound, Needs, refuse},
-    requirements::{self, OwnedLayout, UnevenArguments, each},
+    requirements::{self, UnevenArguments, each},
     watch::{Watch, control_flow, in_background},
 };
 
@@ -149,7 +149,7 @@ pub(crate) fn design<'py>(
     refuse(&[("margin_us", margin_us)], "no margin without phases")?;
     let atlas = if flag("atlas", atlas, true)? { ATLAS } else { "" };
     let sensors = requirements::sensors(sensors)?;
-    let layout = OwnedLayout::new(layout, requirements::neighbours(neighbours)?, sensors)?;
+    let layout = requirements::layout(layout, requirements::neighbours(neighbours)?, sensors)?;
     let (t_delta, t_deltas) = each("t_delta_us", t_delta_us, 0)?;
     let min_interval = micros("min_interval_us", min_interval_us)?;
     let (window, windows) = each("window_us", window_us, 1)?;

@@ -153,7 +153,7 @@ fn numbered(number: &Bound<'_, PyAny>, physics: &Bound<'_, PyAny>) -> PyResult<(
 pub(crate) fn alcove(number: &Bound<'_, PyAny>, physics: &Bound<'_, PyAny>) -> PyResult<Scene> {
     let (seed, physics) = numbered(number, physics)?;
     let alcove = Alcove::random(seed);
-    scene_of(alcove.scene().map_err(Raise::raise)?, alcove.robot(), DEFAULT_ORDER, seed, physics)
+    scene_of(alcove.scene().map_err(Raise::raise)?, vec![alcove.robot()], DEFAULT_ORDER, seed, physics)
 }
 
 /// The scene of a course of Set II, with the robot at the start.
@@ -164,7 +164,7 @@ pub(crate) fn course(number: &Bound<'_, PyAny>, physics: &Bound<'_, PyAny>) -> P
     let course = Course::random(seed);
     let order = course.world(course.robot(), None).map_err(Raise::raise)?.max_order();
     let robot = SetTwoOptions::default().robot(course.robot());
-    scene_of(course.scene().map_err(Raise::raise)?, robot, order, seed, physics)
+    scene_of(course.scene().map_err(Raise::raise)?, vec![robot], order, seed, physics)
 }
 
 /// The scene of a room, with the robot of a ring file in its place.
@@ -188,10 +188,7 @@ pub(crate) fn room(
     let plan = RoomPlan::random(kind, seed, robot.radius_m());
     let world = plan.world(&Robot { odometry: true, ..robot }, speed_m_s).map_err(Raise::raise)?;
     let scene = plan.scene().and_then(|scene| scene.with_room(height)).map_err(Raise::raise)?;
-    let robots = world.robots().to_vec();
-    let shown = robots.iter().map(crate::robot::Robot::of).collect();
-    let (noise, faults) = (eeruf_sim::Noise::default(), vec![]);
-    Scene::of(WorldParts { scene, robots, noise, physics, max_order: DEFAULT_ORDER, seed, faults }, shown)
+    scene_of(scene, world.robots().to_vec(), DEFAULT_ORDER, seed, physics)
 }
 
 /// Rooms in which a ring is judged, as Python gives them.
@@ -246,10 +243,16 @@ fn own_rooms(rooms: &Bound<'_, PyAny>) -> PyResult<Vec<RoomGroup>> {
     (0..).zip(scenes.iter()).map(room).collect()
 }
 
-fn scene_of(scene: eeruf_sim::Scene, robot: Robot, max_order: u32, seed: u64, physics: Physics) -> PyResult<Scene> {
-    let robots = vec![crate::robot::Robot::of(&robot)];
+fn scene_of(
+    scene: eeruf_sim::Scene,
+    robots: Vec<Robot>,
+    max_order: u32,
+    seed: u64,
+    physics: Physics,
+) -> PyResult<Scene> {
+    let shown = robots.iter().map(crate::robot::Robot::of).collect();
     let (noise, faults) = (eeruf_sim::Noise::default(), vec![]);
-    Scene::of(WorldParts { scene, robots: vec![robot], noise, physics, max_order, seed, faults }, robots)
+    Scene::of(WorldParts { scene, robots, noise, physics, max_order, seed, faults }, shown)
 }
 
 /// Arguments of Set II, as Python gives them.

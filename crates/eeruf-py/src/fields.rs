@@ -1,4 +1,4 @@
-//! Results as dicts of plain values, for JSON and data frames.
+//! Objects by their fields: as dicts of plain values for JSON and data frames, as texts, and as pickles hold them.
 
 use pyo3::{
     prelude::*,
@@ -20,4 +20,39 @@ fn plain<'py>(value: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         return Ok(PyList::new(value.py(), items)?.into_any());
     }
     if value.hasattr("to_dict")? { value.call_method0("to_dict") } else { Ok(value.clone()) }
+}
+
+/// The fields of an object by their names, as they are.
+pub(crate) fn attributes<'py>(object: &Bound<'py, PyAny>, fields: &[&str]) -> PyResult<Bound<'py, PyDict>> {
+    let dict = PyDict::new(object.py());
+    for field in fields {
+        dict.set_item(field, object.getattr(field)?)?;
+    }
+    Ok(dict)
+}
+
+/// The text of a call with these keyword arguments, which can be pasted back.
+pub(crate) fn call(name: &str, arguments: &Bound<'_, PyDict>) -> PyResult<String> {
+    let shown = |(name, value): (Bound<'_, PyAny>, Bound<'_, PyAny>)| Ok(format!("{name}={}", value.repr()?));
+    Ok(format!("{name}({})", arguments.iter().map(shown).collect::<PyResult<Vec<_>>>()?.join(", ")))
+}
+
+/// The text of an object that its class makes of these fields.
+pub(crate) fn repr(object: &Bound<'_, PyAny>, fields: &[&str]) -> PyResult<String> {
+    call(&object.get_type().name()?.to_cow()?, &attributes(object, fields)?)
+}
+
+/// As a pickle holds an object: what makes it again, and of which arguments.
+pub(crate) type Reduced<'py> = (Bound<'py, PyAny>, Bound<'py, PyTuple>);
+
+/// An object that its class makes of these fields in their order, for a pickle.
+pub(crate) fn reduce<'py>(object: &Bound<'py, PyAny>, fields: &[&str]) -> PyResult<Reduced<'py>> {
+    let fields = fields.iter().map(|field| object.getattr(field)).collect::<PyResult<Vec<_>>>()?;
+    Ok((object.get_type().into_any(), PyTuple::new(object.py(), fields)?))
+}
+
+/// An object that its class makes of these keyword arguments, for a pickle.
+pub(crate) fn reduce_by_name<'py>(object: &Bound<'py, PyAny>, arguments: Bound<'py, PyDict>) -> PyResult<Reduced<'py>> {
+    let made = object.py().import("eeruf._rebuild")?.getattr("made")?;
+    Ok((made, (object.get_type(), arguments).into_pyobject(object.py())?))
 }

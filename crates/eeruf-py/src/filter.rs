@@ -175,7 +175,6 @@ impl EchoFilter {
     ///     >>> kinds = eeruf.EchoFilter(2, 500).push_many([[9_000, 7_000], [9_100, numpy.nan]])
     ///     >>> [[eeruf.KINDS[kind] for kind in row] for row in kinds]
     ///     [['first', 'first'], ['accepted', 'no_echo']]
-    #[pyo3(signature = (t_echo_us))]
     fn push_many<'py>(&self, py: Python<'py>, t_echo_us: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArray2<i8>>> {
         let echoes = matrix("t_echo_us", t_echo_us, self.sensors)?;
         let echoes = echoes.as_slice().map_err(|error| ArgumentError::new_err(error.to_string()))?;
@@ -216,7 +215,6 @@ impl EchoFilter {
     ///     >>> filter.forget(0)
     ///     >>> kinds + [filter.push(0, 9_000).kind]
     ///     ['first', 'first']
-    #[pyo3(signature = (sensor))]
     fn forget(&self, sensor: &Bound<'_, PyAny>) -> PyResult<()> {
         let sensor = self.sensor(sensor)?;
         match &mut *self.filter.get()? {

@@ -5,14 +5,11 @@ use std::time::Instant;
 use eeruf_core::search;
 use eeruf_core::{MAX_SENSORS, Micros};
 use eeruf_design::{RealPeriod, ToSpare};
-use pyo3::{
-    prelude::*,
-    types::{PyDict, PyTuple},
-};
+use pyo3::{prelude::*, types::PyDict};
 
 use crate::{
     arguments::{flag, instance, number, of_type, text, whole, whole_or_none},
-    fields::to_dict,
+    fields::{Reduced, reduce, repr, to_dict},
     schedule::Schedule,
 };
 
@@ -24,7 +21,7 @@ use crate::{
 ///     >>> found.value_us, found.bound_us, found.proven
 ///     (62000, 62000, True)
 #[pyclass(frozen, eq, module = "eeruf")]
-#[derive(Clone, PartialEq)]
+#[derive(Clone, Default, PartialEq)]
 pub(crate) struct Found {
     schedule: Option<Schedule>,
     /// The optimised value, in microseconds: the period, the smallest interval or ``T_delta``; None without a schedule.
@@ -77,12 +74,7 @@ impl Found {
             nodes: found.nodes,
             seconds: began.elapsed().as_secs_f64(),
             reason,
-            certificate: None,
-            real_period_us: None,
-            real_proven: None,
-            from_atlas: false,
-            spare_us: None,
-            spare_proven: None,
+            ..Self::default()
         }
     }
 
@@ -105,6 +97,25 @@ impl Found {
         Self { real_period_us, real_proven: real.map(|real| real.proven), ..self }
     }
 }
+
+const FIELDS: [&str; 13] = [
+    "schedule",
+    "value_us",
+    "bound_us",
+    "proven",
+    "nodes",
+    "seconds",
+    "reason",
+    "certificate",
+    "real_period_us",
+    "real_proven",
+    "from_atlas",
+    "spare_us",
+    "spare_proven",
+];
+/// Of these the text has the last two only if it has them.
+const SHOWN: [&str; 9] =
+    ["schedule", "value_us", "bound_us", "proven", "nodes", "seconds", "reason", "spare_us", "spare_proven"];
 
 #[pymethods]
 impl Found {
@@ -161,40 +172,15 @@ impl Found {
     ///     >>> found["value_us"], found["schedule"]["period_us"]
     ///     (62000, 62000)
     fn to_dict<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
-        let fields = [
-            "schedule",
-            "value_us",
-            "bound_us",
-            "proven",
-            "nodes",
-            "seconds",
-            "reason",
-            "certificate",
-            "real_period_us",
-            "real_proven",
-            "from_atlas",
-            "spare_us",
-            "spare_proven",
-        ];
-        to_dict(slf, &fields)
+        to_dict(slf, &FIELDS)
     }
 
     fn __repr__(slf: &Bound<'_, Self>) -> PyResult<String> {
-        let mut fields = vec!["schedule", "value_us", "bound_us", "proven", "nodes", "seconds", "reason"];
-        if slf.get().spare_us.is_some() {
-            fields.extend(["spare_us", "spare_proven"]);
-        }
-        let shown = fields.into_iter().map(|field| Ok(format!("{field}={}", slf.getattr(field)?.repr()?)));
-        Ok(format!("Found({})", shown.collect::<PyResult<Vec<_>>>()?.join(", ")))
+        let shown = if slf.get().spare_us.is_some() { &SHOWN[..] } else { &SHOWN[..7] };
+        repr(slf, shown)
     }
 
-    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
-        let Self { value_us, bound_us, proven, nodes, seconds, real_period_us, real_proven, .. } = *slf.get();
-        let Self { schedule, reason, certificate, from_atlas, spare_us, spare_proven, .. } = slf.get().clone();
-        // Tuples of more than twelve have no conversion.
-        let first = (schedule, value_us, bound_us, proven, nodes, seconds).into_pyobject(slf.py())?;
-        let rest = (reason, certificate, real_period_us, real_proven, from_atlas, spare_us, spare_proven);
-        let arguments = first.as_sequence().concat(rest.into_pyobject(slf.py())?.as_sequence())?.to_tuple()?;
-        Ok((slf.get_type().into_any(), arguments))
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
+        reduce(slf, &FIELDS)
     }
 }

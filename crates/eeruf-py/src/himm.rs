@@ -110,7 +110,6 @@ impl Himm {
     ///     >>> grid.move_to((9.05, 0.05))
     ///     >>> grid.value((9.0, 0.0)), grid.value((0.0, 0.0))
     ///     (0, None)
-    #[pyo3(signature = (place))]
     fn move_to(&self, place: &Bound<'_, PyAny>) -> PyResult<()> {
         let place = point_of("place", place)?;
         self.grid.get()?.move_to(place);
@@ -243,7 +242,6 @@ impl Himm {
     ///     >>> from eeruf import nav
     ///     >>> nav.Himm().value((0.0, 0.0))
     ///     0
-    #[pyo3(signature = (point))]
     fn value(&self, point: &Bound<'_, PyAny>) -> PyResult<Option<u8>> {
         let point = point_of("point", point)?;
         Ok(self.grid.get()?.value(point))

@@ -2,17 +2,14 @@
 
 use eeruf_core::{Criterion, Micros, Requirements};
 use eeruf_design::HoppingDesign;
-use pyo3::{
-    prelude::*,
-    types::{PyDict, PyTuple},
-};
+use pyo3::{prelude::*, types::PyDict};
 
 use crate::{
     arguments::{flag, instance, micros, shown, text, whole, wrong},
     errors::HoppingError,
-    fields::to_dict,
+    fields::{Reduced, reduce, repr, to_dict},
     hopping_schedule::HoppingSchedule,
-    requirements::{self, OwnedLayout, each},
+    requirements::{self, each},
 };
 
 /// The answer of ``design`` with ``phases``: a schedule for a hopping ring, and how much shorter one could be.
@@ -60,7 +57,7 @@ impl HoppingFound {
         let py = phases.py();
         let phases = whole("phases", phases, 2..=eeruf_core::hopping::HoppingCode::MAX_PHASES)?;
         let sensors = requirements::sensors(needs.sensors)?;
-        let layout = OwnedLayout::new(needs.layout, requirements::neighbours(needs.neighbours)?, sensors)?;
+        let layout = requirements::layout(needs.layout, requirements::neighbours(needs.neighbours)?, sensors)?;
         let (t_delta, t_deltas) = each("t_delta_us", needs.t_delta_us, 0)?;
         let (window, windows) = each("window_us", needs.window_us, 1)?;
         for (name, list) in [("t_delta_us", t_deltas), ("window_us", windows)] {
@@ -150,12 +147,10 @@ impl HoppingFound {
     }
 
     fn __repr__(slf: &Bound<'_, Self>) -> PyResult<String> {
-        let shown = FIELDS.map(|field| Ok(format!("{field}={}", slf.getattr(field)?.repr()?)));
-        Ok(format!("HoppingFound({})", shown.into_iter().collect::<PyResult<Vec<_>>>()?.join(", ")))
+        repr(slf, &FIELDS)
     }
 
-    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
-        let fields = FIELDS.map(|field| slf.getattr(field)).into_iter().collect::<PyResult<Vec<_>>>()?;
-        Ok((slf.get_type().into_any(), PyTuple::new(slf.py(), fields)?))
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
+        reduce(slf, &FIELDS)
     }
 }

@@ -140,7 +140,6 @@ impl HoppingSchedule {
     ///     >>> HoppingSchedule.from_toml(keys).phases
     ///     5
     #[staticmethod]
-    #[pyo3(signature = (text))]
     fn from_toml(text: &Bound<'_, PyAny>) -> PyResult<Self> {
         let text = arguments::text("text", text, "a schedule in TOML")?;
         let schedule = eeruf_files::build(&text, |file: PhaseFile| file.schedule());
@@ -164,7 +163,6 @@ impl HoppingSchedule {
     ///     >>> import eeruf
     ///     >>> eeruf.HoppingSchedule(sensors=8, period_us=60_000, step_us=240).scaled(3, 2).period_us
     ///     90000
-    #[pyo3(signature = (num, den))]
     fn scaled(&self, num: &Bound<'_, PyAny>, den: &Bound<'_, PyAny>) -> PyResult<Self> {
         let (num, den) = (whole("num", num, 0..=u32::MAX)?, whole("den", den, 0..=u32::MAX)?);
         self.0.scaled(num, den).map(Self).map_err(Raise::raise)

@@ -54,7 +54,6 @@ mod robot;
 mod robot_state;
 mod scene;
 mod schedule;
-mod schedule_times;
 mod search;
 mod sensor_watch;
 mod simulate;

@@ -149,6 +149,22 @@ pub(crate) fn read_log<'py>(
     Ok(out)
 }
 
+/// The columns that all tables of firings have.
+fn fired<'a, 'py>(
+    py: Python<'py>,
+    firings: impl ExactSizeIterator<Item = &'a Firing> + Clone,
+) -> PyResult<Bound<'py, PyDict>> {
+    let out = PyDict::new(py);
+    let column = |of: fn(&Firing) -> i64| read_only(py, firings.clone().map(of));
+    out.set_item("sensor", column(|row| row.sensor.into())?)?;
+    out.set_item("fired_us", column(|row| row.fired_us)?)?;
+    out.set_item("period", column(|row| row.period.into())?)?;
+    out.set_item("phase", column(|row| row.phase.into())?)?;
+    let echo = |row: &Firing| row.t_echo_us.map_or(f64::NAN, f64::from);
+    out.set_item("t_echo_us", read_only(py, firings.map(echo))?)?;
+    Ok(out)
+}
+
 /// The firings of a log, as columns, with the clock and the damage.
 #[pyfunction]
 #[pyo3(name = "_read_firings")]
@@ -158,15 +174,8 @@ pub(crate) fn read_firings<'py>(path: &Bound<'py, PyAny>) -> PyResult<Bound<'py,
     warn_of_each(py, log.doubts())?;
     let rows = log.firings.iter().map(|row| (row, true)).chain(log.listened.iter().map(|row| (row, false)));
     let rows: Vec<_> = rows.collect();
-    let out = PyDict::new(py);
-    let column = |of: fn(&Firing) -> i64| read_only(py, rows.iter().map(|row| of(row.0)));
-    out.set_item("sensor", column(|row| row.sensor.into())?)?;
-    out.set_item("fired_us", column(|row| row.fired_us)?)?;
-    out.set_item("period", column(|row| row.period.into())?)?;
-    out.set_item("phase", column(|row| row.phase.into())?)?;
-    let echo = |row: &(&Firing, bool)| row.0.t_echo_us.map_or(f64::NAN, f64::from);
-    out.set_item("t_echo_us", read_only(py, rows.iter().map(echo))?)?;
-    out.set_item("rejected", column(|row| row.rejected.map_or(-1, i64::from))?)?;
+    let out = fired(py, rows.iter().map(|row| row.0))?;
+    out.set_item("rejected", read_only(py, rows.iter().map(|row| row.0.rejected.map_or(-1, i64::from)))?)?;
     out.set_item("sends", read_only(py, rows.iter().map(|row| row.1))?)?;
     out.set_item("clock", log.clock)?;
     out.set_item("damage", log.damage)?;
@@ -191,14 +200,7 @@ pub(crate) fn replay<'py>(
         Ok((log, verdicts))
     })?;
     warn_of_each(py, log.doubts())?;
-    let out = PyDict::new(py);
-    let column = |of: fn(&Firing) -> i64| read_only(py, log.firings.iter().map(of));
-    out.set_item("sensor", column(|row| row.sensor.into())?)?;
-    out.set_item("fired_us", column(|row| row.fired_us)?)?;
-    out.set_item("period", column(|row| row.period.into())?)?;
-    out.set_item("phase", column(|row| row.phase.into())?)?;
-    let echo = |row: &Firing| row.t_echo_us.map_or(f64::NAN, f64::from);
-    out.set_item("t_echo_us", read_only(py, log.firings.iter().map(echo))?)?;
+    let out = fired(py, log.firings.iter())?;
     out.set_item("kind", read_only(py, verdicts.iter().map(|verdict| verdict.kind as i8))?)?;
     out.set_item("age", read_only(py, verdicts.iter().map(|verdict| verdict.age.map_or(-1, i64::from)))?)?;
     let logged = |row: &Firing| row.weighed.as_ref().and_then(|weighed| weighed.kind).map_or(-1, |kind| kind as i8);

@@ -7,12 +7,13 @@ use eeruf_sim::{BestSchedule, Entry, Method as Named, Robot, best_schedule_for};
 use pyo3::{
     PyTraverseError, PyVisit,
     prelude::*,
-    types::{PyDict, PyList, PyString, PyTuple},
+    types::{PyDict, PyList, PyString},
 };
 
 use crate::{
     arguments::{instance, items, shown, text, wrong},
     errors::{ArgumentError, Raise},
+    fields::{Reduced, call, reduce_by_name},
     flow_settings,
     hopping_schedule::HoppingSchedule,
     hopping_settings::HoppingSettings,
@@ -181,15 +182,11 @@ impl Method {
     }
 
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
-        let shown = |(name, value): (Bound<'_, PyAny>, Bound<'_, PyAny>)| Ok(format!("{name}={}", value.repr()?));
-        let all = self._arguments(py)?.iter().map(shown).collect::<PyResult<Vec<_>>>()?;
-        Ok(format!("Method({})", all.join(", ")))
+        call("Method", &self._arguments(py)?)
     }
 
-    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
-        let py = slf.py();
-        let rebuild = py.import("eeruf._rebuild")?.getattr("method")?;
-        Ok((rebuild, (slf.get()._arguments(py)?,).into_pyobject(py)?))
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
+        reduce_by_name(slf, slf.get()._arguments(slf.py())?)
     }
 
     fn __traverse__(&self, visit: PyVisit<'_>) -> Result<(), PyTraverseError> {

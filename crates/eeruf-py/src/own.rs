@@ -16,6 +16,7 @@ use pyo3::{
 use crate::{
     arguments::{items, micros, number, shown, whole, wrong},
     errors::Raise,
+    fields::{Reduced, reduce, repr, to_dict},
     ring_events::Reading,
     robot::Robot,
 };
@@ -47,6 +48,8 @@ pub(crate) struct FiredReading {
     #[pyo3(get)]
     expected_change_us: i32,
 }
+
+const FIRED: [&str; 5] = ["reading", "t_echoes_us", "fired_s", "expected_change_us", "levels_db"];
 
 #[pymethods]
 impl FiredReading {
@@ -106,26 +109,15 @@ impl FiredReading {
     ///     >>> eeruf.sim.FiredReading(reading, (9_000,)).to_dict()["t_echoes_us"]
     ///     [9000]
     fn to_dict<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
-        let names = ["reading", "t_echoes_us", "fired_s", "expected_change_us", "levels_db"];
-        let fields = crate::fields::to_dict(slf, &names)?;
-        fields.set_item("reading", slf.getattr("reading")?.call_method0("to_dict")?)?;
-        Ok(fields)
+        to_dict(slf, &FIRED)
     }
 
     fn __repr__(slf: &Bound<'_, Self>) -> PyResult<String> {
-        let Self { fired_s, expected_change_us, .. } = slf.get();
-        let [reading, echoes, levels] = ["reading", "t_echoes_us", "levels_db"].map(|name| slf.getattr(name)?.repr());
-        Ok(format!(
-            "FiredReading(reading={}, t_echoes_us={}, fired_s={fired_s:?}, expected_change_us={expected_change_us}, \
-             levels_db={})",
-            reading?, echoes?, levels?
-        ))
+        repr(slf, &FIRED)
     }
 
-    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
-        let Self { reading, t_echoes_us, fired_s, expected_change_us, levels_db } = slf.get().clone();
-        let fields = (reading, t_echoes_us, fired_s, expected_change_us, levels_db).into_pyobject(slf.py())?;
-        Ok((slf.get_type().into_any(), fields))
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
+        reduce(slf, &FIRED)
     }
 }
 

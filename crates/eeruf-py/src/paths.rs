@@ -170,7 +170,6 @@ impl Paths {
     ///     >>> wall = sim.Scene([[5, 2, -5, 2]], physics="plain")
     ///     >>> wall.paths((0, 0), (3, 0), max_order=1).points(1).tolist()
     ///     [[0.0, 0.0], [1.5, 2.0], [3.0, 0.0]]
-    #[pyo3(signature = (path))]
     fn points<'py>(&self, path: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let py = path.py();
         let Some(last) = self.paths.len().checked_sub(1) else {

@@ -3,7 +3,7 @@
 use eeruf_sim::{Motion, Point, Pose, Vector, world::heading_rad};
 use pyo3::prelude::*;
 
-use crate::arguments::{items, number, points, shown, wrong};
+use crate::arguments::{items, number, number_or, points, shown, wrong};
 
 /// (x, y, heading) as Python gives it.
 pub(crate) type PoseOf = (f64, f64, f64);
@@ -51,7 +51,7 @@ pub(crate) fn motion(
                     return Err(wrong("velocity_m_s", given, "(x, y) in m/s"));
                 }
             };
-            let turn_rad_s = turn.map_or(Ok(0.0), |turn| number("turn_rad_s", turn, -50.0..=50.0))?;
+            let turn_rad_s = number_or("turn_rad_s", turn, 0.0, -50.0..=50.0)?;
             Ok(Motion::Constant { velocity, turn_rad_s })
         }
         (None, None, Some(waypoints), Some(speed)) => {

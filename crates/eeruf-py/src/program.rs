@@ -75,7 +75,6 @@ pub(crate) fn run_program(py: Python<'_>, words: Vec<OsString>) -> u8 {
 ///     >>> eeruf.sim.Scene.from_toml(eeruf.example("scenes/alcove.toml"))
 ///     <Scene: 3 walls, 0 poles, 1 robots>
 #[pyfunction]
-#[pyo3(signature = (name))]
 pub(crate) fn example(name: &Bound<'_, PyAny>) -> PyResult<&'static str> {
     let name = arguments::text("name", name, "the name of an example")?;
     examples::text(&name).ok_or_else(|| {

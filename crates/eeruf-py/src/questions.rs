@@ -4,11 +4,11 @@ use std::time::Instant;
 
 use eeruf_core::search::{Found as FoundSchedule, Progress};
 use eeruf_core::{Micros, SpeedOfSound};
-use eeruf_design::{CURVE_BUDGET, CurvePoint, LayoutKey, LayoutName, Need, OwnedUneven, Places, RingSpec, Search};
-use pyo3::{prelude::*, types::PyList};
+use eeruf_design::{CURVE_BUDGET, CurvePoint, Need, OwnedUneven, Places, RingSpec, Search};
+use pyo3::prelude::*;
 
 use crate::{
-    arguments::{choice, flag, micros, shown, whole, whole_or, wrong},
+    arguments::{choice, flag, micros, whole, whole_or},
     errors::{ArgumentError, Raise},
     found::Found,
     requirements::{self, UnevenArguments, each},
@@ -32,7 +32,7 @@ impl Arguments<'_, '_> {
     fn spec(&self) -> PyResult<RingSpec> {
         let sensors = requirements::sensors(self.sensors)?;
         let neighbours = requirements::neighbours(self.neighbours)?;
-        let layout = layout(self.layout)?.owned(neighbours, sensors).map_err(ArgumentError::new_err)?;
+        let layout = requirements::layout(self.layout, neighbours, sensors)?;
         let (t_delta, t_deltas) = each("t_delta_us", self.t_delta_us, 0)?;
         let (window, windows) = each("window_us", self.window_us, 1)?;
         let spec = RingSpec {
@@ -60,19 +60,6 @@ impl Arguments<'_, '_> {
         OwnedUneven::can_fire_together(&spec.problem().requirements, sensors).map_err(ArgumentError::new_err)?;
         Ok(spec)
     }
-}
-
-/// The layout as ring files have it.
-fn layout(layout: Option<&Bound<'_, PyAny>>) -> PyResult<LayoutKey> {
-    let Some(layout) = layout else { return Ok(LayoutKey::Unsaid) };
-    if layout.extract::<String>().is_ok() {
-        let names = [("line", LayoutName::Line), ("ring", LayoutName::Ring), ("blocks", LayoutName::Blocks)];
-        return choice("layout", Some(layout), &names).map(LayoutKey::Named);
-    }
-    let pairs =
-        layout.try_iter().and_then(|items| PyList::new(layout.py(), items.collect::<PyResult<Vec<_>>>()?)?.extract());
-    let expected = "\"line\", \"ring\", \"blocks\", or pairs of neighbours such as [(0, 1), (1, 2)]";
-    pairs.map(LayoutKey::Pairs).map_err(|_| wrong("layout", shown(layout), expected))
 }
 
 /// Find what fits into a period: whether the needs do, and the largest ``T_delta``. Ctrl-C ends it.

@@ -8,9 +8,10 @@ use pyo3::{
 };
 
 use crate::{
-    arguments::{instance, items, number, shown, wrong},
+    arguments::{instance, items, number_or, shown, wrong},
     columns::{Columns, read_only},
     errors::ArgumentError,
+    fields::attributes,
     paths::coded,
 };
 
@@ -36,7 +37,7 @@ pub(crate) struct Readings {
 }
 
 fn tolerance(value: Option<&Bound<'_, PyAny>>) -> PyResult<f64> {
-    value.map_or(Ok(eeruf_sim::DEFAULT_TOLERANCE_US), |us| number("tolerance_us", us, 0.0..=f64::INFINITY))
+    number_or("tolerance_us", value, eeruf_sim::DEFAULT_TOLERANCE_US, 0.0..=f64::INFINITY)
 }
 
 impl Readings {
@@ -250,11 +251,7 @@ impl Readings {
     ///     >>> readings.columns()["t_echo_us"] is readings.t_echo_us
     ///     True
     fn columns<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
-        let columns = PyDict::new(slf.py());
-        for name in COLUMNS {
-            columns.set_item(name, slf.getattr(name)?)?;
-        }
-        Ok(columns)
+        attributes(slf, &COLUMNS)
     }
 
     /// All arrays as a ``pandas.DataFrame``: ``kind`` and ``cause`` are categoricals with their names, ``path`` is null
@@ -319,7 +316,6 @@ impl Readings {
     ///     >>> _ = file.seek(0)
     ///     >>> sim.Readings.load(file).summary() == readings.summary()
     ///     True
-    #[pyo3(signature = (file))]
     fn save<'py>(slf: &Bound<'py, Self>, file: &Bound<'py, PyAny>) -> PyResult<()> {
         let py = slf.py();
         let this = &slf.get().readings;
@@ -347,7 +343,6 @@ impl Readings {
     ///     >>> len(sim.Readings.load(file))
     ///     800
     #[staticmethod]
-    #[pyo3(signature = (file))]
     fn load<'py>(file: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         file.py().import("eeruf._frames")?.call_method1("load", (file,))
     }
@@ -368,7 +363,6 @@ impl Readings {
     ///     >>> sim.Readings.concat(blocks).summary() == sim.simulate(scene, periods=100).summary()
     ///     True
     #[staticmethod]
-    #[pyo3(signature = (parts))]
     fn concat(parts: &Bound<'_, PyAny>) -> PyResult<Self> {
         let expected = "several eeruf.sim.Readings, one or more";
         let parts = items("parts", parts, expected)?;

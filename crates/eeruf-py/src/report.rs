@@ -3,12 +3,12 @@
 use eeruf_core::{MAX_SENSORS, Micros};
 use pyo3::{
     prelude::*,
-    types::{PyDict, PyString, PyTuple},
+    types::{PyDict, PyTuple},
 };
 
 use crate::{
     arguments::{instance, items, shown, text, whole, whole_or_none, wrong},
-    fields::to_dict,
+    fields::{Reduced, reduce, repr, to_dict},
 };
 
 /// One condition that a schedule does not meet.
@@ -36,14 +36,11 @@ pub(crate) struct Violation {
     source: String,
 }
 
-fn quoted<'py>(py: Python<'py>, text: &str) -> PyResult<Bound<'py, PyString>> {
-    PyString::new(py, text).repr()
-}
+const VIOLATION: [&str; 6] = ["kind", "sensors", "phases", "value_us", "required_us", "source"];
 
 #[pymethods]
 impl Violation {
     #[new]
-    #[pyo3(signature = (kind, sensors, phases, value_us, required_us, source))]
     fn new(
         kind: &Bound<'_, PyAny>,
         sensors: &Bound<'_, PyAny>,
@@ -70,22 +67,15 @@ impl Violation {
     ///     >>> eeruf.Violation("window", (0, 0), ("a", "b"), 20_000, 36_000, "Sec. 3.1").to_dict()["sensors"]
     ///     [0, 0]
     fn to_dict<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
-        to_dict(slf, &["kind", "sensors", "phases", "value_us", "required_us", "source"])
+        to_dict(slf, &VIOLATION)
     }
 
-    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
-        let Self { kind, sensors: (x, y), phases, value_us, required_us, source } = self;
-        let (kind, phases, source) = (quoted(py, kind)?, phases.into_pyobject(py)?.repr()?, quoted(py, source)?);
-        Ok(format!(
-            "Violation(kind={kind}, sensors=({x}, {y}), phases={phases}, value_us={value_us}, \
-             required_us={required_us}, source={source})"
-        ))
+    fn __repr__(slf: &Bound<'_, Self>) -> PyResult<String> {
+        repr(slf, &VIOLATION)
     }
 
-    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
-        let Self { kind, sensors, phases, value_us, required_us, source } = slf.get();
-        let arguments = (kind, sensors, phases, value_us, required_us, source).into_pyobject(slf.py())?;
-        Ok((slf.get_type().into_any(), arguments))
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
+        reduce(slf, &VIOLATION)
     }
 }
 
@@ -134,6 +124,8 @@ impl Report {
         }
     }
 }
+
+const REPORT: [&str; 5] = ["separation_us", "max_t_delta_us", "min_interval_us", "min_refire_us", "violations"];
 
 #[pymethods]
 impl Report {
@@ -186,22 +178,11 @@ impl Report {
         self.ok()
     }
 
-    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
-        let shown = |value: Option<u32>| value.map_or_else(|| "None".to_owned(), |value| value.to_string());
-        Ok(format!(
-            "Report(separation_us={}, max_t_delta_us={}, min_interval_us={}, min_refire_us={}, violations={})",
-            shown(self.separation_us),
-            shown(self.max_t_delta_us),
-            shown(self.min_interval_us),
-            self.min_refire_us,
-            self.violations(py)?.repr()?
-        ))
+    fn __repr__(slf: &Bound<'_, Self>) -> PyResult<String> {
+        repr(slf, &REPORT)
     }
 
-    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
-        let (py, this) = (slf.py(), slf.get());
-        let violations = this.violations(py)?;
-        let arguments = (this.separation_us, this.max_t_delta_us, this.min_interval_us, this.min_refire_us, violations);
-        Ok((slf.get_type().into_any(), arguments.into_pyobject(py)?))
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
+        reduce(slf, &REPORT)
     }
 }

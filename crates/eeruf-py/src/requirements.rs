@@ -1,56 +1,37 @@
 //! Requirements on a schedule, out of keyword arguments: layout, neighbours, times.
 
-use eeruf_core::{
-    Criterion, Layout, MAX_SENSORS, Micros, Requirements,
-    conditions::{RequirementsError, neighbour_rows},
-};
-use eeruf_design::OwnedUneven;
+use eeruf_core::{Criterion, MAX_SENSORS, Micros, Requirements};
+use eeruf_design::{LayoutKey, LayoutName, OwnedLayout, OwnedUneven};
 use eeruf_sim::AnySchedule;
 use pyo3::{prelude::*, types::PyList};
 
-use crate::arguments::{choice, flag, items, micros, shown, times, whole, whole_or, wrong};
+use crate::arguments::{choice, flag, items, micros_or, shown, times, whole, whole_or, wrong};
 use crate::errors::ArgumentError;
 
-/// The arrangement of the sensors, with the rows of the graph if it is one.
-pub(crate) enum OwnedLayout {
-    Named(Layout<'static>),
-    Graph(Box<[u64; MAX_SENSORS]>),
-}
-
-impl OwnedLayout {
-    pub(crate) fn new(layout: Option<&Bound<'_, PyAny>>, neighbours: u8, sensors: usize) -> PyResult<Self> {
-        let Some(layout) = layout else { return Ok(Self::Named(Layout::Line(neighbours))) };
-        let expected = "\"line\", \"ring\", \"blocks\", or pairs of neighbours such as [(0, 1), (1, 2)]";
-        if let Ok(name) = layout.extract::<String>() {
-            return match name.as_str() {
-                "line" => Ok(Self::Named(Layout::Line(neighbours))),
-                "ring" => Ok(Self::Named(Layout::Ring(neighbours))),
-                "blocks" => Ok(Self::Named(Layout::Blocks(neighbours))),
-                _ => Err(wrong("layout", shown(layout), expected)),
-            };
-        }
-        let pairs: Vec<(usize, usize)> = layout
-            .try_iter()
-            .and_then(|items| PyList::new(layout.py(), items.collect::<PyResult<Vec<_>>>()?)?.extract())
-            .map_err(|_| wrong("layout", shown(layout), expected))?;
-        let rows = neighbour_rows(pairs, sensors).map_err(|error| {
-            let expected = format!("pairs of two different sensors from 0 to {}", sensors - 1);
-            match error {
-                RequirementsError::Neighbours { pair: (x, y), .. } => {
-                    wrong("layout", format_args!("[({x}, {y})]"), expected)
+/// A layout by its name, or by its pairs of neighbours; a line where there is none.
+pub(crate) fn layout(value: Option<&Bound<'_, PyAny>>, neighbours: u8, sensors: usize) -> PyResult<OwnedLayout> {
+    let expected = "\"line\", \"ring\", \"blocks\", or pairs of neighbours such as [(0, 1), (1, 2)]";
+    let key = |value: &Bound<'_, PyAny>| match value.extract::<String>().as_deref() {
+        Ok("line") => Ok(LayoutKey::Named(LayoutName::Line)),
+        Ok("ring") => Ok(LayoutKey::Named(LayoutName::Ring)),
+        Ok("blocks") => Ok(LayoutKey::Named(LayoutName::Blocks)),
+        Ok(_) => Err(wrong("layout", shown(value), expected)),
+        Err(_) => {
+            let pairs: Vec<(usize, usize)> = value
+                .try_iter()
+                .and_then(|items| PyList::new(value.py(), items.collect::<PyResult<Vec<_>>>()?)?.extract())
+                .map_err(|_| wrong("layout", shown(value), expected))?;
+            let (last, is_wrong) = (sensors - 1, |&(x, y): &(usize, usize)| x == y || x.max(y) >= sensors);
+            match pairs.iter().copied().find(is_wrong) {
+                Some((x, y)) => {
+                    let expected = format!("pairs of two different sensors from 0 to {last}");
+                    Err(wrong("layout", format_args!("[({x}, {y})]"), expected))
                 }
-                _ => wrong("layout", shown(layout), expected),
+                None => Ok(LayoutKey::Pairs(pairs)),
             }
-        })?;
-        Ok(Self::Graph(Box::new(rows)))
-    }
-
-    pub(crate) fn layout(&self) -> Layout<'_> {
-        match self {
-            Self::Named(layout) => *layout,
-            Self::Graph(rows) => Layout::Graph(&rows[..]),
         }
-    }
+    };
+    value.map_or(Ok(LayoutKey::Unsaid), key)?.owned(neighbours, sensors).map_err(ArgumentError::new_err)
 }
 
 /// The reading of (13a), (13b); exact by default.
@@ -199,8 +180,6 @@ impl RequirementArguments<'_, '_> {
 
     /// Checked, for this many sensors; without `t_delta_us` it is this.
     pub(crate) fn of(&self, sensors: usize, t_delta: Micros) -> PyResult<OwnedRequirements> {
-        let or_zero =
-            |name, value: Option<&Bound<'_, PyAny>>| value.map_or(Ok(Micros::ZERO), |value| micros(name, value));
         let each_or_zero = |name, value: Option<&Bound<'_, PyAny>>| {
             value.map_or(Ok((Micros::ZERO, vec![])), |value| each(name, value, 0))
         };
@@ -209,8 +188,8 @@ impl RequirementArguments<'_, '_> {
         let (window, windows) = each_or_zero("window_us", self.window_us)?;
         Ok(OwnedRequirements {
             t_delta,
-            min_interval: or_zero("min_interval_us", self.min_interval_us)?,
-            layout: OwnedLayout::new(self.layout, neighbours(self.neighbours)?, sensors)?,
+            min_interval: micros_or("min_interval_us", self.min_interval_us, Micros::ZERO)?,
+            layout: layout(self.layout, neighbours(self.neighbours)?, sensors)?,
             criterion: criterion(self.criterion)?,
             window,
             stale_echo: flag("stale_echo", self.stale_echo, false)?,

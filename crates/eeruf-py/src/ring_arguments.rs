@@ -4,7 +4,7 @@ use eeruf_core::{Instant, Micros, RingConfig, hopping::HoppingListening};
 use pyo3::prelude::*;
 
 use crate::{
-    arguments::{micros, whole_or},
+    arguments::{micros, micros_or, whole_or},
     moments::instant,
     requirements::each,
 };
@@ -24,7 +24,7 @@ pub(crate) fn config(
 ) -> PyResult<RingConfig> {
     let given = |name, value: Option<&Bound<'_, PyAny>>| value.map(|value| micros(name, value)).transpose();
     let mut config = RingConfig::new()
-        .with_blanking(blanking_us.map_or(Ok(Micros::ZERO), |value| micros("blanking_us", value))?)
+        .with_blanking(micros_or("blanking_us", blanking_us, Micros::ZERO)?)
         .with_consecutive(whole_or("consecutive", consecutive, 2, 0..=u8::MAX)?)
         .with_t_delta(t_delta)
         .with_window(window);
@@ -46,6 +46,6 @@ pub(crate) fn listening(
 ) -> PyResult<HoppingListening> {
     let (window, _) = each("window_us", window_us, 0)?;
     Ok(HoppingListening::new(window)
-        .with_blanking(blanking_us.map_or(Ok(Micros::ZERO), |value| micros("blanking_us", value))?)
-        .with_reach(reach_us.map_or(Ok(window), |value| micros("reach_us", value))?))
+        .with_blanking(micros_or("blanking_us", blanking_us, Micros::ZERO)?)
+        .with_reach(micros_or("reach_us", reach_us, window)?))
 }

@@ -7,15 +7,11 @@ use eeruf_core::{
     judge::{Explanation, Verdict},
     plan::Upcoming,
 };
-use pyo3::{
-    IntoPyObjectExt,
-    prelude::*,
-    types::{PyDict, PyTuple},
-};
+use pyo3::{IntoPyObjectExt, prelude::*, types::PyDict};
 
 use crate::{
     arguments::{choice, instance, shown, whole, whole_or, whole_or_none, wrong},
-    fields::to_dict,
+    fields::{Reduced, reduce, repr, to_dict},
 };
 
 /// Sensors that can be.
@@ -46,6 +42,8 @@ impl Fire {
     }
 }
 
+const FIRE: [&str; 3] = ["sensor", "phase", "due_us"];
+
 #[pymethods]
 impl Fire {
     #[new]
@@ -70,17 +68,15 @@ impl Fire {
     ///     >>> eeruf.Fire(3, phase=1).to_dict()
     ///     {'sensor': 3, 'phase': 1, 'due_us': 0}
     fn to_dict<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
-        to_dict(slf, &["sensor", "phase", "due_us"])
+        to_dict(slf, &FIRE)
     }
 
-    fn __repr__(&self) -> String {
-        let Self { sensor, phase, due_us } = self;
-        format!("Fire(sensor={sensor}, phase={phase}, due_us={due_us})")
+    fn __repr__(slf: &Bound<'_, Self>) -> PyResult<String> {
+        repr(slf, &FIRE)
     }
 
-    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
-        let Self { sensor, phase, due_us } = slf.get();
-        Ok((slf.get_type().into_any(), (sensor, phase, due_us).into_pyobject(slf.py())?))
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
+        reduce(slf, &FIRE)
     }
 }
 
@@ -138,14 +134,6 @@ impl ExplainedBy {
         }
     }
 
-    /// As Python writes it.
-    pub(crate) fn shown(self) -> String {
-        match self {
-            Self::History(history) => format!("'{history}'"),
-            Self::Sensor(sensor) => sensor.to_string(),
-        }
-    }
-
     pub(crate) fn from_python(value: &Bound<'_, PyAny>) -> PyResult<Self> {
         if value.extract::<String>().is_ok_and(|said| said == HISTORY) {
             return Ok(Self::History(HISTORY));
@@ -190,6 +178,8 @@ impl Reading {
     }
 }
 
+const READING: [&str; 8] = ["sensor", "kind", "t_echo_us", "previous_us", "age", "phase", "period", "explained_by"];
+
 #[pymethods]
 impl Reading {
     #[new]
@@ -226,29 +216,15 @@ impl Reading {
     ///     >>> eeruf.EchoFilter(1, 500).push(0, 9_000).to_dict()["t_echo_us"]
     ///     9000
     fn to_dict<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
-        to_dict(slf, &["sensor", "kind", "t_echo_us", "previous_us", "age", "phase", "period", "explained_by"])
+        to_dict(slf, &READING)
     }
 
-    fn __repr__(&self) -> String {
-        let shown = |value: Option<u32>| value.map_or_else(|| "None".to_owned(), |value| value.to_string());
-        let explained_by = self.explained_by.map_or_else(|| shown(None), ExplainedBy::shown);
-        format!(
-            "Reading(sensor={}, kind='{}', t_echo_us={}, previous_us={}, age={}, phase={}, period={}, \
-             explained_by={explained_by})",
-            self.sensor,
-            self.kind,
-            shown(self.t_echo_us),
-            shown(self.previous_us),
-            shown(self.age.map(u32::from)),
-            shown(self.phase.map(u32::from)),
-            shown(self.period)
-        )
+    fn __repr__(slf: &Bound<'_, Self>) -> PyResult<String> {
+        repr(slf, &READING)
     }
 
-    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
-        let Self { sensor, kind, t_echo_us, previous_us, age, phase, period, explained_by } = slf.get();
-        let arguments = (sensor, kind, t_echo_us, previous_us, age, phase, period, *explained_by);
-        Ok((slf.get_type().into_any(), arguments.into_pyobject(slf.py())?))
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
+        reduce(slf, &READING)
     }
 }
 
@@ -264,6 +240,8 @@ impl Reading {
 #[pyclass(frozen, eq, module = "eeruf")]
 #[derive(Clone, PartialEq, Eq)]
 pub(crate) struct PeriodEnded(PeriodStats);
+
+const PERIOD_ENDED: [&str; 5] = ["period", "phase", "max_late_us", "sum_late_us", "tally"];
 
 #[pymethods]
 impl PeriodEnded {
@@ -331,20 +309,15 @@ impl PeriodEnded {
     ///     >>> ring.poll(ring.next_deadline_us).to_dict()["max_late_us"]
     ///     0
     fn to_dict<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
-        to_dict(slf, &["period", "phase", "max_late_us", "sum_late_us", "tally"])
+        to_dict(slf, &PERIOD_ENDED)
     }
 
-    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
-        let (period, phase, tally) = (self.period(), self.phase(), self.tally(py)?.repr()?);
-        let late = format!("max_late_us={}, sum_late_us={}", self.max_late_us(), self.sum_late_us());
-        Ok(format!("PeriodEnded(period={period}, phase={phase}, {late}, tally={tally})"))
+    fn __repr__(slf: &Bound<'_, Self>) -> PyResult<String> {
+        repr(slf, &PERIOD_ENDED)
     }
 
-    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
-        let ended = slf.get();
-        let late = (ended.max_late_us(), ended.sum_late_us());
-        let fields = (ended.period(), ended.phase(), late.0, late.1, ended.tally(slf.py())?);
-        Ok((slf.get_type().into_any(), fields.into_pyobject(slf.py())?))
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
+        reduce(slf, &PERIOD_ENDED)
     }
 }
 

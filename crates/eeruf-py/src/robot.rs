@@ -8,14 +8,15 @@ use eeruf_files::Kind;
 use eeruf_sim::{Beam, Clock, GainProfile, Motion, Point, Sketch, Transducer, world::cover_motion};
 use pyo3::{
     prelude::*,
-    types::{PyDict, PyString, PyTuple},
+    types::{PyDict, PyString},
 };
 
 use crate::{
-    arguments::{choice, flag, instance, items, micros, number, shown, times, whole, whole_or, wrong},
+    arguments::{choice, flag, instance, items, micros, number, number_or, shown, times, whole, whole_or, wrong},
     body::{outline, shown_body},
     errors::ArgumentError,
     faults::{shown_table, table_of},
+    fields::{Reduced, attributes, call, reduce_by_name},
     module::{modules, shown_module},
     pose::{from_pose, motion, pose_of, to_pose},
     requirements,
@@ -113,60 +114,36 @@ impl Robot {
     }
 
     /// The keyword arguments that make it again.
-    fn arguments<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let all = PyDict::new(py);
-        all.set_item("pose", self.pose)?;
-        match (self.spacing_rad, self.radius_m) {
-            (Some(spacing_rad), Some(radius_m)) => {
-                all.set_item("sensors", self.sensors())?;
-                all.set_item("spacing_rad", spacing_rad)?;
-                all.set_item("radius_m", radius_m)?;
-            }
-            _ => all.set_item("sensors", &self.sensor_poses)?,
+    fn arguments<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
+        let this = slf.get();
+        let all = attributes(slf, &["pose"])?;
+        let add = |names: &[&str]| all.update(attributes(slf, names)?.as_mapping());
+        if this.spacing_rad.is_some() && this.radius_m.is_some() {
+            add(&["sensors", "spacing_rad", "radius_m"])?;
+        } else {
+            all.set_item("sensors", &this.sensor_poses)?;
         }
-        all.set_item("module", self.module(py)?)?;
-        if self.robot.modules.is_empty() {
-            all.set_item("gain", self.gain())?;
-            all.set_item("beam", self.beam())?;
+        add(&["module"])?;
+        if this.robot.modules.is_empty() {
+            add(&["gain", "beam"])?;
         }
-        all.set_item("coupling_db", self.coupling_db())?;
+        add(&["coupling_db"])?;
         // One for all stays one for all when the sensors are replaced.
-        match &self.robot.heights_m[..] {
+        match &this.robot.heights_m[..] {
             [] => {}
             [first, others @ ..] if others.iter().all(|height_m| height_m == first) => {
                 all.set_item("height_m", first)?;
             }
             each => all.set_item("height_m", each)?,
         }
-        all.set_item("body", self.body(py)?)?;
-        all.set_item("period_us", self.period_us())?;
-        all.set_item("t_delta_us", self.t_delta_us(py)?)?;
-        all.set_item("window_us", self.window_us(py)?)?;
-        all.set_item("blanking_us", self.blanking_us(py)?)?;
-        all.set_item("together", self.together())?;
-        all.set_item("min_refire_us", self.min_refire_us())?;
-        all.set_item("start_us", self.start_us())?;
-        all.set_item("audible_us", self.audible_us())?;
-        all.set_item("path_change_us", self.path_change_us())?;
-        all.set_item("firing", self.firing(py)?)?;
-        all.set_item("schedule", self.schedule())?;
-        all.set_item("neighbours", self.neighbours())?;
-        all.set_item("consecutive", self.consecutive())?;
-        all.set_item("odometry", self.odometry())?;
-        match &self.robot.motion {
+        add(&["body", "period_us", "t_delta_us", "window_us", "blanking_us", "together", "min_refire_us", "start_us"])?;
+        add(&["audible_us", "path_change_us", "firing", "schedule", "neighbours", "consecutive", "odometry"])?;
+        match &this.robot.motion {
             Motion::Still => {}
-            Motion::Constant { .. } => {
-                all.set_item("velocity_m_s", self.velocity_m_s())?;
-                all.set_item("turn_rad_s", self.turn_rad_s())?;
-            }
-            Motion::Waypoints { .. } => {
-                all.set_item("waypoints_m", self.waypoints_m())?;
-                all.set_item("speed_m_s", self.speed_m_s())?;
-            }
+            Motion::Constant { .. } => add(&TURNS)?,
+            Motion::Waypoints { .. } => add(&DRIVES)?,
         }
-        all.set_item("clock_offset_us", self.clock_offset_us())?;
-        all.set_item("clock_drift_ppm", self.clock_drift_ppm())?;
-        all.set_item("fleet_number", self.fleet_number())?;
+        add(&["clock_offset_us", "clock_drift_ppm", "fleet_number"])?;
         Ok(all)
     }
 }
@@ -228,6 +205,10 @@ fn shown_micros<'py>(py: Python<'py>, one: Micros, each: Option<Vec<Micros>>) ->
     }
 }
 
+/// The arguments of the two ways to move.
+const TURNS: [&str; 2] = ["velocity_m_s", "turn_rad_s"];
+const DRIVES: [&str; 2] = ["waypoints_m", "speed_m_s"];
+
 #[pymethods]
 impl Robot {
     #[new]
@@ -284,14 +265,16 @@ impl Robot {
         let pose = pose_of("pose", pose)?;
         let spacing_rad = spacing_rad.map(|angle| number("spacing_rad", angle, -10.0..=10.0)).transpose()?;
         let radius_m = radius_m.map(|radius| number("radius_m", radius, 0.0..=1e3)).transpose()?;
+        let no_arc = |why: &str| match [("spacing_rad", spacing_rad), ("radius_m", radius_m)] {
+            [(name, Some(given)), _] | [_, (name, Some(given))] => {
+                Err(wrong(name, given, format_args!("None, since {why}")))
+            }
+            _ => Ok(()),
+        };
         let file = ring.map(ring_file).transpose()?.map(|spec| spec.robot_ring());
         let rated_m_s = file.as_ref().map_or(0.0, |file| file.speed_m_s);
         let (mut robot, sensor_poses) = if let (None, Some(file)) = (sensors, &file) {
-            if spacing_rad.is_some() || radius_m.is_some() {
-                let name = if spacing_rad.is_some() { "spacing_rad" } else { "radius_m" };
-                let given = spacing_rad.or(radius_m).unwrap_or_default();
-                return Err(wrong(name, given, "None, since the ring file says where sensors stand"));
-            }
+            no_arc("the ring file says where sensors stand")?;
             let robot = file.robot(to_pose(pose), None).map_err(|message| refused_ring(&message))?;
             let poses = robot.sensors.iter().map(from_pose).collect();
             (robot, poses)
@@ -308,11 +291,7 @@ impl Robot {
             let poses = robot.sensors.iter().map(from_pose).collect();
             (robot, poses)
         } else {
-            if spacing_rad.is_some() || radius_m.is_some() {
-                let name = if spacing_rad.is_some() { "spacing_rad" } else { "radius_m" };
-                let given = spacing_rad.or(radius_m).unwrap_or_default();
-                return Err(wrong(name, given, "None, since each sensor has a place of its own"));
-            }
+            no_arc("each sensor has a place of its own")?;
             let Some(sensors) = sensors else {
                 return Err(wrong("sensors", "None", "(x, y, heading) of each sensor"));
             };
@@ -396,8 +375,8 @@ impl Robot {
         robot.odometry = odometry;
         robot.motion = motion(velocity_m_s, turn_rad_s, waypoints_m, speed_m_s)?;
         robot.clock = Clock {
-            offset_us: clock_offset_us.map_or(Ok(0), |offset| whole("clock_offset_us", offset, 0..=u32::MAX))?,
-            drift_ppm: clock_drift_ppm.map_or(Ok(0.0), |drift| number("clock_drift_ppm", drift, -1e3..=1e3))?,
+            offset_us: whole_or("clock_offset_us", clock_offset_us, 0, 0..=u32::MAX)?,
+            drift_ppm: number_or("clock_drift_ppm", clock_drift_ppm, 0.0, -1e3..=1e3)?,
         };
         robot.fleet_number = whole_or("fleet_number", fleet_number, 0, 0..=u8::MAX)?;
         robot.body = body.map(outline).transpose()?;
@@ -429,19 +408,16 @@ impl Robot {
     ///     100
     #[pyo3(signature = (**changes))]
     fn replace<'py>(slf: &Bound<'py, Self>, changes: Option<&Bound<'py, PyDict>>) -> PyResult<Bound<'py, PyAny>> {
-        let arguments = slf.get().arguments(slf.py())?;
+        let arguments = Self::arguments(slf)?;
         let given = |name: &str| changes.is_some_and(|changes| changes.contains(name).unwrap_or(false));
         // One way to place the sensors, to move or to blank takes the place of the other.
         if given("sensors") && !given("spacing_rad") && changes_places(changes)? {
             arguments.del_item("spacing_rad").or_else(missing)?;
             arguments.del_item("radius_m").or_else(missing)?;
         }
-        for [one, other] in [["velocity_m_s", "turn_rad_s"], ["waypoints_m", "speed_m_s"]] {
-            let [old, older] =
-                if one == "velocity_m_s" { ["waypoints_m", "speed_m_s"] } else { ["velocity_m_s", "turn_rad_s"] };
-            if given(one) || given(other) {
-                arguments.del_item(old).or_else(missing)?;
-                arguments.del_item(older).or_else(missing)?;
+        for (new, old) in [(TURNS, DRIVES), (DRIVES, TURNS)] {
+            if new.into_iter().any(given) {
+                old.into_iter().try_for_each(|name| arguments.del_item(name).or_else(missing))?;
             }
         }
         if given("module") || given("transducer") {
@@ -653,16 +629,12 @@ impl Robot {
         self.robot.fleet_number
     }
 
-    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
-        let shown = |(name, value): (Bound<'_, PyAny>, Bound<'_, PyAny>)| Ok(format!("{name}={}", value.repr()?));
-        let all = self.arguments(py)?.iter().map(shown).collect::<PyResult<Vec<_>>>()?;
-        Ok(format!("Robot({})", all.join(", ")))
+    fn __repr__(slf: &Bound<'_, Self>) -> PyResult<String> {
+        call("Robot", &Self::arguments(slf)?)
     }
 
-    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
-        let py = slf.py();
-        let rebuild = py.import("eeruf._rebuild")?.getattr("robot")?;
-        Ok((rebuild, (slf.get().arguments(py)?,).into_pyobject(py)?))
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
+        reduce_by_name(slf, Self::arguments(slf)?)
     }
 }
 

@@ -1,14 +1,11 @@
 //! `sim.RobotState`: where a robot of a simulation is, and how it goes.
 
 use eeruf_sim::Point;
-use pyo3::{
-    prelude::*,
-    types::{PyDict, PyTuple},
-};
+use pyo3::{prelude::*, types::PyDict};
 
 use crate::{
     arguments::{flag, number_or},
-    fields::to_dict,
+    fields::{Reduced, reduce, repr, to_dict},
     pose::{point_of, pose_of},
 };
 
@@ -31,6 +28,8 @@ pub(crate) struct RobotState {
     /// True if the disc that holds its sensors touches a wall or a pole.
     pub(crate) touches: bool,
 }
+
+const FIELDS: [&str; 4] = ["pose", "velocity_m_s", "turn_rad_s", "touches"];
 
 #[pymethods]
 impl RobotState {
@@ -60,20 +59,14 @@ impl RobotState {
     ///     >>> sim.Simulation(sim.Scene([[5, 2, -5, 2]], robots=[robot])).robots[0].to_dict()["pose"]
     ///     [1.0, 0.0, 0.0]
     fn to_dict<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
-        to_dict(slf, &["pose", "velocity_m_s", "turn_rad_s", "touches"])
+        to_dict(slf, &FIELDS)
     }
 
-    fn __repr__(&self) -> String {
-        let Self { pose, velocity_m_s, turn_rad_s, touches } = self;
-        let touches = if *touches { "True" } else { "False" };
-        format!(
-            "RobotState(pose={pose:?}, velocity_m_s={velocity_m_s:?}, turn_rad_s={turn_rad_s:?}, touches={touches})"
-        )
+    fn __repr__(slf: &Bound<'_, Self>) -> PyResult<String> {
+        repr(slf, &FIELDS)
     }
 
-    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
-        let Self { pose, velocity_m_s, turn_rad_s, touches } = *slf.get();
-        let fields = (pose, velocity_m_s, turn_rad_s, touches).into_pyobject(slf.py())?;
-        Ok((slf.get_type().into_any(), fields))
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
+        reduce(slf, &FIELDS)
     }
 }

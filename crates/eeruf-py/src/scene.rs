@@ -15,11 +15,12 @@ use pyo3::{
 };
 
 use crate::{
-    arguments::{self, instance, matrix, number, points_in_space, shown, whole, whole_or, wrong},
+    arguments::{self, instance, matrix, number_or, points_in_space, shown, whole, whole_or, wrong},
     contents::Contents,
     drawing,
     errors::{Raise, SceneError, warn, warn_of},
     faults,
+    fields::{Reduced, attributes, reduce_by_name},
     paths::{Ends, Paths},
     robot::Robot,
     surroundings::{self, Material, Noise},
@@ -119,28 +120,6 @@ impl Scene {
         }
         Self::of(parts, robots)
     }
-
-    /// The keyword arguments that make it again.
-    fn arguments<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let all = PyDict::new(py);
-        all.set_item("walls", self.walls(py)?)?;
-        all.set_item("open", self.open())?;
-        all.set_item("two_sided", self.two_sided())?;
-        all.set_item("poles", self.poles(py)?)?;
-        all.set_item("materials", self.materials())?;
-        all.set_item("pole_materials", self.pole_materials())?;
-        all.set_item("temperature_c", self.temperature_c())?;
-        all.set_item("humidity_percent", self.humidity_percent())?;
-        all.set_item("pressure_kpa", self.pressure_kpa())?;
-        all.set_item("robots", self.robots(py)?)?;
-        all.set_item("noise", self.noise())?;
-        all.set_item("seed", self.seed)?;
-        all.set_item("max_order", self.max_order)?;
-        all.set_item("physics", self.physics(py)?)?;
-        all.set_item("height", self.height(py)?)?;
-        all.set_item("faults", self.faults(py)?)?;
-        Ok(all)
-    }
 }
 
 fn indices(name: &str, value: Option<&Bound<'_, PyAny>>, walls: usize) -> PyResult<Vec<usize>> {
@@ -152,6 +131,26 @@ fn indices(name: &str, value: Option<&Bound<'_, PyAny>>, walls: usize) -> PyResu
         Some(last) => items.iter().map(|item| whole(name, item, 0..=last).map(|index| index as usize)).collect(),
     }
 }
+
+/// The keyword arguments that make a scene again.
+const ARGUMENTS: [&str; 16] = [
+    "walls",
+    "open",
+    "two_sided",
+    "poles",
+    "materials",
+    "pole_materials",
+    "temperature_c",
+    "humidity_percent",
+    "pressure_kpa",
+    "robots",
+    "noise",
+    "seed",
+    "max_order",
+    "physics",
+    "height",
+    "faults",
+];
 
 #[pymethods]
 impl Scene {
@@ -207,12 +206,9 @@ impl Scene {
         }
         let default = Air::default();
         let air = Air {
-            temperature_c: temperature_c
-                .map_or(Ok(20.0), |celsius| number("temperature_c", celsius, -100.0..=100.0))?,
-            humidity_percent: humidity_percent
-                .map_or(Ok(default.humidity_percent), |percent| number("humidity_percent", percent, 0.0..=100.0))?,
-            pressure_kpa: pressure_kpa
-                .map_or(Ok(default.pressure_kpa), |kpa| number("pressure_kpa", kpa, 0.0..=1e4))?,
+            temperature_c: number_or("temperature_c", temperature_c, 20.0, -100.0..=100.0)?,
+            humidity_percent: number_or("humidity_percent", humidity_percent, default.humidity_percent, 0.0..=100.0)?,
+            pressure_kpa: number_or("pressure_kpa", pressure_kpa, default.pressure_kpa, 0.0..=1e4)?,
         };
         let expected = "a sequence of eeruf.sim.Robot";
         let given = robots.map_or(Ok(vec![]), |robots| arguments::items("robots", robots, expected))?;
@@ -246,7 +242,6 @@ impl Scene {
     ///     >>> len(eeruf.sim.Scene.read_toml(file).walls)
     ///     3
     #[staticmethod]
-    #[pyo3(signature = (path))]
     fn read_toml(path: &Bound<'_, PyAny>) -> PyResult<Self> {
         let path: PathBuf = path.extract().map_err(|_| wrong("path", shown(path), "the path of a scene in TOML"))?;
         let text = Kind::Scene.read(&path).map_err(Raise::raise)?;
@@ -302,7 +297,7 @@ impl Scene {
     ///     (0.0, 3)
     #[pyo3(signature = (**changes))]
     fn replace<'py>(slf: &Bound<'py, Self>, changes: Option<&Bound<'py, PyDict>>) -> PyResult<Bound<'py, PyAny>> {
-        let arguments = slf.get().arguments(slf.py())?;
+        let arguments = attributes(slf, &ARGUMENTS)?;
         if let Some(changes) = changes {
             for (part, depending) in
                 [("walls", &["open", "two_sided", "materials"][..]), ("poles", &["pole_materials"])]
@@ -435,7 +430,6 @@ impl Scene {
     ///     >>> paths.order.tolist(), paths.length_m.tolist()
     ///     ([0, 1], [3.0, 5.0])
     #[pyo3(signature = (source, receivers, max_order, max_length_m=None, *, progress=None))]
-    #[pyo3(text_signature = "($self, source, receivers, max_order, max_length_m=None, *, progress=None)")]
     fn paths(
         slf: &Bound<'_, Self>,
         source: &Bound<'_, PyAny>,
@@ -455,8 +449,7 @@ impl Scene {
         let receivers_m = receivers_m.unwrap_or_else(|| vec![DEFAULT_HEIGHT_M; receivers.len()]);
         let ends = Ends { source: from, source_m, receivers, receivers_m };
         let max_order = whole("max_order", max_order, 0..=u32::MAX)?;
-        let max_length_m =
-            max_length_m.map_or(Ok(f64::INFINITY), |most| number("max_length_m", most, 0.0..=f64::INFINITY))?;
+        let max_length_m = number_or("max_length_m", max_length_m, f64::INFINITY, 0.0..=f64::INFINITY)?;
         let (contents, limits) = (Arc::clone(&slf.get().contents), Limits { max_order, max_length_m });
         Paths::find(slf.as_any(), contents, slf.get().physics, ends, limits, progress)
     }
@@ -471,10 +464,8 @@ impl Scene {
         drawing::svg(self.scene(), self.robots.iter().map(|robot| &robot.robot))
     }
 
-    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
-        let py = slf.py();
-        let rebuild = py.import("eeruf._rebuild")?.getattr("scene")?;
-        Ok((rebuild, (slf.get().arguments(py)?,).into_pyobject(py)?))
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
+        reduce_by_name(slf, attributes(slf, &ARGUMENTS)?)
     }
 }
 

@@ -11,7 +11,7 @@ use pyo3::types::{PyDict, PyTuple};
 use crate::{
     arguments::{self, micros, shown, times, whole, wrong},
     errors::{Raise, ScheduleError, warn_of},
-    fields::to_dict,
+    fields::{Reduced, attributes, call, reduce, repr, to_dict},
     hopping_schedule::HoppingSchedule,
     report::Report,
     requirements::{RequirementArguments, UnevenArguments},
@@ -49,7 +49,15 @@ fn tuple<'py>(py: Python<'py>, times: &[Micros]) -> PyResult<Bound<'py, PyTuple>
     PyTuple::new(py, times.iter().map(|time| time.as_micros()))
 }
 
+const WAITS: [&str; 4] = ["period_us", "t_lag_us", "t_wait_a_us", "t_wait_b_us"];
+
 impl Schedule {
+    /// When each sensor fires in a phase, in microseconds.
+    fn t_fire<'py>(&self, py: Python<'py>, phase: Phase) -> PyResult<Bound<'py, PyTuple>> {
+        let fire = |sensor| self.0.t_fire(phase, sensor).unwrap_or_default().as_micros();
+        PyTuple::new(py, (0..self.0.sensors()).map(fire))
+    }
+
     /// Reads a text, of a file or of none.
     fn of_text(py: Python<'_>, file: &Path, text: &str) -> PyResult<Self> {
         let schedule = build(text, |file: ScheduleFile| file.schedule());
@@ -62,7 +70,6 @@ impl Schedule {
 #[pymethods]
 impl Schedule {
     #[new]
-    #[pyo3(signature = (period_us, t_lag_us, t_wait_a_us, t_wait_b_us))]
     fn new(
         period_us: &Bound<'_, PyAny>,
         t_lag_us: &Bound<'_, PyAny>,
@@ -91,7 +98,6 @@ impl Schedule {
     ///     >>> Schedule.from_firing(40_000, [0, 20_000], [2_000, 25_000]).sensors
     ///     2
     #[staticmethod]
-    #[pyo3(signature = (period_us, t_fire_a_us, t_fire_b_us))]
     fn from_firing(
         period_us: &Bound<'_, PyAny>,
         t_fire_a_us: &Bound<'_, PyAny>,
@@ -148,7 +154,6 @@ impl Schedule {
     ///     >>> Schedule.from_toml("period_us = 40000\nt_fire_a_us = [0]\nt_fire_b_us = [2000]").period_us
     ///     40000
     #[staticmethod]
-    #[pyo3(signature = (text))]
     fn from_toml(text: &Bound<'_, PyAny>) -> PyResult<Self> {
         let py = text.py();
         let text = arguments::text("text", text, "a schedule in TOML")?;
@@ -171,7 +176,6 @@ impl Schedule {
     ///     >>> eeruf.Schedule.read_toml(file) == eeruf.tables.TABLE_I_D
     ///     True
     #[staticmethod]
-    #[pyo3(signature = (path))]
     fn read_toml(path: &Bound<'_, PyAny>) -> PyResult<Self> {
         let py = path.py();
         let path: PathBuf = path.extract().map_err(|_| wrong("path", shown(path), "the path of a schedule in TOML"))?;
@@ -193,7 +197,6 @@ impl Schedule {
     ///     >>> Schedule.from_json('{"period_us": 40000, "t_fire_a_us": [0], "t_fire_b_us": [2000]}').sensors
     ///     1
     #[staticmethod]
-    #[pyo3(signature = (text))]
     fn from_json(text: &Bound<'_, PyAny>) -> PyResult<Self> {
         let text = arguments::text("text", text, "a schedule in JSON")?;
         let bad = |error: serde_json::Error| ScheduleError::new_err(explain_json(&error.to_string()).to_string());
@@ -203,7 +206,7 @@ impl Schedule {
 
     /// The period ``T_p``, in microseconds.
     #[getter]
-    pub(crate) fn period_us(&self) -> u32 {
+    fn period_us(&self) -> u32 {
         self.0.period().as_micros()
     }
 
@@ -215,31 +218,31 @@ impl Schedule {
 
     /// ``T_lag`` of each sensor, in microseconds; zeros if the schedule was made of firing times.
     #[getter]
-    pub(crate) fn t_lag_us<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+    fn t_lag_us<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         tuple(py, self.0.t_lag())
     }
 
     /// ``T_wait`` of each sensor in phase a, in microseconds.
     #[getter]
-    pub(crate) fn t_wait_a_us<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+    fn t_wait_a_us<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         tuple(py, self.0.t_wait(Phase::A))
     }
 
     /// ``T_wait`` of each sensor in phase b, in microseconds.
     #[getter]
-    pub(crate) fn t_wait_b_us<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+    fn t_wait_b_us<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         tuple(py, self.0.t_wait(Phase::B))
     }
 
     /// When each sensor fires in phase a, in microseconds from the beginning of the period.
     #[getter]
-    pub(crate) fn t_fire_a_us<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+    fn t_fire_a_us<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         self.t_fire(py, Phase::A)
     }
 
     /// When each sensor fires in phase b, in microseconds from the beginning of the period.
     #[getter]
-    pub(crate) fn t_fire_b_us<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+    fn t_fire_b_us<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         self.t_fire(py, Phase::B)
     }
 
@@ -260,7 +263,6 @@ impl Schedule {
     ///     >>> from eeruf.tables import TABLE_I_D
     ///     >>> TABLE_I_D.scaled(3, 5).period_us
     ///     60000
-    #[pyo3(signature = (num, den))]
     fn scaled(&self, num: &Bound<'_, PyAny>, den: &Bound<'_, PyAny>) -> PyResult<Self> {
         let (num, den) = (whole("num", num, 0..=u32::MAX)?, whole("den", den, 0..=u32::MAX)?);
         self.0.scaled(num, den).map(Self).map_err(Raise::raise)
@@ -444,16 +446,18 @@ impl Schedule {
     ///     >>> Schedule(**tables.TABLE_I_D.to_dict()) == tables.TABLE_I_D
     ///     True
     fn to_dict<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
-        to_dict(slf, &["period_us", "t_lag_us", "t_wait_a_us", "t_wait_b_us"])
+        to_dict(slf, &WAITS)
     }
 
-    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
-        self.shown(py)
+    fn __repr__(slf: &Bound<'_, Self>) -> PyResult<String> {
+        // Firing times say as much where no sensor has a lag.
+        if slf.get().0.t_lag().iter().any(|&lag| lag != Micros::ZERO) {
+            return repr(slf, &WAITS);
+        }
+        call("Schedule.from_firing", &attributes(slf, &["period_us", "t_fire_a_us", "t_fire_b_us"])?)
     }
 
-    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
-        let (py, this) = (slf.py(), slf.get());
-        let arguments = (this.period_us(), this.t_lag_us(py)?, this.t_wait_a_us(py)?, this.t_wait_b_us(py)?);
-        Ok((slf.get_type().into_any(), arguments.into_pyobject(py)?))
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
+        reduce(slf, &WAITS)
     }
 }

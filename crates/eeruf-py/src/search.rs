@@ -9,11 +9,11 @@ use eeruf_core::{Criterion, MAX_SENSORS, Micros};
 use pyo3::prelude::*;
 
 use crate::{
-    arguments::{choice, micros, times, whole, whole_or},
+    arguments::{choice, micros, micros_or, times, whole, whole_or},
     errors::Raise,
     exclusive::Exclusive,
     found::Found,
-    requirements::{self, OwnedLayout},
+    requirements,
     schedule::Schedule,
     watch::{Watch, control_flow},
 };
@@ -97,7 +97,7 @@ impl WaitSearch {
         let sensors = requirements::sensors(sensors)?;
         let t_lag = t_lag_us.map(|lags| times("t_lag_us", lags)).transpose()?;
         let neighbours = requirements::neighbours(neighbours)?;
-        let layout = OwnedLayout::new(layout, neighbours, sensors)?;
+        let layout = requirements::layout(layout, neighbours, sensors)?;
         let (period, wait_max) = (micros("period_us", period_us)?, micros("wait_max_us", wait_max_us)?);
         let needs = WaitProblem {
             sensors,
@@ -106,7 +106,7 @@ impl WaitSearch {
             tick: micros("tick_us", tick_us)?,
             t_lag: t_lag.as_deref(),
             t_delta: micros("t_delta_us", t_delta_us)?,
-            min_interval: min_interval_us.map_or(Ok(Micros::ZERO), |value| micros("min_interval_us", value))?,
+            min_interval: micros_or("min_interval_us", min_interval_us, Micros::ZERO)?,
             neighbours,
             layout: layout.layout(),
             criterion: choice("criterion", criterion, &[("paper", Criterion::Paper), ("exact", Criterion::Exact)])?,

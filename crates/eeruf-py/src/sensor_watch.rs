@@ -4,15 +4,12 @@ use eeruf_core::{
     Instant, MAX_SENSORS, Micros,
     watch::{Doubt, SensorState},
 };
-use pyo3::{
-    prelude::*,
-    types::{PyDict, PyTuple},
-};
+use pyo3::{prelude::*, types::PyDict};
 
 use crate::{
     arguments::{choice, whole, whole_or, whole_or_none},
     exclusive::Exclusive,
-    fields::to_dict,
+    fields::{Reduced, reduce, repr, to_dict},
     moments::instant,
     ring_arguments::begins,
     ring_events::{ExplainedBy, to_core},
@@ -93,7 +90,6 @@ impl SensorWatch {
     ///     >>> watch = eeruf.SensorWatch(sensors=12, blind_after=1)
     ///     >>> watch.observe(eeruf.Reading(3, "rejected", 9_000, 7_000), now_us=100_000)
     ///     Blind(sensor=3, firings=1)
-    #[pyo3(signature = (event, now_us))]
     fn observe(&self, event: &Bound<'_, PyAny>, now_us: &Bound<'_, PyAny>) -> PyResult<Option<Blind>> {
         let (event, now) = (to_core("event", event)?, instant("now_us", now_us)?);
         let blind = self.watch.get()?.observe(&event, now);
@@ -115,7 +111,6 @@ impl SensorWatch {
     ///     >>> watch.observe(eeruf.Reading(3, "accepted", 9_000, 9_100), now_us=102_400)
     ///     >>> watch.state(3, now_us=153_600)
     ///     State(kind='obstacle', t_echo_us=9000, age_us=51200, why=None, explained_by=None)
-    #[pyo3(signature = (sensor, now_us))]
     fn state(&self, sensor: &Bound<'_, PyAny>, now_us: &Bound<'_, PyAny>) -> PyResult<State> {
         let (sensor, now) = (whole("sensor", sensor, 0..=self.sensors - 1)?, instant("now_us", now_us)?);
         Ok(State::of(&*self.watch.get()?, sensor, now))
@@ -141,17 +136,18 @@ pub(crate) struct Blind {
     firings: u8,
 }
 
+const BLIND: [&str; 2] = ["sensor", "firings"];
+
 #[pymethods]
 impl Blind {
     #[new]
-    #[pyo3(signature = (sensor, firings))]
     fn new(sensor: &Bound<'_, PyAny>, firings: &Bound<'_, PyAny>) -> PyResult<Self> {
         let sensor = whole("sensor", sensor, 0..=MAX_SENSORS as u8 - 1)?;
         Ok(Self { sensor, firings: whole("firings", firings, 1..=u8::MAX)? })
     }
 
-    fn __repr__(&self) -> String {
-        format!("Blind(sensor={}, firings={})", self.sensor, self.firings)
+    fn __repr__(slf: &Bound<'_, Self>) -> PyResult<String> {
+        repr(slf, &BLIND)
     }
 
     /// Its fields by their names: a dict of plain values.
@@ -161,12 +157,11 @@ impl Blind {
     ///     >>> eeruf.Blind(3, 20).to_dict()
     ///     {'sensor': 3, 'firings': 20}
     fn to_dict<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
-        to_dict(slf, &["sensor", "firings"])
+        to_dict(slf, &BLIND)
     }
 
-    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
-        let Self { sensor, firings } = slf.get();
-        Ok((slf.get_type().into_any(), (sensor, firings).into_pyobject(slf.py())?))
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
+        reduce(slf, &BLIND)
     }
 }
 
@@ -224,6 +219,8 @@ impl State {
     }
 }
 
+const STATE: [&str; 5] = ["kind", "t_echo_us", "age_us", "why", "explained_by"];
+
 #[pymethods]
 impl State {
     #[new]
@@ -245,16 +242,8 @@ impl State {
         })
     }
 
-    fn __repr__(&self) -> String {
-        let or_none = |text: Option<String>| text.unwrap_or_else(|| "None".to_owned());
-        format!(
-            "State(kind='{}', t_echo_us={}, age_us={}, why={}, explained_by={})",
-            self.kind,
-            or_none(self.t_echo_us.map(|us| us.to_string())),
-            self.age_us,
-            or_none(self.why.map(|why| format!("'{why}'"))),
-            or_none(self.explained_by.map(ExplainedBy::shown))
-        )
+    fn __repr__(slf: &Bound<'_, Self>) -> PyResult<String> {
+        repr(slf, &STATE)
     }
 
     /// Its fields by their names: a dict of plain values.
@@ -264,12 +253,10 @@ impl State {
     ///     >>> eeruf.State("unanswered", age_us=1_000).to_dict()["kind"]
     ///     'unanswered'
     fn to_dict<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
-        to_dict(slf, &["kind", "t_echo_us", "age_us", "why", "explained_by"])
+        to_dict(slf, &STATE)
     }
 
-    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
-        let Self { kind, t_echo_us, age_us, why, explained_by } = slf.get();
-        let arguments = (*kind, *t_echo_us, *age_us, *why, *explained_by);
-        Ok((slf.get_type().into_any(), arguments.into_pyobject(slf.py())?))
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
+        reduce(slf, &STATE)
     }
 }

@@ -280,7 +280,6 @@ impl Simulation {
     ///     >>> world = sim.Simulation(sim.Scene([[5, 2, -5, 2]], robots=[robot]))
     ///     >>> len(world.step(0.6)) > 70, round(world.time_s, 6)
     ///     (True, 0.6)
-    #[pyo3(signature = (seconds))]
     fn step(&self, seconds: &Bound<'_, PyAny>) -> PyResult<Readings> {
         let py = seconds.py();
         let seconds = number("seconds", seconds, 0.0..=1e9)?;
@@ -307,7 +306,6 @@ impl Simulation {
     ///     >>> world = sim.Simulation(sim.Scene([[5, 2, -5, 2]], robots=[robot]))
     ///     >>> len(world.step_to_reading(0.6)) >= 1, world.time_s < 0.6
     ///     (True, True)
-    #[pyo3(signature = (seconds))]
     fn step_to_reading(&self, seconds: &Bound<'_, PyAny>) -> PyResult<Readings> {
         let py = seconds.py();
         let seconds = number("seconds", seconds, 0.0..=1e9)?;
@@ -335,7 +333,6 @@ impl Simulation {
     ///     >>> _ = world.step(1.0)
     ///     >>> round(world.robots[0].pose[1], 3)
     ///     0.5
-    #[pyo3(signature = (robot, v_m_s, w_rad_s))]
     fn set_velocity(
         &self,
         robot: &Bound<'_, PyAny>,
@@ -369,7 +366,6 @@ impl Simulation {
     ///     >>> world.set_pose(0, (0.5, 1.0, 1.57))
     ///     >>> world.robots[0].pose
     ///     (0.5, 1.0, 1.57)
-    #[pyo3(signature = (robot, pose))]
     fn set_pose(&self, robot: &Bound<'_, PyAny>, pose: &Bound<'_, PyAny>) -> PyResult<()> {
         let py = robot.py();
         let (robot, pose) = (self.robot("robot", robot)?, pose_of("pose", pose)?);
@@ -444,7 +440,6 @@ impl Simulation {
     ///     >>> world.change_schedule(0, slow)
     ///     >>> len(world.step(1.2)) < 0.75 * before
     ///     True
-    #[pyo3(signature = (robot, schedule))]
     fn change_schedule(&self, robot: &Bound<'_, PyAny>, schedule: &Bound<'_, PyAny>) -> PyResult<()> {
         let py = robot.py();
         let robot = self.robot("robot", robot)?;
@@ -475,7 +470,6 @@ impl Simulation {
     ///     >>> world.change_scene(far)
     ///     >>> bool(min(world.step(0.6).reference_us[-8:]) > before + 2_000)
     ///     True
-    #[pyo3(signature = (scene))]
     fn change_scene(&self, scene: &Bound<'_, PyAny>) -> PyResult<()> {
         let py = scene.py();
         let given = instance::<Scene>("scene", scene, "an eeruf.sim.Scene")?;

@@ -3,10 +3,11 @@
 use eeruf_sim::{Physics, Room};
 use pyo3::{
     prelude::*,
-    types::{PyDict, PyString, PyTuple},
+    types::{PyDict, PyString},
 };
 
-use crate::arguments::{flag, items, number, shown, wrong};
+use crate::arguments::{flag, items, number, number_or, shown, wrong};
+use crate::fields::{Reduced, attributes, reduce, reduce_by_name, repr};
 
 /// The surface of a wall or a pole.
 ///
@@ -47,23 +48,24 @@ impl Material {
     }
 }
 
+const MATERIAL: [&str; 2] = ["reflection", "roughness_m"];
+
 #[pymethods]
 impl Material {
     #[new]
     #[pyo3(signature = (reflection, roughness_m=None), text_signature = "(reflection, roughness_m=0.0)")]
     fn new(reflection: &Bound<'_, PyAny>, roughness_m: Option<&Bound<'_, PyAny>>) -> PyResult<Self> {
         let reflection = number("reflection", reflection, 0.0..=1.0)?;
-        let roughness_m = roughness_m.map_or(Ok(0.0), |roughness| number("roughness_m", roughness, 0.0..=1.0))?;
+        let roughness_m = number_or("roughness_m", roughness_m, 0.0, 0.0..=1.0)?;
         Ok(Self { reflection, roughness_m })
     }
 
-    fn __repr__(&self) -> String {
-        format!("Material(reflection={:?}, roughness_m={:?})", self.reflection, self.roughness_m)
+    fn __repr__(slf: &Bound<'_, Self>) -> PyResult<String> {
+        repr(slf, &MATERIAL)
     }
 
-    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
-        let Self { reflection, roughness_m } = *slf.get();
-        Ok((slf.get_type().into_any(), (reflection, roughness_m).into_pyobject(slf.py())?))
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
+        reduce(slf, &MATERIAL)
     }
 }
 
@@ -129,6 +131,8 @@ impl Noise {
     }
 }
 
+const NOISE: [&str; 4] = ["fading_db_rms", "jitter_us_rms", "bursts_per_s", "burst_db"];
+
 #[pymethods]
 impl Noise {
     #[new]
@@ -141,30 +145,20 @@ impl Noise {
         burst_db: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
         let default = Self::of(eeruf_sim::Noise::default());
-        let or = |name, value: Option<&Bound<'_, PyAny>>, default, range| {
-            value.map_or(Ok(default), |value| number(name, value, range))
-        };
         Ok(Self {
-            fading_db_rms: or("fading_db_rms", fading_db_rms, default.fading_db_rms, 0.0..=20.0)?,
-            jitter_us_rms: or("jitter_us_rms", jitter_us_rms, default.jitter_us_rms, 0.0..=1e4)?,
-            bursts_per_s: or("bursts_per_s", bursts_per_s, default.bursts_per_s, 0.0..=1e4)?,
-            burst_db: or("burst_db", burst_db, default.burst_db, -200.0..=200.0)?,
+            fading_db_rms: number_or("fading_db_rms", fading_db_rms, default.fading_db_rms, 0.0..=20.0)?,
+            jitter_us_rms: number_or("jitter_us_rms", jitter_us_rms, default.jitter_us_rms, 0.0..=1e4)?,
+            bursts_per_s: number_or("bursts_per_s", bursts_per_s, default.bursts_per_s, 0.0..=1e4)?,
+            burst_db: number_or("burst_db", burst_db, default.burst_db, -200.0..=200.0)?,
         })
     }
 
-    fn __repr__(&self) -> String {
-        let Self { fading_db_rms, jitter_us_rms, bursts_per_s, burst_db } = self;
-        format!(
-            "Noise(fading_db_rms={fading_db_rms:?}, jitter_us_rms={jitter_us_rms:?}, bursts_per_s={bursts_per_s:?}, \
-             burst_db={burst_db:?})"
-        )
+    fn __repr__(slf: &Bound<'_, Self>) -> PyResult<String> {
+        repr(slf, &NOISE)
     }
 
-    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
-        let py = slf.py();
-        let Self { fading_db_rms, jitter_us_rms, bursts_per_s, burst_db } = *slf.get();
-        let rebuild = py.import("eeruf._rebuild")?.getattr("noise")?;
-        Ok((rebuild, (fading_db_rms, jitter_us_rms, bursts_per_s, burst_db).into_pyobject(py)?))
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
+        reduce_by_name(slf, attributes(slf, &NOISE)?)
     }
 }
 

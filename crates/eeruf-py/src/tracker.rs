@@ -129,7 +129,6 @@ impl EchoTracker {
     ///     >>> kinds = eeruf.EchoTracker(1).push_many(range(5), numpy.full((5, 1), 9_000.0))
     ///     >>> eeruf.KINDS[kinds[-1, 0]]
     ///     'accepted'
-    #[pyo3(signature = (phase, t_echo_us))]
     fn push_many<'py>(
         &self,
         py: Python<'py>,
@@ -186,7 +185,6 @@ impl EchoTracker {
     ///     >>> kinds = [tracker.push(0, phase, 9_000).kind for phase in range(5)]
     ///     >>> tracker.confirmed_us(0)
     ///     9000
-    #[pyo3(signature = (sensor))]
     fn confirmed_us(&self, sensor: &Bound<'_, PyAny>) -> PyResult<Option<u32>> {
         Ok(self.tracker.get()?.confirmed(self.sensor(sensor)?.into()).map(Micros::as_micros))
     }
@@ -205,7 +203,6 @@ impl EchoTracker {
     ///     >>> kinds = [tracker.push(0, phase, 9_000).kind for phase in range(5)]
     ///     >>> tracker.is_clear(0)
     ///     False
-    #[pyo3(signature = (sensor))]
     fn is_clear(&self, sensor: &Bound<'_, PyAny>) -> PyResult<bool> {
         Ok(self.tracker.get()?.is_clear(self.sensor(sensor)?.into()))
     }
@@ -225,7 +222,6 @@ impl EchoTracker {
     ///     >>> tracker.forget(0)
     ///     >>> tracker.confirmed_us(0) is None
     ///     True
-    #[pyo3(signature = (sensor))]
     fn forget(&self, sensor: &Bound<'_, PyAny>) -> PyResult<()> {
         let sensor = self.sensor(sensor)?;
         self.tracker.get()?.forget(sensor.into());

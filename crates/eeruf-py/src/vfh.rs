@@ -3,15 +3,12 @@
 use std::sync::MutexGuard;
 
 use eeruf_sim::{Point, navigation::SECTORS};
-use pyo3::{
-    prelude::*,
-    types::{PyDict, PyTuple},
-};
+use pyo3::{prelude::*, types::PyDict};
 
 use crate::{
     arguments::{flag, instance, number, number_or, shown, whole_or, wrong},
     columns::read_only,
-    fields::to_dict,
+    fields::{Reduced, reduce, repr, to_dict},
     himm::Himm,
     pose::{point_of, pose_of, to_pose},
 };
@@ -53,6 +50,9 @@ pub(crate) struct Vfh(eeruf_sim::Vfh);
 fn grid_of<'a>(grid: &'a Bound<'_, PyAny>) -> PyResult<MutexGuard<'a, eeruf_sim::Himm>> {
     instance::<Himm>("grid", grid, "an eeruf.nav.Himm")?.get().grid.get()
 }
+
+const VFH: [&str; 8] =
+    ["window", "smoothing", "threshold", "wide", "density_max", "speed_max_m_s", "speed_min_m_s", "turn_max_rad_s"];
 
 #[pymethods]
 impl Vfh {
@@ -153,7 +153,6 @@ impl Vfh {
     ///     >>> grid.echo((0.05, 0.05, 0.0), range_m=1.0)
     ///     >>> int(nav.Vfh(smoothing=0).histogram(grid, (0.05, 0.0)).argmax())
     ///     0
-    #[pyo3(signature = (grid, place))]
     fn histogram<'py>(&self, grid: &Bound<'py, PyAny>, place: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         let smoothed = self.0.smoothed(&self.0.histogram(&*grid_of(grid)?, point_of("place", place)?));
         read_only(place.py(), smoothed.into_iter())
@@ -176,7 +175,6 @@ impl Vfh {
     ///     >>> from eeruf import nav
     ///     >>> nav.Vfh().steer(nav.Himm(), place=(0, 0), target=(5, 0))
     ///     Steering(direction_rad=0.0, valley=(0, 72), trapped=False)
-    #[pyo3(signature = (grid, place, target))]
     fn steer(
         &self,
         grid: &Bound<'_, PyAny>,
@@ -228,14 +226,8 @@ impl Vfh {
         Ok(self.0.drive(&*grid_of(grid)?, &pose, target, turn_rad_s, turn_gain, turn_most))
     }
 
-    fn __repr__(&self) -> String {
-        let eeruf_sim::Vfh { window, smoothing, threshold, wide, density_max, .. } = self.0;
-        let eeruf_sim::Vfh { speed_max_m_s, speed_min_m_s, turn_max_rad_s, .. } = self.0;
-        format!(
-            "Vfh(window={window}, smoothing={smoothing}, threshold={threshold:?}, wide={wide}, \
-             density_max={density_max:?}, speed_max_m_s={speed_max_m_s:?}, speed_min_m_s={speed_min_m_s:?}, \
-             turn_max_rad_s={turn_max_rad_s:?})"
-        )
+    fn __repr__(slf: &Bound<'_, Self>) -> PyResult<String> {
+        repr(slf, &VFH)
     }
 }
 
@@ -257,6 +249,8 @@ pub(crate) struct Steering {
     /// will be.
     trapped: bool,
 }
+
+const STEERING: [&str; 3] = ["direction_rad", "valley", "trapped"];
 
 #[pymethods]
 impl Steering {
@@ -284,18 +278,14 @@ impl Steering {
     ///     >>> nav.Vfh().steer(nav.Himm(), place=(0, 0), target=(5, 0)).to_dict()
     ///     {'direction_rad': 0.0, 'valley': [0, 72], 'trapped': False}
     fn to_dict<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
-        to_dict(slf, &["direction_rad", "valley", "trapped"])
+        to_dict(slf, &STEERING)
     }
 
-    fn __repr__(&self) -> String {
-        let Self { direction_rad, valley, trapped } = self;
-        let trapped = if *trapped { "True" } else { "False" };
-        format!("Steering(direction_rad={direction_rad:?}, valley={valley:?}, trapped={trapped})")
+    fn __repr__(slf: &Bound<'_, Self>) -> PyResult<String> {
+        repr(slf, &STEERING)
     }
 
-    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
-        let Self { direction_rad, valley, trapped } = *slf.get();
-        let fields = (direction_rad, valley, trapped).into_pyobject(slf.py())?;
-        Ok((slf.get_type().into_any(), fields))
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
+        reduce(slf, &STEERING)
     }
 }

@@ -72,10 +72,11 @@ pub(crate) struct Diagnosis {
     silent_after_s: f64,
     interval: Interval,
     /// Why the line is not open, until it is.
-    line_lost: Option<String>,
+    pub(crate) line_lost: Option<String>,
     /// Reason why whole frames cannot be used.
-    foreign: Option<String>,
-    board_sensors: Option<u8>,
+    pub(crate) foreign: Option<String>,
+    /// The number of sensors that the board says it has.
+    pub(crate) board_sensors: Option<u8>,
     /// The board's last period, and its count of lost edges then, which wraps.
     counted: Option<(u32, u8)>,
     total_edges_lost: u64,
@@ -154,19 +155,6 @@ impl Diagnosis {
         }
     }
 
-    /// The board says how many sensors it has.
-    pub(crate) fn hello(&mut self, sensors: u8) {
-        self.board_sensors = Some(sensors);
-    }
-
-    pub(crate) fn line_opened(&mut self) {
-        self.line_lost = None;
-    }
-
-    pub(crate) fn line_lost(&mut self, why: String) {
-        self.line_lost = Some(why);
-    }
-
     /// A frame arrived damaged.
     pub(crate) fn damaged(&mut self) {
         self.interval.damaged += 1;
@@ -177,11 +165,6 @@ impl Diagnosis {
     pub(crate) fn lost(&mut self, frames: u16) {
         self.interval.lost = self.interval.lost.saturating_add(frames.into());
         self.total_lost += u64::from(frames);
-    }
-
-    /// A whole frame that cannot be used.
-    pub(crate) fn foreign(&mut self, why: String) {
-        self.foreign = Some(why);
     }
 
     /// A message could not be sent.
@@ -328,8 +311,8 @@ mod tests {
     fn diagnosis() -> Diagnosis {
         let parameters = Parameters { sensors: 2, blind_after: 3, late_us: 1_000, ..Parameters::default() };
         let mut diagnosis = Diagnosis::new(&parameters, 0.0);
-        diagnosis.line_opened();
-        diagnosis.hello(2);
+        diagnosis.line_lost = None;
+        diagnosis.board_sensors = Some(2);
         diagnosis
     }
 
@@ -368,9 +351,9 @@ mod tests {
     fn fault_is_named_while_it_lasts() {
         type Fault = fn(&mut Diagnosis);
         let faults: [(usize, Level, &str, Fault); 9] = [
-            (0, Level::Error, "closed", |diagnosis| diagnosis.line_lost("unplugged".to_owned())),
-            (0, Level::Error, "version", |diagnosis| diagnosis.foreign("version 2".to_owned())),
-            (0, Level::Error, "the", |diagnosis| diagnosis.hello(9)),
+            (0, Level::Error, "closed", |diagnosis| diagnosis.line_lost = Some("unplugged".to_owned())),
+            (0, Level::Error, "version", |diagnosis| diagnosis.foreign = Some("version 2".to_owned())),
+            (0, Level::Error, "the", |diagnosis| diagnosis.board_sensors = Some(9)),
             (0, Level::Warn, "dropped", |diagnosis| diagnosis.lost(3)),
             (0, Level::Warn, "dropped", Diagnosis::damaged),
             (1, Level::Warn, "late", |diagnosis| diagnosis.period(1, Micros::new(1_001), 9, &[0, 0])),
@@ -387,8 +370,8 @@ mod tests {
             expected[place] = (level, word.to_owned());
             assert_eq!(said(&mut diagnosis, 1.0), expected);
             both(&mut diagnosis, 1.5, ReadingKind::Accepted);
-            diagnosis.line_opened();
-            diagnosis.hello(2);
+            diagnosis.line_lost = None;
+            diagnosis.board_sensors = Some(2);
             let counted = diagnosis.counted.map_or(0, |(_, edges_lost)| edges_lost);
             diagnosis.period(2, Micros::ZERO, counted, &[0, 0]);
             assert_eq!(said(&mut diagnosis, 2.0), [well(), well(), sees(), sees()], "after {word}");

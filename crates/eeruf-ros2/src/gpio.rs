@@ -157,18 +157,7 @@ impl Known {
             }
             RingEvent::Reading(reading) => {
                 let &(fired, late) = self.fired.get(usize::from(reading.sensor))?;
-                Some(Message::Firing(Firing {
-                    sensor: reading.sensor,
-                    phase: reading.phase.0,
-                    kind: reading.kind,
-                    fired,
-                    period: reading.period,
-                    t_echo: reading.t_echo,
-                    late,
-                    age: now.since(fired),
-                    explained_by: reading.explained_by,
-                    weighed: None,
-                }))
+                Some(Message::Firing(Firing::of(&reading, fired, late, now)))
             }
             RingEvent::PeriodEnded(ref stats) => {
                 let (period, max_late, health) = (stats.period, stats.max_late, health.collect());

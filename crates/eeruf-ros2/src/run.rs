@@ -139,14 +139,14 @@ impl EerufNode {
         };
         match line.recv_timeout(10 * LOOK) {
             Ok(FromLine::Opened) => {
-                self.diagnosis.line_opened();
+                self.diagnosis.line_lost = None;
                 self.say_once("the line is open");
                 self.sequence = None;
                 Ok(())
             }
             Ok(FromLine::Lost(why)) => {
                 self.say_once(&format!("{why}; trying again"));
-                self.diagnosis.line_lost(why);
+                self.diagnosis.line_lost = Some(why);
                 Ok(())
             }
             Ok(FromLine::Frame(Ok(received), at_ns)) => self.frame(received, at_ns),
@@ -156,7 +156,7 @@ impl EerufNode {
             }
             Ok(FromLine::Frame(Err(error), _)) => {
                 self.say_once(&error.to_string());
-                self.diagnosis.foreign(error.to_string());
+                self.diagnosis.foreign = Some(error.to_string());
                 Ok(())
             }
             Err(RecvTimeoutError::Timeout) => Ok(()),
@@ -173,7 +173,7 @@ impl EerufNode {
         match message {
             Message::Hello { sensors, clock } => {
                 self.clock_name = clock;
-                self.diagnosis.hello(sensors);
+                self.diagnosis.board_sensors = Some(sensors);
                 Ok(())
             }
             Message::Period { period, max_late, edges_lost, health } => {

@@ -1,4 +1,4 @@
-use eeruf_core::{Instant, Micros, ReadingKind, hopping::Weighed, judge::Explanation};
+use eeruf_core::{Instant, Micros, Reading, ReadingKind, hopping::Weighed, judge::Explanation};
 
 /// One firing of one sensor, and what came of it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,4 +23,13 @@ pub struct Firing {
     pub explained_by: Option<Explanation>,
     /// The tracker's weighing of the reading in a hopping ring; `None` for other rings.
     pub weighed: Option<Weighed>,
+}
+
+impl Firing {
+    /// A reading of a sensor that `fired` then, so `late`, as a frame has it that is made `now`; not weighed.
+    pub fn of(reading: &Reading, fired: Instant, late: Micros, now: Instant) -> Self {
+        let Reading { sensor, phase, kind, period, t_echo, explained_by, .. } = *reading;
+        let age = now.since(fired);
+        Self { sensor, phase: phase.0, kind, fired, period, t_echo, late, age, explained_by, weighed: None }
+    }
 }

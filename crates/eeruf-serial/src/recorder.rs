@@ -77,18 +77,8 @@ impl<const K: usize> Recorder<K> {
             }
             RingEvent::Reading(reading) => {
                 let &(fired, late) = self.fired.get(usize::from(reading.sensor))?;
-                Some(self.encoder.firing(&Firing {
-                    sensor: reading.sensor,
-                    phase: reading.phase.0,
-                    kind: reading.kind,
-                    fired,
-                    period: reading.period,
-                    t_echo: reading.t_echo,
-                    late,
-                    age: now.since(fired),
-                    explained_by: reading.explained_by,
-                    weighed: weighed(reading.sensor),
-                }))
+                let weighed = weighed(reading.sensor);
+                Some(self.encoder.firing(&Firing { weighed, ..Firing::of(&reading, fired, late, now) }))
             }
             RingEvent::PeriodEnded(ref stats) => {
                 Some(self.encoder.period(stats.period, stats.max_late, edges_lost, (0..K as u8).map(health)))

@@ -57,14 +57,7 @@ def timing(schedule: Schedule | HoppingSchedule, *, window_us: int = 0, ax: Axes
         ax.text((phase + 0.5) * period_ms, 0.25, f"phase {name}", color=colour, ha="center", va="bottom")
     for end in (period_ms, 2 * period_ms):
         ax.axvline(end, color=its.grey, linewidth=0.8, linestyle=(0, (4, 3)))
-    ax.set_xlim(0, 2 * period_ms)
-    ax.set_ylim(sensors + 0.6, 0.2)
-    ax.set_yticks(range(1, sensors + 1))
-    ax.tick_params(axis="y", length=0)
-    ax.set_xlabel("time (ms)")
-    ax.set_ylabel("sensor")
-    bare(ax)
-    return ax
+    return _lanes(ax, sensors, end_ms=2 * period_ms, top=0.2)
 
 
 def _hopping(schedule: HoppingSchedule, window_us: int, ax: Axes | None) -> Axes:
@@ -81,8 +74,13 @@ def _hopping(schedule: HoppingSchedule, window_us: int, ax: Axes | None) -> Axes
             width = np.full(left.size, window_us / 1e3)
             ax.barh(top.ravel() + line / 2, width, left=left.ravel(), height=line, color=its.window, linewidth=0)
     ax.vlines(fires_ms.ravel(), tops.ravel(), tops.ravel() + line, colors=its.blue, linewidth=1.6)
-    ax.set_xlim(0, period_ms)
-    ax.set_ylim(sensors + 0.6, 0.4)
+    return _lanes(ax, sensors, end_ms=period_ms, top=0.4)
+
+
+def _lanes(ax: Axes, sensors: int, *, end_ms: float, top: float) -> Axes:
+    """A lane for each sensor, the first on top."""
+    ax.set_xlim(0, end_ms)
+    ax.set_ylim(sensors + 0.6, top)
     ax.set_yticks(range(1, sensors + 1))
     ax.tick_params(axis="y", length=0)
     ax.set_xlabel("time (ms)")

@@ -1,5 +1,6 @@
 //! `eeruf experiment set-one`: eight sensors before three walls at right angles, over many alcoves.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use eeruf_core::Micros;
@@ -10,6 +11,7 @@ use eeruf_sim::{Entry, GainProfile, Method, Options, Robot, Stop, Transducer};
 use super::common::{BUDGET, Common, bad, designing, watched};
 use super::shard::{Part, Runs, runs_of};
 use crate::commands::methods::{Hopping, chosen};
+use crate::commands::show;
 use crate::console::{print_line, tell};
 use crate::files::error::InputError;
 use crate::files::mcap::{Stage, write_mcap};
@@ -189,12 +191,6 @@ fn vary(args: &Args, options: &SetOneOptions) -> Result<(), InputError> {
         let table = set_one(&with(options.clone()), &watched).map_err(|error| bad("set-one")(&error))?;
         found.push((name, table));
     }
-    if args.common.json {
-        let tables: serde_json::Map<_, _> =
-            found.iter().map(|(name, table)| ((*name).to_owned(), serde_json::json!(table))).collect();
-        print_line(to_json(&tables))?;
-    } else {
-        tell(describe_variations(&found))?;
-    }
-    Ok(())
+    let tables = || found.iter().map(|(name, table)| (*name, serde_json::json!(table)));
+    Ok(show(args.common.json, || tables().collect::<BTreeMap<_, _>>(), || describe_variations(&found))?)
 }

@@ -7,11 +7,10 @@ use eeruf_sim::experiments::set_three::{SetThree, SetThreeOptions, set_three, us
 
 use super::common::{Common, bad, watched};
 use super::shard::{Part, Runs, runs_of};
-use crate::console::{print_line, tell};
+use crate::commands::show;
 use crate::files::error::InputError;
 use crate::report::draw;
 use crate::report::experiment::set_three::describe;
-use crate::report::json::to_json;
 
 /// Set III: two to six robots with the same ring stand, meet or follow each other in a corridor or a hall, each with a
 /// clock of its own.
@@ -86,10 +85,5 @@ fn words(args: &Args) -> Vec<String> {
 
 fn print(args: &Args, found: &SetThree) -> Result<(), InputError> {
     args.common.draw("set-three", || draw::robots_of_one_make(found))?;
-    if args.common.json {
-        print_line(to_json(found))?;
-    } else {
-        tell(describe(found))?;
-    }
-    Ok(())
+    Ok(show(args.common.json, || found, || describe(found))?)
 }

@@ -14,12 +14,11 @@ use eeruf_sim::{Entry, Method, Point, Robot};
 use super::common::{BUDGET, Common, bad, designing, watched};
 use super::shard::{Part, Runs, runs_of};
 use crate::commands::methods::{Hopping, chosen};
-use crate::console::{print_line, tell};
+use crate::commands::show;
 use crate::files::error::InputError;
 use crate::files::mcap::{Stage, write_mcap};
 use crate::report::draw;
 use crate::report::experiment::set_two::{SideBySide, Sweep, describe};
-use crate::report::json::to_json;
 use crate::report::watch::Watch;
 
 /// Set II: a LabMate drives through a course of 8 mm poles, about 1.6 m apart, steered by what its eight sensors
@@ -123,12 +122,7 @@ pub(crate) fn run(args: &Args) -> Result<(), InputError> {
         let steps = speed_sweep(&options, &SPEEDS, &watched).map_err(|error| bad(&error))?;
         drop(watched);
         let sweep = Sweep::of(&options, steps);
-        if args.common.json {
-            print_line(to_json(&sweep))?;
-        } else {
-            tell(sweep.describe())?;
-        }
-        return Ok(());
+        return Ok(show(args.common.json, || &sweep, || sweep.describe())?);
     }
     if let Some(shard) = args.common.shard {
         let mut found = set_two(&one("--shard")?, &watched).map_err(|error| bad(&error))?;
@@ -209,10 +203,8 @@ fn words(args: &Args) -> Vec<String> {
 
 fn print(args: &Args, each: &[SetTwo]) -> Result<(), InputError> {
     match each {
-        [found] if args.common.json => print_line(to_json(found))?,
-        [found] => tell(describe(found))?,
-        _ if args.common.json => print_line(to_json(&SideBySide::of(each)))?,
-        _ => tell(SideBySide::of(each).describe())?,
+        [found] => show(args.common.json, || found, || describe(found))?,
+        _ => show(args.common.json, || SideBySide::of(each), || SideBySide::of(each).describe())?,
     }
     Ok(())
 }

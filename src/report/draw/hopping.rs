@@ -2,10 +2,9 @@
 
 use eeruf_core::{Micros, Phase, Requirements};
 use eeruf_design::PhaseSchedule;
-use plotters::style::Color;
 
 use super::picture::Picture;
-use super::style::{INK, LISTENING, REJECTED, SMALL, TITLE, grid_step};
+use super::style::{LISTENING, REJECTED, TITLE};
 
 /// One lane for each sensor, and in it one line for each phase, the first on top: when it fires, and how long it
 /// listens.
@@ -23,14 +22,7 @@ pub(crate) fn hopping_diagram(schedule: &PhaseSchedule, requirements: &Requireme
     let mut picture = Picture::new(LEFT + WIDTH + 24.0, bottom + 50.0);
     let title = format!("{sensors} sensors, {phases} phases, T_p = {}: firing and listening", schedule.period());
     picture.text(title, (LEFT, 19.0), TITLE);
-    let step = grid_step(period, 10.0);
-    let mut tick = 0.0;
-    while tick <= period {
-        picture.line((x_of(tick), TOP), (x_of(tick), bottom + 4.0), 1.0, INK.mix(0.12));
-        picture.text(format!("{}", tick / 1000.0), (x_of(tick) - 8.0, bottom + 13.0), SMALL);
-        tick += step;
-    }
-    picture.text("ms", (x_of(period) - 18.0, bottom + 31.0), SMALL);
+    picture.time_grid(period, x_of, TOP, bottom);
     for sensor in 0..sensors {
         let top = TOP + lane * sensor as f64 + 4.0;
         picture.text(format!("{}", sensor + 1), (16.0, top + lane / 2.0 - 8.0), 14.0);

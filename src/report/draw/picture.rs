@@ -12,7 +12,7 @@ use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-use super::style::INK;
+use super::style::{INK, SMALL, grid_step};
 use crate::files::error::InputError;
 use crate::files::write::write;
 
@@ -108,6 +108,18 @@ impl Picture {
         colour: impl Into<RGBAColor>,
     ) {
         self.shapes.push(Shape::Text { text: text.into(), at, size, side, colour: colour.into() });
+    }
+
+    /// Grid lines at round numbers of milliseconds, up to a time in microseconds.
+    pub(super) fn time_grid(&mut self, until_us: f64, x_of: impl Fn(f64) -> f64, top: f64, bottom: f64) {
+        let step = grid_step(until_us, 10.0);
+        let mut tick = 0.0;
+        while tick <= until_us {
+            self.line((x_of(tick), top), (x_of(tick), bottom + 4.0), 1.0, INK.mix(0.12));
+            self.text(format!("{}", tick / 1000.0), (x_of(tick) - 8.0, bottom + 13.0), SMALL);
+            tick += step;
+        }
+        self.text("ms", (x_of(until_us) - 18.0, bottom + 31.0), SMALL);
     }
 
     /// Puts another picture into this one.

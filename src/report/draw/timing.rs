@@ -5,7 +5,7 @@ use eeruf_sim::AnySchedule;
 use plotters::style::Color;
 
 use super::picture::Picture;
-use super::style::{INK, LISTENING, REJECTED, SMALL, TITLE, grid_step};
+use super::style::{INK, LISTENING, REJECTED, TITLE};
 
 /// When each sensor fires in two periods, and how long it listens: one lane for each sensor, as Fig. 3 of the paper.
 pub(crate) fn timing_diagram(schedule: &AnySchedule, requirements: &Requirements<'_>) -> Picture {
@@ -25,14 +25,7 @@ pub(crate) fn timing_diagram(schedule: &AnySchedule, requirements: &Requirements
     for start in [0.0, period, 2.0 * period] {
         picture.line((x_of(start), 44.0), (x_of(start), bottom), 1.0, INK.mix(0.5));
     }
-    let step = grid_step(2.0 * period, 10.0);
-    let mut tick = 0.0;
-    while tick <= 2.0 * period {
-        picture.line((x_of(tick), TOP), (x_of(tick), bottom + 4.0), 1.0, INK.mix(0.12));
-        picture.text(format!("{}", tick / 1000.0), (x_of(tick) - 8.0, bottom + 13.0), SMALL);
-        tick += step;
-    }
-    picture.text("ms", (x_of(2.0 * period) - 18.0, bottom + 31.0), SMALL);
+    picture.time_grid(2.0 * period, x_of, TOP, bottom);
     for x in 0..schedule.sensors() {
         let top = TOP + LANE * x as f64 + 3.0;
         picture.text(format!("{}", x + 1), (16.0, top + 8.0), 14.0);

@@ -8,7 +8,7 @@ use eeruf_sim::experiments::Spread;
 use eeruf_sim::experiments::set_one::{Figures, Latency, MultiEcho, NewStep, SetOne};
 
 use crate::report::percent::{fine_percent, median, median_95, percent, percents, percents_95};
-use crate::report::table::markdown;
+use crate::report::table::{markdown, or_dash};
 
 /// The paper's report on a method in Set I: how many of the readings were wrong.
 fn paper(method: &str) -> &'static str {
@@ -95,13 +95,10 @@ pub(crate) fn describe(found: &SetOne, best: &BestSchedule) -> String {
 }
 
 fn belief(method: &str, figures: &Figures) -> Vec<String> {
-    let mean = |spread: Option<Spread>| spread.map_or_else(|| "-".to_owned(), |spread| fine_percent(spread.mean));
-    let right = figures.belief_right.map_or_else(
-        || "-".to_owned(),
-        |Spread { mean, mean_95: [low, high], .. }| {
-            format!("{:.1} ({:.1}-{:.1})", 100.0 * mean, 100.0 * low, 100.0 * high)
-        },
-    );
+    let mean = |spread: Option<Spread>| or_dash(spread, |spread| fine_percent(spread.mean));
+    let right = or_dash(figures.belief_right, |Spread { mean, mean_95: [low, high], .. }| {
+        format!("{:.1} ({:.1}-{:.1})", 100.0 * mean, 100.0 * low, 100.0 * high)
+    });
     vec![
         method.to_string(),
         right,
@@ -191,12 +188,9 @@ pub(crate) fn describe_variations(found: &[(&str, SetOne)]) -> String {
 
 fn varied(figures: &Figures) -> String {
     let percents = |spread: Option<Spread>| {
-        spread.map_or_else(
-            || "-".to_owned(),
-            |Spread { median, median_95: [low, high], .. }| {
-                format!("{} ({}-{})", percent(median), percent(low), percent(high))
-            },
-        )
+        or_dash(spread, |Spread { median, median_95: [low, high], .. }| {
+            format!("{} ({}-{})", percent(median), percent(low), percent(high))
+        })
     };
     format!("{} / {}, {:.2}", percents(figures.wrong_of_all), percents(figures.good_lost), figures.starved)
 }

@@ -6,7 +6,7 @@ use eeruf_sim::experiments::Spread;
 use eeruf_sim::experiments::set_three::{Arrangement, Brief, Figures, Group, PERIOD, Place, SetThree};
 
 use crate::report::percent::{fine_percent, median};
-use crate::report::table::markdown;
+use crate::report::table::{markdown, or_dash};
 
 /// The most methods that one table has columns for.
 const WIDEST: usize = 8;
@@ -47,23 +47,19 @@ pub(crate) fn describe(found: &SetThree) -> String {
 }
 
 fn with_interval(spread: Option<Spread>) -> String {
-    spread.map_or_else(
-        || "-".to_owned(),
-        |Spread { median, median_95: [low, high], .. }| {
-            format!("{} ({}-{})", fine_percent(median), fine_percent(low), fine_percent(high))
-        },
-    )
+    or_dash(spread, |Spread { median, median_95: [low, high], .. }| {
+        format!("{} ({}-{})", fine_percent(median), fine_percent(low), fine_percent(high))
+    })
 }
 
 fn mean_95(spread: Option<Spread>, digits: usize) -> String {
-    spread.map_or_else(
-        || "-".to_owned(),
-        |Spread { mean, mean_95: [low, high], .. }| format!("{mean:.digits$} ({low:.digits$}-{high:.digits$})"),
-    )
+    or_dash(spread, |Spread { mean, mean_95: [low, high], .. }| {
+        format!("{mean:.digits$} ({low:.digits$}-{high:.digits$})")
+    })
 }
 
 fn accepted(way: &str, figures: &Figures) -> Vec<String> {
-    let p90 = figures.others_of_accepted.map_or_else(|| "-".to_owned(), |spread| fine_percent(spread.p90));
+    let p90 = or_dash(figures.others_of_accepted, |spread| fine_percent(spread.p90));
     vec![
         way.to_string(),
         with_interval(figures.others_of_accepted),

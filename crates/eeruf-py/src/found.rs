@@ -113,7 +113,8 @@ const FIELDS: [&str; 13] = [
     "spare_us",
     "spare_proven",
 ];
-/// Of these the text has the last two only if it has them.
+
+/// The fields that its text has, the last two only if they are known.
 const SHOWN: [&str; 9] =
     ["schedule", "value_us", "bound_us", "proven", "nodes", "seconds", "reason", "spare_us", "spare_proven"];
 

@@ -12,7 +12,6 @@ use eeruf_sim::experiments::set_two::{SetTwoOptions, drive};
 use eeruf_sim::{Cause, Entry, Method, Options, Physics, Readings, quantile, simulate, sweep};
 
 use crate::fault_rates::{Place, Robots, world};
-use crate::firings::firing_of;
 
 /// Counts over the readings of one alcove, or of all.
 #[derive(Clone, Copy, Default)]
@@ -65,7 +64,7 @@ impl Where {
                 return Ok((driven.readings, driven.world.scene().air().speed_of_sound()));
             }
             Self::Alcoves => Alcove::random(number).world()?.with_physics(physics)?,
-            Self::Driving(place) => world(number, place, Robots::Drive, physics)?,
+            Self::Driving(place) => world(number, place, Robots::DriveByOdometry, physics)?,
         };
         let readings = simulate(&world, method, &Options::periods(periods))?;
         Ok((readings, world.scene().air().speed_of_sound()))
@@ -79,7 +78,7 @@ fn count(number: u64, place: Where, method: Method, periods: u32, physics: Physi
     let mut order: Vec<_> = (0..readings.len()).filter(|&k| readings.robot[k] == 0).collect();
     let at_us = |k: usize| (1e6 * readings.fired_s[k]).round() as i64;
     order.sort_by_key(|&k| at_us(k));
-    let firings = order.iter().map(|&k| firing_of(&readings, k)).collect();
+    let firings = order.iter().map(|&k| eeruf::firing(&readings, k)).collect();
     let log = FiringLog { firings, ..FiringLog::default() };
     let diagnosis = diagnose(&log, &Settings::default());
     let mut counts = Counts {

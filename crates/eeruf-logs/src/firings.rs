@@ -61,6 +61,19 @@ pub struct FiringLog {
     pub damage: Option<String>,
 }
 
+impl FiringLog {
+    /// Returns true if the ring's odometry says that the robot drives: in a fifth of the weighed readings or more an
+    /// echo was expected to move by 10 us, at 60 ms a firing some 3 cm/s.
+    pub(crate) fn drives(&self) -> bool {
+        const MOVES_US: u32 = 10;
+        const DRIVES: f64 = 0.2;
+        let expected = self.firings.iter().filter_map(|firing| Some(firing.weighed.as_ref()?.expected_change_us));
+        let (all, moves) =
+            expected.fold((0, 0), |(all, moves), us| (all + 1, moves + u32::from(us.unsigned_abs() >= MOVES_US)));
+        f64::from(moves) > DRIVES * f64::from(all)
+    }
+}
+
 impl Firing {
     /// The ring's verdict on the reading, as logs spell it.
     pub(crate) fn reading(&self) -> &'static str {

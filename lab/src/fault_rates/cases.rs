@@ -38,6 +38,8 @@ pub(crate) enum Place {
 pub(crate) enum Robots {
     Stand,
     Drive,
+    /// The ring knows how.
+    DriveByOdometry,
 }
 
 /// A thing that goes wrong, or not.
@@ -194,9 +196,10 @@ fn people(world: &World, seconds: f64) -> Vec<Fault> {
 pub(crate) fn world(number: u64, place: Place, robots: Robots, physics: Physics) -> Result<World, Box<dyn Error>> {
     let alcove = Alcove::random(number);
     let mut robot = alcove.robot();
+    robot.odometry = robots == Robots::DriveByOdometry;
     let world = match place {
         Place::Alcove => {
-            if robots == Robots::Drive {
+            if robots != Robots::Stand {
                 let turn_rad_s = if number.is_multiple_of(2) { 0.04 } else { -0.04 };
                 robot.motion = Motion::Constant { velocity: Vector::new(0.0, -0.015), turn_rad_s };
             }
@@ -204,7 +207,7 @@ pub(crate) fn world(number: u64, place: Place, robots: Robots, physics: Physics)
         }
         Place::Room => {
             let kind = ROOMS[(number % ROOMS.len() as u64) as usize];
-            let speed_m_s = if robots == Robots::Drive { SPEED_M_S } else { 0.0 };
+            let speed_m_s = if robots == Robots::Stand { 0.0 } else { SPEED_M_S };
             RoomPlan::random(kind, number, robot.radius_m()).world(&robot, speed_m_s)?
         }
     };
@@ -237,8 +240,8 @@ pub(crate) fn cases(
 ) -> Result<Vec<Option<Case>>, Box<dyn Error>> {
     let periods = match (place, robots) {
         (_, Robots::Stand) => PERIODS,
-        (Place::Alcove, Robots::Drive) => ALCOVE_PERIODS,
-        (Place::Room, Robots::Drive) => ROOM_PERIODS,
+        (Place::Alcove, _) => ALCOVE_PERIODS,
+        (Place::Room, _) => ROOM_PERIODS,
     };
     let options = Options { seed: Some(number), ..Options::periods(periods) };
     let healthy = simulate(&world(number, place, robots, physics)?, method, &options)?;

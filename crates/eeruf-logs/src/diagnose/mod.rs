@@ -106,8 +106,8 @@ pub struct Diagnosis {
     pub hearing: Vec<Hearing>,
     /// Broken parts.
     pub faults: Vec<Fault>,
-    /// True if ranges that recurred at the beginning are not there at the end: the robot moved, and faults that show in
-    /// what repeats cannot be named.
+    /// True if the robot moved: odometry says so, or ranges of the beginning are missing at the end. Faults that show in
+    /// what repeats cannot be named then.
     pub moved: bool,
     /// The most offsets at which a reading could come from a firing of another sensor, over all pairs.
     pub most_offsets: u32,
@@ -137,7 +137,7 @@ pub fn diagnose(log: &FiringLog, settings: &Settings) -> Diagnosis {
     let mut paths = Vec::new();
     let mut named = vec![None; log.firings.len()];
     let mut fits_none = vec![false; log.firings.len()];
-    let moved = timeline.moved();
+    let moved = log.drives() || timeline.moved();
     if moved {
         paths = follow(&timeline, settings, &mut named, &mut fits_none);
     } else {

@@ -1,7 +1,7 @@
 //! `diagnose` on the log of a ring that drives towards things and away from them, where the sender of each reading is
 //! known, and how fast its path shortens.
 
-use eeruf_logs::{Diagnosis, Firing, FiringLog, Settings, diagnose};
+use eeruf_logs::{Diagnosis, Firing, FiringLog, Settings, Weighed, diagnose};
 
 use crate::random::Random;
 
@@ -130,4 +130,20 @@ fn two_phases_name_no_sender_while_driving() {
     let (log, _) = driven(1, 400, 2);
     let found = diagnose(&log, &Settings::default());
     assert!(found.moved && found.named.iter().all(Option::is_none) && found.paths.is_empty());
+}
+
+// Where echoes stay, as along a corridor, or a log is short, odometry says that the robot drives.
+#[test]
+fn odometry_says_that_the_robot_drives() {
+    let (short, _) = driven(1, 12, 10);
+    assert!(!diagnose(&short, &Settings::default()).moved);
+    let moved = |expected_change_us: i32| {
+        let mut log = short.clone();
+        for firing in &mut log.firings {
+            let (given, kind, solo, steady, changes) = (0, None, false, true, 0);
+            firing.weighed = Some(Weighed { given, kind, solo, steady, changes, expected_change_us });
+        }
+        diagnose(&log, &Settings::default()).moved
+    };
+    assert_eq!([0, 5, -5, 100, -100].map(moved), [false, false, false, true, true]);
 }

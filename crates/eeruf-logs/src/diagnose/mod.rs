@@ -106,7 +106,7 @@ pub struct Diagnosis {
     pub hearing: Vec<Hearing>,
     /// Broken parts.
     pub faults: Vec<Fault>,
-    /// True if the robot moved: odometry says so, or ranges of the beginning are missing at the end. Faults that show in
+    /// True if the robot moved: odometry says so, or ranges of the beginning are gone at the end. Faults that show in
     /// what repeats cannot be named then.
     pub moved: bool,
     /// The most offsets at which a reading could come from a firing of another sensor, over all pairs.

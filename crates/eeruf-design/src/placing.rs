@@ -3,22 +3,10 @@
 use std::path::Path;
 
 use eeruf_sim::{Pose, Robot, Transducer, Vector};
-use serde::Deserialize;
 
 use crate::limits::number;
 use crate::places::Places;
-use crate::ring::RingFile;
-
-/// The place of a sensor in a ring file.
-#[derive(Clone, Copy, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(crate) struct PlaceFile {
-    x_m: f64,
-    y_m: f64,
-    z_m: Option<f64>,
-    #[serde(default)]
-    heading_deg: f64,
-}
+use crate::ring::{PlaceFile, RingFile};
 
 impl RingFile {
     /// The places of its sensors. A URDF is looked for beside `file`, the ring's own.

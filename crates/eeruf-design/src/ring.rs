@@ -14,7 +14,6 @@ use crate::hearing::hearing;
 use crate::layout::{LayoutKey, LayoutName, OwnedLayout};
 use crate::limits::{four, neighbours_in_range, number, sensors_in_range};
 use crate::places::Places;
-use crate::placing::PlaceFile;
 use crate::uneven::OwnedUneven;
 
 /// Repeatability of readings of one wall on a robot that stands, for a file that names its modules and no jitter: a
@@ -29,6 +28,17 @@ const MOST_AUDIBLE_US: u32 = 1 << 26;
 
 const fn one_millisecond() -> u32 {
     1000
+}
+
+/// The place of a sensor.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct PlaceFile {
+    pub(crate) x_m: f64,
+    pub(crate) y_m: f64,
+    pub(crate) z_m: Option<f64>,
+    #[serde(default)]
+    pub(crate) heading_deg: f64,
 }
 
 /// A ring file for `design`: times in microseconds, or what a designer knows instead of them.

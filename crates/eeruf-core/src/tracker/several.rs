@@ -78,7 +78,7 @@ impl<const H: usize> SensorTracks<H> {
         let Firing { phase: Phase(phase), solo, steady, expected_change_us: change_us } = firing;
         let (phase, near) = (bit(phase), settings.near.as_micros());
         let mut sounds = Sounds::<E>::new(echoes);
-        // Of the first, since something that comes nearer matters more than the wall behind it, which changes otherwise.
+        // Of the first, since what comes nearer matters more than the wall behind it, which may change otherwise.
         self.learn(sounds.first().t_echo, change_us, t_delta);
         self.shift(change_us);
         let before = self.confirmed();

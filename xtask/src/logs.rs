@@ -40,7 +40,7 @@ pub(crate) fn logs(steps: &mut Steps) {
 /// Writes bags of every kind, replays them, and deletes them.
 fn bags(topics: u32, messages: [u32; 2]) -> Result<()> {
     let python = environment(&Path::new(HOME).join("python"), &["rosbags"])?;
-    let program = crate::toolchain::program()?;
+    run_line("cargo build --release --locked -p eeruf")?;
     let folders = messages.map(|messages| PathBuf::from(HOME).join(format!("bags-{topics}-{messages}")));
     for (folder, messages) in folders.iter().zip(messages) {
         let size = ["--topics", &topics.to_string(), "--messages", &messages.to_string()];
@@ -49,7 +49,7 @@ fn bags(topics: u32, messages: [u32; 2]) -> Result<()> {
     let [large, small] = &folders;
     let all = (topics * messages[0]).to_string();
     let replay = "crates/eeruf-logs/tests/replay_bags.py";
-    let replayed = run(Command::new(&python).arg(replay).arg(program).args([small, large]).arg(all));
+    let replayed = run(Command::new(&python).args([replay, "target/release/eeruf"]).args([small, large]).arg(all));
     folders.iter().try_for_each(fs::remove_dir_all)?;
     replayed
 }

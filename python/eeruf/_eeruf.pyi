@@ -3962,7 +3962,7 @@ class FiredReading:
     @property
     def t_echoes_us(self) -> tuple[int, ...]:
         """The times of its echoes after firing, in microseconds, earliest first: a tuple of one at most, but of up to
-        eight under ``"multi_echo"``.
+        eight under methods of several, such as ``"multi_echo"``.
         """
     @property
     def levels_db(self) -> tuple[float, ...]:

@@ -88,7 +88,7 @@ impl FiredReading {
     }
 
     /// The times of its echoes after firing, in microseconds, earliest first: a tuple of one at most, but of up to
-    /// eight under ``"multi_echo"``.
+    /// eight under methods of several, such as ``"multi_echo"``.
     #[getter]
     fn t_echoes_us<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         PyTuple::new(py, &self.t_echoes_us)

@@ -44,7 +44,8 @@ impl<F: Filter + ?Sized> Filter for Box<F> {
 pub struct FiredReading<'a> {
     /// The ring's own verdict, with the filter of core: its sensor, phase and period too.
     pub reading: &'a Reading,
-    /// Its echoes, earliest first: one at most, but up to eight under [`Method::MultiEcho`](crate::Method::MultiEcho).
+    /// Its echoes, earliest first: one at most, but up to eight under methods of several, such as
+    /// [`Method::MultiEcho`](crate::Method::MultiEcho).
     pub echoes: &'a [Echo],
     /// When it fired, in seconds of true time.
     pub fired_s: f64,

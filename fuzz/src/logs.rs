@@ -39,8 +39,8 @@ fn write(file: &Path, bytes: &[u8]) {
 
 fn read(file: &Path) {
     let mut readings = 0_u64;
-    let report = read_log(file, &Options::default(), |sensors, reading| {
-        let sensor = &sensors[reading.sensor];
+    let report = read_log(file, &Options::default(), |report, reading| {
+        let sensor = &report.sensors[reading.sensor];
         assert!(sensor.beam.is_none_or(|beam| beam < 4096));
         // Each is one of four, and asking does not fail.
         _ = reading.echo();

@@ -8,7 +8,7 @@
 use std::error::Error;
 use std::fmt::Write;
 
-use eeruf_logs::{Doctor, Examination, Options as ReadOptions, Verdict, read_text};
+use eeruf_logs::{Doctor, Examination, Options as ReadOptions, Verdict, read_stream};
 use eeruf_sim::experiments::set_one::Alcove;
 use eeruf_sim::{Cause, Method, Motion, Noise, Options, Physics, Readings, Robot, Vector, World, simulate, sweep};
 
@@ -55,7 +55,7 @@ fn examine(readings: &[(u8, f64, f64)], speed_of_sound: f64) -> Result<Examinati
     }
     let options = ReadOptions { speed_of_sound, no_echo_m: 20.0, ..ReadOptions::default() };
     let mut doctor = Doctor::new(speed_of_sound);
-    let report = read_text(text.as_bytes(), "log".as_ref(), &options, |_, reading| doctor.push(reading))?;
+    let report = read_stream(text.as_bytes(), "log".as_ref(), &options, |_, reading| doctor.push(reading))?;
     // Labels are in the order in which they were met.
     let order: Vec<usize> = report.names().iter().map(|name| name.parse()).collect::<Result<_, _>>()?;
     let mut found = doctor.examine(&report.firing, &report.names());

@@ -111,9 +111,9 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     let mut sensors: Vec<Sensor> = vec![];
     let options = args.log.options()?;
     let mut doctor = Doctor::new(options.speed_of_sound);
-    let report = read_log(&args.file, &options, |known, reading| {
+    let report = read_log(&args.file, &options, |report, reading| {
         doctor.push(reading);
-        while sensors.len() < known.len() {
+        while sensors.len() < report.sensors.len() {
             sensors.push(Sensor {
                 name: String::new(),
                 readings: 0,

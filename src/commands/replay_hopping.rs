@@ -6,14 +6,14 @@ use eeruf_core::{
     ReadingKind,
     judge::{TrackerSettings, Verdict},
 };
-use eeruf_logs::{Firing, FiringLog, McapWriter, Reading, replay};
+use eeruf_logs::{Counted, Firing, FiringLog, McapWriter, Reading, replay};
 
 use super::Answer;
 use crate::console::{print_line, tell};
 use crate::files::error::InputError;
 use crate::files::implausible::read_firings;
 use crate::report::json::to_json;
-use crate::report::replay::{Counted, Counts, Replay, hopping_table};
+use crate::report::replay::{Counts, Replay, hopping_table};
 
 pub(crate) fn replay_hopping(
     file: &Path,

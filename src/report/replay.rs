@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use eeruf_core::{ReadingKind, Tally};
+use eeruf_core::ReadingKind;
+use eeruf_logs::Counted;
 use serde::Serialize;
 
 use super::table::markdown;
@@ -11,20 +12,6 @@ use super::table::markdown;
 pub(crate) struct Column {
     pub(crate) name: String,
     pub(crate) kinds: Vec<ReadingKind>,
-}
-
-/// The filter's verdicts on one sensor's readings, counted, and when they were.
-#[derive(Default)]
-pub(crate) struct Counted {
-    pub(crate) tally: Tally<u32>,
-    /// Non-numeric readings.
-    pub(crate) invalid: u64,
-    /// When the first and the latest reading were, in nanoseconds.
-    pub(crate) between_ns: Option<(u64, u64)>,
-    /// Readings whose time is before that of the reading before.
-    pub(crate) backwards: u64,
-    /// Pauses after which nothing is compared with what came before.
-    pub(crate) gaps: u64,
 }
 
 /// Output of `--json`.

@@ -18,8 +18,8 @@ fn replay_writes_accepted_ranges_by_rep_117() {
     let counts = serde_json::json!({"accepted": 2, "rejected": 1, "first": 2, "no_echo": 1, "clear": 1});
     assert_eq!(total, counts);
     let mut written = vec![];
-    let report = read_log(&out, &Options { judged: true, ..Options::default() }, |sensors, reading| {
-        written.push((sensors[reading.sensor].topic.clone(), reading.at_ns.unwrap(), reading.echo()));
+    let report = read_log(&out, &Options { judged: true, ..Options::default() }, |report, reading| {
+        written.push((report.sensors[reading.sensor].topic.clone(), reading.at_ns.unwrap(), reading.echo()));
     });
     assert_eq!(report.unwrap().damage, []);
     let of = |topic: &str| -> Vec<_> {
@@ -35,7 +35,7 @@ fn replay_writes_accepted_ranges_by_rep_117() {
     let (_folder, log) = Scratch::new("log.csv", "left\n1.0\n1.5\n");
     let without = eeruf(&["replay", log.to_str().unwrap(), "--t-delta-us", "100", "--out", path]);
     assert_eq!((without.code, without.out.as_str()), (Some(2), ""));
-    assert!(without.err.ends_with("expected --time COLUMN for a table, as --out needs times\n"), "{}", without.err);
+    assert!(without.err.ends_with("expected --time COLUMN for a table, as MCAP needs times\n"), "{}", without.err);
 }
 
 #[test]
@@ -105,8 +105,8 @@ fn study_writes_what_another_reader_reads() {
 
     // Ours: each method has 8 sensors, and accepts no more than it reads.
     let mut counts = std::collections::BTreeMap::<String, u32>::new();
-    let report = read_log(&file, &Options { judged: true, ..Options::default() }, |sensors, reading| {
-        *counts.entry(sensors[reading.sensor].topic.clone()).or_default() += 1;
+    let report = read_log(&file, &Options { judged: true, ..Options::default() }, |report, reading| {
+        *counts.entry(report.sensors[reading.sensor].topic.clone()).or_default() += 1;
     });
     assert_eq!(report.unwrap().damage, []);
     for sensor in 1..=8 {
@@ -212,8 +212,8 @@ fn experiments_write_their_first_alcove_and_course_as_mcap() {
         let outcome = eeruf(&[arguments, &["--mcap", path, "--physics", "plain"]].concat());
         assert_eq!((outcome.code, outcome.out.as_str(), outcome.err.as_str()), (Some(0), "", ""));
         let mut readings = 0;
-        let report = read_log(&file, &Options { judged: true, ..Options::default() }, |sensors, reading| {
-            readings += u32::from(!sensors[reading.sensor].topic.ends_with("/accepted"));
+        let report = read_log(&file, &Options { judged: true, ..Options::default() }, |report, reading| {
+            readings += u32::from(!report.sensors[reading.sensor].topic.ends_with("/accepted"));
         });
         assert_eq!(report.unwrap().damage, []);
         assert!((1_000..=most).contains(&readings), "{name}: {readings}");
@@ -350,8 +350,8 @@ fn hopping_replay_equals_its_run() {
         let outcome = eeruf(&["replay", log, "--hopping", "balanced", "--out", out.to_str().unwrap()]);
         assert!(outcome.out.ends_with("readings are what the ring made of them.\n"), "{}", outcome.out);
         let mut written = [0_u64; 3];
-        let report = read_log(&out, &Options { judged: true, ..Options::default() }, |sensors, reading| {
-            let topic = &sensors[reading.sensor].topic;
+        let report = read_log(&out, &Options { judged: true, ..Options::default() }, |report, reading| {
+            let topic = &report.sensors[reading.sensor].topic;
             written[if topic.ends_with("/accepted") { 1 } else { 2 * usize::from(topic.ends_with("/confirmed")) }] += 1;
         });
         assert_eq!(report.unwrap().damage, []);
@@ -405,7 +405,7 @@ fn fast_wall_is_accepted_with_a_rate() {
     let (_folder, log) = Scratch::new("log.csv", "ahead\n1.0\n1.5\n");
     let without = eeruf(&["replay", log.to_str().unwrap(), "--t-delta-us", "300", "--max-speed", "1"]);
     assert!(
-        without.err.ends_with("expected --time COLUMN for a table, as --max-speed needs times\n"),
+        without.err.ends_with("expected --time COLUMN for a table, as readings on a line need times\n"),
         "{}",
         without.err
     );

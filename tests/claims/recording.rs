@@ -47,8 +47,8 @@ fn recording_has_each_reading_once() {
     assert_eq!(logged, heard.iter().map(|&(_, sensor, echo)| (sensor, us(echo))).collect::<Vec<_>>());
     assert!(logged.len() > 300 && log.damage.is_none());
     let mut ranges = BTreeMap::<bool, usize>::new();
-    let report = read_log(&file, &ReadOptions { judged: true, ..ReadOptions::default() }, |sensors, reading| {
-        *ranges.entry(sensors[reading.sensor].topic.ends_with("/accepted")).or_default() += 1;
+    let report = read_log(&file, &ReadOptions { judged: true, ..ReadOptions::default() }, |report, reading| {
+        *ranges.entry(report.sensors[reading.sensor].topic.ends_with("/accepted")).or_default() += 1;
     });
     assert_eq!((report.unwrap().damage, ranges[&false]), (vec![], logged.len()));
     assert!(ranges[&true] > 20, "{ranges:?}");
@@ -171,7 +171,7 @@ fn exchanged_scene_is_drawn_from_then_on() {
     }
     assert!(paths.len() > 200 && crossed >= 1, "{crossed} of {}", paths.len());
     let mut ranges = vec![];
-    let read = |_: &[eeruf_logs::Sensor], reading: &eeruf_logs::Reading| {
+    let read = |_: &eeruf_logs::Report, reading: &eeruf_logs::Reading| {
         ranges.push((reading.at_ns.unwrap(), reading.range_m));
     };
     read_log(&file, &ReadOptions::default(), read).unwrap();

@@ -1,12 +1,12 @@
 //! Files of firings, whatever their format.
 
 use std::fs::File;
+use std::io::{self, BufReader, Read};
 use std::path::Path;
 
-use crate::firing_messages;
 use crate::firings::FiringLog;
-use crate::form::{self, Form};
-use crate::serial;
+use crate::form::{self, Form, UntilError};
+use crate::{firing_messages, firing_text, serial};
 use eeruf_files::FileError;
 
 /// The error for a log of ranges where one of firings is expected.
@@ -19,7 +19,7 @@ fn not_firings(file: &Path, form: &str) -> FileError {
 }
 
 impl FiringLog {
-    /// Reads a log, text, MCAP or frames of the serial line, as its first bytes say.
+    /// Reads a log, text, MCAP or frames of the serial line, as its first bytes say; packed or not.
     ///
     /// # Errors
     /// A file that cannot be read, columns that are missing, or text without a whole line; MCAP in which there is no
@@ -28,26 +28,36 @@ impl FiringLog {
         if file.is_dir() {
             return Err(not_firings(file, "a folder"));
         }
-        let failed = |error: std::io::Error| FileError::reading(file, &error);
-        match Form::of_file(file)? {
-            Form::Mcap => firing_messages::read(file),
-            Form::Text => Self::read_from(File::open(file).map_err(failed)?, file),
-            Form::Serial => serial::firings(File::open(file).map_err(failed)?, file),
-            Form::Packed(packing) => {
-                let input = packing.unpack(File::open(file).map_err(failed)?).map_err(failed)?;
-                let (unpacked, error) = form::to_file(input, "csv").map_err(failed)?;
-                if let Some(error) = error {
-                    return Err(FileError::new(file, format!("it cannot be unpacked: {error}")));
-                }
-                match Form::of_file(unpacked.path())? {
-                    Form::Mcap => firing_messages::read(unpacked.path()),
-                    Form::Serial => serial::firings(File::open(unpacked.path()).map_err(failed)?, file),
-                    Form::Text => Self::read_from(File::open(unpacked.path()).map_err(failed)?, file),
-                    other => Err(not_firings(file, other.name())),
-                }
-            }
-            Form::Foreign(foreign) => Err(foreign.refuse(file)),
-            other @ (Form::Ros1 | Form::Sqlite) => Err(not_firings(file, other.name())),
+        Self::read_from(File::open(file).map_err(|error| FileError::reading(file, &error))?, file)
+    }
+
+    /// Reads a log from its beginning to its end, as [`FiringLog::read`] does a file; `name` stands in errors, and its
+    /// ending helps where the first bytes do not show the form.
+    ///
+    /// # Errors
+    /// As [`FiringLog::read`].
+    pub fn read_from(mut input: impl Read, name: &Path) -> Result<Self, FileError> {
+        let failed = |error: io::Error| FileError::reading(name, &error);
+        let first = form::first_bytes(&mut input).map_err(failed)?;
+        let input = first.as_slice().chain(input);
+        let Form::Packed(packing) = Form::of(&first, name) else { return Self::of_form(&first, input, name) };
+        let (mut error, mut unpacked) = (None, packing.unpack(BufReader::new(input)).map_err(failed)?);
+        let first = form::first_bytes(UntilError::new(&mut unpacked, &mut error)).map_err(failed)?;
+        let read = Self::of_form(&first, UntilError::new(first.as_slice().chain(unpacked), &mut error), name);
+        match error {
+            Some(error) => Err(FileError::new(name, format!("it cannot be unpacked: {error}"))),
+            None => read,
+        }
+    }
+
+    /// By the first bytes.
+    fn of_form(first: &[u8], input: impl Read, name: &Path) -> Result<Self, FileError> {
+        match Form::of(first, name) {
+            Form::Mcap => firing_messages::read(input, name),
+            Form::Text => firing_text::read(input, name),
+            Form::Serial => serial::firings(input, name),
+            Form::Foreign(foreign) => Err(foreign.refuse(name)),
+            other => Err(not_firings(name, other.name())),
         }
     }
 }

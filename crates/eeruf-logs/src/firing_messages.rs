@@ -1,7 +1,6 @@
 //! Firing logs in MCAP: messages `eeruf_msgs/msg/Firing` of ROS 2, and `eeruf.Firing` in JSON from other programs.
 
 use std::collections::BTreeSet;
-use std::fs::File;
 use std::io::{BufReader, Read};
 use std::path::Path;
 
@@ -77,9 +76,9 @@ fn of_cdr(data: &[u8]) -> Option<Value> {
     Some(message)
 }
 
-/// Reads the firings of a file, as far as it is whole.
-pub(crate) fn read(file: &Path) -> Result<FiringLog, FileError> {
-    let mut input = BufReader::new(File::open(file).map_err(|error| FileError::reading(file, &error))?);
+/// Reads the firings of a file, as far as it is whole; `file` stands in errors.
+pub(crate) fn read(input: impl Read, file: &Path) -> Result<FiringLog, FileError> {
+    let mut input = BufReader::new(input);
     let mut reader = LinearReader::new_with_options(LinearReaderOptions::default().with_emit_chunks(false));
     let mut of = Found::default();
     while let Some(event) = reader.next_event() {

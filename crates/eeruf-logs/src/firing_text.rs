@@ -159,30 +159,25 @@ fn same_name(name: &str) -> String {
     name.trim().trim_start_matches('#').trim().to_lowercase().replace([' ', '-'], "_")
 }
 
-impl FiringLog {
-    /// Reads a log in text from any reader; `file` stands in errors.
-    ///
-    /// # Errors
-    /// As [`read`](Self::read).
-    pub fn read_from(input: impl Read, file: &Path) -> Result<Self, FileError> {
-        let failed = |error: std::io::Error| FileError::reading(file, &error);
-        let mut source = Source::new(Box::new(input)).map_err(failed)?;
-        let mut sample = vec![];
-        while sample.len() < 200 {
-            let Some(line) = source.next().map_err(failed)? else { break };
-            sample.push(line);
-        }
-        let header = Header::of(&sample, matches!(source, Source::Objects(_)));
-        let header = header.map_err(|message| FileError::new(file, message))?;
-        let clock = sample.iter().find_map(|line| line.text.trim().strip_prefix('#')).unwrap_or_default().trim();
-        let clock = clock.trim_start_matches("clock:").trim();
-        let mut rows = Rows::new(header, if clock.is_empty() { "unnamed" } else { clock });
-        sample.iter().for_each(|line| rows.line(line));
-        while let Some(line) = source.next().map_err(failed)? {
-            rows.line(&line);
-        }
-        rows.log(file)
+/// Reads a log in text; `file` stands in errors.
+pub(crate) fn read(input: impl Read, file: &Path) -> Result<FiringLog, FileError> {
+    let failed = |error: std::io::Error| FileError::reading(file, &error);
+    let mut source = Source::new(Box::new(input)).map_err(failed)?;
+    let mut sample = vec![];
+    while sample.len() < 200 {
+        let Some(line) = source.next().map_err(failed)? else { break };
+        sample.push(line);
     }
+    let header = Header::of(&sample, matches!(source, Source::Objects(_)));
+    let header = header.map_err(|message| FileError::new(file, message))?;
+    let clock = sample.iter().find_map(|line| line.text.trim().strip_prefix('#')).unwrap_or_default().trim();
+    let clock = clock.trim_start_matches("clock:").trim();
+    let mut rows = Rows::new(header, if clock.is_empty() { "unnamed" } else { clock });
+    sample.iter().for_each(|line| rows.line(line));
+    while let Some(line) = source.next().map_err(failed)? {
+        rows.line(&line);
+    }
+    rows.log(file)
 }
 
 /// The firings so far.

@@ -2,12 +2,17 @@
 //! into a form that is read.
 
 use std::fs::File;
-use std::io::{self, Read, Write as _};
+use std::io::{self, Read, Seek, Write as _};
 use std::path::Path;
 
 use eeruf_files::FileError;
 
 const SQLITE_MAGIC: &[u8; 16] = b"SQLite format 3\0";
+
+/// The bytes of a log that can be read at any place.
+pub(crate) trait Input: Read + Seek {}
+
+impl<T: Read + Seek> Input for T {}
 
 /// A form that is recognised.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -90,9 +95,7 @@ impl Form {
     /// Reads the first bytes of a file.
     pub(crate) fn of_file(file: &Path) -> Result<Self, FileError> {
         let failed = |error: io::Error| FileError::reading(file, &error);
-        let mut first = Vec::new();
-        File::open(file).map_err(failed)?.take(512).read_to_end(&mut first).map_err(failed)?;
-        Ok(Self::of(&first, file))
+        Ok(Self::of(&first_bytes(File::open(file).map_err(failed)?).map_err(failed)?, file))
     }
 
     pub(crate) const fn name(self) -> &'static str {
@@ -106,6 +109,13 @@ impl Form {
             Self::Foreign(foreign) => foreign.name(),
         }
     }
+}
+
+/// As many bytes as show the form.
+pub(crate) fn first_bytes(input: impl Read) -> io::Result<Vec<u8>> {
+    let mut first = Vec::new();
+    input.take(512).read_to_end(&mut first)?;
+    Ok(first)
 }
 
 /// Text of no encoding has many bytes below the space. UTF-16 has zeroes at every other place.

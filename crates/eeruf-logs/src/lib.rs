@@ -24,7 +24,7 @@
 //! let mut options = Options::default();
 //! options.no_echo_m = 4.0;
 //! let mut echoes = Vec::new();
-//! let report = read_log(&file, &options, |_sensors, reading| echoes.push((reading.sensor, reading.echo())))?;
+//! let report = read_log(&file, &options, |_, reading| echoes.push((reading.sensor, reading.echo())))?;
 //! assert_eq!(report.names(), ["left", "right"]);
 //! assert_eq!(echoes[1..], [(1, Echo::Nothing), (0, Echo::At(1.21)), (1, Echo::At(2.5))]);
 //! # std::fs::remove_file(&file)?;
@@ -41,6 +41,7 @@ mod firing_messages;
 mod firing_text;
 mod firings;
 mod form;
+mod judging;
 mod mcap;
 mod message;
 mod names;
@@ -62,10 +63,12 @@ mod weighed;
 mod write;
 
 use std::fs::File;
-use std::io::{BufReader, Read};
+use std::io::{self, BufReader, Read, Seek};
 use std::path::Path;
 
 use eeruf_files::FileError;
+use form::{Form, Packing, UntilError};
+use sink::Sink;
 
 pub use diagnose::{
     AlignError, Alignment, Diagnosis, Fault, FoundPath, Hearing, Named, Settings, Share, Timing, TimingError, align,
@@ -73,6 +76,7 @@ pub use diagnose::{
 };
 pub use doctor::{Doctor, Examination, Verdict};
 pub use firings::{Firing, FiringLog};
+pub use judging::{Counted, Judging, RangeJudge};
 pub use options::{FieldChoice, Options, RangeUnit, Table, TimeUnit};
 pub use pattern::{FiringPattern, Pattern};
 pub use reading::{Echo, Reading, Sensor};
@@ -83,111 +87,166 @@ pub use survey::{PathSettings, Surveyed, survey};
 pub use weighed::Weighed;
 pub use write::McapWriter;
 
-/// Reads a log from beginning to end, and calls `each` with the sensors so far and each reading, in the order in which
-/// they were recorded. The form shows in the first bytes, also of a file that is packed as a whole, else in the ending
-/// of its name; of text, in its lines. [`Report::guesses`] lists what was guessed.
+/// Reads a log from beginning to end, and calls `each` with the report so far, which has the sensors, and each reading,
+/// in the order in which they were recorded. The form shows in the first bytes, also of a file that is packed as a
+/// whole, else in the ending of its name; of text, in its lines. [`Report::guesses`] lists what was guessed.
 ///
 /// A log without sensors is no error: [`Report::sensors`] is empty then, and [`Report::skipped`] says what was found.
 ///
 /// # Errors
 /// A file that cannot be opened, a folder without bag files, a form that is known and not read, or an option that does
 /// not fit the log. Of a log that is damaged, what can be read is.
-pub fn read_log(
-    file: &Path,
-    options: &Options,
-    mut each: impl FnMut(&[Sensor], &Reading),
-) -> Result<Report, FileError> {
-    let mut sink = sink::Sink::new(options, &mut each);
+pub fn read_log(file: &Path, options: &Options, mut each: impl FnMut(&Report, &Reading)) -> Result<Report, FileError> {
+    let mut sink = Sink::new(options, &mut each);
     if file.is_dir() {
-        "a ROS 2 bag".clone_into(&mut sink.report.form);
+        sink.form("a ROS 2 bag");
         sink.has(options::Parts::Topics);
         rosbag2::read(file, &mut sink)?;
         return Ok(sink.finish(file));
     }
-    let form = form::Form::of_file(file)?;
-    form.name().clone_into(&mut sink.report.form);
-    read_form(file, file, form, options, &mut sink)?;
+    let form = Form::of_file(file)?;
+    sink.form(form.name());
+    if form == Form::Sqlite {
+        sink.has(options::Parts::Topics);
+        rosbag2::read_sqlite(file, file, false, &mut sink)?;
+    } else {
+        let opened = File::open(file).map_err(|error| FileError::reading(file, &error))?;
+        read_anywhere(opened, file, form, options, &mut sink)?;
+    }
     Ok(sink.finish(file))
 }
 
-/// Reads a file of this form; `name` stands in errors.
-fn read_form(
-    file: &Path,
+/// Reads a log that is no file of this machine, as [`read_log`] does a file; `name` stands in errors, and its ending
+/// helps where the first bytes do not show the form. An `SQLite` file is copied into a temporary one first.
+///
+/// # Errors
+/// As [`read_log`].
+pub fn read_from(
+    mut input: impl Read + Seek,
     name: &Path,
-    form: form::Form,
     options: &Options,
-    sink: &mut sink::Sink<'_>,
+    mut each: impl FnMut(&Report, &Reading),
+) -> Result<Report, FileError> {
+    let failed = |error: io::Error| FileError::reading(name, &error);
+    let mut sink = Sink::new(options, &mut each);
+    let form = Form::of(&form::first_bytes(&mut input).map_err(failed)?, name);
+    input.rewind().map_err(failed)?;
+    sink.form(form.name());
+    read_anywhere(input, name, form, options, &mut sink)?;
+    Ok(sink.finish(name))
+}
+
+/// Reads a log that comes once and in order, as from a pipe, as [`read_log`] does a file; `name` stands in errors. Text
+/// and frames of the serial line are read as they come; a bag is copied into a temporary file first.
+///
+/// # Errors
+/// As [`read_log`].
+pub fn read_stream(
+    mut input: impl Read,
+    name: &Path,
+    options: &Options,
+    mut each: impl FnMut(&Report, &Reading),
+) -> Result<Report, FileError> {
+    let mut sink = Sink::new(options, &mut each);
+    let first = form::first_bytes(&mut input).map_err(|error| FileError::reading(name, &error))?;
+    let form = Form::of(&first, name);
+    sink.form(form.name());
+    read_in_order(first.as_slice().chain(input), name, form, options, &mut sink)?;
+    Ok(sink.finish(name))
+}
+
+/// Reads a log of this form that can be read at any place; `name` stands in errors.
+fn read_anywhere(
+    mut input: impl Read + Seek,
+    name: &Path,
+    form: Form,
+    options: &Options,
+    sink: &mut Sink<'_>,
 ) -> Result<(), FileError> {
-    let failed = |error: std::io::Error| FileError::reading(name, &error);
-    if matches!(form, form::Form::Mcap | form::Form::Ros1 | form::Form::Sqlite) {
-        sink.has(options::Parts::Topics);
-    }
     match form {
-        form::Form::Mcap => mcap::read(file, false, sink),
-        form::Form::Ros1 => ros1::read(file, sink),
-        form::Form::Sqlite => rosbag2::read_sqlite(file, false, sink),
-        form::Form::Text => text::read(File::open(file).map_err(failed)?, name, options, sink),
-        form::Form::Serial => serial::read(File::open(file).map_err(failed)?, name, options, sink),
-        form::Form::Foreign(foreign) => Err(foreign.refuse(name)),
-        form::Form::Packed(packing) => {
-            let opened = BufReader::new(File::open(file).map_err(failed)?);
-            read_unpacked(packing.unpack(opened).map_err(failed)?, name, packing, options, sink)
+        Form::Mcap => {
+            sink.has(options::Parts::Topics);
+            mcap::read(&mut input, name, false, sink)
         }
+        Form::Ros1 => {
+            sink.has(options::Parts::Topics);
+            ros1::read(&mut input, name, sink)
+        }
+        _ => read_in_order(input, name, form, options, sink),
     }
 }
 
-/// Reads what comes out of a packed file: text at once, a bag by way of a temporary file.
-fn read_unpacked(
-    mut input: impl Read,
+/// Reads a log of this form from its beginning to its end.
+fn read_in_order(
+    input: impl Read,
     name: &Path,
-    packing: form::Packing,
+    form: Form,
     options: &Options,
-    sink: &mut sink::Sink<'_>,
+    sink: &mut Sink<'_>,
 ) -> Result<(), FileError> {
-    let failed = |error: std::io::Error| FileError::reading(name, &error);
-    let (mut first, mut error) = (Vec::new(), None);
-    form::UntilError::new(&mut input, &mut error).take(512).read_to_end(&mut first).map_err(failed)?;
-    let stem = name.file_stem().map_or(name, Path::new);
-    let form = form::Form::of(&first, stem);
+    match form {
+        Form::Text => text::read(input, name, options, sink),
+        Form::Serial => serial::read(input, name, options, sink),
+        Form::Foreign(foreign) => Err(foreign.refuse(name)),
+        Form::Packed(packing) => read_packed(input, name, packing, options, sink),
+        Form::Mcap | Form::Ros1 | Form::Sqlite => match read_copy(input, name, form, options, sink)? {
+            None => Ok(()),
+            Some(error) => Err(FileError::reading(name, &error)),
+        },
+    }
+}
+
+/// Reads a bag by way of a temporary file; the error after which there was no more of it.
+fn read_copy(
+    input: impl Read,
+    name: &Path,
+    form: Form,
+    options: &Options,
+    sink: &mut Sink<'_>,
+) -> Result<Option<io::Error>, FileError> {
+    let (copy, error) = form::to_file(input, "bag").map_err(|error| FileError::reading(name, &error))?;
+    if form == Form::Sqlite {
+        sink.has(options::Parts::Topics);
+        rosbag2::read_sqlite(copy.path(), name, false, sink)?;
+    } else {
+        read_anywhere(copy.as_file(), name, form, options, sink)?;
+    }
+    Ok(error)
+}
+
+/// Reads a file that is packed as a whole.
+fn read_packed(
+    input: impl Read,
+    name: &Path,
+    packing: Packing,
+    options: &Options,
+    sink: &mut Sink<'_>,
+) -> Result<(), FileError> {
+    let failed = |error: io::Error| FileError::reading(name, &error);
+    let mut input = packing.unpack(BufReader::new(input)).map_err(failed)?;
+    let mut error = None;
+    let first = form::first_bytes(UntilError::new(&mut input, &mut error)).map_err(failed)?;
+    let form = Form::of(&first, name.file_stem().map_or(name, Path::new));
     let input = first.as_slice().chain(input);
     match form {
-        form::Form::Text if error.is_none() => {
-            text::read(form::UntilError::new(input, &mut error), name, options, sink)?;
+        Form::Packed(_) => return Err(FileError::new(name, "packed twice; expected once: unpack it first")),
+        // Nothing came out.
+        Form::Text if error.is_some() => {}
+        Form::Text => read_in_order(UntilError::new(input, &mut error), name, form, options, sink)?,
+        Form::Serial | Form::Foreign(_) => {
+            sink.form(form.name());
+            read_in_order(UntilError::new(input, &mut error), name, form, options, sink)?;
         }
-        form::Form::Serial => {
-            form.name().clone_into(&mut sink.report.form);
-            serial::read(form::UntilError::new(input, &mut error), name, options, sink)?;
-        }
-        form::Form::Packed(_) => return Err(FileError::new(name, "packed twice; expected once: unpack it first")),
-        form::Form::Text => {}
-        form::Form::Foreign(foreign) => return Err(foreign.refuse(name)),
-        form::Form::Mcap | form::Form::Ros1 | form::Form::Sqlite => {
-            let (unpacked, failed_at) = form::to_file(input, "bag").map_err(failed)?;
-            error = error.or(failed_at);
-            form.name().clone_into(&mut sink.report.form);
-            read_form(unpacked.path(), name, form, options, sink)?;
+        Form::Mcap | Form::Ros1 | Form::Sqlite => {
+            sink.form(form.name());
+            error = error.or(read_copy(input, name, form, options, sink)?);
         }
     }
-    sink.report.form = format!("{}, packed by {}", sink.report.form, packing.name());
+    sink.form(&format!("{}, packed by {}", sink.report.form, packing.name()));
     if let Some(error) = error {
         sink.damage(name, None, format!("it cannot be unpacked to its end: {error}; what comes before was read"));
     }
     Ok(())
-}
-
-/// Reads a log of text, as [`read_log`] does, from any reader; `file` stands in errors.
-///
-/// # Errors
-/// As [`read_log`] for text.
-pub fn read_text(
-    input: impl Read,
-    file: &Path,
-    options: &Options,
-    mut each: impl FnMut(&[Sensor], &Reading),
-) -> Result<Report, FileError> {
-    let mut sink = sink::Sink::new(options, &mut each);
-    text::read(input, file, options, &mut sink)?;
-    Ok(sink.finish(file))
 }
 
 /// The listing of the crate's README compiles and holds.

@@ -4,12 +4,12 @@
 //! battery ends recordings, so records are taken apart here: a damaged chunk loses only itself.
 
 use std::collections::HashMap;
-use std::fs::File;
 use std::io::{self, BufReader, Read, Seek, SeekFrom};
 use std::path::Path;
 
 use crate::bytes::{Bytes, Order};
 use crate::chunks::Chunks;
+use crate::form::Input;
 use crate::message::Encoding;
 use crate::sink::{Sink, Topic};
 use crate::unzstd::{LARGEST_MESSAGE, Unzstd};
@@ -46,15 +46,14 @@ struct State {
     unpacked: Vec<u8>,
 }
 
-/// Reads a file to its end, or to where it cannot be read any further.
-pub(crate) fn read(file: &Path, packed: bool, sink: &mut Sink<'_>) -> Result<(), FileError> {
+/// Reads a file to its end, or to where it cannot be read any further; `file` stands in errors.
+pub(crate) fn read(opened: &mut dyn Input, file: &Path, packed: bool, sink: &mut Sink<'_>) -> Result<(), FileError> {
     let failed = |error: io::Error| FileError::reading(file, &error);
-    let mut opened = File::open(file).map_err(failed)?;
-    let size = opened.metadata().map_err(failed)?.len();
+    let size = opened.seek(SeekFrom::End(0)).map_err(failed)?;
     let mut state = State { packed, ..State::default() };
     let found_before = sink.found;
     // Topics are found in the chunks too; that there is no summary is no damage.
-    match summary(&mut opened, size) {
+    match summary(opened, size) {
         Ok(Some(summary)) => _ = state.topics_of(&summary, sink),
         Ok(None) => sink.damage(file, None, "the check sum of the summary at its end is wrong; it is not used"),
         Err(_) => {}
@@ -152,7 +151,7 @@ fn record_head(input: &mut impl Read) -> io::Result<(u8, u64)> {
 }
 
 /// Returns true if a chunk begins at a place that the summary names.
-fn is_chunk(input: &mut BufReader<File>, start: u64, size: u64) -> io::Result<bool> {
+fn is_chunk(input: &mut BufReader<&mut dyn Input>, start: u64, size: u64) -> io::Result<bool> {
     let Some(room) = size.checked_sub(start.saturating_add(RECORD_HEAD as u64)) else { return Ok(false) };
     input.seek(SeekFrom::Start(start))?;
     let (letter, length) = record_head(input)?;
@@ -161,7 +160,7 @@ fn is_chunk(input: &mut BufReader<File>, start: u64, size: u64) -> io::Result<bo
 
 /// The summary at the end of a file, which repeats schemas and channels and counts messages: empty if there is none,
 /// and nothing if its check sum is wrong.
-fn summary(file: &mut File, size: u64) -> io::Result<Option<Vec<u8>>> {
+fn summary(file: &mut dyn Input, size: u64) -> io::Result<Option<Vec<u8>>> {
     // Where the summary begins, where in it offsets do, and its check sum.
     const FIELDS: usize = 8 + 8 + 4;
     let end = size.saturating_sub((RECORD_HEAD + FIELDS + MAGIC.len()) as u64);

@@ -4,12 +4,12 @@
 
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
-use std::fs::File;
 use std::io::{self, BufReader, Read, Seek, SeekFrom};
 use std::path::Path;
 
 use crate::bytes::{Bytes, Order};
 use crate::chunks::Chunks;
+use crate::form::Input;
 use crate::message::Encoding;
 use crate::sink::{Sink, Topic};
 use eeruf_files::FileError;
@@ -79,15 +79,14 @@ struct State {
     chunks: Chunks,
 }
 
-/// Reads a bag to its end, or to where it cannot be read any further.
-pub(crate) fn read(file: &Path, sink: &mut Sink<'_>) -> Result<(), FileError> {
+/// Reads a bag to its end, or to where it cannot be read any further; `file` stands in errors.
+pub(crate) fn read(opened: &mut dyn Input, file: &Path, sink: &mut Sink<'_>) -> Result<(), FileError> {
     let failed = |error: io::Error| FileError::reading(file, &error);
-    let mut opened = File::open(file).map_err(failed)?;
-    let size = opened.metadata().map_err(failed)?.len();
+    let size = opened.seek(SeekFrom::End(0)).map_err(failed)?;
     let mut state = State::default();
     let found_before = sink.found;
     // Connections are found in the chunks too; that there is no index is no damage.
-    if let Ok(index) = index(&mut opened, size) {
+    if let Ok(index) = index(opened, size) {
         state.connections_of(&index, sink);
     }
     opened.rewind().map_err(failed)?;
@@ -181,7 +180,7 @@ pub(crate) fn read(file: &Path, sink: &mut Sink<'_>) -> Result<(), FileError> {
 }
 
 /// Returns true if a chunk begins at a place that the index names.
-fn is_chunk(input: &mut BufReader<File>, start: u64) -> io::Result<bool> {
+fn is_chunk(input: &mut BufReader<&mut dyn Input>, start: u64) -> io::Result<bool> {
     /// More than the header of a chunk has.
     const LONGEST: u64 = 4096;
     input.seek(SeekFrom::Start(start))?;
@@ -192,9 +191,10 @@ fn is_chunk(input: &mut BufReader<File>, start: u64) -> io::Result<bool> {
 }
 
 /// The index at the end of a bag, which repeats the connections.
-fn index(file: &mut File, size: u64) -> io::Result<Vec<u8>> {
+fn index(file: &mut dyn Input, size: u64) -> io::Result<Vec<u8>> {
     // The bag's own record is padded to 4096 bytes.
     let mut first = Vec::new();
+    file.rewind()?;
     (&mut *file).take(MAGIC.len() as u64 + 8192).read_to_end(&mut first)?;
     let header = first.get(MAGIC.len()..).and_then(|first| Bytes::new(first, Order::Little).counted());
     let at = header.and_then(Header::of).filter(|header| header.op == BAG).map_or(0, |header| header.index_at);

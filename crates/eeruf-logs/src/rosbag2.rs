@@ -1,5 +1,6 @@
 //! Reads ROS 2 bags: folders with `metadata.yaml` and the files that it names, in `SQLite` or MCAP.
 
+use std::fs::File;
 use std::path::{Path, PathBuf};
 
 use rusqlite::{Connection, OpenFlags};
@@ -45,8 +46,11 @@ pub(crate) fn read(folder: &Path, sink: &mut Sink<'_>) -> Result<(), FileError> 
     for file in files {
         // What cannot be opened takes nothing from the other files.
         let read = match file.extension().and_then(|ending| ending.to_str()) {
-            Some("mcap") => crate::mcap::read(&file, found.packed, sink),
-            Some("db3") => read_sqlite(&file, found.packed, sink),
+            Some("mcap") => match File::open(&file) {
+                Ok(mut opened) => crate::mcap::read(&mut opened, &file, found.packed, sink),
+                Err(error) => Err(FileError::reading(&file, &error)),
+            },
+            Some("db3") => read_sqlite(&file, &file, found.packed, sink),
             _ => read_packed(&file, sink),
         };
         if let Err(error) = read {
@@ -65,11 +69,11 @@ fn read_packed(file: &Path, sink: &mut Sink<'_>) -> Result<(), FileError> {
     let Form::Packed(packing) = Form::of_file(file)? else {
         return Err(FileError::new(file, "a file of unknown kind; expected .mcap or .db3, also packed by zstd"));
     };
-    let input = packing.unpack(std::fs::File::open(file).map_err(failed)?).map_err(failed)?;
+    let input = packing.unpack(File::open(file).map_err(failed)?).map_err(failed)?;
     let (unpacked, error) = form::to_file(input, "bag").map_err(failed)?;
     match Form::of_file(unpacked.path())? {
-        Form::Mcap => crate::mcap::read(unpacked.path(), false, sink)?,
-        Form::Sqlite => read_sqlite(unpacked.path(), false, sink)?,
+        Form::Mcap => crate::mcap::read(&mut unpacked.as_file(), file, false, sink)?,
+        Form::Sqlite => read_sqlite(unpacked.path(), file, false, sink)?,
         other => return Err(FileError::new(file, format!("{} within; expected MCAP or SQLite", other.name()))),
     }
     if let Some(error) = error {
@@ -115,14 +119,14 @@ fn bag_files(folder: &Path) -> Result<Vec<PathBuf>, FileError> {
     Ok(files)
 }
 
-/// Reads a bag file in `SQLite`. Rows come in the order in which they were written.
-pub(crate) fn read_sqlite(file: &Path, packed: bool, sink: &mut Sink<'_>) -> Result<(), FileError> {
+/// Reads a bag file in `SQLite`; `file` stands in errors. Rows come in the order in which they were written.
+pub(crate) fn read_sqlite(opened: &Path, file: &Path, packed: bool, sink: &mut Sink<'_>) -> Result<(), FileError> {
     let failed = |error: rusqlite::Error| FileError::new(file, format!("as an SQLite bag: {error}"));
-    if !file.is_file() {
+    if !opened.is_file() {
         return Err(FileError::new(file, "no such file"));
     }
     let flags = OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_NO_MUTEX;
-    let database = Connection::open_with_flags(file, flags).map_err(failed)?;
+    let database = Connection::open_with_flags(opened, flags).map_err(failed)?;
     let mut topics = topics(&database, file, sink).map_err(failed)?;
     let mut query = database.prepare("SELECT topic_id, timestamp, data FROM messages").map_err(failed)?;
     let mut rows = query.query([]).map_err(failed)?;

@@ -92,7 +92,7 @@ pub(crate) struct Sink<'a> {
     pub(crate) report: Report,
     /// Number of messages that were found, of whatever type and whether or not they could be read.
     pub(crate) found: u64,
-    each: &'a mut dyn FnMut(&[Sensor], &Reading),
+    each: &'a mut dyn FnMut(&Report, &Reading),
     buffer: Vec<Reading>,
     more_damage: u64,
     options: &'a Options,
@@ -108,7 +108,7 @@ pub(crate) struct Sink<'a> {
 }
 
 impl<'a> Sink<'a> {
-    pub(crate) fn new(options: &'a Options, each: &'a mut dyn FnMut(&[Sensor], &Reading)) -> Self {
+    pub(crate) fn new(options: &'a Options, each: &'a mut dyn FnMut(&Report, &Reading)) -> Self {
         Self {
             report: Report::default(),
             found: 0,
@@ -122,6 +122,11 @@ impl<'a> Sink<'a> {
             one_time_a_row: false,
             has_own_times: false,
         }
+    }
+
+    /// The form of the log.
+    pub(crate) fn form(&mut self, form: &str) {
+        form.clone_into(&mut self.report.form);
     }
 
     /// Warns of options that choose from parts which the log does not have.
@@ -235,7 +240,7 @@ impl<'a> Sink<'a> {
             }
             reading.sensor = frame.sensors[beam];
             self.stamps.push(reading.sensor, reading.at_ns, finite(reading));
-            (self.each)(&self.report.sensors, reading);
+            (self.each)(&self.report, reading);
         }
     }
 
@@ -285,7 +290,7 @@ impl<'a> Sink<'a> {
     /// A reading that came in no message.
     pub(crate) fn reading(&mut self, reading: &Reading) {
         self.stamps.push(reading.sensor, reading.at_ns, finite(reading));
-        (self.each)(&self.report.sensors, reading);
+        (self.each)(&self.report, reading);
     }
 
     /// No more messages will come on a topic.

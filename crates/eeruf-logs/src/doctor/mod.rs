@@ -63,12 +63,12 @@ pub struct Examination {
 /// Collects the readings of a log.
 ///
 /// ```
-/// use eeruf_logs::{Doctor, Options, Verdict, read_text};
+/// use eeruf_logs::{Doctor, Options, Verdict, read_stream};
 /// // Two sensors in turn, each 40 ms after the other.
 /// let rows = (0..200).map(|n| format!("{},{},{}\n", 40 * n, n % 2, 1.0 + 0.001 * f64::from(n % 3)));
 /// let text = format!("ms,sensor,m\n{}", rows.collect::<String>());
 /// let (options, mut doctor) = (Options::default(), Doctor::new(343.2));
-/// let report = read_text(text.as_bytes(), "log".as_ref(), &options, |_, reading| doctor.push(reading))?;
+/// let report = read_stream(text.as_bytes(), "log".as_ref(), &options, |_, reading| doctor.push(reading))?;
 /// let found = doctor.examine(&report.firing, &report.names());
 /// assert_eq!(found.verdict, Verdict::NoneSeen, "{:?}", found.reasons);
 /// # Ok::<(), eeruf_files::FileError>(())

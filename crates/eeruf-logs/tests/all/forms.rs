@@ -3,13 +3,13 @@
 use std::io::Write as _;
 use std::path::Path;
 
-use eeruf_logs::{Echo, FieldChoice, Options, Pattern, RangeUnit, Report, Table, read_log, read_text};
+use eeruf_logs::{Echo, FieldChoice, Options, Pattern, RangeUnit, Report, Table, read_log, read_stream};
 
 /// A log's contents: each sensor's name and its ranges in metres, `-` for no echo, `<` for too close, `!` for no
 /// number; and the seconds between its first two readings.
 fn said(bytes: &[u8], options: &Options) -> (String, Option<f64>, Report) {
     let mut readings = vec![];
-    let report = read_text(bytes, Path::new("log"), options, |_, reading| readings.push(*reading)).unwrap();
+    let report = read_stream(bytes, Path::new("log"), options, |_, reading| readings.push(*reading)).unwrap();
     let text = |sensor: usize| {
         let own = readings.iter().filter(|reading| reading.sensor == sensor).map(|reading| match reading.echo() {
             Echo::At(range_m) => format!(" {}", (range_m * 1000.0).round() / 1000.0),
@@ -562,7 +562,7 @@ fn options_override_guesses() {
     };
     assert_eq!(with(&no_echo), "a: 0 -");
     let table = Table { columns: vec!["t".to_owned()], ..Table::default() };
-    let refused = read_text(text.as_bytes(), Path::new("log"), &Options { table, ..Options::default() }, |_, _| {});
+    let refused = read_stream(text.as_bytes(), Path::new("log"), &Options { table, ..Options::default() }, |_, _| {});
     assert_eq!(refused.unwrap_err().message(), "--columns: 1 names; expected 3, as many as the rows have columns");
 }
 

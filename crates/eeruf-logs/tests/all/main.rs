@@ -13,10 +13,11 @@ mod random;
 mod survey;
 mod written;
 
+use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
 use eeruf_files::FileError;
-use eeruf_logs::{Options, Reading, Report, Sensor, read_log};
+use eeruf_logs::{Options, Reading, Report, Sensor, read_from, read_log, read_stream};
 
 /// The bags that `write_bags.py` writes.
 const BAGS: [&str; 10] = [
@@ -54,14 +55,29 @@ fn bag(name: &str, folder: &Path) -> PathBuf {
     to
 }
 
-/// All readings of a log.
+/// All readings of a log, which are the same from its file, from memory, and as a stream.
 fn read(file: &Path, options: &Options) -> Result<(Report, Vec<Reading>), FileError> {
+    let of_file = read_by(|each| read_log(file, options, each));
+    if let Ok(bytes) = std::fs::read(file) {
+        // Readings may be no numbers, which equal nothing.
+        let said = |read: &Result<(Report, Vec<Reading>), FileError>| format!("{read:?}");
+        let in_memory = read_by(|each| read_from(Cursor::new(&bytes), file, options, each));
+        let streamed = read_by(|each| read_stream(&bytes[..], file, options, each));
+        assert_eq!((said(&in_memory), said(&streamed)), (said(&of_file), said(&of_file)));
+    }
+    of_file
+}
+
+fn read_by(
+    by: impl FnOnce(&mut dyn FnMut(&Report, &Reading)) -> Result<Report, FileError>,
+) -> Result<(Report, Vec<Reading>), FileError> {
     let mut readings = Vec::new();
     let mut met = Vec::<Sensor>::new();
-    let report = read_log(file, options, |sensors, reading| {
+    let report = by(&mut |report, reading| {
+        let sensors = &report.sensors;
         assert!(reading.sensor < sensors.len() && sensors.starts_with(&met));
         if met.len() < sensors.len() {
-            met = sensors.to_vec();
+            met.clone_from(sensors);
         }
         readings.push(*reading);
     })?;

@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 use std::path::Path;
 
-use eeruf_logs::{Options, read_text};
+use eeruf_logs::{Options, read_stream};
 
 use crate::random::Random;
 
@@ -40,8 +40,8 @@ fn logs() -> Vec<String> {
 /// The sensors' names and ranges in centimetres; infinite ones are no echoes.
 fn read(bytes: &[u8]) -> Vec<(String, f64)> {
     let mut readings = vec![];
-    let report = read_text(bytes, Path::new("log"), &Options::default(), |sensors, reading| {
-        readings.push((sensors[reading.sensor].topic.clone(), reading.range_m));
+    let report = read_stream(bytes, Path::new("log"), &Options::default(), |report, reading| {
+        readings.push((report.sensors[reading.sensor].topic.clone(), reading.range_m));
     });
     match report {
         Ok(report) => {

@@ -1,0 +1,249 @@
+//! A judge over the ranges of a log, and what it made of them, counted and written.
+
+use std::path::{Path, PathBuf};
+
+use eeruf_core::judge::{RateFilter, Verdict};
+use eeruf_core::{EchoFilter, Instant, Micros, ReadingKind, RingError, SensorError, Tally};
+use eeruf_files::FileError;
+
+use crate::reading::{Echo, Reading, Sensor};
+use crate::write::McapWriter;
+
+/// A rule for ranges, each sensor by itself.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum RangeJudge {
+    /// Consecutive readings agree.
+    Agree {
+        /// The largest difference of two that agree.
+        t_delta: Micros,
+        /// Number of readings that must agree, 2 to 8.
+        consecutive: u8,
+    },
+    /// Three readings lie on a line, so that the echo of a robot that drives may change at a constant rate.
+    OnLine {
+        /// The largest distance of the middle one from the line between the others.
+        t_delta: Micros,
+        /// The fastest that the robot drives, in m/s, 0 to 60.
+        max_speed_m_s: f64,
+    },
+}
+
+/// What a judge made of one sensor's readings.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Counted {
+    /// Readings by their kinds.
+    pub tally: Tally<u32>,
+    /// Readings that are no number.
+    pub invalid: u64,
+    /// Times of the earliest and of the latest reading, in nanoseconds.
+    pub between_ns: Option<(u64, u64)>,
+    /// Readings whose time is before that of the reading before.
+    pub backwards: u64,
+    /// Pauses after which nothing is compared with what came before.
+    pub gaps: u64,
+}
+
+/// A judge at work on a log.
+///
+/// ```
+/// use eeruf_core::{Micros, ReadingKind::*};
+/// use eeruf_logs::{Judging, Options, RangeJudge, read_stream};
+/// let two = RangeJudge::Agree { t_delta: Micros::new(500), consecutive: 2 };
+/// let (mut judging, mut kinds) = (Judging::new(two, 343.2, "log".as_ref())?, vec![]);
+/// let text = "front m\n1.20\n1.21\n0.40\n";
+/// read_stream(text.as_bytes(), "log".as_ref(), &Options::default(), |report, reading| {
+///     kinds.push(judging.push(&report.sensors, reading));
+/// })?;
+/// assert_eq!(kinds, [Ok(Some(First)), Ok(Some(Accepted)), Ok(Some(Rejected))]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub struct Judging {
+    sensors: Vec<Judged>,
+    fresh: Filter,
+    speed_of_sound: f64,
+    out: Option<McapWriter>,
+    log: PathBuf,
+}
+
+/// The filter of one sensor.
+#[derive(Clone)]
+enum Filter {
+    Agree(EchoFilter<1>),
+    OnLine(RateFilter<1>),
+}
+
+impl Filter {
+    fn new(judge: RangeJudge, speed_of_sound: f64) -> Result<Self, RingError> {
+        Ok(match judge {
+            RangeJudge::Agree { t_delta, consecutive } => Self::Agree(EchoFilter::new(t_delta, consecutive)?),
+            // At 60 m/s still far from the largest number.
+            RangeJudge::OnLine { t_delta, max_speed_m_s } => {
+                Self::OnLine(RateFilter::new(t_delta, (2e6 * max_speed_m_s / speed_of_sound).round() as u32)?)
+            }
+        })
+    }
+
+    fn forget(&mut self) -> Result<(), SensorError> {
+        match self {
+            Self::Agree(filter) => filter.forget(0),
+            Self::OnLine(filter) => filter.forget(0),
+        }
+    }
+
+    fn push(&mut self, at_ns: u64, t_echo: Option<Micros>) -> Result<Verdict, SensorError> {
+        match self {
+            Self::Agree(filter) => filter.push(0, t_echo),
+            // Of a clock that wraps.
+            Self::OnLine(filter) => filter.push(0, Instant::from_micros((at_ns / 1000) as u32), t_echo),
+        }
+    }
+}
+
+/// One sensor.
+struct Judged {
+    filter: Filter,
+    counted: Counted,
+    clock: Clock,
+}
+
+/// The times of one sensor: finds gaps and steps back.
+#[derive(Default)]
+struct Clock {
+    latest_ns: Option<u64>,
+    /// A running mean of the time between two readings.
+    usual_ns: Option<f64>,
+}
+
+impl Clock {
+    /// Returns true if a reading at this time must not be compared with the one before.
+    fn breaks(&mut self, at_ns: u64) -> bool {
+        /// A longer pause than this is a gap, and one of as many usual ones.
+        const SHORTEST_GAP_NS: f64 = 1e9;
+        const TIMES_USUAL: f64 = 5.0;
+        /// While nothing is usual.
+        const FIRST_GAP_NS: f64 = 1e10;
+        let Some(before) = self.latest_ns.replace(at_ns) else { return false };
+        if at_ns < before {
+            return true;
+        }
+        let pause = (at_ns - before) as f64;
+        let longest = self.usual_ns.map_or(FIRST_GAP_NS, |usual| SHORTEST_GAP_NS.max(TIMES_USUAL * usual));
+        if pause > longest {
+            return true;
+        }
+        self.usual_ns = Some(self.usual_ns.map_or(pause, |usual| usual + (pause - usual) / 8.0));
+        false
+    }
+}
+
+impl Judging {
+    /// A judge that has heard nothing yet; the speed of sound, in m/s, turns ranges back into times, and the log's name
+    /// stands in errors.
+    ///
+    /// # Errors
+    /// A number of readings that the judge does not have.
+    pub fn new(judge: RangeJudge, speed_of_sound: f64, log: &Path) -> Result<Self, RingError> {
+        let fresh = Filter::new(judge, speed_of_sound)?;
+        Ok(Self { sensors: Vec::new(), fresh, speed_of_sound, out: None, log: log.to_owned() })
+    }
+
+    /// Also writes each reading onto its topic, and onto `TOPIC/accepted` what is accepted of it: the range, `+Inf`
+    /// where nothing is in range, `-Inf` for too close.
+    #[must_use]
+    pub fn writing(self, out: McapWriter) -> Self {
+        Self { out: Some(out), ..self }
+    }
+
+    /// Judges a reading of the log whose sensors so far these are; `None` for one that is no number.
+    ///
+    /// # Errors
+    /// A reading without a time, where the judge or the file needs one; a range that sound does not cover within an
+    /// hour; a file that cannot be written.
+    pub fn push(&mut self, sensors: &[Sensor], reading: &Reading) -> Result<Option<ReadingKind>, FileError> {
+        while self.sensors.len() <= reading.sensor {
+            let (filter, counted) = (self.fresh.clone(), Counted::default());
+            self.sensors.push(Judged { filter, counted, clock: Clock::default() });
+        }
+        let failed = |message: String| FileError::new(&self.log, message);
+        let kind = self.sensors[reading.sensor].judge(reading, self.speed_of_sound).map_err(failed)?;
+        if let (Some(out), Some(sensor)) = (&mut self.out, sensors.get(reading.sensor)) {
+            if reading.at_ns.is_none() {
+                return Err(failed(untimed("MCAP needs")));
+            }
+            write(out, sensor, reading, kind)?;
+        }
+        Ok(kind)
+    }
+
+    /// The counts of each sensor; writes what is left of the file.
+    ///
+    /// # Errors
+    /// A file that cannot be written.
+    pub fn finish(self) -> Result<Vec<Counted>, FileError> {
+        self.out.map_or(Ok(()), McapWriter::finish)?;
+        Ok(self.sensors.into_iter().map(|sensor| sensor.counted).collect())
+    }
+}
+
+impl Judged {
+    fn judge(&mut self, reading: &Reading, speed_of_sound: f64) -> Result<Option<ReadingKind>, String> {
+        // Each filter has one sensor, so that it knows it.
+        let failed = |error: SensorError| error.to_string();
+        if let Some(at_ns) = reading.at_ns {
+            let broken = self.note_time(at_ns);
+            if broken {
+                self.filter.forget().map_err(failed)?;
+            }
+        } else if matches!(self.filter, Filter::OnLine(_)) {
+            return Err(untimed("readings on a line need"));
+        }
+        let at_ns = reading.at_ns.unwrap_or(0);
+        let pushed = |verdict: Result<Verdict, _>| verdict.map(|verdict| verdict.kind);
+        let kind = match reading.echo() {
+            Echo::Invalid => {
+                self.counted.invalid += 1;
+                return Ok(None);
+            }
+            Echo::TooClose => self.filter.forget().map(|()| ReadingKind::TooEarly),
+            Echo::Nothing => pushed(self.filter.push(at_ns, None)),
+            Echo::At(range_m) => {
+                let t_echo_us = (2e6 * range_m / speed_of_sound).round();
+                if t_echo_us >= f64::from(u32::MAX) {
+                    return Err(format!("a range of {range_m} m; expected one that sound covers within an hour"));
+                }
+                pushed(self.filter.push(at_ns, Some(Micros::new(t_echo_us as u32))))
+            }
+        };
+        let kind = kind.map_err(failed)?;
+        self.counted.tally.count(kind);
+        Ok(Some(kind))
+    }
+
+    /// Returns true if the time breaks the comparison with the reading before.
+    fn note_time(&mut self, at_ns: u64) -> bool {
+        let (from, to) = self.counted.between_ns.unwrap_or((at_ns, at_ns));
+        self.counted.between_ns = Some((from.min(at_ns), to.max(at_ns)));
+        let is_back = self.clock.latest_ns.is_some_and(|latest| at_ns < latest);
+        let breaks = self.clock.breaks(at_ns);
+        self.counted.backwards += u64::from(is_back);
+        self.counted.gaps += u64::from(breaks && !is_back);
+        breaks
+    }
+}
+
+fn untimed(thing_needs: &str) -> String {
+    format!("a reading without a time; expected --time COLUMN for a table, as {thing_needs} times")
+}
+
+/// The reading as it was, and beside it what is accepted.
+fn write(out: &mut McapWriter, sensor: &Sensor, reading: &Reading, kind: Option<ReadingKind>) -> Result<(), FileError> {
+    let topic = sensor.beam.map_or_else(|| sensor.topic.clone(), |beam| format!("{}/beam_{beam}", sensor.topic));
+    out.range(&topic, &sensor.frame, reading)?;
+    let range_m = match kind {
+        Some(ReadingKind::Accepted) => reading.range_m,
+        Some(ReadingKind::Clear) => f64::INFINITY,
+        Some(ReadingKind::TooEarly) => f64::NEG_INFINITY,
+        _ => return Ok(()),
+    };
+    out.range(&format!("{topic}/accepted"), &sensor.frame, &Reading { range_m, ..*reading })
+}

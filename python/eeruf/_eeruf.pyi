@@ -1,4 +1,4 @@
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from os import PathLike
 from typing import IO, Any, Final, Literal, SupportsIndex, TypedDict, TypeVar, final, overload, type_check_only
 
@@ -4589,24 +4589,22 @@ def _readings_from_columns(
     columns: dict[str, NDArray[np.float64 | np.int64 | np.int8]],
     paths: dict[str, object],
 ) -> Readings: ...
-def _read_log(
-    path: str | PathLike[str],
-    time: str | None,
-    time_unit: str | None,
-    ranges: Iterable[str],
-    range_unit: str | None,
-    sensor: str | None,
-    speed_of_sound: float,
-    no_echo_m: float,
-    no_echo: Iterable[str],
-    columns: Iterable[str],
-    topics: Iterable[str],
-    fields: Iterable[tuple[str, str, str]],
-    judged: bool,
-) -> dict[str, Any]: ...
-def _read_firings(path: str | PathLike[str]) -> dict[str, Any]: ...
+@final
+class _LogBlocks(Iterator[dict[str, Any]]):
+    def __new__(
+        cls,
+        source: object,
+        options: Mapping[str, object],
+        judge: object,
+        out: str | PathLike[str] | None,
+        rows: _Int | None,
+    ) -> _LogBlocks: ...
+    def __next__(self, /) -> dict[str, Any]: ...
+
+def _judge(ranges: object, judge: object, speed_of_sound: object) -> dict[str, Any]: ...
+def _read_firings(source: object) -> dict[str, Any]: ...
 def _replay(
-    path: str | PathLike[str], t_delta_us: _Int | None, settings: HoppingSettings | str | None
+    source: object, judge: object, out: str | PathLike[str] | None, speed_of_sound: object
 ) -> dict[str, Any]: ...
 def _diagnose(firings: Firings, tolerance_us: _Int, max_travel_us: _Int) -> dict[str, Any]: ...
 def _survey(firings: Firings, tolerance_us: _Int, until_us: _Int) -> dict[str, Any]: ...

@@ -1,7 +1,8 @@
 """Logs of robots: the ranges of bags, MCAP and CSV files, and what a ring's log of firings says about it.
 
-Everything is read by the same code as ``eeruf replay``, ``eeruf diagnose`` and ``eeruf survey``; docs/how-to/logs.md
-says what is read.
+Everything is read by the same code as ``eeruf logs``, ``eeruf replay``, ``eeruf diagnose`` and ``eeruf survey``;
+docs/how-to/logs.md says what is read. A log is a path, a file object that gives bytes, or whatever fsspec opens, as
+``"s3://bucket/drive.mcap"``; of a ROS 2 bag's folder in such a place the URL ends with ``/``, and it is copied first.
 
 Example:
     >>> import eeruf
@@ -13,36 +14,124 @@ Example:
 
 from __future__ import annotations
 
+import contextlib
+import io
 import os
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal, TypeVar
+from dataclasses import dataclass, fields
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, TypeVar, overload
 
 from eeruf import _eeruf
 from eeruf._eeruf import ArgumentError, LogError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Iterator
+    from typing import Protocol, TypedDict, Union
 
     import numpy as np
     import pandas as _pd
     import polars as _pl
     from numpy.typing import ArrayLike, NDArray
+    from typing_extensions import TypeAlias, Unpack
 
     _Number = TypeVar("_Number", bound=np.generic)
+    _Block = TypeVar("_Block", bound="Ranges")
+
+    class _File(Protocol):
+        def read(self, size: int, /) -> bytes | str: ...
+
+    class _Openable(Protocol):
+        """As ``fsspec.open`` makes them."""
+
+        @property
+        def fs(self) -> Any: ...
+        @property
+        def path(self) -> str: ...
+
+    _Log: TypeAlias = Union[str, os.PathLike[str], _File, _Openable]
+
+    class _Options(TypedDict, total=False):
+        time: str | None
+        time_unit: Literal["s", "ms", "us", "ns"] | None
+        ranges: Iterable[str]
+        range_unit: Literal["m", "cm", "mm", "in", "ft", "us"] | None
+        sensor: str | None
+        speed_of_sound: float
+        no_echo_m: float
+        no_echo: Iterable[str]
+        columns: Iterable[str]
+        topics: Iterable[str]
+        fields: Iterable[tuple[str, str, str]]
+        judged: bool
+
 
 __all__ = [
+    "Agree",
+    "Crosstalk",
     "Diagnosis",
     "Firings",
+    "Judged",
     "LogError",
+    "OnLine",
     "Ranges",
     "Replayed",
     "Surveyed",
+    "blocks",
     "diagnose",
     "read_firings",
     "read_log",
     "replay",
     "survey",
 ]
+
+
+class _Text:
+    """A stream of bytes out of a file object that gives text."""
+
+    def __init__(self, file: io.TextIOBase) -> None:
+        self._file = file
+
+    def read(self, size: int) -> bytes:
+        return self._file.read(size).encode()
+
+
+@contextlib.contextmanager
+def _opened(log: object) -> Iterator[object]:
+    """Give a path as it is, and a file object with its name; close what was opened."""
+    is_url = isinstance(log, str) and "://" in log
+    if is_url:
+        try:
+            import fsspec
+        except ImportError:
+            raise ArgumentError(f"log = {log!r:.60}; expected fsspec, which opens it: pip install fsspec") from None
+        files, path = fsspec.core.url_to_fs(log)
+    elif isinstance(log, (str, os.PathLike)):
+        yield log
+        return
+    elif isinstance(log, io.TextIOBase):
+        yield _Text(log), _name(log)
+        return
+    elif hasattr(log, "read"):
+        yield log, _name(log)
+        return
+    elif hasattr(log, "fs") and hasattr(log, "path"):
+        files, path = log.fs, log.path
+    else:
+        raise ArgumentError(f"log = {log!r:.60}; expected the path of a log, a URL or a file object")
+    name = str(log) if is_url else str(path)
+    if not name.endswith("/"):
+        with files.open(path, "rb") as file:
+            yield file, name
+        return
+    from tempfile import TemporaryDirectory
+
+    with TemporaryDirectory(prefix="eeruf-") as folder:
+        files.get(path.rstrip("/") + "/", folder + "/", recursive=True)
+        yield folder
+
+
+def _name(file: object) -> str:
+    name = getattr(file, "full_name", None) or getattr(file, "name", None)
+    return name if isinstance(name, str) else "the log"
 
 
 def _column(name: str, values: ArrayLike, dtype: type[_Number]) -> NDArray[_Number]:
@@ -61,7 +150,7 @@ def _column(name: str, values: ArrayLike, dtype: type[_Number]) -> NDArray[_Numb
 
 
 class _Columns:
-    _columns: tuple[str, ...] = ()
+    _columns: ClassVar[tuple[str, ...]] = ()
 
     def columns(self) -> dict[str, NDArray[np.float64 | np.int64 | np.int8 | np.bool_]]:
         """Return the columns by their names.
@@ -107,6 +196,62 @@ class _Columns:
         return len(getattr(self, self._columns[0]))
 
 
+@dataclass(frozen=True)
+class Agree:
+    """A judge of ranges: ``consecutive`` readings of a sensor, 2 to 8, must agree within ``t_delta_us``.
+
+    Example:
+        >>> import eeruf
+        >>> eeruf.logs.Agree(500)
+        Agree(t_delta_us=500, consecutive=2)
+
+    """
+
+    t_delta_us: int
+    consecutive: int = 2
+
+
+@dataclass(frozen=True)
+class OnLine:
+    """A judge of ranges: three readings of a sensor must lie on a line within ``t_delta_us``.
+
+    An echo may then change at any constant rate up to that of a robot that drives at ``max_speed_m_s``, 0 to 60, and logs no odometry.
+    The log must have times.
+
+    Example:
+        >>> import eeruf
+        >>> eeruf.logs.OnLine(250, max_speed_m_s=1.0)
+        OnLine(t_delta_us=250, max_speed_m_s=1.0)
+
+    """
+
+    t_delta_us: int
+    max_speed_m_s: float
+
+
+@dataclass(frozen=True)
+class Crosstalk:
+    """A verdict on whether the sensors of a log read each other's sound; docs/how-to/logs.md says how that is told.
+
+    ``verdict`` is ``"crosstalk"``, ``"none seen"`` or ``"cannot tell"``, for ``reasons``; ``fooled`` are sensors that read foreign sound,
+    ``pairs`` those that read each other's. ``record`` says what to record if the log cannot tell, ``notes`` are about single sensors.
+
+    Example:
+        >>> import eeruf, io
+        >>> log = eeruf.read_log(io.BytesIO(b"range" + bytes([10]) + b"1.716" + bytes([10])))
+        >>> log.crosstalk.verdict
+        'cannot tell'
+
+    """
+
+    verdict: Literal["crosstalk", "none seen", "cannot tell"]
+    fooled: list[int]
+    pairs: list[tuple[int, int]]
+    reasons: list[str]
+    record: str | None
+    notes: list[str]
+
+
 @dataclass(frozen=True, eq=False)
 class Ranges(_Columns):
     """The ranges of a log: arrays of equal length, in the order in which they were recorded.
@@ -116,7 +261,8 @@ class Ranges(_Columns):
     message has none. ``damage`` says what could not be read, ``skipped`` which topics were left out, and why. ``form`` is the form
     of the file, ``guesses`` are triples of what was guessed, the guess, and the options of ``eeruf logs`` that override it;
     ``warnings`` name values that seem wrong. ``firing`` is how the sensors fire, by the times: ``at once``, ``in turn``,
-    ``constant lags``, ``alternating``, ``hopping``, ``flow`` or ``unknown``; ``proves`` says what agreement proves for it.
+    ``constant lags``, ``alternating``, ``hopping``, ``flow`` or ``unknown``; ``proves`` says what agreement proves for it, and
+    ``crosstalk`` whether sensors read each other's sound.
 
     Example:
         >>> import eeruf, pathlib, tempfile
@@ -143,8 +289,9 @@ class Ranges(_Columns):
     warnings: list[str]
     firing: str
     proves: str
+    crosstalk: Crosstalk
 
-    _columns = ("sensor", "at_ns", "range_m", "min_range_m", "max_range_m", "variance")
+    _columns: ClassVar[tuple[str, ...]] = ("sensor", "at_ns", "range_m", "min_range_m", "max_range_m", "variance")
 
     def echo_us(self, *, speed_of_sound: float = 343.2) -> NDArray[np.float64]:
         """Return the times from firing to echo in microseconds; NaN without an echo, and for too close.
@@ -173,6 +320,29 @@ class Ranges(_Columns):
             raise ArgumentError(f"speed_of_sound = {speed_of_sound!r:.60}; expected a number above 0")
         seen = np.isfinite(self.range_m) & (self.range_m < self.max_range_m) & (self.range_m >= self.min_range_m)
         return np.where(seen, 2e6 * np.where(seen, self.range_m, 0.0) / speed_of_sound, np.nan)
+
+
+@dataclass(frozen=True, eq=False)
+class Judged(Ranges):
+    """The ranges of a log, and what a judge made of them: ``kind``, indices into ``eeruf.KINDS``, -1 for what is no number.
+
+    Of each sensor ``gaps`` counts pauses of more than 1 s and five usual ones, ``backwards`` readings whose time is before that of the
+    one before; what comes after either is compared with nothing before.
+
+    Example:
+        >>> import eeruf, io
+        >>> text = chr(10).join(["front m", "1.20", "1.21", "0.40"])
+        >>> judged = eeruf.replay(io.StringIO(text), eeruf.logs.Agree(t_delta_us=500))
+        >>> [eeruf.KINDS[kind] for kind in judged.kind]
+        ['first', 'accepted', 'rejected']
+
+    """
+
+    kind: NDArray[np.int8]
+    gaps: list[int]
+    backwards: list[int]
+
+    _columns = (*Ranges._columns, "kind")
 
 
 @dataclass(frozen=True, eq=False)
@@ -292,7 +462,7 @@ class Replayed(_Columns):
         >>> head = "sensor,fired_us,period,phase,t_echo_us,reading,solo,steady,changes"
         >>> rows = [f"0,{60_000 * n},{n},{n},7000,,0,1,0" for n in range(6)]
         >>> size = file.write_text(chr(10).join([head, *rows]))
-        >>> eeruf.replay(file).age.tolist()
+        >>> eeruf.replay(file, "balanced").age.tolist()
         [-1, 0, 0, 0, 0, 0]
 
     """
@@ -330,7 +500,7 @@ class Surveyed:
 
 
 def read_log(
-    path: str | os.PathLike[str],
+    log: _Log,
     *,
     time: str | None = None,
     time_unit: Literal["s", "ms", "us", "ns"] | None = None,
@@ -351,7 +521,7 @@ def read_log(
     cannot. ``topics``, ``fields`` and ``judged`` are for bags, all other arguments for text.
 
     Args:
-        path: the log.
+        log: a path, a URL or a file object.
         time: the column with the time.
         time_unit: its unit.
         ranges: the columns with ranges; if none is given, each column of numbers whose name does not say otherwise.
@@ -378,29 +548,86 @@ def read_log(
         (['left', 'right'], [1.2, inf, 1.21, 2.5])
 
     """
-    found = _eeruf._read_log(
-        path,
-        time,
-        time_unit,
-        ranges,
-        range_unit,
-        sensor,
-        speed_of_sound,
-        no_echo_m,
-        no_echo,
-        columns,
-        topics,
-        fields,
-        judged,
-    )
-    return Ranges(**found)
+    options = dict(locals())
+    del options["log"]
+    with _opened(log) as source:
+        (found,) = _eeruf._LogBlocks(source, options, None, None, None)
+    return _made(Ranges, found)
 
 
-def read_firings(path: str | os.PathLike[str]) -> Firings:
-    """Read a ring's log of firings, CSV or MCAP; docs/how-to/diagnose.md has the format.
+def _made(of: type[_Block], found: dict[str, Any]) -> _Block:
+    return of(**{**found, "crosstalk": Crosstalk(**found["crosstalk"])})
+
+
+@overload
+def blocks(
+    log: _Log, *, rows: int = ..., judge: None = ..., out: None = ..., **options: Unpack[_Options]
+) -> Iterator[Ranges]: ...
+@overload
+def blocks(
+    log: _Log,
+    *,
+    rows: int = ...,
+    judge: Agree | OnLine,
+    out: str | os.PathLike[str] | None = ...,
+    **options: Unpack[_Options],
+) -> Iterator[Judged]: ...
+def blocks(
+    log: _Log,
+    *,
+    rows: int = 100_000,
+    judge: Agree | OnLine | None = None,
+    out: str | os.PathLike[str] | None = None,
+    **options: Unpack[_Options],
+) -> Iterator[Ranges] | Iterator[Judged]:
+    """Read a log of any length in little memory: block by block, in the order in which it was recorded.
+
+    There is at least one block. Names, guesses and damage are those that are known so far, which in the last block are those of the
+    whole log; ``firing`` and ``crosstalk`` are known only there.
 
     Args:
-        path: the log.
+        log: a path, a URL or a file object.
+        rows: how many readings a block has, 1 or more; the last one may have fewer.
+        judge: judges each reading; the blocks are :class:`Judged` then.
+        out: with a judge, an MCAP file to write: each topic, and beside it what is accepted.
+        options: as of :func:`read_log`.
+
+    Raises:
+        LogError: the log cannot be read, or holds no sensor.
+        ArgumentError: an argument is wrong.
+
+    Example:
+        >>> import eeruf, io
+        >>> text = chr(10).join(["front m", *["1.20"] * 2_500])
+        >>> [len(block) for block in eeruf.logs.blocks(io.StringIO(text), rows=1_000)]
+        [1000, 1000, 500]
+
+    """
+    of = Ranges if judge is None else Judged
+    with contextlib.ExitStack() as opened:
+        reader = _eeruf._LogBlocks(opened.enter_context(_opened(log)), options, _range_judge(judge), out, rows)
+        # Wrong arguments have been named by now, and are not left for the first block.
+        kept = opened.pop_all()
+    return _each(of, reader, kept)
+
+
+def _each(of: type[_Block], reader: _eeruf._LogBlocks, opened: contextlib.ExitStack) -> Iterator[_Block]:
+    with opened:
+        for found in reader:
+            yield _made(of, found)
+
+
+def _range_judge(judge: object) -> Agree | OnLine | None:
+    if judge is None or isinstance(judge, (Agree, OnLine)):
+        return judge
+    raise ArgumentError(f"judge = {judge!r:.60}; expected an eeruf.logs.Agree or an eeruf.logs.OnLine")
+
+
+def read_firings(log: _Log) -> Firings:
+    """Read a ring's log of firings, text, MCAP or frames of the serial line; docs/how-to/diagnose.md has the format.
+
+    Args:
+        log: a path, a URL or a file object.
 
     Raises:
         LogError: the log cannot be read.
@@ -416,24 +643,43 @@ def read_firings(path: str | os.PathLike[str]) -> Firings:
         ('board', [5872.0])
 
     """
-    return Firings(**_eeruf._read_firings(path))
+    with _opened(log) as source:
+        return Firings(**_eeruf._read_firings(source))
 
 
+@overload
 def replay(
-    path: str | os.PathLike[str],
-    t_delta_us: int | None = None,
+    log: Ranges | _Log,
+    judge: Agree | OnLine,
     *,
-    settings: _eeruf.HoppingSettings | str = "balanced",
-) -> Replayed:
-    """Run the tracker of a hopping ring again over the ring's own log of firings.
+    out: str | os.PathLike[str] | None = ...,
+    **options: Unpack[_Options],
+) -> Judged: ...
+@overload
+def replay(
+    log: _Log,
+    judge: _eeruf.HoppingSettings | _eeruf._Hopping,
+    *,
+    out: str | os.PathLike[str] | None = ...,
+    speed_of_sound: float = ...,
+) -> Replayed: ...
+def replay(
+    log: Ranges | _Log,
+    judge: Agree | OnLine | _eeruf.HoppingSettings | _eeruf._Hopping,
+    *,
+    out: str | os.PathLike[str] | None = None,
+    **options: Unpack[_Options],
+) -> Judged | Replayed:
+    """Judge a log again: its ranges, or, by the settings of a hopping ring, the ring's own log of firings.
 
-    With the settings of the ring, it accepts exactly what the ring accepted. The log says how each reading was weighed, as one that
-    ``eeruf study --method eeruf_hopping --log`` writes does; docs/how-to/diagnose.md has the columns.
+    With the settings of the ring, it accepts exactly what the ring accepted. The log of firings says how each reading was weighed, as
+    one that ``eeruf study --method eeruf_hopping --log`` writes does; docs/how-to/diagnose.md has the columns.
 
     Args:
-        path: the log, CSV or MCAP.
-        t_delta_us: another ``T_delta`` than that of the settings.
-        settings: a :class:`HoppingSettings`, or the name of one.
+        log: a path, a URL or a file object; ranges also as :func:`read_log` gave them.
+        judge: an :class:`Agree` or an :class:`OnLine` for ranges; a :class:`HoppingSettings`, or the name of one, for firings.
+        out: an MCAP file to write: each topic, and beside it what is accepted; not for ranges that were read before.
+        options: as of :func:`read_log`, for ranges; of firings, and of ranges that were read before, ``speed_of_sound`` alone.
 
     Raises:
         LogError: the log cannot be read, or does not say how readings were weighed.
@@ -446,28 +692,42 @@ def replay(
         >>> head = "sensor,fired_us,period,phase,t_echo_us,reading,solo,steady,changes"
         >>> rows = [f"0,{60_000 * n},{n},{n},7000,,0,1,0" for n in range(6)]
         >>> size = file.write_text(chr(10).join([head, *rows]))
-        >>> [eeruf.KINDS[kind] for kind in eeruf.replay(file).kind]
+        >>> [eeruf.KINDS[kind] for kind in eeruf.replay(file, "balanced").kind]
         ['first', 'tentative', 'tentative', 'tentative', 'accepted', 'accepted']
 
     """
-    return Replayed(**_eeruf._replay(path, t_delta_us, settings))
+    if isinstance(judge, (Agree, OnLine)):
+        if isinstance(log, Ranges):
+            if out is not None:
+                raise ArgumentError(f"out = {out!r:.60}; expected None where ranges were read before: give their log")
+            found = _eeruf._judge(log, judge, _speed_of_sound(options))
+            return Judged(**{field.name: getattr(log, field.name) for field in fields(Ranges)}, **found)
+        with _opened(log) as source:
+            (found,) = _eeruf._LogBlocks(source, options, judge, out, None)
+        return _made(Judged, found)
+    if not isinstance(judge, (str, _eeruf.HoppingSettings)):
+        expected = "an eeruf.logs.Agree or OnLine, an eeruf.HoppingSettings or the name of one"
+        raise ArgumentError(f"judge = {judge!r:.60}; expected {expected}")
+    with _opened(log) as source:
+        return Replayed(**_eeruf._replay(source, judge, out, _speed_of_sound(options)))
 
 
-def _firings(log: Firings | str | os.PathLike[str]) -> Firings:
-    if isinstance(log, Firings):
-        return log
-    if isinstance(log, (str, os.PathLike)):
-        return read_firings(log)
-    raise ArgumentError(f"log = {log!r:.60}; expected an eeruf.logs.Firings or the path of a log")
+def _speed_of_sound(options: _Options) -> float:
+    for name, value in options.items():
+        if name != "speed_of_sound":
+            raise ArgumentError(f"{name} = {value!r:.60}; expected it only where a log of ranges is read")
+    return options.get("speed_of_sound", 343.2)
 
 
-def diagnose(
-    log: Firings | str | os.PathLike[str], *, tolerance_us: int = 75, max_travel_us: int = 80_000
-) -> Diagnosis:
+def _firings(log: Firings | _Log) -> Firings:
+    return log if isinstance(log, Firings) else read_firings(log)
+
+
+def diagnose(log: Firings | _Log, *, tolerance_us: int = 75, max_travel_us: int = 80_000) -> Diagnosis:
     """Say from a log of firings which sensors fool each other, whose sound each reading is, and what is broken.
 
     Args:
-        log: a file, or firings.
+        log: firings, or a path, a URL or a file object.
         tolerance_us: largest difference of a reading from what a path predicts, about four times the jitter.
         max_travel_us: for how long sound is followed.
 
@@ -490,11 +750,11 @@ def diagnose(
     return Diagnosis(**_eeruf._diagnose(_firings(log), tolerance_us=tolerance_us, max_travel_us=max_travel_us))
 
 
-def survey(log: Firings | str | os.PathLike[str], *, tolerance_us: int = 100, until_us: int = 15_000) -> Surveyed:
+def survey(log: Firings | _Log, *, tolerance_us: int = 100, until_us: int = 15_000) -> Surveyed:
     """Say from a measuring run who hears whom; docs/how-to/survey.md says how to make one.
 
     Args:
-        log: a file, or firings.
+        log: firings, or a path, a URL or a file object.
         tolerance_us: largest difference between edges of one path, about four times the jitter.
         until_us: pairs that hear each other within this time are conflicts.
 

@@ -106,7 +106,8 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
         return Err(error.into());
     }
     warn_of_log(&args.file, &report)?;
-    let counted = judging.finish()?;
+    let counted = judging.counted();
+    judging.finish()?;
     if !report.sensors.is_empty() || args.json {
         print(args, &report, &counted, kinds)?;
     }

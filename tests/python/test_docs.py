@@ -151,6 +151,7 @@ def test_each_task_takes_fewer_than_15_lines_and_runs(tmp_path: Path) -> None:
         ("README.md", 1),
         ("python/README.md", 1),
         ("docs/how-to/python.md", 8),
+        ("docs/how-to/logs.md", 1),
         ("docs/how-to/method.md", 4),
         ("docs/how-to/cluster.md", 2),
     ],

@@ -90,7 +90,8 @@ RIGHT: dict[str, Any] = {
     "function": abs,
     "cases": [1],
     "need": "range",
-    "log": FIRINGS,
+    "log": "nowhere.csv",
+    "judge": logs.Agree(500),
     "name": "scenes/alcove.toml",
     "text": "x",
     "path": "nowhere.toml",
@@ -114,6 +115,10 @@ RIGHT_OF: dict[str, dict[str, Any]] = {
     "eeruf.experiments.Scenes": {"kind": "alcove"},
     "eeruf.experiments.recommend": {"ring": RINGS / "hc-sr04-8.toml"},
     "eeruf.experiments.rooms": {"ring": RINGS / "hc-sr04-8.toml"},
+    **{
+        name: {"log": FIRINGS}
+        for name in ("eeruf.diagnose", "eeruf.logs.diagnose", "eeruf.survey", "eeruf.logs.survey")
+    },
     "Himm().clear": {"sensor": (0, 0, 0)},
     "Himm().echo": {"sensor": (0, 0, 0)},
     "EchoTracker().push_many": {"t_echo_us": np.zeros((1, 4))},

@@ -22,10 +22,15 @@ LONG = {
     "count": "tell(); waits.count()",
     "all": "tell(); [None for table in waits.all()]",
     "sweep": "tell(); eeruf.sweep(functools.partial(eeruf.sim.simulate, scene, 'eeruf', 3_000_000), range(4))",
+    "log": "tell(); eeruf.read_log(Endless())",
+    "blocks": "tell(); [None for _ in eeruf.logs.blocks(Endless(), judge=eeruf.logs.Agree(500))]",
     "sweep on processes": "tell(); eeruf.sweep(time.sleep, [1_000] * 4)",
 }
 BEFORE = """
 import eeruf, functools, random, time
+class Endless:
+    def read(self, size):
+        return b"left: 40 cm" + bytes([10])
 def tell(*_):
     print("under way", flush=True)
 chance = random.Random(3)
@@ -51,7 +56,7 @@ def test_ctrl_c_ends_long_work(name: str) -> None:
     )
     assert child.stdout is not None
     assert child.stdout.readline() == "under way\n"
-    if name in ("count", "all", "step", "sweep", "sweep on processes"):
+    if name in ("count", "all", "step", "log", "blocks", "sweep", "sweep on processes"):
         time.sleep(0.5)
     os.killpg(child.pid, signal.SIGINT)
     try:

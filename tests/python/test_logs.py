@@ -1,14 +1,22 @@
 """Logs of robots: the same bags as Rust reads, and what a ring's log of firings says."""
 
 import contextlib
+import gzip
+import io
+import json
+import os
 import shutil
 import sqlite3
 import subprocess
 import sys
+import time
+import zipfile
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import eeruf
+import fsspec
 import numpy as np
 import pytest
 from eeruf import sim
@@ -29,6 +37,21 @@ def simulated(method: Any, periods: int) -> tuple[eeruf.logs.Firings, sim.Readin
         t_echo_us=readings.earliest_us,
     )
     return firings, readings
+
+
+def program(words: list[object]) -> str:
+    """Run the program, and return what it prints."""
+    command = [sys.executable, "-m", "eeruf", *map(str, words)]
+    return subprocess.run(command, check=True, capture_output=True, text=True).stdout
+
+
+def assert_same(log: eeruf.logs.Ranges, other: eeruf.logs.Ranges) -> None:
+    """Hold two readings of a log against each other, in all but the name of the file."""
+    for name, column in log.columns().items():
+        np.testing.assert_array_equal(column, getattr(other, name), err_msg=name)
+    for name in ("names", "topics", "frames", "skipped", "guesses", "warnings", "firing", "proves", "crosstalk"):
+        assert getattr(log, name) == getattr(other, name), name
+    assert len(log.damage) == len(other.damage)
 
 
 @pytest.mark.parametrize("name", ["ros1-none.bag", "ros1-bz2.bag", "ros1-lz4.bag", "mcap-jazzy", "mcap-jazzy-zstd"])
@@ -110,16 +133,19 @@ def test_a_survey_says_who_hears_whom(tmp_path: Path) -> None:
 def test_the_replay_of_a_hopping_rings_log_is_the_run(tmp_path: Path) -> None:
     log, scene = tmp_path / "log.csv", tmp_path / "alcove.toml"
     scene.write_text(eeruf.example("scenes/alcove.toml"))
-    study = ["study", scene, "--method", "eeruf_hopping", "--log", log]
-    subprocess.run([sys.executable, "-m", "eeruf", *map(str, study), "--periods", "300"], check=True)
-    run = eeruf.replay(log)
+    program(["study", scene, "--method", "eeruf_hopping", "--log", log, "--periods", "300"])
+    run = eeruf.replay(log, "balanced", out=tmp_path / "judged.mcap")
     assert len(run) > 1500 and (run.kind == run.logged).all() and (run.kind == eeruf.KINDS.index("tentative")).any()
     assert (np.diff(run.fired_us) >= 0).all() and run.damage is None
-    other = eeruf.replay(log, settings="maps")
+    with log.open("rb") as file:
+        np.testing.assert_array_equal(eeruf.replay(file, eeruf.HoppingSettings("balanced")).kind, run.kind)
+    program(["replay", log, "--hopping", "balanced", "--out", tmp_path / "other.mcap"])
+    assert (tmp_path / "judged.mcap").read_bytes() == (tmp_path / "other.mcap").read_bytes()
+    other = eeruf.replay(log, "maps")
     assert (other.kind != run.kind).any() and not (other.kind == eeruf.KINDS.index("tentative")).any()
     (tmp_path / "plain.csv").write_text("sensor,fired_us,period,phase,t_echo_us\n0,0,0,0,7000\n")
     with pytest.raises(eeruf.logs.LogError, match="does not say how it was weighed"):
-        eeruf.replay(tmp_path / "plain.csv")
+        eeruf.replay(tmp_path / "plain.csv", "balanced")
 
 
 CASES = Path(__file__).parents[1] / "data" / "field-cases"
@@ -140,3 +166,193 @@ def test_arguments_override_guesses_which_are_listed() -> None:
     assert len(eeruf.read_log(CASES / "pointcloud.bag", topics=["/RosAria/sonar"]).names) > 1
     with pytest.raises(eeruf.ArgumentError, match=r"fields = .*; expected triples"):
         eeruf.read_log(CASES / "multiarray.bag", fields=[("/ultrasonic", "data[]", "km")])
+
+
+class Once(io.RawIOBase):
+    """A stream that cannot go back, and gives few bytes at a time."""
+
+    def __init__(self, content: bytes) -> None:
+        self.content = io.BytesIO(content)
+
+    def readable(self) -> bool:
+        return True
+
+    def read(self, size: int = -1) -> bytes:
+        return self.content.read(min(size, 1000))
+
+
+def in_zip(content: bytes) -> Any:
+    packed = io.BytesIO()
+    with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as folder:
+        folder.writestr("log", content)
+    return zipfile.ZipFile(packed).open("log")
+
+
+def in_memory(content: bytes) -> str:
+    with fsspec.open("memory://logs/log", "wb") as file:
+        file.write(content)
+    return "memory://logs/log"
+
+
+def behind(content: bytes) -> io.BytesIO:
+    """A file that stands where the log begins."""
+    file = io.BytesIO(b"before it" + content)
+    file.seek(9)
+    return file
+
+
+SOURCES: dict[str, Callable[[bytes], Any]] = {
+    "bytes": io.BytesIO,
+    "stream": Once,
+    "zip": in_zip,
+    "gzip": lambda content: gzip.GzipFile(fileobj=io.BytesIO(gzip.compress(content))),
+    "packed": lambda content: io.BytesIO(gzip.compress(content)),
+    "url": in_memory,
+    "openable": lambda content: fsspec.open(in_memory(content)),
+    "behind": behind,
+}
+FILES = [
+    BAGS / "ros1-bz2.bag",
+    BAGS / "mcap-jazzy-zstd" / "mcap-jazzy-zstd.mcap",
+    CASES / "semicolon-decimal-comma.csv",
+    CASES / "multiarray.bag",
+]
+
+
+@pytest.mark.parametrize("source", SOURCES)
+@pytest.mark.parametrize("file", FILES, ids=lambda file: file.name)
+def test_a_log_is_read_alike_from_anywhere(source: str, file: Path) -> None:
+    assert_same(eeruf.read_log(SOURCES[source](file.read_bytes())), eeruf.read_log(file))
+
+
+def test_bags_in_folders_and_sqlite_are_read_from_anywhere(tmp_path: Path) -> None:
+    folder, name = tmp_path / "bag", "sqlite-jazzy"
+    shutil.copytree(BAGS / name, folder)
+    with contextlib.closing(sqlite3.connect(folder / f"{name}.db3")) as database:
+        database.executescript((BAGS / name / f"{name}.sql").read_text())
+    log = eeruf.read_log(folder)
+    assert_same(
+        eeruf.read_log(io.BytesIO((folder / f"{name}.db3").read_bytes())), eeruf.read_log(folder / f"{name}.db3")
+    )
+    fsspec.filesystem("memory").put(str(folder), "/bags/drive", recursive=True)
+    assert_same(eeruf.read_log("memory://bags/drive/"), log)
+
+
+def test_firings_are_read_from_anywhere() -> None:
+    text = "# clock: board\nsensor,fired_us,period,phase,t_echo_us\n0,15000,0,0,5872\n1,16000,0,0,\n"
+    for source in [io.StringIO(text), *(make(text.encode()) for make in SOURCES.values())]:
+        log = eeruf.read_firings(source)
+        assert (log.clock, log.sensor.tolist(), log.t_echo_us[0]) == ("board", [0, 1], 5872.0)
+    assert eeruf.diagnose(io.StringIO(text)).sender.tolist() == [-1, -1]
+    assert eeruf.survey(in_memory(text.encode())).conflicts == []
+
+
+def test_blocks_are_the_log_in_parts() -> None:
+    file = CASES / "multiarray.bag"
+    log, blocks = eeruf.read_log(file), list(eeruf.logs.blocks(file, rows=7))
+    assert len(blocks) > 2 and [len(block) for block in blocks[:-1]] == [7] * (len(blocks) - 1)
+    for name, column in log.columns().items():
+        np.testing.assert_array_equal(np.concatenate([getattr(block, name) for block in blocks]), column)
+    last = blocks[-1]
+    assert (last.names, last.firing, last.proves, last.crosstalk) == (log.names, log.firing, log.proves, log.crosstalk)
+    assert blocks[0].crosstalk.reasons == ["the log is not read to its end"] == [blocks[0].proves]
+    assert len(list(eeruf.logs.blocks(file, rows=len(log)))) == 1
+    with pytest.raises(eeruf.LogError, match="no sensors"):
+        list(eeruf.logs.blocks(io.StringIO("x,y\nno,number\n")))
+    with pytest.raises(TypeError, match="unexpected keyword argument 'tim'; expected time"):
+        eeruf.logs.blocks(file, tim="t")  # type: ignore[call-overload]
+
+
+def test_what_a_file_raises_comes_out_as_it_is() -> None:
+    class Gone(io.BytesIO):
+        def read(self, size: int | None = -1, /) -> bytes:
+            if self.tell() > 100_000:
+                raise ConnectionResetError("the store is gone")
+            return super().read(size)
+
+    content = b"left,right\n" + b"1.2,1.3\n" * 100_000
+    blocks = eeruf.logs.blocks(Gone(content), rows=1_000)
+    with pytest.raises(ConnectionResetError, match="the store is gone"):
+        for block in blocks:
+            assert len(block) == 1_000
+    assert list(blocks) == []
+    with pytest.raises(TypeError, match="expected bytes"):
+        eeruf.read_log(type("Odd", (), {"read": lambda self, size: 7})())
+    with pytest.raises(eeruf.ArgumentError, match="expected the path of a log, a URL or a file object"):
+        eeruf.read_log(7)  # type: ignore[arg-type]
+
+
+@pytest.mark.skipif(not Path("/proc/self/task").exists(), reason="needs Linux to count threads")
+def test_blocks_that_nobody_reads_on_end_their_thread() -> None:
+    content = b"left,right\n" + b"1.2,1.3\n" * 100_000
+    before = len(os.listdir("/proc/self/task"))
+    for _ in range(20):
+        next(eeruf.logs.blocks(io.BytesIO(content), rows=10))
+    for _ in range(100):
+        if len(os.listdir("/proc/self/task")) <= before + 1:
+            return
+        time.sleep(0.1)
+    raise AssertionError("threads run on")
+
+
+JUDGES = [
+    (eeruf.logs.Agree(500), ["--t-delta-us", "500"]),
+    (eeruf.logs.Agree(300, consecutive=3), ["--t-delta-us", "300", "--consecutive", "3"]),
+    (eeruf.logs.OnLine(250, max_speed_m_s=1.0), ["--t-delta-us", "250", "--max-speed", "1"]),
+]
+
+
+@pytest.mark.parametrize(("judge", "words"), JUDGES)
+def test_judges_are_those_of_the_program(judge: Any, words: list[str], tmp_path: Path) -> None:
+    scene, study = tmp_path / "alcove.toml", tmp_path / "study.mcap"
+    scene.write_text(eeruf.example("scenes/alcove.toml"))
+    program(["study", scene, "--method", "conventional", "--periods", "200", "--mcap", study])
+    with study.open("rb") as file:
+        judged = eeruf.replay(file, judge, out=tmp_path / "ours.mcap")
+    said = json.loads(program(["replay", study, *words, "--out", tmp_path / "theirs.mcap", "--json"]))
+    kinds = [eeruf.KINDS[kind] for kind in judged.kind]
+    assert {kind: kinds.count(kind) for kind in ("accepted", "rejected", "first", "clear")} == {
+        kind: said["total"][kind] for kind in ("accepted", "rejected", "first", "clear")
+    }
+    assert len(judged) == 1600 and said["firing"]["pattern"] == judged.firing
+    assert (tmp_path / "ours.mcap").read_bytes() == (tmp_path / "theirs.mcap").read_bytes()
+    again = eeruf.replay(eeruf.read_log(study), judge)
+    np.testing.assert_array_equal(again.kind, judged.kind)
+    assert (again.gaps, again.backwards, list(again.to_pandas())[-1]) == (judged.gaps, judged.backwards, "kind")
+    parts = list(eeruf.logs.blocks(study, judge=judge, rows=100))
+    np.testing.assert_array_equal(np.concatenate([part.kind for part in parts]), judged.kind)
+    assert judged.crosstalk.verdict == json.loads(program(["logs", study, "--json"]))["crosstalk"]["verdict"]
+
+
+def test_gaps_and_steps_back_are_counted_by_sensor() -> None:
+    text = (
+        "t,left,right\n"
+        + "".join(f"{0.1 * n + (50 if n > 20 else 0):.1f},1.2,2.3\n" for n in range(40))
+        + "1.0,1.2,2.3\n"
+    )
+    judged = eeruf.replay(io.StringIO(text), eeruf.logs.Agree(500), time_unit="s")
+    assert (judged.gaps, judged.backwards) == ([1, 1], [1, 1])
+    # What comes first, after the gap, and after the step back.
+    assert (judged.kind[judged.sensor == 1] == eeruf.KINDS.index("first")).sum() == 3
+    with pytest.raises(eeruf.LogError, match="as readings on a line need times"):
+        eeruf.replay(io.StringIO("left\n1.2\n1.3\n"), eeruf.logs.OnLine(500, 1.0))
+    with pytest.raises(eeruf.ArgumentError, match="ranges were read before"):
+        eeruf.replay(judged, eeruf.logs.Agree(500), out="judged.mcap")
+    with pytest.raises(eeruf.ArgumentError, match="time = 't'; expected it only where a log of ranges is read"):
+        eeruf.replay(judged, eeruf.logs.Agree(500), time="t")
+
+
+def test_ten_million_readings_of_a_server_take_little_memory() -> None:
+    found = [far_log(readings) for readings in (1_000_000, 10_000_000)]
+    for readings, said in zip((1_000_000, 10_000_000), found):
+        assert said["table"]["readings"] == said["mcap"]["readings"] == readings
+        assert said["table"]["accepted"] == readings // 2 and said["table"]["damage"] == said["mcap"]["damage"] == []
+        # MCAP has ranges as floats of 32 bits.
+        assert said["mcap"]["metres"] == pytest.approx(said["table"]["metres"], rel=1e-6)
+    # Neither takes more than 200 MB, or the script fails.
+    assert found[1]["largest_mb"] < 1.2 * found[0]["largest_mb"]
+
+
+def far_log(readings: int) -> Any:
+    command = [sys.executable, str(Path(__file__).with_name("far_log.py")), str(readings)]
+    return json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)

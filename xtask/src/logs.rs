@@ -31,9 +31,13 @@ pub(crate) fn logs(steps: &mut Steps) {
         steps.step(&format!("senders in {places}"), || senders(places, least));
     }
     for physics in ["plain", "default"] {
-        let verdicts = format!("cargo lab doctor-alcoves 20000 100 1000 {physics}");
-        steps.step(&format!("crosstalk in 800 logs, physics {physics}"), || run_line(&verdicts));
+        let verdicts = || run_line(&format!("cargo lab doctor-alcoves 20000 100 1000 {physics}"));
+        steps.step(&format!("crosstalk in 800 logs, physics {physics}"), verdicts);
     }
+    steps.step("10^8 readings of a server", || {
+        let python = environment(&Path::new(HOME).join("wheel"), &[".", "aiohttp", "fsspec"])?;
+        run(Command::new(python).args(["tests/python/far_log.py", "100000000"]))
+    });
     steps.step("the data set", data_set);
 }
 
@@ -46,10 +50,9 @@ fn bags(topics: u32, messages: [u32; 2]) -> Result<()> {
         let size = ["--topics", &topics.to_string(), "--messages", &messages.to_string()];
         run(Command::new(&python).arg("crates/eeruf-logs/tests/write_bags.py").arg(folder).args(size))?;
     }
-    let [large, small] = &folders;
-    let all = (topics * messages[0]).to_string();
-    let replay = "crates/eeruf-logs/tests/replay_bags.py";
-    let replayed = run(Command::new(&python).args([replay, "target/release/eeruf"]).args([small, large]).arg(all));
+    let mut replay = Command::new(&python);
+    replay.args(["crates/eeruf-logs/tests/replay_bags.py", "target/release/eeruf"]);
+    let replayed = run(replay.args([&folders[1], &folders[0]]).arg((topics * messages[0]).to_string()));
     folders.iter().try_for_each(fs::remove_dir_all)?;
     replayed
 }

@@ -75,6 +75,11 @@ impl FiringLog {
 }
 
 impl Firing {
+    /// When the sensor fired, in nanoseconds; at least 1000, as a message's stamp of zero means that there is none.
+    pub fn at_ns(&self) -> u64 {
+        1000 * self.fired_us.max(1).cast_unsigned()
+    }
+
     /// The ring's verdict on the reading, as logs spell it.
     pub(crate) fn reading(&self) -> &'static str {
         match (self.weighed.as_ref().and_then(|weighed| weighed.kind), self.rejected) {

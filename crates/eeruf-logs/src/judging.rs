@@ -28,7 +28,7 @@ pub enum RangeJudge {
     },
 }
 
-/// What a judge made of one sensor's readings.
+/// Counts of what a judge made of one sensor's readings.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Counted {
     /// Readings by their kinds.
@@ -175,13 +175,17 @@ impl Judging {
         Ok(kind)
     }
 
-    /// The counts of each sensor; writes what is left of the file.
+    /// The counts of each sensor so far.
+    pub fn counted(&self) -> Vec<Counted> {
+        self.sensors.iter().map(|sensor| sensor.counted).collect()
+    }
+
+    /// Writes what is left of the file.
     ///
     /// # Errors
     /// A file that cannot be written.
-    pub fn finish(self) -> Result<Vec<Counted>, FileError> {
-        self.out.map_or(Ok(()), McapWriter::finish)?;
-        Ok(self.sensors.into_iter().map(|sensor| sensor.counted).collect())
+    pub fn finish(self) -> Result<(), FileError> {
+        self.out.map_or(Ok(()), McapWriter::finish)
     }
 }
 

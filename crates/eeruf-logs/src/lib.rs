@@ -80,7 +80,7 @@ pub use judging::{Counted, Judging, RangeJudge};
 pub use options::{FieldChoice, Options, RangeUnit, Table, TimeUnit};
 pub use pattern::{FiringPattern, Pattern};
 pub use reading::{Echo, Reading, Sensor};
-pub use replay::{ReplayError, replay};
+pub use replay::{ReplayError, replay, write_replayed};
 pub use ros2::{Marker, Placement, Shape, Transform};
 pub use sink::{Guess, Report, Skipped};
 pub use survey::{PathSettings, Surveyed, survey};

@@ -1,13 +1,18 @@
 //! [`replay()`]: the tracker of a hopping ring, run again over the ring's own log.
 
 use core::fmt;
+use std::path::Path;
 
 use eeruf_core::{
     MAX_SENSORS, Micros, Phase, ReadingKind, RingError, SensorError,
     judge::{EchoTracker, Firing, TrackerSettings, Verdict},
 };
 
+use eeruf_files::FileError;
+
 use crate::firings::FiringLog;
+use crate::reading::Reading;
+use crate::write::McapWriter;
 
 /// Why the tracker cannot be run over a log.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -98,4 +103,51 @@ pub fn replay(log: &FiringLog, settings: TrackerSettings) -> Result<Vec<Verdict>
         };
     }
     Ok(verdicts)
+}
+
+/// Writes the ranges of a log as MCAP, each sensor onto a topic of its own, `/sonar_N`: beside it `/sonar_N/accepted`,
+/// what the verdicts accept, and `/sonar_N/confirmed`, that without what is tentative. The log's name stands in errors.
+///
+/// # Errors
+/// A log that does not say when sensors fired, or a file that cannot be written.
+pub fn write_replayed(
+    out: &Path,
+    name: &Path,
+    log: &FiringLog,
+    verdicts: &[Verdict],
+    speed_of_sound: f64,
+) -> Result<(), FileError> {
+    if log.lacks_instants {
+        return Err(FileError::new(name, "no column `fired_us`; MCAP needs to know when sensors fired"));
+    }
+    let mut out = McapWriter::create(out)?;
+    let metres = |us: u32| 0.5e-6 * f64::from(us) * speed_of_sound;
+    let longest = log.firings.iter().filter_map(|firing| firing.t_echo_us).max().map_or(0.0, metres);
+    for (firing, verdict) in log.firings.iter().zip(verdicts) {
+        let frame = format!("sonar_{}", firing.sensor + 1);
+        let topic = format!("/{frame}");
+        let reading = Reading {
+            sensor: firing.sensor.into(),
+            at_ns: Some(firing.at_ns()),
+            radiation: 0,
+            field_of_view_rad: 0.26,
+            min_range_m: 0.0,
+            max_range_m: longest,
+            range_m: firing.t_echo_us.map_or(f64::INFINITY, metres),
+            variance: Some(0.0),
+        };
+        out.range(&topic, &frame, &reading)?;
+        let range_m = match verdict.kind {
+            ReadingKind::Accepted | ReadingKind::Tentative => reading.range_m,
+            ReadingKind::Clear => f64::INFINITY,
+            ReadingKind::TooEarly => f64::NEG_INFINITY,
+            _ => continue,
+        };
+        let believed = Reading { range_m, ..reading };
+        out.range(&format!("{topic}/accepted"), &frame, &believed)?;
+        if verdict.kind != ReadingKind::Tentative {
+            out.range(&format!("{topic}/confirmed"), &frame, &believed)?;
+        }
+    }
+    out.finish()
 }

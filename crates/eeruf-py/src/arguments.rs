@@ -43,6 +43,12 @@ fn plausible(name: &str, number: f64, py: Python<'_>) -> PyResult<()> {
     eeruf_files::doubt(key, number).map_or(Ok(()), |doubt| warn(py, format_args!("{name} = {doubt}")))
 }
 
+/// A finite number above zero.
+pub(crate) fn above_zero(name: &str, value: &Bound<'_, PyAny>) -> PyResult<f64> {
+    let number = value.extract().ok().filter(|number: &f64| *number > 0.0 && number.is_finite());
+    number.ok_or_else(|| wrong(name, shown(value), "a number above 0"))
+}
+
 /// A time in whole microseconds.
 pub(crate) fn micros(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Micros> {
     whole(name, value, 0..=u32::MAX).map(Micros::new)

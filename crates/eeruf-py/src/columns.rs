@@ -33,7 +33,12 @@ pub(crate) fn read_only<T: Element>(
 ) -> PyResult<Bound<'_, PyAny>> {
     let mut elements = room(values.len())?;
     elements.extend(values);
-    Ok(PyArray1::from_vec(py, elements).readwrite().make_nonwriteable().as_any().clone())
+    Ok(of_vec(py, elements))
+}
+
+/// An array of a vector's memory that cannot be written to.
+pub(crate) fn of_vec<T: Element>(py: Python<'_>, elements: Vec<T>) -> Bound<'_, PyAny> {
+    PyArray1::from_vec(py, elements).readwrite().make_nonwriteable().as_any().clone()
 }
 
 /// A vector with room for this many, if the memory is there.

@@ -23,6 +23,7 @@ mod exclusive;
 mod experiments;
 mod faults;
 mod fields;
+mod file_object;
 mod filter;
 mod flow_settings;
 mod found;
@@ -30,6 +31,7 @@ mod himm;
 mod hopping_found;
 mod hopping_schedule;
 mod hopping_settings;
+mod log_blocks;
 mod logs;
 mod maps;
 mod memory;
@@ -85,7 +87,8 @@ mod _eeruf {
         hopping_found::HoppingFound,
         hopping_schedule::HoppingSchedule,
         hopping_settings::HoppingSettings,
-        logs::{LogError, diagnose, read_firings, read_log, replay, survey},
+        log_blocks::{LogBlocks, judge},
+        logs::{LogError, diagnose, read_firings, replay, survey},
         maps::read_map,
         methods::Method,
         own::FiredReading,

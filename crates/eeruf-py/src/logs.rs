@@ -1,18 +1,17 @@
 //! Logs of robots: ranges, firings, and what firings say. `python/eeruf/logs.py` is what users see of it.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use eeruf_logs::{
-    Diagnosis, FieldChoice, Firing, FiringLog, FoundPath, Options, PathSettings, RangeUnit, Settings, Table, TimeUnit,
-};
+use eeruf_logs::{Diagnosis, Firing, FiringLog, FoundPath, PathSettings, Settings, write_replayed};
 use numpy::PyReadonlyArray1;
 use pyo3::{create_exception, prelude::*, types::PyDict};
 
 use crate::{
-    arguments::{choice, flag, items, micros, shown, text, wrong},
+    arguments::{above_zero, micros, shown, wrong},
     columns::read_only,
     errors::{ArgumentError, EerufError, warn},
-    hopping_settings::tracker_settings,
+    file_object::Work,
+    hopping_settings::HoppingSettings,
     watch::in_background,
 };
 
@@ -34,119 +33,46 @@ pub(crate) fn raise(error: impl std::fmt::Display) -> PyErr {
     LogError::new_err(error.to_string())
 }
 
-fn log_file(path: &Bound<'_, PyAny>) -> PyResult<PathBuf> {
-    path.extract().map_err(|_| wrong("path", shown(path), "the path of a log"))
+/// A path, or a file object under a name.
+pub(crate) enum Source<'py> {
+    Path(PathBuf),
+    Object(Bound<'py, PyAny>, PathBuf),
 }
 
-/// The name of a column, if there is one.
-fn column_name(name: &str, value: Option<&Bound<'_, PyAny>>) -> PyResult<Option<String>> {
-    value.map(|value| text(name, value, "the name of a column, or None")).transpose()
-}
-
-fn above_zero(name: &str, value: &Bound<'_, PyAny>) -> PyResult<f64> {
-    let number = value.extract().ok().filter(|number: &f64| *number > 0.0 && number.is_finite());
-    number.ok_or_else(|| wrong(name, shown(value), "a number above 0"))
-}
-
-/// Triples of topic, path and unit.
-fn field_choices(fields: &Bound<'_, PyAny>, units: &[(&str, RangeUnit)]) -> PyResult<Vec<FieldChoice>> {
-    let expected = "triples of topic, field and unit, as (\"/sonars\", \"distance_mm[]\", \"mm\")";
-    let field = |field: &Bound<'_, PyAny>| {
-        let found: Option<(String, String, String)> = field.extract().ok();
-        let (topic, path, unit) = found.ok_or_else(|| wrong("fields", shown(field), expected))?;
-        let unit = units.iter().find(|known| known.0 == unit).ok_or_else(|| wrong("fields", shown(field), expected))?.1;
-        Ok(FieldChoice { topic, path, unit })
-    };
-    items("fields", fields, expected)?.iter().map(field).collect()
-}
-
-fn warn_of_each(py: Python<'_>, warnings: Vec<String>) -> PyResult<()> {
-    warnings.into_iter().try_for_each(|warning| warn(py, warning))
-}
-
-/// The ranges of a log, as columns, with sensors, damage and what was left out.
-#[pyfunction]
-#[pyo3(name = "_read_log")]
-#[expect(clippy::too_many_arguments, reason = "each of them once, from one place")]
-pub(crate) fn read_log<'py>(
-    py: Python<'py>,
-    path: &Bound<'py, PyAny>,
-    time: Option<&Bound<'py, PyAny>>,
-    time_unit: Option<&Bound<'py, PyAny>>,
-    ranges: &Bound<'py, PyAny>,
-    range_unit: Option<&Bound<'py, PyAny>>,
-    sensor: Option<&Bound<'py, PyAny>>,
-    speed_of_sound: &Bound<'py, PyAny>,
-    no_echo_m: &Bound<'py, PyAny>,
-    no_echo: &Bound<'py, PyAny>,
-    columns: &Bound<'py, PyAny>,
-    topics: &Bound<'py, PyAny>,
-    fields: &Bound<'py, PyAny>,
-    judged: &Bound<'py, PyAny>,
-) -> PyResult<Bound<'py, PyDict>> {
-    let times = [("s", TimeUnit::S), ("ms", TimeUnit::Ms), ("us", TimeUnit::Us), ("ns", TimeUnit::Ns)];
-    let units = [
-        ("m", RangeUnit::M),
-        ("cm", RangeUnit::Cm),
-        ("mm", RangeUnit::Mm),
-        ("in", RangeUnit::In),
-        ("ft", RangeUnit::Ft),
-        ("us", RangeUnit::Us),
-    ];
-    let path = log_file(path)?;
-    let expected = "the names of columns";
-    let texts = |name: &str, values: &Bound<'py, PyAny>, expected: &'static str| {
-        items(name, values, expected)?.iter().map(|value| text(name, value, expected)).collect::<PyResult<Vec<_>>>()
-    };
-    let options = Options {
-        table: Table {
-            columns: texts("columns", columns, expected)?,
-            ranges: texts("ranges", ranges, expected)?,
-            range_unit: range_unit.map(|unit| choice("range_unit", Some(unit), &units)).transpose()?,
-            time: column_name("time", time)?,
-            time_unit: time_unit.map(|unit| choice("time_unit", Some(unit), &times)).transpose()?,
-            sensor: column_name("sensor", sensor)?,
-        },
-        speed_of_sound: above_zero("speed_of_sound", speed_of_sound)?,
-        no_echo_m: above_zero("no_echo_m", no_echo_m)?,
-        no_echo: texts("no_echo", no_echo, "values that mean no echo, as texts")?,
-        topics: texts("topics", topics, "the names of topics")?,
-        fields: field_choices(fields, &units)?,
-        judged: flag("judged", Some(judged), false)?,
-    };
-    let (readings, report) = in_background(py, None, move |_| {
-        let mut readings = Vec::new();
-        let report = eeruf_logs::read_log(&path, &options, |_, reading| readings.push(*reading)).map_err(raise)?;
-        if report.sensors.is_empty() {
-            let found: Vec<_> = report.skipped.iter().map(|topic| format!("{}: {}", topic.topic, topic.why)).collect();
-            let message =
-                format!("{}: {}: no sensors; expected ranges; found {}", path.display(), report.form, found.join("; "));
-            return Err(LogError::new_err(message));
+impl<'py> Source<'py> {
+    /// Python's `_source` makes file objects of what is no path, with their names.
+    pub(crate) fn of(source: &Bound<'py, PyAny>) -> PyResult<Self> {
+        if let Ok((object, name)) = source.extract::<(Bound<'py, PyAny>, String)>() {
+            return Ok(Self::Object(object, name.into()));
         }
-        Ok((readings, report))
-    })?;
-    warn_of_each(py, report.warnings.clone())?;
-    let out = PyDict::new(py);
-    let column = |of: fn(&eeruf_logs::Reading) -> f64| read_only(py, readings.iter().map(of));
-    out.set_item("sensor", read_only(py, readings.iter().map(|reading| reading.sensor as i64))?)?;
-    out.set_item("at_ns", read_only(py, readings.iter().map(|reading| reading.at_ns.map_or(-1, u64::cast_signed)))?)?;
-    out.set_item("range_m", column(|reading| reading.range_m)?)?;
-    out.set_item("min_range_m", column(|reading| reading.min_range_m)?)?;
-    out.set_item("max_range_m", column(|reading| reading.max_range_m)?)?;
-    out.set_item("variance", column(|reading| reading.variance.map_or(f64::NAN, f64::from))?)?;
-    out.set_item("names", report.names())?;
-    out.set_item("topics", report.sensors.iter().map(|sensor| sensor.topic.clone()).collect::<Vec<_>>())?;
-    out.set_item("frames", report.sensors.iter().map(|sensor| sensor.frame.clone()).collect::<Vec<_>>())?;
-    out.set_item("damage", report.damage.iter().map(ToString::to_string).collect::<Vec<_>>())?;
-    let skipped = report.skipped.iter().map(|topic| (topic.topic.clone(), topic.why.clone()));
-    out.set_item("skipped", skipped.collect::<Vec<_>>())?;
-    out.set_item("form", &report.form)?;
-    let guess = |guess: &eeruf_logs::Guess| (guess.what.clone(), guess.value.clone(), guess.option.clone());
-    out.set_item("guesses", report.guesses.iter().map(guess).collect::<Vec<_>>())?;
-    out.set_item("warnings", report.warnings)?;
-    out.set_item("firing", report.firing.pattern.as_str())?;
-    out.set_item("proves", report.firing.proves(None))?;
-    Ok(out)
+        source.extract().map(Self::Path).map_err(|_| wrong("log", shown(source), "the path of a log"))
+    }
+
+    /// The log of firings.
+    fn firings(self, py: Python<'_>) -> PyResult<FiringLog> {
+        let log = match self {
+            Self::Path(path) => in_background(py, None, move |_| FiringLog::read(&path).map_err(raise))?,
+            Self::Object(object, name) => {
+                let mut work = Work::begin(py, Some(&object), move |file, results| {
+                    let Some(file) = file else { return };
+                    results.hand_in(FiringLog::read_from(file, &name));
+                })?;
+                work.next(py)?.map_err(raise)?
+            }
+        };
+        warn_of_each(py, log.doubts())?;
+        Ok(log)
+    }
+
+    pub(crate) fn name(&self) -> &Path {
+        match self {
+            Self::Path(name) | Self::Object(_, name) => name,
+        }
+    }
+}
+
+pub(crate) fn warn_of_each(py: Python<'_>, warnings: Vec<String>) -> PyResult<()> {
+    warnings.into_iter().try_for_each(|warning| warn(py, warning))
 }
 
 /// The columns that all tables of firings have.
@@ -168,10 +94,9 @@ fn fired<'a, 'py>(
 /// The firings of a log, as columns, with the clock and the damage.
 #[pyfunction]
 #[pyo3(name = "_read_firings")]
-pub(crate) fn read_firings<'py>(path: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyDict>> {
-    let (py, path) = (path.py(), log_file(path)?);
-    let log = in_background(py, None, move |_| FiringLog::read(&path).map_err(raise))?;
-    warn_of_each(py, log.doubts())?;
+pub(crate) fn read_firings<'py>(source: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyDict>> {
+    let py = source.py();
+    let log = Source::of(source)?.firings(py)?;
     let rows = log.firings.iter().map(|row| (row, true)).chain(log.listened.iter().map(|row| (row, false)));
     let rows: Vec<_> = rows.collect();
     let out = fired(py, rows.iter().map(|row| row.0))?;
@@ -182,24 +107,28 @@ pub(crate) fn read_firings<'py>(path: &Bound<'py, PyAny>) -> PyResult<Bound<'py,
     Ok(out)
 }
 
-/// Replays each firing of a hopping ring's own log through the tracker, as columns.
+/// Replays each firing of a hopping ring's own log through the tracker, as columns; writes them as MCAP.
 #[pyfunction]
 #[pyo3(name = "_replay")]
 pub(crate) fn replay<'py>(
-    path: &Bound<'py, PyAny>,
-    t_delta_us: Option<&Bound<'py, PyAny>>,
-    settings: Option<&Bound<'py, PyAny>>,
+    source: &Bound<'py, PyAny>,
+    judge: &Bound<'py, PyAny>,
+    out: Option<&Bound<'py, PyAny>>,
+    speed_of_sound: &Bound<'py, PyAny>,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let (py, path) = (path.py(), log_file(path)?);
-    let t_delta = t_delta_us.map(|t_delta| micros("t_delta_us", t_delta)).transpose()?;
-    let settings = tracker_settings(t_delta, settings)?;
+    let (py, source) = (source.py(), Source::of(source)?);
+    let (settings, out) = (HoppingSettings::of("judge", Some(judge))?.tracker, out.map(out_file).transpose()?);
+    let speed_of_sound = above_zero("speed_of_sound", speed_of_sound)?;
+    let name = source.name().to_owned();
+    let log = source.firings(py)?;
     let (log, verdicts) = in_background(py, None, move |_| {
-        let log = FiringLog::read(&path).map_err(raise)?;
-        let failed = |error| LogError::new_err(format!("{}: {error}", path.display()));
+        let failed = |error| LogError::new_err(format!("{}: {error}", name.display()));
         let verdicts = eeruf_logs::replay(&log, settings).map_err(failed)?;
+        if let Some(out) = out {
+            write_replayed(&out, &name, &log, &verdicts, speed_of_sound).map_err(raise)?;
+        }
         Ok((log, verdicts))
     })?;
-    warn_of_each(py, log.doubts())?;
     let out = fired(py, log.firings.iter())?;
     out.set_item("kind", read_only(py, verdicts.iter().map(|verdict| verdict.kind as i8))?)?;
     out.set_item("age", read_only(py, verdicts.iter().map(|verdict| verdict.age.map_or(-1, i64::from)))?)?;
@@ -207,6 +136,11 @@ pub(crate) fn replay<'py>(
     out.set_item("logged", read_only(py, log.firings.iter().map(logged))?)?;
     out.set_item("damage", log.damage)?;
     Ok(out)
+}
+
+/// The path of a file to write.
+pub(crate) fn out_file(out: &Bound<'_, PyAny>) -> PyResult<PathBuf> {
+    out.extract().map_err(|_| wrong("out", shown(out), "the path of an MCAP file to write, or None"))
 }
 
 /// Thirty years, so that differences of moments are far from overflow.

@@ -4589,6 +4589,7 @@ def _readings_from_columns(
     columns: dict[str, NDArray[np.float64 | np.int64 | np.int8]],
     paths: dict[str, object],
 ) -> Readings: ...
+
 @final
 class _LogBlocks(Iterator[dict[str, Any]]):
     def __new__(

@@ -1,8 +1,9 @@
 """The program's files are read by the readers that others use."""
 
+import re
 import subprocess
 import sys
-from collections import Counter
+from collections import Counter, defaultdict
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +12,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from mcap.reader import make_reader
+from mcap.writer import Writer
 from mcap_ros2.decoder import DecoderFactory
 from rosbags.highlevel import AnyReader
 
@@ -99,3 +101,30 @@ def test_what_replay_accepts_is_read_by_others(study: Path, tmp_path: Path) -> N
     run("replay", study, "--t-delta-us", 500, "--out", tmp_path / "judged.mcap")
     mine, theirs = by_mcap(tmp_path / "judged.mcap"), by_rosbags(tmp_path / "judged.mcap")
     assert len(mine) == len(theirs) > 500 and {kind for _, kind, _, _ in mine} == {"sensor_msgs/msg/Range"}
+
+
+def by_rerun(file: Path) -> dict[str, set[str]]:
+    """The components of each topic, as Rerun shows it."""
+    rerun, shown = Path(sys.executable).with_name("rerun"), file.with_suffix(".rrd")
+    subprocess.run([rerun, "mcap", "convert", file, "-o", shown], check=True, capture_output=True)
+    said = subprocess.run([rerun, "rrd", "print", "-v", shown], check=True, capture_output=True, text=True).stdout
+    found = defaultdict(set)
+    for topic, columns in re.findall(r" - (/\S+) - data columns: \[(.*)\]", said):
+        found[topic] |= {column.removeprefix(f"{topic}@") for column in columns.split()}
+    return found
+
+
+def test_rerun_shows_a_study_and_leaves_no_topic_raw(study: Path, tmp_path: Path) -> None:
+    shown = by_rerun(study)
+    assert {topic for topic, _, _, _ in by_mcap(study)} <= shown.keys()
+    assert {"Transform3D:translation", "Transform3D:quaternion"} <= shown["/tf"]
+    assert "Scalars:scalars" in shown["/conventional/robot_1/sonar_1"]
+    assert [topic for topic, components in shown.items() if "McapMessage:data" in components] == []
+    # That is how a raw topic shows.
+    with (tmp_path / "raw.mcap").open("wb") as opened:
+        writer = Writer(opened)
+        writer.start()
+        schema = writer.register_schema("odd", "ros2idl", b"odd")
+        writer.add_message(writer.register_channel("/odd", "cdr", schema), 0, b"odd", 0)
+        writer.finish()
+    assert "McapMessage:data" in by_rerun(tmp_path / "raw.mcap")["/odd"]

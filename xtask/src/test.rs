@@ -1,5 +1,4 @@
-//! `cargo xtask test`: everything that must hold before a change goes in; with `--quick`, the part that is worth
-//! knowing while one works, in under two minutes.
+//! `cargo xtask test`: all that must hold before a change goes in; with `--quick` the part that takes two minutes.
 
 use std::collections::BTreeMap;
 use std::process::{Command, ExitCode};
@@ -7,9 +6,9 @@ use std::process::{Command, ExitCode};
 use anyhow::Result;
 use cargo_metadata::{Metadata, MetadataCommand, Package, TargetKind};
 
-use crate::changed;
-use crate::steps::{Beside, Steps, run, run_component, run_line};
-use crate::toolchain::{cargo_of_version, version_of};
+use crate::steps::{Beside, Steps, need, run, run_component, run_line};
+use crate::toolchain::{cargo_of_version, program, version_of};
+use crate::{changed, printed};
 
 /// Steps that take one thread most of the time: on emulated processors, and of C.
 const BESIDE: [&[&str]; 4] = [&["firmware"], &["arduino", "--short"], &["c"], &["micropython"]];
@@ -47,12 +46,8 @@ pub(crate) fn run_all(nothing_skipped: bool) -> ExitCode {
             continue;
         }
         steps.step(&format!("minimum Rust {version}"), || {
-            let mut cargo = cargo_of_version(&version)?;
-            cargo.args(["check", "--locked"]);
-            for package in packages {
-                cargo.args(["--package", &package.name]);
-            }
-            run(&mut cargo)
+            let packages = packages.iter().flat_map(|package| ["--package", &package.name]);
+            run(cargo_of_version(&version)?.args(["check", "--locked"]).args(packages))
         });
     }
     steps.step("public items", crate::api::api);
@@ -61,9 +56,7 @@ pub(crate) fn run_all(nothing_skipped: bool) -> ExitCode {
     steps.step("benches, each once", || {
         run_line("cargo test --workspace --locked --bench design --bench paths --bench simulation --bench wait")
     });
-    steps.step("small tables in the documents", || {
-        crate::printed::check(&crate::printed::documents()?, crate::printed::Which::Small)
-    });
+    steps.step("small tables in the documents", || printed::check(&printed::documents()?, printed::Which::Small));
     steps.step("tests of the core's conversions and formats", || {
         run_line(
             "cargo test --package eeruf-core --lib --test formats --locked \
@@ -71,6 +64,11 @@ pub(crate) fn run_all(nothing_skipped: bool) -> ExitCode {
         )
     });
     steps.step("Python package", crate::python::python);
+    steps.step("bags of ROS 1", || {
+        let (python, packages) = ("/usr/bin/python3", "apt install python3-rosbag python3-sensor-msgs");
+        need(&format!("{python} -c __import__('sensor_msgs'),__import__('rosbag')"), packages)?;
+        run(Command::new(python).arg("crates/eeruf-logs/tests/ros1_bags.py").arg(program()?))
+    });
     steps.step("page in a browser", || crate::page::page(crate::page::Tests::Short));
     steps.step("ROS 2 node", crate::ros2::ros2);
     steps.step("ROS 2 package", crate::ros2::package);

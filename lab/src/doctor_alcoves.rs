@@ -28,8 +28,45 @@ struct Outcome {
     foreign: f64,
     /// Foreign readings by receiver and sender.
     heard: [[u32; SENSORS]; SENSORS],
+    /// Sensors of which the log can tell that they are fooled.
+    tells: [bool; SENSORS],
     /// The same stamps with own echoes only.
     alone: Examination,
+}
+
+/// Readings of one sensor, in order: the phase, the echo in microseconds, and the sender where that is another sensor.
+type Truth = Vec<(u8, f64, Option<u8>)>;
+
+/// Says of which sensors a reader of the log who knows whose sound each reading is could show it by the ranges and
+/// times alone. Under alternating lags: readings are foreign more often at one of the two lags, by four standard
+/// deviations, or move by more than 150 us, 20 times in succession of one sender's sound. Under constant lags: two
+/// sensors read each other in 20 periods.
+fn tells(way: &str, truth: &[Truth]) -> [bool; SENSORS] {
+    let mut told = [false; SENSORS];
+    for (own, readings) in truth.iter().enumerate() {
+        let count = |phase: u8, foreign: bool| {
+            readings.iter().filter(|reading| reading.0 % 2 == phase && (!foreign || reading.2.is_some())).count() as f64
+        };
+        let [(a, in_a), (b, in_b)] = [0, 1].map(|phase| (count(phase, false), count(phase, true)));
+        let all = (in_a + in_b) / (a + b);
+        let deviations = (in_a / a - in_b / b).abs() / (all * (1.0 - all) * (1.0 / a + 1.0 / b)).sqrt();
+        let moves = readings
+            .chunks_exact(2)
+            .filter(|two| two[0].2.is_some() && two[0].2 == two[1].2 && (two[0].1 - two[1].1).abs() > 150.0);
+        let is_mutual = |other: usize| {
+            let both = readings
+                .iter()
+                .zip(&truth[other])
+                .filter(|(mine, theirs)| mine.2 == Some(other as u8) && theirs.2 == Some(own as u8));
+            both.count() >= 20
+        };
+        told[own] = match way {
+            "alternating" => deviations >= 4.0 || moves.count() >= 20,
+            "constant lags" => (0..SENSORS).any(|other| other != own && is_mutual(other)),
+            _ => false,
+        };
+    }
+    told
 }
 
 fn world(number: u64, drives: bool, physics: Physics, sensor: Option<usize>) -> Result<World, Box<dyn Error>> {
@@ -66,6 +103,7 @@ fn examine(readings: &[(u8, f64, f64)], speed_of_sound: f64) -> Result<Examinati
 
 fn outcome(
     number: u64,
+    way: &str,
     method: Method,
     drives: bool,
     periods: u32,
@@ -80,14 +118,18 @@ fn outcome(
     let rows: Vec<_> =
         order.iter().map(|&k| (readings.sensor[k], readings.fired_s[k], readings.earliest_us[k])).collect();
     all.examination = examine(&rows, speed_of_sound)?;
-    for k in 0..readings.len() {
-        if readings.cause[k] == Cause::Crosstalk {
+    let mut truth = vec![Truth::new(); SENSORS];
+    for &k in &order {
+        let sensor = usize::from(readings.sensor[k]);
+        let sender = readings.path_of(k).map(|path| path.emitter.sensor);
+        let sender = sender.filter(|_| readings.cause[k] == Cause::Crosstalk);
+        if let Some(sender) = sender {
             all.foreign += 1.0 / readings.len() as f64;
-            if let Some(path) = readings.path_of(k) {
-                all.heard[usize::from(readings.sensor[k])][usize::from(path.emitter.sensor)] += 1;
-            }
+            all.heard[sensor][usize::from(sender)] += 1;
         }
+        truth[sensor].push((readings.phase[k], readings.earliest_us[k], sender));
     }
+    all.tells = tells(way, &truth);
     let options = Options { seed: Some(number), ..Options::periods(periods) };
     let lone = |sensor| -> Result<Readings, Box<dyn Error>> {
         Ok(simulate(&world(number, drives, physics, Some(sensor))?, "simultaneous".parse()?, &options)?)
@@ -126,24 +168,29 @@ pub(crate) fn main(arguments: &[String]) -> crate::Answer {
     let physics_name = next("plain");
     let physics: Physics = physics_name.parse()?;
     println!("{alcoves} alcoves from {first} on, {periods} periods, physics {physics_name}; 95 % intervals.\n");
-    println!("| firing | robot | crosstalk | none seen | cannot tell | fooled sensors named | alone: none seen |");
-    println!("|---|---|--:|--:|--:|---|---|");
+    println!(
+        "| firing | robot | crosstalk | none seen | cannot tell | fooled: named, of all | of those that tell | alone: none seen |"
+    );
+    println!("|---|---|--:|--:|--:|--:|---|---|");
     let (mut sum, mut telling, mut verdicts) = ([[0; 2]; 4], 0, 0);
     for (way, method) in WAYS {
         for drives in [false, true] {
             let method: Method = method.parse()?;
             let numbers: Vec<_> = (first..first + alcoves).collect();
             let all = sweep(&numbers, |&number| {
-                outcome(number, method, drives, periods, physics).map_err(|error| format!("alcove {number}: {error}"))
+                outcome(number, way, method, drives, periods, physics)
+                    .map_err(|error| format!("alcove {number}: {error}"))
             });
             let all = all.into_iter().collect::<Result<Vec<_>, _>>()?;
             let logs = |is: &dyn Fn(&Outcome) -> bool| all.iter().filter(|outcome| is(outcome)).count();
             let of = |verdict| logs(&|outcome: &Outcome| outcome.examination.verdict == verdict);
             let well = |outcome: &Outcome| outcome.examination.verdict == Verdict::NoneSeen;
             let sums = |outcome: &Outcome| outcome.heard.map(|row| row.iter().sum::<u32>());
-            let fooled: usize = all.iter().map(|o| sums(o).iter().filter(|n| **n >= 20).count()).sum();
-            let named: usize =
-                all.iter().map(|o| o.examination.fooled.iter().filter(|s| sums(o)[**s] >= 20).count()).sum();
+            let fooled = |o: &Outcome| -> Vec<usize> { (0..SENSORS).filter(|&s| sums(o)[s] >= 20).collect() };
+            let named = |o: &Outcome, s: &usize| o.examination.fooled.contains(s);
+            let sensors = |is: &dyn Fn(&Outcome, &usize) -> bool| -> usize {
+                all.iter().map(|o| fooled(o).iter().filter(|s| is(o, s)).count()).sum()
+            };
             let counts = [
                 (logs(&|o| well(o) && o.foreign > 0.05), logs(&|o| o.foreign > 0.05)),
                 (logs(&|o| o.examination.fooled.iter().any(|&s| sums(o)[s] == 0)), all.len()),
@@ -158,12 +205,14 @@ pub(crate) fn main(arguments: &[String]) -> crate::Answer {
                 (telling, verdicts) = (telling + all.len(), verdicts + all.len() - of(Verdict::CannotTell));
             }
             println!(
-                "| {way} | {} | {} | {} | {} | {} | {} |",
+                "| {way} | {} | {} | {} | {} | {} of {} | {} | {} |",
                 if drives { "drives" } else { "stands" },
                 of(Verdict::Crosstalk),
                 of(Verdict::NoneSeen),
                 of(Verdict::CannotTell),
-                share(named, fooled),
+                sensors(&named),
+                sensors(&|_, _| true),
+                share(sensors(&|o, s| o.tells[*s] && named(o, s)), sensors(&|o, s| o.tells[*s])),
                 share(logs(&|o| o.alone.verdict == Verdict::NoneSeen), all.len()),
             );
         }

@@ -10,6 +10,7 @@ use crate::reading::{Echo, Reading};
 
 use mirror::mirrored;
 use series::Series;
+use statistics::Dependence;
 
 /// Readings that are kept.
 const MOST_READINGS: usize = 1 << 18;
@@ -171,9 +172,8 @@ impl Doctor {
                 few += 1;
                 continue;
             };
-            let table = own.by_class(&classes);
-            let (share, deviations) = (table.distance(), table.deviations());
-            if table.fewest() < FEWEST {
+            let Dependence { share, deviations, count } = own.dependence(&classes);
+            if count < FEWEST {
                 few += 1;
             } else if deviations >= DEVIATIONS && share >= LEAST_SHARE {
                 found.fooled.push(sensor);
@@ -182,7 +182,7 @@ impl Doctor {
                     name(sensor),
                     100.0 * share
                 ));
-            } else if share >= LEAST_SHARE + 1.0 / f64::from(table.fewest()).sqrt() {
+            } else if share >= LEAST_SHARE + 1.0 / f64::from(count).sqrt() {
                 unclear += 1;
             }
         }

@@ -1,9 +1,14 @@
 //! The readings of one sensor, in order of time.
 
-use super::statistics::Contingency;
+use super::statistics::{Changes, Contingency, Dependence};
 
 /// Echoes this close to the next one, in microseconds, are of one steady value.
 const NEXT_US: f64 = 100.0;
+/// Changes of an echo, beyond what driving explains, are alike from each of these to the next, in microseconds;
+/// smaller ones are none.
+const CHANGES_US: [f64; 5] = [150.0, 500.0, 1500.0, 3000.0, 7000.0];
+/// An echo changes by at most this share of the time that passes: the robot drives at up to 2 m/s.
+const DRIVING: f64 = 0.012;
 /// A steady value that spans more moves.
 const STEADY_US: f64 = 600.0;
 
@@ -94,42 +99,47 @@ impl Series {
         Some((lags.iter().map(|lag| (!lag.is_nan()).then_some(*lag > threshold)).collect(), gap))
     }
 
-    /// Counts of the readings in two classes of firings: by steady value, or without echo, if the sensor stands; else
-    /// by whether a reading lies before, on or behind the line between its neighbours, which are of the other class.
-    pub(crate) fn by_class(&self, classes: &[Option<bool>]) -> Contingency {
-        if !self.moves() {
-            let values = self.steady();
-            let mut table = Contingency::new(values.len() + 2);
-            for (&us, class) in self.echo_us.iter().zip(classes) {
-                let place = values.iter().position(|value| (value.from_us..=value.to_us).contains(&us));
-                let category = if us.is_nan() { 0 } else { place.map_or(1, |place| 2 + place) };
-                class.iter().for_each(|&class| table.add(class, category));
-            }
-            return table;
+    /// How far the readings depend on the class of the firing: those of a sensor that stands by their shares of steady
+    /// values, and of silence, in each class; those of one that moves by how a reading changes to the next one, which
+    /// is of the other class.
+    pub(crate) fn dependence(&self, classes: &[Option<bool>]) -> Dependence {
+        if self.moves() { self.changes(classes).dependence() } else { self.by_class(classes).dependence() }
+    }
+
+    fn by_class(&self, classes: &[Option<bool>]) -> Contingency {
+        let values = self.steady();
+        let mut table = Contingency::new(values.len() + 2);
+        for (&us, class) in self.echo_us.iter().zip(classes) {
+            let place = values.iter().position(|value| (value.from_us..=value.to_us).contains(&us));
+            let category = if us.is_nan() { 0 } else { place.map_or(1, |place| 2 + place) };
+            class.iter().for_each(|&class| table.add(class, category));
         }
-        /// The two neighbours of a reading differ by less than that, however fast a robot drives.
-        const NEIGHBOURS_US: f64 = 400.0;
-        /// A reading is off the line from this on.
-        const OFF_US: f64 = 150.0;
-        let mut table = Contingency::new(3);
-        let mut k = 1;
+        table
+    }
+
+    /// Pairs of a reading and the next one, by how much later the echo of the one class is than that of the other, or
+    /// which of the two has none. Own echoes change as often one way as the other.
+    fn changes(&self, classes: &[Option<bool>]) -> Changes {
+        let mut changes = Changes::new(CHANGES_US.len() + 1);
+        let mut k = 0;
         while k + 1 < self.echo_us.len() {
-            let [before, own, after] = [k - 1, k, k + 1].map(|k| (self.echo_us[k], classes[k]));
-            let off = own.0 - 0.5 * (before.0 + after.0);
-            match own.1 {
-                Some(class)
-                    if before.1 == Some(!class)
-                        && after.1 == Some(!class)
-                        && (before.0 - after.0).abs() < NEIGHBOURS_US
-                        && !off.is_nan() =>
-                {
-                    table.add(class, if off < -OFF_US { 0 } else { 1 + usize::from(off > OFF_US) });
-                    // Triples that share no reading are independent.
+            let (own, next) = (self.echo_us[k], self.echo_us[k + 1]);
+            match (classes[k], classes[k + 1]) {
+                (Some(class), Some(other)) if class != other => {
+                    let (one, two) = if class { (next, own) } else { (own, next) };
+                    let driven_us = DRIVING * (self.at_us[k + 1] - self.at_us[k]);
+                    let size = CHANGES_US.iter().rposition(|&least| (one - two).abs() - driven_us >= least);
+                    changes.add(match (one.is_nan(), two.is_nan()) {
+                        (false, false) => size.map(|size| (one > two, size)),
+                        (true, true) => None,
+                        (is_silent, _) => Some((is_silent, CHANGES_US.len())),
+                    });
+                    // Pairs that share no reading are independent, and both classes are first in turn.
                     k += 3;
                 }
                 _ => k += 1,
             }
         }
-        table
+        changes
     }
 }

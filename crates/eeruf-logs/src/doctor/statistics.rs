@@ -1,5 +1,54 @@
 //! The tests of the doctor, each with a stated rate of false alarms.
 
+/// How far readings depend on the class of their firing.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Dependence {
+    /// The share of the readings that does.
+    pub(crate) share: f64,
+    /// How unlikely chance is, in standard deviations of a normal variable.
+    pub(crate) deviations: f64,
+    /// Number of comparisons.
+    pub(crate) count: u32,
+}
+
+/// Counts of pairs of readings, one of each class: which of the two is greater, by size of the difference.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Changes {
+    counts: Vec<[u32; 2]>,
+    pairs: u32,
+}
+
+impl Changes {
+    pub(crate) fn new(sizes: usize) -> Self {
+        Self { counts: vec![[0, 0]; sizes], pairs: 0 }
+    }
+
+    /// Counts a pair: which of the two is greater, and the size of the difference, if they differ.
+    pub(crate) fn add(&mut self, difference: Option<(bool, usize)>) {
+        self.pairs += 1;
+        if let Some((greater, count)) =
+            difference.and_then(|(greater, size)| Some((greater, self.counts.get_mut(size)?)))
+        {
+            count[usize::from(greater)] += 1;
+        }
+    }
+
+    /// The test of Bowker, that each class is the greater one equally often. Sizes with fewer than 8 pairs are taken
+    /// together.
+    pub(crate) fn dependence(&self) -> Dependence {
+        let (mut cells, mut rest) = (vec![], [0.0, 0.0]);
+        for [one, other] in self.counts.iter().map(|counts| counts.map(f64::from)) {
+            if one + other >= 8.0 { cells.push([one, other]) } else { rest = [rest[0] + one, rest[1] + other] }
+        }
+        if rest[0] + rest[1] >= 8.0 {
+            cells.push(rest);
+        }
+        let statistic: f64 = cells.iter().map(|[one, other]| (one - other).powi(2) / (one + other)).sum();
+        let share = cells.iter().map(|[one, other]| (one - other).abs()).sum::<f64>() / f64::from(self.pairs.max(1));
+        Dependence { share, deviations: chi_square_deviations(statistic, cells.len()), count: self.pairs }
+    }
+}
+
 /// Counts of readings for each of two classes: `[class][category]`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Contingency {
@@ -21,13 +70,14 @@ impl Contingency {
         [0, 1].map(|class| self.counts[class].iter().copied().map(f64::from).sum())
     }
 
-    /// The smaller class's number.
-    pub(crate) fn fewest(&self) -> u32 {
-        self.totals().into_iter().fold(f64::INFINITY, f64::min) as u32
+    /// The share by which the classes differ is half the sum of the differences of their shares; comparisons are as
+    /// many as the smaller class has.
+    pub(crate) fn dependence(&self) -> Dependence {
+        let count = self.totals().into_iter().fold(f64::INFINITY, f64::min) as u32;
+        Dependence { share: self.distance(), deviations: self.deviations(), count }
     }
 
-    /// The share of readings by which the two classes differ: half the sum of the differences of shares.
-    pub(crate) fn distance(&self) -> f64 {
+    fn distance(&self) -> f64 {
         let [a, b] = self.totals();
         if a == 0.0 || b == 0.0 {
             return 0.0;
@@ -39,7 +89,7 @@ impl Contingency {
 
     /// The chi-square statistic of independence in standard deviations of a normal variable. Categories
     /// of which fewer than 5 are expected in a class are taken together.
-    pub(crate) fn deviations(&self) -> f64 {
+    fn deviations(&self) -> f64 {
         let [a, b] = self.totals();
         let all = a + b;
         if a == 0.0 || b == 0.0 {
@@ -99,7 +149,7 @@ mod tests {
         // By hand: all expected 50, so 4 * 20^2 / 50 = 32, of one degree of freedom.
         let differ = table([70, 30], [30, 70]);
         assert!((differ.deviations() - chi_square_deviations(32.0, 1)).abs() < 1e-9);
-        assert!((differ.distance() - 0.4).abs() < 1e-12 && differ.fewest() == 100);
+        assert!((differ.distance() - 0.4).abs() < 1e-12 && differ.dependence().count == 100);
         assert!(table([50, 50], [50, 50]).deviations() < 0.0);
         // 3 of 100 are expected 1.5 times in a class: too few to count for themselves.
         assert_eq!(table([97, 3], [100, 0]).deviations(), table([97, 3], [100, 0]).deviations());

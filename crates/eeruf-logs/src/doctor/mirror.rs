@@ -10,9 +10,10 @@ pub(crate) struct Mirrored {
     pub(crate) both: u32,
     /// Of these, readings that are each other's.
     pub(crate) agree: u32,
-    /// Readings that nearly are: of a wall before both sensors there would be as many in as wide a band.
+    /// Readings that nearly are: a difference that only passes by is that three times as often, as the band is three
+    /// times as wide.
     pub(crate) nearly: u32,
-    /// Readings that are far from it: two sensors whose echoes come from one wall would have none.
+    /// Readings that are far from it: two sensors that fire together before one wall would have none.
     pub(crate) far: u32,
     /// The range in microseconds of the readings that agree.
     pub(crate) spread_us: f64,
@@ -59,6 +60,6 @@ pub(crate) fn mirrored(x: &Series, y: &Series, period_us: f64) -> Mirrored {
 impl Mirrored {
     /// Returns true if the two read each other's sound, and neither chance nor a wall before both explains it.
     pub(crate) fn is_mutual(&self) -> bool {
-        self.agree >= 20 && self.agree >= 2 * self.nearly && 2 * self.far >= self.both && self.spread_us >= 150.0
+        self.agree >= 24 && self.agree >= self.nearly && 10 * self.far >= self.both && self.spread_us >= 90.0
     }
 }

@@ -99,9 +99,9 @@ impl Series {
         Some((lags.iter().map(|lag| (!lag.is_nan()).then_some(*lag > threshold)).collect(), gap))
     }
 
-    /// How far the readings depend on the class of the firing: those of a sensor that stands by their shares of steady
-    /// values, and of silence, in each class; those of one that moves by how a reading changes to the next one, which
-    /// is of the other class.
+    /// Dependence of the readings on the class of the firing: of a sensor that stands by the shares of steady values,
+    /// and of silence, in each class; of one that moves by the change from a reading to the next one, which is of the
+    /// other class.
     pub(crate) fn dependence(&self, classes: &[Option<bool>]) -> Dependence {
         if self.moves() { self.changes(classes).dependence() } else { self.by_class(classes).dependence() }
     }

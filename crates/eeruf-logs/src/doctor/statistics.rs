@@ -1,11 +1,11 @@
 //! The tests of the doctor, each with a stated rate of false alarms.
 
-/// How far readings depend on the class of their firing.
+/// Dependence of readings on the class of their firing.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Dependence {
     /// The share of the readings that does.
     pub(crate) share: f64,
-    /// How unlikely chance is, in standard deviations of a normal variable.
+    /// Standard deviations of a normal variable that is as unlikely by chance.
     pub(crate) deviations: f64,
     /// Number of comparisons.
     pub(crate) count: u32,

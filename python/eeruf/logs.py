@@ -104,9 +104,6 @@ def _opened(log: object) -> Iterator[object]:
         except ImportError:
             raise ArgumentError(f"log = {log!r:.60}; expected fsspec, which opens it: pip install fsspec") from None
         files, path = fsspec.core.url_to_fs(log)
-    elif isinstance(log, (str, os.PathLike)):
-        yield log
-        return
     elif isinstance(log, io.TextIOBase):
         yield _Text(log), _name(log)
         return
@@ -115,6 +112,9 @@ def _opened(log: object) -> Iterator[object]:
         return
     elif hasattr(log, "fs") and hasattr(log, "path"):
         files, path = log.fs, log.path
+    elif isinstance(log, (str, os.PathLike)):
+        yield log
+        return
     else:
         raise ArgumentError(f"log = {log!r:.60}; expected the path of a log, a URL or a file object")
     name = str(log) if is_url else str(path)

@@ -168,7 +168,7 @@ pub(crate) fn read(input: impl Read, file: &Path) -> Result<FiringLog, FileError
         let Some(line) = source.next().map_err(failed)? else { break };
         sample.push(line);
     }
-    let header = Header::of(&sample, matches!(source, Source::Objects(_)));
+    let header = Header::of(&sample, source.is_document());
     let header = header.map_err(|message| FileError::new(file, message))?;
     let clock = sample.iter().find_map(|line| line.text.trim().strip_prefix('#')).unwrap_or_default().trim();
     let clock = clock.trim_start_matches("clock:").trim();

@@ -29,7 +29,7 @@ const RANGES: &str = "\
     range ranges distance distances dist sonar sonars ultrasonic ultrasound ultrasonics hcsr ping abstand \
     entfernung value values";
 const SENSORS: &str = "\
-    sensor id name channel ch frame topic sonar sensor_id sensorid frame_id entity_id source instance device \
+    sensor id name channel ch frame topic sonar _field sensor_id sensorid frame_id entity_id source instance device \
     device_id";
 const OTHERS: &str = "\
     battery bat voltage volt volts current temp temperature humidity hum pressure seq sequence index entry idx \
@@ -40,7 +40,13 @@ const OTHERS: &str = "\
     pir button led type orientation unit units given solo steady batt vbat vcc watt percent soc enc encoders tick \
     ticks tof sharp acceleration accelerometer gyroscope mag magnetometer imu gps sat ax ay az gx gy gz mx my mz \
     vx vy vz q servo cmd linear angular valid ok enabled bump bumper touch contact estop hz fps deg degc lux feed \
-    stat orient elevation";
+    stat orient elevation adc analog analogue ttl";
+
+/// Lines that a sketch draws to fix a plotter's axis.
+const LIMITS: &str = "min max minimum maximum lower upper lower_limit upper_limit";
+/// Units that are a name on their own.
+const UNITS: &str = "cm mm inch inches meters metres centimeters centimetres millimeters millimetres";
+const FILTERS: &str = "filtered filter smoothed smooth avg average averaged mean median kalman ema sma lowpass lpf";
 
 /// Returns true if a list, parted by spaces, has this word.
 fn is_in(list: &str, word: &str) -> bool {
@@ -70,6 +76,12 @@ fn words(name: &str) -> Vec<String> {
 
 /// By the last part of a path; where that says nothing, by all of it.
 pub(crate) fn meaning(name: &str) -> Meaning {
+    // QGroundControl names distances by the sensor's direction: `distanceSensor.rotationPitch270`.
+    if let Some((sensor, _)) = name.rsplit_once(".rotation")
+        && meaning_of(sensor) == Meaning::Range
+    {
+        return Meaning::Range;
+    }
     let last = name.rsplit_once('.').map_or(Meaning::Vague, |(_, last)| meaning_of(last));
     if last == Meaning::Vague { meaning_of(name) } else { last }
 }
@@ -99,7 +111,12 @@ fn meaning_of(name: &str) -> Meaning {
     }
     // The distance now, beside its limits.
     let is_distance_now = has(RANGES) && has("current");
-    if has(OTHERS) && !is_distance_now || whole == "changes" || whole == "expected_us" || whole == "sends" {
+    if has(OTHERS) && !is_distance_now
+        || is_in(LIMITS, &whole)
+        || whole == "changes"
+        || whole == "expected_us"
+        || whole == "sends"
+    {
         return Meaning::Other;
     }
     if is_in(SENSORS, &whole) || has("frame") && has("id") {
@@ -119,7 +136,7 @@ fn is_unit(word: &str) -> bool {
 pub(crate) fn range_unit(name: &str) -> Option<(RangeUnit, bool)> {
     let words = words(name);
     let last = words.last()?;
-    if let Some(unit) = value::unit(last).filter(|_| words.len() > 1 || last == "cm" || last == "mm") {
+    if let Some(unit) = value::unit(last).filter(|_| words.len() > 1 || is_in(UNITS, last)) {
         return Some((unit, unit != RangeUnit::Us || words.iter().any(|word| is_in(ECHOES, word))));
     }
     // A number after it, as in `cm2`.
@@ -138,6 +155,35 @@ fn time_word(word: &str) -> Option<TimeUnit> {
         "s" | "sec" | "secs" | "seconds" => TimeUnit::S,
         _ => return None,
     })
+}
+
+/// A name without words for ranges, units, filters and copies: which sensor it is of.
+pub(crate) fn stem(name: &str) -> Vec<String> {
+    let mut words = words(name);
+    words.retain(|word| ![RANGES, FILTERS, ECHOES, "raw copy"].iter().any(|list| is_in(list, word)) && !is_unit(word));
+    words
+}
+
+/// Returns true for the name of what a filter made of readings.
+pub(crate) fn is_filtered(name: &str) -> bool {
+    words(name).iter().any(|word| is_in(FILTERS, word))
+}
+
+/// Returns true for the name of a reading before it became a range, without a unit.
+pub(crate) fn is_raw(name: &str) -> bool {
+    let words = words(name);
+    words.iter().any(|word| word == "raw") && !words.iter().any(|word| is_unit(word))
+}
+
+/// Returns true for a pin of an analogue converter, as `A0`.
+pub(crate) fn is_analogue_pin(name: &str) -> bool {
+    let pin = name.trim().strip_prefix(['A', 'a']).and_then(|pin| pin.parse::<u8>().ok());
+    pin.is_some_and(|pin| pin < 16)
+}
+
+/// Returns true for the name of a column of dates.
+pub(crate) fn is_date(name: &str) -> bool {
+    words(name).iter().any(|word| is_in("date datetime datum", word))
 }
 
 /// The unit of times in a name.

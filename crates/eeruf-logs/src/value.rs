@@ -42,6 +42,8 @@ const NO_ECHO: &[&str] = &[
     ".inf",
     ".nan",
     "<na>",
+    "--.--",
+    "unknown",
     "#n/a",
 ];
 
@@ -129,6 +131,17 @@ pub(crate) fn calendar_ns(text: &str) -> Option<u64> {
         let rest = rest.trim_start_matches(['s', ',', ' ']);
         let ns = if rest.is_empty() { 0 } else { time_of_day_ns(rest)? };
         return days.parse::<u64>().ok()?.checked_mul(DAY_NS)?.checked_add(ns);
+    }
+    // As IFTTT and Kibana write it: `January 1, 2026 at 02:00PM`, `Jan 1, 2026 @ 14:00:00.100`.
+    if let Some((date, time)) = text.split_once(" at ").or_else(|| text.split_once(" @ ")) {
+        let words: Vec<_> = date.split([' ', ',']).filter(|word| !word.is_empty()).collect();
+        let [month, day, year] = words[..] else { return None };
+        let month = 1 + MONTHS.iter().position(|name| month.starts_with(name))?;
+        let day_ns = u64::try_from(days(&format!("{year}-{month}-{day}"))?).ok()?.checked_mul(DAY_NS)?;
+        return day_ns.checked_add(match time.find(['A', 'P']) {
+            Some(at) => calendar_ns(&format!("{}:00 {}", &time[..at], &time[at..]))?,
+            None => time_of_day_ns(time)?,
+        });
     }
     // As `date` and C print it: `Tue Jan  2 12:00:01 2024`.
     if text.starts_with(char::is_alphabetic) {
@@ -241,6 +254,15 @@ fn esp_idf(line: &str) -> Option<(u64, &str)> {
     Some((ms.parse::<u64>().ok()?.checked_mul(1_000_000)?, said.trim_start()))
 }
 
+/// `01-31 14:00:00.100  1234`, as Android's log begins a line, in a year without a name.
+fn logcat(line: &str) -> Option<(u64, &str)> {
+    let (date, rest) = line.split_once(' ')?;
+    let (time, rest) = rest.split_once(' ')?;
+    let day = days(&format!("1970-{date}")).filter(|_| date.len() == 5)?;
+    let ns = time_of_day_ns(time).filter(|_| time.contains('.'))?;
+    Some((u64::try_from(day).ok()? * DAY_NS + ns, rest.trim_start()))
+}
+
 const LEVELS: [&str; 7] = ["DEBUG", "INFO", "WARN", "WARNING", "ERROR", "CRITICAL", "FATAL"];
 
 /// A line without the level and the name before it, as Python's logging prints them: `INFO:sonar:left: 40`.
@@ -265,7 +287,13 @@ fn elapsed_ns(text: &str) -> Option<u64> {
 /// Nanoseconds of a time in brackets: a date, seconds, seconds and those since the line before, or a time with a unit.
 fn bracketed_ns(inner: &str) -> Option<u64> {
     let seconds = |text: &str| number(text, false).filter(|&s| text.contains('.') && (0.0..1e10).contains(&s));
-    calendar_ns(inner).or_else(|| elapsed_ns(inner)).or_else(|| {
+    // A level and the name of a program may follow.
+    let is_level = |rest: &str| rest.split(' ').next().is_some_and(|word| LEVELS.contains(&word));
+    let leveled = inner.split_once(' ').filter(|(_, rest)| is_level(rest)).and_then(|(time, _)| calendar_ns(time));
+    // Zephyr parts microseconds from milliseconds.
+    let parted = inner.rsplit_once(',').filter(|(time, us)| us.len() == 3 && time.contains('.'));
+    let parted = parted.and_then(|(time, us)| calendar_ns(&format!("{time}{us}")));
+    calendar_ns(inner).or(leveled).or(parted).or_else(|| elapsed_ns(inner)).or_else(|| {
         let words: Vec<_> = inner.split_whitespace().map(seconds).collect::<Option<_>>()?;
         (words.len() <= 2).then(|| words.first().map(|s| (s * 1e9).round() as u64))?
     })
@@ -300,7 +328,7 @@ fn plain_time(line: &str) -> Option<(u64, &str)> {
 /// A time before the readings of a line, as serial monitors, loggers and `dmesg` write it, and the rest of the line.
 pub(crate) fn prefix(line: &str) -> Option<(u64, &str)> {
     let line = line.trim_start();
-    if let Some(found) = esp_idf(line).or_else(|| syslog(line)) {
+    if let Some(found) = esp_idf(line).or_else(|| syslog(line)).or_else(|| logcat(line)) {
         return Some(found);
     }
     let (mut time, mut rest) = (None, line);
@@ -309,7 +337,10 @@ pub(crate) fn prefix(line: &str) -> Option<(u64, &str)> {
         let (inner, after) = (inner.trim(), after.trim_start());
         let is_name = inner.starts_with(char::is_alphabetic)
             && (time.is_none() || LEVELS.contains(&inner) || after.starts_with([':', '[']));
-        match bracketed_ns(inner).filter(|_| time.is_none()) {
+        // Arduino's log of an ESP32: `[  1234][I][main.cpp:42]`, in milliseconds.
+        let is_level = matches!(after.as_bytes(), [b'[', b'E' | b'W' | b'I' | b'D' | b'V', b']', ..]);
+        let ms = inner.parse::<u64>().ok().filter(|_| is_level).and_then(|ms| ms.checked_mul(1_000_000));
+        match ms.or_else(|| bracketed_ns(inner)).filter(|_| time.is_none()) {
             Some(ns) => time = Some(ns),
             None if is_name => {}
             None => break,
@@ -325,7 +356,8 @@ pub(crate) fn prefix(line: &str) -> Option<(u64, &str)> {
     if rest.starts_with([',', ';']) {
         return None;
     }
-    let rest = ["->", ">", ":", "- "].iter().find_map(|arrow| rest.strip_prefix(arrow)).unwrap_or(rest).trim_start();
+    let rest =
+        ["->", ">", ":", "- ", "# "].iter().find_map(|arrow| rest.strip_prefix(arrow)).unwrap_or(rest).trim_start();
     let after_level = |level: &&str| rest.strip_prefix(*level)?.strip_prefix(' ');
     let after_name = LEVELS.iter().find_map(|level| Some(rest.split_once(&format!(" - {level} - "))?.1));
     let rest = LEVELS.iter().find_map(after_level).or(after_name).unwrap_or(rest).trim_start();

@@ -39,6 +39,8 @@ pub(super) struct Column {
     pub(super) distinct: BTreeMap<String, usize>,
     pub(super) has_unit_in_cells: Option<RangeUnit>,
     pub(super) units: usize,
+    /// A unit in which every second cell says the range of the one before it again.
+    pub(super) repeated_unit: Option<RangeUnit>,
 }
 
 impl Column {
@@ -58,6 +60,7 @@ impl Column {
             distinct: BTreeMap::new(),
             has_unit_in_cells: None,
             units: 0,
+            repeated_unit: None,
         }
     }
 
@@ -98,6 +101,27 @@ impl Column {
     /// Returns true for numbers beyond every range, such as times since 1970.
     pub(super) fn is_beyond(&self) -> bool {
         self.numbers.iter().filter(|&&number| number > 1e8).count() * 2 > self.numbers.len()
+    }
+
+    /// Returns true for numbers that rise, or stay, and are seconds, milli-, micro- or nanoseconds since 1970.
+    pub(super) fn is_epoch(&self) -> bool {
+        let is_in = |number: &f64| [1.0, 1e3, 1e6, 1e9].iter().any(|unit| (1e9..2.2e9).contains(&(number / unit)));
+        let falls = self.numbers.windows(2).filter(|two| two[1] < two[0]).count();
+        !self.numbers.is_empty() && self.numbers.iter().all(is_in) && falls * 10 <= self.numbers.len()
+    }
+
+    /// Days before 1970 at which a spreadsheet's or MATLAB's numbers of days begin, if the column holds such.
+    pub(super) fn days_before_1970(&self) -> Option<f64> {
+        // From 2000 to 2100.
+        const YEARS: std::ops::Range<f64> = 10_957.0..47_482.0;
+        let before = [25_569.0, 719_529.0];
+        let is_in = |before: f64| self.numbers.iter().all(|day| YEARS.contains(&(day - before)));
+        let steps = self.steps();
+        // Read as seconds, a ring would fire within a millisecond.
+        let is_short = steps.get(steps.len() / 2).is_some_and(|&step| step < 1e-3);
+        let is_date = names::is_date(&self.name) && steps.last().is_none_or(|&step| step < 31.0);
+        let has_fractions = self.numbers.iter().any(|number| number.fract() != 0.0);
+        before.into_iter().find(|&before| is_in(before) && has_fractions && (is_short || is_date))
     }
 
     /// Returns true for whole numbers that count from the first sensor to the last again and again.

@@ -23,6 +23,8 @@ pub(crate) struct Line {
     /// Returns false for a last line that nothing ends, which may be cut.
     pub(crate) is_ended: bool,
     pub(crate) is_too_long: bool,
+    /// A reading may stand in it, but not in the form of the log.
+    pub(crate) is_misfit: bool,
 }
 
 /// A text without a terminal's sequences for colours: `ESC [`, numbers, `m`.
@@ -86,11 +88,18 @@ impl<'a> Lines<'a> {
         let mut parts = text.split('\r').peekable();
         let first = parts.next().unwrap_or_default().to_owned();
         let is_last = parts.peek().is_none();
-        let line = Line { number: self.number, text: first, is_ended: is_ended || !is_last, is_too_long };
+        let line =
+            Line { number: self.number, text: first, is_ended: is_ended || !is_last, is_too_long, is_misfit: false };
         while let Some(part) = parts.next() {
             self.number += 1;
             let is_ended = is_ended || parts.peek().is_some();
-            self.pending.push_back(Line { number: self.number, text: part.to_owned(), is_ended, is_too_long: false });
+            self.pending.push_back(Line {
+                number: self.number,
+                text: part.to_owned(),
+                is_ended,
+                is_too_long: false,
+                is_misfit: false,
+            });
         }
         Ok(Some(line))
     }
@@ -133,7 +142,7 @@ impl<'a> Objects<'a> {
                     return Ok(None);
                 }
                 let text = String::from_utf8_lossy(&record).into_owned();
-                return Ok(Some(Line { number: begin, text, is_ended: false, is_too_long }));
+                return Ok(Some(Line { number: begin, text, is_ended: false, is_too_long, is_misfit: false }));
             };
             self.input.consume(1);
             self.number += u64::from(byte == b'\n');
@@ -169,7 +178,7 @@ impl<'a> Objects<'a> {
                     open.pop();
                     if open.is_empty() {
                         let text = String::from_utf8_lossy(&record).into_owned();
-                        return Ok(Some(Line { number: begin, text, is_ended: true, is_too_long }));
+                        return Ok(Some(Line { number: begin, text, is_ended: true, is_too_long, is_misfit: false }));
                     }
                 }
                 _ => {}

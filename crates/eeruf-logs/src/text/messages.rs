@@ -1,8 +1,9 @@
 //! Messages as `ros2 topic echo` and `rostopic echo` print them: maps by indentation, each ended by a line of `---`.
 
+use std::collections::BTreeSet;
 use std::io;
 
-use serde_json::{Map, Value as Json};
+use serde_json::Value as Json;
 
 use super::lines::{Line, Lines};
 use crate::value;
@@ -28,8 +29,8 @@ pub(super) fn next(lines: &mut Lines<'_>) -> io::Result<Option<Line>> {
                 continue;
             }
             let is_too_long = bytes > LONGEST;
-            let text = object(&message).map_or_else(|| message.join("\n"), |object| object.to_string());
-            return Ok(Some(Line { number: first, text, is_ended: true, is_too_long }));
+            let text = object(&message).map_or_else(|| message.join("\n"), |values| written(&values));
+            return Ok(Some(Line { number: first, text, is_ended: true, is_too_long, is_misfit: false }));
         }
         if message.is_empty() {
             first = line.number;
@@ -40,7 +41,80 @@ pub(super) fn next(lines: &mut Lines<'_>) -> io::Result<Option<Line>> {
         }
     }
     let text = message.join("\n");
-    Ok((!message.is_empty()).then_some(Line { number: first, text, is_ended: false, is_too_long: bytes > LONGEST }))
+    Ok((!message.is_empty()).then_some(Line {
+        number: first,
+        text,
+        is_ended: false,
+        is_too_long: bytes > LONGEST,
+        is_misfit: false,
+    }))
+}
+
+/// Returns true for a list of maps, as YAML has it, on its own or below one key.
+pub(super) fn are_list(start: &str) -> bool {
+    let mut lines = start.lines().filter(|line| !is_outside(line)).peekable();
+    if lines.peek().is_some_and(|line| entry(line).is_some_and(|(_, value)| value.is_empty())) {
+        lines.next();
+    }
+    let Some(first) = lines.next() else { return false };
+    let indentation = first.len() - first.trim_start().len();
+    let is_first = first.trim_start().strip_prefix("- ").is_some_and(|line| entry(line).is_some());
+    let is_second = |line: &str| line.starts_with(&" ".repeat(indentation + 2)) && entry(line).is_some();
+    is_first && lines.next().is_some_and(is_second)
+}
+
+fn is_outside(line: &str) -> bool {
+    line.trim().is_empty() || line.trim_start().starts_with('#') || line.trim_end() == "---"
+}
+
+/// A list of maps, as YAML has it.
+pub(super) struct List<'a> {
+    lines: Lines<'a>,
+    /// The line that begins a record.
+    begun: Option<Line>,
+    /// The keys of the first record, which each record has.
+    keys: Option<Vec<String>>,
+}
+
+impl<'a> List<'a> {
+    pub(super) const fn new(lines: Lines<'a>) -> Self {
+        Self { lines, begun: None, keys: None }
+    }
+
+    /// The next record, as a JSON object of its values by their paths; text if it is damaged.
+    pub(super) fn next(&mut self) -> io::Result<Option<Line>> {
+        let is_begin = |line: &Line| line.text.trim_start().starts_with("- ");
+        while self.begun.is_none() {
+            match self.lines.next()? {
+                // The key above the list.
+                Some(line) if is_outside(&line.text) || (self.keys.is_none() && !is_begin(&line)) => {}
+                Some(line) => self.begun = Some(line),
+                None => return Ok(None),
+            }
+        }
+        let Some(first) = self.begun.take() else { return Ok(None) };
+        let indentation = first.text.len() - first.text.trim_start().len();
+        let (mut record, mut bytes, mut is_ended) = (vec![first.text.replacen("- ", "  ", 1)], 0, first.is_ended);
+        while let Some(line) = self.lines.next()? {
+            let own = line.text.len() - line.text.trim_start().len();
+            if is_begin(&line) && own <= indentation {
+                self.begun = Some(line);
+                break;
+            }
+            is_ended = line.is_ended;
+            bytes += line.text.len();
+            if bytes <= LONGEST && !is_outside(&line.text) {
+                record.push(line.text);
+            }
+        }
+        let is_whole = is_begin(&first) && is_ended && record.iter().all(|line| line.starts_with(' '));
+        let values = object(&record).filter(|_| is_whole).filter(|values| {
+            let keys: Vec<_> = values.iter().map(|(key, _)| key.clone()).collect();
+            self.keys.get_or_insert_with(|| keys.clone()) == &keys
+        });
+        let text = values.map_or_else(|| format!("{{ {}", record.join("\n")), |values| written(&values));
+        Ok(Some(Line { number: first.number, text, is_ended, is_too_long: bytes > LONGEST, is_misfit: false }))
+    }
 }
 
 /// A key and what follows it on the line, of `key: value` or `key:`.
@@ -57,8 +131,9 @@ fn is_part(line: &str) -> bool {
 
 /// The values of a message; nothing for one with a line that has no key, or with a key that comes twice, as where the
 /// line between two messages is lost.
-fn object(message: &[String]) -> Option<Json> {
-    let mut values = Map::new();
+fn object(message: &[String]) -> Option<Vec<(String, Json)>> {
+    let mut values = vec![];
+    let mut paths = BTreeSet::new();
     // Keys that are open, each with its indentation, and the number of elements of a list below it.
     let mut open: Vec<(usize, String, usize)> = vec![];
     for line in message {
@@ -87,11 +162,20 @@ fn object(message: &[String]) -> Option<Json> {
             }
             None => (parent, rest),
         };
-        if !text.is_empty() && values.insert(path, scalar(text)).is_some() {
-            return None;
+        if !text.is_empty() {
+            if !paths.insert(path.clone()) {
+                return None;
+            }
+            values.push((path, scalar(text)));
         }
     }
-    Some(Json::Object(values))
+    Some(values)
+}
+
+/// Values by their paths as a JSON object, in their order.
+pub(super) fn written(values: &[(String, Json)]) -> String {
+    let fields: Vec<_> = values.iter().map(|(path, value)| format!("{}:{value}", Json::from(path.as_str()))).collect();
+    format!("{{{}}}", fields.join(","))
 }
 
 /// A value: a list in brackets, a number, or text without quotes and without the dot before `inf` and `nan`.
@@ -120,10 +204,23 @@ mod tests {
             "ranges[0]": 0.5, "ranges[1]": 1.5, "data": [1, 2], "list[0].a": 1, "list[0].b": 2, "list[1].a": 3,
             "name": "",
         });
-        assert_eq!(object(&lines), Some(expected));
+        let values = object(&lines).unwrap();
+        assert_eq!(serde_json::from_str::<Json>(&written(&values)).unwrap(), expected);
+        assert_eq!(values[0].0, "header.stamp.sec");
         for damaged in ["range: 0.5\nrange: 0.6", "frame_id: a\nra", "range: 0.5\n- 1\n- 2\n 7"] {
             let lines: Vec<_> = damaged.lines().map(str::to_owned).collect();
             assert_eq!(object(&lines), None, "{damaged}");
+        }
+    }
+
+    #[test]
+    fn list_of_maps_begins_with_a_map_of_two() {
+        assert!(are_list("- t: 0.0\n  front: 40\n"));
+        assert!(are_list("# run 3\nreadings:\n  - t: 0.0\n    front: 40\n"));
+        for text in
+            ["- 40\n- 41\n", "- t: 0\n- t: 1\n", "t: 0\nfront: 40\n", "-- t: 0\n   a: 1\n", "- t: 0\nfront: 4\n"]
+        {
+            assert!(!are_list(text), "{text}");
         }
     }
 

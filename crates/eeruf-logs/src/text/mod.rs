@@ -3,14 +3,20 @@
 //! A line that is damaged gives no reading: one with a cell that is neither a number nor a word for no echo, with more
 //! or fewer cells than the others, or one that ends without a line break and is shorter than it may be.
 
+mod boot;
 mod column;
+mod esphome;
 mod guesses;
 mod lines;
 mod messages;
 mod recognise;
+mod repeats;
+mod rewriter;
 mod rows;
+mod sample;
 mod shape;
 mod source;
+mod tables;
 
 use std::io::Read;
 use std::path::Path;
@@ -20,7 +26,7 @@ use crate::sink::{Sink, Skipped};
 use eeruf_files::FileError;
 
 pub(crate) use lines::Line;
-pub(crate) use recognise::is_comment;
+pub(crate) use sample::is_comment;
 pub(crate) use shape::{Separator, json, separated};
 pub(crate) use source::Source;
 
@@ -59,6 +65,6 @@ pub(crate) fn read(input: impl Read, file: &Path, options: &Options, sink: &mut 
     while let Some(line) = source.next().map_err(failed)? {
         rows.line(&line);
     }
-    rows.end();
+    rows.end(source.left_out);
     Ok(())
 }

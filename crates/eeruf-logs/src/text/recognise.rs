@@ -9,7 +9,8 @@ use eeruf_files::FileError;
 
 use super::column::{Column, Role};
 use super::lines::Line;
-use super::shape::{self, Separator, Shape, is_rule, is_underline};
+use super::sample::{Stripped, is_comment, shape_of, strip, usual};
+use super::shape::{self, Separator, Shape, is_underline};
 use crate::names::{self, Meaning};
 use crate::value;
 
@@ -28,6 +29,8 @@ pub(super) struct NoEcho {
 pub(super) struct Plan {
     pub(super) shape: Shape,
     pub(super) has_prefix: bool,
+    /// The text that nearly each line has before its pairs.
+    pub(super) lead: String,
     pub(super) decimal_comma: bool,
     pub(super) columns: Vec<Column>,
     pub(super) by_name: HashMap<String, usize>,
@@ -44,6 +47,8 @@ pub(super) struct Plan {
     /// Each row is of one sensor: the empty cells of the others are no silence.
     pub(super) one_a_row: bool,
     pub(super) is_first_cut: bool,
+    /// Times are numbers of days since this many before 1970.
+    pub(super) days_before_1970: Option<f64>,
     /// The column that says the unit of its row's range.
     pub(super) unit: Option<usize>,
     /// The column that says by what a row's sensor measures, and the number of ultrasound.
@@ -61,48 +66,8 @@ pub(super) struct Plan {
     pub(super) skipped: Vec<Skipped>,
 }
 
-pub(crate) fn is_comment(text: &str) -> bool {
-    let text = text.trim_start();
-    // MATLAB's; `%time` begins a header. Weka's begin with `@`.
-    let is_percent = text.starts_with("% ") || text == "%";
-    text.is_empty()
-        || text.starts_with('#')
-        || is_percent
-        || text.starts_with("//")
-        || text.starts_with('@')
-        || text.to_lowercase().starts_with("sep=")
-}
-
 pub(super) fn guess(what: &str, value: impl Into<String>, option: &str) -> Guess {
     Guess { what: what.to_owned(), value: value.into(), option: option.to_owned() }
-}
-
-/// Lines without comments, with what a serial monitor puts before them taken off.
-struct Stripped<'a> {
-    lines: Vec<(u64, &'a str)>,
-    has_prefix: bool,
-    has_rules: bool,
-}
-
-fn strip(sample: &[Line]) -> Stripped<'_> {
-    let lines: Vec<_> =
-        sample.iter().filter(|line| !is_comment(&line.text)).map(|line| (line.number, line.text.trim())).collect();
-    let rules = lines.iter().filter(|line| is_rule(line.1)).count();
-    let values = lines.iter().filter(|line| !is_rule(line.1) && value::range(line.1, true).is_some()).count();
-    // Where a line is one value, dashes part messages only if they follow each.
-    let has_rules = rules > 0 && (values * 2 < lines.len() - rules || rules * 2 + 1 >= lines.len());
-    let lines: Vec<_> = lines.into_iter().filter(|line| !(has_rules && is_rule(line.1))).collect();
-    let with = lines.iter().filter(|(_, text)| value::prefix(text).is_some_and(|(_, rest)| !rest.is_empty())).count();
-    let first = lines.first().map_or("", |line| line.1);
-    let is_header = value::prefix(first).is_none()
-        && !first.contains([':', '='])
-        && names::meaning(first.split([' ', '\t', ',', ';']).next().unwrap_or_default()) == Meaning::Time;
-    let has_prefix = with > 0 && with * 10 >= lines.len() * 6 && !is_header;
-    let strip = |(number, text): (u64, _)| {
-        let rest = value::prefix(text).filter(|_| has_prefix).map_or(text, |found| found.1);
-        (number, value::without_level(rest))
-    };
-    Stripped { lines: lines.into_iter().map(strip).collect(), has_prefix, has_rules }
 }
 
 /// Recognises a log by its first lines.
@@ -112,11 +77,12 @@ pub(super) fn recognise(
     (records, is_of_objects): (Option<&str>, bool),
     options: &Options,
 ) -> Result<Plan, FileError> {
-    let Stripped { lines, has_prefix, has_rules } = strip(sample);
+    let Stripped { lines, has_prefix, has_rules, lead } = strip(sample);
     let (shape, decimal_comma) = if is_of_objects { (Shape::Json, false) } else { shape_of(&lines) };
     let mut plan = Plan {
         shape,
         has_prefix,
+        lead,
         decimal_comma,
         columns: vec![],
         by_name: HashMap::new(),
@@ -129,6 +95,7 @@ pub(super) fn recognise(
         no_echo: NoEcho::default(),
         one_a_row: false,
         is_first_cut: false,
+        days_before_1970: None,
         unit: None,
         medium: None,
         greetings: BTreeSet::new(),
@@ -156,64 +123,13 @@ pub(super) fn recognise(
     if has_prefix {
         plan.guesses.push(guess("time", "before each line, as a serial monitor or a logger writes it", "--time"));
     }
-    plan.roles(file, options)?;
+    plan.roles(file, &lines, options)?;
     plan.one_a_row = plan.is_one_a_row(&lines);
     plan.range_units(&units, options);
     plan.no_echoes(options);
     plan.times(options);
     plan.by_name = plan.columns.iter().enumerate().map(|(index, column)| (column.name.clone(), index)).collect();
     Ok(plan)
-}
-
-/// The shape that fits most lines best, and whether numbers have a decimal comma.
-fn shape_of(lines: &[(u64, &str)]) -> (Shape, bool) {
-    let total = lines.len().max(1);
-    let json = lines.iter().filter(|(_, text)| text.starts_with('{') && shape::json(text).is_some()).count();
-    if json * 2 >= total {
-        return (Shape::Json, false);
-    }
-    let pairs: Vec<_> = lines.iter().filter_map(|(_, text)| shape::keyed(text)).collect();
-    let has_comma = |texts: &mut dyn Iterator<Item = &str>| {
-        let (mut comma, mut point) = (false, false);
-        for text in texts {
-            let number = value::with_unit(text, true).is_some();
-            comma |= number && text.contains(',');
-            point |= number && text.contains('.');
-        }
-        comma && !point
-    };
-    let is_value = |(_, text): &(String, String)| value::range(text, true).is_some_and(|_| !text.is_empty());
-    let valued = pairs.iter().filter(|pairs| pairs.iter().any(is_value)).count();
-    if valued * 2 >= total {
-        let comma = has_comma(&mut pairs.iter().flatten().map(|(_, text)| text.as_str()));
-        return (Shape::Keyed, comma);
-    }
-    let mut best = (0.0, Separator::None, false);
-    // A comma in each line is a decimal mark only below a header of one name.
-    let is_decimal = |text: &str| text.split_once(',').is_none_or(|(whole, rest)| whole.len() < 3 || rest.len() < 3);
-    let has_one_name = lines.iter().take(5).any(|(_, text)| text.contains(char::is_alphabetic) && !text.contains(','))
-        && lines.iter().all(|(_, text)| is_decimal(text));
-    for separator in Separator::ALL.into_iter().chain([Separator::None]) {
-        let rows: Vec<_> = lines.iter().filter_map(|(_, text)| shape::separated(text, separator)).collect();
-        let width = usual(rows.iter().map(Vec::len));
-        if width < 2 && separator != Separator::None {
-            continue;
-        }
-        let usual: Vec<_> = rows.iter().filter(|row| row.len() == width).collect();
-        let cells = || usual.iter().flat_map(|row| row.iter().map(String::as_str));
-        let comma = has_comma(&mut cells()) && (separator != Separator::None || has_one_name);
-        let is_clean = |text: &&str| value::range(text, comma).is_some() || value::calendar_ns(text).is_some();
-        let is_word = |text: &&str| !text.contains([',', ';', '\t', '|', ':', '=']);
-        let clean = cells().filter(is_clean).count() as f64;
-        let words = cells().filter(|text| !is_clean(text) && is_word(text)).count() as f64;
-        let share = usual.len() as f64 / total as f64;
-        let score = share * (clean + 0.5 * words) / cells().count().max(1) as f64;
-        // A table that some lines do not fit is one all the same.
-        if score > best.0 + 1e-9 {
-            best = (score, separator, comma);
-        }
-    }
-    (Shape::Separated(best.1), best.2)
 }
 
 /// Columns that `ros2 topic echo --csv` prints of a Range, whose last came with Iron.
@@ -248,13 +164,6 @@ fn is_echoed_range(rows: &[(u64, Vec<String>)], width: usize) -> bool {
     };
     let fit = rows.iter().filter(|(_, row)| is_one(row)).count();
     (8..=9).contains(&width) && !rows.is_empty() && fit * 10 >= rows.len() * 8
-}
-
-/// The number that comes most often.
-fn usual(numbers: impl Iterator<Item = usize>) -> usize {
-    let mut counts = BTreeMap::new();
-    numbers.for_each(|number| *counts.entry(number).or_insert(0) += 1);
-    counts.into_iter().max_by_key(|&(number, count)| (count, number)).map_or(0, |(number, _)| number)
 }
 
 impl Plan {
@@ -301,8 +210,9 @@ impl Plan {
         {
             before = rest;
         }
-        let mut header =
-            before.iter().rposition(|(_, row)| is_header(row) && (row.len() == width || width <= row.len() + 1));
+        let is_near = |row: &Vec<String>| width <= row.len() + 1;
+        let header = before.iter().rposition(|(_, row)| is_header(row) && row.len() == width);
+        let mut header = header.or_else(|| before.iter().rposition(|(_, row)| is_header(row) && is_near(row)));
         let mut units = vec![];
         if let Some(at) = header
             && at > 0
@@ -327,7 +237,8 @@ impl Plan {
             let mut comments = comments.filter_map(|line| line.text.trim().strip_prefix(['#', '%']));
             names = comments.find_map(|text| {
                 let row = shape::separated(text.trim(), separator)?;
-                (row.len() == width && width > 1 && is_header(&row)).then_some(row)
+                let is_pair = row.first().is_some_and(|cell| cell.ends_with(':'));
+                (row.len() == width && width > 1 && is_header(&row) && !is_pair).then_some(row)
             });
         }
         self.rows_from = match header {
@@ -369,6 +280,7 @@ impl Plan {
             self.guesses.push(guess("header", said, "--columns"));
         }
         let mut names = names.unwrap_or_default();
+        names.iter_mut().for_each(|name| name.truncate(name.trim_end_matches(':').len()));
         names.truncate(width.max(1));
         (names.len()..width).for_each(|n| names.push(format!("column {}", n + 1)));
         self.columns = names.iter().map(|name| Column::new(name)).collect();
@@ -384,12 +296,14 @@ impl Plan {
             *number >= self.rows_from && row.len() == width && self.header.as_ref() != Some(row)
         };
         for (number, row) in rows.iter().filter(is_row) {
-            firsts.push((*number, row.first().map_or(0, String::len)));
+            let cell = row.first().map_or("", String::as_str);
+            firsts.push((*number, cell.len(), value::with_unit(cell, comma).and_then(|(_, unit)| unit)));
             self.columns.iter_mut().zip(row).for_each(|(column, text)| column.note(text, comma));
         }
         // A log of a serial line begins in the middle of a line.
-        if let [(number, first), rest @ ..] = &firsts[..] {
-            let is_shorter = rest.iter().all(|(_, other)| first < other) && rest.len() >= 3;
+        if let [(number, first, unit), rest @ ..] = &firsts[..] {
+            let mut alike = rest.iter().filter(|(_, _, other)| other == unit);
+            let is_shorter = rest.len() >= 3 && alike.all(|(_, other, _)| first < other);
             self.is_first_cut = self.header.is_none() && *number == 1 && is_shorter && !self.columns[0].begins_evenly();
         }
         Ok(units)
@@ -399,7 +313,7 @@ impl Plan {
     fn named(&mut self, lines: &[(u64, &str)]) {
         let mut counts: BTreeMap<String, usize> = BTreeMap::new();
         let mut order = vec![];
-        let split = |text: &str| if self.shape == Shape::Json { shape::json(text) } else { shape::keyed(text) };
+        let split = |text: &str| if self.shape == Shape::Json { shape::object(text) } else { shape::keyed(text) };
         let rows: Vec<_> = lines.iter().filter_map(|(_, text)| split(text)).collect();
         for (pairs, (_, text)) in lines.iter().filter_map(|line| Some((split(line.1)?, line))) {
             let begin = order.len();
@@ -411,8 +325,11 @@ impl Plan {
                 }
             }
             // Objects give their names by the alphabet.
-            let place =
-                |name: &String| text.find(&format!("\"{}\"", name.split(['.', '[']).next().unwrap_or_default()));
+            let place = |name: &String| {
+                let find = |part: Option<&str>| text.find(&format!("\"{}\"", part?));
+                let whole = find(Some(name));
+                (whole.or_else(|| find(name.split(['.', '[']).next())), find(name.rsplit('.').next()))
+            };
             order[begin..].sort_by_key(place);
         }
         if self.shape == Shape::Keyed {
@@ -424,7 +341,8 @@ impl Plan {
         }
         // A name that a damaged line makes up comes once.
         let most = counts.values().max().copied().unwrap_or(0);
-        let is_kept = |name: &String| self.shape == Shape::Json || most < 4 || counts[name] > 1;
+        let is_text = |name: &String| !name.contains(|letter: char| letter == '\u{fffd}' || letter.is_control());
+        let is_kept = |name: &String| is_text(name) && (self.shape == Shape::Json || most < 4 || counts[name] > 1);
         let kept = order.into_iter().filter(is_kept).take(MOST_SENSORS);
         self.columns = kept.map(|name| Column::new(&name)).collect();
         let by_name: HashMap<_, _> =
@@ -442,7 +360,7 @@ impl Plan {
         found.ok_or_else(|| FileError::new(file, format!("no column `{name}`; expected one of: {}", names())))
     }
 
-    fn roles(&mut self, file: &Path, options: &Options) -> Result<(), FileError> {
+    fn roles(&mut self, file: &Path, lines: &[(u64, &str)], options: &Options) -> Result<(), FileError> {
         let table = &options.table;
         let ranges = table.ranges.iter().map(|name| self.place(file, name)).collect::<Result<Vec<_>, _>>()?;
         let time = table.time.as_ref().map(|name| self.place(file, name)).transpose()?;
@@ -488,7 +406,7 @@ impl Plan {
                     Meaning::Range | Meaning::Vague if column.empties > 0 && column.distinct.is_empty() => Role::Empty,
                     Meaning::Vague if column.calendars > 0 && column.texts + column.numbers.len() == 0 => Role::Time,
                     Meaning::Vague if is_place && self.is_counter(index) => Role::Other,
-                    Meaning::Vague if is_place && self.is_clock(index) => Role::Time,
+                    Meaning::Vague if is_place && (self.is_clock(index) || column.is_epoch()) => Role::Time,
                     // The beginning of the header is cut off.
                     Meaning::Vague if !has_time && self.is_clock(index) && self.is_even(index) => Role::Time,
                     Meaning::Vague if is_place && column.is_cycle() => Role::Sensor,
@@ -517,6 +435,7 @@ impl Plan {
         if ranges.is_empty() {
             self.one_range_beside_a_sensor();
         }
+        self.repetitions(lines, options);
         self.sensor_column(file, sensor, &ranges)?;
         let other = |column: &&Column| column.role == Role::Other && column.is_numeric && ranges.is_empty();
         let skipped = self.columns.iter().filter(other).map(|column| Skipped {
@@ -646,7 +565,8 @@ impl Plan {
         let (ranges, named) = (of(&Role::Range), of(&Role::Sensor));
         let is_label = |index: &usize| {
             let column = &self.columns[*index];
-            let is_key = column.name.eq_ignore_ascii_case("id") && column.texts > 2;
+            let counts = column.numbers.len() > 2 && column.numbers.windows(2).all(|two| two[1] == two[0] + 1.0);
+            let is_key = column.name.eq_ignore_ascii_case("id") && (column.texts > 2 || counts);
             let is_key = is_key && column.distinct.values().all(|&count| count == 1);
             let is_whole = column.numbers.iter().all(|number| number.fract() == 0.0);
             is_whole && !is_key && (1..=64).contains(&column.distinct.len())

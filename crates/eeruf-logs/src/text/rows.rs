@@ -9,8 +9,10 @@ use crate::sink::{Sink, Skipped};
 
 use super::column::{Column, Role};
 use super::lines::Line;
-use super::recognise::{MOST_SENSORS, Plan, is_comment};
+use super::recognise::{MOST_SENSORS, Plan};
+use super::sample::is_comment;
 use super::shape::{self, Shape, is_rule};
+use crate::names::{self, Meaning};
 use crate::value::{self, Value};
 
 pub(super) struct Rows<'a, 's, 'e> {
@@ -103,6 +105,9 @@ impl<'a, 's, 'e> Rows<'a, 's, 'e> {
         if line.is_too_long {
             return Err(damaged("more than 65536 bytes without a line break".to_owned()));
         }
+        if line.is_misfit {
+            return Err(damaged(format!("`{}` is not in the form of the log", short(&line.text))));
+        }
         let text = line.text.trim_matches([' ', '\u{feff}']);
         let is_bad = |letter: char| letter == '\u{fffd}' || (letter.is_control() && letter != '\t' && letter != '\n');
         if text.contains(is_bad) {
@@ -111,13 +116,15 @@ impl<'a, 's, 'e> Rows<'a, 's, 'e> {
         let (time, text) = if self.plan.has_prefix {
             match value::prefix(text) {
                 Some((time, rest)) => (Some(time), rest),
-                None if self.is_header(text) => return Err(Unread::Other),
+                // Pandas prints the name of an index on a line of its own.
+                None if self.is_header(text) || names::meaning(text) == Meaning::Time => return Err(Unread::Other),
                 None => return Err(damaged(format!("`{}` has no time before it", short(text)))),
             }
         } else {
             (None, text)
         };
         let text = value::without_level(text);
+        let text = text.strip_prefix(self.plan.lead.as_str()).unwrap_or(text);
         if std::mem::take(&mut self.is_first) {
             return Err(damaged(format!("`{}` is shorter than the others: its beginning may be cut off", short(text))));
         }
@@ -132,10 +139,12 @@ impl<'a, 's, 'e> Rows<'a, 's, 'e> {
                 while cells.len() > width && cells.last().is_some_and(String::is_empty) {
                     cells.pop();
                 }
-                // Lines that a reset repeats, and the end of a database's print: `(2 rows)`.
-                let is_remark =
-                    self.plan.greetings.contains(text) || (text.starts_with('(') && text.ends_with(" rows)"));
-                if cells.len() != width && is_remark {
+                // Lines that a reset repeats, and the end of a database's print, as `(2 rows)`.
+                let is_end = text.starts_with('(') && text.ends_with(" rows)")
+                    || text.ends_with(" sec)") && text.contains(" in set (");
+                let is_remark = self.plan.greetings.contains(text) || is_end;
+                let is_sentence = line.is_ended && (cells.len() != width || width == 1) && self.is_sentence(text);
+                if cells.len() != width && is_remark || is_sentence {
                     return Err(Unread::Other);
                 }
                 if cells.len() != width {
@@ -146,16 +155,23 @@ impl<'a, 's, 'e> Rows<'a, 's, 'e> {
                 cells.into_iter().enumerate().collect()
             }
             Shape::Json => {
-                let pairs = shape::json(text).ok_or_else(|| {
+                let pairs = shape::object(text).ok_or_else(|| {
                     let is_text = !text.contains(['{', '}', '[', ']', ':']);
                     if is_text { Unread::Other } else { damaged(format!("`{}` is no JSON object", short(text))) }
                 })?;
+                let has_lead = |name: &str| name == "topic" || name == "before";
+                if !text.starts_with(['{', '['])
+                    && pairs.first().is_some_and(|(name, _)| has_lead(name) && !self.plan.by_name.contains_key(name))
+                {
+                    return Err(damaged(format!("`{}`; expected an object, as in the other lines", short(text))));
+                }
                 self.by_name(pairs)
             }
             Shape::Keyed => {
                 let Some(pairs) = shape::keyed(text) else {
                     let has_digit = text.contains(|letter: char| letter.is_ascii_digit());
-                    return Err(if has_digit || !line.is_ended {
+                    let is_other = text.split_once(':').is_some_and(|(name, _)| names::meaning(name) == Meaning::Other);
+                    return Err(if (has_digit && !is_other) || !line.is_ended {
                         damaged(format!("`{}`; expected pairs of name and value", short(text)))
                     } else {
                         Unread::Other
@@ -181,6 +197,15 @@ impl<'a, 's, 'e> Rows<'a, 's, 'e> {
         Ok((time, pairs))
     }
 
+    /// Returns true for words without a number, of which none is a sensor's name or a word for no echo.
+    fn is_sentence(&self, text: &str) -> bool {
+        let mut words = text.split(|letter: char| !letter.is_ascii_alphabetic());
+        !text.contains(|letter: char| letter.is_ascii_digit() || ",;|\t:=\"".contains(letter))
+            && words.any(|word| word.len() >= 5)
+            && value::range(text, self.plan.decimal_comma).is_none()
+            && self.plan.known.iter().all(|name| !text.contains(name.as_str()))
+    }
+
     fn is_header(&self, text: &str) -> bool {
         let Shape::Separated(separator) = self.plan.shape else { return false };
         shape::separated(text, separator) == self.plan.header
@@ -199,7 +224,7 @@ impl<'a, 's, 'e> Rows<'a, 's, 'e> {
     }
 
     fn whole(&mut self, line: &Line, cells: &[String]) -> Result<(), Unread> {
-        self.ends_whole(line, cells.len() - 1, &cells[cells.len() - 1])
+        cells.last().map_or(Ok(()), |last| self.ends_whole(line, cells.len() - 1, last))
     }
 
     /// Refuses a last line that no line break ends and whose last value is shorter than others were: it may be cut.
@@ -218,7 +243,7 @@ impl<'a, 's, 'e> Rows<'a, 's, 'e> {
         let mut at_ns = before;
         for &(index, unit) in &self.plan.time {
             if let Some(own) = text(index).filter(|text| !text.is_empty()) {
-                let ns = time_ns(own, unit, self.plan.decimal_comma).ok_or_else(|| {
+                let ns = self.time_ns(own, unit).ok_or_else(|| {
                     let name = &self.plan.columns[index].name;
                     Unread::Damaged(format!("column {name}: `{}`; expected a time of zero or more", short(own)))
                 })?;
@@ -253,6 +278,7 @@ impl<'a, 's, 'e> Rows<'a, 's, 'e> {
             let column = &self.plan.columns[*index];
             match column.role {
                 Role::Range if own.is_empty() && self.plan.one_a_row => continue,
+                Role::Range if own == "unavailable" => continue,
                 Role::Range => {}
                 Role::Empty if own.is_empty() => continue,
                 Role::Empty => {
@@ -299,6 +325,12 @@ impl<'a, 's, 'e> Rows<'a, 's, 'e> {
             self.sink.reading(&reading);
         }
         Ok(())
+    }
+
+    fn time_ns(&self, text: &str, unit: TimeUnit) -> Option<u64> {
+        let Some(before) = self.plan.days_before_1970 else { return time_ns(text, unit, self.plan.decimal_comma) };
+        let days = value::number(text, self.plan.decimal_comma)? - before;
+        (days >= 0.0).then(|| (days * DAY_NS as f64).round() as u64)
     }
 
     /// Times of day begin again at midnight.
@@ -362,6 +394,9 @@ impl<'a, 's, 'e> Rows<'a, 's, 'e> {
                 return Err(Unread::Damaged(message));
             }
         };
+        if own_unit.is_some() && own_unit == column.repeated_unit {
+            return Err(Unread::Other);
+        }
         if own_unit.is_none() && column.needs_unit() {
             return Err(Unread::Damaged(format!("column {name}: `{}` has no unit, as the others have", short(text))));
         }
@@ -380,8 +415,12 @@ impl<'a, 's, 'e> Rows<'a, 's, 'e> {
     }
 
     /// Tells what was left out.
-    pub(super) fn end(self) {
+    pub(super) fn end(self, left_out: u64) {
         let skipped = &mut self.sink.report.skipped;
+        if left_out > 0 {
+            let why = format!("{left_out} lines that a board, a monitor or a logger wrote by itself");
+            skipped.push(Skipped { topic: "the text".to_owned(), why, messages: 0 });
+        }
         if self.of_light > 0 {
             let column = self.plan.medium.map_or("", |(index, _)| &self.plan.columns[index].name);
             let (topic, why) = (column.to_owned(), "no ultrasound, by this column; --range reads them".to_owned());

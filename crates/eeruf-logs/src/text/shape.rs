@@ -52,8 +52,8 @@ impl Separator {
 /// Returns true for a line of dashes, or of another sign, between rows or messages.
 pub(super) fn is_rule(text: &str) -> bool {
     let text = text.trim();
-    text.len() >= 3
-        && ["-", "=", "*", "_"].iter().any(|sign| text.trim_matches(['|', '+']).replace(sign, "").is_empty())
+    let is_of = |sign| text.contains(sign) && text.replace([sign, '+', '|'], "").is_empty();
+    text.len() >= 3 && ['-', '=', '*', '_'].into_iter().any(is_of)
 }
 
 /// Returns true for the line between a header and its rows, as `sqlite3`, `psql` and Markdown draw it.
@@ -71,7 +71,9 @@ fn without_brackets(line: &str) -> &str {
     }
     let pairs = [('[', ']'), ('(', ')'), ('<', '>'), ('{', '}')];
     let inner = pairs.iter().find_map(|&(open, close)| line.strip_prefix(open)?.strip_suffix(close));
-    inner.unwrap_or(line)
+    // Python's tuple of one.
+    let single = inner.and_then(|inner| inner.strip_suffix(',')).filter(|single| !single.contains(','));
+    single.or(inner).unwrap_or(line)
 }
 
 /// A cell without the bracket of a list that begins or ends in it.
@@ -113,8 +115,12 @@ pub(crate) fn separated(line: &str, separator: Separator) -> Option<Vec<String>>
 /// else.
 pub(crate) fn keyed(line: &str) -> Option<Vec<(String, String)>> {
     const BETWEEN: [char; 6] = [',', ';', '|', '\t', ' ', '&'];
+    // A colon of full width, as Chinese and Japanese have it.
+    if line.contains('\u{ff1a}') {
+        return keyed(&line.replace('\u{ff1a}', ":"));
+    }
     if !line.contains([':', '=']) {
-        return worded(line).or_else(|| glued(line));
+        return worded(line).or_else(|| glued(line)).or_else(|| sentence(line));
     }
     let dict = line.trim().strip_prefix('{').and_then(|inner| inner.strip_suffix('}'));
     let (mut rest, mut pairs) = (dict.unwrap_or(line), vec![]);
@@ -131,7 +137,9 @@ pub(crate) fn keyed(line: &str) -> Option<Vec<(String, String)>> {
         let phrase = ["out of range", "no echo", "time out"]
             .iter()
             .find(|phrase| after.get(..phrase.len()).is_some_and(|start| start.eq_ignore_ascii_case(phrase)));
+        let quoted = after.strip_prefix('"').and_then(|inner| inner.find('"'));
         let mut end = match phrase {
+            _ if let Some(length) = quoted => length + 2,
             Some(phrase) => phrase.len(),
             None => after.find([',', ';', '|', '\t', ' ', '&', ')', ']']).unwrap_or(after.len()),
         };
@@ -143,7 +151,7 @@ pub(crate) fn keyed(line: &str) -> Option<Vec<(String, String)>> {
                 end += 1 + digits;
             }
         }
-        let mut text = after[..end].to_owned();
+        let mut text = after[..end].trim_matches('"').to_owned();
         rest = &after[end..];
         // A unit after a space.
         let spaced = rest.trim_start_matches(' ');
@@ -188,6 +196,16 @@ fn worded(line: &str) -> Option<Vec<(String, String)>> {
     (pairs.len() > 1).then_some(pairs)
 }
 
+/// The pair of a sentence that ends with a range and its unit: `Distance to nearest object is 0.4 m`.
+fn sentence(line: &str) -> Option<Vec<(String, String)>> {
+    let at = line.find(|letter: char| letter.is_ascii_digit())?;
+    let (name, text) = (line[..at].trim_end_matches(['-', '+', ' ']), line[at..].trim_end_matches('.'));
+    let is_name = |word: &str| word.len() > 1 && word.chars().all(char::is_alphabetic);
+    let (_, unit) = value::with_unit(text, false)?;
+    let is_sentence = name.split(' ').count() > 1 && name.split(' ').all(is_name) && line[..at].ends_with(' ');
+    (is_sentence && unit.is_some() && name.len() <= 40).then(|| vec![(name.to_owned(), text.to_owned())])
+}
+
 /// The pairs of a line of names with values right behind them, as `F40 L80` or `R0756`.
 fn glued(line: &str) -> Option<Vec<(String, String)>> {
     let mut pairs: Vec<(String, String)> = vec![];
@@ -214,10 +232,45 @@ pub(crate) fn json(text: &str) -> Option<Vec<(String, String)>> {
     Some(pairs)
 }
 
+/// The pairs of an object, with what stands before it as `topic` if it is a path, as an MQTT client prints it, and as
+/// `before` else.
+pub(crate) fn object(text: &str) -> Option<Vec<(String, String)>> {
+    let lead = text.find(['{', '[']).map_or("", |at| &text[..at]);
+    let mut pairs = json(&text[lead.len()..])?;
+    let lead = lead.trim_end_matches([' ', ':', '=', '\t']);
+    let name = if lead.contains('/') { "topic" } else { "before" };
+    if !lead.is_empty() && pairs.iter().all(|(known, _)| known != name) {
+        pairs.insert(0, (name.to_owned(), lead.to_owned()));
+    }
+    Some(pairs)
+}
+
+/// Returns true for a key that a database gives each record: a push ID of Firebase, or a time.
+fn is_record_key(key: &str) -> bool {
+    let is_push_id = key.len() == 20 && key.starts_with('-');
+    is_push_id || (key.len() >= 10 && key.bytes().all(|byte| byte.is_ascii_digit()))
+}
+
+/// The records of an object that has each under a key of its own, perhaps below the name of the list.
+fn rows_by_keys(object: &Json) -> Option<Vec<String>> {
+    let fields = object.as_object()?;
+    if let (1, Some((key, inner))) = (fields.len(), fields.iter().next())
+        && !is_record_key(key)
+    {
+        return rows_by_keys(inner);
+    }
+    let are_records = fields.iter().all(|(key, record)| is_record_key(key) && record.is_object());
+    (are_records && fields.len() > 1).then(|| fields.values().map(Json::to_string).collect())
+}
+
 /// The rows of an object of columns, each a list or, as pandas writes it, an object by the number of the row: objects
 /// of their own. Nothing if it holds anything else.
 pub(crate) fn rows_of_columns(text: &str) -> Option<Vec<String>> {
-    let Json::Object(columns) = serde_json::from_str(text.trim()).ok()? else { return None };
+    let document: Json = serde_json::from_str(text.trim()).ok()?;
+    if let Some(rows) = rows_by_keys(&document) {
+        return Some(rows);
+    }
+    let Json::Object(columns) = document else { return None };
     let is_cell = |cell: &&Json| !cell.is_array() && !cell.is_object();
     let cells = |column: &Json| -> Option<Vec<Json>> {
         let cells: Vec<_> = match column {

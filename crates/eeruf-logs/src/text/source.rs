@@ -4,20 +4,110 @@
 use std::collections::VecDeque;
 use std::io::{self, BufRead, BufReader, Read};
 
+use super::boot;
 use super::lines::{Input, Line, Lines, Objects};
-use super::messages;
+use super::messages::{self, List};
+use super::rewriter::{Rewriter, Rewritten};
 use crate::bytes::Order;
 
-pub(crate) enum Source<'a> {
+/// The records or lines of a text.
+pub(crate) struct Source<'a> {
+    form: Form<'a>,
+    pending: VecDeque<Line>,
+    /// Lines that a board, a monitor or a logger wrote by itself.
+    pub(super) left_out: u64,
+    /// Noise of a board's start may stand here: before the first line, and after a message of the start.
+    may_be_noise: bool,
+}
+
+enum Form<'a> {
     Lines(Lines<'a>),
     Objects(Objects<'a>),
     Messages(Lines<'a>),
+    /// A list of records, as YAML has it.
+    List(List<'a>),
     /// An ArduPilot log as text: many tables in one file, of which one holds ranges.
     DataFlash(Lines<'a>),
+    Rewritten(Lines<'a>, Rewriter),
 }
 
 impl<'a> Source<'a> {
     pub(crate) fn new(input: Box<dyn Read + 'a>) -> io::Result<Self> {
+        let form = Form::new(input)?;
+        Ok(Self { form, pending: VecDeque::new(), left_out: 0, may_be_noise: true })
+    }
+
+    pub(crate) fn next(&mut self) -> io::Result<Option<Line>> {
+        loop {
+            if let Some(line) = self.pending.pop_front() {
+                return Ok(Some(line));
+            }
+            let (line, rewriter) = match &mut self.form {
+                Form::Lines(lines) => (lines.next()?, None),
+                Form::Rewritten(lines, rewriter) => (lines.next()?, Some(rewriter)),
+                Form::Objects(objects) => return objects.next_row(),
+                Form::Messages(lines) => return messages::next(lines),
+                Form::List(list) => return list.next(),
+                Form::DataFlash(lines) => {
+                    let Some(line) = lines.next()? else { return Ok(None) };
+                    self.pending.extend(rangefinder(&line.text).map(|text| Line { text, ..line }));
+                    continue;
+                }
+            };
+            let Some(line) = line else { return Ok(None) };
+            let is_start = boot::is_boot(&line.text);
+            if is_start || (self.may_be_noise && boot::is_noise(&line.text)) {
+                self.may_be_noise = true;
+                self.left_out += 1;
+                continue;
+            }
+            self.may_be_noise &= line.text.trim().is_empty();
+            match rewriter {
+                None => return Ok(Some(line)),
+                Some(rewriter) => match rewriter.rewrite(&line.text) {
+                    Rewritten::Lines(texts) => {
+                        // A header that its first rows bring along stands before them.
+                        let number = |n: usize| line.number - u64::from(n == 0 && texts.len() > 1 && line.number > 0);
+                        let lines = texts.iter().enumerate();
+                        let lines = lines.map(|(n, text)| Line { text: text.clone(), number: number(n), ..line });
+                        self.pending.extend(lines);
+                    }
+                    Rewritten::Nothing => self.left_out += 1,
+                    Rewritten::Misfit => return Ok(Some(Line { is_misfit: true, ..line })),
+                },
+            }
+        }
+    }
+
+    /// The form of a text that is records and no lines.
+    pub(crate) const fn of_records(&self) -> Option<&'static str> {
+        match &self.form {
+            Form::Lines(_) => None,
+            Form::Objects(_) => Some("JSON, a document"),
+            Form::Messages(_) => Some("messages, as `ros2 topic echo` prints them"),
+            Form::List(_) => Some("YAML, a list of records"),
+            Form::DataFlash(_) => Some("RFND of an ArduPilot log"),
+            Form::Rewritten(_, rewriter) => Some(rewriter.form()),
+        }
+    }
+
+    /// Returns true for records of which each is an object.
+    pub(super) const fn is_of_objects(&self) -> bool {
+        match &self.form {
+            Form::Objects(_) | Form::Messages(_) | Form::List(_) => true,
+            Form::Rewritten(_, rewriter) => rewriter.gives_objects(),
+            Form::Lines(_) | Form::DataFlash(_) => false,
+        }
+    }
+
+    /// Returns true for a JSON document.
+    pub(crate) const fn is_document(&self) -> bool {
+        matches!(self.form, Form::Objects(_))
+    }
+}
+
+impl<'a> Form<'a> {
+    fn new(input: Box<dyn Read + 'a>) -> io::Result<Self> {
         let mut input = BufReader::with_capacity(1 << 16, input);
         let first = input.fill_buf()?;
         let (skip, utf16) = match first {
@@ -38,6 +128,12 @@ impl<'a> Source<'a> {
         if messages::are_in(&start) {
             return Ok(Self::Messages(Lines::new(input)));
         }
+        if messages::are_list(&start) {
+            return Ok(Self::List(List::new(Lines::new(input))));
+        }
+        if let Some(rewriter) = Rewriter::of(&start) {
+            return Ok(Self::Rewritten(Lines::new(input), rewriter));
+        }
         if start.starts_with("FMT,") {
             return Ok(Self::DataFlash(Lines::new(input)));
         }
@@ -53,35 +149,6 @@ impl<'a> Source<'a> {
             _ => false,
         };
         Ok(if is_document { Self::Objects(Objects::new(input)) } else { Self::Lines(Lines::new(input)) })
-    }
-
-    pub(crate) fn next(&mut self) -> io::Result<Option<Line>> {
-        match self {
-            Self::Lines(lines) => lines.next(),
-            Self::Objects(objects) => objects.next_row(),
-            Self::Messages(lines) => messages::next(lines),
-            Self::DataFlash(lines) => loop {
-                let Some(line) = lines.next()? else { return Ok(None) };
-                if let Some(text) = rangefinder(&line.text) {
-                    return Ok(Some(Line { text, ..line }));
-                }
-            },
-        }
-    }
-
-    /// The form of a text that is records and no lines.
-    pub(crate) const fn of_records(&self) -> Option<&'static str> {
-        match self {
-            Self::Lines(_) => None,
-            Self::Objects(_) => Some("JSON, a document"),
-            Self::Messages(_) => Some("messages, as `ros2 topic echo` prints them"),
-            Self::DataFlash(_) => Some("RFND of an ArduPilot log"),
-        }
-    }
-
-    /// Returns true for records of which each is an object.
-    pub(super) const fn is_of_objects(&self) -> bool {
-        matches!(self, Self::Objects(_) | Self::Messages(_))
     }
 }
 

@@ -7,7 +7,7 @@ use eeruf_logs::{Echo, FieldChoice, Options, Pattern, RangeUnit, Report, Table, 
 
 /// A log's contents: each sensor's name and its ranges in metres, `-` for no echo, `<` for too close, `!` for no
 /// number; and the seconds between its first two readings.
-fn said(bytes: &[u8], options: &Options) -> (String, Option<f64>, Report) {
+pub(crate) fn said(bytes: &[u8], options: &Options) -> (String, Option<f64>, Report) {
     let mut readings = vec![];
     let report = read_stream(bytes, Path::new("log"), options, |_, reading| readings.push(*reading)).unwrap();
     let text = |sensor: usize| {
@@ -26,7 +26,7 @@ fn said(bytes: &[u8], options: &Options) -> (String, Option<f64>, Report) {
 }
 
 /// Name, text, sensors, and seconds between the first two readings.
-type Form = (&'static str, &'static str, &'static str, Option<f64>);
+pub(crate) type Form = (&'static str, &'static str, &'static str, Option<f64>);
 
 const FORMS: [Form; 106] = [
     ("comma", "left,right\n40,80\n41,81\n", "left: 0.4 0.41; right: 0.8 0.81", None),

@@ -29,6 +29,26 @@ fn logs() -> Vec<String> {
         rows(&|row| format!("{{'t': {}, 'left': {}}}", 1000 + row, value(row, 0))),
         rows(&|row| format!("I ({}) us: left: {}", 1000 + row, value(row, 0))),
         rows(&|row| format!("Jan 12 12:00:{:02} robot us[7]: left={}", row, value(row, 0))),
+        rows(&|row| {
+            let (before, range) = (format!("[12:00:{row:02}][D][ultrasonic.sensor:040]"), value(row, 0));
+            let state = format!("'Front': Sending state 0.{range}00 m with 2 decimals of accuracy");
+            format!("{before}: 'Front' - Got distance: 0.{range} m\n[12:00:{row:02}][D][sensor:126]: {state}")
+        }),
+        "@relation ring\n@attribute t numeric\n@attribute left numeric\n@data\n".to_owned()
+            + &rows(&|row| format!("{},{}", 1000 + row, value(row, 0))),
+        rows(&|row| format!("- t: {}\n  left: {}\n  right: {}", 1000 + row, value(row, 0), value(row, 1))),
+        rows(&|row| format!("ring/{} {{\"distance\":{}}}", ["a", "b"][row % 2], value(row, 0))),
+        rows(&|row| format!("ring left={},right={} 17000000{row:02}000000000", value(row, 0), value(row, 1))),
+        rows(&|row| format!("range{{sensor=\"{}\"}} {} 17000000{row:02}000", ["a", "b"][row % 2], value(row, 0))),
+        "CREATE TABLE ring (t REAL, sensor TEXT, cm REAL);\n".to_owned()
+            + &rows(&|row| {
+                format!("INSERT INTO ring VALUES({},'{}',{});", 1000 + row, ["a", "b"][row % 2], value(row, 0))
+            }),
+        rows(&|row| format!("{{\"log\":\"left: {}\",\"time\":\"2026-01-01T14:00:{row:02}Z\"}}", value(row, 0))),
+        rows(&|row| format!(">left:{}:{}", 1_700_000_000_000u64 + row as u64, value(row, 0))),
+        rows(&|row| format!("Distance to the wall is {} cm", value(row, 0))),
+        "cm,mm\n".to_owned() + &rows(&|row| format!("{},{}0", value(row, 0), value(row, 0))),
+        rows(&|row| format!("{} cm\n{} mm", value(row, 0), 10 * value(row, 0))),
         "t,left,right\n".to_owned()
             + &rows(&|row| {
                 let own = value(row, 0);
@@ -77,9 +97,16 @@ fn nothing_is_read_from_a_damaged_line() {
                 bytes.remove(places[random.below(places.len())]);
             }
             4 => {
-                let junk = [&b"boot: ready\n"[..], b"\n\n\n", b"\xff\xfe\xfd\n", b"Guru Meditation Error\n"];
+                let junk = [
+                    &b"boot: ready\n"[..],
+                    b"\n\n\n",
+                    b"\xff\xfe\xfd\n",
+                    b"Guru Meditation Error\n",
+                    b"ets Jul 29 2019 12:21:46\nload:0x3fff0030,len:1344\nentry 0x400805f0\n",
+                    b"I (29) boot: ESP-IDF v5.1\n",
+                ];
                 let start = bytes[..at].iter().rposition(|&byte| byte == b'\n').map_or(0, |place| place + 1);
-                _ = bytes.splice(start..start, junk[random.below(4)].iter().copied());
+                _ = bytes.splice(start..start, junk[random.below(6)].iter().copied());
             }
             // A line that ends early.
             _ => {

@@ -1,0 +1,147 @@
+//! The first lines of a text: what stands before each, and how their values are parted.
+
+use std::collections::BTreeMap;
+
+use super::lines::Line;
+use super::shape::{self, Separator, Shape, is_rule};
+use crate::names::{self, Meaning};
+use crate::value;
+
+pub(crate) fn is_comment(text: &str) -> bool {
+    let text = text.trim_start();
+    // MATLAB's; `%time` begins a header. Weka's begin with `@`.
+    let is_percent = text.starts_with("% ") || text == "%";
+    text.is_empty()
+        || text.starts_with('#')
+        || is_percent
+        || text.starts_with("//")
+        || text.starts_with('@')
+        || text.to_lowercase().starts_with("sep=")
+}
+
+/// Lines without comments, with what a serial monitor puts before them taken off.
+pub(super) struct Stripped<'a> {
+    pub(super) lines: Vec<(u64, &'a str)>,
+    pub(super) has_prefix: bool,
+    pub(super) has_rules: bool,
+    /// The text that nearly each line has before its pairs: a level, a program, a place in its source.
+    pub(super) lead: String,
+}
+
+pub(super) fn strip(sample: &[Line]) -> Stripped<'_> {
+    let lines: Vec<_> = sample
+        .iter()
+        .filter(|line| !is_comment(&line.text) && !line.is_misfit)
+        .map(|line| (line.number, line.text.trim()))
+        .collect();
+    let rules = lines.iter().filter(|line| is_rule(line.1)).count();
+    let values = lines.iter().filter(|line| !is_rule(line.1) && value::range(line.1, true).is_some()).count();
+    // Where a line is one value, dashes part messages only if they follow each.
+    let has_rules = rules > 0 && (values * 2 < lines.len() - rules || rules * 2 + 1 >= lines.len());
+    let lines: Vec<_> = lines.into_iter().filter(|line| !(has_rules && is_rule(line.1))).collect();
+    let with = lines.iter().filter(|(_, text)| value::prefix(text).is_some_and(|(_, rest)| !rest.is_empty())).count();
+    let first = lines.first().map_or("", |line| line.1);
+    let is_header = value::prefix(first).is_none()
+        && !first.contains([':', '='])
+        && names::meaning(first.split([' ', '\t', ',', ';']).next().unwrap_or_default()) == Meaning::Time;
+    let has_prefix = with > 0 && with * 10 >= lines.len() * 6 && !is_header;
+    let strip = |(number, text): (u64, _)| {
+        let rest = value::prefix(text).filter(|_| has_prefix).map_or(text, |found| found.1);
+        (number, value::without_level(rest))
+    };
+    let mut lines: Vec<_> = lines.into_iter().map(strip).collect();
+    let lead = lead(&lines).to_owned();
+    lines.iter_mut().for_each(|(_, text)| *text = text.strip_prefix(&*lead).unwrap_or(text));
+    Stripped { lines, has_prefix, has_rules, lead }
+}
+
+/// The longest text before pairs of name and value that nine of ten lines have, if they are no pairs with it.
+fn lead<'a>(lines: &[(u64, &'a str)]) -> &'a str {
+    const ENDS: [&str; 6] = ["] ", "> ", ": ", " - ", " # ", ") "];
+    let most = |count: usize| count * 10 >= lines.len() * 9;
+    let is_value = |(_, text): &(String, String)| value::range(text, true).is_some_and(|_| !text.is_empty());
+    let is_clean = |name: &str| {
+        let is_open = name.matches('[').count() != name.matches(']').count();
+        !is_open && !name.starts_with(['-', '[', '<', '|']) && !name.contains(" - ")
+    };
+    let is_pair = |text: &str| {
+        let pairs = shape::keyed(text).unwrap_or_default();
+        pairs.iter().any(is_value) && pairs.iter().all(|(name, _)| is_clean(name))
+    };
+    if lines.iter().filter(|(_, text)| is_pair(text)).count() * 2 >= lines.len() {
+        return "";
+    }
+    let mut best = "";
+    for (_, base) in lines.iter().take(5) {
+        for end in ENDS.iter().flat_map(|end| base.match_indices(end).map(|(at, end)| at + end.len())) {
+            let (own, rest) = base.split_at(end);
+            let is_name = rest.trim_start().starts_with(char::is_alphabetic);
+            if !is_name || own.len() <= best.len() || own.contains('{') {
+                continue;
+            }
+            let rests = lines.iter().filter_map(|(_, text)| text.strip_prefix(own));
+            if most(rests.filter(|rest| is_pair(rest)).count()) {
+                best = own;
+            }
+        }
+    }
+    best
+}
+
+/// The shape that fits most lines best, and whether numbers have a decimal comma.
+pub(super) fn shape_of(lines: &[(u64, &str)]) -> (Shape, bool) {
+    let total = lines.len().max(1);
+    let json = lines.iter().filter(|(_, text)| text.contains('{') && shape::object(text).is_some()).count();
+    if json * 2 >= total {
+        return (Shape::Json, false);
+    }
+    let pairs: Vec<_> = lines.iter().filter_map(|(_, text)| shape::keyed(text)).collect();
+    let has_comma = |texts: &mut dyn Iterator<Item = &str>| {
+        let (mut comma, mut point) = (false, false);
+        for text in texts {
+            let number = value::with_unit(text, true).is_some();
+            comma |= number && text.contains(',');
+            point |= number && text.contains('.');
+        }
+        comma && !point
+    };
+    let is_value = |(_, text): &(String, String)| value::range(text, true).is_some_and(|_| !text.is_empty());
+    let valued = pairs.iter().filter(|pairs| pairs.iter().any(is_value)).count();
+    if valued * 2 >= total {
+        let comma = has_comma(&mut pairs.iter().flatten().map(|(_, text)| text.as_str()));
+        return (Shape::Keyed, comma);
+    }
+    let mut best = (0.0, Separator::None, false);
+    // A comma in each line is a decimal mark only below a header of one name.
+    let is_decimal = |text: &str| text.split_once(',').is_none_or(|(whole, rest)| whole.len() < 3 || rest.len() < 3);
+    let has_one_name = lines.iter().take(5).any(|(_, text)| text.contains(char::is_alphabetic) && !text.contains(','))
+        && lines.iter().all(|(_, text)| is_decimal(text));
+    for separator in Separator::ALL.into_iter().chain([Separator::None]) {
+        let rows: Vec<_> = lines.iter().filter_map(|(_, text)| shape::separated(text, separator)).collect();
+        let width = usual(rows.iter().map(Vec::len));
+        if width < 2 && separator != Separator::None {
+            continue;
+        }
+        let usual: Vec<_> = rows.iter().filter(|row| row.len() == width).collect();
+        let cells = || usual.iter().flat_map(|row| row.iter().map(String::as_str));
+        let comma = has_comma(&mut cells()) && (separator != Separator::None || has_one_name);
+        let is_clean = |text: &&str| value::range(text, comma).is_some() || value::calendar_ns(text).is_some();
+        let is_word = |text: &&str| !text.contains([',', ';', '\t', '|', ':', '=']);
+        let clean = cells().filter(is_clean).count() as f64;
+        let words = cells().filter(|text| !is_clean(text) && is_word(text)).count() as f64;
+        let share = usual.len() as f64 / total as f64;
+        let score = share * (clean + 0.5 * words) / cells().count().max(1) as f64;
+        // A table that some lines do not fit is one all the same.
+        if score > best.0 + 1e-9 {
+            best = (score, separator, comma);
+        }
+    }
+    (Shape::Separated(best.1), best.2)
+}
+
+/// The number that comes most often.
+pub(super) fn usual(numbers: impl Iterator<Item = usize>) -> usize {
+    let mut counts = BTreeMap::new();
+    numbers.for_each(|number| *counts.entry(number).or_insert(0) += 1);
+    counts.into_iter().max_by_key(|&(number, count)| (count, number)).map_or(0, |(number, _)| number)
+}

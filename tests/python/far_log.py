@@ -78,7 +78,7 @@ def main(readings: int) -> None:
             assert serve.stdout is not None
             url = f"http://127.0.0.1:{int(serve.stdout.readline())}"
             judge, out = eeruf.logs.Agree(t_delta_us=20), Path(folder) / "judged.mcap"
-            found = {
+            found: dict[str, Any] = {
                 "table": read(f"{url}/log.csv", judge=judge, out=out),
                 "mcap": read(f"{url}/judged.mcap"),
                 "largest_mb": round(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024, 1),

@@ -108,7 +108,7 @@ def by_rerun(file: Path) -> dict[str, set[str]]:
     rerun, shown = Path(sys.executable).with_name("rerun"), file.with_suffix(".rrd")
     subprocess.run([rerun, "mcap", "convert", file, "-o", shown], check=True, capture_output=True)
     said = subprocess.run([rerun, "rrd", "print", "-v", shown], check=True, capture_output=True, text=True).stdout
-    found = defaultdict(set)
+    found: dict[str, set[str]] = defaultdict(set)
     for topic, columns in re.findall(r" - (/\S+) - data columns: \[(.*)\]", said):
         found[topic] |= {column.removeprefix(f"{topic}@") for column in columns.split()}
     return found

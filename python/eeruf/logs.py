@@ -95,7 +95,7 @@ class _Text:
 
 
 @contextlib.contextmanager
-def _opened(log: object) -> Iterator[object]:
+def _opened(log: object, expected: str = "the path of a log, a URL or a file object") -> Iterator[object]:
     """Give a path as it is, and a file object with its name; close what was opened."""
     is_url = isinstance(log, str) and "://" in log
     if is_url:
@@ -116,7 +116,7 @@ def _opened(log: object) -> Iterator[object]:
         yield log
         return
     else:
-        raise ArgumentError(f"log = {log!r:.60}; expected the path of a log, a URL or a file object")
+        raise ArgumentError(f"log = {log!r:.60}; expected {expected}")
     name = str(log) if is_url else str(path)
     if not name.endswith("/"):
         with files.open(path, "rb") as file:
@@ -720,7 +720,10 @@ def _speed_of_sound(options: _Options) -> float:
 
 
 def _firings(log: Firings | _Log) -> Firings:
-    return log if isinstance(log, Firings) else read_firings(log)
+    if isinstance(log, Firings):
+        return log
+    with _opened(log, "an eeruf.logs.Firings, or the path of a log, a URL or a file object") as source:
+        return Firings(**_eeruf._read_firings(source))
 
 
 def diagnose(log: Firings | _Log, *, tolerance_us: int = 75, max_travel_us: int = 80_000) -> Diagnosis:

@@ -120,12 +120,16 @@ BAD: list[tuple[Callable[[], Any], type[Exception], str]] = [
         "t_delta_us = 2 times; expected one, or one for each of 4 sensors",
     ),
     (lambda: ANY.design(4, 1, 1, 1, atlas="yes"), eeruf.ArgumentError, "atlas = 'yes'; expected True or False"),
-    (lambda: ANY.read_log(3), eeruf.ArgumentError, "path = 3; expected the path of a log"),
+    (lambda: ANY.read_log(3), eeruf.ArgumentError, "log = 3; expected the path of a log, a URL or a file object"),
     (lambda: ANY.read_log("x", ranges="cm"), eeruf.ArgumentError, "ranges = 'cm'; expected the names of columns"),
     (lambda: ANY.read_log("x", time=3), eeruf.ArgumentError, "time = 3; expected the name of a column, or None"),
     (lambda: ANY.read_log("x", time_unit="h"), eeruf.ArgumentError, 'time_unit = \'h\'; expected "s" or "ms"'),
     (lambda: ANY.read_log("x", no_echo_m=0), eeruf.ArgumentError, "no_echo_m = 0; expected a number above 0"),
-    (lambda: ANY.diagnose(3), eeruf.ArgumentError, "log = 3; expected an eeruf.logs.Firings or the path of a log"),
+    (
+        lambda: ANY.diagnose(3),
+        eeruf.ArgumentError,
+        "log = 3; expected an eeruf.logs.Firings, or the path of a log, a URL or a file object",
+    ),
     (lambda: ANY.survey(FIRINGS, until_us=-1), eeruf.ArgumentError, "until_us = -1"),
     (
         lambda: ANY.logs.Firings.of(sensor=["a"], fired_us=[0], period=[0], phase=[0], t_echo_us=[1]),

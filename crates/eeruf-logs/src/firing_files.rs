@@ -39,11 +39,12 @@ impl FiringLog {
     pub fn read_from(mut input: impl Read, name: &Path) -> Result<Self, FileError> {
         let failed = |error: io::Error| FileError::reading(name, &error);
         let first = form::first_bytes(&mut input).map_err(failed)?;
-        let input = first.as_slice().chain(input);
-        let Form::Packed(packing) = Form::of(&first, name) else { return Self::of_form(&first, input, name) };
+        let mut input = first.as_slice().chain(input);
+        let Form::Packed(packing) = Form::of(&first, name) else { return Self::of_form(&first, &mut input, name) };
+        let input: &mut dyn Read = &mut input;
         let (mut error, mut unpacked) = (None, packing.unpack(BufReader::new(input)).map_err(failed)?);
         let first = form::first_bytes(UntilError::new(&mut unpacked, &mut error)).map_err(failed)?;
-        let read = Self::of_form(&first, UntilError::new(first.as_slice().chain(unpacked), &mut error), name);
+        let read = Self::of_form(&first, &mut UntilError::new(first.as_slice().chain(unpacked), &mut error), name);
         match error {
             Some(error) => Err(FileError::new(name, format!("it cannot be unpacked: {error}"))),
             None => read,
@@ -51,7 +52,7 @@ impl FiringLog {
     }
 
     /// By the first bytes.
-    fn of_form(first: &[u8], input: impl Read, name: &Path) -> Result<Self, FileError> {
+    fn of_form(first: &[u8], input: &mut dyn Read, name: &Path) -> Result<Self, FileError> {
         match Form::of(first, name) {
             Form::Mcap => firing_messages::read(input, name),
             Form::Text => firing_text::read(input, name),

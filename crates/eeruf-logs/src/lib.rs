@@ -110,8 +110,8 @@ pub fn read_log(file: &Path, options: &Options, mut each: impl FnMut(&Report, &R
         sink.has(options::Parts::Topics);
         rosbag2::read_sqlite(file, file, false, &mut sink)?;
     } else {
-        let opened = File::open(file).map_err(|error| FileError::reading(file, &error))?;
-        read_anywhere(opened, file, form, options, &mut sink)?;
+        let mut opened = File::open(file).map_err(|error| FileError::reading(file, &error))?;
+        read_anywhere(&mut opened, file, form, options, &mut sink)?;
     }
     Ok(sink.finish(file))
 }
@@ -132,7 +132,7 @@ pub fn read_from(
     let form = Form::of(&form::first_bytes(&mut input).map_err(failed)?, name);
     input.rewind().map_err(failed)?;
     sink.form(form.name());
-    read_anywhere(input, name, form, options, &mut sink)?;
+    read_anywhere(&mut input, name, form, options, &mut sink)?;
     Ok(sink.finish(name))
 }
 
@@ -151,13 +151,13 @@ pub fn read_stream(
     let first = form::first_bytes(&mut input).map_err(|error| FileError::reading(name, &error))?;
     let form = Form::of(&first, name);
     sink.form(form.name());
-    read_in_order(first.as_slice().chain(input), name, form, options, &mut sink)?;
+    read_in_order(&mut first.as_slice().chain(input), name, form, options, &mut sink)?;
     Ok(sink.finish(name))
 }
 
 /// Reads a log of this form that can be read at any place; `name` stands in errors.
 fn read_anywhere(
-    mut input: impl Read + Seek,
+    input: &mut dyn form::Input,
     name: &Path,
     form: Form,
     options: &Options,
@@ -166,11 +166,11 @@ fn read_anywhere(
     match form {
         Form::Mcap => {
             sink.has(options::Parts::Topics);
-            mcap::read(&mut input, name, false, sink)
+            mcap::read(input, name, false, sink)
         }
         Form::Ros1 => {
             sink.has(options::Parts::Topics);
-            ros1::read(&mut input, name, sink)
+            ros1::read(input, name, sink)
         }
         _ => read_in_order(input, name, form, options, sink),
     }
@@ -178,7 +178,7 @@ fn read_anywhere(
 
 /// Reads a log of this form from its beginning to its end.
 fn read_in_order(
-    input: impl Read,
+    input: &mut dyn Read,
     name: &Path,
     form: Form,
     options: &Options,
@@ -198,7 +198,7 @@ fn read_in_order(
 
 /// Reads a bag by way of a temporary file; the error after which there was no more of it.
 fn read_copy(
-    input: impl Read,
+    input: &mut dyn Read,
     name: &Path,
     form: Form,
     options: &Options,
@@ -209,14 +209,14 @@ fn read_copy(
         sink.has(options::Parts::Topics);
         rosbag2::read_sqlite(copy.path(), name, false, sink)?;
     } else {
-        read_anywhere(copy.as_file(), name, form, options, sink)?;
+        read_anywhere(&mut copy.as_file(), name, form, options, sink)?;
     }
     Ok(error)
 }
 
 /// Reads a file that is packed as a whole.
 fn read_packed(
-    input: impl Read,
+    input: &mut dyn Read,
     name: &Path,
     packing: Packing,
     options: &Options,
@@ -227,19 +227,19 @@ fn read_packed(
     let mut error = None;
     let first = form::first_bytes(UntilError::new(&mut input, &mut error)).map_err(failed)?;
     let form = Form::of(&first, name.file_stem().map_or(name, Path::new));
-    let input = first.as_slice().chain(input);
+    let mut input = first.as_slice().chain(input);
     match form {
         Form::Packed(_) => return Err(FileError::new(name, "packed twice; expected once: unpack it first")),
         // Nothing came out.
         Form::Text if error.is_some() => {}
-        Form::Text => read_in_order(UntilError::new(input, &mut error), name, form, options, sink)?,
+        Form::Text => read_in_order(&mut UntilError::new(input, &mut error), name, form, options, sink)?,
         Form::Serial | Form::Foreign(_) => {
             sink.form(form.name());
-            read_in_order(UntilError::new(input, &mut error), name, form, options, sink)?;
+            read_in_order(&mut UntilError::new(input, &mut error), name, form, options, sink)?;
         }
         Form::Mcap | Form::Ros1 | Form::Sqlite => {
             sink.form(form.name());
-            error = error.or(read_copy(input, name, form, options, sink)?);
+            error = error.or(read_copy(&mut input, name, form, options, sink)?);
         }
     }
     sink.form(&format!("{}, packed by {}", sink.report.form, packing.name()));

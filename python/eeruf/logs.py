@@ -425,7 +425,7 @@ class Diagnosis:
     firing ``sender`` is whose sound its reading is, -1 where that is not sure, ``travel_us`` how long it travelled, ``sure`` how sure
     that is. ``faults`` are ``("deaf", [sensor])``, ``("losing", [sensor])``, ``("chattering", [sensor])``, ``("late", [sensor])`` and
     ``("swapped", [one, other])``. Sensors in ``silent`` hear nothing, those in ``missing`` miss echoes at random, and the log cannot
-    tell why. ``moved`` is true if the robot moved; then no wire, trigger, loss or chatter is named, and a path is a line of a second, of
+    tell why. ``moved`` is true if the robot moved; then no loss or chatter is named, and a path is a line of a second, of
     which ``paths["rate_us_s"]`` is the slope.
     ``most_offsets`` is at how many offsets two firings stand to each other at most; below about five nothing can be named.
 

@@ -14,6 +14,7 @@ use eeruf_sim::{
 
 use crate::firings::firing_of;
 
+use super::oracle::{paths_tell, scene_tells};
 use super::truth::{SENSORS, Truth};
 
 /// Rooms with one robot in them.
@@ -25,6 +26,8 @@ const ROOM_PERIODS: u32 = 133;
 const SPEED_M_S: f64 = 0.5;
 /// Delay of a late trigger.
 const LATE_US: u32 = 1000;
+/// Seeds of whole rings at the same place, from here on.
+const TWIN: u64 = 1 << 40;
 /// Drift of a clock.
 const DRIFT_PPM: f64 = 20.0;
 
@@ -70,6 +73,8 @@ pub(crate) struct Outcome {
     /// True if it is not named, and `diagnose` says that the log cannot tell: a sensor hears nothing, or misses echoes
     /// at random, and may be healthy. In a healthy log that holds of any sensor.
     pub(crate) is_open: bool,
+    /// Verdicts of the readers of `oracle.rs`: of the one who knows the scene, and the one who knows the paths.
+    pub(crate) told: [bool; 2],
 }
 
 impl Broken {
@@ -101,6 +106,11 @@ impl Broken {
             Self::Nothing => "none: false alarms".to_owned(),
             Self::People => "none, people walk by: false alarms".to_owned(),
         }
+    }
+
+    /// Returns true if it shows in readings, and not in a schedule or in people.
+    pub(crate) fn shows_in_readings(self) -> bool {
+        !matches!(self, Self::OtherTable | Self::ClockDrift | Self::People)
     }
 
     pub(crate) fn is_healthy(self) -> bool {
@@ -227,6 +237,7 @@ pub(crate) struct Case {
     pub(crate) world: World,
     /// The sensor that has the fault, and the other one of a pair.
     pub(crate) sensors: [usize; 2],
+    told: [bool; 2],
 }
 
 /// The log of each of these faults in one place; none where it does not count.
@@ -257,8 +268,14 @@ pub(crate) fn cases(
         let Some(world) = base.with_faults(faults).ok().filter(|_| broken.counts(&truth, sensors)) else {
             return Ok(None);
         };
-        let readings = simulate(&world, method, &options).ok();
-        Ok(readings.map(|readings| Case { broken, log: log_of(&readings), world, sensors }))
+        let Ok(readings) = simulate(&world, method, &options) else { return Ok(None) };
+        let mut told = [false; 2];
+        if broken.shows_in_readings() {
+            let whole = || self::world(number, place, robots, physics);
+            let of = if broken == Broken::EchoWires { &sensors[..] } else { &sensors[..1] };
+            told = [scene_tells(whole, &readings, of, TWIN + number)?, paths_tell(&world, &readings, of)];
+        }
+        Ok(Some(Case { broken, log: log_of(&readings), world, sensors, told }))
     };
     rows.iter().copied().map(case).collect()
 }
@@ -266,7 +283,7 @@ pub(crate) fn cases(
 impl Case {
     /// Verdict of `diagnose`.
     pub(crate) fn outcome(&self) -> Outcome {
-        outcome(self.broken, &self.log, &self.world, self.sensors)
+        Outcome { told: self.told, ..outcome(self.broken, &self.log, &self.world, self.sensors) }
     }
 }
 
@@ -293,5 +310,5 @@ fn outcome(broken: Broken, log: &FiringLog, world: &World, sensors: [usize; 2]) 
     };
     let blames = !broken.is_healthy() && found.iter().any(|found| !broken.is(found, sensors));
     let is_open = !is_named && open.iter().any(|&of| broken.is_healthy() || sensors[0] == usize::from(of));
-    Outcome { is_named, blames, is_open }
+    Outcome { is_named, blames, is_open, told: [false; 2] }
 }

@@ -6,6 +6,7 @@
 //! The simulator decides which logs count, before `diagnose` sees any: `truth.rs`.
 
 mod cases;
+mod oracle;
 mod truth;
 
 use cases::{Broken, Outcome};
@@ -23,6 +24,8 @@ struct Cell {
     blamed: u32,
     /// Logs that cannot tell the fault from a healthy sensor; for a healthy ring, that have such a sensor.
     open: u32,
+    /// Logs that tell the readers of `oracle.rs`.
+    told: [u32; 2],
 }
 
 impl Cell {
@@ -37,6 +40,9 @@ impl Cell {
         self.named += u32::from(outcome.is_some_and(|outcome| outcome.is_named));
         self.blamed += u32::from(outcome.is_some_and(|outcome| outcome.blames));
         self.open += u32::from(outcome.is_some_and(|outcome| outcome.is_open));
+        for (sum, of) in self.told.iter_mut().zip(outcome.map_or([false; 2], |outcome| outcome.told)) {
+            *sum += u32::from(of);
+        }
     }
 }
 
@@ -101,6 +107,17 @@ pub(crate) fn main(arguments: &[String]) -> crate::Answer {
             format!("{}, {} and {} of {}", cell.left_out, cell.blamed, cell.open, cell.logs - cell.left_out)
         };
         let cells: Vec<_> = cells.iter().map(blamed).collect();
+        println!("| {} | {} |", broken.name(), cells.join(" | "));
+    }
+    println!("\n| logs that tell a reader who knows the scene, and one who knows the paths | {names} |");
+    println!("|---|{}", "---|".repeat(columns.len()));
+    for (broken, cells) in rows.iter().zip(&table).filter(|(broken, _)| broken.shows_in_readings()) {
+        let told = |cell: &Cell| {
+            let of = cell.logs - cell.left_out;
+            let (scene, paths) = (cell.told[0], Share { count: cell.told[1], of });
+            format!("{scene} and {}", percent(paths))
+        };
+        let cells: Vec<_> = cells.iter().map(told).collect();
         println!("| {} | {} |", broken.name(), cells.join(" | "));
     }
     Ok(())

@@ -190,7 +190,7 @@ fn open(found: &Found<'_>, text: &mut String) {
         );
     }
     if found.diagnosis.moved {
-        *text += "The robot moved: no lost echo, noise, wire or trigger can be named.\n";
+        *text += "The robot moved: no lost echo or noise can be named.\n";
     }
 }
 

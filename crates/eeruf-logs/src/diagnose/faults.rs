@@ -11,7 +11,7 @@ use super::sensors::{FEW, Hearing};
 use super::share::Share;
 use super::statistics::median;
 use super::timeline::Timeline;
-use super::together::{Together, together};
+use super::together::{Together, exchanged, together};
 use super::{FoundPath, Settings};
 
 /// Something that is broken, with what speaks for it.
@@ -62,8 +62,8 @@ pub enum Fault {
         together: Share,
         /// The same of its other firings.
         alone: Share,
-        /// Number of such pairs expected in a whole ring by accident, if the other's echoes do not depend on the silent
-        /// sensor.
+        /// Number of such pairs expected in a whole ring by accident: if the other's echoes do not depend on the silent
+        /// sensor, or where both have a part in paths that are not heard back, if these fade.
         accidents: f64,
     },
     /// A sensor fires later than the log says. Its sound takes longer to the others than theirs to it.
@@ -136,12 +136,15 @@ pub(super) fn faults(
 ) -> Vec<Fault> {
     let mut faults = Vec::new();
     let contradicted = contradicted(paths, timeline, settings);
-    let is_contradicted = |sensor: u8| contradicted.iter().any(|path| [path.0, path.1].contains(&sensor));
-    let silent = hearing.iter().filter(|of| of.is_silent).count();
-    for (of, like) in hearing.iter().zip(alike).filter(|(of, _)| of.echoes.of >= FEW) {
+    let is_contradicted = |sensor: u8| contradicted.iter().any(|of| of.is_of(sensor));
+    let silent: Vec<_> = hearing.iter().filter(|of| of.is_silent).map(|of| of.sensor).collect();
+    let by_contradiction = exchanged(&silent, &contradicted, timeline, settings);
+    let is_exchanged = |of: &Hearing| by_contradiction.is_some_and(|(_, with)| with.sensor == of.sensor);
+    for (of, like) in hearing.iter().zip(alike).filter(|(of, _)| of.echoes.of >= FEW && !is_exchanged(of)) {
         let sensor = of.sensor;
         // Another sensor that hears only while this one listens, if this is the only one that is silent.
-        let pair = (of.is_silent && silent == 1 && !moved).then(|| together(sensor, timeline, settings)).flatten();
+        let pair =
+            (of.is_silent && silent.len() == 1 && !moved).then(|| together(sensor, timeline, settings)).flatten();
         let is_other = |of: &Hearing| of.sensor != sensor && pair.is_none_or(|pair| of.sensor != pair.sensor);
         let others: Vec<_> = hearing.iter().zip(alike).filter(|(of, _)| is_other(of)).collect();
         let is_closed = is_closed(&others, timeline.has_many_phases, moved);
@@ -151,6 +154,7 @@ pub(super) fn faults(
         let is_faint = if timeline.has_many_phases { !hear_own(&others) } else { is_far(like, &others) };
         let stands = !moved && of.echoes.of >= SHORT;
         let exchanged = pair.filter(|pair| is_closed || is_contradicted(sensor) || is_contradicted(pair.sensor));
+        let exchanged = by_contradiction.filter(|pair| pair.0 == sensor).map(|pair| pair.1).or(exchanged);
         if let Some(Together { sensor: other, with: together, without: alone, accidents }) = exchanged {
             faults.push(Fault::Exchanged { sensors: (sensor, other), together, alone, accidents });
         } else if of.is_silent
@@ -169,9 +173,6 @@ pub(super) fn faults(
         if stands && alone && chatters {
             faults.push(Fault::Chattering { sensor, wandering: like.wandering });
         }
-    }
-    if moved {
-        return faults;
     }
     let broken: Vec<_> = faults.iter().flat_map(Fault::sensors).collect();
     match wiring(paths, timeline, &broken, settings) {

@@ -147,15 +147,15 @@ pub fn diagnose(log: &FiringLog, settings: &Settings) -> Diagnosis {
             paths.extend(found);
         }
     }
-    let period = |place: u32| log.firings.get(place as usize).map_or(0, |firing| firing.period);
-    paths.iter_mut().for_each(|path| path.periods = (period(path.periods.0), period(path.periods.1)));
     let tolerance = i64::from(settings.tolerance_us.max(1));
     let sensors = 0..log.sensors() as u8;
     // A path that moves does not last for the whole log, as what is held against the way back must.
     let standing = if moved { &[] } else { &paths[..] };
     let alike: Vec<_> = sensors.map(|sensor| alike(sensor, standing, &timeline, &fits_none, tolerance)).collect();
     let hearing = hearing(log, &paths, &named, &fits_none, &alike);
-    let faults = faults(standing, &hearing, &alike, &timeline, settings, moved);
+    let faults = faults(&paths, &hearing, &alike, &timeline, settings, moved);
+    let period = |place: u32| log.firings.get(place as usize).map_or(0, |firing| firing.period);
+    paths.iter_mut().for_each(|path| path.periods = (period(path.periods.0), period(path.periods.1)));
     let most_offsets = timeline.most_offsets(settings.tolerance_us.into());
     Diagnosis { paths, named, hearing, faults, moved, most_offsets }
 }

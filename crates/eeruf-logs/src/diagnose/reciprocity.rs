@@ -1,7 +1,8 @@
 //! Sound takes as long from one sensor to another as back: what breaks that is a wire or a trigger.
 //!
 //! Along a loud path from x to y, y's sound must reach x after the same time whenever nothing earlier hides it. Each
-//! path is held against the readings of its sender; an explanation is taken if it leaves no contradiction.
+//! path is held against the readings of its sender; an explanation is taken if it leaves no contradiction. While the
+//! robot drives a path is a line of a second, with its rate, and the lines of a pair are held against them together.
 
 use super::share::Share;
 use super::statistics::ln_at_least;
@@ -11,7 +12,7 @@ use super::{FoundPath, Settings};
 /// A path that is heard so often is loud, in both directions.
 const LOUD: f64 = 0.4;
 /// Fewer readings along a path, or fewer chances to hear it back, say nothing.
-const FEW: u32 = 20;
+const FEW: u32 = 10;
 /// A path is confirmed from this share on that hears it back, and contradicted below the other.
 const CONFIRMED: f64 = 0.5;
 const CONTRADICTED: f64 = 0.15;
@@ -19,6 +20,10 @@ const CONTRADICTED: f64 = 0.15;
 const LEAST_LATE_US: f64 = 300.0;
 /// A longer delay is another path, in microseconds.
 const MOST_LATE_US: f64 = 5000.0;
+/// Delays this close are one, in microseconds.
+const LATE_ALIKE_US: f64 = 75.0;
+/// As many delays of a sensor are tried.
+const DELAYS: usize = 8;
 /// No sensor hears others sooner after it fired, in microseconds.
 const DEAF_US: i64 = 3000;
 
@@ -48,16 +53,47 @@ impl Score {
     }
 }
 
-fn loud(paths: &[FoundPath]) -> impl Iterator<Item = &FoundPath> {
-    paths.iter().filter(|path| path.heard >= LOUD && path.readings >= FEW)
+/// Loud paths that are held against the way back together: one, or all lines from a sensor to another while the robot
+/// drives, as each of them lasts for a moment.
+type Ways<'a> = Vec<&'a FoundPath>;
+
+fn loud(paths: &[FoundPath]) -> Vec<Ways<'_>> {
+    let mut all = Vec::<Ways<'_>>::new();
+    for path in paths.iter().filter(|path| path.heard >= LOUD && path.sender != path.receiver) {
+        let pair = |of: &FoundPath| (of.sender, of.receiver);
+        match all.iter_mut().find(|ways| path.rate_us_s.is_some() && pair(ways[0]) == pair(path)) {
+            Some(ways) => ways.push(path),
+            None => all.push(vec![path]),
+        }
+    }
+    all.retain(|ways| ways.iter().map(|path| path.readings).sum::<u32>() >= FEW);
+    all
 }
 
-/// The loud paths on which nothing is heard back, as the log stands: their senders and receivers. A healthy ring has
-/// none.
-pub(super) fn contradicted(paths: &[FoundPath], timeline: &Timeline, settings: &Settings) -> Vec<(u8, u8)> {
+/// A loud path on which nothing is heard back, as the log stands. A healthy ring has none.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Contradicted {
+    pub(super) sender: u8,
+    pub(super) receiver: u8,
+    /// The natural logarithm of the probability that a whole ring does not hear it back.
+    pub(super) ln_accident: f64,
+}
+
+impl Contradicted {
+    pub(super) fn is_of(&self, sensor: u8) -> bool {
+        self.sender == sensor || self.receiver == sensor
+    }
+}
+
+pub(super) fn contradicted(paths: &[FoundPath], timeline: &Timeline, settings: &Settings) -> Vec<Contradicted> {
     let tolerance = i64::from(settings.tolerance_us.max(1));
-    let is_contradicted = |path: &&FoundPath| score(&[path], Wiring::AsItIs, timeline, tolerance).contradicted > 0;
-    loud(paths).filter(is_contradicted).map(|path| (path.sender, path.receiver)).collect()
+    let of = |ways: Ways<'_>| {
+        let Score { contradicted, ln_accident, .. } =
+            score(core::slice::from_ref(&ways), Wiring::AsItIs, timeline, tolerance);
+        let (sender, receiver) = (ways[0].sender, ways[0].receiver);
+        (contradicted > 0).then_some(Contradicted { sender, receiver, ln_accident })
+    };
+    loud(paths).into_iter().filter_map(of).collect()
 }
 
 /// Returns true if others hear a silent sensor along paths, loud or not, on which it would hear them but for an
@@ -66,7 +102,7 @@ pub(super) fn is_unheard(silent: u8, paths: &[FoundPath], timeline: &Timeline, s
     const ACCIDENT: f64 = 0.001;
     let tolerance = i64::from(settings.tolerance_us.max(1));
     let ln_accident = |path: &FoundPath| {
-        let heard = heard_at(path.receiver, silent, path.travel_us.round() as i64, timeline, tolerance);
+        let heard = heard_back(path, Wiring::AsItIs, timeline, tolerance);
         ln_at_least(heard.of - heard.count, heard.of, 1.0 - CONFIRMED * path.heard)
     };
     let out = paths.iter().filter(|path| path.sender == silent && path.receiver != silent);
@@ -82,8 +118,8 @@ pub(super) fn wiring(
     settings: &Settings,
 ) -> Option<(Wiring, Score, Score, f64)> {
     let tolerance = i64::from(settings.tolerance_us.max(1));
-    let is_whole = |path: &&FoundPath| !broken.contains(&path.sender) && !broken.contains(&path.receiver);
-    let loud: Vec<_> = loud(paths).filter(is_whole).collect();
+    let is_whole = |ways: &Ways<'_>| !broken.contains(&ways[0].sender) && !broken.contains(&ways[0].receiver);
+    let loud: Vec<_> = loud(paths).into_iter().filter(is_whole).collect();
     let score = |wiring| score(&loud, wiring, timeline, tolerance);
     let as_it_is = score(Wiring::AsItIs);
     if as_it_is.contradicted == 0 {
@@ -91,12 +127,8 @@ pub(super) fn wiring(
     }
     let sensors = timeline.sensors() as u8;
     let mut wirings: Vec<_> = (0..sensors).flat_map(|a| (a + 1..sensors).map(move |b| Wiring::Swapped(a, b))).collect();
-    for path in &loud {
-        let back = loud.iter().filter(|back| (back.sender, back.receiver) == (path.receiver, path.sender));
-        let late = back
-            .map(|back| path.travel_us - back.travel_us)
-            .filter(|late| (LEAST_LATE_US..MOST_LATE_US).contains(late));
-        wirings.extend(late.filter(|_| path.sender != path.receiver).map(|late| Wiring::Late(path.sender, late)));
+    for sensor in 0..sensors {
+        wirings.extend(delays_us(sensor, &loud, timeline).into_iter().map(|late_us| Wiring::Late(sensor, late_us)));
     }
     // By accident a reading is near a prediction as often as its tolerance is of the stretch of usual echoes.
     let chance = 4.0 * tolerance as f64 / 20_000.0;
@@ -129,8 +161,80 @@ pub(super) fn wiring(
     (!is_open && accidents < settings.accidents).then_some((wiring, best, as_it_is, accidents))
 }
 
+/// Delays that most readings of a sensor's sound have against what it hears of others.
+fn delays_us(sensor: u8, loud: &[Ways<'_>], timeline: &Timeline) -> Vec<f64> {
+    let mut delays = Vec::new();
+    for path in loud.iter().flatten().filter(|path| path.sender == sensor) {
+        let back = loud.iter().flatten().filter(|back| (back.sender, back.receiver) == (path.receiver, sensor));
+        for back in back {
+            let Some(at_us) = meet(path, back, timeline) else { continue };
+            let delay_us = travel_us(path, at_us, timeline) - travel_us(back, at_us, timeline);
+            if (LEAST_LATE_US..MOST_LATE_US).contains(&delay_us) {
+                delays.push((delay_us, path.readings.min(back.readings)));
+            }
+        }
+    }
+    let near = |us: f64| delays.iter().filter(move |of| (of.0 - us).abs() <= LATE_ALIKE_US);
+    let mut most: Vec<_> = delays.iter().map(|of| (near(of.0).map(|of| of.1).sum::<u32>(), of.0)).collect();
+    most.sort_by(|a, b| b.0.cmp(&a.0).then(a.1.total_cmp(&b.1)));
+    let mut late = Vec::<f64>::new();
+    for (readings, us) in most {
+        let mean_us = near(us).map(|of| of.0 * f64::from(of.1)).sum::<f64>() / f64::from(readings);
+        if late.len() < DELAYS && late.iter().all(|of| (of - mean_us).abs() > LATE_ALIKE_US) {
+            late.push(mean_us);
+        }
+    }
+    late
+}
+
+/// When readings that came along a path begin and end, if it moves.
+fn lasts(path: &FoundPath, timeline: &Timeline) -> (i64, i64) {
+    match path.rate_us_s {
+        Some(_) => (timeline.edge_us(path.receiver, path.periods.0), timeline.edge_us(path.receiver, path.periods.1)),
+        None => (i64::MIN, i64::MAX),
+    }
+}
+
+/// The middle of the time that two paths have in common.
+fn meet(path: &FoundPath, other: &FoundPath, timeline: &Timeline) -> Option<i64> {
+    let (one, other) = (lasts(path, timeline), lasts(other, timeline));
+    let (from, to) = (one.0.max(other.0), one.1.min(other.1));
+    (from <= to).then(|| from.saturating_add(to) / 2)
+}
+
+/// The time that sound takes along a path that is heard at a moment.
+fn travel_us(path: &FoundPath, at_us: i64, timeline: &Timeline) -> f64 {
+    let Some(rate_us_s) = path.rate_us_s else { return path.travel_us };
+    let (from, to) = lasts(path, timeline);
+    path.travel_us + 1e-6 * rate_us_s * (at_us as f64 - 0.5 * (from + to) as f64)
+}
+
 /// Holds each loud path against the way back.
-fn score(loud: &[&FoundPath], wiring: Wiring, timeline: &Timeline, tolerance: i64) -> Score {
+fn score(loud: &[Ways<'_>], wiring: Wiring, timeline: &Timeline, tolerance: i64) -> Score {
+    let mut score = Score::default();
+    for ways in loud {
+        let (mut heard, mut expected) = (Share::NONE, 0.0);
+        for path in ways {
+            let of_path = heard_back(path, wiring, timeline, tolerance);
+            heard = Share { count: heard.count + of_path.count, of: heard.of + of_path.of };
+            expected += path.heard * f64::from(of_path.of);
+        }
+        if heard.of < FEW {
+            continue;
+        }
+        let share = f64::from(heard.count) / expected;
+        score.confirmed += u32::from(share >= CONFIRMED);
+        if share < CONTRADICTED {
+            score.contradicted += 1;
+            let missed = 1.0 - CONFIRMED * expected / f64::from(heard.of);
+            score.ln_accident += ln_at_least(heard.of - heard.count, heard.of, missed);
+        }
+    }
+    score
+}
+
+/// Arrivals on the way back of a path, and how many of those that nothing hid were heard.
+fn heard_back(path: &FoundPath, wiring: Wiring, timeline: &Timeline, tolerance: i64) -> Share {
     // The line at which an ear is heard, and the ear of a line.
     let other = |sensor: u8| match wiring {
         Wiring::Swapped(a, b) if sensor == a => b,
@@ -141,34 +245,20 @@ fn score(loud: &[&FoundPath], wiring: Wiring, timeline: &Timeline, tolerance: i6
         Wiring::Late(of, late_us) if of == sensor => late_us,
         _ => 0.0,
     };
-    let mut score = Score::default();
-    for path in loud {
-        let (sender, ear) = (path.sender, other(path.receiver));
-        if sender == ear {
-            continue;
-        }
-        let travel_us = path.travel_us - late(sender) + late(ear);
-        let heard = heard_at(ear, other(sender), travel_us.round() as i64, timeline, tolerance);
-        if heard.of < FEW {
-            continue;
-        }
-        let share = heard.value() / path.heard;
-        score.confirmed += u32::from(share >= CONFIRMED);
-        if share < CONTRADICTED {
-            score.contradicted += 1;
-            score.ln_accident += ln_at_least(heard.of - heard.count, heard.of, 1.0 - CONFIRMED * path.heard);
-        }
-    }
-    score
-}
-
-/// Arrivals of a sensor's sound at a line after a time, and how many of those that nothing hid were heard.
-fn heard_at(sender: u8, line: u8, travel_us: i64, timeline: &Timeline, tolerance: i64) -> Share {
     let mut share = Share::NONE;
-    for firing in timeline.heard_by(line) {
-        for (fired_us, _) in timeline.before(firing.fired_us + timeline.window_us).filter(|of| of.1 == sender) {
-            let at = fired_us + travel_us - firing.fired_us;
-            if at < DEAF_US || at + 2 * tolerance > timeline.window_us {
+    let (ear, line) = (other(path.receiver), other(path.sender));
+    if path.sender == ear {
+        return share;
+    }
+    let (from, to) = lasts(path, timeline);
+    for firing in timeline.heard_by(line).iter().filter(|of| (from..=to).contains(&of.fired_us)) {
+        for (fired_us, _) in timeline.before(firing.fired_us + timeline.window_us).filter(|of| of.1 == ear) {
+            let travel_us = travel_us(path, firing.fired_us, timeline) - late(path.sender) + late(ear);
+            let at_us = fired_us + travel_us.round() as i64;
+            let at = at_us - firing.fired_us;
+            // A module at the end of another's line listens after its own trigger.
+            let is_open = line == path.sender || timeline.listens(path.sender, at_us - DEAF_US);
+            if at < DEAF_US || at + 2 * tolerance > timeline.window_us || !is_open {
                 continue;
             }
             match firing.echo_us {

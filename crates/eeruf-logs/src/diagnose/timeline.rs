@@ -57,6 +57,20 @@ impl Timeline {
         &self.heard[usize::from(receiver)]
     }
 
+    /// When the reading of a firing, by its place in the log, came to its line.
+    pub(super) fn edge_us(&self, line: u8, place: u32) -> i64 {
+        let heard = self.heard_by(line);
+        let of = heard.binary_search_by_key(&(place as usize), |of| of.firing).ok().map(|of| heard[of]);
+        of.map_or(0, |of| of.fired_us + of.echo_us.unwrap_or(0))
+    }
+
+    /// Returns true if a sensor fired within its window before a moment.
+    pub(super) fn listens(&self, sensor: u8, moment_us: i64) -> bool {
+        let heard = self.heard_by(sensor);
+        let before = heard.partition_point(|of| of.fired_us <= moment_us).checked_sub(1);
+        before.is_some_and(|of| moment_us - heard[of].fired_us <= self.window_us)
+    }
+
     /// Returns true if readings of the first third of the log do not come back in the last one: of the pairs of firings
     /// of one sensor, one from each third, that follow another sensor's alike, hardly any have the same echo. Where
     /// people walk before a ring that stands, more than a quarter have.

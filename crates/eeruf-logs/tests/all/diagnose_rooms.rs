@@ -4,26 +4,31 @@
 use eeruf_logs::{Fault, Firing, FiringLog, Settings, diagnose};
 use eeruf_sim::experiments::rooms::{RoomKind, RoomPlan};
 use eeruf_sim::experiments::set_one::Alcove;
-use eeruf_sim::{FaultKind, Method, Noise, Options, Physics, World, simulate};
+use eeruf_sim::{FaultKind, Method, Motion, Noise, Options, Physics, Vector, World, simulate};
 
 /// A place and its number.
 #[derive(Clone, Copy, Debug)]
 enum Place {
     Alcove(u64),
+    /// The same, of which the robot backs out.
+    BacksOut(u64),
     Room(u64),
 }
 
-use Place::{Alcove as InAlcove, Room as InRoom};
+use Place::{Alcove as InAlcove, BacksOut, Room as InRoom};
 
 /// Faults that the diagnosis finds in the log of a ring that hops for a minute, some sensors of which have a fault.
 fn found(place: Place, fault: Option<(FaultKind, &[u8])>) -> Vec<Fault> {
     const ROOMS: [RoomKind; 6] =
         [RoomKind::Corridor, RoomKind::Office, RoomKind::Hall, RoomKind::Clutter, RoomKind::Garage, RoomKind::Aisle];
-    let (InAlcove(number) | InRoom(number)) = place;
+    let (InAlcove(number) | BacksOut(number) | InRoom(number)) = place;
     let alcove = Alcove::random(number);
-    let robot = alcove.robot();
+    let mut robot = alcove.robot();
+    if matches!(place, BacksOut(_)) {
+        robot.motion = Motion::Constant { velocity: Vector::new(0.0, -0.015), turn_rad_s: 0.04 };
+    }
     let world = match place {
-        InAlcove(_) => {
+        InAlcove(_) | BacksOut(_) => {
             let scene = alcove.scene().unwrap();
             World::new(scene, vec![robot], Noise::default()).unwrap().with_seed(number)
         }
@@ -34,7 +39,8 @@ fn found(place: Place, fault: Option<(FaultKind, &[u8])>) -> Vec<Fault> {
     };
     let faults = fault.map(|(kind, sensors)| eeruf_sim::Fault::new(kind).of_sensors(sensors));
     let world = world.with_physics(Physics::PLAIN).unwrap().with_faults(faults.into_iter().collect()).unwrap();
-    let options = Options { seed: Some(number), ..Options::periods(1000) };
+    let options =
+        Options { seed: Some(number), ..Options::periods(if matches!(place, BacksOut(_)) { 333 } else { 1000 }) };
     let readings = simulate(&world, Method::EerufHopping, &options).unwrap();
     let firing = |k: usize| Firing {
         sensor: readings.sensor[k],
@@ -105,5 +111,23 @@ fn a_late_trigger_is_named_by_what_its_sender_hears() {
         let faults = found(place, Some((FaultKind::LateTrigger { us: 1000 }, &[sensor])));
         let [Fault::Late { sensor: of, late_us, .. }] = faults[..] else { panic!("{place:?}: {faults:?}") };
         assert!(of == sensor && (late_us - 1000.0).abs() < 5.0, "{place:?}: {faults:?}");
+    }
+}
+
+// Lines of a robot that drives are held against the way back, as paths of one that stands.
+#[test]
+fn wires_and_triggers_are_named_while_driving() {
+    for (place, sensor) in [(BacksOut(316), 5), (BacksOut(316), 6), (BacksOut(318), 4)] {
+        let faults = found(place, Some((FaultKind::LateTrigger { us: 1000 }, &[sensor])));
+        let [Fault::Late { sensor: of, late_us, .. }] = faults[..] else { panic!("{place:?}: {faults:?}") };
+        assert!(of == sensor && (late_us - 1000.0).abs() < 15.0, "{place:?}: {faults:?}");
+    }
+    for (place, sensors) in [(BacksOut(301), [5, 3]), (BacksOut(305), [4, 2]), (BacksOut(311), [0, 6])] {
+        let faults = found(place, Some((FaultKind::EchoWires, &sensors)));
+        let [Fault::Exchanged { sensors: of, .. }] = faults[..] else { panic!("{place:?}: {faults:?}") };
+        assert_eq!(of, (sensors[0], sensors[1]), "{place:?}: {faults:?}");
+    }
+    for number in 300..304 {
+        assert_eq!(found(BacksOut(number), None), [], "{number}");
     }
 }

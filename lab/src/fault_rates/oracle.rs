@@ -55,7 +55,7 @@ fn firings(readings: &Readings) -> impl Iterator<Item = (u8, i64)> + '_ {
     of_first.map(|k| (readings.sensor[k], (1e6 * readings.fired_s[k]).round() as i64))
 }
 
-/// What a whole ring hears at the same firings, with other noise.
+/// Simulates a whole ring at the same firings, with other noise.
 fn twin(world: World, readings: &Readings, seed: u64) -> Result<Readings, Box<dyn Error>> {
     let own = Own::new().firing(0, Replay::of(&world, readings));
     let options = Options { seed: Some(seed), ..Options::default() };
@@ -135,8 +135,8 @@ impl Line {
     }
 }
 
-/// Returns true if one who knows the paths of all readings, but not the scene, can tell that a sensor is broken: less of
-/// what others hear of it, and it of others, is heard on the way back.
+/// Returns true if one who knows the paths of all readings, but not the scene, can tell that a sensor is broken: less
+/// of what others hear of it, and it of others, is heard on the way back.
 pub(super) fn paths_tell(world: &World, readings: &Readings, sensors: &[usize]) -> bool {
     let (robot, moves) = (&world.robots()[0], world.moves());
     let mut lines: Vec<_> = (0..SENSORS)

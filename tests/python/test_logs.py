@@ -324,6 +324,31 @@ def test_judges_are_those_of_the_program(judge: Any, words: list[str], tmp_path:
     assert judged.crosstalk.verdict == json.loads(program(["logs", study, "--json"]))["crosstalk"]["verdict"]
 
 
+@pytest.mark.parametrize("speed_m_s", [1.5, 3.0])
+@pytest.mark.parametrize("room", [1025, 1035, 1039])
+def test_no_healthy_sensor_of_a_fast_robot_is_blamed(room: int, speed_m_s: float) -> None:
+    # Laps in a room with poles; the log has what each sensor would read alone, then what it reads.
+    chance = np.random.default_rng(room)
+    (w, h), shares = chance.uniform(3, 6, 2), chance.uniform(0.18, 0.9, 4)
+    walls = [[-w, -h, w, -h], [w, -h, w, h], [w, h, -w, h], [-w, h, -w, -h]]
+    places = [(-0.9, -1), (-0.9, 1), (0.9, -1), (0.9, 1)]
+    poles = [[x * w, y * h * share, 0.05] for (x, y), share in zip(places, shares)]
+    corners = [(0.6 * w, -0.6 * h), (0.6 * w, 0.6 * h), (-0.6 * w, 0.6 * h), (-0.6 * w, -0.6 * h)]
+    robot = sim.Robot((*corners[3], 0.0), 8, 0.26, 0.3, waypoints_m=corners * 8, speed_m_s=speed_m_s)
+    readings = sim.simulate(sim.Scene(walls, robots=[robot], poles=poles), "eeruf", periods=600, seed=room - 1000)
+    said = []
+    for echo_us in (readings.reference_us, readings.earliest_us):
+        rows = [
+            f"{1e6 * at:.0f},{sensor},{0.5e-6 * us * 343.2:.5f}"
+            for at, sensor, us in sorted(zip(readings.fired_s, readings.sensor, echo_us), key=lambda row: row[:2])
+        ]
+        text = io.StringIO("\n".join(["time_us,sensor,range_m", *rows]))
+        said.append(eeruf.read_log(text, time_unit="us", no_echo_m=20).crosstalk)
+    alone, heard = said
+    assert alone.verdict != "crosstalk" and alone.fooled == [], alone.reasons
+    assert heard.verdict == "crosstalk" and len(heard.fooled) >= 3
+
+
 def test_gaps_and_steps_back_are_counted_by_sensor() -> None:
     text = (
         "t,left,right\n"

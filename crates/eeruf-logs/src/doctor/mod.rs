@@ -172,7 +172,7 @@ impl Doctor {
                 few += 1;
                 continue;
             };
-            let Dependence { share, deviations, count } = own.dependence(&classes);
+            let Dependence { share, deviations, count } = own.changes(&classes).dependence();
             if count < FEWEST {
                 few += 1;
             } else if deviations >= DEVIATIONS && share >= LEAST_SHARE {

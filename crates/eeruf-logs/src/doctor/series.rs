@@ -1,14 +1,13 @@
 //! The readings of one sensor, in order of time.
 
-use super::statistics::{Changes, Contingency, Dependence};
+use super::statistics::Changes;
 
 /// Echoes this close to the next one, in microseconds, are of one steady value.
 const NEXT_US: f64 = 100.0;
-/// Changes of an echo, beyond what driving explains, are alike from each of these to the next, in microseconds;
-/// smaller ones are none.
+/// Changes of an echo are alike from each of these to the next, in microseconds; smaller ones are none.
 const CHANGES_US: [f64; 5] = [150.0, 500.0, 1500.0, 3000.0, 7000.0];
-/// An echo changes by at most this share of the time that passes: the robot drives at up to 2 m/s.
-const DRIVING: f64 = 0.012;
+/// An echo changes by at most this share of the time that passes: the robot drives at up to 3 m/s.
+const DRIVING: f64 = 0.018;
 /// A steady value that spans more moves.
 const STEADY_US: f64 = 600.0;
 
@@ -99,46 +98,32 @@ impl Series {
         Some((lags.iter().map(|lag| (!lag.is_nan()).then_some(*lag > threshold)).collect(), gap))
     }
 
-    /// Dependence of the readings on the class of the firing: of a sensor that stands by the shares of steady values,
-    /// and of silence, in each class; of one that moves by the change from a reading to the next one, which is of the
-    /// other class.
-    pub(crate) fn dependence(&self, classes: &[Option<bool>]) -> Dependence {
-        if self.moves() { self.changes(classes).dependence() } else { self.by_class(classes).dependence() }
-    }
-
-    fn by_class(&self, classes: &[Option<bool>]) -> Contingency {
-        let values = self.steady();
-        let mut table = Contingency::new(values.len() + 2);
-        for (&us, class) in self.echo_us.iter().zip(classes) {
-            let place = values.iter().position(|value| (value.from_us..=value.to_us).contains(&us));
-            let category = if us.is_nan() { 0 } else { place.map_or(1, |place| 2 + place) };
-            class.iter().for_each(|&class| table.add(class, category));
-        }
-        table
-    }
-
-    /// Pairs of a reading and the next one, by how much later the echo of the one class is than that of the other, or
-    /// which of the two has none. Own echoes change as often one way as the other.
-    fn changes(&self, classes: &[Option<bool>]) -> Changes {
+    /// Pairs of a reading and the next one, of the other class: how much later the echo of the one class comes than that
+    /// of the other, or which of the two has none. Own echoes change as often one way as the other. What changes at the
+    /// same rate to the reading after next is driven, and no change.
+    pub(crate) fn changes(&self, classes: &[Option<bool>]) -> Changes {
         let mut changes = Changes::new(CHANGES_US.len() + 1);
+        let (echo, at) = (&self.echo_us, &self.at_us);
         let mut k = 0;
-        while k + 1 < self.echo_us.len() {
-            let (own, next) = (self.echo_us[k], self.echo_us[k + 1]);
-            match (classes[k], classes[k + 1]) {
-                (Some(class), Some(other)) if class != other => {
-                    let (one, two) = if class { (next, own) } else { (own, next) };
-                    let driven_us = DRIVING * (self.at_us[k + 1] - self.at_us[k]);
-                    let size = CHANGES_US.iter().rposition(|&least| (one - two).abs() - driven_us >= least);
-                    changes.add(match (one.is_nan(), two.is_nan()) {
-                        (false, false) => size.map(|size| (one > two, size)),
-                        (true, true) => None,
-                        (is_silent, _) => Some((is_silent, CHANGES_US.len())),
-                    });
-                    // Pairs that share no reading are independent, and both classes are first in turn.
-                    k += 3;
+        while k + 1 < echo.len() {
+            let Some(class) = classes[k].filter(|&class| classes[k + 1] == Some(!class)) else {
+                k += 1;
+                continue;
+            };
+            let after = (k + 2 < echo.len() && classes[k + 2] == Some(class)).then_some(k + 2);
+            let rate = after.map_or(f64::NAN, |after| (echo[after] - echo[k]) / (at[after] - at[k]));
+            let driven_us = if rate.abs() <= DRIVING { rate * (at[k + 1] - at[k]) } else { 0.0 };
+            let change_us = echo[k + 1] - echo[k] - driven_us;
+            changes.add(match (echo[k].is_nan(), echo[k + 1].is_nan()) {
+                (true, true) => None,
+                (false, false) => {
+                    let size = CHANGES_US.iter().rposition(|&least| change_us.abs() >= least);
+                    size.map(|size| ((change_us > 0.0) == class, size))
                 }
-                _ => k += 1,
-            }
+                (is_first, _) => Some((is_first == class, CHANGES_US.len())),
+            });
+            // Pairs that share no reading are independent, and both classes are first in turn.
+            k += 3;
         }
         changes
     }

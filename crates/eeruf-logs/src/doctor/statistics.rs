@@ -49,70 +49,6 @@ impl Changes {
     }
 }
 
-/// Counts of readings for each of two classes: `[class][category]`.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct Contingency {
-    counts: [Vec<u32>; 2],
-}
-
-impl Contingency {
-    pub(crate) fn new(categories: usize) -> Self {
-        Self { counts: [vec![0; categories], vec![0; categories]] }
-    }
-
-    pub(crate) fn add(&mut self, class: bool, category: usize) {
-        if let Some(count) = self.counts[usize::from(class)].get_mut(category) {
-            *count += 1;
-        }
-    }
-
-    fn totals(&self) -> [f64; 2] {
-        [0, 1].map(|class| self.counts[class].iter().copied().map(f64::from).sum())
-    }
-
-    /// The share by which the classes differ is half the sum of the differences of their shares; comparisons are as
-    /// many as the smaller class has.
-    pub(crate) fn dependence(&self) -> Dependence {
-        let count = self.totals().into_iter().fold(f64::INFINITY, f64::min) as u32;
-        Dependence { share: self.distance(), deviations: self.deviations(), count }
-    }
-
-    fn distance(&self) -> f64 {
-        let [a, b] = self.totals();
-        if a == 0.0 || b == 0.0 {
-            return 0.0;
-        }
-        let differences =
-            self.counts[0].iter().zip(&self.counts[1]).map(|(x, y)| (f64::from(*x) / a - f64::from(*y) / b).abs());
-        0.5 * differences.sum::<f64>()
-    }
-
-    /// The chi-square statistic of independence in standard deviations of a normal variable. Categories
-    /// of which fewer than 5 are expected in a class are taken together.
-    fn deviations(&self) -> f64 {
-        let [a, b] = self.totals();
-        let all = a + b;
-        if a == 0.0 || b == 0.0 {
-            return 0.0;
-        }
-        let (mut cells, mut rest) = (vec![], (0.0, 0.0));
-        for (x, y) in self.counts[0].iter().zip(&self.counts[1]).map(|(x, y)| (f64::from(*x), f64::from(*y))) {
-            if (x + y) * a.min(b) / all >= 5.0 { cells.push((x, y)) } else { rest = (rest.0 + x, rest.1 + y) }
-        }
-        if rest.0 + rest.1 > 0.0 {
-            cells.push(rest);
-        }
-        let statistic: f64 = cells
-            .iter()
-            .map(|(x, y)| {
-                let [for_a, for_b] = [a, b].map(|total| (x + y) * total / all);
-                (x - for_a).powi(2) / for_a + (y - for_b).powi(2) / for_b
-            })
-            .sum();
-        chi_square_deviations(statistic, cells.len().saturating_sub(1))
-    }
-}
-
 /// A chi-square statistic of this many degrees of freedom as standard deviations of a normal variable that is as
 /// unlikely to be exceeded, by the approximation of Wilson and Hilferty; 0 without freedom.
 pub(crate) fn chi_square_deviations(statistic: f64, freedom: usize) -> f64 {
@@ -138,21 +74,25 @@ mod tests {
     }
 
     #[test]
-    fn classes_that_differ_are_told_from_those_that_do_not() {
-        let table = |first: [u32; 2], second: [u32; 2]| {
-            let mut table = Contingency::new(2);
-            for (class, counts) in [(false, first), (true, second)] {
-                (0..2).for_each(|category| (0..counts[category]).for_each(|_| table.add(class, category)));
+    fn changes_one_way_are_told_from_those_both_ways() {
+        let changes = |counts: &[[u32; 2]], same: u32| {
+            let mut changes = Changes::new(counts.len());
+            for (size, counts) in counts.iter().enumerate() {
+                [false, true].iter().zip(counts).for_each(|(&greater, &count)| {
+                    (0..count).for_each(|_| changes.add(Some((greater, size))));
+                });
             }
-            table
+            (0..same).for_each(|_| changes.add(None));
+            changes.dependence()
         };
-        // By hand: all expected 50, so 4 * 20^2 / 50 = 32, of one degree of freedom.
-        let differ = table([70, 30], [30, 70]);
-        assert!((differ.deviations() - chi_square_deviations(32.0, 1)).abs() < 1e-9);
-        assert!((differ.distance() - 0.4).abs() < 1e-12 && differ.dependence().count == 100);
-        assert!(table([50, 50], [50, 50]).deviations() < 0.0);
-        // 3 of 100 are expected 1.5 times in a class: too few to count for themselves.
-        assert_eq!(table([97, 3], [100, 0]).deviations(), table([97, 3], [100, 0]).deviations());
-        assert_eq!((Contingency::new(2).deviations(), Contingency::new(2).distance()), (0.0, 0.0));
+        // By hand: 20^2 / 40 + 12^2 / 20 = 17.2, of two degrees of freedom; 32 of 100 pairs are one way more.
+        let differ = changes(&[[30, 10], [4, 16]], 40);
+        assert!((differ.deviations - chi_square_deviations(17.2, 2)).abs() < 1e-9);
+        assert!((differ.share - 0.32).abs() < 1e-12 && differ.count == 100);
+        assert!(changes(&[[20, 20], [10, 10]], 40).deviations < 0.0);
+        // Five of each size are too few to count for themselves, and ten together are not.
+        assert_eq!(changes(&[[5, 0], [0, 5]], 40).share, 0.0);
+        assert_eq!(changes(&[[5, 0], [5, 0]], 40).share, 0.2);
+        assert_eq!(changes(&[[7, 0]], 40), Dependence { share: 0.0, deviations: 0.0, count: 47 });
     }
 }

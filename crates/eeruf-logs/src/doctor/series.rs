@@ -98,9 +98,9 @@ impl Series {
         Some((lags.iter().map(|lag| (!lag.is_nan()).then_some(*lag > threshold)).collect(), gap))
     }
 
-    /// Pairs of a reading and the next one, of the other class: how much later the echo of the one class comes than that
-    /// of the other, or which of the two has none. Own echoes change as often one way as the other. What changes at the
-    /// same rate to the reading after next is driven, and no change.
+    /// Pairs of a reading and the next one, of the other class: how much later the echo of the one class comes than
+    /// that of the other, or which of the two has none. Own echoes change as often one way as the other. What changes
+    /// at the same rate to the reading after next is driven, and no change.
     pub(crate) fn changes(&self, classes: &[Option<bool>]) -> Changes {
         let mut changes = Changes::new(CHANGES_US.len() + 1);
         let (echo, at) = (&self.echo_us, &self.at_us);

@@ -1,7 +1,7 @@
 """Logs of robots: the ranges of bags, MCAP and CSV files, and what a ring's log of firings says about it.
 
 Everything is read by the same code as ``eeruf logs``, ``eeruf replay``, ``eeruf diagnose`` and ``eeruf survey``;
-docs/how-to/logs.md says what is read. A log is a path, a file object that gives bytes, or whatever fsspec opens, as
+docs/how-to/logs.md says what is read. A log is a path, a file object, or whatever fsspec opens, as
 ``"s3://bucket/drive.mcap"``; of a ROS 2 bag's folder in such a place the URL ends with ``/``, and it is copied first.
 
 Example:
@@ -15,25 +15,24 @@ Example:
 from __future__ import annotations
 
 import contextlib
-import io
 import os
 from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, TypeVar, overload
 
 from eeruf import _eeruf
+from eeruf._columns import Columns as _Columns
+from eeruf._columns import column as _column
 from eeruf._eeruf import ArgumentError, LogError
+from eeruf._opened import opened_log as _opened
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
     from typing import Protocol, TypedDict, Union
 
     import numpy as np
-    import pandas as _pd
-    import polars as _pl
     from numpy.typing import ArrayLike, NDArray
     from typing_extensions import TypeAlias, Unpack
 
-    _Number = TypeVar("_Number", bound=np.generic)
     _Block = TypeVar("_Block", bound="Ranges")
 
     class _File(Protocol):
@@ -82,118 +81,6 @@ __all__ = [
     "replay",
     "survey",
 ]
-
-
-class _Text:
-    """A stream of bytes out of a file object that gives text."""
-
-    def __init__(self, file: io.TextIOBase) -> None:
-        self._file = file
-
-    def read(self, size: int) -> bytes:
-        return self._file.read(size).encode()
-
-
-@contextlib.contextmanager
-def _opened(log: object, expected: str = "the path of a log, a URL or a file object") -> Iterator[object]:
-    """Give a path as it is, and a file object with its name; close what was opened."""
-    is_url = isinstance(log, str) and "://" in log
-    if is_url:
-        try:
-            import fsspec
-        except ImportError:
-            raise ArgumentError(f"log = {log!r:.60}; expected fsspec, which opens it: pip install fsspec") from None
-        files, path = fsspec.core.url_to_fs(log)
-    elif isinstance(log, io.TextIOBase):
-        yield _Text(log), _name(log)
-        return
-    elif hasattr(log, "read"):
-        yield log, _name(log)
-        return
-    elif hasattr(log, "fs") and hasattr(log, "path"):
-        files, path = log.fs, log.path
-    elif isinstance(log, (str, os.PathLike)):
-        yield log
-        return
-    else:
-        raise ArgumentError(f"log = {log!r:.60}; expected {expected}")
-    name = str(log) if is_url else str(path)
-    if not name.endswith("/"):
-        with files.open(path, "rb") as file:
-            yield file, name
-        return
-    from tempfile import TemporaryDirectory
-
-    with TemporaryDirectory(prefix="eeruf-") as folder:
-        files.get(path.rstrip("/") + "/", folder + "/", recursive=True)
-        yield folder
-
-
-def _name(file: object) -> str:
-    name = getattr(file, "full_name", None) or getattr(file, "name", None)
-    return name if isinstance(name, str) else "the log"
-
-
-def _column(name: str, values: ArrayLike, dtype: type[_Number]) -> NDArray[_Number]:
-    """Make an array with one dimension of what may be a list, an array or a data frame's column."""
-    import numpy as np
-
-    try:
-        # A non-number makes one that is refused when it is looked at.
-        with np.errstate(invalid="ignore"):
-            column = np.asarray(values).astype(dtype, order="C")
-    except (TypeError, ValueError, OverflowError):
-        raise ArgumentError(f"{name} = {values!r:.60}; expected numbers, one for each firing") from None
-    if column.ndim != 1:
-        raise ArgumentError(f"{name} has the shape {column.shape}; expected one number for each firing")
-    return column
-
-
-class _Columns:
-    _columns: ClassVar[tuple[str, ...]] = ()
-
-    def columns(self) -> dict[str, NDArray[np.float64 | np.int64 | np.int8 | np.bool_]]:
-        """Return the columns by their names.
-
-        Example:
-            >>> import eeruf
-            >>> log = eeruf.logs.Firings.of(sensor=[0, 1], fired_us=[0, 500], period=[0, 0], phase=[0, 0], t_echo_us=[7000.0, 8000.0])
-            >>> log.columns()["t_echo_us"].tolist()
-            [7000.0, 8000.0]
-
-        """
-        return {name: getattr(self, name) for name in self._columns}
-
-    def to_pandas(self) -> _pd.DataFrame:
-        """Make a pandas data frame, a row for each reading.
-
-        Example:
-            >>> import eeruf
-            >>> log = eeruf.logs.Firings.of(sensor=[0, 1], fired_us=[0, 500], period=[0, 0], phase=[0, 0], t_echo_us=[7000.0, 8000.0])
-            >>> log.to_pandas()["sensor"].tolist()
-            [0, 1]
-
-        """
-        import pandas as pd
-
-        return pd.DataFrame(self.columns())
-
-    def to_polars(self) -> _pl.DataFrame:
-        """Make a polars data frame, a row for each reading.
-
-        Example:
-            >>> import eeruf
-            >>> log = eeruf.logs.Firings.of(sensor=[0, 1], fired_us=[0, 500], period=[0, 0], phase=[0, 0], t_echo_us=[7000.0, 8000.0])
-            >>> log.to_polars()["sensor"].to_list()
-            [0, 1]
-
-        """
-        import polars as pl
-
-        return pl.DataFrame(self.columns())
-
-    def __len__(self) -> int:
-        return len(getattr(self, self._columns[0]))
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,11 @@
-//! A place in a slice of bytes, from which numbers and texts are read. Nothing is read beyond its end.
+//! The bytes of a log, and a place in a slice of them, from which numbers and texts are read; nothing beyond its end.
+
+use std::io::{Read, Seek};
+
+/// The bytes of a log that can be read at any place.
+pub(crate) trait Input: Read + Seek {}
+
+impl<T: Read + Seek> Input for T {}
 
 /// In which order the bytes of a number come.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -2,17 +2,12 @@
 //! into a form that is read.
 
 use std::fs::File;
-use std::io::{self, Read, Seek, Write as _};
+use std::io::{self, Read, Write as _};
 use std::path::Path;
 
 use eeruf_files::FileError;
 
 const SQLITE_MAGIC: &[u8; 16] = b"SQLite format 3\0";
-
-/// The bytes of a log that can be read at any place.
-pub(crate) trait Input: Read + Seek {}
-
-impl<T: Read + Seek> Input for T {}
 
 /// A form that is recognised.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -157,7 +157,7 @@ pub fn read_stream(
 
 /// Reads a log of this form that can be read at any place; `name` stands in errors.
 fn read_anywhere(
-    input: &mut dyn form::Input,
+    input: &mut dyn bytes::Input,
     name: &Path,
     form: Form,
     options: &Options,

@@ -7,9 +7,8 @@ use std::collections::HashMap;
 use std::io::{self, BufReader, Read, Seek, SeekFrom};
 use std::path::Path;
 
-use crate::bytes::{Bytes, Order};
+use crate::bytes::{Bytes, Input, Order};
 use crate::chunks::Chunks;
-use crate::form::Input;
 use crate::message::Encoding;
 use crate::sink::{Sink, Topic};
 use crate::unzstd::{LARGEST_MESSAGE, Unzstd};

@@ -25,3 +25,4 @@ mod ros2;
 mod scene;
 mod started;
 mod study;
+mod warnings;

@@ -16,10 +16,25 @@ def wheel() -> Path:
     return Path(path)
 
 
-def test_the_wheel_is_below_6_4_mb_for_python_3_9_on() -> None:
-    assert wheel().stat().st_size < 6_400_000
+def test_the_wheel_is_small_and_for_python_3_9_on() -> None:
+    # By the compilers that CI installs; by others a twentieth more.
+    most = 6_400_000 * (1 if "EERUF_EXACT_SIZES" in os.environ else 1.05)
+    assert wheel().stat().st_size < most, f"{wheel().stat().st_size} bytes; expected at most {most}"
     assert "-cp39-abi3-" in wheel().name
     assert metadata.metadata("eeruf")["Requires-Python"] == ">=3.9"
+
+
+# Commands of workflows run on other systems' machines alone, so nothing else here would see that one cannot pass.
+def test_commands_of_workflows_run() -> None:
+    workflows = Path(__file__).parents[2] / ".github/workflows"
+    programs = [
+        program
+        for workflow in sorted(workflows.glob("*.yml"))
+        for program in re.findall(r"""python3? -c (?:"([^"]+)"|'([^']+)')""", workflow.read_text(encoding="utf8"))
+    ]
+    assert programs
+    for program in programs:
+        subprocess.run([sys.executable, "-c", "".join(program)], check=True, capture_output=True, text=True)
 
 
 def test_numpy_is_all_it_needs() -> None:

@@ -1,0 +1,55 @@
+//! Harm that files and pages of ours could do to whoever copies them: settings that are known to hurt stay out, and what
+//! is known to be unsafe is said where one reads first.
+
+use std::path::Path;
+
+fn read(path: &str) -> String {
+    std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(path)).unwrap()
+}
+
+/// Values of a key in YAML of one key a line.
+fn values<'t>(yaml: &'t str, key: &str) -> Vec<&'t str> {
+    yaml.lines().filter_map(|line| line.trim().strip_prefix(key)?.strip_prefix(": ")).collect()
+}
+
+// At an `inflate_cone` above 0 Nav2's range layer updates the box around the cone: a clear reading frees its neighbours'
+// walls. A layer that marks and never clears keeps a person's wall for ever.
+#[test]
+fn nav2_costmap_clears_within_cones_alone() {
+    let yaml = read("ros2/config/nav2.yaml");
+    assert_eq!(values(&yaml, "inflate_cone"), ["0.0"]);
+    assert_eq!(values(&yaml, "plugins"), ["[\"range_layer\", \"inflation_layer\"]"]);
+    let layers: Vec<_> = values(&yaml, "plugin");
+    assert_eq!(layers, ["\"nav2_costmap_2d::RangeSensorLayer\""]);
+    assert_eq!(values(&yaml, "clear_on_max_reading"), ["true"]);
+}
+
+// Each phrase is the shortest part that carries the warning; its page may say it otherwise, with this part kept.
+#[test]
+fn known_dangers_are_said_on_their_pages() {
+    let first_lines: String = read("docs/how-to/autopilots.md").lines().take(10).collect::<Vec<_>>().join(" ");
+    for said in
+        ["A cut wire", "`obstacle` (the default)", "*backs away*", "`unknown`: 65535", "**free** after a second"]
+    {
+        assert!(first_lines.contains(said), "docs/how-to/autopilots.md, first lines: {said}");
+    }
+    let pages: [(&str, &[&str]); 5] = [
+        (
+            "docs/explanation/limits.md",
+            &["within some 40 us", "can accept distances that are too far", "with odometry** do not keep the promise"],
+        ),
+        ("docs/explanation/flow.md", &["accepts nothing", "within some 40 us"]),
+        (
+            "docs/how-to/firmware.md",
+            &["distances that are too far", "within some 40 us", "odometry do not keep the promise"],
+        ),
+        ("docs/how-to/python.md", &["within some 40 us", "they accept nothing"]),
+        ("README.md", &["of robots that stand"]),
+    ];
+    for (page, phrases) in pages {
+        let text = read(page).split_whitespace().collect::<Vec<_>>().join(" ");
+        for said in phrases {
+            assert!(text.contains(said), "{page} does not say: {said}");
+        }
+    }
+}

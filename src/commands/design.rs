@@ -332,6 +332,10 @@ fn emit_flow(args: &Args, spec: &RingSpec, form: Form, way: &RoomWay) -> Result<
     let (sensors, modules) = (sensors.len(), &spec.modules);
     let mut settings = way.options.flow.with_fleet_number(args.fleet_number);
     settings.shortest_cycle = period;
+    if form == Form::Arduino {
+        // An AVR takes as long to plan a cycle; firings that are later than the plan make a ring accept nothing.
+        settings.lead = Micros::from_millis(4);
+    }
     let needs = spec.problem().requirements;
     let settings = settings.keeping(sensors, &needs).map_err(|error| InputError::new(&args.file, error))?;
     let listening = HoppingListening::new(window).with_blanking(blanking);

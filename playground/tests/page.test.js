@@ -13,8 +13,8 @@ import { firstState } from "../page/state.js";
 import { BUILT, LECTURE, SINGLE, launch, open, ready, serve } from "./browser.js";
 
 const LONG = Boolean(process.env.PAGE_LONG);
-/** A page and all that it loads, gzipped. */
-const MOST_BYTES = 740_000;
+/** A page and all that it loads, gzipped: by the compilers that CI installs; by others a twentieth more. */
+const MOST_BYTES = 740_000 * (process.env.EERUF_EXACT_SIZES ? 1 : 1.05);
 
 const browser = await launch();
 const server = await serve();
@@ -55,7 +55,7 @@ async function design(page) {
 
 /** Tests wait for the browser most of the time; one after the other only where a figure is printed. */
 describe("the page in a browser", { concurrency: LONG ? 1 : 4 }, () => {
-  test("both forms of the page are within 740 kB gzipped", () => {
+  test(`both forms of the page are within ${MOST_BYTES / 1000} kB gzipped`, () => {
     const gzipped = (/** @type {string} */ path) => gzipSync(readFileSync(path), { level: 9 }).length;
     const folder = readdirSync(join(BUILT, "folder")).reduce(
       (sum, name) => sum + gzipped(join(BUILT, "folder", name)),

@@ -17,6 +17,10 @@ const BESIDE: [&[&str]; 4] = [&["firmware"], &["arduino", "--short"], &["c"], &[
 fn sources(steps: &mut Steps) {
     steps.step("formatting", || run_component("rustfmt", "fmt --all --check"));
     steps.step("rules of the house", crate::house::check);
+    steps.step("budget of lines", || {
+        need("python3 --version", "apt install python3")?;
+        run_line("python3 xtask/budget.py")
+    });
     steps.step("listings of the documents", crate::blocks::check_listings);
     steps.step("links of the documents", crate::links::check_documents);
     steps.step("clippy", || {

@@ -42,7 +42,7 @@ MOST_LINES = 15
 PART = 10
 """Scenes a part."""
 M0 = {"instructions": "eeruf", "hopping instructions": "eeruf_hopping", "flow instructions": "flow"}
-"""Tables of docs/log/firmware.md, and the methods whose rings they measure."""
+"""Tables of tests/data/boards.txt, and the methods whose rings they measure."""
 
 
 def entry(file: Path) -> sim.Method:
@@ -58,7 +58,7 @@ def entry(file: Path) -> sim.Method:
 
 def cost_on_m0() -> dict[str, int]:
     """Most instructions of a reading on a Cortex-M0, by method, where they have been measured."""
-    document, found = ROOT / "docs" / "log" / "firmware.md", {}
+    document, found = ROOT / "tests" / "data" / "boards.txt", {}
     tables = document.read_text().split("<!-- measured: ")[1:] if document.exists() else []
     for table in tables:
         title, _, rest = table.partition(" -->")
@@ -182,7 +182,7 @@ def main() -> None:
         "the sign test's 95 % interval. Courses finished by each method's own pilot. Others' sound: share of what is",
         end=" ",
     )
-    print("accepted by robots of one make. M0: most instructions of a reading, docs/log/firmware.md.")
+    print("accepted by robots of one make. M0: most instructions of a reading, tests/data/boards.txt.")
 
 
 if __name__ == "__main__":

@@ -192,7 +192,7 @@ def main(text, document):
 if __name__ == "__main__":
     import os
 
-    paths = sys.argv[1:] + ["../../tests/data/line-faults.txt", "../../docs/log/line-faults.md"][len(sys.argv) - 1 :]
+    paths = sys.argv[1:] + ["../../tests/data/line-faults.txt", "../../tests/data/line-fault-outcomes.txt"][len(sys.argv) - 1 :]
     with open(paths[0]) as faults:
         text = faults.read()
     with open(paths[1]) as table:

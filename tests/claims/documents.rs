@@ -30,19 +30,23 @@ fn documents(folder: &Path) -> Vec<PathBuf> {
 #[test]
 fn examples_in_documents_are_what_the_program_prints() {
     let program = Path::new(env!("CARGO_BIN_EXE_eeruf"));
-    trycmd::TestCases::new().register_bin("eeruf", program).case("README.md").case("docs/**/*.md");
+    trycmd::TestCases::new()
+        .register_bin("eeruf", program)
+        .case("README.md")
+        .case("docs/**/*.md")
+        .case("tests/data/*.trycmd");
 }
 
-// The log is what `cargo xtask reprint --check` compares.
+// `cargo xtask reprint --check` compares them with what the program prints.
 #[test]
-fn answers_quoted_by_a_guide_stand_in_the_log() {
+fn answers_quoted_by_a_guide_are_printed() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let read = |path: &str| std::fs::read_to_string(root.join(path)).unwrap();
-    let (guide, log) = (read("docs/how-to/design.md"), read("docs/log/rooms.md"));
+    let (guide, printed) = (read("docs/how-to/design.md"), read("tests/data/rooms.txt"));
     let blocks = guide.split("```text\n").skip(1).filter_map(|rest| rest.split("```").next());
     let quoted: Vec<_> = blocks.filter(|block| block.contains(": recommended: ")).collect();
     assert_eq!(quoted.len(), 1, "{quoted:?}");
-    assert!(log.contains(quoted[0]), "docs/log/rooms.md does not have\n{}", quoted[0]);
+    assert!(printed.contains(quoted[0]), "tests/data/rooms.txt does not have\n{}", quoted[0]);
 }
 
 // SNAPSHOTS=overwrite writes what the program prints now into the reference.

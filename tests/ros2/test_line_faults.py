@@ -1,6 +1,7 @@
 """Faults of echo lines, on an emulated board, as the node publishes them: never free space without evidence.
 
-Each sensor of the board has another fault of tests/data/line-faults.txt. The table is that of docs/log/line-faults.md.
+Each sensor of the board has another fault of tests/data/line-faults.txt. The table is that of
+tests/data/line-fault-outcomes.txt.
 """
 
 import math
@@ -15,7 +16,8 @@ sys.path.append("c/micropython")
 from line_faults import cell, read, with_column
 from test_node import SENSORS, expected_ranges, participant, processes, run  # noqa: F401
 
-FAULTS, LOG, COLUMN = Path("tests/data/line-faults.txt"), Path("docs/log/line-faults.md"), "ROS 2"
+FAULTS, OUTCOMES = Path("tests/data/line-faults.txt"), Path("tests/data/line-fault-outcomes.txt")
+COLUMN = "ROS 2"
 PERIODS = 15
 # No two sensors of the board fire 1 ms apart.
 NOT_PLAYED = "exchanged, 1 ms apart"
@@ -95,9 +97,9 @@ def test_line_fault_is_published_as_free_space_nowhere(tmp_path, participant, pr
             right, count, lies = outcome(sensor, fault, rows, node, pictures)
             cells[fault.name, fault.before] = cell(right, count, lies)
             assert (right, lies) == (count, 0) and count > PERIODS - 5, (fault.name, fault.before, right, count, lies)
-    document = LOG.read_text()
+    document = OUTCOMES.read_text()
     written = with_column(document, COLUMN, cells)
     if "EERUF_WRITE" in os.environ:
-        LOG.write_text(written)
+        OUTCOMES.write_text(written)
     else:
-        assert written == document, f"{LOG} is not what the node says; EERUF_WRITE=1 writes it"
+        assert written == document, f"{OUTCOMES} is not what the node says; EERUF_WRITE=1 writes it"

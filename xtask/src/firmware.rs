@@ -38,7 +38,7 @@ const BOARDS: [Board; 4] = [
 /// Parts to build, run and measure.
 #[derive(clap::Args)]
 pub(crate) struct Plan {
-    /// Put the tables into the document instead of comparing them
+    /// Put the tables into the file instead of comparing them
     #[arg(long)]
     write: bool,
     /// Only on this board, and without the simulated world
@@ -47,7 +47,7 @@ pub(crate) struct Plan {
 }
 
 /// Builds, runs and measures everything, or what there is for one board; prints the tables of
-/// `docs/log/firmware.md`, and compares them with what stands there or writes them. If it is for all boards, the
+/// `tests/data/boards.txt`, and compares them with what stands there or writes them. If it is for all boards, the
 /// programs are linted, too.
 pub(crate) fn run_all(plan: &Plan, steps: &mut Steps) {
     if plan.board.is_none() {

@@ -56,7 +56,7 @@ enum Verb {
         #[arg(long)]
         nothing_skipped: bool,
     },
-    /// Build the firmware, run it on emulated boards, and compare its figures with those of docs/log/firmware.md
+    /// Build the firmware, run it on emulated boards, and compare its figures with those of tests/data/boards.txt
     Firmware(firmware::Plan),
     /// Compile the C library strictly, misuse it, and compare it with the Rust crates under sanitizers
     C,

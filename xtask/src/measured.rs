@@ -1,4 +1,4 @@
-//! Tables of measurements in docs/log/firmware.md: `<!-- measured: NAME -->` stands before each, `<!-- end -->`
+//! Tables of measurements in tests/data/boards.txt: `<!-- measured: NAME -->` stands before each, `<!-- end -->`
 //! after it.
 //!
 //! Counts repeat on the same compiler and must be the same; those of another one, which may be a third more or less,
@@ -11,7 +11,7 @@ use fs_err as fs;
 
 use crate::blocks::{blocks, replaced};
 
-pub(crate) const DOCUMENT: &str = "docs/log/firmware.md";
+pub(crate) const DOCUMENT: &str = "tests/data/boards.txt";
 const MEASURED: &str = "<!-- measured: ";
 /// The table that says which compiler each board's figures are of.
 pub(crate) const COMPILERS: &str = "compilers";

@@ -14,6 +14,7 @@ use crate::blocks::{Block, blocks, replaced};
 use crate::steps::{output, run_line};
 
 const PRINTED_BY: &str = "<!-- printed by";
+const ROOMS: &str = "tests/data/rooms.txt";
 const FENCE: &str = "```text\n";
 
 /// Parts of a document to compare.
@@ -47,9 +48,9 @@ fn mark<'a>(block: &Block<'a>) -> Result<Mark<'a>> {
     Ok(mark)
 }
 
-/// README.md, ARCHITECTURE.md, and all documents in `docs`.
+/// README.md, ARCHITECTURE.md, all documents in `docs`, and the tables of rooms that they quote.
 pub(crate) fn documents() -> Result<Vec<String>> {
-    let listed = output(Command::new("git").args(["ls-files", "README.md", "ARCHITECTURE.md", "docs/*.md"]))?;
+    let listed = output(Command::new("git").args(["ls-files", "README.md", "ARCHITECTURE.md", "docs/*.md", ROOMS]))?;
     Ok(listed.lines().map(str::to_owned).collect())
 }
 

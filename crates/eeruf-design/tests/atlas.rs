@@ -61,7 +61,7 @@ fn proven_row_answers_and_open_one_does_not() {
 // The list of longer searches is of the open rings, in their order, and no worse than their rows.
 #[test]
 fn longer_searches_are_of_the_open_rings() {
-    let list = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/log/open-rings.txt");
+    let list = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/data/open-rings.txt");
     let list = std::fs::read_to_string(list).unwrap();
     let lines: Vec<&str> = list.lines().filter(|line| !line.starts_with('#')).collect();
     let open: Vec<Row> = rows(ATLAS).filter(|row| row.bound < row.period).collect();

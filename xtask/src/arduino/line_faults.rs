@@ -52,7 +52,7 @@ const OFF_MM: u32 = 10;
 const PLACES: [&str; 2] = ["wall", "nothing"];
 /// The faults of all languages, and the table of the outcomes, of which one column is compared.
 const FILE: &str = "tests/data/line-faults.txt";
-const LOG: &str = "docs/log/line-faults.md";
+const OUTCOMES: &str = "tests/data/line-fault-outcomes.txt";
 /// Readings that a line may take to show its fault: the time that a clone holds it, in periods.
 const UNTIL_STUCK: usize = 4;
 
@@ -132,7 +132,7 @@ type Outcome = (&'static str, &'static str, [usize; 3]);
 fn with_column(document: &str, said: &[Outcome]) -> Result<String> {
     let head = document.lines().find(|line| line.starts_with("| fault")).map(cells).unwrap_or_default();
     let column =
-        head.iter().position(|&name| name == "Arduino").with_context(|| format!("{LOG} has no column Arduino"))?;
+        head.iter().position(|&name| name == "Arduino").with_context(|| format!("{OUTCOMES} has no column Arduino"))?;
     let mut text = String::new();
     for line in document.lines() {
         let mut row = cells(line);
@@ -152,20 +152,20 @@ fn with_column(document: &str, said: &[Outcome]) -> Result<String> {
     Ok(text)
 }
 
-/// Checks the words of sketches about a faulty module. The table of the log has what is said; `EERUF_WRITE` writes it.
+/// Checks the words of sketches about a faulty module. The table has what is said; `EERUF_WRITE` writes it.
 pub(super) fn run(library: &Path) -> Result<()> {
     let world = &world::build()?;
     let file = fs::read_to_string(FILE)?;
-    let document = fs::read_to_string(LOG)?;
+    let document = fs::read_to_string(OUTCOMES)?;
     let mut outcomes = faults_of_ring8(library, world, &file)?;
     outcomes.extend(faults_of_edges(library, world, &file)?);
     latched_line_recovers(library, world)?;
     flow_says_states(library, world)?;
     let said = with_column(&document, &outcomes)?;
     if env::var_os("EERUF_WRITE").is_some() {
-        fs::write(LOG, &said)?;
+        fs::write(OUTCOMES, &said)?;
     }
-    ensure!(fs::read_to_string(LOG)? == said, "{LOG} is not what the sketches say; EERUF_WRITE=1 writes it");
+    ensure!(fs::read_to_string(OUTCOMES)? == said, "{OUTCOMES} is not what the sketches say; EERUF_WRITE=1 writes it");
     Ok(())
 }
 

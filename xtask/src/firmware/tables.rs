@@ -1,4 +1,4 @@
-//! The tables of `docs/log/firmware.md`, and what they may not exceed.
+//! The tables of `tests/data/boards.txt`, and what they may not exceed.
 
 use anyhow::{Context as _, Result, bail};
 

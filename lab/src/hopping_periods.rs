@@ -1,6 +1,6 @@
 //! Shortest periods of many phases: with the codes that a ring has, with Welch's sequence of every root, and with
 //! congruences whose multipliers are dealt out freely, each by the same search for orders and lags.
-//! `cargo lab hopping-periods RING.toml ..` prints a row for docs/log/hopping.md.
+//! `cargo lab hopping-periods RING.toml ..` prints a row for each ring.
 
 use std::fs;
 

@@ -127,7 +127,15 @@ fn user_path_has_at_most_20_000_words() {
     path.extend(documents(&docs.join("how-to")));
     path.push(docs.join("faq.md"));
     let words: usize = path.iter().map(|document| words(&std::fs::read_to_string(document).unwrap())).sum();
-    assert!(words <= 20_000, "{words}; figures and diaries belong into docs/log");
+    assert!(words <= 20_000, "{words}; say a thing once, and link to it");
+}
+
+// Figures that other documents quote, and roads not taken.
+#[test]
+fn log_has_at_most_20_000_words() {
+    let log = documents(&Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/log"));
+    let words: usize = log.iter().map(|document| words(&std::fs::read_to_string(document).unwrap())).sum();
+    assert!(words <= 20_000, "{words}; keep what other documents quote, and what was left out in a line each");
 }
 
 /// A text without the parts from one mark to another.

@@ -60,7 +60,7 @@ fn second_robots_body_is_an_obstacle() {
 
 #[test]
 fn in_the_labs_rectangle_the_width_of_walls_changes_nothing() {
-    // docs/log/experiments.md and docs/explanation/physics.md say so.
+    // docs/explanation/physics.md says so.
     let without = Physics { narrow_panels: false, ..Physics::DEFAULT };
     for (second_robot, bodies) in [(None, false), (Some(SECOND_BEHIND), false), (Some(SECOND_AHEAD), true)] {
         let run = |physics| {

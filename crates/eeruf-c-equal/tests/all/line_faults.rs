@@ -118,7 +118,7 @@ fn with_outcomes(document: &str) -> String {
 
 // EERUF_WRITE=1 writes it.
 #[test]
-fn table_in_the_log_is_what_rust_and_c_say() {
+fn outcomes_are_what_rust_and_c_say() {
     let stands = std::fs::read_to_string(OUTCOMES).unwrap();
     let said = with_outcomes(&stands);
     if std::env::var_os("EERUF_WRITE").is_some() {

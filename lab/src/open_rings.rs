@@ -2,8 +2,8 @@
 //! [FILE [PART/PARTS]]]`, each for this many seconds of a core.
 //!
 //! Prints each ring as the atlas does, with its shortest known period, the bound, the difference of the two and the
-//! seconds that this run took for it. FILE is an earlier list, tests/data/open-rings.txt: what is better there stays, and
-//! what is proven there is not searched again.
+//! seconds that this run took for it. FILE is an earlier list, tests/data/open-rings.txt: what is better there stays,
+//! and what is proven there is not searched again.
 
 use std::collections::BTreeMap;
 use std::fs::read_to_string;

@@ -8,7 +8,7 @@ use anyhow::{Result, ensure};
 use fs_err as fs;
 
 use crate::links::{links, parts, within_reach};
-use crate::steps::{Steps, empty, output, run, run_line};
+use crate::steps::{Steps, command, empty, output, run, run_line};
 
 /// The site, for any web server or a disk.
 const SITE: &str = "target/site/book";
@@ -43,7 +43,7 @@ pub(crate) fn site(steps: &mut Steps) {
     println!("{SITE}/index.html");
 }
 
-/// Copies the documents, with links as the book has them, and builds it.
+/// Copies the documents, with links as the book has them, prints all verbs and options, and builds it.
 fn book() -> Result<()> {
     let sources = Path::new(SOURCES);
     empty(sources)?;
@@ -59,6 +59,8 @@ fn book() -> Result<()> {
         let text = rewritten(&document, &fs::read_to_string(&document)?);
         fs::write(sources.join(document.strip_prefix("docs")?), text)?;
     }
+    let options = output(&mut command("cargo run --quiet --locked --package eeruf -- man --markdown"))?;
+    fs::write(sources.join("reference/options.md"), options)?;
     run(Command::new(mdbook()?).args(["build", "site", "--dest-dir"]).arg(absolute(SITE)?))
 }
 

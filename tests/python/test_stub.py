@@ -1,19 +1,56 @@
-"""The stub says what the compiled module says, so that editors show it."""
+"""The wheel's stub says what the compiled module says, so that editors show it; the repository says it in Rust alone."""
 
 import ast
+import hashlib
 import importlib.util
+from base64 import urlsafe_b64encode
+from importlib import metadata
 from pathlib import Path
+from typing import Union
 
-HERE = Path(__file__).parent
+from eeruf import _eeruf
+
+ROOT = Path(__file__).parents[2]
 
 
-def test_stub_has_the_docstrings_of_the_compiled_module() -> None:
-    spec = importlib.util.spec_from_file_location("stub", HERE / "stub.py")
+def stubs() -> tuple[ast.Module, ast.Module]:
+    """The stub in the repository and the one that was installed."""
+    assert _eeruf.__file__ is not None
+    files = (ROOT / "python/eeruf/_eeruf.pyi", Path(_eeruf.__file__).with_name("_eeruf.pyi"))
+    kept, installed = (ast.parse(file.read_text(encoding="utf-8")) for file in files)
+    return kept, installed
+
+
+def definitions(stub: ast.Module) -> list[Union[ast.ClassDef, ast.FunctionDef]]:
+    """The statements of a stub that may have a docstring."""
+    return [node for node in ast.walk(stub) if isinstance(node, (ast.ClassDef, ast.FunctionDef))]
+
+
+def test_installed_stub_has_docstrings_of_module() -> None:
+    spec = importlib.util.spec_from_file_location("finish", ROOT / "packaging/finish.py")
     assert spec is not None and spec.loader is not None
-    stub = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(stub)
-    found = list(stub.documented(ast.parse(stub.STUB.read_text())))
+    finish = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(finish)
+    _, installed = stubs()
+    found = list(finish.documented(installed, _eeruf))
     assert len(found) > 300
-    differing = [name for name, node, said in found if ast.get_docstring(node) != said]
-    assert not differing, f"{differing[:5]} and others differ; run `python tests/python/stub.py`"
-    assert all(said for _, _, said in found)
+    assert not [name for name, node, said in found if not said or ast.get_docstring(node) != said]
+
+
+def test_kept_stub_has_signatures_alone() -> None:
+    kept, installed = stubs()
+    assert not [node.name for node in definitions(kept) if ast.get_docstring(node)]
+    for stub in (kept, installed):
+        for node in definitions(stub):
+            # Less docstrings and ellipses.
+            node.body = [line for line in node.body if not isinstance(line, ast.Expr)]
+    assert ast.dump(installed) == ast.dump(kept)
+
+
+def test_record_has_digests_of_installed_files() -> None:
+    files = [file for file in metadata.files("eeruf") or [] if file.hash]
+    assert "_eeruf.pyi" in {file.name for file in files}
+    for file in files:
+        assert file.hash is not None
+        digest = hashlib.new(file.hash.mode, file.read_binary()).digest()
+        assert urlsafe_b64encode(digest).decode().rstrip("=") == file.hash.value, file

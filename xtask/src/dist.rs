@@ -8,7 +8,7 @@ use anyhow::{Result, ensure};
 use fs_err as fs;
 
 use crate::python::{environment, interpreter, only_file};
-use crate::steps::{Steps, empty, need, output, run, skip};
+use crate::steps::{Steps, empty, need, output, run, run_line, skip};
 use crate::toolchain::{DEBIAN_CARGO, DEBIAN_RUSTC, has_library};
 
 /// Targets: Rust's name, and the oldest system that the wheel is for.
@@ -40,6 +40,7 @@ pub(crate) fn dist(plan: &Plan, steps: &mut Steps) {
         return;
     }
     steps.step("notices", crate::release::notices);
+    steps.step("docstrings", || run_line("cargo build --quiet --locked --package eeruf-py"));
     let (mut files, mut answers) = (Vec::new(), None);
     for (target, system) in TARGETS {
         if !plan.targets.is_empty() && !plan.targets.iter().any(|wanted| wanted == target) {
@@ -136,18 +137,18 @@ impl Compiler {
     }
 }
 
-/// Builds the wheel, and packs it so that it is alike in any folder.
+/// Builds the wheel, and packs it so that it is alike in any folder. Its stub has the docstrings of a module that this
+/// machine can load, as its own may be for another.
 fn wheel(target: &str, system: &str) -> Result<PathBuf> {
     let compiler = Compiler::of(target)?;
     let to = Path::new("target/dist").join(target);
     empty(&to)?;
     let mut maturin = Command::new(tool("maturin"));
-    maturin.args(crate::python::BUILD);
-    maturin.args(["--zig", "--target", target, "--compatibility", system, "--out"]).arg(&to);
+    maturin.args(["build", "--locked", "--zig", "--target", target, "--compatibility", system, "--out"]).arg(&to);
     compiler.set_up(&mut maturin)?;
     run(&mut maturin)?;
     let wheel = only_file(&to)?;
-    run(Command::new(tool("python")).arg("xtask/repack.py").arg(&wheel))?;
+    run(Command::new(tool("python")).arg("packaging/finish.py").arg(&wheel).arg("target/debug/lib_eeruf.so"))?;
     Ok(wheel)
 }
 

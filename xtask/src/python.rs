@@ -10,10 +10,6 @@ use fs_err as fs;
 
 use crate::steps::{empty, need, run};
 
-/// Options by which maturin makes a wheel: packed as tight as its format can, which takes a second and saves a
-/// fortieth.
-pub(crate) const BUILD: [&str; 4] = ["build", "--locked", "--compression-level", "9"];
-
 /// The environment of the tests.
 const HOME: &str = "target/python";
 
@@ -29,15 +25,15 @@ pub(crate) fn python() -> Result<()> {
         command.args(["-m", name]);
         command
     };
-    run(tool("maturin").args(BUILD).arg("--out").arg(&wheels))?;
-    let wheel = only_file(&wheels)?;
+    let wheel = wheel(&python, &wheels)?;
     sources_are_whole(&python, &home.join("sources"))?;
     run(tool("pip").args(["install", "--quiet", "--force-reinstall", "--no-deps"]).arg(&wheel))?;
+    let backend = ["packaging/backend.py", "packaging/finish.py"];
     let sources = ["python", "tests/python", "benches/python", "benches/leaderboard", "examples/raspberry-pi"];
-    run(tool("ruff").arg("check").args(sources))?;
-    run(tool("ruff").args(["format", "--check"]).args(sources))?;
+    run(tool("ruff").arg("check").args(backend).args(sources))?;
+    run(tool("ruff").args(["format", "--check"]).args(backend).args(sources))?;
     let typed = ["tests/python", "benches/python", "benches/leaderboard/leaderboard.py", "examples/raspberry-pi"];
-    run(tool("mypy").args(typed))?;
+    run(tool("mypy").args(backend).args(typed))?;
     run(tool("mypy.stubtest").args(["eeruf", "--ignore-missing-stub", "--mypy-config-file", "pyproject.toml"]))?;
     fresh(&wheel)?;
     // What Python is held against: the program, and the paths of the corpus.
@@ -46,6 +42,14 @@ pub(crate) fn python() -> Result<()> {
     tests.args(["--numprocesses", "auto"]);
     tests.env("EERUF_WHEEL", &wheel).env("EERUF_PROGRAM", program).env("EERUF_LAB", lab);
     run(&mut tests)
+}
+
+/// Builds the wheel as pip does from a clone, by the backend that the repository brings, into an empty folder.
+fn wheel(python: &Path, folder: &Path) -> Result<PathBuf> {
+    let mut pip = Command::new(python);
+    pip.args(["-m", "pip", "wheel", "--quiet", "--no-deps", "--no-build-isolation", ".", "--wheel-dir"]).arg(folder);
+    run(pip.env("MATURIN_PEP517_ARGS", "--locked"))?;
+    only_file(folder)
 }
 
 /// Packs the sources, and has Cargo read their manifests away from the repository by checking the least package: what
@@ -74,13 +78,14 @@ pub(crate) fn reference(folder: &Path) -> Result<()> {
 pub(crate) fn distributions(folder: &Path) -> Result<()> {
     let python = tested()?;
     empty(folder)?;
-    for (verb, ending) in [(&BUILD[..], "whl"), (&["sdist"], "gz")] {
-        let to = folder.join(ending);
-        run(Command::new(&python).args(["-m", "maturin"]).args(verb).arg("--out").arg(&to))?;
-        fresh(&only_file(&to)?)?;
+    let built = wheel(&python, &folder.join("whl"))?;
+    let sources = folder.join("gz");
+    run(Command::new(&python).args(["-m", "maturin", "sdist", "--out"]).arg(&sources))?;
+    for distribution in [&built, &only_file(&sources)?] {
+        fresh(distribution)?;
     }
     let python = environment(Path::new(HOME), &["abi3audit"])?;
-    run(Command::new(&python).args(["-m", "abi3audit", "--strict"]).arg(only_file(&folder.join("whl"))?))
+    run(Command::new(&python).args(["-m", "abi3audit", "--strict"]).arg(built))
 }
 
 /// A virtual environment with these packages of `PyPI`; its Python.

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Checks a certificate that a firing schedule's period is the shortest one: python3 check_period.py FILE
+"""Checks certificates that a firing schedule's period is the shortest one: python3 check_period.py FILE ...
 
-Python's standard library alone; shares nothing with the search that found the schedule, nor with crates/eeruf-check.
+Python's standard library alone; shares nothing with the search that found the schedule.
 docs/reference/certificate.md has problem and format; its sections "The rules" and "What the root may assume" have the
 proofs. Sensor x fires at a[x] in phase a, at b[x] in phase b, both in [0, T); d[x] = a[x] - b[x]. Required: |d| differ
 by the larger of two separations D; 2 |d[x]| >= D[x] if stale_echo; T - |d[x]| >= window[x]; after x, y fires no sooner
@@ -9,6 +9,7 @@ than gap[x][y]. A schedule for T is one for longer periods: times within a phase
 refuting one period refutes all below it."""
 import copy
 import sys
+from array import array
 from fractions import Fraction
 from itertools import accumulate
 
@@ -71,6 +72,13 @@ class Problem:
         self.orders = [(self.ends[x][phase], self.ends[y][phase], 2 * gap, -2 * G[y][x])
                        for x, row in enumerate(G) for y, gap in enumerate(row) if gap for phase in (0, 1)]
 
+    def claim(self):
+        reals, tick = " over the reals" if self.over_reals else "", f"(tick {self.tick} us)"
+        period, bound = self.period * self.tick, self.bound * self.tick
+        if period == bound:
+            return f"{period} us is the shortest period{reals} {tick}"
+        return f"no period below {bound} us{reals}; schedule of {period} us {tick}"
+
     def check_schedule(self, require):
         fire = [(a, self.period + b, 2 * self.period + a) for a, b in zip(self.a, self.b)]  # then it repeats
         change, D = [abs(a - b) for a, b in zip(self.a, self.b)], self.separation
@@ -86,125 +94,237 @@ class Problem:
                     waits = [later - earlier for earlier in fire[x] for later in fire[y] if later >= earlier]
                     require(min(waits) >= gap, f"sensor {y} fires too soon after sensor {x}")
 
+class Lanes:
+    """Numbers side by side in one integer: number x has the bits from x * width on, the highest of them 0. So to add or
+    compare all of two rows takes a few operations on integers, however many numbers they have."""
+    def __init__(self, width, count):
+        self.width, self.size, self.code = width, count * width // 8, "H" if width == 16 else "I"
+        self.ones = repeated(width, count)  # v times this is v in each lane
+        self.top = self.ones << width - 1  # the highest bits: those of some lanes stand for a set of them
+        self.most = self.top - self.ones  # all other bits
+
+    def not_less(self, p, q):
+        """The lanes in which p >= q, as a set: what is above q keeps a bit that is put on top of it."""
+        return (p | self.top) - q & self.top
+
+    def least(self, p, q):
+        tops = (p | self.top) - q & self.top
+        return p ^ (p ^ q) & tops - (tops >> self.width - 1)
+
+    def members(self, tops):
+        while tops:  # from the highest down
+            bits = tops.bit_length()
+            tops ^= 1 << bits - 1
+            yield bits // self.width - 1
+
+    def pack(self, numbers):
+        return sum(number << self.width * x for x, number in enumerate(numbers))
+
+    def unpack(self, row):
+        numbers = array(self.code, row.to_bytes(self.size, "little"))
+        if sys.byteorder == "big":
+            numbers.byteswap()
+        return numbers
+
 class Node:
-    """Knowledge at a node. M[i][j] bounds t[j] - t[i]: 2 v says "at most v", 2 v - 1 "less than v" (not in whole
-    ticks); event 0 is the start of a phase, 1 + 2 x is x in phase a, 2 + 2 x in phase b. low[x] bounds |d[x]|: 2 v says
-    "at least v", 2 v + 1 "more than v". below[y] are those with a smaller |d|, as bits. Rules only tighten, and more if
-    given more, so all orders of applying them end in the same state: the fixpoint."""
+    """Knowledge at a node. A bound on t[j] - t[i] is one number: 2 v says "at most v", 2 v - 1 "less than v" (not in
+    whole ticks); event 0 is the start of a phase, 1 + 2 x is x in phase a, 2 + 2 x in phase b. M holds them all, row by
+    row, each plus zero. low[x] bounds |d[x]|: 2 v says "at least v", 2 v + 1 "more than v". below[y] is the set of
+    those with a smaller |d|, above[x] of those with a larger one. Rules only tighten, and more if given more, so all
+    orders of applying them end in the same state: the fixpoint."""
 
     def __init__(self, problem, reverse):
         self.problem, self.step, self.reverse, self.seen = problem, 2 - problem.over_reals, reverse, None
+        D, G, count = problem.D, problem.G, len(problem.D)
+        self.size = size = 1 + 2 * count
+        # A bound is at most latest, and at least -latest, as it adds to 0 or more with the one the other way. So bounds
+        # plus zero are not negative, even less the span of a set, and sums of three are below four times zero.
+        self.zero = zero = 2 * problem.bound + 2 * sum(D)
+        width = 16 if 4 * zero < 1 << 15 else 32
+        self.lanes, self.all = Lanes(width, count), Lanes(width, size * size)
+        self.at = at = [[width * (size * i + j) for j in range(size)] for i in range(size)]
+        self.lane, self.row, self.zeros = (1 << width) - 1, (1 << width * size) - 1, zero * self.all.ones
+        self.first = repeated(width * size, size)  # 1 in the first lane of each row
+        self.column = self.first * self.lane
+        # A lane at the start of a row, or the first row, is repeated by doubling.
+        self.doublings = [width * min(1 << n, size - (1 << n)) for n in range((size - 1).bit_length())]
         # Firing times are below T, and T below the bound; in whole ticks each by 1.
-        latest, size = 2 * problem.bound - (1 if problem.over_reals else 4), 1 + 2 * len(problem.D)
-        self.M = [[latest * (i != j and j > 0) for j in range(size)] for i in range(size)]
-        self.low = [(D + D % 2 * (self.step - 1)) * problem.stale_echo for D in problem.D]  # 2 |d| >= D, rounded up
-        self.below = [0] * len(problem.D)
+        latest = 2 * problem.bound - (1 if problem.over_reals else 4)
+        diagonal = repeated(width * (size + 1), size)
+        self.M = self.zeros + latest * (self.all.ones - self.first - diagonal + 1)
+        self.least = sum(min(least, zero) + zero << at[i][j] for i, j, least, _ in problem.orders)
+        self.other = sum(max(other, -zero) + zero << at[i][j] for i, j, _, other in problem.orders)
+        self.order = {size * i + j: (i, j, other) for i, j, _, other in problem.orders}
+        self.low = [(D + D % 2 * (self.step - 1)) * problem.stale_echo for D in D]  # 2 |d| >= D, rounded up
+        self.one = [1 << width * x + width - 1 for x in range(count)]
+        self.below, self.above = [0] * count, [0] * count
+        self.apart = [self.lanes.pack([2 * max(mine, own) for own in D]) for mine in D]
+        self.width, self.widths = [2 * own * self.lanes.ones for own in D], self.lanes.pack([2 * own for own in D])
+        # For rule 6: two sensors, and where M has the bounds on a[x] - a[y] and b[y] - b[x].
+        (a, b), every = zip(*problem.ends), range(count)
+        self.pairs = [(x, y, size * a[y] + a[x], size * b[x] + b[y]) for x in every for y in every if G[x][y]]
+        self.groups = {}
 
     def assuming(self, *facts):
         """The node with these facts and all that follows from them; None if it is refuted."""
         node = copy.copy(self)
-        node.M, node.low, node.below = self.M[:], self.low[:], self.below[:]  # rows of M are only ever replaced
+        node.low, node.below, node.above = self.low[:], self.below[:], self.above[:]
         try:
             for learn, *what in facts:
                 learn(node, *what)
-            while node.orders() | node.signs() | node.ranks() or node.precedence():
+            while node.orders() or node.sizes() or node.precedence():
                 pass
         except Refuted:
             return None
         return node
 
+    def bound(self, i, j):
+        return (self.M >> self.at[i][j] & self.lane) - self.zero
+
     def learn(self, i, j, bound):
-        """Rule 1, closure: t[j] - t[h] = (t[i] - t[h]) + (t[j] - t[i]): bounds add along ways; a way round is 0. And
-        "< v" and "< w" add to "< v + w": of two odd numbers one -1 goes, so to an odd number even ones are added."""
-        M, even = self.M, self.M[j]
-        if bound >= M[i][j]:
+        """Rule 1, closure: t[k] - t[h] = (t[i] - t[h]) + (t[j] - t[i]) + (t[k] - t[j]): bounds add along ways; a way
+        round is 0. And "< v" and "< w" add to "< v + w": of two odd numbers one -1 goes."""
+        M, at = self.M, self.at
+        if bound + self.zero >= M >> at[i][j] & self.lane:
             return False
-        if bound + M[j][i] + (bound & M[j][i] & 1) < 0:
+        back = self.bound(j, i)
+        if bound + back + (bound & back & 1) < 0:
             raise Refuted
-        odd = [onward + (onward & 1) for onward in even] if self.step == 1 else even
-        for h, row in enumerate(M):
-            if (through := row[i] + bound + (row[i] & bound & 1)) < row[j]:
-                onward = zip(row, odd if through & 1 else even)
-                M[h] = [old if old <= through + new else through + new for old, new in onward]
+        to = M >> at[0][i] & self.column  # from h to i, for all h
+        to += bound * self.first + (bound & 1) * (to & self.first)
+        on = M >> at[j][0] & self.row  # from j to k, for all k
+        for shift in self.doublings:
+            to |= to << shift
+            on |= on << shift * self.size
+        through = to + on - self.zeros
+        if self.step == 1:
+            through += to & on & self.all.ones
+        self.M = self.all.least(M, through)
         return True
 
-    def high(self, x):  # the upper bound on |d[x]|
-        return max(self.M[1 + 2 * x][2 + 2 * x], self.M[2 + 2 * x][1 + 2 * x])
-    def learn_high(self, x, bound):
+    def learn_high(self, x, bound):  # on |d[x]|
         return self.learn(2 + 2 * x, 1 + 2 * x, bound) | self.learn(1 + 2 * x, 2 + 2 * x, bound)
+    def high(self, x):
+        return max(self.bound(2 + 2 * x, 1 + 2 * x), self.bound(1 + 2 * x, 2 + 2 * x))
     def learn_low(self, x, bound):
-        news, self.low[x] = bound > self.low[x], max(bound, self.low[x])
-        if self.low[x] > self.high(x):
-            raise Refuted
-        return news
+        self.low[x] = max(bound, self.low[x])
+
+    def is_below(self, x, y):
+        return self.below[y] & self.one[x]
+
     def learn_below(self, x, y):
-        self.below[y] |= 1 << x
+        """Below is transitive, not circular."""
+        if self.is_below(x, y):
+            return
+        down, up = self.below[x] | self.one[x], self.above[y] | self.one[y]
+        if down & up:
+            raise Refuted
+        for z in self.lanes.members(up):
+            self.below[z] |= down
+        for z in self.lanes.members(down):
+            self.above[z] |= up
 
     def orders(self):
         """Rule 2: if y cannot come its gap after x, then y comes first, as one of two firings does."""
-        news, M = False, self.M
-        for i, j, least, other in self.problem.orders:
-            if other < M[i][j] < least:
-                news |= self.learn(i, j, other)
+        news, M, lanes = False, self.M, self.all
+        for order in lanes.members(lanes.top ^ (lanes.not_less(M, self.least) | lanes.not_less(self.other, M))):
+            news |= self.learn(*self.order[order])
         for i, j, then_j, then_i, gap in self.reverse:  # assumed at the root
-            news |= M[i][j] <= -gap and self.learn(then_j, then_i, -gap)
+            news |= self.bound(i, j) <= -gap and self.learn(then_j, then_i, -gap)
         return news
 
-    def signs(self):
-        """Rule 3: d <= v < 0 gives |d| >= -v; and if |d| >= v and d < v, then d <= -v. The same for -d."""
-        news, M, low = False, self.M, self.low
-        for x, (a, b) in enumerate(self.problem.ends):
-            for i, j in ((b, a), (a, b)):
-                news |= -M[i][j] > low[x] and self.learn_low(x, -M[i][j])
-                news |= M[i][j] < low[x] and self.learn(i, j, -low[x])
-        return news
-
-    def ranks(self):
-        """Rule 4: if |d[x]| cannot be D above |d[y]|, it is below; below is transitive, not circular. Values max(D, D')
-        apart span the sum of their D but the smallest: outwards from there, each step is the D it leads to or more. So
-        |d[y]| is above the lowest of any set below it by the span of the set with y; the same upside down.
+    def sizes(self):
+        """Rule 3: d <= v < 0 gives |d| >= -v; and if |d| >= v and d < v, then d <= -v. The same for -d.
+        Rule 4: if |d[x]| cannot be D above |d[y]|, it is below. Then |d[y]| is above the lowest of any set below it by
+        the width of the set with y; the same upside down.
         Rule 5 (Hall): those whose |d| lies in an interval span no more than its width."""
-        low, below, D, every = self.low, self.below, self.problem.D, range(len(self.low))
-        seen, news = (high := [self.high(x) for x in every], low[:], below[:]), False
-        if self.seen == seen:
+        lanes, zero, news, low, size = self.lanes, self.zero, False, self.low, self.size
+        self.bounds = bounds = self.all.unpack(self.M)
+        highs, every = [], range(len(low))
+        self.mosts = [[bound - zero for bound in bounds[first::2 * size + 2]] for first in (2 * size + 1, size + 2)]
+        for x, positive, negative in zip(every, *self.mosts):
+            least = low[x] = max(low[x], -positive, -negative)
+            if least > positive:
+                if least > negative:
+                    raise Refuted
+                news |= self.learn(2 + 2 * x, 1 + 2 * x, -least)
+            elif least > negative:
+                news |= self.learn(1 + 2 * x, 2 + 2 * x, -least)
+            highs.append(max(positive, negative))
+        if news:
+            return True
+        seen = highs, low[:], self.below[:]
+        if seen == self.seen:
             return False
+        high, ones = lanes.pack(highs), lanes.ones
+        old = self.seen[1] if self.seen and self.seen[0] == highs else [None] * len(low)
         for y in every:
-            for x in every:
-                if high[x] - low[y] < 2 * max(D[x], D[y]) and x != y or below[y] >> x & 1:
-                    below[y] |= 1 << x | below[x]
-            if below[y] >> y & 1:
-                raise Refuted
-        for y in every:
-            under = [(-low[x], D[x]) for x in every if below[y] >> x & 1]
-            over = [(high[x], D[x]) for x in every if below[x] >> y & 1]
-            news |= bool(under) and self.learn_low(y, -beyond(under, (D[y],)))
-            news |= bool(over) and self.learn_high(y, beyond(over, (D[y],)))
-        for start in set(low):
-            if beyond([(high[x], D[x]) for x in every if low[x] >= start]) < start:
-                raise Refuted
-        self.seen = seen
-        return news or below != seen[2]
+            if old[y] != low[y]:
+                less = lanes.top ^ lanes.not_less(high, self.apart[y] + low[y] * ones)
+                for x in lanes.members(less & ~self.below[y] & ~self.one[y]):
+                    self.learn_below(x, y)
+        # Upside down, so that the lowest |d| below another has the least bound.
+        for y, bound in enumerate(lanes.unpack(self.beyond([-bound for bound in low], self.above, self.widths))):
+            if zero - bound > low[y]:
+                low[y] = zero - bound
+                news = True
+                if low[y] > highs[y]:
+                    raise Refuted
+        within, above = {}, 0
+        for x in sorted(every, key=low.__getitem__):
+            above |= self.one[x]
+            within[low[x]] = above
+        end = self.beyond(highs, [within[bound] for bound in low], 0)
+        if lanes.not_less(end, lanes.pack(low) + zero * ones) != lanes.top:
+            raise Refuted
+        for y, bound in enumerate(lanes.unpack(self.beyond(highs, self.below, self.widths))):
+            if bound - zero < highs[y]:
+                news |= self.learn_high(y, bound - zero)
+        if not news and seen[2] == self.below:
+            self.seen = seen
+            return False
+        return True
+
+    def beyond(self, bounds, sets, own):
+        """For each lane y a bound on what is below all of a set, plus zero, given upper bounds of its members: x is in
+        it if y is in sets[x]. own holds what y itself adds to the span. Values max(D, D') apart span the sum of their D
+        but the smallest: outwards from there, each step is the D it leads to or more."""
+        lanes, D = self.lanes, self.problem.D
+        widest, most, least, high, zero = max(D), lanes.most, lanes.least, lanes.width - 1, self.zero
+        narrowest, span, best = own or 2 * widest * lanes.ones, own, most
+        for x in sorted(range(len(D)), key=bounds.__getitem__):
+            if ys := sets[x]:
+                inside = ys - (ys >> high)
+                span += self.width[x] & inside
+                if D[x] < widest:
+                    narrowest = least(narrowest, self.width[x] & inside | most ^ inside)
+                best = least(best, (bounds[x] + zero) * lanes.ones + narrowest - span & inside | most ^ inside)
+        return best
 
     def precedence(self):
         """Rule 6: the orders of x and y may force d[x] - d[y] <= lead < 0. Of a set of such x, the last is as far above
         the lowest as the set spans, and y at least the smallest -lead beyond it. The same for -d."""
-        news, M, D = False, self.M, self.problem.D
-        for y, ends in enumerate(self.problem.ends):
-            others = [(end, D[x]) for x, end in enumerate(self.problem.ends) if self.problem.G[x][y]]
-            for one in (0, 1):
-                end, start = ends[one], ends[1 - one]  # their difference is d[y], or -d[y]
-                found = [(M[x[one]][x[1 - one]], M[end][x[one]], M[x[1 - one]][start], D) for x, D in others]
-                found = [(most, v + w + (v & w & 1), D) for most, v, w, D in found if v + w < 0]
-                for lead in {lead for _, lead, _ in found}:
-                    most = beyond([(most, D) for most, other, D in found if other <= lead])
-                    news |= self.learn(end, start, most + lead + (most & lead & 1))
+        news, M, D, (positive, negative), groups = False, self.bounds, self.problem.D, self.mosts, {}
+        for x, y, in_a, in_b in self.pairs:
+            if (lead := M[in_a] + M[in_b] + (M[in_a] & M[in_b] & 1) - 2 * self.zero) < 0:
+                groups.setdefault((1 + 2 * y, 2 + 2 * y), []).append((lead, negative[x], D[x]))
+                groups.setdefault((2 + 2 * x, 1 + 2 * x), []).append((lead, positive[y], D[y]))
+        for ends, group in groups.items():
+            if len(group) > 1 and group != self.groups.get(ends):  # of one x alone it follows by rule 1
+                for lead in {lead for lead, _, _ in group}:
+                    most = beyond([(most, D) for other, most, D in group if other <= lead])
+                    news |= self.learn(*ends, most + lead + (most & lead & 1))
+        self.groups = groups
         return news
 
-def beyond(values, own=()):
-    """A bound on what is below all values, given as upper bounds and separations: see rule 4."""
+def repeated(distance, count):
+    return ((1 << distance * count) - 1) // ((1 << distance) - 1)  # bits at this distance, from the lowest on
+
+def beyond(values):
+    """A bound on what is below all values, given as upper bounds and separations: as in Node.beyond, for one set."""
     bounds, separations = zip(*sorted(values))
-    spans, narrowest = list(accumulate(own + separations)), list(accumulate(own + separations, min))
-    return min(bound - 2 * (span - D) for bound, span, D in zip(bounds, spans[len(own):], narrowest[len(own):]))
+    spans, narrowest = accumulate(separations), accumulate(separations, min)
+    return min(bound - 2 * (span - D) for bound, span, D in zip(bounds, spans, narrowest))
 
 def root(lines, problem):
     """Knowledge at the root. A permutation that keeps the problem takes schedules to schedules; if it keeps earlier
@@ -256,7 +376,7 @@ def branching(lines, node):
         cases = (Node.learn_high, x, value), (Node.learn_low, x, value + step)
     elif word == "rank":
         lines.require(x != y, "expected two sensors that do not fire together")
-        decided = (node.below[y] >> x | node.below[x] >> y) & 1
+        decided = node.is_below(x, y) or node.is_below(y, x)
         cases = (Node.learn_below, x, y), (Node.learn_below, y, x)
     else:
         (i, j), bounds = problem.ends[x], (0, -step)  # d[x] >= 0, or d[x] < 0
@@ -264,13 +384,13 @@ def branching(lines, node):
             lines.require(problem.G[x][y], "expected two sensors with a gap")
             (j, i), G = (problem.ends[one][word == "b"] for one in (x, y)), problem.G
             bounds = -2 * G[x][y], -2 * G[y][x]  # x first, or y
-        decided = node.M[i][j] <= bounds[0] or node.M[j][i] <= bounds[1]
+        decided = node.bound(i, j) <= bounds[0] or node.bound(j, i) <= bounds[1]
         cases = (Node.learn, i, j, bounds[0]), (Node.learn, j, i, bounds[1])
     lines.require(not decided, "here it is known which case holds, expected an open branching")
     return cases
 
 def check(text):
-    """Returns the certificate's claim in words; raises Refused."""
+    """Returns the problem, whose claim is true; raises Refused."""
     problem = Problem(lines := Lines(text))
     node, waiting = root(lines, problem), []  # open nodes with the cases still to come; the tree is in preorder
     while node or waiting:
@@ -281,20 +401,25 @@ def check(text):
         node = node.assuming(case)
     lines.next("end", 0)
     lines.require(lines.lines[lines.read:] == [[""], [""]], "expected nothing after the line end")
-    reals, tick = " over the reals" if problem.over_reals else "", f"(tick {problem.tick} us)"
-    period, bound = problem.period * problem.tick, problem.bound * problem.tick
-    if period == bound:
-        return f"{period} us is the shortest period{reals} {tick}"
-    return f"no period below {bound} us{reals}; schedule of {period} us {tick}"
+    return problem
+
+def main(paths):
+    """Prints a line for each file. Returns 0 if all claims are true, 1 if one is refused, 2 if one cannot be read."""
+    code = 0 if paths else 2
+    if not paths:
+        print("usage: check_period.py FILE ..., or - for the files' names as lines of the input", file=sys.stderr)
+    for path in paths:
+        try:
+            with open(path, "rb") as file:
+                text = file.read().decode()
+            print(f"{path}: " * (len(paths) > 1) + check(text).claim())
+        except Refused as error:
+            print(f"refused: {path}: {error}")
+            code = max(code, 1)
+        except (ValueError, OSError) as error:
+            print(f"{path}: {error}", file=sys.stderr)
+            code = 2
+    return code
 
 if __name__ == "__main__":
-    try:
-        (path,) = sys.argv[1:]
-        with open(path, "rb") as file:
-            print(check(file.read().decode()))
-    except Refused as error:
-        print(f"refused: {path}: {error}")
-        sys.exit(1)
-    except (ValueError, OSError) as error:
-        print(f"usage: check_period.py FILE: {error}", file=sys.stderr)
-        sys.exit(2)
+    sys.exit(main(sys.stdin.read().splitlines() if sys.argv[1:] == ["-"] else sys.argv[1:]))

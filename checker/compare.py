@@ -132,7 +132,7 @@ def mutated(dice, certificate):
 def verdicts(binaries, certificate):
     """Returns what the two checkers say: the words of acceptance, or the line of refusal."""
     try:
-        here = check_period.check(certificate)
+        here = check_period.check(certificate).claim()
     except check_period.Refused as error:
         here = str(error).split(":")[0]
     with tempfile.NamedTemporaryFile("w", suffix=".txt", newline="") as file:
@@ -173,7 +173,7 @@ def main(arguments):
             counts["refused"] += 1
             continue
         head = certificate.split("no_period_below")[0]
-        if head == original.split("no_period_below")[0] and here == check_period.check(original):
+        if head == original.split("no_period_below")[0] and here == check_period.check(original).claim():
             counts["another proof of the same claim"] += 1
         elif holds(binaries, certificate, not given):
             counts["another claim, which holds"] += 1

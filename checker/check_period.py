@@ -213,16 +213,19 @@ class Node:
         return self.below[y] & self.one[x]
 
     def learn_below(self, x, y):
+        self.learn_all_below(self.one[x], y)
+    def learn_all_below(self, some, y):
         """Below is transitive, not circular."""
-        if self.is_below(x, y):
-            return
-        down, up = self.below[x] | self.one[x], self.above[y] | self.one[y]
-        if down & up:
-            raise Refuted
-        for z in self.lanes.members(up):
-            self.below[z] |= down
-        for z in self.lanes.members(down):
-            self.above[z] |= up
+        if some := some & ~self.below[y]:
+            down, up = some, self.above[y] | self.one[y]
+            for x in self.lanes.members(some):
+                down |= self.below[x]
+            if down & up:
+                raise Refuted
+            for z in self.lanes.members(up):
+                self.below[z] |= down
+            for z in self.lanes.members(down):
+                self.above[z] |= up
 
     def orders(self):
         """Rule 2: if y cannot come its gap after x, then y comes first, as one of two firings does."""
@@ -257,19 +260,18 @@ class Node:
         if seen == self.seen:
             return False
         high, ones = lanes.pack(highs), lanes.ones
-        old = self.seen[1] if self.seen and self.seen[0] == highs else [None] * len(low)
+        highs_then, low_then, below_then = self.seen or (None, None, None)  # nothing is new that follows from these
         for y in every:
-            if old[y] != low[y]:
+            if highs != highs_then or low[y] != low_then[y]:
                 less = lanes.top ^ lanes.not_less(high, self.apart[y] + low[y] * ones)
-                for x in lanes.members(less & ~self.below[y] & ~self.one[y]):
-                    self.learn_below(x, y)
-        # Upside down, so that the lowest |d| below another has the least bound.
-        for y, bound in enumerate(lanes.unpack(self.beyond([-bound for bound in low], self.above, self.widths))):
-            if zero - bound > low[y]:
-                low[y] = zero - bound
-                news = True
-                if low[y] > highs[y]:
-                    raise Refuted
+                self.learn_all_below(less & ~self.one[y], y)
+        if low != low_then or self.below != below_then:
+            # Upside down, so that the lowest |d| below another has the least bound.
+            for y, bound in enumerate(lanes.unpack(self.beyond([-bound for bound in low], self.above, self.widths))):
+                if zero - bound > low[y]:
+                    low[y], news = zero - bound, True
+                    if low[y] > highs[y]:
+                        raise Refuted
         within, above = {}, 0
         for x in sorted(every, key=low.__getitem__):
             above |= self.one[x]
@@ -304,9 +306,11 @@ class Node:
     def precedence(self):
         """Rule 6: the orders of x and y may force d[x] - d[y] <= lead < 0. Of a set of such x, the last is as far above
         the lowest as the set spans, and y at least the smallest -lead beyond it. The same for -d."""
-        news, M, D, (positive, negative), groups = False, self.bounds, self.problem.D, self.mosts, {}
+        news, M, D, zeros, (positive, negative) = False, self.bounds, self.problem.D, 2 * self.zero, self.mosts
+        groups = {}
         for x, y, in_a, in_b in self.pairs:
-            if (lead := M[in_a] + M[in_b] + (M[in_a] & M[in_b] & 1) - 2 * self.zero) < 0:
+            if (lead := M[in_a] + M[in_b] - zeros) < 0:
+                lead += M[in_a] & M[in_b] & 1
                 groups.setdefault((1 + 2 * y, 2 + 2 * y), []).append((lead, negative[x], D[x]))
                 groups.setdefault((2 + 2 * x, 1 + 2 * x), []).append((lead, positive[y], D[y]))
         for ends, group in groups.items():

@@ -5,8 +5,6 @@
 
 #[cfg(feature = "c")]
 pub mod c;
-#[cfg(feature = "certificates")]
-pub mod certificates;
 pub mod filter;
 #[cfg(feature = "logs")]
 pub mod logs;

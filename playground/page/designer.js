@@ -199,19 +199,25 @@ export class Designer {
       line.textContent = "";
       return;
     }
-    line.textContent = "The certificate is being written and checked …";
+    line.textContent = "The certificate is being written …";
     try {
-      const checked = await this.page.desk.ask({ ask: "certificate", ring });
-      line.textContent = `Checked here by a program that shares nothing with the search: ${checked.says}, in ${checked.nodes.toLocaleString("en")} cases. `;
-      const file = new Blob([checked.text], { type: "text/plain" });
-      const link = /** @type {HTMLAnchorElement} */ (
-        element("a", { href: URL.createObjectURL(file), download: "ring.certificate" })
+      const { says, nodes, text, checker } = await this.page.desk.ask({ ask: "certificate", ring });
+      line.replaceChildren(
+        `Certificate: ${says}, in ${nodes.toLocaleString("en")} cases. This page does not check it. Download `,
+        this.#download("ring.certificate", text),
+        " and the checker, which shares nothing with the search, ",
+        this.#download("check_period.py", checker),
+        ": ",
+        element("code", {}, "python3 check_period.py ring.certificate"),
       );
-      link.textContent = "Download the certificate";
-      line.append(link);
     } catch (error) {
       line.textContent = `No certificate: ${error instanceof Error ? error.message : error}.`;
     }
+  }
+
+  /** @param {string} name @param {string} text @returns {HTMLElement} A link that saves the text as a file. */
+  #download(name, text) {
+    return element("a", { href: URL.createObjectURL(new Blob([text], { type: "text/plain" })), download: name }, name);
   }
 
   #show() {

@@ -20,7 +20,7 @@ enum Question {
     Design { ring: String },
     /// Changes that would make it shorter.
     Faster { ring: String },
-    /// The certificate that it is the shortest, checked.
+    /// The certificate that it is the shortest, and its checker.
     Certificate { ring: String },
 }
 

@@ -110,6 +110,9 @@ test("the page's certificate is to the letter that of the program", () => {
   const asked = ["design", "--period-only", "--no-atlas", file("certified.toml", ring)];
   execFileSync(PROGRAM, [...asked, "--certificate", path], { stdio: "pipe" });
   assert.equal(certificate.text, readFileSync(path, "utf8"));
+  // The checker that the page hands out accepts what it hands out.
+  const [checker, given] = [file("check_period.py", certificate.checker), file("ring.certificate", certificate.text)];
+  assert.equal(execFileSync("python3", [checker, given], { encoding: "utf8" }).trim(), certificate.says);
 });
 
 /** Holds each of our figures that the program has too against it. @param {any} ours @param {any} theirs @param {string} where */

@@ -43,11 +43,11 @@ async function stateOf(page) {
   return JSON.parse(text);
 }
 
-/** @param {import("playwright-core").Page} page Presses the button and waits for the checked certificate. */
+/** @param {import("playwright-core").Page} page Presses the button and waits for the certificate. */
 async function design(page) {
   await page.locator("#design-go").click();
   await page.waitForFunction(
-    () => document.getElementById("certificate")?.textContent?.startsWith("Checked here"),
+    () => document.getElementById("certificate")?.textContent?.startsWith("Certificate:"),
     undefined,
     { timeout: 60_000 },
   );
@@ -110,7 +110,7 @@ describe("the page in a browser", { concurrency: LONG ? 1 : 4 }, () => {
     await page.keyboard.type("12");
     await page.keyboard.press("Enter");
     await page.waitForFunction(
-      () => document.getElementById("certificate")?.textContent?.startsWith("Checked here"),
+      () => document.getElementById("certificate")?.textContent?.startsWith("Certificate:"),
       undefined,
       { timeout: 60_000 },
     );

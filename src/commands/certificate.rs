@@ -1,10 +1,10 @@
-//! The certificate of a design, and what the checker says of it.
+//! The certificate of a design, and its claim.
 
 use std::path::Path;
 
 use clap::ValueEnum;
-use eeruf_check::check;
-use eeruf_design::{RingDesign, certificate};
+use eeruf_design::RingDesign;
+use eeruf_design::certificate::{self, Stated};
 
 use super::Answer;
 use crate::console::{error, note};
@@ -15,7 +15,7 @@ use crate::report::watch::Watch;
 /// Certificate format.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub(crate) enum CertificateForm {
-    /// One text for eeruf-check and checker/check_period.py
+    /// One text for checker/check_period.py
     #[default]
     Eeruf,
     /// A model and a proof for VeriPB, which others wrote: FILE with the endings .opb and .pbp
@@ -72,18 +72,18 @@ impl Written {
     }
 }
 
-/// The checker's claim about the certificate.
+/// The certificate's claim, as the checker prints it.
 pub(crate) fn claim_of(text: &str) -> String {
-    check(text).map_or_else(|error| format!("refused: {error}"), |certified| certified.to_string())
+    Stated::read(text).map_or_else(String::new, |stated| stated.to_string())
 }
 
-/// The checker's claim about the certificate, and whether the search knows more.
+/// The certificate's claim, and whether the search knows more.
 fn claim(text: &str, design: &RingDesign) -> String {
-    let known = design.bound.unwrap_or_default();
-    match check(text) {
-        Ok(certified) if certified.claim.bound * certified.claim.problem.tick_us.0 < known.as_micros() => {
-            format!("{certified}; a proof of {known} is longer, give it more with --certificate-budget or --time-limit")
-        }
-        _ => claim_of(text),
+    let (claim, known) = (claim_of(text), design.bound.unwrap_or_default());
+    let is_less = |stated: Stated| stated.micros(stated.bound) < u64::from(known.as_micros());
+    if Stated::read(text).is_some_and(is_less) {
+        format!("{claim}; a proof of {known} is longer, give it more with --certificate-budget or --time-limit")
+    } else {
+        claim
     }
 }

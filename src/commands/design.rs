@@ -64,7 +64,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "FILE", value_parser = picture())]
     svg: Option<PathBuf>,
     /// Write a certificate that no period is shorter, or shorter than the bound where the search ended early; for
-    /// eeruf-check and checker/check_period.py
+    /// checker/check_period.py
     #[arg(long, value_name = "FILE")]
     certificate: Option<PathBuf>,
     /// Certificate format

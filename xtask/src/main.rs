@@ -105,7 +105,7 @@ enum Verb {
         #[arg(value_name = "DOCUMENT", required_unless_present = "check")]
         document: Option<String>,
     },
-    /// Certify the rings of the tables, and have both checkers judge them and mutated ones (minutes)
+    /// Certify the rings of the tables, and have the checker judge them and those of 20,000 tiny problems (minutes)
     Certificates(certificates::Plan),
     /// Build the proof checker VeriPB, and have it judge the proofs of the table and of rings/ (minutes)
     Veripb,

@@ -61,7 +61,7 @@ fn sources_are_whole(python: &Path, folder: &Path) -> Result<()> {
     run(Command::new(python).args(["-m", "tarfile", "-e"]).arg(&packed).arg(folder))?;
     fs::remove_file(&packed)?;
     let manifest = only_file(folder)?.join("Cargo.toml");
-    run(Command::new("cargo").args(["check", "--quiet", "--package", "eeruf-check", "--manifest-path"]).arg(manifest))
+    run(Command::new("cargo").args(["check", "--quiet", "--package", "eeruf-core", "--manifest-path"]).arg(manifest))
 }
 
 /// Writes the reference, made of docstrings and stubs, into a folder: of the wheel that `EERUF_WHEEL` names, or of one

@@ -1,5 +1,7 @@
 //! The certificate of a design: of the search it uses only the schedule and the bound.
 
+use core::fmt;
+
 use eeruf_core::Micros;
 use eeruf_period::PeriodProblem;
 use eeruf_period::engine::prove::{NoProof, prove_what_can_be};
@@ -41,4 +43,74 @@ pub fn prove_to_veripb(
     go_on: impl FnMut(usize) -> bool,
 ) -> Result<VeriPb, NoProof> {
     veripb::prove(&design.bounding.problem().claim(&design.schedule, design.bound), budget, go_on)
+}
+
+/// The claim that a certificate states, and the size of its proof. Nothing is checked: `checker/check_period.py` does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Stated {
+    /// The period of its schedule, in ticks.
+    pub period: u32,
+    /// No period is shorter, in ticks.
+    pub bound: u32,
+    /// The nodes of the proof's tree.
+    pub nodes: usize,
+    /// A tick is `tick_us.0 / tick_us.1` microseconds.
+    tick_us: (u32, u32),
+    over_reals: bool,
+}
+
+impl Stated {
+    /// The claim of a certificate that was written here; `None` for other texts.
+    #[must_use]
+    pub fn read(certificate: &str) -> Option<Self> {
+        let numbers = |word: &str| {
+            let mut lines = certificate.lines().filter_map(|line| line.strip_prefix(word)?.strip_prefix(' '));
+            lines.next()?.split(' ').map(|number| number.parse().ok()).collect::<Option<Vec<u32>>>()
+        };
+        let (tick, period, bound) = (numbers("tick_us")?, numbers("period")?, numbers("no_period_below")?);
+        let is_branching =
+            |line: &&str| ["a ", "b ", "sign ", "rank ", "split "].iter().any(|word| line.starts_with(word));
+        Some(Self {
+            period: *period.first()?,
+            bound: *bound.first()?,
+            nodes: 2 * certificate.lines().filter(is_branching).count() + 1,
+            tick_us: (*tick.first()?, *tick.get(1)?),
+            over_reals: numbers("over_reals")? == [1],
+        })
+    }
+
+    /// This many ticks in whole microseconds, rounded down.
+    #[must_use]
+    pub fn micros(&self, ticks: u32) -> u64 {
+        u64::from(ticks) * u64::from(self.tick_us.0) / u64::from(self.tick_us.1)
+    }
+}
+
+impl fmt::Display for Stated {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let us = |ticks| Fraction(u64::from(ticks) * u64::from(self.tick_us.0), u64::from(self.tick_us.1));
+        let reals = if self.over_reals { " over the reals" } else { "" };
+        if self.bound == self.period {
+            write!(f, "{} us is the shortest period{reals}", us(self.period))?;
+        } else {
+            write!(f, "no period below {} us{reals}; schedule of {} us", us(self.bound), us(self.period))?;
+        }
+        write!(f, " (tick {} us)", us(1))
+    }
+}
+
+/// A fraction, printed in lowest terms.
+struct Fraction(u64, u64);
+
+impl fmt::Display for Fraction {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (mut divisor, mut rest) = (self.0, self.1);
+        while rest > 0 {
+            (divisor, rest) = (rest, divisor % rest);
+        }
+        match self.1 / divisor {
+            1 => write!(f, "{}", self.0 / divisor),
+            under => write!(f, "{}/{under}", self.0 / divisor),
+        }
+    }
 }

@@ -2,32 +2,36 @@
 
 mod common;
 
-use eeruf_check::{check, read_claim};
+use common::{accepted, claim_of, nodes_of, small};
 use eeruf_period::engine::prove::{NoProof, prove, prove_what_can_be, prove_while};
 use eeruf_period::engine::shortest::shortest;
 use eeruf_period::engine::{Claim, Problem};
 
 #[test]
 fn the_periods_of_the_table_have_a_certificate_that_is_accepted() {
-    let (mut nodes, mut at_root) = (0, 0);
+    let (mut certificates, mut cut) = (Vec::new(), Vec::new());
     for (name, claim) in common::table(1) {
         let certificate = prove(&claim, 100_000).unwrap_or_else(|error| panic!("{name}: {error}"));
-        let certified = check(&certificate).unwrap_or_else(|error| panic!("{name}: {error}"));
-        println!("{name}: {certified}, {} nodes", certified.nodes);
-        assert_eq!(certified.to_string(), format!("{}000 us is the shortest period (tick 1000 us)", claim.period));
-        assert_eq!(common::claim_of(&certified.claim), claim);
-        nodes += certified.nodes;
-        at_root += usize::from(certified.nodes == 1);
-        // Without a tree, or with one line less, it is no proof.
+        assert_eq!(claim_of(&certificate), claim);
+        // With one line less it is no proof.
         let mut lines: Vec<&str> = certificate.lines().collect();
         lines.remove(lines.len() - 2);
-        if certified.nodes > 1 {
-            assert!(check(&(lines.join("\n") + "\n")).is_err(), "{name}");
+        if nodes_of(&certificate) > 1 {
+            cut.push(lines.join("\n") + "\n");
         }
+        certificates.push(certificate);
     }
+    let nodes: usize = certificates.iter().map(|text| nodes_of(text)).sum();
     println!("{nodes} nodes together");
+    let at_root = certificates.iter().filter(|text| nodes_of(text) == 1).count();
     assert_eq!(at_root, 14, "as many are refuted by the rules alone");
     assert!(nodes < 17_000, "{nodes} nodes, there were 15,008");
+    let certificates = small(certificates);
+    for (text, says) in certificates.iter().zip(accepted("table", &certificates)) {
+        assert_eq!(says, format!("{}000 us is the shortest period (tick 1000 us)", claim_of(text).period));
+    }
+    let verdicts = common::verdicts_of(&common::checker(), "cut", &small(cut));
+    assert!(verdicts.iter().all(|verdict| verdict.starts_with("refused: line ")), "{verdicts:?}");
 }
 
 #[test]
@@ -36,8 +40,7 @@ fn search_proves_every_period_of_the_table() {
         let found = shortest(&claim.problem, 100_000, &mut |_| true).expect("firing one by one at least");
         assert_eq!((found.period, found.bound), (claim.period, claim.period), "{name}");
         let claim = Claim { fire: found.fire, ..claim };
-        let read = read_claim(&prove(&claim, 100_000).expect("a proof")).map(|read| common::claim_of(&read));
-        assert_eq!(read, Ok(claim), "{name}: the times serve");
+        assert_eq!(claim.check(), Ok(()), "{name}: the times serve");
     }
 }
 
@@ -113,7 +116,7 @@ fn proof_ends_when_caller_or_budget_wants() {
 #[test]
 fn early_proof_leaves_the_highest_cheaper_bound() {
     let (_, claim) = common::table(1).into_iter().find(|(name, _)| name == "line 8, window 15").expect("it is there");
-    let bound = |text: Result<String, NoProof>| check(&text.expect("a proof")).expect("accepted").claim.bound;
+    let bound = |text: Result<String, NoProof>| claim_of(&text.expect("a proof")).bound;
     assert_eq!(bound(prove_what_can_be(&claim, 100_000, |_| true)), claim.period);
     let by_rules_alone = bound(prove_what_can_be(&claim, 100_000, |_| false));
     let with_some_nodes = bound(prove_what_can_be(&claim, 340, |_| true));
@@ -141,6 +144,6 @@ fn line_12_at_45_ms_runs_at_69_5_ms() {
     let Err(NoProof::Feasible(fire)) = prove(&claim, 100_000) else { panic!("139 half ticks have a schedule") };
     claim = Claim { period: 139, bound: 139, fire, ..claim };
     claim.problem.over_reals = true;
-    let certified = check(&prove(&claim, 100_000).expect("a proof")).expect("accepted");
-    assert_eq!(certified.to_string(), "69500 us is the shortest period over the reals (tick 500 us)");
+    let says = accepted("line-12-reals", &[prove(&claim, 100_000).expect("a proof")]);
+    assert_eq!(says, ["69500 us is the shortest period over the reals (tick 500 us)"]);
 }

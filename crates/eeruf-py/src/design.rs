@@ -1,5 +1,6 @@
 //! `design`: the shortest period, with its certificate.
 
+use std::ffi::CString;
 use std::time::{Duration, Instant};
 
 use eeruf_core::search::{self as search, Progress};
@@ -7,7 +8,7 @@ use eeruf_core::{MAX_SENSORS, Micros, Requirements};
 use eeruf_design::{
     OwnedUneven, PeriodProblem, Search, atlas::ATLAS, certificate, over_reals as real_period, real_budget, shortest,
 };
-use pyo3::prelude::*;
+use pyo3::{prelude::*, sync::PyOnceLock};
 
 use crate::{
     arguments::{flag, micros, number, whole_or},
@@ -211,9 +212,9 @@ fn certify(
 
 /// Check a certificate: that its schedule keeps the requirements in it, and that no period is shorter.
 ///
-/// The checker shares nothing with the search; ``checker/check_period.py`` in the repository is another, in 300 lines
-/// of Python, and ``docs/reference/certificate.md`` has the format and the proof of each rule. A certificate speaks of
-/// the numbers that stand in it, and of nothing else.
+/// The checker is ``checker/check_period.py``, which shares nothing with the search and which :func:`example` shows;
+/// ``docs/reference/certificate.md`` has the format and the proof of each rule. A certificate speaks of the numbers that
+/// stand in it, and of nothing else.
 ///
 /// Args:
 ///     text: the certificate, as in ``design(..., certificate=True).certificate``.
@@ -235,13 +236,28 @@ fn certify(
 ///     eeruf.CertificateError: no period below 62000 us; schedule of 63000 us (tick 1000 us)
 #[pyfunction]
 #[pyo3(name = "check_certificate", signature = (text))]
-pub(crate) fn check_certificate(text: &Bound<'_, PyAny>) -> PyResult<u64> {
+pub(crate) fn check_certificate(py: Python<'_>, text: &Bound<'_, PyAny>) -> PyResult<u64> {
     let text = crate::arguments::text("text", text, "a certificate")?;
-    let certified = eeruf_check::check(&text).map_err(Raise::raise)?;
-    let period = u64::from(certified.claim.period) * u64::from(certified.claim.problem.tick_us.0);
-    let fraction = u64::from(certified.claim.problem.tick_us.1);
-    if certified.claim.bound < certified.claim.period || !period.is_multiple_of(fraction) {
-        return Err(CertificateError::new_err(certified.to_string()));
+    let checker = checker(py)?;
+    let problem = checker.getattr("check")?.call1((text,)).map_err(|error| {
+        let refused = checker.getattr("Refused").is_ok_and(|refused| error.matches(py, refused).unwrap_or(false));
+        if refused { CertificateError::new_err(error.value(py).to_string()) } else { error }
+    })?;
+    let of = |name: &str| problem.getattr(name);
+    let period = of("period")?.mul(of("tick")?)?;
+    if of("bound")?.lt(of("period")?)? || !period.getattr("denominator")?.eq(1)? {
+        return Err(CertificateError::new_err(problem.call_method0("claim")?.str()?.to_string()));
     }
-    Ok(period / fraction)
+    period.getattr("numerator")?.extract()
+}
+
+/// The module of the checker's text, run on first use: to import eeruf takes no longer for it.
+fn checker(py: Python<'_>) -> PyResult<&Bound<'_, PyModule>> {
+    static CHECKER: PyOnceLock<Py<PyModule>> = PyOnceLock::new();
+    let path = "checker/check_period.py";
+    let module = CHECKER.get_or_try_init(py, || {
+        let text = CString::new(eeruf::examples::text(path).unwrap_or_default()).unwrap_or_default();
+        PyModule::from_code(py, &text, c"checker/check_period.py", c"eeruf._check_period").map(Bound::unbind)
+    })?;
+    Ok(module.bind(py))
 }

@@ -151,8 +151,8 @@ Example:
     >>> import eeruf
     >>> eeruf.check_certificate(\"\")
     Traceback (most recent call last):
-    eeruf.CertificateError: line 1: found \"\", expected a line eeruf-certificate
-" from eeruf_check::CheckError;
+    eeruf.CertificateError: line 1: found '', expected a line eeruf-certificate
+";
     SceneError "Walls, poles, robots or noise that make no scene.
 
 Example:

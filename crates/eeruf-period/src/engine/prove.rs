@@ -1,6 +1,6 @@
 //! Writes certificates: a depth-first search for a tree of branchings that refutes every shorter period.
 //!
-//! Nothing here needs to be trusted: two checkers that share nothing with it read what it writes.
+//! Nothing here needs to be trusted: a checker that shares nothing with it reads what it writes.
 
 use core::fmt;
 

@@ -1,14 +1,98 @@
-//! Random problems and a brute force that knows only the definition.
+//! Random problems, a brute force that knows only the definition, and the checker of certificates.
 #![allow(dead_code)]
 
 use eeruf_period::engine::{Claim, Problem};
+use std::fs;
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
 
-/// The claim of a certificate as the checker read it.
-pub(crate) fn claim_of(certified: &eeruf_check::Claim) -> Claim {
-    let eeruf_check::Claim { problem, period, fire, bound } = certified.clone();
-    let eeruf_check::Problem { tick_us, separation, window, stale_echo, over_reals, together, gaps } = problem;
-    let problem = Problem { tick_us, separation, window, stale_echo, over_reals, together, gaps };
-    Claim { problem, period, fire, bound }
+/// The checker of certificates, `checker/check_period.py`.
+pub(crate) fn checker() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../checker/check_period.py")
+}
+
+/// The verdict of a checker on each certificate, all in one process: its claim, or `refused: line N: why`. The name is
+/// that of a folder for the files.
+pub(crate) fn verdicts_of(checker: &Path, name: &str, certificates: &[String]) -> Vec<String> {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    fs::create_dir_all(&folder).expect("the folder can be made");
+    let mut python = Command::new("python3");
+    python.arg(checker).arg("-").current_dir(&folder).stdin(Stdio::piped()).stdout(Stdio::piped());
+    let mut python = python.spawn().expect("python3 runs");
+    let mut names = python.stdin.take().expect("it reads names");
+    for (number, text) in certificates.iter().enumerate() {
+        fs::write(folder.join(number.to_string()), text).expect("the folder can be written to");
+        writeln!(names, "{number}").expect("it reads names");
+    }
+    // One more, so that there are several and each line has its file's name.
+    fs::write(folder.join("end"), "").expect("the folder can be written to");
+    writeln!(names, "end").expect("it reads names");
+    drop(names);
+    let done = python.wait_with_output().expect("python3 ends");
+    let said = String::from_utf8(done.stdout).expect("it writes text");
+    let verdict = |(number, line): (usize, &str)| {
+        let name = format!("{number}: ");
+        assert_eq!(line.trim_start_matches("refused: ").find(&name), Some(0), "{line}");
+        line.replacen(&name, "", 1)
+    };
+    let verdicts: Vec<String> = said.lines().take(certificates.len()).enumerate().map(verdict).collect();
+    assert_eq!((verdicts.len(), done.status.code()), (certificates.len(), Some(1)), "{said}");
+    verdicts
+}
+
+/// Has the checker accept all these certificates. Returns their claims in its words.
+pub(crate) fn accepted(name: &str, certificates: &[String]) -> Vec<String> {
+    let verdicts = verdicts_of(&checker(), name, certificates);
+    for (verdict, text) in verdicts.iter().zip(certificates) {
+        assert!(!verdict.starts_with("refused"), "{name}: {verdict}\n{text}");
+    }
+    verdicts
+}
+
+/// The claim of a certificate that the checker accepted: its head.
+pub(crate) fn claim_of(certificate: &str) -> Claim {
+    let row = |line: &str| -> Vec<u32> {
+        line.split(' ').skip(1).map(|number| number.parse().expect("the checker read it")).collect()
+    };
+    let rows = |word: &str| -> Vec<Vec<u32>> {
+        certificate.lines().filter(|line| line.split(' ').next() == Some(word)).map(row).collect()
+    };
+    let one = |word: &str| rows(word).swap_remove(0);
+    let group = |group: Vec<u32>| group.into_iter().map(|sensor| sensor as usize).collect();
+    let problem = Problem {
+        tick_us: (one("tick_us")[0], one("tick_us")[1]),
+        separation: one("separation"),
+        window: one("window"),
+        stale_echo: one("stale_echo") == [1],
+        over_reals: one("over_reals") == [1],
+        together: rows("together").into_iter().map(group).collect(),
+        gaps: rows("gap").iter().map(|gap| (gap[0] as usize, gap[1] as usize, gap[2], gap[3])).collect(),
+    };
+    let fire = [one("fire_a"), one("fire_b")];
+    Claim { problem, period: one("period")[0], fire, bound: one("no_period_below")[0] }
+}
+
+/// The number of nodes of a certificate's tree: one leaf more than there are branchings.
+pub(crate) fn nodes_of(certificate: &str) -> usize {
+    let words = ["a", "b", "sign", "rank", "split"];
+    let is_branching = |line: &&str| words.contains(&line.split(' ').next().unwrap_or_default());
+    2 * certificate.lines().filter(is_branching).count() + 1
+}
+
+/// The certificates that the checker reads in a moment; `EERUF_NODES` sets how many nodes they may have.
+pub(crate) fn small(certificates: Vec<String>) -> Vec<String> {
+    let most = from_environment("EERUF_NODES", 500);
+    let all = certificates.len();
+    let small: Vec<String> = certificates.into_iter().filter(|text| nodes_of(text) as u64 <= most).collect();
+    println!("{} of {all} certificates have at most {most} nodes and are checked", small.len());
+    assert!(2 * small.len() > all, "{} of {all} certificates have at most {most} nodes", small.len());
+    small
+}
+
+/// A number from the environment, or the usual one.
+pub(crate) fn from_environment(name: &str, usual: u64) -> u64 {
+    std::env::var(name).map_or(usual, |number| number.parse().expect("a number"))
 }
 
 /// A small generator of pseudo-random numbers, the same on every machine (xorshift64*).

@@ -1,0 +1,267 @@
+//! The checker of certificates against nested loops over firing times: whatever claim it accepts is true.
+
+mod common;
+
+use common::{Random, accepted, checker, claim_of, feasible, from_environment, random_problem, verdicts_of};
+use eeruf_period::engine::prove::prove;
+use eeruf_period::engine::{Claim, Problem};
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// A claim about a tiny problem, with a schedule by nested loops.
+fn claim(seed: u64, longer: u32) -> Option<Claim> {
+    let problem = random_problem(&mut Random(seed + 1));
+    let most = if problem.sensors() <= 3 { 12 } else { 8 };
+    let shortest = (1..=most).find(|&period| feasible(&problem, period).is_some())?;
+    let period = shortest + longer;
+    let fire = feasible(&problem, period)?;
+    Some(Claim { problem, period, fire, bound: period })
+}
+
+/// Returns true if the claim holds by trying all firing times: the schedule keeps the needs, and no shorter period can.
+/// Over the reals, with up to three sensors, times and periods in halves of a tick are tried as well.
+fn holds(claim: &Claim) -> bool {
+    let Claim { problem, bound, .. } = claim;
+    let no_half = || feasible(&finer(problem, 2), 2 * bound - 1).is_none();
+    claim.check().is_ok()
+        && (1..*bound).all(|period| feasible(problem, period).is_none())
+        && (!problem.over_reals || problem.sensors() > 3 || no_half())
+}
+
+/// The problem in ticks of a part of those it has.
+fn finer(problem: &Problem, parts: u32) -> Problem {
+    let times = |list: &[u32]| list.iter().map(|time| time * parts).collect();
+    let gaps = problem.gaps.iter().map(|&(x, y, after_x, after_y)| (x, y, after_x * parts, after_y * parts));
+    Problem {
+        separation: times(&problem.separation),
+        window: times(&problem.window),
+        gaps: gaps.collect(),
+        ..problem.clone()
+    }
+}
+
+/// The certificate with one to three lines changed: deleted, doubled, swapped, moved, cut, or a number by up to two.
+fn mutated(random: &mut Random, certificate: &str) -> String {
+    let mut lines: Vec<String> = certificate.split('\n').map(str::to_owned).collect();
+    for _ in 0..=random.below(3) {
+        let count = lines.len() as u32;
+        let [i, j] = [random.below(count) as usize, random.below(count) as usize];
+        match random.below(10) {
+            0 => _ = lines.remove(i),
+            1 => lines.insert(i, lines[i].clone()),
+            2 => lines.swap(i, j),
+            3 => {
+                let line = lines.remove(i);
+                lines.insert(j.min(lines.len()), line);
+            }
+            4 => lines.truncate(i + 1),
+            _ => {
+                let mut words: Vec<String> = lines[i].split(' ').map(str::to_owned).collect();
+                let at = random.below(words.len() as u32) as usize;
+                let change = [-2, -1, 1, 2][random.below(4) as usize];
+                if let Ok(number) = words[at].parse::<i64>() {
+                    words[at] = (number + change).max(0).to_string();
+                }
+                lines[i] = words.join(" ");
+            }
+        }
+        if lines.is_empty() {
+            break;
+        }
+    }
+    lines.join("\n")
+}
+
+// Certificates of tiny problems, in whole ticks and over the reals, and mutated ones: whatever is accepted is true.
+#[test]
+fn accepted_claims_are_true_by_nested_loops() {
+    let (first, cases) = (from_environment("EERUF_FIRST", 0), from_environment("EERUF_CASES", 1_000));
+    let (mut certificates, mut proven) = (Vec::new(), 0);
+    for seed in first..first + cases {
+        let Some(mut claim) = claim(seed, 0) else { continue };
+        let mut random = Random(seed + 1);
+        claim.problem.over_reals = random.once_in(3);
+        // Over the reals the shortest period may be a part of a tick less: then a tick less is claimed.
+        let proof =
+            prove(&claim, 10_000).or_else(|_| prove(&Claim { bound: claim.bound - 1, ..claim.clone() }, 10_000));
+        let Ok(text) = proof else { continue };
+        proven += 1;
+        certificates.extend((0..4).map(|_| mutated(&mut random, &text)).filter(|other| *other != text));
+        certificates.push(text);
+    }
+    let verdicts = verdicts_of(&checker(), "nested-loops", &certificates);
+    let (mut judged, mut claims) = (0, BTreeSet::new());
+    for text in
+        certificates.iter().zip(&verdicts).filter(|(_, verdict)| !verdict.starts_with("refused")).map(|(text, _)| text)
+    {
+        let head = text.split("no_period_below").next().unwrap_or_default();
+        let claim = claim_of(text);
+        judged += 1;
+        if claims.insert((head.to_owned(), claim.bound)) {
+            assert!(holds(&claim), "a false claim was accepted:\n{text}");
+        }
+    }
+    println!(
+        "{proven} problems of {cases}, {} certificates, {judged} accepted, {} claims",
+        verdicts.len(),
+        claims.len()
+    );
+    assert!(2 * proven > cases && claims.len() > proven as usize, "mutated claims are accepted too");
+}
+
+/// Rules of the checker that refute too much: what is replaced in its text.
+const BROKEN: [(&str, &str, &str); 15] = [
+    ("closure: a cycle of 0 is refuted", "(bound & back & 1) < 0:", "(bound & back & 1) <= 0:"),
+    ("window: a tick more", "period - 2 * problem.R[x])", "period - 2 * problem.R[x] - 2)"),
+    ("gap into the next phase: a tick more", "next_b, a, period - 2 * wait)", "next_b, a, period - 2 * wait - 2)"),
+    ("stale echoes: a tick more", "* (self.step - 1)) * problem", "* (self.step - 1) + 2) * problem"),
+    ("orders: after a gap that just fits", "min(least, zero) + zero <<", "min(least + 2, zero) + zero <<"),
+    ("orders: reversed in the same phase", "[(i, j, m, k, 2", "[(i, j, j, i, 2"),
+    (
+        "signs: a d that can just be positive",
+        "            if least > positive:",
+        "            if least >= positive > 0:",
+    ),
+    ("ranks: a |d| that can just be larger", "2 * max(mine, own) for", "2 * max(mine, own) + 2 for"),
+    (
+        "ranks: a separation too many",
+        "lanes.ones + narrowest - span &",
+        "lanes.ones + narrowest - span - 2 * lanes.ones &",
+    ),
+    (
+        "spacing: an interval that just has room",
+        "lanes.pack(low) + zero * ones)",
+        "lanes.pack(low) + (zero + 1) * ones)",
+    ),
+    ("precedence: a separation too many", "bound - 2 * (span - D) for", "bound - 2 * span for"),
+    ("branching: a d of 0 is left out", "(0, -step)  #", "(-step, -step)  #"),
+    ("symmetry: another separation", "for row in (problem.separation, problem.window)", "for row in (problem.window,)"),
+    (
+        "symmetry: other gaps",
+        "kept and all(gap[x][y] == gap[image[x]][image[y]] for x in every for y in every)",
+        "kept",
+    ),
+    ("lanes: equal numbers are less", "return (p | self.top) - q &", "return (p | self.top) - q - self.ones &"),
+];
+
+/// A copy of the checker with one text replaced.
+fn broken(number: usize, from: &str, to: &str) -> PathBuf {
+    let text = std::fs::read_to_string(checker()).expect("the checker");
+    assert_eq!(text.matches(from).count(), 1, "{from}");
+    let file = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("broken_{number}.py"));
+    std::fs::write(&file, text.replace(from, to)).expect("the folder can be written to");
+    file
+}
+
+/// Certificates that a checker's own rules allow for claims, branching on whatever is open; at most so many.
+fn proven_by(checker: &Path, name: &str, claims: &[Claim], most: usize) -> Vec<String> {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    _ = std::fs::remove_dir_all(&folder);
+    std::fs::create_dir_all(&folder).expect("the folder can be made");
+    // The proof that no period is below one tick is a head.
+    for (number, claim) in claims.iter().enumerate() {
+        let least = prove(&Claim { bound: 1, ..claim.clone() }, 10).expect("no period is below one tick");
+        let head = least.replace("\nno_period_below 1\n", &format!("\nno_period_below {}\n", claim.bound));
+        std::fs::write(folder.join(number.to_string()), head).expect("the folder can be written to");
+    }
+    let mut python = Command::new("python3");
+    python.arg(Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/prove.py")).arg(checker).arg(&folder);
+    let done = python.args([claims.len(), most].map(|number| number.to_string())).output().expect("python3 runs");
+    assert!(done.status.success(), "{name}: {}", String::from_utf8_lossy(&done.stderr));
+    (0..claims.len())
+        .filter_map(|number| std::fs::read_to_string(folder.join(format!("{number}.proof"))).ok())
+        .collect()
+}
+
+/// Claims of problems that have a schedule: that no period is below the shortest, or one tick more, which is false.
+fn claims(cases: u64, longer: u32) -> Vec<Claim> {
+    (0..cases).filter_map(|seed| claim(seed, longer)).collect()
+}
+
+// The rules allow a proof of each true claim and of no false one, whatever is branched on and assumed at the root.
+#[test]
+fn rules_prove_true_claims_and_no_false_ones() {
+    let cases = from_environment("EERUF_CASES", 150);
+    let (all_true, all_false) = (claims(cases, 0), claims(cases, 1));
+    assert!(all_true.len() as u64 * 2 > cases && all_false.len() as u64 * 2 > cases, "most have schedules");
+    let proofs = proven_by(&checker(), "true", &all_true, usize::MAX >> 1);
+    assert_eq!(proofs.len(), all_true.len());
+    accepted("true-proofs", &proofs);
+    assert_eq!(proven_by(&checker(), "false", &all_false, 1), Vec::<String>::new());
+}
+
+// Each rule broken in turn proves something false, which the whole checker refuses.
+#[test]
+fn broken_rules_prove_false_claims() {
+    let all_false = claims(400, 1);
+    for (number, (rule, from, to)) in BROKEN.iter().enumerate() {
+        let broken = broken(number, from, to);
+        let proofs = proven_by(&broken, &format!("broken-{number}"), &all_false, 3);
+        assert!(!proofs.is_empty(), "{rule}: no false claim is proven");
+        let [by_broken, by_whole] = [&broken, &checker()].map(|checker| verdicts_of(checker, "broken-proofs", &proofs));
+        assert!(by_broken.iter().all(|verdict| !verdict.starts_with("refused")), "{rule}: {by_broken:?}");
+        assert!(by_whole.iter().all(|verdict| verdict.starts_with("refused")), "{rule}: {by_whole:?}");
+        assert!(proofs.iter().all(|text| !holds(&claim_of(text))), "{rule}: the nested loops see it");
+    }
+}
+
+const PAIR: &str = "eeruf-certificate 1\ntick_us 1000 1\nsensors 2\nseparation 2 1\nwindow 3 1\nstale_echo 0\n\
+                    over_reals 0\ngap 0 1 3 1\nperiod 4\nfire_a 0 3\nfire_b 1 0\nno_period_below 4\nend\n";
+
+/// The text with one line replaced.
+fn with(line: usize, new: &str) -> String {
+    let mut lines: Vec<&str> = PAIR.split('\n').collect();
+    lines[line - 1] = new;
+    lines.join("\n")
+}
+
+#[test]
+fn refusal_names_line_value_and_expectation() {
+    let odd = "expected a permutation that keeps the problem, and earlier orbits with their greatest";
+    let cases = [
+        (PAIR.to_owned(), "4000 us is the shortest period (tick 1000 us)"),
+        (with(12, "no_period_below 3"), "no period below 3000 us; schedule of 4000 us (tick 1000 us)"),
+        (with(2, "tick_us 1 3"), "4/3 us is the shortest period (tick 1/3 us)"),
+        (String::new(), "refused: line 1: found '', expected a line eeruf-certificate"),
+        (with(1, "eeruf-certificate 2"), "refused: line 1: found '2', expected 1 to 1"),
+        (with(3, "sensors 65"), "refused: line 3: found '65', expected 1 to 64"),
+        (with(4, "separation 2"), "refused: line 4: found 1 numbers, expected 2"),
+        (with(5, "window 3 01"), "refused: line 5: found '01', expected 1 to 1048576"),
+        (with(5, "window 3  1"), "refused: line 5: found '', expected 1 to 1048576"),
+        (with(5, "window 3 9999999"), "refused: line 5: found '9999999', expected 1 to 1048576"),
+        (with(8, "gap 1 0 3 1"), "refused: line 8: expected pairs in ascending order"),
+        (with(10, "fire_a 0 4"), "refused: line 10: found '4', expected 0 to 3"),
+        (with(11, "fire_b 1 2"), "refused: line 11: |d| of sensors 0 and 1 are too near"),
+        (with(12, "no_period_below 5"), "refused: line 12: found '5', expected 1 to 4"),
+        (with(13, "sign 0\nend"), "refused: line 13: found 'sign', expected a line end"),
+        (
+            with(13, "reverse 0 1\nend"),
+            "refused: line 13: expected two sensors with a gap, and all gaps alike both ways",
+        ),
+        (with(13, "permutation 1 0\ngreatest 0\nend"), &format!("refused: line 13: {odd}")),
+        (format!("{PAIR}end\n"), "refused: line 13: expected nothing after the line end"),
+        (PAIR.trim_end().to_owned(), "refused: line 13: expected nothing after the line end"),
+    ];
+    let texts = cases.clone().map(|(text, _)| text);
+    assert_eq!(verdicts_of(&checker(), "refusals", &texts), cases.map(|(_, says)| says.to_owned()));
+}
+
+#[test]
+fn checker_exits_with_0_1_or_2() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
+    std::fs::write(folder.join("good"), PAIR).expect("the folder can be written to");
+    std::fs::write(folder.join("bad"), with(13, "")).expect("the folder can be written to");
+    for (files, code, out) in [
+        (vec!["good"], 0, "4000 us is the shortest period (tick 1000 us)\n"),
+        (vec!["bad"], 1, "refused: bad: line 13: found '', expected a line end\n"),
+        (vec!["missing"], 2, ""),
+        (vec![], 2, ""),
+        (vec!["bad", "good", "missing"], 2, "good: 4000 us is the shortest period (tick 1000 us)\n"),
+    ] {
+        let done =
+            Command::new("python3").arg(checker()).args(&files).current_dir(folder).output().expect("python3 runs");
+        assert_eq!(done.status.code(), Some(code), "{files:?}");
+        assert!(String::from_utf8_lossy(&done.stdout).ends_with(out), "{files:?}: {done:?}");
+    }
+}

@@ -89,6 +89,8 @@ fn accepted_claims_are_true_by_nested_loops() {
         proven += 1;
         certificates.extend((0..4).map(|_| mutated(&mut random, &text)).filter(|other| *other != text));
         certificates.push(text);
+        // An engine and a checker with the same fault would agree on a period that is too long.
+        certificates.extend(self::claim(seed, 1).and_then(|longer| prove(&longer, 10_000).ok()));
     }
     let verdicts = verdicts_of(&checker(), "nested-loops", &certificates);
     let (mut judged, mut claims) = (0, BTreeSet::new());

@@ -15,6 +15,7 @@ use crate::{
     errors::{ArgumentError, CertificateError, Raise},
     found::Found,
     hopping_found::{HoppingFound, Needs, refuse},
+    program::examples,
     requirements::{self, UnevenArguments, each},
     watch::{Watch, control_flow, in_background},
 };
@@ -254,9 +255,9 @@ pub(crate) fn check_certificate(py: Python<'_>, text: &Bound<'_, PyAny>) -> PyRe
 /// The module of the checker's text, run on first use: to import eeruf takes no longer for it.
 fn checker(py: Python<'_>) -> PyResult<&Bound<'_, PyModule>> {
     static CHECKER: PyOnceLock<Py<PyModule>> = PyOnceLock::new();
-    let path = "checker/check_period.py";
     let module = CHECKER.get_or_try_init(py, || {
-        let text = CString::new(eeruf::examples::text(path).unwrap_or_default()).unwrap_or_default();
+        let none = || ArgumentError::new_err("no checker: this package was built without the program");
+        let text = CString::new(examples::text("checker/check_period.py").ok_or_else(none)?)?;
         PyModule::from_code(py, &text, c"checker/check_period.py", c"eeruf._check_period").map(Bound::unbind)
     })?;
     Ok(module.bind(py))

@@ -1,10 +1,11 @@
-// Runs eeruf.py's tests in MicroPython's WebAssembly build: node run.mjs FOLDER_OF_MICROPYTHON corpus.txt line-faults.txt
+// Runs eeruf.py's tests in MicroPython's WebAssembly build:
+// node run.mjs FOLDER_OF_MICROPYTHON line-faults.txt ring-golden.txt [corpus.txt], the last in place of the lines kept
 import { readFileSync } from "node:fs";
 import { dirname, join, resolve } from "node:path";
 import { fileURLToPath, pathToFileURL } from "node:url";
 
 const here = dirname(fileURLToPath(import.meta.url));
-const [folder, corpus, faults] = process.argv.slice(2);
+const [folder, faults, golden, corpus = golden] = process.argv.slice(2);
 const { loadMicroPython } = await import(pathToFileURL(resolve(folder, "micropython.mjs")));
 const micropython = await loadMicroPython({ heapsize: 4 * 1024 * 1024 });
 const sources = ["eeruf.py", "eeruf_schedule.py", "eeruf_flow.py", "line_faults.py"];

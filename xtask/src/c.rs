@@ -106,15 +106,26 @@ fn equal_under_sanitizers() -> Result<()> {
         .env(runner, format!("env LD_PRELOAD={asan}")))
 }
 
-/// Holds `c/micropython/` against the shared corpus, on simulated modules and with faults of a line, in MicroPython's
-/// WebAssembly build and in CPython.
+/// Holds `c/micropython/` against the corpus that a test of the core writes, on simulated modules and with faults of a
+/// line, in MicroPython's WebAssembly build and in CPython.
 pub(crate) fn micropython() -> Result<()> {
     need("node --version", "apt install nodejs")?;
-    for test in ["test_corpus.py", "test_modules.py", "test_line_faults.py"] {
-        run(Command::new("python3").current_dir(MICROPYTHON).arg("-B").arg(test))?;
-    }
+    fs::create_dir_all("target")?;
+    // Cargo runs tests in the folder of their package.
+    let corpus = std::path::absolute("target/corpus.txt")?;
+    run(Command::new("cargo")
+        .args(["test", "--quiet", "--locked", "--package", "eeruf-core", "--test", "all", "corpus_matches_golden"])
+        .env("EERUF_CORPUS", &corpus))?;
+    let python = |test: &str| {
+        let mut python = Command::new("python3");
+        python.current_dir(MICROPYTHON).args(["-B", test]);
+        python
+    };
+    run(python("test_corpus.py").arg(&corpus))?;
+    run(&mut python("test_modules.py"))?;
+    run(&mut python("test_line_faults.py"))?;
     npm(MICROPYTHON, "ci --ignore-scripts --no-audit --no-fund")?;
-    npm(MICROPYTHON, "run --silent test")
+    npm(MICROPYTHON, "run --silent test -- ../../target/corpus.txt")
 }
 
 /// Runs npm in a folder.

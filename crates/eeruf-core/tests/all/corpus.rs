@@ -1,15 +1,18 @@
 //! A corpus of rings for ports that cannot call Rust: what happens to each ring, and its events.
-//! `c/micropython/test_corpus.py` reads the file; `EERUF_WRITE=1` writes it.
+//! `EERUF_CORPUS=FILE` writes it, for `c/micropython/test_corpus.py`. The tree keeps its [`golden`], which `EERUF_WRITE=1`
+//! writes.
 //!
-//! Lines: `S` a schedule: period, phases, then the firing times by phase; `V` requirements (`t_delta`, interval,
-//! window, neighbours, layout, stale echo), then separation and window, both 0 if not met; `L` how a ring listens
-//! (`t_delta`, window, blanking, consecutive, path change, audible) and its start. Then echoes `E`, stuck lines `K`,
-//! corrected firings `F`, sensors enabled or not `N`, restarts `R`, another path change `C` or `audible` `A`, and polls
-//! `P` with the deadline after it and the event, if there is one. `O`: the state before a sensor at an instant: kind,
-//! echo, age, reason, explanation. 2^32 - 1 stands for no echo, and where a ring listens for the default; as the
-//! explanation of a reading 254 stands for history and 255 for none. Flow rings follow: see [`flow`].
+//! Lines: `#` the name of a ring; `S` a schedule: period, phases, then the firing times by phase; `V` requirements
+//! (`t_delta`, interval, window, neighbours, layout, stale echo), then separation and window, both 0 if not met; `L`
+//! how a ring listens (`t_delta`, window, blanking, consecutive, path change, audible) and its start. Then echoes `E`,
+//! stuck lines `K`, corrected firings `F`, sensors enabled or not `N`, restarts `R`, another path change `C` or
+//! `audible` `A`, and polls `P` with the deadline after it and the event, if there is one. `O`: the state before a
+//! sensor at an instant: kind, echo, age, reason, explanation. 2^32 - 1 stands for no echo, and where a ring listens
+//! for the default; as the explanation of a reading 254 stands for history and 255 for none. Flow rings follow: see
+//! [`flow`].
 
 mod flow;
+mod golden;
 
 use std::fmt::{Display, Write};
 
@@ -24,8 +27,8 @@ use eeruf_core::{
 use crate::common::random::Random;
 
 const K: usize = 16;
-const FILE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../c/tests/corpus.txt");
-/// Rings in the file beside those of [`RARE`]; `EERUF_RINGS` of them for a longer comparison.
+const GOLDEN: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/data/ring-golden.txt");
+/// Rings in the corpus beside those of [`RARE`]; `EERUF_RINGS` of them for a longer comparison.
 const RINGS: u64 = 40;
 /// Seeds of rings in which a port differs if it gets a border of the rule wrong: of `audible`, of `path_change`, of the
 /// lateness to spare, of the periods for which an irregular firing counts, of the period of a late edge, of restarts,
@@ -36,7 +39,7 @@ const NONE: u32 = u32::MAX;
 
 type ScheduledBy<'s, const M: usize> = Ring<ScheduledFiring<'s, K, M>, EchoFilter<K>, K>;
 
-/// The file's text.
+/// The corpus.
 struct Text(String);
 
 impl Text {
@@ -334,11 +337,11 @@ fn run_two_phases(r: &mut Random, text: &mut Text) {
     run(r, text, &schedule, promised);
 }
 
-#[test]
-fn corpus_file_matches_core() {
+/// The corpus, with rings of tables of the first so many seeds.
+fn corpus(rings: u64) -> String {
     let mut text = Text(String::new());
-    let rings = std::env::var("EERUF_RINGS").map_or(RINGS, |rings| rings.parse().expect("a number of rings"));
     for seed in (0..rings).chain(RARE) {
+        writeln!(text.0, "# table {seed}").unwrap();
         let mut r = Random(seed);
         match seed % 8 {
             6 => run_phases::<1>(&mut r, &mut text),
@@ -347,25 +350,28 @@ fn corpus_file_matches_core() {
         }
     }
     for seed in (0..rings.div_ceil(8)).chain(flow::RARE) {
+        writeln!(text.0, "# flow {seed}").unwrap();
         flow::run_any(&mut Random(seed), &mut text);
     }
-    let Text(text) = text;
+    text.0
+}
+
+#[test]
+fn corpus_matches_golden() {
+    if let Some(file) = std::env::var_os("EERUF_CORPUS") {
+        let rings = std::env::var("EERUF_RINGS").map_or(RINGS, |rings| rings.parse().expect("a number of rings"));
+        std::fs::write(file, corpus(rings)).expect("the corpus can be written");
+    }
+    let corpus = corpus(RINGS);
     if std::env::var_os("EERUF_WRITE").is_some() {
-        std::fs::write(FILE, &text).expect("the corpus can be written");
+        std::fs::write(GOLDEN, golden::of(&corpus)).expect("the golden can be written");
     }
-    // Each way to explain a reading, and each kind of a ring that compares two readings.
-    let readings =
-        || text.lines().filter_map(|line| line.strip_prefix("P ")).filter(|line| line.split(' ').count() == 11);
-    let has = |place: usize, value: &str| readings().any(|line| line.split(' ').nth(place) == Some(value));
-    for kind in 0..ReadingKind::ALL.len() {
-        assert!(has(6, &kind.to_string()), "no reading of kind {kind}");
-    }
-    for state in 0..5 {
-        assert!(text.lines().any(|line| line.starts_with("O ") && line.split(' ').nth(3) == Some(&state.to_string())));
-    }
-    for explained_by in ["0", "1", "254", "255"] {
-        assert!(has(10, explained_by), "no reading explained by {explained_by}");
-    }
-    let kept = std::fs::read_to_string(FILE).expect("c/tests/corpus.txt");
-    assert!(kept == text, "c/tests/corpus.txt differs from core; EERUF_WRITE=1 writes it");
+    let kept = std::fs::read_to_string(GOLDEN).expect("tests/data/ring-golden.txt");
+    let differences = golden::differences(&kept, &corpus);
+    assert!(
+        differences.is_empty(),
+        "core says something else than tests/data/ring-golden.txt:\n{differences}EERUF_CORPUS=FILE writes all lines, to \
+         be compared with those of the commit before; EERUF_WRITE=1 writes the golden, and the commit says why"
+    );
+    golden::assert_complete(&kept);
 }

@@ -18,8 +18,8 @@ use crate::common::random::Random;
 
 const STEPS: u32 = 260;
 /// Seeds of rings in which a port differs if it gets a border of the rules wrong: of rest, of memory, of how gaps are
-/// shared out, of lateness, of what is learned of a moving robot.
-pub(super) const RARE: [u64; 8] = [9, 12, 23, 31, 106, 312, 383, 530];
+/// shared out, of lateness, of what is learned of a moving robot, of what is near.
+pub(super) const RARE: [u64; 9] = [9, 12, 23, 31, 106, 203, 312, 383, 530];
 
 /// Mostly those of every robot.
 fn settings(r: &mut Random) -> FlowSettings {

@@ -7,6 +7,7 @@ use eeruf_core::search::{Progress, SearchError};
 use eeruf_core::{Micros, Phase};
 use eeruf_design::certificate::Stated;
 use eeruf_design::{FoundJson, RingDesign, RingSpec, Search, WhatIf};
+use eeruf_files::emit::Emit as _;
 use serde::Serialize;
 
 use crate::progress::progress;
@@ -90,10 +91,10 @@ pub(crate) fn design(ring: &str) -> Result<DesignAnswer, String> {
         speed_m_s: f64::from(speed) / 1000.0,
         fire_us: [Phase::A, Phase::B].map(|phase| fire(phase).collect()),
         verified: report.ok(),
-        rust: schedule.to_rust(&requirements).to_string(),
-        c: schedule.to_c(&requirements).to_string(),
-        arduino: schedule.to_arduino(&requirements, "RING").to_string(),
-        toml: schedule.to_toml().to_string(),
+        rust: schedule.to_rust(&requirements),
+        c: schedule.to_c(&requirements),
+        arduino: schedule.to_arduino(&requirements, "RING"),
+        toml: schedule.to_toml(),
     })
 }
 

@@ -4,14 +4,15 @@ use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use clap::ValueEnum;
+use clap::builder::PossibleValue;
 use eeruf_core::search::{Progress, SearchError};
 use eeruf_core::{Criterion, EachSensor, Micros, SensorLimits, hopping::HoppingListening};
 use eeruf_design::atlas::ATLAS;
 use eeruf_design::{CURVE_BUDGET, FoundJson, Need, RealPeriod, RingDesign, RingSpec, Search, real_budget};
+use eeruf_files::emit::{self, Emit as _, Flow};
 
 use eeruf_sim::experiments::rooms::RoomWay;
-use eeruf_sim::modules::{Module, PulseTimes};
-use eeruf_sim::{AnySchedule, Method, Robot};
+use eeruf_sim::{Method, Robot};
 use serde::Serialize;
 
 use super::arguments::{picture, seconds};
@@ -148,18 +149,31 @@ impl CurveOf {
     }
 }
 
-#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+/// Form of the output that replaces the description.
+#[derive(Clone, Copy, PartialEq, Eq)]
 enum Form {
-    /// A schedule file
-    Toml,
-    /// A const that is checked when the firmware is compiled
-    Rust,
-    /// A C99 header, alone or for c/eeruf.h
-    C,
-    /// A file of an Arduino sketch, for the library in c/arduino: the constant RING
-    Arduino,
-    /// One object with schedule, value, bound, proof and nodes
+    Source(emit::Form),
     Json,
+}
+
+impl ValueEnum for Form {
+    fn value_variants<'a>() -> &'a [Self] {
+        use emit::Form::{Arduino, C, Rust, Toml};
+        &[Self::Source(Toml), Self::Source(Rust), Self::Source(C), Self::Source(Arduino), Self::Json]
+    }
+
+    fn to_possible_value(&self) -> Option<PossibleValue> {
+        let (name, help) = match self {
+            Self::Source(emit::Form::Toml) => ("toml", "A schedule file"),
+            Self::Source(emit::Form::Rust) => ("rust", "A const that is checked when the firmware is compiled"),
+            Self::Source(emit::Form::C) => ("c", "A C99 header, alone or for c/eeruf.h"),
+            Self::Source(emit::Form::Arduino) => {
+                ("arduino", "A file of an Arduino sketch, for the library in c/arduino: the constant RING")
+            }
+            Self::Json => ("json", "One object with schedule, value, bound, proof and nodes"),
+        };
+        Some(PossibleValue::new(name).help(help))
+    }
 }
 
 /// The shortest period, and the ways of firing judged in rooms.
@@ -230,7 +244,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     let judges = !args.period_only && matches!(args.form(), None | Some(Form::Json));
     let rooms = judges.then(|| rooms::judged(&args.in_rooms, &spec, Some(&design), &mut watch)).transpose()?;
     // A schedule file holds a table, which flow has not.
-    let emits = !args.period_only && matches!(args.form(), Some(Form::Rust | Form::C | Form::Arduino));
+    let emits = !args.period_only && matches!(args.form(), Some(Form::Source(form)) if form != emit::Form::Toml);
     let way = emits.then(|| rooms::recommended(&args.in_rooms, &spec, &design, &mut watch)).transpose()?;
     drop(watch);
     let requirements = design.spec.problem().requirements;
@@ -265,21 +279,6 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
         return Err(InputError::new(&args.file, format_args!("fleet number {number}; {expected}")));
     }
     match args.form() {
-        Some(form @ (Form::Toml | Form::Rust | Form::C | Form::Arduino)) => {
-            let table = || emit(&design.spec, form, &design.schedule);
-            match &way {
-                Some(Ok(Some(way))) if way.method == Method::Flow => emit_flow(args, &design.spec, form, way)?,
-                Some(Ok(Some(way))) if way.method != Method::Eeruf => {
-                    comment(form, &format!("In rooms {} is right most of the time, which this is not", way.title()))?;
-                    table()?;
-                }
-                Some(Err(why)) => {
-                    comment(form, &format!("Not judged in rooms: {why}"))?;
-                    table()?;
-                }
-                _ => table()?,
-            }
-        }
         Some(Form::Json) => {
             let real_period_us = real.as_ref().map(|real| real.period_us);
             let real_proven = real.as_ref().map(|real| real.proven);
@@ -290,6 +289,18 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
             let rooms = rooms.as_ref().map(RoomsOrNot::of);
             print_line(to_json(&Answered { found, period, rooms, not_neighbours: &spec.not_neighbours }))?;
         }
+        Some(Form::Source(form)) => {
+            let table = || form.table(&design.schedule, &design.spec.table_requirements(), &design.spec.modules);
+            print(match &way {
+                Some(Ok(Some(way))) if way.method == Method::Flow => flow_source(args, &design.spec, form, way)?,
+                Some(Ok(Some(way))) if way.method != Method::Eeruf => {
+                    let title = way.title();
+                    form.comment(&format!("In rooms {title} is right most of the time, which this is not")) + &table()
+                }
+                Some(Err(why)) => form.comment(&format!("Not judged in rooms: {why}")) + &table(),
+                _ => table(),
+            })?;
+        }
         None => {
             let name = args.file.display().to_string();
             let judged = rooms.map_or_else(String::new, |rooms| describe_rooms(&name, &rooms));
@@ -299,37 +310,9 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     Ok(certified)
 }
 
-/// Prints which modules a schedule in this form is for, as comments.
-fn emit_modules(modules: &[Module], form: Form) -> Result<(), InputError> {
-    let alike = modules.chunk_by(|one, next| one == next);
-    let firsts = alike.clone().scan(0, |next, group| Some(core::mem::replace(next, *next + group.len())));
-    for (group, first) in alike.zip(firsts) {
-        let Module { name, trigger_us, rest_us, interface, no_echo, .. } = group[0];
-        let held = match no_echo.hold_us() {
-            0 => String::new(),
-            us => format!(", held {us} us without an echo"),
-        };
-        let (last, interface) = (first + group.len() - 1, interface.name());
-        let times = format!("trigger {trigger_us} us, rest {rest_us} us{held}");
-        comment(form, &format!("Sensors {first} to {last}: {name}, {interface}, {times}"))?;
-    }
-    Ok(())
-}
-
-/// Prints a line as a comment of a form.
-fn comment(form: Form, line: &str) -> Result<(), InputError> {
-    let (begin, end) = match form {
-        Form::Toml => ("#", ""),
-        Form::C | Form::Arduino => ("/*", " */"),
-        Form::Rust | Form::Json => ("//", ""),
-    };
-    Ok(print_line(format!("{begin} {line}{end}"))?)
-}
-
-/// Prints what a ring is set up with that fires by flow, as it was judged in rooms.
-fn emit_flow(args: &Args, spec: &RingSpec, form: Form, way: &RoomWay) -> Result<(), InputError> {
+/// The source text of a ring that fires by flow, as it was judged in rooms.
+fn flow_source(args: &Args, spec: &RingSpec, form: emit::Form, way: &RoomWay) -> Result<String, InputError> {
     let Robot { ref sensors, window, blanking, period, ref limits, ref together, .. } = way.robot;
-    let (sensors, modules) = (sensors.len(), &spec.modules);
     let mut settings = way.options.flow.with_fleet_number(args.fleet_number);
     settings.shortest_cycle = period;
     if form == Form::Arduino {
@@ -337,7 +320,7 @@ fn emit_flow(args: &Args, spec: &RingSpec, form: Form, way: &RoomWay) -> Result<
         settings.lead = Micros::from_millis(4);
     }
     let needs = spec.problem().requirements;
-    let settings = settings.keeping(sensors, &needs).map_err(|error| InputError::new(&args.file, error))?;
+    let settings = settings.keeping(sensors.len(), &needs).map_err(|error| InputError::new(&args.file, error))?;
     let listening = HoppingListening::new(window).with_blanking(blanking);
     let is_alike = together.is_empty() && limits.iter().all(|of| of.window == window);
     let own_limits = if is_alike {
@@ -353,76 +336,8 @@ fn emit_flow(args: &Args, spec: &RingSpec, form: Form, way: &RoomWay) -> Result<
             together,
         )
     };
-    emit_modules(modules, form)?;
-    match form {
-        Form::Rust => print(settings.to_rust(sensors, listening, &own_limits))?,
-        Form::C => print(settings.to_c(sensors, listening, &own_limits))?,
-        Form::Arduino => print(settings.to_arduino(sensors, listening, &own_limits, "RING"))?,
-        Form::Toml | Form::Json => {}
-    }
-    emit_settings(modules, form, settings.rest.max(window))
-}
-
-/// Prints the settings of a driver for the modules of a table in C, if they are alike and answer by a pulse: those that
-/// may be triggered again sooner than the module says have it from the ring file, whose table keeps it. A driver takes
-/// one kind of module; a comment in Rust and C lists the sensors that are of another.
-fn emit_settings(modules: &[Module], form: Form, min_refire: Micros) -> Result<(), InputError> {
-    let Some(module) = modules.first() else { return Ok(()) };
-    let others = (0..).zip(modules).filter(|&(_, other)| other != module);
-    let others: Vec<_> = others.map(|(sensor, _): (usize, _)| sensor.to_string()).collect();
-    if !others.is_empty() && !matches!(form, Form::Toml | Form::Json) {
-        print_line("")?;
-        let others = others.join(", ");
-        return comment(
-            form,
-            &format!("No settings of one driver: sensors {others} are of another kind than sensor 0."),
-        );
-    }
-    let name = match form {
-        Form::C => "EERUF_MODULES",
-        Form::Arduino => "RING_MODULES",
-        Form::Toml | Form::Rust | Form::Json => return Ok(()),
-    };
-    let Some(PulseTimes { deaf_us, shortest_us, latest_rise_us, longest_us, longest_hold_us }) = module.pulse_times()
-    else {
-        return Ok(());
-    };
-    let (rest_us, trigger_us) = (module.rest_us.min(min_refire.as_micros()), module.trigger_us);
-    let edges = format!("{deaf_us}, {shortest_us}, {latest_rise_us}");
-    let times = format!("{edges}, {longest_us}, {longest_hold_us}, {rest_us}, 3, {trigger_us}");
-    print_line("")?;
-    print_line(format!(
-        "/* Of these modules, for an EerufHcSr04Settings. */\n#define {name} {{EERUF_VERSION, {times}}}"
-    ))?;
-    Ok(())
-}
-
-/// Prints a schedule in a form, after the modules that it is for and before how a ring listens to them.
-fn emit(spec: &RingSpec, form: Form, schedule: &AnySchedule) -> Result<(), InputError> {
-    let (modules, requirements) = (&spec.modules, spec.table_requirements());
-    emit_modules(modules, form)?;
-    match form {
-        Form::Toml => print(schedule.to_toml())?,
-        Form::Rust => print(schedule.to_rust(&requirements))?,
-        Form::C => print(schedule.to_c(&requirements))?,
-        Form::Arduino => print(schedule.to_arduino(&requirements, "RING"))?,
-        // Whoever asks for JSON gets more than the schedule.
-        Form::Json => {}
-    }
-    let deaf_us = modules.iter().map(|module| module.blanking_us).min().unwrap_or(0);
-    match form {
-        Form::Rust if deaf_us > 0 => print_line(format!(
-            "\n// For `Ring::new(&RING, CONFIG, now)`: modules are deaf after firing.\npub const CONFIG: \
-             eeruf_core::RingConfig = eeruf_core::RingConfig::new().with_blanking(Micros::new({deaf_us}));"
-        ))?,
-        Form::C if deaf_us > 0 => print_line(format!(
-            "\n/* For an EerufConfig: modules are deaf after firing. */\n#define EERUF_RING_CONFIG {{EERUF_VERSION, 2, \
-             0, 0, {deaf_us}, 0, 0}}"
-        ))?,
-        // The Arduino library hears pulses, whose beginning is not heard anyway.
-        _ => {}
-    }
-    emit_settings(modules, form, schedule.min_refire())
+    let flow = Flow { settings: &settings, sensors: sensors.len(), listening, limits: &own_limits };
+    Ok(form.flow(&flow, &spec.modules))
 }
 
 /// Answers `--period`.
@@ -448,7 +363,9 @@ fn fit(args: &Args, spec: &RingSpec, period: Micros) -> Result<Answer, InputErro
     }
     match (args.form(), &schedule) {
         (Some(Form::Json), _) => print_line(to_json(&fit_json(&fit, seconds)))?,
-        (Some(form), Some(schedule)) => emit(&fit.spec, form, schedule)?,
+        (Some(Form::Source(form)), Some(schedule)) => {
+            print(form.table(schedule, &fit.spec.table_requirements(), &fit.spec.modules))?;
+        }
         (Some(_), None) => tell(format!("{}: no schedule of {period} that meets all needs\n", args.file.display()))?,
         (None, _) => tell(describe_fit(&args.file.display().to_string(), spec, period, &fit, seconds))?,
     }
@@ -498,14 +415,16 @@ fn many_phases(args: &Args, spec: &RingSpec, phases: u8) -> Result<Answer, Input
     if let Some(file) = &args.svg {
         draw::hopping_diagram(&design.phases(), &requirements).save(file)?;
     }
-    if let Some(form) = args.form().filter(|form| *form != Form::Json) {
-        emit_modules(&spec.modules, form)?;
-    }
     match args.form() {
-        Some(Form::Toml) => print(design.phases().to_toml().unwrap_or_default())?,
-        Some(Form::Rust) => print(design.schedule.to_rust(&requirements))?,
-        Some(Form::C) => print(design.schedule.to_c(&requirements))?,
-        Some(Form::Arduino) => print(design.schedule.to_arduino(&requirements, "RING"))?,
+        Some(Form::Source(form)) => {
+            print(form.modules(&spec.modules))?;
+            print(match form {
+                emit::Form::Toml => design.phases().to_toml().unwrap_or_default(),
+                emit::Form::Rust => design.schedule.to_rust(&requirements),
+                emit::Form::C => design.schedule.to_c(&requirements),
+                emit::Form::Arduino => design.schedule.to_arduino(&requirements, "RING"),
+            })?;
+        }
         Some(Form::Json) => print_line(to_json(&DesignJson::from(&design)))?,
         None => tell(describe_design(&args.file.display().to_string(), spec, &requirements, &design))?,
     }

@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use eeruf_core::tables::TABLE_I_D;
 use eeruf_core::{Micros, Phase, Requirements};
 use eeruf_design::{RealPeriod, RingDesign, RingSpec, ToSpare, WhatIf};
+use eeruf_files::emit::Emit as _;
 use eeruf_sim::AnySchedule;
 
 use super::table::plain;

@@ -3,6 +3,7 @@
 use eeruf_core::Micros;
 use eeruf_core::search::Found;
 use eeruf_design::{CurvePoint, Fit, FoundJson, Need, RingSpec};
+use eeruf_files::emit::Emit as _;
 use serde::Serialize;
 
 use super::table::plain;

@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 
 use eeruf_core::search::{Found, FrontTable};
 use eeruf_core::{MAX_SENSORS, Micros};
+use eeruf_files::emit::Emit as _;
 use eeruf_sim::ScheduleFile;
 use serde::Serialize;
 

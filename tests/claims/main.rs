@@ -6,6 +6,7 @@ mod atlas;
 mod certificates;
 mod documents;
 mod emitted;
+mod emitted_digests;
 mod experiments;
 mod faults;
 mod field_cases;

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use eeruf_core::{Criterion, Micros, ReadingKind};
 use eeruf_design::{RingSpec, Search, robot_ring};
+use eeruf_files::emit::Emit as _;
 use eeruf_sim::{Method, Options, World, simulate};
 
 use crate::common::{Scratch, eeruf, json};

@@ -53,7 +53,6 @@
 pub mod adaptation;
 mod checked;
 mod edges;
-mod emit;
 mod filter;
 pub mod flow;
 pub mod hopping;

@@ -134,18 +134,18 @@ impl<const K: usize> EachSensor<K> {
 
     /// The limits of a sensor; `None` if it has none.
     #[inline]
-    pub(crate) fn of(&self, sensor: u8) -> Option<SensorLimits> {
+    pub fn of(&self, sensor: u8) -> Option<SensorLimits> {
         self.most?;
         self.limits.get(usize::from(sensor)).copied()
     }
 
     /// The group that each sensor fires together with, from 1; 0 for none.
-    pub(crate) const fn groups(&self) -> &[u8; K] {
+    pub const fn groups(&self) -> &[u8; K] {
         &self.groups
     }
 
     /// The most that the schedule was verified for.
-    pub(crate) const fn most(&self) -> Option<&VerifiedFor> {
+    pub const fn most(&self) -> Option<&VerifiedFor> {
         self.most.as_ref()
     }
 

@@ -8,6 +8,7 @@ use eeruf_core::{
     hopping::{HoppingCode, HoppingSchedule},
     phases::PhaseTable,
 };
+use eeruf_files::emit::Emit as _;
 use serde::Deserialize;
 
 use crate::uneven::sets;
@@ -104,7 +105,7 @@ impl PhaseSchedule {
 
     /// The file of a code with lags.
     pub fn to_toml(&self) -> Option<String> {
-        let mut text = self.hopping.as_ref()?.to_toml().to_string();
+        let mut text = self.hopping.as_ref()?.to_toml();
         if !self.together.is_empty() {
             let members = |&set: &u64| (0..self.sensors).filter(|x| set >> x & 1 == 1).collect::<Vec<_>>();
             // Writing to a string does not fail.

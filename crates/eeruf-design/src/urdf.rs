@@ -154,6 +154,7 @@ mod tests {
 
     use super::*;
     use crate::{RingSpec, RoomsAsked};
+    use eeruf_files::emit::Emit as _;
 
     /// A robot with a mast that turns; its front sensors hang on a bracket, and the left one is turned over.
     const ROBOT: &str = r#"<?xml version="1.0"?>
@@ -247,7 +248,7 @@ mod tests {
             let judged = spec.judge_in_rooms(Some(&design), &asked, &|_| true).unwrap();
             assert!(judged.assumed.is_empty(), "{:?}", judged.assumed);
             (
-                design.schedule.to_toml().to_string(),
+                design.schedule.to_toml(),
                 judged.groups.clone(),
                 judged.judgement.best().map(|way| way.way.name),
                 figures(&judged),

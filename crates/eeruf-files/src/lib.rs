@@ -2,8 +2,10 @@
 //!
 //! The program, the libraries and the Python package report errors in files by the one type [`FileError`]. [`Kind`]
 //! recognises a file before it is parsed; with the feature `toml`, `parse` reads TOML, and `doubts_in` finds values in
-//! it that are legal and implausible.
+//! it that are legal and implausible; with `emit`, the module `emit` writes a ring as source text for firmware.
 
+#[cfg(feature = "emit")]
+pub mod emit;
 mod error;
 #[cfg(feature = "toml")]
 mod implausible;

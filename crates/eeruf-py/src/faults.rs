@@ -1,5 +1,6 @@
 //! `faults` of a scene: dicts of the words of scene files.
 
+use eeruf_files::emit::Emit as _;
 use eeruf_sim::Fault;
 use pyo3::{
     prelude::*,
@@ -18,7 +19,7 @@ fn value_of(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Value> {
         return Ok(Value::from(flag.is_true()));
     }
     if let Ok(schedule) = value.cast::<Schedule>() {
-        let text = schedule.get().0.to_toml().to_string();
+        let text = schedule.get().0.to_toml();
         return text.parse::<Table>().map(Value::Table).map_err(|error| ArgumentError::new_err(error.to_string()));
     }
     if value.is_instance_of::<PyString>() {

@@ -5,6 +5,7 @@ use eeruf_core::{
     hopping::{HoppingCode, HoppingError as Error, HoppingSchedule as Core},
 };
 use eeruf_design::PhaseFile;
+use eeruf_files::emit::Emit as _;
 use numpy::{PyArray1, PyArray2, prelude::*};
 use pyo3::{
     prelude::*,
@@ -176,7 +177,7 @@ impl HoppingSchedule {
     ///     >>> HoppingSchedule.from_toml(schedule.to_toml()) == schedule
     ///     True
     fn to_toml(&self) -> String {
-        self.0.to_toml().to_string()
+        self.0.to_toml()
     }
 
     /// The period ``T_p``, in microseconds.

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use eeruf_core::{Micros, Phase};
-use eeruf_files::{Kind, build, explain_json};
+use eeruf_files::{Kind, build, emit::Emit as _, explain_json};
 use eeruf_sim::{AnySchedule, ScheduleFile};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
@@ -343,7 +343,7 @@ impl Schedule {
     ///     >>> Schedule.from_toml(tables.TABLE_I_D.to_toml()) == tables.TABLE_I_D
     ///     True
     fn to_toml(&self) -> String {
-        self.0.to_toml().to_string()
+        self.0.to_toml()
     }
 
     /// Write one JSON object with the keys of the schedule file.
@@ -395,7 +395,7 @@ impl Schedule {
         let listening = (window_us, stale_echo);
         let asked = RequirementArguments::alike(t_delta_us, min_interval_us, neighbours, layout, criterion, listening);
         let owned = asked.owned(&self.0)?;
-        Ok(self.0.to_rust(&owned.requirements()).to_string())
+        Ok(self.0.to_rust(&owned.requirements()))
     }
 
     /// Write a C99 header with the firing times and what they were verified for.
@@ -436,7 +436,7 @@ impl Schedule {
         let listening = (window_us, stale_echo);
         let asked = RequirementArguments::alike(t_delta_us, min_interval_us, neighbours, layout, criterion, listening);
         let owned = asked.owned(&self.0)?;
-        Ok(self.0.to_c(&owned.requirements()).to_string())
+        Ok(self.0.to_c(&owned.requirements()))
     }
 
     /// Its times by their names, as the arguments of ``Schedule``: a dict of plain values.

@@ -7,6 +7,7 @@ use std::path::Path;
 
 use anyhow::{Context as _, Result, anyhow, ensure};
 use eeruf_core::{Micros, Requirements, Schedule};
+use eeruf_files::emit::Emit as _;
 use fs_err as fs;
 
 use super::build::{self, Board};
@@ -302,5 +303,5 @@ fn table_of(file: &str) -> Result<String> {
     let requirements = Requirements::new(Micros::new(240));
     let schedule = Schedule::<4>::from_firing(period, [times(a)?, times(b)?]).map_err(|_| wrong())?;
     // It stands in the sketch itself.
-    Ok(schedule.to_arduino(&requirements, "LINE_FAULTS").to_string().replace("#pragma once\n", ""))
+    Ok(schedule.to_arduino(&requirements, "LINE_FAULTS").replace("#pragma once\n", ""))
 }

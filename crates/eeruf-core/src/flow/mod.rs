@@ -7,7 +7,6 @@
 //!
 //! Rules and measurements: `docs/explanation/flow.md`.
 
-mod emit;
 mod plan;
 mod planning;
 mod settings;

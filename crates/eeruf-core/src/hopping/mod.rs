@@ -8,7 +8,6 @@
 //! Rules and measurements: `docs/explanation/hopping.md`.
 
 mod code;
-mod emit;
 mod error;
 mod lateness;
 mod plan;

@@ -238,34 +238,6 @@ fn verified_uneven_schedule_allows_each_its_own() {
     assert_eq!(CORNERS.verified(&late).unwrap_err().kind, ViolationKind::CrosstalkA);
 }
 
-// An uneven schedule is written with all that it was designed for.
-#[test]
-fn uneven_schedule_is_written_with_all_needs() {
-    let ms = |ms: [u32; 2]| ms.map(Micros::from_millis);
-    let schedule = Schedule::from_firing(Micros::from_millis(60), [ms([0, 20]), ms([0, 23])]).unwrap();
-    let uneven = Uneven {
-        t_delta: &[Micros::new(999), Micros::new(1_400)],
-        window: &ms([50, 12]),
-        refire: &[],
-        intervals: &[(0, 1, Micros::new(15_000))],
-        shared_lines: &[],
-        together: &[],
-    };
-    let requirements = Requirements { uneven: Some(uneven), ..Requirements::new(Micros::new(999)) };
-    let rust = schedule.to_rust(&requirements).to_string();
-    for line in [
-        "use eeruf_core::{EachSensor, Layout, Micros, Requirements, Uneven, VerifiedSchedule, schedule};",
-        "pub const RING: VerifiedSchedule<2, 2, EachSensor<2>> = schedule! {",
-        "            window: &[Micros::new(50_000), Micros::new(12_000)],",
-        "            intervals: &[(0, 1, Micros::new(15_000))],",
-    ] {
-        assert!(rust.lines().any(|found| found == line), "{line}\n{rust}");
-    }
-    let c = schedule.to_c(&requirements).to_string();
-    assert!(c.contains("#define EERUF_T_DELTA_US 999u\n#define EERUF_WINDOW_US 12000u\n"), "{c}");
-    assert!(c.contains("static const uint32_t eeruf_window_us[EERUF_SENSORS] = {50000u, 12000u};\n"), "{c}");
-}
-
 #[test]
 fn needs_that_make_no_sense_are_named_with_what_is_expected() {
     let one = Micros::new(1);

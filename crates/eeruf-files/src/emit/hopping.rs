@@ -1,50 +1,37 @@
 //! A hopping schedule as source text: Rust that is checked when it is compiled, a C header, a TOML file.
 
-use core::fmt;
+use std::fmt;
 
-use super::code::HoppingCode;
-use super::schedule::HoppingSchedule;
-use super::settings::HoppingSettings;
-use crate::emit::{CLimits, EERUF_VERSION, Grouped, Meets, Numbers, OfSensor, Plain, Promise};
-use crate::layout::Layout;
-use crate::own_limits::EachSensor;
-use crate::requirements::{Criterion, Requirements};
-use crate::schedule::VerifiedFor;
-use crate::time::Micros;
-use crate::tracker::TrackerSettings;
+use eeruf_core::conditions::VerifiedFor;
+use eeruf_core::hopping::{HoppingCode, HoppingSchedule, HoppingSettings};
+use eeruf_core::judge::TrackerSettings;
+use eeruf_core::{Criterion, EachSensor, Layout, Micros, Requirements};
 
-impl<const K: usize> HoppingSchedule<K> {
-    /// A `const RING: HoppingSchedule` in Rust, with the `requirements` for the compiler to check (see
-    /// [`hopping_schedule!`](crate::hopping_schedule!)), and the constants `SETTINGS` and `LISTENING` for a
-    /// [`HoppingRing`](super::HoppingRing): the balanced settings with this `t_delta` and these neighbours. Where
-    /// sensors are not all alike, `RING` holds their limits too.
-    pub const fn to_rust<'r>(&'r self, requirements: &'r Requirements<'r>) -> impl fmt::Display {
-        HoppingRust { schedule: self, requirements }
+use super::{CLimits, EERUF_VERSION, Emit, Grouped, Meets, Numbers, OfSensor, Plain, Promise};
+
+impl<const K: usize> Emit for HoppingSchedule<K> {
+    fn to_rust(&self, requirements: &Requirements<'_>) -> String {
+        HoppingRust { schedule: self, requirements }.to_string()
     }
 
-    /// A C99 header that includes nothing but `<stdint.h>`, with the firing times of each phase; with `eeruf.h` before
-    /// it, also the constant `eeruf_hopping_config` for `eeruf_hopping_init`, with the settings of
-    /// [`to_rust`](Self::to_rust).
-    pub const fn to_c<'r>(&'r self, requirements: &'r Requirements<'r>) -> impl fmt::Display {
-        HoppingHeader { schedule: self, requirements }
+    fn to_c(&self, requirements: &Requirements<'_>) -> String {
+        HoppingHeader { schedule: self, requirements }.to_string()
     }
 
-    /// A file of an Arduino sketch with the constant `name` for `eeruf_hopping_init`, as in [`to_c`](Self::to_c).
-    pub const fn to_arduino<'r>(&'r self, requirements: &'r Requirements<'r>, name: &'r str) -> impl fmt::Display {
-        HoppingTab { schedule: self, requirements, name }
+    fn to_arduino(&self, requirements: &Requirements<'_>, name: &str) -> String {
+        HoppingTab { schedule: self, requirements, name }.to_string()
     }
 
-    /// A schedule file, as the program reads it: the code and the lags.
-    pub const fn to_toml(&self) -> impl fmt::Display {
-        HoppingToml { schedule: self }
-    }
-
-    fn lags(&self) -> impl Iterator<Item = Micros> {
-        (0..self.code().sensors()).filter_map(|sensor| self.t_lag(sensor))
+    fn to_toml(&self) -> String {
+        HoppingToml { schedule: self }.to_string()
     }
 }
 
-/// A hopping schedule in Rust: see [`HoppingSchedule::to_rust`].
+fn lags<const K: usize>(schedule: &HoppingSchedule<K>) -> impl Iterator<Item = Micros> {
+    (0..schedule.code().sensors()).filter_map(|sensor| schedule.t_lag(sensor))
+}
+
+/// A hopping schedule in Rust: see [`Emit::to_rust`].
 struct HoppingRust<'r, const K: usize> {
     schedule: &'r HoppingSchedule<K>,
     requirements: &'r Requirements<'r>,
@@ -76,7 +63,7 @@ impl<const K: usize> fmt::Display for HoppingRust<'_, K> {
         writeln!(f, "    step_us: {},", Grouped(code.step()))?;
         writeln!(f, "    phases: {},", code.phases())?;
         writeln!(f, "    first_multiplier: {},", code.first_multiplier())?;
-        writeln!(f, "    t_lag_us: [{}],", Numbers(|| schedule.lags()))?;
+        writeln!(f, "    t_lag_us: [{}],", Numbers(|| lags(schedule)))?;
         writeln!(f, "{}}};\n", Meets(requirements))?;
         let HoppingSettings { tracker, neighbours, .. } = settings(requirements);
         let call = if uneven { "with_limits" } else { "hopping" };
@@ -102,17 +89,16 @@ impl<const K: usize> fmt::Display for HoppingRust<'_, K> {
 /// The balanced settings for such a ring.
 fn settings(requirements: &Requirements<'_>) -> HoppingSettings {
     let (balanced, t_delta) = (TrackerSettings::BALANCED, requirements.t_delta);
-    let near = balanced.near.max(t_delta);
-    let tracker =
-        TrackerSettings { t_delta, near, tentative_within: balanced.tentative_within.min(t_delta), ..balanced };
+    let tracker = balanced.with_t_delta(t_delta).with_near(balanced.near.max(t_delta));
+    let tracker = tracker.with_tentative_within(balanced.tentative_within.min(t_delta));
     let neighbours = match requirements.layout {
         Layout::Line(n) | Layout::Ring(n) | Layout::Blocks(n) => n,
         Layout::Graph(_) => 0,
     };
-    HoppingSettings { tracker, neighbours, ..HoppingSettings::BALANCED }
+    HoppingSettings::BALANCED.with_tracker(tracker).with_neighbours(neighbours)
 }
 
-/// A hopping schedule as a C header: see [`HoppingSchedule::to_c`].
+/// A hopping schedule as a C header: see [`Emit::to_c`].
 struct HoppingHeader<'r, const K: usize> {
     schedule: &'r HoppingSchedule<K>,
     requirements: &'r Requirements<'r>,
@@ -140,7 +126,9 @@ impl<const K: usize> fmt::Display for HoppingHeader<'_, K> {
             writeln!(f, "static const uint32_t eeruf_{name}_us[EERUF_SENSORS] = {{{times}}};")?;
         }
         writeln!(f, "static const uint32_t eeruf_t_fire_us[EERUF_PHASES][EERUF_SENSORS] = {{")?;
-        let cycle = schedule.table_together::<{ HoppingCode::MAX_PHASES as usize }>(requirements.together());
+        let cycle = schedule.table_together::<{ HoppingCode::MAX_PHASES as usize }>(
+            requirements.uneven.map_or(&[], |uneven| uneven.together),
+        );
         for (phase, times) in cycle.iter().take(code.phases().into()).enumerate() {
             let times = Plain(|| times.iter().take(code.sensors()).map(|time| (time.as_micros(), "u")));
             writeln!(f, "    {{{times}}}, /* phase {phase} */")?;
@@ -151,7 +139,7 @@ impl<const K: usize> fmt::Display for HoppingHeader<'_, K> {
     }
 }
 
-/// A hopping schedule as a file of an Arduino sketch: see [`HoppingSchedule::to_arduino`].
+/// A hopping schedule as a file of an Arduino sketch: see [`Emit::to_arduino`].
 struct HoppingTab<'r, const K: usize> {
     schedule: &'r HoppingSchedule<K>,
     requirements: &'r Requirements<'r>,
@@ -178,7 +166,7 @@ impl<const K: usize> fmt::Display for Constant<'_, K> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { schedule, requirements, name } = self;
         let (code, all, window) = (schedule.code(), settings(requirements), requirements.window);
-        let lags = Plain(|| schedule.lags().map(|lag| (lag.as_micros(), "u")));
+        let lags = Plain(|| lags(schedule).map(|lag| (lag.as_micros(), "u")));
         writeln!(f, "static const uint32_t {name}_lag_us[] = {{{lags}}};")?;
         let limits = schedule.limits(requirements).ok().filter(|_| requirements.uneven.is_some());
         if let Some(limits) = &limits {
@@ -233,7 +221,7 @@ impl<const K: usize> fmt::Display for OwnLimits<'_, K> {
     }
 }
 
-/// A hopping schedule as a TOML file: see [`HoppingSchedule::to_toml`].
+/// A hopping schedule as a TOML file: see [`Emit::to_toml`].
 struct HoppingToml<'s, const K: usize> {
     schedule: &'s HoppingSchedule<K>,
 }
@@ -247,7 +235,7 @@ impl<const K: usize> fmt::Display for HoppingToml<'_, K> {
         if code.first_multiplier() != 1 {
             writeln!(f, "first_multiplier = {}", code.first_multiplier())?;
         }
-        writeln!(f, "t_lag_us = [{}]", Numbers(|| self.schedule.lags()))
+        writeln!(f, "t_lag_us = [{}]", Numbers(|| lags(self.schedule)))
     }
 }
 
@@ -263,11 +251,7 @@ impl<const K: usize> fmt::Display for Summary<'_, K> {
 
 #[cfg(test)]
 mod tests {
-    extern crate std;
     use super::*;
-    use crate::Layout;
-    use crate::hopping::HoppingCode;
-    use std::string::ToString;
 
     #[test]
     fn the_sources_say_the_code_and_what_it_was_designed_for() {
@@ -281,50 +265,50 @@ mod tests {
             ..Requirements::new(Micros::new(150))
         };
         assert_eq!(
-            schedule.to_toml().to_string(),
+            schedule.to_toml(),
             "period_us = 40_000\nstep_us = 301\nphases = 3\nt_lag_us = [0, 9_000, 18_000]\n"
         );
-        let rust = schedule.to_rust(&requirements).to_string();
+        let rust = schedule.to_rust(&requirements);
         assert!(rust.contains("const RING: HoppingSchedule<3> = hopping_schedule! {"), "{rust}");
         assert!(rust.contains("layout: Layout::Ring(2),") && rust.contains("window: Micros::new(36_000)"), "{rust}");
         assert!(
             rust.contains("// 3 sensors, 3 phases, T_p = 40 ms,\n// t_delta = 150 us, 2 adjacent sensors of a ring"),
             "{rust}"
         );
-        let c = schedule.to_c(&requirements).to_string();
+        let c = schedule.to_c(&requirements);
         assert!(c.contains("{301u, 9602u, 18000u}, /* phase 1 */"), "{c}");
         assert!(c.contains("#define EERUF_PHASES 3\n") && c.contains("#define EERUF_T_DELTA_US 150u\n"), "{c}");
         assert!(
             c.contains("3, 3, 3, 301u, 40000u, eeruf_hopping_config_lag_us,\n    36000u, 0u, 36000u, 8000u, 1u,"),
             "{c}"
         );
-        let tab = schedule.to_arduino(&requirements, "PORT").to_string();
+        let tab = schedule.to_arduino(&requirements, "PORT");
         assert!(tab.contains("PORT_lag_us[] = {0u, 9000u, 18000u};"), "{tab}");
         assert!(tab.contains("{150, 400, 60, 5, 6, 2, 6, 2, 0},\n    84, 5, 3, 0, 8, 2, 2, 0,\n};"), "{tab}");
         // What may not be less than T_delta, or more, follows it.
         let wide = Requirements { t_delta: Micros::new(500), ..requirements };
-        assert!(schedule.to_c(&wide).to_string().contains("{500, 500, 60,"));
+        assert!(schedule.to_c(&wide).contains("{500, 500, 60,"));
         let narrow = Requirements { t_delta: Micros::new(40), ..requirements };
-        assert!(schedule.to_rust(&narrow).to_string().contains(".with_tentative_within(Micros::new(40)),"));
+        assert!(schedule.to_rust(&narrow).contains(".with_tentative_within(Micros::new(40)),"));
         let mut deaf = requirements;
         deaf.blanking = Micros::new(900);
-        let rust = schedule.to_rust(&deaf).to_string();
+        let rust = schedule.to_rust(&deaf);
         assert!(
             rust.ends_with("    .with_blanking(Micros::new(900))\n    .with_reach(Micros::new(36_000));\n"),
             "{rust}"
         );
         // Sound that is heard for as long as the window, without blanking, is what listening is unless it is said.
-        let rust = schedule.to_rust(&requirements).to_string();
+        let rust = schedule.to_rust(&requirements);
         assert!(rust.ends_with("HoppingListening = HoppingListening::new(Micros::new(36_000));\n"), "{rust}");
         let mut far = requirements;
         far.audible = Some(Micros::from_millis(50));
-        let rust = schedule.to_rust(&far).to_string();
+        let rust = schedule.to_rust(&far);
         assert!(
             rust.ends_with("    .with_blanking(Micros::new(0))\n    .with_reach(Micros::new(50_000));\n"),
             "{rust}"
         );
         let five = HoppingCode::shortest(4, 5, Micros::new(301)).unwrap();
         let five = HoppingSchedule::<4>::new(five, Micros::from_millis(40), [Micros::ZERO; 4]).unwrap();
-        assert!(five.to_toml().to_string().contains("phases = 5\nfirst_multiplier = 2\n"));
+        assert!(five.to_toml().contains("phases = 5\nfirst_multiplier = 2\n"));
     }
 }

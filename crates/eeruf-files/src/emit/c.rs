@@ -1,26 +1,23 @@
 //! A schedule for C: a header with firing times for any program, and the constant that `eeruf.h` takes.
 
-use core::fmt;
+use std::fmt;
+
+use eeruf_core::conditions::VerifiedFor;
+use eeruf_core::{EachSensor, Layout, Micros, Phase, Requirements, Schedule, SensorLimits, VerifiedSchedule};
 
 use super::{Promise, Summary};
-use crate::layout::Layout;
-use crate::own_limits::{EachSensor, SensorLimits};
-use crate::requirements::Requirements;
-use crate::schedule::{Phase, Schedule, VerifiedFor};
-use crate::time::Micros;
-use crate::verified::VerifiedSchedule;
 
 /// `EERUF_VERSION` of the `eeruf.h` that tables are written for.
-pub(crate) const EERUF_VERSION: u16 = 3;
+pub(super) const EERUF_VERSION: u16 = 3;
 
-/// A schedule as a C header: see [`Schedule::to_c`].
+/// A schedule as a C header: see [`Emit::to_c`](super::Emit::to_c).
 pub(super) struct CHeader<'r, const K: usize> {
     pub(super) schedule: &'r Schedule<K>,
     pub(super) requirements: &'r Requirements<'r>,
 }
 
 /// The need of one sensor.
-pub(crate) type OfSensor<'r> = fn(&Requirements<'r>, usize) -> Micros;
+pub(super) type OfSensor<'r> = fn(&Requirements<'r>, usize) -> Micros;
 
 impl<'r, const K: usize> fmt::Display for CHeader<'r, K> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -54,7 +51,7 @@ impl<'r, const K: usize> fmt::Display for CHeader<'r, K> {
     }
 }
 
-/// A schedule as a file of an Arduino sketch: see [`Schedule::to_arduino`].
+/// A schedule as a file of an Arduino sketch: see [`Emit::to_arduino`](super::Emit::to_arduino).
 pub(super) struct ArduinoTab<'r, const K: usize> {
     pub(super) schedule: &'r Schedule<K>,
     pub(super) requirements: &'r Requirements<'r>,
@@ -100,8 +97,8 @@ impl<const K: usize> fmt::Display for Constant<'_, K> {
         let each = verified.as_ref().map(VerifiedSchedule::own_limits).filter(|_| requirements.uneven.is_some());
         let most = each.and_then(|each| each.most().copied());
         let alike = || verified.map(|verified| verified.verified_for());
-        let verified_for = most.or_else(alike).unwrap_or(VerifiedFor::NOTHING);
-        let VerifiedFor { t_delta, min_interval, window, separation, path_change, audible } = verified_for;
+        let verified_for = most.or_else(alike);
+        let of = |time: fn(VerifiedFor) -> Micros| verified_for.map_or(Micros::ZERO, time);
         let (layout, neighbours) = match requirements.layout {
             // Single pairs may keep other intervals.
             _ if requirements.uneven.is_some() => ("OTHER", 0),
@@ -111,7 +108,8 @@ impl<const K: usize> fmt::Display for Constant<'_, K> {
             Layout::Graph(_) => ("OTHER", 0),
         };
         let stale_echo = u8::from(requirements.stale_echo);
-        let times = [schedule.period(), schedule.min_refire(), t_delta, min_interval, window, separation];
+        let designed = [of(|it| it.t_delta), of(|it| it.min_interval), of(|it| it.window), of(|it| it.separation)];
+        let times = [schedule.period(), schedule.min_refire()].into_iter().chain(designed);
         if let Some(each) = each {
             writeln!(f, "}};")?;
             write!(f, "{}", CLimits { name, sensors, limits: each })?;
@@ -120,12 +118,12 @@ impl<const K: usize> fmt::Display for Constant<'_, K> {
             writeln!(f, "}};\nstatic const EerufSchedule {name} EERUF_FLASH = {{")?;
         }
         writeln!(f, "    {EERUF_VERSION}, {sensors}, 2, {name}_order, {name}_gap_us,")?;
-        writeln!(f, "    {},", Plain(|| times.into_iter().map(|time| (time.as_micros(), "u"))))?;
-        match path_change {
+        writeln!(f, "    {},", Plain(|| times.clone().map(|time| (time.as_micros(), "u"))))?;
+        match verified_for.and_then(|it| it.path_change) {
             Some(path_change) => write!(f, "    {}u,", path_change.as_micros())?,
             None => f.write_str("    EERUF_AS_T_DELTA,")?,
         }
-        writeln!(f, " {}u,", audible.as_micros())?;
+        writeln!(f, " {}u,", of(|it| it.audible).as_micros())?;
         let verified = u8::from(verified.is_some());
         write!(f, "    {verified}, EERUF_LAYOUT_{layout}, {neighbours}, {stale_echo}, ")?;
         match each {
@@ -136,10 +134,10 @@ impl<const K: usize> fmt::Display for Constant<'_, K> {
 }
 
 /// The limits of each sensor as a constant.
-pub(crate) struct CLimits<'r, const K: usize> {
-    pub(crate) name: &'r str,
-    pub(crate) sensors: usize,
-    pub(crate) limits: &'r EachSensor<K>,
+pub(super) struct CLimits<'r, const K: usize> {
+    pub(super) name: &'r str,
+    pub(super) sensors: usize,
+    pub(super) limits: &'r EachSensor<K>,
 }
 
 impl<const K: usize> fmt::Display for CLimits<'_, K> {
@@ -155,7 +153,7 @@ impl<const K: usize> fmt::Display for CLimits<'_, K> {
 }
 
 /// Numbers, each with what follows it, separated by commas.
-pub(crate) struct Plain<F>(pub(crate) F);
+pub(super) struct Plain<F>(pub(super) F);
 
 impl<F: Fn() -> I, I: Iterator<Item = (u32, &'static str)>> fmt::Display for Plain<F> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -168,10 +166,9 @@ impl<F: Fn() -> I, I: Iterator<Item = (u32, &'static str)>> fmt::Display for Pla
 
 #[cfg(test)]
 mod tests {
-    extern crate std;
     use super::*;
-    use crate::tables::TABLE_I_D;
-    use std::string::ToString;
+    use crate::emit::Emit;
+    use eeruf_core::tables::TABLE_I_D;
 
     const REQUIREMENTS: Requirements<'static> =
         Requirements { min_interval: Micros::from_millis(15), ..Requirements::new(Micros::new(999)) };
@@ -179,7 +176,7 @@ mod tests {
     // The constant says what it was verified for or that it was not.
     #[test]
     fn constant_says_what_it_was_verified_for() {
-        let tab = TABLE_I_D.to_arduino(&REQUIREMENTS, "PAPER").to_string();
+        let tab = TABLE_I_D.to_arduino(&REQUIREMENTS, "PAPER");
         assert!(tab.contains("EerufSchedule PAPER EERUF_FLASH = {\n    3, 12, 2, PAPER_order, PAPER_gap_us,"), "{tab}");
         assert!(
             tab.contains(
@@ -189,7 +186,7 @@ mod tests {
             "{tab}"
         );
         let more = Requirements { t_delta: Micros::new(1000), ..REQUIREMENTS };
-        let tab = TABLE_I_D.to_arduino(&more, "PAPER").to_string();
+        let tab = TABLE_I_D.to_arduino(&more, "PAPER");
         assert!(
             tab.contains(
                 "100000u, 76000u, 0u, 0u, 0u, 0u,\n    EERUF_AS_T_DELTA, 0u,\n    0, EERUF_LAYOUT_LINE, 4, 0, 0,"

@@ -1,73 +1,62 @@
 //! The set-up of a flow ring as source text: Rust, a C header, a file of an Arduino sketch.
 
-use core::fmt;
+use std::fmt;
 
-use super::settings::FlowSettings;
-use crate::emit::{CLimits, EERUF_VERSION, Grouped};
-use crate::hopping::HoppingListening;
-use crate::own_limits::{EachSensor, SensorLimits};
-use crate::time::Micros;
-use crate::tracker::TrackerSettings;
+use eeruf_core::flow::FlowSettings;
+use eeruf_core::hopping::HoppingListening;
+use eeruf_core::judge::TrackerSettings;
+use eeruf_core::{EachSensor, Micros, SensorLimits};
 
-impl FlowSettings {
-    /// Rust: the constants `SENSORS`, `SETTINGS` and `LISTENING` for [`FlowRing::flow`](super::FlowRing::flow); where
-    /// sensors have limits of their own also `LIMITS` for [`FlowRing::with_limits`](super::FlowRing::with_limits).
-    pub const fn to_rust<'r, const K: usize>(
-        &'r self,
-        sensors: usize,
-        listening: HoppingListening,
-        limits: &'r EachSensor<K>,
-    ) -> impl fmt::Display {
-        FlowRust(FlowSource { settings: self, sensors, listening, limits })
+use super::{CLimits, EERUF_VERSION, Grouped};
+
+/// The set-up of a flow ring.
+#[derive(Clone, Copy, Debug)]
+pub struct Flow<'r, const K: usize> {
+    /// Settings of the ring.
+    pub settings: &'r FlowSettings,
+    /// Number of sensors.
+    pub sensors: usize,
+    /// How the ring listens.
+    pub listening: HoppingListening,
+    /// Limits of each sensor; [`EachSensor::NONE`] if all are alike.
+    pub limits: &'r EachSensor<K>,
+}
+
+impl<const K: usize> Flow<'_, K> {
+    /// Rust: the constants `SENSORS`, `SETTINGS` and `LISTENING` for `FlowRing::flow`; where sensors have limits of
+    /// their own also `LIMITS` for `FlowRing::with_limits`.
+    pub fn to_rust(&self) -> String {
+        FlowRust(self).to_string()
     }
 
     /// A C99 header with the constant `eeruf_flow_config` for `eeruf_flow_init`, to be included after `eeruf.h`.
-    pub const fn to_c<'r, const K: usize>(
-        &'r self,
-        sensors: usize,
-        listening: HoppingListening,
-        limits: &'r EachSensor<K>,
-    ) -> impl fmt::Display {
-        FlowHeader(FlowSource { settings: self, sensors, listening, limits })
+    pub fn to_c(&self) -> String {
+        FlowHeader(self).to_string()
     }
 
     /// A file of an Arduino sketch with the constant `name`, as in [`to_c`](Self::to_c).
-    pub const fn to_arduino<'r, const K: usize>(
-        &'r self,
-        sensors: usize,
-        listening: HoppingListening,
-        limits: &'r EachSensor<K>,
-        name: &'r str,
-    ) -> impl fmt::Display {
-        FlowTab { source: FlowSource { settings: self, sensors, listening, limits }, name }
-    }
-
-    /// Its times by their names.
-    fn times(&self) -> [(&'static str, Micros); 10] {
-        [
-            ("step", self.step),
-            ("shortest_gap", self.shortest_gap),
-            ("masked_adds", self.masked_adds),
-            ("believed_takes", self.believed_takes),
-            ("unserved_adds", self.unserved_adds),
-            ("shortest_cycle", self.shortest_cycle),
-            ("rest", self.rest),
-            ("lead", self.lead),
-            ("longest_cycle", self.longest_cycle),
-            ("travel", self.travel),
-        ]
+    pub fn to_arduino(&self, name: &str) -> String {
+        FlowTab { source: self, name }.to_string()
     }
 }
 
-/// Settings of a flow ring.
-struct FlowSource<'r, const K: usize> {
-    settings: &'r FlowSettings,
-    sensors: usize,
-    listening: HoppingListening,
-    limits: &'r EachSensor<K>,
+/// Times of the settings by their names.
+fn times(settings: &FlowSettings) -> [(&'static str, Micros); 10] {
+    [
+        ("step", settings.step),
+        ("shortest_gap", settings.shortest_gap),
+        ("masked_adds", settings.masked_adds),
+        ("believed_takes", settings.believed_takes),
+        ("unserved_adds", settings.unserved_adds),
+        ("shortest_cycle", settings.shortest_cycle),
+        ("rest", settings.rest),
+        ("lead", settings.lead),
+        ("longest_cycle", settings.longest_cycle),
+        ("travel", settings.travel),
+    ]
 }
 
-impl<const K: usize> fmt::Display for FlowSource<'_, K> {
+impl<const K: usize> fmt::Display for Flow<'_, K> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { settings, sensors, listening, .. } = self;
         write!(f, "{sensors} sensors that fire by flow, in cycles of at least {},", settings.shortest_cycle)?;
@@ -75,12 +64,12 @@ impl<const K: usize> fmt::Display for FlowSource<'_, K> {
     }
 }
 
-/// In Rust: see [`FlowSettings::to_rust`].
-struct FlowRust<'r, const K: usize>(FlowSource<'r, K>);
+/// In Rust: see [`Flow::to_rust`].
+struct FlowRust<'r, const K: usize>(&'r Flow<'r, K>);
 
 impl<const K: usize> fmt::Display for FlowRust<'_, K> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let FlowSource { settings, sensors, listening, limits } = &self.0;
+        let Flow { settings, sensors, listening, limits } = self.0;
         let usual = FlowSettings::DEFAULT;
         let own = limits.most().is_some();
         let (names, call) = if own {
@@ -93,7 +82,7 @@ impl<const K: usize> fmt::Display for FlowRust<'_, K> {
         writeln!(f, "// For `FlowRing::<{}{call}`.", if own { "SENSORS, " } else { "" })?;
         writeln!(f, "pub const SENSORS: usize = {sensors};\n")?;
         writeln!(f, "pub const SETTINGS: FlowSettings = {{\n    let mut settings = FlowSettings::DEFAULT;")?;
-        for ((name, time), (_, usual)) in settings.times().into_iter().zip(usual.times()) {
+        for ((name, time), (_, usual)) in times(settings).into_iter().zip(times(&usual)) {
             if time != usual {
                 writeln!(f, "    settings.{name} = Micros::new({});", Grouped(time))?;
             }
@@ -147,25 +136,25 @@ fn numbers(tracker: &TrackerSettings) -> [(&'static str, u32); 9] {
     ]
 }
 
-/// As a C header: see [`FlowSettings::to_c`].
-struct FlowHeader<'r, const K: usize>(FlowSource<'r, K>);
+/// As a C header: see [`Flow::to_c`].
+struct FlowHeader<'r, const K: usize>(&'r Flow<'r, K>);
 
 impl<const K: usize> fmt::Display for FlowHeader<'_, K> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let FlowSource { sensors, listening, .. } = &self.0;
+        let Flow { sensors, listening, .. } = self.0;
         writeln!(f, "/* {}.\n   For eeruf_flow_init; include eeruf.h before it. */", self.0)?;
         writeln!(f, "#ifndef EERUF_SCHEDULE_H\n#define EERUF_SCHEDULE_H\n")?;
         writeln!(f, "#ifndef EERUF_H\n#error \"include eeruf.h before this file\"\n#endif\n")?;
         writeln!(f, "#define EERUF_SENSORS {sensors}")?;
         writeln!(f, "#define EERUF_WINDOW_US {}u\n", listening.window.as_micros())?;
-        write!(f, "{}", Constant { source: &self.0, name: "eeruf_flow_config" })?;
+        write!(f, "{}", Constant { source: self.0, name: "eeruf_flow_config" })?;
         writeln!(f, "\n#endif")
     }
 }
 
-/// As a file of an Arduino sketch: see [`FlowSettings::to_arduino`].
+/// As a file of an Arduino sketch: see [`Flow::to_arduino`].
 struct FlowTab<'r, const K: usize> {
-    source: FlowSource<'r, K>,
+    source: &'r Flow<'r, K>,
     name: &'r str,
 }
 
@@ -179,13 +168,13 @@ impl<const K: usize> fmt::Display for FlowTab<'_, K> {
 
 /// The constant of type `EerufFlowConfig`.
 struct Constant<'r, const K: usize> {
-    source: &'r FlowSource<'r, K>,
+    source: &'r Flow<'r, K>,
     name: &'r str,
 }
 
 impl<const K: usize> fmt::Display for Constant<'_, K> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let FlowSource { settings, sensors, listening, limits } = self.source;
+        let Flow { settings, sensors, listening, limits } = self.source;
         let name = self.name;
         let own = limits.most().is_some();
         if own {
@@ -197,7 +186,7 @@ impl<const K: usize> fmt::Display for Constant<'_, K> {
             )?;
             writeln!(f, "    {name}_limits,\n}};")?;
         }
-        let [step, times @ ..] = settings.times().map(|(_, time)| time.as_micros());
+        let [step, times @ ..] = times(settings).map(|(_, time)| time.as_micros());
         writeln!(f, "static const EerufFlowConfig {name} = {{")?;
         write!(f, "    {EERUF_VERSION}, {sensors}, {}, {step}u,", settings.unserved_after)?;
         for time in [listening.window, listening.blanking, listening.reach] {
@@ -217,9 +206,7 @@ impl<const K: usize> fmt::Display for Constant<'_, K> {
 
 #[cfg(test)]
 mod tests {
-    extern crate std;
     use super::*;
-    use std::string::ToString;
 
     const ALIKE: EachSensor<1> = EachSensor::NONE;
     const LISTENING: HoppingListening = HoppingListening::new(Micros::new(37_000)).with_blanking(Micros::new(300));
@@ -229,9 +216,9 @@ mod tests {
         let mut settings = FlowSettings::DEFAULT;
         settings.rest = Micros::from_millis(60);
         settings.tracker = settings.tracker.with_t_delta(Micros::new(100)).with_memory(9);
-        let text = settings.to_rust(8, LISTENING, &ALIKE).to_string();
+        let text = Flow { settings: &settings, sensors: 8, listening: LISTENING, limits: &ALIKE }.to_rust();
         assert!(text.contains("pub const SENSORS: usize = 8;\n"), "{text}");
-        let sets: std::vec::Vec<_> = text.lines().filter(|line| line.starts_with("    settings.")).collect();
+        let sets: Vec<_> = text.lines().filter(|line| line.starts_with("    settings.")).collect();
         let expected = [
             "    settings.rest = Micros::new(60_000);",
             "    settings.tracker.t_delta = Micros::new(100);",
@@ -239,32 +226,32 @@ mod tests {
         ];
         assert_eq!(sets, expected);
         let listening = "HoppingListening::new(Micros::new(37_000)).with_blanking(Micros::new(300))";
-        assert!(text.ends_with(&std::format!("{listening}.with_reach(Micros::new(37_000));\n")), "{text}");
+        assert!(text.ends_with(&format!("{listening}.with_reach(Micros::new(37_000));\n")), "{text}");
     }
 
     #[test]
     fn limits_of_each_sensor_are_written() {
         let of = |us, window| SensorLimits { t_delta: Micros::new(us), window: Micros::new(window) };
         let limits = EachSensor::for_flow([of(150, 37_000), of(90, 12_000), of(150, 37_000)], &[0b101]);
-        let text = FlowSettings::DEFAULT.to_c(3, LISTENING, &limits).to_string();
+        let flow = Flow { settings: &FlowSettings::DEFAULT, sensors: 3, listening: LISTENING, limits: &limits };
+        let text = flow.to_c();
         let own = "eeruf_flow_config_limits[] EERUF_FLASH = {\n    {37000u, 150u, 1},\n    {12000u, 90u, 0},\n";
         assert!(text.contains(own) && text.contains("    &eeruf_flow_config_own,\n};\n"), "{text}");
-        let text = FlowSettings::DEFAULT.to_rust(3, LISTENING, &limits).to_string();
+        let text = flow.to_rust();
         assert!(text.contains("        SensorLimits { t_delta: Micros::new(90), window: Micros::new(12_000) },\n"));
         assert!(text.ends_with("    ],\n    &[0b101],\n);\n"), "{text}");
     }
 
     #[test]
     fn c_has_all_settings_in_their_order() {
-        let text = FlowSettings::DEFAULT.to_c(12, LISTENING, &ALIKE).to_string();
+        let flow = Flow { settings: &FlowSettings::DEFAULT, sensors: 12, listening: LISTENING, limits: &ALIKE };
+        let text = flow.to_c();
         assert!(text.contains("#define EERUF_SENSORS 12\n#define EERUF_WINDOW_US 37000u\n"), "{text}");
         let constant = "= {\n    3, 12, 3, 240u, 37000u, 300u, 37000u,\n    \
                         7500u, 4000u, 1500u, 6000u, 60000u, 0u, 0u, 400000u, 260u,\n    \
                         {150, 400, 60, 5, 6, 2, 6, 2, 5},\n    0,\n};\n";
-        assert!(text.contains(&std::format!("EerufFlowConfig eeruf_flow_config {constant}")), "{text}");
-        let text = FlowSettings::DEFAULT.to_arduino(12, LISTENING, &ALIKE, "RING").to_string();
-        assert!(
-            text.ends_with(&std::format!("#include <EerufArduino.h>\n\nstatic const EerufFlowConfig RING {constant}"))
-        );
+        assert!(text.contains(&format!("EerufFlowConfig eeruf_flow_config {constant}")), "{text}");
+        let text = flow.to_arduino("RING");
+        assert!(text.ends_with(&format!("#include <EerufArduino.h>\n\nstatic const EerufFlowConfig RING {constant}")));
     }
 }

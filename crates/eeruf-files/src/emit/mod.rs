@@ -1,54 +1,65 @@
-//! A schedule as source text: Rust that is checked when it is compiled, a C header, a tab of an Arduino sketch, a TOML
-//! file.
-//!
-//! Each is a [`fmt::Display`], so nothing is allocated here.
+//! A ring as source text: Rust that is checked when it is compiled, a C header, a tab of an Arduino sketch, a TOML file.
 
 mod c;
+mod flow;
+mod hopping;
+mod ring;
 
-use core::fmt;
+use std::fmt;
 
-use c::{ArduinoTab, CHeader};
-pub(crate) use c::{CLimits, EERUF_VERSION, OfSensor, Plain};
+use eeruf_core::{Criterion, Layout, Micros, Phase, Requirements, Schedule, Uneven};
 
-use crate::layout::Layout;
-use crate::requirements::{Criterion, Requirements};
-use crate::schedule::{Phase, Schedule};
-use crate::time::Micros;
-use crate::uneven::Uneven;
+use c::{ArduinoTab, CHeader, CLimits, EERUF_VERSION, OfSensor, Plain};
+pub use flow::Flow;
+pub use ring::Form;
 
-impl<const K: usize> Schedule<K> {
-    /// A `const RING: VerifiedSchedule` in Rust, with the `requirements` for the compiler to check (see
-    /// [`schedule!`](crate::schedule!)).
-    pub const fn to_rust<'r>(&'r self, requirements: &'r Requirements<'r>) -> impl fmt::Display {
-        RustSource { schedule: self, requirements }
-    }
+/// A schedule that can be written as source text.
+pub trait Emit {
+    /// A `const RING` in Rust, with the `requirements` for the compiler to check (see `eeruf_core::schedule!` and
+    /// `hopping_schedule!`); of a schedule that hops also the constants `SETTINGS` and `LISTENING` for its ring: the
+    /// balanced settings with this `t_delta` and these neighbours.
+    fn to_rust(&self, requirements: &Requirements<'_>) -> String;
 
     /// A C99 header that includes nothing but `<stdint.h>`, with the firing times and what they were designed for; and,
-    /// where `eeruf.h` is included before it, the constant `eeruf_schedule` for its `eeruf_ring_init`.
-    pub const fn to_c<'r>(&'r self, requirements: &'r Requirements<'r>) -> impl fmt::Display {
-        CHeader { schedule: self, requirements }
-    }
+    /// where `eeruf.h` is included before it, the constant `eeruf_schedule` for its `eeruf_ring_init`, or
+    /// `eeruf_hopping_config` for `eeruf_hopping_init`.
+    fn to_c(&self, requirements: &Requirements<'_>) -> String;
 
     /// A file of an Arduino sketch that uses the library in `c/arduino`, with the schedule as a constant of this name.
-    pub const fn to_arduino<'r>(&'r self, requirements: &'r Requirements<'r>, name: &'r str) -> impl fmt::Display {
-        ArduinoTab { schedule: self, requirements, name }
+    fn to_arduino(&self, requirements: &Requirements<'_>, name: &str) -> String;
+
+    /// A schedule file, as the program reads it: lags and waits, or firing times if all lags are zero; of a schedule
+    /// that hops, the code and the lags.
+    fn to_toml(&self) -> String;
+}
+
+impl<const K: usize> Emit for Schedule<K> {
+    fn to_rust(&self, requirements: &Requirements<'_>) -> String {
+        RustSource { schedule: self, requirements }.to_string()
     }
 
-    /// A schedule file, as the program reads it: lags and waits, or firing times if all lags are zero.
-    pub const fn to_toml(&self) -> impl fmt::Display {
-        Toml { schedule: self }
+    fn to_c(&self, requirements: &Requirements<'_>) -> String {
+        CHeader { schedule: self, requirements }.to_string()
     }
 
-    fn fire_times(&self, phase: Phase) -> impl Iterator<Item = Micros> {
-        (0..self.sensors()).filter_map(move |x| self.t_fire(phase, x))
+    fn to_arduino(&self, requirements: &Requirements<'_>, name: &str) -> String {
+        ArduinoTab { schedule: self, requirements, name }.to_string()
     }
 
-    fn has_lags(&self) -> bool {
-        self.t_lag().iter().any(|&lag| lag != Micros::ZERO)
+    fn to_toml(&self) -> String {
+        Toml { schedule: self }.to_string()
     }
 }
 
-/// A schedule in Rust: see [`Schedule::to_rust`].
+fn fire_times<const K: usize>(schedule: &Schedule<K>, phase: Phase) -> impl Iterator<Item = Micros> {
+    (0..schedule.sensors()).filter_map(move |x| schedule.t_fire(phase, x))
+}
+
+fn has_lags<const K: usize>(schedule: &Schedule<K>) -> bool {
+    schedule.t_lag().iter().any(|&lag| lag != Micros::ZERO)
+}
+
+/// A schedule in Rust: see [`Emit::to_rust`].
 struct RustSource<'r, const K: usize> {
     schedule: &'r Schedule<K>,
     requirements: &'r Requirements<'r>,
@@ -71,20 +82,20 @@ impl<const K: usize> fmt::Display for RustSource<'_, K> {
             }
         }
         writeln!(f, "    period_us: {},", Grouped(schedule.period()))?;
-        if schedule.has_lags() && uneven.is_none() {
+        if has_lags(schedule) && uneven.is_none() {
             writeln!(f, "    t_lag_us: [{}],", Numbers(|| schedule.t_lag().iter().copied()))?;
             writeln!(f, "    t_wait_a_us: [{}],", Numbers(|| schedule.t_wait(Phase::A).iter().copied()))?;
             writeln!(f, "    t_wait_b_us: [{}],", Numbers(|| schedule.t_wait(Phase::B).iter().copied()))?;
         } else {
-            writeln!(f, "    t_fire_a_us: [{}],", Numbers(|| schedule.fire_times(Phase::A)))?;
-            writeln!(f, "    t_fire_b_us: [{}],", Numbers(|| schedule.fire_times(Phase::B)))?;
+            writeln!(f, "    t_fire_a_us: [{}],", Numbers(|| fire_times(schedule, Phase::A)))?;
+            writeln!(f, "    t_fire_b_us: [{}],", Numbers(|| fire_times(schedule, Phase::B)))?;
         }
         writeln!(f, "{}}};", Meets(requirements))
     }
 }
 
 /// Requirements as the last field of a macro, in Rust.
-pub(crate) struct Meets<'r>(pub(crate) &'r Requirements<'r>);
+struct Meets<'r>(&'r Requirements<'r>);
 
 impl fmt::Display for Meets<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -117,7 +128,7 @@ impl fmt::Display for Meets<'_> {
 }
 
 /// A layout as an expression in Rust.
-pub(crate) struct RustLayout<'r>(pub(crate) Layout<'r>);
+struct RustLayout<'r>(Layout<'r>);
 
 impl fmt::Display for RustLayout<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -138,7 +149,7 @@ impl fmt::Display for RustLayout<'_> {
     }
 }
 
-/// A schedule as a TOML file: see [`Schedule::to_toml`].
+/// A schedule as a TOML file: see [`Emit::to_toml`].
 struct Toml<'s, const K: usize> {
     schedule: &'s Schedule<K>,
 }
@@ -147,13 +158,13 @@ impl<const K: usize> fmt::Display for Toml<'_, K> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let schedule = self.schedule;
         writeln!(f, "period_us = {}", Grouped(schedule.period()))?;
-        if schedule.has_lags() {
+        if has_lags(schedule) {
             writeln!(f, "t_lag_us = [{}]", Numbers(|| schedule.t_lag().iter().copied()))?;
             writeln!(f, "t_wait_a_us = [{}]", Numbers(|| schedule.t_wait(Phase::A).iter().copied()))?;
             writeln!(f, "t_wait_b_us = [{}]", Numbers(|| schedule.t_wait(Phase::B).iter().copied()))
         } else {
-            writeln!(f, "t_fire_a_us = [{}]", Numbers(|| schedule.fire_times(Phase::A)))?;
-            writeln!(f, "t_fire_b_us = [{}]", Numbers(|| schedule.fire_times(Phase::B)))
+            writeln!(f, "t_fire_a_us = [{}]", Numbers(|| fire_times(schedule, Phase::A)))?;
+            writeln!(f, "t_fire_b_us = [{}]", Numbers(|| fire_times(schedule, Phase::B)))
         }
     }
 }
@@ -168,7 +179,7 @@ impl<const K: usize> fmt::Display for Summary<'_, K> {
 }
 
 /// Requirements that the schedule was designed for.
-pub(crate) struct Promise<'r>(pub(crate) &'r Requirements<'r>);
+struct Promise<'r>(&'r Requirements<'r>);
 
 impl fmt::Display for Promise<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -240,7 +251,7 @@ impl fmt::Write for Columns {
 }
 
 /// Numbers in microseconds, separated by commas.
-pub(crate) struct Numbers<F>(pub(crate) F);
+struct Numbers<F>(F);
 
 impl<F: Fn() -> I, I: Iterator<Item = Micros>> fmt::Display for Numbers<F> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -252,7 +263,7 @@ impl<F: Fn() -> I, I: Iterator<Item = Micros>> fmt::Display for Numbers<F> {
 }
 
 /// Microseconds with an underscore before each three digits: `65_000`.
-pub(crate) struct Grouped(pub(crate) Micros);
+struct Grouped(Micros);
 
 impl fmt::Display for Grouped {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -268,10 +279,8 @@ impl fmt::Display for Grouped {
 
 #[cfg(test)]
 mod tests {
-    extern crate std;
     use super::*;
-    use crate::tables::{TABLE_I_C, TABLE_I_D};
-    use std::string::ToString;
+    use eeruf_core::tables::{TABLE_I_C, TABLE_I_D};
 
     const REQUIREMENTS: Requirements<'static> =
         Requirements { min_interval: Micros::from_millis(15), ..Requirements::new(Micros::new(999)) };
@@ -280,29 +289,57 @@ mod tests {
     #[test]
     fn table_is_written_as_it_was_made_waits_or_firing_times() {
         assert_eq!(
-            TABLE_I_D.to_toml().to_string(),
+            TABLE_I_D.to_toml(),
             "period_us = 100_000\n\
              t_lag_us = [0, 25_000, 50_000, 75_000, 0, 25_000, 50_000, 75_000, 0, 25_000, 50_000, 75_000]\n\
              t_wait_a_us = [24_000, 24_000, 24_000, 24_000, 24_000, 24_000, 24_000, 24_000, 24_000, 24_000, 24_000, \
              24_000]\n\
              t_wait_b_us = [18_000, 12_000, 6_000, 0, 20_000, 14_000, 8_000, 2_000, 22_000, 16_000, 10_000, 4_000]\n"
         );
-        let text = TABLE_I_C.to_toml().to_string();
+        let text = TABLE_I_C.to_toml();
         assert!(text.contains("t_fire_b_us = [0, 27_000, 54_000,") && !text.contains("t_lag_us"), "{text}");
     }
 
     #[test]
     fn the_sources_say_what_the_schedule_was_designed_for() {
-        let rust = TABLE_I_D.to_rust(&REQUIREMENTS).to_string();
+        let rust = TABLE_I_D.to_rust(&REQUIREMENTS);
         let promise = "12 sensors, T_p = 100 ms";
         assert!(
             rust.contains(promise) && rust.contains("pub const RING: VerifiedSchedule<12> = schedule! {"),
             "{rust}"
         );
         assert!(rust.contains("t_delta = 999 us, 4 adjacent sensors of a line at least 15 ms apart"), "{rust}");
-        let c = TABLE_I_D.to_c(&REQUIREMENTS).to_string();
+        let c = TABLE_I_D.to_c(&REQUIREMENTS);
         assert!(c.contains(promise) && c.contains("#define EERUF_SENSORS 12\n"), "{c}");
         assert!(c.contains("{24000u, 49000u") && c.contains("{18000u, 37000u"), "{c}");
+    }
+
+    // An uneven schedule is written with all that it was designed for.
+    #[test]
+    fn uneven_schedule_is_written_with_all_needs() {
+        let ms = |ms: [u32; 2]| ms.map(Micros::from_millis);
+        let schedule = Schedule::from_firing(Micros::from_millis(60), [ms([0, 20]), ms([0, 23])]).unwrap();
+        let uneven = Uneven {
+            t_delta: &[Micros::new(999), Micros::new(1_400)],
+            window: &ms([50, 12]),
+            refire: &[],
+            intervals: &[(0, 1, Micros::new(15_000))],
+            shared_lines: &[],
+            together: &[],
+        };
+        let requirements = Requirements { uneven: Some(uneven), ..Requirements::new(Micros::new(999)) };
+        let rust = schedule.to_rust(&requirements);
+        for line in [
+            "use eeruf_core::{EachSensor, Layout, Micros, Requirements, Uneven, VerifiedSchedule, schedule};",
+            "pub const RING: VerifiedSchedule<2, 2, EachSensor<2>> = schedule! {",
+            "            window: &[Micros::new(50_000), Micros::new(12_000)],",
+            "            intervals: &[(0, 1, Micros::new(15_000))],",
+        ] {
+            assert!(rust.lines().any(|found| found == line), "{line}\n{rust}");
+        }
+        let c = schedule.to_c(&requirements);
+        assert!(c.contains("#define EERUF_T_DELTA_US 999u\n#define EERUF_WINDOW_US 12000u\n"), "{c}");
+        assert!(c.contains("static const uint32_t eeruf_window_us[EERUF_SENSORS] = {50000u, 12000u};\n"), "{c}");
     }
 
     #[test]
@@ -310,12 +347,12 @@ mod tests {
         let (mut on_one, mut on_many) = (0, 0);
         for count in 1..=64 {
             for last in [1, 2, 4, 8, 16] {
-                let mut items = std::vec![1; count];
+                let mut items = vec![1; count];
                 items[count - 1] = last;
                 let uneven = Uneven { together: &items, ..Uneven::NONE };
                 let text = UnevenSource(&uneven).to_string();
-                let each: std::vec::Vec<_> = items.iter().map(|set| std::format!("{set:#b}")).collect();
-                let line = std::format!("            together: &[{}],", each.join(", "));
+                let each: Vec<_> = items.iter().map(|set| format!("{set:#b}")).collect();
+                let line = format!("            together: &[{}],", each.join(", "));
                 assert_eq!(text.lines().any(|found| found == line), line.len() <= 120, "{text}");
                 let alone = text.lines().filter(|found| found.starts_with("                0b")).count();
                 assert_eq!(alone, if line.len() <= 120 { 0 } else { count }, "{text}");

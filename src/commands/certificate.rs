@@ -2,7 +2,6 @@
 
 use std::path::Path;
 
-use clap::ValueEnum;
 use eeruf_design::RingDesign;
 use eeruf_design::certificate::{self, Stated};
 
@@ -12,63 +11,38 @@ use crate::files::error::InputError;
 use crate::files::write::write;
 use crate::report::watch::Watch;
 
-/// Certificate format.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
-pub(crate) enum CertificateForm {
-    /// One text for checker/check_period.py
-    #[default]
-    Eeruf,
-    /// A model and a proof for VeriPB, which others wrote: FILE with the endings .opb and .pbp
-    Veripb,
-}
-
 /// Proof of a design's period.
 pub(crate) struct Written {
-    /// The files' texts, by ending if there are several; or why there are none.
-    texts: Result<Vec<(&'static str, String)>, String>,
+    /// The file's text, or why there is none.
+    text: Result<String, String>,
     /// The claim that was proven, for the report.
     claim: String,
 }
 
 impl Written {
-    /// Proves that the design's period is the shortest, or that none is below the search's bound; in eeruf's own form a
-    /// lower bound, if budget and time do not suffice for that.
-    pub(crate) fn new(form: CertificateForm, design: &RingDesign, budget: usize, watch: &mut Watch) -> Self {
+    /// Proves that the design's period is the shortest, or that none is below the search's bound; a lower bound, if
+    /// budget and time do not suffice for that.
+    pub(crate) fn new(design: &RingDesign, budget: usize, watch: &mut Watch) -> Self {
         let go_on = |nodes| watch.go_on(|| format!("certificate: {nodes} nodes"));
-        let proven = match form {
-            CertificateForm::Eeruf => certificate::prove(design, budget, go_on).map(|text| {
-                let claim = claim(&text, design);
-                (vec![("", text)], claim)
-            }),
-            CertificateForm::Veripb => certificate::prove_to_veripb(design, budget, go_on).map(|proven| {
-                let bound = design.bound.unwrap_or_default();
-                let claim = format!("for VeriPB, that no schedule has a period below {bound}; {} nodes", proven.nodes);
-                (vec![("opb", proven.model), ("pbp", proven.proof)], claim)
-            }),
-        };
-        match proven {
-            Ok((texts, claim)) => Self { texts: Ok(texts), claim },
-            Err(why) => Self { texts: Err(why.to_string()), claim: String::new() },
+        match certificate::prove(design, budget, go_on) {
+            Ok(text) => Self { claim: claim(&text, design), text: Ok(text) },
+            Err(why) => Self { text: Err(why.to_string()), claim: String::new() },
         }
     }
 
-    /// Writes the files and says what they prove.
+    /// Writes the file and says what it proves.
     pub(crate) fn write(&self, file: &Path, condition: &str) -> Result<Answer, InputError> {
-        let texts = match &self.texts {
-            Ok(texts) => texts,
+        match &self.text {
+            Ok(text) => {
+                write(file, text)?;
+                note(format_args!("{}: {}{condition}", file.display(), self.claim));
+                Ok(Answer::Yes)
+            }
             Err(why) => {
                 error(format_args!("{}: not written: {why}", file.display()));
-                return Ok(Answer::No);
+                Ok(Answer::No)
             }
-        };
-        let mut names = Vec::new();
-        for (ending, text) in texts {
-            let file = if ending.is_empty() { file.to_owned() } else { file.with_extension(ending) };
-            write(&file, text)?;
-            names.push(file.display().to_string());
         }
-        note(format_args!("{}: {}{condition}", names.join(", "), self.claim));
-        Ok(Answer::Yes)
     }
 }
 

@@ -16,7 +16,7 @@ use eeruf_sim::{Method, Robot};
 use serde::Serialize;
 
 use super::arguments::{picture, seconds};
-use super::certificate::{self, CertificateForm, Written};
+use super::certificate::{self, Written};
 use super::rooms::{self, RoomArgs};
 use super::{Answer, show};
 use crate::console::{error as console_error, note, print, print_line, tell};
@@ -68,9 +68,6 @@ pub(crate) struct Args {
     /// checker/check_period.py
     #[arg(long, value_name = "FILE")]
     certificate: Option<PathBuf>,
-    /// Certificate format
-    #[arg(long, value_enum, default_value_t, value_name = "FORM", requires = "certificate")]
-    certificate_form: CertificateForm,
     /// Write a certificate over the reals: that no period is shorter even with firing times that are no whole ticks.
     /// Not where the proof needs more than a certificate can state
     #[arg(long, value_name = "FILE")]
@@ -236,7 +233,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     };
     let seconds = began.elapsed().as_secs_f64();
     watch.forget_interrupt();
-    let prove = |_| Written::new(args.certificate_form, &design, args.certificate_budget, &mut watch);
+    let prove = |_| Written::new(&design, args.certificate_budget, &mut watch);
     let certificate = args.certificate.as_ref().map(prove);
     let real = over_reals(args, &design, &mut watch);
     watch.forget_interrupt();
@@ -315,7 +312,7 @@ fn flow_source(args: &Args, spec: &RingSpec, form: emit::Form, way: &RoomWay) ->
     let Robot { ref sensors, window, blanking, period, ref limits, ref together, .. } = way.robot;
     let mut settings = way.options.flow.with_fleet_number(args.fleet_number);
     settings.shortest_cycle = period;
-    if form == Form::Arduino {
+    if form == emit::Form::Arduino {
         // An AVR takes as long to plan a cycle; firings that are later than the plan make a ring accept nothing.
         settings.lead = Micros::from_millis(4);
     }

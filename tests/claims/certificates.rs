@@ -59,29 +59,6 @@ fn checker_refuses_a_longer_period() {
     assert_eq!(python(&file).0, Some(1));
 }
 
-#[test]
-fn a_proof_for_veripb_is_written_beside_its_model() {
-    let (_scratch, file) = Scratch::new("ring.toml", "");
-    let name = file.display().to_string();
-    let asked =
-        |ring| ["design", "--period-only", ring, "--json", "--certificate", &name, "--certificate-form", "veripb"];
-    let outcome = eeruf(&asked("rings/hc-sr04-8-two-multiplexers.toml"));
-    assert_eq!(outcome.code, Some(0), "{}", outcome.err);
-    assert!(outcome.err.contains("ring.opb, ") && outcome.err.contains("no schedule has a period below 61.5 ms"));
-    let text = |ending| fs::read_to_string(file.with_extension(ending)).expect("the file is written");
-    let (model, proof) = (text("opb"), text("pbp"));
-    assert!(model.starts_with("* #variable= ") && proof.starts_with("pseudo-Boolean proof version 3.0\n"));
-    let inequalities = model.lines().count() - 1;
-    assert!(
-        model.contains(&format!("#constraint= {inequalities}\n")) && proof.contains(&format!("\nf {inequalities};"))
-    );
-    assert!(proof.ends_with(";\nend pseudo-Boolean proof;\n"), "it has an end");
-    let few = [&asked("rings/paper-12.toml")[..], &["--certificate-budget", "16"]].concat();
-    let outcome = eeruf(&few);
-    assert_eq!(outcome.code, Some(1), "{}", outcome.err);
-    assert!(outcome.err.contains("not written: the proof has more than 16 nodes"), "{}", outcome.err);
-}
-
 // A proof that is given too few nodes certifies a lower bound and says what a longer one would.
 #[test]
 fn short_proof_certifies_a_lower_bound() {

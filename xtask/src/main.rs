@@ -27,7 +27,6 @@ mod site;
 mod steps;
 mod test;
 mod toolchain;
-mod veripb;
 
 use std::process::ExitCode;
 
@@ -107,8 +106,6 @@ enum Verb {
     },
     /// Certify the rings of the tables, and have the checker judge them and those of 20,000 tiny problems (minutes)
     Certificates(certificates::Plan),
-    /// Build the proof checker VeriPB, and have it judge the proofs of the table and of rings/ (minutes)
-    Veripb,
     /// Pack the crates that are published, and build and test each from its tarball, in a folder of its own (minutes)
     Package,
     /// List the public items of eeruf-core and eeruf-hc-sr04 in target/api, and count names and types
@@ -160,7 +157,6 @@ fn main() -> ExitCode {
             None => printed::check(&printed::documents()?, printed::Which::All),
         }),
         Verb::Certificates(plan) => certificates::run_all(&plan, &mut steps),
-        Verb::Veripb => veripb::run_all(&mut steps),
         Verb::Package => package::package(&mut steps),
         Verb::Api => one(&mut steps, "public items", api::api),
         Verb::Dist(plan) => dist::dist(&plan, &mut steps),

@@ -5,7 +5,6 @@ use core::fmt;
 use eeruf_core::Micros;
 use eeruf_period::PeriodProblem;
 use eeruf_period::engine::prove::{NoProof, prove_what_can_be};
-use eeruf_period::engine::veripb::{self, VeriPb};
 use eeruf_sim::AnySchedule;
 
 use crate::find::RingDesign;
@@ -31,18 +30,6 @@ pub fn certify(
     go_on: impl FnMut(usize) -> bool,
 ) -> Result<String, NoProof> {
     prove_what_can_be(&problem.claim(schedule, bound), budget, go_on)
-}
-
-/// The same as a model and a proof for VeriPB, of the period one tick below the bound.
-///
-/// # Errors
-/// The proof has more than `budget` nodes, `go_on` says no, or the claim is wrong.
-pub fn prove_to_veripb(
-    design: &RingDesign,
-    budget: usize,
-    go_on: impl FnMut(usize) -> bool,
-) -> Result<VeriPb, NoProof> {
-    veripb::prove(&design.bounding.problem().claim(&design.schedule, design.bound), budget, go_on)
 }
 
 /// The claim that a certificate states, and the size of its proof. Nothing is checked: `checker/check_period.py` does.

@@ -14,7 +14,6 @@
 //! | `search`, `shortest`, `spare` | one period, the shortest, the schedule with most to spare |
 //! | `prove` | certificates |
 //! | `orders`, `linear`, `reals` | the shortest period over the reals |
-//! | `veripb` | the same claim as a model and a proof for VeriPB, a checker that others wrote |
 //!
 //! # The engine and the checker
 //!
@@ -50,7 +49,6 @@ pub mod shortest;
 pub mod spare;
 mod state;
 mod symmetry;
-pub mod veripb;
 
 pub use orders::Orders;
 pub use problem::{Claim, MAX_NUMBER, MAX_SENSORS, Problem};

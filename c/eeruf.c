@@ -958,7 +958,8 @@ static void compare(EerufRing *ring, uint8_t x, int32_t change_us, EerufReading 
         const uint32_t echo_us = reading->t_echo_us;
         const bool agreed = agrees(filter, t_delta_of(ring, x), echo_us, change_us);
 #if EERUF_FIRINGS > 1
-        if (agreed && ring->watched != 0 && echo_us != EERUF_NO_ECHO)
+        /* The proof is about readings that differ by no more than t_delta. */
+        if (agreed && (ring->watched != 0 || change_us != 0) && echo_us != EERUF_NO_ECHO)
             reading->explained_by = explanation(ring, x, filter->known_us, echo_us);
 #endif
         reading->kind = push(filter, ring->consecutive, echo_us, agreed, reading->explained_by != EERUF_BY_NOTHING);

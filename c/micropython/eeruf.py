@@ -399,7 +399,8 @@ class Ring:
                 near = echo is None and previous is None
             else:
                 near = abs(echo - previous - change_us) <= self.t_delta_us
-                if near and self._watched:
+                # The proof is about readings that differ by no more than t_delta_us.
+                if near and (self._watched or change_us):
                     explained_by = self._explanation(x, previous, echo)
             if sensor.score and near and explained_by is None:
                 sensor.score = min(sensor.score + 1, self.consecutive)

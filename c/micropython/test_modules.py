@@ -178,6 +178,27 @@ def ambiguous():
             raise AssertionError("after a restart: %r" % (reading,))
 
 
+def odometry():
+    """On time too, crosstalk that changes as odometry expects is not accepted, and a wall that does is."""
+    fires = [[2000, 22000, 42000], [0, 22000, 43000]]
+    for path_us, emitter in ((45000, 1), (9000, 2)):
+        ring, period, echo_us, change_us, kinds = Ring(Schedule(62000, fires).verify(387), 0), 0, None, [0, 0, 0], []
+        while len(kinds) < 30:
+            now = ring.deadline()
+            event = ring.poll(now, change_us)
+            if event and event[0] == 0 and event[1] == 2:
+                # The wall moves by 250 us a period.
+                own = 62000 * period + fires[period % 2][emitter] + path_us - (250 * period if emitter == 2 else 0) - now
+                change_us[2] = 0 if echo_us is None else own - echo_us
+                echo_us = own
+                ring.echo(2, now + own)
+            elif event and event[0] == 1 and event[SENSOR] == 2:
+                kinds.append(event[KIND])
+            period += event is not None and event[0] == 2
+        if set(kinds[1:]) != {AMBIGUOUS if emitter == 1 else ACCEPTED}:
+            raise AssertionError("odometry, sound of sensor %d: %r" % (emitter, kinds))
+
+
 def timed():
     """Hardware fires eight modules at the instants of `upcoming` and reports pulses, while the loop takes up to 5 ms, and
     longer where it has a reading: at least 95 % of own walls are accepted, one cut wire and one free space aside."""
@@ -319,6 +340,7 @@ def main():
     triggers()
     silence()
     ambiguous()
+    odometry()
     timed()
     flow()
     if slow(240) > 5 or slow(1200) < 85:

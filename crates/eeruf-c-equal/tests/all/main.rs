@@ -4,6 +4,7 @@
 
 mod constants;
 mod line_faults;
+mod odometry;
 mod parts;
 mod serial;
 mod settings;

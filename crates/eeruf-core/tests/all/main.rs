@@ -22,6 +22,7 @@ mod hopping_settings;
 mod immediate;
 mod lateness;
 mod listening;
+mod odometry;
 mod pairs;
 mod phases;
 mod plans_and_judges;

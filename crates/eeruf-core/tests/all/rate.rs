@@ -1,7 +1,7 @@
 //! The filter with a rate against the plainest worlds there are: one wall, and one path from another sensor, that come
 //! nearer or go away.
 
-use eeruf_core::tables::TABLE_I_D;
+use eeruf_core::tables::{PAPER_12, TABLE_I_D};
 use eeruf_core::{
     Instant, Layout, Micros, Phase, ReadingKind, Requirements, Ring, RingConfig, RingEvent, Schedule,
     judge::{Agreement, Judge, RateFilter},
@@ -167,19 +167,27 @@ fn the_age_of_what_was_once_accepted_stays_below_never() {
     assert_eq!((ages[0], ages[65_000], ages[69_999]), (Some(1), Some(65_001), Some(65_534)));
 }
 
-/// The readings of sensor 7, and those of them accepted, in 60 seconds of firings each up to `late` us late. It hears
-/// one path of sound, from `emitter`, whose length begins at `length` us and grows by `rate` us/s.
-fn heard_of_one_path<J: Judge>(judge: J, emitter: u8, late: u32, length: u32, rate: i64, seed: u32) -> (u32, u32) {
+/// A path of sound to sensor 7 that begins at `length` us, grows by `rate` us/s, and is longer or shorter by `wobble` us
+/// in turn.
+struct Path {
+    emitter: u8,
+    length: u32,
+    rate: i64,
+    wobble: i64,
+}
+
+/// The readings of sensor 7, and those of them accepted, in ten seconds of firings each up to `late` us late.
+fn heard_of_one_path<J: Judge>(judge: J, late: u32, path: &Path, seed: u32) -> (u32, u32) {
     let config = RingConfig::new().with_window(Micros::from_millis(30)).with_audible(Micros::from_millis(100));
     let begin = Instant::from_micros(0);
-    let plan = ScheduledFiring::new(&TABLE_I_D, begin);
+    let plan = ScheduledFiring::verified(&PAPER_12, begin);
     let mut ring = Ring::<_, J, 12, 1, 5>::judged_by(plan, judge, config, begin).unwrap();
     let mut random = Random(u64::from(seed));
     let mut arrivals: Vec<Instant> = Vec::new();
-    let (mut readings, mut accepted) = (0, 0);
+    let (mut readings, mut accepted, mut sign) = (0, 0, 1);
     loop {
-        let due = ring.next_deadline();
-        if due.has_reached(Instant::from_micros(60_000_000)) {
+        let due = arrivals.iter().fold(ring.next_deadline(), |due, &at| if due.has_reached(at) { at } else { due });
+        if due.has_reached(Instant::from_micros(10_000_000)) {
             return (readings, accepted);
         }
         let now = due + Micros::new(random.up_to(late));
@@ -192,9 +200,10 @@ fn heard_of_one_path<J: Judge>(judge: J, emitter: u8, late: u32, length: u32, ra
         });
         while let Some(event) = ring.poll(now) {
             match event {
-                RingEvent::Fire { sensor, .. } if sensor == emitter => {
-                    let longer = rate * i64::from(now.as_micros()) / 1_000_000;
-                    arrivals.push(now + Micros::new((i64::from(length) + longer) as u32));
+                RingEvent::Fire { sensor, .. } if sensor == path.emitter => {
+                    let longer = path.rate * i64::from(now.as_micros()) / 1_000_000 + sign * path.wobble;
+                    arrivals.push(now + Micros::new((i64::from(path.length) + longer) as u32));
+                    sign = -sign;
                 }
                 RingEvent::Reading(reading) if reading.sensor == 7 => {
                     readings += 1;
@@ -206,18 +215,22 @@ fn heard_of_one_path<J: Judge>(judge: J, emitter: u8, late: u32, length: u32, ra
     }
 }
 
-// A ring with a rate accepts no path of anyone else however late firings are.
+// A ring with a rate accepts no path of anyone else however late firings are, nor on time one that changes fast and is
+// off its line by P.
 #[test]
 fn rate_ring_accepts_no_foreign_path() {
     let filter = || RateFilter::<12>::new(Micros::new(999), 20_000).unwrap();
     let (mut alone, mut readings) = (0, 0);
-    for (seed, late) in (0..110).zip([0, 500, 1_000, 3_000, 10_000].into_iter().cycle()) {
+    let changes = [(-6_000, 498), (-6_000, -498), (6_000, 498), (0, 0), (-4_000, 249), (270, 0)];
+    for seed in 0..330 {
         let emitter = [0, 1, 2, 3, 4, 5, 6, 8, 9, 10, 11][seed as usize % 11];
-        let (length, rate) = (20_000 + 400 * seed, i64::from(seed % 7) * 90 - 270);
-        let (heard, accepted) = heard_of_one_path(filter(), emitter, late, length, rate, seed);
-        assert_eq!(accepted, 0, "{emitter} late by up to {late} us, {length} us and {rate} us/s");
+        let late = [0, 500, 1_000, 3_000, 10_000][seed as usize / 11 % 5];
+        let (rate, wobble) = changes[seed as usize / 55];
+        let path = Path { emitter, length: 20_000 + 40 * seed + if rate < 0 { 60_000 } else { 0 }, rate, wobble };
+        let (heard, accepted) = heard_of_one_path(filter(), late, &path, seed);
+        assert_eq!(accepted, 0, "{emitter} late by up to {late} us, {rate} us/s, {wobble} us off");
         readings += heard;
-        alone += heard_of_one_path(Agreement(filter()), emitter, late, length, rate, seed).1;
+        alone += heard_of_one_path(Agreement(filter()), late, &path, seed).1;
     }
     assert!(readings > 20_000 && alone > 20, "{readings} readings, {alone} accepted by agreement alone");
 }
@@ -226,6 +239,7 @@ fn rate_ring_accepts_no_foreign_path() {
 fn a_ring_with_a_rate_accepts_a_wall_that_comes_nearer() {
     let filter = RateFilter::<12>::new(Micros::new(400), 20_000).unwrap();
     // At half a metre a second its echo comes 2.9 ms sooner each second.
-    let (readings, accepted) = heard_of_one_path(filter, 7, 0, 22_000, -300, 1);
-    assert!(readings > 500 && accepted > readings * 9 / 10, "{accepted} of {readings}");
+    let wall = Path { emitter: 7, length: 28_000, rate: -2_900, wobble: 0 };
+    let (readings, accepted) = heard_of_one_path(filter, 0, &wall, 1);
+    assert!(readings > 80 && accepted > readings * 9 / 10, "{accepted} of {readings}");
 }

@@ -114,6 +114,9 @@ fn run_paths(table: &Table, others: &[VerifiedSchedule<ROOM>], random: &mut Rand
         operations: [0, 20, 200][random.up_to(2) as usize],
         fired: [0, 1, 5][random.up_to(2) as usize],
         clock_steps: [0, 50][random.up_to(1) as usize],
+        // To 3 m/s towards a wall or from it; exact, noisy, and wrong.
+        expected: [0, i64::from(random.up_to(36_000)) - 18_000][random.up_to(1) as usize],
+        noise: [0, 0, 100, 1500][random.up_to(3) as usize],
     };
     let sound = Sound { t_delta: t_delta.into(), path_change: path_change.into(), audible: audible.into() };
     World::new(ring.unwrap(), start, heard, course, sound, random.next(), others).run(compared)
@@ -168,7 +171,7 @@ fn walls_that_nothing_explains_are_accepted() {
                 .with_path_change(Micros::new(path_change));
             let ring = Ring::unverified(&table.schedule, config, Instant::from_micros(0)).unwrap();
             let heard = walls(table.schedule.sensors(), window, &mut random);
-            let course = Course { late, handling: 0, operations: 0, fired: 0, clock_steps: 0 };
+            let course = Course { late, ..Course::PUNCTUAL };
             let sound = Sound { t_delta: t_delta.into(), path_change: path_change.into(), audible: audible.into() };
             let counts = World::new(ring, 0, heard, course, sound, random.next(), &[]).run(4000);
             for count in counts {

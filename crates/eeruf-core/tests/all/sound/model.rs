@@ -49,14 +49,15 @@ impl Model {
         self.sensors[usize::from(sensor)].last = None;
     }
 
-    /// Takes in a reading of the sensor's last firing. `None` if it has no echo, nothing before it, or does not agree.
-    pub(super) fn read(&mut self, reading: &Reading, sound: Sound) -> Option<Compared> {
+    /// Takes in a reading of the sensor's last firing, and the change that odometry expects. `None` if it has no echo,
+    /// nothing before it, or does not agree.
+    pub(super) fn read(&mut self, reading: &Reading, sound: Sound, change: i32) -> Option<Compared> {
         let y = usize::from(reading.sensor);
         let f2 = *self.sensors[y].fired.last()?;
         let now = reading.t_echo.map(|echo| (f2, f2 + u64::from(echo.as_micros())));
         let before = std::mem::replace(&mut self.sensors[y].last, now);
         let ((f1, h1), (f2, h2)) = (before?, now?);
-        if (h2 - f2).abs_diff(h1 - f1) > sound.t_delta {
+        if ((h2 - f2) as i64).abs_diff((h1 - f1) as i64 + i64::from(change)) > sound.t_delta {
             return None;
         }
         let audible = |at: u64, heard: u64| at <= heard && heard - at <= sound.audible;

@@ -36,6 +36,15 @@ pub(super) struct Course {
     pub(super) fired: u32,
     /// One of this many events is followed by a step back of the clock; 0 for never.
     pub(super) clock_steps: u32,
+    /// By how much odometry expects an echo to change, in microseconds a second, and by how much that is wrong at most.
+    pub(super) expected: i64,
+    pub(super) noise: u32,
+}
+
+impl Course {
+    /// Polls on time, by a robot that stands.
+    pub(super) const PUNCTUAL: Self =
+        Self { late: 0, handling: 0, operations: 0, fired: 0, clock_steps: 0, expected: 0, noise: 0 };
 }
 
 /// Counts of the readings.
@@ -69,6 +78,8 @@ pub(super) struct World<'s> {
     /// Echo time of each sensor's last reading, which a foreign path tries to meet again.
     last_echo: Vec<Option<u32>>,
     last_fired: Vec<u64>,
+    /// The change that odometry expects of each sensor's reading.
+    changes: Vec<i32>,
     stepped_at: u64,
     counts: Vec<Count>,
     initial: (Micros, Micros),
@@ -102,6 +113,7 @@ impl<'s> World<'s> {
             corrections: vec![],
             last_echo: vec![None; sensors],
             last_fired: vec![0; sensors],
+            changes: vec![0; sensors],
             stepped_at: start,
             counts: vec![Count::default(); sensors],
             initial,
@@ -138,7 +150,7 @@ impl<'s> World<'s> {
         let now = self.now;
         self.tell_corrections(|at, _| at <= now);
         self.deliver();
-        match self.ring.poll(self.clock(self.now)) {
+        match self.ring.poll_expecting(self.clock(self.now), |sensor| self.changes[usize::from(sensor)]) {
             Some(RingEvent::Fire { sensor, .. }) => self.fire(sensor),
             Some(RingEvent::Reading(reading)) => self.read(&reading),
             Some(RingEvent::PeriodEnded(_)) | None => {}
@@ -192,6 +204,9 @@ impl<'s> World<'s> {
             let now = self.now;
             self.tell_corrections(|at, _| at <= now);
         }
+        let since = at - self.last_fired[usize::from(sensor)].min(at);
+        let noise = self.random.up_to(2 * self.course.noise) as i32 - self.course.noise as i32;
+        self.changes[usize::from(sensor)] = (self.course.expected * since as i64 / 1_000_000) as i32 + noise;
         self.last_fired[usize::from(sensor)] = at;
         self.model.fired(sensor, at);
         for receiver in 0..self.heard.len() {
@@ -210,14 +225,15 @@ impl<'s> World<'s> {
     }
 
     /// The length of a path, which never changes by more than it may: such that the receiver reads what it read before,
-    /// if that can be.
+    /// or what odometry expects after that, if that can be.
     fn length(&mut self, receiver: usize, least: u32, at: u64) -> u32 {
         // A step of the clock between the two sounds changes what the ring sees of it as well.
         let steps = if self.course.clock_steps > 0 { STEPS } else { 0 };
         let most = self.sound.path_change as u32 - steps;
         let drawn = least + self.random.up_to(most);
         let Some(last) = self.last_echo[receiver] else { return drawn };
-        let wanted = (self.last_fired[receiver] + u64::from(last)).checked_sub(at);
+        let expected = (self.last_fired[receiver] + u64::from(last)).checked_add_signed(self.changes[receiver].into());
+        let wanted = expected.and_then(|expected| expected.checked_sub(at));
         match wanted {
             Some(wanted) if self.random.up_to(7) > 0 => (wanted.min(u64::from(least + most)) as u32).max(least),
             _ => drawn,
@@ -234,7 +250,7 @@ impl<'s> World<'s> {
             // The ring remembers nothing from before.
             self.model.forget(reading.sensor);
         }
-        let seen = self.model.read(reading, self.sound);
+        let seen = self.model.read(reading, self.sound, self.changes[y]);
         let accepted = reading.kind == ReadingKind::Accepted;
         count.compared += u64::from(reading.previous.is_some() && reading.t_echo.is_some());
         count.accepted += u64::from(accepted);

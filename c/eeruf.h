@@ -214,7 +214,8 @@ typedef struct EerufFilter {
 #define EERUF_FILTER {EERUF_NO_ECHO, EERUF_NEVER, 0}
 
 /* Takes in one firing: its echo below 2^31 us, or EERUF_NO_ECHO. `consecutive` readings, 2 to 8, must each be within
-   `t_delta_us` of the one before, after taking off the change that motion lets expect (-2 v dt / c). */
+   `t_delta_us` of the one before, after taking off the change that motion lets expect (-2 v dt / c): with one it accepts
+   crosstalk of any schedule, since it does not know what was fired, as a ring does. */
 EerufStatus eeruf_filter_push(EerufFilter *filter, uint32_t t_delta_us, uint8_t consecutive, uint32_t t_echo_us,
                               int32_t expected_change_us, EerufReading *reading);
 EerufStatus eeruf_filter_forget(EerufFilter *filter); /* compare the next reading with nothing; the age goes on */
@@ -299,7 +300,7 @@ EerufStatus eeruf_ring_init_unverified(EerufRing *ring, size_t ring_size, EerufS
    that shifts crosstalk so that it could explain a reading, the reading is ambiguous. */
 EerufStatus eeruf_ring_poll(EerufRing *ring, uint32_t now_us, EerufEvent *event);
 /* As eeruf_ring_poll for a robot that moves: what a good reading of each sensor should have changed by since its firing
-   before, one number for each sensor, or null. */
+   before, one number for each sensor, or null. Where it is not 0 the ring asks what explains a reading on time too. */
 EerufStatus eeruf_ring_poll_expecting(EerufRing *ring, uint32_t now_us, const int32_t *change_us, EerufEvent *event);
 /* When to poll next; 0 for a ring that is not initialised. */
 uint32_t eeruf_ring_deadline(const EerufRing *ring);

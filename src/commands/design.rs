@@ -196,8 +196,6 @@ struct PeriodJson {
     reason: Option<String>,
 }
 
-/// Nodes for the same ring with odometry, which is a remark.
-const STANDING_BUDGET: u64 = 200_000;
 /// Default budget of nodes of a search.
 const BUDGET: u64 = 50_000_000;
 
@@ -237,7 +235,6 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     let certificate = args.certificate.as_ref().map(prove);
     let real = over_reals(args, &design, &mut watch);
     watch.forget_interrupt();
-    let still = args.form().is_none().then(|| standing(&spec, &search)).flatten();
     let judges = !args.period_only && matches!(args.form(), None | Some(Form::Json));
     let rooms = judges.then(|| rooms::judged(&args.in_rooms, &spec, Some(&design), &mut watch)).transpose()?;
     // A schedule file holds a table, which flow has not.
@@ -301,7 +298,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
         None => {
             let name = args.file.display().to_string();
             let judged = rooms.map_or_else(String::new, |rooms| describe_rooms(&name, &rooms));
-            tell(judged + &describe(&name, &spec, &design, real.as_ref(), still.as_ref(), seconds))?;
+            tell(judged + &describe(&name, &spec, &design, real.as_ref(), seconds))?;
         }
     }
     Ok(certified)
@@ -382,14 +379,6 @@ fn curve_of(args: &Args, spec: &RingSpec, need: Need) -> Result<Answer, InputErr
     let text = || describe_curve(&args.file.display().to_string(), spec, need, &points, seconds);
     show(args.json, || CurveJson::new(need, &points, seconds), text)?;
     Ok(Answer::Yes)
-}
-
-/// The design of a ring that moves, for firmware that knows by how much each reading changes.
-fn standing(spec: &RingSpec, search: &Search) -> Option<RingDesign> {
-    spec.speed_mm_s.filter(|&speed| speed > 0)?;
-    let still = RingSpec { speed_mm_s: None, ..spec.clone() };
-    let search = Search { budget: search.budget.min(STANDING_BUDGET), what_if: false, atlas: search.atlas };
-    still.shortest(&search, &mut ()).ok()?.ok()
 }
 
 /// Cost of the tick, where it is printed or certified.

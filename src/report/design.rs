@@ -16,7 +16,6 @@ pub(crate) fn describe(
     spec: &RingSpec,
     design: &RingDesign,
     real: Option<&RealPeriod>,
-    still: Option<&RingDesign>,
     seconds: f64,
 ) -> String {
     let RingDesign { schedule, found, to_spare, what_if, .. } = design;
@@ -91,17 +90,6 @@ pub(crate) fn describe(
         format!("{:.2} m/s", f64::from(speed) / 1000.0),
         format!("before good readings differ by more than t_delta ({} at most between firings)", schedule.max_refire()),
     ]);
-    if let Some(still) = still {
-        let needed = still.t_delta;
-        table.add_row([
-            "with odometry".to_owned(),
-            still.schedule.period().to_string(),
-            format!(
-                "where the firmware gives each reading's expected change: t_delta {needed}, {}",
-                as_range(spec, needed)
-            ),
-        ]);
-    }
     let rate = |period: f64| 1e6 / period;
     let us = f64::from(period.as_micros());
     table.add_row(["firings".to_owned(), format!("{:.1} a second", rate(us)), "of each sensor".to_owned()]);

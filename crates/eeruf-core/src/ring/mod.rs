@@ -248,7 +248,9 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
     }
 
     /// As [`poll`](Self::poll), for a robot that moves: `expected_change_us` is asked for the change in microseconds
-    /// that a good reading of a sensor should show since its firing before (see [`EchoFilter::push_echoes`]).
+    /// that a good reading of a sensor should show since its firing before (see [`EchoFilter::push_echoes`]). Readings
+    /// for which it is not 0 are asked about on time too, and some walls of a fast robot are
+    /// [`Ambiguous`](ReadingKind::Ambiguous): it accepts no more crosstalk, and does not let the robot drive faster.
     ///
     /// [`EchoFilter::push_echoes`]: crate::EchoFilter::push_echoes
     #[inline]

@@ -41,14 +41,15 @@
 #define EERUF_HOPPING 1
 #endif
 
-/* Firings that a ring by a table remembers of each sensor, 4 bytes each: 1 to 32, the same for library and program.
+/* Firings that a ring by a table remembers of each sensor, 4 bytes each: 2 to 32, the same for library and program.
    Four suffice where sound is audible for no longer than a period; readings that sound of a forgotten firing might
-   explain are ambiguous. With 1 agreement alone decides, and crosstalk that repeats is accepted: a baseline. */
-#ifndef EERUF_FIRINGS
+   explain are ambiguous. With -DEERUF_AGREEMENT_ALONE no ring asks, and crosstalk that repeats is accepted: a baseline. */
+#ifdef EERUF_AGREEMENT_ALONE
+#define EERUF_FIRINGS 1
+#elif !defined(EERUF_FIRINGS)
 #define EERUF_FIRINGS 4
-#endif
-#if EERUF_FIRINGS < 1 || EERUF_FIRINGS > 32
-#error "EERUF_FIRINGS: expected 1 to 32"
+#elif EERUF_FIRINGS < 2 || EERUF_FIRINGS > 32
+#error "EERUF_FIRINGS: expected 2 to 32, likely meant: -DEERUF_AGREEMENT_ALONE, a baseline that accepts crosstalk"
 #endif
 
 /* Schedules lie in flash: on an AVR that has its own address space, which PROGMEM names. -DEERUF_SCHEDULE_IN_RAM for

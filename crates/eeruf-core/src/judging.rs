@@ -52,26 +52,47 @@ impl Heard<'_> {
     }
 }
 
-/// A ring's knowledge of the sounds that a sensor may have heard.
+/// The answer to what explains readings that agree. No `Option`, so that what is not known cannot pass for "nothing".
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[must_use]
+pub enum Explained {
+    /// No firing explains them.
+    ByNothing,
+    /// This firing explains them, or a forgotten one may.
+    By(Explanation),
+}
+
+impl Explained {
+    /// The reason why they are [`Ambiguous`](ReadingKind::Ambiguous), if they are.
+    pub const fn reason(self) -> Option<Explanation> {
+        match self {
+            Self::ByNothing => None,
+            Self::By(explanation) => Some(explanation),
+        }
+    }
+}
+
+/// A ring's knowledge of the sounds that a sensor may have heard. A judge that asks is not compiled in a ring that
+/// remembers fewer firings of each sensor than it asks about.
 pub trait Sounds {
     /// The firing whose sound could be both the echo that the sensor heard `first` after the firing before its last one
     /// and the one that it heard `second` after its last, by a path that changes by no more than P in between.
-    fn explain(&self, first: Micros, second: Micros) -> Option<Explanation>;
+    fn explain(&self, first: Micros, second: Micros) -> Explained;
     /// The same of the echoes of its last three firings, earliest first, by a path that changes at a constant rate: its
     /// length in the second is within P of the line between the others.
-    fn explain_line(&self, echoes: [Micros; 3]) -> Option<Explanation>;
+    fn explain_line(&self, echoes: [Micros; 3]) -> Explained;
 }
 
 /// No sound explains anything.
 pub(crate) struct NoSounds;
 
 impl Sounds for NoSounds {
-    fn explain(&self, _first: Micros, _second: Micros) -> Option<Explanation> {
-        None
+    fn explain(&self, _first: Micros, _second: Micros) -> Explained {
+        Explained::ByNothing
     }
 
-    fn explain_line(&self, _echoes: [Micros; 3]) -> Option<Explanation> {
-        None
+    fn explain_line(&self, _echoes: [Micros; 3]) -> Explained {
+        Explained::ByNothing
     }
 }
 

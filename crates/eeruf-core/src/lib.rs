@@ -103,7 +103,7 @@ pub use verified::VerifiedSchedule;
 /// Judges of readings: the trait [`Judge`](judge::Judge), and those beside [`EchoFilter`].
 pub mod judge {
     pub use crate::filter::RateFilter;
-    pub use crate::judging::{Agreement, Firing, Heard, Judge, Sounds};
+    pub use crate::judging::{Agreement, Explained, Firing, Heard, Judge, Sounds};
     pub use crate::reading::{Explanation, Verdict};
     pub use crate::ring::AgreementRing;
     pub use crate::tracker::{EchoTracker, TrackerSettings};

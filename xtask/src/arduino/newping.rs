@@ -29,13 +29,13 @@ const ROWS: [Row; 4] = [
         name: "eeruf's rate, constant waits, every echo",
         sketch: "Constant",
         text: EERUF,
-        defines: &["-DCONSTANT=1", "-DEVERY=1", "-DEERUF_FIRINGS=1"],
+        defines: &["-DCONSTANT=1", "-DEVERY=1", "-DEERUF_AGREEMENT_ALONE"],
     },
     Row {
         name: "eeruf's rate, constant waits, two agree",
         sketch: "ConstantCompared",
         text: EERUF,
-        defines: &["-DCONSTANT=1", "-DEVERY=0", "-DEERUF_FIRINGS=1"],
+        defines: &["-DCONSTANT=1", "-DEVERY=0", "-DEERUF_AGREEMENT_ALONE"],
     },
     Row { name: "eeruf", sketch: "Eeruf", text: EERUF, defines: &["-DCONSTANT=0", "-DEVERY=0"] },
 ];

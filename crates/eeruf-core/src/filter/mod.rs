@@ -20,7 +20,7 @@ mod rate;
 mod tests;
 mod tracker;
 
-use crate::judging::{Heard, Judge, Sounds};
+use crate::judging::{Explained, Heard, Judge, Sounds};
 use crate::reading::{ReadingKind, Verdict};
 use crate::ring_error::RingError;
 use crate::sensor_error::SensorError;
@@ -102,7 +102,7 @@ impl<const K: usize, const E: usize> EchoFilter<K, E> {
             // The longest duration stands for silence.
             insert(&mut earliest, (*echo).min(LATEST));
         }
-        Ok(tracker.push(self.tolerance, heard(&earliest), expected_change_us, |_, _| None))
+        Ok(tracker.push(self.tolerance, heard(&earliest), expected_change_us, |_, _| Explained::ByNothing))
     }
 
     /// Forgets the readings of a sensor, so that its next one is compared with nothing. The age goes on.

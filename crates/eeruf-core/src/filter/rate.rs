@@ -148,7 +148,7 @@ impl Line {
                 if is_on_line([first, last, echo], [before, since], t_delta)
                     && may_change(echo, first, before + since) =>
             {
-                explained_by = sounds.explain_line([first, last, echo].map(Micros::new));
+                explained_by = sounds.explain_line([first, last, echo].map(Micros::new)).reason();
                 if explained_by.is_some() { ReadingKind::Ambiguous } else { ReadingKind::Accepted }
             }
             _ if may_change(echo, last, since) => ReadingKind::Repeated,

@@ -2,6 +2,7 @@
 
 extern crate std;
 use super::*;
+use crate::judging::Explained;
 use crate::reading::{Explanation, ReadingKind};
 use std::string::ToString;
 use std::vec::Vec;
@@ -121,8 +122,9 @@ fn kinds_explained<const E: usize>(consecutive: u8, explained_to: u32, firings: 
     let mut push = |us: &[u32]| {
         let mut echoes = [NO_ECHO; E];
         us.iter().for_each(|&echo| insert(&mut echoes, Micros::new(echo)));
-        let verdict = tracker
-            .push(agreement, heard(&echoes), 0, |_, echo| (echo <= explained_to).then_some(Explanation::Sensor(3)));
+        let verdict = tracker.push(agreement, heard(&echoes), 0, |_, echo| {
+            if echo <= explained_to { Explained::By(Explanation::Sensor(3)) } else { Explained::ByNothing }
+        });
         assert_eq!(verdict.explained_by.is_some(), verdict.kind == ReadingKind::Ambiguous, "{verdict:?}");
         verdict.kind
     };
@@ -155,8 +157,8 @@ fn a_corrected_firing_shifts_known_echoes() {
     let agreement = Tolerance::new(Micros::new(100), Consecutive::new(2).unwrap());
     for (later_us, kind) in [(500, ReadingKind::Accepted), (-500, ReadingKind::Rejected)] {
         let mut tracker = Tracker::<1>::NEW;
-        tracker.push(agreement, &[Micros::new(5500)], 0, |_, _| None);
+        tracker.push(agreement, &[Micros::new(5500)], 0, |_, _| Explained::ByNothing);
         tracker.shift(later_us);
-        assert_eq!(tracker.push(agreement, &[Micros::new(5000)], 0, |_, _| None).kind, kind);
+        assert_eq!(tracker.push(agreement, &[Micros::new(5000)], 0, |_, _| Explained::ByNothing).kind, kind);
     }
 }

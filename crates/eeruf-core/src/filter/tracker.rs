@@ -2,6 +2,7 @@
 
 use super::agreement::{Consecutive, Tolerance};
 use super::echoes::{NO_ECHO, echo_time, shift};
+use crate::judging::Explained;
 use crate::reading::{Explanation, ReadingKind, Verdict};
 use crate::time::Micros;
 
@@ -49,7 +50,7 @@ impl<const E: usize> Tracker<E> {
         tolerance: Tolerance,
         echoes: &[Micros],
         expected_change_us: i32,
-        mut explanation: impl FnMut(Micros, Micros) -> Option<Explanation>,
+        mut explanation: impl FnMut(Micros, Micros) -> Explained,
     ) -> Verdict {
         let mut latest = [NO_ECHO; E];
         for (slot, &echo) in latest.iter_mut().zip(echoes) {
@@ -78,7 +79,7 @@ impl<const E: usize> Tracker<E> {
                     continue;
                 }
                 if echo != NO_ECHO {
-                    if let Some(by) = explanation(previous, echo) {
+                    if let Explained::By(by) = explanation(previous, echo) {
                         if best_run == 1 && explained_by.is_none() {
                             (best, matched, explained_by) = (echo, previous, Some(by));
                         }

@@ -60,19 +60,21 @@ impl<const H: usize> Firings<H> {
         self.0[H - 1]
     }
 
-    /// The firing before the last one, if it is remembered.
-    pub(super) fn before(&self) -> Option<Instant> {
-        self.nth_last(1)
+    /// The last two firings, the later one first.
+    pub(super) fn last_two(&self) -> [Instant; 2] {
+        const { assert!(H > 1, "a judge that asks what explains two readings; expected H >= 2, or an AgreementRing") };
+        [self.0[0], self.0[1]]
     }
 
-    /// A firing, if it is remembered: 0 for the last one.
-    pub(super) fn nth_last(&self, number: usize) -> Option<Instant> {
-        self.0.get(number).copied()
+    /// The last three, the latest first.
+    pub(super) fn last_three(&self) -> [Instant; 3] {
+        const { assert!(H > 2, "a judge that asks what explains three readings; expected H >= 3") };
+        [self.0[0], self.0[1], self.0[2]]
     }
 
     /// Returns true if an instant is later than the firing before the last one, as far as that is known.
     pub(super) fn may_correct(&self, at: Instant) -> bool {
-        self.before().is_none_or(|before| at != before && at.has_reached(before))
+        self.0.get(1).is_none_or(|&before| at != before && at.has_reached(before))
     }
 
     /// Keeps old firings from coming round with the clock: to be called at least every four minutes. Returns whether

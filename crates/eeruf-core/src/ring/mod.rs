@@ -43,7 +43,17 @@ pub use events::{PeriodStats, Reading, RingEvent};
 /// schedule has no ambiguous readings. `docs/explanation/theory.md` section 2.1 has the proof and its limits.
 ///
 /// `H` is the number of firings that are remembered of each sensor, 4 bytes each. A reading that sound of a forgotten
-/// one might explain is ambiguous too; four suffice if sound is audible for no longer than a period.
+/// one might explain is ambiguous too; four suffice if sound is audible for no longer than a period. A judge that asks
+/// about two readings is not compiled with fewer than two:
+///
+/// ```compile_fail,E0080
+/// # use eeruf_core::{Instant, Ring, RingConfig, plan::ScheduledFiring, tables::PAPER_12};
+/// let now = Instant::from_micros(0);
+/// let plan = ScheduledFiring::verified(&PAPER_12, now);
+/// let mut ring = Ring::<_, _, 12, 1, 1>::remembering(plan, RingConfig::new(), now)?;
+/// ring.poll(now);
+/// # Ok::<(), eeruf_core::RingError>(())
+/// ```
 ///
 /// ```
 /// use eeruf_core::{Instant, Micros, ReadingKind, Ring, RingConfig, RingEvent, tables::PAPER_12};

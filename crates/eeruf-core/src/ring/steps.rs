@@ -6,7 +6,7 @@ use super::punctuality::PeriodLateness;
 use super::sensor::{Ended, LISTENING, READY, Sensor};
 use super::{NOBODY, PeriodStats, Reading, Ring, RingEvent};
 use crate::filter::heard;
-use crate::judging::{Heard, Judge, Sounds};
+use crate::judging::{Explained, Heard, Judge, Sounds};
 use crate::plan::Plan;
 use crate::reading::{Explanation, ReadingKind, Verdict};
 use crate::time::{Instant, Micros};
@@ -257,6 +257,9 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
     }
 }
 
+/// A firing that is not remembered may explain the readings.
+const UNKNOWN: Explained = Explained::By(Explanation::History);
+
 /// Memory of who fired when, for the reading of one sensor.
 struct Memory<'r, P, const E: usize, const H: usize> {
     receiver: u8,
@@ -270,12 +273,12 @@ struct Memory<'r, P, const E: usize, const H: usize> {
 
 impl<P: Plan, const E: usize, const H: usize> Sounds for Memory<'_, P, E, H> {
     #[inline(always)]
-    fn explain(&self, first: Micros, second: Micros) -> Option<Explanation> {
-        if self.on_time { None } else { self.explain_pair(first, second) }
+    fn explain(&self, first: Micros, second: Micros) -> Explained {
+        if self.on_time { Explained::ByNothing } else { self.explain_pair(first, second) }
     }
 
     #[inline(always)]
-    fn explain_line(&self, echoes: [Micros; 3]) -> Option<Explanation> {
+    fn explain_line(&self, echoes: [Micros; 3]) -> Explained {
         // On time too: a path that changes may be off the line by P.
         self.explain_three(echoes)
     }
@@ -283,21 +286,19 @@ impl<P: Plan, const E: usize, const H: usize> Sounds for Memory<'_, P, E, H> {
 
 impl<P: Plan, const E: usize, const H: usize> Memory<'_, P, E, H> {
     #[inline(never)]
-    fn explain_pair(&self, first: Micros, second: Micros) -> Option<Explanation> {
-        let own = self.sensors.get(usize::from(self.receiver))?;
-        let pair = self.pair([own.firings.before()? + first, own.fired() + second]);
+    fn explain_pair(&self, first: Micros, second: Micros) -> Explained {
+        let Some(own) = self.sensors.get(usize::from(self.receiver)) else { return UNKNOWN };
+        let [fired, fired_before] = own.firings.last_two();
+        let pair = self.pair([fired_before + first, fired + second]);
         self.ask(&pair, |firings, own| pair.explains(firings, own))
     }
 
     #[inline(never)]
-    fn explain_three(&self, [first, second, third]: [Micros; 3]) -> Option<Explanation> {
-        let own = &self.sensors.get(usize::from(self.receiver))?.firings;
-        let (Some(fired), Some(fired_before)) = (own.before(), own.nth_last(2)) else {
-            // The ring remembers too little to know.
-            return Some(Explanation::History);
-        };
+    fn explain_three(&self, [first, second, third]: [Micros; 3]) -> Explained {
+        let Some(own) = self.sensors.get(usize::from(self.receiver)) else { return UNKNOWN };
+        let [last, fired, fired_before] = own.firings.last_three();
         let pair = self.pair([fired_before + first, fired + second]);
-        let third = own.last() + third;
+        let third = last + third;
         self.ask(&pair, |firings, own| pair.explains_line(third, firings, own))
     }
 
@@ -308,18 +309,18 @@ impl<P: Plan, const E: usize, const H: usize> Memory<'_, P, E, H> {
 
     /// Asks of all sensors that the receiver can hear, itself among them, if their firings explain what it heard.
     #[inline(always)]
-    fn ask(&self, pair: &Pair, explain: impl Fn(&Firings<H>, bool) -> bool) -> Option<Explanation> {
+    fn ask(&self, pair: &Pair, explain: impl Fn(&Firings<H>, bool) -> bool) -> Explained {
         let sensors = self.sensors.get(..self.plan.sensors()).unwrap_or(self.sensors);
         // At most 64 sensors.
         for (x, sensor) in (0..).zip(sensors) {
             if self.plan.hears(self.receiver, x) && explain(&sensor.firings, x == self.receiver) {
-                return Some(Explanation::Sensor(x));
+                return Explained::By(Explanation::Sensor(x));
             }
         }
         let mut forgotten = pair.is_audible_from(self.known_from);
         for (x, sensor) in (0..).zip(sensors) {
             forgotten |= self.plan.hears(self.receiver, x) && pair.is_audible_from(sensor.firings.oldest());
         }
-        forgotten.then_some(Explanation::History)
+        if forgotten { UNKNOWN } else { Explained::ByNothing }
     }
 }

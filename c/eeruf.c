@@ -474,6 +474,7 @@ EerufStatus eeruf_filter_forget(EerufFilter *filter) {
 #define OUTSIDE 0x20u      /* its only edges so far came outside the window */
 #define STUCK 0x40u        /* its line was high when it was to fire */
 #define UNANSWERED 0x80u   /* nothing has shown yet that it listens: silence says nothing */
+#define NO_FAULT 0x01u     /* beside UNANSWERED in the ring: nor is it called a fault */
 
 /* Rings that hop in time fire otherwise than by a table. What is linked for all takes `hops` as a constant, so that
    nothing of the one kind is linked where only the other is polled; HOPS asks the ring. */
@@ -803,6 +804,7 @@ static void set_up(EerufRing *ring, const EerufSchedule *schedule, void *sensors
     ring->oldest = NOBODY;
     ring->emit_at_us = now_us;
     ring->consecutive = 2;
+    ring->unanswered = UNANSWERED | NO_FAULT;
     ring->known_from_us = now_us - LONG_AGO;
     for (x = 0; x < count_of_sensors; x++) {
         drop_firing(ring, x, now_us);
@@ -913,7 +915,7 @@ static void find_oldest(EerufRing *ring, uint32_t before) {
 
 static void fire(EerufRing *ring, uint8_t sensor, uint32_t now_us, uint16_t late_us, bool hops) {
     EerufSensor *fired = sensor_of(ring, sensor);
-    fired->flags = (uint8_t)(LISTENING | (ring->period & PERIOD) | ring->unanswered);
+    fired->flags = (uint8_t)(LISTENING | (ring->period & PERIOD) | (ring->unanswered & UNANSWERED));
 #if EERUF_FIRINGS > 1
     if (!hops) {
         uint8_t place;
@@ -939,6 +941,11 @@ static void fire(EerufRing *ring, uint8_t sensor, uint32_t now_us, uint16_t late
     }
 }
 
+/* The kind of silence without a witness. */
+static uint8_t unwitnessed(const EerufRing *ring) {
+    return ring->unanswered & NO_FAULT ? EERUF_READING_NO_ECHO : EERUF_READING_UNANSWERED;
+}
+
 /* Ends a firing and compares its reading, which has its echo time already, with the one before. */
 static void compare(EerufRing *ring, uint8_t x, int32_t change_us, EerufReading *reading) {
     EerufSensor *sensor = sensor_of(ring, x);
@@ -951,7 +958,7 @@ static void compare(EerufRing *ring, uint8_t x, int32_t change_us, EerufReading 
     } else if (flags & OUTSIDE) {
         reading->kind = EERUF_READING_TOO_EARLY;
     } else if ((flags & UNANSWERED) && reading->t_echo_us == EERUF_NO_ECHO) {
-        reading->kind = EERUF_READING_UNANSWERED;
+        reading->kind = unwitnessed(ring);
         forget(filter);
         reading->previous_us = EERUF_NO_ECHO;
     } else {
@@ -968,9 +975,9 @@ static void compare(EerufRing *ring, uint8_t x, int32_t change_us, EerufReading 
 }
 
 /* The kind of a reading that the tracker weighs. */
-static uint8_t kind_of_hop(uint8_t flags, bool silent) {
+static uint8_t kind_of_hop(const EerufRing *ring, uint8_t flags, bool silent) {
     if (flags & STUCK) return EERUF_READING_STUCK;
-    if ((flags & UNANSWERED) && silent) return EERUF_READING_UNANSWERED;
+    if ((flags & UNANSWERED) && silent) return unwitnessed(ring);
     return flags & OUTSIDE ? EERUF_READING_TOO_EARLY : EERUF_READING_FIRST;
 }
 
@@ -990,7 +997,7 @@ static void emit_reading(EerufRing *ring, uint8_t x, const int32_t *change_us, E
     reading->explained_by = EERUF_BY_NOTHING;
     sensor->echo_us = EERUF_NO_ECHO;
     if (flags & LISTENING) {
-        if (hops) reading->kind = kind_of_hop(flags, reading->t_echo_us == EERUF_NO_ECHO);
+        if (hops) reading->kind = kind_of_hop(ring, flags, reading->t_echo_us == EERUF_NO_ECHO);
         else compare(ring, x, change_us == NULL ? 0 : change_us[x], reading);
         sensor->flags = flags & PERIOD;
         if (ring->oldest == x) find_oldest(ring, sensor->fired_us[0]);
@@ -1250,10 +1257,13 @@ EerufStatus eeruf_ring_stuck(EerufRing *ring, uint8_t sensor) {
     return status;
 }
 
-EerufStatus eeruf_ring_expect_answers(EerufRing *ring) {
+EerufStatus eeruf_ring_set_silence(EerufRing *ring, uint8_t silence) {
     const EerufStatus status = is_ready(ring);
-    if (status == EERUF_OK) ring->unanswered = UNANSWERED;
-    return status;
+    if (status != EERUF_OK) return status;
+    if (silence > EERUF_SILENCE_TRUSTED) return EERUF_ERR_RANGE;
+    ring->unanswered = silence == EERUF_SILENCE_TRUSTED ? 0 : UNANSWERED;
+    if (silence != EERUF_SILENCE_NEEDS_ANSWER) ring->unanswered |= NO_FAULT;
+    return EERUF_OK;
 }
 
 static void note_answer(EerufSensor *sensor) {
@@ -1445,9 +1455,10 @@ EerufStatus eeruf_ring_set_audible(EerufRing *ring, uint32_t audible_us) {
 
 /* ---- The state before each sensor ---- */
 
-/* In one byte: the state, why nothing is known, and whether the last reading did not confirm it. */
+/* In one byte: the state, why nothing is known, whether the last reading was silence, and whether it did not confirm. */
 #define KNOWN 0x07u
 #define WHY_AT 3u
+#define SILENT 0x40u
 #define DOUBTED 0x80u
 
 const char *eeruf_state_name(uint8_t kind) {
@@ -1493,11 +1504,14 @@ static uint8_t state_by(const EerufReading *reading) {
 }
 
 static void watch_reading(EerufWatched *sensor, const EerufReading *reading, uint32_t now_us) {
-    const uint8_t known = sensor->state & KNOWN, state = state_by(reading);
+    const uint8_t known = sensor->state & KNOWN;
+    uint8_t state = state_by(reading);
     if (state == NOBODY) return;
+    if (reading->kind == EERUF_READING_NO_ECHO)
+        state = (uint8_t)((sensor->state & SILENT ? EERUF_WHY_NO_WITNESS << WHY_AT : state) | SILENT);
     if ((state & KNOWN) == EERUF_STATE_UNKNOWN && sensor->state == EERUF_STATE_OBSTACLE) {
         /* One echo may be missed, or another's heard. */
-        sensor->state |= DOUBTED;
+        sensor->state = (uint8_t)(sensor->state | DOUBTED | (state & SILENT));
         return;
     }
     sensor->state = state;
@@ -1529,7 +1543,7 @@ EerufStatus eeruf_watch_state(const EerufWatch *watch, uint8_t sensor, uint32_t 
     if (sensor >= watch->count) return EERUF_ERR_SENSOR;
     watched = &watch->sensors[sensor];
     state->kind = watched->state & KNOWN;
-    state->why = (uint8_t)((watched->state & ~DOUBTED) >> WHY_AT);
+    state->why = (uint8_t)((watched->state & ~(DOUBTED | SILENT)) >> WHY_AT);
     state->explained_by = state->why == EERUF_WHY_AMBIGUOUS ? watched->explained_by : EERUF_BY_NOTHING;
     state->age_us = shorter(now_us - watched->at_us, HALF_TURN);
     state->t_echo_us = state->kind == EERUF_STATE_OBSTACLE ? watched->t_echo_us : EERUF_NO_ECHO;
@@ -1789,7 +1803,7 @@ EerufStatus eeruf_hc_sr04_init(EerufHcSr04 *modules, size_t modules_size, EerufL
     modules->settings = settings;
     modules->ready = READY;
     /* A line that does not rise is no free space. */
-    return eeruf_ring_expect_answers(ring);
+    return eeruf_ring_set_silence(ring, EERUF_SILENCE_NEEDS_ANSWER);
 }
 
 /* The health by the last firing, before the next trigger. */
@@ -2877,15 +2891,18 @@ EerufStatus eeruf_hopping_poll(EerufHoppingRing *hopping, uint32_t now_us, const
     event->phase = hopper->phase;
     if (reading->kind != EERUF_READING_LATE) {
         const int32_t change = change_us == NULL ? 0 : change_us[event->sensor];
+        const bool unwitnessed = reading->kind == EERUF_READING_NO_ECHO;
+        const bool weighs = unwitnessed || reading->kind == EERUF_READING_FIRST;
         reading->previous_us = EERUF_NO_ECHO;
-        if (reading->kind == EERUF_READING_FIRST)
+        if (weighs)
             learn(hopper, reading->t_echo_us, change, t_delta_of(&hopping->ring, event->sensor));
         else hopper->last_us = EERUF_NO_ECHO;
         shift_tracks(hopper, change);
-        if (reading->kind == EERUF_READING_FIRST)
-            weigh(hopping, event->sensor, was_steady(hopping, hopper), change, reading);
+        if (weighs) weigh(hopping, event->sensor, was_steady(hopping, hopper), change, reading);
         end_weighing(&sensor_of(&hopping->ring, event->sensor)->filter, reading);
         hopping->judged(hopping, event->sensor, reading, change);
+        /* Without a witness it contradicts echoes, and is not reported as free space. */
+        if (unwitnessed) reading->kind = EERUF_READING_NO_ECHO;
     }
     count(&hopping->ring, reading->kind);
     return status;

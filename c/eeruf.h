@@ -183,7 +183,7 @@ enum {
     EERUF_READING_ACCEPTED = 1, /* near-identical to the one before (Eq. 11): it counts */
     EERUF_READING_REJECTED = 2, /* not near-identical: crosstalk, noise, or an object that moved too fast */
     EERUF_READING_REPEATED = 3, /* near-identical, but not yet often enough */
-    EERUF_READING_NO_ECHO = 4,  /* no echo, once */
+    EERUF_READING_NO_ECHO = 4,  /* no echo, once, or without a witness */
     EERUF_READING_CLEAR = 5,    /* no echo several times running: nothing is in range */
     EERUF_READING_TOO_EARLY = 6, /* nothing but an edge within the blanking time */
     EERUF_READING_LATE = 7,     /* an edge after the window has ended */
@@ -329,9 +329,14 @@ uint32_t eeruf_ring_fired_at(const EerufRing *ring, uint8_t sensor);
 /* The echo line of a sensor was high when it was to be fired: its reading is EERUF_READING_STUCK. */
 EerufStatus eeruf_ring_stuck(EerufRing *ring, uint8_t sensor);
 
-/* From the next firing on silence needs a witness: a firing without an echo is EERUF_READING_UNANSWERED, never free
-   space, unless eeruf_ring_answered says that its sensor listened. EerufHcSr04 does all of this by its lines. */
-EerufStatus eeruf_ring_expect_answers(EerufRing *ring);
+/* What silence means, from the next firing on: a firing without an echo whose sensor has not shown by eeruf_ring_answered
+   or eeruf_ring_measured that it listened. EerufHcSr04 does all of this by its lines. */
+enum {
+    EERUF_SILENCE_NEVER_FREE = 0,   /* the default: neither free space nor a fault, EERUF_READING_NO_ECHO however often */
+    EERUF_SILENCE_NEEDS_ANSWER = 1, /* a fault, EERUF_READING_UNANSWERED: for sensors that show that they listen */
+    EERUF_SILENCE_TRUSTED = 2       /* free space once repeated, as a cut wire is then */
+};
+EerufStatus eeruf_ring_set_silence(EerufRing *ring, uint8_t silence);
 EerufStatus eeruf_ring_answered(EerufRing *ring, uint8_t sensor);
 EerufStatus eeruf_ring_unanswered(EerufRing *ring, uint8_t sensor); /* takes it back: that was a disturbance */
 /* Takes what hardware or a protocol measured of a sensor's firing, before its reading is emitted: the echo time, or
@@ -396,7 +401,8 @@ enum {
     EERUF_WHY_NO_FIRING = 0, /* it has not fired yet */
     EERUF_WHY_UNSURE = 1,    /* one echo, or one silence, that is not confirmed yet */
     EERUF_WHY_REJECTED = 2,  /* the last two echoes differ */
-    EERUF_WHY_AMBIGUOUS = 3  /* they agree, and sound of `explained_by` explains both */
+    EERUF_WHY_AMBIGUOUS = 3, /* they agree, and sound of `explained_by` explains both */
+    EERUF_WHY_NO_WITNESS = 4 /* silence again, which nothing confirms: it has not shown that it listens */
 };
 const char *eeruf_state_name(uint8_t kind); /* "clear"; not linked unless called */
 

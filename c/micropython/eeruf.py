@@ -25,6 +25,8 @@ READING_NAMES = (
 )  # fmt: skip
 FIRST, ACCEPTED, REJECTED, REPEATED, NO_ECHO, CLEAR, TOO_EARLY, LATE, STUCK, TENTATIVE = range(10)
 AMBIGUOUS, UNANSWERED = 10, 11
+# What silence means: neither free space nor a fault, NO_ECHO however often; a fault, UNANSWERED; free space once repeated.
+NEVER_FREE, NEEDS_ANSWER, TRUSTED = range(3)
 HISTORY = "history"  # explains an ambiguous reading if a firing that could have been heard is forgotten
 # Of events: what they are, then of a firing and a reading the sensor and the phase in which it fires.
 FIRE, READING, PERIOD = range(3)
@@ -39,7 +41,7 @@ _SHOWS = (
     "unsure", "obstacle", "rejected", "unsure", "unsure", "clear", "too_close", None, "unanswered", "obstacle",
     "ambiguous", "unanswered",
 )  # fmt: skip
-_WHYS = ("no_firing", "unsure", "rejected", "ambiguous")
+_WHYS = ("no_firing", "unsure", "rejected", "ambiguous", "no_witness")
 
 
 class _Sensor:
@@ -49,12 +51,16 @@ class _Sensor:
         self.age = NEVER
         self.enabled = True
         self.shows, self.seen_us, self.seen_at, self.doubted, self.by = "no_firing", None, 0, False, None
+        self.silent = False  # its last reading was NO_ECHO
         self.drop(long_ago_us)
 
     def see(self, kind, echo_us, explained_by, now_us):
         shows, known = _SHOWS[kind], self.shows
         if shows is None:
             return
+        if kind == NO_ECHO and self.silent:
+            shows = "no_witness"  # nothing confirms silence, again
+        self.silent = kind == NO_ECHO
         if shows in _WHYS and known == "obstacle" and not self.doubted:
             self.doubted = True  # one echo may be missed, or another's heard
             return
@@ -135,7 +141,7 @@ class Ring:
         # How long after its firing a reading without an echo is emitted at the soonest, for modules that report after their
         # window has closed: by a bus, or a pulse that hardware measures.
         self.report_after_us = 0
-        self.expects_answers = False  # whether silence counts only where `answered` says that the sensor listened
+        self.silence = NEVER_FREE  # of a firing whose sensor has not shown by `answered` or `measured` that it listened
         self._known_from = self._known_at(now_us)  # firings before are not known
         self._sensors = sensors
         for sensor in sensors:
@@ -313,7 +319,7 @@ class Ring:
 
     def state(self, x, now_us):
         """Returns what is before a sensor: (kind, t_echo_us, age_us, why, explained_by). The kind is "obstacle", with its echo time;
-        "clear"; "too_close"; "unanswered"; or "unknown" with why: "no_firing", "unsure", "rejected" or "ambiguous". The age
+        "clear"; "too_close"; "unanswered"; or "unknown" with why: "no_firing", "unsure", "rejected", "no_witness" or "ambiguous". The age
         is the time since that was last confirmed, or for which nothing is known, up to half a turn of the clock. One reading
         that does not confirm an obstacle leaves it, two in a row do not; any echo ends "clear"."""
         sensor = self._sensors[x]
@@ -364,7 +370,7 @@ class Ring:
         late_us = min((now_us - self._due) & self._mask, 0xFFFF)
         sensor.listening, sensor.phase, sensor.period = True, self._phase, self._period
         sensor.can_emit = sensor.outside = sensor.stuck = False
-        sensor.unanswered = self.expects_answers
+        sensor.unanswered = self.silence != TRUSTED
         firings = sensor.firings
         for i in range(len(firings) - 1, 0, -1):
             firings[i] = firings[i - 1]
@@ -393,7 +399,7 @@ class Ring:
             kind = TOO_EARLY
         elif sensor.unanswered and echo is None:
             sensor.forget()
-            kind, previous = UNANSWERED, None
+            kind, previous = UNANSWERED if self.silence == NEEDS_ANSWER else NO_ECHO, None
         else:
             if echo is None or previous is None:
                 near = echo is None and previous is None
@@ -525,8 +531,8 @@ class Ring:
             self._sensors[x].stuck = True
 
     def answered(self, x, answered=True):
-        """A sensor has shown that it listens, or what looked like that was a disturbance. While `expects_answers` is true,
-        a firing without either echo or answer is UNANSWERED, never free space."""
+        """A sensor has shown that it listens, or what looked like that was a disturbance. Otherwise `silence` says what a
+        firing without an echo is."""
         if self._sensors[x].listening:
             self._sensors[x].unanswered = not answered
 
@@ -612,7 +618,7 @@ class HcSr04Ring:
         ring.setdefault("clock_bits", bits)
         self.ring = self.RING(schedule, time.ticks_us(), **ring)
         # A line that does not rise is no free space.
-        self.ring.expects_answers = True
+        self.ring.silence = NEEDS_ANSWER
         self.change_us = None  # as of `Ring.poll`, for a robot that moves
         self._rose = [None] * len(pins)
         self._awaits = [False] * len(pins)

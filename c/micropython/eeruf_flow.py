@@ -19,7 +19,7 @@ Licence: MIT OR Apache-2.0.
 """
 
 from eeruf import (
-    ACCEPTED, CLEAR, FIRST, NEVER, NO_ECHO, NOBODY, REJECTED, STUCK, TENTATIVE, TOO_EARLY, UNANSWERED, HcSr04Ring,
+    ACCEPTED, CLEAR, FIRST, NEEDS_ANSWER, NEVER, NO_ECHO, NOBODY, REJECTED, STUCK, TENTATIVE, TOO_EARLY, UNANSWERED, HcSr04Ring,
     Ring, _Sensor,
 )  # fmt: skip
 
@@ -491,7 +491,7 @@ class FlowRing(Ring):
         echo, previous = sensor.echo_us, None
         if sensor.stuck:
             kind, echo = STUCK, None
-        elif sensor.unanswered and echo is None:
+        elif sensor.unanswered and echo is None and self.silence == NEEDS_ANSWER:
             kind = UNANSWERED
         elif sensor.outside:
             kind = TOO_EARLY
@@ -508,6 +508,8 @@ class FlowRing(Ring):
         elif sensor.age < NEVER - 1:
             sensor.age += 1
         self._learn(sensor, x, kind, _SILENCE if echo is None else echo, change_us)
+        if kind == CLEAR and sensor.unanswered:
+            kind = NO_ECHO  # without a witness it is not reported as free space
         sensor.listening = sensor.can_emit = sensor.outside = sensor.stuck = False
         sensor.echo_us = None
         return kind, echo, previous, None

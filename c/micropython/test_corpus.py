@@ -12,7 +12,7 @@ from eeruf_schedule import Schedule
 NONE = 0xFFFFFFFF
 LAYOUTS = ("line", "ring", "blocks")
 KINDS = ("unknown", "obstacle", "clear", "too_close", "unanswered")
-WHYS = ("no_firing", "unsure", "rejected", "ambiguous")
+WHYS = ("no_firing", "unsure", "rejected", "ambiguous", "no_witness")
 
 
 def flat(event):
@@ -70,7 +70,7 @@ def check(lines):
         elif what == "B":
             ring.forget(n[0])  # noqa: F821
         elif what == "G":
-            ring.expects_answers = True  # noqa: F821
+            ring.silence = n[0]  # noqa: F821
         elif what == "Y":
             ring.answered(n[0], n[1] == 1)  # noqa: F821
         elif what == "Q":

@@ -1,7 +1,7 @@
 """HcSr04Ring on simulated modules, whose clock has 30 bits and wraps, as on most boards."""
 
 from eeruf import (
-    ACCEPTED, AGE, AMBIGUOUS, CLEAR, EXPLAINED_BY, FIRST, HISTORY, KIND, REJECTED, SENSOR, STUCK, T_ECHO, UNANSWERED,
+    ACCEPTED, AGE, AMBIGUOUS, CLEAR, EXPLAINED_BY, FIRST, HISTORY, KIND, NEEDS_ANSWER, REJECTED, SENSOR, STUCK, T_ECHO, UNANSWERED,
     HcSr04Ring, Ring,
 )  # fmt: skip
 from eeruf_flow import Flow, FlowRing, HcSr04FlowRing
@@ -206,7 +206,7 @@ def timed():
     b = [0, 15000, 30000, 45000, 0, 15000, 30000, 45000]
     seed, now, end = 20000, PERIOD - 3000000, 20000000
     ring = Ring(Schedule(67000, [a, b]).verify(416, 14569, 60000, 4), now, clock_bits=30, window_us=45000)
-    ring.expects_answers, ring.report_after_us = True, 60000
+    ring.silence, ring.report_after_us = NEEDS_ANSWER, 60000
     reports, kinds, spent = [], [[] for _ in a], 0
     while spent < end:
         seed = (1103515245 * seed + 12345) % (1 << 31)

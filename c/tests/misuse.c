@@ -543,7 +543,8 @@ static void silence_needs_a_witness(void) {
     EXPECT(kinds[3][EERUF_READING_CLEAR], 18);
     EXPECT(eeruf_hc_sr04_health(&four, 1), EERUF_HEALTH_MISSING);
     EXPECT(eeruf_hc_sr04_health(&four, 2), EERUF_HEALTH_LOSES_EDGES);
-    EXPECT(eeruf_ring_expect_answers(NULL), EERUF_ERR_NULL);
+    EXPECT(eeruf_ring_set_silence(NULL, 0), EERUF_ERR_NULL);
+    EXPECT(eeruf_ring_set_silence(&ring, 3), EERUF_ERR_RANGE);
     EXPECT(eeruf_ring_answered(&ring, SENSORS), EERUF_ERR_SENSOR);
     EXPECT(eeruf_ring_unanswered(&not_ready, 0), EERUF_ERR_NOT_READY);
     EXPECT(eeruf_ring_forget(&ring, SENSORS), EERUF_ERR_SENSOR);

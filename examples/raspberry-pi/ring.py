@@ -86,7 +86,6 @@ class Modules:
 
 def run(ring: eeruf.Ring, modules: Modules, each: Callable[[eeruf.Reading | eeruf.PeriodEnded], bool]) -> None:
     """Fire and listen until ``each`` returns false, which takes readings and ends of periods."""
-    ring.expect_answers()
     while True:
         now_us = modules.now_us()
         modules.take(ring)  # after the clock is read: no window closes on an edge that came in time
@@ -112,8 +111,9 @@ def main() -> None:
     assert found.schedule is not None, found.reason
     # Foreign paths change by less than 100 us from one firing to the next, while the robot drives slowly.
     ring = eeruf.Ring(
-        found.schedule, t_delta_us=500, now_us=monotonic_us(), window_us=WINDOW_US, refire_us=60_000, path_change_us=100
-    )
+        found.schedule, t_delta_us=500, now_us=monotonic_us(), window_us=WINDOW_US, refire_us=60_000, path_change_us=100,
+        silence="needs_answer",
+    )  # fmt: skip
     per_second = 1_000_000 // found.schedule.period_us
 
     def each(event: eeruf.Reading | eeruf.PeriodEnded) -> bool:

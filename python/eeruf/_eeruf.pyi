@@ -91,7 +91,8 @@ _Body = float | tuple[float, float] | list[tuple[float, float]]
 _Fault = dict[str, Any]
 _Phase = Literal["a", "b"]
 _StateKind = Literal["obstacle", "clear", "too_close", "unanswered", "unknown"]
-_Doubt = Literal["no_firing", "unsure", "rejected", "ambiguous"]
+_Doubt = Literal["no_firing", "unsure", "rejected", "ambiguous", "no_witness"]
+_Silence = Literal["never_free", "needs_answer", "trusted"]
 _Condition = Literal[
     "crosstalk_a", "crosstalk_b", "stale_echo", "interval", "window", "shared_line", "refire", "together"
 ]
@@ -660,6 +661,7 @@ class Ring:
         shared_lines: Iterable[Sequence[_Int]] | None = None,
         together: Iterable[Sequence[_Int]] | None = None,
         several_echoes: bool = False,
+        silence: _Silence = "never_free",
     ) -> Ring: ...
     @staticmethod
     def unverified(
@@ -672,6 +674,7 @@ class Ring:
         consecutive: _Int = 2,
         path_change_us: _Int | None = None,
         audible_us: _Int | None = None,
+        silence: _Silence = "never_free",
     ) -> Ring: ...
     @staticmethod
     def hopping(
@@ -689,6 +692,7 @@ class Ring:
         shared_lines: Iterable[Sequence[_Int]] | None = None,
         together: Iterable[Sequence[_Int]] | None = None,
         several_echoes: bool = False,
+        silence: _Silence = "never_free",
     ) -> Ring: ...
     @staticmethod
     def flow(
@@ -700,6 +704,7 @@ class Ring:
         blanking_us: _Int = 0,
         reach_us: _Int | None = None,
         several_echoes: bool = False,
+        silence: _Silence = "never_free",
     ) -> Ring: ...
     @property
     def t_lag_us(self) -> tuple[int, ...]: ...
@@ -745,7 +750,6 @@ class Ring:
     def echo(self, sensor: _Int, at_us: _Int) -> None: ...
     def fired(self, sensor: _Int, at_us: _Int) -> None: ...
     def stuck(self, sensor: _Int) -> None: ...
-    def expect_answers(self) -> None: ...
     def answered(self, sensor: _Int, answered: bool = True) -> None: ...
     def measured(self, sensor: _Int, t_echo_us: _Int | None) -> None: ...
     def forget(self, sensor: _Int) -> None: ...

@@ -435,7 +435,6 @@ def disturb(c: Chance, live: Any, now: int) -> None:
         tried(live.measured, c.mostly(1), c.random.choice([None, c.mostly(9_000)]))
         tried(live.answered, c.mostly(1), c.mostly(False))
         tried(c.random.choice([live.state, live.forget]), c.mostly(1))
-        c.random.choice([live.expect_answers, lambda: None])()
 
 
 def tracker(c: Chance) -> None:

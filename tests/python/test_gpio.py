@@ -100,7 +100,7 @@ def test_ring_on_pins_reads_walls_and_faults(
     needs: dict[str, Any] = {"t_delta_us": 500, "window_us": example.WINDOW_US, "refire_us": 60_000}
     found = eeruf.design(len(ECHOES), min_interval_us=10_000, layout="ring", **needs)
     assert found.schedule is not None
-    ring = eeruf.Ring(found.schedule, now_us=start_us, path_change_us=100, **needs)
+    ring = eeruf.Ring(found.schedule, now_us=start_us, path_change_us=100, silence="needs_answer", **needs)
     modules = example.Modules("/dev/gpiochip0", TRIGGERS, ECHOES, world.now_us)
     readings: list[list[tuple[str, int | None]]] = [[] for _ in ECHOES]
     late_us: list[int] = []

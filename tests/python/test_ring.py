@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from typing import Any, Callable
+from typing import Any, Callable, cast
 
 import eeruf
 import pytest
@@ -185,8 +185,7 @@ def test_a_watch_refuses_what_is_no_event_and_no_sensor() -> None:
 
 
 def test_a_ring_knows_states_and_silence_needs_a_witness() -> None:
-    ring = eeruf.Ring(tables.TABLE_I_D, 500, window_us=36_000)
-    ring.expect_answers()
+    ring = eeruf.Ring(tables.TABLE_I_D, 500, window_us=36_000, silence="needs_answer")
     ended = 0
     while ended < 4:
         now_us = ring.next_deadline_us
@@ -197,6 +196,9 @@ def test_a_ring_knows_states_and_silence_needs_a_witness() -> None:
             ended += isinstance(event, eeruf.PeriodEnded)
     kinds = [ring.state(sensor).kind for sensor in range(12)]
     assert kinds == [{2: "unanswered", 5: "clear"}.get(sensor, "obstacle") for sensor in range(12)]
+    # After a long sleep nothing is known, whatever the clock says.
+    ring.restart(now_us + 72 * 60_000_000)
+    assert [ring.state(sensor).why for sensor in range(12)] == ["no_firing"] * 12
     ring.forget(0)
     ring.answered(1, False)
     with pytest.raises(eeruf.ArgumentError, match="sensor = 12; expected a whole number from 0 to 11"):
@@ -281,10 +283,23 @@ def test_sensors_of_uneven_rings_keep_their_own_windows() -> None:
         eeruf.Ring(found.schedule, [999] * 3, window_us=12_000)
 
 
+@pytest.mark.parametrize(("silence", "kind", "state"), [
+    ("never_free", "no_echo", "unknown"), ("needs_answer", "unanswered", "unanswered"), ("trusted", "clear", "clear"),
+])  # fmt: skip
+def test_silence_without_a_witness_is_free_space_only_by_name(silence: Any, kind: str, state: str) -> None:
+    ring, kinds = eeruf.Ring(tables.TABLE_I_D, 500, window_us=36_000, silence=silence), list[str]()
+    while len(kinds) < 36:
+        event = ring.poll(ring.next_deadline_us)
+        kinds += [event.kind] if isinstance(event, eeruf.Reading) else []
+    assert set(kinds[12:]) == {kind} and ring.state(0).kind == state
+    assert ring.state(0).why == ("no_witness" if state == "unknown" else None)
+    with pytest.raises(eeruf.ArgumentError, match="silence = 'free'; expected \"never_free\" or"):
+        eeruf.Ring(tables.TABLE_I_D, 500, window_us=36_000, silence=cast(Any, "free"))
+
+
 def test_late_loop_with_timed_firings_accepts_walls() -> None:
     """A timer fires at the instants of `upcoming`, the loop comes up to 5 ms late, reports come after the window."""
-    ring = eeruf.Ring(eeruf.tables.TABLE_I_D, t_delta_us=500, window_us=36_000)
-    ring.expect_answers()
+    ring = eeruf.Ring(eeruf.tables.TABLE_I_D, t_delta_us=500, window_us=36_000, silence="needs_answer")
     ring.report_after_us = 60_000
     assert ring.report_after_us == 60_000
     with pytest.raises(eeruf.RingError, match="window"):

@@ -69,6 +69,7 @@ pub fn state(state: SensorState) -> [u32; 5] {
                 Doubt::Unsure => (1, 0xFF),
                 Doubt::Rejected => (2, 0xFF),
                 Doubt::Ambiguous(by) => (3, explanation(Some(by))),
+                Doubt::NoWitness => (4, 0xFF),
                 _ => unreachable!("{why:?}"),
             };
             [0, NO_ECHO, since.as_micros(), why, by]

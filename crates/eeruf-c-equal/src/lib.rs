@@ -52,7 +52,7 @@ pub enum Do {
     SetPathChange,
     SetAudible,
     FiredAt,
-    ExpectAnswers,
+    SetSilence,
     Answered,
     Unanswered,
     Forget,

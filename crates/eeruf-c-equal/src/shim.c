@@ -210,7 +210,7 @@ int shim_do(Handle *handle, unsigned what, uint8_t sensor, uint32_t value) {
     case 19: return eeruf_ring_set_path_change(ring, value);
     case 20: return eeruf_ring_set_audible(ring, value);
     case 21: return (int)eeruf_ring_fired_at(ring, sensor);
-    case 22: return eeruf_ring_expect_answers(ring);
+    case 22: return eeruf_ring_set_silence(ring, (uint8_t)value);
     case 23: return eeruf_ring_answered(ring, sensor);
     case 24: return eeruf_ring_unanswered(ring, sensor);
     case 25: return eeruf_ring_forget(ring, sensor);

@@ -1,7 +1,7 @@
 //! Rings that weigh readings by a tracker: what happens to them while they run.
 
 use crate::core_side::{echo, flat, state, upcoming};
-use crate::world::{World, same};
+use crate::world::{World, same, set_silence};
 use crate::{C, Do, Random};
 use eeruf_core::hopping::{HoppingError, Weighed};
 use eeruf_core::{
@@ -76,10 +76,7 @@ pub(crate) fn run<P: Plan, const K: usize>(
     let (origin, mut count) = (r, 0);
     let mut world = World::new(r.clone(), K as u8, window);
     world.now = start;
-    if r.once_in(2) {
-        ring.expect_answers();
-        same::<()>(&mut c, Do::ExpectAnswers, 0, 0, Ok(()));
-    }
+    set_silence(r, &mut c, &mut ring);
     let mut watch = SensorWatch::<K>::new(0, Instant::from_micros(start));
     assert_eq!(c.watch(K as u8, start), 0);
     let moves = r.once_in(3);

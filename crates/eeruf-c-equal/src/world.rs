@@ -1,6 +1,7 @@
 //! Events around a ring: when it is polled, what it hears.
 
 use crate::{C, Do, Random};
+use eeruf_core::{Ring, Silence, judge::Judge, plan::Plan};
 
 /// A clock that is late, jumps and wraps, and echoes on their way.
 pub struct World {
@@ -89,4 +90,15 @@ impl World {
 pub fn same<E>(c: &mut C, what: Do, sensor: u8, value: u32, rust: Result<(), E>) {
     let expected = if rust.is_ok() { 0 } else { -5 };
     assert_eq!(c.call(what, sensor, value), expected, "{what:?} of sensor {sensor}, {value}");
+}
+
+/// Sets what silence means.
+pub(crate) fn set_silence<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize>(
+    r: &Random,
+    c: &mut C,
+    ring: &mut Ring<P, J, K, E, H>,
+) {
+    let silence = r.within(0, 2);
+    ring.set_silence([Silence::NeverFree, Silence::NeedsAnswer, Silence::Trusted][silence as usize]);
+    same::<()>(c, Do::SetSilence, 0, silence, Ok(()));
 }

@@ -91,7 +91,7 @@ pub use layout::Layout;
 pub use own_limits::{EachSensor, SensorLimits};
 pub use reading::{ReadingKind, Tally};
 pub use requirements::{Criterion, Requirements};
-pub use ring::{PeriodStats, Reading, Ring, RingConfig, RingEvent, ScheduledRing};
+pub use ring::{PeriodStats, Reading, Ring, RingConfig, RingEvent, ScheduledRing, Silence};
 pub use ring_error::RingError;
 pub use schedule::{MAX_PERIOD, MAX_PHASES, MAX_SENSORS, Phase, Schedule, ScheduleError};
 pub use sensor_error::SensorError;

@@ -21,7 +21,8 @@ pub enum ReadingKind {
     Rejected,
     /// Near-identical to the reading before, but not yet often enough; only where more than two readings are compared.
     Repeated,
-    /// No echo within the window, once.
+    /// No echo within the window, once; or again and again, if nothing has shown that the sensor listened
+    /// ([`Silence::NeverFree`](crate::Silence)).
     NoEcho,
     /// No echo as many times in a row as the filter wants: nothing is in range.
     Clear,
@@ -39,7 +40,7 @@ pub enum ReadingKind {
     /// Only from a [`Ring`](crate::Ring).
     Ambiguous,
     /// No evidence at all: neither an echo nor a witness that the sensor listened
-    /// ([`Ring::expect_answers`](crate::Ring::expect_answers)). Never free space.
+    /// ([`Silence::NeedsAnswer`](crate::Silence)). Never free space.
     Unanswered,
 }
 

@@ -89,6 +89,8 @@ pub enum Doubt {
     NoFiring,
     /// One echo, or one silence, that is not confirmed yet.
     Unsure,
+    /// Silence again, which nothing confirms: the sensor has not shown that it listens.
+    NoWitness,
     /// The last two echoes differ.
     Rejected,
     /// The last two echoes agree, and sound of another firing explains both.
@@ -103,6 +105,8 @@ struct Watched {
     at: Instant,
     /// True if the last reading did not confirm it.
     doubted: bool,
+    /// True if the last reading was [`ReadingKind::NoEcho`].
+    silent: bool,
     /// Firings with an echo since something was last accepted or clear.
     echoes: u8,
 }
@@ -124,7 +128,8 @@ impl<const K: usize> SensorWatch<K> {
     /// Nothing is known yet, `now`. A sensor counts as blind when nothing was accepted for `blind_after` firings with
     /// an echo, 1 to 255; with 0 no sensor does.
     pub const fn new(blind_after: u8, now: Instant) -> Self {
-        let nothing = Watched { known: Known::Nothing(Doubt::NoFiring), at: now, doubted: false, echoes: 0 };
+        let nothing =
+            Watched { known: Known::Nothing(Doubt::NoFiring), at: now, doubted: false, silent: false, echoes: 0 };
         Self { sensors: [nothing; K], blind_after }
     }
 
@@ -172,6 +177,10 @@ impl<const K: usize> SensorWatch<K> {
 
 impl Watched {
     fn read(&mut self, reading: &Reading, now: Instant) {
+        let was_silent = self.silent;
+        if reading.kind != ReadingKind::Late {
+            self.silent = reading.kind == ReadingKind::NoEcho;
+        }
         let doubt = match reading.kind {
             ReadingKind::Accepted | ReadingKind::Tentative => {
                 return self.confirm(Known::Obstacle(reading.t_echo.unwrap_or_default()), now);
@@ -182,6 +191,7 @@ impl Watched {
             ReadingKind::Stuck | ReadingKind::Unanswered => return self.confirm(Known::Unanswered, now),
             // Of a firing that has had its reading.
             ReadingKind::Late => return,
+            ReadingKind::NoEcho if was_silent => Doubt::NoWitness,
             ReadingKind::First | ReadingKind::NoEcho | ReadingKind::Repeated => Doubt::Unsure,
             ReadingKind::Rejected => Doubt::Rejected,
             ReadingKind::Ambiguous => Doubt::Ambiguous(reading.explained_by.unwrap_or(Explanation::History)),

@@ -1,7 +1,7 @@
 //! [`HcSr04Ring`]: the driver of a ring. It triggers the sensors that the ring fires, and hands it the echoes.
 
 use eeruf_core::{
-    EchoFilter, Edge, EdgeQueue, Instant, Micros, Ring, RingError, RingEvent, SensorError, VerifiedSchedule,
+    EchoFilter, Edge, EdgeQueue, Instant, Micros, Ring, RingError, RingEvent, SensorError, Silence, VerifiedSchedule,
     judge::Judge,
     plan::{OwnLimits, Plan, ScheduledFiring},
 };
@@ -103,7 +103,7 @@ impl<P: Plan, J: Judge, T, I, D, const K: usize, const H: usize> HcSr04Ring<Ring
     ) -> Result<Self, SetupError> {
         settings.allow(ring.plan().min_refire())?;
         // A line that does not rise is no free space.
-        ring.expect_answers();
+        ring.set_silence(Silence::NeedsAnswer);
         Ok(Self { ring, lines: Lines::new(pins, delay, settings) })
     }
 

@@ -1,7 +1,7 @@
 //! `Ring`: by a schedule, hopping, or by flow.
 
 use eeruf_core::{
-    Criterion, EachSensor, Instant, MAX_SENSORS, Micros, Requirements, RingEvent,
+    Criterion, EachSensor, Instant, MAX_SENSORS, Micros, Requirements, RingEvent, Silence,
     flow::FlowRing,
     hopping::{HoppingListening, HoppingPlan, HoppingRing, HoppingSchedule as CoreHopping},
     watch::SensorWatch,
@@ -10,7 +10,7 @@ use eeruf_sim::AnySchedule;
 use pyo3::prelude::*;
 
 use crate::{
-    arguments::{instance, whole, wrong},
+    arguments::{choice, instance, whole, wrong},
     errors::{Raise, RingError},
     exclusive::Exclusive,
     flow_settings,
@@ -46,6 +46,9 @@ use crate::{
 ///     together: groups of sensors that fire at the same instants, declared not to hear each other.
 ///     several_echoes: each sensor reports several echoes of a firing; of up to eight the earliest that repeats is
 ///         accepted.
+///     silence: what a firing without an echo means whose sensor has not shown by :meth:`answered` or :meth:`measured`
+///         that it listened: ``"never_free"``, ``"no_echo"`` however often; ``"needs_answer"``, ``"unanswered"``, a
+///         fault; ``"trusted"``, ``"clear"`` once repeated, as a cut wire is then.
 ///
 /// Raises:
 ///     ArgumentError: something of the wrong type or out of range.
@@ -71,12 +74,6 @@ use crate::{
 ///     (1500, 36000)
 #[pyclass(frozen, module = "eeruf")]
 pub(crate) struct Ring(pub(crate) Exclusive<AnyRing>);
-
-impl Ring {
-    pub(crate) fn of(fires: Fires, now: Instant) -> Self {
-        Self(Exclusive::new("Ring", AnyRing::new(fires, now)))
-    }
-}
 
 /// The plan of a ring that hops, whether sensors are alike or not.
 type HopPlan = HoppingPlan<MAX_SENSORS, EachSensor<MAX_SENSORS>>;
@@ -199,6 +196,17 @@ macro_rules! of_sensor {
 }
 
 pub(crate) use {act, ask, of_sensor};
+
+impl Ring {
+    pub(crate) fn of(fires: Fires, silence: Option<&Bound<'_, PyAny>>, now: Instant) -> PyResult<Self> {
+        let names =
+            [("never_free", Silence::NeverFree), ("needs_answer", Silence::NeedsAnswer), ("trusted", Silence::Trusted)];
+        let silence = choice("silence", silence, &names)?;
+        let mut ring = AnyRing::new(fires, now);
+        act!(ring, |ring| ring.set_silence(silence));
+        Ok(Self(Exclusive::new("Ring", ring)))
+    }
+}
 
 impl AnyRing {
     pub(crate) fn new(fires: Fires, now: Instant) -> Self {

@@ -1,6 +1,6 @@
 //! The methods of `Ring`.
 
-use eeruf_core::{Micros, hopping::HoppingPlan};
+use eeruf_core::{Micros, hopping::HoppingPlan, watch::SensorWatch};
 use pyo3::{prelude::*, types::PyTuple};
 
 use crate::{
@@ -21,10 +21,10 @@ impl Ring {
     #[new]
     #[pyo3(signature = (schedule, t_delta_us, now_us=None, *, window_us, blanking_us=None, consecutive=None,
         path_change_us=None, audible_us=None, refire_us=None, intervals_us=None, shared_lines=None, together=None,
-        several_echoes=None))]
+        several_echoes=None, silence=None))]
     #[pyo3(text_signature = "(schedule, t_delta_us, now_us=0, *, window_us, blanking_us=0, consecutive=2, \
             path_change_us=None, audible_us=None, refire_us=None, intervals_us=None, shared_lines=None, \
-            together=None, several_echoes=False)")]
+            together=None, several_echoes=False, silence=\"never_free\")")]
     fn new(
         schedule: &Bound<'_, PyAny>,
         t_delta_us: &Bound<'_, PyAny>,
@@ -39,6 +39,7 @@ impl Ring {
         shared_lines: Option<&Bound<'_, PyAny>>,
         together: Option<&Bound<'_, PyAny>>,
         several_echoes: Option<&Bound<'_, PyAny>>,
+        silence: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
         let fires = instance::<Schedule>("schedule", schedule, "an eeruf.Schedule")?.get().0;
         let needs = RequirementArguments {
@@ -54,7 +55,7 @@ impl Ring {
         } else {
             OwnedRing::new(fires, config, several, now)?.verified()?
         };
-        Ok(Self::of(Fires::BySchedule(Box::new(ring)), now))
+        Self::of(Fires::BySchedule(Box::new(ring)), silence, now)
     }
 
     /// A ring whose schedule was not verified. Crosstalk that it repeats, as constant waits do, makes readings
@@ -69,6 +70,7 @@ impl Ring {
     ///     consecutive: the number of consecutive readings that must agree, 2 to 8.
     ///     path_change_us: P, at most 65,534; None for ``t_delta_us``.
     ///     audible_us: R, at most 67 s; None for one period.
+    ///     silence: as for ``Ring``.
     ///
     /// Raises:
     ///     ArgumentError: something of the wrong type or out of range.
@@ -81,9 +83,9 @@ impl Ring {
     ///     Fire(sensor=0, phase=0, due_us=0)
     #[staticmethod]
     #[pyo3(signature = (schedule, t_delta_us, now_us=None, *, window_us, blanking_us=None, consecutive=None,
-        path_change_us=None, audible_us=None))]
+        path_change_us=None, audible_us=None, silence=None))]
     #[pyo3(text_signature = "(schedule, t_delta_us, now_us=0, *, window_us, blanking_us=0, consecutive=2, \
-            path_change_us=None, audible_us=None)")]
+            path_change_us=None, audible_us=None, silence=\"never_free\")")]
     fn unverified(
         schedule: &Bound<'_, PyAny>,
         t_delta_us: &Bound<'_, PyAny>,
@@ -93,12 +95,13 @@ impl Ring {
         consecutive: Option<&Bound<'_, PyAny>>,
         path_change_us: Option<&Bound<'_, PyAny>>,
         audible_us: Option<&Bound<'_, PyAny>>,
+        silence: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
         let (t_delta, window) = (micros("t_delta_us", t_delta_us)?, micros("window_us", window_us)?);
         let config = config(t_delta, window, blanking_us, consecutive, &Sound { path_change_us, audible_us })?;
         let schedule = instance::<Schedule>("schedule", schedule, "an eeruf.Schedule")?.get().0;
         let now = begins(now_us)?;
-        Ok(Self::of(Fires::BySchedule(Box::new(OwnedRing::new(schedule, config, false, now)?)), now))
+        Self::of(Fires::BySchedule(Box::new(OwnedRing::new(schedule, config, false, now)?)), silence, now)
     }
 
     /// A ring that hops in time: its readings can also be ``"tentative"``, and no sensor stays blind.
@@ -120,6 +123,7 @@ impl Ring {
     ///     shared_lines: groups of sensors on one echo line.
     ///     together: groups of sensors that fire at the same instants.
     ///     several_echoes: each sensor reports several echoes of a firing, of which up to eight have votes.
+    ///     silence: as for ``Ring``.
     ///
     /// Raises:
     ///     ArgumentError: something of the wrong type or out of range.
@@ -135,10 +139,11 @@ impl Ring {
     #[staticmethod]
     #[pyo3(signature = (
         schedule, settings=None, now_us=None, *, window_us, blanking_us=None, reach_us=None, seed=None, t_delta_us=None,
-        refire_us=None, intervals_us=None, shared_lines=None, together=None, several_echoes=None))]
+        refire_us=None, intervals_us=None, shared_lines=None, together=None, several_echoes=None,
+        silence=None))]
     #[pyo3(text_signature = "(schedule, settings=\"balanced\", now_us=0, *, window_us, blanking_us=0, \
             reach_us=None, seed=1, t_delta_us=None, refire_us=None, intervals_us=None, shared_lines=None, \
-            together=None, several_echoes=False)")]
+            together=None, several_echoes=False, silence=\"never_free\")")]
     fn hopping(
         schedule: &Bound<'_, PyAny>,
         settings: Option<&Bound<'_, PyAny>>,
@@ -153,6 +158,7 @@ impl Ring {
         shared_lines: Option<&Bound<'_, PyAny>>,
         together: Option<&Bound<'_, PyAny>>,
         several_echoes: Option<&Bound<'_, PyAny>>,
+        silence: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
         let (listening, now) = (listening(window_us, blanking_us, reach_us)?, begins(now_us)?);
         let draws = (flag("several_echoes", several_echoes, false)?, whole_or("seed", seed, 1, 0..=u32::MAX)?);
@@ -160,7 +166,7 @@ impl Ring {
             uneven: UnevenArguments { refire_us, intervals_us, shared_lines, together },
             ..RequirementArguments::alike(t_delta_us, None, None, None, None, (Some(window_us), None))
         };
-        Ok(Self::of(Fires::hopping(schedule, settings, &needs, listening, draws, now)?, now))
+        Self::of(Fires::hopping(schedule, settings, &needs, listening, draws, now)?, silence, now)
     }
 
     /// A ring by flow: each sensor gets as much quiet around its firing as it has needed, and votes confirm an echo.
@@ -174,6 +180,7 @@ impl Ring {
     ///     blanking_us: edges sooner than this after firing are no echoes.
     ///     reach_us: after how long no sound is heard any more; by default the window.
     ///     several_echoes: as for :meth:`hopping`.
+    ///     silence: as for ``Ring``.
     ///
     /// Raises:
     ///     ArgumentError: something of the wrong type or out of range.
@@ -186,9 +193,10 @@ impl Ring {
     ///     0
     #[staticmethod]
     #[pyo3(signature = (
-        sensors, settings=None, now_us=None, *, window_us, blanking_us=None, reach_us=None, several_echoes=None))]
+        sensors, settings=None, now_us=None, *, window_us, blanking_us=None, reach_us=None, several_echoes=None,
+        silence=None))]
     #[pyo3(text_signature = "(sensors, settings=None, now_us=0, *, window_us, blanking_us=0, reach_us=None, \
-            several_echoes=False)")]
+            several_echoes=False, silence=\"never_free\")")]
     fn flow(
         sensors: &Bound<'_, PyAny>,
         settings: Option<&Bound<'_, PyAny>>,
@@ -197,10 +205,11 @@ impl Ring {
         blanking_us: Option<&Bound<'_, PyAny>>,
         reach_us: Option<&Bound<'_, PyAny>>,
         several_echoes: Option<&Bound<'_, PyAny>>,
+        silence: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
         let (several, now) = (flag("several_echoes", several_echoes, false)?, begins(now_us)?);
         let listening = listening(window_us, blanking_us, reach_us)?;
-        Ok(Self::of(Fires::flow(sensors, settings, listening, several, now)?, now))
+        Self::of(Fires::flow(sensors, settings, listening, several, now)?, silence, now)
     }
 
     /// The next event at a time. Call again until there is none, then wait until ``next_deadline_us``.
@@ -533,22 +542,6 @@ impl Ring {
         of_sensor!(self, sensor, |ring| ring.measured(sensor, t_echo))
     }
 
-    /// Ask silence for a witness, from the next firing on: a firing without an echo is then ``"unanswered"``, which is
-    /// never free space, unless :meth:`answered` or :meth:`measured` says that the sensor listened.
-    ///
-    /// Example:
-    ///     >>> import eeruf
-    ///     >>> ring = eeruf.Ring(eeruf.tables.TABLE_I_D, t_delta_us=500, window_us=36_000)
-    ///     >>> ring.expect_answers()
-    ///     >>> while not isinstance(event := ring.poll(ring.next_deadline_us), eeruf.Reading):
-    ///     ...     pass
-    ///     >>> event.kind, ring.state(event.sensor).kind
-    ///     ('unanswered', 'unanswered')
-    fn expect_answers(&self) -> PyResult<()> {
-        act!(self.0.get()?, |ring| ring.expect_answers());
-        Ok(())
-    }
-
     /// A sensor has shown that it listens for the echo of its last firing, such as by a line that rises.
     ///
     /// Args:
@@ -560,8 +553,7 @@ impl Ring {
     ///
     /// Example:
     ///     >>> import eeruf
-    ///     >>> ring = eeruf.Ring(eeruf.tables.TABLE_I_D, t_delta_us=500, window_us=36_000)
-    ///     >>> ring.expect_answers()
+    ///     >>> ring = eeruf.Ring(eeruf.tables.TABLE_I_D, t_delta_us=500, window_us=36_000, silence="needs_answer")
     ///     >>> while not isinstance(event := ring.poll(ring.next_deadline_us), eeruf.Reading):
     ///     ...     if isinstance(event, eeruf.Fire):
     ///     ...         ring.answered(event.sensor)
@@ -694,7 +686,9 @@ impl Ring {
     ///     24000
     fn restart(&self, now_us: &Bound<'_, PyAny>) -> PyResult<()> {
         let now = instant("now_us", now_us)?;
-        act!(self.0.get()?, |ring| ring.restart(now));
+        let mut any = self.0.get()?;
+        act!(any, |ring| ring.restart(now));
+        any.watch = SensorWatch::new(0, now);
         Ok(())
     }
 }

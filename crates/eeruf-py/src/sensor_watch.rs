@@ -182,15 +182,15 @@ pub(crate) struct State {
     /// Microseconds since that was last confirmed, or for which nothing has been known or answered; at most 2^31
     /// (36 minutes), which stands for all longer times.
     age_us: u32,
-    /// Why nothing is known: ``"no_firing"``, ``"unsure"`` (one echo, or one silence), ``"rejected"`` or
-    /// ``"ambiguous"``; None for all else.
+    /// Why nothing is known: ``"no_firing"``, ``"unsure"`` (one echo, or one silence), ``"rejected"``, ``"no_witness"``
+    /// (silence that nothing confirms) or ``"ambiguous"``; None for all else.
     why: Option<&'static str>,
     /// The sensor whose sound explains an ambiguous echo, or ``"history"``; None for all else.
     explained_by: Option<ExplainedBy>,
 }
 
 const KINDS: [&str; 5] = ["obstacle", "clear", "too_close", "unanswered", "unknown"];
-const WHYS: [&str; 4] = ["no_firing", "unsure", "rejected", "ambiguous"];
+const WHYS: [&str; 5] = ["no_firing", "unsure", "rejected", "ambiguous", "no_witness"];
 
 impl State {
     /// For a sensor that is there.
@@ -210,6 +210,7 @@ impl State {
                     Doubt::NoFiring => (0, None),
                     Doubt::Rejected => (2, None),
                     Doubt::Ambiguous(by) => (3, Some(ExplainedBy::of(by))),
+                    Doubt::NoWitness => (4, None),
                     _ => (1, None),
                 };
                 Self { why: WHYS.get(why).copied(), explained_by: by, ..known(unknown, since) }

@@ -293,6 +293,7 @@ fn said(state: SensorState) -> (String, Micros) {
             let why = match why {
                 Doubt::NoFiring => "no firing".to_owned(),
                 Doubt::Rejected => "rejected".to_owned(),
+                Doubt::NoWitness => "no witness".to_owned(),
                 Doubt::Ambiguous(Explanation::Sensor(by)) => format!("ambiguous, explained by sensor {}", by + 1),
                 Doubt::Ambiguous(_) => "ambiguous".to_owned(),
                 _ => "unsure".to_owned(),

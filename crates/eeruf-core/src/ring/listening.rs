@@ -1,8 +1,9 @@
 //! [`Listening`]: the listening times and tolerances of a ring; checked, also while it runs.
 
-use super::config::RingConfig;
+use super::config::{RingConfig, Silence};
 use super::sensor::UNANSWERED;
 use crate::plan::{Limits, Plan};
+use crate::reading::ReadingKind;
 use crate::ring_error::{MAX_AUDIBLE, RingError};
 use crate::time::Micros;
 
@@ -19,6 +20,8 @@ pub(super) struct Listening {
     path_change: u16,
     /// The flag with which firings begin where silence counts only if the sensor has shown that it listens; else 0.
     unanswered: u8,
+    /// The kind of silence without a witness.
+    unwitnessed: ReadingKind,
 }
 
 const AS_T_DELTA: u16 = u16::MAX;
@@ -68,7 +71,17 @@ impl Listening {
         let narrow = |time: Micros| u16::try_from(time.as_micros()).ok().filter(|_| time < shortest);
         let blanking = narrow(blanking).ok_or(RingError::Blanking { blanking, window: shortest })?;
         let t_delta = narrow(t_delta).ok_or(RingError::CoarseTDelta { t_delta, window: shortest })?;
-        Ok(Self { window, audible: MAX_AUDIBLE, t_delta, blanking, path_change: AS_T_DELTA, unanswered: 0 })
+        let mut listening = Self {
+            window,
+            audible: MAX_AUDIBLE,
+            t_delta,
+            blanking,
+            path_change: AS_T_DELTA,
+            unanswered: 0,
+            unwitnessed: ReadingKind::NoEcho,
+        };
+        listening.set_silence(Silence::default());
+        Ok(listening)
     }
 
     /// For how long one sensor listens: no longer than the plan allows it.
@@ -97,19 +110,24 @@ impl Listening {
         blanking: Micros,
         plan: &P,
     ) -> Result<Self, RingError> {
-        let Self { audible, path_change, unanswered, .. } = *self;
-        Ok(Self { audible, path_change, unanswered, ..Self::checked(t_delta, window, blanking, plan)? })
+        let Self { audible, path_change, unanswered, unwitnessed, .. } = *self;
+        Ok(Self { audible, path_change, unanswered, unwitnessed, ..Self::checked(t_delta, window, blanking, plan)? })
     }
 
-    /// Silence needs a witness from now on.
-    pub(super) fn expect_answers(&mut self) {
-        self.unanswered = UNANSWERED;
+    pub(super) fn set_silence(&mut self, silence: Silence) {
+        self.unanswered = if silence == Silence::Trusted { 0 } else { UNANSWERED };
+        let needs_answer = silence == Silence::NeedsAnswer;
+        self.unwitnessed = if needs_answer { ReadingKind::Unanswered } else { ReadingKind::NoEcho };
     }
 
-    /// [`UNANSWERED`] if it does.
+    /// [`UNANSWERED`] if silence needs a witness.
     #[inline]
     pub(super) const fn unanswered(&self) -> u8 {
         self.unanswered
+    }
+
+    pub(super) const fn unwitnessed(&self) -> ReadingKind {
+        self.unwitnessed
     }
 
     /// R: how long sound is audible.

@@ -29,7 +29,7 @@ use listening::Listening;
 use punctuality::Punctuality;
 use sensor::{LISTENING, Noted, STUCK, Sensor, UNANSWERED};
 
-pub use config::RingConfig;
+pub use config::{RingConfig, Silence};
 pub use events::{PeriodStats, Reading, RingEvent};
 
 /// A ring of up to `K` sensors: the [`Plan`] `P` decides when each fires, and the [`Judge`] `J` what each reading is
@@ -381,11 +381,9 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
         Ok(())
     }
 
-    /// Asks silence for a witness, from the next firing on: a firing without an echo is then
-    /// [`ReadingKind::Unanswered`], which is never free space, unless [`answered`](Self::answered) says that its sensor
-    /// listened. For drivers whose sensors show it, such as by a line that rises.
-    pub fn expect_answers(&mut self) {
-        self.listening.expect_answers();
+    /// Sets what silence means, from the next firing on; [`Silence::NeverFree`] at the start.
+    pub fn set_silence(&mut self, silence: Silence) {
+        self.listening.set_silence(silence);
     }
 
     /// Reports that a sensor has shown that it listens for the echo of its last firing.

@@ -89,12 +89,14 @@ impl<const E: usize, const H: usize> Sensor<E, H> {
         later_us
     }
 
-    /// Forgets firings that are so long ago that no edge is an echo of them.
+    /// Forgets firings that are so long ago that no edge is an echo of them. Returns true if they are forgotten.
     #[inline]
-    pub(super) fn expire(&mut self, now: Instant) {
-        if self.firings.expire(now) && !self.is(LISTENING) {
+    pub(super) fn expire(&mut self, now: Instant) -> bool {
+        let expired = self.firings.expire(now);
+        if expired && !self.is(LISTENING) {
             self.set(OUTSIDE);
         }
+        expired
     }
 
     /// Forgets all firings, `now`.
@@ -161,9 +163,10 @@ impl<const E: usize, const H: usize> Sensor<E, H> {
         self.echoes.first().copied().filter(|&echo| echo != NO_ECHO)
     }
 
-    /// Ends the firing; of one that has ended already, takes the late edge.
+    /// Ends the firing; of one that has ended already, takes the late edge. `unwitnessed`: the kind of silence without a
+    /// witness.
     #[inline]
-    pub(super) fn end(&mut self) -> Ended<E> {
+    pub(super) fn end(&mut self, unwitnessed: ReadingKind) -> Ended<E> {
         let echoes = core::mem::replace(&mut self.echoes, [NO_ECHO; E]);
         let is_silent = echoes.first().is_none_or(|&echo| echo == NO_ECHO);
         let unusable = if self.is(STUCK) {
@@ -171,7 +174,7 @@ impl<const E: usize, const H: usize> Sensor<E, H> {
         } else if self.is(OUTSIDE) {
             Some(ReadingKind::TooEarly)
         } else if self.is(UNANSWERED) && is_silent {
-            Some(ReadingKind::Unanswered)
+            Some(unwitnessed)
         } else {
             None
         };

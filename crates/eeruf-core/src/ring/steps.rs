@@ -157,7 +157,7 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
     fn emit_reading(&mut self, sensor: u8, mut expected_change_us: impl FnMut(u8) -> i32) -> Option<RingEvent> {
         let own = self.sensors.get_mut(usize::from(sensor))?;
         let (fired, periods_ago) = (own.fired(), own.periods_ago(self.period));
-        let Ended { listened, was_ready, unusable, echoes } = own.end();
+        let Ended { listened, was_ready, unusable, echoes } = own.end(self.listening.unwitnessed());
         let mut ended_at = fired + self.closes_after(sensor);
         let echoes = heard(&echoes);
         if was_ready {
@@ -171,7 +171,7 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
             firing.expected_change_us = expected_change_us(sensor);
             let t_delta = self.listening.t_delta_of(&self.plan, sensor);
             let heard = Heard { sensor, fired, echoes, firing, t_delta };
-            let verdict = match unusable {
+            let mut verdict = match unusable {
                 Some(kind) => self.judge.skip(&heard, kind),
                 None => {
                     let (sensors, plan, listening) = (&self.sensors, &self.plan, &self.listening);
@@ -183,6 +183,10 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
                 }
             };
             self.plan.judged(&heard, &verdict, &self.judge);
+            if unusable == Some(ReadingKind::NoEcho) {
+                // Whatever judge and plan make of silence without a witness, it is not reported as free space.
+                verdict.kind = ReadingKind::NoEcho;
+            }
             self.plan.ended(sensor, ended_at);
             if self.oldest == sensor {
                 self.find_oldest(fired);

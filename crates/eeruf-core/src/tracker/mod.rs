@@ -155,6 +155,11 @@ impl<const K: usize, const H: usize, const E: usize> Judge for EchoTracker<K, H,
     fn skip(&mut self, heard: &judging::Heard<'_>, kind: ReadingKind) -> Verdict {
         let change_us = heard.firing.expected_change_us;
         match self.sensors.get_mut(usize::from(heard.sensor)) {
+            // Silence without a witness contradicts echoes as any does, or a path would be confirmed for lack of it; it
+            // is not reported as free space.
+            Some(tracks) if kind == ReadingKind::NoEcho => {
+                tracks.push_all::<E>(&[], heard.firing, heard.t_delta, &self.settings)
+            }
             Some(tracks) => tracks.skip(kind, heard.echoes.first().copied(), change_us),
             None => heard.unjudged(Some(kind)),
         }

@@ -1,7 +1,7 @@
 //! Rings whose triggers hardware gives at the instants of [`Ring::upcoming`], and whose echoes it reports by value.
 
 use eeruf_core::{
-    Instant, Micros, ReadingKind, Ring, RingConfig, RingError, RingEvent, ScheduledRing, SensorError,
+    Instant, Micros, ReadingKind, Ring, RingConfig, RingError, RingEvent, ScheduledRing, SensorError, Silence,
     hopping::{HoppingCode, HoppingListening, HoppingRing, HoppingSchedule, HoppingSettings},
     judge::Judge,
     plan::{Plan, Upcoming},
@@ -131,7 +131,7 @@ fn upcoming_of_hopping_ring_ends_with_its_period() {
 #[test]
 fn report_after_keeps_readings_open_for_what_comes_late() {
     let mut ring = ring(0);
-    ring.expect_answers();
+    ring.set_silence(Silence::NeedsAnswer);
     ring.set_report_after(Micros::from_millis(70)).unwrap();
     let mut kinds: Vec<(u8, ReadingKind)> = vec![];
     let mut due: Vec<(Instant, u8)> = vec![];

@@ -5,9 +5,9 @@
 //! Lines: `#` the name of a ring; `S` a schedule: period, phases, then the firing times by phase; `V` requirements
 //! (`t_delta`, interval, window, neighbours, layout, stale echo), then separation and window, both 0 if not met; `L`
 //! how a ring listens (`t_delta`, window, blanking, consecutive, path change, audible) and its start. Then echoes `E`,
-//! stuck lines `K`, corrected firings `F`, sensors enabled or not `N`, restarts `R`, another path change `C` or
-//! `audible` `A`, and polls `P` with the deadline after it and the event, if there is one. `O`: the state before a
-//! sensor at an instant: kind, echo, age, reason, explanation. 2^32 - 1 stands for no echo, and where a ring listens
+//! stuck lines `K`, corrected firings `F`, silence `G`, sensors enabled or not `N`, restarts `R`, another path change
+//! `C` or `audible` `A`, and polls `P` with the deadline after it and the event, if there is one. `O`: the state before
+//! a sensor at an instant: kind, echo, age, reason, explanation. 2^32 - 1 stands for no echo, and where a ring listens
 //! for the default; as the explanation of a reading 254 stands for history and 255 for none. Flow rings follow: see
 //! [`flow`].
 
@@ -18,7 +18,7 @@ use std::fmt::{Display, Write};
 
 use eeruf_core::{
     EchoFilter, Instant, Layout, Micros, PeriodStats, Phase, Reading, ReadingKind, Requirements, Ring, RingConfig,
-    RingEvent, Schedule,
+    RingEvent, Schedule, Silence,
     judge::Explanation,
     plan::ScheduledFiring,
     watch::{Doubt, SensorState, SensorWatch},
@@ -97,6 +97,7 @@ fn flat_state(state: SensorState) -> [u32; 5] {
                 Doubt::Unsure => (1, None),
                 Doubt::Rejected => (2, None),
                 Doubt::Ambiguous(by) => (3, Some(by)),
+                Doubt::NoWitness => (4, None),
                 _ => unreachable!("{why:?}"),
             };
             [0, NONE, since.as_micros(), why, explanation(by)]
@@ -236,6 +237,7 @@ fn run<const M: usize>(r: &mut Random, text: &mut Text, schedule: &Schedule<K, M
     (config.t_delta, config.window) = (asked(t_delta), asked(window));
     (config.path_change, config.audible) = (asked(path_change), asked(audible));
     let mut ring = ScheduledBy::<M>::unverified(schedule, config, Instant::from_micros(start)).unwrap();
+    ring.set_silence(silence(text, period));
     let mut watch = SensorWatch::<K>::new(0, Instant::from_micros(start));
     let sensors = schedule.sensors() as u8;
     let paths = [r.within(100, window), r.within(100, 2 * period)];
@@ -287,6 +289,12 @@ fn run<const M: usize>(r: &mut Random, text: &mut Text, schedule: &Schedule<K, M
             }
         }
     }
+}
+
+/// One of the settings of silence, written down.
+fn silence(text: &mut Text, which: u32) -> Silence {
+    text.add('G', [which % 3]);
+    [Silence::NeverFree, Silence::NeedsAnswer, Silence::Trusted][which as usize % 3]
 }
 
 fn correct<const M: usize>(text: &mut Text, ring: &mut ScheduledBy<'_, M>, sensor: u8, at: u32) {

@@ -88,6 +88,7 @@ fn an_edge_from_before_the_firing_belongs_to_nothing() {
 fn late_edge_is_reported_once() {
     let schedule = schedule();
     let mut ring = ring(&schedule);
+    ring.set_silence(eeruf_core::Silence::Trusted);
     let fired = fire(&mut ring);
     assert_eq!(reading(&mut ring).1.kind, ReadingKind::NoEcho);
     // Its window is closed, and it is no late echo either.

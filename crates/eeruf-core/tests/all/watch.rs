@@ -2,7 +2,7 @@
 
 use eeruf_core::tables::PAPER_12;
 use eeruf_core::{
-    Instant, Micros, Phase, Reading, ReadingKind, Ring, RingConfig, RingEvent, ScheduledRing, SensorError,
+    Instant, Micros, Phase, Reading, ReadingKind, Ring, RingConfig, RingEvent, ScheduledRing, SensorError, Silence,
     judge::Explanation,
     watch::{Doubt, SensorState, SensorWatch},
 };
@@ -12,7 +12,9 @@ fn at(us: u32) -> Instant {
 }
 
 fn ring(start: u32) -> ScheduledRing<'static, 12> {
-    Ring::new(&PAPER_12, RingConfig::new().with_window(Micros::from_millis(40)), at(start)).unwrap()
+    let mut ring = Ring::new(&PAPER_12, RingConfig::new().with_window(Micros::from_millis(40)), at(start)).unwrap();
+    ring.set_silence(Silence::Trusted);
+    ring
 }
 
 /// Runs for some periods; `echo(sensor, period)` is what each sensor hears. Returns when it ended, and who got blind.
@@ -251,4 +253,46 @@ fn confirmed_silence_ends_a_count_of_rejected_echoes() {
     let blind: Vec<_> =
         (0..600).filter(|_| watch.observe(&reading(ReadingKind::Rejected), at(1_500_000)).is_some()).collect();
     assert_eq!(blind, [254]);
+}
+
+// Silence of a ring that nobody drives is free space only if that was said by name, or if something shows that the
+// sensor listened.
+#[test]
+fn silence_without_a_witness_is_never_free_space() {
+    for (silence, witness) in [
+        (None, false),
+        (Some(Silence::NeverFree), true),
+        (Some(Silence::NeedsAnswer), false),
+        (Some(Silence::NeedsAnswer), true),
+        (Some(Silence::Trusted), false),
+    ] {
+        let mut ring = Ring::new(&PAPER_12, RingConfig::new().with_window(Micros::from_millis(40)), at(0)).unwrap();
+        silence.into_iter().for_each(|silence| ring.set_silence(silence));
+        let (mut watch, mut kinds, mut now) = (SensorWatch::<12>::new(0, at(0)), vec![], at(0));
+        while kinds.len() < 120 {
+            now = ring.next_deadline();
+            while let Some(event) = ring.poll(now) {
+                watch.observe(&event, now);
+                match event {
+                    RingEvent::Fire { sensor, .. } if witness => ring.measured(sensor, None).unwrap(),
+                    RingEvent::Reading(reading) => kinds.push(reading.kind),
+                    _ => {}
+                }
+            }
+        }
+        let state = watch.state(0, now).unwrap();
+        let (first, later) = match (silence, witness) {
+            (Some(Silence::Trusted), _) | (_, true) => (ReadingKind::NoEcho, ReadingKind::Clear),
+            (Some(Silence::NeedsAnswer), false) => (ReadingKind::Unanswered, ReadingKind::Unanswered),
+            _ => (ReadingKind::NoEcho, ReadingKind::NoEcho),
+        };
+        let of = |kind| kinds.iter().filter(|&&each| each == kind).count();
+        assert!(kinds[0] == first && of(later) >= 108 && of(first) + of(later) >= 120, "{silence:?} {kinds:?}");
+        let as_said = match later {
+            ReadingKind::Clear => matches!(state, SensorState::Clear { .. }),
+            ReadingKind::Unanswered => matches!(state, SensorState::Unanswered { .. }),
+            _ => matches!(state, SensorState::Unknown { why: Doubt::NoWitness, .. }),
+        };
+        assert!(as_said, "{silence:?} {state:?}");
+    }
 }

@@ -1,6 +1,6 @@
 //! [`MeasuringRing`]: a ring of modules that measure by themselves.
 
-use eeruf_core::{Instant, Micros, ReadingKind, Ring, RingEvent, judge::Judge, plan::Plan};
+use eeruf_core::{Instant, Micros, ReadingKind, Ring, RingEvent, Silence, judge::Judge, plan::Plan};
 
 use super::{Fault, Measured, Measures};
 use crate::error::SetupError;
@@ -107,7 +107,7 @@ impl<P: Plan, J: Judge, M: Measures, const K: usize, const H: usize> MeasuringRi
         }
         ring.set_report_after(report_after.min(min_refire))?;
         // Silence is no free space.
-        ring.expect_answers();
+        ring.set_silence(Silence::NeedsAnswer);
         Ok(Self { ring, modules, states: [State::NEW; K] })
     }
 

@@ -5,7 +5,7 @@ use eeruf_core::{
     conditions::Violation,
 };
 
-use super::ring_runner::{FiringPlan, Hops, RingRunner, RingStart, StartError, Started, TableFiring};
+use super::ring_runner::{FiringPlan, Hops, RingRunner, RingStart, StartError, Started, TableFiring, trusting};
 use crate::world::{AnySchedule, Robot};
 
 /// A ring that moves along a ladder of schedules (end of Sec. 3.1).
@@ -51,7 +51,7 @@ pub(super) fn adaptive<'s, const E: usize>(start: &RingStart<'s>) -> Started<'s>
     let adaptation = Adaptation::new(&start.plan.ladder).map_err(StartError::Ladder)?;
     // A ladder has a rung.
     let ring = Ring::new(&start.plan.ladder[0], start.config().with_echoes::<E>(), start.now)?;
-    Ok(Box::new(AdaptiveRing { ring, adaptation }))
+    Ok(Box::new(AdaptiveRing { ring: trusting(ring), adaptation }))
 }
 
 impl From<Violation> for StartError {

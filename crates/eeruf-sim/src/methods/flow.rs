@@ -3,7 +3,7 @@
 use eeruf_core::{MAX_SENSORS, flow::FlowRing, hopping::HoppingListening};
 
 use super::method::MAX_ECHOES;
-use super::ring_runner::{RingStart, SEVERAL_TRACKS, Started, TRACKS};
+use super::ring_runner::{RingStart, SEVERAL_TRACKS, Started, TRACKS, trusting};
 use crate::world::Robot;
 
 /// A flow ring, no larger than needed.
@@ -25,5 +25,5 @@ fn ring<'s, const K: usize, const H: usize, const E: usize>(start: &RingStart<'s
     let mut settings = start.flow.with_fleet_number(fleet_number);
     settings.shortest_cycle = start.robot.period;
     let listening = HoppingListening::new(window).with_blanking(blanking);
-    Ok(Box::new(FlowRing::<K, H, E>::flow(sensors.len(), settings, listening, start.now)?))
+    Ok(Box::new(trusting(FlowRing::<K, H, E>::flow(sensors.len(), settings, listening, start.now)?)))
 }

@@ -11,7 +11,9 @@ use eeruf_core::{
 
 use super::adaptive::RUNGS;
 use super::method::MAX_ECHOES;
-use super::ring_runner::{FiringPlan, Hops, RingRunner, RingStart, SEVERAL_TRACKS, StartError, Started, TRACKS};
+use super::ring_runner::{
+    FiringPlan, Hops, RingRunner, RingStart, SEVERAL_TRACKS, StartError, Started, TRACKS, trusting,
+};
 use crate::world::{AnySchedule, Robot};
 
 /// The least shift of crosstalk from phase to phase: 90 us more than the tracker's `T_delta`, for jitter and lateness.
@@ -38,7 +40,8 @@ pub(super) fn hopping<'s>(start: &RingStart<'s>) -> Started<'s> {
 fn ring<'s, const K: usize>(start: &RingStart<'s>) -> Started<'s> {
     let schedule = schedule_of::<K>(start.robot, &start.hops)?;
     let settings = start.hops.settings.with_neighbours(start.robot.neighbours);
-    Ok(Box::new(HoppingRing::<K>::hopping(&schedule, settings, listening(start.robot), seed(start), start.now)?))
+    let ring = HoppingRing::<K>::hopping(&schedule, settings, listening(start.robot), seed(start), start.now)?;
+    Ok(Box::new(trusting(ring)))
 }
 
 /// Returns true if its sensors have limits of their own in a schedule that may keep them.
@@ -101,7 +104,8 @@ fn limited<const H: usize, const E: usize>(
     schedule: &HoppingSchedule<MAX_SENSORS>,
     limits: EachSensor<MAX_SENSORS>,
 ) -> Result<LimitedRing<H, E>, HoppingError> {
-    LimitedRing::with_limits(schedule, limits, settings_for(start), listening(start.robot), seed(start), start.now)
+    let (settings, listening) = (settings_for(start), listening(start.robot));
+    LimitedRing::with_limits(schedule, limits, settings, listening, seed(start), start.now).map(trusting)
 }
 
 /// A ring whose sensors may have limits of their own.

@@ -2,7 +2,8 @@
 //! under simulated time.
 
 use eeruf_core::{
-    EachSensor, Instant, MAX_SENSORS, Micros, Ring, RingConfig, RingError, RingEvent, ScheduleError, VerifiedSchedule,
+    EachSensor, Instant, MAX_SENSORS, Micros, Ring, RingConfig, RingError, RingEvent, ScheduleError, Silence,
+    VerifiedSchedule,
     conditions::Violation,
     flow::{FlowPlan, FlowSettings},
     hopping::{HoppingError, HoppingPlan, HoppingSchedule, HoppingSettings, Weighed},
@@ -247,6 +248,14 @@ pub(super) const SEVERAL_TRACKS: usize = 12;
 /// The same of immediate refiring, in which a sensor may fire many times while another listens once.
 const REFIRED: usize = 16;
 
+/// A simulated sensor that hears nothing has listened.
+pub(super) fn trusting<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize>(
+    mut ring: Ring<P, J, K, E, H>,
+) -> Ring<P, J, K, E, H> {
+    ring.set_silence(Silence::Trusted);
+    ring
+}
+
 /// A ring with room for `K` sensors: see [`RingStart::run`].
 pub(super) fn ring<'s, P, const K: usize, const E: usize, const H: usize, const ASKS: bool>(
     plan: P,
@@ -258,9 +267,9 @@ where
 {
     let config = config.with_echoes::<E>();
     Ok(if ASKS {
-        Box::new(Ring::<P, _, K, E, H>::remembering(plan, config, now)?)
+        Box::new(trusting(Ring::<P, _, K, E, H>::remembering(plan, config, now)?))
     } else {
-        Box::new(AgreementRing::<P, K, E>::agreement_alone(plan, config, now)?)
+        Box::new(trusting(AgreementRing::<P, K, E>::agreement_alone(plan, config, now)?))
     })
 }
 

@@ -13,7 +13,7 @@ use eeruf_core::{
     watch::SensorWatch,
 };
 
-use super::{Text, World, flat, flat_state};
+use super::{Text, World, flat, flat_state, silence};
 use crate::common::random::Random;
 
 const STEPS: u32 = 260;
@@ -86,10 +86,7 @@ fn run<const K: usize>(r: &mut Random, text: &mut Text) {
     let (mut ring, window, start) = begin::<K>(r, text);
     let mut watch = SensorWatch::<K>::new(0, Instant::from_micros(start));
     let needs_answers = r.once_in(2);
-    if needs_answers {
-        text.add('G', []);
-        ring.expect_answers();
-    }
+    ring.set_silence(silence(text, if needs_answers { start % 2 } else { 2 }));
     let mut world = World {
         now: start,
         late: r.one_of(&[0, 0, 30, 300, 3_000]),

@@ -647,6 +647,8 @@ static OUT_OF_LINE void forget_firings(EerufSensor *sensor, uint8_t firings, uin
     while (firings-- > 0) sensor->fired_us[firings] = now_us - LONG_AGO;
 }
 
+static void forget_readings(EerufRing *ring, uint8_t sensor);
+
 static void end_late_period(EerufRing *ring, EerufPeriod *ended, uint32_t now_us, bool hops) {
     uint8_t x;
     ended->max_late_us = ring->latest_us;
@@ -657,6 +659,8 @@ static void end_late_period(EerufRing *ring, EerufPeriod *ended, uint32_t now_us
         EerufSensor *sensor = sensor_of(ring, x);
         if (is_long_ago(sensor->fired_us[0], now_us)) {
             forget_firings(sensor, hops ? 1 : EERUF_FIRINGS, now_us);
+            /* Its next reading cannot be compared: the instant of its firing before is no longer known. */
+            forget_readings(ring, x);
             /* No edge is an echo of them. */
             if (!(sensor->flags & LISTENING)) sensor->flags |= OUTSIDE;
         }

@@ -427,7 +427,8 @@ typedef struct EerufWatch {
     uint8_t count;
 } EerufWatch;
 
-/* Of each sensor there is a place for. Nothing is known yet. */
+/* Of each sensor there is a place for. Nothing is known yet. Again with each eeruf_ring_restart: after a long sleep the
+   clock may have come round, so that an old state would pass for a young one. */
 EerufStatus eeruf_watch_init(EerufWatch *watch, size_t watch_size, EerufWatched *sensors, size_t sensors_size,
                              uint32_t now_us);
 /* Takes in an event of a poll at `now_us`: every one, or at least readings and ends of periods. One reading that does

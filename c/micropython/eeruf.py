@@ -236,9 +236,10 @@ class Ring:
             self._watched -= 1
         # Before the clock comes round to them.
         long_ago = (now_us - self._long_ago) & self._mask
-        for sensor in self._sensors:
+        for x, sensor in enumerate(self._sensors):
             if self._is_long_ago(sensor.firings[0], now_us):
                 sensor.forget_firings(long_ago)
+                self.forget(x)  # the instant that its next reading would be compared from is no longer known
                 if not sensor.listening:
                     sensor.outside = True  # no edge is an echo of them
             if (now_us - sensor.seen_at) & self._mask > self._half:
@@ -291,7 +292,7 @@ class Ring:
         pends = self._pending > 0 or self._oldest != NOBODY
         if not is_due and not (pends and self._reached(now_us, self._emit_at)):
             if (self._due - now_us) & self._mask > self._horizon():
-                self.restart(now_us)  # the clock has jumped
+                self._restart(now_us)  # the clock has jumped
             return None
         return self._advance(now_us, change_us, is_due)
 
@@ -558,7 +559,12 @@ class Ring:
         self._skip()
 
     def restart(self, now_us):
-        """Again with the first phase, after a long sleep."""
+        """Again with the first phase, after a long sleep. Nothing is known then."""
+        self._restart(now_us)
+        for sensor in self._sensors:
+            sensor.shows, sensor.seen_at, sensor.doubted, sensor.silent = "no_firing", now_us, False, False
+
+    def _restart(self, now_us):
         settling = self.schedule._settling_us()
         waits = (self._last_fired + settling - now_us) & self._mask
         if 0 < waits <= self._horizon():

@@ -627,8 +627,7 @@ class FlowRing(Ring):
                 sensor.forget_tracks()
         self._look_ahead()
 
-    def restart(self, now_us):
-        """Again, after a long sleep."""
+    def _restart(self, now_us):
         self._known_from = now_us
         for sensor in self._sensors:
             sensor.drop(self._known_at(now_us))

@@ -133,6 +133,12 @@ impl<const K: usize> SensorWatch<K> {
         Self { sensors: [nothing; K], blind_after }
     }
 
+    /// Forgets all, `now`: to be called with [`Ring::restart`](crate::Ring::restart), since after a long sleep the clock
+    /// may have come round, so that an old state would pass for a young one.
+    pub const fn restart(&mut self, now: Instant) {
+        *self = Self::new(self.blind_after, now);
+    }
+
     /// Takes in an event that a poll at `now` returned. Returns a sensor (from 0) that has just become blind; it is
     /// returned once, and again only after something was accepted or confirmed clear.
     ///

@@ -194,7 +194,8 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
     }
 
     /// Starts again with phase a at `now`, or as soon as the last firings allow. Firings under way are dropped,
-    /// readings from before are forgotten; ages and the count of periods go on.
+    /// readings from before are forgotten; ages and the count of periods go on. Restart a
+    /// [`SensorWatch`](crate::watch::SensorWatch) with it.
     pub fn restart(&mut self, now: Instant) {
         self.plan.restart(now);
         // Sound from before may still be heard, and its firings are no longer known by this clock.

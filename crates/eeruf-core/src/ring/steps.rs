@@ -106,8 +106,12 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
         if changed {
             self.disturb();
         }
-        for sensor in &mut self.sensors {
-            sensor.expire(now);
+        // At most 64 sensors.
+        for (x, sensor) in (0..).zip(&mut self.sensors) {
+            if sensor.expire(now) {
+                // Its next reading cannot be compared: the instant of its firing before is no longer known.
+                self.judge.forget(x);
+            }
         }
         if is_long_ago(self.known_from, now) {
             self.known_from = long_before(now);

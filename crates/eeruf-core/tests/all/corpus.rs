@@ -258,6 +258,9 @@ fn run<const M: usize>(r: &mut Random, text: &mut Text, schedule: &Schedule<K, M
         }
         if r.once_in(16 * world.calm) {
             operate(r, text, &mut ring, world.now);
+            if text.0.lines().last().is_some_and(|line| line.starts_with('R')) {
+                watch.restart(Instant::from_micros(world.now));
+            }
         }
         for _ in 0..20 {
             let event = ring.poll(Instant::from_micros(world.now));

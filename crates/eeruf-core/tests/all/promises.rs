@@ -386,3 +386,42 @@ fn schedules_hash_as_they_compare() {
     assert_eq!((verified, hash(verified)), (&TABLE_I_D, hash(&TABLE_I_D)));
     assert!(TABLE_I_A != TABLE_I_D && hash(&TABLE_I_A) != hash(&TABLE_I_D));
 }
+
+/// The kind of the first reading of sensor 1 after so long without a poll, where two agree that are longer than sound is
+/// audible.
+fn across_a_sleep(minutes: u32) -> ReadingKind {
+    let config = RingConfig::new().with_audible(ms(10));
+    let mut ring = Ring::new(&PAPER_12, config, Instant::from_micros(0)).unwrap();
+    let (mut now, mut awake, mut kinds) = (Instant::from_micros(0), true, vec![]);
+    loop {
+        if awake && kinds.len() == 4 {
+            awake = false;
+            // Close to the end of the period, which comes before the sensor's next firing.
+            while !matches!(ring.upcoming().next(), Some(Upcoming { sensor: 0, .. })) {
+                now = ring.next_deadline();
+                ring.poll(now);
+            }
+            now += ms(60_000 * minutes);
+            kinds.clear();
+        } else {
+            let due = ring.next_deadline();
+            now = if now.has_reached(due) { now } else { due };
+        }
+        match ring.poll(now) {
+            Some(RingEvent::Fire { sensor: 1, .. }) => ring.echo(1, now + ms(30)).unwrap(),
+            Some(RingEvent::Reading(reading)) if reading.sensor == 1 => kinds.push(reading.kind),
+            _ => {}
+        }
+        if !awake && !kinds.is_empty() {
+            return kinds[0];
+        }
+    }
+}
+
+// A reading from before the ring slept is compared with nothing: the instant it was heard at is forgotten.
+#[test]
+fn readings_across_a_long_sleep_are_not_compared() {
+    for minutes in [18, 20, 25, 30, 35] {
+        assert_ne!(across_a_sleep(minutes), ReadingKind::Accepted, "{minutes} minutes");
+    }
+}

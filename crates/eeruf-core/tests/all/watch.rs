@@ -296,3 +296,17 @@ fn silence_without_a_witness_is_never_free_space() {
         assert!(as_said, "{silence:?} {state:?}");
     }
 }
+
+// After 72 minutes the clock of 32 bits shows 25 seconds: what was known before a restart would pass for young.
+#[test]
+fn nothing_is_known_after_a_restart() {
+    let (mut ring, mut watch) = (ring(0), SensorWatch::<12>::new(0, at(0)));
+    let (now, _) = run(&mut ring, &mut watch, 5, |_, _| None);
+    let later = now + Micros::from_millis(72 * 60_000 - 4_294_967);
+    ring.restart(later);
+    watch.restart(later);
+    for sensor in 0..12 {
+        let unknown = SensorState::Unknown { since: Micros::ZERO, why: Doubt::NoFiring };
+        assert_eq!(watch.state(sensor, later), Ok(unknown));
+    }
+}

@@ -111,6 +111,9 @@ fn run<const K: usize>(r: &mut Random, text: &mut Text) {
         }
         if r.once_in(12 * world.calm) {
             operate(r, text, &mut ring, world.now);
+            if text.0.lines().last().is_some_and(|line| line.starts_with('R')) {
+                watch.restart(Instant::from_micros(world.now));
+            }
         }
         for _ in 0..20 {
             let event = ring.poll_expecting(Instant::from_micros(world.now), |x| change[usize::from(x)]);

@@ -66,7 +66,10 @@ pub(crate) fn has_library(library: &str, target: &str) -> bool {
 /// WebAssembly `std` too.
 pub(crate) fn cargo_for_target(target: &str) -> Result<Command> {
     if has_library("core", target) {
-        return Ok(Command::new("cargo"));
+        let mut cargo = Command::new("cargo");
+        // Images are looked for in `target_folder`.
+        cargo.env_remove("CARGO_TARGET_DIR");
+        return Ok(cargo);
     }
     let debian = [DEBIAN_CARGO, DEBIAN_RUSTC, "/usr/lib/rustlib/src/rust/library/core", "/usr/bin/rust-lld"];
     if debian.iter().all(|path| Path::new(path).exists()) {

@@ -16,6 +16,7 @@ mod four_worlds;
 mod hopping_ablation;
 mod hopping_limits;
 mod hopping_periods;
+mod measure;
 mod modules;
 mod narrow_panels;
 mod open_rings;
@@ -44,7 +45,7 @@ type Answer = Result<(), Box<dyn Error>>;
 /// A command: its name, its arguments, what it prints.
 type Command = (&'static str, &'static str, &'static str, fn(&[String]) -> Answer);
 
-const COMMANDS: [Command; 28] = [
+const COMMANDS: [Command; 29] = [
     ("constant-depth", "", "angles at which a wall is heard, by distance and gain", constant_depth::main),
     (
         "diagnose-places",
@@ -70,6 +71,12 @@ const COMMANDS: [Command; 28] = [
     ),
     ("hopping-limits", "", "hopping when late, and beliefs by accident", hopping_limits::main),
     ("hopping-periods", "RING.toml ..", "periods of many phases, by kinds of codes", hopping_periods::main),
+    (
+        "measure",
+        "RING.toml .. [--first N] [--places N] [--choose N] [--csv FILE]",
+        "ways of firing by what a robot needs",
+        measure::main,
+    ),
     ("modules", "", "tables of docs/reference/modules.md", modules::main),
     ("narrow-panels", "", "panels narrower than a Fresnel zone", narrow_panels::main),
     ("open-rings", "[SECONDS [FILE [PART/PARTS]]]", "rings that the atlas leaves open", open_rings::main),

@@ -5,6 +5,7 @@ mod by_name;
 mod conditions;
 mod difference;
 mod error;
+pub mod measure;
 mod progress;
 pub mod rooms;
 pub mod set_one;

@@ -289,6 +289,15 @@ methods! {
         belief: Belief::AsSketched,
         refire: |_, _, _| Micros::ZERO,
     }
+    /// One by one as a loop that blocks: fire, wait for the echo or for 38 ms, then 10 ms, and the next. Every echo is
+    /// believed.
+    Blocking = "blocking" {
+        on_demand: true,
+        schedule: schedules::together,
+        ring: sketch::blocking,
+        belief: Belief::All,
+        refire: |_, _, _| Micros::ZERO,
+    }
     /// By a table of any number of phases, the robot's own schedule unless the sketch has one.
     Table = "table" {
         sketch: true,

@@ -15,6 +15,21 @@ pub(super) fn in_turn<'s>(start: &RingStart<'s>) -> Started<'s> {
     lanes(start, vec![singly(0..start.robot.sensors.len() as u8)])
 }
 
+/// A loop that blocks waits so long for an echo: as long as an HC-SR04 without one holds its line.
+const BLOCKS: Micros = Micros::from_millis(38);
+/// The pause of a loop that blocks.
+const BLOCKING_PAUSE: Micros = Micros::from_millis(10);
+
+/// One sensor after the other, each waited for as long as a loop that blocks does.
+pub(super) fn blocking<'s>(start: &RingStart<'s>) -> Started<'s> {
+    let mut robot = start.robot.clone();
+    robot.window = robot.window.min(BLOCKS);
+    robot.firing = Sketch { pause: BLOCKING_PAUSE, ..Sketch::default() };
+    let lane =
+        Lane { silent: Some((robot.window, BLOCKS)), ..Lane::new(singly(0..robot.sensors.len() as u8), start.now) };
+    run(&robot, start.now, vec![lane], Micros::ZERO)
+}
+
 /// Arrays side by side, each in turn.
 pub(super) fn arrays<'s>(start: &RingStart<'s>) -> Started<'s> {
     let sensors = start.robot.sensors.len() as u8;
@@ -49,7 +64,7 @@ pub(super) fn free_running<'s>(start: &RingStart<'s>) -> Started<'s> {
         let cycle = Micros::new((cycle * (1.0 + 1e-6 * deviation)).round() as u32);
         Lane { cycle: Some(cycle), ..Lane::new(vec![vec![sensor as u8]], start.now + first) }
     };
-    run(start, (0..sensors.len()).map(lane).collect(), Micros::ZERO)
+    run(start.robot, start.now, (0..sensors.len()).map(lane).collect(), Micros::ZERO)
 }
 
 /// By a table of any number of phases.
@@ -85,11 +100,11 @@ fn lanes<'s>(start: &RingStart<'s>, lanes: Vec<Vec<Vec<u8>>>) -> Started<'s> {
 
 fn lanes_resting<'s>(start: &RingStart<'s>, lanes: Vec<Vec<Vec<u8>>>, rest: Micros) -> Started<'s> {
     let lanes = lanes.into_iter().map(|sets| Lane::new(sets, start.now)).collect();
-    run(start, lanes, start.robot.firing.rest.unwrap_or(rest))
+    run(start.robot, start.now, lanes, start.robot.firing.rest.unwrap_or(rest))
 }
 
-fn run<'s>(start: &RingStart<'s>, lanes: Vec<Lane>, rest: Micros) -> Started<'s> {
-    let Robot { ref sensors, ref firing, period, .. } = *start.robot;
+fn run<'s>(robot: &Robot, now: Instant, lanes: Vec<Lane>, rest: Micros) -> Started<'s> {
+    let Robot { ref sensors, ref firing, period, .. } = *robot;
     let plan = LanePlan {
         lanes,
         pause: firing.pause,
@@ -100,9 +115,9 @@ fn run<'s>(start: &RingStart<'s>, lanes: Vec<Lane>, rest: Micros) -> Started<'s>
         enabled: [true; MAX_SENSORS],
         paused: false,
         period,
-        period_start: start.now,
+        period_start: now,
     };
-    ring::<_, MAX_SENSORS, 1, REMEMBERED, AGREEMENT_ALONE>(plan, config_of(&listening(start.robot)), start.now)
+    ring::<_, MAX_SENSORS, 1, REMEMBERED, AGREEMENT_ALONE>(plan, config_of(&listening(robot)), now)
 }
 
 /// Fires by a table of any number of phases, period after period.
@@ -132,11 +147,13 @@ struct Lane {
     pending: u64,
     /// The time from turn to turn, if it is fixed.
     cycle: Option<Micros>,
+    /// How long its sensors listen, and how long they take where they hear nothing, if that is longer.
+    silent: Option<(Micros, Micros)>,
 }
 
 impl Lane {
     fn new(sets: Vec<Vec<u8>>, due: Instant) -> Self {
-        Self { sets, set: 0, place: 0, due, pending: 0, cycle: None }
+        Self { sets, set: 0, place: 0, due, pending: 0, cycle: None, silent: None }
     }
 
     /// The sensor of the present set that fires next; none while the set listens.
@@ -263,6 +280,10 @@ impl Plan for LanePlan {
             return;
         }
         lane.pending &= !bit;
+        let at = match lane.silent {
+            Some((window, lasts)) if at.has_reached(lane.due + window) => later(at, lane.due + lasts),
+            _ => at,
+        };
         let soonest = match lane.cycle {
             Some(cycle) => later(lane.due + cycle, at),
             None => later(lane.due + self.turn, at + self.pause),

@@ -324,15 +324,34 @@ impl RoomPlan {
     /// # Errors
     /// [`WorldError`] for a robot that does not fit.
     pub fn world(&self, robot: &Robot, speed_m_s: f64) -> Result<World, WorldError> {
-        let (direction, way_m) = self.way;
-        let speed_m_s = speed_m_s.min(way_m / DRIVING_S);
-        let moves = speed_m_s > 0.0;
+        self.moving(robot, speed_m_s.min(self.way_m() / DRIVING_S), 0.0)
+    }
+
+    /// The free way ahead of a robot that drives, in metres.
+    pub(in crate::experiments) fn way_m(&self) -> f64 {
+        self.way.1
+    }
+
+    /// Returns true if it looks where it drives.
+    pub(in crate::experiments) fn turns(&self) -> bool {
+        self.turns
+    }
+
+    /// The world with a robot that drives off at this speed, or turns where it stands.
+    pub(in crate::experiments) fn moving(
+        &self,
+        robot: &Robot,
+        speed_m_s: f64,
+        turn_rad_s: f64,
+    ) -> Result<World, WorldError> {
+        let (direction, _) = self.way;
+        let moves = speed_m_s > 0.0 || turn_rad_s != 0.0;
         let motion = match moves {
-            true => Motion::Constant { velocity: speed_m_s * direction, turn_rad_s: 0.0 },
+            true => Motion::Constant { velocity: speed_m_s * direction, turn_rad_s },
             false => Motion::Still,
         };
         // The alcove's robot looks at what it backs away from.
-        let pose = if moves && self.turns {
+        let pose = if speed_m_s > 0.0 && self.turns {
             Pose::new(self.pose.translation.vector, libm::atan2(direction.y, direction.x))
         } else {
             self.pose

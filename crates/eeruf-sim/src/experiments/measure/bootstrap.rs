@@ -1,0 +1,124 @@
+//! Intervals by rooms drawn again.
+
+use super::trial::NEVER_S;
+use crate::{results::quantile, world::Random};
+
+/// Numbers of times that rooms are drawn again.
+const TIMES: u64 = 2000;
+
+/// An estimate with its 95 % interval.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+pub struct Estimate {
+    /// The value.
+    pub value: f64,
+    /// It lies here with 95 % confidence.
+    pub interval_95: [f64; 2],
+}
+
+/// Rooms drawn again: for each time how often each room was drawn. Rooms of one set are drawn together, whatever the
+/// condition, so that ratios are paired.
+#[derive(Debug)]
+pub(super) struct Bootstrap(Vec<Vec<u16>>);
+
+impl Bootstrap {
+    pub(super) fn new(rooms: usize, key: u64) -> Self {
+        let again = |time: u64| {
+            let mut random = Random::new(time).of(key);
+            let mut counts = vec![0; rooms];
+            for _ in 0..rooms {
+                counts[(random.bits() % rooms as u64) as usize] += 1;
+            }
+            counts
+        };
+        Self((0..TIMES).map(again).collect())
+    }
+
+    /// A figure of all rooms once, and of those drawn each time.
+    pub(super) fn figures(&self, of: impl Fn(&[u16]) -> f64) -> Vec<f64> {
+        let once = self.0.first().map_or(0, Vec::len);
+        core::iter::once(vec![1; once]).chain(self.0.iter().cloned()).map(|counts| of(&counts)).collect()
+    }
+}
+
+impl Estimate {
+    /// From a figure of all rooms and those of rooms drawn again.
+    pub(super) fn of(figures: &[f64]) -> Self {
+        let (value, mut again) =
+            (figures.first().copied().unwrap_or(f64::NAN), figures.get(1..).unwrap_or(&[]).to_vec());
+        Self { value, interval_95: [0.025, 0.975].map(|share| quantile(&mut again, share)) }
+    }
+
+    /// Returns true if it may as well be this value.
+    pub fn holds(&self, value: f64) -> bool {
+        (self.interval_95[0]..=self.interval_95[1]).contains(&value)
+    }
+}
+
+/// Latencies by length, each with its room.
+#[derive(Debug)]
+pub(super) struct Latencies(Vec<(f64, usize)>);
+
+impl Latencies {
+    /// Of all rooms in order; a room without a thing has none.
+    pub(super) fn new(latencies_ms: impl Iterator<Item = f64>) -> Self {
+        let mut sorted: Vec<_> = latencies_ms.zip(0..).filter(|(latency, _)| !latency.is_nan()).collect();
+        sorted.sort_by(|one, other| one.0.total_cmp(&other.0));
+        Self(sorted)
+    }
+
+    /// The 95th percentile of rooms drawn so often; infinite where more than 5 % are never seen.
+    pub(super) fn t95_ms(&self, counts: &[u16]) -> f64 {
+        let count = |&(_, room): &(f64, usize)| counts.get(room).map_or(0, |&count| u32::from(count));
+        let all: u32 = self.0.iter().map(count).sum();
+        let rank = (f64::from(all) * 0.95).ceil() as u32;
+        let mut passed = 0;
+        let found = self.0.iter().find(|of| {
+            passed += count(of);
+            passed >= rank
+        });
+        found.map_or(f64::INFINITY, |of| of.0)
+    }
+
+    /// The share that is never seen.
+    pub(super) fn never(&self) -> f64 {
+        self.0.iter().filter(|of| of.0.is_infinite()).count() as f64 / self.0.len().max(1) as f64
+    }
+
+    /// Number of things.
+    pub(super) fn len(&self) -> usize {
+        self.0.len()
+    }
+}
+
+/// A 95th percentile as it counts in a cost: what is never seen counts as seen after 5 s, so that two ways that both
+/// miss one thing in twenty are alike.
+pub(super) fn capped_ms(t95_ms: f64) -> f64 {
+    t95_ms.min(1e3 * NEVER_S)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn t95_has_what_is_never_seen_in_it() {
+        let of = |never: usize| Latencies::new((0..100).map(|k| if k < never { f64::INFINITY } else { k as f64 }));
+        assert_eq!((of(0).t95_ms(&[1; 100]), of(5).t95_ms(&[1; 100])), (94.0, 99.0));
+        assert_eq!((of(6).t95_ms(&[1; 100]), of(6).never()), (f64::INFINITY, 0.06));
+        // A room without a thing does not count; one drawn twice counts twice.
+        let three = Latencies::new([30.0, f64::NAN, 10.0].into_iter());
+        assert_eq!((three.len(), three.t95_ms(&[1, 9, 1]), three.t95_ms(&[0, 9, 2])), (2, 30.0, 10.0));
+    }
+
+    // A mean's bootstrap interval is that of its standard error.
+    #[test]
+    fn interval_is_as_wide_as_rooms_differ() {
+        let bootstrap = Bootstrap::new(400, 1);
+        let mean = |counts: &[u16]| {
+            counts.iter().enumerate().map(|(k, &count)| f64::from(count) * (k % 2) as f64).sum::<f64>() / 400.0
+        };
+        let Estimate { value, interval_95: [low, high] } = Estimate::of(&bootstrap.figures(mean));
+        assert_eq!(value, 0.5);
+        assert!((high - low - 2.0 * 1.96 * 0.5 / 20.0).abs() < 0.01, "{low} to {high}");
+    }
+}

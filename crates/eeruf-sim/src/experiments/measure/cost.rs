@@ -1,0 +1,233 @@
+//! Figures of ways in cells, the setting that each is used with, its cost, and the way to recommend.
+
+use serde::Serialize;
+
+use super::bootstrap::{Bootstrap, Estimate, Latencies, capped_ms};
+use super::run::{Measured, Under};
+use super::sight::Sight;
+use super::trial::Condition;
+use super::votes::Setting;
+use super::ways::{Family, MeasuredWay};
+
+/// The most false stops a minute at which ways are compared.
+pub const ONE_A_MINUTE: f64 = 1.0;
+/// From this number of rooms on a difference above this share is no draw.
+const MANY_ROOMS: usize = 400;
+const NO_DRAW: f64 = 0.2;
+
+/// A way with its votes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Point {
+    /// The index of the way.
+    pub way: usize,
+    /// The votes.
+    pub setting: Setting,
+}
+
+/// The point at which a family is used under a condition, from rooms on which nothing is reported.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Operating {
+    /// The least t95 with no more false stops than asked for.
+    At(Point),
+    /// None has as few; this one has the fewest.
+    None(Point),
+}
+
+impl Operating {
+    /// The point, whether it keeps to what was asked for or not.
+    pub fn point(self) -> Point {
+        let (Self::At(point) | Self::None(point)) = self;
+        point
+    }
+}
+
+/// Figures of a way and setting under a condition.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Cell {
+    /// Things.
+    pub things: usize,
+    /// The time in which 95 % of them are seen, in ms; infinite if fewer are.
+    pub t95_ms: Estimate,
+    /// The share of those that are never seen.
+    pub never: f64,
+    /// False stops.
+    pub false_stops: u32,
+    /// The time of those, in minutes.
+    pub minutes: f64,
+    /// False stops a minute.
+    pub false_stops_per_min: Estimate,
+    /// Share of time in which foreign sound is believed and wrong.
+    pub foreign: Estimate,
+    /// Share of time with an echo in which the belief is right.
+    pub right: Estimate,
+    /// Blind sensors.
+    pub blind: Estimate,
+}
+
+impl Under {
+    /// The settings of some of the ways that can fire the ring. A median is for one by one alone.
+    fn points(&self, measured: &Measured, ways: impl Fn(usize) -> bool) -> Vec<Point> {
+        let of_way = |(way, of): (usize, &MeasuredWay)| {
+            let fits = |it: &Setting| of.family == Family::OneByOne || *it != Setting::Median;
+            Setting::ALL.into_iter().filter(fits).map(move |setting| Point { way, setting }).collect::<Vec<_>>()
+        };
+        let fired = measured.ways.iter().enumerate().filter(|&(way, _)| ways(way) && self.sights[way].is_ok());
+        fired.flat_map(of_way).collect()
+    }
+
+    /// The figures of each room at a point.
+    pub fn sights(&self, Point { way, setting }: Point) -> &[Sight] {
+        let index = Setting::ALL.iter().position(|&it| it == setting).unwrap_or(0);
+        self.sights[way].as_ref().map_or(&[], |by_setting| &by_setting[index])
+    }
+
+    fn t95_and_rate(&self, point: Point) -> (f64, f64) {
+        let sights = self.sights(point);
+        let latencies = Latencies::new(sights.iter().map(|sight| sight.latency_ms));
+        (latencies.t95_ms(&vec![1; sights.len()]), rate(sights, &vec![1; sights.len()]))
+    }
+
+    /// The point at which some of the ways are used with at most so many false stops a minute: where a way's most eager setting
+    /// keeps to that, that one; else its setting of the least t95 that does; of all its ways the one of the least t95.
+    /// None if no way of them can fire the ring.
+    pub fn operating(&self, measured: &Measured, ways: impl Fn(usize) -> bool, most_per_min: f64) -> Option<Operating> {
+        let points = self.points(measured, ways);
+        let figures: Vec<_> = points.iter().map(|&point| (point, self.t95_and_rate(point))).collect();
+        let eager = |way: usize| {
+            figures
+                .iter()
+                .any(|&(point, (_, rate))| point == Point { way, setting: Setting::ALL[0] } && rate <= most_per_min)
+        };
+        let keeps = |&&(point, (_, rate)): &&(Point, (f64, f64))| {
+            rate <= most_per_min && (point.setting == Setting::ALL[0] || !eager(point.way))
+        };
+        let quickest = figures.iter().filter(keeps).min_by(|one, other| one.1.0.total_cmp(&other.1.0));
+        let fewest = || figures.iter().min_by(|one, other| one.1.1.total_cmp(&other.1.1));
+        quickest.map(|of| Operating::At(of.0)).or_else(|| fewest().map(|of| Operating::None(of.0)))
+    }
+
+    /// The figures at a point.
+    pub fn cell(&self, point: Point, measured: &Measured) -> Cell {
+        let sights = self.sights(point);
+        let latencies = Latencies::new(sights.iter().map(|sight| sight.latency_ms));
+        let bootstrap = measured.bootstrap(self.condition);
+        let mean = |of: fn(&Sight) -> f64| {
+            Estimate::of(&bootstrap.figures(|counts| {
+                let known = || sights.iter().zip(counts).filter(|(sight, _)| !of(sight).is_nan());
+                let all: f64 = known().map(|(_, &count)| f64::from(count)).sum();
+                known().map(|(sight, &count)| f64::from(count) * of(sight)).sum::<f64>() / all
+            }))
+        };
+        Cell {
+            things: latencies.len(),
+            t95_ms: Estimate::of(&bootstrap.figures(|counts| latencies.t95_ms(counts))),
+            never: latencies.never(),
+            false_stops: sights.iter().map(|sight| sight.false_stops).sum(),
+            minutes: sights.iter().map(|sight| sight.watched_s).sum::<f64>() / 60.0,
+            false_stops_per_min: Estimate::of(&bootstrap.figures(|counts| rate(sights, counts))),
+            foreign: mean(|sight| sight.foreign),
+            right: mean(|sight| sight.right),
+            blind: mean(|sight| f64::from(sight.blind)),
+        }
+    }
+}
+
+/// False stops a minute in rooms drawn so often.
+fn rate(sights: &[Sight], counts: &[u16]) -> f64 {
+    let sum = |of: fn(&Sight) -> f64| -> f64 {
+        sights.iter().zip(counts).map(|(sight, &count)| of(sight) * f64::from(count)).sum()
+    };
+    60.0 * sum(|sight| f64::from(sight.false_stops)) / sum(|sight| sight.watched_s)
+}
+
+/// A family's cost.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Cost {
+    /// The family.
+    pub family: Family,
+    /// Where it is used under each condition; empty if no way of it can fire the ring.
+    pub operating: Vec<Operating>,
+    /// The geometric mean over the conditions of its t95 relative to that of the best one by one; none where it, or
+    /// one by one, has no operating point.
+    pub cost: Option<Estimate>,
+}
+
+/// The way to recommend.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Recommended {
+    /// Its family.
+    pub family: Family,
+    /// A family whose cost is less, but not surely so.
+    pub draw: Option<Family>,
+}
+
+/// Costs of all families, the simplest first, and which to recommend.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Costs {
+    /// Of each family.
+    pub costs: Vec<Cost>,
+    /// None if no family has a cost.
+    pub recommended: Option<Recommended>,
+}
+
+impl Measured {
+    /// Rooms drawn again, the same for all conditions of a set of rooms.
+    pub(super) fn bootstrap(&self, condition: Condition) -> Bootstrap {
+        let rooms = self.under.iter().find(|under| under.condition == condition).map_or(0, |under| under.places.len());
+        Bootstrap::new(rooms, u64::from(condition.others))
+    }
+
+    /// The geometric mean over the conditions of one way's t95 relative to another's, with its interval.
+    pub fn ratio(&self, ones: &[Point], others: &[Point]) -> Estimate {
+        let mut logs: Vec<f64> = vec![];
+        for ((under, &one), &other) in self.under.iter().zip(ones).zip(others) {
+            let of = |point| Latencies::new(under.sights(point).iter().map(|sight| sight.latency_ms));
+            let (one, other) = (of(one), of(other));
+            let log = |counts: &[u16]| libm::log(capped_ms(one.t95_ms(counts)) / capped_ms(other.t95_ms(counts)));
+            let of_condition = self.bootstrap(under.condition).figures(log);
+            logs.resize(of_condition.len(), 0.0);
+            logs.iter_mut().zip(of_condition).for_each(|(sum, log)| *sum += log);
+        }
+        let conditions = self.under.len().max(1) as f64;
+        Estimate::of(&logs.iter().map(|sum| libm::exp(sum / conditions)).collect::<Vec<_>>())
+    }
+
+    /// The costs of all families with points chosen in other rooms of the same conditions.
+    pub fn costs(&self, chosen: &Self) -> Costs {
+        let points = |family| -> Vec<Operating> {
+            let of = |under: &Under| under.operating(chosen, |way| chosen.ways[way].family == family, ONE_A_MINUTE);
+            chosen.under.iter().filter_map(of).collect()
+        };
+        let all = |operating: &[Operating]| -> Option<Vec<Point>> {
+            let at = |operating: &Operating| if let Operating::At(point) = operating { Some(*point) } else { None };
+            operating.iter().map(at).collect::<Option<Vec<_>>>().filter(|points| points.len() == self.under.len())
+        };
+        let families: Vec<_> = Family::ALL.into_iter().map(|family| (family, points(family))).collect();
+        let base = families.first().and_then(|(_, operating)| all(operating));
+        let cost = |operating: &[Operating]| Some(self.ratio(&all(operating)?, base.as_ref()?));
+        let costs: Vec<_> = families
+            .into_iter()
+            .map(|(family, operating)| Cost { family, cost: cost(&operating), operating })
+            .collect();
+        let usable: Vec<_> = costs.iter().filter_map(|cost| Some((cost.family, all(&cost.operating)?))).collect();
+        let recommended = self
+            .recommend(&usable)
+            .map(|(index, draw)| Recommended { family: usable[index].0, draw: draw.map(|index| usable[index].0) });
+        Costs { costs, recommended }
+    }
+
+    /// Of ways with their points under each condition, the simplest first, the one to recommend, and one of less cost
+    /// from which it does not surely differ.
+    pub fn recommend<T>(&self, ways: &[(T, Vec<Point>)]) -> Option<(usize, Option<usize>)> {
+        let (_, first) = ways.first()?;
+        let value = |points: &[Point]| self.ratio(points, first).value;
+        let values: Vec<f64> = ways.iter().map(|(_, points)| value(points)).collect();
+        let best = (0..ways.len()).reduce(|best, next| if values[next] < values[best] { next } else { best })?;
+        let rooms = self.under.iter().map(|under| under.places.len()).min().unwrap_or(0);
+        let is_draw = |&simpler: &usize| {
+            let ratio = self.ratio(&ways[simpler].1, &ways[best].1);
+            ratio.holds(1.0) && (rooms < MANY_ROOMS || ratio.value <= 1.0 + NO_DRAW)
+        };
+        Some((0..best).find(is_draw).map_or((best, None), |simpler| (simpler, Some(best))))
+    }
+}

@@ -1,0 +1,165 @@
+//! Runs of all ways in all rooms under all conditions, and their rows as CSV.
+
+use core::fmt::Write as _;
+
+use super::heard::Control;
+use super::sight::Sight;
+use super::things::{Draws, ThingKind};
+use super::trial::{Condition, Speeds, Trial};
+use super::votes::Setting;
+use super::ways::MeasuredWay;
+use crate::{
+    experiments::error::ExperimentError, experiments::progress::Progress, experiments::rooms::RoomKind, threads::sweep,
+};
+
+/// Rooms and conditions in which ways are measured.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MeasureAsked {
+    /// The conditions.
+    pub conditions: Vec<Condition>,
+    /// The number of the first room of each kind. Settings are chosen on numbers below 2,000, and reported from
+    /// [`FIRST`](crate::experiments::FIRST) on.
+    pub first: u64,
+    /// Number of rooms of each of the seven kinds without another robot, and a seventh of those with one.
+    pub places: u64,
+    /// The robot's speeds.
+    pub speeds: Speeds,
+}
+
+/// A trial's room, and what appeared.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Place {
+    /// The room's kind and number.
+    pub room: (RoomKind, u64),
+    /// The thing's kind, its sensor and distance in metres; none where none had room that its sensor reads.
+    pub thing: Option<(ThingKind, usize, f64)>,
+    /// Draws of the thing.
+    pub draws: Draws,
+    /// The driving or turning robot's speed in m/s.
+    pub speed_m_s: f64,
+}
+
+/// Figures of one way in all rooms: by setting, in the order of [`Setting::ALL`], and room; or why it cannot fire.
+pub type BySetting = Result<Vec<Vec<Sight>>, String>;
+
+/// All ways under one condition.
+#[derive(Clone, Debug)]
+pub struct Under {
+    /// The condition.
+    pub condition: Condition,
+    /// The rooms.
+    pub places: Vec<Place>,
+    /// Figures of each way.
+    pub sights: Vec<BySetting>,
+}
+
+/// Ways measured.
+#[derive(Clone, Debug)]
+pub struct Measured {
+    /// The ways.
+    pub ways: Vec<MeasuredWay>,
+    /// The conditions.
+    pub under: Vec<Under>,
+}
+
+impl Under {
+    /// The share of things that had room but are not read by the sensor before which they are: the module's blindness.
+    pub fn unread(&self) -> f64 {
+        let sum = |of: fn(&Draws) -> u32| self.places.iter().map(|place| f64::from(of(&place.draws))).sum::<f64>();
+        sum(|draws| draws.unread) / sum(|draws| draws.fitted).max(1.0)
+    }
+}
+
+/// Measures ways, on all cores; each may be a control. `keep_going` is called by several threads with the share that is
+/// done, 0 to 1; when its answer is `false` the measurement stops. The result does not depend on the number of threads.
+///
+/// # Errors
+/// [`ExperimentError`] for no ways, rooms or conditions, a room in which the robot cannot be, and if it was stopped.
+pub fn measure(
+    ways: &[(MeasuredWay, Option<Control>)],
+    asked: &MeasureAsked,
+    keep_going: &(dyn Fn(f64) -> bool + Sync),
+) -> Result<Measured, ExperimentError> {
+    let Some((first, _)) = ways.first() else { return Err(ExperimentError::NoMethods) };
+    let rooms = |&condition: &Condition| {
+        condition.rooms(asked.first, asked.places).into_iter().map(move |room| (condition, room))
+    };
+    let jobs: Vec<_> = asked.conditions.iter().flat_map(rooms).collect();
+    if jobs.is_empty() {
+        return Err(ExperimentError::NoSeeds);
+    }
+    let progress = Progress::new(jobs.len() as u64, keep_going);
+    let robot = &first.way.robot;
+    let runs = sweep(&jobs, |&(condition, room)| {
+        let trial = Trial::new(room, robot, condition, asked.speeds)?;
+        let of_way = |(MeasuredWay { way, .. }, control): &(MeasuredWay, Option<Control>)| {
+            let mut heard = match trial.heard(way, &|| progress.go_on()) {
+                Err(ExperimentError::Simulation(error)) => return Ok(Err(error.to_string())),
+                heard => heard?,
+            };
+            if let Some(control) = control {
+                control.apply(&mut heard, room.1, trial.c);
+            }
+            let sights = Setting::ALL.map(|setting| trial.sight(&way.robot, &heard, setting, *control));
+            Ok(Ok(sights))
+        };
+        let sights = ways.iter().map(of_way).collect::<Result<Vec<_>, ExperimentError>>()?;
+        progress.one_done();
+        let thing = trial.thing.as_ref().map(|thing| (thing.kind, thing.sensor, thing.distance_m));
+        let place = Place { room, thing, draws: trial.draws, speed_m_s: trial.speeds.speed_m_s };
+        Ok((place, sights))
+    });
+    let runs = runs.into_iter().collect::<Result<Vec<_>, ExperimentError>>()?;
+    if progress.stopped() {
+        return Err(ExperimentError::Stopped);
+    }
+    let mut runs = runs.into_iter();
+    let under = asked.conditions.iter().map(|&condition| {
+        let rooms = condition.rooms(asked.first, asked.places).len();
+        let (places, mut by_room): (Vec<_>, Vec<_>) = runs.by_ref().take(rooms).unzip();
+        let of_way = |way: usize| -> BySetting {
+            let of_rooms: Vec<_> =
+                by_room.iter_mut().map(|sights| core::mem::replace(&mut sights[way], Err(String::new()))).collect();
+            let of_rooms = of_rooms.into_iter().collect::<Result<Vec<_>, _>>()?;
+            Ok((0..Setting::ALL.len()).map(|setting| of_rooms.iter().map(|sights| sights[setting]).collect()).collect())
+        };
+        Under { condition, places, sights: (0..ways.len()).map(of_way).collect() }
+    });
+    let under = under.collect();
+    Ok(Measured { ways: ways.iter().map(|(way, _)| way.clone()).collect(), under })
+}
+
+impl Measured {
+    /// The head of [`csv`](Self::csv).
+    pub const CSV_HEAD: &'static str = "condition,room,number,way,setting,thing,sensor,distance_m,drawn,unread,\
+                                        speed_m_s,latency_ms,false_stops,watched_s,foreign,right,blind";
+
+    /// One row for each room, way, condition and setting, without a head: a latency that is infinite is `inf`, what does
+    /// not exist is empty.
+    pub fn csv(&self) -> String {
+        let mut out = String::new();
+        for under in &self.under {
+            for (way, by_setting) in self.ways.iter().zip(&under.sights) {
+                for (setting, sights) in Setting::ALL.iter().zip(by_setting.iter().flatten()) {
+                    for (place, sight) in under.places.iter().zip(sights) {
+                        let Place { room: (kind, number), thing, draws: Draws { fitted, unread }, speed_m_s } = place;
+                        let Sight { latency_ms, false_stops, watched_s, foreign, right, blind } = sight;
+                        let thing =
+                            thing.map_or(",,".to_owned(), |(kind, sensor, m)| format!("{kind:?},{sensor},{m:.3}"));
+                        let known = |value: &f64| if value.is_nan() { String::new() } else { format!("{value:.4}") };
+                        _ = writeln!(
+                            out,
+                            "{},{kind},{number},{},{setting},{thing},{fitted},{unread},{speed_m_s:.3},{},{false_stops},\
+                             {watched_s:.3},{foreign:.5},{},{blind}",
+                            under.condition.as_str(),
+                            way.way.name,
+                            known(latency_ms),
+                            known(right),
+                        );
+                    }
+                }
+            }
+        }
+        out
+    }
+}

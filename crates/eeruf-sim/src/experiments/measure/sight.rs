@@ -1,0 +1,201 @@
+//! What a robot needs of its beliefs in a trial: to see the thing that appears, and not to stop for nothing.
+
+use core::f64::consts::PI;
+
+use super::heard::{Control, Heard};
+use super::things::{is_near, nearest_of};
+use super::trial::{NEVER_S, Trial};
+use super::votes::{Believed, Setting, believed};
+use crate::{
+    experiments::rooms::RoomPlan,
+    geometry::{Point, Pose, Vector, cross},
+    world::Robot,
+};
+
+/// Foreign sound is taken for an obstacle within this distance, and where it is nearer than everything by this much.
+const STOPS_M: f64 = 1.5;
+const NEARER_M: f64 = 0.15;
+/// Everything within this angle of a sensor's axis.
+const WITHIN_RAD: f64 = PI / 3.0;
+/// An onset after this time without one is a false stop, and each further such time of it.
+const APART_S: f64 = 1.0;
+/// A sensor that is right in fewer than this share of its readings is blind.
+const BLIND: f64 = 0.05;
+
+/// One trial's figures of one way and setting.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sight {
+    /// From the thing's appearing to the first belief in it, in ms; infinite for never, NaN without a thing.
+    pub latency_ms: f64,
+    /// False stops before it appeared.
+    pub false_stops: u32,
+    /// The time of those, in seconds.
+    pub watched_s: f64,
+    /// Share of time in which foreign sound was believed and wrong.
+    pub foreign: f64,
+    /// Share of time, where the sensor alone hears an echo, in which the belief was right.
+    pub right: f64,
+    /// Sensors that were right in under 5 % of their readings.
+    pub blind: u32,
+}
+
+impl Trial {
+    /// The figures of readings under a setting.
+    pub(super) fn sight(&self, robot: &Robot, heard: &[Heard], setting: Setting, control: Option<Control>) -> Sight {
+        let life_s = Control::life_s(control, self.life_s());
+        let sensors = robot.sensors.len();
+        let of_sensor = |sensor| heard.iter().filter(move |one| one.sensor == sensor).copied().collect::<Vec<_>>();
+        let by_sensor: Vec<Vec<Heard>> = (0..sensors).map(of_sensor).collect();
+        let beliefs: Vec<Vec<Believed>> = by_sensor.iter().map(|heard| believed(heard, setting, life_s)).collect();
+        let mut seen: Vec<&Believed> = beliefs.iter().flatten().collect();
+        seen.sort_by(|one, other| one.heard.ready_s.total_cmp(&other.heard.ready_s));
+        let latency_ms = self.thing.as_ref().map_or(f64::NAN, |_| {
+            let first = seen.iter().find(|belief| self.sees(robot, belief));
+            let late_s = first.map_or(f64::INFINITY, |belief| belief.heard.ready_s - self.appears_s);
+            if late_s > NEVER_S { f64::INFINITY } else { 1e3 * late_s }
+        });
+        let mut false_ones: Vec<[f64; 2]> = vec![];
+        let (mut foreign_s, mut right_s, mut echo_s) = (0.0, 0.0, 0.0);
+        let mut blind = 0;
+        for (heard, beliefs) in by_sensor.iter().zip(&beliefs) {
+            let watched = beliefs.iter().filter(|belief| belief.heard.ready_s < self.appears_s);
+            for belief in watched.filter(|belief| Heard::is_foreign(belief.cause)) {
+                let lasts = [belief.heard.ready_s, belief.until_s.min(self.appears_s)];
+                foreign_s +=
+                    if is_near(belief.t_echo_us, belief.heard.reference_us) { 0.0 } else { lasts[1] - lasts[0] };
+                if self.stops(belief) {
+                    false_ones.push(lasts);
+                }
+            }
+            let mut right = 0;
+            let mut beliefs = beliefs.iter().peekable();
+            let mut belief: Option<&Believed> = None;
+            for (k, reading) in heard.iter().enumerate().take_while(|(_, reading)| reading.ready_s < self.appears_s) {
+                while let Some(next) = beliefs.next_if(|next| next.heard.ready_s <= reading.ready_s) {
+                    belief = Some(next);
+                }
+                let next_s = heard.get(k + 1).map_or(self.appears_s, |next| next.ready_s.min(self.appears_s));
+                let is_right = belief.is_some_and(|belief| is_near(belief.t_echo_us, reading.reference_us));
+                right += usize::from(is_right || (reading.reference_us.is_nan() && reading.accepted));
+                if !reading.reference_us.is_nan() {
+                    echo_s += next_s - reading.ready_s;
+                    let until_s = belief.map_or(0.0, |belief| belief.until_s.max(reading.ready_s)).min(next_s);
+                    right_s += if is_right { (until_s - reading.ready_s).max(0.0) } else { 0.0 };
+                }
+            }
+            blind += u32::from((right as f64) < BLIND * heard.len() as f64);
+        }
+        Sight {
+            latency_ms,
+            false_stops: false_stops(false_ones),
+            watched_s: self.appears_s,
+            foreign: foreign_s / (sensors as f64 * self.appears_s),
+            right: if echo_s > 0.0 { right_s / echo_s } else { f64::NAN },
+            blind,
+        }
+    }
+
+    /// Returns true if it is a belief in the thing, of a sensor that alone would read it.
+    fn sees(&self, robot: &Robot, belief: &Believed) -> bool {
+        let Believed { heard, t_echo_us, .. } = belief;
+        let Some(thing) = self.thing.as_ref().filter(|_| heard.fired_s >= self.appears_s) else { return false };
+        let us = thing.nearest_us(self.c, Point::from(heard.seen.translation.vector));
+        is_near(*t_echo_us, us)
+            && is_near(heard.reference_us, us)
+            && thing.changes(&self.plan, robot, heard.sensor, &heard.seen, us)
+    }
+
+    /// Returns true if a robot would stop for a belief in foreign sound.
+    fn stops(&self, belief: &Believed) -> bool {
+        let says_m = 0.5e-6 * self.c * belief.t_echo_us;
+        says_m < STOPS_M && says_m + NEARER_M < nearest_m(&self.plan, &belief.heard.seen)
+    }
+}
+
+/// The distance in metres of the nearest surface within 60 degrees of a sensor's axis.
+fn nearest_m(plan: &RoomPlan, seen: &Pose) -> f64 {
+    let from = Point::from(seen.translation.vector);
+    let side = |turn: f64| {
+        let rad = seen.rotation.angle() + turn;
+        Vector::new(libm::cos(rad), libm::sin(rad))
+    };
+    let (right, left) = (side(-WITHIN_RAD), side(WITHIN_RAD));
+    // The part of a wall on the left of the right border, and on the right of the left one.
+    let of_wall = |[mut one, mut end]: [Point; 2]| {
+        for inside in [|to: Vector, border: Vector| cross(border, to), |to: Vector, border: Vector| cross(to, border)]
+            .into_iter()
+            .zip([right, left])
+            .map(|(inside, border)| move |at: Point| inside(at - from, border))
+        {
+            let (a, b) = (inside(one), inside(end));
+            if a < 0.0 && b < 0.0 {
+                return f64::INFINITY;
+            }
+            let border = one + (end - one) * (a / (a - b));
+            if a < 0.0 {
+                one = border;
+            } else if b < 0.0 {
+                end = border;
+            }
+        }
+        (nearest_of(one, end, from) - from).norm()
+    };
+    let walls = plan.walls.iter().map(|wall| of_wall([wall.from, wall.to]));
+    let poles = plan.poles.iter().map(|pole| {
+        let to = pole.centre - from;
+        let wide_rad = libm::asin((pole.radius_m / to.norm()).min(1.0));
+        let off_rad = crate::geometry::wrap_angle(libm::atan2(to.y, to.x) - seen.rotation.angle()).abs();
+        if off_rad <= WITHIN_RAD + wide_rad { to.norm() - pole.radius_m } else { f64::INFINITY }
+    });
+    walls.chain(poles).fold(f64::INFINITY, f64::min)
+}
+
+/// The number of false stops in these intervals of any sensor.
+fn false_stops(mut intervals: Vec<[f64; 2]>) -> u32 {
+    intervals.sort_by(|one, other| one[0].total_cmp(&other[0]));
+    let (mut count, mut last_s, mut of_it_s) = (0, f64::NEG_INFINITY, 0.0);
+    for [from_s, to_s] in intervals {
+        if from_s >= last_s + APART_S {
+            (count, of_it_s) = (count + 1, 0.0);
+        }
+        let before = (of_it_s / APART_S) as u32;
+        of_it_s += (to_s - from_s.max(last_s)).max(0.0);
+        count += (of_it_s / APART_S) as u32 - before;
+        last_s = last_s.max(to_s);
+    }
+    count
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::experiments::rooms::RoomKind;
+
+    #[test]
+    fn false_stops_count_onsets_and_seconds() {
+        assert_eq!(false_stops(vec![]), 0);
+        // Two sensors at once are one robot's; half a second later it is still the same one.
+        assert_eq!(false_stops(vec![[1.0, 1.3], [1.1, 1.4], [1.9, 2.0]]), 1);
+        assert_eq!(false_stops(vec![[1.0, 1.3], [2.4, 2.5]]), 2);
+        assert_eq!(false_stops(vec![[1.0, 3.5]]), 3);
+    }
+
+    #[test]
+    fn nearest_surface_is_sought_within_sixty_degrees() {
+        let room = RoomPlan::own(
+            0,
+            crate::Wall::polyline(&[[3.0, -9.0], [3.0, 9.0]]).collect(),
+            vec![],
+            Pose::identity(),
+            0.0,
+        );
+        let at = |rad: f64| nearest_m(&room, &Pose::rotation(rad));
+        assert!((at(0.0) - 3.0).abs() < 1e-9 && (at(1.0) - 3.0).abs() < 1e-9);
+        // Beyond 60 degrees of the perpendicular it is the border of the sector that meets the wall.
+        assert!((at(80f64.to_radians()) - 3.0 / libm::cos(20f64.to_radians())).abs() < 1e-9);
+        assert_eq!(at(PI), f64::INFINITY);
+        let poles = RoomPlan { poles: vec![crate::Pole::new(1.0, 0.0, 0.1)], ..room };
+        assert!((nearest_m(&poles, &Pose::identity()) - 0.9).abs() < 1e-9);
+        _ = RoomKind::ALL;
+    }
+}

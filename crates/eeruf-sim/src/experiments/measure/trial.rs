@@ -1,0 +1,196 @@
+//! Trials: a robot in a room under a condition, before which something appears, and what a way of firing reads there.
+
+use std::sync::Arc;
+
+use serde::Serialize;
+
+use super::heard::Heard;
+use super::things::{Draws, Thing};
+use crate::{
+    acoustics::Physics,
+    experiments::error::ExperimentError,
+    experiments::rooms::{RoomKind, RoomPlan, RoomWay},
+    geometry::Pose,
+    results::Readings,
+    scene::Room,
+    simulation::Simulation,
+    threads::Stop,
+    world::{Random, Robot, World, WorldError},
+};
+
+/// The version of the set of trials. A trial of one version and number is the same for ever.
+pub const VERSION: u32 = 1;
+/// A thing appears at a uniform instant between these, in seconds, so that a trial measures false stops for 10 s in the
+/// mean.
+const APPEARS_S: [f64; 2] = [5.0, 15.0];
+/// What is not seen within this time, in seconds, is never seen.
+pub const NEVER_S: f64 = 5.0;
+/// The longest trial.
+const LONGEST_S: f64 = APPEARS_S[1] + NEVER_S;
+/// The key of what is random about trials, beside those of the kinds of rooms.
+const THING: u64 = 200;
+/// From one look for contact to the next, in seconds.
+const LOOK_S: f64 = 0.01;
+
+/// How a robot moves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Moving {
+    /// It stands.
+    Standing,
+    /// It drives along its free way, and back, and so on.
+    Driving,
+    /// It turns on the spot.
+    Turning,
+}
+
+/// A condition under which ways are measured.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize)]
+pub struct Condition {
+    /// How the robot moves.
+    pub moving: Moving,
+    /// True for another robot of its make close by, by a clock of its own.
+    pub others: bool,
+}
+
+impl Condition {
+    /// All six, alone first.
+    pub const ALL: [Self; 6] = [
+        Self { moving: Moving::Standing, others: false },
+        Self { moving: Moving::Driving, others: false },
+        Self { moving: Moving::Turning, others: false },
+        Self { moving: Moving::Standing, others: true },
+        Self { moving: Moving::Driving, others: true },
+        Self { moving: Moving::Turning, others: true },
+    ];
+
+    /// The name in tables and in JSON.
+    pub const fn as_str(self) -> &'static str {
+        match (self.moving, self.others) {
+            (Moving::Standing, false) => "standing",
+            (Moving::Driving, false) => "driving",
+            (Moving::Turning, false) => "turning",
+            (Moving::Standing, true) => "standing_others",
+            (Moving::Driving, true) => "driving_others",
+            (Moving::Turning, true) => "turning_others",
+        }
+    }
+
+    /// The rooms of this many places of each kind: alone those of the seven kinds without another robot, else as many
+    /// of the kind with one.
+    pub fn rooms(self, first: u64, places: u64) -> Vec<(RoomKind, u64)> {
+        let alone = RoomKind::ALL.into_iter().filter(|&kind| kind != RoomKind::Meeting);
+        match self.others {
+            false => alone.flat_map(|kind| (first..first + places).map(move |number| (kind, number))).collect(),
+            true => (first..first + 7 * places).map(|number| (RoomKind::Meeting, number)).collect(),
+        }
+    }
+}
+
+/// The speeds of a robot that moves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Speeds {
+    /// Driving, in m/s.
+    pub speed_m_s: f64,
+    /// Turning, in rad/s.
+    pub turn_rad_s: f64,
+}
+
+/// A trial: the same for every way of firing.
+#[derive(Debug)]
+pub(super) struct Trial {
+    pub(super) plan: RoomPlan,
+    pub(super) thing: Option<Thing>,
+    pub(super) draws: Draws,
+    /// When the thing appears.
+    pub(super) appears_s: f64,
+    /// When the trial ends: the robot would touch the thing, or it has had its time.
+    pub(super) ends_s: f64,
+    /// The robot's speeds, of which the other is 0.
+    pub(super) speeds: Speeds,
+    pub(super) c: f64,
+}
+
+impl Trial {
+    /// The trial of a room for a robot under a condition.
+    pub(super) fn new(
+        (kind, number): (RoomKind, u64),
+        robot: &Robot,
+        condition: Condition,
+        asked: Speeds,
+    ) -> Result<Self, ExperimentError> {
+        let plan = RoomPlan::random(kind, number, robot.radius_m());
+        let speeds = match condition.moving {
+            Moving::Standing => Speeds { speed_m_s: 0.0, turn_rad_s: 0.0 },
+            // A leg of its way lasts a second or more.
+            Moving::Driving if plan.turns() => Speeds { speed_m_s: asked.speed_m_s.min(plan.way_m()), turn_rad_s: 0.0 },
+            // The alcove's robot does not come back.
+            Moving::Driving => Speeds { speed_m_s: asked.speed_m_s.min(plan.way_m() / LONGEST_S), turn_rad_s: 0.0 },
+            Moving::Turning => Speeds { speed_m_s: 0.0, ..asked },
+        };
+        let mut random = Random::new(number).of(THING + kind as u64).of(condition.moving as u64);
+        let appears_s = random.between(APPEARS_S[0], APPEARS_S[1]);
+        let world = plan.moving(robot, speeds.speed_m_s, speeds.turn_rad_s)?;
+        let c = world.scene().air().speed_of_sound();
+        let mut trial =
+            Self { plan, thing: None, draws: Draws::default(), appears_s, ends_s: appears_s + NEVER_S, speeds, c };
+        let pose = trial.pose(&world, appears_s);
+        let drawn = Thing::draw(random, &trial.plan, &world, &pose, &mut trial.draws);
+        let Some(thing) = drawn else { return Ok(trial) };
+        let looks = (1..=(NEVER_S / LOOK_S) as u32).map(|look| appears_s + LOOK_S * f64::from(look));
+        let touches = |at: &f64| thing.touches(robot, &trial.pose(&world, *at));
+        let contact = looks.into_iter().find(touches).filter(|_| condition.moving != Moving::Standing);
+        trial.ends_s = contact.map_or(trial.ends_s, |contact| contact - LOOK_S);
+        trial.thing = Some(thing);
+        Ok(trial)
+    }
+
+    /// The time of a leg of the robot's way, in seconds, if it drives to and fro.
+    fn leg_s(&self) -> Option<f64> {
+        let is_asked = self.speeds.speed_m_s > 0.0 && self.plan.turns();
+        is_asked.then(|| self.plan.way_m() / self.speeds.speed_m_s)
+    }
+
+    /// The robot's pose at a time.
+    fn pose(&self, world: &World, at_s: f64) -> Pose {
+        let robot = &world.robots()[0];
+        let straight = |at_s| robot.motion.at(&robot.pose, at_s).pose;
+        let Some(leg_s) = self.leg_s() else { return straight(at_s) };
+        let in_turn_s = at_s % (2.0 * leg_s);
+        straight(in_turn_s.min(2.0 * leg_s - in_turn_s))
+    }
+
+    /// How long a belief lasts: until the robot has moved by 0.15 m or turned by 10 degrees, or for 2 s.
+    pub(super) fn life_s(&self) -> f64 {
+        let Speeds { speed_m_s, turn_rad_s } = self.speeds;
+        (0.15 / speed_m_s).min(10f64.to_radians() / turn_rad_s.abs()).min(2.0)
+    }
+
+    /// Readings of the first robot by a way of firing, in the order in which they were complete.
+    pub(super) fn heard(&self, way: &RoomWay, keep_going: &dyn Fn() -> bool) -> Result<Vec<Heard>, ExperimentError> {
+        let RoomWay { method, robot, options, .. } = way;
+        let Speeds { speed_m_s, turn_rad_s } = self.speeds;
+        let world = self.plan.moving(robot, speed_m_s, turn_rad_s)?.with_room(Some(Room::DEFAULT))?;
+        let world = Arc::new(world.with_physics(Physics::DEFAULT)?);
+        let mut simulation = Simulation::new(world, *method, options, Stop::default())?;
+        // Ends of legs, and the thing's appearing.
+        let legs = self.leg_s().map_or(0, |leg_s| (self.ends_s / leg_s) as u32);
+        let turns = (1..=legs).map(|leg| (self.leg_s().unwrap_or_default() * f64::from(leg), Some(leg)));
+        let mut events: Vec<_> = turns.chain([(self.appears_s, None)]).collect();
+        events.sort_by(|one, other| one.0.total_cmp(&other.0));
+        let mut parts: Vec<Readings> = vec![];
+        for (at_s, turn) in events {
+            parts.push(simulation.step((at_s - simulation.time_s()).max(0.0), |_| keep_going())?);
+            match (turn, &self.thing) {
+                (Some(leg), _) if leg % 2 == 1 => simulation.set_velocity(0, -speed_m_s, 0.0)?,
+                (Some(_), _) => simulation.set_velocity(0, speed_m_s, 0.0)?,
+                (None, Some(thing)) => simulation.change_scene(thing.scene(&self.plan).map_err(WorldError::from)?)?,
+                (None, None) => {}
+            }
+        }
+        parts.push(simulation.step((self.ends_s - simulation.time_s()).max(0.0), |_| keep_going())?);
+        let mut heard: Vec<Heard> = parts.iter().flat_map(|part| Heard::all(part, robot.window)).collect();
+        heard.sort_by(|one, other| one.ready_s.total_cmp(&other.ready_s));
+        Ok(heard)
+    }
+}

@@ -1,0 +1,175 @@
+//! Ways of firing rings measured by what a robot needs: the table of `eeruf_sim::experiments::measure`, with intervals,
+//! and its rows as CSV.
+//!
+//! `cargo lab measure RING.toml .. [--first N] [--places N] [--choose N] [--csv FILE]`: rooms from number 20,000 on, and
+//! 6 of each kind, on which figures are reported; settings are chosen on as many from number 0 on.
+
+use std::fs::File;
+use std::io::{BufWriter, Write};
+
+use eeruf_design::RingSpec;
+use eeruf_sim::experiments::FIRST;
+use eeruf_sim::experiments::measure::{
+    Cell, Condition, Costs, Estimate, MeasureAsked, Measured, ONE_A_MINUTE, Operating, Point, Speeds, Under, measure,
+    measured_ways,
+};
+
+/// The rate of turn of a robot on the spot, in degrees a second.
+const TURN_DEG_S: f64 = 45.0;
+/// Numbers of false stops a minute for which the curve is printed.
+const CURVE: [f64; 3] = [0.1, 1.0, 10.0];
+
+/// What was asked for.
+struct Arguments {
+    rings: Vec<String>,
+    first: u64,
+    places: u64,
+    choose: u64,
+    csv: Option<String>,
+}
+
+impl Arguments {
+    fn of(arguments: &[String]) -> Result<Self, Box<dyn std::error::Error>> {
+        let mut asked = Self { rings: vec![], first: FIRST, places: 6, choose: 0, csv: None };
+        let mut words = arguments.iter();
+        while let Some(word) = words.next() {
+            let mut value = || words.next().ok_or_else(|| format!("{word}: no value; expected one"));
+            match word.as_str() {
+                "--first" => asked.first = value()?.parse()?,
+                "--places" => asked.places = value()?.parse()?,
+                "--choose" => asked.choose = value()?.parse()?,
+                "--csv" => asked.csv = Some(value()?.clone()),
+                _ => asked.rings.push(word.clone()),
+            }
+        }
+        if asked.choose == 0 {
+            asked.choose = asked.places;
+        }
+        Ok(asked)
+    }
+}
+
+/// A number with its interval.
+fn with_interval(estimate: &Estimate, scale: f64, digits: usize) -> String {
+    let Estimate { value, interval_95: [low, high] } = estimate;
+    let number = |value: &f64| format!("{:.digits$}", scale * value);
+    format!("{} ({}..{})", number(value), number(low), number(high))
+}
+
+fn false_stops(cell: &Cell) -> String {
+    match cell.false_stops {
+        0 => format!("under {:.2}", 3.0 / cell.minutes),
+        _ => with_interval(&cell.false_stops_per_min, 1.0, 2),
+    }
+}
+
+/// Prints each way at its own point, and the best of each family in bold.
+fn table(measured: &Measured, chosen: &Measured) {
+    println!(
+        "| condition | way | votes | t95 ms | never % | false stops/min | blind m | foreign % | right % | blind |"
+    );
+    println!("|---|---|---|---:|---:|---:|---:|---:|---:|---:|");
+    for (under, chooses) in measured.under.iter().zip(&chosen.under) {
+        let at = |ways: &dyn Fn(usize) -> bool| chooses.operating(chosen, ways, ONE_A_MINUTE);
+        for (index, way) in measured.ways.iter().enumerate() {
+            let name = under.condition.as_str();
+            let Some(operating) = at(&|other| other == index) else {
+                println!("| {name} | {} | cannot fire this ring |", way.way.name);
+                continue;
+            };
+            let of_family = at(&|other| measured.ways[other].family == way.family);
+            let mark = if of_family == Some(operating) { "**" } else { "" };
+            let Point { setting, .. } = operating.point();
+            let none = if matches!(operating, Operating::None(_)) { ", none at one a minute" } else { "" };
+            let cell = under.cell(operating.point(), measured);
+            let speed_m_s = under.places.iter().map(|place| place.speed_m_s).sum::<f64>() / under.places.len() as f64;
+            println!(
+                "| {name} | {mark}{}{mark} | {setting}{none} | {} | {:.1} | {} | {:.3} | {} | {} | {} |",
+                way.way.name,
+                with_interval(&cell.t95_ms, 1.0, 0),
+                100.0 * cell.never,
+                false_stops(&cell),
+                1e-3 * speed_m_s * cell.t95_ms.value,
+                with_interval(&cell.foreign, 100.0, 2),
+                with_interval(&cell.right, 100.0, 1),
+                with_interval(&cell.blind, 1.0, 2),
+            );
+        }
+    }
+}
+
+/// Prints the t95 of each family by false stops a minute.
+fn curve(measured: &Measured, chosen: &Measured, costs: &Costs) {
+    println!("\nt95 in ms at 0.1, 1 and 10 false stops a minute, with the way and votes:\n");
+    let families: Vec<_> = costs.costs.iter().map(|cost| cost.family).collect();
+    println!("| condition | {} |", families.iter().map(ToString::to_string).collect::<Vec<_>>().join(" | "));
+    println!("|---|{}", "---|".repeat(families.len()));
+    for (under, chooses) in measured.under.iter().zip(&chosen.under) {
+        let of_family = |&family| {
+            let at = |most| chooses.operating(chosen, |way| measured.ways[way].family == family, most);
+            let words = CURVE.map(|most| match at(most) {
+                Some(Operating::At(point)) => {
+                    let t95_ms = under.cell(point, measured).t95_ms.value;
+                    format!("{t95_ms:.0} ({} {})", measured.ways[point.way].way.name, point.setting)
+                }
+                _ => "none".to_owned(),
+            });
+            words.join("; ")
+        };
+        let cells: Vec<_> = families.iter().map(of_family).collect();
+        println!("| {} | {} |", under.condition.as_str(), cells.join(" | "));
+    }
+}
+
+fn trials(under: &Under) -> String {
+    let things = under.places.iter().filter(|place| place.thing.is_some()).count();
+    let unread = 100.0 * under.unread();
+    format!("{}: {things} things in {} rooms, {unread:.0} % drawn again", under.condition.as_str(), under.places.len())
+}
+
+pub(crate) fn main(arguments: &[String]) -> crate::Answer {
+    let Arguments { rings, first, places, choose, csv } = Arguments::of(arguments)?;
+    if rings.is_empty() {
+        return Err("no ring; expected files of rings".into());
+    }
+    let mut out = csv.map(File::create).transpose()?.map(BufWriter::new);
+    if let Some(out) = &mut out {
+        writeln!(out, "ring,{}", Measured::CSV_HEAD)?;
+    }
+    for file in rings {
+        let spec = RingSpec::from_text(&std::fs::read_to_string(&file)?).map_err(|error| error.to_string())?;
+        let design = spec.shortest_to_study().map_err(|error| error.to_string())?;
+        let robot = design.as_ref().map_or(&spec, |design| &design.spec).room_robot()?.robot;
+        let ways = measured_ways(&robot, design.as_ref().map(|design| &design.schedule));
+        let ways: Vec<_> = ways.into_iter().map(|way| (way, None)).collect();
+        let speeds = Speeds { speed_m_s: spec.room_speed_m_s(), turn_rad_s: TURN_DEG_S.to_radians() };
+        let asked = MeasureAsked { conditions: Condition::ALL.into(), first, places, speeds };
+        let chosen = measure(&ways, &MeasureAsked { first: 0, places: choose, ..asked.clone() }, &|_| true)?;
+        let measured = measure(&ways, &asked, &|_| true)?;
+        println!(
+            "{file}: {places} rooms of each kind from number {first} on, settings from {choose} from number 0 on."
+        );
+        println!("{}.\n", measured.under.iter().map(trials).collect::<Vec<_>>().join("; "));
+        table(&measured, &chosen);
+        let costs = measured.costs(&chosen);
+        curve(&measured, &chosen, &costs);
+        println!("\n| way | cost |\n|---|---:|");
+        for cost in &costs.costs {
+            let words = cost.cost.as_ref().map_or("none".to_owned(), |cost| with_interval(cost, 1.0, 3));
+            println!("| {} | {words} |", cost.family);
+        }
+        match &costs.recommended {
+            Some(best) => {
+                let draw = best.draw.map_or(String::new(), |other| format!(", a draw with {other}"));
+                println!("\nRecommended: {}{draw}.\n", best.family);
+            }
+            None => println!("\nNo way has a cost.\n"),
+        }
+        if let Some(out) = &mut out {
+            for row in measured.csv().lines() {
+                writeln!(out, "{file},{row}")?;
+            }
+        }
+    }
+    Ok(())
+}

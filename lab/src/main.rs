@@ -73,7 +73,7 @@ const COMMANDS: [Command; 29] = [
     ("hopping-periods", "RING.toml ..", "periods of many phases, by kinds of codes", hopping_periods::main),
     (
         "measure",
-        "RING.toml .. [--first N] [--places N] [--choose N] [--csv FILE]",
+        "RING.toml .. [--first N] [--places N] [--choose N] [--csv FILE] [--planted BLOCKS]",
         "ways of firing by what a robot needs",
         measure::main,
     ),

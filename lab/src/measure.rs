@@ -1,8 +1,9 @@
 //! Ways of firing rings measured by what a robot needs: the table of `eeruf_sim::experiments::measure`, with intervals,
 //! and its rows as CSV.
 //!
-//! `cargo lab measure RING.toml .. [--first N] [--places N] [--choose N] [--csv FILE]`: rooms from number 20,000 on, and
-//! 6 of each kind, on which figures are reported; settings are chosen on as many from number 0 on.
+//! `cargo lab measure RING.toml .. [--first N] [--places N] [--choose N] [--csv FILE] [--planted BLOCKS]`: rooms from
+//! number 20,000 on, and 6 of each kind, on which figures are reported; settings are chosen on as many from number 0 on.
+//! With `--planted`, instead how often a sound way is told from itself with something planted in it.
 
 use std::fs::File;
 use std::io::{BufWriter, Write};
@@ -10,8 +11,8 @@ use std::io::{BufWriter, Write};
 use eeruf_design::RingSpec;
 use eeruf_sim::experiments::FIRST;
 use eeruf_sim::experiments::measure::{
-    Cell, Condition, Costs, Estimate, MeasureAsked, Measured, ONE_A_MINUTE, Operating, Point, Speeds, Under, measure,
-    measured_ways,
+    Cell, Condition, Control, Estimate, Family, MeasureAsked, Measured, MeasuredWay, ONE_A_MINUTE, Operating, Point,
+    Speeds, Under, measure, measured_ways,
 };
 
 /// The rate of turn of a robot on the spot, in degrees a second.
@@ -26,11 +27,12 @@ struct Arguments {
     places: u64,
     choose: u64,
     csv: Option<String>,
+    blocks: u64,
 }
 
 impl Arguments {
     fn of(arguments: &[String]) -> Result<Self, Box<dyn std::error::Error>> {
-        let mut asked = Self { rings: vec![], first: FIRST, places: 6, choose: 0, csv: None };
+        let mut asked = Self { rings: vec![], first: FIRST, places: 6, choose: 0, csv: None, blocks: 0 };
         let mut words = arguments.iter();
         while let Some(word) = words.next() {
             let mut value = || words.next().ok_or_else(|| format!("{word}: no value; expected one"));
@@ -38,6 +40,7 @@ impl Arguments {
                 "--first" => asked.first = value()?.parse()?,
                 "--places" => asked.places = value()?.parse()?,
                 "--choose" => asked.choose = value()?.parse()?,
+                "--planted" => asked.blocks = value()?.parse()?,
                 "--csv" => asked.csv = Some(value()?.clone()),
                 _ => asked.rings.push(word.clone()),
             }
@@ -99,13 +102,12 @@ fn table(measured: &Measured, chosen: &Measured) {
 }
 
 /// Prints the t95 of each family by false stops a minute.
-fn curve(measured: &Measured, chosen: &Measured, costs: &Costs) {
+fn curve(measured: &Measured, chosen: &Measured) {
     println!("\nt95 in ms at 0.1, 1 and 10 false stops a minute, with the way and votes:\n");
-    let families: Vec<_> = costs.costs.iter().map(|cost| cost.family).collect();
-    println!("| condition | {} |", families.iter().map(ToString::to_string).collect::<Vec<_>>().join(" | "));
-    println!("|---|{}", "---|".repeat(families.len()));
+    println!("| condition | {} |", Family::ALL.map(|family| family.to_string()).join(" | "));
+    println!("|---|{}", "---|".repeat(Family::ALL.len()));
     for (under, chooses) in measured.under.iter().zip(&chosen.under) {
-        let of_family = |&family| {
+        let of_family = |family| {
             let at = |most| chooses.operating(chosen, |way| measured.ways[way].family == family, most);
             let words = CURVE.map(|most| match at(most) {
                 Some(Operating::At(point)) => {
@@ -116,9 +118,28 @@ fn curve(measured: &Measured, chosen: &Measured, costs: &Costs) {
             });
             words.join("; ")
         };
-        let cells: Vec<_> = families.iter().map(of_family).collect();
-        println!("| {} | {} |", under.condition.as_str(), cells.join(" | "));
+        println!("| {} | {} |", under.condition.as_str(), Family::ALL.map(of_family).join(" | "));
     }
+}
+
+/// Prints how often a sound way is recommended over itself with something planted in it, which counts as the simpler.
+fn planted(ways: &[MeasuredWay], asked: &MeasureAsked, choose: u64, blocks: u64) -> crate::Answer {
+    let Some(sound) = ways.iter().find(|way| way.way.name == "one_by_one_33ms") else { return Ok(()) };
+    let controls = Control::PLANTED.map(Some).into_iter().chain([None]);
+    let ways: Vec<_> = controls.map(|control| (sound.clone(), control)).collect();
+    let mut told = [0; Control::PLANTED.len()];
+    for block in 0..blocks {
+        let of = |first, places| measure(&ways, &MeasureAsked { first, places, ..asked.clone() }, &|_| true);
+        let (chosen, measured) = (of(block * choose, choose)?, of(asked.first + block * asked.places, asked.places)?);
+        for (planted, told) in told.iter_mut().enumerate() {
+            let groups = [vec![planted], vec![Control::PLANTED.len()]];
+            *told += u64::from(measured.costs(&chosen, &groups).recommended == Some(1));
+        }
+    }
+    for (control, told) in Control::PLANTED.iter().zip(told) {
+        println!("{control:?}: the sound way is recommended in {told} of {blocks} blocks of rooms");
+    }
+    Ok(())
 }
 
 fn trials(under: &Under) -> String {
@@ -128,7 +149,7 @@ fn trials(under: &Under) -> String {
 }
 
 pub(crate) fn main(arguments: &[String]) -> crate::Answer {
-    let Arguments { rings, first, places, choose, csv } = Arguments::of(arguments)?;
+    let Arguments { rings, first, places, choose, csv, blocks } = Arguments::of(arguments)?;
     if rings.is_empty() {
         return Err("no ring; expected files of rings".into());
     }
@@ -141,9 +162,13 @@ pub(crate) fn main(arguments: &[String]) -> crate::Answer {
         let design = spec.shortest_to_study().map_err(|error| error.to_string())?;
         let robot = design.as_ref().map_or(&spec, |design| &design.spec).room_robot()?.robot;
         let ways = measured_ways(&robot, design.as_ref().map(|design| &design.schedule));
-        let ways: Vec<_> = ways.into_iter().map(|way| (way, None)).collect();
         let speeds = Speeds { speed_m_s: spec.room_speed_m_s(), turn_rad_s: TURN_DEG_S.to_radians() };
         let asked = MeasureAsked { conditions: Condition::ALL.into(), first, places, speeds };
+        if blocks > 0 {
+            planted(&ways, &asked, choose, blocks)?;
+            continue;
+        }
+        let ways: Vec<_> = ways.into_iter().map(|way| (way, None)).collect();
         let chosen = measure(&ways, &MeasureAsked { first: 0, places: choose, ..asked.clone() }, &|_| true)?;
         let measured = measure(&ways, &asked, &|_| true)?;
         println!(
@@ -151,19 +176,19 @@ pub(crate) fn main(arguments: &[String]) -> crate::Answer {
         );
         println!("{}.\n", measured.under.iter().map(trials).collect::<Vec<_>>().join("; "));
         table(&measured, &chosen);
-        let costs = measured.costs(&chosen);
-        curve(&measured, &chosen, &costs);
+        curve(&measured, &chosen);
+        let costs = measured.costs(&chosen, &measured.families());
         println!("\n| way | cost |\n|---|---:|");
-        for cost in &costs.costs {
+        for (family, cost) in Family::ALL.iter().zip(&costs.costs) {
             let words = cost.cost.as_ref().map_or("none".to_owned(), |cost| with_interval(cost, 1.0, 3));
-            println!("| {} | {words} |", cost.family);
+            println!("| {family} | {words} |");
         }
-        match &costs.recommended {
+        match costs.recommended {
             Some(best) => {
-                let draw = best.draw.map_or(String::new(), |other| format!(", a draw with {other}"));
-                println!("\nRecommended: {}{draw}.\n", best.family);
+                let draw = costs.draw.map_or(String::new(), |other| format!(", a draw with {}", Family::ALL[other]));
+                println!("\nRecommended: {}{draw}.\n", Family::ALL[best]);
             }
-            None => println!("\nNo way has a cost.\n"),
+            None => println!("\nNo way has a point of at most one false stop a minute under each condition.\n"),
         }
         if let Some(out) = &mut out {
             for row in measured.csv().lines() {

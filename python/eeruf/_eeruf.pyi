@@ -62,6 +62,7 @@ _MethodName = Literal[
     "groups",
     "sync_line",
     "free_running",
+    "blocking",
     "table",
 ]
 _Cause = Literal["nothing", "own", "stale", "crosstalk", "external"]

@@ -12,6 +12,7 @@ mod image_source;
 mod interference;
 mod kept;
 mod map_rooms;
+mod measure;
 mod modules;
 mod open;
 mod own;

@@ -140,34 +140,25 @@ fn rate(sights: &[Sight], counts: &[u16]) -> f64 {
     60.0 * sum(|sight| f64::from(sight.false_stops)) / sum(|sight| sight.watched_s)
 }
 
-/// A family's cost.
+/// The cost of a group of ways, of which the best is taken under each condition.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cost {
-    /// The family.
-    pub family: Family,
-    /// Where it is used under each condition; empty if no way of it can fire the ring.
+    /// Where it is used under each condition; fewer if no way of it can fire the ring.
     pub operating: Vec<Operating>,
-    /// The geometric mean over the conditions of its t95 relative to that of the best one by one; none where it, or
-    /// one by one, has no operating point.
+    /// The geometric mean over the conditions of its t95 relative to that of the first group; none where it, or that,
+    /// has no operating point.
     pub cost: Option<Estimate>,
 }
 
-/// The way to recommend.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Recommended {
-    /// Its family.
-    pub family: Family,
-    /// A family whose cost is less, but not surely so.
-    pub draw: Option<Family>,
-}
-
-/// Costs of all families, the simplest first, and which to recommend.
+/// Costs of groups of ways, the simplest first, and which to recommend, each by its index.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Costs {
-    /// Of each family.
+    /// Of each group.
     pub costs: Vec<Cost>,
-    /// None if no family has a cost.
-    pub recommended: Option<Recommended>,
+    /// The one to recommend; none if no group has a point under each condition.
+    pub recommended: Option<usize>,
+    /// One of less cost from which the recommended one does not surely differ.
+    pub draw: Option<usize>,
 }
 
 impl Measured {
@@ -178,7 +169,7 @@ impl Measured {
     }
 
     /// The geometric mean over the conditions of one way's t95 relative to another's, with its interval.
-    pub fn ratio(&self, ones: &[Point], others: &[Point]) -> Estimate {
+    fn ratio(&self, ones: &[Point], others: &[Point]) -> Estimate {
         let mut logs: Vec<f64> = vec![];
         for ((under, &one), &other) in self.under.iter().zip(ones).zip(others) {
             let of = |point| Latencies::new(under.sights(point).iter().map(|sight| sight.latency_ms));
@@ -192,42 +183,43 @@ impl Measured {
         Estimate::of(&logs.iter().map(|sum| libm::exp(sum / conditions)).collect::<Vec<_>>())
     }
 
-    /// The costs of all families with points chosen in other rooms of the same conditions.
-    pub fn costs(&self, chosen: &Self) -> Costs {
-        let points = |family| -> Vec<Operating> {
-            let of = |under: &Under| under.operating(chosen, |way| chosen.ways[way].family == family, ONE_A_MINUTE);
+    /// The costs of groups of ways with points chosen in other rooms of the same conditions, and the group to
+    /// recommend: that of the least cost, or a simpler one from which it does not surely differ.
+    pub fn costs(&self, chosen: &Self, groups: &[Vec<usize>]) -> Costs {
+        let operating = |group: &Vec<usize>| -> Vec<Operating> {
+            let of = |under: &Under| under.operating(chosen, |way| group.contains(&way), ONE_A_MINUTE);
             chosen.under.iter().filter_map(of).collect()
         };
-        let all = |operating: &[Operating]| -> Option<Vec<Point>> {
+        let keeping = |operating: &Vec<Operating>| -> Option<Vec<Point>> {
             let at = |operating: &Operating| if let Operating::At(point) = operating { Some(*point) } else { None };
             operating.iter().map(at).collect::<Option<Vec<_>>>().filter(|points| points.len() == self.under.len())
         };
-        let families: Vec<_> = Family::ALL.into_iter().map(|family| (family, points(family))).collect();
-        let base = families.first().and_then(|(_, operating)| all(operating));
-        let cost = |operating: &[Operating]| Some(self.ratio(&all(operating)?, base.as_ref()?));
-        let costs: Vec<_> = families
-            .into_iter()
-            .map(|(family, operating)| Cost { family, cost: cost(&operating), operating })
-            .collect();
-        let usable: Vec<_> = costs.iter().filter_map(|cost| Some((cost.family, all(&cost.operating)?))).collect();
-        let recommended = self
-            .recommend(&usable)
-            .map(|(index, draw)| Recommended { family: usable[index].0, draw: draw.map(|index| usable[index].0) });
-        Costs { costs, recommended }
+        let operating: Vec<_> = groups.iter().map(operating).collect();
+        let points: Vec<_> = operating.iter().map(keeping).collect();
+        let base = points.first().cloned().flatten();
+        let against_base = |points: &Option<Vec<Point>>| Some(self.ratio(points.as_ref()?, base.as_ref()?));
+        let costs = operating.into_iter().zip(&points);
+        let costs = costs.map(|(operating, points)| Cost { operating, cost: against_base(points) }).collect();
+        let usable: Vec<(usize, &Vec<Point>)> =
+            points.iter().enumerate().filter_map(|(group, points)| Some((group, points.as_ref()?))).collect();
+        let [recommended, draw] = self.recommend(&usable);
+        Costs { costs, recommended, draw }
     }
 
-    /// Of ways with their points under each condition, the simplest first, the one to recommend, and one of less cost
-    /// from which it does not surely differ.
-    pub fn recommend<T>(&self, ways: &[(T, Vec<Point>)]) -> Option<(usize, Option<usize>)> {
-        let (_, first) = ways.first()?;
-        let value = |points: &[Point]| self.ratio(points, first).value;
-        let values: Vec<f64> = ways.iter().map(|(_, points)| value(points)).collect();
-        let best = (0..ways.len()).reduce(|best, next| if values[next] < values[best] { next } else { best })?;
+    /// Of groups with their points under each condition, the simplest first, the one to recommend, and one of less
+    /// cost from which it does not surely differ.
+    fn recommend(&self, usable: &[(usize, &Vec<Point>)]) -> [Option<usize>; 2] {
+        let Some((_, first)) = usable.first() else { return [None; 2] };
+        let values: Vec<f64> = usable.iter().map(|(_, points)| self.ratio(points, first).value).collect();
+        let best = (1..usable.len()).fold(0, |best, next| if values[next] < values[best] { next } else { best });
         let rooms = self.under.iter().map(|under| under.places.len()).min().unwrap_or(0);
         let is_draw = |&simpler: &usize| {
-            let ratio = self.ratio(&ways[simpler].1, &ways[best].1);
+            let ratio = self.ratio(usable[simpler].1, usable[best].1);
             ratio.holds(1.0) && (rooms < MANY_ROOMS || ratio.value <= 1.0 + NO_DRAW)
         };
-        Some((0..best).find(is_draw).map_or((best, None), |simpler| (simpler, Some(best))))
+        match (0..best).find(is_draw) {
+            Some(simpler) => [Some(usable[simpler].0), Some(usable[best].0)],
+            None => [Some(usable[best].0), None],
+        }
     }
 }

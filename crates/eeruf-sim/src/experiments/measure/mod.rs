@@ -37,7 +37,7 @@ mod votes;
 mod ways;
 
 pub use bootstrap::Estimate;
-pub use cost::{Cell, Cost, Costs, ONE_A_MINUTE, Operating, Point, Recommended};
+pub use cost::{Cell, Cost, Costs, ONE_A_MINUTE, Operating, Point};
 pub use heard::Control;
 pub use run::{BySetting, MeasureAsked, Measured, Place, Under, measure};
 pub use sight::Sight;

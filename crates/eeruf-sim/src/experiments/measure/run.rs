@@ -7,7 +7,7 @@ use super::sight::Sight;
 use super::things::{Draws, ThingKind};
 use super::trial::{Condition, Speeds, Trial};
 use super::votes::Setting;
-use super::ways::MeasuredWay;
+use super::ways::{Family, MeasuredWay};
 use crate::{
     experiments::error::ExperimentError, experiments::progress::Progress, experiments::rooms::RoomKind, threads::sweep,
 };
@@ -130,6 +130,12 @@ pub fn measure(
 }
 
 impl Measured {
+    /// The ways of each family, for [`costs`](Self::costs).
+    pub fn families(&self) -> Vec<Vec<usize>> {
+        let of = |family| (0..self.ways.len()).filter(|&way| self.ways[way].family == family).collect();
+        Family::ALL.into_iter().map(of).collect()
+    }
+
     /// The head of [`csv`](Self::csv).
     pub const CSV_HEAD: &'static str = "condition,room,number,way,setting,thing,sensor,distance_m,drawn,unread,\
                                         speed_m_s,latency_ms,false_stops,watched_s,foreign,right,blind";

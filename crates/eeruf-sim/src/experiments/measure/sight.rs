@@ -3,7 +3,7 @@
 use core::f64::consts::PI;
 
 use super::heard::{Control, Heard};
-use super::things::{is_near, nearest_of};
+use super::things::{agree, is_near, nearest_of};
 use super::trial::{NEVER_S, Trial};
 use super::votes::{Believed, Setting, believed};
 use crate::{
@@ -75,8 +75,8 @@ impl Trial {
                     belief = Some(next);
                 }
                 let next_s = heard.get(k + 1).map_or(self.appears_s, |next| next.ready_s.min(self.appears_s));
-                let is_right = belief.is_some_and(|belief| is_near(belief.t_echo_us, reading.reference_us));
-                right += usize::from(is_right || (reading.reference_us.is_nan() && reading.accepted));
+                let is_right = belief.is_some_and(|belief| agree(belief.t_echo_us, reading.reference_us));
+                right += usize::from(is_right);
                 if !reading.reference_us.is_nan() {
                     echo_s += next_s - reading.ready_s;
                     let until_s = belief.map_or(0.0, |belief| belief.until_s.max(reading.ready_s)).min(next_s);
@@ -169,7 +169,6 @@ fn false_stops(mut intervals: Vec<[f64; 2]>) -> u32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::experiments::rooms::RoomKind;
 
     #[test]
     fn false_stops_count_onsets_and_seconds() {
@@ -196,6 +195,5 @@ mod tests {
         assert_eq!(at(PI), f64::INFINITY);
         let poles = RoomPlan { poles: vec![crate::Pole::new(1.0, 0.0, 0.1)], ..room };
         assert!((nearest_m(&poles, &Pose::identity()) - 0.9).abs() < 1e-9);
-        _ = RoomKind::ALL;
     }
 }

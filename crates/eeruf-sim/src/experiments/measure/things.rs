@@ -187,6 +187,11 @@ pub(super) fn is_near(one_us: f64, other_us: f64) -> bool {
     (one_us - other_us).abs() <= DEFAULT_TOLERANCE_US
 }
 
+/// Returns true if two echo times agree: near each other, or both silent.
+pub(super) fn agree(one_us: f64, other_us: f64) -> bool {
+    is_near(one_us, other_us) || (one_us.is_nan() && other_us.is_nan())
+}
+
 /// A strip from one point to another.
 fn between(from: Point, to: Point) -> (Body, Pose) {
     let way = to - from;

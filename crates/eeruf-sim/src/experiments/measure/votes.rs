@@ -3,7 +3,7 @@
 use core::fmt;
 
 use super::heard::Heard;
-use super::things::is_near;
+use super::things::agree;
 use crate::results::Cause;
 
 /// Votes that a reading needs to be believed.
@@ -68,9 +68,7 @@ pub(super) fn believed(heard: &[Heard], setting: Setting, [life_s, holds_s]: [f6
         last[0] = reading.accepted.then_some((reading.t_echo_us, reading.cause));
         let says = match (setting, last[0]) {
             (Setting::Votes { m, n }, Some((t_echo_us, cause))) => {
-                let agrees = |&(other_us, _): &&(f64, Cause)| {
-                    is_near(*other_us, t_echo_us) || (other_us.is_nan() && t_echo_us.is_nan())
-                };
+                let agrees = |other: &&(f64, Cause)| agree(other.0, t_echo_us);
                 let votes = last.iter().take(n).flatten().filter(agrees).count();
                 (votes >= m).then_some((t_echo_us, cause))
             }

@@ -11,8 +11,8 @@ use std::io::{BufWriter, Write};
 use eeruf_design::RingSpec;
 use eeruf_sim::experiments::FIRST;
 use eeruf_sim::experiments::measure::{
-    Cell, Condition, Control, Estimate, Family, MeasureAsked, Measured, MeasuredWay, ONE_A_MINUTE, Operating, Point,
-    Speeds, Under, measure, measured_ways,
+    Cell, Condition, Control, Estimate, Family, MeasureAsked, Measured, MeasuredWay, Moving, ONE_A_MINUTE, Operating,
+    Point, Speeds, Under, measure, measured_ways,
 };
 
 /// The rate of turn of a robot on the spot, in degrees a second.
@@ -66,8 +66,18 @@ fn false_stops(cell: &Cell) -> String {
     }
 }
 
+/// The way that a robot goes, or the angle that it turns by, until 95 % are seen.
+fn blind_travel(under: &Under, t95_ms: f64, turn_deg_s: f64) -> String {
+    let speed_m_s = under.places.iter().map(|place| place.speed_m_s).sum::<f64>() / under.places.len() as f64;
+    match under.condition.moving {
+        Moving::Standing => String::new(),
+        Moving::Driving => format!("{:.3} m", 1e-3 * speed_m_s * t95_ms),
+        Moving::Turning => format!("{:.0} deg", 1e-3 * turn_deg_s * t95_ms),
+    }
+}
+
 /// Prints each way at its own point, and the best of each family in bold.
-fn table(measured: &Measured, chosen: &Measured) {
+fn table(measured: &Measured, chosen: &Measured, turn_deg_s: f64) {
     println!(
         "| condition | way | votes | t95 ms | never % | false stops/min | blind m | foreign % | right % | blind |"
     );
@@ -85,14 +95,14 @@ fn table(measured: &Measured, chosen: &Measured) {
             let Point { setting, .. } = operating.point();
             let none = if matches!(operating, Operating::None(_)) { ", none at one a minute" } else { "" };
             let cell = under.cell(operating.point(), measured);
-            let speed_m_s = under.places.iter().map(|place| place.speed_m_s).sum::<f64>() / under.places.len() as f64;
+            let [t50, t90] = cell.t50_t90_ms;
             println!(
-                "| {name} | {mark}{}{mark} | {setting}{none} | {} | {:.1} | {} | {:.3} | {} | {} | {} |",
+                "| {name} | {mark}{}{mark} | {setting}{none} | {t50:.0} / {t90:.0} / {} | {:.1} | {} | {} | {} | {} | {} |",
                 way.way.name,
                 with_interval(&cell.t95_ms, 1.0, 0),
                 100.0 * cell.never,
                 false_stops(&cell),
-                1e-3 * speed_m_s * cell.t95_ms.value,
+                blind_travel(under, cell.t95_ms.value, turn_deg_s),
                 with_interval(&cell.foreign, 100.0, 2),
                 with_interval(&cell.right, 100.0, 1),
                 with_interval(&cell.blind, 1.0, 2),
@@ -175,7 +185,7 @@ pub(crate) fn main(arguments: &[String]) -> crate::Answer {
             "{file}: {places} rooms of each kind from number {first} on, settings from {choose} from number 0 on."
         );
         println!("{}.\n", measured.under.iter().map(trials).collect::<Vec<_>>().join("; "));
-        table(&measured, &chosen);
+        table(&measured, &chosen, TURN_DEG_S);
         curve(&measured, &chosen);
         let costs = measured.costs(&chosen, &measured.families());
         println!("\n| way | cost |\n|---|---:|");

@@ -68,9 +68,14 @@ impl Latencies {
 
     /// The 95th percentile of rooms drawn so often; infinite where more than 5 % are never seen.
     pub(super) fn t95_ms(&self, counts: &[u16]) -> f64 {
+        self.within_ms(0.95, counts)
+    }
+
+    /// The time in which a share of things is seen, in rooms drawn so often.
+    pub(super) fn within_ms(&self, share: f64, counts: &[u16]) -> f64 {
         let count = |&(_, room): &(f64, usize)| counts.get(room).map_or(0, |&count| u32::from(count));
         let all: u32 = self.0.iter().map(count).sum();
-        let rank = (f64::from(all) * 0.95).ceil() as u32;
+        let rank = (f64::from(all) * share).ceil() as u32;
         let mut passed = 0;
         let found = self.0.iter().find(|of| {
             passed += count(of);

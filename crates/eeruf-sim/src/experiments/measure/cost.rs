@@ -46,6 +46,8 @@ impl Operating {
 pub struct Cell {
     /// Things.
     pub things: usize,
+    /// The times in which half of them, and nine of ten, are seen, in ms.
+    pub t50_t90_ms: [f64; 2],
     /// The time in which 95 % of them are seen, in ms; infinite if fewer are.
     pub t95_ms: Estimate,
     /// The share of those that are never seen.
@@ -120,6 +122,7 @@ impl Under {
         };
         Cell {
             things: latencies.len(),
+            t50_t90_ms: [0.5, 0.9].map(|share| latencies.within_ms(share, &vec![1; sights.len()])),
             t95_ms: Estimate::of(&bootstrap.figures(|counts| latencies.t95_ms(counts))),
             never: latencies.never(),
             false_stops: sights.iter().map(|sight| sight.false_stops).sum(),

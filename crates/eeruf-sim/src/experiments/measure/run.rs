@@ -2,14 +2,15 @@
 
 use core::fmt::Write as _;
 
-use super::heard::Control;
+use super::heard::{Control, Heard};
 use super::sight::Sight;
 use super::things::{Draws, ThingKind};
 use super::trial::{Condition, Speeds, Trial};
 use super::votes::Setting;
 use super::ways::{Family, MeasuredWay};
 use crate::{
-    experiments::error::ExperimentError, experiments::progress::Progress, experiments::rooms::RoomKind, threads::sweep,
+    experiments::error::ExperimentError, experiments::progress::Progress, experiments::rooms::RoomKind,
+    experiments::rooms::RoomWay, threads::sweep,
 };
 
 /// Rooms and conditions in which ways are measured.
@@ -92,18 +93,26 @@ pub fn measure(
     let robot = &first.way.robot;
     let runs = sweep(&jobs, |&(condition, room)| {
         let trial = Trial::new(room, robot, condition, asked.speeds)?;
-        let of_way = |(MeasuredWay { way, .. }, control): &(MeasuredWay, Option<Control>)| {
-            let mut heard = match trial.heard(way, &|| progress.go_on()) {
-                Err(ExperimentError::Simulation(error)) => return Ok(Err(error.to_string())),
-                heard => heard?,
+        // Controls of one way share its readings.
+        let mut last: Option<(&RoomWay, Vec<Heard>)> = None;
+        let mut sights = Vec::with_capacity(ways.len());
+        for (MeasuredWay { way, .. }, control) in ways {
+            let mut heard = match last.take().filter(|(before, _)| *before == way) {
+                Some((_, heard)) => heard,
+                None => match trial.heard(way, &|| progress.go_on()) {
+                    Err(ExperimentError::Simulation(error)) => {
+                        sights.push(Err(error.to_string()));
+                        continue;
+                    }
+                    heard => heard?,
+                },
             };
+            last = Some((way, heard.clone()));
             if let Some(control) = control {
                 control.apply(&mut heard, room.1, trial.c);
             }
-            let sights = Setting::ALL.map(|setting| trial.sight(&way.robot, &heard, setting, *control));
-            Ok(Ok(sights))
-        };
-        let sights = ways.iter().map(of_way).collect::<Result<Vec<_>, ExperimentError>>()?;
+            sights.push(Ok(Setting::ALL.map(|setting| trial.sight(&way.robot, &heard, setting, *control))));
+        }
         progress.one_done();
         let thing = trial.thing.as_ref().map(|thing| (thing.kind, thing.sensor, thing.distance_m));
         let place = Place { room, thing, draws: trial.draws, speed_m_s: trial.speeds.speed_m_s };

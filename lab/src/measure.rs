@@ -137,9 +137,13 @@ fn planted(ways: &[MeasuredWay], asked: &MeasureAsked, choose: u64, blocks: u64)
     let Some(sound) = ways.iter().find(|way| way.way.name == "one_by_one_33ms") else { return Ok(()) };
     let controls = Control::PLANTED.map(Some).into_iter().chain([None]);
     let ways: Vec<_> = controls.map(|control| (sound.clone(), control)).collect();
+    // Beside another robot one by one may have no point at all.
+    let alone: Vec<_> = asked.conditions.iter().copied().filter(|condition| !condition.others).collect();
     let mut told = [0; Control::PLANTED.len()];
     for block in 0..blocks {
-        let of = |first, places| measure(&ways, &MeasureAsked { first, places, ..asked.clone() }, &|_| true);
+        let of = |first, places| {
+            measure(&ways, &MeasureAsked { first, places, conditions: alone.clone(), ..asked.clone() }, &|_| true)
+        };
         let (chosen, measured) = (of(block * choose, choose)?, of(asked.first + block * asked.places, asked.places)?);
         for (planted, told) in told.iter_mut().enumerate() {
             let groups = [vec![planted], vec![Control::PLANTED.len()]];

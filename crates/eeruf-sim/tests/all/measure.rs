@@ -3,7 +3,8 @@
 use std::f64::consts::TAU;
 
 use eeruf_sim::experiments::measure::{
-    Condition, Control, MeasureAsked, Measured, MeasuredWay, NEVER_S, Point, Setting, Speeds, measure, measured_ways,
+    Cell, Condition, Control, MeasureAsked, Measured, MeasuredWay, NEVER_S, ONE_A_MINUTE, Point, Setting, Speeds,
+    measure, measured_ways,
 };
 use eeruf_sim::experiments::rooms::RoomWay;
 use eeruf_sim::modules::HC_SR04;
@@ -48,32 +49,30 @@ fn controls_rank_as_they_must_in_every_condition() {
         let [sound, never, always, holds, genie, at_once] = [0, 1, 2, 3, 4, 5].map(cell);
         assert!(sound.things >= 5, "{name}: {sound:?}");
         assert_eq!((never.never, never.false_stops), (1.0, 0), "{name}");
-        assert!(always.never >= 0.5 && always.false_stops_per_min.value > 30.0, "{name}: {always:?}");
+        let half_ms = |cell: &Cell| cell.t50_t90_ms[0];
+        // A robot that drives by a thing is 0.3 m away from it sooner or later.
+        assert!(half_ms(&always) > 2.0 * half_ms(&sound), "{name}: {always:?}");
+        assert!(always.false_stops_per_min.value > 30.0, "{name}: {always:?}");
         // Most of what appears does so while an older belief is held.
-        let median = |way| {
-            let sights = under.sights(Point { way, setting: EAGER });
-            let mut latencies: Vec<f64> = sights.iter().map(|it| it.latency_ms).filter(|ms| !ms.is_nan()).collect();
-            eeruf_sim::quantile(&mut latencies, 0.5)
-        };
-        assert!(median(3) > 3.0 * median(0), "{name}: {} {}", median(3), median(0));
+        assert!(half_ms(&holds) > 3.0 * half_ms(&sound), "{name}: {holds:?}");
         assert!(holds.t95_ms.value >= sound.t95_ms.value, "{name}");
         assert_eq!(genie.false_stops, 0, "{name}");
-        assert!(median(4) < median(0) && genie.never <= sound.never, "{name}: {} {}", median(4), median(0));
+        // It is told the paths, but does not choose when to fire: foreign sound hides one thing of seven now and then.
+        assert!(half_ms(&genie) < half_ms(&sound) && genie.never <= sound.never + 0.15, "{name}: {genie:?}");
         if under.condition.others {
-            let [at_once, sound] = [at_once, sound].map(|cell| cell.false_stops_per_min.value);
-            assert!(at_once > 2.0 * sound.max(1.0), "{name}: {at_once} {sound}");
+            assert!(at_once.false_stops_per_min.value > 5.0 * ONE_A_MINUTE, "{name}: {at_once:?}");
         }
     }
 }
 
-// A corner of what `cargo lab measure --planted 20` shows of all conditions.
+// A corner of what `cargo lab measure --planted 20` shows.
 #[test]
 fn sound_way_is_recommended_over_planted_ones() {
     let sound = way("one_by_one_33ms");
     let controls = Control::PLANTED.map(Some).into_iter().chain([None]);
     let ways: Vec<_> = controls.map(|control| (sound.clone(), control)).collect();
-    let standing = &Condition::ALL[..1];
-    let (chosen, measured) = (run(&ways, standing, 0, 8), run(&ways, standing, 22_000, 8));
+    let alone = &Condition::ALL[..3];
+    let (chosen, measured) = (run(&ways, alone, 0, 5), run(&ways, alone, 22_000, 5));
     for (planted, control) in Control::PLANTED.iter().enumerate() {
         // The planted one stands first, as the simpler.
         let costs = measured.costs(&chosen, &[vec![planted], vec![3]]);

@@ -148,8 +148,8 @@ fn rate(sights: &[Sight], counts: &[u16]) -> f64 {
 pub struct Cost {
     /// Where it is used under each condition; fewer if no way of it can fire the ring.
     pub operating: Vec<Operating>,
-    /// The geometric mean over the conditions of its t95 relative to that of the first group; none where it, or that,
-    /// has no operating point.
+    /// The geometric mean over the conditions of its t95 relative to that of the first group, which may have more false
+    /// stops; none where it has no operating point under a condition.
     pub cost: Option<Estimate>,
 }
 
@@ -199,7 +199,9 @@ impl Measured {
         };
         let operating: Vec<_> = groups.iter().map(operating).collect();
         let points: Vec<_> = operating.iter().map(keeping).collect();
-        let base = points.first().cloned().flatten();
+        // One by one is what others are measured by even where it has more false stops than one a minute.
+        let base = operating.first().map(|of| of.iter().map(|it| it.point()).collect::<Vec<_>>());
+        let base = base.filter(|base| base.len() == self.under.len());
         let against_base = |points: &Option<Vec<Point>>| Some(self.ratio(points.as_ref()?, base.as_ref()?));
         let costs = operating.into_iter().zip(&points);
         let costs = costs.map(|(operating, points)| Cost { operating, cost: against_base(points) }).collect();

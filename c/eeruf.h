@@ -329,7 +329,7 @@ uint32_t eeruf_ring_fired_at(const EerufRing *ring, uint8_t sensor);
 /* The echo line of a sensor was high when it was to be fired: its reading is EERUF_READING_STUCK. */
 EerufStatus eeruf_ring_stuck(EerufRing *ring, uint8_t sensor);
 
-/* What silence means, from the next firing on: a firing without an echo whose sensor has not shown by eeruf_ring_answered
+/* The meaning of silence, from the next firing on: a firing without an echo whose sensor has not shown by eeruf_ring_answered
    or eeruf_ring_measured that it listened. EerufHcSr04 does all of this by its lines. */
 enum {
     EERUF_SILENCE_NEVER_FREE = 0,   /* the default: neither free space nor a fault, EERUF_READING_NO_ECHO however often */

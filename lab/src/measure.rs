@@ -2,8 +2,8 @@
 //! and its rows as CSV.
 //!
 //! `cargo lab measure RING.toml .. [--first N] [--places N] [--choose N] [--csv FILE] [--planted BLOCKS]`: rooms from
-//! number 20,000 on, and 6 of each kind, on which figures are reported; settings are chosen on as many from number 0 on.
-//! With `--planted`, instead how often a sound way is told from itself with something planted in it.
+//! number 20,000 on, and 6 of each kind, on which figures are reported; settings are chosen on as many from number 0
+//! on. With `--planted`, instead how often a sound way is told from itself with something planted in it.
 
 use std::fs::File;
 use std::io::{BufWriter, Write};
@@ -20,7 +20,7 @@ const TURN_DEG_S: f64 = 45.0;
 /// Numbers of false stops a minute for which the curve is printed.
 const CURVE: [f64; 3] = [0.1, 1.0, 10.0];
 
-/// What was asked for.
+/// The command's arguments.
 struct Arguments {
     rings: Vec<String>,
     first: u64,
@@ -97,7 +97,8 @@ fn table(measured: &Measured, chosen: &Measured, turn_deg_s: f64) {
             let cell = under.cell(operating.point(), measured);
             let [t50, t90] = cell.t50_t90_ms;
             println!(
-                "| {name} | {mark}{}{mark} | {setting}{none} | {t50:.0} / {t90:.0} / {} | {:.1} | {} | {} | {} | {} | {} |",
+                "| {name} | {mark}{}{mark} | {setting}{none} | {t50:.0} / {t90:.0} / {} | {:.1} | {} | {} | {} | {} | \
+                 {} |",
                 way.way.name,
                 with_interval(&cell.t95_ms, 1.0, 0),
                 100.0 * cell.never,

@@ -29,8 +29,8 @@ use crate::report::watch::Watch;
 /// eeruf_best (the shortest schedule with the same guarantees), eeruf_hopping (many phases, a tracker and solo periods,
 /// so that no sensor stays blind), flow (one after the other, each with the quiet that it has needed), adaptive,
 /// multi_echo. By name two in one (adaptive_hopping, adaptive_multi_echo, hopping_multi_echo, flow_multi_echo) and
-/// blocking (fire, wait for the echo or for 38 ms, then 10 ms, and the next), or if the scene says `firing`, as rings are
-/// fired today: in_turn (the next as soon as the echo came, or after a time-out), arrays, groups, sync_line,
+/// blocking (fire, wait for the echo or for 38 ms, then 10 ms, and the next), or if the scene says `firing`, as rings
+/// are fired today: in_turn (the next as soon as the echo came, or after a time-out), arrays, groups, sync_line,
 /// free_running, table.
 #[derive(clap::Args)]
 pub(crate) struct Args {

@@ -1,5 +1,5 @@
-//! Harm that files and pages of ours could do to whoever copies them: settings that are known to hurt stay out, and what
-//! is known to be unsafe is said where one reads first.
+//! Harm that files and pages of ours could do to whoever copies them: settings that are known to hurt stay out, and
+//! what is known to be unsafe is said where one reads first.
 
 use std::path::Path;
 
@@ -12,8 +12,8 @@ fn values<'t>(yaml: &'t str, key: &str) -> Vec<&'t str> {
     yaml.lines().filter_map(|line| line.trim().strip_prefix(key)?.strip_prefix(": ")).collect()
 }
 
-// At an `inflate_cone` above 0 Nav2's range layer updates the box around the cone: a clear reading frees its neighbours'
-// walls. A layer that marks and never clears keeps a person's wall for ever.
+// At an `inflate_cone` above 0 Nav2's range layer updates the box around the cone: a clear reading frees its
+// neighbours' walls. A layer that marks and never clears keeps a person's wall for ever.
 #[test]
 fn nav2_costmap_clears_within_cones_alone() {
     let yaml = read("ros2/config/nav2.yaml");

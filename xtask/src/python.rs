@@ -48,7 +48,11 @@ pub(crate) fn python() -> Result<()> {
 fn wheel(python: &Path, folder: &Path) -> Result<PathBuf> {
     let mut pip = Command::new(python);
     pip.args(["-m", "pip", "wheel", "--quiet", "--no-deps", "--no-build-isolation", ".", "--wheel-dir"]).arg(folder);
-    run(pip.env("MATURIN_PEP517_ARGS", "--locked"))?;
+    // The backend calls maturin by its name.
+    let programs = absolute(python.with_file_name(""))?;
+    let others = std::env::var_os("PATH").unwrap_or_default();
+    let path = std::env::join_paths(std::iter::once(programs).chain(std::env::split_paths(&others)))?;
+    run(pip.env("MATURIN_PEP517_ARGS", "--locked").env("PATH", path))?;
     only_file(folder)
 }
 

@@ -133,8 +133,8 @@ impl<const K: usize> SensorWatch<K> {
         Self { sensors: [nothing; K], blind_after }
     }
 
-    /// Forgets all, `now`: to be called with [`Ring::restart`](crate::Ring::restart), since after a long sleep the clock
-    /// may have come round, so that an old state would pass for a young one.
+    /// Forgets all, `now`: to be called with [`Ring::restart`](crate::Ring::restart), since after a long sleep the
+    /// clock may have come round, so that an old state would pass for a young one.
     pub const fn restart(&mut self, now: Instant) {
         *self = Self::new(self.blind_after, now);
     }

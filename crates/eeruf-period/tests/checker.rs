@@ -156,7 +156,7 @@ fn broken(number: usize, from: &str, to: &str) -> PathBuf {
     file
 }
 
-/// Certificates that a checker's own rules allow for claims, branching on whatever is open; at most so many.
+/// Certificates that a checker's own rules allow for claims, branching on whatever is open; at most this many.
 fn proven_by(checker: &Path, name: &str, claims: &[Claim], most: usize) -> Vec<String> {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
     _ = std::fs::remove_dir_all(&folder);

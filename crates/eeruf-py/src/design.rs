@@ -214,8 +214,8 @@ fn certify(
 /// Check a certificate: that its schedule keeps the requirements in it, and that no period is shorter.
 ///
 /// The checker is ``checker/check_period.py``, which shares nothing with the search and which :func:`example` shows;
-/// ``docs/reference/certificate.md`` has the format and the proof of each rule. A certificate speaks of the numbers that
-/// stand in it, and of nothing else.
+/// ``docs/reference/certificate.md`` has the format and the proof of each rule. A certificate speaks of the numbers
+/// that stand in it, and of nothing else.
 ///
 /// Args:
 ///     text: the certificate, as in ``design(..., certificate=True).certificate``.

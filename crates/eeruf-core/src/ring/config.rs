@@ -5,7 +5,7 @@ use crate::plan::Plan;
 use crate::ring_error::RingError;
 use crate::time::Micros;
 
-/// What silence means: a firing without an echo whose sensor has not shown that it listened
+/// The meaning of silence: of a firing without an echo whose sensor has not shown that it listened
 /// ([`Ring::answered`](super::Ring::answered), [`Ring::measured`](super::Ring::measured)).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -13,8 +13,8 @@ pub enum Silence {
     /// Never free space and no fault: it stays [`NoEcho`](crate::ReadingKind::NoEcho), however often.
     #[default]
     NeverFree,
-    /// A fault, [`Unanswered`](crate::ReadingKind::Unanswered), for drivers whose sensors show that they listen, such as
-    /// by a line that rises.
+    /// A fault, [`Unanswered`](crate::ReadingKind::Unanswered), for drivers whose sensors show that they listen, as by
+    /// a line that rises.
     NeedsAnswer,
     /// As good as one with a witness: [`Clear`](crate::ReadingKind::Clear) once repeated. For simulations, and sensors
     /// that cannot fail in silence: a cut wire is free space too.

@@ -163,8 +163,8 @@ impl<const E: usize, const H: usize> Sensor<E, H> {
         self.echoes.first().copied().filter(|&echo| echo != NO_ECHO)
     }
 
-    /// Ends the firing; of one that has ended already, takes the late edge. `unwitnessed`: the kind of silence without a
-    /// witness.
+    /// Ends the firing; of one that has ended already, takes the late edge. `unwitnessed`: the kind of silence without
+    /// a witness.
     #[inline]
     pub(super) fn end(&mut self, unwitnessed: ReadingKind) -> Ended<E> {
         let echoes = core::mem::replace(&mut self.echoes, [NO_ECHO; E]);

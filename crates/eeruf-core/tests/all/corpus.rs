@@ -1,6 +1,6 @@
 //! A corpus of rings for ports that cannot call Rust: what happens to each ring, and its events.
-//! `EERUF_CORPUS=FILE` writes it, for `c/micropython/test_corpus.py`. The tree keeps its [`golden`], which `EERUF_WRITE=1`
-//! writes.
+//! `EERUF_CORPUS=FILE` writes it, for `c/micropython/test_corpus.py`. The tree keeps its [`golden`], which
+//! `EERUF_WRITE=1` writes.
 //!
 //! Lines: `#` the name of a ring; `S` a schedule: period, phases, then the firing times by phase; `V` requirements
 //! (`t_delta`, interval, window, neighbours, layout, stale echo), then separation and window, both 0 if not met; `L`
@@ -348,7 +348,7 @@ fn run_two_phases(r: &mut Random, text: &mut Text) {
     run(r, text, &schedule, promised);
 }
 
-/// The corpus, with rings of tables of the first so many seeds.
+/// The corpus, with rings of tables of the first seeds, this many.
 fn corpus(rings: u64) -> String {
     let mut text = Text(String::new());
     for seed in (0..rings).chain(RARE) {
@@ -381,8 +381,8 @@ fn corpus_matches_golden() {
     let differences = golden::differences(&kept, &corpus);
     assert!(
         differences.is_empty(),
-        "core says something else than tests/data/ring-golden.txt:\n{differences}EERUF_CORPUS=FILE writes all lines, to \
-         be compared with those of the commit before; EERUF_WRITE=1 writes the golden, and the commit says why"
+        "core says something else than tests/data/ring-golden.txt:\n{differences}EERUF_CORPUS=FILE writes all lines, \
+         to be compared with those of the commit before; EERUF_WRITE=1 writes the golden, and the commit says why"
     );
     golden::assert_complete(&kept);
 }

@@ -167,8 +167,8 @@ fn the_age_of_what_was_once_accepted_stays_below_never() {
     assert_eq!((ages[0], ages[65_000], ages[69_999]), (Some(1), Some(65_001), Some(65_534)));
 }
 
-/// A path of sound to sensor 7 that begins at `length` us, grows by `rate` us/s, and is longer or shorter by `wobble` us
-/// in turn.
+/// A path of sound to sensor 7 that begins at `length` us, grows by `rate` us/s, and is longer or shorter by `wobble`
+/// us in turn.
 struct Path {
     emitter: u8,
     length: u32,

@@ -16,7 +16,7 @@ pub struct Flow<'r, const K: usize> {
     pub settings: &'r FlowSettings,
     /// Number of sensors.
     pub sensors: usize,
-    /// How the ring listens.
+    /// Settings by which the ring listens.
     pub listening: HoppingListening,
     /// Limits of each sensor; [`EachSensor::NONE`] if all are alike.
     pub limits: &'r EachSensor<K>,

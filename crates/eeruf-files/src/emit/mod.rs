@@ -1,4 +1,5 @@
-//! A ring as source text: Rust that is checked when it is compiled, a C header, a tab of an Arduino sketch, a TOML file.
+//! A ring as source text: Rust that is checked when it is compiled, a C header, a tab of an Arduino sketch, a TOML
+//! file.
 
 mod c;
 mod flow;

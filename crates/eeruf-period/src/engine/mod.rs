@@ -17,8 +17,8 @@
 //!
 //! # The engine and the checker
 //!
-//! `checker/check_period.py` has a matrix, a state and rules of its own, in another language: a mistake in one is none in
-//! the other. Both state the rules of docs/reference/certificate.md, for a certificate gives the tree alone, and a
+//! `checker/check_period.py` has a matrix, a state and rules of its own, in another language: a mistake in one is none
+//! in the other. Both state the rules of docs/reference/certificate.md, for a certificate gives the tree alone, and a
 //! checker must come to the same refutations. Where they differ, they do on purpose:
 //!
 //! - The checker reads each assumption about symmetry from the text and verifies it; the engine constructs those that
@@ -26,7 +26,8 @@
 //! - The checker says which line is wrong and why; the engine asks only whether a schedule keeps the needs.
 //! - The checker replays branchings; the engine chooses them, and in a search takes the times at the bounds for a
 //!   schedule as soon as they serve.
-//! - The checker keeps a matrix in one integer for each open node; the engine has one matrix and a log that takes it back.
+//! - The checker keeps a matrix in one integer for each open node; the engine has one matrix and a log that takes it
+//!   back.
 //! - In a search the engine concludes more: with `State::goes_further` from Hall intervals. A certificate is written
 //!   without, so a mistake there comes out when one is written.
 

@@ -147,7 +147,7 @@ struct Lane {
     pending: u64,
     /// The time from turn to turn, if it is fixed.
     cycle: Option<Micros>,
-    /// How long its sensors listen, and how long they take where they hear nothing, if that is longer.
+    /// The time for which its sensors listen, and the time that they take where they hear nothing, if that is longer.
     silent: Option<(Micros, Micros)>,
 }
 

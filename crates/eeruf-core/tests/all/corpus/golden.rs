@@ -23,8 +23,8 @@ fn title(name: &str, lines: &str) -> String {
     format!("{name} {} {:016x}", lines.lines().count(), digest(lines))
 }
 
-/// The properties of a line for which it may be kept: its letter and event in each family of rings, and the kind, state,
-/// reason and explanation in any.
+/// The properties of a line for which it may be kept: its letter and event in each family of rings, and the kind,
+/// state, reason and explanation in any.
 fn shown(name: &str, line: &str) -> Vec<String> {
     let family = name.split(' ').next().unwrap_or(name);
     let words = line.split(' ').collect::<Vec<_>>();

@@ -36,7 +36,7 @@ pub(super) struct Course {
     pub(super) fired: u32,
     /// One of this many events is followed by a step back of the clock; 0 for never.
     pub(super) clock_steps: u32,
-    /// By how much odometry expects an echo to change, in microseconds a second, and by how much that is wrong at most.
+    /// The change of echoes that odometry expects, in microseconds a second, and the most by which that is wrong.
     pub(super) expected: i64,
     pub(super) noise: u32,
 }

@@ -89,9 +89,9 @@ impl Under {
         (latencies.t95_ms(&vec![1; sights.len()]), rate(sights, &vec![1; sights.len()]))
     }
 
-    /// The point at which some of the ways are used with at most so many false stops a minute: where a way's most eager setting
-    /// keeps to that, that one; else its setting of the least t95 that does; of all its ways the one of the least t95.
-    /// None if no way of them can fire the ring.
+    /// The point at which some of the ways are used with at most this many false stops a minute: where a way's most
+    /// eager setting keeps to that, that one; else its setting of the least t95 that does; of all its ways the one of
+    /// the least t95. None if no way of them can fire the ring.
     pub fn operating(&self, measured: &Measured, ways: impl Fn(usize) -> bool, most_per_min: f64) -> Option<Operating> {
         let points = self.points(measured, ways);
         let figures: Vec<_> = points.iter().map(|&point| (point, self.t95_and_rate(point))).collect();

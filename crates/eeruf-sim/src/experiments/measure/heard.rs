@@ -1,4 +1,4 @@
-//! What one robot's sensors heard in a trial, as all settings of votes judge it, and what controls make of it.
+//! Readings of one robot's sensors in a trial, as all settings of votes judge it, and what controls make of it.
 
 use core::ops::Range;
 
@@ -21,9 +21,9 @@ pub(super) struct Heard {
     pub(super) seen: Pose,
     /// NaN for silence.
     pub(super) t_echo_us: f64,
-    /// What the sensor would have read alone.
+    /// The reading that the sensor would have had alone.
     pub(super) reference_us: f64,
-    /// By how much odometry expects a good reading to change since the sensor's firing before.
+    /// The change that odometry expects of a good reading since the sensor's firing before.
     pub(super) change_us: f64,
     pub(super) cause: Cause,
     /// True if the way of firing believes it.
@@ -81,7 +81,8 @@ impl Control {
     /// Controls that are a sound way with something wrong planted in it.
     pub const PLANTED: [Self; 3] = [Self::Masked, Self::Late, Self::Foreign];
 
-    /// How long a belief lasts where it usually lasts so long, and for how long nothing replaces it, in seconds.
+    /// The time for which a belief lasts where it usually lasts as long, and for how long nothing replaces it, in
+    /// seconds.
     pub(super) fn life_s(control: Option<Self>, usual_s: f64) -> [f64; 2] {
         if control == Some(Self::Holds) { [10.0; 2] } else { [usual_s, 0.0] }
     }

@@ -2,17 +2,17 @@
 //! nothing.
 //!
 //! **Trial.** A room of the [set](crate::experiments::rooms), in which the robot stands, drives along its free way and
-//! back, or turns on the spot, alone or (in the rooms of the kind `meeting`) with another robot of its make. Physics are
-//! the default ones, between floor and ceiling. At an instant uniform in 5 to 15 s one of five [things](ThingKind)
+//! back, or turns on the spot, alone or (in the rooms of the kind `meeting`) with another robot of its make. Physics
+//! are the default ones, between floor and ceiling. At an instant uniform in 5 to 15 s one of five [things](ThingKind)
 //! appears and stays: before a uniformly drawn sensor, its nearest point uniform in 0.3 to 2 m from it and within 7.5
 //! degrees of its axis, with a clear line, touching nothing. Where that sensor, alone in quiet air at this pose, does
 //! not read it as its first echo in 9 of 10 firings, a second apart, or reads something as far away without it, another
 //! thing is drawn, and the share of those is the module's blindness. The trial ends 5 s later, or when the robot would
 //! touch the thing.
 //!
-//! **Seen** is the thing at the first belief within 8.6 cm of its nearest point, of any sensor whose reading alone would
-//! be that. Latency counts from its appearing to the end of the echo that completes the belief. The **t95** is the 95th
-//! percentile with what is never seen as infinite.
+//! **Seen** is the thing at the first belief within 8.6 cm of its nearest point, of any sensor whose reading alone
+//! would be that. Latency counts from its appearing to the end of the echo that completes the belief. The **t95** is
+//! the 95th percentile with what is never seen as infinite.
 //!
 //! **A false stop** is a belief in foreign, stale or outside sound, nearer than 1.5 m and nearer by 15 cm than every
 //! surface within 60 degrees of the sensor's axis, before the thing appears. It is the robot's: an onset after 1 s

@@ -149,8 +149,8 @@ impl Measured {
     pub const CSV_HEAD: &'static str = "condition,room,number,way,setting,thing,sensor,distance_m,drawn,unread,\
                                         speed_m_s,latency_ms,false_stops,watched_s,foreign,right,blind";
 
-    /// One row for each room, way, condition and setting, without a head: a latency that is infinite is `inf`, what does
-    /// not exist is empty.
+    /// One row for each room, way, condition and setting, without a head: a latency that is infinite is `inf`, what
+    /// does not exist is empty.
     pub fn csv(&self) -> String {
         let mut out = String::new();
         for under in &self.under {

@@ -1,4 +1,4 @@
-//! What a robot needs of its beliefs in a trial: to see the thing that appears, and not to stop for nothing.
+//! The needs of a robot in a trial, of its beliefs: to see the thing that appears, and not to stop for nothing.
 
 use core::f64::consts::PI;
 

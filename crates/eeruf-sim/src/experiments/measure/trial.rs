@@ -23,7 +23,7 @@ pub const VERSION: u32 = 1;
 /// A thing appears at a uniform instant between these, in seconds, so that a trial measures false stops for 10 s in the
 /// mean.
 const APPEARS_S: [f64; 2] = [5.0, 15.0];
-/// What is not seen within this time, in seconds, is never seen.
+/// The time in seconds within which a thing is seen, or never.
 pub const NEVER_S: f64 = 5.0;
 /// The longest trial.
 const LONGEST_S: f64 = APPEARS_S[1] + NEVER_S;
@@ -32,7 +32,7 @@ const THING: u64 = 200;
 /// From one look for contact to the next, in seconds.
 const LOOK_S: f64 = 0.01;
 
-/// How a robot moves.
+/// A robot's motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Moving {
@@ -47,7 +47,7 @@ pub enum Moving {
 /// A condition under which ways are measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize)]
 pub struct Condition {
-    /// How the robot moves.
+    /// The robot's motion.
     pub moving: Moving,
     /// True for another robot of its make close by, by a clock of its own.
     pub others: bool,
@@ -160,7 +160,7 @@ impl Trial {
         straight(in_turn_s.min(2.0 * leg_s - in_turn_s))
     }
 
-    /// How long a belief lasts: until the robot has moved by 0.15 m or turned by 10 degrees, or for 2 s.
+    /// The life of a belief: until the robot has moved by 0.15 m or turned by 10 degrees, or for 2 s.
     pub(super) fn life_s(&self) -> f64 {
         let Speeds { speed_m_s, turn_rad_s } = self.speeds;
         (0.15 / speed_m_s).min(10f64.to_radians() / turn_rad_s.abs()).min(2.0)

@@ -81,6 +81,22 @@ pub trait Sounds {
     /// The same of the echoes of its last three firings, earliest first, by a path that changes at a constant rate: its
     /// length in the second is within P of the line between the others.
     fn explain_line(&self, echoes: [Micros; 3]) -> Explained;
+    /// As [`explain`](Self::explain), by a path that changes by up to `more` than P.
+    fn explain_moving(&self, first: Micros, second: Micros, more: Micros) -> Explained;
+    /// Returns true if sound of any firing but the sensor's last could be the echo that it heard after that one.
+    fn is_masked(&self, t_echo: Micros) -> bool;
+}
+
+/// The quiet that a sensor needs, by a judge's word.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Quiet {
+    /// Its last reading was believed: less will do.
+    Less,
+    /// As before.
+    Same,
+    /// Its last reading may be another firing's sound.
+    More,
 }
 
 /// No sound explains anything.
@@ -93,6 +109,14 @@ impl Sounds for NoSounds {
 
     fn explain_line(&self, _echoes: [Micros; 3]) -> Explained {
         Explained::ByNothing
+    }
+
+    fn explain_moving(&self, _first: Micros, _second: Micros, _more: Micros) -> Explained {
+        Explained::ByNothing
+    }
+
+    fn is_masked(&self, _t_echo: Micros) -> bool {
+        false
     }
 }
 
@@ -122,6 +146,14 @@ pub trait Judge {
     /// Returns true if an echo comes before what it believes of a sensor now, silence too: it is none of its own.
     fn comes_before_belief(&self, sensor: u8, t_echo: Micros) -> bool {
         self.believed(sensor).map_or_else(|| self.is_clear(sensor), |believed| t_echo < believed)
+    }
+    /// The robot moves at this speed and turns at this rate from `now` on. Returns true if readings may change by it.
+    fn moving(&mut self, _speed_mm_s: u32, _turn_mrad_s: u32, _now: Instant) -> bool {
+        false
+    }
+    /// The quiet that a sensor needs after its last reading, for plans that give quiet by it.
+    fn quiet(&self, _sensor: u8) -> Quiet {
+        Quiet::Same
     }
     /// Forgets the readings of a sensor, so that its next one is compared with nothing. The age goes on.
     fn forget(&mut self, sensor: u8);

@@ -78,6 +78,8 @@ pub mod survey;
 pub mod tables;
 mod time;
 mod tracker;
+#[doc(hidden)]
+pub mod turns;
 mod uneven;
 mod verified;
 mod verify;
@@ -103,6 +105,8 @@ pub use verified::VerifiedSchedule;
 /// Judges of readings: the trait [`Judge`](judge::Judge), and those beside [`EchoFilter`].
 pub mod judge {
     pub use crate::filter::RateFilter;
+    #[doc(hidden)]
+    pub use crate::judging::Quiet;
     pub use crate::judging::{Agreement, Explained, Firing, Heard, Judge, Sounds};
     pub use crate::reading::{Explanation, Verdict};
     pub use crate::ring::AgreementRing;

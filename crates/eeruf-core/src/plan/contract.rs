@@ -110,6 +110,8 @@ pub trait Plan {
     fn set_paused(&mut self, paused: bool);
     /// Returns true if a sensor fires, but for a pause.
     fn is_enabled(&self, sensor: u8) -> bool;
+    /// The robot moves, or stands.
+    fn set_moving(&mut self, _moves: bool) {}
     /// Starts again with phase a, no sooner than `now`.
     fn restart(&mut self, now: Instant);
     /// Properties of a sensor's last firing, `periods_ago` periods before the present one.

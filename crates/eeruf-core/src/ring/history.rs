@@ -72,6 +72,11 @@ impl<const H: usize> Firings<H> {
         [self.0[0], self.0[1], self.0[2]]
     }
 
+    /// Returns true if sound of any but the latest `but` of them is heard at an instant.
+    pub(super) fn is_heard_at(&self, at: Instant, audible: Micros, but: usize) -> bool {
+        self.0.iter().skip(but).any(|&fired| at.since(fired) <= audible)
+    }
+
     /// Returns true if an instant is later than the firing before the last one, as far as that is known.
     pub(super) fn may_correct(&self, at: Instant) -> bool {
         self.0.get(1).is_none_or(|&before| at != before && at.has_reached(before))

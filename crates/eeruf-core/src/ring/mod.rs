@@ -529,6 +529,13 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
         &self.judge
     }
 
+    /// Says how fast the robot moves and turns, once a control cycle: a judge may allow its readings to change by as
+    /// much. Where the ring has a top speed it holds after half a second without a word.
+    pub fn moving(&mut self, speed_mm_s: u32, turn_mrad_s: u32, now: Instant) {
+        let moves = self.judge.moving(speed_mm_s, turn_mrad_s, now);
+        self.plan.set_moving(moves);
+    }
+
     /// Returns true if sensors have limits of their own, so that the one that fired first need not be the first to end.
     #[inline]
     fn windows_differ(&self) -> bool {

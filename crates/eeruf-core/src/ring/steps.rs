@@ -283,7 +283,22 @@ struct Memory<'r, P, const E: usize, const H: usize> {
 impl<P: Plan, const E: usize, const H: usize> Sounds for Memory<'_, P, E, H> {
     #[inline(always)]
     fn explain(&self, first: Micros, second: Micros) -> Explained {
-        if self.on_time { Explained::ByNothing } else { self.explain_pair(first, second) }
+        if self.on_time { Explained::ByNothing } else { self.explain_pair(first, second, Micros::ZERO) }
+    }
+
+    fn explain_moving(&self, first: Micros, second: Micros, more: Micros) -> Explained {
+        self.explain_pair(first, second, more)
+    }
+
+    fn is_masked(&self, t_echo: Micros) -> bool {
+        let receiver = self.receiver;
+        let Some(own) = self.sensors.get(usize::from(receiver)) else { return false };
+        let heard = own.fired() + t_echo;
+        // At most 64 sensors.
+        (0..).zip(self.sensors.iter().take(self.plan.sensors())).any(|(x, sensor)| {
+            let but = usize::from(x == receiver);
+            self.plan.hears(receiver, x) && sensor.firings.is_heard_at(heard, self.listening.audible(), but)
+        })
     }
 
     #[inline(always)]
@@ -295,10 +310,11 @@ impl<P: Plan, const E: usize, const H: usize> Sounds for Memory<'_, P, E, H> {
 
 impl<P: Plan, const E: usize, const H: usize> Memory<'_, P, E, H> {
     #[inline(never)]
-    fn explain_pair(&self, first: Micros, second: Micros) -> Explained {
+    fn explain_pair(&self, first: Micros, second: Micros, more: Micros) -> Explained {
         let Some(own) = self.sensors.get(usize::from(self.receiver)) else { return UNKNOWN };
         let [fired, fired_before] = own.firings.last_two();
-        let pair = self.pair([fired_before + first, fired + second]);
+        let mut pair = self.pair([fired_before + first, fired + second]);
+        pair.path_change = pair.path_change.saturating_add(more);
         self.ask(&pair, |firings, own| pair.explains(firings, own))
     }
 

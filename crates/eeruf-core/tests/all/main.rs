@@ -31,6 +31,7 @@ mod rate;
 mod sound;
 mod theory;
 mod tracker_naive;
+mod turns;
 mod uneven;
 mod uneven_ring;
 mod wait_answers;

@@ -1,0 +1,95 @@
+//! [`Motion`]: by how much a good reading may change, for a robot that moves.
+
+use crate::time::{Instant, Micros};
+
+/// Without a word for as long the top speed holds.
+const SILENCE: Micros = Micros::from_millis(500);
+/// The longest time over which a change is worked out; what is older is believed no more.
+const LONGEST: u32 = (1 << 20) - 1;
+/// The distance of a sensor from the centre about which the robot turns, in mm: with its range the lever at which a
+/// wall moves.
+const LEVER_MM: u32 = 500;
+
+/// Change of an echo for a moving robot, in 1/16 us per 1,024 us.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub(super) struct Rate(u16);
+
+impl Rate {
+    pub(super) const STANDING: Self = Self(0);
+    /// `2 v / c` at 331 m/s, the slowest sound that a robot meets: `2 v / 331 * 1.024 * 16` of a `v` in mm/s, rounded
+    /// up. Readings change by at most 4,095/16 us per 1,024 us.
+    const fn of(speed_mm_s: u32) -> Self {
+        let rate = speed_mm_s.saturating_mul(99).div_ceil(1000);
+        Self(if rate > 4095 { 4095 } else { rate as u16 })
+    }
+
+    pub(super) fn moves(self) -> bool {
+        self != Self::STANDING
+    }
+
+    /// The change within a time.
+    pub(super) fn grow(self, time: Micros) -> Micros {
+        // Below 2^32: twelve bits times twenty.
+        Micros::new((u32::from(self.0) * time.as_micros().min(LONGEST)) >> 14)
+    }
+}
+
+/// The robot's motion as far as it is known.
+#[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub(super) struct Motion {
+    rate: Rate,
+    top: Rate,
+    /// When the caller last said how fast it moves; `None` for not within [`SILENCE`].
+    told: Option<Instant>,
+}
+
+impl Motion {
+    pub(super) const fn new(top_speed_mm_s: u16) -> Self {
+        let top = Rate::of(top_speed_mm_s as u32);
+        Self { rate: top, top, told: None }
+    }
+
+    pub(super) fn set(&mut self, speed_mm_s: u32, turn_mrad_s: u32, now: Instant) {
+        let turning = turn_mrad_s.saturating_mul(LEVER_MM) / 1000;
+        self.rate = Rate::of(speed_mm_s.saturating_add(turning));
+        self.told = Some(now);
+    }
+
+    /// The rate at an instant, which is not long before the last word.
+    pub(super) fn rate(&mut self, now: Instant) -> Rate {
+        let is_silent = |told: Instant| now.has_reached(told) && now.since(told) > SILENCE;
+        if self.told.is_some_and(is_silent) {
+            (self.told, self.rate) = (None, self.top);
+        }
+        self.rate
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn readings_change_by_6_us_a_millisecond_at_1_m_s() {
+        for (speed, us) in [(0, 0), (100, 604), (1000, 6_041), (2000, 12_083), (60_000, 249_900)] {
+            let grown = Rate::of(speed).grow(Micros::from_millis(1000)).as_micros();
+            assert!(grown.abs_diff(us) <= us / 50 + 5, "{speed} mm/s: {grown}");
+        }
+        // Twice the speed over the speed of sound, and never less.
+        assert!((1..3000).all(|speed| Rate::of(speed).grow(Micros::new(500_000)).as_micros() >= speed * 2 * 500 / 343));
+    }
+
+    #[test]
+    fn top_speed_holds_half_a_second_after_the_last_word() {
+        let mut motion = Motion::new(1000);
+        let (begin, top) = (Instant::from_micros(u32::MAX - 5), Rate::of(1000));
+        assert_eq!(motion.rate(begin), top);
+        motion.set(0, 0, begin);
+        assert_eq!(motion.rate(begin + Micros::from_millis(500)), Rate::STANDING);
+        assert_eq!(motion.rate(begin + Micros::new(500_001)), top);
+        motion.set(0, 500, begin + Micros::new(600_000));
+        assert_eq!(motion.rate(begin + Micros::new(600_001)), Rate::of(250));
+    }
+}

@@ -1,0 +1,419 @@
+//! [`InTurn`]: when sensors fire that fire in turn.
+
+use super::settings::TurnSettings;
+use crate::judging::{Firing, Heard, Judge, Quiet};
+use crate::plan::{Limits, Plan};
+use crate::reading::Verdict;
+use crate::ring_error::RingError;
+use crate::schedule::{MAX_SENSORS, Phase};
+use crate::time::{Instant, Micros, longer};
+
+/// Quiet is kept in units of this, so that two bytes hold it.
+const UNIT: u32 = 4;
+const NOBODY: u8 = u8::MAX;
+/// Firings are forgotten when they are this old, long before differences of instants wrap.
+const OLD: Micros = Micros::new(1 << 29);
+
+/// A sensor of the plan.
+#[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+struct Slot {
+    /// When it last fired, if it has.
+    fired: Instant,
+    /// Quiet that it needs after its firing and before, in units.
+    doubt: u16,
+    /// The sensor that fires in this place of the order.
+    order: u8,
+    flags: u8,
+}
+
+/// It has fired, not too long ago.
+const FIRED: u8 = 1;
+/// Its edge is awaited.
+const LISTENS: u8 = 2;
+const DISABLED: u8 = 4;
+/// It has fired in this round, before its turn.
+const AHEAD: u8 = 8;
+
+impl Slot {
+    const fn is(&self, flag: u8) -> bool {
+        self.flags & flag != 0
+    }
+
+    fn set(&mut self, flag: u8, on: bool) {
+        self.flags = if on { self.flags | flag } else { self.flags & !flag };
+    }
+}
+
+/// A plan that fires one sensor after the other, far ones in turn.
+///
+/// A sensor fires when the quiet that it needs has passed since the firing before, when the quiet has passed that those
+/// need which still wait for their edge, and when it has rested; and then a throw of dice later. A period is a round:
+/// it ends when the order begins again.
+#[derive(Clone, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct InTurn<const K: usize> {
+    /// The sensor that fires next, or [`NOBODY`] if the round ends.
+    next: u8,
+    /// The place in the order whose turn it is; the number of sensors when the round ends.
+    place: u8,
+    sensors: u8,
+    /// The robot moves: the dice are twice as long.
+    moves: bool,
+    paused: bool,
+    /// When the next sensor is due, or the round ends.
+    due: Instant,
+    /// When a sensor last fired, or the plan began.
+    last: Instant,
+    /// The throw for the next gap.
+    thrown: Micros,
+    random: u32,
+    window: Micros,
+    settings: TurnSettings,
+    slots: [Slot; K],
+}
+
+impl<const K: usize> InTurn<K> {
+    /// A plan of `sensors` sensors that listen for `window` and begin at `now`.
+    ///
+    /// # Errors
+    /// [`RingError::Setting`] for a setting out of its range; [`RingError::Sensors`] for none, or more than there is
+    /// room for.
+    pub fn new(sensors: usize, settings: TurnSettings, window: Micros, now: Instant) -> Result<Self, RingError> {
+        settings.check()?;
+        if sensors == 0 || sensors > K || sensors > MAX_SENSORS {
+            return Err(RingError::Sensors { sensors, capacity: K });
+        }
+        let doubt = (settings.first().as_micros() / UNIT) as u16;
+        let mut plan = Self {
+            next: NOBODY,
+            place: 0,
+            sensors: sensors as u8,
+            moves: false,
+            paused: false,
+            due: now,
+            last: now,
+            thrown: Micros::ZERO,
+            random: settings.seed,
+            window,
+            settings,
+            slots: [Slot { fired: now, doubt, order: 0, flags: 0 }; K],
+        };
+        let sensors = sensors as u8;
+        for place in 0..sensors {
+            if let Some(slot) = plan.slots.get_mut(usize::from(place)) {
+                slot.order = in_order(place, sensors);
+            }
+        }
+        plan.throw();
+        plan.decide();
+        Ok(plan)
+    }
+
+    /// Quiet that a sensor needs after its firing, and before it.
+    pub fn doubt_of(&self, sensor: u8) -> Option<Micros> {
+        self.slot(sensor).map(|slot| Micros::new(u32::from(slot.doubt) * UNIT))
+    }
+
+    fn slot(&self, sensor: u8) -> Option<&Slot> {
+        self.slots.get(usize::from(sensor)).filter(|_| sensor < self.sensors)
+    }
+
+    fn slot_mut(&mut self, sensor: u8) -> Option<&mut Slot> {
+        self.slots.get_mut(usize::from(sensor)).filter(|_| sensor < self.sensors)
+    }
+
+    fn throw(&mut self) {
+        // Xorshift by 13, 17 and 5 (Marsaglia, 2003).
+        self.random ^= self.random << 13;
+        self.random ^= self.random >> 17;
+        self.random ^= self.random << 5;
+        let most = self.settings.dice.as_micros() << u32::from(self.moves);
+        self.thrown = Micros::new(((u64::from(self.random) * (u64::from(most) + 1)) >> 32) as u32);
+    }
+
+    /// The time from the last firing until a sensor may fire, without the dice: until there is quiet, and until it has
+    /// rested.
+    fn waits(&self, sensor: u8) -> (Micros, Micros) {
+        let Some(own) = self.slot(sensor) else { return (Micros::ZERO, Micros::ZERO) };
+        let mut quiet = Micros::new(u32::from(own.doubt) * UNIT);
+        for (other, slot) in (0..self.sensors).zip(&self.slots) {
+            if other != sensor && slot.is(LISTENS) {
+                quiet = longer(quiet, self.since_last(slot.fired, Micros::new(u32::from(slot.doubt) * UNIT)));
+            }
+        }
+        let mut rested = Micros::ZERO;
+        if own.is(FIRED) {
+            rested = self.since_last(own.fired, self.settings.rest);
+            if own.is(LISTENS) {
+                rested = longer(rested, self.since_last(own.fired, self.window));
+            }
+        }
+        (quiet, rested)
+    }
+
+    /// A sensor's last firing was at another instant.
+    fn correct(&mut self, sensor: u8, at: Instant) {
+        let Some(slot) = self.slot_mut(sensor) else { return };
+        let was = core::mem::replace(&mut slot.fired, at);
+        if self.last == was || at.has_reached(self.last) {
+            self.last = at;
+        }
+        self.decide();
+    }
+
+    /// The time from the last firing until some time after another.
+    fn since_last(&self, fired: Instant, after: Micros) -> Micros {
+        let until = fired + after;
+        if self.last.has_reached(until) { Micros::ZERO } else { until.since(self.last) }
+    }
+
+    /// The sensor in the first place from one on that fires and has not fired ahead of its turn.
+    fn from_place(&self, place: u8) -> Option<(u8, u8)> {
+        let order = |place: u8| self.slots.get(usize::from(place)).map_or(NOBODY, |slot| slot.order);
+        let fires = |sensor: u8| self.slot(sensor).is_some_and(|slot| !slot.is(DISABLED | AHEAD));
+        (place..self.sensors).map(|place| (place, order(place))).find(|&(_, sensor)| fires(sensor))
+    }
+
+    /// Decides who fires next, and when.
+    fn decide(&mut self) {
+        self.next = NOBODY;
+        let turn = if self.paused { None } else { self.from_place(self.place) };
+        let Some((place, sensor)) = turn else {
+            // The round ends at once, and if nobody fires after the time for which one would rest.
+            let nobody = self.paused || !self.slots.iter().take(usize::from(self.sensors)).any(|x| !x.is(DISABLED));
+            self.due = self.last + if nobody { self.settings.rest } else { Micros::ZERO };
+            return;
+        };
+        let (quiet, rested) = self.waits(sensor);
+        (self.next, self.due) = (sensor, self.last + longer(quiet, rested) + self.thrown);
+        // Nobody is passed over twice: only while no other sensor has fired ahead.
+        let is_first = !self.slots.iter().any(|slot| slot.is(AHEAD));
+        if rested > quiet && is_first {
+            let mut ahead = place + 1;
+            while let Some((at, other)) = self.from_place(ahead) {
+                let (quiet, rested) = self.waits(other);
+                if rested <= quiet {
+                    (self.next, self.due) = (other, self.last + quiet + self.thrown);
+                    break;
+                }
+                ahead = at + 1;
+            }
+        }
+    }
+}
+
+/// The sensor in a place of the order: far ones in turn, so that neighbours never follow each other where the number of
+/// sensors allows it.
+const fn in_order(place: u8, sensors: u8) -> u8 {
+    const SIX: [u8; 6] = [0, 2, 4, 1, 5, 3];
+    match sensors {
+        0..=4 => place,
+        6 => SIX[(place % 6) as usize],
+        _ => {
+            let mut stride = 3;
+            while !shares_no_factor(stride, sensors) || stride == sensors - 1 {
+                stride += 1;
+            }
+            (place as u16 * stride as u16 % sensors as u16) as u8
+        }
+    }
+}
+
+const fn shares_no_factor(mut one: u8, mut other: u8) -> bool {
+    while other != 0 {
+        (one, other) = (other, one % other);
+    }
+    one == 1
+}
+
+impl<const K: usize> Plan for InTurn<K> {
+    #[inline]
+    fn deadline(&self) -> Instant {
+        self.due
+    }
+
+    #[inline]
+    fn next_firing(&self) -> Option<(u8, Phase)> {
+        (self.next != NOBODY).then_some((self.next, Phase::A))
+    }
+
+    fn fire(&mut self, now: Instant) {
+        let (sensor, turn) = (self.next, self.from_place(self.place));
+        let Some(slot) = self.slot_mut(sensor) else { return };
+        slot.fired = now;
+        slot.set(FIRED | LISTENS, true);
+        match turn {
+            Some((place, first)) if first == sensor => self.place = place + 1,
+            _ => slot.set(AHEAD, true),
+        }
+        self.last = now;
+        self.throw();
+        self.decide();
+    }
+
+    fn postpone(&mut self, sensor: u8, by: Micros) {
+        if let Some(fired) = self.slot(sensor).map(|slot| slot.fired) {
+            self.correct(sensor, fired + by);
+        }
+    }
+
+    fn end_period(&mut self, now: Instant) -> (Phase, bool) {
+        // Those that fired ahead have had their turn.
+        for slot in &mut self.slots {
+            slot.set(AHEAD, false);
+            if slot.is(FIRED) && now.since(slot.fired) > OLD {
+                slot.set(FIRED | LISTENS, false);
+            }
+        }
+        self.place = 0;
+        if self.next == NOBODY && now.since(self.last) >= self.settings.rest {
+            // Nobody fires: rounds go on.
+            self.last = now;
+        }
+        self.decide();
+        (Phase::A, false)
+    }
+
+    fn judged(&mut self, heard: &Heard<'_>, _: &Verdict, judge: &impl Judge) {
+        let (up, down) = (self.settings.up(), self.settings.down());
+        let (least, most) = (self.settings.least.as_micros() / UNIT, self.settings.most.as_micros() / UNIT);
+        let quiet = judge.quiet(heard.sensor);
+        if let Some(slot) = self.slot_mut(heard.sensor) {
+            let now = u32::from(slot.doubt);
+            let then = match quiet {
+                Quiet::Less => now.saturating_sub(down.as_micros() / UNIT).max(least),
+                Quiet::Same => now,
+                Quiet::More => (now + up.as_micros() / UNIT).min(most),
+            };
+            // At most 250 ms.
+            slot.doubt = then as u16;
+        }
+    }
+
+    fn fired(&mut self, sensor: u8, at: Instant) {
+        // If it was later, it is postponed too.
+        if self.slot(sensor).is_some_and(|slot| slot.fired.has_reached(at)) {
+            self.correct(sensor, at);
+        }
+    }
+
+    fn ended(&mut self, sensor: u8, _at: Instant) {
+        if let Some(slot) = self.slot_mut(sensor) {
+            slot.set(LISTENS, false);
+            self.decide();
+        }
+    }
+
+    fn sensors(&self) -> usize {
+        self.sensors.into()
+    }
+
+    fn set_enabled(&mut self, sensor: u8, enabled: bool) {
+        if let Some(slot) = self.slot_mut(sensor) {
+            slot.set(DISABLED, !enabled);
+            self.decide();
+        }
+    }
+
+    fn set_paused(&mut self, paused: bool) {
+        self.paused = paused;
+        self.decide();
+    }
+
+    fn is_enabled(&self, sensor: u8) -> bool {
+        self.slot(sensor).is_some_and(|slot| !slot.is(DISABLED))
+    }
+
+    fn restart(&mut self, now: Instant) {
+        let first = (self.settings.first().as_micros() / UNIT) as u16;
+        for slot in &mut self.slots {
+            // A clock that has jumped says nothing of when they fired.
+            let rests = slot.is(FIRED) && now.has_reached(slot.fired) && now.since(slot.fired) <= self.settings.rest;
+            slot.set(FIRED, rests);
+            slot.set(LISTENS | AHEAD, false);
+            slot.doubt = first;
+        }
+        // Sound from before dies away.
+        (self.place, self.last) = (0, now + self.settings.most);
+        self.decide();
+    }
+
+    fn set_moving(&mut self, moves: bool) {
+        self.moves = moves;
+    }
+
+    fn last_firing(&self, _sensor: u8, _periods_ago: u8) -> Firing {
+        Firing::new(Phase::A)
+    }
+
+    fn limits(&self) -> Limits<'_> {
+        Limits { longest_window: self.min_refire(), verified_for: None, audible: Some(self.settings.most) }
+    }
+
+    fn min_refire(&self) -> Micros {
+        longer(self.settings.rest, self.window)
+    }
+
+    fn horizon(&self) -> Micros {
+        // A round of the longest gaps, in which each has its turn: at most 64 times 750 ms, and the rest.
+        let gap = self.settings.most.as_micros() + 2 * self.settings.dice.as_micros();
+        let round = (u32::from(self.sensors) + 1) * gap;
+        Micros::new(round + longer(self.settings.rest, self.window).as_micros())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    extern crate std;
+    use super::*;
+    use crate::plan::check_plan;
+    use std::vec::Vec;
+
+    #[test]
+    fn neighbours_never_fire_one_after_the_other() {
+        let orders: [(u8, &[u8]); 4] =
+            [(3, &[0, 1, 2]), (5, &[0, 3, 1, 4, 2]), (6, &[0, 2, 4, 1, 5, 3]), (8, &[0, 3, 6, 1, 4, 7, 2, 5])];
+        for (sensors, expected) in orders {
+            assert_eq!((0..sensors).map(|place| in_order(place, sensors)).collect::<Vec<_>>(), expected);
+        }
+        for sensors in 5..=MAX_SENSORS as u8 {
+            let order: Vec<_> = (0..sensors).map(|place| in_order(place, sensors)).collect();
+            let mut sorted = order.clone();
+            sorted.sort_unstable();
+            assert_eq!(sorted, (0..sensors).collect::<Vec<_>>());
+            let pairs = order.iter().zip(order.iter().cycle().skip(1));
+            let apart = |(one, other): (&u8, &u8)| one.abs_diff(*other).min(sensors - one.abs_diff(*other));
+            // Six come round with two that are neighbours.
+            assert!(pairs.filter(|pair| apart(*pair) < 2).count() <= usize::from(sensors == 6), "{order:?}");
+        }
+    }
+
+    #[test]
+    fn plan_keeps_its_contract_whatever_is_done_to_it() {
+        for sensors in [1, 2, 3, 6, 8, 12, 16] {
+            for (least, rest) in [(6, 60), (33, 60), (6, 200)] {
+                let mut settings = TurnSettings::new(1 + sensors as u32);
+                (settings.least, settings.rest) = (Micros::from_millis(least), Micros::from_millis(rest));
+                let now = Instant::from_micros(u32::MAX - 7_000_000);
+                let mut plan = InTurn::<16>::new(sensors, settings, Micros::from_millis(30), now).unwrap();
+                check_plan(&mut plan, now, 20_000, 1).unwrap_or_else(|broken| std::panic!("{sensors}: {broken}"));
+            }
+        }
+    }
+
+    #[test]
+    fn settings_out_of_range_are_refused_by_name() {
+        let of = |change: fn(&mut TurnSettings)| {
+            let mut settings = TurnSettings::new(1);
+            change(&mut settings);
+            InTurn::<8>::new(8, settings, Micros::from_millis(30), Instant::default()).map(drop)
+        };
+        assert_eq!(of(|_| ()), Ok(()));
+        let named = |name, value, least, most| Err(RingError::Setting { name, value, least, most });
+        assert_eq!(of(|settings| settings.seed = 0), named("seed", 0, 1, u32::MAX));
+        assert_eq!(of(|settings| settings.least = Micros::new(40_000)), named("least", 40_000, 1, 33_500));
+        assert_eq!(of(|settings| settings.most = Micros::new(60)), named("least", 6_000, 1, 60));
+        assert_eq!(of(|settings| settings.rest = Micros::ZERO), named("rest", 0, 1, 4_000_000));
+    }
+}

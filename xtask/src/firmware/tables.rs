@@ -14,7 +14,7 @@ const HOPPING: [&str; 2] = ["hopping-instructions", "size-hopping-12"];
 const FLOW: [&str; 2] = ["flow-instructions", "size-flow-12"];
 /// Compilers differ: only more than the budget and this part of it fails.
 const LEEWAY: f64 = 0.05;
-const FLASH: u64 = 4788;
+const FLASH: u64 = 4824;
 const RAM: u64 = 12 * 32 + 92;
 const STACK: u64 = 624;
 

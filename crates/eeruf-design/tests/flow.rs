@@ -33,6 +33,7 @@ fn ring_file_of_mixed_sensors_fires_by_flow() {
     let now = Instant::from_micros(0);
     let listening = HoppingListening::new(window);
     let mut ring = FlowRing::<5, 4, 1, _>::with_limits(5, limits, settings, listening, now).expect("a ring");
+    ring.set_silence(eeruf_core::Silence::Trusted);
     let mut fired = [const { vec![] }; 5];
     let mut kinds = [const { vec![] }; 5];
     while fired.iter().any(|fired| fired.len() < FIRINGS) {

@@ -60,7 +60,7 @@ impl Pilots {
 /// The method whose own pilot steers, which the search finds: a method that fires as another is steered as that one is.
 pub const fn steered_as(method: Method) -> Method {
     match method {
-        Method::SequentialVotes => Method::Sequential,
+        Method::SequentialVotes | Method::Blocking => Method::Sequential,
         Method::AdaptiveHopping | Method::HoppingMultiEcho => Method::EerufHopping,
         Method::AdaptiveMultiEcho => Method::MultiEcho,
         Method::FlowMultiEcho => Method::Flow,

@@ -107,8 +107,10 @@ class Scenes:
         """Of these numbers."""
         if not isinstance(kind, str) or kind not in ("alcove", "course"):
             raise _eeruf.ArgumentError(f'kind = {kind!r}; expected "alcove" or "course"')
-        if not isinstance(numbers, range) or (len(numbers) and min(numbers[0], numbers[-1]) < 0):
-            raise _eeruf.ArgumentError(f"numbers = {numbers!r:.60}; expected a range of numbers from 0 on")
+        # A range longer than 2**63 has no length.
+        ends = (numbers[0], numbers[-1]) if isinstance(numbers, range) and numbers else (0,)
+        if not isinstance(numbers, range) or not 0 <= min(ends) <= max(ends) < 2**62:
+            raise _eeruf.ArgumentError(f"numbers = {numbers!r:.60}; expected a range of numbers from 0 to 2**62 - 1")
         # Errors in the effects come at once.
         _eeruf._alcove(0, physics)
         self.kind, self.numbers, self.physics = kind, numbers, physics

@@ -124,8 +124,8 @@ def test_a_masked_sensor_is_not_fooled_and_sees_its_wall(settings: str) -> None:
     assert ring.state(1).kind != "clear"
 
 
-def test_a_ring_that_hears_nothing_says_clear() -> None:
-    ring = Ring.hopping(EIGHT, window_us=WINDOW_US)
+def test_a_ring_whose_silence_is_trusted_and_that_hears_nothing_says_clear() -> None:
+    ring = Ring.hopping(EIGHT, window_us=WINDOW_US, silence="trusted")
     silent = [reading.kind for reading in run(ring, 30, own_us=None)]
     assert silent[-8:] == ["clear"] * 8
     assert all(ring.state(sensor).kind == "clear" and ring.confirmed_us(sensor) is None for sensor in range(8))

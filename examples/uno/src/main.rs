@@ -74,7 +74,9 @@ extern "C" fn main() -> ! {
     let mut outbox = Outbox::EMPTY;
     let config = RingConfig::new().with_window(Micros::from_millis(40));
     let ring = Ring::new(&RING, config, now()).map_err(Into::into);
-    let Ok(mut ring) = ring.and_then(|ring| HcSr04Ring::new(ring, PINS, Wait, Settings::default())) else {
+    // It stays where it was made: moved out of the result it would be on the stack twice.
+    let mut made = ring.and_then(|ring| HcSr04Ring::new(ring, PINS, Wait, Settings::default()));
+    let Ok(ring) = &mut made else {
         // The table was verified for such a window, and lets modules rest; change it, and it may be this.
         outbox.say(0, 99_999);
         loop {

@@ -169,7 +169,7 @@ impl<const K: usize> InTurn<K> {
     }
 
     /// The sensor in the first place from one on that fires and has not fired ahead of its turn.
-    fn from_place(&self, place: u8) -> Option<(u8, u8)> {
+    fn first_from(&self, place: u8) -> Option<(u8, u8)> {
         let order = |place: u8| self.slots.get(usize::from(place)).map_or(NOBODY, |slot| slot.order);
         let fires = |sensor: u8| self.slot(sensor).is_some_and(|slot| !slot.is(DISABLED | AHEAD));
         (place..self.sensors).map(|place| (place, order(place))).find(|&(_, sensor)| fires(sensor))
@@ -178,7 +178,7 @@ impl<const K: usize> InTurn<K> {
     /// Decides who fires next, and when.
     fn decide(&mut self) {
         self.next = NOBODY;
-        let turn = if self.paused { None } else { self.from_place(self.place) };
+        let turn = if self.paused { None } else { self.first_from(self.place) };
         let Some((place, sensor)) = turn else {
             // The round ends at once, and if nobody fires after the time for which one would rest.
             let nobody = self.paused || !self.slots.iter().take(usize::from(self.sensors)).any(|x| !x.is(DISABLED));
@@ -191,7 +191,7 @@ impl<const K: usize> InTurn<K> {
         let is_first = !self.slots.iter().any(|slot| slot.is(AHEAD));
         if rested > quiet && is_first {
             let mut ahead = place + 1;
-            while let Some((at, other)) = self.from_place(ahead) {
+            while let Some((at, other)) = self.first_from(ahead) {
                 let (quiet, rested) = self.waits(other);
                 if rested <= quiet {
                     (self.next, self.due) = (other, self.last + quiet + self.thrown);
@@ -239,7 +239,7 @@ impl<const K: usize> Plan for InTurn<K> {
     }
 
     fn fire(&mut self, now: Instant) {
-        let (sensor, turn) = (self.next, self.from_place(self.place));
+        let (sensor, turn) = (self.next, self.first_from(self.place));
         let Some(slot) = self.slot_mut(sensor) else { return };
         slot.fired = now;
         slot.set(FIRED | LISTENS, true);

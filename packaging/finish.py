@@ -72,7 +72,7 @@ def with_docstrings(text: str, module: ModuleType) -> str:
 
 
 def finish(wheel: Path, module: ModuleType) -> None:
-    """Write the wheel anew, with the docstrings of the module."""
+    """Write the wheel again, with the docstrings of the module."""
     with zipfile.ZipFile(wheel) as old:
         entries = [(info, old.read(info)) for info in old.infolist()]
     contents = {info.filename: content for info, content in entries}

@@ -103,9 +103,9 @@ impl Corners {
 /// The parts of a path in which walls are only mirrors, from one of its ends or poles or edges, which make the sound
 /// spread again, to the next: the first and the last corner of each.
 pub(super) fn parts(bounces: &[Bounce]) -> impl Iterator<Item = (usize, usize)> + '_ {
-    let anew = (1..).zip(bounces).filter(|(_, bounce)| !matches!(bounce, Bounce::Wall(_))).map(|(corner, _)| corner);
+    let corners = (1..).zip(bounces).filter(|(_, bounce)| !matches!(bounce, Bounce::Wall(_))).map(|(corner, _)| corner);
     let last = bounces.len() + 1;
-    anew.chain([last]).scan(0, |start, end| Some((core::mem::replace(start, end), end)))
+    corners.chain([last]).scan(0, |start, end| Some((core::mem::replace(start, end), end)))
 }
 
 fn image(start: Point, mirrors: &[&Mirror]) -> Point {

@@ -109,7 +109,8 @@ fn accepted_claims_are_true_by_nested_loops() {
         verdicts.len(),
         claims.len()
     );
-    assert!(2 * proven > cases && claims.len() > proven as usize, "mutated claims are accepted too");
+    // Tiny problems repeat, claims with them: of many, certificates are counted.
+    assert!(2 * proven > cases && judged > proven, "mutated claims are accepted too");
 }
 
 /// Rules of the checker that refute too much: what is replaced in its text.

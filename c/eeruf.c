@@ -1,30 +1,25 @@
-/* eeruf in C: see eeruf.h. In the order of the header; the hopping ring is the last part.
+/* eeruf in C: see eeruf.h. In the order of the header; the flow ring is the last part.
  * Equations and sections are those of Borenstein and Koren, IEEE Trans. Robotics and Automation 11(1), 1995. */
 #include "eeruf.h"
 
 #include <string.h>
 
 #define READY ((uint16_t)(0x4500u + EERUF_VERSION))
-#define READY_TO_HOP ((uint16_t)(READY + 0x100u)) /* adaptation of rings that hop */
 #define NOBODY 255u
 #define HALF_TURN 0x80000000u /* of the clock: beyond it two instants have no order */
 
 /* Sizes that tables and callers rely on. */
 #define SIZE_IS(type, size) typedef char type##_has_another_size[sizeof(type) == (size) ? 1 : -1]
 #ifdef __AVR__
-SIZE_IS(EerufSensor, 12 + 4 * EERUF_FIRINGS);
-SIZE_IS(EerufLine, 8);
 SIZE_IS(EerufSchedule, 46);
 SIZE_IS(EerufLimits, 7);
 SIZE_IS(EerufWatched, 10);
-#if EERUF_HOPPING
 SIZE_IS(EerufRing, 77);
-SIZE_IS(EerufHopSensor, 16);
-SIZE_IS(EerufHopper, 64);
 #endif
-#else
-SIZE_IS(EerufSensor, 16 + 4 * EERUF_FIRINGS);
+SIZE_IS(EerufSensor, 12 + 4 * EERUF_FIRINGS);
 SIZE_IS(EerufLine, 8);
+#if EERUF_WITH_FLOW
+SIZE_IS(EerufFlowSensor, 40);
 #endif
 
 #if defined(__AVR__) && !defined(EERUF_SCHEDULE_IN_RAM)
@@ -45,7 +40,7 @@ SIZE_IS(EerufLine, 8);
 #else
 #define OUT_OF_LINE
 #endif
-/* For code that adapting rings need once more: others are no larger for it. */
+/* Inlined with a constant, so that each kind of ring has its own and links nothing of the other. */
 #if defined(__GNUC__)
 #define IN_LINE inline __attribute__((always_inline))
 #else
@@ -476,26 +471,30 @@ EerufStatus eeruf_filter_forget(EerufFilter *filter) {
 #define UNANSWERED 0x80u   /* nothing has shown yet that it listens: silence says nothing */
 #define NO_FAULT 0x01u     /* beside UNANSWERED in the ring: nor is it called a fault */
 
-/* Rings that hop in time fire otherwise than by a table. What is linked for all takes `hops` as a constant, so that
-   nothing of the one kind is linked where only the other is polled; HOPS asks the ring. */
-#if EERUF_HOPPING
-#define HOPS(ring) ((ring)->schedule == NULL)
-#define OWN(ring) ((ring)->schedule_before) /* limits of a hopping ring, which changes to no schedule */
-#define STRIDE(ring) ((ring)->stride) /* hopping rings have shorter EerufHopSensors */
-static void fire_hop(EerufRing *ring, uint8_t sensor, uint32_t now_us);
-static void end_hopping_period(EerufRing *ring, uint32_t now_us);
-static void restart_hopping(EerufRing *ring, uint32_t now_us);
-static uint32_t horizon_of_hopping(const EerufRing *ring);
-static EerufStatus upcoming_hop(const EerufRing *ring, uint8_t number, uint8_t *sensor, uint32_t *due_us);
+/* Flow rings fire otherwise than by a table. What is linked for all takes `flows` as a constant, so that nothing of the
+   one kind is linked where only the other is polled; FLOWS asks the ring. */
+#if EERUF_WITH_FLOW
+#define FLOWS(ring) ((ring)->consecutive == 0)
+#define STRIDE(ring) ((ring)->stride)
+#define FLOW_FIRINGS 3u /* fewer explain nothing, more add nothing */
+static void fire_flow(EerufRing *ring, uint8_t sensor, uint32_t now_us);
+static void judge(EerufRing *ring, uint8_t x, EerufReading *reading);
+static void decide(EerufRing *ring);
+static void end_round(EerufRing *ring, uint32_t now_us);
+static void restart_flow(EerufRing *ring, uint32_t now_us);
+static uint32_t horizon_of_flow(const EerufRing *ring);
 #else
-#define HOPS(ring) false
+#define FLOWS(ring) false
 #define STRIDE(ring) sizeof(EerufSensor)
-#define fire_hop(ring, sensor, now_us) ((void)0)
-#define end_hopping_period(ring, now_us) ((void)0)
-#define restart_hopping(ring, now_us) ((void)0)
-#define horizon_of_hopping(ring) 0u
-#define upcoming_hop(ring, number, sensor, due_us) EERUF_EMPTY
+#define FLOW_FIRINGS EERUF_FIRINGS
+#define fire_flow(ring, sensor, now_us) ((void)0)
+#define judge(ring, x, reading) ((void)0)
+#define decide(ring) ((void)0)
+#define end_round(ring, now_us) ((void)0)
+#define restart_flow(ring, now_us) ((void)0)
+#define horizon_of_flow(ring) 0u
 #endif
+#define FIRINGS(flows) ((flows) ? FLOW_FIRINGS : EERUF_FIRINGS)
 
 static uint32_t window_of(const EerufRing *ring, uint8_t sensor);
 static void find_first_to_close(EerufRing *ring);
@@ -527,7 +526,8 @@ static void count(EerufRing *ring, uint8_t kind) {
 #define WATCHED 6u
 #define ALWAYS UINT8_MAX /* nothing is proven of the timetable, so that each reading is asked about */
 
-/* Limits that a schedule gives its sensors one by one; null for a hopping ring, or if it was the same before. */
+/* Limits that a schedule gives its sensors one by one; null without one: for a flow ring, or if it was the same
+   before. */
 static OUT_OF_LINE const EerufLimits *limits_of(const EerufSchedule *schedule) {
     return schedule == NULL ? NULL : READ_POINTER(const EerufLimits *, schedule->limits);
 }
@@ -566,7 +566,7 @@ static OUT_OF_LINE void disturb(EerufRing *ring) {
     const EerufSchedule *schedule = ring->schedule;
     uint32_t promised_us;
     ring->watched = ALWAYS;
-    if (HOPS(ring) || !is_verified(schedule)) return;
+    if (FLOWS(ring) || !is_verified(schedule)) return;
     promised_us = READ32(schedule->path_change_us);
     if (promised_us == EERUF_AS_T_DELTA) promised_us = READ32(schedule->t_delta_us);
     if (ring->path_change_us != AS_T_DELTA && ring->path_change_us > promised_us) return;
@@ -587,42 +587,41 @@ static void add_late(EerufRing *ring, uint16_t late_us) {
 }
 
 /* A firing came late. No two readings hear more than four periods. */
-static OUT_OF_LINE void fired_late(EerufRing *ring, uint16_t late_us, bool hops) {
+static OUT_OF_LINE void fired_late(EerufRing *ring, uint16_t late_us, bool flows) {
     uint32_t needed_us;
     add_late(ring, late_us);
-    if (EERUF_FIRINGS == 1 || hops || ring->watched == ALWAYS) return;
+    if (EERUF_FIRINGS == 1 || flows || ring->watched == ALWAYS) return;
     needed_us = ring->t_delta_us + path_change_of(ring, ring->t_delta_us) + 4 * (uint32_t)ring->sum_late_us + 1u;
     if (READ32(ring->schedule->separation_us) < needed_us) ring->watched = WATCHED;
 }
 
-#if EERUF_FIRINGS > 1
+#if EERUF_FIRINGS > 1 || EERUF_WITH_FLOW
 /* True if a sensor does not hear another, by the schedule and by the one before. */
 static bool is_deaf_to(const EerufRing *ring, uint8_t receiver, uint8_t emitter) {
     return fire_together(limits_of(ring->schedule), receiver, emitter) &&
            (ring->schedule_before == NULL || fire_together(limits_of(ring->schedule_before), receiver, emitter));
 }
 
-/* The sensor whose sound could be both echoes of a receiver: the one heard `first_us` after the firing before its last, and
-   the one heard `second_us` after its last. */
-static OUT_OF_LINE uint8_t explanation(const EerufRing *ring, uint8_t receiver, uint32_t first_us,
-                                       uint32_t second_us) {
-    const EerufSensor *own = sensor_of(ring, receiver);
+/* The sensor whose sound could be both echoes of a receiver, by a path that changes by up to `more` than P: the one heard
+   `first_us` after the firing before its last, and the one heard `second_us` after its last. */
+static OUT_OF_LINE uint8_t explanation(const EerufRing *ring, uint8_t receiver, uint32_t first_us, uint32_t second_us,
+                                       uint32_t more_us) {
+    const EerufSensor *own = sensor_of(ring, receiver), *sensor = ring->sensors;
     const uint32_t heard_before = own->fired_us[1] + first_us, heard = own->fired_us[0] + second_us;
     const uint32_t audible = ring->audible_us, between = heard - heard_before;
-    const uint32_t change = path_change_of(ring, t_delta_of(ring, receiver));
-    const EerufSensor *sensor = ring->sensors;
+    const uint32_t change = path_change_of(ring, t_delta_of(ring, receiver)) + more_us;
     uint32_t length = heard_before - ring->known_from_us;
     uint8_t x = 0, by = EERUF_BY_NOTHING;
     for (;;) {
-        const uint32_t *before = sensor->fired_us, *fired;
+        const uint32_t *before = sensor->fired_us, *fired, *end = before + FIRINGS(FLOWS(ring));
         /* All that is forgotten was fired before this. An instant after the first reading leaves that open. */
         if (length < audible || length >= HALF_TURN) by = EERUF_BY_HISTORY;
         if (x == ring->count) return by;
         if (is_deaf_to(ring, receiver, x)) {
             length = HALF_TURN - 1;
-            before = sensor->fired_us + EERUF_FIRINGS;
+            before = end;
         }
-        for (; before < sensor->fired_us + EERUF_FIRINGS; before++) {
+        for (; before < end; before++) {
             length = heard_before - *before;
             if (length > audible || before == own->fired_us + 1) continue;
             /* Both may be one firing if the readings are as close as that. */
@@ -631,11 +630,10 @@ static OUT_OF_LINE uint8_t explanation(const EerufRing *ring, uint8_t receiver, 
                 if (*fired - *before - between + change <= 2 * change) return x;
             }
         }
-        sensor++;
+        sensor = after(sensor, STRIDE(ring));
         x++;
     }
 }
-
 #endif
 
 static bool is_long_ago(uint32_t instant, uint32_t now_us) {
@@ -649,7 +647,7 @@ static OUT_OF_LINE void forget_firings(EerufSensor *sensor, uint8_t firings, uin
 
 static void forget_readings(EerufRing *ring, uint8_t sensor);
 
-static void end_late_period(EerufRing *ring, EerufPeriod *ended, uint32_t now_us, bool hops) {
+static IN_LINE void end_late_period(EerufRing *ring, EerufPeriod *ended, uint32_t now_us, bool flows) {
     uint8_t x;
     ended->max_late_us = ring->latest_us;
     ended->sum_late_us = ring->sum_late_us;
@@ -658,18 +656,15 @@ static void end_late_period(EerufRing *ring, EerufPeriod *ended, uint32_t now_us
     for (x = 0; x < ring->count; x++) {
         EerufSensor *sensor = sensor_of(ring, x);
         if (is_long_ago(sensor->fired_us[0], now_us)) {
-            forget_firings(sensor, hops ? 1 : EERUF_FIRINGS, now_us);
+            forget_firings(sensor, FIRINGS(flows), now_us);
             /* Its next reading cannot be compared: the instant of its firing before is no longer known. */
             forget_readings(ring, x);
             /* No edge is an echo of them. */
-            if (!(sensor->flags & LISTENING)) sensor->flags |= OUTSIDE;
+            if (!(sensor->filter.flags & LISTENING)) sensor->filter.flags |= OUTSIDE;
         }
     }
-#if EERUF_FIRINGS > 1
-    if (hops) return;
     if (ring->watched != 0 && ring->watched != ALWAYS) ring->watched--;
     if (is_long_ago(ring->known_from_us, now_us)) ring->known_from_us = now_us - LONG_AGO;
-#endif
 }
 
 /* -- Scheduled firing (Sec. 3.1, Fig. 3): every sensor fires once per period, by the table. A firing that is polled
@@ -786,28 +781,29 @@ static EerufStatus listen(EerufRing *ring, uint32_t t_delta_us, uint32_t window_
     return EERUF_OK;
 }
 
-static OUT_OF_LINE void drop_firing(const EerufRing *ring, uint8_t x, uint32_t now_us) {
+static OUT_OF_LINE void drop_firing(EerufRing *ring, uint8_t x, uint32_t now_us) {
     EerufSensor *sensor = sensor_of(ring, x);
-    forget_firings(sensor, HOPS(ring) ? 1 : EERUF_FIRINGS, now_us);
+    forget_firings(sensor, FIRINGS(FLOWS(ring)), now_us);
     sensor->echo_us = EERUF_NO_ECHO;
-    forget(&sensor->filter);
-    sensor->flags = OUTSIDE;
+    forget_readings(ring, x);
+    sensor->filter.flags = OUTSIDE;
 }
 
 /* Everything but listening and scheduler. As if silence had come before: what was fired earlier is for the caller to
    wait for. */
 static void set_up(EerufRing *ring, const EerufSchedule *schedule, void *sensors, uint8_t count_of_sensors,
-                   size_t stride, uint32_t now_us) {
+                   size_t stride, uint8_t consecutive, void (*hook)(EerufRing *, uint8_t, uint32_t), uint32_t now_us) {
     uint8_t x;
     memset(ring, 0, sizeof *ring);
     memset(sensors, 0, count_of_sensors * stride);
     ring->schedule = schedule;
     ring->sensors = (EerufSensor *)sensors;
     ring->stride = (uint8_t)stride;
+    ring->consecutive = consecutive;
+    ring->hook = hook;
     ring->count = count_of_sensors;
     ring->oldest = NOBODY;
     ring->emit_at_us = now_us;
-    ring->consecutive = 2;
     ring->unanswered = UNANSWERED | NO_FAULT;
     ring->known_from_us = now_us - LONG_AGO;
     for (x = 0; x < count_of_sensors; x++) {
@@ -838,7 +834,7 @@ static EerufStatus init(EerufRing *ring, size_t ring_size, EerufSensor *sensors,
     /* A table allows what it was verified for. */
     if (config->t_delta_us != 0 || config->window_us != 0) status = allows(schedule, t_delta_us, window_us);
     if (status != EERUF_OK) return status;
-    set_up(ring, schedule, sensors, count_of_sensors, sizeof *sensors, now_us);
+    set_up(ring, schedule, sensors, count_of_sensors, sizeof *sensors, config->consecutive, NULL, now_us);
     status = listen(ring, t_delta_us, window_us, config->blanking_us);
     if (status != EERUF_OK) return status;
     if (config->audible_us > MAX_AUDIBLE) return EERUF_ERR_AUDIBLE;
@@ -852,7 +848,6 @@ static EerufStatus init(EerufRing *ring, size_t ring_size, EerufSensor *sensors,
     ring->audible_us = shorter(ring->audible_us, MAX_AUDIBLE);
     disturb(ring);
     if (ring->watched == WATCHED) ring->watched = 0; /* nothing has been fired yet */
-    ring->consecutive = config->consecutive;
     begin_table(ring, now_us);
     ring->ready = READY;
     return EERUF_OK;
@@ -890,7 +885,7 @@ static OUT_OF_LINE void find_first_to_close(EerufRing *ring) {
     uint8_t x;
     ring->oldest = NOBODY;
     for (x = 0; x < ring->count; x++) {
-        if (!(sensor_of(ring, x)->flags & LISTENING)) continue;
+        if (!(sensor_of(ring, x)->filter.flags & LISTENING)) continue;
         if (ring->oldest == NOBODY || !has_reached(closes_at(ring, x), closes_at(ring, ring->oldest)))
             ring->oldest = x;
     }
@@ -909,7 +904,7 @@ static void find_oldest(EerufRing *ring, uint32_t before) {
     before -= STEP_BACK;
     for (x = 0; x < ring->count; x++, sensor = after(sensor, STRIDE(ring))) {
         const uint32_t since = sensor->fired_us[0] - before;
-        if ((sensor->flags & LISTENING) && since < soonest) {
+        if ((sensor->filter.flags & LISTENING) && since < soonest) {
             oldest = x;
             soonest = since;
         }
@@ -917,17 +912,14 @@ static void find_oldest(EerufRing *ring, uint32_t before) {
     ring->oldest = oldest;
 }
 
-static void fire(EerufRing *ring, uint8_t sensor, uint32_t now_us, uint16_t late_us, bool hops) {
+static IN_LINE void fire(EerufRing *ring, uint8_t sensor, uint32_t now_us, uint16_t late_us, bool flows) {
     EerufSensor *fired = sensor_of(ring, sensor);
-    fired->flags = (uint8_t)(LISTENING | (ring->period & PERIOD) | (ring->unanswered & UNANSWERED));
-#if EERUF_FIRINGS > 1
-    if (!hops) {
-        uint8_t place;
-        for (place = EERUF_FIRINGS - 1; place > 0; place--) fired->fired_us[place] = fired->fired_us[place - 1];
-    }
-#endif
+    uint8_t place;
+    fired->filter.flags = (uint8_t)(LISTENING | (ring->period & PERIOD) | (ring->unanswered & UNANSWERED));
+    for (place = (uint8_t)(FIRINGS(flows) - 1u); place > 0; place--)
+        fired->fired_us[place] = fired->fired_us[place - 1];
     fired->fired_us[0] = now_us;
-    if (late_us != 0) fired_late(ring, late_us, hops);
+    if (late_us != 0) fired_late(ring, late_us, flows);
     if (ring->oldest == NOBODY) {
         ring->oldest = sensor;
         emit_when_oldest_ends(ring);
@@ -935,8 +927,8 @@ static void fire(EerufRing *ring, uint8_t sensor, uint32_t now_us, uint16_t late
         find_first_to_close(ring);
         emit_when_oldest_ends(ring);
     }
-    if (hops) {
-        fire_hop(ring, sensor, now_us);
+    if (flows) {
+        fire_flow(ring, sensor, now_us);
     } else {
         ring->last_fired_us = now_us;
         /* From now, not from when it was due: all that follows moves by as much as this firing is late. */
@@ -945,44 +937,32 @@ static void fire(EerufRing *ring, uint8_t sensor, uint32_t now_us, uint16_t late
     }
 }
 
-/* The kind of silence without a witness. */
-static uint8_t unwitnessed(const EerufRing *ring) {
+#define USABLE EERUF_READING_KINDS
+
+/* The kind of a firing that says nothing of the echo time, or USABLE. */
+static uint8_t unusable(const EerufRing *ring, uint8_t flags, uint32_t t_echo_us) {
+    if (flags & STUCK) return EERUF_READING_STUCK;
+    if (flags & OUTSIDE) return EERUF_READING_TOO_EARLY;
+    if (!(flags & UNANSWERED) || t_echo_us != EERUF_NO_ECHO) return USABLE;
     return ring->unanswered & NO_FAULT ? EERUF_READING_NO_ECHO : EERUF_READING_UNANSWERED;
 }
 
-/* Ends a firing and compares its reading, which has its echo time already, with the one before. */
+/* Compares a reading, which has its echo time and a kind if it is unusable, with the one before. */
 static void compare(EerufRing *ring, uint8_t x, int32_t change_us, EerufReading *reading) {
-    EerufSensor *sensor = sensor_of(ring, x);
-    EerufFilter *filter = &sensor->filter;
-    const uint8_t flags = sensor->flags;
-    if (flags & (STUCK | OUTSIDE)) forget(filter);
+    EerufFilter *filter = &sensor_of(ring, x)->filter;
+    if (reading->kind != USABLE) forget(filter);
     reading->previous_us = filter->known_us;
-    if (flags & STUCK) {
-        reading->kind = EERUF_READING_STUCK;
-    } else if (flags & OUTSIDE) {
-        reading->kind = EERUF_READING_TOO_EARLY;
-    } else if ((flags & UNANSWERED) && reading->t_echo_us == EERUF_NO_ECHO) {
-        reading->kind = unwitnessed(ring);
-        forget(filter);
-        reading->previous_us = EERUF_NO_ECHO;
-    } else {
+    if (reading->kind == USABLE) {
         const uint32_t echo_us = reading->t_echo_us;
         const bool agreed = agrees(filter, t_delta_of(ring, x), echo_us, change_us);
 #if EERUF_FIRINGS > 1
         /* The proof is about readings that differ by no more than t_delta. */
         if (agreed && (ring->watched != 0 || change_us != 0) && echo_us != EERUF_NO_ECHO)
-            reading->explained_by = explanation(ring, x, filter->known_us, echo_us);
+            reading->explained_by = explanation(ring, x, filter->known_us, echo_us, 0);
 #endif
         reading->kind = push(filter, ring->consecutive, echo_us, agreed, reading->explained_by != EERUF_BY_NOTHING);
     }
     note_age(reading, filter);
-}
-
-/* The kind of a reading that the tracker weighs. */
-static uint8_t kind_of_hop(const EerufRing *ring, uint8_t flags, bool silent) {
-    if (flags & STUCK) return EERUF_READING_STUCK;
-    if ((flags & UNANSWERED) && silent) return unwitnessed(ring);
-    return flags & OUTSIDE ? EERUF_READING_TOO_EARLY : EERUF_READING_FIRST;
 }
 
 /* The phase of a table's period this many periods ago. */
@@ -992,47 +972,51 @@ static uint8_t phase_before(const EerufRing *ring, uint8_t ago) {
     return (uint8_t)(ring->phase >= ago ? ring->phase - ago : ring->phase + phases - ago);
 }
 
-static void emit_reading(EerufRing *ring, uint8_t x, const int32_t *change_us, EerufEvent *event, bool hops) {
+static IN_LINE void emit_reading(EerufRing *ring, uint8_t x, const int32_t *change_us, EerufEvent *event,
+                                 bool flows) {
     EerufSensor *sensor = sensor_of(ring, x);
-    const uint8_t flags = sensor->flags, ago = (uint8_t)(ring->period - flags) & PERIOD;
+    const uint8_t flags = sensor->filter.flags, ago = (uint8_t)(ring->period - flags) & PERIOD;
     EerufReading *reading = &event->u.reading;
     if (flags & CAN_EMIT) ring->pending--; /* counted when its edge came */
     reading->t_echo_us = flags & STUCK ? EERUF_NO_ECHO : sensor->echo_us;
     reading->explained_by = EERUF_BY_NOTHING;
     sensor->echo_us = EERUF_NO_ECHO;
     if (flags & LISTENING) {
-        if (hops) reading->kind = kind_of_hop(ring, flags, reading->t_echo_us == EERUF_NO_ECHO);
+        reading->kind = unusable(ring, flags, reading->t_echo_us);
+        if (flows) judge(ring, x, reading);
         else compare(ring, x, change_us == NULL ? 0 : change_us[x], reading);
-        sensor->flags = flags & PERIOD;
+        sensor->filter.flags = flags & PERIOD;
+        if (flows) decide(ring);
         if (ring->oldest == x) find_oldest(ring, sensor->fired_us[0]);
     } else {
         reading->previous_us = EERUF_NO_ECHO;
         reading->age = sensor->filter.age;
         reading->kind = EERUF_READING_LATE;
-        sensor->flags = (uint8_t)(flags & ~CAN_EMIT);
+        sensor->filter.flags = (uint8_t)(flags & ~CAN_EMIT);
     }
     emit_when_oldest_ends(ring);
-    if (!hops) count(ring, reading->kind);
+    count(ring, reading->kind);
     event->kind = EERUF_EVENT_READING;
-    if (!hops) event->phase = phase_before(ring, ago);
+    if (!flows) event->phase = phase_before(ring, ago);
     event->period -= ago;
 }
 
-static void end_period(EerufRing *ring, uint32_t now_us, uint32_t late_us, EerufEvent *event, bool hops) {
+static IN_LINE void end_period(EerufRing *ring, uint32_t now_us, uint32_t late_us, EerufEvent *event,
+                               bool flows) {
     EerufPeriod *ended = &event->u.ended;
-    const bool differed = !hops && windows_differ(ring);
+    const bool differed = windows_differ(ring);
     bool changed = false;
     uint8_t kind;
     note_late(ring, narrow(late_us));
     event->kind = EERUF_EVENT_PERIOD;
     event->sensor = 0;
     ring->period++;
-    if (hops) end_hopping_period(ring, now_us);
+    if (flows) end_round(ring, now_us);
     else changed = end_period_of_table(ring, now_us, late_us);
-    end_late_period(ring, ended, now_us, hops);
+    end_late_period(ring, ended, now_us, flows);
     if (changed) disturb(ring);
     /* Another schedule may allow other windows, also to firings under way. */
-    if (!hops && (differed || windows_differ(ring))) {
+    if (differed || windows_differ(ring)) {
         find_first_to_close(ring);
         emit_when_oldest_ends(ring);
     }
@@ -1046,31 +1030,45 @@ static void end_period(EerufRing *ring, uint32_t now_us, uint32_t late_us, Eeruf
 static uint8_t next_pending(const EerufRing *ring, bool emits) {
     uint8_t x;
     if (ring->pending == 0) return emits ? ring->oldest : (uint8_t)NOBODY;
-    if (ring->oldest != NOBODY && (sensor_of(ring, ring->oldest)->flags & CAN_EMIT)) return ring->oldest;
+    if (ring->oldest != NOBODY && (sensor_of(ring, ring->oldest)->filter.flags & CAN_EMIT)) return ring->oldest;
     for (x = 0; x < ring->count; x++)
-        if (sensor_of(ring, x)->flags & CAN_EMIT) return x;
+        if (sensor_of(ring, x)->filter.flags & CAN_EMIT) return x;
     return NOBODY;
 }
 
-static void restart(EerufRing *ring, uint32_t now_us, bool hops) {
+static IN_LINE void restart(EerufRing *ring, uint32_t now_us, bool flows) {
     uint8_t x;
+    if (flows) restart_flow(ring, now_us);
+    else restart_table(ring, now_us);
     /* Sound from before may still be heard, and its firings are no longer known by this clock. One that was said to
        fire a little later still does. */
     ring->known_from_us = now_us;
     for (x = 0; x < ring->count; x++) {
         const uint32_t fired_us = sensor_of(ring, x)->fired_us[0];
-        if (!hops && fired_us - ring->known_from_us - 1u < STEP_BACK) ring->known_from_us = fired_us;
+        if (fired_us - ring->known_from_us - 1u < STEP_BACK) ring->known_from_us = fired_us;
         drop_firing(ring, x, now_us);
     }
-    if (hops) restart_hopping(ring, now_us);
-    else restart_table(ring, now_us);
+    if (flows) decide(ring);
     ring->oldest = NOBODY;
     ring->pending = 0;
     disturb(ring);
 }
 
+/* Called by each poll and by the caller. */
+static OUT_OF_LINE void restart_by_table(EerufRing *ring, uint32_t now_us) {
+    restart(ring, now_us, false);
+}
+#if EERUF_WITH_FLOW
+static OUT_OF_LINE void restart_by_flow(EerufRing *ring, uint32_t now_us) {
+    restart(ring, now_us, true);
+}
+#else
+#define restart_by_flow restart_by_table
+#endif
+
 /* Firing comes first, since it should be on time; but a sensor's reading is emitted before it fires again. */
-static EerufStatus poll(EerufRing *ring, uint32_t now_us, const int32_t *change_us, EerufEvent *event, bool hops) {
+static IN_LINE EerufStatus poll(EerufRing *ring, uint32_t now_us, const int32_t *change_us, EerufEvent *event,
+                                bool flows) {
     const uint32_t late_us = now_us - ring->due_us;
     const bool is_due = late_us < HALF_TURN, emits = has_pending(ring) && has_reached(now_us, ring->emit_at_us);
     uint8_t sensor = NOBODY;
@@ -1078,23 +1076,24 @@ static EerufStatus poll(EerufRing *ring, uint32_t now_us, const int32_t *change_
     if (event == NULL) return EERUF_ERR_NULL;
     if (!is_due && !emits) {
         /* The clock has jumped, or the ring was not polled for half a turn of it. */
-        if (0u - late_us > (hops ? horizon_of_hopping(ring) : horizon_of_table(ring))) restart(ring, now_us, hops);
+        if (flows && 0u - late_us > horizon_of_flow(ring)) restart_by_flow(ring, now_us);
+        if (!flows && 0u - late_us > horizon_of_table(ring)) restart_by_table(ring, now_us);
         return EERUF_OK;
     }
     if (is_due) sensor = ring->next;
     if (sensor == NOBODY) sensor = next_pending(ring, emits);
-    else fires = !(sensor_of(ring, sensor)->flags & (LISTENING | CAN_EMIT));
+    else fires = !(sensor_of(ring, sensor)->filter.flags & (LISTENING | CAN_EMIT));
     event->sensor = sensor;
     event->phase = ring->phase;
     event->period = ring->period;
     if (fires) {
         event->kind = EERUF_EVENT_FIRE;
         event->u.due_us = ring->due_us;
-        fire(ring, sensor, now_us, narrow(late_us), hops);
+        fire(ring, sensor, now_us, narrow(late_us), flows);
     } else if (sensor != NOBODY) {
-        emit_reading(ring, sensor, change_us, event, hops);
+        emit_reading(ring, sensor, change_us, event, flows);
     } else {
-        end_period(ring, now_us, late_us, event, hops);
+        end_period(ring, now_us, late_us, event, flows);
     }
     return EERUF_EVENT;
 }
@@ -1102,7 +1101,7 @@ static EerufStatus poll(EerufRing *ring, uint32_t now_us, const int32_t *change_
 /* A ring that fires by a table. */
 static EerufStatus has_table(const EerufRing *ring) {
     const EerufStatus status = is_ready(ring);
-    return status == EERUF_OK && HOPS(ring) ? (EerufStatus)EERUF_ERR_HOPPING : status;
+    return status == EERUF_OK && FLOWS(ring) ? (EerufStatus)EERUF_ERR_FLOW : status;
 }
 
 EerufStatus eeruf_ring_poll_expecting(EerufRing *ring, uint32_t now_us, const int32_t *change_us, EerufEvent *event) {
@@ -1130,7 +1129,11 @@ EerufStatus eeruf_ring_upcoming(const EerufRing *ring, uint8_t number, uint8_t *
     bool goes_on;
     if (status != EERUF_OK) return status;
     if (sensor == NULL || due_us == NULL) return EERUF_ERR_NULL;
-    if (HOPS(ring)) return upcoming_hop(ring, number, sensor, due_us);
+    if (FLOWS(ring)) {
+        *sensor = ring->next;
+        *due_us = ring->due_us;
+        return ring->next == NOBODY || number > 0 ? EERUF_EMPTY : EERUF_OK;
+    }
     phase = ring->phase;
     place = ring->following;
     next = ring->next;
@@ -1158,7 +1161,7 @@ EerufStatus eeruf_ring_upcoming(const EerufRing *ring, uint8_t number, uint8_t *
 static void hear(EerufRing *ring, uint8_t x, uint32_t at_us, uint32_t settled_us) {
     EerufSensor *sensor = sensor_of(ring, x);
     const uint32_t t_echo_us = at_us - sensor->fired_us[0];
-    const uint8_t flags = sensor->flags;
+    const uint8_t flags = sensor->filter.flags;
     const bool inside = t_echo_us <= window_of(ring, x);
     if (t_echo_us >= HALF_TURN) return; /* from before it fired, or from a clock that has jumped */
     if (flags & LISTENING) {
@@ -1168,14 +1171,14 @@ static void hear(EerufRing *ring, uint8_t x, uint32_t at_us, uint32_t settled_us
         }
         if (t_echo_us < ring->blanking_us) {
             if (sensor->echo_us != EERUF_NO_ECHO) return;
-            sensor->flags |= OUTSIDE;
+            sensor->filter.flags |= OUTSIDE;
             sensor->echo_us = t_echo_us;
             return;
         }
-        sensor->flags = (uint8_t)((flags & ~OUTSIDE) | CAN_EMIT);
+        sensor->filter.flags = (uint8_t)((flags & ~OUTSIDE) | CAN_EMIT);
     } else {
         if (inside || (flags & OUTSIDE)) return;
-        sensor->flags |= OUTSIDE | CAN_EMIT;
+        sensor->filter.flags |= OUTSIDE | CAN_EMIT;
     }
     if ((flags & OUTSIDE) || t_echo_us < sensor->echo_us) sensor->echo_us = t_echo_us;
     if (flags & CAN_EMIT) return;
@@ -1186,8 +1189,8 @@ static void hear(EerufRing *ring, uint8_t x, uint32_t at_us, uint32_t settled_us
 /* Takes back an echo whose reading has not been emitted yet. */
 static void unhear(EerufRing *ring, uint8_t x) {
     EerufSensor *sensor = sensor_of(ring, x);
-    if ((sensor->flags & (LISTENING | CAN_EMIT)) != (LISTENING | CAN_EMIT)) return;
-    sensor->flags = (uint8_t)(sensor->flags & ~CAN_EMIT);
+    if ((sensor->filter.flags & (LISTENING | CAN_EMIT)) != (LISTENING | CAN_EMIT)) return;
+    sensor->filter.flags = (uint8_t)(sensor->filter.flags & ~CAN_EMIT);
     sensor->echo_us = EERUF_NO_ECHO;
     ring->pending--;
     emit_when_oldest_ends(ring);
@@ -1199,17 +1202,6 @@ EerufStatus eeruf_ring_echo(EerufRing *ring, uint8_t sensor, uint32_t at_us) {
     return status;
 }
 
-/* True if a sensor may have fired at another instant than it was polled for: after its firing before. */
-static bool may_have_fired(const EerufRing *ring, const EerufSensor *sensor, uint32_t at_us) {
-    (void)ring;
-    if (HOPS(ring)) return has_reached(at_us, sensor->fired_us[0]);
-#if EERUF_FIRINGS > 1
-    return at_us - sensor->fired_us[1] - 1u < HALF_TURN - 1u;
-#else
-    return true;
-#endif
-}
-
 EerufStatus eeruf_ring_fired(EerufRing *ring, uint8_t x, uint32_t at_us) {
     const EerufStatus status = has_sensor(ring, x);
     EerufSensor *sensor;
@@ -1218,18 +1210,18 @@ EerufStatus eeruf_ring_fired(EerufRing *ring, uint8_t x, uint32_t at_us) {
     sensor = sensor_of(ring, x);
     polled_us = sensor->fired_us[0];
     later_us = at_us - polled_us;
-    if (later_us == 0 || !may_have_fired(ring, sensor, at_us)) return EERUF_OK;
+    if (later_us == 0) return EERUF_OK;
+    /* Only after its firing before. */
+    if (FIRINGS(FLOWS(ring)) > 1 && at_us - sensor->fired_us[1] - 1u >= HALF_TURN - 1u) return EERUF_OK;
     sensor->fired_us[0] = at_us;
     /* The reading of a firing that has ended is with the filter. */
-    if (!(sensor->flags & LISTENING) && !shift(&sensor->filter.known_us, later_us)) forget(&sensor->filter);
+    if (FLOWS(ring)) ring->hook(ring, x, later_us);
+    else if (!(sensor->filter.flags & LISTENING) && !shift(&sensor->filter.known_us, later_us)) forget(&sensor->filter);
     /* Where the first edge came before it fired, it may have kept out the echo. */
-    if (!shift(&sensor->echo_us, later_us)) sensor->flags |= OUTSIDE;
-    if (sensor->flags & LISTENING) {
+    if (!shift(&sensor->echo_us, later_us)) sensor->filter.flags |= OUTSIDE;
+    if (sensor->filter.flags & LISTENING) {
         if (later_us < HALF_TURN) {
-#if EERUF_HOPPING
-            if (HOPS(ring)) ring->hook(ring, x, later_us);
-#endif
-            if (!HOPS(ring)) {
+            if (!FLOWS(ring)) {
                 ring->last_fired_us += later_us;
                 ring->due_us += later_us;
             }
@@ -1240,9 +1232,6 @@ EerufStatus eeruf_ring_fired(EerufRing *ring, uint8_t x, uint32_t at_us) {
             emit_when_oldest_ends(ring);
         }
     }
-#if EERUF_HOPPING
-    if (HOPS(ring) && !has_reached(ring->last_fired_us, at_us)) ring->last_fired_us = at_us;
-#endif
     disturb(ring);
     return EERUF_OK;
 }
@@ -1252,7 +1241,7 @@ uint32_t eeruf_ring_fired_at(const EerufRing *ring, uint8_t sensor) {
 }
 
 static void note(EerufSensor *sensor, uint8_t flag) {
-    if (sensor->flags & LISTENING) sensor->flags |= flag;
+    if (sensor->filter.flags & LISTENING) sensor->filter.flags |= flag;
 }
 
 EerufStatus eeruf_ring_stuck(EerufRing *ring, uint8_t sensor) {
@@ -1271,7 +1260,7 @@ EerufStatus eeruf_ring_set_silence(EerufRing *ring, uint8_t silence) {
 }
 
 static void note_answer(EerufSensor *sensor) {
-    sensor->flags = (uint8_t)(sensor->flags & ~UNANSWERED);
+    sensor->filter.flags = (uint8_t)(sensor->filter.flags & ~UNANSWERED);
 }
 
 EerufStatus eeruf_ring_answered(EerufRing *ring, uint8_t sensor) {
@@ -1298,10 +1287,8 @@ EerufStatus eeruf_ring_measured(EerufRing *ring, uint8_t sensor, uint32_t t_echo
 }
 
 static void forget_readings(EerufRing *ring, uint8_t sensor) {
-    forget(&sensor_of(ring, sensor)->filter);
-#if EERUF_HOPPING
-    if (HOPS(ring)) ring->hook(ring, sensor, 0);
-#endif
+    if (FLOWS(ring)) ring->hook(ring, sensor, 0);
+    else forget(&sensor_of(ring, sensor)->filter);
 }
 
 EerufStatus eeruf_ring_forget(EerufRing *ring, uint8_t sensor) {
@@ -1319,8 +1306,8 @@ static void enable(EerufRing *ring, uint8_t sensor, bool enabled) {
     if (!enabled) {
         filter->state |= DISABLED;
     } else if (filter->state & DISABLED) {
-        filter->state = 0;
-        filter->known_us = EERUF_NO_ECHO;
+        filter->state &= (uint8_t)~DISABLED;
+        forget_readings(ring, sensor);
         disturb(ring);
     }
 }
@@ -1328,7 +1315,7 @@ static void enable(EerufRing *ring, uint8_t sensor, bool enabled) {
 EerufStatus eeruf_ring_enable(EerufRing *ring, uint8_t sensor, bool enabled) {
     const EerufStatus status = has_sensor(ring, sensor);
     if (status != EERUF_OK) return status;
-    if (HOPS(ring)) return EERUF_ERR_HOPPING;
+    if (FLOWS(ring)) return EERUF_ERR_FLOW;
     enable(ring, sensor, enabled);
     skip_silent(ring);
     return EERUF_OK;
@@ -1348,7 +1335,7 @@ EerufStatus eeruf_ring_pause(EerufRing *ring, bool paused) {
 
 EerufStatus eeruf_ring_restart(EerufRing *ring, uint32_t now_us) {
     const EerufStatus status = has_table(ring);
-    if (status == EERUF_OK) restart(ring, now_us, false);
+    if (status == EERUF_OK) restart_by_table(ring, now_us);
     return status;
 }
 
@@ -1371,7 +1358,7 @@ static EerufStatus change(EerufRing *ring, const EerufSchedule *schedule, bool v
     if (status == EERUF_OK) status = schedule_is_usable(schedule);
     if (status != EERUF_OK) return status;
     if (verified && !is_verified(schedule)) return EERUF_ERR_UNVERIFIED;
-    if (HOPS(ring)) return EERUF_ERR_HOPPING;
+    if (FLOWS(ring)) return EERUF_ERR_FLOW;
     if (READ8(schedule->sensors) != ring->count) return EERUF_ERR_SENSORS;
     if (READ8(schedule->phases) != READ8(ring->schedule->phases)) return EERUF_ERR_PHASES;
     status = allows(schedule, ring->t_delta_us, ring->window_us);
@@ -1393,8 +1380,8 @@ EerufStatus eeruf_ring_change_to_unverified(EerufRing *ring, const EerufSchedule
 
 /* No sensor fires again within this time. */
 static uint32_t least_refire(const EerufRing *ring) {
-#if EERUF_HOPPING
-    if (HOPS(ring)) return ((const EerufHoppingRing *)(const void *)ring)->rest_us;
+#if EERUF_WITH_FLOW
+    if (FLOWS(ring)) return longer(((const EerufFlowRing *)(const void *)ring)->rest_us, ring->window_us);
 #endif
     return READ32(ring->schedule->min_refire_us);
 }
@@ -1402,7 +1389,7 @@ static uint32_t least_refire(const EerufRing *ring) {
 /* With one of the three changed. */
 static EerufStatus relisten(EerufRing *ring, uint32_t t_delta_us, uint32_t window_us, uint32_t blanking_us) {
     EerufStatus status;
-    if (HOPS(ring)) return EERUF_ERR_HOPPING;
+    if (FLOWS(ring)) return EERUF_ERR_FLOW;
     status = allows(ring->schedule, t_delta_us, window_us);
     if (status == EERUF_OK && ring->next_schedule != NULL)
         status = allows(ring->next_schedule, t_delta_us, window_us);
@@ -1604,19 +1591,6 @@ uint32_t eeruf_echo_time_us(uint32_t distance_mm, uint32_t c_mm_s) {
 
 /* ---- Adaptation ---- */
 
-/* With settings of ours, on the first rung. */
-static IN_LINE void begin_adaptation(EerufAdaptation *adaptation, const void *ladder, uint8_t rungs, uint16_t ready) {
-    memset(adaptation, 0, sizeof *adaptation);
-    adaptation->ladder = ladder;
-    adaptation->rungs = rungs;
-    adaptation->noisy_permille = 300;
-    adaptation->calm_permille = 100;
-    adaptation->window = 16;
-    adaptation->patience = 4;
-    adaptation->rejection_permille = UINT16_MAX;
-    adaptation->ready = ready;
-}
-
 EerufStatus eeruf_adaptation_init(EerufAdaptation *adaptation, size_t adaptation_size,
                                   const EerufSchedule *const *ladder, uint8_t rungs) {
     uint8_t rung;
@@ -1632,12 +1606,20 @@ EerufStatus eeruf_adaptation_init(EerufAdaptation *adaptation, size_t adaptation
         if (READ8(ladder[rung]->sensors) != READ8(ladder[0]->sensors)) return EERUF_ERR_LADDER;
         if (READ8(ladder[rung]->phases) != READ8(ladder[0]->phases)) return EERUF_ERR_LADDER;
     }
-    begin_adaptation(adaptation, ladder, rungs, READY);
+    memset(adaptation, 0, sizeof *adaptation);
+    adaptation->ladder = ladder;
+    adaptation->rungs = rungs;
+    adaptation->noisy_permille = 300;
+    adaptation->calm_permille = 100;
+    adaptation->window = 16;
+    adaptation->patience = 4;
+    adaptation->rejection_permille = UINT16_MAX;
+    adaptation->ready = READY;
     return EERUF_OK;
 }
 
 /* The rung for the window that has just ended. One in which nothing was compared is neither noisy nor calm. */
-static IN_LINE uint8_t next_rung(EerufAdaptation *adaptation) {
+static uint8_t next_rung(EerufAdaptation *adaptation) {
     const uint16_t rate = adaptation->rejection_permille;
     const uint8_t rung = adaptation->rung;
     if (rate != UINT16_MAX && rate <= adaptation->noisy_permille && rate <= adaptation->calm_permille) {
@@ -1649,13 +1631,12 @@ static IN_LINE uint8_t next_rung(EerufAdaptation *adaptation) {
     return rung + 1u < adaptation->rungs ? (uint8_t)(rung + 1u) : rung;
 }
 
-/* Takes in the end of a period: EERUF_EVENT, and the rung, if the ring should change to another. */
-static IN_LINE EerufStatus take_period(EerufAdaptation *adaptation, const EerufRing *ring, const EerufEvent *event,
-                               uint16_t ready, uint8_t *rung) {
+EerufStatus eeruf_adaptation_period(EerufAdaptation *adaptation, EerufRing *ring, const EerufEvent *event) {
     EerufStatus status;
     uint32_t compared;
+    uint8_t rung;
     if (adaptation == NULL || event == NULL) return EERUF_ERR_NULL;
-    if (adaptation->ready != ready) return EERUF_ERR_NOT_READY;
+    if (adaptation->ready != READY) return EERUF_ERR_NOT_READY;
     status = is_ready(ring);
     if (status != EERUF_OK) return status;
     if (event->kind != EERUF_EVENT_PERIOD) return EERUF_ERR_RANGE;
@@ -1670,17 +1651,10 @@ static IN_LINE EerufStatus take_period(EerufAdaptation *adaptation, const EerufR
     adaptation->rejection_permille = UINT16_MAX;
     if (compared > 0) adaptation->rejection_permille = (uint16_t)(1000 * (uint32_t)adaptation->rejected / compared);
     adaptation->accepted = adaptation->rejected = adaptation->repeated = 0;
-    *rung = next_rung(adaptation);
-    if (*rung == adaptation->rung) return EERUF_OK;
+    rung = next_rung(adaptation);
+    if (rung == adaptation->rung) return EERUF_OK;
     adaptation->calm_windows = 0;
-    return EERUF_EVENT;
-}
-
-EerufStatus eeruf_adaptation_period(EerufAdaptation *adaptation, EerufRing *ring, const EerufEvent *event) {
-    uint8_t rung = 0;
-    EerufStatus status = take_period(adaptation, ring, event, READY, &rung);
-    if (status != EERUF_EVENT) return status;
-    status = eeruf_ring_change_schedule(ring, ((const EerufSchedule *const *)adaptation->ladder)[rung]);
+    status = eeruf_ring_change_schedule(ring, adaptation->ladder[rung]);
     if (status != EERUF_OK) return status;
     adaptation->rung = rung;
     return EERUF_EVENT;
@@ -2003,1245 +1977,139 @@ uint8_t eeruf_hc_sr04_health(const EerufHcSr04 *modules, uint8_t sensor) {
     return (uint8_t)(modules->lines[sensor].state >> HEALTH_AT);
 }
 
-#if EERUF_HOPPING
-/* ---- Time hopping ---- */
+#if EERUF_WITH_FLOW
+/* ---- Flow: the rules are in docs/explanation/flow.md ---- */
 
-/* The flags of a sensor's turn. */
-#define HAS_FIRED 1u
-#define SOLO 2u    /* its last firing was alone */
-#define SETTLED 4u /* what it hears of its last firing moves as the code says, as far as lags are concerned */
-/* The flags of a track. */
-#define TRACK_CONFIRMED 1u
-#define CONTRADICTED 2u
-#define REMEMBERED 4u /* it was confirmed, and is again once it is supported */
-#define REGAINED 2u   /* the least score of a track that is confirmed again */
+#define QUIET_US 4u /* the unit of quiet */
+#define OLD ((uint32_t)1 << 29) /* a firing that says nothing of rest any more, long before instants wrap */
 
-static OUT_OF_LINE uint16_t less16(uint16_t one, uint16_t other) {
-    return one > other ? (uint16_t)(one - other) : 0;
+/* The state of a flow ring's sensor, beside DISABLED. */
+#define HAS_FIRED 0x01u
+#define AHEAD 0x02u    /* it has fired in this round, before its turn */
+#define FOLLOWS 0x04u  /* it fires with one that has a turn */
+#define PENDING 0x08u  /* that one has fired, and it has not yet */
+/* The flags of a flow ring. */
+#define MOVES 0x01u     /* at the last reading, or word of it: the dice are twice as long */
+#define TOLD 0x02u      /* how fast it moves, not long ago */
+#define ONE_AHEAD 0x04u /* a sensor is */
+#define EVERY_ECHO_STANDING 0x10u /* every echo is reported as accepted */
+#define EVERY_ECHO_MOVING 0x20u
+
+static EerufFlowRing *flow_of(EerufRing *ring) {
+    return (EerufFlowRing *)(void *)ring;
 }
 
-static uint16_t fewer16(uint16_t one, uint16_t other) {
-    return one < other ? one : other;
+static EerufFlowSensor *flow_sensor(const EerufRing *ring, uint8_t x) {
+    return (EerufFlowSensor *)(void *)ring->sensors + x;
 }
 
-#define CATCHES_UP_US 1000u /* a firing that is later moves all that follow */
-#define ONE_SOLO 256u       /* what a solo period costs; as much again may be saved up */
-#define LEAST_CHANGE_US 40  /* an expected change that tells how much of it there is */
-#define WHOLE 64            /* as much more as is expected */
-#define MOST_SURPLUS 80     /* two readings that show more are not of one echo */
-#define UNKNOWN INT8_MIN    /* readings that show no surplus */
-#define MOVING_VOTES 3u     /* for a tentative echo while odometry moves: any two readings are those of some wall */
-#define MOVING_MEMORY 3u    /* and confirmed echoes are remembered for three times as long */
-#define DRAWS 8u            /* lags that are drawn in search of one that keeps the neighbours' interval */
-
-/* -- The tracker: which echo of a sensor is its own. A reading within t_delta of a track supports it, and only support
-   from different phases counts. A later reading contradicts it; an earlier one hides it:
-   docs/explanation/hopping.md. -- */
-
-static OUT_OF_LINE uint32_t between(uint32_t one, uint32_t other) {
-    return apart(one, other);
+static EerufStatus has_flow(const EerufFlowRing *flow, uint8_t sensor) {
+    const EerufStatus status = flow == NULL ? (EerufStatus)EERUF_ERR_NULL : has_sensor(&flow->ring, sensor);
+    return status == EERUF_OK && !FLOWS(&flow->ring) ? (EerufStatus)EERUF_ERR_NOT_READY : status;
 }
 
-/* Echoes are below half a turn, so that silence is further from them than any setting allows. */
-static bool is_within(uint32_t one, uint32_t other, uint16_t most) {
-    return between(one, other) <= most;
-}
+/* -- The plan -- */
 
-static uint16_t phase_bit(uint8_t phase) {
-    return (uint16_t)(1u << (phase & 15u));
-}
-
-static uint8_t votes_of(const EerufTrack *track) {
-    uint16_t phases = track->phases;
-    uint8_t votes = track->solo_votes;
-    for (; phases != 0; phases &= (uint16_t)(phases - 1u)) votes++;
-    return votes;
-}
-
-static void forget_track(EerufTrack *track) {
-    memset(track, 0, sizeof *track);
-    track->t_echo_us = EERUF_NO_ECHO;
-    track->age = UINT8_MAX;
-}
-
-static void forget_tracks(EerufHopper *hopper) {
-    uint8_t place;
-    for (place = 0; place < EERUF_HYPOTHESES; place++) forget_track(&hopper->tracks[place]);
-    hopper->surplus = 0;
-    hopper->last_us = EERUF_NO_ECHO;
-    hopper->observed = UNKNOWN;
-}
-
-/* Unconfirmed echoes cannot be compared with later ones. */
-static void firing_changed(EerufHoppingRing *hopping) {
-    uint8_t x, place;
-    for (x = 0; x < hopping->ring.count; x++) {
-        for (place = 0; place < EERUF_HYPOTHESES; place++) {
-            EerufTrack *track = &hopping->hoppers[x].tracks[place];
-            if (track->flags & TRACK_CONFIRMED) continue;
-            track->phases = 0;
-            track->close = 0;
-            track->flags &= CONTRADICTED;
-            if (track->score > 1) track->score = 1;
-        }
-    }
-}
-
-/* The earliest confirmed track; null if there is none. Silence is a track too, later than all others. */
-static const EerufTrack *believed_of(const EerufHopper *hopper) {
-    const EerufTrack *earliest = NULL;
-    uint8_t place;
-    for (place = 0; place < EERUF_HYPOTHESES; place++) {
-        const EerufTrack *track = &hopper->tracks[place];
-        if (!(track->flags & TRACK_CONFIRMED)) continue;
-        if (earliest == NULL || track->t_echo_us < earliest->t_echo_us) earliest = track;
-    }
-    return earliest;
-}
-
-static void grow_older(EerufTrack *track) {
-    if (track->age < UINT8_MAX) track->age++;
-}
-
-/* The last firing in this phase did not support it. One phase alone keeps no track confirmed. */
-static void miss(EerufTrack *track, uint16_t phase, const EerufTrackerSettings *how) {
-    track->phases &= (uint16_t)~phase;
-    if (!(track->flags & TRACK_CONFIRMED) || votes_of(track) >= 2) return;
-    track->flags &= (uint8_t)~TRACK_CONFIRMED;
-    if (how->memory > 0) track->flags |= REMEMBERED;
-}
-
-/* Nothing speaks for it any more: it is gone, or remembered if it was confirmed. */
-static void lose(EerufTrack *track, const EerufTrackerSettings *how) {
-    if (!(track->flags & (TRACK_CONFIRMED | REMEMBERED)) || track->age >= how->memory) {
-        /* Were it confirmed still, it would keep its place from all that come. */
-        forget_track(track);
-        return;
-    }
-    grow_older(track);
-    track->phases = 0;
-    track->score = 1;
-    track->solo_votes = track->close = 0;
-    track->flags = CONTRADICTED | REMEMBERED;
-}
-
-/* Moves a track towards an echo. */
-static OUT_OF_LINE void follow(EerufTrack *track, uint32_t t_echo_us, uint32_t by_us) {
-    track->t_echo_us += t_echo_us > track->t_echo_us ? by_us : 0u - by_us;
-}
-
-static void support(EerufTrack *track, uint32_t t_echo_us, uint16_t phase, bool solo, const EerufTrackerSettings *how) {
-    const bool is_new = (track->phases & phase) == 0;
-    const uint32_t distance = between(track->t_echo_us, t_echo_us);
-    if (is_new && distance <= how->tentative_within_us && track->close < UINT8_MAX) track->close++;
-    track->phases |= phase;
-    if (solo && track->solo_votes < how->votes) track->solo_votes++;
-    /* A path repeats itself in its own phase for ever, so that says nothing new of a track yet to be confirmed. */
-    if (is_new || solo || (track->flags & TRACK_CONFIRMED)) {
-        track->score = (uint8_t)(track->score + (solo ? 2u : 1u));
-        if (track->score > how->score_limit) track->score = how->score_limit;
-    }
-    if ((track->flags & REMEMBERED) && track->age <= how->memory) {
-        track->flags |= TRACK_CONFIRMED;
-        if (track->score < REGAINED) track->score = REGAINED;
-    }
-    track->flags &= (uint8_t)~REMEMBERED;
-    track->age = 0;
-    /* A quarter of the way, so that one early or late edge does not move it far. */
-    if (track->t_echo_us != EERUF_NO_ECHO) follow(track, t_echo_us, distance / 4);
-    if (votes_of(track) >= how->votes && track->score >= how->votes) track->flags |= TRACK_CONFIRMED;
-}
-
-static void contradict(EerufTrack *track, uint16_t phase, bool solo, const EerufTrackerSettings *how) {
-    const uint8_t weight = solo ? how->solo_contradiction : (track->flags & TRACK_CONFIRMED) ? how->contradiction : 1;
-    if (track->score <= weight) {
-        lose(track, how);
-        return;
-    }
-    track->score = (uint8_t)(track->score - weight);
-    track->flags |= CONTRADICTED;
-    track->solo_votes = 0;
-    grow_older(track);
-    miss(track, phase, how);
-}
-
-/* True if one is replaced before the other. */
-static bool ranks_below(const EerufTrack *one, const EerufTrack *other) {
-    const uint8_t differs = one->flags ^ other->flags;
-    if (differs & TRACK_CONFIRMED) return !(one->flags & TRACK_CONFIRMED);
-    if (differs & REMEMBERED) return !(one->flags & REMEMBERED);
-    return one->score != other->score ? one->score < other->score : one->age > other->age;
-}
-
-static uint8_t nearest_track(const EerufHopper *hopper, uint32_t t_echo_us, uint16_t t_delta_us) {
-    uint8_t place, nearest = NOBODY;
-    for (place = 0; place < EERUF_HYPOTHESES; place++) {
-        const EerufTrack *track = &hopper->tracks[place];
-        if (track->score == 0 || !is_within(track->t_echo_us, t_echo_us, t_delta_us)) continue;
-        if (nearest == NOBODY ||
-            between(track->t_echo_us, t_echo_us) < between(hopper->tracks[nearest].t_echo_us, t_echo_us))
-            nearest = place;
-    }
-    return nearest;
-}
-
-static void begin_track(EerufHopper *hopper, uint32_t t_echo_us, uint16_t phase, bool solo) {
-    EerufTrack *weakest = &hopper->tracks[0];
-    uint8_t place;
-    for (place = 1; place < EERUF_HYPOTHESES; place++)
-        if (ranks_below(&hopper->tracks[place], weakest)) weakest = &hopper->tracks[place];
-    weakest->t_echo_us = t_echo_us;
-    weakest->phases = phase;
-    weakest->score = solo ? 2 : 1;
-    weakest->solo_votes = solo ? 1 : 0;
-    weakest->close = 1;
-    weakest->flags = 0;
-    weakest->age = 0;
-}
-
-/* The reading has its kind and echo time already. */
-static void end_weighing(EerufFilter *filter, EerufReading *reading) {
-    if (reading->kind == EERUF_READING_ACCEPTED || reading->kind == EERUF_READING_TENTATIVE) filter->age = 0;
-    else if (filter->age < EERUF_NEVER - 1u) filter->age++;
-    reading->age = filter->age;
-}
-
-/* The tracks move with the robot, by the expected change and what there is more of it. */
-static void shift_tracks(EerufHopper *hopper, int32_t change_us) {
-    uint8_t place;
-    if (change_us > INT16_MAX) change_us = INT16_MAX;
-    if (change_us < INT16_MIN) change_us = INT16_MIN;
-    change_us += change_us * hopper->surplus / WHOLE;
-    for (place = 0; place < EERUF_HYPOTHESES; place++) {
-        uint32_t *held = &hopper->tracks[place].t_echo_us;
-        /* A time before the firing wraps, and is later than all. */
-        const uint32_t moved_us = *held + (uint32_t)change_us;
-        if (*held != EERUF_NO_ECHO && moved_us <= EERUF_HOPPING_MAX_WINDOW_US) *held = moved_us;
-    }
-}
-
-/* The surplus that two consecutive readings of one echo show, or UNKNOWN. */
-static int8_t surplus_of(uint32_t last_us, uint32_t t_echo_us, int32_t change_us) {
-    int32_t surplus;
-    if ((change_us < LEAST_CHANGE_US && change_us > -LEAST_CHANGE_US) || change_us > INT16_MAX ||
-        change_us < -INT16_MAX || t_echo_us == EERUF_NO_ECHO || last_us == EERUF_NO_ECHO)
-        return UNKNOWN;
-    /* Times have 24 bits, the product 30. */
-    surplus = WHOLE * ((int32_t)t_echo_us - (int32_t)last_us) / change_us - WHOLE;
-    return surplus < -MOST_SURPLUS || surplus > MOST_SURPLUS ? UNKNOWN : (int8_t)surplus;
-}
-
-/* Two pairs of consecutive readings that change alike tell how much of the expected change there really is, whatever
-   they support. Crosstalk changes otherwise from each phase to the next. */
-static void learn(EerufHopper *hopper, uint32_t t_echo_us, int32_t change_us, uint16_t t_delta_us) {
-    const int8_t observed = surplus_of(hopper->last_us, t_echo_us, change_us), before = hopper->observed;
-    const uint32_t expected_us = change_us < 0 ? 0u - (uint32_t)change_us : (uint32_t)change_us;
-    int16_t known = hopper->surplus, differs = (int16_t)(observed - before);
-    hopper->last_us = t_echo_us;
-    if (observed == UNKNOWN) return;
-    hopper->observed = observed;
-    if (before == UNKNOWN) return;
-    if (differs < 0) differs = (int16_t)-differs;
-    if ((uint32_t)differs * expected_us > (uint32_t)WHOLE * t_delta_us) return;
-    known = (int16_t)(known + (observed - known) / 2);
-    hopper->surplus = (int8_t)(known > WHOLE ? WHOLE : known < -WHOLE ? -WHOLE : known);
-}
-
-/* The settings of a robot that moves or stands. */
-static EerufTrackerSettings for_motion(EerufTrackerSettings settings, bool moving) {
-    const unsigned memory = settings.memory * (moving ? MOVING_MEMORY : 1u);
-    settings.memory = (uint8_t)(memory > UINT8_MAX ? UINT8_MAX : memory);
-    return settings;
-}
-
-static void weigh(EerufHoppingRing *hopping, uint8_t sensor, bool steady, int32_t change_us, EerufReading *reading) {
-    const EerufTrackerSettings settings = for_motion(hopping->tracker, change_us != 0), *how = &settings;
-    EerufHopper *hopper = &hopping->hoppers[sensor];
-    const bool solo = (hopper->flags & SOLO) != 0;
-    const uint32_t t_echo_us = reading->t_echo_us;
-    const uint16_t phase = phase_bit(hopper->phase);
-    const uint8_t votes = how->tentative_votes, least = change_us != 0 ? MOVING_VOTES : 0;
-    const uint16_t t_delta_us = t_delta_of(&hopping->ring, sensor);
-    const uint8_t nearest = nearest_track(hopper, t_echo_us, t_delta_us);
-    const EerufTrack *believed = believed_of(hopper);
-    /* A copy: the tracks move below. Without one no echo is as late. */
-    const bool believes = believed != NULL;
-    const uint32_t held_us = believes ? believed->t_echo_us : EERUF_NO_ECHO;
-    const bool is_near = believes && is_within(held_us, t_echo_us, how->near_us);
-    bool tentative = false, confirmed;
-    EerufTrack *track = hopper->tracks;
-    uint8_t place, kind;
-    reading->previous_us = nearest != NOBODY ? track[nearest].t_echo_us : held_us;
-    for (place = 0; place < EERUF_HYPOTHESES && steady; place++, track++) {
-        if (track->score == 0) continue;
-        if (place == nearest) {
-            bool earlier;
-            uint8_t close;
-            support(track, t_echo_us, phase, solo, how);
-            close = track->flags & CONTRADICTED ? 0 : track->close;
-            earlier = (!believes || track->t_echo_us < held_us) && track->t_echo_us != EERUF_NO_ECHO;
-            tentative = earlier && votes != 0 && (solo || close >= (votes < least ? least : votes));
-        } else if (is_near && track->t_echo_us == held_us) {
-            /* It follows an echo that moves faster than its support: three tenths of the way. */
-            grow_older(track);
-            follow(track, t_echo_us, between(held_us, t_echo_us) * 3 / 10);
-        } else if (t_echo_us > track->t_echo_us) {
-            contradict(track, phase, solo, how);
-        } else {
-            grow_older(track);
-            if (track->flags & TRACK_CONFIRMED) miss(track, phase, how);
-        }
-    }
-    if (steady && nearest == NOBODY && !is_near) {
-        begin_track(hopper, t_echo_us, phase, solo);
-        tentative = solo && votes != 0 && t_echo_us != EERUF_NO_ECHO;
-    }
-    believed = believed_of(hopper);
-    confirmed = believed != NULL && is_within(believed->t_echo_us, t_echo_us, how->near_us);
-    if (t_echo_us == EERUF_NO_ECHO) kind = confirmed ? EERUF_READING_CLEAR : EERUF_READING_NO_ECHO;
-    else if (confirmed) kind = EERUF_READING_ACCEPTED;
-    else if (tentative) kind = EERUF_READING_TENTATIVE;
-    else kind = believes || nearest != NOBODY ? EERUF_READING_REJECTED : EERUF_READING_FIRST;
-    reading->kind = kind;
-}
-
-/* -- Firing: each sensor at its lag plus the wait of the phase, and in a solo period one sensor alone -- */
-
-static EerufHoppingRing *hopping_of(EerufRing *ring) {
-    return (EerufHoppingRing *)(void *)ring;
-}
-
-static uint32_t code_width(const EerufHoppingRing *hopping) {
-    return (hopping->cycle - 1u) * (uint32_t)hopping->step_us;
-}
-
-static bool is_prime(uint8_t number) {
-    uint8_t divisor;
-    for (divisor = 2; divisor * divisor <= number; divisor++)
-        if (number % divisor == 0) return false;
-    return number > 1;
-}
-
-/* The least primitive root of a prime. */
-static uint8_t primitive_root(uint8_t prime) {
-    uint8_t root = 1, power, order;
-    for (;; root++) {
-        for (power = root, order = 1; power != 1 && order < prime; order++) power = (uint8_t)(power * root % prime);
-        if (order >= prime - 1u) return root;
-    }
-}
-
-/* Welch's sequence: a place and one, times the root, modulo one more than the cycle, less one. */
-static uint8_t times_root(uint8_t place, uint8_t root, uint8_t cycle) {
-    uint8_t product = 0, left;
-    for (left = root; left > 0; left--) {
-        product = (uint8_t)((unsigned)product + place + 1u);
-        if (product > cycle) product = (uint8_t)((unsigned)product - cycle - 1u);
-    }
-    return (uint8_t)(product - 1u);
-}
-
-/* The most by which two firings of a sensor are closer than a period, in steps. With Welch's sequence all go
-   through the same places. */
-static IN_LINE uint8_t drop_of(uint8_t sensor, uint8_t cycle, uint8_t root, uint8_t first) {
-    uint8_t place, most = (uint8_t)((sensor + first) % cycle);
-    if (root == 0) return most == 0 ? 0 : (uint8_t)(cycle - most);
-    for (place = 0, most = 0; place < cycle; place++) {
-        const uint8_t next = times_root(place, root, cycle);
-        if (place > next && place - next > most) most = (uint8_t)(place - next);
-    }
-    return most;
-}
-
-/* The first of the sensors that one fires together with, or itself: they share its places in the code. */
-static uint8_t leader_of(const EerufLimits *limits, uint8_t sensor) {
-    uint8_t leader = 0;
-    if (limits == NULL || READ8(limits[sensor].group) == 0) return sensor;
-    while (READ8(limits[leader].group) != READ8(limits[sensor].group)) leader++;
-    return leader;
-}
-
-/* Where a sensor is in Welch's sequence: each is a phase behind the one before it in the order of lags. */
-static uint8_t welch_place(const EerufHoppingRing *hopping, uint8_t sensor) {
-    const EerufHopper *hoppers = hopping->hoppers;
-    uint8_t other, left = (uint8_t)(hopping->cycle + hopping->phase);
-    uint8_t place = (uint8_t)(hopping->first - 1u);
-    if (hopping->root == 0) return 0;
-    sensor = leader_of(limits_of(OWN(&hopping->ring)), sensor);
-    for (other = 0; other < hopping->ring.count; other++)
-        if (hoppers[other].lag_us < hoppers[sensor].lag_us ||
-            (hoppers[other].lag_us == hoppers[sensor].lag_us && other < sensor))
-            left--;
-    for (; left > 0; left--) place = times_root(place, hopping->root, hopping->cycle);
-    return place;
-}
-
-static uint32_t times(uint16_t one, uint16_t other) {
-    return (uint32_t)one * other;
-}
-
-/* When a sensor fires in this period, after its start, unless it is a solo period: within it. */
-static OUT_OF_LINE uint32_t offset_of(const EerufHoppingRing *hopping, uint8_t sensor) {
-    const EerufHopper *hopper = &hopping->hoppers[sensor];
-    return hopper->lag_us + times(hopper->place, hopping->step_us);
-}
-
-/* The next phase. In a linear congruence a sensor's place is its multiplier times the phase, modulo the cycle; all are
-   less than that, but for the multiplier, which is less than twice as much. */
-static void next_phase(EerufHoppingRing *hopping) {
-    const EerufLimits *limits = limits_of(OWN(&hopping->ring));
-    const uint8_t cycle = hopping->cycle;
-    uint8_t x;
-    hopping->phase = hopping->phase + 1u < cycle ? (uint8_t)(hopping->phase + 1u) : 0;
-    for (x = 0; x < hopping->ring.count; x++) {
-        uint8_t place = (uint8_t)(leader_of(limits, x) + hopping->first);
-        if (hopping->root != 0) {
-            hopping->hoppers[x].place = times_root(hopping->hoppers[x].place, hopping->root, cycle);
-            continue;
-        }
-        if (place >= cycle) place = (uint8_t)(place - cycle);
-        place = (uint8_t)(place + hopping->hoppers[x].place);
-        if (place >= cycle) place = (uint8_t)(place - cycle);
-        hopping->hoppers[x].place = place;
-    }
-}
-
-/* The next firing of the period, or its end. */
-static void look_ahead(EerufHoppingRing *hopping) {
-    uint32_t after_us = hopping->length_us - hopping->lead_us;
-    hopping->ring.next = NOBODY;
-    if (hopping->place < hopping->planned) {
-        hopping->ring.next = hopping->hoppers[hopping->place].order;
-        after_us = hopping->solo_at_us;
-        if (after_us == EERUF_NO_ECHO) after_us = offset_of(hopping, hopping->ring.next);
-    }
-    hopping->ring.due_us = hopping->start_us + after_us;
-}
-
-/* Nothing that is heard across this moment moves as the code says. */
-static void break_off(EerufHoppingRing *hopping) {
-    hopping->least_late[0] = 0;
-    hopping->most_late[0] = UINT16_MAX;
-    hopping->changed = 1;
-}
-
-static void note_hop(EerufHoppingRing *hopping, uint16_t late_us) {
-    if (late_us < hopping->least_late[0]) hopping->least_late[0] = late_us;
-    if (late_us > hopping->most_late[0]) hopping->most_late[0] = late_us;
-}
-
-/* True if a firing this late differs from all others of three periods by no more than is tolerated. */
-static bool is_steady(const EerufHoppingRing *hopping, uint16_t late_us) {
-    uint8_t i;
-    for (i = 0; i < 3; i++) {
-        if (less16(late_us, hopping->least_late[i]) > hopping->tolerated) return false;
-        if (less16(hopping->most_late[i], late_us) > hopping->tolerated) return false;
-    }
-    return true;
-}
-
-/* Time in the period at which so much time has passed since a firing, which may have been late past the end
-   of its period. A clock that has jumped says nothing about when that was. */
-static OUT_OF_LINE uint32_t wait_after(const EerufHoppingRing *hopping, uint32_t fired_us, uint32_t passes_us) {
-    const uint32_t waits = fired_us + passes_us - hopping->start_us;
-    return waits > HALF_TURN || waits > passes_us + CATCHES_UP_US ? 0 : waits;
-}
-
-/* Time after the start of the period before which a sensor must not fire, since it rests for `rest_us`. */
-static uint32_t rests_for(const EerufHoppingRing *hopping, uint8_t sensor, uint32_t rest_us) {
-    const EerufHopper *hopper = &hopping->hoppers[sensor];
-    const uint32_t fired_us = sensor_of(&hopping->ring, sensor)->fired_us[0];
-    return hopper->flags & HAS_FIRED ? wait_after(hopping, fired_us, rest_us) : 0;
-}
-
-/* The same in a ring that hops, where a sensor rests while it listens. */
-static uint32_t listens_for(const EerufHoppingRing *hopping, uint8_t sensor) {
-    return rests_for(hopping, sensor, allowed_window(OWN(&hopping->ring), sensor, hopping->rest_us));
-}
-
-static bool is_disabled(const EerufHoppingRing *hopping, uint8_t sensor) {
-    return (sensor_of(&hopping->ring, sensor)->filter.state & DISABLED) != 0;
-}
-
-/* The sensor with nothing accepted for longest, if that is long enough. */
-static uint8_t longest_unserved(const EerufHoppingRing *hopping) {
-    uint8_t longest = hopping->by.hop.solo_after, found = NOBODY, x;
-    if (longest > 0) longest--;
-    for (x = 0; x < hopping->ring.count; x++) {
-        if (hopping->hoppers[x].unserved > longest && !is_disabled(hopping, x)) {
-            longest = hopping->hoppers[x].unserved;
-            found = x;
-        }
-    }
-    return found;
-}
-
-/* Gives the period to one sensor, which fires when all else is silent. */
-static void plan_solo(EerufHoppingRing *hopping, uint8_t sensor) {
-    /* Its own last firing is among those that it waits for, but its window may be longer. */
-    const uint32_t at_us =
-        longer(wait_after(hopping, hopping->ring.last_fired_us, hopping->by.hop.dies_us), listens_for(hopping, sensor));
-    hopping->by.hop.earned = (uint16_t)(hopping->by.hop.earned - ONE_SOLO);
-    hopping->by.hop.since_solo = 0;
-    hopping->solo_at_us = at_us;
-    hopping->fires_as = HAS_FIRED | SOLO | SETTLED;
-    hopping->length_us = longer(hopping->length_us, add32(at_us, hopping->by.hop.dies_us));
-    hopping->hoppers[0].order = sensor;
-    hopping->planned = 1;
-}
-
-/* Evenly from 0 to `most`, at most 2^28: a xorshift generator (Marsaglia, 2003), the same on every machine. */
-static uint32_t draw(EerufHoppingRing *hopping, uint32_t most) {
-    uint32_t r = hopping->by.hop.random;
-    uint32_t drawn = 0;
-    uint8_t bit;
+/* A throw for the next gap. */
+static void throw_dice(EerufFlowRing *flow) {
+    const uint32_t most = (flow->dice_us << (flow->flags & MOVES)) + 1;
+    const uint16_t most_high = (uint16_t)(most >> 16), most_low = (uint16_t)most;
+    uint32_t r = flow->random, middle;
+    uint16_t high, low;
+    /* Xorshift by 13, 17 and 5 (Marsaglia, 2003). */
     r ^= r << 13;
     r ^= r >> 17;
     r ^= r << 5;
-    hopping->by.hop.random = r;
-    /* The high word of r (most + 1), without 64 bits. */
-    for (bit = 0; bit < 32; bit++, r >>= 1) {
-        if (r & 1u) drawn += most + 1;
-        drawn >>= 1;
-    }
-    return drawn;
+    flow->random = r;
+    /* The high word of r most, without 64 bits: most is below 2^20. */
+    high = (uint16_t)(r >> 16);
+    low = (uint16_t)r;
+    middle = (uint32_t)high * most_low + (((uint32_t)low * most_low) >> 16);
+    flow->thrown_us = ((uint32_t)low * most_high + (uint16_t)middle) >> 16;
+    flow->thrown_us += (uint32_t)high * most_high + (middle >> 16);
 }
 
-/* True if a sensor with this lag keeps the interval from its neighbours, in every phase and across the period's end. */
-static bool keeps_interval(const EerufHoppingRing *hopping, uint8_t sensor, uint32_t lag_us) {
-    const uint32_t least = add32(hopping->by.hop.shift_interval_us, code_width(hopping));
-    uint8_t x;
-    if (hopping->by.hop.shift_interval_us == 0) return true;
-    for (x = 0; x < hopping->ring.count; x++) {
-        const uint32_t distance = between(hopping->hoppers[x].lag_us, lag_us);
-        const uint32_t across = hopping->period_us > distance ? hopping->period_us - distance : 0;
-        if (!are_neighbours(EERUF_LAYOUT_LINE, hopping->by.hop.neighbours, hopping->ring.count, sensor, x)) continue;
-        if (distance < least || across < least) return false;
-    }
-    return true;
+/* From the last firing of any sensor until some time after another. */
+static uint32_t since_last(const EerufRing *ring, uint32_t fired_us, uint32_t after_us) {
+    const uint32_t until_us = fired_us + after_us;
+    return has_reached(ring->last_fired_us, until_us) ? 0 : until_us - ring->last_fired_us;
 }
 
-static bool draw_lag(EerufHoppingRing *hopping, uint8_t sensor) {
-    const uint32_t most = hopping->period_us - code_width(hopping) - 1;
-    uint8_t i;
-    for (i = 0; i < DRAWS; i++) {
-        const uint32_t lag_us = draw(hopping, most);
-        if (!keeps_interval(hopping, sensor, lag_us)) continue;
-        hopping->hoppers[sensor].lag_us = lag_us;
-        hopping->hoppers[sensor].misfits = 0;
-        return true;
-    }
-    return false;
+static bool reports_every_echo(const EerufFlowRing *flow) {
+    return (flow->flags & (flow->flags & MOVES ? EVERY_ECHO_MOVING : EVERY_ECHO_STANDING)) != 0;
 }
 
-static void unsettle(EerufHoppingRing *hopping) {
-    uint8_t x;
-    for (x = 0; x < hopping->ring.count; x++) hopping->hoppers[x].flags &= (uint8_t)~SETTLED;
+/* The least quiet: twice as much where every echo is reported. */
+static uint32_t least_quiet(const EerufFlowRing *flow) {
+    return shorter(reports_every_echo(flow) ? 2 * flow->least_us : flow->least_us, flow->ring.audible_us);
 }
 
-/* New lags for all sensors whose readings do not fit. */
-static void shift_all(EerufHoppingRing *hopping) {
-    bool shifted = false;
-    uint8_t x;
-    for (x = 0; x < hopping->ring.count; x++)
-        if (hopping->hoppers[x].misfits >= hopping->by.hop.shift_after && draw_lag(hopping, x)) shifted = true;
-    if (!shifted) return;
-    hopping->by.hop.since_shift = 0;
-    hopping->changed = 1;
-    for (x = 0; x < hopping->ring.count && hopping->root != 0; x++) hopping->hoppers[x].place = welch_place(hopping, x);
-    /* Pending sensors were fired with the lags of before. */
-    unsettle(hopping);
+/* The quiet that a sensor needs after its firing, and before it. */
+static uint32_t quiet_of(const EerufFlowRing *flow, const EerufFlowSensor *sensor) {
+    return longer(sensor->doubt * QUIET_US, least_quiet(flow));
 }
 
-/* The sensors that would fire in the period that begins. */
-static void choose(EerufHoppingRing *hopping) {
-    EerufHopPlan *hop = &hopping->by.hop;
-    EerufHopper *hoppers = hopping->hoppers, *place;
-    uint8_t x;
-    hopping->solo_at_us = EERUF_NO_ECHO;
-    hopping->length_us = hopping->period_us;
-    if (hop->since_solo < UINT8_MAX) hop->since_solo++;
-    hop->earned = fewer16((uint16_t)(hop->earned + hop->solo_rate), 2 * ONE_SOLO);
-    if (hop->earned >= ONE_SOLO && hop->since_solo >= hop->solo_spacing) {
-        const uint8_t unserved = longest_unserved(hopping);
-        if (unserved != NOBODY) {
-            plan_solo(hopping, unserved);
-            return;
+static uint8_t line_of(const EerufFlowRing *flow, uint8_t x) {
+    return flow->lines == NULL ? 0 : READ8(flow->lines[x]);
+}
+
+/* The times from the last firing until there is quiet, and until a sensor has rested and its line is free; without the
+   dice. */
+typedef struct Waits {
+    uint32_t quiet_us, rested_us;
+} Waits;
+
+static OUT_OF_LINE void add_waits(const EerufRing *ring, uint8_t x, Waits *waits) {
+    const EerufFlowRing *flow = (const EerufFlowRing *)(const void *)ring;
+    const uint8_t line = line_of(flow, x);
+    uint32_t quiet_us = longer(waits->quiet_us, quiet_of(flow, flow_sensor(ring, x))), rested_us = waits->rested_us;
+    uint8_t other;
+    for (other = 0; other < ring->count; other++) {
+        const EerufFlowSensor *sensor = flow_sensor(ring, other);
+        const uint8_t listens = sensor->filter.flags & LISTENING;
+        uint32_t window_us;
+        if (!(sensor->filter.state & HAS_FIRED)) continue;
+        if (other == x) rested_us = longer(rested_us, since_last(ring, sensor->turn_us, flow->rest_us));
+        if (!listens && (line == 0 || line_of(flow, other) != line)) continue;
+        window_us = window_of(ring, other);
+        if (other == x) {
+            if (listens) rested_us = longer(rested_us, since_last(ring, sensor->turn_us, window_us));
+            continue;
         }
+        /* Sound after its window is of no account, however late it is reported. */
+        if (listens)
+            quiet_us = longer(quiet_us, since_last(ring, sensor->turn_us, shorter(quiet_of(flow, sensor), window_us)));
+        if (line > 0 && line_of(flow, other) == line)
+            rested_us = longer(rested_us, since_last(ring, sensor->turn_us, window_us));
     }
-    if (hop->since_shift < UINT8_MAX) hop->since_shift++;
-    if (hop->shift_after > 0 && hop->since_shift >= hop->shift_spacing) shift_all(hopping);
-    hopping->fires_as = hop->since_shift > 0 ? HAS_FIRED | SETTLED : HAS_FIRED;
-    for (x = 0; x < hopping->ring.count; x++) {
-        const uint32_t offset = offset_of(hopping, x);
-        if (is_disabled(hopping, x) || offset < listens_for(hopping, x)) continue;
-        /* Insertion by firing time; sensors that fire together keep their order. */
-        place = &hoppers[hopping->planned++];
-        for (; place > hoppers && offset_of(hopping, place[-1].order) > offset; place--)
-            place->order = place[-1].order;
-        place->order = x;
+    waits->quiet_us = quiet_us;
+    waits->rested_us = rested_us;
+}
+
+/* True if an enabled sensor fires together with another one. */
+static bool fires_with(const EerufRing *ring, uint8_t x, uint8_t other) {
+    return fire_together(limits_of(ring->schedule), x, other) && !(flow_sensor(ring, other)->filter.state & DISABLED);
+}
+
+/* The waits of a sensor and of those that fire with it. */
+static Waits waits_of(const EerufRing *ring, uint8_t x) {
+    Waits waits = {0, 0};
+    uint8_t other;
+    add_waits(ring, x, &waits);
+    for (other = 0; other < ring->count && limits_of(ring->schedule) != NULL; other++)
+        if (fires_with(ring, x, other)) add_waits(ring, other, &waits);
+    return waits;
+}
+
+/* Gives the turn of those that fire together to the first of them. */
+static void group(EerufRing *ring) {
+    uint8_t x, other;
+    for (x = 0; x < ring->count; x++) {
+        uint8_t *state = &flow_sensor(ring, x)->filter.state;
+        *state &= (uint8_t)~(FOLLOWS | PENDING);
+        for (other = 0; other < x; other++)
+            if (fires_with(ring, x, other)) *state |= FOLLOWS;
     }
-}
-
-/* Decides who fires in the period that begins. */
-static void plan(EerufHoppingRing *hopping) {
-    hopping->place = hopping->planned = 0;
-    hopping->plan(hopping);
-    if (hopping->ring.paused) hopping->planned = 0;
-    look_ahead(hopping);
-}
-
-/* A firing is later than planned, now by `by_us` more. Nothing else fires in a solo period, so that it may move. */
-static OUT_OF_LINE void hop_late(EerufHoppingRing *hopping, EerufHopper *hopper, uint32_t late_us, uint32_t by_us) {
-    const bool solo = (hopper->flags & SOLO) != 0;
-    if (!solo) {
-        hopper->late_us = narrow(late_us);
-        note_hop(hopping, hopper->late_us);
-    }
-    if (late_us > CATCHES_UP_US) break_off(hopping);
-    if (late_us > CATCHES_UP_US || solo) hopping->start_us += by_us;
-    look_ahead(hopping);
-}
-
-static void fire_hop(EerufRing *ring, uint8_t sensor, uint32_t now_us) {
-    EerufHoppingRing *hopping = hopping_of(ring);
-    EerufHopper *hopper = &hopping->hoppers[sensor];
-    const uint32_t late_us = now_us - ring->due_us;
-    ring->last_fired_us = now_us;
-    hopping->place++;
-    hopper->late_us = 0;
-    hopper->phase = hopping->phase;
-    hopper->flags = hopping->fires_as;
-    hop_late(hopping, hopper, late_us, late_us);
-}
-
-/* The hook of a hopping ring: a firing came later by so much, or, for 0, what is known of the sensor is forgotten. */
-static void correct_hop(EerufRing *ring, uint8_t sensor, uint32_t by_us) {
-    EerufHoppingRing *hopping = hopping_of(ring);
-    EerufHopper *hopper = &hopping->hoppers[sensor];
-    const uint32_t late_us = add32(hopper->late_us, by_us);
-    uint8_t at;
-    if (by_us == 0) {
-        forget_tracks(hopper);
-        return;
-    }
-    /* It was noted to be less late: all that this period has had so far are noted again, since steady lateness is
-       none. It is one of them, or the last of the period before. */
-    if (!(hopper->flags & SOLO)) {
-        hopper->late_us = narrow(late_us);
-        if (hopping->most_late[0] != UINT16_MAX) {
-            hopping->least_late[0] = UINT16_MAX;
-            hopping->most_late[0] = 0;
-        }
-        for (at = 0; at < hopping->place; at++)
-            note_hop(hopping, hopping->hoppers[hopping->hoppers[at].order].late_us);
-    }
-    hop_late(hopping, hopper, late_us, by_us);
-}
-
-static void end_hopping_period(EerufRing *ring, uint32_t now_us) {
-    EerufHoppingRing *hopping = hopping_of(ring);
-    const bool left_out = now_us - hopping->ring.due_us > hopping->period_us;
-    hopping->start_us = left_out ? now_us : hopping->ring.due_us + hopping->lead_us;
-    hopping->least_late[2] = hopping->least_late[1];
-    hopping->most_late[2] = hopping->most_late[1];
-    hopping->least_late[1] = hopping->least_late[0];
-    hopping->most_late[1] = hopping->most_late[0];
-    hopping->least_late[0] = UINT16_MAX;
-    hopping->most_late[0] = 0;
-    if (left_out) break_off(hopping);
-    next_phase(hopping);
-    plan(hopping);
-}
-
-/* Takes a sensor out of those that are still to fire. */
-static void leave_out(EerufHoppingRing *hopping, uint8_t sensor) {
-    uint8_t at = hopping->place;
-    while (at < hopping->planned && hopping->hoppers[at].order != sensor) at++;
-    if (at == hopping->planned) return;
-    for (hopping->planned--; at < hopping->planned; at++) hopping->hoppers[at].order = hopping->hoppers[at + 1].order;
-    look_ahead(hopping);
-}
-
-static EerufStatus upcoming_hop(const EerufRing *ring, uint8_t number, uint8_t *sensor, uint32_t *due_us) {
-    const EerufHoppingRing *hopping = (const EerufHoppingRing *)(const void *)ring;
-    if (number >= hopping->planned - hopping->place) return EERUF_EMPTY;
-    *sensor = hopping->hoppers[hopping->place + number].order;
-    *due_us = number == 0 ? ring->due_us : hopping->start_us + offset_of(hopping, *sensor);
-    return EERUF_OK;
-}
-
-static uint32_t horizon_of_hopping(const EerufRing *ring) {
-    return ((const EerufHoppingRing *)(const void *)ring)->horizon_us;
-}
-
-static void restart_hopping(EerufRing *ring, uint32_t now_us) {
-    EerufHoppingRing *hopping = hopping_of(ring);
-    unsettle(hopping);
-    hopping->start_us = now_us;
-    if (OWN(ring) != NULL) {
-        /* Pairs keep their intervals across a restart, unless the clock has jumped. */
-        const uint32_t gap_us = READ32(OWN(ring)->min_interval_us);
-        const uint32_t waits_us = ring->last_fired_us + gap_us - now_us;
-        if (waits_us <= gap_us) hopping->start_us += waits_us;
-    }
-    break_off(hopping);
-    plan(hopping);
-}
-
-static bool is_between(uint16_t value, uint16_t least, uint16_t most) {
-    return value >= least && value <= most;
-}
-
-static EerufStatus tracker_is_fine(const EerufTrackerSettings *how) {
-    const bool fine = how->t_delta_us > 0 && how->near_us >= how->t_delta_us && is_between(how->votes, 2, 15) &&
-                      is_between(how->score_limit, how->votes, 15) && is_between(how->contradiction, 1, 15) &&
-                      is_between(how->solo_contradiction, 1, 15) && how->tentative_within_us <= how->t_delta_us &&
-                      (how->tentative_votes == 0 || is_between(how->tentative_votes, 2, 15));
-    return fine ? EERUF_OK : EERUF_ERR_TRACKER;
-}
-
-/* A Welch code for this many sensors, of at least this many phases. */
-static IN_LINE uint8_t narrowest_cycle(uint8_t sensors, uint8_t phases) {
-    uint8_t prime = phases > sensors + 1u ? phases : (uint8_t)(sensors + 1u);
-    if (prime < 67) prime++;
-    if (prime < 5) prime = 5; /* two phases would be those of a linear congruence */
-    while (!is_prime(prime)) prime++;
-    return (uint8_t)(prime - 1u);
-}
-
-/* True if a ring of this many sensors has the memory it needs. */
-static EerufStatus has_room(const EerufHoppingRing *hopping, size_t ring_size, uint8_t count_of_sensors,
-                            size_t sensors_size, size_t hoppers_size) {
-    if (ring_size != sizeof *hopping) return EERUF_ERR_MEMORY;
-    if (count_of_sensors - 1u >= EERUF_MAX_SENSORS) return EERUF_ERR_SENSORS;
-    if (sensors_size / sizeof(EerufHopSensor) < count_of_sensors) return EERUF_ERR_MEMORY;
-    return hoppers_size / sizeof(EerufHopper) < count_of_sensors ? EERUF_ERR_MEMORY : EERUF_OK;
-}
-
-/* The beginning of hopping and flow rings, once their settings are in their ranges. */
-static EerufStatus set_up_hopping(EerufHoppingRing *hopping, EerufHopSensor *sensors, EerufHopper *hoppers,
-                                  uint8_t count_of_sensors, const EerufTrackerSettings *tracker, uint32_t step_us,
-                                  uint32_t window_us, uint32_t blanking_us, uint32_t now_us,
-                                  const EerufSchedule *own) {
-    EerufStatus status;
-    uint8_t x;
-    memset(hopping, 0, sizeof *hopping);
-    set_up(&hopping->ring, NULL, sensors, count_of_sensors, sizeof *sensors, now_us);
-    OWN(&hopping->ring) = own;
-    hopping->ring.hook = correct_hop;
-    status = listen(&hopping->ring, tracker->t_delta_us, window_us, blanking_us);
-    if (status != EERUF_OK) return status;
-    hopping->hoppers = hoppers;
-    hopping->tracker = *tracker;
-    hopping->step_us = (uint16_t)step_us;
-    hopping->start_us = hopping->ring.last_fired_us = now_us;
-    hopping->solo_at_us = EERUF_NO_ECHO;
-    hopping->rest_us = window_us;
-    /* A track may be off by as much as its readings. */
-    hopping->tolerated = (uint16_t)((step_us - tracker->t_delta_us - 1) / 2);
-    hopping->least_late[0] = hopping->least_late[1] = hopping->least_late[2] = UINT16_MAX;
-    memset(hoppers, 0, count_of_sensors * sizeof *hoppers);
-    for (x = 0; x < count_of_sensors; x++) forget_tracks(&hoppers[x]);
-    return EERUF_OK;
-}
-
-/* From a firing until its sensor no longer listens, and nothing of it is heard in a window that opens then. */
-static uint32_t dies_after(uint32_t window_us, uint32_t blanking_us, uint32_t reach_us) {
-    return add32(longer(reach_us > blanking_us ? reach_us - blanking_us : 0, window_us), 1);
-}
-
-/* Places in Welch's sequence are in the order of lags. */
-static void begin_hopping(EerufHoppingRing *hopping) {
-    uint8_t x;
-    for (x = 0; x < hopping->ring.count; x++) hopping->hoppers[x].place = welch_place(hopping, x);
-    plan(hopping);
-    hopping->ring.ready = READY;
-}
-
-/* The shortest period: a sensor must have stopped listening when it fires again, and a path must not read the same with
-   two ages. */
-static IN_LINE uint32_t shortest_period(const EerufSchedule *own, uint8_t sensors, uint32_t window_us, uint32_t step_us,
-                                        uint8_t cycle, uint8_t root, uint8_t first) {
-    uint32_t least_us = (2u * cycle - 1u) * step_us;
-    uint8_t x;
-    for (x = 0; x < sensors; x++) {
-        const uint32_t drop = drop_of(leader_of(limits_of(own), x), cycle, root, first);
-        least_us = longer(least_us, add32(allowed_window(own, x, window_us), drop * step_us));
-    }
-    return least_us;
-}
-
-/* The lags of a config, or even ones, in what the code leaves of the period: x room / n, in 32 bits. */
-static IN_LINE void take_lags(EerufHopper *hoppers, const EerufHoppingConfig *config, uint32_t room_us) {
-    const uint8_t n = config->sensors;
-    uint8_t x;
-    for (x = 0; x < n; x++)
-        hoppers[x].lag_us = config->lag_us != NULL ? config->lag_us[x] : x * (room_us / n) + x * (room_us % n) / n;
-}
-
-/* The hook of a ring that hops, for a reading and the change that odometry expected. Neither silence nor another lag
-   helps a sensor whose line is stuck, or that does not answer: it costs the others nothing. */
-static void judged_hop(EerufHoppingRing *hopping, uint8_t sensor, const EerufReading *reading, int32_t change_us) {
-    EerufHopper *hopper = &hopping->hoppers[sensor];
-    const bool confirmed = reading->kind == EERUF_READING_ACCEPTED || reading->kind == EERUF_READING_CLEAR;
-    const EerufTrack *believed = believed_of(hopper);
-    (void)change_us;
-    if (reading->kind == EERUF_READING_STUCK || reading->kind == EERUF_READING_UNANSWERED) return;
-    /* A sensor that is known to have nothing in range is not fooled by what does not fit. */
-    if (confirmed || (believed != NULL && believed->t_echo_us == EERUF_NO_ECHO)) hopper->misfits = 0;
-    else if (hopper->misfits < UINT8_MAX) hopper->misfits++;
-    if (confirmed || reading->kind == EERUF_READING_TENTATIVE) hopper->unserved = 0;
-    else if (hopper->unserved < UINT8_MAX) hopper->unserved++;
-}
-
-EerufStatus eeruf_hopping_init(EerufHoppingRing *hopping, size_t ring_size, EerufHopSensor *sensors,
-                               size_t sensors_size, EerufHopper *hoppers, size_t hoppers_size,
-                               const EerufHoppingConfig *config, uint32_t now_us) {
-    EerufStatus status;
-    uint32_t width_us, room_us;
-    uint8_t x, cycle, root = 0, first = 1;
-    if (hopping == NULL || sensors == NULL || hoppers == NULL || config == NULL) return EERUF_ERR_NULL;
-    if (config->version != EERUF_VERSION) return EERUF_ERR_VERSION;
-    status = has_room(hopping, ring_size, config->sensors, sensors_size, hoppers_size);
-    if (status != EERUF_OK) return status;
-    if (config->own != NULL && READ8(config->own->sensors) != config->sensors) return EERUF_ERR_SENSORS;
-    if (!is_between(config->phases, 2, 67)) return EERUF_ERR_PHASES;
-    if (config->step_us == 0 || config->step_us > UINT16_MAX) return EERUF_ERR_STEP;
-    if (config->code == 0) {
-        cycle = narrowest_cycle(config->sensors, config->phases);
-        root = primitive_root((uint8_t)(cycle + 1u));
-    } else {
-        cycle = config->phases;
-        first = (uint8_t)(config->code - 1u);
-        if (!is_prime(cycle) || cycle < config->sensors) {
-            if (!is_prime((uint8_t)(cycle + 1u)) || cycle <= config->sensors) return EERUF_ERR_PHASES;
-            if (config->code == 1) return EERUF_ERR_PHASES;
-            root = primitive_root((uint8_t)(cycle + 1u));
-        }
-        if (config->code > cycle) return EERUF_ERR_PHASES;
-    }
-    width_us = (cycle - 1u) * config->step_us;
-    if (config->period_us <= width_us || config->period_us > EERUF_MAX_PERIOD_US) return EERUF_ERR_PERIOD;
-    room_us = config->period_us - width_us;
-    for (x = 0; x < config->sensors && config->lag_us != NULL; x++)
-        if (config->lag_us[x] >= room_us) return EERUF_ERR_LAG;
-    status = tracker_is_fine(&config->tracker);
-    if (status != EERUF_OK) return status;
-    /* New lags would not keep what sensors and pairs need of their own. */
-    if (config->own != NULL && config->shift_after > 0) return EERUF_ERR_HOPPING;
-    if (config->step_us <= config->tracker.t_delta_us) return EERUF_ERR_T_DELTA;
-    if (config->tracker.votes > cycle) return EERUF_ERR_VOTES;
-    if (config->period_us <
-        shortest_period(config->own, config->sensors, config->window_us, config->step_us, cycle, root, first))
-        return EERUF_ERR_PERIOD;
-    if (config->window_us > EERUF_HOPPING_MAX_WINDOW_US) return EERUF_ERR_WINDOW;
-
-    status = set_up_hopping(hopping, sensors, hoppers, config->sensors, &config->tracker, config->step_us,
-                            config->window_us, config->blanking_us, now_us, config->own);
-    if (status != EERUF_OK) return status;
-    hopping->plan = choose;
-    hopping->judged = judged_hop;
-    hopping->cycle = cycle;
-    hopping->root = root;
-    hopping->first = first;
-    hopping->period_us = config->period_us;
-    hopping->by.hop.dies_us = dies_after(config->window_us, config->blanking_us, config->reach_us);
-    if (config->own != NULL)
-        hopping->by.hop.dies_us = longer(hopping->by.hop.dies_us, READ32(config->own->min_interval_us));
-    hopping->by.hop.random = config->seed == 0 ? 0x9e3779b9u : config->seed;
-    hopping->by.hop.shift_interval_us = config->shift_interval_us;
-    hopping->by.hop.solo_rate = config->solo_rate;
-    hopping->by.hop.solo_after = config->solo_after;
-    hopping->by.hop.solo_spacing = config->solo_spacing;
-    hopping->by.hop.shift_after = config->shift_after;
-    hopping->by.hop.shift_spacing = config->shift_spacing;
-    hopping->by.hop.neighbours = config->neighbours;
-    hopping->horizon_us = add32(hopping->by.hop.dies_us, hopping->by.hop.dies_us);
-    hopping->horizon_us = add32(2 * config->period_us, hopping->horizon_us);
-    take_lags(hoppers, config, room_us);
-    begin_hopping(hopping);
-    return EERUF_OK;
-}
-
-/* True if what a sensor hears of its last firing moves as the code says. */
-static bool was_steady(const EerufHoppingRing *hopping, const EerufHopper *hopper) {
-    return (hopper->flags & SETTLED) && is_steady(hopping, hopper->late_us);
-}
-
-EerufStatus eeruf_hopping_poll(EerufHoppingRing *hopping, uint32_t now_us, const int32_t *change_us,
-                               EerufEvent *event) {
-    EerufStatus status = hopping == NULL ? (EerufStatus)EERUF_ERR_NULL : is_ready(&hopping->ring);
-    EerufReading *reading;
-    EerufHopper *hopper;
-    if (status == EERUF_OK && !HOPS(&hopping->ring)) status = EERUF_ERR_NOT_READY;
-    if (status == EERUF_OK) status = poll(&hopping->ring, now_us, NULL, event, true);
-    if (status != EERUF_EVENT) return status;
-    if (hopping->changed) {
-        firing_changed(hopping);
-        hopping->changes++;
-    }
-    hopping->changed = 0;
-    if (event->kind == EERUF_EVENT_FIRE) {
-        event->phase = hopping->phase;
-        return status;
-    }
-    if (event->kind == EERUF_EVENT_PERIOD) {
-        event->phase = hopping->phase > 0 ? (uint8_t)(hopping->phase - 1u) : (uint8_t)(hopping->cycle - 1u);
-        return status;
-    }
-    reading = &event->u.reading;
-    hopper = &hopping->hoppers[event->sensor];
-    event->phase = hopper->phase;
-    if (reading->kind != EERUF_READING_LATE) {
-        const int32_t change = change_us == NULL ? 0 : change_us[event->sensor];
-        const bool unwitnessed = reading->kind == EERUF_READING_NO_ECHO;
-        const bool weighs = unwitnessed || reading->kind == EERUF_READING_FIRST;
-        reading->previous_us = EERUF_NO_ECHO;
-        if (weighs)
-            learn(hopper, reading->t_echo_us, change, t_delta_of(&hopping->ring, event->sensor));
-        else hopper->last_us = EERUF_NO_ECHO;
-        shift_tracks(hopper, change);
-        if (weighs) weigh(hopping, event->sensor, was_steady(hopping, hopper), change, reading);
-        end_weighing(&sensor_of(&hopping->ring, event->sensor)->filter, reading);
-        hopping->judged(hopping, event->sensor, reading, change);
-        /* Without a witness it contradicts echoes, and is not reported as free space. */
-        if (unwitnessed) reading->kind = EERUF_READING_NO_ECHO;
-    }
-    count(&hopping->ring, reading->kind);
-    return status;
-}
-
-/* A hopping ring's sensor. */
-static EerufStatus has_hopper(const EerufHoppingRing *hopping, uint8_t sensor) {
-    if (hopping == NULL) return EERUF_ERR_NULL;
-    return HOPS(&hopping->ring) ? has_sensor(&hopping->ring, sensor) : (EerufStatus)EERUF_ERR_NOT_READY;
-}
-
-EerufStatus eeruf_hopping_enable(EerufHoppingRing *hopping, uint8_t sensor, bool enabled) {
-    const EerufStatus status = has_hopper(hopping, sensor);
-    if (status != EERUF_OK) return status;
-    if (enabled && is_disabled(hopping, sensor)) forget_tracks(&hopping->hoppers[sensor]);
-    enable(&hopping->ring, sensor, enabled);
-    if (!enabled) leave_out(hopping, sensor);
-    return EERUF_OK;
-}
-
-EerufStatus eeruf_hopping_pause(EerufHoppingRing *hopping, bool paused) {
-    const EerufStatus status = has_hopper(hopping, 0);
-    uint8_t x;
-    if (status != EERUF_OK) return status;
-    hopping->ring.paused = paused;
-    if (paused) hopping->planned = hopping->place;
-    look_ahead(hopping);
-    for (x = 0; x < hopping->ring.count && !paused; x++) forget_tracks(&hopping->hoppers[x]);
-    return EERUF_OK;
-}
-
-EerufStatus eeruf_hopping_restart(EerufHoppingRing *hopping, uint32_t now_us) {
-    const EerufStatus status = has_hopper(hopping, 0);
-    if (status == EERUF_OK) restart(&hopping->ring, now_us, true);
-    return status;
-}
-
-EerufStatus eeruf_hopping_change(EerufHoppingRing *hopping, const EerufHoppingConfig *config) {
-    const EerufStatus status = has_hopper(hopping, 0);
-    uint32_t room_us, waits_us;
-    uint8_t x;
-    if (status != EERUF_OK) return status;
-    if (config == NULL) return EERUF_ERR_NULL;
-    if (config->version != EERUF_VERSION) return EERUF_ERR_VERSION;
-    if (hopping->plan != choose) return EERUF_ERR_HOPPING;
-    if (!is_between(config->phases, 2, 67)) return EERUF_ERR_PHASES;
-    if (config->sensors != hopping->ring.count || config->step_us != hopping->step_us) return EERUF_ERR_LADDER;
-    if ((config->code == 0 ? narrowest_cycle(config->sensors, config->phases) : config->phases) != hopping->cycle)
-        return EERUF_ERR_LADDER;
-    if ((config->code == 0 ? 1u : config->code - 1u) != hopping->first || (config->code == 0 && hopping->root == 0))
-        return EERUF_ERR_LADDER;
-    if (config->period_us <= code_width(hopping) || config->period_us > EERUF_MAX_PERIOD_US) return EERUF_ERR_PERIOD;
-    room_us = config->period_us - code_width(hopping);
-    for (x = 0; x < config->sensors && config->lag_us != NULL; x++)
-        if (config->lag_us[x] >= room_us) return EERUF_ERR_LAG;
-    if (config->period_us < shortest_period(OWN(&hopping->ring), config->sensors, hopping->rest_us, hopping->step_us,
-                                            hopping->cycle, hopping->root, hopping->first))
-        return EERUF_ERR_PERIOD;
-
-    /* Once all sound from before has died. A clock that has jumped says nothing about when anything fired. */
-    waits_us = hopping->ring.last_fired_us + hopping->by.hop.dies_us - hopping->start_us;
-    if (waits_us > HALF_TURN) waits_us = 0;
-    if (waits_us <= add32(hopping->length_us, hopping->by.hop.dies_us)) hopping->start_us += waits_us;
-    else break_off(hopping);
-    hopping->horizon_us = hopping->horizon_us - 2 * hopping->period_us + 2 * config->period_us;
-    hopping->period_us = config->period_us;
-    take_lags(hopping->hoppers, config, room_us);
-    for (x = 0; x < hopping->ring.count && hopping->root != 0; x++) hopping->hoppers[x].place = welch_place(hopping, x);
-    /* Pending firings were those of the schedule of before. */
-    unsettle(hopping);
-    hopping->changed = 1;
-    plan(hopping);
-    return EERUF_OK;
-}
-
-EerufStatus eeruf_hopping_adaptation_init(EerufAdaptation *adaptation, size_t adaptation_size,
-                                          const EerufHoppingConfig *const *ladder, uint8_t rungs) {
-    uint8_t rung;
-    if (adaptation == NULL || ladder == NULL) return EERUF_ERR_NULL;
-    if (adaptation_size != sizeof *adaptation) return EERUF_ERR_MEMORY;
-    if (rungs == 0) return EERUF_ERR_LADDER;
-    for (rung = 0; rung < rungs; rung++) {
-        if (ladder[rung] == NULL) return EERUF_ERR_NULL;
-        if (ladder[rung]->version != EERUF_VERSION) return EERUF_ERR_VERSION;
-        if (ladder[rung]->sensors != ladder[0]->sensors) return EERUF_ERR_LADDER;
-        if (rung > 0 && ladder[rung]->period_us <= ladder[rung - 1]->period_us) return EERUF_ERR_LADDER;
-    }
-    begin_adaptation(adaptation, ladder, rungs, READY_TO_HOP);
-    return EERUF_OK;
-}
-
-EerufStatus eeruf_hopping_adaptation_period(EerufAdaptation *adaptation, EerufHoppingRing *hopping,
-                                            const EerufEvent *event) {
-    uint8_t rung = 0;
-    EerufStatus status = has_hopper(hopping, 0);
-    if (status == EERUF_OK) status = take_period(adaptation, &hopping->ring, event, READY_TO_HOP, &rung);
-    if (status != EERUF_EVENT) return status;
-    status = eeruf_hopping_change(hopping, ((const EerufHoppingConfig *const *)adaptation->ladder)[rung]);
-    if (status != EERUF_OK) return status;
-    adaptation->rung = rung;
-    return EERUF_EVENT;
-}
-
-uint32_t eeruf_hopping_confirmed_us(const EerufHoppingRing *hopping, uint8_t sensor) {
-    const EerufTrack *believed = NULL;
-    if (has_hopper(hopping, sensor) == EERUF_OK) believed = believed_of(&hopping->hoppers[sensor]);
-    return believed == NULL ? EERUF_NO_ECHO : believed->t_echo_us;
-}
-
-uint8_t eeruf_hopping_solo(const EerufHoppingRing *hopping) {
-    if (has_hopper(hopping, 0) != EERUF_OK || hopping->solo_at_us == EERUF_NO_ECHO) return NOBODY;
-    return hopping->hoppers[0].order;
-}
-
-uint32_t eeruf_hopping_lag_us(const EerufHoppingRing *hopping, uint8_t sensor) {
-    return has_hopper(hopping, sensor) == EERUF_OK ? hopping->hoppers[sensor].lag_us : 0;
-}
-
-uint8_t eeruf_hopping_weighed(const EerufHoppingRing *hopping, uint8_t sensor) {
-    const EerufHopper *hopper;
-    if (has_hopper(hopping, sensor) != EERUF_OK) return 0;
-    hopper = &hopping->hoppers[sensor];
-    return (uint8_t)((hopper->flags & SOLO ? EERUF_WEIGHED_SOLO : 0u) |
-                     (was_steady(hopping, hopper) ? EERUF_WEIGHED_STEADY : 0u));
-}
-
-uint8_t eeruf_hopping_changes(const EerufHoppingRing *hopping) {
-    return has_hopper(hopping, 0) == EERUF_OK ? hopping->changes : 0;
-}
-
-/* -- Flow: the rules are in docs/explanation/flow.md -- */
-
-#define QUIET_US 256u /* the unit of quiet */
-
-/* A time in units of quiet. */
-static uint8_t quiet_of(uint32_t time_us) {
-    return (uint8_t)shorter(time_us / QUIET_US, UINT8_MAX);
-}
-
-/* A time in whole units of the grid, rounded up. */
-static uint32_t in_units(uint32_t time_us, uint32_t unit_us) {
-    return add32(time_us, unit_us - 1) / unit_us;
-}
-
-static uint8_t less8(uint8_t one, uint8_t other) {
-    return one > other ? (uint8_t)(one - other) : 0;
-}
-
-static uint8_t larger8(uint8_t one, uint8_t other) {
-    return one > other ? one : other;
-}
-
-static uint8_t smaller8(uint8_t one, uint8_t other) {
-    return one < other ? one : other;
-}
-
-static uint8_t add8(uint8_t one, uint8_t other) {
-    return one > UINT8_MAX - other ? UINT8_MAX : (uint8_t)(one + other);
-}
-
-/* The gap in units that leaves this quiet, and at least the least. By a reciprocal, since small processors divide
-   slowly; it is short by less than a unit's share of the longest quiet. */
-static OUT_OF_LINE uint8_t gap_for(const EerufFlowPlan *flow, uint8_t quiet) {
-    uint32_t gap;
-    if (flow->per_quiet != 0) gap = (quiet * flow->per_quiet + 0x00ffffffu) >> 24;
-    else gap = shorter(in_units(quiet * QUIET_US, flow->unit_us), UINT8_MAX);
-    return larger8((uint8_t)gap, flow->least_gap);
-}
-
-/* Hoppers keep the gap after the firing in their place of the order where rings that hop count misfits. */
-static uint8_t *gap_at(EerufHoppingRing *hopping, uint8_t place) {
-    return &hopping->hoppers[place].misfits;
-}
-
-static EerufHopper *firing_at(EerufHoppingRing *hopping, uint8_t place) {
-    return &hopping->hoppers[hopping->hoppers[place].order];
-}
-
-/* The sensor after one in the order of firing if all do: far from it, since neighbours hear each other loudest. */
-static uint8_t sensor_after(const EerufHoppingRing *hopping, uint8_t sensor) {
-    const uint8_t next = (uint8_t)(sensor + hopping->by.flow.stride);
-    return next >= hopping->ring.count ? (uint8_t)(next - hopping->ring.count) : next;
-}
-
-/* Raises a gap to what this quiet needs, by at most `left` units; returns what is left of them. */
-static uint16_t raise_gap(EerufHoppingRing *hopping, uint8_t place, uint8_t quiet, uint16_t left) {
-    uint8_t *gap = gap_at(hopping, place);
-    const uint8_t more = (uint8_t)fewer16(less8(gap_for(&hopping->by.flow, quiet), *gap), left);
-    *gap = (uint8_t)(*gap + more);
-    return (uint16_t)(left - more);
-}
-
-/* The last place of those that fire together with this one: the gaps between them are none. */
-static uint8_t last_with(EerufHoppingRing *hopping, uint8_t place) {
-    while (*gap_at(hopping, place) == 0) place++;
-    return place;
-}
-
-/* Gives all the least gap, and what is left of this many units what each needs before and after it, in the order that
-   is kept where lags are decided next; returns what is left then. */
-static OUT_OF_LINE uint16_t give_gaps(EerufHoppingRing *hopping, uint16_t left) {
-    const uint8_t least = hopping->by.flow.least_gap, planned = hopping->planned;
-    uint8_t place, rank;
-    for (place = 0; place < planned; place++) {
-        if (*gap_at(hopping, place) == 0) continue;
-        *gap_at(hopping, place) = least;
-        left = less16(left, least);
-    }
-    for (rank = 0; rank < planned && left > 0; rank++) {
-        const EerufHopper *hopper = firing_at(hopping, (uint8_t)hopping->hoppers[rank].lag_us);
-        uint8_t first = place = (uint8_t)hopping->hoppers[rank].lag_us;
-        while (first > 0 && *gap_at(hopping, (uint8_t)(first - 1u)) == 0) first--;
-        left = raise_gap(hopping, (uint8_t)((first == 0 ? planned : first) - 1u), hopper->quiet_before, left);
-        left = raise_gap(hopping, last_with(hopping, place), hopper->quiet_after, left);
-    }
-    return left;
-}
-
-/* Sorts those first that have been unserved for longest. */
-static void sort_by_need(EerufHoppingRing *hopping) {
-    EerufHopper *hoppers = hopping->hoppers;
-    uint8_t place, rank;
-    for (place = 1; place < hopping->planned; place++) {
-        const uint8_t unserved = firing_at(hopping, place)->unserved;
-        for (rank = place; rank > 0; rank--) {
-            const uint32_t before = hoppers[rank - 1u].lag_us;
-            if (firing_at(hopping, (uint8_t)before)->unserved >= unserved) break;
-            hoppers[rank].lag_us = before;
-        }
-        hoppers[rank].lag_us = place;
-    }
-}
-
-/* Adds the gaps up to firing times; a sensor that still listens waits. */
-static void place_firings(EerufHoppingRing *hopping) {
-    EerufFlowPlan *flow = &hopping->by.flow;
-    uint32_t at = 0;
-    uint8_t place;
-    for (place = 0; place < hopping->planned; place++) {
-        const uint8_t sensor = hopping->hoppers[place].order;
-        EerufHopper *hopper = &hopping->hoppers[sensor];
-        uint32_t rests_us, offset_us;
-        uint8_t other = place;
-        hopper->lag_us = at * flow->unit_us;
-        rests_us = rests_for(hopping, sensor, hopping->rest_us);
-        offset_us = offset_of(hopping, sensor);
-        if (rests_us > offset_us) {
-            at += in_units(rests_us - offset_us, flow->unit_us);
-            hopper->lag_us = at * flow->unit_us;
-        }
-        /* Those that fire together wait for each other. */
-        for (; other > 0 && *gap_at(hopping, (uint8_t)(other - 1u)) == 0; other--)
-            firing_at(hopping, (uint8_t)(other - 1u))->lag_us = hopper->lag_us;
-        at += *gap_at(hopping, place);
-    }
-    flow->length = longer(at, flow->shortest);
-    hopping->length_us = hopping->period_us = flow->length * flow->unit_us;
-}
-
-/* The longest that the next cycle may take, in units: the shorter the faster the robot moved in the last. */
-static uint32_t longest_cycle(const EerufFlowPlan *flow) {
-    uint32_t most = flow->longest;
-    if (flow->fastest_us != 0)
-        most = shorter(most, times(narrow(flow->length), flow->travel_us) / flow->fastest_us);
-    return longer(most, flow->shortest - flow->rounded_up);
-}
-
-/* Decides on the cycle that begins. */
-static void plan_flow(EerufHoppingRing *hopping) {
-    const uint32_t most = longest_cycle(&hopping->by.flow);
-    const EerufLimits *limits = limits_of(OWN(&hopping->ring));
-    uint8_t sensor = 0, left;
-    hopping->by.flow.fastest_us = 0;
-    for (left = hopping->ring.count; left > 0; left--) {
-        uint8_t other;
-        /* Those that fire together in the place of the first of them. */
-        for (other = sensor; other < hopping->ring.count; other++) {
-            if (leader_of(limits, other) == sensor && !is_disabled(hopping, other)) {
-                EerufHopper *place = &hopping->hoppers[hopping->planned];
-                place->order = other;
-                place->lag_us = hopping->planned;
-                *gap_at(hopping, hopping->planned++) = 0;
-            }
-            if (limits == NULL) break;
-        }
-        if (hopping->planned > 0) *gap_at(hopping, (uint8_t)(hopping->planned - 1u)) = 1;
-        sensor = sensor_after(hopping, sensor);
-    }
-    /* Gaps of a byte, for at most 64 sensors. */
-    if ((uint16_t)(UINT16_MAX - give_gaps(hopping, UINT16_MAX)) > most) {
-        sort_by_need(hopping);
-        (void)give_gaps(hopping, narrow(most));
-    }
-    place_firings(hopping);
-}
-
-/* Time from a sensor's firing in this cycle to the next of any that it does not fire together with, as planned. */
-static uint32_t gap_after(EerufHoppingRing *hopping, uint8_t sensor) {
-    uint8_t place;
-    for (place = 0; place < hopping->planned; place++)
-        if (hopping->hoppers[place].order == sensor)
-            return *gap_at(hopping, last_with(hopping, place)) * hopping->by.flow.unit_us;
-    return 0;
-}
-
-/* Raises a sensor's quiet if others fooled it or nothing of it is believed, lowers it if its reading is. */
-static void judged_flow(EerufHoppingRing *hopping, uint8_t sensor, const EerufReading *reading, int32_t change_us) {
-    EerufFlowPlan *flow = &hopping->by.flow;
-    EerufHopper *hopper = &hopping->hoppers[sensor];
-    const uint16_t change = narrow(change_us < 0 ? 0u - (uint32_t)change_us : (uint32_t)change_us);
-    const EerufTrack *believed;
-    uint8_t before = 0, after = 0;
-    if (change > flow->fastest_us) flow->fastest_us = change;
-    switch (reading->kind) {
-    case EERUF_READING_STUCK:
-    case EERUF_READING_UNANSWERED: return; /* quiet does not help a sensor that is not heard */
-    case EERUF_READING_ACCEPTED:
-    case EERUF_READING_CLEAR:
-        hopper->quiet_before = larger8(less8(hopper->quiet_before, flow->believed_takes), flow->least);
-        hopper->quiet_after = larger8(less8(hopper->quiet_after, flow->believed_takes), flow->least);
-        hopper->unserved = 0;
-        return;
-    case EERUF_READING_TENTATIVE: hopper->unserved = 0; return;
-    default: break;
-    }
-    hopper->unserved = add8(hopper->unserved, 1);
-    if (hopper->unserved % flow->unserved_after == 0) before = after = flow->unserved_adds;
-    believed = believed_of(hopper);
-    /* It is masked; silence that is believed is later than all. */
-    if (believed != NULL && reading->t_echo_us < believed->t_echo_us) {
-        before = add8(before, flow->masked_adds);
-        if (reading->t_echo_us > gap_after(hopping, sensor)) after = add8(after, flow->masked_adds);
-    }
-    hopper->quiet_before = smaller8(add8(hopper->quiet_before, before), flow->most);
-    hopper->quiet_after = smaller8(add8(hopper->quiet_after, after), flow->most);
 }
 
 static bool is_coprime(uint8_t a, uint8_t b) {
@@ -3250,77 +2118,449 @@ static bool is_coprime(uint8_t a, uint8_t b) {
         a = b;
         b = rest;
     }
-    return a <= 1;
+    return a == 1;
 }
 
-EerufStatus eeruf_flow_init(EerufHoppingRing *hopping, size_t ring_size, EerufHopSensor *sensors, size_t sensors_size,
-                            EerufHopper *hoppers, size_t hoppers_size, const EerufFlowConfig *config, uint32_t now_us) {
-    EerufFlowPlan *flow;
+/* The sensor in a place of the order, which comes after the one before it: far ones in turn, so that neighbours never
+   follow each other where the number of sensors allows it. */
+static uint8_t in_order(const EerufRing *ring, uint8_t place, uint8_t before) {
+    const uint8_t next = (uint8_t)(before + ((const EerufFlowRing *)(const void *)ring)->stride);
+    if (ring->count == 6) return (uint8_t)(0x351420ul >> 4 * place) & 0x0fu;
+    return next >= ring->count ? (uint8_t)(next - ring->count) : next;
+}
+
+/* The first place from one on whose sensor has a turn, and has not fired ahead of it. */
+static uint8_t first_from(const EerufRing *ring, uint8_t place, uint8_t *sensor) {
+    while (place < ring->count && (flow_sensor(ring, *sensor)->filter.state & (DISABLED | AHEAD | FOLLOWS)) != 0)
+        *sensor = in_order(ring, ++place, *sensor);
+    return place;
+}
+
+/* Decides who fires next, and when. */
+static OUT_OF_LINE void decide(EerufRing *ring) {
+    const EerufFlowRing *flow = flow_of(ring);
+    Waits waits;
+    uint8_t sensor = flow->turn, place = ring->count, x = 0;
+    ring->due_us = ring->last_fired_us;
+    while (x < ring->count && !(flow_sensor(ring, x)->filter.state & PENDING)) x++;
+    ring->next = x;
+    if (x < ring->count) return;
+    ring->next = NOBODY;
+    if (!ring->paused) place = first_from(ring, ring->following, &sensor);
+    if (place == ring->count) {
+        /* The round ends at once, and if nobody fires after the time for which one would rest. */
+        for (x = 0; x < ring->count && (flow_sensor(ring, x)->filter.state & DISABLED);) x++;
+        if (ring->paused || x == ring->count) ring->due_us += flow->rest_us;
+        return;
+    }
+    waits = waits_of(ring, sensor);
+    ring->next = sensor;
+    ring->due_us += longer(waits.quiet_us, waits.rested_us) + flow->thrown_us;
+    /* Nobody is passed over twice: only while no other sensor has fired ahead. */
+    while (waits.rested_us > waits.quiet_us && !(flow->flags & ONE_AHEAD)) {
+        sensor = in_order(ring, ++place, sensor);
+        place = first_from(ring, place, &sensor);
+        if (place == ring->count) return;
+        waits = waits_of(ring, sensor);
+        if (waits.rested_us > waits.quiet_us) continue;
+        ring->next = sensor;
+        ring->due_us = ring->last_fired_us + waits.quiet_us + flow->thrown_us;
+    }
+}
+
+static void fire_flow(EerufRing *ring, uint8_t x, uint32_t now_us) {
+    EerufFlowRing *flow = flow_of(ring);
+    EerufFlowSensor *sensor = flow_sensor(ring, x);
+    const bool had_turn = !(sensor->filter.state & PENDING);
+    uint8_t turn = flow->turn, other;
+    sensor->filter.state = (uint8_t)((sensor->filter.state & ~PENDING) | HAS_FIRED);
+    sensor->turn_us = now_us;
+    ring->last_fired_us = now_us;
+    if (had_turn) {
+        const uint8_t place = first_from(ring, ring->following, &turn);
+        if (turn == x) {
+            ring->following = (uint8_t)(place + 1u);
+            flow->turn = in_order(ring, ring->following, x);
+        } else {
+            sensor->filter.state |= AHEAD;
+            flow->flags |= ONE_AHEAD;
+        }
+        for (other = 0; other < ring->count && limits_of(ring->schedule) != NULL; other++)
+            if (fires_with(ring, x, other)) flow_sensor(ring, other)->filter.state |= PENDING;
+        throw_dice(flow);
+    }
+    decide(ring);
+}
+
+/* Those that fired ahead have had their turn. */
+static OUT_OF_LINE void begin_round(EerufRing *ring) {
+    uint8_t x;
+    for (x = 0; x < ring->count; x++) flow_sensor(ring, x)->filter.state &= (uint8_t)~AHEAD;
+    flow_of(ring)->flags &= (uint8_t)~ONE_AHEAD;
+    flow_of(ring)->turn = ring->following = 0;
+}
+
+static void end_round(EerufRing *ring, uint32_t now_us) {
+    uint8_t x;
+    begin_round(ring);
+    for (x = 0; x < ring->count; x++) {
+        EerufFlowSensor *sensor = flow_sensor(ring, x);
+        if (now_us - sensor->turn_us > OLD) sensor->filter.state &= (uint8_t)~HAS_FIRED;
+    }
+    /* Nobody fires: rounds go on. */
+    if (now_us - ring->last_fired_us >= flow_of(ring)->rest_us) ring->last_fired_us = now_us;
+    decide(ring);
+}
+
+static void restart_flow(EerufRing *ring, uint32_t now_us) {
+    const EerufFlowRing *flow = flow_of(ring);
+    uint8_t x;
+    begin_round(ring);
+    for (x = 0; x < ring->count; x++) {
+        EerufFlowSensor *sensor = flow_sensor(ring, x);
+        /* A clock that has jumped says nothing of when they fired. */
+        if (now_us - sensor->turn_us > flow->rest_us) sensor->filter.state &= (uint8_t)~HAS_FIRED;
+        sensor->filter.state &= (uint8_t)~PENDING;
+        sensor->doubt = flow->first;
+    }
+    /* Sound from before dies away. */
+    ring->last_fired_us = now_us + ring->audible_us;
+}
+
+/* A round of the longest gaps, in which each has its turn: at most 64 times 750 ms, and the rest. */
+static uint32_t horizon_of_flow(const EerufRing *ring) {
+    const EerufFlowRing *flow = (const EerufFlowRing *)(const void *)ring;
+    return (ring->count + 1u) * (ring->audible_us + 2 * flow->dice_us) + longer(flow->rest_us, ring->window_us);
+}
+
+/* -- Motion -- */
+
+#define TOLD_FOR 500000u /* without a word for as long the top speed holds */
+#define SENT_BEFORE_US 250000u /* sound that is heard was sent no longer ago */
+#define LONGEST_US (((uint32_t)1 << 20) - 1) /* what is older is believed no more */
+#define MOST_RATE 4095u
+
+/* Change of a good reading at most, in 1/16 us per 1,024 us: 2 v / c at 331 m/s, the slowest sound that a robot
+   meets, rounded up. */
+static uint16_t rate_of(uint32_t speed_mm_s) {
+    return (uint16_t)(speed_mm_s > 41363 ? MOST_RATE : (speed_mm_s * 99 + 999) / 1000);
+}
+
+/* The rate at an instant, which is not long before the last word. */
+static uint16_t rate_at(EerufFlowRing *flow, uint32_t now_us) {
+    const uint32_t silent_us = now_us - flow->told_us;
+    if ((flow->flags & TOLD) && silent_us > TOLD_FOR && silent_us < HALF_TURN) {
+        flow->flags &= (uint8_t)~TOLD;
+        flow->rate = flow->top_rate;
+    }
+    return flow->rate;
+}
+
+static uint16_t larger16(uint16_t one, uint16_t other) {
+    return one > other ? one : other;
+}
+
+/* The greatest rate while sound could be sent that is heard at an instant, which is not long before the last word. Two
+   spans, neither of them much shorter than sound is heard. */
+static uint16_t recent_rate(EerufFlowRing *flow, uint32_t now_us) {
+    const uint16_t rate = rate_at(flow, now_us);
+    const uint32_t span_us = now_us - flow->since_us;
+    if (span_us > SENT_BEFORE_US && span_us < HALF_TURN) {
+        flow->since_us = now_us;
+        flow->greatest[0] = flow->greatest[1];
+        flow->greatest[1] = rate;
+    }
+    flow->greatest[1] = larger16(flow->greatest[1], rate);
+    return larger16(flow->greatest[0], flow->greatest[1]);
+}
+
+/* The change within a time: twelve bits times twenty. */
+static uint32_t grow(uint16_t rate, uint32_t time_us) {
+    return rate * shorter(time_us, LONGEST_US) >> 14;
+}
+
+/* Belief starts over with the hold that it has on a robot that begins to move, or stops. */
+static void set_moves(EerufFlowRing *flow, bool moves) {
+    uint8_t x;
+    if (moves == ((flow->flags & MOVES) != 0)) return;
+    flow->flags ^= MOVES;
+    for (x = 0; x < flow->ring.count; x++)
+        if (flow_sensor(&flow->ring, x)->conf > 1) flow_sensor(&flow->ring, x)->conf = 1;
+}
+
+EerufStatus eeruf_flow_moving(EerufFlowRing *flow, uint32_t speed_mm_s, uint32_t turn_mrad_s, uint32_t now_us) {
+    const EerufStatus status = has_flow(flow, 0);
+    uint16_t rate;
+    uint8_t x;
+    if (status != EERUF_OK) return status;
+    rate = recent_rate(flow, now_us);
+    /* A wall is 0.5 m from the centre about which the robot turns. */
+    flow->rate = rate_of(add32(speed_mm_s, turn_mrad_s / 2));
+    flow->told_us = now_us;
+    flow->flags |= TOLD;
+    flow->greatest[1] = larger16(flow->greatest[1], flow->rate);
+    rate = larger16(rate, flow->rate);
+    for (x = 0; x < flow->ring.count; x++)
+        flow_sensor(&flow->ring, x)->rate = larger16(flow_sensor(&flow->ring, x)->rate, rate);
+    set_moves(flow, flow->rate != 0);
+    decide(&flow->ring);
+    return EERUF_OK;
+}
+
+/* -- The judge: what fits what is believed, and what two readings in a row say that nothing foreign explains -- */
+
+#define TOO_FAR_US 1000u /* a belief that has missed readings ends where a good one may have changed by more */
+#define SILENCE (EERUF_NO_ECHO - 1u) /* with a witness; EERUF_NO_ECHO is nothing to compare with, or no belief */
+
+static void forget_belief(EerufFlowSensor *sensor) {
+    sensor->filter.known_us = sensor->believed_us = EERUF_NO_ECHO;
+    sensor->grown_us = sensor->rate = 0;
+    sensor->missed = UINT8_MAX;
+    sensor->conf = 0;
+}
+
+static void miss(EerufFlowSensor *sensor) {
+    if (sensor->missed < UINT8_MAX) sensor->missed++;
+    if (sensor->filter.age < EERUF_NEVER - 1u) sensor->filter.age++;
+}
+
+/* The change that a good reading may show since the one before, which the change since the belief grows by. What it
+   heard before was sent a while before, and so will be what it hears next. */
+static uint32_t grow_since(EerufFlowRing *flow, EerufFlowSensor *sensor) {
+    const uint32_t fired_us = sensor->fired_us[0];
+    const uint16_t rate = rate_at(flow, fired_us), recent = recent_rate(flow, fired_us);
+    const uint32_t span_us = grow(larger16(sensor->rate, recent), fired_us - sensor->fired_us[1]);
+    set_moves(flow, rate != 0);
+    sensor->rate = recent;
+    sensor->grown_us = add16(sensor->grown_us, narrow(span_us));
+    return span_us;
+}
+
+/* True if a reading fits the belief, which must not be too old. Silence is far from every echo. */
+static bool fits(const EerufFlowRing *flow, const EerufFlowSensor *sensor, uint32_t t_echo_us) {
+    if (sensor->believed_us == EERUF_NO_ECHO || sensor->missed > flow->memory) return false;
+    if (sensor->missed > 0 && sensor->grown_us > TOO_FAR_US) return false;
+    return apart(t_echo_us, sensor->believed_us) <= (uint32_t)flow->near_us + sensor->grown_us;
+}
+
+/* True if sound of any firing but a sensor's last could be the echo that it heard after that one. */
+static bool is_masked(const EerufRing *ring, uint8_t receiver, uint32_t t_echo_us) {
+    const EerufFlowSensor *own = flow_sensor(ring, receiver);
+    const uint32_t heard_us = own->fired_us[0] + t_echo_us;
+    uint8_t x, at;
+    for (x = 0; x < ring->count; x++) {
+        if (is_deaf_to(ring, receiver, x)) continue;
+        for (at = x == receiver ? 1 : 0; at < FLOW_FIRINGS; at++)
+            if (heard_us - flow_sensor(ring, x)->fired_us[at] <= ring->audible_us) return true;
+    }
+    return false;
+}
+
+/* An echo, or silence with a witness, that may have changed by so much since the one before. */
+static void weigh(EerufRing *ring, uint8_t x, uint32_t span_us, EerufReading *reading) {
+    EerufFlowRing *flow = flow_of(ring);
+    EerufFlowSensor *sensor = flow_sensor(ring, x);
+    EerufFilter *filter = &sensor->filter;
+    const bool is_echo = reading->t_echo_us != EERUF_NO_ECHO, stood = !(flow->flags & MOVES);
+    const uint32_t t_echo_us = is_echo ? reading->t_echo_us : SILENCE, last_us = filter->known_us;
+    const bool believes = sensor->believed_us != EERUF_NO_ECHO, known = fits(flow, sensor, t_echo_us);
+    const bool is_far = believes && !known && (!is_echo || t_echo_us > sensor->believed_us);
+    /* The first silence in a row leaves an obstacle standing, but a robot that moves has left it behind. */
+    const bool clears = last_us == SILENCE || known || !stood;
+    bool ok = known || !is_echo, held_back = false;
+    uint16_t least;
+    if (!ok && last_us < SILENCE && apart(t_echo_us, last_us) <= t_delta_of(ring, x) + span_us) {
+        reading->explained_by = explanation(ring, x, last_us, t_echo_us, span_us);
+        ok = reading->explained_by == EERUF_BY_NOTHING;
+    }
+    if (stood && known && sensor->conf < flow->hold) sensor->conf++;
+    if (stood && is_far) {
+        if (sensor->conf > 0) sensor->conf--;
+        held_back = ok;
+        ok = ok && sensor->conf == 0;
+    }
+    filter->known_us = t_echo_us;
+    if (!is_echo) reading->kind = ok && clears ? EERUF_READING_CLEAR : EERUF_READING_NO_ECHO;
+    else if (ok) reading->kind = EERUF_READING_ACCEPTED;
+    else if (reading->explained_by != EERUF_BY_NOTHING) reading->kind = EERUF_READING_AMBIGUOUS;
+    else if (held_back) reading->kind = EERUF_READING_REPEATED; /* the belief outlasts it */
+    else reading->kind = last_us >= SILENCE && !believes ? EERUF_READING_FIRST : EERUF_READING_REJECTED;
+    if (reading->kind == EERUF_READING_ACCEPTED) reading->age = filter->age = 0;
+    if (!ok) {
+        miss(sensor);
+        if (is_echo && !is_far && is_masked(ring, x, t_echo_us))
+            sensor->doubt = (uint16_t)shorter(sensor->doubt + (uint32_t)flow->up, flow->most);
+        return;
+    }
+    least = (uint16_t)(least_quiet(flow) / QUIET_US);
+    sensor->doubt = (uint16_t)(sensor->doubt > flow->down + least ? sensor->doubt - flow->down : least);
+    if (!is_echo && !clears && sensor->believed_us < SILENCE) return;
+    if (!known) sensor->conf = 1;
+    sensor->believed_us = t_echo_us;
+    sensor->grown_us = 0;
+    sensor->missed = 0;
+}
+
+static void judge(EerufRing *ring, uint8_t x, EerufReading *reading) {
+    EerufFlowRing *flow = flow_of(ring);
+    EerufFlowSensor *sensor = flow_sensor(ring, x);
+    const uint32_t span_us = grow_since(flow, sensor);
+    reading->previous_us = sensor->filter.known_us < SILENCE ? sensor->filter.known_us : EERUF_NO_ECHO;
+    reading->age = sensor->filter.age;
+    if (reading->kind != USABLE) {
+        miss(sensor);
+        sensor->filter.known_us = EERUF_NO_ECHO;
+        return;
+    }
+    weigh(ring, x, span_us, reading);
+    if (reading->t_echo_us == EERUF_NO_ECHO || !reports_every_echo(flow)) return;
+    reading->kind = EERUF_READING_ACCEPTED;
+    reading->explained_by = EERUF_BY_NOTHING;
+    reading->age = sensor->filter.age = 0;
+}
+
+/* A sensor's last firing was at another instant. */
+static void move_turn(EerufRing *ring, EerufFlowSensor *sensor, uint32_t at_us) {
+    if (ring->last_fired_us == sensor->turn_us || has_reached(at_us, ring->last_fired_us)) ring->last_fired_us = at_us;
+    sensor->turn_us = at_us;
+}
+
+/* The hook of a flow ring: a sensor fired so much later than it was polled for, modulo 2^32; or, for 0, what is known
+   of it is forgotten. */
+static void correct_flow(EerufRing *ring, uint8_t x, uint32_t later_us) {
+    EerufFlowSensor *sensor = flow_sensor(ring, x);
+    const uint32_t at_us = sensor->fired_us[0];
+    const bool listens = (sensor->filter.flags & LISTENING) != 0;
+    if (later_us == 0) {
+        forget_belief(sensor);
+        return;
+    }
+    if (!listens && sensor->filter.known_us < SILENCE) {
+        /* Its reading is with the judge already, and what is believed may be an echo of that firing. */
+        (void)shift(&sensor->filter.known_us, later_us);
+        if (sensor->missed == 0) (void)shift(&sensor->believed_us, later_us);
+    }
+    if (!listens || !(sensor->filter.state & HAS_FIRED) || has_reached(sensor->turn_us, at_us))
+        move_turn(ring, sensor, at_us);
+    if (listens && later_us < HALF_TURN) move_turn(ring, sensor, sensor->turn_us + later_us);
+    decide(ring);
+}
+
+/* -- The ring -- */
+
+#define LONGEST_REST_US 4000000u /* nor does a sensor listen for longer */
+
+static bool is_between(uint32_t value, uint32_t least, uint32_t most) {
+    return value >= least && value <= most;
+}
+
+EerufStatus eeruf_flow_init(EerufFlowRing *flow, size_t flow_size, EerufFlowSensor *sensors, size_t sensors_size,
+                            const EerufFlowConfig *config, uint32_t now_us) {
     EerufStatus status;
-    uint32_t width_us, unit_us, least_us;
-    uint8_t n, turn, cycle, sensor = 0;
-    if (hopping == NULL || sensors == NULL || hoppers == NULL || config == NULL) return EERUF_ERR_NULL;
+    uint32_t span_us;
+    uint8_t n, x;
+    if (flow == NULL || sensors == NULL || config == NULL) return EERUF_ERR_NULL;
     if (config->version != EERUF_VERSION) return EERUF_ERR_VERSION;
     n = config->sensors;
-    status = has_room(hopping, ring_size, n, sensors_size, hoppers_size);
-    if (status == EERUF_OK) status = tracker_is_fine(&config->tracker);
-    if (status != EERUF_OK) return status;
+    if (flow_size != sizeof *flow) return EERUF_ERR_MEMORY;
+    if (n - 1u >= EERUF_MAX_SENSORS) return EERUF_ERR_SENSORS;
+    if (sensors_size / sizeof *sensors < n) return EERUF_ERR_MEMORY;
     if (config->own != NULL && READ8(config->own->sensors) != n) return EERUF_ERR_SENSORS;
-    if (config->step_us == 0 || config->step_us > UINT16_MAX) return EERUF_ERR_STEP;
-    if (config->step_us <= config->tracker.t_delta_us) return EERUF_ERR_T_DELTA;
-    if (config->window_us > EERUF_HOPPING_MAX_WINDOW_US) return EERUF_ERR_WINDOW;
-    cycle = narrowest_cycle(n, config->tracker.votes);
-    width_us = (cycle - 1u) * config->step_us;
-    if (config->shortest_cycle_us < config->window_us + width_us) return EERUF_ERR_PERIOD;
-    if (config->shortest_cycle_us > EERUF_MAX_PERIOD_US) return EERUF_ERR_PERIOD;
-    status = set_up_hopping(hopping, sensors, hoppers, n, &config->tracker, config->step_us, config->window_us,
-                            config->blanking_us, now_us, config->own);
+    if (!is_between(config->most_us, 1, 250000) || !is_between(config->least_us, 1, config->most_us) ||
+        !is_between(config->rest_us, 1, LONGEST_REST_US) || config->dice_us > 250000 || config->seed == 0 ||
+        config->near_us > 10000 || !is_between(config->hold, 1, 100) || config->votes > EERUF_VOTES_TWO_IN_A_ROW)
+        return EERUF_ERR_RANGE;
+    if (config->window_us > LONGEST_REST_US) return EERUF_ERR_WINDOW;
+    memset(flow, 0, sizeof *flow);
+    set_up(&flow->ring, config->own, sensors, n, sizeof *sensors, 0, correct_flow, now_us);
+    status = listen(&flow->ring, config->t_delta_us, config->window_us, config->blanking_us);
     if (status != EERUF_OK) return status;
-    hopping->plan = plan_flow;
-    hopping->judged = judged_flow;
-    hopping->cycle = cycle;
-    hopping->root = primitive_root((uint8_t)(cycle + 1u));
-    hopping->first = 1;
-    hopping->fires_as = HAS_FIRED | SETTLED;
-    flow = &hopping->by.flow;
-    unit_us = flow->unit_us = width_us + 2 * config->step_us;
-    /* Nothing of a firing is heard in a window that opens so much later; the waits of two may bring them closer. */
-    least_us = dies_after(config->window_us, config->blanking_us, config->reach_us);
-    flow->least = quiet_of(config->shortest_gap_us);
-    flow->most = larger8(quiet_of(add32(least_us, width_us)), flow->least);
-    flow->masked_adds = quiet_of(config->masked_adds_us);
-    flow->believed_takes = quiet_of(config->believed_takes_us);
-    flow->unserved_adds = quiet_of(config->unserved_adds_us);
-    flow->unserved_after = larger8(config->unserved_after, 1);
-    flow->least_gap = (uint8_t)shorter(longer(in_units(flow->least * QUIET_US, unit_us), 1), UINT8_MAX);
-    flow->per_quiet = unit_us > QUIET_US ? UINT32_MAX / unit_us : 0;
-    flow->shortest = flow->length = in_units(config->shortest_cycle_us, unit_us);
-    flow->rounded_up = flow->shortest * unit_us != config->shortest_cycle_us;
-    flow->longest = longer(shorter(config->longest_cycle_us, EERUF_MAX_PERIOD_US), config->shortest_cycle_us) / unit_us;
-    flow->travel_us = narrow(config->travel_us);
-    hopping->lead_us = (uint16_t)(quiet_of(shorter(config->lead_us, config->shortest_cycle_us)) * QUIET_US);
-    flow->stride = (uint8_t)(n > 6 ? n / 3 + 1 : 1);
-    while (!is_coprime(flow->stride, n)) flow->stride++;
-    /* A cycle of least gaps may be longer than the longest that is asked for. */
-    least_us = 2 * longer((uint32_t)n * flow->least_gap, flow->longest + 1) * unit_us;
-    hopping->rest_us = longer(shorter(config->rest_us, EERUF_HOPPING_MAX_WINDOW_US), config->window_us);
-    hopping->horizon_us = least_us + hopping->rest_us;
-    for (turn = 0; turn < n; turn++) {
-        hoppers[sensor].lag_us = turn;
-        hoppers[sensor].quiet_before = hoppers[sensor].quiet_after = flow->least;
-        sensor = sensor_after(hopping, sensor);
+    if (config->path_change_us == AS_T_DELTA) return EERUF_ERR_PATH_CHANGE;
+    flow->ring.path_change_us = config->path_change_us;
+    flow->ring.audible_us = config->most_us;
+    flow->ring.last_fired_us = now_us;
+    flow->ring.watched = ALWAYS;
+    flow->random = config->seed;
+    flow->dice_us = config->dice_us;
+    flow->rest_us = config->rest_us;
+    span_us = config->most_us - config->least_us;
+    flow->least_us = config->least_us;
+    flow->most = (uint16_t)(config->most_us / QUIET_US);
+    flow->first = (uint16_t)((config->least_us + span_us / 5) / QUIET_US);
+    flow->up = (uint16_t)(span_us / 4 / QUIET_US);
+    flow->down = (uint16_t)(span_us / 10 / QUIET_US);
+    flow->near_us = config->near_us;
+    flow->memory = config->memory;
+    flow->hold = config->hold;
+    flow->rate = flow->top_rate = flow->greatest[0] = flow->greatest[1] = rate_of(config->top_speed_mm_s);
+    flow->stride = n > 4 ? 3 : 1;
+    while (n > 4 && !is_coprime(flow->stride, n)) flow->stride++;
+    for (x = 0; x < n; x++) {
+        sensors[x].turn_us = now_us;
+        sensors[x].doubt = flow->first;
     }
-    begin_hopping(hopping);
+    /* As in core: where sensors have limits the first throw is that of a robot that stands; where not, the first quiet
+       is in microseconds. */
+    if (config->own != NULL) throw_dice(flow);
+    if (config->votes == EERUF_VOTES_EVERY_ECHO) flow->flags = EVERY_ECHO_STANDING | EVERY_ECHO_MOVING;
+    if (config->votes == EERUF_VOTES_BY_MOTION && config->alone) flow->flags = EVERY_ECHO_MOVING;
+    if (flow->rate != 0) flow->flags |= MOVES;
+    flow->lines = config->lines;
+    group(&flow->ring);
+    if (config->own == NULL) throw_dice(flow);
+    decide(&flow->ring);
+    if (config->own == NULL)
+        flow->ring.due_us = now_us + longer(config->least_us + span_us / 5, least_quiet(flow)) + flow->thrown_us;
+    flow->ring.ready = READY;
     return EERUF_OK;
 }
 
-EerufStatus eeruf_flow_quiet_us(const EerufHoppingRing *hopping, uint8_t sensor, uint32_t *before_us,
-                                uint32_t *after_us) {
-    const EerufStatus status = has_hopper(hopping, sensor);
+EerufStatus eeruf_flow_poll(EerufFlowRing *flow, uint32_t now_us, EerufEvent *event) {
+    const EerufStatus status = has_flow(flow, 0);
+    return status == EERUF_OK ? poll(&flow->ring, now_us, NULL, event, true) : status;
+}
+
+EerufStatus eeruf_flow_enable(EerufFlowRing *flow, uint8_t sensor, bool enabled) {
+    const EerufStatus status = has_flow(flow, sensor);
     if (status != EERUF_OK) return status;
-    if (before_us == NULL || after_us == NULL) return EERUF_ERR_NULL;
-    *before_us = hopping->hoppers[sensor].quiet_before * QUIET_US;
-    *after_us = hopping->hoppers[sensor].quiet_after * QUIET_US;
+    if (enabled && !(flow_sensor(&flow->ring, sensor)->filter.state & DISABLED)) return EERUF_OK;
+    if (enabled) flow_sensor(&flow->ring, sensor)->doubt = flow->first;
+    enable(&flow->ring, sensor, enabled);
+    group(&flow->ring);
+    decide(&flow->ring);
     return EERUF_OK;
+}
+
+EerufStatus eeruf_flow_pause(EerufFlowRing *flow, bool paused) {
+    const EerufStatus status = has_flow(flow, 0);
+    uint8_t x;
+    if (status != EERUF_OK) return status;
+    flow->ring.paused = paused;
+    for (x = 0; x < flow->ring.count && !paused; x++) {
+        /* Belief stays, but no reading is compared with one of before. */
+        EerufFlowSensor *sensor = flow_sensor(&flow->ring, x);
+        sensor->filter.known_us = EERUF_NO_ECHO;
+        if (sensor->missed == 0) sensor->missed = 1;
+    }
+    group(&flow->ring);
+    decide(&flow->ring);
+    return EERUF_OK;
+}
+
+EerufStatus eeruf_flow_restart(EerufFlowRing *flow, uint32_t now_us) {
+    const EerufStatus status = has_flow(flow, 0);
+    if (status == EERUF_OK) restart_by_flow(&flow->ring, now_us);
+    return status;
+}
+
+uint32_t eeruf_flow_quiet_us(const EerufFlowRing *flow, uint8_t sensor) {
+    return has_flow(flow, sensor) == EERUF_OK ? quiet_of(flow, flow_sensor(&flow->ring, sensor)) : 0;
+}
+
+uint32_t eeruf_flow_believed_us(const EerufFlowRing *flow, uint8_t sensor) {
+    const EerufFlowSensor *of;
+    if (has_flow(flow, sensor) != EERUF_OK) return EERUF_NO_ECHO;
+    of = flow_sensor(&flow->ring, sensor);
+    return of->missed <= flow->memory && of->believed_us < SILENCE ? of->believed_us : EERUF_NO_ECHO;
 }
 #endif

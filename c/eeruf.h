@@ -34,11 +34,11 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#define EERUF_VERSION 3u /* goes up with each change of a structure or a table */
+#define EERUF_VERSION 4u /* goes up with each change of a structure or a table */
 
-/* Leave out time hopping with -DEERUF_HOPPING=0; the linker leaves it out too if you do not call it. */
-#ifndef EERUF_HOPPING
-#define EERUF_HOPPING 1
+/* Leave out flow with -DEERUF_WITH_FLOW=0; the linker leaves it out too if you do not call it. */
+#ifndef EERUF_WITH_FLOW
+#define EERUF_WITH_FLOW 1
 #endif
 
 /* Firings that a ring by a table remembers of each sensor, 4 bytes each: 2 to 32, the same for library and program.
@@ -88,18 +88,14 @@ enum {
     EERUF_ERR_UNVERIFIED = -14,  /* the schedule was not verified */
     EERUF_ERR_T_DELTA = -15,     /* more t_delta than the schedule was verified for */
     EERUF_ERR_VERIFIED_WINDOW = -16, /* a longer window than the schedule was verified for */
-    EERUF_ERR_WINDOW = -17,      /* a sensor would fire again while it still listens, or too long a window to hop */
+    EERUF_ERR_WINDOW = -17,      /* a sensor would fire again while it still listens */
     EERUF_ERR_BLANKING = -18,    /* blanking no shorter than the window, or longer than 65,535 us */
     EERUF_ERR_COARSE_T_DELTA = -19, /* t_delta no shorter than the window, or longer than 65,535 us */
     EERUF_ERR_CONSECUTIVE = -20, /* not 2 to 8 readings compared */
     EERUF_ERR_RETRIGGER = -21,   /* the schedule triggers a module again sooner than it may be */
     EERUF_ERR_LADDER = -22,      /* no schedules, or not from the shortest period to the longest, or unlike ones */
-    EERUF_ERR_STEP = -23,        /* a step that is not 1 to 65,535 us */
-    EERUF_ERR_LAG = -24,         /* a lag that leaves no room for the code */
-    EERUF_ERR_TRACKER = -25,     /* a setting of the tracker outside its range */
     EERUF_ERR_RANGE = -26,       /* a number outside its range */
-    EERUF_ERR_HOPPING = -27,     /* a hopping ring cannot do this */
-    EERUF_ERR_VOTES = -28,       /* more votes to confirm an echo than there are phases: none would be */
+    EERUF_ERR_FLOW = -27,        /* a flow ring cannot do this, or has a function of its own for it */
     EERUF_ERR_AUDIBLE = -29,     /* sound that is audible for longer than 67,108,864 us */
     EERUF_ERR_PATH_CHANGE = -30, /* a path of sound that changes by more than 65,534 us */
     EERUF_ERR_TOGETHER = -31     /* two sensors of one group do not fire together */
@@ -182,13 +178,13 @@ enum {
     EERUF_READING_FIRST = 0,    /* an echo with nothing to compare it with */
     EERUF_READING_ACCEPTED = 1, /* near-identical to the one before (Eq. 11): it counts */
     EERUF_READING_REJECTED = 2, /* not near-identical: crosstalk, noise, or an object that moved too fast */
-    EERUF_READING_REPEATED = 3, /* near-identical, but not yet often enough */
+    EERUF_READING_REPEATED = 3, /* near-identical, but not yet often enough; in a flow ring: belief outlasts it */
     EERUF_READING_NO_ECHO = 4,  /* no echo, once, or without a witness */
     EERUF_READING_CLEAR = 5,    /* no echo several times running: nothing is in range */
     EERUF_READING_TOO_EARLY = 6, /* nothing but an edge within the blanking time */
     EERUF_READING_LATE = 7,     /* an edge after the window has ended */
     EERUF_READING_STUCK = 8,    /* the echo line was high when the sensor was to fire */
-    EERUF_READING_TENTATIVE = 9, /* few readings support it so far, none contradicts: slow down (time hopping only) */
+    EERUF_READING_TENTATIVE = 9, /* of rings before version 4 alone */
     EERUF_READING_AMBIGUOUS = 10, /* near-identical, but another sensor's sound explains both: not believed */
     EERUF_READING_UNANSWERED = 11, /* no evidence at all: no edge, no sign that it listened; never free space */
     EERUF_READING_KINDS = 12
@@ -210,9 +206,9 @@ typedef struct EerufReading {
 typedef struct EerufFilter {
     uint32_t known_us;
     uint16_t age;
-    uint8_t state;
+    uint8_t state, flags; /* flags of a ring's sensor */
 } EerufFilter;
-#define EERUF_FILTER {EERUF_NO_ECHO, EERUF_NEVER, 0}
+#define EERUF_FILTER {EERUF_NO_ECHO, EERUF_NEVER, 0, 0}
 
 /* Takes in one firing: its echo below 2^31 us, or EERUF_NO_ECHO. `consecutive` readings, 2 to 8, must each be within
    `t_delta_us` of the one before, after taking off the change that motion lets expect (-2 v dt / c): with one it accepts
@@ -234,7 +230,6 @@ EerufStatus eeruf_filter_forget(EerufFilter *filter); /* compare the next readin
 typedef struct EerufSensor {
     uint32_t echo_us;
     EerufFilter filter;
-    uint8_t flags;
     uint32_t fired_us[EERUF_FIRINGS]; /* the last first */
 } EerufSensor;
 
@@ -311,7 +306,7 @@ uint32_t eeruf_ring_due(const EerufRing *ring);
 
 /* The firings to come, for a timer or other hardware that fires by itself: number 0 is the next, 1 the one after it.
    They hold until one is late, or the ring is changed. EERUF_EMPTY beyond the end of the next period, where the ring
-   hops or changes its schedule of this one. The loop may then come late; let it repeat what happened in its order: for
+   changes its schedule of this one, and in a flow ring beyond the next. The loop may then come late; let it repeat what happened in its order: for
    each firing poll at its instant until there is no event, so that EERUF_EVENT_FIRE says what is done already; hand in
    echoes; last poll at the present. A firing that hardware has missed is then still due. */
 EerufStatus eeruf_ring_upcoming(const EerufRing *ring, uint8_t number, uint8_t *sensor, uint32_t *due_us);
@@ -322,7 +317,7 @@ EerufStatus eeruf_ring_echo(EerufRing *ring, uint8_t sensor, uint32_t at_us);
 /* Corrects when a sensor last fired, to an instant before or after the poll: by what a timer captured, for example.
    Echo times count from it. If it is later, all that follows moves by as much. Call it before the readings that may
    hold the firing's sound are polled for: an accepted reading cannot be taken back. An instant that is not after the
-   firing before is ignored; a hopping ring takes only instants after the poll. */
+   firing before is ignored. */
 EerufStatus eeruf_ring_fired(EerufRing *ring, uint8_t sensor, uint32_t at_us);
 /* When a sensor last fired; 0 for one that is not there. */
 uint32_t eeruf_ring_fired_at(const EerufRing *ring, uint8_t sensor);
@@ -369,7 +364,7 @@ EerufStatus eeruf_ring_set_audible(EerufRing *ring, uint32_t audible_us);
 
 typedef struct EerufAdaptation {
     uint16_t ready;
-    const void *ladder; /* schedules, or configs of a ring that hops, from the shortest period to the longest; in RAM */
+    const EerufSchedule *const *ladder; /* from the shortest period to the longest; in RAM */
     uint8_t rungs, rung;
     uint16_t noisy_permille;     /* above this rejection rate it fires more slowly: 300 */
     uint16_t calm_permille;      /* up to this one a window is calm: 100 */
@@ -392,7 +387,7 @@ uint32_t eeruf_schedule_max_speed_mm_s(const EerufSchedule *schedule, uint32_t t
 
 enum {
     EERUF_STATE_UNKNOWN = 0,    /* nothing is known: `why` */
-    EERUF_STATE_OBSTACLE = 1,   /* something is there: an accepted echo, or a tentative one of a hopping ring */
+    EERUF_STATE_OBSTACLE = 1,   /* something is there: an accepted echo */
     EERUF_STATE_CLEAR = 2,      /* nothing is in range, by silence that is confirmed */
     EERUF_STATE_TOO_CLOSE = 3,  /* something is closer than the sensor can measure */
     EERUF_STATE_UNANSWERED = 4  /* the sensor does not answer, or its line is stuck */
@@ -544,179 +539,84 @@ EerufStatus eeruf_hc_sr04_change_schedule(EerufHcSr04 *modules, const EerufSched
 /* The health of a module at its last complete firing; EERUF_HEALTH_MISSING for one that is not there. */
 uint8_t eeruf_hc_sr04_health(const EerufHcSr04 *modules, uint8_t sensor);
 
-#if EERUF_HOPPING
-/* ---- Time hopping: a cycle of many phases, so that no sensor stays blind ---- */
+#if EERUF_WITH_FLOW
+/* ---- Flow: one sensor after the other, each with as much quiet around its firing as it has needed ----
 
-#define EERUF_HYPOTHESES 4
-#define EERUF_HOPPING_MAX_WINDOW_US 16711679u /* echoes are told apart up to it, as in Rust, which keeps 24 bits */
+   A sensor fires when those before it have been quiet for as long as they and it need, and a throw of dice later: far
+   ones in turn. A reading is accepted if it fits what is believed of the sensor, or if it agrees with the one before and no
+   firing explains both as another sensor's sound. Late polls cost time and nothing else. docs/explanation/flow.md has
+   the rules. */
 
-/* Weights of readings: begin with one of the three sets below. */
-typedef struct EerufTrackerSettings {
-    uint16_t t_delta_us; /* a reading supports a track within it; less than the step of the code */
-    uint16_t near_us;    /* one this near a confirmed track is accepted; at least t_delta */
-    uint16_t tentative_within_us; /* at most t_delta */
-    uint8_t votes;       /* 2 to 15 */
-    uint8_t score_limit; /* votes to 15 */
-    uint8_t contradiction, solo_contradiction; /* 1 to 15 */
-    uint8_t tentative_votes; /* 0 or 2 to 15 */
-    uint8_t memory;      /* for this many firings without support a confirmed echo is remembered, 3 times as many while
-                            odometry moves; 0: it is forgotten */
-} EerufTrackerSettings;
-
-/* Settings of a hopping ring's firing, listening and belief. */
-typedef struct EerufHoppingConfig {
-    uint16_t version;            /* EERUF_VERSION */
-    uint8_t sensors;             /* 1 to 64 */
-    uint8_t phases;              /* the cycle is at least this and above the number of sensors, one less than a prime */
-    uint32_t step_us;            /* the code's: crosstalk moves by at least this; 1 to 65,535 */
-    uint32_t period_us;          /* at least window + (phases - 1) step */
-    const uint32_t *lag_us;      /* one for each sensor, in RAM; null: spread evenly in the order of sensors */
-    uint32_t window_us;          /* at most EERUF_HOPPING_MAX_WINDOW_US */
-    uint32_t blanking_us;
-    uint32_t reach_us;           /* after how long no sound is heard any more */
-    uint32_t shift_interval_us;  /* what neighbours keep when a lag is redrawn */
-    uint32_t seed;               /* of the draws */
-    EerufTrackerSettings tracker;
-    uint8_t solo_rate;           /* what of a solo period each period earns, in 1/256 */
-    uint8_t solo_after;          /* firings with nothing accepted */
-    uint8_t solo_spacing, shift_after, shift_spacing;
-    uint8_t neighbours;
-    uint8_t code;                /* 0; or 1 + the multiplier of sensor 0, with `phases` exactly, as `eeruf` writes it */
-    const EerufSchedule *own;    /* limits, where sensors are not all alike, as `eeruf` writes them; or null */
-} EerufHoppingConfig;
-
-/* The settings of most robots, of those that must stop early, of those that drive, and of those that make maps. */
-#define EERUF_HOPPING_BALANCED(sensors, period_us, window_us)                                                          \
-    {EERUF_VERSION, sensors, 5, 240, period_us, NULL, window_us, 0, window_us, 8000, 1,                                \
-     {150, 400, 60, 5, 6, 2, 6, 2, 0}, 84, 5, 3, 0, 8, 4, 0, NULL}
-#define EERUF_HOPPING_QUICK(sensors, period_us, window_us)                                                             \
-    {EERUF_VERSION, sensors, 5, 240, period_us, NULL, window_us, 0, window_us, 8000, 1,                                \
-     {150, 400, 100, 4, 6, 2, 6, 2, 0}, 100, 4, 2, 0, 8, 4, 0, NULL}
-#define EERUF_HOPPING_DRIVING(sensors, period_us, window_us)                                                           \
-    {EERUF_VERSION, sensors, 5, 240, period_us, NULL, window_us, 0, window_us, 8000, 1,                                \
-     {150, 400, 60, 5, 6, 2, 6, 2, 0}, 0, 5, 3, 0, 8, 4, 0, NULL}
-#define EERUF_HOPPING_MAPS(sensors, period_us, window_us)                                                              \
-    {EERUF_VERSION, sensors, 5, 240, period_us, NULL, window_us, 0, window_us, 8000, 1,                                \
-     {150, 400, 60, 5, 7, 1, 6, 0, 0}, 28, 8, 6, 0, 24, 4, 0, NULL}
-
-/* State of each sensor of a hopping ring in place of an EerufSensor: its last firing is enough. 16 bytes on an AVR. Not
-   for the caller. */
-typedef struct EerufHopSensor {
-    uint32_t echo_us;
-    EerufFilter filter;
-    uint8_t flags;
-    uint32_t fired_us[1];
-} EerufHopSensor;
-
-/* One hypothesis about a sensor's echo. Not for the caller. */
-typedef struct EerufTrack {
-    uint32_t t_echo_us;
-    uint16_t phases;
-    uint8_t solo_votes, score, close, flags, age;
-} EerufTrack;
-
-/* One sensor of a hopping or flow ring: 64 bytes on an AVR, beside its EerufHopSensor. Not for the caller. */
-typedef struct EerufHopper {
-    uint32_t lag_us, last_us;
-    uint16_t late_us;
-    uint8_t place, phase, unserved, misfits, flags, order, quiet_before, quiet_after;
-    int8_t surplus, observed;
-    EerufTrack tracks[EERUF_HYPOTHESES];
-} EerufHopper;
-
-/* State of hopping rings alone. Not for the caller. */
-typedef struct EerufHopPlan {
-    uint32_t shift_interval_us, dies_us, random;
-    uint16_t earned;
-    uint8_t solo_rate, solo_after, solo_spacing, shift_after, shift_spacing, neighbours, since_solo, since_shift;
-} EerufHopPlan;
-
-/* State of flow rings alone; gaps and cycles in units of its grid. Not for the caller. */
-typedef struct EerufFlowPlan {
-    uint32_t unit_us, per_quiet, length, shortest, longest;
-    uint16_t travel_us, fastest_us;
-    uint8_t least, most, masked_adds, believed_takes, unserved_adds, unserved_after, least_gap, rounded_up, stride;
-} EerufFlowPlan;
-
-/* A hopping or flow ring. Not for the caller. */
-typedef struct EerufHoppingRing {
-    EerufRing ring; /* the first: pointers to one are pointers to the other */
-    EerufHopper *hoppers;
-    void (*plan)(struct EerufHoppingRing *hopping);
-    void (*judged)(struct EerufHoppingRing *hopping, uint8_t sensor, const EerufReading *reading, int32_t change_us);
-    EerufTrackerSettings tracker;
-    uint32_t start_us, length_us, solo_at_us, period_us, horizon_us, rest_us;
-    uint16_t step_us, tolerated, lead_us, least_late[3], most_late[3];
-    uint8_t phase, cycle, root, first, planned, place, fires_as, changed, changes;
-    union { EerufHopPlan hop; EerufFlowPlan flow; } by;
-} EerufHoppingRing;
-
-/* Makes a hopping ring that begins at `now_us`. Both arrays have a place for each sensor of the config. Poll it with
-   eeruf_hopping_poll, and hand in echoes, late firings and stuck lines with the functions of its `ring`; the others
-   return EERUF_ERR_HOPPING: enabling, pause, restart and other lags and periods have functions of their own. */
-EerufStatus eeruf_hopping_init(EerufHoppingRing *ring, size_t ring_size, EerufHopSensor *sensors,
-                               size_t sensors_size, EerufHopper *hoppers, size_t hoppers_size,
-                               const EerufHoppingConfig *config, uint32_t now_us);
-/* As eeruf_ring_poll_expecting; `change_us` may be null. Readings are also EERUF_READING_TENTATIVE. */
-EerufStatus eeruf_hopping_poll(EerufHoppingRing *ring, uint32_t now_us, const int32_t *change_us, EerufEvent *event);
-/* As eeruf_ring_enable; the tracks of a sensor that is enabled are forgotten. */
-EerufStatus eeruf_hopping_enable(EerufHoppingRing *ring, uint8_t sensor, bool enabled);
-/* No sensor fires until it is unset, and then as of the next period; periods go on. Then all tracks are forgotten. */
-EerufStatus eeruf_hopping_pause(EerufHoppingRing *ring, bool paused);
-EerufStatus eeruf_hopping_restart(EerufHoppingRing *ring, uint32_t now_us); /* as eeruf_ring_restart */
-/* Changes to the lags and the period of another config with the same code; no more of it counts. The period that has
-   begun starts again when all sound from before has died; what is confirmed starts over. Where sensors have limits of
-   their own, both must meet them. */
-EerufStatus eeruf_hopping_change(EerufHoppingRing *ring, const EerufHoppingConfig *config);
-/* As eeruf_adaptation_init and eeruf_adaptation_period, for a ring that hops and configs with the same code. */
-EerufStatus eeruf_hopping_adaptation_init(EerufAdaptation *adaptation, size_t adaptation_size,
-                                          const EerufHoppingConfig *const *ladder, uint8_t rungs);
-EerufStatus eeruf_hopping_adaptation_period(EerufAdaptation *adaptation, EerufHoppingRing *ring,
-                                            const EerufEvent *event);
-/* The echo time that is confirmed, or EERUF_NO_ECHO if none is or nothing is in range. */
-uint32_t eeruf_hopping_confirmed_us(const EerufHoppingRing *ring, uint8_t sensor);
-/* The sensor that the present period belongs to alone, or 255. */
-uint8_t eeruf_hopping_solo(const EerufHoppingRing *ring);
-/* The lag of a sensor as it is now; in a flow ring its place in the cycle, without the code. */
-uint32_t eeruf_hopping_lag_us(const EerufHoppingRing *ring, uint8_t sensor);
-/* For the log of a reading that the last poll gave: how it was weighed. 0 for a sensor out of range. */
-#define EERUF_WEIGHED_SOLO 1u   /* no other sensor's sound could be heard */
-#define EERUF_WEIGHED_STEADY 2u /* firings were so punctual that crosstalk moved as the code says */
-uint8_t eeruf_hopping_weighed(const EerufHoppingRing *ring, uint8_t sensor);
-/* Number of times that firing times changed against each other otherwise than by the phase, modulo 256. */
-uint8_t eeruf_hopping_changes(const EerufHoppingRing *ring);
-
-/* ---- Flow: one sensor after the other, each with as much quiet around its firing as it has needed ---- */
-
-/* Settings of a flow ring's firing, listening and belief (docs/explanation/flow.md). */
+/* Settings of a flow ring's firing, listening and belief. */
 typedef struct EerufFlowConfig {
-    uint16_t version;           /* EERUF_VERSION */
-    uint8_t sensors;            /* 1 to 64 */
-    uint8_t unserved_after;     /* firings with nothing believed after which a sensor gains quiet */
-    uint32_t step_us;           /* the code's: above t_delta, at most 65,535 */
-    uint32_t window_us, blanking_us, reach_us; /* as a hopping ring's */
-    uint32_t shortest_gap_us;   /* between two firings, at most 65 ms, as all times of quiet */
-    uint32_t masked_adds_us;    /* quiet that a reading adds that comes before what is believed */
-    uint32_t believed_takes_us, unserved_adds_us;
-    uint32_t shortest_cycle_us; /* at least window and code */
-    uint32_t rest_us;           /* between two firings of a sensor, where its module rests for longer than it listens */
-    uint32_t lead_us;           /* a cycle is planned so long before it begins: about 4 ms on an AVR; at most 65 ms */
-    uint32_t longest_cycle_us;  /* of a robot that stands */
-    uint32_t travel_us;         /* change of an echo by odometry that a cycle may bring */
-    EerufTrackerSettings tracker;
-    const EerufSchedule *own;   /* limits, where sensors are not all alike, as `eeruf` writes them; or null */
+    uint16_t version;        /* EERUF_VERSION */
+    uint8_t sensors;         /* 1 to 64 */
+    uint32_t window_us, blanking_us; /* as a ring's */
+    uint32_t least_us;       /* the least time from a firing to the next; equal to most_us: one by one */
+    uint32_t most_us;        /* R: the most, and how long sound is heard, its tail included; at most 250 ms */
+    uint32_t rest_us;        /* between two firings of a sensor, for which its module rests; at most 4 s */
+    uint32_t dice_us;        /* random time in every gap, twice as long while the robot moves; at least 8 ticks of the
+                                clock, at most 250 ms */
+    uint32_t seed;           /* of the dice, not 0: another one for each robot, as its chip's number */
+    uint16_t t_delta_us;     /* by how much two readings in a row may differ, of a robot that stands */
+    uint16_t near_us;        /* by how much a reading may differ from what is believed; at most 10 ms */
+    uint16_t path_change_us; /* P: of a robot that stands */
+    uint8_t memory;          /* firings without belief after which it keeps nothing alive */
+    uint8_t hold;            /* contradictions that a belief outlasts, of a robot that stands; 1 to 100 */
+    uint16_t top_speed_mm_s; /* holds where nobody says how fast the robot moves; 0: it stands */
+    uint8_t alone;           /* no other robot sends sound here */
+    uint8_t votes;           /* EERUF_VOTES_.. */
+    const EerufSchedule *own; /* limits, where sensors are not all alike, as `eeruf` writes them; or null */
+    const uint8_t *lines;    /* in flash as `own`: the echo line that each sensor shares, from 1, or 0; or null */
 } EerufFlowConfig;
 
-/* For every robot. */
-#define EERUF_FLOW(sensors, window_us)                                                                                 \
-    {EERUF_VERSION, sensors, 3, 240, window_us, 0, window_us, 7500, 4000, 1500, 6000, 60000, 0, 0, 400000, 260,        \
-     {150, 400, 60, 5, 6, 2, 6, 2, 5}, NULL}
+/* The number of echoes in a row that makes one accepted. */
+enum {
+    EERUF_VOTES_BY_MOTION = 0,  /* one while the robot moves, if it is alone; else two */
+    EERUF_VOTES_EVERY_ECHO = 1, /* one, with twice the least quiet: nothing else keeps foreign sound out */
+    EERUF_VOTES_TWO_IN_A_ROW = 2
+};
 
-/* Makes a flow ring that begins at `now_us`; all else is as with a hopping ring. No sensor fires alone in a cycle. */
-EerufStatus eeruf_flow_init(EerufHoppingRing *ring, size_t ring_size, EerufHopSensor *sensors, size_t sensors_size,
-                            EerufHopper *hoppers, size_t hoppers_size, const EerufFlowConfig *config, uint32_t now_us);
-/* The quiet that a sensor of a flow ring gets before its firing and after it. */
-EerufStatus eeruf_flow_quiet_us(const EerufHoppingRing *ring, uint8_t sensor, uint32_t *before_us, uint32_t *after_us);
+/* For HC-SR04 modules, and others that hear no further than 4 m, on a robot that stands unless it says otherwise. */
+#define EERUF_FLOW(sensors, window_us)                                                                                 \
+    {EERUF_VERSION, sensors, window_us, 0, 6000, 33500, 60000, 2000, 1, 80, 150, 150, 8, 4, 0, 0, 0, NULL, NULL}
+
+/* One sensor of a flow ring, in place of an EerufSensor: 40 bytes. Not for the caller. */
+typedef struct EerufFlowSensor {
+    uint32_t echo_us;
+    EerufFilter filter;   /* its echo is that of the last firing */
+    uint32_t fired_us[3]; /* the last first */
+    uint32_t turn_us, believed_us;
+    uint16_t doubt, grown_us, rate;
+    uint8_t missed, conf;
+} EerufFlowSensor;
+
+/* A flow ring. Not for the caller. */
+typedef struct EerufFlowRing {
+    EerufRing ring; /* the first: pointers to one are pointers to the other */
+    const uint8_t *lines;
+    uint32_t random, thrown_us, dice_us, rest_us, told_us, since_us, least_us;
+    uint16_t most, first, up, down, near_us, rate, top_rate, greatest[2];
+    uint8_t memory, hold, stride, turn, flags;
+} EerufFlowRing;
+
+/* Makes a flow ring that begins at `now_us`; `sensors` has a place for each sensor of the config. Hand in echoes, late
+   firings, measured times and stuck lines with the functions of its `ring`. Polling, enabling, pause and restart have
+   functions of their own, and what a table says cannot be changed: EERUF_ERR_FLOW. */
+EerufStatus eeruf_flow_init(EerufFlowRing *flow, size_t flow_size, EerufFlowSensor *sensors, size_t sensors_size,
+                            const EerufFlowConfig *config, uint32_t now_us);
+EerufStatus eeruf_flow_poll(EerufFlowRing *flow, uint32_t now_us, EerufEvent *event); /* a period is a round */
+/* Says how fast the robot moves and turns, both without a sign, once a control cycle: readings may change by as much. After
+   half a second without a word the top speed holds. */
+EerufStatus eeruf_flow_moving(EerufFlowRing *flow, uint32_t speed_mm_s, uint32_t turn_mrad_s, uint32_t now_us);
+/* As the functions of a ring. */
+EerufStatus eeruf_flow_enable(EerufFlowRing *flow, uint8_t sensor, bool enabled);
+EerufStatus eeruf_flow_pause(EerufFlowRing *flow, bool paused);
+EerufStatus eeruf_flow_restart(EerufFlowRing *flow, uint32_t now_us);
+/* The quiet that a sensor gets before its firing and after it; 0 for one that is not there. */
+uint32_t eeruf_flow_quiet_us(const EerufFlowRing *flow, uint8_t sensor);
+/* The echo time that is believed of a sensor; EERUF_NO_ECHO if none is, or nothing is in range. */
+uint32_t eeruf_flow_believed_us(const EerufFlowRing *flow, uint8_t sensor);
 #endif
 
 #ifdef __cplusplus

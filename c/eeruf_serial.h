@@ -82,16 +82,10 @@ static inline size_t eeruf_frame_end(EerufFrame *frame) {
     return (size_t)frame->length + 1;
 }
 
-/* A hopping ring's weighing of a reading; null for other rings. Not for the caller. */
-typedef struct EerufWeighed {
-    uint8_t how, changes;
-    int32_t change_us;
-} EerufWeighed;
-
-/* Not for the caller. */
-static inline size_t eeruf_frame_of_event(EerufSerial *line, const EerufRing *ring, const EerufHcSr04 *modules,
-                                          const EerufEvent *event, const EerufWeighed *weighed, uint32_t now_us,
-                                          uint8_t *bytes) {
+/* The frame that an event makes, and its size; 0 if it makes none. Hand in every event, with the `now_us` of its poll.
+   `modules` may be null where the sensors' health is unknown. */
+static inline size_t eeruf_serial_event(EerufSerial *line, const EerufRing *ring, const EerufHcSr04 *modules,
+                                        const EerufEvent *event, uint32_t now_us, uint8_t *bytes) {
     EerufFrame frame;
     uint8_t sensor;
     if (event->kind == EERUF_EVENT_FIRE) {
@@ -109,7 +103,7 @@ static inline size_t eeruf_frame_of_event(EerufSerial *line, const EerufRing *ri
         uint32_t fired_us;
         if (event->sensor >= line->sensors || event->sensor >= ring->count) return 0;
         fired_us = eeruf_ring_fired_at(ring, event->sensor);
-        frame = eeruf_frame_begin(line, weighed == NULL ? 1 : 3, bytes);
+        frame = eeruf_frame_begin(line, 1, bytes);
         eeruf_frame_put(&frame, event->sensor, 1);
         eeruf_frame_put(&frame, event->phase, 1);
         eeruf_frame_put(&frame, event->u.reading.kind, 1);
@@ -119,11 +113,6 @@ static inline size_t eeruf_frame_of_event(EerufSerial *line, const EerufRing *ri
         eeruf_frame_put(&frame, line->late_us[event->sensor], 2);
         eeruf_frame_put(&frame, now_us - fired_us, 4);
         eeruf_frame_put(&frame, event->u.reading.explained_by, 1);
-        if (weighed != NULL) {
-            eeruf_frame_put(&frame, weighed->how, 1);
-            eeruf_frame_put(&frame, weighed->changes, 1);
-            eeruf_frame_put(&frame, (uint32_t)weighed->change_us, 4);
-        }
         return eeruf_frame_end(&frame);
     }
     frame = eeruf_frame_begin(line, 2, bytes);
@@ -134,28 +123,5 @@ static inline size_t eeruf_frame_of_event(EerufSerial *line, const EerufRing *ri
         eeruf_frame_put(&frame, modules == NULL ? 0 : eeruf_hc_sr04_health(modules, sensor), 1);
     return eeruf_frame_end(&frame);
 }
-
-/* The frame that an event makes, and its size; 0 if it makes none. Hand in every event, with the `now_us` of its poll.
-   `modules` may be null where the sensors' health is unknown. */
-static inline size_t eeruf_serial_event(EerufSerial *line, const EerufRing *ring, const EerufHcSr04 *modules,
-                                        const EerufEvent *event, uint32_t now_us, uint8_t *bytes) {
-    return eeruf_frame_of_event(line, ring, modules, event, NULL, now_us, bytes);
-}
-
-#if EERUF_HOPPING
-/* The same of a hopping ring: its frames also say how readings were weighed, for `eeruf replay --hopping`. Call it
-   before the next poll, with what that poll was given as `change_us`, and keep frames, not events, if they must wait. */
-static inline size_t eeruf_serial_hopping_event(EerufSerial *line, const EerufHoppingRing *ring,
-                                                const EerufHcSr04 *modules, const EerufEvent *event,
-                                                const int32_t *change_us, uint32_t now_us, uint8_t *bytes) {
-    EerufWeighed weighed;
-    if (event->kind != EERUF_EVENT_READING)
-        return eeruf_frame_of_event(line, &ring->ring, modules, event, NULL, now_us, bytes);
-    weighed.how = eeruf_hopping_weighed(ring, event->sensor);
-    weighed.changes = eeruf_hopping_changes(ring);
-    weighed.change_us = change_us == NULL || event->sensor >= ring->ring.count ? 0 : change_us[event->sensor];
-    return eeruf_frame_of_event(line, &ring->ring, modules, event, &weighed, now_us, bytes);
-}
-#endif
 
 #endif

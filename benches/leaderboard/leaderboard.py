@@ -31,8 +31,6 @@ BUILT_IN = (
     "simultaneous",
     "conventional",
     "eeruf",
-    "eeruf_hopping",
-    "driving",
     "flow",
 )
 """The methods that stand in each table; `sequential`, one by one, is what a method has to beat."""
@@ -41,7 +39,7 @@ KINDS: tuple[_RoomKind, ...] = ("corridor", "office", "hall", "clutter", "alcove
 MOST_LINES = 15
 PART = 10
 """Scenes a part."""
-M0 = {"instructions": "eeruf", "hopping instructions": "eeruf_hopping", "flow instructions": "flow"}
+M0 = {"instructions": "eeruf", "flow instructions": "flow"}
 """Tables of tests/data/boards.txt, and the methods whose rings they measure."""
 
 

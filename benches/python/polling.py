@@ -19,7 +19,7 @@ from eeruf import sim
 # Front and rear left, then their mirror images, as in rings/round-16.toml: x and y in metres, heading in degrees.
 FRONT = [(0.069, 0.136, 90), (0.114, 0.119, 50), (0.148, 0.078, 30), (0.166, 0.027, 10)]
 REAR = [(-0.157, -0.136, -90), (-0.203, -0.119, -130), (-0.237, -0.078, -150), (-0.255, -0.027, -170)]
-WAYS: list[Any] = ["polling", "sequential", "eeruf", "eeruf_hopping", "flow"]
+WAYS: list[Any] = ["polling", "sequential", "eeruf", "flow"]
 CROSSTALK = sim.CAUSES.index("crosstalk")
 
 
@@ -71,6 +71,7 @@ def main() -> None:
     asked = options.parse_args()
     needs: dict[str, Any] = {"t_delta_us": 500, "min_interval_us": 12_000, "window_us": 36_000}
     design = eeruf.design(sensors=16, layout="ring", neighbours=4, **needs)
+    assert design.value_us is not None
     for gain in ("constant", "polaroid_6500"):
         print(
             f"\nGain `{gain}`: times polling's right echoes / foreign, % / blind of 16. Then the worst place: foreign, % / blind."

@@ -6,9 +6,8 @@
 
 static volatile uint32_t CLOCK_US, triggered, distance_mm;
 
-static EerufHoppingRing ring;
-static EerufHopSensor sensors[SENSORS];
-static EerufHopper hoppers[SENSORS];
+static EerufFlowRing ring;
+static EerufFlowSensor sensors[SENSORS];
 
 static void fire(uint8_t sensor) {
     triggered = sensor;
@@ -25,12 +24,11 @@ static void heard(uint8_t sensor) {
 
 int main(void) {
     const EerufFlowConfig config = EERUF_FLOW(SENSORS, 36000);
-    EerufStatus status = eeruf_flow_init(&ring, sizeof ring, sensors, sizeof sensors, hoppers, sizeof hoppers, &config,
-                                         CLOCK_US);
+    EerufStatus status = eeruf_flow_init(&ring, sizeof ring, sensors, sizeof sensors, &config, CLOCK_US);
     if (status != EERUF_OK) return status;
     for (;;) {
         EerufEvent event;
-        while (eeruf_hopping_poll(&ring, CLOCK_US, NULL, &event) == EERUF_EVENT) {
+        while (eeruf_flow_poll(&ring, CLOCK_US, &event) == EERUF_EVENT) {
             if (event.kind == EERUF_EVENT_FIRE) fire(event.sensor);
             if (event.kind == EERUF_EVENT_READING && event.u.reading.kind == EERUF_READING_ACCEPTED)
                 use(event.u.reading.t_echo_us);

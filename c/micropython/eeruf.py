@@ -1,66 +1,127 @@
 """eeruf in MicroPython: rings of ultrasonic sensors that reject each other's sound (Borenstein and Koren, 1995).
 
-    from eeruf import ACCEPTED, KIND, SENSOR, T_ECHO, HcSr04Ring
-    from eeruf_schedule import Schedule
+    from eeruf import ACCEPTED, KIND, SENSOR, T_ECHO, Flow, HcSr04FlowRing
 
-    #                  T_p     phase a        phase b         sensors 0, 1 and 2 fire then, in microseconds
-    ring = HcSr04Ring(Schedule(62000, [[2000, 22000, 42000], [0, 22000, 43000]]).verify(387), pins=[2, 3, 4])
+    # Eight HC-SR04 modules that listen for 25 ms (4.3 m), each on one pin; looks at a line are up to 0.2 ms apart.
+    flow = Flow(8, 25000, t_delta_us=480, near_us=550, path_change_us=550)
+    ring = HcSr04FlowRing(flow, pins=[2, 3, 4, 5, 6, 7, 8, 9])
     while True:
         reading = ring.read()
         if reading and reading[KIND] == ACCEPTED:
             print(reading[SENSOR], reading[T_ECHO] * 1716 // 10000, "mm")
 
-Times are microseconds. `Ring` does, event by event, what the Rust crate eeruf-core does with a ring by a table; it needs no
-hardware and runs under CPython too. Sensors are counted from 0. A ring fires by a table of eeruf_schedule.py, or by flow
-(eeruf_flow.py).
+Times are microseconds, sensors are counted from 0. `FlowRing` does, event by event, what the Rust crate eeruf-core does with
+a flow ring; it needs no hardware and runs under CPython too. Rules: docs/explanation/flow.md.
 
 Licence: MIT OR Apache-2.0.
 """
 
 NOBODY = 255
 NEVER = 0xFFFF  # the age of a sensor none of whose readings was ever accepted
-READING_NAMES = (
-    "first", "accepted", "rejected", "repeated", "no_echo", "clear", "too_early", "late", "stuck", "tentative",
-    "ambiguous", "unanswered",
-)  # fmt: skip
-FIRST, ACCEPTED, REJECTED, REPEATED, NO_ECHO, CLEAR, TOO_EARLY, LATE, STUCK, TENTATIVE = range(10)
-AMBIGUOUS, UNANSWERED = 10, 11
+READING_NAMES = "first accepted rejected repeated no_echo clear too_early late stuck tentative ambiguous unanswered".split()
+FIRST, ACCEPTED, REJECTED, REPEATED, NO_ECHO, CLEAR, TOO_EARLY, LATE, STUCK, _, AMBIGUOUS, UNANSWERED = range(12)
 # What silence means: neither free space nor a fault, NO_ECHO however often; a fault, UNANSWERED; free space once repeated.
 NEVER_FREE, NEEDS_ANSWER, TRUSTED = range(3)
 HISTORY = "history"  # explains an ambiguous reading if a firing that could have been heard is forgotten
-# Of events: what they are, then of a firing and a reading the sensor and the phase in which it fires.
+# What makes an echo accepted: each, while the robot moves and is alone, else as TWO_IN_A_ROW; each, with twice the least
+# quiet; two that no sound of the ring explains, or one that fits what is believed.
+BY_MOTION, EVERY_ECHO, TWO_IN_A_ROW = range(3)
+# Of events: what they are, then of a firing and a reading the sensor and the phase in which it fires, which is 0.
 FIRE, READING, PERIOD = range(3)
-_REMEMBERED = 4  # firings of each sensor: enough if sound is heard for no longer than a period
-_WATCHED = 6  # ends of periods for which an irregular firing may explain a reading
-_ALWAYS = 255  # the schedule is not proven, so the ring searches at each reading
 # Places in a reading, (READING, sensor, phase, period, kind, t_echo_us, previous_us, age, explained_by). Without echo a
 # time is None. `explained_by`: the sensor whose sound could be both echoes, or HISTORY; None unless ambiguous.
 SENSOR, PHASE, KIND, T_ECHO, PREVIOUS, AGE, EXPLAINED_BY = 1, 2, 4, 5, 6, 7, 8
-# The state that each kind of reading shows, or why nothing is known; None for an echo after the reading of its firing.
-_SHOWS = (
-    "unsure", "obstacle", "rejected", "unsure", "unsure", "clear", "too_close", None, "unanswered", "obstacle",
-    "ambiguous", "unanswered",
-)  # fmt: skip
+# The state that each kind of reading shows, or why nothing is known; "-" for an echo after the reading of its firing.
+_SHOWS = "unsure obstacle rejected unsure unsure clear too_close - unanswered - ambiguous unanswered".split()
 _WHYS = ("no_firing", "unsure", "rejected", "ambiguous", "no_witness")
+_UNIT_US = 4  # of quiet
+_TOO_FAR_US = 1000  # a belief that has missed readings ends where a good one may have changed by more
+_TOLD_US = 500000  # for so long a word of the robot's motion holds, then its top speed
+_HEARD_US = 250000  # sound that is heard was sent no longer ago
+_SILENCE = 1 << 29  # the echo time of silence with a witness: later than all, near none
+
+
+def _check(name, value, least, most):
+    if not least <= value <= most:
+        raise ValueError("%s = %d: %d to %d expected" % (name, value, least, most))
+
+
+def _seed_of_chip():
+    seed = 0x811C9DC5  # FNV-1a
+    for byte in __import__("machine").unique_id():
+        seed = (seed ^ byte) * 0x01000193 & 0xFFFFFFFF
+    return max(seed, 1)
+
+
+def _rate(speed_mm_s):
+    # By how much a good reading may change, in 1/16 us per 1,024 us: 2 v / c at 331 m/s.
+    return min((speed_mm_s * 99 + 999) // 1000, 4095)
+
+
+def _in_order(sensors):
+    # Far ones in turn: neighbours hear each other loudest.
+    if sensors == 6:
+        return b"\x00\x02\x04\x01\x05\x03"
+    stride = 3 if sensors > 4 else 1
+    while stride > 1 and (stride == sensors - 1 or 0 in [stride * n % sensors for n in range(1, sensors)]):
+        stride += 1
+    return bytes([place * stride % sensors for place in range(sensors)])
+
+
+class Flow:
+    """Settings of a ring of sensors that listen for `window_us` after their firing and are deaf for `blanking_us`.
+
+    `least_us`: the least time from a firing to the next. `most_us`: the most, and how long sound is heard, its tail included.
+    None: what follows from the window. `rest_us`: the least time between two firings of a sensor, for which its module rests.
+    `dice_us`: random time in every gap, up to this, or twice this while the robot moves; at least eight ticks of the clock.
+    `seed` of the dice: another one for each robot; None: by the chip's number.
+
+    Of a robot that stands, two readings in a row agree within `t_delta_us`, one fits what is believed within `near_us`, and a
+    foreign sound's path changes by at most `path_change_us` from one to the next. What is believed keeps nothing alive
+    after `memory` firings without, and outlasts up to `hold` contradictions. `top_speed_mm_s` is taken for the robot's speed
+    where `moving` does not say it. `alone`: no other robot sends sound here. `votes`: BY_MOTION, or one of the two fixed."""
+
+    def __init__(
+        self, sensors, window_us, blanking_us=0, least_us=None, most_us=None, rest_us=60000, dice_us=2000, seed=None, t_delta_us=80,
+        near_us=150, path_change_us=150, memory=8, hold=4, top_speed_mm_s=0, alone=False, votes=BY_MOTION,
+    ):  # fmt: skip
+        if seed is None:
+            seed = _seed_of_chip()
+        self.min_refire_us = max(rest_us, window_us)
+        if most_us is None:
+            # Two ninths of the window for the tail, but its own stale echoes are never foreign.
+            most_us = min(window_us + window_us // 9 * 2, self.min_refire_us + blanking_us - 1)
+        if least_us is None:
+            least_us = most_us // 11 * 2
+        narrow = min(window_us, 1 << 16) - 1
+        for setting in (
+            ("sensors", sensors, 1, 64), ("window_us", window_us, 1, 4000000), ("blanking_us", blanking_us, 0, narrow),
+            ("most_us", most_us, 1, 250000), ("least_us", least_us, 1, most_us), ("rest_us", rest_us, 1, 4000000),
+            ("dice_us", dice_us, 0, 250000), ("seed", seed, 1, 0xFFFFFFFF), ("t_delta_us", t_delta_us, 0, narrow),
+            ("near_us", near_us, 0, 10000), ("path_change_us", path_change_us, 0, 0xFFFE), ("memory", memory, 0, 255),
+            ("hold", hold, 1, 100), ("top_speed_mm_s", top_speed_mm_s, 0, 0xFFFF), ("alone", alone, 0, 1), ("votes", votes, 0, 2),
+        ):  # fmt: skip
+            _check(*setting)
+            setattr(self, setting[0], setting[1])
 
 
 class _Sensor:
-    def __init__(self, long_ago_us, remembered=_REMEMBERED):
-        self.firings = [long_ago_us] * remembered  # the latest first
-        self.phase = self.period = self.score = 0
-        self.age = NEVER
-        self.enabled = True
-        self.shows, self.seen_us, self.seen_at, self.doubted, self.by = "no_firing", None, 0, False, None
-        self.silent = False  # its last reading was NO_ECHO
+    def __init__(self, now_us, long_ago_us, doubt):
+        self.period, self.age, self.enabled = 0, NEVER, True
+        self.shows, self.seen_us, self.seen_at, self.doubted, self.by = "no_firing", None, now_us, False, None
+        self.no_echo = False  # its last reading was NO_ECHO
+        # By the plan: the quiet that it needs around its firing, in units; when it fired, if it has; its edge is awaited; it
+        # has fired in this round before its turn.
+        self.doubt, self.fired_us, self.has_fired, self.awaits, self.ahead = doubt, now_us, False, False, False
         self.drop(long_ago_us)
 
     def see(self, kind, echo_us, explained_by, now_us):
         shows, known = _SHOWS[kind], self.shows
-        if shows is None:
+        if shows == "-":
             return
-        if kind == NO_ECHO and self.silent:
+        if kind == NO_ECHO and self.no_echo:
             shows = "no_witness"  # nothing confirms silence, again
-        self.silent = kind == NO_ECHO
+        self.no_echo = kind == NO_ECHO
         if shows in _WHYS and known == "obstacle" and not self.doubted:
             self.doubted = True  # one echo may be missed, or another's heard
             return
@@ -70,245 +131,296 @@ class _Sensor:
             self.seen_us, self.seen_at = echo_us, now_us
 
     def forget(self):
-        self.known_us, self.score, self.confirmed = None, 0, False
-
-    def forget_firings(self, long_ago_us):
-        for i in range(len(self.firings)):
-            self.firings[i] = long_ago_us
+        # The last reading and what is believed, None for nothing; by how much a good reading may have changed since the belief
+        # was confirmed, and the greatest rate since the last firing.
+        self.last_us = self.believed_us = None
+        self.grown = self.rate = 0
+        # Firings since the belief was confirmed; contradictions that it outlasts while the robot stands.
+        self.missed, self.conf = 255, 0
 
     def drop(self, long_ago_us):
-        self.forget_firings(long_ago_us)
+        self.firings = [long_ago_us] * 3  # the latest first: fewer explain nothing, more add nothing
         self.echo_us = None
         self.outside = True  # its only edges so far came outside the window
         self.listening = self.can_emit = self.stuck = self.unanswered = False
         self.forget()
 
+    def miss(self):
+        self.missed = min(self.missed + 1, 255)
+        if self.age < NEVER - 1:
+            self.age += 1
 
-class Ring:
-    """A ring that fires by a verified schedule. `now_us` is a reading of a clock of `clock_bits` bits, which may wrap: 32,
-    or on a board those of `time.ticks_us`, mostly 30. Poll it at its deadline, hand in echoes as they come.
 
-    It never accepts a single path of foreign sound that is heard for at most `audible_us` (None: as verified) and changes
-    from one reading to the next by at most `path_change_us` (None: `t_delta_us`)."""
+class FlowRing:
+    """A ring that fires one sensor after the other, with as much quiet around each firing as its readings have needed. `now_us`
+    is a reading of a clock of `clock_bits` bits, which may wrap: 32, or on a board those of `time.ticks_us`, mostly 30. Poll it
+    at its deadline, hand in echoes as they come.
 
-    def __init__(
-        self, schedule, now_us, t_delta_us=None, window_us=None, blanking_us=0, consecutive=2, clock_bits=32,
-        unverified=False, path_change_us=None, audible_us=None,
-    ):  # fmt: skip
-        if not schedule.verified and (not unverified or t_delta_us is None or window_us is None):
-            raise ValueError("the schedule was not verified")
-        if t_delta_us is None:
-            t_delta_us = schedule.t_delta_us
-        if window_us is None:
-            window_us = schedule.window_us
-        if schedule.verified and t_delta_us > schedule.t_delta_us:
-            raise ValueError("t_delta_us = %d: verified for %d" % (t_delta_us, schedule.t_delta_us))
-        longest = schedule.window_us if schedule.verified else schedule.min_refire_us
-        if window_us > longest:
-            raise ValueError("window_us = %d: at most %d" % (window_us, longest))
-        if not 2 <= consecutive <= 8:
-            raise ValueError("consecutive = %d: 2 to 8 expected" % consecutive)
-        self._listen(t_delta_us, window_us, blanking_us, clock_bits)
-        self._max_audible = 1 << min(26, clock_bits - 4)
-        if 6 * schedule.period_us > self._half:
-            raise ValueError("period_us = %d: too long for a clock of %d bits" % (schedule.period_us, clock_bits))
-        self.schedule = schedule
-        self.consecutive = consecutive
-        self._begin([_Sensor(self._known_at(now_us)) for _ in range(schedule.sensors)], now_us)
-        self.path_change_us = None
-        self.set_audible(min(schedule.audible_us, self._max_audible) if audible_us is None else audible_us)
-        self.set_path_change(path_change_us)
-        if self._proven:
-            self._watched = 0
-        self._last_fired = (now_us - schedule._settling_us()) & self._mask
-        self._due = now_us
-        self._begin_period(0)
+    A reading is accepted if it fits what is believed, or if it agrees with the one before and no sound of the ring explains
+    both: never, in the second way, one path of foreign sound that is heard for at most R and changes by at most P, and by
+    what the robot's motion gives. Not so where every echo is accepted."""
 
-    def _listen(self, t_delta_us, window_us, blanking_us, clock_bits):
-        if not 0 <= blanking_us < min(window_us, 1 << 16):
-            raise ValueError("blanking_us = %d: less than the window of %d us expected" % (blanking_us, window_us))
-        if not 0 <= t_delta_us < min(window_us, 1 << 16):
-            raise ValueError("t_delta_us = %d: less than the window of %d us expected" % (t_delta_us, window_us))
-        self.t_delta_us, self.window_us, self.blanking_us = t_delta_us, window_us, blanking_us
+    def __init__(self, flow, now_us, clock_bits=32):
+        self.flow = flow
         self._mask, self._half = (1 << clock_bits) - 1, 1 << (clock_bits - 1)
         # Longer ago than any sound is heard; by how much a clock may step back.
         self._long_ago, self._step_back = 1 << (clock_bits - 2), 1 << min(20, clock_bits - 4)
-
-    def _known_at(self, now_us):
-        return (now_us - self._long_ago) & self._mask
-
-    def _begin(self, sensors, now_us):
+        # No deadline lies further ahead: a round of the longest gaps.
+        self._horizon = (flow.sensors + 1) * (flow.most_us + 2 * flow.dice_us) + flow.min_refire_us
+        _check("clock_bits", clock_bits, 28, 64)
         # How long after its firing a reading without an echo is emitted at the soonest, for modules that report after their
         # window has closed: by a bus, or a pulse that hardware measures.
         self.report_after_us = 0
         self.silence = NEVER_FREE  # of a firing whose sensor has not shown by `answered` or `measured` that it listened
-        self._known_from = self._known_at(now_us)  # firings before are not known
-        self._sensors = sensors
-        for sensor in sensors:
-            sensor.seen_at = now_us
+        self._known_from = self._long_before(now_us)  # firings before are not known
+        # Quiet to begin with, and by how much it grows and shrinks.
+        more_us = flow.most_us - flow.least_us
+        first_us = flow.least_us + more_us // 5
+        self._first = first_us // _UNIT_US
+        self._up, self._down = more_us // 4 // _UNIT_US, more_us // 10 // _UNIT_US
+        self._sensors = [_Sensor(now_us, self._known_from, self._first) for _ in range(flow.sensors)]
         self._oldest, self._pending, self._emit_at = NOBODY, 0, now_us
-        self._period = 0
+        self._period = self._latest = self._total = 0  # the last two: this period's lateness
         self._tally = [0] * len(READING_NAMES)
-        # At how many more ends of periods an irregular firing can be heard; this period's lateness.
-        self._watched = self._latest = self._total = 0
+        self._top = self._rate = _rate(flow.top_speed_mm_s)
+        # When the caller last said how fast the robot moves; the greatest rates in the spans before and from an instant on,
+        # neither much shorter than sound is heard.
+        self._told, self._before, self._greatest, self._since = None, self._top, self._top, 0
+        # The place in the order whose turn it is, how many have fired ahead of theirs, when a sensor last fired.
+        self._order, self._place, self._ahead, self._last_fired = _in_order(flow.sensors), 0, 0, now_us
+        self._high, self._low = flow.seed >> 16, flow.seed & 0xFFFF
+        self._moves = self._every_echo = self._paused = False
+        self._set_moves()
+        self._throw()
+        self._next, self._due = 0, (now_us + max(first_us, self._least()) + self._thrown) & self._mask
+
+    def _long_before(self, now_us):
+        return (now_us - self._long_ago) & self._mask
 
     def _reached(self, now_us, deadline_us):
         return (now_us - deadline_us) & self._mask < self._half
 
-    # -- The scheduler: a firing that is polled late moves all that follow by as much (Sec. 3.1, Fig. 3). --
+    # -- Plan: who fires next, and when --
 
-    def _begin_period(self, phase):
-        self._phase, self._following = phase, 0
-        self._turn()
+    def _throw(self):
+        # Xorshift by 13, 17 and 5 (Marsaglia, 2003), in halves, since a small integer has 31 bits.
+        high, low = self._high, self._low
+        high, low = high ^ (high << 13 | low >> 3) & 0xFFFF, low ^ low << 13 & 0xFFFF
+        low ^= high >> 1
+        high, low = high ^ (high << 5 | low >> 11) & 0xFFFF, low ^ low << 5 & 0xFFFF
+        self._high, self._low = high, low
+        dice = (self.flow.dice_us << self._moves) + 1
+        self._thrown = high * dice + (low * dice >> 16) >> 16
 
-    def _turn_once(self):
-        order, place = self.schedule.order[self._phase], self._following
-        self._next = order[place] if place < len(order) else NOBODY
-        self._due = (self._due + self.schedule.gap_us[self._phase][place]) & self._mask
-        self._following = place + 1
+    def _least(self):
+        return min(self.flow.least_us << self._every_echo, self.flow.most_us)
 
-    def _turn(self):
-        self._turn_once()
-        self._skip()
+    def quiet_us(self, x):
+        """The quiet that a sensor needs before its firing and after it."""
+        return max(self._sensors[x].doubt * _UNIT_US, self._least())
 
-    def _skip(self):
-        while self._next != NOBODY and not self._sensors[self._next].enabled:
-            self._turn_once()
+    def _since_last(self, at_us):
+        # From the last firing of any until an instant, or 0.
+        us = (at_us - self._last_fired) & self._mask
+        return 0 if us > self._half else us
 
-    def _horizon(self):
-        return max(3 * self.schedule.period_us, (self._due - self._last_fired) & self._mask)
+    def _first_from(self, place):
+        while place < len(self._order):
+            sensor = self._sensors[self._order[place]]
+            if sensor.enabled and not sensor.ahead:
+                break
+            place += 1
+        return place
 
-    def _end_schedule_period(self, now_us):
-        settling = self.schedule._settling_us()
-        left_out = (now_us - self._due) & self._mask > self.schedule.period_us
-        if left_out:
-            self._due = now_us
-        if (self._due - self._last_fired) & self._mask > settling:
-            self._last_fired = (self._due - settling) & self._mask
-        self._begin_period((self._phase + 1) % self.schedule.phases)
-        return left_out
+    def _decide(self):
+        flow, sensors, order, least = self.flow, self._sensors, self._order, self._least()
+        self._next, nobody = NOBODY, True
+        # The quiet after those that wait for their edge, no longer than they listen: the longest, whose, and the second.
+        longest = second = 0
+        whose = None
+        for sensor in sensors:
+            nobody = nobody and not sensor.enabled
+            if sensor.awaits:
+                quiet = self._since_last(sensor.fired_us + min(max(sensor.doubt * _UNIT_US, least), flow.window_us))
+                if quiet > longest:
+                    longest, second, whose = quiet, longest, sensor
+                elif quiet > second:
+                    second = quiet
+        place = len(order) if self._paused else self._first_from(self._place)
+        if place == len(order):
+            # The round ends at once, and if nobody fires after the time for which one would rest.
+            self._due = (self._last_fired + (flow.rest_us if self._paused or nobody else 0)) & self._mask
+        while place < len(order):
+            sensor = sensors[order[place]]
+            quiet = max(sensor.doubt * _UNIT_US, least, second if sensor is whose else longest)
+            rested = 0
+            if sensor.has_fired:
+                rested = self._since_last(sensor.fired_us + (flow.min_refire_us if sensor.awaits else flow.rest_us))
+            if rested <= quiet or self._next == NOBODY:
+                self._next, self._due = order[place], (self._last_fired + max(quiet, rested) + self._thrown) & self._mask
+            # Nobody is passed over twice: only while no other has fired ahead.
+            if rested <= quiet or self._ahead:
+                break
+            place = self._first_from(place + 1)
 
-    # -- Near-identical readings are ambiguous if sound of one sensor explains both. While firings keep a verified
-    #    timetable there is none, and the ring does not search (docs/explanation/theory.md, section 2.1). --
+    def upcoming(self):
+        """The next firing in a list, (sensor, instant), for PIO, RMT or a timer that fires by itself; none if the round ends
+        first. It holds until a reading is emitted. The loop may then come late: poll at that instant until there is no event, so
+        that FIRE says what is done already; hand in echoes; last poll at the present."""
+        return [] if self._next == NOBODY else [(self._next, self._due)]
 
-    def set_path_change(self, path_change_us):
-        """Sets the largest change of a foreign sound's path from one reading to the next, None for `t_delta_us`."""
-        if path_change_us is not None and not 0 <= path_change_us < 0xFFFF:
-            raise ValueError("path_change_us = %d: 0 to 65534 expected" % path_change_us)
-        self.path_change_us = path_change_us
-        self._prove()
+    # -- Judge: what a reading is worth --
 
-    def set_audible(self, audible_us):
-        """Sets for how long sound is heard after it was sent."""
-        if not 0 <= audible_us <= self._max_audible:
-            raise ValueError("audible_us = %d: 0 to %d expected" % (audible_us, self._max_audible))
-        self.audible_us = audible_us
-        self._prove()
+    def _set_moves(self):
+        # Takes in the rate that holds now.
+        flow, moves = self.flow, self._rate > 0
+        if self._moves != moves:
+            self._moves = moves
+            for sensor in self._sensors:
+                sensor.conf = min(sensor.conf, 1)
+        self._every_echo = flow.votes == EVERY_ECHO or flow.votes == BY_MOTION and flow.alone and moves
 
-    def _prove(self):
-        """Updates `_proven`, true if the schedule was verified for what the ring asks, and `_spare`, the lateness of a
-        period's firings together that crosstalk still stands."""
-        schedule, asked = self.schedule, self.path_change_us
-        self._change_us = self.t_delta_us if asked is None else asked
-        twice = self.t_delta_us + self._change_us
-        self._proven = (
-            schedule.verified
-            and (asked or 0) <= schedule.t_delta_us
-            and self.audible_us <= schedule.audible_us
-            and twice < schedule.min_refire_us
-        )
-        self._spare = min(max(schedule.separation_us - twice - 1, 0) // 4, 0xFFFF)
-        self._disturb()
+    def _recent(self, now_us):
+        # The greatest rate while sound could be sent that is heard now.
+        if self._told is not None and _TOLD_US < (now_us - self._told) & self._mask < self._half:
+            self._told, self._rate = None, self._top
+        if _HEARD_US < (now_us - self._since) & self._mask < self._half:
+            self._since, self._before, self._greatest = now_us, self._greatest, self._rate
+        self._greatest = max(self._greatest, self._rate)
+        return max(self._before, self._greatest)
 
-    def _disturb(self):
-        self._watched = _WATCHED if self._proven else _ALWAYS
+    def moving(self, speed_mm_s, turn_mrad_s, now_us):
+        """Says how fast the robot moves and turns, once a control cycle: readings may change by as much. It holds for half a
+        second, then the top speed does."""
+        recent = self._recent(now_us)
+        self._rate, self._told = _rate(abs(speed_mm_s) + abs(turn_mrad_s) // 2), now_us
+        self._greatest = max(self._greatest, self._rate)
+        for sensor in self._sensors:
+            sensor.rate = max(sensor.rate, recent, self._rate)
+        self._set_moves()
+        self._decide()
 
-    def _fired_late(self, late_us):
-        self._latest = max(self._latest, late_us)
-        self._total = min(self._total + late_us, 0xFFFF)
-        if self._total > self._spare:
-            self._disturb()
+    def _grow(self, sensor):
+        # By how much a good reading may have changed since the one before: what it heard was sent a while before.
+        firings = sensor.firings
+        recent = self._recent(firings[0])
+        self._set_moves()
+        span = max(sensor.rate, recent) * min((firings[0] - firings[1]) & self._mask, 0xFFFFF) >> 14
+        sensor.rate, sensor.grown = recent, min(sensor.grown + span, 0xFFFF)
+        return span
 
-    def _end_late_period(self, now_us):
-        latest, total = self._latest, self._total
-        self._latest = self._total = 0
-        if 0 < self._watched < _ALWAYS:
-            self._watched -= 1
-        # Before the clock comes round to them.
-        long_ago = (now_us - self._long_ago) & self._mask
-        for x, sensor in enumerate(self._sensors):
-            if self._is_long_ago(sensor.firings[0], now_us):
-                sensor.forget_firings(long_ago)
-                self.forget(x)  # the instant that its next reading would be compared from is no longer known
-                if not sensor.listening:
-                    sensor.outside = True  # no edge is an echo of them
-            if (now_us - sensor.seen_at) & self._mask > self._half:
-                sensor.seen_at = (now_us - self._half) & self._mask
-        if self._is_long_ago(self._known_from, now_us):
-            self._known_from = long_ago
-        return latest, total
+    def _judge(self, x, sensor, echo):
+        """Judges an echo, or silence with a witness: (kind, age, explained_by)."""
+        flow, explained_by, span = self.flow, None, self._grow(sensor)
+        believed_us, last_us, at_us = sensor.believed_us, sensor.last_us, _SILENCE if echo is None else echo
+        believes = believed_us is not None
+        fits = held_back = False
+        if believes and sensor.missed <= flow.memory and (not sensor.missed or sensor.grown <= _TOO_FAR_US):
+            fits = abs(at_us - believed_us) <= flow.near_us + sensor.grown
+        ok = fits or echo is None
+        if not ok and last_us is not None and abs(echo - last_us) <= flow.t_delta_us + span:
+            explained_by = self._explanation(x, last_us, echo, flow.path_change_us + span)
+            ok = explained_by is None
+        far = believes and not fits and (echo is None or echo > believed_us)
+        if believes and not self._moves:
+            # What is farther, or silence, must outlast what is believed.
+            if fits:
+                sensor.conf = min(sensor.conf + 1, flow.hold)
+            elif far:
+                sensor.conf = max(sensor.conf - 1, 0)
+                held_back = ok and sensor.conf > 0
+                ok = ok and not held_back
+        # The first silence in a row leaves an obstacle standing, but a robot that moves has left it behind.
+        clears = last_us == _SILENCE or fits or self._moves
+        if echo is None:
+            kind = CLEAR if ok and clears else NO_ECHO
+        elif ok or self._every_echo:
+            kind, explained_by = ACCEPTED, None
+        elif explained_by is not None:
+            kind = AMBIGUOUS
+        elif held_back:
+            kind = REPEATED
+        else:
+            kind = FIRST if last_us in (None, _SILENCE) and not believes else REJECTED
+        age = sensor.age
+        if ok:
+            sensor.doubt = max(sensor.doubt - self._down, self._least() // _UNIT_US)
+            if echo is not None or clears or believed_us in (None, _SILENCE):
+                if not fits:
+                    sensor.conf = 1
+                sensor.believed_us, sensor.grown, sensor.missed = at_us, 0, 0
+        else:
+            sensor.miss()
+            if echo is not None and not far and self._is_masked(x, sensor.firings[0] + echo):
+                sensor.doubt = min(sensor.doubt + self._up, flow.most_us // _UNIT_US)
+        if kind == ACCEPTED:
+            age = sensor.age = 0
+        sensor.last_us = at_us
+        return kind, age, explained_by
 
-    def _is_long_ago(self, at_us, now_us):
-        # What lies just ahead of now is from before the clock stepped back.
-        return self._long_ago < (now_us - at_us) & self._mask <= self._mask - self._step_back
-
-    def _explanation(self, receiver, first, second):
+    def _explanation(self, receiver, first, second, change):
         """The sensor whose sound could be both echoes, `first` after the receiver's firing before its last and `second`
-        after the last; HISTORY if a forgotten firing's could, else None."""
-        mask, half, audible = self._mask, self._half, self.audible_us
+        after the last, by a path that changes by at most `change`; HISTORY if a forgotten firing's could, else None."""
+        mask, audible = self._mask, self.flow.most_us
         own = self._sensors[receiver].firings
         first, second = (own[1] + first) & mask, (own[0] + second) & mask
         # The time between the two sounds is that between their firings, but for the change of the path.
-        apart = (second - first) & mask
-        least, most = apart - self._change_us, apart + self._change_us
-        age = (first - self._known_from) & mask
-        forgotten = age < audible or age >= half
-        x = 0
-        for sensor in self._sensors:
-            firings = sensor.firings
+        most = second - first + change
+        # Whatever is forgotten came before the last of what is known: an instant after the first sound is no help.
+        forgotten = (first - self._known_from + self._half) & mask < self._half + audible
+        for x in range(self.flow.sensors):
+            firings = self._sensors[x].firings
             # The receiver's own two firings are those whose echoes it is meant to hear.
-            latest = 1 if x == receiver else 0
-            left_out = 1 if x == receiver else -1
-            for i in range(_REMEMBERED):
+            latest, left_out = (1, 1) if x == receiver else (0, -1)
+            for i in range(3):
                 a = firings[i]
                 age = (first - a) & mask
                 if age <= audible and i != left_out:
                     for j in range(latest, i + 1):
                         b = firings[j]
-                        if least <= (b - a) & mask <= most and (second - b) & mask <= audible:
+                        if (most - b + a) & mask <= 2 * change and (second - b) & mask <= audible:
                             return x
-            # Whatever is forgotten came before the last of them.
-            if age < audible or age >= half:
-                forgotten = True
-            x += 1
+            forgotten = forgotten or (age + self._half) & mask < self._half + audible
         return HISTORY if forgotten else None
+
+    def _is_masked(self, receiver, heard):
+        # Whether sound of any firing but the receiver's last could be what it heard.
+        for x in range(self.flow.sensors):
+            for i in range(1 if x == receiver else 0, 3):
+                if (heard - self._sensors[x].firings[i]) & self._mask <= self.flow.most_us:
+                    return True
+        return False
+
+    def believed_us(self, x):
+        """The echo time that is believed of a sensor; None if none is, or nothing is in range."""
+        sensor = self._sensors[x]
+        return None if sensor.missed > self.flow.memory or sensor.believed_us == _SILENCE else sensor.believed_us
 
     # -- Events --
 
-    def poll(self, now_us, change_us=None):
-        """The next event, or None: then sleep until the deadline. Hand in the echoes you know of before. `change_us`: what
-        a good reading of each sensor should have changed by since its firing before, where the robot moves."""
+    def poll(self, now_us):
+        """The next event, or None: then sleep until the deadline. Hand in the echoes you know of before."""
         is_due = self._reached(now_us, self._due)
         pends = self._pending > 0 or self._oldest != NOBODY
         if not is_due and not (pends and self._reached(now_us, self._emit_at)):
-            if (self._due - now_us) & self._mask > self._horizon():
+            if (self._due - now_us) & self._mask > self._horizon:
                 self._restart(now_us)  # the clock has jumped
             return None
-        return self._advance(now_us, change_us, is_due)
+        # Apart, since this mostly finds nothing due: MicroPython keeps the variables of larger functions in the heap, and
+        # finding room there takes longer the fuller it is.
+        return self._advance(now_us, is_due)
 
-    def _advance(self, now_us, change_us, is_due):
-        # Apart from `poll`, which mostly finds nothing due: MicroPython keeps the variables of larger functions in the
-        # heap, and finding room there takes longer the fuller it is.
+    def _advance(self, now_us, is_due):
         x = self._next
         fires = is_due and x != NOBODY
         if not fires:
             x = self._next_pending(now_us)
         if fires and not self._sensors[x].listening and not self._sensors[x].can_emit:
-            event = (FIRE, x, self._phase, self._due)
+            event = (FIRE, x, 0, self._due)
             self._fire(x, now_us)
             return event
         if x != NOBODY:
-            event = self._emit(x, 0 if change_us is None else change_us[x])
+            event = self._emit(x)
             self._sensors[x].see(event[KIND], event[T_ECHO], event[EXPLAINED_BY], now_us)
             return event
         return self._end_period(now_us) if is_due else None
@@ -329,137 +441,116 @@ class Ring:
             return "unknown", None, age_us, sensor.shows, sensor.by
         return sensor.shows, sensor.seen_us if sensor.shows == "obstacle" else None, age_us, None, None
 
-    def upcoming(self):
-        """The firings to come up to the end of the next period, as (sensor, instant), for PIO, RMT or a timer that fires by
-        itself. They hold until one is late. The loop may then come late: for each firing poll at its instant until there is
-        no event, so that FIRE says what is done already; hand in echoes; last poll at the present."""
-        schedule, phase, place, x, at = self.schedule, self._phase, self._following, self._next, self._due
-        is_last = False
-        while x != NOBODY or not is_last:
-            if x == NOBODY:
-                phase, place, is_last = (phase + 1) % schedule.phases, 0, True
-            elif self._sensors[x].enabled:
-                yield x, at
-            x = schedule.order[phase][place] if place < schedule.sensors else NOBODY
-            at = (at + schedule.gap_us[phase][place]) & self._mask
-            place += 1
-
     def _next_pending(self, now_us):
+        x = self._oldest
         if self._pending == 0:
-            return self._oldest if self._oldest != NOBODY and self._reached(now_us, self._emit_at) else NOBODY
-        if self._oldest != NOBODY and self._sensors[self._oldest].can_emit:
-            return self._oldest
-        for x, sensor in enumerate(self._sensors):
-            if sensor.can_emit:
-                return x
-        return NOBODY
+            return x if self._reached(now_us, self._emit_at) else NOBODY
+        if x == NOBODY or not self._sensors[x].can_emit:
+            x = 0
+            while not self._sensors[x].can_emit:
+                x += 1
+        return x
 
     def _emit_when_oldest_ends(self):
         if self._pending == 0 and self._oldest != NOBODY:
-            listens_us = max(self.window_us, self.report_after_us)
+            listens_us = max(self.flow.window_us, self.report_after_us)
             self._emit_at = (self._sensors[self._oldest].firings[0] + listens_us) & self._mask
 
     def _find_oldest(self, before):
         before -= self._step_back  # 1 us before is not a turn of the clock after
         self._oldest, soonest = NOBODY, self._mask
-        for x, sensor in enumerate(self._sensors):
-            if sensor.listening and (sensor.firings[0] - before) & self._mask < soonest:
-                self._oldest, soonest = x, (sensor.firings[0] - before) & self._mask
+        for x in range(self.flow.sensors):
+            age = (self._sensors[x].firings[0] - before) & self._mask
+            if age < soonest and self._sensors[x].listening:
+                self._oldest, soonest = x, age
 
     def _fire(self, x, now_us):
         sensor = self._sensors[x]
-        late_us = min((now_us - self._due) & self._mask, 0xFFFF)
-        sensor.listening, sensor.phase, sensor.period = True, self._phase, self._period
+        self._note((now_us - self._due) & self._mask)
+        sensor.listening, sensor.period = True, self._period
         sensor.can_emit = sensor.outside = sensor.stuck = False
         sensor.unanswered = self.silence != TRUSTED
         firings = sensor.firings
-        for i in range(len(firings) - 1, 0, -1):
-            firings[i] = firings[i - 1]
-        firings[0] = now_us
-        if late_us:
-            self._fired_late(late_us)
+        firings[0], firings[1], firings[2] = now_us, firings[0], firings[1]
         if self._oldest == NOBODY:
             self._oldest = x
             self._emit_when_oldest_ends()
-        self._has_fired(sensor, now_us)
-
-    def _has_fired(self, sensor, now_us):
-        self._last_fired = self._due = now_us
-        self._turn()
-
-    def _compare(self, x, change_us):
-        """Ends a firing and compares its reading with the one before (Eq. 11): (kind, echo, previous, explained_by)."""
-        sensor = self._sensors[x]
-        echo, explained_by = sensor.echo_us, None
-        if sensor.stuck or sensor.outside:
-            sensor.forget()
-        previous = sensor.known_us
-        if sensor.stuck:
-            kind, echo = STUCK, None
-        elif sensor.outside:
-            kind = TOO_EARLY
-        elif sensor.unanswered and echo is None:
-            sensor.forget()
-            kind, previous = UNANSWERED if self.silence == NEEDS_ANSWER else NO_ECHO, None
+        place = self._first_from(self._place)
+        if self._order[place] == x:
+            self._place = place + 1
         else:
-            if echo is None or previous is None:
-                near = echo is None and previous is None
-            else:
-                near = abs(echo - previous - change_us) <= self.t_delta_us
-                # The proof is about readings that differ by no more than t_delta_us.
-                if near and (self._watched or change_us):
-                    explained_by = self._explanation(x, previous, echo)
-            if sensor.score and near and explained_by is None:
-                sensor.score = min(sensor.score + 1, self.consecutive)
-                sensor.confirmed = sensor.score >= self.consecutive
-            else:
-                sensor.score, sensor.confirmed = 1, False
-            sensor.known_us = echo
-            if sensor.confirmed:
-                kind = CLEAR if echo is None else ACCEPTED
-            elif echo is None:
-                kind = NO_ECHO
-            elif explained_by is not None:
-                kind = AMBIGUOUS
-            elif previous is None:
-                kind = FIRST
-            else:
-                kind = REJECTED if sensor.score == 1 else REPEATED
-        sensor.age = 0 if kind == ACCEPTED else min(sensor.age + 1, max(NEVER - 1, sensor.age))
-        sensor.listening = sensor.can_emit = sensor.outside = sensor.stuck = False
-        sensor.echo_us = None
-        return kind, echo, previous, explained_by
+            sensor.ahead = True
+            self._ahead += 1
+        sensor.has_fired = sensor.awaits = True
+        sensor.fired_us = self._last_fired = now_us
+        self._throw()
+        self._decide()
 
-    def _emit(self, x, change_us):
+    def _note(self, late_us):
+        self._latest = max(self._latest, min(late_us, 0xFFFF))
+        self._total = min(self._total + late_us, 0xFFFF)
+
+    def _emit(self, x):
         sensor = self._sensors[x]
         if sensor.can_emit:
             self._pending -= 1
-        if sensor.listening:
-            kind, echo, previous, explained_by = self._compare(x, change_us)
+        echo, previous, age, explained_by = sensor.echo_us, None, sensor.age, None
+        sensor.can_emit, sensor.echo_us = False, None
+        if not sensor.listening:
+            kind = LATE
+        else:
+            previous, kind = None if sensor.last_us == _SILENCE else sensor.last_us, None
+            if sensor.stuck:
+                kind, echo = STUCK, None
+            elif sensor.outside:
+                kind = TOO_EARLY
+            elif sensor.unanswered and echo is None:
+                kind = UNANSWERED if self.silence == NEEDS_ANSWER else NO_ECHO
+            if kind is None:
+                kind, age, explained_by = self._judge(x, sensor, echo)
+            else:
+                # It says nothing of an echo.
+                self._grow(sensor)
+                sensor.miss()
+                sensor.last_us = None
+            sensor.listening = sensor.outside = sensor.stuck = sensor.awaits = False
+            self._decide()
             if self._oldest == x:
                 self._find_oldest(sensor.firings[0])
-        else:
-            kind, echo, previous, explained_by = LATE, sensor.echo_us, None, None
-            sensor.can_emit, sensor.echo_us = False, None
         self._emit_when_oldest_ends()
-        self._count(kind)
+        self._tally[kind] = min(self._tally[kind] + 1, 255)
         # Rust and C keep the lowest three bits of the period; of an edge that is later they say a later one.
         period = (self._period - (self._period - sensor.period & 7)) & 0xFFFFFFFF
-        return (READING, x, sensor.phase, period, kind, echo, previous, sensor.age, explained_by)
-
-    def _count(self, kind):
-        self._tally[kind] = min(self._tally[kind] + 1, 255)
+        return (READING, x, 0, period, kind, echo, previous, age, explained_by)
 
     def _end_period(self, now_us):
-        self._latest = max(self._latest, min((now_us - self._due) & self._mask, 0xFFFF))
-        phase, period = self._phase, self._period
-        self._period = (self._period + 1) & 0xFFFFFFFF
-        changed = self._end_schedule_period(now_us)
-        late = self._end_late_period(now_us)
-        if changed:
-            self._disturb()
-        tally, self._tally = self._tally, [0] * len(READING_NAMES)
-        return (PERIOD, phase, period) + late + (tally,)
+        latest = max(self._latest, min((now_us - self._due) & self._mask, 0xFFFF))
+        event = (PERIOD, 0, self._period, latest, self._total, self._tally)
+        self._latest = self._total = self._place = self._ahead = 0
+        self._period, self._tally = (self._period + 1) & 0xFFFFFFFF, [0] * len(READING_NAMES)
+        for sensor in self._sensors:
+            # Those that fired ahead have had their turn.
+            sensor.ahead = False
+            # Before the clock comes round to them.
+            if sensor.has_fired and (now_us - sensor.fired_us) & self._mask > self._half >> 2:
+                sensor.has_fired = sensor.awaits = False
+            if self._is_long_ago(sensor.firings[0], now_us):
+                sensor.firings = [self._long_before(now_us)] * 3
+                sensor.forget()  # the instant that its next reading would be compared from is no longer known
+                if not sensor.listening:
+                    sensor.outside = True  # no edge is an echo of them
+            if (now_us - sensor.seen_at) & self._mask > self._half:
+                sensor.seen_at = (now_us - self._half) & self._mask
+        if self._is_long_ago(self._known_from, now_us):
+            self._known_from = self._long_before(now_us)
+        if self._next == NOBODY and (now_us - self._last_fired) & self._mask >= self.flow.rest_us:
+            self._last_fired = now_us  # nobody fires: rounds go on
+        self._decide()
+        return event
+
+    def _is_long_ago(self, at_us, now_us):
+        # What lies just ahead of now is from before the clock stepped back.
+        return self._long_ago < (now_us - at_us) & self._mask <= self._mask - self._step_back
 
     # -- What happens to it --
 
@@ -470,10 +561,10 @@ class Ring:
         if t_echo >= self._half:
             return
         if sensor.listening:
-            if t_echo > self.window_us:
-                self._count(LATE)
+            if t_echo > self.flow.window_us:
+                self._tally[LATE] = min(self._tally[LATE] + 1, 255)
                 return
-            if t_echo < self.blanking_us:
+            if t_echo < self.flow.blanking_us:
                 if sensor.echo_us is None:
                     sensor.outside, sensor.echo_us = True, t_echo
                 return
@@ -483,7 +574,7 @@ class Ring:
             if sensor.can_emit:
                 return
         else:
-            if t_echo <= self.window_us or sensor.outside:
+            if t_echo <= self.flow.window_us or sensor.outside:
                 return
             sensor.outside, sensor.echo_us = True, t_echo
         sensor.can_emit = True
@@ -502,29 +593,28 @@ class Ring:
             return
         firings[0] = at_us
         later = (at_us - polled) & self._mask
-        earlier = later >= self._half
-        if earlier:
+        if later >= self._half:
             later -= self._mask + 1
-        if not sensor.listening and sensor.known_us is not None:
-            sensor.known_us -= later
-            if sensor.known_us < 0:
-                sensor.forget()
         if sensor.echo_us is not None:
             sensor.echo_us -= later
             if sensor.echo_us < 0:
                 # The first edge came before it fired, and may have kept out the echo.
                 sensor.echo_us, sensor.outside = 0, True
-        if sensor.listening:
-            if not earlier:
-                self._last_fired = (self._last_fired + later) & self._mask
-                self._due = (self._due + later) & self._mask
-                later = min(later, 0xFFFF)
-                self._latest = max(self._latest, later)
-                self._total = min(self._total + later, 0xFFFF)
-            if self._oldest == x:
-                self._find_oldest(polled)
-                self._emit_when_oldest_ends()
-        self._disturb()
+        if not sensor.listening and sensor.last_us is not None and sensor.last_us < _SILENCE:
+            # Its reading is judged already.
+            sensor.last_us = max(sensor.last_us - later, 0)
+            if not sensor.missed:
+                sensor.believed_us = max(sensor.believed_us - later, 0)
+        if later > 0 and sensor.listening or not sensor.awaits or self._reached(sensor.fired_us, at_us):
+            if self._last_fired == sensor.fired_us or self._reached(at_us, self._last_fired):
+                self._last_fired = at_us
+            sensor.fired_us = at_us
+            self._decide()
+        if sensor.listening and later > 0:
+            self._note(later)
+        if self._oldest == x:
+            self._find_oldest(polled)
+            self._emit_when_oldest_ends()
 
     def stuck(self, x):
         """The echo line of a sensor was high when it was to be fired."""
@@ -552,40 +642,49 @@ class Ring:
     def enable(self, x, enabled=True):
         """Lets a sensor fire, or not, from its next turn on."""
         sensor = self._sensors[x]
-        if enabled and not sensor.enabled:
+        if enabled and sensor.enabled:
+            return
+        if enabled:
             sensor.forget()
-            self._disturb()
+            sensor.doubt = self._first
         sensor.enabled = enabled
-        self._skip()
+        self._decide()
+
+    def pause(self, paused=True):
+        """Lets no sensor fire until it is unset. Belief stays, and the next reading is compared with no other."""
+        self._paused = paused
+        for sensor in [] if paused else self._sensors:
+            sensor.last_us, sensor.missed = None, max(sensor.missed, 1)
+        self._decide()
 
     def restart(self, now_us):
-        """Again with the first phase, after a long sleep. Nothing is known then."""
+        """Again from the first sensor on, after a long sleep. Nothing is known then."""
         self._restart(now_us)
         for sensor in self._sensors:
-            sensor.shows, sensor.seen_at, sensor.doubted, sensor.silent = "no_firing", now_us, False, False
+            sensor.shows, sensor.seen_at, sensor.doubted, sensor.no_echo = "no_firing", now_us, False, False
 
     def _restart(self, now_us):
-        settling = self.schedule._settling_us()
-        waits = (self._last_fired + settling - now_us) & self._mask
-        if 0 < waits <= self._horizon():
-            self._due = (now_us + waits) & self._mask
-        else:
-            self._last_fired, self._due = (now_us - settling) & self._mask, now_us
-        self._begin_period(0)
-        # Sound from before may still be heard. A sensor that was said to fire a little later still does.
         self._known_from = now_us
         for sensor in self._sensors:
+            # Sound from before may still be heard. A sensor that was said to fire a little later still does.
             fired_us = sensor.firings[0]
             if (fired_us - self._known_from - 1) & self._mask < self._step_back:
                 self._known_from = fired_us
-            sensor.drop(self._known_at(now_us))
-        self._oldest, self._pending = NOBODY, 0
-        self._disturb()
+            sensor.drop(self._long_before(now_us))
+            # A clock that has jumped says nothing of when they fired.
+            sensor.has_fired = sensor.has_fired and (now_us - sensor.fired_us) & self._mask <= self.flow.rest_us
+            sensor.awaits = sensor.ahead = False
+            sensor.doubt = self._first
+        self._oldest = NOBODY
+        self._pending = self._place = self._ahead = 0
+        # Sound from before dies away.
+        self._last_fired = (now_us + self.flow.most_us) & self._mask
+        self._decide()
 
 
-class HcSr04Ring:
+class HcSr04FlowRing:
     """A ring of HC-SR04 modules, on one pin each or with the echo lines on other pins. Needs `machine` and `time`; both may
-    be handed in. A reading is what `Ring.poll` says; `read` samples the lines, so call it often."""
+    be handed in. A reading is what `FlowRing.poll` says; `read` samples the lines, so call it often."""
 
     # Of an HC-SR04; a subclass for another module has its own.
     DEAF_US, SHORTEST_US, LONGEST_US = 100, 100, 36000
@@ -595,37 +694,22 @@ class HcSr04Ring:
     # A stuck line is pulled low for so long, such as 200 us, if this is not 0: some modules hold it for ever after a lost
     # echo. It needs a resistor of 1 kOhm, since module and pin drive against each other.
     RECOVERY_US = 0
-    RING = Ring
-    SOON_US = 1000  # what is due so soon is waited for: modules that fire late by differing times compare less
 
-    def __init__(self, schedule, pins, echoes=None, machine=None, time=None, **ring):
-        if schedule.min_refire_us < self.MIN_RETRIGGER_US:
-            needs = schedule.min_refire_us, self.MIN_RETRIGGER_US
-            raise ValueError("a module would fire again after %d us: %d expected" % needs)
-        if len(pins) != schedule.sensors or (echoes is not None and len(echoes) != len(pins)):
-            raise ValueError("%d pins for %d sensors" % (len(pins), schedule.sensors))
-        if machine is None:
-            import machine
-        if time is None:
-            import time
-        self._pin, self._time = machine.Pin, time
-        self._one_pin = echoes is None
-        self._triggers = [machine.Pin(pin) for pin in pins]
-        self._echoes = self._triggers if echoes is None else [machine.Pin(pin) for pin in echoes]
-        for pin in self._echoes:
-            pin.init(machine.Pin.IN)
-        if not self._one_pin:
-            for pin in self._triggers:
-                pin.init(machine.Pin.OUT, value=0)
+    def __init__(self, flow, pins, echoes=None, machine=None, time=None):
+        _check("rest_us", flow.rest_us, self.MIN_RETRIGGER_US, 4000000)
+        if len(pins) != flow.sensors or (echoes is not None and len(echoes) != len(pins)):
+            raise ValueError("%d pins for %d sensors" % (len(pins), flow.sensors))
+        machine, time = machine or __import__("machine"), time or __import__("time")
+        self._pin, self._time, self._one_pin = machine.Pin, time, echoes is None
+        self._echoes = [machine.Pin(pin, machine.Pin.IN) for pin in echoes or pins]
+        self._triggers = [machine.Pin(pin, machine.Pin.OUT, value=0) for pin in pins] if echoes else self._echoes
         # The period of ticks_us is a power of two: from half a turn on, differences are negative.
         bits = 1
         while time.ticks_diff(1 << bits - 1, 0) > 0:
             bits += 1
-        ring.setdefault("clock_bits", bits)
-        self.ring = self.RING(schedule, time.ticks_us(), **ring)
+        self.ring = FlowRing(flow, time.ticks_us(), bits)
         # A line that does not rise is no free space.
         self.ring.silence = NEEDS_ANSWER
-        self.change_us = None  # as of `Ring.poll`, for a robot that moves
         self._rose = [None] * len(pins)
         self._awaits = [False] * len(pins)
 
@@ -633,7 +717,7 @@ class HcSr04Ring:
         return self._time.ticks_diff(now, self.ring._sensors[x].firings[0])
 
     def _sample(self):
-        # Small and without objects of its own, for the same reason as `Ring.poll`.
+        # Small and without objects of its own, for the same reason as `FlowRing.poll`.
         for x in range(len(self._awaits)):
             if self._awaits[x]:
                 high = self._echoes[x].value()
@@ -691,21 +775,19 @@ class HcSr04Ring:
             pin.init(self._pin.IN)
 
     def state(self, x):
-        """As `Ring.state`, now."""
+        """As `FlowRing.state`, now."""
         return self.ring.state(x, self._time.ticks_us())
+
+    def moving(self, speed_mm_s, turn_mrad_s):
+        """As `FlowRing.moving`, now."""
+        self.ring.moving(speed_mm_s, turn_mrad_s, self._time.ticks_us())
 
     def read(self):
         """One step; a reading if there is one, else None."""
-        ticks, diff = self._time.ticks_us, self._time.ticks_diff
         # The clock is read before the lines, so that no window closes on an edge that came in time.
-        now = ticks()
+        now = self._time.ticks_us()
         self._sample()
-        while 0 < diff(self.ring.deadline(), now) <= self.SOON_US:
-            now = ticks()
-            self._sample()
-        event = self.ring.poll(now, self.change_us)
-        if event is None:
-            return None
-        if event[0] == FIRE:
+        event = self.ring.poll(now)
+        if event and event[0] == FIRE:
             self._trigger(event[1])
-        return event if event[0] == READING else None
+        return event if event and event[0] == READING else None

@@ -8,7 +8,7 @@ const here = dirname(fileURLToPath(import.meta.url));
 const [folder, faults, golden, corpus = golden] = process.argv.slice(2);
 const { loadMicroPython } = await import(pathToFileURL(resolve(folder, "micropython.mjs")));
 const micropython = await loadMicroPython({ heapsize: 4 * 1024 * 1024 });
-const sources = ["eeruf.py", "eeruf_schedule.py", "eeruf_flow.py", "line_faults.py"];
+const sources = ["eeruf.py", "line_faults.py"];
 for (const name of [...sources, "test_corpus.py", "test_line_faults.py", "test_modules.py"]) {
   micropython.FS.writeFile(`/${name}`, readFileSync(join(here, name)));
 }

@@ -1,14 +1,13 @@
-"""Faults of one echo line of a HcSr04Ring, which samples lines: python3 test_line_faults.py [FAULTS [TABLE]].
+"""A HcSr04FlowRing, which samples lines, and faults of one of them: python3 test_line_faults.py [FAULTS [TABLE]].
 
 Free space is never said without evidence, and each state is right after two readings. It runs under MicroPython too."""
 
 import sys
 
-from eeruf import ACCEPTED, CLEAR, KIND, SENSOR, STUCK, HcSr04Ring
-from eeruf_schedule import Schedule
+from eeruf import ACCEPTED, CLEAR, KIND, SENSOR, STUCK, T_ECHO, Flow, HcSr04FlowRing
 from line_faults import FAULTY, cell, read, with_column
 
-PERIODS = 40
+READINGS = 40
 COLUMN = "MicroPython"
 TURN = 1 << 30  # of a board's clock
 STEP_US = 20  # between two looks at the clock
@@ -18,22 +17,25 @@ NOTHING = [(450, True, False), (38450, False, False)]
 
 
 class Board:
-    """`time` and `machine`: pin x triggers module x, whose line is at pin 10 + x, and plays these edges."""
+    """`time` and `machine`: pin x triggers module x, whose line is there or at pin 10 + x, and plays these edges. The clock
+    wraps, and goes on by `step_us` with each look at it."""
 
     IN, OUT = 0, 1
 
-    def __init__(self, start, fault):
+    def __init__(self, fault, step_us=STEP_US):
         board = self
-        self.now, self.fault, self.levels, self.ahead, self.changed = start, fault, [False] * 4, [], start
+        self.now = self.changed = TURN - 1000000
+        self.fault, self.step_us, self.levels, self.ahead, self.fired = fault, step_us, [False] * 4, [], [None] * 4
         self.driven, self.pulled = set(), 0
 
         class Pin:
             IN, OUT = 0, 1
 
-            def __init__(self, number):
-                self.number, self.level = number, 0
+            def __init__(self, number, mode, value=None):
+                self.number, self.level, self.mode = number, 0, mode
 
             def init(self, mode, value=None):
+                self.mode = mode
                 if self.number >= 10 and mode == board.OUT:
                     board.driven.add(self.number - 10)
                     board.pulled += 1
@@ -42,7 +44,9 @@ class Board:
 
             def value(self, level=None):
                 if level is None:
-                    return int(board.look(self.number - 10))
+                    return int(board.look(self.number % 10))
+                if self.mode != board.OUT:
+                    raise AssertionError("pin %d is written as an input" % self.number)
                 if self.level and not level:
                     board.triggered(self.number)
                 self.level = level
@@ -50,14 +54,11 @@ class Board:
         self.Pin = Pin
 
     def ticks_us(self):
-        self.now += STEP_US
+        self.now += self.step_us
         return self.now % TURN
 
     def ticks_diff(self, one, other):
         return (one - other + TURN // 2) % TURN - TURN // 2
-
-    def ticks_add(self, ticks, more):
-        return (ticks + more) % TURN
 
     def sleep_us(self, us):
         self.now += us
@@ -77,6 +78,7 @@ class Board:
 
     def triggered(self, x):
         fault, line, edges = self.fault, x, WALL
+        self.fired[x] = self.now
         if x == FAULTY:
             # Once it was pulled low it hears again.
             edges = WALL if self.pulled else fault.edges
@@ -100,7 +102,7 @@ class Board:
         self.now = max(self.now, to)
 
 
-class Forgetful(HcSr04Ring):
+class Forgetful(HcSr04FlowRing):
     """A program that triggers the faulty sensor by itself, and never says so."""
 
     def _trigger(self, x):
@@ -111,20 +113,17 @@ class Forgetful(HcSr04Ring):
             super()._trigger(x)
 
 
-class Recovering(HcSr04Ring):
+class Recovering(HcSr04FlowRing):
     RECOVERY_US = 200
 
 
-def run(period_us, t_fire_us, fault, kind=HcSr04Ring):
+def run(fault, kind=HcSr04FlowRing):
     """The readings of the faulty sensor, and of the one that its wire is exchanged with: (kind, state)."""
-    # The clock wraps in each run.
-    board = Board(TURN - 1000000, fault)
-    schedule = Schedule(period_us, t_fire_us).verify(240)
-    ring = (Forgetful if fault.forgotten else kind)(
-        schedule, [0, 1, 2, 3], [10, 11, 12, 13], machine=board, time=board, window_us=40000
-    )
-    end, said = board.now + PERIODS * period_us, {FAULTY: [], fault.partner: []}
-    while board.now < end:
+    board = Board(fault)
+    flow = Flow(4, 40000, rest_us=100000, seed=1)
+    ring = (Forgetful if fault.forgotten else kind)(flow, [0, 1, 2, 3], [10, 11, 12, 13], machine=board, time=board)
+    said = {FAULTY: [], fault.partner: []}
+    while len(said[FAULTY]) < READINGS:
         reading = ring.read()
         if reading is None:
             board.skip(ring.ring.deadline())
@@ -132,6 +131,24 @@ def run(period_us, t_fire_us, fault, kind=HcSr04Ring):
             x = reading[SENSOR]
             said[x].append((reading[KIND], ring.state(x)))
     return said[FAULTY], said[fault.partner]
+
+
+def check_walls(fault, step_us, **settings):
+    """Modules on one pin each before walls: 97 % accepted, by looks that are so far apart, and counted from the trigger."""
+    board, readings = Board(fault, step_us), []
+    ring = HcSr04FlowRing(Flow(4, 25000, seed=1, **settings), [0, 1, 2, 3], machine=board, time=board)
+    while len(readings) < 200:
+        reading = ring.read()
+        if reading is not None:
+            readings.append(reading)
+        for x in range(4):
+            off = board.ticks_diff(ring.ring._sensors[x].firings[0], (board.fired[x] or 0) % TURN)
+            if board.fired[x] and not 0 <= off <= step_us:
+                raise AssertionError("module %d: its firing counts from %d us after its trigger" % (x, off))
+    accepted = [reading[T_ECHO] for reading in readings if reading[KIND] == ACCEPTED]
+    off = max([abs(echo - 5830) for echo in accepted])
+    if len(accepted) < 0.97 * len(readings) or off > 6 * step_us:
+        raise AssertionError("looks of %d us: %d accepted, %d us off" % (step_us, len(accepted), off))
 
 
 def is_clear(said):
@@ -149,16 +166,17 @@ def is_right(said, says):
 
 def check(text):
     """The table's cells, by name and surroundings."""
-    period_us, t_fire_us, faults = read(text)
-    cells = {}
+    faults, cells = read(text)[2], {}
+    check_walls(faults[0], 10)
+    check_walls(faults[0], 100, t_delta_us=600, near_us=700, path_change_us=600)
     for fault in faults:
         name, says = fault.name + ", before " + fault.before, fault.samples
-        faulty, partner = run(period_us, t_fire_us, fault)
+        faulty, partner = run(fault)
         # For 250 ms a line that rose has evidence.
         until_right = 3 if says[0] == "held" else 2
         has_evidence = {"clear": len(faulty), "held": until_right}.get(says[0], 0)
         lies = sum([is_clear(said) for said in faulty[has_evidence:] + partner])
-        if lies or len(faulty) < PERIODS - 2:
+        if lies:
             raise AssertionError("%s: clear without evidence in %d of %d readings" % (name, lies, len(faulty)))
         wrong = [said for said in faulty[until_right:] if not is_right(said, says)]
         if wrong:
@@ -171,9 +189,8 @@ def check(text):
 
 def check_recovery(text):
     """A line that is held until it is pulled low: stuck once, then a wall."""
-    period_us, t_fire_us, faults = read(text)
-    held = [fault for fault in faults if fault.name == "held for ever"][0]
-    readings, _ = run(period_us, t_fire_us, held, Recovering)
+    held = [fault for fault in read(text)[2] if fault.name == "held for ever"][0]
+    readings, _ = run(held, Recovering)
     kinds = [kind for kind, _ in readings]
     stuck = kinds.index(STUCK)
     wrong = [said for said in readings[stuck + 3 :] if not is_right(said, ["obstacle", "5830"])]

@@ -318,199 +318,116 @@ static void adaptations(void) {
     EXPECT(eeruf_adaptation_period(&adaptation, &ring, &event), EERUF_ERR_RANGE);
 }
 
-#if EERUF_HOPPING
-static EerufHoppingRing hopping;
-static EerufHopper hoppers[SENSORS];
-static EerufHopSensor hop_sensors[SENSORS];
+#if EERUF_WITH_FLOW
+static EerufFlowRing flow;
+static EerufFlowSensor flow_sensors[SENSORS];
 
-static EerufStatus hop(size_t ring_size, size_t sensors_size, size_t hoppers_size, const EerufHoppingConfig *config) {
-    return eeruf_hopping_init(&hopping, ring_size, hop_sensors, sensors_size, hoppers, hoppers_size, config, 0);
-}
-
-static void hopping_rings(void) {
-    const EerufHoppingConfig fine = EERUF_HOPPING_BALANCED(SENSORS, 60000, 36000);
-    const uint32_t late[SENSORS] = {0, 1, 2, 59040};
-    const size_t r = sizeof hopping, s = sizeof hop_sensors, h = sizeof hoppers;
-    static EerufLimits limits[SENSORS];
-    static EerufSchedule own;
-    EerufHoppingConfig config = fine;
-    EXPECT(eeruf_hopping_poll(NULL, 0, NULL, &event), EERUF_ERR_NULL);
-    EXPECT(eeruf_hopping_poll(&hopping, 0, NULL, &event), EERUF_ERR_NOT_READY);
-    EXPECT(eeruf_hopping_enable(NULL, 0, true), EERUF_ERR_NULL);
-    EXPECT(eeruf_hopping_enable(&hopping, 0, true), EERUF_ERR_NOT_READY);
-    EXPECT(eeruf_hopping_pause(NULL, true), EERUF_ERR_NULL);
-    EXPECT(eeruf_hopping_pause(&hopping, true), EERUF_ERR_NOT_READY);
-    EXPECT(eeruf_hopping_confirmed_us(&hopping, 0), EERUF_NO_ECHO);
-    EXPECT(eeruf_hopping_solo(&hopping), 255);
-    EXPECT(eeruf_hopping_lag_us(&hopping, 0), 0);
-    EXPECT(eeruf_hopping_init(NULL, r, hop_sensors, s, hoppers, h, &config, 0), EERUF_ERR_NULL);
-    EXPECT(eeruf_hopping_init(&hopping, r, NULL, s, hoppers, h, &config, 0), EERUF_ERR_NULL);
-    EXPECT(eeruf_hopping_init(&hopping, r, hop_sensors, s, NULL, h, &config, 0), EERUF_ERR_NULL);
-    EXPECT(hop(r, s, h, NULL), EERUF_ERR_NULL);
-    EXPECT(hop(r - 1, s, h, &config), EERUF_ERR_MEMORY);
-    EXPECT(hop(r, s - 1, h, &config), EERUF_ERR_MEMORY);
-    EXPECT(hop(r, s, h - 1, &config), EERUF_ERR_MEMORY);
-#define WITH(field, value, status)                                                                                     \
-    config = fine;                                                                                                     \
-    config.field = value;                                                                                              \
-    EXPECT(hop(r, s, h, &config), status)
-    WITH(version, EERUF_VERSION + 1, EERUF_ERR_VERSION);
-    WITH(sensors, 0, EERUF_ERR_SENSORS);
-    WITH(sensors, 65, EERUF_ERR_SENSORS);
-    WITH(phases, 1, EERUF_ERR_PHASES);
-    WITH(phases, 68, EERUF_ERR_PHASES);
-    WITH(code, 6, EERUF_ERR_PHASES);
-    WITH(code, 5, EERUF_OK);
-    config.phases = 8; /* no prime, nor one less than one */
-    EXPECT(hop(r, s, h, &config), EERUF_ERR_PHASES);
-    config.phases = 3; /* fewer than the sensors */
-    EXPECT(hop(r, s, h, &config), EERUF_ERR_PHASES);
-    WITH(step_us, 0, EERUF_ERR_STEP);
-    WITH(step_us, 150, EERUF_ERR_T_DELTA);
-    WITH(period_us, 36959, EERUF_ERR_PERIOD);
-    WITH(lag_us, late, EERUF_ERR_LAG);
-    WITH(tracker.votes, 1, EERUF_ERR_TRACKER);
-    /* Two sensors need four phases only, in which no echo has votes enough: the presets ask for more. */
-    WITH(sensors, 2, EERUF_OK);
-    config.phases = 2;
-    EXPECT(hop(r, s, h, &config), EERUF_ERR_VOTES);
-    WITH(tracker.near_us, 149, EERUF_ERR_TRACKER);
-    WITH(blanking_us, 36000, EERUF_ERR_BLANKING);
-    /* Limits for another number of sensors; new lags, which would not keep them; deaf for as long as one listens. */
-    WITH(own, &own, EERUF_ERR_SENSORS);
-    own.sensors = SENSORS;
-    own.limits = limits;
-    limits[1].window_us = 900;
-    limits[0].window_us = limits[2].window_us = limits[3].window_us = 36000;
-    WITH(own, &own, EERUF_OK);
-    config.shift_after = 1;
-    EXPECT(hop(r, s, h, &config), EERUF_ERR_HOPPING);
-    config.shift_after = 0;
-    config.blanking_us = 900;
-    EXPECT(hop(r, s, h, &config), EERUF_ERR_BLANKING);
-    config = fine;
-    config.period_us = 30000000;
-    config.window_us = EERUF_HOPPING_MAX_WINDOW_US;
-    EXPECT(hop(r, s, h, &config), EERUF_OK);
-    config.window_us++;
-    EXPECT(hop(r, s, h, &config), EERUF_ERR_WINDOW);
-    EXPECT(hop(r, s, h, &fine), EERUF_OK);
-    EXPECT(eeruf_hopping_poll(&hopping, 0, NULL, NULL), EERUF_ERR_NULL);
-    EXPECT(eeruf_hopping_enable(&hopping, SENSORS, true), EERUF_ERR_SENSOR);
-    EXPECT(eeruf_hopping_confirmed_us(&hopping, SENSORS), EERUF_NO_ECHO);
-    EXPECT(eeruf_ring_pause(&hopping.ring, true), EERUF_ERR_HOPPING);
-    EXPECT(eeruf_ring_set_t_delta(&hopping.ring, 1), EERUF_ERR_HOPPING);
-    EXPECT(eeruf_ring_set_window(&hopping.ring, 1), EERUF_ERR_HOPPING);
-    EXPECT(eeruf_ring_set_blanking(&hopping.ring, 1), EERUF_ERR_HOPPING);
-    EXPECT(eeruf_ring_set_path_change(&hopping.ring, 1), EERUF_ERR_HOPPING);
-    EXPECT(eeruf_ring_set_audible(&hopping.ring, 1), EERUF_ERR_HOPPING);
-    EXPECT(eeruf_ring_change_schedule(&hopping.ring, &schedule), EERUF_ERR_HOPPING);
-}
-
-/* Of the ring that hopping_rings has left. */
-static void hopping_adaptations(void) {
-    const EerufHoppingConfig fine = EERUF_HOPPING_BALANCED(SENSORS, 60000, 36000);
-    const uint32_t late[SENSORS] = {0, 1, 2, 59040};
-    EerufHoppingConfig slow = fine, config;
-    const EerufHoppingConfig *ladder[2];
-    EerufAdaptation adaptation;
-    memset(&adaptation, 0, sizeof adaptation);
-    event.kind = EERUF_EVENT_PERIOD;
-    slow.period_us = 90000;
-    EXPECT(eeruf_hopping_change(NULL, &slow), EERUF_ERR_NULL);
-    EXPECT(eeruf_hopping_change(&hopping, NULL), EERUF_ERR_NULL);
-#undef WITH
-#define WITH(field, value, status)                                                                                     \
-    config = fine;                                                                                                     \
-    config.field = value;                                                                                              \
-    EXPECT(eeruf_hopping_change(&hopping, &config), status)
-    WITH(version, EERUF_VERSION + 1, EERUF_ERR_VERSION);
-    WITH(phases, 1, EERUF_ERR_PHASES);
-    WITH(phases, 68, EERUF_ERR_PHASES);
-    WITH(phases, 9, EERUF_ERR_LADDER);
-    WITH(sensors, SENSORS - 1, EERUF_ERR_LADDER);
-    WITH(step_us, 241, EERUF_ERR_LADDER);
-    WITH(code, 2, EERUF_ERR_LADDER);
-    WITH(period_us, 1200, EERUF_ERR_PERIOD);
-    WITH(period_us, EERUF_MAX_PERIOD_US + 1, EERUF_ERR_PERIOD);
-    WITH(lag_us, late, EERUF_ERR_LAG);
-    WITH(period_us, 36000, EERUF_ERR_PERIOD);
-    WITH(phases, 6, EERUF_OK); /* its six phases by another name */
-    EXPECT(eeruf_hopping_lag_us(&hopping, 3), 44100);
-    EXPECT(eeruf_hopping_change(&hopping, &slow), EERUF_OK);
-    EXPECT(eeruf_hopping_lag_us(&hopping, 3), 66600);
-    ladder[0] = &slow;
-    ladder[1] = &fine;
-    EXPECT(eeruf_hopping_adaptation_init(NULL, sizeof adaptation, ladder, 2), EERUF_ERR_NULL);
-    EXPECT(eeruf_hopping_adaptation_init(&adaptation, sizeof adaptation, NULL, 2), EERUF_ERR_NULL);
-    EXPECT(eeruf_hopping_adaptation_init(&adaptation, sizeof adaptation - 1, ladder, 2), EERUF_ERR_MEMORY);
-    EXPECT(eeruf_hopping_adaptation_init(&adaptation, sizeof adaptation, ladder, 0), EERUF_ERR_LADDER);
-    EXPECT(eeruf_hopping_adaptation_init(&adaptation, sizeof adaptation, ladder, 2), EERUF_ERR_LADDER);
-    EXPECT(eeruf_hopping_adaptation_period(&adaptation, &hopping, &event), EERUF_ERR_NOT_READY);
-    ladder[1] = NULL;
-    EXPECT(eeruf_hopping_adaptation_init(&adaptation, sizeof adaptation, ladder, 2), EERUF_ERR_NULL);
-    EXPECT(eeruf_hopping_adaptation_init(&adaptation, sizeof adaptation, ladder, 1), EERUF_OK);
-    EXPECT(eeruf_adaptation_period(&adaptation, &hopping.ring, &event), EERUF_ERR_NOT_READY);
-    EXPECT(eeruf_hopping_adaptation_period(NULL, &hopping, &event), EERUF_ERR_NULL);
-    EXPECT(eeruf_hopping_adaptation_period(&adaptation, NULL, &event), EERUF_ERR_NULL);
-    EXPECT(eeruf_hopping_adaptation_period(&adaptation, &hopping, NULL), EERUF_ERR_NULL);
-    EXPECT(eeruf_hopping_adaptation_period(&adaptation, &hopping, &event), EERUF_OK);
-    event.kind = EERUF_EVENT_FIRE;
-    EXPECT(eeruf_hopping_adaptation_period(&adaptation, &hopping, &event), EERUF_ERR_RANGE);
-}
-
-static EerufStatus flow(size_t ring_size, size_t sensors_size, size_t hoppers_size, const EerufFlowConfig *config) {
-    return eeruf_flow_init(&hopping, ring_size, hop_sensors, sensors_size, hoppers, hoppers_size, config, 0);
+static EerufStatus begin_flow(size_t flow_size, size_t sensors_size, const EerufFlowConfig *config) {
+    return eeruf_flow_init(&flow, flow_size, flow_sensors, sensors_size, config, 0);
 }
 
 static void flow_rings(void) {
+    const EerufFlowConfig fine = EERUF_FLOW(SENSORS, 36000);
+    const size_t r = sizeof flow, s = sizeof flow_sensors;
     static EerufLimits limits[SENSORS];
     static EerufSchedule own;
-    uint8_t x;
-    const EerufFlowConfig fine = EERUF_FLOW(SENSORS, 36000);
-    const EerufHoppingConfig hops = EERUF_HOPPING_BALANCED(SENSORS, 60000, 36000);
-    const size_t r = sizeof hopping, s = sizeof hop_sensors, h = sizeof hoppers;
-    uint32_t before = 0, after = 0;
     EerufFlowConfig config = fine;
-    EXPECT(eeruf_flow_init(NULL, r, hop_sensors, s, hoppers, h, &config, 0), EERUF_ERR_NULL);
-    EXPECT(eeruf_flow_init(&hopping, r, NULL, s, hoppers, h, &config, 0), EERUF_ERR_NULL);
-    EXPECT(eeruf_flow_init(&hopping, r, hop_sensors, s, NULL, h, &config, 0), EERUF_ERR_NULL);
-    EXPECT(flow(r, s, h, NULL), EERUF_ERR_NULL);
-    EXPECT(flow(r - 1, s, h, &config), EERUF_ERR_MEMORY);
-    EXPECT(flow(r, s - 1, h, &config), EERUF_ERR_MEMORY);
-    EXPECT(flow(r, s, h - 1, &config), EERUF_ERR_MEMORY);
+    EXPECT(eeruf_flow_poll(NULL, 0, &event), EERUF_ERR_NULL);
+    EXPECT(eeruf_flow_poll(&flow, 0, &event), EERUF_ERR_NOT_READY);
+    EXPECT(eeruf_flow_moving(NULL, 0, 0, 0), EERUF_ERR_NULL);
+    EXPECT(eeruf_flow_enable(&flow, 0, true), EERUF_ERR_NOT_READY);
+    EXPECT(eeruf_flow_pause(&flow, true), EERUF_ERR_NOT_READY);
+    EXPECT(eeruf_flow_restart(&flow, 0), EERUF_ERR_NOT_READY);
+    EXPECT(eeruf_flow_believed_us(&flow, 0), EERUF_NO_ECHO);
+    EXPECT(eeruf_flow_init(NULL, r, flow_sensors, s, &config, 0), EERUF_ERR_NULL);
+    EXPECT(eeruf_flow_init(&flow, r, NULL, s, &config, 0), EERUF_ERR_NULL);
+    EXPECT(begin_flow(r, s, NULL), EERUF_ERR_NULL);
+    EXPECT(begin_flow(r - 1, s, &config), EERUF_ERR_MEMORY);
+    EXPECT(begin_flow(r, s - 1, &config), EERUF_ERR_MEMORY);
 #undef WITH
 #define WITH(field, value, status)                                                                                     \
     config = fine;                                                                                                     \
     config.field = value;                                                                                              \
-    EXPECT(flow(r, s, h, &config), status)
+    EXPECT(begin_flow(r, s, &config), status)
     WITH(version, EERUF_VERSION + 1, EERUF_ERR_VERSION);
     WITH(sensors, 0, EERUF_ERR_SENSORS);
     WITH(sensors, 65, EERUF_ERR_SENSORS);
-    WITH(step_us, 0, EERUF_ERR_STEP);
-    WITH(step_us, 65536, EERUF_ERR_STEP);
-    WITH(step_us, 150, EERUF_ERR_T_DELTA);
-    WITH(tracker.votes, 16, EERUF_ERR_TRACKER);
-    WITH(window_us, EERUF_HOPPING_MAX_WINDOW_US + 1, EERUF_ERR_WINDOW);
-    WITH(shortest_cycle_us, 37199, EERUF_ERR_PERIOD);
-    WITH(shortest_cycle_us, EERUF_MAX_PERIOD_US + 1, EERUF_ERR_PERIOD);
-    WITH(blanking_us, 36000, EERUF_ERR_BLANKING);
+    WITH(least_us, 0, EERUF_ERR_RANGE);
+    WITH(least_us, 33501, EERUF_ERR_RANGE);
+    WITH(most_us, 250001, EERUF_ERR_RANGE);
+    WITH(rest_us, 0, EERUF_ERR_RANGE);
+    WITH(rest_us, 4000001, EERUF_ERR_RANGE);
+    WITH(dice_us, 250001, EERUF_ERR_RANGE);
+    WITH(seed, 0, EERUF_ERR_RANGE);
+    WITH(near_us, 10001, EERUF_ERR_RANGE);
+    WITH(hold, 0, EERUF_ERR_RANGE);
+    WITH(hold, 101, EERUF_ERR_RANGE);
+    WITH(votes, 3, EERUF_ERR_RANGE);
     WITH(own, &own, EERUF_ERR_SENSORS);
     own.sensors = SENSORS;
     own.limits = limits;
-    for (x = 0; x < SENSORS; x++) limits[x].window_us = 36000;
+    limits[0].window_us = limits[1].window_us = limits[2].window_us = 36000;
+    limits[3].window_us = 900;
     WITH(own, &own, EERUF_OK);
-    WITH(unserved_after, 0, EERUF_OK);
-    WITH(shortest_cycle_us, 37200, EERUF_OK);
-    EXPECT(flow(r, s, h, &fine), EERUF_OK);
-    EXPECT(eeruf_flow_quiet_us(NULL, 0, &before, &after), EERUF_ERR_NULL);
-    EXPECT(eeruf_flow_quiet_us(&hopping, 0, NULL, &after), EERUF_ERR_NULL);
-    EXPECT(eeruf_flow_quiet_us(&hopping, SENSORS, &before, &after), EERUF_ERR_SENSOR);
-    EXPECT(eeruf_flow_quiet_us(&hopping, 0, &before, &after), EERUF_OK);
-    EXPECT(before, 7424); /* whole units of 256 us */
-    EXPECT(eeruf_hopping_change(&hopping, &hops), EERUF_ERR_HOPPING);
-    EXPECT(eeruf_hopping_solo(&hopping), 255);
-    EXPECT(eeruf_ring_pause(&hopping.ring, true), EERUF_ERR_HOPPING);
+    config.blanking_us = 900;
+    EXPECT(begin_flow(r, s, &config), EERUF_ERR_BLANKING);
+    WITH(window_us, 4000001, EERUF_ERR_WINDOW);
+    WITH(blanking_us, 36000, EERUF_ERR_BLANKING);
+    WITH(t_delta_us, 36000, EERUF_ERR_COARSE_T_DELTA);
+    WITH(path_change_us, 65535, EERUF_ERR_PATH_CHANGE);
+    WITH(least_us, 33500, EERUF_OK); /* one by one */
+    EXPECT(eeruf_flow_quiet_us(&flow, 0), 33500);
+    EXPECT(begin_flow(r, s, &fine), EERUF_OK);
+    EXPECT(eeruf_flow_quiet_us(&flow, 0), 11500);
+    EXPECT(eeruf_flow_quiet_us(&flow, SENSORS), 0);
+    EXPECT(eeruf_flow_poll(&flow, 0, NULL), EERUF_ERR_NULL);
+    EXPECT(eeruf_flow_moving(&flow, UINT32_MAX, UINT32_MAX, 0), EERUF_OK);
+    EXPECT(eeruf_flow_enable(&flow, SENSORS, true), EERUF_ERR_SENSOR);
+    EXPECT(eeruf_flow_believed_us(&flow, SENSORS), EERUF_NO_ECHO);
+    EXPECT(eeruf_ring_poll(&flow.ring, 0, &event), EERUF_ERR_FLOW);
+    EXPECT(eeruf_ring_enable(&flow.ring, 0, true), EERUF_ERR_FLOW);
+    EXPECT(eeruf_ring_pause(&flow.ring, true), EERUF_ERR_FLOW);
+    EXPECT(eeruf_ring_restart(&flow.ring, 0), EERUF_ERR_FLOW);
+    EXPECT(eeruf_ring_set_t_delta(&flow.ring, 1), EERUF_ERR_FLOW);
+    EXPECT(eeruf_ring_set_window(&flow.ring, 1), EERUF_ERR_FLOW);
+    EXPECT(eeruf_ring_set_blanking(&flow.ring, 1), EERUF_ERR_FLOW);
+    EXPECT(eeruf_ring_set_path_change(&flow.ring, 1), EERUF_ERR_FLOW);
+    EXPECT(eeruf_ring_set_audible(&flow.ring, 1), EERUF_ERR_FLOW);
+    EXPECT(eeruf_ring_change_schedule(&flow.ring, &schedule), EERUF_ERR_FLOW);
+    EXPECT(eeruf_ring_set_report_after(&flow.ring, 60001), EERUF_ERR_WINDOW);
+    EXPECT(eeruf_flow_poll((EerufFlowRing *)(void *)&ring, 0, &event), EERUF_ERR_NOT_READY);
+}
+
+/* A wall before each sensor and a loop that is late by up to 5 ms: nearly all is believed, and at once. */
+static void flow_believes_walls_in_a_late_loop(void) {
+    EerufFlowConfig config = EERUF_FLOW(SENSORS, 36000);
+    uint32_t now = 0xfff00000u, edges[SENSORS], noise = 1;
+    unsigned readings = 0, accepted = 0, waits = 0;
+    uint8_t x;
+    config.seed = 7;
+    EXPECT(eeruf_flow_init(&flow, sizeof flow, flow_sensors, sizeof flow_sensors, &config, now), EERUF_OK);
+    while (readings < 2000) {
+        uint32_t next = eeruf_ring_deadline(&flow.ring);
+        noise = noise * 1664525u + 1013904223u;
+        if (next - now < 0x80000000u) now = next;
+        now += noise >> 8 & 4095u;
+        for (x = 0; x < SENSORS; x++) {
+            if (!(waits >> x & 1u) || now - edges[x] >= 0x80000000u) continue;
+            EXPECT(eeruf_ring_echo(&flow.ring, x, edges[x]), EERUF_OK);
+            waits &= ~(1u << x);
+        }
+        while (eeruf_flow_poll(&flow, now, &event) == EERUF_EVENT) {
+            if (event.kind == EERUF_EVENT_FIRE) {
+                edges[event.sensor] = now + 4000u + 3000u * event.sensor;
+                waits |= 1u << event.sensor;
+            }
+            if (event.kind != EERUF_EVENT_READING) continue;
+            readings++;
+            accepted += event.u.reading.kind == EERUF_READING_ACCEPTED;
+        }
+    }
+    EXPECT(accepted >= 1950, 1);
+    EXPECT(eeruf_flow_believed_us(&flow, 3), 13000);
 }
 #endif
 
@@ -717,10 +634,9 @@ int main(void) {
     adaptations();
     watches();
     by_hardware();
-#if EERUF_HOPPING
-    hopping_rings();
-    hopping_adaptations();
+#if EERUF_WITH_FLOW
     flow_rings();
+    flow_believes_walls_in_a_late_loop();
 #endif
     printf("%d wrong\n", wrong);
     return wrong != 0;

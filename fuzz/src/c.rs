@@ -1,6 +1,6 @@
 //! The C library and the crates: whatever the bytes make up happens to a ring in both, and both say the same.
 
-use eeruf_c_equal::{Random, hopping, modules, ring};
+use eeruf_c_equal::{Random, flow, modules, ring};
 
 /// Compares one ring, of the kind that the first byte says.
 ///
@@ -13,9 +13,9 @@ pub fn check(bytes: &[u8]) {
         1 | 2 => ring::run::<2>(r),
         3 => ring::run::<3>(r),
         4 => ring::run::<8>(r),
-        5 => hopping::run::<2>(r),
-        6 => hopping::run::<8>(r),
-        7 => hopping::run::<12>(r),
+        5 => flow::run::<2>(r),
+        6 => flow::run::<8>(r),
+        7 => flow::run::<12>(r),
         _ => modules::run(r),
     };
 }

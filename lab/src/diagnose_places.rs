@@ -115,7 +115,7 @@ pub(crate) fn main(arguments: &[String]) -> crate::Answer {
     let mut arguments = arguments.iter();
     let mut next = |default: &str| arguments.next().map_or_else(|| default.to_owned(), String::clone);
     let (first, places): (u64, u64) = (next("20000").parse()?, next("200").parse()?);
-    let (method, periods): (Method, u32) = (next("eeruf_hopping").parse()?, next("1000").parse()?);
+    let (method, periods): (Method, u32) = (next("flow").parse()?, next("1000").parse()?);
     let physics = next("plain");
     let effects: Physics = physics.parse()?;
     let name = next("alcoves");

@@ -1,11 +1,10 @@
-//! Flow beside hopping and one-by-one firing in rooms, standing and driving: shares of the time in which what is
+//! Flow beside one-by-one firing in rooms, standing and driving: shares of the time in which what is
 //! believed is right, and of the time in which it is foreign sound; and of readings, those that were crosstalk.
 //!
 //! `cargo lab flow-rooms [ROOMS [FIRST [PHYSICS]]]`
 
 use std::f64::consts::PI;
 
-use eeruf_core::hopping::HoppingSettings;
 use eeruf_sim::experiments::{Spread, set_one::Alcove};
 use eeruf_sim::*;
 
@@ -95,7 +94,6 @@ fn run(
     number: u64,
     physics: Physics,
     method: Method,
-    hopping: HoppingSettings,
 ) -> Result<(Belief, f64), Box<dyn std::error::Error + Send + Sync>> {
     let mut random = Random::new(number);
     let (scene, pose) = (kind.draw)(&mut random)?;
@@ -107,7 +105,7 @@ fn run(
     };
     let robot = Robot { odometry: true, motion, ..ring };
     let world = World::new(scene, vec![robot], Noise::default())?.with_physics(physics)?.with_seed(number);
-    let summary = simulate(&world, method, &Options { hopping, ..Options::periods(PERIODS) })?.summary();
+    let summary = simulate(&world, method, &Options::periods(PERIODS))?.summary();
     Ok((summary.belief, summary.crosstalk_of_all))
 }
 
@@ -118,24 +116,22 @@ pub(crate) fn main(arguments: &[String]) -> crate::Answer {
     let physics = arguments.next().map_or(Ok(Physics::PLAIN), |name| name.parse::<Physics>())?;
     let numbers: Vec<u64> = (first..first + rooms).collect();
     let methods = [
-        ("sequential", Method::Sequential, HoppingSettings::BALANCED),
-        ("two votes", Method::SequentialVotes, HoppingSettings::BALANCED),
-        ("hopping", Method::EerufHopping, HoppingSettings::BALANCED),
-        ("driving", Method::EerufHopping, HoppingSettings::DRIVING),
-        ("flow", Method::Flow, HoppingSettings::BALANCED),
-        ("flow, several echoes", Method::FlowMultiEcho, HoppingSettings::BALANCED),
+        ("sequential", Method::Sequential),
+        ("two votes", Method::SequentialVotes),
+        ("flow", Method::Flow),
+        ("flow, several echoes", Method::FlowMultiEcho),
     ];
     println!("{rooms} of each from {first} on, {physics}: % right (95 % interval), foreign.\n");
     let head =
-        format!("| room | {} |\n|---|{}", methods.map(|(name, ..)| name).join(" | "), "---:|".repeat(methods.len()));
+        format!("| room | {} |\n|---|{}", methods.map(|(name, _)| name).join(" | "), "---:|".repeat(methods.len()));
     println!("{head}");
     let mut crosstalk =
         format!("Readings that were believed and crosstalk, % in the room at the 90th percentile.\n\n{head}\n");
     for kind in &KINDS {
         let mut cells = Vec::new();
         crosstalk += &format!("| {} |", kind.name);
-        for (_, method, hopping) in methods {
-            let runs = sweep(&numbers, |&number| run(kind, number, physics, method, hopping));
+        for (_, method) in methods {
+            let runs = sweep(&numbers, |&number| run(kind, number, physics, method));
             let runs = runs.into_iter().collect::<Result<Vec<_>, _>>().map_err(|error| error.to_string())?;
             let percent = |of: fn(&Belief) -> f64| Spread::of(runs.iter().map(|(belief, _)| 100.0 * of(belief)));
             let (Some(right), Some(foreign)) = (percent(|of| of.right), percent(|of| of.phantom)) else { continue };

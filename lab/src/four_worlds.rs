@@ -11,8 +11,7 @@ use eeruf_sim::experiments::set_one::{SetOneOptions, set_one};
 use eeruf_sim::experiments::set_two::{SetTwoOptions, set_two};
 use eeruf_sim::*;
 
-const METHODS: [Method; 5] =
-    [Method::Sequential, Method::Conventional, Method::Eeruf, Method::EerufHopping, Method::MultiEcho];
+const METHODS: [Method; 5] = [Method::Sequential, Method::Conventional, Method::Eeruf, Method::Flow, Method::MultiEcho];
 const WORLDS: [(&str, Option<Room>, GainProfile); 4] = [
     ("flat, constant", None, GainProfile::Constant),
     ("flat, polaroid_6500", None, GainProfile::Polaroid6500),

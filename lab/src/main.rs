@@ -10,12 +10,8 @@ mod diagnose_places;
 mod doctor_alcoves;
 mod echo_times;
 mod fault_rates;
-mod firings;
 mod flow_rooms;
 mod four_worlds;
-mod hopping_ablation;
-mod hopping_limits;
-mod hopping_periods;
 mod measure;
 mod modules;
 mod narrow_panels;
@@ -45,7 +41,7 @@ type Answer = Result<(), Box<dyn Error>>;
 /// A command: its name, its arguments, what it prints.
 type Command = (&'static str, &'static str, &'static str, fn(&[String]) -> Answer);
 
-const COMMANDS: [Command; 29] = [
+const COMMANDS: [Command; 26] = [
     ("constant-depth", "", "angles at which a wall is heard, by distance and gain", constant_depth::main),
     (
         "diagnose-places",
@@ -61,16 +57,8 @@ const COMMANDS: [Command; 29] = [
         "faults that diagnose names, and false alarms",
         fault_rates::main,
     ),
-    ("flow-rooms", "[ROOMS [FIRST [PHYSICS]]]", "flow beside hopping and one by one", flow_rooms::main),
+    ("flow-rooms", "[ROOMS [FIRST [PHYSICS]]]", "flow beside one by one", flow_rooms::main),
     ("four-worlds", "[interference]", "Sets I and II, flat and in a room, with two gains", four_worlds::main),
-    (
-        "hopping-ablation",
-        "[SEEDS [FIRST [PHYSICS]]]",
-        "Set I with each part of hopping left out",
-        hopping_ablation::main,
-    ),
-    ("hopping-limits", "", "hopping when late, and beliefs by accident", hopping_limits::main),
-    ("hopping-periods", "RING.toml ..", "periods of many phases, by kinds of codes", hopping_periods::main),
     (
         "measure",
         "RING.toml .. [--first N] [--places N] [--choose N] [--csv FILE] [--planted BLOCKS]",

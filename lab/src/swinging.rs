@@ -7,7 +7,6 @@
 
 use std::sync::Arc;
 
-use eeruf_core::hopping::HoppingSettings;
 use eeruf_sim::experiments::{Spread, set_one::Alcove};
 use eeruf_sim::{DEFAULT_TOLERANCE_US, Method, Noise, Options, Physics, Robot, Simulation, Stop, World, sweep};
 
@@ -32,7 +31,7 @@ fn direction(step: usize, to_end: usize) -> f64 {
 }
 
 /// From one firing to the next the sensor's own echo moves by less, unless it comes from somewhere else: 0.5 m/s for
-/// three periods, as long as solo periods may keep it from firing, is 0.5 ms.
+/// three periods, as long as quiet may keep it from firing, is 0.5 ms.
 const ELSEWHERE_US: f64 = 600.0;
 
 /// A sensor's own echo at its last firing, and whether it was heard since it came from there.
@@ -59,13 +58,13 @@ impl Own {
 
 /// Shares of all readings that were believed and wrong; of the good ones, those not believed, and those that were the
 /// first since the sensor's own echo came from where it did. Nothing if a sensor would swing into a wall.
-fn swing(number: u64, world: Around, method: Method, hopping: HoppingSettings) -> Option<[f64; 3]> {
+fn swing(number: u64, world: Around, method: Method) -> Option<[f64; 3]> {
     let Around { physics, speed_m_s, turn_deg_s } = world;
     let alcove = Alcove::random(number);
     let robot = Robot { odometry: true, ..alcove.robot() };
     let mut own = vec![Own::NONE; robot.sensors.len()];
     let world = World::new(alcove.scene().ok()?, vec![robot], Noise::default()).ok()?.with_physics(physics).ok()?;
-    let options = Options { seed: Some(number), hopping, ..Options::default() };
+    let options = Options { seed: Some(number), ..Options::default() };
     let mut simulation = Simulation::new(Arc::new(world), method, &options, Stop::default()).ok()?;
     let (mut readings, mut wrong, mut good, mut lost, mut first) = (0, 0, 0, 0, 0);
     for step in 0..STEPS {
@@ -100,14 +99,9 @@ pub(crate) fn main(arguments: &[String]) -> crate::Answer {
     println!(
         "| method | alcoves | wrong, % of all | good lost % | first of their place, % of good |\n|---|---:|---|---|---|"
     );
-    for (name, method, hopping) in [
-        ("eeruf", Method::Eeruf, HoppingSettings::BALANCED),
-        ("eeruf_hopping, balanced", Method::EerufHopping, HoppingSettings::BALANCED),
-        ("eeruf_hopping, driving", Method::EerufHopping, HoppingSettings::DRIVING),
-        ("flow", Method::Flow, HoppingSettings::BALANCED),
-        ("flow_multi_echo", Method::FlowMultiEcho, HoppingSettings::BALANCED),
-    ] {
-        let found = sweep(&numbers, |&number| swing(number, world, method, hopping));
+    for (name, method) in [("eeruf", Method::Eeruf), ("flow", Method::Flow), ("flow_multi_echo", Method::FlowMultiEcho)]
+    {
+        let found = sweep(&numbers, |&number| swing(number, world, method));
         let found: Vec<[f64; 3]> = found.into_iter().flatten().collect();
         let column = |of: usize| {
             Spread::of(found.iter().map(|figures| 100.0 * figures[of])).map_or_else(String::new, |spread| {

@@ -37,9 +37,9 @@ const STEPS = [
     state: { ...ALCOVE, sensors: 8, shown: ["comparison", "eeruf"], slow: 25 },
   },
   {
-    title: "The price, and how hopping pays it",
-    text: "Some good readings are rejected too, and a sensor that always hears foreign sound first, as sensors 1 and 8 do here, stays blind. Time hopping carries the two waits on to many, and gives a blind sensor a period in which it alone fires: now sensor 1 finds the wall.",
-    state: { ...ALCOVE, sensors: 8, sensor: 0, shown: ["eeruf", "eeruf_hopping"], slow: 20 },
+    title: "The price, and how flow pays it",
+    text: "Some good readings are rejected too, and a sensor that always hears foreign sound first, as sensors 1 and 8 do here, stays blind. Flow fires one sensor after the other, after random gaps, and gives one that is fooled more quiet before and after its firing: now sensor 1 finds the wall.",
+    state: { ...ALCOVE, sensors: 8, sensor: 0, shown: ["eeruf", "flow"], slow: 20 },
   },
   {
     title: "Your turn",

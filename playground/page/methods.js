@@ -35,10 +35,10 @@ const TABLE = [
     does: "Sensors that report several echoes of a firing: the earliest that repeats is believed.",
   },
   {
-    id: "eeruf_hopping",
-    name: "Time hopping",
+    id: "flow",
+    name: "Flow",
     byDefault: true,
-    does: "The waits run through many phases; a blind sensor gets a period of its own.",
+    does: "One sensor after the other, with random gaps and as much quiet around each as it has needed.",
   },
 ];
 

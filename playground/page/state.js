@@ -154,7 +154,7 @@ export function firstState() {
     speed: 0.5,
     tick: 100,
     own: null,
-    shown: ["conventional", "eeruf", "eeruf_hopping"],
+    shown: ["conventional", "eeruf", "flow"],
     sensor: 0,
     slow: 25,
   };

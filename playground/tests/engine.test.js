@@ -126,7 +126,7 @@ const SCENES = Object.values(ROOMS).map((room) => sceneText({ ...firstState(), .
 
 test("in each room the figures of the methods are to the bit those of the program", () => {
   SCENES.forEach((scene, k) => {
-    const methods = ["sequential", "conventional", "comparison", "eeruf", "eeruf_best", "eeruf_hopping"];
+    const methods = ["sequential", "conventional", "comparison", "eeruf", "eeruf_best", "flow"];
     const theirs = program(
       "study",
       file(`scene-${k}.toml`, scene),
@@ -217,7 +217,7 @@ test("bad input is one sentence that names the thing, the value and what is expe
 });
 
 test("readings saved as MCAP are read back by MCAP's own library, in order of time", () => {
-  const runs = ["conventional", "eeruf_hopping"].map((method) => ({
+  const runs = ["conventional", "flow"].map((method) => ({
     method,
     readings: readingsOf(ask({ ask: "run", scene: SCENES[0], method, periods: 20, shown_s: 1 }).ok, 36_000),
   }));
@@ -231,7 +231,7 @@ test("readings saved as MCAP are read back by MCAP's own library, in order of ti
       messages.push({ ...record, body: JSON.parse(new TextDecoder().decode(record.data)) });
   }
   assert.ok(reader.done());
-  assert.deepEqual([...topics.values()], ["/readings/conventional", "/readings/eeruf_hopping"]);
+  assert.deepEqual([...topics.values()], ["/readings/conventional", "/readings/flow"]);
   assert.equal(messages.length, runs[0].readings.length + runs[1].readings.length);
   assert.ok(messages.every(({ logTime }, k) => k === 0 || messages[k - 1].logTime <= logTime));
   const ours = messages

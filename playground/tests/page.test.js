@@ -75,8 +75,8 @@ describe("the page in a browser", { concurrency: LONG ? 1 : 4 }, () => {
       String(verdicts),
     );
     // The figures themselves are held against the program's in engine.test.js.
-    const [conventional, eeruf, hopping] = verdicts.map(parseFloat);
-    assert.ok(conventional > 30 && eeruf < 2 && hopping < 2, String(verdicts));
+    const [conventional, eeruf, flow] = verdicts.map(parseFloat);
+    assert.ok(conventional > 30 && eeruf < 2 && flow < 2, String(verdicts));
     assert.match(verdicts[1], /; sensors .* are blind\.$/);
     assert.match(verdicts[2], /; no sensor is blind\.$/);
     // Whoever hears the page hears what the pictures show.
@@ -350,8 +350,8 @@ describe("the page in a browser", { concurrency: LONG ? 1 : 4 }, () => {
       ["conventional"],
       ["conventional", "comparison"],
       ["comparison", "eeruf"],
-      ["eeruf", "eeruf_hopping"],
-      ["conventional", "eeruf", "eeruf_hopping"],
+      ["eeruf", "flow"],
+      ["conventional", "eeruf", "flow"],
     ];
     for (const [step, methods] of expected.entries()) {
       assert.match((await page.locator("#lesson-title").textContent()) ?? "", new RegExp(`^${step + 1} of 7: `));

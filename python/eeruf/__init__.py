@@ -29,17 +29,12 @@ from eeruf._eeruf import (
     Blind,
     CertificateError,
     EchoFilter,
-    EchoTracker,
     EerufError,
     EerufWarning,
     ExperimentError,
     FilterError,
     Fire,
     Found,
-    HoppingError,
-    HoppingFound,
-    HoppingSchedule,
-    HoppingSettings,
     LogError,
     PathsError,
     PeriodEnded,
@@ -83,17 +78,12 @@ __all__ = [
     "Blind",
     "CertificateError",
     "EchoFilter",
-    "EchoTracker",
     "EerufError",
     "EerufWarning",
     "ExperimentError",
     "FilterError",
     "Fire",
     "Found",
-    "HoppingError",
-    "HoppingFound",
-    "HoppingSchedule",
-    "HoppingSettings",
     "LogError",
     "PathsError",
     "PeriodEnded",
@@ -177,6 +167,11 @@ if not TYPE_CHECKING:
         ("diagnose", "read_firings", "read_log", "replay", "survey"), "logs"
     )
 
+    # What time hopping had, and what does it now.
+    _GONE = dict.fromkeys(
+        ("EchoTracker", "HoppingFound", "HoppingSchedule", "HoppingSettings", "TrackerSettings"), "Ring.flow"
+    ) | {"HoppingError": "RingError"}
+
     def __getattr__(name: str) -> object:
         from importlib import import_module
 
@@ -185,6 +180,8 @@ if not TYPE_CHECKING:
         if name in _FUNCTIONS:
             globals()[name] = function = getattr(import_module(f"eeruf.{_FUNCTIONS[name]}"), name)
             return function
+        if name in _GONE:
+            raise AttributeError(f"eeruf.{name} is gone; eeruf.{_GONE[name]} does it")
         raise AttributeError(f"module 'eeruf' has no attribute {name!r}")
 
     def __dir__() -> list[str]:

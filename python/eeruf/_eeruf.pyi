@@ -1,6 +1,6 @@
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from os import PathLike
-from typing import IO, Any, Final, Literal, SupportsIndex, TypedDict, TypeVar, final, overload, type_check_only
+from typing import IO, Any, ClassVar, Final, Literal, SupportsIndex, TypedDict, TypeVar, final, type_check_only
 
 import numpy as np
 import pandas as pd
@@ -50,12 +50,9 @@ _MethodName = Literal[
     "eeruf",
     "eeruf_best",
     "adaptive",
-    "eeruf_hopping",
     "flow",
     "multi_echo",
-    "adaptive_hopping",
     "adaptive_multi_echo",
-    "hopping_multi_echo",
     "flow_multi_echo",
     "in_turn",
     "arrays",
@@ -97,7 +94,6 @@ _Silence = Literal["never_free", "needs_answer", "trusted"]
 _Condition = Literal[
     "crosstalk_a", "crosstalk_b", "stale_echo", "interval", "window", "shared_line", "refire", "together"
 ]
-_Hopping = Literal["balanced", "quick", "driving", "maps"]
 _Pose = tuple[float, float, float]
 
 _Case = TypeVar("_Case")
@@ -117,13 +113,15 @@ class CertificateError(EerufError): ...
 class ScheduleError(EerufError): ...
 class FilterError(EerufError): ...
 class RingError(EerufError): ...
-class HoppingError(EerufError): ...
 class LogError(EerufError): ...
 class SearchError(EerufError): ...
 class SceneError(EerufError): ...
 class PathsError(EerufError): ...
 class SimulationError(EerufError): ...
 class ExperimentError(EerufError): ...
+
+@type_check_only
+class _Gone: ...
 
 @final
 class Schedule:
@@ -136,14 +134,8 @@ class Schedule:
     ) -> Schedule: ...
     @staticmethod
     def from_firing(period_us: _Int, t_fire_a_us: Iterable[_Int], t_fire_b_us: Iterable[_Int]) -> Schedule: ...
-    @staticmethod
-    def congruence(
-        sensors: _Int,
-        period_us: _Int,
-        step_us: _Int,
-        phases: _Int = 5,
-        t_lag_us: Iterable[_Int] | None = None,
-    ) -> HoppingSchedule: ...
+    congruence: ClassVar[_Gone]
+    phases: ClassVar[_Gone]
     @staticmethod
     def from_toml(text: str) -> Schedule: ...
     @staticmethod
@@ -310,37 +302,6 @@ class Found:
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...
 
-@final
-class HoppingFound:
-    def __new__(
-        cls,
-        schedule: HoppingSchedule,
-        value_us: _Int,
-        bound_us: _Int,
-        proven: bool,
-        reason: str,
-        width_us: _Int,
-        width_bound_us: _Int,
-    ) -> HoppingFound: ...
-    @property
-    def schedule(self) -> HoppingSchedule: ...
-    @property
-    def value_us(self) -> int: ...
-    @property
-    def bound_us(self) -> int: ...
-    @property
-    def proven(self) -> bool: ...
-    @property
-    def reason(self) -> str: ...
-    @property
-    def width_us(self) -> int: ...
-    @property
-    def width_bound_us(self) -> int: ...
-    def to_dict(self) -> dict[str, object]: ...
-    def __eq__(self, other: object, /) -> bool: ...
-    def __ne__(self, other: object, /) -> bool: ...
-
-@overload
 def design(
     sensors: _Int,
     t_delta_us: _Each,
@@ -359,23 +320,8 @@ def design(
     shared_lines: Iterable[Sequence[_Int]] | None = None,
     together: Iterable[Sequence[_Int]] | None = None,
     over_reals: bool = False,
-    phases: None = None,
-    margin_us: None = None,
     atlas: bool = True,
 ) -> Found: ...
-@overload
-def design(
-    sensors: _Int,
-    t_delta_us: _Each,
-    min_interval_us: _Int,
-    window_us: _Each,
-    *,
-    neighbours: _Int = 4,
-    layout: _Layout = "line",
-    stale_echo: bool = False,
-    phases: _Int,
-    margin_us: _Int | None = None,
-) -> HoppingFound: ...
 def fit(
     period_us: _Int,
     sensors: _Int,
@@ -454,123 +400,6 @@ class EchoFilter:
     def push_echoes(self, sensor: _Int, t_echoes_us: Iterable[_Int], expected_change_us: _Int = 0) -> Reading: ...
     def push_many(self, t_echo_us: ArrayLike) -> NDArray[np.int8]: ...
     def forget(self, sensor: _Int) -> None: ...
-
-@final
-class HoppingSchedule:
-    def __new__(
-        cls,
-        sensors: _Int,
-        period_us: _Int,
-        step_us: _Int,
-        phases: _Int = 5,
-        t_lag_us: Iterable[_Int] | None = None,
-        *,
-        first_multiplier: _Int | None = None,
-    ) -> HoppingSchedule: ...
-    @staticmethod
-    def from_toml(text: str) -> HoppingSchedule: ...
-    def scaled(self, num: _Int, den: _Int) -> HoppingSchedule: ...
-    def to_toml(self) -> str: ...
-    @property
-    def period_us(self) -> int: ...
-    @property
-    def sensors(self) -> int: ...
-    @property
-    def phases(self) -> int: ...
-    @property
-    def first_multiplier(self) -> int: ...
-    @property
-    def step_us(self) -> int: ...
-    @property
-    def width_us(self) -> int: ...
-    @property
-    def t_lag_us(self) -> tuple[int, ...]: ...
-    @property
-    def t_fire_us(self) -> _Ints: ...
-    def to_dict(self) -> dict[str, object]: ...
-    def __eq__(self, other: object, /) -> bool: ...
-    def __ne__(self, other: object, /) -> bool: ...
-    def __hash__(self, /) -> int: ...
-
-@type_check_only
-class _HoppingChanges(TypedDict, total=False):
-    t_delta_us: _Int
-    near_us: _Int
-    votes: _Int
-    score_limit: _Int
-    contradiction: _Int
-    solo_contradiction: _Int
-    tentative_votes: _Int
-    tentative_within_us: _Int
-    solo_rate: _Int
-    solo_after: _Int
-    solo_spacing: _Int
-    shift_after: _Int
-    shift_spacing: _Int
-    shift_interval_us: _Int
-    neighbours: _Int
-
-@final
-class HoppingSettings:
-    def __new__(cls, name: _Hopping = "balanced", /, **changes: Unpack[_HoppingChanges]) -> HoppingSettings: ...
-    @property
-    def t_delta_us(self) -> int: ...
-    @property
-    def near_us(self) -> int: ...
-    @property
-    def votes(self) -> int: ...
-    @property
-    def score_limit(self) -> int: ...
-    @property
-    def contradiction(self) -> int: ...
-    @property
-    def solo_contradiction(self) -> int: ...
-    @property
-    def tentative_votes(self) -> int: ...
-    @property
-    def tentative_within_us(self) -> int: ...
-    @property
-    def solo_rate(self) -> int: ...
-    @property
-    def solo_after(self) -> int: ...
-    @property
-    def solo_spacing(self) -> int: ...
-    @property
-    def shift_after(self) -> int: ...
-    @property
-    def shift_spacing(self) -> int: ...
-    @property
-    def shift_interval_us(self) -> int: ...
-    @property
-    def neighbours(self) -> int: ...
-    def __eq__(self, other: object, /) -> bool: ...
-    def __ne__(self, other: object, /) -> bool: ...
-    def __hash__(self, /) -> int: ...
-
-@final
-class EchoTracker:
-    def __new__(
-        cls, sensors: _Int, t_delta_us: _Int | None = None, *, settings: HoppingSettings | _Hopping = "balanced"
-    ) -> EchoTracker: ...
-    @property
-    def sensors(self) -> int: ...
-    @property
-    def t_delta_us(self) -> int: ...
-    def push(
-        self,
-        sensor: _Int,
-        phase: _Int,
-        t_echo_us: _Int | None,
-        expected_change_us: _Int = 0,
-        *,
-        solo: bool = False,
-        steady: bool = True,
-    ) -> Reading: ...
-    def push_many(self, phase: Iterable[_Int], t_echo_us: ArrayLike) -> NDArray[np.int8]: ...
-    def confirmed_us(self, sensor: _Int) -> int | None: ...
-    def is_clear(self, sensor: _Int) -> bool: ...
-    def forget(self, sensor: _Int) -> None: ...
-    def firing_changed(self) -> None: ...
 
 @final
 class Fire:
@@ -678,43 +507,25 @@ class Ring:
         silence: _Silence = "never_free",
     ) -> Ring: ...
     @staticmethod
-    def hopping(
-        schedule: HoppingSchedule,
-        settings: HoppingSettings | _Hopping = "balanced",
-        now_us: _Int = 0,
-        *,
-        window_us: _Each,
-        blanking_us: _Int = 0,
-        reach_us: _Int | None = None,
-        seed: _Int = 1,
-        t_delta_us: _Each | None = None,
-        refire_us: _Each | None = None,
-        intervals_us: Iterable[tuple[_Int, _Int, _Int]] | None = None,
-        shared_lines: Iterable[Sequence[_Int]] | None = None,
-        together: Iterable[Sequence[_Int]] | None = None,
-        several_echoes: bool = False,
-        silence: _Silence = "never_free",
-    ) -> Ring: ...
-    @staticmethod
     def flow(
         sensors: _Int,
         settings: FlowSettings | None = None,
         now_us: _Int = 0,
         *,
-        window_us: _Int,
+        window_us: _Each,
         blanking_us: _Int = 0,
         reach_us: _Int | None = None,
+        refire_us: _Each | None = None,
+        shared_lines: Iterable[Sequence[_Int]] | None = None,
+        together: Iterable[Sequence[_Int]] | None = None,
         several_echoes: bool = False,
         silence: _Silence = "never_free",
     ) -> Ring: ...
-    @property
-    def t_lag_us(self) -> tuple[int, ...]: ...
-    @property
-    def solo(self) -> int | None: ...
-    def confirmed_us(self, sensor: _Int) -> int | None: ...
+    hopping: ClassVar[_Gone]
+    def moving(self, speed_m_s: float, turn_rad_s: float, now_us: _Int) -> None: ...
     @property
     def schedule(self) -> Schedule: ...
-    def change_schedule(self, schedule: Schedule | HoppingSchedule) -> None: ...
+    def change_schedule(self, schedule: Schedule) -> None: ...
     @property
     def sensors(self) -> int: ...
     @property
@@ -811,7 +622,7 @@ class State:
 class Adaptation:
     def __new__(
         cls,
-        schedules: Iterable[Schedule] | Iterable[HoppingSchedule],
+        schedules: Iterable[Schedule],
         t_delta_us: _Int,
         *,
         noisy: float = 0.3,
@@ -823,7 +634,7 @@ class Adaptation:
     @property
     def rung(self) -> int: ...
     @property
-    def schedule(self) -> Schedule | HoppingSchedule: ...
+    def schedule(self) -> Schedule: ...
     @property
     def rejection_rate(self) -> float | None: ...
     def max_speed_m_s(self, t_delta_us: _Int, sound_m_s: float = 343.2) -> float: ...
@@ -974,7 +785,6 @@ class _RobotChanges(TypedDict, total=False):
     path_change_us: _Int | None
     firing: dict[str, object] | None
     ring: str | PathLike[str] | None
-    fleet_number: _Int
 
 @final
 class Robot:
@@ -1013,7 +823,6 @@ class Robot:
         path_change_us: _Int | None = None,
         firing: dict[str, object] | None = None,
         ring: str | PathLike[str] | None = None,
-        fleet_number: _Int = 0,
     ) -> Robot: ...
     def replace(self, **changes: Unpack[_RobotChanges]) -> Robot: ...
     @property
@@ -1078,8 +887,6 @@ class Robot:
     def clock_offset_us(self) -> int: ...
     @property
     def clock_drift_ppm(self) -> float: ...
-    @property
-    def fleet_number(self) -> int: ...
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...
 
@@ -1323,11 +1130,11 @@ _MakeFiring = Callable[[Robot], _Fires]
 class Method:
     def __new__(
         cls,
-        name: _MethodName | Literal["driving"] = "eeruf",
+        name: _MethodName = "eeruf",
         *,
         label: str | None = None,
-        schedule: Schedule | HoppingSchedule | None = None,
-        settings: HoppingSettings | _Hopping | FlowSettings | None = None,
+        schedule: Schedule | None = None,
+        settings: FlowSettings | None = None,
         sketch: dict[str, object] | None = None,
         make_filter: _MakeFilter | None = None,
         make_firing: _MakeFiring | None = None,
@@ -1340,7 +1147,7 @@ class Method:
     def __eq__(self, other: object, /) -> bool: ...
     def __hash__(self, /) -> int: ...
 
-_Method = _MethodName | Literal["driving"] | Method
+_Method = _MethodName | Method
 
 @final
 class Simulation:
@@ -1466,7 +1273,6 @@ def _set_three(
     progress: _Progress,
     physics: _Physics,
     height: object,
-    numbered: bool,
 ) -> tuple[str, str]: ...
 def _set_two(asked: dict[str, object], progress: _Progress) -> tuple[str, dict[str, list[dict[str, object]]]]: ...
 def _figures(set: int, runs: str) -> str: ...
@@ -1500,8 +1306,5 @@ class _LogBlocks(Iterator[dict[str, Any]]):
 
 def _judge(ranges: object, judge: object, speed_of_sound: object) -> dict[str, Any]: ...
 def _read_firings(source: object) -> dict[str, Any]: ...
-def _replay(
-    source: object, judge: object, out: str | PathLike[str] | None, speed_of_sound: object
-) -> dict[str, Any]: ...
 def _diagnose(firings: Firings, tolerance_us: _Int, max_travel_us: _Int) -> dict[str, Any]: ...
 def _survey(firings: Firings, tolerance_us: _Int, until_us: _Int) -> dict[str, Any]: ...

@@ -573,8 +573,8 @@ class SetThreeBrief(Result):
 
     Example:
         >>> import eeruf
-        >>> found = eeruf.experiments.set_three(seeds=2, periods=20, methods=["driving"])
-        >>> 0 <= found.groups[0].methods["driving"].belief_right.median <= 1
+        >>> found = eeruf.experiments.set_three(seeds=2, periods=20, methods=["flow"])
+        >>> 0 <= found.groups[0].methods["flow"].belief_right.median <= 1
         True
 
     """
@@ -615,9 +615,9 @@ class SetThree(Result):
 
     Example:
         >>> import eeruf
-        >>> found = eeruf.experiments.set_three(seeds=2, periods=20, methods=["sequential", "driving"], height="room")
+        >>> found = eeruf.experiments.set_three(seeds=2, periods=20, methods=["sequential", "flow"], height="room")
         >>> list(found.methods), found.height
-        (['sequential', 'driving'], 'room')
+        (['sequential', 'flow'], 'room')
 
     """
 
@@ -630,12 +630,10 @@ class SetThree(Result):
     periods: int
     """Number of periods for which each was simulated."""
     methods: Mapping[str, SetThreeFigures]
-    """By name, over all placings; ``"driving"`` is time hopping by its settings for robots that drive."""
+    """By name, over all placings."""
     groups: tuple[SetThreeGroup, ...]
     """The placings by place and arrangement, and by the number of robots."""
     runs: Mapping[str, list[PlacingRun]] = field(repr=False)
     """For each method the result in each placing, in their order."""
     height: Literal["flat", "room"] = "flat"
     """``"room"`` if the rings heard floor and ceiling."""
-    numbered: bool = False
-    """True if the robots of a placing had fleet numbers of their own."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, TypedDict
+from typing import TYPE_CHECKING, Literal, TypedDict
 
 if TYPE_CHECKING:
     import numpy as np
@@ -24,19 +24,21 @@ class HeardPaths(TypedDict):
 
 
 class FlowSettings(TypedDict, total=False):
-    """Settings of the method ``flow`` that differ from its default, as :class:`eeruf.sim.Method` takes it."""
+    """Settings of :meth:`eeruf.Ring.flow`, and of the method ``flow``, that differ from the default."""
 
-    step_us: int
-    shortest_gap_us: int
-    masked_adds_us: int
-    believed_takes_us: int
-    unserved_adds_us: int
-    unserved_after: int
-    shortest_cycle_us: int
+    least_us: int
+    most_us: int
     rest_us: int
-    lead_us: int
-    longest_cycle_us: int
-    travel_us: int
+    dice_us: int
+    seed: int
+    t_delta_us: int
+    near_us: int
+    path_change_us: int
+    memory: int
+    hold: int
+    top_speed_m_s: float
+    alone: bool
+    votes: Literal["by_motion", "two_in_a_row", "every_echo"]
 
 
 class ReadingColumns(TypedDict, total=False):

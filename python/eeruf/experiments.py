@@ -376,7 +376,7 @@ def set_two(
     Args:
         seeds: how many courses, 1 to 100,000.
         methods: names of ``eeruf.sim.METHODS`` and ``eeruf.sim.Method``; by default sequential, far_groups, conventional, comparison, eeruf,
-            eeruf_best, adaptive, eeruf_hopping and multi_echo.
+            eeruf_best, adaptive and multi_echo.
         second_robot: where another robot stands that fires 24 times in 80 ms: ``"behind"`` the start, ``"ahead"`` in the
             reflective corner that all sensors face, or a point (x, y) in metres of the lab, which is 10 m by 6 m.
         speed_m_s: the platform's highest speed, 0.1 to 5 m/s.
@@ -424,7 +424,6 @@ def set_three(
     first: int = FIRST,
     physics: _Physics = "default",
     height: Literal["flat", "room"] | dict[str, object] = "flat",
-    numbered: bool = False,
     tune: bool = False,
     progress: _Progress = None,
 ) -> SetThree:
@@ -436,12 +435,11 @@ def set_three(
 
     Args:
         seeds: how many placings, 1 to 100,000.
-        methods: names of ``eeruf.sim.METHODS`` and ``eeruf.sim.Method``; by default simultaneous, sequential, sequential_votes, dither, eeruf, eeruf_hopping, driving and flow.
+        methods: names of ``eeruf.sim.METHODS`` and ``eeruf.sim.Method``; by default simultaneous, sequential, sequential_votes, dither, eeruf and flow.
         periods: of 100 ms, for which each placing is simulated, 10 to 100,000.
         first: the first placing's number.
         physics: as the argument of ``eeruf.sim.Scene``.
         height: as the argument of ``eeruf.sim.Scene``.
-        numbered: whether the robots of a placing have fleet numbers, 0, 1 and so on, by which flow tells them apart.
         tune: whether parameters are chosen by the result. Seeds from :data:`FIRST` on are then refused: they are for reports.
         progress: True for a bar (tqdm if it is installed), or a callable that takes the share done and a text.
 
@@ -454,13 +452,13 @@ def set_three(
 
     Example:
         >>> import eeruf
-        >>> found = eeruf.experiments.set_three(seeds=3, periods=20, methods=["simultaneous", "driving"])
-        >>> found.methods["driving"].right_echoes_per_s.median > 0
+        >>> found = eeruf.experiments.set_three(seeds=3, periods=20, methods=["simultaneous", "flow"])
+        >>> found.methods["flow"].right_echoes_per_s.median > 0
         True
 
     """
     _checked(first, seeds, tune)
-    return _making.set_three(*_eeruf._set_three(seeds, first, periods, methods, progress, physics, height, numbered))
+    return _making.set_three(*_eeruf._set_three(seeds, first, periods, methods, progress, physics, height))
 
 
 def speed_sweep(

@@ -72,7 +72,6 @@ __all__ = [
     "LogError",
     "OnLine",
     "Ranges",
-    "Replayed",
     "Surveyed",
     "blocks",
     "diagnose",
@@ -336,38 +335,6 @@ class Diagnosis:
 
 
 @dataclass(frozen=True, eq=False)
-class Replayed(_Columns):
-    """A hopping ring's tracker over each firing of the ring's log: arrays of equal length, by time of firing.
-
-    ``kind`` is an index into ``eeruf.KINDS``, as is ``logged``, what the log says that the ring made of it (-1 where it does not
-    say). ``age`` is how many firings of the sensor ago a reading was last accepted, -1 if none was. ``damage`` says what of the file
-    could not be read.
-
-    Example:
-        >>> import eeruf, pathlib, tempfile
-        >>> file = pathlib.Path(tempfile.mkdtemp()) / "log.csv"
-        >>> head = "sensor,fired_us,period,phase,t_echo_us,reading,solo,steady,changes"
-        >>> rows = [f"0,{60_000 * n},{n},{n},7000,,0,1,0" for n in range(6)]
-        >>> size = file.write_text(chr(10).join([head, *rows]))
-        >>> eeruf.replay(file, "balanced").age.tolist()
-        [-1, 0, 0, 0, 0, 0]
-
-    """
-
-    sensor: NDArray[np.int64]
-    fired_us: NDArray[np.int64]
-    period: NDArray[np.int64]
-    phase: NDArray[np.int64]
-    t_echo_us: NDArray[np.float64]
-    kind: NDArray[np.int8]
-    age: NDArray[np.int64]
-    logged: NDArray[np.int8]
-    damage: str | None
-
-    _columns = ("sensor", "fired_us", "period", "phase", "t_echo_us", "kind", "age", "logged")
-
-
-@dataclass(frozen=True, eq=False)
 class Surveyed:
     """The result of a measuring run.
 
@@ -534,69 +501,42 @@ def read_firings(log: _Log) -> Firings:
         return Firings(**_eeruf._read_firings(source))
 
 
-@overload
 def replay(
     log: Ranges | _Log,
     judge: Agree | OnLine,
     *,
-    out: str | os.PathLike[str] | None = ...,
-    **options: Unpack[_Options],
-) -> Judged: ...
-@overload
-def replay(
-    log: _Log,
-    judge: _eeruf.HoppingSettings | _eeruf._Hopping,
-    *,
-    out: str | os.PathLike[str] | None = ...,
-    speed_of_sound: float = ...,
-) -> Replayed: ...
-def replay(
-    log: Ranges | _Log,
-    judge: Agree | OnLine | _eeruf.HoppingSettings | _eeruf._Hopping,
-    *,
     out: str | os.PathLike[str] | None = None,
     **options: Unpack[_Options],
-) -> Judged | Replayed:
-    """Judge a log again: its ranges, or, by the settings of a hopping ring, the ring's own log of firings.
-
-    With the settings of the ring, it accepts exactly what the ring accepted. The log of firings says how each reading was weighed, as
-    one that ``eeruf study --method eeruf_hopping --log`` writes does; docs/how-to/diagnose.md has the columns.
+) -> Judged:
+    """Judge the ranges of a log again.
 
     Args:
-        log: a path, a URL or a file object; ranges also as :func:`read_log` gave them.
-        judge: an :class:`Agree` or an :class:`OnLine` for ranges; a :class:`HoppingSettings`, or the name of one, for firings.
+        log: a path, a URL or a file object; or ranges as :func:`read_log` gave them.
+        judge: an :class:`Agree` or an :class:`OnLine`.
         out: an MCAP file to write: each topic, and beside it what is accepted; not for ranges that were read before.
-        options: as of :func:`read_log`, for ranges; of firings, and of ranges that were read before, ``speed_of_sound`` alone.
+        options: as of :func:`read_log`; of ranges that were read before ``speed_of_sound`` alone.
 
     Raises:
-        LogError: the log cannot be read, or does not say how readings were weighed.
-        HoppingError: settings that contradict each other.
+        LogError: the log cannot be read.
         ArgumentError: an argument is wrong.
 
     Example:
-        >>> import eeruf, pathlib, tempfile
-        >>> file = pathlib.Path(tempfile.mkdtemp()) / "log.csv"
-        >>> head = "sensor,fired_us,period,phase,t_echo_us,reading,solo,steady,changes"
-        >>> rows = [f"0,{60_000 * n},{n},{n},7000,,0,1,0" for n in range(6)]
-        >>> size = file.write_text(chr(10).join([head, *rows]))
-        >>> [eeruf.KINDS[kind] for kind in eeruf.replay(file, "balanced").kind]
-        ['first', 'tentative', 'tentative', 'tentative', 'accepted', 'accepted']
+        >>> import eeruf, io
+        >>> text = chr(10).join(["front m", "1.20", "1.21", "0.40"])
+        >>> [eeruf.KINDS[kind] for kind in eeruf.replay(io.StringIO(text), eeruf.logs.Agree(t_delta_us=500)).kind]
+        ['first', 'accepted', 'rejected']
 
     """
-    if isinstance(judge, (Agree, OnLine)):
-        if isinstance(log, Ranges):
-            if out is not None:
-                raise ArgumentError(f"out = {out!r:.60}; expected None where ranges were read before: give their log")
-            found = _eeruf._judge(log, judge, _speed_of_sound(options))
-            return Judged(**{field.name: getattr(log, field.name) for field in fields(Ranges)}, **found)
-        with _opened(log) as source:
-            (found,) = _eeruf._LogBlocks(source, options, judge, out, None)
-        return _made(Judged, found)
-    if not isinstance(judge, (str, _eeruf.HoppingSettings)):
-        expected = "an eeruf.logs.Agree or OnLine, an eeruf.HoppingSettings or the name of one"
-        raise ArgumentError(f"judge = {judge!r:.60}; expected {expected}")
+    if not isinstance(judge, (Agree, OnLine)):
+        raise ArgumentError(f"judge = {judge!r:.60}; expected an eeruf.logs.Agree or OnLine")
+    if isinstance(log, Ranges):
+        if out is not None:
+            raise ArgumentError(f"out = {out!r:.60}; expected None where ranges were read before: give their log")
+        found = _eeruf._judge(log, judge, _speed_of_sound(options))
+        return Judged(**{field.name: getattr(log, field.name) for field in fields(Ranges)}, **found)
     with _opened(log) as source:
-        return Replayed(**_eeruf._replay(source, judge, out, _speed_of_sound(options)))
+        (found,) = _eeruf._LogBlocks(source, options, judge, out, None)
+    return _made(Judged, found)
 
 
 def _speed_of_sound(options: _Options) -> float:
@@ -629,7 +569,7 @@ def diagnose(log: Firings | _Log, *, tolerance_us: int = 75, max_travel_us: int 
         >>> import eeruf, numpy as np
         >>> from eeruf import sim
         >>> scene = sim.Scene.from_toml(eeruf.example("scenes/alcove.toml"))
-        >>> r = sim.simulate(scene, "eeruf_hopping", periods=300)
+        >>> r = sim.simulate(scene, "dither", periods=300)
         >>> log = eeruf.logs.Firings.of(
         ...     sensor=r.sensor, fired_us=np.rint(1e6 * r.fired_s), period=r.period, phase=r.phase, t_echo_us=r.earliest_us
         ... )

@@ -58,7 +58,7 @@ def is_method(name: str) -> TypeGuard[_MethodName]:
         (True, False)
 
     """
-    return name in METHODS or name == "driving"
+    return name in METHODS
 
 
 __all__ = [

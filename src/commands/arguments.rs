@@ -46,10 +46,25 @@ pub(crate) fn picture_folder() -> impl TypedValueParser<Value = PathBuf> {
     })
 }
 
+/// Options of earlier versions, and what does their work.
+const GONE: [(&str, &str); 7] = [
+    ("--blanking-us", "schedules have two phases"),
+    ("--fleet-number", "flow needs no numbers"),
+    ("--hopping", "flow does it"),
+    ("--margin-us", "schedules have two phases"),
+    ("--numbered", "flow needs no numbers"),
+    ("--phases", "flow does it"),
+    ("--reach-us", "schedules have two phases"),
+];
+
 /// Returns the error in the arguments.
 pub(crate) fn describe(error: &clap::Error, words: &[String]) -> InputError {
     let context = |kind| error.get(kind).map(text).filter(|text| !text.is_empty());
     let thing = context(ContextKind::InvalidArg).unwrap_or_else(|| "arguments".to_owned());
+    let gone = GONE.iter().find(|(name, _)| error.kind() == ErrorKind::UnknownArgument && *name == thing);
+    if let Some((name, why)) = gone {
+        return InputError::new(name, format!("gone; {why}"));
+    }
     let value = context(ContextKind::InvalidValue).unwrap_or_default();
     let among = context(ContextKind::ValidValue).or_else(|| context(ContextKind::ValidSubcommand));
     let suggested = [ContextKind::SuggestedArg, ContextKind::SuggestedSubcommand, ContextKind::SuggestedValue]

@@ -41,8 +41,8 @@ pub(crate) struct Args {
     physics: Physics,
 }
 
-/// One that believes everything, the paper's, and time hopping.
-const METHODS: [Method; 3] = [Method::Conventional, Method::Eeruf, Method::EerufHopping];
+/// One that believes everything, the paper's, and flow.
+const METHODS: [Method; 3] = [Method::Conventional, Method::Eeruf, Method::Flow];
 
 /// One file of readings.
 #[derive(Clone, Copy)]

@@ -5,11 +5,12 @@ use std::time::{Duration, Instant};
 
 use clap::ValueEnum;
 use clap::builder::PossibleValue;
+use eeruf_core::flow::{BeliefSettings, TurnSettings};
 use eeruf_core::search::{Progress, SearchError};
-use eeruf_core::{Criterion, EachSensor, Micros, SensorLimits, hopping::HoppingListening};
+use eeruf_core::{EachSensor, Micros, SensorLimits};
 use eeruf_design::atlas::ATLAS;
 use eeruf_design::{CURVE_BUDGET, FoundJson, Need, RealPeriod, RingDesign, RingSpec, Search, real_budget};
-use eeruf_files::emit::{self, Emit as _, Flow};
+use eeruf_files::emit::{self, Flow};
 
 use eeruf_sim::experiments::rooms::RoomWay;
 use eeruf_sim::{Method, Robot};
@@ -26,23 +27,19 @@ use crate::files::write::write;
 use crate::report::design::describe;
 use crate::report::draw;
 use crate::report::json::to_json;
-use crate::report::phases::{DesignJson, describe_design};
 use crate::report::questions::{CurveJson, describe_curve, describe_fit, fit_json};
 use crate::report::rooms::{RoomsOrNot, describe as describe_rooms};
 use crate::report::watch::Watch;
 
 /// Find the way of firing a ring that is right most of the time in rooms, and the shortest period, proven.
 ///
-/// The ring is fired in every way (one by one, at once, in groups, in two phases, by time hopping, by flow) in seeded
+/// The ring is fired in every way (one by one, at once, in groups, in two phases, by flow) in seeded
 /// rooms of eight kinds, standing or --driving. The way recommended is right most of the time among those that keep
 /// foreign sound below --wrong and leave no sensor blind. The answer lists what it depends on.
 ///
 /// --emit rust, c and arduino write the settings of a flow ring where that is the way recommended, else the shortest
 /// schedule of two phases, as --period-only and --emit toml always do. Among schedules of one period it prefers a
 /// larger T_delta, then a larger smallest interval, then evener firing.
-///
-/// With --phases the schedule has many phases, for a ring that hops in time and whose sensors do not stay blind; --emit
-/// rust, c and arduino then write all settings of a hopping ring.
 ///
 /// Four lines are enough for a ring file: sensors, module, layout and speed_m_s. The sensors' places (spacing_deg and
 /// radius_m, or poses, or urdf and links) make the answer the robot's own. Instead of the module it may give times
@@ -76,28 +73,19 @@ pub(crate) struct Args {
     /// prove
     #[arg(long, default_value_t = 1_000_000, value_name = "NODES")]
     certificate_budget: usize,
-    /// At least this many phases, 2 to 67: a schedule for a ring that hops in time; by default two phases that
-    /// alternate
-    #[arg(long, value_name = "M", value_parser = clap::value_parser!(u8).range(2..=67),
-          conflicts_with_all = ["certificate", "certificate_over_reals", "budget", "time_limit"])]
-    phases: Option<u8>,
-    /// Many phases: crosstalk need move by T_delta and this margin alone, which is all that jitter and lateness may
-    /// use, in microseconds; by default 2 T_delta + 1
-    #[arg(long, value_name = "US", requires = "phases")]
-    margin_us: Option<u32>,
     /// Largest number of nodes to search before giving the best schedule so far; 50 million by default, 20,000 for each
     /// point of a curve
     #[arg(long, value_name = "NODES")]
     budget: Option<u64>,
     /// Find what fits into this period, in microseconds: whether the ring's needs do, and the largest T_delta; by
     /// default the shortest period. Exit code 1 if they do not, 3 if that was not decided
-    #[arg(long, value_name = "US", conflicts_with_all = ["certificate", "certificate_over_reals", "phases", "curve"])]
+    #[arg(long, value_name = "US", conflicts_with_all = ["certificate", "certificate_over_reals", "curve"])]
     #[arg(value_parser = clap::value_parser!(u32).range(1..))]
     period: Option<u32>,
     /// Print the shortest period for 20 values of one need, from a tenth of the ring's own to twice as much; by default
     /// for its own alone
     #[arg(long, value_enum, value_name = "NEED",
-          conflicts_with_all = ["certificate", "certificate_over_reals", "phases", "emit", "svg"])]
+          conflicts_with_all = ["certificate", "certificate_over_reals", "emit", "svg"])]
     curve: Option<CurveOf>,
     /// Search even where the atlas knows the shortest period
     #[arg(long)]
@@ -109,10 +97,6 @@ pub(crate) struct Args {
     /// Find the shortest period and judge nothing in rooms
     #[arg(long, conflicts_with_all = ["rooms", "places", "first", "wrong", "driving"])]
     period_only: bool,
-    /// Number of this robot among robots of one make, which flow tells apart: six differ, 0 to 5; with --emit, by
-    /// default 0
-    #[arg(long, value_name = "N", requires = "emit", default_value_t = 0, hide_default_value = true)]
-    fleet_number: u8,
     #[command(flatten)]
     in_rooms: RoomArgs,
 }
@@ -201,9 +185,6 @@ const BUDGET: u64 = 50_000_000;
 
 pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     let spec = read_ring(&args.file)?;
-    if let Some(phases) = args.phases {
-        return many_phases(args, &spec, phases);
-    }
     let bad = |error: SearchError| InputError::new(&args.file, error);
     if let Some(period) = args.period {
         return fit(args, &spec, Micros::new(period));
@@ -266,12 +247,6 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
         }
         _ => certified,
     };
-    let by_flow = matches!(&way, Some(Ok(Some(way))) if way.method == Method::Flow);
-    if args.fleet_number != 0 && !by_flow {
-        let number = args.fleet_number;
-        let expected = "expected a ring for which flow is recommended, as tables do not tell robots apart";
-        return Err(InputError::new(&args.file, format_args!("fleet number {number}; {expected}")));
-    }
     match args.form() {
         Some(Form::Json) => {
             let real_period_us = real.as_ref().map(|real| real.period_us);
@@ -286,7 +261,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
         Some(Form::Source(form)) => {
             let table = || form.table(&design.schedule, &design.spec.table_requirements(), &design.spec.modules);
             print(match &way {
-                Some(Ok(Some(way))) if way.method == Method::Flow => flow_source(args, &design.spec, form, way)?,
+                Some(Ok(Some(way))) if way.method == Method::Flow => flow_source(&design.spec, form, way),
                 Some(Ok(Some(way))) if way.method != Method::Eeruf => {
                     let title = way.title();
                     form.comment(&format!("In rooms {title} is right most of the time, which this is not")) + &table()
@@ -305,23 +280,26 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
 }
 
 /// The source text of a ring that fires by flow, as it was judged in rooms.
-fn flow_source(args: &Args, spec: &RingSpec, form: emit::Form, way: &RoomWay) -> Result<String, InputError> {
-    let Robot { ref sensors, window, blanking, period, ref limits, ref together, .. } = way.robot;
-    let mut settings = way.options.flow.with_fleet_number(args.fleet_number);
-    settings.shortest_cycle = period;
-    if form == emit::Form::Arduino {
-        // An AVR takes as long to plan a cycle; firings that are later than the plan make a ring accept nothing.
-        settings.lead = Micros::from_millis(4);
+fn flow_source(spec: &RingSpec, form: emit::Form, way: &RoomWay) -> String {
+    let &Robot { ref sensors, window, blanking, audible, ref limits, ref together, .. } = &way.robot;
+    // A sensor that fires while its last sound is heard would take old echoes for new ones.
+    let rest = way.robot.module_rest().max(window).max(audible);
+    let mut turns = TurnSettings::for_module(1, window, rest, blanking);
+    if audible > Micros::ZERO {
+        turns.most = audible;
+        turns.least = Micros::new(audible.as_micros() / 11 * 2);
     }
     let needs = spec.problem().requirements;
-    let settings = settings.keeping(sensors.len(), &needs).map_err(|error| InputError::new(&args.file, error))?;
-    let listening = HoppingListening::new(window).with_blanking(blanking);
-    let is_alike = together.is_empty() && limits.iter().all(|of| of.window == window);
+    let turns = turns.keeping(&needs);
+    let mut belief = BeliefSettings { alone: !way.robot.others, ..BeliefSettings::DEFAULT };
+    belief.top_speed_mm_s = spec.speed_mm_s.unwrap_or(0).try_into().unwrap_or(u16::MAX);
+    let shared_lines = needs.uneven.map_or(&[][..], |uneven| uneven.shared_lines);
+    let is_alike = together.is_empty() && shared_lines.is_empty() && limits.iter().all(|of| of.window == window);
     let own_limits = if is_alike {
         EachSensor::NONE
     } else {
         // No more counts than what its judge compares by.
-        let t_delta = settings.tracker.t_delta;
+        let t_delta = belief.t_delta;
         EachSensor::<64>::for_flow(
             std::array::from_fn(|sensor| SensorLimits {
                 window: limits.get(sensor).map_or(window, |of| of.window.min(window)),
@@ -330,8 +308,8 @@ fn flow_source(args: &Args, spec: &RingSpec, form: emit::Form, way: &RoomWay) ->
             together,
         )
     };
-    let flow = Flow { settings: &settings, sensors: sensors.len(), listening, limits: &own_limits };
-    Ok(form.flow(&flow, &spec.modules))
+    let (turns, belief, sensors, limits) = (&turns, &belief, sensors.len(), &own_limits);
+    form.flow(&Flow { turns, belief, sensors, window, blanking, limits, shared_lines }, &spec.modules)
 }
 
 /// Answers `--period`.
@@ -391,28 +369,4 @@ fn over_reals(args: &Args, design: &RingDesign, watch: &mut Watch) -> Option<Rea
         if args.certificate_over_reals.is_some() { args.certificate_budget } else { real_budget(design.spec.sensors) };
     watch.forget_interrupt();
     design.over_reals(budget, |nodes| watch.go_on(|| format!("over the reals: {nodes} nodes")))
-}
-
-fn many_phases(args: &Args, spec: &RingSpec, phases: u8) -> Result<Answer, InputError> {
-    let bad = |message: String| InputError::new(&args.file, message);
-    let criterion = args.margin_us.map_or(Criterion::Exact, |us| Criterion::Margin(Micros::new(us)));
-    let design = spec.hopping(phases, criterion).map_err(bad)?;
-    let requirements = spec.phase_requirements(criterion);
-    if let Some(file) = &args.svg {
-        draw::hopping_diagram(&design.phases(), &requirements).save(file)?;
-    }
-    match args.form() {
-        Some(Form::Source(form)) => {
-            print(form.modules(&spec.modules))?;
-            print(match form {
-                emit::Form::Toml => design.phases().to_toml().unwrap_or_default(),
-                emit::Form::Rust => design.schedule.to_rust(&requirements),
-                emit::Form::C => design.schedule.to_c(&requirements),
-                emit::Form::Arduino => design.schedule.to_arduino(&requirements, "RING"),
-            })?;
-        }
-        Some(Form::Json) => print_line(to_json(&DesignJson::from(&design)))?,
-        None => tell(describe_design(&args.file.display().to_string(), spec, &requirements, &design))?,
-    }
-    Ok(Answer::Yes)
 }

@@ -5,13 +5,14 @@ use std::path::PathBuf;
 use eeruf_core::{Micros, Phase};
 use eeruf_files::Kind;
 use eeruf_logs::{Alignment, FiringLog, Settings, Timing, align, diagnose, timing};
+use eeruf_sim::AnySchedule;
 
 use super::arguments::picture;
 use super::log_args::positive;
 use super::{Answer, show};
 use crate::files::error::InputError;
 use crate::files::implausible::read_firings;
-use crate::files::toml::{FoundSchedule, read_any_schedule, read_schedule};
+use crate::files::toml::read_schedule;
 use crate::report::diagnose::{Found, describe, json, who_fools_whom};
 
 /// Find in a ring's own log which sensors fool each other, and what is broken.
@@ -22,7 +23,7 @@ use crate::report::diagnose::{Found, describe, json, who_fools_whom};
 /// The log is CSV with the columns sensor, fired_us, period, phase and t_echo_us, one row for each firing: when it was,
 /// in microseconds of one clock, and the raw time to the first echo, empty without one. Sensors, periods and phases
 /// count from 0. A column `reading` may say what the ring made of it (`rejected`). `eeruf study --log` writes such a
-/// log. Messages `eeruf_msgs/msg/Firing` in an MCAP file are read as well. A ring that hops in time, whose lags move,
+/// log. Messages `eeruf_msgs/msg/Firing` in an MCAP file are read as well. A ring whose waits are drawn at random
 /// says most; with two phases senders cannot be distinguished.
 ///
 /// The exit code is 1 if something is broken.
@@ -90,29 +91,22 @@ fn aligned(args: &Args, log: &FiringLog) -> Result<(FiringLog, Alignment), Input
         let message = "no instants of firing; expected a column `fired_us`, or --schedule, the fixed one of the ring";
         return Err(InputError::new(&args.file, message));
     };
-    let found = match read_any_schedule(file)? {
-        FoundSchedule::Two(schedule) => {
-            let fires_at = |sensor: u8, phase: u8| {
-                if phase < 2 { schedule.t_fire(Phase(phase), sensor.into()).map(Micros::as_micros) } else { None }
-            };
-            align(log, args.tolerance_us, (schedule.period().as_micros(), 2), fires_at)
-        }
-        FoundSchedule::Many(schedule) => {
-            let fires_at = |sensor: u8, phase: u8| schedule.t_fire(Phase(phase), sensor.into()).map(Micros::as_micros);
-            let phases = schedule.phases() as u8;
-            align(log, args.tolerance_us, (schedule.period().as_micros(), phases), fires_at)
-        }
-    };
+    let schedule = read_schedule(file)?;
+    let found = align(log, args.tolerance_us, (schedule.period().as_micros(), 2), fires_at(&schedule));
     found.map_err(|error| InputError::new(&args.file, format!("against {}: {error}", file.display())))
+}
+
+/// When a sensor fires in a phase, in microseconds.
+fn fires_at(schedule: &AnySchedule) -> impl Fn(u8, u8) -> Option<u32> {
+    |sensor, phase| {
+        let fires = if phase < 2 { schedule.t_fire(Phase(phase), sensor.into()) } else { None };
+        fires.map(Micros::as_micros)
+    }
 }
 
 fn timing_of(args: &Args, log: &FiringLog) -> Result<Option<Timing>, InputError> {
     let Some(file) = &args.schedule else { return Ok(None) };
     let schedule = read_schedule(file)?;
-    let fires_at = |sensor: u8, phase: u8| {
-        let fires = if phase < 2 { schedule.t_fire(Phase(phase), sensor.into()) } else { None };
-        fires.map(Micros::as_micros)
-    };
-    let found = timing(log, schedule.period().as_micros(), fires_at);
+    let found = timing(log, schedule.period().as_micros(), fires_at(&schedule));
     found.map(Some).map_err(|error| InputError::new(&args.file, format!("against {}: {error}", file.display())))
 }

@@ -26,7 +26,6 @@ mod merge;
 mod methods;
 mod paths;
 mod replay;
-mod replay_hopping;
 mod rooms;
 mod scene;
 mod search;

@@ -9,8 +9,6 @@ use eeruf_logs::{Counted, Judging, McapWriter, RangeJudge, Report, read_log};
 use super::Answer;
 use super::arguments::picture;
 use super::log_args::{LogArgs, left_out, tell_damage, warn_of_log};
-use super::methods::Hopping;
-use super::replay_hopping::replay_hopping;
 use crate::console::{print_line, tell};
 use crate::files::error::InputError;
 use crate::files::implausible::warn;
@@ -20,9 +18,6 @@ use crate::report::replay::{Column, Counts, Firing, Replay, table};
 
 /// Run the filter over a log of real readings: which would it have accepted?
 ///
-/// With --hopping, the tracker of a hopping ring over the ring's own log of firings, as `eeruf study --method
-/// eeruf_hopping --log` writes it.
-///
 /// The log is whatever `eeruf logs` reads: MCAP, ROS 1 and ROS 2 bags, tables, lines of pairs, JSON. Of a damaged log
 /// all is read that can be, what cannot is said, and the exit code is 2. A gap in a sensor's times, and a clock that
 /// steps back, start its comparison over. The last line says how the sensors fire, and what agreement proves for that.
@@ -31,16 +26,9 @@ pub(crate) struct Args {
     /// The log
     #[arg(value_name = "LOG")]
     file: PathBuf,
-    /// T_delta in microseconds: consecutive readings that differ by no more are near-identical; with --hopping by
-    /// default that of the settings
-    #[arg(long, value_name = "US", required_unless_present = "hopping")]
-    t_delta_us: Option<u32>,
-    /// The log is that of a hopping ring's firings: run the tracker over it, with these settings; by default it
-    /// is a log of ranges
-    #[arg(long, value_name = "SETTING")]
-    #[arg(conflicts_with_all = ["no_echo_m", "consecutive", "max_speed", "time", "time_unit", "no_echo", "columns"])]
-    #[arg(conflicts_with_all = ["range", "range_unit", "sensor", "svg", "topic", "field"])]
-    hopping: Option<Hopping>,
+    /// T_delta in microseconds: consecutive readings that differ by no more are near-identical
+    #[arg(long, value_name = "US")]
+    t_delta_us: u32,
     /// Number of consecutive readings that must agree
     #[arg(long, default_value_t = 2, value_name = "N", value_parser = clap::value_parser!(u8).range(2..=8))]
     consecutive: u8,
@@ -52,8 +40,7 @@ pub(crate) struct Args {
     #[command(flatten)]
     log: LogArgs,
     /// Write the log's ranges as MCAP, and beside each topic `TOPIC/accepted`: the accepted ranges, +Inf where nothing
-    /// is in range, -Inf for too close (REP 117), and no message for what was rejected; with --hopping also
-    /// `TOPIC/confirmed`, without what is tentative
+    /// is in range, -Inf for too close (REP 117), and no message for what was rejected
     #[arg(long, value_name = "FILE.mcap")]
     out: Option<PathBuf>,
     /// Draw what happened to each sensor over time, as SVG or, if the name ends in .png, as PNG
@@ -73,19 +60,9 @@ fn speed(text: &str) -> Result<f64, String> {
 
 pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     Kind::expect_log(&args.file)?;
-    if args.t_delta_us == Some(0) {
+    if args.t_delta_us == 0 {
         let message = "0; expected 20 to 20000; no two echoes of one wall come at the same microsecond";
         warn(InputError::new("--t-delta-us", message))?;
-    }
-    if let Some(hopping) = args.hopping {
-        let mut settings = hopping.settings().tracker;
-        if let Some(t_delta) = args.t_delta_us.map(Micros::new) {
-            // What depends on it gives way.
-            settings.t_delta = t_delta;
-            settings.near = settings.near.max(t_delta);
-            settings.tentative_within = settings.tentative_within.min(t_delta);
-        }
-        return replay_hopping(&args.file, settings, args.log.speed_of_sound, args.out.as_deref(), args.json);
     }
     let mut judging = judging(args)?;
     let (mut kinds, mut failed) = (Vec::<Vec<ReadingKind>>::new(), None);
@@ -116,7 +93,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
 }
 
 fn judging(args: &Args) -> Result<Judging, InputError> {
-    let t_delta = Micros::new(args.t_delta_us.unwrap_or_default());
+    let t_delta = Micros::new(args.t_delta_us);
     let judge = match args.max_speed {
         None => RangeJudge::Agree { t_delta, consecutive: args.consecutive },
         Some(max_speed_m_s) => RangeJudge::OnLine { t_delta, max_speed_m_s },
@@ -136,15 +113,15 @@ fn print(args: &Args, report: &Report, counted: &[Counted], kinds: Vec<Vec<Readi
     if let Some(file) = &args.svg {
         let column = |(name, kinds): (&String, Vec<ReadingKind>)| Column { name: name.clone(), kinds };
         let columns: Vec<_> = names.iter().zip(kinds).map(column).collect();
-        draw::kinds_over_time(&columns, args.t_delta_us.unwrap_or_default()).save(file)?;
+        draw::kinds_over_time(&columns, args.t_delta_us).save(file)?;
     }
-    let t_delta_us = args.t_delta_us.unwrap_or_default();
+    let t_delta_us = args.t_delta_us;
     let proves = report.firing.proves(Some(t_delta_us));
     if args.json {
         let damage = report.damage.iter().map(ToString::to_string).collect();
         let (skipped, warnings) = (left_out(report), report.warnings.clone());
         let firing = Some(Firing { pattern: report.firing.pattern.as_str(), proves });
-        let replay = Replay { total, sensors: counts, as_logged: None, damage, skipped, warnings, firing };
+        let replay = Replay { total, sensors: counts, damage, skipped, warnings, firing };
         print_line(to_json(&replay))?;
     } else {
         let table = table(&args.file, t_delta_us, &counts, &total);

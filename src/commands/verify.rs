@@ -3,15 +3,14 @@
 use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
-use eeruf_core::{Criterion, Layout, Micros, Requirements, hopping::HoppingListening};
-use eeruf_design::{LayoutKey, LayoutName, PhaseSchedule, RingSpec};
+use eeruf_core::{Criterion, Layout, Micros, Requirements};
+use eeruf_design::{LayoutKey, LayoutName, RingSpec};
 use eeruf_sim::AnySchedule;
 
 use super::{Answer, show};
 use crate::files::error::InputError;
 use crate::files::ring::read_ring;
-use crate::files::toml::{FoundSchedule, read_any_schedule};
-use crate::report::phases;
+use crate::files::toml::read_schedule;
 use crate::report::verify::{ReportJson, describe};
 
 /// Check a schedule: does crosstalk shift by more than 2 T_delta, and do neighbours keep their distance?
@@ -19,12 +18,9 @@ use crate::report::verify::{ReportJson, describe};
 /// Prints the separation under both readings of Eqs. (13a), (13b), the largest T_delta, the smallest interval between
 /// neighbours and the shortest time between two firings of one sensor, and names every violation. Exit code 0 if the
 /// schedule meets everything asked for, 1 if not, 2 for bad input.
-///
-/// A schedule of many phases, for a ring that hops in time, is checked for all pairs of phases and all ages of sound.
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// The schedule: period_us with t_lag_us, t_wait_a_us, t_wait_b_us, or with t_fire_a_us, t_fire_b_us; of many
-    /// phases: period_us with step_us, phases, t_lag_us, or with t_fire_us, a list for each phase
+    /// The schedule: period_us with t_lag_us, t_wait_a_us, t_wait_b_us, or with t_fire_a_us, t_fire_b_us
     #[arg(value_name = "SCHEDULE.toml")]
     file: PathBuf,
     /// T_delta in microseconds: readings that differ by no more are near-identical
@@ -54,16 +50,6 @@ pub(crate) struct Args {
         "t_delta_us", "min_interval_us", "neighbours", "layout", "window_us", "stale_echo"
     ])]
     ring: Option<PathBuf>,
-    /// Many phases: crosstalk need move by T_delta and this margin alone, which is all that jitter and lateness may
-    /// use, in microseconds; by default 2 T_delta + 1
-    #[arg(long, value_name = "US")]
-    margin_us: Option<u32>,
-    /// Many phases: for how long a sensor is deaf after it has fired, in microseconds
-    #[arg(long, default_value_t = 0, value_name = "US")]
-    blanking_us: u32,
-    /// Many phases: after how long no sound is heard any more, in microseconds; by default the window
-    #[arg(long, value_name = "US")]
-    reach_us: Option<u32>,
     /// Print one JSON object
     #[arg(long)]
     json: bool,
@@ -107,20 +93,7 @@ impl Args {
 }
 
 pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
-    let schedule = match read_any_schedule(&args.file)? {
-        FoundSchedule::Two(schedule) => schedule,
-        FoundSchedule::Many(schedule) => return many_phases(args, &schedule),
-    };
-    let of_many_phases = [
-        ("--margin-us", args.margin_us),
-        ("--blanking-us", Some(args.blanking_us).filter(|us| *us > 0)),
-        ("--reach-us", args.reach_us),
-    ];
-    if let Some((option, us)) = of_many_phases.into_iter().find_map(|(option, us)| Some((option, us?))) {
-        let file = args.file.display();
-        let message = format!("{us}; expected a schedule of many phases, with step_us or t_fire_us; {file} has two");
-        return Err(InputError::new(option, message));
-    }
+    let schedule = read_schedule(&args.file)?;
     let criterion = match args.criterion {
         CriterionArg::Exact => Criterion::Exact,
         CriterionArg::Paper => Criterion::Paper,
@@ -153,40 +126,4 @@ fn ring_of(file: &Path, sensors: usize) -> Result<RingSpec, InputError> {
         return Err(InputError::new(file, message));
     }
     Ok(spec)
-}
-
-fn many_phases(args: &Args, schedule: &PhaseSchedule) -> Result<Answer, InputError> {
-    let bad = |message: String| InputError::new(&args.file, message);
-    if matches!(args.criterion, CriterionArg::Paper) {
-        return Err(InputError::new("--criterion", "paper; expected exact, or --margin-us US, for many phases"));
-    }
-    let criterion = args.margin_us.map_or(Criterion::Exact, |margin| Criterion::Margin(Micros::new(margin)));
-    let (spec, layout);
-    let requirements = if let Some(file) = &args.ring {
-        spec = ring_of(file, schedule.sensors())?;
-        spec.phase_requirements(criterion)
-    } else {
-        layout = args.layout.owned(args.neighbours, schedule.sensors()).map_err(bad)?;
-        args.requirements(layout.layout(), criterion)
-    };
-    let requirements = Requirements {
-        blanking: Micros::new(args.blanking_us),
-        audible: args.reach_us.map(Micros::new),
-        ..requirements
-    };
-    let (window, most) = (requirements.window, HoppingListening::MAX_WINDOW);
-    if window == Micros::ZERO {
-        return Err(InputError::new(
-            "--window-us",
-            "0; expected how long a sensor listens: without it nothing is heard",
-        ));
-    }
-    if schedule.hopping().is_some() && window > most {
-        let (window, most) = (window.as_micros(), most.as_micros());
-        return Err(InputError::new("--window-us", format!("{window}; expected at most {most} for a ring that hops")));
-    }
-    let report = schedule.verify(&requirements);
-    let text = || phases::describe(&args.file.display().to_string(), schedule, &requirements, &report);
-    show(args.json, || ReportJson::new(&report, |phase| phase.0), text)?;
-    Ok(if report.ok() { Answer::Yes } else { Answer::No })
 }

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use eeruf_logs::{Firing, FiringLog, McapWriter, Weighed};
+use eeruf_logs::{Firing, FiringLog, McapWriter};
 use eeruf_sim::Readings;
 
 use super::error::InputError;
@@ -20,21 +20,36 @@ pub fn firing(readings: &Readings, k: usize) -> Firing {
         phase: readings.phase[k],
         t_echo_us: (!readings.earliest_us[k].is_nan()).then(|| readings.earliest_us[k] as u32),
         rejected: Some(readings.kind[k].is_rejected()),
-        weighed: readings.weighed[k].map(|weighed| Weighed {
-            given: k as u64,
-            kind: Some(readings.kind[k]),
-            solo: weighed.solo,
-            steady: weighed.steady,
-            changes: weighed.changes,
-            expected_change_us: weighed.expected_change_us,
-        }),
+        g_us_ms: None,
     }
 }
 
-/// Every firing of the first robot.
+/// A robot that is slower stands, and its log says nothing of motion.
+const LEAST_US_MS: f32 = 1e-3;
+
+/// Every firing of the first robot, and how fast its readings change if it moves.
 pub(crate) fn firing_log(readings: &Readings) -> FiringLog {
-    let of_first = (0..readings.len()).filter(|&k| readings.robot[k] == 0);
-    FiringLog::new(CLOCK, of_first.map(|k| firing(readings, k)).collect())
+    let of_first: Vec<_> = (0..readings.len()).filter(|&k| readings.robot[k] == 0).collect();
+    let motion: Vec<_> = of_first.iter().map(|&k| g_us_ms(readings, k)).collect();
+    let moves = motion.iter().any(|g| *g > LEAST_US_MS);
+    let firings = of_first.iter().zip(motion);
+    let firings = firings.map(|(&k, g)| Firing { g_us_ms: moves.then_some(g), ..firing(readings, k) });
+    FiringLog::new(CLOCK, firings.collect())
+}
+
+/// The rate at which readings change with the sensor's motion over the last 20 ms or more before this one, in
+/// microseconds for each millisecond; 0 for its first reading.
+fn g_us_ms(readings: &Readings, k: usize) -> f32 {
+    const WITHIN_S: f64 = 0.02;
+    /// Arm at which a wall moves when the robot turns, in metres, and the speed of sound in m/s, as rings take them.
+    const LEVER_M: f64 = 0.5;
+    const SOUND_M_S: f64 = 343.0;
+    let Readings { fired_s, x_m, y_m, heading_rad, .. } = readings;
+    let is_before = |&j: &usize| readings.id(j) == readings.id(k) && fired_s[k] - fired_s[j] >= WITHIN_S;
+    let Some(j) = (0..k).rev().find(is_before) else { return 0.0 };
+    let turned = (heading_rad[k] - heading_rad[j]).sin().abs();
+    let moved_m = (x_m[k] - x_m[j]).hypot(y_m[k] - y_m[j]) + LEVER_M * turned;
+    (2e3 * moved_m / SOUND_M_S / (fired_s[k] - fired_s[j])) as f32
 }
 
 /// Writes every firing of the first robot, as MCAP if the file's name ends so, else as CSV.

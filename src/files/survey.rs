@@ -45,7 +45,7 @@ pub(crate) fn simulate(world: &World, plan: SurveyPlan) -> Result<FiringLog, Pat
                         phase: 0,
                         t_echo_us: heard.filter(|&heard| heard < plan.window()).map(Micros::as_micros),
                         rejected: None,
-                        weighed: None,
+                        g_us_ms: None,
                     });
                 }
             }

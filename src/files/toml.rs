@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use eeruf_design::{PhaseFile, PhaseSchedule, robot_ring};
+use eeruf_design::robot_ring;
 use eeruf_files::{Kind, build};
 use eeruf_sim::{AnySchedule, ScheduleFile, World};
 use serde::de::DeserializeOwned;
@@ -22,24 +22,16 @@ pub(crate) fn read_toml<T: DeserializeOwned, B>(
     Ok(built)
 }
 
-/// A schedule of two phases, as in the paper, or of many.
-pub(crate) enum FoundSchedule {
-    Two(Box<AnySchedule>),
-    Many(Box<PhaseSchedule>),
-}
+/// Keys of schedules of earlier versions.
+const OF_MANY_PHASES: [&str; 4] = ["step_us", "phases", "first_multiplier", "t_fire_us"];
 
-/// Reads a schedule file of any number of phases.
-pub(crate) fn read_any_schedule(file: &Path) -> Result<FoundSchedule, InputError> {
-    let text = Kind::Schedule.read(file)?;
-    if !PhaseFile::is_meant(&text) {
-        return read_schedule(file).map(Box::new).map(FoundSchedule::Two);
-    }
-    let many = read_toml(file, Kind::Schedule, |many: PhaseFile| many.schedule())?;
-    Ok(FoundSchedule::Many(Box::new(many)))
-}
-
-/// Reads a schedule file of two phases.
+/// Reads a schedule file.
 pub(crate) fn read_schedule(file: &Path) -> Result<AnySchedule, InputError> {
+    let text = Kind::Schedule.read(file)?;
+    let keys = toml::from_str::<toml::Table>(&text).unwrap_or_default();
+    if let Some(key) = OF_MANY_PHASES.into_iter().find(|&key| keys.contains_key(key)) {
+        return Err(InputError::new(file, format!("{key}, of many phases: gone; flow does it")));
+    }
     read_toml(file, Kind::Schedule, |schedule: ScheduleFile| schedule.schedule())
 }
 

@@ -10,7 +10,6 @@ pub(crate) mod experiment;
 pub(crate) mod json;
 pub(crate) mod paths;
 pub(crate) mod percent;
-pub(crate) mod phases;
 pub(crate) mod questions;
 pub(crate) mod replay;
 pub(crate) mod rooms;

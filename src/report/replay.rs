@@ -19,9 +19,6 @@ pub(crate) struct Column {
 pub(crate) struct Replay {
     pub(crate) total: Counts,
     pub(crate) sensors: Vec<Counts>,
-    /// Of a hopping ring's log: how many readings are what it made of them.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub(crate) as_logged: Option<u64>,
     /// Damage of the log.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(crate) damage: Vec<String>,
@@ -49,12 +46,6 @@ pub(crate) struct Counts {
     #[serde(skip_serializing_if = "Option::is_none")]
     name: Option<String>,
     accepted: u64,
-    /// Of a hopping ring.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    tentative: Option<u64>,
-    /// Of a hopping ring: how many sensors never had a reading accepted, tentative or confirmed.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    blind: Option<u64>,
     rejected: u64,
     /// Agreed with the one before, but not yet with enough: only where more than two are compared.
     #[serde(skip_serializing_if = "is_zero")]
@@ -88,8 +79,6 @@ impl Counts {
         let of = |kind| counted.tally.of(kind).into();
         Self {
             name: Some(name.to_owned()),
-            tentative: None,
-            blind: None,
             accepted: of(ReadingKind::Accepted),
             rejected: of(ReadingKind::Rejected) + of(ReadingKind::Ambiguous),
             repeated: of(ReadingKind::Repeated),
@@ -104,20 +93,9 @@ impl Counts {
         }
     }
 
-    /// As [`of`](Self::of), of a sensor of a hopping ring.
-    pub(crate) fn of_hopping(name: &str, counted: &Counted) -> Self {
-        let of = |kind| u64::from(counted.tally.of(kind));
-        let tentative = of(ReadingKind::Tentative);
-        let blind = tentative + of(ReadingKind::Accepted) + of(ReadingKind::Clear) == 0;
-        Self { tentative: Some(tentative), blind: Some(blind.into()), ..Self::of(name, counted) }
-    }
-
     pub(crate) fn plus(self, other: &Self) -> Self {
-        let sum = |a: Option<u64>, b: Option<u64>| b.map(|b| a.unwrap_or(0) + b);
         Self {
             name: None,
-            tentative: sum(self.tentative, other.tentative),
-            blind: sum(self.blind, other.blind),
             accepted: self.accepted + other.accepted,
             rejected: self.rejected + other.rejected,
             repeated: self.repeated + other.repeated,
@@ -139,7 +117,7 @@ impl Counts {
     }
 
     fn compared(&self) -> u64 {
-        self.accepted + self.tentative.unwrap_or(0) + self.rejected + self.repeated
+        self.accepted + self.rejected + self.repeated
     }
 
     fn row(&self, columns: Columns) -> Vec<String> {
@@ -152,9 +130,6 @@ impl Counts {
         let mut row = vec![self.name.clone().unwrap_or_else(|| "total".to_owned())];
         row.extend([self.accepted, self.rejected, self.first, self.no_echo, self.clear].map(|n| n.to_string()));
         row.insert(3, rate);
-        if let Some(tentative) = self.tentative {
-            row.insert(2, tentative.to_string());
-        }
         if columns.close {
             row.push(self.too_early.to_string());
         }
@@ -165,13 +140,6 @@ impl Counts {
             row.push(match self.duration_s {
                 Some(seconds) if seconds > 0.0 => format!("{:.1}", self.readings().saturating_sub(1) as f64 / seconds),
                 _ => "-".to_owned(),
-            });
-        }
-        if let Some(blind) = self.blind {
-            row.push(match (&self.name, blind) {
-                (None, blind) => blind.to_string(),
-                (Some(_), 0) => String::new(),
-                (Some(_), _) => "blind".to_owned(),
             });
         }
         row
@@ -186,21 +154,6 @@ struct Columns {
     time: bool,
 }
 
-/// The table of a hopping ring's log; of how many readings it says what they were, and how many are that.
-pub(crate) fn hopping_table(
-    file: &Path,
-    t_delta_us: u32,
-    counts: &[Counts],
-    total: &Counts,
-    (known, same): (u64, u64),
-) -> String {
-    let mut text = table(file, t_delta_us, counts, total);
-    if known > 0 {
-        text += &format!("\n{same} of {known} readings are what the ring made of them.");
-    }
-    text
-}
-
 pub(crate) fn table(file: &Path, t_delta_us: u32, counts: &[Counts], total: &Counts) -> String {
     let columns = Columns {
         close: total.too_early > 0,
@@ -208,14 +161,8 @@ pub(crate) fn table(file: &Path, t_delta_us: u32, counts: &[Counts], total: &Cou
         time: counts.iter().any(|sensor| sensor.duration_s.is_some()),
     };
     let mut header = vec!["sensor", "accepted", "rejected", "rejection rate", "first", "no echo", "clear"];
-    if total.tentative.is_some() {
-        header.splice(1..2, ["confirmed", "tentative"]);
-    }
     let more = [(columns.close, "too close"), (columns.invalid, "no number"), (columns.time, "readings/s")];
     header.extend(more.into_iter().filter(|(shown, _)| *shown).map(|(_, name)| name));
-    if total.blind.is_some() {
-        header.push("blind");
-    }
     let table = markdown(&header, counts.iter().chain([total]).map(|counts| counts.row(columns)));
     let mut text = format!("{}: t_delta {t_delta_us} us, {} sensors\n{table}", file.display(), counts.len());
     if total.backwards > 0 {

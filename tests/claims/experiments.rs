@@ -74,7 +74,7 @@ fn merged_parts_equal_the_whole_run() {
     for set in [
         &["set-one", "--seeds", "5", "--method", "eeruf,median,flow"][..],
         &["set-two", "--seeds", "4", "--method", "eeruf,conventional", "--second-robot", "ahead", "--exact-odometry"],
-        &["set-three", "--seeds", "5", "--periods", "15", "--method", "eeruf,driving", "--height", "room"],
+        &["set-three", "--seeds", "5", "--periods", "15", "--method", "eeruf,flow", "--height", "room"],
     ] {
         let folder = tempfile::tempdir().unwrap();
         let words = [&["experiment"], set].concat();

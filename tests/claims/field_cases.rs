@@ -111,7 +111,6 @@ fn replay_says_what_agreement_proves_for_how_sensors_fire() {
         ("sequential", "the sensors fire in turn"),
         ("conventional", "the sensors fire with constant lags"),
         ("eeruf", "lags alternate by at least"),
-        ("eeruf_hopping", "lags hop among several values"),
     ] {
         let log = folder.path().join(method.to_owned() + ".mcap");
         let log = log.to_str().unwrap();

@@ -10,7 +10,6 @@ mod emitted_digests;
 mod experiments;
 mod faults;
 mod field_cases;
-mod hopping;
 mod inputs;
 mod keys;
 mod logs;

@@ -213,10 +213,6 @@ fn ring_file_scene_and_emitted_table_say_the_same_of_a_module() {
         let emitted = eeruf(&["design", "rings/hc-sr04-8.toml", "--period-only", "--emit", form]).out;
         assert!(emitted.starts_with(&format!("{begin}{said}")), "{emitted}");
     }
-    let still = "sensors = 8\nlayout = \"ring\"\nmodule = \"hc-sr04\"\ncrosstalk_range_m = 2.5\njitter_us = 100\n";
-    let (_folder, file) = Scratch::new("still.toml", still);
-    let hops = eeruf(&["design", file.to_str().unwrap(), "--phases", "11", "--emit", "c"]);
-    assert!(hops.out.starts_with(&format!("/* {said}")), "{}{}", hops.out, hops.err);
     let mixed = "sensors = 3\nlayout = \"ring\"\nmodule = [\"hc-sr04\", \"hc-sr04\", \"srf08\"]\njitter_us = 100\n\
                  crosstalk_range_m = 1.0\n";
     let (_folder, file) = Scratch::new("mixed.toml", mixed);

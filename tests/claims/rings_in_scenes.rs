@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use eeruf_core::{Criterion, Micros, ReadingKind};
+use eeruf_core::{Micros, ReadingKind};
 use eeruf_design::{RingSpec, Search, robot_ring};
 use eeruf_files::emit::Emit as _;
 use eeruf_sim::{Method, Options, World, simulate};
@@ -82,7 +82,7 @@ fn car_and_mower_fire_as_their_ring_files_say() {
 fn limits_of_a_car_go_with_echoes_and_adaptation() {
     let car = format!("{}/rings/car-12.toml", env!("CARGO_MANIFEST_DIR"));
     let spec = RingSpec::from_text(&std::fs::read_to_string(&car).unwrap()).unwrap();
-    let asked = spec.phase_requirements(Criterion::Exact);
+    let asked = spec.problem().requirements;
     let table = eeruf(&["design", &car, "--period-only", "--emit", "toml"]).out;
     let robot = format!("[[robot]]\npose = {{ x_m = 0, y_m = 0 }}\nring = {car:?}\n[robot.schedule]\n{table}");
     let (folder, file) = Scratch::new("scene.toml", &format!("{ROOM}{robot}"));

@@ -116,7 +116,9 @@ fn two_sensors_back_to_back_need_no_eeruf() {
 
 #[test]
 fn limits_no_way_keeps_are_named() {
-    let said = eeruf(&["study", "rings/ring-24.toml", "--places", "2"]).out;
+    let ring = "sensors = 32\nmodule = 'polaroid-6500'\nlayout = 'ring'\njitter_us = 100\n";
+    let (_scratch, file) = Scratch::new("ring.toml", ring);
+    let said = eeruf(&["study", file.to_str().unwrap(), "--places", "2"]).out;
     assert!(said.contains("No way keeps foreign sound at 3 %"), "{said}");
 }
 

@@ -54,17 +54,6 @@ pub(crate) const FORMS: [[&str; 3]; 2] =
     [["c", "eeruf_schedule", "EERUF_MODULES"], ["arduino", "RING", "RING_MODULES"]];
 
 #[test]
-fn fleet_numbers_are_for_rings_that_fire_by_flow() {
-    let design = |ring: &str| eeruf(&["design", ring, "--places", "1", "--emit", "rust", "--fleet-number", "2"]);
-    let emitted = design("rings/hc-sr04-8.toml");
-    assert!(emitted.out.contains("settings.step = Micros::new(320);"), "{}", emitted.out);
-    let (_scratch, file) = Scratch::new("two.toml", "sensors = 2\nmodule = 'hc-sr04'\nlayout = 'ring'\n");
-    let refused = design(file.to_str().unwrap());
-    assert_eq!((refused.code, refused.out.as_str()), (Some(2), ""), "{}", refused.err);
-    assert!(refused.err.contains("expected a ring for which flow is recommended"), "{}", refused.err);
-}
-
-#[test]
 fn recommended_ways_are_emitted_start_and_fire() {
     let (mut flow, mut with_modules) = (0, 0);
     for ring in rings() {

@@ -47,7 +47,6 @@ ROBOT = sim.Robot((0.3, 0.7, 1.57), 4, 0.26, 0.1)
 ROOM = sim.Scene([[5, 2, -5, 2]], robots=[ROBOT])
 READINGS = sim.simulate(ROOM, periods=3)
 SLOW = tables.TABLE_I_D.scaled(5, 4)
-HOPPING = eeruf.HoppingSchedule(8, 60_000, 240)
 INLINE = ThreadPoolExecutor(1)
 FIRINGS = eeruf.logs.Firings.of(
     sensor=READINGS.sensor,
@@ -196,7 +195,6 @@ def calls(c: Chance) -> list[Callable[[], Any]]:
         lambda: ANY.design(
             m(4), m(999), m(15_000), m(36_000), m(1_000), m(4), m("line"), m(False), c.random.randrange(1, 200)
         ),
-        lambda: ANY.design(m(8), m(150), m(9_000), m(36_000), layout=m("ring"), phases=m(5), margin_us=m(90)),
         lambda: ANY.design(m(8), 999, 15_000, 30_000, atlas=m(True), certificate=False, over_reals=m(False)),
         lambda: ANY.design(
             m(4),
@@ -235,15 +233,8 @@ def calls(c: Chance) -> list[Callable[[], Any]]:
         lambda: ANY.EchoFilter(2, 500).forget(a()),
         lambda: ANY.EchoFilter(2, 500, echoes=4).push_echoes(m(0), m([9_000, 12_000]), m(0)),
         lambda: ring(c),
-        lambda: ANY.HoppingSchedule(m(8), m(60_000), m(240), m(5), m(None), first_multiplier=m(1)),
-        lambda: ANY.HoppingSchedule.from_toml(mutated(c, HOPPING.to_toml())),
-        lambda: ANY.HoppingSettings(m("quick"), **{c.random.choice(["votes", "near_us", "nonsense"]): a()}),
-        lambda: ANY.EchoTracker(m(2), m(150), settings=m("maps")).push(m(0), m(3), m(9_000), m(0), solo=m(True)),
-        lambda: ANY.EchoTracker(2).push_many(m([3]), m([[9_000, 9_000]])),
-        lambda: tracker(c),
-        lambda: ANY.Ring.hopping(a(), a(), window_us=m(36_000)),
         lambda: ANY.Ring.flow(m(8), m({"rest_us": 60_000}), m(0), window_us=m(36_000), blanking_us=a(), reach_us=a()),
-        lambda: hopping_ring(c),
+        lambda: flow_ring(c),
         lambda: ANY.Fire(a()),
         lambda: c.random.choice([ANY.PeriodEnded, sim.RobotState, nav.Steering])(a(), a()).to_dict(),
         lambda: pickle.dumps(ANY.PeriodEnded(m(3), m(1), m(40), m(90), m(0), m({"accepted": 8}))),
@@ -251,7 +242,6 @@ def calls(c: Chance) -> list[Callable[[], Any]]:
         lambda: repr(ANY.Violation(m("interval"), m((0, 1)), m(("a", "b")), a(), a(), m("x"))),
         lambda: ANY.Report(a(), a(), a(), a(), a()),
         lambda: ANY.Found(a(), a(), a(), a(), a(), a()),
-        lambda: ANY.HoppingFound(m(HOPPING), m(60_000), m(60_000), m(True), m("proven"), m(240), m(240)).to_dict(),
         lambda: ANY.sim.FiredReading(m(ANY.Reading(3, "first", 9_000)), m([9_000]), m(0.5), m(0), m([3.0])).to_dict(),
         lambda: ANY.check_certificate(a()),
         lambda: ANY.sim.Material(m(0.9), m(0.0)),
@@ -285,7 +275,7 @@ def calls(c: Chance) -> list[Callable[[], Any]]:
         lambda: [*ANY.sim.simulate_blocks(ROOM, m("eeruf"), c.small(), m(3), block_periods=m(2))],
         lambda: ANY.sim.Simulation(m(ROOM), m("eeruf"), seed=m(3)).step(c.small(1)),
         lambda: ANY.sim.Simulation(ROOM).set_velocity(m(0), m(0.5), m(0.1)),
-        lambda: ANY.sim.Simulation(ROOM, m("eeruf_hopping")).step_to_reading(c.small(1)),
+        lambda: ANY.sim.Simulation(ROOM, m("flow")).step_to_reading(c.small(1)),
         lambda: recorded(c),
         lambda: ANY.sim.Simulation(ROOM, filter=lambda _: m(("accepted", a()))).step(0.1),
         lambda: ANY.sim.Simulation(ROOM, firing=lambda _: (m(60_000), [(m(0), m(1))], m(1))).step(0.1),
@@ -317,7 +307,6 @@ def calls(c: Chance) -> list[Callable[[], Any]]:
         lambda: ANY.example(m("scenes/alcove.toml")),
         lambda: ANY.sim.read_map(m("no such file"), tolerance_m=m(0.1)),
         lambda: ANY.sim.read_map(occupancy_map(c), tolerance_m=m(0.1)),
-        lambda: ANY.Schedule.congruence(m(8), m(60_000), m(240), t_lag_us=m([0] * 8), phases=m(5)),
         lambda: ANY.sim.Readings.load(m(io.BytesIO(b"nothing"))),
         lambda: ANY.sim.Readings.load(c.file("readings.npz", SAVED.getvalue())).summary(),
         lambda: READINGS.save(c.place(c.random.choice([io.BytesIO(), FOLDER / "own.npz"]))),
@@ -325,9 +314,7 @@ def calls(c: Chance) -> list[Callable[[], Any]]:
             c.small(1), readings=c.small(8), methods=m(["eeruf"]), progress=c.random.choice([None, False, 3, len])
         ),
         lambda: ANY.experiments.set_two(1, methods=m([]), second_robot=m("behind"), pilot=m("own"), physics=m("plain")),
-        lambda: ANY.experiments.set_three(
-            1, periods=m(20), methods=m(["driving"]), physics=m("plain"), height=m("room")
-        ),
+        lambda: ANY.experiments.set_three(1, periods=m(20), methods=m(["flow"]), physics=m("plain"), height=m("room")),
         lambda: ANY.experiments.compare(m(RUNS), m(RUNS)),
         lambda: ANY.experiments.concat(m([TABLE])),
         lambda: RUNS[0].figures(),
@@ -357,7 +344,7 @@ def method(c: Chance) -> Any:
     """A method that nearly makes sense."""
     m = c.mostly
     return ANY.sim.Method(
-        m(c.random.choice(["eeruf", "flow", "eeruf_hopping", "in_turn"])),
+        m(c.random.choice(["eeruf", "flow", "in_turn"])),
         label=m("mine"),
         schedule=m(None),
         settings=m(c.random.choice([None, {"masked_adds_us": m(5_000)}, "quick"])),
@@ -437,17 +424,6 @@ def disturb(c: Chance, live: Any, now: int) -> None:
         tried(c.random.choice([live.state, live.forget]), c.mostly(1))
 
 
-def tracker(c: Chance) -> None:
-    """A tracker that is asked, told to forget, and fed on."""
-    m = c.mostly
-    live = ANY.EchoTracker(**c.one_wrong({"sensors": 2, "t_delta_us": 150, "settings": "quick"}))
-    for phase in range(9):
-        tried(live.push, m(0), m(phase), m(9_000), m(0))
-        tried(c.random.choice([live.confirmed_us, live.is_clear, live.forget]), m(1))
-    live.firing_changed()
-    tried(live.push, m(0), m(3), m(9_000))
-
-
 def recorded(c: Chance) -> None:
     """A simulation that writes itself into a file, until it is closed."""
     with ANY.sim.Simulation(ROOM, mcap=c.place(FOLDER / "own.mcap")) as live:
@@ -460,7 +436,9 @@ def log_of_firings(c: Chance) -> None:
     """A log of firings whose bytes somebody changed, read and replayed."""
     rows = "".join(f"{at % 2},{40_000 * at},{at // 2},{at // 2 % 2},{9_000 + at}\n" for at in range(8))
     file = c.file("firings.csv", f"sensor,fired_us,period,phase,t_echo_us\n{rows}".encode())
-    c.random.choice([ANY.read_firings, lambda file: ANY.replay(file, "maps"), ANY.diagnose, ANY.survey])(file)
+    c.random.choice([ANY.read_firings, lambda file: ANY.replay(file, ANY.logs.Agree(500)), ANY.diagnose, ANY.survey])(
+        file
+    )
 
 
 def occupancy_map(c: Chance) -> Path:
@@ -488,18 +466,19 @@ def grid(c: Chance) -> None:
     tried(lambda: vfh.drive(m(live), m((0.0, 0.0, 0.0)), m((1.0, 0.0)), m(0.0), turn_gain=m(3.0)))
 
 
-def hopping_ring(c: Chance) -> None:
-    """A hopping ring that is polled and disturbed at any time."""
+def flow_ring(c: Chance) -> None:
+    """A ring by flow that is polled and disturbed at any time."""
     m, r = c.mostly, c.random
-    good = {"settings": "quick", "now_us": 0, "window_us": 36_000, "blanking_us": 0, "reach_us": None, "seed": 1}
-    live = ANY.Ring.hopping(HOPPING, **c.one_wrong(good))
+    good = {"settings": {"seed": 1}, "now_us": 0, "window_us": 36_000, "blanking_us": 0, "reach_us": None}
+    live = ANY.Ring.flow(8, **c.one_wrong(good))
     now = 0
     for _ in range(r.choice([3, 12, 40])):
         now = r.choice([live.next_deadline_us, now, now + r.randrange(90_000)])
         tried(live.poll, m(now), m(None))
         live.wait_us(now)
         tried(r.choice([live.echo, live.echo, live.fired]), m(r.randrange(8)), m(now + 9_000))
-        tried(r.choice([live.confirmed_us, live.state]), m(3))
+        tried(live.state, m(3))
+        tried(live.moving, m(0.5), m(0.1), m(now))
         if r.random() < 0.2:
             disturb(c, live, now)
 

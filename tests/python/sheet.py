@@ -36,7 +36,7 @@ def figures() -> list[tuple[str, float, Callable[[Axes], object]]]:
         materials=["smooth", "smooth", "soft", "painted"],
         robots=[sim.Robot((-1.5, 0.3, 0.4), 8, 0.3, 0.3), sim.Robot((1, -1, 2), 4, 0.5, 0.2)],
     )
-    one = experiments.set_one(seeds=8, readings=800, methods=["sequential", "conventional", "eeruf", "eeruf_hopping"])
+    one = experiments.set_one(seeds=8, readings=800, methods=["sequential", "conventional", "eeruf", "flow"])
     courses = experiments.set_two(seeds=6, methods=["conventional", "eeruf"], second_robot="ahead")
     sweep = experiments.speed_sweep([0.75, 1.0, 1.5], seeds=6, methods=["conventional", "comparison", "eeruf"])
     film = sim.simulate(two, "simultaneous", periods=4)
@@ -48,11 +48,6 @@ def figures() -> list[tuple[str, float, Callable[[Axes], object]]]:
 
     return [
         ("timing", 3.0, lambda ax: plot.timing(tables.TABLE_I_D, window_us=36_000, ax=ax)),
-        (
-            "timing, hopping",
-            3.0,
-            lambda ax: plot.timing(eeruf.HoppingSchedule(8, 60_000, 240), window_us=36_000, ax=ax),
-        ),
         ("scene", 3.0, lambda ax: plot.scene(room, ax=ax)),
         ("scene, paths", 3.0, lambda ax: plot.scene(alcove, paths, source=(0.0, 0.2), receivers=[(0.1, 0.2)], ax=ax)),
         ("scene, who fooled whom", 3.0, lambda ax: plot.scene(alcove, readings=conventional, ax=ax)),

@@ -98,22 +98,13 @@ def test_schedules_settings_and_sketches_are_those_given() -> None:
     designed = sim.Method("eeruf", label="designed", schedule=table)
     robots = [robot.replace(schedule=table, period_us=robot.period_us) for robot in SCENE.robots]
     assert same(sim.simulate(SCENE, designed, 100), sim.simulate(SCENE.replace(robots=robots), "eeruf", 100))
-    quick = sim.Method("eeruf_hopping", label="quick", settings="quick")
-    assert not same(sim.simulate(SCENE, quick, 200), sim.simulate(SCENE, "eeruf_hopping", 200))
-    driving = sim.Method("eeruf_hopping", settings="driving")
-    assert same(sim.simulate(SCENE, driving, 100), sim.simulate(SCENE, "driving", 100))
-    hopping = eeruf.HoppingSchedule(8, 90_000, 240, phases=10)
-    hops = sim.Method("eeruf_hopping", label="hops", schedule=hopping)
-    fired = sim.simulate(SCENE, hops, 100)
-    assert int(fired.period.max()) == pytest.approx(100 * 60 / 90, abs=1)
-    assert fired.phase.max() == 9
-    timid = sim.Method("flow", label="timid", settings={"shortest_gap_us": 20_000})
+    timid = sim.Method("flow", label="timid", settings={"least_us": 20_000})
     assert len(sim.simulate(SCENE, timid, 200)) < len(sim.simulate(SCENE, "flow", 200))
     turned = sim.Method("in_turn", label="turned", sketch={"turn_us": 50_000})
     robots = [robot.replace(firing={"turn_us": 50_000}) for robot in SCENE.robots]
     assert same(sim.simulate(SCENE, turned, 50), sim.simulate(SCENE.replace(robots=robots), "in_turn", 50))
-    both = experiments.set_one(2, readings=400, methods=[designed, quick, hops, timid, turned, "driving"])
-    assert list(both.methods) == ["designed", "quick", "hops", "timid", "turned", "driving"]
+    both = experiments.set_one(2, readings=400, methods=[designed, timid, turned, "flow"])
+    assert list(both.methods) == ["designed", "timid", "turned", "flow"]
     assert both.runs["designed"][0].summary == sim.simulate(SCENE, designed, 50).summary()
 
 
@@ -136,11 +127,11 @@ def test_robots_of_one_make_fire_as_rings_are_fired_today() -> None:
     ("arguments", "message"),
     [
         ({"name": "eruf"}, "no method `eruf`; expected simultaneous"),
-        ({"settings": "quick"}, "settings = 'quick'; expected none for the method eeruf"),
-        ({"name": "flow", "settings": {"step": 3}}, "no setting step of flow; expected one of step_us"),
-        ({"name": "flow", "settings": "quick"}, "settings = 'quick'; expected a dict"),
+        ({"settings": {"rest_us": 1}}, "settings = .*; expected none for the method eeruf"),
+        ({"name": "flow", "settings": {"step": 3}}, "no setting step of flow; expected one of least_us"),
+        ({"name": "flow", "settings": {"seed": 3}}, "seed = 3; expected none for a method"),
+        ({"name": "flow", "settings": {"alone": True}}, "alone = True; expected none for a method"),
         ({"name": "conventional", "schedule": eeruf.tables.TABLE_I_D}, "expected none for the method conventional"),
-        ({"name": "eeruf_hopping", "schedule": eeruf.tables.TABLE_I_D}, "eeruf_hopping an eeruf.HoppingSchedule"),
         ({"sketch": {"turn_us": 1}}, "sketch = .*; expected none for the method eeruf"),
         ({"name": "in_turn", "sketch": {"turn": 1}}, "sketch: "),
         ({"make_filter": 3}, "make_filter = 3; expected a callable that takes a robot"),
@@ -176,8 +167,6 @@ def test_errors_of_own_code_come_out_of_experiments() -> None:
         experiments.set_one(2, readings=80, methods=[sim.Method("eeruf", make_firing=unmade)])
     with pytest.raises(eeruf.ArgumentError, match="what make_filter returned = 3; expected a callable"):
         ANY.sim.simulate(SCENE, ANY.sim.Method(make_filter=lambda robot: 3), 10)
-    with pytest.raises(eeruf.SimulationError, match="a schedule of 12 sensors; expected one of 8"):
-        sim.simulate(SCENE, sim.Method("eeruf_hopping", schedule=eeruf.HoppingSchedule(12, 90_000, 240)))
     with pytest.raises(eeruf.SceneError, match="12"):
         sim.simulate(SCENE, sim.Method("eeruf", schedule=eeruf.tables.TABLE_I_D))
     with pytest.raises(eeruf.ExperimentError, match="12"):
@@ -187,15 +176,15 @@ def test_errors_of_own_code_come_out_of_experiments() -> None:
 
 
 def test_methods_and_scenes_compare_pickle_and_show_themselves() -> None:
-    quick = sim.Method("eeruf_hopping", label="quick", settings=eeruf.HoppingSettings("quick", votes=5))
-    for value in (MINE, quick, sim.Method(), sim.Method("driving"), experiments.alcoves(3, 9)[2:]):
+    turned = sim.Method("in_turn", label="turned", sketch={"turn_us": 50_000})
+    timid = sim.Method("flow", label="timid", settings={"least_us": 20_000})
+    for value in (MINE, turned, timid, sim.Method(), sim.Method("sequential"), experiments.alcoves(3, 9)[2:]):
         again = pickle.loads(pickle.dumps(value))
         assert again == value and hash(again) == hash(value)
         assert value != sim.Method("flow")
-    scope = {"Method": sim.Method, "HoppingSettings": eeruf.HoppingSettings}
-    assert eval(repr(quick), scope) == quick
-    assert (MINE.name, MINE.label, repr(sim.Method("driving"))) == (
-        "conventional", "mine", "Method(name='driving', label='driving')"
+    assert eval(repr(turned), {"Method": sim.Method}) == turned
+    assert (MINE.name, MINE.label, repr(sim.Method("flow"))) == (
+        "conventional", "mine", "Method(name='flow', label='flow')"
     )  # fmt: skip
 
 

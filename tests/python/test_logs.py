@@ -103,7 +103,7 @@ def test_a_cut_bag_gives_what_can_be_read_and_says_what_cannot(tmp_path: Path) -
 
 
 def test_diagnose_names_senders_as_the_simulator_knows_them() -> None:
-    firings, readings = simulated("eeruf_hopping", 600)
+    firings, readings = simulated("dither", 600)
     found = eeruf.diagnose(firings)
     named = (found.sender >= 0) & (found.sender != firings.sensor)
     assert named.sum() > 300 and found.faults == [] and found.most_offsets > 5
@@ -128,24 +128,6 @@ def test_a_survey_says_who_hears_whom(tmp_path: Path) -> None:
     ((x, y, travel_us),) = found.conflicts
     assert (x, y) == (0, 1) and abs(travel_us - 5000) < 1
     assert len(eeruf.read_firings(tmp_path / "survey.csv")) == 2 * slot
-
-
-def test_the_replay_of_a_hopping_rings_log_is_the_run(tmp_path: Path) -> None:
-    log, scene = tmp_path / "log.csv", tmp_path / "alcove.toml"
-    scene.write_text(eeruf.example("scenes/alcove.toml"))
-    program(["study", scene, "--method", "eeruf_hopping", "--log", log, "--periods", "300"])
-    run = eeruf.replay(log, "balanced", out=tmp_path / "judged.mcap")
-    assert len(run) > 1500 and (run.kind == run.logged).all() and (run.kind == eeruf.KINDS.index("tentative")).any()
-    assert (np.diff(run.fired_us) >= 0).all() and run.damage is None
-    with log.open("rb") as file:
-        np.testing.assert_array_equal(eeruf.replay(file, eeruf.HoppingSettings("balanced")).kind, run.kind)
-    program(["replay", log, "--hopping", "balanced", "--out", tmp_path / "other.mcap"])
-    assert (tmp_path / "judged.mcap").read_bytes() == (tmp_path / "other.mcap").read_bytes()
-    other = eeruf.replay(log, "maps")
-    assert (other.kind != run.kind).any() and not (other.kind == eeruf.KINDS.index("tentative")).any()
-    (tmp_path / "plain.csv").write_text("sensor,fired_us,period,phase,t_echo_us\n0,0,0,0,7000\n")
-    with pytest.raises(eeruf.logs.LogError, match="does not say how it was weighed"):
-        eeruf.replay(tmp_path / "plain.csv", "balanced")
 
 
 CASES = Path(__file__).parents[1] / "data" / "field-cases"

@@ -7,7 +7,6 @@ import matplotlib
 import numpy as np
 import pytest
 from eeruf import experiments, plot, sim, tables
-from matplotlib.collections import LineCollection
 
 matplotlib.use("Agg")
 ALCOVE = Path(__file__).parents[2] / "scenes" / "alcove.toml"
@@ -145,13 +144,3 @@ def test_every_figure_is_legible_on_a_dark_background() -> None:
         ax = plot.readings(sim.simulate(sim.Scene.read_toml(ALCOVE), "conventional", periods=40))
         for line in ax.lines:
             assert sum(to_rgb(line.get_color())) > 1.0, line.get_label()
-
-
-def test_the_timing_of_many_phases_marks_every_firing_of_each() -> None:
-    schedule = eeruf.HoppingSchedule(sensors=8, period_us=60_000, step_us=240)
-    ax = plot.timing(schedule, window_us=36_000)
-    fires = next(lines for lines in ax.collections if isinstance(lines, LineCollection))
-    drawn = sorted(float(segment[0][0]) for segment in fires.get_segments())
-    assert drawn == pytest.approx(sorted((schedule.t_fire_us / 1e3).ravel().tolist()))
-    assert len(ax.patches) == 2 * 8 * schedule.phases
-    assert ax.get_xlim() == (0, 60)

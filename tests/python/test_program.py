@@ -104,19 +104,6 @@ def test_what_an_uneven_ring_has_to_spare_is_the_programs(tmp_path: Path) -> Non
     assert program("design", "--period-only", "rings/paper-12.toml")["spare_us"] == [0, 0, 0]
 
 
-@pytest.mark.parametrize("margin_us", [None, 90])
-def test_a_design_of_many_phases_is_the_programs(margin_us: Any, tmp_path: Path) -> None:
-    file = tmp_path / "ring.toml"
-    file.write_text('sensors = 8\nlayout = "ring"\nt_delta_us = 150\nmin_interval_us = 9000\nwindow_us = 36000\n')
-    printed = program(
-        "design", str(file), "--phases", "5", *([] if margin_us is None else ["--margin-us", str(margin_us)])
-    )
-    found = eeruf.design(8, 150, 9_000, 36_000, layout="ring", phases=5, margin_us=margin_us)
-    assert found.to_dict() == printed
-    assert found.schedule.step_us == (301 if margin_us is None else 240)
-    assert found.bound_us <= found.value_us and found.proven == (found.bound_us == found.value_us)
-
-
 def test_the_best_table_of_waits_is_the_programs() -> None:
     printed = program("search", "rings/table-i-waits.toml", "--best", "interval")
     needs: dict[str, Any] = {"t_delta_us": 999, "min_interval_us": 15_000, "criterion": "paper"}

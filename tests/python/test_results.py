@@ -26,7 +26,6 @@ def some_of_each() -> dict[str, Any]:
         type(result).__name__: result
         for result in [
             eeruf.design(4, 999, 15_000, 36_000, certificate=True),
-            eeruf.design(4, 150, 0, 36_000, phases=5),
             tables.TABLE_I_B.verify(999, min_interval_us=15_000),
             tables.TABLE_I_B.verify(999, min_interval_us=15_000).violations[0],
             tables.TABLE_I_D,
@@ -55,7 +54,7 @@ RESULTS = some_of_each()
 
 def test_there_is_a_result_of_every_kind() -> None:
     assert set(RESULTS) == set(
-        """Found HoppingFound Report Violation Schedule Fire Reading PeriodEnded Blind State Steering RobotState FiredReading
+        """Found Report Violation Schedule Fire Reading PeriodEnded Blind State Steering RobotState FiredReading
         Summary SetOne
         SetOneFigures Spread Latency SetTwo SetTwoFigures Run SpeedSweep SpeedStep""".split()
     )

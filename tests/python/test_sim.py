@@ -139,7 +139,7 @@ def test_a_tampered_pickle_is_refused() -> None:
     reduced: Any = readings.__reduce__()
     rebuild, (method, duration_s, sensors, columns, paths) = reduced
     assert rebuild(method, duration_s, sensors, columns, paths).summary() == readings.summary()
-    for name, value in [("sensor", 64), ("sensor", -1), ("robot", 64), ("robot", 2**40), ("phase", 99), ("kind", 99),
+    for name, value in [("sensor", 64), ("sensor", -1), ("robot", 64), ("robot", 2**40), ("phase", 256), ("kind", 99),
                         ("kind", -1), ("cause", 5), ("path", 10**6), ("path", -2), ("period", -1)]:  # fmt: skip
         column = columns[name].copy()
         column[3] = value

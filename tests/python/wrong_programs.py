@@ -32,7 +32,8 @@ eeruf.experiments.set_two(2, second_robot="left")
 plot.timing(scene)
 eeruf.desing(8, 999, 15_000, 36_000)
 scene.seed = 4
-eeruf.design(8, 999, 15_000, 36_000, phases=5, certificate=True)
-eeruf.design(8, 999, 15_000, 36_000, phases=5).nodes
+eeruf.design(8, 999, 15_000, 36_000, phases=5)
+eeruf.Schedule.congruence(8, 60_000, 240)
+eeruf.EchoTracker(8)
 eeruf.design(8, 999, 15_000, 36_000).width_us
 eeruf.read_log("log.csv", range_unit="km")

@@ -17,7 +17,7 @@ const RUST: &str = "1.95";
 const LISTS: &str = "target/api";
 /// The most names that a reader of `eeruf-core`'s first page may have to choose from.
 const NAMES_AT_ROOT: usize = 45;
-/// The most public types of `eeruf-core`: those of hopping and of its tracker are to go.
+/// The most public types of `eeruf-core`.
 const TYPES: usize = 77;
 
 /// Lists each crate's interface, with all features, and holds that of `eeruf-core` against [`NAMES_AT_ROOT`] and

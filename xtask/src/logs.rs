@@ -16,9 +16,9 @@ const SIZES: [(u32, [u32; 2]); 2] = [(8, [125_000, 12_500]), (24, [41_667, 4_167
 /// Where senders are named, as `cargo lab diagnose-places` takes it, and the least share in per cent that is named; in
 /// the paper's two phases nobody can be.
 const SENDERS: [(&str, f64); 4] = [
-    ("40000 200 eeruf_hopping 1000 plain", 60.0),
-    ("40000 200 eeruf_hopping 1000 default", 60.0),
-    ("20000 100 eeruf_hopping 0 plain courses", 50.0),
+    ("40000 200 flow 1000 plain", 60.0),
+    ("40000 200 flow 1000 default", 60.0),
+    ("20000 100 flow 0 plain courses", 50.0),
     ("40000 200 eeruf 1000 plain", 0.0),
 ];
 const DATA_CARD: &str = "docs/how-to/dataset.md";

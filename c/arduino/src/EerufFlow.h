@@ -1,5 +1,5 @@
 // Rings of HC-SR04 modules that fire by flow, without a table: one module after the other, each with as much quiet
-// around its firing as it has needed. A module takes 92 bytes of RAM.
+// around its firing as it has needed. A module takes 48 bytes of RAM.
 //
 //   #include <EerufFlow.h>
 //   #include <EerufInterrupts.h>                          // on an Uno, a Nano or a Mega; elsewhere see use()
@@ -20,11 +20,11 @@ public:
     // Two pins for each.
     EerufFlow(const uint8_t (&triggers)[N], const uint8_t (&echoes)[N]) : triggers_(triggers), echoes_(echoes) {}
 
-    // Begins firing HC-SR04 modules. False if the settings cannot be used: status() says why.
-    bool begin() {
+    // Begins firing HC-SR04 modules. False if the settings cannot be used: status() says why. Robots that meet need
+    // seeds of their own, not 0.
+    bool begin(uint32_t seed = 1) {
         EerufFlowConfig config = EERUF_FLOW(N, 37000); // their longest echo and a millisecond
-        config.rest_us = 60000;                        // for which each rests between two triggers
-        config.lead_us = 4000;                         // an AVR takes as long to plan a cycle
+        config.seed = seed;
         static const EerufHcSr04Settings settings = EERUF_HC_SR04;
         return begin(config, settings);
     }
@@ -34,33 +34,30 @@ public:
         for (uint8_t i = 0; i < N; i++) EerufPin::release(triggers_[i], echoes_[i]);
         status_ = EERUF_ERR_SENSORS;
         if (config.sensors == N)
-            status_ = eeruf_flow_init(&ring_, sizeof ring_, sensors_, sizeof sensors_, hoppers_, sizeof hoppers_,
-                                      &config, ::micros());
+            status_ = eeruf_flow_init(&ring_, sizeof ring_, sensors_, sizeof sensors_, &config, ::micros());
         if (status_ == EERUF_OK)
             status_ = eeruf_hc_sr04_init(&modules_, sizeof modules_, lines_, sizeof lines_, &ring_.ring, &settings);
         return status_ == EERUF_OK;
     }
 
+    // How fast the robot moves, in mm/s, and turns, in mrad/s: at least twice a second while it does.
+    void moving(uint32_t speed, uint32_t turn = 0) { (void)eeruf_flow_moving(&ring_, speed, turn, ::micros()); }
+
     // One step; true if a module has a new reading, which the functions below are about. Call it as often as you can.
-    // While the robot moves hand in by how much each module's echo should have changed since its firing before, in
-    // microseconds: -2 v dt / c.
-    bool read(const int32_t *changes = nullptr) {
+    bool read() {
         EerufEvent event;
-        if (!step(event, changes) || event.kind != EERUF_EVENT_READING) return false;
+        if (!step(event) || event.kind != EERUF_EVENT_READING) return false;
         sensor_ = event.sensor;
         reading_ = event.u.reading;
         return true;
     }
     // The same for whoever wants each event: true if there is one.
-    bool step(EerufEvent &event, const int32_t *changes = nullptr) {
-        uint32_t now;
-        do {
-            // Before the edges: then no window closes on one that came in time.
-            now = ::micros();
-            if (edges_ == nullptr) return false;
-            (void)eeruf_hc_sr04_edges(&modules_, edges_);
-        } while (eeruf_ring_due(&ring_.ring) - now - 1 < SOON_US);
-        if (eeruf_hopping_poll(&ring_, now, changes, &event) != EERUF_EVENT) return false;
+    bool step(EerufEvent &event) {
+        // Before the edges: then no window closes on one that came in time.
+        const uint32_t now = ::micros();
+        if (edges_ == nullptr) return false;
+        (void)eeruf_hc_sr04_edges(&modules_, edges_);
+        if (eeruf_flow_poll(&ring_, now, &event) != EERUF_EVENT) return false;
         if (event.kind == EERUF_EVENT_FIRE) fire(event.sensor);
         if (onEvent_ != nullptr) (void)onEvent_(watch_, &event, now);
         return true;
@@ -68,9 +65,8 @@ public:
 
     uint8_t sensor() const { return sensor_; }                     // which one, from 0
     uint8_t kind() const { return reading_.kind; }                 // EERUF_READING_..
-    bool accepted() const { return kind() == EERUF_READING_ACCEPTED; }   // an echo that counts
-    bool tentative() const { return kind() == EERUF_READING_TENTATIVE; } // few readings support it, none contradicts
-    bool clear() const { return kind() == EERUF_READING_CLEAR; }         // nothing is in range
+    bool accepted() const { return kind() == EERUF_READING_ACCEPTED; } // an echo that counts
+    bool clear() const { return kind() == EERUF_READING_CLEAR; }   // nothing is in range
     uint32_t micros() const { return reading_.t_echo_us; }         // the echo time, EERUF_NO_ECHO without echo
     uint16_t age() const { return reading_.age; }                  // firings since its last accepted reading
     // The distance at this temperature; 0 without echo.
@@ -94,10 +90,10 @@ public:
     uint8_t health(uint8_t sensor) const { return eeruf_hc_sr04_health(&modules_, sensor); }
     // Stops a module, or lets it fire again.
     bool enable(uint8_t sensor, bool enabled = true) {
-        return eeruf_hopping_enable(&ring_, sensor, enabled) == EERUF_OK;
+        return eeruf_flow_enable(&ring_, sensor, enabled) == EERUF_OK;
     }
     // Fires no module, or all again.
-    void pause(bool paused = true) { (void)eeruf_hopping_pause(&ring_, paused); }
+    void pause(bool paused = true) { (void)eeruf_flow_pause(&ring_, paused); }
     // Takes edges from this queue, which interrupts fill. Without one nothing fires.
     void use(EerufEdges &edges) { edges_ = &edges; }
 
@@ -106,12 +102,10 @@ public:
     // What begin() came to: EERUF_OK or EERUF_ERR_..
     int8_t status() const { return status_; }
     // All that eeruf.h can do.
-    EerufHoppingRing &ring() { return ring_; }
+    EerufFlowRing &ring() { return ring_; }
     EerufHcSr04 &modules() { return modules_; }
 
 private:
-    static const uint32_t SOON_US = 1000; // a reading takes as long, and must not make a firing late
-
     // Unless the line is high.
     void fire(uint8_t sensor) {
         if (eeruf_hc_sr04_fire(&modules_, sensor, EerufPin::isHigh(echoes_[sensor])) != EERUF_OK) return;
@@ -122,10 +116,9 @@ private:
     EerufEdges *edges_ = nullptr;
     EerufWatch *watch_ = nullptr;
     EerufStatus (*onEvent_)(EerufWatch *, const EerufEvent *, uint32_t) = nullptr;
-    EerufHoppingRing ring_;
+    EerufFlowRing ring_;
     EerufHcSr04 modules_;
-    EerufHopSensor sensors_[N];
-    EerufHopper hoppers_[N];
+    EerufFlowSensor sensors_[N];
     EerufLine lines_[N];
     EerufReading reading_;
     uint8_t sensor_;

@@ -90,6 +90,7 @@ pub fn status_of(error: &RingError) -> i32 {
         RingError::Consecutive { .. } => -20,
         RingError::Audible { .. } => -29,
         RingError::PathChange { .. } => -30,
+        RingError::Setting { .. } => -26,
         _ => unreachable!("{error}"),
     }
 }

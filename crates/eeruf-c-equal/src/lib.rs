@@ -6,13 +6,11 @@
 
 pub mod core_side;
 pub mod flow;
-pub mod hopping;
 pub mod line_faults;
 pub mod modules;
 mod random;
 pub mod ring;
 mod shim;
-mod tracking;
 pub mod world;
 
 use std::ffi::c_void;
@@ -60,8 +58,6 @@ pub enum Do {
     Triggered,
     Pulse,
     SetReportAfter,
-    ChangeHopping,
-    Solo,
 }
 
 /// A schedule's numbers after it was verified, or not.
@@ -203,14 +199,12 @@ impl C {
         unsafe { shim::shim_explain(self.0, explained_by) }
     }
 
-    /// The frame that `eeruf_serial_event` makes of the last poll's event, for a hopping ring
-    /// `eeruf_serial_hopping_event`; empty if it makes none.
-    pub fn serial_event(&mut self, sensors: u8, change_us: Option<&[i32]>, now_us: u32) -> Vec<u8> {
+    /// The frame that `eeruf_serial_event` makes of the last poll's event, empty if it makes none.
+    pub fn serial_event(&mut self, sensors: u8, now_us: u32) -> Vec<u8> {
         // As long as EERUF_FRAME.
         let mut frame = vec![0; 78];
-        let change_us = change_us.map_or(std::ptr::null(), <[i32]>::as_ptr);
-        // SAFETY: a ring that was polled, a number for each sensor, and room for the longest frame.
-        let size = unsafe { shim::shim_serial_event(self.0, sensors, change_us, now_us, frame.as_mut_ptr()) };
+        // SAFETY: a ring that was polled, and room for the longest frame.
+        let size = unsafe { shim::shim_serial_event(self.0, sensors, now_us, frame.as_mut_ptr()) };
         frame.truncate(size);
         frame
     }
@@ -221,8 +215,7 @@ impl C {
         unsafe { shim::shim_modules(self.0, min_retrigger_us, shortest_us) }
     }
 
-    /// `eeruf_adaptation_init` with all schedules made, or `eeruf_hopping_adaptation_init` with all configs, and its
-    /// settings.
+    /// `eeruf_adaptation_init` with all schedules made, and its settings.
     pub fn adaptation(&mut self, window: u8, patience: u8, noisy: u16, calm: u16) -> i32 {
         // SAFETY: schedules that were made.
         unsafe { shim::shim_adaptation(self.0, window, patience, noisy, calm) }
@@ -236,59 +229,27 @@ impl C {
         (rung, permille)
     }
 
-    /// `eeruf_hopping_init`, with the numbers in the order that `shim.c` names; `own` are the limits of each sensor, or
-    /// empty.
-    pub fn hopping(&mut self, sensors: u8, phases: u8, numbers: &[u32], own: &[u32], now_us: u32) -> i32 {
-        assert!(numbers.len() == 23 || numbers.len() == 23 + usize::from(sensors));
-        assert!(own.is_empty() || own.len() == 1 + 3 * usize::from(sensors));
-        let has_lags = u8::from(numbers.len() > 23);
-        let own = if own.is_empty() { core::ptr::null() } else { own.as_ptr() };
-        // SAFETY: as many numbers as are read.
-        unsafe { shim::shim_hopping(self.0, sensors, phases, numbers.as_ptr(), has_lags, own, now_us) }
-    }
-
-    /// Another config, number 1 to 3, for `eeruf_hopping_change`: as the first but for phases, code, step, period and
-    /// lags, one for each sensor or none.
-    pub fn hopping_rung(&mut self, phases: u8, code: u8, step_us: u32, period_us: u32, lag_us: &[u32]) {
-        let lag_us = if lag_us.is_empty() { core::ptr::null() } else { lag_us.as_ptr() };
-        // SAFETY: a hopping ring that was made, and a number for each of its sensors.
-        unsafe { shim::shim_hopping_rung(self.0, phases, code, step_us, period_us, lag_us) }
-    }
-
     /// `eeruf_flow_init`, with the numbers in the order that `shim.c` names; `own` are the limits of each sensor, or
     /// empty.
     pub fn flow(&mut self, sensors: u8, numbers: &[u32], own: &[u32], now_us: u32) -> i32 {
-        assert_eq!(numbers.len(), 23);
-        assert!(own.is_empty() || own.len() == 1 + 3 * usize::from(sensors));
-        let own = if own.is_empty() { core::ptr::null() } else { own.as_ptr() };
+        assert!(numbers.len() == 15 && (own.is_empty() || own.len() == 4 * usize::from(sensors)));
+        let own = if own.is_empty() { std::ptr::null() } else { own.as_ptr() };
         // SAFETY: as many numbers as are read.
         unsafe { shim::shim_flow(self.0, sensors, numbers.as_ptr(), own, now_us) }
     }
 
-    /// `eeruf_flow_quiet_us`: before and after; `None` for a sensor that is out of range.
-    pub fn quiet_us(&self, sensor: u8) -> Option<[u32; 2]> {
+    /// `eeruf_flow_moving`.
+    pub fn moving(&mut self, speed_mm_s: u32, turn_mrad_s: u32, now_us: u32) -> i32 {
+        // SAFETY: a flow ring that was made.
+        unsafe { shim::shim_moving(self.0, speed_mm_s, turn_mrad_s, now_us) }
+    }
+
+    /// `eeruf_flow_quiet_us` and `eeruf_flow_believed_us`.
+    pub fn quiet_and_belief(&self, sensor: u8) -> [u32; 2] {
         let mut out = [0; 2];
         // SAFETY: a flow ring that was made, and room for two numbers.
-        let status = unsafe { shim::shim_quiet(self.0, sensor, out.as_mut_ptr()) };
-        (status == 0).then_some(out)
-    }
-
-    /// `eeruf_hopping_confirmed_us`.
-    pub fn confirmed_us(&self, sensor: u8) -> u32 {
-        // SAFETY: a hopping ring that was made.
-        unsafe { shim::shim_hopping_of(self.0, sensor, 0) }
-    }
-
-    /// `eeruf_hopping_lag_us`.
-    pub fn lag_us(&self, sensor: u8) -> u32 {
-        // SAFETY: a hopping ring that was made.
-        unsafe { shim::shim_hopping_of(self.0, sensor, 1) }
-    }
-
-    /// `eeruf_hopping_weighed` and `eeruf_hopping_changes`.
-    pub fn weighed(&self, sensor: u8) -> (u32, u32) {
-        // SAFETY: a hopping ring that was made.
-        unsafe { (shim::shim_hopping_of(self.0, sensor, 2), shim::shim_hopping_of(self.0, sensor, 3)) }
+        unsafe { shim::shim_quiet(self.0, sensor, out.as_mut_ptr()) };
+        out
     }
 }
 

@@ -4,7 +4,6 @@
 #include "eeruf_serial.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 typedef struct Handle {
     EerufSchedule *schedules[8];
@@ -12,13 +11,10 @@ typedef struct Handle {
     unsigned schedule_count;
     EerufRing *ring;
     EerufSensor *sensors;
-    EerufHoppingRing *hopping;
-    EerufHopSensor *hop_sensors;
-    EerufHopper *hoppers;
-    EerufHoppingConfig configs[4];
-    const EerufHoppingConfig *rungs[4];
-    uint32_t lag_us[4][EERUF_MAX_SENSORS];
-    uint8_t rung_count;
+    EerufFlowRing *flow;
+    EerufFlowSensor *flow_sensors;
+    EerufSchedule own;
+    uint8_t *shared_lines;
     EerufHcSr04 modules;
     EerufHcSr04Settings settings;
     EerufLine *lines;
@@ -42,11 +38,12 @@ void shim_free(Handle *handle) {
         free(handle->limits[handle->schedule_count]);
         free(schedule);
     }
-    if (handle->hopping == NULL) free(handle->ring);
-    free(handle->hopping);
+    if (handle->flow == NULL) free(handle->ring);
+    free(handle->flow);
     free(handle->sensors);
-    free(handle->hop_sensors);
-    free(handle->hoppers);
+    free(handle->flow_sensors);
+    free((void *)(uintptr_t)handle->own.limits);
+    free(handle->shared_lines);
     free(handle->lines);
     free(handle->watched);
     free(handle);
@@ -66,11 +63,11 @@ int shim_schedule(Handle *handle, uint32_t period_us, uint8_t sensors, uint8_t p
     return status;
 }
 
-/* Of each sensor: window, t_delta and group. */
-static EerufLimits *limits_of(uint8_t sensors, const uint32_t *own) {
+/* Of each sensor: window, t_delta and group, and more in flow rings. */
+static EerufLimits *limits_of(uint8_t sensors, const uint32_t *own, uint8_t numbers) {
     EerufLimits *limits = (EerufLimits *)calloc(sensors, sizeof *limits);
     uint8_t x;
-    for (x = 0; x < sensors; x++, own += 3) {
+    for (x = 0; x < sensors; x++, own += numbers) {
         limits[x].window_us = own[0];
         limits[x].t_delta_us = (uint16_t)own[1];
         limits[x].group = (uint8_t)own[2];
@@ -84,7 +81,7 @@ int shim_verify(Handle *handle, unsigned number, uint32_t t_delta_us, uint32_t m
     EerufRequirements needs = {t_delta_us, min_interval_us, window_us, layout, neighbours, stale_echo, NULL};
     EerufStatus status;
     if (own != NULL) {
-        EerufLimits *limits = limits_of(schedule->sensors, own);
+        EerufLimits *limits = limits_of(schedule->sensors, own, 3);
         free(handle->limits[number]);
         handle->limits[number] = limits;
         needs.limits = limits;
@@ -136,8 +133,8 @@ static void flatten(const EerufEvent *event, uint32_t *out) {
 
 /* `out` has 18 places, all zero. */
 int shim_poll(Handle *handle, uint32_t now_us, const int32_t *change_us, uint32_t *out) {
-    const EerufStatus status = handle->hopping != NULL
-                                   ? eeruf_hopping_poll(handle->hopping, now_us, change_us, &handle->last)
+    const EerufStatus status = handle->flow != NULL
+                                   ? eeruf_flow_poll(handle->flow, now_us, &handle->last)
                                    : eeruf_ring_poll_expecting(handle->ring, now_us, change_us, &handle->last);
     if (status != EERUF_EVENT) return status;
     flatten(&handle->last, out);
@@ -183,13 +180,13 @@ int shim_do(Handle *handle, unsigned what, uint8_t sensor, uint32_t value) {
     case 1: return eeruf_ring_fired(ring, sensor, value);
     case 2: return eeruf_ring_stuck(ring, sensor);
     case 3:
-        if (handle->hopping != NULL) return eeruf_hopping_enable(handle->hopping, sensor, value != 0);
+        if (handle->flow != NULL) return eeruf_flow_enable(handle->flow, sensor, value != 0);
         return eeruf_ring_enable(ring, sensor, value != 0);
     case 4:
-        if (handle->hopping != NULL) return eeruf_hopping_pause(handle->hopping, value != 0);
+        if (handle->flow != NULL) return eeruf_flow_pause(handle->flow, value != 0);
         return eeruf_ring_pause(ring, value != 0);
     case 5:
-        if (handle->hopping != NULL) return eeruf_hopping_restart(handle->hopping, value);
+        if (handle->flow != NULL) return eeruf_flow_restart(handle->flow, value);
         return eeruf_ring_restart(ring, value);
     case 6: return eeruf_ring_change_to_unverified(ring, handle->schedules[value]);
     case 7: return eeruf_ring_set_t_delta(ring, value);
@@ -203,10 +200,7 @@ int shim_do(Handle *handle, unsigned what, uint8_t sensor, uint32_t value) {
     case 15: return eeruf_hc_sr04_change_schedule(&handle->modules, handle->schedules[value]);
     case 16: return eeruf_hc_sr04_health(&handle->modules, sensor);
     case 17: return eeruf_ring_is_enabled(ring, sensor);
-    case 18:
-        if (handle->hopping != NULL)
-            return eeruf_hopping_adaptation_period(&handle->adaptation, handle->hopping, &handle->last);
-        return eeruf_adaptation_period(&handle->adaptation, ring, &handle->last);
+    case 18: return eeruf_adaptation_period(&handle->adaptation, ring, &handle->last);
     case 19: return eeruf_ring_set_path_change(ring, value);
     case 20: return eeruf_ring_set_audible(ring, value);
     case 21: return (int)eeruf_ring_fired_at(ring, sensor);
@@ -217,9 +211,7 @@ int shim_do(Handle *handle, unsigned what, uint8_t sensor, uint32_t value) {
     case 26: return eeruf_ring_measured(ring, sensor, value);
     case 27: return eeruf_hc_sr04_triggered(&handle->modules, sensor);
     case 28: return eeruf_hc_sr04_pulse(&handle->modules, sensor, value);
-    case 29: return eeruf_ring_set_report_after(ring, value);
-    case 30: return eeruf_hopping_change(handle->hopping, &handle->configs[value]);
-    default: return eeruf_hopping_solo(handle->hopping);
+    default: return eeruf_ring_set_report_after(ring, value);
     }
 }
 
@@ -237,12 +229,8 @@ int shim_modules(Handle *handle, uint32_t min_retrigger_us, uint16_t shortest_us
 
 int shim_adaptation(Handle *handle, uint8_t window, uint8_t patience, uint16_t noisy, uint16_t calm) {
     const EerufSchedule *const *ladder = (const EerufSchedule *const *)handle->schedules;
-    const EerufStatus status =
-        handle->hopping != NULL
-            ? eeruf_hopping_adaptation_init(&handle->adaptation, sizeof handle->adaptation, handle->rungs,
-                                            handle->rung_count)
-            : eeruf_adaptation_init(&handle->adaptation, sizeof handle->adaptation, ladder,
-                                    (uint8_t)handle->schedule_count);
+    const EerufStatus status = eeruf_adaptation_init(&handle->adaptation, sizeof handle->adaptation, ladder,
+                                                     (uint8_t)handle->schedule_count);
     handle->adaptation.window = window;
     handle->adaptation.patience = patience;
     handle->adaptation.noisy_permille = noisy;
@@ -255,138 +243,49 @@ void shim_rung(const Handle *handle, uint32_t *rung, uint32_t *permille) {
     *permille = handle->adaptation.rejection_permille;
 }
 
-/* `numbers`: t_delta, near, tentative_within, votes, score limit, contradiction, solo contradiction, tentative votes,
-   memory. */
-static EerufTrackerSettings tracker_of(const uint32_t *numbers) {
-    EerufTrackerSettings tracker;
-    tracker.t_delta_us = (uint16_t)numbers[0];
-    tracker.near_us = (uint16_t)numbers[1];
-    tracker.tentative_within_us = (uint16_t)numbers[2];
-    tracker.votes = (uint8_t)numbers[3];
-    tracker.score_limit = (uint8_t)numbers[4];
-    tracker.contradiction = (uint8_t)numbers[5];
-    tracker.solo_contradiction = (uint8_t)numbers[6];
-    tracker.tentative_votes = (uint8_t)numbers[7];
-    tracker.memory = (uint8_t)numbers[8];
-    return tracker;
-}
-
-/* Memory for a ring that hops or flows. */
-static void make_room(Handle *handle, uint8_t sensors) {
-    handle->hopping = (EerufHoppingRing *)malloc(sizeof(EerufHoppingRing));
-    handle->hop_sensors = (EerufHopSensor *)malloc(sensors * sizeof(EerufHopSensor));
-    handle->hoppers = (EerufHopper *)malloc(sensors * sizeof(EerufHopper));
-    handle->ring = &handle->hopping->ring;
-}
-
-/* A schedule with nothing but limits, or null. `own` as for `shim_hopping`. */
-static const EerufSchedule *own_limits(Handle *handle, uint8_t sensors, const uint32_t *own) {
-    EerufSchedule *schedule;
-    if (own == NULL) return NULL;
-    schedule = (EerufSchedule *)calloc(1, sizeof *schedule);
-    schedule->sensors = sensors;
-    schedule->min_interval_us = *own++;
-    schedule->limits = handle->limits[handle->schedule_count] = limits_of(sensors, own);
-    handle->schedules[handle->schedule_count++] = schedule;
-    return schedule;
-}
-
-/* Keeps a config, and its lags if it has any: a rung of the ladder. */
-static const EerufHoppingConfig *keep_config(Handle *handle, const EerufHoppingConfig *config) {
-    EerufHoppingConfig *kept = &handle->configs[handle->rung_count];
-    uint32_t *lag_us = handle->lag_us[handle->rung_count];
-    *kept = *config;
-    if (config->lag_us != NULL) {
-        memcpy(lag_us, config->lag_us, config->sensors * sizeof *lag_us);
-        kept->lag_us = lag_us;
-    }
-    handle->rungs[handle->rung_count++] = kept;
-    return kept;
-}
-
-/* Another rung, like the first but for phases, code, step, period and lags, null for even ones. */
-void shim_hopping_rung(Handle *handle, uint8_t phases, uint8_t code, uint32_t step_us, uint32_t period_us,
-                       const uint32_t *lag_us) {
-    EerufHoppingConfig config = handle->configs[0];
-    config.phases = phases;
-    config.code = code;
-    config.step_us = step_us;
-    config.period_us = period_us;
-    config.lag_us = lag_us;
-    (void)keep_config(handle, &config);
-}
-
-/* `numbers`: step, period, window, blanking, reach, shift interval, seed; then the tracker's nine; then solo rate,
-   after and spacing, shift after and spacing, neighbours, code; then one lag for each sensor, or none. `own`: the time
-   that any pair keeps; then window, t_delta and group of each sensor; or null. */
-int shim_hopping(Handle *handle, uint8_t sensors, uint8_t phases, const uint32_t *numbers, uint8_t has_lags,
-                 const uint32_t *own, uint32_t now_us) {
-    const uint32_t *rest = numbers + 16;
-    EerufHoppingConfig config = EERUF_HOPPING_BALANCED(0, 0, 0);
-    config.sensors = sensors;
-    config.phases = phases;
-    config.step_us = numbers[0];
-    config.period_us = numbers[1];
-    config.window_us = numbers[2];
-    config.blanking_us = numbers[3];
-    config.reach_us = numbers[4];
-    config.shift_interval_us = numbers[5];
-    config.seed = numbers[6];
-    config.tracker = tracker_of(numbers + 7);
-    config.solo_rate = (uint8_t)rest[0];
-    config.solo_after = (uint8_t)rest[1];
-    config.solo_spacing = (uint8_t)rest[2];
-    config.shift_after = (uint8_t)rest[3];
-    config.shift_spacing = (uint8_t)rest[4];
-    config.neighbours = (uint8_t)rest[5];
-    config.code = (uint8_t)rest[6];
-    config.lag_us = has_lags ? rest + 7 : NULL;
-    config.own = own_limits(handle, sensors, own);
-    make_room(handle, sensors);
-    return eeruf_hopping_init(handle->hopping, sizeof(EerufHoppingRing), handle->hop_sensors,
-                              sensors * sizeof(EerufHopSensor), handle->hoppers, sensors * sizeof(EerufHopper),
-                              keep_config(handle, &config), now_us);
-}
-
-/* `numbers`: window, blanking, reach, unserved after, step, shortest gap, masked adds, believed takes, unserved adds,
-   shortest cycle, longest cycle, rest, lead, travel; then the tracker's nine. `own` as for `shim_hopping`. */
+/* `numbers`: window, blanking, least, most, rest, dice, seed; t_delta, near, path change, memory, hold, top speed, alone,
+   votes. `own`: window, t_delta, group and line of each sensor; or null. */
 int shim_flow(Handle *handle, uint8_t sensors, const uint32_t *numbers, const uint32_t *own, uint32_t now_us) {
     EerufFlowConfig config = EERUF_FLOW(0, 0);
+    const size_t size = sensors * sizeof(EerufFlowSensor);
     config.sensors = sensors;
     config.window_us = numbers[0];
     config.blanking_us = numbers[1];
-    config.reach_us = numbers[2];
-    config.unserved_after = (uint8_t)numbers[3];
-    config.step_us = numbers[4];
-    config.shortest_gap_us = numbers[5];
-    config.masked_adds_us = numbers[6];
-    config.believed_takes_us = numbers[7];
-    config.unserved_adds_us = numbers[8];
-    config.shortest_cycle_us = numbers[9];
-    config.longest_cycle_us = numbers[10];
-    config.rest_us = numbers[11];
-    config.lead_us = numbers[12];
-    config.travel_us = numbers[13];
-    config.tracker = tracker_of(numbers + 14);
-    config.own = own_limits(handle, sensors, own);
-    make_room(handle, sensors);
-    return eeruf_flow_init(handle->hopping, sizeof(EerufHoppingRing), handle->hop_sensors,
-                           sensors * sizeof(EerufHopSensor), handle->hoppers, sensors * sizeof(EerufHopper), &config,
-                           now_us);
-}
-
-/* `out`: quiet before and after. */
-int shim_quiet(const Handle *handle, uint8_t sensor, uint32_t *out) {
-    return eeruf_flow_quiet_us(handle->hopping, sensor, &out[0], &out[1]);
-}
-
-uint32_t shim_hopping_of(const Handle *handle, uint8_t sensor, uint8_t what) {
-    switch (what) {
-    case 0: return eeruf_hopping_confirmed_us(handle->hopping, sensor);
-    case 1: return eeruf_hopping_lag_us(handle->hopping, sensor);
-    case 2: return eeruf_hopping_weighed(handle->hopping, sensor);
-    default: return eeruf_hopping_changes(handle->hopping);
+    config.least_us = numbers[2];
+    config.most_us = numbers[3];
+    config.rest_us = numbers[4];
+    config.dice_us = numbers[5];
+    config.seed = numbers[6];
+    config.t_delta_us = (uint16_t)numbers[7];
+    config.near_us = (uint16_t)numbers[8];
+    config.path_change_us = (uint16_t)numbers[9];
+    config.memory = (uint8_t)numbers[10];
+    config.hold = (uint8_t)numbers[11];
+    config.top_speed_mm_s = (uint16_t)numbers[12];
+    config.alone = (uint8_t)numbers[13];
+    config.votes = (uint8_t)numbers[14];
+    if (own != NULL) {
+        uint8_t x;
+        handle->own.sensors = sensors;
+        handle->own.limits = limits_of(sensors, own, 4);
+        config.own = &handle->own;
+        config.lines = handle->shared_lines = (uint8_t *)malloc(sensors);
+        for (x = 0; x < sensors; x++) handle->shared_lines[x] = (uint8_t)own[4 * x + 3];
     }
+    handle->flow = (EerufFlowRing *)malloc(sizeof(EerufFlowRing));
+    handle->flow_sensors = (EerufFlowSensor *)malloc(size);
+    handle->ring = &handle->flow->ring;
+    return eeruf_flow_init(handle->flow, sizeof(EerufFlowRing), handle->flow_sensors, size, &config, now_us);
+}
+
+int shim_moving(Handle *handle, uint32_t speed_mm_s, uint32_t turn_mrad_s, uint32_t now_us) {
+    return eeruf_flow_moving(handle->flow, speed_mm_s, turn_mrad_s, now_us);
+}
+
+/* `out`: quiet, and the echo time that is believed. */
+void shim_quiet(const Handle *handle, uint8_t sensor, uint32_t *out) {
+    out[0] = eeruf_flow_quiet_us(handle->flow, sensor);
+    out[1] = eeruf_flow_believed_us(handle->flow, sensor);
 }
 
 /* `held`: known, age, state. `out`: kind, echo, previous, age, by whom explained. */
@@ -431,19 +330,17 @@ int shim_edges_pop(uint32_t *out) {
     return status;
 }
 
-/* Says over a line what the last poll's event was; the size of the frame. */
 /* Makes the last event, a reading, an ambiguous one. */
 void shim_explain(Handle *handle, uint8_t explained_by) {
     handle->last.u.reading.kind = EERUF_READING_AMBIGUOUS;
     handle->last.u.reading.explained_by = explained_by;
 }
 
-size_t shim_serial_event(Handle *handle, uint8_t sensors, const int32_t *change_us, uint32_t now_us, uint8_t *frame) {
+/* Says over a line what the last poll's event was; the size of the frame. */
+size_t shim_serial_event(Handle *handle, uint8_t sensors, uint32_t now_us, uint8_t *frame) {
     if (handle->line.clock == NULL) {
         const EerufSerial line = EERUF_SERIAL(handle->late_us, sensors, "board of sixteen letters");
         handle->line = line;
     }
-    if (handle->hopping != NULL)
-        return eeruf_serial_hopping_event(&handle->line, handle->hopping, NULL, &handle->last, change_us, now_us, frame);
     return eeruf_serial_event(&handle->line, handle->ring, NULL, &handle->last, now_us, frame);
 }

@@ -40,27 +40,10 @@ unsafe extern "C" {
     pub(crate) fn shim_modules(handle: *mut c_void, min_retrigger_us: u32, shortest_us: u16) -> i32;
     pub(crate) fn shim_adaptation(handle: *mut c_void, window: u8, patience: u8, noisy: u16, calm: u16) -> i32;
     pub(crate) fn shim_rung(handle: *const c_void, rung: *mut u32, permille: *mut u32);
-    pub(crate) fn shim_hopping(
-        handle: *mut c_void,
-        sensors: u8,
-        phases: u8,
-        numbers: *const u32,
-        has_lags: u8,
-        own: *const u32,
-        now_us: u32,
-    ) -> i32;
-    pub(crate) fn shim_hopping_rung(
-        handle: *mut c_void,
-        phases: u8,
-        code: u8,
-        step_us: u32,
-        period_us: u32,
-        lag_us: *const u32,
-    );
     pub(crate) fn shim_flow(handle: *mut c_void, sensors: u8, numbers: *const u32, own: *const u32, now_us: u32)
     -> i32;
-    pub(crate) fn shim_quiet(handle: *const c_void, sensor: u8, out: *mut u32) -> i32;
-    pub(crate) fn shim_hopping_of(handle: *const c_void, sensor: u8, what: u8) -> u32;
+    pub(crate) fn shim_moving(handle: *mut c_void, speed_mm_s: u32, turn_mrad_s: u32, now_us: u32) -> i32;
+    pub(crate) fn shim_quiet(handle: *const c_void, sensor: u8, out: *mut u32);
     pub(crate) fn shim_filter(
         held: *mut u32,
         t_delta_us: u32,
@@ -70,13 +53,7 @@ unsafe extern "C" {
         out: *mut u32,
     ) -> i32;
     pub(crate) fn shim_explain(handle: *mut c_void, explained_by: u8);
-    pub(crate) fn shim_serial_event(
-        handle: *mut c_void,
-        sensors: u8,
-        change_us: *const i32,
-        now_us: u32,
-        frame: *mut u8,
-    ) -> usize;
+    pub(crate) fn shim_serial_event(handle: *mut c_void, sensors: u8, now_us: u32, frame: *mut u8) -> usize;
     pub(crate) fn shim_edges_new();
     pub(crate) fn shim_edges_push(sensor: u8, high: u8, at_us: u32) -> i32;
     pub(crate) fn shim_edges_pop(out: *mut u32) -> i32;

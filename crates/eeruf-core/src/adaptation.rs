@@ -1,7 +1,6 @@
 //! Adaptive scheduling (end of Sec. 3.1): fire more slowly where too much is rejected, and faster again when it is
 //! calm.
 
-use crate::hopping::HoppingSchedule;
 use crate::reading::{ReadingKind, Tally};
 use crate::ring::PeriodStats;
 use crate::schedule::ScheduleError;
@@ -65,17 +64,6 @@ impl<'s, const K: usize, const M: usize, L> Adaptation<'s, VerifiedSchedule<K, M
     /// where sound travels at `c` (see [`Schedule::max_speed_mm_s`](crate::Schedule::max_speed_mm_s)).
     pub fn max_speed_mm_s(&self, t_delta: Micros, c: SpeedOfSound) -> u32 {
         self.rungs.get(self.rung).map_or(0, |schedule| schedule.max_speed_mm_s(t_delta, c.mm_per_s()))
-    }
-}
-
-impl<'s, const K: usize> Adaptation<'s, HoppingSchedule<K>> {
-    /// As [`new`](Adaptation::new), for a ring that hops in time: `adapt` then calls its
-    /// [`change_hopping`](crate::Ring::change_hopping).
-    ///
-    /// # Errors
-    /// As there.
-    pub fn hopping(rungs: &'s [HoppingSchedule<K>]) -> Result<Self, ScheduleError> {
-        Self::of(rungs, |rung| (rung.code().sensors(), rung.period()))
     }
 }
 

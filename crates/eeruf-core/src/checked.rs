@@ -1,7 +1,5 @@
-//! [`schedule!`](crate::schedule!) and [`hopping_schedule!`](crate::hopping_schedule!): schedules that the compiler
-//! verifies.
+//! [`schedule!`](crate::schedule!): schedules that the compiler verifies.
 
-use crate::hopping::{HoppingCode, HoppingSchedule};
 use crate::own_limits::EachSensor;
 use crate::requirements::Requirements;
 use crate::schedule::{Schedule, ScheduleError};
@@ -152,7 +150,6 @@ const fn refuse(violation: Violation) -> ! {
     match violation.kind {
         ViolationKind::CrosstalkA => panic!("two sensors' crosstalk would be accepted, Eq. (13a)"),
         ViolationKind::CrosstalkB => panic!("two sensors' crosstalk would be accepted, Eq. (13b)"),
-        ViolationKind::Crosstalk => panic!("two sensors' crosstalk would be accepted, Eqs. (13a), (13b)"),
         ViolationKind::StaleEcho => panic!("a sensor's stale echo would be accepted, Eq. (13b) with x = y"),
         ViolationKind::Interval => panic!("two neighbours fire closer together than min_interval, Sec. 3.1 c"),
         ViolationKind::Window => panic!("a sensor fires again while it still listens, T_wind"),
@@ -172,130 +169,4 @@ pub const fn __micros<const K: usize>(us: [u32; K]) -> [Micros; K] {
         i += 1;
     }
     times
-}
-
-/// A [`HoppingSchedule`] that is verified while the program is compiled; `eeruf design --phases M --emit rust` writes
-/// the whole call.
-///
-/// ```
-/// use eeruf_core::{Criterion, Micros, Requirements, hopping::HoppingSchedule, hopping_schedule};
-///
-/// const RING: HoppingSchedule<4> = hopping_schedule! {
-///     period_us: 60_000,
-///     step_us: 240,
-///     phases: 5,
-///     first_multiplier: 1,
-///     t_lag_us: [0, 14_000, 28_000, 42_000],
-///     meets: Requirements {
-///         criterion: Criterion::Margin(Micros::new(90)),
-///         min_interval: Micros::from_millis(12),
-///         window: Micros::from_millis(36),
-///         ..Requirements::new(Micros::new(150))
-///     },
-/// };
-/// assert_eq!(RING.code().phases(), 5);
-/// ```
-///
-/// The same table does not compile when 240 us are to keep a `t_delta` of 150 us apart as (13) asks, with 301 us:
-///
-/// ```compile_fail
-/// use eeruf_core::{Micros, Requirements, hopping::HoppingSchedule, hopping_schedule};
-///
-/// const RING: HoppingSchedule<4> = hopping_schedule! {
-///     period_us: 60_000,
-///     step_us: 240,
-///     phases: 5,
-///     first_multiplier: 1,
-///     t_lag_us: [0, 14_000, 28_000, 42_000],
-///     meets: Requirements { window: Micros::from_millis(36), ..Requirements::new(Micros::new(150)) },
-/// };
-/// # assert_eq!(RING.code().phases(), 5);
-/// ```
-///
-/// Where sensors are not all alike, `each_meets` gives the schedule and the limits of each sensor, for
-/// [`HoppingRing::with_limits`](crate::hopping::HoppingRing::with_limits):
-///
-/// ```
-/// use eeruf_core::{EachSensor, Micros, Requirements, Uneven, hopping::HoppingSchedule, hopping_schedule};
-///
-/// const RING: (HoppingSchedule<3>, EachSensor<3>) = hopping_schedule! {
-///     period_us: 40_000,
-///     step_us: 301,
-///     phases: 4,
-///     first_multiplier: 1,
-///     t_lag_us: [0, 20_000, 20_000],
-///     each_meets: Requirements {
-///         window: Micros::from_millis(30),
-///         uneven: Some(Uneven {
-///             window: &[Micros::from_millis(30), Micros::from_millis(9), Micros::from_millis(9)],
-///             together: &[0b110],
-///             ..Uneven::NONE
-///         }),
-///         ..Requirements::new(Micros::new(150))
-///     },
-/// };
-/// assert_eq!(RING.0.t_lag(1), RING.0.t_lag(2));
-/// ```
-#[macro_export]
-macro_rules! hopping_schedule {
-    (
-        period_us: $period:expr,
-        step_us: $step:expr,
-        phases: $phases:expr,
-        first_multiplier: $first:expr,
-        t_lag_us: $t_lag:expr,
-        meets: $requirements:expr $(,)?
-    ) => {
-        const {
-            $crate::__checked_hopping(
-                $crate::Micros::new($period),
-                $crate::Micros::new($step),
-                [$phases, $first],
-                $crate::__micros($t_lag),
-                &$requirements,
-            )
-            .0
-        }
-    };
-    (
-        period_us: $period:expr,
-        step_us: $step:expr,
-        phases: $phases:expr,
-        first_multiplier: $first:expr,
-        t_lag_us: $t_lag:expr,
-        each_meets: $requirements:expr $(,)?
-    ) => {
-        const {
-            $crate::__checked_hopping(
-                $crate::Micros::new($period),
-                $crate::Micros::new($step),
-                [$phases, $first],
-                $crate::__micros($t_lag),
-                &$requirements,
-            )
-        }
-    };
-}
-
-/// For `hopping_schedule!`, which evaluates it when the program is compiled: its panics are compile errors.
-#[doc(hidden)]
-pub const fn __checked_hopping<const K: usize>(
-    period: Micros,
-    step: Micros,
-    [phases, first]: [u8; 2],
-    t_lag: [Micros; K],
-    requirements: &Requirements<'_>,
-) -> (HoppingSchedule<K>, EachSensor<K>) {
-    let code = match HoppingCode::of(K, phases, first, step) {
-        Ok(code) => code,
-        Err(error) => panic!("{}", error.as_str()),
-    };
-    let schedule = match HoppingSchedule::new(code, period, t_lag) {
-        Ok(schedule) => schedule,
-        Err(error) => panic!("{}", error.as_str()),
-    };
-    match schedule.limits(requirements) {
-        Ok(limits) => (schedule, limits),
-        Err(violation) => refuse(violation),
-    }
 }

@@ -10,21 +10,15 @@ use crate::time::{Instant, Micros};
 pub struct Firing {
     /// The phase of the schedule in which the sensor fired.
     pub phase: Phase,
-    /// True if no other sensor's sound could be heard.
-    pub solo: bool,
-    /// True if firings were punctual enough that crosstalk moved as the schedule says. An echo of a firing that was not
-    /// supports nothing.
-    pub steady: bool,
     /// Expected change of a good reading since this sensor's firing before, in microseconds, if it comes from straight
-    /// ahead: `-2 d / c` for a sensor carried forward by `d`. What part of it there really is the tracker learns for
-    /// each sensor, from none to twice: walls seen at a slant change otherwise.
+    /// ahead: `-2 d / c` for a sensor carried forward by `d`.
     pub expected_change_us: i32,
 }
 
 impl Firing {
-    /// An ordinary, punctual firing in this phase, of a robot that stands.
+    /// A firing in this phase, of a robot that stands.
     pub const fn new(phase: Phase) -> Self {
-        Self { phase, solo: false, steady: true, expected_change_us: 0 }
+        Self { phase, expected_change_us: 0 }
     }
 }
 
@@ -35,6 +29,8 @@ pub struct Heard<'r> {
     pub sensor: u8,
     /// When it fired.
     pub fired: Instant,
+    /// Time since its firing before; of no account where that was forgotten.
+    pub since_before: Micros,
     /// The echo times, earliest first; none for silence.
     pub echoes: &'r [Micros],
     /// Properties of the firing, by the plan, and the change that odometry expects.
@@ -99,6 +95,21 @@ pub enum Quiet {
     More,
 }
 
+/// The robot's motion, for the gaps of a plan that gives quiet.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Pace {
+    /// Readings may change, since the robot moves.
+    pub moves: bool,
+    /// Every echo is reported, so that each needs more quiet.
+    pub every_echo: bool,
+}
+
+impl Pace {
+    /// Of a robot that stands.
+    pub const STANDING: Self = Self { moves: false, every_echo: false };
+}
+
 /// No sound explains anything.
 pub(crate) struct NoSounds;
 
@@ -121,8 +132,8 @@ impl Sounds for NoSounds {
 }
 
 /// Decides what the readings of a [`Ring`](crate::Ring) are worth: [`EchoFilter`](crate::EchoFilter),
-/// [`EchoTracker`](crate::judge::EchoTracker), [`RateFilter`](crate::judge::RateFilter), [`Agreement`], or one of the
-/// caller's own.
+/// [`Belief`](crate::flow::Belief), [`RateFilter`](crate::judge::RateFilter), [`Agreement`], or one of the caller's
+/// own.
 ///
 /// The ring hands in sensors that it has room for. A judge that has room for fewer accepts nothing of the others.
 pub trait Judge {
@@ -143,28 +154,27 @@ pub trait Judge {
     fn believed(&self, _sensor: u8) -> Option<Micros> {
         None
     }
-    /// Returns true if an echo comes before what it believes of a sensor now, silence too: it is none of its own.
-    fn comes_before_belief(&self, sensor: u8, t_echo: Micros) -> bool {
-        self.believed(sensor).map_or_else(|| self.is_clear(sensor), |believed| t_echo < believed)
+    /// The robot moves at this speed and turns at this rate from `now` on.
+    fn moving(&mut self, _speed_mm_s: u32, _turn_mrad_s: u32, _now: Instant) {}
+    /// The robot's motion as of the last reading, or word of it.
+    fn pace(&self) -> Pace {
+        Pace::STANDING
     }
-    /// The robot moves at this speed and turns at this rate from `now` on. Returns true if readings may change by it.
-    fn moving(&mut self, _speed_mm_s: u32, _turn_mrad_s: u32, _now: Instant) -> bool {
-        false
-    }
-    /// The quiet that a sensor needs after its last reading, for plans that give quiet by it.
-    fn quiet(&self, _sensor: u8) -> Quiet {
+    /// The quiet that a sensor needs after its reading, which was the last of all, for plans that give quiet by it.
+    fn quiet(&self) -> Quiet {
         Quiet::Same
     }
     /// Forgets the readings of a sensor, so that its next one is compared with nothing. The age goes on.
     fn forget(&mut self, sensor: u8);
+    /// The ring goes on after a pause, and with it a sensor: its next reading is compared with no other.
+    fn resume(&mut self, sensor: u8) {
+        self.forget(sensor);
+    }
     /// The ring starts over: sound from before may still be heard, and what a sensor hears next is compared with
     /// nothing. Ages go on.
     fn restart(&mut self);
     /// A sensor's last firing, which is judged already, was this much later than it seemed; negative for earlier.
     fn fired_later(&mut self, _sensor: u8, _later_us: i32) {}
-    /// Firing times have changed against each other otherwise than by the phase: see
-    /// [`EchoTracker::firing_changed`](crate::judge::EchoTracker::firing_changed).
-    fn firing_changed(&mut self) {}
 }
 
 /// A judge that does not ask what explains a reading: agreement alone, for baselines. Where crosstalk repeats, as with
@@ -204,9 +214,5 @@ impl<J: Judge> Judge for Agreement<J> {
 
     fn fired_later(&mut self, sensor: u8, later_us: i32) {
         self.0.fired_later(sensor, later_us);
-    }
-
-    fn firing_changed(&mut self) {
-        self.0.firing_changed();
     }
 }

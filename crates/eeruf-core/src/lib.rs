@@ -28,9 +28,9 @@
 //! | say when each sensor fires | [`Schedule`], [`VerifiedSchedule`], [`schedule!`] |
 //! | check that, and see what is violated | [`Requirements`], [`conditions`] |
 //! | use sensors that are not all alike | [`Uneven`], [`EachSensor`] |
-//! | filter readings that were fired otherwise | [`EchoFilter`], [`judge::RateFilter`], [`judge::EchoTracker`] |
+//! | filter readings that were fired otherwise | [`EchoFilter`], [`judge::RateFilter`] |
 //! | fire by another plan, or judge otherwise | [`plan`], [`judge`] |
-//! | keep no sensor blind where two phases do | [`hopping`], [`phases`] |
+//! | keep no sensor blind, late or not | [`flow`] |
 //! | know what is before each sensor now | [`watch`] |
 //! | fire more slowly where much is rejected | [`adaptation`] |
 //! | measure which sensors hear each other | [`survey`] |
@@ -55,13 +55,11 @@ mod checked;
 mod edges;
 mod filter;
 pub mod flow;
-pub mod hopping;
 mod interop;
 mod judging;
 mod layout;
 mod needs;
 mod own_limits;
-pub mod phases;
 pub mod plan;
 mod reading;
 mod requirements;
@@ -77,16 +75,13 @@ mod sound;
 pub mod survey;
 pub mod tables;
 mod time;
-mod tracker;
-#[doc(hidden)]
-pub mod turns;
 mod uneven;
 mod verified;
 mod verify;
 pub mod watch;
 
 #[doc(hidden)]
-pub use checked::{__checked, __checked_each, __checked_hopping, __micros};
+pub use checked::{__checked, __checked_each, __micros};
 pub use edges::{Edge, EdgeQueue};
 pub use filter::EchoFilter;
 pub use layout::Layout;
@@ -105,12 +100,9 @@ pub use verified::VerifiedSchedule;
 /// Judges of readings: the trait [`Judge`](judge::Judge), and those beside [`EchoFilter`].
 pub mod judge {
     pub use crate::filter::RateFilter;
-    #[doc(hidden)]
-    pub use crate::judging::Quiet;
-    pub use crate::judging::{Agreement, Explained, Firing, Heard, Judge, Sounds};
+    pub use crate::judging::{Agreement, Explained, Firing, Heard, Judge, Pace, Quiet, Sounds};
     pub use crate::reading::{Explanation, Verdict};
     pub use crate::ring::AgreementRing;
-    pub use crate::tracker::{EchoTracker, TrackerSettings};
 }
 
 /// The findings of [`Schedule::verify`], and what they are made of.

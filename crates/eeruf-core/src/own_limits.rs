@@ -50,6 +50,20 @@ pub trait OwnLimits: Copy + fmt::Debug + sealed::Sealed {
         sensor
     }
 
+    /// The group that a sensor fires together with, from 1; 0 for none.
+    #[doc(hidden)]
+    #[inline(always)]
+    fn group_of(&self, _sensor: u8) -> u8 {
+        0
+    }
+
+    /// The echo line that a sensor shares with others, from 1; 0 for one of its own.
+    #[doc(hidden)]
+    #[inline(always)]
+    fn line_of(&self, _sensor: u8) -> u8 {
+        0
+    }
+
     /// The most that the schedule was verified for, if sensors have limits of their own.
     #[doc(hidden)]
     #[inline]
@@ -82,12 +96,18 @@ pub struct EachSensor<const K: usize> {
     limits: [SensorLimits; K],
     /// The group that each sensor fires together with, from 1; 0 for none.
     groups: [u8; K],
+    /// The echo line that each shares, from 1; 0 for one of its own.
+    lines: [u8; K],
 }
 
 impl<const K: usize> EachSensor<K> {
     /// No limits, for who decides at run time if sensors are alike.
-    pub const NONE: Self =
-        Self { most: None, limits: [SensorLimits { t_delta: Micros::MAX, window: Micros::MAX }; K], groups: [0; K] };
+    pub const NONE: Self = Self {
+        most: None,
+        limits: [SensorLimits { t_delta: Micros::MAX, window: Micros::MAX }; K],
+        groups: [0; K],
+        lines: [0; K],
+    };
 
     /// For [`FlowRing::with_limits`](crate::flow::FlowRing::with_limits), with sets of sensors that fire together, bit
     /// x for sensor x. A ring by a table refuses it, since no table is verified for it.
@@ -101,6 +121,32 @@ impl<const K: usize> EachSensor<K> {
             audible: Micros::ZERO,
         };
         Self { most: Some(NOTHING), ..Self::new(NOTHING, K, limits, Micros::ZERO, together) }
+    }
+
+    /// With sets of sensors that share an echo line, bit x for sensor x, for rings without a table: none fires before
+    /// the windows of the others have ended. Sets that have a sensor in common are one line.
+    #[must_use]
+    pub const fn with_shared_lines(mut self, shared_lines: &[u64]) -> Self {
+        let mut at = 0;
+        while at < shared_lines.len() {
+            let line = at as u8 + 1;
+            let mut sensor = 0;
+            while sensor < K && sensor < 64 {
+                if shared_lines[at] >> sensor & 1 == 1 {
+                    let (before, mut other) = (self.lines[sensor], 0);
+                    while other < K {
+                        if before > 0 && self.lines[other] == before {
+                            self.lines[other] = line;
+                        }
+                        other += 1;
+                    }
+                    self.lines[sensor] = line;
+                }
+                sensor += 1;
+            }
+            at += 1;
+        }
+        self
     }
 
     /// With what a schedule of this many sensors was verified for, if they were all alike, and sets of sensors that
@@ -129,7 +175,7 @@ impl<const K: usize> EachSensor<K> {
             sensor += 1;
         }
         let most = VerifiedFor { t_delta, window, separation: t_delta.saturating_add(spare), ..verified_for };
-        Self { most: Some(most), limits, groups }
+        Self { most: Some(most), limits, groups, lines: [0; K] }
     }
 
     /// The limits of a sensor; `None` if it has none.
@@ -150,8 +196,16 @@ impl<const K: usize> EachSensor<K> {
     }
 
     fn hears(&self, receiver: u8, emitter: u8) -> bool {
-        let group_of = |sensor: u8| self.groups.get(usize::from(sensor)).copied().unwrap_or(0);
-        receiver == emitter || group_of(receiver) == 0 || group_of(receiver) != group_of(emitter)
+        let group = self.group_of(receiver);
+        receiver == emitter || group == 0 || group != self.group_of(emitter)
+    }
+
+    fn group_of(&self, sensor: u8) -> u8 {
+        self.groups.get(usize::from(sensor)).copied().unwrap_or(0)
+    }
+
+    fn line_of(&self, sensor: u8) -> u8 {
+        self.lines.get(usize::from(sensor)).copied().unwrap_or(0)
     }
 }
 
@@ -179,6 +233,14 @@ impl<const K: usize> OwnLimits for EachSensor<K> {
             Some(&group) if group > 0 => self.groups.iter().position(|&other| other == group).unwrap_or(0) as u8,
             _ => sensor,
         }
+    }
+
+    fn group_of(&self, sensor: u8) -> u8 {
+        self.group_of(sensor)
+    }
+
+    fn line_of(&self, sensor: u8) -> u8 {
+        self.line_of(sensor)
     }
 
     fn most(&self) -> Option<&VerifiedFor> {
@@ -209,6 +271,14 @@ impl<const K: usize> OwnLimits for &EachSensor<K> {
 
     fn leader_of(&self, sensor: u8) -> u8 {
         (**self).leader_of(sensor)
+    }
+
+    fn group_of(&self, sensor: u8) -> u8 {
+        (**self).group_of(sensor)
+    }
+
+    fn line_of(&self, sensor: u8) -> u8 {
+        (**self).line_of(sensor)
     }
 
     fn most(&self) -> Option<&VerifiedFor> {

@@ -34,7 +34,7 @@ pub enum ReadingKind {
     /// The driver reported that the echo line was stuck when the sensor was to fire.
     Stuck,
     /// An echo that few readings support so far and none contradicts, nearer than what is confirmed: slow down for it.
-    /// Only from an [`EchoTracker`](crate::judge::EchoTracker).
+    /// Only from a judge of one's own.
     Tentative,
     /// Near-identical to the reading before, though sound of another firing explains both: [`Explanation`] names it.
     /// Only from a [`Ring`](crate::Ring).
@@ -136,6 +136,11 @@ pub struct Verdict {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Tally<N = u32> {
     counts: [N; ReadingKind::ALL.len()],
+}
+
+impl Tally<u8> {
+    /// Nothing counted yet.
+    pub(crate) const NONE: Self = Self { counts: [0; ReadingKind::ALL.len()] };
 }
 
 impl<N: Copy + Into<u32> + TryFrom<u32>> Tally<N> {

@@ -146,22 +146,19 @@ pub struct Least {
     pub sensors: (u8, u8),
     /// The two phases in which the sound is heard, both `a` with two phases; or in which the two fire.
     pub phases: (Phase, Phase),
-    /// Number of periods before the sound was sent, in each: -1 if in the period after, while the sensor still
-    /// listened. 0 with two phases, which reject sound of every age, and of an interval.
-    pub ages: (i8, i8),
 }
 
 impl Least {
     /// The separation of two sensors with two phases.
     pub(crate) const fn of_two_phases(value: Micros, x: usize, y: usize) -> Self {
         let sensors = if x < y { (x as u8, y as u8) } else { (y as u8, x as u8) };
-        Self { value, sensors, phases: (Phase::A, Phase::A), ages: (0, 0) }
+        Self { value, sensors, phases: (Phase::A, Phase::A) }
     }
 
     /// The interval between a firing of x and one of y.
     pub(crate) const fn interval(value: Micros, x: usize, y: usize, phases: (usize, usize)) -> Self {
         let phases = (Phase(phases.0 as u8), Phase(phases.1 as u8));
-        Self { value, sensors: (x as u8, y as u8), phases, ages: (0, 0) }
+        Self { value, sensors: (x as u8, y as u8), phases }
     }
 }
 

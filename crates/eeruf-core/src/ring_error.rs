@@ -84,9 +84,9 @@ pub enum RingError {
         /// The drift asked for, in microseconds per second.
         us_per_s: u32,
     },
-    /// A setting of an [`EchoTracker`](crate::judge::EchoTracker) out of its range; times are in microseconds.
+    /// A setting of a flow ring out of its range; times are in microseconds.
     Setting {
-        /// Its field in [`TrackerSettings`](crate::judge::TrackerSettings).
+        /// Its field in [`TurnSettings`](crate::flow::TurnSettings) or [`BeliefSettings`](crate::flow::BeliefSettings).
         name: &'static str,
         /// The value given.
         value: u32,

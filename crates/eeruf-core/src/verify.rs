@@ -12,95 +12,63 @@ use crate::time::Micros;
 impl<const K: usize> Schedule<K> {
     /// Checks the schedule against `requirements`: see [`Verification`].
     pub const fn verify<'r>(&'r self, requirements: &'r Requirements<'r>) -> Verification<'r, K> {
-        Verification(Findings::Two(TwoPhases { schedule: self, requirements }))
+        Verification(TwoPhases { schedule: self, requirements })
     }
 }
 
-/// Findings on firing times, held against requirements: of [`Schedule::verify`], and of many phases of
-/// [`HoppingSchedule::verify`](crate::hopping::HoppingSchedule::verify) and
-/// [`PhaseTable::verify`](crate::phases::PhaseTable::verify).
+/// Findings on firing times, held against requirements, by [`Schedule::verify`]. Everything is worked out when it is
+/// asked for, so that each violation is found and none stored.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Verification<'r, const K: usize>(Findings<'r, K>);
-
-/// Of two phases everything is worked out when it is asked for, so that each violation is found and none stored.
-#[derive(Clone, Copy, Debug)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-enum Findings<'r, const K: usize> {
-    Two(TwoPhases<'r, K>),
-    Many(ManyPhases<'r>),
-}
+pub struct Verification<'r, const K: usize>(TwoPhases<'r, K>);
 
 impl<'r, const K: usize> Verification<'r, K> {
-    pub(crate) const fn of_many(findings: ManyPhases<'r>) -> Self {
-        Self(Findings::Many(findings))
-    }
-
     /// Returns true if every requirement holds.
     pub const fn ok(&self) -> bool {
         self.first_violation().is_none()
     }
 
-    /// The least shift of crosstalk, and where it occurs: with two phases the two sensors closest together by (13a),
-    /// (13b). Two that must fire together need no separation and do not count. `None` for a single sensor, or if no
-    /// path can be heard in two of many phases.
+    /// The least shift of crosstalk, and where it occurs: the two sensors closest together by (13a), (13b). Two that
+    /// must fire together need no separation and do not count. `None` for a single sensor.
     pub const fn separation(&self) -> Option<Least> {
-        match &self.0 {
-            Findings::Two(two) => two.separation(),
-            Findings::Many(many) => many.separation,
-        }
+        self.0.separation()
     }
 
-    /// The least shift of a stale echo; `None` if none can be heard, or if it was not asked for.
+    /// The least shift of a stale echo; `None` if it was not asked for.
     pub const fn stale_separation(&self) -> Option<Least> {
-        match &self.0 {
-            Findings::Two(two) => two.stale_separation(),
-            Findings::Many(many) => many.stale,
-        }
+        self.0.stale_separation()
     }
 
     /// The largest `t_delta` at which crosstalk - and stale echoes, if asked for - move far enough by the criterion, if
-    /// all sensors have the same; `None` if none does, or if nothing limits it in many phases.
+    /// all sensors have the same; `None` if none does.
     #[doc(alias = "T_delta")]
     pub const fn max_t_delta(&self) -> Option<Micros> {
-        let (requirements, unlimited) = match &self.0 {
-            Findings::Two(two) => (two.requirements, Micros::MAX),
-            Findings::Many(many) => (many.requirements, Micros::ZERO),
-        };
         let least = match closer(self.separation(), self.stale_separation()) {
             Some(least) => least.value,
-            None => unlimited,
+            None => Micros::MAX,
         };
-        requirements.criterion.max_t_delta(least)
+        self.0.requirements.criterion.max_t_delta(least)
     }
 
     /// The smallest interval between neighbours, or, where pairs have intervals of their own, between two that need
     /// one; `None` without any.
     pub const fn min_interval(&self) -> Option<Least> {
-        match &self.0 {
-            Findings::Two(two) => two.min_interval(),
-            Findings::Many(many) => many.min_interval,
-        }
+        self.0.min_interval()
     }
 
     /// The shortest time between two firings of one sensor; [`Micros::MAX`] without sensors.
     pub const fn min_refire(&self) -> Micros {
-        match &self.0 {
-            Findings::Two(two) => two.schedule.min_refire(),
-            Findings::Many(ManyPhases { min_refire: Some(least), .. }) => least.value,
-            Findings::Many(_) => Micros::MAX,
-        }
+        self.0.schedule.min_refire()
     }
 
-    /// The violations: first crosstalk, by (13a), then by (13b), stale echoes, intervals, windows, shared echo lines,
-    /// sensors triggered too soon, and sensors that must fire together. Of two phases every one, of many the worst of
-    /// each kind.
+    /// The violations, every one: first crosstalk, by (13a), then by (13b), stale echoes, intervals, windows, shared
+    /// echo lines, sensors triggered too soon, and sensors that must fire together.
     pub const fn violations(&self) -> impl Iterator<Item = Violation> + Clone + use<'r, K> {
         self.one_by_one()
     }
 
     const fn one_by_one(&self) -> Violations<'r, K> {
-        Violations { findings: self.0, check: 0, x: 0, y: 0, phase: 0 }
+        Violations { of: self.0, check: 0, x: 0, y: 0, phase: 0 }
     }
 
     /// The first violation.
@@ -181,25 +149,8 @@ impl<const K: usize> TwoPhases<'_, K> {
     }
 }
 
-/// The findings on many phases, worked out once.
-#[derive(Clone, Copy, Debug)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub(crate) struct ManyPhases<'r> {
-    pub(crate) requirements: &'r Requirements<'r>,
-    pub(crate) separation: Option<Least>,
-    pub(crate) stale: Option<Least>,
-    pub(crate) min_interval: Option<Least>,
-    pub(crate) min_refire: Option<Least>,
-    /// The worst violation of each kind.
-    pub(crate) worst: [Option<Violation>; KINDS],
-}
-
-/// Kinds of violations in many phases: crosstalk, stale echoes, intervals, windows, shared lines, refire times, sensors
-/// that fire together.
-pub(crate) const KINDS: usize = 7;
-
 /// The lesser of two; the first of equal ones.
-pub(crate) const fn closer(least: Option<Least>, next: Option<Least>) -> Option<Least> {
+const fn closer(least: Option<Least>, next: Option<Least>) -> Option<Least> {
     match (least, next) {
         (Some(one), Some(other)) if one.value.as_micros() <= other.value.as_micros() => least,
         (_, None) => least,
@@ -232,8 +183,6 @@ pub enum ViolationKind {
     Refire,
     /// Two sensors that must fire together do not.
     Together,
-    /// Crosstalk would pass in two of many phases.
-    Crosstalk,
 }
 
 impl ViolationKind {
@@ -242,7 +191,6 @@ impl ViolationKind {
         match self {
             Self::CrosstalkA => "crosstalk_a",
             Self::CrosstalkB => "crosstalk_b",
-            Self::Crosstalk => "crosstalk",
             Self::StaleEcho => "stale_echo",
             Self::Interval => "interval",
             Self::Window => "window",
@@ -257,25 +205,11 @@ impl ViolationKind {
         match self {
             Self::CrosstalkA => "Eq. (13a)",
             Self::CrosstalkB | Self::StaleEcho => "Eq. (13b)",
-            Self::Crosstalk => "Eqs. (13a), (13b) for many phases",
             Self::Interval => "Sec. 3.1 c",
             Self::Window | Self::SharedLine => "T_wind",
             Self::Refire => "refire",
             Self::Together => "together",
         }
-    }
-}
-
-impl Violation {
-    /// Sound of many phases.
-    fn sound(&self, f: &mut fmt::Formatter<'_>, x: u8, y: u8) -> fmt::Result {
-        let Self { phases: (m, n), ages: (i, j), value, required, .. } = self;
-        write!(
-            f,
-            "sound of sensor {x} moves by {value} for sensor {y} from phase {m} ({i} periods old) to phase {n} ({j} \
-             periods old); to be rejected it needs at least {required} ({})",
-            self.kind.source()
-        )
     }
 }
 
@@ -287,12 +221,8 @@ pub struct Violation {
     pub kind: ViolationKind,
     /// The sensors concerned, from 0; twice the same if it concerns one.
     pub sensors: (u8, u8),
-    /// The phases in which they fire; of crosstalk and stale echoes those in which they are heard, both `a` with two
-    /// phases.
+    /// The phases in which they fire; of crosstalk and stale echoes both `a`.
     pub phases: (Phase, Phase),
-    /// Of crosstalk and stale echoes in many phases: how many periods before the sound was sent, in each; -1 if in the
-    /// period after. Else 0.
-    pub ages: (i8, i8),
     /// The time found.
     pub value: Micros,
     /// The least time that would do; for two that must fire together the only one, 0.
@@ -310,8 +240,6 @@ impl fmt::Display for Violation {
                 "crosstalk between sensors {x} and {y} moves by {value} from one reading to the next; \
                  to be rejected it needs at least {required} ({source})"
             ),
-            ViolationKind::Crosstalk => self.sound(f, x, y),
-            ViolationKind::StaleEcho if self.phases.0 != self.phases.1 => self.sound(f, x, y),
             ViolationKind::StaleEcho => write!(
                 f,
                 "an echo of sensor {x} from the period before moves by {value} from one reading to the next; \
@@ -354,7 +282,7 @@ impl fmt::Display for Violation {
 /// The violations of a [`Verification`], one after the other.
 #[derive(Clone)]
 struct Violations<'r, const K: usize> {
-    findings: Findings<'r, K>,
+    of: TwoPhases<'r, K>,
     check: u8,
     x: usize,
     y: usize,
@@ -364,31 +292,19 @@ struct Violations<'r, const K: usize> {
 impl<const K: usize> Violations<'_, K> {
     /// `Iterator::next` as a `const fn`, so that a table can be checked when it is compiled.
     const fn advance(&mut self) -> Option<Violation> {
-        match self.findings {
-            Findings::Two(two) => {
-                while self.check < 10 {
-                    let found = self.examine(&two);
-                    self.step(two.schedule.sensors());
-                    if found.is_some() {
-                        return found;
-                    }
-                }
-            }
-            Findings::Many(many) => {
-                while (self.check as usize) < KINDS {
-                    let found = many.worst[self.check as usize];
-                    self.check += 1;
-                    if found.is_some() {
-                        return found;
-                    }
-                }
+        while self.check < 10 {
+            let found = self.examine();
+            self.step();
+            if found.is_some() {
+                return found;
             }
         }
         None
     }
 
     /// To the next sensor `y`, then the next `x`, phase and check.
-    const fn step(&mut self, sensors: usize) {
+    const fn step(&mut self) {
+        let sensors = self.of.schedule.sensors();
         self.y += 1;
         if self.y == sensors {
             self.y = 0;
@@ -404,8 +320,8 @@ impl<const K: usize> Violations<'_, K> {
         }
     }
 
-    const fn examine(&self, two: &TwoPhases<'_, K>) -> Option<Violation> {
-        let (schedule, requirements) = (two.schedule, two.requirements);
+    const fn examine(&self) -> Option<Violation> {
+        let (schedule, requirements) = (self.of.schedule, self.of.requirements);
         let (x, y, phase) = (self.x, self.y, self.phase);
         let pair = x < y && phase == 0;
         let phases = (Phase(phase as u8), Phase(phase as u8));
@@ -453,7 +369,6 @@ impl<const K: usize> Violations<'_, K> {
                     kind: ViolationKind::Together,
                     sensors,
                     phases,
-                    ages: (0, 0),
                     value: apart,
                     required: Micros::ZERO,
                 });
@@ -463,7 +378,7 @@ impl<const K: usize> Violations<'_, K> {
         if value.as_micros() >= required.as_micros() {
             return None;
         }
-        Some(Violation { kind, sensors, phases, ages: (0, 0), value, required })
+        Some(Violation { kind, sensors, phases, value, required })
     }
 }
 

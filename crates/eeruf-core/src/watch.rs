@@ -48,8 +48,8 @@ pub struct SensorWatch<const K: usize> {
 #[non_exhaustive]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum SensorState {
-    /// Something stands there: an accepted echo, or a tentative one of a hopping ring. One reading that does not
-    /// confirm it leaves it, so that age grows; two in a row do not.
+    /// Something stands there: an accepted echo, or a tentative one. One reading that does not confirm it leaves it, so
+    /// that age grows; two in a row do not.
     Obstacle {
         /// Its echo time.
         t_echo: Micros,

@@ -195,7 +195,7 @@ mod a_format_that_counts_fields {
 #[cfg(feature = "defmt")]
 mod everything_public_has_a_format {
     use defmt::Format;
-    use eeruf_core::{adaptation::*, conditions::*, hopping::*, judge::*, phases::*, plan::*, survey::*, watch::*, *};
+    use eeruf_core::{adaptation::*, conditions::*, flow::*, judge::*, plan::*, survey::*, watch::*, *};
 
     const fn formats<T: Format>() {}
 
@@ -211,10 +211,8 @@ mod everything_public_has_a_format {
         formats::<(BrokenPromise, ImmediateRefiring<'_, 12>, Limits<'_>, ScheduledFiring<'_, 12>, Upcoming)>();
         formats::<(Verification<'_, 12>, Violation, ViolationKind)>();
         formats::<(SensorLimits, Uneven<'_>, EachSensor<12>)>();
-        formats::<(HoppingCode, HoppingSchedule<12>, HoppingSettings, HoppingListening, HoppingError)>();
-        formats::<(HoppingRing<12>, HoppingRing<12, 8>)>();
-        formats::<(EchoTracker<12>, TrackerSettings, Firing, RateFilter<12>, Survey)>();
-        formats::<(HoppingRing<12, 4, 1, EachSensor<12>>, PhaseTable<'_, 12>)>();
+        formats::<(TurnSettings, BeliefSettings, Firing, RateFilter<12>, Survey)>();
+        formats::<(FlowRing<12>, FlowRing<12, 8, EachSensor<12>>)>();
         formats::<Verification<'_, 12>>();
     }
 }

@@ -13,7 +13,6 @@
 //! | `handling` | firings apart by what the controller needs for one |
 //! | `questions` | what fits into a given period, and the curve of a need |
 //! | `found` | the answer as it is printed in JSON |
-//! | `hopping`, `phase_file` | schedules of many phases: the shortest period, and the file |
 //! | `atlas`, `atlas_making` | rings whose shortest period is known; how their file is made |
 //! | `certificate` | the proof, as a text that others check |
 //! | `rooms` | ways of firing the ring, judged in rooms |
@@ -39,11 +38,9 @@ mod find;
 mod found;
 mod handling;
 mod hearing;
-mod hopping;
 mod layout;
 mod limits;
 mod moving;
-mod phase_file;
 mod places;
 mod placing;
 mod questions;
@@ -60,10 +57,8 @@ pub use each::Each;
 pub use eeruf_period::{PeriodProblem, ToSpare};
 pub use find::{NoSchedule, RingDesign};
 pub use found::FoundJson;
-pub use hopping::HoppingDesign;
 pub use layout::{LayoutKey, LayoutName, OwnedLayout};
 pub use limits::{four, neighbours_in_range, sensors_in_range};
-pub use phase_file::{PhaseFile, PhaseSchedule};
 pub use places::Places;
 pub use questions::{CURVE_BUDGET, CURVE_POINTS, CurvePoint, Fit, Need};
 pub use reals::{RealPeriod, over_reals, real_budget};

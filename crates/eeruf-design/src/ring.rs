@@ -73,6 +73,8 @@ pub(crate) struct RingFile {
     /// P, where it is less than `T_delta`, and R, where it is not the module's.
     path_change_us: Option<u32>,
     audible_us: Option<u32>,
+    /// Other robots that send sound; by default there may be some.
+    others: Option<bool>,
     temperature_c: Option<f64>,
     /// Where each sensor is on the robot, or the arc on which they stand, or the robot's URDF and their links in it.
     pub(crate) poses: Option<Vec<PlaceFile>>,
@@ -132,6 +134,8 @@ pub struct RingSpec {
     pub path_change: Option<Micros>,
     /// R: how long sound is audible, where the file says it.
     pub audible: Option<Micros>,
+    /// True if other robots may be about, whose sound nobody knows.
+    pub others: bool,
     /// The module of each sensor, where the file names them; it rests for as long as the file says.
     pub modules: Vec<Module>,
     /// Where each sensor is on the robot, if the file says it.
@@ -360,6 +364,7 @@ impl RingFile {
             handling: Micros::new(self.handling_us.unwrap_or(0)),
             path_change,
             audible: self.audible_us.map(Micros::new),
+            others: self.others.unwrap_or(true),
             modules,
             places,
             uneven,

@@ -62,7 +62,7 @@ impl RingSpec {
             ring.modules = vec![POLAROID_6500; self.sensors];
             assumed.push("modules like the Polaroid 6500, as the file names none".to_owned());
         }
-        let robot = ring.robot(Pose::identity(), places)?;
+        let robot = Robot { others: self.others, ..ring.robot(Pose::identity(), places)? };
         Ok(RoomRobot { robot, assumed })
     }
 }

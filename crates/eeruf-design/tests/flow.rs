@@ -1,10 +1,7 @@
 //! A ring file of sensors that are not all alike, to the readings of the flow ring that it describes.
 
-use eeruf_core::{
-    Instant, Micros, ReadingKind, RingEvent,
-    flow::{FlowRing, FlowSettings},
-    hopping::HoppingListening,
-};
+use eeruf_core::flow::{BeliefSettings, FlowRing, TurnSettings};
+use eeruf_core::{Instant, Micros, ReadingKind, RingConfig, RingEvent};
 use eeruf_design::RingSpec;
 
 const RING: &str = "
@@ -27,12 +24,13 @@ const FIRINGS: usize = 60;
 fn ring_file_of_mixed_sensors_fires_by_flow() {
     let spec = RingSpec::from_text(RING).expect("a ring");
     let (requirements, robot) = (spec.problem().requirements, spec.robot_ring());
-    let settings = FlowSettings::DEFAULT.keeping(5, &requirements).expect("gaps in range");
-    let limits = eeruf_core::EachSensor::<5>::for_flow(robot.limits.clone().try_into().unwrap(), &robot.together);
+    let limits = TurnSettings::limits::<5>(5, &requirements).expect("limits");
     let window = robot.limits.iter().map(|limits| limits.window).max().unwrap();
     let now = Instant::from_micros(0);
-    let listening = HoppingListening::new(window);
-    let mut ring = FlowRing::<5, 4, 1, _>::with_limits(5, limits, settings, listening, now).expect("a ring");
+    let turns = TurnSettings::for_module(1, window, Micros::from_millis(45), Micros::ZERO).keeping(&requirements);
+    let config = RingConfig::new().with_window(window);
+    let ring = FlowRing::<5, 1, _>::with_limits(5, limits, turns, BeliefSettings::DEFAULT, config, now);
+    let mut ring = ring.expect("a ring");
     ring.set_silence(eeruf_core::Silence::Trusted);
     let mut fired = [const { vec![] }; 5];
     let mut kinds = [const { vec![] }; 5];

@@ -85,13 +85,6 @@ fn sensors_that_fire_together_by_demand_still_do() {
 }
 
 #[test]
-fn many_phases_refuse_it_by_name() {
-    let spec = RingSpec::from_text(&ring(8, "handling_us = 100")).expect("a ring");
-    let refused = spec.hopping(5, eeruf_core::Criterion::Margin(Micros::new(90))).expect_err("refused");
-    assert!(refused.starts_with("handling_us"), "{refused}");
-}
-
-#[test]
 fn what_fits_into_a_period_keeps_firings_apart_too() {
     let spec = RingSpec::from_text(&ring(8, "handling_us = 110")).expect("a ring");
     let fit = spec.fit(Micros::from_millis(67), 1_000_000, &mut ()).expect("a search");

@@ -1,15 +1,9 @@
-//! Limits per sensor, many phases, several echoes and adaptation, two by two, from ring file to simulated readings.
-//! Limits with many phases: `many_phases.rs`.
+//! Limits per sensor, several echoes and adaptation, two by two, from ring file to simulated readings.
 
 use std::f64::consts::TAU;
 
-use eeruf_core::{
-    Criterion, MAX_SENSORS, Micros,
-    hopping::{HoppingSchedule, HoppingSettings},
-    judge::TrackerSettings,
-};
-use eeruf_design::{PhaseFile, RingSpec, Search};
-use eeruf_files::parse;
+use eeruf_core::Micros;
+use eeruf_design::{RingSpec, Search};
 use eeruf_sim::{Air, Cause, Method, Noise, Options, Pose, Readings, Robot, Scene, Transducer, Wall, World, simulate};
 
 const CAR: &str = include_str!("../../../rings/car-12.toml");
@@ -35,20 +29,6 @@ fn corridor(spec: &RingSpec, bursts_per_s: f64) -> World {
     World::new(scene, vec![robot], noise).expect("a world")
 }
 
-/// The schedule of four phases or more that is found for a ring file, by way of its own file, and options that hop by
-/// it with no solo periods.
-fn hopping(spec: &RingSpec, periods: u32) -> (HoppingSchedule<MAX_SENSORS>, Options) {
-    let file = spec.hopping(4, Criterion::Exact).expect("a schedule").phases().to_toml().expect("it hops");
-    let schedule = parse::<PhaseFile>(&file).expect("a file").schedule().expect("a schedule");
-    let hops = *schedule.hopping().expect("it hops");
-    let t_delta = spec.phase_requirements(Criterion::Exact).t_delta;
-    let near = TrackerSettings::BALANCED.near.max(t_delta);
-    let within = TrackerSettings::BALANCED.tentative_within.min(t_delta);
-    let tracker = TrackerSettings::BALANCED.with_t_delta(t_delta).with_near(near).with_tentative_within(within);
-    let hopping = HoppingSettings::DRIVING.with_tracker(tracker);
-    (hops, Options { hopping, hopping_schedule: Some(hops), ..Options::periods(periods) })
-}
-
 fn run(world: &World, method: Method, options: &Options) -> Readings {
     simulate(world, method, options).unwrap_or_else(|error| panic!("{method}: {error}"))
 }
@@ -63,7 +43,7 @@ fn last_period(readings: &Readings) -> f64 {
 /// Each sensor hears as far as its own window; enough is accepted, and no more than one in `of` is foreign: how much is
 /// hangs, between two walls, on which of the schedules that are as good the search takes.
 fn are_right(spec: &RingSpec, readings: &Readings, of: usize) {
-    let requirements = spec.phase_requirements(Criterion::Exact);
+    let requirements = spec.problem().requirements;
     for k in 0..readings.len() {
         let window = requirements.window_of(readings.sensor[k].into()).as_micros();
         assert!(
@@ -111,25 +91,6 @@ fn car_with_limits_adapts() {
         (run(&world, Method::Adaptive, &Options::periods(400)), world.robots()[0].period)
     });
     slows_down(&spec, &noisy.0, &calm.0, calm.1, 10);
-}
-
-#[test]
-fn car_with_many_phases_and_several_echoes() {
-    let spec = spec(CAR);
-    let (_, options) = hopping(&spec, 400);
-    let world = corridor(&spec, 10.0);
-    let several = run(&world, Method::HoppingMultiEcho, &options);
-    are_right(&spec, &several, 5);
-    assert!(accepted(&several) > 0.3, "{}", accepted(&several));
-}
-
-#[test]
-fn car_with_many_phases_adapts() {
-    let spec = spec(CAR);
-    let (schedule, options) = hopping(&spec, 800);
-    let [calm, noisy] =
-        [0.0, 40.0].map(|bursts_per_s| run(&corridor(&spec, bursts_per_s), Method::AdaptiveHopping, &options));
-    slows_down(&spec, &noisy, &calm, schedule.period(), 20);
 }
 
 #[test]

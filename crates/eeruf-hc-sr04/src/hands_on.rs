@@ -35,6 +35,11 @@ macro_rules! hands_on {
                 self.ring.enable(sensor)
             }
 
+            /// As [`Ring::moving`](eeruf_core::Ring::moving): how fast the robot moves and turns.
+            pub fn moving(&mut self, speed_mm_s: u32, turn_mrad_s: u32, now: eeruf_core::Instant) {
+                self.ring.moving(speed_mm_s, turn_mrad_s, now);
+            }
+
             /// As [`Ring::pause`](eeruf_core::Ring::pause).
             pub fn pause(&mut self) {
                 self.ring.pause();

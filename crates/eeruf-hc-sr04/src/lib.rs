@@ -13,7 +13,7 @@
 //! - a sensor out of range, or edges that get lost on the way: [`HcSr04Ring::health`] says so;
 //! - a schedule that would trigger a sensor again too soon: it is refused when the ring is set up.
 //!
-//! The ring can also be a [`HoppingRing`](eeruf_core::hopping::HoppingRing), of which no sensor stays blind.
+//! The ring can also be a [`FlowRing`](eeruf_core::flow::FlowRing), which fires by flow.
 //!
 //! Where hardware triggers the modules and times their lines, such as PIO, RMT or a timer, see [`capture`]. Modules
 //! that measure by themselves and report a value, over I2C, a serial line or by a pulse, are in [`measuring`].

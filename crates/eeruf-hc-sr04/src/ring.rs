@@ -16,7 +16,7 @@ use crate::lines::{FlexPin, Lines, Pins, Trigger};
 use crate::settings::Settings;
 
 /// A ring whose firings are triggers on pins and whose echoes are pulses on lines: a [`Ring`] of any plan and judge,
-/// such as a [`HoppingRing`](eeruf_core::hopping::HoppingRing) where no sensor may stay blind.
+/// such as a [`FlowRing`](eeruf_core::flow::FlowRing), which fires by flow.
 #[derive(Debug)]
 pub struct HcSr04Ring<R, T, I, D, const K: usize> {
     ring: R,
@@ -27,9 +27,7 @@ impl<P: Plan, J: Judge, T: OutputPin, I: InputPin, D: DelayNs, const K: usize, c
     HcSr04Ring<Ring<P, J, K, 1, H>, T, I, D, K>
 {
     /// Puts a ring on its pins. Its window should exceed the longest echo by a millisecond, because the line rises only
-    /// about half a millisecond after the trigger. The window of a hopping ring must also be as long as the sensors
-    /// rest, [`Settings::min_retrigger`](crate::Settings::min_retrigger): it may fire a sensor again once its window
-    /// has ended, such as alone.
+    /// about half a millisecond after the trigger.
     ///
     /// # Errors
     /// [`SetupError::Retrigger`] if the ring fires a sensor again sooner than it may be triggered.

@@ -12,8 +12,8 @@
 #![no_std]
 
 use eeruf_core::{
-    Edge, Instant, Micros, Reading, Requirements, RingConfig, RingEvent, Schedule, VerifiedSchedule,
-    hopping::{HoppingCode, HoppingError, HoppingListening, HoppingRing, HoppingSchedule, HoppingSettings},
+    Edge, Instant, Micros, Reading, Requirements, RingConfig, RingError, RingEvent, Schedule, VerifiedSchedule,
+    flow::{BeliefSettings, FlowRing, TurnSettings},
     judge::Explanation,
 };
 use eeruf_hc_sr04::Health;
@@ -38,21 +38,12 @@ pub const SCHEDULE: VerifiedSchedule<SENSORS> = {
 /// Settings of the ring: those of `scenes/alcove-hc-sr04.toml`, with a window for the longest pulse and its delay.
 pub const CONFIG: RingConfig = RingConfig::new().with_t_delta(Micros::new(500)).with_window(Micros::from_millis(40));
 
-/// The least shift of crosstalk from phase to phase in the hopping ring: so much that firings may differ in lateness by
-/// 250 us, since the boards also write to the host.
-pub const STEP: Micros = Micros::new(652);
-
-/// The hopping ring of the same sensors, with the same period, and a window for as long as the modules must
-/// rest: 60 ms.
+/// The flow ring of the same sensors.
 ///
 /// # Errors
 /// None with these numbers.
-pub fn hopping_ring(now: Instant) -> Result<HoppingRing<SENSORS>, HoppingError> {
-    // Lags that are redrawn, so that boards and host are compared in that too.
-    let settings = HoppingSettings::BALANCED.with_shift_after(5);
-    let code = HoppingCode::new(SENSORS, settings.tracker.votes, STEP)?;
-    let schedule = HoppingSchedule::spread(code, Micros::from_millis(100))?;
-    HoppingRing::hopping(&schedule, settings, HoppingListening::new(Micros::from_millis(60)), 1, now)
+pub fn flow_ring(now: Instant) -> Result<FlowRing<SENSORS>, RingError> {
+    FlowRing::flow(SENSORS, TurnSettings::new(1), BeliefSettings::DEFAULT, CONFIG, now)
 }
 
 /// The host's first message.

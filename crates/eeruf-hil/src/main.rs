@@ -3,8 +3,8 @@
 //! Prints two tables in Markdown: how the boards' rings agree with the host's, and what each fault did. Leaves with 1
 //! if anything is not as it must be.
 //!
-//! `eeruf-hil SCENE --hopping --board NAME EMULATOR .. [--board ..]`: the same of boards whose ring hops in
-//! time; one table.
+//! `eeruf-hil SCENE --flow --board NAME EMULATOR .. [--board ..]`: the same of boards whose ring fires by flow; one
+//! table.
 //!
 //! `eeruf-hil SCENE --one FAULT PERIODS --board NAME EMULATOR ..`: one run at the pace of the clock on the wall, as it
 //! is needed to test what listens to the board's serial line. Prints what the ring read, as CSV.
@@ -27,9 +27,9 @@ use eeruf_sim::{Method, Options, Readings, World, simulate, sweep};
 
 use crate::lines::FAULTY;
 use crate::played::PlayedLines;
-use crate::run::{Fault, PERIODS, Pace, Run, run, run_hopping, run_played};
+use crate::run::{Fault, PERIODS, Pace, Run, run, run_flow, run_played};
 
-/// In this scene no sensor of the hopping ring has fewer of its readings believed.
+/// In this scene no sensor of the flow ring has fewer of its readings believed.
 const LEAST_BELIEVED: f64 = 0.5;
 
 /// A board's name, and the command that emulates it.
@@ -43,7 +43,7 @@ fn main() -> ExitCode {
         parts.filter_map(<[String]>::split_first).map(|(name, emulator)| (&**name, emulator)).collect();
     let Some(scene) = scene.filter(|_| !boards.is_empty()) else {
         eprintln!(
-            "usage: eeruf-hil SCENE [--hopping | --one FAULT PERIODS | --lines LINES PERIODS] --board NAME EMULATOR \
+            "usage: eeruf-hil SCENE [--flow | --one FAULT PERIODS | --lines LINES PERIODS] --board NAME EMULATOR \
              [ARGUMENT ..] [--board ..]"
         );
         return ExitCode::from(2);
@@ -53,7 +53,7 @@ fn main() -> ExitCode {
         (Some([option, lines, periods]), &[(_, emulator)]) if option == "--lines" => {
             played_run(scene, lines, periods, emulator)
         }
-        _ if arguments.get(1).is_some_and(|argument| argument == "--hopping") => hopping_table(scene, &boards),
+        _ if arguments.get(1).is_some_and(|argument| argument == "--flow") => flow_table(scene, &boards),
         _ => tables(scene, &boards),
     };
     match outcome {
@@ -146,37 +146,36 @@ fn fault_row(board: &str, fault: Fault, faulty: &Run, fault_free: &Run) -> Resul
     Ok(format!("| {board} | {fault} | {count} | all | {} | {} | {named} |\n", change.kinds, change.moved))
 }
 
-fn hopping_table(scene: &str, boards: &[Board<'_>]) -> Result<String, String> {
+fn flow_table(scene: &str, boards: &[Board<'_>]) -> Result<String, String> {
     let world = world_of(scene)?;
     let rows = |&(board, emulator): &Board<'_>| -> Result<String, String> {
         let mut rows = String::new();
         for fault in [Fault::None].into_iter().chain(Fault::ALL) {
-            rows +=
-                &hopping_row(&world, board, fault, emulator).map_err(|error| format!("{board}: {fault}: {error}"))?;
+            rows += &flow_row(&world, board, fault, emulator).map_err(|error| format!("{board}: {fault}: {error}"))?;
         }
         Ok(rows)
     };
     let rows: Vec<String> = sweep(boards, rows).into_iter().collect::<Result<_, _>>()?;
     Ok(format!(
-        "| board | fault | as the host's ring | believed of each other sensor | latest firing | named |\n\
-         |---|---|---|---|---:|---|\n{}",
+        "| board | fault | as the host's ring | believed of each other sensor | named |\n|---|---|---|---|---|\n{}",
         rows.concat()
     ))
 }
 
-/// A microsecond may decide who fires alone next, and interrupts come some microseconds earlier or later in each run.
-/// So the table has no counts, and standard error has them.
-fn hopping_row(world: &World, board: &str, fault: Fault, emulator: &[String]) -> Result<String, String> {
-    let run = run_hopping(world, fault, PERIODS, emulator)?;
-    let report = run.report_hopping(fault)?;
+/// A microsecond may decide what is believed, and so when the next fires, and interrupts come some microseconds earlier
+/// or later in each run. So the table has no counts and no lateness, and standard error has the counts.
+fn flow_row(world: &World, board: &str, fault: Fault, emulator: &[String]) -> Result<String, String> {
+    let run = run_flow(world, fault, PERIODS, emulator)?;
+    let report = run.report_flow(fault)?;
     // When a line is named depends on how often its sensor fires.
     let named = report.split(" after ").next().unwrap_or_default();
+    let named = if fault == Fault::Stall { "a late firing" } else { named };
     let but = matches!(fault, Fault::Line(_)).then_some(FAULTY);
     let least = run.least_believed(but);
-    let counted = [ReadingKind::Accepted, ReadingKind::Tentative, ReadingKind::Rejected];
-    let [confirmed, tentative, rejected] = counted.map(|kind| run.of(kind, but));
+    let counted = [ReadingKind::Accepted, ReadingKind::Ambiguous, ReadingKind::Rejected];
+    let [accepted, ambiguous, rejected] = counted.map(|kind| run.of(kind, but));
     eprintln!(
-        "{board}, {fault}: {} readings; of the other sensors {confirmed} confirmed, {tentative} tentative, {rejected} \
+        "{board}, {fault}: {} readings; of the other sensors {accepted} accepted, {ambiguous} ambiguous, {rejected} \
          rejected, and of the worst-off one {:.1} % believed; {report}",
         run.count(),
         100.0 * least,
@@ -185,5 +184,5 @@ fn hopping_row(world: &World, board: &str, fault: Fault, emulator: &[String]) ->
     if least < LEAST_BELIEVED {
         return Err(format!("of a sensor {:.1} % of the readings are believed; expected half", 100.0 * least));
     }
-    Ok(format!("| {board} | {fault} | all | over half | {} | {named} |\n", run.max_late))
+    Ok(format!("| {board} | {fault} | all | over half | {named} |\n"))
 }

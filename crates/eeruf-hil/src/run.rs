@@ -4,7 +4,7 @@ use core::fmt;
 
 use eeruf_core::{Edge, Instant, Micros, Reading, ReadingKind, Ring, RingEvent, judge::Judge, plan::Plan};
 use eeruf_hc_sr04::Health;
-use eeruf_hil::{CONFIG, Orders, SCHEDULE, SENSORS, Topic, hopping_ring};
+use eeruf_hil::{CONFIG, Orders, SCHEDULE, SENSORS, Topic, flow_ring};
 use eeruf_sim::{Readings, World};
 
 use crate::control::Control;
@@ -120,10 +120,10 @@ pub(crate) fn run_played(world: &World, lines: PlayedLines, periods: u32, emulat
     run_ring(world, (Fault::None, Some(lines)), periods, Pace::Wall, emulator, make, false)
 }
 
-/// A run of a board whose ring hops. It has no control: whose turn it is to fire alone, and which lag moves, depends on
-/// what all sensors hear, so that a ring without the fault fires at other times.
-pub(crate) fn run_hopping(world: &World, fault: Fault, periods: u32, emulator: &[String]) -> Result<Run, String> {
-    let make = |now| hopping_ring(now).map_err(|error| error.to_string());
+/// A run of a board whose ring fires by flow. It has no control: who fires when depends on what all sensors hear, so
+/// that a ring without the fault fires at other times.
+pub(crate) fn run_flow(world: &World, fault: Fault, periods: u32, emulator: &[String]) -> Result<Run, String> {
+    let make = |now| flow_ring(now).map_err(|error| error.to_string());
     run_ring(world, (fault, None), periods, Pace::Free, emulator, make, false)
 }
 
@@ -283,16 +283,16 @@ impl Run {
     /// The report's name for the fault; it must be this one, and nothing else.
     pub(crate) fn report(&self, fault: Fault) -> Result<String, String> {
         // The next firing is due up to 24 ms after the stall began.
-        self.report_late(fault, Micros::from_millis(26))
+        self.report_late(fault, Some(Micros::from_millis(26)))
     }
 
-    /// As [`report`](Self::report), for a hopping ring: after a stall the next firing may be due 40 ms later, if the
-    /// period is one in which a sensor fires alone.
-    pub(crate) fn report_hopping(&self, fault: Fault) -> Result<String, String> {
-        self.report_late(fault, Micros::from_millis(2))
+    /// As [`report`](Self::report), for a flow ring: its lateness says nothing of a stall, since an echo that ends the
+    /// quiet makes the next firing due at once, if not before.
+    pub(crate) fn report_flow(&self, fault: Fault) -> Result<String, String> {
+        self.report_late(fault, None)
     }
 
-    fn report_late(&self, fault: Fault, least: Micros) -> Result<String, String> {
+    fn report_late(&self, fault: Fault, least: Option<Micros>) -> Result<String, String> {
         let mut expected = [Health::Well; SENSORS];
         if let (Fault::Line(fault), Some(expected)) = (fault, expected.get_mut(usize::from(FAULTY))) {
             *expected = fault.name();
@@ -301,7 +301,7 @@ impl Run {
             return Err(format!("sensors are called {:?}; expected {expected:?}", self.named));
         }
         let late = fault == Fault::Stall;
-        if late != (self.max_late >= least) {
+        if least.is_some_and(|least| late != (self.max_late >= least)) {
             return Err(format!("the latest firing came {}", self.max_late));
         }
         Ok(match (fault, self.named_after) {

@@ -40,10 +40,6 @@ impl Cdr {
         self.number(value.to_le_bytes());
     }
 
-    pub(crate) fn u64(&mut self, value: u64) {
-        self.number(value.to_le_bytes());
-    }
-
     pub(crate) fn i64(&mut self, value: i64) {
         self.number(value.to_le_bytes());
     }

@@ -8,9 +8,8 @@ use ::mcap::sans_io::linear_reader::{LinearReadEvent, LinearReader, LinearReader
 use serde_json::{Value, json};
 
 use crate::bytes::Bytes;
-use crate::firings::{Firing, FiringLog, MAX_SENSORS, was_rejected};
+use crate::firings::{Firing, FiringLog, MAX_SENSORS, OF_HOPPING, was_rejected};
 use crate::message::cdr_bytes;
-use crate::weighed::Weighed;
 use eeruf_files::FileError;
 
 /// The type of the messages in ROS 2.
@@ -33,14 +32,12 @@ bool has_echo
 uint32 t_echo_us
 # What the ring made of the reading; empty if unknown.
 string reading
-# Without it the fields below are 0.
-bool is_weighed
-uint64 given
-bool solo
-bool steady
-uint8 changes
-int32 expected_us
+# How fast readings change with the robot's motion, in microseconds for each millisecond; -1 if unknown.
+float32 g
 ";
+
+/// Messages of earlier versions end with how a ring that hopped weighed the reading: a flag, and as many bytes.
+const OF_HOPPING_BYTES: usize = 16;
 
 /// A message of ROS 2 with the fields of one in JSON.
 fn of_cdr(data: &[u8]) -> Option<Value> {
@@ -63,15 +60,12 @@ fn of_cdr(data: &[u8]) -> Option<Value> {
         "clock": clock, "sensor": sensor, "fired_us": fired_us, "period": period, "phase": phase,
         "t_echo_us": t_echo_us, "reading": reading,
     });
-    if flag(&mut rest)? {
-        rest.align(most)?;
-        let (given, solo, steady, changes) = (rest.u64()?, flag(&mut rest)?, flag(&mut rest)?, rest.u8()?);
+    if rest.left() < OF_HOPPING_BYTES {
         rest.align(4)?;
-        let expected = rest.u32()?.cast_signed();
-        let fields = json!({
-            "given": given, "solo": solo, "steady": steady, "changes": changes, "expected_us": expected,
-        });
-        message.as_object_mut()?.extend(fields.as_object()?.clone());
+        let g = f32::from_bits(rest.u32()?);
+        message["g"] = json!((g >= 0.0).then_some(g));
+    } else if flag(&mut rest)? {
+        OF_HOPPING.iter().for_each(|&name| message[name] = json!(true));
     }
     Some(message)
 }
@@ -109,6 +103,7 @@ struct Found {
     clock: String,
     firings: Vec<Firing>,
     listened: Vec<Firing>,
+    of_hopping: bool,
     damage: Option<String>,
 }
 
@@ -136,10 +131,8 @@ impl Found {
                 if let Some((_, topic)) = self.channels.iter().find(|known| known.0 == id) {
                     let message =
                         if self.in_cdr.contains(&id) { of_cdr(&data) } else { serde_json::from_slice(&data).ok() };
-                    let number = (self.firings.len() + self.listened.len()) as u64;
-                    let firing = message.as_ref().and_then(|message| firing(message, number));
-                    let expected = "expected sensor (0 to 63), fired_us, period, phase and t_echo_us (or null), and of \
-                                    solo, steady and changes all or none";
+                    let firing = message.as_ref().and_then(firing);
+                    let expected = "expected sensor (0 to 63), fired_us, period, phase and t_echo_us (or null)";
                     let bad = || {
                         let text = message.as_ref().map(Value::to_string);
                         let text = text.unwrap_or_else(|| String::from_utf8_lossy(&data).into_owned());
@@ -150,6 +143,7 @@ impl Found {
                     if let Some(clock) = field("clock").and_then(Value::as_str).filter(|_| self.clock.is_empty()) {
                         clock.clone_into(&mut self.clock);
                     }
+                    self.of_hopping |= OF_HOPPING.iter().all(|name| field(name).is_some());
                     let only_listened = field("sends").is_some_and(|sends| sends == 0 || sends == false);
                     if only_listened { &mut self.listened } else { &mut self.firings }.push(firing);
                     self.used.insert(id);
@@ -174,12 +168,13 @@ impl Found {
             return Err(FileError::new(file, format!("firings of several rings: {topics}; expected one topic")));
         }
         let clock = if self.clock.is_empty() { "unnamed" } else { &self.clock };
-        Ok(FiringLog { listened: self.listened, damage: self.damage, ..FiringLog::new(clock, self.firings) })
+        let Self { listened, of_hopping, damage, .. } = self;
+        Ok(FiringLog { listened, of_hopping, damage, ..FiringLog::new(clock, self.firings) })
     }
 }
 
-/// The firing at this place, if the message has all that one has.
-fn firing(message: &Value, place: u64) -> Option<Firing> {
+/// The firing, if the message has all that one has.
+fn firing(message: &Value) -> Option<Firing> {
     let number = |name: &str| message.get(name)?.as_f64().filter(|number| (0.0..9e15).contains(number));
     let t_echo_us = match message.get("t_echo_us") {
         None | Some(Value::Null) => None,
@@ -192,7 +187,40 @@ fn firing(message: &Value, place: u64) -> Option<Firing> {
         period: u32::try_from(whole("period")?).ok()?,
         phase: u8::try_from(whole("phase")?).ok()?,
         t_echo_us,
-        weighed: Weighed::of_message(message, place)?,
+        g_us_ms: number("g").map(|g| g as f32),
         rejected: message.get("reading").and_then(Value::as_str).map(was_rejected),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cdr::Cdr;
+
+    // Earlier versions ended with a flag, and with how a ring that hopped weighed the reading.
+    #[test]
+    fn message_of_a_hopping_ring_is_read_and_known_as_such() {
+        for is_weighed in [true, false] {
+            let mut out = Cdr::begin(vec![]);
+            out.header(1, "");
+            out.text("board");
+            out.u8(3);
+            out.i64(15_000);
+            out.u32(7);
+            out.u8(1);
+            out.bool(true);
+            out.u32(5_872);
+            out.text("tentative");
+            out.bool(is_weighed);
+            out.i64(12);
+            out.bool(false);
+            out.bool(true);
+            out.u8(7);
+            out.i32(-120);
+            let message = of_cdr(&out.bytes()).unwrap();
+            let firing = firing(&message).unwrap();
+            assert_eq!((firing.sensor, firing.t_echo_us, firing.g_us_ms), (3, Some(5_872), None));
+            assert_eq!(OF_HOPPING.iter().all(|name| message.get(name).is_some()), is_weighed);
+        }
+    }
 }

@@ -4,28 +4,14 @@
 use std::io::Read;
 use std::path::Path;
 
-use crate::firings::{Firing, FiringLog, MAX_SENSORS, was_rejected};
+use crate::firings::{Firing, FiringLog, MAX_SENSORS, OF_HOPPING, was_rejected};
 use crate::text::{Line, Separator, Source, is_comment, json, separated};
 use crate::value::{is_no_echo, number, prefix};
-use crate::weighed::Columns;
 use eeruf_files::FileError;
 
 const NEEDED: [&str; 4] = ["sensor", "period", "phase", "t_echo_us"];
 /// The columns that are read, in the order in which rows of JSON have them.
-const NAMES: [&str; 12] = [
-    "sensor",
-    "fired_us",
-    "period",
-    "phase",
-    "t_echo_us",
-    "reading",
-    "sends",
-    "given",
-    "solo",
-    "steady",
-    "changes",
-    "expected_us",
-];
+const NAMES: [&str; 8] = ["sensor", "fired_us", "period", "phase", "t_echo_us", "reading", "sends", "g"];
 
 /// Where the columns stand.
 struct Header {
@@ -37,7 +23,8 @@ struct Header {
     fired: Option<usize>,
     reading: Option<usize>,
     sends: Option<usize>,
-    weighed: Option<Columns>,
+    motion: Option<usize>,
+    of_hopping: bool,
 }
 
 /// The reason that a line gives no firing: a column, if it is one, and what is wrong.
@@ -54,7 +41,8 @@ impl Header {
         let (separator, names) = if is_json {
             let rows: Vec<_> = lines().filter_map(|line| json(&line.text)).collect();
             let is_there = |name: &&str| rows.iter().flatten().any(|(own, _)| same_name(own) == *name);
-            (None, NAMES.iter().filter(|name| is_there(name)).map(|&name| name.to_owned()).collect())
+            let all = NAMES.iter().chain(&OF_HOPPING);
+            (None, all.filter(|name| is_there(name)).map(|&name| name.to_owned()).collect())
         } else {
             let cells = |separator| separated(stripped.unwrap_or(first), separator).unwrap_or_default();
             let found = |separator: &Separator| {
@@ -73,9 +61,9 @@ impl Header {
                 )
             })?;
         }
-        let (fired, reading, sends) = (column("fired_us"), column("reading"), column("sends"));
-        let weighed = Columns::of(&names)?;
-        Ok(Self { separator, has_prefix, needed, fired, reading, sends, weighed, names })
+        let [fired, reading, sends, motion] = ["fired_us", "reading", "sends", "g"].map(column);
+        let of_hopping = OF_HOPPING.iter().all(|name| column(name).is_some());
+        Ok(Self { separator, has_prefix, needed, fired, reading, sends, motion, of_hopping, names })
     }
 
     /// The cells of a line; nothing for the header itself.
@@ -110,8 +98,8 @@ impl Header {
         Ok(Some(cells))
     }
 
-    /// The firing of a row, with this number, and whether its sensor sent; `fired_us` is `None` if the row lacks it.
-    fn firing(&self, cells: &[String], row: u64) -> Result<(Firing, Option<i64>, bool), Wrong> {
+    /// The firing of a row, and whether its sensor sent; `fired_us` is `None` if the row lacks it.
+    fn firing(&self, cells: &[String]) -> Result<(Firing, Option<i64>, bool), Wrong> {
         let decimal_comma = self.separator.is_some_and(|separator| separator != Separator::Comma);
         let text = |column: usize| cells.get(column).map_or("", String::as_str);
         let bad = |column: usize, expected: &str| (Some(column), format!("`{}`; expected {expected}", text(column)));
@@ -139,10 +127,16 @@ impl Header {
             None => true,
         };
         let made = self.reading.map(text).unwrap_or_default();
-        let weighed = self.weighed.as_ref().map(|columns| columns.read(cells, made, row)).transpose();
+        let g_us_ms = match self.motion.filter(|&column| !text(column).is_empty()) {
+            None => None,
+            Some(column) => {
+                let g = number(text(column), decimal_comma).filter(|g| (0.0..1e6).contains(g));
+                Some(g.ok_or_else(|| bad(column, "microseconds for each millisecond, 0 to 1e6"))? as f32)
+            }
+        };
         let known_sensor = text(sensor).parse().ok().filter(|&sensor| sensor < MAX_SENSORS);
         let firing = Firing {
-            weighed: weighed.map_err(|(column, expected)| bad(column, expected))?.flatten(),
+            g_us_ms,
             sensor: known_sensor.ok_or_else(|| bad(sensor, "0 to 63"))?,
             fired_us: fired_us.unwrap_or(0),
             period: text(period).parse().map_err(|_| bad(period, "a number from 0"))?,
@@ -190,7 +184,6 @@ struct Rows {
     /// A clock of 32 bits has wrapped so often, times 2^32.
     wraps: i64,
     last: i64,
-    number: u64,
     /// The longest last cell.
     longest: usize,
     damaged: u64,
@@ -207,7 +200,6 @@ impl Rows {
             listened: vec![],
             wraps: 0,
             last: i64::MIN,
-            number: 0,
             longest: 0,
             damaged: 0,
             first_damage: None,
@@ -235,7 +227,7 @@ impl Rows {
             return Err((None, "it ends without a line break and may be cut".to_owned()));
         }
         self.longest = self.longest.max(last);
-        let (mut firing, fired_us, sends) = self.header.firing(&cells, self.number)?;
+        let (mut firing, fired_us, sends) = self.header.firing(&cells)?;
         self.lacks_instants |= fired_us.is_none();
         firing.fired_us += self.wraps;
         if self.last != i64::MIN && self.last - firing.fired_us > 1 << 31 {
@@ -243,7 +235,6 @@ impl Rows {
             firing.fired_us += 1 << 32;
         }
         self.last = firing.fired_us;
-        self.number += 1;
         if sends { &mut self.firings } else { &mut self.listened }.push(firing);
         Ok(())
     }
@@ -263,7 +254,7 @@ impl Rows {
             1 => format!("line {line} is left out: {why}"),
             damaged => format!("{damaged} lines are left out, first line {line}: {why}"),
         });
-        let (listened, lacks_instants) = (self.listened, self.lacks_instants);
-        Ok(FiringLog { listened, lacks_instants, damage, ..FiringLog::new(&self.clock, self.firings) })
+        let (listened, lacks_instants, of_hopping) = (self.listened, self.lacks_instants, self.header.of_hopping);
+        Ok(FiringLog { listened, lacks_instants, of_hopping, damage, ..FiringLog::new(&self.clock, self.firings) })
     }
 }

@@ -12,10 +12,11 @@
 //! that are damaged are left out and named. Times are in microseconds of one clock, which the first
 //! line may name; one of 32 bits may wrap. `t_echo_us` is the raw echo time, from firing to the first edge, empty
 //! without echo. `reading` is what the ring made of it (`rejected`, `accepted`, `ambiguous`, ..) and may be missing.
-//! Sensors, periods and phases count from 0. The log of a hopping ring also says how its tracker weighed each reading,
-//! in columns `given`, `solo`, `steady`, `changes` and `expected_us`: see [`Weighed`]. A log without `fired_us` can be
-//! put onto a fixed schedule ([`align`](crate::align())). Rows may come in any order that is at most 2^31 us out. Where
-//! a column `sends` is 0 the sensor only listened from then on, as some can.
+//! Sensors, periods and phases count from 0. `g` may say how fast readings changed with the robot's motion, in
+//! microseconds for each millisecond: 2 (v + w 0.5 m) over the speed of sound. A log without `fired_us` can be put onto
+//! a fixed schedule ([`align`](crate::align())). Rows may come in any order that is at most 2^31 us out. Where `sends`
+//! is 0 the sensor only listened from then on, as some can. Columns of rings that hopped, which earlier versions wrote,
+//! are ignored, with a warning ([`FiringLog::doubts`]).
 //!
 //! The same in MCAP is a message `eeruf_msgs/msg/Firing` of ROS 2 for each row, which
 //! [`McapWriter::firing`](crate::McapWriter::firing) writes, or one `eeruf.Firing` in JSON, with the columns as its
@@ -25,7 +26,8 @@ use std::io::Write;
 
 use eeruf_core::ReadingKind;
 
-use crate::weighed::{Columns, Weighed, kind_named};
+/// Columns of earlier versions, whose rings hopped: ignored.
+pub(crate) const OF_HOPPING: [&str; 3] = ["solo", "steady", "changes"];
 
 /// One firing of one sensor.
 #[derive(Clone, Debug, PartialEq)]
@@ -42,8 +44,8 @@ pub struct Firing {
     pub t_echo_us: Option<u32>,
     /// True if the ring rejected the reading or found it ambiguous, if the log says what it made of it.
     pub rejected: Option<bool>,
-    /// The tracker's weighing of the reading in a hopping ring, if the log has it.
-    pub weighed: Option<Weighed>,
+    /// The rate at which readings change with the robot's motion, in microseconds for each millisecond, if it is said.
+    pub g_us_ms: Option<f32>,
 }
 
 /// A log of firings, in order of time.
@@ -57,19 +59,20 @@ pub struct FiringLog {
     pub listened: Vec<Firing>,
     /// True if the log does not say when sensors fired: `fired_us` is 0 then, see [`align`](crate::align()).
     pub lacks_instants: bool,
+    /// True if the log says how rings that hopped weighed their readings, which is ignored.
+    pub of_hopping: bool,
     /// The part of the file that could not be read, if any.
     pub damage: Option<String>,
 }
 
 impl FiringLog {
-    /// Returns true if the ring's odometry says that the robot drives: in a fifth of the weighed readings or more an
-    /// echo was expected to move by 10 us, at 60 ms a firing some 3 cm/s.
+    /// Returns true if the log says that the robot drives: in a fifth of the readings with a `g` or more it was some
+    /// 3 cm/s or faster.
     pub(crate) fn drives(&self) -> bool {
-        const MOVES_US: u32 = 10;
+        const MOVES_US_MS: f32 = 0.17;
         const DRIVES: f64 = 0.2;
-        let expected = self.firings.iter().filter_map(|firing| Some(firing.weighed.as_ref()?.expected_change_us));
-        let (all, moves) =
-            expected.fold((0, 0), |(all, moves), us| (all + 1, moves + u32::from(us.unsigned_abs() >= MOVES_US)));
+        let said = self.firings.iter().filter_map(|firing| firing.g_us_ms);
+        let (all, moves) = said.fold((0, 0), |(all, moves), g| (all + 1, moves + u32::from(g >= MOVES_US_MS)));
         f64::from(moves) > DRIVES * f64::from(all)
     }
 }
@@ -82,19 +85,22 @@ impl Firing {
 
     /// The ring's verdict on the reading, as logs spell it.
     pub(crate) fn reading(&self) -> &'static str {
-        match (self.weighed.as_ref().and_then(|weighed| weighed.kind), self.rejected) {
-            (Some(kind), _) => kind.as_str(),
-            (None, Some(true)) => "rejected",
-            (None, Some(false)) => "other",
-            (None, None) => "",
+        match self.rejected {
+            Some(true) => "rejected",
+            Some(false) => "other",
+            None => "",
         }
     }
 }
 
 /// Returns true if a reading that logs spell so was compared and is not believed.
 pub(crate) fn was_rejected(made: &str) -> bool {
-    kind_named(made).is_some_and(ReadingKind::is_rejected)
+    ReadingKind::ALL.into_iter().any(|kind| kind.as_str() == made && kind.is_rejected())
 }
+
+/// The warning of a log of earlier versions.
+pub(crate) const IGNORED: &str = "how a ring that hopped weighed its readings (solo, steady, changes ..): \
+                                  ignored; time hopping is gone, flow does it";
 
 /// The most sensors of a ring.
 pub(crate) const MAX_SENSORS: u8 = 64;
@@ -106,7 +112,7 @@ impl FiringLog {
         Self { clock: clock.to_owned(), firings, ..Self::default() }
     }
 
-    /// Warnings of times that are legal and implausible: milliseconds for microseconds.
+    /// Warnings of times that are legal and implausible, milliseconds for microseconds, and of ignored columns.
     pub fn doubts(&self) -> Vec<String> {
         /// Sound that comes sooner is ringing of the transducer; sensors of a ring fire less often.
         const LEAST_US: i64 = 200;
@@ -120,31 +126,31 @@ impl FiringLog {
                 let why = "likely milliseconds: times are microseconds";
                 format!("column {key}: {of} {us}; expected {LEAST_US} or more; {why}")
             })
+            .chain(self.of_hopping.then(|| IGNORED.to_owned()))
             .collect()
     }
 
-    /// Writes the log as it is read. What the ring made of a reading is written as `rejected` or `other`, unless the
-    /// kind is known.
+    /// Writes the log as it is read. What the ring made of a reading is written as `rejected` or `other`.
     ///
     /// # Errors
     /// If it cannot be written.
     pub fn write(&self, mut output: impl Write) -> std::io::Result<()> {
         let sends = if self.listened.is_empty() { "" } else { ",sends" };
-        let is_weighed = self.firings.iter().any(|firing| firing.weighed.is_some());
-        let weighed = if is_weighed { Columns::HEADER } else { "" };
+        let moves = self.firings.iter().any(|firing| firing.g_us_ms.is_some());
+        let motion = if moves { ",g" } else { "" };
         writeln!(output, "# clock: {}", self.clock)?;
-        writeln!(output, "sensor,fired_us,period,phase,t_echo_us,reading{weighed}{sends}")?;
+        writeln!(output, "sensor,fired_us,period,phase,t_echo_us,reading{motion}{sends}")?;
         for (rows, sends) in [(&self.firings, ",1"), (&self.listened, ",0")] {
             let sends = if self.listened.is_empty() { "" } else { sends };
             for firing in rows {
-                let Firing { sensor, fired_us, period, phase, t_echo_us, ref weighed, .. } = *firing;
+                let Firing { sensor, fired_us, period, phase, t_echo_us, g_us_ms, .. } = *firing;
                 let fired_us = if self.lacks_instants { String::new() } else { fired_us.to_string() };
                 let echo = t_echo_us.map(|us| us.to_string()).unwrap_or_default();
                 let reading = firing.reading();
                 write!(output, "{sensor},{fired_us},{period},{phase},{echo},{reading}")?;
-                match weighed {
-                    Some(weighed) => write!(output, "{}", weighed.fields())?,
-                    None if is_weighed => write!(output, "{}", Columns::EMPTY)?,
+                match g_us_ms {
+                    Some(g) => write!(output, ",{g}")?,
+                    None if moves => write!(output, ",")?,
                     None => {}
                 }
                 writeln!(output, "{sends}")?;

@@ -48,7 +48,6 @@ mod names;
 mod options;
 mod pattern;
 mod reading;
-mod replay;
 mod ros1;
 mod ros2;
 mod rosbag2;
@@ -59,7 +58,6 @@ mod survey;
 mod text;
 mod unzstd;
 mod value;
-mod weighed;
 mod write;
 
 use std::fs::File;
@@ -80,11 +78,9 @@ pub use judging::{Counted, Judging, RangeJudge};
 pub use options::{FieldChoice, Options, RangeUnit, Table, TimeUnit};
 pub use pattern::{FiringPattern, Pattern};
 pub use reading::{Echo, Reading, Sensor};
-pub use replay::{ReplayError, replay, write_replayed};
 pub use ros2::{Marker, Placement, Shape, Transform};
 pub use sink::{Guess, Report, Skipped};
 pub use survey::{PathSettings, Surveyed, survey};
-pub use weighed::Weighed;
 pub use write::McapWriter;
 
 /// Reads a log from beginning to end, and calls `each` with the report so far, which has the sensors, and each reading,

@@ -14,7 +14,7 @@ pub enum Pattern {
     /// With two lags for each pair of sensors, as the paper's two phases have them.
     Alternating,
     /// With more lags than two for each pair.
-    Hopping,
+    Several,
     /// With a lag that is never the same twice.
     Flow,
     /// The log does not tell.
@@ -30,7 +30,7 @@ impl Pattern {
             Self::InTurn => "in turn",
             Self::ConstantLags => "constant lags",
             Self::Alternating => "alternating",
-            Self::Hopping => "hopping",
+            Self::Several => "several lags",
             Self::Flow => "flow",
             Self::Unknown => "unknown",
         }
@@ -88,10 +88,8 @@ impl FiringPattern {
                     )
                 }
             }
-            Pattern::Hopping => {
-                "lags hop among several values: crosstalk agrees only where a pair's lag comes twice in \
-                                 succession; `eeruf replay --hopping` judges a log of firings by all of them"
-                    .to_owned()
+            Pattern::Several => {
+                "each pair has several lags: crosstalk agrees only where a lag comes twice in succession".to_owned()
             }
             Pattern::Flow => {
                 "lags are never the same twice: readings that agree several times in succession are seldom \
@@ -292,7 +290,7 @@ fn of_lags(
         found.least_change_us = Some((least / 1000.0) as u64);
         Pattern::Alternating
     } else {
-        Pattern::Hopping
+        Pattern::Several
     };
     found
 }
@@ -324,8 +322,8 @@ mod tests {
         assert!(alternating.least_change_us.unwrap().abs_diff(1500) < 50, "{alternating:?}");
         assert!(alternating.proves(Some(500)).contains("at least"), "{}", alternating.proves(Some(500)));
         assert!(alternating.proves(Some(2000)).contains("not below"), "{}", alternating.proves(Some(2000)));
-        let hopping = |round: u64, sensor: u64| 60_000 * round + 5000 * sensor + 400 * ((sensor + 1) * (round % 7) % 7);
-        assert_eq!(of(&hopping).pattern, Pattern::Hopping);
+        let several = |round: u64, sensor: u64| 60_000 * round + 5000 * sensor + 400 * ((sensor + 1) * (round % 7) % 7);
+        assert_eq!(of(&several).pattern, Pattern::Several);
         let random = |round: u64, sensor: u64| {
             let mixed = (round * 64 + sensor + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
             60_000 * round + ((mixed ^ (mixed >> 29)).wrapping_mul(0xbf58_476d_1ce4_e5b9) >> 33) % 59_000

@@ -181,7 +181,7 @@ pub(crate) fn range(out: &mut Cdr, frame: &str, reading: &Reading) {
 
 /// The fields of [`FIRINGS`]; what a log does not say is 0, and a flag before it says so.
 pub(crate) fn firing(out: &mut Cdr, at_ns: u64, clock: &str, firing: &Firing) {
-    let Firing { sensor, fired_us, period, phase, t_echo_us, ref weighed, .. } = *firing;
+    let Firing { sensor, fired_us, period, phase, t_echo_us, g_us_ms, .. } = *firing;
     out.header(at_ns, "");
     out.text(clock);
     out.u8(sensor);
@@ -191,13 +191,7 @@ pub(crate) fn firing(out: &mut Cdr, at_ns: u64, clock: &str, firing: &Firing) {
     out.bool(t_echo_us.is_some());
     out.u32(t_echo_us.unwrap_or(0));
     out.text(firing.reading());
-    out.bool(weighed.is_some());
-    let weighed = weighed.as_ref();
-    out.u64(weighed.map_or(0, |weighed| weighed.given));
-    out.bool(weighed.is_some_and(|weighed| weighed.solo));
-    out.bool(weighed.is_some_and(|weighed| weighed.steady));
-    out.u8(weighed.map_or(0, |weighed| weighed.changes));
-    out.i32(weighed.map_or(0, |weighed| weighed.expected_change_us));
+    out.f32s([g_us_ms.unwrap_or(-1.0)]);
 }
 
 pub(crate) fn transforms(out: &mut Cdr, at_ns: u64, transforms: &[Transform]) {

@@ -3,24 +3,20 @@
 use eeruf_core::{
     MAX_SENSORS, Micros, Requirements, RingEvent, ScheduleError, SpeedOfSound, VerifiedSchedule,
     adaptation::Adaptation as Core,
-    hopping::{HoppingError, HoppingSchedule as CoreHopping},
 };
 use pyo3::prelude::*;
 
 use crate::{
     arguments::{instance, items, micros, number, number_or, whole_or, wrong},
-    errors::{Raise, RingError},
+    errors::Raise,
     exclusive::Exclusive,
-    hopping_schedule::HoppingSchedule,
     ring::Ring,
     ring_events::to_core,
     schedule::Schedule,
 };
 
 type Rung = VerifiedSchedule<MAX_SENSORS>;
-type HoppingRung = CoreHopping<MAX_SENSORS>;
 type OnLadder<'s> = Core<'s, Rung>;
-type OnHoppingLadder<'s> = Core<'s, HoppingRung>;
 
 self_cell::self_cell!(
     /// The adaptation, with the rungs that it borrows.
@@ -31,66 +27,10 @@ self_cell::self_cell!(
     }
 );
 
-self_cell::self_cell!(
-    /// The same of a ring that hops.
-    struct OfHopping {
-        owner: Vec<HoppingRung>,
-        #[covariant]
-        dependent: OnHoppingLadder,
-    }
-);
-
-/// Either ladder.
-enum Owned {
-    Tables(OfTables),
-    Hopping(OfHopping),
-}
-
-/// Asks the same of either.
-macro_rules! ask {
-    ($owned:expr, |$on:ident| $answer:expr) => {
-        match &$owned {
-            Owned::Tables(of) => {
-                let $on = of.borrow_dependent();
-                $answer
-            }
-            Owned::Hopping(of) => {
-                let $on = of.borrow_dependent();
-                $answer
-            }
-        }
-    };
-}
-
-/// Settings of either.
-#[derive(Clone, Copy)]
-struct Settings {
-    noisy: u16,
-    calm: u16,
-    window: u8,
-    patience: u8,
-}
-
-impl Settings {
-    fn set<R>(self, mut on: Core<'_, R>) -> Core<'_, R> {
-        (on.noisy_permille, on.calm_permille) = (self.noisy, self.calm);
-        (on.window, on.patience) = (self.window, self.patience);
-        on
-    }
-}
-
-/// A rung of a ring by tables, which rejects crosstalk.
+/// A rung, which rejects crosstalk.
 fn rung(name: &str, schedule: &Bound<'_, PyAny>, t_delta: Micros) -> PyResult<Rung> {
-    let schedule = instance::<Schedule>(name, schedule, "an eeruf.Schedule, as the first is")?.get().0;
+    let schedule = instance::<Schedule>(name, schedule, "an eeruf.Schedule")?.get().0;
     schedule.verified(&Requirements::new(t_delta)).map_err(Raise::raise)
-}
-
-/// A rung of a ring that hops, by which crosstalk moves by more than `t_delta`.
-fn hopping_rung(name: &str, schedule: &Bound<'_, PyAny>, t_delta: Micros) -> PyResult<HoppingRung> {
-    let expected = "an eeruf.HoppingSchedule, as the first is";
-    let schedule = instance::<HoppingSchedule>(name, schedule, expected)?.get().0;
-    let step = schedule.code().step();
-    if step <= t_delta { Err(HoppingError::TDelta { t_delta, step }.raise()) } else { Ok(schedule) }
 }
 
 /// Adaptive scheduling (end of Sec. 3.1): fire more slowly where too much is rejected, and faster again when it is
@@ -100,8 +40,8 @@ fn hopping_rung(name: &str, schedule: &Bound<'_, PyAny>, t_delta: Micros) -> PyR
 /// only several calm windows running move one rung down.
 ///
 /// Args:
-///     schedules: the rungs, of equally many sensors, from the shortest period to the longest, each a ``Schedule``; or,
-///         for a ring that hops, a ``HoppingSchedule`` of the same code. The ring begins with the first.
+///     schedules: the rungs, of equally many sensors, from the shortest period to the longest, each a
+///         ``Schedule``. The ring begins with the first.
 ///     t_delta_us: ``T_delta`` of the ring, at which each must reject crosstalk.
 ///     noisy: above this rejection rate, a fraction of 1, it fires more slowly.
 ///     calm: up to this rejection rate a window is calm.
@@ -111,7 +51,6 @@ fn hopping_rung(name: &str, schedule: &Bound<'_, PyAny>, t_delta: Micros) -> PyR
 /// Raises:
 ///     ArgumentError: something of the wrong type or out of range.
 ///     RingError: a schedule does not reject crosstalk at this ``t_delta_us``.
-///     HoppingError: a step that is no more than ``t_delta_us``.
 ///     ScheduleError: the schedules are no ladder.
 ///
 /// Example:
@@ -131,7 +70,7 @@ fn hopping_rung(name: &str, schedule: &Bound<'_, PyAny>, t_delta: Micros) -> PyR
 ///     (True, True)
 #[pyclass(frozen, module = "eeruf")]
 pub(crate) struct Adaptation {
-    adaptation: Exclusive<Owned>,
+    adaptation: Exclusive<OfTables>,
 }
 
 /// Of a fraction of 1, in thousandths.
@@ -167,16 +106,14 @@ impl Adaptation {
         }
         let window = whole_or("window_periods", window_periods, 16, 1..=u8::MAX)?;
         let patience = whole_or("patience", patience, 4, 1..=u8::MAX)?;
-        let settings = Settings { noisy, calm, window, patience };
-        let hops = schedules.first().is_some_and(PyAnyMethods::is_instance_of::<HoppingSchedule>);
-        let adaptation: Result<_, ScheduleError> = if hops {
-            let rungs = named().map(|(name, of)| hopping_rung(&name, of, t_delta)).collect::<PyResult<_>>()?;
-            OfHopping::try_new(rungs, |rungs| Core::hopping(rungs).map(|on| settings.set(on))).map(Owned::Hopping)
-        } else {
-            let rungs = named().map(|(name, of)| rung(&name, of, t_delta)).collect::<PyResult<_>>()?;
-            OfTables::try_new(rungs, |rungs| Core::new(rungs).map(|on| settings.set(on))).map(Owned::Tables)
-        };
-        Ok(Self { adaptation: Exclusive::new("Adaptation", adaptation.map_err(Raise::raise)?) })
+        let rungs = named().map(|(name, of)| rung(&name, of, t_delta)).collect::<PyResult<_>>()?;
+        let adaptation = OfTables::try_new(rungs, |rungs| {
+            let mut on = Core::new(rungs)?;
+            (on.noisy_permille, on.calm_permille, on.window, on.patience) = (noisy, calm, window, patience);
+            Ok(on)
+        });
+        let adaptation = adaptation.map_err(|error: ScheduleError| error.raise())?;
+        Ok(Self { adaptation: Exclusive::new("Adaptation", adaptation) })
     }
 
     /// Take in an event of a ring, and change the ring to another schedule when the present one should be left. Only
@@ -192,7 +129,6 @@ impl Adaptation {
     /// Raises:
     ///     ArgumentError: no ring, no event, or a ring of other sensors.
     ///     RingError: the ring refuses the schedule. Both then go on as before.
-    ///     HoppingError: the same of a ring that hops.
     ///
     /// Example:
     ///     >>> import eeruf
@@ -205,36 +141,28 @@ impl Adaptation {
         let RingEvent::PeriodEnded(stats) = to_core("event", event)? else { return Ok(false) };
         let mut ring = ring.get().0.get()?;
         let mut adaptation = self.adaptation.get()?;
-        match &mut *adaptation {
-            Owned::Tables(of) => {
-                of.with_dependent_mut(|_, on| on.adapt(&stats, |rung| ring.change_schedule(rung.schedule())))
-            }
-            Owned::Hopping(of) => of.with_dependent_mut(|_, on| on.adapt(&stats, |rung| ring.change_hopping(rung))),
-        }
+        adaptation.with_dependent_mut(|_, on| on.adapt(&stats, |rung| ring.change_schedule(rung.schedule())))
     }
 
     /// The rung in use, 0 for the shortest period.
     #[getter]
     fn rung(&self) -> PyResult<usize> {
-        Ok(ask!(*self.adaptation.get()?, |on| on.rung()))
+        Ok(self.adaptation.get()?.borrow_dependent().rung())
     }
 
     /// The schedule in use.
     #[getter]
-    fn schedule<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+    fn schedule(&self) -> PyResult<Schedule> {
         // It is always on one of its rungs.
         let rung = self.rung()?;
-        Ok(match &*self.adaptation.get()? {
-            Owned::Tables(of) => Bound::new(py, Schedule(*of.borrow_owner()[rung].schedule()))?.into_any(),
-            Owned::Hopping(of) => Bound::new(py, HoppingSchedule(of.borrow_owner()[rung]))?.into_any(),
-        })
+        Ok(Schedule(*self.adaptation.get()?.borrow_owner()[rung].schedule()))
     }
 
     /// The share of the readings that were compared and rejected in the last whole window; None before, or if nothing
     /// was compared in it.
     #[getter]
     fn rejection_rate(&self) -> PyResult<Option<f64>> {
-        let permille = ask!(*self.adaptation.get()?, |on| on.rejection_permille());
+        let permille = self.adaptation.get()?.borrow_dependent().rejection_permille();
         Ok(permille.map(|permille| f64::from(permille) / 1e3))
     }
 
@@ -247,7 +175,6 @@ impl Adaptation {
     ///
     /// Raises:
     ///     ArgumentError: out of range.
-    ///     RingError: the ladder is one of a ring that hops: votes, not two readings, decide what passes.
     ///
     /// Example:
     ///     >>> import eeruf
@@ -258,20 +185,13 @@ impl Adaptation {
         let t_delta = micros("t_delta_us", t_delta_us)?;
         let c = number_or("sound_m_s", sound_m_s, 343.2, 100.0..=1e3)?;
         let c = SpeedOfSound::from_mm_per_s((1e3 * c).round() as u32);
-        match &*self.adaptation.get()? {
-            Owned::Tables(of) => Ok(f64::from(of.borrow_dependent().max_speed_mm_s(t_delta, c)) / 1e3),
-            Owned::Hopping(_) => {
-                Err(RingError::new_err("max_speed_m_s of a ring that hops; expected a ladder of tables"))
-            }
-        }
+        Ok(f64::from(self.adaptation.get()?.borrow_dependent().max_speed_mm_s(t_delta, c)) / 1e3)
     }
 
     fn __repr__(&self) -> PyResult<String> {
         let rung = self.rung()?;
-        let (rungs, period) = match &*self.adaptation.get()? {
-            Owned::Tables(of) => (of.borrow_owner().len(), of.borrow_owner()[rung].period()),
-            Owned::Hopping(of) => (of.borrow_owner().len(), of.borrow_owner()[rung].period()),
-        };
+        let adaptation = self.adaptation.get()?;
+        let (rungs, period) = (adaptation.borrow_owner().len(), adaptation.borrow_owner()[rung].period());
         Ok(format!("<Adaptation: rung {rung} of {rungs}, {}>", period.as_micros()))
     }
 }

@@ -264,7 +264,7 @@ impl Batch {
     ///     >>> from eeruf import experiments, sim
     ///     >>> batch = sim.Batch(experiments.courses(0, 4), "flow")
     ///     >>> state = batch.step(0.5, v_m_s=0.4, w_rad_s=[0.0, 0.1, 0.0, -0.1])
-    ///     >>> bool((state.accepted.sum(axis=1) > 10).all())
+    ///     >>> bool((state.accepted.sum(axis=1) > 2).all())
     ///     True
     #[pyo3(signature = (seconds, v_m_s=None, w_rad_s=None))]
     fn step(

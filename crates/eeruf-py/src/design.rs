@@ -14,7 +14,6 @@ use crate::{
     arguments::{flag, micros, number, whole_or},
     errors::{ArgumentError, CertificateError, Raise},
     found::Found,
-    hopping_found::{HoppingFound, Needs, refuse},
     program::examples,
     requirements::{self, UnevenArguments, each},
     watch::{Watch, control_flow, in_background},
@@ -62,22 +61,16 @@ const FEW_SENSORS: usize = 12;
 ///     over_reals: whether to say what the tick costs: in ``Found.real_period_us`` the shortest period in
 ///         ticks of any length, for the needs in exact microseconds, and in ``Found.real_proven`` whether
 ///         none is shorter. Only where the period in ticks is proven.
-///     phases: at least this many, 2 to 67: a schedule for a :meth:`Ring.hopping`, as ``eeruf design --phases`` finds
-///         it. Then times are whole microseconds, of lists the largest counts, and nothing below ``stale_echo`` may be
-///         given but ``margin_us``.
-///     margin_us: with ``phases``: crosstalk need move by ``T_delta`` and this margin alone, which is all that jitter
-///         and lateness may use, instead of ``2 T_delta + 1``.
 ///     atlas: whether the atlas of rings whose shortest period is known may answer, as that of the program does;
 ///         ``Found.from_atlas`` says whether it did, and ``nodes`` is 0 then.
 ///
 /// Returns:
 ///     A :class:`Found`: the shortest period in ``value_us``, or the best found within budget and time; ``proven`` says
-///     which. With ``phases`` a :class:`HoppingFound`.
+///     which.
 ///
 /// Raises:
 ///     ArgumentError: something of the wrong type or out of range.
 ///     SearchError: needs that make no sense, or too large a grid.
-///     HoppingError: no schedule of this many phases.
 ///
 /// Example:
 ///     >>> import eeruf
@@ -91,19 +84,16 @@ const FEW_SENSORS: usize = 12;
 ///     >>> found = eeruf.design(4, [999, 999, 1500, 1500], 15_000, windows, shared_lines=[(0, 2)])
 ///     >>> found.value_us, found.proven
 ///     (59000, True)
-///     >>> eeruf.design(8, t_delta_us=150, min_interval_us=0, window_us=36_000, phases=5, margin_us=90).value_us
-///     37680
 #[pyfunction]
 #[pyo3(signature = (
     sensors, t_delta_us, min_interval_us, window_us, tick_us=None, neighbours=None, layout=None, stale_echo=None,
     budget=None, progress=None, certificate=None, time_limit_s=None, refire_us=None, intervals_us=None,
-    shared_lines=None, together=None, over_reals=None, phases=None, margin_us=None, atlas=None
+    shared_lines=None, together=None, over_reals=None, atlas=None
 ))]
 #[pyo3(
     text_signature = "(sensors, t_delta_us, min_interval_us, window_us, tick_us=1000, neighbours=4, layout=\"line\", \
         stale_echo=False, budget=None, progress=None, certificate=False, time_limit_s=None, refire_us=None, \
-        intervals_us=None, shared_lines=None, together=None, over_reals=False, phases=None, margin_us=None, \
-        atlas=True)"
+        intervals_us=None, shared_lines=None, together=None, over_reals=False, atlas=True)"
 )]
 #[expect(clippy::too_many_arguments, reason = "keyword arguments")]
 pub(crate) fn design<'py>(
@@ -125,30 +115,8 @@ pub(crate) fn design<'py>(
     shared_lines: Option<&Bound<'_, PyAny>>,
     together: Option<&Bound<'_, PyAny>>,
     over_reals: Option<&Bound<'_, PyAny>>,
-    phases: Option<&Bound<'_, PyAny>>,
-    margin_us: Option<&Bound<'_, PyAny>>,
     atlas: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    if let Some(phases) = phases {
-        let needless = [
-            ("tick_us", tick_us),
-            ("budget", budget),
-            ("progress", progress),
-            ("certificate", certificate),
-            ("time_limit_s", time_limit_s),
-            ("refire_us", refire_us),
-            ("intervals_us", intervals_us),
-            ("shared_lines", shared_lines),
-            ("together", together),
-            ("over_reals", over_reals),
-            ("atlas", atlas),
-        ];
-        refuse(&needless, "no such argument with phases")?;
-        let needs =
-            Needs { sensors, t_delta_us, min_interval_us, window_us, neighbours, layout, stale_echo, margin_us };
-        return Ok(Bound::new(py, HoppingFound::design(phases, &needs)?)?.into_any());
-    }
-    refuse(&[("margin_us", margin_us)], "no margin without phases")?;
     let atlas = if flag("atlas", atlas, true)? { ATLAS } else { "" };
     let sensors = requirements::sensors(sensors)?;
     let layout = requirements::layout(layout, requirements::neighbours(neighbours)?, sensors)?;

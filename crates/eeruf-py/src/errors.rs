@@ -80,7 +80,6 @@ fn from_zero(error: &impl Display) -> String {
 impl Raise for eeruf_core::RingError {
     fn raise(self) -> PyErr {
         match self {
-            Self::Setting { .. } => HoppingError::new_err(from_zero(&self)),
             Self::Rate { .. } => FilterError::new_err(from_zero(&self)),
             _ => RingError::new_err(from_zero(&self)),
         }
@@ -129,14 +128,6 @@ Example:
     Traceback (most recent call last):
     eeruf.RingError: a blanking time of 0 us; expected less than the window of 0 us, and at most 65.535 ms
 " from eeruf_core::conditions::Violation;
-    HoppingError "A ring that cannot hop as asked, or settings that contradict each other.
-
-Example:
-    >>> import eeruf
-    >>> eeruf.HoppingSchedule(8, 2_000, 240)
-    Traceback (most recent call last):
-    eeruf.HoppingError: a period of 2 ms; expected 2.161 ms to 268435.456 ms
-" from eeruf_core::hopping::HoppingError;
     SearchError "Needs that make no sense or are too large to search.
 
 Example:

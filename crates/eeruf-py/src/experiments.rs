@@ -72,7 +72,7 @@ pub(crate) fn set_one(
 
 /// Set III over many placings: the table, and the runs of each method.
 #[pyfunction]
-#[pyo3(name = "_set_three", signature = (seeds, first, periods, methods, progress, physics, height, numbered))]
+#[pyo3(name = "_set_three", signature = (seeds, first, periods, methods, progress, physics, height))]
 #[expect(clippy::too_many_arguments, reason = "keyword arguments")]
 pub(crate) fn set_three(
     py: Python<'_>,
@@ -83,10 +83,9 @@ pub(crate) fn set_three(
     progress: Option<&Bound<'_, PyAny>>,
     physics: Option<&Bound<'_, PyAny>>,
     height: Option<&Bound<'_, PyAny>>,
-    numbered: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<(String, String)> {
     let default = SetThreeOptions::default();
-    let (methods, made) = methods_of(methods, default.methods)?;
+    let (methods, made) = methods_of(methods, default.methods.clone())?;
     let asked = SetThreeOptions {
         seeds: whole("seeds", seeds, 1..=SEEDS_MOST)?,
         first: whole_or("first", first, FIRST, 0..=u64::from(u32::MAX))?,
@@ -94,8 +93,7 @@ pub(crate) fn set_three(
         methods,
         physics: surroundings::physics(physics)?,
         room: surroundings::height(height)?,
-        gain: default.gain,
-        numbered: flag("numbered", numbered, false)?,
+        ..default
     };
     in_background(py, progress, move |background| {
         let keep_going = |done| background.go_on(Some(done), || format!("{} placings", asked.seeds));

@@ -27,10 +27,8 @@ mod file_object;
 mod filter;
 mod flow_settings;
 mod found;
+mod gone;
 mod himm;
-mod hopping_found;
-mod hopping_schedule;
-mod hopping_settings;
 mod log_blocks;
 mod logs;
 mod maps;
@@ -61,7 +59,6 @@ mod sensor_watch;
 mod simulate;
 mod simulation;
 mod surroundings;
-mod tracker;
 mod unpickle;
 mod vfh;
 mod watch;
@@ -77,18 +74,15 @@ mod _eeruf {
         batch_state::BatchState,
         design::{check_certificate, design},
         errors::{
-            ArgumentError, CertificateError, EerufError, EerufWarning, ExperimentError, FilterError, HoppingError,
-            PathsError, RingError, SceneError, ScheduleError, SearchError, SimulationError,
+            ArgumentError, CertificateError, EerufError, EerufWarning, ExperimentError, FilterError, PathsError,
+            RingError, SceneError, ScheduleError, SearchError, SimulationError,
         },
         experiments::{alcove, course, difference, figures, recommend, room, set_one, set_three, set_two, speed_sweep},
         filter::EchoFilter,
         found::Found,
         himm::Himm,
-        hopping_found::HoppingFound,
-        hopping_schedule::HoppingSchedule,
-        hopping_settings::HoppingSettings,
         log_blocks::{LogBlocks, judge},
-        logs::{LogError, diagnose, read_firings, replay, survey},
+        logs::{LogError, diagnose, read_firings, survey},
         maps::read_map,
         methods::Method,
         own::FiredReading,
@@ -109,7 +103,6 @@ mod _eeruf {
         simulate::simulate,
         simulation::Simulation,
         surroundings::{Material, Noise},
-        tracker::EchoTracker,
         unpickle::readings_from_columns,
         vfh::{Steering, Vfh},
         watch::{Switch, until_stopped},

@@ -2,16 +2,15 @@
 
 use std::path::{Path, PathBuf};
 
-use eeruf_logs::{Diagnosis, Firing, FiringLog, FoundPath, PathSettings, Settings, write_replayed};
+use eeruf_logs::{Diagnosis, Firing, FiringLog, FoundPath, PathSettings, Settings};
 use numpy::PyReadonlyArray1;
 use pyo3::{create_exception, prelude::*, types::PyDict};
 
 use crate::{
-    arguments::{above_zero, micros, shown, wrong},
+    arguments::{micros, shown, wrong},
     columns::read_only,
     errors::{ArgumentError, EerufError, warn},
     file_object::Work,
-    hopping_settings::HoppingSettings,
     watch::in_background,
 };
 
@@ -107,37 +106,6 @@ pub(crate) fn read_firings<'py>(source: &Bound<'py, PyAny>) -> PyResult<Bound<'p
     Ok(out)
 }
 
-/// Replays each firing of a hopping ring's own log through the tracker, as columns; writes them as MCAP.
-#[pyfunction]
-#[pyo3(name = "_replay")]
-pub(crate) fn replay<'py>(
-    source: &Bound<'py, PyAny>,
-    judge: &Bound<'py, PyAny>,
-    out: Option<&Bound<'py, PyAny>>,
-    speed_of_sound: &Bound<'py, PyAny>,
-) -> PyResult<Bound<'py, PyDict>> {
-    let (py, source) = (source.py(), Source::of(source)?);
-    let (settings, out) = (HoppingSettings::of("judge", Some(judge))?.tracker, out.map(out_file).transpose()?);
-    let speed_of_sound = above_zero("speed_of_sound", speed_of_sound)?;
-    let name = source.name().to_owned();
-    let log = source.firings(py)?;
-    let (log, verdicts) = in_background(py, None, move |_| {
-        let failed = |error| LogError::new_err(format!("{}: {error}", name.display()));
-        let verdicts = eeruf_logs::replay(&log, settings).map_err(failed)?;
-        if let Some(out) = out {
-            write_replayed(&out, &name, &log, &verdicts, speed_of_sound).map_err(raise)?;
-        }
-        Ok((log, verdicts))
-    })?;
-    let out = fired(py, log.firings.iter())?;
-    out.set_item("kind", read_only(py, verdicts.iter().map(|verdict| verdict.kind as i8))?)?;
-    out.set_item("age", read_only(py, verdicts.iter().map(|verdict| verdict.age.map_or(-1, i64::from)))?)?;
-    let logged = |row: &Firing| row.weighed.as_ref().and_then(|weighed| weighed.kind).map_or(-1, |kind| kind as i8);
-    out.set_item("logged", read_only(py, log.firings.iter().map(logged))?)?;
-    out.set_item("damage", log.damage)?;
-    Ok(out)
-}
-
 /// The path of a file to write.
 pub(crate) fn out_file(out: &Bound<'_, PyAny>) -> PyResult<PathBuf> {
     out.extract().map_err(|_| wrong("out", shown(out), "the path of an MCAP file to write, or None"))
@@ -196,7 +164,7 @@ fn log_of(columns: &Columns<'_>) -> PyResult<(FiringLog, Vec<usize>)> {
             phase: u8::try_from(phase[row]).map_err(|_| bad("phase", &phase[row], "0 to 255"))?,
             t_echo_us: (!echo.is_nan()).then(|| echo.round() as u32),
             rejected: (rejected[row] >= 0).then_some(rejected[row] == 1),
-            weighed: None,
+            g_us_ms: None,
         };
         if sends[row] {
             firings.push((row, firing));

@@ -14,9 +14,7 @@ use crate::{
     arguments::{instance, items, shown, text, wrong},
     errors::{ArgumentError, Raise},
     fields::{Reduced, call, reduce_by_name},
-    flow_settings,
-    hopping_schedule::HoppingSchedule,
-    hopping_settings::HoppingSettings,
+    flow_settings::FlowSettings,
     own::{Made, Makers},
     scene::Scene,
     schedule::Schedule,
@@ -32,14 +30,12 @@ const EXPECTED: &str = "a name of eeruf.sim.METHODS, or an eeruf.sim.Method";
 /// experiments take one wherever they take a name. Immutable; methods compare, and pickle if their callables do.
 ///
 /// Args:
-///     name: one of ``METHODS``, which gives whatever the others do not; or ``"driving"``, time hopping by its settings
-///         for robots that drive.
+///     name: one of ``METHODS``, which gives whatever the others do not.
 ///     label: the name in results and tables; by default ``name``. No two methods of one experiment have the same.
-///     schedule: what the ring fires by: a ``Schedule`` for methods that fire by the robot's own, a ``HoppingSchedule``
-///         for those that hop. Its sensors must be as many as the robot's.
-///     settings: a ``HoppingSettings`` or its name for methods that hop; for ``flow`` a dict of what differs from its
-///         default: ``step_us``, ``shortest_gap_us``, ``masked_adds_us``, ``believed_takes_us``, ``unserved_adds_us``,
-///         ``unserved_after``, ``shortest_cycle_us``, ``rest_us``, ``lead_us``, ``longest_cycle_us``, ``travel_us``.
+///     schedule: what the ring fires by, for methods that fire by the robot's own. Its sensors must be as many as the
+///         robot's.
+///     settings: for ``flow`` and ``flow_multi_echo`` a dict as :meth:`eeruf.Ring.flow` takes it, of what differs from
+///         what follows from the robot; but for ``seed`` and ``alone``, which the scene says.
 ///     sketch: a dict as the argument ``firing`` of :class:`Robot`, for methods that fire as sketches and modules do.
 ///     make_filter: makes your own filter: called with the :class:`Robot` at the start of each simulation, it returns a
 ///         callable as the argument ``filter`` of :class:`Simulation`. A class whose instances can be called will do.
@@ -51,13 +47,12 @@ const EXPECTED: &str = "a name of eeruf.sim.METHODS, or an eeruf.sim.Method";
 ///
 /// Example:
 ///     >>> from eeruf import sim
-///     >>> quick = sim.Method("eeruf_hopping", label="quick", settings="quick")
 ///     >>> believing = sim.Method("eeruf", label="all", make_filter=lambda robot: lambda firing: ("accepted",
 ///     ...     firing.t_echoes_us[0]) if firing.t_echoes_us else ("clear", None))
 ///     >>> robot = sim.Robot((0, 0, 1.57), sensors=8, spacing_rad=0.26, radius_m=0.3)
 ///     >>> scene = sim.Scene([[5, 2, -5, 2]], robots=[robot])
-///     >>> [round(float(sim.simulate(scene, method, 50).is_accepted.mean()), 2) for method in (believing, quick)]
-///     [1.0, 0.69]
+///     >>> float(sim.simulate(scene, believing, 50).is_accepted.mean())
+///     1.0
 #[pyclass(frozen, module = "eeruf.sim")]
 pub(crate) struct Method {
     entry: Entry,
@@ -98,8 +93,7 @@ impl Method {
             wrong(argument, shown(value), format_args!("none for the method {method}; {takes}"))
         };
         if let Some(given) = schedule {
-            entry = match (method, given.cast::<HoppingSchedule>(), given.cast::<Schedule>()) {
-                (_, Ok(hopping), _) if method.hops() => entry.with_hopping_schedule(hopping.get().0),
+            entry = match (method, given.cast::<Schedule>()) {
                 (
                     Named::Eeruf
                     | Named::Adaptive
@@ -107,22 +101,19 @@ impl Method {
                     | Named::AdaptiveMultiEcho
                     | Named::EerufBest
                     | Named::Table,
-                    _,
                     Ok(schedule),
                 ) => entry.with_schedule(schedule.get().0),
                 _ => {
-                    let takes = "eeruf, adaptive, multi_echo and table take an eeruf.Schedule, eeruf_hopping an \
-                                 eeruf.HoppingSchedule";
+                    let takes = "eeruf, adaptive, multi_echo and table take an eeruf.Schedule";
                     return Err(refused("schedule", given, takes));
                 }
             };
         }
         if let Some(given) = settings {
-            entry = match method {
-                _ if method.hops() => entry.with_hopping(HoppingSettings::of("settings", Some(given))?),
-                Named::Flow | Named::FlowMultiEcho => entry.with_flow(flow_settings::of(Some(given))?),
-                _ => return Err(refused("settings", given, "eeruf_hopping and flow take some")),
-            };
+            if !matches!(method, Named::Flow | Named::FlowMultiEcho) {
+                return Err(refused("settings", given, "flow and flow_multi_echo take some"));
+            }
+            entry = entry.with_flow(FlowSettings::of(Some(given))?.options()?);
         }
         if let Some(given) = sketch {
             if !method.is_sketch() {
@@ -153,8 +144,7 @@ impl Method {
     /// The keyword arguments that make it again.
     fn _arguments<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let all = PyDict::new(py);
-        let driving = self.settings.is_none() && self.entry.is_driving();
-        all.set_item("name", if driving { "driving" } else { self.name() })?;
+        all.set_item("name", self.name())?;
         all.set_item("label", self.label())?;
         let (filter, firing) = self.makers.as_ref().map_or((None, None), |makers| makers.callables(py));
         let parts = [
@@ -217,9 +207,7 @@ impl Chosen {
         scene: &Bound<'py, Scene>,
     ) -> PyResult<Bound<'py, Scene>> {
         let method = argument.and_then(|value| value.cast::<Method>().ok()).map(Bound::get);
-        let Some(Method { schedule, sketch, entry, .. }) = method else { return Ok(scene.clone()) };
-        // A schedule of hopping is none of the robot's.
-        let schedule = schedule.as_ref().filter(|_| !entry.method().hops());
+        let Some(Method { schedule, sketch, .. }) = method else { return Ok(scene.clone()) };
         if schedule.is_none() && sketch.is_none() {
             return Ok(scene.clone());
         }

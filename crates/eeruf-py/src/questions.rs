@@ -53,6 +53,7 @@ impl Arguments<'_, '_> {
             handling: Micros::ZERO,
             path_change: None,
             audible: None,
+            others: true,
             modules: vec![],
             places: Places::default(),
             uneven: self.uneven.owned(sensors, t_deltas, windows)?,

@@ -1,31 +1,26 @@
-//! `Ring`: by a schedule, hopping, or by flow.
+//! `Ring`: by a schedule, or by flow.
 
 use eeruf_core::{
-    Criterion, EachSensor, Instant, MAX_SENSORS, Micros, Requirements, RingEvent, Silence,
-    flow::FlowRing,
-    hopping::{HoppingListening, HoppingPlan, HoppingRing, HoppingSchedule as CoreHopping},
-    watch::SensorWatch,
+    EachSensor, Instant, MAX_SENSORS, Micros, RingEvent, Silence, flow::FlowRing, judge::Judge as _, watch::SensorWatch,
 };
 use eeruf_sim::AnySchedule;
 use pyo3::prelude::*;
 
 use crate::{
-    arguments::{choice, instance, whole, wrong},
+    arguments::{choice, whole},
     errors::{Raise, RingError},
     exclusive::Exclusive,
-    flow_settings,
-    hopping_schedule::HoppingSchedule,
-    hopping_settings::HoppingSettings,
+    flow_settings::FlowSettings,
     owned_ring::{MAX_ECHOES, OwnedRing},
-    requirements::{self, OwnedRequirements, RequirementArguments},
-    schedule::Schedule,
+    requirements,
+    ring_arguments::FlowNeeds,
 };
 
 /// Plan and filter together, as the firmware runs them: the caller passes the time and gets back what to do.
 ///
 /// Moments are microseconds on a clock that wraps at 2^32, as on a small microcontroller; larger numbers are taken
-/// modulo that. ``Ring(schedule)`` fires by a schedule and compares two readings; :meth:`flow` and :meth:`hopping`
-/// give rings that fire otherwise and count votes.
+/// modulo that. ``Ring(schedule)`` fires by a schedule and compares two readings; :meth:`flow` gives a ring that fires
+/// one sensor after the other, whenever it is quiet enough.
 ///
 /// Args:
 ///     schedule: when the sensors fire.
@@ -75,79 +70,29 @@ use crate::{
 #[pyclass(frozen, module = "eeruf")]
 pub(crate) struct Ring(pub(crate) Exclusive<AnyRing>);
 
-/// The plan of a ring that hops, whether sensors are alike or not.
-type HopPlan = HoppingPlan<MAX_SENSORS, EachSensor<MAX_SENSORS>>;
-type HopRing<const H: usize, const E: usize> = HoppingRing<MAX_SENSORS, H, E, EachSensor<MAX_SENSORS>>;
-/// Tracks of each sensor that reports one echo of a firing, and of one that reports several.
-const TRACKS: usize = 4;
-const SEVERAL_TRACKS: usize = 12;
-
-/// The kinds: by a table, or counting votes of one echo or of several.
+/// The kinds: by a table, or by flow with one echo of a firing or several.
 pub(crate) enum Fires {
     BySchedule(Box<OwnedRing>),
-    Hopping(Box<HopRing<TRACKS, 1>>, SensorNeeds),
-    HoppingSeveral(Box<HopRing<SEVERAL_TRACKS, MAX_ECHOES>>, SensorNeeds),
-    Flow(Box<FlowRing<MAX_SENSORS, TRACKS, 1>>),
-    FlowSeveral(Box<FlowRing<MAX_SENSORS, SEVERAL_TRACKS, MAX_ECHOES>>),
-}
-
-/// Needs of the sensors of a ring that hops, where they are not all alike.
-pub(crate) struct SensorNeeds {
-    needs: Option<Box<OwnedRequirements>>,
-    listening: HoppingListening,
-}
-
-impl SensorNeeds {
-    /// The limits of each sensor, if a schedule keeps them.
-    fn limits(&self, schedule: &CoreHopping<MAX_SENSORS>) -> PyResult<EachSensor<MAX_SENSORS>> {
-        let Some(needs) = &self.needs else { return Ok(EachSensor::NONE) };
-        let HoppingListening { blanking, reach, .. } = self.listening;
-        let criterion = Criterion::Margin(Micros::ZERO);
-        let asked = Requirements { criterion, blanking, audible: Some(reach), ..needs.requirements() };
-        schedule.limits(&asked).map_err(Raise::raise)
-    }
+    Flow(Box<FlowRing<MAX_SENSORS, 1, EachSensor<MAX_SENSORS>>>),
+    FlowSeveral(Box<FlowRing<MAX_SENSORS, MAX_ECHOES, EachSensor<MAX_SENSORS>>>),
 }
 
 impl Fires {
-    pub(crate) fn hopping(
-        schedule: &Bound<'_, PyAny>,
-        settings: Option<&Bound<'_, PyAny>>,
-        needs: &RequirementArguments<'_, '_>,
-        listening: HoppingListening,
-        (several, seed): (bool, u32),
-        now: Instant,
-    ) -> PyResult<Self> {
-        let settings = HoppingSettings::of("settings", settings)?;
-        let schedule = &instance::<HoppingSchedule>("schedule", schedule, "an eeruf.HoppingSchedule")?.get().0;
-        let t_delta = settings.tracker.t_delta;
-        let owned = needs.of(schedule.code().sensors(), t_delta)?;
-        if needs.t_delta_us.is_some() && !owned.is_uneven() {
-            let us = owned.most()[0].as_micros();
-            return Err(wrong("t_delta_us", us, "one for each sensor; settings have that of all"));
-        }
-        let needs = SensorNeeds { needs: owned.is_uneven().then(|| Box::new(owned)), listening };
-        let limits = needs.limits(schedule)?;
-        if several {
-            let ring = HopRing::with_limits(schedule, limits, settings, listening, seed, now).map_err(Raise::raise)?;
-            return Ok(Self::HoppingSeveral(Box::new(ring), needs));
-        }
-        let ring = HopRing::with_limits(schedule, limits, settings, listening, seed, now).map_err(Raise::raise)?;
-        Ok(Self::Hopping(Box::new(ring), needs))
-    }
-
     pub(crate) fn flow(
         sensors: &Bound<'_, PyAny>,
         settings: Option<&Bound<'_, PyAny>>,
-        listening: HoppingListening,
+        needs: &FlowNeeds<'_, '_>,
         several: bool,
         now: Instant,
     ) -> PyResult<Self> {
-        let (sensors, settings) = (requirements::sensors(sensors)?, flow_settings::of(settings)?);
+        let (sensors, settings) = (requirements::sensors(sensors)?, FlowSettings::of(settings)?);
+        let (turns, config, limits) = needs.of(sensors, &settings)?;
+        let belief = settings.belief();
         if several {
-            let ring = FlowRing::flow(sensors, settings, listening, now).map_err(Raise::raise)?;
+            let ring = FlowRing::with_limits(sensors, limits, turns, belief, config, now).map_err(Raise::raise)?;
             return Ok(Self::FlowSeveral(Box::new(ring)));
         }
-        let ring = FlowRing::flow(sensors, settings, listening, now).map_err(Raise::raise)?;
+        let ring = FlowRing::with_limits(sensors, limits, turns, belief, config, now).map_err(Raise::raise)?;
         Ok(Self::Flow(Box::new(ring)))
     }
 }
@@ -165,8 +110,6 @@ macro_rules! ask {
     ($any:expr, |$ring:ident| $call:expr) => {
         match &$any.fires {
             $crate::ring::Fires::BySchedule(owned) => $crate::owned_ring::table!(owned.ring(), |$ring| $call),
-            $crate::ring::Fires::Hopping($ring, ..) => $call,
-            $crate::ring::Fires::HoppingSeveral($ring, ..) => $call,
             $crate::ring::Fires::Flow($ring) => $call,
             $crate::ring::Fires::FlowSeveral($ring) => $call,
         }
@@ -178,8 +121,6 @@ macro_rules! act {
     ($any:expr, |$ring:ident| $call:expr) => {
         match &mut $any.fires {
             $crate::ring::Fires::BySchedule(owned) => owned.with(|any| $crate::owned_ring::table!(any, |$ring| $call)),
-            $crate::ring::Fires::Hopping($ring, ..) => $call,
-            $crate::ring::Fires::HoppingSeveral($ring, ..) => $call,
             $crate::ring::Fires::Flow($ring) => $call,
             $crate::ring::Fires::FlowSeveral($ring) => $call,
         }
@@ -238,7 +179,7 @@ impl AnyRing {
         match &mut self.fires {
             Fires::BySchedule(owned) => Ok(owned),
             _ => Err(RingError::new_err(format!(
-                "{what} of a ring that counts votes; expected a ring by an eeruf.Schedule: this one has settings"
+                "{what} of a ring by flow; expected a ring by an eeruf.Schedule: this one has settings"
             ))),
         }
     }
@@ -246,10 +187,8 @@ impl AnyRing {
     pub(crate) fn t_delta(&self) -> Micros {
         match &self.fires {
             Fires::BySchedule(owned) => owned.t_delta(),
-            Fires::Hopping(ring, _) => ring.judge().settings().t_delta,
-            Fires::HoppingSeveral(ring, _) => ring.judge().settings().t_delta,
-            Fires::Flow(ring) => ring.judge().settings().t_delta,
-            Fires::FlowSeveral(ring) => ring.judge().settings().t_delta,
+            Fires::Flow(ring) => ring.judge().t_delta(),
+            Fires::FlowSeveral(ring) => ring.judge().t_delta(),
         }
     }
 
@@ -261,56 +200,9 @@ impl AnyRing {
         Ok((0..sensors).map(of).max().unwrap_or_default())
     }
 
-    /// The plan of a ring that hops.
-    pub(crate) fn hop_plan(&self) -> Option<&HopPlan> {
-        match &self.fires {
-            Fires::Hopping(ring, ..) => Some(ring.plan()),
-            Fires::HoppingSeveral(ring, ..) => Some(ring.plan()),
-            Fires::BySchedule(_) | Fires::Flow(..) | Fires::FlowSeveral(..) => None,
-        }
-    }
-
-    /// The lags of a ring that hops, as they are now.
-    pub(crate) fn lags(&self) -> impl Iterator<Item = Micros> {
-        let hopping = self.hop_plan();
-        (0..self.sensors()).filter_map(move |sensor| hopping?.t_lag(sensor))
-    }
-
-    /// The echo that votes have confirmed.
-    pub(crate) fn confirmed(&self, sensor: u8) -> Option<Micros> {
-        match &self.fires {
-            Fires::BySchedule(_) => None,
-            Fires::Hopping(ring, ..) => ring.judge().confirmed(sensor.into()),
-            Fires::HoppingSeveral(ring, ..) => ring.judge().confirmed(sensor.into()),
-            Fires::Flow(ring) => ring.judge().confirmed(sensor.into()),
-            Fires::FlowSeveral(ring) => ring.judge().confirmed(sensor.into()),
-        }
-    }
-
     /// Fires by another schedule when the present period ends.
     pub(crate) fn change_schedule(&mut self, schedule: &AnySchedule) -> PyResult<()> {
         self.by_schedule("schedule")?.change_to(schedule)
-    }
-
-    /// Hops by another schedule with the same code, once all sound from before has died.
-    pub(crate) fn change_hopping(&mut self, schedule: &CoreHopping<MAX_SENSORS>) -> PyResult<()> {
-        let changed = match &mut self.fires {
-            Fires::Hopping(ring, needs) => needs.limits(schedule).map(|_| ring.change_hopping(schedule)),
-            Fires::HoppingSeveral(ring, needs) => needs.limits(schedule).map(|_| ring.change_hopping(schedule)),
-            Fires::BySchedule(_) | Fires::Flow(..) | Fires::FlowSeveral(..) => {
-                return Err(RingError::new_err("an eeruf.HoppingSchedule for a ring that does not hop by one"));
-            }
-        };
-        Self::raised(changed?)
-    }
-
-    /// The same for whichever schedule it is.
-    pub(crate) fn change(&mut self, schedule: &Bound<'_, PyAny>) -> PyResult<()> {
-        if let Ok(hopping) = schedule.cast::<HoppingSchedule>() {
-            return self.change_hopping(&hopping.get().0);
-        }
-        let expected = "an eeruf.Schedule, or an eeruf.HoppingSchedule for a ring that hops";
-        self.change_schedule(&instance::<Schedule>("schedule", schedule, expected)?.get().0)
     }
 
     /// Raises what a change of the ring answers.

@@ -28,7 +28,7 @@ const SENSORS: RangeInclusive<u8> = 0..=MAX_SENSORS as u8 - 1;
 pub(crate) struct Fire {
     /// The sensor, from 0.
     sensor: u8,
-    /// The phase that its wait belongs to: 0 for a, 1 for b; more in a hopping ring.
+    /// The phase that its wait belongs to: 0 for a, 1 for b.
     phase: u8,
     /// When it was due, on the ring's clock: before the time of the poll if that was late.
     due_us: u32,
@@ -92,8 +92,7 @@ impl Fire {
 pub(crate) struct Reading {
     /// The sensor, from 0.
     sensor: u8,
-    /// The outcome, one of ``eeruf.KINDS``; ``"accepted"`` and ``"clear"`` (nothing in range) count; for
-    /// ``"tentative"``, from a hopping ring, slow down.
+    /// The outcome, one of ``eeruf.KINDS``; ``"accepted"`` and ``"clear"`` (nothing in range) count.
     kind: &'static str,
     /// The time of the echo after firing, in microseconds; None without echo.
     t_echo_us: Option<u32>,
@@ -101,7 +100,7 @@ pub(crate) struct Reading {
     previous_us: Option<u32>,
     /// Number of firings since the sensor's last accepted reading: 0 for this one, None if there never was one.
     age: Option<u16>,
-    /// The phase in which the sensor fired: 0 for a, 1 for b, more in a hopping ring; None from a filter alone.
+    /// The phase in which the sensor fired: 0 for a, 1 for b; None from a filter alone.
     phase: Option<u8>,
     /// The period in which the sensor fired, from 0; None from a filter alone.
     period: Option<u32>,
@@ -144,11 +143,6 @@ impl ExplainedBy {
 }
 
 impl Reading {
-    /// From a tracker alone, which knows no periods.
-    pub(crate) fn of_tracker(sensor: u8, phase: Phase, verdict: &Verdict) -> Self {
-        Self { phase: Some(phase.0), ..Self::of_filter(sensor, verdict) }
-    }
-
     /// From a ring.
     pub(crate) fn of_ring(reading: &eeruf_core::Reading) -> Self {
         let &eeruf_core::Reading { sensor, phase, period, kind, t_echo, previous, age, explained_by } = reading;
@@ -271,7 +265,7 @@ impl PeriodEnded {
         self.0.period
     }
 
-    /// Its phase: 0 for a, 1 for b; more in a hopping ring.
+    /// Its phase: 0 for a, 1 for b.
     #[getter]
     fn phase(&self) -> u8 {
         self.0.phase.0

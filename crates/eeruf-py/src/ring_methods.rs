@@ -1,15 +1,17 @@
 //! The methods of `Ring`.
 
-use eeruf_core::{Micros, hopping::HoppingPlan, watch::SensorWatch};
-use pyo3::{prelude::*, types::PyTuple};
+use eeruf_core::watch::SensorWatch;
+use pyo3::prelude::*;
 
 use crate::{
-    arguments::{flag, instance, micros, whole_or},
+    arguments::{flag, instance, micros, number},
+    errors::RingError,
+    gone::Gone,
     moments::{expected_changes, instant, until},
     owned_ring::{OwnedRing, table},
     requirements::{RequirementArguments, UnevenArguments},
     ring::{AnyRing, Fires, Ring, act, ask, of_sensor},
-    ring_arguments::{Sound, begins, config, listening},
+    ring_arguments::{FlowNeeds, Sound, begins, config},
     ring_events::{Fire, to_python},
     schedule::Schedule,
     sensor_watch::State,
@@ -104,87 +106,34 @@ impl Ring {
         Self::of(Fires::BySchedule(Box::new(OwnedRing::new(schedule, config, false, now)?)), silence, now)
     }
 
-    /// A ring that hops in time: its readings can also be ``"tentative"``, and no sensor stays blind.
-    ///
-    /// A sensor that hears nothing of its own gets a period in which it fires alone. ``docs/explanation/hopping.md``
-    /// has the rules, what they bring, and what is not promised.
-    ///
-    /// Args:
-    ///     schedule: a :class:`HoppingSchedule`.
-    ///     settings: a :class:`HoppingSettings`, or the name of one.
-    ///     now_us: when the first period begins.
-    ///     window_us: ``T_wind``: how long a sensor listens after it has fired, 1 to 16,711,679; one for all, or each.
-    ///     blanking_us: edges sooner than this after firing are ringing of the transducer, not echoes.
-    ///     reach_us: after how long no sound is heard any more; by default the window.
-    ///     seed: of the draws of new lags, below 2^32.
-    ///     t_delta_us: for each sensor, where they are not all alike: at most the settings'.
-    ///     refire_us: as for ``Ring``, as are the next three: what the schedule must keep of each sensor.
-    ///     intervals_us: pairs with the least time between their firings.
-    ///     shared_lines: groups of sensors on one echo line.
-    ///     together: groups of sensors that fire at the same instants.
-    ///     several_echoes: each sensor reports several echoes of a firing, of which up to eight have votes.
-    ///     silence: as for ``Ring``.
-    ///
-    /// Raises:
-    ///     ArgumentError: something of the wrong type or out of range.
-    ///     RingError: the schedule breaks what a sensor needs.
-    ///     HoppingError: a ``T_delta`` that is not below the schedule's step, a period too short for window and code,
-    ///         a window that is too long or ends within the blanking time.
-    ///
-    /// Example:
-    ///     >>> import eeruf
-    ///     >>> schedule = eeruf.HoppingSchedule(sensors=8, period_us=60_000, step_us=240)
-    ///     >>> eeruf.Ring.hopping(schedule, "quick", window_us=36_000).poll(0)
-    ///     Fire(sensor=0, phase=0, due_us=0)
-    #[staticmethod]
-    #[pyo3(signature = (
-        schedule, settings=None, now_us=None, *, window_us, blanking_us=None, reach_us=None, seed=None, t_delta_us=None,
-        refire_us=None, intervals_us=None, shared_lines=None, together=None, several_echoes=None,
-        silence=None))]
-    #[pyo3(text_signature = "(schedule, settings=\"balanced\", now_us=0, *, window_us, blanking_us=0, \
-            reach_us=None, seed=1, t_delta_us=None, refire_us=None, intervals_us=None, shared_lines=None, \
-            together=None, several_echoes=False, silence=\"never_free\")")]
-    fn hopping(
-        schedule: &Bound<'_, PyAny>,
-        settings: Option<&Bound<'_, PyAny>>,
-        now_us: Option<&Bound<'_, PyAny>>,
-        window_us: &Bound<'_, PyAny>,
-        blanking_us: Option<&Bound<'_, PyAny>>,
-        reach_us: Option<&Bound<'_, PyAny>>,
-        seed: Option<&Bound<'_, PyAny>>,
-        t_delta_us: Option<&Bound<'_, PyAny>>,
-        refire_us: Option<&Bound<'_, PyAny>>,
-        intervals_us: Option<&Bound<'_, PyAny>>,
-        shared_lines: Option<&Bound<'_, PyAny>>,
-        together: Option<&Bound<'_, PyAny>>,
-        several_echoes: Option<&Bound<'_, PyAny>>,
-        silence: Option<&Bound<'_, PyAny>>,
-    ) -> PyResult<Self> {
-        let (listening, now) = (listening(window_us, blanking_us, reach_us)?, begins(now_us)?);
-        let draws = (flag("several_echoes", several_echoes, false)?, whole_or("seed", seed, 1, 0..=u32::MAX)?);
-        let needs = RequirementArguments {
-            uneven: UnevenArguments { refire_us, intervals_us, shared_lines, together },
-            ..RequirementArguments::alike(t_delta_us, None, None, None, None, (Some(window_us), None))
-        };
-        Self::of(Fires::hopping(schedule, settings, &needs, listening, draws, now)?, silence, now)
-    }
-
-    /// A ring by flow: each sensor gets as much quiet around its firing as it has needed, and votes confirm an echo.
+    /// A ring by flow: one sensor after the other, with as much quiet around each firing as its readings have needed,
+    /// and a throw of dice in every gap. An echo is accepted if it fits what is believed, or if two in a row agree and
+    /// no firing of the ring explains both. A loop that comes late costs time only.
     /// ``docs/explanation/flow.md`` says for whom.
     ///
     /// Args:
     ///     sensors: how many, 1 to 64.
-    ///     settings: a dict of what differs from the default, as :class:`eeruf.sim.Method` takes it.
+    ///     settings: a dict of what differs from the default. Of the plan ``least_us`` and ``most_us``, the least and
+    ///         the most quiet, ``rest_us``, for which a sensor rests, ``dice_us``, the random time in every gap, and
+    ///         ``seed``, not 0, by default another one for each ring. Of belief ``t_delta_us``, ``near_us``,
+    ///         ``path_change_us``, ``memory``, ``hold``, and ``top_speed_m_s``, which holds where :meth:`moving` says
+    ///         none; ``alone``, whether no other robot is near, and ``votes``: ``"by_motion"``, one echo is enough
+    ///         while the robot moves and is alone, and else two in a row that agree, ``"two_in_a_row"`` or
+    ///         ``"every_echo"``.
     ///     now_us: when the first cycle begins.
-    ///     window_us: as for :meth:`hopping`, as are the others.
+    ///     window_us: ``T_wind``: how long a sensor listens after it has fired, 1 or more; one for all, or each.
     ///     blanking_us: edges sooner than this after firing are no echoes.
-    ///     reach_us: after how long no sound is heard any more; by default the window.
-    ///     several_echoes: as for :meth:`hopping`.
+    ///     reach_us: R: after how long no sound is heard any more, the tail of an echo included; by default two ninths
+    ///         more than the window. The most quiet that a sensor gets.
+    ///     refire_us: how soon a sensor may be triggered again, one for all, or each: the longest holds for all.
+    ///     shared_lines: groups of sensors on one echo line, ``[(0, 3), (1, 4)]``: none fires while another listens.
+    ///     together: groups of sensors that fire at the same instants, declared not to hear each other.
+    ///     several_echoes: each sensor reports several echoes of a firing, of which up to eight are judged.
     ///     silence: as for ``Ring``.
     ///
     /// Raises:
     ///     ArgumentError: something of the wrong type or out of range.
-    ///     HoppingError: settings that contradict each other or the window.
+    ///     RingError: settings that contradict each other or the window.
     ///
     /// Example:
     ///     >>> import eeruf
@@ -193,10 +142,10 @@ impl Ring {
     ///     0
     #[staticmethod]
     #[pyo3(signature = (
-        sensors, settings=None, now_us=None, *, window_us, blanking_us=None, reach_us=None, several_echoes=None,
-        silence=None))]
+        sensors, settings=None, now_us=None, *, window_us, blanking_us=None, reach_us=None, refire_us=None,
+        shared_lines=None, together=None, several_echoes=None, silence=None))]
     #[pyo3(text_signature = "(sensors, settings=None, now_us=0, *, window_us, blanking_us=0, reach_us=None, \
-            several_echoes=False, silence=\"never_free\")")]
+            refire_us=None, shared_lines=None, together=None, several_echoes=False, silence=\"never_free\")")]
     fn flow(
         sensors: &Bound<'_, PyAny>,
         settings: Option<&Bound<'_, PyAny>>,
@@ -204,12 +153,16 @@ impl Ring {
         window_us: &Bound<'_, PyAny>,
         blanking_us: Option<&Bound<'_, PyAny>>,
         reach_us: Option<&Bound<'_, PyAny>>,
+        refire_us: Option<&Bound<'_, PyAny>>,
+        shared_lines: Option<&Bound<'_, PyAny>>,
+        together: Option<&Bound<'_, PyAny>>,
         several_echoes: Option<&Bound<'_, PyAny>>,
         silence: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
         let (several, now) = (flag("several_echoes", several_echoes, false)?, begins(now_us)?);
-        let listening = listening(window_us, blanking_us, reach_us)?;
-        Self::of(Fires::flow(sensors, settings, listening, several, now)?, silence, now)
+        let uneven = UnevenArguments { refire_us, shared_lines, together, ..UnevenArguments::default() };
+        let needs = FlowNeeds { window_us, uneven, blanking_us, reach_us };
+        Self::of(Fires::flow(sensors, settings, &needs, several, now)?, silence, now)
     }
 
     /// The next event at a time. Call again until there is none, then wait until ``next_deadline_us``.
@@ -245,6 +198,47 @@ impl Ring {
         let change = |sensor: u8| changes.get(usize::from(sensor)).copied().unwrap_or(0);
         let event = self.0.get()?.poll(now, change);
         event.map(|event| to_python(py, &event)).transpose()
+    }
+
+    /// Say how fast the robot moves and turns, for a ring by flow: once a control cycle, also that it stands. By so
+    /// much more may good readings change. After half a second without a word ``top_speed_m_s`` holds again.
+    ///
+    /// Args:
+    ///     speed_m_s: in m/s, up to 100 in either direction.
+    ///     turn_rad_s: in rad/s, up to 100 in either direction.
+    ///     now_us: the present, 0 or more.
+    ///
+    /// Raises:
+    ///     ArgumentError: no such speed or time.
+    ///     RingError: the ring fires by a schedule: its :meth:`poll` takes the change that is expected.
+    ///
+    /// Example:
+    ///     >>> import eeruf
+    ///     >>> ring = eeruf.Ring.flow(8, window_us=36_000)
+    ///     >>> ring.moving(0.5, 0.0, now_us=20_000)
+    fn moving(
+        &self,
+        speed_m_s: &Bound<'_, PyAny>,
+        turn_rad_s: &Bound<'_, PyAny>,
+        now_us: &Bound<'_, PyAny>,
+    ) -> PyResult<()> {
+        let permille = |name, value| number(name, value, -100.0..=100.0).map(|value| (1e3 * value.abs()).ceil() as u32);
+        let (speed, turn) = (permille("speed_m_s", speed_m_s)?, permille("turn_rad_s", turn_rad_s)?);
+        let now = instant("now_us", now_us)?;
+        match &mut self.0.get()?.fires {
+            Fires::BySchedule(_) => {
+                return Err(RingError::new_err("moving of a ring by a schedule; expected a ring by eeruf.Ring.flow"));
+            }
+            Fires::Flow(ring) => ring.moving(speed, turn, now),
+            Fires::FlowSeveral(ring) => ring.moving(speed, turn, now),
+        }
+        Ok(())
+    }
+
+    /// Time hopping is gone.
+    #[classattr]
+    fn hopping() -> Gone {
+        Gone::new("Ring.hopping", "Ring.flow")
     }
 
     fn __repr__(&self) -> PyResult<String> {
@@ -284,44 +278,14 @@ impl Ring {
         Ok(Schedule(*self.0.get()?.by_schedule("schedule")?.schedule()))
     }
 
-    /// The lag of each sensor as it is now, in microseconds; empty where a ring does not hop.
-    #[getter]
-    fn t_lag_us<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
-        PyTuple::new(py, self.0.get()?.lags().map(Micros::as_micros).collect::<Vec<_>>())
-    }
-
-    /// The sensor that the present period belongs to alone, from 0; None if it belongs to all.
-    #[getter]
-    fn solo(&self) -> PyResult<Option<u8>> {
-        Ok(self.0.get()?.hop_plan().and_then(HoppingPlan::solo))
-    }
-
-    /// The echo that votes have confirmed of a sensor, in microseconds; None for none, or where none are counted.
+    /// Fire by another schedule when the present period ends. ``t_delta_us`` and ``window_us`` stay, and so does what
+    /// each sensor needs where they are not all alike.
     ///
     /// Args:
-    ///     sensor: which one, from 0.
-    ///
-    /// Raises:
-    ///     ArgumentError: no such sensor.
-    ///
-    /// Example:
-    ///     >>> import eeruf
-    ///     >>> eeruf.Ring.flow(2, window_us=36_000).confirmed_us(0) is None  # nothing has been heard yet
-    ///     True
-    fn confirmed_us(&self, sensor: &Bound<'_, PyAny>) -> PyResult<Option<u32>> {
-        let any = self.0.get()?;
-        Ok(any.confirmed(any.sensor(sensor)?).map(Micros::as_micros))
-    }
-
-    /// Fire by another schedule when the present period ends; a ring that hops does once all sound from before died.
-    /// ``t_delta_us`` and ``window_us`` stay, and so does what each sensor needs where they are not all alike.
-    ///
-    /// Args:
-    ///     schedule: of as many sensors; a :class:`HoppingSchedule` of the same code for a ring that hops.
+    ///     schedule: of as many sensors.
     ///
     /// Raises:
     ///     ArgumentError: no schedule, or not of as many sensors.
-    ///     HoppingError: another code, or a period that is too short to hop.
     ///     RingError: a sensor would fire again while it still listens, or the schedule does not reject crosstalk at
     ///         this ``t_delta_us``, or breaks what a sensor needs. The ring goes on as before.
     ///
@@ -334,7 +298,8 @@ impl Ring {
     ///     >>> ring.schedule.period_us
     ///     80000
     fn change_schedule(&self, schedule: &Bound<'_, PyAny>) -> PyResult<()> {
-        self.0.get()?.change(schedule)
+        let schedule = instance::<Schedule>("schedule", schedule, "an eeruf.Schedule")?;
+        self.0.get()?.change_schedule(&schedule.get().0)
     }
 
     /// ``T_delta``, in microseconds. It can be changed while the ring runs, if it fires by a :class:`Schedule`.

@@ -72,7 +72,6 @@ use crate::{
 ///     clock_offset_us: what its clock shows at the start.
 ///     transducer: an older name of ``module``.
 ///     clock_drift_ppm: rate error of its clock, positive if fast, in millionths.
-///     fleet_number: its number among robots of one make, 0 to 255, by which flow tells six of them apart.
 ///
 /// Raises:
 ///     ArgumentError: something of the wrong type or out of range, or two kinds of motion at once.
@@ -143,7 +142,7 @@ impl Robot {
             Motion::Constant { .. } => add(&TURNS)?,
             Motion::Waypoints { .. } => add(&DRIVES)?,
         }
-        add(&["clock_offset_us", "clock_drift_ppm", "fleet_number"])?;
+        add(&["clock_offset_us", "clock_drift_ppm"])?;
         Ok(all)
     }
 }
@@ -218,14 +217,14 @@ impl Robot {
         consecutive=None, odometry=None, velocity_m_s=None, turn_rad_s=None, waypoints_m=None,
         speed_m_s=None, clock_offset_us=None, clock_drift_ppm=None, body=None, beam=None, coupling_db=None,
         height_m=None, together=None, transducer=None, audible_us=None, path_change_us=None,
-        firing=None, ring=None, fleet_number=None
+        firing=None, ring=None
     ))]
     #[pyo3(text_signature = "(pose, sensors=None, spacing_rad=None, radius_m=None, module=\"polaroid-6500\", *, \
             gain=\"constant\", period_us=60000, t_delta_us=500, window_us=36000, blanking_us=None, \
             min_refire_us=36000, start_us=0, schedule=None, neighbours=4, consecutive=2, odometry=False, \
             velocity_m_s=None, turn_rad_s=None, waypoints_m=None, speed_m_s=None, clock_offset_us=0, \
             clock_drift_ppm=0.0, body=None, beam=None, coupling_db=None, height_m=0.3, together=(), transducer=None, \
-            audible_us=None, path_change_us=None, firing=None, ring=None, fleet_number=0)")]
+            audible_us=None, path_change_us=None, firing=None, ring=None)")]
     #[expect(clippy::too_many_arguments, reason = "keyword arguments")]
     fn new(
         pose: &Bound<'_, PyAny>,
@@ -260,7 +259,6 @@ impl Robot {
         path_change_us: Option<&Bound<'_, PyAny>>,
         firing: Option<&Bound<'_, PyAny>>,
         ring: Option<&Bound<'_, PyAny>>,
-        fleet_number: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
         let pose = pose_of("pose", pose)?;
         let spacing_rad = spacing_rad.map(|angle| number("spacing_rad", angle, -10.0..=10.0)).transpose()?;
@@ -378,7 +376,6 @@ impl Robot {
             offset_us: whole_or("clock_offset_us", clock_offset_us, 0, 0..=u32::MAX)?,
             drift_ppm: number_or("clock_drift_ppm", clock_drift_ppm, 0.0, -1e3..=1e3)?,
         };
-        robot.fleet_number = whole_or("fleet_number", fleet_number, 0, 0..=u8::MAX)?;
         robot.body = body.map(outline).transpose()?;
         let mut robot = match height_m {
             None => robot,
@@ -621,12 +618,6 @@ impl Robot {
     #[getter]
     fn clock_drift_ppm(&self) -> f64 {
         self.robot.clock.drift_ppm
-    }
-
-    /// Its number among robots of one make, by which flow tells them apart.
-    #[getter]
-    fn fleet_number(&self) -> u8 {
-        self.robot.fleet_number
     }
 
     fn __repr__(slf: &Bound<'_, Self>) -> PyResult<String> {

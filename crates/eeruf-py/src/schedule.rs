@@ -12,7 +12,7 @@ use crate::{
     arguments::{self, micros, shown, times, whole, wrong},
     errors::{Raise, ScheduleError, warn_of},
     fields::{Reduced, attributes, call, reduce, repr, to_dict},
-    hopping_schedule::HoppingSchedule,
+    gone::Gone,
     report::Report,
     requirements::{RequirementArguments, UnevenArguments},
 };
@@ -108,35 +108,15 @@ impl Schedule {
         AnySchedule::from_slices(period, &vec![Micros::ZERO; a.len()], [&a, &b]).map(Self).map_err(Raise::raise)
     }
 
-    /// A schedule of many phases by a linear congruence: sensor ``x`` fires ``step_us * ((x + 1) * m % phases)`` after
-    /// its lag in phase ``m``. For robots that stand: a robot that drives takes a :class:`HoppingSchedule`.
-    ///
-    /// Args:
-    ///     sensors: how many, 1 to 64.
-    ///     period_us: the period, ``T_p``.
-    ///     step_us: the least shift of crosstalk, 1 to 65535.
-    ///     phases: at least this many, 2 to 67; by default the 5 that confirm an echo.
-    ///     t_lag_us: the lag of each sensor; by default they are spread evenly over the period.
-    ///
-    /// Raises:
-    ///     ArgumentError: something of the wrong type or out of range.
-    ///     HoppingError: numbers that make no such schedule.
-    ///
-    /// Example:
-    ///     >>> from eeruf import Schedule
-    ///     >>> Schedule.congruence(sensors=8, period_us=60_000, step_us=240).t_fire_us[1, :3].tolist()
-    ///     [240, 7680, 15120]
-    #[staticmethod]
-    #[pyo3(signature = (sensors, period_us, step_us, phases=None, t_lag_us=None))]
-    #[pyo3(text_signature = "(sensors, period_us, step_us, phases=5, t_lag_us=None)")]
-    fn congruence(
-        sensors: &Bound<'_, PyAny>,
-        period_us: &Bound<'_, PyAny>,
-        step_us: &Bound<'_, PyAny>,
-        phases: Option<&Bound<'_, PyAny>>,
-        t_lag_us: Option<&Bound<'_, PyAny>>,
-    ) -> PyResult<HoppingSchedule> {
-        HoppingSchedule::congruence(sensors, period_us, step_us, phases, t_lag_us)
+    /// Time hopping is gone.
+    #[classattr]
+    fn congruence() -> Gone {
+        Gone::new("Schedule.congruence", "Ring.flow")
+    }
+
+    #[classattr]
+    fn phases() -> Gone {
+        Gone::new("Schedule.phases", "Ring.flow")
     }
 
     /// Read a schedule as ``eeruf design --emit toml`` and :meth:`to_toml` write it.

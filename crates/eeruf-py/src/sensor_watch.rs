@@ -15,7 +15,7 @@ use crate::{
     ring_events::{ExplainedBy, to_core},
 };
 
-/// Watches the events of a ring, a hopping one too: what is known of the space before each sensor now, and which
+/// Watches the events of a ring: what is known of the space before each sensor now, and which
 /// sensors hear echoes none of which is accepted.
 ///
 /// Args:

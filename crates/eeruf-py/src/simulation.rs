@@ -426,7 +426,7 @@ impl Simulation {
     ///
     /// Raises:
     ///     ArgumentError: no such robot, or something else than a schedule.
-    ///     SimulationError: a method without such a schedule (immediate refiring, dither, hopping, adaptive, a firing
+    ///     SimulationError: a method without such a schedule (immediate refiring, dither, adaptive, a firing
     ///         of one's own), a schedule of another number of sensors, or one by which a sensor would fire again while
     ///         it listens. The ring then goes on as before.
     ///

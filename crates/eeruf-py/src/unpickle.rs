@@ -2,7 +2,7 @@
 
 use std::collections::HashSet;
 
-use eeruf_core::{MAX_PHASES, MAX_SENSORS, ReadingKind};
+use eeruf_core::{MAX_SENSORS, ReadingKind};
 use eeruf_sim::{Cause, HeardPath, NO_PATH, SensorId, world::MAX_ROBOTS};
 use numpy::PyReadonlyArray1;
 use pyo3::{prelude::*, types::PyDict};
@@ -105,7 +105,7 @@ pub(crate) fn readings_from_columns(
         sensors,
         sensor: index(columns, "sensor", MAX_SENSORS as i64)?,
         period: index(columns, "period", i64::from(u32::MAX))?,
-        phase: index(columns, "phase", MAX_PHASES as i64)?,
+        phase: index(columns, "phase", i64::from(u8::MAX) + 1)?,
         fired_s: column(columns, "fired_s")?,
         x_m: column(columns, "x_m")?,
         y_m: column(columns, "y_m")?,
@@ -117,8 +117,6 @@ pub(crate) fn readings_from_columns(
         cause: code("cause", CAUSES.len())?.into_iter().map(|cause| CAUSE_OF[cause]).collect(),
         emitted_s: column(columns, "emitted_s")?,
         expected_change_us: column(columns, "expected_change_us")?,
-        // Nothing in Python asks for it.
-        weighed: vec![None; robot.len()],
         path,
         paths,
         robot,

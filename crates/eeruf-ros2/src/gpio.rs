@@ -138,7 +138,7 @@ impl Known {
     fn frame(&mut self, message: Message) -> FromLine {
         let sequence = self.sequence;
         self.sequence = sequence.wrapping_add(1);
-        FromLine::Frame(Ok(Received { sequence, message }), nanoseconds())
+        FromLine::Frame(Ok(Received { sequence, message, of_hopping: false }), nanoseconds())
     }
 
     fn message(
@@ -305,7 +305,7 @@ mod tests {
         let (mut readings, mut healths, mut next) = (vec![vec![]; 5], vec![], 0);
         ring.run(modules, |from| {
             let FromLine::Frame(frame, _) = from else { return true };
-            let Received { sequence, message } = frame.unwrap();
+            let Received { sequence, message, .. } = frame.unwrap();
             assert_eq!(sequence, next);
             next += 1;
             match message {

@@ -99,7 +99,7 @@ parameters! {
     echo_lines: Vec<u32> = Vec::new(), "[]";
     /// For simulation: a scene file, whose first robot is the ring, and how it fires and filters.
     scene: PathBuf = PathBuf::new(), "\"\"";
-    /// A method of `eeruf study`: eeruf, eeruf_hopping, simultaneous, ..
+    /// A method of `eeruf study`: eeruf, flow, simultaneous, ..
     method: String = "eeruf".to_owned(), "eeruf";
     /// The scene's frame in the simulation.
     map_frame: String = "map".to_owned(), "map";

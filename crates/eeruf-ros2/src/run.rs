@@ -164,7 +164,11 @@ impl EerufNode {
         }
     }
 
-    fn frame(&mut self, Received { sequence, message }: Received, at_ns: i64) -> Result<(), String> {
+    fn frame(&mut self, received: Received, at_ns: i64) -> Result<(), String> {
+        let Received { sequence, message, of_hopping } = received;
+        if of_hopping {
+            self.say_once("the board's ring hops in time, of an earlier version; how it weighs readings is ignored");
+        }
         if let Some(last) = self.sequence.replace(sequence) {
             // A board that restarted begins with 0.
             let missing = sequence.wrapping_sub(last).wrapping_sub(1);
@@ -229,18 +233,7 @@ impl EerufNode {
                     let kind = self.filter.push(sensor, t_echo.map_or(Raw::Nothing, |t_echo| self.raw(t_echo)))?;
                     let fired = eeruf_core::Instant::from_micros(fired_us);
                     let (late, age) = (Micros::ZERO, Micros::ZERO);
-                    let firing = Firing {
-                        sensor,
-                        phase,
-                        kind,
-                        fired,
-                        period,
-                        t_echo,
-                        late,
-                        age,
-                        explained_by: None,
-                        weighed: None,
-                    };
+                    let firing = Firing { sensor, phase, kind, fired, period, t_echo, late, age, explained_by: None };
                     // The stamp's clock is unknown; the message has just come.
                     self.firing(&firing, nanoseconds())?;
                 }

@@ -99,7 +99,6 @@ impl Simulator {
                 late: Micros::ZERO,
                 age: Micros::ZERO,
                 explained_by: None,
-                weighed: readings.weighed[n],
             };
             let fired_ns = self.began_ns + ((fired_s + self.skipped_s) * 1e9) as i64;
             read.push(Simulated { firing, fired_ns, truth: micros(readings.reference_us[n]) });

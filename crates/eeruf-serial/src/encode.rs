@@ -1,9 +1,9 @@
 //! [`Encoder`]: the bytes of a frame.
 
-use eeruf_core::{MAX_SENSORS, Micros, hopping::Weighed, judge::Explanation};
+use eeruf_core::{MAX_SENSORS, Micros, judge::Explanation};
 
 use crate::firing::Firing;
-use crate::{BY_HISTORY, BY_NOTHING, FIRING, HELLO, NO_ECHO, PERIOD, SOLO, STEADY, VERSION, WEIGHED};
+use crate::{BY_HISTORY, BY_NOTHING, FIRING, HELLO, NO_ECHO, PERIOD, VERSION};
 
 /// A frame's content at its longest: that of a period's end with 64 sensors, and the check sum.
 const LONGEST_CONTENT: usize = 10 + MAX_SENSORS + 2;
@@ -48,7 +48,7 @@ impl Encoder {
 
     /// A firing.
     pub fn firing(&mut self, firing: &Firing) -> Frame {
-        let mut content = self.begin(if firing.weighed.is_some() { WEIGHED } else { FIRING });
+        let mut content = self.begin(FIRING);
         content.push(&[firing.sensor, firing.phase, firing.kind as u8]);
         content.push(&firing.fired.as_micros().to_le_bytes());
         content.push(&firing.period.to_le_bytes());
@@ -60,10 +60,6 @@ impl Encoder {
             Some(Explanation::Sensor(sensor)) => sensor,
             Some(Explanation::History) => BY_HISTORY,
         }]);
-        if let Some(Weighed { solo, steady, changes, expected_change_us }) = firing.weighed {
-            content.push(&[SOLO * u8::from(solo) + STEADY * u8::from(steady), changes]);
-            content.push(&expected_change_us.to_le_bytes());
-        }
         content.finish()
     }
 

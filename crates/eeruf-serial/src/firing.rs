@@ -1,4 +1,4 @@
-use eeruf_core::{Instant, Micros, Reading, ReadingKind, hopping::Weighed, judge::Explanation};
+use eeruf_core::{Instant, Micros, Reading, ReadingKind, judge::Explanation};
 
 /// One firing of one sensor, and what came of it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -21,15 +21,13 @@ pub struct Firing {
     pub age: Micros,
     /// The reason why the reading is ambiguous; `None` for every other kind.
     pub explained_by: Option<Explanation>,
-    /// The tracker's weighing of the reading in a hopping ring; `None` for other rings.
-    pub weighed: Option<Weighed>,
 }
 
 impl Firing {
-    /// A reading of a sensor that `fired` then, so `late`, as a frame has it that is made `now`; not weighed.
+    /// A reading of a sensor that `fired` then, so `late`, as a frame has it that is made `now`.
     pub fn of(reading: &Reading, fired: Instant, late: Micros, now: Instant) -> Self {
         let Reading { sensor, phase, kind, period, t_echo, explained_by, .. } = *reading;
         let age = now.since(fired);
-        Self { sensor, phase: phase.0, kind, fired, period, t_echo, late, age, explained_by, weighed: None }
+        Self { sensor, phase: phase.0, kind, fired, period, t_echo, late, age, explained_by }
     }
 }

@@ -2,8 +2,7 @@
 //! and a program on the other side reads. Byte by byte: `docs/reference/serial.md`.
 //!
 //! - [`Recorder`] follows the events of a ring and makes the frames: `no_std`, no allocator, no dependency but
-//!   `eeruf-core`. [`Encoder`] is the part of it that knows the bytes. Of a hopping ring, frames say how each reading
-//!   was weighed too.
+//!   `eeruf-core`. [`Encoder`] is the part of it that knows the bytes.
 //! - `Decoder`, with the feature `decode`, reads them: whatever gets lost or flipped on the way costs the frames that
 //!   it hits and no other.
 //!
@@ -37,7 +36,6 @@ mod recorder;
 
 #[cfg(feature = "decode")]
 pub use decode::{Decoder, FrameError, Message, Received};
-pub use eeruf_core::hopping::Weighed;
 pub use encode::{Encoder, Frame, LONGEST_CLOCK, LONGEST_FRAME};
 pub use firing::Firing;
 pub use recorder::Recorder;
@@ -53,11 +51,9 @@ const OLDEST_VERSION: u8 = 1;
 const HELLO: u8 = 0;
 const FIRING: u8 = 1;
 const PERIOD: u8 = 2;
-const WEIGHED: u8 = 3;
-
-/// The bits of a weighed firing.
-const SOLO: u8 = 1;
-const STEADY: u8 = 2;
+/// A firing of a ring that hopped, which boards of earlier versions send.
+#[cfg(feature = "decode")]
+const OF_HOPPING: u8 = 3;
 
 /// The bytes beside the sensors, from 0, that explain a reading.
 const BY_HISTORY: u8 = 0xFE;

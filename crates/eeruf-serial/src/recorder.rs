@@ -1,9 +1,6 @@
 //! [`Recorder`]: from the events of a ring to frames.
 
-use eeruf_core::{
-    Instant, MAX_SENSORS, Micros, RingEvent,
-    hopping::{HoppingRing, Weighed},
-};
+use eeruf_core::{Instant, MAX_SENSORS, Micros, RingEvent};
 
 use crate::encode::{Encoder, Frame};
 use crate::firing::Firing;
@@ -42,32 +39,6 @@ impl<const K: usize> Recorder<K> {
         health: impl Fn(u8) -> u8,
         edges_lost: u8,
     ) -> Option<Frame> {
-        self.weighed_event(event, now, |_| None, health, edges_lost)
-    }
-
-    /// As [`event`](Self::event), of a hopping ring: its frames also say how readings were weighed, so that `eeruf
-    /// replay --hopping` can do it again. Before the next poll, with the changes that the poll was given, all 0 for a
-    /// robot that stands.
-    pub fn hopping_event<const N: usize, const H: usize>(
-        &mut self,
-        event: &RingEvent,
-        now: Instant,
-        (ring, expected_change_us): (&HoppingRing<N, H>, impl Fn(u8) -> i32),
-        health: impl Fn(u8) -> u8,
-        edges_lost: u8,
-    ) -> Option<Frame> {
-        let weighed = |sensor| ring.plan().weighed(sensor, expected_change_us(sensor));
-        self.weighed_event(event, now, weighed, health, edges_lost)
-    }
-
-    fn weighed_event(
-        &mut self,
-        event: &RingEvent,
-        now: Instant,
-        weighed: impl Fn(u8) -> Option<Weighed>,
-        health: impl Fn(u8) -> u8,
-        edges_lost: u8,
-    ) -> Option<Frame> {
         match *event {
             RingEvent::Fire { sensor, due, .. } => {
                 self.fired(sensor, now, now.since(due));
@@ -77,8 +48,7 @@ impl<const K: usize> Recorder<K> {
             }
             RingEvent::Reading(reading) => {
                 let &(fired, late) = self.fired.get(usize::from(reading.sensor))?;
-                let weighed = weighed(reading.sensor);
-                Some(self.encoder.firing(&Firing { weighed, ..Firing::of(&reading, fired, late, now) }))
+                Some(self.encoder.firing(&Firing::of(&reading, fired, late, now)))
             }
             RingEvent::PeriodEnded(ref stats) => {
                 Some(self.encoder.period(stats.period, stats.max_late, edges_lost, (0..K as u8).map(health)))

@@ -2,18 +2,13 @@
 //! else.
 
 use eeruf_core::{Instant, Micros, ReadingKind, Ring, RingConfig, RingEvent, judge::Explanation, tables::PAPER_12};
-use eeruf_serial::{Decoder, Encoder, Firing, Frame, FrameError, LONGEST_FRAME, Message, Received, Recorder, Weighed};
+use eeruf_serial::{Decoder, Encoder, Firing, Frame, FrameError, LONGEST_FRAME, Message, Received, Recorder};
 use fastrand::Rng;
 use proptest::prelude::*;
 
 fn received(bytes: &[u8]) -> Vec<Result<Received, FrameError>> {
     let mut decoder = Decoder::default();
     bytes.iter().filter_map(|&byte| decoder.push(byte)).collect()
-}
-
-fn weighed() -> impl Strategy<Value = Weighed> {
-    (any::<bool>(), any::<bool>(), any::<u8>(), any::<i32>())
-        .prop_map(|(solo, steady, changes, expected_change_us)| Weighed { solo, steady, changes, expected_change_us })
 }
 
 fn explanation() -> impl Strategy<Value = Option<Explanation>> {
@@ -26,9 +21,9 @@ fn explanation() -> impl Strategy<Value = Option<Explanation>> {
 
 fn firings() -> impl Strategy<Value = Firing> {
     let numbers = (any::<u32>(), any::<u32>(), any::<u16>(), any::<u32>());
-    let why = (explanation(), prop::option::of(weighed()));
-    (0..64_u8, 0..8_u8, 0..ReadingKind::ALL.len(), prop::option::of(0..u32::MAX), numbers, why).prop_map(
-        |(sensor, phase, kind, t_echo, (fired, period, late, age), (explained_by, weighed))| Firing {
+    let kinds = 0..ReadingKind::ALL.len();
+    (0..64_u8, 0..8_u8, kinds, prop::option::of(0..u32::MAX), numbers, explanation()).prop_map(
+        |(sensor, phase, kind, t_echo, (fired, period, late, age), explained_by)| Firing {
             sensor,
             phase,
             kind: ReadingKind::ALL[kind],
@@ -38,7 +33,6 @@ fn firings() -> impl Strategy<Value = Firing> {
             late: Micros::new(late.into()),
             age: Micros::new(age),
             explained_by,
-            weighed,
         },
     )
 }
@@ -79,8 +73,8 @@ proptest! {
             line.extend_from_slice(frame.as_bytes());
         }
         let sequence = 0..;
-        let expected: Vec<_> =
-            messages.into_iter().zip(sequence).map(|(message, sequence)| Ok(Received { sequence, message })).collect();
+        let read = |(message, sequence)| Ok(Received { sequence, message, of_hopping: false });
+        let expected: Vec<_> = messages.into_iter().zip(sequence).map(read).collect();
         prop_assert_eq!(received(&line), expected);
     }
 
@@ -102,7 +96,6 @@ fn a_minute(numbers: &mut Rng, frames: usize) -> Vec<Frame> {
         late: Micros::new(numbers.usize(..300) as u32),
         age: Micros::new(30_000),
         explained_by: n.is_multiple_of(5).then_some(Explanation::Sensor((n % 7) as u8)),
-        weighed: (n / 8 % 2 == 1).then_some(Weighed { solo: false, steady: true, changes: 3, expected_change_us: -70 }),
     };
     (0..frames).map(|n| encoder.firing(&firing(n, numbers))).collect()
 }
@@ -189,9 +182,9 @@ fn one_wrong_bit_before_packing_is_always_noticed() {
     }
 }
 
-/// The examples of docs/reference/serial.md.
+/// The example of docs/reference/serial.md.
 #[test]
-fn a_firing_is_these_bytes_and_a_weighed_one_these() {
+fn a_firing_is_these_bytes() {
     let firing = Firing {
         sensor: 3,
         phase: 1,
@@ -202,21 +195,11 @@ fn a_firing_is_these_bytes_and_a_weighed_one_these() {
         late: Micros::new(40),
         age: Micros::new(40_100),
         explained_by: None,
-        weighed: None,
     };
     let mut encoder = Encoder::new();
     encoder.hello(8, "board");
-    let mut hex = |firing: &Firing| {
-        let hex: Vec<_> = encoder.firing(firing).as_bytes().iter().map(|byte| format!("{byte:02x}")).collect();
-        hex.join(" ")
-    };
-    assert_eq!(hex(&firing), "03 21 01 07 03 01 01 87 d6 12 02 0c 01 01 03 f0 16 01 02 28 03 a4 9c 01 04 ff d9 4c 00");
-    let weighed = Some(Weighed { solo: false, steady: true, changes: 7, expected_change_us: -120 });
-    let weighed = hex(&Firing { weighed, ..firing });
-    assert_eq!(
-        weighed,
-        "03 23 02 07 03 01 01 87 d6 12 02 0c 01 01 03 f0 16 01 02 28 03 a4 9c 01 0a ff 02 07 88 ff ff ff 3c 8f 00"
-    );
+    let hex = encoder.firing(&firing).as_bytes().iter().map(|byte| format!("{byte:02x}")).collect::<Vec<_>>().join(" ");
+    assert_eq!(hex, "03 21 01 07 03 01 01 87 d6 12 02 0c 01 01 03 f0 16 01 02 28 03 a4 9c 01 04 ff d9 4c 00");
 }
 
 #[test]
@@ -245,13 +228,12 @@ fn what_is_whole_and_of_another_version_or_kind_is_named() {
     assert_eq!(firing(|content| content[5] = 12), FrameError::Content("kind of reading"));
     assert_eq!(packed(&[0x21, 0, 0, 8]), FrameError::Content("length"));
     assert_eq!(packed(&[0x21; 26]), FrameError::Content("kind of reading"));
-    let weighed = |length: usize, flags: u8| {
+    let hopping = |length: usize| {
         let mut content = vec![0; length];
-        (content[0], content[25]) = (0x23, flags);
+        content[0] = 0x23;
         packed(&content)
     };
-    assert_eq!(weighed(31, 4), FrameError::Content("flags"));
-    assert_eq!((weighed(30, 3), weighed(32, 3)), (FrameError::Content("length"), FrameError::Content("length")));
+    assert_eq!((hopping(30), hopping(32)), (FrameError::Content("length"), FrameError::Content("length")));
 }
 
 #[test]
@@ -295,13 +277,10 @@ fn a_recorder_says_everything_that_a_ring_reads() {
     assert_eq!(heard, expected);
 }
 
-/// The frames that docs/reference/serial.md gave for version 1.
+// Boards in the field: firings of version 1, and of rings that hopped, whose weighing is ignored.
 #[test]
-fn frames_of_version_one_are_still_read() {
+fn frames_of_earlier_versions_are_still_read() {
     let bytes = |hex: &str| hex.split(' ').map(|byte| u8::from_str_radix(byte, 16).unwrap()).collect::<Vec<_>>();
-    let plain = "03 11 01 07 03 01 01 87 d6 12 02 0c 01 01 03 f0 16 01 02 28 03 a4 9c 01 03 36 c9 00";
-    let weighed =
-        "03 13 02 07 03 01 01 87 d6 12 02 0c 01 01 03 f0 16 01 02 28 03 a4 9c 01 09 02 07 88 ff ff ff 8f 42 00";
     let expected = Firing {
         sensor: 3,
         phase: 1,
@@ -312,10 +291,14 @@ fn frames_of_version_one_are_still_read() {
         late: Micros::new(40),
         age: Micros::new(40_100),
         explained_by: None,
-        weighed: None,
     };
-    let how = Weighed { solo: false, steady: true, changes: 7, expected_change_us: -120 };
-    let of = |sequence, firing| Ok(Received { sequence, message: Message::Firing(firing) });
-    assert_eq!(received(&bytes(plain)), [of(1, expected)]);
-    assert_eq!(received(&bytes(weighed)), [of(2, Firing { weighed: Some(how), ..expected })]);
+    let (begin, middle) = ("07 03 01 01 87 d6 12 02 0c 01 01 03 f0 16 01 02 28 03 a4 9c 01", "02 07 88 ff ff ff");
+    for (frame, sequence, of_hopping) in [
+        (format!("03 11 01 {begin} 03 36 c9 00"), 1, false),
+        (format!("03 13 02 {begin} 09 {middle} 8f 42 00"), 2, true),
+        (format!("03 23 02 {begin} 0a ff {middle} 3c 8f 00"), 2, true),
+    ] {
+        let message = Message::Firing(expected);
+        assert_eq!(received(&bytes(&frame)), [Ok(Received { sequence, message, of_hopping })], "{frame}");
+    }
 }

@@ -80,8 +80,8 @@ pub use acoustics::{
 pub use geometry::{Moment, Point, Pose, Specular, Vector, alhazen, alhazen_twice};
 pub use maps::OccupancyGrid;
 pub use methods::{
-    BestSchedule, Firing, FiringPeriod, Method, OwnError, UnknownMethod, best_schedule_for, requirements_of,
-    shortest_schedule_for, table_i_d_for,
+    BestSchedule, Firing, FiringPeriod, FlowOptions, Method, OwnError, UnknownMethod, best_schedule_for,
+    requirements_of, shortest_schedule_for, table_i_d_for,
 };
 pub use navigation::{Driven, Himm, LabMate, Vfh};
 pub use results::{

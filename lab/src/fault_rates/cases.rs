@@ -12,8 +12,6 @@ use eeruf_sim::{
     table_i_d_for,
 };
 
-use crate::firings::firing_of;
-
 use super::oracle::{paths_tell, scene_tells};
 use super::truth::{SENSORS, Truth};
 
@@ -227,7 +225,7 @@ pub(crate) fn world(number: u64, place: Place, robots: Robots, physics: Physics)
 /// The log of the first robot's ring.
 fn log_of(readings: &Readings) -> FiringLog {
     let of_first = (0..readings.len()).filter(|&k| readings.robot[k] == 0);
-    FiringLog::new("simulation", of_first.map(|k| firing_of(readings, k)).collect())
+    FiringLog::new("simulation", of_first.map(|k| eeruf::firing(readings, k)).collect())
 }
 
 /// A log with its fault.

@@ -60,7 +60,7 @@ pub(crate) fn main(arguments: &[String]) -> crate::Answer {
     let mut next = |default: &str| arguments.next().map_or_else(|| default.to_owned(), String::clone);
     let (first, places): (u64, u64) = (next("20000").parse()?, next("50").parse()?);
     let physics_name = next("plain");
-    let (physics, method): (Physics, Method) = (physics_name.parse()?, next("eeruf_hopping").parse()?);
+    let (physics, method): (Physics, Method) = (physics_name.parse()?, next("flow").parse()?);
     let robots = next("both");
     let columns: Vec<_> = [
         ("alcove, stands", Place::Alcove, Robots::Stand),

@@ -12,11 +12,11 @@ from eeruf.plot._canvas import axes, bare, check_kind, check_whole, colours
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from eeruf import HoppingSchedule, Schedule
+    from eeruf import Schedule
 
 
-def timing(schedule: Schedule | HoppingSchedule, *, window_us: int = 0, ax: Axes | None = None) -> Axes:
-    """When each sensor fires in the two phases of a schedule (as the paper's Fig. 3), or in the many of a hopping one.
+def timing(schedule: Schedule, *, window_us: int = 0, ax: Axes | None = None) -> Axes:
+    """When each sensor fires in the two phases of a schedule (as the paper's Fig. 3).
 
     Args:
         schedule: whose firing times to draw.
@@ -24,8 +24,7 @@ def timing(schedule: Schedule | HoppingSchedule, *, window_us: int = 0, ax: Axes
         ax: where to draw.
 
     Returns:
-        The axes; times in milliseconds over one period of phase a and one of phase b. Of many phases: over one period, and in each
-        sensor's lane a line for each phase, the first on top.
+        The axes; times in milliseconds over one period of phase a and one of phase b.
 
     Example:
         >>> import eeruf
@@ -35,9 +34,7 @@ def timing(schedule: Schedule | HoppingSchedule, *, window_us: int = 0, ax: Axes
 
     """
     check_whole("window_us", window_us, 0, 2**32 - 1)
-    if isinstance(schedule, _eeruf.HoppingSchedule):
-        return _hopping(schedule, window_us, ax)
-    check_kind("schedule", schedule, _eeruf.Schedule, "an eeruf.Schedule or an eeruf.HoppingSchedule")
+    check_kind("schedule", schedule, _eeruf.Schedule, "an eeruf.Schedule")
     sensors = schedule.sensors
     ax = axes(ax, height=1.2 + 0.26 * sensors)
     its = colours(ax)
@@ -58,23 +55,6 @@ def timing(schedule: Schedule | HoppingSchedule, *, window_us: int = 0, ax: Axes
     for end in (period_ms, 2 * period_ms):
         ax.axvline(end, color=its.grey, linewidth=0.8, linestyle=(0, (4, 3)))
     return _lanes(ax, sensors, end_ms=2 * period_ms, top=0.2)
-
-
-def _hopping(schedule: HoppingSchedule, window_us: int, ax: Axes | None) -> Axes:
-    """The phases of a hopping schedule, one below the other in each sensor's lane."""
-    sensors, phases, period_ms = schedule.sensors, schedule.phases, schedule.period_us / 1e3
-    ax = axes(ax, height=1.2 + 0.05 * sensors * phases)
-    its = colours(ax)
-    line = 0.76 / phases
-    fires_ms = schedule.t_fire_us / 1e3
-    tops = np.arange(1, sensors + 1) - 0.38 + line * np.arange(phases)[:, None]
-    if window_us > 0:
-        # The windows that are open at the end of a period are open at the beginning of the next, in the next phase.
-        for left, top in ((fires_ms, tops), (np.roll(fires_ms, 1, axis=0) - period_ms, tops)):
-            width = np.full(left.size, window_us / 1e3)
-            ax.barh(top.ravel() + line / 2, width, left=left.ravel(), height=line, color=its.window, linewidth=0)
-    ax.vlines(fires_ms.ravel(), tops.ravel(), tops.ravel() + line, colors=its.blue, linewidth=1.6)
-    return _lanes(ax, sensors, end_ms=period_ms, top=0.4)
 
 
 def _lanes(ax: Axes, sensors: int, *, end_ms: float, top: float) -> Axes:

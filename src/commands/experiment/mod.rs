@@ -34,7 +34,7 @@ enum Set {
     ))]
     Two(set_two::Args),
     #[command(name = "set-three", after_help = help!(
-        "experiment set-three --seeds 5 --method sequential,driving",
+        "experiment set-three --seeds 5 --method sequential,flow",
         "0 repeated; 2 bad input"
     ))]
     Three(set_three::Args),

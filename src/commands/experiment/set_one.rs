@@ -10,7 +10,7 @@ use eeruf_sim::{Entry, GainProfile, Method, Options, Robot, Stop, Transducer};
 
 use super::common::{BUDGET, Common, bad, designing, watched};
 use super::shard::{Part, Runs, runs_of};
-use crate::commands::methods::{Hopping, chosen};
+use crate::commands::methods::chosen;
 use crate::commands::show;
 use crate::console::{print_line, tell};
 use crate::files::error::InputError;
@@ -39,11 +39,8 @@ pub(crate) struct Args {
     #[arg(long, value_name = "US", default_value_t = 60_000)]
     #[arg(value_parser = clap::value_parser!(u32).range(45_000..=1_000_000))]
     period_us: u32,
-    /// Settings of eeruf_hopping
-    #[arg(long, value_name = "SETTING", default_value = "balanced")]
-    hopping: Hopping,
     /// Print instead how results move with the receiver's gain, the floor of its pattern, and fading; by default for
-    /// sequential, conventional, comparison, eeruf, eeruf_hopping and multi_echo
+    /// sequential, conventional, comparison, eeruf, flow and multi_echo
     #[arg(long, conflicts_with_all = ["svg", "png", "shard"])]
     vary: bool,
     /// Write the readings of the first alcove by all methods as MCAP, for Foxglove and Rerun, instead
@@ -86,7 +83,6 @@ fn options(args: &Args) -> Result<SetOneOptions, InputError> {
         room: args.common.room(),
         transducer: Transducer { gain: args.common.gain, ..Transducer::POLAROID_6500 },
         methods: Entry::all(chosen(&args.methods, false)),
-        hopping: args.hopping.settings(),
         sensors: args.sensors.into(),
         period: Micros::new(args.period_us),
         ..SetOneOptions::default()
@@ -107,7 +103,6 @@ fn words(args: &Args) -> Vec<String> {
     let (sensors, period_us) = (args.sensors.to_string(), args.period_us.to_string());
     let own = [("--method", &methods.join(",")), ("--sensors", &sensors), ("--period-us", &period_us)];
     words.extend(own.into_iter().flat_map(|(option, value)| [option.to_owned(), value.clone()]));
-    words.extend(["--hopping".to_owned(), args.hopping.name()]);
     words
 }
 
@@ -130,8 +125,7 @@ fn first_alcove(file: &Path, options: &SetOneOptions) -> Result<(), InputError> 
         let world = world_of(options, &alcove, entry).map_err(|error| bad(&error))?;
         let best = options.best.as_ref().map(|best| best.schedule);
         let periods = options.readings.div_ceil(options.sensors as u32);
-        let simulation =
-            Options { best, hopping: options.hopping, seed: Some(options.first), ..Options::periods(periods) };
+        let simulation = Options { best, seed: Some(options.first), ..Options::periods(periods) };
         let readings = entry.simulate(&world, &simulation, &Stop::default(), |_| true);
         runs.push(readings.map_err(|error| bad(&error))?);
         // Where walls and robot stand does not depend on the method.
@@ -177,7 +171,7 @@ const VARIED: [Method; 7] = [
     Method::Conventional,
     Method::Comparison,
     Method::Eeruf,
-    Method::EerufHopping,
+    Method::Flow,
     Method::MultiEcho,
 ];
 

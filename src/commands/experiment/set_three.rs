@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use eeruf_sim::Entry;
-use eeruf_sim::experiments::set_three::{SetThree, SetThreeOptions, set_three, usual};
+use eeruf_sim::experiments::set_three::{SetThree, SetThreeOptions, set_three};
 
 use super::common::{Common, bad, watched};
 use super::shard::{Part, Runs, runs_of};
@@ -23,17 +23,14 @@ use crate::report::experiment::set_three::describe;
 pub(crate) struct Args {
     #[command(flatten)]
     common: Common,
-    /// Simulate only these methods, separated by commas; `driving` is eeruf_hopping by its settings for robots that
-    /// drive. By default simultaneous, sequential, sequential_votes, dither, eeruf, eeruf_hopping, driving and flow
+    /// Simulate only these methods, separated by commas; by default simultaneous, sequential, sequential_votes, dither,
+    /// eeruf and flow
     #[arg(long = "method", value_name = "NAME,..", value_delimiter = ',')]
     methods: Vec<Entry>,
     /// Number of periods for which each placing is simulated
     #[arg(long, value_name = "N", default_value_t = SetThreeOptions::default().periods)]
     #[arg(value_parser = clap::value_parser!(u32).range(10..=100_000))]
     periods: u32,
-    /// Give robots of a placing fleet numbers, 0, 1 and so on, by which flow tells them apart; by default all have 0
-    #[arg(long)]
-    numbered: bool,
 }
 
 const SEEDS: u64 = 200;
@@ -61,16 +58,19 @@ pub(super) fn merged(args: &Args, file: &Path, runs: &Runs) -> Result<(), InputE
 }
 
 fn options(args: &Args) -> SetThreeOptions {
-    SetThreeOptions {
+    let mut options = SetThreeOptions {
         seeds: args.common.seeds.unwrap_or(SEEDS),
         first: args.common.first,
         periods: args.periods,
-        methods: if args.methods.is_empty() { usual() } else { args.methods.clone() },
         physics: args.common.physics,
         room: args.common.room(),
         gain: args.common.gain,
-        numbered: args.numbered,
+        ..SetThreeOptions::default()
+    };
+    if !args.methods.is_empty() {
+        options.methods.clone_from(&args.methods);
     }
+    options
 }
 
 /// The arguments that decide what is run.
@@ -79,7 +79,6 @@ fn words(args: &Args) -> Vec<String> {
     words.insert(0, "set-three".to_owned());
     let methods: Vec<_> = options(args).methods.iter().map(Entry::to_string).collect();
     words.extend(["--method".to_owned(), methods.join(","), "--periods".to_owned(), args.periods.to_string()]);
-    words.extend(args.numbered.then(|| "--numbered".to_owned()));
     words
 }
 

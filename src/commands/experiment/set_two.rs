@@ -13,7 +13,7 @@ use eeruf_sim::{Entry, Method, Point, Robot};
 
 use super::common::{BUDGET, Common, bad, designing, watched};
 use super::shard::{Part, Runs, runs_of};
-use crate::commands::methods::{Hopping, chosen};
+use crate::commands::methods::chosen;
 use crate::commands::show;
 use crate::files::error::InputError;
 use crate::files::mcap::{Stage, write_mcap};
@@ -31,7 +31,7 @@ pub(crate) struct Args {
     #[command(flatten)]
     common: Common,
     /// Drive by these methods only, separated by commas; by default sequential, far_groups, conventional, comparison,
-    /// eeruf, eeruf_best, adaptive, eeruf_hopping and multi_echo
+    /// eeruf, eeruf_best, adaptive, flow and multi_echo
     #[arg(long = "method", value_name = "NAME,..", value_delimiter = ',')]
     methods: Vec<Method>,
     /// Pilots: each method's own, found by the same search for each; one shared by all that an earlier search found by
@@ -39,9 +39,6 @@ pub(crate) struct Args {
     /// side by side
     #[arg(long = "pilot", value_name = "PILOT,..", value_delimiter = ',', default_value = "own")]
     pilots: Vec<Pilots>,
-    /// Settings of eeruf_hopping
-    #[arg(long, value_name = "SETTING", default_value = "driving")]
-    hopping: Hopping,
     /// Let another robot with 24 sensors fire 24 times in 80 ms in a corner of the lab: behind the start, or ahead,
     /// where all sensors face it; by default there is none
     #[arg(long, value_name = "WHERE", num_args = 0..=1, default_missing_value = "behind")]
@@ -159,7 +156,6 @@ fn options(args: &Args) -> Result<SetTwoOptions, InputError> {
         room: args.common.room(),
         gain: args.common.gain,
         bodies: args.bodies,
-        hopping: args.hopping.settings(),
         second_robot: args.second_robot.map(Corner::position),
         labmate: LabMate { speed_max_m_s: args.speed, ..LabMate::default() },
         odometry: !args.no_odometry,
@@ -190,7 +186,6 @@ fn words(args: &Args) -> Vec<String> {
         add("--method", methods.join(","));
     }
     add("--pilot", pilots.join(","));
-    add("--hopping", args.hopping.name());
     add("--speed", args.speed.to_string());
     if let Some(corner) = args.second_robot.and_then(|corner| corner.to_possible_value()) {
         add("--second-robot", corner.get_name().to_owned());

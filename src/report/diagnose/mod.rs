@@ -91,14 +91,14 @@ impl Found<'_> {
         if self.diagnosis.moved {
             advice.push("record a minute of a robot that stands".to_owned());
         }
-        if self.phases() <= 2 {
+        if self.phases() <= 2 && !self.diagnosis.firings_move() {
             advice.push(
-                "record a log under time hopping (many phases, or lags that move): two phases do not say \
-                 whose sound a reading is"
+                "record a log of a ring whose waits are drawn at random, as method dither draws them: two phases do \
+                 not say whose sound a reading is"
                     .to_owned(),
             );
         } else if !self.mostly_blind().is_empty() {
-            advice.push("let lags move and give solo periods, or use sensors that report several echoes".to_owned());
+            advice.push("fire by flow, or use sensors that report several echoes".to_owned());
         }
         let window_us = self.log.firings.iter().filter_map(|firing| firing.t_echo_us).max().unwrap_or(0);
         let period_us = self.period_us();

@@ -3,7 +3,6 @@
 mod atlas;
 mod course;
 mod crosstalk;
-mod hopping;
 mod kinds;
 mod methods;
 mod picture;
@@ -16,7 +15,6 @@ mod timing;
 pub(crate) use atlas::atlas;
 pub(crate) use course::courses;
 pub(crate) use crosstalk::two_periods;
-pub(crate) use hopping::hopping_diagram;
 pub(crate) use kinds::kinds_over_time;
 pub(crate) use methods::methods_chart;
 pub(crate) use picture::Picture;

@@ -12,14 +12,13 @@ use crate::report::table::{markdown, or_dash};
 const WIDEST: usize = 8;
 
 pub(crate) fn describe(found: &SetThree) -> String {
-    let numbered = if found.numbered { ", with fleet numbers" } else { "" };
     let mut text = format!(
-        "Set III: {} placings from {} on of two to six robots, {} periods of {} each, physics: {}{}{};\n\
+        "Set III: {} placings from {} on of two to six robots, {} periods of {} each, physics: {}{};\n\
          medians with 95 % intervals. Others: another robot's sound, and the same at the sensor that accepts most of\n\
          it; foreign: the robot's own other sensors and earlier firings too. Belief: what was last believed, \
          no longer\n\
          than 0.6 s ago. Echoes and blind sensors are those of one robot with twelve (means).\n\n",
-        found.seeds, found.first, found.periods, PERIOD, found.physics, found.conditions, numbered,
+        found.seeds, found.first, found.periods, PERIOD, found.physics, found.conditions,
     );
     let header = [
         "method",

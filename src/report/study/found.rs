@@ -47,6 +47,5 @@ pub(crate) fn of_robot(readings: &Readings, robot: usize, sensors: usize) -> Rea
     alone.path = pick(&own, &readings.path);
     alone.emitted_s = pick(&own, &readings.emitted_s);
     alone.expected_change_us = pick(&own, &readings.expected_change_us);
-    alone.weighed = pick(&own, &readings.weighed);
     alone
 }

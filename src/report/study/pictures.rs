@@ -15,8 +15,7 @@ const MOST_PATHS: usize = 24;
 /// Number of readings of one sensor that are drawn.
 const SHOWN_READINGS: usize = 70;
 
-/// Draws `scene`, `timing`, `readings`, `methods`, and `blind` where a sensor that is blind under EERUF comes to see
-/// under time hopping, with this ending into a folder, which is made if need be.
+/// Draws `scene`, `timing`, `readings` and `methods` with this ending into a folder, which is made if need be.
 pub(crate) fn pictures(folder: &Path, ending: &str, world: &World, study: &Study) -> Result<(), InputError> {
     make_folder(folder)?;
     let file = |name: &str| folder.join(name).with_extension(ending);
@@ -41,34 +40,7 @@ pub(crate) fn pictures(folder: &Path, ending: &str, world: &World, study: &Study
         let alone: Vec<&Readings> = alone.iter().collect();
         draw::readings_over_time(&alone, sensor, stretch, metres_per_us, TOLERANCE_US).save(&file("readings"))?;
     }
-    if let (Some(eeruf), Some(hopping)) = (study.of(Method::Eeruf), study.of(Method::EerufHopping))
-        && let Some(blind) = comes_to_see(eeruf, hopping)
-        && let Some(body) = world.robots().get(usize::from(blind.robot))
-    {
-        let alone = |readings| of_robot(readings, blind.robot.into(), body.sensors.len());
-        let (eeruf, hopping) = (alone(eeruf), alone(hopping));
-        let to_s = SHOWN_READINGS as f64 * 1e-6 * f64::from(body.period.as_micros());
-        let metres_per_us = 0.5e-6 * world.scene().air().speed_of_sound();
-        let picture =
-            draw::readings_over_time(&[&eeruf, &hopping], blind.sensor, (0.0, to_s), metres_per_us, TOLERANCE_US);
-        picture.save(&file("blind"))?;
-    }
     Ok(())
-}
-
-/// The sensor that has no reading accepted under one method and most under the other.
-fn comes_to_see(before: &Readings, after: &Readings) -> Option<SensorId> {
-    let accepted = |readings: &Readings| {
-        let mut accepted = BTreeMap::<SensorId, usize>::new();
-        for reading in 0..readings.len() {
-            *accepted.entry(readings.id(reading)).or_default() += usize::from(readings.is_accepted(reading));
-        }
-        accepted
-    };
-    let (before, after) = (accepted(before), accepted(after));
-    let blind = before.into_iter().filter(|&(_, times)| times == 0).map(|(id, _)| id);
-    let seen = |id: &SensorId| after.get(id).copied().unwrap_or(0);
-    blind.max_by_key(seen).filter(|id| seen(id) > 0)
 }
 
 /// Errors that a method believed, by path.

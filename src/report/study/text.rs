@@ -129,15 +129,14 @@ fn verdict(runs: &[Readings], sensors: usize) -> String {
         };
         text += &why;
         let fewer = |method| of(method).is_some_and(|other| other.starved < eeruf.starved);
-        match (fewer(Method::MultiEcho), fewer(Method::EerufHopping)) {
+        _ = match (fewer(Method::MultiEcho), fewer(Method::Flow)) {
             (true, true) => {
-                let names = "several echoes (multi_echo) or hop in time (eeruf_hopping)";
-                _ = write!(text, ".\nSensors that report {names} get round that");
+                write!(text, ".\nSensors that report several echoes (multi_echo), and flow, get round that")
             }
-            (true, false) => _ = write!(text, ".\nSensors that report several echoes get round that (multi_echo)"),
-            (false, true) => _ = write!(text, ".\nTime hopping gets round that (eeruf_hopping)"),
-            (false, false) => {}
-        }
+            (true, false) => write!(text, ".\nSensors that report several echoes get round that (multi_echo)"),
+            (false, true) => write!(text, ".\nFlow gets round that"),
+            (false, false) => Ok(()),
+        };
     }
     _ = writeln!(text, ".");
     if let Some(slow) = of(Method::Sequential)

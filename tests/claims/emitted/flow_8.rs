@@ -1,16 +1,29 @@
 // Sensors 0 to 7: hc-sr04, pulse_width, trigger 10 us, rest 60000 us, held 38000 us without an echo
-use eeruf_core::{Micros, flow::FlowSettings, hopping::HoppingListening};
+use eeruf_core::flow::{BeliefSettings, TurnSettings};
+use eeruf_core::{Micros, RingConfig};
 
-// 8 sensors that fire by flow, in cycles of at least 60.001 ms, listening for 23.31 ms.
-// For `FlowRing::<SENSORS>::flow(SENSORS, SETTINGS, LISTENING, now)`.
+// 8 sensors that fire by flow, with quiet of 6.028 ms to 33.159 ms, listening for 23.31 ms.
+// For `FlowRing::<SENSORS>::flow(SENSORS, turns(seed), BELIEF, CONFIG, now)`.
 pub const SENSORS: usize = 8;
 
-pub const SETTINGS: FlowSettings = {
-    let mut settings = FlowSettings::DEFAULT;
-    settings.shortest_cycle = Micros::new(60_001);
-    settings.rest = Micros::new(60_000);
-    settings
+/// When sensors fire. The seed is the chip's number or another that each robot has of its own, not 0.
+pub const fn turns(seed: u32) -> TurnSettings {
+    let mut turns = TurnSettings::new(seed);
+    turns.least = Micros::new(6_028);
+    turns.most = Micros::new(33_159);
+    turns.rest = Micros::new(60_000);
+    turns.dice = Micros::new(2_000);
+    turns
+}
+
+pub const BELIEF: BeliefSettings = {
+    let mut belief = BeliefSettings::DEFAULT;
+    belief.t_delta = Micros::new(80);
+    belief.near = Micros::new(150);
+    belief.path_change = Micros::new(150);
+    belief.top_speed_mm_s = 500;
+    belief.alone = false;
+    belief
 };
 
-pub const LISTENING: HoppingListening =
-    HoppingListening::new(Micros::new(23_310)).with_blanking(Micros::new(117)).with_reach(Micros::new(23_310));
+pub const CONFIG: RingConfig = RingConfig::new().with_window(Micros::new(23_310)).with_blanking(Micros::new(117));

@@ -9,12 +9,11 @@
 #define MOST 64u
 
 #ifdef FLOW
-#define PERIODS 20u /* five phases confirm an echo */
+#define PERIODS 4u
 #define COUNT FLOW.sensors
 #define ECHO_US (2000u + FLOW.blanking_us)
-static EerufHoppingRing flow;
-static EerufHopSensor sensors[MOST];
-static EerufHopper hoppers[MOST];
+static EerufFlowRing flow;
+static EerufFlowSensor sensors[MOST];
 static EerufRing *const ring = &flow.ring;
 #else
 #define PERIODS 4u
@@ -38,7 +37,7 @@ static int refused(const char *what, EerufStatus status) {
 
 static EerufStatus start(uint32_t now_us) {
 #ifdef FLOW
-    return eeruf_flow_init(&flow, sizeof flow, sensors, sizeof sensors, hoppers, sizeof hoppers, &FLOW, now_us);
+    return eeruf_flow_init(&flow, sizeof flow, sensors, sizeof sensors, &FLOW, now_us);
 #else
     const EerufStatus status = eeruf_schedule_check(&SCHEDULE);
     if (status != EERUF_OK) return status;
@@ -48,7 +47,7 @@ static EerufStatus start(uint32_t now_us) {
 
 static EerufStatus poll(uint32_t now_us, EerufEvent *event) {
 #ifdef FLOW
-    return eeruf_hopping_poll(&flow, now_us, NULL, event);
+    return eeruf_flow_poll(&flow, now_us, event);
 #else
     return eeruf_ring_poll(&table, now_us, event);
 #endif

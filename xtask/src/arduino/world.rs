@@ -179,7 +179,7 @@ impl Heard {
         }
         let mut decoder = Decoder::default();
         for (frame, awaited) in line.iter().filter_map(|&byte| decoder.push(byte)).zip(0_u16..) {
-            let Received { sequence, message } = frame.map_err(|error| error.to_string())?;
+            let Received { sequence, message, .. } = frame.map_err(|error| error.to_string())?;
             if sequence != awaited {
                 return Err(format!("frame {awaited} is missing"));
             }

@@ -20,8 +20,8 @@ pub(super) const RING: [&str; 8] = [
     "ring_stuck",
 ];
 
-/// Those of a ring that weighs readings by a tracker.
-pub(super) const TRACKING_RING: [&str; 2] = ["ring_new", "ring_poll"];
+/// Those of a flow ring.
+pub(super) const FLOW_RING: [&str; 2] = ["ring_restart", "ring_poll"];
 
 /// Target of a call through a pointer.
 const POINTER: &str = "a function by its pointer";

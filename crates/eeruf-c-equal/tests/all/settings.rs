@@ -1,51 +1,25 @@
-//! The named settings of hopping and flow rings are the same numbers in both.
+//! The settings of every robot's flow ring are the same numbers in both.
 
-use eeruf_core::{Micros, flow::FlowSettings, hopping::HoppingSettings, judge::TrackerSettings};
-
-fn numbers(text: &str) -> Vec<u32> {
-    text.split(',').filter_map(|word| word.trim_matches([' ', '\n', '\\', '{', '}']).parse().ok()).collect()
-}
-
-fn tracker_numbers(of: &TrackerSettings) -> Vec<u32> {
-    let votes = [of.votes, of.score_limit, of.contradiction, of.solo_contradiction, of.tentative_votes, of.memory];
-    let times = [of.t_delta, of.near, of.tentative_within].map(Micros::as_micros);
-    [&times[..], &votes.map(u32::from)].concat()
-}
+use eeruf_core::{
+    Micros,
+    flow::{BeliefSettings, TurnSettings, Votes},
+};
 
 #[test]
 fn flow_settings_of_c_are_those_of_the_core() {
     let (_, after) = include_str!("../../../../c/eeruf.h").split_once("#define EERUF_FLOW(").unwrap();
-    let (body, _) = after.split_once(", NULL}").unwrap();
-    let of = FlowSettings::DEFAULT;
-    let gaps = [of.shortest_gap, of.masked_adds, of.believed_takes, of.unserved_adds];
-    let cycles = [of.shortest_cycle, of.rest, of.lead, of.longest_cycle, of.travel];
-    // Without the window and the reach, which are parameters; blanking is none.
-    let mut expected = vec![of.unserved_after.into(), of.step.as_micros(), 0];
-    expected.extend(gaps.into_iter().chain(cycles).map(Micros::as_micros));
-    expected.extend(tracker_numbers(&of.tracker));
-    assert_eq!(numbers(body), expected);
-}
-
-#[test]
-fn the_named_settings_of_c_are_those_of_the_core() {
-    let header = include_str!("../../../../c/eeruf.h");
-    for (name, settings) in [
-        ("BALANCED", HoppingSettings::BALANCED),
-        ("QUICK", HoppingSettings::QUICK),
-        ("DRIVING", HoppingSettings::DRIVING),
-        ("MAPS", HoppingSettings::MAPS),
-    ] {
-        let (_, after) = header.split_once(&format!("#define EERUF_HOPPING_{name}(")).expect(name);
-        let (_, body) = after.split_once('{').expect(name);
-        // The tracker's settings stand in inner braces, the others after them.
-        let (_, body) = body.split_once('{').expect(name);
-        let (tracker, body) = body.split_once('}').expect(name);
-        let (others, _) = body.split_once('}').expect(name);
-        let of = settings.tracker;
-        assert_eq!(numbers(tracker), tracker_numbers(&of), "{name}");
-        let solo = [settings.solo_rate, settings.solo_after, settings.solo_spacing];
-        // The last is the code: the narrowest.
-        let shifts = [settings.shift_after, settings.shift_spacing, settings.neighbours, 0];
-        assert_eq!(numbers(others), [&solo.map(u32::from)[..], &shifts.map(u32::from)].concat(), "{name}");
-    }
+    let (_, body) = after.split_once("window_us, ").unwrap();
+    let (body, _) = body.split_once(", NULL, NULL}").unwrap();
+    let numbers: Vec<u32> = body.split(", ").map(|number| number.parse().expect("a number")).collect();
+    let (t, b) = (TurnSettings::new(1), BeliefSettings::DEFAULT);
+    // The window is a parameter; blanking is none.
+    let mut expected = vec![0];
+    expected.extend([t.least, t.most, t.rest, t.dice].map(Micros::as_micros));
+    expected.push(t.seed);
+    expected.extend([b.t_delta, b.near, b.path_change].map(Micros::as_micros));
+    expected.extend([b.memory.into(), b.hold.into(), b.top_speed_mm_s.into(), u32::from(b.alone)]);
+    // By motion, which is 0.
+    assert_eq!(b.votes, Votes::ByMotion);
+    expected.push(0);
+    assert_eq!(numbers, expected);
 }

@@ -1,52 +1,83 @@
-//! Flow: one sensor after the other, each with as much quiet around its firing as it has needed.
+//! Firing in turn: one sensor after the other, with as much quiet around each firing as its readings have needed, and a
+//! throw of dice in every gap; readings are believed if they fit what is believed, or if two agree and nothing foreign
+//! explains both.
 //!
-//! A sensor that other sensors fool gains quiet, one whose readings are believed gives it back, so that a ring in the
-//! open fires fast and one in a closed room nearly one by one. Firing times lie on a grid, and on it move by
-//! [Welch's sequence](crate::hopping::HoppingCode): crosstalk of one path never repeats from phase to phase, however
-//! gaps change. An [`EchoTracker`] believes what several phases support.
+//! A robot that moves and is alone reports every echo, with twice the least quiet: see [`Votes`]. Belief goes on then,
+//! and decides on quiet, but only two in a row have the promise about one path of sound.
 //!
-//! Rules and measurements: `docs/explanation/flow.md`.
+//! The plan [`InTurn`] and the judge [`Belief`] work by what was fired: a late poll costs time, never a promise. What
+//! is proven of `twice` is in `docs/explanation/theory.md`; what is left to chance is measured.
 
+mod belief;
+mod motion;
 mod plan;
-mod planning;
 mod settings;
-mod slot;
-#[cfg(test)]
-mod tests;
 
-use crate::hopping::{HoppingError, HoppingListening};
+use crate::judging::Judge as _;
 use crate::own_limits::OwnLimits;
-use crate::ring::{Ring, RingConfig};
+use crate::plan::Plan as _;
+use crate::ring::{Listening, Ring, RingConfig};
+use crate::ring_error::RingError;
+use crate::schedule::MAX_SENSORS;
 use crate::time::Instant;
-use crate::tracker::EchoTracker;
 
-pub use plan::FlowPlan;
-pub use settings::FlowSettings;
+pub use belief::Belief;
+pub use plan::InTurn;
+pub use settings::{BeliefSettings, TurnSettings, Votes};
 
-/// A ring of up to `K` sensors that fires by flow, with `H` hypotheses for each and up to `E` echoes of a firing. `U`
-/// is [`EachSensor`](crate::EachSensor) where sensors have limits of their own.
-pub type FlowRing<const K: usize, const H: usize = 4, const E: usize = 1, U = ()> =
-    Ring<FlowPlan<K, U>, EchoTracker<K, H, E>, K, E, 1>;
+/// A ring of up to `K` sensors that fires in turn, with up to `E` echoes of a firing, and remembers the last three
+/// firings of each: fewer explain nothing, more add nothing. `U` is [`EachSensor`](crate::EachSensor), or a reference
+/// to one, where sensors have limits of their own.
+pub type FlowRing<const K: usize, const E: usize = 1, U = ()> = Ring<InTurn<K, U>, Belief<K, E>, K, E, 3>;
 
-impl<const K: usize, const H: usize, const E: usize> FlowRing<K, H, E> {
-    /// A ring of `sensors` sensors that begins at `now`.
+impl<const K: usize, const E: usize> FlowRing<K, E> {
+    /// A ring of `sensors` sensors that begins at `now`. Of `config` only how the ring listens counts: the window, and
+    /// the blanking time. How long sound is audible is the longest quiet of `turns`, and P is that of `belief`.
     ///
     /// # Errors
-    /// [`HoppingError`] for a setting out of its range, as for [`FlowPlan::new`]; or for a window that ends within the
-    /// blanking time.
-    pub fn flow(
+    /// [`RingError::Setting`] for a setting out of its range, and as for [`Ring::judged_by`].
+    #[inline(always)]
+    pub const fn flow(
         sensors: usize,
-        settings: FlowSettings,
-        listening: HoppingListening,
+        turns: TurnSettings,
+        belief: BeliefSettings,
+        config: RingConfig,
         now: Instant,
-    ) -> Result<Self, HoppingError> {
-        Self::with_limits(sensors, (), settings, listening, now)
+    ) -> Result<Self, RingError> {
+        if K > MAX_SENSORS {
+            return Err(RingError::Room { capacity: K });
+        }
+        let Some(window) = config.window else { return Err(RingError::Unverified) };
+        let judge = match Belief::new(belief) {
+            Ok(judge) => judge,
+            Err(error) => return Err(error),
+        };
+        let plan = match InTurn::begin(sensors, (), turns, judge.pace_now(), window, now) {
+            Ok(plan) => plan,
+            Err(error) => return Err(error),
+        };
+        let listening = match Listening::of(belief.t_delta, window, window, config.blanking) {
+            Ok(listening) => listening.with_sound(Some(belief.path_change), turns.most),
+            Err(error) => Err(error),
+        };
+        match listening {
+            Ok(listening) => Ok(Self::begin(plan, judge, listening, false, now)),
+            Err(error) => Err(error),
+        }
+    }
+
+    /// Takes another seed for the dice: the chip's number, for a ring that the compiler made.
+    ///
+    /// # Errors
+    /// [`RingError::Setting`] for 0. The ring then goes on as before.
+    pub fn set_seed(&mut self, seed: u32) -> Result<(), RingError> {
+        self.change_plan(|plan| plan.set_seed(seed))
     }
 }
 
-impl<const K: usize, const H: usize, const E: usize, U: OwnLimits> FlowRing<K, H, E, U> {
-    /// As [`flow`](FlowRing::flow), for sensors that have limits of their own, by [`FlowSettings::limits`]. What
-    /// `listening` and the tracker's `t_delta` say is the most for all.
+impl<const K: usize, const E: usize, U: OwnLimits> FlowRing<K, E, U> {
+    /// As [`flow`](FlowRing::flow), for sensors that have limits of their own. What `config` and the `t_delta` of
+    /// `belief` say is the most for all.
     ///
     /// # Errors
     /// As there.
@@ -54,13 +85,16 @@ impl<const K: usize, const H: usize, const E: usize, U: OwnLimits> FlowRing<K, H
     pub fn with_limits(
         sensors: usize,
         own_limits: U,
-        settings: FlowSettings,
-        listening: HoppingListening,
+        turns: TurnSettings,
+        belief: BeliefSettings,
+        config: RingConfig,
         now: Instant,
-    ) -> Result<Self, HoppingError> {
-        let tracker = EchoTracker::new(settings.tracker)?;
-        let plan = FlowPlan::with_limits(sensors, own_limits, settings, listening, now)?;
-        let config = RingConfig::new().with_window(listening.window).with_blanking(listening.blanking);
-        Ok(Self::judged_by(plan, tracker, config.with_echoes::<E>(), now)?)
+    ) -> Result<Self, RingError> {
+        let window = config.window.ok_or(RingError::Unverified)?;
+        let mut plan = InTurn::with_limits(sensors, own_limits, turns, window, now)?;
+        let judge = Belief::new(belief)?;
+        plan.set_pace(judge.pace());
+        let config = config.with_audible(turns.most).with_path_change(belief.path_change);
+        Self::judged_by(plan, judge, config.with_echoes::<E>(), now)
     }
 }

@@ -1,387 +1,489 @@
-//! [`FlowPlan`]: when the sensors of a flow ring fire. The gaps of a cycle are decided in `planning`.
+//! [`InTurn`]: when sensors fire that fire in turn.
 
-use super::settings::{FlowSettings, Pace};
-use super::slot::{DISABLED, QUIET_US, Slot};
-use crate::hopping::{CATCHES_UP, HoppingCode, HoppingError, HoppingListening, Lateness, Weighed};
-use crate::judging::{Firing, Heard, Judge};
+use super::settings::{LONGEST_REST, TurnSettings};
+use crate::judging::{Firing, Heard, Judge, Pace, Quiet};
 use crate::own_limits::{OwnLimits, SensorLimits};
-use crate::plan::{Limits, Plan, Upcoming};
-use crate::reading::{ReadingKind, Verdict};
-use crate::schedule::{MAX_PERIOD, Phase};
-use crate::time::{Instant, Micros};
+use crate::plan::{Limits, Plan};
+use crate::reading::Verdict;
+use crate::ring_error::RingError;
+use crate::schedule::{MAX_SENSORS, Phase};
+use crate::time::{Instant, Micros, longer, shorter};
 
-/// No sensor has this number.
-pub(super) const NOBODY: u8 = u8::MAX;
+/// Quiet is kept in units of this, so that two bytes hold it.
+const UNIT: u32 = 4;
+const NOBODY: u8 = u8::MAX;
+/// Firings are forgotten when they are this old, long before differences of instants wrap.
+const OLD: Micros = Micros::new(1 << 29);
 
-/// Fires one sensor after the other, with learned gaps, on a grid of as many steps as the code has places.
-#[derive(Clone, Debug)]
+/// A sensor of the plan.
+#[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[repr(C)]
-pub struct FlowPlan<const K: usize, U = ()> {
-    /// The sensor that fires next, or [`NOBODY`].
-    next: u8,
-    /// Firings of this cycle so far, and all of them.
-    pub(super) place: u8,
-    pub(super) planned: u8,
-    pub(super) phase: u8,
-    changed: bool,
-    changes: u8,
-    paused: bool,
-    /// The number of sensors that are in order and fire unless the ring is paused, or [`NOBODY`] if that has changed.
-    pub(super) in_order: u8,
-    pub(super) start: Instant,
-    due: Instant,
-    lateness: Lateness,
-    pub(super) code: HoppingCode,
-    /// Length of the present cycle, in units of the grid.
-    pub(super) length: u32,
-    /// The largest change by odometry in this cycle, in microseconds; stops at 65,535.
-    pub(super) fastest: u16,
-    tolerated: u16,
-    /// Least time between two firings of a sensor: while it listens, and rests.
-    pub(super) rest: Micros,
-    pub(super) pace: Pace,
-    pub(super) slots: [Slot; K],
-    pub(super) own_limits: U,
+struct Slot {
+    /// When it last fired, if it has.
+    fired: Instant,
+    /// Quiet that it needs after its firing and before, in units.
+    doubt: u16,
+    /// The sensor that fires in this place of the order.
+    order: u8,
+    flags: u8,
 }
 
-impl<const K: usize> FlowPlan<K> {
-    /// A plan whose first cycle begins at `now`.
-    ///
-    /// # Errors
-    /// [`HoppingError`] for more sensors than there is room for, a code as in [`HoppingCode::new`], a step no larger
-    /// than `t_delta`, a window longer than [`HoppingListening::MAX_WINDOW`], or a shortest cycle that is shorter than
-    /// window and code or longer than [`MAX_PERIOD`].
-    pub fn new(
-        sensors: usize,
-        settings: FlowSettings,
-        listening: HoppingListening,
-        now: Instant,
-    ) -> Result<Self, HoppingError> {
-        Self::with_limits(sensors, (), settings, listening, now)
+/// It has fired, not too long ago.
+const FIRED: u8 = 1;
+/// Its edge is awaited.
+const LISTENS: u8 = 2;
+const DISABLED: u8 = 4;
+/// It has fired in this round, before its turn.
+const AHEAD: u8 = 8;
+/// It fires with one that has a turn.
+const FOLLOWS: u8 = 16;
+/// Its leader has fired, and it has not yet.
+const PENDING: u8 = 32;
+
+impl Slot {
+    const fn is(&self, flag: u8) -> bool {
+        self.flags & flag != 0
+    }
+
+    fn set(&mut self, flag: u8, on: bool) {
+        self.flags = if on { self.flags | flag } else { self.flags & !flag };
     }
 }
 
-impl<const K: usize, U: OwnLimits> FlowPlan<K, U> {
-    /// As [`new`](FlowPlan::new), for sensors that have limits of their own, by [`FlowSettings::limits`]. Those that
-    /// fire together do so at one instant, with the quiet that any of them needs; all else fires at other times.
+/// A plan that fires one sensor after the other, far ones in turn.
+///
+/// A sensor fires when the quiet that it needs has passed since the firing before, when the quiet has passed that those
+/// need which still wait for their edge, and when it has rested; and then a throw of dice later. Those that fire
+/// together have one turn, by what any of them needs; those that share an echo line wait for each other's windows. A
+/// period is a round: it ends when the order begins again.
+#[derive(Clone, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct InTurn<const K: usize, U = ()> {
+    /// The sensor that fires next, or [`NOBODY`] if the round ends.
+    next: u8,
+    /// The place in the order whose turn it is; the number of sensors when the round ends.
+    place: u8,
+    sensors: u8,
+    /// While the robot moves the dice are twice as long, and where every echo is reported the least quiet.
+    pace: Pace,
+    paused: bool,
+    /// When the next sensor is due, or the round ends.
+    due: Instant,
+    /// When a sensor last fired, or the plan began.
+    last: Instant,
+    /// The throw for the next gap.
+    thrown: Micros,
+    random: u32,
+    window: Micros,
+    settings: TurnSettings,
+    slots: [Slot; K],
+    own_limits: U,
+}
+
+impl<const K: usize> InTurn<K> {
+    /// A plan of `sensors` sensors that listen for `window` and begin at `now`.
+    ///
+    /// # Errors
+    /// [`RingError::Setting`] for a setting out of its range; [`RingError::Sensors`] for none, or more than there is
+    /// room for.
+    pub fn new(sensors: usize, settings: TurnSettings, window: Micros, now: Instant) -> Result<Self, RingError> {
+        Self::with_limits(sensors, (), settings, window, now)
+    }
+}
+
+impl<const K: usize, U: OwnLimits> InTurn<K, U> {
+    /// As [`new`](InTurn::new), for sensors that have limits of their own; `window` is the longest of all.
     ///
     /// # Errors
     /// As there.
     pub fn with_limits(
         sensors: usize,
         own_limits: U,
-        settings: FlowSettings,
-        listening: HoppingListening,
+        settings: TurnSettings,
+        window: Micros,
         now: Instant,
-    ) -> Result<Self, HoppingError> {
-        if sensors > K {
-            return Err(HoppingError::Sensors { sensors, most: K });
-        }
-        let code = HoppingCode::new(sensors, settings.tracker.votes, settings.step)?;
-        let t_delta = settings.tracker.t_delta;
-        if code.step() <= t_delta {
-            return Err(HoppingError::TDelta { t_delta, step: code.step() });
-        }
-        let most = HoppingListening::MAX_WINDOW;
-        if listening.window > most {
-            return Err(HoppingError::Window { window: listening.window, most });
-        }
-        let least = listening.window.saturating_add(code.width());
-        if settings.shortest_cycle < least || settings.shortest_cycle > MAX_PERIOD {
-            return Err(HoppingError::Period { period: settings.shortest_cycle, least });
-        }
-        // Nothing of a firing is heard in a window that opens so much later; the waits of two may bring them closer by
-        // the width of the code.
-        let longest = listening.dies().saturating_add(code.width());
-        // At most 64 sensors.
-        let pace = Pace::of(&settings, sensors as u8, longest, unit_of(&code));
-        let mut plan = Self {
-            next: NOBODY,
-            place: 0,
-            planned: 0,
-            phase: 0,
-            changed: false,
-            changes: 0,
-            paused: false,
-            in_order: NOBODY,
-            start: now,
-            due: now,
-            lateness: Lateness::NEW,
-            length: pace.shortest,
-            fastest: 0,
-            rest: settings.rest.min(most).max(listening.window),
-            tolerated: (code.step().abs_diff(t_delta).as_micros().saturating_sub(1) / 2) as u16,
-            slots: [Slot::new(pace.least); K],
-            code,
-            pace,
-            own_limits,
-        };
-        // In the order of firing, from its end: only the sensor that fires before another, in the cycle before, moves
-        // as that does. The first one's place is 0.
-        let (mut sensor, mut place) = (0, 0);
-        for turn in (1..plan.code.phases()).rev() {
-            place = plan.code.next_place(0, place);
-            if usize::from(turn) < sensors {
-                sensor = plan.sensor_before(sensor);
-                if let Some(slot) = plan.slots.get_mut(usize::from(sensor)) {
-                    slot.place = place;
-                }
-            }
-        }
-        for sensor in 0..sensors as u8 {
-            let leader = plan.own_limits.leader_of(sensor);
-            if leader != sensor {
-                let place = plan.slots.get(usize::from(leader)).map_or(0, |slot| slot.place);
-                if let Some(slot) = plan.slots.get_mut(usize::from(sensor)) {
-                    slot.place = place;
-                }
-            }
-        }
-        plan.plan(|_, _| Micros::ZERO);
+    ) -> Result<Self, RingError> {
+        let mut plan = Self::begin(sensors, own_limits, settings, Pace::STANDING, window, now)?;
+        plan.group();
+        plan.decide();
         Ok(plan)
     }
 
-    /// The phase of the present cycle, from 0.
-    pub const fn phase(&self) -> Phase {
-        Phase(self.phase)
+    /// Takes another seed for the dice.
+    pub(super) fn set_seed(&mut self, seed: u32) -> Result<(), RingError> {
+        TurnSettings { seed, ..self.settings }.check()?;
+        self.random = seed;
+        self.throw();
+        self.decide();
+        Ok(())
     }
 
-    /// The quiet that a sensor gets before its firing and after it; `None` for one that is out of range.
-    pub fn quiet(&self, sensor: u8) -> Option<(Micros, Micros)> {
-        let slot = self.slots.get(usize::from(sensor)).filter(|_| usize::from(sensor) < self.sensors())?;
-        Some((Micros::new(u32::from(slot.before) * QUIET_US), Micros::new(u32::from(slot.after) * QUIET_US)))
-    }
-
-    /// As [`HoppingPlan::weighed`](crate::hopping::HoppingPlan::weighed).
-    pub fn weighed(&self, sensor: u8, expected_change_us: i32) -> Option<Weighed> {
-        if usize::from(sensor) >= self.sensors() {
-            return None;
+    /// A plan of sensors that do not fire together.
+    pub(super) const fn begin(
+        sensors: usize,
+        own_limits: U,
+        settings: TurnSettings,
+        pace: Pace,
+        window: Micros,
+        now: Instant,
+    ) -> Result<Self, RingError> {
+        if let Err(error) = settings.check() {
+            return Err(error);
         }
-        let Firing { solo, steady, .. } = self.last_firing(sensor, 0);
-        Some(Weighed { solo, steady, changes: self.changes, expected_change_us })
-    }
-
-    /// A sensor's firing in this cycle, after its start.
-    #[inline(always)]
-    pub(super) fn offset(&self, sensor: u8) -> Micros {
-        self.slots.get(usize::from(sensor)).map_or(Micros::MAX, |slot| self.offset_at(sensor, slot.at))
-    }
-
-    /// The same if it fired at this place of the grid.
-    #[inline(always)]
-    pub(super) fn offset_at(&self, sensor: u8, at: u16) -> Micros {
-        let place = self.slots.get(usize::from(sensor)).map_or(0, |slot| slot.place);
-        // Below 2^32: a place is below the number of phases, so that the sum is within a unit more than the grid's.
-        Micros::new(u32::from(at) * self.unit() + u32::from(place) * self.code.step().as_micros())
-    }
-
-    /// One unit of the grid, in microseconds: the code and a step.
-    #[inline(always)]
-    pub(super) fn unit(&self) -> u32 {
-        unit_of(&self.code)
-    }
-
-    /// Length of the present cycle.
-    fn cycle(&self) -> Micros {
-        // Gaps and quiet are bounded, and a cycle is at most `MAX_PERIOD` if it must be longer: below 2^29.
-        Micros::new(self.length * self.unit())
-    }
-
-    /// Time before the present cycle's end at which the next is planned.
-    fn lead(&self) -> Micros {
-        Micros::new(u32::from(self.pace.lead) * QUIET_US)
-    }
-
-    /// The sensor at a place of the cycle's order.
-    pub(super) fn order(&self, place: u8) -> u8 {
-        self.slots.get(usize::from(place)).map_or(NOBODY, |slot| slot.order)
-    }
-
-    /// Finds who fires next, and when; or when the cycle ends.
-    #[inline(never)]
-    pub(super) fn find_due(&mut self) {
-        self.next = if self.place < self.planned { self.order(self.place) } else { NOBODY };
-        let after = if self.next == NOBODY { self.cycle().saturating_sub(self.lead()) } else { self.offset(self.next) };
-        self.due = self.start + after;
-    }
-
-    /// Lets no sensor fire for the rest of the cycle, if the ring is paused.
-    pub(super) fn obey_pause(&mut self) {
-        if self.paused {
-            self.planned = self.place;
+        if sensors == 0 || sensors > K || sensors > MAX_SENSORS {
+            return Err(RingError::Sensors { sensors, capacity: K });
         }
-        self.find_due();
+        if window.as_micros() > LONGEST_REST.as_micros() {
+            return Err(RingError::Window { window, min_refire: LONGEST_REST });
+        }
+        let sensors = sensors as u8;
+        let doubt = (settings.first().as_micros() / UNIT) as u16;
+        let mut plan = Self {
+            next: 0,
+            place: 0,
+            sensors,
+            pace,
+            paused: false,
+            due: now,
+            last: now,
+            thrown: Micros::ZERO,
+            random: settings.seed,
+            window,
+            settings,
+            slots: [Slot { fired: now, doubt, order: 0, flags: 0 }; K],
+            own_limits,
+        };
+        let mut place = 0;
+        while place < sensors {
+            plan.slots[place as usize].order = in_order(place, sensors);
+            place += 1;
+        }
+        plan.throw();
+        // As `decide` does: the first in order is the first.
+        let after = longer(settings.first(), plan.least()).as_micros() + plan.thrown.as_micros();
+        plan.due = Instant::from_micros(now.as_micros().wrapping_add(after));
+        Ok(plan)
     }
 
-    #[cold]
-    #[inline(never)]
-    fn fired_late(&mut self, sensor: u8, late: Micros) {
-        if late > CATCHES_UP {
-            self.break_off();
-            self.start += late;
-            self.find_due();
-        }
-        let late = u16::try_from(late.as_micros()).unwrap_or(u16::MAX);
-        self.lateness.note(late);
-        if let Some(slot) = self.slots.get_mut(usize::from(sensor)) {
-            slot.late = late;
+    /// Quiet that a sensor needs after its firing, and before it.
+    pub fn doubt_of(&self, sensor: u8) -> Option<Micros> {
+        self.slot(sensor).map(|slot| self.quiet(slot))
+    }
+
+    fn quiet(&self, slot: &Slot) -> Micros {
+        longer(Micros::new(u32::from(slot.doubt) * UNIT), self.least())
+    }
+
+    /// Doubt to begin with.
+    fn first(&self) -> u16 {
+        // At most 250 ms.
+        (self.settings.first().as_micros() / UNIT) as u16
+    }
+
+    const fn least(&self) -> Micros {
+        shorter(Micros::new(self.settings.least.as_micros() << self.pace.every_echo as u32), self.settings.most)
+    }
+
+    fn slot(&self, sensor: u8) -> Option<&Slot> {
+        self.slots.get(usize::from(sensor)).filter(|_| sensor < self.sensors)
+    }
+
+    fn slot_mut(&mut self, sensor: u8) -> Option<&mut Slot> {
+        self.slots.get_mut(usize::from(sensor)).filter(|_| sensor < self.sensors)
+    }
+
+    const fn throw(&mut self) {
+        // Xorshift by 13, 17 and 5 (Marsaglia, 2003).
+        self.random ^= self.random << 13;
+        self.random ^= self.random >> 17;
+        self.random ^= self.random << 5;
+        let most = self.settings.dice.as_micros() << self.pace.moves as u32;
+        self.thrown = Micros::new(((self.random as u64 * (most as u64 + 1)) >> 32) as u32);
+    }
+
+    fn each(&self) -> impl Iterator<Item = (u8, &Slot)> {
+        (0..self.sensors).zip(&self.slots)
+    }
+
+    /// The enabled sensors that fire together with one, and it.
+    fn with(&self, sensor: u8) -> impl Iterator<Item = u8> {
+        let group = self.own_limits.group_of(sensor);
+        let among = if group == 0 { sensor..sensor + 1 } else { 0..self.sensors };
+        let fires = |other: u8| self.slot(other).is_some_and(|slot| !slot.is(DISABLED));
+        let is_with = move |other: u8| self.own_limits.group_of(other) == group && fires(other);
+        among.filter(move |&other| other == sensor || is_with(other))
+    }
+
+    /// Gives the turn of those that fire together to the first of them.
+    fn group(&mut self) {
+        for sensor in 0..self.sensors {
+            let follows = self.with(sensor).next() != Some(sensor);
+            if let Some(slot) = self.slot_mut(sensor) {
+                slot.set(FOLLOWS, follows);
+                slot.set(PENDING, false);
+            }
         }
     }
 
-    /// A firing was later than was noted when it was polled for: those of this cycle are noted again.
-    #[cold]
-    #[inline(never)]
-    fn note_again(&mut self, late: u16) {
-        self.lateness.begin_anew();
-        for place in 0..self.place {
-            let fired = self.slots.get(usize::from(self.order(place)));
-            self.lateness.note(fired.map_or(late, |slot| slot.late));
-        }
-        self.lateness.note(late);
+    /// The time from the last firing until a sensor, and those that fire with it, may fire, without the dice: until
+    /// there is quiet, and until they have rested and their lines are free.
+    fn waits(&self, sensor: u8) -> (Micros, Micros) {
+        let waits = self.with(sensor).map(|sensor| self.waits_alone(sensor));
+        waits.fold((Micros::ZERO, Micros::ZERO), |all, one| (longer(all.0, one.0), longer(all.1, one.1)))
     }
 
-    fn break_off(&mut self) {
-        self.lateness.break_off();
-        self.changed = true;
+    fn waits_alone(&self, sensor: u8) -> (Micros, Micros) {
+        let Some(own) = self.slot(sensor) else { return (Micros::ZERO, Micros::ZERO) };
+        let (mut quiet, mut rested) = (self.quiet(own), Micros::ZERO);
+        let line = self.own_limits.line_of(sensor);
+        for (other, slot) in self.each().filter(|&(other, _)| other != sensor) {
+            let window = self.window_of(other);
+            if slot.is(LISTENS) {
+                // What it hears after its window is of no account, however late it is reported.
+                quiet = longer(quiet, self.since_last(slot.fired, shorter(self.quiet(slot), window)));
+            }
+            if line > 0 && slot.is(FIRED) && self.own_limits.line_of(other) == line {
+                rested = longer(rested, self.since_last(slot.fired, window));
+            }
+        }
+        if own.is(FIRED) {
+            rested = longer(rested, self.since_last(own.fired, self.settings.rest));
+            if own.is(LISTENS) {
+                rested = longer(rested, self.since_last(own.fired, self.window_of(sensor)));
+            }
+        }
+        (quiet, rested)
+    }
+
+    fn window_of(&self, sensor: u8) -> Micros {
+        self.own_limits.limits_of(sensor).map_or(self.window, |own| shorter(own.window, self.window))
+    }
+
+    /// A sensor's last firing was at another instant.
+    fn correct(&mut self, sensor: u8, at: Instant) {
+        let Some(slot) = self.slot_mut(sensor) else { return };
+        let was = core::mem::replace(&mut slot.fired, at);
+        if self.last == was || at.has_reached(self.last) {
+            self.last = at;
+        }
+        self.decide();
+    }
+
+    /// The time from the last firing until some time after another.
+    fn since_last(&self, fired: Instant, after: Micros) -> Micros {
+        let until = fired + after;
+        if self.last.has_reached(until) { Micros::ZERO } else { until.since(self.last) }
+    }
+
+    /// The sensor in the first place from one on that has a turn and has not fired ahead of it.
+    fn first_from(&self, place: u8) -> Option<(u8, u8)> {
+        let order = |place: u8| self.slots.get(usize::from(place)).map_or(NOBODY, |slot| slot.order);
+        let fires = |sensor: u8| self.slot(sensor).is_some_and(|slot| !slot.is(DISABLED | AHEAD | FOLLOWS));
+        (place..self.sensors).map(|place| (place, order(place))).find(|&(_, sensor)| fires(sensor))
+    }
+
+    /// Decides who fires next, and when.
+    fn decide(&mut self) {
+        if self.own_limits.most().is_some() {
+            let pending = self.each().find(|(_, slot)| slot.is(PENDING)).map(|(sensor, _)| sensor);
+            if let Some(sensor) = pending {
+                (self.next, self.due) = (sensor, self.last);
+                return;
+            }
+        }
+        self.next = NOBODY;
+        let turn = if self.paused { None } else { self.first_from(self.place) };
+        let Some((place, sensor)) = turn else {
+            // The round ends at once, and if nobody fires after the time for which one would rest.
+            let nobody = self.paused || !self.each().any(|(_, slot)| !slot.is(DISABLED));
+            self.due = self.last + if nobody { self.settings.rest } else { Micros::ZERO };
+            return;
+        };
+        let (quiet, rested) = self.waits(sensor);
+        (self.next, self.due) = (sensor, self.last + longer(quiet, rested) + self.thrown);
+        // Nobody is passed over twice: only while no other sensor has fired ahead.
+        let is_first = !self.slots.iter().any(|slot| slot.is(AHEAD));
+        if rested > quiet && is_first {
+            let mut ahead = place + 1;
+            while let Some((at, other)) = self.first_from(ahead) {
+                let (quiet, rested) = self.waits(other);
+                if rested <= quiet {
+                    (self.next, self.due) = (other, self.last + quiet + self.thrown);
+                    break;
+                }
+                ahead = at + 1;
+            }
+        }
     }
 }
 
-/// One unit of the grid of a code, in microseconds.
-#[inline(always)]
-const fn unit_of(code: &HoppingCode) -> u32 {
-    (code.phases() as u32 + 1) * code.step().as_micros()
+/// The sensor in a place of the order: far ones in turn, so that neighbours never follow each other where the number of
+/// sensors allows it.
+const fn in_order(place: u8, sensors: u8) -> u8 {
+    const SIX: [u8; 6] = [0, 2, 4, 1, 5, 3];
+    match sensors {
+        0..=4 => place,
+        6 => SIX[(place % 6) as usize],
+        _ => {
+            let mut stride = 3;
+            while !shares_no_factor(stride, sensors) || stride == sensors - 1 {
+                stride += 1;
+            }
+            (place as u16 * stride as u16 % sensors as u16) as u8
+        }
+    }
 }
 
-impl<const K: usize, U: OwnLimits> Plan for FlowPlan<K, U> {
+const fn shares_no_factor(mut one: u8, mut other: u8) -> bool {
+    while other != 0 {
+        (one, other) = (other, one % other);
+    }
+    one == 1
+}
+
+impl<const K: usize, U: OwnLimits> Plan for InTurn<K, U> {
+    #[inline]
     fn deadline(&self) -> Instant {
         self.due
     }
 
-    /// To the end of the cycle that has begun, since the next is decided then.
-    fn upcoming(&self) -> impl Iterator<Item = Upcoming> {
-        (self.place..self.planned).map(|place| {
-            let sensor = self.order(place);
-            let due = if place == self.place { self.due } else { self.start + self.offset(sensor) };
-            Upcoming { sensor, phase: self.phase(), due }
-        })
-    }
-
+    #[inline]
     fn next_firing(&self) -> Option<(u8, Phase)> {
-        (usize::from(self.next) < K).then_some((self.next, self.phase()))
+        (self.next != NOBODY).then_some((self.next, Phase::A))
     }
 
-    #[inline(always)]
     fn fire(&mut self, now: Instant) {
-        let (sensor, late) = (self.next, now.since(self.due));
-        let phase = self.phase;
-        let Some(slot) = self.slots.get_mut(usize::from(sensor)) else { return };
-        slot.fire(phase);
-        if late == Micros::ZERO {
-            self.lateness.note_punctual();
+        let (sensor, turn) = (self.next, self.first_from(self.place));
+        let Some(slot) = self.slot_mut(sensor) else { return };
+        slot.fired = now;
+        slot.set(FIRED | LISTENS, true);
+        if slot.is(PENDING) {
+            slot.set(PENDING, false);
+        } else {
+            match turn {
+                Some((place, first)) if first == sensor => self.place = place + 1,
+                _ => slot.set(AHEAD, true),
+            }
+            let group = self.own_limits.group_of(sensor);
+            if group > 0 {
+                for other in (0..self.sensors).filter(|&other| other != sensor) {
+                    let with = self.own_limits.group_of(other) == group && self.is_enabled(other);
+                    if let Some(slot) = self.slot_mut(other).filter(|_| with) {
+                        slot.set(PENDING, true);
+                    }
+                }
+            }
+            self.throw();
         }
-        self.place += 1;
-        self.find_due();
-        if late != Micros::ZERO {
-            self.fired_late(sensor, late);
-        }
+        self.last = now;
+        self.decide();
     }
 
     fn postpone(&mut self, sensor: u8, by: Micros) {
-        let Some(slot) = self.slots.get_mut(usize::from(sensor)) else { return };
-        let late = Micros::new(slot.late.into()).saturating_add(by);
-        let noted = u16::try_from(late.as_micros()).unwrap_or(u16::MAX);
-        slot.late = noted;
-        self.note_again(noted);
-        if late > CATCHES_UP {
-            self.break_off();
-            self.start += by;
-            self.find_due();
+        if let Some(fired) = self.slot(sensor).map(|slot| slot.fired) {
+            self.correct(sensor, fired + by);
         }
     }
 
     fn end_period(&mut self, now: Instant) -> (Phase, bool) {
-        let phase = self.phase();
-        let end = self.due + self.lead();
-        let left_out = now.since(self.due) > self.cycle();
-        self.start = if left_out { now } else { end };
-        self.lateness.end_period();
-        if left_out {
-            self.break_off();
-        }
-        let code = self.code;
-        self.phase = if self.phase + 1 < code.phases() { self.phase + 1 } else { 0 };
-        for (sensor, slot) in (0..).zip(self.slots.iter_mut().take(code.sensors())) {
-            slot.place = code.next_place(sensor, slot.place);
+        // Those that fired ahead have had their turn.
+        for slot in &mut self.slots {
+            slot.set(AHEAD, false);
+            if slot.is(FIRED) && now.since(slot.fired) > OLD {
+                slot.set(FIRED | LISTENS, false);
+            }
         }
         self.place = 0;
-        self.planned = 0;
-        self.find_due();
-        (phase, left_out)
+        if self.next == NOBODY && now.since(self.last) >= self.settings.rest {
+            // Nobody fires: rounds go on.
+            self.last = now;
+        }
+        self.decide();
+        (Phase::A, false)
     }
 
-    fn begin_period(&mut self, fired: impl Fn(u8) -> Instant) {
-        self.plan(|plan, sensor| plan.rests_for(sensor, fired(sensor)));
+    fn judged(&mut self, heard: &Heard<'_>, _: &Verdict, judge: &impl Judge) {
+        let (up, down) = (self.settings.up(), self.settings.down());
+        self.pace = judge.pace();
+        let (least, most) = (self.least().as_micros() / UNIT, self.settings.most.as_micros() / UNIT);
+        let quiet = judge.quiet();
+        if let Some(slot) = self.slot_mut(heard.sensor) {
+            let now = u32::from(slot.doubt);
+            let then = match quiet {
+                Quiet::Less => now.saturating_sub(down.as_micros() / UNIT).max(least),
+                Quiet::Same => now,
+                Quiet::More => (now + up.as_micros() / UNIT).min(most),
+            };
+            // At most 250 ms.
+            slot.doubt = then as u16;
+        }
     }
 
-    #[inline(always)]
-    fn take_change(&mut self) -> bool {
-        let changed = core::mem::take(&mut self.changed);
-        self.changes = self.changes.wrapping_add(changed.into());
-        changed
+    fn fired(&mut self, sensor: u8, at: Instant) {
+        // If it was later and still listens, it is postponed too.
+        if self.slot(sensor).is_some_and(|slot| !slot.is(LISTENS) || slot.fired.has_reached(at)) {
+            self.correct(sensor, at);
+        }
     }
 
-    fn judged(&mut self, heard: &Heard<'_>, verdict: &Verdict, judge: &impl Judge) {
-        self.learn(heard, verdict, judge);
+    fn ended(&mut self, sensor: u8, _at: Instant) {
+        if let Some(slot) = self.slot_mut(sensor) {
+            slot.set(LISTENS, false);
+            self.decide();
+        }
     }
-
-    fn may_fire_ahead(&self) -> bool {
-        false
-    }
-
-    fn ended(&mut self, _sensor: u8, _at: Instant) {}
 
     fn sensors(&self) -> usize {
-        self.code.sensors()
+        self.sensors.into()
     }
 
     fn set_enabled(&mut self, sensor: u8, enabled: bool) {
-        if let Some(slot) = self.slots.get_mut(usize::from(sensor)) {
+        let first = self.first();
+        if let Some(slot) = self.slot_mut(sensor) {
+            if enabled && slot.is(DISABLED) {
+                slot.doubt = first;
+            }
             slot.set(DISABLED, !enabled);
-        }
-        self.in_order = NOBODY;
-        if !enabled {
-            self.leave_out(sensor);
-            self.find_due();
+            self.group();
+            self.decide();
         }
     }
 
     fn set_paused(&mut self, paused: bool) {
         self.paused = paused;
-        self.obey_pause();
+        self.group();
+        self.decide();
     }
 
     fn is_enabled(&self, sensor: u8) -> bool {
-        let slot = self.slots.get(usize::from(sensor)).filter(|_| usize::from(sensor) < self.sensors());
-        slot.is_some_and(|slot| !slot.is(DISABLED))
+        self.slot(sensor).is_some_and(|slot| !slot.is(DISABLED))
     }
 
     fn restart(&mut self, now: Instant) {
-        self.start = now;
-        self.break_off();
-        self.place = 0;
-        self.planned = 0;
-        self.find_due();
+        let first = self.first();
+        for slot in &mut self.slots {
+            // A clock that has jumped says nothing of when they fired.
+            let rests = slot.is(FIRED) && now.has_reached(slot.fired) && now.since(slot.fired) <= self.settings.rest;
+            slot.set(FIRED, rests);
+            slot.set(LISTENS | AHEAD | PENDING, false);
+            slot.doubt = first;
+        }
+        // Sound from before dies away.
+        (self.place, self.last) = (0, now + self.settings.most);
+        self.decide();
     }
 
-    fn last_firing(&self, sensor: u8, _periods_ago: u8) -> Firing {
-        let Some(slot) = self.slots.get(usize::from(sensor)) else { return Firing::new(Phase(0)) };
-        let steady = self.lateness.is_steady(slot.late, self.tolerated);
-        Firing { steady, ..Firing::new(Phase(slot.phase)) }
+    fn set_pace(&mut self, pace: Pace) {
+        self.pace = pace;
+        self.decide();
+    }
+
+    fn last_firing(&self, _sensor: u8, _periods_ago: u8) -> Firing {
+        Firing::new(Phase::A)
     }
 
     fn limits(&self) -> Limits<'_> {
-        Limits { longest_window: self.min_refire(), verified_for: None, audible: None }
+        Limits { longest_window: self.min_refire(), verified_for: None, audible: Some(self.settings.most) }
     }
 
     fn hears(&self, receiver: u8, emitter: u8) -> bool {
@@ -394,87 +496,79 @@ impl<const K: usize, U: OwnLimits> Plan for FlowPlan<K, U> {
     }
 
     fn min_refire(&self) -> Micros {
-        self.rest
+        longer(self.settings.rest, self.window)
     }
 
     fn horizon(&self) -> Micros {
-        // A cycle of least gaps may be longer than the longest that is asked for. Below 2^31.
-        let least = self.code.sensors() as u32 * u32::from(self.pace.least_gap);
-        Micros::new(2 * least.max(self.pace.longest + 1) * self.unit() + self.rest.as_micros())
+        // A round of the longest gaps, in which each has its turn: at most 64 times 750 ms, and the rest.
+        let gap = self.settings.most.as_micros() + 2 * self.settings.dice.as_micros();
+        let round = (u32::from(self.sensors) + 1) * gap;
+        Micros::new(round + longer(self.settings.rest, self.window).as_micros())
     }
-}
-
-impl<const K: usize, U: OwnLimits> FlowPlan<K, U> {
-    /// Raises a sensor's quiet if others fooled it or nothing of it is believed, lowers it if its reading is.
-    fn learn(&mut self, heard: &Heard<'_>, verdict: &Verdict, judge: &impl Judge) {
-        let sensor = heard.sensor;
-        let change = u16::try_from(heard.firing.expected_change_us.unsigned_abs()).unwrap_or(u16::MAX);
-        self.fastest = self.fastest.max(change);
-        let pace = self.pace;
-        let Some(slot) = self.slots.get_mut(usize::from(sensor)) else { return };
-        match verdict.kind {
-            // Neither silence nor quiet helps a sensor that is not heard.
-            ReadingKind::Stuck | ReadingKind::Unanswered => return,
-            ReadingKind::Accepted | ReadingKind::Clear => {
-                slot.unserved = 0;
-                slot.before = slot.before.saturating_sub(pace.believed_takes).max(pace.least);
-                slot.after = slot.after.saturating_sub(pace.believed_takes).max(pace.least);
-                return;
-            }
-            ReadingKind::Tentative => {
-                slot.unserved = 0;
-                return;
-            }
-            _ => {}
-        }
-        slot.unserved = slot.unserved.saturating_add(1);
-        let mut raise = (0, 0);
-        if divides(pace.unserved_after, slot.unserved) {
-            raise = (pace.unserved_adds, pace.unserved_adds);
-        }
-        if let Some(&echo) = heard.echoes.first() {
-            if judge.comes_before_belief(sensor, echo) {
-                raise.0 = pace.masked_adds.saturating_add(raise.0);
-                if echo > self.gap_after(sensor) {
-                    raise.1 = pace.masked_adds.saturating_add(raise.1);
-                }
-            }
-        }
-        if let Some(slot) = self.slots.get_mut(usize::from(sensor)) {
-            slot.before = slot.before.saturating_add(raise.0).min(pace.most);
-            slot.after = slot.after.saturating_add(raise.1).min(pace.most);
-        }
-    }
-
-    /// Time from a sensor's firing in this cycle to the next of any that it does not fire together with, as planned.
-    fn gap_after(&self, sensor: u8) -> Micros {
-        let place = (0..self.planned).find(|&place| self.order(place) == sensor).map(|place| self.last_with(place));
-        let gap = place.and_then(|place| self.slots.get(usize::from(place))).map_or(0, |slot| slot.gap);
-        Micros::new(u32::from(gap) * self.unit())
-    }
-}
-
-/// Returns true if a number is a multiple of another, above 0. By subtraction: small processors take a hundred
-/// instructions to divide.
-fn divides(number: u8, multiple: u8) -> bool {
-    let mut rest = u32::from(multiple);
-    for bit in (0..8).rev() {
-        let part = u32::from(number) << bit;
-        rest = if rest >= part { rest - part } else { rest };
-    }
-    rest == 0
 }
 
 #[cfg(test)]
 mod tests {
-    use super::divides;
+    extern crate std;
+    use super::*;
+    use crate::own_limits::EachSensor;
+    use crate::plan::check_plan;
+    use std::vec::Vec;
 
     #[test]
-    fn divides_is_the_remainder_of_every_pair() {
-        for number in 1..=255_u8 {
-            for multiple in 0..=255 {
-                assert_eq!(divides(number, multiple), multiple % number == 0, "{number} {multiple}");
+    fn neighbours_never_fire_one_after_the_other() {
+        let orders: [(u8, &[u8]); 4] =
+            [(3, &[0, 1, 2]), (5, &[0, 3, 1, 4, 2]), (6, &[0, 2, 4, 1, 5, 3]), (8, &[0, 3, 6, 1, 4, 7, 2, 5])];
+        for (sensors, expected) in orders {
+            assert_eq!((0..sensors).map(|place| in_order(place, sensors)).collect::<Vec<_>>(), expected);
+        }
+        for sensors in 5..=MAX_SENSORS as u8 {
+            let order: Vec<_> = (0..sensors).map(|place| in_order(place, sensors)).collect();
+            let mut sorted = order.clone();
+            sorted.sort_unstable();
+            assert_eq!(sorted, (0..sensors).collect::<Vec<_>>());
+            let pairs = order.iter().zip(order.iter().cycle().skip(1));
+            let apart = |(one, other): (&u8, &u8)| one.abs_diff(*other).min(sensors - one.abs_diff(*other));
+            // Six come round with two that are neighbours.
+            assert!(pairs.filter(|pair| apart(*pair) < 2).count() <= usize::from(sensors == 6), "{order:?}");
+        }
+    }
+
+    #[test]
+    fn plan_keeps_its_contract_whatever_is_done_to_it() {
+        for sensors in [1, 2, 3, 6, 8, 12, 16] {
+            for (least, rest) in [(6, 60), (33, 60), (6, 200)] {
+                let mut settings = TurnSettings::new(1 + sensors as u32);
+                (settings.least, settings.rest) = (Micros::from_millis(least), Micros::from_millis(rest));
+                let now = Instant::from_micros(u32::MAX - 7_000_000);
+                let mut plan = InTurn::<16>::new(sensors, settings, Micros::from_millis(30), now).unwrap();
+                check_plan(&mut plan, now, 20_000, 1).unwrap_or_else(|broken| std::panic!("{sensors}: {broken}"));
             }
         }
+        let windows = [20, 30, 30, 12, 30, 25].map(Micros::from_millis);
+        let own = windows.map(|window| SensorLimits { t_delta: Micros::MAX, window });
+        let cases: [(&[u64], &[u64]); 3] = [(&[0b11], &[]), (&[0b1010, 0b10_0101], &[0b11]), (&[], &[0b11_1111])];
+        for (groups, lines) in cases {
+            let limits = EachSensor::for_flow(own, groups).with_shared_lines(lines);
+            let now = Instant::from_micros(u32::MAX - 7_000_000);
+            let mut plan =
+                InTurn::<6, _>::with_limits(6, limits, TurnSettings::new(1), Micros::from_millis(30), now).unwrap();
+            check_plan(&mut plan, now, 20_000, 5).unwrap_or_else(|broken| std::panic!("{groups:?}: {broken}"));
+        }
+    }
+
+    #[test]
+    fn settings_out_of_range_are_refused_by_name() {
+        let of = |change: fn(&mut TurnSettings)| {
+            let mut settings = TurnSettings::new(1);
+            change(&mut settings);
+            InTurn::<8>::new(8, settings, Micros::from_millis(30), Instant::default()).map(drop)
+        };
+        assert_eq!(of(|_| ()), Ok(()));
+        let named = |name, value, least, most| Err(RingError::Setting { name, value, least, most });
+        assert_eq!(of(|settings| settings.seed = 0), named("seed", 0, 1, u32::MAX));
+        assert_eq!(of(|settings| settings.least = Micros::new(40_000)), named("least", 40_000, 1, 33_500));
+        assert_eq!(of(|settings| settings.most = Micros::new(60)), named("least", 6_000, 1, 60));
+        assert_eq!(of(|settings| settings.rest = Micros::ZERO), named("rest", 0, 1, 4_000_000));
     }
 }

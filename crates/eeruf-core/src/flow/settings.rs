@@ -1,91 +1,72 @@
-//! [`FlowSettings`]: how a flow ring spaces its firings and weighs its readings.
+//! [`TurnSettings`] and [`BeliefSettings`]: what a ring that fires in turn is set up with.
 
-use super::slot::{LONGEST_QUIET, QUIET_US, quiet};
-use crate::hopping::{CATCHES_UP, HoppingCode, HoppingError};
 use crate::own_limits::{EachSensor, SensorLimits};
 use crate::requirements::Requirements;
 use crate::requirements_error::RequirementsError;
-use crate::schedule::MAX_PERIOD;
-use crate::time::Micros;
-use crate::tracker::TrackerSettings;
+use crate::ring_error::RingError;
+use crate::time::{Micros, longer, shorter};
 
-/// The gaps of a [`FlowRing`](super::FlowRing) and the weights of its readings.
+/// The longest quiet, and the longest time between two firings of a sensor.
+const LONGEST_QUIET: Micros = Micros::from_millis(250);
+pub(super) const LONGEST_REST: Micros = Micros::from_millis(4_000);
+
+/// Returns the setting if it is within its range.
+const fn within(name: &'static str, value: Micros, least: Micros, most: Micros) -> Result<(), RingError> {
+    if value.as_micros() < least.as_micros() || value.as_micros() > most.as_micros() {
+        let [value, least, most] = [value.as_micros(), least.as_micros(), most.as_micros()];
+        return Err(RingError::Setting { name, value, least, most });
+    }
+    Ok(())
+}
+
+/// When sensors fire that fire in turn. The least and the most quiet being equal, each has the same gap around it, as
+/// [one by one](Self::one_by_one).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[non_exhaustive]
-pub struct FlowSettings {
-    /// Weights of readings.
-    pub tracker: TrackerSettings,
-    /// Step of the code: crosstalk moves by at least as much from phase to phase. Above the tracker's `t_delta`.
-    pub step: Micros,
-    /// Least time between two firings, at most 65 ms, as all times of quiet.
-    pub shortest_gap: Micros,
-    /// Quiet that a reading adds that comes before what is believed.
-    pub masked_adds: Micros,
-    /// Quiet that a believed reading takes away.
-    pub believed_takes: Micros,
-    /// Quiet that a sensor gains after each [`unserved_after`](Self::unserved_after) firings with nothing believed.
-    pub unserved_adds: Micros,
-    /// Firings with nothing believed after which a sensor gains quiet, at least 1.
-    pub unserved_after: u8,
-    /// Shortest time from a cycle to the next.
-    pub shortest_cycle: Micros,
-    /// Least time between two firings of a sensor, where its module rests for longer than it listens. At most 16.7 s.
+pub struct TurnSettings {
+    /// The least time from a firing to the next, of a robot that stands or is among others. Where every echo is
+    /// reported, twice as much.
+    pub least: Micros,
+    /// R: the most, and how long sound is heard, its tail included. At most 250 ms.
+    pub most: Micros,
+    /// The least time between two firings of a sensor, for which its module rests. At most 4 s.
     pub rest: Micros,
-    /// Time before a cycle begins at which the one before ends and it is planned, for processors that take long for it:
-    /// else its first firing would be late. At most 65 ms and the shortest cycle.
-    pub lead: Micros,
-    /// Longest time from a cycle to the next, of a robot that stands.
-    pub longest_cycle: Micros,
-    /// Change of an echo by odometry that a cycle may bring: it bounds the cycle of a robot that moves.
-    pub travel: Micros,
+    /// Random time in every gap, from 0 to this while the robot stands, and to twice this while it moves. At least
+    /// eight ticks of the clock, or readings that agree are explained by chance.
+    pub dice: Micros,
+    /// The seed of the dice, not 0: another one for each robot, as its chip's number.
+    pub seed: u32,
 }
 
-impl FlowSettings {
-    /// For every robot.
-    pub const DEFAULT: Self = Self {
-        tracker: TrackerSettings::BALANCED.with_memory(5),
-        step: Micros::new(240),
-        shortest_gap: Micros::new(7_500),
-        masked_adds: Micros::from_millis(4),
-        believed_takes: Micros::new(1_500),
-        unserved_adds: Micros::from_millis(6),
-        unserved_after: 3,
-        shortest_cycle: Micros::from_millis(60),
-        rest: Micros::ZERO,
-        lead: Micros::ZERO,
-        longest_cycle: Micros::from_millis(400),
-        travel: Micros::new(260),
-    };
-}
-
-impl FlowSettings {
-    /// The step of the code differs by this from one fleet number to the next.
-    const STEP_OF_NUMBER: Micros = Micros::new(40);
-    /// The number of fleet numbers that differ.
-    const NUMBERS: u8 = 6;
-
-    /// These settings for the robot with this number among robots of one make that hear each other: 0 to 5 have steps
-    /// 40 us apart, larger ones are counted from 0 again.
-    ///
-    /// Two robots with the same step can read each other alike in every phase of a cycle. With unlike numbers, whatever
-    /// their offset, and with a `t_delta` of 150 us, no more phases agree than 4 up to 11 sensors, 5 up to 15, 6 up to
-    /// 17, 7 up to 21 and 9 up to 27 (`docs/explanation/theory.md`, section 9); five make an echo believed.
-    ///
-    /// ```
-    /// use eeruf_core::{Micros, flow::FlowSettings};
-    /// assert_eq!(FlowSettings::DEFAULT.with_fleet_number(2).step, Micros::new(320));
-    /// ```
-    #[must_use]
-    pub const fn with_fleet_number(mut self, number: u8) -> Self {
-        let more = (number % Self::NUMBERS) as u32 * Self::STEP_OF_NUMBER.as_micros();
-        self.step = self.step.saturating_add(Micros::new(more));
-        self
+impl TurnSettings {
+    /// For HC-SR04 modules and others that hear no further than 4 m, with this seed.
+    pub const fn new(seed: u32) -> Self {
+        let (most, rest) = (Micros::new(33_500), Micros::from_millis(60));
+        Self { least: Micros::new(6_000), most, rest, dice: Micros::from_millis(2), seed }
     }
 
-    /// The limits of each sensor for [`FlowPlan::with_limits`](super::FlowPlan::with_limits): its window, its
-    /// `t_delta`, of which no more counts than the tracker's, and the sensors that it fires together with. All other
-    /// requirements are for tables.
+    /// For modules that listen for `window`, rest for `rest` and are deaf for `blanking`; of modules that are not all
+    /// alike, the longest window and rest, and the shortest blanking time.
+    ///
+    /// Sound is taken to be heard for two ninths of the window after it: its tail. But no longer than until a sensor
+    /// listens again, or its own stale echoes would count as foreign.
+    pub const fn for_module(seed: u32, window: Micros, rest: Micros, blanking: Micros) -> Self {
+        let listens_again = longer(rest, window).saturating_add(blanking).saturating_sub(Micros::new(1));
+        let tail = Micros::new(window.as_micros() / 9 * 2);
+        let most = shorter(window.saturating_add(tail), listens_again);
+        let least = Micros::new(most.as_micros() / 11 * 2);
+        Self { least, most, rest, dice: Micros::from_millis(2), seed }
+    }
+
+    /// These settings one by one, or group by group where sensors fire together: always with the most quiet.
+    #[must_use]
+    pub const fn one_by_one(self) -> Self {
+        Self { least: self.most, ..self }
+    }
+
+    /// The limits of each sensor for [`FlowRing::with_limits`](crate::flow::FlowRing::with_limits): its window, its
+    /// `t_delta`, of which no more counts than that of the belief, the sensors that it fires together with, as those on
+    /// one trigger line do, and those with which it shares an echo line. All other requirements are for tables.
     ///
     /// # Errors
     /// [`RequirementsError`] if what single sensors need is invalid for this many sensors.
@@ -100,112 +81,136 @@ impl FlowSettings {
             true => SensorLimits { t_delta: requirements.t_delta_of(x), window: requirements.window_of(x) },
             false => none,
         });
-        Ok(EachSensor::for_flow(limits, requirements.together()))
+        Ok(EachSensor::for_flow(limits, requirements.together()).with_shared_lines(uneven.shared_lines))
     }
 
-    /// These settings with what modules need that are not all alike: the rest of the one that rests for longest, since
-    /// each fires once a cycle, and where sensors share an echo line, gaps in which each has stopped listening.
-    ///
-    /// # Errors
-    /// [`HoppingError`] as for [`HoppingCode::new`], or for a shared line on which a sensor listens for longer than the
-    /// longest gap.
-    pub fn keeping(mut self, sensors: usize, requirements: &Requirements<'_>) -> Result<Self, HoppingError> {
-        let Some(uneven) = requirements.uneven else { return Ok(self) };
-        self.rest = uneven.refire.iter().copied().fold(self.rest, Micros::max);
-        let shares = |x: usize| uneven.shared_lines.iter().any(|line| line >> x & 1 == 1);
-        let listens = (0..sensors).filter(|&x| shares(x)).map(|x| requirements.window_of(x)).max();
-        if let Some(window) = listens {
-            // Waits bring two firings closer by the width of the code, lateness by what is caught up with.
-            let code = HoppingCode::new(sensors, self.tracker.votes, self.step)?;
-            let closer = code.width().saturating_add(CATCHES_UP).saturating_add(Micros::new(QUIET_US));
-            let most = LONGEST_QUIET.saturating_sub(closer);
-            if window > most {
-                return Err(HoppingError::Window { window, most });
-            }
-            self.shortest_gap = self.shortest_gap.max(window.saturating_add(closer));
+    /// These settings with the rest of the module that rests for longest.
+    #[must_use]
+    pub fn keeping(self, requirements: &Requirements<'_>) -> Self {
+        let refire = requirements.uneven.map_or(&[][..], |uneven| uneven.refire);
+        Self { rest: refire.iter().copied().fold(self.rest, Micros::max), ..self }
+    }
+
+    pub(super) const fn check(&self) -> Result<(), RingError> {
+        let tick = Micros::new(1);
+        if let Err(error) = within("most", self.most, tick, LONGEST_QUIET) {
+            return Err(error);
         }
-        Ok(self)
+        if let Err(error) = within("least", self.least, tick, self.most) {
+            return Err(error);
+        }
+        if let Err(error) = within("rest", self.rest, tick, LONGEST_REST) {
+            return Err(error);
+        }
+        if let Err(error) = within("dice", self.dice, Micros::ZERO, LONGEST_QUIET) {
+            return Err(error);
+        }
+        within("seed", Micros::new(self.seed), tick, Micros::MAX)
+    }
+
+    /// Quiet that a believed reading takes away.
+    pub(super) const fn down(&self) -> Micros {
+        Micros::new(self.most.saturating_sub(self.least).as_micros() / 10)
+    }
+
+    /// Quiet that a masked reading adds.
+    pub(super) const fn up(&self) -> Micros {
+        Micros::new(self.most.saturating_sub(self.least).as_micros() / 4)
+    }
+
+    /// Quiet to begin with.
+    pub(super) const fn first(&self) -> Micros {
+        self.least.saturating_add(Micros::new(self.most.saturating_sub(self.least).as_micros() / 5))
     }
 }
 
-impl Default for FlowSettings {
+/// The number of echoes in a row that makes one accepted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Votes {
+    /// One while the robot moves, if it is alone; else two.
+    ByMotion,
+    /// One: every echo is accepted, with twice the least quiet. Nothing but quiet keeps foreign ones out.
+    EveryEcho,
+    /// Two that nothing foreign explains, or one that fits what is believed.
+    TwoInARow,
+}
+
+/// Belief of a ring that fires in turn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct BeliefSettings {
+    /// `T_delta`: by how much two readings in a row may differ that agree, of a robot that stands.
+    pub t_delta: Micros,
+    /// H: by how much a reading may differ from what is believed, of a robot that stands.
+    pub near: Micros,
+    /// P: by how much the path of foreign sound may change between two readings, of a robot that stands.
+    pub path_change: Micros,
+    /// Firings without belief after which a belief keeps nothing alive.
+    pub memory: u8,
+    /// Readings that confirm a belief so far that as many contradictions must come before what is farther, or silence,
+    /// is believed; of a robot that stands.
+    pub hold: u8,
+    /// The speed that holds where the robot says none, in mm/s.
+    pub top_speed_mm_s: u16,
+    /// No other robot sends sound here.
+    pub alone: bool,
+    /// Echoes in a row that make one accepted.
+    pub votes: Votes,
+}
+
+impl BeliefSettings {
+    /// For every robot that stands unless it says otherwise.
+    pub const DEFAULT: Self = Self {
+        t_delta: Micros::new(80),
+        near: Micros::new(150),
+        path_change: Micros::new(150),
+        memory: 8,
+        hold: 4,
+        top_speed_mm_s: 0,
+        alone: false,
+        votes: Votes::ByMotion,
+    };
+
+    /// Returns true if every echo is reported as accepted.
+    pub(super) const fn every_echo(&self, moves: bool) -> bool {
+        match self.votes {
+            Votes::ByMotion => self.alone && moves,
+            Votes::EveryEcho => true,
+            Votes::TwoInARow => false,
+        }
+    }
+
+    pub(super) const fn check(&self) -> Result<(), RingError> {
+        let most = Micros::from_millis(10);
+        if let Err(error) = within("near", self.near, Micros::ZERO, most) {
+            return Err(error);
+        }
+        within("hold", Micros::new(self.hold as u32), Micros::new(1), Micros::new(100))
+    }
+}
+
+impl Default for BeliefSettings {
     fn default() -> Self {
         Self::DEFAULT
     }
 }
 
-/// The settings that are about firing, as the plan keeps them: the tracker has the others.
-#[derive(Clone, Copy, Debug)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub(super) struct Pace {
-    pub(super) least: u8,
-    pub(super) most: u8,
-    pub(super) masked_adds: u8,
-    pub(super) believed_takes: u8,
-    pub(super) unserved_adds: u8,
-    pub(super) unserved_after: u8,
-    /// The gap of the least quiet, in units of the grid.
-    pub(super) least_gap: u8,
-    /// Time before its end at which a cycle ends for the plan, in units of quiet.
-    pub(super) lead: u8,
-    /// The distance in the ring from one firing to the next.
-    pub(super) stride: u8,
-    /// The shortest cycle was rounded up to whole units.
-    pub(super) rounded_up: bool,
-    pub(super) travel_us: u16,
-    /// The shortest cycle, in units of the grid.
-    pub(super) shortest: u32,
-    /// The longest cycle of a robot that stands, in units of the grid.
-    pub(super) longest: u32,
-    /// Units of the grid in one of quiet, in 1/2^24; 0 if there is a whole one or more.
-    pub(super) per_quiet: u32,
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
 
-impl Pace {
-    /// `longest`: the most quiet that helps; `unit`: that of the grid.
-    pub(super) fn of(settings: &FlowSettings, sensors: u8, longest: Micros, unit: u32) -> Self {
-        let least = quiet(settings.shortest_gap);
-        let most = quiet(longest).max(least);
-        let unit = unit.max(1);
-        let shortest = settings.shortest_cycle.as_micros();
-        Self {
-            least,
-            most,
-            masked_adds: quiet(settings.masked_adds),
-            believed_takes: quiet(settings.believed_takes),
-            unserved_adds: quiet(settings.unserved_adds),
-            unserved_after: settings.unserved_after.max(1),
-            least_gap: in_units(u32::from(least) * QUIET_US, unit).clamp(1, 255) as u8,
-            lead: quiet(settings.lead.min(settings.shortest_cycle)),
-            stride: stride(sensors),
-            rounded_up: in_units(shortest, unit) * unit != shortest,
-            travel_us: u16::try_from(settings.travel.as_micros()).unwrap_or(u16::MAX),
-            shortest: in_units(shortest, unit),
-            longest: settings.longest_cycle.min(MAX_PERIOD).as_micros().max(shortest) / unit,
-            per_quiet: if unit > QUIET_US { u32::MAX / unit } else { 0 },
-        }
+    #[test]
+    fn settings_follow_from_window_and_rest() {
+        let ms = Micros::from_millis;
+        let of = |window, rest, blanking| {
+            let turns = TurnSettings::for_module(1, ms(window), ms(rest), Micros::new(blanking));
+            assert_eq!(turns.check(), Ok(()));
+            (turns.least.as_micros(), turns.most.as_micros(), turns.rest.as_micros())
+        };
+        // A Polaroid; a module that rests no longer than it listens; one that rests for less.
+        assert_eq!(of(60, 80, 1_000), (13_332, 73_332, 80_000));
+        assert_eq!(of(60, 60, 1_000), (11_090, 60_999, 60_000));
+        assert_eq!(of(36, 20, 300), (6_598, 36_299, 20_000));
     }
-}
-
-/// The distance in the ring from one firing to the next: neighbours hear each other loudest.
-const fn stride(sensors: u8) -> u8 {
-    let mut stride = if sensors > 6 { sensors / 3 + 1 } else { 1 };
-    while !coprime(stride, sensors) {
-        stride += 1;
-    }
-    stride
-}
-
-const fn coprime(mut a: u8, mut b: u8) -> bool {
-    // By subtraction: small processors do not divide.
-    while b > 0 && a > 0 {
-        if a < b { b -= a } else { a -= b }
-    }
-    a + b <= 1
-}
-
-/// A time in whole units, rounded up.
-pub(super) const fn in_units(time: u32, unit: u32) -> u32 {
-    let unit = if unit > 0 { unit } else { 1 };
-    time.saturating_add(unit - 1) / unit
 }

@@ -142,7 +142,6 @@ impl Check {
                 Some((sensor, _)) => self.fire(plan, sensor)?,
                 None => {
                     _ = plan.end_period(self.now);
-                    self.begin_period(plan);
                 }
             }
         }
@@ -179,11 +178,6 @@ impl Check {
         Ok(())
     }
 
-    fn begin_period<P: Plan>(&self, plan: &mut P) {
-        let fired = |sensor: u8| self.seen.get(usize::from(sensor)).and_then(|seen| seen.fired);
-        plan.begin_period(|sensor| fired(sensor).unwrap_or(self.now));
-    }
-
     /// Ends the listening of those whose time is up.
     fn end_until<P: Plan>(&mut self, plan: &mut P, until: Instant) {
         // It believes nothing.
@@ -193,7 +187,8 @@ impl Check {
                 if until.has_reached(at) {
                     seen.ends = None;
                     let (firing, t_delta) = (plan.last_firing(x, 0), Micros::new(1));
-                    let heard = Heard { sensor: x, fired, echoes: &[at.since(fired)], firing, t_delta };
+                    let since_before = Micros::MAX;
+                    let heard = Heard { sensor: x, fired, since_before, echoes: &[at.since(fired)], firing, t_delta };
                     plan.judged(&heard, &heard.unjudged(Some(ReadingKind::Rejected)), &judge);
                     plan.ended(x, at);
                 }
@@ -223,7 +218,6 @@ impl Check {
         match (self.below(8), self.seen.get_mut(usize::from(sensor))) {
             (0, _) if poll % 3 == 0 => {
                 plan.restart(now);
-                self.begin_period(plan);
                 for seen in &mut self.seen {
                     (seen.ends, seen.waits_since) = (None, Some(now));
                 }

@@ -2,7 +2,7 @@
 //!
 //! A plan never reads a clock. The caller passes `now` and gets the next deadline back.
 
-use crate::judging::{Firing, Heard, Judge};
+use crate::judging::{Firing, Heard, Judge, Pace};
 use crate::own_limits::SensorLimits;
 use crate::reading::Verdict;
 use crate::schedule::{Phase, VerifiedFor};
@@ -33,17 +33,8 @@ pub struct Limits<'s> {
     pub audible: Option<Micros>,
 }
 
-/// Ends the period of a plan that is run without a ring. Out of line, since it is rarer than a firing and needs more
-/// registers.
-#[inline(never)]
-fn end_period_alone<P: Plan + ?Sized>(plan: &mut P, now: Instant) {
-    plan.end_period(now);
-    plan.begin_period(|_| now);
-}
-
 /// Decides when each sensor of a ring fires: [`ScheduledFiring`](super::ScheduledFiring),
-/// [`ImmediateRefiring`](super::ImmediateRefiring), [`HoppingPlan`](crate::hopping::HoppingPlan), or one of the
-/// caller's own.
+/// [`ImmediateRefiring`](super::ImmediateRefiring), [`InTurn`](crate::flow::InTurn), or one of the caller's own.
 pub trait Plan {
     /// The next firing of a plan that is run without a ring, if one is due; periods end as they come. Call again until
     /// there is none.
@@ -55,7 +46,6 @@ pub trait Plan {
                 if due.since(now) > self.horizon() {
                     // The clock has jumped, or the ring was not polled for half a turn of it.
                     self.restart(now);
-                    self.begin_period(|_| now);
                 }
                 return None;
             }
@@ -63,7 +53,7 @@ pub trait Plan {
                 self.fire(now);
                 return Some(Upcoming { sensor, phase, due });
             }
-            end_period_alone(self, now);
+            self.end_period(now);
         }
     }
     /// When the next step is due.
@@ -84,22 +74,10 @@ pub trait Plan {
     /// Ends the period, `now`. Returns its phase, and whether the next one does not follow on it as the schedule says:
     /// because another schedule begins, or because periods were left out. To be called when that is due.
     fn end_period(&mut self, now: Instant) -> (Phase, bool);
-    /// Decides on the period that has begun, after [`end_period`](Self::end_period) and [`restart`](Self::restart), for
-    /// plans that decide a period at a time; `fired` says when a sensor that has fired last did.
-    fn begin_period(&mut self, _fired: impl Fn(u8) -> Instant) {}
-    /// Returns true if, since the last call, firing times have changed against each other otherwise than by the phase:
-    /// a judge that compares phases must know.
-    fn take_change(&mut self) -> bool {
-        false
-    }
     /// Takes in a sensor's reading with its verdict, and the judge, for plans that fire by what is believed.
     fn judged(&mut self, _heard: &Heard<'_>, _verdict: &Verdict, _judge: &impl Judge) {}
     /// A sensor turns out to have fired `at` this instant.
     fn fired(&mut self, _sensor: u8, _at: Instant) {}
-    /// Returns true if a sensor can have fired before [`fire`](Self::fire) was called for it, as a timer may.
-    fn may_fire_ahead(&self) -> bool {
-        true
-    }
     /// A sensor has stopped listening: its echo came in, or its window closed, `at` this instant.
     fn ended(&mut self, sensor: u8, at: Instant);
     /// Number of sensors it fires.
@@ -110,8 +88,8 @@ pub trait Plan {
     fn set_paused(&mut self, paused: bool);
     /// Returns true if a sensor fires, but for a pause.
     fn is_enabled(&self, sensor: u8) -> bool;
-    /// The robot moves, or stands.
-    fn set_moving(&mut self, _moves: bool) {}
+    /// The robot moves so, or stands.
+    fn set_pace(&mut self, _pace: Pace) {}
     /// Starts again with phase a, no sooner than `now`.
     fn restart(&mut self, now: Instant);
     /// Properties of a sensor's last firing, `periods_ago` periods before the present one.

@@ -75,14 +75,13 @@ impl<P: Plan, const K: usize, const E: usize, const H: usize> Ring<P, EchoFilter
 }
 
 impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, J, K, E, H> {
-    /// Changes the plan, which then decides on the period that has begun.
+    /// Changes the plan.
     pub(crate) fn change_plan<Refused>(
         &mut self,
         change: impl FnOnce(&mut P) -> Result<(), Refused>,
     ) -> Result<(), Refused> {
         change(&mut self.plan)?;
         self.disturb();
-        self.begin_period();
         Ok(())
     }
 
@@ -183,12 +182,12 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
     }
 
     /// Lets sensors fire again: as of the next period with scheduled firing, with immediate refiring at once. Readings
-    /// from before are forgotten.
+    /// from before are forgotten; a judge may keep what it believes.
     pub fn resume(&mut self) {
         self.plan.set_paused(false);
         // At most 64 sensors.
         for sensor in 0..self.sensors() as u8 {
-            self.judge.forget(sensor);
+            self.judge.resume(sensor);
         }
         self.disturb();
     }
@@ -212,6 +211,5 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
         self.oldest = NOBODY;
         self.ready = 0;
         self.disturb();
-        self.begin_period();
     }
 }

@@ -19,11 +19,9 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
     /// # Errors
     /// [`SensorError`] if the sensor is out of range.
     pub fn fired(&mut self, sensor: u8, at: Instant) -> Result<(), SensorError> {
-        let may_fire_ahead = self.plan.may_fire_ahead();
         let fired = self.sensor_mut(sensor)?;
         let polled = fired.fired();
-        let may_be = fired.firings.may_correct(at) && (may_fire_ahead || at.has_reached(polled));
-        if at == polled || !may_be {
+        if at == polled || !fired.firings.may_correct(at) {
             return Ok(());
         }
         let (later_us, listens) = (fired.correct(at), fired.is(LISTENING));

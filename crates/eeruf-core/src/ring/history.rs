@@ -72,6 +72,11 @@ impl<const H: usize> Firings<H> {
         [self.0[0], self.0[1], self.0[2]]
     }
 
+    /// The time from the last but one to the last.
+    pub(super) fn since_before(&self) -> Micros {
+        self.0.get(1).map_or(Micros::MAX, |&before| self.last().since(before))
+    }
+
     /// Returns true if sound of any but the latest `but` of them is heard at an instant.
     pub(super) fn is_heard_at(&self, at: Instant, audible: Micros, but: usize) -> bool {
         self.0.iter().skip(but).any(|&fired| at.since(fired) <= audible)

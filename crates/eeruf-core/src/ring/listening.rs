@@ -4,14 +4,14 @@ use super::config::{RingConfig, Silence};
 use super::sensor::UNANSWERED;
 use crate::plan::{Limits, Plan};
 use crate::reading::ReadingKind;
-use crate::ring_error::{MAX_AUDIBLE, RingError};
-use crate::time::Micros;
+use crate::ring_error::{LONGEST, MAX_AUDIBLE, RingError};
+use crate::time::{Micros, shorter};
 
 /// Window, `t_delta` and blanking time, none of them more than the plan allows, and what sound may do.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(C)]
-pub(super) struct Listening {
+pub(crate) struct Listening {
     window: Micros,
     audible: Micros,
     t_delta: u16,
@@ -42,14 +42,14 @@ impl Listening {
     }
 
     /// With paths that change by so much, or by `t_delta`, and sound that is audible for so long.
-    fn with_sound(self, path_change: Option<Micros>, audible: Micros) -> Result<Self, RingError> {
-        if audible > MAX_AUDIBLE {
+    pub(crate) const fn with_sound(self, path_change: Option<Micros>, audible: Micros) -> Result<Self, RingError> {
+        if audible.as_micros() > MAX_AUDIBLE.as_micros() {
             return Err(RingError::Audible { audible });
         }
-        let narrow = |change: Micros| u16::try_from(change.as_micros()).ok().filter(|&change| change != AS_T_DELTA);
         let path_change = match path_change {
             None => AS_T_DELTA,
-            Some(change) => narrow(change).ok_or(RingError::PathChange { path_change: change })?,
+            Some(change) if change.as_micros() < AS_T_DELTA as u32 => change.as_micros() as u16,
+            Some(path_change) => return Err(RingError::PathChange { path_change }),
         };
         Ok(Self { audible, path_change, ..self })
     }
@@ -68,20 +68,29 @@ impl Listening {
         // At most 64 sensors.
         let limits = (0..plan.sensors() as u8).filter_map(|x| plan.limits_of(x));
         let shortest = limits.map(|limits| limits.window).fold(window, Micros::min);
-        let narrow = |time: Micros| u16::try_from(time.as_micros()).ok().filter(|_| time < shortest);
-        let blanking = narrow(blanking).ok_or(RingError::Blanking { blanking, window: shortest })?;
-        let t_delta = narrow(t_delta).ok_or(RingError::CoarseTDelta { t_delta, window: shortest })?;
-        let mut listening = Self {
-            window,
-            audible: MAX_AUDIBLE,
-            t_delta,
-            blanking,
-            path_change: AS_T_DELTA,
-            unanswered: 0,
-            unwitnessed: ReadingKind::NoEcho,
-        };
-        listening.set_silence(Silence::default());
-        Ok(listening)
+        Self::of(t_delta, window, shortest, blanking)
+    }
+
+    /// As they are asked for; `shortest`: the shortest window of all sensors.
+    pub(crate) const fn of(
+        t_delta: Micros,
+        window: Micros,
+        shortest: Micros,
+        blanking: Micros,
+    ) -> Result<Self, RingError> {
+        let most = shorter(shortest, Micros::new(LONGEST.as_micros() + 1)).as_micros();
+        if blanking.as_micros() >= most {
+            return Err(RingError::Blanking { blanking, window: shortest });
+        }
+        if t_delta.as_micros() >= most {
+            return Err(RingError::CoarseTDelta { t_delta, window: shortest });
+        }
+        // Both fit, by the above.
+        let (t_delta, blanking) = (t_delta.as_micros() as u16, blanking.as_micros() as u16);
+        let (audible, path_change) = (MAX_AUDIBLE, AS_T_DELTA);
+        // As by `Silence::NeverFree`.
+        let (unanswered, unwitnessed) = (UNANSWERED, ReadingKind::NoEcho);
+        Ok(Self { window, audible, t_delta, blanking, path_change, unanswered, unwitnessed })
     }
 
     /// For how long one sensor listens: no longer than the plan allows it.

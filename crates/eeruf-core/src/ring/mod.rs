@@ -25,7 +25,7 @@ use crate::time::{Instant, Micros};
 use crate::verified::VerifiedSchedule;
 
 use history::{Firings, long_before};
-use listening::Listening;
+pub(crate) use listening::Listening;
 use punctuality::Punctuality;
 use sensor::{LISTENING, Noted, STUCK, Sensor, UNANSWERED};
 
@@ -203,6 +203,34 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
     /// Copied from flash: an array made at run time would first be built on the stack.
     const SENSORS: [Sensor<E, H>; K] = [Sensor::new(Instant::from_micros(0)); K];
 
+    /// A ring in which nothing has fired. As if silence had come before: what was fired earlier is for the caller to
+    /// wait for.
+    #[inline(always)]
+    pub(crate) const fn begin(plan: P, judge: J, listening: Listening, proven: bool, now: Instant) -> Self {
+        let mut ring = Self {
+            oldest: NOBODY,
+            ready: 0,
+            last_ready: NOBODY,
+            tally: Tally::NONE,
+            punctuality: Punctuality::new(proven),
+            plan,
+            judge,
+            emit_at: now,
+            listening,
+            period: 0,
+            known_from: long_before(now),
+            report_after: Micros::ZERO,
+            sensors: Self::SENSORS,
+        };
+        let none = Firings::none_before(now);
+        let mut sensor = 0;
+        while sensor < K {
+            ring.sensors[sensor].firings = none;
+            sensor += 1;
+        }
+        ring
+    }
+
     /// A ring with the caller's own plan and judge, which remembers `H` firings of each sensor. How readings are
     /// compared is the judge's: of `config` only how the ring listens counts.
     ///
@@ -220,29 +248,8 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
             return Err(RingError::Sensors { sensors: plan.sensors(), capacity: K });
         }
         let listening = Listening::new(&config, judge.t_delta(), &plan)?;
-        let punctuality = Punctuality::new(listening.is_proven(&plan));
-        let mut ring = Self {
-            oldest: NOBODY,
-            ready: 0,
-            last_ready: NOBODY,
-            tally: Tally::default(),
-            punctuality,
-            plan,
-            judge,
-            emit_at: now,
-            listening,
-            period: 0,
-            known_from: now,
-            report_after: Micros::ZERO,
-            sensors: Self::SENSORS,
-        };
-        // As if silence had come before: what was fired earlier is for the caller to wait for.
-        let none = Firings::none_before(now);
-        ring.known_from = long_before(now);
-        for sensor in &mut ring.sensors {
-            sensor.firings = none;
-        }
-        Ok(ring)
+        let proven = listening.is_proven(&plan);
+        Ok(Self::begin(plan, judge, listening, proven, now))
     }
 
     /// The next event, if there is one at `now`. Call again until there is none, then sleep until
@@ -532,8 +539,8 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
     /// Says how fast the robot moves and turns, once a control cycle: a judge may allow its readings to change by as
     /// much. Where the ring has a top speed it holds after half a second without a word.
     pub fn moving(&mut self, speed_mm_s: u32, turn_mrad_s: u32, now: Instant) {
-        let moves = self.judge.moving(speed_mm_s, turn_mrad_s, now);
-        self.plan.set_moving(moves);
+        self.judge.moving(speed_mm_s, turn_mrad_s, now);
+        self.plan.set_pace(self.judge.pace());
     }
 
     /// Returns true if sensors have limits of their own, so that the one that fired first need not be the first to end.

@@ -41,21 +41,12 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
         }
         self.has_fired(sensor, now);
         self.plan.fire(now);
-        self.take_change();
         // Last, since it is rare.
         let late = now.since(due);
         if late != Micros::ZERO {
             self.fired_late(late);
         }
         Ok(RingEvent::Fire { sensor, phase, due })
-    }
-
-    /// Lets the judge know where firing times have changed.
-    #[inline(always)]
-    fn take_change(&mut self) {
-        if self.plan.take_change() {
-            self.judge.firing_changed();
-        }
     }
 
     #[inline]
@@ -86,12 +77,6 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
         self.punctuality.disturb(self.listening.is_proven(&self.plan));
     }
 
-    /// Lets the plan decide on the period that has begun.
-    pub(super) fn begin_period(&mut self) {
-        let sensors = &self.sensors;
-        self.plan.begin_period(|sensor| sensors.get(usize::from(sensor)).map_or(Instant::default(), Sensor::fired));
-    }
-
     /// Ends the period, if that is due.
     #[inline(never)]
     fn end_period(&mut self, now: Instant) -> Option<RingEvent> {
@@ -117,8 +102,6 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
         if is_long_ago(self.known_from, now) {
             self.known_from = long_before(now);
         }
-        self.begin_period();
-        self.take_change();
         if differed || self.windows_differ() {
             // Another schedule may allow other windows, also to firings under way.
             self.find_first_to_close();
@@ -161,7 +144,8 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
     #[inline(never)]
     fn emit_reading(&mut self, sensor: u8, mut expected_change_us: impl FnMut(u8) -> i32) -> Option<RingEvent> {
         let own = self.sensors.get_mut(usize::from(sensor))?;
-        let (fired, periods_ago) = (own.fired(), own.periods_ago(self.period));
+        let (fired, since_before) = (own.fired(), own.firings.since_before());
+        let periods_ago = own.periods_ago(self.period);
         let Ended { listened, was_ready, unusable, echoes } = own.end(self.listening.unwitnessed());
         let mut ended_at = fired + self.closes_after(sensor);
         let echoes = heard(&echoes);
@@ -170,12 +154,11 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
             // Counted when its edge came.
             self.ready = self.ready.wrapping_sub(1);
         }
-        self.take_change();
         let mut firing = self.plan.last_firing(sensor, periods_ago);
         let Verdict { kind, t_echo, previous, age, explained_by } = if listened {
             firing.expected_change_us = expected_change_us(sensor);
             let t_delta = self.listening.t_delta_of(&self.plan, sensor);
-            let heard = Heard { sensor, fired, echoes, firing, t_delta };
+            let heard = Heard { sensor, fired, since_before, echoes, firing, t_delta };
             let mut verdict = match unusable {
                 Some(kind) => self.judge.skip(&heard, kind),
                 None => {

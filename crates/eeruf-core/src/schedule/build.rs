@@ -139,7 +139,7 @@ impl<const K: usize, const M: usize> Schedule<K, M> {
     }
 }
 
-pub(crate) const fn scale(time: Micros, num: u32, den: u32) -> Micros {
+const fn scale(time: Micros, num: u32, den: u32) -> Micros {
     let scaled = (time.as_micros() as u64 * num as u64 + den as u64 / 2) / den as u64;
     Micros::new(if scaled > u32::MAX as u64 { u32::MAX } else { scaled as u32 })
 }

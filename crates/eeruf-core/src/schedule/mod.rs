@@ -14,7 +14,6 @@ use core::hash::{Hash, Hasher};
 
 use crate::time::Micros;
 
-pub(crate) use build::scale;
 pub use error::ScheduleError;
 pub use limits::{MAX_PERIOD, MAX_PHASES, MAX_SENSORS, Phase};
 pub use verified_for::VerifiedFor;

@@ -2,7 +2,6 @@
 
 use eeruf_core::{
     Instant, Micros, ReadingKind, Ring, RingConfig, RingError, RingEvent, ScheduledRing, SensorError, Silence,
-    hopping::{HoppingCode, HoppingListening, HoppingRing, HoppingSchedule, HoppingSettings},
     judge::Judge,
     plan::{Plan, Upcoming},
     tables::{PAPER_12, TABLE_I_D},
@@ -110,22 +109,6 @@ fn upcoming_lists_firings_as_polled_on_time() {
     assert_eq!(last, ring.upcoming().next().unwrap().phase.0, "the schedule that follows is another's business");
     ring.pause();
     assert_eq!(ring.upcoming().count(), 0);
-}
-
-#[test]
-fn upcoming_of_hopping_ring_ends_with_its_period() {
-    let code = HoppingCode::new(12, 13, Micros::new(240)).unwrap();
-    let schedule = HoppingSchedule::<12>::spread(code, Micros::from_millis(100)).unwrap();
-    let listening = HoppingListening::new(Micros::from_millis(40));
-    let mut ring = HoppingRing::<12>::hopping(&schedule, HoppingSettings::BALANCED, listening, 1, at(0)).unwrap();
-    let mut seen = 0;
-    for _ in 0..3_000 {
-        let upcoming: Vec<_> = ring.upcoming().collect();
-        seen = seen.max(upcoming.len());
-        assert_eq!(upcoming, fired(ring.clone(), upcoming.len()));
-        ring.poll(ring.next_deadline());
-    }
-    assert_eq!(seen, 12);
 }
 
 #[test]

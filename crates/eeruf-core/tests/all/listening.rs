@@ -3,7 +3,7 @@
 use eeruf_core::{
     Instant, Micros, Reading, ReadingKind, Ring, RingConfig, RingError, RingEvent, Schedule, ScheduledRing,
     SensorError,
-    hopping::{HoppingCode, HoppingError, HoppingListening, HoppingRing, HoppingSchedule, HoppingSettings},
+    flow::{BeliefSettings, FlowRing, TurnSettings},
     plan::ScheduledFiring,
 };
 
@@ -242,19 +242,19 @@ fn several_echoes_are_heard_until_window_closes() {
     assert_eq!(read, expected);
 }
 
-/// Why a ring of two sensors with room for `K` is refused, and a hopping ring, if they are.
+/// Why a ring of two sensors with room for `K` is refused, and one that fires in turn, if they are.
 fn refused<const K: usize>() -> [Option<RingError>; 2] {
     let (schedule, now) = (schedule(), Instant::from_micros(0));
     let config = RingConfig::new().with_t_delta(Micros::new(500)).with_window(Micros::new(WINDOW));
     let ring = Ring::<_, _, K>::with_plan(ScheduledFiring::new(&schedule, now), config, now);
-    let code = HoppingCode::new(2, 5, Micros::new(240)).unwrap();
-    let hops = HoppingSchedule::<K>::spread(code, Micros::from_millis(60)).unwrap();
-    let listening = HoppingListening::new(Micros::new(WINDOW));
-    let hopping = HoppingRing::<K>::hopping(&hops, HoppingSettings::BALANCED, listening, 1, now);
-    [
-        ring.err(),
-        hopping.err().map(|error| if let HoppingError::Ring(error) = error { error } else { panic!("{error}") }),
-    ]
+    let in_turn = FlowRing::<K>::flow(
+        2,
+        TurnSettings::new(1),
+        BeliefSettings::DEFAULT,
+        RingConfig::new().with_window(Micros::new(WINDOW)),
+        now,
+    );
+    [ring.err(), in_turn.err()]
 }
 
 #[test]

@@ -11,27 +11,20 @@ mod corpus;
 mod edges;
 mod fired;
 // A binary of its own where the features are tested by themselves; here too, for mutants.
+mod flow;
 #[cfg(feature = "serde")]
 #[path = "../formats.rs"]
 mod formats;
-mod hopping;
-mod hopping_late;
-mod hopping_log;
-mod hopping_moving;
-mod hopping_settings;
 mod immediate;
 mod lateness;
 mod listening;
 mod odometry;
 mod pairs;
-mod phases;
 mod plans_and_judges;
 mod promises;
 mod rate;
 mod sound;
 mod theory;
-mod tracker_naive;
-mod turns;
 mod uneven;
 mod uneven_ring;
 mod wait_answers;

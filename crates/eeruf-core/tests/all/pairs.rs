@@ -1,13 +1,9 @@
 //! Features two by two: limits per sensor, many phases, several echoes, adaptation.
 
 use eeruf_core::{
-    EachSensor, EchoFilter, Instant, Micros, ReadingKind, Requirements, Ring, RingConfig, RingEvent, Uneven,
-    VerifiedSchedule,
+    EachSensor, Instant, Micros, ReadingKind, Requirements, Ring, RingConfig, RingEvent, Uneven, VerifiedSchedule,
     adaptation::Adaptation,
-    hopping::{
-        HoppingCode, HoppingError, HoppingListening, HoppingPlan, HoppingRing, HoppingSchedule, HoppingSettings,
-    },
-    judge::{Judge, TrackerSettings},
+    judge::Judge,
     plan::{Plan, ScheduledFiring},
     schedule,
     tables::TABLE_I_D,
@@ -85,65 +81,6 @@ fn limits_go_with_several_echoes() {
 }
 
 #[test]
-fn many_phases_go_with_several_echoes_and_with_limits() {
-    let code = HoppingCode::shortest(2, 5, Micros::new(2_801)).unwrap();
-    let lags = [0, 20_000].map(Micros::new);
-    let schedule = HoppingSchedule::<2>::new(code, Micros::from_millis(70), lags).unwrap();
-    let limits = schedule.limits(&LIMITS).unwrap();
-    let listening = HoppingListening::new(Micros::from_millis(50));
-    let settings = HoppingSettings::DRIVING.with_tracker(
-        TrackerSettings::BALANCED
-            .with_t_delta(Micros::new(1_400))
-            .with_near(Micros::new(1_400))
-            .with_tentative_votes(0),
-    );
-    let plan = || HoppingPlan::with_limits(&schedule, limits, settings, listening, 1, BEGIN).unwrap();
-    let config = RingConfig::new().with_window(listening.window).with_echoes::<3>();
-    let filter = EchoFilter::<2, 3>::new(Micros::new(1_400), 2).unwrap();
-    let mut ring = Ring::<_, _, 2, 3, 8>::judged_by(plan(), filter, config, BEGIN).unwrap();
-    are_walls(&accepted(&mut ring, 3, |_, _| ()));
-    // By votes, of all of them too.
-    let mut ring = HoppingRing::<2, 8, 3, _>::with_limits(&schedule, limits, settings, listening, 1, BEGIN).unwrap();
-    are_walls(&accepted(&mut ring, 3, |_, _| ()));
-    // By votes, of one echo: the wall is masked by what comes first.
-    let mut ring = HoppingRing::<2, 4, 1, _>::with_limits(&schedule, limits, settings, listening, 1, BEGIN).unwrap();
-    assert_eq!((ring.window_of(0), ring.window_of(1)), (Micros::from_millis(50), Micros::from_millis(12)));
-    assert_eq!((ring.t_delta_of(0), ring.t_delta_of(1)), (Micros::new(999), Micros::new(1_400)));
-    let first = accepted(&mut ring, 1, |_, _| ());
-    assert!(first.iter().flatten().all(|time| [3_000, 5_500, 8_000].contains(time)), "{first:?}");
-}
-
-// What any sensor or pair keeps between firings passes before a ring that restarts fires again.
-#[test]
-fn restart_of_hopping_ring_keeps_the_longest_gap() {
-    let code = HoppingCode::shortest(2, 5, Micros::new(2_801)).unwrap();
-    let lags = [0, 20_000].map(Micros::new);
-    let schedule = HoppingSchedule::<2>::new(code, Micros::from_millis(70), lags).unwrap();
-    let limits = schedule.limits(&LIMITS).unwrap();
-    let listening = HoppingListening::new(Micros::from_millis(50));
-    let settings = HoppingSettings::DRIVING.with_tracker(TrackerSettings::BALANCED);
-    let next_firing = |after_ms: u32| {
-        let mut ring =
-            HoppingRing::<2, 4, 1, _>::with_limits(&schedule, limits, settings, listening, 1, BEGIN).unwrap();
-        let fires = |event: Option<RingEvent>| matches!(event, Some(RingEvent::Fire { .. }));
-        let first = ring.next_deadline();
-        assert!(fires(ring.poll(first)));
-        ring.restart(first + Micros::from_millis(after_ms));
-        loop {
-            let now = ring.next_deadline();
-            while let Some(event) = ring.poll(now) {
-                if fires(Some(event)) {
-                    return now.since(first);
-                }
-            }
-        }
-    };
-    assert_eq!(next_firing(1), Micros::from_millis(50));
-    assert_eq!(next_firing(49), Micros::from_millis(50));
-    assert_eq!(next_firing(63), Micros::from_millis(63));
-}
-
-#[test]
 fn limits_go_with_adaptation() {
     let slower = schedule! {
         period_us: 80_000,
@@ -163,63 +100,6 @@ fn limits_go_with_adaptation() {
     // All is rejected, so that it fires more slowly, and each sensor listens as before.
     assert_eq!(ring.schedule().period(), Micros::from_millis(80));
     assert_eq!((ring.window_of(0), ring.window_of(1)), (Micros::from_millis(50), Micros::from_millis(12)));
-}
-
-// A ring that hops goes to a longer period with the same code, and back, and believes no sound of another sensor.
-#[test]
-fn many_phases_go_with_adaptation() {
-    let code = HoppingCode::new(4, 2, Micros::new(301)).unwrap();
-    let rung = |ms| HoppingSchedule::<4>::spread(code, Micros::from_millis(ms)).unwrap();
-    let rungs = [rung(45), rung(60), rung(90)];
-    let mut adaptation = Adaptation::hopping(&rungs).unwrap();
-    // What the sensor of foreign sound has rejected is no reason to slow down.
-    adaptation.calm_permille = 300;
-    let listening = HoppingListening::new(Micros::from_millis(36));
-    let mut ring = HoppingRing::<4>::hopping(&rungs[0], HoppingSettings::BALANCED, listening, 1, BEGIN).unwrap();
-    let (mut periods, mut fired, mut firings) = (vec![], [BEGIN; 4], 0);
-    // For ten seconds something else each time, then a wall; and sound of sensor 0 along one path, for sensor 2.
-    let noisy = |now: Instant| now.since(BEGIN) < Micros::from_millis(10_000);
-    while ring.next_deadline().since(BEGIN) < Micros::from_millis(60_000) {
-        let now = ring.next_deadline();
-        while let Some(event) = ring.poll(now) {
-            match event {
-                RingEvent::Fire { sensor, .. } => {
-                    firings += 1;
-                    let own = now.since(fired[usize::from(sensor)]);
-                    assert!(firings <= 4 || own >= listening.window, "{sensor} {now:?}");
-                    fired[usize::from(sensor)] = now;
-                    let other = Micros::new(5_000 + 1_700 * (firings * 7 % 16));
-                    let wall = if noisy(now) { other } else { Micros::new(20_000) };
-                    if sensor != 2 {
-                        ring.echo(sensor, now + wall).unwrap();
-                    }
-                    let path = Micros::new(31_000).saturating_sub(now.since(fired[0]));
-                    if sensor == 2 && !noisy(now) && firings > 4 && path > Micros::ZERO {
-                        ring.echo(sensor, now + path).unwrap();
-                    }
-                }
-                RingEvent::Reading(reading) => {
-                    let is_foreign = reading.sensor == 2 && reading.kind == ReadingKind::Accepted;
-                    assert!(!is_foreign, "{reading:?}");
-                }
-                RingEvent::PeriodEnded(stats) => {
-                    let changed = adaptation.adapt(&stats, |schedule| ring.change_hopping(schedule)).unwrap();
-                    if changed {
-                        periods.push(rungs[adaptation.rung()].period().as_micros() / 1000);
-                        let lags = (0..4).map(|sensor| ring.plan().t_lag(sensor));
-                        assert!(lags.eq((0..4).map(|sensor| rungs[adaptation.rung()].t_lag(sensor))));
-                    }
-                }
-            }
-        }
-    }
-    assert_eq!(periods, [60, 90, 60, 45]);
-    // Another code, and a period for which the ring listens too long, are refused, and change nothing.
-    let other =
-        HoppingSchedule::<4>::spread(HoppingCode::new(4, 2, Micros::new(302)).unwrap(), Micros::from_millis(60));
-    assert_eq!(ring.change_hopping(&other.unwrap()), Err(HoppingError::OtherCode));
-    assert!(matches!(ring.change_hopping(&rung(36)), Err(HoppingError::Period { .. })));
-    assert_eq!(ring.plan().t_lag(3), rungs[0].t_lag(3));
 }
 
 #[test]

@@ -2,8 +2,8 @@
 
 use eeruf_core::{
     EchoFilter, Instant, Micros, ReadingKind, Ring, RingConfig, RingEvent,
-    hopping::{HoppingCode, HoppingListening, HoppingPlan, HoppingSchedule, HoppingSettings},
-    judge::{Agreement, EchoTracker, Heard, Judge, Sounds, TrackerSettings, Verdict},
+    flow::{Belief, BeliefSettings, InTurn, TurnSettings},
+    judge::{Agreement, Heard, Judge, Sounds, Verdict},
     plan::{ImmediateRefiring, Plan, ScheduledFiring},
     tables::TABLE_I_D,
 };
@@ -54,11 +54,8 @@ impl Judge for EveryThird {
     }
 }
 
-fn hopping() -> HoppingPlan<SENSORS> {
-    let code = HoppingCode::new(SENSORS, 2, Micros::new(240)).unwrap();
-    let schedule = HoppingSchedule::spread(code, Micros::from_millis(60)).unwrap();
-    let listening = HoppingListening::new(Micros::from_millis(30));
-    HoppingPlan::new(&schedule, HoppingSettings::BALANCED, listening, 1, BEGIN).unwrap()
+fn in_turn() -> InTurn<SENSORS> {
+    InTurn::new(SENSORS, TurnSettings::new(1), Micros::from_millis(30), BEGIN).unwrap()
 }
 
 /// The share of readings accepted in two seconds, each sensor before its own wall.
@@ -88,18 +85,16 @@ fn accepted<P: Plan, J: Judge>(plan: P, judge: J) -> f64 {
 #[test]
 fn own_walls_are_accepted_by_any_plan_with_any_judge() {
     let filter = || EchoFilter::<12>::new(Micros::new(200), 2).unwrap();
-    let tracker = || EchoTracker::<12>::new(TrackerSettings::BALANCED.with_votes(2)).unwrap();
+    let belief = || Belief::<12>::new(BeliefSettings::DEFAULT).unwrap();
     let scheduled = || ScheduledFiring::new(&TABLE_I_D, BEGIN);
     let immediate = || ImmediateRefiring::new(&TABLE_I_D, Micros::from_millis(40), BEGIN);
     let shares = [
         ("scheduled, filter", accepted(scheduled(), filter())),
-        ("scheduled, tracker", accepted(scheduled(), tracker())),
+        ("scheduled, belief", accepted(scheduled(), belief())),
         ("scheduled, agreement", accepted(scheduled(), Agreement(filter()))),
-        ("immediate, tracker", accepted(immediate(), tracker())),
         ("immediate, agreement", accepted(immediate(), Agreement(filter()))),
-        ("hopping, filter", accepted(hopping(), filter())),
-        ("hopping, tracker", accepted(hopping(), tracker())),
-        ("hopping, agreement", accepted(hopping(), Agreement(filter()))),
+        ("in turn, belief", accepted(in_turn(), belief())),
+        ("in turn, agreement", accepted(in_turn(), Agreement(filter()))),
     ];
     for (name, share) in shares {
         assert!(share > 0.85, "{name}: {share}");
@@ -108,13 +103,13 @@ fn own_walls_are_accepted_by_any_plan_with_any_judge() {
 
 #[test]
 fn a_judge_of_ones_own_decides() {
-    let share = accepted(hopping(), EveryThird::default());
+    let share = accepted(in_turn(), EveryThird::default());
     assert!((0.2..0.34).contains(&share), "{share}");
 }
 
 #[test]
 fn a_judge_is_asked_to_restart_with_the_ring() {
-    let mut ring = Ring::<_, _, 12>::judged_by(hopping(), EveryThird::default(), CONFIG, BEGIN).unwrap();
+    let mut ring = Ring::<_, _, 12>::judged_by(in_turn(), EveryThird::default(), CONFIG, BEGIN).unwrap();
     ring.restart(BEGIN + Micros::from_millis(200));
     assert_eq!(ring.judge().restarts, 1);
 }

@@ -101,7 +101,7 @@ fn section_3_the_marks_on_the_ruler_are_those_of_table_i_d() {
 
 #[test]
 fn section_3_the_smallest_intervals_of_table_i_are_as_tabled() {
-    let closest = |value, sensors, phases| Some(Least { value: ms(value), sensors, phases, ages: (0, 0) });
+    let closest = |value, sensors, phases| Some(Least { value: ms(value), sensors, phases });
     let (a, b) = (Phase::A, Phase::B);
     for table in [TABLE_I_B, TABLE_I_C] {
         assert_eq!(table.min_interval(Layout::Line(4)), closest(1, (3, 0), (a, b)));

@@ -8,7 +8,7 @@ use eeruf_core::{EachSensor, Layout, Micros, Phase, Requirements, Schedule, Sens
 use super::{Promise, Summary};
 
 /// `EERUF_VERSION` of the `eeruf.h` that tables are written for.
-pub(super) const EERUF_VERSION: u16 = 3;
+pub(super) const EERUF_VERSION: u16 = 4;
 
 /// A schedule as a C header: see [`Emit::to_c`](super::Emit::to_c).
 pub(super) struct CHeader<'r, const K: usize> {
@@ -17,7 +17,7 @@ pub(super) struct CHeader<'r, const K: usize> {
 }
 
 /// The need of one sensor.
-pub(super) type OfSensor<'r> = fn(&Requirements<'r>, usize) -> Micros;
+type OfSensor<'r> = fn(&Requirements<'r>, usize) -> Micros;
 
 impl<'r, const K: usize> fmt::Display for CHeader<'r, K> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -177,7 +177,7 @@ mod tests {
     #[test]
     fn constant_says_what_it_was_verified_for() {
         let tab = TABLE_I_D.to_arduino(&REQUIREMENTS, "PAPER");
-        assert!(tab.contains("EerufSchedule PAPER EERUF_FLASH = {\n    3, 12, 2, PAPER_order, PAPER_gap_us,"), "{tab}");
+        assert!(tab.contains("EerufSchedule PAPER EERUF_FLASH = {\n    4, 12, 2, PAPER_order, PAPER_gap_us,"), "{tab}");
         assert!(
             tab.contains(
                 "100000u, 76000u, 999u, 15000u, 76000u, 2000u,\n    EERUF_AS_T_DELTA, 100000u,\n    \

@@ -2,29 +2,33 @@
 
 use std::fmt;
 
-use eeruf_core::flow::FlowSettings;
-use eeruf_core::hopping::HoppingListening;
-use eeruf_core::judge::TrackerSettings;
+use eeruf_core::flow::{BeliefSettings, TurnSettings, Votes};
 use eeruf_core::{EachSensor, Micros, SensorLimits};
 
-use super::{CLimits, EERUF_VERSION, Grouped};
+use super::{CLimits, EERUF_VERSION, Grouped, Plain};
 
 /// The set-up of a flow ring.
 #[derive(Clone, Copy, Debug)]
 pub struct Flow<'r, const K: usize> {
-    /// Settings of the ring.
-    pub settings: &'r FlowSettings,
+    /// When sensors fire. The seed is that of C and Arduino, whose ring may be given another one.
+    pub turns: &'r TurnSettings,
+    /// Settings of belief.
+    pub belief: &'r BeliefSettings,
     /// Number of sensors.
     pub sensors: usize,
-    /// Settings by which the ring listens.
-    pub listening: HoppingListening,
+    /// For how long sensors listen; the longest, where they have limits of their own.
+    pub window: Micros,
+    /// For how long sensors are deaf after firing.
+    pub blanking: Micros,
     /// Limits of each sensor; [`EachSensor::NONE`] if all are alike.
     pub limits: &'r EachSensor<K>,
+    /// Sets of sensors that share an echo line, bit x for sensor x.
+    pub shared_lines: &'r [u64],
 }
 
 impl<const K: usize> Flow<'_, K> {
-    /// Rust: the constants `SENSORS`, `SETTINGS` and `LISTENING` for `FlowRing::flow`; where sensors have limits of
-    /// their own also `LIMITS` for `FlowRing::with_limits`.
+    /// Rust: the constants `SENSORS`, `BELIEF` and `CONFIG`, and the function `turns` of the robot's seed, for
+    /// `FlowRing::flow`; where sensors have limits of their own also `LIMITS` for `FlowRing::with_limits`.
     pub fn to_rust(&self) -> String {
         FlowRust(self).to_string()
     }
@@ -38,30 +42,30 @@ impl<const K: usize> Flow<'_, K> {
     pub fn to_arduino(&self, name: &str) -> String {
         FlowTab { source: self, name }.to_string()
     }
-}
 
-/// Times of the settings by their names.
-fn times(settings: &FlowSettings) -> [(&'static str, Micros); 10] {
-    [
-        ("step", settings.step),
-        ("shortest_gap", settings.shortest_gap),
-        ("masked_adds", settings.masked_adds),
-        ("believed_takes", settings.believed_takes),
-        ("unserved_adds", settings.unserved_adds),
-        ("shortest_cycle", settings.shortest_cycle),
-        ("rest", settings.rest),
-        ("lead", settings.lead),
-        ("longest_cycle", settings.longest_cycle),
-        ("travel", settings.travel),
-    ]
+    /// The echo line that each sensor shares, from 1; 0 for one of its own.
+    fn lines(&self) -> impl Iterator<Item = u32> + Clone {
+        (0..self.sensors).map(|sensor| {
+            let shares = |(_, set): &(u32, &u64)| *set >> sensor & 1 == 1;
+            (1..).zip(self.shared_lines).find(shares).map_or(0, |(line, _)| line)
+        })
+    }
 }
 
 impl<const K: usize> fmt::Display for Flow<'_, K> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { settings, sensors, listening, .. } = self;
-        write!(f, "{sensors} sensors that fire by flow, in cycles of at least {},", settings.shortest_cycle)?;
-        write!(f, " listening for {}", listening.window)
+        let Self { turns, sensors, window, .. } = self;
+        write!(f, "{sensors} sensors that fire by flow, with quiet of {} to {},", turns.least, turns.most)?;
+        write!(f, " listening for {window}")
     }
+}
+
+/// Sets of sensors as Rust has them.
+fn sets(f: &mut fmt::Formatter<'_>, sets: impl Iterator<Item = u64>) -> fmt::Result {
+    for (place, set) in sets.enumerate() {
+        write!(f, "{}{set:#b}", if place == 0 { "" } else { ", " })?;
+    }
+    Ok(())
 }
 
 /// In Rust: see [`Flow::to_rust`].
@@ -69,38 +73,37 @@ struct FlowRust<'r, const K: usize>(&'r Flow<'r, K>);
 
 impl<const K: usize> fmt::Display for FlowRust<'_, K> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Flow { settings, sensors, listening, limits } = self.0;
-        let usual = FlowSettings::DEFAULT;
+        let Flow { turns, belief, sensors, window, blanking, limits, shared_lines } = self.0;
         let own = limits.most().is_some();
-        let (names, call) = if own {
-            ("EachSensor, Micros, SensorLimits", "4, 1, _>::with_limits(SENSORS, LIMITS, SETTINGS, LISTENING, now)")
+        let (names, parameters, call) = if own {
+            ("EachSensor, Micros, RingConfig, SensorLimits", "SENSORS, 1, _", "with_limits(SENSORS, LIMITS, ")
         } else {
-            ("Micros", "SENSORS>::flow(SENSORS, SETTINGS, LISTENING, now)")
+            ("Micros, RingConfig", "SENSORS", "flow(SENSORS, ")
         };
-        writeln!(f, "use eeruf_core::{{{names}, flow::FlowSettings, hopping::HoppingListening}};\n")?;
+        writeln!(f, "use eeruf_core::flow::{{BeliefSettings, TurnSettings}};")?;
+        writeln!(f, "use eeruf_core::{{{names}}};\n")?;
         writeln!(f, "// {}.", self.0)?;
-        writeln!(f, "// For `FlowRing::<{}{call}`.", if own { "SENSORS, " } else { "" })?;
+        writeln!(f, "// For `FlowRing::<{parameters}>::{call}turns(seed), BELIEF, CONFIG, now)`.")?;
         writeln!(f, "pub const SENSORS: usize = {sensors};\n")?;
-        writeln!(f, "pub const SETTINGS: FlowSettings = {{\n    let mut settings = FlowSettings::DEFAULT;")?;
-        for ((name, time), (_, usual)) in times(settings).into_iter().zip(times(&usual)) {
-            if time != usual {
-                writeln!(f, "    settings.{name} = Micros::new({});", Grouped(time))?;
-            }
+        writeln!(
+            f,
+            "/// When sensors fire. The seed is the chip's number or another that each robot has of its own, not 0."
+        )?;
+        writeln!(f, "pub const fn turns(seed: u32) -> TurnSettings {{")?;
+        writeln!(f, "    let mut turns = TurnSettings::new(seed);")?;
+        let times = [("least", turns.least), ("most", turns.most), ("rest", turns.rest), ("dice", turns.dice)];
+        for (name, time) in times {
+            writeln!(f, "    turns.{name} = Micros::new({});", Grouped(time))?;
         }
-        if settings.unserved_after != usual.unserved_after {
-            writeln!(f, "    settings.unserved_after = {};", settings.unserved_after)?;
+        writeln!(f, "    turns\n}}\n")?;
+        writeln!(f, "pub const BELIEF: BeliefSettings = {{\n    let mut belief = BeliefSettings::DEFAULT;")?;
+        for (name, time) in [("t_delta", belief.t_delta), ("near", belief.near), ("path_change", belief.path_change)] {
+            writeln!(f, "    belief.{name} = Micros::new({});", Grouped(time))?;
         }
-        for ((name, number), (_, usual)) in numbers(&settings.tracker).into_iter().zip(numbers(&usual.tracker)) {
-            match name.strip_suffix("_us") {
-                _ if number == usual => {}
-                Some(name) => writeln!(f, "    settings.tracker.{name} = Micros::new({number});")?,
-                None => writeln!(f, "    settings.tracker.{name} = {number};")?,
-            }
-        }
-        writeln!(f, "    settings\n}};\n")?;
-        let [window, blanking, reach] = [listening.window, listening.blanking, listening.reach].map(Grouped);
-        write!(f, "pub const LISTENING: HoppingListening =\n    HoppingListening::new(Micros::new({window}))")?;
-        writeln!(f, ".with_blanking(Micros::new({blanking})).with_reach(Micros::new({reach}));")?;
+        writeln!(f, "    belief.top_speed_mm_s = {};", Grouped(Micros::new(belief.top_speed_mm_s.into())))?;
+        writeln!(f, "    belief.alone = {};\n    belief\n}};\n", belief.alone)?;
+        write!(f, "pub const CONFIG: RingConfig = RingConfig::new().with_window(Micros::new({}))", Grouped(*window))?;
+        writeln!(f, ".with_blanking(Micros::new({}));", Grouped(*blanking))?;
         if !own {
             return Ok(());
         }
@@ -112,28 +115,15 @@ impl<const K: usize> fmt::Display for FlowRust<'_, K> {
         write!(f, "    ],\n    &[")?;
         let groups = || limits.groups().iter().take(*sensors).enumerate();
         let last = groups().map(|(_, &group)| group).max().unwrap_or(0);
-        for group in 1..=last {
-            let set = groups().filter(|&(_, &of)| of == group).fold(0_u64, |set, (x, _)| set | 1 << x);
-            write!(f, "{}{set:#b}", if group == 1 { "" } else { ", " })?;
+        let set_of = |group| groups().filter(move |&(_, &of)| of == group).fold(0_u64, |set, (x, _)| set | 1 << x);
+        sets(f, (1..=last).map(set_of))?;
+        if shared_lines.is_empty() {
+            return writeln!(f, "],\n);");
         }
-        writeln!(f, "],\n);")
+        write!(f, "],\n)\n.with_shared_lines(&[")?;
+        sets(f, shared_lines.iter().copied())?;
+        writeln!(f, "]);")
     }
-}
-
-/// The settings of a tracker in the order of C's `EerufTrackerSettings`, by their names.
-fn numbers(tracker: &TrackerSettings) -> [(&'static str, u32); 9] {
-    let TrackerSettings { t_delta, near, tentative_within, votes, score_limit, contradiction, .. } = *tracker;
-    [
-        ("t_delta_us", t_delta.as_micros()),
-        ("near_us", near.as_micros()),
-        ("tentative_within_us", tentative_within.as_micros()),
-        ("votes", votes.into()),
-        ("score_limit", score_limit.into()),
-        ("contradiction", contradiction.into()),
-        ("solo_contradiction", tracker.solo_contradiction.into()),
-        ("tentative_votes", tracker.tentative_votes.into()),
-        ("memory", tracker.memory.into()),
-    ]
 }
 
 /// As a C header: see [`Flow::to_c`].
@@ -141,12 +131,12 @@ struct FlowHeader<'r, const K: usize>(&'r Flow<'r, K>);
 
 impl<const K: usize> fmt::Display for FlowHeader<'_, K> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Flow { sensors, listening, .. } = self.0;
+        let Flow { sensors, window, .. } = self.0;
         writeln!(f, "/* {}.\n   For eeruf_flow_init; include eeruf.h before it. */", self.0)?;
         writeln!(f, "#ifndef EERUF_SCHEDULE_H\n#define EERUF_SCHEDULE_H\n")?;
         writeln!(f, "#ifndef EERUF_H\n#error \"include eeruf.h before this file\"\n#endif\n")?;
         writeln!(f, "#define EERUF_SENSORS {sensors}")?;
-        writeln!(f, "#define EERUF_WINDOW_US {}u\n", listening.window.as_micros())?;
+        writeln!(f, "#define EERUF_WINDOW_US {}u\n", window.as_micros())?;
         write!(f, "{}", Constant { source: self.0, name: "eeruf_flow_config" })?;
         writeln!(f, "\n#endif")
     }
@@ -174,7 +164,7 @@ struct Constant<'r, const K: usize> {
 
 impl<const K: usize> fmt::Display for Constant<'_, K> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Flow { settings, sensors, listening, limits } = self.source;
+        let Flow { turns, belief, sensors, window, blanking, limits, shared_lines } = self.source;
         let name = self.name;
         let own = limits.most().is_some();
         if own {
@@ -186,21 +176,29 @@ impl<const K: usize> fmt::Display for Constant<'_, K> {
             )?;
             writeln!(f, "    {name}_limits,\n}};")?;
         }
-        let [step, times @ ..] = times(settings).map(|(_, time)| time.as_micros());
-        writeln!(f, "static const EerufFlowConfig {name} = {{")?;
-        write!(f, "    {EERUF_VERSION}, {sensors}, {}, {step}u,", settings.unserved_after)?;
-        for time in [listening.window, listening.blanking, listening.reach] {
-            write!(f, " {}u,", time.as_micros())?;
+        if !shared_lines.is_empty() {
+            let lines = Plain(|| self.source.lines().map(|line| (line, "")));
+            writeln!(f, "static const uint8_t {name}_lines[] EERUF_FLASH = {{{lines}}};")?;
         }
-        write!(f, "\n   ")?;
-        for time in times {
-            write!(f, " {time}u,")?;
+        writeln!(f, "/* The seed is to be another one for each robot, as its chip's number: set it in a copy. */")?;
+        writeln!(f, "static const EerufFlowConfig {name} = {{\n    {EERUF_VERSION}, {sensors},")?;
+        let times = [*window, *blanking, turns.least, turns.most, turns.rest, turns.dice].map(Micros::as_micros);
+        writeln!(f, "    {}, {}u,", Plain(|| times.into_iter().map(|us| (us, "u"))), turns.seed)?;
+        let votes = match belief.votes {
+            Votes::ByMotion => "BY_MOTION",
+            Votes::EveryEcho => "EVERY_ECHO",
+            Votes::TwoInARow => "TWO_IN_A_ROW",
+        };
+        let believed = [belief.t_delta, belief.near, belief.path_change].map(Micros::as_micros);
+        let counts = [belief.memory.into(), belief.hold.into(), belief.top_speed_mm_s.into(), belief.alone.into()];
+        let numbers = Plain(|| believed.into_iter().chain(counts).map(|number| (number, "")));
+        writeln!(f, "    {numbers}, EERUF_VOTES_{votes},")?;
+        if own {
+            write!(f, "    &{name}_own, ")?;
+        } else {
+            write!(f, "    0, ")?;
         }
-        write!(f, "\n    {{")?;
-        for (place, (_, number)) in numbers(&settings.tracker).into_iter().enumerate() {
-            write!(f, "{}{number}", if place == 0 { "" } else { ", " })?;
-        }
-        if own { writeln!(f, "}},\n    &{name}_own,\n}};") } else { writeln!(f, "}},\n    0,\n}};") }
+        if shared_lines.is_empty() { writeln!(f, "0,\n}};") } else { writeln!(f, "{name}_lines,\n}};") }
     }
 }
 
@@ -209,49 +207,53 @@ mod tests {
     use super::*;
 
     const ALIKE: EachSensor<1> = EachSensor::NONE;
-    const LISTENING: HoppingListening = HoppingListening::new(Micros::new(37_000)).with_blanking(Micros::new(300));
+    const TURNS: TurnSettings = TurnSettings::new(1);
+    const BELIEF: BeliefSettings = BeliefSettings::DEFAULT;
 
-    #[test]
-    fn rust_sets_what_differs_from_the_default() {
-        let mut settings = FlowSettings::DEFAULT;
-        settings.rest = Micros::from_millis(60);
-        settings.tracker = settings.tracker.with_t_delta(Micros::new(100)).with_memory(9);
-        let text = Flow { settings: &settings, sensors: 8, listening: LISTENING, limits: &ALIKE }.to_rust();
-        assert!(text.contains("pub const SENSORS: usize = 8;\n"), "{text}");
-        let sets: Vec<_> = text.lines().filter(|line| line.starts_with("    settings.")).collect();
-        let expected = [
-            "    settings.rest = Micros::new(60_000);",
-            "    settings.tracker.t_delta = Micros::new(100);",
-            "    settings.tracker.memory = 9;",
-        ];
-        assert_eq!(sets, expected);
-        let listening = "HoppingListening::new(Micros::new(37_000)).with_blanking(Micros::new(300))";
-        assert!(text.ends_with(&format!("{listening}.with_reach(Micros::new(37_000));\n")), "{text}");
+    fn flow<const K: usize>(sensors: usize, limits: &EachSensor<K>) -> Flow<'_, K> {
+        let (window, blanking) = (Micros::new(37_000), Micros::new(300));
+        Flow { turns: &TURNS, belief: &BELIEF, sensors, window, blanking, limits, shared_lines: &[] }
     }
 
     #[test]
-    fn limits_of_each_sensor_are_written() {
+    fn rust_has_the_settings_and_takes_the_seed() {
+        let belief = BeliefSettings { top_speed_mm_s: 1_200, ..BELIEF };
+        let text = Flow { belief: &belief, ..flow(8, &ALIKE) }.to_rust();
+        for line in [
+            "pub const SENSORS: usize = 8;",
+            "pub const fn turns(seed: u32) -> TurnSettings {",
+            "    turns.most = Micros::new(33_500);",
+            "    belief.top_speed_mm_s = 1_200;",
+            "pub const CONFIG: RingConfig = \
+             RingConfig::new().with_window(Micros::new(37_000)).with_blanking(Micros::new(300));",
+        ] {
+            assert!(text.lines().any(|found| found == line), "{line}\n{text}");
+        }
+    }
+
+    #[test]
+    fn limits_of_each_sensor_and_shared_lines_are_written() {
         let of = |us, window| SensorLimits { t_delta: Micros::new(us), window: Micros::new(window) };
         let limits = EachSensor::for_flow([of(150, 37_000), of(90, 12_000), of(150, 37_000)], &[0b101]);
-        let flow = Flow { settings: &FlowSettings::DEFAULT, sensors: 3, listening: LISTENING, limits: &limits };
+        let flow = Flow { shared_lines: &[0b110], ..flow(3, &limits) };
         let text = flow.to_c();
         let own = "eeruf_flow_config_limits[] EERUF_FLASH = {\n    {37000u, 150u, 1},\n    {12000u, 90u, 0},\n";
-        assert!(text.contains(own) && text.contains("    &eeruf_flow_config_own,\n};\n"), "{text}");
+        assert!(text.contains(own), "{text}");
+        assert!(text.contains("static const uint8_t eeruf_flow_config_lines[] EERUF_FLASH = {0, 1, 1};\n"), "{text}");
+        assert!(text.contains("    &eeruf_flow_config_own, eeruf_flow_config_lines,\n};\n"), "{text}");
         let text = flow.to_rust();
         assert!(text.contains("        SensorLimits { t_delta: Micros::new(90), window: Micros::new(12_000) },\n"));
-        assert!(text.ends_with("    ],\n    &[0b101],\n);\n"), "{text}");
+        assert!(text.ends_with("    ],\n    &[0b101],\n)\n.with_shared_lines(&[0b110]);\n"), "{text}");
     }
 
     #[test]
     fn c_has_all_settings_in_their_order() {
-        let flow = Flow { settings: &FlowSettings::DEFAULT, sensors: 12, listening: LISTENING, limits: &ALIKE };
-        let text = flow.to_c();
+        let text = flow(12, &ALIKE).to_c();
         assert!(text.contains("#define EERUF_SENSORS 12\n#define EERUF_WINDOW_US 37000u\n"), "{text}");
-        let constant = "= {\n    3, 12, 3, 240u, 37000u, 300u, 37000u,\n    \
-                        7500u, 4000u, 1500u, 6000u, 60000u, 0u, 0u, 400000u, 260u,\n    \
-                        {150, 400, 60, 5, 6, 2, 6, 2, 5},\n    0,\n};\n";
+        let constant = "= {\n    4, 12,\n    37000u, 300u, 6000u, 33500u, 60000u, 2000u, 1u,\n    \
+                        80, 150, 150, 8, 4, 0, 0, EERUF_VOTES_BY_MOTION,\n    0, 0,\n};\n";
         assert!(text.contains(&format!("EerufFlowConfig eeruf_flow_config {constant}")), "{text}");
-        let text = flow.to_arduino("RING");
-        assert!(text.ends_with(&format!("#include <EerufArduino.h>\n\nstatic const EerufFlowConfig RING {constant}")));
+        let text = flow(12, &ALIKE).to_arduino("RING");
+        assert!(text.ends_with(&format!("static const EerufFlowConfig RING {constant}")), "{text}");
     }
 }

@@ -3,34 +3,29 @@
 
 mod c;
 mod flow;
-mod hopping;
 mod ring;
 
 use std::fmt;
 
 use eeruf_core::{Criterion, Layout, Micros, Phase, Requirements, Schedule, Uneven};
 
-use c::{ArduinoTab, CHeader, CLimits, EERUF_VERSION, OfSensor, Plain};
+use c::{ArduinoTab, CHeader, CLimits, EERUF_VERSION, Plain};
 pub use flow::Flow;
 pub use ring::Form;
 
 /// A schedule that can be written as source text.
 pub trait Emit {
-    /// A `const RING` in Rust, with the `requirements` for the compiler to check (see `eeruf_core::schedule!` and
-    /// `hopping_schedule!`); of a schedule that hops also the constants `SETTINGS` and `LISTENING` for its ring: the
-    /// balanced settings with this `t_delta` and these neighbours.
+    /// A `const RING` in Rust, with the `requirements` for the compiler to check (see `eeruf_core::schedule!`).
     fn to_rust(&self, requirements: &Requirements<'_>) -> String;
 
     /// A C99 header that includes nothing but `<stdint.h>`, with the firing times and what they were designed for; and,
-    /// where `eeruf.h` is included before it, the constant `eeruf_schedule` for its `eeruf_ring_init`, or
-    /// `eeruf_hopping_config` for `eeruf_hopping_init`.
+    /// where `eeruf.h` is included before it, the constant `eeruf_schedule` for its `eeruf_ring_init`.
     fn to_c(&self, requirements: &Requirements<'_>) -> String;
 
     /// A file of an Arduino sketch that uses the library in `c/arduino`, with the schedule as a constant of this name.
     fn to_arduino(&self, requirements: &Requirements<'_>, name: &str) -> String;
 
-    /// A schedule file, as the program reads it: lags and waits, or firing times if all lags are zero; of a schedule
-    /// that hops, the code and the lags.
+    /// A schedule file, as the program reads it: lags and waits, or firing times if all lags are zero.
     fn to_toml(&self) -> String;
 }
 

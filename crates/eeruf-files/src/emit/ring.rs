@@ -83,7 +83,7 @@ impl Form {
             Self::C => flow.to_c(),
             Self::Arduino => flow.to_arduino("RING"),
         };
-        self.modules(modules) + &source + &self.settings(modules, flow.settings.rest.max(flow.listening.window))
+        self.modules(modules) + &source + &self.settings(modules, flow.turns.rest.max(flow.window))
     }
 
     /// The settings of a driver in C, if the modules are alike and answer by a pulse: those that may be triggered again

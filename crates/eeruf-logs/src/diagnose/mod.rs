@@ -114,6 +114,11 @@ pub struct Diagnosis {
 }
 
 impl Diagnosis {
+    /// Returns true if firings move against each other enough to tell senders apart by what is heard.
+    pub fn firings_move(&self) -> bool {
+        self.most_offsets > timeline::OFFSETS_OF_TWO_PHASES
+    }
+
     /// The sensors that hear nothing and are not called deaf: nothing is in their range, or they are.
     pub fn silent(&self) -> Vec<u8> {
         self.open(|of| of.is_silent)

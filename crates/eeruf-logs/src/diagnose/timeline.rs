@@ -18,6 +18,10 @@ pub(super) struct Heard {
     pub(super) echo_us: Option<i64>,
 }
 
+/// At more offsets than this two sensors fire only if gaps are random: two phases have four, and as many again where a
+/// loop is late now and then.
+pub(super) const OFFSETS_OF_TWO_PHASES: u32 = 8;
+
 /// All firings in order of time, and each sensor's own.
 pub(super) struct Timeline {
     /// When, and who.
@@ -26,7 +30,8 @@ pub(super) struct Timeline {
     /// The longest echo time of any reading: for so long sensors listen, at least.
     pub(super) window_us: i64,
     max_travel_us: i64,
-    /// True if the ring fires in more than two phases, so that others' sound moves from firing to firing.
+    /// True if the ring fires in more than two phases or with random gaps, so that others' sound moves from firing to
+    /// firing.
     pub(super) has_many_phases: bool,
 }
 
@@ -44,8 +49,11 @@ impl Timeline {
             });
         }
         let window_us = log.firings.iter().filter_map(|firing| firing.t_echo_us).max().unwrap_or(0).into();
-        let has_many_phases = log.firings.iter().any(|firing| firing.phase > 1);
-        Self { firings, heard, window_us, has_many_phases, max_travel_us: settings.max_travel_us.into() }
+        let max_travel_us = settings.max_travel_us.into();
+        let mut timeline = Self { firings, heard, window_us, has_many_phases: false, max_travel_us };
+        timeline.has_many_phases = log.firings.iter().any(|firing| firing.phase > 1)
+            || timeline.most_offsets(settings.tolerance_us.into()) > OFFSETS_OF_TWO_PHASES;
+        timeline
     }
 
     pub(super) fn sensors(&self) -> usize {

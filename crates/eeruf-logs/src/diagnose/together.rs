@@ -126,7 +126,7 @@ mod tests {
                     phase: 0,
                     t_echo_us,
                     rejected: None,
-                    weighed: None,
+                    g_us_ms: None,
                 });
             }
         }

@@ -130,7 +130,7 @@ impl Doctor {
                 ..Examination::default()
             },
             Pattern::InTurn => self.in_turn(firing),
-            Pattern::Hopping | Pattern::Flow => Examination {
+            Pattern::Several | Pattern::Flow => Examination {
                 reasons: vec![
                     "lags move between many values, which takes the log of the firings to examine".to_owned(),
                 ],

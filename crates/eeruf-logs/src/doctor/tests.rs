@@ -95,7 +95,7 @@ fn two_sensors_that_read_one_path_both_ways_are_a_pair() {
 #[test]
 fn a_log_that_would_not_show_crosstalk_cannot_tell() {
     let steady = |round: u64, sensor: usize| (60_000 * round, Some(9000.0 + noise(round, sensor)));
-    for pattern in [Pattern::AtOnce, Pattern::ConstantLags, Pattern::Unknown, Pattern::Hopping] {
+    for pattern in [Pattern::AtOnce, Pattern::ConstantLags, Pattern::Unknown, Pattern::Several] {
         let found = examine(2, pattern, steady);
         assert_eq!((found.verdict, found.record.is_some()), (Verdict::CannotTell, true), "{pattern:?}");
     }

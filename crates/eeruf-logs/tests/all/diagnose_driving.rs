@@ -1,7 +1,7 @@
 //! `diagnose` on the log of a ring that drives towards things and away from them, where the sender of each reading is
 //! known, and how fast its path shortens.
 
-use eeruf_logs::{Diagnosis, Firing, FiringLog, Settings, Weighed, diagnose};
+use eeruf_logs::{Diagnosis, Firing, FiringLog, Settings, diagnose};
 
 use crate::random::Random;
 
@@ -68,7 +68,7 @@ fn driven(seed: u64, periods: i64, phases: i64) -> (FiringLog, Vec<Option<Sent>>
             phase: phase as u8,
             t_echo_us: heard.map(|edge| (edge.0 - at) as u32),
             rejected: None,
-            weighed: None,
+            g_us_ms: None,
         });
         truth.push(heard.map(|edge| edge.1));
     }
@@ -137,13 +137,10 @@ fn two_phases_name_no_sender_while_driving() {
 fn odometry_says_that_the_robot_drives() {
     let (short, _) = driven(1, 12, 10);
     assert!(!diagnose(&short, &Settings::default()).moved);
-    let moved = |expected_change_us: i32| {
+    let moved = |g_us_ms: f32| {
         let mut log = short.clone();
-        for firing in &mut log.firings {
-            let (given, kind, solo, steady, changes) = (0, None, false, true, 0);
-            firing.weighed = Some(Weighed { given, kind, solo, steady, changes, expected_change_us });
-        }
+        log.firings.iter_mut().for_each(|firing| firing.g_us_ms = Some(g_us_ms));
         diagnose(&log, &Settings::default()).moved
     };
-    assert_eq!([0, 5, -5, 100, -100].map(moved), [false, false, false, true, true]);
+    assert_eq!([0.0, 0.1, 0.2, 6.0].map(moved), [false, false, true, true]);
 }

@@ -51,7 +51,7 @@ fn log(travel: &Travel, random: &mut Random, strays: i64) -> FiringLog {
                 phase: 0,
                 t_echo_us,
                 rejected: None,
-                weighed: None,
+                g_us_ms: None,
             });
         }
     }
@@ -120,7 +120,7 @@ fn listening_modules_are_surveyed_in_one_pass() {
         for receiver in 0..SENSORS {
             let first = travel[sender][receiver].iter().map(|us| us + random.below(41) - 20).min();
             let (sensor, t_echo_us) = (receiver as u8, first.map(|us| us as u32));
-            let row = Firing { sensor, fired_us: at, period: slot, phase: 0, t_echo_us, rejected: None, weighed: None };
+            let row = Firing { sensor, fired_us: at, period: slot, phase: 0, t_echo_us, rejected: None, g_us_ms: None };
             if receiver == sender { &mut firings } else { &mut listened }.push(row);
         }
     }
@@ -180,7 +180,7 @@ fn firings_in_json_are_read_as_those_of_ros2() {
     let channel = out.add_channel(schema, "/firings", "json", &std::collections::BTreeMap::new()).unwrap();
     let rows = [
         r#"{"clock": "c", "sensor": 3, "fired_us": 70, "period": 1, "phase": 1, "t_echo_us": 5000, "reading": "a"}"#,
-        r#"{"sensor": 2, "fired_us": 90, "period": 1, "phase": 0, "solo": 0, "steady": true, "changes": 7}"#,
+        r#"{"sensor": 2, "fired_us": 90, "period": 1, "phase": 0, "g": 1.5}"#,
     ];
     for (number, row) in (1..).zip(rows) {
         let header =
@@ -190,12 +190,12 @@ fn firings_in_json_are_read_as_those_of_ros2() {
     out.finish().unwrap();
     let json = FiringLog::read(&file).unwrap();
     assert_eq!((json.clock.as_str(), json.firings[0].t_echo_us, json.firings[1].t_echo_us), ("c", Some(5000), None));
-    assert_eq!(json.firings[1].weighed.as_ref().map(|weighed| (weighed.solo, weighed.changes)), Some((false, 7)));
+    assert_eq!((json.firings[0].g_us_ms, json.firings[1].g_us_ms), (None, Some(1.5)));
     let mut out = McapWriter::create(&file).unwrap();
     for firing in &json.firings {
         out.firing("/firings", "c", 0, firing).unwrap();
     }
     out.finish().unwrap();
-    // What JSON does not say of a reading, and how it was weighed, comes back too.
+    // What JSON does not say of a reading comes back too.
     assert_eq!(FiringLog::read(&file).unwrap(), json);
 }

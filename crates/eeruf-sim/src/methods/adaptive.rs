@@ -5,7 +5,7 @@ use eeruf_core::{
     conditions::Violation,
 };
 
-use super::ring_runner::{FiringPlan, Hops, RingRunner, RingStart, StartError, Started, TableFiring, trusting};
+use super::ring_runner::{FiringPlan, RingRunner, RingStart, StartError, Started, TableFiring, trusting};
 use crate::world::{AnySchedule, Robot};
 
 /// A ring that moves along a ladder of schedules (end of Sec. 3.1).
@@ -34,10 +34,10 @@ impl<'s, const E: usize> RingRunner<'s> for AdaptiveRing<'s, E> {
 }
 
 /// Rungs of the adaptive method's ladder, times the schedule it starts from.
-pub(super) const RUNGS: [(u32, u32); 4] = [(5, 6), (1, 1), (4, 3), (5, 3)];
+const RUNGS: [(u32, u32); 4] = [(5, 6), (1, 1), (4, 3), (5, 3)];
 
 /// The rungs of a robot's ladder, from the schedule that it starts from.
-pub(super) fn plan(robot: &Robot, base: AnySchedule, _: &Hops) -> Result<FiringPlan, StartError> {
+pub(super) fn plan(robot: &Robot, base: AnySchedule) -> Result<FiringPlan, StartError> {
     let scaled = RUNGS.iter().filter_map(|&(num, den)| base.scaled(num, den).ok());
     let mut ladder: Vec<_> = scaled.filter_map(|rung| robot.verified(&rung).ok()).collect();
     if ladder.is_empty() {

@@ -1,29 +1,66 @@
 //! A ring that fires by flow: core's own, for a robot.
 
-use eeruf_core::{MAX_SENSORS, flow::FlowRing, hopping::HoppingListening};
+use eeruf_core::{
+    MAX_SENSORS, Micros,
+    flow::{BeliefSettings, FlowRing, TurnSettings},
+};
 
 use super::method::MAX_ECHOES;
-use super::ring_runner::{RingStart, SEVERAL_TRACKS, Started, TRACKS, trusting};
+use super::ring_runner::{RingStart, Started, config_of, trusting};
 use crate::world::Robot;
+
+/// Settings of a flow ring by which it differs from what its robot asks for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct FlowOptions {
+    /// R: how long sound is heard, its tail included, and the most quiet; `None` for the robot's
+    /// [`audible`](Robot::audible), or what follows from its window.
+    pub most: Option<Micros>,
+    /// The least quiet; `None` for 2/11 of R.
+    pub least: Option<Micros>,
+    /// The least time between two firings of a sensor; `None` for what its module needs, its window, and R.
+    pub rest: Option<Micros>,
+    /// Random time in every gap; `None` for 2 ms.
+    pub dice: Option<Micros>,
+    /// Settings of belief; `None` for [`BeliefSettings::DEFAULT`]. Whether the robot is alone follows from the world,
+    /// and from what it [expects](Robot::others).
+    pub belief: Option<BeliefSettings>,
+}
+
+impl FlowOptions {
+    /// The gaps of a robot's ring, with a seed of its own.
+    fn turns(&self, robot: &Robot, seed: u32) -> TurnSettings {
+        let &Robot { window, audible, blanking, .. } = robot;
+        // A sensor that fires while its last sound is heard would take old echoes for new ones.
+        let rest = self.rest.unwrap_or(robot.module_rest().max(window).max(audible));
+        let mut settings = TurnSettings::for_module(seed, window, rest, blanking);
+        let heard = if audible > Micros::ZERO { audible } else { settings.most };
+        settings.most = self.most.unwrap_or(heard);
+        settings.least = self.least.unwrap_or(Micros::new(settings.most.as_micros() / 11 * 2));
+        settings.dice = self.dice.unwrap_or(settings.dice);
+        settings
+    }
+}
 
 /// A flow ring, no larger than needed.
 pub(super) fn flow<'s>(start: &RingStart<'s>) -> Started<'s> {
     match start.robot.sensors.len() {
-        ..=8 => ring::<8, TRACKS, 1>(start),
-        9..=24 => ring::<24, TRACKS, 1>(start),
-        _ => ring::<MAX_SENSORS, TRACKS, 1>(start),
+        ..=8 => ring::<8, 1>(start),
+        9..=24 => ring::<24, 1>(start),
+        _ => ring::<MAX_SENSORS, 1>(start),
     }
 }
 
 /// The same of sensors that report several echoes.
 pub(super) fn several<'s>(start: &RingStart<'s>) -> Started<'s> {
-    ring::<MAX_SENSORS, SEVERAL_TRACKS, MAX_ECHOES>(start)
+    ring::<MAX_SENSORS, MAX_ECHOES>(start)
 }
 
-fn ring<'s, const K: usize, const H: usize, const E: usize>(start: &RingStart<'s>) -> Started<'s> {
-    let Robot { ref sensors, window, blanking, fleet_number, .. } = *start.robot;
-    let mut settings = start.flow.with_fleet_number(fleet_number);
-    settings.shortest_cycle = start.robot.period;
-    let listening = HoppingListening::new(window).with_blanking(blanking);
-    Ok(Box::new(trusting(FlowRing::<K, H, E>::flow(sensors.len(), settings, listening, start.now)?)))
+fn ring<'s, const K: usize, const E: usize>(start: &RingStart<'s>) -> Started<'s> {
+    let RingStart { robot, flow, alone, mut random, now, .. } = *start;
+    // A seed of 0 would throw nothing.
+    let turns = flow.turns(robot, random.bits() as u32 | 1);
+    let belief = BeliefSettings { alone, ..flow.belief.unwrap_or_default() };
+    let ring = FlowRing::<K, E>::flow(robot.sensors.len(), turns, belief, config_of(robot), now)?;
+    Ok(Box::new(trusting(ring)))
 }

@@ -12,9 +12,8 @@ use super::adaptive;
 use super::dither;
 use super::firing::Firing;
 use super::flow;
-use super::hopping;
 use super::ring_runner::{
-    self, AGREEMENT_ALONE, ASKS, FiringPlan, Hops, RingRunner, RingStart, StartError, Started, planned,
+    self, AGREEMENT_ALONE, ASKS, FiringPlan, RingRunner, RingStart, StartError, Started, planned,
 };
 use super::schedules::{self, Made, ScheduleQuery};
 use super::sketch;
@@ -32,15 +31,13 @@ struct Row {
     sketch: bool,
     /// True if it is simulated only where it is asked for.
     on_demand: bool,
-    /// True if it hops in time.
-    hops: bool,
     /// The schedule that a robot's ring starts with; for dither the lags alone.
     schedule: fn(&ScheduleQuery<'_>) -> Made,
     /// The ring, ready to run.
     ring: for<'s> fn(&RingStart<'s>) -> Started<'s>,
     belief: Belief,
     /// The ring's plan, from that schedule.
-    plan: fn(&Robot, AnySchedule, &Hops) -> Result<FiringPlan, StartError>,
+    plan: fn(&Robot, AnySchedule) -> Result<FiringPlan, StartError>,
     /// Number of echoes of a firing that a sensor reports.
     echoes: usize,
     /// Least time until a sensor, by its number, may fire again.
@@ -53,11 +50,10 @@ const DEFAULT: Row = Row {
     eeruf: false,
     sketch: false,
     on_demand: false,
-    hops: false,
     schedule: schedules::own,
     ring: ring_runner::scheduled::<1, ASKS>,
     belief: Belief::Repeated,
-    plan: |_, schedule, _| Ok(FiringPlan::new(schedule)),
+    plan: |_, schedule| Ok(FiringPlan::new(schedule)),
     echoes: 1,
     refire: |_, schedule, sensor| schedules::soonest_refire(schedule, sensor),
 };
@@ -177,20 +173,9 @@ methods! {
         plan: adaptive::plan,
         refire: |robot, _, _| robot.window,
     }
-    /// Time hopping: the waits move through a cycle of many phases, and an echo is believed that readings from several
-    /// phases support ([`HoppingRing`](eeruf_core::hopping::HoppingRing)). With solo periods, for robots that stand, a
-    /// period is at least 10 ms for each sensor.
-    EerufHopping = "eeruf_hopping" {
-        eeruf: true,
-        hops: true,
-        schedule: schedules::conventional,
-        ring: hopping::hopping,
-        belief: Belief::Repeated,
-        refire: |robot, _, _| robot.window,
-    }
-    /// Flow: one sensor after the other, each with as much quiet around its firing as it has needed, and an echo is
-    /// believed that several phases support ([`FlowRing`](eeruf_core::flow::FlowRing)). The robot's period is the
-    /// shortest cycle.
+    /// Flow: one sensor after the other, each with as much quiet around its firing as it has needed and dice in every
+    /// gap; an echo is believed that fits what is believed, or that two readings say and nothing foreign explains
+    /// ([`InTurn`](eeruf_core::flow::InTurn), [`Belief`](eeruf_core::flow::Belief)).
     Flow = "flow" {
         eeruf: true,
         schedule: schedules::conventional,
@@ -208,17 +193,6 @@ methods! {
         plan: ring_runner::plan_own,
         echoes: MAX_ECHOES,
     }
-    /// As [`EerufHopping`](Self::EerufHopping), moving along a ladder of its schedule, scaled, by the rejection rate.
-    AdaptiveHopping = "adaptive_hopping" {
-        eeruf: true,
-        on_demand: true,
-        hops: true,
-        schedule: schedules::conventional,
-        ring: hopping::adaptive,
-        belief: Belief::Repeated,
-        plan: hopping::plan,
-        refire: |robot, _, _| robot.window,
-    }
     /// As [`Adaptive`](Self::Adaptive), with sensors that report up to eight echoes of a firing.
     AdaptiveMultiEcho = "adaptive_multi_echo" {
         eeruf: true,
@@ -228,18 +202,7 @@ methods! {
         echoes: MAX_ECHOES,
         refire: |robot, _, _| robot.window,
     }
-    /// As [`EerufHopping`](Self::EerufHopping), with sensors that report up to eight echoes of a firing, all of which
-    /// have votes.
-    HoppingMultiEcho = "hopping_multi_echo" {
-        eeruf: true,
-        on_demand: true,
-        hops: true,
-        schedule: schedules::conventional,
-        ring: hopping::several,
-        echoes: MAX_ECHOES,
-        refire: |robot, _, _| robot.window,
-    }
-    /// As [`Flow`](Self::Flow), with sensors that report up to eight echoes of a firing, all of which have votes.
+    /// As [`Flow`](Self::Flow), with sensors that report up to eight echoes of a firing.
     FlowMultiEcho = "flow_multi_echo" {
         eeruf: true,
         on_demand: true,
@@ -336,11 +299,6 @@ impl Method {
         self.row().on_demand
     }
 
-    /// Returns true if it hops in time.
-    pub const fn hops(self) -> bool {
-        self.row().hops
-    }
-
     /// Readings that it believes.
     pub(crate) const fn belief(self) -> Belief {
         self.row().belief
@@ -362,8 +320,8 @@ impl Method {
     }
 
     /// The plan of a robot's ring, from the schedule that it starts with.
-    pub(crate) fn plan(self, robot: &Robot, schedule: AnySchedule, hops: &Hops) -> Result<FiringPlan, StartError> {
-        (self.row().plan)(robot, schedule, hops)
+    pub(crate) fn plan(self, robot: &Robot, schedule: AnySchedule) -> Result<FiringPlan, StartError> {
+        (self.row().plan)(robot, schedule)
     }
 
     /// A robot's ring that fires by the caller's own code, ready to run.
@@ -424,6 +382,8 @@ impl FromStr for Method {
     /// assert_eq!("far_groups".parse(), Ok(Method::FarGroups));
     /// let error = "eruf".parse::<Method>().unwrap_err();
     /// assert!(error.to_string().starts_with("no method `eruf`; expected simultaneous, "));
+    /// let error = "eeruf_hopping".parse::<Method>().unwrap_err();
+    /// assert_eq!(error.to_string(), "method `eeruf_hopping` is gone; `flow` does it");
     /// ```
     fn from_str(name: &str) -> Result<Self, UnknownMethod> {
         Self::ALL.into_iter().find(|method| method.as_str() == name).ok_or_else(|| UnknownMethod(name.to_owned()))
@@ -434,8 +394,15 @@ impl FromStr for Method {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct UnknownMethod(pub String);
 
+/// Names that methods had.
+const GONE: [&str; 4] = ["eeruf_hopping", "driving", "adaptive_hopping", "hopping_multi_echo"];
+
 impl fmt::Display for UnknownMethod {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if GONE.contains(&self.0.as_str()) {
+            let does = if self.0 == "hopping_multi_echo" { Method::FlowMultiEcho } else { Method::Flow };
+            return write!(f, "method `{}` is gone; `{does}` does it", self.0);
+        }
         let names = Method::ALL.map(Method::as_str).join(", ");
         write!(f, "no method `{}`; expected {names}", self.0)
     }

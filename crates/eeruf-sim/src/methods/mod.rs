@@ -6,7 +6,6 @@ mod best_schedule;
 mod dither;
 mod firing;
 mod flow;
-mod hopping;
 mod method;
 mod ring_runner;
 mod schedules;
@@ -14,7 +13,8 @@ mod sketch;
 
 pub use best_schedule::{BestSchedule, TICK, best_schedule_for, requirements_of, shortest_schedule_for};
 pub use firing::{Firing, FiringPeriod, OwnError};
+pub use flow::FlowOptions;
 pub(crate) use method::{Belief, MAX_ECHOES};
 pub use method::{Method, UnknownMethod};
-pub(crate) use ring_runner::{ChangeError, FiringPlan, Hops, RingRunner, RingStart, StartError};
+pub(crate) use ring_runner::{ChangeError, FiringPlan, RingRunner, RingStart, StartError};
 pub use schedules::table_i_d_for;

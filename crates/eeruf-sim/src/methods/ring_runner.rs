@@ -5,13 +5,13 @@ use eeruf_core::{
     EachSensor, Instant, MAX_SENSORS, Micros, Ring, RingConfig, RingError, RingEvent, ScheduleError, Silence,
     VerifiedSchedule,
     conditions::Violation,
-    flow::{FlowPlan, FlowSettings},
-    hopping::{HoppingError, HoppingPlan, HoppingSchedule, HoppingSettings, Weighed},
+    flow::InTurn,
     judge::{AgreementRing, Judge},
-    plan::{ImmediateRefiring, OwnLimits, Plan, ScheduledFiring},
+    plan::{ImmediateRefiring, Plan, ScheduledFiring},
 };
 
 use super::firing::{Firing, OwnError, PeriodFiring};
+use super::flow::FlowOptions;
 use crate::world::{AnySchedule, Random, Robot};
 
 /// A ring of any kind, which can change to schedules that live as long as `'s`.
@@ -22,11 +22,8 @@ pub(crate) trait RingRunner<'s>: Send {
     fn next_deadline(&self) -> Instant;
     /// A sensor hears an echo.
     fn echo(&mut self, sensor: u8, at: Instant);
-    /// Of a ring with a tracker: how it weighed the reading of a sensor that it has just emitted, with the change that
-    /// was expected.
-    fn weighed(&self, _sensor: u8, _expected_change_us: i32) -> Option<Weighed> {
-        None
-    }
+    /// The robot moves at this speed, and turns at this rate.
+    fn moving(&mut self, _speed_mm_s: u32, _turn_mrad_s: u32, _now: Instant) {}
     /// Changes to another schedule, of as many sensors, when the present period ends.
     fn change_schedule(&mut self, _schedule: &'s AnySchedule) -> Result<(), ChangeError> {
         Err(ChangeError::Fixed)
@@ -55,10 +52,6 @@ pub(super) trait SimulatedPlan<'s>: Plan + Send + Sized {
     ) -> Result<(), ChangeError> {
         Err(ChangeError::Fixed)
     }
-    /// See [`RingRunner::weighed`].
-    fn weighed(&self, _sensor: u8, _expected_change_us: i32) -> Option<Weighed> {
-        None
-    }
     /// See [`RingRunner::error`].
     fn error(&self) -> Option<&OwnError> {
         None
@@ -74,17 +67,7 @@ impl<'s> SimulatedPlan<'s> for TableFiring<'s> {
     }
 }
 
-impl<const K: usize, U: OwnLimits + Send> SimulatedPlan<'_> for HoppingPlan<K, U> {
-    fn weighed(&self, sensor: u8, expected_change_us: i32) -> Option<Weighed> {
-        HoppingPlan::weighed(self, sensor, expected_change_us)
-    }
-}
-
-impl<const K: usize> SimulatedPlan<'_> for FlowPlan<K> {
-    fn weighed(&self, sensor: u8, expected_change_us: i32) -> Option<Weighed> {
-        FlowPlan::weighed(self, sensor, expected_change_us)
-    }
-}
+impl<const K: usize> SimulatedPlan<'_> for InTurn<K> {}
 
 impl SimulatedPlan<'_> for PeriodFiring {
     fn error(&self) -> Option<&OwnError> {
@@ -110,8 +93,8 @@ impl<'s, P: SimulatedPlan<'s>, J: Judge + Send, const K: usize, const E: usize, 
         _ = Ring::echo(self, sensor, at);
     }
 
-    fn weighed(&self, sensor: u8, expected_change_us: i32) -> Option<Weighed> {
-        self.plan().weighed(sensor, expected_change_us)
+    fn moving(&mut self, speed_mm_s: u32, turn_mrad_s: u32, now: Instant) {
+        Ring::moving(self, speed_mm_s, turn_mrad_s, now);
     }
 
     fn change_schedule(&mut self, schedule: &'s AnySchedule) -> Result<(), ChangeError> {
@@ -132,25 +115,14 @@ pub(crate) struct FiringPlan {
     pub(crate) schedule: AnySchedule,
     /// Where it adapts, all that it may change to, the first one first.
     pub(crate) ladder: Vec<VerifiedSchedule<MAX_SENSORS, 2, EachSensor<MAX_SENSORS>>>,
-    /// The same of a ring that hops.
-    pub(super) hopping_ladder: Vec<HoppingSchedule<MAX_SENSORS>>,
     /// Limits of each sensor, where they are not all alike.
     pub(crate) own_limits: EachSensor<MAX_SENSORS>,
-}
-
-/// Settings and schedule of a ring that hops.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Hops {
-    /// Its settings.
-    pub(crate) settings: HoppingSettings,
-    /// Its schedule; `None` for even lags.
-    pub(crate) schedule: Option<HoppingSchedule<MAX_SENSORS>>,
 }
 
 impl FiringPlan {
     /// One schedule for sensors that are alike.
     pub(crate) const fn new(schedule: AnySchedule) -> Self {
-        Self { schedule, ladder: vec![], hopping_ladder: vec![], own_limits: EachSensor::NONE }
+        Self { schedule, ladder: vec![], own_limits: EachSensor::NONE }
     }
 }
 
@@ -158,9 +130,10 @@ impl FiringPlan {
 pub(crate) struct RingStart<'s> {
     pub(crate) robot: &'s Robot,
     pub(crate) plan: &'s FiringPlan,
-    pub(crate) hops: Hops,
     /// Settings of a flow ring.
-    pub(crate) flow: FlowSettings,
+    pub(crate) flow: FlowOptions,
+    /// No other robot is about, or expected.
+    pub(crate) alone: bool,
     pub(crate) random: Random,
     pub(crate) now: Instant,
 }
@@ -174,26 +147,8 @@ pub(crate) enum StartError {
     Unverified(Violation),
     /// The schedules make no ladder.
     Ladder(ScheduleError),
-    /// It cannot hop as asked.
-    Hopping(HoppingError),
-    /// A schedule for another number of sensors.
-    Sensors {
-        /// Of the schedule.
-        schedule: usize,
-        /// Of the robot.
-        sensors: usize,
-    },
     /// Its first period cannot be fired.
     Own(OwnError),
-}
-
-impl From<HoppingError> for StartError {
-    fn from(error: HoppingError) -> Self {
-        match error {
-            HoppingError::Ring(error) => Self::Ring(error),
-            error => Self::Hopping(error),
-        }
-    }
 }
 
 impl From<RingError> for StartError {
@@ -242,9 +197,6 @@ pub(super) const ASKS: bool = true;
 pub(super) const AGREEMENT_ALONE: bool = false;
 /// The firings of each sensor that are remembered for whoever asks.
 pub(super) const REMEMBERED: usize = 4;
-/// Tracks of each sensor where a tracker judges, if it reports one echo of a firing, and if several.
-pub(super) const TRACKS: usize = 4;
-pub(super) const SEVERAL_TRACKS: usize = 12;
 /// The same of immediate refiring, in which a sensor may fire many times while another listens once.
 const REFIRED: usize = 16;
 
@@ -279,7 +231,7 @@ pub(super) fn scheduled<'s, const E: usize, const ASKS: bool>(start: &RingStart<
 }
 
 /// The robot's own schedule, where sensors are not all alike with what each may do.
-pub(super) fn plan_own(robot: &Robot, schedule: AnySchedule, _: &Hops) -> Result<FiringPlan, StartError> {
+pub(super) fn plan_own(robot: &Robot, schedule: AnySchedule) -> Result<FiringPlan, StartError> {
     if !robot.is_uneven() {
         return Ok(FiringPlan::new(schedule));
     }

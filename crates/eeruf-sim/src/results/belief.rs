@@ -118,7 +118,6 @@ mod tests {
             readings.path.push(NO_PATH);
             readings.emitted_s.push(0.0);
             readings.expected_change_us.push(change_us);
-            readings.weighed.push(None);
         }
         readings
     }

@@ -8,7 +8,7 @@ use super::readings::{HeardPath, NO_PATH, Readings};
 macro_rules! each_column {
     ($do:ident!($($given:tt)*)) => {
         $do!($($given)*; robot sensor period phase fired_s x_m y_m heading_rad kind t_echo_us earliest_us reference_us
-            cause path emitted_s expected_change_us weighed)
+            cause path emitted_s expected_change_us)
     };
 }
 

@@ -3,7 +3,7 @@
 
 use std::collections::TryReserveError;
 
-use eeruf_core::{ReadingKind, hopping::Weighed};
+use eeruf_core::ReadingKind;
 
 use crate::{methods::Method, scene::Bounce};
 
@@ -108,8 +108,6 @@ pub struct Readings {
     /// The change that odometry expects of a good reading since the sensor's firing before, in microseconds; 0 for a
     /// robot without odometry.
     pub expected_change_us: Vec<i32>,
-    /// Weighing by the ring's tracker, if it has one.
-    pub weighed: Vec<Option<Weighed>>,
     /// Every path that some reading came along.
     pub paths: Vec<HeardPath>,
 }
@@ -117,8 +115,7 @@ pub struct Readings {
 impl Readings {
     /// Memory of this number of readings, in bytes.
     pub const fn bytes_for(readings: u64) -> u64 {
-        let whole =
-            size_of::<[f64; 8]>() + size_of::<Option<Weighed>>() + size_of::<(u32, u32, i32)>() + size_of::<u16>();
+        let whole = size_of::<[f64; 8]>() + size_of::<(u32, u32, i32)>() + size_of::<u16>();
         readings.saturating_mul((whole + size_of::<(u8, u8, ReadingKind, Cause)>()) as u64)
     }
 
@@ -144,7 +141,6 @@ impl Readings {
             path: Vec::new(),
             emitted_s: Vec::new(),
             expected_change_us: Vec::new(),
-            weighed: Vec::new(),
             paths: Vec::new(),
         }
     }
@@ -162,8 +158,7 @@ impl Readings {
         x_m.try_reserve(more)?;
         y_m.try_reserve(more)?;
         heading_rad.try_reserve(more)?;
-        let Self { t_echo_us, earliest_us, reference_us, cause, path, emitted_s, weighed, .. } = self;
-        weighed.try_reserve(more)?;
+        let Self { t_echo_us, earliest_us, reference_us, cause, path, emitted_s, .. } = self;
         self.expected_change_us.try_reserve(more)?;
         t_echo_us.try_reserve(more)?;
         earliest_us.try_reserve(more)?;
@@ -204,8 +199,7 @@ impl Readings {
         x_m.clear();
         y_m.clear();
         heading_rad.clear();
-        let Self { t_echo_us, earliest_us, reference_us, cause, path, emitted_s, weighed, paths, .. } = self;
-        weighed.clear();
+        let Self { t_echo_us, earliest_us, reference_us, cause, path, emitted_s, paths, .. } = self;
         self.expected_change_us.clear();
         t_echo_us.clear();
         earliest_us.clear();

@@ -4,18 +4,12 @@ use core::fmt;
 use core::str::FromStr;
 use std::sync::Arc;
 
-use eeruf_core::{
-    MAX_SENSORS,
-    flow::FlowSettings,
-    hopping::{HoppingSchedule, HoppingSettings},
-};
-
 use super::engine::{self, Own};
 use super::error::SimulationError;
 use super::kinematics::Planned;
 use super::options::Options;
 use crate::{
-    methods::{Method, OwnError, UnknownMethod},
+    methods::{FlowOptions, Method, OwnError, UnknownMethod},
     results::Readings,
     threads::Stop,
     world::{AnySchedule, Robot, Sketch, World},
@@ -34,51 +28,33 @@ pub trait MakeOwn: fmt::Debug + Send + Sync {
 /// that simulations and all experiments take alike. What it does not set is the robot's or the experiment's.
 ///
 /// ```
-/// use eeruf_core::hopping::HoppingSettings;
-/// use eeruf_sim::{Entry, Method};
-/// let quick = Entry::new("quick", Method::EerufHopping).with_hopping(HoppingSettings::QUICK);
-/// assert_eq!((quick.name(), quick.method()), ("quick", Method::EerufHopping));
+/// use eeruf_core::Micros;
+/// use eeruf_sim::{Entry, FlowOptions, Method};
+/// let mut wide = FlowOptions::default();
+/// wide.least = Some(Micros::from_millis(12));
+/// let wide = Entry::new("wide", Method::Flow).with_flow(wide);
+/// assert_eq!((wide.name(), wide.method()), ("wide", Method::Flow));
 /// assert_eq!("eeruf".parse(), Ok(Entry::from(Method::Eeruf)));
-/// assert_eq!("driving".parse::<Entry>().unwrap().method(), Method::EerufHopping);
 /// ```
 #[derive(Clone, Debug)]
 pub struct Entry {
     name: Arc<str>,
     method: Method,
-    hopping: Option<HoppingSettings>,
-    hopping_schedule: Option<HoppingSchedule<MAX_SENSORS>>,
-    flow: Option<FlowSettings>,
+    flow: Option<FlowOptions>,
     schedule: Option<AnySchedule>,
     sketch: Option<Sketch>,
     own: Option<Arc<dyn MakeOwn>>,
 }
 
-/// The name of [`Method::EerufHopping`] by [`HoppingSettings::DRIVING`].
-const DRIVING: &str = "driving";
-
 impl Entry {
     /// A method as it is, under another name.
     pub fn new(name: &str, method: Method) -> Self {
-        Self {
-            name: name.into(),
-            method,
-            hopping: None,
-            hopping_schedule: None,
-            flow: None,
-            schedule: None,
-            sketch: None,
-            own: None,
-        }
+        Self { name: name.into(), method, flow: None, schedule: None, sketch: None, own: None }
     }
 
     /// Methods as they are, under their names.
     pub fn all(methods: impl IntoIterator<Item = Method>) -> Vec<Self> {
         methods.into_iter().map(Self::from).collect()
-    }
-
-    /// Time hopping by [`HoppingSettings::DRIVING`], under the name `driving`.
-    pub fn driving() -> Self {
-        Self::new(DRIVING, Method::EerufHopping).with_hopping(HoppingSettings::DRIVING)
     }
 
     /// Sets the name.
@@ -87,21 +63,9 @@ impl Entry {
         Self { name: name.into(), ..self }
     }
 
-    /// Sets how [`Method::EerufHopping`] weighs readings and fires.
-    #[must_use]
-    pub fn with_hopping(self, hopping: HoppingSettings) -> Self {
-        Self { hopping: Some(hopping), ..self }
-    }
-
-    /// Sets what [`Method::EerufHopping`] fires by, of as many sensors as the robot has.
-    #[must_use]
-    pub fn with_hopping_schedule(self, schedule: HoppingSchedule<MAX_SENSORS>) -> Self {
-        Self { hopping_schedule: Some(schedule), ..self }
-    }
-
     /// Sets how [`Method::Flow`] spaces its firings and weighs its readings.
     #[must_use]
-    pub fn with_flow(self, flow: FlowSettings) -> Self {
+    pub fn with_flow(self, flow: FlowOptions) -> Self {
         Self { flow: Some(flow), ..self }
     }
 
@@ -133,11 +97,6 @@ impl Entry {
         self.method
     }
 
-    /// Returns true if it hops by [`HoppingSettings::DRIVING`].
-    pub fn is_driving(&self) -> bool {
-        self.hopping == Some(HoppingSettings::DRIVING)
-    }
-
     /// The robot with what the entry changes of it.
     #[must_use]
     pub fn robot(&self, mut robot: Robot) -> Robot {
@@ -151,12 +110,7 @@ impl Entry {
     /// The options with what the entry changes of them.
     #[must_use]
     pub fn options(&self, options: Options) -> Options {
-        Options {
-            hopping: self.hopping.unwrap_or(options.hopping),
-            hopping_schedule: self.hopping_schedule.or(options.hopping_schedule),
-            flow: self.flow.unwrap_or(options.flow),
-            ..options
-        }
+        Options { flow: self.flow.unwrap_or(options.flow), ..options }
     }
 
     /// The caller's own firings and filters for these robots, the first of a world.
@@ -194,15 +148,14 @@ impl From<Method> for Entry {
 /// Own code is equal if it is the same.
 impl PartialEq for Entry {
     fn eq(&self, other: &Self) -> bool {
-        let Self { name, method, hopping, hopping_schedule, flow, schedule, sketch, own } = self;
+        let Self { name, method, flow, schedule, sketch, own } = self;
         let same_own = match (own, &other.own) {
             (None, None) => true,
             (Some(one), Some(other)) => Arc::ptr_eq(one, other),
             _ => false,
         };
-        let same_firing = (hopping_schedule, flow, schedule, sketch)
-            == (&other.hopping_schedule, &other.flow, &other.schedule, &other.sketch);
-        same_own && same_firing && (name, method, hopping) == (&other.name, &other.method, &other.hopping)
+        let same_firing = (flow, schedule, sketch) == (&other.flow, &other.schedule, &other.sketch);
+        same_own && same_firing && (name, method) == (&other.name, &other.method)
     }
 }
 
@@ -216,6 +169,6 @@ impl FromStr for Entry {
     type Err = UnknownMethod;
 
     fn from_str(name: &str) -> Result<Self, UnknownMethod> {
-        if name == DRIVING { Ok(Self::driving()) } else { name.parse().map(<Self as From<Method>>::from) }
+        name.parse().map(<Self as From<Method>>::from)
     }
 }

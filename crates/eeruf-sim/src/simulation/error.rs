@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use eeruf_core::{RingError, ScheduleError, conditions::Violation, hopping::HoppingError};
+use eeruf_core::{RingError, ScheduleError, conditions::Violation};
 
 use crate::methods::{ChangeError, Method, OwnError, StartError};
 use crate::results::Readings;
@@ -45,13 +45,6 @@ pub enum SimulationError {
         robot: usize,
         /// Why.
         error: ScheduleError,
-    },
-    /// A robot's ring cannot hop in time under [`Method::EerufHopping`].
-    Hopping {
-        /// The robot.
-        robot: usize,
-        /// Why.
-        error: HoppingError,
     },
     /// The median of none or of too many readings.
     Median {
@@ -139,8 +132,6 @@ impl SimulationError {
             StartError::Ring(error) => Self::Ring { robot, method, error },
             StartError::Unverified(violation) => Self::Unverified { robot, violation },
             StartError::Ladder(error) => Self::Ladder { robot, error },
-            StartError::Hopping(error) => Self::Hopping { robot, error },
-            StartError::Sensors { schedule, sensors } => Self::Sensors { robot, schedule, sensors },
             StartError::Own(error) => Self::Own { robot, what: "firing", at_s: 0.0, error },
         }
     }
@@ -164,7 +155,6 @@ impl fmt::Display for SimulationError {
             }
             Self::Ring { robot, method, error } => write!(f, "robot {}, method {method}: {error}", robot + first),
             Self::Ladder { robot, error } => write!(f, "robot {}, method adaptive: {error}", robot + first),
-            Self::Hopping { robot, error } => write!(f, "robot {}, time hopping: {error}", robot + first),
             Self::Unverified { robot, violation } => {
                 write!(f, "robot {}, method adaptive: {violation}", robot + first)
             }

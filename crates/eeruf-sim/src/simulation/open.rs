@@ -266,7 +266,7 @@ impl Simulation {
     /// of both. Readings before and after the change are not compared.
     ///
     /// # Errors
-    /// No such robot; a method without such a schedule (immediate refiring, dither, hopping, adaptive, the caller's own
+    /// No such robot; a method without such a schedule (immediate refiring, dither, flow, adaptive, the caller's own
     /// firing); a schedule for another number of sensors, or by which a sensor would fire again while it listens. The
     /// ring then goes on as before.
     ///

@@ -1,12 +1,6 @@
 //! Options besides the world and the method.
 
-use eeruf_core::{
-    MAX_SENSORS,
-    flow::FlowSettings,
-    hopping::{HoppingSchedule, HoppingSettings},
-};
-
-use crate::world::AnySchedule;
+use crate::{methods::FlowOptions, world::AnySchedule};
 
 /// Duration, seed, and what some methods need to know.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -22,28 +16,13 @@ pub struct Options {
     /// Number of readings that [`Method::Median`](crate::Method::Median) takes the median of, 1 to 15. The default is
     /// 3.
     pub median_of: u8,
-    /// Settings of [`Method::EerufHopping`](crate::Method::EerufHopping); the robot gives the number of neighbours. The
-    /// default is [`HoppingSettings::BALANCED`].
-    pub hopping: HoppingSettings,
-    /// Schedule of [`Method::EerufHopping`](crate::Method::EerufHopping), of as many sensors as every robot has; `None`
-    /// for even lags over the robot's period. Where a robot's sensors have limits of their own it must keep them.
-    pub hopping_schedule: Option<HoppingSchedule<MAX_SENSORS>>,
-    /// Settings of [`Method::Flow`](crate::Method::Flow); the robot's period is its shortest cycle. The
-    /// default is [`FlowSettings::DEFAULT`].
-    pub flow: FlowSettings,
+    /// Settings of [`Method::Flow`](crate::Method::Flow) that differ from what the robot asks for.
+    pub flow: FlowOptions,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Self {
-            periods: 1000,
-            seed: None,
-            best: None,
-            median_of: 3,
-            hopping: HoppingSettings::BALANCED,
-            hopping_schedule: None,
-            flow: FlowSettings::DEFAULT,
-        }
+        Self { periods: 1000, seed: None, best: None, median_of: 3, flow: FlowOptions::default() }
     }
 }
 

@@ -49,9 +49,9 @@ pub struct Robot {
     pub motion: Motion,
     /// Its clock.
     pub clock: Clock,
-    /// Its number among robots of one make, by which it fires flow: see
-    /// [`FlowSettings::with_fleet_number`](eeruf_core::flow::FlowSettings::with_fleet_number).
-    pub fleet_number: u8,
+    /// True if its ring is to expect other robots even where the world has none. The default is false: it knows whether
+    /// it is alone, and by [`Method::Flow`](crate::Method::Flow) believes each echo while it moves only if it is.
+    pub others: bool,
     /// When its ring begins to fire, by its own clock, after the start of the simulation.
     pub start: Micros,
     /// The schedule that the `eeruf` methods use; `None` for the paper's own (see
@@ -124,7 +124,7 @@ impl Robot {
             pose,
             motion: Motion::Still,
             clock: Clock::default(),
-            fleet_number: 0,
+            others: false,
             start: Micros::ZERO,
             schedule: None,
             period: Micros::from_millis(60),

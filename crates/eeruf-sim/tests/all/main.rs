@@ -8,6 +8,7 @@ mod corpus;
 #[path = "../common/corpus.rs"]
 mod corpus_reader;
 mod facts;
+mod flow;
 mod image_source;
 mod interference;
 mod kept;

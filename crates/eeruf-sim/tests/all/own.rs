@@ -262,7 +262,7 @@ fn ring_changes_schedule_at_its_periods_end() {
             }
         }
     }
-    for method in [Method::Dither, Method::EerufImmediate, Method::Adaptive, Method::EerufHopping] {
+    for method in [Method::Dither, Method::EerufImmediate, Method::Adaptive, Method::Flow] {
         let error = open(&world, method, Own::new()).unwrap().change_schedule(0, &slow).unwrap_err();
         assert_eq!(error, SimulationError::FixedSchedule { robot: 0, method });
     }

@@ -5,7 +5,7 @@ use eeruf_sim::experiments::set_three::{Placing, SetThreeOptions, set_three, wor
 use eeruf_sim::*;
 
 fn ways() -> [Entry; 2] {
-    [Method::Sequential.into(), Entry::driving()]
+    [Method::Sequential, Method::Flow].map(Entry::from)
 }
 
 fn asked(seeds: u64, methods: &[Entry]) -> SetThreeOptions {
@@ -26,7 +26,7 @@ fn figures_depend_on_neither_threads_nor_other_methods() {
 #[test]
 fn json_names_ways_and_groups() {
     let json = serde_json::to_value(set_three(&asked(7, &ways()), &|_| true).unwrap()).unwrap();
-    for way in ["sequential", "driving"] {
+    for way in ["sequential", "flow"] {
         let figures = &json["methods"][way];
         let share = |name: &str| figures[name]["mean"].as_f64().unwrap();
         let shares: f64 = ["belief_right", "unknown", "phantom", "too_far", "faint"].map(share).iter().sum();

@@ -1,5 +1,5 @@
-//! Instructions of each call of a flow ring of twelve sensors: see [`say_calls`]. The robot moves fast enough that gaps
-//! have to be shared out. To be run with `-icount shift=10`, as `instructions`.
+//! Instructions of each call of a flow ring of twelve sensors: see [`say_calls`]. To be run with `-icount shift=10`, as
+//! `instructions`.
 #![no_std]
 #![no_main]
 
@@ -14,6 +14,6 @@ eeruf_board::interrupts!(eeruf_board::clear_alarm, eeruf_board::clear_echo);
 fn main() -> ! {
     eeruf_board::start();
     let Ok(mut ring) = flow::<12>(Instant::from_micros(0)) else { leave(2) };
-    say_calls(&mut ring, 500, |_| None::<()>);
+    say_calls(&mut ring);
     leave(0)
 }

@@ -8,7 +8,7 @@ use eeruf_measure::planned::flow;
 eeruf_board::no_panic!();
 eeruf_board::interrupts!(eeruf_board::clear_alarm, eeruf_board::clear_echo);
 
-eeruf_measure::planned_in_static_memory!(FlowRing<12>, 12, flow::<12>);
+eeruf_measure::planned_in_static_memory!(FlowRing<12>, flow::<12>(Instant::from_micros(0)));
 
 #[eeruf_board::entry]
 fn main() -> ! {

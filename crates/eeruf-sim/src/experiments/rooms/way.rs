@@ -1,6 +1,6 @@
 //! The ways of firing that are judged in rooms, made for one ring.
 
-use eeruf_core::{Micros, hopping::HoppingSettings};
+use eeruf_core::Micros;
 use serde::Serialize;
 
 use crate::{
@@ -57,17 +57,7 @@ impl RoomWay {
                 way
             }));
         }
-        let shortest = schedule.map_or(rest, |schedule| schedule.period().max(rest));
-        for (name, hopping) in [("eeruf_hopping", HoppingSettings::BALANCED), ("driving", HoppingSettings::DRIVING)] {
-            let mut hops = way(name, Method::EerufHopping, shortest);
-            hops.robot.odometry = true;
-            hops.options.hopping = hopping;
-            ways.push(hops);
-        }
-        let mut flow = way("flow", Method::Flow, rest);
-        flow.robot.odometry = true;
-        flow.options.flow.rest = robot.module_rest();
-        ways.push(flow);
+        ways.push(way("flow", Method::Flow, rest));
         ways
     }
 
@@ -82,8 +72,6 @@ impl RoomWay {
             "eeruf" => "two phases, shortest period",
             "eeruf_x1.5" => "two phases, half as long again",
             "eeruf_x2" => "two phases, twice as long",
-            "eeruf_hopping" => "time hopping",
-            "driving" => "time hopping, driving",
             _ => "flow",
         }
     }

@@ -1,6 +1,6 @@
 //! Arguments of Set I.
 
-use eeruf_core::{Micros, hopping::HoppingSettings};
+use eeruf_core::Micros;
 
 use super::alcove::SENSORS;
 use super::multi_echo::MultiEcho;
@@ -34,8 +34,6 @@ pub struct SetOneOptions {
     pub methods: Vec<Entry>,
     /// Schedule of [`Method::EerufBest`], see [`best_schedule_for`](crate::best_schedule_for).
     pub best: Option<BestSchedule>,
-    /// Settings of [`Method::EerufHopping`], unless its entry has others.
-    pub hopping: HoppingSettings,
     /// Effects in the alcoves. The default is [`Physics::DEFAULT`].
     pub physics: Physics,
     /// Floor and ceiling of the alcoves. The default is none: they are flat.
@@ -61,7 +59,6 @@ impl Default for SetOneOptions {
             steps: 22,
             methods: Entry::all(Method::usual()),
             best: None,
-            hopping: HoppingSettings::BALANCED,
             physics: Physics::DEFAULT,
             room: None,
             sensors: SENSORS,

@@ -119,7 +119,7 @@ fn run(asked: &SetOneOptions, number: u64, entry: &Entry, progress: &Progress<'_
     let alcove = Alcove::random(number);
     let world = |alcove: &Alcove| world_of(asked, alcove, entry).map(|world| world.with_seed(number));
     let best = asked.best.as_ref().map(|best| best.schedule);
-    let options = Options { best, hopping: asked.hopping, ..Options::periods(periods(asked)) };
+    let options = Options { best, ..Options::periods(periods(asked)) };
     let far = world(&alcove)?;
     let summary = entry.simulate(&far, &options, &Stop::default(), |_| progress.go_on())?.summary();
     let steps = match asked.steps {

@@ -35,16 +35,12 @@ pub struct SetThreeOptions {
     pub room: Option<Room>,
     /// The growth of the receivers' gain. The default is constant.
     pub gain: GainProfile,
-    /// True if robots of a placing have fleet numbers from 0 on, by which flow tells them apart. The default is false.
-    pub numbered: bool,
 }
 
 /// The methods that Set III compares unless others are asked for.
 pub fn usual() -> Vec<Entry> {
-    use Method::{Dither, Eeruf, EerufHopping, Flow, Sequential, SequentialVotes, Simultaneous};
-    let mut methods = Entry::all([Simultaneous, Sequential, SequentialVotes, Dither, Eeruf, EerufHopping]);
-    methods.extend([Entry::driving(), Flow.into()]);
-    methods
+    use Method::{Dither, Eeruf, Flow, Sequential, SequentialVotes, Simultaneous};
+    Entry::all([Simultaneous, Sequential, SequentialVotes, Dither, Eeruf, Flow])
 }
 
 impl Default for SetThreeOptions {
@@ -57,7 +53,6 @@ impl Default for SetThreeOptions {
             physics: Physics::DEFAULT,
             room: None,
             gain: GainProfile::Constant,
-            numbered: false,
         }
     }
 }
@@ -76,8 +71,6 @@ pub struct SetThree {
     pub conditions: Conditions,
     /// Periods that each was simulated for.
     pub periods: u32,
-    /// True if the robots of a placing had fleet numbers of their own.
-    pub numbered: bool,
     /// The methods in the order asked for, with their figures over all placings.
     #[serde(serialize_with = "by_name")]
     pub methods: Vec<(String, Figures)>,
@@ -118,10 +111,10 @@ pub struct Group {
 ///
 /// ```
 /// use eeruf_sim::{Entry, experiments::set_three::{SetThreeOptions, set_three}};
-/// let methods = vec!["conventional".parse()?, Entry::driving()];
+/// let methods = vec!["conventional".parse()?, "flow".parse()?];
 /// let asked = SetThreeOptions { seeds: 2, periods: 20, methods, ..SetThreeOptions::default() };
 /// let table = set_three(&asked, &|_| true)?;
-/// assert_eq!(table.methods[1].0, "driving");
+/// assert_eq!(table.methods[1].0, "flow");
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn set_three(
@@ -156,12 +149,12 @@ pub fn set_three(
 impl SetThree {
     /// The table of runs that were made as asked: for each method one for each placing.
     pub fn of(asked: &SetThreeOptions, runs: Vec<Vec<Run>>) -> Self {
-        let &SetThreeOptions { first, seeds, periods, physics, numbered, .. } = asked;
+        let &SetThreeOptions { first, seeds, periods, physics, .. } = asked;
         let methods = named(&asked.methods, runs.iter().map(|runs| Figures::of(runs)));
         let conditions = Conditions::of(asked.room.as_ref(), asked.gain);
         let names: Vec<_> = asked.methods.iter().map(Entry::name).collect();
         let groups = group(&names, &runs);
-        Self { first, seeds, physics, conditions, periods, numbered, methods, groups, runs }
+        Self { first, seeds, physics, conditions, periods, methods, groups, runs }
     }
 }
 
@@ -198,10 +191,7 @@ pub fn group(names: &[&str], runs: &[Vec<Run>]) -> Vec<Group> {
 /// # Errors
 /// [`WorldError`] for a placing that cannot be.
 pub fn world_of(asked: &SetThreeOptions, placing: &Placing, entry: &Entry) -> Result<World, WorldError> {
-    let robot = |(number, robot): (u8, &Robot)| {
-        let fleet_number = if asked.numbered { number } else { 0 };
-        entry.robot(Robot { fleet_number, ..robot.clone().with_pattern(Some(asked.gain), None) })
-    };
-    let robots = (0..).zip(&placing.robots).map(robot).collect();
+    let robot = |robot: &Robot| entry.robot(robot.clone().with_pattern(Some(asked.gain), None));
+    let robots = placing.robots.iter().map(robot).collect();
     World::new(placing.scene()?.with_room(asked.room)?, robots, Noise::default())?.with_physics(asked.physics)
 }

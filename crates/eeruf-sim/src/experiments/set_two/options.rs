@@ -1,6 +1,6 @@
 //! Arguments of Set II.
 
-use eeruf_core::{Micros, hopping::HoppingSettings};
+use eeruf_core::Micros;
 
 use super::odometry::OdometryNoise;
 use super::pilots::Pilots;
@@ -27,8 +27,6 @@ pub struct SetTwoOptions {
     pub methods: Vec<Entry>,
     /// Schedule of [`Method::EerufBest`], see [`best_schedule_for`](crate::best_schedule_for).
     pub best: Option<BestSchedule>,
-    /// Settings of [`Method::EerufHopping`], unless its entry has others. The default is [`HoppingSettings::DRIVING`].
-    pub hopping: HoppingSettings,
     /// Where another robot stands that fires 24 times in 80 ms, if there is one.
     pub second_robot: Option<Point>,
     /// The platform.
@@ -76,11 +74,10 @@ impl Default for SetTwoOptions {
                 Method::Eeruf,
                 Method::EerufBest,
                 Method::Adaptive,
-                Method::EerufHopping,
+                Method::Flow,
                 Method::MultiEcho,
             ]),
             best: None,
-            hopping: HoppingSettings::DRIVING,
             second_robot: None,
             labmate: LabMate::default(),
             odometry: true,

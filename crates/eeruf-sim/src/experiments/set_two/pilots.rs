@@ -61,7 +61,6 @@ impl Pilots {
 pub const fn steered_as(method: Method) -> Method {
     match method {
         Method::SequentialVotes | Method::Blocking => Method::Sequential,
-        Method::AdaptiveHopping | Method::HoppingMultiEcho => Method::EerufHopping,
         Method::AdaptiveMultiEcho => Method::MultiEcho,
         Method::FlowMultiEcho => Method::Flow,
         sketch if sketch.is_sketch() => Method::Sequential,

@@ -27,6 +27,8 @@ use crate::{
 
 /// Number of events that go by between two calls of `keep_going`.
 const EVENTS_PER_CALL: u32 = 8192;
+/// A control loop tells its ring so often how the robot moves.
+const CONTROL_CYCLE_NS: u64 = 20_000_000;
 
 /// A world under way.
 pub(crate) struct EventLoop<'a, K> {
@@ -262,6 +264,12 @@ impl<'a, K: Kinematics> EventLoop<'a, K> {
         if ring.hears <= now {
             self.hear(ring, now, ticks, instant);
         }
+        if ring.tells <= now && self.kinematics.moves() {
+            let Moment { velocity, turn_rad_s, .. } = self.kinematics.moment(index, now);
+            let [speed, turn] = [velocity.norm(), turn_rad_s.abs()].map(|per_s| (1e3 * per_s).round() as u32);
+            ring.ring.moving(speed, turn, instant);
+            ring.tells = now + CONTROL_CYCLE_NS;
+        }
         loop {
             let ring = &mut rings[index];
             let (before, fired) = (&self.fired_before, &self.fired);
@@ -283,7 +291,6 @@ impl<'a, K: Kinematics> EventLoop<'a, K> {
                 }
                 Some(RingEvent::Reading(reading)) => {
                     let expected_change_us = change(reading.sensor);
-                    let weighed = ring.ring.weighed(reading.sensor, expected_change_us);
                     let number = ring.sensors.start + usize::from(reading.sensor);
                     if let (Some(receiver), Some(fired)) = (self.receivers.get_mut(number), &self.fired[number]) {
                         let fired_from = fired.pose * ring.robot.sensors[usize::from(reading.sensor)];
@@ -291,7 +298,6 @@ impl<'a, K: Kinematics> EventLoop<'a, K> {
                         let recorded = self.recorder.record(
                             number,
                             &reading,
-                            weighed,
                             expected_change_us,
                             (receiver, self.triggered[number]),
                             reference,

@@ -1,7 +1,7 @@
 //! The way of a reading under a method, and its entry in the record: what it says, what it came from, and what the
 //! sensor would have read alone.
 
-use eeruf_core::{Reading, ReadingKind, hopping::Weighed};
+use eeruf_core::{Reading, ReadingKind};
 
 use super::filter::{Filter, Filtered, FiredReading, MAX_MEDIAN, filter_of};
 use super::own::Own;
@@ -75,12 +75,10 @@ impl Recorder {
     /// Records what is believed of a firing. With its receiver comes when the sensor was triggered; `reference` is the
     /// travelling time of what the sensor hears alone, `fired_from` its place and heading then. The answer is all
     /// readings with this one as the last; none if it does not count.
-    #[expect(clippy::too_many_arguments, reason = "one reading")]
     pub(crate) fn record(
         &mut self,
         sensor: usize,
         reading: &Reading,
-        weighed: Option<Weighed>,
         expected_change_us: i32,
         (receiver, triggered): (&Receiver, u64),
         reference: u64,
@@ -123,7 +121,6 @@ impl Recorder {
         out.path.push(path);
         out.emitted_s.push(emitted_s);
         out.expected_change_us.push(expected_change_us);
-        out.weighed.push(weighed);
         Ok(Some(out))
     }
 

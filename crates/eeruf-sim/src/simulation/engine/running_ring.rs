@@ -10,7 +10,7 @@ use crate::simulation::options::Options;
 use crate::simulation::receiver::{Hearing, NEVER};
 use crate::{
     geometry::Pose,
-    methods::{FiringPlan, Hops, Method, RingRunner, RingStart},
+    methods::{FiringPlan, Method, RingRunner, RingStart},
     world::{FaultKind, Random, Robot, Ticker, World},
 };
 
@@ -30,6 +30,8 @@ pub(crate) struct RunningRing<'a> {
     pub(crate) wakes: u64,
     /// When one of its sensors hears something.
     pub(crate) hears: u64,
+    /// When its control loop next tells it how it moves.
+    pub(crate) tells: u64,
 }
 
 impl RunningRing<'_> {
@@ -66,8 +68,7 @@ pub(crate) fn plans(
             method,
             error,
         })?;
-        let hops = Hops { settings: options.hopping, schedule: options.hopping_schedule };
-        let plan = method.plan(robot, first, &hops).map_err(|error| SimulationError::start(index, method, error))?;
+        let plan = method.plan(robot, first).map_err(|error| SimulationError::start(index, method, error))?;
         Ok((method, Some(plan)))
     };
     world.robots().iter().enumerate().map(plan).collect()
@@ -97,10 +98,14 @@ pub(crate) fn start_all<'a>(
         let random = seed.of(DITHER).of(index as u64);
         let now = clock.instant(start);
         let ring = match (plan, own.take_firing(index)) {
-            (Some(plan), None) => {
-                let hops = Hops { settings: options.hopping, schedule: options.hopping_schedule };
-                method.start(&RingStart { robot, plan, hops, flow: options.flow, random, now })
-            }
+            (Some(plan), None) => method.start(&RingStart {
+                robot,
+                plan,
+                flow: options.flow,
+                alone: world.robots().len() == 1 && !robot.others,
+                random,
+                now,
+            }),
             (_, Some(firing)) => method.start_own(robot, firing, now),
             // Every robot has one of the two.
             (None, None) => continue,
@@ -115,8 +120,7 @@ pub(crate) fn start_all<'a>(
         let first = channels.first_of(index);
         let sensors = first..first + robot.sensors.len();
         let keeps_limits = |plan: &FiringPlan| plan.own_limits != EachSensor::NONE || !plan.ladder.is_empty();
-        let hops_by_them = method.hops() && options.hopping_schedule.is_some();
-        let has_limits = plan.as_ref().is_some_and(|plan| hops_by_them || keeps_limits(plan));
+        let has_limits = plan.as_ref().is_some_and(keeps_limits);
         let limits = if has_limits { &robot.limits[..] } else { &[] };
         let hearing_of = |sensor: usize| {
             // Two ticks less, since the clock rounds.
@@ -130,7 +134,16 @@ pub(crate) fn start_all<'a>(
             }
         };
         let hearings = (0..robot.sensors.len()).map(hearing_of).collect();
-        rings.push(RunningRing { robot, ring, clock, hearings, sensors, wakes: clock.reaches(start), hears: NEVER });
+        rings.push(RunningRing {
+            robot,
+            ring,
+            clock,
+            hearings,
+            sensors,
+            wakes: clock.reaches(start),
+            hears: NEVER,
+            tells: 0,
+        });
     }
     Ok(rings)
 }

@@ -261,7 +261,7 @@ pub(super) struct RobotFile {
     pub(super) motion: Option<MotionFile>,
     pub(super) clock: Option<ClockFile>,
     #[serde(default)]
-    pub(super) fleet_number: u8,
+    pub(super) others: bool,
     pub(super) schedule: Option<Spanned<toml::Value>>,
     pub(super) start_us: Option<u32>,
     pub(super) period_us: Option<u32>,

@@ -102,7 +102,7 @@ pub(super) fn robot(
     if let Some(clock) = &file.clock {
         robot.clock = Clock { offset_us: clock.offset_us, drift_ppm: clock.drift_ppm };
     }
-    robot.fleet_number = file.fleet_number;
+    robot.others = file.others;
     if let Some(schedule) = &file.schedule {
         let schedule = schedule_file::schedule(source, schedule)?;
         (robot.schedule, robot.period) = (Some(schedule), schedule.period());

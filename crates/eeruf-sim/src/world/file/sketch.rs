@@ -1,9 +1,6 @@
 //! `[firing]` of a world file: how its robots are fired today.
 
-use eeruf_core::{
-    MAX_SENSORS, Micros,
-    hopping::{HoppingCode, HoppingSchedule},
-};
+use eeruf_core::Micros;
 use eeruf_files::{FileError, explain};
 use serde::Deserialize;
 use toml::{Spanned, Table, Value};
@@ -29,16 +26,12 @@ pub(super) struct SketchFile {
     schedule: Option<Spanned<Value>>,
 }
 
-/// A table of many phases: firing times, or a code with lags.
+/// A table of many phases, by its firing times.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct PhasesFile {
     period_us: u32,
-    t_fire_us: Option<Vec<Vec<u32>>>,
-    step_us: Option<u32>,
-    phases: Option<u8>,
-    first_multiplier: Option<u8>,
-    t_lag_us: Option<Vec<u32>>,
+    t_fire_us: Vec<Vec<u32>>,
 }
 
 /// A table `[firing]`.
@@ -73,27 +66,15 @@ pub(super) fn sketch(source: &Source, file: &SketchFile) -> Result<Sketch, FileE
 
 /// The firing times of a schedule of two phases, or of many.
 fn table_of(table: Table) -> Result<FiringTable, String> {
-    let micros = |us: &[u32]| us.iter().copied().map(Micros::new).collect::<Vec<_>>();
-    if ["t_fire_us", "step_us"].iter().any(|&key| table.contains_key(key)) {
-        let file = PhasesFile::deserialize(table).map_err(|error| explain(&error))?;
-        let period = Micros::new(file.period_us);
-        return match (&file.t_fire_us, file.step_us, file.phases, &file.t_lag_us) {
-            (Some(rows), None, None, None) if file.first_multiplier.is_none() => {
-                Ok(FiringTable { period, rows: rows.iter().map(|row| micros(row)).collect() })
-            }
-            (None, Some(step), Some(phases), Some(lags)) if lags.len() <= MAX_SENSORS => {
-                let mut all = [Micros::ZERO; MAX_SENSORS];
-                all[..lags.len()].copy_from_slice(&micros(lags));
-                let first = file.first_multiplier.unwrap_or(1);
-                let made = HoppingCode::of(lags.len(), phases, first, Micros::new(step))
-                    .and_then(|code| HoppingSchedule::new(code, period, all));
-                let made = made.map_err(|error| error.to_string())?;
-                let rows = made.table::<{ HoppingCode::MAX_PHASES as usize }>();
-                let rows = rows.iter().take(phases.into()).map(|row| row[..lags.len()].to_vec());
-                Ok(FiringTable { period, rows: rows.collect() })
-            }
-            _ => Err("expected either t_fire_us, one list for each phase, or step_us, phases and t_lag_us".to_owned()),
-        };
+    if table.contains_key("step_us") {
+        return Err(
+            "step_us: a code of time hopping, which is gone; expected t_fire_us, one list for each phase".into()
+        );
+    }
+    if table.contains_key("t_fire_us") {
+        let PhasesFile { period_us, t_fire_us } = PhasesFile::deserialize(table).map_err(|error| explain(&error))?;
+        let row = |row: Vec<u32>| row.into_iter().map(Micros::new).collect();
+        return Ok(FiringTable { period: Micros::new(period_us), rows: t_fire_us.into_iter().map(row).collect() });
     }
     let file = ScheduleFile::deserialize(table).map_err(|error| explain(&error))?;
     let schedule = file.schedule()?;

@@ -211,8 +211,8 @@ fn robot_table(robot: &Robot) -> Table {
     set(&mut clock, "offset_us", i64::from(robot.clock.offset_us));
     set(&mut clock, "drift_ppm", robot.clock.drift_ppm);
     set(&mut table, "clock", clock);
-    if robot.fleet_number != 0 {
-        set(&mut table, "fleet_number", i64::from(robot.fleet_number));
+    if robot.others {
+        set(&mut table, "others", true);
     }
     if let Some(schedule) =
         robot.schedule.as_ref().and_then(|schedule| Table::try_from(ScheduleFile::from(schedule)).ok())

@@ -1,4 +1,4 @@
-//! A ring of eight HC-SR04 sensors that hops in time, whose surroundings are the simulator on the host, in lock step.
+//! A ring of eight HC-SR04 sensors that fires by flow, whose surroundings are the simulator on the host, in lock step.
 //! The main loop is that of any other ring, and also reports to the host everything that goes into the ring and
 //! everything that comes out.
 #![no_std]
@@ -8,12 +8,12 @@ mod host;
 mod lines;
 mod ring;
 
-use eeruf_hil::hopping_ring;
+use eeruf_hil::flow_ring;
 
 eeruf_board::say_panic!();
 eeruf_board::interrupts!(eeruf_board::clear_alarm, ring::echo_interrupt);
 
 #[eeruf_board::entry]
 fn main() -> ! {
-    ring::run(hopping_ring, |_, _, _, _| {})
+    ring::run(flow_ring, |_, _, _, _| {})
 }

@@ -2,6 +2,8 @@
 
 use crate::time::{Instant, Micros};
 
+/// Sound that is heard was sent no longer ago: see `LONGEST_QUIET`.
+const AUDIBLE: Micros = Micros::from_millis(250);
 /// Without a word for as long the top speed holds.
 const SILENCE: Micros = Micros::from_millis(500);
 /// The longest time over which a change is worked out; what is older is believed no more.
@@ -43,18 +45,35 @@ pub(super) struct Motion {
     top: Rate,
     /// When the caller last said how fast it moves; `None` for not within [`SILENCE`].
     told: Option<Instant>,
+    /// The greatest rates in the spans before and from `since` on, neither of them much shorter than sound is heard.
+    greatest: [Rate; 2],
+    since: Instant,
 }
 
 impl Motion {
     pub(super) const fn new(top_speed_mm_s: u16) -> Self {
         let top = Rate::of(top_speed_mm_s as u32);
-        Self { rate: top, top, told: None }
+        Self { rate: top, top, told: None, greatest: [top; 2], since: Instant::from_micros(0) }
     }
 
-    pub(super) fn set(&mut self, speed_mm_s: u32, turn_mrad_s: u32, now: Instant) {
+    /// Takes in how fast the robot moves from now on. Returns the greater of the rates before and after.
+    pub(super) fn set(&mut self, speed_mm_s: u32, turn_mrad_s: u32, now: Instant) -> Rate {
+        let before = self.recent(now);
         let turning = turn_mrad_s.saturating_mul(LEVER_MM) / 1000;
         self.rate = Rate::of(speed_mm_s.saturating_add(turning));
         self.told = Some(now);
+        self.greatest[1] = self.greatest[1].max(self.rate);
+        before.max(self.rate)
+    }
+
+    /// The greatest rate while sound could be sent that is heard at an instant, which is not long before the last word.
+    pub(super) fn recent(&mut self, now: Instant) -> Rate {
+        let rate = self.rate(now);
+        if now.has_reached(self.since) && now.since(self.since) > AUDIBLE {
+            (self.since, self.greatest) = (now, [self.greatest[1], rate]);
+        }
+        self.greatest[1] = self.greatest[1].max(rate);
+        self.greatest[0].max(self.greatest[1])
     }
 
     /// The rate at an instant, which is not long before the last word.
@@ -88,8 +107,23 @@ mod tests {
         assert_eq!(motion.rate(begin), top);
         motion.set(0, 0, begin);
         assert_eq!(motion.rate(begin + Micros::from_millis(500)), Rate::STANDING);
-        assert_eq!(motion.rate(begin + Micros::new(500_001)), top);
-        motion.set(0, 500, begin + Micros::new(600_000));
+        assert_eq!(motion.clone().rate(begin + Micros::new(500_001)), top);
+        // It held before the next word.
+        assert_eq!(motion.set(0, 500, begin + Micros::new(600_000)), top);
         assert_eq!(motion.rate(begin + Micros::new(600_001)), Rate::of(250));
+    }
+
+    #[test]
+    fn rate_is_recent_while_sound_is_heard_that_was_sent_then() {
+        let mut motion = Motion::new(0);
+        let at = |ms| Instant::from_micros(u32::MAX - 50_000) + Micros::from_millis(ms);
+        motion.set(500, 0, at(0));
+        for ms in (20..900).step_by(20) {
+            let told = if ms == 100 { 1000 } else { 500 };
+            motion.set(told, 0, at(ms));
+            let recent = motion.recent(at(ms));
+            assert!(if (100..=350).contains(&ms) { recent == Rate::of(1000) } else { recent >= Rate::of(500) }, "{ms}");
+            assert!(ms < 700 || recent == Rate::of(500), "{ms}");
+        }
     }
 }

@@ -1,0 +1,24 @@
+//! Members of classes that are gone, which answer by name.
+
+use pyo3::{exceptions::PyAttributeError, prelude::*};
+
+/// A descriptor that says what does the work of a member that is gone.
+#[pyclass(frozen, module = "eeruf")]
+pub(crate) struct Gone {
+    name: &'static str,
+    instead: &'static str,
+}
+
+impl Gone {
+    pub(crate) const fn new(name: &'static str, instead: &'static str) -> Self {
+        Self { name, instead }
+    }
+}
+
+#[pymethods]
+impl Gone {
+    fn __get__(&self, _instance: Option<&Bound<'_, PyAny>>, _owner: Option<&Bound<'_, PyAny>>) -> PyResult<Py<PyAny>> {
+        let Self { name, instead } = self;
+        Err(PyAttributeError::new_err(format!("eeruf.{name} is gone; eeruf.{instead} does it")))
+    }
+}

@@ -134,7 +134,7 @@ pub struct RingSpec {
     pub path_change: Option<Micros>,
     /// R: how long sound is audible, where the file says it.
     pub audible: Option<Micros>,
-    /// True if other robots may be about, whose sound nobody knows.
+    /// True if other robots may be about, whose firings are unknown.
     pub others: bool,
     /// The module of each sensor, where the file names them; it rests for as long as the file says.
     pub modules: Vec<Module>,

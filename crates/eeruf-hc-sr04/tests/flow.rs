@@ -126,7 +126,7 @@ fn driver_polled_late_accepts_own_walls() {
     own_walls_are_accepted::<12>();
 }
 
-// What the driver is not told it cannot allow for.
+// A driver cannot allow for a speed that it is not told.
 #[test]
 fn driver_of_a_moving_robot_needs_its_speed() {
     let untold = walls(driver::<8>(3, None, Settings::default()).unwrap(), 1_000, 1_000, false).0;

@@ -86,7 +86,7 @@ impl<const K: usize, const E: usize> Belief<K, E> {
         let (rate, recent) = (self.motion.rate(heard.fired), self.motion.recent(heard.fired));
         self.set_moves(rate.moves());
         let Some(known) = self.known_mut(heard.sensor) else { return Micros::ZERO };
-        // What it heard before was sent a while before, and so will be what it hears next.
+        // Sound is heard a while after it was sent: the rate of then counts.
         let span = core::mem::replace(&mut known.rate, recent).max(recent).grow(heard.since_before);
         known.grown = known.grown.saturating_add(u16::try_from(span.as_micros()).unwrap_or(u16::MAX));
         span

@@ -239,7 +239,7 @@ impl<const K: usize, U: OwnLimits> InTurn<K, U> {
         for (other, slot) in self.each().filter(|&(other, _)| other != sensor) {
             let window = self.window_of(other);
             if slot.is(LISTENS) {
-                // What it hears after its window is of no account, however late it is reported.
+                // Sound after its window is of no account, however late it is reported.
                 quiet = longer(quiet, self.since_last(slot.fired, shorter(self.quiet(slot), window)));
             }
             if line > 0 && slot.is(FIRED) && self.own_limits.line_of(other) == line {

@@ -92,20 +92,20 @@ impl TurnSettings {
     }
 
     pub(super) const fn check(&self) -> Result<(), RingError> {
-        let tick = Micros::new(1);
-        if let Err(error) = within("most", self.most, tick, LONGEST_QUIET) {
+        let one = Micros::new(1);
+        if let Err(error) = within("most", self.most, one, LONGEST_QUIET) {
             return Err(error);
         }
-        if let Err(error) = within("least", self.least, tick, self.most) {
+        if let Err(error) = within("least", self.least, one, self.most) {
             return Err(error);
         }
-        if let Err(error) = within("rest", self.rest, tick, LONGEST_REST) {
+        if let Err(error) = within("rest", self.rest, one, LONGEST_REST) {
             return Err(error);
         }
         if let Err(error) = within("dice", self.dice, Micros::ZERO, LONGEST_QUIET) {
             return Err(error);
         }
-        within("seed", Micros::new(self.seed), tick, Micros::MAX)
+        within("seed", Micros::new(self.seed), one, Micros::MAX)
     }
 
     /// Quiet that a believed reading takes away.

@@ -460,7 +460,7 @@ fn sensors_that_fire_together_have_one_turn() {
     assert!(of(&world, 2) == of(&world, 3) && of(&world, 3) == of(&world, 7) && of(&world, 0) == of(&world, 4));
     // Partners explain nothing.
     assert!(seen.iter().all(|seen| seen.accepted + 4 > seen.fired && seen.fired > 150), "{}", seen[2].accepted);
-    // What one of them needs all get.
+    // All get as much as any of them needs.
     let masked = |now, sensor, dice: &mut Dice| match sensor {
         7 => vec![(now + 1_000 + u64::from(dice.below(4_000)), 7)],
         _ => own(now, sensor, dice),
@@ -529,7 +529,7 @@ fn each_sensor_has_its_own_window_and_t_delta() {
     let of = |t_delta, window| SensorLimits { t_delta: Micros::new(t_delta), window: Micros::new(window) };
     let accepted = |limits: [SensorLimits; 3]| {
         let limits = EachSensor::for_flow(limits, &[]);
-        // What is believed must not help.
+        // No belief may help.
         let belief = BeliefSettings { near: Micros::ZERO, ..DEFAULT };
         let begin = Instant::from_micros(BEGIN);
         let ring = FlowRing::with_limits(3, limits, TurnSettings::new(1), belief, CONFIG, begin).unwrap();
@@ -542,7 +542,7 @@ fn each_sensor_has_its_own_window_and_t_delta() {
         seen.iter().map(|seen| seen.accepted * 100 / seen.fired).collect::<Vec<_>>()
     };
     let alike = accepted([of(80, 25_000); 3]);
-    // What is farther must outlast what is believed.
+    // A farther wall must outlast the belief.
     assert!(alike.iter().all(|&share| share > 85), "{alike:?}");
     let own = accepted([of(80, 10_000), of(80, 25_000), of(50, 25_000)]);
     assert!(own[0] == 0 && own[1] > 85 && own[2] < 5, "{own:?}");
@@ -653,6 +653,6 @@ fn silence_is_believed_at_once_of_a_robot_that_moves_and_of_a_belief_in_silence(
         // Standing, silence outlasts what four readings have confirmed.
         assert_eq!(after_a_wall(alone, 0, [false; 3]), [NoEcho; 3], "alone: {alone}");
     }
-    // An echo that nobody believes does not begin a row of silence anew.
+    // An echo that is not believed does not end the row of silence.
     assert_eq!(after_a_wall(false, 500, [false, true, false])[2], Clear);
 }

@@ -196,6 +196,6 @@ fn firings_in_json_are_read_as_those_of_ros2() {
         out.firing("/firings", "c", 0, firing).unwrap();
     }
     out.finish().unwrap();
-    // What JSON does not say of a reading comes back too.
+    // Fields that JSON leaves out come back too.
     assert_eq!(FiringLog::read(&file).unwrap(), json);
 }

@@ -84,7 +84,7 @@ fn flow_turning_is_right_as_often_as_one_by_one_at_twice_its_echoes() {
     }
 }
 
-// Who believes each echo beside another robot believes the other's.
+// Beside another robot a ring that believes every echo believes the other's.
 #[test]
 fn flow_keeps_another_robots_sound_out_whether_it_stands_or_moves() {
     let mut every_echo = way("flow");

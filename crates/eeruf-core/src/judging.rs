@@ -142,7 +142,7 @@ pub trait Judge {
     /// Judges a firing. `sounds` say what explains readings that agree: a judge that accepts them all the same accepts
     /// crosstalk.
     fn judge(&mut self, heard: &Heard<'_>, sounds: &impl Sounds) -> Verdict;
-    /// Takes in a firing that says nothing about the echo time: stuck, too early, or silence without a witness.
+    /// Takes in a firing that says nothing about the echo time: stuck, too early, late, or silence without a witness.
     /// `echoes` holds the early edge, if there was one.
     fn skip(&mut self, heard: &Heard<'_>, kind: ReadingKind) -> Verdict;
     /// Firings of a sensor since its last accepted reading; `None` if none ever was.

@@ -4,8 +4,8 @@ use core::fmt;
 
 use crate::time::Micros;
 
-/// The outcome of one firing of one sensor. Each firing yields exactly one kind; only [`ReadingKind::Late`] may follow
-/// it.
+/// The outcome of one firing of one sensor. Each firing yields exactly one kind; only [`ReadingKind::Late`] with
+/// an echo time may follow it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 #[repr(u8)]
@@ -29,7 +29,8 @@ pub enum ReadingKind {
     /// Nothing but an edge within the blanking time: ringing of the transducer, or an object closer than it can
     /// measure.
     TooEarly,
-    /// An edge after the window has ended; it is compared with nothing.
+    /// An edge after the window has ended; it is compared with nothing. Without echo time: the outcome of a firing
+    /// whose edge came nobody knows when, within more than 0.6 ms.
     Late,
     /// The driver reported that the echo line was stuck when the sensor was to fire.
     Stuck,

@@ -3,6 +3,7 @@
 use core::fmt;
 
 use crate::schedule::MAX_SENSORS;
+use crate::sensor_error::SensorError;
 use crate::time::Micros;
 
 /// The longest `t_delta` and blanking time, which a ring keeps in two bytes each.
@@ -79,6 +80,15 @@ pub enum RingError {
         /// The number asked for.
         consecutive: u8,
     },
+    /// An echo between two instants, or echo times, of which the latest comes before the earliest.
+    Interval {
+        /// The earliest, in microseconds.
+        earliest: u32,
+        /// The latest.
+        latest: u32,
+    },
+    /// A sensor out of range.
+    Sensor(SensorError),
     /// A rate for a [`RateFilter`](crate::judge::RateFilter) at which no robot's echoes change.
     Rate {
         /// The drift asked for, in microseconds per second.
@@ -135,6 +145,11 @@ impl fmt::Display for RingError {
                 f.write_str("a schedule that was not verified; expected both t_delta and window in the configuration")
             }
             Self::Consecutive { consecutive } => write!(f, "{consecutive} consecutive readings; expected 2 to 8"),
+            Self::Interval { earliest, latest } => write!(
+                f,
+                "an echo between {earliest} and {latest} us; expected the latest after the earliest, likely swapped"
+            ),
+            Self::Sensor(error) => error.fmt(f),
             Self::Rate { us_per_s } => write!(f, "echoes that change by {us_per_s} us/s; expected 0 to 400000 us/s"),
             Self::Setting { name, value, least, most } => write!(f, "{name} is {value}; expected {least} to {most}"),
         }
@@ -142,3 +157,9 @@ impl fmt::Display for RingError {
 }
 
 impl core::error::Error for RingError {}
+
+impl From<SensorError> for RingError {
+    fn from(error: SensorError) -> Self {
+        Self::Sensor(error)
+    }
+}

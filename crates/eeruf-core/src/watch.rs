@@ -184,7 +184,8 @@ impl<const K: usize> SensorWatch<K> {
 impl Watched {
     fn read(&mut self, reading: &Reading, now: Instant) {
         let was_silent = self.silent;
-        if reading.kind != ReadingKind::Late {
+        let follows = reading.kind == ReadingKind::Late && reading.t_echo.is_some();
+        if !follows {
             self.silent = reading.kind == ReadingKind::NoEcho;
         }
         let doubt = match reading.kind {
@@ -196,9 +197,9 @@ impl Watched {
             ReadingKind::Stuck | ReadingKind::Unanswered if self.known == Known::Unanswered => return,
             ReadingKind::Stuck | ReadingKind::Unanswered => return self.confirm(Known::Unanswered, now),
             // Of a firing that has had its reading.
-            ReadingKind::Late => return,
+            ReadingKind::Late if follows => return,
             ReadingKind::NoEcho if was_silent => Doubt::NoWitness,
-            ReadingKind::First | ReadingKind::NoEcho | ReadingKind::Repeated => Doubt::Unsure,
+            ReadingKind::First | ReadingKind::NoEcho | ReadingKind::Repeated | ReadingKind::Late => Doubt::Unsure,
             ReadingKind::Rejected => Doubt::Rejected,
             ReadingKind::Ambiguous => Doubt::Ambiguous(reading.explained_by.unwrap_or(Explanation::History)),
         };

@@ -345,7 +345,38 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
     /// [`SensorError`] for a sensor out of range.
     #[inline]
     pub fn echo(&mut self, sensor: u8, at: Instant) -> Result<(), SensorError> {
-        self.echo_until(sensor, at, at)
+        self.hear(sensor, at, Micros::ZERO, at)
+    }
+
+    /// As [`echo`](Self::echo), of an edge that came between two instants: the line was last seen without it at
+    /// `earliest`, and with it at `latest`. The middle counts, and half the width is by how much it may be off: foreign
+    /// sound heard at any time in between explains the reading. More than 300 us, 5 cm, say too little: the reading is
+    /// [`Late`](ReadingKind::Late), without echo time.
+    ///
+    /// # Errors
+    /// [`RingError::Interval`] if `latest` is before `earliest`, [`RingError::Sensor`] for a sensor out of range.
+    pub fn echo_between(&mut self, sensor: u8, earliest: Instant, latest: Instant) -> Result<(), RingError> {
+        if !latest.has_reached(earliest) {
+            let [earliest, latest] = [earliest, latest].map(Instant::as_micros);
+            return Err(RingError::Interval { earliest, latest });
+        }
+        Ok(self.echo_within(sensor, earliest, latest.since(earliest), latest)?)
+    }
+
+    /// As [`echo_between`](Self::echo_between), of an edge that came up to `width` after `earliest`, for drivers that
+    /// may take it back: its reading is emitted no sooner than `settled`, unless another sensor's is.
+    ///
+    /// # Errors
+    /// [`SensorError`] for a sensor out of range.
+    pub fn echo_within(
+        &mut self,
+        sensor: u8,
+        earliest: Instant,
+        width: Micros,
+        settled: Instant,
+    ) -> Result<(), SensorError> {
+        let before = width.as_micros() / 2;
+        self.hear(sensor, earliest + Micros::new(before), Micros::new(width.as_micros() - before), settled)
     }
 
     /// As [`echo`](Self::echo), for drivers that may take it back: its reading is emitted no sooner than `settled`,
@@ -355,11 +386,16 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
     /// As there.
     #[inline]
     pub fn echo_until(&mut self, sensor: u8, at: Instant, settled: Instant) -> Result<(), SensorError> {
+        self.hear(sensor, at, Micros::ZERO, settled)
+    }
+
+    #[inline]
+    fn hear(&mut self, sensor: u8, at: Instant, off: Micros, settled: Instant) -> Result<(), SensorError> {
         let window = self.listening.window_of(&self.plan, sensor);
         let Some(heard) = self.sensors.get_mut(usize::from(sensor)) else {
             return self.no_such(sensor);
         };
-        match heard.echo(at, self.listening.blanking(), window) {
+        match heard.echo(at, off, self.listening.blanking(), window) {
             Noted::Ready => {
                 if !self.has_pending() || !settled.has_reached(self.emit_at) {
                     self.emit_at = settled;
@@ -425,6 +461,21 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
             Some(t_echo) => self.echo(sensor, fired + t_echo),
             None => self.answered(sensor),
         }
+    }
+
+    /// As [`measured`](Self::measured), of an echo time between two: a pulse whose rise and fall are uncertain, for
+    /// example, is as long as from the latest rise to the earliest fall, or up to the converse. See
+    /// [`echo_between`](Self::echo_between).
+    ///
+    /// # Errors
+    /// As there.
+    pub fn measured_between(&mut self, sensor: u8, least: Micros, most: Micros) -> Result<(), RingError> {
+        let fired = self.sensor_mut(sensor)?.fired();
+        let Some(width) = most.checked_sub(least) else {
+            let [earliest, latest] = [least, most].map(Micros::as_micros);
+            return Err(RingError::Interval { earliest, latest });
+        };
+        Ok(self.echo_within(sensor, fired + least, width, fired + most)?)
     }
 
     /// Takes back the echo of a sensor whose reading has not been emitted yet: it was none. See

@@ -14,7 +14,17 @@ pub(super) struct Sensor<const E: usize, const H: usize> {
     /// The echoes of the present firing; also, in the first place, the time of an early or late edge.
     echoes: [Micros; E],
     flags: u8,
+    /// By how much the echoes of the present firing, and those of the two before, may be sooner or later, in units of
+    /// [`UNIT`]: the most of each firing; or [`WIDE`].
+    uncertain: [u8; 3],
 }
+
+/// Uncertainty is kept in units of 2 us.
+const UNIT: u32 = 2;
+/// The most by which an echo time may be off: 5 cm.
+const MOST: Micros = Micros::new(300);
+/// An edge of the present firing came within too wide an interval.
+const WIDE: u8 = u8::MAX;
 
 // The flags of a sensor, beside the period in which it fired, modulo 8.
 const PERIOD: u8 = 0b111;
@@ -45,7 +55,7 @@ pub(super) enum Noted {
 impl<const E: usize, const H: usize> Sensor<E, H> {
     /// One that has not fired by `now`.
     pub(super) const fn new(now: Instant) -> Self {
-        Self { firings: Firings::none_before(now), echoes: [NO_ECHO; E], flags: OUTSIDE }
+        Self { firings: Firings::none_before(now), echoes: [NO_ECHO; E], flags: OUTSIDE, uncertain: [0; 3] }
     }
 
     /// When it last fired.
@@ -103,10 +113,14 @@ impl<const E: usize, const H: usize> Sensor<E, H> {
     pub(super) fn drop_firings(&mut self, now: Instant) {
         self.firings = Firings::none_before(now);
         self.echoes = [NO_ECHO; E];
-        self.flags = OUTSIDE;
+        (self.flags, self.uncertain) = (OUTSIDE, [0; 3]);
     }
 
-    pub(super) fn echo(&mut self, at: Instant, blanking: Micros, window: Micros) -> Noted {
+    /// An edge `at` an instant, at most `off` sooner or later.
+    pub(super) fn echo(&mut self, at: Instant, off: Micros, blanking: Micros, window: Micros) -> Noted {
+        if off > MOST {
+            return self.wide_echo(at, off, blanking, window);
+        }
         let t_echo = at.since(self.fired());
         if !at.has_reached(self.fired()) {
             // From before it fired, or from a clock that has jumped.
@@ -135,11 +149,41 @@ impl<const E: usize, const H: usize> Sensor<E, H> {
             self.echoes = [NO_ECHO; E];
         }
         insert(&mut self.echoes, t_echo);
+        // At most 150.
+        self.be_uncertain(off.as_micros().div_ceil(UNIT) as u8)
+    }
+
+    /// The present firing has an edge; its echoes may be off by as much.
+    fn be_uncertain(&mut self, units: u8) -> Noted {
+        let [now, ..] = &mut self.uncertain;
+        *now = units.max(*now);
         if E > 1 || self.is(READY) {
             return Noted::Stored;
         }
         self.set(READY);
         Noted::Ready
+    }
+
+    /// An edge that says too little about the echo time: without an echo before it the firing has none.
+    #[cold]
+    fn wide_echo(&mut self, at: Instant, off: Micros, blanking: Micros, window: Micros) -> Noted {
+        let us = |time: Micros| i64::from(time.as_micros());
+        // Since it fired; negative before.
+        let middle = i64::from(at.since(self.fired()).as_micros() as i32);
+        let [earliest, latest] = [middle - us(off), middle + us(off)];
+        if latest < us(blanking) {
+            return self.echo(at, Micros::ZERO, blanking, window);
+        }
+        if !self.is(LISTENING) {
+            return Noted::Unwanted;
+        }
+        if earliest > us(window) {
+            return Noted::Late;
+        }
+        if !self.is(OUTSIDE) && self.held().is_some_and(|echo| us(echo) <= earliest) {
+            return Noted::Stored;
+        }
+        self.be_uncertain(WIDE)
     }
 
     /// Forgets the echo of the present firing. Returns true if that could have been emitted.
@@ -148,6 +192,7 @@ impl<const E: usize, const H: usize> Sensor<E, H> {
         if was_ready {
             self.clear(READY);
             self.echoes = [NO_ECHO; E];
+            self.uncertain[0] = 0;
         }
         was_ready
     }
@@ -169,8 +214,11 @@ impl<const E: usize, const H: usize> Sensor<E, H> {
     pub(super) fn end(&mut self, unwitnessed: ReadingKind) -> Ended<E> {
         let echoes = core::mem::replace(&mut self.echoes, [NO_ECHO; E]);
         let is_silent = echoes.first().is_none_or(|&echo| echo == NO_ECHO);
+        let uncertain = self.uncertain;
         let unusable = if self.is(STUCK) {
             Some(ReadingKind::Stuck)
+        } else if uncertain[0] == WIDE {
+            Some(ReadingKind::Late)
         } else if self.is(OUTSIDE) {
             Some(ReadingKind::TooEarly)
         } else if self.is(UNANSWERED) && is_silent {
@@ -179,10 +227,16 @@ impl<const E: usize, const H: usize> Sensor<E, H> {
             None
         };
         let (listened, was_ready) = (self.is(LISTENING), self.is(READY));
-        let echoes = if self.is(STUCK) { [NO_ECHO; E] } else { echoes };
+        let echoes =
+            if matches!(unusable, Some(ReadingKind::Stuck | ReadingKind::Late)) { [NO_ECHO; E] } else { echoes };
+        if listened {
+            // What is late is compared with nothing.
+            self.uncertain = [0, uncertain[0], uncertain[1]];
+        }
         // After a late edge no other is waited for.
         self.flags &= if listened { PERIOD } else { PERIOD | OUTSIDE };
-        Ended { listened, was_ready, unusable, echoes }
+        let uncertain = uncertain.map(|units| Micros::new(u32::from(units) * UNIT));
+        Ended { listened, was_ready, unusable, echoes, uncertain }
     }
 }
 
@@ -193,4 +247,6 @@ pub(super) struct Ended<const E: usize> {
     /// Why it says nothing about the echo time, if it does not.
     pub(super) unusable: Option<ReadingKind>,
     pub(super) echoes: [Micros; E],
+    /// By how much they, and those of the two firings before, may be off.
+    pub(super) uncertain: [Micros; 3],
 }

@@ -146,11 +146,13 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
         let own = self.sensors.get_mut(usize::from(sensor))?;
         let (fired, since_before) = (own.fired(), own.firings.since_before());
         let periods_ago = own.periods_ago(self.period);
-        let Ended { listened, was_ready, unusable, echoes } = own.end(self.listening.unwitnessed());
+        let Ended { listened, was_ready, unusable, echoes, uncertain } = own.end(self.listening.unwitnessed());
         let mut ended_at = fired + self.closes_after(sensor);
         let echoes = heard(&echoes);
         if was_ready {
-            ended_at = fired + echoes.first().copied().unwrap_or_default();
+            if !listened || unusable != Some(ReadingKind::Late) {
+                ended_at = fired + echoes.first().copied().unwrap_or_default();
+            }
             // Counted when its edge came.
             self.ready = self.ready.wrapping_sub(1);
         }
@@ -163,11 +165,14 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
                 Some(kind) => self.judge.skip(&heard, kind),
                 None => {
                     let (sensors, plan, listening) = (&self.sensors, &self.plan, &self.listening);
-                    // The proof is about readings that differ by no more than `T_delta`.
-                    let on_time = self.punctuality.is_on_time() && firing.expected_change_us == 0;
+                    // The proof is about readings that differ by no more than `T_delta`, at times that are known.
+                    let is_exact = firing.expected_change_us == 0 && uncertain.iter().all(|&off| off == Micros::ZERO);
+                    let on_time = self.punctuality.is_on_time() && is_exact;
                     let known_from = self.known_from;
-                    self.judge
-                        .judge(&heard, &Memory { receiver: sensor, sensors, plan, listening, known_from, on_time })
+                    self.judge.judge(
+                        &heard,
+                        &Memory { receiver: sensor, uncertain, sensors, plan, listening, known_from, on_time },
+                    )
                 }
             };
             self.plan.judged(&heard, &verdict, &self.judge);
@@ -255,6 +260,8 @@ const UNKNOWN: Explained = Explained::By(Explanation::History);
 /// Memory of who fired when, for the reading of one sensor.
 struct Memory<'r, P, const E: usize, const H: usize> {
     receiver: u8,
+    /// By how much the echoes of the receiver's last three firings may be off, the latest first.
+    uncertain: [Micros; 3],
     sensors: &'r [Sensor<E, H>],
     plan: &'r P,
     listening: &'r Listening,
@@ -294,19 +301,22 @@ impl<P: Plan, const E: usize, const H: usize> Sounds for Memory<'_, P, E, H> {
 impl<P: Plan, const E: usize, const H: usize> Memory<'_, P, E, H> {
     #[inline(never)]
     fn explain_pair(&self, first: Micros, second: Micros, more: Micros) -> Explained {
-        let Some(own) = self.sensors.get(usize::from(self.receiver)) else { return UNKNOWN };
+        let Self { receiver, uncertain: [one, other, _], .. } = *self;
+        let Some(own) = self.sensors.get(usize::from(receiver)) else { return UNKNOWN };
         let [fired, fired_before] = own.firings.last_two();
-        let mut pair = self.pair([fired_before + first, fired + second]);
+        let mut pair = self.pair([fired_before + first, fired + second]).widened(one, other, one.max(other));
         pair.path_change = pair.path_change.saturating_add(more);
         self.ask(&pair, |firings, own| pair.explains(firings, own))
     }
 
     #[inline(never)]
     fn explain_three(&self, [first, second, third]: [Micros; 3]) -> Explained {
-        let Some(own) = self.sensors.get(usize::from(self.receiver)) else { return UNKNOWN };
+        let Self { receiver, uncertain: [latest, middle, earliest], .. } = *self;
+        let Some(own) = self.sensors.get(usize::from(receiver)) else { return UNKNOWN };
         let [last, fired, fired_before] = own.firings.last_three();
-        let pair = self.pair([fired_before + first, fired + second]);
-        let third = last + third;
+        let ends = latest.max(earliest);
+        let pair = self.pair([fired_before + first, fired + second]).widened(middle, ends, middle.max(ends));
+        let third = last + third + middle.max(ends);
         self.ask(&pair, |firings, own| pair.explains_line(third, firings, own))
     }
 
@@ -318,16 +328,17 @@ impl<P: Plan, const E: usize, const H: usize> Memory<'_, P, E, H> {
     /// Asks of all sensors that the receiver can hear, itself among them, if their firings explain what it heard.
     #[inline(always)]
     fn ask(&self, pair: &Pair, explain: impl Fn(&Firings<H>, bool) -> bool) -> Explained {
+        let receiver = self.receiver;
         let sensors = self.sensors.get(..self.plan.sensors()).unwrap_or(self.sensors);
         // At most 64 sensors.
         for (x, sensor) in (0..).zip(sensors) {
-            if self.plan.hears(self.receiver, x) && explain(&sensor.firings, x == self.receiver) {
+            if self.plan.hears(receiver, x) && explain(&sensor.firings, x == receiver) {
                 return Explained::By(Explanation::Sensor(x));
             }
         }
         let mut forgotten = pair.is_audible_from(self.known_from);
         for (x, sensor) in (0..).zip(sensors) {
-            forgotten |= self.plan.hears(self.receiver, x) && pair.is_audible_from(sensor.firings.oldest());
+            forgotten |= self.plan.hears(receiver, x) && pair.is_audible_from(sensor.firings.oldest());
         }
         if forgotten { UNKNOWN } else { Explained::ByNothing }
     }

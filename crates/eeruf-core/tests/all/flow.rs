@@ -30,8 +30,10 @@ struct World<P = InTurn<24>, const E: usize = 1> {
     ring: Ring<P, Belief<24, E>, 24, E, 3>,
     begin: u32,
     now: u64,
-    /// Instants at which a line will fall, with its sensor.
-    edges: Vec<(u64, u8)>,
+    /// When a line will be seen to have fallen, its sensor, and since when it may have.
+    edges: Vec<(u64, u8, u64)>,
+    /// Edges are known to lie within intervals of up to this.
+    uncertain: u32,
     dice: Dice,
     /// Polls come late by up to this.
     late: u32,
@@ -85,6 +87,7 @@ impl<P: Plan, const E: usize> World<P, E> {
             begin: BEGIN,
             now: 0,
             edges: vec![],
+            uncertain: 0,
             dice: Dice { state: seed.into(), travel: 0 },
             late,
             tick,
@@ -164,8 +167,8 @@ impl<P: Plan, const E: usize> World<P, E> {
             let edge = self.edges.first().map(|edge| edge.0).filter(|&at| at <= wakes);
             self.now = edge.unwrap_or(wakes).max(self.now);
             if let Some(at) = edge {
-                let (_, sensor) = self.edges.remove(0);
-                self.ring.echo(sensor, self.instant(at)).unwrap();
+                let (_, sensor, earliest) = self.edges.remove(0);
+                self.ring.echo_between(sensor, self.instant(earliest), self.instant(at)).unwrap();
                 // The loop comes round late for the reading, too, or at once.
                 if self.late > 0 || self.now < asleep_until {
                     continue;
@@ -179,7 +182,13 @@ impl<P: Plan, const E: usize> World<P, E> {
                         seen[usize::from(sensor)].fired += 1;
                         let at = self.fire(sensor);
                         self.fired.push((at, sensor));
-                        self.edges.extend(sound(at, sensor, &mut self.dice));
+                        for (edge, sensor) in sound(at, sensor, &mut self.dice) {
+                            let width = self.dice.below(self.uncertain + 1);
+                            // At any time in it, and at its ends.
+                            let before = [0, width, self.dice.below(width + 1)][self.dice.below(3) as usize];
+                            let earliest = edge - u64::from(before);
+                            self.edges.push((earliest + u64::from(width), sensor, earliest));
+                        }
                     }
                     RingEvent::Reading(reading) => {
                         let seen = &mut seen[usize::from(reading.sensor)];
@@ -279,9 +288,10 @@ fn one_path<const E: usize>(seed: u32, speed_mm_s: u16, changes: bool, doubt: Do
     let ring = Ring::judged_by(plan, Belief::new(belief).unwrap(), config, begin).unwrap();
     let mut world = World::<_, E>::of(ring, seed, late, 1);
     world.operates = Some(Operates { speed_mm_s: speed_mm_s.into(), changes, told: 0, asleep_until: 0 });
+    world.uncertain = [0, 0, 80, 160, 900][dice.below(5) as usize];
     let (emitter, receiver) = (dice.below(sensors as u32) as u8, dice.below(sensors as u32) as u8);
     // Own second echoes count as foreign only after the window. In nanoseconds.
-    let shortest = if emitter == receiver { 25_400_000 } else { 1_000_000 };
+    let shortest = if emitter == receiver { 25_950_000 } else { 1_000_000 };
     let longest = 33_350_000;
     let any = 1_000_000 + i64::from(dice.below(32_000)) * 1000;
     let mut length = if dice.below(4) == 0 { longest } else { any.max(shortest) };

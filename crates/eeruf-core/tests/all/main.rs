@@ -25,6 +25,7 @@ mod promises;
 mod rate;
 mod sound;
 mod theory;
+mod uncertain;
 mod uneven;
 mod uneven_ring;
 mod wait_answers;

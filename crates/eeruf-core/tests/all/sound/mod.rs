@@ -87,7 +87,8 @@ fn run_paths(table: &Table, others: &[VerifiedSchedule<ROOM>], random: &mut Rand
     let t_delta = table.t_delta.min(window - 1);
     let path_change = [3 * STEPS, 100, t_delta.max(3 * STEPS)][random.up_to(2) as usize];
     let period = table.schedule.period().as_micros();
-    let audible = [period / 2, period, 2 * period][random.up_to(2) as usize].max(window + 1 + path_change);
+    let audible = [period / 2, period, 2 * period][random.up_to(2) as usize].max(window + 501 + path_change);
+    let uncertain = [0, 0, 200, 900][random.up_to(3) as usize];
     let config = RingConfig::new()
         .with_t_delta(Micros::new(t_delta))
         .with_window(Micros::new(window))
@@ -103,8 +104,9 @@ fn run_paths(table: &Table, others: &[VerifiedSchedule<ROOM>], random: &mut Rand
         .map(|receiver| {
             let emitter = random.up_to(sensors - 1);
             // Its own sound is foreign when it comes back after the window.
-            let shortest = if emitter == receiver { window + 1 } else { 300 };
-            let least = shortest + random.up_to(audible - path_change - shortest);
+            let shortest = if emitter == receiver { window + 1 + uncertain / 2 } else { 300 };
+            let longest = audible - path_change;
+            let least = if random.up_to(3) == 0 { longest } else { shortest + random.up_to(longest - shortest) };
             Heard::Path { emitter: emitter as u8, least }
         })
         .collect();
@@ -117,6 +119,7 @@ fn run_paths(table: &Table, others: &[VerifiedSchedule<ROOM>], random: &mut Rand
         // To 3 m/s towards a wall or from it; exact, noisy, and wrong.
         expected: [0, i64::from(random.up_to(36_000)) - 18_000][random.up_to(1) as usize],
         noise: [0, 0, 100, 1500][random.up_to(3) as usize],
+        uncertain,
     };
     let sound = Sound { t_delta: t_delta.into(), path_change: path_change.into(), audible: audible.into() };
     World::new(ring.unwrap(), start, heard, course, sound, random.next(), others).run(compared)

@@ -39,12 +39,14 @@ pub(super) struct Course {
     /// The change of echoes that odometry expects, in microseconds a second, and the most by which that is wrong.
     pub(super) expected: i64,
     pub(super) noise: u32,
+    /// Edges are known to lie within intervals of up to this many microseconds; one of 64 within 4 ms.
+    pub(super) uncertain: u32,
 }
 
 impl Course {
     /// Polls on time, by a robot that stands.
     pub(super) const PUNCTUAL: Self =
-        Self { late: 0, handling: 0, operations: 0, fired: 0, clock_steps: 0, expected: 0, noise: 0 };
+        Self { late: 0, handling: 0, operations: 0, fired: 0, clock_steps: 0, expected: 0, noise: 0, uncertain: 0 };
 }
 
 /// Counts of the readings.
@@ -72,7 +74,8 @@ pub(super) struct World<'s> {
     /// Distance of the ring's clock behind true time.
     behind: u64,
     /// Steps of the clock since each sensor's last reading but one are at most [`STEPS`].
-    arrivals: BinaryHeap<Reverse<(u64, u8)>>,
+    /// Edges that are still to come, by when they are seen: receiver, and since when they may have come.
+    arrivals: BinaryHeap<Reverse<(u64, u8, u64)>>,
     /// Firings whose true instant comes later: when, the sensor, the instant.
     corrections: Vec<(u64, u8, u64)>,
     /// Echo time of each sensor's last reading, which a foreign path tries to meet again.
@@ -167,8 +170,8 @@ impl<'s> World<'s> {
 
     /// Hands in the edges that have come by now.
     fn deliver(&mut self) {
-        while let Some(&Reverse((at, receiver))) = self.arrivals.peek() {
-            if at > self.now {
+        while let Some(&Reverse((latest, receiver, earliest))) = self.arrivals.peek() {
+            if latest > self.now {
                 break;
             }
             self.arrivals.pop();
@@ -176,8 +179,30 @@ impl<'s> World<'s> {
             if self.random.up_to(1) == 0 {
                 self.tell_corrections(|_, sensor| sensor == receiver);
             }
-            self.ring.echo(receiver, self.clock(at)).unwrap();
+            let [earliest, latest] = [earliest, latest].map(|at| self.clock(at));
+            if earliest == latest {
+                self.ring.echo(receiver, latest).unwrap();
+            } else {
+                self.ring.echo_between(receiver, earliest, latest).unwrap();
+            }
         }
+    }
+
+    /// An interval in which an edge is known to lie: its length, and from its beginning to the edge.
+    fn interval(&mut self) -> (u64, u64) {
+        let most = self.course.uncertain;
+        if most == 0 {
+            return (0, 0);
+        }
+        let most = if self.one_in(64) { 4_000 } else { most };
+        let width = self.random.up_to(most);
+        // As early or late in it as can be, too.
+        let edge = match self.random.up_to(3) {
+            0 => 0,
+            1 => width,
+            _ => self.random.up_to(width),
+        };
+        (width.into(), edge.into())
     }
 
     fn tell_corrections(&mut self, is_due: impl Fn(u64, u8) -> bool) {
@@ -213,11 +238,13 @@ impl<'s> World<'s> {
             match self.heard[receiver] {
                 Heard::Wall { t_echo } if receiver == usize::from(sensor) => {
                     let heard = at + u64::from(t_echo - 15 + self.random.up_to(30));
-                    self.arrivals.push(Reverse((heard, receiver as u8)));
+                    self.arrivals.push(Reverse((heard, receiver as u8, heard)));
                 }
                 Heard::Path { emitter, least } if emitter == sensor => {
-                    let heard = at + u64::from(self.length(receiver, least, at));
-                    self.arrivals.push(Reverse((heard, receiver as u8)));
+                    let (width, edge) = self.interval();
+                    let off = edge as i64 - width as i64 / 2;
+                    let earliest = at + u64::from(self.length(receiver, least, at, off)) - edge;
+                    self.arrivals.push(Reverse((earliest + width, receiver as u8, earliest)));
                 }
                 Heard::Wall { .. } | Heard::Path { .. } => {}
             }
@@ -225,15 +252,15 @@ impl<'s> World<'s> {
     }
 
     /// The length of a path, which never changes by more than it may: such that the receiver reads what it read before,
-    /// or what odometry expects after that, if that can be.
-    fn length(&mut self, receiver: usize, least: u32, at: u64) -> u32 {
+    /// or what odometry expects after that, if that can be. The middle of the edge's interval comes `off` before it.
+    fn length(&mut self, receiver: usize, least: u32, at: u64, off: i64) -> u32 {
         // A step of the clock between the two sounds changes what the ring sees of it as well.
         let steps = if self.course.clock_steps > 0 { STEPS } else { 0 };
         let most = self.sound.path_change as u32 - steps;
         let drawn = least + self.random.up_to(most);
         let Some(last) = self.last_echo[receiver] else { return drawn };
         let expected = (self.last_fired[receiver] + u64::from(last)).checked_add_signed(self.changes[receiver].into());
-        let wanted = expected.and_then(|expected| expected.checked_sub(at));
+        let wanted = expected.and_then(|expected| expected.checked_add_signed(off)?.checked_sub(at));
         match wanted {
             Some(wanted) if self.random.up_to(7) > 0 => (wanted.min(u64::from(least + most)) as u32).max(least),
             _ => drawn,

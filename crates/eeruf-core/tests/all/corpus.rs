@@ -5,7 +5,7 @@
 //! Lines: `#` the name of a ring; `S` a schedule: period, phases, then the firing times by phase; `V` requirements
 //! (`t_delta`, interval, window, neighbours, layout, stale echo), then separation and window, both 0 if not met; `L`
 //! how a ring listens (`t_delta`, window, blanking, consecutive, path change, audible) and its start. Then echoes `E`,
-//! stuck lines `K`, corrected firings `F`, silence `G`, sensors enabled or not `N`, restarts `R`, another path change
+//! echoes between two instants `I`, stuck lines `K`, corrected firings `F`, silence `G`, sensors enabled or not `N`, restarts `R`, another path change
 //! `C` or `audible` `A`, and polls `P` with the deadline after it and the event, if there is one. `O`: the state before
 //! a sensor at an instant: kind, echo, age, reason, explanation. 2^32 - 1 stands for no echo, and where a ring listens
 //! for the default; as the explanation of a reading 254 stands for history and 255 for none. Flow rings follow: see
@@ -19,8 +19,8 @@ use std::fmt::Write;
 use eeruf_core::{
     EchoFilter, Instant, Layout, Micros, PeriodStats, Phase, Reading, ReadingKind, Requirements, Ring, RingConfig,
     RingEvent, Schedule, Silence,
-    judge::Explanation,
-    plan::ScheduledFiring,
+    judge::{Explanation, Judge},
+    plan::{Plan, ScheduledFiring},
     watch::{Doubt, SensorState, SensorWatch},
 };
 
@@ -35,6 +35,8 @@ const RINGS: u64 = 40;
 /// of what is proven, of `t_delta`.
 const RARE: [u64; 12] = [67, 86, 390, 449, 672, 1043, 1494, 1531, 1984, 2369, 2505, 2893];
 const STEPS: u32 = 64;
+/// More than an interval of an edge that is not late.
+const LOOKS: u32 = 900;
 const NONE: u32 = u32::MAX;
 
 type ScheduledBy<'s, const M: usize> = Ring<ScheduledFiring<'s, K, M>, EchoFilter<K>, K>;
@@ -165,6 +167,26 @@ struct World {
     /// Only the path sounds.
     path_only: bool,
     echoes: Vec<(u32, u8)>,
+    /// Lines are looked at so many microseconds apart at most; 0 for when they fall.
+    looks: u32,
+}
+
+/// Hands in an edge.
+fn edge<P: Plan, J: Judge, const N: usize, const H: usize>(
+    (r, text): (&mut Random, &mut Text),
+    ring: &mut Ring<P, J, N, 1, H>,
+    sensor: u8,
+    at: u32,
+    looks: u32,
+) {
+    if looks == 0 {
+        text.add('E', [sensor.into(), at]);
+        ring.echo(sensor, Instant::from_micros(at)).unwrap();
+    } else {
+        let before = at.wrapping_sub(r.duration(looks));
+        text.add('I', [sensor.into(), before, at]);
+        ring.echo_between(sensor, Instant::from_micros(before), Instant::from_micros(at)).unwrap();
+    }
 }
 
 impl World {
@@ -218,7 +240,13 @@ impl World {
 }
 
 /// Runs a ring, and writes down what happens to it.
-fn run<const M: usize>(r: &mut Random, text: &mut Text, schedule: &Schedule<K, M>, promised: Option<[u32; 2]>) {
+fn run<const M: usize>(
+    r: &mut Random,
+    text: &mut Text,
+    schedule: &Schedule<K, M>,
+    promised: Option<[u32; 2]>,
+    looks: u32,
+) {
     let [t_delta, window] = promised.unwrap_or_else(|| [r.within(50, 900), schedule.min_refire().as_micros()]);
     let window = r.one_of(&[window, window - window / 3]);
     let (blanking, consecutive) = (r.up_to(1) * r.duration(3_000), r.one_of(&[2, 2, 3]));
@@ -245,12 +273,12 @@ fn run<const M: usize>(r: &mut Random, text: &mut Text, schedule: &Schedule<K, M
         path: r.one_of(&paths),
         path_only: r.once_in(2),
         echoes: vec![],
+        looks,
     };
     for _ in 0..STEPS {
         world.turn_clock(r, ring.next_deadline().as_micros());
         for (at, sensor) in world.heard() {
-            text.add('E', [sensor.into(), at]);
-            ring.echo(sensor, Instant::from_micros(at)).unwrap();
+            edge((r, text), &mut ring, sensor, at, looks);
         }
         if r.once_in(16 * world.calm) {
             operate(r, text, &mut ring, world.now);
@@ -329,19 +357,28 @@ fn operate<const M: usize>(r: &mut Random, text: &mut Text, ring: &mut Scheduled
     }
 }
 
-fn run_phases<const M: usize>(r: &mut Random, text: &mut Text) {
+fn run_phases<const M: usize>(r: &mut Random, text: &mut Text, looks: u32) {
     let (period, sensors, rows) = schedule(r, text, M as u32);
     let lags = vec![Micros::ZERO; sensors as usize];
     let rows: [&[Micros]; M] = std::array::from_fn(|phase| rows[phase].as_slice());
-    run(r, text, &Schedule::<K, M>::from_slices(Micros::new(period), &lags, rows).unwrap(), None);
+    run(r, text, &Schedule::<K, M>::from_slices(Micros::new(period), &lags, rows).unwrap(), None, looks);
 }
 
-fn run_two_phases(r: &mut Random, text: &mut Text) {
+fn run_two_phases(r: &mut Random, text: &mut Text, looks: u32) {
     let (period, sensors, rows) = schedule(r, text, 2);
     let lags = vec![Micros::ZERO; sensors as usize];
     let plain = Schedule::<K>::from_slices(Micros::new(period), &lags, [&rows[0], &rows[1]]).unwrap();
     let (schedule, promised) = if r.once_in(5) { (plain, None) } else { verify(r, text, plain) };
-    run(r, text, &schedule, promised);
+    run(r, text, &schedule, promised, looks);
+}
+
+fn run_table(seed: u64, text: &mut Text, looks: u32) {
+    let mut r = Random(seed);
+    match seed % 8 {
+        6 => run_phases::<1>(&mut r, text, looks),
+        7 => run_phases::<3>(&mut r, text, looks),
+        _ => run_two_phases(&mut r, text, looks),
+    }
 }
 
 /// The corpus, with rings of tables of the first seeds, this many.
@@ -349,16 +386,17 @@ fn corpus(rings: u64) -> String {
     let mut text = Text(String::new());
     for seed in (0..rings).chain(RARE) {
         writeln!(text.0, "# table {seed}").unwrap();
-        let mut r = Random(seed);
-        match seed % 8 {
-            6 => run_phases::<1>(&mut r, &mut text),
-            7 => run_phases::<3>(&mut r, &mut text),
-            _ => run_two_phases(&mut r, &mut text),
-        }
+        run_table(seed, &mut text, 0);
     }
     for seed in 0..rings.div_ceil(2) {
         writeln!(text.0, "# flow {seed}").unwrap();
-        flow::run_any(&mut Random(seed), &mut text);
+        flow::run_any(&mut Random(seed), &mut text, 0);
+    }
+    for seed in 0..rings.div_ceil(4) {
+        writeln!(text.0, "# table between {seed}").unwrap();
+        run_table(seed, &mut text, LOOKS);
+        writeln!(text.0, "# flow between {seed}").unwrap();
+        flow::run_any(&mut Random(seed), &mut text, LOOKS);
     }
     text.0
 }

@@ -2,7 +2,7 @@
 //!
 //! Lines beside those of other rings: `W` sensors, window, blanking, then the settings in the order of [`begin`], votes
 //! by number, and the start; `D` the robot's speed (mm/s) and turn (mrad/s) at an instant; `G` silence needs a witness
-//! from now on, `Y` a sensor that answered (1) or did not (0), `H` an echo time measured of its last firing; `Z` a
+//! from now on, `Y` a sensor that answered (1) or did not (0), `H` an echo time measured of its last firing, `M` one between two; `Z` a
 //! pause or its end; `B` a sensor whose echoes are forgotten; `Q` the quiet of a sensor, and the echo time that is
 //! believed of it; `U` sensor and instant of the next firing, if one comes in this round.
 
@@ -13,7 +13,7 @@ use eeruf_core::{
     watch::SensorWatch,
 };
 
-use super::{NONE, Text, World, flat, flat_state, silence};
+use super::{NONE, Text, World, edge, flat, flat_state, silence};
 use crate::common::random::Random;
 
 const STEPS: u32 = 300;
@@ -43,15 +43,15 @@ fn settings(r: &mut Random) -> (TurnSettings, BeliefSettings) {
 }
 
 /// Writes down a ring of any number of sensors.
-pub(super) fn run_any(r: &mut Random, text: &mut Text) {
+pub(super) fn run_any(r: &mut Random, text: &mut Text, looks: u32) {
     match r.up_to(6) {
-        0 => run::<1>(r, text),
-        1 => run::<2>(r, text),
-        2 => run::<3>(r, text),
-        3 => run::<6>(r, text),
-        4 => run::<12>(r, text),
-        5 => run::<24>(r, text),
-        _ => run::<8>(r, text),
+        0 => run::<1>(r, text, looks),
+        1 => run::<2>(r, text, looks),
+        2 => run::<3>(r, text, looks),
+        3 => run::<6>(r, text, looks),
+        4 => run::<12>(r, text, looks),
+        5 => run::<24>(r, text, looks),
+        _ => run::<8>(r, text, looks),
     }
 }
 
@@ -71,7 +71,7 @@ fn begin<const K: usize>(r: &mut Random, text: &mut Text) -> (FlowRing<K>, u32, 
     (FlowRing::flow(K, t, b, config, Instant::from_micros(start)).unwrap(), window, start)
 }
 
-fn run<const K: usize>(r: &mut Random, text: &mut Text) {
+fn run<const K: usize>(r: &mut Random, text: &mut Text, looks: u32) {
     let (mut ring, window, start) = begin::<K>(r, text);
     let mut watch = SensorWatch::<K>::new(0, Instant::from_micros(start));
     let needs_answers = r.once_in(2);
@@ -85,14 +85,14 @@ fn run<const K: usize>(r: &mut Random, text: &mut Text) {
         path: r.within(100, window),
         path_only: r.once_in(4),
         echoes: vec![],
+        looks,
     };
     let (moves, tick) = (r.once_in(2), r.one_of(&[1, 1, 1_000]));
     for _ in 0..STEPS {
         world.turn_clock(r, ring.next_deadline().as_micros());
         world.now = world.now.wrapping_add((tick - world.now % tick) % tick);
         for (at, sensor) in world.heard() {
-            text.add('E', [sensor.into(), at]);
-            ring.echo(sensor, Instant::from_micros(at)).unwrap();
+            edge((r, text), &mut ring, sensor, at, looks);
         }
         if moves && r.once_in(20) {
             let (speeds, turns) = ([0, 0, 1_000, r.duration(4_000)], [0, 0, r.duration(3_000)]);
@@ -155,6 +155,12 @@ fn fired<const K: usize>(
             text.add('Y', [sensor.into(), 0]);
             ring.unanswered(sensor).unwrap();
         }
+    }
+    if world.looks > 0 && r.once_in(4) {
+        let least = world.own[usize::from(sensor)];
+        let most = least + r.duration(world.looks);
+        text.add('M', [sensor.into(), least, most]);
+        ring.measured_between(sensor, Micros::new(least), Micros::new(most)).unwrap();
     }
     if r.once_in(8 * world.calm) {
         let echo = r.one_of(&[NONE, world.own[usize::from(sensor)]]);

@@ -13,9 +13,7 @@ mod motion;
 mod plan;
 mod settings;
 
-use crate::judging::Judge as _;
 use crate::own_limits::OwnLimits;
-use crate::plan::Plan as _;
 use crate::ring::{Listening, Ring, RingConfig};
 use crate::ring_error::RingError;
 use crate::schedule::MAX_SENSORS;
@@ -91,9 +89,8 @@ impl<const K: usize, const E: usize, U: OwnLimits> FlowRing<K, E, U> {
         now: Instant,
     ) -> Result<Self, RingError> {
         let window = config.window.ok_or(RingError::Unverified)?;
-        let mut plan = InTurn::with_limits(sensors, own_limits, turns, window, now)?;
         let judge = Belief::new(belief)?;
-        plan.set_pace(judge.pace());
+        let plan = InTurn::paced(sensors, own_limits, turns, judge.pace_now(), window, now)?;
         let config = config.with_audible(turns.most).with_path_change(belief.path_change);
         Self::judged_by(plan, judge, config.with_echoes::<E>(), now)
     }

@@ -58,6 +58,10 @@ impl Motion {
 
     /// Takes in how fast the robot moves from now on. Returns the greater of the rates before and after.
     pub(super) fn set(&mut self, speed_mm_s: u32, turn_mrad_s: u32, now: Instant) -> Rate {
+        if !now.has_reached(self.since) {
+            // The first word of a clock in its upper half, or a clock that has jumped.
+            (self.since, self.greatest) = (now, [self.greatest[0].max(self.greatest[1]), Rate::STANDING]);
+        }
         let before = self.recent(now);
         let turning = turn_mrad_s.saturating_mul(LEVER_MM) / 1000;
         self.rate = Rate::of(speed_mm_s.saturating_add(turning));
@@ -111,6 +115,25 @@ mod tests {
         // It held before the next word.
         assert_eq!(motion.set(0, 500, begin + Micros::new(600_000)), top);
         assert_eq!(motion.rate(begin + Micros::new(600_001)), Rate::of(250));
+    }
+
+    #[test]
+    fn a_rate_is_forgotten_wherever_the_clock_begins_and_when_it_jumps() {
+        for start in (0..32_u32).map(|part| part << 27) {
+            let mut motion = Motion::new(1000);
+            for begin in [start, start.wrapping_sub(1 << 30), start.wrapping_add(1 << 31)] {
+                motion.set(1000, 0, Instant::from_micros(begin));
+                for ms in 1..800 {
+                    let at = Instant::from_micros(begin) + Micros::from_millis(ms);
+                    motion.set(0, 0, at);
+                    let recent = motion.recent(at);
+                    assert!(
+                        if ms <= 250 { recent == Rate::of(1000) } else { ms < 600 || !recent.moves() },
+                        "{start} {ms}"
+                    );
+                }
+            }
+        }
     }
 
     #[test]

@@ -103,7 +103,18 @@ impl<const K: usize, U: OwnLimits> InTurn<K, U> {
         window: Micros,
         now: Instant,
     ) -> Result<Self, RingError> {
-        let mut plan = Self::begin(sensors, own_limits, settings, Pace::STANDING, window, now)?;
+        Self::paced(sensors, own_limits, settings, Pace::STANDING, window, now)
+    }
+
+    pub(super) fn paced(
+        sensors: usize,
+        own_limits: U,
+        settings: TurnSettings,
+        pace: Pace,
+        window: Micros,
+        now: Instant,
+    ) -> Result<Self, RingError> {
+        let mut plan = Self::begin(sensors, own_limits, settings, pace, window, now)?;
         plan.group();
         plan.decide();
         Ok(plan)
@@ -160,7 +171,7 @@ impl<const K: usize, U: OwnLimits> InTurn<K, U> {
         }
         plan.throw();
         // As `decide` does: the first in order is the first.
-        let after = longer(settings.first(), plan.least()).as_micros() + plan.thrown.as_micros();
+        let after = longer(Micros::new(doubt as u32 * UNIT), plan.least()).as_micros() + plan.thrown.as_micros();
         plan.due = Instant::from_micros(now.as_micros().wrapping_add(after));
         Ok(plan)
     }
@@ -429,6 +440,20 @@ impl<const K: usize, U: OwnLimits> Plan for InTurn<K, U> {
     fn ended(&mut self, sensor: u8, _at: Instant) {
         if let Some(slot) = self.slot_mut(sensor) {
             slot.set(LISTENS, false);
+            self.decide();
+        }
+    }
+
+    fn due_from(&mut self, soonest: Instant) {
+        if soonest.has_reached(self.due) {
+            self.due = soonest;
+        }
+    }
+
+    fn forget(&mut self, sensor: u8) {
+        let first = self.first();
+        if let Some(slot) = self.slot_mut(sensor) {
+            slot.doubt = first;
             self.decide();
         }
     }

@@ -499,6 +499,7 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
     pub fn forget(&mut self, sensor: u8) -> Result<(), SensorError> {
         self.sensor_mut(sensor)?;
         self.judge.forget(sensor);
+        self.plan.forget(sensor);
         Ok(())
     }
 
@@ -591,7 +592,9 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
     /// much. Where the ring has a top speed it holds after half a second without a word.
     pub fn moving(&mut self, speed_mm_s: u32, turn_mrad_s: u32, now: Instant) {
         self.judge.moving(speed_mm_s, turn_mrad_s, now);
+        let due = self.plan.deadline();
         self.plan.set_pace(self.judge.pace());
+        self.brought_forward(due, now);
     }
 
     /// Returns true if sensors have limits of their own, so that the one that fired first need not be the first to end.

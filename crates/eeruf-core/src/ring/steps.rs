@@ -21,7 +21,12 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
             Err(first) => first,
         };
         match first.or_else(|| self.next_pending(now)) {
-            Some(sensor) => self.emit_reading(sensor, expected_change_us),
+            Some(sensor) => {
+                let due = self.plan.deadline();
+                let reading = self.emit_reading(sensor, expected_change_us);
+                self.brought_forward(due, now);
+                reading
+            }
             None => self.end_period(now),
         }
     }
@@ -75,6 +80,11 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
     #[inline(never)]
     pub(super) fn disturb(&mut self) {
         self.punctuality.disturb(self.listening.is_proven(&self.plan));
+    }
+
+    /// What comes next was due at an instant, and may be due sooner since `now`.
+    pub(super) fn brought_forward(&mut self, due: Instant, now: Instant) {
+        self.plan.due_from(if now.has_reached(due) { due } else { now });
     }
 
     /// Ends the period, if that is due.

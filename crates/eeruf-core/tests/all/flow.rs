@@ -38,6 +38,8 @@ struct World<P = InTurn<24>, const E: usize = 1> {
     /// Polls come late by up to this.
     late: u32,
     tick: u32,
+    /// The latest step so far, as the ring says.
+    latest: u32,
     /// When which sensor fired.
     fired: Vec<(u64, u8)>,
     operates: Option<Operates>,
@@ -91,6 +93,7 @@ impl<P: Plan, const E: usize> World<P, E> {
             dice: Dice { state: seed.into(), travel: 0 },
             late,
             tick,
+            latest: 0,
             fired: vec![],
             operates: None,
         }
@@ -203,7 +206,7 @@ impl<P: Plan, const E: usize> World<P, E> {
                             _ => {}
                         }
                     }
-                    RingEvent::PeriodEnded(_) => {}
+                    RingEvent::PeriodEnded(stats) => self.latest = self.latest.max(stats.max_late.as_micros()),
                 }
             }
         }
@@ -241,6 +244,8 @@ fn own_walls_are_believed_in_loops_that_are_late() {
                         }
                         first.extend(seen);
                     }
+                    // Nothing is later than the loop, whatever readings have brought forward.
+                    assert!(late > 0 || world.latest < tick, "{} us late, tick {tick}", world.latest);
                 }
                 let share = |seen: &Seen| 100.0 * f64::from(seen.accepted) / f64::from(seen.fired);
                 let mean = all.iter().map(share).sum::<f64>() / sensors as f64;
@@ -417,6 +422,25 @@ fn a_ring_that_the_compiler_made_begins_by_restart() {
     };
     assert_eq!(firings(7), firings(7));
     assert_ne!(firings(7), firings(8));
+}
+
+#[test]
+fn both_ways_to_begin_fire_at_the_same_instants() {
+    let mut dice = Dice { state: 5, travel: 0 };
+    for seed in 1..200 {
+        let mut turns = TurnSettings::new(seed);
+        turns.most = Micros::new(7_000 + dice.below(60_000));
+        turns.least = Micros::new(1 + dice.below(7_000));
+        let belief =
+            BeliefSettings { top_speed_mm_s: [0, 500][dice.below(2) as usize], alone: seed % 3 == 0, ..DEFAULT };
+        let begin = Instant::from_micros(seed << 25);
+        let mut one = FlowRing::<24>::flow(8, turns, belief, CONFIG, begin).unwrap();
+        let mut other = FlowRing::<24>::with_limits(8, (), turns, belief, CONFIG, begin).unwrap();
+        for _ in 0..100 {
+            let now = one.next_deadline();
+            assert_eq!((now, one.poll(now)), (other.next_deadline(), other.poll(now)), "{turns:?}");
+        }
+    }
 }
 
 #[test]
@@ -610,7 +634,11 @@ fn a_pause_keeps_belief_and_quiet_and_enabling_begins_anew() {
     assert!(seen.iter().all(|seen| seen.first == Some(1)));
     world.ring.disable(1).unwrap();
     world.ring.enable(1).unwrap();
-    assert_eq!((doubt(&world, 1), world.ring.judge().believed(1)), (11_500, None));
+    world.ring.forget(2).unwrap();
+    for begun in [1, 2] {
+        assert_eq!((doubt(&world, begun), world.ring.judge().believed(begun)), (11_500, None));
+    }
+    assert_eq!(doubt(&world, 3), 6_000);
 }
 
 #[test]

@@ -33,12 +33,10 @@ const FIRED: u8 = 1;
 /// Its edge is awaited.
 const LISTENS: u8 = 2;
 const DISABLED: u8 = 4;
-/// It has fired in this round, before its turn.
-const AHEAD: u8 = 8;
 /// It fires with one that has a turn.
-const FOLLOWS: u8 = 16;
+const FOLLOWS: u8 = 8;
 /// Its leader has fired, and it has not yet.
-const PENDING: u8 = 32;
+const PENDING: u8 = 16;
 
 impl Slot {
     const fn is(&self, flag: u8) -> bool {
@@ -61,8 +59,12 @@ impl Slot {
 pub struct InTurn<const K: usize, U = ()> {
     /// The sensor that fires next, or [`NOBODY`] if the round ends.
     next: u8,
-    /// The place in the order whose turn it is; the number of sensors when the round ends.
+    /// The place in the order from which on turns are still to come.
     place: u8,
+    /// The place in the order whose turn it is, if the sensor that fires next has it; or else [`NOBODY`].
+    turn: u8,
+    /// The sensor that has fired in this round, before its turn, or [`NOBODY`].
+    ahead: u8,
     sensors: u8,
     /// While the robot moves the dice are twice as long, and where every echo is reported the least quiet.
     pace: Pace,
@@ -152,6 +154,8 @@ impl<const K: usize, U: OwnLimits> InTurn<K, U> {
         let mut plan = Self {
             next: 0,
             place: 0,
+            turn: 0,
+            ahead: NOBODY,
             sensors,
             pace,
             paused: false,
@@ -236,34 +240,55 @@ impl<const K: usize, U: OwnLimits> InTurn<K, U> {
         }
     }
 
-    /// The time from the last firing until a sensor, and those that fire with it, may fire, without the dice: until
-    /// there is quiet, and until they have rested and their lines are free.
-    fn waits(&self, sensor: u8) -> (Micros, Micros) {
-        let waits = self.with(sensor).map(|sensor| self.waits_alone(sensor));
-        waits.fold((Micros::ZERO, Micros::ZERO), |all, one| (longer(all.0, one.0), longer(all.1, one.1)))
-    }
-
-    fn waits_alone(&self, sensor: u8) -> (Micros, Micros) {
-        let Some(own) = self.slot(sensor) else { return (Micros::ZERO, Micros::ZERO) };
-        let (mut quiet, mut rested) = (self.quiet(own), Micros::ZERO);
-        let line = self.own_limits.line_of(sensor);
-        for (other, slot) in self.each().filter(|&(other, _)| other != sensor) {
-            let window = self.window_of(other);
+    /// What those that listen still need.
+    fn listeners(&self) -> Listeners {
+        let mut all = Listeners { most: Micros::ZERO, whose: NOBODY, others: Micros::ZERO };
+        for (sensor, slot) in self.each() {
             if slot.is(LISTENS) {
                 // Sound after its window is of no account, however late it is reported.
-                quiet = longer(quiet, self.since_last(slot.fired, shorter(self.quiet(slot), window)));
-            }
-            if line > 0 && slot.is(FIRED) && self.own_limits.line_of(other) == line {
-                rested = longer(rested, self.since_last(slot.fired, window));
+                let quiet = self.since_last(slot.fired, shorter(self.quiet(slot), self.window_of(sensor)));
+                if quiet > all.most {
+                    all = Listeners { most: quiet, whose: sensor, others: all.most };
+                } else {
+                    all.others = longer(all.others, quiet);
+                }
             }
         }
+        all
+    }
+
+    /// The time from the last firing until a sensor, and those that fire with it, may fire, without the dice: until
+    /// there is quiet, and until they have rested and their lines are free.
+    fn waits(&self, sensor: u8, listeners: &Listeners) -> (Micros, Micros) {
+        let mut all = self.waits_alone(sensor, listeners);
+        if self.own_limits.group_of(sensor) > 0 {
+            for other in self.with(sensor) {
+                let one = self.waits_alone(other, listeners);
+                all = (longer(all.0, one.0), longer(all.1, one.1));
+            }
+        }
+        all
+    }
+
+    fn waits_alone(&self, sensor: u8, listeners: &Listeners) -> (Micros, Micros) {
+        let Some(own) = self.slot(sensor) else { return (Micros::ZERO, Micros::ZERO) };
+        let others = if listeners.whose == sensor { listeners.others } else { listeners.most };
+        let mut rested = Micros::ZERO;
         if own.is(FIRED) {
-            rested = longer(rested, self.since_last(own.fired, self.settings.rest));
+            rested = self.since_last(own.fired, self.settings.rest);
             if own.is(LISTENS) {
                 rested = longer(rested, self.since_last(own.fired, self.window_of(sensor)));
             }
         }
-        (quiet, rested)
+        let line = self.own_limits.line_of(sensor);
+        if line > 0 {
+            for (other, slot) in self.each() {
+                if other != sensor && slot.is(FIRED) && self.own_limits.line_of(other) == line {
+                    rested = longer(rested, self.since_last(slot.fired, self.window_of(other)));
+                }
+            }
+        }
+        (longer(self.quiet(own), others), rested)
     }
 
     fn window_of(&self, sensor: u8) -> Micros {
@@ -286,11 +311,15 @@ impl<const K: usize, U: OwnLimits> InTurn<K, U> {
         if self.last.has_reached(until) { Micros::ZERO } else { until.since(self.last) }
     }
 
-    /// The sensor in the first place from one on that has a turn and has not fired ahead of it.
+    /// The first place from one on whose sensor has a turn and has not fired ahead of it, and that sensor.
     fn first_from(&self, place: u8) -> Option<(u8, u8)> {
-        let order = |place: u8| self.slots.get(usize::from(place)).map_or(NOBODY, |slot| slot.order);
-        let fires = |sensor: u8| self.slot(sensor).is_some_and(|slot| !slot.is(DISABLED | AHEAD | FOLLOWS));
-        (place..self.sensors).map(|place| (place, order(place))).find(|&(_, sensor)| fires(sensor))
+        for place in place..self.sensors {
+            let sensor = self.slots.get(usize::from(place))?.order;
+            if sensor != self.ahead && !self.slot(sensor)?.is(DISABLED | FOLLOWS) {
+                return Some((place, sensor));
+            }
+        }
+        None
     }
 
     /// Decides who fires next, and when.
@@ -310,22 +339,33 @@ impl<const K: usize, U: OwnLimits> InTurn<K, U> {
             self.due = self.last + if nobody { self.settings.rest } else { Micros::ZERO };
             return;
         };
-        let (quiet, rested) = self.waits(sensor);
-        (self.next, self.due) = (sensor, self.last + longer(quiet, rested) + self.thrown);
+        (self.next, self.turn) = (sensor, place);
+        let listeners = self.listeners();
+        let (quiet, rested) = self.waits(sensor, &listeners);
+        let mut wait = longer(quiet, rested);
         // Nobody is passed over twice: only while no other sensor has fired ahead.
-        let is_first = !self.slots.iter().any(|slot| slot.is(AHEAD));
-        if rested > quiet && is_first {
-            let mut ahead = place + 1;
-            while let Some((at, other)) = self.first_from(ahead) {
-                let (quiet, rested) = self.waits(other);
+        if rested > quiet && self.ahead == NOBODY {
+            let mut from = place + 1;
+            while let Some((place, sensor)) = self.first_from(from) {
+                let (quiet, rested) = self.waits(sensor, &listeners);
                 if rested <= quiet {
-                    (self.next, self.due) = (other, self.last + quiet + self.thrown);
+                    (self.next, self.turn, wait) = (sensor, NOBODY, quiet);
                     break;
                 }
-                ahead = at + 1;
+                from = place + 1;
             }
         }
+        self.due = self.last + wait + self.thrown;
     }
+}
+
+/// Quiet that sensors need which listen, from the last firing on.
+struct Listeners {
+    /// The most that one of them needs.
+    most: Micros,
+    whose: u8,
+    /// The most that any other needs.
+    others: Micros,
 }
 
 /// The sensor in a place of the order: far ones in turn, so that neighbours never follow each other where the number of
@@ -364,16 +404,17 @@ impl<const K: usize, U: OwnLimits> Plan for InTurn<K, U> {
     }
 
     fn fire(&mut self, now: Instant) {
-        let (sensor, turn) = (self.next, self.first_from(self.place));
+        let sensor = self.next;
         let Some(slot) = self.slot_mut(sensor) else { return };
         slot.fired = now;
         slot.set(FIRED | LISTENS, true);
         if slot.is(PENDING) {
             slot.set(PENDING, false);
         } else {
-            match turn {
-                Some((place, first)) if first == sensor => self.place = place + 1,
-                _ => slot.set(AHEAD, true),
+            if self.turn == NOBODY {
+                self.ahead = sensor;
+            } else {
+                self.place = self.turn + 1;
             }
             let group = self.own_limits.group_of(sensor);
             if group > 0 {
@@ -397,14 +438,13 @@ impl<const K: usize, U: OwnLimits> Plan for InTurn<K, U> {
     }
 
     fn end_period(&mut self, now: Instant) -> (Phase, bool) {
-        // Those that fired ahead have had their turn.
         for slot in &mut self.slots {
-            slot.set(AHEAD, false);
             if slot.is(FIRED) && now.since(slot.fired) > OLD {
                 slot.set(FIRED | LISTENS, false);
             }
         }
-        self.place = 0;
+        // The one that fired ahead has had its turn.
+        (self.place, self.ahead) = (0, NOBODY);
         if self.next == NOBODY && now.since(self.last) >= self.settings.rest {
             // Nobody fires: rounds go on.
             self.last = now;
@@ -490,11 +530,11 @@ impl<const K: usize, U: OwnLimits> Plan for InTurn<K, U> {
             // A clock that has jumped says nothing of when they fired.
             let rests = slot.is(FIRED) && now.has_reached(slot.fired) && now.since(slot.fired) <= self.settings.rest;
             slot.set(FIRED, rests);
-            slot.set(LISTENS | AHEAD | PENDING, false);
+            slot.set(LISTENS | PENDING, false);
             slot.doubt = first;
         }
         // Sound from before dies away.
-        (self.place, self.last) = (0, now + self.settings.most);
+        (self.place, self.ahead, self.last) = (0, NOBODY, now + self.settings.most);
         self.decide();
     }
 

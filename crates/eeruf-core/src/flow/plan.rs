@@ -77,7 +77,14 @@ pub struct InTurn<const K: usize, U = ()> {
     thrown: Micros,
     random: u32,
     window: Micros,
-    settings: TurnSettings,
+    /// The least quiet, of a robot that stands or is among others, and the most.
+    least: Micros,
+    most: Micros,
+    rest: Micros,
+    dice: Micros,
+    /// Doubt to begin with, and what a believed reading takes away, in units.
+    first: u16,
+    down: u16,
     slots: [Slot; K],
     own_limits: U,
 }
@@ -124,7 +131,7 @@ impl<const K: usize, U: OwnLimits> InTurn<K, U> {
 
     /// Takes another seed for the dice.
     pub(super) fn set_seed(&mut self, seed: u32) -> Result<(), RingError> {
-        TurnSettings { seed, ..self.settings }.check()?;
+        TurnSettings::check_seed(seed)?;
         self.random = seed;
         self.throw();
         self.decide();
@@ -150,7 +157,9 @@ impl<const K: usize, U: OwnLimits> InTurn<K, U> {
             return Err(RingError::Window { window, min_refire: LONGEST_REST });
         }
         let sensors = sensors as u8;
-        let doubt = (settings.first().as_micros() / UNIT) as u16;
+        // At most 250 ms each.
+        let first = (settings.first().as_micros() / UNIT) as u16;
+        let down = (settings.down().as_micros() / UNIT) as u16;
         let mut plan = Self {
             next: 0,
             place: 0,
@@ -164,8 +173,13 @@ impl<const K: usize, U: OwnLimits> InTurn<K, U> {
             thrown: Micros::ZERO,
             random: settings.seed,
             window,
-            settings,
-            slots: [Slot { fired: now, doubt, order: 0, flags: 0 }; K],
+            least: settings.least,
+            most: settings.most,
+            rest: settings.rest,
+            dice: settings.dice,
+            first,
+            down,
+            slots: [Slot { fired: now, doubt: first, order: 0, flags: 0 }; K],
             own_limits,
         };
         let mut place = 0;
@@ -189,14 +203,8 @@ impl<const K: usize, U: OwnLimits> InTurn<K, U> {
         longer(Micros::new(u32::from(slot.doubt) * UNIT), self.least())
     }
 
-    /// Doubt to begin with.
-    fn first(&self) -> u16 {
-        // At most 250 ms.
-        (self.settings.first().as_micros() / UNIT) as u16
-    }
-
     const fn least(&self) -> Micros {
-        shorter(Micros::new(self.settings.least.as_micros() << self.pace.every_echo as u32), self.settings.most)
+        shorter(Micros::new(self.least.as_micros() << self.pace.every_echo as u32), self.most)
     }
 
     fn slot(&self, sensor: u8) -> Option<&Slot> {
@@ -212,7 +220,7 @@ impl<const K: usize, U: OwnLimits> InTurn<K, U> {
         self.random ^= self.random << 13;
         self.random ^= self.random >> 17;
         self.random ^= self.random << 5;
-        let most = self.settings.dice.as_micros() << self.pace.moves as u32;
+        let most = self.dice.as_micros() << self.pace.moves as u32;
         self.thrown = Micros::new(((self.random as u64 * (most as u64 + 1)) >> 32) as u32);
     }
 
@@ -275,7 +283,7 @@ impl<const K: usize, U: OwnLimits> InTurn<K, U> {
         let others = if listeners.whose == sensor { listeners.others } else { listeners.most };
         let mut rested = Micros::ZERO;
         if own.is(FIRED) {
-            rested = self.since_last(own.fired, self.settings.rest);
+            rested = self.since_last(own.fired, self.rest);
             if own.is(LISTENS) {
                 rested = longer(rested, self.since_last(own.fired, self.window_of(sensor)));
             }
@@ -336,7 +344,7 @@ impl<const K: usize, U: OwnLimits> InTurn<K, U> {
         let Some((place, sensor)) = turn else {
             // The round ends at once, and if nobody fires after the time for which one would rest.
             let nobody = self.paused || !self.each().any(|(_, slot)| !slot.is(DISABLED));
-            self.due = self.last + if nobody { self.settings.rest } else { Micros::ZERO };
+            self.due = self.last + if nobody { self.rest } else { Micros::ZERO };
             return;
         };
         (self.next, self.turn) = (sensor, place);
@@ -445,7 +453,7 @@ impl<const K: usize, U: OwnLimits> Plan for InTurn<K, U> {
         }
         // The one that fired ahead has had its turn.
         (self.place, self.ahead) = (0, NOBODY);
-        if self.next == NOBODY && now.since(self.last) >= self.settings.rest {
+        if self.next == NOBODY && now.since(self.last) >= self.rest {
             // Nobody fires: rounds go on.
             self.last = now;
         }
@@ -454,16 +462,15 @@ impl<const K: usize, U: OwnLimits> Plan for InTurn<K, U> {
     }
 
     fn judged(&mut self, heard: &Heard<'_>, _: &Verdict, judge: &impl Judge) {
-        let (up, down) = (self.settings.up(), self.settings.down());
         self.pace = judge.pace();
-        let (least, most) = (self.least().as_micros() / UNIT, self.settings.most.as_micros() / UNIT);
-        let quiet = judge.quiet();
+        let (down, up) = (u32::from(self.down), self.most.saturating_sub(self.least).as_micros() / 4 / UNIT);
+        let (least, most) = (self.least().as_micros() / UNIT, self.most.as_micros() / UNIT);
         if let Some(slot) = self.slot_mut(heard.sensor) {
             let now = u32::from(slot.doubt);
-            let then = match quiet {
-                Quiet::Less => now.saturating_sub(down.as_micros() / UNIT).max(least),
+            let then = match judge.quiet() {
+                Quiet::Less => now.saturating_sub(down).max(least),
                 Quiet::Same => now,
-                Quiet::More => (now + up.as_micros() / UNIT).min(most),
+                Quiet::More => (now + up).min(most),
             };
             // At most 250 ms.
             slot.doubt = then as u16;
@@ -503,7 +510,7 @@ impl<const K: usize, U: OwnLimits> Plan for InTurn<K, U> {
     }
 
     fn set_enabled(&mut self, sensor: u8, enabled: bool) {
-        let first = self.first();
+        let first = self.first;
         if let Some(slot) = self.slot_mut(sensor) {
             if enabled && slot.is(DISABLED) {
                 slot.doubt = first;
@@ -525,16 +532,16 @@ impl<const K: usize, U: OwnLimits> Plan for InTurn<K, U> {
     }
 
     fn restart(&mut self, now: Instant) {
-        let first = self.first();
+        let first = self.first;
         for slot in &mut self.slots {
             // A clock that has jumped says nothing of when they fired.
-            let rests = slot.is(FIRED) && now.has_reached(slot.fired) && now.since(slot.fired) <= self.settings.rest;
+            let rests = slot.is(FIRED) && now.has_reached(slot.fired) && now.since(slot.fired) <= self.rest;
             slot.set(FIRED, rests);
             slot.set(LISTENS | PENDING, false);
             slot.doubt = first;
         }
         // Sound from before dies away.
-        (self.place, self.ahead, self.last) = (0, NOBODY, now + self.settings.most);
+        (self.place, self.ahead, self.last) = (0, NOBODY, now + self.most);
         self.decide();
     }
 
@@ -548,7 +555,7 @@ impl<const K: usize, U: OwnLimits> Plan for InTurn<K, U> {
     }
 
     fn limits(&self) -> Limits<'_> {
-        Limits { longest_window: self.min_refire(), verified_for: None, audible: Some(self.settings.most) }
+        Limits { longest_window: self.min_refire(), verified_for: None, audible: Some(self.most) }
     }
 
     fn hears(&self, receiver: u8, emitter: u8) -> bool {
@@ -561,14 +568,14 @@ impl<const K: usize, U: OwnLimits> Plan for InTurn<K, U> {
     }
 
     fn min_refire(&self) -> Micros {
-        longer(self.settings.rest, self.window)
+        longer(self.rest, self.window)
     }
 
     fn horizon(&self) -> Micros {
         // A round of the longest gaps, in which each has its turn: at most 64 times 750 ms, and the rest.
-        let gap = self.settings.most.as_micros() + 2 * self.settings.dice.as_micros();
+        let gap = self.most.as_micros() + 2 * self.dice.as_micros();
         let round = (u32::from(self.sensors) + 1) * gap;
-        Micros::new(round + longer(self.settings.rest, self.window).as_micros())
+        Micros::new(round + longer(self.rest, self.window).as_micros())
     }
 }
 

@@ -105,17 +105,16 @@ impl TurnSettings {
         if let Err(error) = within("dice", self.dice, Micros::ZERO, LONGEST_QUIET) {
             return Err(error);
         }
-        within("seed", Micros::new(self.seed), one, Micros::MAX)
+        Self::check_seed(self.seed)
+    }
+
+    pub(super) const fn check_seed(seed: u32) -> Result<(), RingError> {
+        within("seed", Micros::new(seed), Micros::new(1), Micros::MAX)
     }
 
     /// Quiet that a believed reading takes away.
     pub(super) const fn down(&self) -> Micros {
         Micros::new(self.most.saturating_sub(self.least).as_micros() / 10)
-    }
-
-    /// Quiet that a masked reading adds.
-    pub(super) const fn up(&self) -> Micros {
-        Micros::new(self.most.saturating_sub(self.least).as_micros() / 4)
     }
 
     /// Quiet to begin with.

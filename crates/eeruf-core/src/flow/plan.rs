@@ -23,8 +23,8 @@ struct Slot {
     fired: Instant,
     /// Quiet that it needs after its firing and before, in units.
     doubt: u16,
-    /// The sensor that fires in this place of the order.
-    order: u8,
+    /// The sensor after it in the order, or [`NOBODY`].
+    then: u8,
     flags: u8,
 }
 
@@ -59,9 +59,9 @@ impl Slot {
 pub struct InTurn<const K: usize, U = ()> {
     /// The sensor that fires next, or [`NOBODY`] if the round ends.
     next: u8,
-    /// The place in the order from which on turns are still to come.
-    place: u8,
-    /// The place in the order whose turn it is, if the sensor that fires next has it; or else [`NOBODY`].
+    /// The sensor from which on, in the order, turns are still to come; [`NOBODY`] if the round ends.
+    from: u8,
+    /// The sensor whose turn it is, or [`NOBODY`].
     turn: u8,
     /// The sensor that has fired in this round, before its turn, or [`NOBODY`].
     ahead: u8,
@@ -162,7 +162,7 @@ impl<const K: usize, U: OwnLimits> InTurn<K, U> {
         let down = (settings.down().as_micros() / UNIT) as u16;
         let mut plan = Self {
             next: 0,
-            place: 0,
+            from: 0,
             turn: 0,
             ahead: NOBODY,
             sensors,
@@ -179,12 +179,12 @@ impl<const K: usize, U: OwnLimits> InTurn<K, U> {
             dice: settings.dice,
             first,
             down,
-            slots: [Slot { fired: now, doubt: first, order: 0, flags: 0 }; K],
+            slots: [Slot { fired: now, doubt: first, then: NOBODY, flags: 0 }; K],
             own_limits,
         };
-        let mut place = 0;
+        let mut place = 1;
         while place < sensors {
-            plan.slots[place as usize].order = in_order(place, sensors);
+            plan.slots[in_order(place - 1, sensors) as usize].then = in_order(place, sensors);
             place += 1;
         }
         plan.throw();
@@ -319,15 +319,19 @@ impl<const K: usize, U: OwnLimits> InTurn<K, U> {
         if self.last.has_reached(until) { Micros::ZERO } else { until.since(self.last) }
     }
 
-    /// The first place from one on whose sensor has a turn and has not fired ahead of it, and that sensor.
-    fn first_from(&self, place: u8) -> Option<(u8, u8)> {
-        for place in place..self.sensors {
-            let sensor = self.slots.get(usize::from(place))?.order;
-            if sensor != self.ahead && !self.slot(sensor)?.is(DISABLED | FOLLOWS) {
-                return Some((place, sensor));
+    /// The first sensor from one on, in the order, that has a turn and has not fired ahead of it; or [`NOBODY`].
+    fn first_from(&self, mut sensor: u8) -> u8 {
+        while let Some(slot) = self.slots.get(usize::from(sensor)) {
+            if sensor != self.ahead && !slot.is(DISABLED | FOLLOWS) {
+                break;
             }
+            sensor = slot.then;
         }
-        None
+        sensor
+    }
+
+    fn after(&self, sensor: u8) -> u8 {
+        self.slot(sensor).map_or(NOBODY, |slot| slot.then)
     }
 
     /// Decides who fires next, and when.
@@ -339,31 +343,27 @@ impl<const K: usize, U: OwnLimits> InTurn<K, U> {
                 return;
             }
         }
-        self.next = NOBODY;
-        let turn = if self.paused { None } else { self.first_from(self.place) };
-        let Some((place, sensor)) = turn else {
+        self.turn = if self.paused { NOBODY } else { self.first_from(self.from) };
+        self.next = self.turn;
+        if self.turn == NOBODY {
             // The round ends at once, and if nobody fires after the time for which one would rest.
             let nobody = self.paused || !self.each().any(|(_, slot)| !slot.is(DISABLED));
             self.due = self.last + if nobody { self.rest } else { Micros::ZERO };
             return;
-        };
-        (self.next, self.turn) = (sensor, place);
-        let listeners = self.listeners();
-        let (quiet, rested) = self.waits(sensor, &listeners);
-        let mut wait = longer(quiet, rested);
-        // Nobody is passed over twice: only while no other sensor has fired ahead.
-        if rested > quiet && self.ahead == NOBODY {
-            let mut from = place + 1;
-            while let Some((place, sensor)) = self.first_from(from) {
-                let (quiet, rested) = self.waits(sensor, &listeners);
-                if rested <= quiet {
-                    (self.next, self.turn, wait) = (sensor, NOBODY, quiet);
-                    break;
-                }
-                from = place + 1;
-            }
         }
-        self.due = self.last + wait + self.thrown;
+        let listeners = self.listeners();
+        let mut sensor = self.turn;
+        while sensor != NOBODY {
+            let (quiet, rested) = self.waits(sensor, &listeners);
+            if sensor == self.turn || rested <= quiet {
+                (self.next, self.due) = (sensor, self.last + longer(quiet, rested) + self.thrown);
+            }
+            // Nobody is passed over twice: only while no other sensor has fired ahead.
+            if rested <= quiet || self.ahead != NOBODY {
+                break;
+            }
+            sensor = self.first_from(self.after(sensor));
+        }
     }
 }
 
@@ -413,16 +413,16 @@ impl<const K: usize, U: OwnLimits> Plan for InTurn<K, U> {
 
     fn fire(&mut self, now: Instant) {
         let sensor = self.next;
-        let Some(slot) = self.slot_mut(sensor) else { return };
+        let Some(slot) = self.slots.get_mut(usize::from(sensor)) else { return };
         slot.fired = now;
         slot.set(FIRED | LISTENS, true);
         if slot.is(PENDING) {
             slot.set(PENDING, false);
         } else {
-            if self.turn == NOBODY {
-                self.ahead = sensor;
+            if sensor == self.turn {
+                self.from = slot.then;
             } else {
-                self.place = self.turn + 1;
+                self.ahead = sensor;
             }
             let group = self.own_limits.group_of(sensor);
             if group > 0 {
@@ -452,7 +452,7 @@ impl<const K: usize, U: OwnLimits> Plan for InTurn<K, U> {
             }
         }
         // The one that fired ahead has had its turn.
-        (self.place, self.ahead) = (0, NOBODY);
+        (self.from, self.ahead) = (0, NOBODY);
         if self.next == NOBODY && now.since(self.last) >= self.rest {
             // Nobody fires: rounds go on.
             self.last = now;
@@ -541,7 +541,7 @@ impl<const K: usize, U: OwnLimits> Plan for InTurn<K, U> {
             slot.doubt = first;
         }
         // Sound from before dies away.
-        (self.place, self.ahead, self.last) = (0, NOBODY, now + self.most);
+        (self.from, self.ahead, self.last) = (0, NOBODY, now + self.most);
         self.decide();
     }
 

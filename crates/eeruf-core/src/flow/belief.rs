@@ -139,15 +139,11 @@ impl<const E: usize> Known<E> {
         Verdict { kind, t_echo, previous, age: (self.age != NEVER).then_some(self.age), explained_by }
     }
 
-    /// Returns true if a reading fits the belief, which must not be too old.
+    /// Returns true if a reading fits the belief, which must not be too old. Silence is far from every echo.
     fn fits(&self, time: Micros, settings: &BeliefSettings) -> bool {
-        if !self.believes() || self.missed > settings.memory || (self.missed > 0 && self.grown > TOO_FAR) {
-            return false;
-        }
-        if time >= SILENCE || self.believed >= SILENCE {
-            return time == self.believed;
-        }
-        time.abs_diff(self.believed) <= settings.near.saturating_add(Micros::new(self.grown.into()))
+        let is_kept = self.missed == 0 || (self.missed <= settings.memory && self.grown <= TOO_FAR);
+        let most = settings.near.saturating_add(Micros::new(self.grown.into()));
+        self.believes() && is_kept && time.abs_diff(self.believed) <= most
     }
 
     /// Returns what explains an echo that agrees with one of the reading before; `None` if none does.
@@ -175,58 +171,61 @@ impl<const E: usize> Known<E> {
         let is_echo = !heard.echoes.is_empty();
         // The first echo that is believed, or else the earliest.
         let mut time = heard.echoes.first().copied().unwrap_or(SILENCE);
-        let mut fits = self.fits(time, of);
-        let (mut ok, mut explained_by) = (fits || !is_echo, None);
-        if !ok {
-            for &echo in heard.echoes {
-                fits = self.fits(echo, of);
-                let twice = if fits { None } else { self.twice(echo, span, heard.t_delta, sounds) };
-                if fits || twice == Some(Explained::ByNothing) {
-                    (time, ok, explained_by) = (echo, true, None);
-                    break;
-                }
-                explained_by = explained_by.or(twice.and_then(Explained::reason));
+        let (mut fits, mut ok, mut explained_by) = (!is_echo && self.fits(SILENCE, of), !is_echo, None);
+        for &echo in heard.echoes {
+            fits = self.fits(echo, of);
+            let twice = if fits { None } else { self.twice(echo, span, heard.t_delta, sounds) };
+            if fits || twice == Some(Explained::ByNothing) {
+                (time, ok, explained_by) = (echo, true, None);
+                break;
             }
+            explained_by = explained_by.or(twice.and_then(Explained::reason));
         }
-        let far = self.believes() && !fits && (!is_echo || (self.believed < SILENCE && time > self.believed));
+        // Silence is farther than all that is believed.
+        let far = !fits && self.believed < if is_echo { time } else { NOTHING };
         let mut held_back = false;
-        if stands && self.believes() {
-            if fits {
-                self.conf = self.conf.saturating_add(1).min(of.hold);
-            } else if far {
-                self.conf = self.conf.saturating_sub(1);
-                held_back = ok && self.conf > 0;
-                ok &= self.conf == 0;
-            }
+        if stands && fits {
+            self.conf = self.conf.saturating_add(1).min(of.hold);
+        } else if stands && far {
+            self.conf = self.conf.saturating_sub(1);
+            held_back = ok && self.conf > 0;
+            ok &= self.conf == 0;
         }
-        // The first silence in a row leaves an obstacle standing, but a robot that moves has left it behind.
-        let clears = self.first() == SILENCE || fits || !stands;
-        let kind = match (ok, is_echo) {
-            (true, true) => ReadingKind::Accepted,
-            (true, false) if clears => ReadingKind::Clear,
-            (_, false) => ReadingKind::NoEcho,
-            _ if explained_by.is_some() => ReadingKind::Ambiguous,
-            // An echo that the belief outlasts.
-            _ if held_back => ReadingKind::Repeated,
-            _ if self.first() >= SILENCE && !self.believes() => ReadingKind::First,
-            _ => ReadingKind::Rejected,
-        };
-        if kind == ReadingKind::Accepted {
-            self.age = 0;
-        }
-        let verdict = self.verdict(kind, is_echo.then_some(time), explained_by);
-        let quiet = if ok {
-            if is_echo || clears || !self.believes() || self.believed == SILENCE {
+        let before = self.first();
+        let (kind, quiet);
+        if ok {
+            // The first silence in a row leaves an obstacle standing, but a robot that moves has left it behind.
+            let clears = is_echo || before == SILENCE || fits || !stands;
+            if clears || self.believed >= SILENCE {
                 if !fits {
                     self.conf = 1;
                 }
                 (self.believed, self.grown, self.missed) = (time, 0, 0);
             }
-            Quiet::Less
+            kind = match (is_echo, clears) {
+                (true, _) => ReadingKind::Accepted,
+                (false, true) => ReadingKind::Clear,
+                (false, false) => ReadingKind::NoEcho,
+            };
+            quiet = Quiet::Less;
         } else {
+            kind = match () {
+                () if !is_echo => ReadingKind::NoEcho,
+                () if explained_by.is_some() => ReadingKind::Ambiguous,
+                // An echo that the belief outlasts.
+                () if held_back => ReadingKind::Repeated,
+                () if before >= SILENCE && !self.believes() => ReadingKind::First,
+                () => ReadingKind::Rejected,
+            };
+            quiet = if is_echo && !far && sounds.is_masked(time) { Quiet::More } else { Quiet::Same };
+        }
+        if kind == ReadingKind::Accepted {
+            self.age = 0;
+        }
+        let verdict = self.verdict(kind, is_echo.then_some(time), explained_by);
+        if !ok {
             self.miss();
-            if is_echo && !far && sounds.is_masked(time) { Quiet::More } else { Quiet::Same }
-        };
+        }
         self.last = [NOTHING; E];
         for (last, &echo) in self.last.iter_mut().zip(if is_echo { heard.echoes } else { &[SILENCE] }) {
             *last = echo;

@@ -209,7 +209,7 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
         }
         self.judge.restart();
         self.oldest = NOBODY;
-        self.ready = 0;
+        (self.ready, self.listening_now) = (0, 0);
         self.disturb();
     }
 }

@@ -85,6 +85,8 @@ pub struct Ring<P, J, const K: usize, const E: usize = 1, const H: usize = 4> {
     ready: u8,
     /// The last of them to get it, or a sensor that has emitted it since.
     last_ready: u8,
+    /// Number of sensors that listen.
+    listening_now: u8,
     /// When the next reading can be emitted: when an edge came, or when the window of the oldest closes.
     emit_at: Instant,
     listening: Listening,
@@ -211,6 +213,7 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
             oldest: NOBODY,
             ready: 0,
             last_ready: NOBODY,
+            listening_now: 0,
             tally: Tally::NONE,
             punctuality: Punctuality::new(proven),
             plan,

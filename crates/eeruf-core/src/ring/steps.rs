@@ -43,6 +43,8 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
                 return Err(Some(sensor));
             }
             fired.fire(self.period, now, self.listening.unanswered());
+            // At most 64 sensors, which did not listen.
+            self.listening_now = self.listening_now.wrapping_add(1);
         }
         self.has_fired(sensor, now);
         self.plan.fire(now);
@@ -191,7 +193,10 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
                 verdict.kind = ReadingKind::NoEcho;
             }
             self.plan.ended(sensor, ended_at);
-            if self.oldest == sensor {
+            self.listening_now = self.listening_now.wrapping_sub(1);
+            if self.listening_now == 0 {
+                self.oldest = NOBODY;
+            } else if self.oldest == sensor {
                 self.find_oldest(fired);
             }
             verdict

@@ -66,6 +66,8 @@ pub struct InTurn<const K: usize, U = ()> {
     /// The sensor that has fired in this round, before its turn, or [`NOBODY`].
     ahead: u8,
     sensors: u8,
+    /// At least the number of sensors that listen.
+    listening: u8,
     /// While the robot moves the dice are twice as long, and where every echo is reported the least quiet.
     pace: Pace,
     paused: bool,
@@ -166,6 +168,7 @@ impl<const K: usize, U: OwnLimits> InTurn<K, U> {
             turn: 0,
             ahead: NOBODY,
             sensors,
+            listening: 0,
             pace,
             paused: false,
             due: now,
@@ -249,8 +252,12 @@ impl<const K: usize, U: OwnLimits> InTurn<K, U> {
     }
 
     /// What those that listen still need.
+    #[inline(never)]
     fn listeners(&self) -> Listeners {
         let mut all = Listeners { most: Micros::ZERO, whose: NOBODY, others: Micros::ZERO };
+        if self.listening == 0 {
+            return all;
+        }
         for (sensor, slot) in self.each() {
             if slot.is(LISTENS) {
                 // Sound after its window is of no account, however late it is reported.
@@ -267,19 +274,18 @@ impl<const K: usize, U: OwnLimits> InTurn<K, U> {
 
     /// The time from the last firing until a sensor, and those that fire with it, may fire, without the dice: until
     /// there is quiet, and until they have rested and their lines are free.
-    fn waits(&self, sensor: u8, listeners: &Listeners) -> (Micros, Micros) {
-        let mut all = self.waits_alone(sensor, listeners);
+    fn waits(&self, sensor: u8, own: &Slot, listeners: &Listeners) -> (Micros, Micros) {
+        let mut all = self.waits_alone(sensor, own, listeners);
         if self.own_limits.group_of(sensor) > 0 {
-            for other in self.with(sensor) {
-                let one = self.waits_alone(other, listeners);
+            for (other, slot) in self.with(sensor).filter_map(|other| Some((other, self.slot(other)?))) {
+                let one = self.waits_alone(other, slot, listeners);
                 all = (longer(all.0, one.0), longer(all.1, one.1));
             }
         }
         all
     }
 
-    fn waits_alone(&self, sensor: u8, listeners: &Listeners) -> (Micros, Micros) {
-        let Some(own) = self.slot(sensor) else { return (Micros::ZERO, Micros::ZERO) };
+    fn waits_alone(&self, sensor: u8, own: &Slot, listeners: &Listeners) -> (Micros, Micros) {
         let others = if listeners.whose == sensor { listeners.others } else { listeners.most };
         let mut rested = Micros::ZERO;
         if own.is(FIRED) {
@@ -319,21 +325,6 @@ impl<const K: usize, U: OwnLimits> InTurn<K, U> {
         if self.last.has_reached(until) { Micros::ZERO } else { until.since(self.last) }
     }
 
-    /// The first sensor from one on, in the order, that has a turn and has not fired ahead of it; or [`NOBODY`].
-    fn first_from(&self, mut sensor: u8) -> u8 {
-        while let Some(slot) = self.slots.get(usize::from(sensor)) {
-            if sensor != self.ahead && !slot.is(DISABLED | FOLLOWS) {
-                break;
-            }
-            sensor = slot.then;
-        }
-        sensor
-    }
-
-    fn after(&self, sensor: u8) -> u8 {
-        self.slot(sensor).map_or(NOBODY, |slot| slot.then)
-    }
-
     /// Decides who fires next, and when.
     fn decide(&mut self) {
         if self.own_limits.most().is_some() {
@@ -343,26 +334,30 @@ impl<const K: usize, U: OwnLimits> InTurn<K, U> {
                 return;
             }
         }
-        self.turn = if self.paused { NOBODY } else { self.first_from(self.from) };
-        self.next = self.turn;
+        let listeners = self.listeners();
+        let mut sensor = if self.paused { NOBODY } else { self.from };
+        (self.turn, self.next) = (NOBODY, NOBODY);
+        while let Some(slot) = self.slots.get(usize::from(sensor)) {
+            let then = slot.then;
+            if sensor != self.ahead && !slot.is(DISABLED | FOLLOWS) {
+                let (quiet, rested) = self.waits(sensor, slot, &listeners);
+                if self.turn == NOBODY || rested <= quiet {
+                    (self.next, self.due) = (sensor, self.last + longer(quiet, rested) + self.thrown);
+                }
+                if self.turn == NOBODY {
+                    self.turn = sensor;
+                }
+                // Nobody is passed over twice: only while no other sensor has fired ahead.
+                if rested <= quiet || self.ahead != NOBODY {
+                    return;
+                }
+            }
+            sensor = then;
+        }
         if self.turn == NOBODY {
             // The round ends at once, and if nobody fires after the time for which one would rest.
             let nobody = self.paused || !self.each().any(|(_, slot)| !slot.is(DISABLED));
             self.due = self.last + if nobody { self.rest } else { Micros::ZERO };
-            return;
-        }
-        let listeners = self.listeners();
-        let mut sensor = self.turn;
-        while sensor != NOBODY {
-            let (quiet, rested) = self.waits(sensor, &listeners);
-            if sensor == self.turn || rested <= quiet {
-                (self.next, self.due) = (sensor, self.last + longer(quiet, rested) + self.thrown);
-            }
-            // Nobody is passed over twice: only while no other sensor has fired ahead.
-            if rested <= quiet || self.ahead != NOBODY {
-                break;
-            }
-            sensor = self.first_from(self.after(sensor));
         }
     }
 }
@@ -415,6 +410,7 @@ impl<const K: usize, U: OwnLimits> Plan for InTurn<K, U> {
         let sensor = self.next;
         let Some(slot) = self.slots.get_mut(usize::from(sensor)) else { return };
         slot.fired = now;
+        self.listening = self.listening.saturating_add(1);
         slot.set(FIRED | LISTENS, true);
         if slot.is(PENDING) {
             slot.set(PENDING, false);
@@ -485,7 +481,8 @@ impl<const K: usize, U: OwnLimits> Plan for InTurn<K, U> {
     }
 
     fn ended(&mut self, sensor: u8, _at: Instant) {
-        if let Some(slot) = self.slot_mut(sensor) {
+        if let Some(slot) = self.slots.get_mut(usize::from(sensor)) {
+            self.listening = self.listening.saturating_sub(slot.is(LISTENS).into());
             slot.set(LISTENS, false);
             self.decide();
         }
@@ -540,6 +537,7 @@ impl<const K: usize, U: OwnLimits> Plan for InTurn<K, U> {
             slot.set(LISTENS | PENDING, false);
             slot.doubt = first;
         }
+        self.listening = 0;
         // Sound from before dies away.
         (self.from, self.ahead, self.last) = (0, NOBODY, now + self.most);
         self.decide();

@@ -192,7 +192,7 @@ impl<const K: usize, U: OwnLimits> InTurn<K, U> {
         }
         plan.throw();
         // As `decide` does: the first in order is the first.
-        let after = longer(Micros::new(doubt as u32 * UNIT), plan.least()).as_micros() + plan.thrown.as_micros();
+        let after = longer(Micros::new(first as u32 * UNIT), plan.least()).as_micros() + plan.thrown.as_micros();
         plan.due = Instant::from_micros(now.as_micros().wrapping_add(after));
         Ok(plan)
     }
@@ -495,7 +495,7 @@ impl<const K: usize, U: OwnLimits> Plan for InTurn<K, U> {
     }
 
     fn forget(&mut self, sensor: u8) {
-        let first = self.first();
+        let first = self.first;
         if let Some(slot) = self.slot_mut(sensor) {
             slot.doubt = first;
             self.decide();

@@ -79,9 +79,13 @@ impl<const H: usize> Firings<H> {
 
     /// Returns true if sound of any but the latest `but` of them is heard at an instant.
     pub(super) fn is_heard_at(&self, at: Instant, audible: Micros, but: usize) -> bool {
-        // The latest that had fired then: what fired before it is heard no longer than it is.
-        let latest = self.0.iter().skip(but).find(|&&fired| at.has_reached(fired));
-        latest.is_some_and(|&fired| at.since(fired) <= audible)
+        for &fired in self.0.iter().skip(but) {
+            if at.has_reached(fired) {
+                // The latest that had fired then: what fired before it is heard no longer than it is.
+                return at.since(fired) <= audible;
+            }
+        }
+        false
     }
 
     /// Returns true if an instant is later than the firing before the last one, as far as that is known.

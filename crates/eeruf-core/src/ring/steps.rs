@@ -298,12 +298,12 @@ impl<P: Plan, const E: usize, const H: usize> Sounds for Memory<'_, P, E, H> {
     fn is_masked(&self, t_echo: Micros) -> bool {
         let receiver = self.receiver;
         let Some(own) = self.sensors.get(usize::from(receiver)) else { return false };
-        let heard = own.fired() + t_echo;
+        let (heard, audible) = (own.fired() + t_echo, self.listening.audible());
+        let is_heard = |(x, sensor): (u8, &Sensor<E, H>)| {
+            x != receiver && self.plan.hears(receiver, x) && sensor.firings.is_heard_at(heard, audible, 0)
+        };
         // At most 64 sensors.
-        (0..).zip(self.sensors.iter().take(self.plan.sensors())).any(|(x, sensor)| {
-            let but = usize::from(x == receiver);
-            self.plan.hears(receiver, x) && sensor.firings.is_heard_at(heard, self.listening.audible(), but)
-        })
+        own.firings.is_heard_at(heard, audible, 1) || (0..).zip(self.emitters()).any(is_heard)
     }
 
     #[inline(always)]
@@ -340,11 +340,15 @@ impl<P: Plan, const E: usize, const H: usize> Memory<'_, P, E, H> {
         Pair { heard, audible: self.listening.audible(), path_change }
     }
 
+    fn emitters(&self) -> &[Sensor<E, H>] {
+        self.sensors.get(..self.plan.sensors()).unwrap_or(self.sensors)
+    }
+
     /// Asks of all sensors that the receiver can hear, itself among them, if their firings explain what it heard.
     #[inline(always)]
     fn ask(&self, pair: &Pair, explain: impl Fn(&Firings<H>, bool) -> bool) -> Explained {
         let receiver = self.receiver;
-        let sensors = self.sensors.get(..self.plan.sensors()).unwrap_or(self.sensors);
+        let sensors = self.emitters();
         // At most 64 sensors.
         for (x, sensor) in (0..).zip(sensors) {
             if self.plan.hears(receiver, x) && explain(&sensor.firings, x == receiver) {

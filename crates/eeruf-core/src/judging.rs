@@ -145,6 +145,11 @@ pub trait Judge {
     /// Takes in a firing that says nothing about the echo time: stuck, too early, late, or silence without a witness.
     /// `echoes` holds the early edge, if there was one.
     fn skip(&mut self, heard: &Heard<'_>, kind: ReadingKind) -> Verdict;
+    /// Takes in a firing whose sensor holds its line still, as one that hears nothing: no silence yet. A run of silences
+    /// goes on, and what it hears next is compared with no echo. By default the run ends.
+    fn hold(&mut self, heard: &Heard<'_>) {
+        self.skip(heard, ReadingKind::NoEcho);
+    }
     /// Firings of a sensor since its last accepted reading; `None` if none ever was.
     fn age(&self, sensor: u8) -> Option<u16>;
     /// Returns true if it believes now that nothing is in a sensor's range: what its last reading heard is none of its
@@ -194,6 +199,10 @@ impl<J: Judge> Judge for Agreement<J> {
 
     fn skip(&mut self, heard: &Heard<'_>, kind: ReadingKind) -> Verdict {
         self.0.skip(heard, kind)
+    }
+
+    fn hold(&mut self, heard: &Heard<'_>) {
+        self.0.hold(heard);
     }
 
     fn age(&self, sensor: u8) -> Option<u16> {

@@ -42,6 +42,8 @@ pub(crate) enum Shown {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Line {
     pub(crate) pulse: Pulse,
+    /// The line was seen to be high when the sensor was to be triggered again, so that it was not.
+    pub(crate) is_held: bool,
     /// Firings in a row without a pulse.
     silent: u8,
     /// The flaw of this firing: more than one pulse or one too short, or an edge without its counterpart.
@@ -51,11 +53,14 @@ pub(crate) struct Line {
 
 impl Line {
     /// Before the first trigger.
-    pub(crate) const NEW: Self = Self { pulse: Pulse::Idle, silent: 0, flaw: Health::Well, health: Health::Well };
+    pub(crate) const NEW: Self =
+        Self { pulse: Pulse::Idle, is_held: false, silent: 0, flaw: Health::Well, health: Health::Well };
 
     /// Returns the meaning of an edge for the firing at `fired`.
     pub(crate) fn edge(&mut self, edge: Edge, fired: Instant, settings: &Settings) -> Shown {
-        if !edge.at.has_reached(fired) || edge.at.since(fired) < settings.deaf {
+        // Without a trigger nothing is seen through the cable.
+        let deaf = if self.is_held { Micros::ZERO } else { settings.deaf };
+        if !edge.at.has_reached(fired) || edge.at.since(fired) < deaf {
             return Shown::Nothing;
         }
         match (self.pulse, edge.high) {
@@ -77,16 +82,22 @@ impl Line {
                     return Shown::Disturbance;
                 }
                 self.pulse = Pulse::Over(rose, u16::try_from(width.as_micros()).unwrap_or(0));
-                if width < settings.longest { Shown::Echo(width) } else { Shown::Nothing }
+                // A fall and a rise may have got lost since the trigger before, unless the line was seen to be high.
+                match width < settings.longest {
+                    true => Shown::Echo(width),
+                    false if self.is_held || rose.has_reached(fired) => Shown::Silence,
+                    false => Shown::Nothing,
+                }
             }
             (Pulse::Rose(rose), true) if !rose.has_reached(fired) => {
                 self.pulse = Pulse::Rose(edge.at);
                 self.health = Health::LosesEdges;
                 Shown::AnswerAfterLoss
             }
-            // A gap as short as that is a disturbance: the pulse goes on.
+            // A gap as short as that is a disturbance: the pulse goes on. But its silence counts once.
             (Pulse::Over(rose, width), true)
-                if width > 0 && edge.at.since(rose + Micros::new(width.into())) < settings.shortest =>
+                if Micros::new(width.into()) < settings.longest
+                    && edge.at.since(rose + Micros::new(width.into())) < settings.shortest =>
             {
                 self.pulse = Pulse::Rose(rose);
                 self.flaw = Health::Chatters;
@@ -143,7 +154,7 @@ impl Line {
             Pulse::Rose(_) => self.health = Health::LosesEdges,
             Pulse::Idle => {}
         }
-        self.flaw = Health::Well;
+        (self.flaw, self.is_held) = (Health::Well, false);
         matches!(self.pulse, Pulse::Rose(_))
     }
 }

@@ -97,6 +97,7 @@ impl<T: OutputPin, I: InputPin, D: DelayNs, const K: usize> Lines<T, I, D, K> {
         };
         let level = pins.echo.is_high();
         if matches!(level, Ok(true)) && line.listens_still(now, self.settings.longest_hold) {
+            line.is_held = true;
             return Trigger::ListensStill;
         }
         let lost_an_edge = line.end_firing(self.settings.missing_after);
@@ -151,6 +152,6 @@ pub(crate) enum Trigger {
     },
     /// It was not: the line is stuck, or cannot be read.
     Withheld,
-    /// Nor was it, but the sensor has heard nothing of an earlier one yet and holds its line: nothing is in range.
+    /// Nor was it, but the sensor has heard nothing of an earlier one yet and holds its line.
     ListensStill,
 }

@@ -111,7 +111,7 @@ impl<P: Plan, J: Judge, T, I, D, const K: usize, const H: usize> HcSr04Ring<Ring
             Trigger::Given { lost_an_edge: false } => Ok(()),
             Trigger::Given { lost_an_edge: true } => self.ring.forget(sensor),
             Trigger::Withheld => self.ring.stuck(sensor),
-            Trigger::ListensStill => self.ring.answered(sensor),
+            Trigger::ListensStill => self.ring.holds(sensor),
         };
     }
 
@@ -142,10 +142,10 @@ impl<P: Plan, J: Judge, T, I, D, const K: usize, const H: usize> HcSr04Ring<Ring
             // The ring says if it has no such sensor.
             Shown::Nothing if usize::from(sensor) >= self.ring.sensors() => self.ring.answered(sensor),
             Shown::Nothing => Ok(()),
-            Shown::Answer => self.ring.answered(sensor),
-            Shown::AnswerAfterLoss => self.ring.forget(sensor).and_then(|()| self.ring.answered(sensor)),
+            Shown::Answer => self.ring.holds(sensor),
+            Shown::AnswerAfterLoss => self.ring.forget(sensor).and_then(|()| self.ring.holds(sensor)),
             Shown::Disturbance => self.ring.unanswered(sensor),
-            Shown::GoesOn => self.ring.unheard(sensor),
+            Shown::GoesOn => self.ring.unheard(sensor).and_then(|()| self.ring.holds(sensor)),
             Shown::Silence => self.ring.measured(sensor, None),
             Shown::Echo(t_echo) => self.ring.measured(sensor, Some(t_echo)),
         }

@@ -139,6 +139,12 @@ impl<const K: usize, const E: usize> Judge for EchoFilter<K, E> {
         }
     }
 
+    fn hold(&mut self, heard: &Heard<'_>) {
+        if let Some(tracker) = self.trackers.get_mut(usize::from(heard.sensor)).filter(|tracker| !tracker.is_silent()) {
+            tracker.forget();
+        }
+    }
+
     fn age(&self, sensor: u8) -> Option<u16> {
         self.trackers.get(usize::from(sensor))?.age()
     }

@@ -204,6 +204,12 @@ impl<const K: usize> Judge for RateFilter<K> {
         line.verdict(kind, heard.echoes.first().copied(), None, None)
     }
 
+    fn hold(&mut self, heard: &Heard<'_>) {
+        if let Some(line) = self.sensors.get_mut(usize::from(heard.sensor)).filter(|line| line.previous().is_some()) {
+            line.known = Known::Nothing;
+        }
+    }
+
     fn age(&self, sensor: u8) -> Option<u16> {
         self.sensors.get(usize::from(sensor))?.age()
     }

@@ -125,7 +125,12 @@ impl<const E: usize> Tracker<E> {
 
     /// Returns true if as many firings in a row as must agree heard nothing.
     pub(crate) fn is_clear(&self, consecutive: Consecutive) -> bool {
-        self.known.first() == Some(&NO_ECHO) && self.runs.first() == Some(&consecutive.get())
+        self.is_silent() && self.runs.first() == Some(&consecutive.get())
+    }
+
+    /// Returns true if the last firing heard nothing, or nothing is known.
+    pub(crate) fn is_silent(&self) -> bool {
+        self.known.first() == Some(&NO_ECHO)
     }
 
     pub(crate) fn age(&self) -> Option<u16> {

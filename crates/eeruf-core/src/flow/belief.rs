@@ -265,6 +265,14 @@ impl<const K: usize, const E: usize> Judge for Belief<K, E> {
         verdict
     }
 
+    fn hold(&mut self, heard: &Heard<'_>) {
+        self.grow(heard);
+        self.quiet = Quiet::Same;
+        if let Some(known) = self.known_mut(heard.sensor).filter(|known| known.first() != SILENCE) {
+            known.last = [NOTHING; E];
+        }
+    }
+
     fn age(&self, sensor: u8) -> Option<u16> {
         self.known(sensor).map(|known| known.age).filter(|&age| age != NEVER)
     }

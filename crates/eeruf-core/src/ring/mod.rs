@@ -14,7 +14,7 @@ mod sensor;
 mod steps;
 
 use crate::filter::EchoFilter;
-use crate::judging::{Agreement, Judge};
+use crate::judging::{Agreement, Heard, Judge, NoSounds};
 use crate::own_limits::OwnLimits;
 use crate::plan::{ImmediateRefiring, Plan, ScheduledFiring, Upcoming};
 use crate::reading::{ReadingKind, Tally};
@@ -27,7 +27,7 @@ use crate::verified::VerifiedSchedule;
 use history::{Firings, long_before};
 pub(crate) use listening::Listening;
 use punctuality::Punctuality;
-use sensor::{LISTENING, Noted, STUCK, Sensor, UNANSWERED};
+use sensor::{HELD, Noted, STUCK, Sensor, UNANSWERED};
 
 pub use config::{RingConfig, Silence};
 pub use events::{PeriodStats, Reading, RingEvent};
@@ -420,10 +420,7 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
     /// # Errors
     /// [`SensorError`] for a sensor out of range.
     pub fn stuck(&mut self, sensor: u8) -> Result<(), SensorError> {
-        let stuck = self.sensor_mut(sensor)?;
-        if stuck.is(LISTENING) {
-            stuck.set(STUCK);
-        }
+        self.sensor_mut(sensor)?.shows(STUCK);
         Ok(())
     }
 
@@ -432,13 +429,40 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
         self.listening.set_silence(silence);
     }
 
-    /// Reports that a sensor has shown that it listens for the echo of its last firing.
+    /// Reports that a sensor holds its line: it rose after the trigger, or was not triggered since it is still high. Its
+    /// silence counts once the line has fallen, by [`answered`](Self::answered). Until then its readings are what the
+    /// judge says already: [`Clear`](ReadingKind::Clear), or else [`NoEcho`](ReadingKind::NoEcho). They neither add to a
+    /// run of silences nor break it.
+    ///
+    /// # Errors
+    /// [`SensorError`] for a sensor out of range.
+    pub fn holds(&mut self, sensor: u8) -> Result<(), SensorError> {
+        self.sensor_mut(sensor)?.shows(HELD);
+        Ok(())
+    }
+
+    /// Reports that a sensor has shown that it listened for the echo of its last firing. Where its reading is out, and
+    /// it [held](Self::holds) its line then, the judge learns of that silence now.
     ///
     /// # Errors
     /// [`SensorError`] for a sensor out of range.
     pub fn answered(&mut self, sensor: u8) -> Result<(), SensorError> {
-        self.sensor_mut(sensor)?.clear(UNANSWERED);
+        if self.sensor_mut(sensor)?.answered() {
+            self.judge_silence(sensor);
+        }
         Ok(())
+    }
+
+    /// Hands the judge a silence whose reading is out.
+    #[cold]
+    fn judge_silence(&mut self, sensor: u8) {
+        let Some(own) = self.sensors.get(usize::from(sensor)) else { return };
+        let firing = self.plan.last_firing(sensor, own.periods_ago(self.period));
+        let t_delta = self.listening.t_delta_of(&self.plan, sensor);
+        // The time since the firing before was counted with the reading.
+        let heard = Heard { sensor, fired: own.fired(), since_before: Micros::ZERO, echoes: &[], firing, t_delta };
+        let verdict = self.judge.judge(&heard, &NoSounds);
+        self.plan.judged(&heard, &verdict, &self.judge);
     }
 
     /// Takes back [`answered`](Self::answered): what looked like an answer was a disturbance.
@@ -446,10 +470,7 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
     /// # Errors
     /// [`SensorError`] for a sensor out of range.
     pub fn unanswered(&mut self, sensor: u8) -> Result<(), SensorError> {
-        let unanswered = self.sensor_mut(sensor)?;
-        if unanswered.is(LISTENING) {
-            unanswered.set(UNANSWERED);
-        }
+        self.sensor_mut(sensor)?.shows(UNANSWERED);
         Ok(())
     }
 

@@ -35,10 +35,13 @@ pub(super) const READY: u8 = 1 << 4;
 /// The only edges so far came outside the window: within the blanking time while it listens, late after its reading. A
 /// sensor that has not fired counts as having had its late edge, so that none is emitted for it.
 const OUTSIDE: u8 = 1 << 5;
+// Two bits of evidence: none of them where it is complete.
 /// The driver found the line stuck.
 pub(super) const STUCK: u8 = 1 << 6;
 /// Nothing has shown yet that it listens: silence says nothing.
 pub(super) const UNANSWERED: u8 = 1 << 7;
+/// It holds its line: silence counts when that has fallen. Kept after its reading.
+pub(super) const HELD: u8 = STUCK | UNANSWERED;
 
 /// The outcome of an edge.
 pub(super) enum Noted {
@@ -68,12 +71,32 @@ impl<const E: usize, const H: usize> Sensor<E, H> {
         self.flags & flag != 0
     }
 
-    pub(super) fn set(&mut self, flag: u8) {
+    fn set(&mut self, flag: u8) {
         self.flags |= flag;
     }
 
-    pub(super) fn clear(&mut self, flag: u8) {
+    fn clear(&mut self, flag: u8) {
         self.flags &= !flag;
+    }
+
+    fn evidence(&self) -> u8 {
+        self.flags & HELD
+    }
+
+    /// Takes in the evidence of the present firing, if there is one. A line that was stuck says nothing more.
+    pub(super) fn shows(&mut self, evidence: u8) {
+        if self.is(LISTENING) && self.evidence() != STUCK {
+            self.flags = self.flags & !HELD | evidence;
+        }
+    }
+
+    /// Evidence is complete. Returns true if the reading is out and its silence counts only now.
+    pub(super) fn answered(&mut self) -> bool {
+        let (evidence, is_out) = (self.evidence(), !self.is(LISTENING));
+        if evidence != STUCK {
+            self.clear(HELD);
+        }
+        is_out && evidence == HELD
     }
 
     /// Number of periods ago it fired, if fewer than eight.
@@ -104,6 +127,7 @@ impl<const E: usize, const H: usize> Sensor<E, H> {
     pub(super) fn expire(&mut self, now: Instant) -> bool {
         let expired = self.firings.expire(now);
         if expired && !self.is(LISTENING) {
+            self.clear(HELD);
             self.set(OUTSIDE);
         }
         expired
@@ -135,6 +159,9 @@ impl<const E: usize, const H: usize> Sensor<E, H> {
             return Noted::Ready;
         }
         if t_echo > window {
+            if self.evidence() == HELD {
+                self.clear(HELD);
+            }
             return Noted::Late;
         }
         if t_echo < blanking {
@@ -171,14 +198,12 @@ impl<const E: usize, const H: usize> Sensor<E, H> {
         // Since it fired; negative before.
         let middle = i64::from(at.since(self.fired()).as_micros() as i32);
         let [earliest, latest] = [middle - us(off), middle + us(off)];
-        if latest < us(blanking) {
+        let listens = self.is(LISTENING);
+        if latest < us(blanking) || (listens && earliest > us(window)) {
             return self.echo(at, Micros::ZERO, blanking, window);
         }
-        if !self.is(LISTENING) {
+        if !listens {
             return Noted::Unwanted;
-        }
-        if earliest > us(window) {
-            return Noted::Late;
         }
         if !self.is(OUTSIDE) && self.held().is_some_and(|echo| us(echo) <= earliest) {
             return Noted::Stored;
@@ -186,11 +211,11 @@ impl<const E: usize, const H: usize> Sensor<E, H> {
         self.be_uncertain(WIDE)
     }
 
-    /// Forgets the echo of the present firing. Returns true if that could have been emitted.
+    /// Forgets the echo of the last firing. Returns true if that could have been emitted.
     pub(super) fn unhear(&mut self) -> bool {
-        let was_ready = self.is(LISTENING) && self.is(READY);
+        let was_ready = self.is(READY);
         if was_ready {
-            self.clear(READY);
+            self.clear(READY | OUTSIDE);
             self.echoes = [NO_ECHO; E];
             self.uncertain[0] = 0;
         }
@@ -215,28 +240,30 @@ impl<const E: usize, const H: usize> Sensor<E, H> {
         let echoes = core::mem::replace(&mut self.echoes, [NO_ECHO; E]);
         let is_silent = echoes.first().is_none_or(|&echo| echo == NO_ECHO);
         let uncertain = self.uncertain;
-        let unusable = if self.is(STUCK) {
-            Some(ReadingKind::Stuck)
-        } else if uncertain[0] == WIDE {
-            Some(ReadingKind::Late)
-        } else if self.is(OUTSIDE) {
-            Some(ReadingKind::TooEarly)
-        } else if self.is(UNANSWERED) && is_silent {
-            Some(unwitnessed)
-        } else {
-            None
+        let evidence = self.evidence();
+        let unusable = match evidence {
+            STUCK => Some(ReadingKind::Stuck),
+            _ if uncertain[0] == WIDE => Some(ReadingKind::Late),
+            _ if self.is(OUTSIDE) => Some(ReadingKind::TooEarly),
+            UNANSWERED if is_silent => Some(unwitnessed),
+            _ => None,
         };
         let (listened, was_ready) = (self.is(LISTENING), self.is(READY));
         let echoes =
             if matches!(unusable, Some(ReadingKind::Stuck | ReadingKind::Late)) { [NO_ECHO; E] } else { echoes };
+        let is_held = evidence == HELD && (!listened || is_silent && unusable.is_none());
         if listened {
             // What is late is compared with nothing.
             self.uncertain = [0, uncertain[0], uncertain[1]];
         }
-        // After a late edge no other is waited for.
-        self.flags &= if listened { PERIOD } else { PERIOD | OUTSIDE };
+        self.flags &= match (listened, is_held) {
+            (true, true) => PERIOD | HELD,
+            (true, false) => PERIOD,
+            // After a late edge no other is waited for.
+            (false, _) => PERIOD | OUTSIDE,
+        };
         let uncertain = uncertain.map(|units| Micros::new(u32::from(units) * UNIT));
-        Ended { listened, was_ready, unusable, echoes, uncertain }
+        Ended { listened, was_ready, is_held, unusable, echoes, uncertain }
     }
 }
 
@@ -244,6 +271,8 @@ impl<const E: usize, const H: usize> Sensor<E, H> {
 pub(super) struct Ended<const E: usize> {
     pub(super) listened: bool,
     pub(super) was_ready: bool,
+    /// Its silence counts when its line has fallen; of a late edge, with it.
+    pub(super) is_held: bool,
     /// Why it says nothing about the echo time, if it does not.
     pub(super) unusable: Option<ReadingKind>,
     pub(super) echoes: [Micros; E],

@@ -158,7 +158,7 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
         let own = self.sensors.get_mut(usize::from(sensor))?;
         let (fired, since_before) = (own.fired(), own.firings.since_before());
         let periods_ago = own.periods_ago(self.period);
-        let Ended { listened, was_ready, unusable, echoes, uncertain } = own.end(self.listening.unwitnessed());
+        let Ended { listened, was_ready, is_held, unusable, echoes, uncertain } = own.end(self.listening.unwitnessed());
         let mut ended_at = fired + self.closes_after(sensor);
         let echoes = heard(&echoes);
         if was_ready {
@@ -175,6 +175,11 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
             let heard = Heard { sensor, fired, since_before, echoes, firing, t_delta };
             let mut verdict = match unusable {
                 Some(kind) => self.judge.skip(&heard, kind),
+                None if is_held => {
+                    self.judge.hold(&heard);
+                    let kind = if self.judge.is_clear(sensor) { ReadingKind::Clear } else { ReadingKind::NoEcho };
+                    Verdict { age: self.judge.age(sensor), ..heard.unjudged(Some(kind)) }
+                }
                 None => {
                     let (sensors, plan, listening) = (&self.sensors, &self.plan, &self.listening);
                     // The proof is about readings that differ by no more than `T_delta`, at times that are known.
@@ -201,6 +206,9 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
             }
             verdict
         } else {
+            if is_held {
+                self.judge_silence(sensor);
+            }
             let (t_echo, age) = (echoes.first().copied(), self.judge.age(sensor));
             Verdict { kind: ReadingKind::Late, t_echo, previous: None, age, explained_by: None }
         };

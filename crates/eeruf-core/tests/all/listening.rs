@@ -133,6 +133,40 @@ fn high_line_makes_its_firing_stuck() {
 }
 
 #[test]
+fn held_line_counts_as_silent_once_it_has_fallen() {
+    use ReadingKind::{Clear, First, NoEcho};
+    let schedule = schedule();
+    let mut ring = ring(&schedule);
+    let mut next = |holds: bool, falls_in_window: bool, falls_after: bool, echo_us: Option<u32>| {
+        let fired = fire(&mut ring);
+        if holds {
+            ring.holds(0).unwrap();
+        }
+        if falls_in_window {
+            ring.answered(0).unwrap();
+        }
+        if let Some(us) = echo_us {
+            ring.echo(0, fired + Micros::new(us)).unwrap();
+        }
+        let kind = reading(&mut ring).1.kind;
+        if falls_after {
+            // Twice: it counts once.
+            ring.answered(0).unwrap();
+            ring.answered(0).unwrap();
+        }
+        kind
+    };
+    assert_eq!(next(false, false, false, Some(9_000)), First);
+    // Until the line falls there is no silence, and what is heard next is compared with no echo from before.
+    assert_eq!(next(true, false, false, None), NoEcho);
+    assert_eq!(next(true, false, false, Some(9_000)), First);
+    assert_eq!([next(true, false, true, None), next(true, false, false, None)], [NoEcho; 2]);
+    assert_eq!(next(true, true, false, None), Clear, "the second that has fallen");
+    assert_eq!(next(true, false, false, None), Clear, "held: as before");
+    assert_eq!(next(false, false, false, None), NoEcho, "silence without a witness");
+}
+
+#[test]
 fn a_sensor_that_is_not_there_is_named_in_the_error() {
     let schedule = schedule();
     let mut ring = ring(&schedule);
@@ -140,6 +174,7 @@ fn a_sensor_that_is_not_there_is_named_in_the_error() {
     let expected: Result<(), SensorError> = Err(SensorError { sensor: 2, sensors: 2 });
     assert_eq!(ring.echo(2, now), expected);
     assert_eq!(ring.stuck(2), expected);
+    assert_eq!(ring.holds(2), expected);
     assert_eq!(ring.disable(2), expected);
     assert_eq!(ring.enable(2), expected);
     assert_eq!(ring.fired(2, now), expected);

@@ -1,10 +1,11 @@
 //! `hands_on!`: calls that every driver hands on to its ring.
 
-/// Implements them for a driver whose first parameter is its ring and whose last is the number of sensors.
+/// Implements them for a driver whose first parameter is its ring and whose last is the number of sensors, but for
+/// where its edges come from.
 macro_rules! hands_on {
-    ($driver:ident, $($parameter:ident),+) => {
-        impl<P, J, $($parameter,)+ const K: usize, const H: usize>
-            $driver<eeruf_core::Ring<P, J, K, 1, H>, $($parameter,)+ K>
+    ($driver:ident, $($parameter:ident),+ $(; $edges:ident)?) => {
+        impl<P, J, $($parameter,)+ const K: usize, const H: usize $(, $edges)?>
+            $driver<eeruf_core::Ring<P, J, K, 1, H>, $($parameter,)+ K $(, $edges)?>
         where
             P: eeruf_core::plan::Plan,
             J: eeruf_core::judge::Judge,

@@ -33,9 +33,9 @@
 //! static EDGES: EdgeQueue<32> = EdgeQueue::new(); // filled by the edge interrupt
 //!
 //! let ring = Ring::new(&PAPER_12, RingConfig::new().with_window(Micros::from_millis(40)), now())?;
-//! let mut ring = HcSr04Ring::new(ring, pins, delay, Settings::default())?;
+//! let mut ring = HcSr04Ring::with_edges(ring, pins, delay, Settings::default(), &EDGES)?;
 //! loop {
-//!     while let Some(event) = ring.poll_with_edges(&EDGES, now()) {
+//!     while let Some(event) = ring.poll(now()) {
 //!         if let RingEvent::Reading(reading) = event {
 //!             if reading.kind == ReadingKind::Accepted { /* something is at reading.t_echo */ }
 //!         }
@@ -60,5 +60,5 @@ pub use eeruf_modules as modules;
 pub use error::SetupError;
 pub use health::Health;
 pub use lines::{FlexPin, Pins};
-pub use ring::HcSr04Ring;
+pub use ring::{Edges, HcSr04Ring};
 pub use settings::Settings;

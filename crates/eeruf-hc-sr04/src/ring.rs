@@ -18,9 +18,29 @@ use crate::settings::Settings;
 /// A ring whose firings are triggers on pins and whose echoes are pulses on lines: a [`Ring`] of any plan and judge,
 /// such as a [`FlowRing`](eeruf_core::flow::FlowRing), which fires by flow.
 #[derive(Debug)]
-pub struct HcSr04Ring<R, T, I, D, const K: usize> {
+pub struct HcSr04Ring<R, T, I, D, const K: usize, Q = ()> {
     ring: R,
     lines: Lines<T, I, D, K>,
+    edges: Q,
+}
+
+/// The edges that a driver takes in before each poll: of a queue that interrupts fill, or `()` for none, where the
+/// caller hands them in by [`HcSr04Ring::edge`].
+pub trait Edges {
+    /// Takes out the oldest edge, if there is one.
+    fn pop(&self) -> Option<Edge>;
+}
+
+impl Edges for () {
+    fn pop(&self) -> Option<Edge> {
+        None
+    }
+}
+
+impl<const N: usize> Edges for &EdgeQueue<N> {
+    fn pop(&self) -> Option<Edge> {
+        EdgeQueue::pop(self)
+    }
 }
 
 impl<P: Plan, J: Judge, T: OutputPin, I: InputPin, D: DelayNs, const K: usize, const H: usize>
@@ -37,10 +57,31 @@ impl<P: Plan, J: Judge, T: OutputPin, I: InputPin, D: DelayNs, const K: usize, c
         delay: D,
         settings: Settings,
     ) -> Result<Self, SetupError> {
-        Self::on(ring, pins, delay, settings)
+        Self::on(ring, pins, delay, settings, ())
+    }
+}
+
+impl<P: Plan, J: Judge, T: OutputPin, I: InputPin, D: DelayNs, const K: usize, const H: usize, Q: Edges>
+    HcSr04Ring<Ring<P, J, K, 1, H>, T, I, D, K, Q>
+{
+    /// As [`new`](HcSr04Ring::new), with the queue that the edge interrupt fills. Each poll takes its edges in first.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn with_edges(
+        ring: Ring<P, J, K, 1, H>,
+        pins: [Pins<T, I>; K],
+        delay: D,
+        settings: Settings,
+        edges: Q,
+    ) -> Result<Self, SetupError> {
+        Self::on(ring, pins, delay, settings, edges)
     }
 
     /// As [`Ring::poll`]. [`RingEvent::Fire`] is for information: the sensor has been triggered already.
+    ///
+    /// Edges in the queue are taken in first. Read the clock for `now` just before: then no window closes on an edge
+    /// that came in time, however long the main loop was busy elsewhere.
     ///
     /// A trigger takes [`Settings::trigger`], 10 us, during which the driver waits: setting an alarm would take as
     /// long.
@@ -50,6 +91,10 @@ impl<P: Plan, J: Judge, T: OutputPin, I: InputPin, D: DelayNs, const K: usize, c
 
     /// As [`Ring::poll_expecting`].
     pub fn poll_expecting(&mut self, now: Instant, expected_change_us: impl FnMut(u8) -> i32) -> Option<RingEvent> {
+        while let Some(edge) = self.edges.pop() {
+            // An edge of a line that the ring does not have is ignored.
+            _ = self.edge(edge);
+        }
         let event = self.ring.poll_expecting(now, expected_change_us)?;
         if let RingEvent::Fire { sensor, .. } = event {
             let trigger = self.lines.trigger(sensor, now);
@@ -57,19 +102,9 @@ impl<P: Plan, J: Judge, T: OutputPin, I: InputPin, D: DelayNs, const K: usize, c
         }
         Some(event)
     }
-
-    /// Hands in all edges in the queue, then [polls](Self::poll). Read the clock for `now` just before: then no window
-    /// closes on an edge that came in time, however long the main loop was busy elsewhere.
-    pub fn poll_with_edges<const N: usize>(&mut self, edges: &EdgeQueue<N>, now: Instant) -> Option<RingEvent> {
-        while let Some(edge) = edges.pop() {
-            // An edge of a line that the ring does not have is ignored.
-            _ = self.edge(edge);
-        }
-        self.poll(now)
-    }
 }
 
-impl<R, T, I: FlexPin, D: DelayNs, const K: usize> HcSr04Ring<R, T, I, D, K> {
+impl<R, T, I: FlexPin, D: DelayNs, const K: usize, Q> HcSr04Ring<R, T, I, D, K, Q> {
     /// Pulls the line of a sensor low for [`Settings::recovery`] if it is stuck high, and returns true if it was; call
     /// it after each [`RingEvent::Fire`]. Some modules hold their line for ever after a lost echo, until it is pulled
     /// low. The firing is [`Stuck`](eeruf_core::ReadingKind::Stuck) all the same; the next one triggers the module if
@@ -88,21 +123,34 @@ impl<P: Plan, J: Judge, const K: usize, const H: usize> HcSr04Ring<Ring<P, J, K,
     /// # Errors
     /// As for [`new`](HcSr04Ring::new).
     pub fn by_hardware(ring: Ring<P, J, K, 1, H>, settings: Settings) -> Result<Self, SetupError> {
-        Self::on(ring, [const { Pins { trigger: (), echo: () } }; K], (), settings)
+        Self::on(ring, [const { Pins { trigger: (), echo: () } }; K], (), settings, ())
+    }
+
+    /// As [`Ring::poll`] at the instant `at` at which hardware has triggered the sensor that was due, by
+    /// [`Ring::upcoming`]: it is not triggered again. Call until there is no event, after all edges up to `at` and
+    /// before all later ones. The line was not seen to be low: a sensor that still held it counts as unanswered.
+    pub fn poll_triggered(&mut self, at: Instant) -> Option<RingEvent> {
+        let event = self.ring.poll(at)?;
+        if let RingEvent::Fire { sensor, .. } = event {
+            let trigger = self.lines.triggered(sensor, at);
+            self.has_triggered(sensor, trigger);
+        }
+        Some(event)
     }
 }
 
-impl<P: Plan, J: Judge, T, I, D, const K: usize, const H: usize> HcSr04Ring<Ring<P, J, K, 1, H>, T, I, D, K> {
+impl<P: Plan, J: Judge, T, I, D, const K: usize, const H: usize, Q> HcSr04Ring<Ring<P, J, K, 1, H>, T, I, D, K, Q> {
     fn on(
         mut ring: Ring<P, J, K, 1, H>,
         pins: [Pins<T, I>; K],
         delay: D,
         settings: Settings,
+        edges: Q,
     ) -> Result<Self, SetupError> {
         settings.allow(ring.plan().min_refire())?;
         // A line that does not rise is no free space.
         ring.set_silence(Silence::NeedsAnswer);
-        Ok(Self { ring, lines: Lines::new(pins, delay, settings) })
+        Ok(Self { ring, lines: Lines::new(pins, delay, settings), edges })
     }
 
     fn has_triggered(&mut self, sensor: u8, trigger: Trigger) {
@@ -113,18 +161,6 @@ impl<P: Plan, J: Judge, T, I, D, const K: usize, const H: usize> HcSr04Ring<Ring
             Trigger::Withheld => self.ring.stuck(sensor),
             Trigger::ListensStill => self.ring.holds(sensor),
         };
-    }
-
-    /// As [`poll`](Self::poll) at the instant `at` at which hardware has triggered the sensor that was due, by
-    /// [`Ring::upcoming`]: it is not triggered again. Call until there is no event, after all edges up to `at` and
-    /// before all later ones. The line was not seen to be low: a sensor that still held it counts as unanswered.
-    pub fn poll_triggered(&mut self, at: Instant) -> Option<RingEvent> {
-        let event = self.ring.poll(at)?;
-        if let RingEvent::Fire { sensor, .. } = event {
-            let trigger = self.lines.triggered(sensor, at);
-            self.has_triggered(sensor, trigger);
-        }
-        Some(event)
     }
 
     /// Hands in the width of a sensor's pulse, from hardware that measures it: instead of edges, before the reading is
@@ -203,7 +239,7 @@ impl<P: Plan, J: Judge, T, I, D, const K: usize, const H: usize> HcSr04Ring<Ring
     }
 }
 
-impl<P: Plan, T, I, D, const K: usize, const H: usize> HcSr04Ring<Ring<P, EchoFilter<K>, K, 1, H>, T, I, D, K> {
+impl<P: Plan, T, I, D, const K: usize, const H: usize, Q> HcSr04Ring<Ring<P, EchoFilter<K>, K, 1, H>, T, I, D, K, Q> {
     /// As [`Ring::set_t_delta`].
     ///
     /// # Errors
@@ -213,7 +249,7 @@ impl<P: Plan, T, I, D, const K: usize, const H: usize> HcSr04Ring<Ring<P, EchoFi
     }
 }
 
-impl<P: Plan, J: Judge, T, I, D, const K: usize, const H: usize> HcSr04Ring<Ring<P, J, K, 1, H>, T, I, D, K> {
+impl<P: Plan, J: Judge, T, I, D, const K: usize, const H: usize, Q> HcSr04Ring<Ring<P, J, K, 1, H>, T, I, D, K, Q> {
     /// As [`Ring::set_window`].
     ///
     /// # Errors
@@ -231,8 +267,8 @@ impl<P: Plan, J: Judge, T, I, D, const K: usize, const H: usize> HcSr04Ring<Ring
     }
 }
 
-impl<'s, U: OwnLimits, J: Judge, T, I, D, const K: usize, const M: usize, const H: usize>
-    HcSr04Ring<Ring<ScheduledFiring<'s, K, M, U>, J, K, 1, H>, T, I, D, K>
+impl<'s, U: OwnLimits, J: Judge, T, I, D, const K: usize, const M: usize, const H: usize, Q>
+    HcSr04Ring<Ring<ScheduledFiring<'s, K, M, U>, J, K, 1, H>, T, I, D, K, Q>
 {
     /// As [`Ring::change_schedule`].
     ///
@@ -248,4 +284,4 @@ impl<'s, U: OwnLimits, J: Judge, T, I, D, const K: usize, const M: usize, const 
     }
 }
 
-hands_on!(HcSr04Ring, T, I, D);
+hands_on!(HcSr04Ring, T, I, D; Q);

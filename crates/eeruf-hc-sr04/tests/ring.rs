@@ -208,19 +208,28 @@ fn timely_echo_is_heard_however_long_an_event_took() {
         pair
     });
     let ring = Ring::unverified(&schedule, CONFIG, Instant::default()).unwrap();
-    let mut driver: Driver<'_> = HcSr04Ring::new(ring, pins, NoopDelay, Settings::default()).unwrap();
     let edges = EdgeQueue::<8>::new();
+    let mut driver = HcSr04Ring::with_edges(ring, pins, NoopDelay, Settings::default(), &edges).unwrap();
     let ms = |ms: u32| Instant::from_micros(1000 * ms);
-    assert_eq!(fired(driver.poll_with_edges(&edges, ms(24))), Some(0));
+    assert_eq!(fired(driver.poll(ms(24))), Some(0));
     // Here the caller is held up for 50 ms, and its edges wait.
     edges.push(Edge { sensor: 0, high: true, at: ms(25) });
     edges.push(Edge { sensor: 0, high: false, at: ms(31) });
-    let events: Vec<_> = std::iter::from_fn(|| driver.poll_with_edges(&edges, ms(74))).take(2).collect();
+    let events: Vec<_> = std::iter::from_fn(|| driver.poll(ms(74))).take(2).collect();
     assert_eq!(fired(Some(events[0])), Some(1));
     let RingEvent::Reading(reading) = events[1] else { panic!("{events:?}") };
     assert_eq!((reading.sensor, reading.t_echo), (0, Some(Micros::from_millis(6))));
-    let third = std::iter::from_fn(|| driver.poll_with_edges(&edges, ms(94))).next();
+    let third = std::iter::from_fn(|| driver.poll(ms(94))).next();
     assert_eq!(fired(third), Some(2));
+    // However it is polled.
+    edges.push(Edge { sensor: 2, high: true, at: ms(95) });
+    edges.push(Edge { sensor: 2, high: false, at: ms(103) });
+    let expecting = std::iter::from_fn(|| driver.poll_expecting(ms(140), |_| 0));
+    let echoes = expecting.filter_map(|event| match event {
+        RingEvent::Reading(reading) if reading.sensor == 2 => reading.t_echo,
+        _ => None,
+    });
+    assert_eq!(echoes.collect::<Vec<_>>(), [Micros::from_millis(8)]);
     drop(driver);
     for mut mock in mocks {
         mock.done();

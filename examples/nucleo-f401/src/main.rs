@@ -169,11 +169,12 @@ async fn main(_spawner: Spawner) {
 
     let config = RingConfig::new().with_window(Micros::from_millis(40));
     let ring = Ring::new(&RING, config, now()).expect("the table was verified for such a window");
-    let mut ring = HcSr04Ring::new(ring, pins, Delay, Settings::default()).expect("the table lets modules rest");
+    let settings = Settings::default();
+    let mut ring = HcSr04Ring::with_edges(ring, pins, Delay, settings, &EDGES).expect("the table lets modules rest");
     let mut watch = SensorWatch::<SENSORS>::new(0, now());
     let (mut said, mut latest) = (now(), Micros::ZERO);
     loop {
-        while let Some(event) = ring.poll_with_edges(&EDGES, now()) {
+        while let Some(event) = ring.poll(now()) {
             let now = now();
             watch.observe(&event, now);
             if let RingEvent::PeriodEnded(stats) = event {

@@ -75,7 +75,7 @@ extern "C" fn main() -> ! {
     let config = RingConfig::new().with_window(Micros::from_millis(40));
     let ring = Ring::new(&RING, config, now()).map_err(Into::into);
     // It stays where it was made: moved out of the result it would be on the stack twice.
-    let mut made = ring.and_then(|ring| HcSr04Ring::new(ring, PINS, Wait, Settings::default()));
+    let mut made = ring.and_then(|ring| HcSr04Ring::with_edges(ring, PINS, Wait, Settings::default(), &EDGES));
     let Ok(ring) = &mut made else {
         // The table was verified for such a window, and lets modules rest; change it, and it may be this.
         outbox.say(0, 99_999);
@@ -84,7 +84,7 @@ extern "C" fn main() -> ! {
         }
     };
     loop {
-        while let Some(event) = ring.poll_with_edges(&EDGES, now()) {
+        while let Some(event) = ring.poll(now()) {
             if let RingEvent::Reading(reading) = event
                 && reading.kind == ReadingKind::Accepted
                 && let Some(t_echo) = reading.t_echo

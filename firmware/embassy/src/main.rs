@@ -50,10 +50,11 @@ async fn main(_spawner: Spawner) {
     }
     let config = RingConfig::new().with_window(Micros::from_millis(40));
     let Ok(ring) = Ring::new(&PAPER_12, config, now()) else { leave(2) };
-    let Ok(mut ring) = HcSr04Ring::new(ring, fake_sensors::pins(), Delay, Settings::default()) else { leave(3) };
+    let settings = Settings::default();
+    let Ok(mut ring) = HcSr04Ring::with_edges(ring, fake_sensors::pins(), Delay, settings, &EDGES) else { leave(3) };
     let mut readings = Tally::<u32>::default();
     loop {
-        while let Some(event) = ring.poll_with_edges(&EDGES, now()) {
+        while let Some(event) = ring.poll(now()) {
             match event {
                 RingEvent::Fire { .. } => {}
                 RingEvent::Reading(reading) => readings.count(reading.kind),

@@ -37,7 +37,7 @@ pub(crate) fn run<P: Plan, J: Judge, const H: usize, E>(
     let Ok(mut ring) = HcSr04Ring::new(ring, pins, Delay, Settings::default()) else { leave(3) };
     loop {
         loop {
-            // As `HcSr04Ring::poll_with_edges` does.
+            // As a driver with a queue does.
             let now = eeruf_board::now();
             while let Some(edge) = EDGES.pop() {
                 host.say(Record::edge(edge));

@@ -5,17 +5,18 @@ use eeruf_board::fake_sensors::{Delay, Echo, Trigger};
 use eeruf_core::{EdgeQueue, RingEvent, ScheduledRing};
 use eeruf_hc_sr04::HcSr04Ring;
 
-/// A ring on the pins of this board.
-pub type BoardRing<const K: usize> = HcSr04Ring<ScheduledRing<'static, K>, Trigger, Echo, Delay, K>;
+/// A ring on the pins of this board, whose edges come through a queue.
+pub type BoardRing<const K: usize, const N: usize> =
+    HcSr04Ring<ScheduledRing<'static, K>, Trigger, Echo, Delay, K, &'static EdgeQueue<N>>;
 
-/// Runs a ring forever and passes each event to `on_event`.
+/// Runs a ring on the queue of its edges forever and passes each event to `on_event`.
 pub fn run<const K: usize, const N: usize>(
-    mut ring: BoardRing<K>,
-    edges: &EdgeQueue<N>,
-    mut on_event: impl FnMut(&BoardRing<K>, RingEvent),
+    mut ring: BoardRing<K, N>,
+    edges: &'static EdgeQueue<N>,
+    mut on_event: impl FnMut(&BoardRing<K, N>, RingEvent),
 ) -> ! {
     loop {
-        while let Some(event) = ring.poll_with_edges(edges, eeruf_board::now()) {
+        while let Some(event) = ring.poll(eeruf_board::now()) {
             on_event(&ring, event);
         }
         let deadline = ring.next_deadline();

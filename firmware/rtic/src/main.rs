@@ -21,7 +21,7 @@ mod app {
 
     #[local]
     struct Local {
-        ring: HcSr04Ring<ScheduledRing<'static, 12>, Trigger, Echo, Delay, 12>,
+        ring: HcSr04Ring<ScheduledRing<'static, 12>, Trigger, Echo, Delay, 12, &'static EdgeQueue<32>>,
         readings: Tally<u32>,
     }
 
@@ -33,7 +33,8 @@ mod app {
         }
         let config = RingConfig::new().with_window(Micros::from_millis(40));
         let Ok(ring) = Ring::new(&PAPER_12, config, eeruf_board::now()) else { leave(2) };
-        let Ok(ring) = HcSr04Ring::new(ring, fake_sensors::pins(), Delay, Settings::default()) else { leave(3) };
+        let settings = Settings::default();
+        let Ok(ring) = HcSr04Ring::with_edges(ring, fake_sensors::pins(), Delay, settings, &EDGES) else { leave(3) };
         set_alarm(ring.next_deadline());
         (Shared {}, Local { ring, readings: Tally::default() })
     }
@@ -59,7 +60,7 @@ mod app {
     fn alarm(context: alarm::Context) {
         let alarm::LocalResources { ring, readings, .. } = context.local;
         eeruf_board::clear_alarm();
-        while let Some(event) = ring.poll_with_edges(&EDGES, eeruf_board::now()) {
+        while let Some(event) = ring.poll(eeruf_board::now()) {
             match event {
                 RingEvent::Fire { .. } => {}
                 RingEvent::Reading(reading) => readings.count(reading.kind),

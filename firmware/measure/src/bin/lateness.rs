@@ -33,7 +33,8 @@ fn main() -> ! {
     }
     let config = RingConfig::new().with_window(Micros::from_millis(40));
     let Ok(ring) = Ring::new(&PAPER_12, config, eeruf_board::now()) else { leave(2) };
-    let Ok(ring) = HcSr04Ring::new(ring, fake_sensors::pins(), Delay, Settings::default()) else { leave(3) };
+    let settings = Settings::default();
+    let Ok(ring) = HcSr04Ring::with_edges(ring, fake_sensors::pins(), Delay, settings, &EDGES) else { leave(3) };
     let mut readings = Tally::<u32>::default();
     let (mut most, mut sum) = (0, 0);
     run(ring, &EDGES, |_, event| match event {

@@ -1,12 +1,12 @@
 //! [`SensorWatch`]: what is known of the space before each sensor, for how long, and which sensors are blind.
 
 use crate::reading::{Explanation, ReadingKind};
-use crate::ring::{Reading, RingEvent};
+use crate::ring::{Reading, RingEvent, STEP_BACK};
 use crate::sensor_error::SensorError;
 use crate::time::{Instant, Micros};
 
 /// Watches the events of a ring of up to `K` sensors: what is known of the space before each of them now, and which
-/// sensors hear echoes none of which is accepted. 16 bytes for each sensor; a ring without it costs nothing.
+/// sensors hear echoes none of which is accepted. 16 bytes for each sensor and eight; a ring without it costs nothing.
 ///
 /// ```
 /// use eeruf_core::{
@@ -40,6 +40,8 @@ use crate::time::{Instant, Micros};
 pub struct SensorWatch<const K: usize> {
     sensors: [Watched; K],
     blind_after: u8,
+    /// The last instant at which an event was taken in.
+    seen: Instant,
 }
 
 /// The state of the space before a sensor. Times stop at 2,147,483,648 us (36 minutes), which stands for all longer
@@ -130,7 +132,7 @@ impl<const K: usize> SensorWatch<K> {
     pub const fn new(blind_after: u8, now: Instant) -> Self {
         let nothing =
             Watched { known: Known::Nothing(Doubt::NoFiring), at: now, doubted: false, silent: false, echoes: 0 };
-        Self { sensors: [nothing; K], blind_after }
+        Self { sensors: [nothing; K], blind_after, seen: now }
     }
 
     /// Forgets all, `now`: to be called with [`Ring::restart`](crate::Ring::restart), since after a long sleep the
@@ -143,8 +145,13 @@ impl<const K: usize> SensorWatch<K> {
     /// returned once, and again only after something was accepted or confirmed clear.
     ///
     /// Observe every event, or at least readings and the ends of periods, since ages are kept within what the clock can
-    /// tell there.
+    /// tell there. If the clock has jumped back by more than a second since the last event, all is forgotten, as the
+    /// ring does.
     pub fn observe(&mut self, event: &RingEvent, now: Instant) -> Option<u8> {
+        if !(now + STEP_BACK).has_reached(self.seen) {
+            self.restart(now);
+        }
+        self.seen = now;
         match event {
             RingEvent::Fire { .. } => None,
             RingEvent::PeriodEnded(_) => {

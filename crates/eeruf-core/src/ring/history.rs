@@ -17,7 +17,7 @@ use crate::time::{Instant, Micros};
 /// Longer ago than any sound is audible: about 18 minutes.
 const LONG_AGO: Micros = Micros::new(1 << 30);
 /// The largest step back of a clock that is not taken for a wrap: about one second.
-pub(super) const STEP_BACK: Micros = Micros::new(1 << 20);
+pub(crate) const STEP_BACK: Micros = Micros::new(1 << 20);
 
 /// The last `H` firings of one sensor, the latest first. What came before them is forgotten.
 #[derive(Clone, Copy, Debug)]

@@ -24,6 +24,7 @@ use crate::sensor_error::SensorError;
 use crate::time::{Instant, Micros};
 use crate::verified::VerifiedSchedule;
 
+pub(crate) use history::STEP_BACK;
 use history::{Firings, long_before};
 pub(crate) use listening::Listening;
 use punctuality::Punctuality;

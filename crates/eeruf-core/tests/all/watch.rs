@@ -64,7 +64,7 @@ fn state_is_as_old_as_its_confirmation_through_a_wrap() {
     ring.disable(0).unwrap();
     let (now, _) = run(&mut ring, &mut watch, 50_000, |_, _| None);
     assert_eq!(watch.state(0, now), Ok(SensorState::Clear { age: Micros::new(1 << 31) }));
-    assert_eq!(size_of::<SensorWatch<12>>(), 12 * 16 + 4, "as its documentation says");
+    assert_eq!(size_of::<SensorWatch<12>>(), 12 * 16 + 8, "as its documentation says");
 }
 
 // Each reading says what is known of the space before its sensor.
@@ -308,5 +308,27 @@ fn nothing_is_known_after_a_restart() {
     for sensor in 0..12 {
         let unknown = SensorState::Unknown { since: Micros::ZERO, why: Doubt::NoFiring };
         assert_eq!(watch.state(sensor, later), Ok(unknown));
+    }
+}
+
+// The ring restarts by itself then, and its next event is the first that the watch gets.
+#[test]
+fn nothing_is_known_after_the_clock_has_jumped_back() {
+    for (back_us, is_forgotten) in [(900_000, false), (1_100_000, true), (25_000_000, true), (2_000_000_000, true)] {
+        let (mut ring, mut watch) = (ring(60_000_000), SensorWatch::<12>::new(0, at(60_000_000)));
+        let (now, _) = run(&mut ring, &mut watch, 5, |_, _| Some(9_000));
+        assert!(matches!(watch.state(0, now), Ok(SensorState::Obstacle { .. })), "{:?}", watch.state(0, now));
+        let mut jumped = at(now.as_micros().wrapping_sub(back_us));
+        let event = std::iter::from_fn(|| {
+            let event = ring.poll(jumped);
+            if event.is_none() {
+                jumped = ring.next_deadline();
+            }
+            Some(event)
+        });
+        let event = event.take(3).flatten().next().expect("an event");
+        watch.observe(&event, jumped);
+        let is_unknown = matches!(watch.state(0, jumped), Ok(SensorState::Unknown { why: Doubt::NoFiring, .. }));
+        assert_eq!(is_unknown, is_forgotten, "{back_us} us: {:?}", watch.state(0, jumped));
     }
 }

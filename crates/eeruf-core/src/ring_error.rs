@@ -11,6 +11,32 @@ pub(crate) const LONGEST: Micros = Micros::new(u16::MAX as u32);
 /// The longest that sound can be said to be audible, about a minute.
 pub(crate) const MAX_AUDIBLE: Micros = Micros::new(1 << 26);
 
+/// The shortest time that a window, or sound, can last: what is less is a number of milliseconds.
+pub(crate) const PLAUSIBLE: Micros = Micros::from_millis(1);
+
+/// Refuses a setting that is not within its range.
+pub(crate) const fn within(name: &'static str, value: Micros, least: Micros, most: Micros) -> Result<(), RingError> {
+    let [value, least, most] = [value.as_micros(), least.as_micros(), most.as_micros()];
+    if value < least || value > most {
+        return Err(RingError::Setting { name, value, least, most });
+    }
+    Ok(())
+}
+
+/// The unit in which a setting out of its range was likely given, with how to say so.
+fn likely(name: &str, value: u32, least: u32, most: u32) -> &'static str {
+    let fits = |value: Option<u32>| value.is_some_and(|value| (least..=most).contains(&value));
+    match name {
+        "seed" | "hold" => "",
+        _ if value < least && fits(value.checked_mul(1000)) => match name {
+            "top_speed_mm_s" => ", likely given in m/s",
+            _ => ", likely given in milliseconds",
+        },
+        _ if value > most && fits(Some(value / 1000)) => ", likely given in nanoseconds",
+        _ => "",
+    }
+}
+
 /// Why a [`Ring`](crate::Ring), or a judge, cannot be set up as asked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
@@ -94,9 +120,10 @@ pub enum RingError {
         /// The drift asked for, in microseconds per second.
         us_per_s: u32,
     },
-    /// A setting of a flow ring out of its range; times are in microseconds.
+    /// A setting out of its range; times are in microseconds.
     Setting {
-        /// Its field in [`TurnSettings`](crate::flow::TurnSettings) or [`BeliefSettings`](crate::flow::BeliefSettings).
+        /// Its field in [`RingConfig`](crate::RingConfig), or of a flow ring in
+        /// [`TurnSettings`](crate::flow::TurnSettings) or [`BeliefSettings`](crate::flow::BeliefSettings).
         name: &'static str,
         /// The value given.
         value: u32,
@@ -151,7 +178,10 @@ impl fmt::Display for RingError {
             ),
             Self::Sensor(error) => error.fmt(f),
             Self::Rate { us_per_s } => write!(f, "echoes that change by {us_per_s} us/s; expected 0 to 400000 us/s"),
-            Self::Setting { name, value, least, most } => write!(f, "{name} is {value}; expected {least} to {most}"),
+            Self::Setting { name, value, least, most } => {
+                let likely = likely(name, *value, *least, *most);
+                write!(f, "{name} is {value}; expected {least} to {most}{likely}")
+            }
         }
     }
 }

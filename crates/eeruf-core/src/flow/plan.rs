@@ -5,7 +5,7 @@ use crate::judging::{Firing, Heard, Judge, Pace, Quiet};
 use crate::own_limits::{OwnLimits, SensorLimits};
 use crate::plan::{Limits, Plan};
 use crate::reading::Verdict;
-use crate::ring_error::RingError;
+use crate::ring_error::{PLAUSIBLE, RingError, within};
 use crate::schedule::{MAX_SENSORS, Phase};
 use crate::time::{Instant, Micros, longer, shorter};
 
@@ -155,8 +155,8 @@ impl<const K: usize, U: OwnLimits> InTurn<K, U> {
         if sensors == 0 || sensors > K || sensors > MAX_SENSORS {
             return Err(RingError::Sensors { sensors, capacity: K });
         }
-        if window.as_micros() > LONGEST_REST.as_micros() {
-            return Err(RingError::Window { window, min_refire: LONGEST_REST });
+        if let Err(error) = within("window", window, PLAUSIBLE, LONGEST_REST) {
+            return Err(error);
         }
         let sensors = sensors as u8;
         // At most 250 ms each.
@@ -637,8 +637,8 @@ mod tests {
         assert_eq!(of(|_| ()), Ok(()));
         let named = |name, value, least, most| Err(RingError::Setting { name, value, least, most });
         assert_eq!(of(|settings| settings.seed = 0), named("seed", 0, 1, u32::MAX));
-        assert_eq!(of(|settings| settings.least = Micros::new(40_000)), named("least", 40_000, 1, 33_500));
-        assert_eq!(of(|settings| settings.most = Micros::new(60)), named("least", 6_000, 1, 60));
-        assert_eq!(of(|settings| settings.rest = Micros::ZERO), named("rest", 0, 1, 4_000_000));
+        assert_eq!(of(|settings| settings.least = Micros::new(40_000)), named("least", 40_000, 100, 33_500));
+        assert_eq!(of(|settings| settings.most = Micros::new(33)), named("most", 33, 1_000, 250_000));
+        assert_eq!(of(|settings| settings.rest = Micros::ZERO), named("rest", 0, 1_000, 4_000_000));
     }
 }

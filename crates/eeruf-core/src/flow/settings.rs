@@ -3,36 +3,29 @@
 use crate::own_limits::{EachSensor, SensorLimits};
 use crate::requirements::Requirements;
 use crate::requirements_error::RequirementsError;
-use crate::ring_error::RingError;
+use crate::ring_error::{PLAUSIBLE, RingError, within};
 use crate::time::{Micros, longer, shorter};
 
+/// Less is a number of milliseconds.
+const LEAST_QUIET: Micros = Micros::new(100);
 /// The longest quiet, and the longest time between two firings of a sensor.
 const LONGEST_QUIET: Micros = Micros::from_millis(250);
 pub(super) const LONGEST_REST: Micros = Micros::from_millis(4_000);
-
-/// Returns the setting if it is within its range.
-const fn within(name: &'static str, value: Micros, least: Micros, most: Micros) -> Result<(), RingError> {
-    if value.as_micros() < least.as_micros() || value.as_micros() > most.as_micros() {
-        let [value, least, most] = [value.as_micros(), least.as_micros(), most.as_micros()];
-        return Err(RingError::Setting { name, value, least, most });
-    }
-    Ok(())
-}
 
 /// When sensors fire that fire in turn. The least and the most quiet being equal, each has the same gap around it, as
 /// [one by one](Self::one_by_one).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct TurnSettings {
-    /// The least time from a firing to the next, of a robot that stands or is among others. Where every echo is
-    /// reported, twice as much.
+    /// The least time from a firing to the next, of a robot that stands or is among others: at least 100 us. Where every
+    /// echo is reported, twice as much.
     pub least: Micros,
-    /// R: the most, and how long sound is heard, its tail included. At most 250 ms.
+    /// R: the most, and how long sound is heard, its tail included. 1 to 250 ms.
     pub most: Micros,
-    /// The least time between two firings of a sensor, for which its module rests. At most 4 s.
+    /// The least time between two firings of a sensor, for which its module rests. 1 ms to 4 s.
     pub rest: Micros,
     /// Random time in every gap, from 0 to this while the robot stands, and to twice this while it moves. At least
-    /// eight ticks of the clock, or readings that agree are explained by chance.
+    /// eight ticks of the clock, so 8 us or none, or readings that agree are explained by chance.
     pub dice: Micros,
     /// The seed of the dice, not 0: another one for each robot, as its chip's number.
     pub seed: u32,
@@ -93,16 +86,17 @@ impl TurnSettings {
 
     pub(super) const fn check(&self) -> Result<(), RingError> {
         let one = Micros::new(1);
-        if let Err(error) = within("most", self.most, one, LONGEST_QUIET) {
+        if let Err(error) = within("most", self.most, PLAUSIBLE, LONGEST_QUIET) {
             return Err(error);
         }
-        if let Err(error) = within("least", self.least, one, self.most) {
+        if let Err(error) = within("least", self.least, LEAST_QUIET, self.most) {
             return Err(error);
         }
-        if let Err(error) = within("rest", self.rest, one, LONGEST_REST) {
+        if let Err(error) = within("rest", self.rest, PLAUSIBLE, LONGEST_REST) {
             return Err(error);
         }
-        if let Err(error) = within("dice", self.dice, Micros::ZERO, LONGEST_QUIET) {
+        let dice = within("dice", self.dice, Micros::new(8), LONGEST_QUIET);
+        if let (Err(error), false) = (dice, self.dice.as_micros() == 0) {
             return Err(error);
         }
         Self::check_seed(self.seed)
@@ -150,7 +144,7 @@ pub struct BeliefSettings {
     /// Readings that confirm a belief so far that as many contradictions must come before what is farther, or silence,
     /// is believed; of a robot that stands.
     pub hold: u8,
-    /// The speed that holds where the robot says none, in mm/s.
+    /// The speed that holds where the robot says none, in mm/s: 0, or at least 10.
     pub top_speed_mm_s: u16,
     /// No other robot sends sound here.
     pub alone: bool,
@@ -181,8 +175,17 @@ impl BeliefSettings {
     }
 
     pub(super) const fn check(&self) -> Result<(), RingError> {
-        let most = Micros::from_millis(10);
-        if let Err(error) = within("near", self.near, Micros::ZERO, most) {
+        let times = [("t_delta", self.t_delta), ("near", self.near), ("path_change", self.path_change)];
+        let mut time = 0;
+        while time < times.len() {
+            if let Err(error) = within(times[time].0, times[time].1, Micros::ZERO, Micros::from_millis(10)) {
+                return Err(error);
+            }
+            time += 1;
+        }
+        let speed = Micros::new(self.top_speed_mm_s as u32);
+        let speed = within("top_speed_mm_s", speed, Micros::new(10), Micros::new(u16::MAX as u32));
+        if let (Err(error), false) = (speed, self.top_speed_mm_s == 0) {
             return Err(error);
         }
         within("hold", Micros::new(self.hold as u32), Micros::new(1), Micros::new(100))

@@ -52,7 +52,7 @@ pub struct RingConfig<const E: usize = 1> {
     pub path_change: Option<Micros>,
     /// R: how long sound is audible after its firing. `None` for what the schedule was verified for, which is its
     /// period unless more was asked for; with immediate refiring for as long as a sensor listens, or until it may fire
-    /// again. At most 67 s.
+    /// again. 1 ms to 67 s.
     pub audible: Option<Micros>,
 }
 

@@ -4,7 +4,7 @@ use super::config::{RingConfig, Silence};
 use super::sensor::UNANSWERED;
 use crate::plan::{Limits, Plan};
 use crate::reading::ReadingKind;
-use crate::ring_error::{LONGEST, MAX_AUDIBLE, RingError};
+use crate::ring_error::{LONGEST, MAX_AUDIBLE, PLAUSIBLE, RingError, within};
 use crate::time::{Micros, shorter};
 
 /// Window, `t_delta` and blanking time, none of them more than the plan allows, and what sound may do.
@@ -32,6 +32,7 @@ impl Listening {
         t_delta: Micros,
         plan: &impl Plan,
     ) -> Result<Self, RingError> {
+        within("audible", config.audible.unwrap_or(PLAUSIBLE), PLAUSIBLE, Micros::MAX)?;
         let verified_for = plan.limits().verified_for;
         let window = config.window.or(verified_for.map(|verified_for| verified_for.window));
         let window = window.ok_or(RingError::Unverified)?;

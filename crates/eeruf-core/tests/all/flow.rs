@@ -430,7 +430,7 @@ fn both_ways_to_begin_fire_at_the_same_instants() {
     for seed in 1..200 {
         let mut turns = TurnSettings::new(seed);
         turns.most = Micros::new(7_000 + dice.below(60_000));
-        turns.least = Micros::new(1 + dice.below(7_000));
+        turns.least = Micros::new(100 + dice.below(6_900));
         let belief =
             BeliefSettings { top_speed_mm_s: [0, 500][dice.below(2) as usize], alone: seed % 3 == 0, ..DEFAULT };
         let begin = Instant::from_micros(seed << 25);

@@ -23,6 +23,7 @@ mod pairs;
 mod plans_and_judges;
 mod promises;
 mod rate;
+mod settings;
 mod sound;
 mod theory;
 mod uncertain;

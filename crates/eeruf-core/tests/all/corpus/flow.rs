@@ -24,11 +24,11 @@ const VOTES: [Votes; 3] = [Votes::ByMotion, Votes::EveryEcho, Votes::TwoInARow];
 fn settings(r: &mut Random) -> (TurnSettings, BeliefSettings) {
     let (mut turns, mut belief) = (TurnSettings::new(r.within(1, u32::MAX)), BeliefSettings::DEFAULT);
     if r.once_in(2) {
-        let longest = [33_500, 24_000, r.within(1, 80_000)];
+        let longest = [33_500, 24_000, r.within(1_000, 80_000)];
         let most = r.one_of(&longest);
         turns.most = Micros::new(most);
-        turns.least = Micros::new(r.within(1, most));
-        let (rests, dice) = ([60_000, 30_000, r.within(1, 150_000)], [0, 2_000, 8_000, r.up_to(20_000)]);
+        turns.least = Micros::new(r.within(100, most));
+        let (rests, dice) = ([60_000, 30_000, r.within(1_000, 150_000)], [0, 2_000, 8_000, r.within(8, 20_000)]);
         turns.rest = Micros::new(r.one_of(&rests));
         turns.dice = Micros::new(r.one_of(&dice));
     }

@@ -153,6 +153,33 @@ fn no_single_path_is_accepted_whatever_happens() {
     assert!(ambiguous > compared / 100, "{ambiguous} ambiguous of {compared}");
 }
 
+// On time crosstalk of a verified table moves by more than T_delta, by no more than P less, and by less yet as it is seen.
+#[test]
+fn edges_between_two_looks_let_no_path_in_on_time() {
+    let (mut random, mut agree) = (Random(7), 0);
+    for (schedule, t_delta) in [(TABLE_I_B, 999), (TABLE_I_D, 999)] {
+        let verified = roomy(&schedule).verified(&Requirements::new(Micros::new(t_delta))).unwrap();
+        let (window, audible) = (40_000, 100_000);
+        let sound = Sound { t_delta: t_delta.into(), path_change: t_delta.into(), audible: audible.into() };
+        for _ in 0..24 {
+            let config = RingConfig::new().with_window(Micros::new(window)).with_audible(Micros::new(audible));
+            let ring = Ring::new(&verified, config, Instant::from_micros(0)).unwrap();
+            let mut path = |receiver: u8| {
+                let emitter = (receiver + 1 + random.up_to(10) as u8) % 12;
+                Heard::Path { emitter, least: 1_000 + random.up_to(audible - 2_000) }
+            };
+            let heard = (0..12).map(&mut path).collect();
+            let course = Course { uncertain: 600, ..Course::PUNCTUAL };
+            for count in World::new(ring, 0, heard, course, sound, random.next(), &[]).run(4_000) {
+                assert_eq!(count.accepted, 0);
+                agree += count.ambiguous;
+            }
+        }
+    }
+    println!("{agree} agree");
+    assert!(agree > 1_000, "{agree}");
+}
+
 /// A wall before each sensor, somewhere in its window.
 fn walls(sensors: usize, window: u32, random: &mut Random) -> Vec<Heard> {
     (0..sensors).map(|_| Heard::Wall { t_echo: 1_000 + random.up_to(window - 2_000) }).collect()

@@ -15,11 +15,15 @@ SIZE_IS(EerufSchedule, 46);
 SIZE_IS(EerufLimits, 7);
 SIZE_IS(EerufWatched, 10);
 SIZE_IS(EerufRing, 77);
+SIZE_IS(EerufEdge, 7);
+#define PADDING 0u
+#else
+#define PADDING 2u
 #endif
-SIZE_IS(EerufSensor, 12 + 4 * EERUF_FIRINGS);
+SIZE_IS(EerufSensor, 14 + PADDING + 4 * EERUF_FIRINGS);
 SIZE_IS(EerufLine, 8);
 #if EERUF_WITH_FLOW
-SIZE_IS(EerufFlowSensor, 40);
+SIZE_IS(EerufFlowSensor, 42 + PADDING);
 #endif
 
 #if defined(__AVR__) && !defined(EERUF_SCHEDULE_IN_RAM)
@@ -382,18 +386,25 @@ static void forget(EerufFilter *filter) {
     filter->state &= DISABLED;
 }
 
+/* The most by which an echo time may be off, and its place in a sensor's filter: units of 2 us, the present firing's
+   first. WIDE for one that is off by more. */
+#define MOST_OFF_US 300u
+#define WIDE UINT8_MAX
+
+/* By how much the echoes of the present firing and the one before may be off together. */
+static uint16_t pair_off(const EerufFilter *filter) {
+    return (uint16_t)(2 * (filter->off[0] + filter->off[1]));
+}
+
 /* Eq. (11), after taking off the change that is expected. Echoes are below half a turn. */
 static bool near_identical(uint32_t echo_us, uint32_t previous_us, int32_t change_us, uint16_t t_delta_us) {
     /* Silence does not move, and is further from any echo than any t_delta. */
-    if (echo_us == EERUF_NO_ECHO || previous_us == EERUF_NO_ECHO) change_us = 0;
-    if (change_us < 0) {
-        /* The same with echoes exchanged, so that the change is taken off the later one. */
-        const uint32_t earlier = previous_us;
-        previous_us = echo_us;
-        echo_us = earlier;
-        return apart(echo_us, previous_us + (0u - (uint32_t)change_us)) <= t_delta_us;
-    }
-    return apart(echo_us, previous_us + (uint32_t)change_us) <= t_delta_us;
+    const bool is_silent = echo_us == EERUF_NO_ECHO || previous_us == EERUF_NO_ECHO;
+    const uint32_t change = is_silent ? 0 : (uint32_t)change_us;
+    /* Less than none is taken off the earlier echo. */
+    if (change >= HALF_TURN) echo_us += 0u - change;
+    else previous_us += change;
+    return apart(echo_us, previous_us) <= t_delta_us;
 }
 
 /* True if a reading agrees with the one before. */
@@ -467,8 +478,10 @@ EerufStatus eeruf_filter_forget(EerufFilter *filter) {
 #define LISTENING 0x08u    /* it has fired, and its reading is pending */
 #define CAN_EMIT 0x10u     /* it has a reading that can be emitted before its window closes */
 #define OUTSIDE 0x20u      /* its only edges so far came outside the window */
+/* Its evidence, in two bits: none of them where it is complete. */
 #define STUCK 0x40u        /* its line was high when it was to fire */
 #define UNANSWERED 0x80u   /* nothing has shown yet that it listens: silence says nothing */
+#define HELD 0xc0u         /* it holds its line: silence counts when that has fallen. Kept after its reading */
 #define NO_FAULT 0x01u     /* beside UNANSWERED in the ring: nor is it called a fault */
 
 /* Flow rings fire otherwise than by a table. What is linked for all takes `flows` as a constant, so that nothing of the
@@ -478,6 +491,7 @@ EerufStatus eeruf_filter_forget(EerufFilter *filter) {
 #define STRIDE(ring) ((ring)->stride)
 #define FLOW_FIRINGS 3u /* fewer explain nothing, more add nothing */
 static void fire_flow(EerufRing *ring, uint8_t sensor, uint32_t now_us);
+static void correct_flow(EerufRing *ring, uint8_t x, uint32_t later_us);
 static void judge(EerufRing *ring, uint8_t x, EerufReading *reading);
 static void decide(EerufRing *ring);
 static void end_round(EerufRing *ring, uint32_t now_us);
@@ -488,6 +502,7 @@ static uint32_t horizon_of_flow(const EerufRing *ring);
 #define STRIDE(ring) sizeof(EerufSensor)
 #define FLOW_FIRINGS EERUF_FIRINGS
 #define fire_flow(ring, sensor, now_us) ((void)0)
+#define correct_flow(ring, x, later_us) ((void)0)
 #define judge(ring, x, reading) ((void)0)
 #define decide(ring) ((void)0)
 #define end_round(ring, now_us) ((void)0)
@@ -607,9 +622,12 @@ static bool is_deaf_to(const EerufRing *ring, uint8_t receiver, uint8_t emitter)
 static OUT_OF_LINE uint8_t explanation(const EerufRing *ring, uint8_t receiver, uint32_t first_us, uint32_t second_us,
                                        uint32_t more_us) {
     const EerufSensor *own = sensor_of(ring, receiver), *sensor = ring->sensors;
-    const uint32_t heard_before = own->fired_us[1] + first_us, heard = own->fired_us[0] + second_us;
-    const uint32_t audible = ring->audible_us, between = heard - heard_before;
-    const uint32_t change = path_change_of(ring, t_delta_of(ring, receiver)) + more_us;
+    /* Both may be as late as that, and twice as long ago. */
+    const uint8_t *off = own->filter.off, most_off = off[0] > off[1] ? off[0] : off[1];
+    const uint32_t heard_before = own->fired_us[1] + first_us + 2u * most_off;
+    const uint32_t heard = own->fired_us[0] + second_us + 2u * most_off;
+    const uint32_t audible = ring->audible_us + 4u * most_off, between = heard - heard_before;
+    const uint32_t change = path_change_of(ring, t_delta_of(ring, receiver)) + more_us + pair_off(&own->filter);
     uint32_t length = heard_before - ring->known_from_us;
     uint8_t x = 0, by = EERUF_BY_NOTHING;
     for (;;) {
@@ -660,7 +678,7 @@ static IN_LINE void end_late_period(EerufRing *ring, EerufPeriod *ended, uint32_
             /* Its next reading cannot be compared: the instant of its firing before is no longer known. */
             forget_readings(ring, x);
             /* No edge is an echo of them. */
-            if (!(sensor->filter.flags & LISTENING)) sensor->filter.flags |= OUTSIDE;
+            if (!(sensor->filter.flags & LISTENING)) sensor->filter.flags = (sensor->filter.flags & PERIOD) | OUTSIDE;
         }
     }
     if (ring->watched != 0 && ring->watched != ALWAYS) ring->watched--;
@@ -787,6 +805,7 @@ static OUT_OF_LINE void drop_firing(EerufRing *ring, uint8_t x, uint32_t now_us)
     sensor->echo_us = EERUF_NO_ECHO;
     forget_readings(ring, x);
     sensor->filter.flags = OUTSIDE;
+    sensor->filter.off[0] = 0;
 }
 
 /* Everything but listening and scheduler. As if silence had come before: what was fired earlier is for the caller to
@@ -938,31 +957,53 @@ static IN_LINE void fire(EerufRing *ring, uint8_t sensor, uint32_t now_us, uint1
 }
 
 #define USABLE EERUF_READING_KINDS
+#define ON_HOLD (EERUF_READING_KINDS + 1u) /* silence that does not count yet */
 
-/* The kind of a firing that says nothing of the echo time, or USABLE. */
-static uint8_t unusable(const EerufRing *ring, uint8_t flags, uint32_t t_echo_us) {
-    if (flags & STUCK) return EERUF_READING_STUCK;
+/* The kind of a firing that says nothing of the echo time; or USABLE, or ON_HOLD. */
+static uint8_t unusable(const EerufRing *ring, uint8_t flags, uint8_t off, uint32_t t_echo_us) {
+    if ((flags & HELD) == STUCK) return EERUF_READING_STUCK;
+    if (off == WIDE) return EERUF_READING_LATE;
     if (flags & OUTSIDE) return EERUF_READING_TOO_EARLY;
     if (!(flags & UNANSWERED) || t_echo_us != EERUF_NO_ECHO) return USABLE;
+    if (flags & STUCK) return ON_HOLD;
     return ring->unanswered & NO_FAULT ? EERUF_READING_NO_ECHO : EERUF_READING_UNANSWERED;
 }
 
 /* Compares a reading, which has its echo time and a kind if it is unusable, with the one before. */
 static void compare(EerufRing *ring, uint8_t x, int32_t change_us, EerufReading *reading) {
     EerufFilter *filter = &sensor_of(ring, x)->filter;
-    if (reading->kind != USABLE) forget(filter);
+    if (reading->kind != USABLE && (reading->kind != ON_HOLD || filter->known_us != EERUF_NO_ECHO)) forget(filter);
     reading->previous_us = filter->known_us;
+    if (reading->kind == ON_HOLD) {
+        reading->kind = (filter->state & RUN) == ring->consecutive ? EERUF_READING_CLEAR : EERUF_READING_NO_ECHO;
+        reading->age = filter->age;
+        return;
+    }
     if (reading->kind == USABLE) {
         const uint32_t echo_us = reading->t_echo_us;
         const bool agreed = agrees(filter, t_delta_of(ring, x), echo_us, change_us);
 #if EERUF_FIRINGS > 1
-        /* The proof is about readings that differ by no more than t_delta. */
-        if (agreed && (ring->watched != 0 || change_us != 0) && echo_us != EERUF_NO_ECHO)
+        /* The proof is about readings that differ by no more than t_delta, at times that are known. */
+        if (agreed && (ring->watched != 0 || change_us != 0 || pair_off(filter) != 0) && echo_us != EERUF_NO_ECHO)
             reading->explained_by = explanation(ring, x, filter->known_us, echo_us, 0);
 #endif
         reading->kind = push(filter, ring->consecutive, echo_us, agreed, reading->explained_by != EERUF_BY_NOTHING);
     }
     note_age(reading, filter);
+}
+
+/* What the hook of a flow ring does: see there. */
+enum { FORGETS = 0, BEGINS_AGAIN = 1, SILENCE_COUNTS = 2 };
+
+/* A silence counts whose reading is out. */
+static OUT_OF_LINE void count_silence(EerufRing *ring, uint8_t x) {
+    EerufFilter *filter = &sensor_of(ring, x)->filter;
+    if (FLOWS(ring)) {
+        ring->hook(ring, x, SILENCE_COUNTS);
+        return;
+    }
+    (void)push(filter, ring->consecutive, EERUF_NO_ECHO, filter->known_us == EERUF_NO_ECHO, false);
+    if (filter->age < EERUF_NEVER - 1u) filter->age++;
 }
 
 /* The phase of a table's period this many periods ago. */
@@ -976,23 +1017,27 @@ static IN_LINE void emit_reading(EerufRing *ring, uint8_t x, const int32_t *chan
                                  bool flows) {
     EerufSensor *sensor = sensor_of(ring, x);
     const uint8_t flags = sensor->filter.flags, ago = (uint8_t)(ring->period - flags) & PERIOD;
+    const bool was_stuck = (flags & HELD) == STUCK;
     EerufReading *reading = &event->u.reading;
     if (flags & CAN_EMIT) ring->pending--; /* counted when its edge came */
-    reading->t_echo_us = flags & STUCK ? EERUF_NO_ECHO : sensor->echo_us;
+    reading->t_echo_us = was_stuck || sensor->filter.off[0] == WIDE ? EERUF_NO_ECHO : sensor->echo_us;
     reading->explained_by = EERUF_BY_NOTHING;
     sensor->echo_us = EERUF_NO_ECHO;
     if (flags & LISTENING) {
-        reading->kind = unusable(ring, flags, reading->t_echo_us);
+        reading->kind = unusable(ring, flags, sensor->filter.off[0], reading->t_echo_us);
+        sensor->filter.flags = flags & (reading->kind == ON_HOLD ? PERIOD | HELD : PERIOD);
         if (flows) judge(ring, x, reading);
         else compare(ring, x, change_us == NULL ? 0 : change_us[x], reading);
-        sensor->filter.flags = flags & PERIOD;
+        sensor->filter.off[1] = sensor->filter.off[0];
+        sensor->filter.off[0] = 0;
         if (flows) decide(ring);
         if (ring->oldest == x) find_oldest(ring, sensor->fired_us[0]);
     } else {
+        sensor->filter.flags = flags & (PERIOD | OUTSIDE);
+        if ((flags & HELD) == HELD) count_silence(ring, x);
         reading->previous_us = EERUF_NO_ECHO;
         reading->age = sensor->filter.age;
         reading->kind = EERUF_READING_LATE;
-        sensor->filter.flags = (uint8_t)(flags & ~CAN_EMIT);
     }
     emit_when_oldest_ends(ring);
     count(ring, reading->kind);
@@ -1066,6 +1111,12 @@ static OUT_OF_LINE void restart_by_flow(EerufRing *ring, uint32_t now_us) {
 #define restart_by_flow restart_by_table
 #endif
 
+/* What comes next was due at an instant, and may be due sooner since `now`: late counts from then. */
+static OUT_OF_LINE void bring_forward(EerufRing *ring, uint32_t due_us, uint32_t now_us) {
+    if (!has_reached(now_us, due_us)) due_us = now_us;
+    if (has_reached(due_us, ring->due_us)) ring->due_us = due_us;
+}
+
 /* Firing comes first, since it should be on time; but a sensor's reading is emitted before it fires again. */
 static IN_LINE EerufStatus poll(EerufRing *ring, uint32_t now_us, const int32_t *change_us, EerufEvent *event,
                                 bool flows) {
@@ -1092,6 +1143,7 @@ static IN_LINE EerufStatus poll(EerufRing *ring, uint32_t now_us, const int32_t 
         fire(ring, sensor, now_us, narrow(late_us), flows);
     } else if (sensor != NOBODY) {
         emit_reading(ring, sensor, change_us, event, flows);
+        if (flows) bring_forward(ring, now_us - late_us, now_us);
     } else {
         end_period(ring, now_us, late_us, event, flows);
     }
@@ -1157,15 +1209,39 @@ EerufStatus eeruf_ring_upcoming(const EerufRing *ring, uint8_t number, uint8_t *
     }
 }
 
-/* An echo, which may be taken back until it has settled. */
-static void hear(EerufRing *ring, uint8_t x, uint32_t at_us, uint32_t settled_us) {
+/* Takes in the evidence of the present firing. A line that was stuck says nothing more. */
+static void show(EerufRing *ring, uint8_t x, uint8_t evidence) {
+    uint8_t *flags = &sensor_of(ring, x)->filter.flags;
+    if ((*flags & LISTENING) && (*flags & HELD) != STUCK) *flags = (uint8_t)((*flags & ~HELD) | evidence);
+}
+
+/* Its evidence is complete. */
+static void answer(EerufRing *ring, uint8_t x) {
+    uint8_t *flags = &sensor_of(ring, x)->filter.flags;
+    const bool counts = (*flags & (HELD | LISTENING)) == HELD;
+    if ((*flags & HELD) != STUCK) *flags = (uint8_t)(*flags & ~HELD);
+    if (counts) count_silence(ring, x);
+}
+
+/* An echo, which may be off by half this width, and taken back until it has settled. */
+static OUT_OF_LINE void hear(EerufRing *ring, uint8_t x, uint32_t at_us, uint32_t width_us, uint32_t settled_us) {
     EerufSensor *sensor = sensor_of(ring, x);
-    const uint32_t t_echo_us = at_us - sensor->fired_us[0];
+    const uint32_t off_us = width_us - width_us / 2, window_us = window_of(ring, x);
+    const uint32_t t_echo_us = at_us + width_us / 2 - sensor->fired_us[0];
     const uint8_t flags = sensor->filter.flags;
-    const bool inside = t_echo_us <= window_of(ring, x);
-    if (t_echo_us >= HALF_TURN) return; /* from before it fired, or from a clock that has jumped */
-    if (flags & LISTENING) {
+    const bool inside = t_echo_us <= window_us, is_before = t_echo_us >= HALF_TURN;
+    uint8_t off = WIDE;
+    if (off_us > MOST_OFF_US && (int32_t)t_echo_us >= (int32_t)ring->blanking_us - (int32_t)off_us &&
+        (!(flags & LISTENING) || is_before || t_echo_us <= window_us + off_us)) {
+        /* It says too little: without an echo before it the firing has none. */
+        if (!(flags & LISTENING)) return;
+        if (!(flags & OUTSIDE) && !is_before && add32(sensor->echo_us, off_us) <= t_echo_us) return;
+        sensor->filter.flags |= CAN_EMIT;
+    } else if (is_before) {
+        return; /* it fired later, or the clock has jumped */
+    } else if (flags & LISTENING) {
         if (!inside) {
+            if ((flags & HELD) == HELD) sensor->filter.flags = flags & (uint8_t)~HELD;
             count(ring, EERUF_READING_LATE);
             return;
         }
@@ -1176,11 +1252,14 @@ static void hear(EerufRing *ring, uint8_t x, uint32_t at_us, uint32_t settled_us
             return;
         }
         sensor->filter.flags = (uint8_t)((flags & ~OUTSIDE) | CAN_EMIT);
+        off = (uint8_t)((off_us + 1) / 2);
     } else {
         if (inside || (flags & OUTSIDE)) return;
         sensor->filter.flags |= OUTSIDE | CAN_EMIT;
+        off = 0;
     }
-    if ((flags & OUTSIDE) || t_echo_us < sensor->echo_us) sensor->echo_us = t_echo_us;
+    if (off != WIDE && ((flags & OUTSIDE) || t_echo_us < sensor->echo_us)) sensor->echo_us = t_echo_us;
+    if (sensor->filter.off[0] < off) sensor->filter.off[0] = off;
     if (flags & CAN_EMIT) return;
     if (!has_pending(ring) || !has_reached(settled_us, ring->emit_at_us)) ring->emit_at_us = settled_us;
     ring->pending++;
@@ -1189,17 +1268,24 @@ static void hear(EerufRing *ring, uint8_t x, uint32_t at_us, uint32_t settled_us
 /* Takes back an echo whose reading has not been emitted yet. */
 static void unhear(EerufRing *ring, uint8_t x) {
     EerufSensor *sensor = sensor_of(ring, x);
-    if ((sensor->filter.flags & (LISTENING | CAN_EMIT)) != (LISTENING | CAN_EMIT)) return;
-    sensor->filter.flags = (uint8_t)(sensor->filter.flags & ~CAN_EMIT);
+    if (!(sensor->filter.flags & CAN_EMIT)) return;
+    sensor->filter.flags = (uint8_t)(sensor->filter.flags & ~(CAN_EMIT | OUTSIDE));
     sensor->echo_us = EERUF_NO_ECHO;
+    sensor->filter.off[0] = 0;
     ring->pending--;
     emit_when_oldest_ends(ring);
 }
 
-EerufStatus eeruf_ring_echo(EerufRing *ring, uint8_t sensor, uint32_t at_us) {
+EerufStatus eeruf_ring_echo_between(EerufRing *ring, uint8_t sensor, uint32_t earliest_us, uint32_t latest_us) {
     const EerufStatus status = has_sensor(ring, sensor);
-    if (status == EERUF_OK) hear(ring, sensor, at_us, at_us);
-    return status;
+    if (status != EERUF_OK) return status;
+    if (!has_reached(latest_us, earliest_us)) return EERUF_ERR_BETWEEN;
+    hear(ring, sensor, earliest_us, latest_us - earliest_us, latest_us);
+    return EERUF_OK;
+}
+
+EerufStatus eeruf_ring_echo(EerufRing *ring, uint8_t sensor, uint32_t at_us) {
+    return eeruf_ring_echo_between(ring, sensor, at_us, at_us);
 }
 
 EerufStatus eeruf_ring_fired(EerufRing *ring, uint8_t x, uint32_t at_us) {
@@ -1215,7 +1301,7 @@ EerufStatus eeruf_ring_fired(EerufRing *ring, uint8_t x, uint32_t at_us) {
     if (FIRINGS(FLOWS(ring)) > 1 && at_us - sensor->fired_us[1] - 1u >= HALF_TURN - 1u) return EERUF_OK;
     sensor->fired_us[0] = at_us;
     /* The reading of a firing that has ended is with the filter. */
-    if (FLOWS(ring)) ring->hook(ring, x, later_us);
+    if (FLOWS(ring)) correct_flow(ring, x, later_us);
     else if (!(sensor->filter.flags & LISTENING) && !shift(&sensor->filter.known_us, later_us)) forget(&sensor->filter);
     /* Where the first edge came before it fired, it may have kept out the echo. */
     if (!shift(&sensor->echo_us, later_us)) sensor->filter.flags |= OUTSIDE;
@@ -1240,14 +1326,14 @@ uint32_t eeruf_ring_fired_at(const EerufRing *ring, uint8_t sensor) {
     return has_sensor(ring, sensor) == EERUF_OK ? sensor_of(ring, sensor)->fired_us[0] : 0;
 }
 
-static void note(EerufSensor *sensor, uint8_t flag) {
-    if (sensor->filter.flags & LISTENING) sensor->filter.flags |= flag;
+static EerufStatus show_if_there(EerufRing *ring, uint8_t sensor, uint8_t evidence) {
+    const EerufStatus status = has_sensor(ring, sensor);
+    if (status == EERUF_OK) show(ring, sensor, evidence);
+    return status;
 }
 
 EerufStatus eeruf_ring_stuck(EerufRing *ring, uint8_t sensor) {
-    const EerufStatus status = has_sensor(ring, sensor);
-    if (status == EERUF_OK) note(sensor_of(ring, sensor), STUCK);
-    return status;
+    return show_if_there(ring, sensor, STUCK);
 }
 
 EerufStatus eeruf_ring_set_silence(EerufRing *ring, uint8_t silence) {
@@ -1259,41 +1345,45 @@ EerufStatus eeruf_ring_set_silence(EerufRing *ring, uint8_t silence) {
     return EERUF_OK;
 }
 
-static void note_answer(EerufSensor *sensor) {
-    sensor->filter.flags = (uint8_t)(sensor->filter.flags & ~UNANSWERED);
-}
-
 EerufStatus eeruf_ring_answered(EerufRing *ring, uint8_t sensor) {
     const EerufStatus status = has_sensor(ring, sensor);
-    if (status == EERUF_OK) note_answer(sensor_of(ring, sensor));
+    if (status == EERUF_OK) answer(ring, sensor);
     return status;
 }
 
 EerufStatus eeruf_ring_unanswered(EerufRing *ring, uint8_t sensor) {
-    const EerufStatus status = has_sensor(ring, sensor);
-    if (status == EERUF_OK) note(sensor_of(ring, sensor), UNANSWERED);
-    return status;
+    return show_if_there(ring, sensor, UNANSWERED);
+}
+
+EerufStatus eeruf_ring_holds(EerufRing *ring, uint8_t sensor) {
+    return show_if_there(ring, sensor, HELD);
+}
+
+EerufStatus eeruf_ring_measured_between(EerufRing *ring, uint8_t sensor, uint32_t least_us, uint32_t most_us) {
+    const uint32_t fired_us = eeruf_ring_fired_at(ring, sensor);
+    if (least_us > most_us && has_sensor(ring, sensor) == EERUF_OK) return EERUF_ERR_BETWEEN;
+    return eeruf_ring_echo_between(ring, sensor, fired_us + least_us, fired_us + most_us);
 }
 
 EerufStatus eeruf_ring_measured(EerufRing *ring, uint8_t sensor, uint32_t t_echo_us) {
-    const EerufStatus status = has_sensor(ring, sensor);
-    if (status != EERUF_OK) return status;
-    if (t_echo_us == EERUF_NO_ECHO) note_answer(sensor_of(ring, sensor));
-    else {
-        t_echo_us += sensor_of(ring, sensor)->fired_us[0];
-        hear(ring, sensor, t_echo_us, t_echo_us);
-    }
-    return EERUF_OK;
+    if (t_echo_us == EERUF_NO_ECHO) return eeruf_ring_answered(ring, sensor);
+    return eeruf_ring_measured_between(ring, sensor, t_echo_us, t_echo_us);
 }
 
 static void forget_readings(EerufRing *ring, uint8_t sensor) {
-    if (FLOWS(ring)) ring->hook(ring, sensor, 0);
+    if (FLOWS(ring)) ring->hook(ring, sensor, FORGETS);
     else forget(&sensor_of(ring, sensor)->filter);
+}
+
+/* What it heard was not what it seemed. */
+static void begin_again(EerufRing *ring, uint8_t sensor) {
+    forget_readings(ring, sensor);
+    if (FLOWS(ring)) ring->hook(ring, sensor, BEGINS_AGAIN);
 }
 
 EerufStatus eeruf_ring_forget(EerufRing *ring, uint8_t sensor) {
     const EerufStatus status = has_sensor(ring, sensor);
-    if (status == EERUF_OK) forget_readings(ring, sensor);
+    if (status == EERUF_OK) begin_again(ring, sensor);
     return status;
 }
 
@@ -1487,7 +1577,9 @@ static uint8_t state_by(const EerufReading *reading) {
     case EERUF_READING_TOO_EARLY: return EERUF_STATE_TOO_CLOSE;
     case EERUF_READING_STUCK:
     case EERUF_READING_UNANSWERED: return EERUF_STATE_UNANSWERED;
-    case EERUF_READING_LATE: return NOBODY;
+    case EERUF_READING_LATE:
+        if (reading->t_echo_us != EERUF_NO_ECHO) return NOBODY;
+        return EERUF_WHY_UNSURE << WHY_AT;
     case EERUF_READING_REJECTED: return EERUF_WHY_REJECTED << WHY_AT;
     case EERUF_READING_AMBIGUOUS: return EERUF_WHY_AMBIGUOUS << WHY_AT;
     default: return EERUF_WHY_UNSURE << WHY_AT;
@@ -1677,6 +1769,16 @@ uint32_t eeruf_schedule_max_speed_mm_s(const EerufSchedule *schedule, uint32_t t
 #define FENCE() ((void)0)
 #endif
 
+/* A width in units of 8 us, rounded up; 255 for more, which is wide for every edge. */
+static uint8_t in_8us(uint32_t width_us) {
+    return (uint8_t)shorter(narrow(width_us + 7) >> 3, UINT8_MAX);
+}
+
+/* The earliest instant of an edge of a queue. */
+static uint32_t earliest(const EerufEdge *edge) {
+    return edge->at_us - 8u * edge->early_8us;
+}
+
 EerufStatus eeruf_edges_init(EerufEdges *edges, size_t edges_size, EerufEdge *places, size_t places_size) {
     const size_t length = places_size / sizeof *places;
     if (edges == NULL || places == NULL) return EERUF_ERR_NULL;
@@ -1690,24 +1792,31 @@ EerufStatus eeruf_edges_init(EerufEdges *edges, size_t edges_size, EerufEdge *pl
     return EERUF_OK;
 }
 
-EerufStatus eeruf_edges_push(EerufEdges *edges, uint8_t sensor, bool high, uint32_t at_us) {
+OUT_OF_LINE EerufStatus eeruf_edges_push_between(EerufEdges *edges, uint8_t sensor, bool high, uint32_t earliest_us,
+                                                 uint32_t latest_us) {
     uint8_t pushed;
     EerufEdge *place;
     if (edges == NULL) return EERUF_ERR_NULL;
     if (edges->ready != READY) return EERUF_ERR_NOT_READY;
     if (sensor > 127) return EERUF_ERR_SENSOR;
+    if (!has_reached(latest_us, earliest_us)) return EERUF_ERR_BETWEEN;
     pushed = edges->pushed;
     if ((uint8_t)(pushed - edges->popped) > edges->mask) {
         edges->lost = (uint8_t)(edges->lost + 1u);
         return EERUF_ERR_MEMORY;
     }
     place = &edges->places[pushed & edges->mask];
-    place->at_us = at_us;
+    place->at_us = latest_us;
     place->sensor = sensor;
     place->high = high;
+    place->early_8us = in_8us(latest_us - earliest_us);
     FENCE();
     edges->pushed = (uint8_t)(pushed + 1u);
     return EERUF_OK;
+}
+
+EerufStatus eeruf_edges_push(EerufEdges *edges, uint8_t sensor, bool high, uint32_t at_us) {
+    return eeruf_edges_push_between(edges, sensor, high, at_us, at_us);
 }
 
 EerufStatus eeruf_edges_pop(EerufEdges *edges, EerufEdge *edge) {
@@ -1725,6 +1834,7 @@ EerufStatus eeruf_edges_pop(EerufEdges *edges, EerufEdge *edge) {
 
 /* ---- HC-SR04 ---- */
 
+#define ENDED UINT16_MAX /* the width of a pulse that does not go on after a gap */
 /* The state of a line, in one byte: where its pulse is, what is wrong with this firing, and the module's health. */
 #define PULSE 0x03u
 #define IDLE 0x00u /* nothing is expected */
@@ -1735,6 +1845,8 @@ EerufStatus eeruf_edges_pop(EerufEdges *edges, EerufEdge *edge) {
 #define CHATTERED 0x04u
 #define LOST_EDGE 0x08u
 #define HEALTH_AT 4u
+#define HEALTH 0x70u
+#define SEEN_HIGH 0x80u /* when the module was to be triggered again, so that it was not */
 
 const char *eeruf_health_name(uint8_t health) {
     switch (health) {
@@ -1753,7 +1865,7 @@ static void set_bits(EerufLine *line, uint8_t mask, uint8_t bits) {
 }
 
 static void set_health(EerufLine *line, uint8_t health) {
-    set_bits(line, 0xf0u, (uint8_t)(health << HEALTH_AT));
+    set_bits(line, HEALTH, (uint8_t)(health << HEALTH_AT));
 }
 
 static OUT_OF_LINE EerufStatus has_line(const EerufHcSr04 *modules, uint8_t sensor) {
@@ -1784,75 +1896,73 @@ EerufStatus eeruf_hc_sr04_init(EerufHcSr04 *modules, size_t modules_size, EerufL
     return eeruf_ring_set_silence(ring, EERUF_SILENCE_NEEDS_ANSWER);
 }
 
+static uint8_t health_of(const EerufLine *line) {
+    return (uint8_t)((line->state & HEALTH) >> HEALTH_AT);
+}
+
 /* The health by the last firing, before the next trigger. */
 static uint8_t end_firing(EerufLine *line, uint8_t missing_after) {
-    const uint8_t state = line->state, pulse = state & PULSE, flaw = state & FLAW;
+    const uint8_t pulse = line->state & PULSE, flaw = line->state & FLAW;
     if (pulse == AWAITED && flaw == 0) {
         if (line->silent < UINT8_MAX) line->silent++;
         if (line->silent >= missing_after) return EERUF_HEALTH_MISSING;
-    } else if (pulse == ROSE) {
-        /* If the line is still high it is stuck, as will be seen. */
-        return EERUF_HEALTH_LOSES_EDGES;
     } else if (pulse != IDLE) {
+        if (pulse != AWAITED) line->silent = 0; /* it is no longer by how much sooner the line may have risen */
+        if (pulse == ROSE) return EERUF_HEALTH_LOSES_EDGES; /* if it is still high it is stuck, as will be seen */
         /* A pulse may follow what was taken for the end of one whose beginning was too soon after the trigger. */
         if (flaw == 0 || (pulse == OVER && flaw == LOST_EDGE)) return EERUF_HEALTH_WELL;
         return flaw == CHATTERED ? EERUF_HEALTH_CHATTERS : EERUF_HEALTH_LOSES_EDGES;
     }
-    return (uint8_t)(state >> HEALTH_AT);
+    return health_of(line);
 }
 
-/* A firing begins; without health the line is well. */
-static EerufStatus begin_firing(EerufHcSr04 *modules, uint8_t sensor, uint8_t health) {
+/* A firing begins; without health the line is well, and has been seen to be low unless hardware has triggered it. */
+static EerufStatus begin_firing(EerufHcSr04 *modules, uint8_t sensor, uint8_t health, bool by_hardware) {
     const EerufStatus status = has_line(modules, sensor);
     EerufLine *line;
     uint8_t ended;
     if (status != EERUF_OK) return status;
     line = &modules->lines[sensor];
     if ((line->state & PULSE) == ROSE) {
-        if (health == EERUF_HEALTH_STUCK_HIGH &&
+        if ((health == EERUF_HEALTH_STUCK_HIGH || by_hardware) &&
             sensor_of(modules->ring, sensor)->fired_us[0] - line->rose_us <= modules->settings->longest_hold_us) {
-            /* It has heard nothing of an earlier trigger yet: nothing is in range. */
-            note_answer(sensor_of(modules->ring, sensor));
+            /* It has heard nothing of an earlier trigger yet. */
+            if (by_hardware) return EERUF_OK;
+            set_bits(line, SEEN_HIGH, SEEN_HIGH);
+            show(modules->ring, sensor, HELD);
             return EERUF_DO_NOT_TRIGGER;
         }
         /* A pulse that began and never ended: an edge got lost, and what counted as silence may have been an echo. */
-        if (health == EERUF_HEALTH_WELL) forget_readings(modules->ring, sensor);
+        if (health == EERUF_HEALTH_WELL) begin_again(modules->ring, sensor);
     }
     ended = end_firing(line, modules->settings->missing_after);
     if (health == EERUF_HEALTH_WELL) {
         line->state = (uint8_t)((uint8_t)(ended << HEALTH_AT) | AWAITED);
+        line->rose_us = sensor_of(modules->ring, sensor)->fired_us[0];
         return EERUF_OK;
     }
     line->state = (uint8_t)((uint8_t)(health << HEALTH_AT) | IDLE);
-    note(sensor_of(modules->ring, sensor), STUCK);
+    show(modules->ring, sensor, STUCK);
     return EERUF_DO_NOT_TRIGGER;
 }
 
 EerufStatus eeruf_hc_sr04_fire(EerufHcSr04 *modules, uint8_t sensor, bool line_is_high) {
-    return begin_firing(modules, sensor, line_is_high ? EERUF_HEALTH_STUCK_HIGH : EERUF_HEALTH_WELL);
+    return begin_firing(modules, sensor, line_is_high ? EERUF_HEALTH_STUCK_HIGH : EERUF_HEALTH_WELL, false);
 }
 
 bool eeruf_hc_sr04_is_stuck(const EerufHcSr04 *modules, uint8_t sensor) {
-    uint8_t state;
+    const EerufLine *line;
     if (has_line(modules, sensor) != EERUF_OK) return false;
-    state = modules->lines[sensor].state;
-    return (state & PULSE) == IDLE && state >> HEALTH_AT == EERUF_HEALTH_STUCK_HIGH;
+    line = &modules->lines[sensor];
+    return (line->state & PULSE) == IDLE && health_of(line) == EERUF_HEALTH_STUCK_HIGH;
 }
 
 EerufStatus eeruf_hc_sr04_triggered(EerufHcSr04 *modules, uint8_t sensor) {
-    const EerufStatus status = has_line(modules, sensor);
-    const EerufLine *line;
-    if (status != EERUF_OK) return status;
-    line = &modules->lines[sensor];
-    /* A module that holds its line does not hear a trigger; one that has long held it has lost its end. */
-    if ((line->state & PULSE) == ROSE &&
-        sensor_of(modules->ring, sensor)->fired_us[0] - line->rose_us <= modules->settings->longest_hold_us)
-        return EERUF_OK;
-    return begin_firing(modules, sensor, EERUF_HEALTH_WELL);
+    return begin_firing(modules, sensor, EERUF_HEALTH_WELL, true);
 }
 
 EerufStatus eeruf_hc_sr04_cannot_read(EerufHcSr04 *modules, uint8_t sensor) {
-    return begin_firing(modules, sensor, EERUF_HEALTH_PIN_ERROR);
+    return begin_firing(modules, sensor, EERUF_HEALTH_PIN_ERROR, false);
 }
 
 EerufStatus eeruf_hc_sr04_cannot_write(EerufHcSr04 *modules, uint8_t sensor) {
@@ -1861,53 +1971,93 @@ EerufStatus eeruf_hc_sr04_cannot_write(EerufHcSr04 *modules, uint8_t sensor) {
     return status;
 }
 
-OUT_OF_LINE EerufStatus eeruf_hc_sr04_edge(EerufHcSr04 *modules, uint8_t sensor, bool high, uint32_t at_us) {
+/* The line of a sensor rose, by then or up to `early_us` before: it listens. */
+static void rise(EerufHcSr04 *modules, uint8_t sensor, uint32_t at_us, uint32_t early_us) {
+    EerufLine *line = &modules->lines[sensor];
+    set_bits(line, PULSE, ROSE);
+    line->rose_us = at_us;
+    line->width_us = 0;
+    line->silent = in_8us(early_us);
+    show(modules->ring, sensor, HELD);
+}
+
+OUT_OF_LINE EerufStatus eeruf_hc_sr04_edge_between(EerufHcSr04 *modules, uint8_t sensor, bool high,
+                                                   uint32_t earliest_us, uint32_t latest_us) {
     const EerufStatus status = has_line(modules, sensor);
+    const EerufHcSr04Settings *settings;
     EerufLine *line;
-    uint32_t fired_us, since_us, width_us;
+    uint32_t fired_us, since_us, early_us;
     uint8_t pulse;
     if (status != EERUF_OK) return status;
+    if (!has_reached(latest_us, earliest_us)) return EERUF_ERR_BETWEEN;
+    settings = modules->settings;
     line = &modules->lines[sensor];
     fired_us = sensor_of(modules->ring, sensor)->fired_us[0];
-    since_us = at_us - fired_us;
-    if (since_us >= HALF_TURN || since_us < modules->settings->deaf_us) return EERUF_OK;
+    since_us = latest_us - fired_us;
+    /* Without a trigger nothing is seen through the cable. */
+    if (since_us >= HALF_TURN || (since_us < settings->deaf_us && !(line->state & SEEN_HIGH))) return EERUF_OK;
+    /* No edge that is new came before the firing. */
+    early_us = shorter(latest_us - earliest_us, since_us);
     pulse = line->state & PULSE;
     if (pulse == AWAITED) {
         line->silent = 0;
-        if (high && since_us > modules->settings->latest_rise_us) {
+        if (high && since_us - early_us > settings->latest_rise_us) {
             set_bits(line, FLAW, CHATTERED);
         } else if (high) {
-            set_bits(line, PULSE, ROSE);
-            line->rose_us = at_us;
-            note_answer(sensor_of(modules->ring, sensor));
+            rise(modules, sensor, latest_us, early_us);
         } else if ((line->state & FLAW) == 0) {
             set_bits(line, FLAW, LOST_EDGE);
         }
     } else if (pulse == ROSE && high && !has_reached(line->rose_us, fired_us)) {
         /* The end of a pulse that began before this firing got lost: what counted as silence may have been an echo. */
         set_health(line, EERUF_HEALTH_LOSES_EDGES);
-        line->rose_us = at_us;
-        forget_readings(modules->ring, sensor);
-        note_answer(sensor_of(modules->ring, sensor));
+        begin_again(modules->ring, sensor);
+        rise(modules, sensor, latest_us, early_us);
     } else if (pulse == ROSE && !high) {
-        width_us = at_us - line->rose_us;
-        if (width_us < modules->settings->shortest_us) {
+        const uint32_t width_us = latest_us - line->rose_us, least_us = width_us - shorter(early_us, width_us);
+        /* From its earliest rise to its latest fall, and more than the least by so much. */
+        const uint32_t rose_early_us = line->silent == UINT8_MAX ? line->rose_us - fired_us : 8u * line->silent;
+        const uint32_t more_us = width_us + rose_early_us - least_us;
+        if (least_us + more_us / 2 < settings->shortest_us) {
             line->state = (uint8_t)((line->state & ~(PULSE | FLAW)) | AWAITED | CHATTERED);
-            note(sensor_of(modules->ring, sensor), UNANSWERED);
+            line->rose_us = latest_us;
+            line->silent = 0;
+            show(modules->ring, sensor, UNANSWERED);
             return EERUF_OK;
         }
         set_bits(line, PULSE, OVER);
-        line->width_us = (uint16_t)(width_us > UINT16_MAX ? 0 : width_us);
-        if (width_us < modules->settings->longest_us)
-            hear(modules->ring, sensor, fired_us + width_us, at_us + modules->settings->shortest_us);
+        /* The module's own time-out only if it is surely as long. */
+        line->width_us = least_us < settings->longest_us ? narrow(width_us) : ENDED;
+        /* A fall and a rise may have got lost since the trigger before, unless the line was seen to be high. */
+        if (least_us < settings->longest_us)
+            hear(modules->ring, sensor, fired_us + least_us, more_us, latest_us + settings->shortest_us);
+        else if ((line->state & SEEN_HIGH) || has_reached(line->rose_us, fired_us))
+            answer(modules->ring, sensor);
     } else if (pulse == OVER && high) {
         set_bits(line, FLAW, CHATTERED);
-        if (line->width_us == 0 || at_us - line->rose_us - line->width_us >= modules->settings->shortest_us)
+        if (line->width_us == ENDED || latest_us - line->rose_us - line->width_us >= settings->shortest_us)
             return EERUF_OK;
-        /* A gap as short as that is a disturbance: the pulse goes on. */
+        /* A gap as short as that is a disturbance: the pulse goes on. But a silence counts once. */
         set_bits(line, PULSE, ROSE);
         unhear(modules->ring, sensor);
+        show(modules->ring, sensor, HELD);
     }
+    return EERUF_OK;
+}
+
+EerufStatus eeruf_hc_sr04_edge(EerufHcSr04 *modules, uint8_t sensor, bool high, uint32_t at_us) {
+    return eeruf_hc_sr04_edge_between(modules, sensor, high, at_us, at_us);
+}
+
+EerufStatus eeruf_hc_sr04_look(EerufHcSr04 *modules, uint8_t sensor, bool high, uint32_t before_us, uint32_t after_us) {
+    EerufLine *line;
+    bool was_high;
+    if (!eeruf_hc_sr04_awaits(modules, sensor, &was_high)) return has_line(modules, sensor);
+    line = &modules->lines[sensor];
+    if (high != was_high)
+        return eeruf_hc_sr04_edge_between(modules, sensor, high, line->rose_us + (was_high ? line->width_us : 0), after_us);
+    if (!was_high) line->rose_us = before_us;
+    else if (has_reached(before_us, line->rose_us)) line->width_us = narrow(before_us - line->rose_us);
     return EERUF_OK;
 }
 
@@ -1919,7 +2069,7 @@ EerufStatus eeruf_hc_sr04_edges_until(EerufHcSr04 *modules, EerufEdges *edges, u
         FENCE();
         if (!has_reached(until_us, edges->places[edges->popped & edges->mask].at_us)) break;
         (void)eeruf_edges_pop(edges, &edge);
-        (void)eeruf_hc_sr04_edge(modules, edge.sensor, edge.high, edge.at_us);
+        (void)eeruf_hc_sr04_edge_between(modules, edge.sensor, edge.high, earliest(&edge), edge.at_us);
     }
     return has_line(modules, 0);
 }
@@ -1936,7 +2086,7 @@ EerufStatus eeruf_hc_sr04_pulse(EerufHcSr04 *modules, uint8_t sensor, uint32_t w
         return EERUF_OK;
     }
     set_bits(line, PULSE | FLAW, OVER);
-    line->width_us = 0;
+    line->width_us = ENDED;
     return eeruf_ring_measured(modules->ring, sensor,
                                width_us < modules->settings->longest_us ? width_us : EERUF_NO_ECHO);
 }
@@ -1948,7 +2098,7 @@ EerufStatus eeruf_hc_sr04_edges(EerufHcSr04 *modules, EerufEdges *edges) {
     if (modules->ready != READY) return EERUF_ERR_NOT_READY;
     while ((status = eeruf_edges_pop(edges, &edge)) == EERUF_OK)
         /* An edge of a line that the ring does not have is ignored. */
-        (void)eeruf_hc_sr04_edge(modules, edge.sensor, edge.high, edge.at_us);
+        (void)eeruf_hc_sr04_edge_between(modules, edge.sensor, edge.high, earliest(&edge), edge.at_us);
     return status == EERUF_EMPTY ? (EerufStatus)EERUF_OK : status;
 }
 
@@ -1974,7 +2124,7 @@ EerufStatus eeruf_hc_sr04_change_schedule(EerufHcSr04 *modules, const EerufSched
 
 uint8_t eeruf_hc_sr04_health(const EerufHcSr04 *modules, uint8_t sensor) {
     if (has_line(modules, sensor) != EERUF_OK) return EERUF_HEALTH_MISSING;
-    return (uint8_t)(modules->lines[sensor].state >> HEALTH_AT);
+    return health_of(&modules->lines[sensor]);
 }
 
 #if EERUF_WITH_FLOW
@@ -2290,9 +2440,16 @@ static void set_moves(EerufFlowRing *flow, bool moves) {
 
 EerufStatus eeruf_flow_moving(EerufFlowRing *flow, uint32_t speed_mm_s, uint32_t turn_mrad_s, uint32_t now_us) {
     const EerufStatus status = has_flow(flow, 0);
+    uint32_t due_us;
     uint16_t rate;
     uint8_t x;
     if (status != EERUF_OK) return status;
+    if (!has_reached(now_us, flow->since_us)) {
+        /* The first word of a clock in its upper half, or a clock that has jumped. */
+        flow->greatest[0] = larger16(flow->greatest[0], flow->greatest[1]);
+        flow->greatest[1] = 0;
+        flow->since_us = now_us;
+    }
     rate = recent_rate(flow, now_us);
     /* A wall is 0.5 m from the centre about which the robot turns. */
     flow->rate = rate_of(add32(speed_mm_s, turn_mrad_s / 2));
@@ -2303,7 +2460,9 @@ EerufStatus eeruf_flow_moving(EerufFlowRing *flow, uint32_t speed_mm_s, uint32_t
     for (x = 0; x < flow->ring.count; x++)
         flow_sensor(&flow->ring, x)->rate = larger16(flow_sensor(&flow->ring, x)->rate, rate);
     set_moves(flow, flow->rate != 0);
+    due_us = flow->ring.due_us;
     decide(&flow->ring);
+    bring_forward(&flow->ring, due_us, now_us);
     return EERUF_OK;
 }
 
@@ -2326,10 +2485,10 @@ static void miss(EerufFlowSensor *sensor) {
 
 /* The change that a good reading may show since the one before, which the change since the belief grows by. What it
    heard before was sent a while before, and so will be what it hears next. */
-static uint32_t grow_since(EerufFlowRing *flow, EerufFlowSensor *sensor) {
+static uint32_t grow_since(EerufFlowRing *flow, EerufFlowSensor *sensor, uint32_t before_us) {
     const uint32_t fired_us = sensor->fired_us[0];
     const uint16_t rate = rate_at(flow, fired_us), recent = recent_rate(flow, fired_us);
-    const uint32_t span_us = grow(larger16(sensor->rate, recent), fired_us - sensor->fired_us[1]);
+    const uint32_t span_us = grow(larger16(sensor->rate, recent), fired_us - before_us);
     set_moves(flow, rate != 0);
     sensor->rate = recent;
     sensor->grown_us = add16(sensor->grown_us, narrow(span_us));
@@ -2404,9 +2563,16 @@ static void weigh(EerufRing *ring, uint8_t x, uint32_t span_us, EerufReading *re
 static void judge(EerufRing *ring, uint8_t x, EerufReading *reading) {
     EerufFlowRing *flow = flow_of(ring);
     EerufFlowSensor *sensor = flow_sensor(ring, x);
-    const uint32_t span_us = grow_since(flow, sensor);
+    const uint32_t span_us = grow_since(flow, sensor, sensor->fired_us[1]);
     reading->previous_us = sensor->filter.known_us < SILENCE ? sensor->filter.known_us : EERUF_NO_ECHO;
     reading->age = sensor->filter.age;
+    if (reading->kind == ON_HOLD) {
+        const bool is_clear = sensor->believed_us == SILENCE && sensor->missed == 0;
+        reading->kind = is_clear ? EERUF_READING_CLEAR : EERUF_READING_NO_ECHO;
+        reading->previous_us = EERUF_NO_ECHO;
+        if (sensor->filter.known_us != SILENCE) sensor->filter.known_us = EERUF_NO_ECHO;
+        return;
+    }
     if (reading->kind != USABLE) {
         miss(sensor);
         sensor->filter.known_us = EERUF_NO_ECHO;
@@ -2425,16 +2591,26 @@ static void move_turn(EerufRing *ring, EerufFlowSensor *sensor, uint32_t at_us) 
     sensor->turn_us = at_us;
 }
 
-/* The hook of a flow ring: a sensor fired so much later than it was polled for, modulo 2^32; or, for 0, what is known
-   of it is forgotten. */
+/* The hook of a flow ring: what is known of a sensor is forgotten; its quiet begins again; or its silence counts, the time
+   since whose firing before has been counted already. */
+static void change_flow(EerufRing *ring, uint8_t x, uint32_t what) {
+    EerufFlowSensor *sensor = flow_sensor(ring, x);
+    if (what == FORGETS) {
+        forget_belief(sensor);
+    } else if (what == BEGINS_AGAIN) {
+        sensor->doubt = flow_of(ring)->first;
+        decide(ring);
+    } else {
+        EerufReading silence = {EERUF_NO_ECHO, EERUF_NO_ECHO, 0, USABLE, EERUF_BY_NOTHING};
+        weigh(ring, x, grow_since(flow_of(ring), sensor, sensor->fired_us[0]), &silence);
+    }
+}
+
+/* A sensor fired so much later than it was polled for, modulo 2^32. */
 static void correct_flow(EerufRing *ring, uint8_t x, uint32_t later_us) {
     EerufFlowSensor *sensor = flow_sensor(ring, x);
     const uint32_t at_us = sensor->fired_us[0];
     const bool listens = (sensor->filter.flags & LISTENING) != 0;
-    if (later_us == 0) {
-        forget_belief(sensor);
-        return;
-    }
     if (!listens && sensor->filter.known_us < SILENCE) {
         /* Its reading is with the judge already, and what is believed may be an echo of that firing. */
         (void)shift(&sensor->filter.known_us, later_us);
@@ -2472,7 +2648,7 @@ EerufStatus eeruf_flow_init(EerufFlowRing *flow, size_t flow_size, EerufFlowSens
         return EERUF_ERR_RANGE;
     if (config->window_us > LONGEST_REST_US) return EERUF_ERR_WINDOW;
     memset(flow, 0, sizeof *flow);
-    set_up(&flow->ring, config->own, sensors, n, sizeof *sensors, 0, correct_flow, now_us);
+    set_up(&flow->ring, config->own, sensors, n, sizeof *sensors, 0, change_flow, now_us);
     status = listen(&flow->ring, config->t_delta_us, config->window_us, config->blanking_us);
     if (status != EERUF_OK) return status;
     if (config->path_change_us == AS_T_DELTA) return EERUF_ERR_PATH_CHANGE;
@@ -2499,18 +2675,13 @@ EerufStatus eeruf_flow_init(EerufFlowRing *flow, size_t flow_size, EerufFlowSens
         sensors[x].turn_us = now_us;
         sensors[x].doubt = flow->first;
     }
-    /* As in core: where sensors have limits the first throw is that of a robot that stands; where not, the first quiet
-       is in microseconds. */
-    if (config->own != NULL) throw_dice(flow);
     if (config->votes == EERUF_VOTES_EVERY_ECHO) flow->flags = EVERY_ECHO_STANDING | EVERY_ECHO_MOVING;
     if (config->votes == EERUF_VOTES_BY_MOTION && config->alone) flow->flags = EVERY_ECHO_MOVING;
     if (flow->rate != 0) flow->flags |= MOVES;
     flow->lines = config->lines;
     group(&flow->ring);
-    if (config->own == NULL) throw_dice(flow);
+    throw_dice(flow);
     decide(&flow->ring);
-    if (config->own == NULL)
-        flow->ring.due_us = now_us + longer(config->least_us + span_us / 5, least_quiet(flow)) + flow->thrown_us;
     flow->ring.ready = READY;
     return EERUF_OK;
 }

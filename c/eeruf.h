@@ -34,7 +34,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#define EERUF_VERSION 4u /* goes up with each change of a structure or a table */
+#define EERUF_VERSION 5u /* goes up with each change of a structure or a table */
 
 /* Leave out flow with -DEERUF_WITH_FLOW=0; the linker leaves it out too if you do not call it. */
 #ifndef EERUF_WITH_FLOW
@@ -98,7 +98,8 @@ enum {
     EERUF_ERR_FLOW = -27,        /* a flow ring cannot do this, or has a function of its own for it */
     EERUF_ERR_AUDIBLE = -29,     /* sound that is audible for longer than 67,108,864 us */
     EERUF_ERR_PATH_CHANGE = -30, /* a path of sound that changes by more than 65,534 us */
-    EERUF_ERR_TOGETHER = -31     /* two sensors of one group do not fire together */
+    EERUF_ERR_TOGETHER = -31,    /* two sensors of one group do not fire together */
+    EERUF_ERR_BETWEEN = -32      /* an edge whose latest instant is before its earliest: likely swapped */
 };
 
 /* The library's EERUF_VERSION, to be compared with the header's. */
@@ -182,7 +183,7 @@ enum {
     EERUF_READING_NO_ECHO = 4,  /* no echo, once, or without a witness */
     EERUF_READING_CLEAR = 5,    /* no echo several times running: nothing is in range */
     EERUF_READING_TOO_EARLY = 6, /* nothing but an edge within the blanking time */
-    EERUF_READING_LATE = 7,     /* an edge after the window has ended */
+    EERUF_READING_LATE = 7,     /* an edge after the window has ended; without echo time: nobody knows when it came */
     EERUF_READING_STUCK = 8,    /* the echo line was high when the sensor was to fire */
     EERUF_READING_TENTATIVE = 9, /* of rings before version 4 alone */
     EERUF_READING_AMBIGUOUS = 10, /* near-identical, but another sensor's sound explains both: not believed */
@@ -206,9 +207,9 @@ typedef struct EerufReading {
 typedef struct EerufFilter {
     uint32_t known_us;
     uint16_t age;
-    uint8_t state, flags; /* flags of a ring's sensor */
+    uint8_t state, flags, off[2]; /* the last two of a ring's sensor */
 } EerufFilter;
-#define EERUF_FILTER {EERUF_NO_ECHO, EERUF_NEVER, 0, 0}
+#define EERUF_FILTER {EERUF_NO_ECHO, EERUF_NEVER, 0, 0, {0, 0}}
 
 /* Takes in one firing: its echo below 2^31 us, or EERUF_NO_ECHO. `consecutive` readings, 2 to 8, must each be within
    `t_delta_us` of the one before, after taking off the change that motion lets expect (-2 v dt / c): with one it accepts
@@ -226,7 +227,7 @@ EerufStatus eeruf_filter_forget(EerufFilter *filter); /* compare the next readin
    P is ever accepted. Such readings are EERUF_READING_AMBIGUOUS. While firings are as punctual as the schedule was
    verified for, none is, and the ring does not ask. */
 
-/* One sensor of a ring: 28 bytes on an AVR. Not for the caller. */
+/* One sensor of a ring: 30 bytes on an AVR. Not for the caller. */
 typedef struct EerufSensor {
     uint32_t echo_us;
     EerufFilter filter;
@@ -314,6 +315,10 @@ EerufStatus eeruf_ring_upcoming(const EerufRing *ring, uint8_t number, uint8_t *
 /* An echo, at this instant. Any number, in any order, at any time, wanted or not. For a module that answers with a
    pulse as long as the echo took this is the firing's instant plus the pulse's width: see EerufHcSr04. */
 EerufStatus eeruf_ring_echo(EerufRing *ring, uint8_t sensor, uint32_t at_us);
+/* An echo of which only this is known: the line was last seen without it at `earliest_us`, and with it at `latest_us`.
+   The middle counts, and a firing explains what it may. One that is more than 300 us off either way, 5 cm, is no distance:
+   its reading is EERUF_READING_LATE, without echo time. */
+EerufStatus eeruf_ring_echo_between(EerufRing *ring, uint8_t sensor, uint32_t earliest_us, uint32_t latest_us);
 /* Corrects when a sensor last fired, to an instant before or after the poll: by what a timer captured, for example.
    Echo times count from it. If it is later, all that follows moves by as much. Call it before the readings that may
    hold the firing's sound are polled for: an accepted reading cannot be taken back. An instant that is not after the
@@ -334,9 +339,14 @@ enum {
 EerufStatus eeruf_ring_set_silence(EerufRing *ring, uint8_t silence);
 EerufStatus eeruf_ring_answered(EerufRing *ring, uint8_t sensor);
 EerufStatus eeruf_ring_unanswered(EerufRing *ring, uint8_t sensor); /* takes it back: that was a disturbance */
+/* A sensor holds its line: it rose after the trigger, or is high still so that there was none. Its silence counts once, when
+   that has fallen: eeruf_ring_answered. Until then its readings neither add to a run of silences nor break it. */
+EerufStatus eeruf_ring_holds(EerufRing *ring, uint8_t sensor);
 /* Takes what hardware or a protocol measured of a sensor's firing, before its reading is emitted: the echo time, or
    EERUF_NO_ECHO if it listened and heard nothing. */
 EerufStatus eeruf_ring_measured(EerufRing *ring, uint8_t sensor, uint32_t t_echo_us);
+/* The same of an echo time between two, as eeruf_ring_echo_between. */
+EerufStatus eeruf_ring_measured_between(EerufRing *ring, uint8_t sensor, uint32_t least_us, uint32_t most_us);
 /* Forgets a sensor's echo, which is not what it seemed: its next reading is compared with nothing. Ages go on. */
 EerufStatus eeruf_ring_forget(EerufRing *ring, uint8_t sensor);
 
@@ -441,9 +451,10 @@ uint32_t eeruf_echo_time_us(uint32_t distance_mm, uint32_t c_mm_s);
 /* ---- Edges: from an interrupt, which only time-stamps, to the main loop ---- */
 
 typedef struct EerufEdge {
-    uint32_t at_us;
-    uint8_t sensor; /* 0 to 127 */
-    bool high;      /* whether the line rose */
+    uint32_t at_us;    /* when it was seen */
+    uint8_t sensor;    /* 0 to 127 */
+    bool high;         /* whether the line rose */
+    uint8_t early_8us; /* by how much sooner it may have come, in units of 8 us; 255 for more */
 } EerufEdge;
 
 /* `places` is memory of yours for 2, 4, 8, .. or 128 edges. */
@@ -457,6 +468,9 @@ typedef struct EerufEdges {
 EerufStatus eeruf_edges_init(EerufEdges *edges, size_t edges_size, EerufEdge *places, size_t places_size);
 /* From one interrupt, or several that do not interrupt one another. */
 EerufStatus eeruf_edges_push(EerufEdges *edges, uint8_t sensor, bool high, uint32_t at_us);
+/* From one that was held off: when the line was last known not to have changed, and when it was seen. */
+EerufStatus eeruf_edges_push_between(EerufEdges *edges, uint8_t sensor, bool high, uint32_t earliest_us,
+                                     uint32_t latest_us);
 /* From the main loop. EERUF_EMPTY if none waits. */
 EerufStatus eeruf_edges_pop(EerufEdges *edges, EerufEdge *edge);
 
@@ -488,8 +502,8 @@ typedef struct EerufHcSr04Settings {
 
 /* One echo line: 8 bytes on an AVR. Not for the caller. */
 typedef struct EerufLine {
-    uint32_t rose_us;
-    uint16_t width_us; /* of the pulse that is over */
+    uint32_t rose_us;  /* before it rises, when it was last seen low */
+    uint16_t width_us; /* of the pulse that is over; before, from its rise to when it was last seen high */
     uint8_t state, silent;
 } EerufLine;
 
@@ -516,21 +530,26 @@ EerufStatus eeruf_hc_sr04_fire(EerufHcSr04 *modules, uint8_t sensor, bool line_i
    EERUF_READING_STUCK all the same; the next firing triggers the module if its line stays low. */
 bool eeruf_hc_sr04_is_stuck(const EerufHcSr04 *modules, uint8_t sensor);
 #define EERUF_RECOVERY_US 200
-/* Instead, if a timer or other hardware has triggered it: then nobody has seen whether its line was low, and a module
-   that still held it counts as unanswered. */
+/* Instead, if a timer or other hardware has triggered it. A module whose line has not been seen to fall holds it still. */
 EerufStatus eeruf_hc_sr04_triggered(EerufHcSr04 *modules, uint8_t sensor);
 /* A pin could not be read before the trigger (then nothing is triggered), or written at it. */
 EerufStatus eeruf_hc_sr04_cannot_read(EerufHcSr04 *modules, uint8_t sensor);
 EerufStatus eeruf_hc_sr04_cannot_write(EerufHcSr04 *modules, uint8_t sensor);
 /* An edge of an echo line. Hand in all edges you have before you poll. */
 EerufStatus eeruf_hc_sr04_edge(EerufHcSr04 *modules, uint8_t sensor, bool high, uint32_t at_us);
+/* One that came between two instants: see eeruf_ring_echo_between. What rise and fall are off by adds up. */
+EerufStatus eeruf_hc_sr04_edge_between(EerufHcSr04 *modules, uint8_t sensor, bool high, uint32_t earliest_us,
+                                       uint32_t latest_us);
+/* Instead, for those who sample lines: a look at one, with the clock before and after it, edge or not. An edge came
+   between this look and the one before. */
+EerufStatus eeruf_hc_sr04_look(EerufHcSr04 *modules, uint8_t sensor, bool high, uint32_t before_us, uint32_t after_us);
 /* All edges of a queue; or those that are not later than an instant, such as that of a timer's trigger. */
 EerufStatus eeruf_hc_sr04_edges(EerufHcSr04 *modules, EerufEdges *edges);
 EerufStatus eeruf_hc_sr04_edges_until(EerufHcSr04 *modules, EerufEdges *edges, uint32_t until_us);
 /* The width of a module's pulse, from hardware that measures it: instead of edges, before the reading is emitted. */
 EerufStatus eeruf_hc_sr04_pulse(EerufHcSr04 *modules, uint8_t sensor, uint32_t width_us);
-/* True if the line of a sensor is worth looking at, for those who sample lines: it was triggered, and its pulse is not
-   over. `was_high`, if not null: the level it had last. */
+/* True if the line of a sensor is worth a look: it was triggered, and its pulse is not over. `was_high`, if not null: the
+   level it had last. */
 bool eeruf_hc_sr04_awaits(const EerufHcSr04 *modules, uint8_t sensor, bool *was_high);
 /* As eeruf_ring_fired, where the trigger was given later than the poll said. */
 EerufStatus eeruf_hc_sr04_fired(EerufHcSr04 *modules, uint8_t sensor, uint32_t at_us);
@@ -581,7 +600,7 @@ enum {
 #define EERUF_FLOW(sensors, window_us)                                                                                 \
     {EERUF_VERSION, sensors, window_us, 0, 6000, 33500, 60000, 2000, 1, 80, 150, 150, 8, 4, 0, 0, 0, NULL, NULL}
 
-/* One sensor of a flow ring, in place of an EerufSensor: 40 bytes. Not for the caller. */
+/* One sensor of a flow ring, in place of an EerufSensor: 42 bytes on an AVR. Not for the caller. */
 typedef struct EerufFlowSensor {
     uint32_t echo_us;
     EerufFilter filter;   /* its echo is that of the last firing */

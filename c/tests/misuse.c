@@ -245,6 +245,13 @@ static void filters_and_edges(void) {
     for (pushed = 0; pushed < 8; pushed++) EXPECT(eeruf_edges_push(&edges, pushed, true, pushed), EERUF_OK);
     EXPECT(eeruf_edges_push(&edges, 8, true, 8), EERUF_ERR_MEMORY);
     EXPECT(edges.lost, 1);
+    /* By how much sooner an edge may have come is rounded up. */
+    EXPECT(eeruf_edges_init(&edges, sizeof edges, places, sizeof places), EERUF_OK);
+    EXPECT(eeruf_edges_push_between(&edges, 0, true, 5, 4), EERUF_ERR_BETWEEN);
+    EXPECT(eeruf_edges_push_between(&edges, 0, true, UINT32_MAX, 16), EERUF_OK);
+    EXPECT(eeruf_edges_push_between(&edges, 0, true, 0, 5000), EERUF_OK);
+    EXPECT(eeruf_edges_pop(&edges, &edge) == EERUF_OK && edge.at_us == 16 && edge.early_8us == 3, 1);
+    EXPECT(eeruf_edges_pop(&edges, &edge) == EERUF_OK && edge.early_8us == 255, 1);
 }
 
 static void modules(void) {
@@ -281,6 +288,9 @@ static void modules(void) {
     EXPECT(eeruf_hc_sr04_edge(NULL, 0, true, 0), EERUF_ERR_NULL);
     EXPECT(eeruf_hc_sr04_edge(&none, 0, true, 0), EERUF_ERR_NOT_READY);
     EXPECT(eeruf_hc_sr04_edge(&four, SENSORS, true, 0), EERUF_ERR_SENSOR);
+    EXPECT(eeruf_hc_sr04_edge_between(&four, 1, true, 5, 4), EERUF_ERR_BETWEEN);
+    EXPECT(eeruf_hc_sr04_look(NULL, 0, true, 0, 0), EERUF_ERR_NULL);
+    EXPECT(eeruf_hc_sr04_look(&four, SENSORS, true, 0, 0), EERUF_ERR_SENSOR);
     EXPECT(eeruf_hc_sr04_edges(NULL, &edges), EERUF_ERR_NULL);
     EXPECT(eeruf_hc_sr04_edges(&none, &edges), EERUF_ERR_NOT_READY);
     EXPECT(eeruf_hc_sr04_edges(&four, NULL), EERUF_ERR_NULL);
@@ -466,13 +476,60 @@ static void silence_needs_a_witness(void) {
     EXPECT(eeruf_ring_unanswered(&not_ready, 0), EERUF_ERR_NOT_READY);
     EXPECT(eeruf_ring_forget(&ring, SENSORS), EERUF_ERR_SENSOR);
     EXPECT(eeruf_ring_measured(&ring, SENSORS, 1000), EERUF_ERR_SENSOR);
+    EXPECT(eeruf_ring_measured_between(&ring, SENSORS, 1000, 1001), EERUF_ERR_SENSOR);
+    EXPECT(eeruf_ring_measured_between(&ring, 0, 1001, 1000), EERUF_ERR_BETWEEN);
+    EXPECT(eeruf_ring_echo_between(&ring, 0, now + 1001, now + 1000), EERUF_ERR_BETWEEN);
+    EXPECT(eeruf_ring_holds(&ring, SENSORS), EERUF_ERR_SENSOR);
     EXPECT(eeruf_ring_measured(&ring, 0, EERUF_NO_ECHO), EERUF_OK);
 }
 
-/* Clones hold their line far longer than it takes to the next firing: they listen still, and are clear and well. Longer
-   than that the line is stuck. */
+/* Sampled lines: an edge came between two looks, so that a loop that is held off says nothing. */
+static void looks(void) {
+    /* The looks at a line after its firing, and what comes of them. */
+    static const struct {
+        uint32_t low_us, high_us, still_us, fell_us, t_echo_us;
+        uint8_t kind;
+    } CASES[] = {
+        {400, 500, 6200, 6300, 5800, EERUF_READING_FIRST},
+        {400, 500, 6200, 6300, 5800, EERUF_READING_ACCEPTED},
+        {400, 1200, 6200, 6300, EERUF_NO_ECHO, EERUF_READING_LATE}, /* a millisecond in all is too much */
+        {440, 460, 17000, 58000, EERUF_NO_ECHO, EERUF_READING_LATE}, /* longer than any pulse, or a wall at 3 m */
+        {440, 460, 37000, 38500, EERUF_NO_ECHO, EERUF_READING_NO_ECHO},
+        {440, 460, 37000, 38500, EERUF_NO_ECHO, EERUF_READING_CLEAR},
+    };
+    EerufHcSr04Settings settings = EERUF_HC_SR04;
+    EerufConfig config = EERUF_CONFIG;
+    EerufHcSr04 four;
+    EerufLine lines[SENSORS];
+    unsigned at = 0;
+    config.t_delta_us = 900;
+    config.window_us = 54000;
+    settings.min_retrigger_us = 54000;
+    EXPECT(eeruf_ring_init_unverified(&ring, sizeof ring, sensors, sizeof sensors, &unverified, &config, 0), EERUF_OK);
+    EXPECT(eeruf_hc_sr04_init(&four, sizeof four, lines, sizeof lines, &ring, &settings), EERUF_OK);
+    while (at < sizeof CASES / sizeof CASES[0]) {
+        const uint32_t now = eeruf_ring_deadline(&ring);
+        if (eeruf_ring_poll(&ring, now, &event) != EERUF_EVENT || event.sensor != 3) continue;
+        if (event.kind == EERUF_EVENT_FIRE) {
+            const uint32_t looks_us[] = {CASES[at].low_us, CASES[at].high_us, CASES[at].still_us, CASES[at].fell_us};
+            unsigned look;
+            EXPECT(eeruf_hc_sr04_fire(&four, 3, false), EERUF_OK);
+            for (look = 0; look < 4; look++) {
+                const uint32_t at_us = now + looks_us[look];
+                EXPECT(eeruf_hc_sr04_look(&four, 3, look == 1 || look == 2, at_us, at_us + 4), EERUF_OK);
+            }
+        } else if (event.kind == EERUF_EVENT_READING) {
+            EXPECT(event.u.reading.kind, CASES[at].kind);
+            EXPECT(event.u.reading.t_echo_us, CASES[at].t_echo_us);
+            at++;
+        }
+    }
+}
+
+/* Clones hold their line far longer than it takes to the next firing: they listen still, and are clear and well, after two
+   pulses. Longer than that the line is stuck. */
 static void a_line_that_is_held_listens_still(void) {
-    static const uint32_t HOLDS_MS[] = {38, 66, 130, 200, 1000};
+    static const uint32_t HOLDS_MS[] = {38, 66, 130, 200, 1000}, CLEAR[] = {98, 97, 95, 93, 0};
     EerufHcSr04Settings settings = EERUF_HC_SR04;
     EerufConfig config = EERUF_CONFIG;
     unsigned run;
@@ -506,8 +563,8 @@ static void a_line_that_is_held_listens_still(void) {
             }
             if (eeruf_hc_sr04_health(&four, 3) == EERUF_HEALTH_WELL) well++;
         }
+        EXPECT(kinds[EERUF_READING_CLEAR], CLEAR[run]);
         if (HOLDS_MS[run] < 250) {
-            EXPECT(kinds[EERUF_READING_CLEAR], 99);
             EXPECT(well >= 100, 1);
         } else {
             EXPECT(kinds[EERUF_READING_STUCK] > 60, 1);
@@ -630,6 +687,7 @@ int main(void) {
     filters_and_edges();
     modules();
     silence_needs_a_witness();
+    looks();
     a_line_that_is_held_listens_still();
     adaptations();
     watches();

@@ -17,7 +17,7 @@ static const uint32_t EERUF_HC_SR04_2_gap_us[] EERUF_FLASH = {
     0u, 30000u, 31000u,
 };
 static const EerufSchedule EERUF_HC_SR04_2 EERUF_FLASH = {
-    4, 2, 2, EERUF_HC_SR04_2_order, EERUF_HC_SR04_2_gap_us,
+    5, 2, 2, EERUF_HC_SR04_2_order, EERUF_HC_SR04_2_gap_us,
     61000u, 60000u, 381u, 14569u, 60000u, 1000u,
     EERUF_AS_T_DELTA, 61000u,
     1, EERUF_LAYOUT_RING, 2, 0, 0,
@@ -34,7 +34,7 @@ static const uint32_t EERUF_HC_SR04_3_gap_us[] EERUF_FLASH = {
     0u, 20000u, 20000u, 22000u,
 };
 static const EerufSchedule EERUF_HC_SR04_3 EERUF_FLASH = {
-    4, 3, 2, EERUF_HC_SR04_3_order, EERUF_HC_SR04_3_gap_us,
+    5, 3, 2, EERUF_HC_SR04_3_order, EERUF_HC_SR04_3_gap_us,
     62000u, 60000u, 387u, 14569u, 60000u, 1000u,
     EERUF_AS_T_DELTA, 62000u,
     1, EERUF_LAYOUT_RING, 3, 0, 0,
@@ -51,7 +51,7 @@ static const uint32_t EERUF_HC_SR04_4_gap_us[] EERUF_FLASH = {
     0u, 15000u, 15000u, 15000u, 18000u,
 };
 static const EerufSchedule EERUF_HC_SR04_4 EERUF_FLASH = {
-    4, 4, 2, EERUF_HC_SR04_4_order, EERUF_HC_SR04_4_gap_us,
+    5, 4, 2, EERUF_HC_SR04_4_order, EERUF_HC_SR04_4_gap_us,
     63000u, 60000u, 393u, 14569u, 60000u, 1000u,
     EERUF_AS_T_DELTA, 63000u,
     1, EERUF_LAYOUT_RING, 4, 0, 0,
@@ -68,7 +68,7 @@ static const uint32_t EERUF_HC_SR04_5_gap_us[] EERUF_FLASH = {
     14500u, 15000u, 15000u, 15000u, 15000u, 2000u,
 };
 static const EerufSchedule EERUF_HC_SR04_5 EERUF_FLASH = {
-    4, 5, 2, EERUF_HC_SR04_5_order, EERUF_HC_SR04_5_gap_us,
+    5, 5, 2, EERUF_HC_SR04_5_order, EERUF_HC_SR04_5_gap_us,
     76500u, 60000u, 471u, 14569u, 60000u, 1000u,
     EERUF_AS_T_DELTA, 76500u,
     1, EERUF_LAYOUT_RING, 4, 0, 0,
@@ -85,7 +85,7 @@ static const uint32_t EERUF_HC_SR04_6_gap_us[] EERUF_FLASH = {
     0u, 15000u, 15000u, 15500u, 15000u, 15000u, 16000u,
 };
 static const EerufSchedule EERUF_HC_SR04_6 EERUF_FLASH = {
-    4, 6, 2, EERUF_HC_SR04_6_order, EERUF_HC_SR04_6_gap_us,
+    5, 6, 2, EERUF_HC_SR04_6_order, EERUF_HC_SR04_6_gap_us,
     91500u, 60500u, 557u, 14569u, 60000u, 1500u,
     EERUF_AS_T_DELTA, 91500u,
     1, EERUF_LAYOUT_RING, 4, 0, 0,
@@ -102,7 +102,7 @@ static const uint32_t EERUF_HC_SR04_8_gap_us[] EERUF_FLASH = {
     0u, 0u, 15000u, 0u, 15000u, 0u, 15000u, 0u, 22000u,
 };
 static const EerufSchedule EERUF_HC_SR04_8 EERUF_FLASH = {
-    4, 8, 2, EERUF_HC_SR04_8_order, EERUF_HC_SR04_8_gap_us,
+    5, 8, 2, EERUF_HC_SR04_8_order, EERUF_HC_SR04_8_gap_us,
     67000u, 60000u, 416u, 14569u, 60000u, 1000u,
     EERUF_AS_T_DELTA, 67000u,
     1, EERUF_LAYOUT_RING, 4, 0, 0,
@@ -119,7 +119,7 @@ static const uint32_t EERUF_HC_SR04_8_SLOWER_gap_us[] EERUF_FLASH = {
     0u, 0u, 22500u, 0u, 22500u, 0u, 22500u, 0u, 33000u,
 };
 static const EerufSchedule EERUF_HC_SR04_8_SLOWER EERUF_FLASH = {
-    4, 8, 2, EERUF_HC_SR04_8_SLOWER_order, EERUF_HC_SR04_8_SLOWER_gap_us,
+    5, 8, 2, EERUF_HC_SR04_8_SLOWER_order, EERUF_HC_SR04_8_SLOWER_gap_us,
     100500u, 90000u, 524u, 14569u, 90000u, 1500u,
     EERUF_AS_T_DELTA, 100500u,
     1, EERUF_LAYOUT_RING, 4, 0, 0,
@@ -136,7 +136,7 @@ static const uint32_t EERUF_HC_SR04_8_SLOWEST_gap_us[] EERUF_FLASH = {
     0u, 0u, 30000u, 0u, 30000u, 0u, 30000u, 0u, 40500u,
 };
 static const EerufSchedule EERUF_HC_SR04_8_SLOWEST EERUF_FLASH = {
-    4, 8, 2, EERUF_HC_SR04_8_SLOWEST_order, EERUF_HC_SR04_8_SLOWEST_gap_us,
+    5, 8, 2, EERUF_HC_SR04_8_SLOWEST_order, EERUF_HC_SR04_8_SLOWEST_gap_us,
     130500u, 120000u, 611u, 14569u, 120000u, 1500u,
     EERUF_AS_T_DELTA, 130500u,
     1, EERUF_LAYOUT_RING, 4, 0, 0,
@@ -153,7 +153,7 @@ static const uint32_t EERUF_HC_SR04_10_gap_us[] EERUF_FLASH = {
     1000u, 0u, 15000u, 1000u, 15000u, 1000u, 14000u, 2000u, 13500u, 2500u, 12500u,
 };
 static const EerufSchedule EERUF_HC_SR04_10 EERUF_FLASH = {
-    4, 10, 2, EERUF_HC_SR04_10_order, EERUF_HC_SR04_10_gap_us,
+    5, 10, 2, EERUF_HC_SR04_10_order, EERUF_HC_SR04_10_gap_us,
     77500u, 61000u, 474u, 14569u, 60000u, 1000u,
     EERUF_AS_T_DELTA, 77500u,
     1, EERUF_LAYOUT_RING, 4, 0, 0,
@@ -170,7 +170,7 @@ static const uint32_t EERUF_HC_SR04_12_gap_us[] EERUF_FLASH = {
     0u, 0u, 0u, 15000u, 0u, 0u, 15000u, 0u, 0u, 15000u, 0u, 0u, 26000u,
 };
 static const EerufSchedule EERUF_HC_SR04_12 EERUF_FLASH = {
-    4, 12, 2, EERUF_HC_SR04_12_order, EERUF_HC_SR04_12_gap_us,
+    5, 12, 2, EERUF_HC_SR04_12_order, EERUF_HC_SR04_12_gap_us,
     71000u, 60000u, 439u, 14569u, 60000u, 1000u,
     EERUF_AS_T_DELTA, 71000u,
     1, EERUF_LAYOUT_RING, 4, 0, 0,
@@ -187,7 +187,7 @@ static const uint32_t EERUF_HC_SR04_16_gap_us[] EERUF_FLASH = {
     0u, 0u, 0u, 0u, 15000u, 0u, 0u, 0u, 15000u, 0u, 0u, 0u, 15000u, 0u, 0u, 0u, 30000u,
 };
 static const EerufSchedule EERUF_HC_SR04_16 EERUF_FLASH = {
-    4, 16, 2, EERUF_HC_SR04_16_order, EERUF_HC_SR04_16_gap_us,
+    5, 16, 2, EERUF_HC_SR04_16_order, EERUF_HC_SR04_16_gap_us,
     75000u, 60000u, 463u, 14569u, 60000u, 1000u,
     EERUF_AS_T_DELTA, 75000u,
     1, EERUF_LAYOUT_RING, 4, 0, 0,
@@ -204,7 +204,7 @@ static const uint32_t EERUF_HC_SR04_24_gap_us[] EERUF_FLASH = {
     9750u, 3000u, 1350u, 150u, 1500u, 3000u, 13500u, 1500u, 1500u, 150u, 2850u, 150u, 14850u, 1350u, 150u, 3000u, 150u, 1350u, 14850u, 150u, 3000u, 150u, 1350u, 1500u, 14250u,
 };
 static const EerufSchedule EERUF_HC_SR04_24 EERUF_FLASH = {
-    4, 24, 2, EERUF_HC_SR04_24_order, EERUF_HC_SR04_24_gap_us,
+    5, 24, 2, EERUF_HC_SR04_24_order, EERUF_HC_SR04_24_gap_us,
     94500u, 60000u, 576u, 14569u, 60000u, 1200u,
     EERUF_AS_T_DELTA, 94500u,
     1, EERUF_LAYOUT_RING, 4, 0, 0,

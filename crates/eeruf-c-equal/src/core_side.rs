@@ -91,6 +91,8 @@ pub fn status_of(error: &RingError) -> i32 {
         RingError::Audible { .. } => -29,
         RingError::PathChange { .. } => -30,
         RingError::Setting { .. } => -26,
+        RingError::Sensor(_) => -5,
+        RingError::Interval { .. } => -32,
         _ => unreachable!("{error}"),
     }
 }

@@ -1,7 +1,7 @@
 //! Flow rings.
 
 use crate::core_side::{echo, flat, state, status_of, upcoming};
-use crate::world::{World, same, set_silence};
+use crate::world::{World, hear, measure, same, set_silence};
 use crate::{C, Do, Random};
 use eeruf_core::{
     EachSensor, Instant, Micros, Requirements, RingConfig, RingError, RingEvent, Uneven,
@@ -118,7 +118,7 @@ fn compare<const K: usize, U: OwnLimits>(
     set_silence(r, &mut c, &mut ring);
     let mut watch = SensorWatch::<K>::new(0, Instant::from_micros(start));
     assert_eq!(c.watch(K as u8, start), 0);
-    let (moves, tick) = (r.once_in(2), r.one_of(&[1, 1, 1_000]));
+    let (moves, uncertain, tick) = (r.once_in(2), r.once_in(2), r.one_of(&[1, 1, 1_000]));
     let acts = r.one_of(&[20, 100, 1_000]);
     for step in 0..4_000 {
         if r.is_over() {
@@ -130,8 +130,13 @@ fn compare<const K: usize, U: OwnLimits>(
             // Clocks of several cores differ by microseconds.
             world.now = world.now.wrapping_sub(world.random.within(1, 3));
         }
-        for (at, sensor) in world.heard() {
-            same(&mut c, Do::Echo, sensor, at, ring.echo(sensor, Instant::from_micros(at)));
+        for edge in world.heard() {
+            hear((&world.random, uncertain), &mut c, &mut ring, edge);
+        }
+        if world.random.once_in(4) {
+            // A line that was held falls, its reading out or not.
+            let sensor = world.random.within(0, K as u32) as u8;
+            same(&mut c, Do::Answered, sensor, 0, ring.answered(sensor));
         }
         let r = &world.random;
         if moves && r.once_in(30) {
@@ -162,7 +167,7 @@ fn compare<const K: usize, U: OwnLimits>(
             let believed = echo(ring.judge().believed(sensor));
             assert_eq!(c.quiet_and_belief(sensor), [quiet, believed], "{}", at());
             if let RingEvent::Fire { sensor, .. } = event {
-                fired(&mut world, &mut c, &mut ring, sensor);
+                fired((&mut world, uncertain), &mut c, &mut ring, sensor);
             }
         }
     }
@@ -170,11 +175,19 @@ fn compare<const K: usize, U: OwnLimits>(
 }
 
 /// Operations at and after a firing.
-fn fired<const K: usize, U: OwnLimits>(world: &mut World, c: &mut C, ring: &mut FlowRing<K, 1, U>, sensor: u8) {
+fn fired<const K: usize, U: OwnLimits>(
+    (world, uncertain): (&mut World, bool),
+    c: &mut C,
+    ring: &mut FlowRing<K, 1, U>,
+    sensor: u8,
+) {
     world.fired(sensor);
     let r = &world.random;
     if r.once_in(60) {
         same(c, Do::Stuck, sensor, 0, ring.stuck(sensor));
+    }
+    if r.once_in(3) {
+        same(c, Do::Holds, sensor, 0, ring.holds(sensor));
     }
     if r.once_in(2) {
         same(c, Do::Answered, sensor, 0, ring.answered(sensor));
@@ -183,8 +196,7 @@ fn fired<const K: usize, U: OwnLimits>(world: &mut World, c: &mut C, ring: &mut 
         }
     }
     if r.once_in(8) {
-        let echo = (!r.once_in(3)).then(|| r.duration(30_000));
-        same(c, Do::Measured, sensor, echo.unwrap_or(crate::NO_ECHO), ring.measured(sensor, echo.map(Micros::new)));
+        measure((r, uncertain), c, ring, sensor);
     }
     if r.once_in(40) {
         same(c, Do::Forget, sensor, 0, ring.forget(sensor));

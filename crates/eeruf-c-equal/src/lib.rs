@@ -57,7 +57,18 @@ pub enum Do {
     Measured,
     Triggered,
     Pulse,
+    Holds,
     SetReportAfter,
+}
+
+/// What lies between two numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[expect(missing_docs, reason = "named as the functions of eeruf.h")]
+pub enum Between {
+    Echo,
+    Measured,
+    Edge,
+    Look,
 }
 
 /// A schedule's numbers after it was verified, or not.
@@ -191,6 +202,12 @@ impl C {
     pub fn call(&mut self, what: Do, sensor: u8, value: u32) -> i32 {
         // SAFETY: a ring, or modules, that were made.
         unsafe { shim::shim_do(self.0, what as u32, sensor, value) }
+    }
+
+    /// One of the functions that take a sensor and two numbers.
+    pub fn between(&mut self, what: Between, sensor: u8, least: u32, most: u32) -> i32 {
+        // SAFETY: a ring, or modules, that were made.
+        unsafe { shim::shim_between(self.0, what as u32, sensor, least, most) }
     }
 
     /// Makes the last event, a reading, an ambiguous one.

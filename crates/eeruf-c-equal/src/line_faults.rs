@@ -59,7 +59,7 @@ pub enum Says {
     Unanswered,
     /// Nothing is known.
     Unknown,
-    /// Free space for 250 ms, then no answer.
+    /// Nothing is known for 250 ms, then no answer.
     Held,
 }
 
@@ -80,10 +80,19 @@ pub struct Fault {
 #[derive(Clone, Debug)]
 pub struct Faults {
     schedule: VerifiedSchedule<K>,
-    period_us: u32,
+    /// T_p.
+    pub period_us: u32,
     t_fire_us: Vec<u32>,
     /// The rows.
     pub faults: Vec<Fault>,
+}
+
+impl Fault {
+    /// The number of readings until two pulses of its line are over, so that silence counts twice.
+    pub fn two_pulses(&self, period_us: u32) -> usize {
+        let falls = self.edges.last().map_or(0, |edge| edge.us);
+        (2 * falls.div_ceil(period_us)).saturating_sub(1) as usize
+    }
 }
 
 impl Faults {
@@ -325,7 +334,8 @@ pub struct Outcome {
     pub partner: Vec<Said>,
 }
 
-fn run(driver: &mut dyn Driver, wires: &Wires, fault: &Fault, start: u32) -> Outcome {
+/// The fault begins so many microseconds after the start; until then its sensor is well and before a wall.
+fn run(driver: &mut dyn Driver, wires: &Wires, fault: &Fault, onset_us: u32, start: u32) -> Outcome {
     let partner = if let Wiring::Exchanged(with) = fault.wiring { Some(with) } else { None };
     let (mut outcome, mut periods, mut now) = (Outcome::default(), 0, start);
     let mut edges: Vec<(u32, u8, Play)> = vec![];
@@ -347,6 +357,7 @@ fn run(driver: &mut dyn Driver, wires: &Wires, fault: &Fault, start: u32) -> Out
                     _ => sensor,
                 };
                 let played = match sensor {
+                    FAULTY if now.wrapping_sub(start) < onset_us => &WALL,
                     FAULTY => &fault.edges[..],
                     _ if Some(sensor) == partner => &NOTHING,
                     _ => &WALL,
@@ -371,15 +382,16 @@ fn run(driver: &mut dyn Driver, wires: &Wires, fault: &Fault, start: u32) -> Out
     outcome
 }
 
-/// Runs the drivers of Rust and of C, in this order, for 100 periods with a fault.
+/// Runs the drivers of Rust and of C, in this order, for 100 periods with a fault, which begins so many microseconds
+/// after the start.
 ///
 /// # Panics
 /// If the drivers refuse the ring.
-pub fn outcomes(faults: &Faults, fault: &Fault) -> [Outcome; 2] {
+pub fn outcomes(faults: &Faults, fault: &Fault, onset_us: u32) -> [Outcome; 2] {
     // The clock wraps in each run.
     let (start, forgets) = (u32::MAX - 2_000_000, fault.wiring == Wiring::Forgotten);
     let wires = Rc::new(Wires::default());
-    let in_rust = run(&mut InRust::new(faults, &wires, forgets, start), &wires, fault, start);
+    let in_rust = run(&mut InRust::new(faults, &wires, forgets, start), &wires, fault, onset_us, start);
     let wires = Rc::new(Wires::default());
-    [in_rust, run(&mut InC::new(faults, &wires, forgets, start), &wires, fault, start)]
+    [in_rust, run(&mut InC::new(faults, &wires, forgets, start), &wires, fault, onset_us, start)]
 }

@@ -9,7 +9,7 @@ use eeruf_core::{
     watch::SensorWatch,
 };
 
-use crate::world::{World, same, set_silence};
+use crate::world::{World, hear, measure, same, set_silence};
 
 const K: usize = 16;
 
@@ -237,7 +237,7 @@ where
     set_silence(r, &mut c, &mut ring);
     let mut watch = SensorWatch::<K>::new(0, Instant::from_micros(start));
     assert_eq!(c.watch(sensors, start), 0);
-    let moves = r.once_in(3);
+    let (moves, uncertain) = (r.once_in(3), r.once_in(2));
     let acts = r.one_of(&[10, 100, 1_000]);
     let mut count = 0;
     for step in 0..3_000 {
@@ -245,8 +245,13 @@ where
             break;
         }
         world.turn_clock(ring.next_deadline().as_micros());
-        for (at, sensor) in world.heard() {
-            same(&mut c, Do::Echo, sensor, at, ring.echo(sensor, Instant::from_micros(at)));
+        for edge in world.heard() {
+            hear((&world.random, uncertain), &mut c, &mut ring, edge);
+        }
+        if world.random.once_in(4) {
+            // A line that was held falls, its reading out or not.
+            let sensor = world.random.within(0, u32::from(sensors)) as u8;
+            same(&mut c, Do::Answered, sensor, 0, ring.answered(sensor));
         }
         if world.random.once_in(acts) {
             act(&world.random, &mut c, &mut ring, &schedules, world.now);
@@ -274,6 +279,9 @@ where
                 if world.random.once_in(40) {
                     same(&mut c, Do::Stuck, sensor, 0, ring.stuck(sensor));
                 }
+                if world.random.once_in(3) {
+                    same(&mut c, Do::Holds, sensor, 0, ring.holds(sensor));
+                }
                 if world.random.once_in(2) {
                     same(&mut c, Do::Answered, sensor, 0, ring.answered(sensor));
                     if world.random.once_in(4) {
@@ -281,9 +289,7 @@ where
                     }
                 }
                 if world.random.once_in(8) {
-                    let echo = (!world.random.once_in(3)).then(|| world.random.duration(30_000));
-                    let measured = ring.measured(sensor, echo.map(Micros::new));
-                    same(&mut c, Do::Measured, sensor, echo.unwrap_or(crate::NO_ECHO), measured);
+                    measure((&world.random, uncertain), &mut c, &mut ring, sensor);
                 }
                 if world.random.once_in(40) {
                     same(&mut c, Do::Forget, sensor, 0, ring.forget(sensor));

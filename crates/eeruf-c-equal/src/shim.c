@@ -211,7 +211,18 @@ int shim_do(Handle *handle, unsigned what, uint8_t sensor, uint32_t value) {
     case 26: return eeruf_ring_measured(ring, sensor, value);
     case 27: return eeruf_hc_sr04_triggered(&handle->modules, sensor);
     case 28: return eeruf_hc_sr04_pulse(&handle->modules, sensor, value);
+    case 29: return eeruf_ring_holds(ring, sensor);
     default: return eeruf_ring_set_report_after(ring, value);
+    }
+}
+
+/* What lies between two numbers: an echo, a measured time, an edge, a look. */
+int shim_between(Handle *handle, unsigned what, uint8_t sensor, uint32_t least, uint32_t most) {
+    switch (what) {
+    case 0: return eeruf_ring_echo_between(handle->ring, sensor, least, most);
+    case 1: return eeruf_ring_measured_between(handle->ring, sensor, least, most);
+    case 2: return eeruf_hc_sr04_edge_between(&handle->modules, sensor & 0x7fu, sensor >> 7, least, most);
+    default: return eeruf_hc_sr04_look(&handle->modules, sensor & 0x7fu, sensor >> 7, least, most);
     }
 }
 
@@ -321,7 +332,7 @@ int shim_edges_push(uint8_t sensor, uint8_t high, uint32_t at_us) {
 }
 
 int shim_edges_pop(uint32_t *out) {
-    EerufEdge edge = {0, 0, false};
+    EerufEdge edge = {0, 0, false, 0};
     const EerufStatus status = eeruf_edges_pop(&edges, &edge);
     out[0] = edge.sensor;
     out[1] = edge.high;

@@ -37,6 +37,7 @@ unsafe extern "C" {
     pub(crate) fn shim_poll(handle: *mut c_void, now_us: u32, change_us: *const i32, out: *mut u32) -> i32;
     pub(crate) fn shim_deadline(handle: *const c_void) -> u32;
     pub(crate) fn shim_do(handle: *mut c_void, what: u32, sensor: u8, value: u32) -> i32;
+    pub(crate) fn shim_between(handle: *mut c_void, what: u32, sensor: u8, least: u32, most: u32) -> i32;
     pub(crate) fn shim_modules(handle: *mut c_void, min_retrigger_us: u32, shortest_us: u16) -> i32;
     pub(crate) fn shim_adaptation(handle: *mut c_void, window: u8, patience: u8, noisy: u16, calm: u16) -> i32;
     pub(crate) fn shim_rung(handle: *const c_void, rung: *mut u32, permille: *mut u32);

@@ -1,7 +1,8 @@
 //! Events around a ring: when it is polled, what it hears.
 
-use crate::{C, Do, Random};
-use eeruf_core::{Ring, Silence, judge::Judge, plan::Plan};
+use crate::core_side::status_of;
+use crate::{Between, C, Do, Random};
+use eeruf_core::{Instant, Micros, Ring, Silence, judge::Judge, plan::Plan};
 
 /// A clock that is late, jumps and wraps, and echoes on their way.
 pub struct World {
@@ -90,6 +91,47 @@ impl World {
 pub fn same<E>(c: &mut C, what: Do, sensor: u8, value: u32, rust: Result<(), E>) {
     let expected = if rust.is_ok() { 0 } else { -5 };
     assert_eq!(c.call(what, sensor, value), expected, "{what:?} of sensor {sensor}, {value}");
+}
+
+/// What is known of something at `at`: that it lies between two numbers, mostly close ones. Now and then they are swapped.
+pub(crate) fn between(r: &Random, at: u32) -> [u32; 2] {
+    let width = r.one_of(&[0, 16, r.duration(300), r.within(900, 1_100), r.duration(100_000), r.duration(u32::MAX)]);
+    let earliest = at.wrapping_sub(r.within(0, width));
+    [earliest, earliest.wrapping_add(width)]
+}
+
+/// Hands in an echo of a sensor at an instant; or, if times are uncertain, between two.
+pub(crate) fn hear<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize>(
+    (r, uncertain): (&Random, bool),
+    c: &mut C,
+    ring: &mut Ring<P, J, K, E, H>,
+    (at, sensor): (u32, u8),
+) {
+    if !uncertain || usize::from(sensor) >= ring.sensors() {
+        return same(c, Do::Echo, sensor, at, ring.echo(sensor, Instant::from_micros(at)));
+    }
+    let [earliest, latest] = between(r, at);
+    let rust = ring.echo_between(sensor, Instant::from_micros(earliest), Instant::from_micros(latest));
+    let expected = rust.map_or_else(|error| status_of(&error), |()| 0);
+    assert_eq!(c.between(Between::Echo, sensor, earliest, latest), expected, "{earliest} {latest}");
+}
+
+/// Says that a sensor measured an echo time, none, or, if times are uncertain, one between two.
+pub(crate) fn measure<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize>(
+    (r, uncertain): (&Random, bool),
+    c: &mut C,
+    ring: &mut Ring<P, J, K, E, H>,
+    sensor: u8,
+) {
+    let echo = (!r.once_in(3)).then(|| r.duration(30_000));
+    if let Some(echo) = echo.filter(|_| uncertain) {
+        let [least, most] = between(r, echo);
+        let rust = ring.measured_between(sensor, Micros::new(least), Micros::new(most));
+        let expected = rust.map_or_else(|error| status_of(&error), |()| 0);
+        assert_eq!(c.between(Between::Measured, sensor, least, most), expected, "{least} {most}");
+        return;
+    }
+    same(c, Do::Measured, sensor, echo.unwrap_or(crate::NO_ECHO), ring.measured(sensor, echo.map(Micros::new)));
 }
 
 /// Sets what silence means.

@@ -8,7 +8,7 @@ use eeruf_core::{EachSensor, Layout, Micros, Phase, Requirements, Schedule, Sens
 use super::{Promise, Summary};
 
 /// `EERUF_VERSION` of the `eeruf.h` that tables are written for.
-pub(super) const EERUF_VERSION: u16 = 4;
+pub(super) const EERUF_VERSION: u16 = 5;
 
 /// A schedule as a C header: see [`Emit::to_c`](super::Emit::to_c).
 pub(super) struct CHeader<'r, const K: usize> {

@@ -26,7 +26,7 @@ static const uint32_t eeruf_schedule_gap_us[] EERUF_FLASH = {
     0u, 0u, 15000u, 0u, 15000u, 0u, 15000u, 0u, 22000u,
 };
 static const EerufSchedule eeruf_schedule EERUF_FLASH = {
-    4, 8, 2, eeruf_schedule_order, eeruf_schedule_gap_us,
+    5, 8, 2, eeruf_schedule_order, eeruf_schedule_gap_us,
     67000u, 60000u, 416u, 14569u, 60000u, 1000u,
     EERUF_AS_T_DELTA, 67000u,
     1, EERUF_LAYOUT_RING, 4, 0, 0,

@@ -2,19 +2,15 @@
 
     from eeruf import ACCEPTED, KIND, SENSOR, T_ECHO, Flow, HcSr04FlowRing
 
-    # Eight HC-SR04 modules that listen for 25 ms (4.3 m), each on one pin; looks at a line are up to 0.2 ms apart.
-    flow = Flow(8, 25000, t_delta_us=480, near_us=550, path_change_us=550)
-    ring = HcSr04FlowRing(flow, pins=[2, 3, 4, 5, 6, 7, 8, 9])
+    # Eight HC-SR04 modules that listen for 25 ms (4.3 m), each on one pin.
+    ring = HcSr04FlowRing(Flow(8, 25000), pins=[2, 3, 4, 5, 6, 7, 8, 9])
     while True:
         reading = ring.read()
         if reading and reading[KIND] == ACCEPTED:
             print(reading[SENSOR], reading[T_ECHO] * 1716 // 10000, "mm")
 
 Times are microseconds, sensors are counted from 0. `FlowRing` does, event by event, what the Rust crate eeruf-core does with
-a flow ring; it needs no hardware and runs under CPython too. Rules: docs/explanation/flow.md.
-
-Licence: MIT OR Apache-2.0.
-"""
+a flow ring; it needs no hardware. Rules: docs/explanation/flow.md. Licence: MIT OR Apache-2.0."""
 
 NOBODY = 255
 NEVER = 0xFFFF  # the age of a sensor none of whose readings was ever accepted
@@ -26,19 +22,21 @@ HISTORY = "history"  # explains an ambiguous reading if a firing that could have
 # What makes an echo accepted: each, while the robot moves and is alone, else as TWO_IN_A_ROW; each, with twice the least
 # quiet; two that no sound of the ring explains, or one that fits what is believed.
 BY_MOTION, EVERY_ECHO, TWO_IN_A_ROW = range(3)
-# Of events: what they are, then of a firing and a reading the sensor and the phase in which it fires, which is 0.
-FIRE, READING, PERIOD = range(3)
+FIRE, READING, PERIOD = range(3)  # what an event is; then of a firing and a reading the sensor, and the phase, which is 0
 # Places in a reading, (READING, sensor, phase, period, kind, t_echo_us, previous_us, age, explained_by). Without echo a
 # time is None. `explained_by`: the sensor whose sound could be both echoes, or HISTORY; None unless ambiguous.
 SENSOR, PHASE, KIND, T_ECHO, PREVIOUS, AGE, EXPLAINED_BY = 1, 2, 4, 5, 6, 7, 8
-# The state that each kind of reading shows, or why nothing is known; "-" for an echo after the reading of its firing.
-_SHOWS = "unsure obstacle rejected unsure unsure clear too_close - unanswered - ambiguous unanswered".split()
+# The state that each kind of reading shows, or why nothing is known.
+_SHOWS = "unsure obstacle rejected unsure unsure clear too_close unsure unanswered - ambiguous unanswered".split()
 _WHYS = ("no_firing", "unsure", "rejected", "ambiguous", "no_witness")
 _UNIT_US = 4  # of quiet
 _TOO_FAR_US = 1000  # a belief that has missed readings ends where a good one may have changed by more
-_TOLD_US = 500000  # for so long a word of the robot's motion holds, then its top speed
-_HEARD_US = 250000  # sound that is heard was sent no longer ago
+# For so long a word of the robot's motion holds, then its top speed; sound that is heard was sent no longer ago.
+_TOLD_US, _HEARD_US = 500000, 250000
 _SILENCE = 1 << 29  # the echo time of silence with a witness: later than all, near none
+# A sensor has shown of its firing that it listened; nothing; that its line is high, whose fall makes silence count; that it was.
+_LISTENED, _NOTHING, _HELD, _STUCK = range(4)
+_MOST_OFF_US, _WIDE = 300, 510  # the most that an echo may be off, and what stands for more
 
 
 def _check(name, value, least, most):
@@ -72,27 +70,25 @@ class Flow:
     """Settings of a ring of sensors that listen for `window_us` after their firing and are deaf for `blanking_us`.
 
     `least_us`: the least time from a firing to the next. `most_us`: the most, and how long sound is heard, its tail included.
-    None: what follows from the window. `rest_us`: the least time between two firings of a sensor, for which its module rests.
-    `dice_us`: random time in every gap, up to this, or twice this while the robot moves; at least eight ticks of the clock.
-    `seed` of the dice: another one for each robot; None: by the chip's number.
+    None: by the window. `rest_us`: the least time between two firings of a sensor, for which its module rests. `dice_us`: random
+    time in every gap, up to this, or twice this while the robot moves; at least eight ticks of the clock. `seed` of the dice:
+    another one for each robot; None: by the chip's number.
 
     Of a robot that stands, two readings in a row agree within `t_delta_us`, one fits what is believed within `near_us`, and a
-    foreign sound's path changes by at most `path_change_us` from one to the next. What is believed keeps nothing alive
-    after `memory` firings without, and outlasts up to `hold` contradictions. `top_speed_mm_s` is taken for the robot's speed
-    where `moving` does not say it. `alone`: no other robot sends sound here. `votes`: BY_MOTION, or one of the two fixed."""
+    foreign sound's path changes by at most `path_change_us` meanwhile. What is believed keeps nothing alive after `memory` firings
+    without, and outlasts up to `hold` contradictions. `top_speed_mm_s` is the robot's speed where `moving` does not say it.
+    `alone`: no other robot sends sound here. `votes`: BY_MOTION, or one of the two fixed."""
 
     def __init__(
         self, sensors, window_us, blanking_us=0, least_us=None, most_us=None, rest_us=60000, dice_us=2000, seed=None, t_delta_us=80,
         near_us=150, path_change_us=150, memory=8, hold=4, top_speed_mm_s=0, alone=False, votes=BY_MOTION,
     ):  # fmt: skip
-        if seed is None:
-            seed = _seed_of_chip()
+        seed = _seed_of_chip() if seed is None else seed
         self.min_refire_us = max(rest_us, window_us)
         if most_us is None:
             # Two ninths of the window for the tail, but its own stale echoes are never foreign.
             most_us = min(window_us + window_us // 9 * 2, self.min_refire_us + blanking_us - 1)
-        if least_us is None:
-            least_us = most_us // 11 * 2
+        least_us = most_us // 11 * 2 if least_us is None else least_us
         narrow = min(window_us, 1 << 16) - 1
         for setting in (
             ("sensors", sensors, 1, 64), ("window_us", window_us, 1, 4000000), ("blanking_us", blanking_us, 0, narrow),
@@ -108,19 +104,20 @@ class Flow:
 class _Sensor:
     def __init__(self, now_us, long_ago_us, doubt):
         self.period, self.age, self.enabled = 0, NEVER, True
-        self.shows, self.seen_us, self.seen_at, self.doubted, self.by = "no_firing", None, now_us, False, None
-        self.no_echo = False  # its last reading was NO_ECHO
-        # By the plan: the quiet that it needs around its firing, in units; when it fired, if it has; its edge is awaited; it
-        # has fired in this round before its turn.
-        self.doubt, self.fired_us, self.has_fired, self.awaits, self.ahead = doubt, now_us, False, False, False
+        # The quiet that it needs around its firing, in units; when it fired, if it has; it has fired in this round before its turn.
+        self.doubt, self.fired_us, self.has_fired, self.ahead = doubt, now_us, False, False
+        self.seen_us = self.by = None
+        self.unsee(now_us)
         self.drop(long_ago_us)
 
+    def unsee(self, now_us):
+        self.shows, self.seen_at, self.doubted, self.no_echo = "no_firing", now_us, False, False
+
     def see(self, kind, echo_us, explained_by, now_us):
-        shows, known = _SHOWS[kind], self.shows
-        if shows == "-":
-            return
-        if kind == NO_ECHO and self.no_echo:
-            shows = "no_witness"  # nothing confirms silence, again
+        if kind == LATE and echo_us is not None:
+            return  # after the reading of its firing
+        # "no_witness": nothing confirms silence, again.
+        shows, known = "no_witness" if kind == NO_ECHO and self.no_echo else _SHOWS[kind], self.shows
         self.no_echo = kind == NO_ECHO
         if shows in _WHYS and known == "obstacle" and not self.doubted:
             self.doubted = True  # one echo may be missed, or another's heard
@@ -131,18 +128,15 @@ class _Sensor:
             self.seen_us, self.seen_at = echo_us, now_us
 
     def forget(self):
-        # The last reading and what is believed, None for nothing; by how much a good reading may have changed since the belief
-        # was confirmed, and the greatest rate since the last firing.
-        self.last_us = self.believed_us = None
-        self.grown = self.rate = 0
-        # Firings since the belief was confirmed; contradictions that it outlasts while the robot stands.
-        self.missed, self.conf = 255, 0
+        # The last reading and what is believed; since that was confirmed, firings, and by how much a good reading may have changed;
+        # the greatest rate since the last firing; contradictions that the belief outlasts.
+        self.last_us, self.believed_us, self.missed, self.grown, self.rate, self.conf = None, None, 255, 0, 0, 0
 
     def drop(self, long_ago_us):
         self.firings = [long_ago_us] * 3  # the latest first: fewer explain nothing, more add nothing
-        self.echo_us = None
-        self.outside = True  # its only edges so far came outside the window
-        self.listening = self.can_emit = self.stuck = self.unanswered = False
+        # `outside`: its only edges so far came outside the window; `off`: by how much its echo may be.
+        self.echo_us, self.listening, self.can_emit, self.outside = None, False, False, True
+        self.evidence = self.off = self.off_before = 0
         self.forget()
 
     def miss(self):
@@ -161,30 +155,26 @@ class FlowRing:
     what the robot's motion gives. Not so where every echo is accepted."""
 
     def __init__(self, flow, now_us, clock_bits=32):
-        self.flow = flow
-        self._mask, self._half = (1 << clock_bits) - 1, 1 << (clock_bits - 1)
-        # Longer ago than any sound is heard; by how much a clock may step back.
-        self._long_ago, self._step_back = 1 << (clock_bits - 2), 1 << min(20, clock_bits - 4)
-        # No deadline lies further ahead: a round of the longest gaps.
-        self._horizon = (flow.sensors + 1) * (flow.most_us + 2 * flow.dice_us) + flow.min_refire_us
         _check("clock_bits", clock_bits, 28, 64)
-        # How long after its firing a reading without an echo is emitted at the soonest, for modules that report after their
-        # window has closed: by a bus, or a pulse that hardware measures.
-        self.report_after_us = 0
-        self.silence = NEVER_FREE  # of a firing whose sensor has not shown by `answered` or `measured` that it listened
+        self.flow, self._mask, self._half = flow, (1 << clock_bits) - 1, 1 << (clock_bits - 1)
+        # Longer ago than any sound is heard; by how much a clock may step back; no deadline lies further ahead than a round of the
+        # longest gaps.
+        self._long_ago, self._step_back = 1 << (clock_bits - 2), 1 << min(20, clock_bits - 4)
+        self._horizon = (flow.sensors + 1) * (flow.most_us + 2 * flow.dice_us) + flow.min_refire_us
+        # A reading without an echo is emitted no sooner, for modules that report after their window; what silence means of a
+        # sensor that has not shown by `answered` or `measured` that it listened.
+        self.report_after_us, self.silence = 0, NEVER_FREE
         self._known_from = self._long_before(now_us)  # firings before are not known
         # Quiet to begin with, and by how much it grows and shrinks.
         more_us = flow.most_us - flow.least_us
-        first_us = flow.least_us + more_us // 5
-        self._first = first_us // _UNIT_US
+        self._first = (flow.least_us + more_us // 5) // _UNIT_US
         self._up, self._down = more_us // 4 // _UNIT_US, more_us // 10 // _UNIT_US
         self._sensors = [_Sensor(now_us, self._known_from, self._first) for _ in range(flow.sensors)]
         self._oldest, self._pending, self._emit_at = NOBODY, 0, now_us
         self._period = self._latest = self._total = 0  # the last two: this period's lateness
         self._tally = [0] * len(READING_NAMES)
         self._top = self._rate = _rate(flow.top_speed_mm_s)
-        # When the caller last said how fast the robot moves; the greatest rates in the spans before and from an instant on,
-        # neither much shorter than sound is heard.
+        # The last word of motion; the greatest rates in the spans before and from an instant on, about as long as sound is heard.
         self._told, self._before, self._greatest, self._since = None, self._top, self._top, 0
         # The place in the order whose turn it is, how many have fired ahead of theirs, when a sensor last fired.
         self._order, self._place, self._ahead, self._last_fired = _in_order(flow.sensors), 0, 0, now_us
@@ -192,25 +182,26 @@ class FlowRing:
         self._moves = self._every_echo = self._paused = False
         self._set_moves()
         self._throw()
-        self._next, self._due = 0, (now_us + max(first_us, self._least()) + self._thrown) & self._mask
+        self._decide()
 
     def _long_before(self, now_us):
         return (now_us - self._long_ago) & self._mask
 
+    def _signed(self, us):
+        us &= self._mask
+        return us if us < self._half else us - self._mask - 1
+
     def _reached(self, now_us, deadline_us):
         return (now_us - deadline_us) & self._mask < self._half
-
-    # -- Plan: who fires next, and when --
 
     def _throw(self):
         # Xorshift by 13, 17 and 5 (Marsaglia, 2003), in halves, since a small integer has 31 bits.
         high, low = self._high, self._low
         high, low = high ^ (high << 13 | low >> 3) & 0xFFFF, low ^ low << 13 & 0xFFFF
         low ^= high >> 1
-        high, low = high ^ (high << 5 | low >> 11) & 0xFFFF, low ^ low << 5 & 0xFFFF
-        self._high, self._low = high, low
+        self._high, self._low = high ^ (high << 5 | low >> 11) & 0xFFFF, low ^ low << 5 & 0xFFFF
         dice = (self.flow.dice_us << self._moves) + 1
-        self._thrown = high * dice + (low * dice >> 16) >> 16
+        self._thrown = self._high * dice + (self._low * dice >> 16) >> 16
 
     def _least(self):
         return min(self.flow.least_us << self._every_echo, self.flow.most_us)
@@ -222,40 +213,36 @@ class FlowRing:
     def _since_last(self, at_us):
         # From the last firing of any until an instant, or 0.
         us = (at_us - self._last_fired) & self._mask
-        return 0 if us > self._half else us
+        return us if us <= self._half else 0
+
+    def _at(self, place):
+        return self._sensors[self._order[place]]
 
     def _first_from(self, place):
-        while place < len(self._order):
-            sensor = self._sensors[self._order[place]]
-            if sensor.enabled and not sensor.ahead:
-                break
+        while place < len(self._order) and (self._at(place).ahead or not self._at(place).enabled):
             place += 1
         return place
 
     def _decide(self):
-        flow, sensors, order, least = self.flow, self._sensors, self._order, self._least()
-        self._next, nobody = NOBODY, True
+        flow, order, least = self.flow, self._order, self._least()
+        self._next, idle = NOBODY, True
         # The quiet after those that wait for their edge, no longer than they listen: the longest, whose, and the second.
-        longest = second = 0
-        whose = None
-        for sensor in sensors:
-            nobody = nobody and not sensor.enabled
-            if sensor.awaits:
+        longest, second, whose = 0, 0, None
+        for sensor in self._sensors:
+            idle = idle and not sensor.enabled
+            if sensor.listening and sensor.has_fired:
                 quiet = self._since_last(sensor.fired_us + min(max(sensor.doubt * _UNIT_US, least), flow.window_us))
                 if quiet > longest:
-                    longest, second, whose = quiet, longest, sensor
-                elif quiet > second:
-                    second = quiet
+                    longest, quiet, whose = quiet, longest, sensor
+                second = max(second, quiet)
         place = len(order) if self._paused else self._first_from(self._place)
-        if place == len(order):
-            # The round ends at once, and if nobody fires after the time for which one would rest.
-            self._due = (self._last_fired + (flow.rest_us if self._paused or nobody else 0)) & self._mask
+        # A round ends at once, and if nobody fires after the time for which one would rest.
+        self._due = (self._last_fired + (flow.rest_us if self._paused or idle else 0)) & self._mask
         while place < len(order):
-            sensor = sensors[order[place]]
-            quiet = max(sensor.doubt * _UNIT_US, least, second if sensor is whose else longest)
-            rested = 0
+            sensor = self._at(place)
+            quiet, rested = max(sensor.doubt * _UNIT_US, least, second if sensor is whose else longest), 0
             if sensor.has_fired:
-                rested = self._since_last(sensor.fired_us + (flow.min_refire_us if sensor.awaits else flow.rest_us))
+                rested = self._since_last(sensor.fired_us + (flow.min_refire_us if sensor.listening else flow.rest_us))
             if rested <= quiet or self._next == NOBODY:
                 self._next, self._due = order[place], (self._last_fired + max(quiet, rested) + self._thrown) & self._mask
             # Nobody is passed over twice: only while no other has fired ahead.
@@ -264,12 +251,9 @@ class FlowRing:
             place = self._first_from(place + 1)
 
     def upcoming(self):
-        """The next firing in a list, (sensor, instant), for PIO, RMT or a timer that fires by itself; none if the round ends
-        first. It holds until a reading is emitted. The loop may then come late: poll at that instant until there is no event, so
-        that FIRE says what is done already; hand in echoes; last poll at the present."""
+        """The next firing in a list, (sensor, instant), for hardware that fires by itself; none if the round ends first. It holds until a
+        reading is emitted. Later poll at that instant until there is no event, hand in echoes, and poll at the present."""
         return [] if self._next == NOBODY else [(self._next, self._due)]
-
-    # -- Judge: what a reading is worth --
 
     def _set_moves(self):
         # Takes in the rate that holds now.
@@ -292,29 +276,37 @@ class FlowRing:
     def moving(self, speed_mm_s, turn_mrad_s, now_us):
         """Says how fast the robot moves and turns, once a control cycle: readings may change by as much. It holds for half a
         second, then the top speed does."""
-        recent = self._recent(now_us)
+        if not self._reached(now_us, self._since):
+            # The first word of a clock in its upper half, or a clock that has jumped.
+            self._since, self._before, self._greatest = now_us, max(self._before, self._greatest), 0
+        recent, due = self._recent(now_us), self._due
         self._rate, self._told = _rate(abs(speed_mm_s) + abs(turn_mrad_s) // 2), now_us
         self._greatest = max(self._greatest, self._rate)
         for sensor in self._sensors:
             sensor.rate = max(sensor.rate, recent, self._rate)
         self._set_moves()
         self._decide()
+        self._bring_forward(due, now_us)
 
-    def _grow(self, sensor):
-        # By how much a good reading may have changed since the one before: what it heard was sent a while before.
-        firings = sensor.firings
-        recent = self._recent(firings[0])
+    def _bring_forward(self, due, now_us):
+        # What comes next was due then, and may be due sooner since now: late counts from now.
+        due = due if self._reached(now_us, due) else now_us
+        if self._reached(due, self._due):
+            self._due = due
+
+    def _grow(self, sensor, since_us):
+        # By how much a good reading may have changed since an instant: what it heard was sent a while before.
+        recent = self._recent(sensor.firings[0])
         self._set_moves()
-        span = max(sensor.rate, recent) * min((firings[0] - firings[1]) & self._mask, 0xFFFFF) >> 14
+        span = max(sensor.rate, recent) * min((sensor.firings[0] - since_us) & self._mask, 0xFFFFF) >> 14
         sensor.rate, sensor.grown = recent, min(sensor.grown + span, 0xFFFF)
         return span
 
-    def _judge(self, x, sensor, echo):
-        """Judges an echo, or silence with a witness: (kind, age, explained_by)."""
-        flow, explained_by, span = self.flow, None, self._grow(sensor)
+    def _judge(self, x, sensor, echo, since_us):
+        # Judges an echo, or silence with a witness, that may have changed since an instant: (kind, age, explained_by).
+        flow, explained_by, span = self.flow, None, self._grow(sensor, since_us)
         believed_us, last_us, at_us = sensor.believed_us, sensor.last_us, _SILENCE if echo is None else echo
-        believes = believed_us is not None
-        fits = held_back = False
+        believes, fits, held_back = believed_us is not None, False, False
         if believes and sensor.missed <= flow.memory and (not sensor.missed or sensor.grown <= _TOO_FAR_US):
             fits = abs(at_us - believed_us) <= flow.near_us + sensor.grown
         ok = fits or echo is None
@@ -331,23 +323,18 @@ class FlowRing:
                 held_back = ok and sensor.conf > 0
                 ok = ok and not held_back
         # The first silence in a row leaves an obstacle standing, but a robot that moves has left it behind.
-        clears = last_us == _SILENCE or fits or self._moves
+        clears, age = last_us == _SILENCE or fits or self._moves, sensor.age
+        kind = FIRST if last_us in (None, _SILENCE) and not believes else REJECTED
         if echo is None:
             kind = CLEAR if ok and clears else NO_ECHO
         elif ok or self._every_echo:
             kind, explained_by = ACCEPTED, None
-        elif explained_by is not None:
-            kind = AMBIGUOUS
-        elif held_back:
-            kind = REPEATED
-        else:
-            kind = FIRST if last_us in (None, _SILENCE) and not believes else REJECTED
-        age = sensor.age
+        elif explained_by is not None or held_back:
+            kind = REPEATED if explained_by is None else AMBIGUOUS
         if ok:
             sensor.doubt = max(sensor.doubt - self._down, self._least() // _UNIT_US)
             if echo is not None or clears or believed_us in (None, _SILENCE):
-                if not fits:
-                    sensor.conf = 1
+                sensor.conf = sensor.conf if fits else 1
                 sensor.believed_us, sensor.grown, sensor.missed = at_us, 0, 0
         else:
             sensor.miss()
@@ -359,13 +346,14 @@ class FlowRing:
         return kind, age, explained_by
 
     def _explanation(self, receiver, first, second, change):
-        """The sensor whose sound could be both echoes, `first` after the receiver's firing before its last and `second`
-        after the last, by a path that changes by at most `change`; HISTORY if a forgotten firing's could, else None."""
-        mask, audible = self._mask, self.flow.most_us
-        own = self._sensors[receiver].firings
-        first, second = (own[1] + first) & mask, (own[0] + second) & mask
-        # The time between the two sounds is that between their firings, but for the change of the path.
-        most = second - first + change
+        # The sensor whose sound could be both echoes, `first` after the receiver's firing before its last and `second` after
+        # the last, by a path that changes by at most `change`; HISTORY if a forgotten firing's could, else None.
+        mask, own = self._mask, self._sensors[receiver]
+        off = max(own.off, own.off_before)  # as late as that, and twice as long ago
+        first, second = (own.firings[1] + first + off) & mask, (own.firings[0] + second + off) & mask
+        audible = self.flow.most_us + 2 * off
+        change += own.off + own.off_before
+        most = second - first + change  # but for that, the time between the sounds is that between their firings
         # Whatever is forgotten came before the last of what is known: an instant after the first sound is no help.
         forgotten = (first - self._known_from + self._half) & mask < self._half + audible
         for x in range(self.flow.sensors):
@@ -373,36 +361,33 @@ class FlowRing:
             # The receiver's own two firings are those whose echoes it is meant to hear.
             latest, left_out = (1, 1) if x == receiver else (0, -1)
             for i in range(3):
-                a = firings[i]
-                age = (first - a) & mask
-                if age <= audible and i != left_out:
-                    for j in range(latest, i + 1):
-                        b = firings[j]
-                        if (most - b + a) & mask <= 2 * change and (second - b) & mask <= audible:
-                            return x
+                age = (first - firings[i]) & mask
+                for j in range(latest, i + 1 if age <= audible and i != left_out else 0):
+                    between = firings[j] - firings[i]
+                    if (most - between) & mask <= 2 * change and (second - firings[j]) & mask <= audible:
+                        return x
             forgotten = forgotten or (age + self._half) & mask < self._half + audible
         return HISTORY if forgotten else None
 
     def _is_masked(self, receiver, heard):
         # Whether sound of any firing but the receiver's last could be what it heard.
-        for x in range(self.flow.sensors):
-            for i in range(1 if x == receiver else 0, 3):
-                if (heard - self._sensors[x].firings[i]) & self._mask <= self.flow.most_us:
-                    return True
+        for x in range(3 * self.flow.sensors):
+            if (heard - self._sensors[x // 3].firings[x % 3]) & self._mask <= self.flow.most_us and x != 3 * receiver:
+                return True
         return False
 
     def believed_us(self, x):
         """The echo time that is believed of a sensor; None if none is, or nothing is in range."""
         sensor = self._sensors[x]
-        return None if sensor.missed > self.flow.memory or sensor.believed_us == _SILENCE else sensor.believed_us
+        return sensor.believed_us if sensor.missed <= self.flow.memory and sensor.believed_us != _SILENCE else None
 
-    # -- Events --
+    def _pends(self):
+        return self._pending > 0 or self._oldest != NOBODY
 
     def poll(self, now_us):
         """The next event, or None: then sleep until the deadline. Hand in the echoes you know of before."""
         is_due = self._reached(now_us, self._due)
-        pends = self._pending > 0 or self._oldest != NOBODY
-        if not is_due and not (pends and self._reached(now_us, self._emit_at)):
+        if not is_due and not (self._pends() and self._reached(now_us, self._emit_at)):
             if (self._due - now_us) & self._mask > self._horizon:
                 self._restart(now_us)  # the clock has jumped
             return None
@@ -411,78 +396,69 @@ class FlowRing:
         return self._advance(now_us, is_due)
 
     def _advance(self, now_us, is_due):
-        x = self._next
-        fires = is_due and x != NOBODY
-        if not fires:
-            x = self._next_pending(now_us)
+        x, fires = self._next, is_due and self._next != NOBODY
         if fires and not self._sensors[x].listening and not self._sensors[x].can_emit:
             event = (FIRE, x, 0, self._due)
             self._fire(x, now_us)
             return event
+        if not fires:
+            x = self._oldest
+            if self._pending == 0:
+                x = x if self._reached(now_us, self._emit_at) else NOBODY
+            elif x == NOBODY or not self._sensors[x].can_emit:
+                x = 0
+                while not self._sensors[x].can_emit:
+                    x += 1
         if x != NOBODY:
+            due = self._due
             event = self._emit(x)
+            self._bring_forward(due, now_us)
             self._sensors[x].see(event[KIND], event[T_ECHO], event[EXPLAINED_BY], now_us)
             return event
         return self._end_period(now_us) if is_due else None
 
     def deadline(self):
         """When to poll next."""
-        pends = self._pending > 0 or self._oldest != NOBODY
-        return self._emit_at if pends and not self._reached(self._emit_at, self._due) else self._due
+        return self._emit_at if self._pends() and not self._reached(self._emit_at, self._due) else self._due
 
     def state(self, x, now_us):
-        """Returns what is before a sensor: (kind, t_echo_us, age_us, why, explained_by). The kind is "obstacle", with its echo time;
-        "clear"; "too_close"; "unanswered"; or "unknown" with why: "no_firing", "unsure", "rejected", "no_witness" or "ambiguous". The age
-        is the time since that was last confirmed, or for which nothing is known, up to half a turn of the clock. One reading
-        that does not confirm an obstacle leaves it, two in a row do not; any echo ends "clear"."""
+        """Returns what is before a sensor: (kind, t_echo_us, age_us, why, explained_by). The kind is "obstacle", "clear", "too_close",
+        "unanswered", or "unknown" with why: "no_firing", "unsure", "rejected", "no_witness" or "ambiguous". The age is the time since that
+        was confirmed, or for which nothing is known. Two readings in a row that do not confirm an obstacle end it, any echo "clear"."""
         sensor = self._sensors[x]
         age_us = min((now_us - sensor.seen_at) & self._mask, self._half)
         if sensor.shows in _WHYS:
             return "unknown", None, age_us, sensor.shows, sensor.by
         return sensor.shows, sensor.seen_us if sensor.shows == "obstacle" else None, age_us, None, None
 
-    def _next_pending(self, now_us):
-        x = self._oldest
-        if self._pending == 0:
-            return x if self._reached(now_us, self._emit_at) else NOBODY
-        if x == NOBODY or not self._sensors[x].can_emit:
-            x = 0
-            while not self._sensors[x].can_emit:
-                x += 1
-        return x
-
-    def _emit_when_oldest_ends(self):
+    def _end_oldest(self, x, before):
+        # A sensor that fired at `before` has ended: who is the oldest now, and when its window closes. 1 us before is not a turn after.
+        if self._oldest == x:
+            self._oldest, soonest = NOBODY, self._mask
+            for other in range(self.flow.sensors):
+                age = (self._sensors[other].firings[0] - before + self._step_back) & self._mask
+                if age < soonest and self._sensors[other].listening:
+                    self._oldest, soonest = other, age
         if self._pending == 0 and self._oldest != NOBODY:
-            listens_us = max(self.flow.window_us, self.report_after_us)
-            self._emit_at = (self._sensors[self._oldest].firings[0] + listens_us) & self._mask
-
-    def _find_oldest(self, before):
-        before -= self._step_back  # 1 us before is not a turn of the clock after
-        self._oldest, soonest = NOBODY, self._mask
-        for x in range(self.flow.sensors):
-            age = (self._sensors[x].firings[0] - before) & self._mask
-            if age < soonest and self._sensors[x].listening:
-                self._oldest, soonest = x, age
+            fired_us, listens_us = self._sensors[self._oldest].firings[0], max(self.flow.window_us, self.report_after_us)
+            self._emit_at = (fired_us + listens_us) & self._mask
 
     def _fire(self, x, now_us):
         sensor = self._sensors[x]
         self._note((now_us - self._due) & self._mask)
-        sensor.listening, sensor.period = True, self._period
-        sensor.can_emit = sensor.outside = sensor.stuck = False
-        sensor.unanswered = self.silence != TRUSTED
-        firings = sensor.firings
-        firings[0], firings[1], firings[2] = now_us, firings[0], firings[1]
+        sensor.listening, sensor.period, sensor.can_emit, sensor.outside = True, self._period, False, False
+        sensor.evidence = _LISTENED if self.silence == TRUSTED else _NOTHING
+        sensor.firings.insert(0, now_us)
+        sensor.firings.pop()
         if self._oldest == NOBODY:
             self._oldest = x
-            self._emit_when_oldest_ends()
+            self._end_oldest(NOBODY, now_us)
         place = self._first_from(self._place)
         if self._order[place] == x:
             self._place = place + 1
         else:
-            sensor.ahead = True
-            self._ahead += 1
-        sensor.has_fired = sensor.awaits = True
-        sensor.fired_us = self._last_fired = now_us
+            sensor.ahead, self._ahead = True, True
+        sensor.has_fired, sensor.fired_us, self._last_fired = True, now_us, now_us
         self._throw()
         self._decide()
 
@@ -490,36 +466,48 @@ class FlowRing:
         self._latest = max(self._latest, min(late_us, 0xFFFF))
         self._total = min(self._total + late_us, 0xFFFF)
 
+    def _count(self, kind):
+        self._tally[kind] = min(self._tally[kind] + 1, 255)
+
     def _emit(self, x):
         sensor = self._sensors[x]
-        if sensor.can_emit:
-            self._pending -= 1
-        echo, previous, age, explained_by = sensor.echo_us, None, sensor.age, None
-        sensor.can_emit, sensor.echo_us = False, None
+        echo, evidence, fired, before = sensor.echo_us, sensor.evidence, sensor.firings[0], sensor.firings[1]
+        self._pending -= sensor.can_emit
+        sensor.can_emit, sensor.echo_us, sensor.evidence = False, None, 0
+        previous = explained_by = kind = None
         if not sensor.listening:
-            kind = LATE
+            if evidence == _HELD:
+                self._judge(x, sensor, None, fired)
+            age, kind = sensor.age, LATE
         else:
-            previous, kind = None if sensor.last_us == _SILENCE else sensor.last_us, None
-            if sensor.stuck:
+            previous, age = None if sensor.last_us == _SILENCE else sensor.last_us, sensor.age
+            if evidence == _STUCK:
                 kind, echo = STUCK, None
+            elif sensor.off == _WIDE:
+                kind, echo = LATE, None
             elif sensor.outside:
                 kind = TOO_EARLY
-            elif sensor.unanswered and echo is None:
+            elif evidence == _NOTHING and echo is None:
                 kind = UNANSWERED if self.silence == NEEDS_ANSWER else NO_ECHO
-            if kind is None:
-                kind, age, explained_by = self._judge(x, sensor, echo)
-            else:
+            if kind is not None:
                 # It says nothing of an echo.
-                self._grow(sensor)
+                self._grow(sensor, before)
                 sensor.miss()
                 sensor.last_us = None
-            sensor.listening = sensor.outside = sensor.stuck = sensor.awaits = False
+            elif evidence == _HELD and echo is None:
+                # No silence yet, nor the end of a run of them.
+                self._grow(sensor, before)
+                previous, kind = None, CLEAR if sensor.believed_us == _SILENCE and not sensor.missed else NO_ECHO
+                sensor.last_us = _SILENCE if sensor.last_us == _SILENCE else None
+                sensor.evidence = _HELD
+            else:
+                kind, age, explained_by = self._judge(x, sensor, echo, before)
+            sensor.off_before, sensor.off = sensor.off, 0
+            sensor.listening = sensor.outside = False
             self._decide()
-            if self._oldest == x:
-                self._find_oldest(sensor.firings[0])
-        self._emit_when_oldest_ends()
-        self._tally[kind] = min(self._tally[kind] + 1, 255)
-        # Rust and C keep the lowest three bits of the period; of an edge that is later they say a later one.
+        self._end_oldest(x, fired)
+        self._count(kind)
+        # Rust and C keep three bits of the period; of an edge that is later they say a later one.
         period = (self._period - (self._period - sensor.period & 7)) & 0xFFFFFFFF
         return (READING, x, 0, period, kind, echo, previous, age, explained_by)
 
@@ -529,16 +517,14 @@ class FlowRing:
         self._latest = self._total = self._place = self._ahead = 0
         self._period, self._tally = (self._period + 1) & 0xFFFFFFFF, [0] * len(READING_NAMES)
         for sensor in self._sensors:
-            # Those that fired ahead have had their turn.
+            # Those that fired ahead have had their turn; the clock must not come round to the others.
             sensor.ahead = False
-            # Before the clock comes round to them.
-            if sensor.has_fired and (now_us - sensor.fired_us) & self._mask > self._half >> 2:
-                sensor.has_fired = sensor.awaits = False
+            sensor.has_fired = sensor.has_fired and (now_us - sensor.fired_us) & self._mask <= self._half >> 2
             if self._is_long_ago(sensor.firings[0], now_us):
                 sensor.firings = [self._long_before(now_us)] * 3
                 sensor.forget()  # the instant that its next reading would be compared from is no longer known
                 if not sensor.listening:
-                    sensor.outside = True  # no edge is an echo of them
+                    sensor.outside, sensor.evidence = True, 0  # no edge is an echo of them
             if (now_us - sensor.seen_at) & self._mask > self._half:
                 sensor.seen_at = (now_us - self._half) & self._mask
         if self._is_long_ago(self._known_from, now_us):
@@ -552,49 +538,57 @@ class FlowRing:
         # What lies just ahead of now is from before the clock stepped back.
         return self._long_ago < (now_us - at_us) & self._mask <= self._mask - self._step_back
 
-    # -- What happens to it --
-
     def echo(self, x, at_us):
         """An echo, at this instant; of a module that answers with a pulse, the firing's instant plus the pulse's width."""
-        sensor = self._sensors[x]
-        t_echo = (at_us - sensor.firings[0]) & self._mask
-        if t_echo >= self._half:
+        self.echo_between(x, at_us, at_us)
+
+    def echo_between(self, x, earliest_us, latest_us):
+        """An echo that came after the line was last seen without it, at `earliest_us`, and before it was seen, at `latest_us`. The middle counts,
+        and a sound explains what it may. One that is more than 300 us off either way, 5 cm, is LATE, without echo time."""
+        sensor, flow = self._sensors[x], self.flow
+        width = (latest_us - earliest_us) & self._mask
+        if width >= self._half:
+            raise ValueError("an echo between %d and %d us: latest before earliest, likely swapped" % (earliest_us, latest_us))
+        off = width - width // 2
+        t_echo = self._signed(earliest_us + width // 2 - sensor.firings[0])
+        wide = off > _MOST_OFF_US and t_echo + off >= flow.blanking_us
+        if t_echo < 0 and not wide:
             return
-        if sensor.listening:
-            if t_echo > self.flow.window_us:
-                self._tally[LATE] = min(self._tally[LATE] + 1, 255)
-                return
-            if t_echo < self.flow.blanking_us:
-                if sensor.echo_us is None:
-                    sensor.outside, sensor.echo_us = True, t_echo
-                return
-            if sensor.outside or sensor.echo_us is None or t_echo < sensor.echo_us:
-                sensor.echo_us = t_echo
-            sensor.outside = False
-            if sensor.can_emit:
-                return
-        else:
-            if t_echo <= self.flow.window_us or sensor.outside:
+        if not sensor.listening:
+            if wide or t_echo <= flow.window_us or sensor.outside:
                 return
             sensor.outside, sensor.echo_us = True, t_echo
-        sensor.can_emit = True
-        pends = self._pending > 0 or self._oldest != NOBODY
-        if not pends or not self._reached(at_us, self._emit_at):
-            self._emit_at = at_us
-        self._pending += 1
+        elif t_echo - (off if wide else 0) > flow.window_us:
+            if sensor.evidence == _HELD:
+                sensor.evidence = _LISTENED
+            self._count(LATE)
+            return
+        elif wide:
+            if not sensor.outside and sensor.echo_us is not None and sensor.echo_us <= t_echo - off:
+                return
+            sensor.off = _WIDE
+        elif t_echo < flow.blanking_us:
+            if sensor.echo_us is None:
+                sensor.outside, sensor.echo_us = True, t_echo
+            return
+        else:
+            if sensor.outside or sensor.echo_us is None or t_echo < sensor.echo_us:
+                sensor.echo_us = t_echo
+            sensor.outside, sensor.off = False, max(sensor.off, off + 1 & ~1)
+        if not sensor.can_emit:
+            if not self._pends() or not self._reached(latest_us, self._emit_at):
+                self._emit_at = latest_us
+            sensor.can_emit = True
+            self._pending += 1
 
     def fired(self, x, at_us):
-        """Corrects when a sensor last fired, before or after its poll. Call it before you poll for readings that may hold
-        its sound. An instant that is not after the firing before is ignored."""
+        """Corrects when a sensor last fired, before you poll for readings that may hold its sound. An instant that is not after the firing
+        before is ignored."""
         sensor = self._sensors[x]
-        firings = sensor.firings
-        polled = firings[0]
+        firings, polled = sensor.firings, sensor.firings[0]
         if at_us == polled or at_us == firings[1] or not self._reached(at_us, firings[1]):
             return
-        firings[0] = at_us
-        later = (at_us - polled) & self._mask
-        if later >= self._half:
-            later -= self._mask + 1
+        firings[0], later = at_us, self._signed(at_us - polled)
         if sensor.echo_us is not None:
             sensor.echo_us -= later
             if sensor.echo_us < 0:
@@ -605,7 +599,8 @@ class FlowRing:
             sensor.last_us = max(sensor.last_us - later, 0)
             if not sensor.missed:
                 sensor.believed_us = max(sensor.believed_us - later, 0)
-        if later > 0 and sensor.listening or not sensor.awaits or self._reached(sensor.fired_us, at_us):
+        waits = sensor.listening and sensor.has_fired
+        if later > 0 and sensor.listening or not waits or self._reached(sensor.fired_us, at_us):
             if self._last_fired == sensor.fired_us or self._reached(at_us, self._last_fired):
                 self._last_fired = at_us
             sensor.fired_us = at_us
@@ -613,42 +608,57 @@ class FlowRing:
         if sensor.listening and later > 0:
             self._note(later)
         if self._oldest == x:
-            self._find_oldest(polled)
-            self._emit_when_oldest_ends()
+            self._end_oldest(x, polled)
+
+    def _show(self, x, evidence):
+        sensor = self._sensors[x]
+        if sensor.listening and sensor.evidence != _STUCK:
+            sensor.evidence = evidence
 
     def stuck(self, x):
         """The echo line of a sensor was high when it was to be fired."""
-        if self._sensors[x].listening:
-            self._sensors[x].stuck = True
+        self._show(x, _STUCK)
+
+    def holds(self, x):
+        """A sensor holds its line: it rose after the trigger, or is high still. Its silence counts once, when that has fallen: `answered`."""
+        self._show(x, _HELD)
 
     def answered(self, x, answered=True):
-        """A sensor has shown that it listens, or what looked like that was a disturbance. Otherwise `silence` says what a
-        firing without an echo is."""
-        if self._sensors[x].listening:
-            self._sensors[x].unanswered = not answered
+        """A sensor has shown that it listened, or what looked like that was a disturbance; else see `silence`."""
+        sensor, evidence = self._sensors[x], self._sensors[x].evidence
+        if not answered:
+            self._show(x, _NOTHING)
+        elif evidence != _STUCK:
+            sensor.evidence = _LISTENED
+            if evidence == _HELD and not sensor.listening:
+                self._judge(x, sensor, None, sensor.firings[0])  # its reading is out
 
     def measured(self, x, t_echo_us):
-        """Takes what hardware or a protocol measured of a sensor's last firing, before its reading is emitted: the echo time, or None
-        if it listened and heard nothing."""
+        """Takes what hardware measured of a sensor's last firing: the echo time, or None if it listened and heard nothing."""
         if t_echo_us is None:
             self.answered(x)
         else:
-            self.echo(x, (self._sensors[x].firings[0] + t_echo_us) & self._mask)
+            self.measured_between(x, t_echo_us, t_echo_us)
+
+    def measured_between(self, x, least_us, most_us):
+        """The same of an echo time between two: see `echo_between`."""
+        fired_us = self._sensors[x].firings[0]
+        self.echo_between(x, (fired_us + least_us) & self._mask, (fired_us + most_us) & self._mask)
 
     def forget(self, x):
         """Forgets a sensor's echo, which is not what it seemed: its next reading is compared with nothing."""
         self._sensors[x].forget()
+        self._sensors[x].doubt = self._first
+        self._decide()
 
     def enable(self, x, enabled=True):
         """Lets a sensor fire, or not, from its next turn on."""
         sensor = self._sensors[x]
-        if enabled and sensor.enabled:
-            return
-        if enabled:
-            sensor.forget()
-            sensor.doubt = self._first
-        sensor.enabled = enabled
-        self._decide()
+        if not (enabled and sensor.enabled):
+            sensor.enabled = enabled
+            if enabled:
+                self.forget(x)
+            self._decide()
 
     def pause(self, paused=True):
         """Lets no sensor fire until it is unset. Belief stays, and the next reading is compared with no other."""
@@ -661,22 +671,19 @@ class FlowRing:
         """Again from the first sensor on, after a long sleep. Nothing is known then."""
         self._restart(now_us)
         for sensor in self._sensors:
-            sensor.shows, sensor.seen_at, sensor.doubted, sensor.no_echo = "no_firing", now_us, False, False
+            sensor.unsee(now_us)
 
     def _restart(self, now_us):
         self._known_from = now_us
         for sensor in self._sensors:
             # Sound from before may still be heard. A sensor that was said to fire a little later still does.
-            fired_us = sensor.firings[0]
-            if (fired_us - self._known_from - 1) & self._mask < self._step_back:
-                self._known_from = fired_us
+            if (sensor.firings[0] - self._known_from - 1) & self._mask < self._step_back:
+                self._known_from = sensor.firings[0]
             sensor.drop(self._long_before(now_us))
             # A clock that has jumped says nothing of when they fired.
             sensor.has_fired = sensor.has_fired and (now_us - sensor.fired_us) & self._mask <= self.flow.rest_us
-            sensor.awaits = sensor.ahead = False
-            sensor.doubt = self._first
-        self._oldest = NOBODY
-        self._pending = self._place = self._ahead = 0
+            sensor.ahead, sensor.doubt = False, self._first
+        self._oldest, self._pending, self._place, self._ahead = NOBODY, 0, 0, 0
         # Sound from before dies away.
         self._last_fired = (now_us + self.flow.most_us) & self._mask
         self._decide()
@@ -691,8 +698,7 @@ class HcSr04FlowRing:
     MIN_RETRIGGER_US, TRIGGER_US = 60000, 10
     LATEST_RISE_US = 1400  # a line that is still low then is not raised by its trigger: exchanged wires, or a disturbance
     LONGEST_HOLD_US = 250000  # a line that rose and is high no longer than this listens still: clones hold 200 ms
-    # A stuck line is pulled low for so long, such as 200 us, if this is not 0: some modules hold it for ever after a lost
-    # echo. It needs a resistor of 1 kOhm, since module and pin drive against each other.
+    # A stuck line is pulled low for so long, such as 200 us, if not 0: some modules hold it after a lost echo. It needs 1 kOhm.
     RECOVERY_US = 0
 
     def __init__(self, flow, pins, echoes=None, machine=None, time=None):
@@ -708,54 +714,52 @@ class HcSr04FlowRing:
         while time.ticks_diff(1 << bits - 1, 0) > 0:
             bits += 1
         self.ring = FlowRing(flow, time.ticks_us(), bits)
-        # A line that does not rise is no free space.
-        self.ring.silence = NEEDS_ANSWER
-        self._rose = [None] * len(pins)
+        self.ring.silence = NEEDS_ANSWER  # a line that does not rise is no free space
+        # When a line was seen to have risen, and by how much sooner it may have; when it was last seen as it is.
+        self._rose, self._early, self._seen = [None] * len(pins), [0] * len(pins), [0] * len(pins)
         self._awaits = [False] * len(pins)
 
     def _since_firing(self, x, now):
         return self._time.ticks_diff(now, self.ring._sensors[x].firings[0])
 
-    def _sample(self):
+    def _sample(self, before):
         # Small and without objects of its own, for the same reason as `FlowRing.poll`.
         for x in range(len(self._awaits)):
             if self._awaits[x]:
                 high = self._echoes[x].value()
-                now = self._time.ticks_us()
                 if (high == 1) == (self._rose[x] is None):
-                    self._edge(x, high, now)
-                elif not high and self._since_firing(x, now) > self.LATEST_RISE_US:
+                    self._edge(x, high, self._time.ticks_us())
+                elif high or self._since_firing(x, before) <= self.LATEST_RISE_US:
+                    self._seen[x] = before
+                else:
                     self._awaits[x] = False
 
     def _edge(self, x, high, now):
         if self._echoes[x].value() != high:
             return  # a spike or a gap
-        rose = self._rose[x]
+        rose, early = self._rose[x], self._time.ticks_diff(now, self._seen[x])
         if rose is None:
             if self._since_firing(x, now) >= self.DEAF_US:
-                self._rose[x] = now
-                self.ring.answered(x)
+                self._rose[x], self._early[x], self._seen[x] = now, early, now
+                self.ring.holds(x)
+            return
+        width = self._time.ticks_diff(now, rose)
+        least, most = max(width - early, 0), width + self._early[x]
+        self._rose[x], self._seen[x], self._awaits[x] = None, now, least + most < 2 * self.SHORTEST_US
+        if self._awaits[x] or least >= self.LONGEST_US:
+            self.ring.answered(x, not self._awaits[x])
         else:
-            width = self._time.ticks_diff(now, rose)
-            self._rose[x] = None
-            if width >= self.SHORTEST_US:
-                self._awaits[x] = False
-                if width < self.LONGEST_US:
-                    self.ring.measured(x, width)
-            else:
-                self.ring.answered(x, False)
+            self.ring.measured_between(x, least, most)
 
     def _trigger(self, x):
         pin, rose, high = self._triggers[x], self._rose[x], self._echoes[x].value()
-        if high and rose is not None:
-            if self._time.ticks_diff(self.ring._sensors[x].firings[0], rose) <= self.LONGEST_HOLD_US:
-                # It has heard nothing of an earlier trigger yet: nothing is in range.
-                self.ring.answered(x)
+        if rose is not None:
+            if high and -self._since_firing(x, rose) <= self.LONGEST_HOLD_US:
+                self.ring.holds(x)  # it has heard nothing of an earlier trigger yet
                 return
-        elif rose is not None:
-            # Its pulse never ended: what counted as silence may have been an echo.
-            self.ring.forget(x)
-        self._rose[x], self._awaits[x] = None, False
+            if not high:
+                self.ring.forget(x)  # its pulse never ended: what counted as silence may have been an echo
+        self._rose[x], self._awaits[x] = None, not high
         if high:
             self.ring.stuck(x)
             if self.RECOVERY_US:
@@ -765,12 +769,12 @@ class HcSr04FlowRing:
             return
         if self._one_pin:
             pin.init(self._pin.OUT, value=0)
-        self._awaits[x] = True
         pin.value(1)
         self._time.sleep_us(self.TRIGGER_US)
         pin.value(0)
         # What is compared is what was fired, and since the poll some time has passed.
-        self.ring.fired(x, self._time.ticks_us())
+        self._seen[x] = self._time.ticks_us()
+        self.ring.fired(x, self._seen[x])
         if self._one_pin:
             pin.init(self._pin.IN)
 
@@ -786,7 +790,7 @@ class HcSr04FlowRing:
         """One step; a reading if there is one, else None."""
         # The clock is read before the lines, so that no window closes on an edge that came in time.
         now = self._time.ticks_us()
-        self._sample()
+        self._sample(now)
         event = self.ring.poll(now)
         if event and event[0] == FIRE:
             self._trigger(event[1])

@@ -15,6 +15,8 @@
 //!
 //! The ring can also be a [`FlowRing`](eeruf_core::flow::FlowRing), which fires by flow.
 //!
+//! A loop that looks at lines instead of taking interrupts hands in edges as intervals: see [`Sampler`].
+//!
 //! Where hardware triggers the modules and times their lines, such as PIO, RMT or a timer, see [`capture`]. Modules
 //! that measure by themselves and report a value, over I2C, a serial line or by a pulse, are in [`measuring`].
 //!
@@ -54,6 +56,7 @@ mod line;
 mod lines;
 pub mod measuring;
 mod ring;
+mod sampler;
 mod settings;
 
 pub use eeruf_modules as modules;
@@ -61,4 +64,5 @@ pub use error::SetupError;
 pub use health::Health;
 pub use lines::{FlexPin, Pins};
 pub use ring::{Edges, HcSr04Ring};
+pub use sampler::Sampler;
 pub use settings::Settings;

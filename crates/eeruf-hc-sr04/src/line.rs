@@ -34,8 +34,8 @@ pub(crate) enum Shown {
     Silence,
     /// The pulse goes on after a short gap: what looked like its end was a disturbance.
     GoesOn,
-    /// The echo is in, this long after the sound was sent.
-    Echo(Micros),
+    /// The echo is in, this long after the sound was sent at the least, and up to so much later.
+    Echo(Micros, Micros),
 }
 
 /// One echo line and the state of its sensor.
@@ -44,6 +44,8 @@ pub(crate) struct Line {
     pub(crate) pulse: Pulse,
     /// The line was seen to be high when the sensor was to be triggered again, so that it was not.
     pub(crate) is_held: bool,
+    /// The line rose up to so many microseconds before it was seen to.
+    rose_before: u16,
     /// Firings in a row without a pulse.
     silent: u8,
     /// The flaw of this firing: more than one pulse or one too short, or an edge without its counterpart.
@@ -53,44 +55,51 @@ pub(crate) struct Line {
 
 impl Line {
     /// Before the first trigger.
-    pub(crate) const NEW: Self =
-        Self { pulse: Pulse::Idle, is_held: false, silent: 0, flaw: Health::Well, health: Health::Well };
+    pub(crate) const NEW: Self = Self {
+        pulse: Pulse::Idle,
+        is_held: false,
+        rose_before: 0,
+        silent: 0,
+        flaw: Health::Well,
+        health: Health::Well,
+    };
 
-    /// Returns the meaning of an edge for the firing at `fired`.
-    pub(crate) fn edge(&mut self, edge: Edge, fired: Instant, settings: &Settings) -> Shown {
+    /// Returns the meaning of an edge for the firing at `fired`; it came up to `before` before it was seen.
+    pub(crate) fn edge(&mut self, edge: Edge, before: Micros, fired: Instant, settings: &Settings) -> Shown {
         // Without a trigger nothing is seen through the cable.
         let deaf = if self.is_held { Micros::ZERO } else { settings.deaf };
         if !edge.at.has_reached(fired) || edge.at.since(fired) < deaf {
             return Shown::Nothing;
         }
         match (self.pulse, edge.high) {
-            (Pulse::Awaited, true) if edge.at.since(fired) > settings.latest_rise => {
+            (Pulse::Awaited, true) if edge.at.since(fired) > settings.latest_rise.saturating_add(before) => {
                 self.silent = 0;
                 self.flaw = Health::Chatters;
                 Shown::Nothing
             }
             (Pulse::Awaited, true) => {
-                self.pulse = Pulse::Rose(edge.at);
+                self.rises(edge.at, before.min(edge.at.since(fired)));
                 self.silent = 0;
                 Shown::Answer
             }
             (Pulse::Rose(rose), false) => {
-                let width = edge.at.since(rose);
-                if width < settings.shortest {
+                let (width, rose_before) = (edge.at.since(rose), Micros::new(self.rose_before.into()));
+                let least = width.saturating_sub(before);
+                if width.saturating_add(rose_before) < settings.shortest {
                     self.pulse = Pulse::Awaited;
                     self.flaw = Health::Chatters;
                     return Shown::Disturbance;
                 }
                 self.pulse = Pulse::Over(rose, u16::try_from(width.as_micros()).unwrap_or(0));
                 // A fall and a rise may have got lost since the trigger before, unless the line was seen to be high.
-                match width < settings.longest {
-                    true => Shown::Echo(width),
+                match least < settings.longest {
+                    true => Shown::Echo(least, rose_before.saturating_add(before.min(width))),
                     false if self.is_held || rose.has_reached(fired) => Shown::Silence,
                     false => Shown::Nothing,
                 }
             }
             (Pulse::Rose(rose), true) if !rose.has_reached(fired) => {
-                self.pulse = Pulse::Rose(edge.at);
+                self.rises(edge.at, before.min(edge.at.since(fired)));
                 self.health = Health::LosesEdges;
                 Shown::AnswerAfterLoss
             }
@@ -118,6 +127,11 @@ impl Line {
         }
     }
 
+    fn rises(&mut self, at: Instant, before: Micros) {
+        self.pulse = Pulse::Rose(at);
+        self.rose_before = u16::try_from(before.as_micros()).unwrap_or(u16::MAX);
+    }
+
     /// Returns the meaning of a pulse that hardware has measured.
     pub(crate) fn pulse(&mut self, width: Micros, settings: &Settings) -> Shown {
         if self.pulse == Pulse::Idle {
@@ -129,7 +143,7 @@ impl Line {
             return Shown::Nothing;
         }
         (self.pulse, self.flaw) = (Pulse::Over(Instant::from_micros(0), 0), Health::Well);
-        if width < settings.longest { Shown::Echo(width) } else { Shown::Silence }
+        if width < settings.longest { Shown::Echo(width, Micros::ZERO) } else { Shown::Silence }
     }
 
     /// Returns true if a line that is high rose after its trigger, no longer ago than a healthy sensor holds it.

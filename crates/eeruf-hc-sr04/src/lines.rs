@@ -53,10 +53,10 @@ impl<T, I, D, const K: usize> Lines<T, I, D, K> {
         self.settings.allow(min_refire)
     }
 
-    /// Returns the meaning of this edge for the firing at `fired`.
-    pub(crate) fn edge(&mut self, edge: Edge, fired: Instant) -> Shown {
+    /// Returns the meaning of this edge for the firing at `fired`; it came up to `before` before it was seen.
+    pub(crate) fn edge(&mut self, edge: Edge, before: Micros, fired: Instant) -> Shown {
         let line = self.lines.get_mut(usize::from(edge.sensor));
-        line.map_or(Shown::Nothing, |line| line.edge(edge, fired, &self.settings))
+        line.map_or(Shown::Nothing, |line| line.edge(edge, before, fired, &self.settings))
     }
 
     /// Returns the meaning of a pulse that hardware has measured.

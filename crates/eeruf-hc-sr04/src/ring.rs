@@ -183,7 +183,7 @@ impl<P: Plan, J: Judge, T, I, D, const K: usize, const H: usize, Q> HcSr04Ring<R
             Shown::Disturbance => self.ring.unanswered(sensor),
             Shown::GoesOn => self.ring.unheard(sensor).and_then(|()| self.ring.holds(sensor)),
             Shown::Silence => self.ring.measured(sensor, None),
-            Shown::Echo(t_echo) => self.ring.measured(sensor, Some(t_echo)),
+            Shown::Echo(t_echo, _) => self.ring.measured(sensor, Some(t_echo)),
         }
     }
 
@@ -197,15 +197,38 @@ impl<P: Plan, J: Judge, T, I, D, const K: usize, const H: usize, Q> HcSr04Ring<R
     /// # Errors
     /// [`SensorError`] for a sensor out of range.
     pub fn edge(&mut self, edge: Edge) -> Result<(), SensorError> {
+        self.edge_seen(edge, Micros::ZERO)
+    }
+
+    /// As [`edge`](Self::edge), of an edge that came between two instants: the line was last seen without it at
+    /// `earliest`, and with it at `latest`. For who samples lines: see [`Sampler`](crate::Sampler). A pulse is as long
+    /// as between its uncertain edges, and counts as [`Ring::echo_between`] has it.
+    ///
+    /// # Errors
+    /// As for [`Ring::echo_between`].
+    pub fn edge_between(
+        &mut self,
+        sensor: u8,
+        high: bool,
+        earliest: Instant,
+        latest: Instant,
+    ) -> Result<(), RingError> {
+        if !latest.has_reached(earliest) {
+            return self.ring.echo_between(sensor, earliest, latest);
+        }
+        Ok(self.edge_seen(Edge { sensor, high, at: latest }, latest.since(earliest))?)
+    }
+
+    fn edge_seen(&mut self, edge: Edge, before: Micros) -> Result<(), SensorError> {
         let Some(fired) = self.ring.last_firing(edge.sensor) else {
             // The ring says that it is out of range.
             return self.ring.echo(edge.sensor, edge.at);
         };
-        match self.lines.edge(edge, fired) {
+        match self.lines.edge(edge, before, fired) {
             // Until then the line may rise again: a gap that is no end.
-            Shown::Echo(t_echo) => {
+            Shown::Echo(least, width) => {
                 let settled = edge.at + self.lines.shortest();
-                self.ring.echo_until(edge.sensor, fired + t_echo, settled)
+                self.ring.echo_within(edge.sensor, fired + least, width, settled)
             }
             shown => self.show(edge.sensor, shown),
         }

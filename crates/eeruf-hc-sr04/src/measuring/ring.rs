@@ -131,8 +131,8 @@ impl<P: Plan, J: Judge, M: Measures, const K: usize, const H: usize> MeasuringRi
         let event = self.ring.poll_expecting(now, expected_change_us)?;
         match event {
             RingEvent::Fire { sensor, .. } => self.start(sensor, now),
-            // A late one follows a reading.
-            RingEvent::Reading(reading) if reading.kind != ReadingKind::Late => {
+            // A late one with an echo time follows a reading.
+            RingEvent::Reading(reading) if reading.kind != ReadingKind::Late || reading.t_echo.is_none() => {
                 if let Some(state) = self.states.get_mut(usize::from(reading.sensor)) {
                     state.end();
                 }

@@ -1,0 +1,36 @@
+//! [`Sampler`]: edges of lines that are looked at now and then.
+
+use eeruf_core::Instant;
+
+/// The levels of `K` echo lines as a loop sees them that has no interrupts for their edges.
+///
+/// ```
+/// use eeruf_core::Instant;
+/// use eeruf_hc_sr04::Sampler;
+/// let at = Instant::from_micros;
+/// let mut lines = Sampler::<1>::new(at(0));
+/// assert_eq!(lines.look(0, false, at(100), at(104)), None);
+/// // It rose when it was not looked at.
+/// assert_eq!(lines.look(0, true, at(400), at(404)), Some((at(100), at(404))));
+/// ```
+#[derive(Clone, Debug)]
+pub struct Sampler<const K: usize> {
+    /// When each line was last seen, and if it was high.
+    seen: [(Instant, bool); K],
+}
+
+impl<const K: usize> Sampler<K> {
+    /// Lines that are low, `now`.
+    pub const fn new(now: Instant) -> Self {
+        Self { seen: [(now, false); K] }
+    }
+
+    /// Takes in the level that a line had between two readings of the clock. Returns the instants between which it
+    /// changed, if it did: for [`HcSr04Ring::edge_between`](crate::HcSr04Ring::edge_between). Call it with each look,
+    /// at all lines before each poll.
+    pub fn look(&mut self, sensor: u8, high: bool, before: Instant, after: Instant) -> Option<(Instant, Instant)> {
+        let seen = self.seen.get_mut(usize::from(sensor))?;
+        let (earliest, was_high) = core::mem::replace(seen, (before, high));
+        (high != was_high).then_some((earliest, after))
+    }
+}

@@ -252,7 +252,6 @@ impl<const K: usize, U: OwnLimits> InTurn<K, U> {
     }
 
     /// What those that listen still need.
-    #[inline(never)]
     fn listeners(&self) -> Listeners {
         let mut all = Listeners { most: Micros::ZERO, whose: NOBODY, others: Micros::ZERO };
         if self.listening == 0 {
@@ -326,7 +325,13 @@ impl<const K: usize, U: OwnLimits> InTurn<K, U> {
     }
 
     /// Decides who fires next, and when.
+    #[inline(never)]
     fn decide(&mut self) {
+        let listeners = self.listeners();
+        self.decide_among(&listeners);
+    }
+
+    fn decide_among(&mut self, listeners: &Listeners) {
         if self.own_limits.most().is_some() {
             let pending = self.each().find(|(_, slot)| slot.is(PENDING)).map(|(sensor, _)| sensor);
             if let Some(sensor) = pending {
@@ -334,13 +339,12 @@ impl<const K: usize, U: OwnLimits> InTurn<K, U> {
                 return;
             }
         }
-        let listeners = self.listeners();
         let mut sensor = if self.paused { NOBODY } else { self.from };
         (self.turn, self.next) = (NOBODY, NOBODY);
         while let Some(slot) = self.slots.get(usize::from(sensor)) {
             let then = slot.then;
             if sensor != self.ahead && !slot.is(DISABLED | FOLLOWS) {
-                let (quiet, rested) = self.waits(sensor, slot, &listeners);
+                let (quiet, rested) = self.waits(sensor, slot, listeners);
                 if self.turn == NOBODY || rested <= quiet {
                     (self.next, self.due) = (sensor, self.last + longer(quiet, rested) + self.thrown);
                 }
@@ -412,7 +416,8 @@ impl<const K: usize, U: OwnLimits> Plan for InTurn<K, U> {
         slot.fired = now;
         self.listening = self.listening.saturating_add(1);
         slot.set(FIRED | LISTENS, true);
-        if slot.is(PENDING) {
+        let pending = self.own_limits.most().is_some() && slot.is(PENDING);
+        if pending {
             slot.set(PENDING, false);
         } else {
             if sensor == self.turn {
@@ -432,7 +437,14 @@ impl<const K: usize, U: OwnLimits> Plan for InTurn<K, U> {
             self.throw();
         }
         self.last = now;
-        self.decide();
+        let mut listeners = Listeners { most: Micros::ZERO, whose: sensor, others: Micros::ZERO };
+        if pending {
+            listeners = self.listeners();
+        } else if let Some(slot) = self.slot(sensor) {
+            // It was not due before the others had the quiet that they need.
+            listeners.most = shorter(self.quiet(slot), self.window_of(sensor));
+        }
+        self.decide_among(&listeners);
     }
 
     fn postpone(&mut self, sensor: u8, by: Micros) {

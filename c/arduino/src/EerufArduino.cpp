@@ -1,8 +1,20 @@
-// See EerufArduino.h.
+// See EerufArduino.h. The interrupts are the sketch's.
+#ifndef EERUF_POLLED
+#define EERUF_POLLED
+#endif
 #include "EerufArduino.h"
 
-// How long before a firing no reading is judged any more: that takes longer the more modules could explain it.
-static const uint32_t SOON_US = 200, SOON_PER_MODULE_US = 40;
+#ifndef IRAM_ATTR
+#define IRAM_ATTR
+#endif
+
+// A line is looked at for this long at a time, as often as can be; and longer where an edge is expected before loop()
+// comes back.
+static const uint32_t LOOKS_US = 300, LONGEST_US = 4000;
+// Lines rise within this time after their trigger.
+static const uint32_t RISES_US = 1000;
+// An edge that came within as long as this has no time, which the second says.
+static const uint32_t TOO_LONG_US = 500, LATE_US = 2040;
 
 #if defined(__AVR__) && defined(portModeRegister)
 // A quarter of the time of digitalRead, and less flash than the core's functions together.
@@ -54,43 +66,239 @@ void EerufPin::trigger(uint8_t trigger, uint8_t echo, uint8_t us) {
     release(trigger, echo);
 }
 
-const EerufHcSr04Settings &EerufModules::hcSr04() {
-    static const EerufHcSr04Settings settings = EERUF_HC_SR04;
-    return settings;
-}
+namespace EerufLines {
+bool hasInterrupts;
+static uint8_t alone; // lines without a port that is read as a whole
 
-bool EerufModules::begin(const EerufHcSr04Settings &settings) {
-    const EerufConfig config = EERUF_CONFIG;
-    const uint8_t *echo = echoes_, *trigger = triggers_;
-    for (uint8_t left = count_; left > 0; left--, echo++, trigger++) {
-        setOutput(*echo, false);
-        EerufPin::release(*trigger, *echo);
+// Eight lines are one group: those of a port, where its pins interrupt when they change. Lines without are groups too,
+// whose pins are read one by one. Levels of a group, and which of its pins are outputs.
+#if defined(__AVR_ATmega328P__) || defined(__AVR_ATmega168__)
+static const uint8_t PORTS = 3, BY_CHANGE = 3, GROUPS = PORTS; // `BY_CHANGE`: ports that have an interrupt
+static inline uint8_t levels(uint8_t group) {
+    return group == 0 ? PINB : group == 1 ? PINC : PIND;
+}
+static inline uint8_t outputs(uint8_t group) {
+    return group == 0 ? DDRB : group == 1 ? DDRC : DDRD;
+}
+#else
+#ifdef __AVR_ATmega2560__
+static const uint8_t PORTS = 4, BY_CHANGE = 3, BY_PIN = 3, GROUPS = PORTS + 3;
+static inline uint8_t port(uint8_t group) {
+    if (group == BY_PIN) return (PIND & 0x0f) | (PINE & 0x30);
+    return group == 0 ? PINB : group == 1 ? PINJ << 1 | (PINE & 0x01) : PINK;
+}
+static inline uint8_t outputs(uint8_t group) {
+    if (group >= PORTS) return 0;
+    if (group == BY_PIN) return (DDRD & 0x0f) | (DDRE & 0x30);
+    return group == 0 ? DDRB : group == 1 ? DDRJ << 1 | (DDRE & 0x01) : DDRK;
+}
+#else
+static const uint8_t PORTS = 0, BY_CHANGE = 0, GROUPS = 8;
+static inline uint8_t port(uint8_t) {
+    return 0;
+}
+static inline uint8_t outputs(uint8_t) {
+    return 0; // nothing looks while a trigger is given
+}
+#endif
+static uint8_t pinOf[8 * (GROUPS - PORTS)];
+static uint8_t levels(uint8_t group) {
+    if (group + 1 <= PORTS) return port(group);
+    uint8_t bits = 0;
+    for (uint8_t place = 8 * (group - PORTS); place < alone && place < 8 * (group - PORTS + 1); place++)
+        bits |= EerufPin::isHigh(pinOf[place]) << (place & 7);
+    return bits;
+}
+#endif
+
+static EerufEdges *edges;
+// The levels of lines, the pins that are echo lines, and pulses that began nobody knows when.
+static uint8_t sensorOf[GROUPS][8], known[GROUPS], ours[GROUPS], timeless[GROUPS];
+static uint32_t looked;
+
+#if defined(TIMER0_COMPB_vect) && (F_CPU == 16000000 || F_CPU == 8000000)
+#define EERUF_HALVES
+// The timer of micros() counts on where interrupts wait, but of two overflows meanwhile one is lost. Interrupts half-way
+// between them tell: those that were served or wait, less those that micros() knows of, are ever as many.
+static volatile uint8_t halves;
+static uint8_t ahead;
+
+// True if interrupts wait for longer than other interrupts take. `hasLost`: or micros() has lost time since the last call.
+static bool haveWaited(bool *hasLost) {
+    uint8_t ticks, since;
+    const uint8_t half = OCR0B;
+    // Not while one of the two may be half done.
+    do {
+        ticks = TCNT0;
+        since = ticks - half;
+    } while (ticks == 0 || ticks == 255 || since == 0 || since == 255);
+    const uint8_t flags = TIFR0;
+    const uint8_t overflows = (uint8_t)(micros() >> (F_CPU == 16000000 ? 10 : 11)) + (ticks > half);
+    const uint8_t now = (uint8_t)(halves + (flags >> OCF0B & 1) - overflows);
+    *hasLost = now == (uint8_t)(ahead + 1);
+    ahead = now;
+    return ((flags & _BV(TOV0)) && ticks > 8) || ((flags & _BV(OCF0B)) && since > 8);
+}
+#else
+static inline bool haveWaited(bool *) {
+    return false;
+}
+#endif
+
+// Queues the edges that came since an instant, or just now: with interrupts off. An edge has no time that an interrupt
+// finds late or with others of its group, nor has the end of a pulse whose beginning has none, or in which time was lost.
+static void take(uint32_t since, bool isInterrupt) {
+    const uint32_t at = micros();
+    bool hasLost = false;
+    const bool waited = haveWaited(&hasLost), isLate = isInterrupt ? waited : at - since > TOO_LONG_US;
+    if (isInterrupt) since = at;
+    for (uint8_t group = 0; group < GROUPS; group++) {
+        // A pin that is an output is high by our own trigger.
+        uint8_t changed = (uint8_t)((levels(group) ^ known[group]) & ours[group] & ~outputs(group));
+        uint8_t late = timeless[group];
+        if (hasLost) late |= known[group];
+        if (isLate || (isInterrupt && (changed & (uint8_t)(changed - 1)) != 0)) late |= changed;
+        uint8_t high = known[group] ^= changed;
+        timeless[group] = (uint8_t)(late & high);
+        for (const uint8_t *sensor = sensorOf[group]; changed != 0; sensor++, changed >>= 1, high >>= 1, late >>= 1)
+            if (changed & 1)
+                (void)eeruf_edges_push_between(edges, *sensor, high & 1, late & 1 ? at - LATE_US : since, at);
     }
-    const size_t sensors = count_ * sizeof *sensors_, lines = count_ * sizeof *lines_;
-    status_ = eeruf_ring_init(&ring_, sizeof ring_, sensors_, sensors, schedule_, &config, ::micros());
-    if (status_ == EERUF_OK)
-        status_ = eeruf_hc_sr04_init(&modules_, sizeof modules_, lines_, lines, &ring_, &settings);
-    return status_ == EERUF_OK;
 }
 
-// Edges of the lines that a pulse is awaited on, until something is due: to fire on time matters more.
-void EerufModules::sample(EerufModules &self) {
-    const uint32_t due = eeruf_ring_due(&self.ring_);
-    const uint8_t *echo = self.echoes_;
-    bool was_high;
-    for (uint8_t sensor = 0; sensor < self.count_ && (int32_t)(::micros() - due) < 0; sensor++, echo++) {
-        if (!eeruf_hc_sr04_awaits(&self.modules_, sensor, &was_high)) continue;
-        const bool high = EerufPin::isHigh(*echo);
-        if (high != was_high) (void)eeruf_hc_sr04_edge(&self.modules_, sensor, high, ::micros());
+void look() {
+    const uint32_t since = looked;
+    looked = micros();
+    noInterrupts();
+    take(since, false);
+    interrupts();
+}
+
+void IRAM_ATTR onInterrupt() {
+    take(0, true);
+}
+
+// A group and a place for a line; whether its changes interrupt.
+static bool find(uint8_t pin, uint8_t *group, uint8_t *place) {
+#if defined(__AVR_ATmega328P__) || defined(__AVR_ATmega168__)
+    *group = digitalPinToPCICRbit(pin);
+    *place = digitalPinToPCMSKbit(pin);
+    return true;
+#else
+#ifdef __AVR_ATmega2560__
+    // The core's own table leaves out 14 and 15.
+    static const uint8_t FIRST[] PROGMEM = {255,  255,  0x34, 0x35, 255,  255,  255,  255,  255,  255,  0x04,
+                                            0x05, 0x06, 0x07, 0x12, 0x11, 255,  255,  0x33, 0x32, 0x31, 0x30};
+    uint8_t at = 255;
+    if (pin < sizeof FIRST) at = pgm_read_byte(FIRST + pin);
+    else if (pin >= 50 && pin <= 53) at = 53 - pin;
+    else if (pin >= A8 && pin <= A15) at = 0x20 + pin - A8;
+    if (at != 255) {
+        *group = at >> 4;
+        *place = at & 7;
+        return true;
     }
+#endif
+    *group = PORTS + (alone >> 3);
+    *place = alone & 7;
+    pinOf[alone++] = pin;
+    return digitalPinToInterrupt(pin) != NOT_AN_INTERRUPT;
+#endif
 }
 
-void EerufModules::drain(EerufModules &self) {
-    (void)eeruf_hc_sr04_edges(&self.modules_, self.edges_);
+static void attach(uint8_t pin, uint8_t group, uint8_t place) {
+#ifdef PCICR
+    if (group + 1 <= BY_CHANGE || BY_CHANGE == GROUPS) {
+        (&PCMSK0)[group] |= bit(place);
+        PCICR |= bit(group);
+        return;
+    }
+#endif
+    attachInterrupt(digitalPinToInterrupt(pin), onInterrupt, CHANGE);
+    (void)group, (void)place;
 }
 
-void EerufModules::climb(EerufModules &self, const EerufEvent &event) {
-    (void)eeruf_adaptation_period(self.adaptation_, &self.ring_, &event);
+bool begin(const uint8_t *pins, uint8_t count, EerufEdges &queue) {
+    bool isTimed = hasInterrupts;
+    uint8_t group, place;
+    edges = &queue;
+#ifdef EERUF_HALVES
+    OCR0B = 128;
+    TIFR0 = _BV(OCF0B);
+    TIMSK0 |= _BV(OCIE0B);
+#endif
+    memset(ours, 0, sizeof ours);
+    alone = 0;
+    for (uint8_t i = 0; i < count; i++) {
+        const bool can = find(pins[i], &group, &place);
+        sensorOf[group][place] = i;
+        ours[group] |= bit(place);
+        if (can && hasInterrupts) attach(pins[i], group, place);
+        isTimed &= can;
+    }
+    for (group = 0; group < GROUPS; group++) known[group] = levels(group);
+    return isTimed;
+}
+} // namespace EerufLines
+
+#ifdef EERUF_HALVES
+ISR(TIMER0_COMPB_vect) {
+    EerufLines::halves++;
+}
+#endif
+
+bool EerufModules::begin(EerufStatus status, EerufRing &ring, EerufLine *lines, EerufEdge *places, uint8_t count,
+                         const EerufHcSr04Settings &settings) {
+    for (uint8_t i = 0; i < count_; i++) {
+        setOutput(echoes_[i], false);
+        EerufPin::release(triggers_[i], echoes_[i]);
+    }
+    if (status == EERUF_OK)
+        status = eeruf_hc_sr04_init(&modules_, sizeof modules_, lines, count_ * sizeof *lines, &ring, &settings);
+    if (status == EERUF_OK && edges_ == nullptr) {
+        status = eeruf_edges_init(&queue_, sizeof queue_, places, count * sizeof *places);
+        looks_ = !EerufLines::begin(echoes_, count_, queue_);
+        edges_ = &queue_;
+    }
+    status_ = status;
+    return status == EERUF_OK;
+}
+
+// True if a module's reading is still to come.
+static bool awaits(const EerufHcSr04 &modules, uint8_t sensor) {
+    return eeruf_hc_sr04_awaits(&modules, sensor, nullptr) &&
+           micros() - eeruf_ring_fired_at(modules.ring, sensor) <= modules.ring->window_us;
+}
+
+// True if an edge is expected before loop() comes back: that of the echo which is believed.
+bool EerufModules::expects(uint32_t now) const {
+    for (uint8_t i = 0; i < count_ && modules_.ring->consecutive == 0; i++) {
+        if (!awaits(modules_, i)) continue;
+        const uint32_t echo = eeruf_flow_believed_us((const EerufFlowRing *)modules_.ring, i);
+        const uint32_t at = eeruf_ring_fired_at(modules_.ring, i) + RISES_US + echo;
+        if (echo != EERUF_NO_ECHO && at - now < away_ + RISES_US) return true;
+    }
+    return false;
+}
+
+uint32_t EerufModules::collect(uint16_t soon, bool looks) {
+    uint32_t now;
+    if (looks && looks_) {
+        const uint32_t began = ::micros(), away = began - seen_;
+        away_ -= away_ / 16;
+        if (away > away_) away_ = away > LONGEST_US ? LONGEST_US : away;
+        do EerufLines::look();
+        while (queue_.pushed == queue_.popped && (int32_t)((now = ::micros()) - eeruf_ring_due(modules_.ring)) < 0 &&
+               (now - began < LOOKS_US || expects(now)));
+    }
+    // The clock is read before the edges: then no window closes on one that came in time.
+    do {
+        now = ::micros();
+        if (looks && looks_) EerufLines::look();
+        (void)eeruf_hc_sr04_edges(&modules_, edges_);
+    } while (eeruf_ring_due(modules_.ring) - now - 1 < soon);
+    if (looks) seen_ = ::micros();
+    return now;
 }
 
 void EerufModules::watchEvent(EerufModules &self, const EerufEvent &event, uint32_t now) {
@@ -113,33 +321,28 @@ void EerufModules::pullLow(EerufModules &self, uint8_t sensor) {
 }
 
 // Unless the line is high.
-void EerufModules::fire(uint8_t sensor) {
+void EerufModules::fire(uint8_t sensor, bool looks) {
+    bool isHigh;
     if (eeruf_hc_sr04_fire(&modules_, sensor, EerufPin::isHigh(echoes_[sensor])) != EERUF_OK) {
         if (onStuck_ != nullptr) onStuck_(*this, sensor);
         return;
     }
     EerufPin::trigger(triggers_[sensor], echoes_[sensor], modules_.settings->trigger_us);
+    // Its line rises soon, before loop() does other things.
+    const uint32_t fired = ::micros();
+    while (looks && looks_ && eeruf_hc_sr04_awaits(&modules_, sensor, &isHigh) && !isHigh && ::micros() - fired < RISES_US) {
+        EerufLines::look();
+        (void)eeruf_hc_sr04_edges(&modules_, edges_);
+    }
 }
 
-bool EerufModules::read() {
-    EerufEvent event;
-    if (status_ != EERUF_OK) return false;
-    // A firing that is due soon is waited for, while lines are sampled: where modules fire late, by differing times, more
-    // is ambiguous. The clock is read before: then no window closes on an edge that came in time.
-    const uint32_t soon = SOON_US + SOON_PER_MODULE_US * count_;
-    uint32_t now;
-    do {
-        now = ::micros();
-        collect_(*this);
-    } while (eeruf_ring_due(&ring_) - now - 1 < soon);
-    if (eeruf_ring_poll(&ring_, now, &event) != EERUF_EVENT) return false;
+bool EerufModules::take(const EerufEvent &event, uint32_t now, bool looks) {
     if (event.kind == EERUF_EVENT_FIRE) {
-        fire(event.sensor);
-    } else if (event.kind == EERUF_EVENT_PERIOD) {
-        if (onPeriod_ != nullptr) onPeriod_(*this, event);
-    } else {
+        fire(event.sensor, looks);
+    } else if (event.kind == EERUF_EVENT_READING) {
         sensor_ = event.sensor;
         reading_ = event.u.reading;
+        if (kind() != EERUF_READING_LATE) heard_ |= 1ul << (sensor_ & 31);
     }
     if (onReading_ != nullptr) onReading_(*this, event, now);
     // A sensor that is to fire has fired by now.
@@ -147,10 +350,24 @@ bool EerufModules::read() {
     return event.kind == EERUF_EVENT_READING;
 }
 
-bool EerufModules::tooSlow() {
-    if (ring_.latest_us <= 1000 || ::micros() - told_ < 1000000) return false;
-    told_ = ::micros();
-    return true;
+bool EerufModules::tooSlow(bool late) {
+    const uint32_t now = ::micros();
+    late_ |= late;
+    if (now - since_ < 1000000) return false;
+    late = late_;
+    for (uint8_t i = 0; i < count_; i++)
+        late |= eeruf_ring_is_enabled(modules_.ring, i) && !(heard_ >> (i & 31) & 1);
+    since_ = now;
+    heard_ = 0;
+    late_ = false;
+    return late && !modules_.ring->paused;
+}
+
+uint32_t EerufModules::quietFor() const {
+    for (uint8_t i = 0; i < count_; i++)
+        if (awaits(modules_, i)) return 0;
+    const uint32_t quiet = eeruf_ring_due(modules_.ring) - ::micros();
+    return quiet < 0x80000000 ? quiet : 0;
 }
 
 uint16_t EerufModules::millimetres(uint32_t soundMmPerS) const {

@@ -7,14 +7,18 @@
 //   void setup() { Serial.begin(115200); if (!sonar.begin()) Serial.println(sonar.status()); }
 //   void loop() { if (sonar.read() && sonar.accepted()) Serial.println(sonar.millimetres()); }
 //
-// read() samples the echo lines, fires what is due and returns; what is due within 0.3 ms it waits for. Call it as
-// often as you can: echo times are as exact as the calls are frequent, and where modules fire late by more than the
-// table has to spare, a reading that sound of another module could explain is not accepted but ambiguous.
+// read() takes in the edges of the echo lines, fires what is due and returns; what is due within 0.3 ms it waits for. Call
+// it as often as you can: modules that fire late fire less often.
+//
+// Edges are timed by interrupts: see EerufInterrupts.h. With EERUF_POLLED defined before the first include, read() looks at
+// the lines instead. An edge then came at some time since the look before; more than a millisecond of that, and the
+// reading is EERUF_READING_LATE, which is no distance.
 #pragma once
 
 #include <Arduino.h>
 
 #include "eeruf.h"
+#include "EerufInterrupts.h"
 
 // Pins of modules, without Arduino's functions where that is faster: on an AVR by the port's registers.
 namespace EerufPin {
@@ -25,16 +29,11 @@ void release(uint8_t trigger, uint8_t echo);
 void trigger(uint8_t trigger, uint8_t echo, uint8_t us = 10);
 } // namespace EerufPin
 
-// What all rings have in common, whatever their number of modules.
+// What all rings have in common, by a table or by flow, whatever their number of modules.
 class EerufModules {
 public:
-    // Begins firing. False if the table cannot be used: status() says why. Of other modules than HC-SR04, or some that
-    // may be triggered sooner, the settings are RING_MODULES of the table of their ring file; they must last.
-    bool begin(const EerufHcSr04Settings &settings = hcSr04());
-
-    // One step; true if a module has a new reading, which the functions below are about.
-    bool read();
-    uint8_t sensor() const { return sensor_; }             // which one, from 0
+    // After read() has returned true: which one, from 0.
+    uint8_t sensor() const { return sensor_; }
     uint8_t kind() const { return reading_.kind; }         // EERUF_READING_..
     bool accepted() const { return reading_.kind == EERUF_READING_ACCEPTED; } // an echo that counts
     bool clear() const { return reading_.kind == EERUF_READING_CLEAR; }       // nothing is in range
@@ -53,78 +52,68 @@ public:
     EerufState state(uint8_t sensor) const;
     // How a module is: EERUF_HEALTH_..
     uint8_t health(uint8_t sensor) const { return eeruf_hc_sr04_health(&modules_, sensor); }
-    // True if loop() is too slow, at most once a second: a firing of this period came more than a millisecond late. Late
-    // firings make readings cost more time, and ambiguous. late() has the microseconds.
-    bool tooSlow();
-    uint16_t late() const { return ring_.latest_us; }
-    // Stops a module, or lets it fire again.
-    bool enable(uint8_t sensor, bool enabled = true) { return eeruf_ring_enable(&ring_, sensor, enabled) == EERUF_OK; }
-    // Fires no module, or all again.
-    void pause(bool paused = true) { (void)eeruf_ring_pause(&ring_, paused); }
-    // By another table of as many modules, from the next period on.
-    bool change(const EerufSchedule &schedule) {
-        return eeruf_hc_sr04_change_schedule(&modules_, &schedule) == EERUF_OK;
-    }
-    // Changes along a ladder of tables, the first of which the ring began with, as its readings ask for.
-    void adapt(EerufAdaptation &adaptation) {
-        adaptation_ = &adaptation;
-        onPeriod_ = climb; // by pointers, so that what a sketch does not use is not linked
-    }
+    // For how long, in microseconds, no module is awaited and none is due: the time to write a strip of LEDs, whose library
+    // calls noInterrupts(). 0 while one is awaited: see the example Strip.
+    uint32_t quietFor() const;
     // Pulls the line of a module that is stuck high low for this many microseconds before its next firing: some modules
     // hold it for ever after a lost echo. Put 1 kOhm into each line before, since module and pin drive against each other.
     void recover(uint16_t us = EERUF_RECOVERY_US) {
         recovery_ = us;
         onStuck_ = pullLow;
     }
-    // Takes edges from this queue, which interrupts fill, instead of sampling the lines.
-    void use(EerufEdges &edges) {
-        edges_ = &edges;
-        collect_ = drain;
-    }
+    // Takes edges from this queue, which interrupts fill, instead of looking at the lines.
+    void use(EerufEdges &edges) { edges_ = &edges; }
     // Calls this with each event and the clock that it was polled at, also with those that read() does not return for.
     void tell(void (*listener)(EerufModules &modules, const EerufEvent &event, uint32_t now)) { onEvent_ = listener; }
+
+    // Whether interrupts time the edges. If not, read() looks at the lines: it was asked for, or a pin has none.
+    bool byInterrupts() const { return !looks_; }
 
     uint8_t count() const { return count_; }
     uint8_t echoPin(uint8_t sensor) const { return echoes_[sensor]; }
     // What begin() came to: EERUF_OK or EERUF_ERR_..
     int8_t status() const { return status_; }
     // All that eeruf.h can do.
-    EerufRing &ring() { return ring_; }
+    EerufRing &ring() { return *modules_.ring; }
     EerufHcSr04 &modules() { return modules_; }
 
 protected:
-    EerufModules(const EerufSchedule &schedule, const uint8_t *triggers, const uint8_t *echoes, EerufSensor *sensors,
-                 EerufLine *lines, uint8_t count)
-        : schedule_(&schedule), triggers_(triggers), echoes_(echoes), sensors_(sensors), lines_(lines), count_(count) {}
+    EerufModules(const uint8_t *triggers, const uint8_t *echoes, uint8_t count)
+        : triggers_(triggers), echoes_(echoes), count_(count) {}
+
+    // Begins with a ring that came to this status, its lines and places for edges.
+    bool begin(EerufStatus status, EerufRing &ring, EerufLine *lines, EerufEdge *places, uint8_t count,
+               const EerufHcSr04Settings &settings);
+    // Takes in edges, and waits for what is due within a time: the clock before. `looks` as EERUF_LOOKS.
+    uint32_t collect(uint16_t soon, bool looks);
+    // True once a second if modules fire late, or one had no reading in it but such that nobody knows when they came.
+    bool tooSlow(bool late);
+    // Does what an event asks for; true for a reading.
+    bool take(const EerufEvent &event, uint32_t now, bool looks);
+
+    EerufStatus status_ = EERUF_ERR_NOT_READY;
 
 private:
-    static const EerufHcSr04Settings &hcSr04();
-    static void sample(EerufModules &self);
-    static void drain(EerufModules &self);
-    static void climb(EerufModules &self, const EerufEvent &event);
     static void watchEvent(EerufModules &self, const EerufEvent &event, uint32_t now);
     static void pullLow(EerufModules &self, uint8_t sensor);
-    void fire(uint8_t sensor);
+    void fire(uint8_t sensor, bool looks);
+    bool expects(uint32_t now) const;
 
-    const EerufSchedule *schedule_;
     const uint8_t *triggers_, *echoes_;
-    EerufSensor *sensors_;
-    EerufLine *lines_;
-    EerufAdaptation *adaptation_;
-    EerufEdges *edges_;
+    EerufEdges *edges_ = nullptr;
     EerufWatch *watch_ = nullptr;
-    void (*collect_)(EerufModules &) = sample;
+    // By pointers, so that what a sketch does not use is not linked.
     void (*onStuck_)(EerufModules &, uint8_t) = nullptr;
-    void (*onPeriod_)(EerufModules &, const EerufEvent &) = nullptr;
     void (*onReading_)(EerufModules &, const EerufEvent &, uint32_t) = nullptr;
     void (*onEvent_)(EerufModules &, const EerufEvent &, uint32_t) = nullptr;
-    EerufRing ring_;
+    EerufEdges queue_;
     EerufHcSr04 modules_;
     EerufReading reading_;
-    uint32_t told_ = 0;
-    uint16_t recovery_;
+    uint32_t heard_ = 0, since_ = 0; // the modules with a reading since then
+    uint32_t seen_ = 0; // by read(), for the last time
+    uint16_t recovery_, away_ = 0; // how long loop() does other things
     uint8_t count_, sensor_;
-    EerufStatus status_ = EERUF_ERR_NOT_READY;
+    bool looks_ = false, late_ = false; // read() looks at the lines; modules fired late
 };
 
 // The state before each of N modules: sonar.watch(states) after sonar.begin(). 10 bytes a module.
@@ -141,12 +130,58 @@ template <uint8_t N> class EerufSonar : public EerufModules {
 public:
     // One pin for trigger and echo of each module.
     EerufSonar(const EerufSchedule &schedule, const uint8_t (&pins)[N])
-        : EerufModules(schedule, pins, pins, sensors_, lines_, N) {}
+        : EerufModules(pins, pins, N), schedule_(&schedule) {}
     // Two pins for each.
     EerufSonar(const EerufSchedule &schedule, const uint8_t (&triggers)[N], const uint8_t (&echoes)[N])
-        : EerufModules(schedule, triggers, echoes, sensors_, lines_, N) {}
+        : EerufModules(triggers, echoes, N), schedule_(&schedule) {}
+
+    // Begins firing HC-SR04 modules. False if the table cannot be used: status() says why.
+    bool begin() {
+        static const EerufHcSr04Settings settings = EERUF_HC_SR04;
+        return begin(settings);
+    }
+    // The same of others, or some that may be triggered sooner: RING_MODULES of their table, which must last.
+    bool begin(const EerufHcSr04Settings &settings) {
+        const EerufConfig config = EERUF_CONFIG;
+        const EerufStatus status =
+            eeruf_ring_init(&ring_, sizeof ring_, sensors_, sizeof sensors_, schedule_, &config, ::micros());
+        return EerufModules::begin(status, ring_, lines_, places_, sizeof places_ / sizeof *places_, settings);
+    }
+
+    // One step; true if a module has a new reading. To fire on time matters: just before, no reading is judged.
+    bool read() {
+        EerufEvent event;
+        if (status_ != EERUF_OK) return false;
+        const uint32_t now = collect(200 + 40 * N, EERUF_LOOKS);
+        if (eeruf_ring_poll(&ring_, now, &event) != EERUF_EVENT) return false;
+        if (event.kind == EERUF_EVENT_PERIOD && onPeriod_ != nullptr) onPeriod_(adaptation_, &ring_, &event);
+        return take(event, now, EERUF_LOOKS);
+    }
+
+    // True if loop() is too slow, at most once a second: firings came more than a millisecond late, which makes readings
+    // ambiguous and cost more time, or a module had no reading. late() has the microseconds, of this period.
+    bool tooSlow() { return EerufModules::tooSlow(ring_.latest_us > 1000); }
+    uint16_t late() const { return ring_.latest_us; }
+    // Stops a module, or lets it fire again.
+    bool enable(uint8_t sensor, bool enabled = true) { return eeruf_ring_enable(&ring_, sensor, enabled) == EERUF_OK; }
+    // Fires no module, or all again.
+    void pause(bool paused = true) { (void)eeruf_ring_pause(&ring_, paused); }
+    // By another table of as many modules, from the next period on.
+    bool change(const EerufSchedule &schedule) {
+        return eeruf_hc_sr04_change_schedule(&modules(), &schedule) == EERUF_OK;
+    }
+    // Changes along a ladder of tables, the first of which the ring began with, as its readings ask for.
+    void adapt(EerufAdaptation &adaptation) {
+        adaptation_ = &adaptation;
+        onPeriod_ = eeruf_adaptation_period;
+    }
 
 private:
+    const EerufSchedule *schedule_;
+    EerufAdaptation *adaptation_;
+    EerufStatus (*onPeriod_)(EerufAdaptation *, EerufRing *, const EerufEvent *) = nullptr;
+    EerufRing ring_;
     EerufSensor sensors_[N];
     EerufLine lines_[N];
+    EerufEdge places_[N > 8 ? 32 : 16];
 };

@@ -1,4 +1,4 @@
-// Four modules, each of whose lines has an interrupt of its own that hands in the level it sees, as in the example Two.
+// Four modules, each of whose lines has an interrupt of its own that hands in the level it sees.
 // Says the state before a module at each of its readings. `cargo xtask arduino` puts the table LINE_FAULTS of
 // tests/data/line-faults.txt before it; with FORGOTTEN, module 2's interrupt is not attached.
 const uint8_t TRIGGERS[] = {4, 5, 6, 7};

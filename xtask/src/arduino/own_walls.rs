@@ -33,12 +33,11 @@ const LEAST_OF_FLOW: (f64, f64) = (80.0, 85.0);
 const DESIGNED: &str = "tests/data/car-4.toml";
 const DESIGNED_SKETCH: &str = r#"
 #include <EerufFlow.h>
-#include <EerufInterrupts.h>
 #include "ring.h"
 const uint8_t PINS[] = {2, 3, 4, 5};
 EerufFlow<4> sonar(PINS);
 const EerufHcSr04Settings modules = RING_MODULES;
-void setup() { Serial.begin(115200); sonar.begin(RING, modules) && eerufInterrupts(sonar); }
+void setup() { Serial.begin(115200); sonar.begin(RING, modules); }
 void loop() {
   if (!sonar.read() || !sonar.accepted()) return;
   Serial.print(sonar.sensor() + 1);

@@ -11,8 +11,8 @@ use crate::steps::edited;
 
 /// Sketches that read by a class; the first of them say when their loop is too slow.
 const SKETCHES: [&str; 8] =
-    ["Two", "Ring8", "Ring12OnePin", "States4", "FromNewPing", "Adaptive", "SerialRing8", "Flow12"];
-const SAY_SO: usize = 4;
+    ["Ring8", "Ring12OnePin", "States4", "FromNewPing", "Adaptive", "SerialRing8", "Flow12", "Strip"];
+const SAY_SO: usize = 3;
 const SECONDS: u32 = 3;
 /// Stands in each before `X ms`.
 const STATED: &str = "One read() takes up to ";

@@ -3,17 +3,17 @@
 // the module's number and the distance in millimetres of each echo that counts.
 // One read() takes up to 0.6 ms on an Uno.
 #include <EerufFlow.h>
-#include <EerufInterrupts.h>
 
 const uint8_t PINS[] = {2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13};
 EerufFlow<12> sonar(PINS);
 
 void setup() {
   Serial.begin(115200);
-  if (!sonar.begin() || !eerufInterrupts(sonar)) Serial.println(sonar.status());
+  if (!sonar.begin()) Serial.println(sonar.status());
 }
 
 void loop() {
+  if (sonar.tooSlow()) Serial.println(F("loop() is too slow"));
   if (sonar.read() && sonar.accepted()) {
     Serial.print(sonar.sensor() + 1);
     Serial.print(' ');

@@ -2,7 +2,6 @@
 // Says what becomes of each firing, and which modules do not answer.
 // One read() takes up to 0.8 ms on an Uno.
 #include <EerufTables.h>
-#include <EerufInterrupts.h>
 
 const uint8_t TRIGGERS[] = {2, 3, 4, 5, 6, 7, 8, 9};
 const uint8_t ECHOES[] = {10, 11, 12, 13, A0, A1, A2, A3};
@@ -14,11 +13,10 @@ void setup() {
     Serial.print(F("table refused: "));
     Serial.println(sonar.status());
   }
-  if (!eerufInterrupts(sonar)) Serial.println(F("an echo pin has no interrupt"));
 }
 
 void loop() {
-  if (sonar.tooSlow()) Serial.println(F("loop() is too slow: modules fire late"));
+  if (sonar.tooSlow()) Serial.println(F("loop() is too slow"));
   if (!sonar.read()) return;
   Serial.print(sonar.sensor() + 1);
   if (sonar.accepted()) {

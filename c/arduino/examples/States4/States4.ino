@@ -2,7 +2,6 @@
 // it: twenty times a second it says of each module what stands there, for how long, or why that is not known.
 // One read() takes up to 0.6 ms on an Uno.
 #include <EerufTables.h>
-#include <EerufInterrupts.h>
 
 const uint8_t PINS[] = {2, 3, 4, 5};
 EerufSonar<4> sonar(EERUF_HC_SR04_4, PINS);
@@ -12,7 +11,6 @@ uint32_t said;
 void setup() {
   Serial.begin(115200);
   if (!sonar.begin()) Serial.println(F("wrong table"));
-  if (!eerufInterrupts(sonar)) Serial.println(F("an echo pin has no interrupt"));
   sonar.watch(states);
 }
 
@@ -34,7 +32,7 @@ void say(uint8_t sensor) {
 }
 
 void loop() {
-  if (sonar.tooSlow()) Serial.println(F("loop() is too slow: modules fire late"));
+  if (sonar.tooSlow()) Serial.println(F("loop() is too slow"));
   sonar.read();
   // One at a time: a line of text takes longer than a firing may be late.
   static uint8_t sensor;

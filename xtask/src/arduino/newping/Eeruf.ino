@@ -1,6 +1,5 @@
 // The same ring with eeruf: by its table, or by the first phase of it over and over, so that all waits are constant.
 #include <EerufTables.h>
-#include <EerufInterrupts.h>
 
 #if MODULES == 12
 const uint8_t PINS[] = {2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13};
@@ -28,7 +27,6 @@ EerufSonar<MODULES> sonar(RING, PINS);
 void setup() {
   Serial.begin(115200);
   sonar.begin();
-  eerufInterrupts(sonar);
 }
 
 void loop() {

@@ -3,6 +3,7 @@
 
 mod build;
 mod line_faults;
+mod loads;
 mod newping;
 mod own_walls;
 mod pace;
@@ -79,16 +80,27 @@ pub(crate) struct Plan {
     /// Run two of the examples for 3 s instead of all for 20 s
     #[arg(long)]
     short: bool,
+    /// Run instead rings whose sketches have other work, and write tests/data/arduino-loads.csv
+    #[arg(long)]
+    loads: bool,
+    /// With --loads: NewPing beside them, from a folder with its sources
+    #[arg(long, value_name = "DIR", requires = "loads")]
+    newping: Option<PathBuf>,
 }
 
 pub(crate) fn arduino(plan: &Plan, steps: &mut Steps) {
     let library = Path::new(TARGET).join("libraries/Eeruf");
+    if plan.loads {
+        steps.step("other work in loop()", || loads::run(&pack()?, plan.newping.as_deref(), true));
+        return;
+    }
     steps.step("tables of the Arduino library", || tables::check(plan.write));
     steps.step("tables of the examples", crate::examples::tables);
     steps.step("Arduino library", || pack().and_then(|library| examples(&library, plan.short)));
     steps.step("pace of sketches", || pace::run(&library));
     steps.step("ready tables before walls", || own_walls::run(&library, plan.short));
     steps.step("sketches with a faulty module", || line_faults::run(&library));
+    steps.step("other work in loop(), a corner", || loads::run(&library, None, false));
 }
 
 /// The library as one installs it, its files and those of `c/`: packed as the `.zip` that the IDE takes, and unpacked

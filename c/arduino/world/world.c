@@ -1,13 +1,14 @@
 /* A small world around a simulated Arduino: HC-SR04 modules on its pins, in a room where they hear each other.
  *
- *   world [--pulses] [--mega] [--fault KIND:MODULE] SKETCH.elf SECONDS ECHO_TIMES MODULES TRIGGER_PIN.. ECHO_PIN..
+ *   world [--pulses] [--mega] [--eeprom HEX] [--fault KIND:MODULE] SKETCH.elf SECONDS ECHO_TIMES MODULES TRIGGER_PIN.. ECHO_PIN..
  *
  * ECHO_TIMES has a line for each way that sound takes: emitter, receiver, microseconds; `crates/eeruf-sim`'s example
  * echo_times writes it. Pins are the Uno's numbers, or with --mega those of a Mega 2560; the same pin twice is a module
  * with one pin. What the sketch says on its serial line goes to standard output; then come lines that begin with
  * `world`: firings of each module, triggers that came while its line was high, how often its latched line was pulled low, how
  * deep the stack ever was in bytes, and which share of the time, in millionths, passed in interrupts. With --pulses there is also a line for each pulse that sound
- * has ended: the module from 1, and whose sound it was: `own`, `earlier` for its own from an earlier firing, `foreign`.
+ * has ended: the module from 1, whose sound it was: `own`, `earlier` for its own from an earlier firing, `foreign`, and
+ * the pulse's width in microseconds. With --eeprom the board's EEPROM begins with these bytes.
  *
  * With --fault a module, counted from 1, has a fault: `cut`, its trigger is not connected, or it has no power; `deaf`, its
  * echo wire is cut; `glitch-high`, cut, with a spike of 5 us on its line 3 ms after each trigger; `glitch-low`, its pulse has
@@ -22,6 +23,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include <simavr/avr_eeprom.h>
 #include <simavr/avr_ioport.h>
 #include <simavr/avr_uart.h>
 #include <simavr/sim_avr.h>
@@ -136,8 +138,9 @@ static void on_arrival(struct Module *module, const struct Module *emitter, unsi
     if (!module->line_high || avr->cycle - module->rose < avr_usec_to_cycles(avr, 150)) return;
     set_line(module, 0);
     if (says_pulses)
-        printf("world pulse %d %s\n", (int)(module - modules) + 1,
-               module != emitter ? "foreign" : firing == module->firings ? "own" : "earlier");
+        printf("world pulse %d %s %u\n", (int)(module - modules) + 1,
+               module != emitter ? "foreign" : firing == module->firings ? "own" : "earlier",
+               (unsigned)((avr->cycle - module->rose) / (avr->frequency / 1000000)));
 }
 
 static avr_cycle_count_t on_time_out(avr_t *a, avr_cycle_count_t when, void *param) {
@@ -314,8 +317,20 @@ static void look_at_stack(void) {
     if (pointer >= 0x100 && avr->ramend - pointer > deepest_stack) deepest_stack = avr->ramend - pointer;
 }
 
+static uint8_t eeprom_bytes[64];
+
+/* Two digits a byte. */
+static avr_eeprom_desc_t read_eeprom(const char *hex) {
+    avr_eeprom_desc_t eeprom = {eeprom_bytes, 0, 0};
+    unsigned byte;
+    for (; eeprom.size < sizeof eeprom_bytes && sscanf(hex, "%2x", &byte) == 1; hex += 2)
+        eeprom_bytes[eeprom.size++] = (uint8_t)byte;
+    return eeprom;
+}
+
 int main(int argc, char **argv) {
     elf_firmware_t firmware;
+    avr_eeprom_desc_t eeprom = {eeprom_bytes, 0, 0};
     avr_cycle_count_t end;
     uint32_t flags = 0;
     const char *port;
@@ -324,13 +339,13 @@ int main(int argc, char **argv) {
     for (; argc > 1 && argv[1][0] == '-'; argc--, argv++) {
         if (strcmp(argv[1], "--pulses") == 0) says_pulses = 1;
         else if (strcmp(argv[1], "--mega") == 0) board = &mega;
+        else if (strcmp(argv[1], "--eeprom") == 0 && argc > 2) eeprom = read_eeprom(argv[2]), argc--, argv++;
         else if (strcmp(argv[1], "--fault") == 0 && argc > 2 && read_fault(argv[2])) argc--, argv++;
         else break;
     }
     if (argc < 5 || (module_count = atoi(argv[4])) < 1 || module_count > MODULES || argc != 5 + 2 * module_count) {
-        fprintf(stderr, "usage: world [--pulses] [--mega] [--fault KIND:MODULE] SKETCH.elf SECONDS ECHO_TIMES MODULES "
-                        "TRIGGER_PIN.. "
-                        "ECHO_PIN..\n");
+        fprintf(stderr, "usage: world [--pulses] [--mega] [--eeprom HEX] [--fault KIND:MODULE] SKETCH.elf SECONDS ECHO_TIMES "
+                        "MODULES TRIGGER_PIN.. ECHO_PIN..\n");
         return 2;
     }
     for (i = 0; i < module_count; i++) {
@@ -358,6 +373,7 @@ int main(int argc, char **argv) {
     avr->log = LOG_ERROR;
     avr_load_firmware(avr, &firmware);
     avr->frequency = 16000000;
+    if (eeprom.size > 0) avr_ioctl(avr, AVR_IOCTL_EEPROM_SET, &eeprom);
     for (port = board->ports; *port != 0; port++) {
         void *number = (void *)(intptr_t)index_of(*port);
         const uint32_t io = AVR_IOCTL_IOPORT_GETIRQ(*port);

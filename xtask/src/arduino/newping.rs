@@ -21,7 +21,7 @@ struct Row {
     defines: &'static [&'static str],
 }
 
-const NEWPING: &str = include_str!("newping/NewPing.ino");
+pub(super) const NEWPING: &str = include_str!("newping/NewPing.ino");
 const EERUF: &str = include_str!("newping/Eeruf.ino");
 const ROWS: [Row; 4] = [
     Row { name: "NewPing, one module every 33 ms", sketch: "NewPing", text: NEWPING, defines: &[] },
@@ -41,7 +41,7 @@ const ROWS: [Row; 4] = [
 ];
 
 /// Where NewPing's sources are, and their version.
-fn sources(folder: &Path) -> Result<(PathBuf, String)> {
+pub(super) fn sources(folder: &Path) -> Result<(PathBuf, String)> {
     let folder = [folder.to_owned(), folder.join("src")]
         .into_iter()
         .find(|folder| folder.join("NewPing.h").exists() && folder.join("NewPing.cpp").exists())

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use anyhow::{Result, anyhow, bail, ensure};
+use anyhow::{Context as _, Error, Result, anyhow, bail, ensure};
 use eeruf_core::{ReadingKind, SpeedOfSound};
 use eeruf_serial::{Decoder, Firing, Message, Received};
 use fs_err as fs;
@@ -31,8 +31,24 @@ pub(super) struct Heard {
     accepted: u32,
     by_module: BTreeMap<usize, u32>,
     wrong: u32,
+    /// Of the wrong ones: those of a module's own echo that came another way, and was measured as it came.
+    own_later: u32,
+    right_by_module: BTreeMap<usize, u32>,
+    /// When the sketch first said that it is too slow, in milliseconds.
+    slow_ms: Option<u32>,
     /// Of the wrong ones: after a module's own sound that came another way, its own of an earlier firing, another's.
     by_cause: [u32; 3],
+}
+
+/// Readings a second that a sketch with other work accepts, right and wrong, and those of its worst module; modules
+/// that have fewer than one in two seconds, and when it first said that it is too slow, in milliseconds.
+pub(super) struct UnderLoad {
+    pub(super) right: f64,
+    pub(super) wrong: f64,
+    pub(super) wrong_percent: f64,
+    pub(super) worst: f64,
+    pub(super) starved: usize,
+    pub(super) slow_ms: Option<u32>,
 }
 
 const CAUSES: [&str; 3] = ["own", "earlier", "foreign"];
@@ -60,6 +76,14 @@ fn echo_times(modules: usize) -> Result<(PathBuf, BTreeMap<usize, u32>)> {
     if sensors.is_none() && fs::read_to_string(KEPT)? != times {
         bail!("{KEPT} is not what `cargo lab echo-times {SCENE}` prints; rewrite it");
     }
+    let own_mm = own_walls(&times);
+    let file = Path::new(TARGET).join(format!("echo-times-{modules}.txt"));
+    fs::write(&file, times)?;
+    Ok((file, own_mm))
+}
+
+/// The distance that each module should measure, by the paths of sound.
+pub(super) fn own_walls(times: &str) -> BTreeMap<usize, u32> {
     let mut own_mm = BTreeMap::new();
     for line in times.lines() {
         let numbers: Vec<usize> = line.split(' ').filter_map(|number| number.parse().ok()).collect();
@@ -71,9 +95,7 @@ fn echo_times(modules: usize) -> Result<(PathBuf, BTreeMap<usize, u32>)> {
             *least = mm.min(*least);
         }
     }
-    let file = Path::new(TARGET).join(format!("echo-times-{modules}.txt"));
-    fs::write(&file, times)?;
-    Ok((file, own_mm))
+    own_mm
 }
 
 /// The command that runs a sketch for some seconds of its own time among modules, between which sound takes the ways of
@@ -105,12 +127,17 @@ pub(super) fn before_walls(
 pub(super) fn hear(world: &Path, elf: &Path, example: &Example, seconds: u32, causes: bool) -> Result<Heard> {
     let (times, own_mm) = echo_times(example.modules())?;
     let options: &[&str] = if causes { &["--pulses"] } else { &[] };
-    let ran = command(world, options, elf, seconds, &times, &example.pins()).output()?;
-    ensure!(ran.status.success(), "{}: {}", example.name, ran.status);
-    let said = String::from_utf8_lossy(&ran.stdout);
-    let mut heard = Heard::of(&said, &own_mm);
+    hear_by(&mut command(world, options, elf, seconds, &times, &example.pins()), seconds, &own_mm)
+        .with_context(|| example.name)
+}
+
+/// The same by a command of [`command`], where each module should measure these distances.
+pub(super) fn hear_by(command: &mut Command, seconds: u32, own_mm: &BTreeMap<usize, u32>) -> Result<Heard> {
+    let ran = command.output()?;
+    ensure!(ran.status.success(), "the simulated world: {}", ran.status);
+    let mut heard = Heard::of(&String::from_utf8_lossy(&ran.stdout), own_mm);
     heard.seconds = seconds;
-    heard.frames(&ran.stdout, &own_mm).map_err(|why| anyhow!("{}: {why}", example.name))?;
+    heard.frames(&ran.stdout, own_mm).map_err(Error::msg)?;
     Ok(heard)
 }
 
@@ -118,8 +145,9 @@ impl Heard {
     /// The figures in the words of a sketch and of the world, with the distance that each module should measure.
     pub(super) fn of(said: &str, own_mm: &BTreeMap<usize, u32>) -> Self {
         let mut heard = Self::default();
-        // The cause that ended each module's last pulse; a sketch says its reading before the module fires again.
-        let mut causes: BTreeMap<usize, usize> = BTreeMap::new();
+        // The cause that ended each module's last pulse, and its width as a distance; a sketch says its reading before
+        // the module fires again.
+        let mut causes: BTreeMap<usize, (usize, u32)> = BTreeMap::new();
         for line in said.lines() {
             let words: Vec<&str> = line.split_whitespace().collect();
             let numbers = || words.iter().skip(2).filter_map(|word| word.parse().ok());
@@ -128,12 +156,13 @@ impl Heard {
                 ["world", "ignored", ..] => heard.ignored = numbers().sum(),
                 ["world", "stack", ..] => heard.stack = numbers().sum(),
                 ["world", "interrupts", ..] => heard.interrupts = numbers().sum(),
-                ["world", "pulse", module, cause] => {
+                ["world", "pulse", module, cause, us] => {
                     let cause = CAUSES.iter().position(|known| *known == cause);
-                    if let (Ok(module), Some(cause)) = (module.parse(), cause) {
-                        causes.insert(module, cause);
+                    if let (Ok(module), Some(cause), Ok(us)) = (module.parse(), cause, us.parse::<u32>()) {
+                        causes.insert(module, (cause, us * 1716 / 10_000));
                     }
                 }
+                ["slow", ms] => heard.slow_ms = heard.slow_ms.or(ms.parse().ok()),
                 [module, distance] | [module, distance, "cm"] => {
                     let (Ok(module), Ok(distance)) = (module.parse::<usize>(), distance.parse::<u32>()) else {
                         continue;
@@ -159,15 +188,35 @@ impl Heard {
         (share(self.accepted, compared.sum()), worst)
     }
 
-    /// A reading of a module, from 0, and what ended its pulse, if that is known.
-    fn accept(&mut self, own_mm: &BTreeMap<usize, u32>, module: usize, mm: u32, cause: Option<usize>) {
+    /// A reading of a module, from 0, and what ended its pulse, if that is known, with its width as a distance.
+    fn accept(&mut self, own_mm: &BTreeMap<usize, u32>, module: usize, mm: u32, cause: Option<(usize, u32)>) {
         self.accepted += 1;
         *self.by_module.entry(module).or_default() += 1;
-        if own_mm.get(&module).is_none_or(|own| own.abs_diff(mm) > OFF_MM) {
-            self.wrong += 1;
-            if let Some(count) = cause.and_then(|cause| self.by_cause.get_mut(cause)) {
-                *count += 1;
-            }
+        if own_mm.get(&module).is_some_and(|own| own.abs_diff(mm) <= OFF_MM) {
+            *self.right_by_module.entry(module).or_default() += 1;
+            return;
+        }
+        self.wrong += 1;
+        let Some((cause, width_mm)) = cause else { return };
+        if let Some(count) = self.by_cause.get_mut(cause) {
+            *count += 1;
+        }
+        self.own_later += u32::from(CAUSES[cause] == "own" && width_mm.abs_diff(mm) <= OFF_MM);
+    }
+
+    /// What a sketch with other work made of it. An own later echo that was measured as it came is not wrong.
+    pub(super) fn under_load(&self) -> UnderLoad {
+        let per_second = |count: u32| f64::from(count) / f64::from(self.seconds);
+        let wrong = self.wrong - self.own_later;
+        let right_of = |module: usize| self.right_by_module.get(&module).copied().unwrap_or(0);
+        let rights = || (0..self.firings.len()).map(right_of);
+        UnderLoad {
+            right: per_second(rights().sum()),
+            wrong: per_second(wrong),
+            wrong_percent: 100.0 * f64::from(wrong) / f64::from(self.accepted.max(1)),
+            worst: per_second(rights().min().unwrap_or(0)),
+            starved: rights().filter(|right| 2 * right < self.seconds).count(),
+            slow_ms: self.slow_ms,
         }
     }
 

@@ -1,0 +1,275 @@
+//! Other work in a sketch's `loop()`: readings of a flow ring that are right and wrong, polled and by interrupt, in the
+//! alcove and before walls of their own.
+
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::thread;
+
+use anyhow::{Result, anyhow, ensure};
+use fs_err as fs;
+
+use super::build::{self, Board};
+use super::world::{self, UnderLoad};
+use super::{ALL, TARGET, newping};
+use crate::steps::output;
+use crate::toolchain::program;
+
+const SKETCH: &str = include_str!("loads/Loads.ino");
+/// The ring that `design` emits, with another number of modules.
+const RING: &str = "rings/hc-sr04-8.toml";
+const RINGS: [usize; 2] = [6, 8];
+const SEED: u64 = 20_000;
+const DRAWN: usize = 20;
+/// The figures of all.
+const FILE: &str = "tests/data/arduino-loads.csv";
+const POLLED: &str = "polled";
+/// For how long each runs.
+const SECONDS: u32 = 4;
+/// Those that run in CI, with six modules in the alcove.
+const CORNER: [usize; 3] = [1, 11, 17];
+
+/// A sketch that starves says so within as many milliseconds.
+const SAYS_SO_MS: u32 = 2_000;
+
+/// Work of this many microseconds, begun so long after the one before began; every turn of `loop()` if that is 0.
+#[derive(Clone, Copy)]
+struct Load {
+    work_us: u32,
+    every_us: u32,
+    baud: u32,
+    /// Interrupts are masked meanwhile; or it waits for `quietFor()` too.
+    masks: bool,
+    waits: bool,
+    /// Right readings a second, polled, that six modules in the alcove had by a table when edges were stamped as seen.
+    least: f64,
+    /// Wrong readings a second that may be: polled, and by interrupt.
+    most: [f64; 2],
+}
+
+const fn load(work_us: u32, every_us: u32, least: f64) -> Load {
+    Load { work_us, every_us, baud: 115_200, masks: false, waits: false, least, most: [0.0; 2] }
+}
+
+const fn masked(work_us: u32, waits: bool, most: [f64; 2]) -> Load {
+    Load { masks: true, waits, most, ..load(work_us, 20_000, 0.0) }
+}
+
+const KINDS: [Load; 23] = [
+    load(0, 0, 64.9),
+    load(1_000, 5_000, 43.2),
+    load(1_600, 10_000, 41.2),
+    load(3_000, 10_000, 37.1),
+    load(5_000, 20_000, 29.3),
+    load(6_000, 15_000, 21.1),
+    load(8_000, 15_000, 3.1),
+    load(6_000, 20_000, 0.0),
+    load(6_000, 25_000, 0.0),
+    load(6_000, 33_000, 0.0),
+    load(3_000, 0, 0.0),
+    load(5_000, 0, 0.0),
+    load(10_000, 0, 0.0),
+    load(20_000, 0, 0.0),
+    load(100_000, 0, 0.0),
+    load(5_000, 50_000, 58.4),
+    load(25_000, 100_000, 47.9),
+    masked(900, false, [0.0, 0.1]),
+    // Of longer ones than a millisecond and a half micros() loses time that nothing shows.
+    masked(1_800, false, [1.2, 0.7]),
+    masked(900, true, [0.0; 2]),
+    masked(1_800, true, [0.0; 2]),
+    Load { baud: 9_600, ..load(0, 0, 64.8) },
+    Load { baud: 9_600, ..load(1_000, 5_000, 0.0) },
+];
+
+impl Load {
+    fn name(&self) -> String {
+        let how = match (self.masks, self.waits) {
+            (true, true) => " masked while quiet",
+            (true, false) => " masked",
+            _ if self.baud < 115_200 => " and Serial at 9600 baud",
+            _ => "",
+        };
+        let ms = |us: u32| f64::from(us) / 1000.0;
+        match self.every_us {
+            _ if self.work_us == 0 => format!("none{how}"),
+            0 => format!("delay({}){how}", ms(self.work_us)),
+            every => format!("{} ms every {} ms{how}", ms(self.work_us), ms(every)),
+        }
+    }
+
+    /// One that is drawn: 0.2 to 8 ms, with up to half of the time; one in five in every turn.
+    fn drawn(state: &mut u64) -> Self {
+        let mut up_to = |most: u32| {
+            *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            ((*state >> 33) % u64::from(most)) as u32
+        };
+        let work_us = 200 + 100 * up_to(79);
+        let every_us = 2 * work_us + 100 * up_to(400);
+        if up_to(5) == 0 { load(1_000 * work_us.div_ceil(1_000), 0, 0.0) } else { load(work_us, every_us, 0.0) }
+    }
+
+    /// An error where figures of a ring are not what is promised.
+    fn check(&self, heard: &UnderLoad, polled: bool, compared: bool) -> Result<()> {
+        let UnderLoad { right, wrong, starved, slow_ms, .. } = *heard;
+        let name = format!("{}, {}", self.name(), if polled { "polled" } else { "by interrupt" });
+        let most = self.most[usize::from(!polled)];
+        ensure!(wrong <= most, "{name}: {wrong:.1} wrong a second; expected at most {most}");
+        let least = if polled && compared { self.least } else { 0.0 };
+        ensure!(right >= least, "{name}: {right:.1} right a second; expected at least {least}");
+        let says_so = slow_ms.is_some_and(|ms| ms <= SAYS_SO_MS);
+        ensure!(starved == 0 || says_so, "{name}: {starved} modules starve; said so: {slow_ms:?} ms");
+        Ok(())
+    }
+
+    /// The bytes that the sketch reads.
+    fn eeprom(&self) -> String {
+        let numbers = [self.work_us, self.every_us, self.baud].map(u32::to_le_bytes).concat();
+        let bytes = numbers.into_iter().chain([self.masks.into(), self.waits.into()]);
+        bytes.fold(String::new(), |mut hex, byte| {
+            let _ = write!(hex, "{byte:02x}");
+            hex
+        })
+    }
+}
+
+/// Where the modules are.
+struct Place {
+    name: &'static str,
+    ways: PathBuf,
+    own_mm: BTreeMap<usize, u32>,
+}
+
+/// The alcove, and walls of their own from 0.4 to 3.4 m, by the golden section so that no two are alike.
+fn places() -> Result<[Place; 2]> {
+    let (alcove, walls) = (PathBuf::from(world::KEPT), Path::new(TARGET).join("own-walls.txt"));
+    let own: String =
+        (0..8).map(|module| format!("{module} {module} {}\n", 2_300 + module * 618 % 1000 * 175 / 10)).collect();
+    fs::write(&walls, own)?;
+    let place =
+        |name, ways: PathBuf| anyhow::Ok(Place { name, own_mm: world::own_walls(&fs::read_to_string(&ways)?), ways });
+    Ok([place("alcove", alcove)?, place("own walls", walls)?])
+}
+
+/// The sketch for so many modules, by what `design` emits.
+fn sketch(library: &Path, modules: usize, polled: bool) -> Result<build::Sketch> {
+    let name = format!("Loads{modules}{}", if polled { "Polled" } else { "" });
+    let folder = Path::new(TARGET).join(&name);
+    fs::create_dir_all(&folder)?;
+    let ring = folder.join("ring.toml");
+    fs::write(&ring, fs::read_to_string(RING)?.replace("sensors = 8", &format!("sensors = {modules}")))?;
+    let emitted =
+        output(Command::new(program()?).arg("design").arg(ring).args(["--places", "1", "--emit", "arduino"]))?;
+    ensure!(emitted.contains("EerufFlowConfig RING"), "{RING}: flow is not recommended:\n{emitted}");
+    fs::write(folder.join("ring.h"), emitted)?;
+    build::ours(
+        library,
+        Board::Uno,
+        &name,
+        SKETCH,
+        &[&format!("-DMODULES={modules}"), &format!("-DPOLLED={}", u8::from(polled))],
+    )
+}
+
+/// What is run: a sketch, how it has its edges, and what else it does.
+struct Run<'a> {
+    elf: &'a Path,
+    edges: &'static str,
+    work: String,
+    load: Option<&'a Load>,
+}
+
+/// A ring in a place.
+struct Ring<'a> {
+    modules: usize,
+    place: &'a Place,
+    is_compared: bool,
+    runs: Vec<Run<'a>>,
+}
+
+impl Ring<'_> {
+    /// The rows of all its runs, and what is not as promised.
+    fn rows(&self, world: &Path, seconds: u32) -> Result<(String, Vec<String>)> {
+        let (mut rows, mut broken) = (String::new(), vec![]);
+        let (modules, place) = (self.modules, self.place.name);
+        for Run { elf, edges, work, load } in &self.runs {
+            let eeprom = load.map(Load::eeprom).unwrap_or_default();
+            let options = ["--pulses", "--eeprom", &eeprom];
+            let pins = ALL[..modules].repeat(2);
+            let mut command = world::command(world, &options, elf, seconds, &self.place.ways, &pins);
+            let heard = world::hear_by(&mut command, seconds, &self.place.own_mm)?.under_load();
+            let UnderLoad { right, wrong, wrong_percent, worst, starved, slow_ms } = heard;
+            let said = slow_ms.map_or(String::new(), |ms| ms.to_string());
+            let figures = format!("{right:.1},{wrong:.1},{wrong_percent:.1},{worst:.1},{starved},{said}");
+            let row = format!("{modules},{place},{edges},{work},{figures}");
+            println!("{row}");
+            rows += &(row + "\n");
+            if let Some(Err(error)) = load.map(|load| load.check(&heard, *edges == POLLED, self.is_compared)) {
+                broken.push(format!("{modules} modules, {place}: {error}"));
+            }
+        }
+        Ok((rows, broken))
+    }
+}
+
+/// Runs all loads, and writes their figures; or a corner of them for CI.
+pub(super) fn run(library: &Path, newping: Option<&Path>, all: bool) -> Result<()> {
+    let world = world::build()?;
+    let mut state = SEED;
+    let mut loads = KINDS.to_vec();
+    loads.extend((0..DRAWN).map(|_| Load::drawn(&mut state)));
+    let mut sketches = vec![];
+    for modules in RINGS {
+        let mut of_ring = vec![];
+        for wait_ms in newping.iter().flat_map(|_| [10, 29]) {
+            let (sources, version) = newping::sources(newping.unwrap_or(library))?;
+            let defines = ["-w", &format!("-DMODULES={modules}"), &format!("-DWAIT_MS={wait_ms}")];
+            let name = format!("NewPing{modules}Waits{wait_ms}");
+            let sketch = build::sketch(&sources, Board::Uno, &name, newping::NEWPING, &defines)?;
+            of_ring.push((sketch.elf, "waits", format!("NewPing {version} every {wait_ms} ms")));
+        }
+        for edges in [POLLED, "interrupts"].into_iter().filter(|_| all || modules == RINGS[0]) {
+            of_ring.push((sketch(library, modules, edges == POLLED)?.elf, edges, String::new()));
+        }
+        sketches.push((modules, of_ring));
+    }
+    let places = places()?;
+    let mut rings = vec![];
+    for (modules, of_ring) in &sketches {
+        for (number, place) in places.iter().enumerate().filter(|(number, _)| all || *number == 0) {
+            let is_compared = *modules == RINGS[0] && number == 0;
+            // Those that are drawn: once in each place, and for each ring.
+            let is_diagonal = RINGS[number] == *modules;
+            let kinds = || loads[..if is_diagonal { loads.len() } else { KINDS.len() }].iter().enumerate();
+            let mut runs = vec![];
+            for (elf, edges, work) in of_ring {
+                if !work.is_empty() {
+                    runs.push(Run { elf, edges, work: work.clone(), load: None });
+                    continue;
+                }
+                let chosen = kinds().filter(|(number, _)| all || CORNER.contains(number));
+                runs.extend(chosen.map(|(_, load)| Run { elf, edges, work: load.name(), load: Some(load) }));
+            }
+            rings.push(Ring { modules: *modules, place, is_compared, runs });
+        }
+    }
+    let mut table =
+        "modules,place,edges,work,right_per_s,wrong_per_s,wrong_percent,worst_right_per_s,starved,said_ms\n".to_owned();
+    print!("{table}");
+    let world = &world;
+    let done = thread::scope(|scope| {
+        let started: Vec<_> = rings.iter().map(|ring| scope.spawn(move || ring.rows(world, SECONDS))).collect();
+        started.into_iter().map(|one| one.join().map_err(|_| anyhow!("a thread failed"))?).collect::<Result<Vec<_>>>()
+    })?;
+    let mut broken = vec![];
+    for (rows, of_ring) in done {
+        table += &rows;
+        broken.extend(of_ring);
+    }
+    if all {
+        fs::write(FILE, table)?;
+    }
+    ensure!(broken.is_empty(), "{}", broken.join("\n"));
+    Ok(())
+}

@@ -847,6 +847,7 @@ static EerufStatus init(EerufRing *ring, size_t ring_size, EerufSensor *sensors,
     window_us = config->window_us;
     if (!is_verified(schedule) && (verified || t_delta_us == 0)) return EERUF_ERR_UNVERIFIED;
     if (config->consecutive < 2 || config->consecutive > 8) return EERUF_ERR_CONSECUTIVE;
+    if (config->audible_us - 1u < 999u) return EERUF_ERR_AUDIBLE;
     if (!is_verified(schedule) && window_us == 0) return EERUF_ERR_UNVERIFIED;
     if (t_delta_us == 0) t_delta_us = READ32(schedule->t_delta_us);
     if (window_us == 0) window_us = READ32(schedule->window_us);
@@ -1553,17 +1554,22 @@ const char *eeruf_state_name(uint8_t kind) {
     }
 }
 
+static void forget_states(EerufWatch *watch, uint32_t now_us) {
+    uint8_t x;
+    memset(watch->sensors, 0, watch->count * sizeof *watch->sensors);
+    for (x = 0; x < watch->count; x++) watch->sensors[x].at_us = now_us;
+}
+
 EerufStatus eeruf_watch_init(EerufWatch *watch, size_t watch_size, EerufWatched *sensors, size_t sensors_size,
                              uint32_t now_us) {
     const size_t count_of_sensors = sensors_size / sizeof *sensors;
-    uint8_t x;
     if (watch == NULL || sensors == NULL) return EERUF_ERR_NULL;
     if (watch_size != sizeof *watch) return EERUF_ERR_MEMORY;
     if (count_of_sensors - 1u >= EERUF_MAX_SENSORS) return EERUF_ERR_SENSORS;
     watch->sensors = sensors;
     watch->count = (uint8_t)count_of_sensors;
-    memset(sensors, 0, sensors_size);
-    for (x = 0; x < watch->count; x++) sensors[x].at_us = now_us;
+    watch->seen_us = now_us;
+    forget_states(watch, now_us);
     watch->ready = READY;
     return EERUF_OK;
 }
@@ -1609,6 +1615,8 @@ EerufStatus eeruf_watch_event(EerufWatch *watch, const EerufEvent *event, uint32
     uint8_t x;
     if (watch == NULL || event == NULL) return EERUF_ERR_NULL;
     if (watch->ready != READY) return EERUF_ERR_NOT_READY;
+    if (!has_reached(now_us + STEP_BACK, watch->seen_us)) forget_states(watch, now_us);
+    watch->seen_us = now_us;
     if (event->kind == EERUF_EVENT_READING) {
         if (event->sensor >= watch->count) return EERUF_ERR_SENSOR;
         watch_reading(&watch->sensors[event->sensor], &event->u.reading, now_us);
@@ -1994,17 +2002,16 @@ OUT_OF_LINE EerufStatus eeruf_hc_sr04_edge_between(EerufHcSr04 *modules, uint8_t
     line = &modules->lines[sensor];
     fired_us = sensor_of(modules->ring, sensor)->fired_us[0];
     since_us = latest_us - fired_us;
+    early_us = latest_us - earliest_us;
     /* Without a trigger nothing is seen through the cable. */
     if (since_us >= HALF_TURN || (since_us < settings->deaf_us && !(line->state & SEEN_HIGH))) return EERUF_OK;
-    /* No edge that is new came before the firing. */
-    early_us = shorter(latest_us - earliest_us, since_us);
     pulse = line->state & PULSE;
     if (pulse == AWAITED) {
         line->silent = 0;
-        if (high && since_us - early_us > settings->latest_rise_us) {
+        if (high && since_us > add32(settings->latest_rise_us, early_us)) {
             set_bits(line, FLAW, CHATTERED);
         } else if (high) {
-            rise(modules, sensor, latest_us, early_us);
+            rise(modules, sensor, latest_us, shorter(early_us, since_us));
         } else if ((line->state & FLAW) == 0) {
             set_bits(line, FLAW, LOST_EDGE);
         }
@@ -2012,13 +2019,12 @@ OUT_OF_LINE EerufStatus eeruf_hc_sr04_edge_between(EerufHcSr04 *modules, uint8_t
         /* The end of a pulse that began before this firing got lost: what counted as silence may have been an echo. */
         set_health(line, EERUF_HEALTH_LOSES_EDGES);
         begin_again(modules->ring, sensor);
-        rise(modules, sensor, latest_us, early_us);
+        rise(modules, sensor, latest_us, shorter(early_us, since_us));
     } else if (pulse == ROSE && !high) {
         const uint32_t width_us = latest_us - line->rose_us, least_us = width_us - shorter(early_us, width_us);
-        /* From its earliest rise to its latest fall, and more than the least by so much. */
+        /* From its latest rise to its earliest fall at the least; from its earliest to its latest at the most. */
         const uint32_t rose_early_us = line->silent == UINT8_MAX ? line->rose_us - fired_us : 8u * line->silent;
-        const uint32_t more_us = width_us + rose_early_us - least_us;
-        if (least_us + more_us / 2 < settings->shortest_us) {
+        if (width_us + rose_early_us < settings->shortest_us) {
             line->state = (uint8_t)((line->state & ~(PULSE | FLAW)) | AWAITED | CHATTERED);
             line->rose_us = latest_us;
             line->silent = 0;
@@ -2030,7 +2036,8 @@ OUT_OF_LINE EerufStatus eeruf_hc_sr04_edge_between(EerufHcSr04 *modules, uint8_t
         line->width_us = least_us < settings->longest_us ? narrow(width_us) : ENDED;
         /* A fall and a rise may have got lost since the trigger before, unless the line was seen to be high. */
         if (least_us < settings->longest_us)
-            hear(modules->ring, sensor, fired_us + least_us, more_us, latest_us + settings->shortest_us);
+            hear(modules->ring, sensor, fired_us + least_us, width_us + rose_early_us - least_us,
+                 latest_us + settings->shortest_us);
         else if ((line->state & SEEN_HIGH) || has_reached(line->rose_us, fired_us))
             answer(modules->ring, sensor);
     } else if (pulse == OVER && high) {
@@ -2626,13 +2633,14 @@ static void correct_flow(EerufRing *ring, uint8_t x, uint32_t later_us) {
 
 #define LONGEST_REST_US 4000000u /* nor does a sensor listen for longer */
 
-static bool is_between(uint32_t value, uint32_t least, uint32_t most) {
-    return value >= least && value <= most;
+/* The status of a setting that is out of its range, unless one was before. */
+static OUT_OF_LINE void check(EerufStatus *status, EerufStatus wrong, uint32_t value, uint32_t least, uint32_t most) {
+    if (*status == EERUF_OK && (value < least || value > most)) *status = wrong;
 }
 
 EerufStatus eeruf_flow_init(EerufFlowRing *flow, size_t flow_size, EerufFlowSensor *sensors, size_t sensors_size,
                             const EerufFlowConfig *config, uint32_t now_us) {
-    EerufStatus status;
+    EerufStatus status = EERUF_OK;
     uint32_t span_us;
     uint8_t n, x;
     if (flow == NULL || sensors == NULL || config == NULL) return EERUF_ERR_NULL;
@@ -2642,16 +2650,23 @@ EerufStatus eeruf_flow_init(EerufFlowRing *flow, size_t flow_size, EerufFlowSens
     if (n - 1u >= EERUF_MAX_SENSORS) return EERUF_ERR_SENSORS;
     if (sensors_size / sizeof *sensors < n) return EERUF_ERR_MEMORY;
     if (config->own != NULL && READ8(config->own->sensors) != n) return EERUF_ERR_SENSORS;
-    if (!is_between(config->most_us, 1, 250000) || !is_between(config->least_us, 1, config->most_us) ||
-        !is_between(config->rest_us, 1, LONGEST_REST_US) || config->dice_us > 250000 || config->seed == 0 ||
-        config->near_us > 10000 || !is_between(config->hold, 1, 100) || config->votes > EERUF_VOTES_TWO_IN_A_ROW)
-        return EERUF_ERR_RANGE;
-    if (config->window_us > LONGEST_REST_US) return EERUF_ERR_WINDOW;
+    check(&status, EERUF_ERR_FLOW_T_DELTA, config->t_delta_us, 0, 10000);
+    check(&status, EERUF_ERR_FLOW_NEAR, config->near_us, 0, 10000);
+    check(&status, EERUF_ERR_FLOW_PATH_CHANGE, config->path_change_us, 0, 10000);
+    check(&status, EERUF_ERR_FLOW_TOP_SPEED, config->top_speed_mm_s - 1u, 9, UINT32_MAX);
+    check(&status, EERUF_ERR_FLOW_HOLD, config->hold, 1, 100);
+    check(&status, EERUF_ERR_FLOW_MOST, config->most_us, 1000, 250000);
+    check(&status, EERUF_ERR_FLOW_LEAST, config->least_us, 100, config->most_us);
+    check(&status, EERUF_ERR_FLOW_REST, config->rest_us, 1000, LONGEST_REST_US);
+    if (config->dice_us != 0) check(&status, EERUF_ERR_FLOW_DICE, config->dice_us, 8, 250000);
+    check(&status, EERUF_ERR_FLOW_SEED, config->seed, 1, UINT32_MAX);
+    check(&status, EERUF_ERR_FLOW_WINDOW, config->window_us, 1000, LONGEST_REST_US);
+    check(&status, EERUF_ERR_RANGE, config->votes, 0, EERUF_VOTES_TWO_IN_A_ROW);
+    if (status != EERUF_OK) return status;
     memset(flow, 0, sizeof *flow);
     set_up(&flow->ring, config->own, sensors, n, sizeof *sensors, 0, change_flow, now_us);
     status = listen(&flow->ring, config->t_delta_us, config->window_us, config->blanking_us);
     if (status != EERUF_OK) return status;
-    if (config->path_change_us == AS_T_DELTA) return EERUF_ERR_PATH_CHANGE;
     flow->ring.path_change_us = config->path_change_us;
     flow->ring.audible_us = config->most_us;
     flow->ring.last_fired_us = now_us;

@@ -96,10 +96,22 @@ enum {
     EERUF_ERR_LADDER = -22,      /* no schedules, or not from the shortest period to the longest, or unlike ones */
     EERUF_ERR_RANGE = -26,       /* a number outside its range */
     EERUF_ERR_FLOW = -27,        /* a flow ring cannot do this, or has a function of its own for it */
-    EERUF_ERR_AUDIBLE = -29,     /* sound that is audible for longer than 67,108,864 us */
+    EERUF_ERR_AUDIBLE = -29,     /* sound that is audible for less than 1,000 us, likely given in ms, or for more than 67 s */
     EERUF_ERR_PATH_CHANGE = -30, /* a path of sound that changes by more than 65,534 us */
     EERUF_ERR_TOGETHER = -31,    /* two sensors of one group do not fire together */
-    EERUF_ERR_BETWEEN = -32      /* an edge whose latest instant is before its earliest: likely swapped */
+    EERUF_ERR_BETWEEN = -32,     /* an edge whose latest instant is before its earliest: likely swapped */
+    /* A setting of a flow ring out of its range: likely given in milliseconds or m/s. */
+    EERUF_ERR_FLOW_T_DELTA = -40,     /* more than 10,000 us */
+    EERUF_ERR_FLOW_NEAR = -41,        /* more than 10,000 us */
+    EERUF_ERR_FLOW_PATH_CHANGE = -42, /* more than 10,000 us */
+    EERUF_ERR_FLOW_TOP_SPEED = -43,   /* less than 10 mm/s, and not 0 */
+    EERUF_ERR_FLOW_HOLD = -44,        /* not 1 to 100 */
+    EERUF_ERR_FLOW_MOST = -45,        /* not 1,000 to 250,000 us */
+    EERUF_ERR_FLOW_LEAST = -46,       /* not 100 us to the most */
+    EERUF_ERR_FLOW_REST = -47,        /* not 1,000 to 4,000,000 us */
+    EERUF_ERR_FLOW_DICE = -48,        /* not 8 to 250,000 us, nor 0 */
+    EERUF_ERR_FLOW_SEED = -49,        /* 0 */
+    EERUF_ERR_FLOW_WINDOW = -50       /* not 1,000 to 4,000,000 us */
 };
 
 /* The library's EERUF_VERSION, to be compared with the header's. */
@@ -429,11 +441,12 @@ typedef struct EerufWatched {
 typedef struct EerufWatch {
     uint16_t ready;
     EerufWatched *sensors;
+    uint32_t seen_us;
     uint8_t count;
 } EerufWatch;
 
 /* Of each sensor there is a place for. Nothing is known yet. Again with each eeruf_ring_restart: after a long sleep the
-   clock may have come round, so that an old state would pass for a young one. */
+   clock may have come round, so that an old state would pass for a young one. Where it jumps back all is forgotten. */
 EerufStatus eeruf_watch_init(EerufWatch *watch, size_t watch_size, EerufWatched *sensors, size_t sensors_size,
                              uint32_t now_us);
 /* Takes in an event of a poll at `now_us`: every one, or at least readings and ends of periods. One reading that does

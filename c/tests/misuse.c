@@ -362,16 +362,23 @@ static void flow_rings(void) {
     WITH(version, EERUF_VERSION + 1, EERUF_ERR_VERSION);
     WITH(sensors, 0, EERUF_ERR_SENSORS);
     WITH(sensors, 65, EERUF_ERR_SENSORS);
-    WITH(least_us, 0, EERUF_ERR_RANGE);
-    WITH(least_us, 33501, EERUF_ERR_RANGE);
-    WITH(most_us, 250001, EERUF_ERR_RANGE);
-    WITH(rest_us, 0, EERUF_ERR_RANGE);
-    WITH(rest_us, 4000001, EERUF_ERR_RANGE);
-    WITH(dice_us, 250001, EERUF_ERR_RANGE);
-    WITH(seed, 0, EERUF_ERR_RANGE);
-    WITH(near_us, 10001, EERUF_ERR_RANGE);
-    WITH(hold, 0, EERUF_ERR_RANGE);
-    WITH(hold, 101, EERUF_ERR_RANGE);
+    /* Milliseconds, metres a second, and what is too long. */
+    WITH(least_us, 6, EERUF_ERR_FLOW_LEAST);
+    WITH(least_us, 33501, EERUF_ERR_FLOW_LEAST);
+    WITH(most_us, 33, EERUF_ERR_FLOW_MOST);
+    WITH(most_us, 250001, EERUF_ERR_FLOW_MOST);
+    WITH(rest_us, 60, EERUF_ERR_FLOW_REST);
+    WITH(rest_us, 4000001, EERUF_ERR_FLOW_REST);
+    WITH(dice_us, 2, EERUF_ERR_FLOW_DICE);
+    WITH(dice_us, 250001, EERUF_ERR_FLOW_DICE);
+    WITH(seed, 0, EERUF_ERR_FLOW_SEED);
+    WITH(t_delta_us, 10001, EERUF_ERR_FLOW_T_DELTA);
+    WITH(near_us, 10001, EERUF_ERR_FLOW_NEAR);
+    WITH(path_change_us, 10001, EERUF_ERR_FLOW_PATH_CHANGE);
+    WITH(top_speed_mm_s, 2, EERUF_ERR_FLOW_TOP_SPEED);
+    WITH(hold, 0, EERUF_ERR_FLOW_HOLD);
+    WITH(hold, 101, EERUF_ERR_FLOW_HOLD);
+    WITH(window_us, 25, EERUF_ERR_FLOW_WINDOW);
     WITH(votes, 3, EERUF_ERR_RANGE);
     WITH(own, &own, EERUF_ERR_SENSORS);
     own.sensors = SENSORS;
@@ -381,10 +388,11 @@ static void flow_rings(void) {
     WITH(own, &own, EERUF_OK);
     config.blanking_us = 900;
     EXPECT(begin_flow(r, s, &config), EERUF_ERR_BLANKING);
-    WITH(window_us, 4000001, EERUF_ERR_WINDOW);
+    WITH(window_us, 4000001, EERUF_ERR_FLOW_WINDOW);
     WITH(blanking_us, 36000, EERUF_ERR_BLANKING);
-    WITH(t_delta_us, 36000, EERUF_ERR_COARSE_T_DELTA);
-    WITH(path_change_us, 65535, EERUF_ERR_PATH_CHANGE);
+    WITH(window_us, 9000, EERUF_OK);
+    config.t_delta_us = 9000;
+    EXPECT(begin_flow(r, s, &config), EERUF_ERR_COARSE_T_DELTA);
     WITH(least_us, 33500, EERUF_OK); /* one by one */
     EXPECT(eeruf_flow_quiet_us(&flow, 0), 33500);
     EXPECT(begin_flow(r, s, &fine), EERUF_OK);

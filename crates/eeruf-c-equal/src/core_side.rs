@@ -78,6 +78,10 @@ pub fn state(state: SensorState) -> [u32; 5] {
     }
 }
 
+/// The settings of a flow ring, in the order of their statuses.
+const SETTINGS: [&str; 11] =
+    ["t_delta", "near", "path_change", "top_speed_mm_s", "hold", "most", "least", "rest", "dice", "seed", "window"];
+
 /// The status that C has for an error.
 pub fn status_of(error: &RingError) -> i32 {
     match error {
@@ -90,7 +94,8 @@ pub fn status_of(error: &RingError) -> i32 {
         RingError::Consecutive { .. } => -20,
         RingError::Audible { .. } => -29,
         RingError::PathChange { .. } => -30,
-        RingError::Setting { .. } => -26,
+        RingError::Setting { name: "audible", .. } => -29,
+        RingError::Setting { name, .. } => SETTINGS.iter().position(|of| of == name).map_or(-26, |at| -40 - at as i32),
         RingError::Sensor(_) => -5,
         RingError::Interval { .. } => -32,
         _ => unreachable!("{error}"),

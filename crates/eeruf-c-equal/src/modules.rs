@@ -3,8 +3,10 @@
 use std::cell::Cell;
 
 use crate::core_side::{flat, status_of};
-use crate::{C, Do, Needs, Random};
-use eeruf_core::{Edge, Instant, Micros, Requirements, Ring, RingConfig, RingEvent, Schedule, VerifiedSchedule};
+use crate::{Between, C, Do, Needs, Random};
+use eeruf_core::{
+    Edge, Instant, Micros, Requirements, Ring, RingConfig, RingEvent, Schedule, ScheduledRing, VerifiedSchedule,
+};
 use eeruf_hc_sr04::{HcSr04Ring, Health, Pins, Settings, SetupError};
 use embedded_hal::delay::DelayNs;
 use embedded_hal::digital::{Error, ErrorKind, ErrorType, InputPin, OutputPin};
@@ -122,20 +124,43 @@ fn pulse(r: &Random, edges: &mut Vec<(u32, u8, bool)>, now: u32, sensor: u8, wid
 /// # Panics
 /// Where C and Rust differ.
 pub fn run(r: &Random) -> u64 {
-    let (mut c, origin) = (C::new(), r);
+    let mut c = C::new();
     let schedules = schedules(&mut c);
     let start = r.any() as u32;
     let config = RingConfig::new().with_window(Micros::new(40_000)).with_blanking(Micros::new(r.duration(400)));
     let blanking = config.blanking.as_micros();
     let ring = Ring::new(&schedules[0], config, Instant::from_micros(start)).unwrap();
     assert_eq!(c.ring(0, [0, 40_000, blanking, 0, 0], 2, start), 0);
-    let fault = Cell::new(Fault::default());
-    let pins = [(); K].map(|()| Pins { trigger: Pin(&fault), echo: Pin(&fault) });
     let mut settings = Settings::default();
     settings.min_retrigger = Micros::new(r.one_of(&[58_000, 66_000, 60_000]));
     settings.shortest = Micros::new(r.within(0, 150));
     let status = c.modules(settings.min_retrigger.as_micros(), settings.shortest.as_micros() as u16);
-    let mut modules = match HcSr04Ring::new(ring, pins, NoDelay, settings) {
+    let fault = Cell::new(Fault::default());
+    if r.once_in(4) {
+        // A timer triggers them, and pulses may be measured by it.
+        let modules = HcSr04Ring::by_hardware(ring, settings);
+        return compare(r, c, status, &schedules, modules, (start, None), HcSr04Ring::poll_triggered);
+    }
+    let pins = [(); K].map(|()| Pins { trigger: Pin(&fault), echo: Pin(&fault) });
+    let modules = HcSr04Ring::new(ring, pins, NoDelay, settings);
+    compare(r, c, status, &schedules, modules, (start, Some(&fault)), HcSr04Ring::poll)
+}
+
+/// A ring of modules on pins, or on none.
+type Modules<'s, T, I, D> = HcSr04Ring<ScheduledRing<'s, K>, T, I, D, K>;
+
+/// Runs both, if they are made. `faults`: those of the pins, if there are any.
+fn compare<'s, T, I, D>(
+    r: &Random,
+    mut c: C,
+    status: i32,
+    schedules: &'s [VerifiedSchedule<K>],
+    modules: Result<Modules<'s, T, I, D>, SetupError>,
+    (start, faults): (u32, Option<&Cell<Fault>>),
+    poll: impl Fn(&mut Modules<'s, T, I, D>, Instant) -> Option<RingEvent>,
+) -> u64 {
+    let (origin, timed, uncertain) = (r, faults.is_none(), r.once_in(2));
+    let mut modules = match modules {
         Ok(modules) => modules,
         Err(error) => {
             assert!(matches!(error, SetupError::Retrigger { .. }) && status == -21, "{r}: {status}");
@@ -157,11 +182,22 @@ pub fn run(r: &Random) -> u64 {
         if edges.len() > 300 {
             edges.clear();
         }
-        for (at, sensor, high) in due {
-            let edge = Edge { sensor, high, at: Instant::from_micros(at) };
-            same(&mut c, Do::Edge, sensor | u8::from(high) << 7, at, modules.edge(edge));
-        }
         let r = &world.random;
+        for (at, sensor, high) in due {
+            let (with_level, latest) = (sensor | u8::from(high) << 7, Instant::from_micros(at));
+            if uncertain {
+                // C keeps by how much sooner a line may have risen in units of 8 us.
+                let units = r.one_of(&[0, r.within(0, 30), r.within(0, 254)]);
+                let since = at.wrapping_sub(c.call(Do::FiredAt, sensor, 0) as u32);
+                let before = if high { 8 * units.min(since / 8) } else { r.one_of(&[units, r.duration(60_000)]) };
+                let earliest = at.wrapping_sub(before);
+                let rust = modules.edge_between(sensor, high, Instant::from_micros(earliest), latest);
+                let expected = rust.map_or_else(|error| status_of(&error), |()| 0);
+                assert_eq!(c.between(Between::Edge, with_level, earliest, at), expected, "{origin}, step {step}");
+            } else {
+                same(&mut c, Do::Edge, with_level, at, modules.edge(Edge { sensor, high, at: latest }));
+            }
+        }
         if r.once_in(200) {
             let number = r.within(0, 2);
             let rust = modules.change_schedule(&schedules[number as usize]);
@@ -175,11 +211,10 @@ pub fn run(r: &Random) -> u64 {
         for _ in 0..20 {
             let r = &world.random;
             let next = Fault { high: r.once_in(30), cannot_read: r.once_in(60), cannot_write: r.once_in(60) };
-            fault.set(next);
-            // By a timer, at the same instant.
-            let timed = r.once_in(5);
-            let now = Instant::from_micros(world.now);
-            let event = if timed { modules.poll_triggered(now) } else { modules.poll(now) };
+            if let Some(faults) = faults {
+                faults.set(next);
+            }
+            let event = poll(&mut modules, Instant::from_micros(world.now));
             let in_c = c.poll(world.now, None);
             let at = || format!("{origin}, step {step}: {event:?}");
             assert_eq!(in_c, event.as_ref().map(flat).ok_or(0), "{}", at());

@@ -41,7 +41,9 @@ _MOST_OFF_US, _WIDE = 300, 510  # the most that an echo may be off, and what sta
 
 def _check(name, value, least, most):
     if not least <= value <= most:
-        raise ValueError("%s = %d: %d to %d expected" % (name, value, least, most))
+        unit = "m/s" if name.endswith("mm_s") else "milliseconds"
+        likely = ", likely given in " + unit if value < least <= 1000 * value <= most else ""
+        raise ValueError("%s = %d: %d to %d expected%s" % (name, value, least, most, likely))
 
 
 def _seed_of_chip():
@@ -67,17 +69,10 @@ def _in_order(sensors):
 
 
 class Flow:
-    """Settings of a ring of sensors that listen for `window_us` after their firing and are deaf for `blanking_us`.
-
-    `least_us`: the least time from a firing to the next. `most_us`: the most, and how long sound is heard, its tail included.
-    None: by the window. `rest_us`: the least time between two firings of a sensor, for which its module rests. `dice_us`: random
-    time in every gap, up to this, or twice this while the robot moves; at least eight ticks of the clock. `seed` of the dice:
-    another one for each robot; None: by the chip's number.
-
-    Of a robot that stands, two readings in a row agree within `t_delta_us`, one fits what is believed within `near_us`, and a
-    foreign sound's path changes by at most `path_change_us` meanwhile. What is believed keeps nothing alive after `memory` firings
-    without, and outlasts up to `hold` contradictions. `top_speed_mm_s` is the robot's speed where `moving` does not say it.
-    `alone`: no other robot sends sound here. `votes`: BY_MOTION, or one of the two fixed."""
+    """Settings of a ring of sensors that listen for `window_us` after their firing and are deaf for `blanking_us`. README.md has
+    them all in a table. `least_us`, `most_us`: least and most quiet around a firing, by the window if None; the most is how long
+    sound is heard. `seed` of the dice: another one for each robot, by the chip's number if None. `t_delta_us`, `near_us`,
+    `path_change_us` are those of a robot that stands. `votes`: BY_MOTION, or one of the two fixed."""
 
     def __init__(
         self, sensors, window_us, blanking_us=0, least_us=None, most_us=None, rest_us=60000, dice_us=2000, seed=None, t_delta_us=80,
@@ -91,11 +86,12 @@ class Flow:
         least_us = most_us // 11 * 2 if least_us is None else least_us
         narrow = min(window_us, 1 << 16) - 1
         for setting in (
-            ("sensors", sensors, 1, 64), ("window_us", window_us, 1, 4000000), ("blanking_us", blanking_us, 0, narrow),
-            ("most_us", most_us, 1, 250000), ("least_us", least_us, 1, most_us), ("rest_us", rest_us, 1, 4000000),
-            ("dice_us", dice_us, 0, 250000), ("seed", seed, 1, 0xFFFFFFFF), ("t_delta_us", t_delta_us, 0, narrow),
-            ("near_us", near_us, 0, 10000), ("path_change_us", path_change_us, 0, 0xFFFE), ("memory", memory, 0, 255),
-            ("hold", hold, 1, 100), ("top_speed_mm_s", top_speed_mm_s, 0, 0xFFFF), ("alone", alone, 0, 1), ("votes", votes, 0, 2),
+            ("sensors", sensors, 1, 64), ("window_us", window_us, 1000, 4000000), ("blanking_us", blanking_us, 0, narrow),
+            ("most_us", most_us, 1000, 250000), ("least_us", least_us, 100, most_us), ("rest_us", rest_us, 1000, 4000000),
+            ("dice_us", dice_us, dice_us and 8, 250000), ("seed", seed, 1, 0xFFFFFFFF), ("memory", memory, 0, 255),
+            ("t_delta_us", t_delta_us, 0, min(narrow, 10000)), ("near_us", near_us, 0, 10000), ("hold", hold, 1, 100),
+            ("path_change_us", path_change_us, 0, 10000), ("top_speed_mm_s", top_speed_mm_s, top_speed_mm_s and 10, 0xFFFF),
+            ("alone", alone, 0, 1), ("votes", votes, 0, 2),
         ):  # fmt: skip
             _check(*setting)
             setattr(self, setting[0], setting[1])
@@ -148,29 +144,23 @@ class _Sensor:
 class FlowRing:
     """A ring that fires one sensor after the other, with as much quiet around each firing as its readings have needed. `now_us`
     is a reading of a clock of `clock_bits` bits, which may wrap: 32, or on a board those of `time.ticks_us`, mostly 30. Poll it
-    at its deadline, hand in echoes as they come.
-
-    A reading is accepted if it fits what is believed, or if it agrees with the one before and no sound of the ring explains
-    both: never, in the second way, one path of foreign sound that is heard for at most R and changes by at most P, and by
-    what the robot's motion gives. Not so where every echo is accepted."""
+    at its deadline, hand in echoes as they come. A reading is accepted if it fits what is believed, or if it agrees with the one
+    before and no sound of the ring explains both; or where every echo is."""
 
     def __init__(self, flow, now_us, clock_bits=32):
         _check("clock_bits", clock_bits, 28, 64)
         self.flow, self._mask, self._half = flow, (1 << clock_bits) - 1, 1 << (clock_bits - 1)
-        # Longer ago than any sound is heard; by how much a clock may step back; no deadline lies further ahead than a round of the
-        # longest gaps.
+        # Longer ago than any sound is heard; by how much a clock may step back; a round of the longest gaps.
         self._long_ago, self._step_back = 1 << (clock_bits - 2), 1 << min(20, clock_bits - 4)
         self._horizon = (flow.sensors + 1) * (flow.most_us + 2 * flow.dice_us) + flow.min_refire_us
-        # A reading without an echo is emitted no sooner, for modules that report after their window; what silence means of a
-        # sensor that has not shown by `answered` or `measured` that it listened.
+        # A reading without echo comes no sooner; what silence means of a sensor that has not shown that it listened.
         self.report_after_us, self.silence = 0, NEVER_FREE
         self._known_from = self._long_before(now_us)  # firings before are not known
-        # Quiet to begin with, and by how much it grows and shrinks.
         more_us = flow.most_us - flow.least_us
         self._first = (flow.least_us + more_us // 5) // _UNIT_US
         self._up, self._down = more_us // 4 // _UNIT_US, more_us // 10 // _UNIT_US
         self._sensors = [_Sensor(now_us, self._known_from, self._first) for _ in range(flow.sensors)]
-        self._oldest, self._pending, self._emit_at = NOBODY, 0, now_us
+        self._oldest, self._pending, self._emit_at, self._seen = NOBODY, 0, now_us, now_us
         self._period = self._latest = self._total = 0  # the last two: this period's lateness
         self._tally = [0] * len(READING_NAMES)
         self._top = self._rate = _rate(flow.top_speed_mm_s)
@@ -215,11 +205,9 @@ class FlowRing:
         us = (at_us - self._last_fired) & self._mask
         return us if us <= self._half else 0
 
-    def _at(self, place):
-        return self._sensors[self._order[place]]
-
     def _first_from(self, place):
-        while place < len(self._order) and (self._at(place).ahead or not self._at(place).enabled):
+        order, sensors = self._order, self._sensors
+        while place < len(order) and (sensors[order[place]].ahead or not sensors[order[place]].enabled):
             place += 1
         return place
 
@@ -239,7 +227,7 @@ class FlowRing:
         # A round ends at once, and if nobody fires after the time for which one would rest.
         self._due = (self._last_fired + (flow.rest_us if self._paused or idle else 0)) & self._mask
         while place < len(order):
-            sensor = self._at(place)
+            sensor = self._sensors[order[place]]
             quiet, rested = max(sensor.doubt * _UNIT_US, least, second if sensor is whose else longest), 0
             if sensor.has_fired:
                 rested = self._since_last(sensor.fired_us + (flow.min_refire_us if sensor.listening else flow.rest_us))
@@ -274,10 +262,9 @@ class FlowRing:
         return max(self._before, self._greatest)
 
     def moving(self, speed_mm_s, turn_mrad_s, now_us):
-        """Says how fast the robot moves and turns, once a control cycle: readings may change by as much. It holds for half a
-        second, then the top speed does."""
+        """Says how fast the robot moves and turns, once a control cycle. It holds for half a second, then the top speed does."""
         if not self._reached(now_us, self._since):
-            # The first word of a clock in its upper half, or a clock that has jumped.
+            # The first word of a clock in its upper half, or one that has jumped.
             self._since, self._before, self._greatest = now_us, max(self._before, self._greatest), 0
         recent, due = self._recent(now_us), self._due
         self._rate, self._told = _rate(abs(speed_mm_s) + abs(turn_mrad_s) // 2), now_us
@@ -346,8 +333,8 @@ class FlowRing:
         return kind, age, explained_by
 
     def _explanation(self, receiver, first, second, change):
-        # The sensor whose sound could be both echoes, `first` after the receiver's firing before its last and `second` after
-        # the last, by a path that changes by at most `change`; HISTORY if a forgotten firing's could, else None.
+        # Whose sound could be both echoes, after the receiver's firing before its last and its last, by a path that changes by at
+        # most `change`; HISTORY if a forgotten firing's could, else None.
         mask, own = self._mask, self._sensors[receiver]
         off = max(own.off, own.off_before)  # as late as that, and twice as long ago
         first, second = (own.firings[1] + first + off) & mask, (own.firings[0] + second + off) & mask
@@ -391,11 +378,13 @@ class FlowRing:
             if (self._due - now_us) & self._mask > self._horizon:
                 self._restart(now_us)  # the clock has jumped
             return None
-        # Apart, since this mostly finds nothing due: MicroPython keeps the variables of larger functions in the heap, and
-        # finding room there takes longer the fuller it is.
+        # Apart: MicroPython keeps the variables of larger functions in the heap, where finding room takes longer the fuller it is.
         return self._advance(now_us, is_due)
 
     def _advance(self, now_us, is_due):
+        if not self._reached(now_us + self._step_back, self._seen):
+            self._unsee(now_us)
+        self._seen = now_us
         x, fires = self._next, is_due and self._next != NOBODY
         if fires and not self._sensors[x].listening and not self._sensors[x].can_emit:
             event = (FIRE, x, 0, self._due)
@@ -535,11 +524,11 @@ class FlowRing:
         return event
 
     def _is_long_ago(self, at_us, now_us):
-        # What lies just ahead of now is from before the clock stepped back.
+        # But not what lies just ahead of now, from before the clock stepped back.
         return self._long_ago < (now_us - at_us) & self._mask <= self._mask - self._step_back
 
     def echo(self, x, at_us):
-        """An echo, at this instant; of a module that answers with a pulse, the firing's instant plus the pulse's width."""
+        """An echo, at this instant."""
         self.echo_between(x, at_us, at_us)
 
     def echo_between(self, x, earliest_us, latest_us):
@@ -633,17 +622,13 @@ class FlowRing:
             if evidence == _HELD and not sensor.listening:
                 self._judge(x, sensor, None, sensor.firings[0])  # its reading is out
 
-    def measured(self, x, t_echo_us):
-        """Takes what hardware measured of a sensor's last firing: the echo time, or None if it listened and heard nothing."""
-        if t_echo_us is None:
+    def measured(self, x, least_us, most_us=None):
+        """Takes what hardware measured of a sensor's last firing: the echo time, two that it is between, or None for silence."""
+        if least_us is None:
             self.answered(x)
         else:
-            self.measured_between(x, t_echo_us, t_echo_us)
-
-    def measured_between(self, x, least_us, most_us):
-        """The same of an echo time between two: see `echo_between`."""
-        fired_us = self._sensors[x].firings[0]
-        self.echo_between(x, (fired_us + least_us) & self._mask, (fired_us + most_us) & self._mask)
+            fired_us, most_us = self._sensors[x].firings[0], least_us if most_us is None else most_us
+            self.echo_between(x, (fired_us + least_us) & self._mask, (fired_us + most_us) & self._mask)
 
     def forget(self, x):
         """Forgets a sensor's echo, which is not what it seemed: its next reading is compared with nothing."""
@@ -670,6 +655,10 @@ class FlowRing:
     def restart(self, now_us):
         """Again from the first sensor on, after a long sleep. Nothing is known then."""
         self._restart(now_us)
+        self._unsee(now_us)
+
+    def _unsee(self, now_us):
+        self._seen = now_us
         for sensor in self._sensors:
             sensor.unsee(now_us)
 
@@ -690,8 +679,7 @@ class FlowRing:
 
 
 class HcSr04FlowRing:
-    """A ring of HC-SR04 modules, on one pin each or with the echo lines on other pins. Needs `machine` and `time`; both may
-    be handed in. A reading is what `FlowRing.poll` says; `read` samples the lines, so call it often."""
+    """A ring of HC-SR04 modules, on one pin each or with the echo lines on other pins. `read` samples the lines: call it often."""
 
     # Of an HC-SR04; a subclass for another module has its own.
     DEAF_US, SHORTEST_US, LONGEST_US = 100, 100, 36000
@@ -745,11 +733,11 @@ class HcSr04FlowRing:
             return
         width = self._time.ticks_diff(now, rose)
         least, most = max(width - early, 0), width + self._early[x]
-        self._rose[x], self._seen[x], self._awaits[x] = None, now, least + most < 2 * self.SHORTEST_US
+        self._rose[x], self._seen[x], self._awaits[x] = None, now, most < self.SHORTEST_US
         if self._awaits[x] or least >= self.LONGEST_US:
             self.ring.answered(x, not self._awaits[x])
         else:
-            self.ring.measured_between(x, least, most)
+            self.ring.measured(x, least, most)
 
     def _trigger(self, x):
         pin, rose, high = self._triggers[x], self._rose[x], self._echoes[x].value()

@@ -51,7 +51,7 @@ def play(ring, what, n):
         ring.pause(n[0] == 1)
     else:
         calls = {"E": ring.echo, "K": ring.stuck, "F": ring.fired, "R": ring.restart, "D": ring.moving, "B": ring.forget}
-        calls.update({"I": ring.echo_between, "M": ring.measured_between})
+        calls.update({"I": ring.echo_between, "M": ring.measured})
         calls[what](*n)
     return None, None
 

@@ -202,8 +202,10 @@ def settings():
     for wrong, said in (
         ({"sensors": 65, "seed": 1}, "sensors = 65: 1 to 64 expected"),
         ({"sensors": 6, "seed": 0}, "seed = 0: 1 to 4294967295 expected"),
-        ({"sensors": 6, "seed": 1, "least_us": 40000}, "least_us = 40000: 1 to 30554 expected"),
-        ({"sensors": 6, "seed": 1, "t_delta_us": 25000}, "t_delta_us = 25000: 0 to 24999 expected"),
+        ({"sensors": 6, "seed": 1, "least_us": 40000}, "least_us = 40000: 100 to 30554 expected"),
+        ({"sensors": 6, "seed": 1, "t_delta_us": 25000}, "t_delta_us = 25000: 0 to 10000 expected"),
+        ({"sensors": 6, "seed": 1, "rest_us": 60}, "rest_us = 60: 1000 to 4000000 expected, likely given in milliseconds"),
+        ({"sensors": 6, "seed": 1, "top_speed_mm_s": 2}, "top_speed_mm_s = 2: 10 to 65535 expected, likely given in m/s"),
     ):
         try:
             found = Flow(window_us=WINDOW_US, **wrong)

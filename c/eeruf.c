@@ -2481,8 +2481,7 @@ EerufStatus eeruf_flow_moving(EerufFlowRing *flow, uint32_t speed_mm_s, uint32_t
 static void forget_belief(EerufFlowSensor *sensor) {
     sensor->filter.known_us = sensor->believed_us = EERUF_NO_ECHO;
     sensor->grown_us = sensor->rate = 0;
-    sensor->missed = UINT8_MAX;
-    sensor->conf = 0;
+    sensor->missed = sensor->conf = 0;
 }
 
 static void miss(EerufFlowSensor *sensor) {
@@ -2522,6 +2521,11 @@ static bool is_masked(const EerufRing *ring, uint8_t receiver, uint32_t t_echo_u
     return false;
 }
 
+static void give_less_quiet(const EerufFlowRing *flow, EerufFlowSensor *sensor) {
+    const uint16_t least = (uint16_t)(least_quiet(flow) / QUIET_US);
+    sensor->doubt = (uint16_t)(sensor->doubt > flow->down + least ? sensor->doubt - flow->down : least);
+}
+
 /* An echo, or silence with a witness, that may have changed by so much since the one before. */
 static void weigh(EerufRing *ring, uint8_t x, uint32_t span_us, EerufReading *reading) {
     EerufFlowRing *flow = flow_of(ring);
@@ -2533,8 +2537,9 @@ static void weigh(EerufRing *ring, uint8_t x, uint32_t span_us, EerufReading *re
     const bool is_far = believes && !known && (!is_echo || t_echo_us > sensor->believed_us);
     /* The first silence in a row leaves an obstacle standing, but a robot that moves has left it behind. */
     const bool clears = last_us == SILENCE || known || !stood;
+    /* Readings of a robot that moves differ anyway: quiet that did not help twice is let go, then tried again. */
+    const bool lets_go = !stood && !reports_every_echo(flow) && (sensor->missed & 2u) != 0;
     bool ok = known || !is_echo, held_back = false;
-    uint16_t least;
     if (!ok && last_us < SILENCE && apart(t_echo_us, last_us) <= t_delta_of(ring, x) + span_us) {
         reading->explained_by = explanation(ring, x, last_us, t_echo_us, span_us);
         ok = reading->explained_by == EERUF_BY_NOTHING;
@@ -2554,12 +2559,15 @@ static void weigh(EerufRing *ring, uint8_t x, uint32_t span_us, EerufReading *re
     if (reading->kind == EERUF_READING_ACCEPTED) reading->age = filter->age = 0;
     if (!ok) {
         miss(sensor);
-        if (is_echo && !is_far && is_masked(ring, x, t_echo_us))
+        if (!is_echo || is_far) return;
+        /* Quiet does not help against what the ring did not fire. */
+        if (lets_go || !is_masked(ring, x, t_echo_us))
+            give_less_quiet(flow, sensor);
+        else
             sensor->doubt = (uint16_t)shorter(sensor->doubt + (uint32_t)flow->up, flow->most);
         return;
     }
-    least = (uint16_t)(least_quiet(flow) / QUIET_US);
-    sensor->doubt = (uint16_t)(sensor->doubt > flow->down + least ? sensor->doubt - flow->down : least);
+    give_less_quiet(flow, sensor);
     if (!is_echo && !clears && sensor->believed_us < SILENCE) return;
     if (!known) sensor->conf = 1;
     sensor->believed_us = t_echo_us;

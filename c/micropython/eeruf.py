@@ -126,7 +126,7 @@ class _Sensor:
     def forget(self):
         # The last reading and what is believed; since that was confirmed, firings, and by how much a good reading may have changed;
         # the greatest rate since the last firing; contradictions that the belief outlasts.
-        self.last_us, self.believed_us, self.missed, self.grown, self.rate, self.conf = None, None, 255, 0, 0, 0
+        self.last_us, self.believed_us, self.missed, self.grown, self.rate, self.conf = None, None, 0, 0, 0, 0
 
     def drop(self, long_ago_us):
         self.firings = [long_ago_us] * 3  # the latest first: fewer explain nothing, more add nothing
@@ -318,15 +318,20 @@ class FlowRing:
             kind, explained_by = ACCEPTED, None
         elif explained_by is not None or held_back:
             kind = REPEATED if explained_by is None else AMBIGUOUS
-        if ok:
+        # Readings of a robot that moves differ anyway: quiet that did not help twice is let go, then tried again. It does not
+        # help against what the ring did not fire.
+        lets_go = self._moves and not self._every_echo and sensor.missed & 2
+        masked = not ok and echo is not None and not far and self._is_masked(x, sensor.firings[0] + echo)
+        if masked and not lets_go:
+            sensor.doubt = min(sensor.doubt + self._up, flow.most_us // _UNIT_US)
+        elif ok or echo is not None and not far:
             sensor.doubt = max(sensor.doubt - self._down, self._least() // _UNIT_US)
+        if ok:
             if echo is not None or clears or believed_us in (None, _SILENCE):
                 sensor.conf = sensor.conf if fits else 1
                 sensor.believed_us, sensor.grown, sensor.missed = at_us, 0, 0
         else:
             sensor.miss()
-            if echo is not None and not far and self._is_masked(x, sensor.firings[0] + echo):
-                sensor.doubt = min(sensor.doubt + self._up, flow.most_us // _UNIT_US)
         if kind == ACCEPTED:
             age = sensor.age = 0
         sensor.last_us = at_us

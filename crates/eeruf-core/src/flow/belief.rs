@@ -31,7 +31,7 @@ struct Known<const E: usize> {
     rate: Rate,
     /// Firings since the last accepted reading.
     age: u16,
-    /// Firings since the belief was last confirmed; stops at 255, as it begins.
+    /// Firings since the belief was last confirmed; stops at 255.
     missed: u8,
     /// Contradictions that the belief outlasts while the robot stands.
     conf: u8,
@@ -108,7 +108,7 @@ impl<const E: usize> Known<E> {
         grown: 0,
         rate: Rate::STANDING,
         age: NEVER,
-        missed: u8::MAX,
+        missed: 0,
         conf: 0,
     };
 
@@ -217,7 +217,14 @@ impl<const E: usize> Known<E> {
                 () if before >= SILENCE && !self.believes() => ReadingKind::First,
                 () => ReadingKind::Rejected,
             };
-            quiet = if is_echo && !far && sounds.is_masked(time) { Quiet::More } else { Quiet::Same };
+            // Readings of a robot that moves differ anyway: quiet that did not help twice is let go, then tried again.
+            let lets_go = !stands && !of.every_echo(true) && self.missed & 2 != 0;
+            quiet = match is_echo && !far {
+                false => Quiet::Same,
+                true if !lets_go && sounds.is_masked(time) => Quiet::More,
+                // Quiet does not help against what the ring did not fire.
+                true => Quiet::Less,
+            };
         }
         if kind == ReadingKind::Accepted {
             self.age = 0;

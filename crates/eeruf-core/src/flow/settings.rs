@@ -85,7 +85,6 @@ impl TurnSettings {
     }
 
     pub(super) const fn check(&self) -> Result<(), RingError> {
-        let one = Micros::new(1);
         if let Err(error) = within("most", self.most, PLAUSIBLE, LONGEST_QUIET) {
             return Err(error);
         }

@@ -72,6 +72,8 @@ impl<const K: usize, const E: usize> Belief<K, E> {
         Pace { moves: self.moves, every_echo: self.settings.every_echo(self.moves) }
     }
 
+    // It rarely changes, and two ask for it.
+    #[inline(never)]
     fn set_moves(&mut self, moves: bool) {
         if self.moves != moves {
             self.moves = moves;

@@ -105,11 +105,6 @@ impl TurnSettings {
         within("seed", Micros::new(seed), Micros::new(1), Micros::MAX)
     }
 
-    /// Quiet that a believed reading takes away.
-    pub(super) const fn down(&self) -> Micros {
-        Micros::new(self.most.saturating_sub(self.least).as_micros() / 10)
-    }
-
     /// Quiet to begin with.
     pub(super) const fn first(&self) -> Micros {
         self.least.saturating_add(Micros::new(self.most.saturating_sub(self.least).as_micros() / 5))

@@ -228,19 +228,16 @@ impl<const K: usize, U: OwnLimits> InTurn<K, U> {
         (0..self.sensors).zip(&self.slots)
     }
 
-    /// The enabled sensors that fire together with one, and it.
-    fn with(&self, sensor: u8) -> impl Iterator<Item = u8> {
-        let group = self.own_limits.group_of(sensor);
-        let among = if group == 0 { sensor..sensor + 1 } else { 0..self.sensors };
-        let fires = |other: u8| self.slot(other).is_some_and(|slot| !slot.is(DISABLED));
-        let is_with = move |other: u8| self.own_limits.group_of(other) == group && fires(other);
-        among.filter(move |&other| other == sensor || is_with(other))
+    /// Returns true if another sensor is enabled and fires together with those of a group.
+    fn is_with(&self, other: u8, group: u8) -> bool {
+        group > 0 && self.own_limits.group_of(other) == group && self.is_enabled(other)
     }
 
     /// Gives the turn of those that fire together to the first of them.
     fn group(&mut self) {
         for sensor in 0..self.sensors {
-            let follows = self.with(sensor).next() != Some(sensor);
+            let group = self.own_limits.group_of(sensor);
+            let follows = (0..sensor).any(|other| self.is_with(other, group));
             if let Some(slot) = self.slot_mut(sensor) {
                 slot.set(FOLLOWS, follows);
                 slot.set(PENDING, false);
@@ -272,11 +269,10 @@ impl<const K: usize, U: OwnLimits> InTurn<K, U> {
     /// there is quiet, and until they have rested and their lines are free.
     fn waits(&self, sensor: u8, own: &Slot, listeners: &Listeners) -> (Micros, Micros) {
         let mut all = self.waits_alone(sensor, own, listeners);
-        if self.own_limits.group_of(sensor) > 0 {
-            for (other, slot) in self.with(sensor).filter_map(|other| Some((other, self.slot(other)?))) {
-                let one = self.waits_alone(other, slot, listeners);
-                all = (longer(all.0, one.0), longer(all.1, one.1));
-            }
+        let group = self.own_limits.group_of(sensor);
+        for (other, slot) in self.each().filter(|&(other, _)| self.is_with(other, group)) {
+            let one = self.waits_alone(other, slot, listeners);
+            all = (longer(all.0, one.0), longer(all.1, one.1));
         }
         all
     }
@@ -425,7 +421,7 @@ impl<const K: usize, U: OwnLimits> Plan for InTurn<K, U> {
             let group = self.own_limits.group_of(sensor);
             if group > 0 {
                 for other in (0..self.sensors).filter(|&other| other != sensor) {
-                    let with = self.own_limits.group_of(other) == group && self.is_enabled(other);
+                    let with = self.is_with(other, group);
                     if let Some(slot) = self.slot_mut(other).filter(|_| with) {
                         slot.set(PENDING, true);
                     }

@@ -48,6 +48,30 @@ impl Heard<'_> {
     }
 }
 
+/// Firings of a sensor since its last accepted reading.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub(crate) struct Age(u16);
+
+impl Age {
+    /// None was ever accepted.
+    pub(crate) const NEVER: Self = Self(u16::MAX);
+
+    pub(crate) fn get(self) -> Option<u16> {
+        (self != Self::NEVER).then_some(self.0)
+    }
+
+    /// Counts a reading.
+    pub(crate) fn count(&mut self, kind: ReadingKind) -> Option<u16> {
+        self.0 = match kind {
+            ReadingKind::Accepted => 0,
+            _ if self.0 >= Self::NEVER.0 - 1 => self.0,
+            _ => self.0 + 1,
+        };
+        self.get()
+    }
+}
+
 /// The answer to what explains readings that agree. No `Option`, so that what is not known cannot pass for "nothing".
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[must_use]
@@ -78,7 +102,12 @@ pub trait Sounds {
     /// length in the second is within P of the line between the others.
     fn explain_line(&self, echoes: [Micros; 3]) -> Explained;
     /// As [`explain`](Self::explain), by a path that changes by up to `more` than P.
-    fn explain_moving(&self, first: Micros, second: Micros, more: Micros) -> Explained;
+    fn explain_moving(&self, first: Micros, second: Micros, more: Micros) -> Explained {
+        self.explain_after(1, first, second, more)
+    }
+    /// As [`explain_moving`](Self::explain_moving), with the `first` echo after the firing that came `ago` firings
+    /// before the sensor's last one.
+    fn explain_after(&self, ago: u8, first: Micros, second: Micros, more: Micros) -> Explained;
     /// Returns true if sound of any firing but the sensor's last could be the echo that it heard after that one.
     fn is_masked(&self, t_echo: Micros) -> bool;
 }
@@ -110,8 +139,9 @@ impl Pace {
     pub const STANDING: Self = Self { moves: false, every_echo: false };
 }
 
-/// No sound explains anything.
-pub(crate) struct NoSounds;
+/// No sound explains anything: for readings that no ring has fired.
+#[derive(Clone, Copy, Debug)]
+pub struct NoSounds;
 
 impl Sounds for NoSounds {
     fn explain(&self, _first: Micros, _second: Micros) -> Explained {
@@ -122,7 +152,7 @@ impl Sounds for NoSounds {
         Explained::ByNothing
     }
 
-    fn explain_moving(&self, _first: Micros, _second: Micros, _more: Micros) -> Explained {
+    fn explain_after(&self, _ago: u8, _first: Micros, _second: Micros, _more: Micros) -> Explained {
         Explained::ByNothing
     }
 
@@ -132,8 +162,8 @@ impl Sounds for NoSounds {
 }
 
 /// Decides what the readings of a [`Ring`](crate::Ring) are worth: [`EchoFilter`](crate::EchoFilter),
-/// [`Belief`](crate::flow::Belief), [`RateFilter`](crate::judge::RateFilter), [`Agreement`], or one of the caller's
-/// own.
+/// [`Belief`](crate::flow::Belief), [`MOfN`](crate::judge::MOfN), [`RateFilter`](crate::judge::RateFilter),
+/// [`Agreement`], [`MedianFilter`](crate::judge::MedianFilter), or one of the caller's own.
 ///
 /// The ring hands in sensors that it has room for. A judge that has room for fewer accepts nothing of the others.
 pub trait Judge {
@@ -158,6 +188,11 @@ pub trait Judge {
     /// The echo time that it believes of a sensor now; `None` if it believes none, or that nothing is in range.
     fn believed(&self, _sensor: u8) -> Option<Micros> {
         None
+    }
+    /// The firing of a sensor that the echo time of its last verdict stands for: 0 for the last one, 1 for the one
+    /// before, and so on.
+    fn stands_for(&self, _sensor: u8) -> u8 {
+        0
     }
     /// The robot moves at this speed and turns at this rate from `now` on.
     fn moving(&mut self, _speed_mm_s: u32, _turn_mrad_s: u32, _now: Instant) {}

@@ -99,8 +99,9 @@ pub use verified::VerifiedSchedule;
 
 /// Judges of readings: the trait [`Judge`](judge::Judge), and those beside [`EchoFilter`].
 pub mod judge {
-    pub use crate::filter::RateFilter;
-    pub use crate::judging::{Agreement, Explained, Firing, Heard, Judge, Pace, Quiet, Sounds};
+    pub use crate::filter::{MedianFilter, RateFilter};
+    pub use crate::flow::m_of_n::MOfN;
+    pub use crate::judging::{Agreement, Explained, Firing, Heard, Judge, NoSounds, Pace, Quiet, Sounds};
     pub use crate::reading::{Explanation, Verdict};
     pub use crate::ring::AgreementRing;
 }

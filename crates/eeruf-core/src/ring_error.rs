@@ -120,10 +120,10 @@ pub enum RingError {
         /// The drift asked for, in microseconds per second.
         us_per_s: u32,
     },
-    /// A setting out of its range; times are in microseconds.
+    /// A setting, or a judge's argument, out of its range; times are in microseconds.
     Setting {
         /// Its field in [`RingConfig`](crate::RingConfig), or of a flow ring in
-        /// [`TurnSettings`](crate::flow::TurnSettings) or [`BeliefSettings`](crate::flow::BeliefSettings).
+        /// [`TurnSettings`](crate::flow::TurnSettings) or [`BeliefSettings`](crate::flow::BeliefSettings), or the argument.
         name: &'static str,
         /// The value given.
         value: u32,

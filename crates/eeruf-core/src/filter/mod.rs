@@ -15,6 +15,7 @@
 
 mod agreement;
 mod echoes;
+mod median;
 mod rate;
 #[cfg(test)]
 mod tests;
@@ -29,6 +30,7 @@ use crate::time::Micros;
 pub(crate) use agreement::{Consecutive, Tolerance};
 use echoes::LATEST;
 pub(crate) use echoes::{NO_ECHO, heard, insert, shift};
+pub use median::MedianFilter;
 pub use rate::RateFilter;
 use tracker::Tracker;
 

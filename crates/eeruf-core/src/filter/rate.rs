@@ -1,6 +1,6 @@
 //! [`RateFilter`]: three consecutive readings on a line, for a robot that moves and has no odometry.
 
-use crate::judging::{Heard, Judge, NoSounds, Sounds};
+use crate::judging::{Age, Heard, Judge, NoSounds, Sounds};
 use crate::reading::{Explanation, ReadingKind, Verdict};
 use crate::ring_error::RingError;
 use crate::sensor_error::SensorError;
@@ -48,8 +48,7 @@ struct Line {
     echoes: [u32; 2],
     /// Number of those that had an echo, or that the last one or the last two had none.
     known: Known,
-    /// Firings since the last accepted reading.
-    age: u16,
+    age: Age,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -62,13 +61,12 @@ enum Known {
     Two,
 }
 
-/// The age of a sensor none of whose readings was ever accepted.
-const NEVER: u16 = u16::MAX;
 /// Firings further apart, 16.7 s, are no longer compared; nor are later echoes. Products of the two fit into 64 bits.
 const LONGEST: u32 = (1 << 24) - 1;
 
 impl Line {
-    const NEW: Self = Self { fired: [Instant::from_micros(0); 2], echoes: [0; 2], known: Known::Nothing, age: NEVER };
+    const NEW: Self =
+        Self { fired: [Instant::from_micros(0); 2], echoes: [0; 2], known: Known::Nothing, age: Age::NEVER };
 }
 
 impl<const K: usize> RateFilter<K> {
@@ -114,10 +112,6 @@ impl<const K: usize> RateFilter<K> {
 impl Line {
     fn previous(&self) -> Option<Micros> {
         matches!(self.known, Known::One | Known::Two).then_some(Micros::new(self.echoes[0]))
-    }
-
-    fn age(&self) -> Option<u16> {
-        (self.age != NEVER).then_some(self.age)
     }
 
     fn push(&mut self, fired: Instant, t_echo: Option<Micros>, limits: Limits, sounds: &impl Sounds) -> Verdict {
@@ -169,12 +163,7 @@ impl Line {
         previous: Option<Micros>,
         explained_by: Option<Explanation>,
     ) -> Verdict {
-        self.age = match kind {
-            ReadingKind::Accepted => 0,
-            _ if self.age >= NEVER - 1 => self.age,
-            _ => self.age + 1,
-        };
-        Verdict { kind, t_echo, previous, age: self.age(), explained_by }
+        Verdict { kind, t_echo, previous, age: self.age.count(kind), explained_by }
     }
 }
 
@@ -211,7 +200,7 @@ impl<const K: usize> Judge for RateFilter<K> {
     }
 
     fn age(&self, sensor: u8) -> Option<u16> {
-        self.sensors.get(usize::from(sensor))?.age()
+        self.sensors.get(usize::from(sensor))?.age.get()
     }
 
     fn is_clear(&self, sensor: u8) -> bool {

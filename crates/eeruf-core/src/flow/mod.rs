@@ -9,6 +9,7 @@
 //! is proven of `twice` is in `docs/explanation/theory.md`; what is left to chance is measured.
 
 mod belief;
+pub(crate) mod m_of_n;
 mod motion;
 mod plan;
 mod settings;

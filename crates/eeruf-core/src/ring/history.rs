@@ -60,10 +60,10 @@ impl<const H: usize> Firings<H> {
         self.0[H - 1]
     }
 
-    /// The last two firings, the later one first.
-    pub(super) fn last_two(&self) -> [Instant; 2] {
+    /// The last firing, and the one `ago` firings before, unless that is forgotten.
+    pub(super) fn last_and(&self, ago: u8) -> [Option<Instant>; 2] {
         const { assert!(H > 1, "a judge that asks what explains two readings; expected H >= 2, or an AgreementRing") };
-        [self.0[0], self.0[1]]
+        [Some(self.0[0]), self.0.get(usize::from(ago)).copied()]
     }
 
     /// The last three, the latest first.
@@ -136,10 +136,10 @@ pub(super) struct Pair {
 
 impl Pair {
     /// Returns true if sound of these firings explains both readings. `own`: they are the receiver's, of which the last
-    /// does not count for the second reading, and the one before it not for the first.
+    /// does not count for the second reading, and the one at this place not for the first.
     // Out of line, where it has all registers of a Cortex-M0 to itself.
     #[inline(never)]
-    pub(super) fn explains<const H: usize>(&self, firings: &Firings<H>, own: bool) -> bool {
+    pub(super) fn explains<const H: usize>(&self, firings: &Firings<H>, own: Option<u8>) -> bool {
         let &Self { heard: [first, second], audible, path_change } = self;
         for earlier in 0..H {
             // The length that the path would have in the first reading. Before it was sent nothing is heard.
@@ -147,10 +147,10 @@ impl Pair {
             if length_before > audible {
                 continue;
             }
-            let latest = match (own, earlier) {
-                (false, _) => 0,
-                (true, 1) => continue,
-                (true, _) => 1,
+            let latest = match own {
+                None => 0,
+                Some(place) if usize::from(place) == earlier => continue,
+                Some(_) => 1,
             };
             // Both are below a minute, and the change below 66 ms: neither sum nor difference wraps twice.
             let shortest = length_before.as_micros().wrapping_sub(path_change.as_micros());

@@ -14,8 +14,8 @@ pub(super) struct Sensor<const E: usize, const H: usize> {
     /// The echoes of the present firing; also, in the first place, the time of an early or late edge.
     echoes: [Micros; E],
     flags: u8,
-    /// By how much the echoes of the present firing, and those of the two before, may be sooner or later, in units of
-    /// [`UNIT`]: the most of each firing; or [`WIDE`].
+    /// By how much the echoes of the present firing, of the one before and of all earlier ones may be sooner or later, in
+    /// units of [`UNIT`]: the most of each; or [`WIDE`].
     uncertain: [u8; 3],
 }
 
@@ -254,7 +254,8 @@ impl<const E: usize, const H: usize> Sensor<E, H> {
         let is_held = evidence == HELD && (!listened || is_silent && unusable.is_none());
         if listened {
             // What is late is compared with nothing.
-            self.uncertain = [0, uncertain[0], uncertain[1]];
+            let [now, before, earlier] = uncertain;
+            self.uncertain = [0, now, if before == WIDE { earlier } else { earlier.max(before) }];
         }
         self.flags &= match (listened, is_held) {
             (true, true) => PERIOD | HELD,
@@ -276,6 +277,6 @@ pub(super) struct Ended<const E: usize> {
     /// Why it says nothing about the echo time, if it does not.
     pub(super) unusable: Option<ReadingKind>,
     pub(super) echoes: [Micros; E],
-    /// By how much they, and those of the two firings before, may be off.
+    /// By how much they, those of the firing before and those of all earlier ones may be off.
     pub(super) uncertain: [Micros; 3],
 }

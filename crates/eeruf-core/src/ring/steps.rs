@@ -296,11 +296,11 @@ struct Memory<'r, P, const E: usize, const H: usize> {
 impl<P: Plan, const E: usize, const H: usize> Sounds for Memory<'_, P, E, H> {
     #[inline(always)]
     fn explain(&self, first: Micros, second: Micros) -> Explained {
-        if self.on_time { Explained::ByNothing } else { self.explain_pair(first, second, Micros::ZERO) }
+        if self.on_time { Explained::ByNothing } else { self.explain_pair(1, first, second, Micros::ZERO) }
     }
 
-    fn explain_moving(&self, first: Micros, second: Micros, more: Micros) -> Explained {
-        self.explain_pair(first, second, more)
+    fn explain_after(&self, ago: u8, first: Micros, second: Micros, more: Micros) -> Explained {
+        self.explain_pair(ago, first, second, more)
     }
 
     fn is_masked(&self, t_echo: Micros) -> bool {
@@ -323,13 +323,14 @@ impl<P: Plan, const E: usize, const H: usize> Sounds for Memory<'_, P, E, H> {
 
 impl<P: Plan, const E: usize, const H: usize> Memory<'_, P, E, H> {
     #[inline(never)]
-    fn explain_pair(&self, first: Micros, second: Micros, more: Micros) -> Explained {
-        let Self { receiver, uncertain: [one, other, _], .. } = *self;
-        let Some(own) = self.sensors.get(usize::from(receiver)) else { return UNKNOWN };
-        let [fired, fired_before] = own.firings.last_two();
+    fn explain_pair(&self, ago: u8, first: Micros, second: Micros, more: Micros) -> Explained {
+        let Self { receiver, uncertain: [one, before, earlier], .. } = *self;
+        let other = if ago == 1 { before } else { earlier };
+        let own = self.sensors.get(usize::from(receiver));
+        let Some([Some(fired), Some(fired_before)]) = own.map(|own| own.firings.last_and(ago)) else { return UNKNOWN };
         let mut pair = self.pair([fired_before + first, fired + second]).widened(one, other, one.max(other));
         pair.path_change = pair.path_change.saturating_add(more);
-        self.ask(&pair, |firings, own| pair.explains(firings, own))
+        self.ask(&pair, |firings, own| pair.explains(firings, own.then_some(ago)))
     }
 
     #[inline(never)]

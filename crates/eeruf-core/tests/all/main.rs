@@ -18,6 +18,7 @@ mod formats;
 mod immediate;
 mod lateness;
 mod listening;
+mod m_of_n;
 mod odometry;
 mod pairs;
 mod plans_and_judges;

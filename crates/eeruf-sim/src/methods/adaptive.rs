@@ -1,16 +1,16 @@
 //! Rings that move along a ladder of scaled schedules as the rejection rate asks for (end of Sec. 3.1).
 
 use eeruf_core::{
-    EachSensor, EchoFilter, Instant, MAX_SENSORS, Ring, RingEvent, VerifiedSchedule, adaptation::Adaptation,
-    conditions::Violation,
+    EachSensor, Instant, MAX_SENSORS, Ring, RingEvent, VerifiedSchedule, adaptation::Adaptation, conditions::Violation,
 };
 
-use super::ring_runner::{FiringPlan, RingRunner, RingStart, StartError, Started, TableFiring, trusting};
+use super::judges::RunningJudge;
+use super::ring_runner::{self, FiringPlan, REMEMBERED, RingRunner, RingStart, StartError, Started, TableFiring};
 use crate::world::{AnySchedule, Robot};
 
 /// A ring that moves along a ladder of schedules (end of Sec. 3.1).
 struct AdaptiveRing<'s, const E: usize> {
-    ring: Ring<TableFiring<'s>, EchoFilter<MAX_SENSORS, E>, MAX_SENSORS, E>,
+    ring: Ring<TableFiring<'s>, RunningJudge<MAX_SENSORS, E>, MAX_SENSORS, E, REMEMBERED>,
     adaptation: Adaptation<'s, VerifiedSchedule<MAX_SENSORS, 2, EachSensor<MAX_SENSORS>>>,
 }
 
@@ -31,6 +31,10 @@ impl<'s, const E: usize> RingRunner<'s> for AdaptiveRing<'s, E> {
     fn echo(&mut self, sensor: u8, at: Instant) {
         RingRunner::echo(&mut self.ring, sensor, at);
     }
+
+    fn stands_for(&self, sensor: u8) -> u8 {
+        RingRunner::stands_for(&self.ring, sensor)
+    }
 }
 
 /// Rungs of the adaptive method's ladder, times the schedule it starts from.
@@ -47,11 +51,12 @@ pub(super) fn plan(robot: &Robot, base: AnySchedule) -> Result<FiringPlan, Start
 }
 
 /// A ring on its ladder, with up to `E` echoes of a firing.
-pub(super) fn adaptive<'s, const E: usize>(start: &RingStart<'s>) -> Started<'s> {
-    let adaptation = Adaptation::new(&start.plan.ladder).map_err(StartError::Ladder)?;
+pub(super) fn ring<'s, const E: usize>(start: &RingStart<'s>) -> Started<'s> {
+    let &RingStart { robot, plan, ref judging, now, .. } = start;
+    let adaptation = Adaptation::new(&plan.ladder).map_err(StartError::Ladder)?;
     // A ladder has a rung.
-    let ring = Ring::new(&start.plan.ladder[0], start.config().with_echoes::<E>(), start.now)?;
-    Ok(Box::new(AdaptiveRing { ring: trusting(ring), adaptation }))
+    let plan = TableFiring::verified(&plan.ladder[0], now);
+    Ok(Box::new(AdaptiveRing::<E> { ring: ring_runner::ring(plan, robot, judging, now)?, adaptation }))
 }
 
 impl From<Violation> for StartError {

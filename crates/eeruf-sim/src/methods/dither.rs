@@ -3,16 +3,20 @@
 use eeruf_core::{Micros, Phase};
 
 use super::firing::{Firing, FiringPeriod, OwnError};
-use super::ring_runner::{AGREEMENT_ALONE, RingStart, Started, planned};
-use super::schedules::widest_dither;
+use super::ring_runner::{RingStart, Started, Way, planned};
+use super::schedules::{self, widest_dither};
 use crate::world::Random;
 
+pub(super) const WAY: Way =
+    Way { ring: dithered, refire: |robot, _, _| robot.window, ..Way::by_table(schedules::conventional) };
+
 /// The schedule's lags plus random waits.
-pub(super) fn dithered<'s>(start: &RingStart<'s>) -> Started<'s> {
-    let (lags, period) = (start.schedule().t_lag().to_vec(), start.schedule().period());
+fn dithered<'s>(start: &RingStart<'s>) -> Started<'s> {
+    let schedule = &start.plan.schedule;
+    let (lags, period) = (schedule.t_lag().to_vec(), schedule.period());
     let widest = widest_dither(start.robot);
     let dither = Dither { lags, period, widest, random: start.random };
-    planned::<1, AGREEMENT_ALONE>(start.robot, Box::new(dither), period.saturating_sub(widest), start.now)
+    planned(Box::new(dither), start.robot, &start.judging, period.saturating_sub(widest), start.now)
 }
 
 /// Fires each sensor once per period, at its lag plus a random wait below `widest`.

@@ -6,7 +6,8 @@ use eeruf_core::{
 };
 
 use super::method::MAX_ECHOES;
-use super::ring_runner::{RingStart, Started, config_of, trusting};
+use super::ring_runner::{RingStart, Started, Way, config_of, trusting};
+use super::schedules;
 use crate::world::Robot;
 
 /// Settings of a flow ring by which it differs from what its robot asks for.
@@ -42,25 +43,23 @@ impl FlowOptions {
     }
 }
 
+pub(super) const WAY: Way =
+    Way { ring: flow, refire: |robot, _, _| robot.window, ..Way::by_table(schedules::conventional) };
+
 /// A flow ring, no larger than needed.
-pub(super) fn flow<'s>(start: &RingStart<'s>) -> Started<'s> {
-    match start.robot.sensors.len() {
-        ..=8 => ring::<8, 1>(start),
-        9..=24 => ring::<24, 1>(start),
-        _ => ring::<MAX_SENSORS, 1>(start),
+fn flow<'s>(start: &RingStart<'s>) -> Started<'s> {
+    match (start.judging.echoes, start.robot.sensors.len()) {
+        (..=1, ..=8) => ring::<8, 1>(start),
+        (..=1, 9..=24) => ring::<24, 1>(start),
+        (..=1, _) => ring::<MAX_SENSORS, 1>(start),
+        _ => ring::<MAX_SENSORS, MAX_ECHOES>(start),
     }
 }
 
-/// The same of sensors that report several echoes.
-pub(super) fn several<'s>(start: &RingStart<'s>) -> Started<'s> {
-    ring::<MAX_SENSORS, MAX_ECHOES>(start)
-}
-
 fn ring<'s, const K: usize, const E: usize>(start: &RingStart<'s>) -> Started<'s> {
-    let RingStart { robot, flow, alone, mut random, now, .. } = *start;
+    let RingStart { robot, flow, mut random, now, .. } = *start;
     // A seed of 0 would throw nothing.
     let turns = flow.turns(robot, random.bits() as u32 | 1);
-    let belief = BeliefSettings { alone, ..flow.belief.unwrap_or_default() };
-    let ring = FlowRing::<K, E>::flow(robot.sensors.len(), turns, belief, config_of(robot), now)?;
+    let ring = FlowRing::<K, E>::flow(robot.sensors.len(), turns, start.judging.belief, config_of(robot), now)?;
     Ok(Box::new(trusting(ring)))
 }

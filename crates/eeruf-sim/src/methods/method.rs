@@ -1,66 +1,44 @@
-//! The table of firing methods, in which a method is added: a row has its description, its name, how its schedule is
-//! made, how its ring is started, and which readings it accepts. What is new in a method, a way to make a schedule or
-//! to start a ring, goes into `schedules.rs` or `ring_runner.rs`.
+//! The table of firing methods, in which a method is added: a row has its description, its name, its firing, its judge,
+//! the number of echoes, and whether it adapts. A new way of firing is a [`Way`] in a file of its own.
 
 use core::fmt;
 use core::str::FromStr;
 
-use eeruf_core::{Instant, Micros, ScheduleError};
+use eeruf_core::{Micros, ScheduleError};
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de};
 
 use super::adaptive;
 use super::dither;
-use super::firing::Firing;
 use super::flow;
-use super::ring_runner::{
-    self, AGREEMENT_ALONE, ASKS, FiringPlan, RingRunner, RingStart, StartError, Started, planned,
-};
-use super::schedules::{self, Made, ScheduleQuery};
+use super::judges::JudgeKind::{self, Agreement, AsSketched, Belief, EveryEcho, TwoOfThree};
+use super::ring_runner::{FiringPlan, RingStart, StartError, Started, Way};
+use super::schedules::{self, ScheduleQuery};
 use super::sketch;
 use crate::world::{AnySchedule, Robot};
 
 /// The most echoes that a sensor reports of one firing.
 pub(crate) const MAX_ECHOES: usize = 8;
 
-/// Firing and belief of a method.
+/// A method: its firing, its judge, the number of echoes of a firing that a sensor reports, and whether it adapts.
 struct Row {
     name: &'static str,
-    /// True if it is EERUF: waits alternate, and readings are compared.
-    eeruf: bool,
-    /// True if it fires by a robot's [`Sketch`](crate::Sketch).
-    sketch: bool,
     /// True if it is simulated only where it is asked for.
     on_demand: bool,
-    /// The schedule that a robot's ring starts with; for dither the lags alone.
-    schedule: fn(&ScheduleQuery<'_>) -> Made,
-    /// The ring, ready to run.
-    ring: for<'s> fn(&RingStart<'s>) -> Started<'s>,
-    belief: Belief,
-    /// The ring's plan, from that schedule.
-    plan: fn(&Robot, AnySchedule) -> Result<FiringPlan, StartError>,
-    /// Number of echoes of a firing that a sensor reports.
+    firing: Way,
+    judge: JudgeKind,
     echoes: usize,
-    /// Least time until a sensor, by its number, may fire again.
-    refire: fn(&Robot, &AnySchedule, usize) -> Micros,
+    /// True if it moves along a ladder of scaled schedules.
+    adapts: bool,
 }
 
-/// Defaults of a row: one schedule, one echo, no firing sooner than that schedule has it.
-const DEFAULT: Row = Row {
-    name: "",
-    eeruf: false,
-    sketch: false,
-    on_demand: false,
-    schedule: schedules::own,
-    ring: ring_runner::scheduled::<1, ASKS>,
-    belief: Belief::Repeated,
-    plan: |_, schedule| Ok(FiringPlan::new(schedule)),
-    echoes: 1,
-    refire: |_, schedule, sensor| schedules::soonest_refire(schedule, sensor),
-};
+/// Defaults of a row: the robot's own schedule, and one echo, which is believed if nothing foreign explains it and the
+/// one before.
+const DEFAULT: Row =
+    Row { name: "", on_demand: false, firing: Way::OWN_TABLE, judge: JudgeKind::Unexplained, echoes: 1, adapts: false };
 
 /// Makes the enum, its list and its rows from the table.
 macro_rules! methods {
-    ($( $(#[doc = $description:literal])+ $method:ident = $name:literal { $($field:ident: $value:expr,)+ } )+) => {
+    ($( $(#[doc = $description:literal])+ $method:ident = $name:literal { $($field:ident: $value:expr,)* } )+) => {
         /// A way to fire a ring and to decide what to believe.
         ///
         /// The first six and [`Median`](Self::Median) come from practice, the others are the paper's and what follows
@@ -78,7 +56,7 @@ macro_rules! methods {
             /// Its row of the table.
             const fn row(self) -> &'static Row {
                 match self {
-                    $( Self::$method => const { &Row { name: $name, $($field: $value,)+ ..DEFAULT } }, )+
+                    $( Self::$method => const { &Row { name: $name, $($field: $value,)* ..DEFAULT } }, )+
                 }
             }
         }
@@ -87,188 +65,62 @@ macro_rules! methods {
 
 methods! {
     /// All sensors at once, once a period. Every echo is believed.
-    Simultaneous = "simultaneous" {
-        schedule: schedules::together,
-        ring: ring_runner::scheduled::<1, AGREEMENT_ALONE>,
-        belief: Belief::All,
-    }
+    Simultaneous = "simultaneous" { firing: Way::by_table(schedules::together), judge: EveryEcho, }
     /// One by one, each listening for the whole window before the next one fires. Every echo is believed.
-    Sequential = "sequential" {
-        schedule: schedules::one_by_one,
-        ring: ring_runner::scheduled::<1, AGREEMENT_ALONE>,
-        belief: Belief::All,
-    }
+    Sequential = "sequential" { firing: Way::by_table(schedules::one_by_one), judge: EveryEcho, }
     /// As sequential, but an echo is believed if one of the sensor's two readings before agrees with it: two of three
     /// votes.
-    SequentialVotes = "sequential_votes" {
-        schedule: schedules::one_by_one,
-        ring: ring_runner::scheduled::<1, AGREEMENT_ALONE>,
-        belief: Belief::TwoOfThree,
-    }
+    SequentialVotes = "sequential_votes" { firing: Way::by_table(schedules::one_by_one), judge: TwoOfThree, }
     /// As sequential, but sensors as far apart as the ring's `neighbours` fire together. Every echo is believed.
-    FarGroups = "far_groups" {
-        schedule: schedules::far_groups,
-        ring: ring_runner::scheduled::<1, AGREEMENT_ALONE>,
-        belief: Belief::All,
-    }
+    FarGroups = "far_groups" { firing: Way::by_table(schedules::far_groups), judge: EveryEcho, }
     /// The conventional lags plus a wait redrawn for each sensor in each period, from as wide a range as the paper's
     /// waits span. Consecutive readings are compared.
-    Dither = "dither" {
-        schedule: schedules::conventional,
-        ring: dither::dithered,
-        belief: Belief::Repeated,
-        refire: |robot, _, _| robot.window,
-    }
+    Dither = "dither" { firing: dither::WAY, judge: Agreement, }
     /// Constant lags (Table I-a): neighbours fire `T_p / n` apart, every period alike. Every echo is believed.
-    Conventional = "conventional" {
-        schedule: schedules::conventional,
-        ring: ring_runner::scheduled::<1, AGREEMENT_ALONE>,
-        belief: Belief::All,
-    }
+    Conventional = "conventional" { firing: Way::by_table(schedules::conventional), judge: EveryEcho, }
     /// As conventional, but consecutive readings are compared: the negative control, the filter without alternation.
-    Comparison = "comparison" {
-        schedule: schedules::conventional,
-        ring: ring_runner::scheduled::<1, AGREEMENT_ALONE>,
-        belief: Belief::Repeated,
-    }
+    Comparison = "comparison" { firing: Way::by_table(schedules::conventional), judge: Agreement, }
     /// As conventional, but the median of a sensor's last readings is believed.
-    Median = "median" {
-        schedule: schedules::conventional,
-        ring: ring_runner::scheduled::<1, AGREEMENT_ALONE>,
-        belief: Belief::Median,
-    }
+    Median = "median" { firing: Way::by_table(schedules::conventional), judge: JudgeKind::Median, }
     /// Immediate refiring with alternating waits (Figs. 2a, 2b): those of the paper's table, each longer by the robot's
     /// `min_refire`. Consecutive readings are compared.
-    EerufImmediate = "eeruf_immediate" {
-        eeruf: true,
-        schedule: schedules::refiring,
-        ring: ring_runner::immediate,
-        belief: Belief::Repeated,
-        refire: |robot, _, _| robot.min_refire,
-    }
+    EerufImmediate = "eeruf_immediate" { firing: Way::IMMEDIATE, }
     /// Scheduled firing (Fig. 3) by the robot's own schedule, or else by the paper's table at the robot's period (see
     /// [`table_i_d_for`](crate::table_i_d_for)). Consecutive readings are compared.
-    Eeruf = "eeruf" {
-        eeruf: true,
-        schedule: schedules::own,
-        ring: ring_runner::scheduled::<1, ASKS>,
-        belief: Belief::Repeated,
-        plan: ring_runner::plan_own,
-    }
+    Eeruf = "eeruf" { }
     /// As [`Eeruf`](Self::Eeruf), by the best schedule that is known for the ring: what the caller puts in
     /// [`Options::best`](crate::Options::best).
-    EerufBest = "eeruf_best" {
-        eeruf: true,
-        schedule: schedules::best,
-        ring: ring_runner::scheduled::<1, ASKS>,
-        belief: Belief::Repeated,
-    }
+    EerufBest = "eeruf_best" { firing: Way::by_table(schedules::best), }
     /// As [`Eeruf`](Self::Eeruf), moving along a ladder of scaled schedules as the rejection rate asks for (end of Sec.
     /// 3.1).
-    Adaptive = "adaptive" {
-        eeruf: true,
-        schedule: schedules::own,
-        ring: adaptive::adaptive::<1>,
-        belief: Belief::Repeated,
-        plan: adaptive::plan,
-        refire: |robot, _, _| robot.window,
-    }
+    Adaptive = "adaptive" { adapts: true, }
     /// Flow: one sensor after the other, each with as much quiet around its firing as it has needed and dice in every
     /// gap; an echo is believed that fits what is believed, or that two readings say and nothing foreign explains
     /// ([`InTurn`](eeruf_core::flow::InTurn), [`Belief`](eeruf_core::flow::Belief)).
-    Flow = "flow" {
-        eeruf: true,
-        schedule: schedules::conventional,
-        ring: flow::flow,
-        belief: Belief::Repeated,
-        refire: |robot, _, _| robot.window,
-    }
+    Flow = "flow" { firing: flow::WAY, judge: Belief, }
     /// As [`Eeruf`](Self::Eeruf), with sensors that report up to eight echoes of a firing: the earliest that repeats is
     /// believed.
-    MultiEcho = "multi_echo" {
-        eeruf: true,
-        schedule: schedules::own,
-        ring: ring_runner::scheduled::<MAX_ECHOES, ASKS>,
-        belief: Belief::Repeated,
-        plan: ring_runner::plan_own,
-        echoes: MAX_ECHOES,
-    }
+    MultiEcho = "multi_echo" { echoes: MAX_ECHOES, }
     /// As [`Adaptive`](Self::Adaptive), with sensors that report up to eight echoes of a firing.
-    AdaptiveMultiEcho = "adaptive_multi_echo" {
-        eeruf: true,
-        on_demand: true,
-        ring: adaptive::adaptive::<MAX_ECHOES>,
-        plan: adaptive::plan,
-        echoes: MAX_ECHOES,
-        refire: |robot, _, _| robot.window,
-    }
+    AdaptiveMultiEcho = "adaptive_multi_echo" { echoes: MAX_ECHOES, adapts: true, on_demand: true, }
     /// As [`Flow`](Self::Flow), with sensors that report up to eight echoes of a firing.
-    FlowMultiEcho = "flow_multi_echo" {
-        eeruf: true,
-        on_demand: true,
-        schedule: schedules::conventional,
-        ring: flow::several,
-        echoes: MAX_ECHOES,
-        refire: |robot, _, _| robot.window,
-    }
+    FlowMultiEcho = "flow_multi_echo" { firing: flow::WAY, judge: Belief, echoes: MAX_ECHOES, on_demand: true, }
     /// One by one, each as soon as the one before has answered or was given up, as the loop of a sketch or a ping timer
     /// fires; see [`Sketch`](crate::Sketch). Every echo is believed, unless that says otherwise.
-    InTurn = "in_turn" {
-        sketch: true,
-        schedule: schedules::together,
-        ring: sketch::in_turn,
-        belief: Belief::AsSketched,
-        refire: |_, _, _| Micros::ZERO,
-    }
+    InTurn = "in_turn" { firing: sketch::way(sketch::in_turn), judge: AsSketched, }
     /// Arrays side by side, each as [`InTurn`](Self::InTurn).
-    Arrays = "arrays" {
-        sketch: true,
-        schedule: schedules::together,
-        ring: sketch::arrays,
-        belief: Belief::AsSketched,
-        refire: |_, _, _| Micros::ZERO,
-    }
+    Arrays = "arrays" { firing: sketch::way(sketch::arrays), judge: AsSketched, }
     /// As [`InTurn`](Self::InTurn), with groups of sensors that fire together.
-    Groups = "groups" {
-        sketch: true,
-        schedule: schedules::together,
-        ring: sketch::groups,
-        belief: Belief::AsSketched,
-        refire: |_, _, _| Micros::ZERO,
-    }
+    Groups = "groups" { firing: sketch::way(sketch::groups), judge: AsSketched, }
     /// Modules that share a trigger: all at once, again when the slowest has answered and rested.
-    SyncLine = "sync_line" {
-        sketch: true,
-        schedule: schedules::together,
-        ring: sketch::sync_line,
-        belief: Belief::AsSketched,
-        refire: |_, _, _| Micros::ZERO,
-    }
+    SyncLine = "sync_line" { firing: sketch::way(sketch::sync_line), judge: AsSketched, }
     /// Modules that fire themselves, each by a clock of its own.
-    FreeRunning = "free_running" {
-        sketch: true,
-        schedule: schedules::together,
-        ring: sketch::free_running,
-        belief: Belief::AsSketched,
-        refire: |_, _, _| Micros::ZERO,
-    }
+    FreeRunning = "free_running" { firing: sketch::way(sketch::free_running), judge: AsSketched, }
     /// One by one as a loop that blocks: fire, wait for the echo or for 38 ms, then 10 ms, and the next. Every echo is
     /// believed.
-    Blocking = "blocking" {
-        on_demand: true,
-        schedule: schedules::together,
-        ring: sketch::blocking,
-        belief: Belief::All,
-        refire: |_, _, _| Micros::ZERO,
-    }
+    Blocking = "blocking" { firing: sketch::way(sketch::blocking), judge: EveryEcho, on_demand: true, }
     /// By a table of any number of phases, the robot's own schedule unless the sketch has one.
-    Table = "table" {
-        sketch: true,
-        schedule: schedules::own,
-        ring: sketch::table,
-        belief: Belief::AsSketched,
-        refire: |robot, _, _| robot.window,
-    }
+    Table = "table" { firing: sketch::TABLE, judge: AsSketched, }
 }
 
 impl Method {
@@ -280,12 +132,12 @@ impl Method {
     /// Returns true if it is the paper's method or follows from it: waits alternate, and consecutive readings are
     /// compared.
     pub const fn is_eeruf(self) -> bool {
-        self.row().eeruf
+        self.row().judge.asks()
     }
 
     /// Returns true if it fires as sketches and modules do today, by a robot's [`Sketch`](crate::Sketch).
     pub const fn is_sketch(self) -> bool {
-        self.row().sketch
+        matches!(self.row().judge, AsSketched)
     }
 
     /// The methods that are compared where nothing says how a ring is fired today: all that are no sketch, and no
@@ -299,9 +151,9 @@ impl Method {
         self.row().on_demand
     }
 
-    /// Readings that it believes.
-    pub(crate) const fn belief(self) -> Belief {
-        self.row().belief
+    /// The judge of its readings.
+    pub(crate) const fn judge(self) -> JudgeKind {
+        self.row().judge
     }
 
     /// Number of echoes of a firing that a sensor reports.
@@ -311,48 +163,23 @@ impl Method {
 
     /// Least time until a sensor may fire again, as long as its ring keeps to this schedule.
     pub(crate) fn soonest_refire(self, robot: &Robot, schedule: &AnySchedule, sensor: usize) -> Micros {
-        (self.row().refire)(robot, schedule, sensor)
+        if self.row().adapts { robot.window } else { (self.row().firing.refire)(robot, schedule, sensor) }
     }
 
     /// The schedule that a robot's ring starts with.
     pub(crate) fn schedule(self, robot: &Robot, best: Option<&AnySchedule>) -> Result<AnySchedule, ScheduleError> {
-        (self.row().schedule)(&ScheduleQuery { robot, best })
+        (self.row().firing.schedule)(&ScheduleQuery { robot, best })
     }
 
     /// The plan of a robot's ring, from the schedule that it starts with.
     pub(crate) fn plan(self, robot: &Robot, schedule: AnySchedule) -> Result<FiringPlan, StartError> {
-        (self.row().plan)(robot, schedule)
-    }
-
-    /// A robot's ring that fires by the caller's own code, ready to run.
-    pub(crate) fn start_own<'s>(self, robot: &Robot, firing: Box<dyn Firing>, now: Instant) -> Started<'s> {
-        let planned = match (self.echoes() > 1, self.is_eeruf()) {
-            (true, _) => planned::<MAX_ECHOES, ASKS>,
-            (false, true) => planned::<1, ASKS>,
-            (false, false) => planned::<1, AGREEMENT_ALONE>,
-        };
-        planned(robot, firing, robot.window, now)
+        if self.row().adapts { adaptive::plan(robot, schedule) } else { (self.row().firing.plan)(robot, schedule) }
     }
 
     /// A robot's ring, ready to run.
-    pub(crate) fn start<'s>(self, start: &RingStart<'s>) -> Result<Box<dyn RingRunner<'s> + 's>, StartError> {
-        (self.row().ring)(start)
+    pub(crate) fn start<'s>(self, start: &RingStart<'s>) -> Started<'s> {
+        (self.row().firing.ring)(start)
     }
-}
-
-/// Readings that a method believes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Belief {
-    /// Every one.
-    All,
-    /// The median of the last few.
-    Median,
-    /// Readings that agree with one of the sensor's two readings before.
-    TwoOfThree,
-    /// Readings that the ring's own filter accepts.
-    Repeated,
-    /// Every one, or what the ring's own filter accepts: as the robot's sketch says.
-    AsSketched,
 }
 
 impl fmt::Display for Method {

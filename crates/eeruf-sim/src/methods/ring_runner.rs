@@ -1,4 +1,4 @@
-//! Core's own [`Ring`] of whatever plan and number of echoes behind one trait: the same code as on the target,
+//! Core's own [`Ring`] of whatever plan, judge and number of echoes behind one trait: the same code as on the target,
 //! under simulated time.
 
 use eeruf_core::{
@@ -6,12 +6,16 @@ use eeruf_core::{
     VerifiedSchedule,
     conditions::Violation,
     flow::InTurn,
-    judge::{AgreementRing, Judge},
+    judge::Judge,
     plan::{ImmediateRefiring, Plan, ScheduledFiring},
 };
 
+use super::adaptive;
 use super::firing::{Firing, OwnError, PeriodFiring};
 use super::flow::FlowOptions;
+use super::judges::{Judging, RunningJudge};
+use super::method::MAX_ECHOES;
+use super::schedules::{self, Made, ScheduleQuery};
 use crate::world::{AnySchedule, Random, Robot};
 
 /// A ring of any kind, which can change to schedules that live as long as `'s`.
@@ -22,6 +26,8 @@ pub(crate) trait RingRunner<'s>: Send {
     fn next_deadline(&self) -> Instant;
     /// A sensor hears an echo.
     fn echo(&mut self, sensor: u8, at: Instant);
+    /// Number of firings of a sensor since the one whose echo its last reading says.
+    fn stands_for(&self, sensor: u8) -> u8;
     /// The robot moves at this speed, and turns at this rate.
     fn moving(&mut self, _speed_mm_s: u32, _turn_mrad_s: u32, _now: Instant) {}
     /// Changes to another schedule, of as many sensors, when the present period ends.
@@ -93,6 +99,10 @@ impl<'s, P: SimulatedPlan<'s>, J: Judge + Send, const K: usize, const E: usize, 
         _ = Ring::echo(self, sensor, at);
     }
 
+    fn stands_for(&self, sensor: u8) -> u8 {
+        self.judge().stands_for(sensor)
+    }
+
     fn moving(&mut self, speed_mm_s: u32, turn_mrad_s: u32, now: Instant) {
         Ring::moving(self, speed_mm_s, turn_mrad_s, now);
     }
@@ -130,12 +140,42 @@ impl FiringPlan {
 pub(crate) struct RingStart<'s> {
     pub(crate) robot: &'s Robot,
     pub(crate) plan: &'s FiringPlan,
+    pub(crate) judging: Judging,
     /// Settings of a flow ring.
     pub(crate) flow: FlowOptions,
-    /// No other robot is about, or expected.
-    pub(crate) alone: bool,
     pub(crate) random: Random,
     pub(crate) now: Instant,
+}
+
+/// A way of firing.
+#[derive(Clone, Copy)]
+pub(super) struct Way {
+    /// The schedule that a robot's ring starts with; for dither the lags alone.
+    pub(super) schedule: fn(&ScheduleQuery<'_>) -> Made,
+    /// The ring's plan, from that schedule.
+    pub(super) plan: fn(&Robot, AnySchedule) -> Result<FiringPlan, StartError>,
+    /// The ring, ready to run.
+    pub(super) ring: for<'s> fn(&RingStart<'s>) -> Started<'s>,
+    /// Least time until a sensor, by its number, may fire again.
+    pub(super) refire: fn(&Robot, &AnySchedule, usize) -> Micros,
+}
+
+impl Way {
+    /// The robot's own schedule, or the paper's.
+    pub(super) const OWN_TABLE: Self = Self { plan: plan_own, ..Self::by_table(schedules::own) };
+    /// Immediate refiring.
+    pub(super) const IMMEDIATE: Self =
+        Self { ring: immediate, refire: |robot, _, _| robot.min_refire, ..Self::by_table(schedules::refiring) };
+
+    /// One schedule, no firing sooner than that has it.
+    pub(super) const fn by_table(schedule: fn(&ScheduleQuery<'_>) -> Made) -> Self {
+        Self {
+            schedule,
+            plan: |_, schedule| Ok(FiringPlan::new(schedule)),
+            ring: scheduled,
+            refire: |_, schedule, sensor| schedules::soonest_refire(schedule, sensor),
+        }
+    }
 }
 
 /// Why a ring cannot be started.
@@ -158,7 +198,7 @@ impl From<RingError> for StartError {
 }
 
 /// A running ring, if it can be started.
-pub(super) type Started<'s> = Result<Box<dyn RingRunner<'s> + 's>, StartError>;
+pub(crate) type Started<'s> = Result<Box<dyn RingRunner<'s> + 's>, StartError>;
 
 /// Settings by which a robot's ring listens and compares.
 pub(super) fn config_of(robot: &Robot) -> RingConfig {
@@ -168,33 +208,6 @@ pub(super) fn config_of(robot: &Robot) -> RingConfig {
     listens.with_consecutive(consecutive)
 }
 
-impl<'s> RingStart<'s> {
-    /// The schedule to start with.
-    pub(super) fn schedule(&self) -> &'s AnySchedule {
-        &self.plan.schedule
-    }
-
-    /// Settings by which the robot's ring listens and compares.
-    pub(super) fn config(&self) -> RingConfig {
-        config_of(self.robot)
-    }
-
-    /// A ring of `E` echoes by this plan that remembers `H` firings of each sensor, no larger than needed: some of its
-    /// steps take time for each sensor that it has room for. Its judge `ASKS` what explains a reading, or agreement
-    /// alone counts.
-    fn run<P: SimulatedPlan<'s> + 's, const E: usize, const H: usize, const ASKS: bool>(&self, plan: P) -> Started<'s> {
-        match self.robot.sensors.len() {
-            ..=8 => ring::<P, 8, E, H, ASKS>(plan, self.config(), self.now),
-            9..=24 => ring::<P, 24, E, H, ASKS>(plan, self.config(), self.now),
-            _ => ring::<P, MAX_SENSORS, E, H, ASKS>(plan, self.config(), self.now),
-        }
-    }
-}
-
-/// The judge of methods that accept what nothing foreign explains asks.
-pub(super) const ASKS: bool = true;
-/// That of methods that accept whatever agrees does not.
-pub(super) const AGREEMENT_ALONE: bool = false;
 /// The firings of each sensor that are remembered for whoever asks.
 pub(super) const REMEMBERED: usize = 4;
 /// The same of immediate refiring, in which a sensor may fire many times while another listens once.
@@ -208,30 +221,47 @@ pub(super) fn trusting<P: Plan, J: Judge, const K: usize, const E: usize, const 
     ring
 }
 
-/// A ring with room for `K` sensors: see [`RingStart::run`].
-pub(super) fn ring<'s, P, const K: usize, const E: usize, const H: usize, const ASKS: bool>(
-    plan: P,
-    config: RingConfig,
-    now: Instant,
-) -> Started<'s>
+/// A robot's ring by this plan that remembers `H` firings of each sensor, no larger than needed: some of its steps take
+/// time for each sensor that it has room for.
+pub(super) fn run<'s, P, const H: usize>(plan: P, robot: &Robot, judging: &Judging, now: Instant) -> Started<'s>
 where
     P: SimulatedPlan<'s> + 's,
 {
-    let config = config.with_echoes::<E>();
-    Ok(if ASKS {
-        Box::new(trusting(Ring::<P, _, K, E, H>::remembering(plan, config, now)?))
-    } else {
-        Box::new(trusting(AgreementRing::<P, K, E>::agreement_alone(plan, config, now)?))
+    Ok(match (judging.echoes, robot.sensors.len()) {
+        (..=1, ..=8) => Box::new(ring::<P, 8, 1, H>(plan, robot, judging, now)?),
+        (..=1, 9..=24) => Box::new(ring::<P, 24, 1, H>(plan, robot, judging, now)?),
+        (..=1, _) => Box::new(ring::<P, MAX_SENSORS, 1, H>(plan, robot, judging, now)?),
+        _ => Box::new(ring::<P, MAX_SENSORS, MAX_ECHOES, H>(plan, robot, judging, now)?),
     })
 }
 
-/// Scheduled firing, with up to `E` echoes of a firing.
-pub(super) fn scheduled<'s, const E: usize, const ASKS: bool>(start: &RingStart<'s>) -> Started<'s> {
-    start.run::<_, E, REMEMBERED, ASKS>(TableFiring::with_limits(start.schedule(), &start.plan.own_limits, start.now))
+/// A ring with room for `K` sensors and `E` echoes.
+pub(super) fn ring<P: Plan, const K: usize, const E: usize, const H: usize>(
+    plan: P,
+    robot: &Robot,
+    judging: &Judging,
+    now: Instant,
+) -> Result<Ring<P, RunningJudge<K, E>, K, E, H>, RingError> {
+    let config = config_of(robot);
+    let judge = RunningJudge::new(judging, &config)?;
+    Ok(trusting(Ring::judged_by(plan, judge, config.with_echoes(), now)?))
+}
+
+/// Scheduled firing, along a ladder where there is one.
+fn scheduled<'s>(start: &RingStart<'s>) -> Started<'s> {
+    let &RingStart { robot, plan, ref judging, now, .. } = start;
+    match judging.echoes {
+        _ if plan.ladder.is_empty() => {
+            let plan = TableFiring::with_limits(&plan.schedule, &plan.own_limits, now);
+            run::<_, REMEMBERED>(plan, robot, judging, now)
+        }
+        ..=1 => adaptive::ring::<1>(start),
+        _ => adaptive::ring::<MAX_ECHOES>(start),
+    }
 }
 
 /// The robot's own schedule, where sensors are not all alike with what each may do.
-pub(super) fn plan_own(robot: &Robot, schedule: AnySchedule) -> Result<FiringPlan, StartError> {
+fn plan_own(robot: &Robot, schedule: AnySchedule) -> Result<FiringPlan, StartError> {
     if !robot.is_uneven() {
         return Ok(FiringPlan::new(schedule));
     }
@@ -240,15 +270,16 @@ pub(super) fn plan_own(robot: &Robot, schedule: AnySchedule) -> Result<FiringPla
 }
 
 /// Immediate refiring.
-pub(super) fn immediate<'s>(start: &RingStart<'s>) -> Started<'s> {
-    start.run::<_, 1, REFIRED, ASKS>(ImmediateRefiring::new(start.schedule(), start.robot.min_refire, start.now))
+fn immediate<'s>(start: &RingStart<'s>) -> Started<'s> {
+    let &RingStart { robot, plan, ref judging, now, .. } = start;
+    run::<_, REFIRED>(ImmediateRefiring::new(&plan.schedule, robot.min_refire, now), robot, judging, now)
 }
 
-/// A robot's ring that fires as it is planned, no sensor again within `refire` of firing, with up to `E` echoes of a
-/// firing; whether its judge `ASKS` what explains a reading.
-pub(super) fn planned<'s, const E: usize, const ASKS: bool>(
-    robot: &Robot,
+/// A robot's ring that fires as it is planned, no sensor again within `refire` of firing.
+pub(crate) fn planned<'s>(
     firing: Box<dyn Firing>,
+    robot: &Robot,
+    judging: &Judging,
     refire: Micros,
     now: Instant,
 ) -> Started<'s> {
@@ -256,5 +287,5 @@ pub(super) fn planned<'s, const E: usize, const ASKS: bool>(
     if let Some(error) = plan.error() {
         return Err(StartError::Own(error.clone()));
     }
-    ring::<_, MAX_SENSORS, E, REMEMBERED, ASKS>(plan, config_of(robot), now)
+    run::<_, REMEMBERED>(plan, robot, judging, now)
 }

@@ -7,8 +7,18 @@ use eeruf_core::{
 };
 
 use super::firing::{Firing, FiringPeriod, OwnError};
-use super::ring_runner::{AGREEMENT_ALONE, REMEMBERED, RingStart, SimulatedPlan, Started, config_of, planned, ring};
+use super::judges::Judging;
+use super::ring_runner::{self, REMEMBERED, RingStart, SimulatedPlan, Started, Way, planned};
+use super::schedules;
 use crate::world::{FiringTable, Robot, Sketch};
+
+/// Firing that takes its turns as sensors answer.
+pub(super) const fn way(ring: for<'s> fn(&RingStart<'s>) -> Started<'s>) -> Way {
+    Way { ring, refire: |_, _, _| Micros::ZERO, ..Way::by_table(schedules::together) }
+}
+
+/// By a table of any number of phases.
+pub(super) const TABLE: Way = Way { ring: table, refire: |robot, _, _| robot.window, ..Way::by_table(schedules::own) };
 
 /// One sensor after the other, each as soon as the one before has answered or was given up.
 pub(super) fn in_turn<'s>(start: &RingStart<'s>) -> Started<'s> {
@@ -27,7 +37,7 @@ pub(super) fn blocking<'s>(start: &RingStart<'s>) -> Started<'s> {
     robot.firing = Sketch { pause: BLOCKING_PAUSE, ..Sketch::default() };
     let lane =
         Lane { silent: Some((robot.window, BLOCKS)), ..Lane::new(singly(0..robot.sensors.len() as u8), start.now) };
-    run(&robot, start.now, vec![lane], Micros::ZERO)
+    run(&robot, &start.judging, start.now, vec![lane], Micros::ZERO)
 }
 
 /// Arrays side by side, each in turn.
@@ -64,20 +74,20 @@ pub(super) fn free_running<'s>(start: &RingStart<'s>) -> Started<'s> {
         let cycle = Micros::new((cycle * (1.0 + 1e-6 * deviation)).round() as u32);
         Lane { cycle: Some(cycle), ..Lane::new(vec![vec![sensor as u8]], start.now + first) }
     };
-    run(start.robot, start.now, (0..sensors.len()).map(lane).collect(), Micros::ZERO)
+    run(start.robot, &start.judging, start.now, (0..sensors.len()).map(lane).collect(), Micros::ZERO)
 }
 
 /// By a table of any number of phases.
-pub(super) fn table<'s>(start: &RingStart<'s>) -> Started<'s> {
+fn table<'s>(start: &RingStart<'s>) -> Started<'s> {
     let table = start.robot.firing.table.clone().unwrap_or_else(|| {
-        let schedule = start.schedule();
+        let schedule = &start.plan.schedule;
         let row = |phase| {
             let times = (0..schedule.sensors()).map(|x| schedule.t_fire(phase, x).unwrap_or_default());
             times.collect()
         };
         FiringTable { period: schedule.period(), rows: [Phase::A, Phase::B].map(row).into() }
     });
-    planned::<1, AGREEMENT_ALONE>(&listening(start.robot), Box::new(ByTable(table)), start.robot.window, start.now)
+    planned(Box::new(ByTable(table)), &listening(start.robot), &start.judging, start.robot.window, start.now)
 }
 
 fn singly(sensors: impl IntoIterator<Item = u8>) -> Vec<Vec<u8>> {
@@ -100,10 +110,10 @@ fn lanes<'s>(start: &RingStart<'s>, lanes: Vec<Vec<Vec<u8>>>) -> Started<'s> {
 
 fn lanes_resting<'s>(start: &RingStart<'s>, lanes: Vec<Vec<Vec<u8>>>, rest: Micros) -> Started<'s> {
     let lanes = lanes.into_iter().map(|sets| Lane::new(sets, start.now)).collect();
-    run(start.robot, start.now, lanes, start.robot.firing.rest.unwrap_or(rest))
+    run(start.robot, &start.judging, start.now, lanes, start.robot.firing.rest.unwrap_or(rest))
 }
 
-fn run<'s>(robot: &Robot, now: Instant, lanes: Vec<Lane>, rest: Micros) -> Started<'s> {
+fn run<'s>(robot: &Robot, judging: &Judging, now: Instant, lanes: Vec<Lane>, rest: Micros) -> Started<'s> {
     let Robot { ref sensors, ref firing, period, .. } = *robot;
     let plan = LanePlan {
         lanes,
@@ -117,7 +127,7 @@ fn run<'s>(robot: &Robot, now: Instant, lanes: Vec<Lane>, rest: Micros) -> Start
         period,
         period_start: now,
     };
-    ring::<_, MAX_SENSORS, 1, REMEMBERED, AGREEMENT_ALONE>(plan, config_of(&listening(robot)), now)
+    ring_runner::run::<_, REMEMBERED>(plan, &listening(robot), judging, now)
 }
 
 /// Fires by a table of any number of phases, period after period.

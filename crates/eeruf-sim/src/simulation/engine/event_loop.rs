@@ -8,6 +8,7 @@ use eeruf_core::{Instant, RingEvent};
 
 use super::arrivals::{Bursts, Propagation};
 use super::faults::{Due, Faults, Fired};
+use super::filter::FiredReading;
 use super::own::Own;
 use super::recorder::Recorder;
 use super::running_ring::{Plan, RunningRing, expected_change_us, plans, start_all};
@@ -104,8 +105,7 @@ impl<'a, K: Kinematics> EventLoop<'a, K> {
         let rings = start_all(world, plans, options, &channels, seed, own, end.is_some())?;
         let sensors = channels.ids().len();
         let longest = rings.iter().map(RunningRing::longest_window).max().unwrap_or(0);
-        let (ids, robots) = (channels.ids(), world.robots());
-        let recorder = Recorder::new(method, options, end.unwrap_or(u64::MAX), room, ids, robots, own)?;
+        let recorder = Recorder::new(method, end.unwrap_or(u64::MAX), room, channels.ids(), own)?;
         Ok(Self {
             c: world.scene().air().speed_of_sound(),
             kinematics,
@@ -119,7 +119,7 @@ impl<'a, K: Kinematics> EventLoop<'a, K> {
             propagation: Propagation::new(world, seed),
             faults: Faults::new(world, seed),
             triggered: vec![0; sensors],
-            own_tables: plans.iter().map(|(of, plan)| (*of, plan.as_ref().map(|plan| &plan.schedule))).collect(),
+            own_tables: plans.iter().map(|of| (of.method, of.firing.as_ref().map(|plan| &plan.schedule))).collect(),
             recorder,
             last: end.map_or(u64::MAX - 1, |end| end + longest + 1000),
             stop,
@@ -292,17 +292,15 @@ impl<'a, K: Kinematics> EventLoop<'a, K> {
                 Some(RingEvent::Reading(reading)) => {
                     let expected_change_us = change(reading.sensor);
                     let number = ring.sensors.start + usize::from(reading.sensor);
+                    let stands_for = ring.ring.stands_for(reading.sensor).into();
                     if let (Some(receiver), Some(fired)) = (self.receivers.get_mut(number), &self.fired[number]) {
                         let fired_from = fired.pose * ring.robot.sensors[usize::from(reading.sensor)];
+                        let (echoes, triggered) = (receiver.heard(), self.triggered[number]);
+                        let fired_s = triggered as f64 * 1e-9;
+                        let firing = FiredReading { reading: &reading, echoes, fired_s, expected_change_us };
                         let reference = self.references[number];
-                        let recorded = self.recorder.record(
-                            number,
-                            &reading,
-                            expected_change_us,
-                            (receiver, self.triggered[number]),
-                            reference,
-                            &fired_from,
-                        );
+                        let recorded =
+                            self.recorder.record(number, &firing, stands_for, triggered, reference, &fired_from);
                         receiver.stop();
                         if let Some(readings) = recorded.map_err(own("filter"))? {
                             self.kinematics.on_reading(readings, fired);

@@ -69,6 +69,11 @@ impl Own {
         self.firing.contains_key(&robot)
     }
 
+    /// Returns true if its readings are filtered by it.
+    pub(super) fn filters(&self, robot: usize) -> bool {
+        self.filter.contains_key(&robot)
+    }
+
     pub(super) fn take_firing(&mut self, robot: usize) -> Option<Box<dyn Firing>> {
         self.firing.remove(&robot)
     }

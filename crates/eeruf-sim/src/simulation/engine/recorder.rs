@@ -1,18 +1,18 @@
 //! The way of a reading under a method, and its entry in the record: what it says, what it came from, and what the
 //! sensor would have read alone.
 
-use eeruf_core::{Reading, ReadingKind};
+use std::collections::VecDeque;
 
-use super::filter::{Filter, Filtered, FiredReading, MAX_MEDIAN, filter_of};
+use eeruf_core::ReadingKind;
+
+use super::filter::{Filter, Filtered, FiredReading};
 use super::own::Own;
 use crate::simulation::error::SimulationError;
-use crate::simulation::options::Options;
-use crate::simulation::receiver::{EXTERNAL, Echo, NEVER, Receiver};
+use crate::simulation::receiver::{EXTERNAL, Echo, NEVER};
 use crate::{
     geometry::Pose,
-    methods::{Method, OwnError},
+    methods::{MAX_MEDIAN, Method, OwnError},
     results::{Cause, HeardPath, NO_PATH, Readings, SensorId},
-    world::Robot,
 };
 
 /// More than all rings of a world give at one moment.
@@ -21,8 +21,10 @@ const ROOM: usize = 1 << 13;
 /// Writes down the readings.
 pub(crate) struct Recorder {
     readings: Readings,
-    /// Filters of each robot's readings.
-    filters: Vec<Box<dyn Filter>>,
+    /// The caller's own filter of each robot's readings, if any.
+    filters: Vec<Option<Box<dyn Filter>>>,
+    /// The earliest echoes of each sensor's last firings, the latest first.
+    earlier: Vec<VecDeque<Option<Echo>>>,
     ids: Vec<SensorId>,
     end: u64,
 }
@@ -31,30 +33,19 @@ impl Recorder {
     /// For readings of firings before `end`, in true nanoseconds, of which about as many are expected.
     pub(crate) fn new(
         method: Method,
-        options: &Options,
         end: u64,
         expected: u64,
         ids: &[SensorId],
-        robots: &[Robot],
         own: &mut Own,
     ) -> Result<Self, SimulationError> {
-        let median_of = usize::from(options.median_of);
-        if median_of == 0 || median_of > MAX_MEDIAN {
-            return Err(SimulationError::Median { median_of: options.median_of });
-        }
-        let duration_s = end as f64 * 1e-9;
-        let of_robot = |sensors: &[SensorId]| {
-            let robot = usize::from(sensors[0].robot);
-            let default = || filter_of(method.belief(), median_of, robots.get(robot), sensors.len());
-            own.take_filter(robot).unwrap_or_else(default)
-        };
-        let filters = ids.chunk_by(|a, b| a.robot == b.robot).map(of_robot).collect();
-        let mut readings = Readings::new(method, duration_s, ids.len());
+        let robots = ids.last().map_or(0, |last| usize::from(last.robot) + 1);
+        let filters = (0..robots).map(|robot| own.take_filter(robot)).collect();
+        let mut readings = Readings::new(method, end as f64 * 1e-9, ids.len());
         let reserved = usize::try_from(expected).map(|expected| readings.try_reserve(expected));
         if !matches!(reserved, Ok(Ok(()))) {
             return Err(SimulationError::Memory { readings: expected });
         }
-        Ok(Self { readings, filters, ids: ids.to_vec(), end })
+        Ok(Self { readings, filters, earlier: vec![VecDeque::new(); ids.len()], ids: ids.to_vec(), end })
     }
 
     /// Returns true if nothing was read since the record was last taken.
@@ -72,25 +63,36 @@ impl Recorder {
         self.readings.try_reserve(more).map_err(|_| SimulationError::Memory { readings: (readings + more) as u64 })
     }
 
-    /// Records what is believed of a firing. With its receiver comes when the sensor was triggered; `reference` is the
-    /// travelling time of what the sensor hears alone, `fired_from` its place and heading then. The answer is all
-    /// readings with this one as the last; none if it does not count.
+    /// Records what is believed of a firing, whose echo may be that of a firing before: `stands_for` says how many. With
+    /// it comes when the sensor was triggered; `reference` is the travelling time of what the sensor hears alone,
+    /// `fired_from` its place and heading then. The answer is all readings with this one as the last; none if it does
+    /// not count.
     pub(crate) fn record(
         &mut self,
         sensor: usize,
-        reading: &Reading,
-        expected_change_us: i32,
-        (receiver, triggered): (&Receiver, u64),
+        firing: &FiredReading<'_>,
+        stands_for: usize,
+        triggered: u64,
         reference: u64,
         fired_from: &Pose,
     ) -> Result<Option<&Readings>, OwnError> {
+        let &FiredReading { reading, echoes, fired_s, expected_change_us } = firing;
         if reading.kind == ReadingKind::Late || triggered >= self.end {
             return Ok(None);
         }
-        let (echoes, fired_s) = (receiver.heard(), triggered as f64 * 1e-9);
         let earliest = echoes.first().copied();
-        let firing = FiredReading { reading, echoes, fired_s, expected_change_us };
-        let Filtered { kind, echo: chosen } = self.filters[usize::from(self.ids[sensor].robot)].push(&firing)?;
+        let earlier = &mut self.earlier[sensor];
+        earlier.truncate(MAX_MEDIAN - 1);
+        earlier.push_front(earliest);
+        let Filtered { kind, echo: chosen } = match &mut self.filters[usize::from(self.ids[sensor].robot)] {
+            Some(own) => own.push(firing)?,
+            None => {
+                let is_it = |echo: &&Echo| Some(echo.t_echo()) == reading.t_echo;
+                let before = || earlier.get(stands_for).copied().flatten();
+                let echo = if stands_for == 0 { echoes.iter().find(is_it).copied() } else { before() };
+                Filtered { kind: reading.kind, echo }
+            }
+        };
         let (cause, path, emitted_s) = match chosen {
             None => (Cause::Nothing, NO_PATH, f64::NAN),
             Some(Echo { arrival, of_this_firing, .. }) => {

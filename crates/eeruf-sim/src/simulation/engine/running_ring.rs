@@ -1,6 +1,6 @@
 //! One robot's ring under way: core's ring, the robot's clock, and when something happens to it next.
 
-use eeruf_core::{EachSensor, Micros};
+use eeruf_core::{EachSensor, Micros, flow::BeliefSettings};
 
 use super::own::Own;
 use crate::simulation::channels::Channels;
@@ -10,7 +10,7 @@ use crate::simulation::options::Options;
 use crate::simulation::receiver::{Hearing, NEVER};
 use crate::{
     geometry::Pose,
-    methods::{FiringPlan, Method, RingRunner, RingStart},
+    methods::{FiringPlan, Judging, MAX_MEDIAN, Method, RingRunner, RingStart, planned},
     world::{FaultKind, Random, Robot, Ticker, World},
 };
 
@@ -47,10 +47,14 @@ impl RunningRing<'_> {
     }
 }
 
-/// By which method a robot fires, and what its ring fires by; none for one that fires by the caller's own code.
-pub(crate) type Plan = (Method, Option<FiringPlan>);
+/// A robot's method and judge, and the plan of its ring; none for one that fires by the caller's own code.
+pub(crate) struct Plan {
+    pub(crate) method: Method,
+    judging: Judging,
+    pub(crate) firing: Option<FiringPlan>,
+}
 
-/// By which method each robot fires, and what its ring fires by, but for those of the caller's `own`.
+/// The plan of each robot, but for those that fire by the caller's `own`.
 pub(crate) fn plans(
     world: &World,
     method: Method,
@@ -58,10 +62,23 @@ pub(crate) fn plans(
     kinematics: &impl Kinematics,
     own: &Own,
 ) -> Result<Vec<Plan>, SimulationError> {
+    if !(1..=MAX_MEDIAN).contains(&usize::from(options.median_of)) {
+        return Err(SimulationError::Median { median_of: options.median_of });
+    }
+    let (asked, robots) = (method.judge(), world.robots());
     let plan = |(index, robot): (usize, &Robot)| {
         let method = kinematics.method(index, method);
+        let judging = Judging {
+            kind: method.judge().of_robot(asked, robot, own.filters(index)),
+            median_of: options.median_of,
+            belief: BeliefSettings {
+                alone: robots.len() == 1 && !robot.others,
+                ..options.flow.belief.unwrap_or_default()
+            },
+            echoes: method.echoes(),
+        };
         if own.fires(index) {
-            return Ok((method, None));
+            return Ok(Plan { method, judging, firing: None });
         }
         let first = method.schedule(robot, options.best.as_ref()).map_err(|error| SimulationError::Schedule {
             robot: index,
@@ -69,9 +86,9 @@ pub(crate) fn plans(
             error,
         })?;
         let plan = method.plan(robot, first).map_err(|error| SimulationError::start(index, method, error))?;
-        Ok((method, Some(plan)))
+        Ok(Plan { method, judging, firing: Some(plan) })
     };
-    world.robots().iter().enumerate().map(plan).collect()
+    robots.iter().enumerate().map(plan).collect()
 }
 
 /// Starts every robot's ring as planned; nobody gives it another schedule if it `keeps_schedules`.
@@ -86,7 +103,7 @@ pub(crate) fn start_all<'a>(
 ) -> Result<Vec<RunningRing<'a>>, SimulationError> {
     let steady = keeps_schedules && world.faults().is_empty();
     let mut rings = Vec::with_capacity(plans.len());
-    for (index, (robot, (method, plan))) in world.robots().iter().zip(plans).enumerate() {
+    for (index, (robot, Plan { method, judging, firing: plan })) in world.robots().iter().zip(plans).enumerate() {
         let mut clock = Ticker::new(robot.clock);
         for fault in world.faults().iter().filter(|fault| fault.robot == index) {
             if let FaultKind::ClockDrift { ppm } = fault.kind {
@@ -98,15 +115,10 @@ pub(crate) fn start_all<'a>(
         let random = seed.of(DITHER).of(index as u64);
         let now = clock.instant(start);
         let ring = match (plan, own.take_firing(index)) {
-            (Some(plan), None) => method.start(&RingStart {
-                robot,
-                plan,
-                flow: options.flow,
-                alone: world.robots().len() == 1 && !robot.others,
-                random,
-                now,
-            }),
-            (_, Some(firing)) => method.start_own(robot, firing, now),
+            (Some(plan), None) => {
+                method.start(&RingStart { robot, plan, judging: *judging, flow: options.flow, random, now })
+            }
+            (_, Some(firing)) => planned(firing, robot, judging, robot.window, now),
             // Every robot has one of the two.
             (None, None) => continue,
         };

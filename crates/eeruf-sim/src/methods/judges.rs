@@ -1,0 +1,139 @@
+//! The judges of simulated rings: core's own, and what a robot's sketch takes for one.
+
+use eeruf_core::{
+    EchoFilter, Micros, ReadingKind, RingConfig, RingError,
+    flow::BeliefSettings,
+    judge::{Agreement, Heard, Judge, MOfN, MedianFilter, NoSounds, Sounds, Verdict},
+};
+
+use crate::world::Robot;
+
+/// The most readings that a median is taken of.
+pub(crate) const MAX_MEDIAN: usize = 15;
+
+/// A judge of a method's readings.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum JudgeKind {
+    /// Every echo is accepted.
+    EveryEcho,
+    /// Readings that agree with one of the sensor's two readings before.
+    TwoOfThree,
+    /// The median of the last few.
+    Median,
+    /// Consecutive readings that agree.
+    Agreement,
+    /// Consecutive readings that agree and that nothing foreign explains.
+    Unexplained,
+    /// What fits the belief of a flow ring, or agrees and is not explained.
+    Belief,
+    /// Every echo, or consecutive readings that agree: as the robot's sketch says.
+    AsSketched,
+}
+
+impl JudgeKind {
+    /// Returns true if it asks what explains a reading.
+    pub(super) const fn asks(self) -> bool {
+        matches!(self, Self::Unexplained | Self::Belief)
+    }
+
+    /// The judge of a robot, which may fire by another method than the one that is `asked` for: that one's, unless it
+    /// compares consecutive readings as this one does, or is only what a filter of the caller's own is told.
+    pub(crate) fn of_robot(self, asked: Self, robot: &Robot, has_filter: bool) -> Self {
+        match asked {
+            Self::AsSketched if robot.firing.consecutive == 1 && !has_filter => Self::EveryEcho,
+            Self::EveryEcho | Self::TwoOfThree | Self::Median if !has_filter => asked,
+            _ if self.asks() => self,
+            _ => Self::Agreement,
+        }
+    }
+}
+
+/// A judge, and what it is set up with.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Judging {
+    pub(crate) kind: JudgeKind,
+    /// Number of readings of a median, 1 to [`MAX_MEDIAN`].
+    pub(crate) median_of: u8,
+    /// Settings of a flow ring's belief.
+    pub(crate) belief: BeliefSettings,
+    /// Number of echoes of a firing that a sensor reports.
+    pub(crate) echoes: usize,
+}
+
+/// A judge under way, for all but flow rings.
+pub(super) enum RunningJudge<const K: usize, const E: usize> {
+    Compares(EchoFilter<K, E>),
+    Agrees(Agreement<EchoFilter<K, E>>),
+    Votes(Agreement<MOfN<K, 3>>),
+    Median(MedianFilter<K, MAX_MEDIAN>),
+}
+
+impl<const K: usize, const E: usize> RunningJudge<K, E> {
+    pub(super) fn new(judging: &Judging, config: &RingConfig) -> Result<Self, RingError> {
+        let t_delta = config.t_delta.unwrap_or_default();
+        let filter = EchoFilter::new(t_delta, config.consecutive)?;
+        let votes = |m, n| MOfN::new(m, n, t_delta).map(|votes| Self::Votes(Agreement(votes)));
+        match judging.kind {
+            JudgeKind::EveryEcho => votes(1, 1),
+            JudgeKind::TwoOfThree => votes(2, 3),
+            JudgeKind::Median => MedianFilter::new(judging.median_of, t_delta).map(Self::Median),
+            kind if kind.asks() => Ok(Self::Compares(filter)),
+            _ => Ok(Self::Agrees(Agreement(filter))),
+        }
+    }
+}
+
+/// Asks whichever it is.
+macro_rules! each {
+    ($running:ident, $judge:ident => $answer:expr) => {
+        match $running {
+            RunningJudge::Compares($judge) => $answer,
+            RunningJudge::Agrees($judge) => $answer,
+            RunningJudge::Votes($judge) => $answer,
+            RunningJudge::Median($judge) => $answer,
+        }
+    };
+}
+
+impl<const K: usize, const E: usize> Judge for RunningJudge<K, E> {
+    fn t_delta(&self) -> Micros {
+        each!(self, judge => judge.t_delta())
+    }
+
+    fn judge(&mut self, heard: &Heard<'_>, sounds: &impl Sounds) -> Verdict {
+        each!(self, judge => judge.judge(heard, sounds))
+    }
+
+    fn skip(&mut self, heard: &Heard<'_>, kind: ReadingKind) -> Verdict {
+        match self {
+            Self::Compares(judge) => judge.skip(heard, kind),
+            Self::Agrees(judge) => judge.skip(heard, kind),
+            // A loop without a filter takes an early edge for an echo.
+            Self::Votes(_) | Self::Median(_) => self.judge(heard, &NoSounds),
+        }
+    }
+
+    fn age(&self, sensor: u8) -> Option<u16> {
+        each!(self, judge => judge.age(sensor))
+    }
+
+    fn is_clear(&self, sensor: u8) -> bool {
+        each!(self, judge => judge.is_clear(sensor))
+    }
+
+    fn stands_for(&self, sensor: u8) -> u8 {
+        each!(self, judge => judge.stands_for(sensor))
+    }
+
+    fn forget(&mut self, sensor: u8) {
+        each!(self, judge => Judge::forget(judge, sensor));
+    }
+
+    fn restart(&mut self) {
+        each!(self, judge => judge.restart());
+    }
+
+    fn fired_later(&mut self, sensor: u8, later_us: i32) {
+        each!(self, judge => judge.fired_later(sensor, later_us));
+    }
+}

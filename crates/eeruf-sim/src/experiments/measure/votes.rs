@@ -2,9 +2,13 @@
 
 use core::fmt;
 
+use eeruf_core::{
+    Instant, Micros, Phase, ReadingKind,
+    judge::{self, Firing, Judge, MOfN, MedianFilter, NoSounds},
+};
+
 use super::heard::Heard;
-use super::things::agree;
-use crate::results::Cause;
+use crate::results::{Cause, DEFAULT_TOLERANCE_US};
 
 /// Votes that a reading needs to be believed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -56,47 +60,43 @@ pub(super) struct Believed {
 
 /// The beliefs of one sensor, from its readings in order: each ends when the next begins, or when its life is over.
 /// `holds_s` is how long nothing replaces one.
-pub(super) fn believed(heard: &[Heard], setting: Setting, [life_s, holds_s]: [f64; 2]) -> Vec<Believed> {
+pub(super) fn believed(heard: &[Heard], setting: Setting, life_s: [f64; 2]) -> Vec<Believed> {
+    let near = Micros::new(DEFAULT_TOLERANCE_US as u32);
+    match setting {
+        Setting::Votes { m, n } => MOfN::<1, 5>::new(m as u8, n as u8, near).map(|votes| by(votes, heard, life_s)),
+        Setting::Median => MedianFilter::<1>::new(3, near).map(|median| by(median, heard, life_s)),
+    }
+    // At most five readings vote.
+    .unwrap_or_default()
+}
+
+/// The beliefs by one of core's judges, to whom a reading that its way does not believe says nothing.
+fn by(mut judge: impl Judge, heard: &[Heard], [life_s, holds_s]: [f64; 2]) -> Vec<Believed> {
     let mut beliefs: Vec<Believed> = vec![];
-    // The last five readings, the newest first; none for one that its way does not believe.
-    let mut last: [Option<(f64, Cause)>; 5] = [None; 5];
     for (number, reading) in heard.iter().enumerate() {
-        for (t_echo_us, _) in last.iter_mut().flatten() {
-            *t_echo_us += if setting == Setting::Median { 0.0 } else { reading.change_us };
-        }
-        last.rotate_right(1);
-        last[0] = reading.accepted.then_some((reading.t_echo_us, reading.cause));
-        let says = match (setting, last[0]) {
-            (Setting::Votes { m, n }, Some((t_echo_us, cause))) => {
-                let agrees = |other: &&(f64, Cause)| agree(other.0, t_echo_us);
-                let votes = last.iter().take(n).flatten().filter(agrees).count();
-                (votes >= m).then_some((t_echo_us, cause))
-            }
-            (Setting::Median, _) if number >= 2 => {
-                let mut three: Vec<_> = last.iter().take(3).flatten().copied().collect();
-                three.sort_by(|one, other| beyond(one.0).total_cmp(&beyond(other.0)));
-                three.get(1).copied().filter(|_| three.len() == 3)
-            }
-            _ => None,
+        let echoes = [Micros::new(reading.t_echo_us.round() as u32)];
+        let said = judge::Heard {
+            sensor: 0,
+            fired: Instant::default(),
+            since_before: Micros::ZERO,
+            echoes: if reading.t_echo_us.is_nan() { &[] } else { &echoes },
+            firing: Firing { expected_change_us: reading.change_us as i32, ..Firing::new(Phase::A) },
+            t_delta: judge.t_delta(),
         };
-        let Some((t_echo_us, cause)) = says else { continue };
+        let skipped = ReadingKind::Rejected;
+        let verdict = if reading.accepted { judge.judge(&said, &NoSounds) } else { judge.skip(&said, skipped) };
+        if !matches!(verdict.kind, ReadingKind::Accepted | ReadingKind::Clear) {
+            continue;
+        }
+        let Heard { t_echo_us, cause, .. } = heard[number - usize::from(judge.stands_for(0))];
         if let Some(before) = beliefs.last_mut() {
             if reading.ready_s < before.heard.ready_s + holds_s {
                 continue;
             }
             before.until_s = before.until_s.min(reading.ready_s);
         }
-        beliefs.push(Believed {
-            heard: *reading,
-            t_echo_us,
-            cause,
-            until_s: (reading.fired_s + life_s).max(reading.ready_s),
-        });
+        let until_s = (reading.fired_s + life_s).max(reading.ready_s);
+        beliefs.push(Believed { heard: *reading, t_echo_us, cause, until_s });
     }
     beliefs
-}
-
-/// Silence as a time beyond all echoes.
-fn beyond(t_echo_us: f64) -> f64 {
-    if t_echo_us.is_nan() { f64::INFINITY } else { t_echo_us }
 }

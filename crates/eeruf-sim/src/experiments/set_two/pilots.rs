@@ -47,7 +47,6 @@ impl Pilots {
     pub fn of(&self, method: Method) -> Piloting {
         let published = Piloting { vfh: Vfh::default(), turn_gain: 3.0, range_m: 2.0, growth: false };
         match *self {
-            // A method that has no pilot of its own yet is steered as published; a test finds it.
             Self::Own => OWN.iter().find(|(of, _)| *of == steered_as(method)).map_or(published, |(_, own)| *own),
             Self::Shared => Piloting::SHARED,
             Self::Published => published,
@@ -57,14 +56,14 @@ impl Pilots {
     }
 }
 
-/// The method whose own pilot steers, which the search finds: a method that fires as another is steered as that one is.
-pub const fn steered_as(method: Method) -> Method {
+/// The method whose own pilot steers, which the search finds: a method that fires as another is steered as that one is,
+/// and one without a pilot of its own as one by one.
+pub fn steered_as(method: Method) -> Method {
     match method {
-        Method::SequentialVotes | Method::Blocking => Method::Sequential,
         Method::AdaptiveMultiEcho => Method::MultiEcho,
         Method::FlowMultiEcho => Method::Flow,
-        sketch if sketch.is_sketch() => Method::Sequential,
-        _ => method,
+        _ if OWN.iter().any(|(of, _)| *of == method) => method,
+        _ => Method::Sequential,
     }
 }
 
@@ -107,10 +106,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_method_has_exactly_one_pilot_of_its_own() {
+    fn every_method_is_steered_by_exactly_one_pilot() {
         let methods: Vec<_> = OWN.iter().map(|(method, _)| *method).collect();
         let tuned: Vec<_> = Method::ALL.into_iter().filter(|&method| steered_as(method) == method).collect();
         assert_eq!(methods, tuned);
         assert!(Method::ALL.into_iter().all(|method| methods.contains(&steered_as(method))));
+        for method in [Method::SequentialVotes, Method::Blocking, Method::Arrays, Method::Table] {
+            assert_eq!(steered_as(method), Method::Sequential);
+        }
     }
 }

@@ -3,7 +3,7 @@
 use eeruf_core::{
     EchoFilter, Instant, Micros, ReadingKind, Ring, RingConfig, RingEvent,
     flow::{Belief, BeliefSettings, InTurn, TurnSettings},
-    judge::{Agreement, Heard, Judge, Sounds, Verdict},
+    judge::{Agreement, Heard, Judge, MOfN, MedianFilter, Sounds, Verdict},
     plan::{ImmediateRefiring, Plan, ScheduledFiring},
     tables::TABLE_I_D,
 };
@@ -85,6 +85,8 @@ fn accepted<P: Plan, J: Judge>(plan: P, judge: J) -> f64 {
 #[test]
 fn own_walls_are_accepted_by_any_plan_with_any_judge() {
     let filter = || EchoFilter::<12>::new(Micros::new(200), 2).unwrap();
+    let votes = || Agreement(MOfN::<12, 3>::new(2, 3, Micros::new(200)).unwrap());
+    let median = || MedianFilter::<12>::new(3, Micros::new(200)).unwrap();
     let belief = || Belief::<12>::new(BeliefSettings::DEFAULT).unwrap();
     let scheduled = || ScheduledFiring::new(&TABLE_I_D, BEGIN);
     let immediate = || ImmediateRefiring::new(&TABLE_I_D, Micros::from_millis(40), BEGIN);
@@ -95,6 +97,11 @@ fn own_walls_are_accepted_by_any_plan_with_any_judge() {
         ("immediate, agreement", accepted(immediate(), Agreement(filter()))),
         ("in turn, belief", accepted(in_turn(), belief())),
         ("in turn, agreement", accepted(in_turn(), Agreement(filter()))),
+        ("scheduled, votes", accepted(scheduled(), votes())),
+        ("immediate, votes", accepted(immediate(), votes())),
+        ("in turn, votes", accepted(in_turn(), votes())),
+        ("scheduled, median", accepted(scheduled(), median())),
+        ("in turn, median", accepted(in_turn(), median())),
     ];
     for (name, share) in shares {
         assert!(share > 0.85, "{name}: {share}");

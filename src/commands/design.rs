@@ -5,15 +5,14 @@ use std::time::{Duration, Instant};
 
 use clap::ValueEnum;
 use clap::builder::PossibleValue;
-use eeruf_core::flow::{BeliefSettings, TurnSettings};
+use eeruf_core::Micros;
 use eeruf_core::search::{Progress, SearchError};
-use eeruf_core::{EachSensor, Micros, SensorLimits};
 use eeruf_design::atlas::ATLAS;
 use eeruf_design::{CURVE_BUDGET, FoundJson, Need, RealPeriod, RingDesign, RingSpec, Search, real_budget};
 use eeruf_files::emit::{self, Flow};
-
+use eeruf_logs::FlowSettings;
+use eeruf_sim::Method;
 use eeruf_sim::experiments::rooms::RoomWay;
-use eeruf_sim::{Method, Robot};
 use serde::Serialize;
 
 use super::arguments::{picture, seconds};
@@ -22,6 +21,7 @@ use super::rooms::{self, RoomArgs};
 use super::{Answer, show};
 use crate::console::{error as console_error, note, print, print_line, tell};
 use crate::files::error::InputError;
+use crate::files::flow::of_ring;
 use crate::files::ring::read_ring;
 use crate::files::write::write;
 use crate::report::design::describe;
@@ -281,35 +281,11 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
 
 /// The source text of a ring that fires by flow, as it was judged in rooms.
 fn flow_source(spec: &RingSpec, form: emit::Form, way: &RoomWay) -> String {
-    let &Robot { ref sensors, window, blanking, audible, ref limits, ref together, .. } = &way.robot;
-    // A sensor that fires while its last sound is heard would take old echoes for new ones.
-    let rest = way.robot.module_rest().max(window).max(audible);
-    let mut turns = TurnSettings::for_module(1, window, rest, blanking);
-    if audible > Micros::ZERO {
-        turns.most = audible;
-        turns.least = Micros::new(audible.as_micros() / 11 * 2);
-    }
-    let needs = spec.problem().requirements;
-    let turns = turns.keeping(&needs);
-    let mut belief = BeliefSettings { alone: !way.robot.others, ..BeliefSettings::DEFAULT };
-    belief.top_speed_mm_s = spec.speed_mm_s.unwrap_or(0).try_into().unwrap_or(u16::MAX);
-    let shared_lines = needs.uneven.map_or(&[][..], |uneven| uneven.shared_lines);
-    let is_alike = together.is_empty() && shared_lines.is_empty() && limits.iter().all(|of| of.window == window);
-    let own_limits = if is_alike {
-        EachSensor::NONE
-    } else {
-        // No more counts than what its judge compares by.
-        let t_delta = belief.t_delta;
-        EachSensor::<64>::for_flow(
-            std::array::from_fn(|sensor| SensorLimits {
-                window: limits.get(sensor).map_or(window, |of| of.window.min(window)),
-                t_delta: limits.get(sensor).map_or(t_delta, |of| of.t_delta.min(t_delta)),
-            }),
-            together,
-        )
-    };
-    let (turns, belief, sensors, limits) = (&turns, &belief, sensors.len(), &own_limits);
-    form.flow(&Flow { turns, belief, sensors, window, blanking, limits, shared_lines }, &spec.modules)
+    let (turns, of) = of_ring(spec, &way.robot);
+    let FlowSettings { window, blanking, ref belief, ref limits, .. } = of;
+    let shared_lines = spec.problem().requirements.uneven.map_or(&[][..], |uneven| uneven.shared_lines);
+    let sensors = way.robot.sensors.len();
+    form.flow(&Flow { turns: &turns, belief, sensors, window, blanking, limits, shared_lines }, &spec.modules)
 }
 
 /// Answers `--period`.

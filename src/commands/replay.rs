@@ -1,24 +1,29 @@
 //! `eeruf replay`: what the filter makes of recorded readings.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use eeruf_core::{Micros, ReadingKind};
 use eeruf_files::Kind;
-use eeruf_logs::{Counted, Judging, McapWriter, RangeJudge, Report, read_log};
+use eeruf_logs::{Counted, Judging, McapWriter, RangeJudge, Report, read_log, replay_flow};
 
-use super::Answer;
 use super::arguments::picture;
 use super::log_args::{LogArgs, left_out, tell_damage, warn_of_log};
+use super::{Answer, show};
 use crate::console::{print_line, tell};
 use crate::files::error::InputError;
-use crate::files::implausible::warn;
+use crate::files::flow::read_flow;
+use crate::files::implausible::{read_firings, warn};
+use crate::files::write::write;
 use crate::report::draw;
 use crate::report::json::to_json;
 use crate::report::replay::{Column, Counts, Firing, Replay, table};
+use crate::report::replay_flow::{FlowReplay, rows};
 
 /// Run the filter over a log of real readings: which would it have accepted?
 ///
-/// The log is whatever `eeruf logs` reads: MCAP, ROS 1 and ROS 2 bags, tables, lines of pairs, JSON. Of a damaged log
+/// With --ring the log is one of firings, as `eeruf diagnose` reads it, of a ring that fires by flow: each reading is
+/// judged again by what was fired, with the robot's motion from a column `g`, and compared with what the ring made of
+/// it, if the log says that. Without, it is whatever `eeruf logs` reads: MCAP, ROS 1 and ROS 2 bags, tables, lines of pairs, JSON. Of a damaged log
 /// all is read that can be, what cannot is said, and the exit code is 2. A gap in a sensor's times, and a clock that
 /// steps back, start its comparison over. The last line says how the sensors fire, and what agreement proves for that.
 #[derive(clap::Args)]
@@ -27,8 +32,11 @@ pub(crate) struct Args {
     #[arg(value_name = "LOG")]
     file: PathBuf,
     /// T_delta in microseconds: consecutive readings that differ by no more are near-identical
-    #[arg(long, value_name = "US")]
+    #[arg(long, value_name = "US", default_value_t = 0, required_unless_present = "ring", conflicts_with = "ring")]
     t_delta_us: u32,
+    /// The ring that fired by flow, or its scene, for a log of firings
+    #[arg(long, value_name = "RING.toml|SCENE.toml", conflicts_with_all = ["consecutive", "max_speed", "svg"])]
+    ring: Option<PathBuf>,
     /// Number of consecutive readings that must agree
     #[arg(long, default_value_t = 2, value_name = "N", value_parser = clap::value_parser!(u8).range(2..=8))]
     consecutive: u8,
@@ -40,8 +48,9 @@ pub(crate) struct Args {
     #[command(flatten)]
     log: LogArgs,
     /// Write the log's ranges as MCAP, and beside each topic `TOPIC/accepted`: the accepted ranges, +Inf where nothing
-    /// is in range, -Inf for too close (REP 117), and no message for what was rejected
-    #[arg(long, value_name = "FILE.mcap")]
+    /// is in range, -Inf for too close (REP 117), and no message for what was rejected; of firings, CSV with what is
+    /// made of each reading now, and the echo that is believed since
+    #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
     /// Draw what happened to each sensor over time, as SVG or, if the name ends in .png, as PNG
     #[arg(long, value_name = "FILE", value_parser = picture())]
@@ -60,6 +69,9 @@ fn speed(text: &str) -> Result<f64, String> {
 
 pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     Kind::expect_log(&args.file)?;
+    if let Some(ring) = &args.ring {
+        return run_flow(args, ring);
+    }
     if args.t_delta_us == 0 {
         let message = "0; expected 20 to 20000; no two echoes of one wall come at the same microsecond";
         warn(InputError::new("--t-delta-us", message))?;
@@ -90,6 +102,24 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     }
     tell_damage(&args.file, &report)?;
     Ok(Answer::Yes)
+}
+
+/// Judges the firings of a flow ring again.
+fn run_flow(args: &Args, ring: &Path) -> Result<Answer, InputError> {
+    let log = read_firings(&args.file)?;
+    if log.lacks_instants {
+        return Err(InputError::new(&args.file, "no instants of firing; expected a column `fired_us`"));
+    }
+    let replayed = replay_flow(&log, &read_flow(ring)?).map_err(|error| InputError::new(ring, error))?;
+    if let Some(out) = &args.out {
+        write(out, rows(&log, &replayed))?;
+    }
+    let flow = FlowReplay::of(&log, &replayed);
+    show(args.json, || &flow, || flow.table(&args.file))?;
+    match &log.damage {
+        Some(damage) => Err(InputError::new(&args.file, damage)),
+        None => Ok(Answer::Yes),
+    }
 }
 
 fn judging(args: &Args) -> Result<Judging, InputError> {

@@ -19,7 +19,7 @@ pub fn firing(readings: &Readings, k: usize) -> Firing {
         period: readings.period[k],
         phase: readings.phase[k],
         t_echo_us: (!readings.earliest_us[k].is_nan()).then(|| readings.earliest_us[k] as u32),
-        rejected: Some(readings.kind[k].is_rejected()),
+        reading: Some(readings.kind[k]),
         g_us_ms: None,
     }
 }
@@ -37,19 +37,19 @@ pub(crate) fn firing_log(readings: &Readings) -> FiringLog {
     FiringLog::new(CLOCK, firings.collect())
 }
 
-/// The rate at which readings change with the sensor's motion over the last 20 ms or more before this one, in
-/// microseconds for each millisecond; 0 for its first reading.
+/// The rate at which readings change with the sensor's motion over the last 20 ms or more before this one, or after it
+/// for its first one, in microseconds for each millisecond.
 fn g_us_ms(readings: &Readings, k: usize) -> f32 {
     const WITHIN_S: f64 = 0.02;
     /// Arm at which a wall moves when the robot turns, in metres, and the speed of sound in m/s, as rings take them.
     const LEVER_M: f64 = 0.5;
     const SOUND_M_S: f64 = 343.0;
     let Readings { fired_s, x_m, y_m, heading_rad, .. } = readings;
-    let is_before = |&j: &usize| readings.id(j) == readings.id(k) && fired_s[k] - fired_s[j] >= WITHIN_S;
-    let Some(j) = (0..k).rev().find(is_before) else { return 0.0 };
+    let is_apart = |&j: &usize| readings.id(j) == readings.id(k) && (fired_s[k] - fired_s[j]).abs() >= WITHIN_S;
+    let Some(j) = (0..k).rev().find(is_apart).or_else(|| (k..readings.len()).find(is_apart)) else { return 0.0 };
     let turned = (heading_rad[k] - heading_rad[j]).sin().abs();
     let moved_m = (x_m[k] - x_m[j]).hypot(y_m[k] - y_m[j]) + LEVER_M * turned;
-    (2e3 * moved_m / SOUND_M_S / (fired_s[k] - fired_s[j])) as f32
+    (2e3 * moved_m / SOUND_M_S / (fired_s[k] - fired_s[j]).abs()) as f32
 }
 
 /// Writes every firing of the first robot, as MCAP if the file's name ends so, else as CSV.

@@ -4,6 +4,7 @@
 
 pub(crate) mod error;
 pub(crate) mod firings;
+pub(crate) mod flow;
 pub(crate) mod implausible;
 pub(crate) mod map;
 pub(crate) mod mcap;

@@ -44,7 +44,7 @@ pub(crate) fn simulate(world: &World, plan: SurveyPlan) -> Result<FiringLog, Pat
                         period: slot,
                         phase: 0,
                         t_echo_us: heard.filter(|&heard| heard < plan.window()).map(Micros::as_micros),
-                        rejected: None,
+                        reading: None,
                         g_us_ms: None,
                     });
                 }

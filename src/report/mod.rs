@@ -12,6 +12,7 @@ pub(crate) mod paths;
 pub(crate) mod percent;
 pub(crate) mod questions;
 pub(crate) mod replay;
+pub(crate) mod replay_flow;
 pub(crate) mod rooms;
 pub(crate) mod search;
 pub(crate) mod study;

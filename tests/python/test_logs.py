@@ -306,6 +306,19 @@ def test_judges_are_those_of_the_program(judge: Any, words: list[str], tmp_path:
     assert judged.crosstalk.verdict == json.loads(program(["logs", study, "--json"]))["crosstalk"]["verdict"]
 
 
+@pytest.mark.parametrize(("scene", "ending"), [("alcove-hc-sr04", "csv"), ("alcove-hc-sr04", "mcap"), ("lab", "csv")])
+def test_log_of_a_flow_ring_is_judged_again_as_it_was(scene: str, ending: str, tmp_path: Path) -> None:
+    ring, log, out = tmp_path / "scene.toml", tmp_path / f"log.{ending}", tmp_path / "again.csv"
+    ring.write_text(eeruf.example(f"scenes/{scene}.toml"))
+    program(["study", ring, "--method", "flow", "--periods", "300", "--log", log])
+    said = json.loads(program(["replay", log, "--ring", ring, "--out", out, "--json"]))
+    assert said["compared"] == said["alike"] == sum(sensor["readings"] for sensor in said["sensors"]) > 500
+    again = json.loads(program(["replay", out, "--ring", ring, "--json"]))
+    assert [sensor["kinds"] for sensor in again["sensors"]] == [sensor["kinds"] for sensor in said["sensors"]]
+    believed = [line.rsplit(",", 1)[1] for line in out.read_text().splitlines()[2:]]
+    assert 0 < sum(us != "" for us in believed) <= said["compared"]
+
+
 @pytest.mark.parametrize("speed_m_s", [1.5, 3.0])
 @pytest.mark.parametrize("room", [1025, 1035, 1039])
 def test_no_healthy_sensor_of_a_fast_robot_is_blamed(room: int, speed_m_s: float) -> None:

@@ -8,7 +8,7 @@ use ::mcap::sans_io::linear_reader::{LinearReadEvent, LinearReader, LinearReader
 use serde_json::{Value, json};
 
 use crate::bytes::Bytes;
-use crate::firings::{Firing, FiringLog, MAX_SENSORS, OF_HOPPING, was_rejected};
+use crate::firings::{Firing, FiringLog, MAX_SENSORS, OF_HOPPING, kind_of};
 use crate::message::cdr_bytes;
 use eeruf_files::FileError;
 
@@ -188,7 +188,7 @@ fn firing(message: &Value) -> Option<Firing> {
         phase: u8::try_from(whole("phase")?).ok()?,
         t_echo_us,
         g_us_ms: number("g").map(|g| g as f32),
-        rejected: message.get("reading").and_then(Value::as_str).map(was_rejected),
+        reading: message.get("reading").and_then(Value::as_str).and_then(kind_of),
     })
 }
 

@@ -4,7 +4,7 @@
 use std::io::Read;
 use std::path::Path;
 
-use crate::firings::{Firing, FiringLog, MAX_SENSORS, OF_HOPPING, was_rejected};
+use crate::firings::{Firing, FiringLog, MAX_SENSORS, OF_HOPPING, kind_of};
 use crate::text::{Line, Separator, Source, is_comment, json, separated};
 use crate::value::{is_no_echo, number, prefix};
 use eeruf_files::FileError;
@@ -142,7 +142,7 @@ impl Header {
             period: text(period).parse().map_err(|_| bad(period, "a number from 0"))?,
             phase: text(phase).parse().map_err(|_| bad(phase, "0 to 255"))?,
             t_echo_us,
-            rejected: Some(made).filter(|made| !made.is_empty()).map(was_rejected),
+            reading: kind_of(made),
         };
         Ok((firing, fired_us, sends))
     }

@@ -42,8 +42,8 @@ pub struct Firing {
     pub phase: u8,
     /// From firing to the first echo, in microseconds; `None` without echo.
     pub t_echo_us: Option<u32>,
-    /// True if the ring rejected the reading or found it ambiguous, if the log says what it made of it.
-    pub rejected: Option<bool>,
+    /// What the ring made of the reading, if the log says it.
+    pub reading: Option<ReadingKind>,
     /// The rate at which readings change with the robot's motion, in microseconds for each millisecond, if it is said.
     pub g_us_ms: Option<f32>,
 }
@@ -84,18 +84,14 @@ impl Firing {
     }
 
     /// The ring's verdict on the reading, as logs spell it.
-    pub(crate) fn reading(&self) -> &'static str {
-        match self.rejected {
-            Some(true) => "rejected",
-            Some(false) => "other",
-            None => "",
-        }
+    pub(crate) fn spelled(&self) -> &'static str {
+        self.reading.map_or("", ReadingKind::as_str)
     }
 }
 
-/// Returns true if a reading that logs spell so was compared and is not believed.
-pub(crate) fn was_rejected(made: &str) -> bool {
-    ReadingKind::ALL.into_iter().any(|kind| kind.as_str() == made && kind.is_rejected())
+/// The kind that logs spell so.
+pub(crate) fn kind_of(spelled: &str) -> Option<ReadingKind> {
+    ReadingKind::ALL.into_iter().find(|kind| kind.as_str() == spelled)
 }
 
 /// The warning of a log of earlier versions.
@@ -130,7 +126,7 @@ impl FiringLog {
             .collect()
     }
 
-    /// Writes the log as it is read. What the ring made of a reading is written as `rejected` or `other`.
+    /// Writes the log as it is read.
     ///
     /// # Errors
     /// If it cannot be written.
@@ -146,7 +142,7 @@ impl FiringLog {
                 let Firing { sensor, fired_us, period, phase, t_echo_us, g_us_ms, .. } = *firing;
                 let fired_us = if self.lacks_instants { String::new() } else { fired_us.to_string() };
                 let echo = t_echo_us.map(|us| us.to_string()).unwrap_or_default();
-                let reading = firing.reading();
+                let reading = firing.spelled();
                 write!(output, "{sensor},{fired_us},{period},{phase},{echo},{reading}")?;
                 match g_us_ms {
                     Some(g) => write!(output, ",{g}")?,

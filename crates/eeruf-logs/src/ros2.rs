@@ -190,7 +190,7 @@ pub(crate) fn firing(out: &mut Cdr, at_ns: u64, clock: &str, firing: &Firing) {
     out.u8(phase);
     out.bool(t_echo_us.is_some());
     out.u32(t_echo_us.unwrap_or(0));
-    out.text(firing.reading());
+    out.text(firing.spelled());
     out.f32s([g_us_ms.unwrap_or(-1.0)]);
 }
 

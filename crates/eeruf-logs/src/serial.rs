@@ -128,7 +128,7 @@ pub(crate) fn firings(input: impl Read, file: &Path) -> Result<FiringLog, FileEr
             period: firing.period,
             phase: firing.phase,
             t_echo_us: firing.t_echo.map(eeruf_core::Micros::as_micros),
-            rejected: Some(firing.kind.is_rejected()),
+            reading: Some(firing.kind),
             g_us_ms: None,
         });
     });

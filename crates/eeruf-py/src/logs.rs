@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use eeruf_core::ReadingKind;
 use eeruf_logs::{Diagnosis, Firing, FiringLog, FoundPath, PathSettings, Settings};
 use numpy::PyReadonlyArray1;
 use pyo3::{create_exception, prelude::*, types::PyDict};
@@ -99,7 +100,10 @@ pub(crate) fn read_firings<'py>(source: &Bound<'py, PyAny>) -> PyResult<Bound<'p
     let rows = log.firings.iter().map(|row| (row, true)).chain(log.listened.iter().map(|row| (row, false)));
     let rows: Vec<_> = rows.collect();
     let out = fired(py, rows.iter().map(|row| row.0))?;
-    out.set_item("rejected", read_only(py, rows.iter().map(|row| row.0.rejected.map_or(-1, i64::from)))?)?;
+    out.set_item(
+        "rejected",
+        read_only(py, rows.iter().map(|row| row.0.reading.map_or(-1, |kind| kind.is_rejected().into())))?,
+    )?;
     out.set_item("sends", read_only(py, rows.iter().map(|row| row.1))?)?;
     out.set_item("clock", log.clock)?;
     out.set_item("damage", log.damage)?;
@@ -163,7 +167,7 @@ fn log_of(columns: &Columns<'_>) -> PyResult<(FiringLog, Vec<usize>)> {
             period: u32::try_from(period[row]).map_err(|_| bad("period", &period[row], "0 to 4294967295"))?,
             phase: u8::try_from(phase[row]).map_err(|_| bad("phase", &phase[row], "0 to 255"))?,
             t_echo_us: (!echo.is_nan()).then(|| echo.round() as u32),
-            rejected: (rejected[row] >= 0).then_some(rejected[row] == 1),
+            reading: (rejected[row] == 1).then_some(ReadingKind::Rejected),
             g_us_ms: None,
         };
         if sends[row] {

@@ -6,6 +6,7 @@ mod text;
 
 use std::path::Path;
 
+use eeruf_core::ReadingKind;
 use eeruf_logs::{Alignment, Diagnosis, FiringLog, FoundPath, Timing};
 
 pub(crate) use json::json;
@@ -43,8 +44,8 @@ impl Found<'_> {
     /// Rejected readings, if the log says which are, and how many of them are surely another sensor's sound.
     fn rejected(&self) -> Option<(usize, usize)> {
         let firings = || self.log.firings.iter().zip(&self.diagnosis.named);
-        firings().any(|(firing, _)| firing.rejected.is_some()).then(|| {
-            let rejected = || firings().filter(|(firing, _)| firing.rejected == Some(true));
+        firings().any(|(firing, _)| firing.reading.is_some()).then(|| {
+            let rejected = || firings().filter(|(firing, _)| firing.reading.is_some_and(ReadingKind::is_rejected));
             let named = rejected().filter(|(firing, named)| named.is_some_and(|named| named.sender != firing.sensor));
             (rejected().count(), named.count())
         })

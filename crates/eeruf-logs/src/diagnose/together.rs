@@ -125,7 +125,7 @@ mod tests {
                     period,
                     phase: 0,
                     t_echo_us,
-                    rejected: None,
+                    reading: None,
                     g_us_ms: None,
                 });
             }

@@ -83,7 +83,7 @@ impl World {
                 period: period as u32,
                 phase: phase as u8,
                 t_echo_us: heard.map(|edge| (edge.0 - at) as u32),
-                rejected: None,
+                reading: None,
                 g_us_ms: None,
             });
             truth.push(sender);
@@ -199,7 +199,7 @@ fn timing_finds_drift_and_jitter_and_refuses_lags_that_moved() {
             let due = f64::from(period) * 60_000.0 + f64::from(fires_at(sensor, phase).unwrap());
             // 40 millionths of drift, and up to 60 us of jitter, uniform.
             let fired_us = (due * 1.000_04 + random.below(61) as f64).round() as i64;
-            firings.push(Firing { sensor, fired_us, period, phase, t_echo_us: None, rejected: None, g_us_ms: None });
+            firings.push(Firing { sensor, fired_us, period, phase, t_echo_us: None, reading: None, g_us_ms: None });
         }
     }
     let mut log = FiringLog::new("test", firings);

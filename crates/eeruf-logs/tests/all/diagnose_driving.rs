@@ -67,7 +67,7 @@ fn driven(seed: u64, periods: i64, phases: i64) -> (FiringLog, Vec<Option<Sent>>
             period: period as u32,
             phase: phase as u8,
             t_echo_us: heard.map(|edge| (edge.0 - at) as u32),
-            rejected: None,
+            reading: None,
             g_us_ms: None,
         });
         truth.push(heard.map(|edge| edge.1));

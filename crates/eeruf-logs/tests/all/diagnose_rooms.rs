@@ -48,7 +48,7 @@ fn found(place: Place, fault: Option<(FaultKind, &[u8])>) -> Vec<Fault> {
         period: readings.period[k],
         phase: readings.phase[k],
         t_echo_us: (!readings.earliest_us[k].is_nan()).then(|| readings.earliest_us[k] as u32),
-        rejected: Some(readings.kind[k].is_rejected()),
+        reading: Some(readings.kind[k]),
         g_us_ms: None,
     };
     let log = FiringLog::new("simulation", (0..readings.len()).map(firing).collect());

@@ -16,7 +16,7 @@ fn each_form_of_text_gives_the_same_firings() {
                  4,15000,0,1,,no_echo\n";
     let expected = read_text(comma);
     assert_eq!((expected.clock.as_str(), expected.firings.len()), ("board", 2));
-    assert_eq!((expected.firings[0].rejected, expected.firings[1].t_echo_us), (Some(true), None));
+    assert_eq!((expected.firings[0].reading, expected.firings[1].t_echo_us), (Some(ReadingKind::Rejected), None));
     let json = "{\"sensor\": 0, \"fired_us\": 15000, \"period\": 0, \"phase\": 0, \"t_echo_us\": 5872, \
                 \"reading\": \"rejected\"}\n\
                 {\"sensor\": 4, \"fired_us\": 15000, \"period\": 0, \"phase\": 1, \"t_echo_us\": null, \

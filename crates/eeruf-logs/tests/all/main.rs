@@ -12,6 +12,7 @@ mod forms_of_loggers;
 mod forms_of_programs;
 mod mutated;
 mod random;
+mod replay;
 mod survey;
 mod written;
 

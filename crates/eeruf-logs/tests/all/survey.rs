@@ -50,7 +50,7 @@ fn log(travel: &Travel, random: &mut Random, strays: i64) -> FiringLog {
                 period: slot,
                 phase: 0,
                 t_echo_us,
-                rejected: None,
+                reading: None,
                 g_us_ms: None,
             });
         }
@@ -120,7 +120,7 @@ fn listening_modules_are_surveyed_in_one_pass() {
         for receiver in 0..SENSORS {
             let first = travel[sender][receiver].iter().map(|us| us + random.below(41) - 20).min();
             let (sensor, t_echo_us) = (receiver as u8, first.map(|us| us as u32));
-            let row = Firing { sensor, fired_us: at, period: slot, phase: 0, t_echo_us, rejected: None, g_us_ms: None };
+            let row = Firing { sensor, fired_us: at, period: slot, phase: 0, t_echo_us, reading: None, g_us_ms: None };
             if receiver == sender { &mut firings } else { &mut listened }.push(row);
         }
     }

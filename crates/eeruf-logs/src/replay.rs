@@ -1,0 +1,262 @@
+//! [`replay_flow`]: a ring that fires by flow, judged again over a log of its firings.
+
+use std::collections::VecDeque;
+
+use eeruf_core::flow::{Belief, BeliefSettings};
+use eeruf_core::judge::{Explanation, Firing as Fired, Judge as _};
+use eeruf_core::plan::{Limits, OwnLimits, Plan};
+use eeruf_core::{
+    EachSensor, Instant, MAX_SENSORS, Micros, Phase, Reading, ReadingKind, Ring, RingConfig, RingError, RingEvent,
+    SensorLimits, Silence,
+};
+
+use crate::firings::{Firing, FiringLog};
+
+/// Settings of the ring whose log is judged again.
+#[derive(Clone, Copy, Debug)]
+pub struct FlowSettings {
+    /// How long sensors listen.
+    pub window: Micros,
+    /// How long they are deaf after they have fired.
+    pub blanking: Micros,
+    /// R: how long sound is heard, its tail included.
+    pub audible: Micros,
+    /// Belief.
+    pub belief: BeliefSettings,
+    /// Limits of each sensor, where they are not all alike.
+    pub limits: EachSensor<MAX_SENSORS>,
+}
+
+/// A reading as it is judged again.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Replayed {
+    /// The outcome.
+    pub kind: ReadingKind,
+    /// The echo that is believed of its sensor since.
+    pub believed: Option<Micros>,
+    /// What explains an ambiguous reading.
+    pub explained_by: Option<Explanation>,
+}
+
+/// Judges the readings of a log again, as a ring that fires by flow does: by what was fired, and when. One for each
+/// firing of the log; `None` for edges that came late, which are none.
+///
+/// What the log does not hold is taken from the readings' kinds: whether silent sensors had shown that they listened,
+/// and lines that were stuck. Firings before its beginning are not known, as if silence had come before.
+///
+/// # Errors
+/// Settings that a ring refuses.
+pub fn replay_flow(log: &FiringLog, settings: &FlowSettings) -> Result<Vec<Option<Replayed>>, RingError> {
+    let mut replayed = vec![None; log.firings.len()];
+    // An edge after the window is a row of its own.
+    let is_late = |firing: &Firing| firing.reading == Some(ReadingKind::Late);
+    let rows: Vec<_> = (0..log.firings.len()).filter(|&row| !is_late(&log.firings[row])).collect();
+    // After so long nothing of before is known.
+    let pauses = |two: &[usize]| log.firings[two[1]].fired_us - log.firings[two[0]].fired_us > 1 << 29;
+    let mut from = 0;
+    while from < rows.len() {
+        let pause = rows[from..].windows(2).position(pauses);
+        let to = pause.map_or(rows.len(), |pause| from + pause + 1);
+        stretch(log, &rows[from..to], settings, &mut replayed)?;
+        from = to;
+    }
+    Ok(replayed)
+}
+
+/// A stretch without a long pause.
+fn stretch(
+    log: &FiringLog,
+    rows: &[usize],
+    settings: &FlowSettings,
+    replayed: &mut [Option<Replayed>],
+) -> Result<(), RingError> {
+    let &FlowSettings { window, blanking, audible, belief, limits } = settings;
+    let firing = |place: usize| &log.firings[rows[place]];
+    let plan = Recorded {
+        firings: rows.iter().map(|&row| (instant(log.firings[row].fired_us), log.firings[row].sensor)).collect(),
+        periods: rows.iter().map(|&row| log.firings[row].period).collect(),
+        next: 0,
+        ended: false,
+        sensors: log.sensors(),
+        window,
+        audible,
+        limits,
+    };
+    let config = RingConfig::new().with_window(window).with_blanking(blanking).with_audible(audible);
+    let config = config.with_path_change(belief.path_change);
+    let begins = instant(firing(0).fired_us);
+    let judge = Belief::<MAX_SENSORS>::new(belief)?;
+    let mut ring = Ring::<_, _, MAX_SENSORS, 1, 3>::judged_by(plan, judge, config, begins)?;
+    let silence = silence_of(log, belief.hold);
+    ring.set_silence(silence);
+    // The firings whose readings are awaited, by sensor, and the edges to come in order of time.
+    let mut awaited = [None; MAX_SENSORS];
+    let mut edges = VecDeque::<(i64, u8)>::new();
+    let (mut next, mut now_us, last) = (0, firing(0).fired_us, firing(rows.len() - 1).fired_us);
+    loop {
+        let due = now_us + i64::from(ring.next_deadline().since(instant(now_us)).as_micros().cast_signed()).max(0);
+        let edge = edges.front().map(|edge| edge.0);
+        now_us = edge.map_or(due, |edge| edge.min(due));
+        if next == rows.len() && (edges.is_empty() && awaited.iter().all(Option::is_none) || now_us > last + (1 << 29))
+        {
+            return Ok(());
+        }
+        let now = instant(now_us);
+        while let Some((_, sensor)) = edges.pop_front_if(|edge| edge.0 <= now_us) {
+            _ = ring.echo(sensor, now);
+        }
+        while let Some(event) = ring.poll(now) {
+            match event {
+                RingEvent::Fire { sensor, .. } => {
+                    let of = firing(next);
+                    awaited[usize::from(sensor)] = Some(rows[next]);
+                    if let Some(echo) = of.t_echo_us {
+                        let at = of.fired_us + i64::from(echo);
+                        let place = edges.partition_point(|edge| edge.0 <= at);
+                        edges.insert(place, (at, sensor));
+                    }
+                    told(&mut ring, of, silence, now);
+                    next += 1;
+                }
+                RingEvent::Reading(Reading { sensor, kind, explained_by, .. }) => {
+                    if let Some(row) = awaited[usize::from(sensor)].take() {
+                        let believed = ring.judge().believed(sensor);
+                        replayed[row] = Some(Replayed { kind, believed, explained_by });
+                    }
+                }
+                RingEvent::PeriodEnded(_) => {}
+            }
+        }
+    }
+}
+
+/// Tells the ring what its caller did when this sensor fired.
+fn told(
+    ring: &mut Ring<Recorded, Belief<MAX_SENSORS>, MAX_SENSORS, 1, 3>,
+    of: &Firing,
+    silence: Silence,
+    now: Instant,
+) {
+    /// `v = g c / 2`, in mm/s, of a rate in microseconds for each millisecond, as logs have it.
+    const MM_S: f32 = 171.5;
+    if let Some(g) = of.g_us_ms {
+        ring.moving((g * MM_S).round() as u32, 0, now);
+    }
+    // The ring has the sensor: it has just fired it.
+    if of.reading == Some(ReadingKind::Stuck) {
+        _ = ring.stuck(of.sensor);
+    } else if silence == Silence::NeedsAnswer && of.reading != Some(ReadingKind::Unanswered) {
+        _ = ring.answered(of.sensor);
+    }
+}
+
+/// The meaning of silence for the ring, by its readings: it needs an answer where one was missing, and it is never free
+/// space where a sensor was silent more often in a row than belief holds, and nothing was ever clear.
+fn silence_of(log: &FiringLog, hold: u8) -> Silence {
+    let has = |kind| log.firings.iter().any(|firing| firing.reading == Some(kind));
+    if has(ReadingKind::Unanswered) {
+        return Silence::NeedsAnswer;
+    }
+    let mut silent = [0_u32; MAX_SENSORS];
+    let mut longest = 0;
+    for firing in &log.firings {
+        let silent = &mut silent[usize::from(firing.sensor)];
+        *silent = if firing.reading == Some(ReadingKind::NoEcho) { *silent + 1 } else { 0 };
+        longest = longest.max(*silent);
+    }
+    let is_never_free = !has(ReadingKind::Clear) && longest > u32::from(hold) + 1;
+    if is_never_free { Silence::NeverFree } else { Silence::Trusted }
+}
+
+/// An instant of a ring's clock, which wraps.
+fn instant(us: i64) -> Instant {
+    Instant::from_micros(us as u32)
+}
+
+/// Firings when they happened.
+#[derive(Debug)]
+struct Recorded {
+    /// When, and who.
+    firings: Vec<(Instant, u8)>,
+    periods: Vec<u32>,
+    next: usize,
+    /// The period before that of the next firing has ended.
+    ended: bool,
+    sensors: usize,
+    window: Micros,
+    audible: Micros,
+    limits: EachSensor<MAX_SENSORS>,
+}
+
+/// Any time, of a clock that wraps in 71 minutes.
+const ANY: Micros = Micros::new(1 << 31);
+
+impl Recorded {
+    fn begins_period(&self) -> bool {
+        self.next > 0 && self.periods.get(self.next).is_some_and(|&period| period != self.periods[self.next - 1])
+    }
+}
+
+impl Plan for Recorded {
+    fn deadline(&self) -> Instant {
+        let last = || self.firings.last().map_or(Instant::default(), |&(at, _)| at);
+        // After the last one a period that does not end within reach.
+        self.firings.get(self.next).map_or_else(|| last() + Micros::new(1 << 30), |&(at, _)| at)
+    }
+
+    fn next_firing(&self) -> Option<(u8, Phase)> {
+        let fires = self.ended || !self.begins_period();
+        self.firings.get(self.next).filter(|_| fires).map(|&(_, sensor)| (sensor, Phase::A))
+    }
+
+    fn fire(&mut self, _: Instant) {
+        (self.next, self.ended) = (self.next + 1, false);
+    }
+
+    fn postpone(&mut self, _: u8, _: Micros) {}
+
+    fn end_period(&mut self, _: Instant) -> (Phase, bool) {
+        self.ended = true;
+        (Phase::A, false)
+    }
+
+    fn ended(&mut self, _: u8, _: Instant) {}
+
+    fn sensors(&self) -> usize {
+        self.sensors
+    }
+
+    fn set_enabled(&mut self, _: u8, _: bool) {}
+
+    fn set_paused(&mut self, _: bool) {}
+
+    fn is_enabled(&self, _: u8) -> bool {
+        true
+    }
+
+    fn restart(&mut self, _: Instant) {}
+
+    fn last_firing(&self, _: u8, _: u8) -> Fired {
+        Fired::new(Phase::A)
+    }
+
+    fn limits(&self) -> Limits<'_> {
+        Limits { longest_window: self.window, verified_for: None, audible: Some(self.audible) }
+    }
+
+    fn hears(&self, receiver: u8, emitter: u8) -> bool {
+        OwnLimits::hears(&self.limits, receiver, emitter)
+    }
+
+    fn limits_of(&self, sensor: u8) -> Option<SensorLimits> {
+        OwnLimits::limits_of(&self.limits, sensor)
+    }
+
+    fn min_refire(&self) -> Micros {
+        self.window
+    }
+
+    fn horizon(&self) -> Micros {
+        ANY
+    }
+}

@@ -23,7 +23,7 @@ use clap::{CommandFactory as _, FromArgMatches as _};
 
 use crate::commands::{Answer, Cli};
 use crate::files::error::InputError;
-pub use crate::files::firings::firing;
+pub use crate::files::firings::firing_log;
 use crate::files::implausible::warn_of_options;
 pub use crate::files::mcap::Recording;
 use crate::files::write::check_outputs;

@@ -1,12 +1,11 @@
-//! Success of `diagnose` at naming the senders of rejected readings, where the simulator knows them: `cargo lab
+//! Success of `diagnose` at naming the senders of foreign readings, where the simulator knows them: `cargo lab
 //! diagnose-places [FIRST [PLACES [METHOD [PERIODS [PHYSICS [WHERE]]]]]]`. WHERE is `alcoves`: robots that stand in
 //! alcoves of Set I; or robots that drive: `courses` of Set II, where a pilot steers and the course sets the end,
 //! `alcoves-driving` and `rooms-driving`, as in `fault-rates`.
 
 use std::error::Error;
 
-use eeruf_core::ReadingKind;
-use eeruf_logs::{FiringLog, Settings, diagnose};
+use eeruf_logs::{Settings, diagnose};
 use eeruf_sim::experiments::set_one::Alcove;
 use eeruf_sim::experiments::set_two::{SetTwoOptions, drive};
 use eeruf_sim::{Cause, Entry, Method, Options, Physics, Readings, quantile, simulate, sweep};
@@ -16,14 +15,14 @@ use crate::fault_rates::{Place, Robots, world};
 /// Counts over the readings of one alcove, or of all.
 #[derive(Clone, Copy, Default)]
 struct Counts {
-    /// Rejected readings that foreign sound caused.
+    /// Readings that foreign sound caused.
     foreign: usize,
     /// Of these, named with the right sender.
     right: usize,
-    /// Rejected readings that were said to be foreign.
+    /// Readings that were said to be foreign.
     named: usize,
-    /// Rejected readings.
-    rejected: usize,
+    /// Readings with an edge.
+    readings: usize,
     /// Paths that were found, and how many of them no sound took.
     paths: usize,
     accidental: usize,
@@ -78,9 +77,7 @@ fn count(number: u64, place: Where, method: Method, periods: u32, physics: Physi
     let mut order: Vec<_> = (0..readings.len()).filter(|&k| readings.robot[k] == 0).collect();
     let at_us = |k: usize| (1e6 * readings.fired_s[k]).round() as i64;
     order.sort_by_key(|&k| at_us(k));
-    let firings = order.iter().map(|&k| eeruf::firing(&readings, k)).collect();
-    let log = FiringLog { firings, ..FiringLog::default() };
-    let diagnosis = diagnose(&log, &Settings::default());
+    let diagnosis = diagnose(&eeruf::firing_log(&readings), &Settings::default());
     let mut counts = Counts {
         paths: diagnosis.paths.len(),
         faults: diagnosis.faults.len(),
@@ -88,10 +85,7 @@ fn count(number: u64, place: Where, method: Method, periods: u32, physics: Physi
         ..Counts::default()
     };
     for (&k, named) in order.iter().zip(&diagnosis.named) {
-        if readings.kind[k] != ReadingKind::Rejected {
-            continue;
-        }
-        counts.rejected += 1;
+        counts.readings += usize::from(!readings.earliest_us[k].is_nan());
         let sender = readings.path_of(k).map(|path| path.emitter.sensor);
         let foreign = readings.cause[k] == Cause::Crosstalk;
         counts.foreign += usize::from(foreign);
@@ -130,7 +124,7 @@ pub(crate) fn main(arguments: &[String]) -> crate::Answer {
     let percent = |part: usize, of: usize| 100.0 * part as f64 / of.max(1) as f64;
     let each = if place == Where::Courses { String::new() } else { format!(", {periods} periods each") };
     println!("{places} {name} from {first} on, {method}{each}, physics {physics}");
-    println!("rejected readings: {}, of which foreign sound caused {foreign}", sum(|c| c.rejected));
+    println!("readings: {}, of which foreign sound caused {foreign}", sum(|c| c.readings));
     println!("named rightly: {right}, {:.1} % of those", percent(right, foreign));
     println!("named: {named}, of which rightly {:.2} %", percent(right, named));
     let mut shares: Vec<_> = all.iter().filter(|c| c.foreign >= 50).map(|c| percent(c.right, c.foreign)).collect();

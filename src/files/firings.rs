@@ -12,7 +12,7 @@ use super::write::write;
 pub(crate) const CLOCK: &str = "simulation, true time";
 
 /// One of the readings of a simulation, as a log of firings has it.
-pub fn firing(readings: &Readings, k: usize) -> Firing {
+pub(crate) fn firing(readings: &Readings, k: usize) -> Firing {
     Firing {
         sensor: readings.sensor[k],
         fired_us: (1e6 * readings.fired_s[k]).round() as i64,
@@ -28,7 +28,7 @@ pub fn firing(readings: &Readings, k: usize) -> Firing {
 const LEAST_US_MS: f32 = 1e-3;
 
 /// Every firing of the first robot, and how fast its readings change if it moves.
-pub(crate) fn firing_log(readings: &Readings) -> FiringLog {
+pub fn firing_log(readings: &Readings) -> FiringLog {
     let of_first: Vec<_> = (0..readings.len()).filter(|&k| readings.robot[k] == 0).collect();
     let motion: Vec<_> = of_first.iter().map(|&k| g_us_ms(readings, k)).collect();
     let moves = motion.iter().any(|g| *g > LEAST_US_MS);

@@ -8,8 +8,7 @@ use eeruf_sim::experiments::rooms::RoomKind::{Aisle, Clutter, Corridor, Garage, 
 use eeruf_sim::experiments::rooms::{RoomKind, RoomPlan};
 use eeruf_sim::experiments::set_one::Alcove;
 use eeruf_sim::{
-    AnySchedule, Fault, FaultKind, Method, Motion, Options, Physics, Random, Readings, Vector, World, simulate,
-    table_i_d_for,
+    AnySchedule, Fault, FaultKind, Method, Motion, Options, Physics, Random, Vector, World, simulate, table_i_d_for,
 };
 
 use super::oracle::{paths_tell, scene_tells};
@@ -222,12 +221,6 @@ pub(crate) fn world(number: u64, place: Place, robots: Robots, physics: Physics)
     Ok(world.with_physics(physics)?)
 }
 
-/// The log of the first robot's ring.
-fn log_of(readings: &Readings) -> FiringLog {
-    let of_first = (0..readings.len()).filter(|&k| readings.robot[k] == 0);
-    FiringLog::new("simulation", of_first.map(|k| eeruf::firing(readings, k)).collect())
-}
-
 /// A log with its fault.
 pub(crate) struct Case {
     pub(crate) broken: Broken,
@@ -273,7 +266,7 @@ pub(crate) fn cases(
             let of = if broken == Broken::EchoWires { &sensors[..] } else { &sensors[..1] };
             told = [scene_tells(whole, &readings, of, TWIN + number)?, paths_tell(&world, &readings, of)];
         }
-        Ok(Some(Case { broken, log: log_of(&readings), world, sensors, told }))
+        Ok(Some(Case { broken, log: eeruf::firing_log(&readings), world, sensors, told }))
     };
     rows.iter().copied().map(case).collect()
 }

@@ -33,8 +33,12 @@ const FEWEST_OF_PART: usize = 15;
 const COMES: f64 = 0.6;
 const VARIES: f64 = 2.5;
 const OFTEN: f64 = 0.35;
+/// One comes after another not more often than this many times as often as after any reading: who walks by makes runs.
+const RUNS: f64 = 1.25;
 /// Fewer firings alike say nothing of each other.
 const FEWEST: usize = 4;
+/// Fewer than one firing in so many has enough others alike where gaps are random.
+const SELDOM: usize = 4;
 
 /// A sensor that hears so few of the arrivals that it should is broken, of this many.
 const ANSWERS: f64 = 0.75;
@@ -121,6 +125,11 @@ pub(super) fn alike(
         key.sort_unstable();
         groups.entry(key).or_default().push(*firing);
     }
+    let comparable: usize = groups.values().map(Vec::len).filter(|&firings| firings >= FEWEST).sum();
+    if comparable < heard.len() / SELDOM {
+        // Dice in every gap: others' sound never comes alike, and the sensor's own always does.
+        groups = HashMap::from([(Vec::new(), heard.to_vec())]);
+    }
     let mut all = Alike {
         repeats: Share::NONE,
         returns: Share::NONE,
@@ -166,7 +175,10 @@ pub(super) fn alike(
     let compared: Vec<_> = heard.iter().filter_map(|firing| wanders.get(&firing.firing)).copied().collect();
     all.wandering = share_of(&compared);
     let parts: Vec<_> = compared.chunks(compared.len().div_ceil(PARTS).max(FEWEST_OF_PART)).map(share_of).collect();
-    all.wanders_steadily = is_steady(all.wandering, &parts);
+    let mut runs = Share::NONE;
+    compared.windows(2).filter(|two| two[0]).for_each(|two| runs.add(two[1]));
+    let by_chance = runs.interval_95().0 < RUNS * all.wandering.value();
+    all.wanders_steadily = by_chance && is_steady(all.wandering, &parts);
     for two in heard.windows(2) {
         let stays = two[0].echo_us.zip(two[1].echo_us).is_some_and(|(a, b)| (a - b).abs() <= FOLLOWS_US);
         all.steady.add(stays);

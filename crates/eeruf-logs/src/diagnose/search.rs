@@ -2,6 +2,7 @@
 
 use std::collections::HashMap;
 
+use super::share::Share;
 use super::statistics::{groups, ln_at_least, median};
 use super::timeline::{Heard, Timeline};
 use super::{FoundPath, Settings};
@@ -51,8 +52,9 @@ struct Search<'a> {
     heard: &'a [Heard],
     /// Readings that are explained by a path that was found.
     explained: Vec<bool>,
-    /// The echo times of those that are not, sorted.
+    /// The echo times of those that are not, and of all, sorted.
     open: Vec<i64>,
+    all: Vec<i64>,
     silent: usize,
     tolerance: i64,
 }
@@ -66,7 +68,9 @@ pub(super) fn paths_to(receiver: u8, timeline: &Timeline, settings: &Settings) -
     let silent = heard.iter().filter(|heard| heard.echo_us.is_none()).count();
     let tolerance = i64::from(settings.tolerance_us);
     let explained = vec![false; heard.len()];
-    let mut search = Search { receiver, timeline, heard, explained, open: Vec::new(), silent, tolerance };
+    let mut all: Vec<_> = heard.iter().filter_map(|heard| heard.echo_us).collect();
+    all.sort_unstable();
+    let mut search = Search { receiver, timeline, heard, explained, open: Vec::new(), all, silent, tolerance };
     let others = (0..timeline.sensors() as u8).filter(|&sensor| sensor != receiver).map(Source::Other);
     let sources: Vec<_> = others.chain([Source::OwnNow, Source::OwnBefore]).collect();
     // At how many places a path is looked for, in the whole log.
@@ -100,7 +104,8 @@ impl Search<'_> {
     fn accident(&self, echo_us: i64) -> f64 {
         let below = |limit: i64| self.open.partition_point(|&open| open < limit);
         let near = below(echo_us + NEAR_US) - below(echo_us - NEAR_US);
-        let later = self.open.len() - below(echo_us - NEAR_US) + self.silent;
+        // Of these, too, something else was heard that was found: they are no accidents.
+        let later = self.all.len() - self.all.partition_point(|&echo| echo < echo_us - NEAR_US) + self.silent;
         let share = (near as f64 + 1.0) / (later as f64 + 1.0);
         (share * self.tolerance as f64 / NEAR_US as f64).min(0.9)
     }
@@ -239,18 +244,18 @@ impl Search<'_> {
         let mut fewest = (u32::MAX, 0);
         for sensor in (0..self.timeline.sensors() as u8).filter(|&sensor| sensor != self.receiver) {
             let mut offsets = Vec::new();
-            let mut alone = (false, false);
+            // Readings in which this one was silent for long, each by itself: its sound explains none of them.
+            let mut alone = Share::NONE;
             for &(_, is_heard, accident, reading) in trials {
                 let heard = &self.heard[reading];
                 let until = heard.echo_us.unwrap_or(self.timeline.window_us);
                 match self.offsets(Source::Other(sensor), heard, until).next() {
                     Some(offset) => offsets.push((offset, is_heard, accident, reading)),
-                    // All was silent.
-                    None => alone = (alone.0 || is_heard, true),
+                    None => alone.add(is_heard),
                 }
             }
             let ((supporting, of), _) = self.by_offset(&mut offsets, share);
-            let all = (supporting + u32::from(alone.0), of + u32::from(alone.1));
+            let all = (supporting + alone.count, of + alone.of);
             if all.0 < fewest.0 {
                 fewest = all;
             }

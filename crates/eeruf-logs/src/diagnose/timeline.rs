@@ -87,11 +87,21 @@ impl Timeline {
         const SAME_US: i64 = 75;
         const COMES_BACK: f64 = 0.2;
         const FEWEST: u32 = 20;
+        // Where gaps are random a ring never fires alike, and its sensors mostly hear their own echoes.
+        let by_others = self.comes_back(SAME_US, true);
+        let comes_back = if by_others.of < FEWEST { self.comes_back(SAME_US, false) } else { by_others };
+        comes_back.of >= FEWEST && comes_back.value() < COMES_BACK
+    }
+
+    /// Of the pairs of readings of one sensor, one from the first third of the log and one from the last, the share
+    /// that is the same; `by_others`: of those that follow another sensor's firing alike.
+    fn comes_back(&self, same_us: i64, by_others: bool) -> Share {
         let mut alike = BTreeMap::<_, Vec<Option<i64>>>::new();
         for (sensor, heard) in self.heard.iter().enumerate() {
             for of in heard {
-                let before = self.before(of.fired_us).find(|&(_, other)| usize::from(other) != sensor);
-                let stands = before.map(|(at, other)| (other, (of.fired_us - at) / (2 * SAME_US)));
+                let mut before = self.before(of.fired_us);
+                let before = before.find(|&(_, other)| by_others && usize::from(other) != sensor);
+                let stands = before.map(|(at, other)| (other, (of.fired_us - at) / (2 * same_us)));
                 alike.entry((sensor, of.phase, stands)).or_default().push(of.echo_us);
             }
         }
@@ -99,9 +109,9 @@ impl Timeline {
         for echoes in alike.values() {
             let (first, rest) = echoes.split_at(echoes.len() / 3);
             let pairs = first.iter().zip(&rest[rest.len() - first.len()..]);
-            pairs.filter_map(|(a, b)| a.zip(*b)).for_each(|(a, b)| comes_back.add((a - b).abs() <= SAME_US));
+            pairs.filter_map(|(a, b)| a.zip(*b)).for_each(|(a, b)| comes_back.add((a - b).abs() <= same_us));
         }
-        comes_back.of >= FEWEST && comes_back.value() < COMES_BACK
+        comes_back
     }
 
     /// The most different offsets at which one sensor may hear another's sound.

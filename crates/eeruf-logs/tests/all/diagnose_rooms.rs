@@ -4,7 +4,7 @@
 use eeruf_logs::{Fault, Firing, FiringLog, Settings, diagnose};
 use eeruf_sim::experiments::rooms::{RoomKind, RoomPlan};
 use eeruf_sim::experiments::set_one::Alcove;
-use eeruf_sim::{FaultKind, Method, Motion, Noise, Options, Physics, Vector, World, simulate};
+use eeruf_sim::{Cause, FaultKind, Method, Motion, Noise, Options, Physics, Readings, Vector, World, simulate};
 
 /// A place and its number.
 #[derive(Clone, Copy, Debug)]
@@ -17,8 +17,13 @@ enum Place {
 
 use Place::{Alcove as InAlcove, BacksOut, Room as InRoom};
 
-/// Faults that the diagnosis finds in the log of a ring that hops for a minute, some sensors of which have a fault.
+/// Faults that the diagnosis finds in such a log.
 fn found(place: Place, fault: Option<(FaultKind, &[u8])>) -> Vec<Fault> {
+    diagnose(&log_of(place, fault), &Settings::default()).faults
+}
+
+/// The log of a ring that fires by flow for 1,000 periods of 60 ms, some sensors of which have a fault.
+fn log_of(place: Place, fault: Option<(FaultKind, &[u8])>) -> FiringLog {
     const ROOMS: [RoomKind; 6] =
         [RoomKind::Corridor, RoomKind::Office, RoomKind::Hall, RoomKind::Clutter, RoomKind::Garage, RoomKind::Aisle];
     let (InAlcove(number) | BacksOut(number) | InRoom(number)) = place;
@@ -42,7 +47,11 @@ fn found(place: Place, fault: Option<(FaultKind, &[u8])>) -> Vec<Fault> {
     let options =
         Options { seed: Some(number), ..Options::periods(if matches!(place, BacksOut(_)) { 333 } else { 1000 }) };
     let readings = simulate(&world, Method::Flow, &options).unwrap();
-    let firing = |k: usize| Firing {
+    FiringLog::new("simulation", (0..readings.len()).map(|k| firing(&readings, k)).collect())
+}
+
+fn firing(readings: &Readings, k: usize) -> Firing {
+    Firing {
         sensor: readings.sensor[k],
         fired_us: (1e6 * readings.fired_s[k]).round() as i64,
         period: readings.period[k],
@@ -50,9 +59,47 @@ fn found(place: Place, fault: Option<(FaultKind, &[u8])>) -> Vec<Fault> {
         t_echo_us: (!readings.earliest_us[k].is_nan()).then(|| readings.earliest_us[k] as u32),
         reading: Some(readings.kind[k]),
         g_us_ms: None,
-    };
-    let log = FiringLog::new("simulation", (0..readings.len()).map(firing).collect());
-    diagnose(&log, &Settings::default()).faults
+    }
+}
+
+// On alcoves that nothing was tuned on.
+#[test]
+fn senders_in_a_log_of_flow_are_named() {
+    let (mut foreign, mut right, mut named) = (0, 0, 0);
+    for number in 20_000..20_012 {
+        let alcove = Alcove::random(number);
+        let world = World::new(alcove.scene().unwrap(), vec![alcove.robot()], Noise::default()).unwrap();
+        let world = world.with_seed(number).with_physics(Physics::PLAIN).unwrap();
+        let readings = simulate(&world, Method::Flow, &Options::periods(1000)).unwrap();
+        let mut order: Vec<usize> = (0..readings.len()).collect();
+        order.sort_by_key(|&k| firing(&readings, k).fired_us);
+        let log = FiringLog::new("simulation", order.iter().map(|&k| firing(&readings, k)).collect());
+        let found = diagnose(&log, &Settings::default());
+        assert!(!found.moved, "{number}");
+        for (&k, name) in order.iter().zip(&found.named) {
+            let sender = readings.path_of(k).map(|path| path.emitter.sensor);
+            let is_foreign = readings.cause[k] == Cause::Crosstalk;
+            foreign += u32::from(is_foreign);
+            if let Some(name) = name.filter(|name| name.sender != readings.sensor[k]) {
+                named += 1;
+                right += u32::from(is_foreign && sender == Some(name.sender));
+            }
+        }
+    }
+    let (share, sure) = (f64::from(right) / f64::from(foreign), f64::from(right) / f64::from(named));
+    assert!(foreign > 3_000 && share > 0.67 && sure > 0.99, "{foreign} foreign: {share} named, {sure} right");
+}
+
+// Random gaps never come again, so that the motion shows in the ranges alone.
+#[test]
+fn robot_that_drives_is_known_by_its_ranges_and_by_its_log() {
+    for (place, moves) in [(InAlcove(20_001), false), (InRoom(20_002), false), (BacksOut(20_003), true)] {
+        let log = log_of(place, None);
+        assert_eq!(diagnose(&log, &Settings::default()).moved, moves, "{place:?}");
+        let mut said = log.clone();
+        said.firings.iter_mut().for_each(|firing| firing.g_us_ms = Some(1.0));
+        assert!(diagnose(&said, &Settings::default()).moved, "{place:?}");
+    }
 }
 
 // In each of these a rule that looks at one sensor alone sees a fault: a sensor faces a doorway, hears a wall at its

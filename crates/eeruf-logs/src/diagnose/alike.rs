@@ -177,8 +177,7 @@ pub(super) fn alike(
     let parts: Vec<_> = compared.chunks(compared.len().div_ceil(PARTS).max(FEWEST_OF_PART)).map(share_of).collect();
     let mut runs = Share::NONE;
     compared.windows(2).filter(|two| two[0]).for_each(|two| runs.add(two[1]));
-    let by_chance = runs.interval_95().0 < RUNS * all.wandering.value();
-    all.wanders_steadily = by_chance && is_steady(all.wandering, &parts);
+    all.wanders_steadily = is_steady(all.wandering, runs, &parts);
     for two in heard.windows(2) {
         let stays = two[0].echo_us.zip(two[1].echo_us).is_some_and(|(a, b)| (a - b).abs() <= FOLLOWS_US);
         all.steady.add(stays);
@@ -196,13 +195,14 @@ fn share_of(part: &[bool]) -> Share {
     share
 }
 
-/// Returns true if what counts is spread over the parts as by chance.
-fn is_steady(all: Share, parts: &[Share]) -> bool {
+/// Returns true if what counts is spread over the parts as by chance, also in `runs`: right after one that counts.
+fn is_steady(all: Share, runs: Share, parts: &[Share]) -> bool {
     let share = all.value();
     let off = |part: &Share| (part.value() - share).powi(2) * f64::from(part.of);
     let varies = parts.iter().map(off).sum::<f64>() / (parts.len() as f64 - 1.0);
     let comes = parts.iter().filter(|part| part.count > 0).count() as f64;
-    let by_chance = varies < VARIES * share * (1.0 - share) || share > OFTEN;
+    let is_chance = varies < VARIES * share * (1.0 - share) && runs.interval_95().0 < RUNS * share;
+    let by_chance = is_chance || share > OFTEN;
     comes > COMES * parts.len() as f64 && by_chance
 }
 

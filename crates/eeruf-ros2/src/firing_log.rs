@@ -72,14 +72,14 @@ mod tests {
         let read = eeruf_logs::FiringLog::read(&file).unwrap();
         assert_eq!(read.clock, "board, 32 bits");
         let rows: Vec<_> =
-            read.firings.iter().map(|firing| (firing.fired_us, firing.t_echo_us, firing.rejected)).collect();
+            read.firings.iter().map(|firing| (firing.fired_us, firing.t_echo_us, firing.reading)).collect();
         let first = i64::from(u32::MAX) - 10;
         let expected = [
-            (first, Some(5_872), Some(false)),
-            (first + 10, Some(5_872), Some(true)),
-            (first + 20, None, Some(false)),
-            (first + 30, Some(5_872), Some(true)),
-            (first + 40, Some(5_872), Some(true)),
+            (first, Some(5_872), Some(kinds[0])),
+            (first + 10, Some(5_872), Some(kinds[1])),
+            (first + 20, None, Some(kinds[2])),
+            (first + 30, Some(5_872), Some(kinds[3])),
+            (first + 40, Some(5_872), Some(kinds[3])),
         ];
         assert_eq!(rows, expected);
         let text = std::fs::read_to_string(&file).unwrap();

@@ -50,8 +50,8 @@ fn settings_in_the_wrong_unit_are_refused_with_the_likely_cause() {
     );
 }
 
-/// Sensors that rest no longer than their window hear sound of their last firing but one, beyond R less their rest,
-/// once they are deaf for less than at the start: all of it is foreign.
+/// A sensor that rests no longer than its window hears sound of its last firing but one, beyond R less its rest,
+/// once it is deaf for less than at the start: all of it is foreign.
 #[test]
 fn a_shorter_blanking_time_lets_no_stale_echo_in() {
     let (rest, begun) = (Micros::from_millis(25), Micros::from_millis(9));
@@ -64,8 +64,8 @@ fn a_shorter_blanking_time_lets_no_stale_echo_in() {
         let mut now = Instant::from_micros(seed << 20);
         // Held at the least quiet, or it would grow until nothing stale is heard.
         let turns = TurnSettings { most: turns.least, dice: Micros::new(100), ..turns };
-        let plan = InTurn::<2>::new(2, turns, WINDOW, now).unwrap();
-        let mut ring: FlowRing<2> = Ring::judged_by(plan, Belief::new(belief).unwrap(), config, now).unwrap();
+        let plan = InTurn::<1>::new(1, turns, WINDOW, now).unwrap();
+        let mut ring: FlowRing<1> = Ring::judged_by(plan, Belief::new(belief).unwrap(), config, now).unwrap();
         ring.set_blanking(Micros::new(300)).unwrap();
         // Its own sound comes back once, by a path longer than the window.
         let path = Micros::new(25_800 + seed * 15);

@@ -4,7 +4,9 @@
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-use eeruf_core::{Instant, Micros, Reading, ReadingKind, RingEvent, Schedule, ScheduledRing, VerifiedSchedule};
+use eeruf_core::{
+    Instant, Micros, Reading, ReadingKind, RingEvent, Schedule, ScheduledRing, Silence, VerifiedSchedule,
+};
 
 use super::model::{Compared, Model, Sound};
 use crate::common::random::Random;
@@ -179,12 +181,30 @@ impl<'s> World<'s> {
             if self.random.up_to(1) == 0 {
                 self.tell_corrections(|_, sensor| sensor == receiver);
             }
-            let [earliest, latest] = [earliest, latest].map(|at| self.clock(at));
-            if earliest == latest {
-                self.ring.echo(receiver, latest).unwrap();
-            } else {
-                self.ring.echo_between(receiver, earliest, latest).unwrap();
+            self.hear(receiver, earliest, latest);
+        }
+    }
+
+    /// Hands in an edge, by one of the ways that there are.
+    fn hear(&mut self, receiver: u8, earliest: u64, latest: u64) {
+        let [first, last] = [earliest, latest].map(|at| self.clock(at));
+        let fired = self.ring.last_firing(receiver).unwrap();
+        let since = |at: Instant| at.has_reached(fired).then(|| at.since(fired));
+        let way = if self.course.operations > 0 { self.random.up_to(8) } else { 8 };
+        let settled = last + Micros::new(self.random.up_to(400));
+        match (way, since(first), since(last)) {
+            (0, ..) => self.ring.echo_within(receiver, first, last.since(first), settled).unwrap(),
+            (1, Some(least), Some(most)) => self.ring.measured_between(receiver, least, most).unwrap(),
+            (2, _, Some(t_echo)) if first == last => self.ring.measured(receiver, Some(t_echo)).unwrap(),
+            (3, ..) if first == last => self.ring.echo_until(receiver, last, settled).unwrap(),
+            (4, ..) => {
+                // A disturbance, taken back.
+                self.ring.echo(receiver, last).unwrap();
+                self.ring.unheard(receiver).unwrap();
+                self.ring.echo_between(receiver, first, last).unwrap();
             }
+            (5, ..) if first == last => self.ring.echo(receiver, last).unwrap(),
+            _ => self.ring.echo_between(receiver, first, last).unwrap(),
         }
     }
 
@@ -299,7 +319,7 @@ impl<'s> World<'s> {
         let sensor = self.random.up_to(sensors - 1) as u8;
         let now = self.clock(self.now);
         let (t_delta, window) = self.initial;
-        match self.random.up_to(13) {
+        match self.random.up_to(21) {
             0 => self.ring.pause(),
             1 | 2 => self.ring.resume(),
             3 => self.ring.disable(sensor).unwrap(),
@@ -335,6 +355,27 @@ impl<'s> World<'s> {
                 let _ = self.ring.set_blanking(Micros::new(self.random.up_to(2000)));
             }
             12 => self.now += u64::from(self.random.up_to(300_000)),
+            13 => self.ring.stuck(sensor).unwrap(),
+            14 => {
+                let which = self.random.up_to(2) as usize;
+                self.ring.set_silence([Silence::NeverFree, Silence::NeedsAnswer, Silence::Trusted][which]);
+            }
+            15 => self.ring.answered(sensor).unwrap(),
+            16 => self.ring.unanswered(sensor).unwrap(),
+            17 => self.ring.measured(sensor, None).unwrap(),
+            18 => {
+                self.ring.forget(sensor).unwrap();
+                self.model.forget(sensor);
+            }
+            19 => {
+                let _ = self.ring.set_report_after(Micros::new(self.random.up_to(40_000)));
+            }
+            20 => {
+                let more = Micros::new(self.sound.audible as u32 + self.random.up_to(20_000));
+                self.ring.set_audible(more).unwrap();
+                // Of no account to a judge that is told what to expect.
+                self.ring.moving(self.random.up_to(3_000), 0, now);
+            }
             _ => {
                 let more = Micros::new(self.sound.path_change as u32 + self.random.up_to(300));
                 self.ring.set_path_change(more).unwrap();

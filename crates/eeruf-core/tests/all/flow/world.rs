@@ -1,0 +1,278 @@
+//! A world of true time around a ring that fires in turn, and someone who does all that can be done to it.
+
+use eeruf_core::{
+    Instant, Micros, ReadingKind, Ring, RingEvent, Silence,
+    flow::{Belief, BeliefSettings, FlowRing, InTurn, TurnSettings},
+    plan::Plan,
+};
+
+use super::{BEGIN, CONFIG, DEFAULT};
+
+/// A generator of the tests' own, and by how much a path may have changed since the beginning, in ns.
+pub(super) struct Dice {
+    pub(super) state: u64,
+    pub(super) travel: u64,
+}
+
+impl Dice {
+    pub(super) fn below(&mut self, limit: u32) -> u32 {
+        self.state = self.state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (((self.state >> 33) * u64::from(limit)) >> 31) as u32
+    }
+}
+
+/// A ring of HC-SR04 modules in true time, which does not wrap.
+pub(super) struct World<P = InTurn<24>, const E: usize = 1> {
+    pub(super) ring: Ring<P, Belief<24, E>, 24, E, 3>,
+    begin: u32,
+    pub(super) now: u64,
+    /// When a line will be seen to have fallen, its sensor, and since when it may have.
+    edges: Vec<(u64, u8, u64)>,
+    /// Edges are known to lie within intervals of up to this.
+    pub(super) uncertain: u32,
+    pub(super) dice: Dice,
+    /// Polls come late by up to this.
+    pub(super) late: u32,
+    pub(super) tick: u32,
+    /// The latest step so far, as the ring says.
+    pub(super) latest: u32,
+    /// When which sensor fired.
+    pub(super) fired: Vec<(u64, u8)>,
+    pub(super) operates: Option<Operates>,
+}
+
+/// Someone who does all that can be done to a ring.
+#[derive(Clone, Copy)]
+pub(super) struct Operates {
+    pub(super) speed_mm_s: u32,
+    /// The top speed, if the speed changes from 0 to it.
+    pub(super) top_mm_s: Option<u32>,
+    /// When the speed was last told, or began.
+    pub(super) told: u64,
+    pub(super) asleep_until: u64,
+    /// The ring is paused: it is not for long, since a paused ring hears nothing.
+    pub(super) paused: bool,
+}
+
+#[derive(Default, Clone)]
+pub(super) struct Seen {
+    pub(super) fired: u32,
+    pub(super) accepted: u32,
+    pub(super) ambiguous: u32,
+    /// Echoes that had one before to compare with.
+    pub(super) compared: u32,
+    /// Firings until the first was accepted.
+    pub(super) first: Option<u32>,
+}
+
+impl World {
+    pub(super) fn new(sensors: usize, seed: u32, late: u32, tick: u32, speed_mm_s: u16) -> Self {
+        Self::believing(sensors, seed, late, tick, BeliefSettings { top_speed_mm_s: speed_mm_s, ..DEFAULT })
+    }
+
+    pub(super) fn believing(sensors: usize, seed: u32, late: u32, tick: u32, belief: BeliefSettings) -> Self {
+        let mut turns = TurnSettings::new(seed);
+        turns.dice = turns.dice.max(Micros::new(8 * tick));
+        World::of(
+            FlowRing::flow(sensors, turns, belief, CONFIG, Instant::from_micros(BEGIN)).unwrap(),
+            seed,
+            late,
+            tick,
+        )
+    }
+}
+
+impl<P: Plan, const E: usize> World<P, E> {
+    pub(super) fn of(ring: Ring<P, Belief<24, E>, 24, E, 3>, seed: u32, late: u32, tick: u32) -> Self {
+        Self {
+            ring,
+            begin: BEGIN,
+            now: 0,
+            edges: vec![],
+            uncertain: 0,
+            dice: Dice { state: seed.into(), travel: 0 },
+            late,
+            tick,
+            latest: 0,
+            fired: vec![],
+            operates: None,
+        }
+    }
+
+    pub(super) fn instant(&self, true_time: u64) -> Instant {
+        Instant::from_micros(self.begin.wrapping_add(true_time as u32))
+    }
+
+    /// Moves the path, as far as it may have changed by now.
+    fn travel(&mut self) {
+        if let Some(of) = &mut self.operates {
+            // By twice the speed over that of sound.
+            self.dice.travel += u64::from(of.speed_mm_s) * 2 * (self.now - of.told) * 1000 / 343_000;
+            of.told = self.now;
+        }
+    }
+
+    /// Does something to the ring.
+    fn operate(&mut self) {
+        self.travel();
+        let Some(mut of) = self.operates else { return };
+        let sensors = self.ring.sensors() as u32;
+        let (sensor, now) = (self.dice.below(sensors) as u8, self.instant(self.now));
+        if of.paused && self.dice.below(4) == 0 {
+            of.paused = false;
+            self.ring.resume();
+        }
+        match self.dice.below(300) {
+            0 => {
+                of.paused = true;
+                self.ring.pause();
+            }
+            1 => self.ring.resume(),
+            4 => self.ring.disable(sensor).unwrap(),
+            5..=7 => (0..sensors as u8).for_each(|sensor| self.ring.enable(sensor).unwrap()),
+            8 => self.ring.forget(sensor).unwrap(),
+            9 => self.ring.restart(now),
+            10 => {
+                // The clock jumps.
+                self.begin = self.begin.wrapping_add(self.dice.below(1 << 30));
+                let now = self.instant(self.now);
+                self.ring.restart(now);
+            }
+            11 => of.asleep_until = self.now + u64::from(self.dice.below(300_000)),
+            12 => {
+                let which = self.dice.below(3) as usize;
+                self.ring.set_silence([Silence::NeverFree, Silence::NeedsAnswer, Silence::Trusted][which]);
+            }
+            13 => self.ring.set_report_after(Micros::new(self.dice.below(60_000))).unwrap(),
+            14 => self.ring.set_window(Micros::new(20_000 + self.dice.below(5_001))).unwrap(),
+            15 => self.ring.set_blanking(Micros::new(self.dice.below(2_000))).unwrap(),
+            // No less than the path may do.
+            16 => self.ring.set_audible(Micros::new(33_500 + self.dice.below(20_000))).unwrap(),
+            17 => self.ring.set_path_change(Micros::new(150 + self.dice.below(300))).unwrap(),
+            18 => assert!(self.ring.upcoming().count() <= self.ring.sensors()),
+            19..=38 => {
+                if let Some(top) = of.top_mm_s {
+                    of.speed_mm_s = [0, 3 * top / 10, top][self.dice.below(3) as usize];
+                    self.ring.moving(of.speed_mm_s, 0, now);
+                }
+            }
+            _ => {}
+        }
+        self.operates = Some(of);
+    }
+
+    /// Hands in an edge, by one of the ways that there are.
+    fn hear(&mut self, sensor: u8, earliest: u64, latest: u64) {
+        let [first, last] = [earliest, latest].map(|at| self.instant(at));
+        let settled = last + Micros::new(self.dice.below(400));
+        let fired = self.ring.last_firing(sensor).unwrap();
+        let since = |at: Instant| at.has_reached(fired).then(|| at.since(fired));
+        let way = if self.operates.is_some() { self.dice.below(8) } else { 7 };
+        match (way, since(first), since(last)) {
+            (0, ..) => self.ring.echo_within(sensor, first, last.since(first), settled).unwrap(),
+            (1, Some(least), Some(most)) => self.ring.measured_between(sensor, least, most).unwrap(),
+            (2, _, Some(t_echo)) if first == last => self.ring.measured(sensor, Some(t_echo)).unwrap(),
+            (3, ..) if first == last => self.ring.echo_until(sensor, last, settled).unwrap(),
+            (4, ..) if E == 1 => {
+                // A disturbance, taken back.
+                self.ring.echo_between(sensor, first, last).unwrap();
+                self.ring.unheard(sensor).unwrap();
+                self.ring.echo_between(sensor, first, last).unwrap();
+            }
+            _ => self.ring.echo_between(sensor, first, last).unwrap(),
+        }
+    }
+
+    /// Reports of a sensor that is fired.
+    fn report(&mut self, sensor: u8) {
+        match self.dice.below(64) {
+            0 => self.ring.stuck(sensor).unwrap(),
+            1 => self.ring.unanswered(sensor).unwrap(),
+            2 => self.ring.measured(sensor, None).unwrap(),
+            3..20 => self.ring.answered(sensor).unwrap(),
+            _ => {}
+        }
+    }
+
+    /// When a sensor fires that is asked to: a little sooner or later, as the ring is told.
+    fn fire(&mut self, sensor: u8) -> u64 {
+        if self.operates.is_none() {
+            return self.now;
+        }
+        self.travel();
+        let at = match self.dice.below(8) {
+            0 => self.now + u64::from(self.dice.below(900)),
+            1 => self.now - u64::from(self.dice.below(300)).min(self.now),
+            _ => return self.now,
+        };
+        let told = self.instant(at);
+        self.ring.fired(sensor, told).unwrap();
+        at
+    }
+
+    /// Runs until some time; `sound` says when a line falls after a firing, of whose sensors.
+    pub(super) fn run(
+        &mut self,
+        until: u64,
+        seen: &mut [Seen],
+        mut sound: impl FnMut(u64, u8, &mut Dice) -> Vec<(u64, u8)>,
+    ) {
+        while self.now < until {
+            let ahead = u64::from(self.ring.next_deadline().since(self.instant(self.now)).as_micros());
+            let ahead = if ahead > 1 << 30 { 0 } else { ahead };
+            let late = u64::from(self.dice.below(self.late + 1));
+            let tick = u64::from(self.tick);
+            let asleep_until = self.operates.map_or(0, |of| of.asleep_until);
+            let wakes = (self.now + ahead + late).next_multiple_of(tick).max(asleep_until);
+            self.edges.sort_unstable();
+            let edge = self.edges.first().map(|edge| edge.0).filter(|&at| at <= wakes);
+            self.now = edge.unwrap_or(wakes).max(self.now);
+            if let Some(at) = edge {
+                let (_, sensor, earliest) = self.edges.remove(0);
+                self.hear(sensor, earliest, at);
+                // The loop comes round late for the reading, too, or at once.
+                if self.late > 0 || self.now < asleep_until {
+                    continue;
+                }
+            }
+            self.operate();
+            let now = self.instant(self.now);
+            // Flow knows no direction: its judge does not ask for this change.
+            let change = self.operates.map_or(0, |of| of.speed_mm_s as i32 / 3);
+            while let Some(event) = self.ring.poll_expecting(now, |_| change) {
+                match event {
+                    RingEvent::Fire { sensor, .. } => {
+                        seen[usize::from(sensor)].fired += 1;
+                        let at = self.fire(sensor);
+                        if self.operates.is_some() {
+                            self.report(sensor);
+                        }
+                        self.fired.push((at, sensor));
+                        for (edge, sensor) in sound(at, sensor, &mut self.dice) {
+                            let width = self.dice.below(self.uncertain + 1);
+                            // At any time in it, and at its ends.
+                            let before = [0, width, self.dice.below(width + 1)][self.dice.below(3) as usize];
+                            let earliest = edge - u64::from(before);
+                            self.edges.push((earliest + u64::from(width), sensor, earliest));
+                        }
+                    }
+                    RingEvent::Reading(reading) => {
+                        let seen = &mut seen[usize::from(reading.sensor)];
+                        seen.compared += u32::from(reading.t_echo.is_some() && reading.previous.is_some());
+                        match reading.kind {
+                            ReadingKind::Accepted => {
+                                seen.accepted += 1;
+                                if seen.fired > 0 {
+                                    seen.first.get_or_insert(seen.fired);
+                                }
+                            }
+                            ReadingKind::Ambiguous => seen.ambiguous += 1,
+                            _ => {}
+                        }
+                    }
+                    RingEvent::PeriodEnded(stats) => self.latest = self.latest.max(stats.max_late.as_micros()),
+                }
+            }
+        }
+    }
+}

@@ -69,6 +69,27 @@ pub enum Step {
         sensor: u8,
         t_echo: u16,
     },
+    /// An edge that was seen this many microseconds ago, and may have come so much sooner.
+    Between {
+        sensor: u8,
+        ago: u16,
+        width: u16,
+    },
+    /// A value that a module reports of its last firing.
+    Measured {
+        sensor: u8,
+        t_echo: u16,
+        width: u16,
+    },
+    Answered(u8, bool),
+    Unheard(u8),
+    Forget(u8),
+    /// Poll while odometry expects such a change of every reading.
+    Expecting(i16),
+    Moving(u16),
+    PathChange(u16),
+    Audible(u16),
+    ReportAfter(u16),
     Stuck(u8),
     Disable(u8),
     Enable(u8),
@@ -128,6 +149,7 @@ pub fn check(input: &Input) {
             consecutive: usize::from(config.consecutive),
             path_change: ring.path_change_of(0),
             audible: ring.audible(),
+            report_after: ring.report_after(),
         },
         enabled: [true; SENSORS],
         schedule: &first,
@@ -145,6 +167,7 @@ pub fn check(input: &Input) {
         quiet_periods: 0,
         sensors: Default::default(),
     };
+    let mut expected = 0;
     for step in input.steps.iter().take(400) {
         let known = |sensor: &u8| usize::from(*sensor) < SENSORS;
         match step {
@@ -153,16 +176,89 @@ pub fn check(input: &Input) {
                 now = deadline + u64::from(late.unwrap_or(0));
             }
             Step::Pass(units) => now += 64 * u64::from(*units),
-            // The order of instants is lost half a turn of the clock apart.
-            Step::PassLong(units) if now - begin < 1 << 30 => now += u64::from(*units) << 20,
+            // Firings are forgotten when they are 18 minutes old.
+            Step::PassLong(units) if now - begin < 1 << 29 => now += u64::from(*units) << 20,
             Step::PassLong(_) => {}
             Step::Edge { sensor, ago } => {
                 let at = now - u64::from(*ago);
                 assert_eq!(ring.echo(*sensor, instant(at)).is_ok(), known(sensor));
                 if known(sensor) {
-                    model.edge((*sensor).into(), at);
+                    model.edge((*sensor).into(), at, 0);
                 }
                 continue;
+            }
+            Step::Between { sensor, ago, width } => {
+                let latest = now - u64::from(*ago);
+                let earliest = latest - u64::from(*width);
+                assert_eq!(ring.echo_between(*sensor, instant(earliest), instant(latest)).is_ok(), known(sensor));
+                if known(sensor) {
+                    model.edge_between((*sensor).into(), earliest, latest);
+                }
+                continue;
+            }
+            Step::Measured { sensor, t_echo, width } => {
+                let x = usize::from(*sensor) % SENSORS;
+                let Some(fired) = model.sensors[x].last_fired else { continue };
+                let least = t_echo_of(*t_echo, &model.listening);
+                let most = least + u64::from(*width);
+                if fired.at + most > now {
+                    // Reported before it came.
+                    continue;
+                }
+                let [from, to] = [least, most].map(|us| Micros::new(us as u32));
+                if from == to {
+                    ring.measured(x as u8, Some(from)).expect("a sensor that there is");
+                    model.edge(x, fired.at + least, 0);
+                } else {
+                    ring.measured_between(x as u8, from, to).expect("a sensor that there is");
+                    model.edge_between(x, fired.at + least, fired.at + most);
+                }
+                continue;
+            }
+            Step::Answered(sensor, answers) => {
+                let x = usize::from(*sensor) % SENSORS;
+                let done = if *answers { ring.measured(x as u8, None) } else { ring.unanswered(x as u8) };
+                done.expect("a sensor that there is");
+                if let Some(open) = &mut model.sensors[x].open {
+                    open.unanswered = !answers;
+                }
+                continue;
+            }
+            Step::Unheard(sensor) => {
+                assert_eq!(ring.unheard(*sensor).is_ok(), known(sensor));
+                if known(sensor) {
+                    model.unhear((*sensor).into());
+                }
+                continue;
+            }
+            Step::Forget(sensor) => {
+                assert_eq!(ring.forget(*sensor).is_ok(), known(sensor));
+                if known(sensor) {
+                    let forgotten = &mut model.sensors[usize::from(*sensor)];
+                    forgotten.heard.clear();
+                    forgotten.undisturbed = 0;
+                }
+                continue;
+            }
+            Step::Expecting(change) => expected = (*change).into(),
+            Step::Moving(speed) => {
+                // Of no account to a judge that is told what to expect.
+                ring.moving((*speed).into(), 0, instant(now));
+                continue;
+            }
+            Step::PathChange(us) => {
+                assert_eq!(ring.set_path_change(Micros::new((*us).into())).is_ok(), *us < u16::MAX);
+                model.listening.path_change = ring.path_change_of(0);
+                continue;
+            }
+            Step::Audible(units) => {
+                ring.set_audible(Micros::new(64 * u32::from(*units))).expect("less than a minute");
+                model.listening.audible = ring.audible();
+                continue;
+            }
+            Step::ReportAfter(us) => {
+                let _ = ring.set_report_after(Micros::new((*us).into()));
+                model.listening.report_after = ring.report_after();
             }
             Step::Echo { sensor, t_echo } => {
                 // Of any sensor that there is.
@@ -171,7 +267,7 @@ pub fn check(input: &Input) {
                 let t_echo = t_echo_of(*t_echo, &model.listening);
                 let at = (fired.at + t_echo).min(now);
                 ring.echo(x as u8, instant(at)).expect("a sensor that there is");
-                model.edge(x, at);
+                model.edge(x, at, 0);
                 continue;
             }
             Step::Stuck(sensor) => {
@@ -266,22 +362,22 @@ pub fn check(input: &Input) {
             }
         }
         model.now = now;
-        drain(&mut ring, &mut model);
+        drain(&mut ring, &mut model, expected);
     }
 }
 
 /// Polls until there is nothing more to do or to say.
-fn drain(ring: &mut ScheduledRing<'_, SENSORS>, model: &mut Model<'_>) {
+fn drain(ring: &mut ScheduledRing<'_, SENSORS>, model: &mut Model<'_>, expected: i32) {
     let now = model.now;
     for turn in 0.. {
         assert!(turn < 1000, "the ring never comes to rest");
         let deadline = time_of(ring.next_deadline(), now);
         model.on_time &= deadline >= now;
         assert_eq!((ring.t_delta(), ring.window()), (model.listening.t_delta, model.listening.window));
-        let Some(event) = ring.poll(instant(now)) else { break };
+        let Some(event) = ring.poll_expecting(instant(now), |_| expected) else { break };
         match event {
             RingEvent::Fire { sensor, .. } => model.fired(sensor, deadline),
-            RingEvent::Reading(reading) => model.emitted(&reading),
+            RingEvent::Reading(reading) => model.emitted(&reading, expected),
             RingEvent::PeriodEnded(stats) => model.ended(&stats),
         }
     }

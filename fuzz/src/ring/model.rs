@@ -20,12 +20,18 @@ pub(super) struct Heard {
     t_delta: u32,
     /// Something foreign explains it together with the one before.
     ambiguous: bool,
+    /// The change that odometry expects since the one before.
+    expected: i32,
+    /// By how much the echo may be off.
+    off: u32,
 }
 
 impl Heard {
     fn agrees(&self, before: &Self) -> bool {
         match (before.echo, self.echo) {
-            (Some(Some(s)), Some(Some(t))) => s.abs_diff(t) <= self.t_delta,
+            (Some(Some(s)), Some(Some(t))) => {
+                (i64::from(t) - i64::from(s) - i64::from(self.expected)).unsigned_abs() <= self.t_delta.into()
+            }
             (Some(None), Some(None)) => true,
             _ => false,
         }
@@ -42,7 +48,20 @@ pub(super) struct Open {
     pub(super) echo: Option<u32>,
     pub(super) early: Option<u32>,
     pub(super) stuck: bool,
+    /// By how much the echo may be off, in units of 2 us; [`WIDE`] if too much.
+    pub(super) off: u32,
+    /// The driver said that the sensor does not listen.
+    pub(super) unanswered: bool,
 }
+
+impl Open {
+    /// It has a reading that can be emitted.
+    fn is_ready(&self) -> bool {
+        self.echo.is_some() || self.off == WIDE
+    }
+}
+
+const WIDE: u32 = 255;
 
 /// Settings by which the ring listens and compares.
 #[derive(Clone, Copy, Debug)]
@@ -53,6 +72,7 @@ pub(super) struct Listening {
     pub(super) consecutive: usize,
     pub(super) path_change: Micros,
     pub(super) audible: Micros,
+    pub(super) report_after: Micros,
 }
 
 #[derive(Clone, Debug, Default)]
@@ -180,8 +200,16 @@ impl<'s> Model<'s> {
         self.on_time = true;
         let sensor = &mut self.sensors[x];
         assert!(sensor.open.is_none() && sensor.late.is_none(), "fired before its reading was out");
-        sensor.open =
-            Some(Open { at: self.now, phase: self.phase, period: self.period, echo: None, early: None, stuck: false });
+        sensor.open = Some(Open {
+            at: self.now,
+            phase: self.phase,
+            period: self.period,
+            echo: None,
+            early: None,
+            stuck: false,
+            off: 0,
+            unanswered: false,
+        });
         (sensor.emitted, sensor.had_late) = (None, false);
         sensor.last_fired = Some(fired);
         sensor.fired.push(self.now);
@@ -190,8 +218,11 @@ impl<'s> Model<'s> {
     /// Returns true if firings of sensor `x` explain two readings of sensor `y` as one path that changes by no more
     /// than `change` (docs/explanation/theory.md, 2.1).
     fn explains(&self, x: usize, y: usize, before: Heard, now: Heard, change: u64) -> bool {
-        let audible = u64::from(self.listening.audible.as_micros()) + change.saturating_sub(self.change());
-        let heard = |reading: Heard| reading.fired + u64::from(reading.echo.flatten().unwrap_or(0));
+        let most = u64::from(before.off.max(now.off));
+        let change = change + u64::from(before.off + now.off);
+        let slack = change - self.change() - u64::from(before.off + now.off);
+        let audible = u64::from(self.listening.audible.as_micros()) + slack + 2 * most;
+        let heard = |reading: Heard| reading.fired + u64::from(reading.echo.flatten().unwrap_or(0)) + most;
         let lengths = |reading: Heard| {
             let own = (x == y).then_some(reading.fired);
             let fired = self.sensors[x].fired.iter().copied().filter(move |&fired| own != Some(fired));
@@ -205,12 +236,13 @@ impl<'s> Model<'s> {
         self.listening.path_change.as_micros().into()
     }
 
-    pub(super) fn emitted(&mut self, reading: &Reading) {
+    /// A reading, for which odometry expected this change.
+    pub(super) fn emitted(&mut self, reading: &Reading, expected: i32) {
         let listening = self.listening;
         let x = usize::from(reading.sensor);
         let quiet = self.quiet_periods >= 4;
         let sensor = &mut self.sensors[x];
-        if reading.kind == ReadingKind::Late {
+        if reading.kind == ReadingKind::Late && reading.t_echo.is_some() {
             let late = sensor.late.take().expect("a late edge came in");
             let emitted = sensor.emitted.expect("its reading was out before");
             assert_eq!((reading.t_echo, reading.previous, reading.age), (Some(Micros::new(late)), None, sensor.age));
@@ -220,13 +252,20 @@ impl<'s> Model<'s> {
         }
         let open = sensor.open.take().expect("it has fired");
         assert_eq!((reading.phase, reading.period), (Phase(open.phase), open.period));
+        // By another schedule it may fire again before a window that was set since has closed.
+        let changed = sensor.last_fired.is_some_and(|last| last.epoch < self.epoch);
         assert!(
-            open.echo.is_some() || self.now >= open.at + u64::from(listening.window.as_micros()),
+            changed || open.is_ready() || self.now >= open.at + u64::from(listening.window.as_micros()),
             "emitted before its window closed"
         );
         let micros = |us: Option<u32>| us.map(Micros::new);
         let (heard, kind) = match open {
             Open { stuck: true, .. } => (None, Some(ReadingKind::Stuck)),
+            Open { off: WIDE, .. } => {
+                assert_eq!(reading.t_echo, None);
+                (None, Some(ReadingKind::Late))
+            }
+            Open { echo: None, early: None, unanswered: true, .. } => (None, Some(ReadingKind::NoEcho)),
             Open { echo: None, early: Some(early), .. } => {
                 assert_eq!(reading.t_echo, Some(Micros::new(early)));
                 (None, Some(ReadingKind::TooEarly))
@@ -237,7 +276,8 @@ impl<'s> Model<'s> {
             }
         };
         let ambiguous = reading.kind == ReadingKind::Ambiguous;
-        let heard_now = Heard { echo: heard, fired: open.at, t_delta: listening.t_delta.as_micros(), ambiguous };
+        let t_delta = listening.t_delta.as_micros();
+        let heard_now = Heard { echo: heard, fired: open.at, t_delta, ambiguous, expected, off: 2 * open.off };
         let last = sensor.heard.last().copied();
         sensor.heard.push(heard_now);
         sensor.undisturbed += 1;
@@ -249,8 +289,7 @@ impl<'s> Model<'s> {
         self.explained(reading, pair.map(|last| (last, heard_now)));
         let sensor = &mut self.sensors[x];
         let possible: &[ReadingKind] = match (kind, heard.flatten()) {
-            (Some(ReadingKind::Stuck), _) => &[ReadingKind::Stuck],
-            (Some(_), _) => &[ReadingKind::TooEarly],
+            (Some(_), _) => kind.as_slice(),
             (None, None) if enough => &[ReadingKind::Clear, ReadingKind::NoEcho],
             (None, None) => &[ReadingKind::NoEcho],
             (None, Some(_)) if ambiguous => &[ReadingKind::Ambiguous],
@@ -299,7 +338,35 @@ impl<'s> Model<'s> {
         }
     }
 
-    pub(super) fn edge(&mut self, x: usize, at: u64) {
+    /// An edge between two instants: the middle counts, unless it may be off by more than 300 us.
+    pub(super) fn edge_between(&mut self, x: usize, earliest: u64, latest: u64) {
+        let (width, [window, blanking]) =
+            (latest - earliest, [self.listening.window, self.listening.blanking].map(|us| i64::from(us.as_micros())));
+        let (middle, off) = (earliest + width / 2, width - width / 2);
+        if off <= 300 {
+            return self.edge(x, middle, off.div_ceil(2) as u32);
+        }
+        let Some(open) = &mut self.sensors[x].open else { return };
+        let since = |at: u64| at as i64 - open.at as i64;
+        if since(middle + off) < blanking {
+            return self.edge(x, middle, 0);
+        }
+        if since(middle - off) > window {
+            self.tally.count(ReadingKind::Late);
+        } else if open.echo.is_none_or(|echo| i64::from(echo) > since(middle - off)) {
+            open.off = WIDE;
+        }
+    }
+
+    /// What was heard is taken back.
+    pub(super) fn unhear(&mut self, x: usize) {
+        if let Some(open) = self.sensors[x].open.as_mut().filter(|open| open.is_ready()) {
+            (open.echo, open.early, open.off) = (None, None, 0);
+        }
+    }
+
+    /// An edge that may be off by so many units.
+    pub(super) fn edge(&mut self, x: usize, at: u64, off: u32) {
         let window = u64::from(self.listening.window.as_micros());
         let sensor = &mut self.sensors[x];
         if let Some(open) = &mut sensor.open {
@@ -313,6 +380,7 @@ impl<'s> Model<'s> {
                 }
             } else {
                 open.echo = Some(open.echo.map_or(t_echo as u32, |echo| echo.min(t_echo as u32)));
+                open.off = open.off.max(off);
             }
         } else if let Some(emitted) = sensor.emitted {
             let late = at.checked_sub(emitted.at).filter(|&late| late > window);
@@ -390,8 +458,9 @@ impl<'s> Model<'s> {
         for (x, sensor) in self.sensors.iter().enumerate() {
             assert!(sensor.late.is_none(), "sensor {x} has a late edge to tell");
             if let Some(open) = sensor.open {
-                assert!(open.echo.is_none(), "sensor {x} has an echo to tell");
-                let closes = open.at + u64::from(self.listening.window.as_micros());
+                assert!(!open.is_ready(), "sensor {x} has an echo to tell");
+                let closes = self.listening.window.max(self.listening.report_after);
+                let closes = open.at + u64::from(closes.as_micros());
                 assert!(self.now < closes, "the window of sensor {x} has closed");
             }
         }

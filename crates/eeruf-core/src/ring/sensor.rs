@@ -215,6 +215,7 @@ impl<const E: usize, const H: usize> Sensor<E, H> {
     pub(super) fn unhear(&mut self) -> bool {
         let was_ready = self.is(READY);
         if was_ready {
+            // Nor is what was held before it known any more.
             self.clear(READY | OUTSIDE);
             self.echoes = [NO_ECHO; E];
             self.uncertain[0] = 0;

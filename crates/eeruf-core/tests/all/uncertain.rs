@@ -118,6 +118,28 @@ fn an_echo_that_is_taken_back_takes_its_uncertainty_with_it() {
     assert_eq!(kinds[1..], [ReadingKind::Accepted; 3]);
 }
 
+// Found by fuzzing: an early edge was told of without its time.
+#[test]
+fn a_wide_edge_that_is_taken_back_leaves_silence() {
+    let schedule = schedule();
+    let config = RingConfig::new().with_t_delta(Micros::new(T_DELTA)).with_window(Micros::new(WINDOW));
+    let config = config.with_blanking(Micros::new(BLANKING));
+    let mut ring: ScheduledRing<'_, 2> = Ring::unverified(&schedule, config, Instant::default()).unwrap();
+    loop {
+        match ring.poll(ring.next_deadline()) {
+            Some(RingEvent::Fire { sensor: 0, .. }) => {
+                ring.measured(0, Some(Micros::new(300))).unwrap();
+                ring.measured_between(0, Micros::new(4_000), Micros::new(6_000)).unwrap();
+                ring.unheard(0).unwrap();
+            }
+            Some(RingEvent::Reading(reading)) if reading.sensor == 0 => {
+                break assert_eq!((reading.kind, reading.t_echo), (ReadingKind::NoEcho, None));
+            }
+            _ => {}
+        }
+    }
+}
+
 #[test]
 fn an_interval_that_ends_before_it_begins_is_refused() {
     let schedule = schedule();

@@ -217,7 +217,8 @@ pub trait Judge {
     fn fired_later(&mut self, _sensor: u8, _later_us: i32) {}
 }
 
-/// A judge that does not ask what explains a reading: agreement alone, for baselines. Where crosstalk repeats, as with
+/// A judge that does not ask what explains a reading: agreement alone, for baselines, without any promise about foreign
+/// sound, of edges at uncertain times least of all. Where crosstalk repeats, as with
 /// constant waits, it is accepted.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]

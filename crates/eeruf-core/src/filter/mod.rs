@@ -74,7 +74,8 @@ impl<const K: usize, const E: usize> EchoFilter<K, E> {
     /// Copied from flash: an array made at run time would first be built on the stack.
     const NOTHING_KNOWN: [Tracker<E>; K] = [Tracker::NEW; K];
 
-    /// Takes in one firing of a sensor (from 0): the time of its echo, or `None` without echo.
+    /// Takes in one firing of a sensor (from 0): the time of its echo, or `None` without echo. Nothing is asked about
+    /// what was fired, nor when an edge may have come: no promise about foreign sound holds here.
     ///
     /// # Errors
     /// [`SensorError`] for a sensor out of range.

@@ -89,7 +89,7 @@ impl<const K: usize> RateFilter<K> {
     /// Echoes after 16.7 s count as none. The verdict is [`Accepted`](ReadingKind::Accepted) for the third reading on a
     /// line, [`Repeated`](ReadingKind::Repeated) for one that may be the second, [`First`](ReadingKind::First),
     /// [`Rejected`](ReadingKind::Rejected), [`NoEcho`](ReadingKind::NoEcho), or [`Clear`](ReadingKind::Clear) for the
-    /// second silence in a row.
+    /// second silence in a row. Nothing is asked about what was fired: no promise about foreign sound holds here.
     ///
     /// # Errors
     /// [`SensorError`] for a sensor out of range.

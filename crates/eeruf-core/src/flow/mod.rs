@@ -91,7 +91,7 @@ impl<const K: usize, const E: usize, U: OwnLimits> FlowRing<K, E, U> {
     ) -> Result<Self, RingError> {
         let window = config.window.ok_or(RingError::Unverified)?;
         let judge = Belief::new(belief)?;
-        let plan = InTurn::paced(sensors, own_limits, turns, judge.pace_now(), window, now)?;
+        let plan = InTurn::begin(sensors, own_limits, turns, judge.pace_now(), window, now)?.grouped();
         let config = config.with_audible(turns.most).with_path_change(belief.path_change);
         Self::judged_by(plan, judge, config.with_echoes::<E>(), now)
     }

@@ -118,7 +118,7 @@ mod tests {
     }
 
     #[test]
-    fn a_rate_is_forgotten_wherever_the_clock_begins_and_when_it_jumps() {
+    fn rate_is_forgotten_wherever_the_clock_begins_or_jumps() {
         for start in (0..32_u32).map(|part| part << 27) {
             let mut motion = Motion::new(1000);
             for begin in [start, start.wrapping_sub(1 << 30), start.wrapping_add(1 << 31)] {

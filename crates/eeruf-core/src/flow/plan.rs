@@ -113,21 +113,14 @@ impl<const K: usize, U: OwnLimits> InTurn<K, U> {
         window: Micros,
         now: Instant,
     ) -> Result<Self, RingError> {
-        Self::paced(sensors, own_limits, settings, Pace::STANDING, window, now)
+        Ok(Self::begin(sensors, own_limits, settings, Pace::STANDING, window, now)?.grouped())
     }
 
-    pub(super) fn paced(
-        sensors: usize,
-        own_limits: U,
-        settings: TurnSettings,
-        pace: Pace,
-        window: Micros,
-        now: Instant,
-    ) -> Result<Self, RingError> {
-        let mut plan = Self::begin(sensors, own_limits, settings, pace, window, now)?;
-        plan.group();
-        plan.decide();
-        Ok(plan)
+    /// Lets those fire together that do.
+    pub(super) fn grouped(mut self) -> Self {
+        self.group();
+        self.decide();
+        self
     }
 
     /// Takes another seed for the dice.

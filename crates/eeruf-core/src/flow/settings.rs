@@ -17,7 +17,7 @@ pub(super) const LONGEST_REST: Micros = Micros::from_millis(4_000);
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct TurnSettings {
-    /// The least time from a firing to the next, of a robot that stands or is among others: at least 100 us. Where every
+    /// The least time from a firing to the next, of a robot that stands or is among others, from 100 us on. Where every
     /// echo is reported, twice as much.
     pub least: Micros,
     /// R: the most, and how long sound is heard, its tail included. 1 to 250 ms.
@@ -129,7 +129,8 @@ pub enum Votes {
 pub struct BeliefSettings {
     /// `T_delta`: by how much two readings in a row may differ that agree, of a robot that stands.
     pub t_delta: Micros,
-    /// H: by how much a reading may differ from what is believed, of a robot that stands.
+    /// H: by how much a reading may differ from what is believed, of a robot that stands; of an edge between two
+    /// instants the middle, since what fits has no promise anyway.
     pub near: Micros,
     /// P: by how much the path of foreign sound may change between two readings, of a robot that stands.
     pub path_change: Micros,

@@ -118,9 +118,9 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
         Ok(())
     }
 
-    /// Sets the blanking time, for which a sensor is deaf after it has fired. It may be less than at the start: what is
-    /// heard then, the transducer's ringing or a sensor's own stale echo, is an echo like any other, and no promise about
-    /// foreign sound rests on being deaf to it.
+    /// Sets the blanking time, for which a sensor is deaf after it has fired. It may be less than at the start: ringing
+    /// and a sensor's own stale echoes are edges like any other then, and no promise about foreign sound rests on being
+    /// deaf to them.
     ///
     /// # Errors
     /// [`RingError::Blanking`] for one that is no shorter than the window, or longer than 65,535 us. The ring then goes

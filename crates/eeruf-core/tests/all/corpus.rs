@@ -5,11 +5,11 @@
 //! Lines: `#` the name of a ring; `S` a schedule: period, phases, then the firing times by phase; `V` requirements
 //! (`t_delta`, interval, window, neighbours, layout, stale echo), then separation and window, both 0 if not met; `L`
 //! how a ring listens (`t_delta`, window, blanking, consecutive, path change, audible) and its start. Then echoes `E`,
-//! echoes between two instants `I`, stuck lines `K`, corrected firings `F`, silence `G`, sensors enabled or not `N`, restarts `R`, another path change
-//! `C` or `audible` `A`, and polls `P` with the deadline after it and the event, if there is one. `O`: the state before
-//! a sensor at an instant: kind, echo, age, reason, explanation. 2^32 - 1 stands for no echo, and where a ring listens
-//! for the default; as the explanation of a reading 254 stands for history and 255 for none. Flow rings follow: see
-//! [`flow`].
+//! echoes between two instants `I`, stuck lines `K`, corrected firings `F`, silence `G`, sensors enabled or not `N`,
+//! restarts `R`, another path change `C` or `audible` `A`, and polls `P` with the deadline after it and the event, if
+//! there is one. `O`: the state before a sensor at an instant: kind, echo, age, reason, explanation. 2^32 - 1 stands
+//! for no echo, and where a ring listens for the default; as the explanation of a reading 254 stands for history and
+//! 255 for none. Flow rings follow: see [`flow`]. Rings named `between` have lines `I`.
 
 mod flow;
 mod golden;

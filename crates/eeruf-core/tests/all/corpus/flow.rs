@@ -2,9 +2,9 @@
 //!
 //! Lines beside those of other rings: `W` sensors, window, blanking, then the settings in the order of [`begin`], votes
 //! by number, and the start; `D` the robot's speed (mm/s) and turn (mrad/s) at an instant; `G` silence needs a witness
-//! from now on, `Y` a sensor that answered (1) or did not (0), `H` an echo time measured of its last firing, `M` one between two; `Z` a
-//! pause or its end; `B` a sensor whose echoes are forgotten; `Q` the quiet of a sensor, and the echo time that is
-//! believed of it; `U` sensor and instant of the next firing, if one comes in this round.
+//! from now on, `Y` a sensor that answered (1) or did not (0), `H` an echo time measured of its last firing, `M` one
+//! between two; `Z` a pause or its end; `B` a sensor whose echoes are forgotten; `Q` the quiet of a sensor, and the
+//! echo time that is believed of it; `U` sensor and instant of the next firing, if one comes in this round.
 
 use eeruf_core::{
     Instant, Micros, Reading, RingConfig, RingEvent,

@@ -1,4 +1,5 @@
-//! Rings that fire in turn, in a world of true time: own walls in loops that are late, and (in [`one_path`]) foreign sound.
+//! Rings that fire in turn, in a world of true time: own walls in loops that are late, and foreign sound in
+//! [`one_path`].
 
 mod one_path;
 mod world;

@@ -1,4 +1,4 @@
-//! One path of foreign sound, whatever is done to the ring. The long run, of some ten million readings that are compared:
+//! One path of foreign sound, whatever is done to the ring. The long run, of some ten million readings:
 //! `RINGS=50000 cargo test -p eeruf-core --test all -- one_path_of`.
 
 use eeruf_core::{

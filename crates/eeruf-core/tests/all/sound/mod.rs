@@ -153,7 +153,7 @@ fn no_single_path_is_accepted_whatever_happens() {
     assert!(ambiguous > compared / 100, "{ambiguous} ambiguous of {compared}");
 }
 
-// On time crosstalk of a verified table moves by more than T_delta, by no more than P less, and by less yet as it is seen.
+// On time crosstalk of a verified table moves by more than T_delta, and as it is seen by less.
 #[test]
 fn edges_between_two_looks_let_no_path_in_on_time() {
     let (mut random, mut agree) = (Random(7), 0);

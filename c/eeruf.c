@@ -678,7 +678,8 @@ static IN_LINE void end_late_period(EerufRing *ring, EerufPeriod *ended, uint32_
             /* Its next reading cannot be compared: the instant of its firing before is no longer known. */
             forget_readings(ring, x);
             /* No edge is an echo of them. */
-            if (!(sensor->filter.flags & LISTENING)) sensor->filter.flags = (sensor->filter.flags & PERIOD) | OUTSIDE;
+            if (!(sensor->filter.flags & LISTENING))
+                sensor->filter.flags = (uint8_t)((sensor->filter.flags & PERIOD) | OUTSIDE);
         }
     }
     if (ring->watched != 0 && ring->watched != ALWAYS) ring->watched--;
@@ -1026,7 +1027,7 @@ static IN_LINE void emit_reading(EerufRing *ring, uint8_t x, const int32_t *chan
     sensor->echo_us = EERUF_NO_ECHO;
     if (flags & LISTENING) {
         reading->kind = unusable(ring, flags, sensor->filter.off[0], reading->t_echo_us);
-        sensor->filter.flags = flags & (reading->kind == ON_HOLD ? PERIOD | HELD : PERIOD);
+        sensor->filter.flags = (uint8_t)(flags & (reading->kind == ON_HOLD ? PERIOD | HELD : PERIOD));
         if (flows) judge(ring, x, reading);
         else compare(ring, x, change_us == NULL ? 0 : change_us[x], reading);
         sensor->filter.off[1] = sensor->filter.off[0];

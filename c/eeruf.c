@@ -364,21 +364,9 @@ EerufStatus eeruf_schedule_check(const EerufSchedule *schedule) {
 #define DISABLED 0x80u /* of a ring's sensor, kept in the same byte */
 
 const char *eeruf_reading_name(uint8_t kind) {
-    switch (kind) {
-    case EERUF_READING_FIRST: return "first";
-    case EERUF_READING_ACCEPTED: return "accepted";
-    case EERUF_READING_REJECTED: return "rejected";
-    case EERUF_READING_REPEATED: return "repeated";
-    case EERUF_READING_NO_ECHO: return "no_echo";
-    case EERUF_READING_CLEAR: return "clear";
-    case EERUF_READING_TOO_EARLY: return "too_early";
-    case EERUF_READING_LATE: return "late";
-    case EERUF_READING_STUCK: return "stuck";
-    case EERUF_READING_TENTATIVE: return "tentative";
-    case EERUF_READING_AMBIGUOUS: return "ambiguous";
-    case EERUF_READING_UNANSWERED: return "unanswered";
-    default: return "?";
-    }
+    static const char *const NAMES[] = {"first", "accepted", "rejected", "repeated", "no_echo", "clear", "too_early",
+                                        "late", "stuck", "tentative", "ambiguous", "unanswered"};
+    return kind < EERUF_READING_KINDS ? NAMES[kind] : "?";
 }
 
 static void forget(EerufFilter *filter) {
@@ -1545,14 +1533,8 @@ EerufStatus eeruf_ring_set_audible(EerufRing *ring, uint32_t audible_us) {
 #define DOUBTED 0x80u
 
 const char *eeruf_state_name(uint8_t kind) {
-    switch (kind) {
-    case EERUF_STATE_UNKNOWN: return "unknown";
-    case EERUF_STATE_OBSTACLE: return "obstacle";
-    case EERUF_STATE_CLEAR: return "clear";
-    case EERUF_STATE_TOO_CLOSE: return "too close";
-    case EERUF_STATE_UNANSWERED: return "unanswered";
-    default: return "?";
-    }
+    static const char *const NAMES[] = {"unknown", "obstacle", "clear", "too close", "unanswered"};
+    return kind < sizeof NAMES / sizeof NAMES[0] ? NAMES[kind] : "?";
 }
 
 static void forget_states(EerufWatch *watch, uint32_t now_us) {
@@ -1783,11 +1765,6 @@ static uint8_t in_8us(uint32_t width_us) {
     return (uint8_t)shorter(narrow(width_us + 7) >> 3, UINT8_MAX);
 }
 
-/* The earliest instant of an edge of a queue. */
-static uint32_t earliest(const EerufEdge *edge) {
-    return edge->at_us - 8u * edge->early_8us;
-}
-
 EerufStatus eeruf_edges_init(EerufEdges *edges, size_t edges_size, EerufEdge *places, size_t places_size) {
     const size_t length = places_size / sizeof *places;
     if (edges == NULL || places == NULL) return EERUF_ERR_NULL;
@@ -1858,15 +1835,8 @@ EerufStatus eeruf_edges_pop(EerufEdges *edges, EerufEdge *edge) {
 #define SEEN_HIGH 0x80u /* when the module was to be triggered again, so that it was not */
 
 const char *eeruf_health_name(uint8_t health) {
-    switch (health) {
-    case EERUF_HEALTH_WELL: return "well";
-    case EERUF_HEALTH_MISSING: return "missing";
-    case EERUF_HEALTH_STUCK_HIGH: return "stuck high";
-    case EERUF_HEALTH_CHATTERS: return "chatters";
-    case EERUF_HEALTH_LOSES_EDGES: return "loses edges";
-    case EERUF_HEALTH_PIN_ERROR: return "pin error";
-    default: return "?";
-    }
+    static const char *const NAMES[] = {"well", "missing", "stuck high", "chatters", "loses edges", "pin error"};
+    return health < sizeof NAMES / sizeof NAMES[0] ? NAMES[health] : "?";
 }
 
 static void set_bits(EerufLine *line, uint8_t mask, uint8_t bits) {
@@ -2069,17 +2039,27 @@ EerufStatus eeruf_hc_sr04_look(EerufHcSr04 *modules, uint8_t sensor, bool high, 
     return EERUF_OK;
 }
 
-EerufStatus eeruf_hc_sr04_edges_until(EerufHcSr04 *modules, EerufEdges *edges, uint32_t until_us) {
-    if (edges == NULL) return EERUF_ERR_NULL;
-    if (edges->ready != READY) return EERUF_ERR_NOT_READY;
-    while (edges->popped != edges->pushed) {
-        EerufEdge edge;
+/* Takes in edges of a queue, of lines that the ring has: all, or those up to an instant. */
+static EerufStatus drain(EerufHcSr04 *modules, EerufEdges *edges, const uint32_t *until_us) {
+    EerufEdge edge;
+    EerufStatus status = has_line(modules, 0);
+    while (status == EERUF_OK) {
+        const bool waits = edges != NULL && edges->ready == READY && edges->popped != edges->pushed;
         FENCE();
-        if (!has_reached(until_us, edges->places[edges->popped & edges->mask].at_us)) break;
-        (void)eeruf_edges_pop(edges, &edge);
-        (void)eeruf_hc_sr04_edge_between(modules, edge.sensor, edge.high, earliest(&edge), edge.at_us);
+        if (waits && until_us != NULL && !has_reached(*until_us, edges->places[edges->popped & edges->mask].at_us)) break;
+        status = eeruf_edges_pop(edges, &edge);
+        if (status == EERUF_OK)
+            (void)eeruf_hc_sr04_edge_between(modules, edge.sensor, edge.high, edge.at_us - 8u * edge.early_8us, edge.at_us);
     }
-    return has_line(modules, 0);
+    return status == EERUF_EMPTY ? (EerufStatus)EERUF_OK : status;
+}
+
+EerufStatus eeruf_hc_sr04_edges_until(EerufHcSr04 *modules, EerufEdges *edges, uint32_t until_us) {
+    return drain(modules, edges, &until_us);
+}
+
+EerufStatus eeruf_hc_sr04_edges(EerufHcSr04 *modules, EerufEdges *edges) {
+    return drain(modules, edges, NULL);
 }
 
 EerufStatus eeruf_hc_sr04_pulse(EerufHcSr04 *modules, uint8_t sensor, uint32_t width_us) {
@@ -2097,17 +2077,6 @@ EerufStatus eeruf_hc_sr04_pulse(EerufHcSr04 *modules, uint8_t sensor, uint32_t w
     line->width_us = ENDED;
     return eeruf_ring_measured(modules->ring, sensor,
                                width_us < modules->settings->longest_us ? width_us : EERUF_NO_ECHO);
-}
-
-EerufStatus eeruf_hc_sr04_edges(EerufHcSr04 *modules, EerufEdges *edges) {
-    EerufEdge edge;
-    EerufStatus status;
-    if (modules == NULL) return EERUF_ERR_NULL;
-    if (modules->ready != READY) return EERUF_ERR_NOT_READY;
-    while ((status = eeruf_edges_pop(edges, &edge)) == EERUF_OK)
-        /* An edge of a line that the ring does not have is ignored. */
-        (void)eeruf_hc_sr04_edge_between(modules, edge.sensor, edge.high, earliest(&edge), edge.at_us);
-    return status == EERUF_EMPTY ? (EerufStatus)EERUF_OK : status;
 }
 
 bool eeruf_hc_sr04_awaits(const EerufHcSr04 *modules, uint8_t sensor, bool *was_high) {

@@ -8,9 +8,8 @@ use clap::builder::PossibleValue;
 use eeruf_core::Micros;
 use eeruf_core::search::{Progress, SearchError};
 use eeruf_design::atlas::ATLAS;
-use eeruf_design::{CURVE_BUDGET, FoundJson, Need, RealPeriod, RingDesign, RingSpec, Search, real_budget};
+use eeruf_design::{CURVE_BUDGET, FlowDesign, FoundJson, Need, RealPeriod, RingDesign, RingSpec, Search, real_budget};
 use eeruf_files::emit::{self, Flow};
-use eeruf_logs::FlowSettings;
 use eeruf_sim::Method;
 use eeruf_sim::experiments::rooms::RoomWay;
 use serde::Serialize;
@@ -21,7 +20,6 @@ use super::rooms::{self, RoomArgs};
 use super::{Answer, show};
 use crate::console::{error as console_error, note, print, print_line, tell};
 use crate::files::error::InputError;
-use crate::files::flow::of_ring;
 use crate::files::ring::read_ring;
 use crate::files::write::write;
 use crate::report::design::describe;
@@ -281,11 +279,10 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
 
 /// The source text of a ring that fires by flow, as it was judged in rooms.
 fn flow_source(spec: &RingSpec, form: emit::Form, way: &RoomWay) -> String {
-    let (turns, of) = of_ring(spec, &way.robot);
-    let FlowSettings { window, blanking, ref belief, ref limits, .. } = of;
-    let shared_lines = spec.problem().requirements.uneven.map_or(&[][..], |uneven| uneven.shared_lines);
-    let sensors = way.robot.sensors.len();
-    form.flow(&Flow { turns: &turns, belief, sensors, window, blanking, limits, shared_lines }, &spec.modules)
+    let FlowDesign { ref turns, ref belief, window, blanking, ref limits } = spec.flow_of(&way.robot, 1);
+    let (sensors, needs) = (way.robot.sensors.len(), spec.problem().requirements);
+    let shared_lines = needs.uneven.map_or(&[][..], |uneven| uneven.shared_lines);
+    form.flow(&Flow { turns, belief, sensors, window, blanking, limits, shared_lines }, &spec.modules)
 }
 
 /// Answers `--period`.

@@ -114,7 +114,9 @@ pub(crate) fn task() -> Result<Task, String> {
         parameters.temperature_c = world.scene().air().temperature_c as f32;
     }
     parameters.check()?;
-    let gpio = (parameters.source == Source::Gpio).then(|| GpioRing::design(&parameters.ring)).transpose()?;
+    let gpio = (parameters.source == Source::Gpio)
+        .then(|| GpioRing::design(&parameters.ring, &parameters.method))
+        .transpose()?;
     if cli.no_ros && matches!(parameters.source, Source::EchoTimes | Source::Ranges) {
         return Err("without ROS there are no topics to listen to; give --port, --gpio or --simulate".to_owned());
     }

@@ -5,13 +5,19 @@
 mod chip;
 
 use std::fs;
+use std::hash::{BuildHasher as _, RandomState};
 use std::path::Path;
 use std::rc::Rc;
+use std::sync::mpsc::{Receiver, Sender};
 #[cfg(target_os = "linux")]
-use std::{sync::mpsc::Sender, thread};
+use std::thread;
 
-use eeruf_core::{Edge, Instant, MAX_SENSORS, Micros, Ring, RingConfig, RingEvent, VerifiedSchedule};
-use eeruf_design::{PeriodProblem, RingSpec, Search, shortest};
+use eeruf_core::flow::FlowRing;
+use eeruf_core::{
+    Edge, Instant, MAX_SENSORS, Micros, Ring, RingConfig, RingError, RingEvent, VerifiedSchedule, judge::Judge,
+    plan::Plan,
+};
+use eeruf_design::{FlowDesign, PeriodProblem, RingSpec, Search, shortest};
 use eeruf_hc_sr04::{HcSr04Ring, Pins, Settings};
 use eeruf_serial::{Firing, Message, Received};
 use embedded_hal::delay::DelayNs;
@@ -35,49 +41,87 @@ pub(crate) trait Lines {
     fn lost(&self) -> u8;
 }
 
-/// When the ring of a file fires, and what its modules need.
+/// Speeds of the robot, in mm/s and mrad/s.
+pub(crate) type Speeds = [u32; 2];
+
+/// How the ring of a file fires, and what its modules need.
 pub(crate) struct GpioRing {
-    schedule: VerifiedSchedule<MAX_SENSORS>,
+    way: Way,
     settings: Settings,
     sensors: u8,
 }
 
+enum Way {
+    Flow(Box<FlowDesign>),
+    Table(Box<VerifiedSchedule<MAX_SENSORS>>),
+}
+
 impl GpioRing {
-    /// Finds the schedule of a ring file, as `eeruf design` does.
-    pub(crate) fn design(file: &Path) -> Result<Self, String> {
+    /// A ring file by flow, or by the schedule that `eeruf design` finds.
+    pub(crate) fn design(file: &Path, method: &str) -> Result<Self, String> {
         let wrong = |why: String| format!("ring: {}: {why}", file.display());
         let text = fs::read_to_string(file).map_err(|error| wrong(error.to_string()))?;
         let spec = RingSpec::in_file(file, &text).map_err(|error| format!("ring: {error}"))?;
-        Self::of(&spec).map_err(wrong)
+        Self::of(&spec, method).map_err(wrong)
     }
 
-    fn of(spec: &RingSpec) -> Result<Self, String> {
+    fn of(spec: &RingSpec, method: &str) -> Result<Self, String> {
         let module = spec.robot_ring().modules.first().copied();
         let problem: PeriodProblem<'_> = spec.problem();
-        let search = Search { budget: BUDGET, ..Search::default() };
-        let found = shortest(&problem, &search, &mut ()).map_err(|error| error.to_string())?;
-        let verified = found.schedule.verified(&problem.requirements);
+        let way = match method {
+            // Each robot throws dice of its own.
+            "flow" => Way::Flow(Box::new(spec.flow(RandomState::new().hash_one(0) as u32 | 1)?)),
+            "eeruf" => {
+                let search = Search { budget: BUDGET, ..Search::default() };
+                let found = shortest(&problem, &search, &mut ()).map_err(|error| error.to_string())?;
+                let verified = found.schedule.verified(&problem.requirements);
+                Way::Table(Box::new(verified.map_err(|error| error.to_string())?))
+            }
+            other => return Err(format!("method: {other}; expected flow, or eeruf for a table, on pins")),
+        };
         let settings = match module {
             None => Settings::default(),
             Some(module) => Settings::of(&module)
                 .ok_or_else(|| format!("module {}: expected one that answers by a pulse, as hc-sr04", module.name))?,
         };
-        Ok(Self { schedule: verified.map_err(|error| error.to_string())?, settings, sensors: problem.sensors as u8 })
+        Ok(Self { way, settings, sensors: problem.sensors as u8 })
     }
 
-    /// Fires and listens until `each` returns false, which takes the messages.
-    pub(crate) fn run<L: Lines>(&self, lines: L, mut each: impl FnMut(FromLine) -> bool) -> Result<(), String> {
+    /// Fires and listens until `each` returns false, which takes the messages. The robot moves as `speeds` say.
+    pub(crate) fn run<L: Lines>(
+        &self,
+        lines: L,
+        speeds: &Receiver<Speeds>,
+        each: impl FnMut(FromLine) -> bool,
+    ) -> Result<(), String> {
+        let now = instant(lines.now_us());
+        match &self.way {
+            Way::Table(schedule) => self.fire(Ring::new(schedule, RingConfig::new(), now), lines, speeds, each),
+            Way::Flow(design) => {
+                let &FlowDesign { turns, belief, window, blanking, limits } = &**design;
+                let config = RingConfig::new().with_window(window).with_blanking(blanking);
+                let ring = FlowRing::with_limits(self.sensors.into(), limits, turns, belief, config, now);
+                self.fire(ring, lines, speeds, each)
+            }
+        }
+    }
+
+    fn fire<P: Plan, J: Judge, const H: usize, L: Lines>(
+        &self,
+        ring: Result<Ring<P, J, MAX_SENSORS, 1, H>, RingError>,
+        lines: L,
+        speeds: &Receiver<Speeds>,
+        mut each: impl FnMut(FromLine) -> bool,
+    ) -> Result<(), String> {
         let lines = Rc::new(lines);
         let pins = std::array::from_fn(|n| {
             let sensor = u8::try_from(n).ok().filter(|&sensor| sensor < self.sensors);
             let pin = Pin { lines: Rc::clone(&lines), sensor };
             Pins { trigger: pin.clone(), echo: pin }
         });
-        let ring = Ring::new(&self.schedule, RingConfig::new(), instant(lines.now_us()));
         let ring = ring.map_err(|error| error.to_string())?;
-        let delay = Delay(Rc::clone(&lines));
-        let mut ring: HcSr04Ring<Ring<_, _, MAX_SENSORS>, _, _, _, MAX_SENSORS> =
-            HcSr04Ring::new(ring, pins, delay, self.settings).map_err(|error| error.to_string())?;
+        let ring = HcSr04Ring::new(ring, pins, Delay(Rc::clone(&lines)), self.settings);
+        let mut ring = ring.map_err(|error| error.to_string())?;
         let mut known = Known { sequence: 0, fired: [(instant(0), Micros::ZERO); MAX_SENSORS] };
         let hello = Message::Hello { sensors: self.sensors, clock: "gpio".to_owned() };
         if !(each(FromLine::Opened) && each(known.frame(hello))) {
@@ -85,6 +129,9 @@ impl GpioRing {
         }
         loop {
             let now_us = lines.now_us();
+            if let Some([speed_mm_s, turn_mrad_s]) = speeds.try_iter().last() {
+                ring.moving(speed_mm_s, turn_mrad_s, instant(now_us));
+            }
             // No window closes on an edge that came in time.
             while let Some(edge) = lines.next_edge(0)? {
                 _ = ring.edge(edge);
@@ -112,11 +159,12 @@ pub(crate) fn listen(
     ring: GpioRing,
     chip: &str,
     [triggers, echoes]: [&[u32]; 2],
+    speeds: Receiver<Speeds>,
     to: Sender<FromLine>,
 ) -> Result<(), String> {
     let lines = chip::Chip::open(chip, triggers, echoes)?;
     thread::spawn(move || {
-        if let Err(error) = ring.run(lines, |from| to.send(from).is_ok()) {
+        if let Err(error) = ring.run(lines, &speeds, |from| to.send(from).is_ok()) {
             _ = to.send(FromLine::Lost(error));
         }
     });
@@ -231,8 +279,9 @@ mod tests {
     use eeruf_core::ReadingKind;
 
     /// Modules before walls that stand still, and a clock that goes on where the ring waits. Module 2 has a cut wire,
-    /// nothing is in range of module 3, and the line of module 4 is stuck.
+    /// nothing is in range of module 3, and the line of module 4 is stuck. What is before module 1 may jump.
     struct Modules {
+        jumps: bool,
         now_us: Cell<u64>,
         edges: RefCell<BTreeSet<(u64, u8, bool)>>,
         triggered: RefCell<Vec<(u64, u8)>>,
@@ -257,6 +306,9 @@ mod tests {
             let width = match sensor {
                 2 => return Ok(()),
                 3 => 38_000,
+                1 if self.jumps && self.triggered.borrow().iter().filter(|fired| fired.1 == 1).count() % 2 == 0 => {
+                    ECHOES_US[1] + 2_000
+                }
                 _ => ECHOES_US[usize::from(sensor)],
             };
             self.edges.borrow_mut().extend([(now + 450, sensor, true), (now + 450 + width, sensor, false)]);
@@ -297,13 +349,21 @@ mod tests {
 
     type OfSensor = Vec<(ReadingKind, Option<Micros>)>;
 
-    /// The readings of 40 periods, by sensor, and the health at their end.
-    fn read(start_us: u64) -> (Vec<OfSensor>, Vec<u8>) {
-        let ring = GpioRing::of(&RingSpec::from_text(RING).unwrap()).unwrap();
+    /// The readings of 40 periods, by sensor, and the health at their end. The ring is told of the speeds of a period.
+    fn read(
+        start_us: u64,
+        (ring, method): (&str, &str),
+        jumps: bool,
+        told: impl Fn(u32) -> Option<Speeds>,
+    ) -> (Vec<OfSensor>, Vec<u8>) {
+        let ring = GpioRing::of(&RingSpec::from_text(ring).unwrap(), method).unwrap();
         assert_eq!(ring.sensors, SENSORS);
-        let modules = Modules { now_us: Cell::new(start_us), edges: RefCell::default(), triggered: RefCell::default() };
+        let (now_us, edges, triggered) = (Cell::new(start_us), RefCell::default(), RefCell::default());
+        let modules = Modules { jumps, now_us, edges, triggered };
+        let (tell, speeds) = std::sync::mpsc::channel();
+        told(0).into_iter().for_each(|told| tell.send(told).unwrap());
         let (mut readings, mut healths, mut next) = (vec![vec![]; 5], vec![], 0);
-        ring.run(modules, |from| {
+        ring.run(modules, &speeds, |from| {
             let FromLine::Frame(frame, _) = from else { return true };
             let Received { sequence, message, .. } = frame.unwrap();
             assert_eq!(sequence, next);
@@ -316,6 +376,7 @@ mod tests {
                 }
                 Message::Period { period, health, .. } => {
                     healths = health;
+                    told(period + 1).into_iter().for_each(|told| tell.send(told).unwrap());
                     return period < 40;
                 }
             }
@@ -327,17 +388,18 @@ mod tests {
 
     #[test]
     fn ring_on_pins_reads_walls_and_what_is_broken() {
-        // The second run goes through the clock's wrap.
-        for start_us in [1_000, u64::from(u32::MAX) - 1_000_000] {
-            let (readings, health) = read(start_us);
+        // The second start goes through the clock's wrap.
+        let starts = [1_000, u64::from(u32::MAX) - 1_000_000];
+        for (start_us, method) in starts.into_iter().flat_map(|start| [(start, "flow"), (start, "eeruf")]) {
+            let (readings, health) = read(start_us, (RING, method), false, |_| None);
             for (sensor, echo_us) in ECHOES_US.into_iter().enumerate() {
                 let right = |&&(kind, t_echo): &&(ReadingKind, Option<Micros>)| {
                     kind == ReadingKind::Accepted && t_echo.is_some_and(|t_echo| t_echo.as_micros() == echo_us as u32)
                 };
                 let (all, right) = (readings[sensor].len(), readings[sensor].iter().filter(right).count());
-                assert!(all >= 39 && right >= all - 1, "sensor {sensor}: {right} of {all}");
+                assert!(all >= 39 && right >= all - 1, "{method}, sensor {sensor}: {right} of {all}");
             }
-            let all = |sensor: usize, kind| readings[sensor].iter().skip(1).all(|reading| reading.0 == kind);
+            let all = |sensor: usize, kind| readings[sensor].iter().skip(2).all(|reading| reading.0 == kind);
             assert!(all(2, ReadingKind::Unanswered), "{:?}", readings[2]);
             assert!(all(3, ReadingKind::Clear), "{:?}", readings[3]);
             assert!(all(4, ReadingKind::Stuck), "{:?}", readings[4]);
@@ -346,8 +408,32 @@ mod tests {
     }
 
     #[test]
-    fn module_without_pulses_is_refused() {
-        let error = GpioRing::of(&RingSpec::from_text(&RING.replace("hc-sr04", "srf08")).unwrap()).err().unwrap();
+    fn ring_by_flow_moves_as_it_is_told() {
+        let ring = format!("{RING}\nspeed_m_s = 1.0\nothers = false");
+        let accepted = |told: fn(u32) -> Option<Speeds>| {
+            let (readings, _) = read(1_000, (&ring, "flow"), true, told);
+            let is_accepted = |&(kind, _): &(ReadingKind, Option<Micros>)| kind == ReadingKind::Accepted;
+            readings[1].iter().map(is_accepted).collect::<Vec<bool>>()
+        };
+        let count = |of: &[bool]| of.iter().filter(|&&is| is).count();
+        // Alone and moving, as the file says, every echo counts; of a robot that stands one that jumps does not.
+        let untold = accepted(|_| None);
+        assert_eq!(count(&untold), untold.len());
+        let standing = accepted(|_| Some([0, 0]));
+        assert!(count(&standing) < standing.len() / 2, "{standing:?}");
+        // After half a second without a word the file's speed holds.
+        let silent = accepted(|period| (period < 15).then_some([0, 0]));
+        assert!(count(&silent[..15]) < 8 && count(&silent[30..]) == silent[30..].len(), "{silent:?}");
+        let turning = accepted(|_| Some([0, 500]));
+        assert_eq!(count(&turning), turning.len());
+    }
+
+    #[test]
+    fn module_without_pulses_and_unknown_way_are_refused() {
+        let other = GpioRing::of(&RingSpec::from_text(RING).unwrap(), "simultaneous").err().unwrap();
+        assert_eq!(other, "method: simultaneous; expected flow, or eeruf for a table, on pins");
+        let spec = RingSpec::from_text(&RING.replace("hc-sr04", "srf08")).unwrap();
+        let error = GpioRing::of(&spec, "flow").err().unwrap();
         assert!(error.contains("srf08") && error.contains("expected one that answers by a pulse"), "{error}");
     }
 }

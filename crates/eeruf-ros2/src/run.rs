@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::time::{Duration, Instant};
 
 use eeruf_core::{Micros, ReadingKind};
@@ -14,7 +14,7 @@ use crate::cli::Setup;
 use crate::diagnosis::{Diagnosis, Level};
 use crate::filter::{RangeFilter, Raw};
 use crate::firing_log::FiringLog;
-use crate::gpio::GpioRing;
+use crate::gpio::{GpioRing, Speeds};
 use crate::mavlink::Mavlink;
 use crate::parameters::{Parameters, Source};
 use crate::range::{Distance, Scale};
@@ -42,7 +42,11 @@ pub(crate) fn run(mut setup: Setup) -> Result<(), String> {
             listen(parameters.port.clone(), parameters.baud, to);
             Some(from)
         }
-        (_, Some(ring)) => Some(pins(ring, parameters)?),
+        (_, Some(ring)) => {
+            let (speeds, of_robot) = channel();
+            node.speeds = Some(speeds);
+            Some(pins(ring, parameters, of_robot)?)
+        }
         _ => None,
     };
     eprintln!("eeruf-ros2: {} sensors, from {}", parameters.sensors, source(parameters));
@@ -59,15 +63,15 @@ pub(crate) fn run(mut setup: Setup) -> Result<(), String> {
 }
 
 #[cfg(target_os = "linux")]
-fn pins(ring: GpioRing, parameters: &Parameters) -> Result<Receiver<FromLine>, String> {
+fn pins(ring: GpioRing, parameters: &Parameters, speeds: Receiver<Speeds>) -> Result<Receiver<FromLine>, String> {
     let (to, from) = channel();
     let lines = [&parameters.trigger_lines[..], &parameters.echo_lines[..]];
-    crate::gpio::listen(ring, &parameters.gpio_chip, lines, to)?;
+    crate::gpio::listen(ring, &parameters.gpio_chip, lines, speeds, to)?;
     Ok(from)
 }
 
 #[cfg(not(target_os = "linux"))]
-fn pins(_: GpioRing, _: &Parameters) -> Result<Receiver<FromLine>, String> {
+fn pins(_: GpioRing, _: &Parameters, _: Receiver<Speeds>) -> Result<Receiver<FromLine>, String> {
     Err("source: gpio; expected Linux, whose kernel has GPIO character devices".to_owned())
 }
 
@@ -89,6 +93,8 @@ struct EerufNode {
     mavlink: Option<Mavlink>,
     log: Option<FiringLog>,
     filter: RangeFilter,
+    /// Where a ring on pins learns how the robot moves.
+    speeds: Option<Sender<Speeds>>,
     diagnosis: Diagnosis,
     scale: Scale,
     clock: BoardClock,
@@ -115,6 +121,7 @@ impl EerufNode {
             mavlink: is_set(&parameters.mavlink).then(|| Mavlink::open(parameters)).transpose()?,
             log: (!log.is_empty()).then(|| FiringLog::create(&parameters.log)).transpose()?,
             filter: RangeFilter::new(Micros::new(parameters.t_delta_us))?,
+            speeds: None,
             diagnosis: Diagnosis::new(parameters, 0.0),
             scale: Scale::new(parameters),
             clock: BoardClock::default(),
@@ -137,6 +144,7 @@ impl EerufNode {
             std::thread::sleep(LOOK);
             return if self.simulator.is_some() { self.simulate() } else { self.look_at_topics() };
         };
+        self.look_at_topics()?;
         match line.recv_timeout(10 * LOOK) {
             Ok(FromLine::Opened) => {
                 self.diagnosis.line_lost = None;
@@ -251,6 +259,8 @@ impl EerufNode {
                     self.publish(sensor, kind, t_echo, nanoseconds());
                 }
                 Ok(Heard::Range { distance: None, .. }) => {}
+                // A thread that has ended says why.
+                Ok(Heard::Speeds(speeds)) => _ = self.speeds.as_ref().map(|to| to.send(speeds)),
                 Err(why) => self.say_once(&why),
             }
         }

@@ -139,7 +139,7 @@ pub(crate) struct Vector3 {
 }
 
 /// `geometry_msgs/Quaternion`.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Copy, Debug, Deserialize, Serialize)]
 pub(crate) struct Quaternion {
     x: f64,
     y: f64,
@@ -177,7 +177,7 @@ pub(crate) struct TfMessage {
 }
 
 /// `geometry_msgs/Pose`.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Copy, Debug, Deserialize, Serialize)]
 pub(crate) struct Pose {
     pub(crate) position: Vector3,
     pub(crate) orientation: Quaternion,
@@ -194,7 +194,7 @@ pub(crate) struct Twist {
 type Covariance = [[f64; 6]; 6];
 
 /// `nav_msgs/Odometry`, whose pose and twist have a covariance each.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Deserialize, Serialize)]
 pub(crate) struct Odometry {
     pub(crate) header: Header,
     pub(crate) child_frame_id: String,

@@ -19,6 +19,7 @@ use ros2_client::{Context, MessageTypeName, Name, Node, NodeName, NodeOptions, P
 use crate::board_line::nanoseconds;
 use crate::cli::Setup;
 use crate::diagnosis::Status;
+use crate::gpio::Speeds;
 use crate::parameters::{Parameters, Source};
 use crate::placing::{Place, Placing};
 use crate::range::Distance;
@@ -26,8 +27,8 @@ use crate::ros_args::RosArgs;
 use crate::simulated::Course;
 use crate::view::View;
 use messages::{
-    DiagnosticArray, DiagnosticStatus, Header, KeyValue, PointCloud2, Quaternion, Range, RangeHeard, TfMessage, Time,
-    Transform, TransformStamped, UInt32MultiArray, ULTRASOUND, Vector3,
+    DiagnosticArray, DiagnosticStatus, Header, KeyValue, Odometry, PointCloud2, Quaternion, Range, RangeHeard,
+    TfMessage, Time, Transform, TransformStamped, Twist, UInt32MultiArray, ULTRASOUND, Vector3,
 };
 
 use scene::Scene;
@@ -39,6 +40,8 @@ pub(crate) enum Heard {
     Firing { sensor: u8, fired_us: u32, period: u32, phase: u8, t_echo_us: u32 },
     /// A range of a sensor: what it says of the world, or `None` if it is not a number.
     Range { sensor: u8, distance: Option<Distance> },
+    /// How the robot moves.
+    Speeds(Speeds),
 }
 
 /// Number of numbers in a row of raw echo times.
@@ -48,6 +51,7 @@ enum Input {
     None,
     EchoTimes(Box<Subscription<UInt32MultiArray>>),
     Ranges(Vec<Subscription<RangeHeard>>),
+    Odometry(Box<Subscription<Odometry>>),
 }
 
 /// Outputs that need the places of the sensors.
@@ -104,6 +108,10 @@ impl Ros {
         }
         let diagnostics = node.publisher("/diagnostics", ["diagnostic_msgs", "DiagnosticArray"], &PUBLISHING)?;
         let input = match parameters.source {
+            Source::Gpio if !parameters.odometry_topic.is_empty() => {
+                let odometry = ["nav_msgs", "Odometry"];
+                Input::Odometry(Box::new(node.subscription(&parameters.odometry_topic, odometry)?))
+            }
             Source::Serial | Source::Gpio | Source::Simulation => Input::None,
             Source::EchoTimes => {
                 let array = ["std_msgs", "UInt32MultiArray"];
@@ -202,6 +210,11 @@ impl Ros {
                     }
                 }
             }
+            Input::Odometry(subscription) => {
+                while let Some(message) = subscription.take().transpose() {
+                    each(message.map_err(|error| error.to_string()).and_then(|(message, _)| speeds(&message.twist.0)));
+                }
+            }
             Input::Ranges(subscriptions) => {
                 for (sensor, subscription) in (0..).zip(subscriptions) {
                     while let Some(message) = subscription.take().transpose() {
@@ -266,6 +279,15 @@ impl Topics<'_> {
     }
 }
 
+/// The robot's speeds, rounded up; what is no number is none.
+fn speeds(twist: &Twist) -> Result<Heard, String> {
+    let speeds = [twist.linear.x.hypot(twist.linear.y), twist.angular.z.abs()];
+    match speeds.iter().all(|speed| speed.is_finite()) {
+        true => Ok(Heard::Speeds(speeds.map(|speed| (1e3 * speed).ceil() as u32))),
+        false => Err(format!("odometry: {} m/s, {} rad/s; expected numbers", speeds[0], speeds[1])),
+    }
+}
+
 /// Meaning of a range, by REP 117.
 fn distance(message: &RangeHeard) -> Option<Distance> {
     let RangeHeard { min_range, max_range, range, .. } = *message;
@@ -326,6 +348,18 @@ mod tests {
         assert!(read(&data[..9])[0].as_ref().is_err_and(|error| error.starts_with("echo times: 9 numbers")));
         let error = read(&[8, 0, 0, 0, 0]).pop().unwrap().unwrap_err();
         assert_eq!(error, "echo times: sensor 8; expected less than 8");
+    }
+
+    #[test]
+    fn speeds_of_odometry_are_rounded_up() {
+        let twist = |x, y, z| {
+            let [linear, angular] = [Vector3 { x, y, z: 0.0 }, Vector3 { z, ..Vector3::default() }];
+            speeds(&Twist { linear, angular })
+        };
+        assert_eq!(twist(-0.3, 0.4, -0.0101), Ok(Heard::Speeds([500, 11])));
+        assert_eq!(twist(1e30, 0.0, 0.0), Ok(Heard::Speeds([u32::MAX, 0])));
+        let error = twist(0.1, 0.0, f64::NAN).unwrap_err();
+        assert_eq!(error, "odometry: 0.1 m/s, NaN rad/s; expected numbers");
     }
 
     #[test]

@@ -97,11 +97,11 @@ parameters! {
     trigger_lines: Vec<u32> = Vec::new(), "[]";
     /// An HC-SR04 answers with 5 V: a Raspberry Pi needs a divider to 3.3 V on each.
     echo_lines: Vec<u32> = Vec::new(), "[]";
-    /// For gpio by flow: the topic of the robot's speeds (nav_msgs/Odometry); without one the ring file's speed_m_s.
+    /// For gpio by flow: the robot's speeds (nav_msgs/Odometry); none: the ring file's.
     odometry_topic: String = "odom".to_owned(), "odom";
     /// For simulation: a scene file, whose first robot is the ring, and how it fires and filters.
     scene: PathBuf = PathBuf::new(), "\"\"";
-    /// A method of `eeruf study`: flow, eeruf, simultaneous, ..; for gpio flow, or eeruf for a table of two phases.
+    /// A method of `eeruf study`: flow, eeruf (a table), ..; gpio knows these two.
     method: String = "flow".to_owned(), "flow";
     /// The scene's frame in the simulation.
     map_frame: String = "map".to_owned(), "map";

@@ -125,7 +125,9 @@ impl<P: Plan, J: Judge, const K: usize, const H: usize> HcSr04Ring<Ring<P, J, K,
     pub fn by_hardware(ring: Ring<P, J, K, 1, H>, settings: Settings) -> Result<Self, SetupError> {
         Self::on(ring, [const { Pins { trigger: (), echo: () } }; K], (), settings, ())
     }
+}
 
+impl<P: Plan, J: Judge, T, I, D, const K: usize, const H: usize> HcSr04Ring<Ring<P, J, K, 1, H>, T, I, D, K> {
     /// As [`Ring::poll`] at the instant `at` at which hardware has triggered the sensor that was due, by
     /// [`Ring::upcoming`]: it is not triggered again. Call until there is no event, after all edges up to `at` and
     /// before all later ones. The line was not seen to be low: a sensor that still held it counts as unanswered.

@@ -1,8 +1,10 @@
 //! Lines that stay high: one that sticks is never free space, and one measurement counts once, however long a module
 //! that hears nothing holds its line.
 
+#[path = "shared/pins.rs"]
+mod pins;
+
 use std::cell::RefCell;
-use std::convert::Infallible;
 use std::rc::Rc;
 
 use eeruf_core::flow::{BeliefSettings, FlowRing, TurnSettings};
@@ -11,9 +13,9 @@ use eeruf_core::{
     watch::SensorState, watch::SensorWatch,
 };
 use eeruf_hc_sr04::{HcSr04Ring, Pins, Settings};
-use embedded_hal::digital::{ErrorType, InputPin, OutputPin};
 use embedded_hal_mock::eh1::delay::NoopDelay;
 use fastrand::Rng;
+use pins::Pin;
 
 const K: usize = 12;
 /// The sensor whose line is watched; all others have walls.
@@ -28,30 +30,13 @@ struct Lines {
     triggered: Option<u8>,
 }
 
-struct Pin(Rc<RefCell<Lines>>, u8);
-
-impl ErrorType for Pin {
-    type Error = Infallible;
-}
-
-impl InputPin for Pin {
-    fn is_high(&mut self) -> Result<bool, Infallible> {
-        Ok(self.0.borrow().high[usize::from(self.1)])
+impl pins::Lines for Lines {
+    fn is_high(&self, sensor: u8) -> bool {
+        self.high[usize::from(sensor)]
     }
 
-    fn is_low(&mut self) -> Result<bool, Infallible> {
-        self.is_high().map(|high| !high)
-    }
-}
-
-impl OutputPin for Pin {
-    fn set_low(&mut self) -> Result<(), Infallible> {
-        self.0.borrow_mut().triggered = Some(self.1);
-        Ok(())
-    }
-
-    fn set_high(&mut self) -> Result<(), Infallible> {
-        Ok(())
+    fn trigger(&mut self, sensor: u8) {
+        self.triggered = Some(sensor);
     }
 }
 

@@ -1,5 +1,8 @@
 //! A module that holds its line for ever after a lost echo, as some clones do, until it is pulled low.
 
+#[path = "shared/pins.rs"]
+mod pins;
+
 use std::cell::RefCell;
 use std::convert::Infallible;
 use std::rc::Rc;
@@ -9,8 +12,8 @@ use eeruf_core::{
     watch::SensorState, watch::SensorWatch,
 };
 use eeruf_hc_sr04::{FlexPin, HcSr04Ring, Health, Pins, Settings};
-use embedded_hal::digital::{ErrorType, InputPin, OutputPin};
 use embedded_hal_mock::eh1::delay::NoopDelay;
+use pins::Pin;
 
 const K: usize = 12;
 const LATCHED: u8 = 3;
@@ -27,34 +30,17 @@ struct Lines {
     is_shorted: bool,
 }
 
-struct Pin(Rc<RefCell<Lines>>, u8);
-
-impl ErrorType for Pin {
-    type Error = Infallible;
-}
-
-impl InputPin for Pin {
-    fn is_high(&mut self) -> Result<bool, Infallible> {
-        Ok(self.0.borrow().high[usize::from(self.1)])
+impl pins::Lines for Lines {
+    fn is_high(&self, sensor: u8) -> bool {
+        self.high[usize::from(sensor)]
     }
 
-    fn is_low(&mut self) -> Result<bool, Infallible> {
-        self.is_high().map(|high| !high)
+    fn trigger(&mut self, sensor: u8) {
+        self.triggered = Some(sensor);
     }
 }
 
-impl OutputPin for Pin {
-    fn set_low(&mut self) -> Result<(), Infallible> {
-        self.0.borrow_mut().triggered = Some(self.1);
-        Ok(())
-    }
-
-    fn set_high(&mut self) -> Result<(), Infallible> {
-        Ok(())
-    }
-}
-
-impl FlexPin for Pin {
+impl FlexPin for Pin<Lines> {
     fn drive_low(&mut self) -> Result<(), Infallible> {
         let lines = &mut *self.0.borrow_mut();
         assert_eq!(self.1, LATCHED);

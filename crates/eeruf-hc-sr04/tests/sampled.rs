@@ -1,16 +1,18 @@
 //! A loop that looks at its lines and has other work: an edge is known to have come between two looks, and a distance
 //! that is wrong by what was overslept is not accepted.
 
+#[path = "shared/pins.rs"]
+mod pins;
+
 use std::cell::RefCell;
-use std::convert::Infallible;
 use std::rc::Rc;
 
 use eeruf_core::flow::{BeliefSettings, FlowRing, TurnSettings};
 use eeruf_core::{Edge, Instant, Micros, ReadingKind, RingConfig, RingError, RingEvent};
 use eeruf_hc_sr04::{HcSr04Ring, Pins, Sampler, Settings};
-use embedded_hal::digital::{ErrorType, InputPin, OutputPin};
 use embedded_hal_mock::eh1::delay::NoopDelay;
 use fastrand::Rng;
+use pins::{Lines as _, Pin};
 
 const K: usize = 8;
 
@@ -26,36 +28,13 @@ struct Lines {
     triggered: Option<u8>,
 }
 
-impl Lines {
-    fn is_high(&self, sensor: usize) -> bool {
-        self.pulses[sensor].is_some_and(|(rise, fall)| (rise..fall).contains(&self.now))
-    }
-}
-
-struct Pin(Rc<RefCell<Lines>>, u8);
-
-impl ErrorType for Pin {
-    type Error = Infallible;
-}
-
-impl InputPin for Pin {
-    fn is_high(&mut self) -> Result<bool, Infallible> {
-        Ok(self.0.borrow().is_high(self.1.into()))
+impl pins::Lines for Lines {
+    fn is_high(&self, sensor: u8) -> bool {
+        self.pulses[usize::from(sensor)].is_some_and(|(rise, fall)| (rise..fall).contains(&self.now))
     }
 
-    fn is_low(&mut self) -> Result<bool, Infallible> {
-        self.is_high().map(|high| !high)
-    }
-}
-
-impl OutputPin for Pin {
-    fn set_low(&mut self) -> Result<(), Infallible> {
-        self.0.borrow_mut().triggered = Some(self.1);
-        Ok(())
-    }
-
-    fn set_high(&mut self) -> Result<(), Infallible> {
-        Ok(())
+    fn trigger(&mut self, sensor: u8) {
+        self.triggered = Some(sensor);
     }
 }
 
@@ -63,7 +42,7 @@ fn wall_us(sensor: u8) -> u32 {
     4_000 + 3_000 * u32::from(sensor)
 }
 
-fn driver(lines: &Rc<RefCell<Lines>>, now: Instant) -> HcSr04Ring<FlowRing<K>, Pin, Pin, NoopDelay, K> {
+fn driver(lines: &Rc<RefCell<Lines>>, now: Instant) -> HcSr04Ring<FlowRing<K>, Pin<Lines>, Pin<Lines>, NoopDelay, K> {
     let config = RingConfig::new().with_window(Micros::from_millis(36));
     let ring = FlowRing::flow(K, TurnSettings::new(5), BeliefSettings::DEFAULT, config, now).unwrap();
     let pin = |x| Pin(Rc::clone(lines), x as u8);
@@ -81,7 +60,7 @@ fn run([work_us, every_us]: [u32; 2], as_seen: bool) -> (u32, u32) {
     while lines.borrow().now < 20_000_000 {
         for sensor in 0..K as u8 {
             let before = Instant::from_micros(lines.borrow().now);
-            let high = lines.borrow().is_high(sensor.into());
+            let high = lines.borrow().is_high(sensor);
             lines.borrow_mut().now += LOOK_US;
             let after = Instant::from_micros(lines.borrow().now);
             if let Some((earliest, latest)) = sampler.look(sensor, high, before, after) {

@@ -139,14 +139,16 @@ static bool haveWaited(bool *hasLost) {
     ahead = now;
     return ((flags & _BV(TOV0)) && ticks > 8) || ((flags & _BV(OCF0B)) && since > 8);
 }
+static const bool IS_KNOWN = true;
 #else
 static inline bool haveWaited(bool *) {
     return false;
 }
+static const bool IS_KNOWN = false; // only edges that come together tell
 #endif
 
 // Queues the edges that came since an instant, or just now: with interrupts off. An edge has no time that an interrupt
-// finds late or with others of its group, nor has the end of a pulse whose beginning has none, or in which time was lost.
+// finds late, nor has the end of a pulse whose beginning has none, or in which time was lost.
 static void take(uint32_t since, bool isInterrupt) {
     const uint32_t at = micros();
     bool hasLost = false;
@@ -157,7 +159,8 @@ static void take(uint32_t since, bool isInterrupt) {
         uint8_t changed = (uint8_t)((levels(group) ^ known[group]) & ours[group] & ~outputs(group));
         uint8_t late = timeless[group];
         if (hasLost) late |= known[group];
-        if (isLate || (isInterrupt && (changed & (uint8_t)(changed - 1)) != 0)) late |= changed;
+        const bool areSeveral = (changed & (uint8_t)(changed - 1)) != 0;
+        if (isLate || (!IS_KNOWN && isInterrupt && areSeveral)) late |= changed;
         uint8_t high = known[group] ^= changed;
         timeless[group] = (uint8_t)(late & high);
         for (const uint8_t *sensor = sensorOf[group]; changed != 0; sensor++, changed >>= 1, high >>= 1, late >>= 1)

@@ -8,9 +8,9 @@
 // SoftwareSerial takes the interrupts of pin changes too: then define EERUF_POLLED before the first include. So do all
 // files of a sketch but one.
 //
-// While noInterrupts() holds, an edge waits. If it shows that interrupts have waited, which the timer of micros() does if
-// it waits too, and several edges at once do, the edge counts as one that came nobody knows when. Of a block of 0.9 ms, as
-// 30 LEDs of a strip take, an eighth shows nothing, and of one longer than a millisecond micros() itself loses time:
+// While noInterrupts() holds, an edge waits. On these boards two interrupts of timer 0, that of micros() and compare B
+// half-way, tell of each block of more than 0.55 ms: its edges count as ones that came nobody knows when, and so do pulses
+// in which micros() has lost time, but from a block of more than 1.5 ms. Elsewhere edges that come together tell.
 // quietFor() says when to call noInterrupts().
 #pragma once
 

@@ -52,8 +52,8 @@ const PLACES: [&str; 2] = ["wall", "nothing"];
 /// The faults of all languages, and the table of the outcomes, of which one column is compared.
 const FILE: &str = "tests/data/line-faults.txt";
 const OUTCOMES: &str = "tests/data/line-fault-outcomes.txt";
-/// Readings that a line may take to show its fault: the time that a clone holds it, in periods.
-const UNTIL_STUCK: usize = 4;
+/// Readings that a line may take to show what it is: twice the time that a clone holds it, in periods.
+const UNTIL_STUCK: usize = 8;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Says {

@@ -26,7 +26,7 @@ const DRAWN: usize = 20;
 const FILE: &str = "tests/data/arduino-loads.csv";
 const POLLED: &str = "polled";
 /// For how long each runs.
-const SECONDS: u32 = 4;
+const SECONDS: u32 = 3;
 /// Those that run in CI, with six modules in the alcove.
 const CORNER: [usize; 3] = [1, 11, 17];
 
@@ -76,7 +76,7 @@ const KINDS: [Load; 23] = [
     load(25_000, 100_000, 47.9),
     masked(900, false, [0.0, 0.1]),
     // Of longer ones than a millisecond and a half micros() loses time that nothing shows.
-    masked(1_800, false, [1.2, 0.7]),
+    masked(1_800, false, [2.8, 2.8]),
     masked(900, true, [0.0; 2]),
     masked(1_800, true, [0.0; 2]),
     Load { baud: 9_600, ..load(0, 0, 64.8) },

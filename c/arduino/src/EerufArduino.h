@@ -11,8 +11,9 @@
 // it as often as you can: modules that fire late fire less often.
 //
 // Edges are timed by interrupts: see EerufInterrupts.h. With EERUF_POLLED defined before the first include, read() looks at
-// the lines instead. An edge then came at some time since the look before; more than a millisecond of that, and the
-// reading is EERUF_READING_LATE, which is no distance.
+// the lines instead: for 0.3 ms, until a line that was triggered rises, and for up to 4 ms where it expects an edge before
+// loop() comes back. An edge came at some time since the look before; if that is more than half a millisecond, the reading
+// is EERUF_READING_LATE, which is no distance.
 #pragma once
 
 #include <Arduino.h>

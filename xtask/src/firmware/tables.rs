@@ -9,11 +9,13 @@ use crate::toolchain::{DEBIAN_RUSTC, is_debian, most_bytes, version_of};
 /// Budgets of a ring of twelve on the Cortex-M0: (name in the measured lines, most instructions).
 const INSTRUCTIONS: [(&str, u32); 6] =
     [("idle_poll", 44), ("fire", 116), ("echo", 69), ("stamp", 60), ("reading", 475), ("reading_late", 2198)];
+/// The same of a flow ring. `mean_reading` is of all readings of the measured world, six in ten of them not believed.
+const FLOW_INSTRUCTIONS: [(&str, u32); 3] = [("fire", 369), ("reading_moving", 2000), ("mean_reading", 831)];
 /// Programs of a flow ring of twelve: instructions and size.
 const FLOW: [&str; 2] = ["flow-instructions", "size-flow-12"];
 /// Compilers differ: only more than the budget and this part of it fails.
 const LEEWAY: f64 = 0.05;
-const FLASH: u64 = 4888;
+const FLASH: u64 = 4916;
 const RAM: u64 = 12 * 32 + 92;
 const STACK: u64 = 624;
 
@@ -56,7 +58,11 @@ pub(super) fn measure(only: Option<&str>) -> Result<(Tables, Vec<String>)> {
             over.extend(exceeded(&said, &INSTRUCTIONS)?);
         }
         let [of_calls_alone, size] = FLOW;
-        flow_calls += &of_calls(board, &run_image(board, of_calls_alone, 10)?)?;
+        let said = run_image(board, of_calls_alone, 10)?;
+        flow_calls += &of_calls(board, &said)?;
+        if is_budgeted(board) {
+            over.extend(exceeded(&said, &FLOW_INSTRUCTIONS)?);
+        }
         let with = sections(board, size)?;
         let (flash, ram) = (with.0 - bare.0, with.1 - bare.1);
         let [restart, poll] = if stack::is_read_on(board) {

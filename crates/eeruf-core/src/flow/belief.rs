@@ -104,15 +104,8 @@ impl<const K: usize, const E: usize> Belief<K, E> {
 }
 
 impl<const E: usize> Known<E> {
-    const NOTHING: Self = Self {
-        last: [NOTHING; E],
-        believed: NOTHING,
-        grown: 0,
-        rate: Rate::STANDING,
-        age: NEVER,
-        missed: 0,
-        conf: 0,
-    };
+    const NOTHING: Self =
+        Self { last: [NOTHING; E], believed: NOTHING, grown: 0, rate: Rate::STANDING, age: NEVER, missed: 0, conf: 0 };
 
     /// This rate holds now.
     fn moves_at(&mut self, rate: Rate) {

@@ -156,7 +156,7 @@ pub(crate) fn tell_damage(file: &Path, report: &Report) -> Result<(), InputError
             found => found.join("; "),
         };
         let message = format!("{}: no sensors; expected ranges; found {found}", report.form);
-        return Err(InputError::answer_is_no(file, message));
+        return Err(InputError::new(file, message));
     }
     Ok(())
 }

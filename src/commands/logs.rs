@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::path::PathBuf;
 
 use eeruf_files::Kind;
-use eeruf_logs::{Doctor, Examination, Reading, Report, read_log};
+use eeruf_logs::{Doctor, Examination, Reading, Report, Verdict, read_log};
 use serde::Serialize;
 
 use super::Answer;
@@ -22,7 +22,7 @@ use crate::report::table::markdown;
 /// `ros2 topic echo` prints, and each of them packed by gzip, bzip2 or zstd. `replay` reads the same, and Python's
 /// `read_log`.
 ///
-/// The exit code is 1 if no sensor is found.
+/// The exit code is 1 for crosstalk, 0 if none is seen, and 3 if the log cannot tell; 2 if it is not understood.
 #[derive(clap::Args)]
 pub(crate) struct Args {
     /// The log
@@ -129,14 +129,20 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     })?;
     warn_of_log(&args.file, &report)?;
     sensors.iter_mut().zip(report.names()).for_each(|(sensor, name)| sensor.name = name);
-    let found = found(&report, sensors, doctor.examine(&report.firing, &report.names()));
+    let examination = doctor.examine(&report.firing, &report.names());
+    let answer = match examination.verdict {
+        Verdict::Crosstalk => Answer::No,
+        Verdict::NoneSeen => Answer::Yes,
+        Verdict::CannotTell => Answer::NotDecided,
+    };
+    let found = found(&report, sensors, examination);
     if args.json {
         print_line(to_json(&found))?;
     } else if !report.sensors.is_empty() {
         tell(describe(&args.file.display().to_string(), &found))?;
     }
     tell_damage(&args.file, &report)?;
-    Ok(Answer::Yes)
+    Ok(answer)
 }
 
 fn found(report: &Report, sensors: Vec<Sensor>, examination: Examination) -> Found {

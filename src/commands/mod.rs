@@ -133,11 +133,11 @@ pub(crate) enum Verb {
     Paths(paths::Args),
     #[command(after_help = help!("scene map.yaml > scene.toml", "0 printed; 2 bad input"))]
     Scene(scene::Args),
-    #[command(after_help = help!("logs log.csv", "0 sensors found; 1 none; 2 bad input or a damaged log"))]
+    #[command(after_help = help!("logs log.csv", "0 no crosstalk seen; 1 crosstalk; 2 not understood, or damaged; 3 the log cannot tell"))]
     Logs(logs::Args),
     #[command(after_help = help!(
         "replay log.csv --t-delta-us 500",
-        "0 replayed; 1 no sensors; 2 bad input or a damaged log"
+        "0 replayed; 2 no sensors, bad input or a damaged log"
     ))]
     Replay(replay::Args),
     #[command(after_help = help!(

@@ -26,11 +26,6 @@ impl InputError {
         FileError::new(of.as_ref(), message).into()
     }
 
-    /// An input that can be read and does not hold what is asked of it: exit code 1.
-    pub(crate) fn answer_is_no(file: &Path, message: impl fmt::Display) -> Self {
-        Self { code: 1, ..Self::new(file, message) }
-    }
-
     /// The exit code of the program.
     pub(crate) fn code(&self) -> u8 {
         self.code

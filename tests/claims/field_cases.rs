@@ -81,10 +81,88 @@ fn json_lines_are_read_by_their_keys() {
     }
 }
 
+// Forms from threads, each with the answer that was written down before the program saw it: for each sensor its name,
+// readings, echoes, and the nearest and farthest in millimetres.
+#[test]
+fn sensors_of_the_field_are_ranges_that_were_measured() {
+    type Sensor = (&'static str, [u64; 2], [u64; 2]);
+    let whole = |name, readings| (name, [15, readings], [0, 5000]);
+    let cases: [(&str, &[Sensor]); 6] = [
+        (
+            "six-lines.txt",
+            &[
+                ("Distance 1", [15, 13], [770, 800]),
+                ("Distance 2", [15, 14], [1420, 1450]),
+                whole("Distance 3", 15),
+                ("Distance 4", [15, 14], [310, 350]),
+                ("Distance 5", [15, 14], [2080, 2120]),
+                whole("Distance 6", 15),
+            ],
+        ),
+        ("tasmota-two.log", &[("SR04-1.Distance", [12, 12], [705, 716]), ("SR04-2.Distance", [12, 12], [1350, 1372])]),
+        ("mavlogdump-rfnd.csv", &[("0", [20, 20], [1230, 1250]), ("1", [20, 8], [2570, 2570])]),
+        ("toa5.dat", &[("DT_1", [14, 14], [1234, 1247]), ("DT_2", [14, 13], [873, 873])]),
+        ("dates-in-columns.csv", &[("distance", [60, 60], [1102, 1110])]),
+        (
+            "ten-echoes.csv",
+            &[("US/Left/Sensor/Value", [15, 15], [610, 620]), ("US/Right/Sensor/Value", [15, 15], [830, 830])],
+        ),
+    ];
+    for (file, expected) in cases {
+        let said = eeruf(&["logs", &format!("tests/data/field-cases/{file}"), "--json"]);
+        // Nobody can say whether these sensors hear each other.
+        assert_eq!((said.code, said.err.as_str()), (Some(3), ""), "{file}");
+        let found: Value = serde_json::from_str(&said.out).unwrap();
+        let sensors = found["sensors"].as_array().unwrap();
+        assert_eq!(sensors.len(), expected.len(), "{file}: {}", said.out);
+        for (sensor, (name, counts, [least, most])) in sensors.iter().zip(expected) {
+            let count = ["readings", "echoes"].map(|key| sensor[key].as_u64().unwrap());
+            assert_eq!((sensor["name"].as_str().unwrap(), &count), (*name, counts), "{file}");
+            let mm = ["least_m", "most_m"].map(|key| (1000.0 * sensor[key].as_f64().unwrap()).round() as u64);
+            assert!(mm[0] >= *least && mm[1] <= *most, "{file}: {name}: {mm:?}");
+        }
+    }
+}
+
+#[test]
+fn many_measurements_a_row_are_readings_of_the_same_sensors() {
+    let said = eeruf(&["logs", "tests/data/field-cases/bicycle.csv", "--json"]);
+    let found: Value = serde_json::from_str(&said.out).unwrap();
+    let sensors = found["sensors"].as_array().unwrap();
+    let of = |key: &str| sensors.iter().map(|sensor| sensor[key].as_f64().unwrap()).collect::<Vec<_>>();
+    assert_eq!(sensors.iter().map(|sensor| sensor["name"].as_str().unwrap()).collect::<Vec<_>>(), ["L_us", "R_us"]);
+    assert!(of("readings")[0] >= 300.0 && of("no_echo")[0] > 10.0, "{}", said.out);
+    assert!((1.558..1.566).contains(&of("least_m")[0]) && (1.558..1.566).contains(&of("most_m")[0]));
+    assert!((0.889..0.897).contains(&of("least_m")[1]) && (0.889..0.897).contains(&of("most_m")[1]));
+}
+
+#[test]
+fn number_that_nothing_measures_is_said_to_never_change() {
+    let said = eeruf(&["logs", "tests/data/field-cases/never-computed.txt"]);
+    assert!(said.code == Some(3) && said.out.contains("note Sensor 1: never changes: 20 readings"), "{}", said.out);
+}
+
+#[test]
+fn log_from_a_pipe_has_all_its_readings() {
+    let text = std::fs::read("tests/data/field-cases/six-lines.txt").unwrap();
+    for name in ["-", "/dev/stdin"] {
+        let mut child = std::process::Command::new(env!("CARGO_BIN_EXE_eeruf"))
+            .args(["logs", name, "--json"])
+            .stdin(std::process::Stdio::piped())
+            .stdout(std::process::Stdio::piped())
+            .spawn()
+            .unwrap();
+        std::io::Write::write_all(&mut child.stdin.take().unwrap(), &text).unwrap();
+        let found: Value = serde_json::from_slice(&child.wait_with_output().unwrap().stdout).unwrap();
+        let readings = found["sensors"].as_array().unwrap().iter().map(|sensor| sensor["readings"].as_u64().unwrap());
+        assert_eq!(readings.sum::<u64>(), 90, "{name}");
+    }
+}
+
 #[test]
 fn bags_of_the_field_give_sensors_or_what_was_found() {
     let (outcome, _) = replay("pointcloud.bag", &[]);
-    assert_eq!(outcome.code, Some(1));
+    assert_eq!(outcome.code, Some(2));
     assert!(
         outcome.err.contains("no sensors; expected ranges; found /RosAria/sonar: sensor_msgs/PointCloud"),
         "{}",

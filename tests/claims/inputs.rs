@@ -39,7 +39,7 @@ fn bad_input_gets_one_line_with_its_place() {
     let cases = [
         ("a,b\n1.0,2.0\n1.0,?\n", ", line 3: column b: `?`; expected a range in metres; the line is left out", 2),
         ("a,b\n1.0,2.0\n1.0\n", ", line 3: `1.0` has 1 cells; expected 2; the line is left out", 2),
-        ("a,b\nx,y\n", ": a table, columns parted by comma: no sensors; expected ranges; found ", 1),
+        ("a,b\nx,y\n", ": a table, columns parted by comma: no sensors; expected ranges; found ", 2),
         ("", ": the file is empty; expected lines with readings", 2),
     ];
     for (contents, expected, code) in cases {

@@ -121,6 +121,9 @@ impl Kind {
     /// # Errors
     /// The file cannot be read, or the kind found and the command that reads it.
     pub fn expect_log(file: &Path) -> Result<(), FileError> {
+        if file.as_os_str() == "-" {
+            return Ok(());
+        }
         fs::metadata(file).map_err(|error| FileError::reading(file, &error))?;
         let ending = file.extension().map(|ending| ending.to_string_lossy().to_lowercase());
         let is_ours = matches!(ending.as_deref(), Some("toml" | "yaml" | "yml"));

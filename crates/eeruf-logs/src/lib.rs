@@ -95,6 +95,14 @@ pub use write::McapWriter;
 /// A file that cannot be opened, a folder without bag files, a form that is known and not read, or an option that does
 /// not fit the log. Of a log that is damaged, what can be read is.
 pub fn read_log(file: &Path, options: &Options, mut each: impl FnMut(&Report, &Reading)) -> Result<Report, FileError> {
+    if file.as_os_str() == "-" {
+        return read_stream(io::stdin().lock(), file, options, each);
+    }
+    if !file.is_dir() && std::fs::metadata(file).is_ok_and(|of| !of.is_file()) {
+        // A pipe is read once.
+        let opened = File::open(file).map_err(|error| FileError::reading(file, &error))?;
+        return read_stream(opened, file, options, each);
+    }
     let mut sink = Sink::new(options, &mut each);
     if file.is_dir() {
         sink.form("a ROS 2 bag");

@@ -129,7 +129,7 @@ impl Doctor {
                 record: Some(CHANGE.to_owned()),
                 ..Examination::default()
             },
-            Pattern::InTurn => self.in_turn(firing),
+            Pattern::InTurn => self.in_turn(firing, &name),
             Pattern::Several | Pattern::Flow => Examination {
                 reasons: vec![
                     "lags move between many values, which takes the log of the firings to examine".to_owned(),
@@ -249,7 +249,9 @@ impl Doctor {
     }
 
     /// No sound of another sensor is left when a sensor listens.
-    fn in_turn(&self, firing: &FiringPattern) -> Examination {
+    fn in_turn<'n>(&self, firing: &FiringPattern, name: &impl Fn(usize) -> &'n str) -> Examination {
+        /// More readings that nothing explains refute that the times are those of firings.
+        const STRAYS: f64 = 0.02;
         let gap_us = firing.gap_us.unwrap_or(0);
         let gap_ms = gap_us as f64 * 1e-3;
         if gap_us < QUIET_US {
@@ -259,6 +261,19 @@ impl Doctor {
                     QUIET_US / 1000
                 )],
                 record: Some(format!("1 minute with {} ms from one sensor to the next", QUIET_US / 1000)),
+                ..Examination::default()
+            };
+        }
+        let strays = self.sensors.iter().enumerate().map(|(sensor, own)| (sensor, own.strays()));
+        if let Some((sensor, share)) = strays.filter(|of| of.1 > STRAYS).max_by(|a, b| a.1.total_cmp(&b.1)) {
+            return Examination {
+                reasons: vec![format!(
+                    "{}: {:.0} % of the readings come from nothing that stands or moves, as others' sound does; if \
+                     the times are those of reading the modules and not of firing, each fires by itself",
+                    name(sensor),
+                    100.0 * share
+                )],
+                record: Some(CHANGE.to_owned()),
                 ..Examination::default()
             };
         }

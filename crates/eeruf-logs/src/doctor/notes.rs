@@ -5,6 +5,22 @@ use super::series::{Series, Steady};
 /// Fewer readings say nothing.
 const FEWEST: usize = 30;
 
+/// Echoes that nothing changes, within what sound in still air scatters by.
+fn never_changes(echoes: &[f64]) -> Option<String> {
+    const MANY: usize = 15;
+    const STILL_US: f64 = 3.0;
+    let of = |pick: fn(f64, f64) -> f64| echoes.iter().copied().reduce(pick).unwrap_or(0.0);
+    let [least, most] = [of(f64::min), of(f64::max)];
+    (echoes.len() >= MANY && most - least < STILL_US).then(|| {
+        format!(
+            "never changes: {} readings of {:.0} us: a wall that stands, in coarse steps, or a number that nothing \
+             measures",
+            echoes.len(),
+            0.5 * (least + most)
+        )
+    })
+}
+
 impl Series {
     /// Puts the readings in order of time.
     pub(crate) fn sort(&mut self) {
@@ -18,6 +34,9 @@ impl Series {
     pub(crate) fn note(&self) -> Option<String> {
         let count = self.echo_us.len();
         let echoes: Vec<f64> = self.echoes().collect();
+        if let Some(said) = never_changes(&echoes) {
+            return Some(said);
+        }
         if count < FEWEST {
             return None;
         }

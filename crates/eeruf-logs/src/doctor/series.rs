@@ -61,6 +61,31 @@ impl Series {
         moving.map(|value| value.count).sum::<usize>() * 5 > count || all * 2 < count
     }
 
+    /// The share of the readings that a wall which stands does not explain, and that come seldom each: where a tenth of
+    /// the readings or more are of such a wall. Of others, steps that no motion makes.
+    pub(crate) fn strays(&self) -> f64 {
+        /// A reading is one of a thing that stands if this share of all is within so many microseconds of it.
+        const NEAR_US: f64 = 150.0;
+        const STANDS: f64 = 0.1;
+        const RECURS: f64 = 0.03;
+        /// No thing comes so much nearer, or goes, from one reading to the next: 30 cm.
+        const STEP_US: f64 = 1_750.0;
+        let mut sorted: Vec<f64> = self.echoes().collect();
+        sorted.sort_by(f64::total_cmp);
+        let all = sorted.len().max(1) as f64;
+        let near = |us: f64| {
+            let within = sorted.partition_point(|&other| other <= us + NEAR_US)
+                - sorted.partition_point(|&other| other < us - NEAR_US);
+            within as f64 / all
+        };
+        let crowds: Vec<f64> = sorted.iter().map(|&us| near(us)).collect();
+        if crowds.iter().any(|&crowd| crowd >= STANDS) {
+            return crowds.iter().filter(|&&crowd| crowd < RECURS).count() as f64 / all;
+        }
+        let echoes: Vec<f64> = self.echoes().collect();
+        echoes.windows(2).filter(|two| (two[1] - two[0]).abs() > STEP_US).count() as f64 / all
+    }
+
     /// The latest firing of another sensor at each of this one's, as the time before it in microseconds; NaN before
     /// the first.
     pub(crate) fn lags(&self, other: &Self) -> Vec<f64> {

@@ -118,3 +118,41 @@ fn single_sensors_are_noted_for_what_strikes() {
     let stale = |round: u64| (round > 0).then(|| 65_000.0 - (at(round) - at(round - 1)) + noise(round, 0) / 4.0);
     assert!(note(&stale).contains("stale echo"), "{}", note(&stale));
 }
+
+// Four modules that measure by themselves and are read in turn every 40 ms: the times are not those of firing.
+#[test]
+fn ranges_refute_times_that_are_those_of_reading() {
+    let mut told = 0;
+    for seed in 0..20_u64 {
+        let random = |n: u64, from: f64, to: f64| from + (to - from) * (noise(1000 + 100 * seed + n, 3) + 20.0) / 40.0;
+        let period = |module: usize| random(module as u64, 48_800.0, 49_600.0);
+        let phase = |module: usize| random(10 + module as u64, 0.0, 49_000.0);
+        let own = |module: usize| random(20 + module as u64, 3_500.0, 20_000.0);
+        let at = |round: u64, module: usize| 200_000 + 160_000 * round + 40_000 * module as u64;
+        let mut wrong = 0;
+        let hears = |round: u64, module: usize| {
+            let before = at(round, module) as f64 - phase(module);
+            let fired = phase(module) + ((before / period(module)).floor() - 1.0) * period(module);
+            // Every one hears the next.
+            let next = (module + 1) % 4;
+            let travel = random(30 + module as u64, 3_000.0, 23_000.0);
+            let after = (travel + phase(next) - fired).rem_euclid(period(next));
+            if (800.0..own(module)).contains(&after) { after } else { own(module) }
+        };
+        (0..300).for_each(|round| (0..4).for_each(|x| wrong += usize::from(hears(round, x) != own(x))));
+        let polled = examine(4, Pattern::InTurn, |round, module| {
+            (at(round, module), Some(hears(round, module) + 0.5 * noise(round, module)))
+        });
+        if wrong > 60 {
+            told += 1;
+            assert_ne!(polled.verdict, Verdict::NoneSeen, "{seed}: {wrong} wrong: {:?}", polled.reasons);
+        }
+        let healthy = examine(4, Pattern::InTurn, |round, module| {
+            // A wall that comes nearer, and goes again.
+            let way = if seed % 2 == 0 { 0.0 } else { 60.0 * (round % 100).abs_diff(50) as f64 };
+            (at(round, module), Some(own(module) + way + noise(round, module)))
+        });
+        assert_eq!(healthy.verdict, Verdict::NoneSeen, "{seed}: {:?}", healthy.reasons);
+    }
+    assert!(told > 15, "{told}");
+}

@@ -39,6 +39,9 @@ pub(super) struct Column {
     pub(super) distinct: BTreeMap<String, usize>,
     pub(super) has_unit_in_cells: Option<RangeUnit>,
     pub(super) units: usize,
+    /// The unit below its name is one of lengths, or another one.
+    pub(super) has_length: bool,
+    pub(super) has_other_unit: bool,
     /// A unit in which every second cell says the range of the one before it again.
     pub(super) repeated_unit: Option<RangeUnit>,
 }
@@ -60,6 +63,8 @@ impl Column {
             distinct: BTreeMap::new(),
             has_unit_in_cells: None,
             units: 0,
+            has_length: false,
+            has_other_unit: false,
             repeated_unit: None,
         }
     }

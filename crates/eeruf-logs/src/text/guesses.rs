@@ -31,10 +31,11 @@ impl Plan {
                 Some(unit) => column.unit = unit,
                 None if column.role == Role::Range || column.role == Role::Empty => {
                     unnamed.push(index);
-                    values.extend(column.distinct.keys().filter_map(|text| {
-                        let number = value::number(text, self.decimal_comma).filter(|&number| number > 0.0)?;
-                        Some((number, text.contains(['.', ',']) || text.contains(['e', 'E'])))
-                    }));
+                    for (text, &count) in &column.distinct {
+                        let number = value::number(text, self.decimal_comma).filter(|&number| number > 0.0);
+                        let has_fraction = text.contains(['.', ',']) || text.contains(['e', 'E']);
+                        values.extend(number.map(|number| (number, has_fraction)).into_iter().cycle().take(count));
+                    }
                 }
                 // The limits are in the unit of the range.
                 None => unnamed.push(index),
@@ -174,7 +175,8 @@ fn by_magnitude(values: &mut [(f64, bool)]) -> RangeUnit {
     let real: Vec<_> = values.iter().copied().filter(|value| !PLACEHOLDERS.contains(&value.0)).collect();
     let values = if real.is_empty() { &*values } else { &real };
     let Some(&(median, _)) = values.get(values.len() / 2) else { return RangeUnit::M };
-    let most = values.last().map_or(median, |value| value.0);
+    // A line that was held for too long, now and then, says nothing of the unit.
+    let most = values.get(values.len() - 1 - values.len() / 10).map_or(median, |value| value.0);
     let has_fractions = values.iter().any(|value| value.1);
     if has_fractions && (most <= 12.0 || median <= 7.0) {
         RangeUnit::M

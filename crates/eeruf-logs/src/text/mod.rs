@@ -6,6 +6,7 @@
 mod boot;
 mod column;
 mod esphome;
+mod groups;
 mod guesses;
 mod lines;
 mod messages;
@@ -16,7 +17,7 @@ mod rows;
 mod sample;
 mod shape;
 mod source;
-mod tables;
+mod validity;
 
 use std::io::Read;
 use std::path::Path;

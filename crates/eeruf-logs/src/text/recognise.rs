@@ -11,6 +11,7 @@ use super::column::{Column, Role};
 use super::lines::Line;
 use super::sample::{Stripped, is_comment, shape_of, strip, usual};
 use super::shape::{self, Separator, Shape, is_underline};
+use super::validity::Validity;
 use crate::names::{self, Meaning};
 use crate::value;
 
@@ -53,6 +54,8 @@ pub(super) struct Plan {
     pub(super) unit: Option<usize>,
     /// The column that says by what a row's sensor measures, and the number of ultrasound.
     pub(super) medium: Option<(usize, f64)>,
+    /// Columns that say whether ranges are any.
+    pub(super) validity: Vec<Validity>,
     /// Lines before the header, which a reset repeats.
     pub(super) greetings: BTreeSet<String>,
     /// Lines of dashes part rows or messages; else they are words for no echo.
@@ -98,6 +101,7 @@ pub(super) fn recognise(
         days_before_1970: None,
         unit: None,
         medium: None,
+        validity: vec![],
         greetings: BTreeSet::new(),
         has_rules,
         usual_names: None,
@@ -213,7 +217,7 @@ impl Plan {
         let is_near = |row: &Vec<String>| width <= row.len() + 1;
         let header = before.iter().rposition(|(_, row)| is_header(row) && row.len() == width);
         let mut header = header.or_else(|| before.iter().rposition(|(_, row)| is_header(row) && is_near(row)));
-        let mut units = vec![];
+        let (mut units, mut other_units, mut is_long) = (vec![], vec![], false);
         if let Some(at) = header
             && at > 0
             && is_units(&before[at].1)
@@ -221,6 +225,23 @@ impl Plan {
         {
             units = before[at].1.iter().map(|text| value::unit(text)).collect();
             header = Some(at - 1);
+        }
+        // Names, units and what was done with the values, a row each, as loggers of weather stations write them.
+        let is_whole = |row: &Vec<String>| row.len() == width && is_header(row);
+        let is_names = |row: &Vec<String>| {
+            let distinct: BTreeSet<_> = row.iter().filter(|name| !name.is_empty()).collect();
+            is_whole(row) && distinct.len() == width
+        };
+        let lengths = |row: &Vec<String>| row.iter().filter(|text| value::unit(text).is_some()).count();
+        let top = before.iter().position(|(_, row)| is_names(row));
+        if let Some((top, rest)) = top.and_then(|top| Some((top, before.get(top + 1..)?)))
+            && header.is_some_and(|at| at > top)
+            && rest.iter().all(|(_, row)| is_whole(row))
+            && let Some((_, row)) = rest.iter().max_by_key(|(_, row)| lengths(row)).filter(|(_, row)| lengths(row) > 0)
+        {
+            units = row.iter().map(|text| value::unit(text)).collect();
+            other_units = row.iter().map(|text| !text.is_empty() && value::unit(text).is_none()).collect();
+            (header, is_long) = (Some(top), true);
         }
         let mut names: Option<Vec<String>> = header.map(|at| before[at].1.clone());
         // Rows with a name or a number before them, which the header does not have.
@@ -242,7 +263,7 @@ impl Plan {
             });
         }
         self.rows_from = match header {
-            Some(_) if before.len() < first => first_number,
+            Some(_) if before.len() < first || is_long => first_number,
             Some(at) => rows[at].0 + 1 + u64::from(!units.is_empty()),
             None => {
                 let text = |line: &Line| line.text.contains(|letter: char| letter.is_ascii_digit());
@@ -284,6 +305,9 @@ impl Plan {
         names.truncate(width.max(1));
         (names.len()..width).for_each(|n| names.push(format!("column {}", n + 1)));
         self.columns = names.iter().map(|name| Column::new(name)).collect();
+        for (column, (unit, is_other)) in self.columns.iter_mut().zip(units.iter().zip(&other_units)) {
+            (column.has_length, column.has_other_unit) = (unit.is_some(), *is_other);
+        }
         if matches!(separator, Separator::None) {
         } else {
             self.guesses.push(guess("separator", separator.name(), "--columns"));
@@ -402,6 +426,7 @@ impl Plan {
                     Meaning::Least => Role::Least,
                     Meaning::Most => Role::Most,
                     Meaning::Other => Role::Other,
+                    Meaning::Range | Meaning::Vague if column.has_other_unit => Role::Other,
                     Meaning::Range if !ranges.is_empty() => Role::Other,
                     Meaning::Range | Meaning::Vague if column.empties > 0 && column.distinct.is_empty() => Role::Empty,
                     Meaning::Vague if column.calendars > 0 && column.texts + column.numbers.len() == 0 => Role::Time,
@@ -420,6 +445,9 @@ impl Plan {
             column.is_numeric = column.texts + column.calendars == 0 && !column.numbers.is_empty();
             column.role = role;
         }
+        if ranges.is_empty() && has_header {
+            self.named_ranges_alone();
+        }
         // Bytes, as tools for buses print them, are no table.
         let bytes: Vec<_> = self.columns.iter().filter_map(Column::bytes).collect();
         let odd = bytes.iter().filter(|&&is_odd| is_odd).count();
@@ -437,6 +465,7 @@ impl Plan {
         }
         self.repetitions(lines, options);
         self.sensor_column(file, sensor, &ranges)?;
+        self.validities();
         let other = |column: &&Column| column.role == Role::Other && column.is_numeric && ranges.is_empty();
         let skipped = self.columns.iter().filter(other).map(|column| Skipped {
             topic: column.name.clone(),
@@ -445,6 +474,20 @@ impl Plan {
         });
         self.skipped.extend(skipped);
         Ok(())
+    }
+
+    /// Where names or units say which columns are ranges, one of which neither says anything is none.
+    fn named_ranges_alone(&mut self) {
+        let is_called = |column: &Column| {
+            let by_unit =
+                names::range_unit(&column.name).is_some_and(|(unit, is_sure)| is_sure || unit != RangeUnit::Us);
+            let by_cells = column.units * 2 > column.numbers.len();
+            column.has_length || by_unit || by_cells || names::meaning(&column.name) == Meaning::Range
+        };
+        if self.columns.iter().any(|column| column.role == Role::Range && is_called(column)) {
+            let vague = self.columns.iter_mut().filter(|column| column.role == Role::Range && !is_called(column));
+            vague.for_each(|column| column.role = Role::Other);
+        }
     }
 
     /// Where a row names its sensor, it has one range: what is called so, and no number without a meaning beside it.

@@ -51,6 +51,7 @@ impl Plan {
                 self.columns[index].has_unit_in_cells = Some(kept);
             }
         }
+        self.further_echoes(&found, &rows, &mut said);
         // By their names.
         for &index in &found {
             let name = &self.columns[index].name;
@@ -90,6 +91,36 @@ impl Plan {
         if !said.is_empty() {
             self.guesses.push(guess("no sensors", said.join(", "), "--range, --columns"));
         }
+    }
+
+    /// Leaves out the further echoes of each firing: `Value`, `Value1`, `Value2`, .., each later than the one before in
+    /// all rows, and nothing after the last.
+    fn further_echoes(&mut self, found: &[usize], rows: &[Vec<(usize, String)>], said: &mut Vec<String>) {
+        let name = |index: usize| self.columns[index].name.as_str();
+        let stem = |index: usize| name(index).trim_end_matches(|letter: char| letter.is_ascii_digit());
+        let mut left = vec![];
+        for &first in found.iter().filter(|&&index| stem(index) == name(index)) {
+            let of: Vec<_> =
+                found.iter().copied().filter(|&index| index != first && stem(index) == name(first)).collect();
+            let echo = |row: &[(usize, String)], index: usize| {
+                let text = &row.iter().find(|cell| cell.0 == index)?.1;
+                value::number(text, self.decimal_comma).filter(|&number| number > 0.0)
+            };
+            let rises = |row: &Vec<(usize, String)>| {
+                let echoes: Vec<_> = [first].iter().chain(&of).map(|&index| echo(row, index)).collect();
+                echoes.windows(2).all(|two| match two {
+                    [Some(one), Some(other)] => one < other,
+                    [None, Some(_)] => false,
+                    _ => true,
+                })
+            };
+            if of.len() > 1 && rows.len() > 2 && rows.iter().all(rises) {
+                let [one, last] = [of[0], of[of.len() - 1]].map(name);
+                said.push(format!("`{one}` to `{last}` are further echoes of `{}`", name(first)));
+                left.extend(of);
+            }
+        }
+        left.into_iter().for_each(|index| self.columns[index].role = Role::Other);
     }
 
     /// The unit to keep and the one to leave of a column whose cells say each range twice, in two units by turns.

@@ -7,17 +7,15 @@ use std::collections::HashSet;
 use serde_json::Value as Json;
 
 use super::esphome::EspHome;
+use super::groups::Groups;
 use super::messages::written;
 use super::sample::usual;
-use super::tables::{Arff, LabView, SqlDump};
 use crate::names::{self, Meaning};
 use crate::value;
 
 pub(super) enum Rewriter {
     EspHome(EspHome),
-    Arff(Arff),
-    LabView(LabView),
-    SqlDump(SqlDump),
+    Groups(Groups),
     /// Points of `InfluxDB`'s line protocol, and of Prometheus, by the digits of their times.
     Metrics(usize),
     /// Objects that hold a log's lines, as `journalctl -o json` and Docker write them.
@@ -48,14 +46,8 @@ impl Rewriter {
         let lines: Vec<_> = lines.take(50).collect();
         let first = *lines.first()?;
         let is_most = |count: usize| count * 2 > lines.len();
-        if first.starts_with("LabVIEW Measurement") {
-            return Some(Self::LabView(LabView::default()));
-        }
-        if Arff::is_in(start) {
-            return Some(Self::Arff(Arff::default()));
-        }
-        if let Some(dump) = SqlDump::of(start) {
-            return Some(Self::SqlDump(dump));
+        if let Some(groups) = Groups::of(&lines) {
+            return Some(Self::Groups(groups));
         }
         if EspHome::is_in(start) {
             return Some(Self::EspHome(EspHome::default()));
@@ -81,9 +73,7 @@ impl Rewriter {
     pub(super) const fn form(&self) -> &'static str {
         match self {
             Self::EspHome(_) => "ESPHome's log",
-            Self::Arff(_) => "ARFF, as Weka writes it",
-            Self::LabView(_) => "a measurement of LabVIEW",
-            Self::SqlDump(_) => "SQL, rows that are inserted",
+            Self::Groups(_) => "a table of many measurements a row",
             Self::Metrics(_) => "points of InfluxDB's line protocol or of Prometheus",
             Self::Messages => "JSON, an object around each line of a log",
             Self::Teleplot(_) => "lines of Teleplot",
@@ -96,13 +86,11 @@ impl Rewriter {
     }
 
     pub(super) fn rewrite(&mut self, line: &str) -> Rewritten {
-        use Rewritten::{Lines, Misfit, Nothing};
+        use Rewritten::{Lines, Misfit};
         let or_misfit = |text: Option<String>| text.map_or(Misfit, |text| Lines(vec![text]));
         match self {
             Self::EspHome(log) => log.rewrite(line),
-            Self::Arff(table) => Lines(table.rewrite(line)),
-            Self::LabView(table) => table.rewrite(line).map_or(Nothing, |text| Lines(vec![text])),
-            Self::SqlDump(dump) => dump.rewrite(line),
+            Self::Groups(groups) => groups.rewrite(line),
             Self::Metrics(_) if line.trim().is_empty() || line.starts_with('#') => Lines(vec![]),
             Self::Metrics(digits) => {
                 let values = point(line).filter(|values| digits_of_time(values) == Some(*digits));

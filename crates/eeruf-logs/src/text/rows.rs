@@ -293,7 +293,10 @@ impl<'a, 's, 'e> Rows<'a, 's, 'e> {
                 }
                 _ => continue,
             }
-            found.push((*index, self.range_m(own, column, unit)?));
+            let range_m = self.range_m(own, column, unit)?;
+            let cell = |index: usize| text(index).map(str::to_owned);
+            let none = self.plan.validity.iter().find_map(|of| of.of(*index, cell, self.plan.decimal_comma));
+            found.push((*index, none.unwrap_or(range_m)));
         }
         if found.is_empty() {
             return Err(Unread::Other);

@@ -152,22 +152,13 @@ impl<'a> Form<'a> {
     }
 }
 
-/// A row of an ArduPilot log's table `RFND`, or its header. Without an echo the range is none, as its status says.
+/// A row of an ArduPilot log's table `RFND`, or its header.
 fn rangefinder(line: &str) -> Option<String> {
     if let Some(format) = line.strip_prefix("FMT,") {
         let mut cells = format.splitn(5, ',').map(str::trim);
         return (cells.nth(2) == Some("RFND")).then(|| cells.nth(1).map(str::to_owned))?;
     }
-    let mut cells: Vec<_> = line.strip_prefix("RFND,")?.split(',').map(str::trim).collect();
-    // Time, instance, range, status and orientation: 1 is without data, 2 below and 3 beyond what it measures.
-    if let [_, _, range, status, _, ..] = &mut cells[..] {
-        match *status {
-            "0" | "1" => *range = "none",
-            "2" => *range = "-inf",
-            "3" => *range = "inf",
-            _ => {}
-        }
-    }
+    let cells: Vec<_> = line.strip_prefix("RFND,")?.split(',').map(str::trim).collect();
     Some(cells.join(","))
 }
 

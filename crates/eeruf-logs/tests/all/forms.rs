@@ -398,7 +398,7 @@ const FORMS: [Form; 106] = [
         "columns of a robot",
         "t,us_front,batt_v,enc_l,imu_ax,left_ticks,tof_left,moving,us_front_ok\n0.0,40,11.9,100,0.1,7,39,1,1\
          \n0.1,41,11.8,107,0.1,9,38,0,1\n0.2,40,11.9,114,0.1,8,39,1,0\n",
-        "us_front: 0.4 0.41 0.4",
+        "us_front: 0.4 0.41 -",
         Some(0.1),
     ),
     (

@@ -248,7 +248,7 @@ const BOARDS: [Form; 32] = [
 ];
 
 /// Forms of loggers, databases and buses.
-const LOGGERS: [Form; 40] = [
+const LOGGERS: [Form; 37] = [
     (
         "mosquitto_sub -v",
         "ring/front 40.1\nring/back 80.2\nring/front 40.2\nring/back 80.3\n",
@@ -366,17 +366,6 @@ const LOGGERS: [Form; 40] = [
         Some(0.1),
     ),
     (
-        "LabVIEW",
-        "LabVIEW Measurement\t\nWriter_Version\t2\nReader_Version\t2\nSeparator\tTab\nDecimal_Separator\t.\n\
-      Multi_Headings\tNo\nX_Columns\tOne\nTime_Pref\tRelative\nDate\t2026/01/01\nTime\t14:00:00\n\
-      ***End_of_Header***\t\n\t\nChannels\t2\t\t\nSamples\t3\t3\t\nDate\t2026/01/01\t2026/01/01\t\n\
-      Time\t14:00:00\t14:00:00\t\nX_Dimension\tTime\tTime\t\nX0\t0.0000000000000000E+0\t0.0000000000000000E+0\t\n\
-      Delta_X\t0.050000\t0.050000\t\n***End_of_Header***\t\t\t\nX_Value\tfront\tback\tComment\n\
-      0.000000\t0.401000\t0.802000\t\n0.050000\t0.402000\t0.803000\t\n0.100000\t0.401000\t0.802000\t\n",
-        "front: 0.401 0.402 0.401; back: 0.802 0.803 0.802",
-        Some(0.05),
-    ),
-    (
         "Octave",
         "# Created by Octave 8.4.0, Thu Jan 01 14:00:00 2026 UTC <me@pi>\n# name: run\n# type: matrix\n# rows: 3\n\
       # columns: 2\n 0 40.1\n 0.05 40.2\n 0.1 40.3\n\n\n",
@@ -468,14 +457,6 @@ const LOGGERS: [Form; 40] = [
         Some(0.05),
     ),
     (
-        "SQLite's dump",
-        "PRAGMA foreign_keys=OFF;\nBEGIN TRANSACTION;\nCREATE TABLE readings (t REAL, sensor TEXT, cm REAL);\n\
-      INSERT INTO readings VALUES(0.0,'front',40.1);\nINSERT INTO readings VALUES(0.05,'back',80.2);\n\
-      INSERT INTO readings VALUES(0.1,'front',NULL);\nINSERT INTO readings VALUES(0.15,'back',80.3);\nCOMMIT;\n",
-        "front: 0.401 -; back: 0.802 0.803",
-        Some(0.1),
-    ),
-    (
         "Markdown",
         "| t | front | back |\n|---|------:|-----:|\n| 0.0 | 40.1 | 80.2 |\n| 0.1 | 40.2 | 80.3 |\n",
         "front: 0.401 0.402; back: 0.802 0.803",
@@ -486,14 +467,6 @@ const LOGGERS: [Form; 40] = [
         "| t | front | back |\n|---+-------+------|\n| 0.0 | 40.1 | 80.2 |\n| 0.1 | 40.2 | 80.3 |\n",
         "front: 0.401 0.402; back: 0.802 0.803",
         Some(0.1),
-    ),
-    (
-        "Weka",
-        "% a ring\n@relation ring\n\n@attribute t numeric\n@attribute front numeric\n@attribute 'back side' rea\
-         l\n\n@data\n\
-      0.0,40.1,80.2\n0.05,?,80.3\n0.1,40.2,80.1\n",
-        "front: 0.401 - 0.402; back side: 0.802 0.803 0.801",
-        Some(0.05),
     ),
     (
         "a spreadsheet's days",

@@ -3,7 +3,7 @@
 use crate::forms::Form;
 
 /// Forms of programs in other languages, and of other habits.
-pub(crate) const PROGRAMS: [Form; 43] = [
+pub(crate) const PROGRAMS: [Form; 41] = [
     (
         "ESPHome in colours, two sensors",
         "\u{1b}[0;36m[14:00:00][D][ultrasonic.sensor:040]: 'Left' - Got distance: 0.401 m\u{1b}[0m\n\
@@ -250,22 +250,6 @@ pub(crate) const PROGRAMS: [Form; 43] = [
         "Date/Time,Level (cm)\n45234.500000,40.1\n45234.503472,40.2\n45234.506944,40.3\n",
         "Level (cm): 0.401 0.402 0.403",
         Some(299.9808),
-    ),
-    (
-        "Weka with sensors by name",
-        "@RELATION ring\n@ATTRIBUTE time NUMERIC\n@ATTRIBUTE sensor {front,back}\n\
-      @ATTRIBUTE cm REAL\n@DATA\n0.0,front,40.1\n0.03,back,80.2\n0.06,front,40.2\n",
-        "front: 0.401 0.402; back: 0.802",
-        Some(0.06),
-    ),
-    (
-        "mysqldump",
-        "-- MySQL dump 10.13\n/*!40101 SET NAMES utf8 */;\nDROP TABLE IF EXISTS `ring`;\nCREATE TABLE `ring` (\n\
-      \x20 `id` int NOT NULL AUTO_INCREMENT,\n  `t` double DEFAULT NULL,\n  `cm` decimal(5,1) DEFAULT NULL,\n  P\
-         RIMARY KEY (`id`)\n\
-      ) ENGINE=InnoDB;\nINSERT INTO `ring` VALUES (1,0.0,40.1),(2,0.05,40.2),(3,0.1,40.3);\n",
-        "cm: 0.401 0.402 0.403",
-        Some(0.05),
     ),
     (
         "a voltage and a range",

@@ -34,16 +34,10 @@ fn logs() -> Vec<String> {
             let state = format!("'Front': Sending state 0.{range}00 m with 2 decimals of accuracy");
             format!("{before}: 'Front' - Got distance: 0.{range} m\n[12:00:{row:02}][D][sensor:126]: {state}")
         }),
-        "@relation ring\n@attribute t numeric\n@attribute left numeric\n@data\n".to_owned()
-            + &rows(&|row| format!("{},{}", 1000 + row, value(row, 0))),
         rows(&|row| format!("- t: {}\n  left: {}\n  right: {}", 1000 + row, value(row, 0), value(row, 1))),
         rows(&|row| format!("ring/{} {{\"distance\":{}}}", ["a", "b"][row % 2], value(row, 0))),
         rows(&|row| format!("ring left={},right={} 17000000{row:02}000000000", value(row, 0), value(row, 1))),
         rows(&|row| format!("range{{sensor=\"{}\"}} {} 17000000{row:02}000", ["a", "b"][row % 2], value(row, 0))),
-        "CREATE TABLE ring (t REAL, sensor TEXT, cm REAL);\n".to_owned()
-            + &rows(&|row| {
-                format!("INSERT INTO ring VALUES({},'{}',{});", 1000 + row, ["a", "b"][row % 2], value(row, 0))
-            }),
         rows(&|row| format!("{{\"log\":\"left: {}\",\"time\":\"2026-01-01T14:00:{row:02}Z\"}}", value(row, 0))),
         rows(&|row| format!(">left:{}:{}", 1_700_000_000_000u64 + row as u64, value(row, 0))),
         rows(&|row| format!("Distance to the wall is {} cm", value(row, 0))),

@@ -1,0 +1,101 @@
+//! Columns that say of a range beside them whether it was measured at all.
+
+use super::column::{Column, Role};
+use super::recognise::{Plan, guess};
+use crate::names;
+use crate::value;
+
+/// The meaning of a column of validity.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Meaning {
+    /// Of ArduPilot's `RFND`: 4 is good, 3 beyond the range, 2 below it, less is no measurement.
+    RangefinderStatus,
+    /// 1 or `true` is good.
+    Flag,
+    /// 0 is bad; below 0 nothing is known.
+    Quality,
+}
+
+/// A column of validity, and the one range that it is about, or all of its row.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Validity {
+    column: usize,
+    range: Option<usize>,
+    meaning: Meaning,
+}
+
+impl Validity {
+    /// The range that a cell makes of one that it says is none.
+    pub(super) fn of(self, range: usize, text: impl Fn(usize) -> Option<String>, decimal_comma: bool) -> Option<f64> {
+        if self.range.is_some_and(|own| own != range) {
+            return None;
+        }
+        let text = text(self.column)?;
+        let number = value::number(&text, decimal_comma);
+        match self.meaning {
+            Meaning::RangefinderStatus => match number? {
+                2.0 => Some(f64::NEG_INFINITY),
+                number if number < 4.0 => Some(f64::INFINITY),
+                _ => None,
+            },
+            Meaning::Flag => {
+                let is_bad = number == Some(0.0) || text.eq_ignore_ascii_case("false");
+                is_bad.then_some(f64::INFINITY)
+            }
+            Meaning::Quality => (number == Some(0.0)).then_some(f64::INFINITY),
+        }
+    }
+}
+
+fn meaning(column: &Column) -> Option<(Meaning, &'static str)> {
+    let words: Vec<_> = column.name.to_lowercase().split(|c: char| !c.is_alphanumeric()).map(str::to_owned).collect();
+    let has = |names: &[&str]| words.iter().any(|word| names.contains(&word.as_str()));
+    let whole = |most: f64| {
+        let is_in = |number: &f64| number.fract() == 0.0 && (-1.0..=most).contains(number);
+        !column.numbers.is_empty() && column.numbers.iter().all(is_in)
+    };
+    let is_flag = column.distinct.keys().all(|text| {
+        let text = text.to_lowercase();
+        ["0", "1", "true", "false"].contains(&text.as_str())
+    });
+    if has(&["stat"]) && whole(4.0) && column.numbers.contains(&4.0) {
+        Some((Meaning::RangefinderStatus, "4 is good"))
+    } else if has(&["valid", "ok", "isvalid"]) && is_flag && column.distinct.len() <= 2 {
+        Some((Meaning::Flag, "1 or true is good"))
+    } else if has(&["quality"]) && whole(100.0) && column.numbers.iter().any(|&number| number > 0.0) {
+        Some((Meaning::Quality, "0 is bad"))
+    } else {
+        None
+    }
+}
+
+impl Plan {
+    /// Finds what says whether ranges are any.
+    pub(super) fn validities(&mut self) {
+        let ranges: Vec<usize> =
+            (0..self.columns.len()).filter(|&index| self.columns[index].role == Role::Range).collect();
+        let mut said = vec![];
+        for index in (0..self.columns.len()).filter(|&index| self.columns[index].role == Role::Other) {
+            let Some((meaning, why)) = meaning(&self.columns[index]) else { continue };
+            let without = |name: &str| {
+                let mut words = names::stem(name);
+                words.retain(|word| !["stat", "valid", "ok", "isvalid", "quality", "signal"].contains(&word.as_str()));
+                words
+            };
+            let own = without(&self.columns[index].name);
+            let alike: Vec<_> =
+                ranges.iter().copied().filter(|&range| without(&self.columns[range].name) == own).collect();
+            let range = match (&alike[..], &ranges[..]) {
+                ([one], _) => Some(*one),
+                (_, [_]) => None,
+                _ if own.is_empty() => None,
+                _ => continue,
+            };
+            said.push(format!("column `{}`: {why}", self.columns[index].name));
+            self.validity.push(Validity { column: index, range, meaning });
+        }
+        if !said.is_empty() {
+            self.guesses.push(guess("validity", said.join(", "), "--range"));
+        }
+    }
+}

@@ -83,7 +83,7 @@ unsafe impl Sync for Wraps {}
 static WRAPS: Wraps = Wraps(Cell::new(0));
 
 /// From the interrupts to the main loop.
-pub(crate) static EDGES: EdgeQueue<32> = EdgeQueue::new();
+pub(crate) static EDGES: EdgeQueue<16> = EdgeQueue::new();
 
 /// The levels of the echo lines at the last interrupt: those of port B, and those of port C.
 struct Levels([Cell<u8>; 2]);

@@ -118,6 +118,8 @@ impl<const K: usize, const N: usize> Judge for MedianFilter<K, N> {
         last.verdict(kind, heard.echoes.first().copied(), 0)
     }
 
+    fn hold(&mut self, _: &Heard<'_>) {}
+
     fn age(&self, sensor: u8) -> Option<u16> {
         self.sensors.get(usize::from(sensor))?.age.get()
     }

@@ -47,10 +47,13 @@ struct Known<const N: usize> {
     rate: Rate,
     age: Age,
     is_clear: bool,
+    /// The last reading holds its line still.
+    is_held: bool,
 }
 
 impl<const N: usize> Known<N> {
-    const NOTHING: Self = Self { last: [Vote::NOTHING; N], rate: Rate::STANDING, age: Age::NEVER, is_clear: false };
+    const NOTHING: Self =
+        Self { last: [Vote::NOTHING; N], rate: Rate::STANDING, age: Age::NEVER, is_clear: false, is_held: false };
 
     fn push(&mut self, echo: Micros) {
         self.last.rotate_right(1);
@@ -164,6 +167,10 @@ impl<const K: usize, const N: usize> Judge for MOfN<K, N> {
     fn judge(&mut self, heard: &Heard<'_>, sounds: &impl Sounds) -> Verdict {
         self.grow(heard);
         let Some(known) = self.known.get_mut(usize::from(heard.sensor)) else { return heard.unjudged(None) };
+        if core::mem::take(&mut known.is_held) && heard.since_before == Micros::ZERO {
+            // The silence of the firing that was held takes its place.
+            known.last.rotate_left(1);
+        }
         let echo = heard.echoes.first().copied().unwrap_or(SILENCE);
         let before = known.last.iter().take(usize::from(self.n) - 1);
         let (mut votes, mut explained_by, mut is_first) = (1, None, true);
@@ -208,6 +215,15 @@ impl<const K: usize, const N: usize> Judge for MOfN<K, N> {
         let verdict = known.verdict(kind, heard);
         known.push(NOTHING);
         verdict
+    }
+
+    fn hold(&mut self, heard: &Heard<'_>) {
+        self.grow(heard);
+        self.quiet = Quiet::Same;
+        if let Some(known) = self.known.get_mut(usize::from(heard.sensor)) {
+            known.is_held = true;
+            known.push(NOTHING);
+        }
     }
 
     fn age(&self, sensor: u8) -> Option<u16> {

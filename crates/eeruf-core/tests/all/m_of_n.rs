@@ -1,9 +1,9 @@
 //! Votes over the last readings of a sensor, in rings that fire in turn: own walls, and one path of foreign sound.
 
 use eeruf_core::{
-    Instant, Micros, ReadingKind, Ring, RingConfig, RingEvent,
+    Instant, Micros, Phase, ReadingKind, Ring, RingConfig, RingEvent,
     flow::{InTurn, TurnSettings},
-    judge::{Agreement, Heard, Judge, MOfN, MedianFilter, NoSounds, Verdict},
+    judge::{Agreement, Explained, Firing, Heard, Judge, MOfN, MedianFilter, NoSounds, Sounds, Verdict},
 };
 
 use crate::common::random::Random;
@@ -155,7 +155,7 @@ fn own_walls_have_votes() {
 fn verdicts(judge: &mut impl Judge, echoes_us: &[u32], expected_change_us: i32) -> Vec<Verdict> {
     let push = |&echo_us: &u32| {
         let echoes: Vec<_> = Some(Micros::new(echo_us)).filter(|_| echo_us > 1).into_iter().collect();
-        let mut firing = eeruf_core::judge::Firing::new(eeruf_core::Phase::A);
+        let mut firing = Firing::new(Phase::A);
         firing.expected_change_us = expected_change_us;
         let since_before = Micros::from_millis(60);
         let heard = Heard { sensor: 0, fired: BEGIN, since_before, echoes: &echoes, firing, t_delta: T_DELTA };
@@ -240,4 +240,47 @@ fn judges_refuse_votes_out_of_their_range() {
     assert_eq!(error(4, 3), "m is 4; expected 1 to 3");
     assert_eq!(error(0, 3), "m is 0; expected 1 to 3");
     assert_eq!(MedianFilter::<1>::new(4, T_DELTA).unwrap_err().to_string(), "of is 4; expected 1 to 3");
+}
+
+/// The firing before that was asked about.
+struct Asked(std::cell::Cell<Option<u8>>);
+
+impl Sounds for Asked {
+    fn explain(&self, _: Micros, _: Micros) -> Explained {
+        Explained::ByNothing
+    }
+
+    fn explain_line(&self, _: [Micros; 3]) -> Explained {
+        Explained::ByNothing
+    }
+
+    fn explain_after(&self, ago: u8, _: Micros, _: Micros, _: Micros) -> Explained {
+        self.0.set(Some(ago));
+        Explained::ByNothing
+    }
+
+    fn is_masked(&self, _: Micros) -> bool {
+        false
+    }
+}
+
+// The ring asks about firings: a firing that is held, and then silent, is one of them.
+#[test]
+fn held_firing_is_one_of_those_before() {
+    for falls in [false, true] {
+        let (mut judge, asked) = (MOfN::<1, 3>::new(2, 3, T_DELTA).unwrap(), Asked(std::cell::Cell::new(None)));
+        let echoes = [Micros::new(9_000)];
+        let heard = |number: u32, echoes, since_before| {
+            let (fired, firing) = (Instant::from_micros(100_000 * number), Firing::new(Phase::A));
+            Heard { sensor: 0, fired, since_before, echoes, firing, t_delta: T_DELTA }
+        };
+        let refire = Micros::from_millis(100);
+        assert_eq!(judge.judge(&heard(0, &echoes, refire), &asked).kind, ReadingKind::First);
+        judge.hold(&heard(1, &[], refire));
+        if falls {
+            assert_eq!(judge.judge(&heard(1, &[], Micros::ZERO), &asked).kind, ReadingKind::NoEcho);
+        }
+        assert_eq!(judge.judge(&heard(2, &echoes, refire), &asked).kind, ReadingKind::Accepted);
+        assert_eq!(asked.0.get(), Some(2), "falls: {falls}");
+    }
 }

@@ -113,6 +113,10 @@ impl<const K: usize, const E: usize> Judge for RunningJudge<K, E> {
         }
     }
 
+    fn hold(&mut self, heard: &Heard<'_>) {
+        each!(self, judge => judge.hold(heard));
+    }
+
     fn age(&self, sensor: u8) -> Option<u16> {
         each!(self, judge => judge.age(sensor))
     }

@@ -41,6 +41,7 @@ fn one_path<const E: usize>(seed: u32, speed_mm_s: u16, changes: bool, doubt: Do
     world.operates =
         Some(Operates { speed_mm_s: speed_mm_s.into(), top_mm_s, told: 0, asleep_until: 0, paused: false });
     world.uncertain = [0, 0, 80, 160, 900][dice.below(5) as usize];
+    let jitter = if speed_mm_s > 2_000 { 120 } else { 147 };
     let all = dice.below(4) > 0;
     let one = dice.below(sensors as u32) as usize;
     let paths = (0..sensors).map(|receiver| {
@@ -49,7 +50,7 @@ fn one_path<const E: usize>(seed: u32, speed_mm_s: u16, changes: bool, doubt: Do
         let shortest = if usize::from(emitter) == receiver { 25_950_000 } else { 1_000_000 };
         let any = 1_000_000 + i64::from(dice.below(32_000)) * 1000;
         let length = if dice.below(4) == 0 { LONGEST } else { any.max(shortest) };
-        (all || receiver == one).then_some(Path { emitter, shortest, length, travelled: 0, direction: 1 })
+        (all || receiver == one).then_some(Path { emitter, shortest, length, travelled: 0, direction: 1, jitter })
     });
     let mut paths: Vec<_> = paths.collect();
     let others: Vec<_> = (0..sensors).map(|_| 2_000 + dice.below(20_000)).collect();
@@ -80,6 +81,9 @@ struct Path {
     /// By how much it might have changed when it was last heard.
     travelled: u64,
     direction: i64,
+    /// The rest of P. At 3 m/s sound is sent so much longer apart than the receiver fires that paths change by some
+    /// 20 us more than grow.
+    jitter: u32,
 }
 
 impl Path {
@@ -93,7 +97,8 @@ impl Path {
             self.direction = -self.direction;
         }
         // As much, and as long, as may be.
-        let jitter = if dice.below(2) == 0 { dice.below(148) } else { 147 * dice.below(2) };
+        let most = self.jitter;
+        let jitter = if dice.below(2) == 0 { dice.below(most + 1) } else { most * dice.below(2) };
         self.length as u64 / 1000 + u64::from(jitter)
     }
 }

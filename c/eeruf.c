@@ -379,7 +379,7 @@ static void forget(EerufFilter *filter) {
 #define MOST_OFF_US 300u
 #define WIDE UINT8_MAX
 
-/* By how much the echoes of the present firing and the one before may be off together. */
+/* The most by which the echoes of the present firing and the one before may be off together. */
 static uint16_t pair_off(const EerufFilter *filter) {
     return (uint16_t)(2 * (filter->off[0] + filter->off[1]));
 }
@@ -982,7 +982,7 @@ static void compare(EerufRing *ring, uint8_t x, int32_t change_us, EerufReading 
     note_age(reading, filter);
 }
 
-/* What the hook of a flow ring does: see there. */
+/* The hook of a flow ring, asked for: see there. */
 enum { FORGETS = 0, BEGINS_AGAIN = 1, SILENCE_COUNTS = 2 };
 
 /* A silence counts whose reading is out. */
@@ -1101,7 +1101,7 @@ static OUT_OF_LINE void restart_by_flow(EerufRing *ring, uint32_t now_us) {
 #define restart_by_flow restart_by_table
 #endif
 
-/* What comes next was due at an instant, and may be due sooner since `now`: late counts from then. */
+/* The next firing was due at an instant, and may be due sooner since `now`: late counts from then. */
 static OUT_OF_LINE void bring_forward(EerufRing *ring, uint32_t due_us, uint32_t now_us) {
     if (!has_reached(now_us, due_us)) due_us = now_us;
     if (has_reached(due_us, ring->due_us)) ring->due_us = due_us;
@@ -1365,7 +1365,7 @@ static void forget_readings(EerufRing *ring, uint8_t sensor) {
     else forget(&sensor_of(ring, sensor)->filter);
 }
 
-/* What it heard was not what it seemed. */
+/* Its last reading was not what it seemed. */
 static void begin_again(EerufRing *ring, uint8_t sensor) {
     forget_readings(ring, sensor);
     if (FLOWS(ring)) ring->hook(ring, sensor, BEGINS_AGAIN);

@@ -245,7 +245,7 @@ static void filters_and_edges(void) {
     for (pushed = 0; pushed < 8; pushed++) EXPECT(eeruf_edges_push(&edges, pushed, true, pushed), EERUF_OK);
     EXPECT(eeruf_edges_push(&edges, 8, true, 8), EERUF_ERR_MEMORY);
     EXPECT(edges.lost, 1);
-    /* By how much sooner an edge may have come is rounded up. */
+    /* The time by which an edge may have come sooner is rounded up. */
     EXPECT(eeruf_edges_init(&edges, sizeof edges, places, sizeof places), EERUF_OK);
     EXPECT(eeruf_edges_push_between(&edges, 0, true, 5, 4), EERUF_ERR_BETWEEN);
     EXPECT(eeruf_edges_push_between(&edges, 0, true, UINT32_MAX, 16), EERUF_OK);

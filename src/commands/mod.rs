@@ -133,7 +133,10 @@ pub(crate) enum Verb {
     Paths(paths::Args),
     #[command(after_help = help!("scene map.yaml > scene.toml", "0 printed; 2 bad input"))]
     Scene(scene::Args),
-    #[command(after_help = help!("logs log.csv", "0 no crosstalk seen; 1 crosstalk; 2 not understood, or damaged; 3 the log cannot tell"))]
+    #[command(after_help = help!(
+        "logs log.csv",
+        "0 no crosstalk seen; 1 crosstalk; 2 not understood, or damaged; 3 the log cannot tell"
+    ))]
     Logs(logs::Args),
     #[command(after_help = help!(
         "replay log.csv --t-delta-us 500",
@@ -204,7 +207,8 @@ mod tests {
     use super::{Cli, GROUPS, Parser as _};
 
     /// Names of values that are a unit or a kind; a number without a unit is named by its help.
-    const KINDS: [&str; 29] = [
+    const KINDS: [&str; 30] = [
+        "RING.toml|SCENE.toml",
         "US",
         "S",
         "M",

@@ -13,7 +13,7 @@ use super::error::InputError;
 use super::ring::read_ring;
 use super::toml::read_world;
 
-/// How the ring of a file judges: a ring file's, or the first robot's of a scene.
+/// The settings by which the ring of a file judges: a ring file's, or the first robot's of a scene.
 pub(crate) fn read_flow(file: &Path) -> Result<FlowSettings, InputError> {
     if Kind::of_file(file) != Some(Kind::Scene) {
         let spec = read_ring(file)?;

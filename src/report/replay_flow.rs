@@ -1,4 +1,4 @@
-//! What a flow ring makes of a log of its firings, as a table, as JSON and as CSV.
+//! The verdicts of a flow ring on a log of its firings, as a table, as JSON and as CSV.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;

@@ -154,7 +154,8 @@ static void take(uint32_t since, bool isInterrupt) {
     bool hasLost = false;
     const bool waited = haveWaited(&hasLost), isLate = isInterrupt ? waited : at - since > TOO_LONG_US;
     if (isInterrupt) since = at;
-    for (uint8_t group = 0; group < GROUPS; group++) {
+    // Lines of an interrupt wait meanwhile: groups that no line is in are left out.
+    for (uint8_t group = 0; group < (alone ? GROUPS : PORTS); group++) {
         // A pin that is an output is high by our own trigger.
         uint8_t changed = (uint8_t)((levels(group) ^ known[group]) & ours[group] & ~outputs(group));
         uint8_t late = timeless[group];

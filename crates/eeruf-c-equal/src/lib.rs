@@ -61,7 +61,7 @@ pub enum Do {
     SetReportAfter,
 }
 
-/// What lies between two numbers.
+/// A value between two numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[expect(missing_docs, reason = "named as the functions of eeruf.h")]
 pub enum Between {

@@ -334,7 +334,7 @@ pub struct Outcome {
     pub partner: Vec<Said>,
 }
 
-/// The fault begins so many microseconds after the start; until then its sensor is well and before a wall.
+/// The fault begins `onset_us` after the start; until then its sensor is well and before a wall.
 fn run(driver: &mut dyn Driver, wires: &Wires, fault: &Fault, onset_us: u32, start: u32) -> Outcome {
     let partner = if let Wiring::Exchanged(with) = fault.wiring { Some(with) } else { None };
     let (mut outcome, mut periods, mut now) = (Outcome::default(), 0, start);
@@ -382,7 +382,7 @@ fn run(driver: &mut dyn Driver, wires: &Wires, fault: &Fault, onset_us: u32, sta
     outcome
 }
 
-/// Runs the drivers of Rust and of C, in this order, for 100 periods with a fault, which begins so many microseconds
+/// Runs the drivers of Rust and of C, in this order, for 100 periods with a fault, which begins this many microseconds
 /// after the start.
 ///
 /// # Panics

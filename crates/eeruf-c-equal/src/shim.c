@@ -216,7 +216,7 @@ int shim_do(Handle *handle, unsigned what, uint8_t sensor, uint32_t value) {
     }
 }
 
-/* What lies between two numbers: an echo, a measured time, an edge, a look. */
+/* A value between two numbers: an echo, a measured time, an edge, a look. */
 int shim_between(Handle *handle, unsigned what, uint8_t sensor, uint32_t least, uint32_t most) {
     switch (what) {
     case 0: return eeruf_ring_echo_between(handle->ring, sensor, least, most);

@@ -93,7 +93,7 @@ pub fn same<E>(c: &mut C, what: Do, sensor: u8, value: u32, rust: Result<(), E>)
     assert_eq!(c.call(what, sensor, value), expected, "{what:?} of sensor {sensor}, {value}");
 }
 
-/// What is known of something at `at`: that it lies between two numbers, mostly close ones. Now and then they are swapped.
+/// Two numbers between which `at` lies, mostly close ones. Now and then they are swapped.
 pub(crate) fn between(r: &Random, at: u32) -> [u32; 2] {
     let width = r.one_of(&[0, 16, r.duration(300), r.within(900, 1_100), r.duration(100_000), r.duration(u32::MAX)]);
     let earliest = at.wrapping_sub(r.within(0, width));

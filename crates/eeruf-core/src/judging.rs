@@ -175,8 +175,8 @@ pub trait Judge {
     /// Takes in a firing that says nothing about the echo time: stuck, too early, late, or silence without a witness.
     /// `echoes` holds the early edge, if there was one.
     fn skip(&mut self, heard: &Heard<'_>, kind: ReadingKind) -> Verdict;
-    /// Takes in a firing whose sensor holds its line still, as one that hears nothing: no silence yet. A run of silences
-    /// goes on, and what it hears next is compared with no echo. By default the run ends.
+    /// Takes in a firing whose sensor holds its line still, as one that hears nothing: no silence yet. A run of
+    /// silences goes on, and what it hears next is compared with no echo. By default the run ends.
     fn hold(&mut self, heard: &Heard<'_>) {
         self.skip(heard, ReadingKind::NoEcho);
     }

@@ -123,7 +123,8 @@ pub enum RingError {
     /// A setting, or a judge's argument, out of its range; times are in microseconds.
     Setting {
         /// Its field in [`RingConfig`](crate::RingConfig), or of a flow ring in
-        /// [`TurnSettings`](crate::flow::TurnSettings) or [`BeliefSettings`](crate::flow::BeliefSettings), or the argument.
+        /// [`TurnSettings`](crate::flow::TurnSettings) or [`BeliefSettings`](crate::flow::BeliefSettings); or the
+        /// argument.
         name: &'static str,
         /// The value given.
         value: u32,

@@ -11,9 +11,9 @@ use crate::ring::RingSpec;
 pub struct FlowDesign {
     /// When its sensors fire.
     pub turns: TurnSettings,
-    /// What it believes.
+    /// The belief in its readings.
     pub belief: BeliefSettings,
-    /// How long its sensors listen at most.
+    /// The longest time for which its sensors listen.
     pub window: Micros,
     /// Deaf time after a firing.
     pub blanking: Micros,

@@ -44,7 +44,7 @@ pub(crate) struct Line {
     pub(crate) pulse: Pulse,
     /// The line was seen to be high when the sensor was to be triggered again, so that it was not.
     pub(crate) is_held: bool,
-    /// The line rose up to so many microseconds before it was seen to.
+    /// The line rose up to this many microseconds before it was seen to.
     rose_before: u16,
     /// Firings in a row without a pulse.
     silent: u8,

@@ -50,7 +50,7 @@ fn driver(lines: &Rc<RefCell<Lines>>, now: Instant) -> HcSr04Ring<FlowRing<K>, P
     HcSr04Ring::new(ring, pins, NoopDelay, Settings::default()).unwrap()
 }
 
-/// Runs for 20 s beside work of so many microseconds at every so many. `as_seen`: edges are handed in as if they had
+/// Runs for 20 s beside work of `work_us` in each `every_us`. `as_seen`: edges are handed in as if they had
 /// come when they were seen. Returns accepted readings that are right, and those that are wrong by 5 cm and more.
 fn run([work_us, every_us]: [u32; 2], as_seen: bool) -> (u32, u32) {
     let lines = Rc::new(RefCell::new(Lines::default()));

@@ -42,7 +42,7 @@ pub struct Firing {
     pub phase: u8,
     /// From firing to the first echo, in microseconds; `None` without echo.
     pub t_echo_us: Option<u32>,
-    /// What the ring made of the reading, if the log says it.
+    /// The ring's verdict on the reading, if the log says it.
     pub reading: Option<ReadingKind>,
     /// The rate at which readings change with the robot's motion, in microseconds for each millisecond, if it is said.
     pub g_us_ms: Option<f32>,

@@ -15,9 +15,9 @@ use crate::firings::{Firing, FiringLog};
 /// Settings of the ring whose log is judged again.
 #[derive(Clone, Copy, Debug)]
 pub struct FlowSettings {
-    /// How long sensors listen.
+    /// The time for which sensors listen.
     pub window: Micros,
-    /// How long they are deaf after they have fired.
+    /// The time for which they are deaf after they have fired.
     pub blanking: Micros,
     /// R: how long sound is heard, its tail included.
     pub audible: Micros,
@@ -34,7 +34,7 @@ pub struct Replayed {
     pub kind: ReadingKind,
     /// The echo that is believed of its sensor since.
     pub believed: Option<Micros>,
-    /// What explains an ambiguous reading.
+    /// The explanation of an ambiguous reading.
     pub explained_by: Option<Explanation>,
 }
 

@@ -44,7 +44,7 @@ pub(crate) trait Lines {
 /// Speeds of the robot, in mm/s and mrad/s.
 pub(crate) type Speeds = [u32; 2];
 
-/// How the ring of a file fires, and what its modules need.
+/// The firing of a file's ring, and the needs of its modules.
 pub(crate) struct GpioRing {
     way: Way,
     settings: Settings,

@@ -22,7 +22,7 @@ pub(super) struct Heard {
     ambiguous: bool,
     /// The change that odometry expects since the one before.
     expected: i32,
-    /// By how much the echo may be off.
+    /// The time by which the echo may be off.
     off: u32,
 }
 
@@ -48,7 +48,7 @@ pub(super) struct Open {
     pub(super) echo: Option<u32>,
     pub(super) early: Option<u32>,
     pub(super) stuck: bool,
-    /// By how much the echo may be off, in units of 2 us; [`WIDE`] if too much.
+    /// The time by which the echo may be off, in units of 2 us; [`WIDE`] if too much.
     pub(super) off: u32,
     /// The driver said that the sensor does not listen.
     pub(super) unanswered: bool,
@@ -358,14 +358,14 @@ impl<'s> Model<'s> {
         }
     }
 
-    /// What was heard is taken back.
+    /// Takes back what was heard.
     pub(super) fn unhear(&mut self, x: usize) {
         if let Some(open) = self.sensors[x].open.as_mut().filter(|open| open.is_ready()) {
             (open.echo, open.early, open.off) = (None, None, 0);
         }
     }
 
-    /// An edge that may be off by so many units.
+    /// An edge that may be off by this many units.
     pub(super) fn edge(&mut self, x: usize, at: u64, off: u32) {
         let window = u64::from(self.listening.window.as_micros());
         let sensor = &mut self.sensors[x];

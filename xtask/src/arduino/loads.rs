@@ -152,7 +152,7 @@ fn places() -> Result<[Place; 2]> {
     Ok([place("alcove", alcove)?, place("own walls", walls)?])
 }
 
-/// The sketch for so many modules, by what `design` emits.
+/// The sketch for this many modules, by what `design` emits.
 fn sketch(library: &Path, modules: usize, polled: bool) -> Result<build::Sketch> {
     let name = format!("Loads{modules}{}", if polled { "Polled" } else { "" });
     let folder = Path::new(TARGET).join(&name);
@@ -172,7 +172,7 @@ fn sketch(library: &Path, modules: usize, polled: bool) -> Result<build::Sketch>
     )
 }
 
-/// What is run: a sketch, how it has its edges, and what else it does.
+/// A sketch that is run, how it has its edges, and what else it does.
 struct Run<'a> {
     elf: &'a Path,
     edges: &'static str,

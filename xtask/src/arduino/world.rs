@@ -204,7 +204,7 @@ impl Heard {
         self.own_later += u32::from(CAUSES[cause] == "own" && width_mm.abs_diff(mm) <= OFF_MM);
     }
 
-    /// What a sketch with other work made of it. An own later echo that was measured as it came is not wrong.
+    /// The readings of a sketch with other work. An own later echo that was measured as it came is not wrong.
     pub(super) fn under_load(&self) -> UnderLoad {
         let per_second = |count: u32| f64::from(count) / f64::from(self.seconds);
         let wrong = self.wrong - self.own_later;

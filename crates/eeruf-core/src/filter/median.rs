@@ -22,7 +22,8 @@ const SILENCE: Micros = Micros::new(u32::MAX - 1);
 /// let mut push = |echoes_us: &[u32]| {
 ///     let echoes: Vec<_> = echoes_us.iter().copied().map(Micros::new).collect();
 ///     let (fired, firing) = (Instant::from_micros(0), Firing::new(Phase::A));
-///     let heard = Heard { sensor: 0, fired, since_before: Micros::ZERO, echoes: &echoes, firing, t_delta: Micros::ZERO };
+///     let (since_before, t_delta) = (Micros::ZERO, Micros::ZERO);
+///     let heard = Heard { sensor: 0, fired, since_before, echoes: &echoes, firing, t_delta };
 ///     let verdict = median.judge(&heard, &NoSounds);
 ///     (verdict.kind, verdict.t_echo.map(Micros::as_micros), median.stands_for(0))
 /// };

@@ -238,7 +238,7 @@ impl<const K: usize, U: OwnLimits> InTurn<K, U> {
         }
     }
 
-    /// What those that listen still need.
+    /// The quiet that those that listen still need.
     fn listeners(&self) -> Listeners {
         let mut all = Listeners { most: Micros::ZERO, whose: NOBODY, others: Micros::ZERO };
         if self.listening == 0 {

@@ -80,7 +80,7 @@ pub trait Plan {
     fn fired(&mut self, _sensor: u8, _at: Instant) {}
     /// A sensor has stopped listening: its echo came in, or its window closed, `at` this instant.
     fn ended(&mut self, sensor: u8, at: Instant);
-    /// What comes next is due no sooner than this, by what it was told just now: late counts from then.
+    /// The next firing is due no sooner than this, by what it was told just now: late counts from then.
     fn due_from(&mut self, _soonest: Instant) {}
     /// A sensor's readings are forgotten: what follows from them begins again.
     fn forget(&mut self, _sensor: u8) {}

@@ -430,10 +430,10 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
         self.listening.set_silence(silence);
     }
 
-    /// Reports that a sensor holds its line: it rose after the trigger, or was not triggered since it is still high. Its
-    /// silence counts once the line has fallen, by [`answered`](Self::answered). Until then its readings are what the
-    /// judge says already: [`Clear`](ReadingKind::Clear), or else [`NoEcho`](ReadingKind::NoEcho). They neither add to a
-    /// run of silences nor break it.
+    /// Reports that a sensor holds its line: it rose after the trigger, or was not triggered since it is still high.
+    /// Its silence counts once the line has fallen, by [`answered`](Self::answered). Until then its readings are what
+    /// the judge says already: [`Clear`](ReadingKind::Clear), or else [`NoEcho`](ReadingKind::NoEcho). They neither add
+    /// to a run of silences nor break it.
     ///
     /// # Errors
     /// [`SensorError`] for a sensor out of range.

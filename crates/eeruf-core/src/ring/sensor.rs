@@ -14,7 +14,7 @@ pub(super) struct Sensor<const E: usize, const H: usize> {
     /// The echoes of the present firing; also, in the first place, the time of an early or late edge.
     echoes: [Micros; E],
     flags: u8,
-    /// By how much the echoes of the present firing, of the one before and of all earlier ones may be sooner or later, in
+    /// The times by which the echoes of the present firing, of the one before and of all earlier ones may be off, in
     /// units of [`UNIT`]: the most of each; or [`WIDE`].
     uncertain: [u8; 3],
 }
@@ -264,9 +264,13 @@ impl<const E: usize, const H: usize> Sensor<E, H> {
             // After a late edge no other is waited for.
             (false, _) => PERIOD | OUTSIDE,
         };
-        let uncertain = uncertain.map(|units| Micros::new(u32::from(units) * UNIT));
         Ended { listened, was_ready, is_held, unusable, echoes, uncertain }
     }
+}
+
+/// The times by which echoes may be off, of what [`Ended`] says.
+pub(super) fn off_by(uncertain: [u8; 3]) -> [Micros; 3] {
+    uncertain.map(|units| Micros::new(u32::from(units) * UNIT))
 }
 
 /// A firing that has ended.
@@ -278,6 +282,6 @@ pub(super) struct Ended<const E: usize> {
     /// Why it says nothing about the echo time, if it does not.
     pub(super) unusable: Option<ReadingKind>,
     pub(super) echoes: [Micros; E],
-    /// By how much they, those of the firing before and those of all earlier ones may be off.
-    pub(super) uncertain: [Micros; 3],
+    /// The times by which they, those of the firing before and those of all earlier ones may be off.
+    pub(super) uncertain: [u8; 3],
 }

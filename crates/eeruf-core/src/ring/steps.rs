@@ -3,7 +3,7 @@
 use super::history::{Firings, Pair, STEP_BACK, is_long_ago, long_before};
 use super::listening::Listening;
 use super::punctuality::PeriodLateness;
-use super::sensor::{Ended, LISTENING, READY, Sensor};
+use super::sensor::{Ended, LISTENING, READY, Sensor, off_by};
 use super::{NOBODY, PeriodStats, Reading, Ring, RingEvent};
 use crate::filter::heard;
 use crate::judging::{Explained, Heard, Judge, Sounds};
@@ -84,7 +84,7 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
         self.punctuality.disturb(self.listening.is_proven(&self.plan));
     }
 
-    /// What comes next was due at an instant, and may be due sooner since `now`.
+    /// The next firing was due at an instant, and may be due sooner since `now`.
     pub(super) fn brought_forward(&mut self, due: Instant, now: Instant) {
         self.plan.due_from(if now.has_reached(due) { due } else { now });
     }
@@ -183,7 +183,7 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
                 None => {
                     let (sensors, plan, listening) = (&self.sensors, &self.plan, &self.listening);
                     // The proof is about readings that differ by no more than `T_delta`, at times that are known.
-                    let is_exact = firing.expected_change_us == 0 && uncertain.iter().all(|&off| off == Micros::ZERO);
+                    let is_exact = firing.expected_change_us == 0 && uncertain == [0; 3];
                     let on_time = self.punctuality.is_on_time() && is_exact;
                     let known_from = self.known_from;
                     self.judge.judge(
@@ -283,8 +283,8 @@ const UNKNOWN: Explained = Explained::By(Explanation::History);
 /// Memory of who fired when, for the reading of one sensor.
 struct Memory<'r, P, const E: usize, const H: usize> {
     receiver: u8,
-    /// By how much the echoes of the receiver's last three firings may be off, the latest first.
-    uncertain: [Micros; 3],
+    /// The times by which the receiver's echoes may be off: of its last firing, of the one before, of all earlier ones.
+    uncertain: [u8; 3],
     sensors: &'r [Sensor<E, H>],
     plan: &'r P,
     listening: &'r Listening,
@@ -324,7 +324,7 @@ impl<P: Plan, const E: usize, const H: usize> Sounds for Memory<'_, P, E, H> {
 impl<P: Plan, const E: usize, const H: usize> Memory<'_, P, E, H> {
     #[inline(never)]
     fn explain_pair(&self, ago: u8, first: Micros, second: Micros, more: Micros) -> Explained {
-        let Self { receiver, uncertain: [one, before, earlier], .. } = *self;
+        let (receiver, [one, before, earlier]) = (self.receiver, off_by(self.uncertain));
         let other = if ago == 1 { before } else { earlier };
         let own = self.sensors.get(usize::from(receiver));
         let Some([Some(fired), Some(fired_before)]) = own.map(|own| own.firings.last_and(ago)) else { return UNKNOWN };
@@ -335,7 +335,7 @@ impl<P: Plan, const E: usize, const H: usize> Memory<'_, P, E, H> {
 
     #[inline(never)]
     fn explain_three(&self, [first, second, third]: [Micros; 3]) -> Explained {
-        let Self { receiver, uncertain: [latest, middle, earliest], .. } = *self;
+        let (receiver, [latest, middle, earliest]) = (self.receiver, off_by(self.uncertain));
         let Some(own) = self.sensors.get(usize::from(receiver)) else { return UNKNOWN };
         let [last, fired, fired_before] = own.firings.last_three();
         let ends = latest.max(earliest);

@@ -167,7 +167,7 @@ struct World {
     /// Only the path sounds.
     path_only: bool,
     echoes: Vec<(u32, u8)>,
-    /// Lines are looked at so many microseconds apart at most; 0 for when they fall.
+    /// Lines are looked at this many microseconds apart at most; 0 for when they fall.
     looks: u32,
 }
 

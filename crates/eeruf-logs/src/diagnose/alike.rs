@@ -37,7 +37,7 @@ const OFTEN: f64 = 0.35;
 const RUNS: f64 = 1.25;
 /// Fewer firings alike say nothing of each other.
 const FEWEST: usize = 4;
-/// Fewer than one firing in so many has enough others alike where gaps are random.
+/// Fewer than one firing in this many has enough others alike where gaps are random.
 const SELDOM: usize = 4;
 
 /// A sensor that hears so few of the arrivals that it should is broken, of this many.

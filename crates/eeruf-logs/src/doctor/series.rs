@@ -64,7 +64,7 @@ impl Series {
     /// The share of the readings that a wall which stands does not explain, and that come seldom each: where a tenth of
     /// the readings or more are of such a wall. Of others, steps that no motion makes.
     pub(crate) fn strays(&self) -> f64 {
-        /// A reading is one of a thing that stands if this share of all is within so many microseconds of it.
+        /// A reading is one of a thing that stands if this share of all is within this many microseconds of it.
         const NEAR_US: f64 = 150.0;
         const STANDS: f64 = 0.1;
         const RECURS: f64 = 0.03;

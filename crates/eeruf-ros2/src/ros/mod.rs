@@ -40,7 +40,7 @@ pub(crate) enum Heard {
     Firing { sensor: u8, fired_us: u32, period: u32, phase: u8, t_echo_us: u32 },
     /// A range of a sensor: what it says of the world, or `None` if it is not a number.
     Range { sensor: u8, distance: Option<Distance> },
-    /// How the robot moves.
+    /// The robot's motion.
     Speeds(Speeds),
 }
 

@@ -24,7 +24,7 @@ pub(crate) enum JudgeKind {
     Agreement,
     /// Consecutive readings that agree and that nothing foreign explains.
     Unexplained,
-    /// What fits the belief of a flow ring, or agrees and is not explained.
+    /// Accepts what fits the belief of a flow ring, or agrees and is not explained.
     Belief,
     /// Every echo, or consecutive readings that agree: as the robot's sketch says.
     AsSketched,

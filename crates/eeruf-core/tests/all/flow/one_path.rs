@@ -78,7 +78,7 @@ struct Path {
     emitter: u8,
     shortest: i64,
     length: i64,
-    /// By how much it might have changed when it was last heard.
+    /// The change that it might have shown when it was last heard.
     travelled: u64,
     direction: i64,
     /// The rest of P. At 3 m/s sound is sent so much longer apart than the receiver fires that paths change by some

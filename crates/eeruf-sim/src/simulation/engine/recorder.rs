@@ -63,8 +63,8 @@ impl Recorder {
         self.readings.try_reserve(more).map_err(|_| SimulationError::Memory { readings: (readings + more) as u64 })
     }
 
-    /// Records what is believed of a firing, whose echo may be that of a firing before: `stands_for` says how many. With
-    /// it comes when the sensor was triggered; `reference` is the travelling time of what the sensor hears alone,
+    /// Records what is believed of a firing, whose echo may be that of a firing before: `stands_for` says how many. The
+    /// instant of the trigger comes with it; `reference` is the travelling time of what the sensor hears alone,
     /// `fired_from` its place and heading then. The answer is all readings with this one as the last; none if it does
     /// not count.
     pub(crate) fn record(

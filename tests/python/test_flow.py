@@ -266,7 +266,7 @@ def test_each_error_says_what_is_expected() -> None:
             eeruf.ArgumentError,
             "reach_us = 30000; expected none beside the setting most_us",
         ),
-        (lambda: Ring.flow(8, window_us=100, blanking_us=100), eeruf.RingError, "blanking"),
+        (lambda: Ring.flow(8, window_us=9_000, blanking_us=9_000), eeruf.RingError, "blanking"),
         (lambda: Ring.flow(65, window_us=WINDOW_US), eeruf.ArgumentError, "sensors = 65; expected"),
         (lambda: Ring.flow(8, window_us=WINDOW_US).moving(200.0, 0.0, 0), eeruf.ArgumentError, "speed_m_s = 200"),
     ):

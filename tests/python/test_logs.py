@@ -304,7 +304,7 @@ def test_judges_are_those_of_the_program(judge: Any, words: list[str], tmp_path:
     parts = list(eeruf.logs.blocks(study, judge=judge, rows=100))
     np.testing.assert_array_equal(np.concatenate([part.kind for part in parts]), judged.kind)
     # Constant lags do not tell: exit code 3.
-    command = [sys.executable, "-m", "eeruf", "logs", study, "--json"]
+    command = [sys.executable, "-m", "eeruf", "logs", str(study), "--json"]
     told = subprocess.run(command, check=False, capture_output=True, text=True)
     codes = {"none seen": 0, "crosstalk": 1, "cannot tell": 3}
     assert judged.crosstalk.verdict == json.loads(told.stdout)["crosstalk"]["verdict"]

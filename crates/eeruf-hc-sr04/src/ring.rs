@@ -68,8 +68,6 @@ impl<P: Plan, J: Judge, T: OutputPin, I: InputPin, D: DelayNs, const K: usize, c
     ///
     /// # Errors
     /// As there.
-    // Inlined: a ring is large, and would be on the stack once more.
-    #[inline(always)]
     pub fn with_edges(
         ring: Ring<P, J, K, 1, H>,
         pins: [Pins<T, I>; K],
@@ -144,7 +142,6 @@ impl<P: Plan, J: Judge, T, I, D, const K: usize, const H: usize> HcSr04Ring<Ring
 }
 
 impl<P: Plan, J: Judge, T, I, D, const K: usize, const H: usize, Q> HcSr04Ring<Ring<P, J, K, 1, H>, T, I, D, K, Q> {
-    #[inline(always)]
     fn on(
         mut ring: Ring<P, J, K, 1, H>,
         pins: [Pins<T, I>; K],

@@ -100,10 +100,8 @@ pub(crate) fn read_firings<'py>(source: &Bound<'py, PyAny>) -> PyResult<Bound<'p
     let rows = log.firings.iter().map(|row| (row, true)).chain(log.listened.iter().map(|row| (row, false)));
     let rows: Vec<_> = rows.collect();
     let out = fired(py, rows.iter().map(|row| row.0))?;
-    out.set_item(
-        "rejected",
-        read_only(py, rows.iter().map(|row| row.0.reading.map_or(-1, |kind| kind.is_rejected().into())))?,
-    )?;
+    let rejected = |row: &Firing| row.reading.map_or(-1, |kind| i64::from(kind.is_rejected()));
+    out.set_item("rejected", read_only(py, rows.iter().map(|row| rejected(row.0)))?)?;
     out.set_item("sends", read_only(py, rows.iter().map(|row| row.1))?)?;
     out.set_item("clock", log.clock)?;
     out.set_item("damage", log.damage)?;

@@ -8,6 +8,7 @@ mod board;
 mod ring;
 
 use board::{EDGES, Pin, Wait, now, send};
+use eeruf_core::plan::ScheduledFiring;
 use eeruf_core::{Micros, ReadingKind, Ring, RingConfig, RingEvent, SpeedOfSound};
 use eeruf_hc_sr04::{HcSr04Ring, Pins, Settings};
 use ring::RING;
@@ -32,7 +33,7 @@ struct Outbox {
 
 impl Outbox {
     /// A power of two, so that a mask keeps every index in range.
-    const SIZE: usize = 32;
+    const SIZE: usize = 16;
     /// The longest line, `8 99999`, with its end.
     const LINE: u8 = 8;
     const EMPTY: Self = Self { bytes: [0; Self::SIZE], put: 0, sent: 0 };
@@ -73,7 +74,9 @@ extern "C" fn main() -> ! {
     board::start();
     let mut outbox = Outbox::EMPTY;
     let config = RingConfig::new().with_window(Micros::from_millis(40));
-    let ring = Ring::new(&RING, config, now()).map_err(Into::into);
+    // Three firings of each sensor are remembered instead of four, for want of memory.
+    let plan = ScheduledFiring::verified(&RING, now());
+    let ring = Ring::<_, _, 8, 1, 3>::remembering(plan, config, now()).map_err(Into::into);
     // It stays where it was made: moved out of the result it would be on the stack twice.
     let mut made = ring.and_then(|ring| HcSr04Ring::with_edges(ring, PINS, Wait, Settings::default(), &EDGES));
     let Ok(ring) = &mut made else {

@@ -177,7 +177,7 @@ mod tests {
     #[test]
     fn constant_says_what_it_was_verified_for() {
         let tab = TABLE_I_D.to_arduino(&REQUIREMENTS, "PAPER");
-        assert!(tab.contains("EerufSchedule PAPER EERUF_FLASH = {\n    4, 12, 2, PAPER_order, PAPER_gap_us,"), "{tab}");
+        assert!(tab.contains("EerufSchedule PAPER EERUF_FLASH = {\n    5, 12, 2, PAPER_order, PAPER_gap_us,"), "{tab}");
         assert!(
             tab.contains(
                 "100000u, 76000u, 999u, 15000u, 76000u, 2000u,\n    EERUF_AS_T_DELTA, 100000u,\n    \

@@ -250,7 +250,7 @@ mod tests {
     fn c_has_all_settings_in_their_order() {
         let text = flow(12, &ALIKE).to_c();
         assert!(text.contains("#define EERUF_SENSORS 12\n#define EERUF_WINDOW_US 37000u\n"), "{text}");
-        let constant = "= {\n    4, 12,\n    37000u, 300u, 6000u, 33500u, 60000u, 2000u, 1u,\n    \
+        let constant = "= {\n    5, 12,\n    37000u, 300u, 6000u, 33500u, 60000u, 2000u, 1u,\n    \
                         80, 150, 150, 8, 4, 0, 0, EERUF_VOTES_BY_MOTION,\n    0, 0,\n};\n";
         assert!(text.contains(&format!("EerufFlowConfig eeruf_flow_config {constant}")), "{text}");
         let text = flow(12, &ALIKE).to_arduino("RING");

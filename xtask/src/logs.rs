@@ -1,5 +1,5 @@
 //! `cargo xtask logs`: what is measured of logs and takes minutes: bags of a million messages, as `rosbags` writes
-//! them, who fools whom in alcoves and on courses, and the data set. The tests of the same are in `cargo xtask test`.
+//! them, who fools whom in alcoves and while driving, and the data set. The tests of it are in `cargo xtask test`.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -18,7 +18,7 @@ const SIZES: [(u32, [u32; 2]); 2] = [(8, [125_000, 12_500]), (24, [41_667, 4_167
 const SENDERS: [(&str, f64); 4] = [
     ("40000 200 flow 1000 plain", 60.0),
     ("40000 200 flow 1000 default", 60.0),
-    ("20000 100 flow 0 plain courses", 50.0),
+    ("20000 40 flow 1000 plain rooms-driving", 25.0),
     ("40000 200 eeruf 1000 plain", 0.0),
 ];
 const DATA_CARD: &str = "docs/how-to/dataset.md";

@@ -2505,7 +2505,7 @@ static void weigh(EerufRing *ring, uint8_t x, uint32_t span_us, EerufReading *re
     const uint32_t t_echo_us = is_echo ? reading->t_echo_us : SILENCE, last_us = filter->known_us;
     const bool believes = sensor->believed_us != EERUF_NO_ECHO, known = fits(flow, sensor, t_echo_us);
     const bool is_far = believes && !known && (!is_echo || t_echo_us > sensor->believed_us);
-    /* The first silence in a row leaves an obstacle standing, but a robot that moves has left it behind. */
+    /* The first silence in a row is no belief yet, but a robot that moves has left behind what was there. */
     const bool clears = last_us == SILENCE || known || !stood;
     /* Readings of a robot that moves differ anyway: quiet that did not help twice is let go, then tried again. */
     const bool lets_go = !stood && !reports_every_echo(flow) && (sensor->missed & 2u) != 0;
@@ -2538,7 +2538,7 @@ static void weigh(EerufRing *ring, uint8_t x, uint32_t span_us, EerufReading *re
         return;
     }
     give_less_quiet(flow, sensor);
-    if (!is_echo && !clears && sensor->believed_us < SILENCE) return;
+    if (!is_echo && !clears) return;
     if (!known) sensor->conf = 1;
     sensor->believed_us = t_echo_us;
     sensor->grown_us = 0;

@@ -309,7 +309,7 @@ class FlowRing:
                 sensor.conf = max(sensor.conf - 1, 0)
                 held_back = ok and sensor.conf > 0
                 ok = ok and not held_back
-        # The first silence in a row leaves an obstacle standing, but a robot that moves has left it behind.
+        # The first silence in a row is no belief yet, but a robot that moves has left behind what was there.
         clears, age = last_us == _SILENCE or fits or self._moves, sensor.age
         kind = FIRST if last_us in (None, _SILENCE) and not believes else REJECTED
         if echo is None:
@@ -327,7 +327,7 @@ class FlowRing:
         elif ok or echo is not None and not far:
             sensor.doubt = max(sensor.doubt - self._down, self._least() // _UNIT_US)
         if ok:
-            if echo is not None or clears or believed_us in (None, _SILENCE):
+            if echo is not None or clears:
                 sensor.conf = sensor.conf if fits else 1
                 sensor.believed_us, sensor.grown, sensor.missed = at_us, 0, 0
         else:

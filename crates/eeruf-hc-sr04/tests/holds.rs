@@ -139,6 +139,8 @@ fn module_that_hears_nothing_is_clear_after_its_second_silence() {
             let refire = said[5].0.since(said[4].0).as_micros().max(140_000);
             let waited = said[first].0.since(BEGIN).as_micros();
             assert!(waited <= 2 * hold_us + 3 * refire, "{hold_us} us, {ring}: {waited}");
+            // One measurement counts once; a robot that moves takes the first.
+            assert!(ring == "flow, moving" || waited > 2 * hold_us, "{hold_us} us, {ring}: {waited}");
             assert!(hold_us > 40_000 || first <= 2, "{hold_us} us, {ring}: {first}");
         }
     }

@@ -2,7 +2,7 @@
 
 use super::motion::{Motion, Rate};
 use super::settings::BeliefSettings;
-use crate::filter::{NO_ECHO, shift};
+use crate::filter::{NO_ECHO, SILENCE, shift};
 use crate::judging::{Explained, Heard, Judge, Pace, Quiet, Sounds};
 use crate::reading::{Explanation, ReadingKind, Verdict};
 use crate::ring_error::RingError;
@@ -14,8 +14,6 @@ const TOO_FAR: u16 = 1_000;
 const NEVER: u16 = u16::MAX;
 /// No reading to compare with, and no belief. As [`SILENCE`], later than any echo.
 const NOTHING: Micros = NO_ECHO;
-/// Silence with a witness.
-const SILENCE: Micros = Micros::new(u32::MAX - 1);
 
 /// A sensor's state: 16 bytes, and four more for each further echo.
 #[derive(Clone, Copy, Debug)]
@@ -189,9 +187,9 @@ impl<const E: usize> Known<E> {
         let before = self.first();
         let (kind, quiet);
         if ok {
-            // The first silence in a row leaves an obstacle standing, but a robot that moves has left it behind.
+            // The first silence in a row is no belief yet, but a robot that moves has left behind what was there.
             let clears = is_echo || before == SILENCE || fits || !stands;
-            if clears || self.believed >= SILENCE {
+            if clears {
                 if !fits {
                     self.conf = 1;
                 }

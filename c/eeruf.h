@@ -195,7 +195,7 @@ enum {
     EERUF_READING_NO_ECHO = 4,  /* no echo, once, or without a witness */
     EERUF_READING_CLEAR = 5,    /* no echo several times running: nothing is in range */
     EERUF_READING_TOO_EARLY = 6, /* nothing but an edge within the blanking time */
-    EERUF_READING_LATE = 7,     /* an edge after the window has ended; without echo time: nobody knows when it came */
+    EERUF_READING_LATE = 7,     /* an edge after the window has ended; without echo time: its time is not known */
     EERUF_READING_STUCK = 8,    /* the echo line was high when the sensor was to fire */
     EERUF_READING_TENTATIVE = 9, /* of rings before version 4 alone */
     EERUF_READING_AMBIGUOUS = 10, /* near-identical, but another sensor's sound explains both: not believed */

@@ -112,7 +112,7 @@ static uint8_t levels(uint8_t group) {
 #endif
 
 static EerufEdges *edges;
-// The levels of lines, the pins that are echo lines, and pulses that began nobody knows when.
+// The levels of lines, the pins that are echo lines, and pulses whose beginning has no time.
 static uint8_t sensorOf[GROUPS][8], known[GROUPS], ours[GROUPS], timeless[GROUPS];
 static uint32_t looked;
 

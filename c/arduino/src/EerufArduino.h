@@ -87,7 +87,7 @@ protected:
                const EerufHcSr04Settings &settings);
     // Takes in edges, and waits for what is due within a time: the clock before. `looks` as EERUF_LOOKS.
     uint32_t collect(uint16_t soon, bool looks);
-    // True once a second if modules fire late, or one had no reading in it but such that nobody knows when they came.
+    // True once a second if modules fire late, or one had only readings without a time in it.
     bool tooSlow(bool late);
     // Does what an event asks for; true for a reading.
     bool take(const EerufEvent &event, uint32_t now, bool looks);

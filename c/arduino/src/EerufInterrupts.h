@@ -9,7 +9,7 @@
 // files of a sketch but one.
 //
 // While noInterrupts() holds, an edge waits. On these boards two interrupts of timer 0, that of micros() and compare B
-// half-way, tell of each block of more than 0.55 ms: its edges count as ones that came nobody knows when, and so do pulses
+// half-way, tell of each block of more than 0.55 ms: its edges count as ones without a time, and so do pulses
 // in which micros() has lost time, but from a block of more than 1.5 ms. Elsewhere edges that come together tell.
 // quietFor() says when to call noInterrupts().
 #pragma once

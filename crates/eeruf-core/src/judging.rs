@@ -218,8 +218,7 @@ pub trait Judge {
 }
 
 /// A judge that does not ask what explains a reading: agreement alone, for baselines, without any promise about foreign
-/// sound, of edges at uncertain times least of all. Where crosstalk repeats, as with
-/// constant waits, it is accepted.
+/// sound. Where crosstalk repeats, as with constant waits, it is accepted.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Agreement<J>(pub J);

@@ -29,8 +29,8 @@ pub enum ReadingKind {
     /// Nothing but an edge within the blanking time: ringing of the transducer, or an object closer than it can
     /// measure.
     TooEarly,
-    /// An edge after the window has ended; it is compared with nothing. Without echo time: the outcome of a firing
-    /// whose edge came nobody knows when, within more than 0.6 ms.
+    /// An edge after the window has ended; it is compared with nothing. Without echo time: the reading of a
+    /// firing whose edge is not known to within 0.6 ms.
     Late,
     /// The driver reported that the echo line was stuck when the sensor was to fire.
     Stuck,

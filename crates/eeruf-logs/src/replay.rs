@@ -41,8 +41,8 @@ pub struct Replayed {
 /// Judges the readings of a log again, as a ring that fires by flow does: by what was fired, and when. One for each
 /// firing of the log; `None` for edges that came late, which are none.
 ///
-/// What the log does not hold is taken from the readings' kinds: whether silent sensors had shown that they listened,
-/// and lines that were stuck. Firings before its beginning are not known, as if silence had come before.
+/// The readings' kinds tell what the log does not hold: whether silent sensors had shown that they listened, and which
+/// lines were stuck. Firings before its beginning are not known, as if silence had come before.
 ///
 /// # Errors
 /// Settings that a ring refuses.

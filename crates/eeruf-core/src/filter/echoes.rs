@@ -4,6 +4,8 @@ use crate::time::Micros;
 
 /// Stands for "no echo" inside this crate: longer than any listening window.
 pub(crate) const NO_ECHO: Micros = Micros::MAX;
+/// Silence with a witness, where it is kept among echo times: later than any.
+pub(crate) const SILENCE: Micros = Micros::new(u32::MAX - 1);
 
 /// The latest echo time that is not taken for silence.
 pub(super) const LATEST: Micros = Micros::new(u32::MAX - 1);

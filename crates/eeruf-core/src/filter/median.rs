@@ -1,6 +1,6 @@
 //! [`MedianFilter`]: the middle of a sensor's last readings, a baseline.
 
-use super::echoes::{NO_ECHO, echo_time, shift};
+use super::echoes::{NO_ECHO, SILENCE, echo_time, shift};
 use crate::judging::{Age, Heard, Judge, Sounds};
 use crate::reading::{ReadingKind, Verdict};
 use crate::ring_error::RingError;
@@ -8,8 +8,6 @@ use crate::time::Micros;
 
 /// No reading, which a median needs.
 const NOTHING: Micros = NO_ECHO;
-/// Silence, farther than any echo.
-const SILENCE: Micros = Micros::new(u32::MAX - 1);
 
 /// A judge that says the median of a sensor's last three readings, or of as many as it is told, up to `N`; silence is
 /// farther than any echo. A baseline: what foreign sound repeats is accepted.

@@ -29,7 +29,7 @@ use crate::time::Micros;
 
 pub(crate) use agreement::{Consecutive, Tolerance};
 use echoes::LATEST;
-pub(crate) use echoes::{NO_ECHO, heard, insert, shift};
+pub(crate) use echoes::{NO_ECHO, SILENCE, heard, insert, shift};
 pub use median::MedianFilter;
 pub use rate::RateFilter;
 use tracker::Tracker;

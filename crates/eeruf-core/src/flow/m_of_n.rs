@@ -1,7 +1,7 @@
 //! [`MOfN`]: m of a sensor's last n readings agree.
 
 use super::motion::{Motion, Rate};
-use crate::filter::{NO_ECHO, shift};
+use crate::filter::{NO_ECHO, SILENCE, shift};
 use crate::judging::{Age, Explained, Heard, Judge, Pace, Quiet, Sounds};
 use crate::reading::{ReadingKind, Verdict};
 use crate::ring_error::RingError;
@@ -9,8 +9,6 @@ use crate::time::{Instant, Micros};
 
 /// No reading to compare with.
 const NOTHING: Micros = NO_ECHO;
-/// Silence with a witness, later than any echo.
-const SILENCE: Micros = Micros::new(u32::MAX - 1);
 
 /// A reading, and its change since then.
 #[derive(Clone, Copy, Debug)]

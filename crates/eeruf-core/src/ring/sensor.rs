@@ -254,7 +254,7 @@ impl<const E: usize, const H: usize> Sensor<E, H> {
             if matches!(unusable, Some(ReadingKind::Stuck | ReadingKind::Late)) { [NO_ECHO; E] } else { echoes };
         let is_held = evidence == HELD && (!listened || is_silent && unusable.is_none());
         if listened {
-            // What is late is compared with nothing.
+            // A late reading is compared with nothing.
             let [now, before, earlier] = uncertain;
             self.uncertain = [0, now, if before == WIDE { earlier } else { earlier.max(before) }];
         }

@@ -180,7 +180,7 @@ fn votes_count_readings_of_the_last_n() {
     assert_eq!(kinds(&mut votes(2, 3, 0), &[9_000, 5_000, 8_800], -100), [First, Rejected, Accepted]);
     assert_eq!(kinds(&mut votes(2, 3, 0), &[9_000, 5_000, 8_800], 0), [First, Rejected, Rejected]);
     assert_eq!(kinds(&mut votes(1, 1, 0), &[9_000, 0, 5_000], 0), [Accepted, Clear, Accepted]);
-    // What is forgotten, or from before a restart, has no vote.
+    // Readings that are forgotten, or from before a restart, have no vote.
     let mut two = votes(2, 2, 0);
     kinds(&mut two, &[9_000], 0);
     two.forget(0);

@@ -34,12 +34,9 @@ fn known_dangers_are_said_on_their_pages() {
         assert!(first_lines.contains(said), "docs/how-to/autopilots.md, first lines: {said}");
     }
     let pages: [(&str, &[&str]); 4] = [
-        (
-            "docs/explanation/limits.md",
-            &["can accept distances that are too far", "with odometry** do not keep the promise"],
-        ),
+        ("docs/explanation/limits.md", &["can accept distances that are too far", "of the filter alone"]),
         ("docs/explanation/flow.md", &["Left to chance", "Tell it the speed"]),
-        ("docs/how-to/firmware.md", &["distances that are too far", "odometry do not keep the promise"]),
+        ("docs/how-to/firmware.md", &["distances that are too far"]),
         ("README.md", &["of robots that stand"]),
     ];
     for (page, phrases) in pages {

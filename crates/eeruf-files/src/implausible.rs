@@ -68,6 +68,9 @@ const PLAUSIBLE: [Plausible; 38] = [
 /// Lists of firing times and waits.
 const LISTS: [&str; 6] = ["t_lag_us", "t_wait_a_us", "t_wait_b_us", "t_fire_a_us", "t_fire_b_us", "t_fire_us"];
 
+/// Keys that name a module.
+const MODULES: [&str; 2] = ["module", "like"];
+
 /// Returns the keys whose values may be implausible: the names of options and arguments too.
 pub fn doubted_keys() -> impl Iterator<Item = &'static str> {
     PLAUSIBLE.iter().map(|plausible| plausible.key)
@@ -102,6 +105,13 @@ fn in_table(table: &DeTable<'_>, found: &mut Vec<(usize, String)>) {
 fn in_value(key: &str, at: usize, value: &Spanned<DeValue<'_>>, found: &mut Vec<(usize, String)>) {
     match value.get_ref() {
         DeValue::Table(table) => in_table(table, found),
+        DeValue::String(name) if MODULES.contains(&key) => {
+            let taken = |module: &eeruf_modules::Module| (at, format!("{key}: {name}; taken as {}", module.name));
+            found.extend(eeruf_modules::like(name).map(taken));
+        }
+        DeValue::Array(array) if MODULES.contains(&key) => {
+            array.iter().for_each(|value| in_value(key, at, value, found))
+        }
         DeValue::Array(array) => {
             array.iter().filter_map(|value| value.get_ref().as_table()).for_each(|table| in_table(table, found));
             let mut numbers = vec![];

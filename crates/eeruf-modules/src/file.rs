@@ -6,6 +6,7 @@ use core::fmt;
 
 use serde::de::{Deserialize, Deserializer, Error, IgnoredAny, MapAccess, SeqAccess, Visitor};
 
+use crate::aliases::like;
 use crate::keys::{ModuleError, Value};
 use crate::module::Module;
 use crate::presets::find;
@@ -41,7 +42,7 @@ impl ModulesFile {
 }
 
 fn named<E: Error>(name: &str) -> Result<Module, E> {
-    find(name).copied().ok_or_else(|| E::custom(ModuleError::Name(name)))
+    find(name).or_else(|| like(name)).copied().ok_or_else(|| E::custom(ModuleError::Name(name)))
 }
 
 /// A number or a word of a table.

@@ -81,7 +81,11 @@ impl fmt::Display for ModuleError<'_> {
                 list(f, KEYS.iter().map(|key| key.name))
             }
             Self::Name(name) => {
-                write!(f, "module: no preset \"{name}\"; expected ")?;
+                write!(f, "module: no preset \"{name}\"")?;
+                if let Some(why) = crate::aliases::why_not(name) {
+                    write!(f, ", which {why}")?;
+                }
+                f.write_str("; expected ")?;
                 list(f, crate::names())
             }
             Self::Value { key, value } => {

@@ -18,12 +18,14 @@
 #[cfg(feature = "serde")]
 extern crate alloc;
 
+mod aliases;
 #[cfg(feature = "serde")]
 mod file;
 mod keys;
 mod module;
 mod presets;
 
+pub use aliases::like;
 #[cfg(feature = "serde")]
 pub use file::{ModuleFile, ModulesFile};
 pub use keys::{KEYS, Key, ModuleError, Value};

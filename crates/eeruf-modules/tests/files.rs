@@ -1,6 +1,6 @@
 //! Modules in files: names, tables and lists, and what is wrong with them.
 
-use eeruf_modules::{HC_SR04, Interface, ModulesFile, NoEcho, PING};
+use eeruf_modules::{HC_SR04, Interface, JSN_SR04T, MB1010, ModulesFile, NoEcho, PING};
 use serde::Deserialize;
 
 #[derive(Debug, Deserialize)]
@@ -52,4 +52,18 @@ fn wrong_modules_are_refused_by_key_value_and_expectation() {
     }
     let many = format!("module = [{}]", "\"ping\", ".repeat(65));
     assert!(read(&many).unwrap_err().starts_with("module: more than 64 modules"));
+}
+
+#[test]
+fn names_that_people_use_are_taken_as_a_preset_or_answered() {
+    let of = |name: &str| read(&format!("module = \"{name}\""));
+    for (name, preset) in [("hcsr04", HC_SR04), ("AJ_SR04M", JSN_SR04T), ("LV-EZ1", MB1010), ("PING)))", PING)] {
+        assert_eq!(of(name), Ok(ModulesFile::All(preset)));
+    }
+    for (name, why) in
+        [("me007ys", "fires by a clock of its own"), ("tfmini", "sends light"), ("srf10", "command on I2C")]
+    {
+        let error = of(name).unwrap_err();
+        assert!(error.contains(why) && error.contains("; expected polaroid-6500, hc-sr04"), "{error}");
+    }
 }

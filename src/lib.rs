@@ -15,6 +15,7 @@ mod commands;
 mod console;
 pub mod examples;
 mod files;
+mod program;
 mod report;
 
 use std::ffi::OsString;

@@ -8,20 +8,21 @@ use clap::builder::PossibleValue;
 use eeruf_core::Micros;
 use eeruf_core::search::{Progress, SearchError};
 use eeruf_design::atlas::ATLAS;
-use eeruf_design::{CURVE_BUDGET, FlowDesign, FoundJson, Need, RealPeriod, RingDesign, RingSpec, Search, real_budget};
-use eeruf_files::emit::{self, Flow};
-use eeruf_sim::Method;
+use eeruf_design::{CURVE_BUDGET, FoundJson, Need, RealPeriod, RingDesign, RingSpec, Search, Way, real_budget};
+use eeruf_files::emit;
 use eeruf_sim::experiments::rooms::RoomWay;
 use serde::Serialize;
 
 use super::arguments::{picture, seconds};
 use super::certificate::{self, Written};
+use super::program::{self, ProgramArgs};
 use super::rooms::{self, RoomArgs};
 use super::{Answer, show};
 use crate::console::{error as console_error, note, print, print_line, tell};
 use crate::files::error::InputError;
 use crate::files::ring::read_ring;
 use crate::files::write::write;
+use crate::program::flow_source;
 use crate::report::design::describe;
 use crate::report::draw;
 use crate::report::json::to_json;
@@ -95,6 +96,8 @@ pub(crate) struct Args {
     /// Find the shortest period and judge nothing in rooms
     #[arg(long, conflicts_with_all = ["rooms", "places", "first", "wrong", "driving"])]
     period_only: bool,
+    #[command(flatten)]
+    program: ProgramArgs,
     #[command(flatten)]
     in_rooms: RoomArgs,
 }
@@ -210,6 +213,9 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     };
     let seconds = began.elapsed().as_secs_f64();
     watch.forget_interrupt();
+    if let Some(language) = args.program.program {
+        return program::run(&args.program, (&args.file, language), &design, &args.in_rooms, &mut watch);
+    }
     let prove = |_| Written::new(&design, args.certificate_budget, &mut watch);
     let certificate = args.certificate.as_ref().map(prove);
     let real = over_reals(args, &design, &mut watch);
@@ -259,10 +265,10 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
         Some(Form::Source(form)) => {
             let table = || form.table(&design.schedule, &design.spec.table_requirements(), &design.spec.modules);
             print(match &way {
-                Some(Ok(Some(way))) if way.method == Method::Flow => flow_source(&design.spec, form, way),
-                Some(Ok(Some(way))) if way.method != Method::Eeruf => {
-                    let title = way.title();
-                    form.comment(&format!("In rooms {title} is right most of the time, which this is not")) + &table()
+                Some(Ok(Some(judged))) if let Some(way) = settings(judged) => {
+                    let flow =
+                        design.spec.fired(way, &judged.robot, 1).map_err(|why| InputError::new(&args.file, why))?;
+                    form.comment(&way.in_words(&flow.turns)) + &flow_source(&design.spec, form, &flow)
                 }
                 Some(Err(why)) => form.comment(&format!("Not judged in rooms: {why}")) + &table(),
                 _ => table(),
@@ -277,12 +283,9 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     Ok(certified)
 }
 
-/// The source text of a ring that fires by flow, as it was judged in rooms.
-fn flow_source(spec: &RingSpec, form: emit::Form, way: &RoomWay) -> String {
-    let FlowDesign { ref turns, ref belief, window, blanking, ref limits } = spec.flow_of(&way.robot, 1);
-    let (sensors, needs) = (way.robot.sensors.len(), spec.problem().requirements);
-    let shared_lines = needs.uneven.map_or(&[][..], |uneven| uneven.shared_lines);
-    form.flow(&Flow { turns, belief, sensors, window, blanking, limits, shared_lines }, &spec.modules)
+/// The way whose settings a flow ring fires by; none for a table.
+fn settings(judged: &RoomWay) -> Option<Way> {
+    Way::of(judged).filter(|&way| way != Way::TwoPhases)
 }
 
 /// Answers `--period`.

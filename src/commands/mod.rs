@@ -25,6 +25,7 @@ mod man;
 mod merge;
 mod methods;
 mod paths;
+mod program;
 mod replay;
 mod rooms;
 mod scene;

@@ -23,7 +23,10 @@ pub(crate) fn check_outputs(matches: &ArgMatches) -> Result<(), InputError> {
             return wrong("expected another file than the one that is read");
         }
         // These make their folders.
-        if verb == "dataset" || (id == "svg" && ["study", "set-one", "set-two", "set-three"].contains(&verb)) {
+        if verb == "dataset"
+            || (verb == "design" && id == "out")
+            || (id == "svg" && ["study", "set-one", "set-two", "set-three"].contains(&verb))
+        {
             continue;
         }
         if file.is_dir() {

@@ -17,6 +17,7 @@ mod newcomers;
 mod one_ring;
 mod output;
 mod program;
+mod programs;
 mod provoked;
 mod recording;
 mod rings_in_scenes;

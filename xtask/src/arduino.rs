@@ -7,6 +7,7 @@ mod loads;
 mod newping;
 mod own_walls;
 mod pace;
+mod programs;
 mod survey;
 mod tables;
 mod world;
@@ -18,6 +19,7 @@ use anyhow::{Context as _, Result};
 use fs_err as fs;
 
 pub(crate) use self::newping::newping;
+pub(crate) use self::programs::programs;
 use crate::steps::{Steps, empty, run};
 
 /// Where it is packed, built and run.
@@ -99,6 +101,7 @@ pub(crate) fn arduino(plan: &Plan, steps: &mut Steps) {
     steps.step("Arduino library", || pack().and_then(|library| examples(&library, plan.short)));
     steps.step("pace of sketches", || pace::run(&library));
     steps.step("ready tables before walls", || own_walls::run(&library, plan.short));
+    steps.step("programs of `eeruf design`, a corner", || programs(true));
     steps.step("sketches with a faulty module", || line_faults::run(&library));
     steps.step("other work in loop(), a corner", || loads::run(&library, None, false));
 }

@@ -16,6 +16,7 @@
 //! | `atlas`, `atlas_making` | rings whose shortest period is known; how their file is made |
 //! | `certificate` | the proof, as a text that others check |
 //! | `rooms` | ways of firing the ring, judged in rooms |
+//! | `way` | a way of firing as a program for a board has it |
 //! | `reals` | what the tick costs: the shortest period over the reals |
 //!
 //! ```
@@ -52,6 +53,7 @@ mod shortest;
 mod uneven;
 #[cfg(feature = "urdf")]
 mod urdf;
+mod way;
 mod what_if;
 
 pub use each::Each;
@@ -68,6 +70,7 @@ pub use ring::{RingSpec, robot_ring};
 pub use rooms::{RoomRobot, RoomsAnswer, RoomsAsked, RoomsJson};
 pub use shortest::{Search, Shortest, shortest};
 pub use uneven::OwnedUneven;
+pub use way::Way;
 pub use what_if::WhatIf;
 
 /// The listing of the crate's README compiles and holds.

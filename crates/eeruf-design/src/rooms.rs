@@ -16,6 +16,7 @@ use crate::atlas::ATLAS;
 use crate::find::RingDesign;
 use crate::ring::RingSpec;
 use crate::shortest::Search;
+use crate::way::Way;
 
 /// Radius of a ring that the file has no places for, in metres: a choice, that of a small robot.
 const RADIUS_M: f64 = 0.2;
@@ -164,8 +165,8 @@ impl RingSpec {
 }
 
 impl RingSpec {
-    /// The way of firing the ring that [`judge_in_rooms`](Self::judge_in_rooms) recommends, without a look at other
-    /// conditions; none if no way can fire it.
+    /// The way of firing the ring that [`judge_in_rooms`](Self::judge_in_rooms) recommends among those that a program
+    /// can have, without a look at other conditions; none if no way can fire it.
     ///
     /// # Errors
     /// As there.
@@ -175,7 +176,8 @@ impl RingSpec {
         asked: &RoomsAsked,
         keep_going: &(dyn Fn(f64) -> bool + Sync),
     ) -> Result<Option<RoomWay>, String> {
-        let Set { ways, groups, here, .. } = self.set(design, asked)?;
+        let Set { mut ways, groups, here, .. } = self.set(design, asked)?;
+        ways.retain(|way| Way::of(way).is_some());
         let judgement = judge(&ways, &groups, &here, keep_going).map_err(in_words)?;
         Ok(judgement.best().map(|judged| judged.way.clone()))
     }

@@ -2,7 +2,7 @@
 use eeruf_core::flow::{BeliefSettings, TurnSettings};
 use eeruf_core::{Micros, RingConfig};
 
-// 8 sensors that fire by flow, with quiet of 6.028 ms to 33.159 ms, listening for 23.31 ms.
+// 8 sensors that fire one after the other, with 6.028 ms to 33.159 ms of quiet, listening for 23.31 ms.
 // For `FlowRing::<SENSORS>::flow(SENSORS, turns(seed), BELIEF, CONFIG, now)`.
 pub const SENSORS: usize = 8;
 

@@ -4,16 +4,14 @@
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::Path;
-use std::process::Command;
 
 use anyhow::{Result, ensure};
 use fs_err as fs;
 
+use super::ALL;
 use super::build::{self, Board};
 use super::world::{self, Heard};
-use super::{ALL, TARGET};
-use crate::steps::{edited, output};
-use crate::toolchain::program;
+use crate::steps::edited;
 
 /// The sketch of all of them, with the pins and the table of its twelve modules exchanged.
 const SKETCH: &str = "examples/Ring12OnePin/Ring12OnePin.ino";
@@ -26,26 +24,7 @@ const ON_MEGA: [u8; 24] =
 pub(super) const EQUAL_US: u32 = 12_000;
 const SCATTERED_US: std::ops::Range<u32> = 1_500..23_000;
 /// The least share of accepted firings, in percent: of each module, and of all together.
-const LEAST: (f64, f64) = (85.0, 95.0);
-/// The same of a flow ring, whose first five readings are votes.
-const LEAST_OF_FLOW: (f64, f64) = (80.0, 85.0);
-/// A car's four modules, for which `design` recommends flow, and the sketch of whoever follows it.
-const DESIGNED: &str = "tests/data/car-4.toml";
-const DESIGNED_SKETCH: &str = r#"
-#include <EerufFlow.h>
-#include "ring.h"
-const uint8_t PINS[] = {2, 3, 4, 5};
-EerufFlow<4> sonar(PINS);
-const EerufHcSr04Settings modules = RING_MODULES;
-void setup() { Serial.begin(115200); sonar.begin(RING, modules); }
-void loop() {
-  if (!sonar.read() || !sonar.accepted()) return;
-  Serial.print(sonar.sensor() + 1);
-  Serial.print(' ');
-  Serial.println(sonar.millimetres());
-}
-"#;
-
+pub(super) const LEAST: (f64, f64) = (85.0, 95.0);
 pub(super) fn run(library: &Path, short: bool) -> Result<()> {
     let world = world::build()?;
     let seconds = if short { 3 } else { 20 };
@@ -65,19 +44,17 @@ pub(super) fn run(library: &Path, short: bool) -> Result<()> {
                 row += " not run |";
                 continue;
             }
-            let shares = accepted(&world, &sketch.elf, board, pins, seconds, scattered)?;
+            let shares = accepted(&world, &sketch.elf, board, [pins, pins], seconds, scattered)?;
             let (all, worst) = enough(&name, shares, LEAST)?;
             let _ = write!(row, " {all:.1} %, {worst:.1} % |");
         }
         println!("{row}");
     }
-    let (all, worst) = enough(DESIGNED, accepted_as_designed(library, &world, seconds)?, LEAST_OF_FLOW)?;
-    println!("| 4, as `design {DESIGNED} --emit arduino` says | Uno | {all:.1} %, {worst:.1} % | not run |");
     Ok(())
 }
 
 /// The shares of all firings and of the worst module's, if they are enough.
-fn enough(name: &str, (all, (worst, module)): (f64, (f64, usize)), least: (f64, f64)) -> Result<(f64, f64)> {
+pub(super) fn enough(name: &str, (all, (worst, module)): (f64, (f64, usize)), least: (f64, f64)) -> Result<(f64, f64)> {
     ensure!(
         worst >= least.0 && all >= least.1,
         "{name}: {all:.1} % of the firings before walls were accepted, {worst:.1} % of module {module}'s; \
@@ -86,17 +63,6 @@ fn enough(name: &str, (all, (worst, module)): (f64, (f64, usize)), least: (f64, 
         least.0
     );
     Ok((all, worst))
-}
-
-/// The shares of accepted firings of the ring that `design` recommends, with what it emits for Arduino.
-fn accepted_as_designed(library: &Path, world: &Path, seconds: u32) -> Result<(f64, (f64, usize))> {
-    let emitted = output(Command::new(program()?).args(["design", DESIGNED, "--places", "1", "--emit", "arduino"]))?;
-    ensure!(emitted.contains("EerufFlowConfig RING"), "{DESIGNED}: flow is not recommended:\n{emitted}");
-    let name = "DesignedBeforeWalls";
-    fs::create_dir_all(Path::new(TARGET).join(name))?;
-    fs::write(Path::new(TARGET).join(name).join("ring.h"), emitted)?;
-    let sketch = build::ours(library, Board::Uno, name, DESIGNED_SKETCH, &[])?;
-    accepted(world, &sketch.elf, Board::Uno, &ALL[..4], seconds, false)
 }
 
 /// The sketch for as many modules as there are pins.
@@ -109,21 +75,21 @@ fn exchanged(text: &str, pins: &[u8]) -> Result<String> {
 }
 
 /// The shares of accepted firings in percent: of all, and of the worst module, which is counted from 1.
-fn accepted(
+pub(super) fn accepted(
     world: &Path,
     elf: &Path,
     board: Board,
-    pins: &[u8],
+    [triggers, echoes]: [&[u8]; 2],
     seconds: u32,
     scattered: bool,
 ) -> Result<(f64, (f64, usize))> {
     let span = SCATTERED_US.end - SCATTERED_US.start;
-    let walls: Vec<_> = (0..pins.len() as u32)
+    let walls: Vec<_> = (0..triggers.len() as u32)
         // By the golden section, so that no two are alike.
         .map(|module| SCATTERED_US.start + (module * 618 % 1000) * span / 1000)
         .map(|us| Some(if scattered { us } else { EQUAL_US }))
         .collect();
     let options: &[&str] = if board == Board::Mega { &["--mega"] } else { &[] };
-    let said = world::before_walls(world, elf, options, seconds, &walls, &[pins, pins].concat())?;
+    let said = world::before_walls(world, elf, options, seconds, &walls, &[triggers, echoes].concat())?;
     Ok(Heard::of(&said, &BTreeMap::new()).shares())
 }

@@ -55,8 +55,11 @@ impl<const K: usize> Flow<'_, K> {
 impl<const K: usize> fmt::Display for Flow<'_, K> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { turns, sensors, window, .. } = self;
-        write!(f, "{sensors} sensors that fire by flow, with quiet of {} to {},", turns.least, turns.most)?;
-        write!(f, " listening for {window}")
+        write!(f, "{sensors} sensors that fire one after the other, with ")?;
+        if turns.least < turns.most {
+            write!(f, "{} to ", turns.least)?;
+        }
+        write!(f, "{} of quiet, listening for {window}", turns.most)
     }
 }
 
@@ -101,6 +104,9 @@ impl<const K: usize> fmt::Display for FlowRust<'_, K> {
             writeln!(f, "    belief.{name} = Micros::new({});", Grouped(time))?;
         }
         writeln!(f, "    belief.top_speed_mm_s = {};", Grouped(Micros::new(belief.top_speed_mm_s.into())))?;
+        if belief.votes != Votes::ByMotion {
+            writeln!(f, "    belief.votes = eeruf_core::flow::Votes::{:?};", belief.votes)?;
+        }
         writeln!(f, "    belief.alone = {};\n    belief\n}};\n", belief.alone)?;
         write!(f, "pub const CONFIG: RingConfig = RingConfig::new().with_window(Micros::new({}))", Grouped(*window))?;
         writeln!(f, ".with_blanking(Micros::new({}));", Grouped(*blanking))?;

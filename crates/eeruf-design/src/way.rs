@@ -1,0 +1,143 @@
+//! [`Way`]: a way of firing as a program for a board has it.
+
+use eeruf_core::flow::{TurnSettings, Votes};
+use eeruf_core::{EachSensor, SensorLimits};
+use eeruf_sim::Robot;
+use eeruf_sim::experiments::rooms::RoomWay;
+use eeruf_sim::methods::Method;
+
+use crate::flow::FlowDesign;
+use crate::ring::RingSpec;
+
+/// A way of firing that a program for a board can have. All but two phases are settings of one ring,
+/// [`FlowRing`](eeruf_core::flow::FlowRing).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Way {
+    /// One sensor after the other, each when nothing is heard of the one before; every echo is believed.
+    Sequential,
+    /// Sensors that are no neighbours together, group after group; every echo is believed.
+    Groups,
+    /// The paper's: a table whose waits alternate between two values.
+    TwoPhases,
+    /// One sensor after the other, each with as much quiet as it has needed.
+    Flow,
+}
+
+impl Way {
+    /// All, the simplest first.
+    pub const ALL: [Self; 4] = [Self::Sequential, Self::Groups, Self::TwoPhases, Self::Flow];
+
+    /// The name in options and in JSON.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Sequential => "sequential",
+            Self::Groups => "groups",
+            Self::TwoPhases => "two-phases",
+            Self::Flow => "flow",
+        }
+    }
+
+    /// The name in sentences.
+    pub const fn title(self) -> &'static str {
+        match self {
+            Self::Sequential => "one by one",
+            Self::Groups => "in groups",
+            Self::TwoPhases => "in two phases",
+            Self::Flow => "by flow",
+        }
+    }
+
+    /// The order and the gaps of a ring's firings, in words.
+    pub fn in_words(self, turns: &TurnSettings) -> String {
+        let TurnSettings { least, most, .. } = turns;
+        match self {
+            Self::Sequential => format!("one by one, each {most} after the one before; every echo is believed"),
+            Self::Groups => format!("group after group, each {most} after the one before; every echo is believed"),
+            Self::TwoPhases => "two phases, by a table whose waits alternate; what agrees twice is believed".to_owned(),
+            Self::Flow => format!(
+                "flow: one after the other, with {least} to {most} of quiet, as each has needed; what fits what is \
+                 believed, or agrees twice and no firing explains, is believed"
+            ),
+        }
+    }
+
+    /// The one by which a way that is judged in rooms fires; none if no program has it.
+    pub fn of(way: &RoomWay) -> Option<Self> {
+        match (way.method, way.name) {
+            (Method::Sequential, _) => Some(Self::Sequential),
+            (Method::FarGroups, _) => Some(Self::Groups),
+            (Method::Eeruf, "eeruf") => Some(Self::TwoPhases),
+            (Method::Flow, _) => Some(Self::Flow),
+            _ => None,
+        }
+    }
+}
+
+impl RingSpec {
+    /// The settings by which its robot, as it was judged in rooms, fires one by one, in groups or by flow, with the
+    /// seed of its dice.
+    ///
+    /// # Errors
+    /// Groups of sensors that are neighbours, or that have groups of their own already, in words.
+    pub fn fired(&self, way: Way, robot: &Robot, seed: u32) -> Result<FlowDesign, String> {
+        let mut flow = self.flow_of(robot, seed);
+        if matches!(way, Way::Sequential | Way::Groups) {
+            flow.turns = flow.turns.one_by_one();
+            flow.belief.votes = Votes::EveryEcho;
+        }
+        if way == Way::Groups {
+            let together = self.groups_far_apart(!robot.together.is_empty())?;
+            let t_delta = flow.belief.t_delta;
+            let own = |sensor| flow.limits.of(sensor).unwrap_or(SensorLimits { window: flow.window, t_delta });
+            flow.limits = EachSensor::for_flow(std::array::from_fn(|sensor| own(sensor as u8)), &together);
+        }
+        Ok(flow)
+    }
+
+    /// Sets of sensors as many apart as neighbours reach, bit x for sensor x.
+    fn groups_far_apart(&self, has_own: bool) -> Result<Vec<u64>, String> {
+        if has_own {
+            return Err(
+                "groups: the ring file has `together`; expected none, as groups are made of single sensors".into()
+            );
+        }
+        let (sensors, layout) = (self.sensors, self.layout.layout());
+        let apart = usize::from(self.neighbours).clamp(1, sensors);
+        let set = |first: usize| (first..sensors).step_by(apart);
+        for first in 0..apart {
+            let near = |x: usize| set(first).find(|&y| y > x && layout.neighbours(sensors, x, y)).map(|y| (x, y));
+            if let Some((x, y)) = set(first).find_map(near) {
+                return Err(format!(
+                    "groups: sensors {x} and {y} are neighbours; expected a ring whose {sensors} sensors are a multiple \
+                     of {apart} neighbours, or a line"
+                ));
+            }
+        }
+        Ok((0..apart).map(|first| set(first).fold(0, |set, x| set | 1 << x)).collect())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn fired(ring: &str, way: Way) -> Result<FlowDesign, String> {
+        let spec = RingSpec::from_text(ring).unwrap();
+        let robot = spec.room_robot().unwrap().robot;
+        spec.fired(way, &robot, 1)
+    }
+
+    #[test]
+    fn one_by_one_keeps_all_its_quiet_and_groups_are_no_neighbours() {
+        let ring = "sensors = 8\nmodule = \"hc-sr04\"\nlayout = \"ring\"\nneighbours = 4";
+        let flow = fired(ring, Way::Flow).unwrap();
+        assert!(flow.turns.least < flow.turns.most && flow.belief.votes == Votes::ByMotion);
+        let one = fired(ring, Way::Sequential).unwrap();
+        assert_eq!((one.turns.least, one.turns.most), (flow.turns.most, flow.turns.most));
+        assert_eq!((one.belief.votes, one.limits.most().is_none()), (Votes::EveryEcho, true));
+        let groups = fired(ring, Way::Groups).unwrap().limits;
+        assert_eq!(groups.groups()[..8], [1, 2, 3, 4, 1, 2, 3, 4]);
+        let ten = fired(&ring.replace("= 8", "= 10"), Way::Groups).unwrap_err();
+        assert!(ten.contains("sensors 0 and 8 are neighbours; expected"), "{ten}");
+    }
+}

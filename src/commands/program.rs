@@ -1,0 +1,95 @@
+//! `eeruf design --program`: the recommended way of firing, or another, as a folder that builds.
+
+use std::path::{Path, PathBuf};
+
+use clap::ValueEnum;
+use clap::builder::PossibleValue;
+use eeruf_design::{RingDesign, Way};
+use eeruf_files::Kind;
+
+use super::Answer;
+use super::rooms::{self, RoomArgs};
+use crate::console::tell;
+use crate::files::error::InputError;
+use crate::files::write::{make_folder, write};
+use crate::program::{Board, Language, Wanted, program};
+use crate::report::watch::Watch;
+
+/// Options of a program.
+#[derive(clap::Args)]
+pub(crate) struct ProgramArgs {
+    /// Write a folder with a program that fires the ring in the way recommended: a sketch, a crate, ..
+    #[arg(long, value_enum, value_name = "LANGUAGE",
+          conflicts_with_all = ["emit", "json", "svg", "certificate", "certificate_over_reals", "period", "curve"])]
+    pub(crate) program: Option<Language>,
+    /// The board that the program is for; by default the usual one of its language
+    #[arg(long, value_enum, value_name = "BOARD", requires = "program")]
+    board: Option<Board>,
+    /// The program's folder; by default one with the ring file's name
+    #[arg(long, value_name = "DIR", requires = "program")]
+    out: Option<PathBuf>,
+    /// The program's way of firing, instead of the one that is recommended; nothing is judged in rooms then
+    #[arg(long, value_enum, value_name = "WAY", requires = "program")]
+    way: Option<Named>,
+}
+
+/// A way of firing as an option.
+#[derive(Clone, Copy)]
+struct Named(Way);
+
+impl ValueEnum for Named {
+    fn value_variants<'a>() -> &'a [Self] {
+        &[Self(Way::ALL[0]), Self(Way::ALL[1]), Self(Way::ALL[2]), Self(Way::ALL[3])]
+    }
+
+    fn to_possible_value(&self) -> Option<PossibleValue> {
+        Some(PossibleValue::new(self.0.name()))
+    }
+}
+
+/// Writes the program, and says what it is and what to do with it.
+pub(crate) fn run(
+    args: &ProgramArgs,
+    (file, language): (&Path, Language),
+    design: &RingDesign,
+    in_rooms: &RoomArgs,
+    watch: &mut Watch,
+) -> Result<Answer, InputError> {
+    let bad = |why: String| InputError::new(file, why);
+    let way = match args.way {
+        Some(Named(way)) => way,
+        None => {
+            let best = rooms::recommended(in_rooms, &design.spec, design, watch)?.map_err(bad)?;
+            let none = || bad("no way can fire this ring; `eeruf design` says why".to_owned());
+            best.as_ref().and_then(Way::of).ok_or_else(none)?
+        }
+    };
+    let folder = args.out.clone().unwrap_or_else(|| PathBuf::from(file.file_stem().unwrap_or_default()));
+    let name = plain(&folder);
+    let (text, shown) = (Kind::Ring.read(file)?, file.file_name().unwrap_or_default().to_string_lossy());
+    let robot = design.spec.room_robot().map_err(bad)?.robot;
+    let wanted = Wanted { file: (&shown, &text), design, robot: &robot, way, name: &name };
+    let program = program(&wanted, language, args.board).map_err(bad)?;
+    // What somebody may have changed by hand stays.
+    let there = program.files.iter().map(|(path, _)| folder.join(path)).find(|path| path.exists());
+    if let Some(there) = there {
+        return Err(InputError::new(&there, "it is there already; expected a new folder, by --out DIR"));
+    }
+    for (path, text) in &program.files {
+        let path = folder.join(path);
+        if let Some(parent) = path.parent() {
+            make_folder(parent)?;
+        }
+        write(&path, text)?;
+    }
+    let (count, folder) = (program.files.len(), folder.display());
+    tell(format!("{folder}: {count} files of a ring that fires {}; {}\n", way.title(), program.next))?;
+    Ok(Answer::Yes)
+}
+
+/// The folder's name as a sketch and a crate may have it.
+fn plain(folder: &Path) -> String {
+    let name = folder.file_name().unwrap_or_default().to_string_lossy();
+    let name: String = name.chars().map(|c| if c.is_ascii_alphanumeric() || c == '-' { c } else { '_' }).collect();
+    if name.starts_with(|c: char| c.is_ascii_alphabetic()) { name } else { format!("ring_{name}") }
+}

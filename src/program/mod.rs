@@ -1,0 +1,339 @@
+//! Programs for a ring: the files of `eeruf design --program`, from templates that are programs themselves.
+
+mod boards;
+
+use clap::ValueEnum;
+use eeruf_core::Micros;
+use eeruf_core::flow::{TurnSettings, Votes};
+use eeruf_design::{FlowDesign, RingDesign, RingSpec, Way};
+use eeruf_files::emit::{Flow, Form};
+use eeruf_sim::Robot;
+use eeruf_sim::modules::PulseTimes;
+
+pub(crate) use boards::Board;
+use boards::Wiring;
+
+/// The language and the system of a program.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Language {
+    /// A sketch, with the library beside it: open it in the IDE and upload
+    Arduino,
+    /// A `no_std` crate over embedded-hal: give it your pins
+    Rust,
+    /// C99 with `eeruf.c` beside it: give it three functions of your board
+    C,
+    /// A `main.py` and `eeruf.py`: copy both to the board
+    Micropython,
+    /// Parameters of the node `eeruf_ros2` on a Raspberry Pi's own pins
+    Ros2,
+}
+
+impl Language {
+    /// Boards that it is written for, the usual one first; none if any will do.
+    const fn boards(self) -> &'static [Board] {
+        match self {
+            Self::Arduino => &[Board::Uno, Board::Mega, Board::Pico, Board::Esp32],
+            Self::Micropython => &[Board::Pico, Board::Esp32],
+            Self::Ros2 => &[Board::RaspberryPi],
+            Self::Rust | Self::C => &[],
+        }
+    }
+}
+
+/// A program: its files by their paths in its folder.
+#[derive(Debug)]
+pub(crate) struct Program {
+    pub(crate) files: Vec<(String, String)>,
+    /// The next thing to do with it, in a sentence.
+    pub(crate) next: &'static str,
+}
+
+/// A ring and how it is to fire.
+pub(crate) struct Wanted<'a> {
+    /// The ring file's name and text.
+    pub(crate) file: (&'a str, &'a str),
+    pub(crate) design: &'a RingDesign,
+    pub(crate) robot: &'a Robot,
+    pub(crate) way: Way,
+    /// The name of the folder, for those whose main file has its name.
+    pub(crate) name: &'a str,
+}
+
+const C_LIBRARY: [(&str, &str); 2] =
+    [("eeruf.c", include_str!("../../c/eeruf.c")), ("eeruf.h", include_str!("../../c/eeruf.h"))];
+const ARDUINO_LIBRARY: [(&str, &str); 5] = [
+    ("EerufArduino.cpp", include_str!("../../c/arduino/src/EerufArduino.cpp")),
+    ("EerufArduino.h", include_str!("../../c/arduino/src/EerufArduino.h")),
+    ("EerufFlow.h", include_str!("../../c/arduino/src/EerufFlow.h")),
+    ("EerufInterrupts.h", include_str!("../../c/arduino/src/EerufInterrupts.h")),
+    ("EerufSeed.h", include_str!("../../c/arduino/src/EerufSeed.h")),
+];
+
+/// Writes a program.
+///
+/// # Errors
+/// What the language, the board or the modules cannot do, in words.
+pub(crate) fn program(wanted: &Wanted<'_>, language: Language, board: Option<Board>) -> Result<Program, String> {
+    let spec = &wanted.design.spec;
+    let times = pulse_times(spec)?;
+    let board = chosen(language, board)?;
+    let wiring = board.map(|board| Ok::<_, String>((board, board.wiring(spec.sensors)?))).transpose()?;
+    if wanted.way == Way::TwoPhases && language != Language::Arduino {
+        return Err("--way two-phases: expected --program arduino; --emit writes its table for rust and c".to_owned());
+    }
+    let flow = if wanted.way == Way::TwoPhases { None } else { Some(spec.fired(wanted.way, wanted.robot, 1)?) };
+    let about = wanted.about(flow.as_ref(), wiring.as_ref());
+    match (language, flow, wiring) {
+        (Language::Arduino, flow, Some((board, wiring))) => Ok(arduino(wanted, flow.as_ref(), &about, board, &wiring)),
+        (Language::Micropython, Some(flow), Some((_, wiring))) => micropython(&flow, spec, times, &about, &wiring),
+        (Language::Ros2, Some(_), Some((_, wiring))) => ros2(wanted, &about, &wiring),
+        (Language::C, Some(flow), _) => Ok(c(wanted, &flow, &about)),
+        (Language::Rust, Some(flow), _) => Ok(rust(wanted, &flow, times, &about)),
+        // Each language above has its boards, and a way its settings.
+        _ => Err("no program for this way and board".to_owned()),
+    }
+}
+
+fn chosen(language: Language, board: Option<Board>) -> Result<Option<Board>, String> {
+    let boards = language.boards();
+    let name = |board: &Board| board.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned());
+    match board {
+        None => Ok(boards.first().copied()),
+        Some(board) if boards.contains(&board) => Ok(Some(board)),
+        Some(board) if boards.is_empty() => {
+            Err(format!("--board {}: expected none, as this program is for any board", name(&board)))
+        }
+        Some(board) => {
+            let known = boards.iter().map(name).collect::<Vec<_>>().join(", ");
+            Err(format!("--board {}: expected one that this program is written for: {known}", name(&board)))
+        }
+    }
+}
+
+/// The times of the ring's modules.
+fn pulse_times(spec: &RingSpec) -> Result<PulseTimes, String> {
+    let Some(module) = spec.modules.first() else {
+        return Err(
+            "the ring file names no module; expected `module`, as \"hc-sr04\", for a program to know its times".into(),
+        );
+    };
+    if let Some((sensor, other)) = spec.modules.iter().enumerate().find(|(_, other)| *other != module) {
+        let (first, other) = (module.name, other.name);
+        return Err(format!(
+            "sensor {sensor} is {other} and sensor 0 {first}; expected modules of one kind in one program"
+        ));
+    }
+    module.pulse_times().ok_or_else(|| {
+        let (name, interface) = (module.name, module.interface.name());
+        format!("{name} answers by {interface}; expected a module that answers by the width of a pulse")
+    })
+}
+
+impl Wanted<'_> {
+    /// The first lines of a program, without comment signs.
+    fn about(&self, flow: Option<&FlowDesign>, wiring: Option<&(Board, Wiring)>) -> Vec<String> {
+        let spec = &self.design.spec;
+        let modules = spec.modules.first().map_or("", |module| module.name);
+        let turns = flow.map_or(TurnSettings::new(1), |flow| flow.turns);
+        let mut lines = vec![format!("{} modules {modules}, of {}:", spec.sensors, self.file.0)];
+        lines.extend(wrapped(&self.way.in_words(&turns)));
+        if let Some((board, wiring)) = wiring {
+            lines.push(String::new());
+            lines.extend(board.in_words(wiring));
+        }
+        lines
+    }
+
+    /// The table, or the settings of a flow ring.
+    fn source(&self, form: Form, flow: Option<&FlowDesign>) -> String {
+        let design = self.design;
+        match flow {
+            Some(flow) => flow_source(&design.spec, form, flow),
+            None => form.table(&design.schedule, &design.spec.table_requirements(), &design.spec.modules),
+        }
+    }
+}
+
+/// The set-up of a flow ring as source text.
+pub(crate) fn flow_source(spec: &RingSpec, form: Form, flow: &FlowDesign) -> String {
+    let FlowDesign { turns, belief, window, blanking, limits } = flow;
+    let uneven = spec.problem().requirements.uneven;
+    let shared_lines = uneven.map_or(&[][..], |uneven| uneven.shared_lines);
+    let (window, blanking) = (*window, *blanking);
+    form.flow(&Flow { turns, belief, sensors: spec.sensors, window, blanking, limits, shared_lines }, &spec.modules)
+}
+
+/// Lines of no more than 110 characters.
+fn wrapped(text: &str) -> Vec<String> {
+    let mut lines = vec![String::new()];
+    for word in text.split(' ') {
+        match lines.last_mut() {
+            Some(line) if !line.is_empty() && line.len() + word.len() < 110 => *line += &format!(" {word}"),
+            Some(line) if line.is_empty() => line.push_str(word),
+            _ => lines.push(word.to_owned()),
+        }
+    }
+    lines
+}
+
+/// Comments, each line after a sign.
+fn comments(lines: &[String], sign: &str) -> String {
+    lines.iter().map(|line| format!("{sign} {line}").trim_end().to_owned() + "\n").collect()
+}
+
+/// A template with its placeholders, as `@sensors@`, filled in.
+fn filled(template: &str, values: &[(&str, &str)]) -> String {
+    values.iter().fold(template.to_owned(), |text, (name, value)| text.replace(&format!("@{name}@"), value))
+}
+
+fn list(pins: &[u8]) -> String {
+    pins.iter().map(u8::to_string).collect::<Vec<_>>().join(", ")
+}
+
+const PRINTS: [&str; 3] = [
+    "",
+    "Prints the seed of the robot's dice, then for each reading that counts the number of the module and the distance in",
+    "millimetres, or `free`. A module that has neither is not known: it is not free.",
+];
+
+fn arduino(wanted: &Wanted<'_>, flow: Option<&FlowDesign>, about: &[String], board: Board, wiring: &Wiring) -> Program {
+    let template =
+        if flow.is_some() { include_str!("templates/flow.ino") } else { include_str!("templates/table.ino") };
+    let Wiring { triggers, echoes } = wiring;
+    let pins = |name, pins| format!("const uint8_t {name}[] = {{{}}};", list(pins));
+    let (pins, given) = if triggers == echoes {
+        (pins("PINS", triggers), "PINS")
+    } else {
+        (format!("{}\n{}", pins("TRIGGERS", triggers), pins("ECHOES", echoes)), "TRIGGERS, ECHOES")
+    };
+    let sensors = triggers.len().to_string();
+    let values = [("pins", &*pins), ("given", given), ("sensors", &sensors), ("noise", board.open_pin())];
+    let about = [about, &PRINTS.map(str::to_owned)].concat();
+    let sketch = comments(&about, "//") + &filled(template, &values);
+    let tab = wanted.source(Form::Arduino, flow).replace("<EerufArduino.h>", "\"src/eeruf/EerufArduino.h\"");
+    let library = C_LIBRARY.into_iter().chain(ARDUINO_LIBRARY);
+    let mut files = vec![(format!("{}.ino", wanted.name), sketch), ("ring.h".to_owned(), tab)];
+    files.extend(library.map(|(name, text)| (format!("src/eeruf/{name}"), text.to_owned())));
+    Program { files, next: "open the sketch in the Arduino IDE and upload it; its first lines say how to wire" }
+}
+
+/// The numbers of the modules and of the judge, by their names in templates.
+fn numbers(flow: &FlowDesign, spec: &RingSpec, times: PulseTimes) -> Vec<(&'static str, String)> {
+    let FlowDesign { turns, belief, window, blanking, .. } = flow;
+    let PulseTimes { deaf_us, shortest_us, latest_rise_us, longest_us, longest_hold_us } = times;
+    let trigger_us = spec.modules.first().map_or(10, |module| module.trigger_us);
+    let us = Micros::as_micros;
+    [
+        ("sensors", spec.sensors as u32),
+        ("window_us", window.as_micros()),
+        ("blanking_us", us(*blanking)),
+        ("least_us", us(turns.least)),
+        ("most_us", us(turns.most)),
+        ("rest_us", us(turns.rest)),
+        ("dice_us", us(turns.dice)),
+        ("t_delta_us", us(belief.t_delta)),
+        ("near_us", us(belief.near)),
+        ("path_change_us", us(belief.path_change)),
+        ("top_speed_mm_s", belief.top_speed_mm_s.into()),
+        ("deaf_us", deaf_us),
+        ("shortest_us", shortest_us),
+        ("latest_rise_us", latest_rise_us),
+        ("longest_us", longest_us),
+        ("longest_hold_us", longest_hold_us),
+        ("trigger_us", trigger_us),
+    ]
+    .into_iter()
+    .map(|(name, number)| (name, number.to_string()))
+    .collect()
+}
+
+fn micropython(
+    flow: &FlowDesign,
+    spec: &RingSpec,
+    times: PulseTimes,
+    about: &[String],
+    wiring: &Wiring,
+) -> Result<Program, String> {
+    if flow.limits.most().is_some() {
+        return Err(
+            "--program micropython: sensors that fire together, share a line or have limits of their own are not \
+                    in its ring; expected --program arduino, c or rust"
+                .to_owned(),
+        );
+    }
+    let mut values = numbers(flow, spec, times);
+    let votes = match flow.belief.votes {
+        Votes::ByMotion => "BY_MOTION",
+        Votes::EveryEcho => "EVERY_ECHO",
+        Votes::TwoInARow => "TWO_IN_A_ROW",
+    };
+    values.extend([
+        ("alone", if flow.belief.alone { "True" } else { "False" }.to_owned()),
+        ("votes", votes.to_owned()),
+        ("triggers", format!("[{}]", list(&wiring.triggers))),
+        ("echoes", format!("[{}]", list(&wiring.echoes))),
+    ]);
+    let values: Vec<_> = values.iter().map(|(name, value)| (*name, &**value)).collect();
+    let template = include_str!("templates/main.py").replace("import ACCEPTED,", &format!("import ACCEPTED, {votes},"));
+    let about = [about, &PRINTS.map(str::to_owned)].concat();
+    let main = comments(&about, "#") + &filled(&template, &values);
+    let files = vec![
+        ("main.py".to_owned(), main),
+        ("eeruf.py".to_owned(), include_str!("../../c/micropython/eeruf.py").to_owned()),
+    ];
+    Ok(Program { files, next: "copy both files to the board, as `mpremote cp main.py eeruf.py :`, and reset it" })
+}
+
+fn c(wanted: &Wanted<'_>, flow: &FlowDesign, about: &[String]) -> Program {
+    let about = format!("/* {} */\n", about.join("\n   "));
+    let files = [
+        ("sonar.h", about + include_str!("templates/sonar.h")),
+        ("sonar.c", include_str!("templates/sonar.c").to_owned()),
+        ("ring.h", wanted.source(Form::C, Some(flow))),
+    ];
+    let files = files.into_iter().chain(C_LIBRARY.map(|(name, text)| (name, text.to_owned())));
+    Program {
+        files: files.map(|(name, text)| (name.to_owned(), text)).collect(),
+        next: "compile the two .c files with yours, which has the three functions at the beginning of sonar.h",
+    }
+}
+
+fn rust(wanted: &Wanted<'_>, flow: &FlowDesign, times: PulseTimes, about: &[String]) -> Program {
+    let own = flow.limits.most().is_some();
+    let mut values = numbers(flow, &wanted.design.spec, times);
+    let (ring, begin) = if own {
+        (
+            "eeruf_core::flow::FlowRing<SENSORS, 1, eeruf_core::EachSensor<SENSORS>>",
+            "with_limits(SENSORS, ring::LIMITS, ",
+        )
+    } else {
+        ("eeruf_core::flow::FlowRing<SENSORS>", "flow(SENSORS, ")
+    };
+    values.extend([("ring", ring.to_owned()), ("begin", begin.to_owned())]);
+    let values: Vec<_> = values.iter().map(|(name, value)| (*name, &**value)).collect();
+    let files = [
+        ("Cargo.toml", filled(include_str!("templates/Cargo.toml.in"), &[("name", wanted.name)])),
+        ("src/lib.rs", comments(about, "//!") + &filled(include_str!("templates/lib.rs"), &values)),
+        (
+            "src/ring.rs",
+            "//! The settings of the ring, as `eeruf design` found them.\n\n".to_owned()
+                + &wanted.source(Form::Rust, Some(flow)),
+        ),
+    ];
+    Program {
+        files: files.into_iter().map(|(name, text)| (name.to_owned(), text)).collect(),
+        next: "depend on this crate from your firmware, and call `sonar` with its pins",
+    }
+}
+
+fn ros2(wanted: &Wanted<'_>, about: &[String], wiring: &Wiring) -> Result<Program, String> {
+    if wanted.way != Way::Flow {
+        return Err(format!("--way {}: expected flow, by which the node fires", wanted.way.name()));
+    }
+    let values = [("triggers", &*list(&wiring.triggers)), ("echoes", &*list(&wiring.echoes))];
+    let files = vec![
+        ("eeruf.yaml".to_owned(), comments(about, "#") + &filled(include_str!("templates/eeruf.yaml"), &values)),
+        ("ring.toml".to_owned(), wanted.file.1.to_owned()),
+    ];
+    Ok(Program { files, next: "in its folder: `ros2 launch eeruf_ros2 eeruf.launch.py params_file:=$PWD/eeruf.yaml`" })
+}

@@ -1,0 +1,40 @@
+#![no_std]
+
+mod ring;
+
+use eeruf_core::{EdgeQueue, Instant, Micros};
+use eeruf_hc_sr04::{HcSr04Ring, Pins, Settings, SetupError};
+use embedded_hal::delay::DelayNs;
+use embedded_hal::digital::{InputPin, OutputPin};
+
+pub use eeruf_core;
+pub use ring::SENSORS;
+
+/// Edges of the echo lines: the interrupt of any change pushes sensor, level and instant.
+pub static EDGES: EdgeQueue<32> = EdgeQueue::new();
+
+/// The ring on its pins. `poll(now)` fires what is due and returns readings; `next_deadline()` says until when to sleep;
+/// `moving(speed_mm_s, turn_mrad_s, now)`, once a control cycle, how the robot moves, else the ring file's speed counts.
+pub type Sonar<T, I, D> = HcSr04Ring<@ring@, T, I, D, SENSORS, &'static EdgeQueue<32>>;
+
+/// Begins. The seed is the chip's number, or another that each robot has of its own, not 0.
+///
+/// # Errors
+/// [`SetupError`]: none for these settings, but for a seed of 0.
+pub fn sonar<T: OutputPin, I: InputPin, D: DelayNs>(
+    pins: [Pins<T, I>; SENSORS],
+    delay: D,
+    seed: u32,
+    now: Instant,
+) -> Result<Sonar<T, I, D>, SetupError> {
+    let ring = eeruf_core::flow::FlowRing::@begin@ring::turns(seed), ring::BELIEF, ring::CONFIG, now)?;
+    let mut settings = Settings::default();
+    settings.trigger = Micros::new(@trigger_us@);
+    settings.deaf = Micros::new(@deaf_us@);
+    settings.shortest = Micros::new(@shortest_us@);
+    settings.latest_rise = Micros::new(@latest_rise_us@);
+    settings.longest = Micros::new(@longest_us@);
+    settings.longest_hold = Micros::new(@longest_hold_us@);
+    settings.min_retrigger = Micros::new(@rest_us@);
+    HcSr04Ring::with_edges(ring, pins, delay, settings, &EDGES)
+}

@@ -1,0 +1,44 @@
+#include "sonar.h"
+
+static EerufFlowRing ring;
+static EerufFlowSensor sensors[EERUF_SENSORS];
+static EerufHcSr04 modules;
+static EerufLine lines[EERUF_SENSORS];
+static const EerufHcSr04Settings settings = EERUF_MODULES;
+static EerufEdges edges;
+static EerufEdge places[32];
+
+EerufStatus sonar_begin(uint32_t seed) {
+    EerufFlowConfig config = eeruf_flow_config;
+    config.seed = seed;
+    EerufStatus status = eeruf_flow_init(&ring, sizeof ring, sensors, sizeof sensors, &config, board_micros());
+    if (status == EERUF_OK)
+        status = eeruf_hc_sr04_init(&modules, sizeof modules, lines, sizeof lines, &ring.ring, &settings);
+    if (status == EERUF_OK) status = eeruf_edges_init(&edges, sizeof edges, places, sizeof places);
+    return status;
+}
+
+void sonar_edge(uint8_t sensor, bool high) {
+    (void)eeruf_edges_push(&edges, sensor, high, board_micros());
+}
+
+void sonar_moving(uint32_t speed_mm_s, uint32_t turn_mrad_s) {
+    (void)eeruf_flow_moving(&ring, speed_mm_s, turn_mrad_s, board_micros());
+}
+
+bool sonar_read(uint8_t *sensor, EerufReading *reading) {
+    EerufEvent event;
+    /* The clock is read before the edges: then no window closes on one that came in time. */
+    const uint32_t now = board_micros();
+    (void)eeruf_hc_sr04_edges(&modules, &edges);
+    if (eeruf_flow_poll(&ring, now, &event) != EERUF_EVENT) return false;
+    if (event.kind == EERUF_EVENT_FIRE) {
+        if (eeruf_hc_sr04_fire(&modules, event.sensor, board_line_is_high(event.sensor)) == EERUF_OK)
+            board_trigger(event.sensor, settings.trigger_us);
+        return false;
+    }
+    if (event.kind != EERUF_EVENT_READING) return false;
+    *sensor = event.sensor;
+    *reading = event.u.reading;
+    return true;
+}

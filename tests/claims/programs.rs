@@ -1,0 +1,95 @@
+//! `eeruf design --program`: what it refuses, and what README shows. `cargo xtask programs` builds and runs programs.
+
+use std::collections::BTreeSet;
+use std::process::Command;
+
+use crate::common::{Scratch, eeruf};
+
+/// The ring file that README shows is one, each language has its program, and none overwrites another.
+#[test]
+fn readme_goes_from_four_lines_to_a_program_in_each_language() {
+    let readme = include_str!("../../README.md");
+    let (_, rest) = readme.split_once("## From four lines to a program").unwrap();
+    let ring = rest.split_once("```toml\n").and_then(|(_, rest)| rest.split_once("```")).unwrap().0;
+    assert_eq!(ring.lines().count(), 4);
+    let (folder, file) = Scratch::new("robot.toml", ring);
+    let file = file.to_str().unwrap();
+    for (language, main) in [
+        ("arduino", "robot/robot.ino"),
+        ("c", "c/sonar.c"),
+        ("rust", "rust/src/lib.rs"),
+        ("micropython", "micropython/main.py"),
+        ("ros2", "ros2/eeruf.yaml"),
+    ] {
+        let out = folder.path().join(main.split('/').next().unwrap());
+        let words = ["design", file, "--places", "1", "--program", language, "--out", out.to_str().unwrap()];
+        let said = eeruf(&words);
+        assert_eq!((said.code, said.out.contains("of a ring that fires by flow; ")), (Some(0), true), "{}", said.err);
+        let text = std::fs::read_to_string(folder.path().join(main)).unwrap();
+        let whole = std::fs::read_dir(&out).unwrap().count() >= 2 && !text.contains('@');
+        assert!(whole, "{language}: a placeholder is left, or a file is missing:\n{text}");
+        let again = eeruf(&words);
+        assert_eq!(again.code, Some(2));
+        assert!(again.err.contains("it is there already; expected a new folder, by --out DIR"), "{}", again.err);
+    }
+}
+
+#[test]
+fn parameters_of_the_node_are_its_own() {
+    let known = include_str!("../../crates/eeruf-ros2/config/eeruf.yaml");
+    for line in include_str!("../../src/program/templates/eeruf.yaml").lines() {
+        let key = line.trim().split(':').next().unwrap();
+        assert!(line.trim().starts_with('#') || known.contains(&format!(" {key}:")) || key == "/**", "{line}");
+    }
+}
+
+#[test]
+fn programs_that_cannot_be_are_refused_by_what_is_expected() {
+    for (ring, options, expected) in [
+        ("rings/paper-12.toml", "arduino", "the ring file names no module; expected `module`"),
+        ("rings/hc-sr04-8.toml", "rust --board uno", "--board uno: expected none"),
+        (
+            "rings/hc-sr04-8.toml",
+            "micropython --board mega",
+            "expected one that this program is written for: pico, esp32",
+        ),
+        ("rings/hc-sr04-8.toml", "c --way two-phases", "--way two-phases: expected --program arduino"),
+        ("rings/hc-sr04-8.toml", "ros2 --way sequential", "--way sequential: expected flow"),
+        ("rings/hc-sr04-8.toml", "micropython --way groups", "sensors that fire together"),
+        ("rings/car-12.toml", "micropython --way flow", "rings/car-12.toml"),
+    ] {
+        let words = format!("design {ring} --places 1 --way flow --program {options}");
+        let words: Vec<_> = words.split(' ').collect();
+        // The last --way counts.
+        let words = if options.contains("--way") { [&words[..4], &words[6..]].concat() } else { words };
+        let said = eeruf(&words);
+        assert_eq!(said.code, Some(2), "{words:?}: {}", said.out);
+        assert!(said.err.contains(expected), "{words:?}: {}", said.err);
+    }
+}
+
+/// Sketches draw it on a board whose chip has no number, and keep it.
+#[test]
+fn six_boards_with_one_sketch_draw_six_seeds() {
+    let (folder, _) = Scratch::new("robot.toml", "");
+    let program = folder.path().join("seeds");
+    let built = Command::new("g++")
+        .args([
+            "-std=c++11",
+            "-Wall",
+            "-Wextra",
+            "-Werror",
+            "-Wno-int-to-pointer-cast",
+            "-D__AVR__",
+            "-Itests/programs",
+        ])
+        .args(["-Ic/arduino/src", "tests/programs/seed.cpp", "-o"])
+        .arg(&program)
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .output()
+        .expect("g++ runs");
+    assert!(built.status.success(), "{}", String::from_utf8_lossy(&built.stderr));
+    let said = String::from_utf8(Command::new(program).output().unwrap().stdout).unwrap();
+    let seeds: BTreeSet<_> = said.lines().filter_map(|line| line.strip_suffix(" 1")).collect();
+    assert!(seeds.len() == 6 && !seeds.contains("0"), "seeds, and whether the next start has the same:\n{said}");
+}

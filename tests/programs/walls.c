@@ -1,0 +1,68 @@
+/* The program of `eeruf design --program c` on modules that are each before a wall of their own, in a loop that comes up
+   to 300 us late: how many readings after the first of each, how many accepted, how many of them wrong. */
+#include <stdio.h>
+
+#include "sonar.h"
+
+static uint32_t clock_us = 4294000000u; /* wraps after one second */
+static uint32_t rises_us[EERUF_SENSORS], falls_us[EERUF_SENSORS];
+static uint8_t level[EERUF_SENSORS], pending[EERUF_SENSORS];
+
+static uint32_t wall_us(uint8_t sensor) {
+    return 2000u + sensor * 618u % 1000u * 20u;
+}
+
+uint32_t board_micros(void) {
+    return clock_us;
+}
+
+bool board_line_is_high(uint8_t sensor) {
+    return level[sensor];
+}
+
+void board_trigger(uint8_t sensor, uint16_t us) {
+    clock_us += us;
+    rises_us[sensor] = clock_us + 450u;
+    falls_us[sensor] = rises_us[sensor] + wall_us(sensor);
+    pending[sensor] = 2;
+}
+
+/* The edges up to an instant, each at its own. */
+static void edges_until(uint32_t now) {
+    for (uint8_t x = 0; x < EERUF_SENSORS; x++)
+        while (pending[x] && (int32_t)(now - (pending[x] == 2 ? rises_us[x] : falls_us[x])) >= 0) {
+            clock_us = pending[x] == 2 ? rises_us[x] : falls_us[x];
+            level[x] = pending[x] == 2;
+            pending[x]--;
+            sonar_edge(x, level[x]);
+        }
+    clock_us = now;
+}
+
+int main(void) {
+    uint32_t random = 1, readings = 0, accepted = 0, wrong = 0;
+    uint8_t begun[EERUF_SENSORS] = {0};
+    const EerufStatus status = sonar_begin(7);
+    if (status != EERUF_OK) return printf("begin: status %d\n", status), 1;
+    sonar_moving(0, 0);
+    for (uint32_t elapsed = 0; elapsed < 20000000u;) {
+        uint8_t sensor;
+        EerufReading reading;
+        random = random * 1664525u + 1013904223u;
+        const uint32_t step = 20u + (random >> 16) % 280u;
+        elapsed += step;
+        edges_until(clock_us + step);
+        while (sonar_read(&sensor, &reading)) {
+            if (!begun[sensor]) {
+                begun[sensor] = 1;
+                continue;
+            }
+            readings++;
+            if (reading.kind != EERUF_READING_ACCEPTED) continue;
+            accepted++;
+            wrong += reading.t_echo_us - wall_us(sensor) + 2 > 4;
+        }
+    }
+    printf("%lu %lu %lu\n", (unsigned long)readings, (unsigned long)accepted, (unsigned long)wrong);
+    return 0;
+}

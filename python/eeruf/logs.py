@@ -147,7 +147,7 @@ class Ranges(_Columns):
     message has none. ``damage`` says what could not be read, ``skipped`` which topics were left out, and why. ``form`` is the form
     of the file, ``guesses`` are triples of what was guessed, the guess, and the options of ``eeruf logs`` that override it;
     ``warnings`` name values that seem wrong. ``firing`` is how the sensors fire, by the times: ``at once``, ``in turn``,
-    ``constant lags``, ``alternating``, ``hopping``, ``flow`` or ``unknown``; ``proves`` says what agreement proves for it, and
+    ``constant lags``, ``alternating``, ``several lags``, ``flow`` or ``unknown``; ``proves`` says what agreement proves for it, and
     ``crosstalk`` whether sensors read each other's sound.
 
     Example:

@@ -262,8 +262,7 @@ impl Heard {
     pub(super) fn is_plausible(&self, example: &Example) -> Result<()> {
         let least = self.firings.iter().min().copied().unwrap_or(0);
         let most = self.firings.iter().max().copied().unwrap_or(0);
-        // 8 periods of the slowest table a second, each module once in each, and some 5 cycles of flow; those that hop
-        // also fire alone at times.
+        // 8 periods of the slowest table a second, each module once in each, and some 5 cycles of flow.
         let evenly = 10 * least + 20 >= 7 * most && least >= 5 * self.seconds;
         let all_fire = self.firings.len() == example.modules() && evenly;
         let is_right = 100 * self.wrong <= self.accepted;

@@ -481,7 +481,7 @@ EerufStatus eeruf_filter_forget(EerufFilter *filter) {
 static void fire_flow(EerufRing *ring, uint8_t sensor, uint32_t now_us);
 static void correct_flow(EerufRing *ring, uint8_t x, uint32_t later_us);
 static void judge(EerufRing *ring, uint8_t x, EerufReading *reading);
-static void decide(EerufRing *ring);
+static void decide_from(EerufRing *ring, uint32_t now_us);
 static void end_round(EerufRing *ring, uint32_t now_us);
 static void restart_flow(EerufRing *ring, uint32_t now_us);
 static uint32_t horizon_of_flow(const EerufRing *ring);
@@ -492,7 +492,7 @@ static uint32_t horizon_of_flow(const EerufRing *ring);
 #define fire_flow(ring, sensor, now_us) ((void)0)
 #define correct_flow(ring, x, later_us) ((void)0)
 #define judge(ring, x, reading) ((void)0)
-#define decide(ring) ((void)0)
+#define decide_from(ring, now_us) ((void)(now_us))
 #define end_round(ring, now_us) ((void)0)
 #define restart_flow(ring, now_us) ((void)0)
 #define horizon_of_flow(ring) 0u
@@ -1003,8 +1003,8 @@ static uint8_t phase_before(const EerufRing *ring, uint8_t ago) {
     return (uint8_t)(ring->phase >= ago ? ring->phase - ago : ring->phase + phases - ago);
 }
 
-static IN_LINE void emit_reading(EerufRing *ring, uint8_t x, const int32_t *change_us, EerufEvent *event,
-                                 bool flows) {
+static IN_LINE void emit_reading(EerufRing *ring, uint8_t x, uint32_t now_us, const int32_t *change_us,
+                                 EerufEvent *event, bool flows) {
     EerufSensor *sensor = sensor_of(ring, x);
     const uint8_t flags = sensor->filter.flags, ago = (uint8_t)(ring->period - flags) & PERIOD;
     const bool was_stuck = (flags & HELD) == STUCK;
@@ -1020,7 +1020,7 @@ static IN_LINE void emit_reading(EerufRing *ring, uint8_t x, const int32_t *chan
         else compare(ring, x, change_us == NULL ? 0 : change_us[x], reading);
         sensor->filter.off[1] = sensor->filter.off[0];
         sensor->filter.off[0] = 0;
-        if (flows) decide(ring);
+        if (flows) decide_from(ring, now_us);
         if (ring->oldest == x) find_oldest(ring, sensor->fired_us[0]);
     } else {
         sensor->filter.flags = flags & (PERIOD | OUTSIDE);
@@ -1073,8 +1073,7 @@ static uint8_t next_pending(const EerufRing *ring, bool emits) {
 
 static IN_LINE void restart(EerufRing *ring, uint32_t now_us, bool flows) {
     uint8_t x;
-    if (flows) restart_flow(ring, now_us);
-    else restart_table(ring, now_us);
+    if (!flows) restart_table(ring, now_us);
     /* Sound from before may still be heard, and its firings are no longer known by this clock. One that was said to
        fire a little later still does. */
     ring->known_from_us = now_us;
@@ -1083,7 +1082,7 @@ static IN_LINE void restart(EerufRing *ring, uint32_t now_us, bool flows) {
         if (fired_us - ring->known_from_us - 1u < STEP_BACK) ring->known_from_us = fired_us;
         drop_firing(ring, x, now_us);
     }
-    if (flows) decide(ring);
+    if (flows) restart_flow(ring, now_us);
     ring->oldest = NOBODY;
     ring->pending = 0;
     disturb(ring);
@@ -1100,12 +1099,6 @@ static OUT_OF_LINE void restart_by_flow(EerufRing *ring, uint32_t now_us) {
 #else
 #define restart_by_flow restart_by_table
 #endif
-
-/* The next firing was due at an instant, and may be due sooner since `now`: late counts from then. */
-static OUT_OF_LINE void bring_forward(EerufRing *ring, uint32_t due_us, uint32_t now_us) {
-    if (!has_reached(now_us, due_us)) due_us = now_us;
-    if (has_reached(due_us, ring->due_us)) ring->due_us = due_us;
-}
 
 /* Firing comes first, since it should be on time; but a sensor's reading is emitted before it fires again. */
 static IN_LINE EerufStatus poll(EerufRing *ring, uint32_t now_us, const int32_t *change_us, EerufEvent *event,
@@ -1132,8 +1125,7 @@ static IN_LINE EerufStatus poll(EerufRing *ring, uint32_t now_us, const int32_t 
         event->u.due_us = ring->due_us;
         fire(ring, sensor, now_us, narrow(late_us), flows);
     } else if (sensor != NOBODY) {
-        emit_reading(ring, sensor, change_us, event, flows);
-        if (flows) bring_forward(ring, now_us - late_us, now_us);
+        emit_reading(ring, sensor, now_us, change_us, event, flows);
     } else {
         end_period(ring, now_us, late_us, event, flows);
     }
@@ -2295,6 +2287,19 @@ static OUT_OF_LINE void decide(EerufRing *ring) {
     }
 }
 
+/* As decide, by what is told only now: nothing is due sooner than that, unless it was. */
+static OUT_OF_LINE void decide_from(EerufRing *ring, uint32_t now_us) {
+    uint32_t due_us = ring->due_us;
+    decide(ring);
+    if (!has_reached(now_us, due_us)) due_us = now_us;
+    if (has_reached(due_us, ring->due_us)) ring->due_us = due_us;
+}
+
+/* By what tells no time nothing is due sooner than it was: that might be long ago. */
+static void decide_no_sooner(EerufRing *ring) {
+    decide_from(ring, ring->due_us);
+}
+
 static void fire_flow(EerufRing *ring, uint8_t x, uint32_t now_us) {
     EerufFlowRing *flow = flow_of(ring);
     EerufFlowSensor *sensor = flow_sensor(ring, x);
@@ -2336,7 +2341,7 @@ static void end_round(EerufRing *ring, uint32_t now_us) {
     }
     /* Nobody fires: rounds go on. */
     if (now_us - ring->last_fired_us >= flow_of(ring)->rest_us) ring->last_fired_us = now_us;
-    decide(ring);
+    decide_no_sooner(ring);
 }
 
 static void restart_flow(EerufRing *ring, uint32_t now_us) {
@@ -2352,6 +2357,7 @@ static void restart_flow(EerufRing *ring, uint32_t now_us) {
     }
     /* Sound from before dies away. */
     ring->last_fired_us = now_us + ring->audible_us;
+    decide(ring);
 }
 
 /* A round of the longest gaps, in which each has its turn: at most 64 times 750 ms, and the rest. */
@@ -2417,7 +2423,6 @@ static void set_moves(EerufFlowRing *flow, bool moves) {
 
 EerufStatus eeruf_flow_moving(EerufFlowRing *flow, uint32_t speed_mm_s, uint32_t turn_mrad_s, uint32_t now_us) {
     const EerufStatus status = has_flow(flow, 0);
-    uint32_t due_us;
     uint16_t rate;
     uint8_t x;
     if (status != EERUF_OK) return status;
@@ -2437,9 +2442,7 @@ EerufStatus eeruf_flow_moving(EerufFlowRing *flow, uint32_t speed_mm_s, uint32_t
     for (x = 0; x < flow->ring.count; x++)
         flow_sensor(&flow->ring, x)->rate = larger16(flow_sensor(&flow->ring, x)->rate, rate);
     set_moves(flow, flow->rate != 0);
-    due_us = flow->ring.due_us;
-    decide(&flow->ring);
-    bring_forward(&flow->ring, due_us, now_us);
+    decide_from(&flow->ring, now_us);
     return EERUF_OK;
 }
 
@@ -2584,7 +2587,7 @@ static void change_flow(EerufRing *ring, uint8_t x, uint32_t what) {
         forget_belief(sensor);
     } else if (what == BEGINS_AGAIN) {
         sensor->doubt = flow_of(ring)->first;
-        decide(ring);
+        decide_no_sooner(ring);
     } else {
         EerufReading silence = {EERUF_NO_ECHO, EERUF_NO_ECHO, 0, USABLE, EERUF_BY_NOTHING};
         weigh(ring, x, grow_since(flow_of(ring), sensor, sensor->fired_us[0]), &silence);
@@ -2604,7 +2607,7 @@ static void correct_flow(EerufRing *ring, uint8_t x, uint32_t later_us) {
     if (!listens || !(sensor->filter.state & HAS_FIRED) || has_reached(sensor->turn_us, at_us))
         move_turn(ring, sensor, at_us);
     if (listens && later_us < HALF_TURN) move_turn(ring, sensor, sensor->turn_us + later_us);
-    decide(ring);
+    decide_no_sooner(ring);
 }
 
 /* -- The ring -- */
@@ -2691,7 +2694,7 @@ EerufStatus eeruf_flow_enable(EerufFlowRing *flow, uint8_t sensor, bool enabled)
     if (enabled) flow_sensor(&flow->ring, sensor)->doubt = flow->first;
     enable(&flow->ring, sensor, enabled);
     group(&flow->ring);
-    decide(&flow->ring);
+    decide_no_sooner(&flow->ring);
     return EERUF_OK;
 }
 
@@ -2707,7 +2710,7 @@ EerufStatus eeruf_flow_pause(EerufFlowRing *flow, bool paused) {
         if (sensor->missed == 0) sensor->missed = 1;
     }
     group(&flow->ring);
-    decide(&flow->ring);
+    decide_no_sooner(&flow->ring);
     return EERUF_OK;
 }
 

@@ -238,6 +238,14 @@ class FlowRing:
                 break
             place = self._first_from(place + 1)
 
+    def _decide_from(self, now_us):
+        # By what is told only now: nothing is due sooner than that, unless it was. Without a clock, no sooner than it was.
+        due = self._due
+        self._decide()
+        due = due if self._reached(now_us, due) else now_us
+        if self._reached(due, self._due):
+            self._due = due
+
     def upcoming(self):
         """The next firing in a list, (sensor, instant), for hardware that fires by itself; none if the round ends first. It holds until a
         reading is emitted. Later poll at that instant until there is no event, hand in echoes, and poll at the present."""
@@ -266,20 +274,13 @@ class FlowRing:
         if not self._reached(now_us, self._since):
             # The first word of a clock in its upper half, or one that has jumped.
             self._since, self._before, self._greatest = now_us, max(self._before, self._greatest), 0
-        recent, due = self._recent(now_us), self._due
+        recent = self._recent(now_us)
         self._rate, self._told = _rate(abs(speed_mm_s) + abs(turn_mrad_s) // 2), now_us
         self._greatest = max(self._greatest, self._rate)
         for sensor in self._sensors:
             sensor.rate = max(sensor.rate, recent, self._rate)
         self._set_moves()
-        self._decide()
-        self._bring_forward(due, now_us)
-
-    def _bring_forward(self, due, now_us):
-        # What comes next was due then, and may be due sooner since now: late counts from now.
-        due = due if self._reached(now_us, due) else now_us
-        if self._reached(due, self._due):
-            self._due = due
+        self._decide_from(now_us)
 
     def _grow(self, sensor, since_us):
         # By how much a good reading may have changed since an instant: what it heard was sent a while before.
@@ -404,9 +405,7 @@ class FlowRing:
                 while not self._sensors[x].can_emit:
                     x += 1
         if x != NOBODY:
-            due = self._due
-            event = self._emit(x)
-            self._bring_forward(due, now_us)
+            event = self._emit(x, now_us)
             self._sensors[x].see(event[KIND], event[T_ECHO], event[EXPLAINED_BY], now_us)
             return event
         return self._end_period(now_us) if is_due else None
@@ -463,7 +462,7 @@ class FlowRing:
     def _count(self, kind):
         self._tally[kind] = min(self._tally[kind] + 1, 255)
 
-    def _emit(self, x):
+    def _emit(self, x, now_us):
         sensor = self._sensors[x]
         echo, evidence, fired, before = sensor.echo_us, sensor.evidence, sensor.firings[0], sensor.firings[1]
         self._pending -= sensor.can_emit
@@ -498,7 +497,7 @@ class FlowRing:
                 kind, age, explained_by = self._judge(x, sensor, echo, before)
             sensor.off_before, sensor.off = sensor.off, 0
             sensor.listening = sensor.outside = False
-            self._decide()
+            self._decide_from(now_us)
         self._end_oldest(x, fired)
         self._count(kind)
         # Rust and C keep three bits of the period; of an edge that is later they say a later one.
@@ -525,7 +524,7 @@ class FlowRing:
             self._known_from = self._long_before(now_us)
         if self._next == NOBODY and (now_us - self._last_fired) & self._mask >= self.flow.rest_us:
             self._last_fired = now_us  # nobody fires: rounds go on
-        self._decide()
+        self._decide_from(self._due)
         return event
 
     def _is_long_ago(self, at_us, now_us):
@@ -598,7 +597,7 @@ class FlowRing:
             if self._last_fired == sensor.fired_us or self._reached(at_us, self._last_fired):
                 self._last_fired = at_us
             sensor.fired_us = at_us
-            self._decide()
+            self._decide_from(self._due)
         if sensor.listening and later > 0:
             self._note(later)
         if self._oldest == x:
@@ -639,7 +638,7 @@ class FlowRing:
         """Forgets a sensor's echo, which is not what it seemed: its next reading is compared with nothing."""
         self._sensors[x].forget()
         self._sensors[x].doubt = self._first
-        self._decide()
+        self._decide_from(self._due)
 
     def enable(self, x, enabled=True):
         """Lets a sensor fire, or not, from its next turn on."""
@@ -648,14 +647,14 @@ class FlowRing:
             sensor.enabled = enabled
             if enabled:
                 self.forget(x)
-            self._decide()
+            self._decide_from(self._due)
 
     def pause(self, paused=True):
         """Lets no sensor fire until it is unset. Belief stays, and the next reading is compared with no other."""
         self._paused = paused
         for sensor in [] if paused else self._sensors:
             sensor.last_us, sensor.missed = None, max(sensor.missed, 1)
-        self._decide()
+        self._decide_from(self._due)
 
     def restart(self, now_us):
         """Again from the first sensor on, after a long sleep. Nothing is known then."""

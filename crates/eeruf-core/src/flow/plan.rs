@@ -128,7 +128,7 @@ impl<const K: usize, U: OwnLimits> InTurn<K, U> {
         TurnSettings::check_seed(seed)?;
         self.random = seed;
         self.throw();
-        self.decide();
+        self.decide_no_sooner();
         Ok(())
     }
 
@@ -301,13 +301,21 @@ impl<const K: usize, U: OwnLimits> InTurn<K, U> {
         if self.last == was || at.has_reached(self.last) {
             self.last = at;
         }
-        self.decide();
+        self.decide_no_sooner();
     }
 
     /// The time from the last firing until some time after another.
     fn since_last(&self, fired: Instant, after: Micros) -> Micros {
         let until = fired + after;
         if self.last.has_reached(until) { Micros::ZERO } else { until.since(self.last) }
+    }
+
+    /// As [`decide`](Self::decide), by what tells no time: nothing is due sooner than it was, which might be long ago.
+    #[inline(never)]
+    fn decide_no_sooner(&mut self) {
+        let due = self.due;
+        self.decide();
+        self.due_from(due);
     }
 
     /// Decides who fires next, and when.
@@ -451,7 +459,7 @@ impl<const K: usize, U: OwnLimits> Plan for InTurn<K, U> {
             // Nobody fires: rounds go on.
             self.last = now;
         }
-        self.decide();
+        self.decide_no_sooner();
         (Phase::A, false)
     }
 
@@ -498,7 +506,7 @@ impl<const K: usize, U: OwnLimits> Plan for InTurn<K, U> {
         let first = self.first;
         if let Some(slot) = self.slot_mut(sensor) {
             slot.doubt = first;
-            self.decide();
+            self.decide_no_sooner();
         }
     }
 
@@ -514,14 +522,14 @@ impl<const K: usize, U: OwnLimits> Plan for InTurn<K, U> {
             }
             slot.set(DISABLED, !enabled);
             self.group();
-            self.decide();
+            self.decide_no_sooner();
         }
     }
 
     fn set_paused(&mut self, paused: bool) {
         self.paused = paused;
         self.group();
-        self.decide();
+        self.decide_no_sooner();
     }
 
     fn is_enabled(&self, sensor: u8) -> bool {

@@ -8,6 +8,7 @@ use eeruf_core::{
     EachSensor, Instant, Micros, ReadingKind, Requirements, RingConfig, RingEvent, SensorLimits, Silence, Uneven,
     flow::{BeliefSettings, FlowRing, InTurn, TurnSettings, Votes},
     judge::Judge as _,
+    plan::OwnLimits,
 };
 
 use world::{Dice, Seen, World};
@@ -374,6 +375,59 @@ fn a_firing_that_was_later_than_its_reading_told_moves_the_rest() {
     world.run(world.now + 200_000, &mut vec![Seen::default(); 2], own);
     let next = world.fired.iter().find(|fired| fired.1 == 0 && fired.0 > later).unwrap();
     assert!(next.0 - later >= 60_000, "{}", next.0 - later);
+}
+
+/// Does something to a ring, by a call that tells no time or by word of its speed.
+fn call<U: OwnLimits>(ring: &mut FlowRing<24, 1, U>, dice: &mut Dice, now: Instant) {
+    let sensor = dice.below(ring.sensors() as u32) as u8;
+    match dice.below(12) {
+        0 => ring.pause(),
+        1 | 2 => ring.resume(),
+        3 | 4 => ring.disable(sensor).unwrap(),
+        5..=7 => ring.enable(sensor).unwrap(),
+        8 => ring.forget(sensor).unwrap(),
+        9 => ring.set_window(Micros::new(20_000 + dice.below(5_001))).unwrap(),
+        10 => ring.set_report_after(Micros::new(dice.below(50_000))).unwrap(),
+        _ => ring.moving([0, 1_000][dice.below(2) as usize], 0, now),
+    }
+}
+
+/// Polls a ring at each of its deadlines and calls it in between; nothing is late.
+fn is_never_late<U: OwnLimits>(mut ring: FlowRing<24, 1, U>, seed: u32, mut now: Instant) {
+    let (mut dice, mut fired) = (Dice { state: seed.into(), travel: 0 }, 0);
+    for _ in 0..2_000 {
+        let next = ring.next_deadline();
+        assert!(next.has_reached(now), "seed {seed}: due {next:?} at {now:?}");
+        let calls = dice.below(4) == 0;
+        now = if calls { now + Micros::new(dice.below(next.since(now).as_micros() + 1)) } else { next };
+        for _ in 0..u32::from(calls) * (1 + dice.below(3)) {
+            call(&mut ring, &mut dice, now);
+        }
+        while let Some(event) = ring.poll(now) {
+            match event {
+                RingEvent::Fire { sensor, due, .. } => {
+                    assert_eq!(due, now, "seed {seed}: sensor {sensor} in its turn {fired}");
+                    fired += 1;
+                    let echo = (dice.below(3) > 0).then(|| Micros::new(1_000 + dice.below(19_000)));
+                    ring.measured(sensor, echo).unwrap();
+                }
+                RingEvent::PeriodEnded(stats) => assert_eq!(stats.max_late, Micros::ZERO, "seed {seed}"),
+                RingEvent::Reading(_) => {}
+            }
+        }
+    }
+    assert!(fired > 200, "seed {seed}: {fired}");
+}
+
+#[test]
+fn no_call_makes_a_loop_late_that_polls_in_time() {
+    for seed in 1..150 {
+        let (begin, sensors) = (Instant::from_micros(BEGIN), [1, 2, 3, 8, 12][seed as usize % 5]);
+        let turns = TurnSettings::new(seed);
+        is_never_late(FlowRing::flow(sensors, turns, DEFAULT, CONFIG, begin).unwrap(), seed, begin);
+        let uneven = Uneven { together: &[0b1_0001, 0b1000_1100], shared_lines: &[0b10_0010], ..Uneven::NONE };
+        is_never_late(world_of(8, turns, 0, uneven).ring, seed, begin);
+    }
 }
 
 /// Kinds of the readings of a sensor before which a wall stands for 30 firings, and then is not heard at these.

@@ -19,10 +19,11 @@ pub(super) struct Rate(u16);
 
 impl Rate {
     pub(super) const STANDING: Self = Self(0);
-    /// `2 v / c` at 331 m/s, the slowest sound that a robot meets: `2 v / 331 * 1.024 * 16` of a `v` in mm/s, rounded
-    /// up. Readings change by at most 4,095/16 us per 1,024 us.
+    /// `2 v / c` at 331 m/s, the slowest sound that a robot meets, and 6 % more, since at 3.6 m/s sound is sent so much
+    /// farther apart than it is heard: `2 v / 331 * 1.024 * 16 * 1.06` of a `v` in mm/s, rounded up. Readings change by
+    /// at most 4,095/16 us per 1,024 us.
     const fn of(speed_mm_s: u32) -> Self {
-        let rate = speed_mm_s.saturating_mul(99).div_ceil(1000);
+        let rate = speed_mm_s.saturating_mul(105).div_ceil(1000);
         Self(if rate > 4095 { 4095 } else { rate as u16 })
     }
 
@@ -95,8 +96,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn readings_change_by_6_us_a_millisecond_at_1_m_s() {
-        for (speed, us) in [(0, 0), (100, 604), (1000, 6_041), (2000, 12_083), (60_000, 249_900)] {
+    fn readings_change_by_6_4_us_a_millisecond_at_1_m_s() {
+        for (speed, us) in [(0, 0), (200, 1_282), (1000, 6_408), (2000, 12_817), (60_000, 249_900)] {
             let grown = Rate::of(speed).grow(Micros::from_millis(1000)).as_micros();
             assert!(grown.abs_diff(us) <= us / 50 + 5, "{speed} mm/s: {grown}");
         }

@@ -106,8 +106,8 @@ impl<P: Plan, const E: usize> World<P, E> {
     /// Moves the path, as far as it may have changed by now.
     fn travel(&mut self) {
         if let Some(of) = &mut self.operates {
-            // By twice the speed over that of sound.
-            self.dice.travel += u64::from(of.speed_mm_s) * 2 * (self.now - of.told) * 1000 / 343_000;
+            // By twice the speed over that of the slowest sound.
+            self.dice.travel += u64::from(of.speed_mm_s) * 2 * (self.now - of.told) * 1000 / 331_000;
             of.told = self.now;
         }
     }

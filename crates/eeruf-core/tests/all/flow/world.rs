@@ -103,18 +103,18 @@ impl<P: Plan, const E: usize> World<P, E> {
         Instant::from_micros(self.begin.wrapping_add(true_time as u32))
     }
 
-    /// Moves the path, as far as it may have changed by now.
-    fn travel(&mut self) {
+    /// Moves the path, as far as it may have changed by some time.
+    fn travel(&mut self, until: u64) {
         if let Some(of) = &mut self.operates {
             // By twice the speed over that of the slowest sound.
-            self.dice.travel += u64::from(of.speed_mm_s) * 2 * (self.now - of.told) * 1000 / 331_000;
-            of.told = self.now;
+            self.dice.travel += u64::from(of.speed_mm_s) * 2 * until.saturating_sub(of.told) * 1000 / 331_000;
+            of.told = of.told.max(until);
         }
     }
 
     /// Does something to the ring.
     fn operate(&mut self) {
-        self.travel();
+        self.travel(self.now);
         let Some(mut of) = self.operates else { return };
         let sensors = self.ring.sensors() as u32;
         let (sensor, now) = (self.dice.below(sensors) as u8, self.instant(self.now));
@@ -199,12 +199,15 @@ impl<P: Plan, const E: usize> World<P, E> {
         if self.operates.is_none() {
             return self.now;
         }
-        self.travel();
         let at = match self.dice.below(8) {
             0 => self.now + u64::from(self.dice.below(900)),
             1 => self.now - u64::from(self.dice.below(300)).min(self.now),
-            _ => return self.now,
+            _ => self.now,
         };
+        self.travel(at);
+        if at == self.now {
+            return at;
+        }
         let told = self.instant(at);
         self.ring.fired(sensor, told).unwrap();
         at

@@ -6,6 +6,7 @@
 #[cfg(feature = "c")]
 pub mod c;
 pub mod filter;
+pub mod flow;
 #[cfg(feature = "logs")]
 pub mod logs;
 #[cfg(feature = "scenes")]

@@ -1,8 +1,12 @@
 //! Events that the ring may emit, derived from what happened to it.
 
-use eeruf_core::{Instant, Micros, PeriodStats, Phase, Reading, ReadingKind, Schedule, Tally, judge::Explanation};
+use eeruf_core::{
+    Instant, Micros, PeriodStats, Phase, Reading, ReadingKind, Ring, Schedule, SensorError, Silence, Tally,
+    judge::{Explanation, Judge},
+    plan::Plan,
+};
 
-use super::SENSORS;
+use super::{SENSORS, Step};
 
 /// True if a restart keeps the intervals between different sensors too.
 const RESTARTS_KEEP_INTERVALS: bool = true;
@@ -38,30 +42,76 @@ impl Heard {
     }
 }
 
+/// What the driver said of a firing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Evidence {
+    Listened,
+    Nothing,
+    Held,
+    Stuck,
+}
+
 /// A firing whose reading is not yet out.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Open {
-    pub(super) at: u64,
-    pub(super) phase: u8,
-    pub(super) period: u32,
-    /// The earliest edge within the window, and the first one within the blanking time.
-    pub(super) echo: Option<u32>,
-    pub(super) early: Option<u32>,
-    pub(super) stuck: bool,
-    /// The time by which the echo may be off, in units of 2 us; [`WIDE`] if too much.
-    pub(super) off: u32,
-    /// The driver said that the sensor does not listen.
-    pub(super) unanswered: bool,
+#[derive(Clone, Debug)]
+pub(crate) struct Open {
+    pub(crate) at: u64,
+    pub(crate) phase: u8,
+    pub(crate) period: u32,
+    /// The edges within the window, earliest first, and the first one within the blanking time.
+    pub(crate) echoes: Vec<u32>,
+    pub(crate) early: Option<u32>,
+    pub(crate) evidence: Evidence,
+    /// The time by which the echoes may be off, in units of 2 us; [`WIDE`] if too much.
+    pub(crate) off: u32,
 }
 
 impl Open {
-    /// It has a reading that can be emitted.
-    fn is_ready(&self) -> bool {
-        self.echo.is_some() || self.off == WIDE
+    /// It has a reading that can be emitted, where one echo is enough.
+    pub(crate) fn is_ready(&self) -> bool {
+        !self.echoes.is_empty() || self.off == WIDE
+    }
+
+    /// The kind of the reading if it says nothing about an echo; a line that is held says nothing yet.
+    pub(crate) fn unusable(&self, silence: Silence) -> Option<ReadingKind> {
+        match self.evidence {
+            Evidence::Stuck => Some(ReadingKind::Stuck),
+            _ if self.off == WIDE => Some(ReadingKind::Late),
+            _ if !self.echoes.is_empty() => None,
+            _ if self.early.is_some() => Some(ReadingKind::TooEarly),
+            Evidence::Nothing if silence == Silence::NeedsAnswer => Some(ReadingKind::Unanswered),
+            Evidence::Nothing => Some(ReadingKind::NoEcho),
+            _ => None,
+        }
+    }
+
+    /// Its line is held, and it has heard nothing.
+    pub(crate) fn is_held(&self, silence: Silence) -> bool {
+        self.evidence == Evidence::Held && self.echoes.is_empty() && self.unusable(silence).is_none()
     }
 }
 
-const WIDE: u32 = 255;
+pub(crate) const WIDE: u32 = 255;
+
+/// An echo: when its sensor fired, after how many microseconds it came, and by how many that may be off.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Echo {
+    pub(crate) fired: u64,
+    pub(crate) t_echo: u32,
+    pub(crate) off: u32,
+}
+
+/// Returns true if these firings explain two echoes as one path that changes by no more than `change`
+/// (docs/explanation/theory.md, 2.1). `own`: they are the receiver's.
+pub(crate) fn explain(fired: &[u64], own: bool, [before, now]: [Echo; 2], audible: u64, change: u64) -> bool {
+    let most = u64::from(before.off.max(now.off));
+    let (audible, change) = (audible + 2 * most, change + u64::from(before.off + now.off));
+    let lengths = |echo: Echo| {
+        let heard = echo.fired + u64::from(echo.t_echo) + most;
+        let fired = fired.iter().copied().filter(move |&fired| !own || fired != echo.fired);
+        fired.filter_map(move |fired| heard.checked_sub(fired)).filter(move |&length| length <= audible)
+    };
+    lengths(before).any(|one| lengths(now).any(|other| one.abs_diff(other) <= change))
+}
 
 /// Settings by which the ring listens and compares.
 #[derive(Clone, Copy, Debug)]
@@ -76,15 +126,17 @@ pub(super) struct Listening {
 }
 
 #[derive(Clone, Debug, Default)]
-pub(super) struct Sensor {
-    pub(super) open: Option<Open>,
+pub(crate) struct Sensor {
+    pub(crate) open: Option<Open>,
     /// The last firing whose reading is out, and its late edge that is not.
-    pub(super) emitted: Option<Open>,
-    pub(super) late: Option<u32>,
-    pub(super) had_late: bool,
+    pub(crate) emitted: Option<Open>,
+    pub(crate) late: Option<u32>,
+    pub(crate) had_late: bool,
+    /// It held its line then, and does still.
+    pub(crate) is_held: bool,
     pub(super) last_fired: Option<Last>,
     /// All instants at which it fired.
-    pub(super) fired: Vec<u64>,
+    pub(crate) fired: Vec<u64>,
     /// The readings before, newest last, as far as they count.
     pub(super) heard: Vec<Heard>,
     /// Readings since the comparison was last disturbed.
@@ -103,7 +155,7 @@ pub(super) struct Last {
 }
 
 pub(super) struct Model<'s> {
-    pub(super) now: u64,
+    pub(super) lines: Lines,
     pub(super) listening: Listening,
     pub(super) enabled: [bool; SENSORS],
     pub(super) schedule: &'s Schedule<SENSORS>,
@@ -120,13 +172,11 @@ pub(super) struct Model<'s> {
     pub(super) before: Option<&'s Schedule<SENSORS>>,
     /// Nothing was polled late since the last firing.
     pub(super) on_time: bool,
-    pub(super) tally: Tally<u8>,
     /// Periods that have ended since something disturbed the comparison.
     pub(super) quiet_periods: u32,
-    pub(super) sensors: [Sensor; SENSORS],
 }
 
-pub(super) fn instant(time: u64) -> Instant {
+pub(crate) fn instant(time: u64) -> Instant {
     Instant::from_micros(time as u32)
 }
 
@@ -149,15 +199,224 @@ pub(super) fn always_kept(schedule: &Schedule<SENSORS>, x: usize, y: usize) -> u
 
 impl Sensor {
     /// It has fired, and nothing was heard or said since.
-    pub(super) fn is_silent(&self) -> bool {
-        self.open.is_some_and(|open| open.echo.is_none() && open.early.is_none())
+    pub(crate) fn is_silent(&self) -> bool {
+        self.open.as_ref().is_some_and(|open| open.echoes.is_empty() && open.early.is_none())
+    }
+
+    /// It fires.
+    pub(crate) fn fire(&mut self, at: u64, phase: u8, period: u32, silence: Silence) {
+        assert!(self.open.is_none() && self.late.is_none(), "fired before its reading was out");
+        let evidence = if silence == Silence::Trusted { Evidence::Listened } else { Evidence::Nothing };
+        self.open = Some(Open { at, phase, period, echoes: vec![], early: None, evidence, off: 0 });
+        (self.emitted, self.had_late, self.is_held) = (None, false, false);
+        self.fired.push(at);
+    }
+
+    /// Takes in evidence of the firing that is open, if there is one.
+    pub(crate) fn shows(&mut self, evidence: Evidence) {
+        if let Some(open) = self.open.as_mut().filter(|open| open.evidence != Evidence::Stuck) {
+            open.evidence = evidence;
+        }
+    }
+
+    /// An edge between two instants: the middle counts, unless it may be off by more than 300 us. Returns true if it
+    /// came after the window, which is open still.
+    pub(crate) fn edge_between(&mut self, earliest: u64, latest: u64, window: Micros, blanking: Micros) -> bool {
+        let (width, [first, last]) = (latest - earliest, [blanking, window].map(|us| i64::from(us.as_micros())));
+        let (middle, off) = (earliest + width / 2, width - width / 2);
+        if off <= 300 {
+            return self.edge(middle, off.div_ceil(2) as u32, window, blanking);
+        }
+        let fired = self.open.as_ref().or(self.emitted.as_ref()).map(|open| open.at);
+        let Some(since) = fired.map(|fired| middle as i64 - fired as i64) else { return false };
+        let off = off as i64;
+        if since + off < first || (self.open.is_some() && since - off > last) {
+            return self.edge(middle, 0, window, blanking);
+        }
+        if let Some(open) = &mut self.open {
+            if open.echoes.first().is_none_or(|&echo| i64::from(echo) > since - off) {
+                open.off = WIDE;
+            }
+        }
+        false
+    }
+
+    /// An edge that may be off by this many units. Returns true if it came after the window, which is open still.
+    fn edge(&mut self, at: u64, off: u32, window: Micros, blanking: Micros) -> bool {
+        let [window, blanking] = [window, blanking].map(|us| u64::from(us.as_micros()));
+        if let Some(open) = &mut self.open {
+            let Some(t_echo) = at.checked_sub(open.at) else { return false };
+            if t_echo > window {
+                if open.evidence == Evidence::Held {
+                    open.evidence = Evidence::Listened;
+                }
+                return true;
+            }
+            if t_echo < blanking {
+                // The first to come in, unless an echo was there before.
+                if open.early.is_none() && open.echoes.is_empty() {
+                    open.early = Some(t_echo as u32);
+                }
+                return false;
+            }
+            open.echoes.push(t_echo as u32);
+            open.echoes.sort_unstable();
+            open.off = open.off.max(off);
+        } else if let Some(emitted) = &self.emitted {
+            let late = at.checked_sub(emitted.at).filter(|&late| late > window);
+            if let Some(late) = late.filter(|_| !self.had_late) {
+                (self.late, self.had_late) = (Some(late as u32), true);
+            }
+        }
+        false
+    }
+
+    /// Takes back what was heard, if it could be told: of a ring of several echoes that is no echo.
+    pub(crate) fn unhear(&mut self, echoes: usize) {
+        match &mut self.open {
+            Some(open) if open.is_ready() && echoes == 1 => {
+                (open.early, open.off) = (None, 0);
+                open.echoes.clear();
+            }
+            None if self.late.is_some() => (self.late, self.had_late) = (None, false),
+            _ => {}
+        }
+    }
+}
+
+/// What drivers have handed in.
+pub(crate) struct Lines {
+    pub(crate) now: u64,
+    pub(crate) sensors: [Sensor; SENSORS],
+    /// Readings of this period.
+    pub(crate) tally: Tally<u8>,
+    /// What was heard need not be told before.
+    pub(crate) settled: u64,
+    pub(crate) silence: Silence,
+}
+
+impl Lines {
+    pub(crate) fn new(now: u64, silence: Silence) -> Self {
+        Self { now, sensors: Default::default(), tally: Tally::default(), settled: 0, silence }
+    }
+
+    /// All firings are dropped.
+    pub(crate) fn drop_firings(&mut self) {
+        for sensor in &mut self.sensors {
+            (sensor.open, sensor.emitted, sensor.late, sensor.is_held) = (None, None, None, false);
+        }
+    }
+
+    /// Hands in what a driver or a robot has to say. Returns false for any other step.
+    pub(crate) fn hand_in<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize>(
+        &mut self,
+        ring: &mut Ring<P, J, K, E, H>,
+        step: &Step,
+    ) -> bool {
+        let (now, count) = (self.now, ring.sensors() as u8);
+        let is_there = |sensor: u8| sensor < count;
+        match *step {
+            Step::Edge { sensor, ago, width, settles } => {
+                let latest = now - u64::from(ago);
+                let (earliest, settled) = (latest - u64::from(width), now + u64::from(settles.unwrap_or(0)));
+                let [first, last] = [earliest, latest].map(instant);
+                let (width, until) = (Micros::new(width.into()), instant(settled));
+                let done = match (settles, earliest == latest) {
+                    (None, true) => ring.echo(sensor, last).is_ok(),
+                    (None, false) => ring.echo_between(sensor, first, last).is_ok(),
+                    (Some(_), true) => ring.echo_until(sensor, last, until).is_ok(),
+                    (Some(_), false) => ring.echo_within(sensor, first, width, until).is_ok(),
+                };
+                assert_eq!(done, is_there(sensor));
+                if done {
+                    self.settled = self.settled.max(settled);
+                    self.hear(ring, sensor, earliest, latest);
+                }
+            }
+            Step::Measured { sensor, t_echo, width } => {
+                let x = sensor % count;
+                let Some(&fired) = self.sensors[usize::from(x)].fired.last() else { return true };
+                let least = t_echo_of(t_echo, [ring.window_of(x), ring.blanking(), ring.t_delta_of(x)]);
+                let most = least + u64::from(width);
+                if fired + most > now {
+                    // Reported before it came.
+                    return true;
+                }
+                let [from, to] = [least, most].map(|us| Micros::new(us as u32));
+                match width {
+                    0 => ring.measured(x, Some(from)).expect("a sensor that there is"),
+                    _ => ring.measured_between(x, from, to).expect("a sensor that there is"),
+                }
+                self.hear(ring, x, fired + least, fired + most);
+            }
+            Step::Answered(sensor, answers) => {
+                let done = match (answers, sensor % 2) {
+                    (true, 0) => ring.measured(sensor, None),
+                    (true, _) => ring.answered(sensor),
+                    (false, _) => ring.unanswered(sensor),
+                };
+                self.shows(done, sensor, if answers { Evidence::Listened } else { Evidence::Nothing });
+            }
+            Step::Holds(sensor) => self.shows(ring.holds(sensor), sensor, Evidence::Held),
+            Step::Stuck(sensor) => self.shows(ring.stuck(sensor), sensor, Evidence::Stuck),
+            Step::Silence(which) => {
+                self.silence = [Silence::Trusted, Silence::NeverFree, Silence::NeedsAnswer][usize::from(which % 3)];
+                ring.set_silence(self.silence);
+            }
+            Step::Unheard(sensor) => {
+                assert_eq!(ring.unheard(sensor).is_ok(), is_there(sensor));
+                if is_there(sensor) {
+                    self.sensors[usize::from(sensor)].unhear(E);
+                }
+            }
+            // Of no account to a judge that is told what to expect.
+            Step::Moving(speed) => ring.moving((speed / 16).into(), (speed % 16).into(), instant(now)),
+            Step::PathChange(us) => {
+                assert_eq!(ring.set_path_change(Micros::new(us.into())).is_ok(), us < u16::MAX);
+            }
+            Step::Audible(units) => ring.set_audible(Micros::new(64 * u32::from(units))).expect("less than a minute"),
+            _ => return false,
+        }
+        true
+    }
+
+    fn shows(&mut self, done: Result<(), SensorError>, sensor: u8, evidence: Evidence) {
+        if done.is_ok() {
+            self.sensors[usize::from(sensor)].shows(evidence);
+        }
+    }
+
+    fn hear<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize>(
+        &mut self,
+        ring: &Ring<P, J, K, E, H>,
+        sensor: u8,
+        earliest: u64,
+        latest: u64,
+    ) {
+        let (window, blanking) = (ring.window_of(sensor), ring.blanking());
+        if self.sensors[usize::from(sensor)].edge_between(earliest, latest, window, blanking) {
+            self.tally.count(ReadingKind::Late);
+        }
+    }
+}
+
+/// Where many of the numbers that the fuzzer makes up are one that matters: close to the borders of window and
+/// blanking, or close to one another.
+fn t_echo_of(made_up: u16, [window, blanking, t_delta]: [Micros; 3]) -> u64 {
+    let (which, rest) = (made_up % 4, u64::from(made_up / 4));
+    let near = |border: Micros| (u64::from(border.as_micros()) + rest % 4).saturating_sub(2);
+    match which {
+        0 => near(window),
+        1 => near(blanking),
+        2 => u64::from(window.as_micros()) / 2 + rest % 8 * u64::from(t_delta.as_micros()) / 4,
+        _ => 4 * rest,
     }
 }
 
 impl<'s> Model<'s> {
     pub(super) fn invalidate(&mut self) {
         self.quiet_periods = 0;
-        for sensor in &mut self.sensors {
+        for sensor in &mut self.lines.sensors {
             sensor.undisturbed = 0;
         }
     }
@@ -165,11 +424,11 @@ impl<'s> Model<'s> {
     pub(super) fn fired(&mut self, sensor: u8, deadline: u64) {
         let x = usize::from(sensor);
         assert!(x < SENSORS && self.enabled[x] && !self.paused, "sensor {sensor} is not to fire");
-        assert!(self.now >= deadline, "fired before the deadline");
+        assert!(self.lines.now >= deadline, "fired before the deadline");
         let at = planned(self.schedule, self.since, self.phase, x);
         match self.last {
             Some(last) if last.epoch == self.epoch => {
-                let (passed, gap) = (self.now - last.at, at - last.planned);
+                let (passed, gap) = (self.lines.now - last.at, at - last.planned);
                 assert!(passed >= gap, "{passed} us after the firing before, {gap} us in the schedule");
                 assert!(
                     !self.on_time || passed == gap,
@@ -185,55 +444,31 @@ impl<'s> Model<'s> {
         if let Some(before) = self.before {
             // What fired under the schedule before.
             for y in 0..SENSORS {
-                let last = self.sensors[y].last_fired.filter(|last| last.epoch + 1 == self.epoch);
+                let last = self.lines.sensors[y].last_fired.filter(|last| last.epoch + 1 == self.epoch);
                 let kept = match x == y {
                     true => before.min_refire().as_micros().into(),
                     false if RESTARTS_KEEP_INTERVALS => always_kept(before, y, x),
                     false => 0,
                 };
-                let passed = last.map_or(u64::MAX, |last| self.now - last.at);
+                let passed = last.map_or(u64::MAX, |last| self.lines.now - last.at);
                 assert!(passed >= kept, "sensors {y} and {x} {passed} us apart, kept {kept}");
             }
         }
-        let fired = Last { at: self.now, planned: at, epoch: self.epoch };
+        let fired = Last { at: self.lines.now, planned: at, epoch: self.epoch };
         (self.last, self.last_sensor) = (Some(fired), Some(x));
         self.on_time = true;
-        let sensor = &mut self.sensors[x];
-        assert!(sensor.open.is_none() && sensor.late.is_none(), "fired before its reading was out");
-        sensor.open = Some(Open {
-            at: self.now,
-            phase: self.phase,
-            period: self.period,
-            echo: None,
-            early: None,
-            stuck: false,
-            off: 0,
-            unanswered: false,
-        });
-        (sensor.emitted, sensor.had_late) = (None, false);
+        let sensor = &mut self.lines.sensors[x];
+        sensor.fire(self.lines.now, self.phase, self.period, self.lines.silence);
         sensor.last_fired = Some(fired);
-        sensor.fired.push(self.now);
     }
 
-    /// Returns true if firings of sensor `x` explain two readings of sensor `y` as one path that changes by no more
-    /// than `change` (docs/explanation/theory.md, 2.1).
-    fn explains(&self, x: usize, y: usize, before: Heard, now: Heard, change: u64) -> bool {
-        let most = u64::from(before.off.max(now.off));
-        let change = change + u64::from(before.off + now.off);
-        let slack = change - self.change() - u64::from(before.off + now.off);
-        let audible = u64::from(self.listening.audible.as_micros()) + slack + 2 * most;
-        let heard = |reading: Heard| reading.fired + u64::from(reading.echo.flatten().unwrap_or(0)) + most;
-        let lengths = |reading: Heard| {
-            let own = (x == y).then_some(reading.fired);
-            let fired = self.sensors[x].fired.iter().copied().filter(move |&fired| own != Some(fired));
-            fired.filter_map(move |fired| heard(reading).checked_sub(fired)).filter(move |&length| length <= audible)
-        };
-        lengths(before).any(|one| lengths(now).any(|other| one.abs_diff(other) <= change))
-    }
-
-    /// P: the largest change of a path.
-    fn change(&self) -> u64 {
-        self.listening.path_change.as_micros().into()
+    /// Returns true if firings of sensor `x` explain two readings of sensor `y`, by a path that may change by `slack`
+    /// more than P and is heard for as much longer.
+    fn explains(&self, x: usize, y: usize, pair: [Heard; 2], slack: u64) -> bool {
+        let echo = |of: Heard| Echo { fired: of.fired, t_echo: of.echo.flatten().unwrap_or(0), off: of.off };
+        let [audible, change] =
+            [self.listening.audible, self.listening.path_change].map(|us| u64::from(us.as_micros()));
+        explain(&self.lines.sensors[x].fired, x == y, pair.map(echo), audible + slack, change + slack)
     }
 
     /// A reading, for which odometry expected this change.
@@ -241,13 +476,17 @@ impl<'s> Model<'s> {
         let listening = self.listening;
         let x = usize::from(reading.sensor);
         let quiet = self.quiet_periods >= 4;
-        let sensor = &mut self.sensors[x];
+        let sensor = &mut self.lines.sensors[x];
         if reading.kind == ReadingKind::Late && reading.t_echo.is_some() {
             let late = sensor.late.take().expect("a late edge came in");
-            let emitted = sensor.emitted.expect("its reading was out before");
+            if sensor.is_held {
+                self.answered(x);
+            }
+            let sensor = &mut self.lines.sensors[x];
+            let emitted = sensor.emitted.as_ref().expect("its reading was out before");
             assert_eq!((reading.t_echo, reading.previous, reading.age), (Some(Micros::new(late)), None, sensor.age));
             assert_eq!(reading.phase, Phase(emitted.phase));
-            self.tally.count(ReadingKind::Late);
+            self.lines.tally.count(ReadingKind::Late);
             return;
         }
         let open = sensor.open.take().expect("it has fired");
@@ -255,26 +494,30 @@ impl<'s> Model<'s> {
         // By another schedule it may fire again before a window that was set since has closed.
         let changed = sensor.last_fired.is_some_and(|last| last.epoch < self.epoch);
         assert!(
-            changed || open.is_ready() || self.now >= open.at + u64::from(listening.window.as_micros()),
+            changed || open.is_ready() || self.lines.now >= open.at + u64::from(listening.window.as_micros()),
             "emitted before its window closed"
         );
         let micros = |us: Option<u32>| us.map(Micros::new);
-        let (heard, kind) = match open {
-            Open { stuck: true, .. } => (None, Some(ReadingKind::Stuck)),
-            Open { off: WIDE, .. } => {
-                assert_eq!(reading.t_echo, None);
-                (None, Some(ReadingKind::Late))
+        let echo = open.echoes.first().copied();
+        if open.is_held(self.lines.silence) {
+            // Neither more nor less is known than before.
+            assert!(matches!(reading.kind, ReadingKind::NoEcho | ReadingKind::Clear), "{reading:?} while it holds");
+            assert_eq!((reading.t_echo, reading.previous, reading.age), (None, None, sensor.age));
+            if sensor.heard.last().is_some_and(|last| last.echo != Some(None)) {
+                sensor.heard.clear();
+                sensor.undisturbed = 0;
             }
-            Open { echo: None, early: None, unanswered: true, .. } => (None, Some(ReadingKind::NoEcho)),
-            Open { echo: None, early: Some(early), .. } => {
-                assert_eq!(reading.t_echo, Some(Micros::new(early)));
-                (None, Some(ReadingKind::TooEarly))
-            }
-            Open { echo, .. } => {
-                assert_eq!(reading.t_echo, micros(echo));
-                (Some(echo), None)
-            }
-        };
+            (sensor.is_held, sensor.emitted) = (true, Some(open));
+            self.lines.tally.count(reading.kind);
+            return;
+        }
+        let kind = open.unusable(self.lines.silence);
+        let heard = kind.is_none().then_some(echo);
+        match kind {
+            Some(ReadingKind::Stuck | ReadingKind::Late) => assert_eq!(reading.t_echo, None),
+            Some(ReadingKind::TooEarly) => assert_eq!(reading.t_echo, micros(open.early)),
+            _ => assert_eq!(reading.t_echo, micros(echo)),
+        }
         let ambiguous = reading.kind == ReadingKind::Ambiguous;
         let t_delta = listening.t_delta.as_micros();
         let heard_now = Heard { echo: heard, fired: open.at, t_delta, ambiguous, expected, off: 2 * open.off };
@@ -287,7 +530,7 @@ impl<'s> Model<'s> {
         let before = last.and_then(|last| last.echo).flatten();
         let pair = last.filter(|last| heard.flatten().is_some() && heard_now.agrees(last));
         self.explained(reading, pair.map(|last| (last, heard_now)));
-        let sensor = &mut self.sensors[x];
+        let sensor = &mut self.lines.sensors[x];
         let possible: &[ReadingKind] = match (kind, heard.flatten()) {
             (Some(_), _) => kind.as_slice(),
             (None, None) if enough => &[ReadingKind::Clear, ReadingKind::NoEcho],
@@ -312,16 +555,15 @@ impl<'s> Model<'s> {
         };
         assert_eq!(reading.age, sensor.age);
         sensor.emitted = Some(open);
-        self.tally.count(reading.kind);
+        self.lines.tally.count(reading.kind);
     }
 
     /// Holds what the ring says of two readings that agree, if they do, against all firings there were: nothing
     /// explains what is believed, and what is ambiguous is explained by whom it names.
     fn explained(&self, reading: &Reading, pair: Option<(Heard, Heard)>) {
         let y = usize::from(reading.sensor);
-        let explains = |x: usize, slack: u64| {
-            pair.is_some_and(|(before, now)| self.explains(x, y, before, now, self.change() + slack))
-        };
+        let explains =
+            |x: usize, slack: u64| pair.is_some_and(|(before, now)| self.explains(x, y, [before, now], slack));
         match (reading.kind, reading.explained_by) {
             (ReadingKind::Accepted | ReadingKind::Repeated, None) => {
                 let by = (0..SENSORS).find(|&x| explains(x, 0));
@@ -338,62 +580,22 @@ impl<'s> Model<'s> {
         }
     }
 
-    /// An edge between two instants: the middle counts, unless it may be off by more than 300 us.
-    pub(super) fn edge_between(&mut self, x: usize, earliest: u64, latest: u64) {
-        let (width, [window, blanking]) =
-            (latest - earliest, [self.listening.window, self.listening.blanking].map(|us| i64::from(us.as_micros())));
-        let (middle, off) = (earliest + width / 2, width - width / 2);
-        if off <= 300 {
-            return self.edge(x, middle, off.div_ceil(2) as u32);
-        }
-        let Some(open) = &mut self.sensors[x].open else { return };
-        let since = |at: u64| at as i64 - open.at as i64;
-        if since(middle + off) < blanking {
-            return self.edge(x, middle, 0);
-        }
-        if since(middle - off) > window {
-            self.tally.count(ReadingKind::Late);
-        } else if open.echo.is_none_or(|echo| i64::from(echo) > since(middle - off)) {
-            open.off = WIDE;
-        }
-    }
-
-    /// Takes back what was heard.
-    pub(super) fn unhear(&mut self, x: usize) {
-        if let Some(open) = self.sensors[x].open.as_mut().filter(|open| open.is_ready()) {
-            (open.echo, open.early, open.off) = (None, None, 0);
-        }
-    }
-
-    /// An edge that may be off by this many units.
-    pub(super) fn edge(&mut self, x: usize, at: u64, off: u32) {
-        let window = u64::from(self.listening.window.as_micros());
-        let sensor = &mut self.sensors[x];
-        if let Some(open) = &mut sensor.open {
-            let Some(t_echo) = at.checked_sub(open.at) else { return };
-            if t_echo > window {
-                self.tally.count(ReadingKind::Late);
-            } else if t_echo < u64::from(self.listening.blanking.as_micros()) {
-                // The first to come in, unless an echo was there before.
-                if open.early.is_none() && open.echo.is_none() {
-                    open.early = Some(t_echo as u32);
-                }
-            } else {
-                open.echo = Some(open.echo.map_or(t_echo as u32, |echo| echo.min(t_echo as u32)));
-                open.off = open.off.max(off);
-            }
-        } else if let Some(emitted) = sensor.emitted {
-            let late = at.checked_sub(emitted.at).filter(|&late| late > window);
-            if let Some(late) = late.filter(|_| !sensor.had_late) {
-                (sensor.late, sensor.had_late) = (Some(late as u32), true);
-            }
+    /// A sensor has shown that it listened: where its line was held and its reading is out, silence counts now.
+    pub(super) fn answered(&mut self, x: usize) {
+        let sensor = &mut self.lines.sensors[x];
+        if core::mem::take(&mut sensor.is_held) {
+            let fired = sensor.emitted.as_ref().map_or(0, |emitted| emitted.at);
+            let t_delta = self.listening.t_delta.as_micros();
+            sensor.heard.push(Heard { echo: Some(None), fired, t_delta, ambiguous: false, expected: 0, off: 0 });
+            sensor.undisturbed += 1;
+            sensor.age = sensor.age.map(|age| age.saturating_add(1));
         }
     }
 
     pub(super) fn ended(&mut self, stats: &PeriodStats) {
         assert_eq!((stats.period, stats.phase), (self.period, Phase(self.phase)));
-        assert_eq!(stats.tally, self.tally);
-        self.tally = Tally::default();
+        assert_eq!(stats.tally, self.lines.tally);
+        self.lines.tally = Tally::default();
         self.period += 1;
         self.phase = 1 - self.phase;
         self.since += 1;
@@ -407,12 +609,12 @@ impl<'s> Model<'s> {
 
     /// The last firing, of sensor `x`, came at this time, later than its poll or not.
     pub(super) fn fired_at(&mut self, x: usize, at: u64) {
-        let (Some(open), Some(last)) = (&mut self.sensors[x].open, &mut self.last) else { return };
+        let (Some(open), Some(last)) = (&mut self.lines.sensors[x].open, &mut self.last) else { return };
         let later = at > last.at;
         (open.at, last.at) = (at, at);
-        self.sensors[x].last_fired = self.last;
-        self.sensors[x].fired.pop();
-        self.sensors[x].fired.push(at);
+        self.lines.sensors[x].last_fired = self.last;
+        self.lines.sensors[x].fired.pop();
+        self.lines.sensors[x].fired.push(at);
         if later {
             // As where a firing is polled late: by how much is for the ring to judge.
             self.invalidate();
@@ -423,7 +625,7 @@ impl<'s> Model<'s> {
         self.paused = pauses;
         self.on_time = false;
         if !pauses {
-            for sensor in &mut self.sensors {
+            for sensor in &mut self.lines.sensors {
                 sensor.heard.clear();
                 sensor.undisturbed = 0;
             }
@@ -455,13 +657,13 @@ impl<'s> Model<'s> {
 
     /// All that could be emitted has been.
     pub(super) fn drained(&self) {
-        for (x, sensor) in self.sensors.iter().enumerate() {
-            assert!(sensor.late.is_none(), "sensor {x} has a late edge to tell");
-            if let Some(open) = sensor.open {
-                assert!(!open.is_ready(), "sensor {x} has an echo to tell");
+        for (x, sensor) in self.lines.sensors.iter().enumerate() {
+            assert!(sensor.late.is_none() || self.lines.now < self.lines.settled, "sensor {x} has a late edge to tell");
+            if let Some(open) = &sensor.open {
+                assert!(!open.is_ready() || self.lines.now < self.lines.settled, "sensor {x} has an echo to tell");
                 let closes = self.listening.window.max(self.listening.report_after);
                 let closes = open.at + u64::from(closes.as_micros());
-                assert!(self.now < closes, "the window of sensor {x} has closed");
+                assert!(self.lines.now < closes.max(self.lines.settled), "the window of sensor {x} has closed");
             }
         }
     }

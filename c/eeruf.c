@@ -2371,12 +2371,11 @@ static uint32_t horizon_of_flow(const EerufRing *ring) {
 #define TOLD_FOR 500000u /* without a word for as long the top speed holds */
 #define SENT_BEFORE_US 250000u /* sound that is heard was sent no longer ago */
 #define LONGEST_US (((uint32_t)1 << 20) - 1) /* what is older is believed no more */
-#define MOST_RATE 4095u
 
 /* Change of a good reading at most, in 1/16 us per 1,024 us: 2 v / c at 331 m/s, the slowest sound that a robot
    meets, and 6 % more, since at 3.6 m/s sound is sent so much farther apart than it is heard; rounded up. */
 static uint16_t rate_of(uint32_t speed_mm_s) {
-    return (uint16_t)(speed_mm_s > 39000 ? MOST_RATE : (speed_mm_s * 105 + 999) / 1000);
+    return (uint16_t)((shorter(speed_mm_s, 39000) * 6881 + 65535) >> 16);
 }
 
 /* The rate at an instant, which is not long before the last word. */

@@ -8,9 +8,9 @@ const AUDIBLE: Micros = Micros::from_millis(250);
 const SILENCE: Micros = Micros::from_millis(500);
 /// The longest time over which a change is worked out; what is older is believed no more.
 const LONGEST: u32 = (1 << 20) - 1;
-/// The distance of a sensor from the centre about which the robot turns, in mm: with its range the lever at which a
-/// wall moves.
-const LEVER_MM: u32 = 500;
+/// The distance of a sensor from the centre about which the robot turns is a metre over this: with its range the lever
+/// at which a wall moves.
+const PART_OF_A_METRE: u32 = 2;
 
 /// Change of an echo for a moving robot, in 1/16 us per 1,024 us.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
@@ -23,8 +23,9 @@ impl Rate {
     /// farther apart than it is heard: `2 v / 331 * 1.024 * 16 * 1.06` of a `v` in mm/s, rounded up. Readings change by
     /// at most 4,095/16 us per 1,024 us.
     const fn of(speed_mm_s: u32) -> Self {
-        let rate = speed_mm_s.saturating_mul(105).div_ceil(1000);
-        Self(if rate > 4095 { 4095 } else { rate as u16 })
+        // A Cortex-M0 divides by a power of two without a call.
+        let speed = if speed_mm_s > 39_000 { 39_000 } else { speed_mm_s };
+        Self((speed * 6_881).div_ceil(1 << 16) as u16)
     }
 
     pub(super) fn moves(self) -> bool {
@@ -64,8 +65,7 @@ impl Motion {
             (self.since, self.greatest) = (now, [self.greatest[0].max(self.greatest[1]), Rate::STANDING]);
         }
         let before = self.recent(now);
-        let turning = turn_mrad_s.saturating_mul(LEVER_MM) / 1000;
-        self.rate = Rate::of(speed_mm_s.saturating_add(turning));
+        self.rate = Rate::of(speed_mm_s.saturating_add(turn_mrad_s / PART_OF_A_METRE));
         self.told = Some(now);
         self.greatest[1] = self.greatest[1].max(self.rate);
         before.max(self.rate)

@@ -213,8 +213,12 @@ impl<const K: usize, U: OwnLimits> InTurn<K, U> {
         self.random ^= self.random << 13;
         self.random ^= self.random >> 17;
         self.random ^= self.random << 5;
-        let most = self.dice.as_micros() << self.pace.moves as u32;
-        self.thrown = Micros::new(((self.random as u64 * (most as u64 + 1)) >> 32) as u32);
+        let most = (self.dice.as_micros() << self.pace.moves as u32) + 1;
+        // The high word of their product, which is no call of 64 bits on a Cortex-M0: `most` is below 2^20.
+        let (high, low, most_high, most_low) = (self.random >> 16, self.random & 0xFFFF, most >> 16, most & 0xFFFF);
+        let middle = high * most_low + ((low * most_low) >> 16);
+        let carried = (low * most_high + (middle & 0xFFFF)) >> 16;
+        self.thrown = Micros::new(high * most_high + (middle >> 16) + carried);
     }
 
     fn each(&self) -> impl Iterator<Item = (u8, &Slot)> {

@@ -1757,6 +1757,20 @@ static uint8_t in_8us(uint32_t width_us) {
     return (uint8_t)shorter(narrow(width_us + 7) >> 3, UINT8_MAX);
 }
 
+/* The same in a byte of an edge, above 127 of these units in as many as 32 of them, and back: any time for 255. */
+#define FINE 127u
+#define ANY_TIME ((uint32_t)1 << 20)
+
+static uint8_t coarse(uint32_t width_us) {
+    const uint32_t units = (shorter(width_us, ANY_TIME) + 7u) >> 3;
+    return (uint8_t)(units <= FINE ? units : shorter(FINE + (units - FINE + 31u) / 32u, UINT8_MAX));
+}
+
+static uint32_t uncoarse(uint8_t early) {
+    if (early == UINT8_MAX) return ANY_TIME;
+    return 8u * (early <= FINE ? early : FINE + 32u * (early - FINE));
+}
+
 EerufStatus eeruf_edges_init(EerufEdges *edges, size_t edges_size, EerufEdge *places, size_t places_size) {
     const size_t length = places_size / sizeof *places;
     if (edges == NULL || places == NULL) return EERUF_ERR_NULL;
@@ -1787,7 +1801,7 @@ OUT_OF_LINE EerufStatus eeruf_edges_push_between(EerufEdges *edges, uint8_t sens
     place->at_us = latest_us;
     place->sensor = sensor;
     place->high = high;
-    place->early_8us = in_8us(latest_us - earliest_us);
+    place->early = coarse(latest_us - earliest_us);
     FENCE();
     edges->pushed = (uint8_t)(pushed + 1u);
     return EERUF_OK;
@@ -2041,7 +2055,8 @@ static EerufStatus drain(EerufHcSr04 *modules, EerufEdges *edges, const uint32_t
         if (waits && until_us != NULL && !has_reached(*until_us, edges->places[edges->popped & edges->mask].at_us)) break;
         status = eeruf_edges_pop(edges, &edge);
         if (status == EERUF_OK)
-            (void)eeruf_hc_sr04_edge_between(modules, edge.sensor, edge.high, edge.at_us - 8u * edge.early_8us, edge.at_us);
+            (void)eeruf_hc_sr04_edge_between(modules, edge.sensor, edge.high, edge.at_us - uncoarse(edge.early),
+                                             edge.at_us);
     }
     return status == EERUF_EMPTY ? (EerufStatus)EERUF_OK : status;
 }

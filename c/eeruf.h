@@ -467,7 +467,7 @@ typedef struct EerufEdge {
     uint32_t at_us;    /* when it was seen */
     uint8_t sensor;    /* 0 to 127 */
     bool high;         /* whether the line rose */
-    uint8_t early_8us; /* by how much sooner it may have come, in units of 8 us; 255 for more */
+    uint8_t early;     /* by how much sooner it may have come: in units of 8 us to 127, then of 256; 255 for any time */
 } EerufEdge;
 
 /* `places` is memory of yours for 2, 4, 8, .. or 128 edges. */

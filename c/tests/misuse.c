@@ -250,8 +250,10 @@ static void filters_and_edges(void) {
     EXPECT(eeruf_edges_push_between(&edges, 0, true, 5, 4), EERUF_ERR_BETWEEN);
     EXPECT(eeruf_edges_push_between(&edges, 0, true, UINT32_MAX, 16), EERUF_OK);
     EXPECT(eeruf_edges_push_between(&edges, 0, true, 0, 5000), EERUF_OK);
-    EXPECT(eeruf_edges_pop(&edges, &edge) == EERUF_OK && edge.at_us == 16 && edge.early_8us == 3, 1);
-    EXPECT(eeruf_edges_pop(&edges, &edge) == EERUF_OK && edge.early_8us == 255, 1);
+    EXPECT(eeruf_edges_push_between(&edges, 0, true, 0, 40000), EERUF_OK);
+    EXPECT(eeruf_edges_pop(&edges, &edge) == EERUF_OK && edge.at_us == 16 && edge.early == 3, 1);
+    EXPECT(eeruf_edges_pop(&edges, &edge) == EERUF_OK && edge.early == 127 + 16, 1);
+    EXPECT(eeruf_edges_pop(&edges, &edge) == EERUF_OK && edge.early == 255, 1);
 }
 
 static void modules(void) {
@@ -446,6 +448,33 @@ static void flow_believes_walls_in_a_late_loop(void) {
     }
     EXPECT(accepted >= 1950, 1);
     EXPECT(eeruf_flow_believed_us(&flow, 3), 13000);
+}
+
+/* A loop that finds the end of a pulse after the window, but last saw the line high within it: no silence. */
+static void an_end_found_late_is_no_silence(void) {
+    EerufFlowConfig config = EERUF_FLOW(1, 23310);
+    EerufHcSr04Settings settings = EERUF_HC_SR04;
+    EerufHcSr04 module;
+    EerufLine line;
+    EerufEdge places[2];
+    EerufEdges edges;
+    uint32_t now = 0;
+    uint8_t firings = 0;
+    EXPECT(eeruf_flow_init(&flow, sizeof flow, flow_sensors, sizeof flow_sensors, &config, now), EERUF_OK);
+    EXPECT(eeruf_hc_sr04_init(&module, sizeof module, &line, sizeof line, &flow.ring, &settings), EERUF_OK);
+    EXPECT(eeruf_edges_init(&edges, sizeof edges, places, sizeof places), EERUF_OK);
+    while (firings < 4) {
+        while (eeruf_flow_poll(&flow, now, &event) == EERUF_EVENT) {
+            if (event.kind == EERUF_EVENT_READING) EXPECT(event.u.reading.kind, EERUF_READING_LATE);
+            if (event.kind != EERUF_EVENT_FIRE) continue;
+            firings++;
+            EXPECT(eeruf_hc_sr04_fire(&module, 0, false), EERUF_OK);
+            EXPECT(eeruf_edges_push(&edges, 0, true, now + 450), EERUF_OK);
+            EXPECT(eeruf_edges_push_between(&edges, 0, false, now + 22000, now + 27000), EERUF_OK);
+            EXPECT(eeruf_hc_sr04_edges(&module, &edges), EERUF_OK);
+        }
+        now = eeruf_ring_deadline(&flow.ring);
+    }
 }
 #endif
 
@@ -703,6 +732,7 @@ int main(void) {
 #if EERUF_WITH_FLOW
     flow_rings();
     flow_believes_walls_in_a_late_loop();
+    an_end_found_late_is_no_silence();
 #endif
     printf("%d wrong\n", wrong);
     return wrong != 0;

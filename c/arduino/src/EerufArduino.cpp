@@ -13,8 +13,14 @@
 static const uint32_t LOOKS_US = 300, LONGEST_US = 4000;
 // Lines rise within this time after their trigger.
 static const uint32_t RISES_US = 1000;
+// From a poll to its trigger, in a flow ring: up to 0.5 ms on an Uno.
+#ifdef __AVR__
+static const uint16_t DECIDES_US = 8000 / (F_CPU / 1000000);
+#else
+static const uint16_t DECIDES_US = 0;
+#endif
 // An edge that came within as long as this has no time, which the second says.
-static const uint32_t TOO_LONG_US = 500, LATE_US = 2040;
+static const uint32_t TOO_LONG_US = 500, LATE_US = 40000;
 
 #if defined(__AVR__) && defined(portModeRegister)
 // A quarter of the time of digitalRead, and less flash than the core's functions together.
@@ -118,25 +124,49 @@ static uint32_t looked;
 
 #if defined(TIMER0_COMPB_vect) && (F_CPU == 16000000 || F_CPU == 8000000)
 #define EERUF_HALVES
-// The timer of micros() counts on where interrupts wait, but of two overflows meanwhile one is lost. Interrupts half-way
-// between them tell: those that were served or wait, less those that micros() knows of, are ever as many.
-static volatile uint8_t halves;
-static uint8_t ahead;
+// The timer of micros() counts on where interrupts wait, but of two overflows meanwhile one is lost. Timers 1 and 2 tell,
+// unless both are taken: the core leaves them counting as fast, up to 255 and down again.
+static uint16_t lead; // of their place over that of micros(), in a round of 510
 
-// True if interrupts wait for longer than other interrupts take. `hasLost`: or micros() has lost time since the last call.
+static bool count(uint8_t *at) {
+#ifdef TCCR2A
+    if ((TCCR2A & 0x03) == _BV(WGM20) && (TCCR2B & 0x0f) == _BV(CS22)) {
+        *at = TCNT2;
+        return true;
+    }
+#endif
+    *at = TCNT1L;
+    return (TCCR1A & 0x03) == _BV(WGM10) && (TCCR1B & 0x1f) == (_BV(CS11) | _BV(CS10));
+}
+
+// True if micros(), which says these ticks, has lost time since the last call, by the counter at that time.
+static bool hasLostTime(uint8_t ticks, uint8_t at) {
+    uint32_t overflows = micros() >> (F_CPU == 16000000 ? 10 : 11);
+    uint16_t place = lead + ticks;
+    // 256 in odd numbers of them, and 2 for each two.
+    for (; overflows != 0; overflows >>= 8) place += ((uint8_t)overflows & 0xfe) + ((uint8_t)overflows & 1 ? 256 : 0);
+    while (place >= 510) place -= 510;
+    const uint8_t expected = place > 255 ? 510 - place : place;
+    if ((uint8_t)(expected - at + 1) <= 2) return false;
+    uint8_t next = at;
+    for (uint8_t i = 255; next == at; i--)
+        if (i == 0 || !count(&next)) return false; // it stands
+    lead += (next > at ? at : 510 - at) + 510 - place;
+    while (lead >= 510) lead -= 510;
+    return true;
+}
+
+// True if interrupts wait for longer than other interrupts take: of two that each pass of timer 0 raises, one waits.
 static bool haveWaited(bool *hasLost) {
-    uint8_t ticks, since;
+    uint8_t ticks, at;
+    bool counts;
     const uint8_t half = OCR0B;
-    // Not while one of the two may be half done.
     do {
         ticks = TCNT0;
-        since = ticks - half;
-    } while (ticks == 0 || ticks == 255 || since == 0 || since == 255);
-    const uint8_t flags = TIFR0;
-    const uint8_t overflows = (uint8_t)(micros() >> (F_CPU == 16000000 ? 10 : 11)) + (ticks > half);
-    const uint8_t now = (uint8_t)(halves + (flags >> OCF0B & 1) - overflows);
-    *hasLost = now == (uint8_t)(ahead + 1);
-    ahead = now;
+        counts = count(&at);
+    } while (ticks == 255); // micros() would be in the next pass
+    const uint8_t flags = TIFR0, since = ticks - half;
+    *hasLost = counts && hasLostTime(ticks, at);
     return ((flags & _BV(TOV0)) && ticks > 8) || ((flags & _BV(OCF0B)) && since > 8);
 }
 static const bool IS_KNOWN = true;
@@ -152,7 +182,7 @@ static const bool IS_KNOWN = false; // only edges that come together tell
 static void take(uint32_t since, bool isInterrupt) {
     const uint32_t at = micros();
     bool hasLost = false;
-    const bool waited = haveWaited(&hasLost), isLate = isInterrupt ? waited : at - since > TOO_LONG_US;
+    const bool waited = haveWaited(&hasLost), isLate = isInterrupt ? waited : hasLost || at - since > TOO_LONG_US;
     if (isInterrupt) since = at;
     // Lines of an interrupt wait meanwhile: groups that no line is in are left out.
     for (uint8_t group = 0; group < (alone ? GROUPS : PORTS); group++) {
@@ -246,9 +276,7 @@ bool begin(const uint8_t *pins, uint8_t count, EerufEdges &queue) {
 } // namespace EerufLines
 
 #ifdef EERUF_HALVES
-ISR(TIMER0_COMPB_vect) {
-    EerufLines::halves++;
-}
+EMPTY_INTERRUPT(TIMER0_COMPB_vect)
 #endif
 
 bool EerufModules::begin(EerufStatus status, EerufRing &ring, EerufLine *lines, EerufEdge *places, uint8_t count,
@@ -338,6 +366,11 @@ void EerufModules::fire(uint8_t sensor, bool looks) {
         EerufLines::look();
         (void)eeruf_hc_sr04_edges(&modules_, edges_);
     }
+}
+
+void EerufModules::holdBack(uint32_t now, bool looks) {
+    while (::micros() - now < DECIDES_US)
+        if (looks && looks_) EerufLines::look();
 }
 
 bool EerufModules::take(const EerufEvent &event, uint32_t now, bool looks) {

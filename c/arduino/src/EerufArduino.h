@@ -87,6 +87,9 @@ protected:
                const EerufHcSr04Settings &settings);
     // Takes in edges, and waits for what is due within a time: the clock before. `looks` as EERUF_LOOKS.
     uint32_t collect(uint16_t soon, bool looks);
+    // Waits until a trigger may be given that was polled for at `now`: as long after it as others are, however long it took
+    // to decide who is next. By what a trigger comes sooner or later, a path of foreign sound seems to change.
+    void holdBack(uint32_t now, bool looks);
     // True once a second if modules fire late, or one had only readings without a time in it.
     bool tooSlow(bool late);
     // Does what an event asks for; true for a reading.

@@ -42,7 +42,9 @@ public:
         EerufEvent event;
         if (status_ != EERUF_OK) return false;
         const uint32_t now = collect(0, EERUF_LOOKS);
-        return eeruf_flow_poll(&ring_, now, &event) == EERUF_EVENT && take(event, now, EERUF_LOOKS);
+        if (eeruf_flow_poll(&ring_, now, &event) != EERUF_EVENT) return false;
+        if (event.kind == EERUF_EVENT_FIRE) holdBack(now, EERUF_LOOKS);
+        return take(event, now, EERUF_LOOKS);
     }
 
     // True if loop() is too slow, at most once a second: a module had no reading.

@@ -110,6 +110,33 @@ static void note_change(int pin) {
         avr_raise_interrupt(avr, &pin_changes[group]);
 }
 
+/* simavr 1.6 does not count where a timer counts to 255 and down again, as the core leaves timers 1 and 2, by clock / 64. */
+static struct Counter {
+    uint16_t value, control; /* addresses: of TCNTnL, of TCCRnA */
+    uint8_t clock;
+    avr_io_read_t read;
+    void *param;
+} counters[2] = {{0x84, 0x80, 0x03, NULL, NULL}, {0xb2, 0xb0, 0x04, NULL, NULL}};
+
+static uint8_t read_counter(struct avr_t *a, avr_io_addr_t address, void *param) {
+    const struct Counter *counter = (const struct Counter *)param;
+    const unsigned place = (unsigned)(a->cycle / 64 % 510);
+    if ((a->data[counter->control] & 0x03) == 0x01 && (a->data[counter->control + 1] & 0x1f) == counter->clock)
+        return (uint8_t)(place > 255 ? 510 - place : place);
+    return counter->read == NULL ? a->data[address] : counter->read(a, address, counter->param);
+}
+
+static void register_counters(void) {
+    int i;
+    for (i = 0; i < 2; i++) {
+        const avr_io_addr_t io = AVR_DATA_TO_IO(counters[i].value);
+        counters[i].read = avr->io[io].r.c;
+        counters[i].param = avr->io[io].r.param;
+        avr->io[io].r.c = read_counter;
+        avr->io[io].r.param = &counters[i];
+    }
+}
+
 static int has(const struct Module *module, enum Fault which) {
     return fault == which && module - modules == faulty;
 }
@@ -384,6 +411,7 @@ int main(int argc, char **argv) {
     avr_irq_register_notify(avr_io_getirq(avr, AVR_IOCTL_UART_GETIRQ('0'), UART_IRQ_OUTPUT), on_serial, NULL);
     avr_irq_register_notify(avr_get_interrupt_irq(avr, AVR_INT_ANY) + AVR_INT_IRQ_RUNNING, on_interrupt, NULL);
     register_pin_changes();
+    register_counters();
     for (i = 0; i < module_count; i++) set_line(&modules[i], 0);
     end = (avr_cycle_count_t)(atof(argv[2]) * 16e6);
     while (avr->cycle < end) {

@@ -69,7 +69,7 @@ static uint16_t add16(uint16_t one, uint16_t other) {
     return sum < one ? UINT16_MAX : sum;
 }
 
-static OUT_OF_LINE uint32_t add32(uint32_t one, uint32_t other) {
+static uint32_t add32(uint32_t one, uint32_t other) {
     return one > UINT32_MAX - other ? UINT32_MAX : one + other;
 }
 
@@ -77,7 +77,7 @@ static uint32_t apart(uint32_t one, uint32_t other) {
     return one > other ? one - other : other - one;
 }
 
-static OUT_OF_LINE uint32_t longer(uint32_t one, uint32_t other) {
+static uint32_t longer(uint32_t one, uint32_t other) {
     return one > other ? one : other;
 }
 
@@ -499,15 +499,13 @@ static uint32_t horizon_of_flow(const EerufRing *ring);
 #endif
 #define FIRINGS(flows) ((flows) ? FLOW_FIRINGS : EERUF_FIRINGS)
 
-static uint32_t window_of(const EerufRing *ring, uint8_t sensor);
-static void find_first_to_close(EerufRing *ring);
 static void emit_when_oldest_ends(EerufRing *ring);
 
 static EerufSensor *after(const EerufSensor *sensor, size_t bytes) {
     return (EerufSensor *)(void *)((uint8_t *)(uintptr_t)sensor + bytes);
 }
 
-static EerufSensor *sensor_of(const EerufRing *ring, uint8_t sensor) {
+static OUT_OF_LINE EerufSensor *sensor_of(const EerufRing *ring, uint8_t sensor) {
     return after(ring->sensors, (size_t)sensor * STRIDE(ring));
 }
 
@@ -535,8 +533,26 @@ static OUT_OF_LINE const EerufLimits *limits_of(const EerufSchedule *schedule) {
     return schedule == NULL ? NULL : READ_POINTER(const EerufLimits *, schedule->limits);
 }
 
+/* What answers for limits, so that with rings that have none nothing of it is linked: null until one with a schedule
+   begins. Its questions, of a sensor and a value; FIRST_TO_CLOSE changes the ring. */
+enum { WINDOW, SHORTEST_WINDOW, T_DELTA, TOGETHER, DEAF, DIFFER, FIRST_TO_CLOSE };
+static uint32_t (*limited)(const EerufRing *ring, uint8_t what, uint8_t x, uint32_t value);
+
 static bool windows_differ(const EerufRing *ring) {
-    return limits_of(ring->schedule) != NULL || limits_of(ring->schedule_before) != NULL;
+    return limited != NULL && limited(ring, DIFFER, 0, 0) != 0;
+}
+
+static uint32_t window_of(const EerufRing *ring, uint8_t sensor) {
+    return limited == NULL ? ring->window_us : limited(ring, WINDOW, sensor, ring->window_us);
+}
+
+static uint16_t t_delta_of(const EerufRing *ring, uint8_t sensor) {
+    return limited == NULL ? ring->t_delta_us : (uint16_t)limited(ring, T_DELTA, sensor, ring->t_delta_us);
+}
+
+/* True if a sensor does not hear another, by the schedule and by the one before. */
+static bool is_deaf_to(const EerufRing *ring, uint8_t receiver, uint8_t emitter) {
+    return limited != NULL && limited(ring, DEAF, receiver, emitter) != 0;
 }
 
 /* For how long a sensor listens that is to listen for `window_us`: no longer than a schedule allows it. */
@@ -548,16 +564,29 @@ static OUT_OF_LINE uint32_t allowed_window(const EerufSchedule *schedule, uint8_
     return shorter(window_us, own_us == 0 ? READ32(schedule->min_refire_us) : own_us);
 }
 
-/* As the schedule allows it, and the one of the period before, whose last firings may still be listening. */
-static uint32_t window_of(const EerufRing *ring, uint8_t sensor) {
-    return allowed_window(ring->schedule_before, sensor, allowed_window(ring->schedule, sensor, ring->window_us));
+static uint32_t shortest_window(const EerufSchedule *schedule, uint8_t sensors, uint32_t window_us) {
+    while (sensors-- > 0) window_us = allowed_window(schedule, sensors, window_us);
+    return window_us;
 }
 
-/* The same of what counts as the same echo. */
-static uint16_t t_delta_of(const EerufRing *ring, uint8_t sensor) {
-    const uint32_t now_us = own_t_delta(limits_of(ring->schedule), sensor, ring->t_delta_us);
-    const uint32_t before_us = own_t_delta(limits_of(ring->schedule_before), sensor, ring->t_delta_us);
-    return (uint16_t)shorter(ring->t_delta_us, shorter(now_us, before_us));
+static void find_first_to_close(EerufRing *ring);
+
+/* By the schedule, and by the one of the period before, whose last firings may still be listening. */
+static uint32_t answer_by_schedules(const EerufRing *ring, uint8_t what, uint8_t x, uint32_t value) {
+    const EerufSchedule *const before = ring->schedule_before;
+    const EerufLimits *const limits = limits_of(ring->schedule), *const limits_before = limits_of(before);
+    switch (what) {
+    case WINDOW: return allowed_window(before, x, allowed_window(ring->schedule, x, value));
+    case SHORTEST_WINDOW: return shortest_window(x == 0 ? ring->schedule : before, ring->count, value);
+    case T_DELTA:
+        return shorter(value, shorter(own_t_delta(limits, x, value), own_t_delta(limits_before, x, value)));
+    case TOGETHER: return fire_together(limits, x, (uint8_t)value);
+    case DEAF:
+        return fire_together(limits, x, (uint8_t)value) &&
+               (before == NULL || fire_together(limits_before, x, (uint8_t)value));
+    case FIRST_TO_CLOSE: find_first_to_close((EerufRing *)(uintptr_t)ring); return 0;
+    default: return limits != NULL || limits_before != NULL;
+    }
 }
 
 static uint32_t path_change_of(const EerufRing *ring, uint16_t t_delta_us) {
@@ -569,7 +598,7 @@ static OUT_OF_LINE void disturb(EerufRing *ring) {
     const EerufSchedule *schedule = ring->schedule;
     uint32_t promised_us;
     ring->watched = ALWAYS;
-    if (FLOWS(ring) || !is_verified(schedule)) return;
+    if (!is_verified(schedule)) return;
     promised_us = READ32(schedule->path_change_us);
     if (promised_us == EERUF_AS_T_DELTA) promised_us = READ32(schedule->t_delta_us);
     if (ring->path_change_us != AS_T_DELTA && ring->path_change_us > promised_us) return;
@@ -599,12 +628,6 @@ static OUT_OF_LINE void fired_late(EerufRing *ring, uint16_t late_us, bool flows
 }
 
 #if EERUF_FIRINGS > 1 || EERUF_WITH_FLOW
-/* True if a sensor does not hear another, by the schedule and by the one before. */
-static bool is_deaf_to(const EerufRing *ring, uint8_t receiver, uint8_t emitter) {
-    return fire_together(limits_of(ring->schedule), receiver, emitter) &&
-           (ring->schedule_before == NULL || fire_together(limits_of(ring->schedule_before), receiver, emitter));
-}
-
 /* The sensor whose sound could be both echoes of a receiver, by a path that changes by up to `more` than P: the one heard
    `first_us` after the firing before its last, and the one heard `second_us` after its last. */
 static OUT_OF_LINE uint8_t explanation(const EerufRing *ring, uint8_t receiver, uint32_t first_us, uint32_t second_us,
@@ -647,7 +670,7 @@ static bool is_long_ago(uint32_t instant, uint32_t now_us) {
 }
 
 /* All firings so long ago that nothing is heard of them. */
-static OUT_OF_LINE void forget_firings(EerufSensor *sensor, uint8_t firings, uint32_t now_us) {
+static void forget_firings(EerufSensor *sensor, uint8_t firings, uint32_t now_us) {
     while (firings-- > 0) sensor->fired_us[firings] = now_us - LONG_AGO;
 }
 
@@ -767,20 +790,20 @@ static EerufStatus allows(const EerufSchedule *schedule, uint32_t t_delta_us, ui
     return window_us > READ32(schedule->min_refire_us) || window_us >= HALF_TURN ? EERUF_ERR_WINDOW : EERUF_OK;
 }
 
-/* True if the shortest window that a schedule allows is long enough, for this many sensors. */
-static EerufStatus can_hear(const EerufSchedule *schedule, uint8_t sensors, uint32_t t_delta_us, uint32_t window_us,
-                            uint32_t blanking_us) {
-    uint8_t x;
-    for (x = 0; x < sensors; x++) window_us = allowed_window(schedule, x, window_us);
+/* True if the shortest window that is allowed is long enough. */
+static EerufStatus can_hear(uint32_t t_delta_us, uint32_t window_us, uint32_t blanking_us) {
     if (blanking_us >= window_us || blanking_us > UINT16_MAX) return EERUF_ERR_BLANKING;
     return t_delta_us >= window_us || t_delta_us > UINT16_MAX ? EERUF_ERR_COARSE_T_DELTA : EERUF_OK;
 }
 
 /* Listens and compares so from now on, if that is possible. */
 static EerufStatus listen(EerufRing *ring, uint32_t t_delta_us, uint32_t window_us, uint32_t blanking_us) {
-    EerufStatus status = can_hear(ring->schedule, ring->count, t_delta_us, window_us, blanking_us);
-    if (status == EERUF_OK)
-        status = can_hear(ring->schedule_before, ring->count, t_delta_us, window_us, blanking_us);
+    EerufStatus status = EERUF_OK;
+    uint8_t before;
+    for (before = 0; before < 2 && status == EERUF_OK; before++) {
+        const uint32_t shortest_us = limited == NULL ? window_us : limited(ring, SHORTEST_WINDOW, before, window_us);
+        status = can_hear(t_delta_us, shortest_us, blanking_us);
+    }
     if (status != EERUF_OK) return status;
     ring->t_delta_us = (uint16_t)t_delta_us;
     ring->window_us = window_us;
@@ -840,6 +863,7 @@ static EerufStatus init(EerufRing *ring, size_t ring_size, EerufSensor *sensors,
     if (!is_verified(schedule) && window_us == 0) return EERUF_ERR_UNVERIFIED;
     if (t_delta_us == 0) t_delta_us = READ32(schedule->t_delta_us);
     if (window_us == 0) window_us = READ32(schedule->window_us);
+    limited = answer_by_schedules;
     /* A table allows what it was verified for. */
     if (config->t_delta_us != 0 || config->window_us != 0) status = allows(schedule, t_delta_us, window_us);
     if (status != EERUF_OK) return status;
@@ -879,7 +903,7 @@ static bool has_pending(const EerufRing *ring) {
 }
 
 /* When a sensor's last firing ends if there is no echo. */
-static OUT_OF_LINE uint32_t closes_at(const EerufRing *ring, uint8_t x) {
+static uint32_t closes_at(const EerufRing *ring, uint8_t x) {
     return sensor_of(ring, x)->fired_us[0] + longer(window_of(ring, x), ring->report_after_us);
 }
 
@@ -890,7 +914,7 @@ static OUT_OF_LINE void emit_when_oldest_ends(EerufRing *ring) {
 }
 
 /* Where windows differ, the oldest is the one whose window closes first. */
-static OUT_OF_LINE void find_first_to_close(EerufRing *ring) {
+static void find_first_to_close(EerufRing *ring) {
     uint8_t x;
     ring->oldest = NOBODY;
     for (x = 0; x < ring->count; x++) {
@@ -907,7 +931,7 @@ static void find_oldest(EerufRing *ring, uint32_t before) {
     uint32_t soonest = UINT32_MAX;
     uint8_t x, oldest = NOBODY;
     if (windows_differ(ring)) {
-        find_first_to_close(ring);
+        (void)limited(ring, FIRST_TO_CLOSE, 0, 0);
         return;
     }
     before -= STEP_BACK;
@@ -933,7 +957,7 @@ static IN_LINE void fire(EerufRing *ring, uint8_t sensor, uint32_t now_us, uint1
         ring->oldest = sensor;
         emit_when_oldest_ends(ring);
     } else if (windows_differ(ring)) {
-        find_first_to_close(ring);
+        (void)limited(ring, FIRST_TO_CLOSE, 0, 0);
         emit_when_oldest_ends(ring);
     }
     if (flows) {
@@ -1052,7 +1076,7 @@ static IN_LINE void end_period(EerufRing *ring, uint32_t now_us, uint32_t late_u
     if (changed) disturb(ring);
     /* Another schedule may allow other windows, also to firings under way. */
     if (differed || windows_differ(ring)) {
-        find_first_to_close(ring);
+        (void)limited(ring, FIRST_TO_CLOSE, 0, 0);
         emit_when_oldest_ends(ring);
     }
     for (kind = 0; kind < EERUF_READING_KINDS; kind++) {
@@ -1083,9 +1107,9 @@ static IN_LINE void restart(EerufRing *ring, uint32_t now_us, bool flows) {
         drop_firing(ring, x, now_us);
     }
     if (flows) restart_flow(ring, now_us);
+    else disturb(ring);
     ring->oldest = NOBODY;
     ring->pending = 0;
-    disturb(ring);
 }
 
 /* Called by each poll and by the caller. */
@@ -1300,7 +1324,7 @@ EerufStatus eeruf_ring_fired(EerufRing *ring, uint8_t x, uint32_t at_us) {
             emit_when_oldest_ends(ring);
         }
     }
-    disturb(ring);
+    if (!FLOWS(ring)) disturb(ring);
     return EERUF_OK;
 }
 
@@ -1373,14 +1397,14 @@ bool eeruf_ring_is_enabled(const EerufRing *ring, uint8_t sensor) {
     return has_sensor(ring, sensor) == EERUF_OK && !(sensor_of(ring, sensor)->filter.state & DISABLED);
 }
 
-static void enable(EerufRing *ring, uint8_t sensor, bool enabled) {
+static IN_LINE void enable(EerufRing *ring, uint8_t sensor, bool enabled, bool flows) {
     EerufFilter *filter = &sensor_of(ring, sensor)->filter;
     if (!enabled) {
         filter->state |= DISABLED;
     } else if (filter->state & DISABLED) {
         filter->state &= (uint8_t)~DISABLED;
         forget_readings(ring, sensor);
-        disturb(ring);
+        if (!flows) disturb(ring);
     }
 }
 
@@ -1388,7 +1412,7 @@ EerufStatus eeruf_ring_enable(EerufRing *ring, uint8_t sensor, bool enabled) {
     const EerufStatus status = has_sensor(ring, sensor);
     if (status != EERUF_OK) return status;
     if (FLOWS(ring)) return EERUF_ERR_FLOW;
-    enable(ring, sensor, enabled);
+    enable(ring, sensor, enabled, false);
     skip_silent(ring);
     return EERUF_OK;
 }
@@ -1435,7 +1459,7 @@ static EerufStatus change(EerufRing *ring, const EerufSchedule *schedule, bool v
     if (READ8(schedule->phases) != READ8(ring->schedule->phases)) return EERUF_ERR_PHASES;
     status = allows(schedule, ring->t_delta_us, ring->window_us);
     if (status == EERUF_OK)
-        status = can_hear(schedule, ring->count, ring->t_delta_us, ring->window_us, ring->blanking_us);
+        status = can_hear(ring->t_delta_us, shortest_window(schedule, ring->count, ring->window_us), ring->blanking_us);
     if (status != EERUF_OK) return status;
     ring->next_schedule = schedule;
     ring->hook = change_now;
@@ -1478,7 +1502,7 @@ EerufStatus eeruf_ring_set_t_delta(EerufRing *ring, uint32_t t_delta_us) {
 EerufStatus eeruf_ring_set_window(EerufRing *ring, uint32_t window_us) {
     EerufStatus status = is_ready(ring);
     if (status == EERUF_OK) status = relisten(ring, ring->t_delta_us, window_us, ring->blanking_us);
-    if (status == EERUF_OK && windows_differ(ring)) find_first_to_close(ring);
+    if (status == EERUF_OK && windows_differ(ring)) (void)limited(ring, FIRST_TO_CLOSE, 0, 0);
     if (status == EERUF_OK) emit_when_oldest_ends(ring);
     return status;
 }
@@ -1493,7 +1517,7 @@ EerufStatus eeruf_ring_set_report_after(EerufRing *ring, uint32_t report_after_u
     if (status != EERUF_OK) return status;
     if (report_after_us > least_refire(ring)) return EERUF_ERR_WINDOW;
     ring->report_after_us = report_after_us;
-    if (windows_differ(ring)) find_first_to_close(ring);
+    if (windows_differ(ring)) (void)limited(ring, FIRST_TO_CLOSE, 0, 0);
     emit_when_oldest_ends(ring);
     return EERUF_OK;
 }
@@ -2133,7 +2157,7 @@ static EerufFlowRing *flow_of(EerufRing *ring) {
     return (EerufFlowRing *)(void *)ring;
 }
 
-static EerufFlowSensor *flow_sensor(const EerufRing *ring, uint8_t x) {
+static OUT_OF_LINE EerufFlowSensor *flow_sensor(const EerufRing *ring, uint8_t x) {
     return (EerufFlowSensor *)(void *)ring->sensors + x;
 }
 
@@ -2146,25 +2170,23 @@ static EerufStatus has_flow(const EerufFlowRing *flow, uint8_t sensor) {
 
 /* A throw for the next gap. */
 static void throw_dice(EerufFlowRing *flow) {
-    const uint32_t most = (flow->dice_us << (flow->flags & MOVES)) + 1;
-    const uint16_t most_high = (uint16_t)(most >> 16), most_low = (uint16_t)most;
-    uint32_t r = flow->random, middle;
-    uint16_t high, low;
+    uint32_t most = (flow->dice_us << (flow->flags & MOVES)) + 1, r = flow->random, high = 0;
+    uint8_t bit;
     /* Xorshift by 13, 17 and 5 (Marsaglia, 2003). */
     r ^= r << 13;
     r ^= r >> 17;
     r ^= r << 5;
     flow->random = r;
-    /* The high word of r most, without 64 bits: most is below 2^20. */
-    high = (uint16_t)(r >> 16);
-    low = (uint16_t)r;
-    middle = (uint32_t)high * most_low + (((uint32_t)low * most_low) >> 16);
-    flow->thrown_us = ((uint32_t)low * most_high + (uint16_t)middle) >> 16;
-    flow->thrown_us += (uint32_t)high * most_high + (middle >> 16);
+    /* The high word of r most, without 64 bits. */
+    for (bit = 0; bit < 32; bit++, most >>= 1) {
+        const uint32_t sum = most & 1u ? high + r : high;
+        high = sum >> 1 | (sum < high ? HALF_TURN : 0);
+    }
+    flow->thrown_us = high;
 }
 
 /* From the last firing of any sensor until some time after another. */
-static uint32_t since_last(const EerufRing *ring, uint32_t fired_us, uint32_t after_us) {
+static OUT_OF_LINE uint32_t since_last(const EerufRing *ring, uint32_t fired_us, uint32_t after_us) {
     const uint32_t until_us = fired_us + after_us;
     return has_reached(ring->last_fired_us, until_us) ? 0 : until_us - ring->last_fired_us;
 }
@@ -2183,7 +2205,7 @@ static uint32_t quiet_of(const EerufFlowRing *flow, const EerufFlowSensor *senso
     return longer(sensor->doubt * QUIET_US, least_quiet(flow));
 }
 
-static uint8_t line_of(const EerufFlowRing *flow, uint8_t x) {
+static OUT_OF_LINE uint8_t line_of(const EerufFlowRing *flow, uint8_t x) {
     return flow->lines == NULL ? 0 : READ8(flow->lines[x]);
 }
 
@@ -2222,7 +2244,8 @@ static OUT_OF_LINE void add_waits(const EerufRing *ring, uint8_t x, Waits *waits
 
 /* True if an enabled sensor fires together with another one. */
 static bool fires_with(const EerufRing *ring, uint8_t x, uint8_t other) {
-    return fire_together(limits_of(ring->schedule), x, other) && !(flow_sensor(ring, other)->filter.state & DISABLED);
+    return limited != NULL && limited(ring, TOGETHER, x, other) != 0 &&
+           !(flow_sensor(ring, other)->filter.state & DISABLED);
 }
 
 /* The waits of a sensor and of those that fire with it. */
@@ -2230,7 +2253,7 @@ static Waits waits_of(const EerufRing *ring, uint8_t x) {
     Waits waits = {0, 0};
     uint8_t other;
     add_waits(ring, x, &waits);
-    for (other = 0; other < ring->count && limits_of(ring->schedule) != NULL; other++)
+    for (other = 0; other < ring->count && limited != NULL; other++)
         if (fires_with(ring, x, other)) add_waits(ring, other, &waits);
     return waits;
 }
@@ -2332,7 +2355,7 @@ static void fire_flow(EerufRing *ring, uint8_t x, uint32_t now_us) {
             sensor->filter.state |= AHEAD;
             flow->flags |= ONE_AHEAD;
         }
-        for (other = 0; other < ring->count && limits_of(ring->schedule) != NULL; other++)
+        for (other = 0; other < ring->count && limited != NULL; other++)
             if (fires_with(ring, x, other)) flow_sensor(ring, other)->filter.state |= PENDING;
         throw_dice(flow);
     }
@@ -2394,7 +2417,7 @@ static uint16_t rate_of(uint32_t speed_mm_s) {
 }
 
 /* The rate at an instant, which is not long before the last word. */
-static uint16_t rate_at(EerufFlowRing *flow, uint32_t now_us) {
+static OUT_OF_LINE uint16_t rate_at(EerufFlowRing *flow, uint32_t now_us) {
     const uint32_t silent_us = now_us - flow->told_us;
     if ((flow->flags & TOLD) && silent_us > TOLD_FOR && silent_us < HALF_TURN) {
         flow->flags &= (uint8_t)~TOLD;
@@ -2403,7 +2426,7 @@ static uint16_t rate_at(EerufFlowRing *flow, uint32_t now_us) {
     return flow->rate;
 }
 
-static uint16_t larger16(uint16_t one, uint16_t other) {
+static OUT_OF_LINE uint16_t larger16(uint16_t one, uint16_t other) {
     return one > other ? one : other;
 }
 
@@ -2628,14 +2651,14 @@ static void correct_flow(EerufRing *ring, uint8_t x, uint32_t later_us) {
 
 #define LONGEST_REST_US 4000000u /* nor does a sensor listen for longer */
 
-/* The status of a setting that is out of its range, unless one was before. */
-static OUT_OF_LINE void check(EerufStatus *status, EerufStatus wrong, uint32_t value, uint32_t least, uint32_t most) {
-    if (*status == EERUF_OK && (value < least || value > most)) *status = wrong;
+/* True if a time is too short, or longer than `most_us`. */
+static IN_LINE bool is_outside(uint32_t time_us, uint32_t least_us, uint32_t most_us) {
+    return time_us < least_us || time_us > most_us;
 }
 
-EerufStatus eeruf_flow_init(EerufFlowRing *flow, size_t flow_size, EerufFlowSensor *sensors, size_t sensors_size,
-                            const EerufFlowConfig *config, uint32_t now_us) {
-    EerufStatus status = EERUF_OK;
+static EerufStatus begin_flow(EerufFlowRing *flow, size_t flow_size, EerufFlowSensor *sensors, size_t sensors_size,
+                              const EerufFlowConfig *config, uint32_t now_us) {
+    EerufStatus status;
     uint32_t span_us;
     uint8_t n, x;
     if (flow == NULL || sensors == NULL || config == NULL) return EERUF_ERR_NULL;
@@ -2645,19 +2668,18 @@ EerufStatus eeruf_flow_init(EerufFlowRing *flow, size_t flow_size, EerufFlowSens
     if (n - 1u >= EERUF_MAX_SENSORS) return EERUF_ERR_SENSORS;
     if (sensors_size / sizeof *sensors < n) return EERUF_ERR_MEMORY;
     if (config->own != NULL && READ8(config->own->sensors) != n) return EERUF_ERR_SENSORS;
-    check(&status, EERUF_ERR_FLOW_T_DELTA, config->t_delta_us, 0, 10000);
-    check(&status, EERUF_ERR_FLOW_NEAR, config->near_us, 0, 10000);
-    check(&status, EERUF_ERR_FLOW_PATH_CHANGE, config->path_change_us, 0, 10000);
-    check(&status, EERUF_ERR_FLOW_TOP_SPEED, config->top_speed_mm_s - 1u, 9, UINT32_MAX);
-    check(&status, EERUF_ERR_FLOW_HOLD, config->hold, 1, 100);
-    check(&status, EERUF_ERR_FLOW_MOST, config->most_us, 1000, 250000);
-    check(&status, EERUF_ERR_FLOW_LEAST, config->least_us, 100, config->most_us);
-    check(&status, EERUF_ERR_FLOW_REST, config->rest_us, 1000, LONGEST_REST_US);
-    if (config->dice_us != 0) check(&status, EERUF_ERR_FLOW_DICE, config->dice_us, 8, 250000);
-    check(&status, EERUF_ERR_FLOW_SEED, config->seed, 1, UINT32_MAX);
-    check(&status, EERUF_ERR_FLOW_WINDOW, config->window_us, 1000, LONGEST_REST_US);
-    check(&status, EERUF_ERR_RANGE, config->votes, 0, EERUF_VOTES_TWO_IN_A_ROW);
-    if (status != EERUF_OK) return status;
+    if (config->t_delta_us > 10000) return EERUF_ERR_FLOW_T_DELTA;
+    if (config->near_us > 10000) return EERUF_ERR_FLOW_NEAR;
+    if (config->path_change_us > 10000) return EERUF_ERR_FLOW_PATH_CHANGE;
+    if (config->top_speed_mm_s - 1u < 9) return EERUF_ERR_FLOW_TOP_SPEED;
+    if (config->hold == 0 || config->hold > 100) return EERUF_ERR_FLOW_HOLD;
+    if (is_outside(config->most_us, 1000, 250000)) return EERUF_ERR_FLOW_MOST;
+    if (is_outside(config->least_us, 100, config->most_us)) return EERUF_ERR_FLOW_LEAST;
+    if (is_outside(config->rest_us, 1000, LONGEST_REST_US)) return EERUF_ERR_FLOW_REST;
+    if (config->dice_us != 0 && is_outside(config->dice_us, 8, 250000)) return EERUF_ERR_FLOW_DICE;
+    if (config->seed == 0) return EERUF_ERR_FLOW_SEED;
+    if (is_outside(config->window_us, 1000, LONGEST_REST_US)) return EERUF_ERR_FLOW_WINDOW;
+    if (config->votes > EERUF_VOTES_TWO_IN_A_ROW) return EERUF_ERR_RANGE;
     memset(flow, 0, sizeof *flow);
     set_up(&flow->ring, config->own, sensors, n, sizeof *sensors, 0, change_flow, now_us);
     status = listen(&flow->ring, config->t_delta_us, config->window_us, config->blanking_us);
@@ -2696,6 +2718,18 @@ EerufStatus eeruf_flow_init(EerufFlowRing *flow, size_t flow_size, EerufFlowSens
     return EERUF_OK;
 }
 
+EerufStatus eeruf_flow_init(EerufFlowRing *flow, size_t flow_size, EerufFlowSensor *sensors, size_t sensors_size,
+                            const EerufFlowConfig *config, uint32_t now_us) {
+    limited = answer_by_schedules;
+    return begin_flow(flow, flow_size, sensors, sensors_size, config, now_us);
+}
+
+EerufStatus eeruf_flow_init_alike(EerufFlowRing *flow, size_t flow_size, EerufFlowSensor *sensors, size_t sensors_size,
+                                  const EerufFlowConfig *config, uint32_t now_us) {
+    if (config != NULL && config->own != NULL) return EERUF_ERR_RANGE;
+    return begin_flow(flow, flow_size, sensors, sensors_size, config, now_us);
+}
+
 EerufStatus eeruf_flow_poll(EerufFlowRing *flow, uint32_t now_us, EerufEvent *event) {
     const EerufStatus status = has_flow(flow, 0);
     return status == EERUF_OK ? poll(&flow->ring, now_us, NULL, event, true) : status;
@@ -2706,7 +2740,7 @@ EerufStatus eeruf_flow_enable(EerufFlowRing *flow, uint8_t sensor, bool enabled)
     if (status != EERUF_OK) return status;
     if (enabled && !(flow_sensor(&flow->ring, sensor)->filter.state & DISABLED)) return EERUF_OK;
     if (enabled) flow_sensor(&flow->ring, sensor)->doubt = flow->first;
-    enable(&flow->ring, sensor, enabled);
+    enable(&flow->ring, sensor, enabled, true);
     group(&flow->ring);
     decide_no_sooner(&flow->ring);
     return EERUF_OK;

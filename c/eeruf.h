@@ -637,6 +637,9 @@ typedef struct EerufFlowRing {
    functions of their own, and what a table says cannot be changed: EERUF_ERR_FLOW. */
 EerufStatus eeruf_flow_init(EerufFlowRing *flow, size_t flow_size, EerufFlowSensor *sensors, size_t sensors_size,
                             const EerufFlowConfig *config, uint32_t now_us);
+/* The same of sensors that are all alike, without `config->own`: links less. */
+EerufStatus eeruf_flow_init_alike(EerufFlowRing *flow, size_t flow_size, EerufFlowSensor *sensors, size_t sensors_size,
+                                  const EerufFlowConfig *config, uint32_t now_us);
 EerufStatus eeruf_flow_poll(EerufFlowRing *flow, uint32_t now_us, EerufEvent *event); /* a period is a round */
 /* Says how fast the robot moves and turns, both without a sign, once a control cycle: readings may change by as much. After
    half a second without a word the top speed holds. */

@@ -388,6 +388,7 @@ static void flow_rings(void) {
     limits[0].window_us = limits[1].window_us = limits[2].window_us = 36000;
     limits[3].window_us = 900;
     WITH(own, &own, EERUF_OK);
+    EXPECT(eeruf_flow_init_alike(&flow, r, flow_sensors, s, &config, 0), EERUF_ERR_RANGE);
     config.blanking_us = 900;
     EXPECT(begin_flow(r, s, &config), EERUF_ERR_BLANKING);
     WITH(window_us, 4000001, EERUF_ERR_FLOW_WINDOW);

@@ -27,10 +27,11 @@ public:
         return begin(config, settings);
     }
     // By the settings that `eeruf design RING.toml --emit arduino` writes: RING and RING_MODULES. The latter must last.
-    bool begin(const EerufFlowConfig &config, const EerufHcSr04Settings &settings) {
+    inline __attribute__((always_inline)) bool begin(const EerufFlowConfig &config, const EerufHcSr04Settings &settings) {
         EerufStatus status = EERUF_ERR_SENSORS;
+        const auto init = config.own == nullptr ? eeruf_flow_init_alike : eeruf_flow_init;
         if (config.sensors == N)
-            status = eeruf_flow_init(&ring_, sizeof ring_, sensors_, sizeof sensors_, &config, ::micros());
+            status = init(&ring_, sizeof ring_, sensors_, sizeof sensors_, &config, ::micros());
         return EerufModules::begin(status, ring_.ring, lines_, places_, sizeof places_ / sizeof *places_, settings);
     }
 

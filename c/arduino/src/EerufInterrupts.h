@@ -9,9 +9,10 @@
 // files of a sketch but one.
 //
 // While noInterrupts() holds, an edge waits. On these boards two interrupts of timer 0, that of micros() and compare B
-// half-way, tell of each block of more than 0.55 ms: its edges count as ones without a time, and so do pulses
-// in which micros() has lost time, but from a block of more than 1.5 ms. Elsewhere edges that come together tell.
-// quietFor() says when to call noInterrupts().
+// half-way, tell of each block of more than 0.55 ms: its edges count as ones without a time. Blocks of more than 1 ms can
+// cost micros() time, of which timers 1 and 2 tell, as long as one of them is left as the core sets it: tone() takes timer
+// 2, Servo timer 1. Pulses in which time was lost have none either. Elsewhere edges that come together tell. quietFor()
+// says when to call noInterrupts().
 #pragma once
 
 #include <Arduino.h>

@@ -120,7 +120,7 @@ static uint8_t levels(uint8_t group) {
 static EerufEdges *edges;
 // The levels of lines, the pins that are echo lines, and pulses whose beginning has no time.
 static uint8_t sensorOf[GROUPS][8], known[GROUPS], ours[GROUPS], timeless[GROUPS];
-static uint32_t looked;
+static uint32_t looked, lost; // the time by which micros() is behind
 
 #if defined(TIMER0_COMPB_vect) && (F_CPU == 16000000 || F_CPU == 8000000)
 #define EERUF_HALVES
@@ -139,19 +139,28 @@ static bool count(uint8_t *at) {
     return (TCCR1A & 0x03) == _BV(WGM10) && (TCCR1B & 0x1f) == (_BV(CS11) | _BV(CS10));
 }
 
-// True if micros(), which says these ticks, has lost time since the last call, by the counter at that time.
+// Makes up for overflows that micros(), which says these ticks, has lost, by the counter at that time. True if it cannot:
+// the counter was set to something else.
 static bool hasLostTime(uint8_t ticks, uint8_t at) {
-    uint32_t overflows = micros() >> (F_CPU == 16000000 ? 10 : 11);
+    const uint8_t SHIFT = F_CPU == 16000000 ? 10 : 11;
+    uint32_t overflows = micros() >> SHIFT;
     uint16_t place = lead + ticks;
     // 256 in odd numbers of them, and 2 for each two.
     for (; overflows != 0; overflows >>= 8) place += ((uint8_t)overflows & 0xfe) + ((uint8_t)overflows & 1 ? 256 : 0);
-    while (place >= 510) place -= 510;
-    const uint8_t expected = place > 255 ? 510 - place : place;
-    if ((uint8_t)(expected - at + 1) <= 2) return false;
+    for (uint8_t more = 0; more < 4; more++, place += 256) {
+        while (place >= 510) place -= 510;
+        const uint8_t expected = place > 255 ? 510 - place : place;
+        if ((uint8_t)(expected - at + 1) > 2) continue;
+        lead += more << 8;
+        while (lead >= 510) lead -= 510;
+        lost += (uint32_t)more << SHIFT;
+        return false;
+    }
     uint8_t next = at;
     for (uint8_t i = 255; next == at; i--)
         if (i == 0 || !count(&next)) return false; // it stands
-    lead += (next > at ? at : 510 - at) + 510 - place;
+    // Four overflows are 4 ticks more than none.
+    lead += (next > at ? at : 510 - at) + 4 + 1020 - place;
     while (lead >= 510) lead -= 510;
     return true;
 }
@@ -180,9 +189,10 @@ static const bool IS_KNOWN = false; // only edges that come together tell
 // Queues the edges that came since an instant, or just now: with interrupts off. An edge has no time that an interrupt
 // finds late, nor has the end of a pulse whose beginning has none, or in which time was lost.
 static void take(uint32_t since, bool isInterrupt) {
-    const uint32_t at = micros();
     bool hasLost = false;
-    const bool waited = haveWaited(&hasLost), isLate = isInterrupt ? waited : hasLost || at - since > TOO_LONG_US;
+    const bool waited = haveWaited(&hasLost);
+    const uint32_t at = micros() + lost;
+    const bool isLate = isInterrupt ? waited : hasLost || at - since > TOO_LONG_US;
     if (isInterrupt) since = at;
     // Lines of an interrupt wait meanwhile: groups that no line is in are left out.
     for (uint8_t group = 0; group < (alone ? GROUPS : PORTS); group++) {
@@ -202,10 +212,25 @@ static void take(uint32_t since, bool isInterrupt) {
 
 void look() {
     const uint32_t since = looked;
-    looked = micros();
+    looked = now();
     noInterrupts();
     take(since, false);
     interrupts();
+}
+
+uint32_t now() {
+#ifdef EERUF_HALVES
+    bool hasLost = false;
+    const uint8_t before = SREG;
+    cli();
+    (void)haveWaited(&hasLost);
+    for (uint8_t group = 0; group < GROUPS && hasLost; group++) timeless[group] |= known[group];
+    const uint32_t at = micros() + lost;
+    SREG = before;
+    return at;
+#else
+    return micros();
+#endif
 }
 
 void IRAM_ATTR onInterrupt() {
@@ -299,7 +324,7 @@ bool EerufModules::begin(EerufStatus status, EerufRing &ring, EerufLine *lines, 
 // True if a module's reading is still to come.
 static bool awaits(const EerufHcSr04 &modules, uint8_t sensor) {
     return eeruf_hc_sr04_awaits(&modules, sensor, nullptr) &&
-           micros() - eeruf_ring_fired_at(modules.ring, sensor) <= modules.ring->window_us;
+           EerufLines::now() - eeruf_ring_fired_at(modules.ring, sensor) <= modules.ring->window_us;
 }
 
 // True if an edge is expected before loop() comes back: that of the echo which is believed.
@@ -316,20 +341,20 @@ bool EerufModules::expects(uint32_t now) const {
 uint32_t EerufModules::collect(uint16_t soon, bool looks) {
     uint32_t now;
     if (looks && looks_) {
-        const uint32_t began = ::micros(), away = began - seen_;
+        const uint32_t began = EerufLines::now(), away = began - seen_;
         away_ -= away_ / 16;
         if (away > away_) away_ = away > LONGEST_US ? LONGEST_US : away;
         do EerufLines::look();
-        while (queue_.pushed == queue_.popped && (int32_t)((now = ::micros()) - eeruf_ring_due(modules_.ring)) < 0 &&
+        while (queue_.pushed == queue_.popped && (int32_t)((now = EerufLines::now()) - eeruf_ring_due(modules_.ring)) < 0 &&
                (now - began < LOOKS_US || expects(now)));
     }
     // The clock is read before the edges: then no window closes on one that came in time.
     do {
-        now = ::micros();
+        now = EerufLines::now();
         if (looks && looks_) EerufLines::look();
         (void)eeruf_hc_sr04_edges(&modules_, edges_);
     } while (eeruf_ring_due(modules_.ring) - now - 1 < soon);
-    if (looks) seen_ = ::micros();
+    if (looks) seen_ = EerufLines::now();
     return now;
 }
 
@@ -339,7 +364,7 @@ void EerufModules::watchEvent(EerufModules &self, const EerufEvent &event, uint3
 
 EerufState EerufModules::state(uint8_t sensor) const {
     EerufState state = {EERUF_NO_ECHO, 0, EERUF_STATE_UNKNOWN, EERUF_WHY_NO_FIRING, EERUF_BY_NOTHING};
-    (void)eeruf_watch_state(watch_, sensor, ::micros(), &state);
+    (void)eeruf_watch_state(watch_, sensor, EerufLines::now(), &state);
     return state;
 }
 
@@ -369,7 +394,7 @@ void EerufModules::fire(uint8_t sensor, bool looks) {
 }
 
 void EerufModules::holdBack(uint32_t now, bool looks) {
-    while (::micros() - now < DECIDES_US)
+    while (EerufLines::now() - now < DECIDES_US)
         if (looks && looks_) EerufLines::look();
 }
 
@@ -403,7 +428,7 @@ bool EerufModules::tooSlow(bool late) {
 uint32_t EerufModules::quietFor() const {
     for (uint8_t i = 0; i < count_; i++)
         if (awaits(modules_, i)) return 0;
-    const uint32_t quiet = eeruf_ring_due(modules_.ring) - ::micros();
+    const uint32_t quiet = eeruf_ring_due(modules_.ring) - EerufLines::now();
     return quiet < 0x80000000 ? quiet : 0;
 }
 

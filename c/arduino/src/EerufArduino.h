@@ -148,7 +148,7 @@ public:
     bool begin(const EerufHcSr04Settings &settings) {
         const EerufConfig config = EERUF_CONFIG;
         const EerufStatus status =
-            eeruf_ring_init(&ring_, sizeof ring_, sensors_, sizeof sensors_, schedule_, &config, ::micros());
+            eeruf_ring_init(&ring_, sizeof ring_, sensors_, sizeof sensors_, schedule_, &config, EerufLines::now());
         return EerufModules::begin(status, ring_, lines_, places_, sizeof places_ / sizeof *places_, settings);
     }
 

@@ -31,12 +31,12 @@ public:
         EerufStatus status = EERUF_ERR_SENSORS;
         const auto init = config.own == nullptr ? eeruf_flow_init_alike : eeruf_flow_init;
         if (config.sensors == N)
-            status = init(&ring_, sizeof ring_, sensors_, sizeof sensors_, &config, ::micros());
+            status = init(&ring_, sizeof ring_, sensors_, sizeof sensors_, &config, EerufLines::now());
         return EerufModules::begin(status, ring_.ring, lines_, places_, sizeof places_ / sizeof *places_, settings);
     }
 
     // How fast the robot moves, in mm/s, and turns, in mrad/s: at least twice a second while it does.
-    void moving(uint32_t speed, uint32_t turn = 0) { (void)eeruf_flow_moving(&ring_, speed, turn, ::micros()); }
+    void moving(uint32_t speed, uint32_t turn = 0) { (void)eeruf_flow_moving(&ring_, speed, turn, EerufLines::now()); }
 
     // One step; true if a module has a new reading.
     bool read() {

@@ -10,9 +10,8 @@
 //
 // While noInterrupts() holds, an edge waits. On these boards two interrupts of timer 0, that of micros() and compare B
 // half-way, tell of each block of more than 0.55 ms: its edges count as ones without a time. Blocks of more than 1 ms can
-// cost micros() time, of which timers 1 and 2 tell, as long as one of them is left as the core sets it: tone() takes timer
-// 2, Servo timer 1. Pulses in which time was lost have none either. Elsewhere edges that come together tell. quietFor()
-// says when to call noInterrupts().
+// cost micros() time, for which timers 1 and 2 make up, as long as one of them is left as the core sets it: tone() takes
+// timer 2, Servo timer 1. Elsewhere edges that come together tell. quietFor() says when to call noInterrupts().
 #pragma once
 
 #include <Arduino.h>
@@ -25,6 +24,8 @@ bool begin(const uint8_t *pins, uint8_t count, EerufEdges &edges);
 // Looks at all lines, and queues their edges since the look before.
 void look();
 void onInterrupt();
+// The clock of rings: micros(), and the time that it has lost.
+uint32_t now();
 extern bool hasInterrupts;
 } // namespace EerufLines
 

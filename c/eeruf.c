@@ -1107,9 +1107,9 @@ static IN_LINE void restart(EerufRing *ring, uint32_t now_us, bool flows) {
         drop_firing(ring, x, now_us);
     }
     if (flows) restart_flow(ring, now_us);
-    else disturb(ring);
     ring->oldest = NOBODY;
     ring->pending = 0;
+    if (!flows) disturb(ring);
 }
 
 /* Called by each poll and by the caller. */

@@ -3,7 +3,7 @@
 use std::cell::RefCell;
 use std::ops::ControlFlow;
 
-use eeruf_core::search::{Progress, SearchError};
+use eeruf_core::search::Progress;
 use eeruf_core::{Micros, Phase};
 use eeruf_design::certificate::Stated;
 use eeruf_design::{FoundJson, RingDesign, RingSpec, Search, WhatIf};
@@ -137,7 +137,7 @@ fn shortest(ring: &str) -> Result<RingDesign, String> {
     let spec = RingSpec::from_text(ring).map_err(|error| error.to_string())?;
     let budget = if spec.sensors > FEW { BUDGET_OF_MANY } else { BUDGET };
     let found = spec.shortest(&Search { budget, what_if: false, atlas: ATLAS }, &mut say);
-    let design = found.map_err(|error: SearchError| error.to_string())?.map_err(|none| none.to_string())?;
+    let design = found.map_err(|none| none.to_string())?;
     LAST.set(Some((ring.to_owned(), design.clone())));
     Ok(design)
 }

@@ -6,9 +6,11 @@ use std::time::{Duration, Instant};
 use clap::ValueEnum;
 use clap::builder::PossibleValue;
 use eeruf_core::Micros;
-use eeruf_core::search::{Progress, SearchError};
+use eeruf_core::search::Progress;
 use eeruf_design::atlas::ATLAS;
-use eeruf_design::{CURVE_BUDGET, FoundJson, Need, RealPeriod, RingDesign, RingSpec, Search, Way, real_budget};
+use eeruf_design::{
+    CURVE_BUDGET, FoundJson, Need, NoDesign, RealPeriod, RingDesign, RingSpec, Search, Way, real_budget,
+};
 use eeruf_files::emit;
 use eeruf_sim::experiments::rooms::RoomWay;
 use serde::Serialize;
@@ -186,7 +188,6 @@ const BUDGET: u64 = 50_000_000;
 
 pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     let spec = read_ring(&args.file)?;
-    let bad = |error: SearchError| InputError::new(&args.file, error);
     if let Some(period) = args.period {
         return fit(args, &spec, Micros::new(period));
     }
@@ -204,8 +205,9 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     };
     let atlas = if args.no_atlas { "" } else { ATLAS };
     let search = Search { budget: args.budget.unwrap_or(BUDGET), what_if: args.form().is_none(), atlas };
-    let design = match spec.shortest(&search, &mut control).map_err(bad)? {
+    let design = match spec.shortest(&search, &mut control) {
         Ok(design) => design,
+        Err(NoDesign::Search(error)) => return Err(InputError::new(&args.file, error)),
         Err(none) => {
             tell(format!("{}: {none}\n", args.file.display()))?;
             return Ok(Answer::No);

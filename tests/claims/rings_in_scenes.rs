@@ -50,7 +50,7 @@ fn car_and_mower_fire_as_their_ring_files_say() {
     for (name, modules, places) in [("car-12", car, ""), ("mower-8-and-4", mower, &*places)] {
         let text = std::fs::read_to_string(format!("rings/{name}.toml")).unwrap();
         let spec = RingSpec::from_text(&text).unwrap();
-        let design = spec.shortest(&Search::default(), &mut ()).unwrap().unwrap();
+        let design = spec.shortest(&Search::default(), &mut ()).unwrap();
         let schedule = format!("[robot.schedule]\n{}", design.schedule.to_toml());
         let more = format!("{places}{}\nblanking_us = 900\n{schedule}", makes(&modules));
         let world = scene(&format!("{name}.toml"), &more).unwrap();

@@ -42,9 +42,11 @@ pub struct RingDesign {
     pub what_if: Vec<WhatIf>,
 }
 
-/// Why a robot that moves gets no schedule.
+/// Why a ring gets no design.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum NoSchedule {
+pub enum NoDesign {
+    /// Needs that make no sense or are too large to search.
+    Search(SearchError),
     /// Longer periods ask for more separation, and that for longer periods, without end.
     TooFast,
     /// The budget or the caller ended the search before its proof, and what it had found is too slow for the speed.
@@ -53,9 +55,10 @@ pub enum NoSchedule {
     Handling,
 }
 
-impl fmt::Display for NoSchedule {
+impl fmt::Display for NoDesign {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
+            Self::Search(error) => return error.fmt(f),
             Self::TooFast => {
                 "no schedule: good readings change more from period to period, the more sensors at this speed must be \
                  kept apart; expected fewer sensors or a lower speed_m_s"
@@ -73,7 +76,13 @@ impl fmt::Display for NoSchedule {
     }
 }
 
-impl Error for NoSchedule {}
+impl Error for NoDesign {}
+
+impl From<SearchError> for NoDesign {
+    fn from(error: SearchError) -> Self {
+        Self::Search(error)
+    }
+}
 
 impl RingDesign {
     /// The gain from relaxing one need; nothing where the period is not proven.
@@ -98,37 +107,23 @@ impl RingDesign {
 }
 
 impl RingSpec {
-    /// Finds the shortest period, and the preferred schedule with it; or why there is none.
+    /// Finds the shortest period, and the preferred schedule with it.
     ///
     /// # Errors
-    /// [`SearchError`] for needs that make no sense or are too large to search.
-    pub fn shortest(
-        &self,
-        search: &Search,
-        control: &mut impl Control,
-    ) -> Result<Result<RingDesign, NoSchedule>, SearchError> {
-        let mut design = match self.shortest_at_once(search, control)? {
-            Ok(design) => design,
-            Err(none) => return Ok(Err(none)),
-        };
+    /// Why there is none.
+    pub fn shortest(&self, search: &Search, control: &mut impl Control) -> Result<RingDesign, NoDesign> {
+        let mut design = self.shortest_at_once(search, control)?;
         if self.handling > Micros::ZERO {
-            design = match self.one_by_one(design, search, control)? {
-                Ok(design) => design,
-                Err(none) => return Ok(Err(none)),
-            };
+            design = self.one_by_one(design, search, control)?;
         }
         if search.what_if {
             design.what_if = design.what_if(control)?;
         }
-        Ok(Ok(design))
+        Ok(design)
     }
 
     /// As [`shortest`](Self::shortest), for a controller that fires any number of sensors at once.
-    fn shortest_at_once(
-        &self,
-        search: &Search,
-        control: &mut impl Control,
-    ) -> Result<Result<RingDesign, NoSchedule>, SearchError> {
+    fn shortest_at_once(&self, search: &Search, control: &mut impl Control) -> Result<RingDesign, NoDesign> {
         match self.speed_mm_s {
             None | Some(0) => self.shortest_at_rest(search, control),
             Some(_) => self.shortest_moving(search, control),
@@ -142,7 +137,7 @@ impl RingSpec {
         at_once: RingDesign,
         search: &Search,
         control: &mut impl Control,
-    ) -> Result<Result<RingDesign, NoSchedule>, SearchError> {
+    ) -> Result<RingDesign, NoDesign> {
         // What is proven without handling holds with it.
         let (bound, bounding) = (at_once.bound, at_once.bounding.clone());
         let step = Micros::new(self.handling.as_micros().div_ceil(2));
@@ -156,13 +151,10 @@ impl RingSpec {
                 if apart != design.schedule {
                     (design.schedule, design.to_spare) = (apart, None);
                 }
-                return Ok(Ok(design));
+                return Ok(design);
             }
             wider = wider.covering(wider.t_delta.saturating_add(step));
-            design = match wider.shortest_at_once(&Search { atlas: "", ..*search }, control)? {
-                Ok(design) => design,
-                Err(none) => return Ok(Err(none)),
-            };
+            design = wider.shortest_at_once(&Search { atlas: "", ..*search }, control)?;
             (design.bound, design.found.bound, design.found.proven) = (bound, bound, false);
             design.bounding = bounding.clone();
             design.reason = format!(
@@ -170,16 +162,12 @@ impl RingSpec {
                 self.handling
             );
         }
-        Ok(Err(NoSchedule::Handling))
+        Err(NoDesign::Handling)
     }
 
-    fn shortest_at_rest(
-        &self,
-        search: &Search,
-        control: &mut impl Control,
-    ) -> Result<Result<RingDesign, NoSchedule>, SearchError> {
+    fn shortest_at_rest(&self, search: &Search, control: &mut impl Control) -> Result<RingDesign, NoDesign> {
         let shortest = shortest(&self.problem(), search, control)?;
-        Ok(Ok(self.design(shortest.schedule, shortest, self.clone())))
+        Ok(self.design(shortest.schedule, shortest, self.clone()))
     }
 
     /// The design of a schedule that serves this ring at its own `t_delta`.

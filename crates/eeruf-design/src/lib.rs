@@ -23,7 +23,7 @@
 //! use eeruf_design::{RingSpec, Search};
 //! let ring = "sensors = 8\nt_delta_us = 999\nmin_interval_us = 15_000\nwindow_us = 36_000";
 //! let spec = RingSpec::from_text(ring)?;
-//! let design = spec.shortest(&Search::default(), &mut ()).map_err(|error| error.to_string())??;
+//! let design = spec.shortest(&Search::default(), &mut ())?;
 //! let period = design.found.value;
 //! assert_eq!(period.map(|period| period.as_micros()), Some(66_000));
 //! assert_eq!(RingSpec::from_text("sensors = 65").unwrap_err().to_string(), "line 1: 65 sensors; expected 1 to 64");
@@ -58,7 +58,7 @@ mod what_if;
 
 pub use each::Each;
 pub use eeruf_period::{PeriodProblem, ToSpare};
-pub use find::{NoSchedule, RingDesign};
+pub use find::{NoDesign, RingDesign};
 pub use flow::{FlowDesign, turns_of};
 pub use found::FoundJson;
 pub use layout::{LayoutKey, LayoutName, OwnedLayout};

@@ -16,7 +16,7 @@ use eeruf_core::search::{Control, Found, Outcome, SearchError};
 use eeruf_period::{PeriodProblem, ToSpare};
 use eeruf_sim::AnySchedule;
 
-use crate::find::{NoSchedule, RingDesign};
+use crate::find::{NoDesign, RingDesign};
 use crate::ring::RingSpec;
 use crate::shortest::{SPARE_BUDGET, Search, Shortest, shortest};
 
@@ -52,11 +52,7 @@ impl RingSpec {
     }
 
     /// The shortest period for a ring that moves.
-    pub(crate) fn shortest_moving(
-        &self,
-        search: &Search,
-        control: &mut impl Control,
-    ) -> Result<Result<RingDesign, NoSchedule>, SearchError> {
+    pub(crate) fn shortest_moving(&self, search: &Search, control: &mut impl Control) -> Result<RingDesign, NoDesign> {
         Moving::new(self, *search).shortest(control)
     }
 
@@ -99,19 +95,19 @@ impl<'s> Moving<'s> {
         })
     }
 
-    fn shortest(mut self, control: &mut impl Control) -> Result<Result<RingDesign, NoSchedule>, SearchError> {
+    fn shortest(mut self, control: &mut impl Control) -> Result<RingDesign, NoDesign> {
         let spec = self.spec;
         // No schedule is shorter than one for the least t_delta of any period, nor than one for the least t_delta of
         // that period, and so on.
         let mut bounding = spec.covering(self.least_t_delta(0));
         if bounding.t_delta > TOO_MUCH {
-            return Ok(Err(NoSchedule::TooFast));
+            return Err(NoDesign::TooFast);
         }
         let mut lower = self.standing(&bounding, self.search.atlas, control)?;
         while let Some(period) = lower.found.value.filter(|_| lower.found.proven) {
             let t_delta = self.least_t_delta(self.ticks(period));
             if t_delta > TOO_MUCH {
-                return Ok(Err(NoSchedule::TooFast));
+                return Err(NoDesign::TooFast);
             }
             let next = spec.covering(t_delta);
             let same = next.problem().in_ticks() == bounding.problem().in_ticks();
@@ -123,12 +119,12 @@ impl<'s> Moving<'s> {
         }
         if spec.serves(&lower.schedule) {
             lower.found.nodes = self.nodes;
-            return Ok(Ok(spec.design(lower.schedule, lower, bounding)));
+            return Ok(spec.design(lower.schedule, lower, bounding));
         }
         // The preferred schedule may fire less evenly than the first that was found.
         if let Some(schedule) = lower.found.schedule.filter(|schedule| spec.serves(schedule)) {
             lower.found.nodes = self.nodes;
-            return Ok(Ok(spec.design(schedule, Shortest { to_spare: None, ..lower }, bounding)));
+            return Ok(spec.design(schedule, Shortest { to_spare: None, ..lower }, bounding));
         }
         let bound = lower.found.bound;
         let upper = self.climb(&lower, control)?;
@@ -140,7 +136,7 @@ impl<'s> Moving<'s> {
         } else {
             (upper, bound, lower.reason.clone())
         };
-        let Some(schedule) = best else { return Ok(Err(NoSchedule::EndedEarly)) };
+        let Some(schedule) = best else { return Err(NoDesign::EndedEarly) };
         let value = Some(schedule.period());
         let proven = bound == value;
         let needs = spec.covering(spec.t_delta_needed(&schedule).max(bounding.t_delta));
@@ -166,7 +162,7 @@ impl<'s> Moving<'s> {
         let found = Found { schedule: Some(schedule), value, bound, proven, nodes: self.nodes };
         let shortest = Shortest { found, schedule, reason, to_spare, from_atlas: false };
         let design = spec.design(schedule, shortest, bounding);
-        Ok(Ok(RingDesign { bound: certified, t_delta: needs.t_delta, spec: needs, ..design }))
+        Ok(RingDesign { bound: certified, t_delta: needs.t_delta, spec: needs, ..design })
     }
 
     /// Of the schedules with the period of this one and no larger `t_delta`, the one with most to spare.

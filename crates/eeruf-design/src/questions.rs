@@ -4,7 +4,7 @@ use eeruf_core::Micros;
 use eeruf_core::search::{Control, Outcome, SearchError};
 use eeruf_sim::AnySchedule;
 
-use crate::find::NoSchedule;
+use crate::find::NoDesign;
 use crate::moving::Moving;
 use crate::ring::RingSpec;
 use crate::shortest::Search;
@@ -125,12 +125,13 @@ impl RingSpec {
         for tenths in 1..=CURVE_POINTS {
             let (spec, value) = self.with(need, tenths);
             let mut point = CurvePoint { tenths, value, period: None, bound: None, proven: false };
-            match spec.shortest(&search, control)? {
+            match spec.shortest(&search, control) {
                 Ok(design) => {
                     let found = design.found;
                     (point.period, point.bound, point.proven) = (found.value, found.bound, found.proven);
                 }
-                Err(none) => point.proven = none == NoSchedule::TooFast,
+                Err(NoDesign::Search(error)) => return Err(error),
+                Err(none) => point.proven = none == NoDesign::TooFast,
             }
             // What more of a need takes is no shorter.
             let before = points.last().and_then(|last| last.bound);

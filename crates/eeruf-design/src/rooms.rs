@@ -13,7 +13,7 @@ use eeruf_sim::{Pose, Robot, Transducer};
 use serde::{Serialize, Serializer};
 
 use crate::atlas::ATLAS;
-use crate::find::RingDesign;
+use crate::find::{NoDesign, RingDesign};
 use crate::ring::RingSpec;
 use crate::shortest::Search;
 use crate::way::Way;
@@ -127,7 +127,10 @@ impl RingSpec {
     /// As for [`RingSpec::shortest`].
     pub fn shortest_to_study(&self) -> Result<Option<RingDesign>, SearchError> {
         let search = Search { budget: STUDY_BUDGET, what_if: false, atlas: ATLAS };
-        Ok(self.shortest(&search, &mut ())?.ok())
+        match self.shortest(&search, &mut ()) {
+            Err(NoDesign::Search(error)) => Err(error),
+            found => Ok(found.ok()),
+        }
     }
 
     /// Judges the ways of firing the ring, with the schedule of two phases that was found for it.

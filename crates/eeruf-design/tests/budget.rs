@@ -1,6 +1,6 @@
 //! Claims of a search that ends before its proof, for a ring whose robot moves.
 
-use eeruf_design::{NoSchedule, RingSpec, Search};
+use eeruf_design::{NoDesign, RingSpec, Search};
 
 #[test]
 fn bounds_hold_whatever_the_budget() {
@@ -10,7 +10,7 @@ fn bounds_hold_whatever_the_budget() {
              60\nspeed_m_s = 0.5\ntick_us = 100\n"
         );
         let spec = RingSpec::from_text(&ring).unwrap();
-        let within = |budget| spec.shortest(&Search { budget, what_if: false, atlas: "" }, &mut ()).unwrap();
+        let within = |budget| spec.shortest(&Search { budget, what_if: false, atlas: "" }, &mut ());
         let shortest = within(1_000_000).unwrap().found;
         assert!(shortest.proven);
         let mut unproven = 0;
@@ -23,7 +23,7 @@ fn bounds_hold_whatever_the_budget() {
                     assert!(design.found.bound <= shortest.value, "{budget} nodes: {:?}", design.found.bound);
                     assert!(design.schedule.verify(&design.spec.problem().requirements).ok());
                 }
-                Err(none) => assert_eq!(none, NoSchedule::EndedEarly, "{budget} nodes"),
+                Err(none) => assert_eq!(none, NoDesign::EndedEarly, "{budget} nodes"),
             }
         }
         assert!(unproven > 0, "{layout}: no budget was too small");
@@ -37,7 +37,7 @@ fn faster_needs_are_compared_with_printed_ones() {
                 jitter_us = 60\nspeed_m_s = 1\ntick_us = 100\n";
     let spec = RingSpec::from_text(ring).unwrap();
     let search = Search { budget: 100_000, what_if: true, atlas: "" };
-    let design = spec.shortest(&search, &mut ()).unwrap().unwrap();
+    let design = spec.shortest(&search, &mut ()).unwrap();
     let needed = format!("instead of {}", design.t_delta);
     assert!(
         design.t_delta > spec.t_delta && design.what_if.iter().any(|case| case.need.ends_with(&needed)),

@@ -26,7 +26,7 @@ fn rings() -> [RingSpec; 5] {
 }
 
 fn shortest(spec: &RingSpec) -> Micros {
-    let design = spec.shortest(&SEARCH, &mut ()).expect("it can be searched").expect("there is a schedule");
+    let design = spec.shortest(&SEARCH, &mut ()).expect("there is a schedule");
     assert!(design.found.proven, "{:?}", design.found);
     design.schedule.period()
 }

@@ -14,7 +14,7 @@ fn read(text: &str) -> RingSpec {
 
 fn design(spec: &RingSpec) -> RingDesign {
     let found = spec.shortest(&Search { budget: 1_000_000, what_if: false, atlas: "" }, &mut ());
-    found.expect("it can be searched").expect("there is a schedule")
+    found.expect("there is a schedule")
 }
 
 /// Three of the rings that people have: `rings/`.
@@ -86,7 +86,7 @@ fn what_would_make_an_uneven_ring_faster_is_said_and_true() {
                 window_us = 25_000\nmin_interval_us = 9_000\n";
     let shared = read(&format!("{text}shared_lines = [[0, 1], [2, 3]]"));
     let search = Search { budget: 1_000_000, what_if: true, atlas: "" };
-    let found = shared.shortest(&search, &mut ()).expect("it can be searched").expect("there is a schedule");
+    let found = shared.shortest(&search, &mut ()).expect("there is a schedule");
     let of = |need: &str| found.what_if.iter().find(|what| what.need.contains(need)).cloned();
     let own = of("an echo line for each").expect("lines are shared");
     let alone = design(&read(text));

@@ -3,9 +3,9 @@
 use core::fmt;
 
 use eeruf_core::Micros;
+use eeruf_files::AnySchedule;
 use eeruf_period::PeriodProblem;
 use eeruf_period::engine::prove::{NoProof, prove_what_can_be};
-use eeruf_sim::AnySchedule;
 
 use crate::find::RingDesign;
 

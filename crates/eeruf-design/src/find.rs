@@ -5,8 +5,8 @@ use std::fmt;
 
 use eeruf_core::search::{Control, Found, SearchError};
 use eeruf_core::{MAX_SENSORS, Micros};
+use eeruf_files::{AnySchedule, ScheduleFile};
 use eeruf_period::ToSpare;
-use eeruf_sim::{AnySchedule, ScheduleFile};
 
 use crate::found::FoundJson;
 use crate::ring::RingSpec;

@@ -41,7 +41,7 @@ impl RingSpec {
     /// The first thing by which its robot cannot be built.
     pub fn flow(&self, seed: u32) -> Result<FlowDesign, String> {
         // Where sensors stand is of no account.
-        let robot = self.robot_ring().robot(Pose::identity(), Some(vec![Pose::identity(); self.sensors]))?;
+        let robot = Robot::of_ring(&self.robot_ring(), Pose::identity(), Some(vec![Pose::identity(); self.sensors]))?;
         Ok(self.flow_of(&Robot { others: self.others, ..robot }, seed))
     }
 

@@ -2,7 +2,7 @@
 
 use eeruf_core::search::Found;
 use eeruf_core::{MAX_SENSORS, Micros};
-use eeruf_sim::ScheduleFile;
+use eeruf_files::ScheduleFile;
 use serde::Serialize;
 
 /// Found, as Python names it.

@@ -6,7 +6,8 @@
 //! ambiguous. So firings are moved apart by as much as one takes, within what the schedule has to spare.
 
 use eeruf_core::{MAX_SENSORS, Micros, Phase};
-use eeruf_sim::{AnySchedule, Random};
+use eeruf_files::AnySchedule;
+use eeruf_period::Random;
 
 use crate::ring::RingSpec;
 

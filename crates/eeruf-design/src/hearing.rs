@@ -2,8 +2,8 @@
 
 use core::f64::consts::TAU;
 
-use eeruf_modules::Module;
-use eeruf_sim::{Air, Beam, Piston, Pose, Transducer, Vector};
+use eeruf_files::Pose;
+use eeruf_modules::{Air, Beam, Module, Piston};
 
 /// Directions and distances at which sound is turned back between two sensors.
 const DIRECTIONS: u32 = 180;
@@ -17,8 +17,10 @@ const SAME_DEG: f64 = 1e-9;
 
 /// A sensor as others hear it.
 struct Heard<'a> {
-    pose: &'a Pose,
-    transducer: Transducer,
+    at: [f64; 2],
+    /// Sine and cosine of its heading.
+    heading: (f64, f64),
+    module: &'a Module,
     absorption_db_per_m: f64,
     /// The amplitude that is just heard now and then.
     floor: f64,
@@ -27,11 +29,12 @@ struct Heard<'a> {
 }
 
 impl<'a> Heard<'a> {
-    fn new(pose: &'a Pose, module: &Module, air: Air) -> Self {
-        let transducer = Transducer::of(module);
-        let absorption_db_per_m = air.absorption_db_per_m(transducer.frequency_hz);
+    fn new(pose: &Pose, module: &'a Module, air: Air) -> Self {
+        let frequency_hz = f64::from(module.frequency_hz);
+        let absorption_db_per_m = air.absorption_db_per_m(frequency_hz);
+        let wave_number = TAU * frequency_hz / air.speed_of_sound();
         // The body that it stands on.
-        let piston = Piston { beam: Beam::CutAt90, ..transducer.piston(air) };
+        let piston = Piston { beam: Beam::CutAt90, ..Piston::new(wave_number, f64::from(module.radius_um) / 1e6) };
         let mut pattern: Vec<f64> = (0..=180_u32)
             .map(|deg| {
                 let within =
@@ -44,18 +47,21 @@ impl<'a> Heard<'a> {
         }
         let length_m = 2.0 * f64::from(module.hears_to_mm) / 1e3;
         let floor = lost(absorption_db_per_m, length_m);
-        Self { pose, transducer, absorption_db_per_m, floor, pattern }
+        let heading = libm::sincos(pose.heading_rad);
+        Self { at: [pose.x_m, pose.y_m], heading, module, absorption_db_per_m, floor, pattern }
     }
 
     /// Share of the sound in the direction of a point, and the distance to it.
-    fn towards(&self, point: Vector) -> (f64, f64) {
-        let way = self.pose.inverse_transform_vector(&(point - self.pose.translation.vector));
-        let deg = libm::atan2(way.y, way.x).abs().to_degrees() + SAME_DEG;
-        (self.pattern[deg as usize], way.norm())
+    fn towards(&self, point: [f64; 2]) -> (f64, f64) {
+        let [east, north] = [point[0] - self.at[0], point[1] - self.at[1]];
+        let (sin, cos) = self.heading;
+        let [ahead, aside] = [cos * east + sin * north, cos * north - sin * east];
+        let deg = libm::atan2(aside, ahead).abs().to_degrees() + SAME_DEG;
+        (self.pattern[deg as usize], length(ahead, aside))
     }
 
     /// Returns true if it hears another one whose sound is turned back at this point.
-    fn hears(&self, other: &Self, point: Vector, farthest_m: f64) -> bool {
+    fn hears(&self, other: &Self, point: [f64; 2], farthest_m: f64) -> bool {
         let ((departs, out_m), (arrives, back_m)) = (other.towards(point), self.towards(point));
         let length_m = out_m + back_m;
         let amplitude = LOUDEST_PANEL * departs * arrives * lost(other.absorption_db_per_m, length_m);
@@ -68,6 +74,10 @@ fn lost(absorption_db_per_m: f64, length_m: f64) -> f64 {
     libm::exp10(-absorption_db_per_m * length_m / 20.0) / length_m
 }
 
+fn length(x_m: f64, y_m: f64) -> f64 {
+    (x_m * x_m + y_m * y_m).sqrt()
+}
+
 /// For each sensor the bit set of those that hear it or that it hears: straight, or off one wall or object as far as
 /// `farthest_m`, however that stands, in a module's strongest fading. They stand on a body, which lets nothing through:
 /// a sensor sends and hears nothing behind it.
@@ -76,7 +86,7 @@ pub(crate) fn hearing(poses: &[Pose], modules: &[Module], air: Air, farthest_m: 
     let mut rows = vec![0; sensors.len()];
     for (x, one) in sensors.iter().enumerate() {
         for (y, other) in sensors.iter().enumerate().skip(x + 1) {
-            if one.transducer.hears(&other.transducer) && hear(one, other, farthest_m) {
+            if one.module.hears(other.module) && hear(one, other, farthest_m) {
                 rows[x] |= 1 << y;
                 rows[y] |= 1 << x;
             }
@@ -86,37 +96,36 @@ pub(crate) fn hearing(poses: &[Pose], modules: &[Module], air: Air, farthest_m: 
 }
 
 fn hear(one: &Heard<'_>, other: &Heard<'_>, farthest_m: f64) -> bool {
-    let middle = 0.5 * (one.pose.translation.vector + other.pose.translation.vector);
+    let middle = [0, 1].map(|axis| 0.5 * (one.at[axis] + other.at[axis]));
     // Any point turns sound back, by a wall through it that stands as it must.
     let mut points = (0..DISTANCES).flat_map(|step| {
         let share = f64::from(step) / f64::from(DISTANCES - 1);
         let away_m = NEAREST_M * libm::pow(farthest_m.max(NEAREST_M) / NEAREST_M, share);
         (0..DIRECTIONS).map(move |step| {
             let rad = TAU * f64::from(step) / f64::from(DIRECTIONS);
-            middle + away_m * Vector::new(libm::cos(rad), libm::sin(rad))
+            [middle[0] + away_m * libm::cos(rad), middle[1] + away_m * libm::sin(rad)]
         })
     });
     let hear_at = |point| one.hears(other, point, farthest_m) || other.hears(one, point, farthest_m);
     // The middle is on the straight way, if there is one.
-    let apart_m = (one.pose.translation.vector - other.pose.translation.vector).norm();
+    let apart_m = length(one.at[0] - other.at[0], one.at[1] - other.at[1]);
     (apart_m > NEAREST_M && hear_at(middle)) || points.any(hear_at)
 }
 
 #[cfg(test)]
 mod tests {
+    use eeruf_files::arc;
     use eeruf_modules::{HC_SR04, POLAROID_6500};
-    use eeruf_sim::{CrosstalkMatrix, CrosstalkQuery, Limits, Random, Robot, Scene, Tracer, Wall};
+    use eeruf_period::Random;
+    use eeruf_sim::{CrosstalkMatrix, CrosstalkQuery, Limits, Pose, Scene, Tracer, Transducer, Vector, Wall, pose_of};
 
     use super::*;
     use crate::RingSpec;
 
     /// Two sensors on the edge of a robot of this radius, this far apart in heading.
     fn two(apart_deg: f64, radius_m: f64, modules: [Module; 2]) -> bool {
-        let pose = |deg: f64| {
-            let rad = deg.to_radians();
-            Pose::new(radius_m * Vector::new(rad.cos(), rad.sin()), rad)
-        };
-        hearing(&[pose(0.0), pose(apart_deg)], &modules, Air::default(), 2.57)[0] != 0
+        let poses: Vec<_> = arc(2, radius_m, 0.0, apart_deg.to_radians()).collect();
+        hearing(&poses, &modules, Air::default(), 2.57)[0] != 0
     }
 
     #[test]
@@ -141,8 +150,9 @@ mod tests {
         for (module, sensors) in [(HC_SR04, 8), (POLAROID_6500, 9), (HC_SR04, 13)] {
             let transducer = Transducer::of(&module);
             for radius_m in [0.1, 0.3] {
-                let ring = Robot::ring(Pose::identity(), sensors, TAU / sensors as f64, radius_m, transducer).sensors;
-                let rows = hearing(&ring, &vec![module; sensors], air, farthest_m);
+                let poses: Vec<_> = arc(sensors, radius_m, 0.0, TAU / sensors as f64).collect();
+                let ring: Vec<_> = poses.iter().map(pose_of).collect();
+                let rows = hearing(&poses, &vec![module; sensors], air, farthest_m);
                 deaf += rows.iter().map(|row| sensors as u32 - 1 - row.count_ones()).sum::<u32>();
                 // Sound that fading lifts by five sigma is heard.
                 let floor = transducer.detection_floor(air) * libm::exp10(-5.0 * 1.5 / 20.0);

@@ -15,8 +15,7 @@
 //! | `found` | the answer as it is printed in JSON |
 //! | `atlas`, `atlas_making` | rings whose shortest period is known; how their file is made |
 //! | `certificate` | the proof, as a text that others check |
-//! | `rooms` | ways of firing the ring, judged in rooms |
-//! | `way` | a way of firing as a program for a board has it |
+//! | `rooms`, `flow`, `way` | with the feature `rooms`: ways of firing the ring, judged by the simulator |
 //! | `reals` | what the tick costs: the shortest period over the reals |
 //!
 //! ```
@@ -36,6 +35,7 @@ pub mod atlas_making;
 pub mod certificate;
 mod each;
 mod find;
+#[cfg(feature = "rooms")]
 mod flow;
 mod found;
 mod handling;
@@ -48,17 +48,20 @@ mod placing;
 mod questions;
 mod reals;
 mod ring;
+#[cfg(feature = "rooms")]
 mod rooms;
 mod shortest;
 mod uneven;
 #[cfg(feature = "urdf")]
 mod urdf;
+#[cfg(feature = "rooms")]
 mod way;
 mod what_if;
 
 pub use each::Each;
 pub use eeruf_period::{PeriodProblem, ToSpare};
 pub use find::{NoDesign, RingDesign};
+#[cfg(feature = "rooms")]
 pub use flow::{FlowDesign, turns_of};
 pub use found::FoundJson;
 pub use layout::{LayoutKey, LayoutName, OwnedLayout};
@@ -67,9 +70,11 @@ pub use places::Places;
 pub use questions::{CURVE_BUDGET, CURVE_POINTS, CurvePoint, Fit, Need};
 pub use reals::{RealPeriod, over_reals, real_budget};
 pub use ring::{RingSpec, robot_ring};
+#[cfg(feature = "rooms")]
 pub use rooms::{RoomRobot, RoomsAnswer, RoomsAsked, RoomsJson};
 pub use shortest::{Search, Shortest, shortest};
 pub use uneven::OwnedUneven;
+#[cfg(feature = "rooms")]
 pub use way::Way;
 pub use what_if::WhatIf;
 

@@ -13,8 +13,8 @@
 
 use eeruf_core::Micros;
 use eeruf_core::search::{Control, Found, Outcome, SearchError};
+use eeruf_files::AnySchedule;
 use eeruf_period::{PeriodProblem, ToSpare};
-use eeruf_sim::AnySchedule;
 
 use crate::find::{NoDesign, RingDesign};
 use crate::ring::RingSpec;

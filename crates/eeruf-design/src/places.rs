@@ -1,6 +1,6 @@
 //! Places of a ring's sensors on the robot.
 
-use eeruf_sim::Pose;
+use eeruf_files::Pose;
 
 /// Places of a ring's sensors on the robot.
 #[derive(Clone, Debug, Default, PartialEq)]

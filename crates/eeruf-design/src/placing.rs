@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use eeruf_sim::{Pose, Robot, Transducer, Vector};
+use eeruf_files::{Pose, arc};
 
 use crate::limits::number;
 use crate::places::Places;
@@ -18,8 +18,9 @@ impl RingFile {
             (None, Some(spacing), Some(radius), None, None) => {
                 let spacing = number("spacing_deg", spacing, -360.0, 360.0)?.to_radians();
                 let radius = number("radius_m", radius, 0.0, 1000.0)?;
-                let robot = Robot::ring(Pose::identity(), self.sensors, spacing, radius, Transducer::HC_SR04);
-                ("base_height_m", Places { poses: robot.sensors, ..Places::default() })
+                let first = -0.5 * spacing * (self.sensors - 1) as f64;
+                let poses = arc(self.sensors, radius, first, spacing).collect();
+                ("base_height_m", Places { poses, ..Places::default() })
             }
             (None, None, None, Some(urdf), Some(links)) => ("links", self.linked(file, urdf, links)?),
             (None, None, None, Some(urdf), None) => {
@@ -48,7 +49,10 @@ impl RingFile {
         if poses.len() != self.sensors {
             return Err(format!("poses has {} places; expected {}, as many as sensors", poses.len(), self.sensors));
         }
-        let pose = |place: &PlaceFile| Pose::new(Vector::new(place.x_m, place.y_m), place.heading_deg.to_radians());
+        let pose = |place: &PlaceFile| {
+            let &PlaceFile { x_m, y_m, heading_deg, .. } = place;
+            Pose { x_m, y_m, heading_rad: heading_deg.to_radians() }
+        };
         let is_high = poses.iter().any(|place| place.z_m.is_some());
         let z_m = if is_high { poses.iter().map(|place| place.z_m.unwrap_or(0.0)).collect() } else { vec![] };
         Ok(Places { poses: poses.iter().map(pose).collect(), z_m, ..Places::default() })

@@ -2,7 +2,7 @@
 
 use eeruf_core::Micros;
 use eeruf_core::search::{Control, Outcome, SearchError};
-use eeruf_sim::AnySchedule;
+use eeruf_files::AnySchedule;
 
 use crate::find::NoDesign;
 use crate::moving::Moving;

@@ -3,7 +3,7 @@
 //! A schedule in ticks of any length keeps these needs, so no tick, however fine, beats a period proven here.
 
 use eeruf_core::{Micros, Phase};
-use eeruf_sim::AnySchedule;
+use eeruf_files::AnySchedule;
 
 use crate::find::RingDesign;
 use eeruf_period::PeriodProblem;

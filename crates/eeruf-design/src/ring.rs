@@ -3,10 +3,9 @@
 use std::path::Path;
 
 use eeruf_core::{Criterion, Micros, Requirements, SensorLimits, SpeedOfSound};
-use eeruf_files::{FileError, build};
-use eeruf_modules::{Module, ModulesFile};
+use eeruf_files::{FileError, Pose, RobotRing, build};
+use eeruf_modules::{Air, Module, ModulesFile};
 use eeruf_period::PeriodProblem;
-use eeruf_sim::{Air, Pose, RobotRing};
 use serde::Deserialize;
 
 use crate::each::Each;
@@ -225,7 +224,7 @@ impl RingSpec {
     }
 }
 
-/// The robot of a ring file in a scene, as [`World::from_text_with`](eeruf_sim::World::from_text_with) reads
+/// The robot of a ring file in a scene, as `eeruf_sim::World::from_text_with` reads
 /// one.
 ///
 /// # Errors

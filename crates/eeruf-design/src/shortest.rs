@@ -2,8 +2,8 @@
 
 use eeruf_core::MAX_SENSORS;
 use eeruf_core::search::{Control, Found, SearchError};
+use eeruf_files::AnySchedule;
 use eeruf_period::{PeriodProblem, ToSpare};
-use eeruf_sim::AnySchedule;
 
 use crate::atlas;
 

@@ -3,8 +3,7 @@
 
 use std::path::Path;
 
-use eeruf_files::{FileError, meant};
-use eeruf_sim::{Pose, Vector};
+use eeruf_files::{FileError, Pose, meant};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 use urdf_rs::{Joint, JointType, Robot};
 
@@ -59,8 +58,8 @@ pub(crate) fn places(file: &Path, links: &[String]) -> Result<Places, String> {
                  a sensor looks along its link's x axis"
             ));
         }
-        let at = Vector::new(place.translation.x, place.translation.y);
-        places.poses.push(Pose::new(at, libm::atan2(ahead.y, ahead.x)));
+        let (x_m, y_m) = (place.translation.x, place.translation.y);
+        places.poses.push(Pose { x_m, y_m, heading_rad: libm::atan2(ahead.y, ahead.x) });
         places.z_m.push(place.translation.z);
     }
     Ok(places)
@@ -148,6 +147,7 @@ fn transform(joint: &Joint) -> Isometry3<f64> {
     Isometry3::from_parts(Translation3::new(x, y, z), UnitQuaternion::from_euler_angles(roll, pitch, yaw))
 }
 
+#[cfg(feature = "rooms")]
 #[cfg(test)]
 mod tests {
     use std::path::PathBuf;
@@ -225,8 +225,8 @@ mod tests {
         let right_deg = 90.0 - 2.141_592_653_589_793_f64.to_degrees();
         let expected = [(0.13, 0.12, 0.02, left_deg), (0.13, -0.12, 0.02, right_deg), (-0.2, 0.0, 0.1 - 0.08, 180.0)];
         for ((pose, z_m), (x, y, z, deg)) in places.poses.iter().zip(&places.z_m).zip(expected) {
-            let heading = pose.rotation.angle().to_degrees();
-            let off = [pose.translation.x - x, pose.translation.y - y, z_m - z, (heading.abs() - deg.abs())];
+            let heading = pose.heading_rad.to_degrees();
+            let off = [pose.x_m - x, pose.y_m - y, z_m - z, (heading.abs() - deg.abs())];
             assert!(off.iter().all(|off| off.abs() < 1e-12), "{places:?}");
         }
         assert!((places.base_height_m - 0.08).abs() < 1e-15 && places.assumed.is_empty(), "{places:?}");

@@ -17,7 +17,7 @@ fn spec(text: &str) -> RingSpec {
 /// outside, `bursts_per_s`; without any there are no walls either.
 fn corridor(spec: &RingSpec, bursts_per_s: f64) -> World {
     let circle = Robot::ring(Pose::identity(), spec.sensors, TAU / spec.sensors as f64, 0.2, Transducer::HC_SR04);
-    let of_layout = || spec.robot_ring().robot(Pose::identity(), Some(circle.sensors)).expect("a robot");
+    let of_layout = || Robot::of_ring(&spec.robot_ring(), Pose::identity(), Some(circle.sensors)).expect("a robot");
     let mut robot = spec.room_robot().map_or_else(|_| of_layout(), |of_file| of_file.robot);
     let design = spec.shortest(&Search::default(), &mut ()).expect("a schedule");
     robot.schedule = Some(design.schedule);

@@ -1,8 +1,9 @@
 //! Errors in the files of eeruf: the file, the place in it, then `thing: value; expected X`, in one line.
 //!
 //! The program, the libraries and the Python package report errors in files by the one type [`FileError`]. [`Kind`]
-//! recognises a file before it is parsed; with the feature `toml`, `parse` reads TOML, and `doubts_in` finds values in
-//! it that are legal and implausible; with `emit`, the module `emit` writes a ring as source text for firmware.
+//! recognises a file before it is parsed; with the feature `toml`, `parse` reads TOML, `doubts_in` finds values in it
+//! that are legal and implausible, `ScheduleFile` is a schedule in a file and `RobotRing` what a scene takes from a ring
+//! file; with `emit`, the module `emit` writes a ring as source text for firmware.
 
 #[cfg(feature = "emit")]
 pub mod emit;
@@ -12,6 +13,10 @@ mod implausible;
 mod kind;
 #[cfg(feature = "toml")]
 mod parse;
+#[cfg(feature = "toml")]
+mod robot_ring;
+#[cfg(feature = "toml")]
+mod schedule;
 
 pub use error::FileError;
 #[cfg(feature = "toml")]
@@ -19,3 +24,7 @@ pub use implausible::{doubt, doubt_list, doubted_keys, doubts_in};
 pub use kind::Kind;
 #[cfg(feature = "toml")]
 pub use parse::{build, explain, explain_json, meant, parse};
+#[cfg(feature = "toml")]
+pub use robot_ring::{Pose, RobotRing, arc};
+#[cfg(feature = "toml")]
+pub use schedule::{AnySchedule, ScheduleFile, as_file};

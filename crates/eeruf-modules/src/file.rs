@@ -5,9 +5,10 @@ use alloc::vec::Vec;
 use core::fmt;
 
 use serde::de::{Deserialize, Deserializer, Error, IgnoredAny, MapAccess, SeqAccess, Visitor};
+use serde::ser::{Serialize, SerializeMap as _, Serializer};
 
 use crate::aliases::like;
-use crate::keys::{ModuleError, Value};
+use crate::keys::{KEYS, ModuleError, Value};
 use crate::module::Module;
 use crate::presets::find;
 
@@ -119,6 +120,35 @@ impl<'de> Visitor<'de> for ModuleVisitor {
 impl<'de> Deserialize<'de> for ModuleFile {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         deserializer.deserialize_any(ModuleVisitor).map(Self)
+    }
+}
+
+impl Serialize for ModuleFile {
+    /// The name of a preset, or a table of all figures.
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let Self(module) = self;
+        if find(module.name) == Some(module) {
+            return serializer.serialize_str(module.name);
+        }
+        let mut table = serializer.serialize_map(Some(1 + KEYS.len()))?;
+        table.serialize_entry("like", module.name)?;
+        for key in &KEYS {
+            match key.of(module) {
+                Value::Number(number) if key.is_whole() => table.serialize_entry(key.name, &(number as i64))?,
+                Value::Number(number) => table.serialize_entry(key.name, &number)?,
+                Value::Word(word) => table.serialize_entry(key.name, word)?,
+            }
+        }
+        table.end()
+    }
+}
+
+impl Serialize for ModulesFile {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self {
+            Self::All(module) => ModuleFile(*module).serialize(serializer),
+            Self::Of(list) => serializer.collect_seq(list.iter().copied().map(ModuleFile)),
+        }
     }
 }
 

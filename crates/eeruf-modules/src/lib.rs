@@ -18,18 +18,30 @@
 #[cfg(feature = "serde")]
 extern crate alloc;
 
+#[cfg(feature = "sound")]
+mod air;
 mod aliases;
 #[cfg(feature = "serde")]
 mod file;
+#[cfg(feature = "sound")]
+mod fresnel;
 mod keys;
 mod module;
+#[cfg(feature = "sound")]
+mod piston;
 mod presets;
 
 pub use aliases::like;
+#[cfg(feature = "sound")]
+pub use air::Air;
 #[cfg(feature = "serde")]
 pub use file::{ModuleFile, ModulesFile};
+#[cfg(feature = "sound")]
+pub use fresnel::fresnel;
 pub use keys::{KEYS, Key, ModuleError, Value};
 pub use module::{Beam, Gain, Interface, Module, NoEcho, PulseTimes};
+#[cfg(feature = "sound")]
+pub use piston::{Piston, wrap_angle};
 pub use presets::{
     A02YYUW, HC_SR04, HC_SR04_CLONE, JSN_SR04T, MB1010, MB1242, PING, POLAROID_6500, PRESETS, Preset, SRF08, Source,
     US_100, find, names,

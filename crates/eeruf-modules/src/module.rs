@@ -165,6 +165,11 @@ pub struct PulseTimes {
 }
 
 impl Module {
+    /// Returns true if it hears the sound of another kind: whether their bands overlap.
+    pub const fn hears(&self, other: &Self) -> bool {
+        2 * self.frequency_hz.abs_diff(other.frequency_hz) < self.bandwidth_hz + other.bandwidth_hz
+    }
+
     /// Times by which a driver reads its line; `None` if it does not answer by the width of a pulse that ends without
     /// an echo too.
     pub const fn pulse_times(&self) -> Option<PulseTimes> {

@@ -18,9 +18,11 @@
 
 pub mod engine;
 mod period_problem;
+mod random;
 mod reason;
 
 pub use period_problem::{PeriodProblem, ShortestPeriod, ToSpare};
+pub use random::Random;
 
 /// The listing of the crate's README compiles and holds.
 #[cfg(doctest)]

@@ -273,7 +273,8 @@ impl Robot {
         let rated_m_s = file.as_ref().map_or(0.0, |file| file.speed_m_s);
         let (mut robot, sensor_poses) = if let (None, Some(file)) = (sensors, &file) {
             no_arc("the ring file says where sensors stand")?;
-            let robot = file.robot(to_pose(pose), None).map_err(|message| refused_ring(&message))?;
+            let robot =
+                eeruf_sim::Robot::of_ring(file, to_pose(pose), None).map_err(|message| refused_ring(&message))?;
             let poses = robot.sensors.iter().map(from_pose).collect();
             (robot, poses)
         } else if sensors.is_none_or(|sensors| sensors.is_instance_of::<PyString>() || sensors.try_iter().is_err()) {
@@ -303,7 +304,8 @@ impl Robot {
             (eeruf_sim::Robot::with_sensors(to_pose(pose), on_robot, Transducer::POLAROID_6500), poses)
         };
         if let (Some(file), Some(_)) = (&file, sensors) {
-            robot = file.robot(to_pose(pose), Some(robot.sensors)).map_err(|message| refused_ring(&message))?;
+            robot = eeruf_sim::Robot::of_ring(file, to_pose(pose), Some(robot.sensors))
+                .map_err(|message| refused_ring(&message))?;
         }
         let count = robot.sensors.len();
         let (name, module) = match (module, transducer) {

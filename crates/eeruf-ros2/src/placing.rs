@@ -4,7 +4,7 @@ use std::fs;
 
 use eeruf_core::MAX_SENSORS;
 use eeruf_design::RingSpec;
-use eeruf_sim::Pose;
+use eeruf_sim::{Pose, pose_of};
 
 use crate::parameters::Parameters;
 
@@ -39,7 +39,8 @@ impl Placing {
             let expected = "expected poses, or spacing_deg and radius_m, or urdf and links";
             return Err(wrong(format!("no places of sensors; {expected}")));
         }
-        let mut placing = Self::of(&ring.poses, parameters.height_m);
+        let poses: Vec<_> = ring.poses.iter().map(pose_of).collect();
+        let mut placing = Self::of(&poses, parameters.height_m);
         for (place, z_m) in placing.places.iter_mut().zip(ring.z_m) {
             place.z_m = z_m;
         }

@@ -77,7 +77,7 @@ pub use acoustics::{
     Beam, GainProfile, Physics, Piston, Transducer, UnknownPhysics, edge_diffraction, gain_at, pole_wave_correction,
     rigid_cylinder_form,
 };
-pub use geometry::{Moment, Point, Pose, Specular, Vector, alhazen, alhazen_twice};
+pub use geometry::{Moment, Point, Pose, Specular, Vector, alhazen, alhazen_twice, pose_of};
 pub use maps::OccupancyGrid;
 pub use methods::{
     BestSchedule, Firing, FiringPeriod, FlowOptions, Method, OwnError, UnknownMethod, best_schedule_for,

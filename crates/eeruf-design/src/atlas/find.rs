@@ -1,7 +1,7 @@
 //! The atlas that comes with this crate, and how a ring is looked up in it.
 
+use eeruf_files::AnySchedule;
 use eeruf_period::PeriodProblem;
-use eeruf_sim::AnySchedule;
 
 use super::rings::Ring;
 use super::row::Row;

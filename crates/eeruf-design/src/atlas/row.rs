@@ -4,7 +4,7 @@ use core::fmt;
 use core::str::FromStr;
 
 use eeruf_core::Micros;
-use eeruf_sim::AnySchedule;
+use eeruf_files::AnySchedule;
 
 use super::rings::Ring;
 

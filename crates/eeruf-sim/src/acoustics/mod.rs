@@ -2,7 +2,6 @@
 //! `geometry` and `scene`; `tracing` applies it to the paths that it finds.
 
 mod diffraction;
-mod directivity;
 mod panel;
 mod physics;
 mod reflection;
@@ -10,8 +9,7 @@ mod spreading;
 mod transducer;
 
 pub use diffraction::{edge_diffraction, pole_wave_correction, rigid_cylinder_form};
-pub use directivity::Piston;
-pub use eeruf_modules::{Beam, Gain as GainProfile};
+pub use eeruf_modules::{Beam, Gain as GainProfile, Piston};
 pub(crate) use panel::{LOUDEST_PANEL, panel_share};
 pub use physics::{Physics, UnknownPhysics};
 pub(crate) use reflection::reflected;

@@ -1,9 +1,8 @@
 //! Transducers and their ranging modules: frequency, size, burst, blanking, range, gain over time and what is just
 //! heard.
 
-use eeruf_modules::{Beam, Gain as GainProfile, Module};
+use eeruf_modules::{Beam, Gain as GainProfile, Module, Piston};
 
-use super::directivity::Piston;
 use crate::scene::Air;
 
 /// In how many steps [`GainProfile::Stepped`] grows.

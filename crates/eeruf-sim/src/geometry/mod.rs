@@ -6,6 +6,7 @@ mod mirror;
 mod plane;
 
 pub use alhazen::{Specular, alhazen, alhazen_twice};
+pub(crate) use eeruf_modules::wrap_angle;
 pub(crate) use mirror::Mirror;
-pub use plane::{Moment, Point, Pose, TOUCH_M, Vector};
-pub(crate) use plane::{SAME_DIRECTION, cross, opposite, wrap_angle};
+pub use plane::{Moment, Point, Pose, TOUCH_M, Vector, pose_of};
+pub(crate) use plane::{SAME_DIRECTION, cross, opposite};

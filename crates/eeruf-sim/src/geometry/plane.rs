@@ -11,6 +11,11 @@ pub type Vector = Vector2<f64>;
 /// Position and heading of a robot or a transducer.
 pub type Pose = nalgebra::Isometry2<f64>;
 
+/// A pose of a file.
+pub fn pose_of(pose: &eeruf_files::Pose) -> Pose {
+    Pose::new(Vector::new(pose.x_m, pose.y_m), pose.heading_rad)
+}
+
 /// Two points nearer than this are one: joined walls, doubles of one path, a source on top of its receiver. A choice:
 /// above rounding in a room, below any real length.
 pub const TOUCH_M: f64 = 1e-9;
@@ -23,25 +28,6 @@ pub(crate) const SAME_DIRECTION: f64 = 1e-12;
 #[inline(always)]
 pub(crate) fn cross(a: Vector, b: Vector) -> f64 {
     a.x * b.y - a.y * b.x
-}
-
-/// Wraps an angle into (-pi, pi].
-#[inline]
-pub(crate) fn wrap_angle(angle_rad: f64) -> f64 {
-    use core::f64::consts::{PI, TAU};
-    if angle_rad > -PI && angle_rad <= PI {
-        return angle_rad;
-    }
-    // A conversion to an integer and back rounds without a call.
-    let turns = (angle_rad / TAU + 0.5f64.copysign(angle_rad)) as i64;
-    let wrapped = angle_rad - TAU * turns as f64;
-    if wrapped <= -PI {
-        wrapped + TAU
-    } else if wrapped > PI {
-        wrapped - TAU
-    } else {
-        wrapped
-    }
 }
 
 /// The opposite of a direction in (-pi, pi], in the same range.

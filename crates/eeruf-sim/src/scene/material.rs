@@ -1,7 +1,7 @@
 //! Effect of a wall on the sound that it reflects: a pressure reflection coefficient and a surface roughness.
 
 /// The surface of a wall or a pole.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct Material {
     /// Share of the pressure amplitude that a perfectly flat piece returns, 0 to 1.
     pub reflection: f64,

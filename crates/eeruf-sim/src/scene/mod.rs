@@ -1,7 +1,6 @@
 //! Objects of a scene: walls, poles and air, checked once, with the mesh and the mirrors that are derived from them. It
 //! uses `geometry` only; robots, noise and seeds wrap around it in `world`.
 
-mod air;
 mod body;
 mod bounce;
 mod contact;
@@ -14,10 +13,10 @@ mod room;
 mod scene;
 mod wall;
 
-pub use air::Air;
 pub use body::{Body, MAX_CORNERS, Outline, OutlineError};
 pub use bounce::Bounce;
 pub use contact::Contact;
+pub use eeruf_modules::Air;
 pub use error::{MAX_COORDINATE_M, MAX_POLE_M, MAX_WALLS, MIN_WALL_M, SceneError};
 pub use material::Material;
 pub use mesh::edges::Edge;

@@ -8,7 +8,7 @@ pub const DEFAULT_HEIGHT_M: f64 = 0.3;
 
 /// Floor and ceiling. Walls and poles reach from one to the other, so that every path is one of the plan's with bounces
 /// at floor and ceiling in turn.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct Room {
     /// The height of the ceiling above the floor, in metres, above 0 and up to 1000.
     pub ceiling_m: f64,

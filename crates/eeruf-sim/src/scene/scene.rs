@@ -1,7 +1,6 @@
 //! A scene: checked walls and poles in air, with everything that is derived from them once (mesh, mirrors, broad
 //! phase). Robots, noise and seeds wrap around it; a scene itself never changes.
 
-use super::air::Air;
 use super::error::{MAX_COORDINATE_M, MAX_POLE_M, MAX_WALLS, MIN_WALL_M, SceneError};
 use super::mesh::Mesh;
 use super::mesh::edges::{Edge, edges_of};
@@ -11,9 +10,23 @@ use super::pole::Pole;
 use super::room::Room;
 use super::wall::Wall;
 use crate::geometry::{Mirror, Point, TOUCH_M};
+use eeruf_modules::Air;
 use parry2d_f64::bounding_volume::Aabb;
 use parry2d_f64::partitioning::{Bvh, BvhBuildStrategy};
 use std::sync::{Arc, OnceLock};
+
+fn check(air: &Air) -> Result<(), SceneError> {
+    for (quantity, value, low, high, expected) in [
+        ("temperature", air.temperature_c, -50.0, 60.0, "-50 to 60 C"),
+        ("humidity", air.humidity_percent, 0.0, 100.0, "0 to 100 %"),
+        ("pressure", air.pressure_kpa, 20.0, 200.0, "20 to 200 kPa"),
+    ] {
+        if !(low..=high).contains(&value) {
+            return Err(SceneError::Air { quantity, value, expected });
+        }
+    }
+    Ok(())
+}
 
 /// Walls, poles and air, checked and ready for questions.
 #[derive(Debug)]
@@ -61,7 +74,7 @@ impl Scene {
     /// assert_eq!(error.to_string(), "walls 0 and 1 cross at (1.0000, 1.0000); end one of them there");
     /// ```
     pub fn new(walls: Vec<Wall>, poles: Vec<Pole>, air: Air) -> Result<Self, SceneError> {
-        air.check()?;
+        check(&air)?;
         check_walls(&walls)?;
         check_poles(&poles)?;
         let boxes =

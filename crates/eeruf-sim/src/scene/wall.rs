@@ -1,10 +1,13 @@
 //! A wall: a straight reflecting piece between two points, and what its two sides do.
 
+use serde::{Deserialize, Serialize};
+
 use super::material::Material;
 use crate::geometry::Point;
 
 /// Effect of a wall on a beam that meets it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Deserialize, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Faces {
     /// Reflects on the left of the direction `from` to `to`, where the free space is; the back swallows. A room is a
     /// loop walked counter-clockwise, a pillar one walked clockwise.

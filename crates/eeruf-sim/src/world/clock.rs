@@ -4,9 +4,11 @@
 //! depends on rounding.
 
 use eeruf_core::Instant;
+use serde::{Deserialize, Serialize};
 
 /// Relation of a robot's clock to true time.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, Serialize)]
+#[serde(default, deny_unknown_fields)]
 pub struct Clock {
     /// The counter at the start, in microseconds.
     pub offset_us: u32,

@@ -1,7 +1,10 @@
 //! Faults in a world: of sensors, their wires and lines, clocks and tables, people and doors; each for a time.
 
+use eeruf_files::AnySchedule;
+use serde::{Deserialize, Deserializer, Serialize};
+
 use super::error::WorldError;
-use super::robot::{AnySchedule, Robot};
+use super::robot::Robot;
 use crate::{
     geometry::Point,
     scene::{Faces, Pole, Scene, Wall},
@@ -29,7 +32,8 @@ pub struct Fault {
 ///
 /// Where a module answers by the width of a pulse, a low glitch is taken for the echo's edge and a high one for
 /// nothing. Where its line rises with the echo it is the other way round.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[serde(tag = "kind", rename_all = "snake_case")]
 pub enum FaultKind {
     /// This share of echoes is not heard.
     Lost {
@@ -58,6 +62,7 @@ pub enum FaultKind {
     /// The ring fires by another table than its robot says, from the end of a period on.
     OtherTable {
         /// The table.
+        #[serde(deserialize_with = "boxed", serialize_with = "eeruf_files::as_file::serialize")]
         schedule: Box<AnySchedule>,
     },
     /// The clock goes faster than it should, or slower.
@@ -115,6 +120,10 @@ pub enum FaultKind {
         /// And after.
         to_deg: f64,
     },
+}
+
+fn boxed<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Box<AnySchedule>, D::Error> {
+    eeruf_files::as_file::deserialize(deserializer).map(Box::new)
 }
 
 impl FaultKind {

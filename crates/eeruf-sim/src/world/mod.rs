@@ -15,14 +15,15 @@ mod world;
 
 pub(crate) use clock::Ticker;
 pub use clock::{Clock, MAX_DRIFT_PPM};
+pub use eeruf_files::{AnySchedule, RobotRing, ScheduleFile};
 pub use error::WorldError;
 pub(crate) use fault::scene_with;
 pub use fault::{Fault, FaultKind, LineEdge, line_edges};
-pub use file::{ReadRing, RobotRing, ScheduleFile, WorldParts, cover_motion, heading_rad, world_file};
+pub use file::{ReadRing, WorldParts, cover_motion, heading_rad, world_file};
 pub use motion::{MAX_SPEED, Motion};
 pub(crate) use noise::{FARTHEST, Normal};
 pub use noise::{Noise, Random};
 pub(crate) use robot::offset;
-pub use robot::{AnySchedule, MAX_ROBOTS, Robot, ring_of};
+pub use robot::{MAX_ROBOTS, Robot, ring_of};
 pub use sketch::{FiringTable, Sketch};
 pub use world::{DEFAULT_ORDER, World};

@@ -1,10 +1,11 @@
 //! A robot: its transducers, where it is and how it moves, its clock, and how it fires and listens.
 
 use eeruf_core::{
-    EachSensor, Layout, MAX_SENSORS, Micros, Requirements, Schedule, SensorLimits, SpeedOfSound, Uneven,
-    VerifiedSchedule, conditions::Violation,
+    EachSensor, Layout, MAX_SENSORS, Micros, Requirements, SensorLimits, SpeedOfSound, Uneven, VerifiedSchedule,
+    conditions::Violation,
 };
 
+use eeruf_files::AnySchedule;
 use eeruf_modules::{HC_SR04, Module, POLAROID_6500, PRESETS};
 
 use super::clock::Clock;
@@ -12,15 +13,12 @@ use super::motion::Motion;
 use super::sketch::Sketch;
 use crate::{
     acoustics::{Beam, GainProfile, Transducer},
-    geometry::{Pose, Vector},
+    geometry::{Pose, Vector, pose_of},
     scene::{Body, DEFAULT_HEIGHT_M},
 };
 
 /// The most robots in one world: a choice, beyond any use, so that more is a mistake in the input.
 pub const MAX_ROBOTS: usize = 64;
-/// A schedule whose number of sensors is known only at run time.
-pub type AnySchedule = Schedule<MAX_SENSORS>;
-
 /// A robot with its ring. Make one with [`Robot::ring`] and change what differs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Robot {
@@ -306,9 +304,5 @@ pub fn ring_of(
     spacing_rad: f64,
 ) -> impl Iterator<Item = Pose> {
     let pose = *pose;
-    (0..sensors).map(move |sensor| {
-        let heading = first_rad + spacing_rad * sensor as f64;
-        let place = Vector::new(radius_m * libm::cos(heading), radius_m * libm::sin(heading));
-        pose * Pose::new(place, heading)
-    })
+    eeruf_files::arc(sensors, radius_m, first_rad, spacing_rad).map(move |sensor| pose * pose_of(&sensor))
 }

@@ -1,6 +1,7 @@
 //! [`Sketch`]: how a ring is fired by the sketches that people write, and by modules that fire themselves.
 
 use eeruf_core::{MAX_PERIOD, Micros};
+use serde::{Deserialize, Serialize};
 
 /// The settings of the [methods](crate::Method::is_sketch) that fire as rings are fired today: `[firing]` in scene
 /// files.
@@ -46,11 +47,14 @@ impl Default for Sketch {
 }
 
 /// Firing times of any number of phases.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
 pub struct FiringTable {
     /// The length of a period.
+    #[serde(rename = "period_us")]
     pub period: Micros,
     /// For each phase the time of each sensor's firing after the beginning of the period.
+    #[serde(rename = "t_fire_us")]
     pub rows: Vec<Vec<Micros>>,
 }
 

@@ -152,8 +152,10 @@ impl Bursts {
     pub(crate) fn advance(&mut self) {
         let rate = self.noise.bursts_per_s;
         self.next = if rate > 0.0 {
+            // A Poisson process: the time to its next event, by a share from above 0 to 1.
+            let share = ((self.random.bits() >> 11) + 1) as f64 / (1u64 << 53) as f64;
             // At least a nanosecond on, so that time passes.
-            self.next.saturating_add(1 + (self.random.until_next(rate) * 1e9) as u64)
+            self.next.saturating_add(1 + (-libm::log(share) / rate * 1e9) as u64)
         } else {
             NEVER
         };
@@ -204,6 +206,14 @@ mod tests {
         assert!((after_50_ms - 0.98).abs() < 0.02, "{after_50_ms}");
         assert!((after_its_time - libm::exp(-1.0)).abs() < 0.02, "{after_its_time}");
         assert!(much_later.abs() < 0.02, "{much_later}");
+    }
+
+    #[test]
+    fn bursts_come_as_often_as_asked() {
+        let noise = Noise { bursts_per_s: 20.0, ..Noise::NONE };
+        let mut bursts = Bursts::new(&noise, Random::new(9));
+        (1..50_000).for_each(|_| bursts.advance());
+        assert!((bursts.next as f64 / 1e9 / 50_000.0 - 0.05).abs() < 0.001);
     }
 
     #[test]

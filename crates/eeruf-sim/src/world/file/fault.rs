@@ -1,14 +1,14 @@
 //! The faults of a world file: `[[fault]]`, with a kind and what that needs.
 
-use eeruf_files::FileError;
-use serde::Deserialize;
+use eeruf_files::{FileError, ScheduleFile, explain};
+use serde::{Deserialize, Serialize};
 use toml::{Spanned, Table, Value};
 
-use super::schedule_file::{ScheduleFile, schedule};
 use super::source::Source;
 use crate::world::fault::{Fault, FaultKind};
 
-#[derive(Clone, Deserialize)]
+/// What is written for a fault of any kind; [`FaultKind`] has what each kind needs of it.
+#[derive(Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct FaultFile {
     kind: String,
@@ -36,6 +36,12 @@ pub(super) struct FaultFile {
     to_deg: Option<f64>,
 }
 
+/// The keys that only some kinds have.
+const KEYS: [&str; 15] = [
+    "share", "per_s", "us", "ppm", "every", "after_us", "width_us", "schedule", "radius_m", "from_m", "to_m",
+    "hinge_m", "length_m", "from_deg", "to_deg",
+];
+
 impl FaultFile {
     /// The keys that a kind needs beside `kind`, `robot`, `sensors`, `from_s` and `to_s`.
     fn needs(kind: &str) -> Option<&'static [&'static str]> {
@@ -53,28 +59,6 @@ impl FaultFile {
             _ => return None,
         })
     }
-
-    /// The keys that are given, of those that only some kinds need.
-    fn given(&self) -> impl Iterator<Item = &'static str> {
-        let given = [
-            ("share", self.share.is_some()),
-            ("per_s", self.per_s.is_some()),
-            ("us", self.us.is_some()),
-            ("ppm", self.ppm.is_some()),
-            ("every", self.every.is_some()),
-            ("after_us", self.after_us.is_some()),
-            ("width_us", self.width_us.is_some()),
-            ("schedule", self.schedule.is_some()),
-            ("radius_m", self.radius_m.is_some()),
-            ("from_m", self.from_m.is_some()),
-            ("to_m", self.to_m.is_some()),
-            ("hinge_m", self.hinge_m.is_some()),
-            ("length_m", self.length_m.is_some()),
-            ("from_deg", self.from_deg.is_some()),
-            ("to_deg", self.to_deg.is_some()),
-        ];
-        given.into_iter().filter(|(_, given)| *given).map(|(key, _)| key)
-    }
 }
 
 /// Builds the fault with this index.
@@ -86,100 +70,24 @@ pub(super) fn fault(source: &Source, index: usize, entry: &Spanned<FaultFile>) -
         let names = FaultKind::NAMES.join(", ");
         return Err(fail("kind", format!("kind is {:?}; expected {names}", file.kind)));
     };
-    if let Some(key) = file.given().find(|key| !needs.contains(key)) {
+    let mut table = Table::try_from(file).map_err(|error| fail("kind", error.to_string()))?;
+    if let Some(key) = KEYS.into_iter().find(|key| table.contains_key(*key) && !needs.contains(key)) {
         return Err(fail(key, format!("{key} with kind {:?}; expected no such key", file.kind)));
     }
-    let given: Vec<_> = file.given().collect();
-    if let Some(key) = needs.iter().find(|key| !given.contains(key)) {
+    if let Some(key) = needs.iter().find(|key| !table.contains_key(**key)) {
         return Err(fail("kind", format!("no {key}; expected one with kind {:?}", file.kind)));
     }
-    // All that the kind needs is there.
-    let share = file.share.unwrap_or_default();
-    let every = file.every.unwrap_or_default();
-    let (after_us, width_us) = (file.after_us.unwrap_or_default(), file.width_us.unwrap_or_default());
-    let kind = match &*file.kind {
-        "lost" => FaultKind::Lost { share },
-        "noise" => FaultKind::Noise { per_s: file.per_s.unwrap_or_default() },
-        "uniform_noise" => FaultKind::UniformNoise { share },
-        "echo_wires" => FaultKind::EchoWires,
-        "trigger_wires" => FaultKind::TriggerWires,
-        "late_trigger" => FaultKind::LateTrigger { us: file.us.unwrap_or_default() },
-        "clock_drift" => FaultKind::ClockDrift { ppm: file.ppm.unwrap_or_default() },
-        "missing" => FaultKind::Missing,
-        "stuck" => FaultKind::Stuck,
-        "cut" => FaultKind::Cut,
-        "lost_rises" => FaultKind::LostRises { every },
-        "lost_falls" => FaultKind::LostFalls { every },
-        "glitch_low" => FaultKind::GlitchLow { after_us, width_us },
-        "glitch_high" => FaultKind::GlitchHigh { after_us, width_us },
-        "leg" => FaultKind::Leg {
-            radius_m: file.radius_m.unwrap_or_default(),
-            from_m: file.from_m.unwrap_or_default(),
-            to_m: file.to_m.unwrap_or_default(),
-        },
-        "door" => FaultKind::Door {
-            hinge_m: file.hinge_m.unwrap_or_default(),
-            length_m: file.length_m.unwrap_or_default(),
-            from_deg: file.from_deg.unwrap_or_default(),
-            to_deg: file.to_deg.unwrap_or_default(),
-        },
-        // The one that is left.
-        _ => match &file.schedule {
-            Some(value) => FaultKind::OtherTable { schedule: Box::new(schedule(source, value)?) },
-            None => return Err(fail("kind", "no schedule; expected one".to_owned())),
-        },
-    };
+    if let Some(value) = &file.schedule {
+        let schedule = Table::try_from(ScheduleFile::from(&source.schedule(value)?));
+        set(&mut table, "schedule", schedule.map_err(|error| fail("schedule", error.to_string()))?);
+    }
+    let kind = FaultKind::deserialize(table).map_err(|error| fail("kind", explain(&error)))?;
     let (robot, sensors) = (file.robot, file.sensors.clone());
     Ok(Fault { kind, robot, sensors, from_s: file.from_s, to_s: file.to_s.unwrap_or(f64::INFINITY) })
 }
 
-/// The table of a fault.
-pub(super) fn fault_table(fault: &Fault) -> Table {
-    let mut table = Table::new();
-    let mut set = |key: &str, value: Value| {
-        table.insert(key.to_owned(), value);
-    };
-    set("kind", fault.kind.name().into());
-    let whole = |number: u32| Value::from(i64::from(number));
-    match &fault.kind {
-        FaultKind::Lost { share } | FaultKind::UniformNoise { share } => set("share", (*share).into()),
-        FaultKind::Noise { per_s } => set("per_s", (*per_s).into()),
-        FaultKind::LateTrigger { us } => set("us", whole(*us)),
-        FaultKind::ClockDrift { ppm } => set("ppm", (*ppm).into()),
-        FaultKind::LostRises { every } | FaultKind::LostFalls { every } => set("every", whole(*every)),
-        FaultKind::GlitchLow { after_us, width_us } | FaultKind::GlitchHigh { after_us, width_us } => {
-            set("after_us", whole(*after_us));
-            set("width_us", whole(*width_us));
-        }
-        FaultKind::OtherTable { schedule } => {
-            if let Ok(schedule) = Table::try_from(ScheduleFile::from(&**schedule)) {
-                set("schedule", schedule.into());
-            }
-        }
-        FaultKind::Leg { radius_m, from_m, to_m } => {
-            set("radius_m", (*radius_m).into());
-            set("from_m", from_m.to_vec().into());
-            set("to_m", to_m.to_vec().into());
-        }
-        FaultKind::Door { hinge_m, length_m, from_deg, to_deg } => {
-            set("hinge_m", hinge_m.to_vec().into());
-            set("length_m", (*length_m).into());
-            set("from_deg", (*from_deg).into());
-            set("to_deg", (*to_deg).into());
-        }
-        FaultKind::EchoWires | FaultKind::TriggerWires | FaultKind::Missing | FaultKind::Stuck | FaultKind::Cut => {}
-    }
-    if !fault.kind.is_of_scene() {
-        set("robot", Value::from(fault.robot as i64));
-        if !fault.sensors.is_empty() {
-            set("sensors", fault.sensors.iter().map(|&sensor| i64::from(sensor)).collect::<Vec<_>>().into());
-        }
-    }
-    set("from_s", fault.from_s.into());
-    if fault.to_s.is_finite() {
-        set("to_s", fault.to_s.into());
-    }
-    table
+fn set(table: &mut Table, key: &str, value: impl Into<Value>) {
+    table.insert(key.to_owned(), value.into());
 }
 
 impl Fault {
@@ -210,6 +118,19 @@ impl Fault {
 
     /// The table of `[[fault]]` in a scene file that says this.
     pub fn to_table(&self) -> Table {
-        fault_table(self)
+        // A kind is a table of numbers and a schedule, which TOML has.
+        let mut table = Table::try_from(&self.kind).unwrap_or_default();
+        if !self.kind.is_of_scene() {
+            set(&mut table, "robot", self.robot as i64);
+            if !self.sensors.is_empty() {
+                let sensors: Vec<_> = self.sensors.iter().map(|&sensor| i64::from(sensor)).collect();
+                set(&mut table, "sensors", sensors);
+            }
+        }
+        set(&mut table, "from_s", self.from_s);
+        if self.to_s.is_finite() {
+            set(&mut table, "to_s", self.to_s);
+        }
+        table
     }
 }

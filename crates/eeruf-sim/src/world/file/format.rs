@@ -1,7 +1,8 @@
 //! The tables and keys of a world file, as serde reads them, and what plain ones stand for.
 
+use eeruf_core::Micros;
 use eeruf_modules::ModulesFile;
-use serde::{Deserialize, Deserializer, de::Error};
+use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
 use toml::Spanned;
 
 use super::fault::FaultFile;
@@ -9,35 +10,35 @@ use super::sketch::SketchFile;
 use crate::{
     acoustics::{Physics, UnknownPhysics},
     geometry::{Pose, Vector},
-    scene::{Air, Body, Material, Outline, Room},
-    world::{noise::Noise, world::DEFAULT_ORDER},
+    scene::{Air, Body, Faces, Material, Outline, Room},
+    world::{clock::Clock, noise::Noise, world::DEFAULT_ORDER},
 };
 
-#[derive(Deserialize)]
+#[derive(Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct WorldFile {
-    #[serde(default = "default_seed", deserialize_with = "seed")]
+    #[serde(default = "default_seed", deserialize_with = "seed", serialize_with = "write_seed")]
     pub(super) seed: u64,
     #[serde(default = "default_order")]
     pub(super) max_order: u32,
-    pub(super) air: Option<Spanned<AirFile>>,
-    pub(super) noise: Option<Spanned<NoiseFile>>,
+    pub(super) air: Option<Spanned<Air>>,
+    pub(super) noise: Option<Spanned<Noise>>,
     pub(super) physics: Option<Spanned<PhysicsFile>>,
     pub(super) height: Option<Spanned<HeightFile>>,
     pub(super) firing: Option<SketchFile>,
-    #[serde(default, rename = "wall")]
+    #[serde(default, rename = "wall", skip_serializing_if = "Vec::is_empty")]
     pub(super) walls: Vec<Spanned<WallFile>>,
-    #[serde(default, rename = "pole")]
+    #[serde(default, rename = "pole", skip_serializing_if = "Vec::is_empty")]
     pub(super) poles: Vec<Spanned<PoleFile>>,
-    #[serde(default, rename = "robot")]
+    #[serde(default, rename = "robot", skip_serializing_if = "Vec::is_empty")]
     pub(super) robots: Vec<Spanned<RobotFile>>,
-    #[serde(default, rename = "fault")]
+    #[serde(default, rename = "fault", skip_serializing_if = "Vec::is_empty")]
     pub(super) faults: Vec<Spanned<FaultFile>>,
 }
 
 /// A number, or a text where it is above the 2^63 at which TOML's numbers end.
 fn seed<'de, D: Deserializer<'de>>(deserializer: D) -> Result<u64, D::Error> {
-    #[derive(Deserialize)]
+    #[derive(Deserialize, Serialize)]
     #[serde(untagged, expecting = "expected a whole number from 0 to 18446744073709551615")]
     enum Seed {
         Number(u64),
@@ -49,6 +50,15 @@ fn seed<'de, D: Deserializer<'de>>(deserializer: D) -> Result<u64, D::Error> {
     }
 }
 
+/// TOML's whole numbers end at 2^63.
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "as serde calls it")]
+fn write_seed<S: Serializer>(seed: &u64, serializer: S) -> Result<S::Ok, S::Error> {
+    match i64::try_from(*seed) {
+        Ok(seed) => serializer.serialize_i64(seed),
+        Err(_) => serializer.collect_str(seed),
+    }
+}
+
 fn default_seed() -> u64 {
     1
 }
@@ -57,32 +67,17 @@ fn default_order() -> u32 {
     DEFAULT_ORDER
 }
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct AirFile {
-    pub(super) temperature_c: Option<f64>,
-    pub(super) humidity_percent: Option<f64>,
-    pub(super) pressure_kpa: Option<f64>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct NoiseFile {
-    pub(super) fading_db_rms: Option<f64>,
-    pub(super) jitter_us_rms: Option<f64>,
-    pub(super) bursts_per_s: Option<f64>,
-    pub(super) burst_db: Option<f64>,
-}
-
 /// A preset's name, or a table with what differs from one.
-#[derive(Deserialize)]
+#[derive(Deserialize, Serialize)]
 #[serde(untagged, expecting = "expected \"plain\", \"default\" or a table")]
 pub(super) enum PhysicsFile {
     Preset(String),
     Table(PhysicsTable),
+    #[serde(skip_deserializing)]
+    Written(Physics),
 }
 
-#[derive(Deserialize)]
+#[derive(Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct PhysicsTable {
     preset: Option<String>,
@@ -98,6 +93,7 @@ impl PhysicsFile {
     pub(super) fn physics(&self) -> Result<Physics, UnknownPhysics> {
         match self {
             Self::Preset(name) => name.parse(),
+            Self::Written(physics) => Ok(*physics),
             Self::Table(table) => {
                 let base = table.preset.as_ref().map_or(Ok(Physics::DEFAULT), |name| name.parse())?;
                 Ok(Physics {
@@ -114,21 +110,23 @@ impl PhysicsFile {
 }
 
 /// A preset's name, or a table with what differs from that of a room.
-#[derive(Deserialize)]
+#[derive(Deserialize, Serialize)]
 #[serde(untagged, expecting = "expected \"flat\", \"room\" or a table with ceiling_m, floor and ceiling")]
 pub(super) enum HeightFile {
     Preset(HeightPreset),
     Table(HeightTable),
+    #[serde(skip_deserializing)]
+    Written(Room),
 }
 
-#[derive(Clone, Copy, Deserialize)]
+#[derive(Clone, Copy, Deserialize, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub(super) enum HeightPreset {
     Flat,
     Room,
 }
 
-#[derive(Deserialize)]
+#[derive(Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct HeightTable {
     ceiling_m: Option<f64>,
@@ -136,7 +134,7 @@ pub(super) struct HeightTable {
     ceiling: Option<SurfaceFile>,
 }
 
-#[derive(Deserialize)]
+#[derive(Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 struct SurfaceFile {
     material: Option<MaterialFile>,
@@ -153,6 +151,7 @@ impl HeightFile {
         match self {
             Self::Preset(HeightPreset::Flat) => None,
             Self::Preset(HeightPreset::Room) => Some(Room::DEFAULT),
+            Self::Written(room) => Some(*room),
             Self::Table(table) => Some(Room {
                 ceiling_m: table.ceiling_m.unwrap_or(Room::DEFAULT.ceiling_m),
                 floor: surface(Room::DEFAULT.floor, &table.floor),
@@ -163,12 +162,12 @@ impl HeightFile {
 }
 
 /// One of three outlines.
-#[derive(Deserialize)]
+#[derive(Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct BodyFile {
-    radius_m: Option<f64>,
-    box_m: Option<[f64; 2]>,
-    corners_m: Option<Vec<[f64; 2]>>,
+    pub(super) radius_m: Option<f64>,
+    pub(super) box_m: Option<[f64; 2]>,
+    pub(super) corners_m: Option<Vec<[f64; 2]>>,
 }
 
 impl BodyFile {
@@ -186,20 +185,18 @@ impl BodyFile {
     }
 }
 
-#[derive(Deserialize)]
+#[derive(Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct WallFile {
     pub(super) points_m: Vec<[f64; 2]>,
-    #[serde(default)]
-    pub(super) closed: bool,
-    #[serde(default)]
-    pub(super) faces: FacesFile,
+    pub(super) closed: Option<bool>,
+    pub(super) faces: Option<Faces>,
     pub(super) material: Option<MaterialFile>,
     pub(super) reflection: Option<f64>,
     pub(super) roughness_m: Option<f64>,
 }
 
-#[derive(Deserialize)]
+#[derive(Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct PoleFile {
     pub(super) at_m: [f64; 2],
@@ -209,16 +206,7 @@ pub(super) struct PoleFile {
     pub(super) roughness_m: Option<f64>,
 }
 
-#[derive(Clone, Copy, Default, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub(super) enum FacesFile {
-    #[default]
-    Left,
-    Both,
-    Open,
-}
-
-#[derive(Clone, Copy, Deserialize)]
+#[derive(Clone, Copy, Deserialize, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub(super) enum MaterialFile {
     Smooth,
@@ -228,26 +216,26 @@ pub(super) enum MaterialFile {
 }
 
 /// A time for all sensors, or one for each.
-#[derive(Deserialize)]
+#[derive(Deserialize, Serialize)]
 #[serde(untagged, expecting = "expected a whole number from 0 to 4294967295, or a list of one for each sensor")]
 pub(super) enum EachFile {
-    All(u32),
-    Of(Vec<u32>),
+    All(Micros),
+    Of(Vec<Micros>),
 }
 
 /// A height for all sensors, or one for each.
-#[derive(Deserialize)]
+#[derive(Deserialize, Serialize)]
 #[serde(untagged, expecting = "expected a height in metres, or a list of one for each sensor")]
 pub(super) enum HeightsFile {
     All(f64),
     Of(Vec<f64>),
 }
 
-#[derive(Deserialize)]
+#[derive(Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct RobotFile {
     pub(super) pose: PoseFile,
-    #[serde(default, deserialize_with = "ring")]
+    #[serde(default, deserialize_with = "ring", skip_serializing)]
     pub(super) ring: Option<RingKey>,
     pub(super) sensors: Option<Vec<PoseFile>>,
     /// `transducer` in older files.
@@ -259,30 +247,30 @@ pub(super) struct RobotFile {
     pub(super) height_m: Option<HeightsFile>,
     pub(super) body: Option<BodyFile>,
     pub(super) motion: Option<MotionFile>,
-    pub(super) clock: Option<ClockFile>,
-    #[serde(default)]
-    pub(super) others: bool,
+    pub(super) clock: Option<Clock>,
+    pub(super) others: Option<bool>,
     pub(super) schedule: Option<Spanned<toml::Value>>,
-    pub(super) start_us: Option<u32>,
-    pub(super) period_us: Option<u32>,
+    pub(super) start_us: Option<Micros>,
+    pub(super) period_us: Option<Micros>,
     pub(super) t_delta_us: Option<EachFile>,
     pub(super) window_us: Option<EachFile>,
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(super) together: Vec<Vec<usize>>,
     pub(super) blanking_us: Option<EachFile>,
-    pub(super) min_refire_us: Option<u32>,
-    pub(super) audible_us: Option<u32>,
-    pub(super) path_change_us: Option<u32>,
+    pub(super) min_refire_us: Option<Micros>,
+    pub(super) audible_us: Option<Micros>,
+    pub(super) path_change_us: Option<Micros>,
     pub(super) firing: Option<SketchFile>,
     pub(super) neighbours: Option<u8>,
     pub(super) consecutive: Option<u8>,
     /// A key of older files, refused by name.
+    #[serde(skip_serializing)]
     pub(super) patience: Option<serde::de::IgnoredAny>,
     #[serde(default)]
     pub(super) odometry: bool,
 }
 
-#[derive(Clone, Copy, Deserialize)]
+#[derive(Clone, Copy, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct PoseFile {
     pub(super) x_m: f64,
@@ -306,7 +294,7 @@ fn ring<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<RingKey>, D
     Ok(Some(key))
 }
 
-#[derive(Deserialize)]
+#[derive(Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct RingFile {
     pub(super) sensors: usize,
@@ -314,7 +302,7 @@ pub(super) struct RingFile {
     pub(super) radius_m: f64,
 }
 
-#[derive(Deserialize)]
+#[derive(Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct MotionFile {
     pub(super) velocity_m_s: Option<[f64; 2]>,
@@ -322,38 +310,6 @@ pub(super) struct MotionFile {
     pub(super) turn_rad_s: Option<f64>,
     pub(super) waypoints_m: Option<Vec<[f64; 2]>>,
     pub(super) speed_m_s: Option<f64>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct ClockFile {
-    #[serde(default)]
-    pub(super) offset_us: u32,
-    #[serde(default)]
-    pub(super) drift_ppm: f64,
-}
-
-impl AirFile {
-    pub(super) fn air(&self) -> Air {
-        let default = Air::default();
-        Air {
-            temperature_c: self.temperature_c.unwrap_or(default.temperature_c),
-            humidity_percent: self.humidity_percent.unwrap_or(default.humidity_percent),
-            pressure_kpa: self.pressure_kpa.unwrap_or(default.pressure_kpa),
-        }
-    }
-}
-
-impl NoiseFile {
-    pub(super) fn noise(&self) -> Noise {
-        let default = Noise::default();
-        Noise {
-            fading_db_rms: self.fading_db_rms.unwrap_or(default.fading_db_rms),
-            jitter_us_rms: self.jitter_us_rms.unwrap_or(default.jitter_us_rms),
-            bursts_per_s: self.bursts_per_s.unwrap_or(default.bursts_per_s),
-            burst_db: self.burst_db.unwrap_or(default.burst_db),
-        }
-    }
 }
 
 impl PoseFile {

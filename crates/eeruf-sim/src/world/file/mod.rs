@@ -6,7 +6,6 @@ mod format;
 mod ring_file;
 mod robot;
 mod scene;
-mod schedule_file;
 mod sketch;
 mod source;
 mod write;
@@ -30,8 +29,7 @@ use robot::robot;
 use scene::scene;
 use source::Source;
 
-pub use ring_file::{ReadRing, RobotRing, cover_motion};
-pub use schedule_file::ScheduleFile;
+pub use ring_file::{ReadRing, cover_motion};
 pub use write::{heading_rad, world_file};
 
 impl World {
@@ -140,7 +138,7 @@ impl WorldParts {
         for (index, entry) in file.robots.iter().enumerate() {
             robots.push(robot(source, index, entry, file.firing.as_ref(), read_ring)?);
         }
-        let noise = file.noise.as_ref().map_or(Noise::default(), |noise| noise.get_ref().noise());
+        let noise = file.noise.as_ref().map_or(Noise::default(), |noise| *noise.get_ref());
         let physics = match &file.physics {
             None => Physics::DEFAULT,
             Some(entry) => {

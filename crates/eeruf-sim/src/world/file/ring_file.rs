@@ -2,36 +2,15 @@
 
 use std::path::Path;
 
-use eeruf_core::{MAX_SENSORS, Micros, Phase, SensorLimits};
-use eeruf_files::FileError;
-use eeruf_modules::Module;
+use eeruf_core::{MAX_SENSORS, Micros, Phase};
+use eeruf_files::{FileError, RobotRing};
 
-use crate::{acoustics::Transducer, geometry::Pose, scene::Air, world::robot::Robot};
-
-/// The robot of a ring file.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct RobotRing {
-    /// Number of sensors, 1 to 64.
-    pub sensors: usize,
-    /// Where each stands on the robot; empty if the file does not say it.
-    pub poses: Vec<Pose>,
-    /// Height of each above the floor in metres; empty if the file does not say it.
-    pub heights_m: Vec<f64>,
-    /// The module of each sensor; empty if the file names none.
-    pub modules: Vec<Module>,
-    /// Window and `T_delta` of each sensor.
-    pub limits: Vec<SensorLimits>,
-    /// Sets of sensors that fire together, bit x for sensor x.
-    pub together: Vec<u64>,
-    /// Its speed in m/s, which `T_delta` must cover too where it has no odometry.
-    pub speed_m_s: f64,
-    /// Number of adjacent sensors that must not fire close together.
-    pub neighbours: u8,
-    /// Change of the path of a foreign sound from one reading to the next, at most; `None` for `T_delta`.
-    pub path_change: Option<Micros>,
-    /// Time for which sound is audible; `None` for what modules say.
-    pub audible: Option<Micros>,
-}
+use crate::{
+    acoustics::Transducer,
+    geometry::{Pose, pose_of},
+    scene::Air,
+    world::robot::Robot,
+};
 
 /// A reader of ring files: from the file and its text to the robot.
 pub type ReadRing = fn(&Path, &str) -> Result<RobotRing, FileError>;
@@ -45,34 +24,34 @@ pub(super) fn no_reader(file: &Path, _: &str) -> Result<RobotRing, FileError> {
     ))
 }
 
-impl RobotRing {
-    /// The robot at a place, with its sensors where `poses` are, or else where the file has them.
+impl Robot {
+    /// The robot of a ring file at a place, with its sensors where `poses` are, or else where the file has them.
     ///
     /// # Errors
     /// The key that is missing, or does not fit its number of sensors.
-    pub fn robot(&self, pose: Pose, poses: Option<Vec<Pose>>) -> Result<Robot, String> {
-        let heights_m = if poses.is_none() { self.heights_m.clone() } else { vec![] };
-        let poses = poses.unwrap_or_else(|| self.poses.clone());
+    pub fn of_ring(ring: &RobotRing, pose: Pose, poses: Option<Vec<Pose>>) -> Result<Self, String> {
+        let heights_m = if poses.is_none() { ring.heights_m.clone() } else { vec![] };
+        let poses = poses.unwrap_or_else(|| ring.poses.iter().map(pose_of).collect());
         if poses.is_empty() {
             return Err("it does not say where sensors stand; expected poses or spacing_deg and radius_m in it, or \
                         sensors beside it"
                 .to_owned());
         }
-        if poses.len() != self.sensors || self.sensors > MAX_SENSORS || self.limits.len() != self.sensors {
-            return Err(format!("{} places of sensors; expected {}, as many as it has", poses.len(), self.sensors));
+        if poses.len() != ring.sensors || ring.sensors > MAX_SENSORS || ring.limits.len() != ring.sensors {
+            return Err(format!("{} places of sensors; expected {}, as many as it has", poses.len(), ring.sensors));
         }
-        let mut robot = Robot::with_sensors(pose, poses, Transducer::POLAROID_6500)
-            .with_modules(self.modules.clone())
+        let mut robot = Self::with_sensors(pose, poses, Transducer::POLAROID_6500)
+            .with_modules(ring.modules.clone())
             .with_heights(heights_m);
-        robot.window = self.limits.iter().map(|limits| limits.window).max().unwrap_or(robot.window);
-        robot.t_delta = self.limits.iter().map(|limits| limits.t_delta).max().unwrap_or(robot.t_delta);
-        if self.limits.iter().any(|limits| *limits != self.limits[0]) {
-            robot.limits = self.limits.clone();
+        robot.window = ring.limits.iter().map(|limits| limits.window).max().unwrap_or(robot.window);
+        robot.t_delta = ring.limits.iter().map(|limits| limits.t_delta).max().unwrap_or(robot.t_delta);
+        if ring.limits.iter().any(|limits| *limits != ring.limits[0]) {
+            robot.limits = ring.limits.clone();
         }
-        robot.together = self.together.clone();
-        robot.neighbours = self.neighbours;
-        robot.path_change = self.path_change;
-        robot.audible = self.audible.unwrap_or(robot.audible);
+        robot.together = ring.together.clone();
+        robot.neighbours = ring.neighbours;
+        robot.path_change = ring.path_change;
+        robot.audible = ring.audible.unwrap_or(robot.audible);
         Ok(robot)
     }
 }

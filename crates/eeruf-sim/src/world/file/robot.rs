@@ -7,13 +7,12 @@ use toml::Spanned;
 
 use super::format::{EachFile, HeightsFile, MotionFile, RingKey, RobotFile, radians};
 use super::ring_file::{ReadRing, cover_motion};
-use super::schedule_file;
 use super::sketch::{SketchFile, sketch};
 use super::source::Source;
 use crate::{
     acoustics::Transducer,
     geometry::{Point, Vector},
-    world::{clock::Clock, motion::Motion, robot::Robot},
+    world::{motion::Motion, robot::Robot},
 };
 
 /// Builds the robot with this index, which fires as all do unless it says how.
@@ -47,7 +46,7 @@ pub(super) fn robot(
             let ring = read_ring(&beside.file, &beside.text)?;
             (speed_m_s, audible) = (ring.speed_m_s, ring.audible);
             let poses = sensors.as_ref().map(|sensors| sensors.iter().map(|sensor| sensor.pose()).collect());
-            ring.robot(pose, poses).map_err(|message| fail("ring", format!(": {name}: {message}")))?
+            Robot::of_ring(&ring, pose, poses).map_err(|message| fail("ring", format!(": {name}: {message}")))?
         }
         (None, Some(sensors)) => {
             Robot::with_sensors(pose, sensors.iter().map(|sensor| sensor.pose()).collect(), Transducer::POLAROID_6500)
@@ -99,22 +98,20 @@ pub(super) fn robot(
         }
         Some(HeightsFile::Of(list)) => robot.with_heights(list.clone()),
     };
-    if let Some(clock) = &file.clock {
-        robot.clock = Clock { offset_us: clock.offset_us, drift_ppm: clock.drift_ppm };
-    }
-    robot.others = file.others;
+    robot.clock = file.clock.unwrap_or_default();
+    robot.others = file.others.unwrap_or_default();
     if let Some(schedule) = &file.schedule {
-        let schedule = schedule_file::schedule(source, schedule)?;
+        let schedule = source.schedule(schedule)?;
         (robot.schedule, robot.period) = (Some(schedule), schedule.period());
     }
-    let set = |field: &mut Micros, value: Option<u32>| *field = value.map_or(*field, Micros::new);
+    let set = |field: &mut Micros, value: Option<Micros>| *field = value.unwrap_or(*field);
     set(&mut robot.start, file.start_us);
     set(&mut robot.period, file.period_us);
     let sensors = robot.sensors.len();
     let each = |own: Vec<Micros>, value: &Option<EachFile>| match value {
         None => own,
-        Some(EachFile::All(us)) => vec![Micros::new(*us); sensors],
-        Some(EachFile::Of(list)) => list.iter().map(|&us| Micros::new(us)).collect(),
+        Some(EachFile::All(time)) => vec![*time; sensors],
+        Some(EachFile::Of(list)) => list.clone(),
     };
     if file.t_delta_us.is_none() && !file.odometry {
         cover_motion(&mut robot, speed_m_s);
@@ -160,7 +157,7 @@ pub(super) fn robot(
     }
     set(&mut robot.min_refire, file.min_refire_us);
     set(&mut robot.audible, file.audible_us);
-    robot.path_change = file.path_change_us.map(Micros::new).or(robot.path_change);
+    robot.path_change = file.path_change_us.or(robot.path_change);
     if let Some(firing) = file.firing.as_ref().or(firing) {
         robot.firing = sketch(source, firing)?;
     }

@@ -3,9 +3,9 @@
 use eeruf_files::FileError;
 use toml::Spanned;
 
-use super::format::{FacesFile, WorldFile, material};
+use super::format::{WorldFile, material};
 use super::source::Source;
-use crate::scene::{Air, Faces, Material, Pole, Scene, SceneError, Wall};
+use crate::scene::{Air, Material, Pole, Scene, SceneError, Wall};
 
 /// Builds the scene.
 pub(super) fn scene(source: &Source, file: &WorldFile) -> Result<Scene, FileError> {
@@ -19,16 +19,12 @@ pub(super) fn scene(source: &Source, file: &WorldFile) -> Result<Scene, FileErro
             return Err(source.error(Some(entry.span()), "points_m", message));
         }
         let mut corners = wall.points_m.clone();
-        if wall.closed {
+        if wall.closed == Some(true) {
             corners.push(corners[0]);
         }
         let material = material(Material::SMOOTH, wall.material, wall.reflection, wall.roughness_m);
-        let faces = match wall.faces {
-            FacesFile::Left => Faces::Left,
-            FacesFile::Both => Faces::Both,
-            FacesFile::Open => Faces::Open,
-        };
-        walls.extend(Wall::polyline(&corners).map(|wall| wall.with_faces(faces).with_material(material)));
+        let faces = wall.faces.unwrap_or_default();
+        walls.extend(Wall::polyline(&corners).map(|piece| piece.with_faces(faces).with_material(material)));
         entries.resize(walls.len(), index);
     }
     let poles = file.poles.iter().map(|entry| {
@@ -36,7 +32,7 @@ pub(super) fn scene(source: &Source, file: &WorldFile) -> Result<Scene, FileErro
         let material = material(Material::PERFECT, pole.material, pole.reflection, pole.roughness_m);
         Pole { material, ..Pole::new(pole.at_m[0], pole.at_m[1], pole.radius_m) }
     });
-    let air = file.air.as_ref().map_or(Air::default(), |air| air.get_ref().air());
+    let air = file.air.as_ref().map_or(Air::default(), |air| *air.get_ref());
     let room = file.height.as_ref().and_then(|height| height.get_ref().room());
     let scene = Scene::new(walls, poles.collect(), air).and_then(|scene| scene.with_room(room));
     scene.map_err(|error| {

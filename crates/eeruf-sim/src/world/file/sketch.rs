@@ -1,43 +1,32 @@
 //! `[firing]` of a world file: how its robots are fired today.
 
-use eeruf_core::Micros;
-use eeruf_files::{FileError, explain};
-use serde::Deserialize;
+use eeruf_core::{Micros, Phase};
+use eeruf_files::{FileError, ScheduleFile, explain};
+use serde::{Deserialize, Serialize};
 use toml::{Spanned, Table, Value};
 
-use super::schedule_file::ScheduleFile;
 use super::source::Source;
-use super::write::set;
 use crate::world::sketch::{FiringTable, Sketch};
 
-#[derive(Clone, Deserialize)]
+#[derive(Clone, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct SketchFile {
-    timeout_us: Option<u32>,
-    pause_us: Option<u32>,
-    turn_us: Option<u32>,
-    rest_us: Option<u32>,
-    #[serde(default)]
+    timeout_us: Option<Micros>,
+    pause_us: Option<Micros>,
+    turn_us: Option<Micros>,
+    rest_us: Option<Micros>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     arrays: Vec<Vec<u8>>,
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     groups: Vec<Vec<u8>>,
     consecutive: Option<u8>,
     drift_ppm: Option<f64>,
     schedule: Option<Spanned<Value>>,
 }
 
-/// A table of many phases, by its firing times.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct PhasesFile {
-    period_us: u32,
-    t_fire_us: Vec<Vec<u32>>,
-}
-
 /// A table `[firing]`.
 pub(super) fn sketch(source: &Source, file: &SketchFile) -> Result<Sketch, FileError> {
     let default = Sketch::default();
-    let us = |time: Option<u32>| Micros::new(time.unwrap_or(0));
     let table = file.schedule.as_ref().map(|value| {
         let (Source { file, .. }, text) = match value.get_ref() {
             Value::String(name) => {
@@ -52,10 +41,10 @@ pub(super) fn sketch(source: &Source, file: &SketchFile) -> Result<Sketch, FileE
         table_of(text).map_err(error)
     });
     Ok(Sketch {
-        timeout: file.timeout_us.map(Micros::new),
-        pause: us(file.pause_us),
-        turn: us(file.turn_us),
-        rest: file.rest_us.map(Micros::new),
+        timeout: file.timeout_us,
+        pause: file.pause_us.unwrap_or_default(),
+        turn: file.turn_us.unwrap_or_default(),
+        rest: file.rest_us,
         arrays: file.arrays.clone(),
         groups: file.groups.clone(),
         consecutive: file.consecutive.unwrap_or(default.consecutive),
@@ -72,14 +61,12 @@ fn table_of(table: Table) -> Result<FiringTable, String> {
         );
     }
     if table.contains_key("t_fire_us") {
-        let PhasesFile { period_us, t_fire_us } = PhasesFile::deserialize(table).map_err(|error| explain(&error))?;
-        let row = |row: Vec<u32>| row.into_iter().map(Micros::new).collect();
-        return Ok(FiringTable { period: Micros::new(period_us), rows: t_fire_us.into_iter().map(row).collect() });
+        return FiringTable::deserialize(table).map_err(|error| explain(&error));
     }
     let file = ScheduleFile::deserialize(table).map_err(|error| explain(&error))?;
     let schedule = file.schedule()?;
     let row = |phase| (0..schedule.sensors()).map(|x| schedule.t_fire(phase, x).unwrap_or_default()).collect();
-    Ok(FiringTable { period: schedule.period(), rows: [eeruf_core::Phase::A, eeruf_core::Phase::B].map(row).into() })
+    Ok(FiringTable { period: schedule.period(), rows: [Phase::A, Phase::B].map(row).into() })
 }
 
 impl Sketch {
@@ -103,39 +90,27 @@ impl Sketch {
 
     /// The table `[firing]` in a scene file that says this: what differs from the default.
     pub fn to_table(&self) -> Table {
-        let (mut table, default) = (Table::new(), Self::default());
-        let us = |time: Micros| i64::from(time.as_micros());
-        let lists = |lists: &[Vec<u8>]| {
-            lists.iter().map(|list| list.iter().map(|&x| i64::from(x)).collect::<Vec<_>>()).collect::<Vec<_>>()
-        };
-        for (key, time) in [("timeout_us", self.timeout), ("rest_us", self.rest)] {
-            if let Some(time) = time {
-                set(&mut table, key, us(time));
-            }
+        // Numbers, lists and tables, which TOML has.
+        Table::try_from(SketchFile::from(self)).unwrap_or_default()
+    }
+}
+
+impl From<&Sketch> for SketchFile {
+    /// What differs from the default.
+    fn from(sketch: &Sketch) -> Self {
+        let default = Sketch::default();
+        let above_zero = |time: Micros| (time != Micros::ZERO).then_some(time);
+        let table = sketch.table.as_ref().and_then(|table| Value::try_from(table).ok());
+        Self {
+            timeout_us: sketch.timeout,
+            pause_us: above_zero(sketch.pause),
+            turn_us: above_zero(sketch.turn),
+            rest_us: sketch.rest,
+            arrays: sketch.arrays.clone(),
+            groups: sketch.groups.clone(),
+            consecutive: (sketch.consecutive != default.consecutive).then_some(sketch.consecutive),
+            drift_ppm: (sketch.drift_ppm != default.drift_ppm).then_some(sketch.drift_ppm),
+            schedule: table.map(|table| Spanned::new(0..0, table)),
         }
-        for (key, time) in [("pause_us", self.pause), ("turn_us", self.turn)] {
-            if time != Micros::ZERO {
-                set(&mut table, key, us(time));
-            }
-        }
-        for (key, sets) in [("arrays", &self.arrays), ("groups", &self.groups)] {
-            if !sets.is_empty() {
-                set(&mut table, key, lists(sets));
-            }
-        }
-        if self.consecutive != default.consecutive {
-            set(&mut table, "consecutive", i64::from(self.consecutive));
-        }
-        if self.drift_ppm != default.drift_ppm {
-            set(&mut table, "drift_ppm", self.drift_ppm);
-        }
-        if let Some(FiringTable { period, rows }) = &self.table {
-            let mut schedule = Table::new();
-            set(&mut schedule, "period_us", us(*period));
-            let rows = rows.iter().map(|row| row.iter().map(|&time| us(time)).collect::<Vec<_>>());
-            set(&mut schedule, "t_fire_us", rows.collect::<Vec<_>>());
-            set(&mut table, "schedule", schedule);
-        }
-        table
     }
 }

@@ -4,7 +4,9 @@ use core::fmt;
 use core::ops::Range;
 use std::path::{Path, PathBuf};
 
-use eeruf_files::{FileError, parse};
+use eeruf_files::{AnySchedule, FileError, ScheduleFile, explain, parse};
+use serde::Deserialize as _;
+use toml::{Spanned, Value};
 
 /// A file and its text.
 #[derive(Clone)]
@@ -28,6 +30,18 @@ impl Source {
 
     pub(super) fn toml<T: serde::de::DeserializeOwned>(&self) -> Result<T, FileError> {
         parse(&self.text).map_err(|error| error.in_file(&self.file))
+    }
+
+    /// A schedule in the file itself, or the name of a file beside it.
+    pub(super) fn schedule(&self, value: &Spanned<Value>) -> Result<AnySchedule, FileError> {
+        let here = |message: String| self.error(Some(value.span()), "", format!("schedule: {message}"));
+        if let Value::String(name) = value.get_ref() {
+            let source = self.beside(name)?;
+            let file: ScheduleFile = source.toml()?;
+            return file.schedule().map_err(|message| source.error(None, "", message));
+        }
+        let file = ScheduleFile::deserialize(value.get_ref().clone()).map_err(|error| here(explain(&error)))?;
+        file.schedule().map_err(here)
     }
 
     /// An error at a field within a part of the text, or at the part's first line.

@@ -1,16 +1,20 @@
-//! Writes a world file.
+//! Writes a world file: what is read from it, as it is read.
 
 use eeruf_core::{Micros, SensorLimits};
-use eeruf_modules::{KEYS, Module, Value as Figure, find};
-use toml::{Table, Value};
+use eeruf_files::ScheduleFile;
+use eeruf_modules::{Module, ModulesFile, find};
+use toml::{Spanned, Table, Value};
 
-use super::fault::fault_table;
-use super::schedule_file::ScheduleFile;
+use super::format::{
+    BodyFile, EachFile, HeightFile, HeightPreset, HeightsFile, MotionFile, PhysicsFile, PoleFile, PoseFile, RobotFile,
+    WallFile, WorldFile,
+};
+use super::sketch::SketchFile;
 use crate::{
     acoustics::{Physics, Transducer},
     geometry::Pose,
-    scene::{Body, Faces, Material, Room, Scene},
-    world::{fault::Fault, motion::Motion, noise::Noise, robot::Robot},
+    scene::{Body, Faces, Pole, Room, Scene, Wall},
+    world::{fault::Fault, motion::Motion, noise::Noise, robot::Robot, sketch::Sketch},
 };
 
 /// Writes the world file of a scene with these robots, noise, physics, order, seed and faults: reading it again gives
@@ -25,94 +29,67 @@ pub fn world_file(
     seed: u64,
     faults: &[Fault],
 ) -> String {
-    let mut file = Table::new();
-    // TOML's whole numbers end at 2^63.
-    let seed = i64::try_from(seed).map_or_else(|_| Value::from(seed.to_string()), Value::from);
-    file.insert("seed".to_owned(), seed);
-    set(&mut file, "max_order", i64::from(max_order));
-    let (mut air, sound) = (Table::new(), scene.air());
-    set(&mut air, "temperature_c", sound.temperature_c);
-    set(&mut air, "humidity_percent", sound.humidity_percent);
-    set(&mut air, "pressure_kpa", sound.pressure_kpa);
-    set(&mut file, "air", air);
-    let mut loud = Table::new();
-    set(&mut loud, "fading_db_rms", noise.fading_db_rms);
-    set(&mut loud, "jitter_us_rms", noise.jitter_us_rms);
-    set(&mut loud, "bursts_per_s", noise.bursts_per_s);
-    set(&mut loud, "burst_db", noise.burst_db);
-    set(&mut file, "noise", loud);
-    match physics.name() {
-        Some(name) => set(&mut file, "physics", name),
-        None => {
-            let mut effects = Table::new();
-            set(&mut effects, "shadows", physics.shadows);
-            set(&mut effects, "edges", physics.edges);
-            set(&mut effects, "narrow_panels", physics.narrow_panels);
-            set(&mut effects, "range_walk", physics.range_walk);
-            set(&mut effects, "interference", physics.interference);
-            set(&mut effects, "fading_time_s", physics.fading_time_s);
-            set(&mut file, "physics", effects);
-        }
+    let height = match scene.room() {
+        None => HeightFile::Preset(HeightPreset::Flat),
+        Some(room) if *room == Room::DEFAULT => HeightFile::Preset(HeightPreset::Room),
+        Some(room) => HeightFile::Written(*room),
+    };
+    let file = WorldFile {
+        seed,
+        max_order,
+        air: Some(nowhere(scene.air())),
+        noise: Some(nowhere(*noise)),
+        physics: Some(nowhere(PhysicsFile::Written(*physics))),
+        height: Some(nowhere(height)),
+        firing: None,
+        walls: scene.walls().iter().map(|wall| nowhere(WallFile::from(wall))).collect(),
+        poles: scene.poles().iter().map(|pole| nowhere(PoleFile::from(pole))).collect(),
+        robots: robots.iter().map(|robot| nowhere(RobotFile::from(robot))).collect(),
+        faults: vec![],
+    };
+    // Numbers, words and tables, which TOML has. Their keys are in order in a table.
+    let mut file = Table::try_from(file).unwrap_or_default();
+    if !faults.is_empty() {
+        file.insert("fault".to_owned(), faults.iter().map(Fault::to_table).collect::<Vec<_>>().into());
     }
-    match scene.room() {
-        None => set(&mut file, "height", "flat"),
-        Some(room) if *room == Room::DEFAULT => set(&mut file, "height", "room"),
-        Some(room) => {
-            let mut height = Table::new();
-            set(&mut height, "ceiling_m", room.ceiling_m);
-            for (name, material) in [("floor", &room.floor), ("ceiling", &room.ceiling)] {
-                let mut table = Table::new();
-                surface(&mut table, material);
-                set(&mut height, name, table);
-            }
-            set(&mut file, "height", height);
-        }
-    }
-    let walls = scene.walls().iter().map(|wall| {
-        let mut table = Table::new();
-        set(&mut table, "points_m", vec![vec![wall.from.x, wall.from.y], vec![wall.to.x, wall.to.y]]);
-        let faces = match wall.faces {
-            Faces::Left => None,
-            Faces::Both => Some("both"),
-            Faces::Open => Some("open"),
-        };
-        if let Some(faces) = faces {
-            set(&mut table, "faces", faces);
-        }
-        surface(&mut table, &wall.material);
-        Value::Table(table)
-    });
-    list(&mut file, "wall", walls.collect());
-    let poles = scene.poles().iter().map(|pole| {
-        let mut table = Table::new();
-        set(&mut table, "at_m", vec![pole.centre.x, pole.centre.y]);
-        set(&mut table, "radius_m", pole.radius_m);
-        surface(&mut table, &pole.material);
-        Value::Table(table)
-    });
-    list(&mut file, "pole", poles.collect());
-    list(&mut file, "robot", robots.iter().map(|robot| Value::Table(robot_table(robot))).collect());
-    list(&mut file, "fault", faults.iter().map(|fault| Value::Table(fault_table(fault))).collect());
     file.to_string()
 }
 
-fn list(table: &mut Table, key: &str, entries: Vec<Value>) {
-    if !entries.is_empty() {
-        set(table, key, entries);
+/// What stands in no text yet.
+fn nowhere<T>(of: T) -> Spanned<T> {
+    Spanned::new(0..0, of)
+}
+
+impl From<&Wall> for WallFile {
+    fn from(wall: &Wall) -> Self {
+        Self {
+            points_m: vec![[wall.from.x, wall.from.y], [wall.to.x, wall.to.y]],
+            closed: None,
+            faces: Some(wall.faces).filter(|faces| *faces != Faces::Left),
+            material: None,
+            reflection: Some(wall.material.reflection),
+            roughness_m: Some(wall.material.roughness_m),
+        }
     }
 }
 
-fn surface(table: &mut Table, material: &Material) {
-    set(table, "reflection", material.reflection);
-    set(table, "roughness_m", material.roughness_m);
+impl From<&Pole> for PoleFile {
+    fn from(pole: &Pole) -> Self {
+        Self {
+            at_m: [pole.centre.x, pole.centre.y],
+            radius_m: pole.radius_m,
+            material: None,
+            reflection: Some(pole.material.reflection),
+            roughness_m: Some(pole.material.roughness_m),
+        }
+    }
 }
 
-fn pose_table(pose: &Pose) -> Table {
-    let mut table = Table::new();
-    set(&mut table, "x_m", pose.translation.x);
-    set(&mut table, "y_m", pose.translation.y);
-    set(&mut table, "heading_rad", heading_rad(pose));
-    table
+impl From<&Pose> for PoseFile {
+    fn from(pose: &Pose) -> Self {
+        let heading_rad = Some(heading_rad(pose));
+        Self { x_m: pose.translation.x, y_m: pose.translation.y, heading_deg: None, heading_rad }
+    }
 }
 
 /// An angle whose pose is this one, bit for bit where there is one near by: sine and cosine are what a pose holds, and
@@ -141,126 +118,88 @@ fn exact_angle(pose: &Pose) -> Option<f64> {
     None
 }
 
-/// A preset by name, or a table of all figures.
-fn module_value(module: &Module) -> Value {
-    if find(module.name) == Some(module) {
-        return Value::from(module.name);
-    }
-    let mut table = Table::new();
-    set(&mut table, "like", module.name);
-    for key in &KEYS {
-        match key.of(module) {
-            Figure::Number(number) if key.is_whole() => set(&mut table, key.name, number as i64),
-            Figure::Number(number) => set(&mut table, key.name, number),
-            Figure::Word(word) => set(&mut table, key.name, word),
-        }
-    }
-    Value::Table(table)
-}
-
-fn robot_table(robot: &Robot) -> Table {
-    let mut table = Table::new();
-    set(&mut table, "pose", pose_table(&robot.pose));
-    let sensors: Vec<Value> = robot.sensors.iter().map(|sensor| Value::Table(pose_table(sensor))).collect();
-    set(&mut table, "sensors", sensors);
-    if robot.modules.is_empty() {
-        let Transducer { gain, beam, .. } = robot.transducer;
-        let module = robot.module_of(0);
-        // A preset but for these two, which have keys of their own.
-        let preset = find(module.name).filter(|preset| Module { gain, beam, ..**preset } == module);
-        set(&mut table, "module", preset.map_or_else(|| module_value(&module), |preset| Value::from(preset.name)));
-        set(&mut table, "gain", gain.name());
-        set(&mut table, "beam", beam.name());
-    } else {
-        set(&mut table, "module", robot.modules.iter().map(module_value).collect::<Vec<_>>());
-    }
-    if let Some(coupling_db) = robot.coupling_db {
-        set(&mut table, "coupling_db", coupling_db);
-    }
-    if !robot.heights_m.is_empty() {
-        set(&mut table, "height_m", robot.heights_m.clone());
-    }
-    if let Some(body) = &robot.body {
-        let mut outline = Table::new();
+impl From<&Body> for BodyFile {
+    fn from(body: &Body) -> Self {
+        let none = Self { radius_m: None, box_m: None, corners_m: None };
         match body {
-            Body::Disc(radius_m) => set(&mut outline, "radius_m", *radius_m),
-            Body::Box(length_m, width_m) => set(&mut outline, "box_m", vec![*length_m, *width_m]),
+            Body::Disc(radius_m) => Self { radius_m: Some(*radius_m), ..none },
+            Body::Box(length_m, width_m) => Self { box_m: Some([*length_m, *width_m]), ..none },
             Body::Polygon(polygon) => {
-                let corners: Vec<_> = polygon.corners().iter().map(|corner| vec![corner.x, corner.y]).collect();
-                set(&mut outline, "corners_m", corners);
+                let corners = polygon.corners().iter().map(|corner| [corner.x, corner.y]);
+                Self { corners_m: Some(corners.collect()), ..none }
             }
         }
-        set(&mut table, "body", outline);
     }
-    let mut motion = Table::new();
-    match &robot.motion {
-        Motion::Still => {}
-        Motion::Constant { velocity, turn_rad_s } => {
-            set(&mut motion, "velocity_m_s", vec![velocity.x, velocity.y]);
-            set(&mut motion, "turn_rad_s", *turn_rad_s);
-        }
-        Motion::Waypoints { points, speed_m_s } => {
-            set(&mut motion, "waypoints_m", points.iter().map(|at| vec![at.x, at.y]).collect::<Vec<_>>());
-            set(&mut motion, "speed_m_s", *speed_m_s);
-        }
-    }
-    if !motion.is_empty() {
-        set(&mut table, "motion", motion);
-    }
-    let mut clock = Table::new();
-    set(&mut clock, "offset_us", i64::from(robot.clock.offset_us));
-    set(&mut clock, "drift_ppm", robot.clock.drift_ppm);
-    set(&mut table, "clock", clock);
-    if robot.others {
-        set(&mut table, "others", true);
-    }
-    if let Some(schedule) =
-        robot.schedule.as_ref().and_then(|schedule| Table::try_from(ScheduleFile::from(schedule)).ok())
-    {
-        set(&mut table, "schedule", schedule);
-    }
-    let times: [(&str, Micros); 7] = [
-        ("start_us", robot.start),
-        ("period_us", robot.period),
-        ("t_delta_us", robot.t_delta),
-        ("window_us", robot.window),
-        ("blanking_us", robot.blanking),
-        ("min_refire_us", robot.min_refire),
-        ("audible_us", robot.audible),
-    ];
-    for (key, time) in times {
-        set(&mut table, key, i64::from(time.as_micros()));
-    }
-    if let Some(change) = robot.path_change {
-        set(&mut table, "path_change_us", i64::from(change.as_micros()));
-    }
-    if !robot.blankings.is_empty() {
-        let each = robot.blankings.iter().map(|blanking| i64::from(blanking.as_micros()));
-        set(&mut table, "blanking_us", each.collect::<Vec<_>>());
-    }
-    if !robot.limits.is_empty() {
-        let list = |of: fn(&SensorLimits) -> Micros| {
-            robot.limits.iter().map(|limits| i64::from(of(limits).as_micros())).collect::<Vec<_>>()
-        };
-        set(&mut table, "t_delta_us", list(|limits| limits.t_delta));
-        set(&mut table, "window_us", list(|limits| limits.window));
-    }
-    if !robot.together.is_empty() {
-        let members = |set: &u64| (0..64_i64).filter(|sensor| set >> sensor & 1 == 1).collect::<Vec<_>>();
-        set(&mut table, "together", robot.together.iter().map(members).collect::<Vec<_>>());
-    }
-    for (key, number) in [("neighbours", robot.neighbours), ("consecutive", robot.consecutive)] {
-        set(&mut table, key, i64::from(number));
-    }
-    set(&mut table, "odometry", robot.odometry);
-    let firing = robot.firing.to_table();
-    if !firing.is_empty() {
-        set(&mut table, "firing", firing);
-    }
-    table
 }
 
-/// Sets a value under a key.
-pub(super) fn set(table: &mut Table, key: &str, value: impl Into<Value>) {
-    table.insert(key.to_owned(), value.into());
+impl MotionFile {
+    /// Nothing for a robot that stands.
+    fn of(motion: &Motion) -> Option<Self> {
+        let none = Self { velocity_m_s: None, turn_deg_s: None, turn_rad_s: None, waypoints_m: None, speed_m_s: None };
+        match motion {
+            Motion::Still => None,
+            Motion::Constant { velocity, turn_rad_s } => {
+                Some(Self { velocity_m_s: Some([velocity.x, velocity.y]), turn_rad_s: Some(*turn_rad_s), ..none })
+            }
+            Motion::Waypoints { points, speed_m_s } => Some(Self {
+                waypoints_m: Some(points.iter().map(|at| [at.x, at.y]).collect()),
+                speed_m_s: Some(*speed_m_s),
+                ..none
+            }),
+        }
+    }
+}
+
+impl From<&Robot> for RobotFile {
+    fn from(robot: &Robot) -> Self {
+        let (module, gain, beam) = if robot.modules.is_empty() {
+            let Transducer { gain, beam, .. } = robot.transducer;
+            let module = robot.module_of(0);
+            // A preset but for these two, which have keys of their own.
+            let preset = find(module.name).filter(|preset| Module { gain, beam, ..**preset } == module);
+            let module = preset.copied().unwrap_or(module);
+            (ModulesFile::All(module), Some(gain.name().to_owned()), Some(beam.name().to_owned()))
+        } else {
+            (ModulesFile::Of(robot.modules.clone()), None, None)
+        };
+        let each = |of: fn(&SensorLimits) -> Micros, all: Micros| match &robot.limits[..] {
+            [] => EachFile::All(all),
+            limits => EachFile::Of(limits.iter().map(of).collect()),
+        };
+        let blanking = match &robot.blankings[..] {
+            [] => EachFile::All(robot.blanking),
+            blankings => EachFile::Of(blankings.to_vec()),
+        };
+        let members = |set: &u64| (0..64).filter(|sensor| set >> sensor & 1 == 1).collect();
+        let schedule = robot.schedule.as_ref().and_then(|own| Value::try_from(ScheduleFile::from(own)).ok());
+        Self {
+            pose: PoseFile::from(&robot.pose),
+            ring: None,
+            sensors: Some(robot.sensors.iter().map(PoseFile::from).collect()),
+            module: Some(module),
+            gain,
+            beam,
+            coupling_db: robot.coupling_db,
+            height_m: (!robot.heights_m.is_empty()).then(|| HeightsFile::Of(robot.heights_m.clone())),
+            body: robot.body.as_ref().map(BodyFile::from),
+            motion: MotionFile::of(&robot.motion),
+            clock: Some(robot.clock),
+            others: robot.others.then_some(true),
+            schedule: schedule.map(nowhere),
+            start_us: Some(robot.start),
+            period_us: Some(robot.period),
+            t_delta_us: Some(each(|limits| limits.t_delta, robot.t_delta)),
+            window_us: Some(each(|limits| limits.window, robot.window)),
+            together: robot.together.iter().map(members).collect(),
+            blanking_us: Some(blanking),
+            min_refire_us: Some(robot.min_refire),
+            audible_us: Some(robot.audible),
+            path_change_us: robot.path_change,
+            firing: (robot.firing != Sketch::default()).then(|| SketchFile::from(&robot.firing)),
+            neighbours: Some(robot.neighbours),
+            consecutive: Some(robot.consecutive),
+            patience: None,
+            odometry: robot.odometry,
+        }
+    }
 }

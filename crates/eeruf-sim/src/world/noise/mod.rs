@@ -5,15 +5,17 @@
 //! threads.
 
 mod normal;
-mod random;
+
+use serde::{Deserialize, Serialize};
 
 use super::error::WorldError;
 
+pub use eeruf_period::Random;
 pub(crate) use normal::{FARTHEST, Normal};
-pub use random::Random;
 
 /// Noise of a world.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
+#[serde(default, deny_unknown_fields)]
 pub struct Noise {
     /// Root mean square by which each arrival's level fades or grows, in dB.
     pub fading_db_rms: f64,

@@ -62,8 +62,8 @@ fn quantile_of(p: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::random::Random;
     use super::*;
+    use eeruf_period::Random;
 
     #[test]
     fn normal_numbers_have_mean_zero_and_standard_deviation_one() {

@@ -1,10 +1,9 @@
 //! The pattern of a round transducer in a baffle: how much of the sound leaves, or is heard, at an angle off its axis.
 
-use core::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2, FRAC_PI_4, PI};
+use core::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2, FRAC_PI_4, PI, TAU};
 
-use eeruf_modules::Beam;
-
-use super::panel::fresnel;
+use crate::fresnel::fresnel;
+use crate::module::Beam;
 
 /// The first zero of `J1`: where the main lobe ends.
 const FIRST_NULL: f64 = 3.831_705_970_207_512;
@@ -49,7 +48,7 @@ impl Piston {
     /// ripple in front left out, which a round rim and a short burst smear.
     ///
     /// ```
-    /// use eeruf_sim::{Beam, Piston};
+    /// use eeruf_modules::{Beam, Piston};
     /// let polaroid = Piston { ka: 17.364439394387222, floor: 0.0, beam: Beam::CutAt90 };
     /// assert!((polaroid.pattern(7.5f64.to_radians()) - 0.48150582532629144).abs() < 1e-9);
     /// assert_eq!(polaroid.pattern(2.0), 0.0);
@@ -57,7 +56,7 @@ impl Piston {
     /// assert!(behind > 0.0 && behind < polaroid.pattern(1.57));
     /// ```
     pub fn pattern(&self, off_axis_rad: f64) -> f64 {
-        let off = crate::geometry::wrap_angle(off_axis_rad).abs();
+        let off = wrap_angle(off_axis_rad).abs();
         match self.beam {
             Beam::CutAt90 if off >= FRAC_PI_2 => 0.0,
             Beam::CutAt90 => self.endless(off),
@@ -73,12 +72,12 @@ impl Piston {
     /// Share that the end of the baffle leaves at an angle of 0 to pi, 1 on the axis.
     fn rim(&self, off: f64) -> f64 {
         let edge_wave = |x: f64| {
-            let [c, s] = fresnel(x.abs() * (2.0 / PI).sqrt());
+            let [c, s] = fresnel(x.abs() * libm::sqrt(2.0 / PI));
             libm::hypot(0.5 - c, 0.5 - s) * FRAC_1_SQRT_2
         };
-        let x = (2.0 * self.ka).sqrt() * libm::cos(FRAC_PI_4 + 0.5 * off);
+        let x = libm::sqrt(2.0 * self.ka) * libm::cos(FRAC_PI_4 + 0.5 * off);
         let left = if x >= 0.0 { 1.0 - edge_wave(x) } else { edge_wave(x) };
-        left / (1.0 - edge_wave(self.ka.sqrt()))
+        left / (1.0 - edge_wave(libm::sqrt(self.ka)))
     }
 
     fn lobe(&self, x: f64) -> f64 {
@@ -108,6 +107,24 @@ impl Piston {
             }
         }
         Some(libm::asin((high / self.ka).min(1.0)))
+    }
+}
+
+/// Wraps an angle into (-pi, pi].
+#[inline]
+pub fn wrap_angle(angle_rad: f64) -> f64 {
+    if angle_rad > -PI && angle_rad <= PI {
+        return angle_rad;
+    }
+    // A conversion to an integer and back rounds without a call.
+    let turns = (angle_rad / TAU + 0.5f64.copysign(angle_rad)) as i64;
+    let wrapped = angle_rad - TAU * turns as f64;
+    if wrapped <= -PI {
+        wrapped + TAU
+    } else if wrapped > PI {
+        wrapped - TAU
+    } else {
+        wrapped
     }
 }
 

@@ -44,13 +44,6 @@ impl Random {
     pub const fn between(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * ((self.bits() >> 11) as f64 / (1u64 << 53) as f64)
     }
-
-    /// The time to the next event of a Poisson process that has `rate` events in a unit of time on average.
-    pub fn until_next(&mut self, rate: f64) -> f64 {
-        // From above 0 to 1.
-        let share = ((self.bits() >> 11) + 1) as f64 / (1u64 << 53) as f64;
-        -libm::log(share) / rate
-    }
 }
 
 #[cfg(test)]
@@ -63,12 +56,5 @@ mod tests {
         assert_eq!(random.of(5).bits(), random.of(5).bits());
         assert_ne!(random.of(5).bits(), random.of(6).bits());
         assert_ne!(Random::new(2).of(5).bits(), random.of(5).bits());
-    }
-
-    #[test]
-    fn bursts_come_as_often_as_asked() {
-        let mut random = Random::new(9);
-        let total: f64 = (0..50_000).map(|_| random.until_next(20.0)).sum();
-        assert!((total / 50_000.0 - 0.05).abs() < 0.001);
     }
 }

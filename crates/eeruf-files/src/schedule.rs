@@ -1,18 +1,16 @@
 //! Schedules in files: either lags and waits, or firing times, in whole microseconds, one number for each sensor.
 
-use eeruf_core::{Micros, Phase, ScheduleError};
-use eeruf_files::{FileError, explain};
+use eeruf_core::{MAX_SENSORS, Micros, Phase, Schedule, ScheduleError};
 use serde::{Deserialize, Serialize};
-use toml::Spanned;
 
-use super::source::Source;
-use crate::world::robot::AnySchedule;
+/// A schedule whose number of sensors is known only at run time.
+pub type AnySchedule = Schedule<MAX_SENSORS>;
 
 /// A schedule as it stands in a file.
 ///
 /// ```
 /// let keys = "period_us = 40_000\nt_fire_a_us = [0, 20_000]\nt_fire_b_us = [2_000, 25_000]\n";
-/// let file: eeruf_sim::ScheduleFile = toml::from_str(keys)?;
+/// let file: eeruf_files::ScheduleFile = toml::from_str(keys)?;
 /// assert_eq!(file.schedule()?.sensors(), 2);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -30,18 +28,6 @@ pub struct ScheduleFile {
     t_fire_a_us: Option<Vec<u32>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     t_fire_b_us: Option<Vec<u32>>,
-}
-
-/// A schedule in the file itself, or the name of a file beside it.
-pub(super) fn schedule(source: &Source, value: &Spanned<toml::Value>) -> Result<AnySchedule, FileError> {
-    let here = |message: String| source.error(Some(value.span()), "", format!("schedule: {message}"));
-    if let toml::Value::String(name) = value.get_ref() {
-        let source = source.beside(name)?;
-        let file: ScheduleFile = source.toml()?;
-        return file.schedule().map_err(|message| source.error(None, "", message));
-    }
-    let file = ScheduleFile::deserialize(value.get_ref().clone()).map_err(|error| here(explain(&error)))?;
-    file.schedule().map_err(here)
 }
 
 impl ScheduleFile {
@@ -87,5 +73,29 @@ impl From<&AnySchedule> for ScheduleFile {
         }
         let t_lag_us = us(schedule.t_lag());
         Self { period_us, t_lag_us, t_wait_a_us: a, t_wait_b_us: b, t_fire_a_us: None, t_fire_b_us: None }
+    }
+}
+
+/// Schedules as [`ScheduleFile`]s, for `#[serde(with = "eeruf_files::as_file")]`.
+pub mod as_file {
+    use serde::de::{Deserialize, Deserializer, Error};
+    use serde::ser::{Serialize, Serializer};
+
+    use super::{AnySchedule, ScheduleFile};
+
+    /// Writes the keys of a file.
+    ///
+    /// # Errors
+    /// Those of the serializer.
+    pub fn serialize<S: Serializer>(schedule: &AnySchedule, serializer: S) -> Result<S::Ok, S::Error> {
+        ScheduleFile::from(schedule).serialize(serializer)
+    }
+
+    /// Reads them.
+    ///
+    /// # Errors
+    /// As [`ScheduleFile::schedule`], and those of the deserializer.
+    pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<AnySchedule, D::Error> {
+        ScheduleFile::deserialize(deserializer)?.schedule().map_err(D::Error::custom)
     }
 }

@@ -1,0 +1,49 @@
+//! The robot of a ring file, as scenes take it: where its sensors stand, what they are and how they compare.
+
+use eeruf_core::{Micros, SensorLimits};
+use eeruf_modules::Module;
+
+/// Place and heading, on a robot or of one.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Pose {
+    /// Ahead, in metres.
+    pub x_m: f64,
+    /// To the left, in metres.
+    pub y_m: f64,
+    /// Counter-clockwise from straight ahead, in radians.
+    pub heading_rad: f64,
+}
+
+/// Poses evenly spread over an arc of a circle about the origin, facing outwards: the first one `first_rad` from
+/// straight ahead, the next ones `spacing_rad` further each.
+pub fn arc(sensors: usize, radius_m: f64, first_rad: f64, spacing_rad: f64) -> impl Iterator<Item = Pose> {
+    (0..sensors).map(move |sensor| {
+        let heading_rad = first_rad + spacing_rad * sensor as f64;
+        Pose { x_m: radius_m * libm::cos(heading_rad), y_m: radius_m * libm::sin(heading_rad), heading_rad }
+    })
+}
+
+/// The robot of a ring file.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct RobotRing {
+    /// Number of sensors, 1 to 64.
+    pub sensors: usize,
+    /// Where each stands on the robot; empty if the file does not say it.
+    pub poses: Vec<Pose>,
+    /// Height of each above the floor in metres; empty if the file does not say it.
+    pub heights_m: Vec<f64>,
+    /// The module of each sensor; empty if the file names none.
+    pub modules: Vec<Module>,
+    /// Window and `T_delta` of each sensor.
+    pub limits: Vec<SensorLimits>,
+    /// Sets of sensors that fire together, bit x for sensor x.
+    pub together: Vec<u64>,
+    /// Its speed in m/s, which `T_delta` must cover too where it has no odometry.
+    pub speed_m_s: f64,
+    /// Number of adjacent sensors that must not fire close together.
+    pub neighbours: u8,
+    /// Change of the path of a foreign sound from one reading to the next, at most; `None` for `T_delta`.
+    pub path_change: Option<Micros>,
+    /// Time for which sound is audible; `None` for what modules say.
+    pub audible: Option<Micros>,
+}

@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 
+use eeruf_files::FIRING_COLUMNS;
 use eeruf_sim::experiments::set_two::Place;
 use eeruf_sim::{Cause, Readings};
 
@@ -10,15 +11,11 @@ use super::firings::{CLOCK, firing};
 /// The readings of the first robot. Sensors and robots from 0; times in whole microseconds, so that machines whose
 /// sines differ in the last bit agree.
 pub(crate) fn readings_csv(readings: &Readings) -> String {
-    let mut text = format!(
-        "# clock: {CLOCK}\nsensor,fired_us,period,phase,t_echo_us,reading,alone_us,cause,sender,sender_robot,length_mm,\
-         bounces\n"
-    );
+    let mut text = format!("# clock: {CLOCK}\n{FIRING_COLUMNS},alone_us,cause,sender,sender_robot,length_mm,bounces\n");
     let mut order: Vec<_> = (0..readings.len()).filter(|&k| readings.robot[k] == 0).collect();
     order.sort_by(|&a, &b| readings.fired_s[a].total_cmp(&readings.fired_s[b]));
     let number = |value: f64| if value.is_nan() { String::new() } else { format!("{value:.0}") };
     for k in order {
-        let of = firing(readings, k);
         let path = readings.path_of(k).map_or_else(
             || ",,,".to_owned(),
             |path| {
@@ -26,18 +23,9 @@ pub(crate) fn readings_csv(readings: &Readings) -> String {
                 format!("{},{},{length_mm},{}", sender.sensor, sender.robot, path.order)
             },
         );
-        let (echo, alone) = (number(readings.earliest_us[k].trunc()), number(readings.reference_us[k]));
+        let (alone, cause) = (number(readings.reference_us[k]), cause(readings.cause[k]));
         // Writing to a string does not fail.
-        _ = writeln!(
-            text,
-            "{},{},{},{},{echo},{},{alone},{},{path}",
-            of.sensor,
-            of.fired_us,
-            of.period,
-            of.phase,
-            readings.kind[k].as_str(),
-            cause(readings.cause[k]),
-        );
+        _ = writeln!(text, "{},{alone},{cause},{path}", firing(readings, k));
     }
     text
 }

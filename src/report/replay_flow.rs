@@ -4,8 +4,9 @@ use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::Path;
 
-use eeruf_core::{Micros, ReadingKind};
-use eeruf_logs::{FiringLog, Replayed};
+use eeruf_core::ReadingKind;
+use eeruf_files::FIRING_COLUMNS;
+use eeruf_logs::{Firing, FiringLog, Replayed};
 use serde::Serialize;
 
 use super::table::markdown;
@@ -84,14 +85,11 @@ impl FlowReplay {
 
 /// The log with what is made of each reading now, and the echo that is believed since.
 pub(crate) fn rows(log: &FiringLog, replayed: &[Option<Replayed>]) -> String {
-    let us = |time: Option<u32>| time.map(|us| us.to_string()).unwrap_or_default();
-    let mut text = format!("# clock: {}\nsensor,fired_us,period,phase,t_echo_us,reading,believed_us\n", log.clock);
+    let mut text = format!("# clock: {}\n{FIRING_COLUMNS},believed_us\n", log.clock);
     for (firing, again) in log.firings.iter().zip(replayed) {
-        let (sensor, fired_us, period, phase) = (firing.sensor, firing.fired_us, firing.period, firing.phase);
-        let reading = again.map_or(ReadingKind::Late, |again| again.kind).as_str();
-        let (echo, believed) =
-            (us(firing.t_echo_us), us(again.and_then(|again| again.believed).map(Micros::as_micros)));
-        _ = writeln!(text, "{sensor},{fired_us},{period},{phase},{echo},{reading},{believed}");
+        let reading = Some(again.map_or(ReadingKind::Late, |again| again.kind));
+        let believed = again.and_then(|again| again.believed).map(|us| us.as_micros().to_string());
+        _ = writeln!(text, "{},{}", Firing { reading, ..firing.clone() }, believed.unwrap_or_default());
     }
     text
 }

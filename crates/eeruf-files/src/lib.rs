@@ -8,6 +8,7 @@
 #[cfg(feature = "emit")]
 pub mod emit;
 mod error;
+mod firing_row;
 #[cfg(feature = "toml")]
 mod implausible;
 mod kind;
@@ -19,6 +20,7 @@ mod robot_ring;
 mod schedule;
 
 pub use error::FileError;
+pub use firing_row::{FIRING_COLUMNS, firing_row};
 #[cfg(feature = "toml")]
 pub use implausible::{doubt, doubt_list, doubted_keys, doubts_in};
 pub use kind::Kind;

@@ -17,17 +17,17 @@ pub type AnySchedule = Schedule<MAX_SENSORS>;
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ScheduleFile {
-    period_us: u32,
+    pub(crate) period_us: u32,
     #[serde(skip_serializing_if = "Option::is_none")]
-    t_lag_us: Option<Vec<u32>>,
+    pub(crate) t_lag_us: Option<Vec<u32>>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    t_wait_a_us: Option<Vec<u32>>,
+    pub(crate) t_wait_a_us: Option<Vec<u32>>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    t_wait_b_us: Option<Vec<u32>>,
+    pub(crate) t_wait_b_us: Option<Vec<u32>>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    t_fire_a_us: Option<Vec<u32>>,
+    pub(crate) t_fire_a_us: Option<Vec<u32>>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    t_fire_b_us: Option<Vec<u32>>,
+    pub(crate) t_fire_b_us: Option<Vec<u32>>,
 }
 
 impl ScheduleFile {
@@ -61,9 +61,9 @@ impl ScheduleFile {
     }
 }
 
-impl From<&AnySchedule> for ScheduleFile {
+impl<const K: usize> From<&Schedule<K>> for ScheduleFile {
     /// In firing times if the lags are all zero, as they are for a schedule given by its firing times.
-    fn from(schedule: &AnySchedule) -> Self {
+    fn from(schedule: &Schedule<K>) -> Self {
         let us = |times: &[Micros]| Some(times.iter().map(|time| time.as_micros()).collect());
         let (a, b) = (us(schedule.t_wait(Phase::A)), us(schedule.t_wait(Phase::B)));
         let period_us = schedule.period().as_micros();

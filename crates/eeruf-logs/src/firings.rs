@@ -22,9 +22,11 @@
 //! [`McapWriter::firing`](crate::McapWriter::firing) writes, or one `eeruf.Firing` in JSON, with the columns as its
 //! fields and the clock's name as a field `clock`.
 
+use std::fmt;
 use std::io::Write;
 
 use eeruf_core::ReadingKind;
+use eeruf_files::{FIRING_COLUMNS, firing_row};
 
 /// Columns of earlier versions, whose rings hopped: ignored.
 pub(crate) const OF_HOPPING: [&str; 3] = ["solo", "steady", "changes"];
@@ -83,9 +85,21 @@ impl Firing {
         1000 * self.fired_us.max(1).cast_unsigned()
     }
 
+    /// Its row, with this in the place of the time.
+    fn row(&self, fired_us: impl fmt::Display) -> String {
+        firing_row(self.sensor, fired_us, self.period, self.phase, self.t_echo_us, self.spelled())
+    }
+
     /// The ring's verdict on the reading, as logs spell it.
     pub(crate) fn spelled(&self) -> &'static str {
         self.reading.map_or("", ReadingKind::as_str)
+    }
+}
+
+impl fmt::Display for Firing {
+    /// Its row: a cell for each of the [`FIRING_COLUMNS`].
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.row(self.fired_us))
     }
 }
 
@@ -135,16 +149,13 @@ impl FiringLog {
         let moves = self.firings.iter().any(|firing| firing.g_us_ms.is_some());
         let motion = if moves { ",g" } else { "" };
         writeln!(output, "# clock: {}", self.clock)?;
-        writeln!(output, "sensor,fired_us,period,phase,t_echo_us,reading{motion}{sends}")?;
+        writeln!(output, "{FIRING_COLUMNS}{motion}{sends}")?;
         for (rows, sends) in [(&self.firings, ",1"), (&self.listened, ",0")] {
             let sends = if self.listened.is_empty() { "" } else { sends };
             for firing in rows {
-                let Firing { sensor, fired_us, period, phase, t_echo_us, g_us_ms, .. } = *firing;
-                let fired_us = if self.lacks_instants { String::new() } else { fired_us.to_string() };
-                let echo = t_echo_us.map(|us| us.to_string()).unwrap_or_default();
-                let reading = firing.spelled();
-                write!(output, "{sensor},{fired_us},{period},{phase},{echo},{reading}")?;
-                match g_us_ms {
+                let row = if self.lacks_instants { firing.row("") } else { firing.to_string() };
+                write!(output, "{row}")?;
+                match firing.g_us_ms {
                     Some(g) => write!(output, ",{g}")?,
                     None if moves => write!(output, ",")?,
                     None => {}

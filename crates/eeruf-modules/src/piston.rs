@@ -133,6 +133,12 @@ mod tests {
     use super::*;
 
     #[test]
+    fn angles_wrap_to_the_half_open_circle() {
+        assert_eq!((wrap_angle(PI), wrap_angle(-PI)), (PI, PI));
+        assert!((wrap_angle(7.0 * PI + 0.25) - (0.25 - PI)).abs() < 1e-14);
+    }
+
+    #[test]
     fn polaroid_and_hc_sr04_have_the_lobes_of_the_data_sheets() {
         let degrees =
             |ka: f64, db: f64| Piston { ka, floor: 0.0, beam: Beam::CutAt90 }.angle_at_db(db).unwrap().to_degrees();

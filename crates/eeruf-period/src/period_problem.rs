@@ -38,7 +38,7 @@ pub struct PeriodProblem<'a> {
 }
 
 /// The shortest period for a ring, or the best found.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ShortestPeriod {
     /// A schedule with that period.
     pub schedule: Schedule<MAX_SENSORS>,

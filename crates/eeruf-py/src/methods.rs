@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use eeruf_sim::{BestSchedule, Entry, Method as Named, Robot, best_schedule_for};
+use eeruf_sim::{Entry, Method as Named, Robot, ShortestPeriod, best_schedule_for};
 use pyo3::{
     PyTraverseError, PyVisit,
     prelude::*,
@@ -245,7 +245,7 @@ pub(crate) fn method(argument: &str, name: &Bound<'_, PyAny>) -> PyResult<Named>
 }
 
 /// The schedule of `eeruf_best`, if it is among these methods.
-pub(crate) fn best(methods: &[Entry], robot: &Robot, background: &Background) -> PyResult<Option<BestSchedule>> {
+pub(crate) fn best(methods: &[Entry], robot: &Robot, background: &Background) -> PyResult<Option<ShortestPeriod>> {
     let asked = methods.iter().any(|entry| entry.method() == Named::EerufBest);
     asked
         .then(|| {

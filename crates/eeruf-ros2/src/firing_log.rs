@@ -4,7 +4,8 @@ use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
-use eeruf_core::judge::Explanation;
+use eeruf_core::{Micros, judge::Explanation};
+use eeruf_files::{FIRING_COLUMNS, firing_row};
 use eeruf_serial::Firing;
 
 pub(crate) struct FiringLog {
@@ -23,17 +24,17 @@ impl FiringLog {
         if !self.begun {
             self.begun = true;
             writeln!(self.file, "# clock: {clock}, 32 bits")?;
-            writeln!(self.file, "sensor,fired_us,period,phase,t_echo_us,reading,explained_by,late_us")?;
+            writeln!(self.file, "{FIRING_COLUMNS},explained_by,late_us")?;
         }
         let Firing { sensor, period, phase, kind, explained_by, .. } = firing;
-        let echo = firing.t_echo.map(|t_echo| t_echo.as_micros().to_string()).unwrap_or_default();
+        let echo = firing.t_echo.map(Micros::as_micros);
         let (fired, late) = (firing.fired.as_micros(), firing.late.as_micros());
         let by = match explained_by {
             None => String::new(),
             Some(Explanation::Sensor(sensor)) => sensor.to_string(),
             Some(Explanation::History) => "history".to_owned(),
         };
-        writeln!(self.file, "{sensor},{fired},{period},{phase},{echo},{kind},{by},{late}")
+        writeln!(self.file, "{},{by},{late}", firing_row(*sensor, fired, *period, *phase, echo, kind))
     }
 
     /// Brings to the disk what was written.
@@ -45,7 +46,7 @@ impl FiringLog {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use eeruf_core::{Instant, Micros, ReadingKind};
+    use eeruf_core::{Instant, ReadingKind};
 
     #[test]
     fn diagnose_reads_what_is_written_through_a_wrap_of_the_clock() {

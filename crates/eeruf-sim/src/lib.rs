@@ -59,6 +59,7 @@
 //! ```
 
 pub use eeruf_modules as modules;
+pub use eeruf_period::ShortestPeriod;
 
 pub mod acoustics;
 pub mod experiments;
@@ -80,8 +81,8 @@ pub use acoustics::{
 pub use geometry::{Moment, Point, Pose, Specular, Vector, alhazen, alhazen_twice, pose_of};
 pub use maps::OccupancyGrid;
 pub use methods::{
-    BestSchedule, Firing, FiringPeriod, FlowOptions, Method, OwnError, UnknownMethod, best_schedule_for,
-    requirements_of, shortest_schedule_for, table_i_d_for,
+    Firing, FiringPeriod, FlowOptions, Method, OwnError, UnknownMethod, best_schedule_for, requirements_of,
+    shortest_schedule_for, table_i_d_for,
 };
 pub use navigation::{Driven, Himm, LabMate, Vfh};
 pub use results::{

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use eeruf_core::Micros;
-use eeruf_sim::BestSchedule;
+use eeruf_sim::ShortestPeriod;
 use eeruf_sim::experiments::Spread;
 use eeruf_sim::experiments::set_one::{Figures, Latency, MultiEcho, NewStep, SetOne};
 
@@ -20,7 +20,7 @@ fn paper(method: &str) -> &'static str {
     }
 }
 
-pub(crate) fn describe(found: &SetOne, best: &BestSchedule) -> String {
+pub(crate) fn describe(found: &SetOne, best: &ShortestPeriod) -> String {
     let header = [
         "method",
         "paper: wrong %",
@@ -59,7 +59,7 @@ pub(crate) fn describe(found: &SetOne, best: &BestSchedule) -> String {
         consecutive,
         t_delta,
         best.schedule.period(),
-        if best.proven { "proven shortest" } else { "not proven shortest" },
+        if best.proven() { "proven shortest" } else { "not proven shortest" },
     );
     _ = writeln!(text, "{}", markdown(&header, rows));
     let header = [

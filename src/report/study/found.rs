@@ -1,6 +1,6 @@
 //! Result of a study.
 
-use eeruf_sim::BestSchedule;
+use eeruf_sim::ShortestPeriod;
 use eeruf_sim::{Method, Readings};
 
 /// Error from which a reading counts as wrong.
@@ -11,7 +11,7 @@ pub(crate) struct Study {
     pub(crate) runs: Vec<Readings>,
     /// Methods that cannot be simulated here, and why.
     pub(crate) left_out: Vec<(Method, String)>,
-    pub(crate) best: Option<BestSchedule>,
+    pub(crate) best: Option<ShortestPeriod>,
     pub(crate) periods: u32,
     pub(crate) seed: u64,
 }

@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use eeruf_sim::{Cause, Method, Readings, ScheduleFile, SensorId, Summary, World};
+use eeruf_files::{AnySchedule, as_file};
+use eeruf_sim::{Cause, Method, Readings, SensorId, Summary, World};
 use serde::Serialize;
 
 use super::found::{Study, TOLERANCE_US, of_robot};
@@ -35,7 +36,8 @@ struct MethodJson {
 
 #[derive(Serialize)]
 struct BestJson {
-    schedule: ScheduleFile,
+    #[serde(serialize_with = "as_file::serialize")]
+    schedule: AnySchedule,
     proven: bool,
 }
 
@@ -57,10 +59,7 @@ impl<'a> StudyJson<'a> {
             periods: study.periods,
             methods: methods.collect(),
             left_out: study.left_out.iter().map(|(method, why)| (*method, why.as_str())).collect(),
-            best: study
-                .best
-                .as_ref()
-                .map(|best| BestJson { schedule: ScheduleFile::from(&best.schedule), proven: best.proven }),
+            best: study.best.as_ref().map(|best| BestJson { schedule: best.schedule, proven: best.proven() }),
         }
     }
 }

@@ -4,7 +4,6 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use comfy_table::Table;
-use eeruf_sim::BestSchedule;
 use eeruf_sim::{Method, Readings, Summary, World};
 
 use super::fooled::Fooled;
@@ -39,10 +38,13 @@ pub(crate) fn describe(file: &Path, world: &World, study: &Study) -> String {
         text += &fooled.describe();
         text += &verdict(&runs, sensors);
     }
-    if let Some(BestSchedule { schedule, proven }) = &study.best {
-        let proof =
-            if *proven { "proven: no schedule with the same guarantees is shorter" } else { "not proven shortest" };
-        _ = writeln!(text, "\neeruf_best fires with a period of {} ({proof}).", schedule.period());
+    if let Some(best) = &study.best {
+        let proof = if best.proven() {
+            "proven: no schedule with the same guarantees is shorter"
+        } else {
+            "not proven shortest"
+        };
+        _ = writeln!(text, "\neeruf_best fires with a period of {} ({proof}).", best.period());
     }
     for (method, why) in &study.left_out {
         _ = writeln!(text, "{method} is left out: {why}.");

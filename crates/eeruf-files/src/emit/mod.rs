@@ -13,6 +13,8 @@ use c::{ArduinoTab, CHeader, CLimits, EERUF_VERSION, Plain};
 pub use flow::Flow;
 pub use ring::Form;
 
+use crate::ScheduleFile;
+
 /// A schedule that can be written as source text.
 pub trait Emit {
     /// A `const RING` in Rust, with the `requirements` for the compiler to check (see `eeruf_core::schedule!`).
@@ -43,7 +45,20 @@ impl<const K: usize> Emit for Schedule<K> {
     }
 
     fn to_toml(&self) -> String {
-        Toml { schedule: self }.to_string()
+        let ScheduleFile { period_us, t_lag_us, t_wait_a_us, t_wait_b_us, t_fire_a_us, t_fire_b_us } = self.into();
+        let mut text = format!("period_us = {}\n", Grouped(Micros::new(period_us)));
+        for (key, times) in [
+            ("t_lag_us", t_lag_us),
+            ("t_wait_a_us", t_wait_a_us),
+            ("t_wait_b_us", t_wait_b_us),
+            ("t_fire_a_us", t_fire_a_us),
+            ("t_fire_b_us", t_fire_b_us),
+        ] {
+            if let Some(times) = times {
+                text += &format!("{key} = [{}]\n", Numbers(|| times.iter().copied().map(Micros::new)));
+            }
+        }
+        text
     }
 }
 
@@ -141,26 +156,6 @@ impl fmt::Display for RustLayout<'_> {
                 }
                 write!(f, "])")
             }
-        }
-    }
-}
-
-/// A schedule as a TOML file: see [`Emit::to_toml`].
-struct Toml<'s, const K: usize> {
-    schedule: &'s Schedule<K>,
-}
-
-impl<const K: usize> fmt::Display for Toml<'_, K> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let schedule = self.schedule;
-        writeln!(f, "period_us = {}", Grouped(schedule.period()))?;
-        if has_lags(schedule) {
-            writeln!(f, "t_lag_us = [{}]", Numbers(|| schedule.t_lag().iter().copied()))?;
-            writeln!(f, "t_wait_a_us = [{}]", Numbers(|| schedule.t_wait(Phase::A).iter().copied()))?;
-            writeln!(f, "t_wait_b_us = [{}]", Numbers(|| schedule.t_wait(Phase::B).iter().copied()))
-        } else {
-            writeln!(f, "t_fire_a_us = [{}]", Numbers(|| fire_times(schedule, Phase::A)))?;
-            writeln!(f, "t_fire_b_us = [{}]", Numbers(|| fire_times(schedule, Phase::B)))
         }
     }
 }

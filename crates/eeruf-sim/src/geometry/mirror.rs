@@ -46,8 +46,8 @@ impl Mirror {
 
 #[cfg(test)]
 mod tests {
-    use super::super::plane::wrap_angle;
     use super::*;
+    use eeruf_modules::wrap_angle;
 
     #[test]
     fn reflecting_twice_returns_the_point_and_the_direction() {

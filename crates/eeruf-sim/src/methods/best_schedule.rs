@@ -2,24 +2,15 @@
 
 use eeruf_core::search::{Progress, SearchError};
 use eeruf_core::{Layout, Micros, Requirements};
-use eeruf_period::PeriodProblem;
+use eeruf_period::{PeriodProblem, ShortestPeriod};
 use std::ops::ControlFlow;
 
 use super::schedules::table_i_d_for;
-use crate::world::{AnySchedule, Robot};
+use crate::world::Robot;
 
 /// The grid on which firing times are sought: a choice; finer ticks seldom gain (`docs/explanation/theory.md`, section
 /// 5.5).
 pub const TICK: Micros = Micros::new(100);
-
-/// Schedule of [`Method::EerufBest`](crate::Method::EerufBest).
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct BestSchedule {
-    /// The schedule.
-    pub schedule: AnySchedule,
-    /// True if it is proven that no schedule for the same requirements has a shorter period.
-    pub proven: bool,
-}
 
 /// Requirements that a ring must keep of the schedule it fires by: the robot's `t_delta` and window, the interval that
 /// its schedule (or the paper's table at its period) keeps between neighbours, and that a sensor's own stale echoes are
@@ -46,9 +37,8 @@ pub fn shortest_schedule_for(
     robot: &Robot,
     budget: u64,
     keep_going: impl FnMut(&Progress) -> bool,
-) -> Result<BestSchedule, SearchError> {
-    let found = problem_of(robot).shortest(budget, &mut control(keep_going))?;
-    Ok(BestSchedule { schedule: found.schedule, proven: found.proven() })
+) -> Result<ShortestPeriod, SearchError> {
+    problem_of(robot).shortest(budget, &mut control(keep_going))
 }
 
 /// As [`shortest_schedule_for`], and of all schedules of that period the one to prefer, if the period is proven.
@@ -59,19 +49,20 @@ pub fn shortest_schedule_for(
 /// ```
 /// use eeruf_sim::{best_schedule_for, experiments::set_one::Alcove};
 /// let best = best_schedule_for(&Alcove::random(0).robot(), 100_000, |_| true)?;
-/// assert!(best.proven && best.schedule.period().as_micros() < 60_000);
+/// assert!(best.proven() && best.schedule.period().as_micros() < 60_000);
 /// # Ok::<(), eeruf_core::search::SearchError>(())
 /// ```
 pub fn best_schedule_for(
     robot: &Robot,
     budget: u64,
     keep_going: impl FnMut(&Progress) -> bool,
-) -> Result<BestSchedule, SearchError> {
+) -> Result<ShortestPeriod, SearchError> {
     let (problem, mut control) = (problem_of(robot), control(keep_going));
-    let found = problem.shortest(budget, &mut control)?;
-    let proven = found.proven();
-    let schedule = if proven { problem.prefer(&found.schedule, budget, &mut control)?.0 } else { found.schedule };
-    Ok(BestSchedule { schedule, proven })
+    let mut found = problem.shortest(budget, &mut control)?;
+    if found.proven() {
+        found.schedule = problem.prefer(&found.schedule, budget, &mut control)?.0;
+    }
+    Ok(found)
 }
 
 fn problem_of(robot: &Robot) -> PeriodProblem<'static> {

@@ -12,7 +12,7 @@ use super::dither;
 use super::flow;
 use super::judges::JudgeKind::{self, Agreement, AsSketched, Belief, EveryEcho, TwoOfThree};
 use super::ring_runner::{FiringPlan, RingStart, StartError, Started, Way};
-use super::schedules::{self, ScheduleQuery};
+use super::schedules;
 use super::sketch;
 use crate::world::{AnySchedule, Robot};
 
@@ -168,7 +168,7 @@ impl Method {
 
     /// The schedule that a robot's ring starts with.
     pub(crate) fn schedule(self, robot: &Robot, best: Option<&AnySchedule>) -> Result<AnySchedule, ScheduleError> {
-        (self.row().firing.schedule)(&ScheduleQuery { robot, best })
+        (self.row().firing.schedule)(robot, best)
     }
 
     /// The plan of a robot's ring, from the schedule that it starts with.

@@ -12,7 +12,7 @@ mod ring_runner;
 mod schedules;
 mod sketch;
 
-pub use best_schedule::{BestSchedule, TICK, best_schedule_for, requirements_of, shortest_schedule_for};
+pub use best_schedule::{TICK, best_schedule_for, requirements_of, shortest_schedule_for};
 pub use firing::{Firing, FiringPeriod, OwnError};
 pub use flow::FlowOptions;
 pub(crate) use judges::{Judging, MAX_MEDIAN};

@@ -15,7 +15,7 @@ use super::firing::{Firing, OwnError, PeriodFiring};
 use super::flow::FlowOptions;
 use super::judges::{Judging, RunningJudge};
 use super::method::MAX_ECHOES;
-use super::schedules::{self, Made, ScheduleQuery};
+use super::schedules;
 use crate::world::{AnySchedule, Random, Robot};
 
 /// A ring of any kind, which can change to schedules that live as long as `'s`.
@@ -151,7 +151,7 @@ pub(crate) struct RingStart<'s> {
 #[derive(Clone, Copy)]
 pub(super) struct Way {
     /// The schedule that a robot's ring starts with; for dither the lags alone.
-    pub(super) schedule: fn(&ScheduleQuery<'_>) -> Made,
+    pub(super) schedule: fn(&Robot, Option<&AnySchedule>) -> Result<AnySchedule, ScheduleError>,
     /// The ring's plan, from that schedule.
     pub(super) plan: fn(&Robot, AnySchedule) -> Result<FiringPlan, StartError>,
     /// The ring, ready to run.
@@ -168,7 +168,9 @@ impl Way {
         Self { ring: immediate, refire: |robot, _, _| robot.min_refire, ..Self::by_table(schedules::refiring) };
 
     /// One schedule, no firing sooner than that has it.
-    pub(super) const fn by_table(schedule: fn(&ScheduleQuery<'_>) -> Made) -> Self {
+    pub(super) const fn by_table(
+        schedule: fn(&Robot, Option<&AnySchedule>) -> Result<AnySchedule, ScheduleError>,
+    ) -> Self {
         Self {
             schedule,
             plan: |_, schedule| Ok(FiringPlan::new(schedule)),

@@ -4,55 +4,46 @@ use eeruf_core::{Micros, Phase, ScheduleError};
 
 use crate::world::{AnySchedule, Robot};
 
-/// Purpose of a schedule: a robot, and the best schedule for its ring where the caller knows one.
-pub(super) struct ScheduleQuery<'a> {
-    pub(super) robot: &'a Robot,
-    pub(super) best: Option<&'a AnySchedule>,
-}
-
-/// A schedule, if the robot allows it.
-pub(super) type Made = Result<AnySchedule, ScheduleError>;
-
 /// All sensors at once.
-pub(super) fn together(query: &ScheduleQuery<'_>) -> Made {
-    constant(query.robot.period, &vec![Micros::ZERO; query.robot.sensors.len()])
+pub(super) fn together(robot: &Robot, _: Option<&AnySchedule>) -> Result<AnySchedule, ScheduleError> {
+    constant(robot.period, &vec![Micros::ZERO; robot.sensors.len()])
 }
 
 /// One sensor after the other, each when the one before is heard no more.
-pub(super) fn one_by_one(query: &ScheduleQuery<'_>) -> Made {
-    in_turns(query.robot, query.robot.sensors.len())
+pub(super) fn one_by_one(robot: &Robot, _: Option<&AnySchedule>) -> Result<AnySchedule, ScheduleError> {
+    in_turns(robot, robot.sensors.len())
 }
 
 /// Sensors far apart together, group after group.
-pub(super) fn far_groups(query: &ScheduleQuery<'_>) -> Made {
-    in_turns(query.robot, query.robot.sensors.len().min(usize::from(query.robot.neighbours)))
+pub(super) fn far_groups(robot: &Robot, _: Option<&AnySchedule>) -> Result<AnySchedule, ScheduleError> {
+    in_turns(robot, robot.sensors.len().min(usize::from(robot.neighbours)))
 }
 
 /// The conventional lags, every period alike (Table I-a).
-pub(super) fn conventional(query: &ScheduleQuery<'_>) -> Made {
-    let Robot { ref sensors, period, neighbours, .. } = *query.robot;
+pub(super) fn conventional(robot: &Robot, _: Option<&AnySchedule>) -> Result<AnySchedule, ScheduleError> {
+    let Robot { ref sensors, period, neighbours, .. } = *robot;
     constant(period, &lags(sensors.len(), period, neighbours))
 }
 
 /// The robot's own schedule, or else the paper's table at its period.
-pub(super) fn own(query: &ScheduleQuery<'_>) -> Made {
-    let Robot { ref sensors, period, neighbours, schedule, .. } = *query.robot;
+pub(super) fn own(robot: &Robot, _: Option<&AnySchedule>) -> Result<AnySchedule, ScheduleError> {
+    let Robot { ref sensors, period, neighbours, schedule, .. } = *robot;
     schedule.map_or_else(|| table_i_d_for(sensors.len(), period, neighbours), Ok)
 }
 
 /// The best schedule that is known, if it is for as many sensors.
-pub(super) fn best(query: &ScheduleQuery<'_>) -> Made {
-    match query.best {
-        Some(best) if best.sensors() == query.robot.sensors.len() => Ok(*best),
-        _ => own(query),
+pub(super) fn best(robot: &Robot, best: Option<&AnySchedule>) -> Result<AnySchedule, ScheduleError> {
+    match best {
+        Some(best) if best.sensors() == robot.sensors.len() => Ok(*best),
+        _ => own(robot, None),
     }
 }
 
 /// The paper's waits for immediate refiring, each longer by the shortest refire time. Holding a sensor back until that
 /// time has passed would do as well for the transducer, but wherever it does so every wait is as good as any other, and
 /// nothing alternates.
-pub(super) fn refiring(query: &ScheduleQuery<'_>) -> Made {
-    let Robot { ref sensors, period, neighbours, min_refire, .. } = *query.robot;
+pub(super) fn refiring(robot: &Robot, _: Option<&AnySchedule>) -> Result<AnySchedule, ScheduleError> {
+    let Robot { ref sensors, period, neighbours, min_refire, .. } = *robot;
     let table = table_i_d_for(sensors.len(), period, neighbours)?;
     let longer = |phase| table.t_wait(phase).iter().map(|wait| wait.saturating_add(min_refire)).collect::<Vec<_>>();
     AnySchedule::from_slices(period.saturating_add(min_refire), table.t_lag(), [&longer(Phase::A), &longer(Phase::B)])
@@ -66,7 +57,7 @@ pub(super) fn soonest_refire(schedule: &AnySchedule, sensor: usize) -> Micros {
 
 /// Sensors in turns, each turn as long as they listen, and where their modules are known as long as those hear, and a
 /// round no shorter than those rest.
-fn in_turns(robot: &Robot, turns: usize) -> Made {
+fn in_turns(robot: &Robot, turns: usize) -> Result<AnySchedule, ScheduleError> {
     // A window that ends just when the next one begins still counts an echo at its very end.
     let turn = robot.window.max(robot.audible).saturating_add(Micros::new(1)).as_micros();
     let sensors = 0..robot.sensors.len();
@@ -77,7 +68,7 @@ fn in_turns(robot: &Robot, turns: usize) -> Made {
 }
 
 /// The same lags in both phases.
-fn constant(period: Micros, lags: &[Micros]) -> Made {
+fn constant(period: Micros, lags: &[Micros]) -> Result<AnySchedule, ScheduleError> {
     let none = vec![Micros::ZERO; lags.len()];
     AnySchedule::from_slices(period, lags, [&none, &none])
 }

@@ -1,13 +1,14 @@
 //! Arguments of Set I.
 
 use eeruf_core::Micros;
+use eeruf_period::ShortestPeriod;
 
 use super::alcove::SENSORS;
 use super::multi_echo::MultiEcho;
 use crate::{
     acoustics::{Physics, Transducer},
     experiments::FIRST,
-    methods::{BestSchedule, Method},
+    methods::Method,
     scene::Room,
     simulation::Entry,
     world::Noise,
@@ -33,7 +34,7 @@ pub struct SetOneOptions {
     /// The methods. The default is [`Method::usual`].
     pub methods: Vec<Entry>,
     /// Schedule of [`Method::EerufBest`], see [`best_schedule_for`](crate::best_schedule_for).
-    pub best: Option<BestSchedule>,
+    pub best: Option<ShortestPeriod>,
     /// Effects in the alcoves. The default is [`Physics::DEFAULT`].
     pub physics: Physics,
     /// Floor and ceiling of the alcoves. The default is none: they are flat.

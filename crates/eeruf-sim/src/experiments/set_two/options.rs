@@ -1,6 +1,7 @@
 //! Arguments of Set II.
 
 use eeruf_core::Micros;
+use eeruf_period::ShortestPeriod;
 
 use super::odometry::OdometryNoise;
 use super::pilots::Pilots;
@@ -8,7 +9,7 @@ use crate::{
     acoustics::{GainProfile, Physics, Transducer},
     experiments::FIRST,
     geometry::Point,
-    methods::{BestSchedule, Method},
+    methods::Method,
     navigation::LabMate,
     scene::Room,
     simulation::Entry,
@@ -26,7 +27,7 @@ pub struct SetTwoOptions {
     /// The methods.
     pub methods: Vec<Entry>,
     /// Schedule of [`Method::EerufBest`], see [`best_schedule_for`](crate::best_schedule_for).
-    pub best: Option<BestSchedule>,
+    pub best: Option<ShortestPeriod>,
     /// Where another robot stands that fires 24 times in 80 ms, if there is one.
     pub second_robot: Option<Point>,
     /// The platform.

@@ -150,8 +150,10 @@ pub fn drive(
     piloting.vfh.speed_max_m_s = options.labmate.speed_max_m_s;
     let mut pilot = Pilot::new(&world, number, options, piloting, TIME_S);
     let period_s = f64::from(world.robots()[0].period.as_micros()) * 1e-6;
-    let simulation =
-        Options { best: options.best.map(|best| best.schedule), ..Options::periods((TIME_S / period_s).ceil() as u32) };
+    let simulation = Options {
+        best: options.best.as_ref().map(|best| best.schedule),
+        ..Options::periods((TIME_S / period_s).ceil() as u32)
+    };
     let (own, simulation, stop) = (entry.own(&world.robots()[..1])?, entry.options(simulation), Stop::default());
     let readings = match simulation::run(&world, method, &simulation, own, &mut pilot, &stop, keep_going) {
         // A sensor on the platform's edge, or another robot's body, touched something between two of the pilot's steps.

@@ -156,7 +156,7 @@ fn act<'s, const M: usize>(r: &Random, c: &mut C, ring: &mut Table<'s, M>, sched
         8..10 => {
             let number = r.within(0, schedules.len() as u32 - 1);
             let (schedule, limits) = &schedules[number as usize];
-            change(c, Do::ChangeSchedule, number, ring.change_with_limits(schedule, limits));
+            change(c, Do::ChangeSchedule, number, ring.change_to(schedule, limits));
         }
         10 => {
             let t_delta = r.duration(1_500);

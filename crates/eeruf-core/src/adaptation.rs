@@ -1,6 +1,8 @@
 //! Adaptive scheduling (end of Sec. 3.1): fire more slowly where too much is rejected, and faster again when it is
 //! calm.
 
+use core::ops::Deref;
+
 use crate::reading::{ReadingKind, Tally};
 use crate::ring::PeriodStats;
 use crate::schedule::ScheduleError;
@@ -29,10 +31,13 @@ use crate::verified::VerifiedSchedule;
 /// }
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
+pub type Adaptation<'s, R> = OnLadder<&'s [R]>;
+
+/// [`Adaptation`] over any pointer `L` to the rungs: with an `Arc` it owns them.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Adaptation<'s, R> {
-    rungs: &'s [R],
+pub struct OnLadder<L> {
+    rungs: L,
     rung: usize,
     /// Above this rejection rate, in thousandths, it fires more slowly. Default: 300, a choice of ours; the paper names
     /// none.
@@ -49,14 +54,14 @@ pub struct Adaptation<'s, R> {
     rejection_permille: Option<u16>,
 }
 
-impl<'s, const K: usize, const M: usize, L> Adaptation<'s, VerifiedSchedule<K, M, L>> {
+impl<L: Deref<Target = [VerifiedSchedule<K, M, U>]>, const K: usize, const M: usize, U> OnLadder<L> {
     /// Starts on the lowest of these rungs, the shortest period. Each was verified for itself; a ring changes only to
     /// those that allow its own `t_delta` and window.
     ///
     /// # Errors
     /// [`ScheduleError`] if there is no rung, if a period is not longer than the one before, or if the number of
     /// sensors changes.
-    pub fn new(rungs: &'s [VerifiedSchedule<K, M, L>]) -> Result<Self, ScheduleError> {
+    pub fn new(rungs: L) -> Result<Self, ScheduleError> {
         Self::of(rungs, |rung| (rung.sensors(), rung.period()))
     }
 
@@ -68,8 +73,25 @@ impl<'s, const K: usize, const M: usize, L> Adaptation<'s, VerifiedSchedule<K, M
 }
 
 impl<'s, R> Adaptation<'s, R> {
+    /// Takes in one period, and asks for `change` to another schedule when the present one should be left. It stays on
+    /// its rung unless the change succeeds, and asks again after the next window that calls for one. Returns whether
+    /// there was a change.
+    ///
+    /// # Errors
+    /// Whatever `change` returns.
+    pub fn adapt<Refused>(
+        &mut self,
+        stats: &PeriodStats,
+        change: impl FnOnce(&'s R) -> Result<(), Refused>,
+    ) -> Result<bool, Refused> {
+        let rungs = self.rungs;
+        self.adapt_to(stats, |rung| rungs.get(rung).map_or(Ok(()), change))
+    }
+}
+
+impl<L: Deref<Target = [R]>, R> OnLadder<L> {
     /// `needs` says how many sensors a rung has, and its period.
-    fn of(rungs: &'s [R], needs: impl Fn(&R) -> (usize, Micros)) -> Result<Self, ScheduleError> {
+    fn of(rungs: L, needs: impl Fn(&R) -> (usize, Micros)) -> Result<Self, ScheduleError> {
         let Some((expected, _)) = rungs.first().map(&needs) else { return Err(ScheduleError::NoRung) };
         let mut before = None;
         for (rung, (sensors, period)) in rungs.iter().map(&needs).enumerate() {
@@ -95,16 +117,14 @@ impl<'s, R> Adaptation<'s, R> {
         })
     }
 
-    /// Takes in one period, and asks for `change` to another schedule when the present one should be left. It stays on
-    /// its rung unless the change succeeds, and asks again after the next window that calls for one. Returns whether
-    /// there was a change.
+    /// As [`adapt`](Adaptation::adapt), where `change` is told the rung by its number.
     ///
     /// # Errors
     /// Whatever `change` returns.
-    pub fn adapt<Refused>(
+    pub fn adapt_to<Refused>(
         &mut self,
         stats: &PeriodStats,
-        change: impl FnOnce(&'s R) -> Result<(), Refused>,
+        change: impl FnOnce(usize) -> Result<(), Refused>,
     ) -> Result<bool, Refused> {
         for kind in [ReadingKind::Accepted, ReadingKind::Rejected, ReadingKind::Repeated, ReadingKind::Ambiguous] {
             for _ in 0..stats.tally.of(kind) {
@@ -118,12 +138,11 @@ impl<'s, R> Adaptation<'s, R> {
         self.periods = 0;
         self.rejection_permille = core::mem::take(&mut self.tally).rejection_permille();
         let rung = self.next_rung();
-        let Some(schedule) = self.rungs.get(rung) else { return Ok(false) };
         if rung == self.rung {
             return Ok(false);
         }
         self.calm_windows = 0;
-        change(schedule)?;
+        change(rung)?;
         self.rung = rung;
         Ok(true)
     }
@@ -144,6 +163,11 @@ impl<'s, R> Adaptation<'s, R> {
                 self.rung
             }
         }
+    }
+
+    /// The rungs, from the shortest period to the longest.
+    pub const fn rungs(&self) -> &L {
+        &self.rungs
     }
 
     /// The rung in use, 0 for the shortest period.

@@ -112,17 +112,14 @@ impl DelayNs for NoDelay {
     fn delay_ns(&mut self, _: u32) {}
 }
 
-/// A ring of as many sensors as the board's.
-pub(crate) type AnyRing<P, J, const H: usize> = Ring<P, J, SENSORS, 1, H>;
-
 /// A ring as the board's, on pins of this kind.
 pub(crate) type HostRing<R, P> = HcSr04Ring<R, P, P, NoDelay, SENSORS>;
 
 /// Puts a ring on pins as the board does.
 pub(crate) fn on_pins<P: Plan, J: Judge, I: OutputPin + InputPin, const H: usize>(
-    ring: AnyRing<P, J, H>,
+    ring: Ring<P, J, SENSORS, 1, H>,
     pin: impl Fn(u8) -> I,
-) -> Result<HostRing<AnyRing<P, J, H>, I>, String> {
+) -> Result<HostRing<Ring<P, J, SENSORS, 1, H>, I>, String> {
     let pins = core::array::from_fn(|x| Pins { trigger: pin(x as u8), echo: pin(x as u8) });
     HcSr04Ring::new(ring, pins, NoDelay, Settings::default()).map_err(|error| error.to_string())
 }
@@ -133,9 +130,9 @@ pub(crate) struct Reference<'w, R> {
     ring: HostRing<R, Pin<'w>>,
 }
 
-impl<'w, P: Plan, J: Judge, const H: usize> Reference<'w, AnyRing<P, J, H>> {
+impl<'w, P: Plan, J: Judge, const H: usize> Reference<'w, Ring<P, J, SENSORS, 1, H>> {
     /// With a ring that was made as the board's, at the same instant.
-    pub(crate) fn new(session: &Shared<'w>, ring: AnyRing<P, J, H>) -> Result<Self, String> {
+    pub(crate) fn new(session: &Shared<'w>, ring: Ring<P, J, SENSORS, 1, H>) -> Result<Self, String> {
         let pin = |sensor| Pin { session: Rc::clone(session), sensor };
         Ok(Self { session: Rc::clone(session), ring: on_pins(ring, pin)? })
     }

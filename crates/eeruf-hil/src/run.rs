@@ -11,7 +11,7 @@ use crate::control::Control;
 use crate::emulator::Emulator;
 use crate::lines::{FAULTY, LineFault, Lines};
 use crate::played::PlayedLines;
-use crate::reference::{AnyRing, Read, Reference, Session};
+use crate::reference::{Read, Reference, Session};
 
 /// For how many periods each run of the tables lasts.
 pub(crate) const PERIODS: u32 = 1000;
@@ -133,7 +133,7 @@ fn run_ring<P: Plan, J: Judge, const H: usize>(
     periods: u32,
     pace: Pace,
     emulator: &[String],
-    make: impl Fn(Instant) -> Result<AnyRing<P, J, H>, String>,
+    make: impl Fn(Instant) -> Result<Ring<P, J, SENSORS, 1, H>, String>,
     has_control: bool,
 ) -> Result<Run, String> {
     let orders = fault.orders(periods);

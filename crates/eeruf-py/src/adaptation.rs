@@ -1,9 +1,8 @@
 //! `Adaptation`: adaptive scheduling (end of Sec. 3.1).
 
-use eeruf_core::{
-    MAX_SENSORS, Micros, Requirements, RingEvent, ScheduleError, SpeedOfSound, VerifiedSchedule,
-    adaptation::Adaptation as Core,
-};
+use std::sync::Arc;
+
+use eeruf_core::{MAX_SENSORS, Micros, Requirements, RingEvent, SpeedOfSound, VerifiedSchedule, adaptation::OnLadder};
 use pyo3::prelude::*;
 
 use crate::{
@@ -16,16 +15,6 @@ use crate::{
 };
 
 type Rung = VerifiedSchedule<MAX_SENSORS>;
-type OnLadder<'s> = Core<'s, Rung>;
-
-self_cell::self_cell!(
-    /// The adaptation, with the rungs that it borrows.
-    struct OfTables {
-        owner: Vec<Rung>,
-        #[covariant]
-        dependent: OnLadder,
-    }
-);
 
 /// A rung, which rejects crosstalk.
 fn rung(name: &str, schedule: &Bound<'_, PyAny>, t_delta: Micros) -> PyResult<Rung> {
@@ -70,7 +59,7 @@ fn rung(name: &str, schedule: &Bound<'_, PyAny>, t_delta: Micros) -> PyResult<Ru
 ///     (True, True)
 #[pyclass(frozen, module = "eeruf")]
 pub(crate) struct Adaptation {
-    adaptation: Exclusive<OfTables>,
+    adaptation: Exclusive<OnLadder<Arc<[Rung]>>>,
 }
 
 /// Of a fraction of 1, in thousandths.
@@ -106,13 +95,10 @@ impl Adaptation {
         }
         let window = whole_or("window_periods", window_periods, 16, 1..=u8::MAX)?;
         let patience = whole_or("patience", patience, 4, 1..=u8::MAX)?;
-        let rungs = named().map(|(name, of)| rung(&name, of, t_delta)).collect::<PyResult<_>>()?;
-        let adaptation = OfTables::try_new(rungs, |rungs| {
-            let mut on = Core::new(rungs)?;
-            (on.noisy_permille, on.calm_permille, on.window, on.patience) = (noisy, calm, window, patience);
-            Ok(on)
-        });
-        let adaptation = adaptation.map_err(|error: ScheduleError| error.raise())?;
+        let rungs = named().map(|(name, of)| rung(&name, of, t_delta)).collect::<PyResult<Arc<[_]>>>()?;
+        let mut adaptation = OnLadder::new(rungs).map_err(Raise::raise)?;
+        (adaptation.noisy_permille, adaptation.calm_permille) = (noisy, calm);
+        (adaptation.window, adaptation.patience) = (window, patience);
         Ok(Self { adaptation: Exclusive::new("Adaptation", adaptation) })
     }
 
@@ -141,13 +127,14 @@ impl Adaptation {
         let RingEvent::PeriodEnded(stats) = to_core("event", event)? else { return Ok(false) };
         let mut ring = ring.get().0.get()?;
         let mut adaptation = self.adaptation.get()?;
-        adaptation.with_dependent_mut(|_, on| on.adapt(&stats, |rung| ring.change_schedule(rung.schedule())))
+        let rungs = Arc::clone(adaptation.rungs());
+        adaptation.adapt_to(&stats, |rung| ring.change_schedule(rungs[rung].schedule()))
     }
 
     /// The rung in use, 0 for the shortest period.
     #[getter]
     fn rung(&self) -> PyResult<usize> {
-        Ok(self.adaptation.get()?.borrow_dependent().rung())
+        Ok(self.adaptation.get()?.rung())
     }
 
     /// The schedule in use.
@@ -155,14 +142,14 @@ impl Adaptation {
     fn schedule(&self) -> PyResult<Schedule> {
         // It is always on one of its rungs.
         let rung = self.rung()?;
-        Ok(Schedule(*self.adaptation.get()?.borrow_owner()[rung].schedule()))
+        Ok(Schedule(*self.adaptation.get()?.rungs()[rung].schedule()))
     }
 
     /// The share of the readings that were compared and rejected in the last whole window; None before, or if nothing
     /// was compared in it.
     #[getter]
     fn rejection_rate(&self) -> PyResult<Option<f64>> {
-        let permille = self.adaptation.get()?.borrow_dependent().rejection_permille();
+        let permille = self.adaptation.get()?.rejection_permille();
         Ok(permille.map(|permille| f64::from(permille) / 1e3))
     }
 
@@ -185,13 +172,21 @@ impl Adaptation {
         let t_delta = micros("t_delta_us", t_delta_us)?;
         let c = number_or("sound_m_s", sound_m_s, 343.2, 100.0..=1e3)?;
         let c = SpeedOfSound::from_mm_per_s((1e3 * c).round() as u32);
-        Ok(f64::from(self.adaptation.get()?.borrow_dependent().max_speed_mm_s(t_delta, c)) / 1e3)
+        Ok(f64::from(self.adaptation.get()?.max_speed_mm_s(t_delta, c)) / 1e3)
+    }
+
+    fn __copy__(&self) -> PyResult<Self> {
+        Ok(Self { adaptation: Exclusive::new("Adaptation", self.adaptation.get()?.clone()) })
+    }
+
+    fn __deepcopy__(&self, _memo: &Bound<'_, PyAny>) -> PyResult<Self> {
+        self.__copy__()
     }
 
     fn __repr__(&self) -> PyResult<String> {
         let rung = self.rung()?;
         let adaptation = self.adaptation.get()?;
-        let (rungs, period) = (adaptation.borrow_owner().len(), adaptation.borrow_owner()[rung].period());
+        let (rungs, period) = (adaptation.rungs().len(), adaptation.rungs()[rung].period());
         Ok(format!("<Adaptation: rung {rung} of {rungs}, {}>", period.as_micros()))
     }
 }

@@ -9,8 +9,8 @@ use crate::{
     columns::room,
     errors::{ArgumentError, FilterError, Raise},
     exclusive::Exclusive,
-    owned_ring::MAX_ECHOES,
     requirements,
+    ring::MAX_ECHOES,
     ring_events::Reading,
 };
 

@@ -37,7 +37,6 @@ mod methods;
 mod module;
 mod moments;
 mod own;
-mod owned_ring;
 mod paths;
 mod pose;
 mod program;

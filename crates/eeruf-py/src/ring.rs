@@ -1,18 +1,20 @@
 //! `Ring`: by a schedule, or by flow.
 
+use std::sync::Arc;
+
 use eeruf_core::{
-    EachSensor, Instant, MAX_SENSORS, Micros, RingEvent, Silence, flow::FlowRing, judge::Judge as _, watch::SensorWatch,
+    EachSensor, EchoFilter, Instant, MAX_SENSORS, Micros, Requirements, RingConfig, RingEvent, Silence, flow::FlowRing,
+    judge::Judge as _, plan::TableFiring, watch::SensorWatch,
 };
 use eeruf_sim::AnySchedule;
 use pyo3::prelude::*;
 
 use crate::{
-    arguments::{choice, whole},
-    errors::{Raise, RingError},
+    arguments::{choice, whole, wrong},
+    errors::Raise,
     exclusive::Exclusive,
     flow_settings::FlowSettings,
-    owned_ring::{MAX_ECHOES, OwnedRing},
-    requirements,
+    requirements::{self, OwnedRequirements},
     ring_arguments::FlowNeeds,
 };
 
@@ -70,60 +72,82 @@ use crate::{
 #[pyclass(frozen, module = "eeruf")]
 pub(crate) struct Ring(pub(crate) Exclusive<AnyRing>);
 
-/// The kinds: by a table, or by flow with one echo of a firing or several.
+/// Most echoes of one firing.
+pub(crate) const MAX_ECHOES: usize = 8;
+
+/// A ring that fires by a schedule, whether sensors are alike or not, with up to `E` echoes of a firing.
+type TableRing<const E: usize> = eeruf_core::Ring<
+    TableFiring<Arc<AnySchedule>, MAX_SENSORS, 2, EachSensor<MAX_SENSORS>>,
+    EchoFilter<MAX_SENSORS, E>,
+    MAX_SENSORS,
+    E,
+>;
+
+/// The kinds: by a table or by flow, each with one echo of a firing, which is smaller and faster, or several.
+#[derive(Clone)]
 pub(crate) enum Fires {
-    BySchedule(Box<OwnedRing>),
+    Table(Box<TableRing<1>>),
+    TableSeveral(Box<TableRing<MAX_ECHOES>>),
     Flow(Box<FlowRing<MAX_SENSORS, 1, EachSensor<MAX_SENSORS>>>),
     FlowSeveral(Box<FlowRing<MAX_SENSORS, MAX_ECHOES, EachSensor<MAX_SENSORS>>>),
 }
 
-impl Fires {
-    pub(crate) fn flow(
-        sensors: &Bound<'_, PyAny>,
-        settings: Option<&Bound<'_, PyAny>>,
-        needs: &FlowNeeds<'_, '_>,
-        several: bool,
-        now: Instant,
-    ) -> PyResult<Self> {
-        let (sensors, settings) = (requirements::sensors(sensors)?, FlowSettings::of(settings)?);
-        let (turns, config, limits) = needs.of(sensors, &settings)?;
-        let belief = settings.belief();
-        if several {
-            let ring = FlowRing::with_limits(sensors, limits, turns, belief, config, now).map_err(Raise::raise)?;
-            return Ok(Self::FlowSeveral(Box::new(ring)));
-        }
-        let ring = FlowRing::with_limits(sensors, limits, turns, belief, config, now).map_err(Raise::raise)?;
-        Ok(Self::Flow(Box::new(ring)))
-    }
+/// Requirements on a ring's schedules.
+#[derive(Clone)]
+pub(crate) enum Promise {
+    /// Nothing: crosstalk that the schedule repeats makes readings ambiguous.
+    Nothing,
+    /// They reject crosstalk at the ring's `t_delta`.
+    TDelta,
+    /// Needs of each sensor.
+    EachSensor(Arc<OwnedRequirements>),
 }
 
-/// A ring, and the state of each of its sensors by its events.
+/// A ring, what its schedules have to keep, and the state of each of its sensors by its events.
+#[derive(Clone)]
 pub(crate) struct AnyRing {
     pub(crate) fires: Fires,
+    promise: Promise,
     pub(crate) watch: SensorWatch<MAX_SENSORS>,
     /// The instant of the last poll, or of the beginning.
     pub(crate) now: Instant,
 }
 
-/// Asks the same of whichever ring it is.
-macro_rules! ask {
-    ($any:expr, |$ring:ident| $call:expr) => {
-        match &$any.fires {
-            $crate::ring::Fires::BySchedule(owned) => $crate::owned_ring::table!(owned.ring(), |$ring| $call),
+/// Asks the same of whichever ring it is, or does it.
+macro_rules! each {
+    ($fires:expr, |$ring:ident| $call:expr) => {
+        match $fires {
+            $crate::ring::Fires::Table($ring) => $call,
+            $crate::ring::Fires::TableSeveral($ring) => $call,
             $crate::ring::Fires::Flow($ring) => $call,
             $crate::ring::Fires::FlowSeveral($ring) => $call,
         }
     };
 }
 
-/// Does the same to whichever ring it is.
+/// Asks something that only a ring by a schedule has, or changes it.
+macro_rules! table {
+    ($any:expr, $what:expr, |$ring:ident| $call:expr) => {
+        match &mut $any.fires {
+            $crate::ring::Fires::Table($ring) => Ok($call),
+            $crate::ring::Fires::TableSeveral($ring) => Ok($call),
+            _ => Err($crate::errors::RingError::new_err(format!(
+                "{} of a ring by flow; expected a ring by an eeruf.Schedule: this one has settings",
+                $what
+            ))),
+        }
+    };
+}
+
+/// Asks something of a ring, or changes it.
+macro_rules! ask {
+    ($any:expr, |$ring:ident| $call:expr) => {
+        $crate::ring::each!(&$any.fires, |$ring| $call)
+    };
+}
 macro_rules! act {
     ($any:expr, |$ring:ident| $call:expr) => {
-        match &mut $any.fires {
-            $crate::ring::Fires::BySchedule(owned) => owned.with(|any| $crate::owned_ring::table!(any, |$ring| $call)),
-            $crate::ring::Fires::Flow($ring) => $call,
-            $crate::ring::Fires::FlowSeveral($ring) => $call,
-        }
+        $crate::ring::each!(&mut $any.fires, |$ring| $call)
     };
 }
 
@@ -136,22 +160,80 @@ macro_rules! of_sensor {
     }};
 }
 
-pub(crate) use {act, ask, of_sensor};
+pub(crate) use {act, ask, each, of_sensor, table};
+
+/// Checks that a schedule rejects crosstalk.
+fn verify(schedule: &AnySchedule, t_delta: Micros) -> PyResult<()> {
+    let requirements = Requirements::new(t_delta);
+    let verification = schedule.verify(&requirements);
+    verification.violations().next().map_or(Ok(()), |violation| Err(violation.raise()))
+}
+
+impl Promise {
+    /// The schedule as a ring may fire by it, with the limits of each sensor where it must keep those.
+    fn keep(&self, schedule: &AnySchedule, t_delta: Micros) -> PyResult<(Arc<AnySchedule>, EachSensor<MAX_SENSORS>)> {
+        match self {
+            Self::Nothing => Ok((Arc::new(*schedule), EachSensor::NONE)),
+            Self::TDelta => verify(schedule, t_delta).map(|()| (Arc::new(*schedule), EachSensor::NONE)),
+            Self::EachSensor(needs) => {
+                let verified = schedule.verified_each(&needs.requirements()).map_err(Raise::raise)?;
+                Ok((Arc::new(*verified.schedule()), *verified.own_limits()))
+            }
+        }
+    }
+}
 
 impl Ring {
-    pub(crate) fn of(fires: Fires, silence: Option<&Bound<'_, PyAny>>, now: Instant) -> PyResult<Self> {
+    pub(crate) fn of(mut ring: AnyRing, silence: Option<&Bound<'_, PyAny>>) -> PyResult<Self> {
         let names =
             [("never_free", Silence::NeverFree), ("needs_answer", Silence::NeedsAnswer), ("trusted", Silence::Trusted)];
         let silence = choice("silence", silence, &names)?;
-        let mut ring = AnyRing::new(fires, now);
         act!(ring, |ring| ring.set_silence(silence));
         Ok(Self(Exclusive::new("Ring", ring)))
     }
 }
 
 impl AnyRing {
-    pub(crate) fn new(fires: Fires, now: Instant) -> Self {
-        Self { fires, watch: SensorWatch::new(0, now), now }
+    fn new(fires: Fires, promise: Promise, now: Instant) -> Self {
+        Self { fires, promise, watch: SensorWatch::new(0, now), now }
+    }
+
+    /// A ring that fires by a schedule, which keeps what is promised; so must then all to which it changes.
+    pub(crate) fn by_schedule(
+        schedule: &AnySchedule,
+        promise: Promise,
+        config: RingConfig,
+        several: bool,
+        now: Instant,
+    ) -> PyResult<Self> {
+        let (kept, own_limits) = promise.keep(schedule, config.t_delta.unwrap_or_default())?;
+        let plan = TableFiring::holding(kept, own_limits, now);
+        let fires = if several {
+            TableRing::with_plan(plan, config.with_echoes(), now).map(|ring| Fires::TableSeveral(Box::new(ring)))
+        } else {
+            TableRing::with_plan(plan, config, now).map(|ring| Fires::Table(Box::new(ring)))
+        };
+        Ok(Self::new(fires.map_err(Raise::raise)?, promise, now))
+    }
+
+    pub(crate) fn flow(
+        sensors: &Bound<'_, PyAny>,
+        settings: Option<&Bound<'_, PyAny>>,
+        needs: &FlowNeeds<'_, '_>,
+        several: bool,
+        now: Instant,
+    ) -> PyResult<Self> {
+        let (sensors, settings) = (requirements::sensors(sensors)?, FlowSettings::of(settings)?);
+        let (turns, config, limits) = needs.of(sensors, &settings)?;
+        let belief = settings.belief();
+        let fires = if several {
+            let ring = FlowRing::with_limits(sensors, limits, turns, belief, config, now);
+            ring.map(|ring| Fires::FlowSeveral(Box::new(ring)))
+        } else {
+            let ring = FlowRing::with_limits(sensors, limits, turns, belief, config, now);
+            ring.map(|ring| Fires::Flow(Box::new(ring)))
+        };
+        Ok(Self::new(fires.map_err(Raise::raise)?, Promise::Nothing, now))
     }
 
     pub(crate) fn sensors(&self) -> usize {
@@ -174,35 +256,41 @@ impl AnyRing {
         event
     }
 
-    /// The ring by a schedule, of which alone something is known or can be changed.
-    pub(crate) fn by_schedule(&mut self, what: &str) -> PyResult<&mut OwnedRing> {
-        match &mut self.fires {
-            Fires::BySchedule(owned) => Ok(owned),
-            _ => Err(RingError::new_err(format!(
-                "{what} of a ring by flow; expected a ring by an eeruf.Schedule: this one has settings"
-            ))),
-        }
+    /// The schedule of the present period.
+    pub(crate) fn schedule(&mut self) -> PyResult<AnySchedule> {
+        table!(self, "schedule", |ring| **ring.plan().table())
     }
 
     pub(crate) fn t_delta(&self) -> Micros {
-        match &self.fires {
-            Fires::BySchedule(owned) => owned.t_delta(),
-            Fires::Flow(ring) => ring.judge().t_delta(),
-            Fires::FlowSeveral(ring) => ring.judge().t_delta(),
+        ask!(self, |ring| ring.judge().t_delta())
+    }
+
+    /// Compares with another `t_delta`, at which the schedules of this period and the next must reject crosstalk.
+    pub(crate) fn set_t_delta(&mut self, t_delta: Micros) -> PyResult<()> {
+        let schedules =
+            table!(self, "t_delta_us", |ring| [ring.plan().table(), ring.plan().next_table()].map(Arc::clone))?;
+        if matches!(self.promise, Promise::TDelta) {
+            schedules.iter().try_for_each(|schedule| verify(schedule, t_delta))?;
         }
+        Self::raised(table!(self, "t_delta_us", |ring| ring.set_t_delta(t_delta))?)
     }
 
     /// The largest P of a sensor, its own `T_delta` where it was not said, of a ring by a schedule.
     pub(crate) fn path_change(&mut self) -> PyResult<Micros> {
         // At most 64 sensors.
-        let (sensors, owned) = (self.sensors() as u8, self.by_schedule("path_change_us")?);
-        let of = |sensor| crate::owned_ring::table!(owned.ring(), |ring| ring.path_change_of(sensor));
-        Ok((0..sensors).map(of).max().unwrap_or_default())
+        let sensors = 0..self.sensors() as u8;
+        table!(self, "path_change_us", |ring| sensors.map(|of| ring.path_change_of(of)).max().unwrap_or_default())
     }
 
     /// Fires by another schedule when the present period ends.
     pub(crate) fn change_schedule(&mut self, schedule: &AnySchedule) -> PyResult<()> {
-        self.by_schedule("schedule")?.change_to(schedule)
+        let sensors = self.schedule()?.sensors();
+        if schedule.sensors() != sensors {
+            let expected = format!("one of {sensors} sensors, as the ring has");
+            return Err(wrong("schedule", format!("one of {} sensors", schedule.sensors()), expected));
+        }
+        let (kept, own_limits) = self.promise.keep(schedule, self.t_delta())?;
+        Self::raised(table!(self, "schedule", |ring| ring.change_to(kept, own_limits))?)
     }
 
     /// Raises what a change of the ring answers.

@@ -1,16 +1,18 @@
 //! The methods of `Ring`.
 
+use std::sync::Arc;
+
 use eeruf_core::watch::SensorWatch;
 use pyo3::prelude::*;
 
 use crate::{
     arguments::{flag, instance, micros, number},
     errors::RingError,
+    exclusive::Exclusive,
     gone::Gone,
     moments::{expected_changes, instant, until},
-    owned_ring::{OwnedRing, table},
     requirements::{RequirementArguments, UnevenArguments},
-    ring::{AnyRing, Fires, Ring, act, ask, of_sensor},
+    ring::{AnyRing, Fires, Promise, Ring, act, ask, of_sensor, table},
     ring_arguments::{FlowNeeds, Sound, begins, config},
     ring_events::{Fire, to_python},
     schedule::Schedule,
@@ -52,12 +54,8 @@ impl Ring {
         let [t_delta, window] = needs.most();
         let config = config(t_delta, window, blanking_us, consecutive, &Sound { path_change_us, audible_us })?;
         let (several, now) = (flag("several_echoes", several_echoes, false)?, begins(now_us)?);
-        let ring = if needs.is_uneven() {
-            OwnedRing::uneven(fires, needs, config, several, now)?
-        } else {
-            OwnedRing::new(fires, config, several, now)?.verified()?
-        };
-        Self::of(Fires::BySchedule(Box::new(ring)), silence, now)
+        let promise = if needs.is_uneven() { Promise::EachSensor(Arc::new(needs)) } else { Promise::TDelta };
+        Self::of(AnyRing::by_schedule(&fires, promise, config, several, now)?, silence)
     }
 
     /// A ring whose schedule was not verified. Crosstalk that it repeats, as constant waits do, makes readings
@@ -103,7 +101,7 @@ impl Ring {
         let config = config(t_delta, window, blanking_us, consecutive, &Sound { path_change_us, audible_us })?;
         let schedule = instance::<Schedule>("schedule", schedule, "an eeruf.Schedule")?.get().0;
         let now = begins(now_us)?;
-        Self::of(Fires::BySchedule(Box::new(OwnedRing::new(schedule, config, false, now)?)), silence, now)
+        Self::of(AnyRing::by_schedule(&schedule, Promise::Nothing, config, false, now)?, silence)
     }
 
     /// A ring by flow: one sensor after the other, with as much quiet around each firing as its readings have needed,
@@ -162,7 +160,7 @@ impl Ring {
         let (several, now) = (flag("several_echoes", several_echoes, false)?, begins(now_us)?);
         let uneven = UnevenArguments { refire_us, shared_lines, together, ..UnevenArguments::default() };
         let needs = FlowNeeds { window_us, uneven, blanking_us, reach_us };
-        Self::of(Fires::flow(sensors, settings, &needs, several, now)?, silence, now)
+        Self::of(AnyRing::flow(sensors, settings, &needs, several, now)?, silence)
     }
 
     /// The next event at a time. Call again until there is none, then wait until ``next_deadline_us``.
@@ -226,16 +224,22 @@ impl Ring {
         let (speed, turn) = (permille("speed_m_s", speed_m_s)?, permille("turn_rad_s", turn_rad_s)?);
         let now = instant("now_us", now_us)?;
         match &mut self.0.get()?.fires {
-            Fires::BySchedule(_) => {
-                return Err(RingError::new_err("moving of a ring by a schedule; expected a ring by eeruf.Ring.flow"));
-            }
             Fires::Flow(ring) => ring.moving(speed, turn, now),
             Fires::FlowSeveral(ring) => ring.moving(speed, turn, now),
+            _ => return Err(RingError::new_err("moving of a ring by a schedule; expected a ring by eeruf.Ring.flow")),
         }
         Ok(())
     }
 
     /// Time hopping is gone.
+    fn __copy__(&self) -> PyResult<Self> {
+        Ok(Self(Exclusive::new("Ring", self.0.get()?.clone())))
+    }
+
+    fn __deepcopy__(&self, _memo: &Bound<'_, PyAny>) -> PyResult<Self> {
+        self.__copy__()
+    }
+
     #[classattr]
     fn hopping() -> Gone {
         Gone::new("Ring.hopping", "Ring.flow")
@@ -275,7 +279,7 @@ impl Ring {
     /// Schedule of the present period, of a ring that fires by one.
     #[getter]
     fn schedule(&self) -> PyResult<Schedule> {
-        Ok(Schedule(*self.0.get()?.by_schedule("schedule")?.schedule()))
+        Ok(Schedule(self.0.get()?.schedule()?))
     }
 
     /// Fire by another schedule when the present period ends. ``t_delta_us`` and ``window_us`` stay, and so does what
@@ -311,7 +315,7 @@ impl Ring {
     #[setter]
     fn set_t_delta_us(&self, t_delta_us: &Bound<'_, PyAny>) -> PyResult<()> {
         let t_delta = micros("t_delta_us", t_delta_us)?;
-        self.0.get()?.by_schedule("t_delta_us")?.set_t_delta(t_delta)
+        self.0.get()?.set_t_delta(t_delta)
     }
 
     /// ``T_wind``, in microseconds. It can be changed while the ring runs, also for firings that are under way.
@@ -348,19 +352,19 @@ impl Ring {
     #[setter]
     fn set_path_change_us(&self, path_change_us: &Bound<'_, PyAny>) -> PyResult<()> {
         let (change, mut any) = (micros("path_change_us", path_change_us)?, self.0.get()?);
-        AnyRing::raised(any.by_schedule("path_change_us")?.with(|of| table!(of, |ring| ring.set_path_change(change))))
+        AnyRing::raised(table!(any, "path_change_us", |ring| ring.set_path_change(change))?)
     }
 
     /// R, how long sound is audible, in microseconds, of a ring by a schedule. It can be changed while the ring runs.
     #[getter]
     fn audible_us(&self) -> PyResult<u32> {
-        Ok(table!(self.0.get()?.by_schedule("audible_us")?.ring(), |ring| ring.audible().as_micros()))
+        table!(self.0.get()?, "audible_us", |ring| ring.audible().as_micros())
     }
 
     #[setter]
     fn set_audible_us(&self, audible_us: &Bound<'_, PyAny>) -> PyResult<()> {
         let (audible, mut any) = (micros("audible_us", audible_us)?, self.0.get()?);
-        AnyRing::raised(any.by_schedule("audible_us")?.with(|of| table!(of, |ring| ring.set_audible(audible))))
+        AnyRing::raised(table!(any, "audible_us", |ring| ring.set_audible(audible))?)
     }
 
     /// Earliest time after its firing at which a reading without an echo is emitted, in microseconds: for modules that

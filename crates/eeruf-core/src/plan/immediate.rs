@@ -12,6 +12,8 @@
 //!
 //! In (8) the filter takes it for a true echo. In (10a), (10b) consecutive readings differ, and it does not.
 
+use core::ops::Deref;
+
 use super::contract::{Limits, Plan};
 use crate::judging::Firing;
 use crate::schedule::{MAX_PERIOD, Phase, Schedule};
@@ -20,10 +22,13 @@ use crate::time::{Instant, Micros};
 
 /// Immediate refiring: a sensor fires again `T_wait` after it has stopped listening; the first time after `T_lag +
 /// T_wait`.
+pub type ImmediateRefiring<'s, const K: usize, const M: usize = 2> = Refiring<&'s Schedule<K, M>, K, M>;
+
+/// [`ImmediateRefiring`] by any pointer `T` to a [`Schedule`]: with an `Arc` it owns what it fires by.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct ImmediateRefiring<'s, const K: usize, const M: usize = 2> {
-    schedule: &'s Schedule<K, M>,
+pub struct Refiring<T, const K: usize, const M: usize = 2> {
+    schedule: T,
     min_refire: Micros,
     sensors: [Turn; K],
     /// Sensors that have fired and not yet ended.
@@ -42,11 +47,11 @@ struct Turn {
     phase: u8,
 }
 
-impl<'s, const K: usize, const M: usize> ImmediateRefiring<'s, K, M> {
+impl<T: Deref<Target = Schedule<K, M>>, const K: usize, const M: usize> Refiring<T, K, M> {
     /// Begins at `now`. The lags and waits are those of `schedule`; its period only says how often
     /// periods end. No sensor fires again sooner than
     /// `min_refire` after it has fired; more than [`MAX_PERIOD`](crate::MAX_PERIOD) counts as that.
-    pub fn new(schedule: &'s Schedule<K, M>, min_refire: Micros, now: Instant) -> Self {
+    pub fn new(schedule: T, min_refire: Micros, now: Instant) -> Self {
         let sensors = [Turn { at: now, phase: 0 }; K];
         // Instants further ahead than half a turn of the clock would count as past.
         let min_refire = min_refire.min(MAX_PERIOD);
@@ -97,7 +102,7 @@ fn next_phase<const M: usize>(phase: u8) -> u8 {
     if usize::from(phase) + 1 < M { phase + 1 } else { 0 }
 }
 
-impl<const K: usize, const M: usize> Plan for ImmediateRefiring<'_, K, M> {
+impl<T: Deref<Target = Schedule<K, M>>, const K: usize, const M: usize> Plan for Refiring<T, K, M> {
     fn next_firing(&self) -> Option<(u8, Phase)> {
         let (sensor, due) = self.first()?;
         let turn = self.sensors.get(usize::from(sensor))?;

@@ -11,7 +11,7 @@ mod scheduled;
 
 pub use check::{BrokenPromise, check_plan};
 pub use contract::{Limits, Plan, Upcoming};
-pub use immediate::ImmediateRefiring;
-pub use scheduled::ScheduledFiring;
+pub use immediate::{ImmediateRefiring, Refiring};
+pub use scheduled::{ScheduledFiring, TableFiring};
 
 pub use crate::own_limits::OwnLimits;

@@ -1,4 +1,7 @@
-//! [`ScheduledFiring`]: every sensor fires once per period, by the table of a schedule (Sec. 3.1, Fig. 3).
+//! [`ScheduledFiring`]: every sensor fires once per period, by the table of a schedule (Sec. 3.1, Fig. 3), which the
+//! plan borrows or owns.
+
+use core::ops::Deref;
 
 use super::contract::{Limits, Plan, Upcoming};
 use crate::judging::Firing;
@@ -24,11 +27,15 @@ use crate::verified::VerifiedSchedule;
 ///
 /// Where sensors have limits of their own, each listens and compares as it was verified for; in the first period after
 /// a change of schedules by the lesser of what both allow it.
+pub type ScheduledFiring<'s, const K: usize, const M: usize = 2, U = ()> = TableFiring<&'s Schedule<K, M>, K, M, U>;
+
+/// [`ScheduledFiring`] by any pointer `T` to a [`Schedule`]: with `&Schedule` it borrows, with an `Arc` it owns, so
+/// that it can be cloned and outlive whoever made the schedule.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 // In this order for the short offsets of a Cortex-M0: see `Ring`.
 #[repr(C)]
-pub struct ScheduledFiring<'s, const K: usize, const M: usize = 2, U = ()> {
+pub struct TableFiring<T, const K: usize, const M: usize = 2, U = ()> {
     phase: u8,
     /// Place in the firing order of the sensor after the next one.
     following: u8,
@@ -38,11 +45,11 @@ pub struct ScheduledFiring<'s, const K: usize, const M: usize = 2, U = ()> {
     skips: Skips,
     /// When it is due, or when the period ends. Worked out once per step, since it is asked for at every poll.
     due: Instant,
-    schedule: &'s Schedule<K, M>,
+    schedule: T,
     /// When a sensor last fired, or long enough ago.
     last_fired: Instant,
     disabled: SensorSet,
-    next_schedule: Option<&'s Schedule<K, M>>,
+    next_schedule: Option<T>,
     own_limits: InUse<U>,
 }
 
@@ -74,20 +81,7 @@ impl<'s, const K: usize, const M: usize, U: OwnLimits> ScheduledFiring<'s, K, M,
         own_limits: &'s L,
         now: Instant,
     ) -> Self {
-        let (next, gap) = schedule.firing(0, 0);
-        let settling = settling_time(schedule).as_micros();
-        Self {
-            phase: 0,
-            following: 1,
-            next,
-            skips: Skips::Nobody,
-            due: now + gap,
-            schedule,
-            last_fired: Instant::from_micros(now.as_micros().wrapping_sub(settling)),
-            disabled: SensorSet::NONE,
-            next_schedule: None,
-            own_limits: InUse::begin(own_limits.hold()),
-        }
+        Self::holding(schedule, own_limits.hold(), now)
     }
 
     /// The schedule of the present period.
@@ -101,13 +95,44 @@ impl<'s, const K: usize, const M: usize, U: OwnLimits> ScheduledFiring<'s, K, M,
     /// keep every refire time of the present schedule and every interval that both were verified for, and those of one
     /// that was not verified.
     pub fn change_schedule<L: OwnLimits<Held<'s> = U>>(&mut self, schedule: &'s VerifiedSchedule<K, M, L>) {
-        self.change_with_limits(schedule.schedule(), schedule.own_limits());
+        self.change_to(schedule.schedule(), schedule.own_limits().hold());
+    }
+}
+
+impl<T: Deref<Target = Schedule<K, M>>, const K: usize, const M: usize, U: OwnLimits> TableFiring<T, K, M, U> {
+    /// Begins the first period of a schedule at `now`, with all sensors enabled. The plan holds `own_limits`: those
+    /// that the schedule was verified for, or none.
+    pub fn holding(schedule: T, own_limits: U, now: Instant) -> Self {
+        let (next, gap) = schedule.firing(0, 0);
+        let settling = settling_time(&*schedule).as_micros();
+        Self {
+            phase: 0,
+            following: 1,
+            next,
+            skips: Skips::Nobody,
+            due: now + gap,
+            schedule,
+            last_fired: Instant::from_micros(now.as_micros().wrapping_sub(settling)),
+            disabled: SensorSet::NONE,
+            next_schedule: None,
+            own_limits: InUse::begin(own_limits),
+        }
     }
 
-    /// As [`change_schedule`](Self::change_schedule), of schedule and limits apart.
-    pub fn change_with_limits<L: OwnLimits<Held<'s> = U>>(&mut self, schedule: &'s Schedule<K, M>, own_limits: &'s L) {
+    /// The pointer to the schedule of the present period.
+    pub const fn table(&self) -> &T {
+        &self.schedule
+    }
+
+    /// The pointer to the schedule of the next period.
+    pub fn next_table(&self) -> &T {
+        self.next_schedule.as_ref().unwrap_or(&self.schedule)
+    }
+
+    /// As [`change_schedule`](ScheduledFiring::change_schedule), to a schedule and the limits that it was verified for.
+    pub fn change_to(&mut self, schedule: T, own_limits: U) {
         self.next_schedule = Some(schedule);
-        self.own_limits.change(own_limits.hold());
+        self.own_limits.change(own_limits);
     }
 
     /// Turns to the following sensor, its gap after this instant, or to the next enabled one after it; if there is
@@ -138,7 +163,7 @@ impl<'s, const K: usize, const M: usize, U: OwnLimits> ScheduledFiring<'s, K, M,
 
     /// When a period may begin that was not verified against what fired before.
     fn settled(&self) -> Instant {
-        self.last_fired + settling_time(self.schedule)
+        self.last_fired + settling_time(&*self.schedule)
     }
 
     const fn phase_after(&self, phase: u8) -> u8 {
@@ -185,7 +210,7 @@ impl<const K: usize, const M: usize> Schedule<K, M> {
     }
 }
 
-impl<const K: usize, const M: usize, U: OwnLimits> Plan for ScheduledFiring<'_, K, M, U> {
+impl<T: Deref<Target = Schedule<K, M>>, const K: usize, const M: usize, U: OwnLimits> Plan for TableFiring<T, K, M, U> {
     #[inline]
     fn fire(&mut self, now: Instant) {
         self.last_fired = now;
@@ -205,7 +230,7 @@ impl<const K: usize, const M: usize, U: OwnLimits> Plan for ScheduledFiring<'_, 
         let mut start = if left_out { now } else { self.due };
         let changed = left_out || self.next_schedule.is_some();
         // It must not fall half a turn of the clock behind while no sensor is enabled.
-        let settling = settling_time(self.schedule);
+        let settling = settling_time(&*self.schedule);
         if start.since(self.last_fired) > settling {
             self.last_fired = Instant::from_micros(start.as_micros().wrapping_sub(settling.as_micros()));
         }
@@ -290,7 +315,7 @@ impl<const K: usize, const M: usize, U: OwnLimits> Plan for ScheduledFiring<'_, 
         if !soon {
             // No last firing is further back than matters: the clock may jump again.
             self.last_fired =
-                Instant::from_micros(now.as_micros().wrapping_sub(settling_time(self.schedule).as_micros()));
+                Instant::from_micros(now.as_micros().wrapping_sub(settling_time(&*self.schedule).as_micros()));
         }
         self.begin_period(0, if soon { settled } else { now });
     }
@@ -306,7 +331,7 @@ impl<const K: usize, const M: usize, U: OwnLimits> Plan for ScheduledFiring<'_, 
     }
 
     fn next_limits(&self) -> Option<Limits<'_>> {
-        let next = self.next_schedule?;
+        let next = self.next_schedule.as_deref()?;
         Some(self.own_limits.next_most().map_or_else(|| next.limits(), Limits::of_most))
     }
 

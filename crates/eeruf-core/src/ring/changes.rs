@@ -1,12 +1,14 @@
 //! Settings that can change while a ring runs.
 
+use core::ops::Deref;
+
 use super::history::is_just_ahead;
 use super::listening::Listening;
 use super::{NOBODY, Ring};
 use crate::filter::EchoFilter;
 use crate::judging::Judge;
 use crate::own_limits::OwnLimits;
-use crate::plan::{Plan, ScheduledFiring};
+use crate::plan::{Plan, ScheduledFiring, TableFiring};
 use crate::ring_error::RingError;
 use crate::schedule::Schedule;
 use crate::sensor_error::SensorError;
@@ -28,23 +30,25 @@ impl<'s, const N: usize, const M: usize, U: OwnLimits, J: Judge, const K: usize,
         &mut self,
         schedule: &'s VerifiedSchedule<N, M, L>,
     ) -> Result<(), RingError> {
-        self.change_with_limits(schedule.schedule(), schedule.own_limits())
+        self.change_to(schedule.schedule(), schedule.own_limits().hold())
     }
+}
 
-    /// As [`change_schedule`](Self::change_schedule), of schedule and limits apart (see
-    /// [`ScheduledFiring::with_limits`]).
+impl<T, const N: usize, const M: usize, U: OwnLimits, J: Judge, const K: usize, const E: usize, const H: usize>
+    Ring<TableFiring<T, N, M, U>, J, K, E, H>
+where
+    T: Deref<Target = Schedule<N, M>> + Clone,
+{
+    /// As [`change_schedule`](Ring::change_schedule), to a schedule and the limits that it was verified for, which the
+    /// plan holds from then on.
     ///
     /// # Errors
     /// As there; [`RingError::Window`] if a sensor would fire again while it still listens.
-    pub fn change_with_limits<L: OwnLimits<Held<'s> = U>>(
-        &mut self,
-        schedule: &'s Schedule<N, M>,
-        own_limits: &'s L,
-    ) -> Result<(), RingError> {
+    pub fn change_to(&mut self, schedule: T, own_limits: U) -> Result<(), RingError> {
         // As if it began with that schedule.
-        let begun = ScheduledFiring::with_limits(schedule, own_limits, Instant::from_micros(0));
+        let begun = TableFiring::holding(schedule.clone(), own_limits, Instant::from_micros(0));
         Listening::checked(self.t_delta(), self.window(), self.blanking(), &begun)?;
-        self.plan.change_with_limits(schedule, own_limits);
+        self.plan.change_to(schedule, own_limits);
         Ok(())
     }
 }
@@ -57,7 +61,7 @@ impl<'s, const N: usize, const M: usize, J: Judge, const K: usize, const E: usiz
     /// # Errors
     /// [`RingError::Window`] if a sensor would fire again while it still listens.
     pub fn change_to_unverified(&mut self, schedule: &'s Schedule<N, M>) -> Result<(), RingError> {
-        self.change_with_limits(schedule, &())
+        self.change_to(schedule, ())
     }
 }
 

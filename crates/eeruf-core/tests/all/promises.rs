@@ -120,7 +120,7 @@ fn forty_minutes_without_sensors_delay_no_change() {
         assert_eq!(plan.poll(now), None);
     }
     (0..12).for_each(|sensor| plan.set_enabled(sensor, true));
-    plan.change_with_limits(&TABLE_I_A, &());
+    plan.change_to(&TABLE_I_A, ());
     assert!(time_to_fire(&mut plan, now) <= ms(400));
 }
 

@@ -323,7 +323,7 @@ fn ring_changes_between_even_and_uneven_schedules() {
     for period in 0..40 {
         let each = (uneven.schedule(), uneven.own_limits());
         let (next, limits) = if period % 8 < 4 { (even, &own) } else { each };
-        ring.change_with_limits(next, limits).unwrap();
+        ring.change_to(next, limits).unwrap();
         loop {
             let now = ring.next_deadline();
             match ring.poll(now) {

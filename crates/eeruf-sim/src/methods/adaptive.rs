@@ -1,25 +1,33 @@
 //! Rings that move along a ladder of scaled schedules as the rejection rate asks for (end of Sec. 3.1).
 
+use std::sync::Arc;
+
 use eeruf_core::{
-    EachSensor, Instant, MAX_SENSORS, Ring, RingEvent, VerifiedSchedule, adaptation::Adaptation, conditions::Violation,
+    EachSensor, Instant, MAX_SENSORS, Ring, RingEvent, VerifiedSchedule, adaptation::OnLadder, conditions::Violation,
 };
 
 use super::judges::RunningJudge;
-use super::ring_runner::{self, FiringPlan, REMEMBERED, RingRunner, RingStart, StartError, Started, TableFiring};
+use super::ring_runner::{self, FiringPlan, REMEMBERED, RingRunner, RingStart, SimulatedTable, StartError, Started};
 use crate::world::{AnySchedule, Robot};
 
+type Rung = VerifiedSchedule<MAX_SENSORS, 2, EachSensor<MAX_SENSORS>>;
+
 /// A ring that moves along a ladder of schedules (end of Sec. 3.1).
-struct AdaptiveRing<'s, const E: usize> {
-    ring: Ring<TableFiring<'s>, RunningJudge<MAX_SENSORS, E>, MAX_SENSORS, E, REMEMBERED>,
-    adaptation: Adaptation<'s, VerifiedSchedule<MAX_SENSORS, 2, EachSensor<MAX_SENSORS>>>,
+#[derive(Clone)]
+struct AdaptiveRing<const E: usize> {
+    ring: Ring<SimulatedTable, RunningJudge<MAX_SENSORS, E>, MAX_SENSORS, E, REMEMBERED>,
+    adaptation: OnLadder<Arc<[Rung]>>,
 }
 
-impl<'s, const E: usize> RingRunner<'s> for AdaptiveRing<'s, E> {
+impl<const E: usize> RingRunner for AdaptiveRing<E> {
     fn poll(&mut self, now: Instant, expected_change_us: &dyn Fn(u8) -> i32) -> Option<RingEvent> {
         let event = self.ring.poll_expecting(now, expected_change_us)?;
         if let RingEvent::PeriodEnded(stats) = event {
             // Every rung was verified for the ring's own t_delta and window, so this cannot fail.
-            _ = self.adaptation.adapt(&stats, |schedule| self.ring.change_schedule(schedule));
+            let rungs = Arc::clone(self.adaptation.rungs());
+            _ = self.adaptation.adapt_to(&stats, |rung| {
+                self.ring.change_to(Arc::new(*rungs[rung].schedule()), *rungs[rung].own_limits())
+            });
         }
         Some(event)
     }
@@ -34,6 +42,10 @@ impl<'s, const E: usize> RingRunner<'s> for AdaptiveRing<'s, E> {
 
     fn stands_for(&self, sensor: u8) -> u8 {
         RingRunner::stands_for(&self.ring, sensor)
+    }
+
+    fn copy(&self) -> Option<Box<dyn RingRunner>> {
+        Some(Box::new(self.clone()))
     }
 }
 
@@ -51,11 +63,12 @@ pub(super) fn plan(robot: &Robot, base: AnySchedule) -> Result<FiringPlan, Start
 }
 
 /// A ring on its ladder, with up to `E` echoes of a firing.
-pub(super) fn ring<'s, const E: usize>(start: &RingStart<'s>) -> Started<'s> {
+pub(super) fn ring<const E: usize>(start: &RingStart<'_>) -> Started {
     let &RingStart { robot, plan, ref judging, now, .. } = start;
-    let adaptation = Adaptation::new(&plan.ladder).map_err(StartError::Ladder)?;
+    let adaptation = OnLadder::new(Arc::<[Rung]>::from(&plan.ladder[..])).map_err(StartError::Ladder)?;
     // A ladder has a rung.
-    let plan = TableFiring::verified(&plan.ladder[0], now);
+    let lowest = &adaptation.rungs()[0];
+    let plan = SimulatedTable::holding(Arc::new(*lowest.schedule()), *lowest.own_limits(), now);
     Ok(Box::new(AdaptiveRing::<E> { ring: ring_runner::ring(plan, robot, judging, now)?, adaptation }))
 }
 

@@ -11,7 +11,7 @@ pub(super) const WAY: Way =
     Way { ring: dithered, refire: |robot, _, _| robot.window, ..Way::by_table(schedules::conventional) };
 
 /// The schedule's lags plus random waits.
-fn dithered<'s>(start: &RingStart<'s>) -> Started<'s> {
+fn dithered(start: &RingStart<'_>) -> Started {
     let schedule = &start.plan.schedule;
     let (lags, period) = (schedule.t_lag().to_vec(), schedule.period());
     let widest = widest_dither(start.robot);
@@ -38,6 +38,10 @@ impl Firing for Dither {
             firings.push((lag.saturating_add(Micros::new(wait)), sensor as u8));
         }
         Ok(FiringPeriod { length: self.period, phase: Phase::A, firings })
+    }
+
+    fn copy(&self) -> Option<Box<dyn Firing>> {
+        Some(Box::new(self.clone()))
     }
 }
 

@@ -31,11 +31,31 @@ pub trait Firing: Send {
     /// Whatever ends the simulation, with
     /// [`SimulationError::Own`](crate::SimulationError::Own).
     fn plan(&mut self, period: u32) -> Result<FiringPeriod, OwnError>;
+
+    /// Returns one that goes on as this does; none, as by default, if it cannot be copied. A simulation can be
+    /// [copied](crate::Simulation::copy) if all that its robots fire by can.
+    fn copy(&self) -> Option<Box<dyn Firing>> {
+        None
+    }
 }
 
 impl<F: Firing + ?Sized> Firing for Box<F> {
     fn plan(&mut self, period: u32) -> Result<FiringPeriod, OwnError> {
         F::plan(self, period)
+    }
+
+    fn copy(&self) -> Option<Box<dyn Firing>> {
+        F::copy(self)
+    }
+}
+
+/// A firing, or why there is no more.
+struct Planner(Result<Box<dyn Firing>, OwnError>);
+
+impl Clone for Planner {
+    fn clone(&self) -> Self {
+        let copied = |firing: &Box<dyn Firing>| firing.copy().ok_or_else(|| OwnError::new("it cannot be copied"));
+        Self(self.0.as_ref().map_err(Clone::clone).and_then(copied))
     }
 }
 
@@ -122,8 +142,9 @@ impl fmt::Display for Unfit {
 }
 
 /// Fires as a [`Firing`] plans: core's contract for it.
+#[derive(Clone)]
 pub(crate) struct PeriodFiring {
-    firing: Box<dyn Firing>,
+    planner: Planner,
     sensors: usize,
     /// No sensor fires again within this time of firing.
     refire: Micros,
@@ -143,8 +164,6 @@ pub(crate) struct PeriodFiring {
     enabled: [bool; MAX_SENSORS],
     paused: bool,
     last_fired: Option<Instant>,
-    /// Why it no longer fires.
-    failed: Option<OwnError>,
 }
 
 impl PeriodFiring {
@@ -152,7 +171,7 @@ impl PeriodFiring {
     /// period, [`error`](Self::error) says.
     pub(crate) fn new(firing: Box<dyn Firing>, sensors: usize, refire: Micros, now: Instant) -> Self {
         let mut firing = Self {
-            firing,
+            planner: Planner(Ok(firing)),
             sensors,
             refire,
             period: 0,
@@ -166,7 +185,6 @@ impl PeriodFiring {
             enabled: [true; MAX_SENSORS],
             paused: false,
             last_fired: None,
-            failed: None,
         };
         firing.begin_period(now);
         firing
@@ -174,22 +192,29 @@ impl PeriodFiring {
 
     /// Why it no longer fires, if it does not.
     pub(crate) fn error(&self) -> Option<&OwnError> {
-        self.failed.as_ref()
+        self.planner.0.as_ref().err()
+    }
+
+    /// True if a clone fires as it does.
+    pub(crate) fn copies(&self) -> bool {
+        self.planner.clone().0.is_ok()
     }
 
     fn begin_period(&mut self, start: Instant) {
         self.start = start;
         self.next = 0;
         self.due.clear();
-        if self.failed.is_none() {
+        if let Ok(firing) = &mut self.planner.0 {
             let number = self.period;
-            let planned = self.firing.plan(number).and_then(|period| {
+            let planned = firing.plan(number).and_then(|period| {
                 self.take(period).map_err(|unfit| OwnError::new(format!("period {number} {unfit}")))
             });
-            self.failed = planned.err();
+            if let Err(error) = planned {
+                self.planner.0 = Err(error);
+            }
             self.period = number.wrapping_add(1);
         }
-        if self.failed.is_some() {
+        if self.planner.0.is_err() {
             // Nothing fires any more; whoever drives the ring looks at the error now.
             self.due.clear();
             self.length = MAX_PERIOD;

@@ -47,7 +47,7 @@ pub(super) const WAY: Way =
     Way { ring: flow, refire: |robot, _, _| robot.window, ..Way::by_table(schedules::conventional) };
 
 /// A flow ring, no larger than needed.
-fn flow<'s>(start: &RingStart<'s>) -> Started<'s> {
+fn flow(start: &RingStart<'_>) -> Started {
     match (start.judging.echoes, start.robot.sensors.len()) {
         (..=1, ..=8) => ring::<8, 1>(start),
         (..=1, 9..=24) => ring::<24, 1>(start),
@@ -56,7 +56,7 @@ fn flow<'s>(start: &RingStart<'s>) -> Started<'s> {
     }
 }
 
-fn ring<'s, const K: usize, const E: usize>(start: &RingStart<'s>) -> Started<'s> {
+fn ring<const K: usize, const E: usize>(start: &RingStart<'_>) -> Started {
     let RingStart { robot, flow, mut random, now, .. } = *start;
     // A seed of 0 would throw nothing.
     let turns = flow.turns(robot, random.bits() as u32 | 1);

@@ -61,6 +61,7 @@ pub(crate) struct Judging {
 }
 
 /// A judge under way, for all but flow rings.
+#[derive(Clone)]
 pub(super) enum RunningJudge<const K: usize, const E: usize> {
     Compares(EchoFilter<K, E>),
     Agrees(Agreement<EchoFilter<K, E>>),

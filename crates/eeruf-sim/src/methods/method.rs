@@ -177,7 +177,7 @@ impl Method {
     }
 
     /// A robot's ring, ready to run.
-    pub(crate) fn start<'s>(self, start: &RingStart<'s>) -> Started<'s> {
+    pub(crate) fn start(self, start: &RingStart<'_>) -> Started {
         (self.row().firing.ring)(start)
     }
 }

@@ -1,5 +1,7 @@
 //! Core's own [`Ring`] of whatever plan, judge and number of echoes behind one trait: the same code as on the target,
-//! under simulated time.
+//! under simulated time. It owns what it fires by, so that it can be copied.
+
+use std::sync::Arc;
 
 use eeruf_core::{
     EachSensor, Instant, MAX_SENSORS, Micros, Ring, RingConfig, RingError, RingEvent, ScheduleError, Silence,
@@ -7,7 +9,7 @@ use eeruf_core::{
     conditions::Violation,
     flow::InTurn,
     judge::Judge,
-    plan::{ImmediateRefiring, Plan, ScheduledFiring},
+    plan::{Plan, Refiring, TableFiring},
 };
 
 use super::adaptive;
@@ -18,8 +20,8 @@ use super::method::MAX_ECHOES;
 use super::schedules;
 use crate::world::{AnySchedule, Random, Robot};
 
-/// A ring of any kind, which can change to schedules that live as long as `'s`.
-pub(crate) trait RingRunner<'s>: Send {
+/// A ring of any kind.
+pub(crate) trait RingRunner: Send {
     /// The ring's next event, if any; `expected_change_us` says by how much a good reading of a sensor should change.
     fn poll(&mut self, now: Instant, expected_change_us: &dyn Fn(u8) -> i32) -> Option<RingEvent>;
     /// When it is to be polled again.
@@ -31,13 +33,15 @@ pub(crate) trait RingRunner<'s>: Send {
     /// The robot moves at this speed, and turns at this rate.
     fn moving(&mut self, _speed_mm_s: u32, _turn_mrad_s: u32, _now: Instant) {}
     /// Changes to another schedule, of as many sensors, when the present period ends.
-    fn change_schedule(&mut self, _schedule: &'s AnySchedule) -> Result<(), ChangeError> {
+    fn change_schedule(&mut self, _schedule: &AnySchedule) -> Result<(), ChangeError> {
         Err(ChangeError::Fixed)
     }
     /// Why it no longer fires, if it does not.
     fn error(&self) -> Option<&OwnError> {
         None
     }
+    /// A ring in the same state, unless it fires by what cannot be copied.
+    fn copy(&self) -> Option<Box<dyn RingRunner>>;
 }
 
 /// Why a ring cannot change to another schedule.
@@ -50,11 +54,11 @@ pub(crate) enum ChangeError {
 }
 
 /// Demands of the simulator on a plan beyond those of a ring.
-pub(super) trait SimulatedPlan<'s>: Plan + Send + Sized {
+pub(super) trait SimulatedPlan: Plan + Clone + Send + 'static {
     /// Changes a ring to another schedule.
     fn change<J: Judge, const K: usize, const E: usize, const H: usize>(
         _ring: &mut Ring<Self, J, K, E, H>,
-        _schedule: &'s AnySchedule,
+        _schedule: &AnySchedule,
     ) -> Result<(), ChangeError> {
         Err(ChangeError::Fixed)
     }
@@ -62,29 +66,39 @@ pub(super) trait SimulatedPlan<'s>: Plan + Send + Sized {
     fn error(&self) -> Option<&OwnError> {
         None
     }
-}
-
-impl<'s> SimulatedPlan<'s> for TableFiring<'s> {
-    fn change<J: Judge, const K: usize, const E: usize, const H: usize>(
-        ring: &mut Ring<Self, J, K, E, H>,
-        schedule: &'s AnySchedule,
-    ) -> Result<(), ChangeError> {
-        ring.change_with_limits(schedule, &EachSensor::NONE).map_err(ChangeError::Ring)
+    /// True if a clone fires as it does.
+    fn copies(&self) -> bool {
+        true
     }
 }
 
-impl<const K: usize> SimulatedPlan<'_> for InTurn<K> {}
+impl SimulatedPlan for SimulatedTable {
+    fn change<J: Judge, const K: usize, const E: usize, const H: usize>(
+        ring: &mut Ring<Self, J, K, E, H>,
+        schedule: &AnySchedule,
+    ) -> Result<(), ChangeError> {
+        ring.change_to(Arc::new(*schedule), EachSensor::NONE).map_err(ChangeError::Ring)
+    }
+}
 
-impl SimulatedPlan<'_> for PeriodFiring {
+impl<const K: usize> SimulatedPlan for InTurn<K> {}
+
+impl SimulatedPlan for PeriodFiring {
     fn error(&self) -> Option<&OwnError> {
         PeriodFiring::error(self)
     }
+
+    fn copies(&self) -> bool {
+        PeriodFiring::copies(self)
+    }
 }
 
-impl<'s> SimulatedPlan<'s> for ImmediateRefiring<'s, MAX_SENSORS> {}
+impl SimulatedPlan for Refiring<Arc<AnySchedule>, MAX_SENSORS> {}
 
-impl<'s, P: SimulatedPlan<'s>, J: Judge + Send, const K: usize, const E: usize, const H: usize> RingRunner<'s>
-    for Ring<P, J, K, E, H>
+impl<P, J, const K: usize, const E: usize, const H: usize> RingRunner for Ring<P, J, K, E, H>
+where
+    P: SimulatedPlan,
+    J: Judge + Clone + Send + 'static,
 {
     fn poll(&mut self, now: Instant, expected_change_us: &dyn Fn(u8) -> i32) -> Option<RingEvent> {
         self.poll_expecting(now, expected_change_us)
@@ -107,17 +121,21 @@ impl<'s, P: SimulatedPlan<'s>, J: Judge + Send, const K: usize, const E: usize, 
         Ring::moving(self, speed_mm_s, turn_mrad_s, now);
     }
 
-    fn change_schedule(&mut self, schedule: &'s AnySchedule) -> Result<(), ChangeError> {
+    fn change_schedule(&mut self, schedule: &AnySchedule) -> Result<(), ChangeError> {
         P::change(self, schedule)
     }
 
     fn error(&self) -> Option<&OwnError> {
         self.plan().error()
     }
+
+    fn copy(&self) -> Option<Box<dyn RingRunner>> {
+        self.plan().copies().then(|| Box::new(self.clone()) as _)
+    }
 }
 
 /// Firing by a table, whether sensors are alike or not.
-pub(super) type TableFiring<'s> = ScheduledFiring<'s, MAX_SENSORS, 2, &'s EachSensor<MAX_SENSORS>>;
+pub(super) type SimulatedTable = TableFiring<Arc<AnySchedule>, MAX_SENSORS, 2, EachSensor<MAX_SENSORS>>;
 
 /// The plan of a robot's ring.
 pub(crate) struct FiringPlan {
@@ -155,7 +173,7 @@ pub(super) struct Way {
     /// The ring's plan, from that schedule.
     pub(super) plan: fn(&Robot, AnySchedule) -> Result<FiringPlan, StartError>,
     /// The ring, ready to run.
-    pub(super) ring: for<'s> fn(&RingStart<'s>) -> Started<'s>,
+    pub(super) ring: fn(&RingStart<'_>) -> Started,
     /// Least time until a sensor, by its number, may fire again.
     pub(super) refire: fn(&Robot, &AnySchedule, usize) -> Micros,
 }
@@ -200,7 +218,7 @@ impl From<RingError> for StartError {
 }
 
 /// A running ring, if it can be started.
-pub(crate) type Started<'s> = Result<Box<dyn RingRunner<'s> + 's>, StartError>;
+pub(crate) type Started = Result<Box<dyn RingRunner>, StartError>;
 
 /// Settings by which a robot's ring listens and compares.
 pub(super) fn config_of(robot: &Robot) -> RingConfig {
@@ -225,10 +243,12 @@ pub(super) fn trusting<P: Plan, J: Judge, const K: usize, const E: usize, const 
 
 /// A robot's ring by this plan that remembers `H` firings of each sensor, no larger than needed: some of its steps take
 /// time for each sensor that it has room for.
-pub(super) fn run<'s, P, const H: usize>(plan: P, robot: &Robot, judging: &Judging, now: Instant) -> Started<'s>
-where
-    P: SimulatedPlan<'s> + 's,
-{
+pub(super) fn run<P: SimulatedPlan, const H: usize>(
+    plan: P,
+    robot: &Robot,
+    judging: &Judging,
+    now: Instant,
+) -> Started {
     Ok(match (judging.echoes, robot.sensors.len()) {
         (..=1, ..=8) => Box::new(ring::<P, 8, 1, H>(plan, robot, judging, now)?),
         (..=1, 9..=24) => Box::new(ring::<P, 24, 1, H>(plan, robot, judging, now)?),
@@ -250,11 +270,11 @@ pub(super) fn ring<P: Plan, const K: usize, const E: usize, const H: usize>(
 }
 
 /// Scheduled firing, along a ladder where there is one.
-fn scheduled<'s>(start: &RingStart<'s>) -> Started<'s> {
+fn scheduled(start: &RingStart<'_>) -> Started {
     let &RingStart { robot, plan, ref judging, now, .. } = start;
     match judging.echoes {
         _ if plan.ladder.is_empty() => {
-            let plan = TableFiring::with_limits(&plan.schedule, &plan.own_limits, now);
+            let plan = TableFiring::holding(Arc::new(plan.schedule), plan.own_limits, now);
             run::<_, REMEMBERED>(plan, robot, judging, now)
         }
         ..=1 => adaptive::ring::<1>(start),
@@ -272,19 +292,19 @@ fn plan_own(robot: &Robot, schedule: AnySchedule) -> Result<FiringPlan, StartErr
 }
 
 /// Immediate refiring.
-fn immediate<'s>(start: &RingStart<'s>) -> Started<'s> {
+fn immediate(start: &RingStart<'_>) -> Started {
     let &RingStart { robot, plan, ref judging, now, .. } = start;
-    run::<_, REFIRED>(ImmediateRefiring::new(&plan.schedule, robot.min_refire, now), robot, judging, now)
+    run::<_, REFIRED>(Refiring::new(Arc::new(plan.schedule), robot.min_refire, now), robot, judging, now)
 }
 
 /// A robot's ring that fires as it is planned, no sensor again within `refire` of firing.
-pub(crate) fn planned<'s>(
+pub(crate) fn planned(
     firing: Box<dyn Firing>,
     robot: &Robot,
     judging: &Judging,
     refire: Micros,
     now: Instant,
-) -> Started<'s> {
+) -> Started {
     let plan = PeriodFiring::new(firing, robot.sensors.len(), refire, now);
     if let Some(error) = plan.error() {
         return Err(StartError::Own(error.clone()));

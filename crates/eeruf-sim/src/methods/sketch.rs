@@ -13,7 +13,7 @@ use super::schedules;
 use crate::world::{FiringTable, Robot, Sketch};
 
 /// Firing that takes its turns as sensors answer.
-pub(super) const fn way(ring: for<'s> fn(&RingStart<'s>) -> Started<'s>) -> Way {
+pub(super) const fn way(ring: fn(&RingStart<'_>) -> Started) -> Way {
     Way { ring, refire: |_, _, _| Micros::ZERO, ..Way::by_table(schedules::together) }
 }
 
@@ -21,7 +21,7 @@ pub(super) const fn way(ring: for<'s> fn(&RingStart<'s>) -> Started<'s>) -> Way 
 pub(super) const TABLE: Way = Way { ring: table, refire: |robot, _, _| robot.window, ..Way::by_table(schedules::own) };
 
 /// One sensor after the other, each as soon as the one before has answered or was given up.
-pub(super) fn in_turn<'s>(start: &RingStart<'s>) -> Started<'s> {
+pub(super) fn in_turn(start: &RingStart<'_>) -> Started {
     lanes(start, vec![singly(0..start.robot.sensors.len() as u8)])
 }
 
@@ -31,7 +31,7 @@ const BLOCKS: Micros = Micros::from_millis(38);
 const BLOCKING_PAUSE: Micros = Micros::from_millis(10);
 
 /// One sensor after the other, each waited for as long as a loop that blocks does.
-pub(super) fn blocking<'s>(start: &RingStart<'s>) -> Started<'s> {
+pub(super) fn blocking(start: &RingStart<'_>) -> Started {
     let mut robot = start.robot.clone();
     robot.window = robot.window.min(BLOCKS);
     robot.firing = Sketch { pause: BLOCKING_PAUSE, ..Sketch::default() };
@@ -41,7 +41,7 @@ pub(super) fn blocking<'s>(start: &RingStart<'s>) -> Started<'s> {
 }
 
 /// Arrays side by side, each in turn.
-pub(super) fn arrays<'s>(start: &RingStart<'s>) -> Started<'s> {
+pub(super) fn arrays(start: &RingStart<'_>) -> Started {
     let sensors = start.robot.sensors.len() as u8;
     let half = sensors.div_ceil(2);
     let halves = || [(0..half).collect(), (half..sensors).collect()].into();
@@ -50,7 +50,7 @@ pub(super) fn arrays<'s>(start: &RingStart<'s>) -> Started<'s> {
 }
 
 /// Groups that fire together, in turn.
-pub(super) fn groups<'s>(start: &RingStart<'s>) -> Started<'s> {
+pub(super) fn groups(start: &RingStart<'_>) -> Started {
     let Robot { ref sensors, neighbours, .. } = *start.robot;
     let (sensors, apart) = (sensors.len() as u8, neighbours.min(sensors.len() as u8).max(1));
     let far = || (0..apart).map(|first| (first..sensors).step_by(apart.into()).collect()).collect();
@@ -58,12 +58,12 @@ pub(super) fn groups<'s>(start: &RingStart<'s>) -> Started<'s> {
 }
 
 /// All at once, again when the slowest is ready.
-pub(super) fn sync_line<'s>(start: &RingStart<'s>) -> Started<'s> {
+pub(super) fn sync_line(start: &RingStart<'_>) -> Started {
     lanes_resting(start, vec![vec![(0..start.robot.sensors.len() as u8).collect()]], start.robot.module_rest())
 }
 
 /// Each module by a clock of its own.
-pub(super) fn free_running<'s>(start: &RingStart<'s>) -> Started<'s> {
+pub(super) fn free_running(start: &RingStart<'_>) -> Started {
     let Robot { ref sensors, ref firing, .. } = *start.robot;
     let rest = firing.rest.unwrap_or_else(|| start.robot.module_rest());
     let cycle = f64::from(rest.max(firing.turn).max(start.robot.window).as_micros());
@@ -78,7 +78,7 @@ pub(super) fn free_running<'s>(start: &RingStart<'s>) -> Started<'s> {
 }
 
 /// By a table of any number of phases.
-fn table<'s>(start: &RingStart<'s>) -> Started<'s> {
+fn table(start: &RingStart<'_>) -> Started {
     let table = start.robot.firing.table.clone().unwrap_or_else(|| {
         let schedule = &start.plan.schedule;
         let row = |phase| {
@@ -104,16 +104,16 @@ fn listening(robot: &Robot) -> Robot {
     Robot { window: timeout.unwrap_or(robot.window), consecutive: consecutive.max(2), ..robot.clone() }
 }
 
-fn lanes<'s>(start: &RingStart<'s>, lanes: Vec<Vec<Vec<u8>>>) -> Started<'s> {
+fn lanes(start: &RingStart<'_>, lanes: Vec<Vec<Vec<u8>>>) -> Started {
     lanes_resting(start, lanes, Micros::ZERO)
 }
 
-fn lanes_resting<'s>(start: &RingStart<'s>, lanes: Vec<Vec<Vec<u8>>>, rest: Micros) -> Started<'s> {
+fn lanes_resting(start: &RingStart<'_>, lanes: Vec<Vec<Vec<u8>>>, rest: Micros) -> Started {
     let lanes = lanes.into_iter().map(|sets| Lane::new(sets, start.now)).collect();
     run(start.robot, &start.judging, start.now, lanes, start.robot.firing.rest.unwrap_or(rest))
 }
 
-fn run<'s>(robot: &Robot, judging: &Judging, now: Instant, lanes: Vec<Lane>, rest: Micros) -> Started<'s> {
+fn run(robot: &Robot, judging: &Judging, now: Instant, lanes: Vec<Lane>, rest: Micros) -> Started {
     let Robot { ref sensors, ref firing, period, .. } = *robot;
     let plan = LanePlan {
         lanes,
@@ -131,6 +131,7 @@ fn run<'s>(robot: &Robot, judging: &Judging, now: Instant, lanes: Vec<Lane>, res
 }
 
 /// Fires by a table of any number of phases, period after period.
+#[derive(Clone)]
 struct ByTable(FiringTable);
 
 impl Firing for ByTable {
@@ -141,6 +142,10 @@ impl Firing for ByTable {
         // At most 64 sensors. Nothing compares by phases, of which a reading's number has eight.
         let firings = times.iter().zip(0..).map(|(&time, sensor)| (time, sensor)).collect();
         Ok(FiringPeriod { length: *length, phase: Phase((phase % MAX_PHASES) as u8), firings })
+    }
+
+    fn copy(&self) -> Option<Box<dyn Firing>> {
+        Some(Box::new(self.clone()))
     }
 }
 
@@ -357,7 +362,7 @@ impl Plan for LanePlan {
     }
 }
 
-impl SimulatedPlan<'_> for LanePlan {}
+impl SimulatedPlan for LanePlan {}
 
 #[cfg(test)]
 mod tests {

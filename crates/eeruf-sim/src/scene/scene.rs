@@ -29,7 +29,7 @@ fn check(air: &Air) -> Result<(), SceneError> {
 }
 
 /// Walls, poles and air, checked and ready for questions.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Scene {
     /// Shared by scenes that differ in their poles alone.
     built: Arc<Built>,

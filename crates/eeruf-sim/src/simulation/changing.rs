@@ -1,9 +1,9 @@
 //! A world that is exchanged for another while its rings go on: a wall that is somewhere else from one moment to the
 //! next.
 
-use super::channels::Place;
-use super::engine::plans;
-use super::engine::{EventLoop, Own, end_of, expected_readings};
+use std::sync::Arc;
+
+use super::engine::{EventLoop, Own, end_of, expected_readings, plans};
 use super::error::SimulationError;
 use super::kinematics::Planned;
 use super::options::Options;
@@ -29,13 +29,14 @@ pub(crate) fn simulate_in_turn(
     let plans = plans(first, method, options, &kinematics, &own)?;
     let (end, room) = (end_of(first, options.periods), expected_readings(first, options.periods));
     let stop = Stop::default();
-    let mut events = EventLoop::new(first, &plans, method, options, kinematics, &mut own, Some(end), room, stop)?;
+    let world = &Arc::new(first.clone());
+    let mut events = EventLoop::new(world, &plans, method, options, kinematics, &mut own, Some(end), room, stop)?;
     let change = end_of(first, each);
     for (turn, world) in (1..).zip(worlds.iter().cycle().skip(1)) {
         if !events.run_until(turn * change, &mut keep_going)? || turn * change >= end {
             break;
         }
-        events.change_scene(Place::Borrowed(world), turn * change)?;
+        events.change_scene(Arc::new(world.clone()), turn * change)?;
     }
     events.run_until(u64::MAX, keep_going)?;
     Ok(events.take(end as f64 * 1e-9))

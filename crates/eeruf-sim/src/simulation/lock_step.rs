@@ -4,6 +4,8 @@
 //! what every sensor will hear next, as far as is known by then. A later firing may still change that: foreign sound
 //! that arrives first is what a listening sensor hears.
 
+use std::sync::Arc;
+
 use super::channels::Channels;
 use super::engine::Propagation;
 use super::kinematics::Planned;
@@ -17,7 +19,7 @@ use crate::{
 /// The first robot of a world, fired from outside. Sensors report one echo.
 pub struct LockStep<'w> {
     world: &'w World,
-    channels: Channels<'w>,
+    channels: Channels,
     /// Hearing of each sensor.
     hearings: Vec<Hearing>,
     receivers: Vec<Receiver>,
@@ -33,7 +35,7 @@ impl<'w> LockStep<'w> {
         // A world has at least one robot.
         let robot = &world.robots()[0];
         let ns = |time: eeruf_core::Micros| u64::from(time.as_micros()) * 1000;
-        let channels = Channels::new(world, &Planned(world), Stop::default())?;
+        let channels = Channels::new(&Arc::new(world.clone()), &Planned(world), Stop::default())?;
         let hearing_of = |sensor| Hearing::new(world, robot, sensor, 1, ns(robot.window), ns);
         let hearings = (0..robot.sensors.len()).map(hearing_of).collect();
         let receivers = vec![Receiver::NEW; robot.sensors.len()];

@@ -2,11 +2,7 @@
 
 use std::sync::Arc;
 
-use elsa::sync::FrozenVec;
-
-use super::channels::Place;
-use super::engine::{EventLoop, Own, end_of};
-use super::engine::{Plan, plans};
+use super::engine::{EventLoop, Own, end_of, plans};
 use super::error::SimulationError;
 use super::kinematics::{Kinematics, Planned};
 use super::options::Options;
@@ -22,24 +18,6 @@ use crate::{
 
 /// The longest single step, in seconds: far longer than anybody waits for, so that longer is a mistake.
 const MAX_STEP_S: f64 = 1e9;
-
-struct Owner {
-    world: Arc<World>,
-    plans: Vec<Plan>,
-    /// The schedules that rings have changed to, each once.
-    schedules: FrozenVec<Box<AnySchedule>>,
-}
-
-type Events<'a> = EventLoop<'a, Steered<'a>>;
-
-self_cell::self_cell!(
-    /// The events, with the world that they happen in.
-    struct UnderWay {
-        owner: Owner,
-        #[not_covariant]
-        dependent: Events,
-    }
-);
 
 /// A simulation that stops after each step and goes on where it was. Its steps together give the readings of
 /// [`simulate`](crate::simulate()), bit for bit, and no more memory is needed than for one step's readings.
@@ -60,7 +38,9 @@ self_cell::self_cell!(
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub struct Simulation {
-    under_way: UnderWay,
+    /// As it was at first.
+    world: Arc<World>,
+    events: EventLoop<Steered>,
     method: Method,
     robots: usize,
     /// In true nanoseconds.
@@ -129,12 +109,32 @@ impl Simulation {
         own.check(robots)?;
         let plans = plans(&world, method, options, &Planned(&world), &own)?;
         let place = (Arc::clone(&world), 0);
-        let owner = Owner { world, plans, schedules: FrozenVec::new() };
-        let under_way = UnderWay::try_new(owner, |Owner { world, plans, .. }| {
-            EventLoop::new(world, plans, method, options, Steered::new(world), &mut own, end, 0, stop)
-        })?;
+        let kinematics = Steered::new(Arc::clone(&world));
+        let events = EventLoop::new(&world, &plans, method, options, kinematics, &mut own, end, 0, stop)?;
         let end = end.unwrap_or(u64::MAX);
-        Ok(Self { under_way, method, robots, now: 0, happened: 0, place, end, period, over: false })
+        Ok(Self { world, events, method, robots, now: 0, happened: 0, place, end, period, over: false })
+    }
+
+    /// A copy in the same state, which goes on alike: with the same steps it gives the same readings, bit for bit.
+    /// `stop` ends it, and not the switch of this one. None if a [`Firing`](crate::Firing) or a
+    /// [`Filter`](crate::Filter) of the caller's own cannot be copied.
+    ///
+    /// ```
+    /// use std::sync::Arc;
+    /// use eeruf_sim::*;
+    /// let robot = Robot::ring(Pose::identity(), 8, 15f64.to_radians(), 0.3, Transducer::POLAROID_6500);
+    /// let wall = Wall::new(2.0, -5.0, 2.0, 5.0).with_faces(Faces::Both);
+    /// let world = World::new(Scene::new(vec![wall], vec![], Air::default())?, vec![robot], Noise::default())?;
+    /// let mut one = Simulation::new(Arc::new(world), Method::Flow, &Options::default(), Stop::default())?;
+    /// one.step(1.0, |_| true)?;
+    /// let mut other = one.copy(Stop::default()).unwrap();
+    /// assert_eq!(one.step(1.0, |_| true)?.earliest_us.len(), other.step(1.0, |_| true)?.earliest_us.len());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn copy(&self, stop: Stop) -> Option<Self> {
+        let (world, place) = (Arc::clone(&self.world), self.place.clone());
+        Some(Self { world, events: self.events.copy(stop)?, place, ..*self })
     }
 
     /// Lets time pass, and returns what was read meanwhile: the readings of all firings whose windows have closed.
@@ -183,12 +183,9 @@ impl Simulation {
         let (before, farthest) = (self.now, self.now.saturating_add(ns));
         let until = if farthest >= self.end { u64::MAX } else { farthest };
         let end = self.end;
-        let (more, at, now, readings) = self.under_way.with_dependent_mut(|_, events| {
-            let (more, at) = events.run_to_reading(until, keep_going)?;
-            let now = at.map_or(farthest, |at| at.clamp(before, farthest));
-            let duration_s = (now.min(end) - before.min(end)) as f64 * 1e-9;
-            Ok::<_, SimulationError>((more, at, now, events.take(duration_s)))
-        })?;
+        let (more, at) = self.events.run_to_reading(until, keep_going)?;
+        let now = at.map_or(farthest, |at| at.clamp(before, farthest));
+        let readings = self.events.take((now.min(end) - before.min(end)) as f64 * 1e-9);
         (self.now, self.happened, self.over) = (now, at.map_or(now, |_| now + 1), !more);
         Ok(readings)
     }
@@ -210,10 +207,8 @@ impl Simulation {
         // What was fired before the end is still heard after it.
         let until = if now >= self.end { u64::MAX } else { now };
         let duration_s = (now.min(self.end) - before) as f64 * 1e-9;
-        let (more, readings) = self.under_way.with_dependent_mut(|_, events| {
-            let more = events.run_until(until, keep_going)?;
-            Ok((more, events.take(duration_s)))
-        })?;
+        let more = self.events.run_until(until, keep_going)?;
+        let readings = self.events.take(duration_s);
         (self.now, self.happened, self.over) = (now, now, !more);
         Ok(readings)
     }
@@ -240,7 +235,7 @@ impl Simulation {
             }
         }
         let now = self.now;
-        self.under_way.with_dependent_mut(|_, events| events.steer().set(robot, now, v_m_s, w_rad_s));
+        self.events.steer().set(robot, now, v_m_s, w_rad_s);
         Ok(())
     }
 
@@ -258,7 +253,7 @@ impl Simulation {
             }
         }
         let now = self.now;
-        self.under_way.with_dependent_mut(|_, events| events.steer().place(robot, now, pose));
+        self.events.steer().place(robot, now, pose);
         Ok(())
     }
 
@@ -287,15 +282,12 @@ impl Simulation {
     pub fn change_schedule(&mut self, robot: usize, schedule: &AnySchedule) -> Result<(), SimulationError> {
         self.known(robot)?;
         let method = self.method;
-        self.under_way.with_dependent_mut(|owner, events| {
-            let sensors = owner.world.robots().get(robot).map_or(0, |robot| robot.sensors.len());
-            if schedule.sensors() != sensors {
-                return Err(SimulationError::Sensors { robot, schedule: schedule.sensors(), sensors });
-            }
-            let known = owner.schedules.iter().find(|known| *known == schedule);
-            let kept = known.unwrap_or_else(|| owner.schedules.push_get(Box::new(*schedule)));
-            events.change_schedule(robot, kept).map_err(|error| SimulationError::change(robot, method, error))
-        })
+        let sensors = self.world.robots().get(robot).map_or(0, |robot| robot.sensors.len());
+        if schedule.sensors() != sensors {
+            return Err(SimulationError::Sensors { robot, schedule: schedule.sensors(), sensors });
+        }
+        let changed = self.events.change_schedule(robot, schedule);
+        changed.map_err(|error| SimulationError::change(robot, method, error))
     }
 
     /// From now on sound travels among these walls and poles and in this air: obstacles have moved. Sound that is on
@@ -321,8 +313,7 @@ impl Simulation {
     /// ```
     pub fn change_scene(&mut self, scene: Scene) -> Result<(), SimulationError> {
         let world = Arc::new(self.world().with_scene(scene));
-        let (now, place) = (self.now, Place::Shared(Arc::clone(&world)));
-        self.under_way.with_dependent_mut(|_, events| events.change_scene(place, now))?;
+        self.events.change_scene(Arc::clone(&world), self.now)?;
         self.place = (world, self.happened);
         Ok(())
     }
@@ -333,7 +324,7 @@ impl Simulation {
     /// No such robot.
     pub fn moment(&self, robot: usize) -> Result<Moment, SimulationError> {
         self.known(robot)?;
-        Ok(self.under_way.with_dependent(|_, events| events.kinematics().moment(robot, self.now)))
+        Ok(self.events.kinematics().moment(robot, self.now))
     }
 
     /// Where a robot is or was at a time, and how fast it went: at most ten seconds before it was last steered, as long
@@ -359,17 +350,17 @@ impl Simulation {
     pub fn moment_at(&self, robot: usize, time_s: f64) -> Result<Moment, SimulationError> {
         self.known(robot)?;
         let then = (time_s * 1e9).round();
-        let is_known = |then| self.under_way.with_dependent(|_, events| events.kinematics().knows(robot, then));
+        let is_known = |then| self.events.kinematics().knows(robot, then);
         if !(0.0..=self.now as f64).contains(&then) || !is_known(then as u64) {
             let expected = "0 to now, and at most 10 s before the robot was last steered";
             return Err(SimulationError::Number { what: "time_s", value: time_s, expected });
         }
-        Ok(self.under_way.with_dependent(|_, events| events.kinematics().moment(robot, then as u64)))
+        Ok(self.events.kinematics().moment(robot, then as u64))
     }
 
     /// The world that is simulated, as it was at first.
     pub fn world(&self) -> &Arc<World> {
-        &self.under_way.borrow_owner().world
+        &self.world
     }
 
     /// The world with the scene of now, and since when, in seconds: what fires from then on is heard in it, until

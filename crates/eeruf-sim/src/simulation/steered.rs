@@ -1,6 +1,6 @@
 //! Robots that move as the world says until somebody steers them.
 
-use std::collections::VecDeque;
+use std::{collections::VecDeque, sync::Arc};
 
 use super::kinematics::Kinematics;
 use crate::{
@@ -12,8 +12,9 @@ use crate::{
 const REMEMBERED: u64 = 10_000_000_000;
 
 /// Robots that somebody steers, each from the moment on at which it was first steered.
-pub(super) struct Steered<'w> {
-    world: &'w World,
+#[derive(Clone)]
+pub(super) struct Steered {
+    world: Arc<World>,
     legs: Vec<Legs>,
 }
 
@@ -35,9 +36,10 @@ struct Leg {
     w_rad_s: f64,
 }
 
-impl<'w> Steered<'w> {
-    pub(super) fn new(world: &'w World) -> Self {
-        Self { world, legs: vec![Legs::default(); world.robots().len()] }
+impl Steered {
+    pub(super) fn new(world: Arc<World>) -> Self {
+        let legs = vec![Legs::default(); world.robots().len()];
+        Self { world, legs }
     }
 
     /// From now on a robot goes ahead at `v_m_s` and turns at `w_rad_s`.
@@ -87,7 +89,7 @@ impl Leg {
     }
 }
 
-impl Kinematics for Steered<'_> {
+impl Kinematics for Steered {
     fn moves(&self) -> bool {
         self.world.moves()
     }

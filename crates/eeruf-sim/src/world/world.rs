@@ -24,7 +24,7 @@ const PLACES_TRIED: u32 = 16;
 const MAX_FADING_TIME_S: f64 = 3600.0;
 
 /// A scene, robots, noise, physics and a seed.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct World {
     scene: Scene,
     robots: Vec<Robot>,
@@ -126,9 +126,7 @@ impl World {
 
     /// The same world with another scene, without a check that the robots stand free.
     pub(crate) fn with_scene(&self, scene: Scene) -> Self {
-        let &Self { ref robots, noise, max_order, pole_order, physics, seed, ref faults, .. } = self;
-        let (robots, faults) = (robots.clone(), faults.clone());
-        Self { scene, robots, noise, max_order, pole_order, physics, seed, faults }
+        Self { scene, ..self.clone() }
     }
 
     /// The same world, in which these things go wrong.

@@ -10,6 +10,7 @@ use crate::{
 
 /// Where bodies come among a scene's walls and poles. Whoever is left out, each side and each disc keeps its number:
 /// those of the scene first, then the sides and the discs of all robots in order.
+#[derive(Clone)]
 pub(in crate::simulation) struct Bodies {
     /// For each robot, its first side and its disc.
     first: Vec<[u32; 2]>,

@@ -5,7 +5,6 @@ mod bodies;
 mod hearing_range;
 mod path_numbers;
 
-use core::ops::Deref;
 use std::sync::Arc;
 
 use super::kinematics::Kinematics;
@@ -55,29 +54,10 @@ pub(crate) type Arrives<'a> = &'a dyn Fn(usize, u64, u64) -> bool;
 /// coefficient, `-exp(-j pi / 4)`.
 const EDGE_TURN: f64 = 0.375;
 
-/// A world in which sound travels, borrowed or shared.
-#[derive(Clone)]
-pub(crate) enum Place<'w> {
-    Borrowed(&'w World),
-    Shared(Arc<World>),
-}
-
-impl Deref for Place<'_> {
-    type Target = World;
-
-    fn deref(&self) -> &World {
-        match self {
-            Self::Borrowed(world) => world,
-            Self::Shared(world) => world,
-        }
-    }
-}
-
 /// All channels of a world.
-pub(crate) struct Channels<'w> {
-    world: Place<'w>,
-    /// The same in all worlds that it is exchanged for.
-    world_robots: &'w [Robot],
+pub(crate) struct Channels {
+    /// The present one; of those before only the scene differed.
+    world: Arc<World>,
     /// For each sensor of the world, which one it is.
     ids: Vec<SensorId>,
     /// The first sensor of each robot.
@@ -103,8 +83,8 @@ pub(crate) struct Channels<'w> {
     bounces: Vec<Bounce>,
 }
 
-impl<'w> Channels<'w> {
-    pub(crate) fn new(world: &'w World, kinematics: &impl Kinematics, stop: Stop) -> Result<Self, PathsError> {
+impl Channels {
+    pub(crate) fn new(world: &Arc<World>, kinematics: &impl Kinematics, stop: Stop) -> Result<Self, PathsError> {
         let mut ids = Vec::new();
         let mut first = Vec::new();
         for (robot, ring) in world.robots().iter().enumerate() {
@@ -115,8 +95,7 @@ impl<'w> Channels<'w> {
         let mut tracer = Tracer::new();
         tracer.stop = stop;
         let mut channels = Self {
-            world: Place::Borrowed(world),
-            world_robots: world.robots(),
+            world: Arc::clone(world),
             ids,
             first,
             tracer,
@@ -137,6 +116,33 @@ impl<'w> Channels<'w> {
             channels.compute_all(kinematics)?;
         }
         Ok(channels)
+    }
+
+    /// The same, to be stopped apart from these.
+    pub(crate) fn copy(&self, stop: Stop) -> Self {
+        let mut tracer = Tracer::new();
+        tracer.stop = stop;
+        let (world, matrix, bodies, paths) =
+            (Arc::clone(&self.world), CrosstalkMatrix::new(), self.bodies.clone(), self.paths.clone());
+        let Self { ids, first, moves, ranges, listens, channels, starts, .. } = self;
+        Self {
+            world,
+            ids: ids.clone(),
+            first: first.clone(),
+            tracer,
+            matrix,
+            moves: *moves,
+            ranges: ranges.clone(),
+            bodies,
+            listens: listens.clone(),
+            channels: channels.clone(),
+            starts: starts.clone(),
+            paths,
+            poses: Vec::new(),
+            velocities: Vec::new(),
+            robots: Vec::new(),
+            bounces: Vec::new(),
+        }
     }
 
     /// Every sensor of the world.
@@ -206,7 +212,7 @@ impl<'w> Channels<'w> {
 
     /// From now on sound travels in the scene of another world, whose sensors are the same. Paths keep their numbers.
     /// If there are none to be found, everything stays as it is.
-    pub(crate) fn change_scene(&mut self, world: Place<'w>, kinematics: &impl Kinematics) -> Result<(), PathsError> {
+    pub(crate) fn change_scene(&mut self, world: Arc<World>, kinematics: &impl Kinematics) -> Result<(), PathsError> {
         let before = core::mem::replace(&mut self.world, world);
         let changed = self.begin_anew(kinematics);
         if changed.is_err() {
@@ -227,8 +233,8 @@ impl<'w> Channels<'w> {
         if self.moves { Ok(()) } else { self.compute_all(kinematics) }
     }
 
-    fn robot_of(&self, sensor: usize) -> &'w Robot {
-        &self.world_robots[usize::from(self.ids[sensor].robot)]
+    fn robot_of(&self, sensor: usize) -> &Robot {
+        &self.world.robots()[usize::from(self.ids[sensor].robot)]
     }
 
     fn transducer_of(&self, sensor: usize) -> Transducer {
@@ -300,7 +306,7 @@ impl<'w> Channels<'w> {
         self.poses.clear();
         self.velocities.clear();
         self.robots.clear();
-        for (index, robot) in self.world_robots.iter().enumerate() {
+        for (index, robot) in self.world.robots().iter().enumerate() {
             let moment = kinematics.moment(index, now);
             self.robots.push(moment.pose);
             for sensor in &robot.sensors {
@@ -320,8 +326,7 @@ impl<'w> Channels<'w> {
         mut found: impl FnMut(usize, Channel),
     ) -> Result<(), PathsError> {
         let Some(&first) = emitters.first() else { return Ok(()) };
-        let (place, sending) = (self.world.clone(), &self.transducer_of(first));
-        let world: &World = &place;
+        let (world, sending) = (&*Arc::clone(&self.world), &self.transducer_of(first));
         let hearing: Vec<_> =
             receivers.iter().copied().filter(|&sensor| self.transducer_of(sensor).hears(sending)).collect();
         let sources = self.poses_of(emitters);
@@ -344,7 +349,7 @@ impl<'w> Channels<'w> {
             // The receiver's gain depends on when the receiver fired, so it cannot be applied here.
             let flat = Transducer { gain: GainProfile::Constant, ..*transducer };
             let on_one = self.coupled(first).filter(|&robot| self.coupled(listeners[0]) == Some(robot));
-            let coupling = on_one.map_or(0.0, |robot| self.world_robots[robot].coupling());
+            let coupling = on_one.map_or(0.0, |robot| self.world.robots()[robot].coupling());
             let query = CrosstalkQuery::new(scene, &sensors, &flat, limits, range.faintest);
             let heights_m = [emitters, &listeners].map(|sensors| self.heights_of(scene, sensors));
             let query = CrosstalkQuery { coupling, heights_m: heights_m.each_ref().map(Vec::as_slice), ..query };

@@ -11,7 +11,7 @@ use crate::{
 };
 
 /// Every path met so far.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub(super) struct PathNumbers {
     paths: Vec<HeardPath>,
     /// For each, what only its ends and its bounces decide, whenever it was met.

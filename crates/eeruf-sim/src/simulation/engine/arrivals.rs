@@ -14,6 +14,7 @@ const BURSTS: u64 = 2;
 const FADING: u64 = 4;
 
 /// Fading and jitter of sound on its way.
+#[derive(Clone)]
 pub(crate) struct Propagation {
     /// For what each firing draws again.
     random: Random,
@@ -132,6 +133,7 @@ impl Propagation {
 }
 
 /// Bursts from outside, one after the other.
+#[derive(Clone)]
 pub(crate) struct Bursts {
     random: Random,
     normal: &'static Normal,

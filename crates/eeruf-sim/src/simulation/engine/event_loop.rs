@@ -4,6 +4,8 @@
 //! queue is two moments for each robot, the earlier one first and an echo before the ring on a tie. What is on its way
 //! is kept with the sensor that it will reach ([`Receiver`]).
 
+use std::sync::Arc;
+
 use eeruf_core::{Instant, RingEvent};
 
 use super::arrivals::{Bursts, Propagation};
@@ -12,7 +14,7 @@ use super::filter::FiredReading;
 use super::own::Own;
 use super::recorder::Recorder;
 use super::running_ring::{Plan, RunningRing, expected_change_us, plans, start_all};
-use crate::simulation::channels::{Arrives, Channels, Place};
+use crate::simulation::channels::{Arrives, Channels};
 use crate::simulation::error::SimulationError;
 use crate::simulation::kinematics::Kinematics;
 use crate::simulation::options::Options;
@@ -32,12 +34,12 @@ const EVENTS_PER_CALL: u32 = 8192;
 const CONTROL_CYCLE_NS: u64 = 20_000_000;
 
 /// A world under way.
-pub(crate) struct EventLoop<'a, K> {
+pub(crate) struct EventLoop<K> {
     /// The speed of sound, in m/s.
     c: f64,
     kinematics: K,
-    channels: Channels<'a>,
-    rings: Vec<RunningRing<'a>>,
+    channels: Channels,
+    rings: Vec<RunningRing>,
     bursts: Bursts,
     /// Of every sensor of the world.
     receivers: Vec<Receiver>,
@@ -47,11 +49,11 @@ pub(crate) struct EventLoop<'a, K> {
     fired: Vec<Option<Moment>>,
     fired_before: Vec<Option<Moment>>,
     propagation: Propagation,
-    faults: Faults<'a>,
+    faults: Faults,
     /// When each sensor was triggered.
     triggered: Vec<u64>,
     /// By which method each robot fires, and the table of its own.
-    own_tables: Vec<(Method, Option<&'a AnySchedule>)>,
+    own_tables: Vec<(Method, Option<AnySchedule>)>,
     recorder: Recorder,
     /// Nothing that happens later is reported.
     last: u64,
@@ -72,7 +74,7 @@ pub(crate) fn run(
     own.check(world.robots().len())?;
     let plans = plans(world, method, options, kinematics, &own)?;
     let end = end_of(world, options.periods);
-    let (room, stop) = (expected(world, end), stop.clone());
+    let (world, room, stop) = (&Arc::new(world.clone()), expected(world, end), stop.clone());
     let mut events = EventLoop::new(world, &plans, method, options, kinematics, &mut own, Some(end), room, stop)?;
     events.run_until(u64::MAX, keep_going)?;
     Ok(events.take(end as f64 * 1e-9))
@@ -84,13 +86,13 @@ pub(crate) fn end_of(world: &World, periods: u32) -> u64 {
     u64::from(periods) * u64::from(world.robots()[0].period.as_micros()) * 1000
 }
 
-impl<'a, K: Kinematics> EventLoop<'a, K> {
+impl<K: Kinematics> EventLoop<K> {
     /// Before the first event. Firings from `end` on are not reported; without it there is no end. There is room for
     /// this many readings.
     #[expect(clippy::too_many_arguments, reason = "each of them once, in two places")]
     pub(crate) fn new(
-        world: &'a World,
-        plans: &'a [Plan],
+        world: &Arc<World>,
+        plans: &[Plan],
         method: Method,
         options: &Options,
         kinematics: K,
@@ -119,11 +121,38 @@ impl<'a, K: Kinematics> EventLoop<'a, K> {
             propagation: Propagation::new(world, seed),
             faults: Faults::new(world, seed),
             triggered: vec![0; sensors],
-            own_tables: plans.iter().map(|of| (of.method, of.firing.as_ref().map(|plan| &plan.schedule))).collect(),
+            own_tables: plans.iter().map(|of| (of.method, of.firing.as_ref().map(|plan| plan.schedule))).collect(),
             recorder,
             last: end.map_or(u64::MAX - 1, |end| end + longest + 1000),
             stop,
             until_call: 0,
+        })
+    }
+
+    /// The same state, to go on apart from this and to be stopped by another switch; none if a firing or a filter of
+    /// the caller's cannot be copied.
+    pub(crate) fn copy(&self, stop: Stop) -> Option<Self>
+    where
+        K: Clone,
+    {
+        Some(Self {
+            c: self.c,
+            kinematics: self.kinematics.clone(),
+            channels: self.channels.copy(stop.clone()),
+            rings: self.rings.iter().map(RunningRing::copy).collect::<Option<_>>()?,
+            bursts: self.bursts.clone(),
+            receivers: self.receivers.clone(),
+            references: self.references.clone(),
+            fired: self.fired.clone(),
+            fired_before: self.fired_before.clone(),
+            propagation: self.propagation.clone(),
+            faults: self.faults.clone(),
+            triggered: self.triggered.clone(),
+            own_tables: self.own_tables.clone(),
+            recorder: self.recorder.copy()?,
+            last: self.last,
+            stop,
+            until_call: self.until_call,
         })
     }
 
@@ -155,7 +184,7 @@ impl<'a, K: Kinematics> EventLoop<'a, K> {
 
     fn run_rings(
         &mut self,
-        rings: &mut [RunningRing<'a>],
+        rings: &mut [RunningRing],
         until: u64,
         to_reading: bool,
         keep_going: &mut impl FnMut(f64) -> bool,
@@ -198,7 +227,7 @@ impl<'a, K: Kinematics> EventLoop<'a, K> {
     }
 
     /// Changes by faults now: tables, and the objects in the scene.
-    fn change(&mut self, rings: &mut [RunningRing<'a>]) -> Result<(), SimulationError> {
+    fn change(&mut self, rings: &mut [RunningRing]) -> Result<(), SimulationError> {
         let now = self.faults.next();
         let at_s = now as f64 * 1e-9;
         let due = self.faults.due(now).map_err(|error| SimulationError::Fault { at_s, error })?;
@@ -207,13 +236,13 @@ impl<'a, K: Kinematics> EventLoop<'a, K> {
                 Due::Table(robot, table) => {
                     let Some(&(method, own)) = self.own_tables.get(robot) else { continue };
                     let changed = match (table.or(own), rings.get_mut(robot)) {
-                        (Some(table), Some(ring)) => ring.ring.change_schedule(table),
+                        (Some(table), Some(ring)) => ring.ring.change_schedule(&table),
                         _ => Err(ChangeError::Fixed),
                     };
                     changed.map_err(|error| SimulationError::change(robot, method, error))?;
                 }
                 Due::Scene(world) => {
-                    let moved = self.channels.change_scene(Place::Shared(world), &self.kinematics);
+                    let moved = self.channels.change_scene(world, &self.kinematics);
                     moved.map_err(|error| SimulationError::paths(now, error))?;
                 }
             }
@@ -227,7 +256,7 @@ impl<'a, K: Kinematics> EventLoop<'a, K> {
     }
 
     /// From now on the scene is that of another world, whose robots are the same.
-    pub(crate) fn change_scene(&mut self, world: Place<'a>, now: u64) -> Result<(), SimulationError> {
+    pub(crate) fn change_scene(&mut self, world: Arc<World>, now: u64) -> Result<(), SimulationError> {
         let c = world.scene().air().speed_of_sound();
         let at_s = now as f64 * 1e-9;
         let world = self.faults.begin_anew(world, now).map_err(|error| SimulationError::Fault { at_s, error })?;
@@ -238,7 +267,7 @@ impl<'a, K: Kinematics> EventLoop<'a, K> {
     }
 
     /// A robot's ring changes to another schedule, of as many sensors, when its period ends.
-    pub(crate) fn change_schedule(&mut self, robot: usize, schedule: &'a AnySchedule) -> Result<(), ChangeError> {
+    pub(crate) fn change_schedule(&mut self, robot: usize, schedule: &AnySchedule) -> Result<(), ChangeError> {
         self.rings.get_mut(robot).map_or(Err(ChangeError::Fixed), |ring| ring.ring.change_schedule(schedule))
     }
 
@@ -254,7 +283,7 @@ impl<'a, K: Kinematics> EventLoop<'a, K> {
     }
 
     /// One robot's next event: an echo, if one of its sensors hears something now, and whatever its ring then wants.
-    fn step(&mut self, rings: &mut [RunningRing<'_>], index: usize, now: u64) -> Result<(), SimulationError> {
+    fn step(&mut self, rings: &mut [RunningRing], index: usize, now: u64) -> Result<(), SimulationError> {
         let own = |what: &'static str| {
             move |error: OwnError| SimulationError::Own { robot: index, what, at_s: now as f64 * 1e-9, error }
         };
@@ -273,12 +302,12 @@ impl<'a, K: Kinematics> EventLoop<'a, K> {
         loop {
             let ring = &mut rings[index];
             let (before, fired) = (&self.fired_before, &self.fired);
-            let c = self.c;
+            let (c, robot) = (self.c, &ring.world.robots()[ring.robot]);
             let change = |sensor: u8| {
                 let number = ring.sensors.start + usize::from(sensor);
                 match (before.get(number), fired.get(number)) {
                     (Some(Some(before)), Some(Some(fired))) => {
-                        expected_change_us(ring.robot, sensor, &before.pose, &fired.pose, c)
+                        expected_change_us(robot, sensor, &before.pose, &fired.pose, c)
                     }
                     _ => 0,
                 }
@@ -294,7 +323,7 @@ impl<'a, K: Kinematics> EventLoop<'a, K> {
                     let number = ring.sensors.start + usize::from(reading.sensor);
                     let stands_for = ring.ring.stands_for(reading.sensor).into();
                     if let (Some(receiver), Some(fired)) = (self.receivers.get_mut(number), &self.fired[number]) {
-                        let fired_from = fired.pose * ring.robot.sensors[usize::from(reading.sensor)];
+                        let fired_from = fired.pose * robot.sensors[usize::from(reading.sensor)];
                         let (echoes, triggered) = (receiver.heard(), self.triggered[number]);
                         let fired_s = triggered as f64 * 1e-9;
                         let firing = FiredReading { reading: &reading, echoes, fired_s, expected_change_us };
@@ -322,7 +351,7 @@ impl<'a, K: Kinematics> EventLoop<'a, K> {
     }
 
     /// Hands the ring what its sensors hear now.
-    fn hear(&mut self, ring: &mut RunningRing<'_>, now: u64, ticks: u64, instant: Instant) {
+    fn hear(&mut self, ring: &mut RunningRing, now: u64, ticks: u64, instant: Instant) {
         ring.hears = NEVER;
         for (sensor, number) in ring.sensors.clone().enumerate() {
             let receiver = &mut self.receivers[number];
@@ -361,13 +390,7 @@ impl<'a, K: Kinematics> EventLoop<'a, K> {
 
     /// A sensor is triggered: it, or the one whose trigger wire it has, begins to listen, and its sound sets out to
     /// every sensor that can hear it.
-    fn fire(
-        &mut self,
-        rings: &mut [RunningRing<'_>],
-        index: usize,
-        triggered: usize,
-        now: u64,
-    ) -> Result<(), PathsError> {
+    fn fire(&mut self, rings: &mut [RunningRing], index: usize, triggered: usize, now: u64) -> Result<(), PathsError> {
         self.triggered[triggered] = now;
         self.receivers[triggered].forget();
         let id = self.channels.ids()[triggered];
@@ -384,13 +407,7 @@ impl<'a, K: Kinematics> EventLoop<'a, K> {
     }
 
     /// Looks for what a sensor that is triggered would hear alone, and for the paths from the one that sends.
-    fn prepare(
-        &mut self,
-        triggered: usize,
-        emitter: usize,
-        ring: &RunningRing<'_>,
-        now: u64,
-    ) -> Result<(), PathsError> {
+    fn prepare(&mut self, triggered: usize, emitter: usize, ring: &RunningRing, now: u64) -> Result<(), PathsError> {
         if self.channels.moves() {
             // Paths are searched for again, which takes as long as many events.
             self.until_call = self.until_call.saturating_sub(EVENTS_PER_CALL / 64);
@@ -415,7 +432,7 @@ impl<'a, K: Kinematics> EventLoop<'a, K> {
     }
 
     /// A sensor that was prepared begins to listen and sends its sound.
-    fn send(&mut self, rings: &mut [RunningRing<'_>], index: usize, emitter: usize, now: u64) {
+    fn send(&mut self, rings: &mut [RunningRing], index: usize, emitter: usize, now: u64) {
         let hearing = *rings[index].hearing_of(emitter);
         let receiver = &mut self.receivers[emitter];
         receiver.listen(now, &hearing);
@@ -436,7 +453,7 @@ impl<'a, K: Kinematics> EventLoop<'a, K> {
     }
 
     /// A burst from outside, heard by all at once.
-    fn burst(&mut self, rings: &mut [RunningRing<'_>]) {
+    fn burst(&mut self, rings: &mut [RunningRing]) {
         let bursts = &mut self.bursts;
         let now = bursts.next;
         bursts.advance();

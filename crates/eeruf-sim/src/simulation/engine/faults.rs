@@ -2,12 +2,11 @@
 
 use std::sync::Arc;
 
-use crate::simulation::channels::Place;
 use crate::simulation::receiver::{Arrival, EXTERNAL, Hearing, NEVER};
 use crate::{
     modules::Interface,
     results::SensorId,
-    world::{AnySchedule, Fault, FaultKind, Random, Robot, World, WorldError, scene_with},
+    world::{AnySchedule, Fault, FaultKind, Random, World, WorldError, scene_with},
 };
 
 /// Purpose of the stream of random numbers.
@@ -28,20 +27,20 @@ pub(super) enum Fired {
 }
 
 /// A change that is due.
-pub(super) enum Due<'a> {
+pub(super) enum Due {
     /// A robot fires by this table from now on; by its own if there is none.
-    Table(usize, Option<&'a AnySchedule>),
+    Table(usize, Option<AnySchedule>),
     /// Sound travels in this world from now on.
     Scene(Arc<World>),
 }
 
 /// The faults of a world under way.
-pub(super) struct Faults<'a> {
-    faults: &'a [Fault],
-    robots: &'a [Robot],
+#[derive(Clone)]
+pub(super) struct Faults {
+    world: Arc<World>,
     random: Random,
     /// The world without what faults put into its scene.
-    base: Place<'a>,
+    base: Arc<World>,
     /// When the next of these changes is due: the beginnings and ends of other tables, and the places of what moves.
     next: u64,
     scene_next: u64,
@@ -51,20 +50,20 @@ fn ns(time_s: f64) -> u64 {
     if time_s.is_finite() { (time_s * 1e9).round() as u64 } else { NEVER }
 }
 
-impl<'a> Faults<'a> {
-    pub(super) fn new(world: &'a World, seed: Random) -> Self {
+impl Faults {
+    pub(super) fn new(world: &Arc<World>, seed: Random) -> Self {
         let faults = world.faults();
         let scene_next = if faults.iter().any(|fault| fault.kind.is_of_scene()) { 0 } else { NEVER };
         let random = seed.of(FAULTS);
-        let base = Place::Borrowed(world);
-        let mut begun = Self { faults, robots: world.robots(), random, base, next: 0, scene_next };
+        let (world, base) = (Arc::clone(world), Arc::clone(world));
+        let mut begun = Self { world, random, base, next: 0, scene_next };
         begun.next = begun.change_after(None).min(scene_next);
         begun
     }
 
     /// Returns true if there are any.
     pub(super) fn any(&self) -> bool {
-        !self.faults.is_empty()
+        !self.world.faults().is_empty()
     }
 
     /// When something changes next.
@@ -73,35 +72,36 @@ impl<'a> Faults<'a> {
     }
 
     /// Takes another world for the one without what faults put into its scene, which it gives as it is at a time.
-    pub(super) fn begin_anew(&mut self, base: Place<'a>, now: u64) -> Result<Place<'a>, WorldError> {
+    pub(super) fn begin_anew(&mut self, base: Arc<World>, now: u64) -> Result<Arc<World>, WorldError> {
         self.base = base;
-        if self.scene_next == NEVER && !self.faults.iter().any(|fault| fault.kind.is_of_scene()) {
-            return Ok(self.base.clone());
+        if self.scene_next == NEVER && !self.world.faults().iter().any(|fault| fault.kind.is_of_scene()) {
+            return Ok(Arc::clone(&self.base));
         }
-        Ok(Place::Shared(self.world_at(now)?))
+        self.world_at(now)
     }
 
     fn world_at(&self, now: u64) -> Result<Arc<World>, WorldError> {
-        let scene = scene_with(self.base.scene(), self.faults, now as f64 * 1e-9)?;
+        let scene = scene_with(self.base.scene(), self.world.faults(), now as f64 * 1e-9)?;
         Ok(Arc::new(self.base.with_scene(scene)))
     }
 
     /// When the first table changes after a time, or at any time.
     fn change_after(&self, now: Option<u64>) -> u64 {
-        let tables = self.faults.iter().filter(|fault| matches!(fault.kind, FaultKind::OtherTable { .. }));
+        let tables = self.world.faults().iter().filter(|fault| matches!(fault.kind, FaultKind::OtherTable { .. }));
         let times = tables.flat_map(|fault| [ns(fault.from_s), ns(fault.to_s)]);
         times.filter(|&at| now.is_none_or(|now| at > now)).min().unwrap_or(NEVER)
     }
 
     /// The event due at a time, the one of [`next`](Self::next).
-    pub(super) fn due(&mut self, now: u64) -> Result<Vec<Due<'a>>, WorldError> {
+    pub(super) fn due(&mut self, now: u64) -> Result<Vec<Due>, WorldError> {
         let mut due = vec![];
         let time_s = now as f64 * 1e-9;
-        let faults = self.faults;
+        let world = Arc::clone(&self.world);
+        let faults = world.faults();
         for fault in faults {
             if let FaultKind::OtherTable { schedule } = &fault.kind {
                 if now == ns(fault.from_s) {
-                    due.push(Due::Table(fault.robot, Some(schedule)));
+                    due.push(Due::Table(fault.robot, Some(**schedule)));
                 } else if now == ns(fault.to_s) {
                     due.push(Due::Table(fault.robot, None));
                 }
@@ -123,10 +123,15 @@ impl<'a> Faults<'a> {
     }
 
     /// The faults that a sensor has at a time, each with its number.
-    fn of(&self, id: SensorId, now: u64) -> impl Iterator<Item = (u64, &'a Fault)> {
+    fn of(&self, id: SensorId, now: u64) -> impl Iterator<Item = (u64, &Fault)> {
         let time_s = now as f64 * 1e-9;
         let has = move |fault: &Fault| fault.is_of(id.robot.into(), id.sensor) && fault.is_at(time_s);
-        self.faults.iter().enumerate().filter(move |(_, fault)| has(fault)).map(|(index, fault)| (index as u64, fault))
+        self.world
+            .faults()
+            .iter()
+            .enumerate()
+            .filter(move |(_, fault)| has(fault))
+            .map(|(index, fault)| (index as u64, fault))
     }
 
     /// A random number from 0 to 1 that a fault, a sensor and its firing decide.
@@ -153,7 +158,7 @@ impl<'a> Faults<'a> {
     /// Sounds of a sensor after a firing because of faults, beside sound.
     pub(super) fn heard_beside(&self, id: SensorId, now: u64, firing: u32, hearing: &Hearing) -> Vec<Arrival> {
         let mut heard = vec![];
-        let robot = self.robots.get(usize::from(id.robot));
+        let robot = self.world.robots().get(usize::from(id.robot));
         let is_edge = robot.is_some_and(|robot| robot.module_of(id.sensor.into()).interface == Interface::Edge);
         for (index, fault) in self.of(id, now) {
             let chance = |what| self.chance(index, id, firing, what);

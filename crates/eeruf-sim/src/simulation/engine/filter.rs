@@ -30,11 +30,20 @@ pub trait Filter: Send {
     /// # Errors
     /// Whatever ends the simulation, with [`SimulationError::Own`](crate::SimulationError::Own).
     fn push(&mut self, firing: &FiredReading<'_>) -> Result<Filtered, OwnError>;
+
+    /// Returns one that goes on as this does; none, as by default, if it cannot be copied.
+    fn copy(&self) -> Option<Box<dyn Filter>> {
+        None
+    }
 }
 
 impl<F: Filter + ?Sized> Filter for Box<F> {
     fn push(&mut self, firing: &FiredReading<'_>) -> Result<Filtered, OwnError> {
         F::push(self, firing)
+    }
+
+    fn copy(&self) -> Option<Box<dyn Filter>> {
+        F::copy(self)
     }
 }
 

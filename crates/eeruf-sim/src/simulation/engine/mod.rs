@@ -15,4 +15,4 @@ pub(crate) use event_loop::run;
 pub(super) use event_loop::{EventLoop, end_of};
 pub use filter::{Filter, Filtered, FiredReading};
 pub use own::Own;
-pub(super) use running_ring::{Plan, plans};
+pub(super) use running_ring::plans;

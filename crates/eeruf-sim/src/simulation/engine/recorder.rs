@@ -48,6 +48,17 @@ impl Recorder {
         Ok(Self { readings, filters, earlier: vec![VecDeque::new(); ids.len()], ids: ids.to_vec(), end })
     }
 
+    /// A record in the same state, unless a filter of the caller's cannot be copied.
+    pub(crate) fn copy(&self) -> Option<Self> {
+        let copy_of = |filter: &Option<Box<dyn Filter>>| match filter {
+            None => Some(None),
+            Some(filter) => filter.copy().map(Some),
+        };
+        let filters = self.filters.iter().map(copy_of).collect::<Option<_>>()?;
+        let Self { readings, earlier, ids, end, .. } = self;
+        Some(Self { readings: readings.clone(), filters, earlier: earlier.clone(), ids: ids.clone(), end: *end })
+    }
+
     /// Returns true if nothing was read since the record was last taken.
     pub(crate) fn is_empty(&self) -> bool {
         self.readings.is_empty()

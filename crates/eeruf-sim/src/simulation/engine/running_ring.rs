@@ -1,5 +1,7 @@
 //! One robot's ring under way: core's ring, the robot's clock, and when something happens to it next.
 
+use std::sync::Arc;
+
 use eeruf_core::{EachSensor, Micros, flow::BeliefSettings};
 
 use super::own::Own;
@@ -18,9 +20,11 @@ use crate::{
 const DITHER: u64 = 3;
 
 /// A ring under way.
-pub(crate) struct RunningRing<'a> {
-    pub(crate) robot: &'a Robot,
-    pub(crate) ring: Box<dyn RingRunner<'a> + 'a>,
+pub(crate) struct RunningRing {
+    pub(crate) world: Arc<World>,
+    /// The number of the robot that has it.
+    pub(crate) robot: usize,
+    pub(crate) ring: Box<dyn RingRunner>,
     pub(crate) clock: Ticker,
     /// Hearing of each sensor.
     hearings: Vec<Hearing>,
@@ -34,7 +38,13 @@ pub(crate) struct RunningRing<'a> {
     pub(crate) tells: u64,
 }
 
-impl RunningRing<'_> {
+impl RunningRing {
+    /// A ring in the same state, unless it fires by what cannot be copied.
+    pub(crate) fn copy(&self) -> Option<Self> {
+        let (world, hearings, sensors) = (Arc::clone(&self.world), self.hearings.clone(), self.sensors.clone());
+        Some(Self { world, ring: self.ring.copy()?, hearings, sensors, ..*self })
+    }
+
     /// Hearing of a sensor, one of all of the world's.
     pub(crate) fn hearing_of(&self, number: usize) -> &Hearing {
         // One for each of its sensors.
@@ -92,15 +102,15 @@ pub(crate) fn plans(
 }
 
 /// Starts every robot's ring as planned; nobody gives it another schedule if it `keeps_schedules`.
-pub(crate) fn start_all<'a>(
-    world: &'a World,
-    plans: &'a [Plan],
+pub(crate) fn start_all(
+    world: &Arc<World>,
+    plans: &[Plan],
     options: &Options,
-    channels: &Channels<'_>,
+    channels: &Channels,
     seed: Random,
     own: &mut Own,
     keeps_schedules: bool,
-) -> Result<Vec<RunningRing<'a>>, SimulationError> {
+) -> Result<Vec<RunningRing>, SimulationError> {
     let steady = keeps_schedules && world.faults().is_empty();
     let mut rings = Vec::with_capacity(plans.len());
     for (index, (robot, Plan { method, judging, firing: plan })) in world.robots().iter().zip(plans).enumerate() {
@@ -147,7 +157,8 @@ pub(crate) fn start_all<'a>(
         };
         let hearings = (0..robot.sensors.len()).map(hearing_of).collect();
         rings.push(RunningRing {
-            robot,
+            world: Arc::clone(world),
+            robot: index,
             ring,
             clock,
             hearings,

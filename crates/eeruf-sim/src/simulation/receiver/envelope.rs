@@ -63,7 +63,7 @@ impl Rise {
 }
 
 /// The sounds of one firing; holds the buffers.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Envelope {
     waves: Vec<Wave>,
     knots: Vec<u64>,

@@ -1,7 +1,7 @@
 //! Success of `diagnose` at naming the senders of foreign readings, where the simulator knows them: `cargo lab
 //! diagnose-places [FIRST [PLACES [METHOD [PERIODS [PHYSICS [WHERE]]]]]]`. WHERE is `alcoves`: robots that stand in
 //! alcoves of Set I; or robots that drive: `courses` of Set II, where a pilot steers and the course sets the end,
-//! `alcoves-driving` and `rooms-driving`, as in `fault-rates`.
+//! `alcoves-driving` and `rooms-driving`.
 
 use std::error::Error;
 
@@ -10,7 +10,7 @@ use eeruf_sim::experiments::set_one::Alcove;
 use eeruf_sim::experiments::set_two::{SetTwoOptions, drive};
 use eeruf_sim::{Cause, Entry, Method, Options, Physics, Readings, quantile, simulate, sweep};
 
-use crate::fault_rates::{Place, Robots, world};
+use crate::driving::{Place, world};
 
 /// Counts over the readings of one alcove, or of all.
 #[derive(Clone, Copy, Default)]
@@ -63,7 +63,7 @@ impl Where {
                 return Ok((driven.readings, driven.world.scene().air().speed_of_sound()));
             }
             Self::Alcoves => Alcove::random(number).world()?.with_physics(physics)?,
-            Self::Driving(place) => world(number, place, Robots::DriveByOdometry, physics)?,
+            Self::Driving(place) => world(number, place, physics)?,
         };
         let readings = simulate(&world, method, &Options::periods(periods))?;
         Ok((readings, world.scene().air().speed_of_sound()))

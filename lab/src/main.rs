@@ -8,8 +8,8 @@ mod constant_depth;
 mod corpus;
 mod diagnose_places;
 mod doctor_alcoves;
+mod driving;
 mod echo_times;
-mod fault_rates;
 mod flow_rooms;
 mod four_worlds;
 mod measure;
@@ -41,7 +41,7 @@ type Answer = Result<(), Box<dyn Error>>;
 /// A command: its name, its arguments, what it prints.
 type Command = (&'static str, &'static str, &'static str, fn(&[String]) -> Answer);
 
-const COMMANDS: [Command; 26] = [
+const COMMANDS: [Command; 25] = [
     ("constant-depth", "", "angles at which a wall is heard, by distance and gain", constant_depth::main),
     (
         "diagnose-places",
@@ -51,12 +51,6 @@ const COMMANDS: [Command; 26] = [
     ),
     ("doctor-alcoves", "[FIRST [ALCOVES [PERIODS [PHYSICS]]]]", "verdicts of eeruf logs", doctor_alcoves::main),
     ("echo-times", "SCENE.toml [SENSORS]", "ways of sound in a scene, for simulated boards", echo_times::main),
-    (
-        "fault-rates",
-        "[FIRST [PLACES [PHYSICS [METHOD [ROBOTS]]]]]",
-        "faults that diagnose names, and false alarms",
-        fault_rates::main,
-    ),
     ("flow-rooms", "[ROOMS [FIRST [PHYSICS]]]", "flow beside one by one", flow_rooms::main),
     ("four-worlds", "[interference]", "Sets I and II, flat and in a room, with two gains", four_worlds::main),
     (

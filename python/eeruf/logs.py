@@ -309,10 +309,9 @@ class Diagnosis:
 
     ``paths`` are columns of equal length, by receiver, best supported first; a sensor's own echo is a path from itself. For each
     firing ``sender`` is whose sound its reading is, -1 where that is not sure, ``travel_us`` how long it travelled, ``sure`` how sure
-    that is. ``faults`` are ``("deaf", [sensor])``, ``("losing", [sensor])``, ``("chattering", [sensor])``, ``("late", [sensor])`` and
-    ``("swapped", [one, other])``. Sensors in ``silent`` hear nothing, those in ``missing`` miss echoes at random, and the log cannot
-    tell why. ``moved`` is true if the robot moved; then no loss or chatter is named, and a path is a line of a second, of
-    which ``paths["rate_us_s"]`` is the slope.
+    that is. ``faults`` are ``("deaf", [sensor])``: others hear its sound, and it hears nothing. Sensors in ``silent`` hear nothing, and
+    the log cannot tell why. ``moved`` is true if the robot moved; then a path is a line of a second, of which ``paths["rate_us_s"]`` is
+    the slope.
     ``most_offsets`` is at how many offsets two firings stand to each other at most; below about five nothing can be named.
 
     Example:
@@ -329,7 +328,6 @@ class Diagnosis:
     sure: NDArray[np.float64]
     faults: list[tuple[str, list[int]]]
     silent: list[int]
-    missing: list[int]
     moved: bool
     most_offsets: int
 

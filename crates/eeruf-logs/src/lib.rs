@@ -56,6 +56,7 @@ mod schema;
 mod serial;
 mod sink;
 mod survey;
+mod symptom;
 mod text;
 mod unzstd;
 mod value;
@@ -70,8 +71,8 @@ use form::{Form, Packing, UntilError};
 use sink::Sink;
 
 pub use diagnose::{
-    AlignError, Alignment, Diagnosis, Fault, FoundPath, Hearing, Named, Settings, Share, Timing, TimingError, align,
-    diagnose, timing,
+    AlignError, Alignment, Diagnosis, FoundPath, Hearing, Named, Settings, Share, Timing, TimingError, align, diagnose,
+    timing,
 };
 pub use doctor::{Doctor, Examination, Verdict};
 pub use firings::{Firing, FiringLog};
@@ -83,6 +84,7 @@ pub use replay::{FlowSettings, Replayed, replay_flow};
 pub use ros2::{Marker, Placement, Shape, Transform};
 pub use sink::{Guess, Report, Skipped};
 pub use survey::{PathSettings, Surveyed, survey};
+pub use symptom::{Finding, Symptom};
 pub use write::McapWriter;
 
 /// Reads a log from beginning to end, and calls `each` with the report so far, which has the sensors, and each reading,

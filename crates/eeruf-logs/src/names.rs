@@ -181,11 +181,6 @@ pub(crate) fn is_analogue_pin(name: &str) -> bool {
     pin.is_some_and(|pin| pin < 16)
 }
 
-/// Returns true for the name of a column of dates.
-pub(crate) fn is_date(name: &str) -> bool {
-    words(name).iter().any(|word| is_in("date datetime datum", word))
-}
-
 /// The unit of times in a name.
 pub(crate) fn time_unit(name: &str) -> Option<TimeUnit> {
     words(name).iter().rev().find_map(|word| time_word(word))

@@ -10,46 +10,14 @@ pub(crate) enum Value {
     TooClose,
 }
 
-const NO_ECHO: &[&str] = &[
-    "",
-    "none",
-    "null",
-    "nil",
-    "nan",
-    "-nan",
-    "na",
-    "n/a",
-    "inf",
-    "+inf",
-    "infinity",
-    "+infinity",
-    "-",
-    "--",
-    "---",
-    "no echo",
-    "noecho",
-    "no_echo",
-    "timeout",
-    "time out",
-    "out of range",
-    "out_of_range",
-    "oor",
-    "err",
-    "error",
-    "undefined",
-    "invalid",
-    "nothing",
-    ".inf",
-    ".nan",
-    "<na>",
-    "--.--",
-    "unknown",
-    "#n/a",
-];
+/// Words for no echo, parted by bars; the first is nothing at all.
+const NO_ECHO: &str = "\
+    |none|null|nil|nan|-nan|na|n/a|inf|+inf|infinity|+infinity|-|--|---|no echo|noecho|no_echo|timeout|time out|\
+    out of range|out_of_range|oor|err|error|undefined|invalid|nothing|.inf|.nan|<na>|--.--|unknown|#n/a";
 
 /// Returns true for a word that logs write where no echo came.
 pub(crate) fn is_no_echo(text: &str) -> bool {
-    text.len() <= 12 && NO_ECHO.contains(&text.to_ascii_lowercase().as_str())
+    text.len() <= 12 && NO_ECHO.split('|').any(|word| text.eq_ignore_ascii_case(word))
 }
 
 /// A finite decimal number, and nothing else: `0x10`, `1_000` and `1e999` are none.
@@ -117,7 +85,7 @@ const HOUR_NS: u64 = 3_600_000_000_000;
 const DAY_NS: u64 = 24 * HOUR_NS;
 const MONTHS: [&str; 12] = ["Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec"];
 
-/// Nanoseconds of a date, a time of day, or both, also by a clock of 12 hours or as a number of days and a time.
+/// Nanoseconds of a date, a time of day, or both, also by a clock of 12 hours.
 pub(crate) fn calendar_ns(text: &str) -> Option<u64> {
     let text = text.trim();
     let text = text.strip_suffix(" UTC").unwrap_or(text);
@@ -126,22 +94,6 @@ pub(crate) fn calendar_ns(text: &str) -> Option<u64> {
         let ns = calendar_ns(text)?;
         let hour = ns % DAY_NS / HOUR_NS;
         return (1..=12).contains(&hour).then(|| ns - hour * HOUR_NS + (hour % 12 + noon) * HOUR_NS);
-    }
-    if let Some((days, rest)) = text.split_once(" day") {
-        let rest = rest.trim_start_matches(['s', ',', ' ']);
-        let ns = if rest.is_empty() { 0 } else { time_of_day_ns(rest)? };
-        return days.parse::<u64>().ok()?.checked_mul(DAY_NS)?.checked_add(ns);
-    }
-    // As IFTTT and Kibana write it: `January 1, 2026 at 02:00PM`, `Jan 1, 2026 @ 14:00:00.100`.
-    if let Some((date, time)) = text.split_once(" at ").or_else(|| text.split_once(" @ ")) {
-        let words: Vec<_> = date.split([' ', ',']).filter(|word| !word.is_empty()).collect();
-        let [month, day, year] = words[..] else { return None };
-        let month = 1 + MONTHS.iter().position(|name| month.starts_with(name))?;
-        let day_ns = u64::try_from(days(&format!("{year}-{month}-{day}"))?).ok()?.checked_mul(DAY_NS)?;
-        return day_ns.checked_add(match time.find(['A', 'P']) {
-            Some(at) => calendar_ns(&format!("{}:00 {}", &time[..at], &time[at..]))?,
-            None => time_of_day_ns(time)?,
-        });
     }
     // As `date` and C print it: `Tue Jan  2 12:00:01 2024`.
     if text.starts_with(char::is_alphabetic) {
@@ -254,15 +206,6 @@ fn esp_idf(line: &str) -> Option<(u64, &str)> {
     Some((ms.parse::<u64>().ok()?.checked_mul(1_000_000)?, said.trim_start()))
 }
 
-/// `01-31 14:00:00.100  1234`, as Android's log begins a line, in a year without a name.
-fn logcat(line: &str) -> Option<(u64, &str)> {
-    let (date, rest) = line.split_once(' ')?;
-    let (time, rest) = rest.split_once(' ')?;
-    let day = days(&format!("1970-{date}")).filter(|_| date.len() == 5)?;
-    let ns = time_of_day_ns(time).filter(|_| time.contains('.'))?;
-    Some((u64::try_from(day).ok()? * DAY_NS + ns, rest.trim_start()))
-}
-
 const LEVELS: [&str; 7] = ["DEBUG", "INFO", "WARN", "WARNING", "ERROR", "CRITICAL", "FATAL"];
 
 /// A line without the level and the name before it, as Python's logging prints them: `INFO:sonar:left: 40`.
@@ -328,7 +271,7 @@ fn plain_time(line: &str) -> Option<(u64, &str)> {
 /// A time before the readings of a line, as serial monitors, loggers and `dmesg` write it, and the rest of the line.
 pub(crate) fn prefix(line: &str) -> Option<(u64, &str)> {
     let line = line.trim_start();
-    if let Some(found) = esp_idf(line).or_else(|| syslog(line)).or_else(|| logcat(line)) {
+    if let Some(found) = esp_idf(line).or_else(|| syslog(line)) {
         return Some(found);
     }
     let (mut time, mut rest) = (None, line);

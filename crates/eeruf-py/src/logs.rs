@@ -225,10 +225,9 @@ pub(crate) fn diagnose<'py>(
     out.set_item("sender", read_only(py, sender.into_iter())?)?;
     out.set_item("travel_us", read_only(py, travel_us.into_iter())?)?;
     out.set_item("sure", read_only(py, sure.into_iter())?)?;
-    let faults = found.faults.iter().map(|fault| (fault.kind(), fault.sensors()));
+    let faults = found.faults.iter().map(|fault| (fault.symptom.as_str(), [fault.sensor]));
     out.set_item("faults", faults.collect::<Vec<_>>())?;
     out.set_item("silent", found.silent())?;
-    out.set_item("missing", found.missing())?;
     out.set_item("moved", found.moved)?;
     out.set_item("most_offsets", found.most_offsets)?;
     Ok(out)

@@ -1,6 +1,6 @@
 //! A diagnosis for programs. Sensors count from 0, shares are fractions of 1 with their 95 % intervals.
 
-use eeruf_logs::{Fault, Share};
+use eeruf_logs::Share;
 use serde_json::{Value, json as object};
 
 use super::Found;
@@ -29,37 +29,16 @@ pub(crate) fn json(found: &Found<'_>) -> Value {
             object!({
                 "sensor": of.sensor, "echoes": share(of.echoes), "own": share(of.own), "foreign": share(of.foreign),
                 "unnamed": share(of.unnamed),
-                "unexplained": share(of.unexplained), "wandering": share(of.wandering), "has_own_path": of.has_own_path,
+                "unexplained": share(of.unexplained), "has_own_path": of.has_own_path,
                 "blind_phases": of.blind_phases.iter().map(|phase| phase.0).collect::<Vec<_>>(),
             })
         })
         .collect();
-    let faults: Vec<_> = diagnosis
+    let faults = diagnosis
         .faults
         .iter()
-        .map(|fault| {
-            let mut object = object!({"kind": fault.kind(), "sensors": fault.sensors()});
-            let more = match *fault {
-                Fault::Deaf { echoes, is_heard, .. } => object!({"echoes": share(echoes), "is_heard": is_heard}),
-                Fault::Losing { lost, .. } => object!({"lost": share(lost)}),
-                Fault::Chattering { wandering, .. } => object!({"wandering": share(wandering)}),
-                Fault::Swapped { exchanged, as_it_is, accidents, .. } => object!({
-                    "exchanged": share(exchanged), "as_it_is": share(as_it_is), "accidents": accidents,
-                }),
-                Fault::Exchanged { together, alone, accidents, .. } => object!({
-                    "together": share(together), "alone": share(alone), "accidents": accidents,
-                }),
-                Fault::Late { late_us, delayed, as_it_is, accidents, .. } => object!({
-                    "late_us": late_us, "delayed": share(delayed), "as_it_is": share(as_it_is), "accidents": accidents,
-                }),
-                _ => Value::Null,
-            };
-            if let (Value::Object(object), Value::Object(more)) = (&mut object, more) {
-                object.extend(more);
-            }
-            object
-        })
-        .collect();
+        .map(|fault| object!({"kind": fault.symptom.as_str(), "sensors": [fault.sensor], "said": fault.said}));
+    let faults: Vec<_> = faults.collect();
     let alignment = found.alignment.map(|alignment| {
         serde_json::json!({
             "rotation": alignment.rotation, "moves": alignment.moves, "accidents": alignment.accidents,
@@ -77,7 +56,7 @@ pub(crate) fn json(found: &Found<'_>) -> Value {
         "rejected": found.rejected().map(|(rejected, _)| rejected),
         "rejected_foreign": found.rejected().map(|(_, named)| named),
         "most_offsets": diagnosis.most_offsets, "moved": diagnosis.moved,
-        "silent": diagnosis.silent(), "missing": diagnosis.missing(),
+        "silent": diagnosis.silent(),
         "paths": paths, "sensors": hearing, "faults": faults, "timing": timing, "alignment": alignment,
         "advice": found.advice(),
     })

@@ -60,34 +60,11 @@ impl Found<'_> {
 
     /// Advice, one change a line.
     fn advice(&self) -> Vec<String> {
-        use eeruf_logs::Fault;
-        let mut advice = Vec::new();
-        for fault in &self.diagnosis.faults {
-            advice.push(match *fault {
-                Fault::Deaf { sensor, is_heard: true, .. } => {
-                    format!("look at the echo line of sensor {}: its sound goes out", sensor + 1)
-                }
-                Fault::Deaf { sensor, .. } => format!("look at sensor {}, its supply and its lines", sensor + 1),
-                Fault::Losing { sensor, .. } => {
-                    format!("look at the contacts of sensor {} and at its receiver", sensor + 1)
-                }
-                Fault::Late { sensor, late_us, .. } => {
-                    format!("trigger sensor {} {late_us:.0} us sooner, or find what delays it", sensor + 1)
-                }
-                Fault::Chattering { sensor, .. } => {
-                    format!("disable sensor {} until its echo line is quiet", sensor + 1)
-                }
-                Fault::Swapped { sensors: (a, b), .. } | Fault::Exchanged { sensors: (a, b), .. } => {
-                    format!("exchange the echo lines (or the triggers) of sensors {} and {}", a + 1, b + 1)
-                }
-                _ => continue,
-            });
-        }
+        let deaf = self.diagnosis.faults.iter();
+        let mut advice: Vec<_> =
+            deaf.map(|of| format!("look at the echo line of sensor {}: its sound goes out", of.sensor + 1)).collect();
         for sensor in self.diagnosis.silent() {
             advice.push(format!("hold a board before sensor {} and record again: it may be deaf", sensor + 1));
-        }
-        for sensor in self.diagnosis.missing() {
-            advice.push(format!("hold a board before sensor {} and record again: it may lose echoes", sensor + 1));
         }
         if self.diagnosis.moved {
             advice.push("record a minute of a robot that stands".to_owned());

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use eeruf_logs::{Fault, FoundPath, Share};
+use eeruf_logs::{FoundPath, Share};
 
 use super::Found;
 use crate::report::table::markdown;
@@ -16,7 +16,6 @@ const APART_PPM: f64 = 10.0;
 pub(crate) fn describe(found: &Found<'_>) -> String {
     let mut text = head(found);
     faults(found, &mut text);
-    open(found, &mut text);
     sensors(found, &mut text);
     paths(found, &mut text);
     let advice = found.advice();
@@ -108,89 +107,17 @@ fn scatter_us(paths: &[FoundPath]) -> Option<f64> {
     scatter.get(scatter.len() / 2).copied()
 }
 
+/// Sensors that hear nothing, and whether the log says why.
 fn faults(found: &Found<'_>, text: &mut String) {
     for fault in &found.diagnosis.faults {
-        _ = match *fault {
-            Fault::Deaf { sensor, echoes, is_heard } => writeln!(
-                text,
-                "Sensor {} is deaf: an echo in {} of {} firings (95 %: under {:.1} %), where it should hear; {}.",
-                sensor + 1,
-                echoes.count,
-                echoes.of,
-                100.0 * echoes.interval_95().1,
-                if is_heard { "others hear its sound" } else { "no other hears its sound either" }
-            ),
-            Fault::Losing { sensor, lost } => writeln!(
-                text,
-                "Sensor {} loses echoes at random: {} of those that it should hear, when the ring fires alike.",
-                sensor + 1,
-                percent(lost),
-            ),
-            Fault::Late { sensor, late_us, delayed, as_it_is, accidents } => writeln!(
-                text,
-                "Sensor {} fires {late_us:.0} us later than the log says: {} of {} paths take as long back as there \
-                 with that delay, {} of {} as it is ({accidents:.1e} such sensors expected by accident).",
-                sensor + 1,
-                delayed.count,
-                delayed.of,
-                as_it_is.count,
-                as_it_is.of
-            ),
-            Fault::Chattering { sensor, wandering } => writeln!(
-                text,
-                "Sensor {} chatters: in {} of its firings an echo fits no path and does not come back when the ring \
-                 fires alike.",
-                sensor + 1,
-                percent(wandering),
-            ),
-            Fault::Swapped { sensors: (a, b), exchanged, as_it_is, accidents } => writeln!(
-                text,
-                "Sensors {} and {} are mis-wired, their lines swapped: {} of {} of their paths take as long back as \
-                 there if they are exchanged, {} of {} as it is ({accidents:.1e} such pairs expected by accident).",
-                a + 1,
-                b + 1,
-                exchanged.count,
-                exchanged.of,
-                as_it_is.count,
-                as_it_is.of
-            ),
-            Fault::Exchanged { sensors: (silent, other), together, alone, accidents } => writeln!(
-                text,
-                "Sensors {} and {} are mis-wired, their echo lines exchanged: {} hears nothing, and {} hears in {} of \
-                 its firings while {} listens, and in {} of its others ({accidents:.1e} such pairs expected by \
-                 accident).",
-                silent + 1,
-                other + 1,
-                silent + 1,
-                other + 1,
-                percent(together),
-                silent + 1,
-                percent(alone),
-            ),
-            _ => Ok(()),
-        };
+        _ = writeln!(text, "Sensor {} is {}: {}.", fault.sensor + 1, fault.symptom.as_str(), fault.said);
     }
-}
-
-/// Suspicions that the log neither confirms nor rules out.
-fn open(found: &Found<'_>, text: &mut String) {
     for sensor in found.diagnosis.silent() {
         _ = writeln!(
             text,
             "Sensor {} hears nothing: nothing is in its range, or it is deaf. This log cannot tell.",
             sensor + 1
         );
-    }
-    for sensor in found.diagnosis.missing() {
-        _ = writeln!(
-            text,
-            "Sensor {} misses echoes at random: it loses them, or they are just at its threshold. This log cannot \
-             tell.",
-            sensor + 1
-        );
-    }
-    if found.diagnosis.moved {
-        *text += "The robot moved: no lost echo or noise can be named.\n";
     }
 }
 

@@ -18,23 +18,19 @@
 //! around them: `moving`.
 
 mod align;
-mod alike;
 mod faults;
 mod moving;
 mod naming;
-mod reciprocity;
 mod search;
 mod sensors;
 mod share;
 mod statistics;
 mod timeline;
 mod timing;
-mod together;
 
 use crate::firings::FiringLog;
+use crate::symptom::Finding;
 pub use align::{AlignError, Alignment, align};
-use alike::alike;
-pub use faults::Fault;
 use faults::faults;
 use moving::follow;
 pub use naming::Named;
@@ -104,10 +100,9 @@ pub struct Diagnosis {
     pub named: Vec<Option<Named>>,
     /// Sounds that each sensor hears.
     pub hearing: Vec<Hearing>,
-    /// Broken parts.
-    pub faults: Vec<Fault>,
-    /// True if the robot moved: odometry says so, or ranges of the beginning are gone at the end. Faults that show in
-    /// what repeats cannot be named then.
+    /// Deaf sensors.
+    pub faults: Vec<Finding>,
+    /// True if the robot moved: odometry says so, or ranges of the beginning are gone at the end.
     pub moved: bool,
     /// The most offsets at which a reading could come from a firing of another sensor, over all pairs.
     pub most_offsets: u32,
@@ -121,18 +116,9 @@ impl Diagnosis {
 
     /// The sensors that hear nothing and are not called deaf: nothing is in their range, or they are.
     pub fn silent(&self) -> Vec<u8> {
-        self.open(|of| of.is_silent)
-    }
-
-    /// The sensors that miss echoes at random and are not called broken: they lose them, or these are at their
-    /// threshold and fade independently at every firing.
-    pub fn missing(&self) -> Vec<u8> {
-        self.open(|of| of.misses_at_random)
-    }
-
-    fn open(&self, is: impl Fn(&Hearing) -> bool) -> Vec<u8> {
-        let is_named = |sensor: u8| self.faults.iter().any(|fault| fault.sensors().contains(&sensor));
-        self.hearing.iter().filter(|of| is(of) && !is_named(of.sensor)).map(|of| of.sensor).collect()
+        let is_named = |sensor: u8| self.faults.iter().any(|fault| fault.sensor == usize::from(sensor));
+        let silent = self.hearing.iter().filter(|of| of.is_silent && !is_named(of.sensor));
+        silent.map(|of| of.sensor).collect()
     }
 }
 
@@ -152,13 +138,8 @@ pub fn diagnose(log: &FiringLog, settings: &Settings) -> Diagnosis {
             paths.extend(found);
         }
     }
-    let tolerance = i64::from(settings.tolerance_us.max(1));
-    let sensors = 0..log.sensors() as u8;
-    // A path that moves does not last for the whole log, as what is held against the way back must.
-    let standing = if moved { &[] } else { &paths[..] };
-    let alike: Vec<_> = sensors.map(|sensor| alike(sensor, standing, &timeline, &fits_none, tolerance)).collect();
-    let hearing = hearing(log, &paths, &named, &fits_none, &alike);
-    let faults = faults(&paths, &hearing, &alike, &timeline, settings, moved);
+    let hearing = hearing(log, &paths, &named, &fits_none);
+    let faults = faults(&paths, &hearing, &timeline, settings);
     let period = |place: u32| log.firings.get(place as usize).map_or(0, |firing| firing.period);
     paths.iter_mut().for_each(|path| path.periods = (period(path.periods.0), period(path.periods.1)));
     let most_offsets = timeline.most_offsets(settings.tolerance_us.into());

@@ -2,7 +2,6 @@
 
 use std::collections::BTreeMap;
 
-use super::alike::Alike;
 use super::share::Share;
 use super::{FoundPath, Named};
 use crate::firings::FiringLog;
@@ -22,13 +21,8 @@ pub struct Hearing {
     pub unnamed: Share,
     /// Firings with an echo that fits no path, of those with an echo.
     pub unexplained: Share,
-    /// Firings whose echo fits no path and does not even come back at the same time when the ring fires alike: of those
-    /// at which it fired alike four times at least.
-    pub wandering: Share,
     /// True if it hears nothing: nothing is in its range, or it is deaf.
     pub is_silent: bool,
-    /// True if it misses echoes at random: it loses them, or they are at its threshold.
-    pub misses_at_random: bool,
     /// True if its own echo was found as a path.
     pub has_own_path: bool,
     /// The phases in which it fired at least five times and its own echo was never first, with the number of firings.
@@ -36,7 +30,7 @@ pub struct Hearing {
 }
 
 /// A sensor with fewer firings is not judged.
-pub(super) const FEW: u32 = 50;
+const FEW: u32 = 50;
 /// A deaf sensor has an echo in fewer of its firings.
 const DEAF: f64 = 0.02;
 /// Fewer firings in a phase say nothing about it.
@@ -47,20 +41,11 @@ pub(super) fn hearing(
     paths: &[FoundPath],
     named: &[Option<Named>],
     fits_none: &[bool],
-    alike: &[Alike],
 ) -> Vec<Hearing> {
-    let sensors = (0..log.sensors() as u8).zip(alike);
-    sensors.map(|(sensor, alike)| of_sensor(sensor, log, paths, named, fits_none, alike)).collect()
+    (0..log.sensors() as u8).map(|sensor| of_sensor(sensor, log, paths, named, fits_none)).collect()
 }
 
-fn of_sensor(
-    sensor: u8,
-    log: &FiringLog,
-    paths: &[FoundPath],
-    named: &[Option<Named>],
-    fits_none: &[bool],
-    alike: &Alike,
-) -> Hearing {
+fn of_sensor(sensor: u8, log: &FiringLog, paths: &[FoundPath], named: &[Option<Named>], fits_none: &[bool]) -> Hearing {
     let (mut firings, mut echoes, mut own, mut foreign, mut unexplained) = (0, 0, 0, 0, 0);
     // By phase: firings, and own echoes among them.
     let mut phases = BTreeMap::<u8, (u32, u32)>::new();
@@ -88,10 +73,8 @@ fn of_sensor(
         foreign: Share { count: foreign, of: firings },
         unnamed: Share { count: echoes.saturating_sub(own + foreign), of: echoes },
         unexplained: Share { count: unexplained, of: echoes },
-        wandering: alike.wandering,
         has_own_path,
         is_silent: is_silent(Share { count: echoes, of: firings }),
-        misses_at_random: alike.misses_at_random(),
         // Where nothing is known of its own echo, nothing is known of its phases.
         blind_phases: if has_own_path && !moves { phases.iter().filter_map(blind).collect() } else { Vec::new() },
     }

@@ -34,16 +34,6 @@ impl Share {
         let half = Z / (1.0 + Z * Z / n) * (share * (1.0 - share) / n + Z * Z / (4.0 * n * n)).sqrt();
         ((middle - half).max(0.0), (middle + half).min(1.0))
     }
-
-    /// The difference that two shares surely have, within two standard errors.
-    pub(super) fn differs(self, other: Self) -> f64 {
-        let variance = |share: Self| {
-            let value = share.value();
-            (value * (1.0 - value) + 0.02) / f64::from(share.of.max(1))
-        };
-        let by = self.value() - other.value();
-        (by.abs() - 2.0 * (variance(self) + variance(other)).sqrt()).max(0.0).copysign(by)
-    }
 }
 
 #[cfg(test)]

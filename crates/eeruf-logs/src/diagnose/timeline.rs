@@ -2,9 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use super::Settings;
 use super::share::Share;
 use super::statistics::groups;
+use super::{FoundPath, Settings};
 use crate::firings::FiringLog;
 
 /// One reading of the receiver.
@@ -66,17 +66,18 @@ impl Timeline {
     }
 
     /// When the reading of a firing, by its place in the log, came to its line.
-    pub(super) fn edge_us(&self, line: u8, place: u32) -> i64 {
+    fn edge_us(&self, line: u8, place: u32) -> i64 {
         let heard = self.heard_by(line);
         let of = heard.binary_search_by_key(&(place as usize), |of| of.firing).ok().map(|of| heard[of]);
         of.map_or(0, |of| of.fired_us + of.echo_us.unwrap_or(0))
     }
 
-    /// Returns true if a sensor fired within its window before a moment.
-    pub(super) fn listens(&self, sensor: u8, moment_us: i64) -> bool {
-        let heard = self.heard_by(sensor);
-        let before = heard.partition_point(|of| of.fired_us <= moment_us).checked_sub(1);
-        before.is_some_and(|of| moment_us - heard[of].fired_us <= self.window_us)
+    /// When readings that came along a path begin and end, if it moves.
+    pub(super) fn lasts(&self, path: &FoundPath) -> core::ops::RangeInclusive<i64> {
+        match path.rate_us_s {
+            Some(_) => self.edge_us(path.receiver, path.periods.0)..=self.edge_us(path.receiver, path.periods.1),
+            None => i64::MIN..=i64::MAX,
+        }
     }
 
     /// Returns true if readings of the first third of the log do not come back in the last one: of the pairs of firings

@@ -1,130 +1,43 @@
 //! Lines that a board or a monitor writes by itself: start messages, resets, crashes, and noise at another baud rate.
 
-/// Beginnings of lines of an ESP32, an ESP8266, MicroPython, `CircuitPython`, `MaxBotix`'s sensors, and of monitors.
-const BEGINNINGS: [&str; 53] = [
-    "ets Jan ",
-    "ets Jun ",
-    "ets Jul ",
-    "ESP-ROM:",
-    "Build:",
-    "rst:0x",
-    "configsip: ",
-    "SPIWP:0x",
-    "clk_drv:0x",
-    "mode:DIO, ",
-    "mode:QIO, ",
-    "mode:DOUT, ",
-    "mode:QOUT, ",
-    "load:0x",
-    "load 0x",
-    "entry 0x",
-    "Saved PC:0x",
-    "Octal Flash Mode Enabled",
-    "For OPI Flash, Use Default Flash Boot Mode",
-    "flash read err, ",
-    "ets_main.c ",
-    "Guru Meditation Error: Core ",
-    "register dump:",
-    "Backtrace: 0x",
-    "Backtrace:0x",
-    "ELF file SHA256: ",
-    "Rebooting...",
-    "Brownout detector was triggered",
-    "abort() was called at PC 0x",
-    "Exception (",
-    "Fatal exception(",
-    "Fatal exception (",
-    "epc1=0x",
-    ">>>stack>>>",
-    "<<<stack<<<",
-    "ctx: ",
-    "sp: 3f",
-    "chksum 0x",
-    "csum 0x",
-    "~ld",
-    "Soft WDT reset",
-    "last failed alloc call: ",
-    "E BOD: Brownout detector ",
-    "*** Booting Zephyr OS ",
-    "main(): This is RIOT!",
-    "MPY: soft reboot",
-    "Auto-reload is on. ",
-    "code.py output:",
-    "Code stopped by auto-reload. ",
-    "MaxBotix Inc.",
-    "PN:MB",
-    "RoHS ",
-    "=~=~=~=~",
-];
-
+/// Beginnings of the first lines of a start or a crash, and of the last. What is between them is neither.
+const BEGINS: &str =
+    "ets J|ESP-ROM:|rst:0x|Guru Meditation Error: |Exception (|Fatal exception|abort() was called|>>>stack";
+const ENDS: &str = "entry 0x|~ld|Rebooting...|<<<stack";
+/// Beginnings of lines that stand alone, of boards, sensors and monitors.
+const ALONE: &str = "\
+    Build:|SPIWP:0x|load:0x|entry 0x|Octal Flash Mode|For OPI Flash|flash read err|Brownout detector|Soft WDT reset|\
+    *** Booting |main(): This is RIOT!|MPY: soft reboot|Auto-reload is on. |code.py output:|Code stopped by |\
+    MaxBotix Inc.|PN:MB|RoHS |HRXL-MaxSonar|Copyright 20|TempI|=~=~=~=~";
 /// Tags of lines that ESP-IDF writes by itself.
-const TAGS: [&str; 30] = [
-    "boot",
-    "boot.esp32",
-    "boot.esp32s2",
-    "boot.esp32s3",
-    "boot.esp32c3",
-    "boot.esp32c6",
-    "qio_mode",
-    "esp_image",
-    "cpu_start",
-    "app_start",
-    "app_init",
-    "efuse_init",
-    "heap_init",
-    "spi_flash",
-    "sleep",
-    "main_task",
-    "gpio",
-    "uart",
-    "coexist",
-    "coex",
-    "pp",
-    "net80211",
-    "wifi",
-    "wifi_init",
-    "phy_init",
-    "system_api",
-    "esp_netif_handlers",
-    "task_wdt",
-    "octal_psram",
-    "esp_psram",
-];
+const TAGS: &str = "\
+    boot qio_mode esp_image cpu_start app_start app_init efuse_init heap_init spi_flash sleep main_task gpio uart \
+    coexist coex pp net80211 wifi wifi_init phy_init system_api esp_netif_handlers task_wdt octal_psram esp_psram";
+/// A start or a crash has at most as many lines.
+const LONGEST: u32 = 60;
 
-/// Names of registers in the dump of a crash.
-const REGISTERS: [&str; 10] = ["PC", "A2", "A6", "A10", "A14", "SAR", "EXCVADDR", "MEPC", "RA", "Stack memory"];
-
-/// Returns true for a line that a board or a monitor writes by itself.
-pub(super) fn is_boot(line: &str) -> bool {
-    let text = line.trim();
-    // Nearly all lines of tables.
-    if text.starts_with(|letter: char| letter.is_ascii_digit() || "{\"[".contains(letter)) {
-        return is_dump(text);
-    }
-    BEGINNINGS.iter().any(|beginning| text.starts_with(beginning))
-        || is_of_esp_idf(text)
-        || is_dump(text)
-        || is_of_loader(text)
-        // `--- Terminal on COM3`, as monitors say.
-        || text.strip_prefix("--- ").is_some_and(|rest| rest.starts_with(char::is_alphabetic))
-        || (text.starts_with("Core ") && text.ends_with("register dump:"))
-        || (text.starts_with("Copyright ") && text.len() < 24)
-        || (text.len() < 40 && !text.contains([':', '=']) && text.contains("MaxSonar"))
-        || text == "TempI"
+/// Tells lines of a board from others.
+#[derive(Default)]
+pub(super) struct Boot {
+    /// Lines that may still follow of a start or a crash.
+    left: u32,
 }
 
-/// Returns true for `ho 0 tail 12 room 4`, `tail 4` and `v00074f70`, as the ROM's loader says.
-fn is_of_loader(text: &str) -> bool {
-    if !["ho ", "tail ", "v"].iter().any(|beginning| text.starts_with(beginning)) {
-        return false;
-    }
-    let words: Vec<_> = text.split_whitespace().collect();
-    let is_whole = |word: &str| !word.is_empty() && word.bytes().all(|byte| byte.is_ascii_digit());
-    match words[..] {
-        ["ho", ho, "tail", tail, "room", room] => [ho, tail, room].into_iter().all(is_whole),
-        ["tail", tail] => is_whole(tail),
-        [version] => version.len() == 9 && version.strip_prefix('v').is_some_and(is_hexadecimal),
-        _ => false,
+impl Boot {
+    /// Returns true for a line that a board or a monitor writes by itself.
+    pub(super) fn is_boot(&mut self, line: &str) -> bool {
+        let text = line.trim();
+        let is_of = |list: &str| list.split('|').any(|begin| text.starts_with(begin));
+        if is_of(BEGINS) {
+            self.left = LONGEST;
+        }
+        if self.left > 0 {
+            self.left = if is_of(ENDS) { 0 } else { self.left - 1 };
+            return true;
+        }
+        // `--- Terminal on COM3`, as monitors say.
+        let is_monitor = text.strip_prefix("--- ").is_some_and(|rest| rest.starts_with(char::is_alphabetic));
+        is_of(ALONE) || is_monitor || is_of_esp_idf(text)
     }
 }
 
@@ -132,22 +45,7 @@ fn is_of_loader(text: &str) -> bool {
 fn is_of_esp_idf(text: &str) -> bool {
     let rest = text.strip_prefix(['E', 'W', 'I', 'D', 'V']).and_then(|rest| rest.strip_prefix(" ("));
     let said = rest.and_then(|rest| rest.split_once(") ")).and_then(|(_, said)| said.split_once(':'));
-    said.is_some_and(|(tag, _)| TAGS.contains(&tag))
-}
-
-fn is_hexadecimal(word: &str) -> bool {
-    word.len() == 8 && word.bytes().all(|byte| byte.is_ascii_hexdigit())
-}
-
-/// Returns true for a line of registers or of a stack: `PC      : 0x400d1234`, `3fffff50:  3ffe84c8 00000020`.
-fn is_dump(text: &str) -> bool {
-    let Some((name, rest)) = text.split_once(':') else { return false };
-    let mut words = rest.split_whitespace().map(|word| word.trim_end_matches('<')).peekable();
-    if is_hexadecimal(name.trim_start_matches("0x")) {
-        return words.peek().is_some() && words.all(|word| is_hexadecimal(word.trim_start_matches("0x")));
-    }
-    let is_address = |word: &str| word.strip_prefix("0x").is_some_and(is_hexadecimal);
-    REGISTERS.contains(&name.trim_end()) && words.peek().is_some_and(|word| is_address(word))
+    said.is_some_and(|(tag, _)| TAGS.split(' ').any(|own| tag == own || tag.starts_with("boot.esp32")))
 }
 
 /// Returns true for a line that is half no text, as what was sent at another baud rate.
@@ -163,23 +61,9 @@ mod tests {
 
     #[test]
     fn lines_of_sensors_are_none_of_a_board() {
-        for line in [
-            "load: 40 cm",
-            "ets: 40",
-            "PC: 40",
-            "A2: 40 A6: 80",
-            "tail: 4",
-            "tail 4 head 8",
-            "mode: 4",
-            "--- 40 80",
-            "---",
-            "Distance: 4ets Jul 29 2019 12:21:46",
-            "I (500) sonar: Distance: 40 cm",
-            "12345678: 40",
-            "v1: 40",
-        ] {
-            assert!(!is_boot(line), "{line}");
-        }
+        let lines = "load: 40 cm|ets: 40|PC: 40|A2: 40 A6: 80|tail: 4|mode: 4|--- 40 80|---|12345678: 40|v1: 40|\
+                     Distance: 4ets Jul 29 2019 12:21:46|I (500) sonar: Distance: 40 cm";
+        lines.split('|').for_each(|line| assert!(!Boot::default().is_boot(line), "{line}"));
         assert!(!is_noise("fr\u{fffd}nt: 4\u{fffd} cm"));
     }
 }

@@ -115,20 +115,6 @@ impl Column {
         !self.numbers.is_empty() && self.numbers.iter().all(is_in) && falls * 10 <= self.numbers.len()
     }
 
-    /// Days before 1970 at which a spreadsheet's or MATLAB's numbers of days begin, if the column holds such.
-    pub(super) fn days_before_1970(&self) -> Option<f64> {
-        // From 2000 to 2100.
-        const YEARS: std::ops::Range<f64> = 10_957.0..47_482.0;
-        let before = [25_569.0, 719_529.0];
-        let is_in = |before: f64| self.numbers.iter().all(|day| YEARS.contains(&(day - before)));
-        let steps = self.steps();
-        // Read as seconds, a ring would fire within a millisecond.
-        let is_short = steps.get(steps.len() / 2).is_some_and(|&step| step < 1e-3);
-        let is_date = names::is_date(&self.name) && steps.last().is_none_or(|&step| step < 31.0);
-        let has_fractions = self.numbers.iter().any(|number| number.fract() != 0.0);
-        before.into_iter().find(|&before| is_in(before) && has_fractions && (is_short || is_date))
-    }
-
     /// Returns true for whole numbers that count from the first sensor to the last again and again.
     pub(super) fn is_cycle(&self) -> bool {
         let of = |pick: fn(f64, f64) -> f64| self.numbers.iter().copied().reduce(pick).unwrap_or(0.0);

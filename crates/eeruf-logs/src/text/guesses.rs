@@ -139,13 +139,6 @@ impl Plan {
     pub(super) fn times(&mut self, options: &Options) {
         for (index, unit) in &mut self.time {
             let column = &self.columns[*index];
-            self.days_before_1970 = column.days_before_1970().filter(|_| options.table.time_unit.is_none());
-            if self.days_before_1970.is_some() {
-                let said =
-                    format!("column `{}`, days as a spreadsheet or MATLAB counts them, by its values", column.name);
-                self.guesses.push(guess("time", said, "--time, --time-unit"));
-                continue;
-            }
             let said;
             (*unit, said) = match (options.table.time_unit, names::time_unit(&column.name)) {
                 (Some(unit), _) => (unit, ""),

@@ -4,8 +4,6 @@ use std::borrow::Cow;
 use std::collections::VecDeque;
 use std::io::{self, BufRead, BufReader, Read};
 
-use super::shape;
-
 /// The bytes of a text.
 pub(super) type Input<'a> = BufReader<Box<dyn Read + 'a>>;
 
@@ -110,28 +108,14 @@ impl<'a> Lines<'a> {
 pub(crate) struct Objects<'a> {
     input: Input<'a>,
     number: u64,
-    /// Of an object of columns.
-    rows: VecDeque<Line>,
 }
 
 impl<'a> Objects<'a> {
     pub(super) fn new(input: Input<'a>) -> Self {
-        Self { input, number: 1, rows: VecDeque::new() }
+        Self { input, number: 1 }
     }
 
-    /// The next record; an object of columns gives its rows.
-    pub(super) fn next_row(&mut self) -> io::Result<Option<Line>> {
-        if self.rows.is_empty() {
-            let Some(line) = self.next()? else { return Ok(None) };
-            match shape::rows_of_columns(&line.text) {
-                Some(rows) => self.rows.extend(rows.into_iter().map(|text| Line { text, ..line.clone() })),
-                None => return Ok(Some(line)),
-            }
-        }
-        Ok(self.rows.pop_front())
-    }
-
-    fn next(&mut self) -> io::Result<Option<Line>> {
+    pub(super) fn next(&mut self) -> io::Result<Option<Line>> {
         // Brackets that are open since the record began.
         let (mut record, mut open, mut is_text, mut is_escaped): (Vec<u8>, Vec<u8>, _, _) =
             (vec![], vec![], false, false);

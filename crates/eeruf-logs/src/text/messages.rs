@@ -50,73 +50,6 @@ pub(super) fn next(lines: &mut Lines<'_>) -> io::Result<Option<Line>> {
     }))
 }
 
-/// Returns true for a list of maps, as YAML has it, on its own or below one key.
-pub(super) fn are_list(start: &str) -> bool {
-    let mut lines = start.lines().filter(|line| !is_outside(line)).peekable();
-    if lines.peek().is_some_and(|line| entry(line).is_some_and(|(_, value)| value.is_empty())) {
-        lines.next();
-    }
-    let Some(first) = lines.next() else { return false };
-    let indentation = first.len() - first.trim_start().len();
-    let is_first = first.trim_start().strip_prefix("- ").is_some_and(|line| entry(line).is_some());
-    let is_second = |line: &str| line.starts_with(&" ".repeat(indentation + 2)) && entry(line).is_some();
-    is_first && lines.next().is_some_and(is_second)
-}
-
-fn is_outside(line: &str) -> bool {
-    line.trim().is_empty() || line.trim_start().starts_with('#') || line.trim_end() == "---"
-}
-
-/// A list of maps, as YAML has it.
-pub(super) struct List<'a> {
-    lines: Lines<'a>,
-    /// The line that begins a record.
-    begun: Option<Line>,
-    /// The keys of the first record, which each record has.
-    keys: Option<Vec<String>>,
-}
-
-impl<'a> List<'a> {
-    pub(super) const fn new(lines: Lines<'a>) -> Self {
-        Self { lines, begun: None, keys: None }
-    }
-
-    /// The next record, as a JSON object of its values by their paths; text if it is damaged.
-    pub(super) fn next(&mut self) -> io::Result<Option<Line>> {
-        let is_begin = |line: &Line| line.text.trim_start().starts_with("- ");
-        while self.begun.is_none() {
-            match self.lines.next()? {
-                // The key above the list.
-                Some(line) if is_outside(&line.text) || (self.keys.is_none() && !is_begin(&line)) => {}
-                Some(line) => self.begun = Some(line),
-                None => return Ok(None),
-            }
-        }
-        let Some(first) = self.begun.take() else { return Ok(None) };
-        let indentation = first.text.len() - first.text.trim_start().len();
-        let (mut record, mut bytes, mut is_ended) = (vec![first.text.replacen("- ", "  ", 1)], 0, first.is_ended);
-        while let Some(line) = self.lines.next()? {
-            let own = line.text.len() - line.text.trim_start().len();
-            if is_begin(&line) && own <= indentation {
-                self.begun = Some(line);
-                break;
-            }
-            is_ended = line.is_ended;
-            bytes += line.text.len();
-            if bytes <= LONGEST && !is_outside(&line.text) {
-                record.push(line.text);
-            }
-        }
-        let is_whole = is_begin(&first) && is_ended && record.iter().all(|line| line.starts_with(' '));
-        let values = object(&record).filter(|_| is_whole).filter(|values| {
-            let keys: Vec<_> = values.iter().map(|(key, _)| key.clone()).collect();
-            self.keys.get_or_insert_with(|| keys.clone()) == &keys
-        });
-        let text = values.map_or_else(|| format!("{{ {}", record.join("\n")), |values| written(&values));
-        Ok(Some(Line { number: first.number, text, is_ended, is_too_long: bytes > LONGEST, is_misfit: false }))
-    }
-}
-
 /// A key and what follows it on the line, of `key: value` or `key:`.
 fn entry(line: &str) -> Option<(&str, &str)> {
     let (key, value) = line.trim().split_once(':')?;
@@ -173,7 +106,7 @@ fn object(message: &[String]) -> Option<Vec<(String, Json)>> {
 }
 
 /// Values by their paths as a JSON object, in their order.
-pub(super) fn written(values: &[(String, Json)]) -> String {
+fn written(values: &[(String, Json)]) -> String {
     let fields: Vec<_> = values.iter().map(|(path, value)| format!("{}:{value}", Json::from(path.as_str()))).collect();
     format!("{{{}}}", fields.join(","))
 }
@@ -210,17 +143,6 @@ mod tests {
         for damaged in ["range: 0.5\nrange: 0.6", "frame_id: a\nra", "range: 0.5\n- 1\n- 2\n 7"] {
             let lines: Vec<_> = damaged.lines().map(str::to_owned).collect();
             assert_eq!(object(&lines), None, "{damaged}");
-        }
-    }
-
-    #[test]
-    fn list_of_maps_begins_with_a_map_of_two() {
-        assert!(are_list("- t: 0.0\n  front: 40\n"));
-        assert!(are_list("# run 3\nreadings:\n  - t: 0.0\n    front: 40\n"));
-        for text in
-            ["- 40\n- 41\n", "- t: 0\n- t: 1\n", "t: 0\nfront: 40\n", "-- t: 0\n   a: 1\n", "- t: 0\nfront: 4\n"]
-        {
-            assert!(!are_list(text), "{text}");
         }
     }
 

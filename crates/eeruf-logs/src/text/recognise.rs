@@ -48,8 +48,6 @@ pub(super) struct Plan {
     /// Each row is of one sensor: the empty cells of the others are no silence.
     pub(super) one_a_row: bool,
     pub(super) is_first_cut: bool,
-    /// Times are numbers of days since this many before 1970.
-    pub(super) days_before_1970: Option<f64>,
     /// The column that says the unit of its row's range.
     pub(super) unit: Option<usize>,
     /// The column that says by what a row's sensor measures, and the number of ultrasound.
@@ -98,7 +96,6 @@ pub(super) fn recognise(
         no_echo: NoEcho::default(),
         one_a_row: false,
         is_first_cut: false,
-        days_before_1970: None,
         unit: None,
         medium: None,
         validity: vec![],
@@ -148,14 +145,6 @@ const ECHOED_RANGE: [&str; 9] = [
     "range",
     "variance",
 ];
-
-/// Returns true for rows whose first cell counts them, as statistics programs print tables.
-fn is_numbered(rows: &[(u64, Vec<String>)], width: usize) -> bool {
-    let firsts: Vec<_> =
-        rows.iter().filter(|(_, row)| row.len() == width).map(|(_, row)| row[0].parse::<u64>()).collect();
-    let counts = firsts.windows(2).filter(|two| matches!(two, [Ok(one), Ok(other)] if one + 1 == *other)).count();
-    matches!(firsts.first(), Some(Ok(0 | 1))) && counts * 10 >= (firsts.len() - 1) * 9
-}
 
 fn is_echoed_range(rows: &[(u64, Vec<String>)], width: usize) -> bool {
     let is_one = |row: &Vec<String>| {
@@ -244,13 +233,6 @@ impl Plan {
             (header, is_long) = (Some(top), true);
         }
         let mut names: Option<Vec<String>> = header.map(|at| before[at].1.clone());
-        // Rows with a name or a number before them, which the header does not have.
-        if let Some(names) = &mut names
-            && names.len() + 1 == width
-            && is_numbered(&rows[first..], width)
-        {
-            names.insert(0, String::new());
-        }
         let first_number = rows.get(first).map_or(u64::MAX, |row| row.0);
         if names.is_none() {
             // A comment may name the columns.

@@ -243,7 +243,7 @@ impl<'a, 's, 'e> Rows<'a, 's, 'e> {
         let mut at_ns = before;
         for &(index, unit) in &self.plan.time {
             if let Some(own) = text(index).filter(|text| !text.is_empty()) {
-                let ns = self.time_ns(own, unit).ok_or_else(|| {
+                let ns = time_ns(own, unit, self.plan.decimal_comma).ok_or_else(|| {
                     let name = &self.plan.columns[index].name;
                     Unread::Damaged(format!("column {name}: `{}`; expected a time of zero or more", short(own)))
                 })?;
@@ -328,12 +328,6 @@ impl<'a, 's, 'e> Rows<'a, 's, 'e> {
             self.sink.reading(&reading);
         }
         Ok(())
-    }
-
-    fn time_ns(&self, text: &str, unit: TimeUnit) -> Option<u64> {
-        let Some(before) = self.plan.days_before_1970 else { return time_ns(text, unit, self.plan.decimal_comma) };
-        let days = value::number(text, self.plan.decimal_comma)? - before;
-        (days >= 0.0).then(|| (days * DAY_NS as f64).round() as u64)
     }
 
     /// Times of day begin again at midnight.

@@ -245,50 +245,6 @@ pub(crate) fn object(text: &str) -> Option<Vec<(String, String)>> {
     Some(pairs)
 }
 
-/// Returns true for a key that a database gives each record: a push ID of Firebase, or a time.
-fn is_record_key(key: &str) -> bool {
-    let is_push_id = key.len() == 20 && key.starts_with('-');
-    is_push_id || (key.len() >= 10 && key.bytes().all(|byte| byte.is_ascii_digit()))
-}
-
-/// The records of an object that has each under a key of its own, perhaps below the name of the list.
-fn rows_by_keys(object: &Json) -> Option<Vec<String>> {
-    let fields = object.as_object()?;
-    if let (1, Some((key, inner))) = (fields.len(), fields.iter().next())
-        && !is_record_key(key)
-    {
-        return rows_by_keys(inner);
-    }
-    let are_records = fields.iter().all(|(key, record)| is_record_key(key) && record.is_object());
-    (are_records && fields.len() > 1).then(|| fields.values().map(Json::to_string).collect())
-}
-
-/// The rows of an object of columns, each a list or, as pandas writes it, an object by the number of the row: objects
-/// of their own. Nothing if it holds anything else.
-pub(crate) fn rows_of_columns(text: &str) -> Option<Vec<String>> {
-    let document: Json = serde_json::from_str(text.trim()).ok()?;
-    if let Some(rows) = rows_by_keys(&document) {
-        return Some(rows);
-    }
-    let Json::Object(columns) = document else { return None };
-    let is_cell = |cell: &&Json| !cell.is_array() && !cell.is_object();
-    let cells = |column: &Json| -> Option<Vec<Json>> {
-        let cells: Vec<_> = match column {
-            Json::Array(cells) => cells.iter().collect(),
-            Json::Object(cells) => (0..cells.len()).map(|n| cells.get(&n.to_string())).collect::<Option<_>>()?,
-            _ => return None,
-        };
-        cells.iter().all(is_cell).then(|| cells.into_iter().cloned().collect())
-    };
-    let columns: Vec<_> = columns.iter().map(|(name, column)| Some((name, cells(column)?))).collect::<Option<_>>()?;
-    let rows = columns.first()?.1.len();
-    if columns.len() < 2 || rows < 2 || columns.iter().any(|(_, cells)| cells.len() != rows) {
-        return None;
-    }
-    let row = |n: usize| columns.iter().map(|(name, cells)| ((*name).clone(), cells[n].clone())).collect();
-    Some((0..rows).map(|n| Json::Object(row(n)).to_string()).collect())
-}
-
 fn flatten(path: &str, value: &Json, pairs: &mut Vec<(String, String)>) {
     /// More belong to no ring.
     const MOST: usize = 4096;

@@ -4,9 +4,9 @@
 use std::collections::VecDeque;
 use std::io::{self, BufRead, BufReader, Read};
 
-use super::boot;
+use super::boot::{Boot, is_noise};
 use super::lines::{Input, Line, Lines, Objects};
-use super::messages::{self, List};
+use super::messages;
 use super::rewriter::{Rewriter, Rewritten};
 use crate::bytes::Order;
 
@@ -18,14 +18,13 @@ pub(crate) struct Source<'a> {
     pub(super) left_out: u64,
     /// Noise of a board's start may stand here: before the first line, and after a message of the start.
     may_be_noise: bool,
+    boot: Boot,
 }
 
 enum Form<'a> {
     Lines(Lines<'a>),
     Objects(Objects<'a>),
     Messages(Lines<'a>),
-    /// A list of records, as YAML has it.
-    List(List<'a>),
     /// An ArduPilot log as text: many tables in one file, of which one holds ranges.
     DataFlash(Lines<'a>),
     Rewritten(Lines<'a>, Rewriter),
@@ -34,7 +33,7 @@ enum Form<'a> {
 impl<'a> Source<'a> {
     pub(crate) fn new(input: Box<dyn Read + 'a>) -> io::Result<Self> {
         let form = Form::new(input)?;
-        Ok(Self { form, pending: VecDeque::new(), left_out: 0, may_be_noise: true })
+        Ok(Self { form, pending: VecDeque::new(), left_out: 0, may_be_noise: true, boot: Boot::default() })
     }
 
     pub(crate) fn next(&mut self) -> io::Result<Option<Line>> {
@@ -45,9 +44,8 @@ impl<'a> Source<'a> {
             let (line, rewriter) = match &mut self.form {
                 Form::Lines(lines) => (lines.next()?, None),
                 Form::Rewritten(lines, rewriter) => (lines.next()?, Some(rewriter)),
-                Form::Objects(objects) => return objects.next_row(),
+                Form::Objects(objects) => return objects.next(),
                 Form::Messages(lines) => return messages::next(lines),
-                Form::List(list) => return list.next(),
                 Form::DataFlash(lines) => {
                     let Some(line) = lines.next()? else { return Ok(None) };
                     self.pending.extend(rangefinder(&line.text).map(|text| Line { text, ..line }));
@@ -55,8 +53,8 @@ impl<'a> Source<'a> {
                 }
             };
             let Some(line) = line else { return Ok(None) };
-            let is_start = boot::is_boot(&line.text);
-            if is_start || (self.may_be_noise && boot::is_noise(&line.text)) {
+            let is_start = self.boot.is_boot(&line.text);
+            if is_start || (self.may_be_noise && is_noise(&line.text)) {
                 self.may_be_noise = true;
                 self.left_out += 1;
                 continue;
@@ -85,7 +83,6 @@ impl<'a> Source<'a> {
             Form::Lines(_) => None,
             Form::Objects(_) => Some("JSON, a document"),
             Form::Messages(_) => Some("messages, as `ros2 topic echo` prints them"),
-            Form::List(_) => Some("YAML, a list of records"),
             Form::DataFlash(_) => Some("RFND of an ArduPilot log"),
             Form::Rewritten(_, rewriter) => Some(rewriter.form()),
         }
@@ -93,11 +90,7 @@ impl<'a> Source<'a> {
 
     /// Returns true for records of which each is an object.
     pub(super) const fn is_of_objects(&self) -> bool {
-        match &self.form {
-            Form::Objects(_) | Form::Messages(_) | Form::List(_) => true,
-            Form::Rewritten(_, rewriter) => rewriter.gives_objects(),
-            Form::Lines(_) | Form::DataFlash(_) => false,
-        }
+        matches!(self.form, Form::Objects(_) | Form::Messages(_))
     }
 
     /// Returns true for a JSON document.
@@ -127,9 +120,6 @@ impl<'a> Form<'a> {
         let start = String::from_utf8_lossy(input.fill_buf()?).into_owned();
         if messages::are_in(&start) {
             return Ok(Self::Messages(Lines::new(input)));
-        }
-        if messages::are_list(&start) {
-            return Ok(Self::List(List::new(Lines::new(input))));
         }
         if let Some(rewriter) = Rewriter::of(&start) {
             return Ok(Self::Rewritten(Lines::new(input), rewriter));

@@ -8,8 +8,6 @@ mod diagnose_driving;
 mod diagnose_rooms;
 mod firing_logs;
 mod forms;
-mod forms_of_loggers;
-mod forms_of_programs;
 mod mutated;
 mod random;
 mod replay;

@@ -1,0 +1,47 @@
+//! The words for what strikes about one sensor: of `eeruf logs`, of a ring's own log, and in Python.
+
+/// What strikes about one sensor.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Symptom {
+    /// It has no echo: nothing is in its range, or it is deaf.
+    Silent,
+    /// It has no echo though others hear its sound along paths on which it should hear theirs.
+    Deaf,
+    /// Its value never changes.
+    Constant,
+    /// Its values come in coarse steps.
+    Coarse,
+    /// Its readings are near nothing.
+    Chatters,
+    /// It reads the echo of its own firing before.
+    Stale,
+    /// It jumps between two values.
+    Jumps,
+}
+
+impl Symptom {
+    /// The name, as `--json` and Python give it.
+    pub const fn as_str(self) -> &'static str {
+        match self {
+            Self::Silent => "silent",
+            Self::Deaf => "deaf",
+            Self::Constant => "constant",
+            Self::Coarse => "coarse",
+            Self::Chatters => "chatters",
+            Self::Stale => "stale echo",
+            Self::Jumps => "jumps",
+        }
+    }
+}
+
+/// A symptom of one sensor, with what speaks for it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Finding {
+    /// The sensor, from 0.
+    pub sensor: usize,
+    /// The symptom.
+    pub symptom: Symptom,
+    /// What speaks for it, with figures.
+    pub said: String,
+}

@@ -1,6 +1,6 @@
 //! `eeruf diagnose`: what is wrong with a ring, from its own log.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use eeruf_core::{Micros, Phase};
 use eeruf_files::Kind;
@@ -36,9 +36,10 @@ pub(crate) struct Args {
     /// the log has none
     #[arg(long, value_name = "SCHEDULE.toml")]
     schedule: Option<PathBuf>,
-    /// Largest difference between a reading and what a path predicts, in microseconds: about four times the jitter
-    #[arg(long, value_name = "US", default_value_t = 75, value_parser = clap::value_parser!(u32).range(1..=5000))]
-    tolerance_us: u32,
+    /// Largest difference between a reading and what a path predicts, in microseconds; by default four times the
+    /// scatter that the log's readings have, at least 75
+    #[arg(long, value_name = "US", value_parser = clap::value_parser!(u32).range(1..=5000))]
+    tolerance_us: Option<u32>,
     /// Time for which sound is followed, in microseconds
     #[arg(long, value_name = "US", default_value_t = 80_000)]
     #[arg(value_parser = clap::value_parser!(u32).range(1000..=1_000_000))]
@@ -54,14 +55,33 @@ pub(crate) struct Args {
     json: bool,
 }
 
+impl Args {
+    /// What `eeruf logs` asks for.
+    pub(super) fn of(file: &Path, schedule: Option<PathBuf>, json: bool) -> Self {
+        Self {
+            file: file.to_owned(),
+            schedule,
+            tolerance_us: None,
+            max_travel_us: 80_000,
+            speed_of_sound: 343.2,
+            svg: None,
+            json,
+        }
+    }
+}
+
 pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     Kind::expect_log(&args.file)?;
     let mut log = read_firings(&args.file)?;
-    let settings =
-        Settings { tolerance_us: args.tolerance_us, max_travel_us: args.max_travel_us, ..Settings::default() };
+    let measured = Settings::of(&log);
+    let settings = Settings {
+        tolerance_us: args.tolerance_us.unwrap_or(measured.tolerance_us),
+        max_travel_us: args.max_travel_us,
+        ..measured
+    };
     let (mut timing, mut alignment) = (None, None);
     if log.lacks_instants {
-        let (aligned, found) = aligned(args, &log)?;
+        let (aligned, found) = aligned(args, &log, settings.tolerance_us)?;
         (log, alignment) = (aligned, Some(found));
     } else {
         timing = timing_of(args, &log)?;
@@ -71,6 +91,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
         file: &args.file,
         log: &log,
         diagnosis: &diagnosis,
+        tolerance_us: settings.tolerance_us,
         timing,
         alignment,
         speed_of_sound: args.speed_of_sound,
@@ -86,13 +107,13 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
 }
 
 /// A log without instants, put onto the schedule.
-fn aligned(args: &Args, log: &FiringLog) -> Result<(FiringLog, Alignment), InputError> {
+fn aligned(args: &Args, log: &FiringLog, tolerance_us: u32) -> Result<(FiringLog, Alignment), InputError> {
     let Some(file) = &args.schedule else {
         let message = "no instants of firing; expected a column `fired_us`, or --schedule, the fixed one of the ring";
         return Err(InputError::new(&args.file, message));
     };
     let schedule = read_schedule(file)?;
-    let found = align(log, args.tolerance_us, (schedule.period().as_micros(), 2), fires_at(&schedule));
+    let found = align(log, tolerance_us, (schedule.period().as_micros(), 2), fires_at(&schedule));
     found.map_err(|error| InputError::new(&args.file, format!("against {}: {error}", file.display())))
 }
 

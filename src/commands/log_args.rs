@@ -8,7 +8,7 @@ use crate::files::error::InputError;
 use crate::files::implausible::warn;
 
 /// Options for reading a log. What is not given is guessed, and `eeruf logs` lists each guess.
-#[derive(clap::Args)]
+#[derive(Clone, clap::Args)]
 #[command(next_help_heading = "The log")]
 pub(crate) struct LogArgs {
     /// Speed of sound in m/s, to turn ranges back into echo times

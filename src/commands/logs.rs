@@ -1,56 +1,59 @@
-//! `eeruf logs`: what a log holds.
+//! `eeruf logs`: whether sensors read each other's sound, from whatever log there is.
 
 use std::fmt::Write as _;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use eeruf_files::Kind;
-use eeruf_logs::{Doctor, Examination, Reading, Report, Verdict, read_log};
+use eeruf_logs::{Doctor, Examination, FiringLog, Pattern, Reading, Report, Settings, Verdict, diagnose, read_log};
 use serde::Serialize;
+use serde_json::{Value, json as object};
 
-use super::Answer;
 use super::log_args::{LogArgs, left_out, tell_damage, warn_of_log};
+use super::{Answer, diagnose as by_schedule, replay, survey};
 use crate::console::{print_line, tell};
 use crate::files::error::InputError;
+use crate::report::advice::advice;
 use crate::report::json::to_json;
 use crate::report::table::markdown;
 
-/// Recognise a log: its form, sensors and firing pattern, and whether sensors hear each other.
+/// Do the sensors of a log read each other's sound? The answer, whom it concerns, what to do, and why.
 ///
-/// Each guess is printed with the option that overrides it.
+/// Reads whatever there is, from a file or, by `-`, from a pipe: lines of a serial monitor, tables, JSON, MCAP, ROS 1 and
+/// ROS 2 bags, ArduPilot's .BIN and .tlog, PX4's .ulg, firings of a ring, each also packed by gzip, bzip2 or zstd. What is
+/// guessed is printed with the option that overrides it.
 ///
-/// Reads MCAP, ROS 1 and ROS 2 bags, tables with any separator, lines of pairs of name and value, JSON, what
-/// `ros2 topic echo` prints, and each of them packed by gzip, bzip2 or zstd. `replay` reads the same, and Python's
-/// `read_log`.
+/// With --schedule the log is one of firings, and its paths and timing are told; --ring-out reads a measuring run, and
+/// --accepted tells what the filter would have made of each reading.
 ///
 /// The exit code is 1 for crosstalk, 0 if none is seen, and 3 if the log cannot tell; 2 if it is not understood.
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// The log
+    /// The log, or - for standard input
     #[arg(value_name = "LOG")]
     file: PathBuf,
     #[command(flatten)]
     log: LogArgs,
+    /// A log of firings: the fixed schedule that the ring fires by, for who fools whom, drift and jitter
+    #[arg(long, value_name = "SCHEDULE.toml", conflicts_with_all = ["ring_out", "out", "accepted"])]
+    schedule: Option<PathBuf>,
+    /// A measuring run: write a ring file for `design`, in which sensors that hear each other are neighbours
+    #[arg(long, value_name = "RING.toml", conflicts_with_all = ["out", "accepted"])]
+    ring_out: Option<PathBuf>,
+    /// Write the ranges as MCAP, and beside each topic `TOPIC/accepted`: what the filter accepts
+    #[arg(long, value_name = "FILE.mcap")]
+    out: Option<PathBuf>,
+    /// Count what the filter would have accepted of each sensor
+    #[arg(long)]
+    accepted: bool,
+    /// With --accepted or --out: T_delta in microseconds, within which two readings agree
+    #[arg(long, value_name = "US", default_value_t = 500)]
+    t_delta_us: u32,
     /// Print one JSON object
     #[arg(long)]
     json: bool,
 }
 
-#[derive(Serialize)]
-struct Found {
-    form: String,
-    sensors: Vec<Sensor>,
-    guesses: Vec<Guess>,
-    firing: Firing,
-    crosstalk: Crosstalk,
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    warnings: Vec<String>,
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    damage: Vec<String>,
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    skipped: Vec<String>,
-}
-
-#[derive(Serialize)]
+#[derive(Default, Serialize)]
 struct Sensor {
     name: String,
     readings: u64,
@@ -60,34 +63,6 @@ struct Sensor {
     invalid: u64,
     least_m: Option<f64>,
     most_m: Option<f64>,
-}
-
-#[derive(Serialize)]
-struct Guess {
-    what: String,
-    value: String,
-    option: String,
-}
-
-#[derive(Serialize)]
-struct Firing {
-    pattern: &'static str,
-    period_us: Option<u64>,
-    gap_us: Option<u64>,
-    least_change_us: Option<u64>,
-    why: String,
-    proves: String,
-}
-
-/// The doctor's verdict; sensors count from 0.
-#[derive(Serialize)]
-struct Crosstalk {
-    verdict: &'static str,
-    fooled: Vec<usize>,
-    pairs: Vec<(usize, usize)>,
-    reasons: Vec<String>,
-    record: Option<String>,
-    notes: Vec<String>,
 }
 
 impl Sensor {
@@ -107,97 +82,118 @@ impl Sensor {
 }
 
 pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
+    if args.schedule.is_some() {
+        return by_schedule::run(&by_schedule::Args::of(&args.file, args.schedule.clone(), args.json));
+    }
+    if args.ring_out.is_some() {
+        return survey::run(&survey::Args::of(&args.file, args.ring_out.clone(), args.json));
+    }
+    if args.out.is_some() || args.accepted {
+        let (log, out) = (args.log.clone(), args.out.clone());
+        return replay::run(&replay::Args::of(&args.file, args.t_delta_us, log, out, args.json));
+    }
     Kind::expect_log(&args.file)?;
     let mut sensors: Vec<Sensor> = vec![];
     let options = args.log.options()?;
     let mut doctor = Doctor::new(options.speed_of_sound);
     let report = read_log(&args.file, &options, |report, reading| {
         doctor.push(reading);
-        while sensors.len() < report.sensors.len() {
-            sensors.push(Sensor {
-                name: String::new(),
-                readings: 0,
-                echoes: 0,
-                no_echo: 0,
-                too_close: 0,
-                invalid: 0,
-                least_m: None,
-                most_m: None,
-            });
-        }
+        sensors.resize_with(report.sensors.len(), Sensor::default);
         sensors[reading.sensor].count(reading);
     })?;
     warn_of_log(&args.file, &report)?;
     sensors.iter_mut().zip(report.names()).for_each(|(sensor, name)| sensor.name = name);
-    let examination = doctor.examine(&report.firing, &report.names());
+    let mut examination = doctor.examine(&report.firing, &report.names());
+    if matches!(report.firing.pattern, Pattern::Several | Pattern::Flow)
+        && let Ok(log) = FiringLog::read(&args.file)
+    {
+        by_firings(&log, &report.names(), &mut examination);
+    }
     let answer = match examination.verdict {
         Verdict::Crosstalk => Answer::No,
         Verdict::NoneSeen => Answer::Yes,
         Verdict::CannotTell => Answer::NotDecided,
     };
-    let found = found(&report, sensors, examination);
     if args.json {
-        print_line(to_json(&found))?;
+        print_line(to_json(&json(&report, &sensors, &examination)))?;
     } else if !report.sensors.is_empty() {
-        tell(describe(&args.file.display().to_string(), &found))?;
+        let answer = advice(&examination, &report.firing, &report.names());
+        tell(format!("{answer}\n\n{}", describe(&args.file, &report, &sensors)))?;
     }
     tell_damage(&args.file, &report)?;
     Ok(answer)
 }
 
-fn found(report: &Report, sensors: Vec<Sensor>, examination: Examination) -> Found {
-    let Examination { verdict, fooled, pairs, reasons, record, notes } = examination;
-    let guess = |guess: &eeruf_logs::Guess| Guess {
-        what: guess.what.clone(),
-        value: guess.value.clone(),
-        option: guess.option.clone(),
-    };
-    let firing = &report.firing;
-    Found {
-        form: report.form.clone(),
-        sensors,
-        guesses: report.guesses.iter().map(guess).collect(),
-        firing: Firing {
-            pattern: firing.pattern.as_str(),
-            period_us: firing.period_us,
-            gap_us: firing.gap_us,
-            least_change_us: firing.least_change_us,
-            why: firing.why.clone(),
-            proves: firing.proves(None),
-        },
-        crosstalk: Crosstalk { verdict: verdict.as_str(), fooled, pairs, reasons, record, notes },
-        warnings: report.warnings.clone(),
-        damage: report.damage.iter().map(ToString::to_string).collect(),
-        skipped: left_out(report),
+/// Adds who fools whom, where a log of firings has lags that move.
+fn by_firings(log: &FiringLog, names: &[String], found: &mut Examination) {
+    /// A sensor is fooled if this share of its readings is another's sound, surely.
+    const FOOLED: f64 = 0.05;
+    let diagnosis = diagnose(log, &Settings::of(log));
+    // Names in such a log are the numbers of its sensors.
+    let place = |sensor: u8| names.iter().position(|name| *name == sensor.to_string());
+    for of in diagnosis.hearing.iter().filter(|of| of.foreign.value() >= FOOLED) {
+        let Some(sensor) = place(of.sensor) else { continue };
+        let mut by: Vec<_> = diagnosis.paths.iter().filter(|path| path.receiver == of.sensor).collect();
+        by.retain(|path| path.sender != of.sensor);
+        by.sort_by_key(|path| std::cmp::Reverse(path.readings));
+        let by: Vec<_> = by.iter().take(3).filter_map(|path| names.get(place(path.sender)?)).cloned().collect();
+        found.fooled.push(sensor);
+        let share = 100.0 * of.foreign.value();
+        found.reasons.push(format!(
+            "{}: {share:.0} % of the readings are another's sound, most of {}: the time from its firing stays",
+            names[sensor],
+            by.join(", ")
+        ));
+    }
+    if !found.fooled.is_empty() {
+        (found.verdict, found.record) = (Verdict::Crosstalk, None);
+        found.reasons.remove(0);
     }
 }
 
-fn describe(file: &str, found: &Found) -> String {
-    let count = found.sensors.len();
-    let mut text = format!("{file}: {}, {count} sensor{}\n", found.form, if count == 1 { "" } else { "s" });
+/// Output of `--json`; sensors count from 0.
+fn json(report: &Report, sensors: &[Sensor], found: &Examination) -> Value {
+    let suspect =
+        |of: &eeruf_logs::Suspect| object!({"sensor": of.sensor, "by": of.by, "reason": of.reason, "test": of.test});
+    let guess = |of: &eeruf_logs::Guess| object!({"what": of.what, "value": of.value, "option": of.option});
+    let firing = &report.firing;
+    object!({
+        "form": report.form,
+        "sensors": sensors,
+        "guesses": report.guesses.iter().map(guess).collect::<Vec<_>>(),
+        "firing": {
+            "pattern": firing.pattern.as_str(), "period_us": firing.period_us, "gap_us": firing.gap_us,
+            "least_change_us": firing.least_change_us, "why": firing.why, "proves": firing.proves(None),
+        },
+        "crosstalk": {
+            "verdict": found.verdict.as_str(), "fooled": found.fooled, "pairs": found.pairs,
+            "suspects": found.suspects.iter().map(suspect).collect::<Vec<_>>(), "reasons": found.reasons,
+            "record": found.record, "notes": found.notes,
+        },
+        "warnings": report.warnings,
+        "damage": report.damage.iter().map(ToString::to_string).collect::<Vec<_>>(),
+        "skipped": left_out(report),
+    })
+}
+
+/// What was read.
+fn describe(file: &Path, report: &Report, sensors: &[Sensor]) -> String {
+    let (count, file) = (sensors.len(), file.display());
+    let mut text = format!("{file}: {}, {count} sensor{}\n", report.form, if count == 1 { "" } else { "s" });
     let metres = |range: Option<f64>| range.map_or("-".to_owned(), |range| format!("{range:.3}"));
-    let rows = found.sensors.iter().map(|sensor| {
+    let rows = sensors.iter().map(|sensor| {
         let counts = [sensor.readings, sensor.echoes, sensor.no_echo].map(|count| count.to_string());
         let ranges = [metres(sensor.least_m), metres(sensor.most_m)];
         [&[sensor.name.clone()][..], &counts, &ranges].concat()
     });
     let header = ["sensor", "readings", "echoes", "no echo", "nearest m", "farthest m"];
     _ = write!(text, "{}", markdown(&header, rows));
-    for Guess { what, value, option } in &found.guesses {
+    for eeruf_logs::Guess { what, value, option } in &report.guesses {
         _ = write!(text, "\nguessed {what}: {value} ({option})");
     }
-    _ = write!(text, "\nfiring: {}: {}", found.firing.pattern, found.firing.proves);
-    for skipped in &found.skipped {
+    _ = write!(text, "\nfiring: {}: {}", report.firing.pattern.as_str(), report.firing.proves(None));
+    for skipped in left_out(report) {
         _ = write!(text, "\nleft out {skipped}");
     }
-    let Crosstalk { verdict, fooled, reasons, record, notes, .. } = &found.crosstalk;
-    let names: Vec<_> = fooled.iter().map(|&sensor| found.sensors[sensor].name.as_str()).collect();
-    let at = if names.is_empty() { String::new() } else { format!(" at {}", names.join(", ")) };
-    _ = write!(text, "\ncrosstalk: {}{at}", if *verdict == "crosstalk" { "yes" } else { verdict });
-    reasons.iter().for_each(|reason| _ = write!(text, "\n- {reason}"));
-    if let Some(record) = record {
-        _ = write!(text, "\n- record {record}");
-    }
-    notes.iter().for_each(|note| _ = write!(text, "\nnote {note}"));
     text + "\n"
 }

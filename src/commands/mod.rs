@@ -46,7 +46,7 @@ const GROUPS: &str = "\
 Commands by what they are for:
   Schedules   design, verify, search, atlas
   Simulation  study, paths, scene, experiment, merge, dataset
-  Real rings  survey, logs, replay, diagnose
+  Real rings  logs (and, as before, survey, replay, diagnose)
   Setting up  examples, completions, man, licenses
 
 Exit codes: 0 fine; 1 the answer is no; 2 bad input; 3 not decided; 74 the output cannot be written.";
@@ -139,17 +139,17 @@ pub(crate) enum Verb {
         "0 no crosstalk seen; 1 crosstalk; 2 not understood, or damaged; 3 the log cannot tell"
     ))]
     Logs(logs::Args),
-    #[command(after_help = help!(
+    #[command(hide = true, after_help = help!(
         "replay log.csv --t-delta-us 500",
         "0 replayed; 2 no sensors, bad input or a damaged log"
     ))]
     Replay(replay::Args),
-    #[command(after_help = help!(
+    #[command(hide = true, after_help = help!(
         "diagnose firings.csv --schedule schedule.toml",
-        "0 nothing is broken; 1 something is; 2 bad input or a damaged log"
+        "0 no sensor is deaf; 1 one is; 2 bad input or a damaged log"
     ))]
     Diagnose(diagnose::Args),
-    #[command(after_help = help!("survey survey.csv --ring ring.toml", "0 surveyed; 2 bad input or a damaged log"))]
+    #[command(hide = true, after_help = help!("survey survey.csv --ring ring.toml", "0 surveyed; 2 bad input or a damaged log"))]
     Survey(survey::Args),
     #[command(after_help = help!(
         "experiment set-one --seeds 20 --method sequential,eeruf",

@@ -61,6 +61,14 @@ pub(crate) struct Args {
     json: bool,
 }
 
+impl Args {
+    /// What `eeruf logs` asks for.
+    pub(super) fn of(file: &Path, t_delta_us: u32, log: LogArgs, out: Option<PathBuf>, json: bool) -> Self {
+        let file = file.to_owned();
+        Self { file, t_delta_us, ring: None, consecutive: 2, max_speed: None, log, out, svg: None, json }
+    }
+}
+
 fn speed(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(value) if (0.0..=60.0).contains(&value) => Ok(value),

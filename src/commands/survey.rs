@@ -78,6 +78,28 @@ pub(crate) struct Args {
     json: bool,
 }
 
+impl Args {
+    /// What `eeruf logs` asks for.
+    pub(super) fn of(file: &Path, ring: Option<PathBuf>, json: bool) -> Self {
+        Self {
+            file: Some(file.to_owned()),
+            simulate: vec![],
+            out: None,
+            physics: None,
+            leads: 20,
+            lead_step_us: 750,
+            tolerance_us: 100,
+            ring,
+            until_us: 15_000,
+            t_delta_us: 999,
+            window_us: None,
+            speed_of_sound: 343.2,
+            svg: None,
+            json,
+        }
+    }
+}
+
 pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     let file = args.file.as_ref().or(args.simulate.first()).map_or(Path::new(""), PathBuf::as_path);
     if args.simulate.len() > 1 {

@@ -215,3 +215,17 @@ fn gap_and_clock_step_begin_a_comparison_anew() {
         assert_eq!(counts, [Some(6), Some(2), Some(1)], "{name}");
     }
 }
+
+// The document's ten answers are what is printed, up to the first empty line.
+#[test]
+fn ten_answers_of_the_document_are_as_printed() {
+    let document = std::fs::read_to_string("docs/how-to/logs.md").unwrap();
+    let blocks: Vec<_> = document.split("```text\n$ eeruf ").skip(1).collect();
+    assert_eq!(blocks.len(), 10);
+    for block in blocks {
+        let (command, shown) = block.split_once('\n').unwrap();
+        let said = eeruf(&command.split(' ').collect::<Vec<_>>());
+        let (answer, _) = said.out.split_once("\n\n").unwrap();
+        assert_eq!(shown.split_once("\n```").unwrap().0, answer, "{command}");
+    }
+}

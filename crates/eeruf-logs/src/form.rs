@@ -7,6 +7,8 @@ use std::path::Path;
 
 use eeruf_files::FileError;
 
+use crate::flight::Flight;
+
 const SQLITE_MAGIC: &[u8; 16] = b"SQLite format 3\0";
 
 /// A form that is recognised.
@@ -19,6 +21,7 @@ pub(crate) enum Form {
     Serial,
     Text,
     Packed(Packing),
+    Flight(Flight),
     Foreign(Foreign),
 }
 
@@ -32,9 +35,6 @@ pub(crate) enum Packing {
 /// A form that is named and not read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Foreign {
-    ULog,
-    DataFlash,
-    Telemetry,
     Xz,
     Zip,
     Parquet,
@@ -65,11 +65,11 @@ impl Form {
         } else if starts(&[0x28, 0xb5, 0x2f, 0xfd]) {
             Self::Packed(Packing::Zstd)
         } else if starts(b"ULog\x01\x12\x35") || ending == "ulg" {
-            Self::Foreign(Foreign::ULog)
-        } else if starts(&[0xa3, 0x95]) || ending == "bin" {
-            Self::Foreign(Foreign::DataFlash)
-        } else if ending == "tlog" || is_frame(0) && is_binary(first) && ending != "bag" {
-            Self::Foreign(Foreign::Telemetry)
+            Self::Flight(Flight::ULog)
+        } else if starts(&[0xa3, 0x95]) {
+            Self::Flight(Flight::DataFlash)
+        } else if ending == "tlog" || is_frame(8) && is_binary(first) && ending != "bag" {
+            Self::Flight(Flight::Telemetry)
         } else if starts(b"PK\x03\x04") {
             Self::Foreign(Foreign::Zip)
         } else if starts(b"PAR1") {
@@ -101,6 +101,7 @@ impl Form {
             Self::Serial => "frames of the serial line",
             Self::Text => "text",
             Self::Packed(packing) => packing.name(),
+            Self::Flight(flight) => flight.name(),
             Self::Foreign(foreign) => foreign.name(),
         }
     }
@@ -189,9 +190,6 @@ pub(crate) fn to_file(input: impl Read, ending: &str) -> io::Result<(tempfile::N
 impl Foreign {
     const fn name(self) -> &'static str {
         match self {
-            Self::ULog => "a ULog file of PX4",
-            Self::DataFlash => "a DataFlash log of ArduPilot",
-            Self::Telemetry => "MAVLink telemetry",
             Self::Xz => "packed by xz",
             Self::Zip => "a zip archive or a spreadsheet",
             Self::Parquet => "a Parquet file",
@@ -203,13 +201,6 @@ impl Foreign {
     /// Says what the file is, and how to turn it into what is read: lines of Python, parted by semicolons.
     pub(crate) fn refuse(self, file: &Path) -> FileError {
         let path = file.display().to_string().replace(['\\', '"'], "_");
-        let rows = |kind: &str, head: &str, row: &str| {
-            format!(
-                "in Python, after `pip install pymavlink`: from pymavlink import mavutil; m = \
-                 mavutil.mavlink_connection(\"{path}\"); open(\"log.csv\", \"w\").writelines([\"{head}\\n\"] + \
-                 [f\"{row}\\n\" for x in iter(lambda: m.recv_match(type=\"{kind}\"), None)])"
-            )
-        };
         let frame = |read: &str| {
             format!(
                 "in Python, after `pip install pandas`: import pandas; pandas.{read}(\"{path}\").to_csv(\"log.csv\", \
@@ -217,16 +208,6 @@ impl Foreign {
             )
         };
         let how = match self {
-            Self::ULog => format!(
-                "in Python, after `pip install pyulog pandas`: import pyulog, pandas; d = [pandas.DataFrame(d.data)\
-                 .assign(sensor=d.multi_id) for d in pyulog.ULog(\"{path}\").data_list if d.name == \
-                 \"distance_sensor\"]; pandas.concat(d)[[\"timestamp\", \"sensor\", \"current_distance\"]]\
-                 .to_csv(\"log.csv\", index=False)"
-            ),
-            Self::DataFlash => rows("RFND", "time_us,sensor,distance_m", "{x.TimeUS},{x.Instance},{x.Dist}"),
-            Self::Telemetry => {
-                rows("DISTANCE_SENSOR", "time_s,sensor,distance_cm", "{x._timestamp},{x.id},{x.current_distance}")
-            }
             Self::Xz => format!("`xz --decompress {path}`"),
             Self::Zip => frame("read_excel"),
             Self::Parquet => frame("read_parquet"),

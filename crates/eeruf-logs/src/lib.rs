@@ -7,6 +7,7 @@
 //! | ROS 2 bag (a folder) | the same, from its MCAP or `SQLite` files; messages packed by zstd too |
 //! | ROS 1 bag | the same, format 2.0; chunks of bz2, lz4 or neither |
 //! | text | tables with any separator, with or without header; pairs of name and value; JSON |
+//! | flight logs: `.BIN`, `.tlog`, `.ulg` | distances that a sensor measures by sound, with their quality |
 //! | frames of `eeruf-serial`, as they came | each firing |
 //! | any of these packed | as a whole, by gzip, bzip2 or zstd |
 //!
@@ -40,6 +41,7 @@ mod firing_files;
 mod firing_messages;
 mod firing_text;
 mod firings;
+mod flight;
 mod form;
 mod judging;
 mod mcap;
@@ -74,7 +76,7 @@ pub use diagnose::{
     AlignError, Alignment, Diagnosis, FoundPath, Hearing, Named, Settings, Share, Timing, TimingError, align, diagnose,
     timing,
 };
-pub use doctor::{Doctor, Examination, Verdict};
+pub use doctor::{Doctor, Examination, Suspect, Verdict};
 pub use firings::{Firing, FiringLog};
 pub use judging::{Counted, Judging, RangeJudge};
 pub use options::{FieldChoice, Options, RangeUnit, Table, TimeUnit};
@@ -195,6 +197,7 @@ fn read_in_order(
     match form {
         Form::Text => text::read(input, name, options, sink),
         Form::Serial => serial::read(input, name, options, sink),
+        Form::Flight(flight) => flight::read(flight, input, name, sink),
         Form::Foreign(foreign) => Err(foreign.refuse(name)),
         Form::Packed(packing) => read_packed(input, name, packing, options, sink),
         Form::Mcap | Form::Ros1 | Form::Sqlite => match read_copy(input, name, form, options, sink)? {
@@ -241,7 +244,7 @@ fn read_packed(
         // Nothing came out.
         Form::Text if error.is_some() => {}
         Form::Text => read_in_order(&mut UntilError::new(input, &mut error), name, form, options, sink)?,
-        Form::Serial | Form::Foreign(_) => {
+        Form::Serial | Form::Flight(_) | Form::Foreign(_) => {
             sink.form(form.name());
             read_in_order(&mut UntilError::new(input, &mut error), name, form, options, sink)?;
         }

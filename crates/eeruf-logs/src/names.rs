@@ -30,7 +30,7 @@ const RANGES: &str = "\
     entfernung value values";
 const SENSORS: &str = "\
     sensor id name channel ch frame topic sonar _field sensor_id sensorid frame_id entity_id source instance device \
-    device_id";
+    device_id key addr address port";
 const OTHERS: &str = "\
     battery bat voltage volt volts current temp temperature humidity hum pressure seq sequence index entry idx \
     count counter row line mode state status flag flags ir infrared laser lidar speed velocity vel accel acc gyro \
@@ -42,6 +42,8 @@ const OTHERS: &str = "\
     vx vy vz q servo cmd linear angular valid ok enabled bump bumper touch contact estop hz fps deg degc lux feed \
     stat orient elevation adc analog analogue ttl";
 
+/// Lengths that are worked out from a range, where there is one.
+const DERIVED: &str = "depth level height";
 /// Lines that a sketch draws to fix a plotter's axis.
 const LIMITS: &str = "min max minimum maximum lower upper lower_limit upper_limit";
 /// Units that are a name on their own.
@@ -173,6 +175,11 @@ pub(crate) fn is_filtered(name: &str) -> bool {
 pub(crate) fn is_raw(name: &str) -> bool {
     let words = words(name);
     words.iter().any(|word| word == "raw") && !words.iter().any(|word| is_unit(word))
+}
+
+/// Returns true for the name of a length that a program works out from a range.
+pub(crate) fn is_derived(name: &str) -> bool {
+    words(name).iter().any(|word| is_in(DERIVED, word))
 }
 
 /// Returns true for a pin of an analogue converter, as `A0`.

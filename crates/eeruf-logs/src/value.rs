@@ -112,7 +112,9 @@ pub(crate) fn calendar_ns(text: &str) -> Option<u64> {
     };
     let days = days(date)?;
     let (time, zone_s) = zone(time)?;
-    let ns = if time.is_empty() { 0 } else { time_of_day_ns(time)? };
+    // After a date two numbers are hours and minutes.
+    let minutes = || time_of_day_ns(&format!("{time}:00")).filter(|_| time.matches(':').count() == 1);
+    let ns = if time.is_empty() { 0 } else { time_of_day_ns(time).or_else(minutes)? };
     let s = days.checked_mul(86_400)?.checked_sub(zone_s)?;
     u64::try_from(s).ok()?.checked_mul(1_000_000_000)?.checked_add(ns)
 }
@@ -215,7 +217,7 @@ pub(crate) fn without_level(line: &str) -> &str {
 }
 
 /// Nanoseconds of a time with its unit: `1.5 s`, `1500ms`.
-fn elapsed_ns(text: &str) -> Option<u64> {
+pub(crate) fn elapsed_ns(text: &str) -> Option<u64> {
     let (time, unit) = text.split_at(text.find(char::is_alphabetic)?);
     let unit_s = match unit {
         "s" | "sec" => 1.0,

@@ -211,7 +211,7 @@ impl Block {
         out.set_item("proves", if is_last { report.firing.proves(None) } else { not_yet.to_owned() })?;
         out.set_item("warnings", report.warnings)?;
         let unexamined = || Examination { reasons: vec![not_yet.to_owned()], ..Examination::default() };
-        let Examination { verdict, fooled, pairs, reasons, record, notes } =
+        let Examination { verdict, fooled, pairs, reasons, record, notes, .. } =
             self.examination.unwrap_or_else(unexamined);
         let crosstalk = PyDict::new(py);
         crosstalk.set_item("verdict", verdict.as_str())?;

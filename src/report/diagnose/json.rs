@@ -56,7 +56,7 @@ pub(crate) fn json(found: &Found<'_>) -> Value {
         "rejected": found.rejected().map(|(rejected, _)| rejected),
         "rejected_foreign": found.rejected().map(|(_, named)| named),
         "most_offsets": diagnosis.most_offsets, "moved": diagnosis.moved,
-        "silent": diagnosis.silent(),
+        "silent": diagnosis.silent(), "tolerance_us": found.tolerance_us,
         "paths": paths, "sensors": hearing, "faults": faults, "timing": timing, "alignment": alignment,
         "advice": found.advice(),
     })

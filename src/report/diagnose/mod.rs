@@ -18,6 +18,8 @@ pub(crate) struct Found<'a> {
     pub(crate) file: &'a Path,
     pub(crate) log: &'a FiringLog,
     pub(crate) diagnosis: &'a Diagnosis,
+    /// Largest difference between readings of one path.
+    pub(crate) tolerance_us: u32,
     pub(crate) timing: Option<Timing>,
     /// Of a log without instants, how well it fits the schedule.
     pub(crate) alignment: Option<Alignment>,

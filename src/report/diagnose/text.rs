@@ -65,6 +65,15 @@ fn head(found: &Found<'_>) -> String {
             diagnosis.paths.len()
         );
     }
+    // Beyond this a step of the usual codes of waits is within what counts as the same.
+    if found.tolerance_us > 120 {
+        _ = writeln!(
+            text,
+            "Readings scatter, and what differs by less than {} us is taken for the same: lags that move in smaller steps \
+             tell no sender.",
+            2 * found.tolerance_us
+        );
+    }
     if let Some(alignment) = found.alignment {
         let (explained, of) = alignment.moves;
         let known = if alignment.accidents <= 0.01 { "" } else { ": the readings do not say whether it is the ring's" };

@@ -63,6 +63,31 @@ impl Default for Settings {
     }
 }
 
+impl Settings {
+    /// The usual settings, with the tolerance that the readings' scatter takes: four times it, at least 75 us.
+    pub fn of(log: &FiringLog) -> Self {
+        /// Successive echoes of a sensor that differ by more are of different paths.
+        const OTHER_US: i64 = 1000;
+        /// The lower quartile of absolute differences of two normal variables, in their standard deviations.
+        const QUARTILE: f64 = 0.4506;
+        let usual = Self::default();
+        let (mut last, mut changes) = (vec![None::<Option<u32>>; log.sensors()], vec![]);
+        for firing in &log.firings {
+            let before = last[usize::from(firing.sensor)].replace(firing.t_echo_us);
+            if let (Some(Some(before)), Some(echo)) = (before, firing.t_echo_us) {
+                changes.push((i64::from(echo) - i64::from(before)).abs());
+            }
+        }
+        changes.retain(|us| *us < OTHER_US);
+        changes.sort_unstable();
+        let scatter_us = changes.get(changes.len() / 4).map_or(0.0, |&us| us as f64 / QUARTILE);
+        // The quartile of a few, or of sound that moves from firing to firing, is no scatter of one path.
+        let is_known = changes.len() >= 100 && 3.0 * scatter_us > f64::from(usual.tolerance_us);
+        let tolerance_us = if is_known { (4.0 * scatter_us) as u32 } else { usual.tolerance_us };
+        Self { tolerance_us, ..usual }
+    }
+}
+
 /// A path that was found.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FoundPath {

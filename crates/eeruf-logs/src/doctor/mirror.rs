@@ -17,17 +17,18 @@ pub(crate) struct Mirrored {
     pub(crate) far: u32,
     /// The range in microseconds of the readings that agree.
     pub(crate) spread_us: f64,
+    /// Echo times this close are the same, in microseconds.
+    pub(crate) same_us: f64,
 }
 
-/// Echo times this close are the same, in microseconds.
-const SAME_US: f64 = 45.0;
 /// Echo times that differ by so much come from different walls.
 const FAR_US: f64 = 1000.0;
-/// From here to there two echoes are nearly the same: the band is three times as wide.
-const NEARLY_US: [f64; 2] = [65.0, 200.0];
+/// From here to there two echoes are nearly the same, in what counts as the same: the band is three times as wide.
+const NEARLY: [f64; 2] = [1.5, 4.5];
 
 /// Compares two sensors that fire within half a period of each other.
 pub(crate) fn mirrored(x: &Series, y: &Series, period_us: f64) -> Mirrored {
+    let same_us = x.scatter().same_us(y.scatter());
     let (mut next, mut differences, mut agreeing) = (0, vec![], vec![]);
     for (&at, &echo) in x.at_us.iter().zip(&x.echo_us) {
         while next + 1 < y.at_us.len() && (y.at_us[next + 1] - at).abs() <= (y.at_us[next] - at).abs() {
@@ -39,13 +40,13 @@ pub(crate) fn mirrored(x: &Series, y: &Series, period_us: f64) -> Mirrored {
             continue;
         }
         let difference = echo - other + 2.0 * lag;
-        if difference.abs() <= SAME_US {
+        if difference.abs() <= same_us {
             agreeing.push(echo);
         }
         differences.push(difference);
     }
-    let nearly = differences.iter().filter(|us| (NEARLY_US[0]..NEARLY_US[1]).contains(&us.abs())).count() as u32;
-    let far = differences.iter().filter(|us| us.abs() >= FAR_US).count() as u32;
+    let nearly = differences.iter().filter(|us| (NEARLY[0]..NEARLY[1]).contains(&(us.abs() / same_us))).count() as u32;
+    let far = differences.iter().filter(|us| us.abs() >= FAR_US.max(5.0 * same_us)).count() as u32;
     agreeing.sort_by(f64::total_cmp);
     let part = |share: usize| agreeing.get(agreeing.len() * share / 20).copied().unwrap_or(0.0);
     Mirrored {
@@ -54,12 +55,16 @@ pub(crate) fn mirrored(x: &Series, y: &Series, period_us: f64) -> Mirrored {
         nearly,
         far,
         spread_us: part(19) - part(1),
+        same_us,
     }
 }
 
 impl Mirrored {
     /// Returns true if the two read each other's sound, and neither chance nor a wall before both explains it.
     pub(crate) fn is_mutual(&self) -> bool {
-        self.agree >= 24 && self.agree >= self.nearly && 10 * self.far >= self.both && self.spread_us >= 90.0
+        self.agree >= 24
+            && self.agree >= self.nearly
+            && 10 * self.far >= self.both
+            && self.spread_us >= 2.0 * self.same_us
     }
 }

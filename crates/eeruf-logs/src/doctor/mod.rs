@@ -1,5 +1,6 @@
 //! A doctor for any log of ranges: is there crosstalk in it, and between which sensors?
 
+mod loops;
 mod mirror;
 mod notes;
 mod series;
@@ -8,8 +9,11 @@ mod statistics;
 use crate::pattern::{FiringPattern, Pattern};
 use crate::reading::{Echo, Reading};
 
+use loops::looped;
 use mirror::mirrored;
-use series::Series;
+use series::{Scatter, Series};
+
+use crate::symptom::Finding;
 use statistics::Dependence;
 
 /// Readings that are kept.
@@ -57,8 +61,25 @@ pub struct Examination {
     pub reasons: Vec<String>,
     /// Advice on what to record, if the log cannot tell.
     pub record: Option<String>,
-    /// Remarks on single sensors, one sentence each.
+    /// Sensors that may read foreign sound, each with the test that decides.
+    pub suspects: Vec<Suspect>,
+    /// Symptoms of single sensors.
+    pub findings: Vec<Finding>,
+    /// Remarks, one sentence each: the findings, and what was not examined.
     pub notes: Vec<String>,
+}
+
+/// A suspicion that a log alone does not decide.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Suspect {
+    /// The sensor that may be fooled, from 0.
+    pub sensor: usize,
+    /// The sensor whose sound it may read, if the log says that.
+    pub by: Option<usize>,
+    /// What speaks for it.
+    pub reason: String,
+    /// The test that decides.
+    pub test: String,
 }
 
 /// Collects the readings of a log.
@@ -78,23 +99,23 @@ pub struct Doctor {
     speed_of_sound: f64,
     first_ns: Option<u64>,
     sensors: Vec<Series>,
-    kept: usize,
+    /// Each reading's sensor and echo time, in the order of the log.
+    rows: Vec<(usize, f64)>,
     left_out: usize,
 }
 
 impl Doctor {
     /// Begins with no readings; the speed of sound in m/s turns ranges into echo times.
     pub fn new(speed_of_sound: f64) -> Self {
-        Self { speed_of_sound, first_ns: None, sensors: vec![], kept: 0, left_out: 0 }
+        Self { speed_of_sound, first_ns: None, sensors: vec![], rows: vec![], left_out: 0 }
     }
 
     /// Takes a reading. The first 262,144 are kept.
     pub fn push(&mut self, reading: &Reading) {
-        if self.kept == MOST_READINGS {
+        if self.rows.len() == MOST_READINGS {
             self.left_out += 1;
             return;
         }
-        self.kept += 1;
         if self.sensors.len() <= reading.sensor {
             self.sensors.resize_with(reading.sensor + 1, Series::default);
         }
@@ -106,6 +127,7 @@ impl Doctor {
             Echo::At(range_m) => 2e6 * range_m / self.speed_of_sound,
             _ => f64::NAN,
         };
+        self.rows.push((reading.sensor, echo_us));
         let series = &mut self.sensors[reading.sensor];
         series.at_us.push(at_us);
         series.echo_us.push(echo_us);
@@ -129,7 +151,7 @@ impl Doctor {
                 record: Some(CHANGE.to_owned()),
                 ..Examination::default()
             },
-            Pattern::InTurn => self.in_turn(firing, &name),
+            Pattern::InTurn => self.in_turn(firing),
             Pattern::Several | Pattern::Flow => Examination {
                 reasons: vec![
                     "lags move between many values, which takes the log of the firings to examine".to_owned(),
@@ -149,30 +171,155 @@ impl Doctor {
                 ..Examination::default()
             },
         };
-        let others = self.sensors.iter().enumerate().filter(|(sensor, _)| !found.fooled.contains(sensor));
-        let notes = others.filter_map(|(sensor, own)| Some(format!("{}: {}", name(sensor), own.note()?)));
-        found.notes = notes.collect();
+        let scatter: Vec<Scatter> = self.sensors.iter().map(Series::scatter).collect();
+        self.silent_rounds(&scatter, &name, &mut found);
+        self.suspects(&scatter, &name, &mut found);
+        if found.verdict == Verdict::NoneSeen
+            && let Some(suspect) = found.suspects.first()
+        {
+            found.verdict = Verdict::CannotTell;
+            found.reasons = vec![format!(
+                "{}; if the times are those of reading the modules and not of firing, each fires by itself",
+                suspect.reason
+            )];
+        }
+        let more =
+            found.suspects.iter().map(|of| &of.reason).filter(|of| !found.reasons.iter().any(|r| r.contains(*of)));
+        let more: Vec<_> = more.cloned().collect();
+        found.reasons.extend(more);
+        for (sensor, own) in self.sensors.iter().enumerate().filter(|(sensor, _)| !found.fooled.contains(sensor)) {
+            if let Some((symptom, said)) = own.symptom() {
+                found.notes.push(format!("{}: {said}", name(sensor)));
+                found.findings.push(Finding { sensor, symptom, said });
+            }
+        }
         if self.left_out > 0 {
             found.notes.push(format!("the first {MOST_READINGS} readings were examined, {} not", self.left_out));
         }
         found
     }
 
+    /// Rounds in which another sensor did not fire are a pause test.
+    fn silent_rounds<'n>(&self, scatter: &[Scatter], name: &impl Fn(usize) -> &'n str, found: &mut Examination) {
+        /// More are no ring.
+        const MOST_SENSORS: usize = 64;
+        let sensors = self.sensors.len();
+        if sensors > MOST_SENSORS {
+            return;
+        }
+        // By receiver and other sensor: has that one fired since the receiver's reading before?
+        let mut fired = vec![vec![]; sensors * sensors];
+        let mut since = vec![false; sensors * sensors];
+        for &(receiver, _) in &self.rows {
+            for other in 0..sensors {
+                let pair = receiver * sensors + other;
+                fired[pair].push(Some(std::mem::take(&mut since[pair])));
+                since[other * sensors + receiver] = true;
+            }
+        }
+        for receiver in 0..sensors {
+            for other in (0..sensors).filter(|&other| other != receiver) {
+                let classes = &fired[receiver * sensors + other];
+                let with = classes.iter().filter(|&&fired| fired == Some(true)).count();
+                if with * 50 < classes.len() || with * 50 > classes.len() * 49 {
+                    continue;
+                }
+                let seen = self.sensors[receiver].changes(classes, scatter[receiver]).dependence();
+                if seen.count >= FEWEST && seen.deviations >= DEVIATIONS && seen.share >= LEAST_SHARE {
+                    found.verdict = Verdict::Crosstalk;
+                    found.fooled.push(receiver);
+                    found.suspects.push(Suspect {
+                        sensor: receiver,
+                        by: Some(other),
+                        reason: format!(
+                            "{}: {:.0} % of the readings are others in rounds in which {} did not fire",
+                            name(receiver),
+                            100.0 * seen.share,
+                            name(other)
+                        ),
+                        test: pause(name(receiver), name(other)),
+                    });
+                }
+            }
+        }
+        found.fooled.sort_unstable();
+        found.fooled.dedup();
+    }
+
+    /// Readings that a loop or others' sound explains, and nothing that stands or moves.
+    fn suspects<'n>(&self, scatter: &[Scatter], name: &impl Fn(usize) -> &'n str, found: &mut Examination) {
+        /// Readings that nothing explains: isolated ones, jumps, and those of a robot of which a sensor stands still.
+        const ISOLATED: f64 = 0.02;
+        const JUMPS: f64 = 0.02;
+        const STANDS: f64 = 0.5;
+        let loops = if self.has_rounds() { looped(&self.rows, scatter) } else { vec![] };
+        for of in loops {
+            let (own, other) = (name(of.receiver), name(of.sender));
+            let what = if of.is_difference { "difference" } else { "sum" };
+            found.suspects.push(Suspect {
+                sensor: of.receiver,
+                by: Some(of.sender),
+                reason: format!(
+                    "{own} and {other}: their {what} stays in {:.0} % of {} rounds while each changes by {:.1} ms, as \
+                     where a loop waits for one echo and then fires the other",
+                    100.0 * of.share,
+                    of.rounds,
+                    of.spread_us * 1e-3
+                ),
+                test: pause(own, other),
+            });
+        }
+        let odd: Vec<_> = self.sensors.iter().map(Series::odd).collect();
+        let stands = odd.iter().any(|of| of.stands >= STANDS);
+        for (sensor, of) in odd.iter().enumerate().filter(|(_, of)| of.echoes >= FEWEST as usize) {
+            let is_loose = stands && of.loose > ISOLATED && of.jumps >= (3.0 / of.echoes as f64).max(0.003);
+            let is_known = found.fooled.contains(&sensor) || found.suspects.iter().any(|of| of.sensor == sensor);
+            if is_known || !(of.isolated > ISOLATED || of.jumps > JUMPS || is_loose) {
+                continue;
+            }
+            let share = 100.0 * if is_loose { of.loose } else { of.isolated.max(of.jumps) };
+            let own = name(sensor);
+            found.suspects.push(Suspect {
+                sensor,
+                by: None,
+                reason: format!(
+                    "{own}: {share:.0} % of the readings come from nothing that stands or moves, as others' sound does \
+                     and a bad contact"
+                ),
+                test: format!(
+                    "fire none but {own} for 20 s: if it calms down, it reads others; if not, look at its wires and \
+                     its supply"
+                ),
+            });
+        }
+    }
+
+    /// Returns true if the sensors have about as many readings each, as in the rounds of a loop.
+    fn has_rounds(&self) -> bool {
+        let counts = || self.sensors.iter().map(|own| own.echo_us.len());
+        counts().max().unwrap_or(0) <= counts().min().unwrap_or(0) + counts().max().unwrap_or(0) / 4
+    }
+
     /// Readings of two phases: an own echo is the same in both.
     fn alternating<'n>(&self, name: &impl Fn(usize) -> &'n str) -> Examination {
         let mut found = Examination::default();
-        let (mut few, mut unclear) = (0, 0);
+        let (mut few, mut unclear, mut blurred) = (0, 0, 0.0_f64);
         for (sensor, own) in self.sensors.iter().enumerate() {
             if own.echoes().count() == 0 {
                 continue;
             }
             let others = self.sensors.iter().enumerate().filter(|&(other, _)| other != sensor);
             let classes = others.filter_map(|(_, other)| own.two_classes(other));
-            let Some((classes, _)) = classes.max_by(|a, b| a.1.total_cmp(&b.1)) else {
+            let Some((classes, step_us)) = classes.max_by(|a, b| a.1.total_cmp(&b.1)) else {
                 few += 1;
                 continue;
             };
-            let Dependence { share, deviations, count } = own.changes(&classes).dependence();
+            let scatter = own.scatter();
+            // Foreign sound moves by the step of the lags, which must show.
+            if scatter.same_us(scatter) > step_us {
+                blurred = blurred.max(scatter.us);
+            }
+            let Dependence { share, deviations, count } = own.changes(&classes, scatter).dependence();
             if count < FEWEST {
                 few += 1;
             } else if deviations >= DEVIATIONS && share >= LEAST_SHARE {
@@ -188,6 +335,13 @@ impl Doctor {
         }
         if !found.fooled.is_empty() {
             found.verdict = Verdict::Crosstalk;
+        } else if blurred > 0.0 {
+            found.reasons.push(format!(
+                "readings scatter by {blurred:.0} us, which hides what moves by the steps of the lags: no crosstalk of \
+                 this ring can show"
+            ));
+            found.record =
+                Some("the same with echo times in microseconds, or with larger steps of the lags".to_owned());
         } else if few + unclear == 0 && self.sensors.len() > 1 {
             found.verdict = Verdict::NoneSeen;
             found.reasons.push(
@@ -249,9 +403,11 @@ impl Doctor {
     }
 
     /// No sound of another sensor is left when a sensor listens.
-    fn in_turn<'n>(&self, firing: &FiringPattern, name: &impl Fn(usize) -> &'n str) -> Examination {
-        /// More readings that nothing explains refute that the times are those of firings.
-        const STRAYS: f64 = 0.02;
+    fn in_turn(&self, firing: &FiringPattern) -> Examination {
+        /// Fewer rounds would not show seldom crosstalk; and of a robot that drives no jump of 30 cm may be left open, in
+        /// as large a share of all readings.
+        const ROUNDS: usize = 100;
+        const JUMPS: f64 = 0.0015;
         let gap_us = firing.gap_us.unwrap_or(0);
         let gap_ms = gap_us as f64 * 1e-3;
         if gap_us < QUIET_US {
@@ -264,24 +420,37 @@ impl Doctor {
                 ..Examination::default()
             };
         }
-        let strays = self.sensors.iter().enumerate().map(|(sensor, own)| (sensor, own.strays()));
-        if let Some((sensor, share)) = strays.filter(|of| of.1 > STRAYS).max_by(|a, b| a.1.total_cmp(&b.1)) {
-            return Examination {
-                reasons: vec![format!(
-                    "{}: {:.0} % of the readings come from nothing that stands or moves, as others' sound does; if \
-                     the times are those of reading the modules and not of firing, each fires by itself",
-                    name(sensor),
-                    100.0 * share
-                )],
-                record: Some(CHANGE.to_owned()),
-                ..Examination::default()
-            };
+        let cannot_tell = |why: String, record: &str| Examination {
+            reasons: vec![why],
+            record: Some(record.to_owned()),
+            ..Examination::default()
+        };
+        let rounds = self.sensors.iter().map(|own| own.echo_us.len()).min().unwrap_or(0);
+        if rounds < ROUNDS {
+            return cannot_tell(
+                format!("{rounds} rounds, of which seldom crosstalk may have missed all; expected {ROUNDS}"),
+                "5 minutes of the same",
+            );
+        }
+        let odd: Vec<_> = self.sensors.iter().map(Series::odd).collect();
+        let echoes: usize = odd.iter().map(|of| of.echoes).sum();
+        let jumps = odd.iter().map(|of| of.jumps * of.echoes as f64).sum::<f64>() / echoes.max(1) as f64;
+        let moves = odd.iter().filter(|of| of.echoes > 0).all(|of| of.stands < 0.5);
+        if moves && jumps > JUMPS {
+            return cannot_tell(
+                format!(
+                    "the robot moves, and {:.1} % of the readings jump: corners do that, and modules that fire by \
+                     themselves, if the times are those of reading them",
+                    100.0 * jumps
+                ),
+                CHANGE,
+            );
         }
         Examination {
             verdict: Verdict::NoneSeen,
             reasons: vec![format!(
-                "each sensor fires {gap_ms:.1} ms or more after the one before, when its sound has died away; sound \
-                 that lasts longer would not show"
+                "each sensor fires {gap_ms:.1} ms or more after the one before, when its sound has died away, and in \
+                 {rounds} rounds no reading jumps as others' sound does; sound that lasts longer would not show"
             )],
             ..Examination::default()
         }
@@ -291,6 +460,13 @@ impl Doctor {
 /// A log that tells.
 const CHANGE: &str =
     "1 minute in the same place with lags that change, as `eeruf design` plans them, or one sensor at a time";
+/// The test that tells another's sound from an own echo.
+fn pause(own: &str, other: &str) -> String {
+    format!(
+        "do not trigger {other} for 20 s, or hold a cloth before it: if {own} changes, it reads {other}; or wait 1 ms \
+         more before {own} in every second round: another's sound comes 17 cm nearer then, an own echo stays"
+    )
+}
 /// Sound in a room has died away after this time.
 const QUIET_US: u64 = 30_000;
 

@@ -1,6 +1,7 @@
-//! Remarks on a single sensor, without the others.
+//! Symptoms of a single sensor, without the others.
 
 use super::series::{Series, Steady};
+use crate::symptom::Symptom;
 
 /// Fewer readings say nothing.
 const FEWEST: usize = 30;
@@ -31,35 +32,27 @@ impl Series {
     }
 
     /// The most striking thing about the sensor's readings, if there is one.
-    pub(crate) fn note(&self) -> Option<String> {
+    pub(crate) fn symptom(&self) -> Option<(Symptom, String)> {
         let count = self.echo_us.len();
         let echoes: Vec<f64> = self.echoes().collect();
+        let of = |symptom: Symptom| move |said: String| (symptom, said);
         if let Some(said) = never_changes(&echoes) {
-            return Some(said);
+            return Some((Symptom::Constant, said));
         }
-        if count < FEWEST {
-            return None;
-        }
-        if echoes.is_empty() {
-            return Some("no echo at all: nothing in range, or a sensor that is deaf or not connected".to_owned());
+        if count >= FEWEST && echoes.is_empty() {
+            let said = "no echo at all: nothing in range, or a sensor that is deaf or not connected";
+            return Some((Symptom::Silent, said.to_owned()));
         }
         if echoes.len() < FEWEST {
             return None;
         }
-        self.coarse(&echoes).or_else(|| self.chatter(&echoes)).or_else(|| self.stale()).or_else(|| self.faded())
-    }
-
-    /// Values that are all multiples of a step of 5 mm or more, and take at least four values.
-    fn coarse(&self, echoes: &[f64]) -> Option<String> {
-        let mut sorted = echoes.to_vec();
-        sorted.sort_by(f64::total_cmp);
-        sorted.dedup_by(|a, b| (*a - *b).abs() < 0.5);
-        let steps = sorted.windows(2).map(|two| two[1] - two[0]);
-        let step = steps.fold(f64::INFINITY, f64::min);
-        let is_multiple = |us: &f64| (us / step - (us / step).round()).abs() < 0.02;
-        let is_coarse = sorted.len() >= 4 && (25.0..2000.0).contains(&step) && sorted.iter().all(is_multiple);
-        is_coarse
-            .then(|| format!("values in steps of {step:.0} us: smaller changes, and who agrees with whom, do not show"))
+        let coarse = |step: f64| {
+            format!("values in steps of {step:.0} us: smaller changes, and who agrees with whom, do not show")
+        };
+        (self.step_us().map(coarse).map(of(Symptom::Coarse)))
+            .or_else(|| self.chatter(&echoes).map(of(Symptom::Chatters)))
+            .or_else(|| self.stale().map(of(Symptom::Stale)))
+            .or_else(|| self.faded().map(of(Symptom::Jumps)))
     }
 
     /// Readings that are nearly never near the one before nor at a value that comes again.

@@ -1,6 +1,7 @@
 //! The readings of one sensor, in order of time.
 
 use super::statistics::Changes;
+use crate::diagnose::median;
 
 /// Echoes this close to the next one, in microseconds, are of one steady value.
 const NEXT_US: f64 = 100.0;
@@ -16,6 +17,34 @@ const STEADY_US: f64 = 600.0;
 pub(crate) struct Series {
     pub(crate) at_us: Vec<f64>,
     pub(crate) echo_us: Vec<f64>,
+}
+
+/// The scatter of a sensor's readings, in microseconds, and the step of its values, 0 for none.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Scatter {
+    pub(crate) us: f64,
+    pub(crate) step_us: f64,
+}
+
+impl Scatter {
+    /// Two readings of sensors with such scatter that differ by no more are the same, in microseconds.
+    pub(crate) fn same_us(self, other: Self) -> f64 {
+        (3.0 * self.us.hypot(other.us)).max(45.0)
+    }
+}
+
+/// Shares of a sensor's echoes that no motion explains.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Odd {
+    /// Far from the one before and the one after, at no value that comes again.
+    pub(crate) isolated: f64,
+    /// Far from the one before, if one of the two comes at no value that comes again.
+    pub(crate) jumps: f64,
+    /// At no value that comes again.
+    pub(crate) loose: f64,
+    /// At the value that most come at.
+    pub(crate) stands: f64,
+    pub(crate) echoes: usize,
 }
 
 /// A steady value of a sensor that stands.
@@ -61,29 +90,56 @@ impl Series {
         moving.map(|value| value.count).sum::<usize>() * 5 > count || all * 2 < count
     }
 
-    /// The share of the readings that a wall which stands does not explain, and that come seldom each: where a tenth of
-    /// the readings or more are of such a wall. Of others, steps that no motion makes.
-    pub(crate) fn strays(&self) -> f64 {
-        /// A reading is one of a thing that stands if this share of all is within this many microseconds of it.
-        const NEAR_US: f64 = 150.0;
-        const STANDS: f64 = 0.1;
-        const RECURS: f64 = 0.03;
-        /// No thing comes so much nearer, or goes, from one reading to the next: 30 cm.
-        const STEP_US: f64 = 1_750.0;
+    /// The step of which all values are multiples, if it is a coarse one.
+    pub(crate) fn step_us(&self) -> Option<f64> {
         let mut sorted: Vec<f64> = self.echoes().collect();
         sorted.sort_by(f64::total_cmp);
-        let all = sorted.len().max(1) as f64;
-        let near = |us: f64| {
-            let within = sorted.partition_point(|&other| other <= us + NEAR_US)
-                - sorted.partition_point(|&other| other < us - NEAR_US);
-            within as f64 / all
-        };
-        let crowds: Vec<f64> = sorted.iter().map(|&us| near(us)).collect();
-        if crowds.iter().any(|&crowd| crowd >= STANDS) {
-            return crowds.iter().filter(|&&crowd| crowd < RECURS).count() as f64 / all;
-        }
+        sorted.dedup_by(|a, b| (*a - *b).abs() < 0.5);
+        let step = sorted.windows(2).map(|two| two[1] - two[0]).fold(f64::INFINITY, f64::min);
+        let is_multiple = |us: &f64| (us / step - (us / step).round()).abs() < 0.02;
+        let is_coarse = sorted.len() >= 4 && (25.0..2000.0).contains(&step) && sorted.iter().all(is_multiple);
+        is_coarse.then_some(step)
+    }
+
+    /// The scatter of the readings about a line through their neighbours, at least half the step of the values.
+    pub(crate) fn scatter(&self) -> Scatter {
+        let off = |three: &[f64]| (three[1] - 0.5 * (three[0] + three[2])).abs();
+        let mut off: Vec<f64> = self.echo_us.windows(3).map(off).filter(|us| !us.is_nan()).collect();
+        let step_us = self.step_us().unwrap_or(0.0);
+        Scatter { us: (1.48 / 1.5_f64.sqrt() * median(&mut off)).max(0.5 * step_us), step_us }
+    }
+
+    /// Readings that neither a thing that stands nor one that moves explains.
+    pub(crate) fn odd(&self) -> Odd {
+        /// Readings within this many microseconds are of one thing that stands, if as large a share of all is.
+        const NEAR_US: f64 = 150.0;
+        const RECURS: f64 = 0.03;
+        /// 15 cm, and what a robot at 1.2 m/s moves from one reading to the next.
+        const OFF_US: f64 = 874.0;
+        const DRIVES: f64 = 2.0 * 1.2 / 343.2;
         let echoes: Vec<f64> = self.echoes().collect();
-        echoes.windows(2).filter(|two| (two[1] - two[0]).abs() > STEP_US).count() as f64 / all
+        let mut sorted = echoes.clone();
+        sorted.sort_by(f64::total_cmp);
+        let n = echoes.len().max(1) as f64;
+        let near = |us: f64| {
+            let to = sorted.partition_point(|&other| other <= us + NEAR_US);
+            (to - sorted.partition_point(|&other| other < us - NEAR_US)) as f64
+        };
+        let crowds: Vec<f64> = echoes.iter().map(|&us| near(us) / n).collect();
+        let mut steps: Vec<f64> = self.at_us.windows(2).map(|two| two[1] - two[0]).filter(|us| *us >= 0.0).collect();
+        let far_us = OFF_US + DRIVES * median(&mut steps);
+        let is_far = |one: usize, other: usize| (echoes[one] - echoes[other]).abs() > far_us;
+        let (mut isolated, mut jumps, mut loose) = (0, 0, 0);
+        for k in 0..echoes.len() {
+            let recurs = |k: usize| crowds[k] >= RECURS;
+            let after_jump = k > 0 && is_far(k - 1, k);
+            jumps += u32::from(after_jump && !(recurs(k) && recurs(k - 1)));
+            loose += u32::from(!recurs(k));
+            let before_jump = k + 1 == echoes.len() || is_far(k + 1, k);
+            isolated += u32::from(!recurs(k) && (after_jump || k == 0) && before_jump);
+        }
+        let [isolated, jumps, loose] = [isolated, jumps, loose].map(|count| f64::from(count) / n);
+        Odd { isolated, jumps, loose, stands: crowds.iter().copied().fold(0.0, f64::max), echoes: echoes.len() }
     }
 
     /// The latest firing of another sensor at each of this one's, as the time before it in microseconds; NaN before
@@ -126,7 +182,9 @@ impl Series {
     /// Pairs of a reading and the next one, of the other class: how much later the echo of the one class comes than
     /// that of the other, or which of the two has none. Own echoes change as often one way as the other. What changes
     /// at the same rate to the reading after next is driven, and no change.
-    pub(crate) fn changes(&self, classes: &[Option<bool>]) -> Changes {
+    /// Changes within four times the scatter are none.
+    pub(crate) fn changes(&self, classes: &[Option<bool>], scatter: Scatter) -> Changes {
+        let least_us = 4.0 * 2.0_f64.sqrt() * scatter.us;
         let mut changes = Changes::new(CHANGES_US.len() + 1);
         let (echo, at) = (&self.echo_us, &self.at_us);
         let mut k = 0;
@@ -142,7 +200,7 @@ impl Series {
             changes.add(match (echo[k].is_nan(), echo[k + 1].is_nan()) {
                 (true, true) => None,
                 (false, false) => {
-                    let size = CHANGES_US.iter().rposition(|&least| change_us.abs() >= least);
+                    let size = CHANGES_US.iter().rposition(|&least| change_us.abs() >= least.max(least_us));
                     size.map(|size| ((change_us > 0.0) == class, size))
                 }
                 (is_first, _) => Some((is_first == class, CHANGES_US.len())),

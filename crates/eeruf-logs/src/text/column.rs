@@ -86,7 +86,7 @@ impl Column {
                 self.units += usize::from(unit.is_some());
             }
             Some(_) => self.no_echoes += 1,
-            None if value::calendar_ns(text).is_some() => self.calendars += 1,
+            None if value::calendar_ns(text).or_else(|| value::elapsed_ns(text)).is_some() => self.calendars += 1,
             None => self.texts += 1,
         }
     }
@@ -134,7 +134,8 @@ impl Column {
         let rows: usize = self.distinct.values().sum();
         let is_name = |text: &String| {
             let inner = text.trim_start_matches(['[', '(']);
-            !inner.starts_with(|letter: char| letter.is_ascii_digit())
+            let is_address = inner.starts_with("0x");
+            (is_address || !inner.starts_with(|letter: char| letter.is_ascii_digit()))
                 && !text.contains('=')
                 && value::unit(text).is_none()
         };

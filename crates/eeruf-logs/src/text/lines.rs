@@ -44,14 +44,16 @@ fn without_colours(text: &str) -> Cow<'_, str> {
 
 /// Lines that end by `\n`, `\r\n` or `\r`.
 pub(crate) struct Lines<'a> {
-    input: Input<'a>,
+    pub(super) input: Input<'a>,
     number: u64,
     pending: VecDeque<Line>,
+    /// Each line begins with `#`, which begins no comment then.
+    pub(super) has_hashes: bool,
 }
 
 impl<'a> Lines<'a> {
     pub(super) fn new(input: Input<'a>) -> Self {
-        Self { input, number: 0, pending: VecDeque::new() }
+        Self { input, number: 0, pending: VecDeque::new(), has_hashes: false }
     }
 
     pub(super) fn next(&mut self) -> io::Result<Option<Line>> {
@@ -82,6 +84,7 @@ impl<'a> Lines<'a> {
         let is_ended = bytes.last() == Some(&b'\n');
         let text = String::from_utf8_lossy(&bytes);
         let text = text.strip_suffix('\n').unwrap_or(&text);
+        let text = if self.has_hashes { text.strip_prefix('#').unwrap_or(text) } else { text };
         let text = without_colours(text.trim_end_matches('\r'));
         let mut parts = text.split('\r').peekable();
         let first = parts.next().unwrap_or_default().to_owned();

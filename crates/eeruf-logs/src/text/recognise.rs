@@ -290,8 +290,14 @@ impl Plan {
         for (column, (unit, is_other)) in self.columns.iter_mut().zip(units.iter().zip(&other_units)) {
             (column.has_length, column.has_other_unit) = (unit.is_some(), *is_other);
         }
-        if matches!(separator, Separator::None) {
-        } else {
+        // `# t in s, d in mm`
+        let comments = sample.iter().filter_map(|line| line.text.trim().strip_prefix(['#', '%']));
+        for said in comments.flat_map(|text| text.split([',', ';'])) {
+            let Some((name, unit)) = said.trim().split_once(" in ") else { continue };
+            let of = self.columns.iter_mut().filter(|column| column.name == name.trim());
+            of.for_each(|column| column.has_unit_in_cells = value::unit(unit.trim()));
+        }
+        if separator != Separator::None {
             self.guesses.push(guess("separator", separator.name(), "--columns"));
         }
         if comma {
@@ -429,6 +435,7 @@ impl Plan {
         }
         if ranges.is_empty() && has_header {
             self.named_ranges_alone();
+            self.without_derived();
         }
         // Bytes, as tools for buses print them, are no table.
         let bytes: Vec<_> = self.columns.iter().filter_map(Column::bytes).collect();
@@ -469,6 +476,19 @@ impl Plan {
         if self.columns.iter().any(|column| column.role == Role::Range && is_called(column)) {
             let vague = self.columns.iter_mut().filter(|column| column.role == Role::Range && !is_called(column));
             vague.for_each(|column| column.role = Role::Other);
+        }
+    }
+
+    /// A depth or a level beside a column that is called a range is worked out from it.
+    fn without_derived(&mut self) {
+        let is_called = |column: &Column| {
+            column.role == Role::Range
+                && names::meaning(&column.name) == Meaning::Range
+                && !names::is_derived(&column.name)
+        };
+        if self.columns.iter().any(is_called) {
+            let derived = |column: &&mut Column| column.role == Role::Range && names::is_derived(&column.name);
+            self.columns.iter_mut().filter(derived).for_each(|column| column.role = Role::Other);
         }
     }
 

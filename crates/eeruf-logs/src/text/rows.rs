@@ -168,7 +168,7 @@ impl<'a, 's, 'e> Rows<'a, 's, 'e> {
                 self.by_name(pairs)
             }
             Shape::Keyed => {
-                let Some(pairs) = shape::keyed(text) else {
+                let Some(pairs) = shape::keyed(text).or_else(|| self.silence(text)) else {
                     let has_digit = text.contains(|letter: char| letter.is_ascii_digit());
                     let is_other = text.split_once(':').is_some_and(|(name, _)| names::meaning(name) == Meaning::Other);
                     return Err(if (has_digit && !is_other) || !line.is_ended {
@@ -195,6 +195,14 @@ impl<'a, 's, 'e> Rows<'a, 's, 'e> {
             }
         };
         Ok((time, pairs))
+    }
+
+    /// A line that only says that nothing was heard, where each line has the range of one sensor.
+    fn silence(&self, text: &str) -> Option<Vec<(String, String)>> {
+        let [name] = self.plan.usual_names.as_deref()? else { return None };
+        let text = text.trim_end_matches(['.', '!']).to_lowercase();
+        let is_said = ["out of range", "no echo", "timeout", "time out"].contains(&text.as_str());
+        is_said.then(|| vec![(name.clone(), text)])
     }
 
     /// Returns true for words without a number, of which none is a sensor's name or a word for no echo.
@@ -460,6 +468,6 @@ fn time_ns(text: &str, unit: TimeUnit, decimal_comma: bool) -> Option<u64> {
     match value::number(text, decimal_comma) {
         Some(time) if time >= 0.0 && time * scale < 1.8e19 => Some((time * scale).round() as u64),
         Some(_) => None,
-        None => value::calendar_ns(text),
+        None => value::calendar_ns(text).or_else(|| value::elapsed_ns(text)),
     }
 }

@@ -94,6 +94,15 @@ pub(crate) fn separated(line: &str, separator: Separator) -> Option<Vec<String>>
             _ => vec![line.trim().to_owned()],
         });
     };
+    // A list in brackets behind a number is more cells.
+    let opens = |(at, open): &(usize, &str)| {
+        let is_digit = |letter: Option<char>| letter.is_some_and(|letter| letter.is_ascii_digit());
+        letter == ',' && is_digit(line[..*at].chars().last()) && is_digit(line[at + open.len()..].chars().next())
+    };
+    let inner = line.match_indices(" (").chain(line.match_indices(" [")).find(opens);
+    if let Some((at, open)) = inner {
+        return separated(&format!("{},{}", &line[..at], line[at + open.len()..].replace([')', ']'], "")), separator);
+    }
     if !line.contains('"') {
         return Some(line.split(letter).map(|cell| without_half_brackets(cell.trim()).to_owned()).collect());
     }
@@ -119,6 +128,9 @@ pub(crate) fn keyed(line: &str) -> Option<Vec<(String, String)>> {
     if line.contains('\u{ff1a}') {
         return keyed(&line.replace('\u{ff1a}', ":"));
     }
+    if let Some(arrow) = ["<-", "->"].into_iter().find(|arrow| line.contains(arrow) && !line.contains([':', '='])) {
+        return keyed(&line.replace(arrow, "="));
+    }
     if !line.contains([':', '=']) {
         return worded(line).or_else(|| glued(line)).or_else(|| sentence(line));
     }
@@ -134,6 +146,13 @@ pub(crate) fn keyed(line: &str) -> Option<Vec<(String, String)>> {
         let after = &rest[at + 1..];
         let after =
             after.strip_prefix(['=', '>']).filter(|_| is_equal).unwrap_or(after).trim_start_matches([' ', '\t']);
+        // A list gives a value for each place.
+        if let Some((list, left)) = after.strip_prefix('[').and_then(|list| list.split_once(']')) {
+            let places = list.split(',').map(str::trim).enumerate();
+            pairs.extend(places.map(|(n, text)| (format!("{key}[{n}]"), text.to_owned())));
+            rest = left;
+            continue;
+        }
         let phrase = ["out of range", "no echo", "time out"]
             .iter()
             .find(|phrase| after.get(..phrase.len()).is_some_and(|start| start.eq_ignore_ascii_case(phrase)));

@@ -127,6 +127,12 @@ impl<'a> Form<'a> {
         if start.starts_with("FMT,") {
             return Ok(Self::DataFlash(Lines::new(input)));
         }
+        // Keyword lines, as `#SONAR 24: 53 cm`.
+        let has_hashes = start
+            .lines()
+            .filter(|line| !line.trim().is_empty())
+            .take(50)
+            .all(|line| line.strip_prefix('#').is_some_and(|rest| rest.starts_with(char::is_alphanumeric)));
         let mut start = start.trim_start().chars();
         let is_document = match start.next() {
             Some('[') => matches!(start.as_str().trim_start().chars().next(), Some('{' | '[')),
@@ -138,7 +144,9 @@ impl<'a> Form<'a> {
             }
             _ => false,
         };
-        Ok(if is_document { Self::Objects(Objects::new(input)) } else { Self::Lines(Lines::new(input)) })
+        let mut lines = Lines::new(input);
+        lines.has_hashes = has_hashes;
+        Ok(if is_document { Self::Objects(Objects::new(lines.input)) } else { Self::Lines(lines) })
     }
 }
 

@@ -199,10 +199,7 @@ fn log_without_sensors_says_what_it_holds() {
 fn foreign_forms_are_named_with_their_way_out() {
     let folder = tempfile::tempdir().unwrap();
     for (name, bytes, form, way) in [
-        ("a.ulg", &b"ULog\x01\x12\x35\x01"[..], "ULog", "pyulog"),
-        ("a.csv.xz", b"\xfd7zXZ\0\0\x04", "packed by xz", "xz --decompress"),
-        ("a.bin", b"\xa3\x95\x80\x80", "DataFlash", "pymavlink"),
-        ("a.tlog", b"\0\x05\x12\x34\x56\x78\x9a\xbc\xfe\x09", "MAVLink", "pymavlink"),
+        ("a.csv.xz", &b"\xfd7zXZ\0\0\x04"[..], "packed by xz", "xz --decompress"),
         ("a.xlsx", b"PK\x03\x04", "spreadsheet", "read_excel"),
         ("a.dat", b"\x01\x02\x03\0\0\0\x07\x08", "binary", "MCAP"),
     ] {
@@ -295,4 +292,38 @@ fn sensors_that_read_alike_stay_sensors() {
     }
     assert_eq!(said(rows(&|cm| cm.to_string()).as_bytes(), &Options::default()).2.sensors.len(), 1);
     assert_eq!(said(rows(&|cm| (cm * 10).to_string()).as_bytes(), &Options::default()).2.sensors.len(), 1);
+}
+
+/// Forms that were written down, with their answers, before the reader saw them: right, refused or with damage said,
+/// and silently wrong. The second forty were not looked at while the reader was mended for the first.
+fn tried(file: &str) -> (usize, Vec<String>, Vec<String>) {
+    let (mut right, mut open, mut wrong) = (0, vec![], vec![]);
+    for (name, text, sensors, step) in forms(file) {
+        let (found, seconds, report) = said(text.as_bytes(), &Options::default());
+        let value = |of: &str| of.rsplit_once(':').map_or(of, |of| of.1).trim().to_owned();
+        let [of, expected] = [&found, &sensors].map(|text| text.split("; ").map(value).collect::<Vec<_>>());
+        let is_refused = report.sensors.is_empty() || !report.damage.is_empty();
+        let is_near = step.is_none_or(|step| seconds.is_some_and(|seconds| (step - seconds).abs() < 0.02 * step));
+        let line = format!("{name}: {found} {seconds:?}; expected {sensors} {step:?}");
+        match (of == expected && is_near && report.damage.is_empty(), is_refused) {
+            (true, _) => right += 1,
+            (false, true) if sensors == "refused" => right += 1,
+            (false, true) => open.push(line),
+            (false, false) => wrong.push(line),
+        }
+    }
+    (right, open, wrong)
+}
+
+#[test]
+fn forms_of_a_trial_are_seldom_silently_wrong() {
+    let mut all_wrong = vec![];
+    for (file, least) in [(include_str!("../data/trial-1.txt"), 38), (include_str!("../data/trial-2.txt"), 30)] {
+        let (right, open, wrong) = tried(file);
+        println!("right {right}, refused {}, silently wrong {}", open.len(), wrong.len());
+        open.iter().chain(&wrong).for_each(|line| println!("  {line}"));
+        assert!(right >= least, "{right}: {open:#?} {wrong:#?}");
+        all_wrong.extend(wrong);
+    }
+    assert!(all_wrong.len() <= 1, "{all_wrong:#?}");
 }

@@ -7,11 +7,14 @@ mod diagnose;
 mod diagnose_driving;
 mod diagnose_rooms;
 mod firing_logs;
+mod flight;
 mod forms;
 mod mutated;
 mod random;
 mod replay;
 mod survey;
+mod verdicts;
+mod worlds;
 mod written;
 
 use std::io::Cursor;

@@ -1,0 +1,16 @@
+//! Counts the doctor's verdicts on logs of known truth: `cargo run --release --example verdicts [FIRST [LOGS]]`.
+
+#[path = "../tests/all/random.rs"]
+mod random;
+#[path = "../tests/all/verdicts.rs"]
+mod verdicts;
+#[path = "../tests/all/worlds.rs"]
+mod worlds;
+
+fn main() -> Result<(), std::num::ParseIntError> {
+    let mut arguments = std::env::args().skip(1);
+    let mut next = |default: u64| arguments.next().map_or(Ok(default), |text| text.parse());
+    let (first, logs) = (next(20_000)?, next(200)?);
+    println!("{}", verdicts::Counts::of(first, logs));
+    Ok(())
+}

@@ -1,0 +1,82 @@
+//! The doctor's verdicts on logs of which the truth is known: no false `none seen`, nobody blamed for nothing.
+//! `cargo run --release --example verdicts` counts over more.
+
+use std::fmt;
+
+use eeruf_logs::{Examination, Verdict};
+
+use crate::worlds::{Healthy, blocking_loop, free_running, healthy};
+
+/// Counts over logs.
+#[derive(Debug, Default)]
+pub(crate) struct Counts {
+    /// Free-running logs with 5 % wrong readings and more: all, called none seen, and with a suspect or a fooled sensor.
+    pub(crate) free: [usize; 3],
+    /// Pairs that fool in 60 % of the rounds of a blocking loop: all, named with the test, and named where nobody fools.
+    pub(crate) pairs: [usize; 3],
+    /// Healthy logs: all, blamed, and with a suspect where nothing chatters.
+    pub(crate) healthy: [usize; 3],
+    /// Of those with stamps of firings in turn or by alternating lags without chatter: all, and called none seen.
+    pub(crate) seen: [usize; 2],
+}
+
+fn is_blamed(found: &Examination) -> bool {
+    found.verdict == Verdict::Crosstalk || found.suspects.iter().any(|of| of.by.is_some())
+}
+
+impl Counts {
+    /// Over as many logs of each kind, from a seed on.
+    pub(crate) fn of(first: u64, logs: u64) -> Self {
+        let mut all = Self::default();
+        for seed in first..first + logs {
+            let log = free_running(seed, true, false);
+            if log.wrong >= 0.05 {
+                let found = log.examine();
+                let is_seen = found.verdict == Verdict::NoneSeen;
+                let flagged = !found.suspects.is_empty() || found.verdict == Verdict::Crosstalk;
+                all.free = [all.free[0] + 1, all.free[1] + usize::from(is_seen), all.free[2] + usize::from(flagged)];
+            }
+            let log = blocking_loop(seed, true);
+            let found = log.examine();
+            let named: Vec<_> = found.suspects.iter().filter_map(|of| Some((of.by?, of.sensor))).collect();
+            let fooled: Vec<_> = log.fooled.iter().filter(|(_, share)| **share >= 0.6).map(|(pair, _)| pair).collect();
+            all.pairs[0] += fooled.len();
+            all.pairs[1] += fooled.iter().filter(|pair| named.contains(pair)).count();
+            // In a chain a third sensor moves with two; a pair of which neither fools anyone is none.
+            let is_of = |sensor: usize| log.fooled.keys().any(|&(a, b)| sensor == a || sensor == b);
+            all.pairs[2] += named.iter().filter(|pair| !is_of(pair.0) && !is_of(pair.1)).count();
+            all.healthy[1] += usize::from(is_blamed(&blocking_loop(seed, false).examine()));
+            all.healthy[0] += 1;
+            for kind in [Healthy::InTurn, Healthy::Alternating, Healthy::Polled, Healthy::Server] {
+                let chatter = (seed + kind as u64).is_multiple_of(10);
+                let found = healthy(seed, kind, chatter).examine();
+                all.healthy[0] += 1;
+                all.healthy[1] += usize::from(is_blamed(&found));
+                all.healthy[2] += usize::from(!chatter && !found.suspects.is_empty());
+                if !chatter && matches!(kind, Healthy::InTurn | Healthy::Alternating) {
+                    all.seen[0] += 1;
+                    all.seen[1] += usize::from(found.verdict == Verdict::NoneSeen);
+                }
+            }
+        }
+        all
+    }
+}
+
+impl fmt::Display for Counts {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { free, pairs, healthy, seen } = self;
+        writeln!(f, "free-running, 5 % wrong: {} logs, none seen {}, flagged {}", free[0], free[1], free[2])?;
+        writeln!(f, "blocking loops: {} pairs, named {}; without part in any: {}", pairs[0], pairs[1], pairs[2])?;
+        writeln!(f, "healthy: {} logs, blamed {}, suspected {}", healthy[0], healthy[1], healthy[2])?;
+        write!(f, "in turn or alternating, 300 rounds: {} logs, none seen {}", seen[0], seen[1])
+    }
+}
+
+#[test]
+fn verdicts_hold_on_logs_of_known_truth() {
+    let found = Counts::of(20_000, 12);
+    assert!(found.free[0] >= 10 && found.free[1] == 0 && found.free[2] * 10 >= found.free[0] * 8, "{found}");
+    assert!(found.pairs[1] * 10 >= found.pairs[0] * 8 && found.pairs[2] == 0, "{found}");
+    assert!(found.healthy[1] == 0 && found.seen[1] * 10 >= found.seen[0] * 6, "{found}");
+}

@@ -70,13 +70,18 @@ struct Believes {
 /// Does all steps with the ring and the model.
 pub fn check(input: &Input) {
     let us = |us: u16| Micros::new(us.into());
-    let [least, most, rest, dice] = input.turns.map(us);
-    let turns = TurnSettings { least, most, rest: rest.saturating_add(Micros::from_millis(1)), dice, seed: input.seed };
+    // Mostly so that sensors hear each other, and in step.
+    let [least, more, rest, dice] = input.turns;
+    let least = us(100 + least % 8_192);
+    let (most, rest) = (least.saturating_add(us(1_000 + more / 2)), us(1_000 + rest / 2));
+    let dice = us(if dice % 1_024 < 512 { 0 } else { dice % 1_024 });
+    let turns = TurnSettings { least, most, rest, dice, seed: input.seed.max(1) };
     let [t_delta, near, path_change] = input.times.map(|time| us(time % 1_024));
     let votes = [Votes::ByMotion, Votes::EveryEcho, Votes::TwoInARow][usize::from(input.votes % 3)];
-    let (memory, hold, alone, top_speed_mm_s) = (input.memory, input.hold, input.alone, input.top_speed);
+    let (memory, hold, alone) = (input.memory, 1 + input.hold % 100, input.alone);
+    let top_speed_mm_s = if input.top_speed % 2 == 0 { 0 } else { 10 + input.top_speed / 16 };
     let belief = BeliefSettings { t_delta, near, path_change, memory, hold, top_speed_mm_s, alone, votes };
-    let (window, blanking) = (us(input.window), Micros::new(16 * u32::from(input.blanking)));
+    let (window, blanking) = (us(5_000 + input.window / 2), Micros::new(16 * u32::from(input.blanking)));
     let config = RingConfig::new().with_window(window).with_blanking(blanking);
     let sensors = 1 + usize::from(input.sensors) % SENSORS;
     let begin = (1 << 32) + u64::from(input.start);
@@ -196,6 +201,11 @@ impl<U: OwnLimits, J: Judge, const E: usize, const H: usize> Model<U, J, E, H> {
     /// Does a step. Returns true if the ring is to be polled after it.
     fn act(&mut self, step: &Step) -> bool {
         let count = self.ring.sensors() as u8;
+        if let Step::Measured { sensor, t_echo, width } = *step
+            && let Some((_, fired, least)) = self.lines.echo_of(&self.ring, sensor, t_echo)
+        {
+            self.wait(fired + least + u64::from(width));
+        }
         let (now, at) = (self.lines.now, instant(self.lines.now));
         if self.lines.hand_in(&mut self.ring, step) {
             self.believes.stands &= !matches!(step, Step::Moving(speed) if *speed > 0);
@@ -267,6 +277,14 @@ impl<U: OwnLimits, J: Judge, const E: usize, const H: usize> Model<U, J, E, H> {
         self.lines.sensors[x].fired.pop();
         self.lines.sensors[x].fired.push(true_time);
         self.polled = self.lines.now;
+    }
+
+    /// Polls at each deadline until some time.
+    fn wait(&mut self, until: u64) {
+        while self.lines.now < until {
+            self.lines.now = time_of(self.ring.next_deadline(), self.lines.now).clamp(self.lines.now, until);
+            self.drain();
+        }
     }
 
     /// Polls until there is nothing more to do or to say.

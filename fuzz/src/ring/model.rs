@@ -334,9 +334,7 @@ impl Lines {
                 }
             }
             Step::Measured { sensor, t_echo, width } => {
-                let x = sensor % count;
-                let Some(&fired) = self.sensors[usize::from(x)].fired.last() else { return true };
-                let least = t_echo_of(t_echo, [ring.window_of(x), ring.blanking(), ring.t_delta_of(x)]);
+                let Some((x, fired, least)) = self.echo_of(ring, sensor, t_echo) else { return true };
                 let most = least + u64::from(width);
                 if fired + most > now {
                     // Reported before it came.
@@ -378,6 +376,18 @@ impl Lines {
             _ => return false,
         }
         true
+    }
+
+    /// A sensor that there is, when it fired, and after how long a made-up echo comes.
+    pub(crate) fn echo_of<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize>(
+        &self,
+        ring: &Ring<P, J, K, E, H>,
+        sensor: u8,
+        t_echo: u16,
+    ) -> Option<(u8, u64, u64)> {
+        let x = sensor % ring.sensors() as u8;
+        let fired = *self.sensors[usize::from(x)].fired.last()?;
+        Some((x, fired, t_echo_of(t_echo, [ring.window_of(x), ring.blanking(), ring.t_delta_of(x)])))
     }
 
     fn shows(&mut self, done: Result<(), SensorError>, sensor: u8, evidence: Evidence) {

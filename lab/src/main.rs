@@ -15,7 +15,6 @@ mod four_worlds;
 mod measure;
 mod modules;
 mod narrow_panels;
-mod open_rings;
 mod ray_casts;
 mod rust_side;
 mod shortest_periods;
@@ -61,7 +60,6 @@ const COMMANDS: [Command; 25] = [
     ),
     ("modules", "", "tables of docs/reference/modules.md", modules::main),
     ("narrow-panels", "", "panels narrower than a Fresnel zone", narrow_panels::main),
-    ("open-rings", "[SECONDS [FILE [PART/PARTS]]]", "rings that the atlas leaves open", open_rings::main),
     ("periods", "", "table of shortest periods", shortest_periods::table),
     ("ray-casts", "", "exactness of ray casts", ray_casts::main),
     ("rust-side", "paths | times", "what Python is held against", rust_side::main),

@@ -40,7 +40,6 @@ fn draw(seed: u64) -> Problem {
         separation: (0..sensors).map(|_| random.within(1, 3)).collect(),
         window: (0..sensors).map(|_| random.within(15, 45)).collect(),
         stale_echo: false,
-        over_reals: false,
         together: Vec::new(),
         gaps,
     }

@@ -266,8 +266,6 @@ class Found:
         seconds: float,
         reason: str | None = None,
         certificate: str | None = None,
-        real_period_us: tuple[int, int] | None = None,
-        real_proven: bool | None = None,
         from_atlas: bool = False,
         spare_us: tuple[int, int, int] | None = None,
         spare_proven: tuple[bool, bool, bool] | None = None,
@@ -288,10 +286,6 @@ class Found:
     def reason(self) -> str | None: ...
     @property
     def certificate(self) -> str | None: ...
-    @property
-    def real_period_us(self) -> tuple[int, int] | None: ...
-    @property
-    def real_proven(self) -> bool | None: ...
     @property
     def from_atlas(self) -> bool: ...
     @property
@@ -319,7 +313,6 @@ def design(
     intervals_us: Iterable[tuple[_Int, _Int, _Int]] | None = None,
     shared_lines: Iterable[Sequence[_Int]] | None = None,
     together: Iterable[Sequence[_Int]] | None = None,
-    over_reals: bool = False,
     atlas: bool = True,
 ) -> Found: ...
 def fit(

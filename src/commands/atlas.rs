@@ -6,7 +6,7 @@ use std::io::{ErrorKind, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 use eeruf_design::atlas::{ATLAS, Ring, Row, all_rings, is_in_shard, rows};
-use eeruf_design::atlas_making::{header, make};
+use eeruf_design::atlas_making::{again, header, make};
 use eeruf_files::FileError;
 
 use super::Answer;
@@ -31,6 +31,10 @@ pub(crate) struct Args {
     /// Draw period over number of sensors, as SVG or, if the name ends in .png, as PNG
     #[arg(long, value_name = "FILE", value_parser = picture())]
     svg: Option<PathBuf>,
+    /// Search the open rings of FILE again, with so many nodes each, fewer for more than 16 sensors; and write the
+    /// certificate of each row anew
+    #[arg(long, value_name = "NODES", requires = "file", conflicts_with = "shard")]
+    again: Option<u64>,
     /// Only this share of the rings, of this many
     #[arg(long, value_name = "I/N", default_value = "1/1")]
     shard: Shard,
@@ -40,7 +44,11 @@ pub(crate) struct Args {
 }
 
 pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
-    let answer = args.file.as_ref().map_or(Ok(Answer::Yes), |file| search(args, file))?;
+    let answer = match (&args.file, args.again) {
+        (Some(file), Some(nodes)) => search_again(file, nodes, args.most_sensors)?,
+        (Some(file), None) => search(args, file)?,
+        (None, _) => Answer::Yes,
+    };
     let text = match &args.file {
         Some(file) => read(file).map_err(|error| FileError::reading(file, &error))?,
         None => ATLAS.to_owned(),
@@ -83,6 +91,24 @@ fn search(args: &Args, path: &Path) -> Result<Answer, InputError> {
     Ok(Answer::Yes)
 }
 
+/// Searches the open rings of a file again, and certifies all of its rows; the file is whole at any time.
+fn search_again(path: &Path, nodes: u64, most_sensors: u8) -> Result<Answer, InputError> {
+    let bad = |error: std::io::Error| FileError::writing(path, &error);
+    let mut all: Vec<Row> = rows(&read(path).map_err(|error| FileError::reading(path, &error))?).collect();
+    let (mut watch, mut answer) = (Watch::new(), Answer::Yes);
+    let count = all.len();
+    for (number, row) in all.iter_mut().enumerate().filter(|(_, row)| row.ring.sensors <= most_sensors) {
+        if !watch.go_on(|| format!("{number} of {count} rings, now {}", row.ring)) {
+            answer = Answer::No;
+            break;
+        }
+        *row = again(row, nodes).map_err(|what| InputError::new(path, format!("{}: {what}", row.ring)))?;
+    }
+    let text = header().to_owned() + &all.iter().map(|row| format!("{row}\n")).collect::<String>();
+    replace(path, &text).map_err(bad)?;
+    Ok(answer)
+}
+
 fn read(file: &Path) -> std::io::Result<String> {
     match fs::read_to_string(file) {
         Err(error) if error.kind() == ErrorKind::NotFound => Ok(String::new()),
@@ -105,7 +131,7 @@ fn end_last_line(path: &Path) -> std::io::Result<()> {
     if last == *b"\n" { Ok(()) } else { file.write_all(b"\n") }
 }
 
-/// Rewrites the file in its order, if no ring is missing: under another name, so that it is always whole.
+/// Rewrites the file in its order, if no ring is missing.
 fn sort_if_complete(file: &Path, rings: &[Ring]) -> std::io::Result<()> {
     let sorted: BTreeMap<Ring, Row> = rows(&read(file)?).map(|row| (row.ring, row)).collect();
     if !rings.iter().all(|ring| sorted.contains_key(ring)) {
@@ -113,6 +139,11 @@ fn sort_if_complete(file: &Path, rings: &[Ring]) -> std::io::Result<()> {
     }
     let mut text = header().to_owned();
     text.extend(sorted.values().map(|row| format!("{row}\n")));
+    replace(file, &text)
+}
+
+/// Writes the file under another name first, so that it is always whole.
+fn replace(file: &Path, text: &str) -> std::io::Result<()> {
     let beside = file.with_extension(format!("{}.tmp", std::process::id()));
     fs::write(&beside, text)?;
     fs::rename(&beside, file)

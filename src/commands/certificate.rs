@@ -56,7 +56,8 @@ fn claim(text: &str, design: &RingDesign) -> String {
     let (claim, known) = (claim_of(text), design.bound.unwrap_or_default());
     let is_less = |stated: Stated| stated.micros(stated.bound) < u64::from(known.as_micros());
     if Stated::read(text).is_some_and(is_less) {
-        format!("{claim}; a proof of {known} is longer, give it more with --certificate-budget or --time-limit")
+        let proven = if design.found.proven { "proven, not certified: " } else { "" };
+        format!("{claim}; {proven}a proof of {known} is longer, give it more with --certificate-budget or --time-limit")
     } else {
         claim
     }

@@ -8,22 +8,19 @@ use clap::builder::PossibleValue;
 use eeruf_core::Micros;
 use eeruf_core::search::Progress;
 use eeruf_design::atlas::ATLAS;
-use eeruf_design::{
-    CURVE_BUDGET, FoundJson, Need, NoDesign, RealPeriod, RingDesign, RingSpec, Search, Way, real_budget,
-};
+use eeruf_design::{CURVE_BUDGET, FoundJson, Need, NoDesign, RingSpec, Search, Way};
 use eeruf_files::emit;
 use eeruf_sim::experiments::rooms::RoomWay;
 use serde::Serialize;
 
 use super::arguments::{picture, seconds};
-use super::certificate::{self, Written};
+use super::certificate::Written;
 use super::program::{self, ProgramArgs};
 use super::rooms::{self, RoomArgs};
 use super::{Answer, show};
-use crate::console::{error as console_error, note, print, print_line, tell};
+use crate::console::{print, print_line, tell};
 use crate::files::error::InputError;
 use crate::files::ring::read_ring;
-use crate::files::write::write;
 use crate::program::flow_source;
 use crate::report::design::describe;
 use crate::report::draw;
@@ -66,10 +63,6 @@ pub(crate) struct Args {
     /// checker/check_period.py
     #[arg(long, value_name = "FILE")]
     certificate: Option<PathBuf>,
-    /// Write a certificate over the reals: that no period is shorter even with firing times that are no whole ticks.
-    /// Not where the proof needs more than a certificate can state
-    #[arg(long, value_name = "FILE")]
-    certificate_over_reals: Option<PathBuf>,
     /// Number of nodes that the certificate's proof may have; if they do not suffice, it certifies the bound that they
     /// prove
     #[arg(long, default_value_t = 1_000_000, value_name = "NODES")]
@@ -80,13 +73,13 @@ pub(crate) struct Args {
     budget: Option<u64>,
     /// Find what fits into this period, in microseconds: whether the ring's needs do, and the largest T_delta; by
     /// default the shortest period. Exit code 1 if they do not, 3 if that was not decided
-    #[arg(long, value_name = "US", conflicts_with_all = ["certificate", "certificate_over_reals", "curve"])]
+    #[arg(long, value_name = "US", conflicts_with_all = ["certificate", "curve"])]
     #[arg(value_parser = clap::value_parser!(u32).range(1..))]
     period: Option<u32>,
     /// Print the shortest period for 20 values of one need, from a tenth of the ring's own to twice as much; by default
     /// for its own alone
     #[arg(long, value_enum, value_name = "NEED",
-          conflicts_with_all = ["certificate", "certificate_over_reals", "emit", "svg"])]
+          conflicts_with_all = ["certificate", "emit", "svg"])]
     curve: Option<CurveOf>,
     /// Search even where the atlas knows the shortest period
     #[arg(long)]
@@ -220,7 +213,6 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     }
     let prove = |_| Written::new(&design, args.certificate_budget, &mut watch);
     let certificate = args.certificate.as_ref().map(prove);
-    let real = over_reals(args, &design, &mut watch);
     watch.forget_interrupt();
     let judges = !args.period_only && matches!(args.form(), None | Some(Form::Json));
     let rooms = judges.then(|| rooms::judged(&args.in_rooms, &spec, Some(&design), &mut watch)).transpose()?;
@@ -240,24 +232,9 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
         }
         _ => Answer::Yes,
     };
-    let certified = match (&args.certificate_over_reals, real.as_ref().and_then(|real| real.certificate.as_ref())) {
-        (Some(file), Some(text)) => {
-            write(file, text)?;
-            note(format_args!("{}: {}", file.display(), certificate::claim_of(text)));
-            certified
-        }
-        (Some(file), None) => {
-            let why = "no proof over the reals that a certificate can state was found";
-            console_error(format_args!("{}: not written: {why}", file.display()));
-            Answer::No
-        }
-        _ => certified,
-    };
     match args.form() {
         Some(Form::Json) => {
-            let real_period_us = real.as_ref().map(|real| real.period_us);
-            let real_proven = real.as_ref().map(|real| real.proven);
-            let found = FoundJson { real_period_us, real_proven, ..design.json(seconds) };
+            let found = design.json(seconds);
             let FoundJson { value_us, bound_us, proven, .. } = found;
             let period = PeriodJson { value_us, bound_us, proven, reason: found.reason.clone() };
             let period = rooms.is_some().then_some(period);
@@ -279,7 +256,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
         None => {
             let name = args.file.display().to_string();
             let judged = rooms.map_or_else(String::new, |rooms| describe_rooms(&name, &rooms));
-            tell(judged + &describe(&name, &spec, &design, real.as_ref(), seconds))?;
+            tell(judged + &describe(&name, &spec, &design, seconds))?;
         }
     }
     Ok(certified)
@@ -335,16 +312,4 @@ fn curve_of(args: &Args, spec: &RingSpec, need: Need) -> Result<Answer, InputErr
     let text = || describe_curve(&args.file.display().to_string(), spec, need, &points, seconds);
     show(args.json, || CurveJson::new(need, &points, seconds), text)?;
     Ok(Answer::Yes)
-}
-
-/// Cost of the tick, where it is printed or certified.
-fn over_reals(args: &Args, design: &RingDesign, watch: &mut Watch) -> Option<RealPeriod> {
-    let is_printed = matches!(args.form(), None | Some(Form::Json));
-    if !is_printed && args.certificate_over_reals.is_none() {
-        return None;
-    }
-    let budget =
-        if args.certificate_over_reals.is_some() { args.certificate_budget } else { real_budget(design.spec.sensors) };
-    watch.forget_interrupt();
-    design.over_reals(budget, |nodes| watch.go_on(|| format!("over the reals: {nodes} nodes")))
 }

@@ -20,7 +20,7 @@ use crate::report::watch::Watch;
 pub(crate) struct ProgramArgs {
     /// Write a folder with a program that fires the ring in the way recommended: a sketch, a crate, ..
     #[arg(long, value_enum, value_name = "LANGUAGE",
-          conflicts_with_all = ["emit", "json", "svg", "certificate", "certificate_over_reals", "period", "curve"])]
+          conflicts_with_all = ["emit", "json", "svg", "certificate", "period", "curve"])]
     pub(crate) program: Option<Language>,
     /// The board that the program is for; by default the usual one of its language
     #[arg(long, value_enum, value_name = "BOARD", requires = "program")]

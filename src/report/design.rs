@@ -4,20 +4,14 @@ use std::fmt::Write as _;
 
 use eeruf_core::tables::TABLE_I_D;
 use eeruf_core::{Micros, Phase, Requirements};
-use eeruf_design::{RealPeriod, RingDesign, RingSpec, ToSpare, WhatIf};
+use eeruf_design::{RingDesign, RingSpec, ToSpare, WhatIf};
 use eeruf_files::emit::Emit as _;
 use eeruf_sim::AnySchedule;
 
 use super::table::plain;
 use super::timing;
 
-pub(crate) fn describe(
-    name: &str,
-    spec: &RingSpec,
-    design: &RingDesign,
-    real: Option<&RealPeriod>,
-    seconds: f64,
-) -> String {
+pub(crate) fn describe(name: &str, spec: &RingSpec, design: &RingDesign, seconds: f64) -> String {
     let RingDesign { schedule, found, to_spare, what_if, .. } = design;
     let requirements = &design.spec.problem().requirements;
     let report = schedule.verify(requirements);
@@ -29,9 +23,6 @@ pub(crate) fn describe(
         format!("not proven: it may be as short as {}", found.bound.unwrap_or(period))
     };
     table.add_row(["period", &period.to_string(), &proof]);
-    if let Some(real) = real {
-        table.add_row(without_ticks(real, design, spec));
-    }
     let best = |proven: Option<bool>| match proven {
         Some(true) => ", and no schedule of this period has more",
         Some(false) => ", the best found",
@@ -136,30 +127,6 @@ fn not_neighbours(spec: &RingSpec) -> String {
          {range_m:.2} m, and may fire close together: {named}{more}.\n",
         spec.neighbours
     )
-}
-
-/// The cost of the tick: a period for exact needs, whose proof holds for ticks of any length.
-fn without_ticks(real: &RealPeriod, design: &RingDesign, spec: &RingSpec) -> [String; 3] {
-    let gain = real.gain_us(design.schedule.period());
-    let verdict = match (gain > 0.0, real.proven) {
-        (true, true) => format!("proven; ticks of {} cost {}", spec.tick, milliseconds(gain)),
-        (true, false) => {
-            format!("what these firing orders give; ticks of {} cost {} or more", spec.tick, milliseconds(gain))
-        }
-        (false, true) => "proven: the same needs are met no faster with finer ticks".to_owned(),
-        (false, false) => "what these firing orders give; finer ticks may gain something with others".to_owned(),
-    };
-    // A robot that moves needs less at a shorter period.
-    let verdict = match spec.speed_mm_s {
-        Some(1..) => format!("for a t_delta of {}: {verdict}", design.t_delta),
-        _ => verdict,
-    };
-    ["without ticks".to_owned(), milliseconds(real.us()), verdict]
-}
-
-/// A time with a fraction, in milliseconds.
-fn milliseconds(us: f64) -> String {
-    format!("{} ms", (us * 1e3).round() / 1e6)
 }
 
 /// A time that all sensors have, or the shortest and the longest.

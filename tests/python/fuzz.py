@@ -195,7 +195,7 @@ def calls(c: Chance) -> list[Callable[[], Any]]:
         lambda: ANY.design(
             m(4), m(999), m(15_000), m(36_000), m(1_000), m(4), m("line"), m(False), c.random.randrange(1, 200)
         ),
-        lambda: ANY.design(m(8), 999, 15_000, 30_000, atlas=m(True), certificate=False, over_reals=m(False)),
+        lambda: ANY.design(m(8), 999, 15_000, 30_000, atlas=m(True), certificate=False),
         lambda: ANY.design(
             m(4),
             c.each(999),
@@ -205,7 +205,7 @@ def calls(c: Chance) -> list[Callable[[], Any]]:
             atlas=m(False),
             **c.uneven(),
         ),
-        lambda: ANY.design(m(3), c.each(999, 3), 15_000, c.each(30_000, 3), certificate=m(True), over_reals=m(True)),
+        lambda: ANY.design(m(3), c.each(999, 3), 15_000, c.each(30_000, 3), certificate=m(True)),
         lambda: FITS.verify(c.each(999), m(0), window_us=c.each(12_000), **c.uneven()),
         lambda: ANY.fit(m(70_000), m(4), c.each(999), m(15_000), c.each(36_000), budget=m(50), **c.uneven()),
         lambda: ANY.curve(m("range"), m(4), c.each(999), m(15_000), c.each(36_000), budget=m(20), **c.uneven()),

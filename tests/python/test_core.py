@@ -57,16 +57,6 @@ def test_equal_values_pickle_and_print_as_code() -> None:
         assert eval(repr(value), names) == value
 
 
-def test_cost_of_the_tick_is_a_proven_fraction_and_pickles() -> None:
-    found = eeruf.design(12, 999, 15_000, 45_000, over_reals=True)
-    assert (found.value_us, found.real_period_us, found.real_proven) == (70_000, (69_499, 1), True)
-    assert pickle.loads(pickle.dumps(found)) == found
-    assert found.to_dict()["real_period_us"] == [69_499, 1]
-    without = eeruf.design(12, 999, 15_000, 45_000)
-    assert (without.real_period_us, without.real_proven) == (None, None)
-    assert without.schedule == found.schedule
-
-
 def test_a_certificate_of_design_is_checked_and_pickles() -> None:
     found = eeruf.design(8, 999, 15_000, 30_000, certificate=True)
     assert found.certificate is not None
@@ -77,7 +67,7 @@ def test_a_certificate_of_design_is_checked_and_pickles() -> None:
     assert eeruf.design(8, 999, 15_000, 30_000).certificate is None
 
 
-def test_a_certificate_that_proves_less_names_what_it_proves() -> None:
+def test_a_certificate_that_is_wrong_is_refused() -> None:
     certificate = eeruf.design(8, 999, 15_000, 30_000, certificate=True).certificate
     assert certificate is not None
     lines = certificate.splitlines(keepends=True)
@@ -93,8 +83,8 @@ def test_a_time_limit_leaves_schedule_bound_and_certificate() -> None:
     assert not found.proven
     assert found.schedule is not None
     assert found.certificate is not None
-    with pytest.raises(eeruf.CertificateError, match=rf"^no period below \d+ us; schedule of {found.value_us} us"):
-        eeruf.check_certificate(found.certificate)
+    assert found.bound_us is not None
+    assert eeruf.check_certificate(found.certificate) <= found.bound_us < (found.value_us or 0)
     with pytest.raises(eeruf.ArgumentError, match="time_limit_s = 0"):
         eeruf.design(8, 999, 15_000, 30_000, time_limit_s=0)
 

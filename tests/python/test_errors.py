@@ -102,11 +102,6 @@ BAD: list[tuple[Callable[[], Any], type[Exception], str]] = [
         eeruf.ArgumentError,
         "progress = 3; expected None, True or a callable",
     ),
-    (
-        lambda: ANY.design(4, 1, 1, 1, over_reals=1),
-        eeruf.ArgumentError,
-        "over_reals = 1; expected True or False",
-    ),
     (lambda: ANY.design(4, 1, 1, 1, atlas="yes"), eeruf.ArgumentError, "atlas = 'yes'; expected True or False"),
     (lambda: ANY.read_log(3), eeruf.ArgumentError, "log = 3; expected the path of a log, a URL or a file object"),
     (lambda: ANY.read_log("x", ranges="cm"), eeruf.ArgumentError, "ranges = 'cm'; expected the names of columns"),

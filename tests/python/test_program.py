@@ -79,16 +79,16 @@ def test_a_design_is_the_programs(ring: str, atlas: bool) -> None:
         {"sensors": 12, "layout": "line"} if ring == "paper-12" else {"sensors": 24, "layout": "ring"}
     )
     needs: dict[str, Any] = {"t_delta_us": 999, "min_interval_us": 15_000, "window_us": 30_000}
-    found = eeruf.design(**needs, **arguments, over_reals=True, atlas=atlas)
+    found = eeruf.design(**needs, **arguments, atlas=atlas)
     del printed["seconds"]
     assert printed["from_atlas"] is atlas
     assert (found.nodes == 0) is atlas
-    for name in ("real_period_us", "spare_us", "spare_proven"):
+    for name in ("spare_us", "spare_proven"):
         printed[name] = tuple(printed[name])
     assert Schedule.from_firing(**printed.pop("schedule")) == found.schedule
     assert {name: getattr(found, name) for name in printed} == printed
     names = {"value_us", "bound_us", "proven", "nodes", "reason", "from_atlas", "spare_us", "spare_proven"}
-    assert names | {"real_period_us", "real_proven"} == set(printed)
+    assert names == set(printed)
     # The atlas answers by default, as there.
     assert eeruf.design(**needs, **arguments).from_atlas
 

@@ -3,6 +3,7 @@
 use eeruf_core::search::SearchError;
 use eeruf_core::{Micros, Phase};
 use eeruf_period::engine::prove::NoProof;
+use eeruf_sim::AnySchedule;
 use sha2::{Digest, Sha256};
 
 use crate::atlas::{Ring, Row};
@@ -28,27 +29,50 @@ pub fn header() -> &'static str {
 /// # Errors
 /// Why a ring is invalid, in words.
 pub fn make(ring: &Ring) -> Result<Row, String> {
-    let problem = ring.problem();
-    let words = |error: SearchError| error.to_string();
-    let found = problem.shortest(scaled(BUDGET, ring), &mut ()).map_err(words)?;
-    let (mut schedule, mut preferred) = (found.schedule, [false; 3]);
-    if found.proven() {
-        let best = problem.prefer(&schedule, scaled(PREFERENCE_BUDGET, ring), &mut ()).map_err(words)?;
-        (schedule, preferred) = (best.0, best.1.proven);
+    searched(ring, scaled(BUDGET, ring)).and_then(|row| again(&row, 0))
+}
+
+/// The row as this search finds it, without what a longer look at it adds.
+fn searched(ring: &Ring, nodes: u64) -> Result<Row, String> {
+    let found = ring.problem().shortest(nodes, &mut ()).map_err(|error: SearchError| error.to_string())?;
+    let [period, bound] = [found.period(), found.bound].map(in_ticks);
+    let (fire, preferred) = (fire_of(ring, &found.schedule), [false; 3]);
+    Ok(Row { ring: *ring, period, bound, certified: 0, hash: String::new(), preferred, fire })
+}
+
+/// Rows are in ticks of a millisecond.
+fn in_ticks(time: Micros) -> u32 {
+    time.as_micros() / 1000
+}
+
+/// When each sensor fires, in ticks.
+fn fire_of(ring: &Ring, schedule: &AnySchedule) -> [Vec<u32>; 2] {
+    [Phase::A, Phase::B].map(|phase| {
+        (0..usize::from(ring.sensors)).map(|x| in_ticks(schedule.t_fire(phase, x).unwrap_or_default())).collect()
+    })
+}
+
+/// The row with what `nodes` more find, if it is open; if it is newly proven with the schedule to prefer; and with its
+/// certificate.
+///
+/// # Errors
+/// As for [`make`].
+pub fn again(row: &Row, nodes: u64) -> Result<Row, String> {
+    let (mut row, ring, problem) = (row.clone(), &row.ring, row.ring.problem());
+    if row.bound < row.period {
+        // Without nodes what is counted.
+        let found = searched(ring, scaled(nodes, ring))?;
+        row.bound = row.bound.max(found.bound);
+        if found.period < row.period {
+            (row.period, row.fire) = (found.period, found.fire);
+        }
     }
-    let ticks = |time: Micros| time.as_micros() / problem.tick.as_micros();
-    let fire = [Phase::A, Phase::B].map(|phase| {
-        (0..problem.sensors).map(|sensor| ticks(schedule.t_fire(phase, sensor).unwrap_or_default())).collect()
-    });
-    let row = Row {
-        ring: *ring,
-        period: ticks(schedule.period()),
-        bound: ticks(found.bound),
-        certified: 0,
-        hash: String::new(),
-        preferred,
-        fire,
-    };
+    if row.bound == row.period && row.preferred == [false; 3] {
+        let schedule = row.schedule(problem.tick).ok_or("no schedule")?;
+        let best = problem.prefer(&schedule, scaled(PREFERENCE_BUDGET, ring), &mut ());
+        let (schedule, spare) = best.map_err(|error| error.to_string())?;
+        (row.fire, row.preferred) = (fire_of(ring, &schedule), spare.proven);
+    }
     let text = certificate_of(&row).map_err(|error| error.to_string())?;
     let certified = Stated::read(&text).ok_or("a certificate without a claim")?.bound;
     Ok(Row { certified, hash: hash_of(&text), ..row })

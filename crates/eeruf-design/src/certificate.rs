@@ -39,11 +39,10 @@ pub struct Stated {
     pub period: u32,
     /// No period is shorter, in ticks.
     pub bound: u32,
-    /// The nodes of the proof's tree.
+    /// The nodes of the proof's tree, at most: two for each branching, as many as sensors if one of them fires next.
     pub nodes: usize,
     /// A tick is `tick_us.0 / tick_us.1` microseconds.
     tick_us: (u32, u32),
-    over_reals: bool,
 }
 
 impl Stated {
@@ -55,14 +54,17 @@ impl Stated {
             lines.next()?.split(' ').map(|number| number.parse().ok()).collect::<Option<Vec<u32>>>()
         };
         let (tick, period, bound) = (numbers("tick_us")?, numbers("period")?, numbers("no_period_below")?);
-        let is_branching =
-            |line: &&str| ["a ", "b ", "sign ", "rank ", "split "].iter().any(|word| line.starts_with(word));
+        let sensors = *numbers("sensors")?.first()? as usize;
+        let nodes = |line: &str| match line.split(' ').next() {
+            Some("a" | "b" | "sign" | "rank" | "split") => 2,
+            Some("next") => sensors,
+            _ => 0,
+        };
         Some(Self {
             period: *period.first()?,
             bound: *bound.first()?,
-            nodes: 2 * certificate.lines().filter(is_branching).count() + 1,
+            nodes: certificate.lines().map(nodes).sum::<usize>() + 1,
             tick_us: (*tick.first()?, *tick.get(1)?),
-            over_reals: numbers("over_reals")? == [1],
         })
     }
 
@@ -76,11 +78,10 @@ impl Stated {
 impl fmt::Display for Stated {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let us = |ticks| Fraction(u64::from(ticks) * u64::from(self.tick_us.0), u64::from(self.tick_us.1));
-        let reals = if self.over_reals { " over the reals" } else { "" };
         if self.bound == self.period {
-            write!(f, "{} us is the shortest period{reals}", us(self.period))?;
+            write!(f, "{} us is the shortest period", us(self.period))?;
         } else {
-            write!(f, "no period below {} us{reals}; schedule of {} us", us(self.bound), us(self.period))?;
+            write!(f, "no period below {} us; schedule of {} us", us(self.bound), us(self.period))?;
         }
         write!(f, " (tick {} us)", us(1))
     }

@@ -36,12 +36,6 @@ pub struct FoundJson {
     /// True if no schedule of this period has more, of each.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub spare_proven: Option<[bool; 3]>,
-    /// The shortest period over the reals in microseconds, as numerator and denominator; only where it was asked for.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub real_period_us: Option<(u64, u64)>,
-    /// True if no real period is shorter.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub real_proven: Option<bool>,
 }
 
 impl FoundJson {

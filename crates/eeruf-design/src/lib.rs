@@ -16,7 +16,6 @@
 //! | `atlas`, `atlas_making` | rings whose shortest period is known; how their file is made |
 //! | `certificate` | the proof, as a text that others check |
 //! | `rooms`, `flow`, `way` | with the feature `rooms`: ways of firing the ring, judged by the simulator |
-//! | `reals` | what the tick costs: the shortest period over the reals |
 //!
 //! ```
 //! use eeruf_design::{RingSpec, Search};
@@ -46,7 +45,6 @@ mod moving;
 mod places;
 mod placing;
 mod questions;
-mod reals;
 mod ring;
 #[cfg(feature = "rooms")]
 mod rooms;
@@ -68,7 +66,6 @@ pub use layout::{LayoutKey, LayoutName, OwnedLayout};
 pub use limits::{four, neighbours_in_range, sensors_in_range};
 pub use places::Places;
 pub use questions::{CURVE_BUDGET, CURVE_POINTS, CurvePoint, Fit, Need};
-pub use reals::{RealPeriod, over_reals, real_budget};
 pub use ring::{RingSpec, robot_ring};
 #[cfg(feature = "rooms")]
 pub use rooms::{RoomRobot, RoomsAnswer, RoomsAsked, RoomsJson};

@@ -11,7 +11,7 @@
 //! | choose among the schedules of a period | [`PeriodProblem::prefer`] |
 //! | find the largest `t_delta` of a period | [`PeriodProblem::largest_t_delta`] |
 //! | say why nothing is shorter | [`ShortestPeriod::reason`] |
-//! | prove it to others, or over the reals | [`PeriodProblem::claim`], [`engine::prove`], [`engine::reals`] |
+//! | prove it to others | [`PeriodProblem::claim`], [`engine::prove`] |
 //!
 //! How a search ends, who watches it and why it cannot start are [`eeruf_core::search`]'s. The same question has the
 //! same answer on each machine: there is no clock, and random numbers come from a fixed seed.

@@ -245,7 +245,6 @@ impl PeriodProblem<'_> {
             // A certificate's window is how soon a sensor fires again; for how long it listens is in the gaps.
             window: (0..sensors).map(refire).collect(),
             stale_echo: requirements.stale_echo,
-            over_reals: false,
             together: together.iter().map(members).collect(),
             gaps: gaps.filter(|&(.., after_x, after_y)| after_x > 0 || after_y > 0).collect(),
         }

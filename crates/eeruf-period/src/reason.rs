@@ -62,6 +62,13 @@ fn by_counting(bound: Bound, time: &dyn Fn(u32) -> Micros) -> String {
              takes {period}; a shorter interval or fewer neighbours would help, a smaller separation would not",
             time(interval)
         ),
+        Bound::Places { sensors, at_once, interval, separation, .. } => format!(
+            "interval and separation together: at most {at_once} of {sensors} sensors can fire within the same {}, which \
+             leaves too little time to tell {sensors} refire times {} apart, and takes {period}; a shorter interval, a \
+             smaller separation or fewer neighbours would help",
+            time(interval),
+            time(separation)
+        ),
         Bound::Classes { clique, sensors, interval, separation, .. } => format!(
             "interval and separation together: {clique} sensors that are all neighbours and fire {} apart leave too \
              little time to tell {sensors} refire times {} apart, which takes {period}; a shorter interval, a smaller \
@@ -76,7 +83,7 @@ fn by_counting(bound: Bound, time: &dyn Fn(u32) -> Micros) -> String {
 fn in_any_order(counted: Bound, found: &Shortest, time: &dyn Fn(u32) -> Micros) -> String {
     let alone = match counted {
         Bound::Capacity { .. } => "window and separation alone",
-        Bound::Classes { .. } => "the sizes of the refire times",
+        Bound::Classes { .. } | Bound::Places { .. } => "the sizes of the refire times",
         Bound::Clique { .. } | Bound::Density { .. } => "the interval alone",
     };
     format!(

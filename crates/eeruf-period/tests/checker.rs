@@ -3,8 +3,8 @@
 mod common;
 
 use common::{Random, accepted, checker, claim_of, feasible, from_environment, random_problem, verdicts_of};
-use eeruf_period::engine::prove::prove;
-use eeruf_period::engine::{Claim, Problem};
+use eeruf_period::engine::Claim;
+use eeruf_period::engine::prove::{prove, prove_in_time};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -20,25 +20,9 @@ fn claim(seed: u64, longer: u32) -> Option<Claim> {
 }
 
 /// Returns true if the claim holds by trying all firing times: the schedule keeps the needs, and no shorter period can.
-/// Over the reals, with up to three sensors, times and periods in halves of a tick are tried as well.
 fn holds(claim: &Claim) -> bool {
     let Claim { problem, bound, .. } = claim;
-    let no_half = || feasible(&finer(problem, 2), 2 * bound - 1).is_none();
-    claim.check().is_ok()
-        && (1..*bound).all(|period| feasible(problem, period).is_none())
-        && (!problem.over_reals || problem.sensors() > 3 || no_half())
-}
-
-/// The problem in ticks of a part of those it has.
-fn finer(problem: &Problem, parts: u32) -> Problem {
-    let times = |list: &[u32]| list.iter().map(|time| time * parts).collect();
-    let gaps = problem.gaps.iter().map(|&(x, y, after_x, after_y)| (x, y, after_x * parts, after_y * parts));
-    Problem {
-        separation: times(&problem.separation),
-        window: times(&problem.window),
-        gaps: gaps.collect(),
-        ..problem.clone()
-    }
+    claim.check().is_ok() && (1..*bound).all(|period| feasible(problem, period).is_none())
 }
 
 /// The certificate with one to three lines changed: deleted, doubled, swapped, moved, cut, or a number by up to two.
@@ -73,19 +57,16 @@ fn mutated(random: &mut Random, certificate: &str) -> String {
     lines.join("\n")
 }
 
-// Certificates of tiny problems, in whole ticks and over the reals, and mutated ones: whatever is accepted is true.
+// Certificates of tiny problems, and mutated ones: whatever is accepted is true.
 #[test]
 fn accepted_claims_are_true_by_nested_loops() {
     let (first, cases) = (from_environment("EERUF_FIRST", 0), from_environment("EERUF_CASES", 1_000));
     let (mut certificates, mut proven) = (Vec::new(), 0);
     for seed in first..first + cases {
-        let Some(mut claim) = claim(seed, 0) else { continue };
+        let Some(claim) = claim(seed, 0) else { continue };
         let mut random = Random(seed + 1);
-        claim.problem.over_reals = random.once_in(3);
-        // Over the reals the shortest period may be a part of a tick less: then a tick less is claimed.
-        let proof =
-            prove(&claim, 10_000).or_else(|_| prove(&Claim { bound: claim.bound - 1, ..claim.clone() }, 10_000));
-        let Ok(text) = proof else { continue };
+        let by = if seed % 2 == 0 { prove } else { prove_in_time };
+        let Ok(text) = by(&claim, 10_000) else { continue };
         proven += 1;
         certificates.extend((0..4).map(|_| mutated(&mut random, &text)).filter(|other| *other != text));
         certificates.push(text);
@@ -115,30 +96,30 @@ fn accepted_claims_are_true_by_nested_loops() {
 
 /// Rules of the checker that refute too much: what is replaced in its text.
 const BROKEN: [(&str, &str, &str); 15] = [
-    ("closure: a cycle of 0 is refuted", "(bound & back & 1) < 0:", "(bound & back & 1) <= 0:"),
-    ("window: a tick more", "period - 2 * problem.R[x])", "period - 2 * problem.R[x] - 2)"),
-    ("gap into the next phase: a tick more", "next_b, a, period - 2 * wait)", "next_b, a, period - 2 * wait - 2)"),
-    ("stale echoes: a tick more", "* (self.step - 1)) * problem", "* (self.step - 1) + 2) * problem"),
-    ("orders: after a gap that just fits", "min(least, zero) + zero <<", "min(least + 2, zero) + zero <<"),
-    ("orders: reversed in the same phase", "[(i, j, m, k, 2", "[(i, j, j, i, 2"),
+    ("closure: a cycle of 0 is refuted", "self.bound(j, i) < 0:", "self.bound(j, i) <= 0:"),
+    ("window: a tick more", "period - problem.R[x])", "period - problem.R[x] - 1)"),
+    ("gap into the next phase: a tick more", "next_b, a, period - wait)", "next_b, a, period - wait - 1)"),
+    (
+        "stale echoes: a tick more",
+        "(D + 1) // 2 * problem.stale_echo for",
+        "((D + 1) // 2 + 1) * problem.stale_echo for",
+    ),
+    ("orders: after a gap that just fits", "min(least, zero) + zero <<", "min(least + 1, zero) + zero <<"),
+    ("orders: reversed in the same phase", "[(i, j, m, k, p", "[(i, j, j, i, p"),
     (
         "signs: a d that can just be positive",
         "            if least > positive:",
         "            if least >= positive > 0:",
     ),
-    ("ranks: a |d| that can just be larger", "2 * max(mine, own) for", "2 * max(mine, own) + 2 for"),
-    (
-        "ranks: a separation too many",
-        "lanes.ones + narrowest - span &",
-        "lanes.ones + narrowest - span - 2 * lanes.ones &",
-    ),
+    ("ranks: a |d| that can just be larger", "pack([max(mine, own) for", "pack([max(mine, own) + 1 for"),
+    ("ranks: a separation too many", "lanes.ones + narrowest - span &", "lanes.ones + narrowest - span - lanes.ones &"),
     (
         "spacing: an interval that just has room",
         "lanes.pack(low) + zero * ones)",
         "lanes.pack(low) + (zero + 1) * ones)",
     ),
-    ("precedence: a separation too many", "bound - 2 * (span - D) for", "bound - 2 * span for"),
-    ("branching: a d of 0 is left out", "(0, -step)  #", "(-step, -step)  #"),
+    ("precedence: a separation too many", "bound - (span - D) for", "bound - span for"),
+    ("branching: a d of 0 is left out", "(0, -1)  #", "(-1, -1)  #"),
     ("symmetry: another separation", "for row in (problem.separation, problem.window)", "for row in (problem.window,)"),
     (
         "symmetry: other gaps",
@@ -146,6 +127,46 @@ const BROKEN: [(&str, &str, &str); 15] = [
         "kept",
     ),
     ("lanes: equal numbers are less", "return (p | self.top) - q &", "return (p | self.top) - q - self.ones &"),
+];
+
+/// The same for rules of counting and of firings in the order of time.
+const BROKEN_IN_TIME: [(&str, &str, &str); 16] = [
+    ("sequence: a tick more", "apart + max(windows", "apart + 1 + max(windows"),
+    ("one by one: no sensor follows itself", "sum(gap.values()) - again >", "sum(gap.values()) >"),
+    ("one by one: a tick more", "- again > T", "- again >= T"),
+    ("density: a tick more", "2 * at_once * T <", "2 * at_once * T <="),
+    ("density: one too few at once", "2 * at_once * T < sum", "2 * (at_once - 1) * T < sum"),
+    ("places: a tick more apart", "min(fits) + self.D\n", "min(fits) + self.D + 1\n"),
+    ("places: a tick less room", "T - max(self.R, least[count - e])", "T - 1 - max(self.R, least[count - e])"),
+    (
+        "classes: a tick less room",
+        "(high - max(low, self.least)) // self.D + 1",
+        "(high - max(low, self.least)) // self.D",
+    ),
+    ("line: too many share a place", "else divmod(count, n)", "else (count // n + 1, 0)"),
+    (
+        "permutation: no place moves",
+        "* (c > 0) for c in range(n)]\n    if any(",
+        "* (c > 0) + (c == 0) for c in range(n)]\n    if any(",
+    ),
+    ("pace: a tick more", "- 2 * self.T * turns for turns", "- 2 * self.T * turns + 1 for turns"),
+    (
+        "cliques: gaps of some",
+        "min(problem.G[x][y] for y in clique if y != x)",
+        "max(problem.G[x][y] for y in clique if y != x)",
+    ),
+    ("next: those before at the same instant", "own, -(y < x))", "own, -1)"),
+    ("next: others of the phase take too long", "period - 1 - least[", "period - 2 - least["),
+    (
+        "next: too far on",
+        "2 * period - least[2 * size - steps] - since)",
+        "2 * period - 1 - least[2 * size - steps] - since)",
+    ),
+    (
+        "next: a sensor too few",
+        "return [(Node.place, x) for x in left]",
+        "return [(Node.place, x) for x in left[1:] or left]",
+    ),
 ];
 
 /// A copy of the checker with one text replaced.
@@ -157,8 +178,9 @@ fn broken(number: usize, from: &str, to: &str) -> PathBuf {
     file
 }
 
-/// Certificates that a checker's own rules allow for claims, branching on whatever is open; at most this many.
-fn proven_by(checker: &Path, name: &str, claims: &[Claim], most: usize) -> Vec<String> {
+/// Certificates that a checker's own rules allow for claims, branching on whatever is open; at most this many. `how` is
+/// `orders`, or `time` for counting and branchings along time.
+fn proven_by(checker: &Path, name: &str, claims: &[Claim], most: usize, how: &str) -> Vec<String> {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
     _ = std::fs::remove_dir_all(&folder);
     std::fs::create_dir_all(&folder).expect("the folder can be made");
@@ -170,7 +192,8 @@ fn proven_by(checker: &Path, name: &str, claims: &[Claim], most: usize) -> Vec<S
     }
     let mut python = Command::new("python3");
     python.arg(Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/prove.py")).arg(checker).arg(&folder);
-    let done = python.args([claims.len(), most].map(|number| number.to_string())).output().expect("python3 runs");
+    let done =
+        python.args([claims.len(), most].map(|number| number.to_string())).arg(how).output().expect("python3 runs");
     assert!(done.status.success(), "{name}: {}", String::from_utf8_lossy(&done.stderr));
     (0..claims.len())
         .filter_map(|number| std::fs::read_to_string(folder.join(format!("{number}.proof"))).ok())
@@ -188,19 +211,22 @@ fn rules_prove_true_claims_and_no_false_ones() {
     let cases = from_environment("EERUF_CASES", 150);
     let (all_true, all_false) = (claims(cases, 0), claims(cases, 1));
     assert!(all_true.len() as u64 * 2 > cases && all_false.len() as u64 * 2 > cases, "most have schedules");
-    let proofs = proven_by(&checker(), "true", &all_true, usize::MAX >> 1);
-    assert_eq!(proofs.len(), all_true.len());
-    accepted("true-proofs", &proofs);
-    assert_eq!(proven_by(&checker(), "false", &all_false, 1), Vec::<String>::new());
+    for how in ["orders", "time"] {
+        let proofs = proven_by(&checker(), "true", &all_true, usize::MAX >> 1, how);
+        assert_eq!(proofs.len(), all_true.len());
+        accepted("true-proofs", &proofs);
+        assert_eq!(proven_by(&checker(), "false", &all_false, 1, how), Vec::<String>::new());
+    }
 }
 
 // Each rule broken in turn proves something false, which the whole checker refuses.
 #[test]
 fn broken_rules_prove_false_claims() {
     let all_false = claims(400, 1);
-    for (number, (rule, from, to)) in BROKEN.iter().enumerate() {
+    let all = BROKEN.iter().map(|rule| (rule, "orders")).chain(BROKEN_IN_TIME.iter().map(|rule| (rule, "time")));
+    for (number, ((rule, from, to), how)) in all.enumerate() {
         let broken = broken(number, from, to);
-        let proofs = proven_by(&broken, &format!("broken-{number}"), &all_false, 3);
+        let proofs = proven_by(&broken, &format!("broken-{number}"), &all_false, 3, how);
         assert!(!proofs.is_empty(), "{rule}: no false claim is proven");
         let [by_broken, by_whole] = [&broken, &checker()].map(|checker| verdicts_of(checker, "broken-proofs", &proofs));
         assert!(by_broken.iter().all(|verdict| !verdict.starts_with("refused")), "{rule}: {by_broken:?}");
@@ -209,8 +235,8 @@ fn broken_rules_prove_false_claims() {
     }
 }
 
-const PAIR: &str = "eeruf-certificate 1\ntick_us 1000 1\nsensors 2\nseparation 2 1\nwindow 3 1\nstale_echo 0\n\
-                    over_reals 0\ngap 0 1 3 1\nperiod 4\nfire_a 0 3\nfire_b 1 0\nno_period_below 4\nend\n";
+const PAIR: &str = "eeruf-certificate 2\ntick_us 1000 1\nsensors 2\nseparation 2 1\nwindow 3 1\nstale_echo 0\n\
+                    gap 0 1 3 1\nperiod 4\nfire_a 0 3\nfire_b 1 0\nno_period_below 4\nend\n";
 
 /// The text with one line replaced.
 fn with(line: usize, new: &str) -> String {
@@ -224,27 +250,32 @@ fn refusal_names_line_value_and_expectation() {
     let odd = "expected a permutation that keeps the problem, and earlier orbits with their greatest";
     let cases = [
         (PAIR.to_owned(), "4000 us is the shortest period (tick 1000 us)"),
-        (with(12, "no_period_below 3"), "no period below 3000 us; schedule of 4000 us (tick 1000 us)"),
+        (with(11, "no_period_below 3"), "no period below 3000 us; schedule of 4000 us (tick 1000 us)"),
         (with(2, "tick_us 1 3"), "4/3 us is the shortest period (tick 1/3 us)"),
         (String::new(), "refused: line 1: found '', expected a line eeruf-certificate"),
-        (with(1, "eeruf-certificate 2"), "refused: line 1: found '2', expected 1 to 1"),
+        (with(1, "eeruf-certificate 1"), "refused: line 1: found '1', expected 2 to 2"),
         (with(3, "sensors 65"), "refused: line 3: found '65', expected 1 to 64"),
         (with(4, "separation 2"), "refused: line 4: found 1 numbers, expected 2"),
         (with(5, "window 3 01"), "refused: line 5: found '01', expected 1 to 1048576"),
         (with(5, "window 3  1"), "refused: line 5: found '', expected 1 to 1048576"),
         (with(5, "window 3 9999999"), "refused: line 5: found '9999999', expected 1 to 1048576"),
-        (with(8, "gap 1 0 3 1"), "refused: line 8: expected pairs in ascending order"),
-        (with(10, "fire_a 0 4"), "refused: line 10: found '4', expected 0 to 3"),
-        (with(11, "fire_b 1 2"), "refused: line 11: |d| of sensors 0 and 1 are too near"),
-        (with(12, "no_period_below 5"), "refused: line 12: found '5', expected 1 to 4"),
-        (with(13, "sign 0\nend"), "refused: line 13: found 'sign', expected a line end"),
+        (with(7, "gap 1 0 3 1"), "refused: line 7: expected pairs in ascending order"),
+        (with(9, "fire_a 0 4"), "refused: line 9: found '4', expected 0 to 3"),
+        (with(10, "fire_b 1 2"), "refused: line 10: |d| of sensors 0 and 1 are too near"),
+        (with(11, "no_period_below 5"), "refused: line 11: found '5', expected 1 to 4"),
+        (with(12, "sign 0\nend"), "refused: line 12: found 'sign', expected a line end"),
         (
-            with(13, "reverse 0 1\nend"),
-            "refused: line 13: expected two sensors with a gap, and all gaps alike both ways",
+            with(12, "reverse 0 1\nend"),
+            "refused: line 12: expected two sensors with a gap, and all gaps alike both ways",
         ),
-        (with(13, "permutation 1 0\ngreatest 0\nend"), &format!("refused: line 13: {odd}")),
-        (format!("{PAIR}end\n"), "refused: line 13: expected nothing after the line end"),
-        (PAIR.trim_end().to_owned(), "refused: line 13: expected nothing after the line end"),
+        (with(12, "permutation 1 0\ngreatest 0\nend"), &format!("refused: line 12: {odd}")),
+        (with(12, "next\nend"), "refused: line 12: found 'next', expected a line end"),
+        (with(12, "line 3\nend"), "refused: line 12: found '3', expected 2 to 2"),
+        (with(12, "ring 2\nend"), "refused: line 12: expected neighbours with a gap"),
+        (with(7, "clique 0 1\nend"), "refused: line 7: found 'clique', expected a line period"),
+        (with(12, "first 0\nend"), "refused: line 12: found 'first', expected a line end"),
+        (format!("{PAIR}end\n"), "refused: line 12: expected nothing after the line end"),
+        (PAIR.trim_end().to_owned(), "refused: line 12: expected nothing after the line end"),
     ];
     let texts = cases.clone().map(|(text, _)| text);
     assert_eq!(verdicts_of(&checker(), "refusals", &texts), cases.map(|(_, says)| says.to_owned()));
@@ -254,10 +285,10 @@ fn refusal_names_line_value_and_expectation() {
 fn checker_exits_with_0_1_or_2() {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
     std::fs::write(folder.join("good"), PAIR).expect("the folder can be written to");
-    std::fs::write(folder.join("bad"), with(13, "")).expect("the folder can be written to");
+    std::fs::write(folder.join("bad"), with(12, "")).expect("the folder can be written to");
     for (files, code, out) in [
         (vec!["good"], 0, "4000 us is the shortest period (tick 1000 us)\n"),
-        (vec!["bad"], 1, "refused: bad: line 13: found '', expected a line end\n"),
+        (vec!["bad"], 1, "refused: bad: line 12: found '', expected a line end\n"),
         (vec!["missing"], 2, ""),
         (vec![], 2, ""),
         (vec!["bad", "good", "missing"], 2, "good: 4000 us is the shortest period (tick 1000 us)\n"),

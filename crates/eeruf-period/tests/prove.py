@@ -1,6 +1,7 @@
-"""Proves claims with a checker's own rules, by branching on whatever is open: prove.py CHECKER FOLDER COUNT MOST
+"""Proves claims with a checker's own rules, by branching on whatever is open: prove.py CHECKER FOLDER COUNT MOST HOW
 
-FOLDER has the heads of COUNT certificates, named by numbers; proofs get the ending .proof. Ends after MOST proofs.
+FOLDER has the heads of COUNT certificates, named by numbers; proofs get the ending .proof. Ends after MOST proofs. HOW
+is `orders`, or `time` for counting and branchings along time.
 """
 import importlib.util
 import itertools
@@ -8,7 +9,30 @@ import os
 import sys
 
 
-def assumptions(checker, head, count):
+def text(word, numbers):
+    return " ".join([word, *map(str, numbers)])
+
+
+def countings(checker, head, count):
+    """The lines on counting that the checker accepts, a list for each argument; cliques that have all sensors first."""
+    def accepted(lines):
+        try:
+            checker.Problem(checker.Lines("\n".join([*head, *lines, "end", ""])))
+        except checker.Refused:
+            return False
+        return True
+
+    sets = [found for size in range(1, count + 1) for found in itertools.combinations(range(count), size)]
+    cliques = [found for found in sets if accepted([text("clique", found)])]
+    of_size = [[found for found in cliques if len(found) == size] for size in range(1, count + 1)]
+    pairs = [list(pair) for pair in itertools.combinations(cliques, 2)]
+    groups = [cliques, *of_size, *([one] for one in cliques), *pairs]
+    groups = [[text("clique", found) for found in group] for group in groups if group]
+    words = [[f"{word} {n}"] for word in ("line", "ring") for n in range(2, count + 1)]
+    return [*groups, ["sequence"], *(lines for lines in words if accepted(lines))]
+
+
+def assumptions(checker, head, count, greatest):
     """The lines for the root that the checker accepts: all permutations, an exchange, a reversal."""
     def accepted(lines):
         reader = checker.Lines("\n".join([*head, *lines, "end", ""]))
@@ -18,19 +42,25 @@ def assumptions(checker, head, count):
             return False
         return reader.is_next("end")
 
-    def text(word, numbers):
-        return " ".join([word, *map(str, numbers)])
-
     images = [text("permutation", image) for image in itertools.permutations(range(count))][1:]
-    images = [image for image in images if accepted([image, "greatest 0"])]
+    images = [image for image in images if accepted([image, f"{greatest} 0"])]
     reversals = [text("reverse", pair) for pair in itertools.combinations(range(count), 2)]
     reversals = [line for line in reversals if accepted([line])][:1]
-    return (images and [*images, "greatest 0"]) + ["exchange 0"] + reversals
+    families = images and [*images, f"{greatest} 0"]
+    return families + ([] if greatest == "first" else ["exchange 0"] + reversals)
 
 
 def tree(checker, problem, node):
     """The lines of a tree that refutes the node; None if nothing is open and it is not refuted."""
     every = range(problem.sensors)
+    if problem.sets and node.left():
+        found = ["next"]
+        for case in checker.branching(checker.Lines("next"), node):
+            if child := node.assuming(case):
+                if (below := tree(checker, problem, child)) is None:
+                    return None
+                found += below
+        return found
     pairs = [f"{x} {y}" for x, y in itertools.combinations(every, 2)]
     lines = [f"{phase} {pair}" for pair in pairs for phase in "ab"] + [f"sign {x}" for x in every]
     lines += [f"rank {pair}" for pair in pairs] + [f"split {x} {v}" for x in every for v in range(problem.bound)]
@@ -49,7 +79,7 @@ def tree(checker, problem, node):
     return None
 
 
-def main(path, folder, count, most):
+def main(path, folder, count, most, how):
     spec = importlib.util.spec_from_file_location("checker", path)
     checker = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(checker)
@@ -57,11 +87,20 @@ def main(path, folder, count, most):
         with open(os.path.join(folder, str(number))) as file:
             head = file.read().split("\n")
         head = head[:next(i for i, line in enumerate(head) if line.startswith("no_period_below")) + 1]
-        head += assumptions(checker, head, int(head[2].split(" ")[1]))
-        reader = checker.Lines("\n".join([*head, "end", ""]))
-        problem = checker.Problem(reader)
-        node = checker.root(reader, problem)
-        found = tree(checker, problem, node) if node else []
+        sensors, found = int(head[2].split(" ")[1]), None
+        if how == "time":
+            for lines in (counted := countings(checker, head, sensors)):
+                if checker.Problem(checker.Lines("\n".join([*head, *lines, "end", ""]))).is_refuted:
+                    head, found = head + lines, []
+                    break
+            else:
+                head += counted[0]
+        if found is None:
+            head += assumptions(checker, head, sensors, "first" if how == "time" else "greatest")
+            reader = checker.Lines("\n".join([*head, "end", ""]))
+            problem = checker.Problem(reader)
+            node = checker.root(reader, problem)
+            found = tree(checker, problem, node) if node else []
         if found is not None:
             with open(os.path.join(folder, f"{number}.proof"), "w") as file:
                 file.write("\n".join([*head, *found, "end", ""]))

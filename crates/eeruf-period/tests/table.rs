@@ -62,7 +62,6 @@ fn sequential_sensors_have_a_bound_without_orders() {
         separation: vec![2; 10],
         window: windows.clone(),
         stale_echo: false,
-        over_reals: false,
         together: vec![],
         gaps,
     };
@@ -133,17 +132,4 @@ fn a_shorter_period_than_the_shortest_has_no_certificate() {
         let claim = Claim { period: claim.period + 1, bound: claim.period + 1, ..claim };
         assert!(matches!(prove(&claim, 100_000), Err(NoProof::Feasible(_))), "{name}");
     }
-}
-
-// Line 12 with a window of 45 ms can run at 69 5 ms and no real period is shorter.
-#[test]
-fn line_12_at_45_ms_runs_at_69_5_ms() {
-    let (_, mut claim) =
-        common::table(2).into_iter().find(|(name, _)| name == "line 12, window 45").expect("it is there");
-    assert_eq!(claim.period, 140);
-    let Err(NoProof::Feasible(fire)) = prove(&claim, 100_000) else { panic!("139 half ticks have a schedule") };
-    claim = Claim { period: 139, bound: 139, fire, ..claim };
-    claim.problem.over_reals = true;
-    let says = accepted("line-12-reals", &[prove(&claim, 100_000).expect("a proof")]);
-    assert_eq!(says, ["69500 us is the shortest period over the reals (tick 500 us)"]);
 }

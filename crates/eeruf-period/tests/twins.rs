@@ -16,7 +16,6 @@ fn even(layout: &str, sensors: usize, [separation, window, gap]: [u32; 3]) -> Pr
         separation: vec![separation; sensors],
         window: vec![window; sensors],
         stale_echo: false,
-        over_reals: false,
         together: vec![],
         gaps: pairs.filter(|&(x, y)| near(x, y)).map(|(x, y)| (x, y, gap, gap)).collect(),
     }

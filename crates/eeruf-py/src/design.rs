@@ -5,9 +5,7 @@ use std::time::{Duration, Instant};
 
 use eeruf_core::search::{self as search, Progress};
 use eeruf_core::{MAX_SENSORS, Micros, Requirements};
-use eeruf_design::{
-    OwnedUneven, PeriodProblem, Search, atlas::ATLAS, certificate, over_reals as real_period, real_budget, shortest,
-};
+use eeruf_design::{OwnedUneven, PeriodProblem, Search, atlas::ATLAS, certificate, shortest};
 use pyo3::{prelude::*, sync::PyOnceLock};
 
 use crate::{
@@ -58,9 +56,6 @@ const FEW_SENSORS: usize = 12;
 ///         ``[(0, 4, 9000)]``; 0 for none.
 ///     shared_lines: groups of sensors on one echo line, ``[(0, 3), (1, 4)]``: none fires while another listens.
 ///     together: groups of sensors that fire at the same instants, declared not to hear each other.
-///     over_reals: whether to say what the tick costs: in ``Found.real_period_us`` the shortest period in
-///         ticks of any length, for the needs in exact microseconds, and in ``Found.real_proven`` whether
-///         none is shorter. Only where the period in ticks is proven.
 ///     atlas: whether the atlas of rings whose shortest period is known may answer, as that of the program does;
 ///         ``Found.from_atlas`` says whether it did, and ``nodes`` is 0 then.
 ///
@@ -77,9 +72,6 @@ const FEW_SENSORS: usize = 12;
 ///     >>> found = eeruf.design(sensors=8, t_delta_us=999, min_interval_us=15_000, window_us=36_000)
 ///     >>> found.value_us, found.proven
 ///     (66000, True)
-///     >>> found = eeruf.design(12, 999, 15_000, 45_000, over_reals=True)
-///     >>> found.value_us, found.real_period_us, found.real_proven
-///     (70000, (69499, 1), True)
 ///     >>> windows = [36_000, 36_000, 12_000, 12_000]
 ///     >>> found = eeruf.design(4, [999, 999, 1500, 1500], 15_000, windows, shared_lines=[(0, 2)])
 ///     >>> found.value_us, found.proven
@@ -88,12 +80,12 @@ const FEW_SENSORS: usize = 12;
 #[pyo3(signature = (
     sensors, t_delta_us, min_interval_us, window_us, tick_us=None, neighbours=None, layout=None, stale_echo=None,
     budget=None, progress=None, certificate=None, time_limit_s=None, refire_us=None, intervals_us=None,
-    shared_lines=None, together=None, over_reals=None, atlas=None
+    shared_lines=None, together=None, atlas=None
 ))]
 #[pyo3(
     text_signature = "(sensors, t_delta_us, min_interval_us, window_us, tick_us=1000, neighbours=4, layout=\"line\", \
         stale_echo=False, budget=None, progress=None, certificate=False, time_limit_s=None, refire_us=None, \
-        intervals_us=None, shared_lines=None, together=None, over_reals=False, atlas=True)"
+        intervals_us=None, shared_lines=None, together=None, atlas=True)"
 )]
 #[expect(clippy::too_many_arguments, reason = "keyword arguments")]
 pub(crate) fn design<'py>(
@@ -114,7 +106,6 @@ pub(crate) fn design<'py>(
     intervals_us: Option<&Bound<'_, PyAny>>,
     shared_lines: Option<&Bound<'_, PyAny>>,
     together: Option<&Bound<'_, PyAny>>,
-    over_reals: Option<&Bound<'_, PyAny>>,
     atlas: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let atlas = if flag("atlas", atlas, true)? { ATLAS } else { "" };
@@ -129,7 +120,6 @@ pub(crate) fn design<'py>(
     let stale_echo = flag("stale_echo", stale_echo, false)?;
     let budget = whole_or("budget", budget, DESIGN_BUDGET, 1..=u64::MAX)?;
     let certificate = flag("certificate", certificate, false)?;
-    let over_reals = flag("over_reals", over_reals, false)?;
     let limit = time_limit_s.map(|seconds| number("time_limit_s", seconds, 1e-3..=1e9)).transpose()?;
     let limit = limit.map_or(Duration::MAX, Duration::from_secs_f64);
     let began = Instant::now();
@@ -147,23 +137,19 @@ pub(crate) fn design<'py>(
         let shortest =
             shortest(&needs, &Search { budget, what_if: false, atlas }, &mut control).map_err(Raise::raise)?;
         let found = search::Found { schedule: Some(shortest.schedule), ..shortest.found };
-        let mut still = |what: &str, nodes| began.elapsed() < limit && go_on(&|| format!("{what}: {nodes} nodes"));
-        let proof = certificate.then(|| certify(&needs, &found, |nodes| still("certificate", nodes))).transpose()?;
-        let schedule = found.schedule.filter(|_| over_reals && found.proven);
-        let real = schedule.and_then(|schedule| {
-            real_period(&needs, &schedule, real_budget(sensors), |nodes| still("over the reals", nodes))
-        });
+        let still = |nodes| began.elapsed() < limit && go_on(&|| format!("certificate: {nodes} nodes"));
+        let proof = certificate.then(|| certify(&needs, &found, still)).transpose()?;
         let found = Found::of(&found, began, Some(shortest.reason)).with_spare(shortest.to_spare);
-        Ok((found.out_of_atlas(shortest.from_atlas), proof, real))
+        Ok((found.out_of_atlas(shortest.from_atlas), proof))
     };
-    let (found, certificate, real) = if sensors <= FEW_SENSORS {
+    let (found, certificate) = if sensors <= FEW_SENSORS {
         let mut watch = Watch::new(progress)?;
         let designed = py.detach(|| work(&mut |text| watch.go_on(None, text)));
         watch.outcome(designed)?
     } else {
         in_background(py, progress, move |background| work(&mut |text| background.go_on(None, text)))?
     };
-    Ok(Bound::new(py, found.with_certificate(certificate).with_reals(real))?.into_any())
+    Ok(Bound::new(py, found.with_certificate(certificate))?.into_any())
 }
 
 /// The certificate of what was found.
@@ -179,7 +165,7 @@ fn certify(
         .map_err(|error| CertificateError::new_err(error.to_string()))
 }
 
-/// Check a certificate: that its schedule keeps the requirements in it, and that no period is shorter.
+/// Check a certificate: that its schedule keeps the requirements in it, and that no period is below its bound.
 ///
 /// The checker is ``checker/check_period.py``, which shares nothing with the search and which :func:`example` shows;
 /// ``docs/reference/certificate.md`` has the format and the proof of each rule. A certificate speaks of the numbers
@@ -189,20 +175,20 @@ fn certify(
 ///     text: the certificate, as in ``design(..., certificate=True).certificate``.
 ///
 /// Returns:
-///     The shortest period, in microseconds.
+///     What is proven: no period is below this, in microseconds. If it is that of the schedule, it is the shortest.
 ///
 /// Raises:
 ///     ArgumentError: no text.
-///     CertificateError: the first line that is wrong; or the certificate proves a bound only, which it names.
+///     CertificateError: the first line that is wrong.
 ///
 /// Example:
 ///     >>> import eeruf
 ///     >>> found = eeruf.design(4, 999, 15_000, 36_000, certificate=True)
 ///     >>> eeruf.check_certificate(found.certificate)
 ///     62000
-///     >>> eeruf.check_certificate(found.certificate.replace("period 62", "period 63"))
+///     >>> eeruf.check_certificate(found.certificate.replace("period 62", "period 61"))
 ///     Traceback (most recent call last):
-///     eeruf.CertificateError: no period below 62000 us; schedule of 63000 us (tick 1000 us)
+///     eeruf.CertificateError: line 15: sensor 3 fires within its window
 #[pyfunction]
 #[pyo3(name = "check_certificate", signature = (text))]
 pub(crate) fn check_certificate(py: Python<'_>, text: &Bound<'_, PyAny>) -> PyResult<u64> {
@@ -212,12 +198,8 @@ pub(crate) fn check_certificate(py: Python<'_>, text: &Bound<'_, PyAny>) -> PyRe
         let refused = checker.getattr("Refused").is_ok_and(|refused| error.matches(py, refused).unwrap_or(false));
         if refused { CertificateError::new_err(error.value(py).to_string()) } else { error }
     })?;
-    let of = |name: &str| problem.getattr(name);
-    let period = of("period")?.mul(of("tick")?)?;
-    if of("bound")?.lt(of("period")?)? || !period.getattr("denominator")?.eq(1)? {
-        return Err(CertificateError::new_err(problem.call_method0("claim")?.str()?.to_string()));
-    }
-    period.getattr("numerator")?.extract()
+    let bound = problem.getattr("bound")?.mul(problem.getattr("tick")?)?;
+    bound.getattr("numerator")?.floor_div(bound.getattr("denominator")?)?.extract()
 }
 
 /// The module of the checker's text, run on first use: to import eeruf takes no longer for it.

@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use eeruf_core::search;
 use eeruf_core::{MAX_SENSORS, Micros};
-use eeruf_design::{RealPeriod, ToSpare};
+use eeruf_design::ToSpare;
 use pyo3::{prelude::*, types::PyDict};
 
 use crate::{
@@ -45,13 +45,6 @@ pub(crate) struct Found {
     /// A proof for :func:`check_certificate`; None unless ``design`` was asked for one.
     #[pyo3(get)]
     certificate: Option<String>,
-    /// The shortest period over the reals in microseconds, as numerator and denominator in lowest terms; None unless
-    /// ``design`` was asked for it.
-    #[pyo3(get)]
-    real_period_us: Option<(u64, u64)>,
-    /// True if no real period is shorter; None without one.
-    #[pyo3(get)]
-    real_proven: Option<bool>,
     /// True if the atlas of proven rings answered, and nothing was searched.
     #[pyo3(get)]
     from_atlas: bool,
@@ -91,14 +84,9 @@ impl Found {
     pub(crate) fn with_certificate(self, certificate: Option<String>) -> Self {
         Self { certificate, ..self }
     }
-
-    pub(crate) fn with_reals(self, real: Option<RealPeriod>) -> Self {
-        let real_period_us = real.as_ref().map(|real| real.period_us);
-        Self { real_period_us, real_proven: real.map(|real| real.proven), ..self }
-    }
 }
 
-const FIELDS: [&str; 13] = [
+const FIELDS: [&str; 11] = [
     "schedule",
     "value_us",
     "bound_us",
@@ -107,8 +95,6 @@ const FIELDS: [&str; 13] = [
     "seconds",
     "reason",
     "certificate",
-    "real_period_us",
-    "real_proven",
     "from_atlas",
     "spare_us",
     "spare_proven",
@@ -122,9 +108,9 @@ const SHOWN: [&str; 9] =
 impl Found {
     #[new]
     #[pyo3(signature = (schedule, value_us, bound_us, proven, nodes, seconds, reason=None, certificate=None,
-        real_period_us=None, real_proven=None, from_atlas=None, spare_us=None, spare_proven=None))]
+        from_atlas=None, spare_us=None, spare_proven=None))]
     #[pyo3(text_signature = "(schedule, value_us, bound_us, proven, nodes, seconds, reason=None, certificate=None, \
-            real_period_us=None, real_proven=None, from_atlas=False, spare_us=None, spare_proven=None)")]
+            from_atlas=False, spare_us=None, spare_proven=None)")]
     #[expect(clippy::too_many_arguments, reason = "keyword arguments")]
     fn new(
         schedule: Option<&Bound<'_, PyAny>>,
@@ -135,8 +121,6 @@ impl Found {
         seconds: &Bound<'_, PyAny>,
         reason: Option<&Bound<'_, PyAny>>,
         certificate: Option<&Bound<'_, PyAny>>,
-        real_period_us: Option<&Bound<'_, PyAny>>,
-        real_proven: Option<&Bound<'_, PyAny>>,
         from_atlas: Option<&Bound<'_, PyAny>>,
         spare_us: Option<&Bound<'_, PyAny>>,
         spare_proven: Option<&Bound<'_, PyAny>>,
@@ -151,8 +135,6 @@ impl Found {
             seconds: number("seconds", seconds, 0.0..=f64::INFINITY)?,
             reason: reason.map(|reason| text("reason", reason, "why")).transpose()?,
             certificate: certificate.map(|proof| text("certificate", proof, "a certificate")).transpose()?,
-            real_period_us: of_type("real_period_us", real_period_us, "a fraction of two whole numbers")?,
-            real_proven: of_type("real_proven", real_proven, "True, False or None")?,
             from_atlas: flag("from_atlas", from_atlas, false)?,
             spare_us: of_type("spare_us", spare_us, "three whole numbers of microseconds")?,
             spare_proven: of_type("spare_proven", spare_proven, "three of True and False")?,

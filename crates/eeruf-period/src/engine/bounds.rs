@@ -1,21 +1,13 @@
 //! A difference-bound matrix of firing times, kept closed (rule 1 of docs/reference/certificate.md).
-//!
-//! A bound is one integer: `2 v` says "at most v", `2 v - 1` says "less than v". So comparing integers compares bounds,
-//! and whole ticks and real times are treated alike: in whole ticks no bound is odd.
 
 use crate::engine::problem::MAX_SENSORS;
 
-/// A bound: `t_j - t_i <= v` is stored as `2 v`, `t_j - t_i < v` as `2 v - 1`.
+/// A bound on a difference of two times, in ticks.
 pub(crate) type Bound = i32;
 
 /// The requirements contradict each other here.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Refuted;
-
-/// The bound on a sum of two differences: `< v` and `< w` give `< v + w`, so of two odd numbers one -1 goes.
-pub(crate) fn sum(v: Bound, w: Bound) -> Bound {
-    v + w + (v & w & 1)
-}
 
 /// The closed matrix of bounds: `at(i, j)` is the least upper bound on `t_j - t_i` that follows. A log of the rows as
 /// they were takes it back to an earlier mark.
@@ -23,7 +15,7 @@ pub(crate) fn sum(v: Bound, w: Bound) -> Bound {
 pub(crate) struct Bounds {
     events: usize,
     matrix: Vec<Bound>,
-    /// Room for two rows.
+    /// Room for a row.
     onward: Vec<Bound>,
     /// Rows as they were before they changed: the bounds, then the row's number.
     log: Vec<Bound>,
@@ -49,7 +41,7 @@ impl Bounds {
         let changed = core::array::from_fn(|word| {
             (0..64).filter(|bit| 64 * word + bit < events).fold(0, |set, bit| set | 1 << bit)
         });
-        let (onward, saved) = (vec![0; 2 * events], vec![0; events]);
+        let (onward, saved) = (vec![0; events], vec![0; events]);
         Self { events, matrix, onward, log: Vec::new(), saved, step: 1, version: 1, changed }
     }
 
@@ -108,7 +100,7 @@ impl Bounds {
             return Ok(false);
         }
         // A cycle of differences is 0, so a bound below 0 on it cannot hold.
-        if sum(bound, self.at(j, i)) < 0 {
+        if bound + self.at(j, i) < 0 {
             return Err(Refuted);
         }
         self.close(i, j, bound);
@@ -119,14 +111,9 @@ impl Bounds {
         let n = self.events;
         let Self { matrix, onward, log, saved, step, version, changed, .. } = self;
         *version += 1;
-        // `sum` with an odd number: the other is rounded up to an even one.
-        let (even, odd) = onward.split_at_mut(n);
-        even.copy_from_slice(&matrix[j * n..(j + 1) * n]);
-        for (odd, even) in odd.iter_mut().zip(even.iter()) {
-            *odd = even + (even & 1);
-        }
+        onward.copy_from_slice(&matrix[j * n..(j + 1) * n]);
         for (number, (row, saved)) in matrix.chunks_exact_mut(n).zip(saved).enumerate() {
-            let through = sum(row[i], bound);
+            let through = row[i] + bound;
             if through < row[j] {
                 changed[number / 64] |= 1 << (number % 64);
                 if *saved != *step {
@@ -134,8 +121,7 @@ impl Bounds {
                     log.extend_from_slice(row);
                     log.push(number as Bound);
                 }
-                let onward = if through & 1 == 0 { &*even } else { &*odd };
-                for (old, onward) in row.iter_mut().zip(onward) {
+                for (old, onward) in row.iter_mut().zip(onward.iter()) {
                     *old = (*old).min(through + onward);
                 }
             }

@@ -3,7 +3,8 @@
 use crate::engine::bounds::{Bound, Refuted};
 use crate::engine::problem::Merged;
 use crate::engine::rules::propagate;
-use crate::engine::state::{State, step};
+use crate::engine::state::State;
+use crate::engine::turns::place;
 
 /// A case distinction: one of its cases holds in every schedule. Sensors are those of the merged problem.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -16,6 +17,8 @@ pub(crate) enum Branching {
     Rank(usize, usize),
     /// `|d_x|` is at most this many ticks, or more.
     Split(usize, u32),
+    /// Each of those that have not fired in this phase fires next; the first of them in case 0.
+    Next,
 }
 
 impl Branching {
@@ -27,7 +30,7 @@ impl Branching {
                 state.learn_order(merged, x, y, phase)?;
             }
             Self::Sign(x) => {
-                let bound = if case == 0 { 0 } else { -step(merged) };
+                let bound = if case == 0 { 0 } else { -1 };
                 state.learn_most(x, case == 0, bound)?;
             }
             Self::Rank(x, y) => {
@@ -35,15 +38,27 @@ impl Branching {
                 state.learn_below(x, y);
             }
             Self::Split(x, at) => {
-                let at = 2 * at as Bound;
+                let at = at as Bound;
                 if case == 0 {
                     state.learn_high(x, at)?;
                 } else {
-                    state.learn_low(x, at + step(merged))?;
+                    state.learn_low(x, at + 1)?;
                 }
+            }
+            Self::Next => {
+                let next = state.turns.as_ref().and_then(|turns| turns.left().nth(case)).ok_or(Refuted)?;
+                place(state, next)?;
             }
         }
         propagate(state, merged)
+    }
+
+    /// The number of cases.
+    pub(crate) fn cases(&self, state: &State) -> usize {
+        match self {
+            Self::Next => state.turns.as_ref().map_or(0, |turns| turns.left().count()),
+            _ => 2,
+        }
     }
 
     /// Returns true if it is known which case holds.
@@ -53,9 +68,10 @@ impl Branching {
             Self::Sign(x) => state.most(x, true) <= 0 || state.most(x, false) < 0,
             Self::Rank(x, y) => state.is_below(x, y) || state.is_below(y, x),
             Self::Split(x, at) => {
-                let at = 2 * at as Bound;
+                let at = at as Bound;
                 state.high(x) <= at || state.low[x] > at
             }
+            Self::Next => self.cases(state) == 0,
         }
     }
 
@@ -66,6 +82,7 @@ impl Branching {
             Self::Sign(x) => format!("sign {}\n", sensors[x]),
             Self::Rank(x, y) => format!("rank {} {}\n", sensors[x], sensors[y]),
             Self::Split(x, at) => format!("split {} {at}\n", sensors[x]),
+            Self::Next => "next\n".to_owned(),
         }
     }
 }
@@ -74,6 +91,9 @@ impl Branching {
 /// then all of phase b; then signs, ranks and values of d.
 pub(crate) fn choose(state: &State, merged: &Merged, sequence: &[usize]) -> Option<Branching> {
     let count = merged.count();
+    if !Branching::Next.is_decided(state, merged) {
+        return Some(Branching::Next);
+    }
     for (rank, &y) in sequence.iter().enumerate() {
         for (phase, &x) in (0..2).flat_map(|phase| sequence[..rank].iter().map(move |x| (phase, x))) {
             let (x, y) = (x.min(y), x.max(y));
@@ -93,6 +113,6 @@ pub(crate) fn choose(state: &State, merged: &Merged, sequence: &[usize]) -> Opti
         return Some(Branching::Rank(x, y));
     }
     let widest = (0..count).max_by_key(|&x| width(x))?;
-    let middle = Branching::Split(widest, ((state.low[widest] + state.high(widest)) / 4) as u32);
+    let middle = Branching::Split(widest, ((state.low[widest] + state.high(widest)) / 2) as u32);
     (!middle.is_decided(state, merged)).then_some(middle)
 }

@@ -4,27 +4,28 @@
 //! bound on its period is one on theirs. Write I for that gap, D for the separation, R for the window, and
 //! `own = min(I, R)` for the time that a firing keeps free of the sensor's own next one.
 //!
-//! - **Clique.** w sensors of which each has a gap to each other fire 2 w times in two periods. Between consecutive
-//!   ones of these firings pass at least I, or R where both are of the same sensor, which happens only where one phase
-//!   ends and the next begins, twice in two periods: `T >= (w - 1) I + own`.
+//! - **Clique.** w sensors of which each has a gap to each other fire one by one: `T >= (w - 1) I + own`.
 //! - **Density.** At any time at most alpha of the intervals `[t, t + I)` that begin with a firing are open. Each
 //!   sensor keeps at least `I + own` open in two periods: `2 alpha T >= K (I + own)`. Here alpha is the size of the
 //!   largest set without gaps, or a number of cliques that cover all sensors, which is no smaller.
+//! - **Places.** How few |d| fit where density leaves little to spare: [`Pace`].
 //! - **Classes.** How few |d| fit where clique and gap leave little to spare: [`Classes`].
 
+use crate::engine::classes::{Classes, Kind};
 use crate::engine::problem::Merged;
+use crate::engine::sets::{Pace, cover};
 
 /// An even ring that asks for no more than a problem.
 #[derive(Clone, Debug)]
-struct Even {
-    count: usize,
+pub(crate) struct Even {
+    pub(crate) count: usize,
     /// Row x has bit y if there is a gap between x and y.
-    rows: Vec<u64>,
-    separation: i32,
-    interval: i32,
-    window: i32,
+    pub(crate) rows: Vec<u64>,
+    pub(crate) separation: i32,
+    pub(crate) interval: i32,
+    pub(crate) window: i32,
     /// The smallest |d| allowed.
-    least: i32,
+    pub(crate) least: i32,
 }
 
 /// The numbers in a set of bits, in ascending order.
@@ -38,7 +39,88 @@ pub(crate) fn members(mut set: u64) -> impl Iterator<Item = usize> {
 
 /// A period below which there is no schedule, by counting.
 pub(crate) fn least_period(merged: &Merged) -> u32 {
-    capacity(merged).max(in_sequence(merged)).max(of_even(merged))
+    let one_by_one = cliques(merged).into_iter().map(|clique| one_by_one(merged, clique)).max();
+    capacity(merged).max(in_sequence(merged)).max(of_even(merged)).max(one_by_one.unwrap_or(1))
+}
+
+/// Some large cliques: with each sensor and those after it, round the end, as far as each has gaps to all before.
+fn cliques(merged: &Merged) -> Vec<u64> {
+    let count = merged.count();
+    let has_gaps = |x: usize, y: usize| merged.gap[x][y] > 0 && merged.gap[y][x] > 0;
+    let from = |first: usize| {
+        let grown = |set: u64, y: usize| if members(set).all(|x| has_gaps(x, y)) { set | 1 << y } else { set };
+        (1..count).map(|step| (first + step) % count).fold(1 << first, grown)
+    };
+    (0..count).map(from).collect()
+}
+
+/// **One by one.** In two periods each sensor of a clique fires twice. After each firing of x the next one of the clique
+/// comes no sooner than the smallest gap after x, or, if it is x again, than its window: that is only where a phase
+/// ends, twice in two periods.
+fn one_by_one(merged: &Merged, clique: u64) -> u32 {
+    let least = |x: usize| members(clique).filter(|&y| y != x).map(|y| merged.gap[x][y]).min();
+    let least = |x: usize| least(x).unwrap_or(merged.window[x]);
+    let again = members(clique).map(|x| (least(x) - merged.window[x]).max(0)).max();
+    (members(clique).map(least).sum::<i32>() - again.unwrap_or(0)) as u32
+}
+
+/// What a certificate says about counting: the checker verifies that it excludes a period.
+#[derive(Clone, Debug)]
+pub(crate) enum Argument {
+    /// The |d| in ascending order.
+    Sequence,
+    /// Neighbours along a line.
+    Line(usize),
+    /// Neighbours round a ring.
+    Ring(usize),
+    /// Sensors of which each has a gap to each other: one set alone, sets that have all sensors, or sets without any
+    /// in common.
+    Cliques(Vec<u64>),
+}
+
+impl Argument {
+    /// One that excludes the period, if there is any.
+    pub(crate) fn that_excludes(merged: &Merged, period: u32) -> Option<Self> {
+        if in_sequence(merged) > period {
+            return Some(Self::Sequence);
+        }
+        let even = Even::of(merged);
+        let largest = even.as_ref().map(Even::largest_clique);
+        if let Some(clique) =
+            cliques(merged).into_iter().chain(largest).find(|&clique| one_by_one(merged, clique) > period)
+        {
+            return Some(Self::Cliques(vec![clique]));
+        }
+        let even = even?;
+        let by = |is_by: &dyn Fn(&Bound) -> bool| {
+            even.bounds(merged).iter().any(|bound| bound.period() > period && is_by(bound))
+        };
+        if by(&|bound| matches!(bound, Bound::Density { .. } | Bound::Places { .. })) {
+            return Some(Self::Cliques(cover(merged).0));
+        }
+        let classes = Classes::of(&even).filter(|_| by(&|bound| matches!(bound, Bound::Classes { .. })))?;
+        Some(match classes.kind {
+            Kind::Line => Self::Line(classes.n as usize),
+            Kind::Ring => Self::Ring(classes.n as usize),
+            Kind::Cliques(_) => Self::Cliques(even.disjoint(classes.n as u32)),
+        })
+    }
+
+    /// The lines of a certificate, with sensors in place of those of the merged problem.
+    pub(crate) fn lines(&self, sensors: &[usize]) -> String {
+        match self {
+            Self::Sequence => "sequence\n".to_owned(),
+            Self::Line(n) => format!("line {n}\n"),
+            Self::Ring(n) => format!("ring {n}\n"),
+            Self::Cliques(cliques) => lines_of(cliques, sensors),
+        }
+    }
+}
+
+/// The lines of a certificate for these cliques.
+pub(crate) fn lines_of(cliques: &[u64], sensors: &[usize]) -> String {
+    let row = |&clique: &u64| members(clique).map(|x| format!(" {}", sensors[x])).collect::<String>();
+    cliques.iter().map(|clique| format!("clique{}\n", row(clique))).collect()
 }
 
 /// **Sequence.** In ascending order each `|d|` is at least the larger of two separations above the one before: the
@@ -100,6 +182,8 @@ pub(crate) enum Bound {
     Clique { sensors: u32, interval: u32, own: u32 },
     /// At most this many sensors can keep their interval at the same time, and `own` after their second firing.
     Density { sensors: u32, at_once: u32, interval: u32, own: u32 },
+    /// At most this many sensors can keep their interval at the same time, and too few `|d|` fit into the time that leaves.
+    Places { sensors: u32, at_once: u32, interval: u32, separation: u32, period: u32 },
     /// Sensors that all have gaps to each other fire one after the other, and too few `|d|` fit into the little time
     /// that leaves.
     Classes { clique: u32, sensors: u32, interval: u32, separation: u32, period: u32 },
@@ -119,7 +203,7 @@ impl Bound {
             Self::Density { sensors, at_once, interval, own } => {
                 (times(sensors, interval) + times(sensors, own)).div_ceil(times(2, at_once.max(1)))
             }
-            Self::Classes { period, .. } => u64::from(period),
+            Self::Classes { period, .. } | Self::Places { period, .. } => u64::from(period),
         };
         u32::try_from(period.max(1)).unwrap_or(u32::MAX)
     }
@@ -131,17 +215,17 @@ pub(crate) fn strongest(merged: &Merged) -> Bound {
     let (separation, window) = (merged.separation[0] as u32, merged.window[0] as u32);
     let capacity = Bound::Capacity { sensors: merged.count() as u32, separation, window, least: least as u32 };
     let larger = |best: Bound, bound: Bound| if bound.period() > best.period() { bound } else { best };
-    Even::of(merged).iter().flat_map(Even::bounds).fold(capacity, larger)
+    Even::of(merged).iter().flat_map(|even| even.bounds(merged)).fold(capacity, larger)
 }
 
 /// The bound of the even ring that asks for no more.
 fn of_even(merged: &Merged) -> u32 {
-    Even::of(merged).iter().flat_map(Even::bounds).map(Bound::period).max().unwrap_or(1)
+    Even::of(merged).iter().flat_map(|even| even.bounds(merged)).map(Bound::period).max().unwrap_or(1)
 }
 
 impl Even {
     /// `None` without any gap.
-    fn of(merged: &Merged) -> Option<Self> {
+    pub(crate) fn of(merged: &Merged) -> Option<Self> {
         let interval = merged.gap.iter().flatten().copied().filter(|&gap| gap > 0).min()?;
         let mut separations = merged.separation.clone();
         separations.sort_unstable();
@@ -157,28 +241,47 @@ impl Even {
     }
 
     /// The bounds that need gaps.
-    fn bounds(&self) -> impl Iterator<Item = Bound> {
+    fn bounds(&self, merged: &Merged) -> Vec<Bound> {
         let (sensors, interval) = (self.count as u32, self.interval as u32);
         let own = self.interval.min(self.window) as u32;
-        let (clique, cover) = self.cliques();
-        let at_once = self.ring().map_or(cover, |n| self.count / n) as u32;
-        let classes = Classes::of(self).map(|classes| Bound::Classes {
+        let (cliques, times) = cover(merged);
+        let at_once = (cliques.len() / times) as u32;
+        let density = Bound::Density { sensors, at_once, interval, own };
+        let clique = Bound::Clique { sensors: self.largest_clique().count_ones(), interval, own };
+        let mut bounds = vec![clique, density];
+        if self.window >= self.interval {
+            bounds.push(Bound::Places {
+                sensors,
+                at_once,
+                interval,
+                separation: self.separation as u32,
+                period: self.least_by_places(at_once, density.period()),
+            });
+        }
+        bounds.extend(Classes::of(self).map(|classes| Bound::Classes {
             clique: classes.n as u32,
-            sensors: (classes.n * classes.cliques) as u32,
+            sensors: classes.sensors(self) as u32,
             interval,
             separation: self.separation as u32,
             period: classes.period(self).max(1) as u32,
-        });
-        let clique = Bound::Clique { sensors: clique as u32, interval, own };
-        [clique, Bound::Density { sensors, at_once, interval, own }].into_iter().chain(classes)
+        }));
+        bounds
     }
 
-    fn all(&self) -> u64 {
+    /// The least period from this one on, which no density excludes, at which all `|d|` find room.
+    fn least_by_places(&self, at_once: u32, from: u32) -> u32 {
+        let pace = |period: u32| Pace::new(self.count, at_once as i32, self.interval, period as i32);
+        let excludes = |period: &u32| pace(*period).excludes(self.separation, self.window, self.least);
+        let enough = from.saturating_add(self.interval as u32);
+        (from..enough).find(|period| !excludes(period)).unwrap_or(enough)
+    }
+
+    pub(crate) fn all(&self) -> u64 {
         u64::MAX >> (64 - self.count)
     }
 
     /// A large clique among the sensors `from`, with sensor `first`: greedily, upwards.
-    fn grow(&self, first: usize, from: u64) -> u64 {
+    pub(crate) fn grow(&self, first: usize, from: u64) -> u64 {
         let mut clique = 1_u64 << first;
         let mut common = self.rows[first] & from;
         while let Some(x) = members(common).next() {
@@ -188,163 +291,31 @@ impl Even {
         clique
     }
 
-    /// The size of a large clique, and a number of cliques that cover all sensors.
-    fn cliques(&self) -> (usize, usize) {
-        let size = |x: usize, from: u64| self.grow(x, from).count_ones() as usize;
-        let largest = (0..self.count).map(|x| size(x, u64::MAX << x).max(size(x, u64::MAX))).max();
-        let (mut left, mut cover) = (self.all(), 0);
-        while let Some(x) = members(left).next() {
-            left &= !self.grow(x, left);
-            cover += 1;
-        }
-        (largest.unwrap_or(1), cover)
+    /// A large clique.
+    pub(crate) fn largest_clique(&self) -> u64 {
+        let from = |x: usize| [self.grow(x, u64::MAX << x), self.grow(x, u64::MAX)];
+        (0..self.count).flat_map(from).max_by_key(|clique| clique.count_ones()).unwrap_or(1)
     }
 
-    /// A number of disjoint cliques of the largest size.
-    fn disjoint(&self, size: usize) -> usize {
-        let (mut left, mut disjoint) = (self.all(), 0);
+    /// Disjoint cliques of this size.
+    pub(crate) fn disjoint(&self, size: u32) -> Vec<u64> {
+        let (mut left, mut disjoint) = (self.all(), Vec::new());
         for x in 0..self.count {
             let clique = if left >> x & 1 == 1 { self.grow(x, left) } else { 0 };
-            if clique.count_ones() as usize == size {
+            if clique.count_ones() == size {
                 left &= !clique;
-                disjoint += 1;
+                disjoint.push(clique);
             }
         }
-        disjoint.max(1)
+        disjoint
     }
 
     /// n, if the sensors stand on a closed ring where each has a gap to the next n - 1 on both sides.
-    fn ring(&self) -> Option<usize> {
+    pub(crate) fn ring(&self) -> Option<usize> {
         let n = (self.rows[0] >> 1).trailing_ones() as usize + 1;
         let turned = |x: usize| members(self.rows[x]).fold(0, |set, y| set | 1 << ((y + 1) % self.count));
         (n > 1 && (0..self.count).all(|x| self.rows[(x + 1) % self.count] == turned(x))).then_some(n)
     }
-}
-
-/// The least slack of a period for sensors that all conflict, so that all their `|d|` find room.
-///
-/// Take n sensors that all conflict, in a period `T_p = n I + sigma`, with `R >= I`. Any two firings that follow each
-/// other are I apart, also those of one sensor. If a sensor is the p-th of them in phase a and the q-th in phase b,
-/// `n + p - q` such steps lie between its firing in b and the next in a, and `n - p + q` between a and the next b, so
-/// with `c = p - q`
-///
-/// ```text
-/// T_p + d >= (n + c) I,  T_p - d >= (n - c) I,  that is  c I - sigma <= d <= c I + sigma.
-/// ```
-///
-/// Its **class** is `|c|`. As long as `sigma < I` each class has room for as many `|d|` as fit D apart into
-/// `|c| I - sigma ..= |c| I + sigma`, cut off at `least` below and at the `T_p - R` that the window leaves above. The n
-/// values c are how far the places of a permutation move. **Disjoint cliques** share the room of the classes.
-///
-/// **Line** (each n adjacent sensors conflict). Sensors i and i + n both conflict with the n - 1 between them, whose
-/// firings leave `2 (n - 1)` gaps, in two periods end to end. A gap with u firings of sensor i and v of sensor i + n in
-/// it is at least `(1 + max(u, v)) I` long; if `2 sigma < I`, together they are `2 T_p < (2 n + 1) I` long, so the sum
-/// of `max(u, v)` is at most 2. As u and v sum to 2 each, `u = v` in each gap: sensor i + n takes the places of sensor
-/// i. (Should i be last in both phases, i + n may instead be first in both: that moves all places of the sensors
-/// between by one, in both phases alike.) So c of sensor x depends on `x mod n` alone: *one* permutation for all, and
-/// each of its places needs room for `K / n` sensors or more.
-///
-/// **Ring** with K a multiple of n, `K >= 2 n`. The same goes all round. Let x and y conflict, x before y in phase b
-/// and behind it in a: `a_x - a_y >= (p_x - p_y) I` and `b_y - b_x >= (q_y - q_x) I`, so `e = d - c I` is no smaller
-/// for x than for y. If `c_x > 0`, somebody in each clique is overtaken so; there is one on either side of x, n sensors
-/// apart and so of one class, and their e differ by D. Hence `e_x >= -sigma + D`, and likewise `e_x <= sigma - D` if
-/// `c_x < 0`: in terms of `|d|` every class but 0 loses D at the lower end.
-///
-/// **Ring of `K = 2 n`.** Every sensor conflicts with all but the one opposite, and both fire in the same 2 n places of
-/// two periods, of which each takes as long as its two firings are apart. The time from one firing to the next is
-/// `T_p + d` or `T_p - d`; of two opposite sensors these times differ by D at least, so the two places that they share
-/// take D together. (If they are next to each other, because the sensor that is last in one phase is first in the next,
-/// then it is I from each firing to the next, and from the first of the four to the last `I + D`.) All n pairs of
-/// places, with I behind each place: `2 T_p >= 2 n I + n D`.
-struct Classes {
-    n: i32,
-    cliques: i32,
-    line: bool,
-    /// A ring of a multiple of n sensors.
-    ring: bool,
-}
-
-/// The places tried before giving up on a permutation, which then says nothing.
-const STEPS: u32 = 1 << 15;
-
-impl Classes {
-    fn of(even: &Even) -> Option<Self> {
-        let (k, first) = (even.count, even.rows[0]);
-        // Sensors 1 to n - 1 have a gap to sensor 0, and more only round the end of a ring.
-        let n = (first >> 1).trailing_ones() as usize + 1;
-        let row = |x: usize| (0..k).filter(|&y| x != y && x.abs_diff(y) < n).fold(0, |row, y| row | 1 << y);
-        let line = (0..k).all(|x| even.rows[x] == row(x));
-        let around = k >= 2 * n && k % n == 0 && first.count_ones() as usize == 2 * (n - 1);
-        let ring = around && even.ring().is_some();
-        let (n, cliques) = if line || ring {
-            (n, k / n)
-        } else {
-            let (size, _) = even.cliques();
-            (size, even.disjoint(size))
-        };
-        let counts = n >= 2 && even.window >= even.interval;
-        counts.then_some(Self { n: n as i32, cliques: cliques as i32, line, ring })
-    }
-
-    /// A period below which there is no schedule; it may be smaller than other bounds.
-    fn period(&self, even: &Even) -> i32 {
-        let Some(mut yes) = even.interval.checked_mul(self.n + 1) else { return 0 };
-        let mut no = yes - even.interval - 1;
-        while no + 1 < yes {
-            let middle = no + (yes - no) / 2;
-            if self.excludes(even, middle) { no = middle } else { yes = middle }
-        }
-        yes
-    }
-
-    /// Returns true if too few |d| fit into the classes at this period, at least n I.
-    fn excludes(&self, even: &Even, period: i32) -> bool {
-        let (n, cliques, separation) = (self.n, self.cliques, even.separation);
-        let spare = period - n * even.interval;
-        let alike = cliques == 1 || (self.line || self.ring) && 2 * spare < even.interval;
-        let (mut sum, mut rooms) = (0, Vec::new());
-        for class in 0..n {
-            let passed = if self.ring && alike && class > 0 { separation } else { 0 };
-            let middle = class * even.interval;
-            let (low, high) = ((middle - spare + passed).max(even.least), period - even.window);
-            let high = high.min(middle + spare);
-            let values = if low <= high { (high - low) / separation + 1 } else { 0 };
-            sum += values.min(n * cliques);
-            rooms.push(values / cliques);
-        }
-        let opposite = self.ring && alike && cliques == 2 && 2 * spare < n * separation;
-        sum < n * cliques || opposite || alike && !permutes(&mut rooms)
-    }
-}
-
-/// Returns true if some permutation of the places moves no more of them by each distance than there is room for, or if
-/// that takes too long to find out.
-fn permutes(room: &mut [i32]) -> bool {
-    let n = room.len();
-    let all = u64::MAX >> (64 - n);
-    // Where each place goes, and where it may still be tried to go.
-    let (mut to, mut open) = (vec![0; n], vec![all; n]);
-    let (mut free, mut from) = (all, 0);
-    for _ in 0..STEPS {
-        if from == n {
-            return true;
-        }
-        if let Some(p) = members(open[from] & free).find(|p| room[p.abs_diff(from)] > 0) {
-            room[p.abs_diff(from)] -= 1;
-            free &= !(1 << p);
-            open[from] &= u64::MAX << p << 1;
-            (to[from], from) = (p, from + 1);
-            continue;
-        }
-        open[from] = all;
-        if from == 0 {
-            return false;
-        }
-        from -= 1;
-        room[to[from].abs_diff(from)] += 1;
-        free |= 1 << to[from];
-    }
-    true
 }
 
 #[cfg(test)]
@@ -371,8 +342,8 @@ mod tests {
             let sensors = 1 + random.below(6) as usize;
             let separation: Vec<u32> = (0..sensors).map(|_| 1 + random.below(5)).collect();
             let window = (0..sensors).map(|_| 1 + random.below(20)).collect();
-            let (stale_echo, over_reals, together, gaps) = (random.below(2) == 1, false, Vec::new(), Vec::new());
-            let problem = Problem { tick_us: (1, 1), separation, window, stale_echo, over_reals, together, gaps };
+            let (stale_echo, together, gaps) = (random.below(2) == 1, Vec::new(), Vec::new());
+            let problem = Problem { tick_us: (1, 1), separation, window, stale_echo, together, gaps };
             let all = tried(&problem, (1 << sensors) - 1, None);
             assert_eq!(in_sequence(&problem.merged()), all, "case {case}: {problem:?}");
         }

@@ -9,7 +9,7 @@ use crate::engine::construct::Times;
 use crate::engine::counting::{capacity, members};
 use crate::engine::problem::Merged;
 use crate::engine::rules::propagate;
-use crate::engine::state::{State, event, step};
+use crate::engine::state::{State, event};
 
 /// A case of a branching.
 #[derive(Clone, Copy, Debug)]
@@ -29,7 +29,7 @@ impl Case {
             Self::Of(branching, case) => branching.assume(case, state, merged),
             Self::Largest { x, negative, of } => {
                 members(of & !(1 << x)).for_each(|y| _ = state.learn_below(y, x));
-                state.learn_most(x, !negative, if negative { -step(merged) } else { 0 })?;
+                state.learn_most(x, !negative, if negative { -1 } else { 0 })?;
                 propagate(state, merged)
             }
             Self::Wide { x, least } => {
@@ -133,7 +133,7 @@ impl Choice {
             return Some(self.largest(state, merged, unranked, false));
         }
         let open = (0..merged.count()).filter(|&x| state.low[x] < state.high(x)).min_by_key(|&x| state.low[x])?;
-        let least = Branching::Split(open, (state.low[open] / 2) as u32);
+        let least = Branching::Split(open, state.low[open] as u32);
         Some([1, 0].map(|case| Case::Of(least, case)).into())
     }
 
@@ -204,7 +204,8 @@ impl Choice {
             let after = state.bounds.at(event(x, phase), event(y, phase));
             let before = state.bounds.at(event(y, phase), event(x, phase));
             let first = self.pattern(state, merged, x, y, phase).unwrap_or_else(|| match &mut self.random {
-                Some(random) => random.below((after + before).max(1) as u32) < after.max(0) as u32,
+                // In half ticks, for which the seeds were chosen.
+                Some(random) => random.below((2 * (after + before)).max(1) as u32) < 2 * after.max(0) as u32,
                 None => after >= before,
             });
             let first = usize::from(!first);

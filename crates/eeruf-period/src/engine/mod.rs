@@ -5,15 +5,15 @@
 //! | `problem` | the problem in ticks, a claim about its period; groups that fire together as one sensor |
 //! | `bounds`, `state` | the difference-bound matrix; the knowledge at a node |
 //! | `rules` | propagation; in searches by more than a certificate's rules |
-//! | `counting`, `construct` | a bound by counting; schedules without a search |
-//! | `branching`, `symmetry` | case distinctions; assumptions at the root |
+//! | `counting`, `classes`, `sets` | bounds by counting |
+//! | `construct` | schedules without a search |
+//! | `branching`, `turns`, `symmetry` | case distinctions; firings in the order of time; assumptions at the root |
 //! | `schedule` | a schedule, checked longhand |
 //! | `descent` | the branchings of short descents, which look for schedules |
 //! | `repair` | a local search for schedules |
 //! | `raised` | the ring that most sensors ask for, and the cases beside it |
 //! | `search`, `shortest`, `spare` | one period, the shortest, the schedule with most to spare |
 //! | `prove` | certificates |
-//! | `orders`, `linear`, `reals` | the shortest period over the reals |
 //!
 //! # The engine and the checker
 //!
@@ -33,23 +33,22 @@
 
 mod bounds;
 mod branching;
+mod classes;
 mod construct;
 pub(crate) mod counting;
 mod descent;
-mod linear;
-mod orders;
 mod problem;
 pub mod prove;
 mod raised;
-pub mod reals;
 mod repair;
 mod rules;
 mod schedule;
 pub mod search;
+mod sets;
 pub mod shortest;
 pub mod spare;
 mod state;
 mod symmetry;
+mod turns;
 
-pub use orders::Orders;
 pub use problem::{Claim, MAX_NUMBER, MAX_SENSORS, Problem};

@@ -11,8 +11,6 @@ pub struct Problem {
     pub window: Vec<u32>,
     /// True if `2 |d_x| >= D_x` is required.
     pub stale_echo: bool,
-    /// True for real firing times and periods, false for whole ticks.
-    pub over_reals: bool,
     /// Groups of sensors that fire at the same instants; separation does not count within a group.
     pub together: Vec<Vec<usize>>,
     /// `(x, y, after_x, after_y)` with x < y: y fires no sooner than `after_x` after x, and x no sooner than `after_y`
@@ -58,9 +56,6 @@ impl Claim {
         within("tick_us", &[tick_us.0, tick_us.1], 1, MAX_NUMBER)?;
         within("separation", separation, 1, MAX_NUMBER)?;
         within("window", window, 1, MAX_NUMBER)?;
-        if self.problem.over_reals && self.problem.stale_echo && separation.iter().any(|number| number % 2 == 1) {
-            return Err("an odd separation with stale echoes over the reals; expected half ticks".to_owned());
-        }
         for (at, group) in together.iter().enumerate() {
             let is_sorted = group.windows(2).all(|pair| pair[0] < pair[1]);
             let is_known = group.iter().all(|&sensor| sensor < sensors);
@@ -93,11 +88,10 @@ impl Claim {
     pub(crate) fn head(&self) -> String {
         let problem = &self.problem;
         let row = |numbers: &[u32]| numbers.iter().map(|number| format!(" {number}")).collect::<String>();
-        let mut text = format!("eeruf-certificate 1\ntick_us {} {}\n", problem.tick_us.0, problem.tick_us.1);
+        let mut text = format!("eeruf-certificate 2\ntick_us {} {}\n", problem.tick_us.0, problem.tick_us.1);
         text += &format!("sensors {}\n", problem.sensors());
         text += &format!("separation{}\nwindow{}\n", row(&problem.separation), row(&problem.window));
         text += &format!("stale_echo {}\n", u32::from(problem.stale_echo));
-        text += &format!("over_reals {}\n", u32::from(problem.over_reals));
         for group in &problem.together {
             text += &format!("together{}\n", group.iter().map(|sensor| format!(" {sensor}")).collect::<String>());
         }
@@ -118,14 +112,13 @@ pub(crate) struct Merged {
     pub(crate) separation: Vec<i32>,
     pub(crate) window: Vec<i32>,
     pub(crate) stale_echo: bool,
-    pub(crate) over_reals: bool,
     /// `gap[x][y]`: y fires no sooner than this after x; 0 where there is no requirement.
     pub(crate) gap: Vec<Vec<i32>>,
     /// The pairs x < y with a gap.
     pub(crate) pairs: Vec<(usize, usize)>,
     /// Those with which each has a gap.
     pub(crate) neighbours: Vec<Vec<usize>>,
-    /// The least distance of any two |d|, as a bound.
+    /// The least distance of any two |d|.
     pub(crate) least_apart: i32,
 }
 
@@ -140,7 +133,6 @@ impl Problem {
             separation: vec![separation; sensors],
             window: vec![window; sensors],
             stale_echo: false,
-            over_reals: false,
             together: Vec::new(),
             gaps: pairs.filter(|&(x, y)| neighbours[x] >> y & 1 == 1).map(|(x, y)| (x, y, gap, gap)).collect(),
         }
@@ -163,9 +155,9 @@ impl Problem {
     pub(crate) fn with_separations_that_count(&self) -> Self {
         let merged = self.merged();
         let raised = |of: &usize, own: u32| {
-            let is_alone = merged.separation.iter().filter(|&&other| 2 * other < merged.least_apart).count() == 1;
-            let is_least = 2 * merged.separation[*of] < merged.least_apart;
-            if is_alone && is_least && !self.stale_echo { merged.least_apart as u32 / 2 } else { own }
+            let is_alone = merged.separation.iter().filter(|&&other| other < merged.least_apart).count() == 1;
+            let is_least = merged.separation[*of] < merged.least_apart;
+            if is_alone && is_least && !self.stale_echo { merged.least_apart as u32 } else { own }
         };
         let separation = merged.of_sensor.iter().zip(&self.separation).map(|(of, &own)| raised(of, own)).collect();
         Self { separation, ..self.clone() }
@@ -231,12 +223,12 @@ impl Problem {
         let pairs = (0..count).flat_map(|x| (x + 1..count).map(move |y| (x, y)));
         let pairs = pairs.filter(|&(x, y)| gap[x][y] > 0).collect();
         let neighbours = gap.iter().map(|row| (0..count).filter(|&y| row[y] > 0).collect()).collect();
-        let (stale_echo, over_reals) = (self.stale_echo, self.over_reals);
+        let stale_echo = self.stale_echo;
         // Of two sensors the larger separation counts, so the smallest of all never does.
         let mut ascending = separation.clone();
         ascending.sort_unstable();
-        let least_apart = 2 * ascending.get(1).or(ascending.first()).copied().unwrap_or(0);
-        Merged { of_sensor, separation, window, stale_echo, over_reals, gap, pairs, neighbours, least_apart }
+        let least_apart = ascending.get(1).or(ascending.first()).copied().unwrap_or(0);
+        Merged { of_sensor, separation, window, stale_echo, gap, pairs, neighbours, least_apart }
     }
 }
 
@@ -256,8 +248,8 @@ impl Merged {
         (0..self.count()).map(|one| self.of_sensor.iter().position(|of| *of == one).unwrap_or(0)).collect()
     }
 
-    /// The least distance of `|d_x|` and `|d_y|`, as a bound.
+    /// The least distance of `|d_x|` and `|d_y|`.
     pub(crate) fn apart(&self, x: usize, y: usize) -> i32 {
-        2 * self.separation[x].max(self.separation[y])
+        self.separation[x].max(self.separation[y])
     }
 }

@@ -5,9 +5,10 @@
 use core::fmt;
 
 use crate::engine::branching::{Branching, choose};
-use crate::engine::orders::Orders;
+use crate::engine::counting::{Argument, lines_of};
 use crate::engine::problem::Claim;
 use crate::engine::search::nodes_between;
+use crate::engine::sets::cover;
 use crate::engine::state::{Mark, event};
 use crate::engine::symmetry::Assumptions;
 
@@ -18,11 +19,9 @@ pub enum NoProof {
     Budget(usize),
     /// The caller wanted no more.
     Stopped,
-    /// In whole ticks a branch is neither refuted nor is there anything left to branch on. The earliest firing times
+    /// A branch is neither refuted nor is there anything left to branch on. The earliest firing times
     /// there are a schedule with a period of `bound - 1`.
     Feasible([Vec<u32>; 2]),
-    /// The same over the reals: schedules with these orders may or may not have a period below `bound`.
-    Open(Orders),
     /// The claim is wrong in itself.
     Claim(String),
 }
@@ -35,7 +34,6 @@ impl fmt::Display for NoProof {
             Self::Feasible([a, b]) => {
                 write!(f, "the claim is wrong: there is a schedule below the bound, firing at {a:?} and {b:?} ticks")
             }
-            Self::Open(_) => f.write_str("the claim is not proven: the rules leave firing orders open below the bound"),
             Self::Claim(what) => write!(f, "no claim that can be proven: {what}"),
         }
     }
@@ -71,7 +69,7 @@ pub fn prove_what_can_be(
     best
 }
 
-/// Writes a certificate of the claim, with a tree of at most `budget` nodes.
+/// Writes a certificate of the claim: by counting, or with a tree of at most `budget` nodes.
 ///
 /// # Errors
 ///
@@ -85,53 +83,73 @@ pub fn prove(claim: &Claim, budget: usize) -> Result<String, NoProof> {
 /// # Errors
 ///
 /// See [`NoProof`].
-pub fn prove_while(claim: &Claim, budget: usize, go_on: impl FnMut(usize) -> bool) -> Result<String, NoProof> {
-    prove_but(claim, budget, go_on, |_| false)
+pub fn prove_while(claim: &Claim, budget: usize, mut go_on: impl FnMut(usize) -> bool) -> Result<String, NoProof> {
+    if let Some(counted) = by_counting(claim)? {
+        return Ok(counted);
+    }
+    let by_orders = tree(claim, false, budget, &mut go_on);
+    if !matches!(by_orders, Err(NoProof::Budget(_))) {
+        return by_orders;
+    }
+    tree(claim, true, budget, &mut |nodes| go_on(budget + nodes))
 }
 
-/// The same where over the reals it is no fault of the proof if orders stay open that `are_excluded`; the text is then
-/// no certificate.
-pub(crate) fn prove_but(
-    claim: &Claim,
-    budget: usize,
-    mut go_on: impl FnMut(usize) -> bool,
-    mut are_excluded: impl FnMut(&Orders) -> bool,
-) -> Result<String, NoProof> {
+/// Writes a certificate with branchings on which sensor fires next.
+///
+/// # Errors
+///
+/// See [`NoProof`].
+pub fn prove_in_time(claim: &Claim, budget: usize) -> Result<String, NoProof> {
+    by_counting(claim)?.map_or_else(|| tree(claim, true, budget, &mut |_| true), Ok)
+}
+
+/// A certificate without a tree, if counting alone excludes all shorter periods.
+fn by_counting(claim: &Claim) -> Result<Option<String>, NoProof> {
     claim.check().map_err(NoProof::Claim)?;
     let merged = claim.problem.merged();
-    let assumptions = Assumptions::of(&claim.problem);
-    let mut text = claim.head() + &assumptions.lines();
-    let Ok(mut state) = assumptions.root(&merged, claim.bound) else { return Ok(text + "end\n") };
+    let argument = Argument::that_excludes(&merged, claim.bound - 1);
+    Ok(argument.map(|argument| claim.head() + &argument.lines(&merged.firsts()) + "end\n"))
+}
+
+/// A certificate by branchings on orders, or on which sensor fires next.
+fn tree(claim: &Claim, in_time: bool, budget: usize, go_on: &mut dyn FnMut(usize) -> bool) -> Result<String, NoProof> {
+    let (merged, assumptions) = (&claim.problem.merged(), &Assumptions::of(&claim.problem));
     let firsts = merged.firsts();
+    let mut text = claim.head();
+    if in_time {
+        text += &lines_of(&cover(merged).0, &firsts);
+    }
+    text += &assumptions.lines(in_time);
+    let root = if in_time { Assumptions::root_in_time } else { Assumptions::root };
+    let Ok(mut state) = root(assumptions, merged, claim.bound) else { return Ok(text + "end\n") };
     let sequence: Vec<usize> = (0..merged.count()).collect();
     let between = nodes_between(claim.problem.sensors());
     let mut nodes = 1;
-    let mut open: Vec<(Mark, Branching)> = Vec::new();
+    // What was known before a branching, and its next case.
+    let mut open: Vec<(Mark, Branching, usize)> = Vec::new();
     let mut holds = true;
     loop {
-        let (branching, case) = match if holds { choose(&state, &merged, &sequence) } else { None } {
-            Some(branching) => {
-                text += &branching.line(&firsts);
-                open.push((state.mark(), branching));
-                (branching, 0)
-            }
-            None => {
-                if holds && !merged.over_reals {
-                    return Err(NoProof::Feasible([0, 1].map(|phase| {
-                        let times = merged.of_sensor.iter().map(|&one| -state.bounds.at(event(one, phase), 0) / 2);
-                        times.map(|time| time as u32).collect()
-                    })));
-                }
-                let orders = if holds { Some(Orders::at(&state)) } else { None };
-                if let Some(orders) = orders.filter(|orders| !are_excluded(orders)) {
-                    return Err(NoProof::Open(orders));
-                }
-                // The second case of the deepest branching that has not come to it.
-                let Some((mark, branching)) = open.pop() else { return Ok(text + "end\n") };
-                state.drop_mark(mark);
-                (branching, 1)
-            }
-        };
+        if holds {
+            let Some(branching) = choose(&state, merged, &sequence) else {
+                return Err(NoProof::Feasible([0, 1].map(|phase| {
+                    let times = merged.of_sensor.iter().map(|&one| -state.bounds.at(event(one, phase), 0));
+                    times.map(|time| time as u32).collect()
+                })));
+            };
+            text += &branching.line(&firsts);
+            open.push((state.mark(), branching, 0));
+        }
+        // The next case of the deepest branching that has one.
+        let Some((mark, branching, next)) = open.last_mut() else { return Ok(text + "end\n") };
+        if !holds {
+            state.undo(*mark);
+        }
+        if *next == branching.cases(&state) {
+            state.drop_mark(*mark);
+            open.pop();
+            holds = false;
+            continue;
+        }
         nodes += 1;
         if nodes > budget {
             return Err(NoProof::Budget(budget));
@@ -139,6 +157,7 @@ pub(crate) fn prove_but(
         if nodes.is_multiple_of(between) && !go_on(nodes) {
             return Err(NoProof::Stopped);
         }
-        holds = branching.assume(case, &mut state, &merged).is_ok();
+        *next += 1;
+        holds = branching.assume(*next - 1, &mut state, merged).is_ok();
     }
 }

@@ -43,7 +43,7 @@ impl Raised {
     /// The cases in which a schedule of this period is none of the raised problem. `None` where they say too little.
     pub(crate) fn cases(&self, merged: &Merged, period: u32) -> Option<Vec<Case>> {
         let (sensors, window) = self.windows.as_ref()?;
-        let least = 2 * (period + 1) as i32 - 2 * *window as i32;
+        let least = (period + 1) as i32 - *window as i32;
         Some(sensors.iter().map(|&sensor| Case::Wide { x: merged.of_sensor[sensor], least }).collect())
     }
 }

@@ -71,7 +71,7 @@ impl Repair {
                 -back < later && later < to || next < to || before < back
             });
         let size = |[a, b]: [i32; 2]| (a - b).abs();
-        [gaps, 2 * (size(own) - size(other)).abs() < merged.apart(x, y)].map(i16::from)
+        [gaps, (size(own) - size(other)).abs() < merged.apart(x, y)].map(i16::from)
     }
 
     /// Moves a sensor. Returns true if the times keep all needs.
@@ -130,7 +130,7 @@ impl Repair {
             }
         }
         for y in (0..count).filter(|&y| y != x) {
-            let (size, apart) = ((times[y][0] - times[y][1]).abs(), merged.apart(x, y) / 2);
+            let (size, apart) = ((times[y][0] - times[y][1]).abs(), merged.apart(x, y));
             add(2, size - apart, size + apart, of_sizes[x * count + y]);
         }
     }

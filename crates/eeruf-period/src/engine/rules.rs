@@ -4,7 +4,7 @@
 //! Each rule only ever tightens, and more the tighter its premises are. So all orders of applying them end in the same
 //! state: a certificate's tree is refuted where the checker's own copy of the rules refutes it.
 
-use crate::engine::bounds::{Bound, Refuted, sum};
+use crate::engine::bounds::{Bound, Refuted};
 use crate::engine::counting::members;
 use crate::engine::problem::{MAX_SENSORS, Merged};
 use crate::engine::state::{State, event, firing};
@@ -43,7 +43,7 @@ fn orders(state: &mut State, merged: &Merged) -> Result<bool, Refuted> {
     while let Some(changed) = state.bounds.take_changed() {
         let Some((x, phase)) = firing(changed) else { continue };
         for &y in &merged.neighbours[x] {
-            if state.bounds.at(event(x, phase), event(y, phase)) < 2 * merged.gap[x][y] {
+            if state.bounds.at(event(x, phase), event(y, phase)) < merged.gap[x][y] {
                 news |= state.learn_order(merged, y, x, phase)?;
             }
         }
@@ -145,7 +145,7 @@ fn beyond(values: impl Iterator<Item = (Bound, i32)>, own: i32) -> Option<Bound>
     for (bound, separation) in values {
         width += separation;
         narrowest = narrowest.min(separation);
-        let bound = bound - 2 * (width - narrowest);
+        let bound = bound - (width - narrowest);
         least = Some(least.map_or(bound, |least| least.min(bound)));
     }
     least
@@ -164,7 +164,7 @@ fn spacing(state: &mut State, merged: &Merged) -> Result<bool, Refuted> {
     }
     let mut by_high = [0; MAX_SENSORS];
     let by_high = ascending(&mut by_high, count, |x| highs[x]);
-    let smallest = merged.least_apart / 2;
+    let smallest = merged.least_apart;
     for first in 0..count {
         let start = state.low[first];
         if state.low[..first].contains(&start) {
@@ -180,10 +180,10 @@ fn spacing(state: &mut State, merged: &Merged) -> Result<bool, Refuted> {
             width += merged.separation[x];
             narrowest = narrowest.min(merged.separation[x]);
             let high = highs[x];
-            if start + 2 * (width - narrowest) > high {
+            if start + width - narrowest > high {
                 return Err(Refuted);
             }
-            let is_full = |own: i32| start + 2 * (width + own - narrowest.min(own)) > high;
+            let is_full = |own: i32| start + width + own - narrowest.min(own) > high;
             if !state.goes_further || !is_full(smallest) {
                 continue;
             }
@@ -221,8 +221,8 @@ fn behind(state: &mut State, merged: &Merged) -> Result<bool, Refuted> {
         for x in members(state.below[y]) {
             let Some((x0, x1)) = sign(state, x).map(|negative| ends(x, negative)) else { continue };
             let apart = merged.apart(x, y);
-            news |= state.bounds.learn(y1, x1, sum(state.bounds.at(y0, x0), -apart))?;
-            news |= state.bounds.learn(x0, y0, sum(state.bounds.at(x1, y1), -apart))?;
+            news |= state.bounds.learn(y1, x1, state.bounds.at(y0, x0) - apart)?;
+            news |= state.bounds.learn(x0, y0, state.bounds.at(x1, y1) - apart)?;
         }
     }
     Ok(news)
@@ -241,7 +241,7 @@ fn precedence(state: &mut State, merged: &Merged) -> Result<bool, Refuted> {
             for &x in &merged.neighbours[y] {
                 let (x0, x1) = ends(x, negative);
                 // The upper bound on x - y from the orders of the two, and on -x.
-                let lead = sum(state.bounds.at(y1, x1), state.bounds.at(x0, y0));
+                let lead = state.bounds.at(y1, x1) + state.bounds.at(x0, y0);
                 if lead < 0 {
                     leaders.push((state.bounds.at(x1, x0), lead, merged.separation[x]));
                 }
@@ -254,7 +254,7 @@ fn precedence(state: &mut State, merged: &Merged) -> Result<bool, Refuted> {
                     if lead <= threshold {
                         width += separation;
                         narrowest = narrowest.min(separation);
-                        best = best.min(sum(most, threshold) - 2 * (width - narrowest));
+                        best = best.min(most + threshold - (width - narrowest));
                     }
                 }
             }

@@ -107,8 +107,16 @@ impl Search {
     ) -> Decided {
         let assumptions = self.assumptions.get_or_init(|| Assumptions::of(&self.problem.with_separations_that_count()));
         let Ok(mut state) = assumptions.root(&self.merged, period + 1) else { return Decided::Refuted };
-        state.goes_further = !self.merged.over_reals;
+        state.goes_further = true;
         self.walk(period, &mut state, budget, cases, None, go_on)
+    }
+
+    /// The same by branchings along time.
+    pub fn decide_in_time(&mut self, period: u32, budget: u64, go_on: &mut dyn FnMut(u64) -> bool) -> Decided {
+        let assumptions = self.assumptions.get_or_init(|| Assumptions::of(&self.problem.with_separations_that_count()));
+        let Ok(mut state) = assumptions.root_in_time(&self.merged, period + 1) else { return Decided::Refuted };
+        state.goes_further = true;
+        self.walk(period, &mut state, budget, None, None, go_on)
     }
 
     /// Looks for firing times of this period by at most `budget` nodes: first by a search along the guide, the times
@@ -175,7 +183,7 @@ impl Search {
     /// that a short descent may end in each.
     fn root(&self, period: u32) -> Option<State> {
         let mut state = State::new(&self.merged, period as i32 + 1).ok()?;
-        state.goes_further = !self.merged.over_reals;
+        state.goes_further = true;
         propagate(&mut state, &self.merged).ok().map(|()| state)
     }
 
@@ -203,8 +211,9 @@ impl Search {
                 }
                 let cases = match &mut choice {
                     Some(choice) => choice.cases(state, &self.merged),
-                    None => choose(state, &self.merged, &along)
-                        .map(|branching| [1, 0].map(|case| Case::Of(branching, case)).into()),
+                    None => choose(state, &self.merged, &along).map(|branching| {
+                        (0..branching.cases(state)).rev().map(|case| Case::Of(branching, case)).collect()
+                    }),
                 };
                 // Nothing left to branch on is a schedule too, in whole ticks.
                 let Some(cases) = cases else { return Decided::Open };
@@ -233,8 +242,8 @@ impl Search {
 
     /// The earliest or the latest times that the bounds allow, if they happen to keep everything.
     fn reading(&self, period: u32, state: &State) -> Option<FiringTimes> {
-        let earliest = |one: usize, phase: usize| -state.bounds.at(event(one, phase), 0) / 2;
-        let latest = |one: usize, phase: usize| state.bounds.at(0, event(one, phase)) / 2;
+        let earliest = |one: usize, phase: usize| -state.bounds.at(event(one, phase), 0);
+        let latest = |one: usize, phase: usize| state.bounds.at(0, event(one, phase));
         let times = |time: &dyn Fn(usize, usize) -> i32| -> FiringTimes {
             [0, 1].map(|phase| self.merged.of_sensor.iter().map(|&one| time(one, phase).max(0) as u32).collect())
         };

@@ -101,7 +101,7 @@ impl Run {
         if period > MAX_TICKS || !problem.is_kept_by(period, &fire) {
             return None;
         }
-        let bound = least_period(search.merged()).max(one_after_the_other(problem)).clamp(1, period);
+        let bound = least_period(search.merged()).clamp(1, period);
         let found = Shortest { period, fire, bound, nodes: 0, without_cases: false };
         let (limit, is_guide, ended) = (u64::MAX, false, 0);
         let mut run = Self {
@@ -284,7 +284,10 @@ impl Run {
         if !self.is_open() {
             return Ok(());
         }
-        self.decide(self.found.period - 1, 16 * effort, ask)?;
+        let shorter = self.found.period - 1;
+        if !self.decide(shorter, 16 * effort, ask)? {
+            self.decide_in_time(shorter, 16 * effort, ask)?;
+        }
         // The shortest period leaves the least to guess, so it comes first; then bisection.
         let (mut unknown, mut period) = (self.found.bound - 1, self.found.bound);
         while unknown + 1 < self.found.period && self.is_open() {
@@ -322,6 +325,14 @@ impl Run {
         if decided == Decided::Refuted && search.nodes() == nodes {
             self.bound_of_rules = self.bound_of_rules.max(period + 1);
         }
+        self.take(period, decided)
+    }
+
+    /// The same by branchings along time: where there is little room beside what density asks for, they refute more.
+    fn decide_in_time(&mut self, period: u32, effort: u64, ask: Ask<'_>) -> Result<bool, Stopped> {
+        let (before, effort) = (self.nodes() - self.search.nodes(), self.affordable(effort));
+        let Self { search, found, .. } = self;
+        let decided = search.decide_in_time(period, effort, &mut |nodes| ask(before + nodes, found));
         self.take(period, decided)
     }
 
@@ -385,31 +396,6 @@ fn constructed_times(problem: &Problem) -> Option<FiringTimes> {
         [0, 1].map(|phase: usize| merged.of_sensor.iter().map(|&one| times[one][phase] as u32).collect())
     };
     Some(of(&constructed(&merged, |times| period_of(problem, &of(times)))))
-}
-
-/// The least period of sensors of which each has a gap to each other, the best of a few such sets.
-///
-/// In two periods each of them fires twice. After each firing of x the next one of the set comes no sooner than the
-/// smallest gap after x, or, if it is x again, than its window. So two periods take at least twice the sum of these.
-/// A tree would have to try all orders for it, so a certificate of it may be too long to be written.
-fn one_after_the_other(problem: &Problem) -> u32 {
-    let merged = problem.merged();
-    let count = merged.count();
-    let has_gaps = |x: usize, y: usize| merged.gap[x][y] > 0 && merged.gap[y][x] > 0;
-    let from = |first: usize| {
-        let mut set = vec![first];
-        for y in (1..count).map(|step| (first + step) % count) {
-            if set.iter().all(|&x| has_gaps(x, y)) {
-                set.push(y);
-            }
-        }
-        let least = |x: usize| {
-            let gaps = set.iter().filter(|&&y| y != x).map(|&y| merged.gap[x][y]);
-            gaps.fold(merged.window[x], i32::min) as u32
-        };
-        set.iter().map(|&x| least(x)).sum()
-    };
-    (0..count).map(from).max().unwrap_or(0)
 }
 
 /// The shortest period at which these very times serve.

@@ -2,12 +2,13 @@
 
 use crate::engine::bounds::{Bound, Bounds, Refuted};
 use crate::engine::problem::Merged;
+use crate::engine::turns::Turns;
 
 /// The knowledge at a node.
 #[derive(Clone, Debug)]
 pub(crate) struct State {
     pub(crate) bounds: Bounds,
-    /// Lower bounds on |d|: `2 v` says "at least v", `2 v + 1` says "more than v".
+    /// Lower bounds on |d|.
     pub(crate) low: Vec<Bound>,
     /// The set of those with a smaller |d|, as bits.
     pub(crate) below: Vec<u64>,
@@ -15,6 +16,8 @@ pub(crate) struct State {
     pub(crate) reverse: Option<(usize, usize)>,
     /// True if more is concluded than the rules of a certificate do.
     pub(crate) goes_further: bool,
+    /// The sensors that fire first, where branchings go along with time.
+    pub(crate) turns: Option<Turns>,
     /// Values of `low` and `below` at each mark.
     trail: Vec<(Bound, u64)>,
     /// State that the rules were last applied to in vain.
@@ -35,6 +38,7 @@ pub(crate) struct Seen {
 pub(crate) struct Mark {
     log: usize,
     trail: usize,
+    placed: usize,
 }
 
 /// The event "x fires" in phase a (0) or b (1); event 0 is the start of both phases.
@@ -47,17 +51,12 @@ pub(crate) fn firing(event: usize) -> Option<(usize, usize)> {
     event.checked_sub(1).map(|event| (event / 2, event % 2))
 }
 
-/// The smallest step by which a bound can be exceeded: a whole tick, or anything at all.
-pub(crate) fn step(merged: &Merged) -> Bound {
-    if merged.over_reals { 1 } else { 2 }
-}
-
 impl State {
     /// The knowledge of every schedule with a period below `period`.
     pub(crate) fn new(merged: &Merged, period: i32) -> Result<Self, Refuted> {
-        let (count, step) = (merged.count(), step(merged));
-        // Whole ticks: the period is at most `period - 1`, and firing times at most one less.
-        let latest = if merged.over_reals { 2 * period - 1 } else { 2 * period - 4 };
+        let count = merged.count();
+        // The period is at most `period - 1`, and firing times at most one less.
+        let latest = period - 2;
         if latest < 0 {
             return Err(Refuted);
         }
@@ -66,33 +65,41 @@ impl State {
             let (a, b) = (event(x, 0), event(x, 1));
             bounds.learn(a, 0, 0)?;
             bounds.learn(b, 0, 0)?;
-            let furthest = 2 * (period - merged.window[x]) - step;
+            let furthest = period - 1 - merged.window[x];
             bounds.learn(a, b, furthest)?;
             bounds.learn(b, a, furthest)?;
             for y in 0..count {
                 if merged.gap[x][y] > 0 {
                     // After x in a phase, y in the next.
-                    let furthest = 2 * (period - merged.gap[x][y]) - step;
+                    let furthest = period - 1 - merged.gap[x][y];
                     bounds.learn(event(y, 1), a, furthest)?;
                     bounds.learn(event(y, 0), b, furthest)?;
                 }
             }
         }
-        // Half a separation, in whole ticks rounded up: 2 * (D / 2) = D.
-        let half = |x: usize| merged.separation[x] + if merged.over_reals { 0 } else { merged.separation[x] & 1 };
-        let low = (0..count).map(|x| if merged.stale_echo { half(x) } else { 0 }).collect();
+        let low = merged.separation.iter().map(|own| if merged.stale_echo { (own + 1) / 2 } else { 0 }).collect();
         Ok(Self::of(bounds, low))
     }
 
     /// These bounds, and nothing else known.
     pub(crate) fn of(bounds: Bounds, low: Vec<Bound>) -> Self {
         let below = vec![0; low.len()];
-        Self { bounds, low, below, reverse: None, goes_further: false, trail: Vec::new(), seen: Seen::default() }
+        Self {
+            bounds,
+            low,
+            below,
+            reverse: None,
+            goes_further: false,
+            turns: None,
+            trail: Vec::new(),
+            seen: Seen::default(),
+        }
     }
 
     /// Keeps what is known, for [`undo`](Self::undo).
     pub(crate) fn mark(&mut self) -> Mark {
-        let mark = Mark { log: self.bounds.mark(), trail: self.trail.len() };
+        let placed = self.turns.as_ref().map_or(0, |turns| turns.placed.len());
+        let mark = Mark { log: self.bounds.mark(), trail: self.trail.len(), placed };
         self.trail.extend(self.low.iter().copied().zip(self.below.iter().copied()));
         mark
     }
@@ -100,6 +107,9 @@ impl State {
     /// Goes back to what was known at the mark, which stays. Later marks are void.
     pub(crate) fn undo(&mut self, mark: Mark) {
         self.bounds.undo(mark.log);
+        if let Some(turns) = &mut self.turns {
+            turns.placed.truncate(mark.placed);
+        }
         let count = self.low.len();
         for (x, &(low, below)) in self.trail[mark.trail..mark.trail + count].iter().enumerate() {
             (self.low[x], self.below[x]) = (low, below);
@@ -171,11 +181,11 @@ impl State {
 
     /// Learns that in this phase x fires before y.
     pub(crate) fn learn_order(&mut self, merged: &Merged, x: usize, y: usize, phase: usize) -> Result<bool, Refuted> {
-        self.bounds.learn(event(y, phase), event(x, phase), -2 * merged.gap[x][y])
+        self.bounds.learn(event(y, phase), event(x, phase), -merged.gap[x][y])
     }
 
     /// Returns true if it is known that in this phase x fires before y.
     pub(crate) fn is_ordered(&self, merged: &Merged, x: usize, y: usize, phase: usize) -> bool {
-        self.bounds.at(event(y, phase), event(x, phase)) <= -2 * merged.gap[x][y]
+        self.bounds.at(event(y, phase), event(x, phase)) <= -merged.gap[x][y]
     }
 }

@@ -4,7 +4,8 @@
 use crate::engine::bounds::Refuted;
 use crate::engine::problem::{Merged, Problem};
 use crate::engine::rules::propagate;
-use crate::engine::state::State;
+use crate::engine::state::{State, event};
+use crate::engine::turns::Turns;
 
 /// A sensor that may be assumed to have the greatest |d| of all that permutations of the problem take it to.
 #[derive(Clone, Debug)]
@@ -81,15 +82,35 @@ impl Assumptions {
         Ok(root)
     }
 
+    /// The same with other assumptions, for branchings along time: the first of each family is the first to fire of it
+    /// in phase a, and the first of all no later than any of its family in phase b.
+    pub(crate) fn root_in_time(&self, merged: &Merged, bound: u32) -> Result<State, Refuted> {
+        let mut root = State::new(merged, bound as i32)?;
+        for (number, family) in self.families.iter().enumerate() {
+            let first = merged.of_sensor[family.greatest];
+            for &sensor in &family.orbit {
+                for phase in if number == 0 { 0..2 } else { 0..1 } {
+                    root.bounds.learn(event(merged.of_sensor[sensor], phase), event(first, 0), 0)?;
+                }
+            }
+        }
+        root.turns = Some(Turns::new(merged, bound as i32 - 1));
+        propagate(&mut root, merged)?;
+        Ok(root)
+    }
+
     /// The lines of a certificate.
-    pub(crate) fn lines(&self) -> String {
+    pub(crate) fn lines(&self, in_time: bool) -> String {
         let mut text = String::new();
         for family in &self.families {
             for image in &family.generators {
                 let row: String = image.iter().map(|sensor| format!(" {sensor}")).collect();
                 text += &format!("permutation{row}\n");
             }
-            text += &format!("greatest {}\n", family.greatest);
+            text += &format!("{} {}\n", if in_time { "first" } else { "greatest" }, family.greatest);
+        }
+        if in_time {
+            return text;
         }
         text += &format!("exchange {POSITIVE}\n");
         match self.reverse {

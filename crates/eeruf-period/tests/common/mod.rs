@@ -65,7 +65,6 @@ pub(crate) fn claim_of(certificate: &str) -> Claim {
         separation: one("separation"),
         window: one("window"),
         stale_echo: one("stale_echo") == [1],
-        over_reals: one("over_reals") == [1],
         together: rows("together").into_iter().map(group).collect(),
         gaps: rows("gap").iter().map(|gap| (gap[0] as usize, gap[1] as usize, gap[2], gap[3])).collect(),
     };
@@ -73,11 +72,15 @@ pub(crate) fn claim_of(certificate: &str) -> Claim {
     Claim { problem, period: one("period")[0], fire, bound: one("no_period_below")[0] }
 }
 
-/// The number of nodes of a certificate's tree: one leaf more than there are branchings.
+/// The number of nodes of a certificate's tree, about: two for each branching, as many as sensors if one fires next.
 pub(crate) fn nodes_of(certificate: &str) -> usize {
-    let words = ["a", "b", "sign", "rank", "split"];
-    let is_branching = |line: &&str| words.contains(&line.split(' ').next().unwrap_or_default());
-    2 * certificate.lines().filter(is_branching).count() + 1
+    let sensors = claim_of(certificate).problem.sensors();
+    let nodes = |line: &str| match line.split(' ').next() {
+        Some("a" | "b" | "sign" | "rank" | "split") => 2,
+        Some("next") => sensors,
+        _ => 0,
+    };
+    certificate.lines().map(nodes).sum::<usize>() + 1
 }
 
 /// The certificates that the checker reads in a moment; `EERUF_NODES` sets how many nodes they may have.
@@ -153,7 +156,7 @@ pub(crate) fn random_problem(random: &mut Random) -> Problem {
             }
         }
     }
-    Problem { tick_us: (1, 1), separation, window, stale_echo: random.once_in(3), over_reals: false, together, gaps }
+    Problem { tick_us: (1, 1), separation, window, stale_echo: random.once_in(3), together, gaps }
 }
 
 /// A schedule with this period, if there is one: all firing times are tried, sensor by sensor.
@@ -237,7 +240,6 @@ fn claim(case: &str, scale: u32) -> (String, Claim) {
         separation: vec![scale * number("separation"); sensors],
         window: vec![scale * number("window"); sensors],
         stale_echo: false,
-        over_reals: false,
         together: Vec::new(),
         gaps: pairs.filter(|&(x, y)| near(x, y)).map(|(x, y)| (x, y, interval, interval)).collect(),
     };

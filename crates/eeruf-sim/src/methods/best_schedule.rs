@@ -9,7 +9,7 @@ use super::schedules::table_i_d_for;
 use crate::world::Robot;
 
 /// The grid on which firing times are sought: a choice; finer ticks seldom gain (`docs/explanation/theory.md`, section
-/// 5.5).
+/// 5.6).
 pub const TICK: Micros = Micros::new(100);
 
 /// Requirements that a ring must keep of the schedule it fires by: the robot's `t_delta` and window, the interval that

@@ -41,6 +41,7 @@ _MethodName = Literal[
     "simultaneous",
     "sequential",
     "sequential_votes",
+    "sequential_median",
     "far_groups",
     "dither",
     "conventional",

@@ -27,8 +27,8 @@ use crate::report::watch::Watch;
 /// dither, conventional (constant lags, every echo accepted), comparison (constant lags, consecutive readings
 /// compared), median, eeruf_immediate, eeruf (the paper's table scaled to the period, or the robot's own schedule),
 /// eeruf_best (the shortest schedule with the same guarantees), flow (one after the other, each with the quiet that it
-/// has needed), adaptive, multi_echo. By name two in one (adaptive_multi_echo, flow_multi_echo) and blocking (fire,
-/// wait for the echo or for 38 ms, then 10 ms, and the next), or if the scene says `firing`, as rings are fired today:
+/// has needed), adaptive, multi_echo. By name two in one (adaptive_multi_echo, flow_multi_echo), sequential_median (one by one, the median of
+/// three) and blocking (fire, wait for the echo or for 38 ms, then 10 ms, and the next), or if the scene says `firing`, as rings are fired today:
 /// in_turn (the next as soon as the echo came, or after a time-out), arrays, groups, sync_line, free_running, table.
 #[derive(clap::Args)]
 pub(crate) struct Args {

@@ -71,6 +71,10 @@ methods! {
     /// As sequential, but an echo is believed if one of the sensor's two readings before agrees with it: two of three
     /// votes.
     SequentialVotes = "sequential_votes" { firing: Way::by_table(schedules::one_by_one), judge: TwoOfThree, }
+    /// As sequential, but the median of a sensor's last three readings is believed.
+    SequentialMedian = "sequential_median" {
+        firing: Way::by_table(schedules::one_by_one), judge: JudgeKind::Median, on_demand: true,
+    }
     /// As sequential, but sensors as far apart as the ring's `neighbours` fire together. Every echo is believed.
     FarGroups = "far_groups" { firing: Way::by_table(schedules::far_groups), judge: EveryEcho, }
     /// The conventional lags plus a wait redrawn for each sensor in each period, from as wide a range as the paper's

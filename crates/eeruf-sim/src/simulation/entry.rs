@@ -101,6 +101,7 @@ impl Entry {
     #[must_use]
     pub fn robot(&self, mut robot: Robot) -> Robot {
         robot.schedule = self.schedule.or(robot.schedule);
+        robot.window = self.flow.and_then(|flow| flow.window).unwrap_or(robot.window);
         if let Some(sketch) = &self.sketch {
             robot.firing = sketch.clone();
         }

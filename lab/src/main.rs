@@ -10,7 +10,7 @@ mod diagnose_places;
 mod doctor_alcoves;
 mod driving;
 mod echo_times;
-mod flow_rooms;
+mod flow_tables;
 mod four_worlds;
 mod measure;
 mod modules;
@@ -18,9 +18,7 @@ mod narrow_panels;
 mod ray_casts;
 mod rust_side;
 mod shortest_periods;
-mod swinging;
 mod time_paths;
-mod time_physics;
 mod time_scenes;
 mod tune;
 mod twins;
@@ -40,7 +38,7 @@ type Answer = Result<(), Box<dyn Error>>;
 /// A command: its name, its arguments, what it prints.
 type Command = (&'static str, &'static str, &'static str, fn(&[String]) -> Answer);
 
-const COMMANDS: [Command; 24] = [
+const COMMANDS: [Command; 21] = [
     ("constant-depth", "", "angles at which a wall is heard, by distance and gain", constant_depth::main),
     (
         "diagnose-places",
@@ -50,7 +48,12 @@ const COMMANDS: [Command; 24] = [
     ),
     ("doctor-alcoves", "[FIRST [ALCOVES [PERIODS [PHYSICS]]]]", "verdicts of eeruf logs", doctor_alcoves::main),
     ("echo-times", "SCENE.toml [SENSORS]", "ways of sound in a scene, for simulated boards", echo_times::main),
-    ("flow-rooms", "[ROOMS [FIRST [PHYSICS]]]", "flow beside one by one", flow_rooms::main),
+    (
+        "flow-tables",
+        "courses | robots | paths | rooms | leads [--ring FILE] [--first N] [--count N] [--tune] [--csv FILE]",
+        "flow beside one by one, with and without a median",
+        flow_tables::main,
+    ),
     ("four-worlds", "[interference]", "Sets I and II, flat and in a room, with two gains", four_worlds::main),
     (
         "measure",
@@ -69,9 +72,7 @@ const COMMANDS: [Command; 24] = [
         "shortest periods and their cost",
         shortest_periods::main,
     ),
-    ("swinging", "[ALCOVES [FIRST [PHYSICS [SPEED [TURN]]]]]", "robots that swing before alcoves", swinging::main),
     ("time-paths", "[SCENE]", "time of the path finder", time_paths::main),
-    ("time-physics", "[EFFECT stands|moves]", "cost of each effect of the physics", time_physics::main),
     ("time-scenes", "[SCENE [RUNS]]", "time of expensive scenes", time_scenes::main),
     ("tune", "[--check]", "settings of the experiments, into the sources (an hour)", tune::main),
     ("twins", "[SECONDS]", "rings with one limit changed, beside even ones", twins::main),

@@ -1,0 +1,162 @@
+//! Tables of flow beside one by one, with and without a median of three: figures with 95 % intervals, and rows as CSV.
+//!
+//! `cargo lab flow-tables courses|robots|paths|rooms|leads [--ring RING.toml] [--first N] [--count N] [--tune]
+//! [--csv FILE]`: settings are chosen (`--tune`) on numbers below 2,000, figures are reported from 20,000 on. A new table
+//! appends its rows to the file.
+
+mod courses;
+mod paths;
+mod robots;
+mod rooms;
+
+use std::fs::File;
+use std::io::Write;
+
+use eeruf_core::{
+    Micros,
+    flow::{BeliefSettings, Votes},
+};
+use eeruf_design::RingSpec;
+use eeruf_sim::experiments::{FIRST, Spread};
+use eeruf_sim::{Entry, FlowOptions, Method, Robot};
+
+/// A figure with its 95 % interval.
+#[derive(Clone, Copy)]
+pub(crate) struct Cell([f64; 3]);
+
+impl Cell {
+    fn new(value: f64, [low, high]: [f64; 2]) -> Self {
+        Self([value, low, high])
+    }
+
+    /// The mean of percentages.
+    fn mean(values: impl IntoIterator<Item = f64>) -> Self {
+        Spread::of(values).map_or(Self([f64::NAN; 3]), |of| Self::new(of.mean, of.mean_95))
+    }
+
+    fn median(values: impl IntoIterator<Item = f64>) -> Self {
+        Spread::of(values).map_or(Self([f64::NAN; 3]), |of| Self::new(of.median, of.median_95))
+    }
+
+    /// Nine in ten are no more.
+    fn p90(values: impl IntoIterator<Item = f64>) -> Self {
+        Spread::of(values).map_or(Self([f64::NAN; 3]), |of| Self::new(of.p90, of.p90_95))
+    }
+
+    /// One in ten is no more.
+    fn p10(values: impl IntoIterator<Item = f64>) -> Self {
+        let Self([value, low, high]) = Self::p90(values.into_iter().map(|value| -value));
+        Self([-value, -high, -low])
+    }
+}
+
+/// Figures of ways under conditions.
+pub(crate) struct Table {
+    name: &'static str,
+    head: &'static [&'static str],
+    digits: usize,
+    rows: Vec<(String, String, Vec<Cell>)>,
+}
+
+impl Table {
+    fn new(name: &'static str, digits: usize, head: &'static [&'static str]) -> Self {
+        println!("| condition | way | {} |\n|---|---|{}", head.join(" | "), "---:|".repeat(head.len()));
+        Self { name, head, digits, rows: vec![] }
+    }
+
+    /// Prints a row and keeps it.
+    fn row(&mut self, condition: impl Into<String>, way: impl Into<String>, cells: Vec<Cell>) {
+        let (condition, way, digits) = (condition.into(), way.into(), self.digits);
+        let words = cells.iter().map(|Cell([value, low, high])| match value.is_nan() {
+            true => "-".to_owned(),
+            false => format!("{value:.digits$} ({low:.digits$}..{high:.digits$})"),
+        });
+        println!("| {condition} | {way} | {} |", words.collect::<Vec<_>>().join(" | "));
+        self.rows.push((condition, way, cells));
+    }
+
+    fn append(&self, file: &str) -> std::io::Result<()> {
+        let mut out = File::options().create(true).append(true).open(file)?;
+        if out.metadata()?.len() == 0 {
+            writeln!(out, "table,condition,way,figure,value,low,high")?;
+        }
+        for (condition, way, cells) in &self.rows {
+            for (figure, Cell(three)) in self.head.iter().zip(cells) {
+                let three = three.map(|number| format!("{number:.*}", self.digits)).join(",");
+                writeln!(out, "{},{condition},{way},{figure},{three}", self.name)?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The command's arguments.
+pub(crate) struct Asked {
+    ring: String,
+    first: u64,
+    count: u64,
+    tune: bool,
+}
+
+impl Asked {
+    fn numbers(&self) -> Vec<u64> {
+        (self.first..self.first + self.count).collect()
+    }
+
+    /// The robot of the ring's file.
+    fn robot(&self) -> Result<Robot, Box<dyn std::error::Error>> {
+        let spec = RingSpec::from_text(&std::fs::read_to_string(&self.ring)?).map_err(|error| error.to_string())?;
+        let robot = spec.room_robot()?.robot;
+        let period = robot.module_rest().max(robot.audible).max(robot.window).saturating_add(Micros::new(1));
+        Ok(Robot { period, odometry: true, ..robot })
+    }
+}
+
+/// Flow with these votes; the quiet as a share of R, which each keeps.
+fn flow(name: &str, votes: Votes, least: Option<Micros>, window: Option<Micros>) -> Entry {
+    let mut options = FlowOptions::default();
+    (options.belief, options.least, options.window) =
+        (Some(BeliefSettings { votes, ..BeliefSettings::DEFAULT }), least, window);
+    Entry::new(name, Method::Flow).with_flow(options)
+}
+
+/// One by one, the same with a median of three, and flow as it is recommended.
+fn usual() -> Vec<Entry> {
+    vec![
+        Entry::new("one by one", Method::Sequential),
+        Entry::new("one by one, median", Method::SequentialMedian),
+        Entry::new("flow", Method::Flow),
+    ]
+}
+
+pub(crate) fn main(arguments: &[String]) -> crate::Answer {
+    let mut words = arguments.iter();
+    let part = words.next().ok_or("no table; expected one of them")?;
+    let mut asked = Asked { ring: "rings/hc-sr04-8.toml".into(), first: FIRST, count: 200, tune: false };
+    let mut csv = None;
+    while let Some(word) = words.next() {
+        let mut value = || words.next().ok_or_else(|| format!("{word}: no value; expected one"));
+        match word.as_str() {
+            "--ring" => asked.ring.clone_from(value()?),
+            "--first" => asked.first = value()?.parse()?,
+            "--count" => asked.count = value()?.parse()?,
+            "--csv" => csv = Some(value()?.clone()),
+            "--tune" => asked.tune = true,
+            _ => return Err(format!("{word}: no option").into()),
+        }
+    }
+    let Asked { first, count, ring, .. } = &asked;
+    println!("{part}: {count} from {first} on, {ring}.\n");
+    let table = match part.as_str() {
+        "courses" => courses::table(&asked)?,
+        "robots" => robots::table(&asked)?,
+        "paths" => paths::table(&asked)?,
+        "leads" => paths::leads(&asked)?,
+        "rooms" => rooms::table(&asked)?,
+        _ => return Err(format!("{part}: no table").into()),
+    };
+    if let Some(file) = csv {
+        table.append(&file)?;
+    }
+    Ok(())
+}

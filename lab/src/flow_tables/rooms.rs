@@ -1,0 +1,106 @@
+//! Rooms: a robot that stands, drives, and turns, alone and beside another one of its make.
+
+use eeruf_core::{
+    Micros,
+    flow::{BeliefSettings, Votes},
+};
+use eeruf_design::turns_of;
+use eeruf_sim::experiments::Difference;
+use eeruf_sim::experiments::measure::{Condition as Moves, Moving};
+use eeruf_sim::experiments::rooms::{RoomKind, RoomPlan};
+use eeruf_sim::{Entry, FlowOptions, Method, Motion, Noise, Options, Physics, Robot, Room, Stop, Vector, World, sweep};
+
+use super::{Asked, Cell, Table, flow, usual};
+
+type Error = Box<dyn std::error::Error + Send + Sync>;
+
+/// The simulated time of a room, in seconds: standing, and moving.
+const STANDING_S: f64 = 20.0;
+const MOVING_S: f64 = 8.0;
+
+struct Condition {
+    name: &'static str,
+    speed_m_s: f64,
+    turn_deg_s: f64,
+}
+
+const CONDITIONS: [Condition; 5] = [
+    Condition { name: "standing", speed_m_s: 0.0, turn_deg_s: 0.0 },
+    Condition { name: "0.5 m/s", speed_m_s: 0.5, turn_deg_s: 0.0 },
+    Condition { name: "1 m/s", speed_m_s: 1.0, turn_deg_s: 0.0 },
+    Condition { name: "45 degrees/s", speed_m_s: 0.0, turn_deg_s: 45.0 },
+    Condition { name: "90 degrees/s", speed_m_s: 0.0, turn_deg_s: 90.0 },
+];
+
+/// The share of time in which the first robot is right, its right echoes a second, and the share of foreign belief.
+type Run = [f64; 3];
+
+fn run(of: &Condition, robot: &Robot, kind: RoomKind, number: u64, entry: &Entry) -> Result<Run, Error> {
+    let plan = RoomPlan::random(kind, number, robot.radius_m());
+    let robot = entry.robot(Robot { others: kind == RoomKind::Meeting, ..robot.clone() });
+    let (sensors, period) = (robot.sensors.len(), robot.period);
+    let mut robots = plan.world(&robot, of.speed_m_s)?.robots().to_vec();
+    if of.turn_deg_s > 0.0 {
+        let turn_rad_s = of.turn_deg_s.to_radians();
+        robots[0] = Robot {
+            motion: Motion::Constant { velocity: Vector::zeros(), turn_rad_s },
+            odometry: true,
+            ..robots[0].clone()
+        };
+    }
+    let seconds = if of.speed_m_s + of.turn_deg_s > 0.0 { MOVING_S } else { STANDING_S };
+    let world = World::new(plan.scene()?.with_room(Some(Room::DEFAULT))?, robots, Noise::default())?;
+    let world = world.with_physics(Physics::DEFAULT)?.with_seed(number);
+    let periods = (1e6 * seconds / f64::from(period.as_micros())).ceil() as u32;
+    let all = entry.simulate(&world, &Options::periods(periods), &Stop::default(), |_| true)?;
+    let own: Vec<usize> = (0..all.len()).filter(|&k| all.robot[k] == 0).collect();
+    let mut own = all.select(&own);
+    own.sensors = sensors;
+    let found = own.summary();
+    Ok([100.0 * found.belief.right, found.right_echoes_per_s, 100.0 * found.belief.phantom])
+}
+
+/// Ways between which votes and the least quiet are traded.
+fn trade(robot: &Robot) -> Vec<Entry> {
+    let part = |of: f64| Some(Micros::new((f64::from(turns_of(robot, 1).most.as_micros()) / of) as u32));
+    let mut entries = usual();
+    // Every echo has twice the least quiet.
+    for (name, twice) in [("R / 5.5", 5.5), ("R / 2.8", 2.8), ("R / 1.7", 1.7)] {
+        entries.push(flow(&format!("1 of 1, {name}"), Votes::EveryEcho, part(2.0 * twice), None));
+        entries.push(flow(&format!("two in a row, {name}"), Votes::TwoInARow, part(twice), None));
+    }
+    let mut no_dice = FlowOptions::default();
+    no_dice.dice = Some(Micros::ZERO);
+    let mut no_hold = FlowOptions::default();
+    no_hold.belief = Some(BeliefSettings { hold: 1, ..BeliefSettings::DEFAULT });
+    let without = [("flow without dice", no_dice), ("flow that holds no belief", no_hold)];
+    entries.extend(without.map(|(name, options)| Entry::new(name, Method::Flow).with_flow(options)));
+    entries
+}
+
+pub(super) fn table(asked: &Asked) -> Result<Table, Box<dyn std::error::Error>> {
+    let robot = asked.robot()?;
+    let entries = if asked.tune { trade(&robot) } else { usual() };
+    let head = &["right %", "against one by one", "right echoes/s", "phantom %"];
+    let mut table = Table::new("rooms", 1, head);
+    for others in [false, true] {
+        for condition in &CONDITIONS {
+            let kinds = Moves { moving: Moving::Standing, others };
+            let rooms = kinds.rooms(asked.first, asked.count);
+            let mut base: Vec<Run> = vec![];
+            for entry in &entries {
+                let runs = sweep(&rooms, |&(kind, number)| run(condition, &robot, kind, number, entry));
+                let runs = runs.into_iter().collect::<Result<Vec<_>, _>>().map_err(|error| error.to_string())?;
+                let column = |of: usize| Cell::mean(runs.iter().map(|run| run[of]));
+                let more = Difference::of(runs.iter().zip(&base).map(|(run, base)| run[0] - base[0]));
+                let more = more.map_or(Cell([f64::NAN; 3]), |more| Cell::new(more.mean, more.mean_95));
+                let name = format!("{}{}", condition.name, if others { ", meeting" } else { "" });
+                table.row(name, entry.name(), vec![column(0), more, column(1), column(2)]);
+                if base.is_empty() {
+                    base = runs;
+                }
+            }
+        }
+    }
+    Ok(table)
+}

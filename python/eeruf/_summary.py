@@ -6,7 +6,7 @@ from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from eeruf._eeruf import _MethodName as Method
+    from eeruf._eeruf import _MethodName
 
 
 def _plain(value: object) -> object:
@@ -49,7 +49,7 @@ class Summary(Result):
 
     """
 
-    method: Method
+    method: _MethodName
     """The method, one of ``eeruf.sim.METHODS``."""
     readings: int
     """Number of readings."""

@@ -2,14 +2,17 @@
 
 import functools
 import os
+import signal
 import subprocess
 import sys
 import threading
 import time
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, Callable
 
 import eeruf
+import numpy as np
 import pytest
 from eeruf import sim
 
@@ -151,6 +154,49 @@ def test_nothing_that_was_ended_runs_on() -> None:
             return
         time.sleep(0.05)
     assert threads_of_the_process() <= before
+
+
+@pytest.fixture
+def interrupted_soon() -> Iterator[None]:
+    """Ctrl-C half a second from now."""
+
+    def interrupt(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    before = signal.signal(signal.SIGALRM, interrupt)
+    signal.setitimer(signal.ITIMER_REAL, 0.5)
+    yield
+    signal.setitimer(signal.ITIMER_REAL, 0)
+    signal.signal(signal.SIGALRM, before)
+
+
+@pytest.mark.parametrize("ask", [eeruf.diagnose, eeruf.survey])
+def test_a_question_about_a_log_that_was_ended_runs_on_nowhere(ask: Any, interrupted_soon: None) -> None:
+    sensors, periods, chance = 64, 2_000, np.random.default_rng(1)
+    sensor, period = np.tile(np.arange(sensors), periods), np.repeat(np.arange(periods), sensors)
+    log = eeruf.logs.Firings.of(
+        sensor=sensor,
+        fired_us=period * 200_000 + sensor * 3_000 + chance.integers(0, 2_000, sensors * periods),
+        period=period,
+        phase=period % 2,
+        t_echo_us=chance.integers(3_000, 30_000, sensors * periods).astype(float),
+    )
+    before = threads_of_the_process()
+    with pytest.raises(KeyboardInterrupt):
+        ask(log)
+    for _ in range(20):
+        if threads_of_the_process() <= before:
+            return
+        time.sleep(0.05)
+    assert threads_of_the_process() <= before
+
+
+def test_a_filter_that_was_ended_halfway_has_taken_in_nothing(interrupted_soon: None) -> None:
+    echoes = eeruf.EchoFilter(1, 500, 8, echoes=8)
+    with pytest.raises(KeyboardInterrupt):
+        # Far more than half a second.
+        echoes.push_many(np.full((40_000_000, 1), 9_000.0))
+    assert echoes.push(0, 9_000).kind == "first"
 
 
 def threads_of_the_process() -> int:

@@ -1,7 +1,9 @@
 """The wheel is small, depends on NumPy alone, and is there at once."""
 
+import importlib
 import os
 import re
+import shutil
 import subprocess
 import sys
 import zipfile
@@ -35,6 +37,56 @@ def test_commands_of_workflows_run() -> None:
     assert programs
     for program in programs:
         subprocess.run([sys.executable, "-c", "".join(program)], check=True, capture_output=True, text=True)
+
+
+# Commands that install or publish something, or are CI itself; every other one of a workflow runs below.
+ELSEWHERE = re.compile(
+    r"(sudo )?(apt-get|cargo|git config|pip|gh|twine|abi3audit|\.ci/run|python -m pypi_attestations)\b"
+)
+
+
+def test_shell_commands_of_workflows_run(tmp_path: Path) -> None:
+    root = Path(__file__).parents[2]
+    program = os.environ.get("EERUF_PROGRAM")
+    assert program is not None, "EERUF_PROGRAM names the program; `cargo xtask python` sets it"
+    # What they find in a clone after a build, and on the path.
+    for name in ("target/any/wheel", "target/debug", "packaging", "python/eeruf", "bin"):
+        (tmp_path / name).mkdir(parents=True)
+    for name in (
+        "README.md",
+        "CHANGELOG.md",
+        "LICENSE-MIT",
+        "LICENSE-APACHE",
+        "packaging/finish.py",
+        "python/eeruf/_eeruf.pyi",
+    ):
+        shutil.copy(root / name, tmp_path / name)
+    compiled = importlib.import_module("eeruf._eeruf").__file__
+    assert compiled is not None
+    shutil.copy(compiled, tmp_path / "target/debug/lib_eeruf.so")
+    shutil.copy(program, tmp_path / "target/any/wheel/eeruf")
+    for name, of in (("eeruf", program), ("python", sys.executable), ("python3", sys.executable)):
+        (tmp_path / "bin" / name).write_text(f'#!/bin/sh\nexec "{of}" "$@"\n')
+        (tmp_path / "bin" / name).chmod(0o755)
+    run, text = (
+        0,
+        "\n".join(file.read_text(encoding="utf8") for file in sorted((root / ".github/workflows").glob("*.yml"))),
+    )
+    here = {"PATH": f"{tmp_path / 'bin'}:{os.environ['PATH']}", "TARGET": "any", "GITHUB_REF_NAME": "v1.2.3"}
+    for block in re.findall(r"^( *)(?:- )?run: (?:\|\n((?:\1  .*\n|\n)+)|(.+)\n)", text, re.MULTILINE):
+        lines = (block[1] or block[2]).splitlines()
+        script = "\n".join(
+            " && ".join(part for part in line.strip().split(" && ") if not ELSEWHERE.match(part)) for line in lines
+        )
+        run += bool(script.strip())
+        done = subprocess.run(
+            ["bash", "-euc", script], cwd=tmp_path, env={**os.environ, **here}, capture_output=True, text=True
+        )
+        assert done.returncode == 0, script + done.stderr
+        shutil.rmtree(tmp_path / "tried", ignore_errors=True)
+    assert run >= 6
+    assert (tmp_path / "eeruf-1.2.3-any.tar.gz").stat().st_size > 1_000 and (tmp_path / "notes.md").stat().st_size > 100
+    assert '"""' in (tmp_path / "python/eeruf/_eeruf.pyi").read_text(encoding="utf8")
 
 
 def test_numpy_is_all_it_needs() -> None:

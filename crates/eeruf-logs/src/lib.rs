@@ -73,8 +73,8 @@ use form::{Form, Packing, UntilError};
 use sink::Sink;
 
 pub use diagnose::{
-    AlignError, Alignment, Diagnosis, FoundPath, Hearing, Named, Settings, Share, Timing, TimingError, align, diagnose,
-    timing,
+    AlignError, Alignment, Diagnosis, FoundPath, Hearing, KeepGoing, Named, Settings, Share, Timing, TimingError, align,
+    diagnose, diagnose_while, timing,
 };
 pub use doctor::{Doctor, Examination, Suspect, Verdict};
 pub use firings::{Firing, FiringLog};
@@ -85,7 +85,7 @@ pub use reading::{Echo, Reading, Sensor};
 pub use replay::{FlowSettings, Replayed, replay_flow};
 pub use ros2::{Marker, Placement, Shape, Transform};
 pub use sink::{Guess, Report, Skipped};
-pub use survey::{PathSettings, Surveyed, survey};
+pub use survey::{PathSettings, Surveyed, survey, survey_while};
 pub use symptom::{Finding, Symptom};
 pub use write::McapWriter;
 

@@ -12,7 +12,7 @@
 
 use std::collections::HashMap;
 
-use crate::diagnose::{FoundPath, groups, ln_at_least, median};
+use crate::diagnose::{FoundPath, KeepGoing, groups, ln_at_least, median};
 use crate::firings::{Firing, FiringLog};
 
 /// Settings of the search for paths in a survey.
@@ -121,6 +121,11 @@ const BY_SLOT: i64 = 1 << 40;
 
 /// Finds the paths between all sensors of a survey.
 pub fn survey(log: &FiringLog, settings: &PathSettings) -> Surveyed {
+    survey_while(log, settings, &|| true)
+}
+
+/// As [`survey`], which ends early with what it has found once `keep_going` answers `false`.
+pub fn survey_while(log: &FiringLog, settings: &PathSettings, keep_going: KeepGoing<'_>) -> Surveyed {
     let sensors = log.sensors();
     let rows = || log.firings.iter().chain(&log.listened);
     let window_us = rows().filter_map(|row| row.t_echo_us).max().unwrap_or(0);
@@ -142,8 +147,11 @@ pub fn survey(log: &FiringLog, settings: &PathSettings) -> Surveyed {
         visible: vec![0; sensors * sensors],
     };
     for (receiver, heard) in of_receiver.into_iter().enumerate() {
+        if !keep_going() {
+            break;
+        }
         let mut search = Search::new(receiver as u8, heard, sensors, window_us.into(), settings);
-        let mut paths = search.paths(settings);
+        let mut paths = search.paths(settings, keep_going);
         paths.sort_by(|a, b| {
             (a.sender, a.travel_us).partial_cmp(&(b.sender, b.travel_us)).unwrap_or(a.sender.cmp(&b.sender))
         });
@@ -178,12 +186,13 @@ impl Search {
         Self { receiver, heard, sensors, dead_us, window_us, tolerance }
     }
 
-    fn paths(&mut self, settings: &PathSettings) -> Vec<FoundPath> {
+    fn paths(&mut self, settings: &PathSettings, keep_going: KeepGoing<'_>) -> Vec<FoundPath> {
         let places = (self.window_us / (2 * self.tolerance) + 1) as f64;
         let ln_places = (places * (self.sensors * self.sensors) as f64).ln();
         let mut found = Vec::new();
         while found.len() < MOST_PATHS {
-            let places = (0..self.sensors as u8).filter_map(|sender| self.best_of(sender));
+            let going = (0..self.sensors as u8).take_while(|_| keep_going());
+            let places = going.filter_map(|sender| self.best_of(sender));
             let Some(best) = places.min_by(|a, b| a.ln_accident.total_cmp(&b.ln_accident)) else { break };
             let accidents = (best.ln_accident + ln_places).exp();
             if accidents > settings.accidents {

@@ -134,6 +134,28 @@ pub(crate) fn number(name: &str, value: &Bound<'_, PyAny>, range: RangeInclusive
     }
 }
 
+/// Refuses an angle beyond a range of radians, of which degrees are the likely cause.
+pub(crate) fn in_radians(name: &str, given: f64, most: f64) -> PyResult<f64> {
+    if given.abs() <= most {
+        return Ok(given);
+    }
+    let likely = given.to_radians();
+    let expected = format!("radians from -{most:.4} to {most:.4}; likely degrees: {given} degrees are {likely:.4}");
+    Err(wrong(name, given, expected))
+}
+
+/// Refuses echo times that are all shorter than any sensor can hear, and so in another unit.
+pub(crate) fn in_microseconds(name: &str, times: impl Iterator<Item = f64>) -> PyResult<()> {
+    let most = times.filter(|time| !time.is_nan()).fold(0.0, f64::max);
+    // 100 us are 17 mm; an echo of 43 m takes 0.25 s.
+    let likely = match most {
+        0.0 | 100.0.. => return Ok(()),
+        ..0.25 => "seconds: microseconds are a million times that",
+        _ => "metres or milliseconds: an object 1 m away has an echo of 5830 microseconds",
+    };
+    Err(wrong(name, format_args!("{most} at most"), format_args!("microseconds, 100 or more; likely {likely}")))
+}
+
 /// A number within a range, or the default where there is none.
 pub(crate) fn number_or(
     name: &str,

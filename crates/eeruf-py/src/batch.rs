@@ -2,17 +2,17 @@
 
 use std::sync::Arc;
 
-use eeruf_sim::{Body, Own, PathsError, Robot, Simulation, SimulationError, Stop};
+use eeruf_sim::{Body, Own, PathsError, Robot, Simulation, SimulationError, Stop, Threads};
 use numpy::PyReadonlyArray1;
 use pyo3::{PyTraverseError, PyVisit, exceptions::PyRuntimeError, prelude::*};
-use rayon::{ThreadPool, ThreadPoolBuilder, prelude::*};
+use rayon::prelude::*;
 
 use crate::{
     arguments::{items, matrix, native, number, shown, whole, whole_or, wrong},
     batch_state::{BatchState, Known},
     errors::{Raise, SimulationError as SimulationRefused},
     exclusive::Exclusive,
-    pose::{PoseOf, to_pose},
+    pose::{PoseOf, heading, to_pose},
     simulate::Asked,
     watch::{Background, in_background},
 };
@@ -48,7 +48,7 @@ pub(crate) struct Batch {
     /// The argument, for scenes that come later.
     method: Option<Py<PyAny>>,
     worlds: Arc<Exclusive<Vec<Member>>>,
-    threads: Arc<ThreadPool>,
+    threads: Arc<Threads>,
 }
 
 /// A world of a batch.
@@ -103,6 +103,13 @@ impl Member {
             }
         }
         Ok(())
+    }
+
+    /// A world in the same state.
+    fn copy(&self) -> Option<Self> {
+        let (asked, simulation, known) =
+            (self.asked.clone(), self.simulation.copy(Stop::default())?, self.known.clone());
+        Some(Self { asked, simulation, known, has_crashed: self.has_crashed })
     }
 
     /// Pose as (x, y, heading), and whether the disc that holds the sensors touches something.
@@ -172,6 +179,10 @@ impl Batch {
     }
 }
 
+fn no_threads(error: impl std::error::Error) -> PyErr {
+    PyRuntimeError::new_err(format!("no threads to step on: {error}"))
+}
+
 /// Seeds, one for each world.
 fn seeds_of(seeds: Option<&Bound<'_, PyAny>>, worlds: usize) -> PyResult<Vec<Option<u64>>> {
     let Some(seeds) = seeds else { return Ok(vec![None; worlds]) };
@@ -217,8 +228,8 @@ impl Batch {
             return Err(wrong(&name, sensors_of(&asked[other]), format_args!("{sensors}, as of scenes[0]")));
         }
         let threads = whole_or("threads", threads, 0, 1..=1024_u32)?;
-        let pool = ThreadPoolBuilder::new().num_threads(threads as usize).build();
-        let threads = pool.map_err(|error| PyRuntimeError::new_err(format!("no threads to step on: {error}")))?;
+        let threads = Threads::new(threads as usize);
+        threads.pool().map_err(no_threads)?;
         let size = asked.len();
         let worlds = in_background(py, None, move |background| {
             let begin =
@@ -292,7 +303,7 @@ impl Batch {
                 let motion = motions.as_ref().map(|motions| motions[index]);
                 world.step(seconds, motion, background).map_err(of_world(index))
             };
-            threads.install(|| worlds.par_iter_mut().enumerate().try_for_each(go_on))?;
+            threads.pool().map_err(no_threads)?.install(|| worlds.par_iter_mut().enumerate().try_for_each(go_on))?;
             Self::look(worlds)
         })
     }
@@ -380,6 +391,24 @@ impl Batch {
         format!("<Batch: {} worlds of {} sensors>", self.size, self.sensors)
     }
 
+    /// A copy goes on alike, on threads of its own.
+    fn __copy__(&self, py: Python<'_>) -> PyResult<Self> {
+        let copied =
+            py.detach(|| Ok::<_, PyErr>(self.worlds.get()?.iter().map(Member::copy).collect::<Option<_>>()))?;
+        // None of its worlds has callables.
+        let worlds = copied.ok_or_else(|| SimulationRefused::new_err("a batch with callables cannot be copied"))?;
+        Ok(Self {
+            method: self.method.as_ref().map(|method| method.clone_ref(py)),
+            worlds: Arc::new(Exclusive::new("Batch", worlds)),
+            threads: Arc::new(self.threads.others()),
+            ..*self
+        })
+    }
+
+    fn __deepcopy__(&self, py: Python<'_>, _memo: &Bound<'_, PyAny>) -> PyResult<Self> {
+        self.__copy__(py)
+    }
+
     fn __traverse__(&self, visit: PyVisit<'_>) -> Result<(), PyTraverseError> {
         self.method.as_ref().map_or(Ok(()), |method| visit.call(method))
     }
@@ -397,6 +426,7 @@ fn poses_of(poses: &Bound<'_, PyAny>, worlds: usize) -> PyResult<Vec<PoseOf>> {
             let name = format!("poses[{index}]");
             return Err(wrong(&name, format_args!("{pose:?}"), "metres and radians from -100000 to 100000"));
         }
+        heading(&format!("poses[{index}][2]"), pose.2)?;
     }
     Ok(rows)
 }

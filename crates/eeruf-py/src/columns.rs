@@ -24,6 +24,33 @@ impl<const N: usize> Columns<N> {
         let made = self.0[place].get_or_try_init(py, || Ok::<_, PyErr>(read_only(py, values)?.unbind()))?;
         Ok(made.bind(py).clone())
     }
+
+    /// The same of codes, which compare with their names.
+    pub(crate) fn codes<'py>(
+        &self,
+        py: Python<'py>,
+        place: usize,
+        codes: Codes,
+        values: impl ExactSizeIterator<Item = i8>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let made = self.0[place].get_or_try_init(py, || codes.name(&read_only(py, values)?).map(Bound::unbind))?;
+        Ok(made.bind(py).clone())
+    }
+}
+
+/// What the codes of an array stand for.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Codes {
+    Kinds,
+    Causes,
+}
+
+impl Codes {
+    /// The array, as one that compares with the names.
+    pub(crate) fn name<'py>(self, codes: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        let class = if matches!(self, Self::Kinds) { "Kinds" } else { "Causes" };
+        codes.call_method1("view", (codes.py().import("eeruf._codes")?.getattr(class)?,))
+    }
 }
 
 /// An array that cannot be written to.

@@ -1,17 +1,18 @@
 //! `EchoFilter`.
 
 use eeruf_core::{MAX_SENSORS, Micros, SensorError, judge::Verdict};
-use numpy::{PyArray2, prelude::*};
+use numpy::prelude::*;
 use pyo3::prelude::*;
 
 use crate::{
-    arguments::{matrix, micros, times_of, whole, whole_or, wrong},
-    columns::room,
+    arguments::{in_microseconds, matrix, micros, times_of, whole, whole_or, wrong},
+    columns::{Codes, room},
     errors::{ArgumentError, FilterError, Raise},
     exclusive::Exclusive,
     requirements,
     ring::MAX_ECHOES,
     ring_events::Reading,
+    watch::Watch,
 };
 
 /// Compares the consecutive readings of each sensor, and accepts those that are near-identical (Eq. 11).
@@ -48,7 +49,11 @@ pub(crate) struct EchoFilter {
     echoes: usize,
 }
 
+/// So many rows go by between two looks for Ctrl-C.
+const ROWS_A_LOOK: usize = 4096;
+
 /// For sensors that report one echo, which is smaller and faster, or several.
+#[derive(Clone)]
 enum Filter {
     One(Box<eeruf_core::EchoFilter<MAX_SENSORS>>),
     Several(Box<eeruf_core::EchoFilter<MAX_SENSORS, MAX_ECHOES>>),
@@ -175,19 +180,25 @@ impl EchoFilter {
     ///     >>> kinds = eeruf.EchoFilter(2, 500).push_many([[9_000, 7_000], [9_100, numpy.nan]])
     ///     >>> [[eeruf.KINDS[kind] for kind in row] for row in kinds]
     ///     [['first', 'first'], ['accepted', 'no_echo']]
-    fn push_many<'py>(&self, py: Python<'py>, t_echo_us: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArray2<i8>>> {
+    fn push_many<'py>(&self, py: Python<'py>, t_echo_us: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         let echoes = matrix("t_echo_us", t_echo_us, self.sensors)?;
         let echoes = echoes.as_slice().map_err(|error| ArgumentError::new_err(error.to_string()))?;
         if let Some(at) = echoes.iter().position(|&us| !(us.is_nan() || (0.0..=f64::from(u32::MAX)).contains(&us))) {
             let name = format!("t_echo_us[{}, {}]", at / self.sensors, at % self.sensors);
             return Err(wrong(&name, echoes[at], format_args!("0 to {} microseconds, or nan for no echo", u32::MAX)));
         }
+        in_microseconds("t_echo_us", echoes.iter().copied())?;
         let mut kinds = room(echoes.len())?;
         kinds.resize(echoes.len(), 0_i8);
         let (mut filter, sensors) = (self.filter.get()?, self.sensors);
         let filter = &mut *filter;
+        let (mut watch, before) = (Watch::new(None)?, filter.clone());
         let pushed = py.detach(|| {
-            for (row, kinds) in echoes.chunks_exact(sensors).zip(kinds.chunks_exact_mut(sensors)) {
+            for (number, (row, kinds)) in echoes.chunks_exact(sensors).zip(kinds.chunks_exact_mut(sensors)).enumerate()
+            {
+                if number % ROWS_A_LOOK == 0 && !watch.go_on(None, String::new) {
+                    break;
+                }
                 for (sensor, (&us, kind)) in (0..).zip(row.iter().zip(kinds)) {
                     // Rounded to whole microseconds, which core counts in; in range, as was just checked.
                     let echo = (!us.is_nan()).then(|| Micros::new(us.round() as u32));
@@ -196,8 +207,10 @@ impl EchoFilter {
             }
             Ok(())
         });
-        pushed.map_err(|error: SensorError| error.raise())?;
-        numpy::PyArray1::from_vec(py, kinds).reshape([echoes.len() / self.sensors, self.sensors])
+        // Ended halfway it has taken in nothing.
+        watch.outcome(pushed.map_err(|error: SensorError| error.raise())).inspect_err(|_| *filter = before)?;
+        let kinds = numpy::PyArray1::from_vec(py, kinds).reshape([echoes.len() / self.sensors, self.sensors])?;
+        Codes::Kinds.name(kinds.as_any())
     }
 
     /// Forget the readings of a sensor, so that its next one is compared with nothing.
@@ -222,6 +235,14 @@ impl EchoFilter {
             Filter::Several(filter) => filter.forget(sensor),
         }
         .map_err(Raise::raise)
+    }
+
+    fn __copy__(&self) -> PyResult<Self> {
+        Ok(Self { filter: Exclusive::new("EchoFilter", self.filter.get()?.clone()), ..*self })
+    }
+
+    fn __deepcopy__(&self, _memo: &Bound<'_, PyAny>) -> PyResult<Self> {
+        self.__copy__()
     }
 
     fn __repr__(&self) -> String {

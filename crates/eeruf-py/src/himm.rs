@@ -286,6 +286,14 @@ impl Himm {
         read_only(py, values.into_iter())?.call_method1("reshape", (side, side))
     }
 
+    fn __copy__(&self) -> PyResult<Self> {
+        Ok(Self { grid: Exclusive::new("Himm", self.grid.get()?.clone()) })
+    }
+
+    fn __deepcopy__(&self, _memo: &Bound<'_, PyAny>) -> PyResult<Self> {
+        self.__copy__()
+    }
+
     fn __repr__(&self) -> PyResult<String> {
         let ((x, to_x, y, to_y), side) = (self.extent_m()?, self.side()?);
         Ok(format!("<Himm: {side} x {side} cells, x {x:.2} to {to_x:.2} m, y {y:.2} to {to_y:.2} m>"))

@@ -13,7 +13,7 @@ use pyo3::{exceptions::PyTypeError, prelude::*, types::PyDict};
 
 use crate::{
     arguments::{above_zero, choice, flag, items, shown, text, whole, wrong},
-    columns::{of_vec, room},
+    columns::{Codes, of_vec, room},
     errors::Raise,
     exclusive::Exclusive,
     file_object::{Results, Work},
@@ -293,7 +293,7 @@ const MOST_SENSORS: usize = 1 << 16;
 
 /// Sets what a judge made of readings.
 fn judged(out: &Bound<'_, PyDict>, kinds: Vec<i8>, counted: &[Counted]) -> PyResult<()> {
-    out.set_item("kind", of_vec(out.py(), kinds))?;
+    out.set_item("kind", Codes::Kinds.name(&of_vec(out.py(), kinds))?)?;
     out.set_item("gaps", counted.iter().map(|counted| counted.gaps).collect::<Vec<_>>())?;
     out.set_item("backwards", counted.iter().map(|counted| counted.backwards).collect::<Vec<_>>())
 }

@@ -8,7 +8,7 @@ use numpy::PyReadonlyArray1;
 use pyo3::{create_exception, prelude::*, types::PyDict};
 
 use crate::{
-    arguments::{micros, shown, wrong},
+    arguments::{in_microseconds, micros, shown, wrong},
     columns::read_only,
     errors::{ArgumentError, EerufError, warn},
     file_object::Work,
@@ -146,6 +146,7 @@ fn log_of(columns: &Columns<'_>) -> PyResult<(FiringLog, Vec<usize>)> {
             "columns of {length} and {lengths:?} rows; expected equal lengths"
         )));
     }
+    in_microseconds("t_echo_us", t_echo_us.iter().copied())?;
     let (mut firings, mut listened) = (Vec::new(), Vec::new());
     for row in 0..length {
         let bad = |name: &str, value: &dyn std::fmt::Display, expected: &str| {
@@ -213,7 +214,9 @@ pub(crate) fn diagnose<'py>(
     let rows = firings.sensor.as_array().len();
     let (log, places) = log_of(&firings)?;
     let settings = Settings { tolerance_us, max_travel_us, ..Settings::default() };
-    let found: Diagnosis = in_background(py, None, move |_| Ok(eeruf_logs::diagnose(&log, &settings)))?;
+    let found: Diagnosis = in_background(py, None, move |background| {
+        Ok(eeruf_logs::diagnose_while(&log, &settings, &|| !background.stop().is_stopped()))
+    })?;
     let (mut sender, mut travel_us, mut sure) = (vec![-1_i64; rows], vec![f64::NAN; rows], vec![f64::NAN; rows]);
     for (&place, named) in places.iter().zip(&found.named) {
         if let Some(named) = named {
@@ -221,13 +224,15 @@ pub(crate) fn diagnose<'py>(
         }
     }
     let out = PyDict::new(py);
+    // A vector of bytes would become bytes.
+    let whole = |sensors: Vec<u8>| sensors.into_iter().map(u32::from).collect::<Vec<_>>();
     out.set_item("paths", paths(py, &found.paths)?)?;
     out.set_item("sender", read_only(py, sender.into_iter())?)?;
     out.set_item("travel_us", read_only(py, travel_us.into_iter())?)?;
     out.set_item("sure", read_only(py, sure.into_iter())?)?;
     let faults = found.faults.iter().map(|fault| (fault.symptom.as_str(), [fault.sensor]));
     out.set_item("faults", faults.collect::<Vec<_>>())?;
-    out.set_item("silent", found.silent())?;
+    out.set_item("silent", whole(found.silent()))?;
     out.set_item("moved", found.moved)?;
     out.set_item("most_offsets", found.most_offsets)?;
     Ok(out)
@@ -246,7 +251,9 @@ pub(crate) fn survey<'py>(
     let tolerance_us = micros("tolerance_us", tolerance_us)?.as_micros();
     let until_us = micros("until_us", until_us)?.as_micros();
     let settings = PathSettings { tolerance_us, ..PathSettings::default() };
-    let found = in_background(py, None, move |_| Ok(eeruf_logs::survey(&log, &settings)))?;
+    let found = in_background(py, None, move |background| {
+        Ok(eeruf_logs::survey_while(&log, &settings, &|| !background.stop().is_stopped()))
+    })?;
     let out = PyDict::new(py);
     out.set_item("paths", paths(py, &found.paths)?)?;
     out.set_item("conflicts", found.conflicts(until_us))?;

@@ -3,17 +3,22 @@
 use eeruf_sim::{Motion, Point, Pose, Vector, world::heading_rad};
 use pyo3::prelude::*;
 
-use crate::arguments::{items, number, number_or, points, shown, wrong};
+use crate::arguments::{in_radians, items, number, number_or, points, shown, wrong};
 
 /// (x, y, heading) as Python gives it.
 pub(crate) type PoseOf = (f64, f64, f64);
+
+/// A heading within two turns: more is likely in degrees.
+pub(crate) fn heading(name: &str, given: f64) -> PyResult<f64> {
+    in_radians(name, given, 4.0 * core::f64::consts::PI)
+}
 
 pub(crate) fn pose_of(name: &str, value: &Bound<'_, PyAny>) -> PyResult<PoseOf> {
     let expected = "(x, y, heading) in metres and radians";
     let coordinates = items(name, value, expected)?;
     let [x, y, heading] = &coordinates[..] else { return Err(wrong(name, shown(value), expected)) };
     let coordinate = |index: usize, value| number(&format!("{name}[{index}]"), value, -1e5..=1e5);
-    Ok((coordinate(0, x)?, coordinate(1, y)?, coordinate(2, heading)?))
+    Ok((coordinate(0, x)?, coordinate(1, y)?, self::heading(&format!("{name}[2]"), coordinate(2, heading)?)?))
 }
 
 /// A point (x, y) in metres.

@@ -9,7 +9,7 @@ use pyo3::{
 
 use crate::{
     arguments::{instance, items, number_or, shown, wrong},
-    columns::{Columns, read_only},
+    columns::{Codes, Columns, read_only},
     errors::ArgumentError,
     fields::attributes,
     paths::coded,
@@ -121,7 +121,7 @@ impl Readings {
     /// Verdict of the method, an index into ``eeruf.KINDS``: int8.
     #[getter]
     fn kind<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        self.columns.get(py, 5, self.readings.kind.iter().map(|&kind| kind as i8))
+        self.columns.codes(py, 5, Codes::Kinds, self.readings.kind.iter().map(|&kind| kind as i8))
     }
 
     /// The echo time that the method reports, in microseconds: float64.
@@ -145,7 +145,7 @@ impl Readings {
     /// Cause of ``t_echo_us``, an index into ``CAUSES``: int8.
     #[getter]
     fn cause<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        self.columns.get(py, 9, self.readings.cause.iter().map(|&cause| cause as i8))
+        self.columns.codes(py, 9, Codes::Causes, self.readings.cause.iter().map(|&cause| cause as i8))
     }
 
     /// Along which of ``paths`` the sound came, an index, or -1 for none: int64.

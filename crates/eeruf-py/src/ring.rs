@@ -262,7 +262,12 @@ impl AnyRing {
     }
 
     pub(crate) fn t_delta(&self) -> Micros {
-        ask!(self, |ring| ring.judge().t_delta())
+        match &self.fires {
+            Fires::Table(ring) => ring.t_delta(),
+            Fires::TableSeveral(ring) => ring.t_delta(),
+            Fires::Flow(ring) => ring.judge().t_delta(),
+            Fires::FlowSeveral(ring) => ring.judge().t_delta(),
+        }
     }
 
     /// Compares with another `t_delta`, at which the schedules of this period and the next must reject crosstalk.

@@ -1,6 +1,6 @@
 //! `sim.Robot`: a robot with its ring.
 
-use std::path::PathBuf;
+use std::{f64::consts::TAU, path::PathBuf};
 
 use eeruf_core::{Micros, SensorLimits};
 use eeruf_design::RingSpec;
@@ -12,7 +12,9 @@ use pyo3::{
 };
 
 use crate::{
-    arguments::{choice, flag, instance, items, micros, number, number_or, shown, times, whole, whole_or, wrong},
+    arguments::{
+        choice, flag, in_radians, instance, items, micros, number, number_or, shown, times, whole, whole_or, wrong,
+    },
     body::{outline, shown_body},
     errors::ArgumentError,
     faults::{shown_table, table_of},
@@ -261,7 +263,9 @@ impl Robot {
         ring: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
         let pose = pose_of("pose", pose)?;
-        let spacing_rad = spacing_rad.map(|angle| number("spacing_rad", angle, -10.0..=10.0)).transpose()?;
+        let spacing_rad = spacing_rad
+            .map(|angle| in_radians("spacing_rad", number("spacing_rad", angle, -1e3..=1e3)?, TAU))
+            .transpose()?;
         let radius_m = radius_m.map(|radius| number("radius_m", radius, 0.0..=1e3)).transpose()?;
         let no_arc = |why: &str| match [("spacing_rad", spacing_rad), ("radius_m", radius_m)] {
             [(name, Some(given)), _] | [_, (name, Some(given))] => {

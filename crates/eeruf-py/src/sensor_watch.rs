@@ -116,6 +116,14 @@ impl SensorWatch {
         Ok(State::of(&*self.watch.get()?, sensor, now))
     }
 
+    fn __copy__(&self) -> PyResult<Self> {
+        Ok(Self { watch: Exclusive::new("SensorWatch", self.watch.get()?.clone()), ..*self })
+    }
+
+    fn __deepcopy__(&self, _memo: &Bound<'_, PyAny>) -> PyResult<Self> {
+        self.__copy__()
+    }
+
     fn __repr__(&self) -> String {
         format!("<SensorWatch: {} sensors>", self.sensors)
     }

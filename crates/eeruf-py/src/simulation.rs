@@ -31,8 +31,8 @@ use crate::{
 /// A world that goes on step by step: for your own controller, filter, or display.
 ///
 /// Its steps together give the readings of :func:`simulate`, bit for bit, and need little more memory than one of them.
-/// A copy, and one that was pickled, does again what was done since the beginning (about 30 bytes a call), and goes on
-/// alike.
+/// A copy goes on alike, from the same state. One that was pickled does again what was done since the beginning (about
+/// 30 bytes a call), and so does a copy of one by a :class:`Method` that makes firings or filters.
 ///
 /// Args:
 ///     scene: with one robot or more.
@@ -76,10 +76,28 @@ pub(crate) struct Simulation {
     calls: Mutex<Arc<Calls>>,
     /// The arguments that make it again, and what was done since.
     made_of: Option<(Py<Scene>, Py<PyAny>)>,
-    history: Mutex<Vec<Done>>,
+    history: Mutex<History>,
 }
 
-/// Operations on a simulation, so that a copy comes to the same.
+/// What was done, in order.
+#[derive(Default)]
+struct History {
+    /// Shared with copies.
+    before: Vec<Arc<Vec<Done>>>,
+    since: Vec<Done>,
+}
+
+impl History {
+    /// The same for a copy, whatever its length.
+    fn share(&mut self) -> Self {
+        if !self.since.is_empty() {
+            self.before.push(Arc::new(core::mem::take(&mut self.since)));
+        }
+        Self { before: self.before.clone(), since: vec![] }
+    }
+}
+
+/// Operations on a simulation, so that one that was pickled comes to the same.
 enum Done {
     Step(f64),
     ToReading(f64),
@@ -151,7 +169,7 @@ impl Simulation {
     }
 
     fn note(&self, done: Done) {
-        self.history.lock().unwrap_or_else(PoisonError::into_inner).push(done);
+        self.history.lock().unwrap_or_else(PoisonError::into_inner).since.push(done);
     }
 
     fn calls(&self) -> Arc<Calls> {
@@ -410,7 +428,7 @@ impl Simulation {
             under_way.simulation = simulation.map_err(|error| calls.raised().unwrap_or_else(|| error.raise()))?;
             let recording = under_way.recording.take();
             drop(under_way);
-            self.history.lock().unwrap_or_else(PoisonError::into_inner).clear();
+            *self.history.lock().unwrap_or_else(PoisonError::into_inner) = History::default();
             *self.asked.lock().unwrap_or_else(PoisonError::into_inner) = asked;
             *self.calls.lock().unwrap_or_else(PoisonError::into_inner) = calls;
             recording.map_or(Ok(()), Recording::finish).map_err(logs::raise)
@@ -513,14 +531,39 @@ impl Simulation {
         format!("<Simulation: {robots} robots, {entry}, {time}>")
     }
 
-    /// A copy and a pickle do again what was done since the beginning, so that they go on alike.
+    /// A copy has the same state; with parts that a method makes it does again what was done, as a pickle does.
+    fn __copy__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        let (py, this) = (slf.py(), slf.get());
+        let copied = py.detach(|| Ok::<_, PyErr>(this.lock()?.simulation.copy(Stop::default())))?;
+        let Some(simulation) = copied else {
+            let (rebuild, arguments) = this.__reduce__(py)?;
+            return rebuild.call1(arguments);
+        };
+        let copy = Self {
+            robots: this.robots,
+            under_way: Mutex::new(UnderWay { simulation, recording: None }),
+            stepping: Mutex::default(),
+            asked: Mutex::new(this.asked()),
+            calls: Mutex::new(this.calls()),
+            made_of: this.made_of.as_ref().map(|(scene, method)| (scene.clone_ref(py), method.clone_ref(py))),
+            history: Mutex::new(this.history.lock().unwrap_or_else(PoisonError::into_inner).share()),
+        };
+        Ok(Bound::new(py, copy)?.into_any())
+    }
+
+    fn __deepcopy__<'py>(slf: &Bound<'py, Self>, _memo: &Bound<'_, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        Self::__copy__(slf)
+    }
+
+    /// A pickle does again what was done since the beginning, so that it goes on alike.
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
         let Some((scene, method)) = self.made_of.as_ref().filter(|_| !self.calls().is_given()) else {
             let why = "a copy of a simulation with firing or filter; expected a sim.Method that makes them for each";
             return Err(SimulationRefused::new_err(why));
         };
         let history = self.history.lock().unwrap_or_else(PoisonError::into_inner);
-        let done = history.iter().map(|done| done.call(py)).collect::<PyResult<Vec<_>>>()?;
+        let all = history.before.iter().flat_map(|before| before.iter()).chain(&history.since);
+        let done = all.map(|done| done.call(py)).collect::<PyResult<Vec<_>>>()?;
         let rebuild = py.import("eeruf._rebuild")?.getattr("simulation")?;
         Ok((rebuild, (scene, method, self.asked().options.seed, done).into_pyobject(py)?))
     }

@@ -8,7 +8,7 @@ use numpy::PyReadonlyArray1;
 use pyo3::{prelude::*, types::PyDict};
 
 use crate::{
-    arguments::{instance, native, number, whole, wrong},
+    arguments::{in_microseconds, instance, native, number, whole, wrong},
     methods::method as method_named,
     readings::{CAUSES, Readings},
 };
@@ -121,6 +121,7 @@ pub(crate) fn readings_from_columns(
         paths,
         robot,
     };
+    in_microseconds("t_echo_us", readings.t_echo_us.iter().copied())?;
     let lengths = [
         readings.sensor.len(),
         readings.period.len(),

@@ -97,7 +97,7 @@ pub use simulation::{
     Echo, Entry, Filter, Filtered, FiredReading, LockStep, MakeOwn, Options, Own, Simulation, SimulationError,
     simulate, simulate_until, simulate_while,
 };
-pub use threads::{Stop, sweep};
+pub use threads::{Stop, Threads, sweep};
 pub use tracing::{
     CriticalPath, CrosstalkMatrix, CrosstalkQuery, Heights, Limits, MAX_ORDER, Paths, PathsError, Reception, Tracer,
     VERTICAL_ORDER, paths_of_many, reception, reception_along,

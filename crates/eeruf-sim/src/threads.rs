@@ -1,21 +1,76 @@
 //! Work on all cores, and how it ends early.
 
-use std::sync::{
-    Arc,
-    atomic::{AtomicBool, Ordering},
+use std::{
+    process,
+    sync::{
+        Arc, Mutex, PoisonError,
+        atomic::{AtomicBool, Ordering},
+    },
 };
 
-use rayon::{ThreadPoolBuilder, prelude::*};
+use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder, prelude::*};
+
+/// A thread pool for parallel iterators, of the process that asks: no thread survives a `fork`, so a child that asked
+/// its parent's pool for anything would wait for ever. Rayon's global pool is never used.
+#[derive(Debug, Default)]
+pub struct Threads {
+    number: usize,
+    /// The pool, and the process that started it.
+    pool: Mutex<Option<(u32, Arc<ThreadPool>)>>,
+}
+
+impl Threads {
+    /// This number of threads, to be started when first asked for; 0 for one a core.
+    pub const fn new(number: usize) -> Self {
+        Self { number, pool: Mutex::new(None) }
+    }
+
+    /// As many threads, started apart from these.
+    #[must_use]
+    pub const fn others(&self) -> Self {
+        Self::new(self.number)
+    }
+
+    /// The pool of this process.
+    ///
+    /// # Errors
+    /// If no thread can be started.
+    pub fn pool(&self) -> Result<Arc<ThreadPool>, ThreadPoolBuildError> {
+        let mut pool = self.pool.lock().unwrap_or_else(PoisonError::into_inner);
+        match &*pool {
+            Some((process, pool)) if *process == process::id() => return Ok(Arc::clone(pool)),
+            _ => forget(&mut pool),
+        }
+        let begun = Arc::new(ThreadPoolBuilder::new().num_threads(self.number).build()?);
+        *pool = Some((process::id(), Arc::clone(&begun)));
+        Ok(begun)
+    }
+}
+
+/// Drops a pool, but not one of the parent's, which would wake threads that are not here.
+fn forget(pool: &mut Option<(u32, Arc<ThreadPool>)>) {
+    if let Some((process, pool)) = pool.take()
+        && process != process::id()
+    {
+        core::mem::forget(pool);
+    }
+}
+
+impl Drop for Threads {
+    fn drop(&mut self) {
+        forget(self.pool.get_mut().unwrap_or_else(PoisonError::into_inner));
+    }
+}
 
 /// Does work whose parallel iterators use all cores: on the caller's pool if it is called in one, else on one of its
-/// own. Rayon's global pool does not survive a `fork`: a child that asks it for anything waits for ever.
+/// own.
 pub(crate) fn on_all_cores<T: Send>(work: impl FnOnce() -> T + Send) -> T {
     if rayon::current_thread_index().is_some() {
         return work();
     }
     // Where no thread can be started, on this one.
-    let alone = || ThreadPoolBuilder::new().num_threads(1).use_current_thread().build();
-    match ThreadPoolBuilder::new().build().or_else(|_| alone()) {
+    let alone = || ThreadPoolBuilder::new().num_threads(1).use_current_thread().build().map(Arc::new);
+    match Threads::new(0).pool().or_else(|_| alone()) {
         Ok(pool) => pool.install(work),
         Err(_) => work(),
     }

@@ -63,6 +63,9 @@ impl Default for Settings {
     }
 }
 
+/// Asked now and then whether to go on; once it answers `false`, work ends with what it has.
+pub type KeepGoing<'a> = &'a dyn Fn() -> bool;
+
 impl Settings {
     /// The usual settings, with the tolerance that the readings' scatter takes: four times it, at least 75 us.
     pub fn of(log: &FiringLog) -> Self {
@@ -149,19 +152,27 @@ impl Diagnosis {
 
 /// Finds the paths of a ring, names the sender of each reading where that is sure enough, and says what is broken.
 pub fn diagnose(log: &FiringLog, settings: &Settings) -> Diagnosis {
+    diagnose_while(log, settings, &|| true)
+}
+
+/// As [`diagnose`], which ends early with what it has found once `keep_going` answers `false`.
+pub fn diagnose_while(log: &FiringLog, settings: &Settings, keep_going: KeepGoing<'_>) -> Diagnosis {
     let timeline = Timeline::of(log, settings);
     let mut paths = Vec::new();
     let mut named = vec![None; log.firings.len()];
     let mut fits_none = vec![false; log.firings.len()];
     let moved = log.drives() || timeline.moved();
     if moved {
-        paths = follow(&timeline, settings, &mut named, &mut fits_none);
+        paths = follow(&timeline, settings, &mut named, &mut fits_none, keep_going);
     } else {
         for receiver in 0..log.sensors() as u8 {
-            let found = paths_to(receiver, &timeline, settings);
+            let found = paths_to(receiver, &timeline, settings, keep_going);
             name_senders(receiver, &found, &timeline, settings, &mut named, &mut fits_none);
             paths.extend(found);
         }
+    }
+    if !keep_going() {
+        return Diagnosis { paths, named, hearing: vec![], faults: vec![], moved, most_offsets: 0 };
     }
     let hearing = hearing(log, &paths, &named, &fits_none);
     let faults = faults(&paths, &hearing, &timeline, settings);

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use super::share::Share;
 use super::statistics::{groups, ln_at_least, median};
 use super::timeline::{Heard, Timeline};
-use super::{FoundPath, Settings};
+use super::{FoundPath, KeepGoing, Settings};
 
 /// The half width of the stretch of echo times over which the density of accidental readings is taken, in microseconds.
 const NEAR_US: i64 = 2000;
@@ -60,7 +60,12 @@ struct Search<'a> {
 }
 
 /// All paths to a receiver.
-pub(super) fn paths_to(receiver: u8, timeline: &Timeline, settings: &Settings) -> Vec<FoundPath> {
+pub(super) fn paths_to(
+    receiver: u8,
+    timeline: &Timeline,
+    settings: &Settings,
+    keep_going: KeepGoing<'_>,
+) -> Vec<FoundPath> {
     let heard = timeline.heard_by(receiver);
     if heard.len() < FEWEST {
         return Vec::new();
@@ -79,7 +84,8 @@ pub(super) fn paths_to(receiver: u8, timeline: &Timeline, settings: &Settings) -
     let mut found = Vec::new();
     while found.len() < MOST_PATHS {
         search.refresh();
-        let best = sources.iter().filter_map(|&source| search.best_of(source));
+        let going = sources.iter().take_while(|_| keep_going());
+        let best = going.filter_map(|&source| search.best_of(source));
         let Some((source, travel_us, support)) = best.min_by(|a, b| a.2.ln_accident.total_cmp(&b.2.ln_accident)) else {
             break;
         };

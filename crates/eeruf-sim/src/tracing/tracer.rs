@@ -72,6 +72,16 @@ pub struct Tracer {
     pub(super) corners: Corners,
 }
 
+/// A clone has the same settings and switch, and buffers of its own.
+impl Clone for Tracer {
+    fn clone(&self) -> Self {
+        let &Self { pole_waves, pole_shadows, edges, narrow_panels, burst_cycles, pole_order, ref stop, .. } = self;
+        let stop = stop.clone();
+        let new = Self::at(self.frequency_hz);
+        Self { pole_waves, pole_shadows, edges, narrow_panels, burst_cycles, pole_order, stop, ..new }
+    }
+}
+
 impl Default for Tracer {
     fn default() -> Self {
         Self::new()

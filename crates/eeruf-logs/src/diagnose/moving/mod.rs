@@ -15,7 +15,7 @@ mod lines;
 mod prior;
 
 use super::timeline::{Heard, Timeline};
-use super::{FoundPath, Named, Settings};
+use super::{FoundPath, KeepGoing, Named, Settings};
 use evidence::Evidence;
 use lines::lines;
 use prior::Prior;
@@ -41,6 +41,7 @@ pub(super) fn follow(
     settings: &Settings,
     named: &mut [Option<Named>],
     fits_none: &mut [bool],
+    keep_going: KeepGoing<'_>,
 ) -> Vec<FoundPath> {
     // In two phases the two offsets between any two firings repeat for ever.
     if !timeline.has_many_phases {
@@ -54,7 +55,7 @@ pub(super) fn follow(
         let mut next = Vec::with_capacity(guesses.len());
         next.resize_with(guesses.len(), Vec::new);
         for receiver in 0..timeline.sensors() as u8 {
-            for reading in timeline.heard_by(receiver) {
+            for reading in timeline.heard_by(receiver).iter().take_while(|_| keep_going()) {
                 next[reading.firing] = guess(receiver, reading, timeline, &evidence, &prior, &mut learned);
             }
         }

@@ -55,6 +55,7 @@ pub(crate) type Arrives<'a> = &'a dyn Fn(usize, u64, u64) -> bool;
 const EDGE_TURN: f64 = 0.375;
 
 /// All channels of a world.
+#[derive(Clone)]
 pub(crate) struct Channels {
     /// The present one; of those before only the scene differed.
     world: Arc<World>,
@@ -120,29 +121,9 @@ impl Channels {
 
     /// The same, to be stopped apart from these.
     pub(crate) fn copy(&self, stop: Stop) -> Self {
-        let mut tracer = Tracer::new();
-        tracer.stop = stop;
-        let (world, matrix, bodies, paths) =
-            (Arc::clone(&self.world), CrosstalkMatrix::new(), self.bodies.clone(), self.paths.clone());
-        let Self { ids, first, moves, ranges, listens, channels, starts, .. } = self;
-        Self {
-            world,
-            ids: ids.clone(),
-            first: first.clone(),
-            tracer,
-            matrix,
-            moves: *moves,
-            ranges: ranges.clone(),
-            bodies,
-            listens: listens.clone(),
-            channels: channels.clone(),
-            starts: starts.clone(),
-            paths,
-            poses: Vec::new(),
-            velocities: Vec::new(),
-            robots: Vec::new(),
-            bounces: Vec::new(),
-        }
+        let mut copy = self.clone();
+        copy.tracer.stop = stop;
+        copy
     }
 
     /// Every sensor of the world.

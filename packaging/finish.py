@@ -51,7 +51,9 @@ def documented(stub: ast.Module, module: ModuleType) -> Iterator[tuple[str, Docu
 
 
 def with_docstrings(text: str, module: ModuleType) -> str:
-    """The stub with the docstrings of the module."""
+    """The stub with the docstrings of the module, and the names of its methods."""
+    names = ", ".join(f'"{name}"' for name in module.METHODS)
+    text = re.sub(r"^_MethodName = .*$", f"_MethodName = Literal[{names}]", text, flags=re.MULTILINE)
     lines = text.splitlines()
     found = sorted(documented(ast.parse(text), module), key=lambda found: found[1].lineno, reverse=True)
     for _, node, said in found:

@@ -1,7 +1,7 @@
 // @ts-check
 /**
  * The firing methods that the page can show, in the order of its menus. A row is shown if the engine knows the method;
- * to add a method, add a row.
+ * a method that only the engine knows comes after them, with its own words.
  */
 
 /** @typedef {{id: string, name: string, does: string, byDefault?: boolean}} Method */
@@ -42,12 +42,13 @@ const TABLE = [
   },
 ];
 
-/** @param {string[]} known The methods that the engine knows. @returns {Method[]} */
-export function methodsOf(known) {
-  return TABLE.filter((method) => known.includes(method.id));
-}
+/** Left out of the menus. */
+const LEFT_OUT = ["sequential_votes", "far_groups", "median", "eeruf_immediate", "adaptive"];
 
-/** @returns {string[]} Every method that a link may name. */
-export function methodIds() {
-  return TABLE.map((method) => method.id);
+/** @param {{id: string, does: string}[]} known The methods that the engine knows. @returns {Method[]} */
+export function methodsOf(known) {
+  const rows = TABLE.filter((method) => known.some((one) => one.id === method.id));
+  const listed = [...TABLE.map((method) => method.id), ...LEFT_OUT];
+  const others = known.filter((one) => !listed.includes(one.id));
+  return [...rows, ...others.map(({ id, does }) => ({ id, name: id.replaceAll("_", " "), does }))];
 }

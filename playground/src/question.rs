@@ -24,6 +24,19 @@ enum Question {
     Certificate { ring: String },
 }
 
+/// A method that can be run.
+#[derive(Serialize)]
+struct MethodAnswer {
+    id: &'static str,
+    does: String,
+}
+
+impl MethodAnswer {
+    fn of(method: Method) -> Self {
+        Self { id: method.as_str(), does: method.about() + "." }
+    }
+}
+
 /// A result, or one sentence that says what failed.
 #[derive(Serialize)]
 #[serde(rename_all = "snake_case")]
@@ -35,7 +48,7 @@ enum Answer<T> {
 /// Answers a question.
 pub(crate) fn answer(question: &[u8]) -> String {
     match serde_json::from_slice(question) {
-        Ok(Question::Methods {}) => json(Ok(Method::usual().collect::<Vec<_>>())),
+        Ok(Question::Methods {}) => json(Ok(Method::usual().map(MethodAnswer::of).collect::<Vec<_>>())),
         Ok(Question::Trace { scene }) => json(world(&scene).and_then(|world| trace::trace(&world))),
         Ok(Question::Run { scene, method, periods, shown_s }) => json(world(&scene).and_then(|world| {
             let method = method.parse().map_err(|error: eeruf_sim::UnknownMethod| error.to_string())?;

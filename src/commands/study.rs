@@ -22,15 +22,8 @@ use crate::report::study::{pictures, text};
 use crate::report::watch::Watch;
 
 /// Simulate every firing method in a scene: which readings are wrong, and who fools whom.
-///
-/// The methods: simultaneous, sequential, sequential_votes (one by one, two of three readings agree), far_groups,
-/// dither, conventional (constant lags, every echo accepted), comparison (constant lags, consecutive readings
-/// compared), median, eeruf_immediate, eeruf (the paper's table scaled to the period, or the robot's own schedule),
-/// eeruf_best (the shortest schedule with the same guarantees), flow (one after the other, each with the quiet that it
-/// has needed), adaptive, multi_echo. By name two in one (adaptive_multi_echo, flow_multi_echo), sequential_median (one by one, the median of
-/// three) and blocking (fire, wait for the echo or for 38 ms, then 10 ms, and the next), or if the scene says `firing`, as rings are fired today:
-/// in_turn (the next as soon as the echo came, or after a time-out), arrays, groups, sync_line, free_running, table.
 #[derive(clap::Args)]
+#[command(after_long_help = every_method())]
 pub(crate) struct Args {
     /// The scene; or a ring, which is judged in rooms
     #[arg(value_name = "SCENE.toml|RING.toml")]
@@ -65,6 +58,18 @@ pub(crate) struct Args {
     physics: Option<Physics>,
     #[command(flatten)]
     in_rooms: RoomArgs,
+}
+
+/// Every method with what it does, for the help.
+fn every_method() -> String {
+    let row = |method: Method| format!("\n  {:<19} {}", method.as_str(), method.about());
+    let rows = |of: fn(&Method) -> bool| Method::ALL.into_iter().filter(of).map(row).collect::<String>();
+    let usual = rows(|method| !method.is_sketch() && !method.is_on_demand());
+    let by_name = rows(|method| method.is_on_demand());
+    let sketched = rows(|method| method.is_sketch() && !method.is_on_demand());
+    format!(
+        "Methods:{usual}\nBy --method alone:{by_name}\nWhere the scene says `firing`, as rings are fired today:{sketched}"
+    )
 }
 
 impl Args {

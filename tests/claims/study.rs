@@ -3,22 +3,10 @@
 use crate::common::{Scratch, eeruf, json};
 use serde_json::Value;
 
-const METHODS: [&str; 14] = [
-    "simultaneous",
-    "sequential",
-    "sequential_votes",
-    "far_groups",
-    "dither",
-    "conventional",
-    "comparison",
-    "median",
-    "eeruf_immediate",
-    "eeruf",
-    "eeruf_best",
-    "adaptive",
-    "flow",
-    "multi_echo",
-];
+/// The names of the methods that a study compares.
+fn methods() -> Vec<&'static str> {
+    eeruf_sim::Method::usual().map(eeruf_sim::Method::as_str).collect()
+}
 
 fn number(value: &Value) -> f64 {
     value.as_f64().unwrap_or_else(|| panic!("{value} is not a number"))
@@ -60,7 +48,7 @@ fn eeruf_believes_next_to_no_crosstalk() {
 #[test]
 fn the_help_names_every_method() {
     let help = eeruf(&["study", "--help"]).out;
-    for method in METHODS {
+    for method in methods() {
         assert!(help.contains(method), "{method} is missing in\n{help}");
     }
 }
@@ -69,11 +57,11 @@ fn the_help_names_every_method() {
 #[test]
 fn json_has_every_method_in_the_tables_order() {
     let outcome = eeruf(&["study", "scenes/alcove.toml", "--periods", "60", "--json"]);
-    let places: Vec<_> = METHODS.iter().map(|method| outcome.out.find(&format!("\"{method}\":{{"))).collect();
+    let places: Vec<_> = methods().iter().map(|method| outcome.out.find(&format!("\"{method}\":{{"))).collect();
     assert!(places.iter().all(Option::is_some) && places.is_sorted(), "{places:?}");
     let study: Value = serde_json::from_str(&outcome.out).unwrap();
     assert_eq!((&study["seed"], &study["periods"]), (&1.into(), &60.into()));
-    for method in METHODS {
+    for method in methods() {
         let entry = &study["methods"][method];
         for share in ["wrong_of_all", "rejected"] {
             assert!((0.0..=1.0).contains(&number(&entry[share])), "{method} {share}");
@@ -113,7 +101,7 @@ fn the_same_seed_gives_the_same_answer_and_another_seed_another() {
 fn the_table_names_every_method_and_who_was_fooled_by_whom() {
     let outcome = eeruf(&["study", "scenes/alcove.toml", "--periods", "300"]);
     assert_eq!((outcome.code, outcome.err.as_str()), (Some(0), ""));
-    for method in METHODS {
+    for method in methods() {
         assert!(outcome.out.contains(&format!("| {method:<16} |")), "{method}\n{}", outcome.out);
     }
     for said in ["Who was fooled by whom", "|      8 |     4 |     1 | wall 1", "300 of 300", "EERUF"] {
@@ -143,7 +131,7 @@ fn pictures_are_drawn_and_say_what_they_show() {
         ("scene.svg", vec!["conventional", "eeruf", "sound sent by sensor", "wrong readings believed", " m\n"]),
         ("timing.svg", vec!["eeruf: two periods as they happened", "crosstalk, rejected", "time, ms"]),
         ("readings.svg", vec!["What sensor ", "range, m", "time, s", "rejected"]),
-        ("methods.svg", [&METHODS[..], &["good lost", "readings a second"]].concat()),
+        ("methods.svg", [&methods()[..], &["good lost", "readings a second"]].concat()),
     ] {
         let svg = picture(name);
         assert!(svg.starts_with("<svg") && svg.trim_end().ends_with("</svg>"), "{name}");

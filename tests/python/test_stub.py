@@ -26,6 +26,15 @@ def definitions(stub: ast.Module) -> list[Union[ast.ClassDef, ast.FunctionDef]]:
     return [node for node in ast.walk(stub) if isinstance(node, (ast.ClassDef, ast.FunctionDef))]
 
 
+def named_methods(stub: ast.Module) -> str:
+    """The type of a method's name, which is taken out of the stub."""
+    found = next(
+        node for node in stub.body if isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == "_MethodName"
+    )
+    stub.body.remove(found)
+    return ast.unparse(found.value)
+
+
 def test_installed_stub_has_docstrings_of_module() -> None:
     spec = importlib.util.spec_from_file_location("finish", ROOT / "packaging/finish.py")
     assert spec is not None and spec.loader is not None
@@ -40,6 +49,8 @@ def test_installed_stub_has_docstrings_of_module() -> None:
 def test_kept_stub_has_signatures_alone() -> None:
     kept, installed = stubs()
     assert not [node.name for node in definitions(kept) if ast.get_docstring(node)]
+    names = [named_methods(stub) for stub in (kept, installed)]
+    assert names == ["str", f"Literal{list(_eeruf.METHODS)}"]
     for stub in (kept, installed):
         for node in definitions(stub):
             # Less docstrings and ellipses.

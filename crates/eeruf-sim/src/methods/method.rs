@@ -1,5 +1,5 @@
-//! The table of firing methods, in which a method is added: a row has its description, its name, its firing, its judge,
-//! the number of echoes, and whether it adapts. A new way of firing is a [`Way`] in a file of its own.
+//! What a row of the table of firing methods has: a description, a name, its firing, its judge, the number of echoes,
+//! and whether it adapts.
 
 use core::fmt;
 use core::str::FromStr;
@@ -7,38 +7,47 @@ use core::str::FromStr;
 use eeruf_core::{Micros, ScheduleError};
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de};
 
+use super::Method;
 use super::adaptive;
-use super::dither;
-use super::flow;
-use super::judges::JudgeKind::{self, Agreement, AsSketched, Belief, EveryEcho, TwoOfThree};
+use super::judges::JudgeKind::{self, AsSketched};
 use super::ring_runner::{FiringPlan, RingStart, StartError, Started, Way};
-use super::schedules;
-use super::sketch;
+use super::schedules::ScheduleQuery;
 use crate::world::{AnySchedule, Robot};
 
 /// The most echoes that a sensor reports of one firing.
 pub(crate) const MAX_ECHOES: usize = 8;
 
 /// A method: its firing, its judge, the number of echoes of a firing that a sensor reports, and whether it adapts.
-struct Row {
-    name: &'static str,
+pub(super) struct Row {
+    pub(super) name: &'static str,
+    /// Its description, as the enum documents it.
+    pub(super) about: &'static str,
     /// True if it is simulated only where it is asked for.
-    on_demand: bool,
-    firing: Way,
-    judge: JudgeKind,
-    echoes: usize,
+    pub(super) on_demand: bool,
+    pub(super) firing: Way,
+    pub(super) judge: JudgeKind,
+    pub(super) echoes: usize,
     /// True if it moves along a ladder of scaled schedules.
-    adapts: bool,
+    pub(super) adapts: bool,
 }
 
 /// Defaults of a row: the robot's own schedule, and one echo, which is believed if nothing foreign explains it and the
 /// one before.
-const DEFAULT: Row =
-    Row { name: "", on_demand: false, firing: Way::OWN_TABLE, judge: JudgeKind::Unexplained, echoes: 1, adapts: false };
+pub(super) const DEFAULT: Row = Row {
+    name: "",
+    about: "",
+    on_demand: false,
+    firing: Way::OWN_TABLE,
+    judge: JudgeKind::Unexplained,
+    echoes: 1,
+    adapts: false,
+};
 
-/// Makes the enum, its list and its rows from the table.
+/// Makes the enum, its list and its rows from the table, and the modules of ways in files of their own.
 macro_rules! methods {
-    ($( $(#[doc = $description:literal])+ $method:ident = $name:literal { $($field:ident: $value:expr,)* } )+) => {
+    ($( $(#[doc = $about:literal])+ $method:ident = $name:literal $(in $file:ident)? { $($field:ident: $value:expr,)* } )+) => {
+        $( $( mod $file; )? )+
+
         /// A way to fire a ring and to decide what to believe.
         ///
         /// The first six and [`Median`](Self::Median) come from practice, the others are the paper's and what follows
@@ -46,7 +55,7 @@ macro_rules! methods {
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
         #[non_exhaustive]
         pub enum Method {
-            $( $(#[doc = $description])+ $method, )+
+            $( $(#[doc = $about])+ $method, )+
         }
 
         impl Method {
@@ -54,83 +63,37 @@ macro_rules! methods {
             pub const ALL: [Self; [$($name),+].len()] = [$(Self::$method),+];
 
             /// Its row of the table.
-            const fn row(self) -> &'static Row {
+            pub(in crate::methods) const fn row(self) -> &'static Row {
                 match self {
-                    $( Self::$method => const { &Row { name: $name, $($field: $value,)* ..DEFAULT } }, )+
+                    $( Self::$method => const {
+                        &Row { name: $name, about: concat!($($about),+), $($field: $value,)* ..DEFAULT }
+                    }, )+
                 }
             }
         }
     };
 }
-
-methods! {
-    /// All sensors at once, once a period. Every echo is believed.
-    Simultaneous = "simultaneous" { firing: Way::by_table(schedules::together), judge: EveryEcho, }
-    /// One by one, each listening for the whole window before the next one fires. Every echo is believed.
-    Sequential = "sequential" { firing: Way::by_table(schedules::one_by_one), judge: EveryEcho, }
-    /// As sequential, but an echo is believed if one of the sensor's two readings before agrees with it: two of three
-    /// votes.
-    SequentialVotes = "sequential_votes" { firing: Way::by_table(schedules::one_by_one), judge: TwoOfThree, }
-    /// As sequential, but the median of a sensor's last three readings is believed.
-    SequentialMedian = "sequential_median" {
-        firing: Way::by_table(schedules::one_by_one), judge: JudgeKind::Median, on_demand: true,
-    }
-    /// As sequential, but sensors as far apart as the ring's `neighbours` fire together. Every echo is believed.
-    FarGroups = "far_groups" { firing: Way::by_table(schedules::far_groups), judge: EveryEcho, }
-    /// The conventional lags plus a wait redrawn for each sensor in each period, from as wide a range as the paper's
-    /// waits span. Consecutive readings are compared.
-    Dither = "dither" { firing: dither::WAY, judge: Agreement, }
-    /// Constant lags (Table I-a): neighbours fire `T_p / n` apart, every period alike. Every echo is believed.
-    Conventional = "conventional" { firing: Way::by_table(schedules::conventional), judge: EveryEcho, }
-    /// As conventional, but consecutive readings are compared: the negative control, the filter without alternation.
-    Comparison = "comparison" { firing: Way::by_table(schedules::conventional), judge: Agreement, }
-    /// As conventional, but the median of a sensor's last readings is believed.
-    Median = "median" { firing: Way::by_table(schedules::conventional), judge: JudgeKind::Median, }
-    /// Immediate refiring with alternating waits (Figs. 2a, 2b): those of the paper's table, each longer by the robot's
-    /// `min_refire`. Consecutive readings are compared.
-    EerufImmediate = "eeruf_immediate" { firing: Way::IMMEDIATE, }
-    /// Scheduled firing (Fig. 3) by the robot's own schedule, or else by the paper's table at the robot's period (see
-    /// [`table_i_d_for`](crate::table_i_d_for)). Consecutive readings are compared.
-    Eeruf = "eeruf" { }
-    /// As [`Eeruf`](Self::Eeruf), by the best schedule that is known for the ring: what the caller puts in
-    /// [`Options::best`](crate::Options::best).
-    EerufBest = "eeruf_best" { firing: Way::by_table(schedules::best), }
-    /// As [`Eeruf`](Self::Eeruf), moving along a ladder of scaled schedules as the rejection rate asks for (end of Sec.
-    /// 3.1).
-    Adaptive = "adaptive" { adapts: true, }
-    /// Flow: one sensor after the other, each with as much quiet around its firing as it has needed and dice in every
-    /// gap; an echo is believed that fits what is believed, or that two readings say and nothing foreign explains
-    /// ([`InTurn`](eeruf_core::flow::InTurn), [`Belief`](eeruf_core::flow::Belief)).
-    Flow = "flow" { firing: flow::WAY, judge: Belief, }
-    /// As [`Eeruf`](Self::Eeruf), with sensors that report up to eight echoes of a firing: the earliest that repeats is
-    /// believed.
-    MultiEcho = "multi_echo" { echoes: MAX_ECHOES, }
-    /// As [`Adaptive`](Self::Adaptive), with sensors that report up to eight echoes of a firing.
-    AdaptiveMultiEcho = "adaptive_multi_echo" { echoes: MAX_ECHOES, adapts: true, on_demand: true, }
-    /// As [`Flow`](Self::Flow), with sensors that report up to eight echoes of a firing.
-    FlowMultiEcho = "flow_multi_echo" { firing: flow::WAY, judge: Belief, echoes: MAX_ECHOES, on_demand: true, }
-    /// One by one, each as soon as the one before has answered or was given up, as the loop of a sketch or a ping timer
-    /// fires; see [`Sketch`](crate::Sketch). Every echo is believed, unless that says otherwise.
-    InTurn = "in_turn" { firing: sketch::way(sketch::in_turn), judge: AsSketched, }
-    /// Arrays side by side, each as [`InTurn`](Self::InTurn).
-    Arrays = "arrays" { firing: sketch::way(sketch::arrays), judge: AsSketched, }
-    /// As [`InTurn`](Self::InTurn), with groups of sensors that fire together.
-    Groups = "groups" { firing: sketch::way(sketch::groups), judge: AsSketched, }
-    /// Modules that share a trigger: all at once, again when the slowest has answered and rested.
-    SyncLine = "sync_line" { firing: sketch::way(sketch::sync_line), judge: AsSketched, }
-    /// Modules that fire themselves, each by a clock of its own.
-    FreeRunning = "free_running" { firing: sketch::way(sketch::free_running), judge: AsSketched, }
-    /// One by one as a loop that blocks: fire, wait for the echo or for 38 ms, then 10 ms, and the next. Every echo is
-    /// believed.
-    Blocking = "blocking" { firing: sketch::way(sketch::blocking), judge: EveryEcho, on_demand: true, }
-    /// By a table of any number of phases, the robot's own schedule unless the sketch has one.
-    Table = "table" { firing: sketch::TABLE, judge: AsSketched, }
-}
+pub(super) use methods;
 
 impl Method {
     /// Its name in files, in `--json` and in Python.
     pub const fn as_str(self) -> &'static str {
         self.row().name
+    }
+
+    /// The first sentence of its description.
+    pub fn about(self) -> String {
+        let text = self.row().about.trim();
+        // Not that of `Fig. 3`.
+        let mut ends = text.match_indices(". ").filter(|(at, _)| text[at + 2..].starts_with(char::is_uppercase));
+        let first = &text[..ends.next().map_or(text.len(), |(at, _)| at)];
+        // Links show what they name.
+        let mut shown = String::with_capacity(first.len());
+        for part in first.split("](") {
+            let rest = if shown.is_empty() { part } else { part.split_once(')').map_or("", |(_, rest)| rest) };
+            shown += rest;
+        }
+        shown.replace("[`", "").replace('`', "").trim_end_matches('.').to_owned()
     }
 
     /// Returns true if it is the paper's method or follows from it: waits alternate, and consecutive readings are

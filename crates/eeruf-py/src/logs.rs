@@ -146,7 +146,6 @@ fn log_of(columns: &Columns<'_>) -> PyResult<(FiringLog, Vec<usize>)> {
             "columns of {length} and {lengths:?} rows; expected equal lengths"
         )));
     }
-    in_microseconds("t_echo_us", t_echo_us.iter().copied())?;
     let (mut firings, mut listened) = (Vec::new(), Vec::new());
     for row in 0..length {
         let bad = |name: &str, value: &dyn std::fmt::Display, expected: &str| {
@@ -175,6 +174,7 @@ fn log_of(columns: &Columns<'_>) -> PyResult<(FiringLog, Vec<usize>)> {
             listened.push(firing);
         }
     }
+    in_microseconds("t_echo_us", t_echo_us.iter().copied())?;
     firings.sort_by_key(|firing| firing.1.fired_us);
     let (places, firings) = firings.into_iter().unzip();
     Ok((FiringLog { listened, ..FiringLog::new("columns", firings) }, places))

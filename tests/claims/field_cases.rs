@@ -219,7 +219,7 @@ fn gap_and_clock_step_begin_a_comparison_anew() {
 // The document's ten answers are what is printed, up to the first empty line.
 #[test]
 fn ten_answers_of_the_document_are_as_printed() {
-    let document = std::fs::read_to_string("docs/how-to/logs.md").unwrap();
+    let document = std::fs::read_to_string("docs/log/answers.md").unwrap();
     let blocks: Vec<_> = document.split("```text\n$ eeruf ").skip(1).collect();
     assert_eq!(blocks.len(), 10);
     for block in blocks {

@@ -3,24 +3,22 @@ use super::*;
 /// Readings of sensors that fire at these times, in microseconds, and read this, 300 times each.
 fn examine(sensors: usize, pattern: Pattern, reads: impl Fn(u64, usize) -> (u64, Option<f64>)) -> Examination {
     let mut doctor = Doctor::new(343.2);
-    for round in 0..300 {
-        for sensor in 0..sensors {
-            let (at_us, echo_us) = reads(round, sensor);
-            let range_m = echo_us.map_or(f64::INFINITY, |us| 0.5e-6 * 343.2 * us);
-            doctor.push(&Reading {
-                sensor,
-                at_ns: Some(1000 * at_us),
-                radiation: 0,
-                field_of_view_rad: 0.0,
-                min_range_m: 0.0,
-                max_range_m: 0.0,
-                range_m,
-                variance: None,
-            });
-        }
-    }
+    (0..300).for_each(|round| (0..sensors).for_each(|sensor| push(&mut doctor, sensor, reads(round, sensor))));
     let firing = FiringPattern { pattern, period_us: Some(60_000), gap_us: Some(40_000), ..FiringPattern::default() };
     doctor.examine(&firing, &(0..sensors).map(|sensor| format!("s{sensor}")).collect::<Vec<_>>())
+}
+
+fn push(doctor: &mut Doctor, sensor: usize, (at_us, echo_us): (u64, Option<f64>)) {
+    doctor.push(&Reading {
+        sensor,
+        at_ns: Some(1000 * at_us),
+        radiation: 0,
+        field_of_view_rad: 0.0,
+        min_range_m: 0.0,
+        max_range_m: 0.0,
+        range_m: echo_us.map_or(f64::INFINITY, |us| 0.5e-6 * 343.2 * us),
+        variance: None,
+    });
 }
 
 /// Noise of up to 20 us, the same in each run.
@@ -155,4 +153,38 @@ fn ranges_refute_times_that_are_those_of_reading() {
         assert_eq!(healthy.verdict, Verdict::NoneSeen, "{seed}: {:?}", healthy.reasons);
     }
     assert!(told > 15, "{told}");
+}
+
+// Sensor 0 is silent in every third round.
+#[test]
+fn rounds_without_a_sensor_are_a_pause_test() {
+    let examined = |hears: bool| {
+        let mut doctor = Doctor::new(343.2);
+        for round in 0..600_u64 {
+            let fires = round % 3 > 0;
+            if fires {
+                push(&mut doctor, 0, (60_000 * round, Some(9000.0 + noise(round, 0))));
+            }
+            let heard = if fires && hears { 5000.0 } else { 8000.0 };
+            push(&mut doctor, 1, (60_000 * round + 5_000, Some(heard + noise(round, 1))));
+        }
+        doctor.examine(&FiringPattern::default(), &["a".to_owned(), "b".to_owned()])
+    };
+    let found = examined(true);
+    assert_eq!((found.verdict, &found.fooled[..], found.suspects[0].by), (Verdict::Crosstalk, &[1][..], Some(0)));
+    assert_eq!((examined(false).verdict, examined(false).suspects), (Verdict::CannotTell, vec![]));
+}
+
+// The lags alternate by 300 us, which a scatter of 150 us hides.
+#[test]
+fn scatter_that_hides_the_lags_is_said() {
+    let at = |round: u64, sensor: usize| 60_000 * round + sensor as u64 * (10_000 + 300 * (round % 2));
+    let with = |times: f64| {
+        examine(2, Pattern::Alternating, |round, sensor| {
+            (at(round, sensor), Some(9000.0 + times * noise(round, sensor)))
+        })
+    };
+    assert_eq!(with(1.0).verdict, Verdict::NoneSeen);
+    let blurred = with(12.0);
+    assert!(blurred.verdict == Verdict::CannotTell && blurred.reasons[0].contains("scatter"), "{blurred:?}");
 }

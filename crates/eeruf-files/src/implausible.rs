@@ -76,19 +76,35 @@ pub fn doubted_keys() -> impl Iterator<Item = &'static str> {
     PLAUSIBLE.iter().map(|plausible| plausible.key)
 }
 
-/// Returns a warning for every implausible value of a TOML text; none for a text that is no TOML.
+/// Returns a warning for every key of a TOML text with an implausible value: the first, and the number of others. None
+/// for a text that is no TOML.
 ///
 /// ```
 /// let warnings = eeruf_files::doubts_in("# a ring\nwindow_us = 30");
 /// let expected = "line 2: window_us: 30; expected 1000 to 1000000; likely milliseconds: times are microseconds";
 /// assert_eq!(warnings[0].to_string(), expected);
+/// let poles = eeruf_files::doubts_in(&"[[poles]]\nradius_m = 30\n".repeat(50_000));
+/// assert_eq!(poles.len(), 1);
+/// assert!(poles[0].to_string().ends_with("lengths are metres; so are 49999 more of this key"));
 /// ```
 pub fn doubts_in(text: &str) -> Vec<FileError> {
     let mut found = vec![];
     if let Ok(table) = DeTable::parse(text) {
         in_table(table.get_ref(), &mut found);
     }
-    found.into_iter().map(|(at, message)| FileError::in_text(message).at_line(Some(line_at(text, at)))).collect()
+    let mut of_keys: Vec<(usize, String, usize)> = vec![];
+    for (at, message) in found {
+        let key = |message: &str| message.split(':').next().map(str::to_owned);
+        match of_keys.iter_mut().find(|(_, first, _)| key(first) == key(&message)) {
+            Some((.., more)) => *more += 1,
+            None => of_keys.push((at, message, 0)),
+        }
+    }
+    let warning = |(at, message, more): (usize, String, usize)| {
+        let error = FileError::in_text(message).at_line(Some(line_at(text, at)));
+        if more > 0 { error.and(format!("so are {more} more of this key")) } else { error }
+    };
+    of_keys.into_iter().map(warning).collect()
 }
 
 /// Collects the implausible values of a table and of those within it, with their places.

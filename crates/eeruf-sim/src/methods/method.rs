@@ -11,7 +11,6 @@ use super::Method;
 use super::adaptive;
 use super::judges::JudgeKind::{self, AsSketched};
 use super::ring_runner::{FiringPlan, RingStart, StartError, Started, Way};
-use super::schedules::ScheduleQuery;
 use crate::world::{AnySchedule, Robot};
 
 /// The most echoes that a sensor reports of one firing.

@@ -533,8 +533,8 @@ static OUT_OF_LINE const EerufLimits *limits_of(const EerufSchedule *schedule) {
     return schedule == NULL ? NULL : READ_POINTER(const EerufLimits *, schedule->limits);
 }
 
-/* What answers for limits, so that with rings that have none nothing of it is linked: null until one with a schedule
-   begins. Its questions, of a sensor and a value; FIRST_TO_CLOSE changes the ring. */
+/* What answers for limits, so that with rings that have none nothing of it is linked, or asked: null until one that
+   has some begins. Its questions, of a sensor and a value; FIRST_TO_CLOSE changes the ring. */
 enum { WINDOW, SHORTEST_WINDOW, T_DELTA, TOGETHER, DEAF, DIFFER, FIRST_TO_CLOSE };
 static uint32_t (*limited)(const EerufRing *ring, uint8_t what, uint8_t x, uint32_t value);
 
@@ -587,6 +587,10 @@ static uint32_t answer_by_schedules(const EerufRing *ring, uint8_t what, uint8_t
     case FIRST_TO_CLOSE: find_first_to_close((EerufRing *)(uintptr_t)ring); return 0;
     default: return limits != NULL || limits_before != NULL;
     }
+}
+
+static void heed_limits(const EerufSchedule *schedule) {
+    if (limits_of(schedule) != NULL) limited = answer_by_schedules;
 }
 
 static uint32_t path_change_of(const EerufRing *ring, uint16_t t_delta_us) {
@@ -863,7 +867,7 @@ static EerufStatus init(EerufRing *ring, size_t ring_size, EerufSensor *sensors,
     if (!is_verified(schedule) && window_us == 0) return EERUF_ERR_UNVERIFIED;
     if (t_delta_us == 0) t_delta_us = READ32(schedule->t_delta_us);
     if (window_us == 0) window_us = READ32(schedule->window_us);
-    limited = answer_by_schedules;
+    heed_limits(schedule);
     /* A table allows what it was verified for. */
     if (config->t_delta_us != 0 || config->window_us != 0) status = allows(schedule, t_delta_us, window_us);
     if (status != EERUF_OK) return status;
@@ -1461,6 +1465,7 @@ static EerufStatus change(EerufRing *ring, const EerufSchedule *schedule, bool v
     if (status == EERUF_OK)
         status = can_hear(ring->t_delta_us, shortest_window(schedule, ring->count, ring->window_us), ring->blanking_us);
     if (status != EERUF_OK) return status;
+    heed_limits(schedule);
     ring->next_schedule = schedule;
     ring->hook = change_now;
     return EERUF_OK;
@@ -2720,7 +2725,7 @@ static EerufStatus begin_flow(EerufFlowRing *flow, size_t flow_size, EerufFlowSe
 
 EerufStatus eeruf_flow_init(EerufFlowRing *flow, size_t flow_size, EerufFlowSensor *sensors, size_t sensors_size,
                             const EerufFlowConfig *config, uint32_t now_us) {
-    limited = answer_by_schedules;
+    if (config != NULL) heed_limits(config->own);
     return begin_flow(flow, flow_size, sensors, sensors_size, config, now_us);
 }
 

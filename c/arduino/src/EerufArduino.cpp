@@ -120,13 +120,14 @@ static uint8_t levels(uint8_t group) {
 static EerufEdges *edges;
 // The levels of lines, the pins that are echo lines, and pulses whose beginning has no time.
 static uint8_t sensorOf[GROUPS][8], known[GROUPS], ours[GROUPS], timeless[GROUPS];
-static uint32_t looked, lost; // the time by which micros() is behind
+static uint32_t looked;
 
 #if defined(TIMER0_COMPB_vect) && (F_CPU == 16000000 || F_CPU == 8000000)
 #define EERUF_HALVES
 // The timer of micros() counts on where interrupts wait, but of two overflows meanwhile one is lost. Timers 1 and 2 tell,
 // unless both are taken: the core leaves them counting as fast, up to 255 and down again.
 static uint16_t lead; // of their place over that of micros(), in a round of 510
+static uint32_t lost; // by micros()
 
 static bool count(uint8_t *at) {
 #ifdef TCCR2A
@@ -139,21 +140,21 @@ static bool count(uint8_t *at) {
     return (TCCR1A & 0x03) == _BV(WGM10) && (TCCR1B & 0x1f) == (_BV(CS11) | _BV(CS10));
 }
 
-// Makes up for overflows that micros(), which says these ticks, has lost, by the counter at that time. True if it cannot:
-// the counter was set to something else.
-static bool hasLostTime(uint8_t ticks, uint8_t at) {
-    const uint8_t SHIFT = F_CPU == 16000000 ? 10 : 11;
-    uint32_t overflows = micros() >> SHIFT;
-    uint16_t place = lead + ticks;
-    // 256 in odd numbers of them, and 2 for each two.
-    for (; overflows != 0; overflows >>= 8) place += ((uint8_t)overflows & 0xfe) + ((uint8_t)overflows & 1 ? 256 : 0);
+// Makes up for overflows that micros() has lost at an instant, by the counter just after it. True if it cannot: the
+// counter was set to something else.
+static bool hasLostTime(uint32_t us, uint8_t at) {
+    const uint8_t TICKS_AT = F_CPU == 16000000 ? 2 : 3; // of micros()
+    // In ticks, and in a round of 510: 512 are 2, so that each byte but the first counts alike.
+    const uint16_t sum = (uint8_t)(us >> 8) + (uint16_t)(uint8_t)(us >> 16) + (uint8_t)(us >> 24);
+    const uint16_t ticks = (sum << (8 - TICKS_AT)) + ((uint8_t)us >> TICKS_AT);
+    uint16_t place = lead + (ticks & 511) + (ticks >> 9) * 2;
     for (uint8_t more = 0; more < 4; more++, place += 256) {
         while (place >= 510) place -= 510;
         const uint8_t expected = place > 255 ? 510 - place : place;
         if ((uint8_t)(expected - at + 1) > 2) continue;
         lead += more << 8;
         while (lead >= 510) lead -= 510;
-        lost += (uint32_t)more << SHIFT;
+        lost += (uint32_t)more << (8 + TICKS_AT);
         return false;
     }
     uint8_t next = at;
@@ -165,23 +166,20 @@ static bool hasLostTime(uint8_t ticks, uint8_t at) {
     return true;
 }
 
-// True if interrupts wait for longer than other interrupts take: of two that each pass of timer 0 raises, one waits.
-static bool haveWaited(bool *hasLost) {
-    uint8_t ticks, at;
-    bool counts;
-    const uint8_t half = OCR0B;
-    do {
-        ticks = TCNT0;
-        counts = count(&at);
-    } while (ticks == 255); // micros() would be in the next pass
-    const uint8_t flags = TIFR0, since = ticks - half;
-    *hasLost = counts && hasLostTime(ticks, at);
-    return ((flags & _BV(TOV0)) && ticks > 8) || ((flags & _BV(OCF0B)) && since > 8);
+// The clock of rings, with interrupts off. They wait for longer than other interrupts take if of two that each pass of
+// timer 0 raises one waits.
+static uint32_t read(bool *haveWaited, bool *hasLost) {
+    uint8_t at;
+    const uint32_t us = micros();
+    *hasLost = count(&at) && hasLostTime(us, at);
+    const uint8_t flags = TIFR0, ticks = TCNT0, since = ticks - OCR0B;
+    *haveWaited = ((flags & _BV(TOV0)) && ticks > 8) || ((flags & _BV(OCF0B)) && since > 8);
+    return us + lost;
 }
 static const bool IS_KNOWN = true;
 #else
-static inline bool haveWaited(bool *) {
-    return false;
+static inline uint32_t read(bool *, bool *) {
+    return micros();
 }
 static const bool IS_KNOWN = false; // only edges that come together tell
 #endif
@@ -189,9 +187,8 @@ static const bool IS_KNOWN = false; // only edges that come together tell
 // Queues the edges that came since an instant, or just now: with interrupts off. An edge has no time that an interrupt
 // finds late, nor has the end of a pulse whose beginning has none, or in which time was lost.
 static void take(uint32_t since, bool isInterrupt) {
-    bool hasLost = false;
-    const bool waited = haveWaited(&hasLost);
-    const uint32_t at = micros() + lost;
+    bool waited = false, hasLost = false;
+    const uint32_t at = read(&waited, &hasLost);
     const bool isLate = isInterrupt ? waited : hasLost || at - since > TOO_LONG_US;
     if (isInterrupt) since = at;
     // Lines of an interrupt wait meanwhile: groups that no line is in are left out.
@@ -220,12 +217,11 @@ void look() {
 
 uint32_t now() {
 #ifdef EERUF_HALVES
-    bool hasLost = false;
+    bool waited, hasLost;
     const uint8_t before = SREG;
     cli();
-    (void)haveWaited(&hasLost);
+    const uint32_t at = read(&waited, &hasLost);
     for (uint8_t group = 0; group < GROUPS && hasLost; group++) timeless[group] |= known[group];
-    const uint32_t at = micros() + lost;
     SREG = before;
     return at;
 #else

@@ -186,9 +186,9 @@ fn certify(
 ///     >>> found = eeruf.design(4, 999, 15_000, 36_000, certificate=True)
 ///     >>> eeruf.check_certificate(found.certificate)
 ///     62000
-///     >>> eeruf.check_certificate(found.certificate.replace("period 62", "period 61"))
+///     >>> eeruf.check_certificate(found.certificate.replace("below 62", "below 63"))
 ///     Traceback (most recent call last):
-///     eeruf.CertificateError: line 15: sensor 3 fires within its window
+///     eeruf.CertificateError: line 16: found '63', expected 1 to 62
 #[pyfunction]
 #[pyo3(name = "check_certificate", signature = (text))]
 pub(crate) fn check_certificate(py: Python<'_>, text: &Bound<'_, PyAny>) -> PyResult<u64> {

@@ -1,5 +1,5 @@
 //! Other work in a sketch's `loop()`: readings of a flow ring that are right and wrong, polled and by interrupt, in the
-//! alcove and before walls of their own.
+//! alcove, in a larger one, and before walls of their own.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -25,10 +25,11 @@ const DRAWN: usize = 20;
 /// The figures of all.
 const FILE: &str = "tests/data/arduino-loads.csv";
 const POLLED: &str = "polled";
+const OWN_WALLS: &str = "own walls";
 /// For how long each runs.
 const SECONDS: u32 = 3;
 /// Those that run in CI, with six modules in the alcove.
-const CORNER: [usize; 3] = [1, 11, 17];
+const CORNER: [usize; 3] = [1, 11, 18];
 
 /// A sketch that starves says so within as many milliseconds.
 const SAYS_SO_MS: u32 = 2_000;
@@ -46,14 +47,17 @@ struct Load {
     least: f64,
     /// Wrong readings a second that may be: polled, and by interrupt.
     most: [f64; 2],
+    /// The least share of firings, in percent, that are accepted by interrupt before walls of their own.
+    accepted: f64,
 }
 
 const fn load(work_us: u32, every_us: u32, least: f64) -> Load {
-    Load { work_us, every_us, baud: 115_200, masks: false, waits: false, least, most: [0.0; 2] }
+    let accepted = if every_us == 0 && work_us > 0 { 0.0 } else { 85.0 };
+    Load { work_us, every_us, baud: 115_200, masks: false, waits: false, least, most: [0.0; 2], accepted }
 }
 
-const fn masked(work_us: u32, waits: bool, most: [f64; 2]) -> Load {
-    Load { masks: true, waits, most, ..load(work_us, 20_000, 0.0) }
+const fn masked(work_us: u32, waits: bool, most: [f64; 2], accepted: f64) -> Load {
+    Load { masks: true, waits, most, accepted, ..load(work_us, 20_000, 0.0) }
 }
 
 const KINDS: [Load; 23] = [
@@ -74,11 +78,10 @@ const KINDS: [Load; 23] = [
     load(100_000, 0, 0.0),
     load(5_000, 50_000, 58.4),
     load(25_000, 100_000, 47.9),
-    masked(900, false, [0.0, 0.1]),
-    // Of longer ones than a millisecond and a half micros() loses time that nothing shows.
-    masked(1_800, false, [2.8, 2.8]),
-    masked(900, true, [0.0; 2]),
-    masked(1_800, true, [0.0; 2]),
+    masked(900, false, [0.0, 0.1], 80.0),
+    masked(1_800, false, [0.0, 0.7], 70.0),
+    masked(900, true, [0.0; 2], 85.0),
+    masked(1_800, true, [0.0; 2], 85.0),
     Load { baud: 9_600, ..load(0, 0, 64.8) },
     Load { baud: 9_600, ..load(1_000, 5_000, 0.0) },
 ];
@@ -110,17 +113,26 @@ impl Load {
         if up_to(5) == 0 { load(1_000 * work_us.div_ceil(1_000), 0, 0.0) } else { load(work_us, every_us, 0.0) }
     }
 
-    /// An error where figures of a ring are not what is promised.
-    fn check(&self, heard: &UnderLoad, polled: bool, compared: bool) -> Result<()> {
-        let UnderLoad { right, wrong, starved, slow_ms, .. } = *heard;
-        let name = format!("{}, {}", self.name(), if polled { "polled" } else { "by interrupt" });
+    /// What is not as promised of a ring's figures.
+    fn broken(&self, heard: &UnderLoad, polled: bool, compared: bool, own_walls: bool) -> Vec<String> {
+        let UnderLoad { right, wrong, accepted_percent, starved, slow_ms, .. } = *heard;
         let most = self.most[usize::from(!polled)];
-        ensure!(wrong <= most, "{name}: {wrong:.1} wrong a second; expected at most {most}");
         let least = if polled && compared { self.least } else { 0.0 };
-        ensure!(right >= least, "{name}: {right:.1} right a second; expected at least {least}");
+        let least_percent = if own_walls && !polled { self.accepted } else { 0.0 };
         let says_so = slow_ms.is_some_and(|ms| ms <= SAYS_SO_MS);
-        ensure!(starved == 0 || says_so, "{name}: {starved} modules starve; said so: {slow_ms:?} ms");
-        Ok(())
+        let name = format!("{}, {}", self.name(), if polled { "polled" } else { "by interrupt" });
+        [
+            (wrong <= most, format!("{wrong:.1} wrong a second; expected at most {most}")),
+            (right >= least, format!("{right:.1} right a second; expected at least {least}")),
+            (
+                accepted_percent >= least_percent,
+                format!("{accepted_percent:.1} % accepted; expected at least {least_percent}"),
+            ),
+            (starved == 0 || says_so, format!("{starved} modules starve; said so: {slow_ms:?} ms")),
+        ]
+        .into_iter()
+        .filter_map(|(holds, what)| (!holds).then(|| format!("{name}: {what}")))
+        .collect()
     }
 
     /// The bytes that the sketch reads.
@@ -141,15 +153,22 @@ struct Place {
     own_mm: BTreeMap<usize, u32>,
 }
 
-/// The alcove, and walls of their own from 0.4 to 3.4 m, by the golden section so that no two are alike.
-fn places() -> Result<[Place; 2]> {
-    let (alcove, walls) = (PathBuf::from(world::KEPT), Path::new(TARGET).join("own-walls.txt"));
-    let own: String =
-        (0..8).map(|module| format!("{module} {module} {}\n", 2_300 + module * 618 % 1000 * 175 / 10)).collect();
-    fs::write(&walls, own)?;
-    let place =
-        |name, ways: PathBuf| anyhow::Ok(Place { name, own_mm: world::own_walls(&fs::read_to_string(&ways)?), ways });
-    Ok([place("alcove", alcove)?, place("own walls", walls)?])
+/// The alcove; walls of their own from 0.4 to 3.4 m, by the golden section so that no two are alike; and the alcove 1.6
+/// times as large, where sound of one module is still heard when others have waited for 10 ms: for eight modules.
+fn places() -> Result<[Place; 3]> {
+    let alcove = fs::read_to_string(world::KEPT)?;
+    let own = (0..8).map(|module| format!("{module} {module} {}\n", 2_300 + module * 618 % 1000 * 175 / 10)).collect();
+    let larger = |line: &str| {
+        let (who, us) = line.rsplit_once(' ')?;
+        Some(format!("{who} {}\n", us.parse::<u32>().ok()? * 8 / 5))
+    };
+    let large = alcove.lines().filter_map(larger).collect();
+    let place = |name: &'static str, ways: String| {
+        let file = Path::new(TARGET).join(format!("{}.txt", name.replace(' ', "-")));
+        fs::write(&file, &ways)?;
+        anyhow::Ok(Place { name, own_mm: world::own_walls(&ways), ways: file })
+    };
+    Ok([place("alcove", alcove)?, place(OWN_WALLS, own)?, place("large alcove", large)?])
 }
 
 /// The sketch for this many modules, by what `design` emits.
@@ -199,15 +218,18 @@ impl Ring<'_> {
             let pins = ALL[..modules].repeat(2);
             let mut command = world::command(world, &options, elf, seconds, &self.place.ways, &pins);
             let heard = world::hear_by(&mut command, seconds, &self.place.own_mm)?.under_load();
-            let UnderLoad { right, wrong, wrong_percent, worst, starved, slow_ms } = heard;
+            let UnderLoad { right, wrong, wrong_percent, own_later, accepted_percent, worst, starved, slow_ms } = heard;
             let said = slow_ms.map_or(String::new(), |ms| ms.to_string());
-            let figures = format!("{right:.1},{wrong:.1},{wrong_percent:.1},{worst:.1},{starved},{said}");
+            // NewPing compares with nothing.
+            let accepted = load.map_or(String::new(), |_| format!("{accepted_percent:.1}"));
+            let per_second = format!("{right:.1},{wrong:.1},{wrong_percent:.1},{own_later:.1}");
+            let figures = format!("{per_second},{accepted},{worst:.1},{starved},{said}");
             let row = format!("{modules},{place},{edges},{work},{figures}");
             println!("{row}");
             rows += &(row + "\n");
-            if let Some(Err(error)) = load.map(|load| load.check(&heard, *edges == POLLED, self.is_compared)) {
-                broken.push(format!("{modules} modules, {place}: {error}"));
-            }
+            let of = |load: &Load| load.broken(&heard, *edges == POLLED, self.is_compared, place == OWN_WALLS);
+            let named = |what| format!("{modules} modules, {place}, {what}");
+            broken.extend(load.iter().copied().flat_map(of).map(named));
         }
         Ok((rows, broken))
     }
@@ -237,10 +259,11 @@ pub(super) fn run(library: &Path, newping: Option<&Path>, all: bool) -> Result<(
     let places = places()?;
     let mut rings = vec![];
     for (modules, of_ring) in &sketches {
-        for (number, place) in places.iter().enumerate().filter(|(number, _)| all || *number == 0) {
+        let in_place = |number: usize| if all { number < RINGS.len() || *modules > RINGS[0] } else { number == 0 };
+        for (number, place) in places.iter().enumerate().filter(|(number, _)| in_place(*number)) {
             let is_compared = *modules == RINGS[0] && number == 0;
             // Those that are drawn: once in each place, and for each ring.
-            let is_diagonal = RINGS[number] == *modules;
+            let is_diagonal = RINGS.get(number) == Some(modules);
             let kinds = || loads[..if is_diagonal { loads.len() } else { KINDS.len() }].iter().enumerate();
             let mut runs = vec![];
             for (elf, edges, work) in of_ring {
@@ -254,8 +277,9 @@ pub(super) fn run(library: &Path, newping: Option<&Path>, all: bool) -> Result<(
             rings.push(Ring { modules: *modules, place, is_compared, runs });
         }
     }
-    let mut table =
-        "modules,place,edges,work,right_per_s,wrong_per_s,wrong_percent,worst_right_per_s,starved,said_ms\n".to_owned();
+    let mut table = "modules,place,edges,work,right_per_s,wrong_per_s,wrong_percent,own_later_per_s,accepted_percent,\
+         worst_right_per_s,starved,said_ms\n"
+        .to_owned();
     print!("{table}");
     let world = &world;
     let done = thread::scope(|scope| {

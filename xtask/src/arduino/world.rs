@@ -40,12 +40,15 @@ pub(super) struct Heard {
     by_cause: [u32; 3],
 }
 
-/// Readings a second that a sketch with other work accepts, right and wrong, and those of its worst module; modules
-/// that have fewer than one in two seconds, and when it first said that it is too slow, in milliseconds.
+/// Readings a second that a sketch with other work accepts: right, wrong, and own ones of a later echo, as it came; the
+/// share of firings that are accepted, and the right ones of the worst module; modules that have fewer than one in two
+/// seconds, and when it first said that it is too slow, in milliseconds.
 pub(super) struct UnderLoad {
     pub(super) right: f64,
     pub(super) wrong: f64,
     pub(super) wrong_percent: f64,
+    pub(super) own_later: f64,
+    pub(super) accepted_percent: f64,
     pub(super) worst: f64,
     pub(super) starved: usize,
     pub(super) slow_ms: Option<u32>,
@@ -214,6 +217,8 @@ impl Heard {
             right: per_second(rights().sum()),
             wrong: per_second(wrong),
             wrong_percent: 100.0 * f64::from(wrong) / f64::from(self.accepted.max(1)),
+            own_later: per_second(self.own_later),
+            accepted_percent: self.shares().0,
             worst: per_second(rights().min().unwrap_or(0)),
             starved: rights().filter(|right| 2 * right < self.seconds).count(),
             slow_ms: self.slow_ms,

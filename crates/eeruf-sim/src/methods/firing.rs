@@ -54,8 +54,10 @@ struct Planner(Result<Box<dyn Firing>, OwnError>);
 
 impl Clone for Planner {
     fn clone(&self) -> Self {
-        let copied = |firing: &Box<dyn Firing>| firing.copy().ok_or_else(|| OwnError::new("it cannot be copied"));
-        Self(self.0.as_ref().map_err(Clone::clone).and_then(copied))
+        Self(match &self.0 {
+            Ok(firing) => firing.copy().ok_or_else(|| "it cannot be copied".into()),
+            Err(error) => Err(error.clone()),
+        })
     }
 }
 

@@ -235,7 +235,7 @@ impl<K: Kinematics> EventLoop<K> {
             match change {
                 Due::Table(robot, table) => {
                     let Some(&(method, own)) = self.own_tables.get(robot) else { continue };
-                    let changed = match (table.or(own), rings.get_mut(robot)) {
+                    let changed = match (table.map(|table| *table).or(own), rings.get_mut(robot)) {
                         (Some(table), Some(ring)) => ring.ring.change_schedule(&table),
                         _ => Err(ChangeError::Fixed),
                     };

@@ -29,7 +29,7 @@ pub(super) enum Fired {
 /// A change that is due.
 pub(super) enum Due {
     /// A robot fires by this table from now on; by its own if there is none.
-    Table(usize, Option<AnySchedule>),
+    Table(usize, Option<Box<AnySchedule>>),
     /// Sound travels in this world from now on.
     Scene(Arc<World>),
 }
@@ -101,7 +101,7 @@ impl Faults {
         for fault in faults {
             if let FaultKind::OtherTable { schedule } = &fault.kind {
                 if now == ns(fault.from_s) {
-                    due.push(Due::Table(fault.robot, Some(**schedule)));
+                    due.push(Due::Table(fault.robot, Some(schedule.clone())));
                 } else if now == ns(fault.to_s) {
                     due.push(Due::Table(fault.robot, None));
                 }

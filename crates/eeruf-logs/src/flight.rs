@@ -1,4 +1,4 @@
-//! Flight logs, of which the distance sensors matter: ArduPilot's `.BIN`, MAVLink's `.tlog`, PX4's `.ulg`.
+//! Flight logs, of which the distance sensors matter: `ArduPilot`'s `.BIN`, `MAVLink`'s `.tlog`, `PX4`'s `.ulg`.
 
 use std::collections::{BTreeMap, HashMap};
 use std::io::{self, Read};
@@ -191,7 +191,7 @@ fn data_flash(input: &mut Input<'_>, each: &mut dyn FnMut(Distance)) -> io::Resu
     Ok(passed)
 }
 
-/// MAVLink: each frame of version 1 or 2 behind its time.
+/// `MAVLink`: each frame of version 1 or 2 behind its time.
 fn telemetry(input: &mut Input<'_>, each: &mut dyn FnMut(Distance)) -> io::Result<u64> {
     const DISTANCE_SENSOR: u32 = 132;
     /// The byte of its definition that its check sum includes.
@@ -233,7 +233,7 @@ fn telemetry(input: &mut Input<'_>, each: &mut dyn FnMut(Distance)) -> io::Resul
     }
 }
 
-/// The check sum of MAVLink, CRC-16/MCRF4XX.
+/// The check sum of `MAVLink`, `CRC-16/MCRF4XX`.
 fn checksum(bytes: &[u8]) -> u16 {
     bytes.iter().fold(0xffff, |sum, &byte| {
         let low = byte ^ (sum as u8);

@@ -170,10 +170,10 @@ static bool hasLostTime(uint32_t us, uint8_t at) {
 // timer 0 raises one waits.
 static uint32_t read(bool *haveWaited, bool *hasLost) {
     uint8_t at;
+    const uint8_t flags = TIFR0, ticks = TCNT0, since = ticks - OCR0B;
     const uint32_t us = micros();
     *hasLost = count(&at) && hasLostTime(us, at);
-    const uint8_t flags = TIFR0, ticks = TCNT0, since = ticks - OCR0B;
-    *haveWaited = ((flags & _BV(TOV0)) && ticks > 8) || ((flags & _BV(OCF0B)) && since > 8);
+    *haveWaited = ((flags & _BV(TOV0)) && ticks > 12) || ((flags & _BV(OCF0B)) && since > 12);
     return us + lost;
 }
 static const bool IS_KNOWN = true;

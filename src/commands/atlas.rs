@@ -31,8 +31,8 @@ pub(crate) struct Args {
     /// Draw period over number of sensors, as SVG or, if the name ends in .png, as PNG
     #[arg(long, value_name = "FILE", value_parser = picture())]
     svg: Option<PathBuf>,
-    /// Search the open rings of FILE again, with so many nodes each, fewer for more than 16 sensors; and write the
-    /// certificate of each row anew
+    /// Search the open rings of FILE again, with this number of nodes each, fewer for more than 16 sensors, and write
+    /// the certificate of each row anew; by default not
     #[arg(long, value_name = "NODES", requires = "file", conflicts_with = "shard")]
     again: Option<u64>,
     /// Only this share of the rings, of this many

@@ -41,6 +41,9 @@ use crate::console::{OutputError, Settings, print_line, tell};
 use crate::files::error::InputError;
 use crate::report::json::to_json;
 
+/// The end of the help of `study`, whose long help has more.
+pub(crate) const STUDY: &str = help!("study scenes/alcove.toml --method sequential,eeruf", "0 simulated; 2 bad input");
+
 /// The commands by what they are for.
 const GROUPS: &str = "\
 Commands by what they are for:
@@ -128,7 +131,7 @@ pub(crate) enum Verb {
         "0 a table; 1 none; 2 bad input; 3 not decided"
     ))]
     Search(search::Args),
-    #[command(after_help = help!("study scenes/alcove.toml --method sequential,eeruf", "0 simulated; 2 bad input"))]
+    #[command(after_help = STUDY)]
     Study(study::Args),
     #[command(after_help = help!("paths scenes/alcove.toml --order 2", "0 listed; 2 bad input"))]
     Paths(paths::Args),

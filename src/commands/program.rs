@@ -18,7 +18,7 @@ use crate::report::watch::Watch;
 /// Options of a program.
 #[derive(clap::Args)]
 pub(crate) struct ProgramArgs {
-    /// Write a folder with a program that fires the ring in the way recommended: a sketch, a crate, ..
+    /// Write a folder with a program that fires the ring in the way recommended: a sketch, a crate, ..; by default none
     #[arg(long, value_enum, value_name = "LANGUAGE",
           conflicts_with_all = ["emit", "json", "svg", "certificate", "period", "curve"])]
     pub(crate) program: Option<Language>,
@@ -28,7 +28,7 @@ pub(crate) struct ProgramArgs {
     /// The program's folder; by default one with the ring file's name
     #[arg(long, value_name = "DIR", requires = "program")]
     out: Option<PathBuf>,
-    /// The program's way of firing, instead of the one that is recommended; nothing is judged in rooms then
+    /// The program's way of firing; by default the one that is recommended, and nothing is judged in rooms if it is given
     #[arg(long, value_enum, value_name = "WAY", requires = "program")]
     way: Option<Named>,
 }

@@ -11,7 +11,7 @@ use eeruf_sim::{
 use super::arguments::picture_folder;
 use super::methods::chosen;
 use super::rooms::{self, RoomArgs};
-use super::{Answer, show};
+use super::{Answer, STUDY, show};
 use crate::files::error::InputError;
 use crate::files::firings::write_firings;
 use crate::files::mcap::{Stage, write_mcap};
@@ -67,9 +67,8 @@ fn every_method() -> String {
     let usual = rows(|method| !method.is_sketch() && !method.is_on_demand());
     let by_name = rows(|method| method.is_on_demand());
     let sketched = rows(|method| method.is_sketch() && !method.is_on_demand());
-    format!(
-        "Methods:{usual}\nBy --method alone:{by_name}\nWhere the scene says `firing`, as rings are fired today:{sketched}"
-    )
+    let sketches = "Where the scene says `firing`, as rings are fired today";
+    format!("Methods:{usual}\nBy --method alone:{by_name}\n{sketches}:{sketched}\n\n{STUDY}")
 }
 
 impl Args {

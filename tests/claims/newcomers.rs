@@ -64,7 +64,11 @@ fn strangers_find_their_ways_from_readme_and_type_what_works() {
         said.push((command, String::from_utf8(output.stdout).unwrap()));
     }
     let of = |part: &str| &said.iter().find(|(command, _)| command.contains(part)).unwrap().1;
-    assert!(of("eeruf logs").contains("crosstalk: cannot tell") && of("eeruf logs").contains("- record "));
+    assert!(
+        of("eeruf logs").starts_with("This log cannot tell") && of("eeruf logs").contains("\ndo 1: "),
+        "{}",
+        of("eeruf logs")
+    );
     assert!(of("diagnose").contains("who is fooled | by whom"), "{}", of("diagnose"));
     assert!(of("verify").contains("verified"), "{}", of("verify"));
     assert!(of("--emit rust").contains("period_us: 67_500"), "{}", of("--emit rust"));

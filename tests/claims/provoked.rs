@@ -144,8 +144,8 @@ const REFUSED_FILES: [Spoilt<'static>; 45] = [
         "paths",
         SCENE,
         "period_us = 60_000",
-        "module = \"hcsr04\"",
-        "no preset \"hcsr04\"; expected polaroid-6500, hc-sr04",
+        "module = \"hcsr40\"",
+        "no preset \"hcsr40\"; expected polaroid-6500, hc-sr04",
     ),
 ];
 

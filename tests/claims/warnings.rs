@@ -34,7 +34,7 @@ fn known_dangers_are_said_on_their_pages() {
         assert!(first_lines.contains(said), "docs/how-to/autopilots.md, first lines: {said}");
     }
     let pages: [(&str, &[&str]); 4] = [
-        ("docs/explanation/limits.md", &["can accept distances that are too far", "of the filter alone"]),
+        ("docs/explanation/limits.md", &["can accept a distance that is wrong", "of the filter alone"]),
         ("docs/explanation/flow.md", &["Left to chance", "Tell it the speed"]),
         ("docs/how-to/firmware.md", &["distances that are too far"]),
         ("README.md", &["of robots that stand"]),

@@ -73,8 +73,8 @@ use form::{Form, Packing, UntilError};
 use sink::Sink;
 
 pub use diagnose::{
-    AlignError, Alignment, Diagnosis, FoundPath, Hearing, KeepGoing, Named, Settings, Share, Timing, TimingError, align,
-    diagnose, diagnose_while, timing,
+    AlignError, Alignment, Diagnosis, FoundPath, Hearing, KeepGoing, Named, Settings, Share, Timing, TimingError,
+    align, diagnose, diagnose_while, timing,
 };
 pub use doctor::{Doctor, Examination, Suspect, Verdict};
 pub use firings::{Firing, FiringLog};

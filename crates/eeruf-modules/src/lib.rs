@@ -31,9 +31,9 @@ mod module;
 mod piston;
 mod presets;
 
-pub use aliases::like;
 #[cfg(feature = "sound")]
 pub use air::Air;
+pub use aliases::like;
 #[cfg(feature = "serde")]
 pub use file::{ModuleFile, ModulesFile};
 #[cfg(feature = "sound")]

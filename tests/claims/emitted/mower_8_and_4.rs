@@ -3,8 +3,8 @@ use eeruf_core::{EachSensor, Layout, Micros, Requirements, Uneven, VerifiedSched
 // 12 sensors, T_p = 37 ms; the given neighbours at least 9 ms apart, and what each sensor and pair needs.
 pub const RING: VerifiedSchedule<12, 2, EachSensor<12>> = schedule! {
     period_us: 37_000,
-    t_fire_a_us: [23_900, 14_900, 34_300, 5_900, 25_300, 34_300, 14_900, 5_900, 32_900, 32_900, 36_900, 36_900],
-    t_fire_b_us: [24_900, 33_900, 15_900, 6_300, 33_900, 24_900, 6_900, 15_900, 6_900, 6_900, 2_900, 2_900],
+    t_fire_a_us: [13_000, 22_000, 2_600, 31_000, 11_600, 2_600, 22_000, 31_000, 4_000, 4_000, 0, 0],
+    t_fire_b_us: [12_000, 3_000, 21_000, 30_600, 3_000, 12_000, 30_000, 21_000, 30_000, 30_000, 34_000, 34_000],
     each_meets: Requirements {
         min_interval: Micros::new(9_000),
         layout: Layout::Graph(&[0xfc6, 0x58d, 0x1b, 0x36, 0x6c, 0xd8, 0xb1, 0xa63, 0x403, 0x881, 0x103, 0x281]),

@@ -101,12 +101,18 @@ impl Series {
         is_coarse.then_some(step)
     }
 
-    /// The scatter of the readings about a line through their neighbours, at least half the step of the values.
+    /// The scatter of the readings about a line through their neighbours or the next but one, at least half the step of
+    /// the values. Two sounds that alternate are no scatter.
     pub(crate) fn scatter(&self) -> Scatter {
-        let off = |three: &[f64]| (three[1] - 0.5 * (three[0] + three[2])).abs();
-        let mut off: Vec<f64> = self.echo_us.windows(3).map(off).filter(|us| !us.is_nan()).collect();
+        /// A reading that is farther off, in microseconds, is of another sound.
+        const OTHER_US: f64 = 1000.0;
+        let about = |apart: usize| {
+            let off = |five: &[f64]| (five[2] - 0.5 * (five[2 - apart] + five[2 + apart])).abs();
+            let mut off: Vec<f64> = self.echo_us.windows(5).map(off).filter(|us| *us < OTHER_US).collect();
+            median(&mut off)
+        };
         let step_us = self.step_us().unwrap_or(0.0);
-        Scatter { us: (1.48 / 1.5_f64.sqrt() * median(&mut off)).max(0.5 * step_us), step_us }
+        Scatter { us: (1.48 / 1.5_f64.sqrt() * about(1).min(about(2))).max(0.5 * step_us), step_us }
     }
 
     /// Readings that neither a thing that stands nor one that moves explains.

@@ -46,12 +46,13 @@ fn alternating_lags_show_foreign_sound_standing_and_driving() {
 }
 
 #[test]
-fn robot_that_drives_up_to_a_wall_hears_no_other() {
+fn robot_that_drives_up_to_a_wall_and_back_hears_no_other() {
     // At 1.5 m/s; from one firing to the next it is 57 or 63 ms, so that the echo changes more in one class.
     let at = |round: u64, sensor: usize| 60_000 * round + sensor as u64 * (10_000 + 3000 * (round % 2));
     let found = examine(2, Pattern::Alternating, |round, sensor| {
-        let since_us = at(round, sensor) - 60_000 * (round / 31 * 31);
-        let far_us = 20_000.0 + 130.0 * (round / 31) as f64 - (2.0 * 1.5 / 343.2) * since_us as f64;
+        let since_us = at(round, sensor) % 3_600_000;
+        let driven_us = since_us.min(3_600_000 - since_us);
+        let far_us = 20_000.0 - (2.0 * 1.5 / 343.2) * driven_us as f64;
         (at(round, sensor), Some(far_us + noise(round, sensor)))
     });
     assert_eq!((found.verdict, found.fooled), (Verdict::NoneSeen, vec![]), "{:?}", found.reasons);
@@ -181,7 +182,7 @@ fn scatter_that_hides_the_lags_is_said() {
     let at = |round: u64, sensor: usize| 60_000 * round + sensor as u64 * (10_000 + 300 * (round % 2));
     let with = |times: f64| {
         examine(2, Pattern::Alternating, |round, sensor| {
-            (at(round, sensor), Some(9000.0 + times * noise(round, sensor)))
+            (at(round, sensor), Some(9000.0 + times * noise(round * round, sensor)))
         })
     };
     assert_eq!(with(1.0).verdict, Verdict::NoneSeen);

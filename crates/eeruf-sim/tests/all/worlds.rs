@@ -117,7 +117,9 @@ fn a_window_beyond_the_schedules_own_refire_time_is_refused() {
 fn an_unknown_method_is_answered_with_the_list_of_all() {
     let error = "erruf".parse::<Method>().unwrap_err().to_string();
     assert!(
-        error.starts_with("no method `erruf`; expected simultaneous, sequential, sequential_votes, far_groups"),
+        error.starts_with(
+            "no method `erruf`; expected simultaneous, sequential, sequential_votes, sequential_median, far_groups"
+        ),
         "{error}"
     );
     for method in Method::ALL {

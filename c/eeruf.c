@@ -533,7 +533,7 @@ static OUT_OF_LINE const EerufLimits *limits_of(const EerufSchedule *schedule) {
     return schedule == NULL ? NULL : READ_POINTER(const EerufLimits *, schedule->limits);
 }
 
-/* What answers for limits, so that with rings that have none nothing of it is linked, or asked: null until one that
+/* The answers for limits, so that with rings that have none nothing of it is linked, or asked: null until one that
    has some begins. Its questions, of a sensor and a value; FIRST_TO_CLOSE changes the ring. */
 enum { WINDOW, SHORTEST_WINDOW, T_DELTA, TOGETHER, DEAF, DIFFER, FIRST_TO_CLOSE };
 static uint32_t (*limited)(const EerufRing *ring, uint8_t what, uint8_t x, uint32_t value);

@@ -96,7 +96,7 @@ class Problem:
                     require(min(waits) >= gap, f"sensor {y} fires too soon after sensor {x}")
 
 class Counting:
-    """What counting says of periods below the bound, of which T is the longest: docs/reference/certificate.md."""
+    """The line that counting says of periods below the bound, of which T is the longest: docs/reference/certificate.md."""
     def __init__(self, lines, problem):
         self.problem, self.T, self.lines, G = problem, problem.bound - 1, lines, problem.G
         self.every, self.R, self.refuted = range(len(G)), min(problem.R), False
@@ -193,7 +193,7 @@ class Counting:
                 for steps in range(2 * size + 1)]
 
 def permute(rooms, each, more, alike, moved=()):
-    """Whether some permutation of places moves no more sensors by each distance than there is room for: by each place
+    """True if some permutation of places moves no more sensors by each distance than there is room for: by each place
     so many, of some places one more, and by as many places the same distance and direction."""
     n, moves = len(rooms), Counter(moved)
     places = [moves[c] + moves[-c] * (c > 0) for c in range(n)]

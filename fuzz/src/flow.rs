@@ -1,6 +1,7 @@
 //! Rings that fire in turn against what their documentation promises, in true time:
 //!
-//! - a firing is of an enabled sensor that has rested, in the least quiet, never while the ring is paused; no call leaves
+//! - a firing is of an enabled sensor that has rested, in the least quiet, never while the ring is paused; no call
+//!   leaves
 //!   what is due in the past, and no firing comes late for a caller who polls in time;
 //! - each firing gives one reading, of its own echoes and evidence: nothing is free space without a witness;
 //! - what two readings or votes are believed for, no firings of any sensor explain as one path of sound;
@@ -55,7 +56,7 @@ pub enum Kind {
     },
 }
 
-/// How a judge believes.
+/// Rule of a judge's belief.
 #[derive(Clone, Copy)]
 struct Believes {
     /// Readings that must agree, and of how many.
@@ -152,7 +153,7 @@ struct Model<U, J, const E: usize, const H: usize> {
     enabled: [bool; SENSORS],
     /// The readings of each sensor, newest last.
     heard: [Vec<Heard>; SENSORS],
-    /// Who fired last, and when; and when the ring restarted.
+    /// The last firing, its sensor and its time; and the time of the ring's restart.
     last: Option<(usize, u64)>,
     restarted: u64,
     period: u32,

@@ -56,7 +56,7 @@ pub(crate) struct Args {
 }
 
 impl Args {
-    /// What `eeruf logs` asks for.
+    /// The questions of `eeruf logs`.
     pub(super) fn of(file: &Path, schedule: Option<PathBuf>, json: bool) -> Self {
         Self {
             file: file.to_owned(),

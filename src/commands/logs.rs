@@ -18,9 +18,9 @@ use crate::report::table::markdown;
 
 /// Do the sensors of a log read each other's sound? The answer, whom it concerns, what to do, and why.
 ///
-/// Reads whatever there is, from a file or, by `-`, from a pipe: lines of a serial monitor, tables, JSON, MCAP, ROS 1 and
-/// ROS 2 bags, ArduPilot's .BIN and .tlog, PX4's .ulg, firings of a ring, each also packed by gzip, bzip2 or zstd. What is
-/// guessed is printed with the option that overrides it.
+/// Reads whatever there is, from a file or, by `-`, from a pipe: lines of a serial monitor, tables, JSON, MCAP, ROS 1
+/// and ROS 2 bags, ArduPilot's .BIN and .tlog, PX4's .ulg, firings of a ring, each also packed by gzip, bzip2 or zstd.
+/// What is guessed is printed with the option that overrides it.
 ///
 /// With --schedule the log is one of firings, and its paths and timing are told; --ring-out reads a measuring run, and
 /// --accepted tells what the filter would have made of each reading.
@@ -176,7 +176,7 @@ fn json(report: &Report, sensors: &[Sensor], found: &Examination) -> Value {
     })
 }
 
-/// What was read.
+/// The log as it was read.
 fn describe(file: &Path, report: &Report, sensors: &[Sensor]) -> String {
     let (count, file) = (sensors.len(), file.display());
     let mut text = format!("{file}: {}, {count} sensor{}\n", report.form, if count == 1 { "" } else { "s" });

@@ -152,7 +152,7 @@ pub(crate) enum Verb {
         "0 no sensor is deaf; 1 one is; 2 bad input or a damaged log"
     ))]
     Diagnose(diagnose::Args),
-    #[command(hide = true, after_help = help!("survey survey.csv --ring ring.toml", "0 surveyed; 2 bad input or a damaged log"))]
+    #[command(hide = true, after_help = help!("survey survey.csv --ring ring.toml", "0 surveyed; 2 bad input"))]
     Survey(survey::Args),
     #[command(after_help = help!(
         "experiment set-one --seeds 20 --method sequential,eeruf",

@@ -28,7 +28,8 @@ pub(crate) struct ProgramArgs {
     /// The program's folder; by default one with the ring file's name
     #[arg(long, value_name = "DIR", requires = "program")]
     out: Option<PathBuf>,
-    /// The program's way of firing; by default the one that is recommended, and nothing is judged in rooms if it is given
+    /// The program's way of firing; by default the one that is recommended, and nothing is judged in rooms if it is
+    /// given
     #[arg(long, value_enum, value_name = "WAY", requires = "program")]
     way: Option<Named>,
 }

@@ -62,7 +62,7 @@ pub(crate) struct Args {
 }
 
 impl Args {
-    /// What `eeruf logs` asks for.
+    /// The questions of `eeruf logs`.
     pub(super) fn of(file: &Path, t_delta_us: u32, log: LogArgs, out: Option<PathBuf>, json: bool) -> Self {
         let file = file.to_owned();
         Self { file, t_delta_us, ring: None, consecutive: 2, max_speed: None, log, out, svg: None, json }

@@ -79,7 +79,7 @@ pub(crate) struct Args {
 }
 
 impl Args {
-    /// What `eeruf logs` asks for.
+    /// The questions of `eeruf logs`.
     pub(super) fn of(file: &Path, ring: Option<PathBuf>, json: bool) -> Self {
         Self {
             file: Some(file.to_owned()),

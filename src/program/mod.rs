@@ -192,8 +192,8 @@ fn list(pins: &[u8]) -> String {
 
 const PRINTS: [&str; 3] = [
     "",
-    "Prints the seed of the robot's dice, then for each reading that counts the number of the module and the distance in",
-    "millimetres, or `free`. A module that has neither is not known: it is not free.",
+    "Prints the seed of the robot's dice, then for each reading that counts the number of the module and the distance",
+    "in millimetres, or `free`. A module that has neither is not known: it is not free.",
 ];
 
 fn arduino(wanted: &Wanted<'_>, flow: Option<&FlowDesign>, about: &[String], board: Board, wiring: &Wiring) -> Program {

@@ -66,8 +66,8 @@ fn sketch(pattern: Pattern, is_free: bool, sensor: &str) -> String {
             "in the sketch: believe a range when two in a row agree, as the ring does".to_owned()
         }
         _ => format!(
-            "in the sketch: before the trigger of {sensor}, `delay(round % 2 ? 2 : 0);`, and believe a range when two in \
-             a row agree within 5 cm: another's sound moves by 34 cm from round to round"
+            "in the sketch: before the trigger of {sensor}, `delay(round % 2 ? 2 : 0);`, and believe a range when two \
+             in a row agree within 5 cm: another's sound moves by 34 cm from round to round"
         ),
     }
 }

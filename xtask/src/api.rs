@@ -15,7 +15,7 @@ const CRATES: [&str; 2] = ["eeruf-core", "eeruf-hc-sr04"];
 const RUST: &str = "1.95";
 /// Lists of public items, one file a crate.
 const LISTS: &str = "target/api";
-/// What tries a ring's methods.
+/// Models that try a ring's methods.
 const MODELS: &str = "fuzz/src/ring/model.rs fuzz/src/ring.rs fuzz/src/flow.rs \
                       crates/eeruf-core/tests/all/flow/world.rs crates/eeruf-core/tests/all/sound/world.rs";
 /// The most names that a reader of `eeruf-core`'s first page may have to choose from.

@@ -75,7 +75,8 @@ enum Verb {
         #[arg(value_name = "DIR")]
         folder: std::path::PathBuf,
     },
-    /// Build what `eeruf design --program` writes in each language, and run it to what it accepts, on a simulated Uno too
+    /// Build what `eeruf design --program` writes in each language, and run it to what it accepts, on a simulated Uno
+    /// too
     Programs,
     /// Build the wheel and test it: types, examples, and against what Rust says
     Python,

@@ -108,8 +108,8 @@ impl RingSpec {
             let near = |x: usize| set(first).find(|&y| y > x && layout.neighbours(sensors, x, y)).map(|y| (x, y));
             if let Some((x, y)) = set(first).find_map(near) {
                 return Err(format!(
-                    "groups: sensors {x} and {y} are neighbours; expected a ring whose {sensors} sensors are a multiple \
-                     of {apart} neighbours, or a line"
+                    "groups: sensors {x} and {y} are neighbours; expected a line, or a ring whose {sensors} sensors \
+                     are a multiple of {apart}"
                 ));
             }
         }

@@ -126,7 +126,7 @@ fn in_value(key: &str, at: usize, value: &Spanned<DeValue<'_>>, found: &mut Vec<
             found.extend(eeruf_modules::like(name).map(taken));
         }
         DeValue::Array(array) if MODULES.contains(&key) => {
-            array.iter().for_each(|value| in_value(key, at, value, found))
+            array.iter().for_each(|value| in_value(key, at, value, found));
         }
         DeValue::Array(array) => {
             array.iter().filter_map(|value| value.get_ref().as_table()).for_each(|table| in_table(table, found));

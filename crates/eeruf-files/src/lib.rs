@@ -2,8 +2,8 @@
 //!
 //! The program, the libraries and the Python package report errors in files by the one type [`FileError`]. [`Kind`]
 //! recognises a file before it is parsed; with the feature `toml`, `parse` reads TOML, `doubts_in` finds values in it
-//! that are legal and implausible, `ScheduleFile` is a schedule in a file and `RobotRing` what a scene takes from a ring
-//! file; with `emit`, the module `emit` writes a ring as source text for firmware.
+//! that are legal and implausible, `ScheduleFile` is a schedule in a file and `RobotRing` what a scene takes from a
+//! ring file; with `emit`, the module `emit` writes a ring as source text for firmware.
 
 #[cfg(feature = "emit")]
 pub mod emit;

@@ -41,8 +41,8 @@ impl Lines for High {
     fn trigger(&mut self, _sensor: u8) {}
 }
 
-/// Of firings at a wall, and of others, how many there were and how many were told right; and after how many firings the
-/// last sensor was first clear.
+/// Of firings at a wall, and of others, how many there were and how many were told right; and after how many firings
+/// the last sensor was first clear.
 #[derive(Default)]
 struct Seen {
     walls: [u32; 2],

@@ -1,6 +1,6 @@
 //! The words for what strikes about one sensor: of `eeruf logs`, of a ring's own log, and in Python.
 
-/// What strikes about one sensor.
+/// Symptoms of one sensor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Symptom {
@@ -42,6 +42,6 @@ pub struct Finding {
     pub sensor: usize,
     /// The symptom.
     pub symptom: Symptom,
-    /// What speaks for it, with figures.
+    /// The evidence for it, with figures.
     pub said: String,
 }

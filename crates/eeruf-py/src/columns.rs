@@ -38,7 +38,7 @@ impl<const N: usize> Columns<N> {
     }
 }
 
-/// What the codes of an array stand for.
+/// Meanings of the codes of an array.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Codes {
     Kinds,

@@ -79,7 +79,7 @@ pub(crate) struct Simulation {
     history: Mutex<History>,
 }
 
-/// What was done, in order.
+/// Actions so far, in order.
 #[derive(Default)]
 struct History {
     /// Shared with copies.

@@ -42,7 +42,7 @@ impl Heard {
     }
 }
 
-/// What the driver said of a firing.
+/// Word of the driver on a firing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Evidence {
     Listened,
@@ -284,13 +284,13 @@ impl Sensor {
     }
 }
 
-/// What drivers have handed in.
+/// Reports of drivers.
 pub(crate) struct Lines {
     pub(crate) now: u64,
     pub(crate) sensors: [Sensor; SENSORS],
     /// Readings of this period.
     pub(crate) tally: Tally<u8>,
-    /// What was heard need not be told before.
+    /// Sound that was heard need not be told before.
     pub(crate) settled: u64,
     pub(crate) silence: Silence,
 }

@@ -6,7 +6,7 @@ use eeruf_sim::{Entry, LabMate, Method};
 
 use super::{Asked, Cell, Table, flow, usual};
 
-/// What may be chosen: what the map gets, for how long sensors listen, and the least quiet.
+/// Choices: what the map gets, for how long sensors listen, and the least quiet.
 fn candidates() -> Vec<Entry> {
     let ms = |time: u32| Some(Micros::from_millis(time));
     let mut entries = vec![Entry::from(Method::Flow)];

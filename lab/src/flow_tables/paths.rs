@@ -110,7 +110,7 @@ impl Sound {
     }
 }
 
-/// By how much a good reading may change in a millisecond, in us, and the speed at which it does, in mm/s.
+/// Change that a good reading may make in a millisecond, in us, and the speed at which it does, in mm/s.
 const RATES: [(f64, u16); 5] = [(0.0, 0), (1.0, 170), (2.0, 340), (3.0, 500), (6.0, 1_000)];
 
 fn config() -> RingConfig {
@@ -176,7 +176,8 @@ pub(super) fn table(asked: &Asked) -> Result<Table, Box<dyn std::error::Error>> 
 /// When its wall goes, in us.
 const GOES: u64 = 3_000_000;
 
-/// How far readings that fit lead the belief of sensor 0 after its wall has gone, in mm, and for how long, in ms.
+/// Distance over which readings that fit lead the belief of sensor 0 after its wall has gone, in mm, and for how long,
+/// in ms.
 fn lead(number: u64, rate: f64, speed: u16) -> Result<Option<[f64; 2]>, RingError> {
     let random = Random::new(number);
     let sound = Sound::random(&mut random.of(1), 3, rate, GOES);

@@ -13,8 +13,9 @@ pub use ring::SENSORS;
 /// Edges of the echo lines: the interrupt of any change pushes sensor, level and instant.
 pub static EDGES: EdgeQueue<32> = EdgeQueue::new();
 
-/// The ring on its pins. `poll(now)` fires what is due and returns readings; `next_deadline()` says until when to sleep;
-/// `moving(speed_mm_s, turn_mrad_s, now)`, once a control cycle, how the robot moves, else the ring file's speed counts.
+/// The ring on its pins. `poll(now)` fires what is due and returns readings; `next_deadline()` says until when to
+/// sleep; `moving(speed_mm_s, turn_mrad_s, now)`, once a control cycle, how the robot moves, else the ring file's speed
+/// counts.
 pub type Sonar<T, I, D> = HcSr04Ring<@ring@, T, I, D, SENSORS, &'static EdgeQueue<32>>;
 
 /// Begins. The seed is the chip's number, or another that each robot has of its own, not 0.

@@ -4,22 +4,22 @@
 #include "eeruf.h"
 #include "ring.h"
 
-/* What the board does: */
+/* Written by you, for the board: */
 
 /* A clock in microseconds that runs on and wraps at 32 bits. */
 uint32_t board_micros(void);
-/* Whether the echo line of a module, from 0, is high. */
+/* True if the echo line of a module, from 0, is high. */
 bool board_line_is_high(uint8_t sensor);
-/* A pulse of so many microseconds on the trigger of a module. */
+/* A pulse of this many microseconds on the trigger of a module. */
 void board_trigger(uint8_t sensor, uint16_t us);
 
-/* What it calls: */
+/* Called by you: */
 
 /* Begins. The seed is the chip's number, or another that each robot has of its own, not 0. EERUF_OK, or what is wrong. */
 EerufStatus sonar_begin(uint32_t seed);
 /* From the interrupt of any change of an echo line. */
 void sonar_edge(uint8_t sensor, bool high);
-/* How fast the robot moves, in mm/s, and turns, in mrad/s: once a control cycle. Else the ring file's speed counts. */
+/* Says how fast the robot moves, in mm/s, and turns, in mrad/s: once a control cycle. Else the ring file's speed counts. */
 void sonar_moving(uint32_t speed_mm_s, uint32_t turn_mrad_s);
 /* As often as you can: fires what is due. True with a reading: EERUF_READING_ACCEPTED is a distance
    (eeruf_distance_mm), EERUF_READING_CLEAR free space, all else no news. */

@@ -69,8 +69,8 @@ fn head(found: &Found<'_>) -> String {
     if found.tolerance_us > 120 {
         _ = writeln!(
             text,
-            "Readings scatter, and what differs by less than {} us is taken for the same: lags that move in smaller steps \
-             tell no sender.",
+            "Readings scatter, and what differs by less than {} us is taken for the same: lags that move in smaller \
+             steps tell no sender.",
             2 * found.tolerance_us
         );
     }

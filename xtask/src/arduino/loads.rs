@@ -113,7 +113,7 @@ impl Load {
         if up_to(5) == 0 { load(1_000 * work_us.div_ceil(1_000), 0, 0.0) } else { load(work_us, every_us, 0.0) }
     }
 
-    /// What is not as promised of a ring's figures.
+    /// Figures of a ring that are not as promised.
     fn broken(&self, heard: &UnderLoad, polled: bool, compared: bool, own_walls: bool) -> Vec<String> {
         let UnderLoad { right, wrong, accepted_percent, starved, slow_ms, .. } = *heard;
         let most = self.most[usize::from(!polled)];

@@ -1,6 +1,6 @@
-//! `cargo xtask programs`: what `eeruf design --program` writes, built as whoever asked for it would, and run to what it
-//! accepts: on modules that are each before a wall of their own, and sketches also in an alcove where modules hear each
-//! other.
+//! `cargo xtask programs`: what `eeruf design --program` writes, built as whoever asked for it would, and run to what
+//! it accepts: on modules that are each before a wall of their own, and sketches also in an alcove where modules hear
+//! each other.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;

@@ -76,7 +76,7 @@ pub struct Suspect {
     pub sensor: usize,
     /// The sensor whose sound it may read, if the log says that.
     pub by: Option<usize>,
-    /// What speaks for it.
+    /// The evidence for it.
     pub reason: String,
     /// The test that decides.
     pub test: String,
@@ -406,8 +406,8 @@ impl Doctor {
 
     /// No sound of another sensor is left when a sensor listens.
     fn in_turn(&self, firing: &FiringPattern) -> Examination {
-        /// Fewer rounds would not show seldom crosstalk; and of a robot that drives no jump of 30 cm may be left open, in
-        /// as large a share of all readings.
+        /// Fewer rounds would not show seldom crosstalk; and of a robot that drives no jump of 30 cm may be left open,
+        /// in as large a share of all readings.
         const ROUNDS: usize = 100;
         const JUMPS: f64 = 0.0015;
         let gap_us = firing.gap_us.unwrap_or(0);

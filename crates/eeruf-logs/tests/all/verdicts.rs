@@ -10,9 +10,11 @@ use crate::worlds::{Healthy, blocking_loop, free_running, healthy};
 /// Counts over logs.
 #[derive(Debug, Default)]
 pub(crate) struct Counts {
-    /// Free-running logs with 5 % wrong readings and more: all, called none seen, and with a suspect or a fooled sensor.
+    /// Free-running logs with 5 % wrong readings and more: all, called none seen, and with a suspect or a fooled
+    /// sensor.
     pub(crate) free: [usize; 3],
-    /// Pairs that fool in 60 % of the rounds of a blocking loop: all, named with the test, and named where nobody fools.
+    /// Pairs that fool in 60 % of the rounds of a blocking loop: all, named with the test, and named where nobody
+    /// fools.
     pub(crate) pairs: [usize; 3],
     /// Healthy logs: all, blamed, and with a suspect where nothing chatters.
     pub(crate) healthy: [usize; 3],

@@ -63,7 +63,7 @@ fn own(random: &mut Random, rounds: usize, step_s: f64, stands: bool) -> Vec<f64
     (0..rounds).map(|_| next()).collect()
 }
 
-/// How readings are printed: with 12 us of scatter, and every third log in whole centimetres.
+/// Readings as they are printed: with 12 us of scatter, and every third log in whole centimetres.
 struct Printed(bool);
 
 impl Printed {
@@ -84,8 +84,8 @@ fn chatters(random: &mut Random, sensors: usize, chatters: bool) -> (usize, f64)
     (if chatters { sensor } else { usize::MAX }, share)
 }
 
-/// Four modules that measure by themselves, each by its own clock, read in turn every 40 ms, every second robot driving;
-/// with or without paths between them.
+/// Four modules that measure by themselves, each by its own clock, read in turn every 40 ms, every second robot
+/// driving; with or without paths between them.
 pub(crate) fn free_running(seed: u64, crosstalk: bool, chatter: bool) -> Log {
     const ROUNDS: usize = 1000;
     const MODULES: usize = 4;

@@ -25,12 +25,12 @@ use crate::engine::counting::{Even, members};
 /// between by one, in both phases alike.) So c of sensor x depends on `x mod n` alone: *one* permutation for all, and
 /// each of its places needs room for `K / n` sensors, those of the first `K mod n` for one more.
 ///
-/// **Ring**, `K >= 2 n`. The same goes all round, so c depends on `x mod g`, the greatest common divisor of K and n, and
-/// each c is that of a multiple of `n / g` places. Let x and y conflict, x before y in phase b
-/// and behind it in a: `a_x - a_y >= (p_x - p_y) I` and `b_y - b_x >= (q_y - q_x) I`, so `e = d - c I` is no smaller
-/// for x than for y. If `c_x > 0`, somebody in each clique is overtaken so; there is one on either side of x, n sensors
-/// apart and so of one class, and their e differ by D. Hence `e_x >= -sigma + D`, and likewise `e_x <= sigma - D` if
-/// `c_x < 0`: in terms of `|d|` every class but 0 loses D at the lower end.
+/// **Ring**, `K >= 2 n`. The same goes all round, so c depends on `x mod g`, the greatest common divisor of K and n,
+/// and each c is that of a multiple of `n / g` places. Let x and y conflict, x before y in phase b and behind it in a:
+/// `a_x - a_y >= (p_x - p_y) I` and `b_y - b_x >= (q_y - q_x) I`, so `e = d - c I` is no smaller for x than for y. If
+/// `c_x > 0`, somebody in each clique is overtaken so; there is one on either side of x, n sensors apart and so of one
+/// class, and their e differ by D. Hence `e_x >= -sigma + D`, and likewise `e_x <= sigma - D` if `c_x < 0`: in terms of
+/// `|d|` every class but 0 loses D at the lower end.
 ///
 /// **Ring of `K = 2 n`.** Every sensor conflicts with all but the one opposite, and both fire in the same 2 n places of
 /// two periods, of which each takes as long as its two firings are apart. The time from one firing to the next is
@@ -117,7 +117,7 @@ impl Classes {
     }
 }
 
-/// Who shares a place's move: `each` sensors or, of `more` places, one more; and in a ring `alike` places.
+/// The sensors that share a place's move: `each` sensors or, of `more` places, one more; and in a ring `alike` places.
 struct Moves {
     each: i32,
     more: i32,

@@ -54,9 +54,9 @@ fn cliques(merged: &Merged) -> Vec<u64> {
     (0..count).map(from).collect()
 }
 
-/// **One by one.** In two periods each sensor of a clique fires twice. After each firing of x the next one of the clique
-/// comes no sooner than the smallest gap after x, or, if it is x again, than its window: that is only where a phase
-/// ends, twice in two periods.
+/// **One by one.** In two periods each sensor of a clique fires twice. After each firing of x the next one of the
+/// clique comes no sooner than the smallest gap after x, or, if it is x again, than its window: that is only where a
+/// phase ends, twice in two periods.
 fn one_by_one(merged: &Merged, clique: u64) -> u32 {
     let least = |x: usize| members(clique).filter(|&y| y != x).map(|y| merged.gap[x][y]).min();
     let least = |x: usize| least(x).unwrap_or(merged.window[x]);
@@ -64,7 +64,7 @@ fn one_by_one(merged: &Merged, clique: u64) -> u32 {
     (members(clique).map(least).sum::<i32>() - again.unwrap_or(0)) as u32
 }
 
-/// What a certificate says about counting: the checker verifies that it excludes a period.
+/// The line of a certificate about counting: the checker verifies that it excludes a period.
 #[derive(Clone, Debug)]
 pub(crate) enum Argument {
     /// The |d| in ascending order.
@@ -182,7 +182,8 @@ pub(crate) enum Bound {
     Clique { sensors: u32, interval: u32, own: u32 },
     /// At most this many sensors can keep their interval at the same time, and `own` after their second firing.
     Density { sensors: u32, at_once: u32, interval: u32, own: u32 },
-    /// At most this many sensors can keep their interval at the same time, and too few `|d|` fit into the time that leaves.
+    /// At most this many sensors can keep their interval at the same time, and too few `|d|` fit into the time that
+    /// leaves.
     Places { sensors: u32, at_once: u32, interval: u32, separation: u32, period: u32 },
     /// Sensors that all have gaps to each other fire one after the other, and too few `|d|` fit into the little time
     /// that leaves.

@@ -49,7 +49,7 @@ impl Pace {
         Self { sensors: sensors as i32, at_once, interval, period }
     }
 
-    /// The least time from a firing to the one that comes so many steps later: `at_once` steps take an interval, also
+    /// The least time from a firing to the one that comes this many steps later: `at_once` steps take an interval, also
     /// if they go round two periods some times more.
     pub(crate) fn least(&self, steps: i32) -> i32 {
         let round =

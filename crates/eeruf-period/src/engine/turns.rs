@@ -6,7 +6,7 @@ use crate::engine::problem::Merged;
 use crate::engine::sets::{Pace, cover, interval_of};
 use crate::engine::state::{State, event};
 
-/// A set of sensors, and the least time from a firing of theirs to the one so many steps later.
+/// A set of sensors, and the least time from a firing of theirs to the one a number of steps later.
 #[derive(Clone, Debug)]
 struct Set {
     members: u64,

@@ -1,4 +1,4 @@
-//! What a row of the table of firing methods has: a description, a name, its firing, its judge, the number of echoes,
+//! A row of the table of firing methods: a description, a name, its firing, its judge, the number of echoes,
 //! and whether it adapts.
 
 use core::fmt;
@@ -44,7 +44,10 @@ pub(super) const DEFAULT: Row = Row {
 
 /// Makes the enum, its list and its rows from the table, and the modules of ways in files of their own.
 macro_rules! methods {
-    ($( $(#[doc = $about:literal])+ $method:ident = $name:literal $(in $file:ident)? { $($field:ident: $value:expr,)* } )+) => {
+    ($(
+        $(#[doc = $about:literal])+
+        $method:ident = $name:literal $(in $file:ident)? { $($field:ident: $value:expr,)* }
+    )+) => {
         $( $( mod $file; )? )+
 
         /// A way to fire a ring and to decide what to believe.

@@ -2,8 +2,8 @@
 //! each. It uses `world` for the robots that fire.
 //!
 //! To add a method, add a row to the table below. A new way of firing is a [`Way`](ring_runner::Way) in a file of its
-//! own, which its row names: `Gap = "gap" in gap { firing: gap::WAY, }`. Help, Python's types, the page and the tests take
-//! the names from here.
+//! own, which its row names: `Gap = "gap" in gap { firing: gap::WAY, }`. Help, Python's types, the page and the tests
+//! take the names from here.
 
 mod adaptive;
 mod best_schedule;

@@ -7,7 +7,7 @@ use toml::{Spanned, Table, Value};
 use super::source::Source;
 use crate::world::fault::{Fault, FaultKind};
 
-/// What is written for a fault of any kind; [`FaultKind`] has what each kind needs of it.
+/// Keys of a fault of any kind; [`FaultKind`] has what each kind needs of it.
 #[derive(Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct FaultFile {

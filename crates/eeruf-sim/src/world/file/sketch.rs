@@ -96,7 +96,7 @@ impl Sketch {
 }
 
 impl From<&Sketch> for SketchFile {
-    /// What differs from the default.
+    /// Differences from the default.
     fn from(sketch: &Sketch) -> Self {
         let default = Sketch::default();
         let above_zero = |time: Micros| (time != Micros::ZERO).then_some(time);

@@ -55,7 +55,7 @@ pub fn world_file(
     file.to_string()
 }
 
-/// What stands in no text yet.
+/// Things that stand in no text yet.
 fn nowhere<T>(of: T) -> Spanned<T> {
     Spanned::new(0..0, of)
 }

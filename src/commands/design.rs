@@ -21,7 +21,7 @@ use super::{Answer, show};
 use crate::console::{print, print_line, tell};
 use crate::files::error::InputError;
 use crate::files::ring::read_ring;
-use crate::program::flow_source;
+use crate::program::{flow_source, wrapped};
 use crate::report::design::describe;
 use crate::report::draw;
 use crate::report::json::to_json;
@@ -247,7 +247,9 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
                 Some(Ok(Some(judged))) if let Some(way) = settings(judged) => {
                     let flow =
                         design.spec.fired(way, &judged.robot, 1).map_err(|why| InputError::new(&args.file, why))?;
-                    form.comment(&way.in_words(&flow.turns)) + &flow_source(&design.spec, form, &flow)
+                    let words = wrapped(&way.in_words(&flow.turns));
+                    let comment: String = words.iter().map(|line| form.comment(line)).collect();
+                    comment + &flow_source(&design.spec, form, &flow)
                 }
                 Some(Err(why)) => form.comment(&format!("Not judged in rooms: {why}")) + &table(),
                 _ => table(),

@@ -164,7 +164,7 @@ pub(crate) fn flow_source(spec: &RingSpec, form: Form, flow: &FlowDesign) -> Str
 }
 
 /// Lines of no more than 110 characters.
-fn wrapped(text: &str) -> Vec<String> {
+pub(crate) fn wrapped(text: &str) -> Vec<String> {
     let mut lines = vec![String::new()];
     for word in text.split(' ') {
         match lines.last_mut() {

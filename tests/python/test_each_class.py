@@ -31,7 +31,7 @@ def each() -> dict[str, Any]:
     events = [event for _ in range(60) if (event := ring.poll(ring.next_deadline_us)) is not None]
     waits = eeruf.WaitSearch(4, 40_000, 8_000, 1_000, t_delta_us=999)
     readings = sim.simulate(ROOM, periods=20)
-    two = ["eeruf", "conventional"]
+    two: list[Any] = ["eeruf", "conventional"]
     set_one, set_two = experiments.set_one(2, readings=400, methods=two), experiments.set_two(1, methods=["eeruf"])
     set_three = experiments.set_three(2, methods=["eeruf"])
     speeds = experiments.speed_sweep([0.75], seeds=1, methods=["eeruf"])

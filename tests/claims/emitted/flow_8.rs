@@ -1,6 +1,6 @@
-// flow: one after the other, with 6.028 ms to 33.159 ms of quiet, as each has needed; what fits what is believed, or
-// agrees twice and no firing explains, is believed Sensors 0 to 7: hc-sr04, pulse_width, trigger 10 us, rest 60000 us,
-// held 38000 us without an echo
+// flow: one after the other, with 6.028 ms to 33.159 ms of quiet, as each has needed; what fits what is
+// believed, or agrees twice and no firing explains, is believed
+// Sensors 0 to 7: hc-sr04, pulse_width, trigger 10 us, rest 60000 us, held 38000 us without an echo
 use eeruf_core::flow::{BeliefSettings, TurnSettings};
 use eeruf_core::{Micros, RingConfig};
 

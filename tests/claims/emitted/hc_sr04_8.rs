@@ -1,8 +1,7 @@
 // Sensors 0 to 7: hc-sr04, pulse_width, trigger 10 us, rest 60000 us, held 38000 us without an echo
 use eeruf_core::{Layout, Micros, Requirements, VerifiedSchedule, schedule};
 
-// 8 sensors, T_p = 67.5 ms; t_delta = 319 us, 4 adjacent sensors of a ring at least 14.569 ms apart, listening for 60
-// ms.
+// 8 sensors, T_p = 67.5 ms; t_delta = 319 us, 4 adjacent sensors of a ring at least 14.569 ms apart, listening for 60 ms.
 pub const RING: VerifiedSchedule<8> = schedule! {
     period_us: 67_500,
     t_fire_a_us: [500, 17_500, 34_500, 51_500, 1_500, 18_500, 35_500, 52_500],

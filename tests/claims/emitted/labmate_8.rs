@@ -1,7 +1,6 @@
 use eeruf_core::{Layout, Micros, Requirements, VerifiedSchedule, schedule};
 
-// 8 sensors, T_p = 48.3 ms; t_delta = 487 us, 4 adjacent sensors of a line at least 11.655 ms apart, listening for
-// 23.31 ms.
+// 8 sensors, T_p = 48.3 ms; t_delta = 487 us, 4 adjacent sensors of a line at least 11.655 ms apart, listening for 23.31 ms.
 pub const RING: VerifiedSchedule<8> = schedule! {
     period_us: 48_300,
     t_fire_a_us: [36_600, 500, 24_900, 13_200, 36_600, 1_500, 24_900, 13_200],

@@ -15,7 +15,7 @@ const FLOW_INSTRUCTIONS: [(&str, u32); 3] = [("fire", 333), ("reading_moving", 2
 const FLOW: [&str; 2] = ["flow-instructions", "size-flow-12"];
 /// Compilers differ: only more than the budget and this part of it fails.
 const LEEWAY: f64 = 0.05;
-const FLASH: u64 = 5476;
+const FLASH: u64 = 5480;
 const RAM: u64 = 12 * 32 + 92;
 const STACK: u64 = 624;
 

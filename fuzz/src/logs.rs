@@ -6,7 +6,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
-use eeruf_logs::{Echo, FiringLog, Options, RangeUnit, Report, Table, TimeUnit, read_log, read_text};
+use eeruf_logs::{Echo, FiringLog, Options, RangeUnit, Report, Table, TimeUnit, read_log, read_stream};
 
 use crate::one_line;
 
@@ -101,7 +101,7 @@ pub fn tables(bytes: &[u8]) {
 
 fn rows(bytes: &[u8], file: &Path, options: &Options) {
     let mut readings = vec![];
-    match read_text(bytes, file, options, |_, reading| readings.push(*reading)) {
+    match read_stream(bytes, file, options, |_, reading| readings.push(*reading)) {
         Ok(report) => {
             let sensors = report.sensors.len();
             let mut of = vec![0; sensors];

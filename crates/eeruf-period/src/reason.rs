@@ -64,8 +64,8 @@ fn by_counting(bound: Bound, time: &dyn Fn(u32) -> Micros) -> String {
         ),
         Bound::Places { sensors, at_once, interval, separation, .. } => format!(
             "interval and separation together: at most {at_once} of {sensors} sensors can fire within the same {}, \
-             which leaves too little time to tell {sensors} refire times {} apart, and takes {period}; a shorter interval, \
-             a smaller separation or fewer neighbours would help",
+             which leaves too little time to tell {sensors} refire times {} apart, and takes {period}; a shorter \
+             interval, a smaller separation or fewer neighbours would help",
             time(interval),
             time(separation)
         ),

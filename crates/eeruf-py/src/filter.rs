@@ -49,7 +49,7 @@ pub(crate) struct EchoFilter {
     echoes: usize,
 }
 
-/// So many rows go by between two looks for Ctrl-C.
+/// Number of rows between two looks for Ctrl-C.
 const ROWS_A_LOOK: usize = 4096;
 
 /// For sensors that report one echo, which is smaller and faster, or several.

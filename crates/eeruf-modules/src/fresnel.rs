@@ -49,7 +49,7 @@ fn polynomial(terms: &[f64], at: f64) -> f64 {
 /// C(x) + i S(x) = integral of exp(i pi t^2 / 2) from 0 to x
 /// ```
 ///
-/// With `z = pi x^2 / 2` by their power series in `z` (DLMF 7.6.4 and 7.6.6), or from [`FAR`] on by `f` and `g`
+/// With `z = pi x^2 / 2` by their power series in `z` (DLMF 7.6.4 and 7.6.6), or from `FAR` on by `f` and `g`
 /// (DLMF 7.5.3 and 7.5.4) and their asymptotic series in `1 / (2 z)` (DLMF 7.12.2 and 7.12.3). The error is below 2e-7.
 pub fn fresnel(x: f64) -> [f64; 2] {
     if x == f64::INFINITY {

@@ -1,7 +1,7 @@
 //! The firing methods that are compared: one table of them, the schedules that they fire by, and core's ring behind
 //! each. It uses `world` for the robots that fire.
 //!
-//! To add a method, add a row to the table below. A new way of firing is a [`Way`](ring_runner::Way) in a file of its
+//! To add a method, add a row to the table below. A new way of firing is a `Way` of `ring_runner` in a file of its
 //! own, which its row names: `Gap = "gap" in gap { firing: gap::WAY, }`. Help, Python's types, the page and the tests
 //! take the names from here.
 
@@ -56,7 +56,7 @@ methods! {
     /// `min_refire`. Consecutive readings are compared.
     EerufImmediate = "eeruf_immediate" { firing: Way::IMMEDIATE, }
     /// Scheduled firing (Fig. 3) by the robot's own schedule, or else by the paper's table at the robot's period (see
-    /// [`table_i_d_for`](crate::table_i_d_for)). Consecutive readings are compared.
+    /// [`table_i_d_for`]). Consecutive readings are compared.
     Eeruf = "eeruf" { }
     /// As [`eeruf`](Self::Eeruf), by the best schedule that is known for the ring. The caller puts it in
     /// [`Options::best`](crate::Options::best).

@@ -157,7 +157,7 @@ class Counting:
 
     def cliques(self, cliques):
         """Returns the sets of which it is known how many fire within a time: their members, and the least time from a
-        firing of theirs to the one so many steps later."""
+        firing of theirs to the one a number of steps later."""
         problem, T, sets, gaps = self.problem, self.T, [], {}
         for clique in cliques:
             gap = {x: min(problem.G[x][y] for y in clique if y != x) for x in clique if len(clique) > 1}
@@ -187,14 +187,14 @@ class Counting:
         return [(members, least)] + [(clique, self.pace(clique, 1, gaps[clique])) for clique in whole]
 
     def pace(self, members, at_once, gap):
-        """At most so many firings in a row lie within a gap: so many steps take one, and so do more turns of 2 T."""
+        """At most this many firings in a row lie within a gap: as many steps take one, and so do more turns of 2 T."""
         size, gap = len(members), min(gap, *(self.problem.R[x] for x in members))
         return [max(gap * ((steps + 2 * size * turns) // at_once) - 2 * self.T * turns for turns in range(at_once))
                 for steps in range(2 * size + 1)]
 
 def permute(rooms, each, more, alike, moved=()):
     """True if some permutation of places moves no more sensors by each distance than there is room for: by each place
-    so many, of some places one more, and by as many places the same distance and direction."""
+    as many, of some places one more, and by as many places the same distance and direction."""
     n, moves = len(rooms), Counter(moved)
     places = [moves[c] + moves[-c] * (c > 0) for c in range(n)]
     if any(count > room // each * alike for count, room in zip(places, rooms)):

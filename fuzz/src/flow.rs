@@ -1,8 +1,7 @@
 //! Rings that fire in turn against what their documentation promises, in true time:
 //!
 //! - a firing is of an enabled sensor that has rested, in the least quiet, never while the ring is paused; no call
-//!   leaves
-//!   what is due in the past, and no firing comes late for a caller who polls in time;
+//!   leaves what is due in the past, and no firing comes late for a caller who polls in time;
 //! - each firing gives one reading, of its own echoes and evidence: nothing is free space without a witness;
 //! - what two readings or votes are believed for, no firings of any sensor explain as one path of sound;
 //! - counts go on one by one, and the ring never falls silent.

@@ -35,9 +35,10 @@ use crate::report::watch::Watch;
 /// rooms of eight kinds, standing or --driving. The way recommended is right most of the time among those that keep
 /// foreign sound below --wrong and leave no sensor blind. The answer lists what it depends on.
 ///
-/// --emit rust, c and arduino write the settings of a flow ring where that is the way recommended, else the shortest
-/// schedule of two phases, as --period-only and --emit toml always do. Among schedules of one period it prefers a
-/// larger T_delta, then a larger smallest interval, then evener firing.
+/// --program writes a folder that builds, and --emit rust, c and arduino the settings alone, for the best way of those
+/// that a program can have: one by one, groups, two phases, flow. --period-only and --emit toml write the shortest
+/// schedule of two phases. Among schedules of one period it prefers a larger T_delta, then a larger smallest interval,
+/// then evener firing.
 ///
 /// Four lines are enough for a ring file: sensors, module, layout and speed_m_s. The sensors' places (spacing_deg and
 /// radius_m, or poses, or urdf and links) make the answer the robot's own. Instead of the module it may give times

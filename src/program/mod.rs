@@ -190,15 +190,25 @@ fn list(pins: &[u8]) -> String {
     pins.iter().map(u8::to_string).collect::<Vec<_>>().join(", ")
 }
 
-const PRINTS: [&str; 3] = [
-    "",
-    "Prints the seed of the robot's dice, then for each reading that counts the number of the module and the distance",
-    "in millimetres, or `free`. A module that has neither is not known: it is not free.",
-];
+/// The first lines of a program that prints.
+fn printing(about: &[String], has_dice: bool) -> Vec<String> {
+    let seed = if has_dice { "the seed of the robot's dice, then " } else { "" };
+    let prints = format!(
+        "Prints {seed}for each reading that counts the number of the module and the distance in millimetres, or \
+         `free`. A module that has neither is not known: it is not free."
+    );
+    [about, &[String::new()], &wrapped(&prints)].concat()
+}
+
+/// The lines of a template that a ring by flow has, or one by a table.
+fn lines_of(template: &str, flows: bool) -> String {
+    let (ours, others) = if flows { ("  //@flow", "  //@table") } else { ("  //@table", "  //@flow") };
+    let kept = template.lines().filter(|line| !line.ends_with(others));
+    kept.map(|line| line.trim_end_matches(ours).to_owned() + "\n").collect()
+}
 
 fn arduino(wanted: &Wanted<'_>, flow: Option<&FlowDesign>, about: &[String], board: Board, wiring: &Wiring) -> Program {
-    let template =
-        if flow.is_some() { include_str!("templates/flow.ino") } else { include_str!("templates/table.ino") };
+    let template = lines_of(include_str!("templates/sketch.ino"), flow.is_some());
     let Wiring { triggers, echoes } = wiring;
     let pins = |name, pins| format!("const uint8_t {name}[] = {{{}}};", list(pins));
     let (pins, given) = if triggers == echoes {
@@ -208,8 +218,7 @@ fn arduino(wanted: &Wanted<'_>, flow: Option<&FlowDesign>, about: &[String], boa
     };
     let sensors = triggers.len().to_string();
     let values = [("pins", &*pins), ("given", given), ("sensors", &sensors), ("noise", board.open_pin())];
-    let about = [about, &PRINTS.map(str::to_owned)].concat();
-    let sketch = comments(&about, "//") + &filled(template, &values);
+    let sketch = comments(&printing(about, flow.is_some()), "//") + &filled(&template, &values);
     let tab = wanted.source(Form::Arduino, flow).replace("<EerufArduino.h>", "\"src/eeruf/EerufArduino.h\"");
     let library = C_LIBRARY.into_iter().chain(ARDUINO_LIBRARY);
     let mut files = vec![(format!("{}.ino", wanted.name), sketch), ("ring.h".to_owned(), tab)];
@@ -275,8 +284,7 @@ fn micropython(
     ]);
     let values: Vec<_> = values.iter().map(|(name, value)| (*name, &**value)).collect();
     let template = include_str!("templates/main.py").replace("import ACCEPTED,", &format!("import ACCEPTED, {votes},"));
-    let about = [about, &PRINTS.map(str::to_owned)].concat();
-    let main = comments(&about, "#") + &filled(&template, &values);
+    let main = comments(&printing(about, true), "#") + &filled(&template, &values);
     let files = vec![
         ("main.py".to_owned(), main),
         ("eeruf.py".to_owned(), include_str!("../../c/micropython/eeruf.py").to_owned()),

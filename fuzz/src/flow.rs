@@ -40,7 +40,7 @@ pub struct Input {
 #[derive(Arbitrary, Debug)]
 pub enum Kind {
     Plain,
-    /// Of three echoes a firing.
+    /// Rings that take three echoes a firing.
     Echoes,
     /// Some fire together, some share an echo line.
     Uneven {
@@ -61,7 +61,7 @@ struct Believes {
     /// Readings that must agree, and of how many.
     m: usize,
     n: usize,
-    /// Of a reading that fits a belief, by how much it may differ; `None` for a judge without belief.
+    /// The most by which a reading that fits a belief may differ from it; `None` for a judge without belief.
     near: Option<Micros>,
     /// The robot stands, and is known to.
     stands: bool,

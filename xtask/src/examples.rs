@@ -11,7 +11,7 @@ use fs_err as fs;
 use crate::steps::{Steps, output, run};
 use crate::toolchain::{cargo_for_target, is_debian};
 
-/// Their folders, and the targets they are built for.
+/// The folders of the examples for boards, and the targets they are built for.
 pub(crate) const BOARDS: [(&str, &str); 4] = [
     UNO,
     ("pico", "thumbv6m-none-eabi"),

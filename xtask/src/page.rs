@@ -38,7 +38,7 @@ const PLATFORM: [&str; 2] = ["platform.js", "platform-single.js"];
 pub(crate) enum Tests {
     /// None, only build.
     No,
-    /// Those that `cargo xtask test` runs.
+    /// The tests that `cargo xtask test` runs.
     Short,
     /// All of them.
     Long,

@@ -21,7 +21,7 @@ const FENCE: &str = "```text\n";
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Which {
     All,
-    /// Those that are not large.
+    /// The blocks that are not large.
     Small,
 }
 

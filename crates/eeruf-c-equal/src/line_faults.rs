@@ -328,9 +328,9 @@ impl Said {
 /// Readings of a run: those of the faulty sensor, and those of the one whose wire it has.
 #[derive(Clone, Debug, Default)]
 pub struct Outcome {
-    /// Of the faulty sensor.
+    /// Readings of the faulty sensor.
     pub faulty: Vec<Said>,
-    /// Of the other one, if their wires are exchanged.
+    /// Readings of the sensor whose wires are exchanged with it, if any.
     pub partner: Vec<Said>,
 }
 

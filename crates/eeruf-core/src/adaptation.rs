@@ -117,7 +117,7 @@ impl<L: Deref<Target = [R]>, R> OnLadder<L> {
         })
     }
 
-    /// As [`adapt`](Adaptation::adapt), where `change` is told the rung by its number.
+    /// Adapts like [`adapt`](Adaptation::adapt), but gives `change` the rung's number.
     ///
     /// # Errors
     /// Whatever `change` returns.

@@ -98,15 +98,15 @@ pub trait Sounds {
     /// The firing whose sound could be both the echo that the sensor heard `first` after the firing before its last one
     /// and the one that it heard `second` after its last, by a path that changes by no more than P in between.
     fn explain(&self, first: Micros, second: Micros) -> Explained;
-    /// The same of the echoes of its last three firings, earliest first, by a path that changes at a constant rate: its
-    /// length in the second is within P of the line between the others.
+    /// Asks for the echoes of its last three firings, earliest first, whether a path explains them that changes at a
+    /// constant rate: its length in the second is within P of the line between the others.
     fn explain_line(&self, echoes: [Micros; 3]) -> Explained;
-    /// As [`explain`](Self::explain), by a path that changes by up to `more` than P.
+    /// Asks like [`explain`](Self::explain), for paths that change by up to `more` than P.
     fn explain_moving(&self, first: Micros, second: Micros, more: Micros) -> Explained {
         self.explain_after(1, first, second, more)
     }
-    /// As [`explain_moving`](Self::explain_moving), with the `first` echo after the firing that came `ago` firings
-    /// before the sensor's last one.
+    /// Asks like [`explain_moving`](Self::explain_moving), with the `first` echo after the firing that came `ago`
+    /// firings before the sensor's last one.
     fn explain_after(&self, ago: u8, first: Micros, second: Micros, more: Micros) -> Explained;
     /// Returns true if sound of any firing but the sensor's last could be the echo that it heard after that one.
     fn is_masked(&self, t_echo: Micros) -> bool;
@@ -135,7 +135,7 @@ pub struct Pace {
 }
 
 impl Pace {
-    /// Of a robot that stands.
+    /// The motion of a robot that stands.
     pub const STANDING: Self = Self { moves: false, every_echo: false };
 }
 

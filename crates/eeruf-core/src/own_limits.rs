@@ -25,7 +25,7 @@ pub trait OwnLimits: Copy + fmt::Debug + sealed::Sealed {
     where
         Self: 's;
 
-    /// Those that a plan holds.
+    /// Borrows the limits, as a plan holds them.
     #[doc(hidden)]
     fn hold(&self) -> Self::Held<'_>;
 
@@ -293,12 +293,12 @@ pub(crate) struct InUse<U> {
     now: U,
     /// Its last firings may still be listening.
     before: U,
-    /// Those of the present period if no other schedule begins with the next.
+    /// Limits of the next period; those of the present one if no other schedule begins with it.
     next: U,
 }
 
 impl<U: OwnLimits> InUse<U> {
-    /// Those of a plan that begins.
+    /// Limits of a plan that begins.
     pub(crate) fn begin(own_limits: U) -> Self {
         Self { now: own_limits, before: own_limits, next: own_limits }
     }
@@ -333,7 +333,7 @@ impl<U: OwnLimits> InUse<U> {
         self.now.most()
     }
 
-    /// The same of the schedule that it changes to.
+    /// The most that the sensors of the schedule need to which it changes.
     pub(crate) fn next_most(&self) -> Option<&VerifiedFor> {
         self.next.most()
     }

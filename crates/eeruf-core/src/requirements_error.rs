@@ -19,7 +19,7 @@ pub enum RequirementsError {
     },
     /// There is not one value for each sensor.
     Length {
-        /// Of what.
+        /// The name of the values.
         what: &'static str,
         /// Number of values.
         given: usize,
@@ -40,7 +40,7 @@ pub enum RequirementsError {
     },
     /// A set holds a sensor out of range, or fewer than two.
     Set {
-        /// Of what.
+        /// The name of the set.
         what: &'static str,
         /// The set, bit x for sensor x.
         set: u64,

@@ -87,7 +87,7 @@ pub enum SensorState {
 #[non_exhaustive]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Doubt {
-    /// It has not fired yet.
+    /// The sensor has not fired yet.
     NoFiring,
     /// One echo, or one silence, that is not confirmed yet.
     Unsure,

@@ -286,8 +286,8 @@ impl Run {
         self.report_late(fault, Some(Micros::from_millis(26)))
     }
 
-    /// As [`report`](Self::report), for a flow ring: its lateness says nothing of a stall, since an echo that ends the
-    /// quiet makes the next firing due at once, if not before.
+    /// Reports like [`report`](Self::report), for a flow ring: its lateness says nothing of a stall, since an echo that
+    /// ends the quiet makes the next firing due at once, if not before.
     pub(crate) fn report_flow(&self, fault: Fault) -> Result<String, String> {
         self.report_late(fault, None)
     }

@@ -71,7 +71,7 @@ macro_rules! words {
 words! {
     /// The growth of a receiver's gain while it listens.
     Gain {
-        /// The same all the time.
+        /// Constant rest, whatever was heard.
         Constant = "constant",
         /// With the square root of time.
         SquareRoot = "square_root",
@@ -115,14 +115,14 @@ words! {
 /// Behaviour of a module where nothing is in range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NoEcho {
-    /// It holds its line high for this long, then releases it.
+    /// The module holds its line high for this long, then releases it.
     Holds {
         /// The time, in us.
         us: u32,
     },
     /// Its line never rises.
     Silent,
-    /// It reports that there is nothing, by a value.
+    /// The module reports that there is nothing, by a value.
     Reports,
 }
 

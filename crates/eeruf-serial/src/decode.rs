@@ -59,9 +59,9 @@ pub struct Received {
 pub enum FrameError {
     /// Damaged or cut: it is no COBS, longer or shorter than any frame, or the check sum does not fit.
     Damaged,
-    /// It is whole and of a version of the protocol that is not known.
+    /// The frame is whole and of a version of the protocol that is not known.
     Version(u8),
-    /// It is whole, and this version has no such frame: another kind, or a value that cannot be.
+    /// The frame is whole, and this version has no such frame: another kind, or a value that cannot be.
     Content(&'static str),
 }
 

@@ -22,7 +22,7 @@ use esp_hal::gpio::{Event, Input, InputConfig, Io, Level, Output, OutputConfig, 
 use ring::RING;
 
 const SENSORS: usize = 4;
-/// Of air at 20 degrees Celsius.
+/// Speed of sound in air at 20 degrees Celsius.
 const SOUND: SpeedOfSound = SpeedOfSound::at_celsius_tenths(200);
 const SECOND: Micros = Micros::from_millis(1000);
 /// A line is printed while nothing is due for so long.

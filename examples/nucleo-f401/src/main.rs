@@ -27,7 +27,7 @@ use panic_probe as _;
 use ring::RING;
 
 const SENSORS: usize = 8;
-/// Of air at 20 degrees Celsius.
+/// Speed of sound in air at 20 degrees Celsius.
 const SOUND: SpeedOfSound = SpeedOfSound::at_celsius_tenths(200);
 const SECOND: Micros = Micros::from_millis(1000);
 
@@ -115,7 +115,7 @@ fn clocks() -> Config {
     config
 }
 
-/// The same line for the driver, which looks at it before it fires.
+/// Returns the line for the driver, which looks at it before it fires.
 fn look<P: Pin>(pin: &Peri<'static, P>) -> Input<'static> {
     // SAFETY: the driver and the task that stamps both only read the line.
     Input::new(unsafe { pin.clone_unchecked() }, Pull::Down)

@@ -27,7 +27,7 @@ use panic_halt as _;
 use ring::RING;
 
 const SENSORS: usize = 8;
-/// Of air at 20 degrees Celsius.
+/// Speed of sound in air at 20 degrees Celsius.
 const SOUND: SpeedOfSound = SpeedOfSound::at_celsius_tenths(200);
 const SECOND: Micros = Micros::from_millis(1000);
 /// Time for which a line is watched: more than the window, and 11 ms less than the 60 ms after which a module may fire

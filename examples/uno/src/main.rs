@@ -13,7 +13,7 @@ use eeruf_core::{Micros, ReadingKind, Ring, RingConfig, RingEvent, SpeedOfSound}
 use eeruf_hc_sr04::{HcSr04Ring, Pins, Settings};
 use ring::RING;
 
-/// Of air at 20 degrees Celsius.
+/// Speed of sound in air at 20 degrees Celsius.
 const SOUND: SpeedOfSound = SpeedOfSound::at_celsius_tenths(200);
 
 const PINS: [Pins<Pin, Pin>; 8] = {

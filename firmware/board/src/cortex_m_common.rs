@@ -129,7 +129,7 @@ pub mod device {
         }
     }
 
-    /// The same enumeration under the name that RTIC looks for.
+    /// The interrupts under the name that RTIC looks for.
     pub use Interrupt as interrupt;
     /// Named as frameworks expect it; there are no further peripherals to hand out.
     pub use cortex_m::Peripherals;

@@ -106,8 +106,8 @@ pub fn say_calls(ring: &mut FlowRing<12>) {
     mean.say();
 }
 
-/// As [`ring_in_static_memory!`](crate::ring_in_static_memory), with all of a flow ring in it, which the compiler makes
-/// by `made` and a restart begins.
+/// Makes a ring like [`ring_in_static_memory!`](crate::ring_in_static_memory), with all of a flow ring in it, which the
+/// compiler makes by `made` and a restart begins.
 #[macro_export]
 macro_rules! planned_in_static_memory {
     ($ring:ty, $made:expr) => {

@@ -66,7 +66,7 @@ pub(crate) struct Open {
 }
 
 impl Open {
-    /// It has a reading that can be emitted, where one echo is enough.
+    /// Returns true if it has a reading that can be emitted, where one echo is enough.
     pub(crate) fn is_ready(&self) -> bool {
         !self.echoes.is_empty() || self.off == WIDE
     }
@@ -132,7 +132,7 @@ pub(crate) struct Sensor {
     pub(crate) emitted: Option<Open>,
     pub(crate) late: Option<u32>,
     pub(crate) had_late: bool,
-    /// It held its line then, and does still.
+    /// True if the sensor held its line then, and still does.
     pub(crate) is_held: bool,
     pub(super) last_fired: Option<Last>,
     /// All instants at which it fired.
@@ -198,12 +198,12 @@ pub(super) fn always_kept(schedule: &Schedule<SENSORS>, x: usize, y: usize) -> u
 }
 
 impl Sensor {
-    /// It has fired, and nothing was heard or said since.
+    /// Returns true if it has fired, and nothing was heard or said since.
     pub(crate) fn is_silent(&self) -> bool {
         self.open.as_ref().is_some_and(|open| open.echoes.is_empty() && open.early.is_none())
     }
 
-    /// It fires.
+    /// Notes that the sensor fires.
     pub(crate) fn fire(&mut self, at: u64, phase: u8, period: u32, silence: Silence) {
         assert!(self.open.is_none() && self.late.is_none(), "fired before its reading was out");
         let evidence = if silence == Silence::Trusted { Evidence::Listened } else { Evidence::Nothing };
@@ -656,7 +656,7 @@ impl<'s> Model<'s> {
         }
     }
 
-    /// Another schedule, or the same again.
+    /// Begins with another schedule, or with the same again.
     pub(super) fn new_epoch(&mut self, schedule: &'s Schedule<SENSORS>) {
         self.before = Some(self.schedule);
         self.epoch += 1;

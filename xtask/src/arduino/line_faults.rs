@@ -28,7 +28,7 @@ const FAULTS: [(&str, &str); 9] = [
     ("hold-130:3", "hold of 130 ms"),
     ("hold-200:3", "hold of 200 ms"),
 ];
-/// Those of a sketch to which each line's interrupt hands in the level that it sees, by the table of the file.
+/// The faults of a sketch to which each line's interrupt hands in the level that it sees, by the table of the file.
 const EDGE_FAULTS: [(&str, &str, &[&str]); 6] = [
     ("hold-38:2", "healthy", &PLACES),
     ("lost-rise:2", "lost rising edge", &PLACES),

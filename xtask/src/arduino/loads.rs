@@ -28,7 +28,7 @@ const POLLED: &str = "polled";
 const OWN_WALLS: &str = "own walls";
 /// For how long each runs.
 const SECONDS: u32 = 3;
-/// Those that run in CI, with six modules in the alcove.
+/// Numbers of the loads that run in CI, with six modules in the alcove.
 const CORNER: [usize; 3] = [1, 11, 18];
 
 /// A sketch that starves says so within as many milliseconds.

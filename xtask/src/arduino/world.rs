@@ -31,12 +31,12 @@ pub(super) struct Heard {
     accepted: u32,
     by_module: BTreeMap<usize, u32>,
     wrong: u32,
-    /// Of the wrong ones: those of a module's own echo that came another way, and was measured as it came.
+    /// The wrong ones that were a module's own echo on another way, measured as it came.
     own_later: u32,
     right_by_module: BTreeMap<usize, u32>,
     /// When the sketch first said that it is too slow, in milliseconds.
     slow_ms: Option<u32>,
-    /// Of the wrong ones: after a module's own sound that came another way, its own of an earlier firing, another's.
+    /// The wrong ones by cause: a module's own sound on another way, its own of an earlier firing, another's.
     by_cause: [u32; 3],
 }
 
@@ -134,7 +134,7 @@ pub(super) fn hear(world: &Path, elf: &Path, example: &Example, seconds: u32, ca
         .with_context(|| example.name)
 }
 
-/// The same by a command of [`command`], where each module should measure these distances.
+/// Hears by a command of [`command`], where each module should measure these distances.
 pub(super) fn hear_by(command: &mut Command, seconds: u32, own_mm: &BTreeMap<usize, u32>) -> Result<Heard> {
     let ran = command.output()?;
     ensure!(ran.status.success(), "the simulated world: {}", ran.status);

@@ -20,7 +20,7 @@ pub(super) const RING: [&str; 8] = [
     "ring_stuck",
 ];
 
-/// Those of a flow ring.
+/// The functions of a flow ring whose stack is printed.
 pub(super) const FLOW_RING: [&str; 2] = ["ring_restart", "ring_poll"];
 
 /// Target of a call through a pointer.

@@ -83,9 +83,9 @@ impl<const K: usize, const E: usize> EchoFilter<K, E> {
         self.push_echoes(sensor, t_echo.as_slice(), 0)
     }
 
-    /// As [`push`](Self::push), with all echoes of the firing in any order (the earliest `E` count) and the change in
-    /// microseconds that a good reading is expected to show since the firing before: `-2 v dt / c` for an object
-    /// approached at `v`, where `dt` is the time between the two firings (see
+    /// Judges like [`push`](Self::push), with all echoes of the firing in any order (the earliest `E` count) and the
+    /// change in microseconds that a good reading is expected to show since the firing before: `-2 v dt / c` for an
+    /// object approached at `v`, where `dt` is the time between the two firings (see
     /// [`Schedule::refire_after`](crate::Schedule::refire_after)). The filter alone does not know what was fired: with
     /// a change expected it accepts crosstalk of any schedule. [`Ring::poll_expecting`](crate::Ring::poll_expecting)
     /// asks.

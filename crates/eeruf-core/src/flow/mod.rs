@@ -75,8 +75,8 @@ impl<const K: usize, const E: usize> FlowRing<K, E> {
 }
 
 impl<const K: usize, const E: usize, U: OwnLimits> FlowRing<K, E, U> {
-    /// As [`flow`](FlowRing::flow), for sensors that have limits of their own. What `config` and the `t_delta` of
-    /// `belief` say is the most for all.
+    /// Makes a ring like [`flow`](FlowRing::flow), for sensors that have limits of their own. What `config` and the
+    /// `t_delta` of `belief` say is the most for all.
     ///
     /// # Errors
     /// As there.

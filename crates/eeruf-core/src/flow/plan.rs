@@ -28,12 +28,12 @@ struct Slot {
     flags: u8,
 }
 
-/// It has fired, not too long ago.
+/// The sensor has fired, not too long ago.
 const FIRED: u8 = 1;
 /// Its edge is awaited.
 const LISTENS: u8 = 2;
 const DISABLED: u8 = 4;
-/// It fires with one that has a turn.
+/// The sensor fires with one that has a turn.
 const FOLLOWS: u8 = 8;
 /// Its leader has fired, and it has not yet.
 const PENDING: u8 = 16;
@@ -102,7 +102,8 @@ impl<const K: usize> InTurn<K> {
 }
 
 impl<const K: usize, U: OwnLimits> InTurn<K, U> {
-    /// As [`new`](InTurn::new), for sensors that have limits of their own; `window` is the longest of all.
+    /// Makes a plan like [`new`](InTurn::new), for sensors that have limits of their own; `window` is the longest of
+    /// all.
     ///
     /// # Errors
     /// As there.
@@ -314,7 +315,8 @@ impl<const K: usize, U: OwnLimits> InTurn<K, U> {
         if self.last.has_reached(until) { Micros::ZERO } else { until.since(self.last) }
     }
 
-    /// As [`decide`](Self::decide), by what tells no time: nothing is due sooner than it was, which might be long ago.
+    /// Decides like [`decide`](Self::decide) after a call that tells no time: nothing is due sooner than before, since
+    /// that might be long ago.
     #[inline(never)]
     fn decide_no_sooner(&mut self) {
         let due = self.due;

@@ -51,7 +51,8 @@ impl TurnSettings {
         Self { least, most, rest, dice: Micros::from_millis(2), seed }
     }
 
-    /// These settings one by one, or group by group where sensors fire together: always with the most quiet.
+    /// Returns settings that fire one by one, or group by group where sensors fire together: always with the most
+    /// quiet.
     #[must_use]
     pub const fn one_by_one(self) -> Self {
         Self { least: self.most, ..self }
@@ -77,7 +78,7 @@ impl TurnSettings {
         Ok(EachSensor::for_flow(limits, requirements.together()).with_shared_lines(uneven.shared_lines))
     }
 
-    /// These settings with the rest of the module that rests for longest.
+    /// Returns settings with the rest of the module that rests for longest.
     #[must_use]
     pub fn keeping(self, requirements: &Requirements<'_>) -> Self {
         let refire = requirements.uneven.map_or(&[][..], |uneven| uneven.refire);

@@ -14,13 +14,13 @@ use crate::time::{Instant, Micros};
 #[non_exhaustive]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum BrokenPromise {
-    /// It fires a sensor that it does not have, that is disabled, or that has not stopped listening within the longest
-    /// window.
+    /// The plan fires a sensor that it does not have, that is disabled, or that has not stopped listening within the
+    /// longest window.
     WrongSensor {
         /// The sensor, from 0.
         sensor: u8,
     },
-    /// It fires a sensor again sooner than `min_refire`.
+    /// The plan fires a sensor again sooner than `min_refire`.
     MinRefire {
         /// The sensor, from 0.
         sensor: u8,

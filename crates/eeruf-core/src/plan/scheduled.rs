@@ -70,12 +70,12 @@ impl<'s, const K: usize, const M: usize> ScheduledFiring<'s, K, M> {
 }
 
 impl<'s, const K: usize, const M: usize, U: OwnLimits> ScheduledFiring<'s, K, M, U> {
-    /// As [`new`](ScheduledFiring::new), by a schedule whose sensors may have limits of their own.
+    /// Fires like [`new`](ScheduledFiring::new), by a schedule whose sensors may have limits of their own.
     pub fn verified<L: OwnLimits<Held<'s> = U>>(schedule: &'s VerifiedSchedule<K, M, L>, now: Instant) -> Self {
         Self::with_limits(schedule.schedule(), schedule.own_limits(), now)
     }
 
-    /// As [`verified`](Self::verified), of schedule and limits apart.
+    /// Fires like [`verified`](Self::verified), with schedule and limits given apart.
     pub fn with_limits<L: OwnLimits<Held<'s> = U>>(
         schedule: &'s Schedule<K, M>,
         own_limits: &'s L,
@@ -129,7 +129,8 @@ impl<T: Deref<Target = Schedule<K, M>>, const K: usize, const M: usize, U: OwnLi
         self.next_schedule.as_ref().unwrap_or(&self.schedule)
     }
 
-    /// As [`change_schedule`](ScheduledFiring::change_schedule), to a schedule and the limits that it was verified for.
+    /// Changes like [`change_schedule`](ScheduledFiring::change_schedule), to a schedule and the limits that it was
+    /// verified for.
     pub fn change_to(&mut self, schedule: T, own_limits: U) {
         self.next_schedule = Some(schedule);
         self.own_limits.change(own_limits);

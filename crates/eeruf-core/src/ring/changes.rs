@@ -39,8 +39,8 @@ impl<T, const N: usize, const M: usize, U: OwnLimits, J: Judge, const K: usize, 
 where
     T: Deref<Target = Schedule<N, M>> + Clone,
 {
-    /// As [`change_schedule`](Ring::change_schedule), to a schedule and the limits that it was verified for, which the
-    /// plan holds from then on.
+    /// Changes like [`change_schedule`](Ring::change_schedule), to a schedule and the limits that it was verified for,
+    /// which the plan holds from then on.
     ///
     /// # Errors
     /// As there; [`RingError::Window`] if a sensor would fire again while it still listens.
@@ -56,7 +56,7 @@ where
 impl<'s, const N: usize, const M: usize, J: Judge, const K: usize, const E: usize, const H: usize>
     Ring<ScheduledFiring<'s, N, M>, J, K, E, H>
 {
-    /// As [`change_schedule`](Ring::change_schedule), to an unverified schedule.
+    /// Changes like [`change_schedule`](Ring::change_schedule), to an unverified schedule.
     ///
     /// # Errors
     /// [`RingError::Window`] if a sensor would fire again while it still listens.

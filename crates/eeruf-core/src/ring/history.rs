@@ -166,8 +166,8 @@ impl Pair {
         false
     }
 
-    /// The same of echoes at times that may be off by `one` and `other`, and an echo after them by up to `third`: each
-    /// length by the greatest, the change by both of the two.
+    /// Widens the tolerances for echoes at times that may be off by `one` and `other`, and an echo after them by up to
+    /// `third`: each length by the greatest, the change by both of the two.
     pub(super) fn widened(self, one: Micros, other: Micros, most: Micros) -> Self {
         let change = self.path_change.saturating_add(one).saturating_add(other);
         let audible = self.audible.saturating_add(most).saturating_add(most);

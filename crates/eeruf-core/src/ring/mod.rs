@@ -133,8 +133,9 @@ impl<'s, const K: usize, const M: usize, U: OwnLimits, const E: usize>
 }
 
 impl<'s, const K: usize, const M: usize, const E: usize> Ring<ScheduledFiring<'s, K, M>, EchoFilter<K, E>, K, E> {
-    /// As [`new`](Ring::new), by a schedule that was not verified; `config` needs `t_delta` and window. Crosstalk is
-    /// not accepted either, but readings that it could explain are ambiguous: with constant waits nearly all.
+    /// Makes a ring like [`new`](Ring::new), by a schedule that was not verified; `config` needs `t_delta` and window.
+    /// Crosstalk is not accepted either, but readings that it could explain are ambiguous: with constant waits nearly
+    /// all.
     ///
     /// # Errors
     /// As for [`Ring::with_plan`].
@@ -180,7 +181,7 @@ impl<P: Plan, const K: usize, const E: usize> Ring<P, EchoFilter<K, E>, K, E> {
 }
 
 impl<P: Plan, const K: usize, const E: usize, const H: usize> Ring<P, EchoFilter<K, E>, K, E, H> {
-    /// As [`with_plan`](Ring::with_plan), with a memory of `H` firings of each sensor.
+    /// Makes a ring like [`with_plan`](Ring::with_plan), with a memory of `H` firings of each sensor.
     ///
     /// # Errors
     /// As for [`Ring::judged_by`]; also if the number of consecutive readings is not 2 to 8, or if neither `config` nor
@@ -268,10 +269,11 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
         self.poll_expecting(now, |_| 0)
     }
 
-    /// As [`poll`](Self::poll), for a robot that moves: `expected_change_us` is asked for the change in microseconds
-    /// that a good reading of a sensor should show since its firing before (see [`EchoFilter::push_echoes`]). Readings
-    /// for which it is not 0 are asked about on time too, and some walls of a fast robot are
-    /// [`Ambiguous`](ReadingKind::Ambiguous): it accepts no more crosstalk, and does not let the robot drive faster.
+    /// Polls like [`poll`](Self::poll), for a robot that moves: `expected_change_us` is asked for the change in
+    /// microseconds that a good reading of a sensor should show since its firing before (see
+    /// [`EchoFilter::push_echoes`]). Readings for which it is not 0 are asked about on time too, and some walls of a
+    /// fast robot are [`Ambiguous`](ReadingKind::Ambiguous): it accepts no more crosstalk, and does not let the robot
+    /// drive faster.
     ///
     /// [`EchoFilter::push_echoes`]: crate::EchoFilter::push_echoes
     #[inline]
@@ -352,10 +354,10 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
         self.hear(sensor, at, Micros::ZERO, at)
     }
 
-    /// As [`echo`](Self::echo), of an edge that came between two instants: the line was last seen without it at
-    /// `earliest`, and with it at `latest`. The middle counts, and half the width is by how much it may be off: foreign
-    /// sound heard at any time in between explains the reading. More than 300 us, 5 cm, say too little: the reading is
-    /// [`Late`](ReadingKind::Late), without echo time.
+    /// Notes an echo like [`echo`](Self::echo), of an edge that came between two instants: the line was last seen
+    /// without it at `earliest`, and with it at `latest`. The middle counts, and half the width is by how much it may
+    /// be off: foreign sound heard at any time in between explains the reading. More than 300 us, 5 cm, say too little:
+    /// the reading is [`Late`](ReadingKind::Late), without echo time.
     ///
     /// # Errors
     /// [`RingError::Interval`] if `latest` is before `earliest`, [`RingError::Sensor`] for a sensor out of range.
@@ -367,8 +369,8 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
         Ok(self.echo_within(sensor, earliest, latest.since(earliest), latest)?)
     }
 
-    /// As [`echo_between`](Self::echo_between), of an edge that came up to `width` after `earliest`, for drivers that
-    /// may take it back: its reading is emitted no sooner than `settled`, unless another sensor's is.
+    /// Notes an echo like [`echo_between`](Self::echo_between), of an edge that came up to `width` after `earliest`,
+    /// for drivers that may take it back: its reading is emitted no sooner than `settled`, unless another sensor's is.
     ///
     /// # Errors
     /// [`SensorError`] for a sensor out of range.
@@ -383,8 +385,8 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
         self.hear(sensor, earliest + Micros::new(before), Micros::new(width.as_micros() - before), settled)
     }
 
-    /// As [`echo`](Self::echo), for drivers that may take it back: its reading is emitted no sooner than `settled`,
-    /// unless another sensor's is.
+    /// Notes an echo like [`echo`](Self::echo), for drivers that may take it back: its reading is emitted no sooner
+    /// than `settled`, unless another sensor's is.
     ///
     /// # Errors
     /// As there.
@@ -488,8 +490,8 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
         }
     }
 
-    /// As [`measured`](Self::measured), of an echo time between two: a pulse whose rise and fall are uncertain, for
-    /// example, is as long as from the latest rise to the earliest fall, or up to the converse. See
+    /// Notes an echo like [`measured`](Self::measured), of an echo time between two: a pulse whose rise and fall are
+    /// uncertain, for example, is as long as from the latest rise to the earliest fall, or up to the converse. See
     /// [`echo_between`](Self::echo_between).
     ///
     /// # Errors

@@ -28,9 +28,9 @@ const WIDE: u8 = u8::MAX;
 
 // The flags of a sensor, beside the period in which it fired, modulo 8.
 const PERIOD: u8 = 0b111;
-/// It has fired, and its reading is pending.
+/// The sensor has fired, and its reading is pending.
 pub(super) const LISTENING: u8 = 1 << 3;
-/// It has a reading that can be emitted before its window closes.
+/// The sensor has a reading that can be emitted before its window closes.
 pub(super) const READY: u8 = 1 << 4;
 /// The only edges so far came outside the window: within the blanking time while it listens, late after its reading. A
 /// sensor that has not fired counts as having had its late edge, so that none is emitted for it.
@@ -40,16 +40,16 @@ const OUTSIDE: u8 = 1 << 5;
 pub(super) const STUCK: u8 = 1 << 6;
 /// Nothing has shown yet that it listens: silence says nothing.
 pub(super) const UNANSWERED: u8 = 1 << 7;
-/// It holds its line: silence counts when that has fallen. Kept after its reading.
+/// The sensor holds its line: silence counts when that has fallen. Kept after its reading.
 pub(super) const HELD: u8 = STUCK | UNANSWERED;
 
 /// The outcome of an edge.
 pub(super) enum Noted {
-    /// It makes a reading that can be emitted.
+    /// The edge makes a reading that can be emitted.
     Ready,
-    /// It came after the window, which is not yet closed.
+    /// The edge came after the window, which is not yet closed.
     Late,
-    /// It is stored with the others of its firing.
+    /// The edge is stored with the others of its firing.
     Stored,
     /// Nothing listens for it.
     Unwanted,

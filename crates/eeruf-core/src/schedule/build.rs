@@ -21,7 +21,8 @@ impl<const K: usize, const M: usize> Schedule<K, M> {
         Self::new(period, [Micros::ZERO; K], t_fire)
     }
 
-    /// As [`Schedule::new`], for a number of sensors known only at run time: `t_lag.len()`, at most the capacity `K`.
+    /// Makes a schedule like [`Schedule::new`], for a number of sensors known only at run time: `t_lag.len()`, at most
+    /// the capacity `K`.
     ///
     /// # Errors
     /// As for [`Schedule::new`], and if the slices differ in length.

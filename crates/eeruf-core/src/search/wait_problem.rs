@@ -165,7 +165,7 @@ impl WaitSearch {
         })
     }
 
-    /// The same question in ticks.
+    /// Returns the question in ticks.
     fn ticks(&self) -> Search<'_> {
         Search::new(Problem {
             period: self.period,

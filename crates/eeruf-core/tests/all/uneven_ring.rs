@@ -207,7 +207,7 @@ fn uneven_ring_is_on_time_within_its_slack() {
     }
 }
 
-/// The same sensors on the same lines, two of which look farther, the first farther than any fires again.
+/// Four sensors on shared lines, two of which look farther, the first farther than any fires again.
 fn farther() -> VerifiedSchedule<4, 2, EachSensor<4>> {
     let schedule = Schedule::from_firing(Micros::from_millis(80), [ms([62, 20, 44, 4]), ms([58, 10, 26, 30])])
         .expect("it lies within");

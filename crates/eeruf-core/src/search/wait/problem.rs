@@ -42,8 +42,8 @@ pub(crate) struct Search<'a> {
 }
 
 impl<'a> Search<'a> {
-    /// Of a problem that was checked: 1 to 64 sensors with symmetric conflicts, which may wait until `wait_max` within
-    /// the period, and a period of at most [`MAX_PERIOD`].
+    /// Takes a problem that was checked: 1 to 64 sensors with symmetric conflicts, which may wait until `wait_max`
+    /// within the period, and a period of at most [`MAX_PERIOD`].
     pub(crate) const fn new(problem: Problem<'a>) -> Self {
         Self { problem }
     }
@@ -58,7 +58,7 @@ impl<'a> Search<'a> {
         self.problem.lag.len()
     }
 
-    /// The same problem with another separation and interval.
+    /// Returns the problem with another separation and interval.
     pub(crate) const fn with(&self, separation: u32, interval: u32) -> Self {
         Self { problem: Problem { separation, interval, ..self.problem } }
     }

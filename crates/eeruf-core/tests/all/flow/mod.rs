@@ -18,7 +18,7 @@ const CONFIG: RingConfig = RingConfig::new().with_window(Micros::from_millis(25)
 /// The clock wraps after three seconds.
 const BEGIN: u32 = u32::MAX - 3_000_000;
 
-/// Of sensors, those whose first reading was believed by the second firing and by the third, in percent.
+/// The share of sensors whose first reading was believed by the second firing and by the third, in percent.
 fn soon(seen: &[Seen]) -> [f64; 2] {
     [2, 3].map(|most| {
         let by = seen.iter().filter(|seen| seen.first.is_some_and(|first| first <= most)).count();

@@ -25,7 +25,7 @@ struct Table {
     t_delta: u32,
 }
 
-/// The same table with room for more sensors.
+/// A table with room for more sensors.
 fn roomy<const K: usize>(table: &Schedule<K>) -> Schedule<ROOM> {
     let of = |phase| -> Vec<Micros> { (0..table.sensors()).map(|x| table.t_fire(phase, x).unwrap()).collect() };
     let lags = vec![Micros::ZERO; table.sensors()];
@@ -220,7 +220,7 @@ fn walls_that_nothing_explains_are_accepted() {
 
 /// A main loop.
 struct Loop {
-    /// It comes round after up to this many microseconds; 0 if it sleeps until something is due.
+    /// The loop comes round after up to this many microseconds; 0 if it sleeps until something is due.
     round: u32,
     /// Microseconds that each event takes.
     handling: u32,

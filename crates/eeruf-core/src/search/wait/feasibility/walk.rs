@@ -336,9 +336,9 @@ impl<'p, 'm> Feasibility<'p, 'm> {
 
 /// The fate of an alternative.
 enum Applied {
-    /// It stands.
+    /// The alternative stands.
     Done,
-    /// It is covered by another one.
+    /// Another alternative covers it.
     Skip,
     /// There is none of that number.
     None,

@@ -58,7 +58,9 @@ fn run<P: Plan, J: Judge, const H: usize>(
     let mut driver = HcSr04Ring::new(ring, pins, NoopDelay, Settings::default()).unwrap();
     let mut watch = SensorWatch::<K>::new(0, BEGIN);
     let (mut said, mut now) = (vec![], BEGIN);
-    let mut edges: Vec<Edge> = sticks.map(|at| Edge { sensor: WATCHED, high: true, at }).into_iter().collect();
+    // Every second line sticks at once, the others when they rise next.
+    let at_once = sticks.filter(|at| at.as_micros() % 2 == 0);
+    let mut edges: Vec<Edge> = at_once.map(|at| Edge { sensor: WATCHED, high: true, at }).into_iter().collect();
     while now.since(BEGIN) < Micros::from_millis(4_000) {
         let deadline = driver.next_deadline();
         let next = edges.iter().map(|edge| edge.at).min_by_key(|at| at.since(now));

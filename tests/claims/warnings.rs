@@ -7,23 +7,6 @@ fn read(path: &str) -> String {
     std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(path)).unwrap()
 }
 
-/// Values of a key in YAML of one key a line.
-fn values<'t>(yaml: &'t str, key: &str) -> Vec<&'t str> {
-    yaml.lines().filter_map(|line| line.trim().strip_prefix(key)?.strip_prefix(": ")).collect()
-}
-
-// At an `inflate_cone` above 0 Nav2's range layer updates the box around the cone: a clear reading frees its
-// neighbours' walls. A layer that marks and never clears keeps a person's wall for ever.
-#[test]
-fn nav2_costmap_clears_within_cones_alone() {
-    let yaml = read("ros2/config/nav2.yaml");
-    assert_eq!(values(&yaml, "inflate_cone"), ["0.0"]);
-    assert_eq!(values(&yaml, "plugins"), ["[\"range_layer\", \"inflation_layer\"]"]);
-    let layers: Vec<_> = values(&yaml, "plugin");
-    assert_eq!(layers, ["\"nav2_costmap_2d::RangeSensorLayer\""]);
-    assert_eq!(values(&yaml, "clear_on_max_reading"), ["true"]);
-}
-
 // Each phrase is the shortest part that carries the warning; its page may say it otherwise, with this part kept.
 #[test]
 fn known_dangers_are_said_on_their_pages() {

@@ -16,6 +16,7 @@ from dds import (
     PATIENCE_S,
     RELIABLE,
     DiagnosticArray,
+    LaserScan,
     Odometry,
     PointCloud2,
     Range,
@@ -69,12 +70,14 @@ def test_simulated_robot_reads_drives_and_says_the_truth(tmp_path, listener):
     clouds, true_clouds = [reader(listener, f"/eeruf/{name}", PointCloud2) for name in ("points", "true_points")]
     truth, transforms = reader(listener, "/eeruf/truth", Odometry), reader(listener, "/tf", TFMessage)
     reports = reader(listener, "/diagnostics", DiagnosticArray)
+    scans = reader(listener, "/eeruf/scan", LaserScan)
     pilot = DomainParticipant(DOMAIN)
     velocity = DataWriter(pilot, Topic(pilot, "rt/cmd_vel", Twist, qos=RELIABLE), qos=RELIABLE)
     node = subprocess.Popen([NODE, "--simulate", str(scene)], env=environment(), stderr=subprocess.PIPE, text=True)
-    everything = [*ranges, clouds, true_clouds, truth, transforms, reports]
+    everything = [*ranges, clouds, true_clouds, truth, transforms, reports, scans]
     heard = {each: [] for each in everything}
-    kinds = dict(zip(everything, [Range] * SENSORS + [PointCloud2, PointCloud2, Odometry, TFMessage, DiagnosticArray]))
+    others = [PointCloud2, PointCloud2, Odometry, TFMessage, DiagnosticArray, LaserScan]
+    kinds = dict(zip(everything, [Range] * SENSORS + others))
 
     def take():
         for each in everything:
@@ -129,6 +132,11 @@ def test_simulated_robot_reads_drives_and_says_the_truth(tmp_path, listener):
         assert len(said) >= 20
         right = [metres for metres in said if metres == pytest.approx(distance, abs=0.02)]
         assert len(right) >= 0.95 * len(said), (sensor, distance, said)
+    scan = heard[scans][-1]
+    assert (len(scan.ranges), scan.range_max, scan.header.frame_id) == (720, 4.0, "base_link")
+    # Straight ahead the nearest arc; nobody looks behind.
+    ahead, behind = scan.ranges[360], scan.ranges[0]
+    assert ahead == pytest.approx(2.0 - x, abs=0.05) and math.isnan(behind)
     status = {status.name: status for status in heard[reports][-1].status}
     assert status[f"eeruf: sensor {CUT + 1}"].level == ERROR
 

@@ -24,17 +24,6 @@ pub(crate) enum Source {
     Simulation,
 }
 
-/// A `Range`'s value where nothing is in range.
-#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq)]
-#[serde(rename_all = "snake_case")]
-pub(crate) enum ClearAs {
-    /// `+Inf`, as REP 117 wants it.
-    #[default]
-    Inf,
-    /// The maximum range, by which Nav2's range layer clears.
-    MaxRange,
-}
-
 /// The value in `OBSTACLE_DISTANCE` where a sensor does not answer.
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq)]
 #[serde(rename_all = "snake_case")]
@@ -123,8 +112,6 @@ parameters! {
     min_range_m: f32 = 0.02, "0.02";
     /// Farther than this nothing counts.
     max_range_m: f32 = 4.0, "4.0";
-    /// Range's value where nothing is in range: inf (REP 117) or max_range (for Nav2's range layer).
-    clear_as: ClearAs = ClearAs::Inf, "inf";
     /// The temperature of the air.
     temperature_c: f32 = 20.0, "20.0";
     /// Diagnostics: a firing that comes later than this is a fault.
@@ -375,14 +362,14 @@ mod tests {
     #[test]
     fn node_finds_its_parameters_among_others() {
         let text = "nav2:\n  ros__parameters: {rate: [1, {a: b}]}\n/**:\n  ros__parameters: {sensors: 3, baud: 9600}\n\
-                    /eeruf:\n  ros__parameters: {sensors: 12, clear_as: max_range}\n\
+                    /eeruf:\n  ros__parameters: {sensors: 12, t_delta_us: 300}\n\
                     robot_1:\n  eeruf:\n    ros__parameters: {sensors: 24}\nrobot_2: {bare: }\n\
                     /*/left:\n  ros__parameters: {sensors: 5}\n";
-        let said = |node| read(text, node).map(|read| (read.sensors, read.baud, read.clear_as)).unwrap();
-        assert_eq!(said("/eeruf"), (12, 9600, ClearAs::MaxRange));
-        assert_eq!(said("/other"), (3, 9600, ClearAs::Inf));
-        assert_eq!(said("/robot_1/eeruf"), (24, 9600, ClearAs::Inf));
-        assert_eq!(said("/robot_2/eeruf"), (3, 9600, ClearAs::Inf));
+        let said = |node| read(text, node).map(|read| (read.sensors, read.baud, read.t_delta_us)).unwrap();
+        assert_eq!(said("/eeruf"), (12, 9600, 300));
+        assert_eq!(said("/other"), (3, 9600, 500));
+        assert_eq!(said("/robot_1/eeruf"), (24, 9600, 500));
+        assert_eq!(said("/robot_2/eeruf"), (3, 9600, 500));
         assert_eq!((said("/robot_2/left").0, said("/left").0, said("/a/b/left").0), (5, 3, 3));
         assert_eq!(read("eeruf:\n  ros__parameters:\n", "/eeruf").unwrap(), Parameters::default());
         let none = read("nav2:\n  ros__parameters: {}\n", "/eeruf").unwrap_err();
@@ -411,7 +398,7 @@ mod tests {
             ("senors: 8", "senors"),
             ("sensors: eight", "eight"),
             ("sensors: 65", "sensors: 65; expected 1 to 64"),
-            ("clear_as: infinity", "infinity"),
+            ("method: [flow]", "method"),
             ("topics: [a, b]", "topics: 2 entries; expected one for each of 8 sensors, or none"),
             ("source: ranges", "range_topics: none"),
             ("max_range_m: 0.01", "max_range_m: 0.01; expected more than 0.02, up to 100"),

@@ -2,7 +2,7 @@
 
 use eeruf_core::{Micros, ReadingKind, SpeedOfSound};
 
-use crate::parameters::{ClearAs, Parameters};
+use crate::parameters::Parameters;
 
 /// Meaning of a reading for the world.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,7 +21,6 @@ pub(crate) struct Scale {
     sound_m_s: f64,
     pub(crate) min_m: f32,
     pub(crate) max_m: f32,
-    clear_as: ClearAs,
 }
 
 impl Scale {
@@ -32,7 +31,6 @@ impl Scale {
             sound_m_s: f64::from(sound.mm_per_s()) / 1000.0,
             min_m: parameters.min_range_m,
             max_m: parameters.max_range_m,
-            clear_as: parameters.clear_as,
         }
     }
 
@@ -64,14 +62,15 @@ impl Scale {
             _ => None,
         }
     }
+}
 
+impl Distance {
     /// The number that stands for it in a `Range`.
-    pub(crate) fn number(&self, distance: Distance) -> f32 {
-        match (distance, self.clear_as) {
-            (Distance::At(metres), _) => metres,
-            (Distance::Clear, ClearAs::Inf) => f32::INFINITY,
-            (Distance::Clear, ClearAs::MaxRange) => self.max_m,
-            (Distance::TooClose, _) => f32::NEG_INFINITY,
+    pub(crate) fn number(self) -> f32 {
+        match self {
+            Self::At(metres) => metres,
+            Self::Clear => f32::INFINITY,
+            Self::TooClose => f32::NEG_INFINITY,
         }
     }
 }
@@ -80,39 +79,32 @@ impl Scale {
 mod tests {
     use super::*;
 
-    fn scale(clear_as: ClearAs) -> Scale {
-        Scale::new(&Parameters { clear_as, ..Parameters::default() })
-    }
-
     #[test]
-    fn ranges_are_as_rep_117_wants_them_or_clear_at_the_maximum() {
+    fn ranges_are_as_rep_117_wants_them() {
         let us = |us| Some(Micros::new(us));
-        for (kind, t_echo, inf, max_range) in [
-            (ReadingKind::Accepted, us(10_000), Some(1.716), Some(1.716)),
+        let scale = Scale::new(&Parameters::default());
+        for (kind, t_echo, expected) in [
+            (ReadingKind::Accepted, us(10_000), Some(1.716)),
             // 4.12 m, and 1.7 cm.
-            (ReadingKind::Accepted, us(24_000), Some(f32::INFINITY), Some(4.0)),
-            (ReadingKind::Accepted, us(100), Some(f32::NEG_INFINITY), Some(f32::NEG_INFINITY)),
-            (ReadingKind::Clear, None, Some(f32::INFINITY), Some(4.0)),
-            (ReadingKind::TooEarly, us(90), Some(f32::NEG_INFINITY), Some(f32::NEG_INFINITY)),
-            (ReadingKind::Rejected, us(10_000), None, None),
-            (ReadingKind::First, us(10_000), None, None),
-            (ReadingKind::Late, us(41_000), None, None),
-            (ReadingKind::NoEcho, None, None, None),
-            (ReadingKind::Stuck, None, None, None),
-            (ReadingKind::Ambiguous, us(10_000), None, None),
-            (ReadingKind::Unanswered, None, None, None),
+            (ReadingKind::Accepted, us(24_000), Some(f32::INFINITY)),
+            (ReadingKind::Accepted, us(100), Some(f32::NEG_INFINITY)),
+            (ReadingKind::Clear, None, Some(f32::INFINITY)),
+            (ReadingKind::TooEarly, us(90), Some(f32::NEG_INFINITY)),
+            (ReadingKind::Rejected, us(10_000), None),
+            (ReadingKind::First, us(10_000), None),
+            (ReadingKind::Late, us(41_000), None),
+            (ReadingKind::NoEcho, None, None),
+            (ReadingKind::Stuck, None, None),
+            (ReadingKind::Ambiguous, us(10_000), None),
+            (ReadingKind::Unanswered, None, None),
         ] {
-            for (clear_as, expected) in [(ClearAs::Inf, inf), (ClearAs::MaxRange, max_range)] {
-                let scale = scale(clear_as);
-                let number = scale.distance(kind, t_echo).map(|distance| scale.number(distance));
-                assert_eq!(number, expected, "{kind} {clear_as:?}");
-            }
+            assert_eq!(scale.distance(kind, t_echo).map(Distance::number), expected, "{kind}");
         }
     }
 
     #[test]
     fn metres_become_the_echo_time_that_they_came_from() {
-        let scale = scale(ClearAs::Inf);
+        let scale = Scale::new(&Parameters::default());
         for us in [0, 1, 999, 23_310] {
             assert_eq!(scale.echo_time(scale.metres(Micros::new(us)) as f32), Micros::new(us));
         }

@@ -292,7 +292,7 @@ impl EerufNode {
         let seconds = |age: Micros| (f64::from(age.as_micros()) / 1e6) as f32;
         let views = self.diagnosis.views(self.now_s(), &self.scale);
         let views: Vec<(View, f32)> = views.map(|(view, age)| (view, seconds(age))).collect();
-        let published = self.ros.as_ref().is_none_or(|ros| ros.publish_cloud(nanoseconds(), &views));
+        let published = self.ros.as_ref().is_none_or(|ros| ros.publish_ring(nanoseconds(), &views, &self.scale));
         let sent = self.mavlink.as_mut().is_none_or(|mavlink| mavlink.picture(&views).is_ok());
         let course = self.simulator.as_ref().and_then(|simulator| simulator.course().ok());
         let shown = self.ros.as_ref().zip(course);
@@ -305,7 +305,7 @@ impl EerufNode {
     fn publish(&mut self, sensor: u8, kind: ReadingKind, t_echo: Option<Micros>, fired_ns: i64) {
         self.has_news = true;
         let Some(distance) = self.scale.distance(kind, t_echo) else { return };
-        let range = self.scale.number(distance);
+        let range = distance.number();
         let published = self.ros.as_ref().is_none_or(|ros| ros.publish_range(sensor, fired_ns, range));
         let sent = self.mavlink.as_mut().is_none_or(|mavlink| mavlink.distance(sensor, distance).is_ok());
         if !(published && sent) {

@@ -75,14 +75,18 @@ impl Simulator {
 
     /// Simulates what has passed by the clock on the wall; the readings, and true if the simulation is slower than it.
     pub(crate) fn go_on(&mut self) -> Result<(Vec<Simulated>, bool), String> {
-        let mut read = Vec::new();
         let passed_s = (nanoseconds() - self.began_ns) as f64 * 1e-9 - self.skipped_s;
         let behind_s = passed_s - self.simulation.time_s();
         let is_slow = behind_s > BEHIND_S;
         if is_slow {
             self.skipped_s += behind_s - PIECE_S;
         }
-        let step_s = behind_s.clamp(0.0, PIECE_S);
+        Ok((self.step(behind_s.clamp(0.0, PIECE_S))?, is_slow))
+    }
+
+    /// Simulates so many seconds.
+    pub(crate) fn step(&mut self, step_s: f64) -> Result<Vec<Simulated>, String> {
+        let mut read = Vec::new();
         let readings = self.simulation.step(step_s, |_| true).map_err(|error| format!("simulate: {error}"))?;
         for n in (0..readings.len()).filter(|&n| readings.robot[n] == 0) {
             let micros = |us: f64| (us.is_finite() && us >= 0.0).then(|| Micros::new(us.round() as u32));
@@ -103,7 +107,7 @@ impl Simulator {
             let fired_ns = self.began_ns + ((fired_s + self.skipped_s) * 1e9) as i64;
             read.push(Simulated { firing, fired_ns, truth: micros(readings.reference_us[n]) });
         }
-        Ok((read, is_slow))
+        Ok(read)
     }
 
     /// From now on the robot drives so.

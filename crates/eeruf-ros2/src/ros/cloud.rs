@@ -1,10 +1,16 @@
-//! The state of all sensors as a `PointCloud2`: a point for each sensor, in their order.
+//! The state of all sensors as a `PointCloud2`, a point for each in their order, and of the whole ring as a `LaserScan`.
 
+use std::f32::consts::{PI, TAU};
+
+use crate::fan;
 use crate::placing::Place;
-use crate::range::Distance;
+use crate::range::{Distance, Scale};
 use crate::view::View;
 
-use super::messages::{FLOAT32, Header, PointCloud2, PointField, UINT8};
+use super::messages::{FLOAT32, Header, LaserScan, PointCloud2, PointField, UINT8};
+
+/// Rays of a scan: at 4 m they are 3.5 cm apart, so that none misses a cell of 5 cm.
+const RAYS: u16 = 720;
 
 /// Name, offset and type of each field.
 const FIELDS: [(&str, u32, u8); 6] = [
@@ -50,5 +56,31 @@ pub(super) fn cloud(header: Header, places: &[Place], views: &[(View, f32)], min
         row_step: POINT * width,
         data,
         is_dense: false,
+    }
+}
+
+/// The scan of the ring from the robot's centre, counter-clockwise from behind: an obstacle's distance, `+Inf` where the
+/// ring is clear, NaN where it does not know.
+pub(crate) fn scan(header: Header, places: &[Place], views: &[(View, f32)], view_rad: f32, scale: &Scale) -> LaserScan {
+    let angle_increment = TAU / f32::from(RAYS);
+    let ray = |n: u16| {
+        let heading = f64::from(angle_increment * f32::from(n) - PI);
+        match fan::along(heading, places, views, f64::from(view_rad / 2.0), scale) {
+            View::Sees(Distance::At(metres)) if metres < scale.max_m => metres,
+            View::Sees(_) => f32::INFINITY,
+            View::Unanswered | View::Unknown => f32::NAN,
+        }
+    };
+    LaserScan {
+        header,
+        angle_min: -PI,
+        angle_max: PI - angle_increment,
+        angle_increment,
+        time_increment: 0.0,
+        scan_time: 0.0,
+        range_min: 0.0,
+        range_max: scale.max_m,
+        ranges: (0..RAYS).map(ray).collect(),
+        intensities: Vec::new(),
     }
 }

@@ -130,6 +130,21 @@ pub(crate) struct PointCloud2 {
     pub(crate) is_dense: bool,
 }
 
+/// `sensor_msgs/LaserScan`.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct LaserScan {
+    pub(crate) header: Header,
+    pub(crate) angle_min: f32,
+    pub(crate) angle_max: f32,
+    pub(crate) angle_increment: f32,
+    pub(crate) time_increment: f32,
+    pub(crate) scan_time: f32,
+    pub(crate) range_min: f32,
+    pub(crate) range_max: f32,
+    pub(crate) ranges: Vec<f32>,
+    pub(crate) intensities: Vec<f32>,
+}
+
 /// `geometry_msgs/Vector3`, and `Point`.
 #[derive(Clone, Copy, Debug, Default, Deserialize, Serialize)]
 pub(crate) struct Vector3 {

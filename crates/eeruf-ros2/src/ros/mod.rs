@@ -1,7 +1,7 @@
 //! The node's part in ROS 2: what it publishes and subscribes to, over DDS.
 
-mod cloud;
-mod messages;
+pub(crate) mod cloud;
+pub(crate) mod messages;
 mod participant;
 mod scene;
 
@@ -22,13 +22,13 @@ use crate::diagnosis::Status;
 use crate::gpio::Speeds;
 use crate::parameters::{Parameters, Source};
 use crate::placing::{Place, Placing};
-use crate::range::Distance;
+use crate::range::{Distance, Scale};
 use crate::ros_args::RosArgs;
 use crate::simulated::Course;
 use crate::view::View;
 use messages::{
-    DiagnosticArray, DiagnosticStatus, Header, KeyValue, Odometry, PointCloud2, Quaternion, Range, RangeHeard,
-    TfMessage, Time, Transform, TransformStamped, Twist, UInt32MultiArray, ULTRASOUND, Vector3,
+    DiagnosticArray, DiagnosticStatus, Header, KeyValue, LaserScan, Odometry, PointCloud2, Quaternion, Range,
+    RangeHeard, TfMessage, Time, Transform, TransformStamped, Twist, UInt32MultiArray, ULTRASOUND, Vector3,
 };
 
 use scene::Scene;
@@ -59,6 +59,7 @@ struct Placed {
     places: Vec<Place>,
     base_frame: String,
     cloud: Publisher<PointCloud2>,
+    scan: Publisher<LaserScan>,
     /// Held so that those who come later receive what it sent.
     _transforms: Publisher<TfMessage>,
 }
@@ -163,11 +164,13 @@ impl Ros {
         publisher.publish(message).is_ok()
     }
 
-    /// Publishes what all sensors see and how old that is, in seconds; false if that cannot be sent.
-    pub(crate) fn publish_cloud(&self, now_ns: i64, views: &[(View, f32)]) -> bool {
+    /// Publishes what all sensors see and how old that is, in seconds, and the scan of them; false if that cannot be sent.
+    pub(crate) fn publish_ring(&self, now_ns: i64, views: &[(View, f32)], scale: &Scale) -> bool {
         let Some(placed) = &self.placed else { return true };
         let header = Header { stamp: Time::from_nanoseconds(now_ns), frame_id: placed.base_frame.clone() };
-        placed.cloud.publish(cloud::cloud(header, &placed.places, views, self.min_range)).is_ok()
+        let scan = cloud::scan(header.clone(), &placed.places, views, self.field_of_view, scale);
+        let sent = placed.cloud.publish(cloud::cloud(header, &placed.places, views, self.min_range)).is_ok();
+        placed.scan.publish(scan).is_ok() && sent
     }
 
     /// The velocity that a simulated robot was asked for since: ahead and of its turn.
@@ -262,6 +265,7 @@ impl Topics<'_> {
     /// Publishes where the sensors are, once and for all.
     fn placed(&mut self, placing: &Placing, base_frame: &str, frame_ids: &[String]) -> Result<Placed, String> {
         let cloud = self.publisher("~/points", ["sensor_msgs", "PointCloud2"], &PUBLISHING)?;
+        let scan = self.publisher("~/scan", ["sensor_msgs", "LaserScan"], &PUBLISHING)?;
         let transforms = self.publisher("/tf_static", ["tf2_msgs", "TFMessage"], &LATCHED)?;
         let stamp = Time::from_nanoseconds(nanoseconds());
         let transform = |(place, frame_id): (&Place, &String)| TransformStamped {
@@ -275,7 +279,7 @@ impl Topics<'_> {
         let message = TfMessage { transforms: placing.frames(frame_ids).map(transform).collect() };
         transforms.publish(message).map_err(|error| format!("/tf_static: {error}"))?;
         let places = placing.places.clone();
-        Ok(Placed { places, base_frame: base_frame.to_owned(), cloud, _transforms: transforms })
+        Ok(Placed { places, base_frame: base_frame.to_owned(), cloud, scan, _transforms: transforms })
     }
 }
 

@@ -1,6 +1,7 @@
 """ArduPilot's and PX4's reading of the messages, by the rules that docs/how-to/autopilots.md states with their sources."""
 
 import math
+import time
 
 UNKNOWN = 65535
 
@@ -14,12 +15,19 @@ class ArduPilot:
 
     def __init__(self):
         self.faces = {}
+        self.heard_s = -math.inf
+
+    def is_healthy(self):
+        """Returns true if the proximity check before arming passes."""
+        return time.monotonic() - self.heard_s <= 0.5
 
     def face(self, angle):
         return int(turned(angle + 22.5) // 45)
 
     def hear(self, message):
         kind = message.get_type()
+        if kind in ("DISTANCE_SENSOR", "OBSTACLE_DISTANCE"):
+            self.heard_s = time.monotonic()
         if kind == "DISTANCE_SENSOR" and message.orientation <= 7:
             if message.min_distance <= message.current_distance <= message.max_distance:
                 self.faces[message.orientation] = (45 * message.orientation, message.current_distance / 100)

@@ -34,7 +34,7 @@ class Ring:
         command = [NODE, "--no-ros", "--params-file", str(file)]
         self.process = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
         self.ardupilot, self.px4 = ArduPilot(), Px4()
-        self.kinds = []
+        self.kinds, self.last, self.texts = [], {}, []
         # What the node says before it has opened the line is lost to it.
         self.until(lambda: self.fire(["clear"] * SENSORS), lambda: "OBSTACLE_DISTANCE" in self.kinds)
 
@@ -44,10 +44,18 @@ class Ring:
         while (message := self.connection.recv_msg()) is not None:
             assert message.get_type() != "BAD_DATA"
             self.kinds.append(message.get_type())
+            self.last[message.get_type()] = message
+            if message.get_type() == "STATUSTEXT":
+                self.texts.append((message.severity, message.text))
             if message.get_type() == "OBSTACLE_DISTANCE":
                 self.sectors = message
             self.ardupilot.hear(message)
             self.px4.hear(message)
+
+    def health(self):
+        """The state of the component, and the health bits that it sends."""
+        beat, status = self.last.get("HEARTBEAT"), self.last.get("SYS_STATUS")
+        return status and (beat.system_status, status.onboard_control_sensors_health)
 
     def until(self, step, holds):
         end = time.monotonic() + PATIENCE_S
@@ -151,7 +159,7 @@ def test_too_close_is_an_obstacle_and_ambiguous_is_unknown(ring):
 
 
 def test_silent_sensor_is_an_obstacle_unknown_says_nothing(ring):
-    ring = ring(silent_after_s=0.3)
+    ring = ring(silent_after_s=0.3, mavlink_unanswered_as="obstacle")
     # The board says nothing more of the last sensor.
     begun = time.monotonic()
     ring.until(lambda: ring.fire(["clear"] * 11), lambda: time.monotonic() > begun + 0.4)
@@ -162,4 +170,26 @@ def test_silent_sensor_is_an_obstacle_unknown_says_nothing(ring):
     ring.kinds = []
     for _ in range(20):
         ring.fire(["unanswered"] * SENSORS)
-    assert set(ring.kinds) <= {"HEARTBEAT"}
+    assert set(ring.kinds) <= {"HEARTBEAT", "SYS_STATUS", "STATUSTEXT"}
+
+
+def test_failed_sensor_fails_the_proximity_check_until_armed(ring):
+    ring = ring()
+    ring.show(["clear"] * SENSORS)
+    assert ring.ardupilot.is_healthy()
+    silent = all_but(3, "unanswered")
+    ring.until(lambda: ring.fire(silent), lambda: not ring.ardupilot.is_healthy())
+    ring.until(lambda: ring.fire(silent), lambda: ring.health() == (5, 0))
+    assert ring.texts == [(2, "eeruf: sensor 4 (270 deg) does not answer")]
+
+    def armed():
+        ring.connection.mav.srcSystem = 1
+        ring.connection.mav.heartbeat_send(2, 3, 128, 0, 4)
+        ring.fire(silent)
+
+    ring.until(armed, ring.ardupilot.is_healthy)
+    # Said once more, since it is in flight now; its sectors are unknown, and the rest is told.
+    ring.show(silent)
+    assert len(ring.texts) == 2
+    assert ring.px4.bins[clockwise(3) // 10] is None and ring.px4.bins[clockwise(5) // 10] == math.inf
+    ring.until(lambda: ring.fire(["clear"] * SENSORS), lambda: ring.health() == (4, 1 << 25))

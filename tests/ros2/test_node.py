@@ -249,7 +249,8 @@ def run(tmp_path, participant, processes, faults, periods, cable=None, **given):
     line, terminal = os.openpty()
     tty.setraw(terminal)
     log = tmp_path / "log.csv"
-    file = parameters(tmp_path, **given)
+    # Pictures come with failed sensors too: no autopilot arms here.
+    file = parameters(tmp_path, **{"mavlink_unanswered_as": "obstacle"} | given)
     outputs = ["--log", str(log), "--mavlink", mavlink.to]
     node = Node(participant, processes, "--params-file", file, "--port", os.ttyname(terminal), *outputs)
     board = Board(processes, tmp_path, line, faults, periods, cable)
@@ -369,7 +370,7 @@ def test_a_late_board_and_a_missing_sensor_are_named(
     tmp_path, participant, processes, fault, about, level, message
 ):
     node, readings, _, _, mavlink = run(tmp_path, participant, processes, ["--one", fault], 50)
-    assert_ranges(node, expected_ranges(readings, set()))
+    assert_ranges(node, expected_ranges(readings, set(), math.inf))
     assert any(r[about].level == level and r[about].message.startswith(message) for r in node.reports)
     pictures = [m for m in mavlink.messages if m.get_type() == "OBSTACLE_DISTANCE"]
     assert len(pictures) > 10

@@ -1,5 +1,5 @@
 //! `MAVLink` 2: `OBSTACLE_DISTANCE` of the whole ring, `DISTANCE_SENSOR` for sensors that a named rotation stands for,
-//! and the `HEARTBEAT` by which others know of us. What autopilots make of them: `docs/how-to/autopilots.md`.
+//! `HEARTBEAT`, `SYS_STATUS` and `STATUSTEXT` by which others know of us and of sensors that fail. What autopilots make of them: `docs/how-to/autopilots.md`.
 //!
 //! Messages and numbers: <https://mavlink.io/en/messages/common.html>; frames:
 //! <https://mavlink.io/en/guide/serialization.html>.
@@ -9,7 +9,9 @@ use std::time::Instant;
 
 use crc::{CRC_16_MCRF4XX, Crc};
 
+use crate::fan;
 use crate::parameters::{Parameters, UnansweredAs};
+use crate::placing::Place;
 use crate::range::{Distance, Scale};
 use crate::view::View;
 
@@ -18,12 +20,20 @@ const CRC: Crc<u16> = Crc::<u16>::new(&CRC_16_MCRF4XX);
 /// A message's number, and the byte by which sender and receiver know that they mean the same fields.
 type Kind = (u32, u8);
 const HEARTBEAT: Kind = (0, 50);
+const SYS_STATUS: Kind = (1, 124);
 const DISTANCE_SENSOR: Kind = (132, 85);
+const STATUSTEXT: Kind = (253, 83);
 const OBSTACLE_DISTANCE: Kind = (330, 23);
 
 const MAV_TYPE_ONBOARD_CONTROLLER: u8 = 18;
 const MAV_AUTOPILOT_INVALID: u8 = 8;
 const MAV_STATE_ACTIVE: u8 = 4;
+const MAV_STATE_CRITICAL: u8 = 5;
+const MAV_MODE_FLAG_SAFETY_ARMED: u8 = 128;
+const MAV_SYS_STATUS_SENSOR_PROXIMITY: u32 = 1 << 25;
+const MAV_SEVERITY_CRITICAL: u8 = 2;
+/// Longest text of one `STATUSTEXT`.
+const TEXT: usize = 50;
 const MAVLINK_VERSION: u8 = 3;
 const MAV_DISTANCE_SENSOR_ULTRASOUND: u8 = 1;
 const MAV_FRAME_BODY_FRD: u8 = 12;
@@ -42,6 +52,28 @@ const FIRST_SECTOR_DEG: f32 = -20.0;
 const LEAST_HALF_VIEW_DEG: f32 = SECTOR_DEG;
 /// Nothing is known of the sector.
 const UNKNOWN: u16 = u16::MAX;
+
+/// The `base_mode` of an autopilot's `HEARTBEAT` in a datagram, of `MAVLink` 1 or 2.
+fn base_mode(datagram: &[u8], system: u8) -> Option<u8> {
+    let frame = |begin: usize| {
+        let frame = &datagram[begin..];
+        // Where the sender's system and the payload stand, and the message's number after the component.
+        let (of_system, payload) = match frame.first()? {
+            0xFD => (5, 10),
+            0xFE => (3, 6),
+            _ => return None,
+        };
+        let is_heartbeat = frame.get(1) == Some(&9) && frame.get(of_system + 2..payload)?.iter().all(|&byte| byte == 0);
+        let [body @ .., low, high] = frame.get(1..payload + 11)? else { return None };
+        let mut digest = CRC.digest();
+        digest.update(body);
+        digest.update(&[HEARTBEAT.1]);
+        let is_whole = digest.finalize().to_le_bytes() == [*low, *high];
+        let is_autopilot = frame[of_system] == system && frame[payload + 5] != MAV_AUTOPILOT_INVALID;
+        (is_heartbeat && is_whole && is_autopilot).then(|| frame[payload + 6])
+    };
+    (0..datagram.len()).find_map(frame)
+}
 
 /// Fields that are the same in all frames, and their count.
 struct Packer {
@@ -76,8 +108,15 @@ pub(crate) struct Mavlink {
     scale: Scale,
     field_of_view_rad: f32,
     unanswered_as: UnansweredAs,
-    /// Clockwise, in degrees.
-    yaws: Vec<f32>,
+    system: u8,
+    /// As its heartbeats say it; false before the first.
+    armed: bool,
+    /// Sensors that did not answer when the ring was last sent.
+    failed: Vec<bool>,
+    /// Those of which this was said since arming.
+    reported: Vec<bool>,
+    /// Clockwise, all at the vehicle's centre.
+    places: Vec<Place>,
     /// The named rotation of each sensor that has one to itself.
     rotations: Vec<Option<u8>>,
 }
@@ -96,6 +135,8 @@ impl Mavlink {
         let around = |n: u8| 360.0 / f32::from(sensors) * f32::from(n);
         let yaw = |n: u8| -parameters.yaws_deg.get(usize::from(n)).copied().unwrap_or_else(|| around(n));
         let yaws: Vec<f32> = (0..sensors).map(yaw).collect();
+        socket.set_nonblocking(true).map_err(|error| wrong(&error.to_string()))?;
+        let place = |yaw: &f32| Place { x_m: 0.0, y_m: 0.0, z_m: 0.0, yaw_rad: f64::from(*yaw).to_radians() };
         Ok(Self {
             socket,
             to: address,
@@ -104,39 +145,84 @@ impl Mavlink {
             scale: Scale::new(parameters),
             field_of_view_rad: parameters.field_of_view_rad,
             unanswered_as: parameters.mavlink_unanswered_as,
+            system: parameters.mavlink_system,
+            armed: false,
+            failed: vec![false; yaws.len()],
+            reported: vec![false; yaws.len()],
             rotations: (0..yaws.len()).map(|sensor| rotation(&yaws, sensor)).collect(),
-            yaws,
+            places: yaws.iter().map(place).collect(),
         })
     }
 
-    /// Says that we are here; each second.
-    pub(crate) fn heartbeat(&mut self) -> std::io::Result<()> {
-        let custom_mode = [0; 4];
-        let rest = [MAV_TYPE_ONBOARD_CONTROLLER, MAV_AUTOPILOT_INVALID, 0, MAV_STATE_ACTIVE, MAVLINK_VERSION];
-        let frame = self.packer.frame(HEARTBEAT, &[&custom_mode[..], &rest].concat());
+    fn send(&mut self, kind: Kind, payload: &[u8]) -> std::io::Result<()> {
+        let frame = self.packer.frame(kind, payload);
         self.socket.send_to(&frame, self.to).map(|_| ())
+    }
+
+    /// Learns from the autopilot's heartbeats whether it is armed.
+    fn listen(&mut self) {
+        let mut datagram = [0; 2048];
+        while let Ok(length) = self.socket.recv(&mut datagram) {
+            let Some(mode) = base_mode(&datagram[..length], self.system) else { continue };
+            let is_armed = mode & MAV_MODE_FLAG_SAFETY_ARMED != 0;
+            if is_armed && !self.armed {
+                self.reported.fill(false);
+            }
+            self.armed = is_armed;
+        }
+    }
+
+    /// Returns true while a failed sensor keeps back what would pass the vehicle's proximity check.
+    fn holds_back(&self) -> bool {
+        self.unanswered_as == UnansweredAs::Hold && !self.armed && self.failed.contains(&true)
+    }
+
+    /// Says that we are here, and whether all sensors answer; each second.
+    pub(crate) fn heartbeat(&mut self) -> std::io::Result<()> {
+        self.listen();
+        let is_well = !self.failed.contains(&true);
+        let state = if is_well { MAV_STATE_ACTIVE } else { MAV_STATE_CRITICAL };
+        let custom_mode = [0; 4];
+        let rest = [MAV_TYPE_ONBOARD_CONTROLLER, MAV_AUTOPILOT_INVALID, 0, state, MAVLINK_VERSION];
+        self.send(HEARTBEAT, &[&custom_mode[..], &rest].concat())?;
+        let proximity = MAV_SYS_STATUS_SENSOR_PROXIMITY;
+        // Present, enabled, in health; of load, battery and errors nothing is known.
+        let sensors = [proximity, proximity, if is_well { proximity } else { 0 }].map(u32::to_le_bytes).concat();
+        let battery = [[0xFF; 2], [0xFF; 2]].concat();
+        self.send(SYS_STATUS, &[&sensors[..], &[0; 2], &battery, &[0; 12], &[0xFF]].concat())
     }
 
     /// Sends a sensor's distance, if it has a named rotation to itself.
     pub(crate) fn distance(&mut self, sensor: u8, distance: Distance) -> std::io::Result<()> {
         let Some(&Some(rotation)) = self.rotations.get(usize::from(sensor)) else { return Ok(()) };
+        if self.holds_back() {
+            return Ok(());
+        }
         // Wraps after 49 days, as the field does.
         let time_boot_ms = self.began.elapsed().as_millis() as u32;
         let payload = self.distance_sensor(sensor, rotation, distance, time_boot_ms);
-        let frame = self.packer.frame(DISTANCE_SENSOR, &payload);
-        self.socket.send_to(&frame, self.to).map(|_| ())
+        self.send(DISTANCE_SENSOR, &payload)
     }
 
-    /// Sends what each sensor sees, in their order. While none sees anything nothing is sent: both autopilots then find
-    /// after half a second that they have no data.
+    /// Sends what each sensor sees, in their order, and names those that do not answer. While none sees anything, or one
+    /// holds the others back, no distances are sent: both autopilots then find after half a second that they have no data.
     pub(crate) fn picture(&mut self, views: &[(View, f32)]) -> std::io::Result<()> {
-        if !views.iter().any(|(view, _)| matches!(view, View::Sees(_))) {
+        self.listen();
+        self.failed = views.iter().map(|(view, _)| *view == View::Unanswered).collect();
+        for sensor in 0..self.failed.len().min(self.reported.len()) {
+            if self.failed[sensor] && !std::mem::replace(&mut self.reported[sensor], true) {
+                let yaw = self.places[sensor].yaw_rad.to_degrees().rem_euclid(360.0) + 0.0;
+                let mut text = format!("eeruf: sensor {} ({yaw:.0} deg) does not answer", sensor + 1);
+                text.truncate(TEXT);
+                self.send(STATUSTEXT, &[&[MAV_SEVERITY_CRITICAL], text.as_bytes()].concat())?;
+            }
+        }
+        if self.holds_back() || !views.iter().any(|(view, _)| matches!(view, View::Sees(_))) {
             return Ok(());
         }
         let time_us = self.began.elapsed().as_micros() as u64;
         let payload = self.obstacle_distance(views, time_us);
-        let frame = self.packer.frame(OBSTACLE_DISTANCE, &payload);
-        self.socket.send_to(&frame, self.to).map(|_| ())
+        self.send(OBSTACLE_DISTANCE, &payload)
     }
 
     /// The least and the greatest distance, in centimetres.
@@ -178,32 +264,22 @@ impl Mavlink {
         payload
     }
 
-    /// The distance of each sector. Where views overlap, the nearest obstacle counts, then what is not known, and a
-    /// sector is clear only if all of its sensors say so.
+    /// The distance of each sector, by its middle.
     fn sectors(&self, views: &[(View, f32)]) -> [u16; SECTORS] {
-        let half_view = (self.field_of_view_rad.to_degrees() / 2.0).max(LEAST_HALF_VIEW_DEG) + 1e-3;
-        let clear = self.centimetres_of(Distance::Clear);
-        let mut sectors = [None::<u16>; SECTORS];
-        for (&yaw, &(view, _)) in self.yaws.iter().zip(views) {
-            let said = match (view, self.unanswered_as) {
-                (View::Sees(distance), _) => self.centimetres_of(distance),
-                (View::Unanswered, UnansweredAs::Obstacle) => self.centimetres_of(Distance::TooClose),
-                (View::Unanswered, UnansweredAs::Unknown) | (View::Unknown, _) => UNKNOWN,
-            };
-            for (sector, place) in (0_u8..).zip(&mut sectors) {
-                let middle = FIRST_SECTOR_DEG + SECTOR_DEG * f32::from(sector);
-                if between(middle, yaw) > half_view {
-                    continue;
-                }
-                *place = Some(match *place {
-                    Some(other) if other < clear && said < clear => other.min(said),
-                    Some(other) if other < clear => other,
-                    Some(UNKNOWN) if said == clear => UNKNOWN,
-                    _ => said,
-                });
+        let half_view_deg = (self.field_of_view_rad.to_degrees() / 2.0).max(LEAST_HALF_VIEW_DEG) + 1e-3;
+        let half_view = f64::from(half_view_deg).to_radians();
+        let as_obstacle = |&(view, age): &(View, f32)| match (view, self.unanswered_as) {
+            (View::Unanswered, UnansweredAs::Obstacle) => (View::Sees(Distance::TooClose), age),
+            _ => (view, age),
+        };
+        let views: Vec<_> = views.iter().map(as_obstacle).collect();
+        std::array::from_fn(|sector| {
+            let middle = f64::from(FIRST_SECTOR_DEG + SECTOR_DEG * sector as f32).to_radians();
+            match fan::along(middle, &self.places, &views, half_view, &self.scale) {
+                View::Sees(distance) => self.centimetres_of(distance),
+                View::Unanswered | View::Unknown => UNKNOWN,
             }
-        }
-        sectors.map(|said| said.unwrap_or(UNKNOWN))
+        })
     }
 }
 
@@ -284,6 +360,65 @@ mod tests {
         assert_eq!(obstacle(clear, View::Unanswered), [401, 2, 2]);
         assert_eq!(said(UnansweredAs::Unknown, clear, View::Unanswered), [401, UNKNOWN, UNKNOWN]);
         assert_eq!(said(UnansweredAs::Unknown, View::Unanswered, near), [UNKNOWN, 100, 100]);
+    }
+
+    /// What a receiver gets within a moment: number and payload of each frame.
+    fn received(receiver: &UdpSocket) -> Vec<(u8, Vec<u8>)> {
+        let mut buffer = [0; 512];
+        let mut frames = Vec::new();
+        while let Ok(length) = receiver.recv(&mut buffer) {
+            // OBSTACLE_DISTANCE's number has a second byte.
+            frames.push((buffer[7], buffer[10..length - 2].to_vec()));
+        }
+        frames
+    }
+
+    #[test]
+    fn failed_sensor_holds_back_before_arming() {
+        let receiver = UdpSocket::bind("127.0.0.1:0").unwrap();
+        receiver.set_read_timeout(Some(std::time::Duration::from_millis(50))).unwrap();
+        let mavlink = format!("udp:{}", receiver.local_addr().unwrap());
+        let mut sender = Mavlink::open(&Parameters { mavlink, sensors: 2, ..Parameters::default() }).unwrap();
+        let here = SocketAddr::from(([127, 0, 0, 1], sender.socket.local_addr().unwrap().port()));
+        let mut autopilot = Packer { sequence: 0, system: 1, component: 1 };
+        let mut heartbeat = |system: u8, mode: u8| {
+            autopilot.system = system;
+            let frame = autopilot.frame(HEARTBEAT, &[0, 0, 0, 0, 2, 3, mode, 4, 3]);
+            receiver.send_to(&[&[0xFD, 9], &frame[..]].concat(), here).unwrap();
+            std::thread::sleep(std::time::Duration::from_millis(20));
+        };
+        let [well, cut] = [View::Sees(Distance::Clear), View::Unanswered].map(|view| [(view, 0.0), (well_view(), 0.0)]);
+        let numbers = |frames: Vec<(u8, Vec<u8>)>| frames.into_iter().map(|(number, _)| number).collect::<Vec<_>>();
+        let sent = |sender: &mut Mavlink, views: [(View, f32); 2]| {
+            sender.picture(&views).unwrap();
+            sender.distance(1, Distance::Clear).unwrap();
+            received(&receiver)
+        };
+        let (status, obstacles, distance) = (253, (330 % 256) as u8, 132);
+        assert_eq!(numbers(sent(&mut sender, well)), [obstacles, distance]);
+        let said = sent(&mut sender, cut);
+        assert_eq!(said.len(), 1);
+        assert_eq!((said[0].0, &said[0].1[1..]), (status, &b"eeruf: sensor 1 (0 deg) does not answer"[..]));
+        assert!(sent(&mut sender, cut).is_empty());
+        // Another vehicle's arming is not ours.
+        heartbeat(2, MAV_MODE_FLAG_SAFETY_ARMED);
+        assert!(sent(&mut sender, cut).is_empty());
+        heartbeat(1, MAV_MODE_FLAG_SAFETY_ARMED);
+        let said = sent(&mut sender, cut);
+        assert_eq!(numbers(said.clone()), [status, obstacles, distance]);
+        // Its sectors are unknown, those of the other clear.
+        let at = |deg: f32| said[1].1[8 + 2 * sector(deg)..][..2].to_vec();
+        assert_eq!((at(0.0), at(180.0)), (vec![0xFF, 0xFF], 401_u16.to_le_bytes().to_vec()));
+        sender.heartbeat().unwrap();
+        let beats = received(&receiver);
+        assert_eq!((numbers(beats.clone()), beats[0].1[7]), (vec![0, 1], MAV_STATE_CRITICAL));
+        assert_eq!(beats[1].1[..12], [[0, 0, 0, 2], [0, 0, 0, 2], [0, 0, 0, 0]].concat());
+        heartbeat(1, 0);
+        assert!(sent(&mut sender, cut).is_empty());
+    }
+
+    fn well_view() -> View {
+        View::Sees(Distance::Clear)
     }
 
     #[test]

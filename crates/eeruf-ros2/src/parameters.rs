@@ -24,12 +24,14 @@ pub(crate) enum Source {
     Simulation,
 }
 
-/// The value in `OBSTACLE_DISTANCE` where a sensor does not answer.
+/// What is sent of a ring of which a sensor does not answer.
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum UnansweredAs {
-    /// An obstacle at the minimum range, which no autopilot takes for free space.
+    /// No distances until the vehicle is armed, so that its proximity check fails; then unknown.
     #[default]
+    Hold,
+    /// An obstacle at the minimum range: a copter flies away from it.
     Obstacle,
     /// Unknown, which `ArduPilot` takes for free space.
     Unknown,
@@ -128,8 +130,9 @@ parameters! {
     mavlink_system: u8 = 1, "1";
     /// 196 is MAV_COMP_ID_OBSTACLE_AVOIDANCE.
     mavlink_component: u8 = 196, "196";
-    /// OBSTACLE_DISTANCE of a sensor that does not answer: obstacle (at min_range_m) or unknown.
-    mavlink_unanswered_as: UnansweredAs = UnansweredAs::Obstacle, "obstacle";
+    /// A sensor that does not answer: hold (no distances before arming, then unknown), unknown, or obstacle (at
+    /// min_range_m; for ground vehicles, since copters back away from it).
+    mavlink_unanswered_as: UnansweredAs = UnansweredAs::Hold, "hold";
     /// The heading of each sensor, counter-clockwise from ahead, if no ring file says it; none: evenly around.
     yaws_deg: Vec<f32> = Vec::new(), "[]";
     /// Stamps are by the host's clock: true is an error.

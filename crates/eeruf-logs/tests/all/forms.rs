@@ -315,10 +315,14 @@ fn tried(file: &str) -> (usize, Vec<String>, Vec<String>) {
     (right, open, wrong)
 }
 
-// The reader was mended by the first forty, and not by the second.
+// The reader was mended by the first forty. The third was 28 right, 2 refused and 10 silently wrong at first sight.
 #[test]
-fn forms_of_two_trials_are_mostly_right() {
-    let trials = [(include_str!("../data/trial-1.txt"), 37, 2), (include_str!("../data/trial-2.txt"), 30, 8)];
+fn forms_of_three_trials_are_mostly_right() {
+    let trials = [
+        (include_str!("../data/trial-1.txt"), 37, 2),
+        (include_str!("../data/trial-2.txt"), 30, 8),
+        (include_str!("../data/trial-3.txt"), 28, 10),
+    ];
     for (file, least, most_wrong) in trials {
         let (right, open, wrong) = tried(file);
         println!("right {right}, refused {}, silently wrong {}", open.len(), wrong.len());

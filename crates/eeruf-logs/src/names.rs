@@ -32,7 +32,7 @@ const SENSORS: &str = "\
     sensor id name channel ch frame topic sonar _field sensor_id sensorid frame_id entity_id source instance device \
     device_id key addr address port";
 const OTHERS: &str = "\
-    battery bat voltage volt volts current temp temperature humidity hum pressure seq sequence index entry idx \
+    tcdt battery bat voltage volt volts current temp temperature humidity hum pressure seq sequence index entry idx \
     count counter row line mode state status flag flags ir infrared laser lidar speed velocity vel accel acc gyro \
     yaw pitch roll heading angle theta odom odometry x y z lat lon alt altitude encoder pwm motor rssi snr \
     variance covariance std intensity intensities radiation fov period phase reading rate size stride offset \
@@ -42,6 +42,11 @@ const OTHERS: &str = "\
     vx vy vz q servo cmd linear angular valid ok enabled bump bumper touch contact estop hz fps deg degc lux feed \
     stat orient elevation adc analog analogue ttl";
 
+/// Directions and places of sensors, as people call them in their languages.
+const PLACES: &str = "\
+    left right front back rear center centre middle mid top bottom upper lower side corner bow stern port starboard \
+    north south east west fl fr bl br rl rr fc lf rf lb rb lr links rechts vorne vorn hinten mitte oben unten \
+    gauche droite avant arriere izquierda derecha frente atras delante sinistra destra sx dx lus rus";
 /// Lengths that are worked out from a range, where there is one.
 const DERIVED: &str = "depth level height";
 /// Lines that a sketch draws to fix a plotter's axis.
@@ -166,6 +171,11 @@ pub(crate) fn stem(name: &str) -> Vec<String> {
     words
 }
 
+/// Returns true for the name of a place on a robot, as a sensor has it.
+pub(crate) fn is_place(name: &str) -> bool {
+    words(name).iter().any(|word| is_in(PLACES, word))
+}
+
 /// Returns true for the name of what a filter made of readings.
 pub(crate) fn is_filtered(name: &str) -> bool {
     words(name).iter().any(|word| is_in(FILTERS, word))
@@ -186,6 +196,12 @@ pub(crate) fn is_derived(name: &str) -> bool {
 pub(crate) fn is_analogue_pin(name: &str) -> bool {
     let pin = name.trim().strip_prefix(['A', 'a']).and_then(|pin| pin.parse::<u8>().ok());
     pin.is_some_and(|pin| pin < 16)
+}
+
+/// Returns true for a unit of anything but a length or a time.
+pub(crate) fn is_foreign_unit(text: &str) -> bool {
+    const UNITS: &str = "% c f v mv a ma w g kg hpa pa db dbm lux lx rpm hz deg \u{b0} \u{b0}c \u{b0}f km/h m/s";
+    is_in(UNITS, &text.to_lowercase())
 }
 
 /// The unit of times in a name.

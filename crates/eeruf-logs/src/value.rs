@@ -60,6 +60,10 @@ pub(crate) fn unit(word: &str) -> Option<RangeUnit> {
 
 /// The range in a cell; `None` for what is neither a number nor a word for no echo.
 pub(crate) fn range(text: &str, decimal_comma: bool) -> Option<(Value, Option<RangeUnit>)> {
+    // No word for no echo begins so.
+    if text.starts_with(|letter: char| letter.is_ascii_digit()) {
+        return with_unit(text, decimal_comma).map(|(number, unit)| (Value::Number(number), unit));
+    }
     if is_no_echo(text) {
         return Some((Value::NoEcho, None));
     }
@@ -284,7 +288,9 @@ pub(crate) fn prefix(line: &str) -> Option<(u64, &str)> {
             && (time.is_none() || LEVELS.contains(&inner) || after.starts_with([':', '[']));
         // Arduino's log of an ESP32: `[  1234][I][main.cpp:42]`, in milliseconds.
         let is_level = matches!(after.as_bytes(), [b'[', b'E' | b'W' | b'I' | b'D' | b'V', b']', ..]);
-        let ms = inner.parse::<u64>().ok().filter(|_| is_level).and_then(|ms| ms.checked_mul(1_000_000));
+        // A number alone is one too where the lines' numbers rise, as `strip` sees.
+        let is_ms = is_level || after.contains([':', '=']);
+        let ms = inner.parse::<u64>().ok().filter(|_| is_ms).and_then(|ms| ms.checked_mul(1_000_000));
         match ms.or_else(|| bracketed_ns(inner)).filter(|_| time.is_none()) {
             Some(ns) => time = Some(ns),
             None if is_name => {}

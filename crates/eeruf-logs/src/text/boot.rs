@@ -17,27 +17,36 @@ const TAGS: &str = "\
 const LONGEST: u32 = 60;
 
 /// Tells lines of a board from others.
-#[derive(Default)]
 pub(super) struct Boot {
+    /// `BEGINS`, `ENDS` and `ALONE`, apart: each line is compared with all of them.
+    lists: [Vec<&'static str>; 3],
     /// Lines that may still follow of a start or a crash.
     left: u32,
+}
+
+impl Default for Boot {
+    fn default() -> Self {
+        Self { lists: [BEGINS, ENDS, ALONE].map(|list| list.split('|').collect()), left: 0 }
+    }
 }
 
 impl Boot {
     /// Returns true for a line that a board or a monitor writes by itself.
     pub(super) fn is_boot(&mut self, line: &str) -> bool {
         let text = line.trim();
-        let is_of = |list: &str| list.split('|').any(|begin| text.starts_with(begin));
-        if is_of(BEGINS) {
+        let Some(&first) = text.as_bytes().first() else { return self.left > 0 };
+        let [begins, ends, alone] = &self.lists;
+        let is_of = |list: &[&str]| list.iter().any(|own| own.as_bytes()[0] == first && text.starts_with(own));
+        if is_of(begins) {
             self.left = LONGEST;
         }
         if self.left > 0 {
-            self.left = if is_of(ENDS) { 0 } else { self.left - 1 };
+            self.left = if is_of(ends) { 0 } else { self.left - 1 };
             return true;
         }
         // `--- Terminal on COM3`, as monitors say.
         let is_monitor = text.strip_prefix("--- ").is_some_and(|rest| rest.starts_with(char::is_alphabetic));
-        is_of(ALONE) || is_monitor || is_of_esp_idf(text)
+        is_of(alone) || is_monitor || is_of_esp_idf(text)
     }
 }
 

@@ -37,6 +37,9 @@ pub(super) struct Column {
     pub(super) texts: usize,
     pub(super) calendars: usize,
     pub(super) distinct: BTreeMap<String, usize>,
+    /// Rows whose text is not that of the row before.
+    changes: usize,
+    last: String,
     pub(super) has_unit_in_cells: Option<RangeUnit>,
     pub(super) units: usize,
     /// The unit below its name is one of lengths, or another one.
@@ -61,6 +64,8 @@ impl Column {
             texts: 0,
             calendars: 0,
             distinct: BTreeMap::new(),
+            changes: 0,
+            last: String::new(),
             has_unit_in_cells: None,
             units: 0,
             has_length: false,
@@ -72,9 +77,13 @@ impl Column {
     pub(super) fn note(&mut self, text: &str, decimal_comma: bool) {
         self.longest = self.longest.max(text.len());
         self.shortest = self.shortest.min(text.len());
-        if text.is_empty() {
+        if text.is_empty() || text == "unavailable" {
             self.empties += 1;
             return;
+        }
+        if self.last != text {
+            self.changes += 1;
+            text.clone_into(&mut self.last);
         }
         if self.distinct.len() <= 1024 {
             *self.distinct.entry(text.to_owned()).or_default() += 1;
@@ -93,7 +102,9 @@ impl Column {
 
     pub(super) fn is_range(&self) -> bool {
         let numbers = self.numbers.len() + self.no_echoes;
-        numbers > 0 && self.texts + self.calendars <= numbers
+        // Dashes between values are no deaf sensor.
+        let is_dash = self.numbers.is_empty() && self.distinct.keys().all(|text| text.starts_with('-'));
+        numbers > 0 && !is_dash && self.texts + self.calendars <= numbers
     }
 
     /// Returns true for a column of `0` and `1` alone, which a range in no unit is; `1.0` may be one in metres.
@@ -101,6 +112,17 @@ impl Column {
         let is_one =
             self.numbers.contains(&1.0) && self.distinct.keys().all(|text| ["0", "1"].contains(&text.as_str()));
         is_one && self.numbers.len() > 2 && self.no_echoes + self.units == 0 && names::range_unit(&self.name).is_none()
+    }
+
+    /// The median of its positive numbers.
+    pub(super) fn median(&self) -> f64 {
+        let mut sorted: Vec<_> = self.numbers.iter().copied().filter(|&number| number > 0.0).collect();
+        sorted.sort_by(f64::total_cmp);
+        sorted.get(sorted.len() / 2).copied().unwrap_or(f64::NAN)
+    }
+
+    pub(super) fn has_fractions(&self) -> bool {
+        self.numbers.iter().any(|number| number.fract() != 0.0)
     }
 
     /// Returns true for numbers beyond every range, such as times since 1970.
@@ -139,7 +161,10 @@ impl Column {
                 && !text.contains('=')
                 && value::unit(text).is_none()
         };
-        self.texts > 0 && self.distinct.keys().all(is_name) && (self.distinct.len() < rows || rows < 3)
+        // What a robot does stays for a while; sensors come by turns.
+        let is_state = self.distinct.len() > 1 && self.changes * 2 < rows + self.distinct.len();
+        let is_name = self.texts > 0 && self.distinct.keys().all(is_name);
+        is_name && !is_state && (self.distinct.len() < rows || rows < 3)
     }
 
     /// For two hexadecimal digits in each cell, as tools for buses print bytes: true if some are no plain number.

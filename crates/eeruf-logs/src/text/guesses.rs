@@ -7,6 +7,7 @@ use crate::options::{Options, RangeUnit, TimeUnit};
 use super::column::{Column, Role};
 use super::recognise::{Plan, guess};
 use crate::names;
+use crate::sink::Skipped;
 use crate::value;
 
 impl Plan {
@@ -19,10 +20,7 @@ impl Plan {
             if !matches!(column.role, Role::Range | Role::Empty | Role::Least | Role::Most) {
                 continue;
             }
-            let mut sorted = column.numbers.clone();
-            sorted.retain(|&number| number > 0.0);
-            sorted.sort_by(f64::total_cmp);
-            let median = sorted.get(sorted.len() / 2).copied();
+            let median = Some(column.median()).filter(|median| !median.is_nan());
             let name = names::range_unit(&column.name)
                 .filter(|(unit, is_sure)| *is_sure || *unit != RangeUnit::Us || median.is_none_or(|us| us >= 500.0));
             let row = units.get(index).copied().flatten();
@@ -41,7 +39,15 @@ impl Plan {
                 None => unnamed.push(index),
             }
         }
-        let unit = by_magnitude(&mut values);
+        // Four digits with leading zeroes have room for metres in millimetres, and for no centimetres.
+        let is_padded = |index: &usize| {
+            let texts = || self.columns[*index].distinct.keys();
+            texts().all(|text| text.len() == 4 && text.bytes().all(|byte| byte.is_ascii_digit()))
+                && texts().any(|text| text.starts_with('0') && text != "0000")
+        };
+        let is_padded = !unnamed.is_empty() && unnamed.iter().all(is_padded);
+        let unit = if is_padded { RangeUnit::Mm } else { by_magnitude(&mut values) };
+        self.refute(&values, unit, &unnamed, options);
         for &index in &unnamed {
             self.columns[index].unit = unit;
         }
@@ -60,6 +66,28 @@ impl Plan {
                 None => why,
             };
             self.guesses.push(guess("range unit", found.join(", ") + &why, "--range-unit"));
+        }
+    }
+
+    /// Takes back what nothing but numbers calls ranges, where the unit that they would have puts nine of ten nearer
+    /// than any module hears: a countdown, a share, a state.
+    fn refute(&mut self, values: &[(f64, bool)], unit: RangeUnit, unnamed: &[usize], options: &Options) {
+        const NEAREST_M: f64 = 0.04;
+        let is_asked = !options.table.ranges.is_empty() || !options.table.columns.is_empty();
+        let is_called = |column: &Column| {
+            names::meaning(&column.name) == names::Meaning::Range || names::is_place(&column.name) || column.units > 0
+        };
+        let ranges = || unnamed.iter().filter(|&&index| self.columns[index].role == Role::Range);
+        let Some(most) = values.get(values.len().saturating_sub(1) * 9 / 10) else { return };
+        let is_near = most.0 * unit.metres(options.speed_of_sound) < NEAREST_M;
+        if !is_asked && is_near && !ranges().any(|&index| is_called(&self.columns[index])) {
+            let taken: Vec<_> = ranges().copied().collect();
+            for index in taken {
+                self.columns[index].role = Role::Other;
+                let (topic, why) =
+                    (self.columns[index].name.clone(), "nearer than modules hear, in any unit".to_owned());
+                self.skipped.push(Skipped { topic, why, messages: 0 });
+            }
         }
     }
 

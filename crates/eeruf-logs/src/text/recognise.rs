@@ -44,6 +44,8 @@ pub(super) struct Plan {
     pub(super) sensor: Option<usize>,
     /// Sensors that a column names, as often as is needed to trust them.
     pub(super) known: BTreeSet<String>,
+    /// Labels of rows whose names are of another quantity, beside one that is called a range.
+    pub(super) foreign: BTreeSet<String>,
     pub(super) no_echo: NoEcho,
     /// Each row is of one sensor: the empty cells of the others are no silence.
     pub(super) one_a_row: bool,
@@ -93,6 +95,7 @@ pub(super) fn recognise(
         time: vec![],
         sensor: None,
         known: BTreeSet::new(),
+        foreign: BTreeSet::new(),
         no_echo: NoEcho::default(),
         one_a_row: false,
         is_first_cut: false,
@@ -283,6 +286,11 @@ impl Plan {
             self.guesses.push(guess("header", said, "--columns"));
         }
         let mut names = names.unwrap_or_default();
+        // A printed frame's rows begin with their number, which has no name.
+        let firsts = rows[first..].iter().filter(|(_, row)| row.len() == width).map(|(_, row)| row[0].as_str());
+        if names.len() + 1 == width && (0..).zip(firsts.take(3)).all(|(n, text)| text.parse() == Ok(n)) {
+            names.insert(0, String::new());
+        }
         names.iter_mut().for_each(|name| name.truncate(name.trim_end_matches(':').len()));
         names.truncate(width.max(1));
         (names.len()..width).for_each(|n| names.push(format!("column {}", n + 1)));
@@ -389,7 +397,15 @@ impl Plan {
                 && !column.distinct.is_empty()
                 && column.distinct.keys().all(|text| value::unit(text).is_some())
         };
-        self.unit = self.columns.iter().position(unit_of_row);
+        let first = self.columns.iter().position(|column| !column.numbers.is_empty());
+        let unit = self.columns.iter().position(unit_of_row);
+        // Without a header a unit stands behind its number: `Starting in 3` has none.
+        self.unit = unit.filter(|&at| has_header || first.is_some_and(|first| first < at));
+        // A number before a percent sign, or a unit of anything else, is no length.
+        for index in 1..self.columns.len() {
+            let is_foreign = self.columns[index].distinct.keys().all(|text| names::is_foreign_unit(text));
+            self.columns[index - 1].has_other_unit |= is_foreign && !self.columns[index].distinct.is_empty();
+        }
         // Of `sensor_msgs/Range`, and of MAVLink's and PX4's messages.
         let ends = |end: &str| self.columns.iter().position(|column| column.name.ends_with(end));
         let of_mavlink = ends("current_distance").and_then(|_| ends("type"));
@@ -418,8 +434,9 @@ impl Plan {
                     Meaning::Range if !ranges.is_empty() => Role::Other,
                     Meaning::Range | Meaning::Vague if column.empties > 0 && column.distinct.is_empty() => Role::Empty,
                     Meaning::Vague if column.calendars > 0 && column.texts + column.numbers.len() == 0 => Role::Time,
-                    Meaning::Vague if is_place && self.is_counter(index) => Role::Other,
+                    Meaning::Vague if self.is_counter(index) => Role::Other,
                     Meaning::Vague if is_place && (self.is_clock(index) || column.is_epoch()) => Role::Time,
+                    Meaning::Vague if self.is_sweep(index) => Role::Other,
                     // The beginning of the header is cut off.
                     Meaning::Vague if !has_time && self.is_clock(index) && self.is_even(index) => Role::Time,
                     Meaning::Vague if is_place && column.is_cycle() => Role::Sensor,
@@ -435,6 +452,7 @@ impl Plan {
         }
         if ranges.is_empty() && has_header {
             self.named_ranges_alone();
+            self.without_odd_ones();
             self.without_derived();
         }
         // Bytes, as tools for buses print them, are no table.
@@ -453,7 +471,7 @@ impl Plan {
             self.one_range_beside_a_sensor();
         }
         self.repetitions(lines, options);
-        self.sensor_column(file, sensor, &ranges)?;
+        self.sensor_column(file, sensor, &ranges, lines)?;
         self.validities();
         let other = |column: &&Column| column.role == Role::Other && column.is_numeric && ranges.is_empty();
         let skipped = self.columns.iter().filter(other).map(|column| Skipped {
@@ -471,12 +489,32 @@ impl Plan {
             let by_unit =
                 names::range_unit(&column.name).is_some_and(|(unit, is_sure)| is_sure || unit != RangeUnit::Us);
             let by_cells = column.units * 2 > column.numbers.len();
-            column.has_length || by_unit || by_cells || names::meaning(&column.name) == Meaning::Range
+            let by_name = names::meaning(&column.name) == Meaning::Range || names::is_place(&column.name);
+            column.has_length || by_unit || by_cells || by_name
         };
         if self.columns.iter().any(|column| column.role == Role::Range && is_called(column)) {
             let vague = self.columns.iter_mut().filter(|column| column.role == Role::Range && !is_called(column));
             vague.for_each(|column| column.role = Role::Other);
         }
+    }
+
+    /// A voltage or a share among ranges: other decimals than each other column has, and nearer than modules hear.
+    fn without_odd_ones(&mut self) {
+        /// Of the smallest of the others' medians.
+        const FAR_BELOW: f64 = 0.2;
+        let is_vague =
+            |column: &Column| column.role == Role::Range && column.units == 0 && !names::is_place(&column.name);
+        let found: Vec<_> =
+            self.columns.iter().map(|column| (is_vague(column), column.median(), column.has_fractions())).collect();
+        let others =
+            |index: usize| found.iter().enumerate().filter(move |(at, of)| *at != index && of.0).map(|(_, of)| of);
+        let is_odd = |index: usize| {
+            let (is_range, median, fractions) = found[index];
+            let least = others(index).map(|of| of.1).fold(f64::INFINITY, f64::min);
+            is_range && fractions && others(index).all(|of| !of.2) && least.is_finite() && median < FAR_BELOW * least
+        };
+        let odd: Vec<_> = (0..found.len()).filter(|&index| is_odd(index)).collect();
+        odd.into_iter().for_each(|index| self.columns[index].role = Role::Other);
     }
 
     /// A depth or a level beside a column that is called a range is worked out from it.
@@ -526,6 +564,15 @@ impl Plan {
     fn is_counter(&self, index: usize) -> bool {
         let column = &self.columns[index];
         column.is_rising() && column.steps().iter().all(|&step| (step - 1.0).abs() < 1e-9) && column.numbers[0] < 2.0
+    }
+
+    /// The first of several columns without names whose values go on by one step: an angle, a loop's number.
+    fn is_sweep(&self, index: usize) -> bool {
+        let is_named = self.has_names || !matches!(self.shape, Shape::Separated(_));
+        let ([], [column, _, ..]) = self.columns.split_at(index) else { return false };
+        let steps: Vec<_> = column.numbers.windows(2).map(|two| (two[1] - two[0]).abs()).collect();
+        let is_even = steps.iter().all(|&step| step == steps[0] && step > 0.0);
+        !is_named && column.units == 0 && is_even && (steps.len() >= 5 || steps.len() >= 2 && steps[0] >= 5.0)
     }
 
     /// The first numbers without a name that rise evenly, to numbers that no range has, are times.
@@ -603,7 +650,31 @@ impl Plan {
         self.time = chosen.into_iter().map(|index| (index, TimeUnit::S)).collect();
     }
 
-    fn sensor_column(&mut self, file: &Path, asked: Option<usize>, asked_ranges: &[usize]) -> Result<(), FileError> {
+    /// The column whose texts tell apart rows of one time, as the tags of series do.
+    fn tag(&self, lines: &[(u64, &str)]) -> Option<usize> {
+        let &(time, _) = self.time.first()?;
+        let rows = self.split(lines);
+        let of = |index: usize| {
+            rows.iter().filter_map(move |row| row.iter().find(|cell| cell.0 == index).map(|cell| &cell.1))
+        };
+        let times: BTreeSet<_> = of(time).collect();
+        if times.len() * 3 > rows.len() * 2 {
+            return None;
+        }
+        let is_tag = |column: &Column| {
+            column.role == Role::Other && column.numbers.is_empty() && (2..=64).contains(&column.distinct.len())
+        };
+        let mut tags = (0..self.columns.len()).filter(|&index| is_tag(&self.columns[index]));
+        tags.find(|&index| of(time).zip(of(index)).collect::<BTreeSet<_>>().len() == rows.len())
+    }
+
+    fn sensor_column(
+        &mut self,
+        file: &Path,
+        asked: Option<usize>,
+        asked_ranges: &[usize],
+        lines: &[(u64, &str)],
+    ) -> Result<(), FileError> {
         let of = |role: &Role| -> Vec<usize> {
             (0..self.columns.len()).filter(|&index| self.columns[index].role == *role).collect()
         };
@@ -622,7 +693,10 @@ impl Plan {
                 rows(*index) >= 2 * self.columns[*index].distinct.len().min(rows(*index)) || rows(*index) < 8
             };
             let labels = named.iter().copied().filter(is_label).filter(repeats);
-            labels.max_by_key(|&index| self.columns[index].distinct.len()).filter(|_| ranges.len() == 1)
+            let most = labels.max_by_key(|&index| self.columns[index].distinct.len());
+            let most =
+                most.filter(|&index| self.columns[index].distinct.len() > 1).or_else(|| self.tag(lines)).or(most);
+            most.filter(|_| ranges.len() == 1)
         });
         if asked.is_some() && ranges.len() != 1 {
             let message = format!("{} columns with ranges; with a column of sensors expected is one", ranges.len());
@@ -641,6 +715,17 @@ impl Plan {
             let rows: usize = column.distinct.values().sum();
             let is_known = |(_, count): &(&String, &usize)| **count > 1 || rows < 3 * column.distinct.len();
             self.known = column.distinct.iter().filter(is_known).map(|(name, _)| name.clone()).collect();
+            let is_of = |name: &String, meaning| names::meaning(name) == meaning;
+            if self.known.iter().any(|name| is_of(name, Meaning::Range)) {
+                let foreign = self.known.iter().filter(|name| is_of(name, Meaning::Other));
+                self.foreign = foreign.cloned().collect();
+                self.known.retain(|name| !self.foreign.contains(name));
+                self.skipped.extend(self.foreign.iter().map(|name| Skipped {
+                    topic: name.clone(),
+                    why: "no range, by its name".to_owned(),
+                    messages: 0,
+                }));
+            }
         }
         let names: Vec<_> = match chosen {
             Some(_) => self.known.iter().cloned().collect(),

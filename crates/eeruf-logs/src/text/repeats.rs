@@ -149,7 +149,7 @@ impl Plan {
     }
 
     /// The cells of each row by their columns.
-    fn split(&self, lines: &[(u64, &str)]) -> Vec<Vec<(usize, String)>> {
+    pub(super) fn split(&self, lines: &[(u64, &str)]) -> Vec<Vec<(usize, String)>> {
         let index = |name: &String| self.columns.iter().position(|column| column.name == *name);
         let named = |pairs: Vec<(String, String)>| {
             pairs.into_iter().filter_map(|(name, text)| Some((index(&name)?, text))).collect()

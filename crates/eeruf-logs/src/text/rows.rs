@@ -110,7 +110,8 @@ impl<'a, 's, 'e> Rows<'a, 's, 'e> {
         }
         let text = line.text.trim_matches([' ', '\u{feff}']);
         let is_bad = |letter: char| letter == '\u{fffd}' || (letter.is_control() && letter != '\t' && letter != '\n');
-        if text.contains(is_bad) {
+        let is_plain = text.bytes().all(|byte| (0x20..0x7f).contains(&byte) || byte == b'\t');
+        if !is_plain && text.contains(is_bad) {
             return Err(damaged("bytes that are no text".to_owned()));
         }
         let (time, text) = if self.plan.has_prefix {
@@ -140,8 +141,7 @@ impl<'a, 's, 'e> Rows<'a, 's, 'e> {
                     cells.pop();
                 }
                 // Lines that a reset repeats, and the end of a database's print, as `(2 rows)`.
-                let is_end = text.starts_with('(') && text.ends_with(" rows)")
-                    || text.ends_with(" sec)") && text.contains(" in set (");
+                let is_end = text.starts_with('(') && text.ends_with(" rows)");
                 let is_remark = self.plan.greetings.contains(text) || is_end;
                 let is_sentence = line.is_ended && (cells.len() != width || width == 1) && self.is_sentence(text);
                 if cells.len() != width && is_remark || is_sentence {
@@ -268,6 +268,9 @@ impl<'a, 's, 'e> Rows<'a, 's, 'e> {
             Some(index) => Some(text(index).filter(|label| !label.is_empty()).ok_or(Unread::Other)?.to_owned()),
             None => None,
         };
+        if label.as_ref().is_some_and(|label| self.plan.foreign.contains(label)) {
+            return Err(Unread::Other);
+        }
         if let Some((index, ultrasound)) = self.plan.medium
             && text(index).and_then(|own| value::number(own, false)).is_some_and(|number| number != ultrasound)
         {

@@ -9,14 +9,13 @@ use crate::value;
 
 pub(crate) fn is_comment(text: &str) -> bool {
     let text = text.trim_start();
-    // MATLAB's; `%time` begins a header. Weka's begin with `@`.
+    // MATLAB's; `%time` begins a header.
     let is_percent = text.starts_with("% ") || text == "%";
     text.is_empty()
         || text.starts_with('#')
         || is_percent
         || text.starts_with("//")
-        || text.starts_with('@')
-        || text.to_lowercase().starts_with("sep=")
+        || text.get(..4).is_some_and(|start| start.eq_ignore_ascii_case("sep="))
 }
 
 /// Lines without comments, with what a serial monitor puts before them taken off.
@@ -44,7 +43,12 @@ pub(super) fn strip(sample: &[Line]) -> Stripped<'_> {
     let is_header = value::prefix(first).is_none()
         && !first.contains([':', '='])
         && names::meaning(first.split([' ', '\t', ',', ';']).next().unwrap_or_default()) == Meaning::Time;
-    let has_prefix = with > 0 && with * 10 >= lines.len() * 6 && !is_header;
+    // A whole number in brackets that falls as often as it rises is a sensor's.
+    let whole = |text: &str| text.strip_prefix('[')?.split_once(']')?.0.trim().parse::<u64>().ok();
+    let numbers: Vec<_> = lines.iter().filter_map(|(_, text)| whole(text)).collect();
+    let rises = numbers.windows(2).filter(|two| two[0] < two[1]).count();
+    let is_label = numbers.len() * 2 > lines.len() && rises * 10 < (numbers.len() - 1) * 9;
+    let has_prefix = with > 0 && with * 10 >= lines.len() * 6 && !is_header && !is_label;
     let strip = |(number, text): (u64, _)| {
         let rest = value::prefix(text).filter(|_| has_prefix).map_or(text, |found| found.1);
         (number, value::without_level(rest))

@@ -2,6 +2,7 @@
 
 use serde_json::Value as Json;
 
+use crate::names::{Meaning, meaning};
 use crate::value;
 
 /// Separation of a line into cells.
@@ -99,8 +100,9 @@ pub(crate) fn separated(line: &str, separator: Separator) -> Option<Vec<String>>
         let is_digit = |letter: Option<char>| letter.is_some_and(|letter| letter.is_ascii_digit());
         letter == ',' && is_digit(line[..*at].chars().last()) && is_digit(line[at + open.len()..].chars().next())
     };
-    let inner = line.match_indices(" (").chain(line.match_indices(" [")).find(opens);
-    if let Some((at, open)) = inner {
+    let has_open = line.as_bytes().iter().any(|byte| b"([".contains(byte));
+    let inner = || line.match_indices(" (").chain(line.match_indices(" [")).find(opens);
+    if let Some((at, open)) = has_open.then(inner).flatten() {
         return separated(&format!("{},{}", &line[..at], line[at + open.len()..].replace([')', ']'], "")), separator);
     }
     if !line.contains('"') {
@@ -135,7 +137,8 @@ pub(crate) fn keyed(line: &str) -> Option<Vec<(String, String)>> {
         return worded(line).or_else(|| glued(line)).or_else(|| sentence(line));
     }
     let dict = line.trim().strip_prefix('{').and_then(|inner| inner.strip_suffix('}'));
-    let (mut rest, mut pairs) = (dict.unwrap_or(line), vec![]);
+    let (mut rest, mut pairs, mut heading) = (dict.unwrap_or(line), vec![], "");
+    let mut unit_at_end = None;
     while let Some(at) = rest.find([':', '=']) {
         let key = rest[..at].trim_matches(BETWEEN);
         let key = if dict.is_some() { key.trim_matches(['\'', '"']) } else { key };
@@ -144,6 +147,19 @@ pub(crate) fn keyed(line: &str) -> Option<Vec<(String, String)>> {
         }
         let is_equal = rest[at..].starts_with('=');
         let after = &rest[at + 1..];
+        // `sonar: left=34`; each of several headings is a part of the names below it.
+        let inner = after.split_once('=').map_or("", |(name, _)| name.trim_start());
+        let is_name = |letter: char| letter.is_alphanumeric() || letter == '_';
+        if !is_equal && inner.starts_with(char::is_alphabetic) && inner.chars().all(is_name) {
+            heading = if after.contains(':') || !pairs.is_empty() { key } else { "" };
+            rest = after;
+            continue;
+        }
+        // `loop 17 t=1200`
+        let key = match key.split(' ').collect::<Vec<_>>()[..] {
+            [_, number, last] if value::number(number, false).is_some() => last,
+            _ => key,
+        };
         let after =
             after.strip_prefix(['=', '>']).filter(|_| is_equal).unwrap_or(after).trim_start_matches([' ', '\t']);
         // A list gives a value for each place.
@@ -185,8 +201,9 @@ pub(crate) fn keyed(line: &str) -> Option<Vec<(String, String)>> {
             rest = &spaced[word.len()..];
         }
         // A remark, such as the same range in another unit.
-        if let Some((_, after)) = rest.trim_start().strip_prefix('(').and_then(|remark| remark.split_once(')')) {
+        if let Some((remark, after)) = rest.trim_start().strip_prefix('(').and_then(|remark| remark.split_once(')')) {
             rest = after;
+            unit_at_end = value::unit(remark).map(|_| remark);
         }
         // A number before `=`, or before a value with a unit, is a sensor's; before anything else a part of a time.
         let is_number = key.len() <= 2 && key.bytes().all(|byte| byte.is_ascii_digit());
@@ -194,7 +211,12 @@ pub(crate) fn keyed(line: &str) -> Option<Vec<(String, String)>> {
         if !is_named && !(is_number && (is_equal || value::with_unit(&text, true)?.1.is_some())) {
             return None;
         }
-        pairs.push((key.to_owned(), text));
+        pairs.push((if heading.is_empty() { key.to_owned() } else { format!("{heading} {key}") }, text));
+    }
+    // `left=342 right=1201 (mm)`
+    let is_length = |name: &str| matches!(meaning(name), Meaning::Range | Meaning::Vague);
+    for (_, text) in pairs.iter_mut().filter(|(name, text)| is_length(name) && value::number(text, true).is_some()) {
+        text.extend(unit_at_end.iter().flat_map(|unit| [" ", unit]));
     }
     (!pairs.is_empty() && !rest.contains(char::is_alphanumeric)).then_some(pairs)
 }

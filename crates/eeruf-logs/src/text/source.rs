@@ -64,11 +64,7 @@ impl<'a> Source<'a> {
                 None => return Ok(Some(line)),
                 Some(rewriter) => match rewriter.rewrite(&line.text) {
                     Rewritten::Lines(texts) => {
-                        // A header that its first rows bring along stands before them.
-                        let number = |n: usize| line.number - u64::from(n == 0 && texts.len() > 1 && line.number > 0);
-                        let lines = texts.iter().enumerate();
-                        let lines = lines.map(|(n, text)| Line { text: text.clone(), number: number(n), ..line });
-                        self.pending.extend(lines);
+                        self.pending.extend(texts.into_iter().map(|text| Line { text, ..line.clone() }));
                     }
                     Rewritten::Nothing => self.left_out += 1,
                     Rewritten::Misfit => return Ok(Some(Line { is_misfit: true, ..line })),

@@ -315,18 +315,15 @@ fn tried(file: &str) -> (usize, Vec<String>, Vec<String>) {
     (right, open, wrong)
 }
 
-// The reader was mended by the first forty. The third was 28 right, 2 refused and 10 silently wrong at first sight.
+// At first sight the second forty were 30 right and 8 silently wrong, the third 28 and 10; the reader was mended since.
 #[test]
 fn forms_of_three_trials_are_mostly_right() {
-    let trials = [
-        (include_str!("../data/trial-1.txt"), 37, 2),
-        (include_str!("../data/trial-2.txt"), 30, 8),
-        (include_str!("../data/trial-3.txt"), 28, 10),
-    ];
-    for (file, least, most_wrong) in trials {
+    let trials =
+        [include_str!("../data/trial-1.txt"), include_str!("../data/trial-2.txt"), include_str!("../data/trial-3.txt")];
+    for file in trials {
         let (right, open, wrong) = tried(file);
         println!("right {right}, refused {}, silently wrong {}", open.len(), wrong.len());
         open.iter().chain(&wrong).for_each(|line| println!("  {line}"));
-        assert!(right >= least && wrong.len() <= most_wrong, "{right}: {open:#?} {wrong:#?}");
+        assert!(right >= 38 && wrong.is_empty(), "{right}: {open:#?} {wrong:#?}");
     }
 }

@@ -26,7 +26,6 @@ mod typical_alcove;
 mod uneven_rings;
 mod unseen_rooms;
 mod wait_count;
-mod without_odometry;
 
 use std::error::Error;
 use std::io::Write as _;
@@ -38,7 +37,7 @@ type Answer = Result<(), Box<dyn Error>>;
 /// A command: its name, its arguments, what it prints.
 type Command = (&'static str, &'static str, &'static str, fn(&[String]) -> Answer);
 
-const COMMANDS: [Command; 22] = [
+const COMMANDS: [Command; 21] = [
     ("constant-depth", "", "angles at which a wall is heard, by distance and gain", constant_depth::main),
     (
         "diagnose-places",
@@ -84,12 +83,6 @@ const COMMANDS: [Command; 22] = [
         "SENSORS PERIOD LONGEST GROUP SEPARATION INTERVAL NEIGHBOURS CRITERION LAYOUT",
         "tables of wait times, counted",
         wait_count::main,
-    ),
-    (
-        "without-odometry",
-        "[ROOMS [FIRST [PHYSICS [SENSORS [PERIOD_MS]]]]]",
-        "driving by stamps alone",
-        without_odometry::main,
     ),
 ];
 

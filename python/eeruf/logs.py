@@ -70,7 +70,6 @@ __all__ = [
     "Firings",
     "Judged",
     "LogError",
-    "OnLine",
     "Ranges",
     "Surveyed",
     "blocks",
@@ -95,24 +94,6 @@ class Agree:
 
     t_delta_us: int
     consecutive: int = 2
-
-
-@dataclass(frozen=True)
-class OnLine:
-    """A judge of ranges: three readings of a sensor must lie on a line within ``t_delta_us``.
-
-    An echo may then change at any constant rate up to that of a robot that drives at ``max_speed_m_s``, 0 to 60, and logs no odometry.
-    The log must have times.
-
-    Example:
-        >>> import eeruf
-        >>> eeruf.logs.OnLine(250, max_speed_m_s=1.0)
-        OnLine(t_delta_us=250, max_speed_m_s=1.0)
-
-    """
-
-    t_delta_us: int
-    max_speed_m_s: float
 
 
 @dataclass(frozen=True)
@@ -420,7 +401,7 @@ def blocks(
     log: _Log,
     *,
     rows: int = ...,
-    judge: Agree | OnLine,
+    judge: Agree,
     out: str | os.PathLike[str] | None = ...,
     **options: Unpack[_Options],
 ) -> Iterator[Judged]: ...
@@ -428,7 +409,7 @@ def blocks(
     log: _Log,
     *,
     rows: int = 100_000,
-    judge: Agree | OnLine | None = None,
+    judge: Agree | None = None,
     out: str | os.PathLike[str] | None = None,
     **options: Unpack[_Options],
 ) -> Iterator[Ranges] | Iterator[Judged]:
@@ -469,10 +450,10 @@ def _each(of: type[_Block], reader: _eeruf._LogBlocks, opened: contextlib.ExitSt
             yield _made(of, found)
 
 
-def _range_judge(judge: object) -> Agree | OnLine | None:
-    if judge is None or isinstance(judge, (Agree, OnLine)):
+def _range_judge(judge: object) -> Agree | None:
+    if judge is None or isinstance(judge, Agree):
         return judge
-    raise ArgumentError(f"judge = {judge!r:.60}; expected an eeruf.logs.Agree or an eeruf.logs.OnLine")
+    raise ArgumentError(f"judge = {judge!r:.60}; expected an eeruf.logs.Agree")
 
 
 def read_firings(log: _Log) -> Firings:
@@ -501,7 +482,7 @@ def read_firings(log: _Log) -> Firings:
 
 def replay(
     log: Ranges | _Log,
-    judge: Agree | OnLine,
+    judge: Agree,
     *,
     out: str | os.PathLike[str] | None = None,
     **options: Unpack[_Options],
@@ -510,7 +491,7 @@ def replay(
 
     Args:
         log: a path, a URL or a file object; or ranges as :func:`read_log` gave them.
-        judge: an :class:`Agree` or an :class:`OnLine`.
+        judge: an :class:`Agree`.
         out: an MCAP file to write: each topic, and beside it what is accepted; not for ranges that were read before.
         options: as of :func:`read_log`; of ranges that were read before ``speed_of_sound`` alone.
 
@@ -525,8 +506,8 @@ def replay(
         ['first', 'accepted', 'rejected']
 
     """
-    if not isinstance(judge, (Agree, OnLine)):
-        raise ArgumentError(f"judge = {judge!r:.60}; expected an eeruf.logs.Agree or OnLine")
+    if not isinstance(judge, Agree):
+        raise ArgumentError(f"judge = {judge!r:.60}; expected an eeruf.logs.Agree")
     if isinstance(log, Ranges):
         if out is not None:
             raise ArgumentError(f"out = {out!r:.60}; expected None where ranges were read before: give their log")

@@ -36,16 +36,11 @@ pub(crate) struct Args {
     #[arg(long, value_name = "US", default_value_t = 0, required_unless_present = "ring", conflicts_with = "ring")]
     t_delta_us: u32,
     /// The ring that fired by flow, or its scene, for a log of firings
-    #[arg(long, value_name = "RING.toml|SCENE.toml", conflicts_with_all = ["consecutive", "max_speed", "svg"])]
+    #[arg(long, value_name = "RING.toml|SCENE.toml", conflicts_with_all = ["consecutive", "svg"])]
     ring: Option<PathBuf>,
     /// Number of consecutive readings that must agree
     #[arg(long, default_value_t = 2, value_name = "N", value_parser = clap::value_parser!(u8).range(2..=8))]
     consecutive: u8,
-    /// Without odometry, for a robot that drives at up to this speed in m/s: instead of two readings that agree, three
-    /// must lie on a line, within t_delta, so that echoes may change at any constant rate; the log must have times. By
-    /// default the robot stands or readings are compensated
-    #[arg(long, value_name = "M/S", value_parser = speed, conflicts_with = "consecutive")]
-    max_speed: Option<f64>,
     #[command(flatten)]
     log: LogArgs,
     /// Write the log's ranges as MCAP, and beside each topic `TOPIC/accepted`: the accepted ranges, +Inf where nothing
@@ -65,14 +60,7 @@ impl Args {
     /// The questions of `eeruf logs`.
     pub(super) fn of(file: &Path, t_delta_us: u32, log: LogArgs, out: Option<PathBuf>, json: bool) -> Self {
         let file = file.to_owned();
-        Self { file, t_delta_us, ring: None, consecutive: 2, max_speed: None, log, out, svg: None, json }
-    }
-}
-
-fn speed(text: &str) -> Result<f64, String> {
-    match text.parse() {
-        Ok(value) if (0.0..=60.0).contains(&value) => Ok(value),
-        _ => Err("expected 0 to 60".to_owned()),
+        Self { file, t_delta_us, ring: None, consecutive: 2, log, out, svg: None, json }
     }
 }
 
@@ -132,11 +120,7 @@ fn run_flow(args: &Args, ring: &Path) -> Result<Answer, InputError> {
 }
 
 fn judging(args: &Args) -> Result<Judging, InputError> {
-    let t_delta = Micros::new(args.t_delta_us);
-    let judge = match args.max_speed {
-        None => RangeJudge::Agree { t_delta, consecutive: args.consecutive },
-        Some(max_speed_m_s) => RangeJudge::OnLine { t_delta, max_speed_m_s },
-    };
+    let judge = RangeJudge { t_delta: Micros::new(args.t_delta_us), consecutive: args.consecutive };
     let judging = Judging::new(judge, args.log.speed_of_sound, &args.file);
     let judging = judging.map_err(|error| InputError::new(&args.file, error))?;
     Ok(match args.out.as_deref() {

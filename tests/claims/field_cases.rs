@@ -50,10 +50,9 @@ fn text_of_the_field_reads_with_its_right_counts() {
     assert!(object["sensors"].as_array().unwrap().iter().all(|sensor| sensor["duration_s"].as_f64().unwrap() > 0.299));
     let (folder, _) = Scratch::new("unused", "");
     let out = folder.path().join("out.mcap");
-    for options in [&["--max-speed", "1"][..], &["--out", out.to_str().unwrap()]] {
-        for file in ["first-empty.csv", "time-from-zero.csv"] {
-            assert_eq!(replay(file, &[timed, options].concat()).0.code, Some(0), "{file} {options:?}");
-        }
+    let options = &["--out", out.to_str().unwrap()];
+    for file in ["first-empty.csv", "time-from-zero.csv"] {
+        assert_eq!(replay(file, &[timed, options].concat()).0.code, Some(0), "{file}");
     }
 }
 

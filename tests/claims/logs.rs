@@ -310,31 +310,3 @@ fn log_without_instants_is_refused_if_lags_moved() {
     let moved = eeruf(&["diagnose", path, "--schedule", fired_by]);
     assert!(moved.code == Some(2) && moved.err.contains("jump at once"), "{}{}", moved.out, moved.err);
 }
-
-// A wall that comes nearer too fast for two readings is accepted with a rate.
-#[test]
-fn fast_wall_is_accepted_with_a_rate() {
-    // 1 m/s, readings 80 and 120 ms apart: 470 and 700 us from each to the next.
-    let times = (0..40).map(|n| 10.0 + 0.1 * f64::from(n) - if n % 2 == 1 { 0.02 } else { 0.0 });
-    let rows: Vec<_> = times.map(|time| format!("{time:.3},{:.4}", 6.0 - (time - 10.0))).collect();
-    let (folder, log) = Scratch::new("log.csv", &format!("t,ahead\n{}\n", rows.join("\n")));
-    let replay = |more: &[&str]| {
-        let common = ["replay", log.to_str().unwrap(), "--t-delta-us", "300", "--no-echo-m", "9", "--json"];
-        json(&[&common[..], more].concat())["total"].clone()
-    };
-    let plain = replay(&["--time", "t"]);
-    assert_eq!((&plain["accepted"], &plain["rejected"]), (&0.into(), &39.into()));
-    let rated = replay(&["--time", "t", "--max-speed", "1.5"]);
-    assert_eq!((&rated["accepted"], &rated["rejected"], &rated["repeated"]), (&38.into(), &0.into(), &1.into()));
-    // Slower robots have no such echoes: 420 us in the 200 ms of three readings, and t_delta.
-    let slow = replay(&["--time", "t", "--max-speed", "0.36"]);
-    assert_eq!(slow["accepted"], 0);
-    let (_folder, log) = Scratch::new("log.csv", "ahead\n1.0\n1.5\n");
-    let without = eeruf(&["replay", log.to_str().unwrap(), "--t-delta-us", "300", "--max-speed", "1"]);
-    assert!(
-        without.err.ends_with("expected --time COLUMN for a table, as readings on a line need times\n"),
-        "{}",
-        without.err
-    );
-    drop(folder);
-}

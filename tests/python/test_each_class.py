@@ -93,7 +93,6 @@ def each() -> dict[str, Any]:
         speeds.steps[0],
         logs.Agree(500),
         ranges.crosstalk,
-        logs.OnLine(500, 0.2),
         firings,
         eeruf.diagnose(firings),
         eeruf.survey(firings),

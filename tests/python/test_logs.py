@@ -280,7 +280,6 @@ def test_blocks_that_nobody_reads_on_end_their_thread() -> None:
 JUDGES = [
     (eeruf.logs.Agree(500), ["--t-delta-us", "500"]),
     (eeruf.logs.Agree(300, consecutive=3), ["--t-delta-us", "300", "--consecutive", "3"]),
-    (eeruf.logs.OnLine(250, max_speed_m_s=1.0), ["--t-delta-us", "250", "--max-speed", "1"]),
 ]
 
 
@@ -359,8 +358,6 @@ def test_gaps_and_steps_back_are_counted_by_sensor() -> None:
     assert (judged.gaps, judged.backwards) == ([1, 1], [1, 1])
     # What comes first, after the gap, and after the step back.
     assert (judged.kind[judged.sensor == 1] == eeruf.KINDS.index("first")).sum() == 3
-    with pytest.raises(eeruf.LogError, match="as readings on a line need times"):
-        eeruf.replay(io.StringIO("left\n1.2\n1.3\n"), eeruf.logs.OnLine(500, 1.0))
     with pytest.raises(eeruf.ArgumentError, match="ranges were read before"):
         eeruf.replay(judged, eeruf.logs.Agree(500), out="judged.mcap")
     with pytest.raises(eeruf.ArgumentError, match="time = 't'; expected it only where a log of ranges is read"):

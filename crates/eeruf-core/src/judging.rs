@@ -98,9 +98,6 @@ pub trait Sounds {
     /// The firing whose sound could be both the echo that the sensor heard `first` after the firing before its last one
     /// and the one that it heard `second` after its last, by a path that changes by no more than P in between.
     fn explain(&self, first: Micros, second: Micros) -> Explained;
-    /// Asks for the echoes of its last three firings, earliest first, whether a path explains them that changes at a
-    /// constant rate: its length in the second is within P of the line between the others.
-    fn explain_line(&self, echoes: [Micros; 3]) -> Explained;
     /// Asks like [`explain`](Self::explain), for paths that change by up to `more` than P.
     fn explain_moving(&self, first: Micros, second: Micros, more: Micros) -> Explained {
         self.explain_after(1, first, second, more)
@@ -148,10 +145,6 @@ impl Sounds for NoSounds {
         Explained::ByNothing
     }
 
-    fn explain_line(&self, _echoes: [Micros; 3]) -> Explained {
-        Explained::ByNothing
-    }
-
     fn explain_after(&self, _ago: u8, _first: Micros, _second: Micros, _more: Micros) -> Explained {
         Explained::ByNothing
     }
@@ -162,8 +155,8 @@ impl Sounds for NoSounds {
 }
 
 /// Decides what the readings of a [`Ring`](crate::Ring) are worth: [`EchoFilter`](crate::EchoFilter),
-/// [`Belief`](crate::flow::Belief), [`MOfN`](crate::judge::MOfN), [`RateFilter`](crate::judge::RateFilter),
-/// [`Agreement`], [`MedianFilter`](crate::judge::MedianFilter), or one of the caller's own.
+/// [`Belief`](crate::flow::Belief), [`MOfN`](crate::judge::MOfN), [`Agreement`],
+/// [`MedianFilter`](crate::judge::MedianFilter), or one of the caller's own.
 ///
 /// The ring hands in sensors that it has room for. A judge that has room for fewer accepts nothing of the others.
 pub trait Judge {

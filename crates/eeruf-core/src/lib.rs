@@ -28,7 +28,7 @@
 //! | say when each sensor fires | [`Schedule`], [`VerifiedSchedule`], [`schedule!`] |
 //! | check that, and see what is violated | [`Requirements`], [`conditions`] |
 //! | use sensors that are not all alike | [`Uneven`], [`EachSensor`] |
-//! | filter readings that were fired otherwise | [`EchoFilter`], [`judge::RateFilter`] |
+//! | filter readings that were fired otherwise | [`EchoFilter`] |
 //! | fire by another plan, or judge otherwise | [`plan`], [`judge`] |
 //! | keep no sensor blind, late or not | [`flow`] |
 //! | know what is before each sensor now | [`watch`] |
@@ -99,7 +99,7 @@ pub use verified::VerifiedSchedule;
 
 /// Judges of readings: the trait [`Judge`](judge::Judge), and those beside [`EchoFilter`].
 pub mod judge {
-    pub use crate::filter::{MedianFilter, RateFilter};
+    pub use crate::filter::MedianFilter;
     pub use crate::flow::m_of_n::MOfN;
     pub use crate::judging::{Agreement, Explained, Firing, Heard, Judge, NoSounds, Pace, Quiet, Sounds};
     pub use crate::reading::{Explanation, Verdict};

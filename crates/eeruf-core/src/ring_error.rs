@@ -115,11 +115,6 @@ pub enum RingError {
     },
     /// A sensor out of range.
     Sensor(SensorError),
-    /// A rate for a [`RateFilter`](crate::judge::RateFilter) at which no robot's echoes change.
-    Rate {
-        /// The drift asked for, in microseconds per second.
-        us_per_s: u32,
-    },
     /// A setting, or a judge's argument, out of its range; times are in microseconds.
     Setting {
         /// Its field in [`RingConfig`](crate::RingConfig), or of a flow ring in
@@ -178,7 +173,6 @@ impl fmt::Display for RingError {
                 "an echo between {earliest} and {latest} us; expected the latest after the earliest, likely swapped"
             ),
             Self::Sensor(error) => error.fmt(f),
-            Self::Rate { us_per_s } => write!(f, "echoes that change by {us_per_s} us/s; expected 0 to 400000 us/s"),
             Self::Setting { name, value, least, most } => {
                 let likely = likely(name, *value, *least, *most);
                 write!(f, "{name} is {value}; expected {least} to {most}{likely}")

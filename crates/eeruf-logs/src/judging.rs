@@ -2,30 +2,20 @@
 
 use std::path::{Path, PathBuf};
 
-use eeruf_core::judge::{RateFilter, Verdict};
-use eeruf_core::{EchoFilter, Instant, Micros, ReadingKind, RingError, SensorError, Tally};
+use eeruf_core::judge::Verdict;
+use eeruf_core::{EchoFilter, Micros, ReadingKind, RingError, SensorError, Tally};
 use eeruf_files::FileError;
 
 use crate::reading::{Echo, Reading, Sensor};
 use crate::write::McapWriter;
 
-/// A rule for ranges, each sensor by itself.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum RangeJudge {
-    /// Consecutive readings agree.
-    Agree {
-        /// The largest difference of two that agree.
-        t_delta: Micros,
-        /// Number of readings that must agree, 2 to 8.
-        consecutive: u8,
-    },
-    /// Three readings lie on a line, so that the echo of a robot that drives may change at a constant rate.
-    OnLine {
-        /// The largest distance of the middle one from the line between the others.
-        t_delta: Micros,
-        /// The fastest that the robot drives, in m/s, 0 to 60.
-        max_speed_m_s: f64,
-    },
+/// A rule for ranges, each sensor by itself: consecutive readings agree.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct RangeJudge {
+    /// The largest difference of two that agree.
+    pub t_delta: Micros,
+    /// Number of readings that must agree, 2 to 8.
+    pub consecutive: u8,
 }
 
 /// Counts of what a judge made of one sensor's readings.
@@ -48,7 +38,7 @@ pub struct Counted {
 /// ```
 /// use eeruf_core::{Micros, ReadingKind::*};
 /// use eeruf_logs::{Judging, Options, RangeJudge, read_stream};
-/// let two = RangeJudge::Agree { t_delta: Micros::new(500), consecutive: 2 };
+/// let two = RangeJudge { t_delta: Micros::new(500), consecutive: 2 };
 /// let (mut judging, mut kinds) = (Judging::new(two, 343.2, "log".as_ref())?, vec![]);
 /// let text = "front m\n1.20\n1.21\n0.40\n";
 /// read_stream(text.as_bytes(), "log".as_ref(), &Options::default(), |report, reading| {
@@ -59,49 +49,15 @@ pub struct Counted {
 /// ```
 pub struct Judging {
     sensors: Vec<Judged>,
-    fresh: Filter,
+    fresh: EchoFilter<1>,
     speed_of_sound: f64,
     out: Option<McapWriter>,
     log: PathBuf,
 }
 
-/// The filter of one sensor.
-#[derive(Clone)]
-enum Filter {
-    Agree(EchoFilter<1>),
-    OnLine(RateFilter<1>),
-}
-
-impl Filter {
-    fn new(judge: RangeJudge, speed_of_sound: f64) -> Result<Self, RingError> {
-        Ok(match judge {
-            RangeJudge::Agree { t_delta, consecutive } => Self::Agree(EchoFilter::new(t_delta, consecutive)?),
-            // At 60 m/s still far from the largest number.
-            RangeJudge::OnLine { t_delta, max_speed_m_s } => {
-                Self::OnLine(RateFilter::new(t_delta, (2e6 * max_speed_m_s / speed_of_sound).round() as u32)?)
-            }
-        })
-    }
-
-    fn forget(&mut self) -> Result<(), SensorError> {
-        match self {
-            Self::Agree(filter) => filter.forget(0),
-            Self::OnLine(filter) => filter.forget(0),
-        }
-    }
-
-    fn push(&mut self, at_ns: u64, t_echo: Option<Micros>) -> Result<Verdict, SensorError> {
-        match self {
-            Self::Agree(filter) => filter.push(0, t_echo),
-            // Of a clock that wraps.
-            Self::OnLine(filter) => filter.push(0, Instant::from_micros((at_ns / 1000) as u32), t_echo),
-        }
-    }
-}
-
 /// One sensor.
 struct Judged {
-    filter: Filter,
+    filter: EchoFilter<1>,
     counted: Counted,
     clock: Clock,
 }
@@ -143,7 +99,7 @@ impl Judging {
     /// # Errors
     /// A number of readings that the judge does not have.
     pub fn new(judge: RangeJudge, speed_of_sound: f64, log: &Path) -> Result<Self, RingError> {
-        let fresh = Filter::new(judge, speed_of_sound)?;
+        let fresh = EchoFilter::new(judge.t_delta, judge.consecutive)?;
         Ok(Self { sensors: Vec::new(), fresh, speed_of_sound, out: None, log: log.to_owned() })
     }
 
@@ -196,26 +152,23 @@ impl Judged {
         if let Some(at_ns) = reading.at_ns {
             let broken = self.note_time(at_ns);
             if broken {
-                self.filter.forget().map_err(failed)?;
+                self.filter.forget(0).map_err(failed)?;
             }
-        } else if matches!(self.filter, Filter::OnLine(_)) {
-            return Err(untimed("readings on a line need"));
         }
-        let at_ns = reading.at_ns.unwrap_or(0);
         let pushed = |verdict: Result<Verdict, _>| verdict.map(|verdict| verdict.kind);
         let kind = match reading.echo() {
             Echo::Invalid => {
                 self.counted.invalid += 1;
                 return Ok(None);
             }
-            Echo::TooClose => self.filter.forget().map(|()| ReadingKind::TooEarly),
-            Echo::Nothing => pushed(self.filter.push(at_ns, None)),
+            Echo::TooClose => self.filter.forget(0).map(|()| ReadingKind::TooEarly),
+            Echo::Nothing => pushed(self.filter.push(0, None)),
             Echo::At(range_m) => {
                 let t_echo_us = (2e6 * range_m / speed_of_sound).round();
                 if t_echo_us >= f64::from(u32::MAX) {
                     return Err(format!("a range of {range_m} m; expected one that sound covers within an hour"));
                 }
-                pushed(self.filter.push(at_ns, Some(Micros::new(t_echo_us as u32))))
+                pushed(self.filter.push(0, Some(Micros::new(t_echo_us as u32))))
             }
         };
         let kind = kind.map_err(failed)?;

@@ -79,10 +79,7 @@ fn from_zero(error: &impl Display) -> String {
 
 impl Raise for eeruf_core::RingError {
     fn raise(self) -> PyErr {
-        match self {
-            Self::Rate { .. } => FilterError::new_err(from_zero(&self)),
-            _ => RingError::new_err(from_zero(&self)),
-        }
+        RingError::new_err(from_zero(&self))
     }
 }
 

@@ -225,16 +225,10 @@ impl Block {
     }
 }
 
-/// A judge of ranges: `Agree` or `OnLine`.
+/// A judge of ranges, `Agree`.
 fn range_judge(judge: &Bound<'_, PyAny>) -> PyResult<RangeJudge> {
     let t_delta = Micros::new(whole("t_delta_us", &judge.getattr("t_delta_us")?, 0..=u32::MAX)?);
-    if let Ok(consecutive) = judge.getattr("consecutive") {
-        return Ok(RangeJudge::Agree { t_delta, consecutive: whole("consecutive", &consecutive, 2..=8)? });
-    }
-    let speed = judge.getattr("max_speed_m_s")?;
-    let max_speed_m_s = speed.extract().ok().filter(|speed| (0.0..=60.0).contains(speed));
-    let max_speed_m_s = max_speed_m_s.ok_or_else(|| wrong("max_speed_m_s", shown(&speed), "0 to 60"))?;
-    Ok(RangeJudge::OnLine { t_delta, max_speed_m_s })
+    Ok(RangeJudge { t_delta, consecutive: whole("consecutive", &judge.getattr("consecutive")?, 2..=8)? })
 }
 
 /// Columns of `eeruf.logs.Ranges`.
@@ -257,7 +251,7 @@ pub(crate) fn judge<'py>(
 ) -> PyResult<Bound<'py, PyDict>> {
     let py = ranges.py();
     let speed_of_sound = above_zero("speed_of_sound", speed_of_sound)?;
-    let expected = || wrong("judge", "None", "an eeruf.logs.Agree or an eeruf.logs.OnLine");
+    let expected = || wrong("judge", "None", "an eeruf.logs.Agree");
     let judge = range_judge(judge.ok_or_else(expected)?)?;
     let mut judging = Judging::new(judge, speed_of_sound, "the log".as_ref()).map_err(Raise::raise)?;
     let expected = "an eeruf.logs.Ranges of arrays with one dimension, as read_log gives it";

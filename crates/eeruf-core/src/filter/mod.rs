@@ -16,7 +16,6 @@
 mod agreement;
 mod echoes;
 mod median;
-mod rate;
 #[cfg(test)]
 mod tests;
 mod tracker;
@@ -31,7 +30,6 @@ pub(crate) use agreement::{Consecutive, Tolerance};
 use echoes::LATEST;
 pub(crate) use echoes::{NO_ECHO, SILENCE, heard, insert, shift};
 pub use median::MedianFilter;
-pub use rate::RateFilter;
 use tracker::Tracker;
 
 /// Compares the consecutive readings of up to `K` sensors, each with up to `E` echoes a firing.

@@ -1,4 +1,4 @@
-//! [`Pair`] and [`Line`]: whether one path of sound explains two or three consecutive readings of a sensor.
+//! [`Pair`]: whether one path of sound explains two consecutive readings of a sensor.
 //!
 //! Eqs. (11) and (13) on what was fired instead of on what was planned. A receiver fired at `f1` and `f2` and heard
 //! something at `h1 = f1 + e1` and `h2 = f2 + e2`. Sensor x explains both readings if it fired at `a` and `b`, and
@@ -64,12 +64,6 @@ impl<const H: usize> Firings<H> {
     pub(super) fn last_and(&self, ago: u8) -> [Option<Instant>; 2] {
         const { assert!(H > 1, "a judge that asks what explains two readings; expected H >= 2, or an AgreementRing") };
         [Some(self.0[0]), self.0.get(usize::from(ago)).copied()]
-    }
-
-    /// The last three, the latest first.
-    pub(super) fn last_three(&self) -> [Instant; 3] {
-        const { assert!(H > 2, "a judge that asks what explains three readings; expected H >= 3") };
-        [self.0[0], self.0[1], self.0[2]]
     }
 
     /// The time from the last but one to the last.
@@ -179,42 +173,5 @@ impl Pair {
         let [first, _] = self.heard;
         // An instant after the first reading leaves all before it open: its age is negative.
         (first.since(instant).as_micros() as i32) < self.audible.as_micros() as i32
-    }
-
-    /// The firings whose sound could be heard at an instant, but for one: where they stand, when they were, and the
-    /// length of the path.
-    fn heard_at<const H: usize>(
-        &self,
-        firings: &Firings<H>,
-        at: Instant,
-        but: Option<usize>,
-    ) -> impl Iterator<Item = (usize, Instant, i64)> {
-        let sent = firings.0.into_iter().enumerate().filter(move |&(place, _)| Some(place) != but);
-        let audible = self.audible;
-        let paths = sent.map(move |(place, sent)| (place, sent, at.since(sent)));
-        paths
-            .filter(move |&(_, _, length)| length <= audible)
-            .map(|(place, sent, length)| (place, sent, i64::from(length.as_micros())))
-    }
-
-    /// Returns true if sound of these firings explains three readings, `third` after the two, by a path that changes at
-    /// a constant rate. `own`: they are the receiver's.
-    pub(super) fn explains_line<const H: usize>(&self, third: Instant, firings: &Firings<H>, own: bool) -> bool {
-        let [first, second] = self.heard;
-        let path_change = i64::from(self.path_change.as_micros());
-        let own = |place| own.then_some(place);
-        for (earliest, a, length_a) in self.heard_at(firings, first, own(2)) {
-            for (middle, b, length_b) in self.heard_at(firings, second, own(1)).filter(|&(b, ..)| b <= earliest) {
-                for (_, c, length_c) in self.heard_at(firings, third, own(0)).filter(|&(c, ..)| c <= middle) {
-                    // Below four minutes each, lengths below a minute.
-                    let [before, since] = [b.since(a), c.since(b)].map(|time| i64::from(time.as_micros()));
-                    let off = (length_b - length_a) * since - (length_c - length_b) * before;
-                    if off.abs() <= path_change * (before + since) {
-                        return true;
-                    }
-                }
-            }
-        }
-        false
     }
 }

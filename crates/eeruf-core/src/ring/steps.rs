@@ -313,12 +313,6 @@ impl<P: Plan, const E: usize, const H: usize> Sounds for Memory<'_, P, E, H> {
         // At most 64 sensors.
         own.firings.is_heard_at(heard, audible, 1) || (0..).zip(self.emitters()).any(is_heard)
     }
-
-    #[inline(always)]
-    fn explain_line(&self, echoes: [Micros; 3]) -> Explained {
-        // On time too: a path that changes may be off the line by P.
-        self.explain_three(echoes)
-    }
 }
 
 impl<P: Plan, const E: usize, const H: usize> Memory<'_, P, E, H> {
@@ -331,17 +325,6 @@ impl<P: Plan, const E: usize, const H: usize> Memory<'_, P, E, H> {
         let mut pair = self.pair([fired_before + first, fired + second]).widened(one, other, one.max(other));
         pair.path_change = pair.path_change.saturating_add(more);
         self.ask(&pair, |firings, own| pair.explains(firings, own.then_some(ago)))
-    }
-
-    #[inline(never)]
-    fn explain_three(&self, [first, second, third]: [Micros; 3]) -> Explained {
-        let (receiver, [latest, middle, earliest]) = (self.receiver, off_by(self.uncertain));
-        let Some(own) = self.sensors.get(usize::from(receiver)) else { return UNKNOWN };
-        let [last, fired, fired_before] = own.firings.last_three();
-        let ends = latest.max(earliest);
-        let pair = self.pair([fired_before + first, fired + second]).widened(middle, ends, middle.max(ends));
-        let third = last + third + middle.max(ends);
-        self.ask(&pair, |firings, own| pair.explains_line(third, firings, own))
     }
 
     fn pair(&self, heard: [Instant; 2]) -> Pair {

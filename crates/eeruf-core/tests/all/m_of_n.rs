@@ -250,10 +250,6 @@ impl Sounds for Asked {
         Explained::ByNothing
     }
 
-    fn explain_line(&self, _: [Micros; 3]) -> Explained {
-        Explained::ByNothing
-    }
-
     fn explain_after(&self, ago: u8, _: Micros, _: Micros, _: Micros) -> Explained {
         self.0.set(Some(ago));
         Explained::ByNothing

@@ -23,7 +23,6 @@ mod odometry;
 mod pairs;
 mod plans_and_judges;
 mod promises;
-mod rate;
 mod settings;
 mod sound;
 mod theory;

@@ -56,7 +56,7 @@ uint16_t eeruf_version(void) {
 }
 
 /* True if `now` is `deadline` or up to half a turn of the clock past it. */
-static bool has_reached(uint32_t now, uint32_t deadline) {
+static bool EERUF_IN_RAM has_reached(uint32_t now, uint32_t deadline) {
     return now - deadline < HALF_TURN;
 }
 
@@ -1790,7 +1790,7 @@ static uint8_t in_8us(uint32_t width_us) {
 #define FINE 127u
 #define ANY_TIME ((uint32_t)1 << 20)
 
-static uint8_t coarse(uint32_t width_us) {
+static uint8_t EERUF_IN_RAM coarse(uint32_t width_us) {
     const uint32_t units = (shorter(width_us, ANY_TIME) + 7u) >> 3;
     return (uint8_t)(units <= FINE ? units : shorter(FINE + (units - FINE + 31u) / 32u, UINT8_MAX));
 }
@@ -1813,8 +1813,8 @@ EerufStatus eeruf_edges_init(EerufEdges *edges, size_t edges_size, EerufEdge *pl
     return EERUF_OK;
 }
 
-OUT_OF_LINE EerufStatus eeruf_edges_push_between(EerufEdges *edges, uint8_t sensor, bool high, uint32_t earliest_us,
-                                                 uint32_t latest_us) {
+OUT_OF_LINE EerufStatus EERUF_IN_RAM eeruf_edges_push_between(EerufEdges *edges, uint8_t sensor, bool high,
+                                                              uint32_t earliest_us, uint32_t latest_us) {
     uint8_t pushed;
     EerufEdge *place;
     if (edges == NULL) return EERUF_ERR_NULL;
@@ -1836,7 +1836,7 @@ OUT_OF_LINE EerufStatus eeruf_edges_push_between(EerufEdges *edges, uint8_t sens
     return EERUF_OK;
 }
 
-EerufStatus eeruf_edges_push(EerufEdges *edges, uint8_t sensor, bool high, uint32_t at_us) {
+EerufStatus EERUF_IN_RAM eeruf_edges_push(EerufEdges *edges, uint8_t sensor, bool high, uint32_t at_us) {
     return eeruf_edges_push_between(edges, sensor, high, at_us, at_us);
 }
 

@@ -61,6 +61,17 @@
 #define EERUF_FLASH
 #endif
 
+/* What interrupts call, where code in flash cannot be read while flash is written. */
+#if defined(ESP8266)
+#include <c_types.h>
+#define EERUF_IN_RAM IRAM_ATTR
+#elif defined(ESP_PLATFORM)
+#include <esp_attr.h>
+#define EERUF_IN_RAM IRAM_ATTR
+#else
+#define EERUF_IN_RAM
+#endif
+
 #ifdef __cplusplus
 extern "C" {
 #endif

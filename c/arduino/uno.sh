@@ -14,7 +14,7 @@ here=$(dirname "$0")
 core=/usr/share/arduino/hardware/arduino/avr/cores/arduino
 mkdir -p uno/core
 flags="-c -g -Os -ffunction-sections -fdata-sections -flto -mmcu=atmega328p -DF_CPU=16000000L -DARDUINO=10819
-  -DARDUINO_AVR_UNO -DARDUINO_ARCH_AVR -DDECIMAL_DIG=10 -I $core -I $core/../../variants/standard -I $here/src -I $here/.."
+  -DARDUINO_AVR_UNO -DARDUINO_ARCH_AVR -DDECIMAL_DIG=10 -I $core -I $core/../../variants/standard -I $here/src"
 compile() { # source, object
     case $1 in
     *.c) avr-gcc $flags -std=gnu11 -fno-fat-lto-objects -w "$1" -o "$2" ;;
@@ -26,12 +26,9 @@ for source in "$core"/*.c "$core"/*.cpp; do
     [ -f "$object" ] || compile "$source" "$object"
 done
 { echo '#include <Arduino.h>'; cat "$sketch"; } >uno/sketch.cpp
-# In the packed library eeruf.c lies beside the rest, in the repository one folder up.
-library=$here/src/eeruf.c
-[ -f "$library" ] || library=$here/../eeruf.c
 compile uno/sketch.cpp uno/sketch.o
 compile "$here/src/EerufArduino.cpp" uno/EerufArduino.o
-compile "$library" uno/eeruf.o
+compile "$here/src/eeruf.c" uno/eeruf.o
 avr-gcc -w -Os -g -flto -fuse-linker-plugin -Wl,--gc-sections -mmcu=atmega328p -o uno/sketch.elf \
     uno/sketch.o uno/EerufArduino.o uno/eeruf.o uno/core/*.o -lm
 avr-size uno/sketch.elf

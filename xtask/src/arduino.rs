@@ -20,7 +20,7 @@ use fs_err as fs;
 
 pub(crate) use self::newping::newping;
 pub(crate) use self::programs::programs;
-use crate::steps::{Steps, empty, run};
+use crate::steps::{Steps, command, empty, run};
 
 /// Where it is packed, built and run.
 const TARGET: &str = "target/arduino";
@@ -99,6 +99,7 @@ pub(crate) fn arduino(plan: &Plan, steps: &mut Steps) {
     steps.step("tables of the Arduino library", || tables::check(plan.write));
     steps.step("tables of the examples", crate::examples::tables);
     steps.step("Arduino library", || pack().and_then(|library| examples(&library, plan.short)));
+    steps.step("Arduino library for its other cores", || cores(&library));
     steps.step("pace of sketches", || pace::run(&library));
     steps.step("ready tables before walls", || own_walls::run(&library, plan.short));
     steps.step("programs of `eeruf design`, a corner", || programs(true));
@@ -113,11 +114,11 @@ fn pack() -> Result<PathBuf> {
     let (library, libraries) = (target.join("Eeruf"), target.join("libraries"));
     empty(&library)?;
     empty(&libraries)?;
-    let copy = |to: &Path, from: &[&str]| run(Command::new("cp").arg("-r").args(from).arg(to));
+    // Its sources of the C library are links.
+    let copy = |to: &Path, from: &[&str]| run(Command::new("cp").arg("-rL").args(from).arg(to));
     copy(&library, &["c/arduino/src", "c/arduino/examples", "LICENSE-MIT", "LICENSE-APACHE"])?;
     let about = ["library.properties", "keywords.txt", "library.json", "README.md"];
     copy(&library, &about.map(|file| format!("c/arduino/{file}")).each_ref().map(String::as_str))?;
-    copy(&library.join("src"), &["c/eeruf.c", "c/eeruf.h", "c/eeruf_serial.h"])?;
     let properties = fs::read_to_string(library.join("library.properties"))?;
     let version = properties.lines().find_map(|line| line.strip_prefix("version="));
     let zip = format!("Eeruf-{}.zip", version.context("library.properties: no version")?);
@@ -126,6 +127,26 @@ fn pack() -> Result<PathBuf> {
     }
     println!("{TARGET}/{zip}");
     Ok(libraries.join("Eeruf"))
+}
+
+/// Compiles library and sketches against what the cores that its properties name declare, as `tests/arduino` has it.
+fn cores(library: &Path) -> Result<()> {
+    let properties = fs::read_to_string(library.join("library.properties"))?;
+    let cores = properties.lines().find_map(|line| line.strip_prefix("architectures=")).context("no architectures")?;
+    let sketches = ["FromNewPing", "States4", "Flow12", "Strip", "Adaptive", "SerialRing8"];
+    let sketches = sketches.map(|name| library.join(format!("examples/{name}/{name}.ino")));
+    let sources = [&[library.join("src/EerufArduino.cpp")], &sketches[..]].concat();
+    // The real core of AVRs compiles all of them.
+    for core in cores.split(',').filter(|&core| core != "avr") {
+        for source in &sources {
+            let mut check =
+                command("g++ -std=c++11 -fsyntax-only -Wall -Wextra -Werror -I tests/arduino -include Arduino.h");
+            check.arg(format!("-DARDUINO_ARCH_{}", core.to_uppercase())).arg("-I").arg(library.join("src"));
+            run(check.args(["-x", "c++"]).arg(source))?;
+        }
+    }
+    println!("{cores}");
+    Ok(())
 }
 
 fn examples(library: &Path, short: bool) -> Result<()> {

@@ -4,10 +4,6 @@
 #endif
 #include "EerufArduino.h"
 
-#ifndef IRAM_ATTR
-#define IRAM_ATTR
-#endif
-
 // A line is looked at for this long at a time, as often as can be; and longer where an edge is expected before loop()
 // comes back.
 static const uint32_t LOOKS_US = 300, LONGEST_US = 4000;
@@ -22,7 +18,8 @@ static const uint16_t DECIDES_US = 0;
 // An edge that came within as long as this has no time, which the second says.
 static const uint32_t TOO_LONG_US = 500, LATE_US = 40000;
 
-#if defined(__AVR__) && defined(portModeRegister)
+// AVRs whose core has these tables, which that of the megaAVRs has not.
+#if defined(__AVR__) && !defined(ARDUINO_ARCH_MEGAAVR)
 // A quarter of the time of digitalRead, and less flash than the core's functions together.
 bool EerufPin::isHigh(uint8_t pin) {
     return *portInputRegister(digitalPinToPort(pin)) & digitalPinToBitMask(pin);
@@ -46,12 +43,12 @@ static inline void setOutput(uint8_t pin, bool output) {
     setBit(port_to_mode_PGM, pin, output);
 }
 #else
-bool EerufPin::isHigh(uint8_t pin) {
-    return digitalRead(pin);
+bool EERUF_IN_RAM EerufPin::isHigh(uint8_t pin) {
+    return digitalRead(pin) != LOW;
 }
 
 static void drive(uint8_t pin, bool high) {
-    digitalWrite(pin, high);
+    digitalWrite(pin, high ? HIGH : LOW);
 }
 
 static void setOutput(uint8_t pin, bool output) {
@@ -100,15 +97,15 @@ static inline uint8_t outputs(uint8_t group) {
 }
 #else
 static const uint8_t PORTS = 0, BY_CHANGE = 0, GROUPS = 8;
-static inline uint8_t port(uint8_t) {
+static inline uint8_t EERUF_IN_RAM port(uint8_t) {
     return 0;
 }
-static inline uint8_t outputs(uint8_t) {
+static inline uint8_t EERUF_IN_RAM outputs(uint8_t) {
     return 0; // nothing looks while a trigger is given
 }
 #endif
 static uint8_t pinOf[8 * (GROUPS - PORTS)];
-static uint8_t levels(uint8_t group) {
+static uint8_t EERUF_IN_RAM levels(uint8_t group) {
     if (group + 1 <= PORTS) return port(group);
     uint8_t bits = 0;
     for (uint8_t place = 8 * (group - PORTS); place < alone && place < 8 * (group - PORTS + 1); place++)
@@ -178,7 +175,7 @@ static uint32_t read(bool *haveWaited, bool *hasLost) {
 }
 static const bool IS_KNOWN = true;
 #else
-static inline uint32_t read(bool *, bool *) {
+static inline uint32_t EERUF_IN_RAM read(bool *, bool *) {
     return micros();
 }
 static const bool IS_KNOWN = false; // only edges that come together tell
@@ -186,7 +183,7 @@ static const bool IS_KNOWN = false; // only edges that come together tell
 
 // Queues the edges that came since an instant, or just now: with interrupts off. An edge has no time that an interrupt
 // finds late, nor has the end of a pulse whose beginning has none, or in which time was lost.
-static void take(uint32_t since, bool isInterrupt) {
+static void EERUF_IN_RAM take(uint32_t since, bool isInterrupt) {
     bool waited = false, hasLost = false;
     const uint32_t at = read(&waited, &hasLost);
     const bool isLate = isInterrupt ? waited : hasLost || at - since > TOO_LONG_US;
@@ -239,9 +236,27 @@ static void makeUp() {
 #endif
 }
 
-void IRAM_ATTR onInterrupt() {
+void EERUF_IN_RAM onInterrupt() {
     take(0, true);
 }
+
+#if !defined(__AVR_ATmega328P__) && !defined(__AVR_ATmega168__)
+// Whether attachInterrupt() does something for a pin.
+static bool canInterrupt(uint8_t pin) {
+#ifdef ARDUINO_ARCH_SAMD
+    // The chip has 16 lines for all pins: of two pins on one only the last would interrupt.
+    static uint16_t taken;
+    const int line = g_APinDescription[pin].ulExtInt;
+    if (line < 0 || line > 15 || (taken >> line & 1)) return false;
+    taken |= bit(line);
+    return true;
+#elif defined(ARDUINO_ARCH_RENESAS)
+    return getPinCfgs(pin, PIN_CFG_REQ_INTERRUPT)[0] != 0;
+#else
+    return digitalPinToInterrupt(pin) != NOT_AN_INTERRUPT;
+#endif
+}
+#endif
 
 // A group and a place for a line; whether its changes interrupt.
 static bool find(uint8_t pin, uint8_t *group, uint8_t *place) {
@@ -267,7 +282,7 @@ static bool find(uint8_t pin, uint8_t *group, uint8_t *place) {
     *group = PORTS + (alone >> 3);
     *place = alone & 7;
     pinOf[alone++] = pin;
-    return digitalPinToInterrupt(pin) != NOT_AN_INTERRUPT;
+    return canInterrupt(pin);
 #endif
 }
 

@@ -3,10 +3,11 @@
 //
 // Of an Uno, a Nano and a Mega it takes the interrupts of pin changes, and on a Mega for pins 2, 3 and 18 to 21 their
 // external ones; the Mega's other pins that have one are 10 to 15, 50 to 53 and A8 to A15. Elsewhere it takes what
-// attachInterrupt() gives. If a line has none, read() looks at all of them.
+// attachInterrupt() gives: on a SAMD, of two pins that share one of its 16 lines (EXTINT) one; on an Uno R4, pins that have
+// one. If a line has none, read() looks at all of them.
 //
 // SoftwareSerial takes the interrupts of pin changes too: then define EERUF_POLLED before the first include. So do all
-// files of a sketch but one.
+// files of a sketch but one. Included before this, it is an error that says so; after it, the linker finds __vector_3 twice.
 //
 // While noInterrupts() holds, an edge waits. On these boards two interrupts of timer 0, that of micros() and compare B
 // half-way, tell of each block of more than 0.55 ms: its edges count as ones without a time. Blocks of more than 1 ms can
@@ -37,6 +38,9 @@ extern bool hasInterrupts;
 #endif
 
 #ifndef EERUF_POLLED
+#ifdef SoftwareSerial_h
+#error "SoftwareSerial takes the interrupts of pin changes, too: define EERUF_POLLED before the first include of Eeruf"
+#endif
 #if defined(PCINT0_vect) && defined(PCINT1_vect) && defined(PCINT2_vect)
 ISR(PCINT0_vect) {
     EerufLines::onInterrupt();

@@ -14,7 +14,7 @@ uint32_t written;
 // Stands for strip.show().
 void show() {
   noInterrupts();
-  digitalWrite(STRIP, nearest < 500);
+  digitalWrite(STRIP, nearest < 500 ? HIGH : LOW);
   delayMicroseconds(900);
   interrupts();
   written = millis();

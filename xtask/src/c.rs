@@ -2,13 +2,13 @@
 //! equality with the Rust crates under sanitizers, MicroPython's class.
 
 use std::fmt::Write as _;
-use std::path::Path;
-use std::process::Command;
+use std::path::{Path, absolute};
+use std::process::{Command, Stdio};
 
-use anyhow::{Context as _, Result, bail};
+use anyhow::{Context as _, Result, bail, ensure};
 use fs_err as fs;
 
-use crate::steps::{need, output, run};
+use crate::steps::{empty, need, output, run};
 
 const STRICT: [&str; 7] = ["-Wall", "-Wextra", "-Werror", "-pedantic", "-Wconversion", "-Wshadow", "-Ic"];
 /// Compilers and the languages that each takes the library as.
@@ -45,8 +45,41 @@ pub(crate) fn c() -> Result<()> {
         run(Command::new(compiler).args(*language).args(STRICT).args(SANITIZERS).args(sources).arg(&program))?;
         run(&mut Command::new(program))?;
     }
+    package(&target.join("package"))?;
     sample(&target.join("zephyr"))?;
     equal_under_sanitizers()
+}
+
+/// Installs the library with an option of its own, and builds an example by `find_package`, from the checkout and by
+/// pkg-config: each must see the option's value.
+fn package(target: &Path) -> Result<()> {
+    need("cmake --version", "apt install cmake pkg-config")?;
+    empty(target)?;
+    let (built, prefix) = (target.join("built"), absolute(target.join("prefix"))?);
+    let cmake = |arguments: &[&str], folder: &Path| output(Command::new("cmake").args(arguments).arg(folder));
+    let configured = |source: &str, folder: &Path, more: &[String]| {
+        run(Command::new("cmake").args(["-S", source, "-B"]).arg(folder).args(more).stdout(Stdio::null()))
+    };
+    let prefixed = |key: &str| format!("-D{key}={}", prefix.display());
+    configured(
+        "c",
+        &built,
+        &[prefixed("CMAKE_INSTALL_PREFIX"), "-DCMAKE_INSTALL_LIBDIR=lib".to_owned(), "-DEERUF_FIRINGS=6".to_owned()],
+    )?;
+    cmake(&["--build"], &built)?;
+    cmake(&["--install"], &built)?;
+    for (name, more, expected) in [("installed", vec![prefixed("CMAKE_PREFIX_PATH")], "=6"), ("checkout", vec![], "=4")]
+    {
+        let folder = target.join(name);
+        configured("c/examples", &folder, &more)?;
+        let said = output(Command::new("cmake").arg("--build").arg(&folder).arg("--verbose"))?;
+        ensure!(said.contains(&format!("EERUF_FIRINGS{expected}")), "{name}: {said}");
+    }
+    let mut pkg_config = Command::new("pkg-config");
+    let found =
+        output(pkg_config.args(["--cflags", "--libs", "eeruf"]).env("PKG_CONFIG_PATH", prefix.join("lib/pkgconfig")))?;
+    ensure!(found.contains("-DEERUF_FIRINGS=6"), "{found}");
+    run(Command::new("gcc").arg("c/examples/flow.c").args(found.split_whitespace()).arg("-o").arg(target.join("flow")))
 }
 
 /// The sample for Zephyr on this machine: compiled against declarations of our own, with the pins of its overlay, also
@@ -112,7 +145,7 @@ pub(crate) fn micropython() -> Result<()> {
     need("node --version", "apt install nodejs")?;
     fs::create_dir_all("target")?;
     // Cargo runs tests in the folder of their package.
-    let corpus = std::path::absolute("target/corpus.txt")?;
+    let corpus = absolute("target/corpus.txt")?;
     run(Command::new("cargo")
         .args(["test", "--quiet", "--locked", "--package", "eeruf-core", "--test", "all", "corpus_matches_golden"])
         .env("EERUF_CORPUS", &corpus))?;

@@ -62,6 +62,8 @@ pub struct Cell {
     pub foreign: Estimate,
     /// Share of time with an echo in which the belief is right.
     pub right: Estimate,
+    /// Right echoes that are believed, a second.
+    pub right_echoes_per_s: Estimate,
     /// Blind sensors.
     pub blind: Estimate,
 }
@@ -130,6 +132,7 @@ impl Under {
             false_stops_per_min: Estimate::of(&bootstrap.figures(|counts| rate(sights, counts))),
             foreign: mean(|sight| sight.foreign),
             right: mean(|sight| sight.right),
+            right_echoes_per_s: mean(|sight| sight.right_echoes_per_s),
             blind: mean(|sight| f64::from(sight.blind)),
         }
     }

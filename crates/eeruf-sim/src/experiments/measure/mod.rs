@@ -39,7 +39,7 @@ mod ways;
 pub use bootstrap::Estimate;
 pub use cost::{Cell, Cost, Costs, ONE_A_MINUTE, Operating, Point};
 pub use heard::Control;
-pub use run::{BySetting, MeasureAsked, Measured, Place, Under, measure};
+pub use run::{BySetting, MeasureAsked, Measured, Place, Under, measure, measure_in_scene};
 pub use sight::Sight;
 pub use things::{Draws, ThingKind};
 pub use trial::{Condition, Moving, NEVER_S, Speeds, VERSION};

@@ -1,16 +1,22 @@
 //! Runs of all ways in all rooms under all conditions, and their rows as CSV.
 
 use core::fmt::Write as _;
+use core::ops::Range;
 
 use super::heard::{Control, Heard};
 use super::sight::Sight;
 use super::things::{Draws, ThingKind};
-use super::trial::{Condition, Speeds, Trial};
+use super::trial::{Condition, Moving, Speeds, Trial};
 use super::votes::Setting;
 use super::ways::{Family, MeasuredWay};
 use crate::{
-    experiments::error::ExperimentError, experiments::progress::Progress, experiments::rooms::RoomKind,
-    experiments::rooms::RoomWay, threads::sweep,
+    experiments::error::ExperimentError,
+    experiments::progress::Progress,
+    experiments::rooms::{RoomKind, RoomWay},
+    methods::Method,
+    simulation::Options,
+    threads::sweep,
+    world::World,
 };
 
 /// Rooms and conditions in which ways are measured.
@@ -114,9 +120,7 @@ pub fn measure(
             sights.push(Ok(Setting::ALL.map(|setting| trial.sight(&way.robot, &heard, setting, *control))));
         }
         progress.one_done();
-        let thing = trial.thing.as_ref().map(|thing| (thing.kind, thing.sensor, thing.distance_m));
-        let place = Place { room, thing, draws: trial.draws, speed_m_s: trial.speeds.speed_m_s };
-        Ok((place, sights))
+        Ok((trial.place(room), sights))
     });
     let runs = runs.into_iter().collect::<Result<Vec<_>, ExperimentError>>()?;
     if progress.stopped() {
@@ -125,17 +129,66 @@ pub fn measure(
     let mut runs = runs.into_iter();
     let under = asked.conditions.iter().map(|&condition| {
         let rooms = condition.rooms(asked.first, asked.places).len();
-        let (places, mut by_room): (Vec<_>, Vec<_>) = runs.by_ref().take(rooms).unzip();
-        let of_way = |way: usize| -> BySetting {
-            let of_rooms: Vec<_> =
-                by_room.iter_mut().map(|sights| core::mem::replace(&mut sights[way], Err(String::new()))).collect();
-            let of_rooms = of_rooms.into_iter().collect::<Result<Vec<_>, _>>()?;
-            Ok((0..Setting::ALL.len()).map(|setting| of_rooms.iter().map(|sights| sights[setting]).collect()).collect())
-        };
-        Under { condition, places, sights: (0..ways.len()).map(of_way).collect() }
+        let (places, by_room): (Vec<_>, Vec<_>) = runs.by_ref().take(rooms).unzip();
+        Under { condition, places, sights: by_setting(by_room, ways.len()) }
     });
     let under = under.collect();
     Ok(Measured { ways: ways.iter().map(|(way, _)| way.clone()).collect(), under })
+}
+
+/// Figures of each of some ways, from those of all of them in each room.
+fn by_setting(mut by_room: Vec<Vec<Result<[Sight; Setting::ALL.len()], String>>>, ways: usize) -> Vec<BySetting> {
+    let of_way = |way: usize| -> BySetting {
+        let of_rooms: Vec<_> =
+            by_room.iter_mut().map(|sights| core::mem::replace(&mut sights[way], Err(String::new()))).collect();
+        let of_rooms = of_rooms.into_iter().collect::<Result<Vec<_>, _>>()?;
+        Ok((0..Setting::ALL.len()).map(|setting| of_rooms.iter().map(|sights| sights[setting]).collect()).collect())
+    };
+    (0..ways).map(of_way).collect()
+}
+
+impl Trial {
+    fn place(&self, room: (RoomKind, u64)) -> Place {
+        let thing = self.thing.as_ref().map(|thing| (thing.kind, thing.sensor, thing.distance_m));
+        Place { room, thing, draws: self.draws, speed_m_s: self.speeds.speed_m_s }
+    }
+}
+
+/// Measures methods of the first robot of a scene, one by one first, in trials with these numbers, on all cores;
+/// otherwise as [`measure`].
+///
+/// # Errors
+/// [`ExperimentError`] for no robot or trials, for a scene that the robots cannot be in, and if it was stopped.
+pub fn measure_in_scene(
+    world: &World,
+    methods: &[(Family, Method)],
+    trials: Range<u64>,
+    keep_going: &(dyn Fn(f64) -> bool + Sync),
+) -> Result<Measured, ExperimentError> {
+    let robot = world.robots().first().ok_or(ExperimentError::NoSeeds)?;
+    let way = |&(family, method): &(Family, Method)| {
+        let name = method.as_str();
+        MeasuredWay { family, way: RoomWay { name, method, robot: robot.clone(), options: Options::default() } }
+    };
+    let progress = Progress::new(trials.end.saturating_sub(trials.start), keep_going);
+    let runs = sweep(&trials.collect::<Vec<_>>(), |&number| {
+        let trial = Trial::in_scene(world, number).ok_or(ExperimentError::NoSeeds)?;
+        let sights =
+            methods.iter().map(|&(_, method)| match trial.heard_in_scene(world, method, &|| progress.go_on()) {
+                Err(ExperimentError::Simulation(error)) if !progress.stopped() => Ok(Err(error.to_string())),
+                heard => heard.map(|heard| Ok(Setting::ALL.map(|setting| trial.sight(robot, &heard, setting, None)))),
+            });
+        let sights = sights.collect::<Result<Vec<_>, _>>()?;
+        progress.one_done();
+        Ok((trial.place((RoomKind::Alcove, number)), sights))
+    });
+    if progress.stopped() {
+        return Err(ExperimentError::Stopped);
+    }
+    let (places, by_room) = runs.into_iter().collect::<Result<Vec<_>, ExperimentError>>()?.into_iter().unzip();
+    let condition = Condition { moving: Moving::Standing, others: false };
+    let under = vec![Under { condition, places, sights: by_setting(by_room, methods.len()) }];
+    Ok(Measured { ways: methods.iter().map(way).collect(), under })
 }
 
 impl Measured {
@@ -158,7 +211,7 @@ impl Measured {
                 for (setting, sights) in Setting::ALL.iter().zip(by_setting.iter().flatten()) {
                     for (place, sight) in under.places.iter().zip(sights) {
                         let Place { room: (kind, number), thing, draws: Draws { fitted, unread }, speed_m_s } = place;
-                        let Sight { latency_ms, false_stops, watched_s, foreign, right, blind } = sight;
+                        let &Sight { ref latency_ms, false_stops, watched_s, foreign, ref right, blind, .. } = sight;
                         let thing =
                             thing.map_or(",,".to_owned(), |(kind, sensor, m)| format!("{kind:?},{sensor},{m:.3}"));
                         let known = |value: &f64| if value.is_nan() { String::new() } else { format!("{value:.4}") };

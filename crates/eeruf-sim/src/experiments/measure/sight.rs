@@ -35,6 +35,8 @@ pub struct Sight {
     pub foreign: f64,
     /// Share of time, where the sensor alone hears an echo, in which the belief was right.
     pub right: f64,
+    /// Right echoes that were believed, a second.
+    pub right_echoes_per_s: f64,
     /// Sensors that were right in under 5 % of their readings.
     pub blind: u32,
 }
@@ -56,7 +58,7 @@ impl Trial {
         });
         let mut false_ones: Vec<[f64; 2]> = vec![];
         let (mut foreign_s, mut right_s, mut echo_s) = (0.0, 0.0, 0.0);
-        let mut blind = 0;
+        let (mut blind, mut right_echoes) = (0, 0);
         for (heard, beliefs) in by_sensor.iter().zip(&beliefs) {
             let watched = beliefs.iter().filter(|belief| belief.heard.ready_s < self.appears_s);
             for belief in watched.filter(|belief| Heard::is_foreign(belief.cause)) {
@@ -71,13 +73,15 @@ impl Trial {
             let mut beliefs = beliefs.iter().peekable();
             let mut belief: Option<&Believed> = None;
             for (k, reading) in heard.iter().enumerate().take_while(|(_, reading)| reading.ready_s < self.appears_s) {
+                let mut is_new = false;
                 while let Some(next) = beliefs.next_if(|next| next.heard.ready_s <= reading.ready_s) {
-                    belief = Some(next);
+                    (belief, is_new) = (Some(next), true);
                 }
                 let next_s = heard.get(k + 1).map_or(self.appears_s, |next| next.ready_s.min(self.appears_s));
                 let is_right = belief.is_some_and(|belief| agree(belief.t_echo_us, reading.reference_us));
                 right += usize::from(is_right);
                 if !reading.reference_us.is_nan() {
+                    right_echoes += usize::from(is_right && is_new);
                     echo_s += next_s - reading.ready_s;
                     let until_s = belief.map_or(0.0, |belief| belief.until_s.max(reading.ready_s)).min(next_s);
                     right_s += if is_right { (until_s - reading.ready_s).max(0.0) } else { 0.0 };
@@ -91,6 +95,7 @@ impl Trial {
             watched_s: self.appears_s,
             foreign: foreign_s / (sensors as f64 * self.appears_s),
             right: if echo_s > 0.0 { right_s / echo_s } else { f64::NAN },
+            right_echoes_per_s: right_echoes as f64 / self.appears_s,
             blind,
         }
     }

@@ -134,6 +134,12 @@ impl Thing {
         Scene::new(walls, poles, crate::scene::Air::default())?.with_room(Some(Room::DEFAULT))
     }
 
+    /// A scene of the caller's with it.
+    pub(super) fn added_to(&self, scene: &Scene) -> Result<Scene, crate::scene::SceneError> {
+        let (walls, poles) = ([scene.walls(), &self.walls].concat(), [scene.poles(), &self.poles].concat());
+        Scene::new(walls, poles, scene.air())?.with_room(scene.room().copied())
+    }
+
     /// Its parts as bodies in their places.
     fn bodies(&self) -> impl Iterator<Item = (Body, Pose)> + '_ {
         let poles = self.poles.iter().map(|pole| (Body::Disc(pole.radius_m), Pose::from(pole.centre.coords)));

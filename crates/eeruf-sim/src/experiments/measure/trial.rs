@@ -11,9 +11,10 @@ use crate::{
     experiments::error::ExperimentError,
     experiments::rooms::{RoomKind, RoomPlan, RoomWay},
     geometry::Pose,
+    methods::Method,
     results::Readings,
-    scene::Room,
-    simulation::Simulation,
+    scene::{Room, Scene, SceneError},
+    simulation::{Options, Simulation},
     threads::Stop,
     world::{Random, Robot, World, WorldError},
 };
@@ -131,18 +132,34 @@ impl Trial {
         let mut random = Random::new(number).of(THING + kind as u64).of(condition.moving as u64);
         let appears_s = random.between(APPEARS_S[0], APPEARS_S[1]);
         let world = plan.moving(robot, speeds.speed_m_s, speeds.turn_rad_s)?;
+        Ok(Self::drawn(plan, &world, speeds, appears_s, random))
+    }
+
+    /// A trial of the first robot of a scene, as it stands or moves there.
+    pub(super) fn in_scene(world: &World, number: u64) -> Option<Self> {
+        let (robot, scene) = (world.robots().first()?, world.scene());
+        let plan = RoomPlan::own(number, scene.walls().to_vec(), scene.poles().to_vec(), robot.pose, 0.0);
+        let mut random = Random::new(number).of(THING);
+        let appears_s = random.between(APPEARS_S[0], APPEARS_S[1]);
+        let moment = robot.motion.at(&robot.pose, appears_s);
+        let speeds = Speeds { speed_m_s: moment.velocity.norm(), turn_rad_s: moment.turn_rad_s };
+        Some(Self::drawn(plan, world, speeds, appears_s, random))
+    }
+
+    fn drawn(plan: RoomPlan, world: &World, speeds: Speeds, appears_s: f64, random: Random) -> Self {
         let c = world.scene().air().speed_of_sound();
         let mut trial =
             Self { plan, thing: None, draws: Draws::default(), appears_s, ends_s: appears_s + NEVER_S, speeds, c };
-        let pose = trial.pose(&world, appears_s);
-        let drawn = Thing::draw(random, &trial.plan, &world, &pose, &mut trial.draws);
-        let Some(thing) = drawn else { return Ok(trial) };
+        let pose = trial.pose(world, appears_s);
+        let drawn = Thing::draw(random, &trial.plan, world, &pose, &mut trial.draws);
+        let Some(thing) = drawn else { return trial };
         let looks = (1..=(NEVER_S / LOOK_S) as u32).map(|look| appears_s + LOOK_S * f64::from(look));
-        let touches = |at: &f64| thing.touches(robot, &trial.pose(&world, *at));
-        let contact = looks.into_iter().find(touches).filter(|_| condition.moving != Moving::Standing);
+        let touches = |at: &f64| thing.touches(&world.robots()[0], &trial.pose(world, *at));
+        let moves = speeds.speed_m_s > 0.0 || speeds.turn_rad_s != 0.0;
+        let contact = looks.into_iter().find(touches).filter(|_| moves);
         trial.ends_s = contact.map_or(trial.ends_s, |contact| contact - LOOK_S);
         trial.thing = Some(thing);
-        Ok(trial)
+        trial
     }
 
     /// The time of a leg of the robot's way, in seconds, if it drives to and fro.
@@ -168,11 +185,32 @@ impl Trial {
 
     /// Readings of the first robot by a way of firing, in the order in which they were complete.
     pub(super) fn heard(&self, way: &RoomWay, keep_going: &dyn Fn() -> bool) -> Result<Vec<Heard>, ExperimentError> {
-        let RoomWay { method, robot, options, .. } = way;
         let Speeds { speed_m_s, turn_rad_s } = self.speeds;
-        let world = self.plan.moving(robot, speed_m_s, turn_rad_s)?.with_room(Some(Room::DEFAULT))?;
+        let world = self.plan.moving(&way.robot, speed_m_s, turn_rad_s)?.with_room(Some(Room::DEFAULT))?;
         let world = Arc::new(world.with_physics(Physics::DEFAULT)?);
-        let mut simulation = Simulation::new(world, *method, options, Stop::default())?;
+        self.heard_in(world, (way.method, &way.options), |thing, _| thing.scene(&self.plan), keep_going)
+    }
+
+    /// Readings in a scene of the caller's, by a method.
+    pub(super) fn heard_in_scene(
+        &self,
+        world: &World,
+        method: Method,
+        keep_going: &dyn Fn() -> bool,
+    ) -> Result<Vec<Heard>, ExperimentError> {
+        let options = Options { seed: Some(self.plan.number), ..Options::default() };
+        self.heard_in(Arc::new(world.clone()), (method, &options), Thing::added_to, keep_going)
+    }
+
+    fn heard_in(
+        &self,
+        world: Arc<World>,
+        (method, options): (Method, &Options),
+        with: impl Fn(&Thing, &Scene) -> Result<Scene, SceneError>,
+        keep_going: &dyn Fn() -> bool,
+    ) -> Result<Vec<Heard>, ExperimentError> {
+        let (speed_m_s, window) = (self.speeds.speed_m_s, world.robots()[0].window);
+        let mut simulation = Simulation::new(Arc::clone(&world), method, options, Stop::default())?;
         // Ends of legs, and the thing's appearing.
         let legs = self.leg_s().map_or(0, |leg_s| (self.ends_s / leg_s) as u32);
         let turns = (1..=legs).map(|leg| (self.leg_s().unwrap_or_default() * f64::from(leg), Some(leg)));
@@ -184,12 +222,14 @@ impl Trial {
             match (turn, &self.thing) {
                 (Some(leg), _) if leg % 2 == 1 => simulation.set_velocity(0, -speed_m_s, 0.0)?,
                 (Some(_), _) => simulation.set_velocity(0, speed_m_s, 0.0)?,
-                (None, Some(thing)) => simulation.change_scene(thing.scene(&self.plan).map_err(WorldError::from)?)?,
+                (None, Some(thing)) => {
+                    simulation.change_scene(with(thing, world.scene()).map_err(WorldError::from)?)?;
+                }
                 (None, None) => {}
             }
         }
         parts.push(simulation.step((self.ends_s - simulation.time_s()).max(0.0), |_| keep_going())?);
-        let mut heard: Vec<Heard> = parts.iter().flat_map(|part| Heard::all(part, robot.window)).collect();
+        let mut heard: Vec<Heard> = parts.iter().flat_map(|part| Heard::all(part, window)).collect();
         heard.sort_by(|one, other| one.ready_s.total_cmp(&other.ready_s));
         Ok(heard)
     }

@@ -138,7 +138,7 @@ pub struct JudgedWay {
 pub struct Judgement {
     /// The ways, in the order asked for.
     pub ways: Vec<JudgedWay>,
-    /// The index of the way to recommend; none if no way can fire the ring.
+    /// The index of the way to recommend, which a program has; none if no such way can fire the ring.
     pub recommended: Option<usize>,
     /// True if that keeps to the shares asked for in each kind of room.
     pub keeps: bool,
@@ -386,13 +386,13 @@ impl JudgedWay {
     }
 }
 
-/// The way that is right most of the time among those that keep to the shares asked for; of several as good, the one
+/// The way, of those that a program has, that is right most of the time and keeps to the shares asked for; of several as good, the one
 /// with most right echoes, but one by one if that has hardly fewer. Where none keeps to them, the one that is right
 /// most of the time.
 fn recommend(ways: &[JudgedWay], wrong: f64) -> (Option<usize>, bool) {
     let Some(base) = ways.first() else { return (None, false) };
     let best_of = |among: &dyn Fn(&JudgedWay) -> bool| {
-        let fit: Vec<_> = ways.iter().enumerate().filter(|(_, way)| among(way)).collect();
+        let fit: Vec<_> = ways.iter().enumerate().filter(|(_, way)| way.way.has_program() && among(way)).collect();
         let most = fit.iter().filter_map(|(_, way)| way.belief_right()).reduce(f64::max)?;
         let as_good = fit.iter().filter(|(_, way)| way.belief_right().is_some_and(|right| right >= most - AS_GOOD));
         let by_echoes: Vec<_> = as_good.map(|(index, way)| (*index, way.echoes_against(base).unwrap_or(0.0))).collect();
@@ -411,6 +411,7 @@ mod tests {
     use super::*;
     use crate::acoustics::Transducer;
     use crate::geometry::Pose;
+    use crate::methods::Method;
 
     const USUAL: RoomFigures = RoomFigures {
         belief: Belief { right: 0.9, unknown: 0.1, phantom: 0.0, too_far: 0.0, faint: 0.0 },
@@ -432,14 +433,18 @@ mod tests {
         RoomFigures { belief: Belief { right, ..USUAL.belief }, right_echoes_per_s: echoes, ..USUAL }
     }
 
-    fn chosen(figures: &[Result<[RoomFigures; 2], &str>]) -> (Option<usize>, bool) {
+    fn judged(figures: &[Result<[RoomFigures; 2], &str>]) -> Vec<JudgedWay> {
         let robot = Robot::ring(Pose::identity(), 4, 1.57, 0.2, Transducer::HC_SR04);
         let way = RoomWay::all(&robot, None)[0].clone();
         let judged = figures
             .iter()
             .map(|rooms| (way.clone(), rooms.map(Vec::from).map_err(str::to_owned)))
             .map(|(way, rooms)| JudgedWay { way, rooms, blind_90: [0.0; 2], times_95: None });
-        recommend(&judged.collect::<Vec<_>>(), 0.03)
+        judged.collect()
+    }
+
+    fn chosen(figures: &[Result<[RoomFigures; 2], &str>]) -> (Option<usize>, bool) {
+        recommend(&judged(figures), 0.03)
     }
 
     #[test]
@@ -450,6 +455,11 @@ mod tests {
         // Hardly more echoes than one by one are not worth a library.
         assert_eq!(chosen(&[base, Ok([right(0.905, 11.5); 2])]), (Some(0), true));
         assert_eq!(chosen(&[base, Ok([right(0.905, 12.5); 2])]), (Some(1), true));
+        // What no program has is not recommended.
+        let mut ways = judged(&[base, Ok([right(0.99, 99.0); 2])]);
+        ways[1].way.name = "arrays";
+        ways[1].way.method = Method::Arrays;
+        assert_eq!(recommend(&ways, 0.03), (Some(0), true));
         // What cannot fire is passed over.
         assert_eq!(chosen(&[base, Err("too fast")]), (Some(0), true));
         assert_eq!(chosen(&[Err("too fast")]), (None, false));

@@ -61,6 +61,11 @@ impl RoomWay {
         ways
     }
 
+    /// Returns true if a program for a board can fire so.
+    pub fn has_program(&self) -> bool {
+        matches!(self.method, Method::Sequential | Method::FarGroups | Method::Flow) || self.name == "eeruf"
+    }
+
     /// The name with what it means, for tables.
     pub fn title(&self) -> &'static str {
         match self.name {

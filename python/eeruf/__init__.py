@@ -67,7 +67,6 @@ if TYPE_CHECKING:
 
     from eeruf import experiments, logs, plot
     from eeruf._eeruf import _Kind
-    from eeruf._sweep import sweep
     from eeruf.logs import diagnose, read_firings, read_log, replay, survey
 
 __all__ = [
@@ -119,7 +118,6 @@ __all__ = [
     "show_versions",
     "sim",
     "survey",
-    "sweep",
     "tables",
 ]
 
@@ -163,11 +161,9 @@ def show_versions() -> None:
 if not TYPE_CHECKING:
     # On first use: a program without them need not wait for them, or for what they import.
     _MODULES = ("experiments", "logs", "plot")
-    _FUNCTIONS = {"sweep": "_sweep"} | dict.fromkeys(
-        ("diagnose", "read_firings", "read_log", "replay", "survey"), "logs"
-    )
+    _FUNCTIONS = ("diagnose", "read_firings", "read_log", "replay", "survey")
 
-    # What time hopping had, and what does it now.
+    # What there was, and what does it now.
     _GONE = dict.fromkeys(
         ("EchoTracker", "HoppingFound", "HoppingSchedule", "HoppingSettings", "TrackerSettings"), "Ring.flow"
     ) | {"HoppingError": "RingError"}
@@ -178,10 +174,12 @@ if not TYPE_CHECKING:
         if name in _MODULES:
             return import_module(f"eeruf.{name}")
         if name in _FUNCTIONS:
-            globals()[name] = function = getattr(import_module(f"eeruf.{_FUNCTIONS[name]}"), name)
+            globals()[name] = function = getattr(import_module("eeruf.logs"), name)
             return function
         if name in _GONE:
             raise AttributeError(f"eeruf.{name} is gone; eeruf.{_GONE[name]} does it")
+        if name == "sweep":
+            raise AttributeError("eeruf.sweep is gone; docs/how-to/cluster.md has what does it")
         raise AttributeError(f"module 'eeruf' has no attribute {name!r}")
 
     def __dir__() -> list[str]:

@@ -331,12 +331,6 @@ def calls(c: Chance) -> list[Callable[[], Any]]:
         lambda: ANY.sim.Simulation(ROOM, method(c)).reset(m(3)),
         lambda: ANY.sim.Simulation(ROOM).set_pose(m(0), m((0, 0, 1))),
         lambda: ANY.experiments.speed_sweep(m([]), seeds=m(1), methods=m([]), bodies=m(True), t_delta_us=m(150)),
-        lambda: ANY.sweep(
-            m(repr),
-            m([1]),
-            executor=c.random.choice([INLINE, 3, object()]),
-            progress=c.random.choice([None, False, 3, len]),
-        ),
     ]
 
 

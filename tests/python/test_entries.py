@@ -1,13 +1,8 @@
 """Methods are values that simulations and experiments take alike, and parts of experiments make the whole."""
 
 import functools
-import os
 import pickle
 import re
-import signal
-import subprocess
-import sys
-import time
 from pathlib import Path
 from typing import Any, Callable
 
@@ -255,63 +250,6 @@ def test_reporting_seeds_refuse_to_tune(run: Any) -> None:
     assert run(1, first=0, tune=True, methods=["sequential"]).first == 0
 
 
-KILLED = """
-import os, sys, time
-import eeruf
-from eeruf import experiments
-
-def part(first):
-    with open({log!r}, "a") as log:
-        log.write(f"{{first}}\\n")
-    if first >= 20_004 and {slow}:
-        time.sleep(600)
-    return experiments.set_one(2, first=first, readings=400, methods=["eeruf"])
-
-if __name__ == "__main__":
-    from concurrent.futures import ThreadPoolExecutor
-    with ThreadPoolExecutor(1) as one:
-        parts = eeruf.sweep(part, range(20_000, 20_010, 2), executor=one, folder={folder!r})
-    print(experiments.concat(parts) == experiments.set_one(10, readings=400, methods=["eeruf"]))
-"""
-
-
-def test_a_killed_sweep_resumes_from_its_folder(tmp_path: Path) -> None:
-    log, folder, script = tmp_path / "log", tmp_path / "parts", tmp_path / "script.py"
-    script.write_text(KILLED.format(log=str(log), folder=str(folder), slow=True))
-    with subprocess.Popen([sys.executable, script]) as process:
-        try:
-            deadline = time.monotonic() + 60
-            # The third part is under way, and the second is kept.
-            while not (log.exists() and "20004" in log.read_text() and (folder / "000001.pickle").exists()):
-                assert time.monotonic() < deadline and process.poll() is None
-                time.sleep(0.05)
-        finally:
-            process.send_signal(signal.SIGKILL if os.name == "posix" else signal.SIGTERM)
-    assert sorted(path.name for path in folder.iterdir()) == ["000000.pickle", "000001.pickle"]
-    script.write_text(KILLED.format(log=str(log), folder=str(folder), slow=False))
-    done = subprocess.run([sys.executable, script], capture_output=True, text=True, timeout=300)
-    assert (done.stdout, done.stderr) == ("True\n", "")
-    # Only the part under way was lost.
-    assert log.read_text().split() == ["20000", "20002", "20004", "20004", "20006", "20008"]
-
-
-def square(number: int) -> int:
-    return number * number
-
-
-def test_a_folder_of_another_sweep_or_a_damaged_file_is_refused(tmp_path: Path) -> None:
-    assert eeruf.sweep(square, [1, 2, 3], folder=tmp_path) == [1, 4, 9]
-    assert eeruf.sweep(square, [1, 2, 3], folder=tmp_path) == [1, 4, 9]
-    for function, cases in ((square, [1, 2, 4]), (abs, [1, 2, 3]), (square, [1, 2])):
-        with pytest.raises(eeruf.ArgumentError, match="use another folder for another sweep"):
-            eeruf.sweep(function, cases, folder=tmp_path)
-    (tmp_path / "000001.pickle").write_bytes(b"no pickle")
-    with pytest.raises(eeruf.ArgumentError, match=r"000001.pickle: .*; expected a result of a sweep; delete it"):
-        eeruf.sweep(square, [1, 2, 3], folder=tmp_path)
-    with pytest.raises(eeruf.ArgumentError, match="folder = 3; expected the path of a folder"):
-        ANY.sweep(square, [1], folder=3)
-
-
 def test_one_process_dask_and_parts_give_equal_tables() -> None:
     from distributed import Client, LocalCluster
 
@@ -319,8 +257,8 @@ def test_one_process_dask_and_parts_give_equal_tables() -> None:
     firsts = range(20_000, 20_006, 2)
     whole = experiments.set_one(6, readings=400, methods=["eeruf", "sequential"])
     with LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster, Client(cluster) as client:
-        there = eeruf.sweep(run, firsts, executor=client.get_executor())
-    assert experiments.concat(there) == experiments.concat(eeruf.sweep(run, firsts)) == whole
+        there = list(client.get_executor().map(run, firsts))
+    assert experiments.concat(there) == experiments.concat([run(first) for first in firsts]) == whole
 
 
 def part(first: int, methods: Any) -> experiments.SetOne:

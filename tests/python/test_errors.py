@@ -230,10 +230,6 @@ BAD: list[tuple[Callable[[], Any], type[Exception], str]] = [
     (lambda: eeruf.experiments.set_one(1, first=-1), eeruf.ArgumentError, "first = -1"),
     (lambda: eeruf.experiments.speed_sweep([]), eeruf.ArgumentError, r"speeds_m_s = \[\]; expected one speed or more"),
     (lambda: eeruf.experiments.speed_sweep([1.0, -1]), eeruf.ArgumentError, r"speeds_m_s\[1\] = -1"),
-    (lambda: ANY.sweep(3, [1]), eeruf.ArgumentError, "function = 3"),
-    (lambda: ANY.sweep(abs, 3), eeruf.ArgumentError, "cases = 3; expected several cases"),
-    (lambda: ANY.sweep(abs, [1], executor=3), eeruf.ArgumentError, "executor = 3"),
-    (lambda: ANY.sweep(abs, [1], progress=3), eeruf.ArgumentError, "progress = 3"),
     (lambda: ANY.plot.timing(3), eeruf.ArgumentError, "schedule = 3; expected an eeruf.Schedule"),
     (lambda: ANY.plot.timing(tables.TABLE_I_D, window_us=-1), eeruf.ArgumentError, "window_us = -1"),
     (lambda: ANY.plot.scene(3), eeruf.ArgumentError, "scene = 3; expected an eeruf.sim.Scene"),
@@ -330,15 +326,13 @@ def test_the_simulator_never_panics_whatever_it_is_given(array: Any, other: Any,
 
 @settings(deadline=None, max_examples=50)
 @given(ARRAY, st.lists(SMALL, min_size=6, max_size=6))
-def test_experiments_sweeps_and_figures_never_panic(array: Any, arguments: list[Any]) -> None:
+def test_experiments_and_figures_never_panic(array: Any, arguments: list[Any]) -> None:
     one, two, three, four, *_ = arguments
     refuse(
         lambda: ANY.experiments.set_one(one, readings=two, methods=three or ["eeruf"], progress=four),
         lambda: ANY.experiments.set_two(1, methods=["eeruf"], second_robot=array, speed_m_s=one, odometry=two),
         lambda: ANY.experiments.set_two(one, methods=two or ["eeruf"], t_delta_us=three, first=four),
         lambda: ANY.experiments.speed_sweep(array, seeds=1, methods=["eeruf"]),
-        lambda: ANY.sweep(one, two, executor=INLINE, progress=three),
-        lambda: ANY.sweep(repr, two, executor=INLINE, progress=three),
         lambda: ANY.plot.timing(one, window_us=two),
         lambda: ANY.plot.timing(tables.TABLE_I_D, window_us=one, ax=AX),
         lambda: ANY.plot.scene(WALL, one, source=two, receivers=array, most=three, ax=AX),

@@ -21,10 +21,8 @@ LONG = {
     "speed_sweep": "eeruf.experiments.speed_sweep(seeds=100_000, progress=tell)",
     "count": "tell(); waits.count()",
     "all": "tell(); [None for table in waits.all()]",
-    "sweep": "tell(); eeruf.sweep(functools.partial(eeruf.sim.simulate, scene, 'eeruf', 3_000_000), range(4))",
     "log": "tell(); eeruf.read_log(Endless())",
     "blocks": "tell(); [None for _ in eeruf.logs.blocks(Endless(), judge=eeruf.logs.Agree(500))]",
-    "sweep on processes": "tell(); eeruf.sweep(time.sleep, [1_000] * 4)",
 }
 BEFORE = """
 import eeruf, functools, random, time
@@ -46,7 +44,7 @@ waits = eeruf.WaitSearch(24, 200_000, 49_000, 1000, t_delta_us=999, min_interval
 @pytest.mark.parametrize("name", LONG)
 def test_ctrl_c_ends_long_work(name: str) -> None:
     program = f"{BEFORE}\n{LONG[name]}\nprint('completed')"
-    # A session of its own, since a terminal sends Ctrl-C to all processes of a sweep.
+    # A session of its own, since a terminal sends Ctrl-C to all its processes.
     child = subprocess.Popen(
         [sys.executable, "-c", program],
         stdout=subprocess.PIPE,
@@ -56,7 +54,7 @@ def test_ctrl_c_ends_long_work(name: str) -> None:
     )
     assert child.stdout is not None
     assert child.stdout.readline() == "under way\n"
-    if name in ("count", "all", "step", "log", "blocks", "sweep", "sweep on processes"):
+    if name in ("count", "all", "step", "log", "blocks"):
         time.sleep(0.5)
     os.killpg(child.pid, signal.SIGINT)
     try:

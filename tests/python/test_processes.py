@@ -1,11 +1,9 @@
 """Processes, threads and memory: nothing waits for ever, runs on, or ends the interpreter."""
 
-import functools
 import os
 import signal
 import subprocess
 import sys
-import threading
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -56,81 +54,11 @@ if __name__ == "__main__":
     here = [run(1), run(2)]
     context = multiprocessing.get_context({method!r})
     with ProcessPoolExecutor(2, mp_context=context) as processes:
-        print(eeruf.sweep(run, [1, 2], executor=processes) == here)
+        print(list(processes.map(run, [1, 2])) == here)
 """,
         tmp_path,
     )
     assert done.stdout == "True\n", done.stderr
-
-
-def test_a_sweep_chooses_threads_or_fresh_processes(tmp_path: Path) -> None:
-    done = run(
-        """
-import os, eeruf
-from eeruf import sim
-def where(case):
-    return os.getpid() == case
-if __name__ == "__main__":
-    eeruf.experiments.set_one(1, readings=8, methods=["eeruf"])
-    print(eeruf.sweep(where, [os.getpid()] * 2))
-    scene = sim.Scene([[5, 2, -5, 2]], robots=[sim.Robot((0, 0, 1.57), 8, 0.26, 0.3)])
-    print(len(eeruf.sweep(lambda seed: 1, [], executor=None)))
-""",
-        tmp_path,
-    )
-    assert done.stdout == "[False, False]\n0\n", done.stderr
-    # A scene's own method with arguments that do not pickle: only threads take it. Straight, by the wall, and around
-    # its two ends.
-    paths = functools.partial(ROOM.paths, (0, 0), max_order=1, progress=lambda share, text: None)
-    assert [len(found) for found in eeruf.sweep(paths, [[(1, 0)], [(1, 0), (2, 0)]])] == [4, 8]
-
-
-def test_errors_and_progress_come_as_they_happen() -> None:
-    from concurrent.futures import ThreadPoolExecutor
-
-    gate = threading.Event()
-
-    def wait_for_the_others(case: int) -> int:
-        if case == 0:
-            assert gate.wait(30)
-        return case
-
-    shares: list[float] = []
-
-    def progress(share: float | None, text: str) -> None:
-        assert share is not None
-        shares.append(share)
-        if share == 0.75:
-            gate.set()
-
-    with ThreadPoolExecutor(2) as threads:
-        assert eeruf.sweep(wait_for_the_others, range(4), executor=threads, progress=progress) == [0, 1, 2, 3]
-    assert shares == [0.25, 0.5, 0.75, 1.0]
-    gate.clear()
-
-    def fail(case: int) -> int:
-        if case == 1:
-            raise RuntimeError("the second")
-        return wait_for_the_others(case)
-
-    with ThreadPoolExecutor(2) as threads:
-        with pytest.raises(RuntimeError, match="the second"):
-            eeruf.sweep(fail, range(2), executor=threads)
-        assert not gate.is_set()
-        gate.set()
-
-
-def test_a_case_that_its_executor_cancels_ends_the_sweep() -> None:
-    from concurrent.futures import CancelledError, Executor, Future
-
-    class Dying(Executor):
-        def submit(self, *_: Any, **__: Any) -> Any:
-            future: Future[int] = Future()
-            threading.Timer(0.05, future.cancel).start()
-            return future
-
-    with pytest.raises(CancelledError):
-        eeruf.sweep(repr, [1, 2], executor=Dying())
 
 
 def test_nothing_that_was_ended_runs_on() -> None:
@@ -143,7 +71,6 @@ def test_nothing_that_was_ended_runs_on() -> None:
         lambda: sim.simulate(ROOM, periods=1_000_000, progress=enough),
         lambda: eeruf.experiments.set_one(10_000, progress=enough),
         lambda: eeruf.design(40, 999, 9_000, 36_000, budget=10**9, progress=enough),
-        lambda: eeruf.sweep(functools.partial(sim.simulate, ROOM, "eeruf", 100_000), range(50), progress=enough),
     ]
     for call in long:
         with pytest.raises(KeyboardInterrupt):

@@ -125,16 +125,16 @@ def test_lazy_imports_are_listed() -> None:
     program = """
 import eeruf
 assert set(eeruf.__all__) <= set(dir(eeruf))
-assert eeruf.sweep is eeruf.sweep and eeruf.read_log is eeruf.logs.read_log
+assert eeruf.survey is eeruf.survey and eeruf.read_log is eeruf.logs.read_log
 from eeruf import *
-print(sweep.__name__, logs.__name__, experiments.__name__, diagnose.__name__)
+print(survey.__name__, logs.__name__, experiments.__name__, diagnose.__name__)
 try:
-    eeruf.sweeep
+    eeruf.surveyy
 except AttributeError as error:
     print(error)
 """
     run = subprocess.run([sys.executable, "-c", program], check=True, capture_output=True, text=True)
     assert run.stdout.splitlines() == [
-        "sweep eeruf.logs eeruf.experiments diagnose",
-        "module 'eeruf' has no attribute 'sweeep'",
+        "survey eeruf.logs eeruf.experiments diagnose",
+        "module 'eeruf' has no attribute 'surveyy'",
     ]

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use eeruf_core::{Micros, Phase};
 use eeruf_files::Kind;
-use eeruf_logs::{Alignment, FiringLog, Settings, Timing, align, diagnose, timing};
+use eeruf_logs::{FiringLog, Settings, Timing, diagnose, timing};
 use eeruf_sim::AnySchedule;
 
 use super::arguments::picture;
@@ -32,8 +32,7 @@ pub(crate) struct Args {
     /// The log
     #[arg(value_name = "LOG")]
     file: PathBuf,
-    /// The fixed schedule that the ring fires by: for jitter, lateness and drift, or for the instants of firing where
-    /// the log has none
+    /// The fixed schedule that the ring fires by: for jitter, lateness and drift
     #[arg(long, value_name = "SCHEDULE.toml")]
     schedule: Option<PathBuf>,
     /// Largest difference between a reading and what a path predicts, in microseconds; by default four times the
@@ -72,20 +71,14 @@ impl Args {
 
 pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     Kind::expect_log(&args.file)?;
-    let mut log = read_firings(&args.file)?;
+    let log = read_firings(&args.file)?;
     let measured = Settings::of(&log);
     let settings = Settings {
         tolerance_us: args.tolerance_us.unwrap_or(measured.tolerance_us),
         max_travel_us: args.max_travel_us,
         ..measured
     };
-    let (mut timing, mut alignment) = (None, None);
-    if log.lacks_instants {
-        let (aligned, found) = aligned(args, &log, settings.tolerance_us)?;
-        (log, alignment) = (aligned, Some(found));
-    } else {
-        timing = timing_of(args, &log)?;
-    }
+    let timing = timing_of(args, &log)?;
     let diagnosis = diagnose(&log, &settings);
     let found = Found {
         file: &args.file,
@@ -93,7 +86,6 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
         diagnosis: &diagnosis,
         tolerance_us: settings.tolerance_us,
         timing,
-        alignment,
         speed_of_sound: args.speed_of_sound,
     };
     if let Some(file) = &args.svg {
@@ -104,17 +96,6 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
         return Err(InputError::new(&args.file, damage));
     }
     Ok(if diagnosis.faults.is_empty() { Answer::Yes } else { Answer::No })
-}
-
-/// A log without instants, put onto the schedule.
-fn aligned(args: &Args, log: &FiringLog, tolerance_us: u32) -> Result<(FiringLog, Alignment), InputError> {
-    let Some(file) = &args.schedule else {
-        let message = "no instants of firing; expected a column `fired_us`, or --schedule, the fixed one of the ring";
-        return Err(InputError::new(&args.file, message));
-    };
-    let schedule = read_schedule(file)?;
-    let found = align(log, tolerance_us, (schedule.period().as_micros(), 2), fires_at(&schedule));
-    found.map_err(|error| InputError::new(&args.file, format!("against {}: {error}", file.display())))
 }
 
 /// When a sensor fires in a phase, in microseconds.

@@ -12,7 +12,6 @@ use super::log_args::{LogArgs, left_out, tell_damage, warn_of_log};
 use super::{Answer, diagnose as by_schedule, replay, survey};
 use crate::console::{print_line, tell};
 use crate::files::error::InputError;
-use crate::report::advice::advice;
 use crate::report::json::to_json;
 use crate::report::table::markdown;
 
@@ -117,7 +116,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     if args.json {
         print_line(to_json(&json(&report, &sensors, &examination)))?;
     } else if !report.sensors.is_empty() {
-        let answer = advice(&examination, &report.firing, &report.names());
+        let answer = examination.answer(&report.firing, &report.names());
         tell(format!("{answer}\n\n{}", describe(&args.file, &report, &sensors)))?;
     }
     tell_damage(&args.file, &report)?;

@@ -104,9 +104,6 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
 /// Judges the firings of a flow ring again.
 fn run_flow(args: &Args, ring: &Path) -> Result<Answer, InputError> {
     let log = read_firings(&args.file)?;
-    if log.lacks_instants {
-        return Err(InputError::new(&args.file, "no instants of firing; expected a column `fired_us`"));
-    }
     let replayed = replay_flow(&log, &read_flow(ring)?).map_err(|error| InputError::new(ring, error))?;
     if let Some(out) = &args.out {
         write(out, rows(&log, &replayed))?;

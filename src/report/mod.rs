@@ -2,7 +2,6 @@
 //!
 //! Uses the libraries and `files`; knows nothing of commands and their arguments.
 
-pub(crate) mod advice;
 pub(crate) mod bounces;
 pub(crate) mod design;
 pub(crate) mod diagnose;

@@ -4,12 +4,12 @@
 use std::io::Read;
 use std::path::Path;
 
-use crate::firings::{Firing, FiringLog, MAX_SENSORS, OF_HOPPING, kind_of};
+use crate::firings::{Firing, FiringLog, MAX_SENSORS, kind_of};
 use crate::text::{Line, Separator, Source, is_comment, json, separated};
 use crate::value::{is_no_echo, number, prefix};
 use eeruf_files::FileError;
 
-const NEEDED: [&str; 4] = ["sensor", "period", "phase", "t_echo_us"];
+const NEEDED: [&str; 5] = ["sensor", "fired_us", "period", "phase", "t_echo_us"];
 /// The columns that are read, in the order in which rows of JSON have them.
 const NAMES: [&str; 8] = ["sensor", "fired_us", "period", "phase", "t_echo_us", "reading", "sends", "g"];
 
@@ -19,12 +19,10 @@ struct Header {
     /// Nothing for JSON, whose rows have names.
     separator: Option<Separator>,
     has_prefix: bool,
-    needed: [usize; 4],
-    fired: Option<usize>,
+    needed: [usize; 5],
     reading: Option<usize>,
     sends: Option<usize>,
     motion: Option<usize>,
-    of_hopping: bool,
 }
 
 /// The reason that a line gives no firing: a column, if it is one, and what is wrong.
@@ -41,8 +39,7 @@ impl Header {
         let (separator, names) = if is_json {
             let rows: Vec<_> = lines().filter_map(|line| json(&line.text)).collect();
             let is_there = |name: &&str| rows.iter().flatten().any(|(own, _)| same_name(own) == *name);
-            let all = NAMES.iter().chain(&OF_HOPPING);
-            (None, all.filter(|name| is_there(name)).map(|&name| name.to_owned()).collect())
+            (None, NAMES.iter().filter(|name| is_there(name)).map(|&name| name.to_owned()).collect())
         } else {
             let cells = |separator| separated(stripped.unwrap_or(first), separator).unwrap_or_default();
             let found = |separator: &Separator| {
@@ -52,7 +49,7 @@ impl Header {
             (Some(separator), cells(separator).iter().map(|name| same_name(name)).collect::<Vec<_>>())
         };
         let column = |name: &str| names.iter().position(|column| column == name);
-        let mut needed = [0; 4];
+        let mut needed = [0; 5];
         for (place, name) in needed.iter_mut().zip(NEEDED) {
             *place = column(name).ok_or_else(|| {
                 format!(
@@ -61,9 +58,8 @@ impl Header {
                 )
             })?;
         }
-        let [fired, reading, sends, motion] = ["fired_us", "reading", "sends", "g"].map(column);
-        let of_hopping = OF_HOPPING.iter().all(|name| column(name).is_some());
-        Ok(Self { separator, has_prefix, needed, fired, reading, sends, motion, of_hopping, names })
+        let [reading, sends, motion] = ["reading", "sends", "g"].map(column);
+        Ok(Self { separator, has_prefix, needed, reading, sends, motion, names })
     }
 
     /// The cells of a line; nothing for the header itself.
@@ -98,19 +94,13 @@ impl Header {
         Ok(Some(cells))
     }
 
-    /// The firing of a row, and whether its sensor sent; `fired_us` is `None` if the row lacks it.
-    fn firing(&self, cells: &[String]) -> Result<(Firing, Option<i64>, bool), Wrong> {
+    /// The firing of a row, and whether its sensor sent.
+    fn firing(&self, cells: &[String]) -> Result<(Firing, bool), Wrong> {
         let decimal_comma = self.separator.is_some_and(|separator| separator != Separator::Comma);
         let text = |column: usize| cells.get(column).map_or("", String::as_str);
         let bad = |column: usize, expected: &str| (Some(column), format!("`{}`; expected {expected}", text(column)));
-        let [sensor, period, phase, echo] = self.needed;
-        let fired_us = match self.fired.filter(|&column| !text(column).is_empty()) {
-            None => None,
-            Some(column) => {
-                let us = number(text(column), decimal_comma).filter(|us| (0.0..9e15).contains(us));
-                Some(us.ok_or_else(|| bad(column, "microseconds, 0 to 9e15"))?.round() as i64)
-            }
-        };
+        let [sensor, fired, period, phase, echo] = self.needed;
+        let fired_us = number(text(fired), decimal_comma).filter(|us| (0.0..9e15).contains(us));
         let t_echo_us = match text(echo) {
             text if is_no_echo(text) => None,
             text => {
@@ -138,13 +128,13 @@ impl Header {
         let firing = Firing {
             g_us_ms,
             sensor: known_sensor.ok_or_else(|| bad(sensor, "0 to 63"))?,
-            fired_us: fired_us.unwrap_or(0),
+            fired_us: fired_us.ok_or_else(|| bad(fired, "microseconds, 0 to 9e15"))?.round() as i64,
             period: text(period).parse().map_err(|_| bad(period, "a number from 0"))?,
             phase: text(phase).parse().map_err(|_| bad(phase, "0 to 255"))?,
             t_echo_us,
             reading: kind_of(made),
         };
-        Ok((firing, fired_us, sends))
+        Ok((firing, sends))
     }
 }
 
@@ -180,7 +170,6 @@ struct Rows {
     clock: String,
     firings: Vec<Firing>,
     listened: Vec<Firing>,
-    lacks_instants: bool,
     /// A clock of 32 bits has wrapped so often, times 2^32.
     wraps: i64,
     last: i64,
@@ -193,7 +182,6 @@ struct Rows {
 impl Rows {
     fn new(header: Header, clock: &str) -> Self {
         Self {
-            lacks_instants: header.fired.is_none(),
             header,
             clock: clock.to_owned(),
             firings: vec![],
@@ -227,8 +215,7 @@ impl Rows {
             return Err((None, "it ends without a line break and may be cut".to_owned()));
         }
         self.longest = self.longest.max(last);
-        let (mut firing, fired_us, sends) = self.header.firing(&cells)?;
-        self.lacks_instants |= fired_us.is_none();
+        let (mut firing, sends) = self.header.firing(&cells)?;
         firing.fired_us += self.wraps;
         if self.last != i64::MIN && self.last - firing.fired_us > 1 << 31 {
             self.wraps += 1 << 32;
@@ -239,22 +226,17 @@ impl Rows {
         Ok(())
     }
 
-    fn log(mut self, file: &Path) -> Result<FiringLog, FileError> {
+    fn log(self, file: &Path) -> Result<FiringLog, FileError> {
         if self.firings.is_empty() {
             return Err(match self.first_damage {
                 Some((line, why)) => FileError::new(file, why).at_line(Some(line)),
                 None => FileError::new(file, "0 firings; expected one or more"),
             });
         }
-        if self.lacks_instants {
-            self.firings.iter_mut().chain(&mut self.listened).for_each(|firing| firing.fired_us = 0);
-            self.firings.sort_by_key(|firing| firing.period);
-        }
         let damage = self.first_damage.map(|(line, why)| match self.damaged {
             1 => format!("line {line} is left out: {why}"),
             damaged => format!("{damaged} lines are left out, first line {line}: {why}"),
         });
-        let (listened, lacks_instants, of_hopping) = (self.listened, self.lacks_instants, self.header.of_hopping);
-        Ok(FiringLog { listened, lacks_instants, of_hopping, damage, ..FiringLog::new(&self.clock, self.firings) })
+        Ok(FiringLog { listened: self.listened, damage, ..FiringLog::new(&self.clock, self.firings) })
     }
 }

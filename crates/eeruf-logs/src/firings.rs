@@ -13,23 +13,17 @@
 //! line may name; one of 32 bits may wrap. `t_echo_us` is the raw echo time, from firing to the first edge, empty
 //! without echo. `reading` is what the ring made of it (`rejected`, `accepted`, `ambiguous`, ..) and may be missing.
 //! Sensors, periods and phases count from 0. `g` may say how fast readings changed with the robot's motion, in
-//! microseconds for each millisecond: 2 (v + w 0.5 m) over the speed of sound. A log without `fired_us` can be put onto
-//! a fixed schedule ([`align`](crate::align())). Rows may come in any order that is at most 2^31 us out. Where `sends`
-//! is 0 the sensor only listened from then on, as some can. Columns of rings that hopped, which earlier versions wrote,
-//! are ignored, with a warning ([`FiringLog::doubts`]).
+//! microseconds for each millisecond: 2 (v + w 0.5 m) over the speed of sound. Rows may come in any order that is at most 2^31 us out. Where `sends`
+//! is 0 the sensor only listened from then on, as some can.
 //!
 //! The same in MCAP is a message `eeruf_msgs/msg/Firing` of ROS 2 for each row, which
-//! [`McapWriter::firing`](crate::McapWriter::firing) writes, or one `eeruf.Firing` in JSON, with the columns as its
-//! fields and the clock's name as a field `clock`.
+//! [`McapWriter::firing`](crate::McapWriter::firing) writes.
 
 use std::fmt;
 use std::io::Write;
 
 use eeruf_core::ReadingKind;
 use eeruf_files::{FIRING_COLUMNS, firing_row};
-
-/// Columns of earlier versions, whose rings hopped: ignored.
-pub(crate) const OF_HOPPING: [&str; 3] = ["solo", "steady", "changes"];
 
 /// One firing of one sensor.
 #[derive(Clone, Debug, PartialEq)]
@@ -59,10 +53,6 @@ pub struct FiringLog {
     pub firings: Vec<Firing>,
     /// Sounds heard by sensors that listened without firing: `fired_us` is when they began to.
     pub listened: Vec<Firing>,
-    /// True if the log does not say when sensors fired: `fired_us` is 0 then, see [`align`](crate::align()).
-    pub lacks_instants: bool,
-    /// True if the log says how rings that hopped weighed their readings, which is ignored.
-    pub of_hopping: bool,
     /// The part of the file that could not be read, if any.
     pub damage: Option<String>,
 }
@@ -85,11 +75,6 @@ impl Firing {
         1000 * self.fired_us.max(1).cast_unsigned()
     }
 
-    /// Its row, with this in the place of the time.
-    fn row(&self, fired_us: impl fmt::Display) -> String {
-        firing_row(self.sensor, fired_us, self.period, self.phase, self.t_echo_us, self.spelled())
-    }
-
     /// The ring's verdict on the reading, as logs spell it.
     pub(crate) fn spelled(&self) -> &'static str {
         self.reading.map_or("", ReadingKind::as_str)
@@ -99,7 +84,8 @@ impl Firing {
 impl fmt::Display for Firing {
     /// Its row: a cell for each of the [`FIRING_COLUMNS`].
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.row(self.fired_us))
+        let row = firing_row(self.sensor, self.fired_us, self.period, self.phase, self.t_echo_us, self.spelled());
+        f.write_str(&row)
     }
 }
 
@@ -107,10 +93,6 @@ impl fmt::Display for Firing {
 pub(crate) fn kind_of(spelled: &str) -> Option<ReadingKind> {
     ReadingKind::ALL.into_iter().find(|kind| kind.as_str() == spelled)
 }
-
-/// The warning of a log of earlier versions.
-pub(crate) const IGNORED: &str = "how a ring that hopped weighed its readings (solo, steady, changes ..): \
-                                  ignored; time hopping is gone, flow does it";
 
 /// The most sensors of a ring.
 pub(crate) const MAX_SENSORS: u8 = 64;
@@ -122,7 +104,7 @@ impl FiringLog {
         Self { clock: clock.to_owned(), firings, ..Self::default() }
     }
 
-    /// Warnings of times that are legal and implausible, milliseconds for microseconds, and of ignored columns.
+    /// Warnings of times that are legal and implausible, milliseconds for microseconds.
     pub fn doubts(&self) -> Vec<String> {
         /// Sound that comes sooner is ringing of the transducer; sensors of a ring fire less often.
         const LEAST_US: i64 = 200;
@@ -136,7 +118,6 @@ impl FiringLog {
                 let why = "likely milliseconds: times are microseconds";
                 format!("column {key}: {of} {us}; expected {LEAST_US} or more; {why}")
             })
-            .chain(self.of_hopping.then(|| IGNORED.to_owned()))
             .collect()
     }
 
@@ -153,8 +134,7 @@ impl FiringLog {
         for (rows, sends) in [(&self.firings, ",1"), (&self.listened, ",0")] {
             let sends = if self.listened.is_empty() { "" } else { sends };
             for firing in rows {
-                let row = if self.lacks_instants { firing.row("") } else { firing.to_string() };
-                write!(output, "{row}")?;
+                write!(output, "{firing}")?;
                 match firing.g_us_ms {
                     Some(g) => write!(output, ",{g}")?,
                     None if moves => write!(output, ",")?,

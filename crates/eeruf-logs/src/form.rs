@@ -32,15 +32,17 @@ pub(crate) enum Packing {
     Zstd,
 }
 
-/// A form that is named and not read.
+/// A form that is named and not read: its name, and the function of pandas that reads it, if one does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Foreign {
-    Xz,
-    Zip,
-    Parquet,
-    Hdf5,
-    Binary,
-}
+pub(crate) struct Foreign(&'static str, &'static str);
+
+const XZ: Foreign = Foreign("packed by xz", "");
+const BINARY: Foreign = Foreign("binary data of an unknown form", "");
+const FRAMES: [(&[u8], Foreign); 3] = [
+    (b"PK\x03\x04", Foreign("a zip archive or a spreadsheet", "read_excel")),
+    (b"PAR1", Foreign("a Parquet file", "read_parquet")),
+    (b"\x89HDF", Foreign("an HDF5 file", "read_hdf")),
+];
 
 impl Form {
     /// By the first bytes of a file, else by the ending of its name.
@@ -61,7 +63,7 @@ impl Form {
         } else if starts(b"BZh") {
             Self::Packed(Packing::Bzip2)
         } else if starts(&[0xfd, b'7', b'z', b'X', b'Z', 0]) {
-            Self::Foreign(Foreign::Xz)
+            Self::Foreign(XZ)
         } else if starts(&[0x28, 0xb5, 0x2f, 0xfd]) {
             Self::Packed(Packing::Zstd)
         } else if starts(b"ULog\x01\x12\x35") || ending == "ulg" {
@@ -70,18 +72,14 @@ impl Form {
             Self::Flight(Flight::DataFlash)
         } else if ending == "tlog" || is_frame(8) && is_binary(first) && ending != "bag" {
             Self::Flight(Flight::Telemetry)
-        } else if starts(b"PK\x03\x04") {
-            Self::Foreign(Foreign::Zip)
-        } else if starts(b"PAR1") {
-            Self::Foreign(Foreign::Parquet)
-        } else if starts(b"\x89HDF") {
-            Self::Foreign(Foreign::Hdf5)
+        } else if let Some((_, frame)) = FRAMES.iter().find(|of| starts(of.0)) {
+            Self::Foreign(*frame)
         } else {
             match ending.as_str() {
                 "mcap" => Self::Mcap,
                 "bag" => Self::Ros1,
                 "db3" => Self::Sqlite,
-                _ if is_binary(first) => Self::Foreign(Foreign::Binary),
+                _ if is_binary(first) => Self::Foreign(BINARY),
                 _ => Self::Text,
             }
         }
@@ -102,7 +100,7 @@ impl Form {
             Self::Text => "text",
             Self::Packed(packing) => packing.name(),
             Self::Flight(flight) => flight.name(),
-            Self::Foreign(foreign) => foreign.name(),
+            Self::Foreign(foreign) => foreign.0,
         }
     }
 }
@@ -188,33 +186,18 @@ pub(crate) fn to_file(input: impl Read, ending: &str) -> io::Result<(tempfile::N
 }
 
 impl Foreign {
-    const fn name(self) -> &'static str {
-        match self {
-            Self::Xz => "packed by xz",
-            Self::Zip => "a zip archive or a spreadsheet",
-            Self::Parquet => "a Parquet file",
-            Self::Hdf5 => "an HDF5 file",
-            Self::Binary => "binary data of an unknown form",
-        }
-    }
-
     /// Says what the file is, and how to turn it into what is read: lines of Python, parted by semicolons.
     pub(crate) fn refuse(self, file: &Path) -> FileError {
         let path = file.display().to_string().replace(['\\', '"'], "_");
-        let frame = |read: &str| {
-            format!(
+        let Self(name, read) = self;
+        let how = match read {
+            "" if self == XZ => format!("`xz --decompress {path}`"),
+            "" => "MCAP, a ROS 1 or ROS 2 bag, or text, also packed by gzip, bzip2 or zstd".to_owned(),
+            read => format!(
                 "in Python, after `pip install pandas`: import pandas; pandas.{read}(\"{path}\").to_csv(\"log.csv\", \
-                 index=False)"
-            )
+                 index=False); then `eeruf logs log.csv`"
+            ),
         };
-        let how = match self {
-            Self::Xz => format!("`xz --decompress {path}`"),
-            Self::Zip => frame("read_excel"),
-            Self::Parquet => frame("read_parquet"),
-            Self::Hdf5 => frame("read_hdf"),
-            Self::Binary => "MCAP, a ROS 1 or ROS 2 bag, or text, also packed by gzip, bzip2 or zstd".to_owned(),
-        };
-        let then = if matches!(self, Self::Binary | Self::Xz) { "" } else { "; then `eeruf logs log.csv`" };
-        FileError::new(file, format!("{}, which eeruf does not read; expected {how}{then}", self.name()))
+        FileError::new(file, format!("{name}, which eeruf does not read; expected {how}"))
     }
 }

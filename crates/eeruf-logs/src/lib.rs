@@ -32,18 +32,31 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+// Without `files` a few things of text logs have nobody who calls them.
+#![cfg_attr(not(feature = "files"), allow(dead_code, unused_imports))]
+
 mod bytes;
+#[cfg(feature = "files")]
 mod cdr;
+#[cfg(feature = "files")]
 mod chunks;
 mod diagnose;
 mod doctor;
+#[cfg(feature = "files")]
+mod files;
+#[cfg(feature = "files")]
 mod firing_files;
+#[cfg(feature = "files")]
 mod firing_messages;
 mod firing_text;
 mod firings;
+#[cfg(feature = "files")]
 mod flight;
+#[cfg(feature = "files")]
 mod form;
+#[cfg(feature = "files")]
 mod judging;
+#[cfg(feature = "files")]
 mod mcap;
 mod message;
 mod names;
@@ -51,213 +64,68 @@ mod options;
 mod pattern;
 mod reading;
 mod replay;
+#[cfg(feature = "files")]
 mod ros1;
+#[cfg(feature = "files")]
 mod ros2;
+#[cfg(feature = "files")]
 mod rosbag2;
 mod schema;
+#[cfg(feature = "files")]
 mod serial;
 mod sink;
 mod survey;
 mod symptom;
 mod text;
+#[cfg(feature = "files")]
 mod unzstd;
 mod value;
+#[cfg(feature = "files")]
 mod write;
 
-use std::fs::File;
-use std::io::{self, BufReader, Read, Seek};
+use std::io::Read;
 use std::path::Path;
 
 use eeruf_files::FileError;
-use form::{Form, Packing, UntilError};
 use sink::Sink;
 
 pub use diagnose::{
-    AlignError, Alignment, Diagnosis, FoundPath, Hearing, KeepGoing, Named, Settings, Share, Timing, TimingError,
-    align, diagnose, diagnose_while, timing,
+    Diagnosis, FoundPath, Hearing, KeepGoing, Named, Settings, Share, Timing, TimingError, diagnose, diagnose_while,
+    timing,
 };
 pub use doctor::{Doctor, Examination, Suspect, Verdict};
+#[cfg(feature = "files")]
+pub use files::{read_from, read_log, read_stream};
 pub use firings::{Firing, FiringLog};
+#[cfg(feature = "files")]
 pub use judging::{Counted, Judging, RangeJudge};
 pub use options::{FieldChoice, Options, RangeUnit, Table, TimeUnit};
 pub use pattern::{FiringPattern, Pattern};
 pub use reading::{Echo, Reading, Sensor};
 pub use replay::{FlowSettings, Replayed, replay_flow};
+#[cfg(feature = "files")]
 pub use ros2::{Marker, Placement, Shape, Transform};
 pub use sink::{Guess, Report, Skipped};
 pub use survey::{PathSettings, Surveyed, survey, survey_while};
 pub use symptom::{Finding, Symptom};
+#[cfg(feature = "files")]
 pub use write::McapWriter;
 
-/// Reads a log from beginning to end, and calls `each` with the report so far, which has the sensors, and each reading,
-/// in the order in which they were recorded. The form shows in the first bytes, also of a file that is packed as a
-/// whole, else in the ending of its name; of text, in its lines. [`Report::guesses`] lists what was guessed.
-///
-/// A log without sensors is no error: [`Report::sensors`] is empty then, and [`Report::skipped`] says what was found.
+/// Reads a text from beginning to end, and calls `each` as [`read_log`] does; `name` stands in errors. It needs no
+/// feature, so that a page in a browser reads what is pasted.
 ///
 /// # Errors
-/// A file that cannot be opened, a folder without bag files, a form that is known and not read, or an option that does
-/// not fit the log. Of a log that is damaged, what can be read is.
-pub fn read_log(file: &Path, options: &Options, mut each: impl FnMut(&Report, &Reading)) -> Result<Report, FileError> {
-    if file.as_os_str() == "-" {
-        return read_stream(io::stdin().lock(), file, options, each);
-    }
-    if !file.is_dir() && std::fs::metadata(file).is_ok_and(|of| !of.is_file()) {
-        // A pipe is read once.
-        let opened = File::open(file).map_err(|error| FileError::reading(file, &error))?;
-        return read_stream(opened, file, options, each);
-    }
-    let mut sink = Sink::new(options, &mut each);
-    if file.is_dir() {
-        sink.form("a ROS 2 bag");
-        sink.has(options::Parts::Topics);
-        rosbag2::read(file, &mut sink)?;
-        return Ok(sink.finish(file));
-    }
-    let form = Form::of_file(file)?;
-    sink.form(form.name());
-    if form == Form::Sqlite {
-        sink.has(options::Parts::Topics);
-        rosbag2::read_sqlite(file, file, false, &mut sink)?;
-    } else {
-        let mut opened = File::open(file).map_err(|error| FileError::reading(file, &error))?;
-        read_anywhere(&mut opened, file, form, options, &mut sink)?;
-    }
-    Ok(sink.finish(file))
-}
-
-/// Reads a log that is no file of this machine, as [`read_log`] does a file; `name` stands in errors, and its ending
-/// helps where the first bytes do not show the form. An `SQLite` file is copied into a temporary one first.
-///
-/// # Errors
-/// As [`read_log`].
-pub fn read_from(
-    mut input: impl Read + Seek,
-    name: &Path,
-    options: &Options,
-    mut each: impl FnMut(&Report, &Reading),
-) -> Result<Report, FileError> {
-    let failed = |error: io::Error| FileError::reading(name, &error);
-    let mut sink = Sink::new(options, &mut each);
-    let form = Form::of(&form::first_bytes(&mut input).map_err(failed)?, name);
-    input.rewind().map_err(failed)?;
-    sink.form(form.name());
-    read_anywhere(&mut input, name, form, options, &mut sink)?;
-    Ok(sink.finish(name))
-}
-
-/// Reads a log that comes once and in order, as from a pipe, as [`read_log`] does a file; `name` stands in errors. Text
-/// and frames of the serial line are read as they come; a bag is copied into a temporary file first.
-///
-/// # Errors
-/// As [`read_log`].
-pub fn read_stream(
-    mut input: impl Read,
+/// A text without lines, or an option that does not fit it.
+pub fn read_text(
+    input: impl Read,
     name: &Path,
     options: &Options,
     mut each: impl FnMut(&Report, &Reading),
 ) -> Result<Report, FileError> {
     let mut sink = Sink::new(options, &mut each);
-    let first = form::first_bytes(&mut input).map_err(|error| FileError::reading(name, &error))?;
-    let form = Form::of(&first, name);
-    sink.form(form.name());
-    read_in_order(&mut first.as_slice().chain(input), name, form, options, &mut sink)?;
+    sink.form("text");
+    text::read(input, name, options, &mut sink)?;
     Ok(sink.finish(name))
-}
-
-/// Reads a log of this form that can be read at any place; `name` stands in errors.
-fn read_anywhere(
-    input: &mut dyn bytes::Input,
-    name: &Path,
-    form: Form,
-    options: &Options,
-    sink: &mut Sink<'_>,
-) -> Result<(), FileError> {
-    match form {
-        Form::Mcap => {
-            sink.has(options::Parts::Topics);
-            mcap::read(input, name, false, sink)
-        }
-        Form::Ros1 => {
-            sink.has(options::Parts::Topics);
-            ros1::read(input, name, sink)
-        }
-        _ => read_in_order(input, name, form, options, sink),
-    }
-}
-
-/// Reads a log of this form from its beginning to its end.
-fn read_in_order(
-    input: &mut dyn Read,
-    name: &Path,
-    form: Form,
-    options: &Options,
-    sink: &mut Sink<'_>,
-) -> Result<(), FileError> {
-    match form {
-        Form::Text => text::read(input, name, options, sink),
-        Form::Serial => serial::read(input, name, options, sink),
-        Form::Flight(flight) => flight::read(flight, input, name, sink),
-        Form::Foreign(foreign) => Err(foreign.refuse(name)),
-        Form::Packed(packing) => read_packed(input, name, packing, options, sink),
-        Form::Mcap | Form::Ros1 | Form::Sqlite => match read_copy(input, name, form, options, sink)? {
-            None => Ok(()),
-            Some(error) => Err(FileError::reading(name, &error)),
-        },
-    }
-}
-
-/// Reads a bag by way of a temporary file; the error after which there was no more of it.
-fn read_copy(
-    input: &mut dyn Read,
-    name: &Path,
-    form: Form,
-    options: &Options,
-    sink: &mut Sink<'_>,
-) -> Result<Option<io::Error>, FileError> {
-    let (copy, error) = form::to_file(input, "bag").map_err(|error| FileError::reading(name, &error))?;
-    if form == Form::Sqlite {
-        sink.has(options::Parts::Topics);
-        rosbag2::read_sqlite(copy.path(), name, false, sink)?;
-    } else {
-        read_anywhere(&mut copy.as_file(), name, form, options, sink)?;
-    }
-    Ok(error)
-}
-
-/// Reads a file that is packed as a whole.
-fn read_packed(
-    input: &mut dyn Read,
-    name: &Path,
-    packing: Packing,
-    options: &Options,
-    sink: &mut Sink<'_>,
-) -> Result<(), FileError> {
-    let failed = |error: io::Error| FileError::reading(name, &error);
-    let mut input = packing.unpack(BufReader::new(input)).map_err(failed)?;
-    let mut error = None;
-    let first = form::first_bytes(UntilError::new(&mut input, &mut error)).map_err(failed)?;
-    let form = Form::of(&first, name.file_stem().map_or(name, Path::new));
-    let mut input = first.as_slice().chain(input);
-    match form {
-        Form::Packed(_) => return Err(FileError::new(name, "packed twice; expected once: unpack it first")),
-        // Nothing came out.
-        Form::Text if error.is_some() => {}
-        Form::Text => read_in_order(&mut UntilError::new(input, &mut error), name, form, options, sink)?,
-        Form::Serial | Form::Flight(_) | Form::Foreign(_) => {
-            sink.form(form.name());
-            read_in_order(&mut UntilError::new(input, &mut error), name, form, options, sink)?;
-        }
-        Form::Mcap | Form::Ros1 | Form::Sqlite => {
-            sink.form(form.name());
-            error = error.or(read_copy(&mut input, name, form, options, sink)?);
-        }
-    }
-    sink.form(&format!("{}, packed by {}", sink.report.form, packing.name()));
-    if let Some(error) = error {
-        sink.damage(name, None, format!("it cannot be unpacked to its end: {error}; what comes before was read"));
-    }
-    Ok(())
 }
 
 /// The listing of the crate's README compiles and holds.

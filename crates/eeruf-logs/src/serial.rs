@@ -5,7 +5,7 @@ use std::path::Path;
 
 use eeruf_serial::{Decoder, Firing as Frame, FrameError, Message};
 
-use crate::firings::{Firing, FiringLog, IGNORED};
+use crate::firings::{Firing, FiringLog};
 use crate::options::{Options, Parts, RangeUnit};
 use crate::reading::{Reading, Sensor};
 use crate::sink::Sink;
@@ -31,7 +31,6 @@ struct Line {
     clock: String,
     damaged: u64,
     lost: u64,
-    of_hopping: bool,
 }
 
 impl Line {
@@ -70,7 +69,6 @@ fn frames(mut input: impl Read, mut each: impl FnMut(Frame, i64)) -> io::Result<
             let skipped = next.map_or(0, |next: u16| received.sequence.wrapping_sub(next));
             line.lost += u64::from(if skipped < 1 << 12 { skipped } else { 0 });
             next = Some(received.sequence.wrapping_add(1));
-            line.of_hopping |= received.of_hopping;
             match received.message {
                 Message::Hello { clock, .. } if line.clock.is_empty() => line.clock = clock,
                 Message::Firing(firing) => {
@@ -111,7 +109,6 @@ pub(crate) fn read(input: impl Read, file: &Path, options: &Options, sink: &mut 
         });
     });
     let line = line.map_err(|error| FileError::reading(file, &error))?;
-    sink.report.warnings.extend(line.of_hopping.then(|| IGNORED.to_owned()));
     if let Some(damage) = line.damage() {
         sink.damage(file, None, damage);
     }
@@ -138,5 +135,5 @@ pub(crate) fn firings(input: impl Read, file: &Path) -> Result<FiringLog, FileEr
     }
     let damage = line.damage();
     let clock = if line.clock.is_empty() { "unnamed" } else { &line.clock };
-    Ok(FiringLog { damage, of_hopping: line.of_hopping, ..FiringLog::new(clock, firings) })
+    Ok(FiringLog { damage, ..FiringLog::new(clock, firings) })
 }

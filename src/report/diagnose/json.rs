@@ -39,12 +39,6 @@ pub(crate) fn json(found: &Found<'_>) -> Value {
         .iter()
         .map(|fault| object!({"kind": fault.symptom.as_str(), "sensors": [fault.sensor], "said": fault.said}));
     let faults: Vec<_> = faults.collect();
-    let alignment = found.alignment.map(|alignment| {
-        serde_json::json!({
-            "rotation": alignment.rotation, "moves": alignment.moves, "accidents": alignment.accidents,
-            "sure": alignment.sure,
-        })
-    });
     let timing = found.timing.map(|timing| {
         object!({
             "drift_ppm": timing.drift_ppm, "drift_error_ppm": timing.drift_error_ppm,
@@ -57,7 +51,7 @@ pub(crate) fn json(found: &Found<'_>) -> Value {
         "rejected_foreign": found.rejected().map(|(_, named)| named),
         "most_offsets": diagnosis.most_offsets, "moved": diagnosis.moved,
         "silent": diagnosis.silent(), "tolerance_us": found.tolerance_us,
-        "paths": paths, "sensors": hearing, "faults": faults, "timing": timing, "alignment": alignment,
+        "paths": paths, "sensors": hearing, "faults": faults, "timing": timing,
         "advice": found.advice(),
     })
 }

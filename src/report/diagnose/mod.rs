@@ -7,7 +7,7 @@ mod text;
 use std::path::Path;
 
 use eeruf_core::ReadingKind;
-use eeruf_logs::{Alignment, Diagnosis, FiringLog, FoundPath, Timing};
+use eeruf_logs::{Diagnosis, FiringLog, FoundPath, Timing};
 
 pub(crate) use json::json;
 pub(crate) use picture::who_fools_whom;
@@ -21,8 +21,6 @@ pub(crate) struct Found<'a> {
     /// Largest difference between readings of one path.
     pub(crate) tolerance_us: u32,
     pub(crate) timing: Option<Timing>,
-    /// Of a log without instants, how well it fits the schedule.
-    pub(crate) alignment: Option<Alignment>,
     pub(crate) speed_of_sound: f64,
 }
 

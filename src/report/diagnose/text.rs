@@ -74,19 +74,6 @@ fn head(found: &Found<'_>) -> String {
             2 * found.tolerance_us
         );
     }
-    if let Some(alignment) = found.alignment {
-        let (explained, of) = alignment.moves;
-        let known = if alignment.accidents <= 0.01 { "" } else { ": the readings do not say whether it is the ring's" };
-        _ = writeln!(
-            text,
-            "Instants are the schedule's, its phase {} being the log's phase 0: it explains {explained} of {of} moves \
-             of readings from phase to phase ({:.0e} such schedules expected by accident){known}, and {:.1} % sure is \
-             that it is this phase. Of jitter and drift nothing is known.",
-            alignment.rotation,
-            alignment.accidents,
-            100.0 * alignment.sure,
-        );
-    }
     match found.timing {
         Some(timing) => {
             _ = writeln!(

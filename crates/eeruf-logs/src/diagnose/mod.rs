@@ -17,7 +17,6 @@
 //! While the robot drives no time stays. Then a path is a line of a second, and readings are named one by one, by those
 //! around them: `moving`.
 
-mod align;
 mod faults;
 mod moving;
 mod naming;
@@ -30,7 +29,6 @@ mod timing;
 
 use crate::firings::FiringLog;
 use crate::symptom::Finding;
-pub use align::{AlignError, Alignment, align};
 use faults::faults;
 use moving::follow;
 pub use naming::Named;

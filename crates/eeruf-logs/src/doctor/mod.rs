@@ -1,5 +1,6 @@
 //! A doctor for any log of ranges: is there crosstalk in it, and between which sensors?
 
+mod answer;
 mod loops;
 mod mirror;
 mod notes;
@@ -101,13 +102,15 @@ pub struct Doctor {
     sensors: Vec<Series>,
     /// Each reading's sensor and echo time, in the order of the log.
     rows: Vec<(usize, f64)>,
+    /// The time of each, in microseconds.
+    row_at_us: Vec<f64>,
     left_out: usize,
 }
 
 impl Doctor {
     /// Begins with no readings; the speed of sound in m/s turns ranges into echo times.
     pub fn new(speed_of_sound: f64) -> Self {
-        Self { speed_of_sound, first_ns: None, sensors: vec![], rows: vec![], left_out: 0 }
+        Self { speed_of_sound, first_ns: None, sensors: vec![], rows: vec![], row_at_us: vec![], left_out: 0 }
     }
 
     /// Takes a reading. The first 262,144 are kept.
@@ -128,6 +131,7 @@ impl Doctor {
             _ => f64::NAN,
         };
         self.rows.push((reading.sensor, echo_us));
+        self.row_at_us.push(at_us);
         let series = &mut self.sensors[reading.sensor];
         series.at_us.push(at_us);
         series.echo_us.push(echo_us);
@@ -172,8 +176,8 @@ impl Doctor {
             },
         };
         let scatter: Vec<Scatter> = self.sensors.iter().map(Series::scatter).collect();
-        self.silent_rounds(&scatter, &name, &mut found);
-        self.suspects(&scatter, &name, &mut found);
+        let cleared = self.silent_rounds(&scatter, &name, &mut found);
+        self.suspects(&scatter, &cleared, &name, &mut found);
         if found.verdict == Verdict::NoneSeen
             && let Some(suspect) = found.suspects.first()
         {
@@ -199,24 +203,38 @@ impl Doctor {
         found
     }
 
-    /// Rounds in which another sensor did not fire are a pause test.
-    fn silent_rounds<'n>(&self, scatter: &[Scatter], name: &impl Fn(usize) -> &'n str, found: &mut Examination) {
+    /// Rounds in which another sensor did not fire are a pause test. Returns the sensors that pass it with all others.
+    fn silent_rounds<'n>(
+        &self,
+        scatter: &[Scatter],
+        name: &impl Fn(usize) -> &'n str,
+        found: &mut Examination,
+    ) -> Vec<bool> {
         /// More are no ring.
         const MOST_SENSORS: usize = 64;
+        /// Comparisons in which a share of `LEAST_SHARE` would show.
+        const MANY: u32 = 400;
         let sensors = self.sensors.len();
         if sensors > MOST_SENSORS {
-            return;
+            return vec![];
         }
-        // By receiver and other sensor: has that one fired since the receiver's reading before?
+        // By receiver and other sensor: has that one fired at its time, or else since the receiver's reading before?
         let mut fired = vec![vec![]; sensors * sensors];
         let mut since = vec![false; sensors * sensors];
-        for &(receiver, _) in &self.rows {
-            for other in 0..sensors {
-                let pair = receiver * sensors + other;
-                fired[pair].push(Some(std::mem::take(&mut since[pair])));
-                since[other * sensors + receiver] = true;
+        let mut begin = 0;
+        for group in self.row_at_us.chunk_by(|one, other| one == other) {
+            let group = &self.rows[begin..begin + group.len()];
+            begin += group.len();
+            let is_in = |sensor: usize| group.iter().any(|row| row.0 == sensor);
+            for &(receiver, _) in group {
+                for other in 0..sensors {
+                    let pair = receiver * sensors + other;
+                    fired[pair].push(Some(std::mem::take(&mut since[pair]) || (other != receiver && is_in(other))));
+                    since[other * sensors + receiver] |= !is_in(other);
+                }
             }
         }
+        let mut cleared = vec![sensors > 1; sensors];
         for receiver in 0..sensors {
             for other in (0..sensors).filter(|&other| other != receiver) {
                 let classes = &fired[receiver * sensors + other];
@@ -224,10 +242,13 @@ impl Doctor {
                 // Of two that only change places in the round, each fires as often as the other.
                 let is_seldomer = self.sensors[other].at_us.len() * 50 <= classes.len() * 49;
                 if with * 50 < classes.len() || with * 50 > classes.len() * 49 || !is_seldomer {
+                    cleared[receiver] = false;
                     continue;
                 }
                 let seen = self.sensors[receiver].changes(classes, scatter[receiver]).dependence();
-                if seen.count >= FEWEST && seen.deviations >= DEVIATIONS && seen.share >= LEAST_SHARE {
+                let is_fooled = seen.count >= FEWEST && seen.deviations >= DEVIATIONS && seen.share >= LEAST_SHARE;
+                cleared[receiver] &= seen.count >= MANY && !is_fooled;
+                if is_fooled {
                     found.verdict = Verdict::Crosstalk;
                     found.fooled.push(receiver);
                     found.suspects.push(Suspect {
@@ -246,10 +267,17 @@ impl Doctor {
         }
         found.fooled.sort_unstable();
         found.fooled.dedup();
+        cleared
     }
 
     /// Readings that a loop or others' sound explains, and nothing that stands or moves.
-    fn suspects<'n>(&self, scatter: &[Scatter], name: &impl Fn(usize) -> &'n str, found: &mut Examination) {
+    fn suspects<'n>(
+        &self,
+        scatter: &[Scatter],
+        cleared: &[bool],
+        name: &impl Fn(usize) -> &'n str,
+        found: &mut Examination,
+    ) {
         /// Readings that nothing explains: isolated ones, jumps, and those of a robot of which a sensor stands still.
         const ISOLATED: f64 = 0.02;
         const JUMPS: f64 = 0.02;
@@ -281,6 +309,13 @@ impl Doctor {
             }
             let share = 100.0 * if is_loose { of.loose } else { of.isolated.max(of.jumps) };
             let own = name(sensor);
+            if cleared.get(sensor) == Some(&true) {
+                found.reasons.push(format!(
+                    "{own}: {share:.0} % of the readings come from nothing that stands or moves, and no fewer in rounds in \
+                     which the others did not fire: noise of its own"
+                ));
+                continue;
+            }
             found.suspects.push(Suspect {
                 sensor,
                 by: None,

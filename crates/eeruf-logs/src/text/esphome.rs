@@ -8,7 +8,7 @@
 
 use std::collections::HashSet;
 
-use super::rewriter::Rewritten;
+use super::lines::Rewritten;
 use crate::value;
 
 #[derive(Default)]

@@ -1,7 +1,7 @@
 //! Rows that hold many measurements, each as a group of columns: `Tms1;Lus1;Rus1;Tms2;..`, as bicycle sensors
 //! write them.
 
-use super::rewriter::Rewritten;
+use super::lines::Rewritten;
 use super::shape::{Separator, separated};
 use crate::names::{self, Meaning};
 use crate::value;

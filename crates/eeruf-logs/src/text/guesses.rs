@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use crate::options::{Options, RangeUnit, TimeUnit};
 
 use super::column::{Column, Role};
-use super::recognise::{Plan, guess};
+use super::plan::{Plan, guess};
 use crate::names;
 use crate::sink::Skipped;
 use crate::value;

@@ -25,6 +25,16 @@ pub(crate) struct Line {
     pub(crate) is_misfit: bool,
 }
 
+/// Outcome of rewriting a line.
+#[derive(Debug, PartialEq, Eq)]
+pub(super) enum Rewritten {
+    Lines(Vec<String>),
+    /// It holds no reading.
+    Nothing,
+    /// It may hold a reading, and is damaged.
+    Misfit,
+}
+
 /// A text without a terminal's sequences for colours: `ESC [`, numbers, `m`.
 fn without_colours(text: &str) -> Cow<'_, str> {
     if !text.contains("\u{1b}[") {

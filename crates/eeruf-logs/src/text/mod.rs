@@ -4,12 +4,14 @@
 //! or fewer cells than the others, or one that ends without a line break and is shorter than it may be.
 
 mod boot;
+mod chosen;
 mod column;
 mod esphome;
 mod groups;
 mod guesses;
 mod lines;
 mod messages;
+mod plan;
 mod recognise;
 mod repeats;
 mod rewriter;

@@ -3,75 +3,17 @@
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::path::Path;
 
-use crate::options::{Options, RangeUnit, TimeUnit};
-use crate::sink::{Guess, Skipped};
+use crate::options::{Options, RangeUnit};
+use crate::sink::Skipped;
 use eeruf_files::FileError;
 
 use super::column::{Column, Role};
 use super::lines::Line;
+use super::plan::{MOST_SENSORS, NoEcho, Plan, guess};
 use super::sample::{Stripped, is_comment, shape_of, strip, usual};
 use super::shape::{self, Separator, Shape, is_underline};
-use super::validity::Validity;
 use crate::names::{self, Meaning};
 use crate::value;
-
-/// The sensors of one log.
-pub(super) const MOST_SENSORS: usize = 4096;
-
-/// Numbers that mean that there was no echo.
-#[derive(Clone, Debug, Default)]
-pub(super) struct NoEcho {
-    pub(super) zero: bool,
-    pub(super) negative: bool,
-    pub(super) numbers: Vec<f64>,
-    pub(super) words: Vec<String>,
-}
-
-pub(super) struct Plan {
-    pub(super) shape: Shape,
-    pub(super) has_prefix: bool,
-    /// The text that nearly each line has before its pairs.
-    pub(super) lead: String,
-    pub(super) decimal_comma: bool,
-    pub(super) columns: Vec<Column>,
-    pub(super) by_name: HashMap<String, usize>,
-    pub(super) header: Option<Vec<String>>,
-    /// A header, a comment or the form of the rows names the columns.
-    has_names: bool,
-    /// Lines before this one are no rows.
-    pub(super) rows_from: u64,
-    pub(super) time: Vec<(usize, TimeUnit)>,
-    pub(super) sensor: Option<usize>,
-    /// Sensors that a column names, as often as is needed to trust them.
-    pub(super) known: BTreeSet<String>,
-    /// Labels of rows whose names are of another quantity, beside one that is called a range.
-    pub(super) foreign: BTreeSet<String>,
-    pub(super) no_echo: NoEcho,
-    /// Each row is of one sensor: the empty cells of the others are no silence.
-    pub(super) one_a_row: bool,
-    pub(super) is_first_cut: bool,
-    /// The column that says the unit of its row's range.
-    pub(super) unit: Option<usize>,
-    /// The column that says by what a row's sensor measures, and the number of ultrasound.
-    pub(super) medium: Option<(usize, f64)>,
-    /// Columns that say whether ranges are any.
-    pub(super) validity: Vec<Validity>,
-    /// Lines before the header, which a reset repeats.
-    pub(super) greetings: BTreeSet<String>,
-    /// Lines of dashes part rows or messages; else they are words for no echo.
-    pub(super) has_rules: bool,
-    /// The names that nearly each line of pairs has.
-    pub(super) usual_names: Option<Vec<String>>,
-    pub(super) form: String,
-    pub(super) guesses: Vec<Guess>,
-    /// A warning of ranges that no ultrasonic sensor has.
-    pub(super) implausible: Option<String>,
-    pub(super) skipped: Vec<Skipped>,
-}
-
-pub(super) fn guess(what: &str, value: impl Into<String>, option: &str) -> Guess {
-    Guess { what: what.to_owned(), value: value.into(), option: option.to_owned() }
-}
 
 /// Recognises a log by its first lines.
 pub(super) fn recognise(
@@ -600,144 +542,5 @@ impl Plan {
         let Some(median) = steps.get(steps.len() / 2) else { return false };
         let same = steps.iter().filter(|&step| (step / median - 1.0).abs() < 0.1).count();
         steps.len() >= 29 && same * 10 >= 9 * steps.len()
-    }
-
-    /// Chooses one time, or two columns that are one: seconds and nanoseconds, a date and a time of day.
-    fn time_columns(&mut self, asked: Option<usize>) {
-        let times: Vec<_> = (0..self.columns.len()).filter(|&index| self.columns[index].role == Role::Time).collect();
-        let is_time = |index: &usize| !self.columns[*index].numbers.is_empty() || self.columns[*index].calendars > 0;
-        let usable: Vec<_> = times.iter().copied().filter(is_time).collect();
-        let chosen: Vec<usize> = if let Some(asked) = asked {
-            vec![asked]
-        } else if self.has_prefix {
-            vec![]
-        } else {
-            let stem = |index: usize| {
-                let name = self.columns[index].name.to_lowercase();
-                name.trim_end_matches(|letter: char| letter != '.' && letter != '_').to_owned()
-            };
-            let unit = |index: usize| names::time_unit(&self.columns[index].name);
-            let pair = usable.iter().find_map(|&one| {
-                let other = usable.iter().copied().find(|&other| {
-                    let is_calendar = |index: usize| self.columns[index].calendars > 0;
-                    let of = |index: usize| self.columns[index].distinct.keys().next().cloned().unwrap_or_default();
-                    // The smaller one is a part of a second.
-                    let is_part = |unit: TimeUnit| {
-                        let below = self.columns[other].numbers.iter().all(|n| n * unit.nanoseconds() < 1e9);
-                        unit == TimeUnit::Ns || (below && self.columns[one].numbers.iter().all(|n| n.fract() == 0.0))
-                    };
-                    let fits = unit(one) == Some(TimeUnit::S)
-                        && unit(other).is_some_and(|unit| unit != TimeUnit::S && is_part(unit))
-                        && stem(one) == stem(other);
-                    let is_date =
-                        is_calendar(one) && is_calendar(other) && !of(one).contains(':') && of(other).contains(':');
-                    fits || (is_date && one != other)
-                })?;
-                Some(vec![one, other])
-            });
-            let clocks = usable.iter().copied().filter(|&index| !self.columns[index].falls_often());
-            let best = clocks.max_by_key(|&index| {
-                let column = &self.columns[index];
-                (column.distinct.len() > 1, names::preference(&column.name), std::cmp::Reverse(index))
-            });
-            pair.unwrap_or_else(|| best.into_iter().collect())
-        };
-        for index in times {
-            if !chosen.contains(&index) {
-                self.columns[index].role = Role::Other;
-            }
-        }
-        self.time = chosen.into_iter().map(|index| (index, TimeUnit::S)).collect();
-    }
-
-    /// The column whose texts tell apart rows of one time, as the tags of series do.
-    fn tag(&self, lines: &[(u64, &str)]) -> Option<usize> {
-        let &(time, _) = self.time.first()?;
-        let rows = self.split(lines);
-        let of = |index: usize| {
-            rows.iter().filter_map(move |row| row.iter().find(|cell| cell.0 == index).map(|cell| &cell.1))
-        };
-        let times: BTreeSet<_> = of(time).collect();
-        if times.len() * 3 > rows.len() * 2 {
-            return None;
-        }
-        let is_tag = |column: &Column| {
-            column.role == Role::Other && column.numbers.is_empty() && (2..=64).contains(&column.distinct.len())
-        };
-        let mut tags = (0..self.columns.len()).filter(|&index| is_tag(&self.columns[index]));
-        tags.find(|&index| of(time).zip(of(index)).collect::<BTreeSet<_>>().len() == rows.len())
-    }
-
-    fn sensor_column(
-        &mut self,
-        file: &Path,
-        asked: Option<usize>,
-        asked_ranges: &[usize],
-        lines: &[(u64, &str)],
-    ) -> Result<(), FileError> {
-        let of = |role: &Role| -> Vec<usize> {
-            (0..self.columns.len()).filter(|&index| self.columns[index].role == *role).collect()
-        };
-        let (ranges, named) = (of(&Role::Range), of(&Role::Sensor));
-        let is_label = |index: &usize| {
-            let column = &self.columns[*index];
-            let counts = column.numbers.len() > 2 && column.numbers.windows(2).all(|two| two[1] == two[0] + 1.0);
-            let is_key = column.name.eq_ignore_ascii_case("id") && (column.texts > 2 || counts);
-            let is_key = is_key && column.distinct.values().all(|&count| count == 1);
-            let is_whole = column.numbers.iter().all(|number| number.fract() == 0.0);
-            is_whole && !is_key && (1..=64).contains(&column.distinct.len())
-        };
-        let chosen = asked.or_else(|| {
-            let rows = |index: usize| self.columns[index].distinct.values().sum::<usize>();
-            let repeats = |index: &usize| {
-                rows(*index) >= 2 * self.columns[*index].distinct.len().min(rows(*index)) || rows(*index) < 8
-            };
-            let labels = named.iter().copied().filter(is_label).filter(repeats);
-            let most = labels.max_by_key(|&index| self.columns[index].distinct.len());
-            let most =
-                most.filter(|&index| self.columns[index].distinct.len() > 1).or_else(|| self.tag(lines)).or(most);
-            most.filter(|_| ranges.len() == 1)
-        });
-        if asked.is_some() && ranges.len() != 1 {
-            let message = format!("{} columns with ranges; with a column of sensors expected is one", ranges.len());
-            return Err(FileError::new(file, message));
-        }
-        let is_alone = ranges.is_empty() && of(&Role::Empty).is_empty() && asked_ranges.is_empty();
-        for index in named {
-            if chosen != Some(index) {
-                let is_range = is_alone && self.columns[index].is_range();
-                self.columns[index].role = if is_range { Role::Range } else { Role::Other };
-            }
-        }
-        self.sensor = chosen;
-        if let Some(index) = chosen {
-            let column = &self.columns[index];
-            let rows: usize = column.distinct.values().sum();
-            let is_known = |(_, count): &(&String, &usize)| **count > 1 || rows < 3 * column.distinct.len();
-            self.known = column.distinct.iter().filter(is_known).map(|(name, _)| name.clone()).collect();
-            let is_of = |name: &String, meaning| names::meaning(name) == meaning;
-            if self.known.iter().any(|name| is_of(name, Meaning::Range)) {
-                let foreign = self.known.iter().filter(|name| is_of(name, Meaning::Other));
-                self.foreign = foreign.cloned().collect();
-                self.known.retain(|name| !self.foreign.contains(name));
-                self.skipped.extend(self.foreign.iter().map(|name| Skipped {
-                    topic: name.clone(),
-                    why: "no range, by its name".to_owned(),
-                    messages: 0,
-                }));
-            }
-        }
-        let names: Vec<_> = match chosen {
-            Some(_) => self.known.iter().cloned().collect(),
-            None => self
-                .columns
-                .iter()
-                .filter(|column| column.role == Role::Range)
-                .map(|column| column.name.clone())
-                .collect(),
-        };
-        let by = chosen.map_or(String::new(), |index| format!(", by column `{}`", self.columns[index].name));
-        self.guesses.push(guess("sensors", format!("{}: {}{by}", names.len(), names.join(", ")), "--range, --sensor"));
-        Ok(())
     }
 }

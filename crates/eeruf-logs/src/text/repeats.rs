@@ -1,7 +1,7 @@
 //! Columns that repeat a range: the same in another unit, what a filter made of it, or the voltage that it came from.
 
 use super::column::{Column, Role};
-use super::recognise::{Plan, guess};
+use super::plan::{Plan, guess};
 use super::shape::{self, Shape};
 use crate::names;
 use crate::options::{Options, RangeUnit};

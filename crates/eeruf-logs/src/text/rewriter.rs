@@ -4,20 +4,11 @@
 
 use super::esphome::EspHome;
 use super::groups::Groups;
+use super::lines::Rewritten;
 
 pub(super) enum Rewriter {
     EspHome(EspHome),
     Groups(Groups),
-}
-
-/// Outcome of rewriting a line.
-#[derive(Debug, PartialEq, Eq)]
-pub(super) enum Rewritten {
-    Lines(Vec<String>),
-    /// It holds no reading.
-    Nothing,
-    /// It may hold a reading, and is damaged.
-    Misfit,
 }
 
 impl Rewriter {

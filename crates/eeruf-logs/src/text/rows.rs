@@ -9,7 +9,7 @@ use crate::sink::{Sink, Skipped};
 
 use super::column::{Column, Role};
 use super::lines::Line;
-use super::recognise::{MOST_SENSORS, Plan};
+use super::plan::{MOST_SENSORS, Plan};
 use super::sample::is_comment;
 use super::shape::{self, Shape, is_rule};
 use crate::names::{self, Meaning};

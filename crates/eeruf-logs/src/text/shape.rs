@@ -100,13 +100,14 @@ pub(crate) fn separated(line: &str, separator: Separator) -> Option<Vec<String>>
         let is_digit = |letter: Option<char>| letter.is_some_and(|letter| letter.is_ascii_digit());
         letter == ',' && is_digit(line[..*at].chars().last()) && is_digit(line[at + open.len()..].chars().next())
     };
-    let has_open = line.as_bytes().iter().any(|byte| b"([".contains(byte));
+    let has_brackets = line.as_bytes().iter().any(|byte| b"([)]".contains(byte));
     let inner = || line.match_indices(" (").chain(line.match_indices(" [")).find(opens);
-    if let Some((at, open)) = has_open.then(inner).flatten() {
+    if let Some((at, open)) = has_brackets.then(inner).flatten() {
         return separated(&format!("{},{}", &line[..at], line[at + open.len()..].replace([')', ']'], "")), separator);
     }
     if !line.contains('"') {
-        return Some(line.split(letter).map(|cell| without_half_brackets(cell.trim()).to_owned()).collect());
+        let plain = |cell: &str| if has_brackets { without_half_brackets(cell.trim()) } else { cell.trim() }.to_owned();
+        return Some(line.split(letter).map(plain).collect());
     }
     let (mut cells, mut cell, mut is_quoted) = (vec![], String::new(), false);
     let mut letters = line.chars().peekable();

@@ -5,9 +5,9 @@ use std::collections::VecDeque;
 use std::io::{self, BufRead, BufReader, Read};
 
 use super::boot::{Boot, is_noise};
-use super::lines::{Input, Line, Lines, Objects};
+use super::lines::{Input, Line, Lines, Objects, Rewritten};
 use super::messages;
-use super::rewriter::{Rewriter, Rewritten};
+use super::rewriter::Rewriter;
 use crate::bytes::Order;
 
 /// The records or lines of a text.

@@ -1,28 +1,9 @@
 //! Columns that say of a range beside them whether it was measured at all.
 
 use super::column::{Column, Role};
-use super::recognise::{Plan, guess};
+use super::plan::{Plan, Says, Validity, guess};
 use crate::names;
 use crate::value;
-
-/// The meaning of a column of validity.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Meaning {
-    /// Of ArduPilot's `RFND`: 4 is good, 3 beyond the range, 2 below it, less is no measurement.
-    RangefinderStatus,
-    /// 1 or `true` is good.
-    Flag,
-    /// 0 is bad; below 0 nothing is known.
-    Quality,
-}
-
-/// A column of validity, and the one range that it is about, or all of its row.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Validity {
-    column: usize,
-    range: Option<usize>,
-    meaning: Meaning,
-}
 
 impl Validity {
     /// The range that a cell makes of one that it says is none.
@@ -33,21 +14,21 @@ impl Validity {
         let text = text(self.column)?;
         let number = value::number(&text, decimal_comma);
         match self.meaning {
-            Meaning::RangefinderStatus => match number? {
+            Says::RangefinderStatus => match number? {
                 2.0 => Some(f64::NEG_INFINITY),
                 number if number < 4.0 => Some(f64::INFINITY),
                 _ => None,
             },
-            Meaning::Flag => {
+            Says::Flag => {
                 let is_bad = number == Some(0.0) || text.eq_ignore_ascii_case("false");
                 is_bad.then_some(f64::INFINITY)
             }
-            Meaning::Quality => (number == Some(0.0)).then_some(f64::INFINITY),
+            Says::Quality => (number == Some(0.0)).then_some(f64::INFINITY),
         }
     }
 }
 
-fn meaning(column: &Column) -> Option<(Meaning, &'static str)> {
+fn meaning(column: &Column) -> Option<(Says, &'static str)> {
     let words: Vec<_> = column.name.to_lowercase().split(|c: char| !c.is_alphanumeric()).map(str::to_owned).collect();
     let has = |names: &[&str]| words.iter().any(|word| names.contains(&word.as_str()));
     let whole = |most: f64| {
@@ -59,11 +40,11 @@ fn meaning(column: &Column) -> Option<(Meaning, &'static str)> {
         ["0", "1", "true", "false"].contains(&text.as_str())
     });
     if has(&["stat"]) && whole(4.0) && column.numbers.contains(&4.0) {
-        Some((Meaning::RangefinderStatus, "4 is good"))
+        Some((Says::RangefinderStatus, "4 is good"))
     } else if has(&["valid", "ok", "isvalid"]) && is_flag && column.distinct.len() <= 2 {
-        Some((Meaning::Flag, "1 or true is good"))
+        Some((Says::Flag, "1 or true is good"))
     } else if has(&["quality"]) && whole(100.0) && column.numbers.iter().any(|&number| number > 0.0) {
-        Some((Meaning::Quality, "0 is bad"))
+        Some((Says::Quality, "0 is bad"))
     } else {
         None
     }

@@ -15,6 +15,9 @@
 //!
 //! The ring can also be a [`FlowRing`](eeruf_core::flow::FlowRing), which fires by flow.
 //!
+//! With feature `async` a ring is a task: `ring.next().await` waits for lines and deadlines by `embedded-hal-async`, and
+//! the next reading is its value (`HcSr04Ring::awaited`).
+//!
 //! A loop that looks at lines instead of taking interrupts hands in edges as intervals: see [`Sampler`].
 //!
 //! Where hardware triggers the modules and times their lines, such as PIO, RMT or a timer, see [`capture`]. Modules
@@ -48,6 +51,8 @@
 //! ```
 #![no_std]
 
+#[cfg(feature = "async")]
+mod awaited;
 pub mod capture;
 mod error;
 mod hands_on;
@@ -59,6 +64,8 @@ mod ring;
 mod sampler;
 mod settings;
 
+#[cfg(feature = "async")]
+pub use awaited::Awaited;
 pub use eeruf_modules as modules;
 pub use error::SetupError;
 pub use health::Health;

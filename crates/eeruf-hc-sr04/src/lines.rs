@@ -124,6 +124,32 @@ impl<T: OutputPin, I: InputPin, D: DelayNs, const K: usize> Lines<T, I, D, K> {
     }
 }
 
+#[cfg(feature = "async")]
+impl<T, I: InputPin + embedded_hal_async::digital::Wait, D, const K: usize> Lines<T, I, D, K> {
+    /// The level of a sensor's line; none if it cannot be read.
+    pub(crate) fn level(&mut self, sensor: u8) -> Option<bool> {
+        self.pins.get_mut(usize::from(sensor))?.echo.is_high().ok()
+    }
+
+    /// Waits for so long, or until a line changes: which one.
+    pub(crate) async fn wait(&mut self, us: u32) -> Option<u8>
+    where
+        D: embedded_hal_async::delay::DelayNs,
+    {
+        use embassy_futures::select::{Either, select, select_array};
+        let edges = select_array(self.pins.each_mut().map(|pins| pins.echo.wait_for_any_edge()));
+        match select(edges, self.delay.delay_us(us)).await {
+            Either::First((Ok(()), sensor)) => u8::try_from(sensor).ok(),
+            Either::First((Err(_), _)) => {
+                // A pin that cannot wait must not keep the task from sleeping.
+                self.delay.delay_us(us.min(1_000)).await;
+                None
+            }
+            Either::Second(()) => None,
+        }
+    }
+}
+
 impl<T, I: FlexPin, D: DelayNs, const K: usize> Lines<T, I, D, K> {
     /// Pulls the line of a sensor low whose trigger was withheld since it is stuck. Returns true if it was.
     pub(crate) fn recover(&mut self, sensor: u8) -> bool {

@@ -20,8 +20,8 @@ use crate::settings::Settings;
 #[derive(Debug)]
 pub struct HcSr04Ring<R, T, I, D, const K: usize, Q = ()> {
     ring: R,
-    lines: Lines<T, I, D, K>,
-    edges: Q,
+    pub(crate) lines: Lines<T, I, D, K>,
+    pub(crate) edges: Q,
 }
 
 /// The edges that a driver takes in before each poll: of a queue that interrupts fill, or `()` for none, where the

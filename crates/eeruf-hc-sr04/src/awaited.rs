@@ -1,0 +1,100 @@
+//! [`HcSr04Ring::next`]: a ring as a task of an executor, without interrupts of its own.
+
+use eeruf_core::{Edge, Instant, Reading, Ring, RingEvent, judge::Judge, plan::Plan};
+use embedded_hal::digital::{InputPin, OutputPin};
+use embedded_hal_async::digital::Wait;
+
+use crate::error::SetupError;
+use crate::lines::Pins;
+use crate::ring::{Edges, HcSr04Ring};
+use crate::settings::Settings;
+
+/// The clock of a ring that waits for its lines, and their levels when they were last looked at.
+#[derive(Debug)]
+pub struct Awaited<C> {
+    clock: C,
+    high: u64,
+    looked: Instant,
+}
+
+impl<C> Edges for Awaited<C> {
+    fn pop(&self) -> Option<Edge> {
+        None
+    }
+}
+
+impl<P, J, T, I, D, C, const K: usize, const H: usize> HcSr04Ring<Ring<P, J, K, 1, H>, T, I, D, K, Awaited<C>>
+where
+    P: Plan,
+    J: Judge,
+    T: OutputPin,
+    I: InputPin + Wait,
+    D: embedded_hal::delay::DelayNs + embedded_hal_async::delay::DelayNs,
+    C: Fn() -> Instant,
+{
+    /// Puts a ring on pins that can be waited for, with a delay that both blocks (for a trigger) and waits, and a clock.
+    ///
+    /// # Errors
+    /// As for [`new`](HcSr04Ring::new).
+    pub fn awaited(
+        ring: Ring<P, J, K, 1, H>,
+        pins: [Pins<T, I>; K],
+        delay: D,
+        settings: Settings,
+        clock: C,
+    ) -> Result<Self, SetupError> {
+        let looked = clock();
+        Self::with_edges(ring, pins, delay, settings, Awaited { clock, high: 0, looked })
+    }
+
+    /// The next reading. Fires what is due meanwhile, and sleeps until a line changes or something is due; firings and
+    /// ends of periods are passed over.
+    ///
+    /// An edge is as old as the executor took to wake this task; one that came while other tasks ran is as uncertain as
+    /// they took, and beyond half a millisecond its reading is [`Late`](eeruf_core::ReadingKind::Late). May be dropped
+    /// at any await, such as by a `select`.
+    pub async fn next(&mut self) -> Reading {
+        loop {
+            self.look();
+            let now = self.clock();
+            match self.poll(now) {
+                Some(RingEvent::Reading(reading)) => return reading,
+                Some(_) => continue,
+                None => {}
+            }
+            let now = self.clock();
+            let deadline = self.next_deadline();
+            let us = if now.has_reached(deadline) { 0 } else { deadline.since(now).as_micros() };
+            if let Some(sensor) = self.lines.wait(us).await {
+                let at = self.clock();
+                self.see(sensor, at, at);
+            }
+        }
+    }
+
+    fn clock(&self) -> Instant {
+        (self.edges.clock)()
+    }
+
+    /// Takes in what has changed since the lines were last looked at.
+    fn look(&mut self) {
+        let earliest = self.edges.looked;
+        self.edges.looked = self.clock();
+        for sensor in (0..64).take(K) {
+            let latest = self.clock();
+            self.see(sensor, earliest, latest);
+        }
+    }
+
+    /// Takes in a line that changed between two instants, if it did.
+    fn see(&mut self, sensor: u8, earliest: Instant, latest: Instant) {
+        let Some(high) = self.lines.level(sensor) else { return };
+        let bit = 1 << sensor;
+        if high == (self.edges.high & bit != 0) {
+            return;
+        }
+        self.edges.high ^= bit;
+        // The sensor is there, and time goes on.
+        _ = self.edge_between(sensor, high, earliest, latest);
+    }
+}

@@ -25,8 +25,7 @@ pub enum PathsError {
         /// Distance that the scene reaches from the walls, in metres.
         reach_m: f64,
     },
-    /// A source or a receiver is inside something solid, and [`Tracer::pole_shadows`](super::Tracer::pole_shadows) asks
-    /// for solid things.
+    /// A source or a receiver is inside something solid.
     Inside {
         /// Its position in metres.
         at: [f64; 2],

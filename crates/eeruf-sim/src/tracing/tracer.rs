@@ -45,8 +45,8 @@ pub struct Tracer {
     /// True if poles return what a rigid cylinder does at this frequency instead of what geometric optics says; see
     /// [`pole_wave_correction`](crate::pole_wave_correction). Off by default.
     pub pole_waves: bool,
-    /// True if poles shade what lies behind them where they are thicker than the first Fresnel zone, and sensors within
-    /// something solid are refused; see [`Physics::shadows`](crate::Physics::shadows). Off by default.
+    /// True if poles shade what lies behind them where they are thicker than the first Fresnel zone; see
+    /// [`Physics::shadows`](crate::Physics::shadows). Off by default.
     pub pole_shadows: bool,
     /// True if free ends of walls and corners that jut out diffract; see [`Physics::edges`](crate::Physics::edges). Off
     /// by default.
@@ -136,8 +136,8 @@ impl Tracer {
     /// direct path of no length.
     ///
     /// # Errors
-    /// A position that is not a number or far outside, an order or a length out of range, a tree that outgrows
-    /// [`MAX_BEAMS`], or [`stop`](Self::stop). `paths` is empty then.
+    /// A position that is not a number, far outside or inside something solid, an order or a length out of range, a tree
+    /// that outgrows [`MAX_BEAMS`], or [`stop`](Self::stop). `paths` is empty then.
     pub fn trace(
         &mut self,
         scene: &Scene,
@@ -244,11 +244,9 @@ impl Tracer {
     ) -> Result<(), PathsError> {
         check(scene, source, receivers, limits)?;
         self.ends.find(scene.mesh(), source, receivers);
-        if self.pole_shadows {
-            check_free(scene, source, self.ends.of_source())?;
-            let mut each = receivers.iter().enumerate();
-            each.try_for_each(|(receiver, &at)| check_free(scene, at, self.ends.of_receiver(receiver)))?;
-        }
+        check_free(scene, source, self.ends.of_source())?;
+        let mut each = receivers.iter().enumerate();
+        each.try_for_each(|(receiver, &at)| check_free(scene, at, self.ends.of_receiver(receiver)))?;
         let growth = Growth {
             mesh: scene.mesh(),
             mirrors: scene.mirrors(),

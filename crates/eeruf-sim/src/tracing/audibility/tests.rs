@@ -1,6 +1,6 @@
 use crate::*;
 
-/// A room with poles, thin or thick, and a ring in it, by a number.
+/// A room with poles, thin or thick, and a ring among them, by a number.
 fn random(number: u64) -> (Scene, Vec<Pose>) {
     let mut random = Random::new(number);
     let corners = [[0.0, 0.0], [9.0, 0.0], [9.0, 3.0], [6.0, 3.0], [6.0, 5.0], [0.0, 5.0], [0.0, 0.0]];
@@ -8,11 +8,13 @@ fn random(number: u64) -> (Scene, Vec<Pose>) {
         let (x, y, thick) = (random.between(0.1, 8.9), random.between(0.1, 2.9), random.between(0.004, 0.25));
         Pole::new(x, y, if number.is_multiple_of(2) { 0.004 } else { thick })
     });
-    let poles = poles.collect();
-    let scene = Scene::new(Wall::polyline(&corners).collect(), poles, Air::default()).unwrap();
+    let mut poles: Vec<Pole> = poles.collect();
     let place = Vector::new(random.between(0.5, 8.5), random.between(0.5, 2.5));
     let robot = Pose::new(place, random.between(-3.0, 3.0));
-    (scene, ring_of(&robot, 8, 0.3, -0.9, 0.26).collect())
+    let ring: Vec<Pose> = ring_of(&robot, 8, 0.3, -0.9, 0.26).collect();
+    let from = |pole: &Pole, sensor: &Pose| (pole.centre.coords - sensor.translation.vector).norm();
+    poles.retain(|pole| ring.iter().all(|sensor| from(pole, sensor) >= pole.radius_m));
+    (Scene::new(Wall::polyline(&corners).collect(), poles, Air::default()).unwrap(), ring)
 }
 
 #[test]

@@ -3,7 +3,7 @@
 //! The case that comes first matters only for how soon a schedule is found: it is drawn from a fixed seed, copied from
 //! a schedule for another period or from the sensors next to it, or the one that leaves the others most room.
 
-use crate::engine::bounds::{Bound, Refuted};
+use crate::engine::bounds::Refuted;
 use crate::engine::branching::Branching;
 use crate::engine::construct::Times;
 use crate::engine::counting::{capacity, members};
@@ -18,8 +18,6 @@ pub(crate) enum Case {
     Of(Branching, usize),
     /// Of these, x has the largest |d|, and d is negative or not.
     Largest { x: usize, negative: bool, of: u64 },
-    /// `|d_x|` is at least this.
-    Wide { x: usize, least: Bound },
 }
 
 impl Case {
@@ -30,10 +28,6 @@ impl Case {
             Self::Largest { x, negative, of } => {
                 members(of & !(1 << x)).for_each(|y| _ = state.learn_below(y, x));
                 state.learn_most(x, !negative, if negative { -1 } else { 0 })?;
-                propagate(state, merged)
-            }
-            Self::Wide { x, least } => {
-                state.learn_low(x, least)?;
                 propagate(state, merged)
             }
         }
@@ -240,7 +234,7 @@ impl Choice {
 }
 
 /// Sensors from `first` on, each the one with the most gaps to those before it.
-pub(crate) fn sequence(merged: &Merged, first: usize) -> Vec<usize> {
+fn sequence(merged: &Merged, first: usize) -> Vec<usize> {
     let (mut sequence, mut taken) = (vec![first], 1_u64 << first);
     while sequence.len() < merged.count() {
         let known = |x: usize| merged.neighbours[x].iter().filter(|&&y| taken >> y & 1 == 1).count();

@@ -11,7 +11,6 @@
 //! | `schedule` | a schedule, checked longhand |
 //! | `descent` | the branchings of short descents, which look for schedules |
 //! | `repair` | a local search for schedules |
-//! | `raised` | the ring that most sensors ask for, and the cases beside it |
 //! | `search`, `shortest`, `spare` | one period, the shortest, the schedule with most to spare |
 //! | `prove` | certificates |
 //!
@@ -39,7 +38,6 @@ pub(crate) mod counting;
 mod descent;
 mod problem;
 pub mod prove;
-mod raised;
 mod repair;
 mod rules;
 mod schedule;

@@ -178,6 +178,23 @@ impl Problem {
         (even != counts).then_some(even)
     }
 
+    /// The problem with windows and gaps raised to what most have: its schedules are schedules of the problem, and it
+    /// often has symmetries that the problem lacks. `None` if none or many are lower.
+    pub(crate) fn raised(&self) -> Option<Self> {
+        /// The most windows and pairs to raise: beyond, a search of the problem itself takes no longer.
+        const MOST: usize = 8;
+        let [windows, _, gaps] = self.limits();
+        let (window, gap) = (most_common(&windows)?.0, most_common(&gaps).map_or(0, |(gap, _)| gap));
+        let raised = Self {
+            window: self.window.iter().map(|&own| own.max(window)).collect(),
+            gaps: self.gaps.iter().map(|&(x, y, to, from)| (x, y, to.max(gap), from.max(gap))).collect(),
+            ..self.clone()
+        };
+        let pairs = raised.gaps.iter().zip(&self.gaps).filter(|(to, from)| to != from).count();
+        let sensors = raised.window.iter().zip(&self.window).filter(|(to, from)| to != from).count();
+        (1..=MOST).contains(&(sensors + pairs)).then_some(raised)
+    }
+
     /// Returns true if all sensors are alike, and all pairs that need a gap.
     pub(crate) fn is_even(&self) -> bool {
         let alike = |limits: &Vec<u32>| limits.windows(2).all(|pair| pair[0] == pair[1]);

@@ -5,7 +5,7 @@ use core::cell::OnceCell;
 
 use crate::engine::branching::choose;
 use crate::engine::construct::Times;
-use crate::engine::descent::{Case, Choice, sequence};
+use crate::engine::descent::{Case, Choice};
 use crate::engine::problem::{Merged, Problem};
 use crate::engine::repair::{PAIRS, Repair};
 use crate::engine::rules::propagate;
@@ -94,21 +94,10 @@ impl Search {
 
     /// Decides whether some firing times have this period, by at most `budget` nodes of a full search.
     pub fn decide(&mut self, period: u32, budget: u64, go_on: &mut dyn FnMut(u64) -> bool) -> Decided {
-        self.decide_cases(period, budget, None, go_on)
-    }
-
-    /// The same where only these cases are left.
-    pub(crate) fn decide_cases(
-        &mut self,
-        period: u32,
-        budget: u64,
-        cases: Option<Vec<Case>>,
-        go_on: &mut dyn FnMut(u64) -> bool,
-    ) -> Decided {
         let assumptions = self.assumptions.get_or_init(|| Assumptions::of(&self.problem.with_separations_that_count()));
         let Ok(mut state) = assumptions.root(&self.merged, period + 1) else { return Decided::Refuted };
         state.goes_further = true;
-        self.walk(period, &mut state, budget, cases, None, go_on)
+        self.walk(period, &mut state, budget, None, go_on)
     }
 
     /// The same by branchings along time.
@@ -116,7 +105,7 @@ impl Search {
         let assumptions = self.assumptions.get_or_init(|| Assumptions::of(&self.problem.with_separations_that_count()));
         let Ok(mut state) = assumptions.root_in_time(&self.merged, period + 1) else { return Decided::Refuted };
         state.goes_further = true;
-        self.walk(period, &mut state, budget, None, None, go_on)
+        self.walk(period, &mut state, budget, None, go_on)
     }
 
     /// Looks for firing times of this period by at most `budget` nodes: first by a search along the guide, the times
@@ -138,7 +127,7 @@ impl Search {
         let mut choice = Choice::new(&self.merged, period, guide.clone());
         let mut least = unit.max(budget / 8).min(budget);
         for descent in 1.. {
-            let decided = self.walk(period, &mut state, least, None, Some(&mut choice), go_on);
+            let decided = self.walk(period, &mut state, least, Some(&mut choice), go_on);
             if decided != Decided::Open {
                 return decided;
             }
@@ -192,18 +181,14 @@ impl Search {
         period: u32,
         state: &mut State,
         budget: u64,
-        first: Option<Vec<Case>>,
         mut choice: Option<&mut Choice>,
         go_on: &mut dyn FnMut(u64) -> bool,
     ) -> Decided {
         let end = self.nodes.saturating_add(budget);
         // What was known where cases are left, and these.
         let mut open: Vec<(Mark, Vec<Case>)> = Vec::new();
-        let start =
-            first.iter().flatten().find_map(|case| if let Case::Wide { x, .. } = *case { Some(x) } else { None });
-        let along = start.map_or((0..self.merged.count()).collect(), |x| sequence(&self.merged, x));
-        let mut holds = first.is_none();
-        open.extend(first.map(|cases| (state.mark(), cases)));
+        let along: Vec<usize> = (0..self.merged.count()).collect();
+        let mut holds = true;
         loop {
             if holds {
                 if let Some(times) = self.reading(period, state) {

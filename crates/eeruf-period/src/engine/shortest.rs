@@ -4,7 +4,6 @@
 use crate::engine::construct::{Times, constructed};
 use crate::engine::counting::least_period;
 use crate::engine::problem::Problem;
-use crate::engine::raised::Raised;
 use crate::engine::repair::Repair;
 use crate::engine::search::{Decided, FiringTimes, Search};
 
@@ -74,8 +73,8 @@ struct Run {
     even: Option<Box<Run>>,
     /// True if schedules are looked for by repairs too.
     is_mixed: bool,
-    /// The problem with few windows raised to what most sensors have.
-    raised: Option<(Box<Run>, Raised)>,
+    /// The ring that most sensors ask for, for its schedules.
+    raised: Option<Box<Run>>,
     /// Nodes of runs that ended.
     ended: u64,
     /// The bound that follows without distinguishing cases.
@@ -121,8 +120,8 @@ impl Run {
         if run.is_open() {
             let even = if is_first && !run.is_mixed { problem.evened() } else { None };
             run.even = even.and_then(|even| Self::new(&even, false)).map(Box::new);
-            let raised = if is_first { Raised::of(problem) } else { None };
-            run.raised = raised.and_then(|raised| Some((Box::new(Self::new(&raised.problem, false)?), raised)));
+            let raised = if is_first { problem.raised() } else { None };
+            run.raised = raised.and_then(|raised| Self::new(&raised, false)).map(Box::new);
             let coarse = in_coarse_ticks(problem);
             run.coarse = coarse.and_then(|(coarse, ticks)| Some((Box::new(Self::new(&coarse, is_first)?), ticks)));
         }
@@ -196,21 +195,19 @@ impl Run {
             }
             round?;
         }
-        if let Some((mut raised, windows)) = self.raised.take() {
+        if let Some(mut raised) = self.raised.take_if(|raised| raised.nodes() <= self.search.nodes()) {
             let before = self.nodes();
             raised.limit = self.limit.saturating_sub(before) / 2;
-            let found = self.found.clone();
-            let best = raised.found.period;
-            let is_worth_it = windows.has_cases() || raised.nodes() <= self.search.nodes();
-            let round = if raised.is_open() && is_worth_it {
-                raised.round(effort, &mut |nodes, _| ask(before + nodes, &found))
-            } else {
-                Ok(())
-            };
+            let (found, best) = (self.found.clone(), raised.found.period);
+            let round = raised.round(effort, &mut |nodes, _| ask(before + nodes, &found));
             if raised.found.period < best {
                 self.offer(raised.found.fire.clone(), true);
             }
-            self.raised = Some((raised, windows));
+            if raised.is_open() {
+                self.raised = Some(raised);
+            } else {
+                self.ended += raised.nodes();
+            }
             round?;
         }
         if self.is_guide || self.gallops == GALLOPS {
@@ -249,8 +246,11 @@ impl Run {
     /// The nodes of this search and of those that help it.
     fn nodes(&self) -> u64 {
         let coarse = self.coarse.as_ref().map_or(0, |(coarse, _)| coarse.nodes());
-        let raised = self.raised.as_ref().map_or(0, |(raised, _)| raised.nodes());
-        self.ended + self.search.nodes() + coarse + raised + self.even.as_ref().map_or(0, |even| even.nodes())
+        self.ended
+            + self.search.nodes()
+            + coarse
+            + self.raised.as_ref().map_or(0, |raised| raised.nodes())
+            + self.even.as_ref().map_or(0, |even| even.nodes())
     }
 
     fn sensors(&self) -> u64 {
@@ -317,11 +317,9 @@ impl Run {
     /// Searches all of a period. Returns true if that is decided.
     fn decide(&mut self, period: u32, effort: u64, ask: Ask<'_>) -> Result<bool, Stopped> {
         let (before, effort) = (self.nodes() - self.search.nodes(), self.affordable(effort));
-        let Self { search, found, raised, .. } = self;
+        let Self { search, found, .. } = self;
         let nodes = search.nodes();
-        let raised = raised.as_ref().filter(|(raised, _)| period < raised.found.bound);
-        let cases = raised.and_then(|(_, raised)| raised.cases(search.merged(), period));
-        let decided = search.decide_cases(period, effort, cases, &mut |nodes| ask(before + nodes, found));
+        let decided = search.decide(period, effort, &mut |nodes| ask(before + nodes, found));
         if decided == Decided::Refuted && search.nodes() == nodes {
             self.bound_of_rules = self.bound_of_rules.max(period + 1);
         }

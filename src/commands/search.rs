@@ -32,8 +32,9 @@ pub(crate) struct Args {
     /// Count all tables
     #[arg(long, conflicts_with = "best")]
     count: bool,
-    /// Find the table with the largest smallest interval, or with the largest T_delta; pareto: all tables of which no
-    /// other has more of one without less of the other; by default any table
+    /// Find the table with the largest smallest interval, with the largest T_delta, with the shortest waits, or with
+    /// the shortest period for these lags; pareto: all tables of which no other has more of the first two without less
+    /// of the other; by default any table
     #[arg(long, value_enum, value_name = "WHAT")]
     best: Option<Best>,
     /// Largest number of nodes to search; by default no limit
@@ -56,6 +57,8 @@ const WATCHED_EVERY: u32 = 1 << 12;
 enum Best {
     Interval,
     TDelta,
+    Waits,
+    Period,
     Pareto,
 }
 
@@ -127,6 +130,8 @@ fn find(args: &Args, spec: &WaitSpec, best: Option<Best>, watch: &mut Watch) -> 
     let (what, found): (_, Found<MAX_SENSORS>) = within(args.budget, watch, |budget| match best {
         Some(Best::Interval) => Ok(("smallest interval ", search.best_interval(&mut memory, budget)?)),
         Some(Best::TDelta) => Ok(("t_delta ", search.best_t_delta(&mut memory, budget)?)),
+        Some(Best::Waits) => Ok(("longest wait ", search.shortest_waits(&mut memory, budget)?)),
+        Some(Best::Period) => Ok(("period ", search.shortest_period(&mut memory, budget)?)),
         Some(Best::Pareto) | None => {
             let outcome = search.first(&mut memory, budget)?;
             let (proven, nodes) = (outcome != Outcome::BudgetSpent, budget.nodes());

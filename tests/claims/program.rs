@@ -356,6 +356,26 @@ fn pareto_front_of_tables_is_what_the_two_bests_span() {
 }
 
 #[test]
+fn shortest_waits_and_period_have_a_table_and_a_tick_less_none() {
+    let waits = "sensors = 4\nperiod_us = 40000\nwait_max_us = 9000\ntick_us = 500\nt_delta_us = 999\n\
+                 min_interval_us = 5000\nt_lag_us = [0, 10000, 20000, 30000]\n";
+    let (_folder, file) = Scratch::new("waits.toml", waits);
+    for (what, key) in [("waits", "wait_max_us = 9000"), ("period", "period_us = 40000")] {
+        std::fs::write(&file, waits).unwrap();
+        let file = file.to_str().unwrap();
+        let found = json(&["search", file, "--best", what, "--json"]);
+        assert_eq!((&found["proven"], &found["bound_us"]), (&true.into(), &found["value_us"]), "{found}");
+        let shortest = found["value_us"].as_u64().unwrap();
+        let code = |us: u64| {
+            let (name, _) = key.split_once(" = ").unwrap();
+            std::fs::write(file, waits.replace(key, &format!("{name} = {us}"))).unwrap();
+            eeruf(&["search", file]).code
+        };
+        assert!(shortest < 40_000 && code(shortest) == Some(0) && code(shortest - 500) != Some(0), "{found}");
+    }
+}
+
+#[test]
 fn period_that_is_given_says_what_fits() {
     let file = "rings/paper-12.toml";
     for (period, code, t_delta) in [("64000", 1, 499), ("65000", 0, 999), ("100000", 0, 2999)] {

@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use eeruf_core::search::{
-    self as search, Budget, COUNT_WORDS, Outcome, Progress, SearchError, WaitProblem, memory_words,
+    self as search, Budget, COUNT_WORDS, Outcome, Progress, SearchError, WaitProblem, WaitSearch as Waits, memory_words,
 };
 use eeruf_core::{Criterion, MAX_SENSORS, Micros};
 use pyo3::prelude::*;
@@ -170,15 +170,16 @@ impl WaitSearch {
         WaitTables(Exclusive::new("iterator of tables", Walk { search: self.search.clone(), last: None }))
     }
 
-    /// The best table: the one whose smallest interval between neighbours, or whose ``T_delta``, is largest. Ctrl-C
-    /// ends the search.
+    /// The best table: the one whose smallest interval between neighbours, or whose ``T_delta``, is largest; or whose
+    /// longest wait, or whose period for these lags, is shortest, and no longer than the one given. Ctrl-C ends the
+    /// search.
     ///
     /// Args:
-    ///     objective: ``"interval"`` or ``"t_delta"``.
+    ///     objective: ``"interval"``, ``"t_delta"``, ``"waits"`` or ``"period"``.
     ///     budget: how many nodes to visit at most, 1 or more; unlimited by default.
     ///
     /// Returns:
-    ///     The table, with the interval or ``T_delta`` as ``value_us``.
+    ///     The table, with the interval, ``T_delta``, longest wait or period as ``value_us``.
     ///
     /// Raises:
     ///     ArgumentError: no such objective or budget.
@@ -189,6 +190,8 @@ impl WaitSearch {
     ///     >>> found = eeruf.WaitSearch(4, 40_000, 8_000, 1000, t_delta_us=999).best("t_delta")
     ///     >>> found.proven, found.schedule.verify(found.value_us).ok
     ///     (True, True)
+    ///     >>> eeruf.WaitSearch(4, 40_000, 8_000, 1000, t_delta_us=999).best("waits").value_us
+    ///     6000
     #[pyo3(signature = (objective=None, budget=None), text_signature = "($self, objective=\"interval\", budget=None)")]
     fn best(
         &self,
@@ -196,19 +199,18 @@ impl WaitSearch {
         objective: Option<&Bound<'_, PyAny>>,
         budget: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Found> {
-        let objectives = [("interval", false), ("t_delta", true)];
-        let of_t_delta = choice("objective", objective, &objectives)?;
+        type Best = fn(&Waits, &mut [u32], &mut Budget<'_>) -> Result<search::Found<MAX_SENSORS>, SearchError>;
+        let objectives: [(&str, Best); 4] = [
+            ("interval", Waits::best_interval),
+            ("t_delta", Waits::best_t_delta),
+            ("waits", Waits::shortest_waits),
+            ("period", Waits::shortest_period),
+        ];
+        let best = choice("objective", objective, &objectives)?;
         let budget = whole_or("budget", budget, u64::MAX, 1..=u64::MAX)?;
         let words = memory_words(self.sensors);
         let began = Instant::now();
-        let best = |memory: &mut [u32], budget: &mut Budget<'_>| {
-            if of_t_delta {
-                self.search.best_t_delta(memory, budget)
-            } else {
-                self.search.best_interval(memory, budget)
-            }
-        };
-        let found: search::Found<MAX_SENSORS> = self.run(py, budget, best, words)?;
+        let found = self.run(py, budget, |memory, budget| best(&self.search, memory, budget), words)?;
         Ok(Found::of(&found, began, None))
     }
 

@@ -10,6 +10,7 @@
 //! | the best interval | [`WaitSearch::best_interval`] | the same, by bisection |
 //! | the best `t_delta` | [`WaitSearch::best_t_delta`] | likewise |
 //! | the front of both | [`WaitSearch::next_on_front`] | the best of one, then of the other |
+//! | the shortest waits or period | [`WaitSearch::shortest_waits`], [`WaitSearch::shortest_period`] | by bisection |
 //! | every one | [`WaitSearch::next_table`] | depth first over the values, in lexicographic order |
 //! | how many? | [`WaitSearch::count`] | depth first, with what was counted before kept in memory |
 //!

@@ -262,6 +262,58 @@ impl WaitSearch {
         Ok(Found { schedule, value: value.and_then(time), bound, proven: best.proven(), nodes })
     }
 
+    /// Finds the table with the shortest longest wait at the period of the problem, and proves that none is shorter.
+    ///
+    /// # Errors
+    /// As for [`first`](Self::first).
+    pub fn shortest_waits<const K: usize>(
+        &self,
+        memory: &mut [u32],
+        budget: &mut Budget<'_>,
+    ) -> Result<Found<K>, SearchError> {
+        self.shortest(0, self.wait_max, memory, budget, |wait_max| Self { wait_max, ..self.clone() })
+    }
+
+    /// Finds the table with the shortest period for the lags and the longest wait of the problem, and proves that none
+    /// is shorter.
+    ///
+    /// # Errors
+    /// As for [`first`](Self::first).
+    pub fn shortest_period<const K: usize>(
+        &self,
+        memory: &mut [u32],
+        budget: &mut Budget<'_>,
+    ) -> Result<Found<K>, SearchError> {
+        let latest = self.lag.iter().take(self.sensors).copied().max().unwrap_or(0);
+        let least = latest.saturating_add(self.wait_max).saturating_add(1);
+        self.shortest(least, self.period, memory, budget, |period| Self { period, ..self.clone() })
+    }
+
+    /// By bisection: a table serves with longer waits and periods too. None is longer than the problem's.
+    fn shortest<const K: usize>(
+        &self,
+        mut least: u32,
+        mut most: u32,
+        memory: &mut [u32],
+        budget: &mut Budget<'_>,
+        with: impl Fn(u32) -> Self,
+    ) -> Result<Found<K>, SearchError> {
+        let mut found = Found { schedule: None, value: None, bound: None, proven: true, nodes: 0 };
+        let mut next = most;
+        while found.proven && least <= most && (found.schedule.is_none() || least < most) {
+            match with(next).first(memory, budget)? {
+                Outcome::Found(schedule) => (found.schedule, most) = (Some(schedule), next),
+                Outcome::Exhausted => least = next + 1,
+                Outcome::BudgetSpent => found.proven = false,
+            }
+            next = least + most.saturating_sub(least) / 2;
+        }
+        found.value = found.schedule.is_some().then(|| self.grid.time(most));
+        found.bound = (least <= most).then(|| self.grid.time(least));
+        found.nodes = budget.nodes();
+        Ok(found)
+    }
+
     /// Finds the next table of the Pareto front: the tables of which no other has a larger smallest interval without a
     /// smaller `t_delta`, both at least those of the problem, from the largest interval to the largest `t_delta`. It
     /// follows `after`, or is the first; `Exhausted` after the last, `BudgetSpent` if the budget ended before it was

@@ -3,7 +3,7 @@
 
 use crate::common::naive::{self, Layout, Problem};
 use crate::common::{Owned, holds, separation, ticks, waits};
-use eeruf_core::search::{Budget, Found, FrontTable, MEMORY_WORDS, Outcome};
+use eeruf_core::search::{Budget, Found, FrontTable, MEMORY_WORDS, Outcome, WaitSearch};
 use eeruf_core::{Criterion, Schedule};
 use proptest::prelude::*;
 
@@ -96,6 +96,26 @@ proptest! {
         let mut expected = Vec::new();
         naive::for_each(&problem, &mut |a, b| expected.push((a.to_vec(), b.to_vec())));
         prop_assert_eq!(seen, expected);
+    }
+
+    #[test]
+    fn nested_loops_agree_on_the_shortest_waits_and_period(tiny in tiny()) {
+        let (problem, search, mut memory) = (tiny.problem(), tiny.search(), vec![0; MEMORY_WORDS]);
+        let least_period = tiny.lag.iter().max().unwrap() + tiny.wait_max + 1;
+        for of_waits in [true, false] {
+            let at = |value| match of_waits {
+                true => Problem { wait_max: value, ..problem },
+                false => Problem { period: value, ..problem },
+            };
+            let mut values = if of_waits { 0..=tiny.wait_max } else { least_period..=tiny.period };
+            let expected = values.find(|&value| naive::count(&at(value)) > 0);
+            let shortest = if of_waits { WaitSearch::shortest_waits } else { WaitSearch::shortest_period };
+            let found: Found<64> = shortest(&search, &mut memory, &mut Budget::unlimited()).unwrap();
+            prop_assert_eq!((found.value.map(ticks), found.proven), (expected, true));
+            prop_assert_eq!(found.bound, found.value);
+            let keeps = found.schedule.zip(expected).is_none_or(|(table, value)| holds(&at(value), &table));
+            prop_assert!(keeps && found.schedule.is_some() == expected.is_some());
+        }
     }
 
     #[test]

@@ -69,7 +69,7 @@ fn impossible_rings_get_one_clear_line() {
             ring("").replace("30000", "0"),
             ", line 4: a listening window of 0 us; expected window_us or max_range_m above zero",
         ),
-        (ring("max_range_m = 3.0"), ", line 4: expected either window_us, or max_range_m with or without retrigger_us"),
+        (ring("max_range_m = 3.0"), ", line 4: expected one of window_us, max_range_m and module"),
         (ring("jitter_us = 3"), ", line 2: expected either t_delta_us, or jitter_us with or without speed_m_s"),
         (ring("layout = \"star\""), ", line 5: "),
         (ring("layout = [[0, 8]]"), ", line 5: layout: neighbours [0, 8]; expected two different sensors from 0 to 7"),

@@ -109,7 +109,7 @@ const REFUSED_FILES: [Spoilt<'static>; 45] = [
     ("design", RING, "tick_us = 1000", "layout = \"star\"", "expected"),
     ("design", RING, "tick_us = 1000", "layout = [[0, 9]]", "[0, 9]; expected two different sensors"),
     ("design", RING, "tick_us = 1000", "layout = [[1, 1]]", "[1, 1]; expected two different sensors"),
-    ("design", RING, "tick_us = 1000", "max_range_m = 3.0", "expected either window_us, or max_range_m"),
+    ("design", RING, "tick_us = 1000", "max_range_m = 3.0", "expected one of window_us, max_range_m and module"),
     ("design", RING, "tick_us = 1000", "jitter_us = 30", "expected either t_delta_us, or jitter_us"),
     ("design", RING, "15000", "4000000000", "expected at most 268435.456 ms"),
     ("design", RING, "window_us", "windw_us", "windw_us: unknown key; expected one of"),

@@ -294,19 +294,16 @@ impl RingFile {
         let of_modules = self.module.as_ref().filter(|_| self.window_us.is_none());
         let max_range_m = self.max_range_m.clone().or(of_modules.map(|them| each(them, Module::sees_to_m)));
         let retrigger_us = self.retrigger_us.clone().or(of_modules.map(|them| each(them, |module| module.rest_us)));
-        let (window, refire): (Vec<Micros>, Vec<Micros>) = match (&self.window_us, &max_range_m, &retrigger_us) {
-            (Some(us), None, None) => (us.list("window_us", sensors)?.into_iter().map(Micros::new).collect(), vec![]),
-            (None, Some(range), retrigger) => {
+        let window: Vec<Micros> = match (&self.window_us, &max_range_m) {
+            (Some(us), None) => us.list("window_us", sensors)?.into_iter().map(Micros::new).collect(),
+            (None, Some(range)) => {
                 let range = range.list("max_range_m", sensors)?.into_iter().map(|range| metres("max_range_m", range));
-                let retrigger = retrigger.as_ref().map(|us| us.list("retrigger_us", sensors)).transpose()?;
-                let retrigger = retrigger.unwrap_or_default().into_iter().map(Micros::new).collect();
-                (range.collect::<Result<_, _>>()?, retrigger)
+                range.collect::<Result<_, _>>()?
             }
-            _ => {
-                let message = "expected either window_us, or max_range_m with or without retrigger_us, or module";
-                return Err(message.to_owned());
-            }
+            _ => return Err("expected one of window_us, max_range_m and module".to_owned()),
         };
+        let refire = retrigger_us.as_ref().map(|us| us.list("retrigger_us", sensors)).transpose()?;
+        let refire: Vec<Micros> = refire.unwrap_or_default().into_iter().map(Micros::new).collect();
         if let Some(rest) = &self.retrigger_us {
             for (module, rest_us) in modules.iter_mut().zip(rest.list("retrigger_us", sensors)?) {
                 module.rest_us = rest_us;

@@ -201,5 +201,8 @@ fn modules_say_how_far_sensors_see_and_how_long_they_rest() {
     let wrong = RingSpec::from_text(&format!("{RING}module = [\"ping\"]")).unwrap_err();
     assert_eq!(wrong.message(), "module: 1 modules; expected one for all, or one for each of 3 sensors");
     let none = RingSpec::from_text(RING).unwrap_err();
-    assert_eq!(none.message(), "expected either window_us, or max_range_m with or without retrigger_us, or module");
+    assert_eq!(none.message(), "expected one of window_us, max_range_m and module");
+    let both = read(&format!("{RING}window_us = 20000\nretrigger_us = 60000"));
+    let ms = Micros::from_millis;
+    assert_eq!((both.window, both.listening, both.retrigger), (ms(60), ms(20), ms(60)));
 }

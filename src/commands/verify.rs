@@ -4,8 +4,10 @@ use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
 use eeruf_core::{Criterion, Layout, Micros, Requirements};
+use eeruf_design::atlas::{ATLAS, answer as answer_of};
 use eeruf_design::{LayoutKey, LayoutName, RingSpec};
 use eeruf_sim::AnySchedule;
+use serde::Serialize;
 
 use super::{Answer, show};
 use crate::files::error::InputError;
@@ -103,18 +105,63 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
         // Where t_delta must cover motion, it must do so at the longest time between two firings.
         let spec = spec.covering(spec.t_delta_needed(&schedule));
         let requirements = Requirements { criterion, ..spec.problem().requirements };
-        return answer(args, &schedule, &requirements);
+        return answer(args, &schedule, &requirements, Known::of(&spec));
     }
     let layout = args.layout.owned(args.neighbours, schedule.sensors());
     let layout = layout.map_err(|message| InputError::new(&args.file, message))?;
-    answer(args, &schedule, &args.requirements(layout.layout(), criterion))
+    answer(args, &schedule, &args.requirements(layout.layout(), criterion), None)
+}
+
+/// The shortest period of the schedule's ring, from the atlas.
+#[derive(Clone, Copy, Serialize)]
+struct Known {
+    shortest_us: u32,
+    /// No period is shorter than this by the certificate of the atlas's row.
+    certified_us: u32,
+}
+
+impl Known {
+    fn of(spec: &RingSpec) -> Option<Self> {
+        let (row, schedule) = answer_of(ATLAS, &spec.problem())?;
+        let certified_us = row.certified.saturating_mul(spec.tick.as_micros());
+        Some(Self { shortest_us: schedule.period().as_micros(), certified_us })
+    }
+
+    /// A line of the report.
+    fn line(self, period: Micros) -> String {
+        let Self { shortest_us, certified_us } = self;
+        let is = if shortest_us < period.as_micros() { "possible" } else { "the shortest" };
+        let proven = if certified_us < shortest_us {
+            format!("proven, not certified: its certificate says that none is below {}", Micros::new(certified_us))
+        } else {
+            "proven".to_owned()
+        };
+        format!("\nA period of {} is {is} for this ring; {proven}.\n", Micros::new(shortest_us))
+    }
+}
+
+/// The report, and the shortest period where the atlas has it.
+#[derive(Serialize)]
+struct Verified {
+    #[serde(flatten)]
+    report: ReportJson<String>,
+    #[serde(flatten)]
+    known: Option<Known>,
 }
 
 /// Prints what was found.
-fn answer(args: &Args, schedule: &AnySchedule, requirements: &Requirements<'_>) -> Result<Answer, InputError> {
+fn answer(
+    args: &Args,
+    schedule: &AnySchedule,
+    requirements: &Requirements<'_>,
+    known: Option<Known>,
+) -> Result<Answer, InputError> {
     let report = schedule.verify(requirements);
-    let text = || describe(&args.file.display().to_string(), schedule, requirements, &report);
-    show(args.json, || ReportJson::new(&report, |phase| phase.to_string()), text)?;
+    let text = || {
+        let shortest = known.map_or_else(String::new, |known| known.line(schedule.period()));
+        describe(&args.file.display().to_string(), schedule, requirements, &report) + &shortest
+    };
+    show(args.json, || Verified { report: ReportJson::new(&report, |phase| phase.to_string()), known }, text)?;
     Ok(if report.ok() { Answer::Yes } else { Answer::No })
 }
 

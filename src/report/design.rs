@@ -17,10 +17,14 @@ pub(crate) fn describe(name: &str, spec: &RingSpec, design: &RingDesign, seconds
     let report = schedule.verify(requirements);
     let period = schedule.period();
     let mut table = plain();
-    let proof = if found.proven {
-        format!("proven: no schedule in ticks of {} is shorter", spec.tick)
-    } else {
-        format!("not proven: it may be as short as {}", found.bound.unwrap_or(period))
+    let none = format!("no schedule in ticks of {} is shorter", spec.tick);
+    let proof = match design.certified() {
+        _ if !found.proven => format!("not proven: it may be as short as {}", found.bound.unwrap_or(period)),
+        Some(certified) if certified < period => {
+            format!("proven, not certified: {none}; a short certificate says that none is below {certified}")
+        }
+        Some(_) => format!("proven: {none}"),
+        None => format!("proven, not certified: {none}"),
     };
     table.add_row(["period", &period.to_string(), &proof]);
     let best = |proven: Option<bool>| match proven {

@@ -2,6 +2,8 @@
 
 use std::process::{Command, Stdio};
 
+use eeruf_design::atlas::{ATLAS, Neighbourhood, Row, rows};
+
 use crate::common::{Scratch, eeruf, json};
 
 const FEW: [&str; 2] = ["--most-sensors", "4"];
@@ -86,4 +88,42 @@ fn atlas_answers_in_any_multiple_tick() {
     assert!(described.out.contains("from the atlas, verified"), "{}", described.out);
     let searched = eeruf(&["design", "--period-only", "rings/paper-12.toml", "--no-atlas"]);
     assert!(searched.out.contains("540 nodes, and"), "{}", searched.out);
+}
+
+// Where a row's certificate says less than its bound, design and verify say so.
+#[test]
+fn proven_says_if_it_is_not_certified() {
+    for is_certified in [false, true] {
+        let is_one =
+            |row: &Row| row.ring.sensors > 8 && row.bound == row.period && (row.certified == row.bound) == is_certified;
+        let Row { ring, period, certified, .. } = rows(ATLAS).find(is_one).unwrap();
+        let (layout, neighbours) = match ring.neighbourhood {
+            Neighbourhood::All => ("line", ring.sensors),
+            Neighbourhood::Line(n) => ("line", n),
+            Neighbourhood::Ring(n) => ("ring", n),
+        };
+        let needs = format!(
+            "sensors = {}\nlayout = \"{layout}\"\nneighbours = {neighbours}\nt_delta_us = {}\n\
+             min_interval_us = {}000\nwindow_us = {}000\n",
+            ring.sensors,
+            500 * ring.separation - 1,
+            ring.interval,
+            ring.window
+        );
+        let (folder, file) = Scratch::new("ring.toml", &needs);
+        let (file, schedule) = (file.to_str().unwrap(), folder.path().join("schedule.toml"));
+        let found = json(&["design", "--period-only", file, "--json"]);
+        let times = [1000 * period, 1000 * certified].map(serde_json::Value::from);
+        assert_eq!([&found["value_us"], &found["certified_us"]], [&times[0], &times[1]], "{ring}");
+        let said = if is_certified { "proven: no schedule" } else { "proven, not certified: no schedule" };
+        let out = eeruf(&["design", "--period-only", file]).out;
+        assert!(out.contains(said), "{out}");
+        std::fs::write(&schedule, eeruf(&["design", file, "--emit", "toml"]).out).unwrap();
+        let verify = ["verify", schedule.to_str().unwrap(), "--ring", file];
+        let verified = json(&[&verify[..], &["--json"]].concat());
+        assert_eq!([&verified["shortest_us"], &verified["certified_us"]], [&times[0], &times[1]], "{ring}");
+        let said = if is_certified { "; proven.\n" } else { "; proven, not certified: its certificate" };
+        let out = eeruf(&verify).out;
+        assert!(out.contains("is the shortest for this ring") && out.contains(said), "{out}");
+    }
 }

@@ -8,6 +8,7 @@ use eeruf_core::{MAX_SENSORS, Micros};
 use eeruf_files::{AnySchedule, ScheduleFile};
 use eeruf_period::ToSpare;
 
+use crate::certificate::{Stated, prove};
 use crate::found::FoundJson;
 use crate::ring::RingSpec;
 use crate::shortest::{Search, Shortest, shortest};
@@ -15,6 +16,9 @@ use crate::what_if::WhatIf;
 
 /// The number of larger separations that are tried where firings cannot be moved apart.
 const HANDLING_STEPS: u32 = 8;
+/// Budget of nodes, times the square of the number of sensors, for the certificate of an answer, so that it takes
+/// no longer than the search.
+const CERTIFICATE_BUDGET: usize = 4_000 * 16 * 16;
 
 /// A schedule for a ring file.
 #[derive(Clone, Debug)]
@@ -38,6 +42,8 @@ pub struct RingDesign {
     pub to_spare: Option<ToSpare>,
     /// True if period and schedule are the atlas's, and nothing was searched.
     pub from_atlas: bool,
+    /// No period is shorter than this by the certificate of the atlas's row; see [`certified`](Self::certified).
+    pub(crate) known_certified: Option<Micros>,
     /// Changes that would shorten it, if they were asked for.
     pub what_if: Vec<WhatIf>,
 }
@@ -93,12 +99,24 @@ impl RingDesign {
         if self.found.proven { self.spec.what_if(control) } else { Ok(Vec::new()) }
     }
 
+    /// The period below which a certificate of a few thousand nodes proves that there is none, if the period is proven:
+    /// the period itself where that proof suffices.
+    pub fn certified(&self) -> Option<Micros> {
+        let proof = || {
+            let budget = CERTIFICATE_BUDGET / self.spec.sensors.max(16).pow(2);
+            let stated = Stated::read(&prove(self, budget, |_| true).ok()?)?;
+            u32::try_from(stated.micros(stated.bound)).ok().map(Micros::new)
+        };
+        self.found.proven.then(|| self.known_certified.or_else(proof)).flatten()
+    }
+
     /// The answer as `--json` prints it.
     pub fn json(&self, seconds: f64) -> FoundJson {
         FoundJson {
             schedule: Some(ScheduleFile::from(&self.schedule)),
             reason: Some(self.reason.clone()),
             from_atlas: Some(self.from_atlas),
+            certified_us: self.certified().map(Micros::as_micros),
             spare_us: self.to_spare.map(|spare| spare.in_us()),
             spare_proven: self.to_spare.map(|spare| spare.proven),
             ..FoundJson::new(&self.found, seconds)
@@ -172,7 +190,7 @@ impl RingSpec {
 
     /// The design of a schedule that serves this ring at its own `t_delta`.
     pub(crate) fn design(&self, schedule: AnySchedule, shortest: Shortest, bounding: Self) -> RingDesign {
-        let Shortest { found, reason, to_spare, from_atlas, .. } = shortest;
+        let Shortest { found, reason, to_spare, from_atlas, certified, .. } = shortest;
         let t_delta = self.t_delta_needed(&schedule).max(bounding.t_delta);
         let spec = self.covering(t_delta);
         RingDesign {
@@ -185,6 +203,7 @@ impl RingSpec {
             reason,
             to_spare,
             from_atlas,
+            known_certified: certified,
             what_if: Vec::new(),
         }
     }

@@ -29,6 +29,9 @@ pub struct FoundJson {
     /// True if the atlas answered, and nothing was searched; only `design` says it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub from_atlas: Option<bool>,
+    /// No period is shorter than this by a short certificate; only `design` says it, of a period that is proven.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub certified_us: Option<u32>,
     /// Slack of the schedule beyond every `t_delta`, then every interval and turn on a shared line, then every refire
     /// time; only where the period is proven.
     #[serde(skip_serializing_if = "Option::is_none")]

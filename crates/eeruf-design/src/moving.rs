@@ -160,7 +160,7 @@ impl<'s> Moving<'s> {
         }
         let (bounding, certified) = certifiable;
         let found = Found { schedule: Some(schedule), value, bound, proven, nodes: self.nodes };
-        let shortest = Shortest { found, schedule, reason, to_spare, from_atlas: false };
+        let shortest = Shortest { found, schedule, reason, to_spare, from_atlas: false, certified: None };
         let design = spec.design(schedule, shortest, bounding);
         Ok(RingDesign { bound: certified, t_delta: needs.t_delta, spec: needs, ..design })
     }

@@ -1,7 +1,7 @@
 //! The shortest period for what a schedule must meet: out of the atlas where it knows it, else by search.
 
-use eeruf_core::MAX_SENSORS;
 use eeruf_core::search::{Control, Found, SearchError};
+use eeruf_core::{MAX_SENSORS, Micros};
 use eeruf_files::AnySchedule;
 use eeruf_period::{PeriodProblem, ToSpare};
 
@@ -42,6 +42,8 @@ pub struct Shortest {
     pub to_spare: Option<ToSpare>,
     /// True if period and schedule are the atlas's, and nothing was searched.
     pub from_atlas: bool,
+    /// No period is shorter than this by the certificate of the atlas's row.
+    pub certified: Option<Micros>,
 }
 
 /// Finds the shortest period; `what_if` does not matter here.
@@ -63,7 +65,7 @@ pub fn shortest(
         let (preferred, spare) = problem.prefer(&schedule, SPARE_BUDGET, control)?;
         (schedule, to_spare) = (preferred, Some(spare));
     }
-    Ok(Shortest { found, schedule, reason: shortest.reason, to_spare, from_atlas: false })
+    Ok(Shortest { found, schedule, reason: shortest.reason, to_spare, from_atlas: false, certified: None })
 }
 
 /// The atlas's entry for a problem, if it has its shortest period.
@@ -73,5 +75,6 @@ fn known(problem: &PeriodProblem<'_>, rows: &str) -> Result<Option<Shortest>, Se
     let to_spare = ToSpare { proven: row.preferred, ..problem.spare_of(&schedule) };
     let found = Found { schedule: Some(schedule), value: Some(period), bound: Some(period), proven: true, nodes: 0 };
     let reason = problem.why_shortest(&schedule)?;
-    Ok(Some(Shortest { found, schedule, reason, to_spare: Some(to_spare), from_atlas: true }))
+    let certified = row.certified.checked_mul(problem.tick.as_micros()).map(Micros::new);
+    Ok(Some(Shortest { found, schedule, reason, to_spare: Some(to_spare), from_atlas: true, certified }))
 }

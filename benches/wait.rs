@@ -12,7 +12,7 @@ use std::time::Instant;
 use common::Owned;
 use common::naive::{Layout, Problem};
 use common::tables::{Case, File};
-use criterion::{Criterion, criterion_group};
+use eeruf_benches::time;
 use eeruf_core::search::{Budget, COUNT_WORDS, MEMORY_WORDS};
 
 /// The problems counted: those of the shared tables with many tables, and two of more nodes.
@@ -36,29 +36,14 @@ fn counts() -> Vec<Case> {
     cases
 }
 
-fn best_interval(c: &mut Criterion) {
+fn best_interval() {
     let mut memory = vec![0; MEMORY_WORDS];
     for (sensors, separation) in [(12, 2), (8, 1), (12, 1), (16, 1), (24, 1)] {
         for per_ms in [1, 2, 10] {
             let owned = Owned::paper(sensors, Layout::Line, separation, per_ms, eeruf_core::Criterion::Exact);
             let name = format!("best interval/{sensors} sensors, D {separation} ms, {per_ms} ticks a ms");
-            c.bench_function(&name, |bench| {
-                bench.iter(|| {
-                    let mut budget = Budget::unlimited();
-                    owned.search().best_interval::<64>(&mut memory, &mut budget)
-                });
-            });
+            time(&name, 1, || owned.search().best_interval::<64>(&mut memory, &mut Budget::unlimited()));
         }
-    }
-}
-
-fn count(c: &mut Criterion) {
-    let mut memory = vec![0; COUNT_WORDS];
-    for case in counts() {
-        let owned = Owned::of(&case);
-        c.bench_function(&format!("count/{} {}", case.count, case.criterion), |bench| {
-            bench.iter(|| owned.search().count(None, &mut memory, &mut Budget::unlimited()));
-        });
     }
 }
 
@@ -96,12 +81,12 @@ fn nested_loops(problem: &Problem<'_>) -> u64 {
     loops(problem, 0, &mut [(0, 0); 64])
 }
 
-/// The least time of a few runs, in seconds.
-fn time<R>(runs: usize, mut run: impl FnMut() -> R) -> (f64, R) {
+/// The least time of a few runs, in milliseconds.
+fn least_ms<R>(runs: usize, mut run: impl FnMut() -> R) -> (f64, R) {
     let mut once = || {
         let start = Instant::now();
         let result = black_box(run());
-        (start.elapsed().as_secs_f64(), result)
+        (1e3 * start.elapsed().as_secs_f64(), result)
     };
     (1..runs).fold(once(), |best, _| {
         let next = once();
@@ -113,22 +98,18 @@ fn ratios() {
     let mut memory = vec![0; COUNT_WORDS];
     for case in counts() {
         let owned = Owned::of(&case);
-        let (fast, counted) = time(20, || owned.search().count(None, &mut memory, &mut Budget::unlimited()).1);
-        let (slow, naive) = time(1, || nested_loops(&owned.problem()));
+        let (fast, counted) = least_ms(20, || owned.search().count(None, &mut memory, &mut Budget::unlimited()).1);
+        let (slow, naive) = least_ms(1, || nested_loops(&owned.problem()));
         assert_eq!((counted, u128::from(naive)), (case.count, case.count));
         let ratio = slow / fast;
-        let (fast, slow) = (fast * 1e3, slow * 1e3);
         println!("{counted} tables: search {fast:.3} ms, nested loops {slow:.1} ms, ratio {ratio:.0}");
     }
 }
 
-criterion_group!(benches, best_interval, count);
-
 fn main() {
+    best_interval();
     // Under `cargo test`, which gives no such argument, the benches only have to run.
     if std::env::args().any(|arg| arg == "--bench") {
         ratios();
     }
-    benches();
-    Criterion::default().configure_from_args().final_summary();
 }

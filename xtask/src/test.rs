@@ -41,6 +41,7 @@ pub(crate) fn run_all(nothing_skipped: bool) -> ExitCode {
     let Some(metadata) = steps.step("cargo metadata", || Ok(MetadataCommand::new().no_deps().exec()?)) else {
         return steps.finish(nothing_skipped);
     };
+    steps.step("dependencies that nothing uses", || crate::unused::check(&metadata));
     let beside = Beside::begin(&BESIDE);
     steps.step("each feature of the core alone", || each_feature_alone(&metadata));
     // What the default compiler can build, Clippy has just built with it.
@@ -56,9 +57,12 @@ pub(crate) fn run_all(nothing_skipped: bool) -> ExitCode {
     }
     steps.step("public items", crate::api::api);
     steps.step("tests and doctests", || run_line("cargo test --workspace --locked"));
-    // With the features of the whole workspace, as built for the tests; those of instructions need a runner.
+    // With the features of the whole workspace, as built for the tests.
     steps.step("benches, each once", || {
-        run_line("cargo test --workspace --locked --bench design --bench paths --bench simulation --bench wait")
+        run_line(
+            "cargo test --workspace --features eeruf-benches/sim --locked \
+             --bench design --bench paths --bench simulation --bench wait",
+        )
     });
     steps.step("small tables in the documents", || printed::check(&printed::documents()?, printed::Which::Small));
     steps.step("tests of the core's conversions and formats", || {

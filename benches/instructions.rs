@@ -1,0 +1,26 @@
+//! Instructions of five calls, counted by Valgrind: they repeat to a thousandth on any machine, as times do not.
+
+use std::process::Command;
+
+use eeruf_benches::CALLS;
+
+/// Thousands of instructions of each call, as tests are built.
+const THOUSANDS: [u64; CALLS.len()] = [87_835, 75_683, 476_846, 431, 1_044];
+
+/// Instructions of the program, with a call or without.
+fn instructions(call: Option<usize>) -> u64 {
+    let program = ["--tool=callgrind", "--callgrind-out-file=/dev/null", env!("CARGO_BIN_EXE_once")];
+    let run = Command::new("valgrind").args(program).args(call.map(|call| call.to_string())).output();
+    let run = run.expect("expected valgrind, as `apt install valgrind` gives it");
+    let said = String::from_utf8_lossy(&run.stderr);
+    let counted = said.lines().find_map(|line| line.split_once("Collected : ")?.1.trim().parse().ok());
+    counted.unwrap_or_else(|| panic!("no count in what valgrind says: {said}"))
+}
+
+#[test]
+fn five_calls_take_what_they_took() {
+    let without = instructions(None);
+    let counted: Vec<u64> = (0..CALLS.len()).map(|call| (instructions(Some(call)) - without) / 1000).collect();
+    let is_near = |(counted, expected): (&u64, &u64)| counted.abs_diff(*expected) <= expected / 20;
+    assert!(counted.iter().zip(&THOUSANDS).all(is_near), "{counted:?}; expected {THOUSANDS:?} within 5 %");
+}

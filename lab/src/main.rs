@@ -25,7 +25,6 @@ mod twins;
 mod typical_alcove;
 mod uneven_rings;
 mod unseen_rooms;
-mod wait_count;
 
 use std::error::Error;
 use std::io::Write as _;
@@ -37,7 +36,7 @@ type Answer = Result<(), Box<dyn Error>>;
 /// A command: its name, its arguments, what it prints.
 type Command = (&'static str, &'static str, &'static str, fn(&[String]) -> Answer);
 
-const COMMANDS: [Command; 21] = [
+const COMMANDS: [Command; 20] = [
     ("constant-depth", "", "angles at which a wall is heard, by distance and gain", constant_depth::main),
     (
         "diagnose-places",
@@ -78,12 +77,6 @@ const COMMANDS: [Command; 21] = [
     ("typical-alcove", "[SCENE.toml]", "the typical alcove of Set I", typical_alcove::main),
     ("uneven-rings", "[RINGS [SECONDS [FIRST]]]", "random rings for a race with peers", uneven_rings::main),
     ("unseen-rooms", "[RINGS [FIRST [PLACES]]]", "eeruf design's words in other rooms", unseen_rooms::main),
-    (
-        "wait-count",
-        "SENSORS PERIOD LONGEST GROUP SEPARATION INTERVAL NEIGHBOURS CRITERION LAYOUT",
-        "tables of wait times, counted",
-        wait_count::main,
-    ),
 ];
 
 fn main() -> ExitCode {

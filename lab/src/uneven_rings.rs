@@ -1,6 +1,6 @@
 //! Prints random rings of 16 to 32 sensors that differ, and what the engine finds: `cargo lab uneven-rings
 //! [RINGS [SECONDS [FIRST]]]`, from this seed on. A line of JSON each, in ticks: the problem, period, bound, the
-//! seconds of a core, and each period found with the seconds until then; `benches/peers/uneven_race.py` reads them.
+//! seconds of a core, and each period found with the seconds until then; `benches/peers/cpsat.py` reads them.
 
 use eeruf_period::engine::Problem;
 use eeruf_period::engine::shortest::shortest;

@@ -29,10 +29,10 @@ pub(crate) fn python() -> Result<()> {
     sources_are_whole(&python, &home.join("sources"))?;
     run(tool("pip").args(["install", "--quiet", "--force-reinstall", "--no-deps"]).arg(&wheel))?;
     let backend = ["packaging/backend.py", "packaging/finish.py"];
-    let sources = ["python", "tests/python", "benches/python", "benches/leaderboard", "examples/raspberry-pi"];
+    let sources = ["python", "tests/python", "benches/python", "examples/raspberry-pi"];
     run(tool("ruff").arg("check").args(backend).args(sources))?;
     run(tool("ruff").args(["format", "--check"]).args(backend).args(sources))?;
-    let typed = ["tests/python", "benches/python", "benches/leaderboard/leaderboard.py", "examples/raspberry-pi"];
+    let typed = ["tests/python", "benches/python", "examples/raspberry-pi"];
     run(tool("mypy").args(backend).args(typed))?;
     run(tool("mypy.stubtest").args(["eeruf", "--ignore-missing-stub", "--mypy-config-file", "pyproject.toml"]))?;
     fresh(&wheel)?;

@@ -427,7 +427,11 @@ bool EerufModules::take(const EerufEvent &event, uint32_t now, bool looks) {
     } else if (event.kind == EERUF_EVENT_READING) {
         sensor_ = event.sensor;
         reading_ = event.u.reading;
-        if (kind() != EERUF_READING_LATE) heard_ |= 1ul << (sensor_ & 31);
+        if (kind() != EERUF_READING_LATE) {
+            const uint32_t bit = 1ul << (sensor_ & 31);
+            twice_ |= heard_ & bit;
+            heard_ |= bit;
+        }
     }
     if (onReading_ != nullptr) onReading_(*this, event, now);
     // A sensor that is to fire has fired by now.
@@ -441,9 +445,9 @@ bool EerufModules::tooSlow(bool late) {
     if (now - since_ < 1000000) return false;
     late = late_;
     for (uint8_t i = 0; i < count_; i++)
-        late |= eeruf_ring_is_enabled(modules_.ring, i) && !(heard_ >> (i & 31) & 1);
+        late |= eeruf_ring_is_enabled(modules_.ring, i) && !(twice_ >> (i & 31) & 1);
     since_ = now;
-    heard_ = 0;
+    heard_ = twice_ = 0;
     late_ = false;
     return late && !modules_.ring->paused;
 }

@@ -113,7 +113,8 @@ private:
     EerufEdges queue_;
     EerufHcSr04 modules_;
     EerufReading reading_;
-    uint32_t heard_ = 0, since_ = 0; // the modules with a reading since then
+    // The modules with a reading since then, and with two, which agreement needs.
+    uint32_t heard_ = 0, twice_ = 0, since_ = 0;
     uint32_t seen_ = 0; // by read(), for the last time
     uint16_t recovery_, away_ = 0; // how long loop() does other things
     uint8_t count_, sensor_;

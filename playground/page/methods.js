@@ -43,7 +43,7 @@ const TABLE = [
 ];
 
 /** Left out of the menus. */
-const LEFT_OUT = ["sequential_votes", "far_groups", "median", "eeruf_immediate", "adaptive"];
+const LEFT_OUT = ["sequential_votes", "sequential_median", "far_groups", "median", "eeruf_immediate", "adaptive"];
 
 /** @param {{id: string, does: string}[]} known The methods that the engine knows. @returns {Method[]} */
 export function methodsOf(known) {

@@ -22,7 +22,8 @@ struct Described<'a> {
 }
 
 /// The ways that need nothing of ours.
-const PLAIN: [&str; 5] = ["sequential", "sequential_votes", "simultaneous", "far_groups", "arrays"];
+const PLAIN: [&str; 6] =
+    ["sequential", "sequential_votes", "sequential_median", "simultaneous", "far_groups", "arrays"];
 
 impl Described<'_> {
     fn text(&self, name: &str) -> String {

@@ -27,6 +27,7 @@ fn four_lines_get_a_way_with_its_figures_in_each_room() {
     let answer = json(&["design", ring, "--places", "1", "--json"]);
     assert!(answer["schedule"].is_object() && answer["proven"] == true);
     assert_eq!(answer["ways"][0]["way"], "sequential");
+    assert_eq!(way(&answer, "sequential_median")["title"], "one by one, median of three");
     let best = way(&answer, answer["recommended"].as_str().expect("a way"));
     assert_eq!((&answer["period"]["value_us"], &answer["period"]["proven"]), (&answer["value_us"], &answer["proven"]));
     for room in ROOMS {

@@ -39,7 +39,7 @@ methods! {
     SequentialVotes = "sequential_votes" { firing: Way::by_table(schedules::one_by_one), judge: TwoOfThree, }
     /// As sequential, but the median of a sensor's last three readings is believed.
     SequentialMedian = "sequential_median" {
-        firing: Way::by_table(schedules::one_by_one), judge: JudgeKind::Median, on_demand: true,
+        firing: Way::by_table(schedules::one_by_one), judge: JudgeKind::Median,
     }
     /// As sequential, but sensors as far apart as the ring's `neighbours` fire together. Every echo is believed.
     FarGroups = "far_groups" { firing: Way::by_table(schedules::far_groups), judge: EveryEcho, }

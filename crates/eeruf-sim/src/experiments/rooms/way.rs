@@ -39,6 +39,7 @@ impl RoomWay {
         let mut ways = vec![
             way("sequential", Method::Sequential, rest),
             way("sequential_votes", Method::SequentialVotes, rest),
+            way("sequential_median", Method::SequentialMedian, rest),
             way("simultaneous", Method::Simultaneous, rest),
             way("far_groups", Method::FarGroups, rest),
         ];
@@ -72,6 +73,7 @@ impl RoomWay {
             "sequential" => "one by one",
             "sequential_votes" => "one by one, two of three agree",
             "simultaneous" => "all at once",
+            "sequential_median" => "one by one, median of three",
             "far_groups" => "groups far apart",
             "arrays" => "two arrays, each in turn",
             "eeruf" => "two phases, shortest period",

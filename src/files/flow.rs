@@ -17,7 +17,7 @@ use super::toml::read_world;
 pub(crate) fn read_flow(file: &Path) -> Result<FlowSettings, InputError> {
     if Kind::of_file(file) != Some(Kind::Scene) {
         let spec = read_ring(file)?;
-        let robot = spec.room_robot().map_err(|error| InputError::new(file, error))?.robot;
+        let robot = spec.room_robot().map_err(|error| InputError::new(file, error))?.robot.by_flow();
         let FlowDesign { turns, belief, window, blanking, limits } = spec.flow_of(&robot, 1);
         return Ok(FlowSettings { window, blanking, audible: turns.most, belief, limits });
     }

@@ -21,6 +21,22 @@ pub struct FlowDesign {
     pub limits: EachSensor<MAX_SENSORS>,
 }
 
+/// From this speed on, in m/s, a robot listens by flow no farther than it needs to. A slower one can wait: a choice.
+const FAST_M_S: f64 = 1.0;
+/// The range that driving among obstacles takes in at any speed, in metres: a choice, by courses among poles below
+/// 2,000.
+const NEAR_M: f64 = 2.4;
+/// Braking in m/s^2, and the time before it in seconds: choices, those of a heavy platform.
+const BRAKES_M_S2: f64 = 1.0;
+const REACTS_S: f64 = 0.2;
+
+/// The range that a fast robot needs, in metres: as far as it drives until it stands, and what is near. None for a
+/// robot that is slower than 1 m/s, which listens as far as its modules see.
+pub fn needs_to_see_m(speed_m_s: f64) -> Option<f64> {
+    let stops_m = 0.5 * speed_m_s * speed_m_s / BRAKES_M_S2 + REACTS_S * speed_m_s;
+    (speed_m_s >= FAST_M_S).then(|| stops_m.max(NEAR_M))
+}
+
 /// When the sensors of a robot fire, with the seed of their dice.
 pub fn turns_of(robot: &Robot, seed: u32) -> TurnSettings {
     let &Robot { window, blanking, audible, .. } = robot;
@@ -42,7 +58,13 @@ impl RingSpec {
     pub fn flow(&self, seed: u32) -> Result<FlowDesign, String> {
         // Where sensors stand is of no account.
         let robot = Robot::of_ring(&self.robot_ring(), Pose::identity(), Some(vec![Pose::identity(); self.sensors]))?;
-        Ok(self.flow_of(&Robot { others: self.others, ..robot }, seed))
+        Ok(self.flow_of(&Robot { others: self.others, reach: self.reach(), ..robot }.by_flow(), seed))
+    }
+
+    /// The time for which a fast ring listens by flow, where only its modules say how far they see.
+    pub(crate) fn reach(&self) -> Option<Micros> {
+        let fast_m_s = self.speed_mm_s.filter(|_| self.sees_by_module).map(|mm| f64::from(mm) / 1e3)?;
+        Some(self.c.echo_time((1e3 * needs_to_see_m(fast_m_s)?).round() as u32).min(self.listening))
     }
 
     /// The same, of its robot as it was judged in rooms.
@@ -53,7 +75,7 @@ impl RingSpec {
         let mut belief = BeliefSettings { alone: !robot.others, ..BeliefSettings::DEFAULT };
         belief.top_speed_mm_s = self.speed_mm_s.unwrap_or(0).try_into().unwrap_or(u16::MAX);
         let shares_lines = needs.uneven.is_some_and(|uneven| !uneven.shared_lines.is_empty());
-        let is_alike = together.is_empty() && !shares_lines && limits.iter().all(|of| of.window == window);
+        let is_alike = together.is_empty() && !shares_lines && limits.iter().all(|of| of.window >= window);
         let limits = if is_alike {
             EachSensor::NONE
         } else {
@@ -68,5 +90,37 @@ impl RingSpec {
             )
         };
         FlowDesign { turns, belief, window, blanking, limits }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::way::Way;
+
+    // A fast robot does not wait for what it cannot reach, unless its file says how far to look.
+    #[test]
+    fn fast_rings_listen_by_flow_no_farther_than_they_need() {
+        let ring = |more: &str| {
+            let text = format!("sensors = 8\nmodule = \"polaroid-6500\"\nlayout = \"ring\"\n{more}");
+            RingSpec::from_text(&text).unwrap()
+        };
+        let of = |more: &str, way| {
+            let spec = ring(more);
+            let flow = spec.fired(way, &spec.room_robot().unwrap().robot, 1).unwrap();
+            [flow.window, flow.turns.least, flow.turns.most].map(Micros::as_micros)
+        };
+        // R with its tail, and the least quiet of it.
+        assert_eq!(of("speed_m_s = 2.0\nothers = false", Way::Flow), [13_986, 3_108, 17_094]);
+        let fast = ring("speed_m_s = 2.0\nothers = false").flow(1).unwrap();
+        assert_eq!((fast.turns.most.as_micros(), fast.belief.alone), (17_094, false));
+        // At 3 m/s it stands after 5.1 m.
+        assert_eq!(of("speed_m_s = 3.0", Way::Flow)[0], 29_720);
+        let all = of("speed_m_s = 0.9", Way::Flow);
+        assert!(all[0] > 60_000 && all[2] > 70_000, "{all:?}");
+        assert_eq!(of("speed_m_s = 2.0\nmax_range_m = 10.7", Way::Flow), all);
+        // One by one waits until all is quiet, whatever the speed.
+        let one = of("speed_m_s = 2.0", Way::Sequential);
+        assert_eq!((one[0], one[1], one[2]), (all[0], all[2], all[2]));
     }
 }

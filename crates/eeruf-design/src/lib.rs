@@ -60,7 +60,7 @@ pub use each::Each;
 pub use eeruf_period::{PeriodProblem, ToSpare};
 pub use find::{NoDesign, RingDesign};
 #[cfg(feature = "rooms")]
-pub use flow::{FlowDesign, turns_of};
+pub use flow::{FlowDesign, needs_to_see_m, turns_of};
 pub use found::FoundJson;
 pub use layout::{LayoutKey, LayoutName, OwnedLayout};
 pub use limits::{four, neighbours_in_range, sensors_in_range};

@@ -116,6 +116,8 @@ pub struct RingSpec {
     pub listening: Micros,
     /// Least time between two triggers of sensors that are all alike; zero where they have their own.
     pub retrigger: Micros,
+    /// True if that range is the modules' own, and not the file's.
+    pub sees_by_module: bool,
     /// True if a sensor's own echo from the period before must be rejected too.
     pub stale_echo: bool,
     /// True if only the modules ask for that. Linear congruences, which do not move a sensor's own sound, do without.
@@ -358,6 +360,7 @@ impl RingFile {
             t_delta: largest_t_delta,
             speed_mm_s,
             handling: Micros::new(self.handling_us.unwrap_or(0)),
+            sees_by_module: self.window_us.is_none() && self.max_range_m.is_none(),
             path_change,
             audible: self.audible_us.map(Micros::new),
             others: self.others.unwrap_or(true),

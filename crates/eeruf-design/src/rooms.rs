@@ -63,7 +63,8 @@ impl RingSpec {
             ring.modules = vec![POLAROID_6500; self.sensors];
             assumed.push("modules like the Polaroid 6500, as the file names none".to_owned());
         }
-        let robot = Robot { others: self.others, ..Robot::of_ring(&ring, Pose::identity(), places)? };
+        let robot =
+            Robot { others: self.others, reach: self.reach(), ..Robot::of_ring(&ring, Pose::identity(), places)? };
         Ok(RoomRobot { robot, assumed })
     }
 }

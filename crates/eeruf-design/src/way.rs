@@ -80,7 +80,10 @@ impl RingSpec {
     /// # Errors
     /// Groups of sensors that are neighbours, or that have groups of their own already, in words.
     pub fn fired(&self, way: Way, robot: &Robot, seed: u32) -> Result<FlowDesign, String> {
-        let mut flow = self.flow_of(robot, seed);
+        let mut flow = match way {
+            Way::Flow => self.flow_of(&robot.clone().by_flow(), seed),
+            _ => self.flow_of(robot, seed),
+        };
         if matches!(way, Way::Sequential | Way::Groups) {
             flow.turns = flow.turns.one_by_one();
             flow.belief.votes = Votes::EveryEcho;

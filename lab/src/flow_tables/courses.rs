@@ -1,40 +1,41 @@
 //! Set II: courses among poles, alone, with another robot behind, and with one ahead.
 
-use eeruf_core::{Micros, flow::Votes};
+use eeruf_core::{Micros, SpeedOfSound, flow::Votes};
+use eeruf_design::needs_to_see_m;
 use eeruf_sim::experiments::set_two::{Pilots, SECOND_AHEAD, SECOND_BEHIND, SetTwoOptions, set_two};
 use eeruf_sim::{Entry, LabMate, Method};
 
 use super::{Asked, Cell, Table, flow, usual};
 
-/// Choices: what the map gets, for how long sensors listen, and the least quiet.
+/// Choices: what the map gets, and for how long sensors listen.
 fn candidates() -> Vec<Entry> {
-    let ms = |time: u32| Some(Micros::from_millis(time));
     let mut entries = vec![Entry::from(Method::Flow)];
-    for (name, votes, of) in [
-        ("believed", Votes::TwoInARow, &[(36, 8), (18, 4)][..]),
-        ("every echo", Votes::EveryEcho, &[(36, 8), (36, 4), (30, 4), (24, 4)]),
-    ] {
-        for &(window, least) in of {
-            entries.push(flow(&format!("{name}, window {window}, least {least}"), votes, ms(least), ms(window)));
-        }
+    for ms in [12, 14, 16, 18, 24] {
+        let reach = Some(Micros::from_millis(ms));
+        entries.push(flow(&format!("two in a row, {ms} ms"), Votes::TwoInARow, None, reach));
+        entries.push(flow(&format!("by motion, {ms} ms"), Votes::ByMotion, None, reach));
+        let least = Some(Micros::from_millis(2));
+        entries.push(flow(&format!("every echo, LEAST 2, {ms} ms"), Votes::EveryEcho, least, reach));
     }
     entries
 }
 
+/// Flow as `eeruf design` has it for a ring of this speed.
+fn designed(speed_m_s: f64) -> Entry {
+    let reach = needs_to_see_m(speed_m_s).map(|m| SpeedOfSound::default().echo_time((1e3 * m).round() as u32));
+    flow("flow as designed", Votes::TwoInARow, None, reach)
+}
+
 pub(super) fn table(asked: &Asked) -> Result<Table, Box<dyn std::error::Error>> {
     let mut table = Table::new("courses", 2, &["finished %", "m/s"]);
-    let ms = |time: u32| Some(Micros::from_millis(time));
-    // What the candidates of courses below 2,000 said.
-    let chosen = flow("flow, every echo, LEAST 4", Votes::EveryEcho, ms(4), ms(36));
-    let mut methods = if asked.tune { candidates() } else { usual() };
-    methods.extend((!asked.tune).then_some(chosen));
-    methods.push(Entry::new("eeruf", Method::Eeruf));
     for speed_max_m_s in [1.0, 2.0] {
         for (place, second_robot) in [("alone", None), ("behind", Some(SECOND_BEHIND)), ("ahead", Some(SECOND_AHEAD))] {
+            let mut methods = if asked.tune { candidates() } else { usual() };
+            methods.extend([designed(speed_max_m_s), Entry::new("eeruf", Method::Eeruf)]);
             let options = SetTwoOptions {
                 seeds: asked.count,
                 first: asked.first,
-                methods: methods.clone(),
+                methods,
                 second_robot,
                 labmate: LabMate { speed_max_m_s, ..LabMate::default() },
                 pilots: Pilots::Shared,

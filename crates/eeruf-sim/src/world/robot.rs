@@ -83,6 +83,9 @@ pub struct Robot {
     /// The time for which sound is heard after it was sent, as far as methods that fire one by one allow for it: that
     /// of its modules where they are [given](Self::with_modules). The default is 0: no longer than sensors listen.
     pub audible: Micros,
+    /// The time for which it listens by flow, of a robot so fast that it cannot wait for all that its modules hear.
+    /// `None`, as by default, for its window.
+    pub reach: Option<Micros>,
     /// P: the largest change of a foreign sound's path from one reading to the next, for rings that fire
     /// by tables. `None`, as by default, for [`t_delta`](Self::t_delta).
     pub path_change: Option<Micros>,
@@ -136,6 +139,7 @@ impl Robot {
             limits: vec![],
             firing: Sketch::default(),
             audible: Micros::ZERO,
+            reach: None,
             path_change: None,
             together: vec![],
             odometry: false,
@@ -257,6 +261,15 @@ impl Robot {
     /// The longest rest that one of its modules needs from trigger to trigger.
     pub fn module_rest(&self) -> Micros {
         (0..self.sensors.len()).map(|sensor| Micros::new(self.module_of(sensor).rest_us)).max().unwrap_or_default()
+    }
+
+    /// The same robot as it fires by flow. One that has a [`reach`](Self::reach) keeps quiet for no longer than sound
+    /// from there has a tail, and so believes no single echo, be it alone or not.
+    #[must_use]
+    pub fn by_flow(self) -> Self {
+        let Some(reach) = self.reach.filter(|&reach| reach < self.window) else { return self };
+        let tail = Micros::new(reach.as_micros() / 9 * 2);
+        Self { window: reach, audible: reach.saturating_add(tail), others: true, ..self }
     }
 
     /// The height of a sensor above the floor, in metres.

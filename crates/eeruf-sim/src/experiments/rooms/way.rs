@@ -23,7 +23,7 @@ pub struct RoomWay {
 }
 
 impl RoomWay {
-    /// The ways for a ring, the baselines first. All listen for the robot's window.
+    /// The ways for a ring, the baselines first. All listen for the robot's window, flow for no longer than it [reaches](Robot::reach).
     ///
     /// `schedule` is a schedule of two phases for it, the shortest; where there is none, there are no ways of two
     /// phases. `robot.period` is used by none of them.
@@ -58,7 +58,8 @@ impl RoomWay {
                 way
             }));
         }
-        ways.push(way("flow", Method::Flow, rest));
+        let flow = way("flow", Method::Flow, rest);
+        ways.push(Self { robot: flow.robot.by_flow(), ..flow });
         ways
     }
 
@@ -72,8 +73,8 @@ impl RoomWay {
         match self.name {
             "sequential" => "one by one",
             "sequential_votes" => "one by one, two of three agree",
-            "simultaneous" => "all at once",
             "sequential_median" => "one by one, median of three",
+            "simultaneous" => "all at once",
             "far_groups" => "groups far apart",
             "arrays" => "two arrays, each in turn",
             "eeruf" => "two phases, shortest period",

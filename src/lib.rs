@@ -20,25 +20,29 @@ mod report;
 
 use std::ffi::OsString;
 
-use clap::{CommandFactory as _, FromArgMatches as _};
+use clap::FromArgMatches as _;
 
-use crate::commands::{Answer, Cli};
+use crate::commands::{Answer, Cli, program as command};
 use crate::files::error::InputError;
 pub use crate::files::firings::firing_log;
 use crate::files::implausible::warn_of_options;
 pub use crate::files::mcap::Recording;
 use crate::files::write::check_outputs;
 
+/// The exit code after Ctrl-C: 128 and the number of its signal.
+const STOPPED: u8 = 130;
+
 /// Runs the program with these arguments, of which the first is its own name, and gives its exit code: 0 for yes, 1 for
 /// no (not verified, infeasible), 2 for bad input, which is named in one line on standard error, 3 if a search ended
-/// before its answer, 74 if the output cannot be written.
+/// before its answer, 74 if the output cannot be written, 130 if Ctrl-C ended it; what was done until then is printed.
 ///
 /// It takes the process for its own: Ctrl-C ends what it does, and so does a pipe whose reader went away.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     sigpipe::reset();
     console::set(console::Settings::default());
     let arguments: Vec<OsString> = arguments.into_iter().collect();
-    let parsed = Cli::command().try_get_matches_from(&arguments);
+    report::watch::begin();
+    let parsed = command().try_get_matches_from(&arguments);
     let (cli, matches) = match parsed.and_then(|matches| Ok((Cli::from_arg_matches(&matches)?, matches))) {
         Ok(parsed) => parsed,
         Err(error) => {
@@ -46,19 +50,20 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
         }
     };
     console::set(cli.output.settings());
-    match check_outputs(&matches).and_then(|()| warn_of_options(&matches)).and_then(|()| cli.verb.run()) {
+    let code = match check_outputs(&matches).and_then(|()| warn_of_options(&matches)).and_then(|()| cli.verb.run()) {
         Ok(Answer::Yes) => 0,
         Ok(Answer::No) => 1,
         Ok(Answer::NotDecided) => 3,
         Err(error) => failed(&error),
-    }
+    };
+    if report::watch::was_stopped() { STOPPED } else { code }
 }
 
 /// Prints help and version, or the error in the arguments.
 fn not_parsed(error: &clap::Error, arguments: &[OsString]) -> u8 {
     let words: Vec<_> = arguments.iter().map(|word| word.to_string_lossy().into_owned()).collect();
     console::set(commands::arguments::settings(&words));
-    if error.use_stderr() {
+    if error.use_stderr() && arguments.len() > 1 {
         return failed(&commands::arguments::describe(error, &words));
     }
     console::tell(error.render()).map_or_else(|error| failed(&error.into()), |()| 0)
@@ -67,6 +72,9 @@ fn not_parsed(error: &clap::Error, arguments: &[OsString]) -> u8 {
 fn failed(error: &InputError) -> u8 {
     if !error.is_silent() {
         console::error(error);
+        if let Some(quoted) = error.quoted().filter(|_| console::settings().explains()) {
+            console::note(quoted);
+        }
     }
     error.code()
 }

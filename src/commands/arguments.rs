@@ -15,7 +15,7 @@ pub(crate) fn settings(words: &[String]) -> Settings {
     let is_after_color = |when: &str| words.windows(2).any(|pair| pair[0] == "--color" && pair[1] == when);
     let is_color = |when: &str| is_after_color(when) || has(&format!("--color={when}"));
     let colour = if is_color("always") { Some(true) } else { is_color("never").then_some(false) };
-    Settings { wide: has("--wide"), colour, ..Settings::default() }
+    Settings { wide: has("--wide"), explain: has("--explain"), colour, ..Settings::default() }
 }
 
 /// Parses a time in seconds that may have a fraction.
@@ -57,42 +57,73 @@ const GONE: [(&str, &str); 7] = [
     ("--reach-us", "schedules have two phases"),
 ];
 
-/// Returns the error in the arguments.
+/// Words of other programs, and the commands that do what they say.
+const MEANT: [(&str, &str); 9] = [
+    ("simulate", "study"),
+    ("run", "study"),
+    ("plot", "study SCENE.toml --svg DIR"),
+    ("draw", "study SCENE.toml --svg DIR"),
+    ("check", "verify"),
+    ("generate", "design RING.toml --program arduino"),
+    ("program", "design RING.toml --program arduino"),
+    ("new", "examples"),
+    ("log", "logs"),
+];
+
+/// Returns the error in the arguments: the suggestion where there is one, else what is expected.
 pub(crate) fn describe(error: &clap::Error, words: &[String]) -> InputError {
     let context = |kind| error.get(kind).map(text).filter(|text| !text.is_empty());
-    let thing = context(ContextKind::InvalidArg).unwrap_or_else(|| "arguments".to_owned());
+    let shown = context(ContextKind::InvalidArg).unwrap_or_else(|| "arguments".to_owned());
+    // `--svg <DIR>`, `<LOG>` or `[FILE]...`.
+    let (name, kind) = shown.split_once(' ').unwrap_or((&shown, ""));
+    let thing = bare(name);
     let gone = GONE.iter().find(|(name, _)| error.kind() == ErrorKind::UnknownArgument && *name == thing);
     if let Some((name, why)) = gone {
         return InputError::new(name, format!("gone; {why}"));
     }
     let value = context(ContextKind::InvalidValue).unwrap_or_default();
     let among = context(ContextKind::ValidValue).or_else(|| context(ContextKind::ValidSubcommand));
+    let (command, path) = asked(words);
     let suggested = [ContextKind::SuggestedArg, ContextKind::SuggestedSubcommand, ContextKind::SuggestedValue]
         .into_iter()
-        .find_map(context);
+        .find_map(context)
+        .map(|suggested| bare(suggested.split(", ").next().unwrap_or_default()));
     let why = std::error::Error::source(error).map(ToString::to_string);
-    // A negative number looks like an option; the word before it is the one to blame.
-    let negative = || thing.parse::<f64>().ok().and_then(|_| before(words, &thing)).map(|option| (option, &thing));
+    let suggest = |of: String| format!("did you mean `{of}`?");
+    let commands = || {
+        let shown = command.get_subcommands().filter(|below| !below.is_hide_set() && below.get_name() != "help");
+        format!("expected {}", shown.map(clap::Command::get_name).collect::<Vec<_>>().join(", "))
+    };
     let (thing, found) = match (error.kind(), why) {
-        (ErrorKind::ValueValidation, Some(why)) => (thing, format!("`{value}`; {}", expected(&why))),
-        (ErrorKind::InvalidValue, _) if value.is_empty() => (thing, "no value; expected one".to_owned()),
-        (ErrorKind::InvalidValue, _) => (thing, format!("`{value}`; expected a value of its list")),
+        (ErrorKind::ValueValidation, Some(why)) => {
+            let expected = expected(&why);
+            let known = expected.strip_prefix("expected ").unwrap_or("").split(", ");
+            let meant = eeruf_files::meant(&value.to_lowercase(), known).map(str::to_owned);
+            (thing, format!("`{value}`; {}", meant.map_or(expected, suggest)))
+        }
+        (ErrorKind::InvalidValue, _) if value.is_empty() => (thing, format!("no value; expected {}", bare(kind))),
+        (ErrorKind::InvalidValue, _) => {
+            let among = among.unwrap_or_default();
+            (thing, format!("`{value}`; {}", suggested.map_or(format!("expected {among}"), suggest)))
+        }
         (ErrorKind::InvalidSubcommand, _) => {
             let word = context(ContextKind::InvalidSubcommand).unwrap_or_default();
-            ("command".to_owned(), format!("`{word}`; expected one that exists"))
+            let known = MEANT.iter().find(|(other, _)| *other == word).map(|(_, meant)| format!("eeruf {meant}"));
+            let meant = known.or(suggested).map_or_else(commands, suggest);
+            (word, format!("no command; {meant}"))
         }
         (ErrorKind::MissingSubcommand | ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand, _) => {
-            ("command".to_owned(), "missing; expected one".to_owned())
+            ("command".to_owned(), format!("missing; {}", commands()))
         }
-        (ErrorKind::UnknownArgument, _) => match negative() {
-            Some((option, value)) => (option, format!("`{value}`; expected no negative number")),
-            None => (thing, "unknown; expected an option or argument of the command".to_owned()),
-        },
-        (ErrorKind::MissingRequiredArgument, _) => (thing, "missing; expected a value".to_owned()),
+        (ErrorKind::UnknownArgument, _) => unknown(thing, suggested, words, &command),
+        (ErrorKind::MissingRequiredArgument, _) => {
+            let usage = if kind.is_empty() { thing.clone() } else { format!("{thing} {}", bare(kind)) };
+            (thing, format!("missing; expected `{path} .. {usage}`"))
+        }
         (ErrorKind::ArgumentConflict, _) => {
             let found = match context(ContextKind::PriorArg) {
-                Some(prior) if prior == thing => "given more than once; expected once".to_owned(),
-                Some(prior) => format!("given with {prior}; expected one of the two"),
+                Some(prior) if prior == shown => "given more than once; expected once".to_owned(),
+                Some(prior) => format!("given with {}; expected one of the two", prior.split(' ').next().unwrap_or("")),
                 None => "given with others; expected alone".to_owned(),
             };
             (thing, found)
@@ -106,9 +137,46 @@ pub(crate) fn describe(error: &clap::Error, words: &[String]) -> InputError {
         (ErrorKind::InvalidUtf8, _) => (thing, "not UTF-8; expected text".to_owned()),
         _ => (thing, format!("`{value}`; expected what the help says")),
     };
-    let among = among.map_or(String::new(), |among| format!(": {among}"));
-    let suggested = suggested.map_or(String::new(), |suggested| format!("; did you mean {suggested}?"));
-    InputError::new(thing, format!("{found}{among}{suggested}; see `{}`", help(words)))
+    InputError::new(thing, format!("{found}; see `{path} --help`"))
+}
+
+/// A name without the marks of a usage line.
+fn bare(name: &str) -> String {
+    name.trim_matches(|c| "<>[]'.".contains(c)).to_owned()
+}
+
+/// The option or argument that no command has, and what was meant.
+fn unknown(thing: String, suggested: Option<String>, words: &[String], command: &clap::Command) -> (String, String) {
+    let has = |command: &clap::Command, long: &str| command.get_arguments().any(|arg| arg.get_long() == Some(long));
+    // A negative number looks like an option; the word before it is the one to blame.
+    if let Some(option) = thing.parse::<f64>().ok().and_then(|_| before(words, &thing)) {
+        return (option, format!("`{thing}`; expected no negative number"));
+    }
+    // `-svg` is taken for `-s -v -g`.
+    let single = words.iter().find(|word| word.starts_with(&thing) && has(command, word.trim_start_matches('-')));
+    if let Some(single) = single.filter(|_| thing.starts_with('-') && !thing.starts_with("--")) {
+        return (single.clone(), format!("unknown; did you mean `-{single}`?"));
+    }
+    if !thing.starts_with('-') {
+        let list = before(words, &thing).map(|_| ()).or_else(|| {
+            let at = words.iter().rposition(|word| *word == thing)?;
+            words.get(at.checked_sub(2)?).filter(|word| word.starts_with("--")).map(|_| ())
+        });
+        let expected = match list {
+            Some(()) => "expected commas between the values of an option, as in `--method sequential,flow`",
+            None => "expected one file: run the command for each",
+        };
+        return (thing, format!("one argument too many; {expected}"));
+    }
+    let program = super::program();
+    let of_other = program.get_subcommands().find(|other| has(other, thing.trim_start_matches('-')));
+    let expected = match (suggested, of_other) {
+        _ if has(command, thing.trim_start_matches('-')) => "expected it after the command".to_owned(),
+        (_, Some(other)) => format!("expected an option of this command; `eeruf {}` has it", other.get_name()),
+        (Some(suggested), _) => format!("did you mean `{suggested}`?"),
+        (None, None) => "expected an option of the command".to_owned(),
+    };
+    (thing, format!("unknown; {expected}"))
 }
 
 /// The option before a word, if one is there.
@@ -117,17 +185,16 @@ fn before(words: &[String], word: &str) -> Option<String> {
     pair[0].starts_with("--").then(|| pair[0].clone())
 }
 
-/// The command whose help describes the arguments.
-fn help(words: &[String]) -> String {
-    let program = <super::Cli as clap::CommandFactory>::command();
-    let (mut command, mut path) = (&program, "eeruf".to_owned());
+/// The command that was asked for, and its name with those above it.
+fn asked(words: &[String]) -> (clap::Command, String) {
+    let (mut command, mut path) = (super::program(), "eeruf".to_owned());
     for word in words.iter().skip(1) {
         if let Some(below) = command.find_subcommand(word) {
-            command = below;
             path = format!("{path} {word}");
+            command = below.clone();
         }
     }
-    path + " --help"
+    (command, path)
 }
 
 /// The reason in the words of a user.

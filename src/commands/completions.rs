@@ -1,10 +1,9 @@
 //! `eeruf completions`: what a shell wants to know so that it completes verbs and options.
 
-use clap::CommandFactory as _;
 use clap_complete::Shell;
 
 use super::Answer;
-use super::Cli;
+use super::program;
 use crate::console::print;
 use crate::files::error::InputError;
 
@@ -25,7 +24,7 @@ pub(crate) struct Args {
 
 pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     let mut script = Vec::new();
-    clap_complete::generate(args.shell, &mut Cli::command(), "eeruf", &mut script);
+    clap_complete::generate(args.shell, &mut program(), "eeruf", &mut script);
     print(String::from_utf8_lossy(&script))?;
     Ok(Answer::Yes)
 }

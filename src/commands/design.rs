@@ -8,7 +8,7 @@ use clap::builder::PossibleValue;
 use eeruf_core::Micros;
 use eeruf_core::search::Progress;
 use eeruf_design::atlas::ATLAS;
-use eeruf_design::{CURVE_BUDGET, FoundJson, Need, NoDesign, RingSpec, Search, Way};
+use eeruf_design::{CURVE_BUDGET, FoundJson, How, Need, NoDesign, RingDesign, RingSpec, RoomsAnswer, Search, Way};
 use eeruf_files::emit;
 use eeruf_sim::experiments::rooms::RoomWay;
 use serde::Serialize;
@@ -26,10 +26,10 @@ use crate::report::design::describe;
 use crate::report::draw;
 use crate::report::json::to_json;
 use crate::report::questions::{CurveJson, describe_curve, describe_fit, fit_json};
-use crate::report::rooms::{RoomsOrNot, describe as describe_rooms};
+use crate::report::rooms::{RoomsOrNot, describe as describe_rooms, describe_all, describe_elsewhere};
 use crate::report::watch::Watch;
 
-/// Find the way of firing a ring that is right most of the time in rooms, and the shortest period, proven.
+/// Say how to fire a ring, what that buys and how to get it.
 ///
 /// The ring is fired in every way (one by one, at once, in groups, in two phases, by flow) in seeded
 /// rooms of eight kinds, standing or --driving. The way recommended is right most of the time among those that keep
@@ -58,19 +58,19 @@ pub(crate) struct Args {
     #[arg(long, conflicts_with = "emit")]
     json: bool,
     /// Draw the timing of two periods, as SVG or, if the name ends in .png, as PNG
-    #[arg(long, value_name = "FILE", value_parser = picture())]
+    #[arg(long, hide_short_help = true, value_name = "FILE", value_parser = picture())]
     svg: Option<PathBuf>,
     /// Write a certificate that no period is shorter, or shorter than the bound where the search ended early; for
     /// checker/check_period.py
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, hide_short_help = true, value_name = "FILE")]
     certificate: Option<PathBuf>,
     /// Number of nodes that the certificate's proof may have; if they do not suffice, it certifies the bound that they
     /// prove
-    #[arg(long, default_value_t = 1_000_000, value_name = "NODES")]
+    #[arg(long, hide_short_help = true, default_value_t = 1_000_000, value_name = "NODES")]
     certificate_budget: usize,
     /// Largest number of nodes to search before giving the best schedule so far; 50 million by default, 20,000 for each
     /// point of a curve
-    #[arg(long, value_name = "NODES")]
+    #[arg(long, hide_short_help = true, value_name = "NODES")]
     budget: Option<u64>,
     /// Find what fits into this period, in microseconds: whether the ring's needs do, and the largest T_delta; by
     /// default the shortest period. Exit code 1 if they do not, 3 if that was not decided
@@ -79,16 +79,22 @@ pub(crate) struct Args {
     period: Option<u32>,
     /// Print the shortest period for 20 values of one need, from a tenth of the ring's own to twice as much; by default
     /// for its own alone
-    #[arg(long, value_enum, value_name = "NEED",
+    #[arg(long, hide_short_help = true, value_enum, value_name = "NEED",
           conflicts_with_all = ["certificate", "emit", "svg"])]
     curve: Option<CurveOf>,
     /// Search even where the atlas knows the shortest period
-    #[arg(long)]
+    #[arg(long, hide_short_help = true)]
     no_atlas: bool,
     /// Time limit of the command, in seconds, before it gives the best schedule so far; by default none. The
     /// certificate then has what time is left, and states the bound that follows without a search if there is none
-    #[arg(long, value_name = "S", value_parser = seconds)]
+    #[arg(long, hide_short_help = true, value_name = "S", value_parser = seconds)]
     time_limit: Option<Duration>,
+    /// Print the shortest period of two phases too: its proof, what it hangs on, and the schedule
+    #[arg(long, conflicts_with_all = ["period", "curve", "program"])]
+    proof: bool,
+    /// Print every way of firing in every kind of room too
+    #[arg(long, conflicts_with_all = ["period", "curve", "program", "period_only"])]
+    all: bool,
     /// Find the shortest period and judge nothing in rooms
     #[arg(long, conflicts_with_all = ["rooms", "places", "first", "wrong", "driving"])]
     period_only: bool,
@@ -163,6 +169,8 @@ struct Answered<'a> {
     period: Option<PeriodJson>,
     #[serde(flatten)]
     rooms: Option<RoomsOrNot<'a>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    how: Option<How>,
     /// Neighbours by their number that do not hear each other where they stand.
     #[serde(skip_serializing_if = "<[_]>::is_empty")]
     not_neighbours: &'a [(usize, usize)],
@@ -221,6 +229,9 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     let emits = !args.period_only && matches!(args.form(), Some(Form::Source(form)) if form != emit::Form::Toml);
     let way = emits.then(|| rooms::recommended(&args.in_rooms, &spec, &design, &mut watch)).transpose()?;
     drop(watch);
+    let best = rooms.as_ref().and_then(|rooms| rooms.as_ref().ok()?.judgement.best());
+    let how = best.map(|best| design.spec.how(&best.way)).transpose();
+    let how = how.map_err(|why| InputError::new(&args.file, why))?.flatten();
     let requirements = design.spec.problem().requirements;
     if let Some(file) = &args.svg {
         draw::timing_diagram(&design.schedule, &requirements).save(file)?;
@@ -240,7 +251,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
             let period = PeriodJson { value_us, bound_us, proven, reason: found.reason.clone() };
             let period = rooms.is_some().then_some(period);
             let rooms = rooms.as_ref().map(RoomsOrNot::of);
-            print_line(to_json(&Answered { found, period, rooms, not_neighbours: &spec.not_neighbours }))?;
+            print_line(to_json(&Answered { found, period, rooms, how, not_neighbours: &spec.not_neighbours }))?;
         }
         Some(Form::Source(form)) => {
             let table = || form.table(&design.schedule, &design.spec.table_requirements(), &design.spec.modules);
@@ -258,11 +269,53 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
         }
         None => {
             let name = args.file.display().to_string();
-            let judged = rooms.map_or_else(String::new, |rooms| describe_rooms(&name, &rooms));
-            tell(judged + &describe(&name, &spec, &design, seconds))?;
+            let period = || describe(&name, &spec, &design, seconds);
+            tell(match &rooms {
+                None => period(),
+                Some(rooms) => {
+                    let mut text = describe_rooms(&name, rooms) + &how_to(&name, &spec, how.as_ref(), rooms);
+                    if args.all {
+                        text += &describe_all(rooms);
+                    }
+                    text + &if args.proof { format!("\n{}", period()) } else { more(&design, args.all) }
+                }
+            })?;
         }
     }
     Ok(certified)
+}
+
+/// How to fire by a way, under which condition not, and the command that writes its program.
+fn how_to(name: &str, spec: &RingSpec, how: Option<&How>, rooms: &Result<RoomsAnswer, String>) -> String {
+    let (Some(how), Ok(answer)) = (how, rooms) else { return String::new() };
+    let list = |sensors: &[u8]| sensors.iter().map(|x| (x + 1).to_string()).collect::<Vec<_>>().join(", ");
+    let mut text = format!("\nHow: {}.", how.in_words);
+    match &how.groups[..] {
+        [] if spec.sensors > 1 && !how.order.is_empty() => text += &format!(" Order: {}.", list(&how.order)),
+        [] => {}
+        groups => {
+            let groups = groups.iter().map(|group| list(group)).collect::<Vec<_>>().join("; ");
+            text += &format!(" Groups: {groups}.");
+        }
+    }
+    for assumed in &answer.assumed {
+        text += &format!("\nAssumed: {assumed}.");
+    }
+    let languages = if how.order.is_empty() { "" } else { " (or rust, c, micropython, ros2)" };
+    let elsewhere = describe_elsewhere(rooms);
+    let get = match spec.modules.is_empty() {
+        true => "name the module in the file, as `module = \"hc-sr04\"`; then --program arduino".to_owned(),
+        false => format!("eeruf design {name} --program arduino{languages}"),
+    };
+    format!("{text}\n{elsewhere}\nTo get it: {get}\n")
+}
+
+/// What is not printed, and how to get that.
+fn more(design: &RingDesign, all: bool) -> String {
+    let period = design.schedule.period();
+    let proven = if design.found.proven { ", proven" } else { "" };
+    let all = if all { "" } else { "; --all: every way in every kind of room" };
+    format!("--proof: the shortest period of two phases ({period}{proven}) and its schedule{all}\n")
 }
 
 /// The way whose settings a flow ring fires by; none for a table.

@@ -2,11 +2,10 @@
 
 use std::path::PathBuf;
 
-use clap::CommandFactory as _;
 use eeruf_files::FileError;
 
 use super::Answer;
-use super::Cli;
+use super::program;
 use crate::console::print;
 use crate::files::error::InputError;
 use crate::files::write::make_folder;
@@ -25,11 +24,11 @@ pub(crate) struct Args {
 pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     if let Some(folder) = &args.folder {
         make_folder(folder)?;
-        clap_mangen::generate_to(Cli::command(), folder).map_err(|error| FileError::writing(folder, &error))?;
+        clap_mangen::generate_to(program(), folder).map_err(|error| FileError::writing(folder, &error))?;
     }
     if args.markdown {
         let options = clap_markdown::MarkdownOptions::new().show_footer(false).title("Verbs and options".to_owned());
-        print(clap_markdown::help_markdown_custom::<Cli>(&options))?;
+        print(clap_markdown::help_markdown_command_custom(&program(), &options))?;
     }
     Ok(Answer::Yes)
 }

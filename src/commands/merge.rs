@@ -10,7 +10,7 @@ use serde_json::error::Category;
 
 use super::Answer;
 use super::experiment::{Part, Shard, merged};
-use super::{Cli, Verb};
+use super::{Cli, LabVerb, Verb};
 use crate::files::error::InputError;
 
 /// Join the parts that `eeruf experiment --shard` printed: bit for bit the undivided run.
@@ -72,7 +72,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     let words = ["eeruf", "experiment"].into_iter().chain(first.arguments.iter().map(String::as_str));
     let json = args.json.then_some("--json");
     let whole = Cli::try_parse_from(words.chain(json)).ok().map(|cli| cli.verb);
-    let Some(Verb::Experiment(whole)) = whole else {
+    let Some(Verb::Old(LabVerb::Experiment(whole))) = whole else {
         let words = first.arguments.join(" ");
         return Err(refused(format!("arguments `{words}`; expected those of `eeruf experiment`, unchanged")));
     };

@@ -34,7 +34,7 @@ mod study;
 mod survey;
 mod verify;
 
-use clap::{ColorChoice, Parser, Subcommand};
+use clap::{ColorChoice, CommandFactory as _, Parser, Subcommand};
 use serde::Serialize;
 
 use crate::console::{OutputError, Settings, print_line, tell};
@@ -44,21 +44,21 @@ use crate::report::json::to_json;
 /// The end of the help of `study`, whose long help has more.
 pub(crate) const STUDY: &str = help!("study scenes/alcove.toml --method sequential,eeruf", "0 simulated; 2 bad input");
 
-/// The commands by what they are for.
-const GROUPS: &str = "\
-Commands by what they are for:
-  Schedules   design, verify, search, atlas
-  Simulation  study, paths, scene, experiment, merge, dataset
-  Real rings  logs (and, as before, survey, replay, diagnose)
-  Setting up  examples, completions, man, licenses
+/// The end of the program's help.
+const CODES: &str = "Exit codes: 0 fine; 1 the answer is no; 2 bad input; 3 not decided; 74 the output cannot be \
+                     written; 130 stopped by Ctrl-C";
 
-Exit codes: 0 fine; 1 the answer is no; 2 bad input; 3 not decided; 74 the output cannot be written.";
+/// The command line: what the authors measure with is below `lab`, and by its old names hidden.
+pub(crate) fn program() -> clap::Command {
+    let is_old = |name: &str| LabVerb::has_subcommand(name);
+    Cli::command().mut_subcommands(|below| if is_old(below.get_name()) { below.hide(true) } else { below })
+}
 
 /// Fire all ultrasonic sensors of a robot several times faster than one by one, without believing each other's echoes.
 ///
 /// Sensors are printed from 1, as in the paper, and counted from 0 in files and in --json.
 #[derive(Parser)]
-#[command(name = "eeruf", version = env!("EERUF_VERSION"), max_term_width = 100, after_help = GROUPS)]
+#[command(name = "eeruf", version = env!("EERUF_VERSION"), max_term_width = 100, after_help = CODES)]
 pub(crate) struct Cli {
     #[command(subcommand)]
     pub(crate) verb: Verb,
@@ -74,13 +74,16 @@ pub(crate) struct OutputArgs {
     #[arg(long, short, global = true)]
     quiet: bool,
     /// Take a warning for an error: exit code 2
-    #[arg(long, global = true)]
+    #[arg(long, hide_short_help = true, global = true)]
     deny_warnings: bool,
     /// Print tables and lines as wide as they are; by default they fit the terminal, or COLUMNS if it is set
-    #[arg(long, global = true)]
+    #[arg(long, hide_short_help = true, global = true)]
     wide: bool,
+    /// Quote the line that an error in a file is about, as on a terminal
+    #[arg(long, hide_short_help = true, global = true)]
+    explain: bool,
     /// Colour errors and warnings; auto does on a terminal, unless NO_COLOR is set
-    #[arg(long, global = true, value_name = "WHEN", default_value = "auto")]
+    #[arg(long, hide_short_help = true, global = true, value_name = "WHEN", default_value = "auto")]
     color: ColorChoice,
 }
 
@@ -91,7 +94,13 @@ impl OutputArgs {
             ColorChoice::Always => Some(true),
             ColorChoice::Never => Some(false),
         };
-        Settings { quiet: self.quiet, deny_warnings: self.deny_warnings, wide: self.wide, colour }
+        Settings {
+            quiet: self.quiet,
+            deny_warnings: self.deny_warnings,
+            wide: self.wide,
+            colour,
+            explain: self.explain,
+        }
     }
 }
 
@@ -121,27 +130,33 @@ pub(crate) enum Verb {
         "0 a schedule; 1 none meets the needs; 2 bad input; 3 not decided (--period)"
     ))]
     Design(design::Args),
-    #[command(after_help = help!(
-        "verify rings/table-i-d.toml --t-delta-us 999",
-        "0 verified; 1 not verified; 2 bad input"
-    ))]
-    Verify(verify::Args),
-    #[command(after_help = help!(
-        "search rings/table-i-waits.toml --best interval",
-        "0 a table; 1 none; 2 bad input; 3 not decided"
-    ))]
-    Search(search::Args),
     #[command(after_help = STUDY)]
     Study(study::Args),
-    #[command(after_help = help!("paths scenes/alcove.toml --order 2", "0 listed; 2 bad input"))]
-    Paths(paths::Args),
-    #[command(after_help = help!("scene map.yaml > scene.toml", "0 printed; 2 bad input"))]
-    Scene(scene::Args),
     #[command(after_help = help!(
         "logs log.csv",
         "0 no crosstalk seen; 1 crosstalk; 2 not understood, or damaged; 3 the log cannot tell"
     ))]
     Logs(logs::Args),
+    #[command(after_help = help!(
+        "verify rings/table-i-d.toml --t-delta-us 999",
+        "0 verified; 1 not verified; 2 bad input"
+    ))]
+    Verify(verify::Args),
+    #[command(after_help = help!("examples .", "0 written; 2 bad input"))]
+    Examples(examples::Args),
+    #[command(after_help = help!("completions bash > eeruf.bash", "0 printed; 2 bad input"))]
+    Completions(completions::Args),
+    #[command(after_help = help!("man ~/.local/share/man/man1", "0 written; 2 bad input"))]
+    Man(man::Args),
+    #[command(after_help = help!("licenses", "0 printed"))]
+    Licenses(licenses::Args),
+    /// Run what eeruf's authors measure with: experiments, the atlas, data sets, paths
+    Lab {
+        #[command(subcommand)]
+        verb: LabVerb,
+    },
+    #[command(flatten)]
+    Old(LabVerb),
     #[command(hide = true, after_help = help!(
         "replay log.csv --t-delta-us 500",
         "0 replayed; 2 no sensors, bad input or a damaged log"
@@ -154,51 +169,59 @@ pub(crate) enum Verb {
     Diagnose(diagnose::Args),
     #[command(hide = true, after_help = help!("survey survey.csv --ring ring.toml", "0 surveyed; 2 bad input"))]
     Survey(survey::Args),
+}
+
+/// The commands of eeruf's authors.
+#[derive(Subcommand)]
+pub(crate) enum LabVerb {
     #[command(after_help = help!(
-        "experiment set-one --seeds 20 --method sequential,eeruf",
+        "lab experiment set-one --seeds 20 --method sequential,eeruf",
         "0 repeated; 2 bad input"
     ))]
     Experiment(experiment::Args),
-    #[command(after_help = help!("merge part-1.json part-2.json", "0 merged; 2 bad input, or a part is missing"))]
+    #[command(after_help = help!("lab merge part-1.json part-2.json", "0 merged; 2 bad input, or a part is missing"))]
     Merge(merge::Args),
-    #[command(after_help = help!("dataset out --alcoves 2 --courses 1", "0 written; 2 bad input"))]
+    #[command(after_help = help!("lab dataset out --alcoves 2 --courses 1", "0 written; 2 bad input"))]
     Dataset(dataset::Args),
     #[command(after_help = help!(
-        "atlas --svg atlas.svg",
+        "lab atlas --svg atlas.svg",
         "0 every ring of the share is done; 1 ended before; 2 bad input"
     ))]
     Atlas(atlas::Args),
-    #[command(after_help = help!("examples .", "0 written; 2 bad input"))]
-    Examples(examples::Args),
-    #[command(after_help = help!("completions bash > eeruf.bash", "0 printed; 2 bad input"))]
-    Completions(completions::Args),
-    #[command(after_help = help!("man ~/.local/share/man/man1", "0 written; 2 bad input"))]
-    Man(man::Args),
-    #[command(after_help = help!("licenses", "0 printed"))]
-    Licenses(licenses::Args),
+    #[command(after_help = help!(
+        "lab search rings/table-i-waits.toml --best interval",
+        "0 a table; 1 none; 2 bad input; 3 not decided"
+    ))]
+    Search(search::Args),
+    #[command(after_help = help!("lab paths scenes/alcove.toml --order 2", "0 listed; 2 bad input"))]
+    Paths(paths::Args),
+    #[command(after_help = help!("lab scene map.yaml > scene.toml", "0 printed; 2 bad input"))]
+    Scene(scene::Args),
 }
 
 impl Verb {
     pub(crate) fn run(&self) -> Result<Answer, InputError> {
         match self {
             Self::Design(args) => design::run(args),
-            Self::Verify(args) => verify::run(args),
-            Self::Search(args) => search::run(args),
             Self::Study(args) => study::run(args),
-            Self::Paths(args) => paths::run(args),
-            Self::Scene(args) => scene::run(args),
             Self::Logs(args) => logs::run(args),
-            Self::Replay(args) => replay::run(args),
-            Self::Diagnose(args) => diagnose::run(args),
-            Self::Survey(args) => survey::run(args),
-            Self::Experiment(args) => experiment::run(args),
-            Self::Merge(args) => merge::run(args),
-            Self::Dataset(args) => dataset::run(args),
-            Self::Atlas(args) => atlas::run(args),
+            Self::Verify(args) => verify::run(args),
             Self::Examples(args) => examples::run(args),
             Self::Completions(args) => completions::run(args),
             Self::Man(args) => man::run(args),
             Self::Licenses(args) => licenses::run(args),
+            Self::Replay(args) => replay::run(args),
+            Self::Diagnose(args) => diagnose::run(args),
+            Self::Survey(args) => survey::run(args),
+            Self::Lab { verb } | Self::Old(verb) => match verb {
+                LabVerb::Experiment(args) => experiment::run(args),
+                LabVerb::Merge(args) => merge::run(args),
+                LabVerb::Dataset(args) => dataset::run(args),
+                LabVerb::Atlas(args) => atlas::run(args),
+                LabVerb::Search(args) => search::run(args),
+                LabVerb::Paths(args) => paths::run(args),
+                LabVerb::Scene(args) => scene::run(args),
+            },
         }
     }
 }
@@ -206,9 +229,9 @@ impl Verb {
 #[cfg(test)]
 mod tests {
     use clap::builder::ValueRange;
-    use clap::{Arg, Command, CommandFactory as _};
+    use clap::{Arg, Command};
 
-    use super::{Cli, GROUPS, Parser as _};
+    use super::{Cli, Parser as _, program};
 
     /// Names of values that are a unit or a kind; a number without a unit is named by its help.
     const KINDS: [&str; 30] = [
@@ -281,9 +304,9 @@ mod tests {
     #[test]
     fn every_option_with_a_value_says_its_unit_and_default() {
         let (mut options, mut wrong) = (0, vec![]);
-        let mut program = Cli::command();
-        program.build();
-        each_leaf(&program, "eeruf", &mut |command, path| {
+        let mut built = program();
+        built.build();
+        each_leaf(&built, "eeruf", &mut |command, path| {
             let takes = |arg: &&Arg| arg.get_num_args() != Some(ValueRange::EMPTY) && arg.get_long().is_some();
             for arg in command.get_arguments().filter(takes) {
                 options += 1;
@@ -295,16 +318,29 @@ mod tests {
     }
 
     #[test]
+    fn help_of_each_command_fits_one_screen() {
+        let mut built = program();
+        built.build();
+        each_leaf(&built, "eeruf", &mut |command, path| {
+            let help = command.clone().render_help().to_string();
+            assert!(help.lines().count() <= 50, "{path}: {}", help.lines().count());
+        });
+        assert!(built.render_help().to_string().lines().count() <= 24);
+    }
+
+    #[test]
     fn every_command_has_an_example_that_parses_and_exit_codes() {
-        each_leaf(&Cli::command(), "eeruf", &mut |command, path| {
+        each_leaf(&program(), "eeruf", &mut |command, path| {
+            // Old names have the help of new ones.
+            if super::LabVerb::has_subcommand(path.split(' ').nth(1).unwrap_or_default()) {
+                return;
+            }
             let help = command.get_after_help().map(ToString::to_string).unwrap_or_default();
             let (example, codes) = help.split_once("\n\nExit codes: 0 ").unwrap_or_else(|| panic!("{path}: {help}"));
             let example = example.strip_prefix("Example:\n  ").unwrap_or_else(|| panic!("{path}: {help}"));
             assert!(example.starts_with(path) && codes.contains("74"), "{path}: {help}");
             let words = example.split(" > ").next().unwrap_or_default().split(' ');
             assert!(Cli::try_parse_from(words).is_ok(), "{example}");
-            let verb = path.split(' ').nth(1).unwrap_or_default();
-            assert!(GROUPS.contains(verb), "{verb}");
         });
     }
 }

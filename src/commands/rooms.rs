@@ -6,14 +6,19 @@ use std::sync::{Mutex, PoisonError};
 
 use eeruf_design::{RingDesign, RingSpec, RoomsAnswer, RoomsAsked};
 use eeruf_files::{FileError, Kind};
+use eeruf_sim::experiments::measure::{
+    Condition, Family, MeasureAsked, MeasuredWay, Moving, Speeds, measure, measured_ways,
+};
 use eeruf_sim::experiments::rooms::{RoomGroup, RoomWay};
 
 use super::{Answer, show};
+use crate::console::tell;
 use crate::files::error::InputError;
 use crate::files::map::read_map;
 use crate::files::ring::read_ring;
 use crate::files::toml::read_world;
-use crate::report::rooms::{RoomsOrNot, describe};
+use crate::report::rooms::{RoomsOrNot, describe, describe_all};
+use crate::report::three::Three;
 use crate::report::watch::Watch;
 
 /// Options for judging ways of firing in rooms.
@@ -28,11 +33,11 @@ pub(crate) struct RoomArgs {
     places: Option<u64>,
     /// Number of the first room of each kind, or place in each map; 0 by default. Ways are chosen on numbers below
     /// 2000; report those from 20000 on
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(..=1_000_000_000))]
+    #[arg(long, hide_short_help = true, value_name = "N", value_parser = clap::value_parser!(u64).range(..=1_000_000_000))]
     first: Option<u64>,
     /// The largest share of foreign sound in what is believed, in per cent, of a way that is recommended; 3 by
     /// default
-    #[arg(long, value_name = "PERCENT", value_parser = percent)]
+    #[arg(long, hide_short_help = true, value_name = "PERCENT", value_parser = percent)]
     wrong: Option<f64>,
     /// Let the robot drive through the rooms at the ring's speed_m_s, or 0.3 m/s
     #[arg(long)]
@@ -58,15 +63,65 @@ impl RoomArgs {
     }
 }
 
-/// Judges a ring file without a word of its period: `eeruf study RING.toml`.
-pub(crate) fn study(args: &RoomArgs, file: &Path, as_json: bool) -> Result<Answer, InputError> {
+/// Measures a ring file's ways of firing, without a word of its period: `eeruf study RING.toml`. With `all` or rooms
+/// of the user's own it prints every way in every kind of room.
+pub(crate) fn study(args: &RoomArgs, file: &Path, as_json: bool, all: bool) -> Result<Answer, InputError> {
     let spec = read_ring(file)?;
     let mut watch = Watch::new();
     let design = spec.shortest_to_study().map_err(|error| InputError::new(file, error))?;
-    let judged = judged(args, &spec, design.as_ref(), &mut watch)?;
-    drop(watch);
-    show(as_json, || RoomsOrNot::of(&judged), || describe(&file.display().to_string(), &judged))?;
-    Ok(if judged.is_ok() { Answer::Yes } else { Answer::No })
+    let name = file.display().to_string();
+    if as_json || all || !args.rooms.is_empty() {
+        let judged = judged(args, &spec, design.as_ref(), &mut watch)?;
+        drop(watch);
+        show(as_json, || RoomsOrNot::of(&judged), || describe(&name, &judged) + &describe_all(&judged))?;
+        return Ok(if judged.is_ok() { Answer::Yes } else { Answer::No });
+    }
+    match three_ways(args, &spec, design.as_ref(), &mut watch)? {
+        Ok(text) => tell(format!("{name}: {text}")).map(|()| Answer::Yes),
+        Err(why) => tell(format!("{name}: not judged in rooms: {why}.\n")).map(|()| Answer::No),
+    }
+    .map_err(InputError::from)
+}
+
+/// The recommended way beside one by one, in rooms; or why that cannot be said.
+fn three_ways(
+    args: &RoomArgs,
+    spec: &RingSpec,
+    design: Option<&RingDesign>,
+    watch: &mut Watch,
+) -> Result<Result<String, String>, InputError> {
+    let asked = asked(args, spec)?;
+    let watch = Mutex::new(watch);
+    let found = spec.recommended_in_rooms(design, &asked, &|share| goes_on(&watch, share));
+    let robot = design.map_or(spec, |design| &design.spec).room_robot();
+    let (best, robot) = match found.and_then(|best| Ok((best, robot?.robot))) {
+        Ok((Some(best), robot)) => (best, robot),
+        Ok((None, _)) => return Ok(Err("no way of firing is possible for this ring".to_owned())),
+        Err(why) => return Ok(Err(why)),
+    };
+    let ways = measured_ways(&robot, design.map(|design| &design.schedule));
+    let of_best = ways.iter().find(|way| way.way.name == best.name).map_or(Family::OneByOne, |way| way.family);
+    let other = if of_best == Family::OneByOne { Family::Flow } else { of_best };
+    let name = if of_best == Family::OneByOne { "flow" } else { best.name };
+    let is_shown = |way: &MeasuredWay| way.family == Family::OneByOne || way.way.name == name;
+    let ways: Vec<_> = ways.into_iter().filter(is_shown).map(|way| (way, None)).collect();
+    let moving = if asked.driving { Moving::Driving } else { Moving::Standing };
+    let speeds = Speeds { speed_m_s: spec.room_speed_m_s(), turn_rad_s: 0.0 };
+    // Settings are chosen in rooms behind those that are reported.
+    let measured = |first: u64| {
+        let conditions = vec![Condition { moving, others: false }];
+        let asked = MeasureAsked { conditions, first, places: asked.places, speeds };
+        measure(&ways, &asked, &|share| goes_on(&watch, share)).map_err(|error| error.to_string())
+    };
+    let both = measured(asked.first + asked.places).and_then(|chosen| Ok((chosen, measured(asked.first)?)));
+    Ok(both.map(|(chosen, measured)| {
+        let rooms = measured.under.first().map_or(0, |under| under.places.len());
+        let moves = if asked.driving { "driving" } else { "standing" };
+        let title = format!("{} sensors; in {rooms} rooms, {moves}, a thing appears.\n\n", spec.sensors);
+        let is_recommended = Some(of_best != Family::OneByOne);
+        let three = Three { chosen: &chosen, measured: &measured, other, is_recommended };
+        title + &three.describe() + "`eeruf design` says how to get it, `--all` every way in every room.\n"
+    }))
 }
 
 /// Judges the ways of firing a ring, with the schedule of two phases that was found for it; or says why that cannot be

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
 
 use eeruf_files::Kind;
+use eeruf_sim::experiments::measure::{Family, measure_in_scene};
 use eeruf_sim::{
     Method, Options, Physics, SimulationError, Sketch, World, shortest_schedule_for, simulate_while, sweep,
 };
@@ -12,6 +13,7 @@ use super::arguments::picture_folder;
 use super::methods::chosen;
 use super::rooms::{self, RoomArgs};
 use super::{Answer, STUDY, show};
+use crate::console::tell;
 use crate::files::error::InputError;
 use crate::files::firings::write_firings;
 use crate::files::mcap::{Stage, write_mcap};
@@ -19,42 +21,52 @@ use crate::files::toml::read_world;
 use crate::report::study::found::Study;
 use crate::report::study::json::StudyJson;
 use crate::report::study::{pictures, text};
+use crate::report::three::Three;
 use crate::report::watch::Watch;
 
-/// Simulate every firing method in a scene: which readings are wrong, and who fools whom.
+/// Compare firing as sketches do, one by one and the recommended way in a scene, or for a ring in rooms.
+///
+/// Prints a row for each, and what to do: how soon the ring sees what steps before it (t95), how often foreign sound
+/// stops the robot, how many sensors are blind, and how many right echoes it has a second. In a scene 60 things appear,
+/// (20 where something moves), one at a time, before the first robot's sensors.
 #[derive(clap::Args)]
 #[command(after_long_help = every_method())]
 pub(crate) struct Args {
     /// The scene; or a ring, which is judged in rooms
     #[arg(value_name = "SCENE.toml|RING.toml")]
     file: PathBuf,
-    /// Number of the first robot's periods; by default 2000, or 250 if anything moves
+    /// Print every method's tables too, and who fooled whom
+    #[arg(long)]
+    all: bool,
+    /// Number of the first robot's periods in tables, which it prints as --all does, and pictures; by default 2000, or
+    /// 250 if anything moves
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
     periods: Option<u32>,
-    /// Draw SVG pictures into this folder: scene, timing, readings and methods
+    /// Draw SVG pictures of all methods into this folder
     #[arg(long, value_name = "DIR", value_parser = picture_folder())]
     svg: Option<PathBuf>,
     /// Draw the same pictures as PNG
-    #[arg(long, value_name = "DIR", value_parser = picture_folder())]
+    #[arg(long, hide_short_help = true, value_name = "DIR", value_parser = picture_folder())]
     png: Option<PathBuf>,
     /// Write every firing of the first robot and what it heard as CSV, or MCAP if the name ends in .mcap, for `eeruf
     /// diagnose`; needs one --method
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, hide_short_help = true, value_name = "FILE")]
     log: Option<PathBuf>,
     /// Write all methods' readings as MCAP, for Foxglove and Rerun: ranges, poses, the scene and every reading's path
-    #[arg(long, value_name = "FILE.mcap")]
+    #[arg(long, hide_short_help = true, value_name = "FILE.mcap")]
     mcap: Option<PathBuf>,
     /// Print one JSON object
     #[arg(long)]
     json: bool,
-    /// Simulate only these methods, separated by commas: eeruf,sequential; by default all that fit the scene
+    /// Print the tables of these methods alone, separated by commas: eeruf,sequential; by default three ways, and in
+    /// JSON and pictures all that fit the scene
     #[arg(long = "method", value_name = "NAME,..", value_delimiter = ',')]
     methods: Vec<Method>,
     /// Seed of all that is random, a whole number; by default the scene's
-    #[arg(long, value_name = "SEED")]
+    #[arg(long, hide_short_help = true, value_name = "SEED")]
     seed: Option<u64>,
     /// Effects that are simulated: plain or default (see docs/explanation/physics.md); by default the scene's
-    #[arg(long, value_name = "PRESET")]
+    #[arg(long, hide_short_help = true, value_name = "PRESET")]
     physics: Option<Physics>,
     #[command(flatten)]
     in_rooms: RoomArgs,
@@ -102,7 +114,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     if Kind::of_file(&args.file) == Some(Kind::Ring) {
         return match args.of_scenes() {
             Some(option) => refuse(option, "a scene"),
-            None => rooms::study(&args.in_rooms, &args.file, args.json),
+            None => rooms::study(&args.in_rooms, &args.file, args.json, args.all),
         };
     }
     if let Some(option) = args.in_rooms.given() {
@@ -116,28 +128,73 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
         let message = format!("{} methods; expected one --method, whose firings it writes", args.methods.len());
         return Err(InputError::new("--log", message));
     }
-    let study = study(args, &world)?;
+    let has_tables = args.all || args.periods.is_some() || !args.methods.is_empty();
+    let draws = args.svg.is_some() || args.png.is_some();
+    let simulates = has_tables || draws || args.json || args.mcap.is_some();
+    let mut watch = Watch::new();
+    let mut text = String::new();
+    if args.methods.is_empty() && !args.json {
+        text = three_ways(args, &world, &mut watch)?;
+    }
+    if !simulates {
+        tell(text + "`--all` compares every method, and says who fooled whom.\n")?;
+        return Ok(Answer::Yes);
+    }
+    let study = study(args, &world, watch)?;
     if let (Some(file), Some(readings)) = (&args.log, study.runs.first()) {
         write_firings(file, readings)?;
     }
     if let Some(file) = &args.mcap {
         write_mcap(file, &Stage::of(&world), &study.runs)?;
     }
+    let mut drawn = String::new();
     for (folder, ending) in [(&args.svg, "svg"), (&args.png, "png")] {
         if let Some(folder) = folder {
-            pictures::pictures(folder, ending, &world, &study)?;
+            let count = pictures::pictures(folder, ending, &world, &study)?;
+            drawn += &format!("{count} pictures in {}.\n", folder.display());
         }
     }
-    let text = || text::describe(&args.file, &world, &study);
-    show(args.json, || StudyJson::new(&args.file, &world, &study), text)?;
+    let tables = match has_tables {
+        true => text::describe(&args.file, &world, &study),
+        false => "`--all` compares every method, and says who fooled whom.\n".to_owned(),
+    };
+    show(args.json, || StudyJson::new(&args.file, &world, &study), || text + &drawn + &tables)?;
     Ok(Answer::Yes)
 }
 
-fn study(args: &Args, world: &World) -> Result<Study, InputError> {
+/// Trials of each way, for the choice of votes and as many to report; and where something moves.
+const TRIALS: u64 = 60;
+const TRIALS_IF_MOVING: u64 = 20;
+
+/// The first answer: how soon the first robot sees what appears, and how often it stops for nothing.
+fn three_ways(args: &Args, world: &World, watch: &mut Watch) -> Result<String, InputError> {
+    let methods = [Method::Blocking, Method::Sequential, Method::InTurn].map(|method| (Family::OneByOne, method));
+    let methods = [&methods[..], &[(Family::Flow, Method::Flow)]].concat();
+    let watch = Mutex::new(watch);
+    // Other things for each seed.
+    let trials = if world.moves() { TRIALS_IF_MOVING } else { TRIALS };
+    let first = (args.seed.unwrap_or(world.seed()) % (1 << 32)) * 2 * trials;
+    let measured = |first: u64, part: f64| {
+        let goes_on = |share: f64| {
+            let mut watch = watch.lock().unwrap_or_else(PoisonError::into_inner);
+            watch.go_on(|| format!("three ways, {:.0} % done", 50.0 * (part + share)))
+        };
+        measure_in_scene(world, &methods, first..first + trials, &goes_on)
+            .map_err(|error| InputError::new(&args.file, error))
+    };
+    let (chosen, measured) = (measured(first, 0.0)?, measured(first + trials, 1.0)?);
+    let sensors = world.robots().first().map_or(0, |robot| robot.sensors.len());
+    let things = measured.under.iter().flat_map(|under| &under.places).filter(|place| place.thing.is_some()).count();
+    let of = if world.robots().len() > 1 { " of robot 1" } else { "" };
+    let title = format!("{}: {sensors} sensors{of}; {things} things appear before them.\n\n", args.file.display());
+    let three = Three { chosen: &chosen, measured: &measured, other: Family::Flow, is_recommended: None };
+    Ok(title + &three.describe() + "For your ring: `eeruf design RING.toml --program arduino` (or c, rust, ..).\n")
+}
+
+fn study(args: &Args, world: &World, mut watch: Watch) -> Result<Study, InputError> {
     let sketched = world.robots().iter().any(|robot| robot.firing != Sketch::default());
     let methods = chosen(&args.methods, sketched);
     let bad = |error: &dyn std::fmt::Display| InputError::new(&args.file, error);
-    let mut watch = Watch::new();
     let best = if methods.contains(&Method::EerufBest) {
         let robot = world.robots().first().ok_or_else(|| bad(&"no robot"))?;
         let best = shortest_schedule_for(robot, BUDGET, |progress| {
@@ -167,13 +224,16 @@ fn study(args: &Args, world: &World) -> Result<Study, InputError> {
     for (method, result) in results {
         match result {
             Ok(readings) => runs.push(readings),
-            Err(SimulationError::Stopped) => return Err(bad(&"stopped by Ctrl-C")),
+            Err(SimulationError::Stopped) => left_out.push((method, "stopped by Ctrl-C".to_owned())),
             // Asked for by name, or nothing to do with the method: then it is the answer to the question.
             Err(error) if !args.methods.is_empty() || matches!(error, SimulationError::Paths { .. }) => {
                 return Err(bad(&error));
             }
             Err(error) => left_out.push((method, error.to_string())),
         }
+    }
+    if runs.is_empty() {
+        return Err(bad(&"stopped by Ctrl-C before a method was done"));
     }
     Ok(Study { runs, left_out, best, periods, seed })
 }

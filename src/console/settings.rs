@@ -22,6 +22,8 @@ pub(crate) struct Settings {
     pub(crate) deny_warnings: bool,
     /// Lines as long as they are.
     pub(crate) wide: bool,
+    /// Errors quote lines of files; on a terminal they do anyway.
+    pub(crate) explain: bool,
     /// Colours always or never; by default on a terminal, unless `NO_COLOR` is set.
     pub(crate) colour: Option<bool>,
 }
@@ -43,6 +45,11 @@ impl Settings {
 
     pub(super) fn err_width(self) -> Option<usize> {
         self.width(&Term::stderr(), std::io::stderr().is_terminal())
+    }
+
+    /// Returns true if errors quote lines of files.
+    pub(crate) fn explains(self) -> bool {
+        self.explain || std::io::stderr().is_terminal()
     }
 
     /// Returns true if standard error takes colours.

@@ -31,6 +31,19 @@ impl InputError {
         self.code
     }
 
+    /// The line of the file that the error is about, with the word that it begins with marked.
+    pub(crate) fn quoted(&self) -> Option<String> {
+        let number = self.report.line()?;
+        let text = std::fs::read_to_string(self.report.file()).ok()?;
+        let line = text.lines().nth(usize::try_from(number).ok()?.checked_sub(1)?)?;
+        let words = self.report.message().split(|c: char| !(c.is_alphanumeric() || "_-.".contains(c)));
+        let word = words.filter(|word| !word.is_empty()).find(|word| line.contains(word)).unwrap_or(line.trim());
+        let before = line.split(word).next().unwrap_or("").chars().map(|c| if c == '\t' { c } else { ' ' });
+        let gap = " ".repeat(number.to_string().len());
+        let mark = "^".repeat(word.chars().count());
+        Some(format!("{number} | {line}\n{gap} | {}{mark}", before.collect::<String>()))
+    }
+
     /// Returns true if the reader of standard output has gone.
     pub(crate) fn is_silent(&self) -> bool {
         self.is_silent

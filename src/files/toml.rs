@@ -2,9 +2,10 @@
 
 use std::path::Path;
 
+use eeruf_core::Micros;
 use eeruf_design::robot_ring;
-use eeruf_files::{Kind, build};
-use eeruf_sim::{AnySchedule, ScheduleFile, World};
+use eeruf_files::{Kind, build, doubt};
+use eeruf_sim::{AnySchedule, Body, Motion, ScheduleFile, World};
 use serde::de::DeserializeOwned;
 
 use super::error::InputError;
@@ -39,9 +40,38 @@ pub(crate) fn read_schedule(file: &Path) -> Result<AnySchedule, InputError> {
 pub(crate) fn read_world(file: &Path) -> Result<World, InputError> {
     let text = Kind::Scene.read(file)?;
     let world = World::from_text_with(file, &text, robot_ring)?;
+    unlikely(&world).map_or(Ok(()), |why| Err(InputError::new(file, why)))?;
     warn_of(file, &text)?;
     for (robot, doubt) in world.doubts() {
         warn(InputError::new(file, format!("robot {}: {doubt}", robot + 1)))?;
     }
     Ok(world)
+}
+
+/// Two signs in a scene that its numbers are in other units than its keys say.
+fn unlikely(world: &World) -> Option<String> {
+    let number = |us: Micros| f64::from(us.as_micros());
+    for robot in world.robots() {
+        let (period, window) = (robot.period, robot.window);
+        if doubt("period_us", number(period)).is_some() && period < window {
+            return Some(format!(
+                "period_us: {}, and a window of {window}, which is longer; expected microseconds, likely milliseconds",
+                period.as_micros()
+            ));
+        }
+    }
+    // Nothing that sound comes back from is near, and coordinates are beyond those of rooms.
+    let walls = world.scene().walls().iter().flat_map(|wall| [wall.from, wall.to]);
+    let farthest = walls.flat_map(|at| [at.x.abs(), at.y.abs()]).fold(0.0, f64::max);
+    let is_silent = world.robots().iter().filter(|robot| matches!(robot.motion, Motion::Still)).all(|robot| {
+        let reach_m = robot.transducers().map(|transducer| transducer.max_range_m).fold(0.0, f64::max);
+        let reach = Body::Disc(robot.radius_m() + reach_m);
+        world.scene().contact(&reach, &robot.pose).is_none()
+    });
+    let is_far = doubt("points_m", farthest).is_some() && is_silent;
+    is_far.then(|| {
+        format!(
+            "points_m: {farthest}, and no wall that a sensor hears; expected metres, likely centimetres or millimetres"
+        )
+    })
 }

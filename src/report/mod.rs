@@ -18,6 +18,7 @@ pub(crate) mod search;
 pub(crate) mod study;
 pub(crate) mod survey;
 pub(crate) mod table;
+pub(crate) mod three;
 pub(crate) mod timing;
 pub(crate) mod verify;
 pub(crate) mod watch;

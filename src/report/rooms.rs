@@ -8,12 +8,24 @@ use serde::Serialize;
 
 use super::table::{markdown, or_dash};
 
-/// The recommended way and its table, or why there is none.
+/// The recommended way, or why there is none.
 pub(crate) fn describe(name: &str, judged: &Result<RoomsAnswer, String>) -> String {
     match judged {
-        Ok(answer) => Described { answer, judgement: &answer.judgement }.text(name),
-        Err(why) => format!("{name}: not judged in rooms: {why}.\n\n"),
+        Ok(answer) => Described { answer, judgement: &answer.judgement }.verdict(name),
+        Err(why) => format!("{name}: not judged in rooms: {why}.\n"),
     }
+}
+
+/// Every way in every kind of room, and under other conditions.
+pub(crate) fn describe_all(judged: &Result<RoomsAnswer, String>) -> String {
+    let text = |answer| Described { answer, judgement: &answer.judgement }.text();
+    judged.as_ref().map_or_else(|_| String::new(), text)
+}
+
+/// The conditions under which another way is recommended.
+pub(crate) fn describe_elsewhere(judged: &Result<RoomsAnswer, String>) -> String {
+    let text = |answer| Described { answer, judgement: &answer.judgement }.depends_on(false);
+    judged.as_ref().map_or_else(|_| String::new(), text)
 }
 
 struct Described<'a> {
@@ -26,11 +38,10 @@ const PLAIN: [&str; 6] =
     ["sequential", "sequential_votes", "sequential_median", "simultaneous", "far_groups", "arrays"];
 
 impl Described<'_> {
-    fn text(&self, name: &str) -> String {
+    fn text(&self) -> String {
         let RoomsAnswer { groups, assumed, speed_m_s, .. } = self.answer;
         let judgement = self.judgement;
-        let mut text = self.verdict(name);
-        text.push('\n');
+        let mut text = "\n".to_owned();
         let rooms = groups.iter().map(|(_, rooms)| rooms).sum::<usize>();
         let moves = if *speed_m_s > 0.0 { format!("driving at {speed_m_s} m/s") } else { "standing".into() };
         _ = writeln!(text, "In {rooms} rooms (version {VERSION}); {moves}, {}.", condition(Condition::ALL[0]));
@@ -62,7 +73,7 @@ impl Described<'_> {
             core::iter::once(way.way.name.to_owned()).chain(shares).collect()
         });
         _ = writeln!(text, "\n{}\n", markdown(&header, rows));
-        text.push_str(&self.depends_on());
+        text.push_str(&self.depends_on(true));
         text
     }
 
@@ -150,14 +161,19 @@ impl Described<'_> {
         row
     }
 
-    fn depends_on(&self) -> String {
+    /// What is recommended under other conditions; without `all` only where that is another way.
+    fn depends_on(&self, all: bool) -> String {
         let here = self.judgement;
         let mut text = String::new();
         let chosen = here.best().map_or("", |way| way.way.name);
-        let mut differs = false;
+        let (mut differs, mut judged) = (false, false);
         for (other, judgement) in &self.answer.elsewhere {
             let Some(best) = judgement.best() else { continue };
             differs |= best.way.name != chosen;
+            judged = true;
+            if best.way.name == chosen && !all {
+                continue;
+            }
             let right = |way: &JudgedWay| format!("{:.1} %", 100.0 * way.belief_right().unwrap_or(0.0));
             let ours = judgement.ways.iter().find(|way| way.way.name == chosen).map(right);
             let kept = if judgement.keeps { "" } else { "; none keeps to the shares asked for" };
@@ -173,14 +189,14 @@ impl Described<'_> {
                 ),
             };
         }
-        if text.is_empty() {
-            return "Other gain and height: not judged, as the time was over.\n\n".to_owned();
+        if !judged {
+            return "Other gain and height: not judged, as the time was over.\n".to_owned();
         }
         let alone = here.without(
             |index| self.answer.groups.get(index).is_some_and(|(name, _)| name == "meeting"),
             self.answer.wrong,
         );
-        if let Some(best) = alone.as_ref().and_then(Judgement::best) {
+        if let Some(best) = alone.as_ref().and_then(Judgement::best).filter(|best| all || best.way.name != chosen) {
             differs |= best.way.name != chosen;
             let right = 100.0 * best.belief_right().unwrap_or(0.0);
             let too = if best.way.name == chosen { " too" } else { "" };
@@ -188,9 +204,10 @@ impl Described<'_> {
         }
         let title = match differs {
             true => "The answer depends on conditions; elsewhere the recommended way is:",
+            false if !all => "The answer is the same with another gain, without floor and ceiling, and alone.",
             false => "The answer is the same under other conditions:",
         };
-        format!("{title}\n{text}\n")
+        format!("{title}\n{text}")
     }
 }
 

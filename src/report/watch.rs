@@ -1,6 +1,7 @@
-//! Display of a running search or simulation: a progress line after two seconds, and Ctrl-C or a limit that ends it
-//! cleanly.
+//! Display of a running search or simulation: a progress line after two seconds on a terminal, else a line a minute; and
+//! Ctrl-C or a limit that ends it cleanly.
 
+use std::io::IsTerminal as _;
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, OnceLock};
@@ -8,17 +9,40 @@ use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
 
+use crate::console::{note, settings};
+
 /// After this time the progress line appears.
 const SHOWN_AFTER: Duration = Duration::from_secs(2);
 
-/// Returns true if Ctrl-C was pressed since the program began.
+/// Without a terminal a line says how far a task has come after this time, and then once a minute.
+const SAID_AFTER: Duration = Duration::from_secs(20);
+const SAID_EVERY: Duration = Duration::from_secs(60);
+
+/// True if Ctrl-C was pressed since [`begin`].
+static STOPPED: AtomicBool = AtomicBool::new(false);
+
+/// Forgets every Ctrl-C: the program begins.
+pub(crate) fn begin() {
+    STOPPED.store(false, Ordering::Relaxed);
+    interrupted().store(false, Ordering::Relaxed);
+}
+
+/// Returns true if Ctrl-C ended a task.
+pub(crate) fn was_stopped() -> bool {
+    STOPPED.load(Ordering::Relaxed)
+}
+
+/// The flag of a Ctrl-C that ends the task under way.
 fn interrupted() -> &'static AtomicBool {
     static INTERRUPTED: OnceLock<Arc<AtomicBool>> = OnceLock::new();
     INTERRUPTED.get_or_init(|| {
         let flag = Arc::new(AtomicBool::new(false));
         let handler = Arc::clone(&flag);
         // Where no handler can be installed, Ctrl-C ends the program at once, as it does by default.
-        _ = ctrlc::set_handler(move || handler.store(true, Ordering::Relaxed));
+        _ = ctrlc::set_handler(move || {
+            STOPPED.store(true, Ordering::Relaxed);
+            handler.store(true, Ordering::Relaxed);
+        });
         flag
     })
 }
@@ -28,6 +52,8 @@ pub(crate) struct Watch {
     began: Instant,
     limit: Duration,
     bar: Option<ProgressBar>,
+    /// When the next line is due without a terminal.
+    says_at: Duration,
     interrupted: &'static AtomicBool,
 }
 
@@ -38,7 +64,7 @@ impl Watch {
 
     /// One that ends the task when the time is over.
     pub(crate) fn ending_after(limit: Duration) -> Self {
-        Self { began: Instant::now(), limit, bar: None, interrupted: interrupted() }
+        Self { began: Instant::now(), limit, bar: None, says_at: SAID_AFTER, interrupted: interrupted() }
     }
 
     /// Forgets a Ctrl-C that ended one task before the next one begins. The time limit is that of all tasks.
@@ -51,6 +77,13 @@ impl Watch {
         let elapsed = self.began.elapsed();
         if self.interrupted.load(Ordering::Relaxed) || elapsed >= self.limit {
             return false;
+        }
+        if !std::io::stderr().is_terminal() {
+            if elapsed >= self.says_at && !settings().quiet {
+                self.says_at = elapsed + SAID_EVERY;
+                note(format!("eeruf: at work for {} s: {}", elapsed.as_secs(), how_far()));
+            }
+            return true;
         }
         if elapsed >= SHOWN_AFTER {
             let bar = self.bar.get_or_insert_with(|| {

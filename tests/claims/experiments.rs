@@ -47,7 +47,7 @@ fn pictures_are_drawn_into_a_folder_that_is_made() {
 #[test]
 fn unknown_method_and_speed_are_refused_in_words() {
     for (words, says) in [
-        (["experiment", "set-one", "--method", "eruf"], "`eruf`; expected simultaneous"),
+        (["experiment", "set-one", "--method", "eruf"], "`eruf`; did you mean `eeruf`?"),
         (["experiment", "set-two", "--speed", "9"], "expected 0.1 to 5"),
         (["experiment", "set-two", "--seeds", "0"], "a number from 1 to 100000"),
     ] {

@@ -20,7 +20,10 @@ fn bad_input_gets_one_line_with_its_place() {
              one number for each sensor",
         ),
         ("period_us = 100000\nt_fire_a_us = [0]\nt_fire_b_us = [-3]\n", ", line 3: "),
-        ("period_us = 100000\nt_fires_a_us = [0]\n", ", line 2: t_fires_a_us: unknown key; expected one of "),
+        (
+            "period_us = 100000\nt_fires_a_us = [0]\n",
+            ", line 2: t_fires_a_us: unknown key; did you mean `t_fire_a_us`?",
+        ),
         (
             "period_us = 0\nt_fire_a_us = [0]\nt_fire_b_us = [0]\n",
             ", line 1: a period of 0 us; expected 1 us to 268435.456 ms",
@@ -72,7 +75,10 @@ fn impossible_rings_get_one_clear_line() {
         (ring("max_range_m = 3.0"), ", line 4: expected one of window_us, max_range_m and module"),
         (ring("jitter_us = 3"), ", line 2: expected either t_delta_us, or jitter_us with or without speed_m_s"),
         (ring("layout = \"star\""), ", line 5: "),
-        (ring("layout = [[0, 8]]"), ", line 5: layout: neighbours [0, 8]; expected two different sensors from 0 to 7"),
+        (
+            ring("layout = [[0, 8]]"),
+            ", line 5: layout: neighbours [0, 8]; expected two different sensors, counted from 0 to 7",
+        ),
         (ring("").replace("15000", "4294967295") + "tick_us = 1\n", ": firing one by one already takes "),
         (
             ring("").replace("15000", "4000000000"),
@@ -91,7 +97,7 @@ fn impossible_rings_get_one_clear_line() {
     let foreign = eeruf(&["verify", "rings/table-i-d.toml", "--t-delta-us", "999", "--layout", "0-1,1-12"]);
     assert_eq!((foreign.code, foreign.out.as_str()), (Some(2), ""));
     let message =
-        "eeruf: rings/table-i-d.toml: layout: neighbours [1, 12]; expected two different sensors from 0 to 11";
+        "eeruf: rings/table-i-d.toml: layout: neighbours [1, 12]; expected two different sensors, counted from 0 to 11";
     assert_eq!(foreign.err.trim_end(), message);
     let waits = "sensors = 3\nperiod_us = 40000\nwait_max_us = 9000\ntick_us = 1000\nt_delta_us = 999\n";
     let cases = [

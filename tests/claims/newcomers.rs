@@ -9,7 +9,11 @@ pub(crate) fn shell(line: &str, folder: &Path) -> Output {
     let path = std::env::var("PATH").unwrap();
     let mut sh = Command::new("sh");
     sh.args(["-c", line]).current_dir(folder).env("PATH", format!("{}:{path}", program.display()));
-    sh.env_remove("COLUMNS").output().unwrap()
+    let output = sh.env_remove("COLUMNS").output().unwrap();
+    // How far a long command has come depends on the machine.
+    let is_said = |line: &&str| !line.starts_with("eeruf: at work for ");
+    let stderr: String = String::from_utf8_lossy(&output.stderr).split_inclusive('\n').filter(is_said).collect();
+    Output { stderr: stderr.into_bytes(), ..output }
 }
 
 /// The commands in a document's listings for a shell, but those that install or build.
@@ -98,7 +102,7 @@ fn paper_in_an_evening_runs_and_prints_its_figures() {
         outputs.push((command.clone(), String::from_utf8(output.stdout).unwrap()));
     }
     let of = |part: &str| &outputs.iter().find(|(command, _)| command.contains(part)).unwrap().1;
-    assert!(of("eeruf paths").contains("110 critical paths"));
+    assert!(of("lab paths").contains("110 critical paths"));
     let wall = of("scenes/wall.toml");
     let wrong = ["conventional", "comparison", "eeruf"].map(|method| cell(wall, method, "wrong, % of all"));
     assert_eq!(wrong, ["64.0", "62.8", "0.20"]);

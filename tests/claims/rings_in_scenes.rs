@@ -145,7 +145,7 @@ fn what_a_ring_file_leaves_open_is_asked_for() {
     let error = World::from_text(Path::new("rings/scene.toml"), &text).unwrap_err().to_string();
     assert!(error.starts_with("rings/car-12.toml: a ring file, which this reader of scenes does not know"), "{error}");
     for (wrong, expected) in [
-        ("poses = [{ x_m = 0, y_m = 0 }]", "poses has 1 places; expected 2, as many as sensors"),
+        ("poses = [{ x_m = 0, y_m = 0 }]", "poses: 1 place; expected 2, one a sensor"),
         ("spacing_deg = 20", "expected either poses, or spacing_deg and radius_m"),
     ] {
         let text = format!("sensors = 2\nt_delta_us = 9\nmin_interval_us = 0\nwindow_us = 9\n{wrong}");

@@ -1,6 +1,6 @@
 //! `eeruf design` and `eeruf study RING.toml`: ways of firing judged in rooms.
 
-use crate::common::{Scratch, eeruf, json};
+use crate::common::{Scratch, eeruf, eeruf_at_80, json};
 use serde_json::Value;
 
 const ROOMS: [&str; 8] = ["corridor", "office", "hall", "clutter", "alcove", "garage", "aisle", "meeting"];
@@ -115,11 +115,42 @@ fn two_sensors_back_to_back_need_no_eeruf() {
     assert_eq!(answer["not_neighbours"].to_string(), "[[0,1]]");
 }
 
+// The first answers are short: at 80 columns 14 lines, and 25.
+#[test]
+fn answers_fit_a_look_and_say_what_to_do() {
+    let lines = |words: &[&str]| {
+        let said = eeruf_at_80(words);
+        (said.lines().count(), said)
+    };
+    for ring in ["rings/hc-sr04-8.toml", "rings/car-12.toml", "rings/ring-24.toml", "rings/labmate-8.toml"] {
+        let (count, said) = lines(&["study", ring, "--places", "1"]);
+        assert!(count <= 14 && said.contains("| flow"), "{count}\n{said}");
+        let (count, said) = lines(&["design", ring, "--places", "1"]);
+        assert!(count <= 25 && said.contains("How: ") && said.contains("--program"), "{count}\n{said}");
+        assert!(said.contains("--proof") && !said.contains("t_wait_a_us"), "{said}");
+    }
+    let (count, said) = lines(&["study", "scenes/two-hc-sr04.toml"]);
+    assert!(count <= 14 && said.contains("t95") && said.contains("One by one is enough"), "{count}\n{said}");
+    let proof = eeruf(&["design", "rings/hc-sr04-8.toml", "--places", "1", "--proof", "--all"]).out;
+    for said in ["proven: no schedule", "t_fire_a_us", "| sequential_votes |", "corridor"] {
+        assert!(proof.contains(said), "{said}\n{proof}");
+    }
+}
+
+// JSON says how in figures.
+#[test]
+fn way_of_firing_is_said_in_figures() {
+    let how = json(&["design", "rings/hc-sr04-8.toml", "--places", "1", "--json"])["how"].clone();
+    assert_eq!((how["way"].as_str(), how["votes"].as_str()), (Some("flow"), Some("by_motion")));
+    assert_eq!(how["order"], serde_json::json!([0, 3, 6, 1, 4, 7, 2, 5]));
+    assert!(how["gaps_us"][0].as_u64() < how["gaps_us"][1].as_u64());
+}
+
 #[test]
 fn limits_no_way_keeps_are_named() {
     let ring = "sensors = 32\nmodule = 'polaroid-6500'\nlayout = 'ring'\njitter_us = 100\n";
     let (_scratch, file) = Scratch::new("ring.toml", ring);
-    let said = eeruf(&["study", file.to_str().unwrap(), "--places", "2"]).out;
+    let said = eeruf(&["study", file.to_str().unwrap(), "--places", "2", "--all"]).out;
     assert!(said.contains("No way keeps foreign sound at 3 %"), "{said}");
 }
 

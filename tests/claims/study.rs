@@ -104,7 +104,7 @@ fn the_table_names_every_method_and_who_was_fooled_by_whom() {
     for method in methods() {
         assert!(outcome.out.contains(&format!("| {method:<16} |")), "{method}\n{}", outcome.out);
     }
-    for said in ["Who was fooled by whom", "|      8 |     4 |     1 | wall 1", "300 of 300", "EERUF"] {
+    for said in ["Who was fooled by whom", "|      8 |     4 |     1 | wall 1", "300 of 300", "t95"] {
         assert!(outcome.out.contains(said), "{said}\n{}", outcome.out);
     }
 }
@@ -126,12 +126,14 @@ fn pictures_are_drawn_and_say_what_they_show() {
     let made = folder.path().join("pictures/of");
     let outcome = eeruf(&["study", "scenes/alcove.toml", "--periods", "200", "--svg", made.to_str().unwrap()]);
     assert_eq!((outcome.code, outcome.err.as_str()), (Some(0), ""));
+    assert!(outcome.out.contains("5 pictures in "), "{}", outcome.out);
     let picture = |name: &str| std::fs::read_to_string(made.join(name)).unwrap();
     for (name, says) in [
         ("scene.svg", vec!["conventional", "eeruf", "sound sent by sensor", "wrong readings believed", " m\n"]),
         ("timing.svg", vec!["eeruf: two periods as they happened", "crosstalk, rejected", "time, ms"]),
         ("readings.svg", vec!["What sensor ", "range, m", "time, s", "rejected"]),
         ("methods.svg", [&methods()[..], &["good lost", "readings a second"]].concat()),
+        ("blind.svg", [&methods()[..], &["Blind sensors (red)", "flow is the way recommended"]].concat()),
     ] {
         let svg = picture(name);
         assert!(svg.starts_with("<svg") && svg.trim_end().ends_with("</svg>"), "{name}");
@@ -233,7 +235,7 @@ fn bad_scenes_get_one_line_with_their_place() {
     assert!(outcome.err.contains("no-such-scene.toml"), "{}", outcome.err);
     let outcome = eeruf(&["study", "scenes/alcove.toml", "--method", "eruf"]);
     assert_eq!(outcome.code, Some(2));
-    assert!(outcome.err.contains("`eruf`; expected simultaneous, "), "{}", outcome.err);
+    assert!(outcome.err.contains("`eruf`; did you mean `eeruf`?"), "{}", outcome.err);
 }
 
 #[test]

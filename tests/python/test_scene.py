@@ -262,7 +262,7 @@ def test_how_a_ring_is_fired_today_is_said_in_code_as_in_a_file() -> None:
         assert np.array_equal(readings.fired_s, sim.simulate(again, method, periods=30).fired_s)
         first = np.sort(readings.fired_s[readings.sensor == 0])
         assert np.diff(first).min() > shortest_s, method
-    with pytest.raises(eeruf.ArgumentError, match="firing: turns_us: unknown key; expected one of `timeout_us`"):
+    with pytest.raises(eeruf.ArgumentError, match="firing: turns_us: unknown key; did you mean `turn_us`"):
         robot.replace(firing={"turns_us": 1})
     with pytest.raises(eeruf.SceneError, match="timeout_us is 40000; expected 1 to window_us"):
         sim.Scene(WALLS, robots=[robot.replace(firing={"timeout_us": 40_000})])

@@ -97,7 +97,10 @@ impl LayoutKey {
         let rows = neighbour_rows(pairs.iter().copied(), sensors).map_err(|error| match error {
             // As the file counts them.
             RequirementsError::Neighbours { pair: (x, y), sensors } => {
-                format!("layout: neighbours [{x}, {y}]; expected two different sensors from 0 to {}", sensors - 1)
+                format!(
+                    "layout: neighbours [{x}, {y}]; expected two different sensors, counted from 0 to {}",
+                    sensors - 1
+                )
             }
             error => format!("layout: {error:#}"),
         })?;

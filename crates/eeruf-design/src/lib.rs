@@ -6,6 +6,7 @@
 //! | `limits`, `layout` | what numbers a ring file may hold; how the sensors stand |
 //! | `each`, `uneven` | one number for all sensors or one for each; what sensors need that are not alike |
 //! | `ring` | the ring file, turned into what a schedule must meet |
+//! | `plausible` | signs that its numbers are in other units |
 //! | `places`, `urdf`, `hearing` | where the sensors are on the robot, and which hear each other there |
 //! | `shortest` | the shortest period for that, from the atlas or by `eeruf-period` |
 //! | `find`, `what_if` | the design of a ring, and what would make it shorter |
@@ -44,6 +45,7 @@ mod limits;
 mod moving;
 mod places;
 mod placing;
+mod plausible;
 mod questions;
 mod ring;
 #[cfg(feature = "rooms")]
@@ -72,7 +74,7 @@ pub use rooms::{RoomRobot, RoomsAnswer, RoomsAsked, RoomsJson};
 pub use shortest::{Search, Shortest, shortest};
 pub use uneven::OwnedUneven;
 #[cfg(feature = "rooms")]
-pub use way::Way;
+pub use way::{How, Way};
 pub use what_if::WhatIf;
 
 /// The listing of the crate's README compiles and holds.

@@ -35,6 +35,8 @@ pub(crate) fn number(name: &str, value: f64, least: f64, most: f64) -> Result<f6
     if (least..=most).contains(&value) {
         Ok(value)
     } else {
-        Err(format!("{name} = {value}; expected {least} to {most}"))
+        // Its likely cause is what makes a value implausible.
+        let why = eeruf_files::doubt(name, value).and_then(|doubt| Some(format!("; {}", doubt.rsplit_once("; ")?.1)));
+        Err(format!("{name} = {value}; expected {least} to {most}{}", why.unwrap_or_default()))
     }
 }

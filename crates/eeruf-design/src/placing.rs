@@ -47,7 +47,8 @@ impl RingFile {
 
     fn listed(&self, poses: &[PlaceFile]) -> Result<Places, String> {
         if poses.len() != self.sensors {
-            return Err(format!("poses has {} places; expected {}, as many as sensors", poses.len(), self.sensors));
+            let plural = if poses.len() == 1 { "" } else { "s" };
+            return Err(format!("poses: {} place{plural}; expected {}, one a sensor", poses.len(), self.sensors));
         }
         let pose = |place: &PlaceFile| {
             let &PlaceFile { x_m, y_m, heading_deg, .. } = place;

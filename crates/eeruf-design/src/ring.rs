@@ -13,6 +13,7 @@ use crate::hearing::hearing;
 use crate::layout::{LayoutKey, LayoutName, OwnedLayout};
 use crate::limits::{four, neighbours_in_range, number, sensors_in_range};
 use crate::places::Places;
+use crate::plausible;
 use crate::uneven::OwnedUneven;
 
 /// Repeatability of readings of one wall on a robot that stands, for a file that names its modules and no jitter: a
@@ -57,16 +58,16 @@ pub(crate) struct RingFile {
     /// The modules: range and rest of each, where the file does not say otherwise.
     module: Option<ModulesFile>,
     /// `T_delta` itself, or the sensor's repeatability with jitter, and how fast the robot moves.
-    t_delta_us: Option<Each<u32>>,
-    jitter_us: Option<Each<u32>>,
+    pub(crate) t_delta_us: Option<Each<u32>>,
+    pub(crate) jitter_us: Option<Each<u32>>,
     speed_m_s: Option<f64>,
     /// The interval itself, or how far walls may be from which neighbours hear each other.
     min_interval_us: Option<u32>,
     crosstalk_range_m: Option<f64>,
     /// The window itself, or the range to see, and how soon a sensor may be triggered again.
-    window_us: Option<Each<u32>>,
-    max_range_m: Option<Each<f64>>,
-    retrigger_us: Option<Each<u32>>,
+    pub(crate) window_us: Option<Each<u32>>,
+    pub(crate) max_range_m: Option<Each<f64>>,
+    pub(crate) retrigger_us: Option<Each<u32>>,
     /// The time that the controller needs for one firing; no two are closer.
     handling_us: Option<u32>,
     /// P, where it is less than `T_delta`, and R, where it is not the module's.
@@ -283,6 +284,10 @@ impl RingFile {
             (None, None, metres) if self.module.is_some() => {
                 (vec![USUAL_JITTER_US; sensors], metres.map(speed).transpose()?)
             }
+            (None, None, _) => {
+                let message = "module: missing; expected `module = \"hc-sr04\"` or another, or t_delta_us or jitter_us";
+                return Err(message.to_owned());
+            }
             _ => return Err("expected either t_delta_us, or jitter_us with or without speed_m_s".to_owned()),
         };
         let t_delta: Vec<Micros> = t_delta.into_iter().map(Micros::new).collect();
@@ -369,6 +374,7 @@ impl RingFile {
             uneven,
         };
         OwnedUneven::can_fire_together(&spec.problem().requirements, sensors)?;
+        plausible::check(self, &spec)?;
         Ok(spec)
     }
 }

@@ -1,10 +1,12 @@
 //! [`Way`]: a way of firing as a program for a board has it.
 
-use eeruf_core::flow::{TurnSettings, Votes};
-use eeruf_core::{EachSensor, SensorLimits};
+use eeruf_core::flow::{InTurn, TurnSettings, Votes};
+use eeruf_core::plan::Plan as _;
+use eeruf_core::{EachSensor, Instant, MAX_SENSORS, SensorLimits};
 use eeruf_sim::Robot;
 use eeruf_sim::experiments::rooms::RoomWay;
 use eeruf_sim::methods::Method;
+use serde::Serialize;
 
 use crate::flow::FlowDesign;
 use crate::ring::RingSpec;
@@ -73,7 +75,60 @@ impl Way {
     }
 }
 
+/// How a ring fires: a way with its numbers. Sensors count from 0.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct How {
+    /// The way's name.
+    pub way: &'static str,
+    /// All of it in words.
+    pub in_words: String,
+    /// Sensors in the order in which they fire while nothing is heard; none for a table.
+    pub order: Vec<u8>,
+    /// The least and the most time from a firing to the next, in microseconds; none for a table.
+    pub gaps_us: Option<[u32; 2]>,
+    /// Sensors that fire together.
+    pub groups: Vec<Vec<u8>>,
+    /// What is believed: `every_echo`, `by_motion` (flow's judge), or `two_in_a_row`.
+    pub votes: &'static str,
+}
+
 impl RingSpec {
+    /// How a way that was judged in rooms fires its robot; none for one that no program has.
+    ///
+    /// # Errors
+    /// As [`fired`](Self::fired).
+    pub fn how(&self, judged: &RoomWay) -> Result<Option<How>, String> {
+        let Some(way) = Way::of(judged) else { return Ok(None) };
+        if way == Way::TwoPhases {
+            let in_words = way.in_words(&TurnSettings::new(1));
+            let (order, groups) = (vec![], vec![]);
+            return Ok(Some(How { way: way.name(), in_words, order, gaps_us: None, groups, votes: "two_in_a_row" }));
+        }
+        let FlowDesign { turns, belief, window, limits, .. } = self.fired(way, &judged.robot, 1)?;
+        let now = Instant::from_micros(0);
+        let plan = InTurn::<MAX_SENSORS, _>::with_limits(self.sensors, limits, turns, window, now);
+        let mut plan = plan.map_err(|error| error.to_string())?;
+        let mut order = vec![];
+        while let Some((sensor, _)) = plan.next_firing().filter(|_| order.len() < self.sensors) {
+            let due = plan.deadline();
+            plan.fire(due);
+            plan.ended(sensor, due);
+            order.push(sensor);
+        }
+        let together = |group: u8| -> Vec<u8> {
+            (0..self.sensors as u8).filter(|&x| limits.groups()[usize::from(x)] == group).collect()
+        };
+        let groups = (1..=self.sensors as u8).map(together).filter(|group| group.len() > 1).collect();
+        Ok(Some(How {
+            way: way.name(),
+            in_words: way.in_words(&turns),
+            order,
+            gaps_us: Some([turns.least.as_micros(), turns.most.as_micros()]),
+            groups,
+            votes: if belief.votes == Votes::EveryEcho { "every_echo" } else { "by_motion" },
+        }))
+    }
+
     /// The settings by which its robot, as it was judged in rooms, fires one by one, in groups or by flow, with the
     /// seed of its dice.
     ///
@@ -128,6 +183,20 @@ mod tests {
         let spec = RingSpec::from_text(ring).unwrap();
         let robot = spec.room_robot().unwrap().robot;
         spec.fired(way, &robot, 1)
+    }
+
+    #[test]
+    fn order_and_groups_are_those_of_the_plan() {
+        let spec = RingSpec::from_text("sensors = 8\nmodule = \"hc-sr04\"\nlayout = \"ring\"").unwrap();
+        let ways = RoomWay::all(&spec.room_robot().unwrap().robot, None);
+        let how = |name| spec.how(ways.iter().find(|way| way.name == name).unwrap()).unwrap();
+        let flow = how("flow").unwrap();
+        assert_eq!((flow.order, flow.votes, flow.groups.len()), (vec![0, 3, 6, 1, 4, 7, 2, 5], "by_motion", 0));
+        assert!(flow.gaps_us.is_some_and(|[least, most]| least < most));
+        let groups = how("far_groups").unwrap();
+        assert_eq!(groups.groups, [[0, 4], [1, 5], [2, 6], [3, 7]]);
+        assert_eq!((groups.order.len(), groups.votes), (8, "every_echo"));
+        assert_eq!(how("arrays"), None);
     }
 
     #[test]

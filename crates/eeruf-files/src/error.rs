@@ -36,7 +36,11 @@ impl FileError {
     /// A failure to read a file.
     pub fn reading(file: &Path, error: &io::Error) -> Self {
         let is_toml = file.extension().is_some_and(|ending| ending == "toml");
+        if let Some(meant) = alike(file).filter(|_| error.kind() == ErrorKind::NotFound) {
+            return Self::new(file, format!("{error}; did you mean `{meant}`?"));
+        }
         let advice = match error.kind() {
+            ErrorKind::NotFound if file.starts_with("~") => "expected a path without `~`, which only shells know",
             ErrorKind::NotFound if is_toml => "expected a file that exists; `eeruf examples .` writes some",
             ErrorKind::NotFound => "expected a file that exists",
             ErrorKind::InvalidData => "expected text in UTF-8",
@@ -54,6 +58,7 @@ impl FileError {
         let advice = match error.kind() {
             _ if is_full => "expected room for it; free some space, or name another place",
             ErrorKind::NotFound => "expected a folder that exists",
+            ErrorKind::AlreadyExists => "expected a folder, not a file",
             _ => "expected a file that can be written",
         };
         Self { is_full, ..Self::new(file, format!("{error}; {advice}")) }
@@ -118,6 +123,22 @@ impl fmt::Display for FileError {
 }
 
 impl std::error::Error for FileError {}
+
+#[cfg(not(feature = "toml"))]
+fn alike(_: &Path) -> Option<String> {
+    None
+}
+
+/// The file in the same folder whose name is most like that of one that does not exist.
+#[cfg(feature = "toml")]
+fn alike(file: &Path) -> Option<String> {
+    let folder = file.parent()?;
+    let here = if folder == Path::new("") { Path::new(".") } else { folder };
+    let names = std::fs::read_dir(here).ok()?.filter_map(|entry| entry.ok()?.file_name().into_string().ok());
+    let names: Vec<String> = names.filter(|name| Path::new(name).extension() == file.extension()).collect();
+    let meant = crate::meant(&file.file_name()?.to_string_lossy(), names.iter().map(String::as_str))?;
+    Some(folder.join(meant).display().to_string())
+}
 
 /// A text without control characters: what a file holds, such as the name of another file, may span lines.
 fn in_one_line(text: &str) -> String {

@@ -24,7 +24,8 @@ const BOUNCES: &str = "each bounce multiplies the paths; 4 to 6 suffice in most 
 const METRES: &str = "likely centimetres or millimetres: lengths are metres";
 
 /// In any file and among the options of any command: a key has one meaning.
-const PLAUSIBLE: [Plausible; 38] = [
+const PLAUSIBLE: [Plausible; 39] = [
+    plausible("heading_rad", 0.0, 6.3, "likely degrees: with this key headings are radians"),
     plausible("spacing_rad", 0.0, 3.2, "radians from one sensor to the next, not degrees or the whole circle"),
     plausible("w_rad_s", 0.0, 20.0, "likely degrees: rates of turn are radians per second"),
     plausible("resolution", 0.001, 1.0, METRES),
@@ -166,6 +167,9 @@ fn spacing(table: &DeTable<'_>, at: usize, found: &mut Vec<(usize, String)>) {
 /// assert!(eeruf_files::doubt("radius_m", 30.0).unwrap().starts_with("30; expected 0.001 to 20; likely centi"));
 /// ```
 pub fn doubt(key: &str, number: f64) -> Option<String> {
+    if key == "heading_deg" && is_likely_rad(number) {
+        return Some(format!("{number}; likely radians: headings are degrees, and this is {:.0}", number.to_degrees()));
+    }
     let plausible = PLAUSIBLE.iter().find(|plausible| plausible.key == key)?;
     let size = number.abs();
     let is_plausible = size == 0.0 || (plausible.from..=plausible.to).contains(&size);
@@ -173,6 +177,18 @@ pub fn doubt(key: &str, number: f64) -> Option<String> {
     // A number of 300 digits says no more than its power of ten.
     let shown = if size < 1e12 { number.to_string() } else { format!("{number:e}") };
     (!is_plausible).then(|| format!("{shown}; expected {from} to {to}; {why}"))
+}
+
+/// Returns true for an angle that is likely in radians: a multiple of 15 degrees up to the full circle, if it is.
+///
+/// ```
+/// use eeruf_files::is_likely_rad;
+/// assert!([0.785, -1.57, 3.14, 1.05].into_iter().all(is_likely_rad));
+/// assert!(![0.0, 1.0, 2.0, 5.0, 15.0, 45.0, -90.0].into_iter().any(is_likely_rad));
+/// ```
+pub fn is_likely_rad(angle: f64) -> bool {
+    let of_15_degrees = angle.to_degrees().abs() / 15.0;
+    (0.5..24.5).contains(&of_15_degrees) && (of_15_degrees - libm::round(of_15_degrees)).abs() < 0.02
 }
 
 /// As [`doubt`], for a list: firing times and waits are implausible only if all of them are small.

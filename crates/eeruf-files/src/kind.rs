@@ -139,10 +139,12 @@ impl Kind {
 
 /// Reads a text up to the size that files of ours have.
 fn read_text(file: &Path) -> io::Result<String> {
-    let mut text = String::new();
-    let size = fs::File::open(file)?.take(TOO_LARGE).read_to_string(&mut text)?;
+    let mut bytes = vec![];
+    let size = fs::File::open(file)?.take(TOO_LARGE).read_to_end(&mut bytes)?;
     if size as u64 == TOO_LARGE {
         return Err(io::Error::new(ErrorKind::FileTooLarge, "64 MiB or more"));
     }
-    Ok(text)
+    let is_utf16 = bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff");
+    let what = if is_utf16 { "text in UTF-16; in PowerShell `| Out-File -Encoding utf8`" } else { "no text" };
+    String::from_utf8(bytes).map_err(|_| io::Error::new(ErrorKind::InvalidData, what))
 }

@@ -22,7 +22,7 @@ mod schedule;
 pub use error::FileError;
 pub use firing_row::{FIRING_COLUMNS, firing_row};
 #[cfg(feature = "toml")]
-pub use implausible::{doubt, doubt_list, doubted_keys, doubts_in};
+pub use implausible::{doubt, doubt_list, doubted_keys, doubts_in, is_likely_rad};
 pub use kind::Kind;
 #[cfg(feature = "toml")]
 pub use parse::{build, explain, explain_json, meant, parse};

@@ -9,13 +9,17 @@ use toml::de::{DeTable, DeValue};
 use crate::FileError;
 
 /// Types of Rust, and what a user writes for them.
-const TYPES: [(&str, &str); 5] = [
+const TYPES: [(&str, &str); 6] = [
+    ("a sequence", "a list"),
     ("usize", "a whole number from 0 on"),
     ("u64", "a whole number from 0 on"),
     ("u32", "a whole number from 0 to 4294967295"),
     ("u8", "a whole number from 0 to 255"),
     ("f64", "a number"),
 ];
+/// Endings of keys, and the units that they stand for.
+const UNITS: [(&str, &str); 5] =
+    [("_us", "microseconds"), ("_deg", "degrees"), ("_m_s", "metres per second"), ("_m", "metres"), ("_db", "dB")];
 /// The least likeness, out of 1, of a key that was meant.
 const ALIKE: f64 = 0.85;
 
@@ -38,8 +42,47 @@ pub fn parse<T: DeserializeOwned>(text: &str) -> Result<T, FileError> {
         let table = DeTable::parse(text).ok();
         let key = span.as_ref().and_then(|span| key_at(table.as_ref()?.get_ref(), span.start));
         let found = span.and_then(|span| text.get(span)).unwrap_or_default();
-        FileError::in_text(message(key, found, error.message())).at_line(line)
+        let of_line = line.and_then(|line| text.lines().nth(line as usize - 1)).unwrap_or_default();
+        let not_toml = || if table.is_none() { syntax(of_line, error.message()) } else { empty(text) };
+        FileError::in_text(not_toml().unwrap_or_else(|| message(key, found, error.message()))).at_line(line)
     })
+}
+
+/// The mistake in a text that says nothing.
+fn empty(text: &str) -> Option<String> {
+    let is_empty = text.lines().all(|line| line.trim().is_empty() || line.trim().starts_with('#'));
+    is_empty.then(|| "empty; expected lines such as `sensors = 8`; `eeruf examples .` writes files".to_owned())
+}
+
+/// The likely mistake in a line that is no TOML.
+fn syntax(line: &str, error: &str) -> Option<String> {
+    const QUOTES: [char; 8] =
+        ['\u{201c}', '\u{201d}', '\u{201e}', '\u{2018}', '\u{2019}', '\u{201a}', '\u{ab}', '\u{bb}'];
+    let line = line.trim();
+    let is_key = |word: &str| !word.is_empty() && word.chars().all(|c| c.is_alphanumeric() || "_-\"".contains(c));
+    let of = |mark| line.split_once(mark).map(|(key, value): (&str, &str)| (key.trim(), value.trim()));
+    let plain = |word: &str| word.trim_end_matches(',').trim_matches('"').to_owned();
+    if let Some(quote) = line.chars().find(|c| QUOTES.contains(c)) {
+        return Some(format!("{quote}: a typographic quote; expected straight ones: {}", line.replace(QUOTES, "\"")));
+    }
+    if line.starts_with(['{', '}']) {
+        return Some("JSON; expected TOML: a line `key = value` for each key, without braces".to_owned());
+    }
+    if let Some((key, value)) = of(':').filter(|(key, _)| is_key(key)) {
+        let value = if value.is_empty() { ".." } else { value.trim_end_matches(',') };
+        return Some(format!("{key}: a colon; expected `{} = {value}`", plain(key)));
+    }
+    let (key, value) = of('=')?;
+    match error {
+        _ if !key.is_ascii() => Some(format!("{key}: expected a key of letters from a to z, digits, `-` and `_`")),
+        _ if value.ends_with(',') => Some(format!("{key}: a comma after the value; expected the end of the line")),
+        _ if error.starts_with("string values must be quoted") => {
+            let is_yes = ["yes", "no", "on", "off", "True", "False"].contains(&value);
+            let expected = if is_yes { "true or false".to_owned() } else { format!("quotes: {key} = \"{value}\"") };
+            Some(format!("{key}: {value}; expected {expected}"))
+        }
+        _ => None,
+    }
 }
 
 /// Reads a TOML text and builds its meaning.
@@ -96,7 +139,7 @@ pub fn explain(error: &toml::de::Error) -> String {
 ///
 /// ```
 /// let error = eeruf_files::explain_json("missing field `period_us` at line 1 column 2");
-/// assert_eq!(error.to_string(), "line 1: period_us: missing; expected the key to be set");
+/// assert_eq!(error.to_string(), "line 1: period_us: missing; expected `period_us = ..`");
 /// ```
 pub fn explain_json(error: &str) -> FileError {
     let (what, at) = error.rsplit_once(" at line ").unwrap_or((error, ""));
@@ -127,17 +170,19 @@ fn message(key: Option<&str>, found: &str, error: &str) -> String {
     let bare = |name: &str| name.trim_matches('`').to_owned();
     if let Some((name, keys)) = error.strip_prefix("unknown field ").and_then(|rest| rest.split_once(", ")) {
         let name = bare(name);
-        let meant = meant(&name, keys.split('`').skip(1).step_by(2));
-        let meant = meant.map_or(String::new(), |known| format!("; did you mean `{known}`?"));
-        let keys = keys.replace("there are no fields", "expected none");
-        return format!("{name}: unknown key; {keys}{meant}");
+        if let Some(known) = meant(&name, keys.split('`').skip(1).step_by(2)) {
+            let unit = UNITS.iter().find(|(ending, _)| known.ends_with(ending)).filter(|of| !name.ends_with(of.0));
+            let unit = unit.map_or(String::new(), |(_, unit)| format!(", in {unit}"));
+            return format!("{name}: unknown key; did you mean `{known}`{unit}?");
+        }
+        return format!("{name}: unknown key; {}", keys.replace("there are no fields", "expected none"));
     }
     if error == "duplicate key" {
         return format!("{found}: set twice; expected each key once");
     }
     if let Some(name) = error.strip_prefix("missing field ") {
         let place = key.map_or(String::new(), |key| format!(" in {key}"));
-        return format!("{}: missing{place}; expected the key to be set", bare(name));
+        return format!("{0}: missing{place}; expected `{0} = ..`", bare(name));
     }
     // Of a value that fits none of several types the parser names the types alone.
     if let Some(expected) = error.strip_prefix("expected ").filter(|_| !found.is_empty() && !found.contains('\n')) {
@@ -149,6 +194,14 @@ fn message(key: Option<&str>, found: &str, error: &str) -> String {
         .filter(|_| key.is_some() || error.contains(", expected "))
         .unwrap_or(error);
     let (found, expected) = error.rsplit_once(", expected ").unwrap_or((error, ""));
+    let found = found.strip_suffix(" as i128").or(found.strip_suffix(" as u128")).unwrap_or(found);
+    if let Some(key) = key.filter(|_| (found, expected) == ("map", "a sequence")) {
+        return format!("{key}: one table; expected a list of them, each below `[[{key}]]`");
+    }
+    if let Some(count) = found.strip_prefix("length ").filter(|_| expected.starts_with("struct ")) {
+        let key = key.map_or(String::new(), |key| format!("{key}: "));
+        return format!("{key}a list of {count}; expected a table with keys: {{ .. = .., .. }}");
+    }
     let expected = TYPES.iter().find(|(name, _)| *name == expected).map_or(expected, |(_, words)| words);
     let values = ["an array of length ", "a tuple of size "].iter().find_map(|list| expected.strip_prefix(list));
     let values = values.map(|count| format!("{count} values"));
@@ -199,14 +252,26 @@ mod tests {
             ("sensors = -4", "line 1: sensors: integer `-4`; expected a whole number from 0 on"),
             ("sensors = \"4\"", "line 1: sensors: string \"4\"; expected a whole number from 0 on"),
             ("sensors = 4\nlayout = \"star\"", "line 2: layout: `star`; expected `line` or `ring`"),
-            ("", "line 1: sensors: missing; expected the key to be set"),
-            (
-                "sensor = 4",
-                "line 1: sensor: unknown key; expected one of `sensors`, `layout`, `walls`; did you mean \
-                            `sensors`?",
-            ),
+            ("", "line 1: empty; expected lines such as `sensors = 8`; `eeruf examples .` writes files"),
+            ("layout = \"ring\"", "line 1: sensors: missing; expected `sensors = ..`"),
+            ("sensor = 4", "line 1: sensor: unknown key; did you mean `sensors`?"),
             ("sensors = 4\nspeed = 3", "line 2: speed: unknown key; expected one of `sensors`, `layout`, `walls`"),
-            ("sensors = 4\n[[walls]]\n", "line 2: points_m: missing in walls; expected the key to be set"),
+            ("sensors = 4\n[[walls]]\n", "line 2: points_m: missing in walls; expected `points_m = ..`"),
+            ("sensors = 4\n[walls]", "line 2: walls: one table; expected a list of them, each below `[[walls]]`"),
+            ("sensors = 4\nwalls = 3", "line 2: walls: integer `3`; expected a list"),
+            (
+                "sensors = 18446744073709551616",
+                "line 1: sensors: integer `18446744073709551616`; expected a whole number from 0 on",
+            ),
+            ("sensors: 4", "line 1: sensors: a colon; expected `sensors = 4`"),
+            ("{\"sensors\": 4}", "line 1: JSON; expected TOML: a line `key = value` for each key, without braces"),
+            ("sensors = 4,", "line 1: sensors: a comma after the value; expected the end of the line"),
+            ("layout = ring", "line 1: layout: ring; expected quotes: layout = \"ring\""),
+            ("layout = yes", "line 1: layout: yes; expected true or false"),
+            (
+                "layout = \u{201c}ring\u{201d}",
+                "line 1: \u{201c}: a typographic quote; expected straight ones: layout = \"ring\"",
+            ),
             ("sensors = 4\n[[walls]]\npoints_m = [1, true]", "line 3: points_m: boolean `true`; expected a number"),
             ("sensors = 4\n[[walls]]\npoints_m = 1", "line 3: points_m: integer `1`; expected 2 values"),
             ("sensors = 4\nsensors = 5", "line 2: sensors: set twice; expected each key once"),

@@ -1,6 +1,6 @@
 //! Methods side by side: what is wrong among what is believed, what is rejected, what that costs.
 
-use eeruf_sim::Summary;
+use eeruf_sim::{Method, Summary};
 use plotters::style::text_anchor::HPos;
 use plotters::style::{Color, RGBColor};
 
@@ -62,6 +62,36 @@ pub(crate) fn methods_chart(title: &str, summaries: &[Summary]) -> Picture {
             let end = left + value * scale;
             picture.rect([(left, y - 8.0), (end.max(left + 1.0), y + 8.0)], colour);
             picture.text(rounded(value), (end + 5.0, y), SMALL);
+        }
+    }
+    picture
+}
+
+/// A sensor that is right in under this share of its firings is blind.
+const BLIND: f64 = 0.05;
+
+/// One line for each method, one cell for each sensor: the share of its firings that are right, and which are blind.
+pub(crate) fn blind_sensors(lanes: &[(Method, Vec<f64>)]) -> Picture {
+    let sensors = lanes.iter().map(|(_, shares)| shares.len()).max().unwrap_or(0);
+    let cell = ((WIDTH - LEFT) / sensors.max(1) as f64).min(90.0);
+    let mut picture = Picture::new(WIDTH, TOP + LANE * lanes.len() as f64 + 20.0);
+    picture.text("Blind sensors (red): right in under 5 % of their firings", (16.0, 22.0), TITLE);
+    picture.text("sensor; firings that are right, %; flow is the way recommended", (LEFT, 58.0), CAPTION);
+    for sensor in 0..sensors {
+        let x = LEFT + cell * (sensor as f64 + 0.5);
+        picture.text_in((sensor + 1).to_string(), (x, 84.0), SMALL, HPos::Center, INK);
+    }
+    for (lane, (method, shares)) in lanes.iter().enumerate() {
+        let y = TOP + LANE * (lane as f64 + 0.5);
+        if *method == Method::Flow {
+            picture.rect([(8.0, y - 0.5 * LANE), (LEFT - 4.0, y + 0.5 * LANE)], LISTENING.mix(0.5));
+        }
+        picture.text_in(method.to_string(), (LEFT - 10.0, y), CAPTION, HPos::Right, INK);
+        for (sensor, &share) in shares.iter().enumerate() {
+            let x = LEFT + cell * sensor as f64;
+            let colour = if share < BLIND { REJECTED.mix(1.0) } else { ACCEPTED.mix(0.15 + 0.5 * share) };
+            picture.rect([(x + 1.0, y - 0.5 * LANE + 1.0), (x + cell - 1.0, y + 0.5 * LANE - 1.0)], colour);
+            picture.text_in(format!("{:.0}", 100.0 * share), (x + 0.5 * cell, y), SMALL, HPos::Center, INK);
         }
     }
     picture

@@ -16,7 +16,7 @@ pub(crate) use atlas::atlas;
 pub(crate) use course::courses;
 pub(crate) use crosstalk::two_periods;
 pub(crate) use kinds::kinds_over_time;
-pub(crate) use methods::methods_chart;
+pub(crate) use methods::{blind_sensors, methods_chart};
 pub(crate) use picture::Picture;
 pub(crate) use readings::readings_over_time;
 pub(crate) use scene::{DrawnPath, Panel, scene_with_paths};

@@ -26,26 +26,5 @@ impl Study {
 pub(crate) fn of_robot(readings: &Readings, robot: usize, sensors: usize) -> Readings {
     let own: Vec<usize> =
         (0..readings.len()).filter(|&reading| usize::from(readings.robot[reading]) == robot).collect();
-    fn pick<T: Copy>(own: &[usize], of: &[T]) -> Vec<T> {
-        own.iter().map(|&reading| of[reading]).collect()
-    }
-    let mut alone = readings.clone();
-    alone.sensors = sensors;
-    alone.robot = pick(&own, &readings.robot);
-    alone.sensor = pick(&own, &readings.sensor);
-    alone.period = pick(&own, &readings.period);
-    alone.phase = pick(&own, &readings.phase);
-    alone.fired_s = pick(&own, &readings.fired_s);
-    alone.x_m = pick(&own, &readings.x_m);
-    alone.y_m = pick(&own, &readings.y_m);
-    alone.heading_rad = pick(&own, &readings.heading_rad);
-    alone.kind = pick(&own, &readings.kind);
-    alone.t_echo_us = pick(&own, &readings.t_echo_us);
-    alone.earliest_us = pick(&own, &readings.earliest_us);
-    alone.reference_us = pick(&own, &readings.reference_us);
-    alone.cause = pick(&own, &readings.cause);
-    alone.path = pick(&own, &readings.path);
-    alone.emitted_s = pick(&own, &readings.emitted_s);
-    alone.expected_change_us = pick(&own, &readings.expected_change_us);
-    alone
+    Readings { sensors, ..readings.select(&own) }
 }

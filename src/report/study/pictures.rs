@@ -15,22 +15,25 @@ const MOST_PATHS: usize = 24;
 /// Number of readings of one sensor that are drawn.
 const SHOWN_READINGS: usize = 70;
 
-/// Draws `scene`, `timing`, `readings` and `methods` with this ending into a folder, which is made if need be.
-pub(crate) fn pictures(folder: &Path, ending: &str, world: &World, study: &Study) -> Result<(), InputError> {
+/// Draws `scene`, `timing`, `readings`, `methods` and `blind` with this ending into a folder, which is made if need be,
+/// and returns their number.
+pub(crate) fn pictures(folder: &Path, ending: &str, world: &World, study: &Study) -> Result<usize, InputError> {
     make_folder(folder)?;
     let file = |name: &str| folder.join(name).with_extension(ending);
     let summaries: Vec<Summary> = study.runs.iter().map(Readings::summary).collect();
     draw::methods_chart("Firing methods in the same scene, on the same seed", &summaries).save(&file("methods"))?;
+    let mut drawn = 1;
     // Before and after, where both were simulated; or what there is.
     let before = study.of(Method::Conventional).or_else(|| study.runs.first());
     let after = study.of(Method::Eeruf).or_else(|| study.of(Method::EerufBest)).or_else(|| study.runs.last());
-    let (Some(before), Some(after)) = (before, after) else { return Ok(()) };
+    let (Some(before), Some(after)) = (before, after) else { return Ok(drawn) };
     let shown: Vec<&Readings> = if before.method == after.method { vec![after] } else { vec![before, after] };
     let panels: Vec<Panel> = shown.iter().map(|readings| panel(world, readings)).collect();
     draw::scene_with_paths(world, &panels).save(&file("scene"))?;
+    drawn += 1;
 
     let (robot, sensor) = most_helped(before, after);
-    let Some(body) = world.robots().get(robot) else { return Ok(()) };
+    let Some(body) = world.robots().get(robot) else { return Ok(drawn) };
     let alone: Vec<Readings> = shown.iter().map(|readings| of_robot(readings, robot, body.sensors.len())).collect();
     if let Some(after) = alone.last() {
         let window_s = 1e-6 * f64::from(body.window.as_micros());
@@ -39,8 +42,22 @@ pub(crate) fn pictures(folder: &Path, ending: &str, world: &World, study: &Study
         let metres_per_us = 0.5e-6 * world.scene().air().speed_of_sound();
         let alone: Vec<&Readings> = alone.iter().collect();
         draw::readings_over_time(&alone, sensor, stretch, metres_per_us, TOLERANCE_US).save(&file("readings"))?;
+        drawn += 2;
     }
-    Ok(())
+    let lane = |run: &Readings| (run.method, right_shares(&of_robot(run, robot, body.sensors.len())));
+    draw::blind_sensors(&study.runs.iter().map(lane).collect::<Vec<_>>()).save(&file("blind"))?;
+    Ok(drawn + 1)
+}
+
+/// The share of each sensor's firings that were right and believed.
+fn right_shares(readings: &Readings) -> Vec<f64> {
+    let mut counts = vec![(0_u32, 0_u32); readings.sensors];
+    for reading in 0..readings.len() {
+        let (right, fired) = &mut counts[usize::from(readings.sensor[reading])];
+        *right += u32::from(readings.is_accepted(reading) && !readings.is_wrong(reading, TOLERANCE_US));
+        *fired += 1;
+    }
+    counts.into_iter().map(|(right, fired)| f64::from(right) / f64::from(fired.max(1))).collect()
 }
 
 /// Errors that a method believed, by path.

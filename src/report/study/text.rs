@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use comfy_table::Table;
-use eeruf_sim::{Method, Readings, Summary, World};
+use eeruf_sim::{Readings, Summary, World};
 
 use super::fooled::Fooled;
 use super::found::{Study, TOLERANCE_US, of_robot};
@@ -36,7 +36,6 @@ pub(crate) fn describe(file: &Path, world: &World, study: &Study) -> String {
         text += &tables(&runs);
         let fooled = Fooled::of(&runs, index, TOLERANCE_US);
         text += &fooled.describe();
-        text += &verdict(&runs, sensors);
     }
     if let Some(best) = &study.best {
         let proof = if best.proven() {
@@ -94,61 +93,4 @@ fn table<const H: usize, const N: usize>(
 ) -> Table {
     let row = |summary: &Summary| core::iter::once(summary.method.to_string()).chain(cells(summary)).collect();
     markdown(&header, summaries.iter().map(row))
-}
-
-/// The table in words: why alternate, and what it costs.
-fn verdict(runs: &[Readings], sensors: usize) -> String {
-    let of = |method| runs.iter().find(|readings| readings.method == method).map(Readings::summary);
-    let wrong = |summary: &Summary| fine_percent(summary.wrong_of_accepted.unwrap_or(0.0));
-    let mut text = String::new();
-    let (Some(usual), Some(eeruf)) = (of(Method::Conventional), of(Method::Eeruf)) else {
-        return text;
-    };
-    _ = writeln!(text, "\nFiring with constant lags, {} % of what is believed is wrong.", wrong(&usual));
-    if let Some(control) = of(Method::Comparison) {
-        _ = writeln!(
-            text,
-            "Comparing each reading with the one before leaves {} %: crosstalk repeats as well as a true echo does.",
-            wrong(&control)
-        );
-    }
-    _ = writeln!(
-        text,
-        "EERUF lets each sensor's wait alternate, so that crosstalk moves from reading to reading: {} % is left.",
-        wrong(&eeruf)
-    );
-    _ = write!(text, "It costs {} % of the good readings", fine_percent(eeruf.good_lost.unwrap_or(0.0)));
-    if eeruf.starved > 0 {
-        _ = write!(text, ", and {} of {sensors} sensors had under 5 % of their readings accepted: ", eeruf.starved);
-        let why = match (eeruf.starved - eeruf.starved_in_part, eeruf.starved_in_part) {
-            (_, 0) => "foreign sound comes\nfirst there in both phases".to_owned(),
-            (0, _) => "in one\nof the phases foreign sound comes first there, so that consecutive readings disagree"
-                .to_owned(),
-            (always, in_part) => format!(
-                "foreign sound comes\nfirst in both phases at {always}, and in one of them at {in_part}, \
-                 so that consecutive readings disagree"
-            ),
-        };
-        text += &why;
-        let fewer = |method| of(method).is_some_and(|other| other.starved < eeruf.starved);
-        _ = match (fewer(Method::MultiEcho), fewer(Method::Flow)) {
-            (true, true) => {
-                write!(text, ".\nSensors that report several echoes (multi_echo), and flow, get round that")
-            }
-            (true, false) => write!(text, ".\nSensors that report several echoes get round that (multi_echo)"),
-            (false, true) => write!(text, ".\nFlow gets round that"),
-            (false, false) => Ok(()),
-        };
-    }
-    _ = writeln!(text, ".");
-    if let Some(slow) = of(Method::Sequential)
-        && slow.readings_per_s > 0.0
-    {
-        _ = writeln!(
-            text,
-            "One by one, {:.1} readings are accepted a second; with EERUF {:.1}.",
-            slow.readings_per_s, eeruf.readings_per_s
-        );
-    }
-    text
 }

@@ -85,7 +85,7 @@ fn patience_of_an_older_file_is_refused_by_name() {
 #[test]
 fn an_unknown_field_or_word_is_named_with_its_line() {
     let unknown = robot_error("windw_us = 3");
-    assert!(unknown.starts_with("w.toml, line 6: windw_us: unknown key; expected one of `pose`, `ring`"), "{unknown}");
+    assert!(unknown.starts_with("w.toml, line 6: windw_us: unknown key; did you mean `window_us`?"), "{unknown}");
     let preset = robot_error("transducer = \"bat\"");
     assert!(
         preset.starts_with("w.toml, line 6: transducer: module: no preset \"bat\"; expected polaroid-6500, hc-sr04, "),

@@ -49,6 +49,30 @@ fn answers_quoted_by_a_guide_are_printed() {
     assert!(printed.contains(quoted[0]), "tests/data/rooms.txt does not have\n{}", quoted[0]);
 }
 
+// The table by which a reader decides is the one that was printed.
+#[test]
+fn table_of_readme_is_in_the_tables_that_are_kept() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let read = |path: &str| std::fs::read_to_string(root.join(path)).unwrap();
+    let (readme, kept) = (read("README.md"), read("tests/data/flow-tables.txt"));
+    let shown = readme.lines().skip_while(|line| !line.starts_with("| | one by one | with a median")).skip(2);
+    let shown: Vec<_> = shown.take_while(|line| line.starts_with('|')).collect();
+    let conditions = ["standing", "0.5 m/s", "90 degrees/s"];
+    let conditions = conditions.map(str::to_owned).into_iter().chain(conditions.map(|of| format!("{of}, meeting")));
+    let figures = |condition: &str, way: &str| {
+        let row = kept.lines().find_map(|line| line.strip_prefix(&format!("| {condition} | {way} | "))).unwrap();
+        let values: Vec<_> = row.split(" | ").map(|cell| cell.split(' ').next().unwrap()).collect();
+        format!("{}; {:.0}", values[0], values[2].parse::<f64>().unwrap().round())
+    };
+    let printed: Vec<_> = conditions
+        .map(|of| ["one by one", "one by one, median", "flow"].map(|way| figures(&of, way)).join(" | "))
+        .collect();
+    assert_eq!(shown.len(), printed.len());
+    for (shown, printed) in shown.iter().zip(printed) {
+        assert!(shown.ends_with(&format!("| {printed} |")), "{shown}\nexpected {printed}");
+    }
+}
+
 // The site has a page of it.
 #[test]
 fn reference_of_options_describes_each_one() {

@@ -151,7 +151,7 @@ others = re.search(r"^```python\n(.*?)^```$", pathlib.Path("python/README.md").r
 os.chdir("target/python-fresh")
 exec(others)
 exec(lines)
-eeruf.plot.timing(found.schedule, window_us=36_000).figure.savefig("timing.png")
+eeruf.plot.timing(eeruf.tables.TABLE_I_D, window_us=36_000).figure.savefig("timing.png")
 assert pathlib.Path("timing.png").stat().st_size > 5_000
 "#;
 

@@ -13,7 +13,7 @@ pub enum Symptom {
     /// Its values come in coarse steps.
     Coarse,
     /// Its readings are near nothing.
-    Chatters,
+    Scatters,
     /// It reads the echo of its own firing before.
     Stale,
     /// It jumps between two values.
@@ -28,7 +28,7 @@ impl Symptom {
             Self::Deaf => "deaf",
             Self::Constant => "constant",
             Self::Coarse => "coarse",
-            Self::Chatters => "chatters",
+            Self::Scatters => "scatters",
             Self::Stale => "stale echo",
             Self::Jumps => "jumps",
         }

@@ -50,19 +50,19 @@ impl Series {
             format!("values in steps of {step:.0} us: smaller changes, and who agrees with whom, do not show")
         };
         (self.step_us().map(coarse).map(of(Symptom::Coarse)))
-            .or_else(|| self.chatter(&echoes).map(of(Symptom::Chatters)))
+            .or_else(|| self.scattered(&echoes).map(of(Symptom::Scatters)))
             .or_else(|| self.stale().map(of(Symptom::Stale)))
             .or_else(|| self.faded().map(of(Symptom::Jumps)))
     }
 
     /// Readings that are nearly never near the one before nor at a value that comes again.
-    fn chatter(&self, echoes: &[f64]) -> Option<String> {
+    fn scattered(&self, echoes: &[f64]) -> Option<String> {
         let near = echoes.windows(2).filter(|two| (two[1] - two[0]).abs() < 500.0).count();
         let steady = self.steady().into_iter().filter(Steady::is_still);
         let lasting: usize = steady.map(|value| value.count).sum();
         (near * 4 < echoes.len() && lasting * 4 < echoes.len()).then(|| {
             let percent = 100.0 * near as f64 / (echoes.len() - 1) as f64;
-            format!("chatter: {percent:.0} % of the readings are within 500 us of the one before")
+            format!("scatters: {percent:.0} % of the readings are within 500 us of the one before")
         })
     }
 

@@ -111,7 +111,7 @@ fn single_sensors_are_noted_for_what_strikes() {
     assert_eq!(note(&|round| Some(9000.0 + noise(round, 0))), "");
     assert!(note(&|_| None).contains("no echo at all"));
     assert!(note(&|round| Some(583.0 * (10 + round % 5) as f64)).contains("steps of 583 us"));
-    assert!(note(&|round| Some(9000.0 + 400.0 * noise(round, 0))).contains("chatter"));
+    assert!(note(&|round| Some(9000.0 + 400.0 * noise(round, 0))).contains("scatters"));
     // The echo of the firing before comes 60 ms, 61 ms or 59 ms after that.
     let at = |round: u64| (60_000 * round + 1000 * (round / 2 % 2)) as f64;
     let stale = |round: u64| (round > 0).then(|| 65_000.0 - (at(round) - at(round - 1)) + noise(round, 0) / 4.0);
@@ -174,6 +174,29 @@ fn rounds_without_a_sensor_are_a_pause_test() {
     let found = examined(true);
     assert_eq!((found.verdict, &found.fooled[..], found.suspects[0].by), (Verdict::Crosstalk, &[1][..], Some(0)));
     assert_eq!((examined(false).verdict, examined(false).suspects), (Verdict::CannotTell, vec![]));
+}
+
+// Both fire at one time; a quarter of the readings of sensor 1 is anywhere, always or only where sensor 0 fires.
+#[test]
+fn noise_in_silent_rounds_is_a_sensors_own() {
+    let examined = |is_foreign: bool| {
+        let mut doctor = Doctor::new(343.2);
+        for round in 0..3000_u64 {
+            let fires = round % 3 > 0;
+            let is_odd = noise(round * round, 5) > 10.0 && (fires || !is_foreign);
+            let heard = if is_odd { 4000.0 + 100.0 * noise(round * round * 3, 7) } else { 9000.0 + noise(round, 1) };
+            push(&mut doctor, 1, (60_000 * round, Some(heard)));
+            if fires {
+                push(&mut doctor, 0, (60_000 * round, Some(7000.0 + noise(round, 0))));
+            }
+        }
+        doctor.examine(&FiringPattern::default(), &["a".to_owned(), "b".to_owned()])
+    };
+    let own = examined(false);
+    assert_eq!((own.verdict, &own.suspects[..]), (Verdict::CannotTell, &[][..]));
+    assert!(own.reasons.iter().any(|reason| reason.ends_with(": noise of its own")), "{:?}", own.reasons);
+    let foreign = examined(true);
+    assert_eq!((foreign.verdict, &foreign.fooled[..]), (Verdict::Crosstalk, &[1][..]), "{:?}", foreign.reasons);
 }
 
 // The lags alternate by 300 us, which a scatter of 150 us hides.

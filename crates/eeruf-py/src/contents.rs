@@ -1,28 +1,40 @@
 //! Objects in a scene: shared between a `Scene` and the `Paths` found in it.
 
-use std::sync::Arc;
+use std::sync::{Arc, Mutex};
 
-use eeruf_sim::{Scene, World};
+use eeruf_sim::{Scene, Tracer, World};
 
 /// Walls alone, or a world with robots.
-pub(crate) enum Contents {
+pub(crate) enum Objects {
     Walls(Box<Scene>),
     World(Arc<World>),
 }
 
+/// The objects, and the buffers of the tracer that was asked last, which are as large as the scene.
+pub(crate) struct Contents {
+    objects: Objects,
+    pub(crate) tracer: Mutex<Tracer>,
+}
+
+impl From<Objects> for Contents {
+    fn from(objects: Objects) -> Self {
+        Self { objects, tracer: Mutex::default() }
+    }
+}
+
 impl Contents {
     pub(crate) fn scene(&self) -> &Scene {
-        match self {
-            Self::Walls(scene) => scene,
-            Self::World(world) => world.scene(),
+        match &self.objects {
+            Objects::Walls(scene) => scene,
+            Objects::World(world) => world.scene(),
         }
     }
 
     /// The world, if there are robots.
     pub(crate) fn world(&self) -> Option<&Arc<World>> {
-        match self {
-            Self::Walls(_) => None,
-            Self::World(world) => Some(world),
+        match &self.objects {
+            Objects::Walls(_) => None,
+            Objects::World(world) => Some(world),
         }
     }
 }

@@ -66,7 +66,11 @@ impl Paths {
         let find = move |stop: Stop| {
             let robot = contents.world().and_then(|world| world.robots().first());
             let module = robot.map_or(Transducer::POLAROID_6500, |robot| robot.transducer);
-            let (mut paths, mut tracer) = (eeruf_sim::Paths::default(), Tracer::at(module.frequency_hz));
+            let mut paths = eeruf_sim::Paths::default();
+            // Another thread has a tracer of its own.
+            let (mut kept, mut own) = (contents.tracer.try_lock(), Tracer::new());
+            let tracer = kept.as_deref_mut().unwrap_or(&mut own);
+            tracer.frequency_hz = module.frequency_hz;
             tracer.follow(&physics);
             tracer.burst_cycles = module.cycles;
             tracer.stop = stop;
@@ -74,6 +78,7 @@ impl Paths {
             let heights = Heights { source_m: *source_m, receivers_m };
             let traced = tracer.trace_at(contents.scene(), *source, receivers, heights, limits, &mut paths);
             traced.map_err(Raise::raise)?;
+            drop(kept);
             Ok(Self { paths, ends, contents, scene, limits, columns: Columns::default() })
         };
         if few && max_order <= LOW_ORDER && progress.is_none() {

@@ -16,7 +16,7 @@ use pyo3::{
 
 use crate::{
     arguments::{self, instance, matrix, number_or, points_in_space, shown, whole, whole_or, wrong},
-    contents::Contents,
+    contents::{Contents, Objects},
     drawing,
     errors::{Raise, SceneError, warn, warn_of},
     faults,
@@ -94,7 +94,7 @@ impl Scene {
             if !faults.is_empty() {
                 return Err(SceneError::new_err(format!("{} faults; expected none without robots", faults.len())));
             }
-            Contents::Walls(Box::new(scene))
+            Objects::Walls(Box::new(scene))
         } else {
             let inner = robots.iter().map(|robot| robot.robot.clone()).collect();
             let world = World::new(scene, inner, noise)
@@ -105,9 +105,9 @@ impl Scene {
             for (robot, doubt) in world.doubts() {
                 Python::attach(|py| warn(py, format_args!("robot {robot}: {doubt}")))?;
             }
-            Contents::World(Arc::new(world))
+            Objects::World(Arc::new(world))
         };
-        Ok(Self { contents: Arc::new(contents), robots, noise, physics, faults, seed, max_order })
+        Ok(Self { contents: Arc::new(contents.into()), robots, noise, physics, faults, seed, max_order })
     }
 
     fn from_text(name: &Path, text: &str) -> PyResult<Self> {

@@ -52,6 +52,8 @@ struct Built {
     edges: Vec<Edge>,
     /// The triangles that each edge is a corner of; found when first asked for.
     edge_triangles: OnceLock<Vec<Box<[u32]>>>,
+    /// Triangles, each with an edge that is a corner of it, in order; likewise.
+    triangle_edges: OnceLock<Vec<(u32, u32)>>,
     /// The edges by place; likewise.
     edge_boxes: OnceLock<Bvh>,
     /// Extents of walls; found when first asked for.
@@ -83,8 +85,9 @@ impl Scene {
         let edges = edges_of(&vertices, &pieces, &walls);
         let mesh = Mesh::build(vertices, &pieces, &walls, poles.iter().map(|pole| pole.centre))?;
         let mirrors = walls.iter().map(|wall| Mirror::through(wall.from, wall.to, wall.material.reflection)).collect();
-        let (edge_triangles, edge_boxes, extents) = (OnceLock::new(), OnceLock::new(), OnceLock::new());
-        let built = Built { walls, mesh, mirrors, boxes, edges, edge_triangles, edge_boxes, extents };
+        let (edge_triangles, triangle_edges) = (OnceLock::new(), OnceLock::new());
+        let (edge_boxes, extents) = (OnceLock::new(), OnceLock::new());
+        let built = Built { walls, mesh, mirrors, boxes, edges, edge_triangles, triangle_edges, edge_boxes, extents };
         Ok(Self::over(Arc::new(built), poles, air))
     }
 
@@ -176,6 +179,22 @@ impl Scene {
             each.collect()
         });
         of_all.get(edge).map_or(&[], |triangles| triangles)
+    }
+
+    /// Finds the edges in sight of a point, and some that are not, in order; with the triangles that contain it.
+    pub(crate) fn edges_seen(&self, from: Point, starts: &[u32], seen: &mut Vec<u32>) {
+        let pairs = self.built.triangle_edges.get_or_init(|| {
+            let corner = |edge: u32| self.triangles_at(edge as usize).iter().map(move |&triangle| (triangle, edge));
+            let mut pairs: Vec<(u32, u32)> = (0..self.built.edges.len() as u32).flat_map(corner).collect();
+            pairs.sort_unstable();
+            pairs
+        });
+        self.mesh().visit_seen(from, starts, |triangle| {
+            let first = pairs.partition_point(|(other, _)| *other < triangle);
+            seen.extend(pairs[first..].iter().take_while(|(other, _)| *other == triangle).map(|(_, edge)| edge));
+        });
+        seen.sort_unstable();
+        seen.dedup();
     }
 
     /// The places of the edges.

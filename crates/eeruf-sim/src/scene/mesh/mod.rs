@@ -7,7 +7,7 @@ pub(super) mod extents;
 mod hints;
 pub(super) mod joints;
 
-use crate::geometry::{Point, SAME_DIRECTION, cross};
+use crate::geometry::{Point, SAME_DIRECTION, Vector, cross};
 use hints::Hints;
 
 /// Marks an exit that is a reflecting wall; the other bits are the gate by which the reflected beam comes back.
@@ -205,6 +205,32 @@ impl Mesh {
         triangles.first().is_some_and(|&triangle| self.solid[triangle as usize])
     }
 
+    /// Visits the triangles that straight lines from a point reach before they meet a wall, some more than once; with
+    /// the triangles that [contain](Self::containing) it.
+    pub(crate) fn visit_seen(&self, from: Point, starts: &[u32], mut visit: impl FnMut(u32)) {
+        // Cones between two corners of the scene, behind these sides.
+        let mut open: Vec<(Exit, Vector, Vector)> = Vec::new();
+        for &start in starts {
+            visit(start);
+            open.extend(self.sides(start).map(|side| (side.exit, side.left - from, side.right - from)));
+        }
+        open.retain(|(_, left, right)| cross(*right, *left) > 0.0);
+        while let Some((exit, left, right)) = open.pop() {
+            let Beyond::Gate(gate) = exit.beyond() else { continue };
+            visit(gate / 3);
+            let gate = &self.gates[gate as usize];
+            let ahead = gate.apex - from;
+            // A line right through a corner passes it on the right, as that of `segment_reaches` does.
+            let (is_left, is_right) = (cross(right, ahead) >= 0.0, cross(ahead, left) > 0.0);
+            if is_left {
+                open.push((gate.right, if is_right { ahead } else { left }, right));
+            }
+            if is_right {
+                open.push((gate.left, left, if is_left { ahead } else { right }));
+            }
+        }
+    }
+
     /// Returns true if the straight segment between two points meets no wall; with the triangles that
     /// [contain](Self::containing) each.
     pub(crate) fn sees(&self, from: Point, starts: &[u32], to: Point, goals: &[u32]) -> bool {
@@ -222,7 +248,7 @@ impl Mesh {
         })
     }
 
-    fn segment_reaches(&self, mut exit: Exit, from: Point, ahead: crate::geometry::Vector, goals: &[u32]) -> bool {
+    fn segment_reaches(&self, mut exit: Exit, from: Point, ahead: Vector, goals: &[u32]) -> bool {
         // A straight line enters a triangle at most once.
         for _ in 0..self.len() {
             let Beyond::Gate(gate) = exit.beyond() else {

@@ -109,10 +109,8 @@ impl EdgeSearch {
         }
         self.chosen.resize(edges.len(), NONE);
         let Some(audibility) = audibility else {
-            self.wanted.extend(0..edges.len() as u32);
-            self.chosen.clear();
-            self.chosen.extend_from_slice(&self.wanted);
-            return;
+            scene.edges_seen(source, query.ends.of_source(), &mut self.wanted);
+            return self.number();
         };
         let count = receivers.len().max(1) as f64;
         let middle = Point::from(receivers.iter().fold(Vector::zeros(), |sum, at| sum + at.coords) / count);
@@ -139,6 +137,11 @@ impl EdgeSearch {
         }
         self.wanted.sort_unstable();
         self.wanted.dedup();
+        self.number();
+    }
+
+    /// Numbers the edges that are looked at.
+    fn number(&mut self) {
         for (place, &edge) in (0..).zip(&self.wanted) {
             self.chosen[edge as usize] = place;
         }
@@ -249,6 +252,37 @@ mod tests {
         // Just on the shadow's limit half of the wave is there.
         let (length_m, amplitude) = behind(0.5);
         assert!((amplitude - 0.5 * air(length_m) / length_m).abs() < 1e-9);
+    }
+
+    // Rooms with rows of pillars, whose corners are in line with each other and with the source.
+    #[test]
+    fn every_edge_in_sight_is_looked_at() {
+        let mut random = Random::new(7);
+        let (mut sighted, mut all) = (0, 0);
+        for number in 0..60 {
+            let at = |k: u32| 2.0 * f64::from(k) + if number % 2 == 0 { 0.0 } else { 0.001 * f64::from(k * k) };
+            let pillar = |(x, y): (f64, f64)| {
+                Wall::polyline(&[[x, y], [x, y + 1.0], [x + 1.0, y + 1.0], [x + 1.0, y], [x, y]]).collect::<Vec<_>>()
+            };
+            let walls = (0..5).flat_map(|x| (0..5).map(move |y| (x, y))).map(|(x, y)| (at(x), at(y))).flat_map(pillar);
+            let scene = Scene::new(walls.collect(), vec![], Air::default()).unwrap();
+            let source = match number % 3 {
+                0 => Point::new(random.between(-3.0, 12.0), random.between(-3.0, 12.0)),
+                1 => Point::new(-1.0, f64::from(number % 7)),
+                _ => Point::new(1.5, random.between(-3.0, 12.0)),
+            };
+            let (mut starts, mut seen) = (vec![], vec![]);
+            scene.mesh().containing(source, &mut starts);
+            scene.edges_seen(source, &starts, &mut seen);
+            let sees = |edge: u32| {
+                let at = scene.edges()[edge as usize].at;
+                scene.mesh().sees(source, &starts, at, scene.triangles_at(edge as usize))
+            };
+            let in_sight: Vec<u32> = (0..scene.edges().len() as u32).filter(|&edge| sees(edge)).collect();
+            assert!(in_sight.iter().all(|edge| seen.contains(edge)), "{number}: {source}");
+            (sighted, all) = (sighted + in_sight.len(), all + seen.len());
+        }
+        assert!(sighted > 1000 && all < 2 * sighted, "{sighted} {all}");
     }
 
     #[test]

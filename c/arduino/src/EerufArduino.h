@@ -163,7 +163,7 @@ public:
         return take(event, now, EERUF_LOOKS);
     }
 
-    // True if loop() is too slow, at most once a second: firings came more than a millisecond late, which makes readings
+    // True if loop() is too slow, about once a second: firings came more than a millisecond late, which makes readings
     // ambiguous and cost more time, or a module had no reading. late() has the microseconds, of this period.
     bool tooSlow() { return EerufModules::tooSlow(ring_.latest_us > 1000); }
     uint16_t late() const { return ring_.latest_us; }

@@ -188,7 +188,7 @@ impl Trial {
         let Speeds { speed_m_s, turn_rad_s } = self.speeds;
         let world = self.plan.moving(&way.robot, speed_m_s, turn_rad_s)?.with_room(Some(Room::DEFAULT))?;
         let world = Arc::new(world.with_physics(Physics::DEFAULT)?);
-        self.heard_in(world, (way.method, &way.options), |thing, _| thing.scene(&self.plan), keep_going)
+        self.heard_in(&world, (way.method, &way.options), |thing, _| thing.scene(&self.plan), keep_going)
     }
 
     /// Readings in a scene of the caller's, by a method.
@@ -199,18 +199,18 @@ impl Trial {
         keep_going: &dyn Fn() -> bool,
     ) -> Result<Vec<Heard>, ExperimentError> {
         let options = Options { seed: Some(self.plan.number), ..Options::default() };
-        self.heard_in(Arc::new(world.clone()), (method, &options), Thing::added_to, keep_going)
+        self.heard_in(&Arc::new(world.clone()), (method, &options), Thing::added_to, keep_going)
     }
 
     fn heard_in(
         &self,
-        world: Arc<World>,
+        world: &Arc<World>,
         (method, options): (Method, &Options),
         with: impl Fn(&Thing, &Scene) -> Result<Scene, SceneError>,
         keep_going: &dyn Fn() -> bool,
     ) -> Result<Vec<Heard>, ExperimentError> {
         let (speed_m_s, window) = (self.speeds.speed_m_s, world.robots()[0].window);
-        let mut simulation = Simulation::new(Arc::clone(&world), method, options, Stop::default())?;
+        let mut simulation = Simulation::new(Arc::clone(world), method, options, Stop::default())?;
         // Ends of legs, and the thing's appearing.
         let legs = self.leg_s().map_or(0, |leg_s| (self.ends_s / leg_s) as u32);
         let turns = (1..=legs).map(|leg| (self.leg_s().unwrap_or_default() * f64::from(leg), Some(leg)));

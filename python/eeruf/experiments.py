@@ -261,7 +261,8 @@ def recommend(
     Returns:
         ``recommended``, the name of the way; ``keeps``, whether it keeps to the limits in each kind of room; ``assumed``, where the file
         is silent; ``ways``, each with ``way``, ``title`` and ``rooms``, its figures by kind; ``elsewhere``, the same under other gain
-        and height.
+        and height; ``by_cost``, the kinds of ways by how soon the ring sees what appears, under the conditions that the file
+        names, unless rooms are given.
 
     Raises:
         ArgumentError: a number is out of range, or the file cannot be read or does not say where its sensors are.

@@ -71,7 +71,12 @@ pub(crate) fn study(args: &RoomArgs, file: &Path, as_json: bool, all: bool) -> R
     let design = spec.shortest_to_study().map_err(|error| InputError::new(file, error))?;
     let name = file.display().to_string();
     if as_json || all || !args.rooms.is_empty() {
-        let judged = judged(args, &spec, design.as_ref(), &mut watch)?;
+        let mut judged = judged(args, &spec, design.as_ref(), &mut watch)?;
+        // In rooms of the user's own nothing appears.
+        if let Some(answer) = judged.as_mut().ok().filter(|_| args.rooms.is_empty()) {
+            let (asked, watch) = (asked(args, &spec)?, Mutex::new(&mut watch));
+            answer.by_cost = spec.cost_in_rooms(design.as_ref(), &asked, &|share| goes_on(&watch, share)).ok();
+        }
         drop(watch);
         show(as_json, || RoomsOrNot::of(&judged), || describe(&name, &judged) + &describe_all(&judged))?;
         return Ok(if judged.is_ok() { Answer::Yes } else { Answer::No });

@@ -74,6 +74,7 @@ impl Described<'_> {
         });
         _ = writeln!(text, "\n{}\n", markdown(&header, rows));
         text.push_str(&self.depends_on(true));
+        text.push_str(&self.answer.by_cost.as_ref().map_or(String::new(), super::cost::describe));
         text
     }
 

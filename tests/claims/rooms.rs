@@ -46,6 +46,13 @@ fn four_lines_get_a_way_with_its_figures_in_each_room() {
     // The same question has the same answer.
     let again = json(&["study", ring, "--places", "1", "--json"]);
     assert_eq!(again["ways"], answer["ways"]);
+    // The best of each cell is named, and the kind to recommend is one of them.
+    let by_cost = &again["by_cost"];
+    let kinds = by_cost["kinds"].as_array().expect("kinds");
+    assert!(kinds.iter().any(|kind| kind["kind"] == by_cost["recommended"]), "{by_cost}");
+    for best in kinds.iter().flat_map(|kind| kind["best"].as_array().expect("ways")) {
+        assert!(best["way"].is_string() && best["votes"].is_string() && best["t95_ms"].is_object(), "{best}");
+    }
     let said = eeruf(&["design", ring, "--places", "1"]).out;
     assert!(said.contains("recommended: ") && said.contains("period"), "{said}");
     let sensors = if most == 0.0 { "none of its sensors is blind.\n" } else { "of its 8 sensors are blind.\n" };

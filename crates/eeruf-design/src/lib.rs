@@ -16,7 +16,7 @@
 //! | `found` | the answer as it is printed in JSON |
 //! | `atlas`, `atlas_making` | rings whose shortest period is known; how their file is made |
 //! | `certificate` | the proof, as a text that others check |
-//! | `rooms`, `flow`, `way` | with the feature `rooms`: ways of firing the ring, judged by the simulator |
+//! | `rooms`, `cost`, `flow`, `way` | with the feature `rooms`: ways of firing the ring, judged by the simulator |
 //!
 //! ```
 //! use eeruf_design::{RingSpec, Search};
@@ -33,6 +33,8 @@ pub mod atlas;
 #[cfg(feature = "make-atlas")]
 pub mod atlas_making;
 pub mod certificate;
+#[cfg(feature = "rooms")]
+mod cost;
 mod each;
 mod find;
 #[cfg(feature = "rooms")]
@@ -58,6 +60,8 @@ mod urdf;
 mod way;
 mod what_if;
 
+#[cfg(feature = "rooms")]
+pub use cost::{BestWay, CostAnswer, KindCost};
 pub use each::Each;
 pub use eeruf_period::{PeriodProblem, ToSpare};
 pub use find::{NoDesign, RingDesign};

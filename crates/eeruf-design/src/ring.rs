@@ -75,6 +75,8 @@ pub(crate) struct RingFile {
     audible_us: Option<u32>,
     /// Other robots that send sound; by default there may be some.
     others: Option<bool>,
+    /// How fast the robot turns on the spot.
+    turn_deg_s: Option<f64>,
     temperature_c: Option<f64>,
     /// Where each sensor is on the robot, or the arc on which they stand, or the robot's URDF and their links in it.
     pub(crate) poses: Option<Vec<PlaceFile>>,
@@ -115,10 +117,10 @@ pub struct RingSpec {
     /// The range to see as an echo time, without what only keeps a sensor from being triggered again; the longest where
     /// sensors have their own.
     pub listening: Micros,
-    /// Least time between two triggers of sensors that are all alike; zero where they have their own.
-    pub retrigger: Micros,
     /// True if that range is the modules' own, and not the file's.
     pub sees_by_module: bool,
+    /// Least time between two triggers of sensors that are all alike; zero where they have their own.
+    pub retrigger: Micros,
     /// True if a sensor's own echo from the period before must be rejected too.
     pub stale_echo: bool,
     /// True if only the modules ask for that. Linear congruences, which do not move a sensor's own sound, do without.
@@ -138,6 +140,10 @@ pub struct RingSpec {
     pub audible: Option<Micros>,
     /// True if other robots may be about, whose firings are unknown.
     pub others: bool,
+    /// True if the file says that there are some.
+    pub meets_others: bool,
+    /// The rate at which the robot turns on the spot, in degrees a second, where the file says it.
+    pub turn_deg_s: Option<f64>,
     /// The module of each sensor, where the file names them; it rests for as long as the file says.
     pub modules: Vec<Module>,
     /// Where each sensor is on the robot, if the file says it.
@@ -276,6 +282,7 @@ impl RingFile {
         };
         let speed =
             |speed| -> Result<u32, String> { Ok((1000.0 * number("speed_m_s", speed, 0.0, 100.0)?).round() as u32) };
+        let turn_deg_s = self.turn_deg_s.map(|deg_s| number("turn_deg_s", deg_s, 0.0, 1000.0)).transpose()?;
         let sensors = self.sensors;
         let (t_delta, speed_mm_s) = match (&self.t_delta_us, &self.jitter_us, self.speed_m_s) {
             (Some(t_delta), None, None) => (t_delta.list("t_delta_us", sensors)?, None),
@@ -358,6 +365,7 @@ impl RingFile {
             min_interval,
             window: largest_window,
             listening,
+            sees_by_module: self.window_us.is_none() && self.max_range_m.is_none(),
             retrigger,
             stale_echo: self.stale_echo.unwrap_or(self.module.is_some()),
             stale_echo_by_module: self.stale_echo.is_none(),
@@ -365,10 +373,11 @@ impl RingFile {
             t_delta: largest_t_delta,
             speed_mm_s,
             handling: Micros::new(self.handling_us.unwrap_or(0)),
-            sees_by_module: self.window_us.is_none() && self.max_range_m.is_none(),
             path_change,
             audible: self.audible_us.map(Micros::new),
             others: self.others.unwrap_or(true),
+            meets_others: self.others == Some(true),
+            turn_deg_s,
             modules,
             places,
             uneven,

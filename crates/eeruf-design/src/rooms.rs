@@ -13,6 +13,7 @@ use eeruf_sim::{Pose, Robot, Transducer};
 use serde::{Serialize, Serializer};
 
 use crate::atlas::ATLAS;
+use crate::cost::CostAnswer;
 use crate::find::{NoDesign, RingDesign};
 use crate::ring::RingSpec;
 use crate::shortest::Search;
@@ -106,6 +107,8 @@ pub struct RoomsAnswer {
     pub wrong: f64,
     /// Judgements under other conditions, in a third of the rooms; fewer than three if they were stopped.
     pub elsewhere: Vec<(Condition, Judgement)>,
+    /// The ways by the one cost, where it was [asked for](RingSpec::cost_in_rooms).
+    pub by_cost: Option<CostAnswer>,
 }
 
 /// The speed of a robot whose ring file has none, in m/s: a choice.
@@ -164,7 +167,8 @@ impl RingSpec {
             }
         }
         let groups = groups.into_iter().map(|group| (group.name, group.rooms.len())).collect();
-        Ok(RoomsAnswer { judgement, groups, assumed, speed_m_s: here.speed_m_s, wrong: asked.wrong, elsewhere })
+        let (speed_m_s, wrong) = (here.speed_m_s, asked.wrong);
+        Ok(RoomsAnswer { judgement, groups, assumed, speed_m_s, wrong, elsewhere, by_cost: None })
     }
 }
 
@@ -233,6 +237,7 @@ impl RoomsAnswer {
             assumed: &self.assumed,
             ways: ways(&self.judgement),
             elsewhere: elsewhere.collect(),
+            by_cost: self.by_cost.as_ref(),
         }
     }
 }
@@ -252,6 +257,8 @@ pub struct RoomsJson<'a> {
     pub assumed: &'a [String],
     ways: Vec<WayJson<'a>>,
     elsewhere: Vec<ElsewhereJson<'a>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    by_cost: Option<&'a CostAnswer>,
 }
 
 #[derive(Debug, Serialize)]

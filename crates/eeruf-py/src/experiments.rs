@@ -221,7 +221,12 @@ pub(crate) fn recommend(
     in_background(py, progress, move |background| {
         let design = spec.shortest_to_study().map_err(|error| ArgumentError::new_err(error.to_string()))?;
         let keep_going = |done| background.go_on(Some(done), || "rooms".to_owned());
-        let answer = spec.judge_in_rooms(design.as_ref(), &asked, &keep_going).map_err(ArgumentError::new_err)?;
+        let judged = spec.judge_in_rooms(design.as_ref(), &asked, &keep_going);
+        let mut answer = judged.map_err(ArgumentError::new_err)?;
+        // In rooms of the caller's own nothing appears.
+        if asked.own.is_empty() {
+            answer.by_cost = spec.cost_in_rooms(design.as_ref(), &asked, &keep_going).ok();
+        }
         json(&answer.json())
     })
 }

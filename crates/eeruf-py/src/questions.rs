@@ -54,6 +54,8 @@ impl Arguments<'_, '_> {
             path_change: None,
             audible: None,
             others: true,
+            meets_others: false,
+            turn_deg_s: None,
             modules: vec![],
             places: Places::default(),
             uneven: self.uneven.owned(sensors, t_deltas, windows)?,

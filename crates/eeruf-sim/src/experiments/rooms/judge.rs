@@ -340,7 +340,7 @@ fn world_of(room: &RoomPlan, robot: &Robot, asked: &RoomsOptions) -> Result<Worl
 }
 
 /// The same robot with the other gain: the steps of the chip where it is constant, constant where it grows.
-fn with_other_gain(robot: &Robot) -> Robot {
+pub fn with_other_gain(robot: &Robot) -> Robot {
     let other = match robot.module_of(0).gain {
         Gain::Constant if robot.module_of(0).frequency_hz > 45_000 => GainProfile::Polaroid6500,
         Gain::Constant => GainProfile::Stepped,

@@ -8,6 +8,6 @@ mod judge;
 mod plan;
 mod way;
 
-pub use judge::{JudgedWay, Judgement, RoomFigures, RoomGroup, RoomsOptions, judge};
+pub use judge::{JudgedWay, Judgement, RoomFigures, RoomGroup, RoomsOptions, judge, with_other_gain};
 pub use plan::{DRIVING_S, RoomKind, RoomPlan, UnknownRoom, VERSION};
 pub use way::{Condition, RoomWay};

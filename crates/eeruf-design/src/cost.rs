@@ -1,0 +1,181 @@
+//! A ring judged as its file says it is used: how soon it sees what appears, by the one cost of
+//! [`measure`](eeruf_sim::experiments::measure).
+
+use eeruf_sim::Robot;
+use eeruf_sim::experiments::measure::{
+    Cell, Condition, Costs, Estimate, Family, MeasureAsked, Measured, MeasuredWay, ONE_A_MINUTE, Operating, Speeds,
+    Under, measure, measured_ways,
+};
+use eeruf_sim::experiments::rooms::with_other_gain;
+use serde::Serialize;
+
+use crate::find::RingDesign;
+use crate::ring::RingSpec;
+use crate::rooms::RoomsAsked;
+use crate::way::Way;
+
+/// The rate of turn of a robot whose file has none, in degrees a second: a choice.
+const USUAL_TURN_DEG_S: f64 = 45.0;
+/// The number of the first room in which votes are chosen. Nothing is reported from them.
+const CHOICE: u64 = 1_000;
+/// Votes are chosen in a third of the rooms, and as many are looked at under conditions that the file does not name.
+const LESS: u64 = 3;
+
+/// Ways of firing a ring by the one cost.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct CostAnswer {
+    /// The kind of way to recommend; none if no kind has a setting of at most one false stop a minute under each
+    /// condition.
+    pub recommended: Option<String>,
+    /// One of less cost from which it does not surely differ.
+    pub draw: Option<String>,
+    /// The robot's speed in m/s.
+    pub speed_m_s: f64,
+    /// Its rate of turn in degrees a second.
+    pub turn_deg_s: f64,
+    /// The kinds of ways, the simplest first.
+    pub kinds: Vec<KindCost>,
+    /// The kind to recommend where the ring is used under one condition alone, or its modules have the other gain.
+    pub elsewhere: Vec<(String, Option<String>)>,
+}
+
+/// A kind of way.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct KindCost {
+    /// Its name.
+    pub kind: String,
+    /// Its cost: the geometric mean over the conditions of its t95, relative to the best one by one.
+    pub cost: Option<Estimate>,
+    /// The best way of the kind under each condition.
+    pub best: Vec<BestWay>,
+}
+
+/// The best way of a kind under a condition.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct BestWay {
+    /// The condition's name.
+    pub condition: &'static str,
+    /// The way's name.
+    pub way: &'static str,
+    /// Votes that its readings need.
+    pub votes: String,
+    /// False for a way with more than one false stop a minute where votes were chosen: no way of the kind has fewer.
+    pub keeps: bool,
+    /// Its figures.
+    #[serde(flatten)]
+    pub figures: Cell,
+}
+
+/// What was measured in rooms for choosing votes, and in those that are reported.
+struct Both {
+    chosen: Measured,
+    measured: Measured,
+}
+
+impl Both {
+    /// Under these conditions alone.
+    fn under(&self, conditions: &[Condition]) -> Self {
+        let only = |of: &Measured| Measured {
+            ways: of.ways.clone(),
+            under: of.under.iter().filter(|under| conditions.contains(&under.condition)).cloned().collect(),
+        };
+        Self { chosen: only(&self.chosen), measured: only(&self.measured) }
+    }
+
+    fn costs(&self) -> Costs {
+        self.measured.costs(&self.chosen, &self.measured.families())
+    }
+
+    fn recommended(&self) -> Option<String> {
+        self.costs().recommended.map(name_of)
+    }
+
+    fn best(&self, family: Family) -> Vec<BestWay> {
+        let Self { chosen, measured } = self;
+        let of = |(chooses, under): (&Under, &Under)| {
+            let operating = chooses.operating(chosen, |way| measured.ways[way].family == family, ONE_A_MINUTE)?;
+            let point = operating.point();
+            Some(BestWay {
+                condition: under.condition.as_str(),
+                way: measured.ways[point.way].way.name,
+                votes: point.setting.to_string(),
+                keeps: matches!(operating, Operating::At(_)),
+                figures: under.cell(point, measured),
+            })
+        };
+        chosen.under.iter().zip(&measured.under).filter_map(of).collect()
+    }
+}
+
+fn name_of(family: usize) -> String {
+    Family::ALL[family].to_string()
+}
+
+impl RingSpec {
+    /// The rate at which its robot turns in rooms, in degrees a second: the ring's, or 45, a choice.
+    pub fn room_turn_deg_s(&self) -> f64 {
+        self.turn_deg_s.filter(|&deg_s| deg_s > 0.0).unwrap_or(USUAL_TURN_DEG_S)
+    }
+
+    /// The conditions under which it is used: standing, driving and turning, alone; where the file says that there are
+    /// others, beside another robot of its make too.
+    pub fn used_under(&self) -> &'static [Condition] {
+        if self.meets_others { &Condition::ALL } else { &Condition::ALL[..3] }
+    }
+
+    /// Judges the ways of firing the ring by their cost under the conditions in which it is used, with the schedule of
+    /// two phases that was found for it.
+    ///
+    /// `keep_going` is as for [`judge_in_rooms`](Self::judge_in_rooms).
+    ///
+    /// # Errors
+    /// A ring without places, and if it was stopped, in words.
+    pub fn cost_in_rooms(
+        &self,
+        design: Option<&RingDesign>,
+        asked: &RoomsAsked,
+        keep_going: &(dyn Fn(f64) -> bool + Sync),
+    ) -> Result<CostAnswer, String> {
+        let robot = design.map_or(self, |design| &design.spec).room_robot()?.robot;
+        let (speed_m_s, turn_deg_s) = (self.room_speed_m_s(), self.room_turn_deg_s());
+        let speeds = Speeds { speed_m_s, turn_rad_s: turn_deg_s.to_radians() };
+        let run = |robot: &Robot, conditions: &[Condition], first, places| -> Result<Measured, String> {
+            let ways = measured_ways(robot, design.map(|design| &design.schedule)).into_iter();
+            // Of all but one by one, what a program has.
+            let has_program = |of: &MeasuredWay| of.family == Family::OneByOne || Way::of(&of.way).is_some();
+            let ways: Vec<_> = ways.filter(has_program).map(|way| (way, None)).collect();
+            let asked = MeasureAsked { conditions: conditions.into(), first, places, speeds };
+            measure(&ways, &asked, keep_going).map_err(|error| error.to_string())
+        };
+        let (used, fewer) = (self.used_under(), asked.places.div_ceil(LESS));
+        let here =
+            Both { chosen: run(&robot, used, CHOICE, fewer)?, measured: run(&robot, used, asked.first, asked.places)? };
+        let Costs { costs, recommended, draw } = here.costs();
+        let kinds = Family::ALL.into_iter().zip(costs).map(|(family, cost)| KindCost {
+            kind: family.to_string(),
+            cost: cost.cost,
+            best: here.best(family),
+        });
+        // Only named, and so chosen where it is measured.
+        let there = |robot: &Robot, conditions: &[Condition]| -> Result<Both, String> {
+            let measured = run(robot, conditions, asked.first, fewer)?;
+            Ok(Both { chosen: measured.clone(), measured })
+        };
+        let unused: Vec<_> = Condition::ALL.into_iter().filter(|condition| !used.contains(condition)).collect();
+        let unused = if unused.is_empty() { None } else { Some(there(&robot, &unused)?) };
+        let alone = |condition: Condition| {
+            let of = if used.contains(&condition) { Some(&here) } else { unused.as_ref() };
+            (condition.as_str().to_owned(), of.and_then(|of| of.under(&[condition]).recommended()))
+        };
+        let mut elsewhere: Vec<_> = Condition::ALL.into_iter().map(alone).collect();
+        elsewhere.push(("other gain".to_owned(), there(&with_other_gain(&robot), used)?.recommended()));
+        Ok(CostAnswer {
+            recommended: recommended.map(name_of),
+            draw: draw.map(name_of),
+            speed_m_s,
+            turn_deg_s,
+            kinds: kinds.collect(),
+            elsewhere,
+        })
+    }
+}

@@ -5,6 +5,7 @@ use core::f64::consts::TAU;
 
 use eeruf_core::Micros;
 use eeruf_files::{doubt, is_likely_rad};
+use eeruf_modules::Module;
 
 use crate::each::Each;
 use crate::ring::{RingFile, RingSpec};
@@ -54,7 +55,7 @@ fn lengths(file: &RingFile, spec: &RingSpec) -> Signs {
         (0..spec.sensors).all(|x| (0..x).all(|y| !layout.neighbours(spec.sensors, x, y)))
     };
     let range_m = largest(&numbers(file.max_range_m.as_ref()));
-    let sees_m = largest(&spec.modules.iter().map(|module| module.sees_to_m()).collect::<Vec<_>>());
+    let sees_m = largest(&spec.modules.iter().map(Module::sees_to_m).collect::<Vec<_>>());
     let is_far = sees_m > 0.0 && range_m > FARTHER * sees_m;
     let of_places = signs([
         (large_m > LARGE_M, format!("{key}: a sensor {large_m:.1} m from the robot's middle")),

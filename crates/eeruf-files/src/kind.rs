@@ -69,7 +69,7 @@ impl Kind {
         match self {
             Self::Schedule => "a schedule",
             Self::Ring => "a ring for `eeruf design`",
-            Self::Waits => "a ring for `eeruf search`",
+            Self::Waits => "a ring for `eeruf lab search`",
             Self::Scene => "a scene",
             Self::Map => "a map",
             Self::Log => "a log",
@@ -80,10 +80,10 @@ impl Kind {
         match self {
             Self::Schedule => "verify",
             Self::Ring => "design",
-            Self::Waits => "search",
+            Self::Waits => "lab search",
             Self::Scene => "study",
-            Self::Map => "scene",
-            Self::Log => "replay",
+            Self::Map => "lab scene",
+            Self::Log => "logs",
         }
     }
 

@@ -67,7 +67,7 @@ if TYPE_CHECKING:
 
     from eeruf import experiments, logs, plot
     from eeruf._eeruf import _Kind
-    from eeruf.logs import diagnose, read_firings, read_log, replay, survey
+    from eeruf.logs import check, diagnose, read_firings, read_log, replay, survey
 
 __all__ = [
     "EXAMPLES",
@@ -101,6 +101,7 @@ __all__ = [
     "WaitSearch",
     "WaitTables",
     "__version__",
+    "check",
     "check_certificate",
     "curve",
     "design",
@@ -161,7 +162,7 @@ def show_versions() -> None:
 if not TYPE_CHECKING:
     # On first use: a program without them need not wait for them, or for what they import.
     _MODULES = ("experiments", "logs", "plot")
-    _FUNCTIONS = ("diagnose", "read_firings", "read_log", "replay", "survey")
+    _FUNCTIONS = ("check", "diagnose", "read_firings", "read_log", "replay", "survey")
 
     # What there was, and what does it now.
     _GONE = dict.fromkeys(

@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from typing import Protocol, TypedDict, Union
 
     import numpy as np
+    from matplotlib.axes import Axes
     from numpy.typing import ArrayLike, NDArray
     from typing_extensions import TypeAlias, Unpack
 
@@ -65,6 +66,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Agree",
+    "Checked",
     "Crosstalk",
     "Diagnosis",
     "Firings",
@@ -73,6 +75,7 @@ __all__ = [
     "Ranges",
     "Surveyed",
     "blocks",
+    "check",
     "diagnose",
     "read_firings",
     "read_log",
@@ -101,7 +104,9 @@ class Crosstalk:
     """A verdict on whether the sensors of a log read each other's sound; docs/how-to/logs.md says how that is told.
 
     ``verdict`` is ``"crosstalk"``, ``"none seen"`` or ``"cannot tell"``, for ``reasons``; ``fooled`` are sensors that read foreign sound,
-    ``pairs`` those that read each other's. ``record`` says what to record if the log cannot tell, ``notes`` are about single sensors.
+    ``pairs`` those that read each other's. ``record`` says what to record if the log cannot tell, ``suspects`` are sensors that may be
+    fooled, each with the one whose sound it may read or None; ``notes`` are about single sensors. ``answer`` says it all in words, as
+    ``eeruf logs`` prints it.
 
     Example:
         >>> import eeruf, io
@@ -116,7 +121,9 @@ class Crosstalk:
     pairs: list[tuple[int, int]]
     reasons: list[str]
     record: str | None
+    suspects: list[tuple[int, int | None]]
     notes: list[str]
+    answer: str
 
 
 @dataclass(frozen=True, eq=False)
@@ -187,6 +194,61 @@ class Ranges(_Columns):
             raise ArgumentError(f"speed_of_sound = {speed_of_sound!r:.60}; expected a number above 0")
         seen = np.isfinite(self.range_m) & (self.range_m < self.max_range_m) & (self.range_m >= self.min_range_m)
         return np.where(seen, 2e6 * np.where(seen, self.range_m, 0.0) / speed_of_sound, np.nan)
+
+
+@dataclass(frozen=True, eq=False)
+class Checked:
+    """The answer of :func:`check`; as text, in words with what to do next.
+
+    ``verdict`` is ``"crosstalk"``, ``"none seen"`` or ``"cannot tell"``, ``concerns`` the names of the sensors that read another's
+    sound or may do so, and ``sensors`` has for each name its ``readings``, ``echoes``, ``nearest_m`` and ``farthest_m``. ``log`` is what
+    was read, with all guesses.
+
+    Example:
+        >>> import eeruf
+        >>> eeruf.check({"left": [0.40, 0.41, 0.40], "right": [0.80, 0.81, 0.80]}).sensors["left"]["echoes"]
+        3
+
+    """
+
+    verdict: Literal["crosstalk", "none seen", "cannot tell"]
+    concerns: list[str]
+    sensors: dict[str, dict[str, float]]
+    log: Ranges
+
+    def __str__(self) -> str:
+        """Return the answer as ``eeruf logs`` prints it."""
+        return self.log.crosstalk.answer
+
+    def figure(self, *, ax: Axes | None = None) -> Axes:
+        """Draw the ranges of each sensor over time, or over its readings where the log has no times; those concerned in vermilion.
+
+        Args:
+            ax: where to draw.
+
+        Example:
+            >>> import eeruf
+            >>> eeruf.check({"left": [0.40, 0.41, 0.40]}).figure().get_ylabel()
+            'range (m)'
+
+        """
+        import numpy as np
+
+        from eeruf.plot._canvas import axes, bare, colours, legend_above
+
+        ax = axes(ax, width=8.0)
+        its = colours(ax)
+        log, marks = self.log, "os^vD<>P"
+        is_timed = bool(np.all(log.at_ns >= 0)) and bool(np.ptp(log.at_ns) > 0)
+        for sensor, name in enumerate(log.names):
+            (own,) = np.nonzero((log.sensor == sensor) & np.isfinite(log.range_m))
+            at = (log.at_ns[own] - log.at_ns.min()) / 1e9 if is_timed else np.arange(len(own))
+            colour = its.vermilion if name in self.concerns else (its.blue, its.green, its.orange, its.grey)[sensor % 4]
+            ax.plot(at, log.range_m[own], marks[sensor % len(marks)], markersize=2.5, color=colour, label=name)
+        ax.set(xlabel="time (s)" if is_timed else "reading", ylabel="range (m)")
+        legend_above(ax)
+        bare(ax)
+        return ax
 
 
 @dataclass(frozen=True, eq=False)
@@ -386,6 +448,71 @@ def read_log(
     with _opened(log) as source:
         (found,) = _eeruf._LogBlocks(source, options, None, None, None)
     return _made(Ranges, found)
+
+
+def check(log: object, **options: Unpack[_Options]) -> Checked:
+    """Say of anything that holds ranges whether its sensors read each other's sound, and what to do next.
+
+    Args:
+        log: a path, a URL, a file object or a text that was pasted, as :func:`read_log` reads them; a DataFrame of pandas or polars; a
+            dict of columns; an array of one column per sensor; ``Ranges``; or ``Readings`` of the simulator.
+        options: as of :func:`read_log`.
+
+    Raises:
+        LogError: no ranges are found in it.
+        ArgumentError: an argument is wrong.
+
+    Example:
+        >>> import eeruf
+        >>> text = chr(10).join(f"{40 * n},{n % 2},{1.0 + 0.001 * (n % 3):.3f}" for n in range(200))
+        >>> checked = eeruf.check("ms,sensor,range_m" + chr(10) + text)
+        >>> checked.verdict, print(checked)  # doctest: +ELLIPSIS
+        No crosstalk seen...
+        ('none seen', None)
+
+    """
+    import numpy as np
+
+    read = log if isinstance(log, Ranges) else read_log(_as_log(log), **options)
+    found = read.crosstalk
+    concerned = {*found.fooled, *(sensor for sensor, _ in found.suspects)}
+    sensors: dict[str, dict[str, float]] = {}
+    for sensor, name in enumerate(read.names):
+        own = read.range_m[read.sensor == sensor]
+        echoes = own[np.isfinite(own)]
+        nearest, farthest = (float(echoes.min()), float(echoes.max())) if len(echoes) else (np.nan, np.nan)
+        sensors[name] = {"readings": len(own), "echoes": len(echoes), "nearest_m": nearest, "farthest_m": farthest}
+    return Checked(found.verdict, [read.names[sensor] for sensor in sorted(concerned)], sensors, read)
+
+
+def _as_log(log: object) -> _Log:
+    """Anything as what :func:`read_log` reads: tables and arrays as CSV."""
+    import io
+
+    import numpy as np
+
+    if isinstance(log, str) and chr(10) in log:
+        return io.StringIO(log)
+    if isinstance(log, _eeruf.Readings):
+        sender = log.sensor if log.robot.max(initial=0) == 0 else log.robot * log.sensors + log.sensor
+        log = {"fired_us": log.fired_s * 1e6, "sensor": sender, "echo_us": log.t_echo_us}
+    elif hasattr(log, "write_csv"):
+        return io.StringIO(log.write_csv())
+    elif hasattr(log, "to_csv"):
+        # An index that only counts is no column.
+        return io.StringIO(log.to_csv(index=type(getattr(log, "index", None)).__name__ != "RangeIndex"))
+    elif isinstance(log, (np.ndarray, list, tuple)):
+        table = np.asarray(log, dtype=float)
+        if table.ndim not in (1, 2):
+            raise ArgumentError(f"log = {log!r:.60}; expected an array of one column per sensor")
+        log = {f"range {n + 1}": column for n, column in enumerate(table.reshape(len(table), -1).T)}
+    if not isinstance(log, dict):
+        return log  # type: ignore[return-value]
+    lengths = {name: len(column) for name, column in log.items()}
+    if len({*lengths.values()}) != 1:
+        raise ArgumentError(f"log has columns of {lengths} values; expected equal lengths")
+    rows = [",".join(str(name) for name in log), *(",".join(map(str, row)) for row in zip(*log.values()))]
+    return io.StringIO(chr(10).join(rows) + chr(10))
 
 
 def _made(of: type[_Block], found: dict[str, Any]) -> _Block:

@@ -381,3 +381,57 @@ def far_log(readings: int) -> Any:
     said = subprocess.run(command, capture_output=True, text=True)
     assert said.returncode == 0, said.stderr
     return json.loads(said.stdout)
+
+
+def blocking_loop() -> list[tuple[float, float]]:
+    """Make the ranges of two sensors of which the second hears the first, in metres: their sum stays."""
+    front = 0.6 + 0.3 * np.sin(np.arange(300) / 7) + 0.1 * np.sin(np.arange(300) / 2)
+    return [(round(float(own), 3), round(2.1 - float(own), 3)) for own in front]
+
+
+def test_anything_with_ranges_is_checked_alike(tmp_path: Path) -> None:
+    rows = blocking_loop()
+    text = "front_m,left_m\n" + "".join(f"{one},{two}\n" for one, two in rows)
+    file = tmp_path / "log.csv"
+    file.write_text(text)
+    columns = {"front_m": [one for one, _ in rows], "left_m": [two for _, two in rows]}
+    pandas, polars = pytest.importorskip("pandas"), pytest.importorskip("polars")
+    given = [
+        text,
+        file,
+        io.StringIO(text),
+        columns,
+        pandas.DataFrame(columns),
+        polars.DataFrame(columns),
+        eeruf.read_log(file),
+    ]
+    for log in given:
+        checked = eeruf.check(log)
+        assert checked.concerns == ["left_m"] and checked.verdict == "cannot tell", str(checked)
+        assert str(checked).startswith("Perhaps crosstalk"), str(checked)
+        assert checked.sensors["front_m"] == eeruf.check(text).sensors["front_m"]
+    array = eeruf.check(np.array(rows))
+    assert array.concerns == ["range 2"] and array.sensors["range 1"]["readings"] == 300
+    printed = subprocess.run(
+        [sys.executable, "-m", "eeruf", "logs", str(file)], check=False, capture_output=True, text=True
+    )
+    # The program breaks lines where the terminal ends.
+    assert printed.returncode == 3 and printed.stdout.split()[:60] == str(eeruf.check(file)).split()[:60]
+
+
+def test_readings_of_the_simulator_are_checked() -> None:
+    scene = sim.Scene.from_toml(eeruf.example("scenes/alcove.toml"))
+    checked = eeruf.check(sim.simulate(scene, "eeruf", periods=300))
+    assert checked.verdict == "crosstalk" and len(checked.sensors) == 8, str(checked)
+
+
+def test_figure_marks_what_a_check_concerns() -> None:
+    ax = eeruf.check(np.array(blocking_loop())).figure()
+    colours = [line.get_color() for line in ax.lines]
+    assert len(colours) == 2 and colours.count("#d55e00") == 1 and ax.get_xlabel() == "reading"
+
+
+@pytest.mark.parametrize("wrong", [3, None, np.zeros((2, 2, 2)), {"a": [1.0], "b": []}])
+def test_what_holds_no_ranges_is_refused(wrong: object) -> None:
+    with pytest.raises(eeruf.ArgumentError, match="expected"):
+        eeruf.check(wrong)

@@ -209,9 +209,10 @@ impl Block {
         let is_last = self.examination.is_some();
         out.set_item("firing", report.firing.pattern.as_str())?;
         out.set_item("proves", if is_last { report.firing.proves(None) } else { not_yet.to_owned() })?;
+        let answer = self.examination.as_ref().map(|found| found.answer(&report.firing, &report.names()));
         out.set_item("warnings", report.warnings)?;
         let unexamined = || Examination { reasons: vec![not_yet.to_owned()], ..Examination::default() };
-        let Examination { verdict, fooled, pairs, reasons, record, notes, .. } =
+        let Examination { verdict, fooled, pairs, reasons, record, suspects, notes, .. } =
             self.examination.unwrap_or_else(unexamined);
         let crosstalk = PyDict::new(py);
         crosstalk.set_item("verdict", verdict.as_str())?;
@@ -219,6 +220,8 @@ impl Block {
         crosstalk.set_item("pairs", pairs)?;
         crosstalk.set_item("reasons", reasons)?;
         crosstalk.set_item("record", record)?;
+        crosstalk.set_item("suspects", suspects.iter().map(|of| (of.sensor, of.by)).collect::<Vec<_>>())?;
+        crosstalk.set_item("answer", answer.unwrap_or_else(|| not_yet.to_owned()))?;
         crosstalk.set_item("notes", notes)?;
         out.set_item("crosstalk", crosstalk)?;
         Ok(out)

@@ -7,6 +7,7 @@ import { Desk, openDesks } from "./engine.js";
 import { Lesson } from "./lesson.js";
 import { fromHash, toHash } from "./link.js";
 import { methodsOf } from "./methods.js";
+import { Paste } from "./paste.js";
 import { ROOMS, StateError, checkedState, firstState } from "./state.js";
 import { TakeHome } from "./take-home.js";
 
@@ -64,6 +65,7 @@ async function start() {
     designed: (answer) => takeHome.show(answer),
     change: (patch) => change({ ...state, .../** @type {Partial<State>} */ (patch) }, true),
   });
+  const paste = new Paste(new Desk(quick.compiled));
   new Lesson({ state: () => state, change, play: () => comparison.setPlaying(true) });
 
   /** Everything but the pictures. */
@@ -93,6 +95,7 @@ async function start() {
     matchMedia(query).addEventListener("change", () => {
       comparison.draw();
       designer.draw();
+      paste.draw();
     });
   }
   byId("theme", HTMLButtonElement).onclick = () => {
@@ -100,8 +103,10 @@ async function start() {
     document.documentElement.dataset.theme = dark ? "light" : "dark";
     comparison.draw();
     designer.draw();
+    paste.draw();
   };
   new ResizeObserver(() => designer.draw()).observe(byId("design-result", HTMLElement));
+  new ResizeObserver(() => paste.draw()).observe(byId("paste-result", HTMLElement));
   sync();
   comparison.sync();
   if (!wantsLittleMotion()) comparison.setPlaying(true);

@@ -7,10 +7,12 @@
 //! | `question` | which questions there are |
 //! | `trace` | every critical path of a ring, with its corners |
 //! | `run` | a scene under a firing method: readings, figures, who fooled whom |
+//! | `paste` | whether a pasted log shows crosstalk, as `eeruf logs` says it |
 //! | `design` | the shortest period for a ring, its proof, its certificate, its source texts |
 
 mod design;
 mod exports;
+mod paste;
 mod progress;
 mod question;
 mod run;

@@ -5,7 +5,7 @@ use std::path::Path;
 use eeruf_sim::{Method, World};
 use serde::{Deserialize, Serialize};
 
-use crate::{design, run, trace};
+use crate::{design, paste, run, trace};
 
 #[derive(Deserialize)]
 #[serde(tag = "ask", rename_all = "snake_case", deny_unknown_fields)]
@@ -18,6 +18,8 @@ enum Question {
     Run { scene: String, method: String, periods: u32, shown_s: f64 },
     /// The shortest period for a ring.
     Design { ring: String },
+    /// Lines of a serial monitor, or any other text with ranges.
+    Paste { text: String },
     /// Changes that would make it shorter.
     Faster { ring: String },
     /// The certificate that it is the shortest, and its checker.
@@ -55,6 +57,7 @@ pub(crate) fn answer(question: &[u8]) -> String {
             run::run(&world, method, periods, shown_s)
         })),
         Ok(Question::Design { ring }) => json(design::design(&ring)),
+        Ok(Question::Paste { text }) => json(paste::paste(&text)),
         Ok(Question::Faster { ring }) => json(design::faster(&ring)),
         Ok(Question::Certificate { ring }) => json(design::certificate(&ring)),
         Err(error) => json::<()>(Err(error.to_string())),

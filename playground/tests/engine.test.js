@@ -1,7 +1,7 @@
 // @ts-check
 /** The engine in Node against the program `eeruf`, and what it says of bad input. */
 import assert from "node:assert/strict";
-import { execFileSync } from "node:child_process";
+import { execFileSync, spawnSync } from "node:child_process";
 import { mkdtempSync, readFileSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
@@ -296,4 +296,18 @@ test("a link gives back the state that it was made of, and what is wrong with on
   // A method that the engine does not know is left out by who asks it.
   assert.equal(wrong({ shown: ["magic"] }), "nothing");
   assert.ok(!methodsOf([{ id: "flow", does: "" }]).some((method) => method.id === "magic"));
+});
+
+test("a paste gets the program's answer, word for word", () => {
+  for (const name of ["six-lines.txt", "blocking-loop.txt", "polled.csv", "toa5.dat"]) {
+    const path = join(ROOT, "tests/data/field-cases", name);
+    const { ok } = ask({ ask: "paste", text: readFileSync(path, "utf8") });
+    const { status, stdout } = spawnSync(PROGRAM, ["logs", path], { encoding: "utf8" });
+    assert.equal(status, { "none seen": 0, crosstalk: 1, "cannot tell": 3 }[/** @type {string} */ (ok.verdict)], name);
+    // The program breaks lines where the terminal ends.
+    const words = (/** @type {string} */ said) => said.split(/\s+/);
+    assert.deepEqual(words(stdout.split("\n\n")[0]), words(ok.answer), name);
+    assert.ok(ok.sensors.every((/** @type {any} */ sensor) => sensor.points.length > 0), name);
+  }
+  assert.match(ask({ ask: "paste", text: "hello\nworld\n" }).error, /^No ranges are found in it\./);
 });

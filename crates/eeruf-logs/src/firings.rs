@@ -13,8 +13,8 @@
 //! line may name; one of 32 bits may wrap. `t_echo_us` is the raw echo time, from firing to the first edge, empty
 //! without echo. `reading` is what the ring made of it (`rejected`, `accepted`, `ambiguous`, ..) and may be missing.
 //! Sensors, periods and phases count from 0. `g` may say how fast readings changed with the robot's motion, in
-//! microseconds for each millisecond: 2 (v + w 0.5 m) over the speed of sound. Rows may come in any order that is at most 2^31 us out. Where `sends`
-//! is 0 the sensor only listened from then on, as some can.
+//! microseconds for each millisecond: 2 (v + w 0.5 m) over the speed of sound. Rows may come in any order that is at
+//! most 2^31 us out. Where `sends` is 0 the sensor only listened from then on, as some can.
 //!
 //! The same in MCAP is a message `eeruf_msgs/msg/Firing` of ROS 2 for each row, which
 //! [`McapWriter::firing`](crate::McapWriter::firing) writes.

@@ -1,5 +1,5 @@
-//! The answer to "is it crosstalk?" in words, in the order in which a reader needs it: the answer, whom it concerns, what to do
-//! now, and how sure it is.
+//! The answer to "is it crosstalk?" in words, in the order in which a reader needs it: the answer, whom it concerns,
+//! what to do now, and how sure it is.
 
 use std::fmt::Write as _;
 
@@ -46,8 +46,8 @@ impl Examination {
         let first = names.first().map_or("?", String::as_str);
         if found.verdict == Verdict::CannotTell && suspects.is_empty() && names.len() > 1 {
             steps.push(format!(
-                "hold a cloth before {first} for 10 s, then before each other sensor: if the range of another changes, it \
-                 reads that one"
+                "hold a cloth before {first} for 10 s, then before each other sensor: if the range of another changes, \
+                 it reads that one"
             ));
         }
         if let Some(record) = found.record.as_ref().filter(|_| suspects.is_empty()) {

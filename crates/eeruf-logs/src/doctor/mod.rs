@@ -311,8 +311,8 @@ impl Doctor {
             let own = name(sensor);
             if cleared.get(sensor) == Some(&true) {
                 found.reasons.push(format!(
-                    "{own}: {share:.0} % of the readings come from nothing that stands or moves, and no fewer in rounds in \
-                     which the others did not fire: noise of its own"
+                    "{own}: {share:.0} % of the readings come from nothing that stands or moves, and no fewer in \
+                     rounds in which the others did not fire: noise of its own"
                 ));
                 continue;
             }

@@ -57,6 +57,7 @@ impl Arguments<'_, '_> {
             meets_others: false,
             turn_deg_s: None,
             modules: vec![],
+            sees_by_module: false,
             places: Places::default(),
             uneven: self.uneven.owned(sensors, t_deltas, windows)?,
         };

@@ -229,7 +229,7 @@ impl Verb {
 #[cfg(test)]
 mod tests {
     use clap::builder::ValueRange;
-    use clap::{Arg, Command};
+    use clap::{Arg, Command, Subcommand as _};
 
     use super::{Cli, Parser as _, program};
 

@@ -168,7 +168,7 @@ mod tests {
     fn what_may_be_meant_is_not_refused() {
         for lines in [
             "spacing_deg = 1\nradius_m = 0.2",
-            "spacing_deg = 45\nradius_m = 6",
+            "spacing_deg = 2\nradius_m = 6",
             "spacing_deg = 45\nradius_m = 0.2",
             "max_range_m = 8",
             "retrigger_us = 900",

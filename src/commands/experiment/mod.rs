@@ -24,17 +24,17 @@ pub(crate) struct Args {
 #[derive(clap::Subcommand)]
 enum Set {
     #[command(name = "set-one", after_help = help!(
-        "experiment set-one --seeds 20 --method sequential,eeruf",
+        "lab experiment set-one --seeds 20 --method sequential,eeruf",
         "0 repeated; 2 bad input"
     ))]
     One(set_one::Args),
     #[command(name = "set-two", after_help = help!(
-        "experiment set-two --seeds 5 --method conventional,eeruf",
+        "lab experiment set-two --seeds 5 --method conventional,eeruf",
         "0 repeated; 2 bad input"
     ))]
     Two(set_two::Args),
     #[command(name = "set-three", after_help = help!(
-        "experiment set-three --seeds 5 --method sequential,flow",
+        "lab experiment set-three --seeds 5 --method sequential,flow",
         "0 repeated; 2 bad input"
     ))]
     Three(set_three::Args),

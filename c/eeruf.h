@@ -61,7 +61,7 @@
 #define EERUF_FLASH
 #endif
 
-/* What interrupts call, where code in flash cannot be read while flash is written. */
+/* Code that interrupts call lies in RAM, where flash cannot be read while it is written. */
 #if defined(ESP8266)
 #include <c_types.h>
 #define EERUF_IN_RAM IRAM_ATTR

@@ -1,6 +1,6 @@
 //! `cargo xtask examples`: the programs in `examples/` that one flashes onto a board. Each is built and linked as its
-//! README says, those that fire by a table with the one that `eeruf design` writes. That of the Uno is run among simulated modules by `cargo
-//! xtask arduino`; nothing else is run.
+//! README says, those that fire by a table with the one that `eeruf design` writes. That of the Uno is run among
+//! simulated modules by `cargo xtask arduino`; nothing else is run.
 
 use std::path::{Path, PathBuf, absolute};
 use std::process::Command;

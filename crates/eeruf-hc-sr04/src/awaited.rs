@@ -32,7 +32,7 @@ where
     D: embedded_hal::delay::DelayNs + embedded_hal_async::delay::DelayNs,
     C: Fn() -> Instant,
 {
-    /// Puts a ring on pins that can be waited for, with a delay that both blocks (for a trigger) and waits, and a clock.
+    /// Puts a ring on pins that can be waited for, with a delay that blocks (for a trigger) and waits, and a clock.
     ///
     /// # Errors
     /// As for [`new`](HcSr04Ring::new).

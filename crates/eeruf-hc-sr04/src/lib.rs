@@ -15,8 +15,8 @@
 //!
 //! The ring can also be a [`FlowRing`](eeruf_core::flow::FlowRing), which fires by flow.
 //!
-//! With feature `async` a ring is a task: `ring.next().await` waits for lines and deadlines by `embedded-hal-async`, and
-//! the next reading is its value (`HcSr04Ring::awaited`).
+//! With feature `async` a ring is a task: `ring.next().await` waits for lines and deadlines by `embedded-hal-async`,
+//! and the next reading is its value (`HcSr04Ring::awaited`).
 //!
 //! A loop that looks at lines instead of taking interrupts hands in edges as intervals: see [`Sampler`].
 //!

@@ -134,7 +134,8 @@ fn run<F: Future>(world: &Rc<RefCell<World>>, until_us: u32, task: F) -> Option<
 
 const WIDTHS_US: [Option<u32>; 4] = [Some(3_000), Some(9_000), None, Some(20_000)];
 
-/// The readings of four modules in 10 s, by kind and in all, and the greatest error of an echo; each `next` lasts `piece_us` at most.
+/// The readings of four modules in 10 s, by kind and in all, and the greatest error of an echo; each `next` lasts
+/// `piece_us` at most.
 fn ten_seconds(piece_us: u32) -> ([(Tally<u32>, u32); 4], u32) {
     let (widths_us, coming) = (WIDTHS_US.to_vec(), Vec::new());
     let world = World { now_us: 0, widths_us, coming, high: vec![false; 4], edges: vec![0; 4], alarm_us: None };

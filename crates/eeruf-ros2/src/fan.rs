@@ -1,4 +1,4 @@
-//! What the ring as a whole says along one direction, where cones of several sensors may overlap.
+//! The ring's answer along one direction, where cones of several sensors may overlap.
 
 use crate::placing::Place;
 use crate::range::{Distance, Scale};

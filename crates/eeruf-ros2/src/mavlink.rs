@@ -1,5 +1,6 @@
 //! `MAVLink` 2: `OBSTACLE_DISTANCE` of the whole ring, `DISTANCE_SENSOR` for sensors that a named rotation stands for,
-//! `HEARTBEAT`, `SYS_STATUS` and `STATUSTEXT` by which others know of us and of sensors that fail. What autopilots make of them: `docs/how-to/autopilots.md`.
+//! `HEARTBEAT`, `SYS_STATUS` and `STATUSTEXT` by which others know of us and of sensors that fail. What autopilots make
+//! of them: `docs/how-to/autopilots.md`.
 //!
 //! Messages and numbers: <https://mavlink.io/en/messages/common.html>; frames:
 //! <https://mavlink.io/en/guide/serialization.html>.
@@ -204,8 +205,9 @@ impl Mavlink {
         self.send(DISTANCE_SENSOR, &payload)
     }
 
-    /// Sends what each sensor sees, in their order, and names those that do not answer. While none sees anything, or one
-    /// holds the others back, no distances are sent: both autopilots then find after half a second that they have no data.
+    /// Sends what each sensor sees, in their order, and names those that do not answer. While none sees anything, or
+    /// one holds the others back, no distances are sent: both autopilots then find after half a second that they have
+    /// no data.
     pub(crate) fn picture(&mut self, views: &[(View, f32)]) -> std::io::Result<()> {
         self.listen();
         self.failed = views.iter().map(|(view, _)| *view == View::Unanswered).collect();
@@ -362,7 +364,7 @@ mod tests {
         assert_eq!(said(UnansweredAs::Unknown, View::Unanswered, near), [UNKNOWN, 100, 100]);
     }
 
-    /// What a receiver gets within a moment: number and payload of each frame.
+    /// Number and payload of each frame that a receiver gets within a moment.
     fn received(receiver: &UdpSocket) -> Vec<(u8, Vec<u8>)> {
         let mut buffer = [0; 512];
         let mut frames = Vec::new();

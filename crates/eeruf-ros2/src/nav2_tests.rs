@@ -1,5 +1,6 @@
-//! The update rules of Nav2's costmap layers, as `range_sensor_layer.cpp`, `obstacle_layer.cpp`, `observation_buffer.cpp`
-//! and `raytrace_line_2d.hpp` of navigation2 a3a97043 have them, fed with what a simulated ring says.
+//! The update rules of Nav2's costmap layers, as `range_sensor_layer.cpp`, `obstacle_layer.cpp`,
+//! `observation_buffer.cpp` and `raytrace_line_2d.hpp` of navigation2 a3a97043 have them, fed with what a
+//! simulated ring reads.
 
 use std::sync::Arc;
 
@@ -247,7 +248,8 @@ impl Case {
              ring = {{ sensors = 8, spacing_deg = {spacing_deg:.1}, radius_m = 0.2 }}\n"
         );
         if *person {
-            text += "[[fault]]\nkind = \"leg\"\nradius_m = 0.15\nfrom_m = [1.5, -1.5]\nto_m = [1.5, 1.5]\nfrom_s = 2.0\nto_s = 5.0\n";
+            text += "[[fault]]\nkind = \"leg\"\nradius_m = 0.15\nfrom_m = [1.5, -1.5]\nto_m = [1.5, 1.5]\n\
+                     from_s = 2.0\nto_s = 5.0\n";
         }
         World::from_text("nav2.toml".as_ref(), &text).unwrap()
     }

@@ -24,7 +24,7 @@ pub(crate) enum Source {
     Simulation,
 }
 
-/// What is sent of a ring of which a sensor does not answer.
+/// The distances of a ring of which a sensor does not answer.
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum UnansweredAs {

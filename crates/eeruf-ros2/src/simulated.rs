@@ -84,7 +84,7 @@ impl Simulator {
         Ok((self.step(behind_s.clamp(0.0, PIECE_S))?, is_slow))
     }
 
-    /// Simulates so many seconds.
+    /// Simulates this time, in seconds.
     pub(crate) fn step(&mut self, step_s: f64) -> Result<Vec<Simulated>, String> {
         let mut read = Vec::new();
         let readings = self.simulation.step(step_s, |_| true).map_err(|error| format!("simulate: {error}"))?;

@@ -1,4 +1,4 @@
-//! The state of all sensors as a `PointCloud2`, a point for each in their order, and of the whole ring as a `LaserScan`.
+//! The state of all sensors as a `PointCloud2`, a point for each in their order, and of the ring as a `LaserScan`.
 
 use std::f32::consts::{PI, TAU};
 
@@ -59,8 +59,8 @@ pub(super) fn cloud(header: Header, places: &[Place], views: &[(View, f32)], min
     }
 }
 
-/// The scan of the ring from the robot's centre, counter-clockwise from behind: an obstacle's distance, `+Inf` where the
-/// ring is clear, NaN where it does not know.
+/// The scan of the ring from the robot's centre, counter-clockwise from behind: an obstacle's distance, `+Inf` where
+/// the ring is clear, NaN where it does not know.
 pub(crate) fn scan(header: Header, places: &[Place], views: &[(View, f32)], view_rad: f32, scale: &Scale) -> LaserScan {
     let angle_increment = TAU / f32::from(RAYS);
     let ray = |n: u16| {

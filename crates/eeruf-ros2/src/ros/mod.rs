@@ -164,7 +164,7 @@ impl Ros {
         publisher.publish(message).is_ok()
     }
 
-    /// Publishes what all sensors see and how old that is, in seconds, and the scan of them; false if that cannot be sent.
+    /// Publishes what all sensors see and how old that is, in seconds, and their scan; false if that cannot be sent.
     pub(crate) fn publish_ring(&self, now_ns: i64, views: &[(View, f32)], scale: &Scale) -> bool {
         let Some(placed) = &self.placed else { return true };
         let header = Header { stamp: Time::from_nanoseconds(now_ns), frame_id: placed.base_frame.clone() };

@@ -332,7 +332,7 @@ mod tests {
     fn every_command_has_an_example_that_parses_and_exit_codes() {
         each_leaf(&program(), "eeruf", &mut |command, path| {
             // Old names have the help of new ones.
-            if <super::LabVerb as clap::Subcommand>::has_subcommand(path.split(' ').nth(1).unwrap_or_default()) {
+            if super::LabVerb::has_subcommand(path.split(' ').nth(1).unwrap_or_default()) {
                 return;
             }
             let help = command.get_after_help().map(ToString::to_string).unwrap_or_default();

@@ -29,7 +29,7 @@ pub(crate) fn describe(answer: &CostAnswer) -> String {
     };
     let mut text = format!(
         "By the time in which 95 of 100 things that appear are seen (t95), driving at {speed_m_s} m/s and turning at \
-         {turn_deg_s} degrees/s:\n\n{}\n",
+         {turn_deg_s} degrees/s:\n\n{}\n\n",
         markdown(&header, kinds.iter().map(row))
     );
     let draw = draw.as_ref().map_or(String::new(), |other| format!("; {other} is not surely better"));

@@ -1,7 +1,7 @@
 /* A ring of HC-SR04 modules on Zephyr. Interrupts stamp the edges of the echo lines, the main thread fires by the table
  * in ring.h, and once a second the log says what is before each module. The table is written by
  *
- *   eeruf design examples/nucleo-f401/ring.toml --period-only --emit c */
+ *   eeruf design c/zephyr/samples/ring/ring.toml --period-only --emit c */
 #include <zephyr/device.h>
 #include <zephyr/devicetree.h>
 #include <zephyr/drivers/gpio.h>

@@ -92,7 +92,6 @@ describe("the page in a browser", { concurrency: LONG ? 1 : 4 }, () => {
 
   test("a paste is answered with what to try next, a picture, and nothing sent", async () => {
     const { context, page, troubles, requests } = await open(browser, SINGLE, { offline: true });
-    const asked = requests.length;
     // Module 2 fires when module 1 has heard its echo: their sum stays.
     const rows = Array.from({ length: 200 }, (_, n) => {
       const front = 60 + 40 * Math.sin(n / 7) + 20 * Math.sin(n / 3);
@@ -119,7 +118,10 @@ describe("the page in a browser", { concurrency: LONG ? 1 : 4 }, () => {
     await page.locator("#paste-go").click();
     await page.waitForFunction(() => document.getElementById("paste-says")?.textContent?.startsWith("No ranges"));
     assert.equal(await page.locator("#paste-result").isVisible(), false);
-    assert.equal(requests.length, asked);
+    assert.ok(
+      requests.every((url) => /^(file|blob|data):/.test(url)),
+      String(requests),
+    );
     assert.deepEqual(troubles, []);
     await context.close();
   });

@@ -15,16 +15,13 @@ mod four_worlds;
 mod measure;
 mod modules;
 mod narrow_panels;
-mod ray_casts;
 mod rust_side;
 mod shortest_periods;
 mod time_paths;
 mod time_scenes;
 mod tune;
-mod twins;
 mod typical_alcove;
 mod uneven_rings;
-mod unseen_rooms;
 
 use std::error::Error;
 use std::io::Write as _;
@@ -36,7 +33,7 @@ type Answer = Result<(), Box<dyn Error>>;
 /// A command: its name, its arguments, what it prints.
 type Command = (&'static str, &'static str, &'static str, fn(&[String]) -> Answer);
 
-const COMMANDS: [Command; 20] = [
+const COMMANDS: [Command; 17] = [
     ("constant-depth", "", "angles at which a wall is heard, by distance and gain", constant_depth::main),
     (
         "diagnose-places",
@@ -62,7 +59,6 @@ const COMMANDS: [Command; 20] = [
     ("modules", "", "tables of docs/reference/modules.md", modules::main),
     ("narrow-panels", "", "panels narrower than a Fresnel zone", narrow_panels::main),
     ("periods", "", "table of shortest periods", shortest_periods::table),
-    ("ray-casts", "", "exactness of ray casts", ray_casts::main),
     ("rust-side", "paths | times", "what Python is held against", rust_side::main),
     (
         "shortest-periods",
@@ -73,10 +69,8 @@ const COMMANDS: [Command; 20] = [
     ("time-paths", "[SCENE]", "time of the path finder", time_paths::main),
     ("time-scenes", "[SCENE [RUNS]]", "time of expensive scenes", time_scenes::main),
     ("tune", "[--check]", "settings of the experiments, into the sources (an hour)", tune::main),
-    ("twins", "[SECONDS]", "rings with one limit changed, beside even ones", twins::main),
     ("typical-alcove", "[SCENE.toml]", "the typical alcove of Set I", typical_alcove::main),
     ("uneven-rings", "[RINGS [SECONDS [FIRST]]]", "random rings for a race with peers", uneven_rings::main),
-    ("unseen-rooms", "[RINGS [FIRST [PLACES]]]", "eeruf design's words in other rooms", unseen_rooms::main),
 ];
 
 fn main() -> ExitCode {

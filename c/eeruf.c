@@ -1243,7 +1243,7 @@ static OUT_OF_LINE void hear(EerufRing *ring, uint8_t x, uint32_t at_us, uint32_
     uint8_t off = WIDE;
     if (off_us > MOST_OFF_US && (int32_t)t_echo_us >= (int32_t)ring->blanking_us - (int32_t)off_us &&
         (!(flags & LISTENING) || is_before || t_echo_us <= window_us + off_us)) {
-        /* It says too little: without an echo before it the firing has none. */
+        /* Too uncertain an edge: without an echo before it the firing has none. */
         if (!(flags & LISTENING)) return;
         if (!(flags & OUTSIDE) && !is_before && add32(sensor->echo_us, off_us) <= t_echo_us) return;
         sensor->filter.flags |= CAN_EMIT;
@@ -1786,7 +1786,7 @@ static uint8_t in_8us(uint32_t width_us) {
     return (uint8_t)shorter(narrow(width_us + 7) >> 3, UINT8_MAX);
 }
 
-/* The same in a byte of an edge, above 127 of these units in as many as 32 of them, and back: any time for 255. */
+/* Converts an uncertainty to a byte of an edge, above 127 of these units in as many as 32 of them, and back: any time for 255. */
 #define FINE 127u
 #define ANY_TIME ((uint32_t)1 << 20)
 
@@ -1940,7 +1940,7 @@ static EerufStatus begin_firing(EerufHcSr04 *modules, uint8_t sensor, uint8_t he
     if ((line->state & PULSE) == ROSE) {
         if ((health == EERUF_HEALTH_STUCK_HIGH || by_hardware) &&
             sensor_of(modules->ring, sensor)->fired_us[0] - line->rose_us <= modules->settings->longest_hold_us) {
-            /* It has heard nothing of an earlier trigger yet. */
+            /* Nothing was heard of an earlier trigger yet. */
             if (by_hardware) return EERUF_OK;
             set_bits(line, SEEN_HIGH, SEEN_HIGH);
             show(modules->ring, sensor, HELD);
@@ -2367,7 +2367,7 @@ static void fire_flow(EerufRing *ring, uint8_t x, uint32_t now_us) {
     decide(ring);
 }
 
-/* Those that fired ahead have had their turn. */
+/* Sensors that fired ahead have had their turn. */
 static OUT_OF_LINE void begin_round(EerufRing *ring) {
     uint8_t x;
     for (x = 0; x < ring->count; x++) flow_sensor(ring, x)->filter.state &= (uint8_t)~AHEAD;

@@ -173,7 +173,7 @@ typedef struct EerufSchedule {
 typedef struct EerufRequirements {
     uint32_t t_delta_us, min_interval_us, window_us; /* no window: as long as the schedule allows */
     uint8_t layout, neighbours, stale_echo;
-    /* Of each sensor, instead of t_delta and window above, where they are not all alike; else null. Must last as long
+    /* Needs of each sensor, instead of t_delta and window above, where they are not all alike; else null. Must last as long
        as the schedule. */
     const EerufLimits *limits;
 } EerufRequirements;
@@ -368,7 +368,7 @@ EerufStatus eeruf_ring_holds(EerufRing *ring, uint8_t sensor);
 /* Takes what hardware or a protocol measured of a sensor's firing, before its reading is emitted: the echo time, or
    EERUF_NO_ECHO if it listened and heard nothing. */
 EerufStatus eeruf_ring_measured(EerufRing *ring, uint8_t sensor, uint32_t t_echo_us);
-/* The same of an echo time between two, as eeruf_ring_echo_between. */
+/* Notes an echo time between two, as eeruf_ring_echo_between. */
 EerufStatus eeruf_ring_measured_between(EerufRing *ring, uint8_t sensor, uint32_t least_us, uint32_t most_us);
 /* Forgets a sensor's echo, which is not what it seemed: its next reading is compared with nothing. Ages go on. */
 EerufStatus eeruf_ring_forget(EerufRing *ring, uint8_t sensor);
@@ -456,7 +456,7 @@ typedef struct EerufWatch {
     uint8_t count;
 } EerufWatch;
 
-/* Of each sensor there is a place for. Nothing is known yet. Again with each eeruf_ring_restart: after a long sleep the
+/* Begins with a state of each sensor. Nothing is known yet. Again with each eeruf_ring_restart: after a long sleep the
    clock may have come round, so that an old state would pass for a young one. Where it jumps back all is forgotten. */
 EerufStatus eeruf_watch_init(EerufWatch *watch, size_t watch_size, EerufWatched *sensors, size_t sensors_size,
                              uint32_t now_us);
@@ -648,7 +648,7 @@ typedef struct EerufFlowRing {
    functions of their own, and what a table says cannot be changed: EERUF_ERR_FLOW. */
 EerufStatus eeruf_flow_init(EerufFlowRing *flow, size_t flow_size, EerufFlowSensor *sensors, size_t sensors_size,
                             const EerufFlowConfig *config, uint32_t now_us);
-/* The same of sensors that are all alike, without `config->own`: links less. */
+/* Begins a ring of sensors that are all alike, without `config->own`: links less. */
 EerufStatus eeruf_flow_init_alike(EerufFlowRing *flow, size_t flow_size, EerufFlowSensor *sensors, size_t sensors_size,
                                   const EerufFlowConfig *config, uint32_t now_us);
 EerufStatus eeruf_flow_poll(EerufFlowRing *flow, uint32_t now_us, EerufEvent *event); /* a period is a round */

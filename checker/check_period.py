@@ -409,7 +409,7 @@ class Node:
         return best
 
     def left(self, _=None):
-        """Those that may fire next, in ascending order."""
+        """Return the sensors that may fire next, in ascending order."""
         count = len(self.low)
         begun = self.fired[len(self.fired) // count * count:]
         return [x for x in range(count) if x not in begun and len(self.fired) < 2 * count]

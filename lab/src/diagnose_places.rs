@@ -17,7 +17,7 @@ use crate::driving::{Place, world};
 struct Counts {
     /// Readings that foreign sound caused.
     foreign: usize,
-    /// Of these, named with the right sender.
+    /// Pairs among them that are named with the right sender.
     right: usize,
     /// Readings that were said to be foreign.
     named: usize,

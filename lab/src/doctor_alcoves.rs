@@ -32,7 +32,7 @@ struct Outcome {
     heard: [[u32; SENSORS]; SENSORS],
     /// Sensors of which the log can tell that they are fooled.
     tells: [bool; SENSORS],
-    /// The same stamps with own echoes only.
+    /// The stamps with own echoes only.
     alone: Examination,
 }
 

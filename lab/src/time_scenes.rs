@@ -60,7 +60,7 @@ fn pillars(rows: u32) -> Vec<Wall> {
     walls
 }
 
-/// Such a hall: the matrix of a ring of 24 at order 6, per source.
+/// Times the matrix of a ring of 24 in a hall, at order 6, per source.
 fn hall_ms(rows: u32, physics: Physics, asked: Option<u32>) -> (f64, usize) {
     let (size_m, walls) = (3.0 * f64::from(rows), pillars(rows));
     let scene = Scene::new(walls, vec![], Air::default()).expect("a hall");
@@ -98,7 +98,7 @@ fn driving(at: [f64; 2]) -> Robot {
     Robot { motion: Motion::Constant { velocity: Vector::new(0.14, 0.14), turn_rad_s: 1.0 }, ..ring }
 }
 
-/// These robots in this scene, sound followed up to this order: the time of a reading in 20 periods.
+/// Times a reading in 20 periods of these robots in this scene, sound followed up to this order.
 fn reading_ms(scene: Scene, robots: Vec<Robot>, max_order: u32, asked: Option<u32>) -> (f64, usize) {
     let world = World::new(scene, robots, Noise::default())
         .and_then(|world| world.with_max_order(max_order))

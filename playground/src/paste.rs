@@ -26,7 +26,7 @@ pub(crate) struct Pasted {
 #[derive(Serialize, Default)]
 struct Sensor {
     name: String,
-    /// It reads another's sound, or may.
+    /// True if it reads another's sound, or may.
     is_concerned: bool,
     readings: usize,
     /// Seconds and metres.

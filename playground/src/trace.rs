@@ -18,7 +18,7 @@ pub(crate) struct Traced {
 #[derive(Serialize)]
 struct TracedPath {
     emitter: u32,
-    /// The same as the emitter for a sensor's own echo.
+    /// The receiver; equal to the emitter for a sensor's own echo.
     receiver: u32,
     order: u32,
     length_m: f64,

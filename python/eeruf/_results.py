@@ -153,9 +153,9 @@ class SetOneFigures(Result):
     nearer: Latency | None
     """The time until the back wall is read right again when it has come nearer."""
     farther: Latency | None
-    """The same when it has gone away as far."""
+    """The time when it has gone away as far."""
     new_step: NewStep | None
-    """The same when it comes nearer for the first time."""
+    """The time when it comes nearer for the first time."""
 
 
 # What of a summary is no figure.
@@ -181,7 +181,7 @@ class AlcoveRun(Result):
     nearer: tuple[int | None, ...] = field(repr=False)
     """For each step of the back wall nearer and each sensor, in which period it is read right; None for never."""
     farther: tuple[int | None, ...] = field(repr=False)
-    """The same for the steps away."""
+    """In which period it is read right, for each step away."""
     new_ms: tuple[float | None, ...] = field(repr=False)
     """For the first step nearer, after how many milliseconds each sensor reads it right."""
 
@@ -218,7 +218,7 @@ class PlacingRun(Result):
     others_of_accepted: float | None
     """Share of the accepted readings that are another robot's sound; None if none was accepted."""
     others_at_worst: float | None
-    """The same of the sensor that accepts the largest share of it, among those with five accepted readings."""
+    """That share of the sensor that accepts the largest share of it, among those with five accepted readings."""
     foreign_of_accepted: float | None
     """Share of the accepted readings that are foreign sound."""
     good_lost: float | None
@@ -546,7 +546,7 @@ class SetThreeFigures(Result):
     others_of_accepted: Spread | None
     """Share of the accepted readings that are another robot's sound."""
     others_at_worst: Spread | None
-    """The same of the sensor that accepts the largest share of it, among those with five accepted readings."""
+    """That share of the sensor that accepts the largest share of it, among those with five accepted readings."""
     foreign_of_accepted: Spread | None
     """Share of the accepted readings that are foreign sound, of the robot's other sensors or an earlier firing too."""
     good_lost: Spread | None

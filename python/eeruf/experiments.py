@@ -104,7 +104,7 @@ class Scenes:
     """
 
     def __init__(self, kind: Literal["alcove", "course"], numbers: range, physics: _Physics = "default") -> None:
-        """Of these numbers."""
+        """Make the scenes of these numbers."""
         if not isinstance(kind, str) or kind not in ("alcove", "course"):
             raise _eeruf.ArgumentError(f'kind = {kind!r}; expected "alcove" or "course"')
         # A range longer than 2**63 has no length.

@@ -34,6 +34,6 @@ TABLE_I_C: Final = TABLE_I_B
 """The firing times of Table I-b."""
 
 TABLE_I_D: Final = Schedule(100_000, _LAGS, _A, _ms(18, 12, 6, 0, 20, 14, 8, 2, 22, 16, 10, 4))
-"""The same waits rearranged, so that any four neighbours fire 15 ms apart or more."""
+"""The waits of Table I-c rearranged, so that any four neighbours fire 15 ms apart or more."""
 
 __all__ = ["TABLE_I_A", "TABLE_I_B", "TABLE_I_C", "TABLE_I_D"]

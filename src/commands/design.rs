@@ -54,7 +54,7 @@ pub(crate) struct Args {
     /// Print only the schedule, in this form; by default a description
     #[arg(long, value_enum, value_name = "FORM")]
     emit: Option<Form>,
-    /// The same as --emit json
+    /// Print JSON, as --emit json does
     #[arg(long, conflicts_with = "emit")]
     json: bool,
     /// Draw the timing of two periods, as SVG or, if the name ends in .png, as PNG

@@ -99,7 +99,7 @@ impl Watch {
         true
     }
 
-    /// The same as [`go_on`](Self::go_on), in the form that a search asks for.
+    /// Answers like [`go_on`](Self::go_on), in the form that a search asks for.
     pub(crate) fn control_flow(&mut self, how_far: impl FnOnce() -> String) -> ControlFlow<()> {
         if self.go_on(how_far) { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
     }

@@ -32,7 +32,7 @@ audible_us = 30_000
 tick_us = 100
 "#;
 
-/// The same of one make of one's own, for the driver; the file says the window.
+/// A ring of one make of one's own, for the driver; the file says the window.
 const ALIKE: &str = r#"
 sensors = 3
 layout = "ring"

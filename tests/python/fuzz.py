@@ -81,7 +81,7 @@ class Chance:
     """Arguments that make sense, nearly make sense, or make none."""
 
     def __init__(self, seed: int) -> None:
-        """The same for the same seed."""
+        """Draw the same for the same seed."""
         self.random = random.Random(seed)
 
     def anything(self, depth: int = 0) -> Any:
@@ -503,7 +503,7 @@ class Used(NamedTuple):
     """Memory of a process when all that it no longer needs has been given back."""
 
     resident_mb: float
-    """Of the machine's memory, with what lies idle between used pieces."""
+    """Share of the machine's memory, with what lies idle between used pieces."""
     heap_mb: float
     """Asked of malloc and not freed: by Rust, NumPy and what Python does not manage itself."""
     objects: int

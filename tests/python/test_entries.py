@@ -41,7 +41,7 @@ class InTurn:
     """One after the other, as the method ``sequential``."""
 
     def __init__(self, robot: sim.Robot) -> None:
-        """Of this many sensors."""
+        """Take the number of sensors."""
         self.sensors = robot.sensors
 
     def __call__(self, period: int) -> Any:

@@ -157,7 +157,7 @@ def test_a_tampered_pickle_is_refused() -> None:
 
 
 def unaligned(array: Any) -> Any:
-    """The same array, begun at an odd address."""
+    """Return the array, begun at an odd address."""
     buffer = bytearray(array.nbytes + 1)
     copy = np.frombuffer(buffer, dtype=array.dtype, offset=1, count=array.size).reshape(array.shape)
     copy[...] = array

@@ -21,7 +21,7 @@ pub(crate) const BOARDS: [(&str, &str); 4] = [
 
 const UNO: (&str, &str) = ("uno", "avr-none");
 
-/// Those that fire by a table; the other fires by flow.
+/// Examples that fire by a table; the other fires by flow.
 const BY_TABLE: [&str; 3] = ["uno", "pico", "esp32-c3"];
 
 /// All of them, or the one that is named.

@@ -340,7 +340,7 @@ static unsigned deepest_stack;
 
 static void look_at_stack(void) {
     const unsigned pointer = avr->data[R_SPL] | (unsigned)avr->data[R_SPH] << 8;
-    /* It is 0 before the program sets it. */
+    /* The pointer is 0 before the program sets it. */
     if (pointer >= 0x100 && avr->ramend - pointer > deepest_stack) deepest_stack = avr->ramend - pointer;
 }
 

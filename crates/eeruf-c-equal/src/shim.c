@@ -63,7 +63,7 @@ int shim_schedule(Handle *handle, uint32_t period_us, uint8_t sensors, uint8_t p
     return status;
 }
 
-/* Of each sensor: window, t_delta and group, and more in flow rings. */
+/* Needs of each sensor: window, t_delta and group, and more in flow rings. */
 static EerufLimits *limits_of(uint8_t sensors, const uint32_t *own, uint8_t numbers) {
     EerufLimits *limits = (EerufLimits *)calloc(sensors, sizeof *limits);
     uint8_t x;

@@ -18,7 +18,7 @@ pub fn prove(design: &RingDesign, budget: usize, go_on: impl FnMut(usize) -> boo
     certify(&design.bounding.problem(), &design.schedule, design.bound, budget, go_on)
 }
 
-/// The same for any schedule, and what is known to be the least period.
+/// Certifies any schedule, and what is known to be the least period.
 ///
 /// # Errors
 /// As for [`prove`].

@@ -140,7 +140,7 @@ impl RingSpec {
         Ok(design)
     }
 
-    /// As [`shortest`](Self::shortest), for a controller that fires any number of sensors at once.
+    /// Like [`shortest`](Self::shortest), for a controller that fires any number of sensors at once.
     fn shortest_at_once(&self, search: &Search, control: &mut impl Control) -> Result<RingDesign, NoDesign> {
         match self.speed_mm_s {
             None | Some(0) => self.shortest_at_rest(search, control),

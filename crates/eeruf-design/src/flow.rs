@@ -67,7 +67,7 @@ impl RingSpec {
         Some(self.c.echo_time((1e3 * needs_to_see_m(fast_m_s)?).round() as u32).min(self.listening))
     }
 
-    /// The same, of its robot as it was judged in rooms.
+    /// Returns the design of its robot as it was judged in rooms.
     pub fn flow_of(&self, robot: &Robot, seed: u32) -> FlowDesign {
         let &Robot { window, blanking, ref limits, ref together, .. } = robot;
         let needs = self.problem().requirements;

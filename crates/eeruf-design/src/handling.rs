@@ -72,7 +72,7 @@ impl RingSpec {
     }
 }
 
-/// These instants, which ascend, with at least this much between two: those that come too soon after another wait, and
+/// Moves instants, which ascend, apart by at least `least`: those that come too soon after another wait, and
 /// of those that coincide some come earlier.
 fn apart(planned: &[Micros], least: Micros, random: &mut Random) -> Vec<Micros> {
     let mut moved = planned.to_vec();

@@ -29,7 +29,7 @@ pub enum LayoutKey {
 pub enum LayoutName {
     /// The first and the last sensor are no neighbours.
     Line,
-    /// They are.
+    /// The sensors form a ring.
     Ring,
     /// The sensors of a block are neighbours of each other only.
     Blocks,
@@ -56,8 +56,8 @@ impl OwnedLayout {
 }
 
 impl OwnedLayout {
-    /// The same where only those are neighbours of which these rows say that they hear each other, and the pairs that
-    /// are none now.
+    /// Returns the layout in which only those are neighbours of which these rows say that they hear each other, and the
+    /// pairs that are none now.
     pub(crate) fn of_those_that_hear(self, hearing: &[u64]) -> (Self, Vec<(usize, usize)>) {
         let sensors = hearing.len();
         let rows = self.layout().rows(sensors);

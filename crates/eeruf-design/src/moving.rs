@@ -62,7 +62,7 @@ impl RingSpec {
         schedule.verify(&self.covering(self.t_delta_needed(schedule)).problem().requirements).ok()
     }
 
-    /// The same ring where no sensor fires again before `least`.
+    /// Returns the ring where no sensor fires again before `least`.
     fn refiring_after(&self, least: Micros) -> Self {
         match &self.uneven {
             Some(uneven) => {
@@ -165,7 +165,7 @@ impl<'s> Moving<'s> {
         Ok(RingDesign { bound: certified, t_delta: needs.t_delta, spec: needs, ..design })
     }
 
-    /// Of the schedules with the period of this one and no larger `t_delta`, the one with most to spare.
+    /// Returns the schedule with most to spare among those with the period of this one and no larger `t_delta`.
     pub(crate) fn with_most_to_spare(
         &self,
         schedule: AnySchedule,

@@ -177,7 +177,7 @@ impl RingSpec {
         build(text, |ring: RingFile| ring.spec(Some(file))).map_err(|error| error.in_file(file))
     }
 
-    /// The same ring where `t_delta` must cover this much; where sensors have their own, each as much more.
+    /// Returns the ring where `t_delta` must cover this much; where sensors have their own, each as much more.
     #[must_use]
     pub fn covering(&self, t_delta: Micros) -> Self {
         let more = t_delta.saturating_sub(self.t_delta);

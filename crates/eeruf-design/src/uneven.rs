@@ -17,8 +17,8 @@ pub struct OwnedUneven {
 }
 
 impl OwnedUneven {
-    /// Of this many sensors, counted from 0. `t_delta`, `window` and `refire` may be empty: all sensors then have what
-    /// the requirements say.
+    /// Takes what each of this many sensors needs, counted from 0. `t_delta`, `window` and `refire` may be empty: all
+    /// sensors then have what the requirements say.
     ///
     /// # Errors
     /// The first invalid thing.
@@ -59,34 +59,34 @@ impl OwnedUneven {
         Uneven { t_delta, window, refire, intervals, shared_lines, together }
     }
 
-    /// The same with this much more to be covered by every `t_delta`.
+    /// Returns the needs with this much more to be covered by every `t_delta`.
     pub(crate) fn covering(&self, more: Micros) -> Self {
         let t_delta = self.t_delta.iter().map(|t_delta| t_delta.saturating_add(more)).collect();
         Self { t_delta, ..self.clone() }
     }
 
-    /// The same with other refire times.
+    /// Returns the needs with other refire times.
     pub(crate) fn with_refire(&self, refire: Vec<Micros>) -> Self {
         Self { refire, ..self.clone() }
     }
 
-    /// The same with other intervals of pairs.
+    /// Returns the needs with other intervals of pairs.
     pub(crate) fn with_intervals(&self, other: impl Fn(Micros) -> Micros) -> Self {
         let intervals = self.intervals.iter().map(|&(x, y, interval)| (x, y, other(interval))).collect();
         Self { intervals, ..self.clone() }
     }
 
-    /// The same with other tolerances.
+    /// Returns the needs with other tolerances.
     pub(crate) fn with_t_deltas(&self, other: impl Fn(Micros) -> Micros) -> Self {
         Self { t_delta: self.t_delta.iter().map(|t_delta| other(*t_delta)).collect(), ..self.clone() }
     }
 
-    /// The same with other windows; sensors are triggered again as soon as before.
+    /// Returns the needs with other windows; sensors are triggered again as soon as before.
     pub(crate) fn with_windows(&self, other: impl Fn(Micros) -> Micros) -> Self {
         Self { window: self.window.iter().map(|window| other(*window)).collect(), ..self.clone() }
     }
 
-    /// The same without shared lines, if there are any.
+    /// Returns the needs without shared lines, if there are any.
     pub(crate) fn with_lines_of_their_own(&self) -> Option<Self> {
         (!self.shared_lines.is_empty()).then(|| Self { shared_lines: Vec::new(), ..self.clone() })
     }

@@ -64,25 +64,25 @@ impl FileError {
         Self { is_full, ..Self::new(file, format!("{error}; {advice}")) }
     }
 
-    /// The same error at a line, counted from 1.
+    /// Adds a line, counted from 1.
     #[must_use]
     pub fn at_line(self, line: Option<u64>) -> Self {
         Self { line, ..self }
     }
 
-    /// The same error at a byte, counted from 0.
+    /// Adds a byte, counted from 0.
     #[must_use]
     pub fn at_byte(self, byte: Option<u64>) -> Self {
         Self { byte, ..self }
     }
 
-    /// The same error and what goes with it.
+    /// Adds what goes with it.
     #[must_use]
     pub fn and(self, more: impl fmt::Display) -> Self {
         Self { message: format!("{}; {more}", self.message), ..self }
     }
 
-    /// The same error in another file.
+    /// Replaces the file.
     #[must_use]
     pub fn in_file(self, file: &Path) -> Self {
         Self { file: file.to_owned(), ..self }

@@ -191,7 +191,7 @@ pub fn is_likely_rad(angle: f64) -> bool {
     (0.5..24.5).contains(&of_15_degrees) && (of_15_degrees - libm::round(of_15_degrees)).abs() < 0.02
 }
 
-/// As [`doubt`], for a list: firing times and waits are implausible only if all of them are small.
+/// Like [`doubt`], for a list: firing times and waits are implausible only if all of them are small.
 ///
 /// ```
 /// assert_eq!(eeruf_files::doubt_list("t_lag_us", &[0.0, 15_000.0]), None);

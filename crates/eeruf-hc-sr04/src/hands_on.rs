@@ -15,12 +15,12 @@ macro_rules! hands_on {
                 &self.ring
             }
 
-            /// As [`Ring::upcoming`](eeruf_core::Ring::upcoming).
+            /// Like [`Ring::upcoming`](eeruf_core::Ring::upcoming).
             pub fn upcoming(&self) -> impl Iterator<Item = eeruf_core::plan::Upcoming> {
                 self.ring.upcoming()
             }
 
-            /// As [`Ring::disable`](eeruf_core::Ring::disable).
+            /// Like [`Ring::disable`](eeruf_core::Ring::disable).
             ///
             /// # Errors
             /// [`SensorError`](eeruf_core::SensorError) for a sensor out of range.
@@ -28,7 +28,7 @@ macro_rules! hands_on {
                 self.ring.disable(sensor)
             }
 
-            /// As [`Ring::enable`](eeruf_core::Ring::enable).
+            /// Like [`Ring::enable`](eeruf_core::Ring::enable).
             ///
             /// # Errors
             /// [`SensorError`](eeruf_core::SensorError) for a sensor out of range.
@@ -36,17 +36,17 @@ macro_rules! hands_on {
                 self.ring.enable(sensor)
             }
 
-            /// As [`Ring::moving`](eeruf_core::Ring::moving): how fast the robot moves and turns.
+            /// Like [`Ring::moving`](eeruf_core::Ring::moving): how fast the robot moves and turns.
             pub fn moving(&mut self, speed_mm_s: u32, turn_mrad_s: u32, now: eeruf_core::Instant) {
                 self.ring.moving(speed_mm_s, turn_mrad_s, now);
             }
 
-            /// As [`Ring::pause`](eeruf_core::Ring::pause).
+            /// Like [`Ring::pause`](eeruf_core::Ring::pause).
             pub fn pause(&mut self) {
                 self.ring.pause();
             }
 
-            /// As [`Ring::resume`](eeruf_core::Ring::resume).
+            /// Like [`Ring::resume`](eeruf_core::Ring::resume).
             pub fn resume(&mut self) {
                 self.ring.resume();
             }

@@ -171,12 +171,12 @@ impl<T, I: FlexPin, D: DelayNs, const K: usize> Lines<T, I, D, K> {
 /// The outcome of a trigger.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Trigger {
-    /// It was given.
+    /// The trigger was given.
     Given {
         /// True if the pulse of the firing before began and never ended: that silence may have been an echo.
         lost_an_edge: bool,
     },
-    /// It was not: the line is stuck, or cannot be read.
+    /// The trigger was withheld: the line is stuck, or cannot be read.
     Withheld,
     /// Nor was it, but the sensor has heard nothing of an earlier one yet and holds its line.
     ListensStill,

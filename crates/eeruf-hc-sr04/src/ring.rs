@@ -64,7 +64,7 @@ impl<P: Plan, J: Judge, T: OutputPin, I: InputPin, D: DelayNs, const K: usize, c
 impl<P: Plan, J: Judge, T: OutputPin, I: InputPin, D: DelayNs, const K: usize, const H: usize, Q: Edges>
     HcSr04Ring<Ring<P, J, K, 1, H>, T, I, D, K, Q>
 {
-    /// As [`new`](HcSr04Ring::new), with the queue that the edge interrupt fills. Each poll takes its edges in first.
+    /// Like [`new`](HcSr04Ring::new), with the queue that the edge interrupt fills. Each poll takes its edges in first.
     ///
     /// # Errors
     /// As there.
@@ -78,7 +78,7 @@ impl<P: Plan, J: Judge, T: OutputPin, I: InputPin, D: DelayNs, const K: usize, c
         Self::on(ring, pins, delay, settings, edges)
     }
 
-    /// As [`Ring::poll`]. [`RingEvent::Fire`] is for information: the sensor has been triggered already.
+    /// Like [`Ring::poll`]. [`RingEvent::Fire`] is for information: the sensor has been triggered already.
     ///
     /// Edges in the queue are taken in first. Read the clock for `now` just before: then no window closes on an edge
     /// that came in time, however long the main loop was busy elsewhere.
@@ -89,7 +89,7 @@ impl<P: Plan, J: Judge, T: OutputPin, I: InputPin, D: DelayNs, const K: usize, c
         self.poll_expecting(now, |_| 0)
     }
 
-    /// As [`Ring::poll_expecting`].
+    /// Like [`Ring::poll_expecting`].
     pub fn poll_expecting(&mut self, now: Instant, expected_change_us: impl FnMut(u8) -> i32) -> Option<RingEvent> {
         while let Some(edge) = self.edges.pop() {
             // An edge of a line that the ring does not have is ignored.
@@ -128,7 +128,7 @@ impl<P: Plan, J: Judge, const K: usize, const H: usize> HcSr04Ring<Ring<P, J, K,
 }
 
 impl<P: Plan, J: Judge, T, I, D, const K: usize, const H: usize> HcSr04Ring<Ring<P, J, K, 1, H>, T, I, D, K> {
-    /// As [`Ring::poll`] at the instant `at` at which hardware has triggered the sensor that was due, by
+    /// Like [`Ring::poll`] at the instant `at` at which hardware has triggered the sensor that was due, by
     /// [`Ring::upcoming`]: it is not triggered again. Call until there is no event, after all edges up to `at` and
     /// before all later ones. The line was not seen to be low: a sensor that still held it counts as unanswered.
     pub fn poll_triggered(&mut self, at: Instant) -> Option<RingEvent> {
@@ -189,7 +189,7 @@ impl<P: Plan, J: Judge, T, I, D, const K: usize, const H: usize, Q> HcSr04Ring<R
         }
     }
 
-    /// As [`Ring::next_deadline`].
+    /// Like [`Ring::next_deadline`].
     pub fn next_deadline(&self) -> Instant {
         self.ring.next_deadline()
     }
@@ -202,7 +202,7 @@ impl<P: Plan, J: Judge, T, I, D, const K: usize, const H: usize, Q> HcSr04Ring<R
         self.edge_seen(edge, Micros::ZERO)
     }
 
-    /// As [`edge`](Self::edge), of an edge that came between two instants: the line was last seen without it at
+    /// Like [`edge`](Self::edge), of an edge that came between two instants: the line was last seen without it at
     /// `earliest`, and with it at `latest`. For who samples lines: see [`Sampler`](crate::Sampler). A pulse is as long
     /// as between its uncertain edges, and counts as [`Ring::echo_between`] has it.
     ///
@@ -236,7 +236,7 @@ impl<P: Plan, J: Judge, T, I, D, const K: usize, const H: usize, Q> HcSr04Ring<R
         }
     }
 
-    /// As [`Ring::fired`], where a sensor was triggered at another instant than the poll said.
+    /// Like [`Ring::fired`], where a sensor was triggered at another instant than the poll said.
     ///
     /// # Errors
     /// [`SensorError`] for a sensor out of range.
@@ -250,12 +250,12 @@ impl<P: Plan, J: Judge, T, I, D, const K: usize, const H: usize, Q> HcSr04Ring<R
         self.lines.health(sensor)
     }
 
-    /// As [`Ring::restart`].
+    /// Like [`Ring::restart`].
     pub fn restart(&mut self, now: Instant) {
         self.ring.restart(now);
     }
 
-    /// As [`Ring::set_report_after`].
+    /// Like [`Ring::set_report_after`].
     ///
     /// # Errors
     /// As there.
@@ -265,7 +265,7 @@ impl<P: Plan, J: Judge, T, I, D, const K: usize, const H: usize, Q> HcSr04Ring<R
 }
 
 impl<P: Plan, T, I, D, const K: usize, const H: usize, Q> HcSr04Ring<Ring<P, EchoFilter<K>, K, 1, H>, T, I, D, K, Q> {
-    /// As [`Ring::set_t_delta`].
+    /// Like [`Ring::set_t_delta`].
     ///
     /// # Errors
     /// As there.
@@ -275,7 +275,7 @@ impl<P: Plan, T, I, D, const K: usize, const H: usize, Q> HcSr04Ring<Ring<P, Ech
 }
 
 impl<P: Plan, J: Judge, T, I, D, const K: usize, const H: usize, Q> HcSr04Ring<Ring<P, J, K, 1, H>, T, I, D, K, Q> {
-    /// As [`Ring::set_window`].
+    /// Like [`Ring::set_window`].
     ///
     /// # Errors
     /// As there.
@@ -283,7 +283,7 @@ impl<P: Plan, J: Judge, T, I, D, const K: usize, const H: usize, Q> HcSr04Ring<R
         self.ring.set_window(window)
     }
 
-    /// As [`Ring::set_blanking`].
+    /// Like [`Ring::set_blanking`].
     ///
     /// # Errors
     /// As there.
@@ -295,7 +295,7 @@ impl<P: Plan, J: Judge, T, I, D, const K: usize, const H: usize, Q> HcSr04Ring<R
 impl<'s, U: OwnLimits, J: Judge, T, I, D, const K: usize, const M: usize, const H: usize, Q>
     HcSr04Ring<Ring<ScheduledFiring<'s, K, M, U>, J, K, 1, H>, T, I, D, K, Q>
 {
-    /// As [`Ring::change_schedule`].
+    /// Like [`Ring::change_schedule`].
     ///
     /// # Errors
     /// [`SetupError::Retrigger`] if the schedule fires a sensor again sooner than it may be triggered, and as

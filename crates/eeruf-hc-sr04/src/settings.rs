@@ -63,7 +63,7 @@ impl Settings {
 }
 
 impl Default for Settings {
-    /// Those of the HC-SR04.
+    /// Returns the settings of the HC-SR04.
     fn default() -> Self {
         const SETTINGS: Settings = match Settings::of(&HC_SR04) {
             Some(settings) => settings,

@@ -41,7 +41,7 @@ impl Lines for High {
     fn trigger(&mut self, _sensor: u8) {}
 }
 
-/// Of firings at a wall, and of others, how many there were and how many were told right; and after how many firings
+/// Numbers of firings at a wall, and of others, and how many were told right; and after how many firings
 /// the last sensor was first clear.
 #[derive(Default)]
 struct Seen {

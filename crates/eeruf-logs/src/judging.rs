@@ -103,8 +103,8 @@ impl Judging {
         Ok(Self { sensors: Vec::new(), fresh, speed_of_sound, out: None, log: log.to_owned() })
     }
 
-    /// Also writes each reading onto its topic, and onto `TOPIC/accepted` what is accepted of it: the range, `+Inf`
-    /// where nothing is in range, `-Inf` for too close.
+    /// Writes, besides, each reading onto its topic, and onto `TOPIC/accepted` what is accepted of it: the range,
+    /// `+Inf` where nothing is in range, `-Inf` for too close.
     #[must_use]
     pub fn writing(self, out: McapWriter) -> Self {
         Self { out: Some(out), ..self }

@@ -55,7 +55,7 @@ const MOST_BEAMS: usize = 4096;
 /// Why a message could not be decoded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Undecoded {
-    /// It ends too early, or too late.
+    /// The message ends too early, or too late.
     Length,
     /// A `LaserScan` of a lidar.
     Beams,

@@ -60,8 +60,8 @@ impl Surveyed {
         self.of_pair(&self.slots, sender, receiver)
     }
 
-    /// Of the travel times below `until_us` (at most 128 ms), the share at which a path of the pair would have been
-    /// seen with two offsets or more: at others it comes within the receiver's dead time, or its own echo hides it, or
+    /// The share of the travel times below `until_us` (at most 128 ms) at which a path of the pair would have been seen
+    /// with two offsets or more: at others it comes within the receiver's dead time, or its own echo hides it, or
     /// the survey has no such lead.
     pub fn visible(&self, sender: u8, receiver: u8, until_us: u32) -> f64 {
         let all = (until_us / 1000).clamp(1, 128);
@@ -124,7 +124,7 @@ pub fn survey(log: &FiringLog, settings: &PathSettings) -> Surveyed {
     survey_while(log, settings, &|| true)
 }
 
-/// As [`survey`], which ends early with what it has found once `keep_going` answers `false`.
+/// Like [`survey`], which ends early with what it has found once `keep_going` answers `false`.
 pub fn survey_while(log: &FiringLog, settings: &PathSettings, keep_going: KeepGoing<'_>) -> Surveyed {
     let sensors = log.sensors();
     let rows = || log.firings.iter().chain(&log.listened);

@@ -4,9 +4,9 @@
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Symptom {
-    /// It has no echo: nothing is in its range, or it is deaf.
+    /// The sensor has no echo: nothing is in its range, or it is deaf.
     Silent,
-    /// It has no echo though others hear its sound along paths on which it should hear theirs.
+    /// The sensor has no echo though others hear its sound along paths on which it should hear theirs.
     Deaf,
     /// Its value never changes.
     Constant,
@@ -14,9 +14,9 @@ pub enum Symptom {
     Coarse,
     /// Its readings are near nothing.
     Scatters,
-    /// It reads the echo of its own firing before.
+    /// The sensor reads the echo of its own firing before.
     Stale,
-    /// It jumps between two values.
+    /// The sensor jumps between two values.
     Jumps,
 }
 

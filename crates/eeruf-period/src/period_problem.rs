@@ -63,7 +63,7 @@ impl ShortestPeriod {
         self.bound == self.period()
     }
 
-    /// The same as a search for any value has it.
+    /// Returns the value as a search for any value has it.
     #[must_use]
     pub fn found(&self) -> Found<MAX_SENSORS> {
         Found {
@@ -167,10 +167,10 @@ impl PeriodProblem<'_> {
         Ok((outcome, search.nodes()))
     }
 
-    /// Of the schedules with the period of this one, the one with most to spare: the largest `t_delta`; of these, the
-    /// largest intervals; of these, the longest times before a sensor fires again. Each need grows by the same for all
-    /// sensors, and no gain in a later one makes up for a loss in an earlier one. What is not proven within `budget`
-    /// nodes is the best found.
+    /// Finds, among the schedules with the period of this one, the one with most to spare: the largest `t_delta`; of
+    /// these, the largest intervals; of these, the longest times before a sensor fires again. Each need grows by the
+    /// same for all sensors, and no gain in a later one makes up for a loss in an earlier one. What is not proven
+    /// within `budget` nodes is the best found.
     ///
     /// # Errors
     /// As for [`shortest`](Self::shortest).

@@ -129,7 +129,7 @@ const BROKEN: [(&str, &str, &str); 15] = [
     ("lanes: equal numbers are less", "return (p | self.top) - q &", "return (p | self.top) - q - self.ones &"),
 ];
 
-/// The same for rules of counting and of firings in the order of time.
+/// Broken rules of counting and of firings in the order of time.
 const BROKEN_IN_TIME: [(&str, &str, &str); 16] = [
     ("sequence: a tick more", "apart + max(windows", "apart + 1 + max(windows"),
     ("one by one: no sensor follows itself", "sum(gap.values()) - again >", "sum(gap.values()) >"),

@@ -62,7 +62,7 @@ pub(crate) struct Adaptation {
     adaptation: Exclusive<OnLadder<Arc<[Rung]>>>,
 }
 
-/// Of a fraction of 1, in thousandths.
+/// Takes a fraction of 1, in thousandths.
 fn permille(name: &str, value: Option<&Bound<'_, PyAny>>, default: u16) -> PyResult<u16> {
     // At most 1000.
     value.map_or(Ok(default), |share| number(name, share, 0.0..=1.0).map(|share| (1e3 * share).round() as u16))

@@ -69,7 +69,7 @@ pub(crate) fn whole_or<T: TryFrom<i128> + TryInto<i128> + Copy>(
     value.map_or(Ok(default), |value| whole(name, value, range))
 }
 
-/// As [`whole_or`], where no number is `None`.
+/// Like [`whole_or`], where no number is `None`.
 pub(crate) fn whole_or_none<T: TryFrom<i128> + TryInto<i128> + Copy>(
     name: &str,
     value: Option<&Bound<'_, PyAny>>,

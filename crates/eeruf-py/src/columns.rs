@@ -25,7 +25,7 @@ impl<const N: usize> Columns<N> {
         Ok(made.bind(py).clone())
     }
 
-    /// The same of codes, which compare with their names.
+    /// Makes a column of codes, which compare with their names.
     pub(crate) fn codes<'py>(
         &self,
         py: Python<'py>,

@@ -103,7 +103,7 @@ impl FlowSettings {
         BeliefSettings { alone: self.alone.unwrap_or(false), ..self.belief.unwrap_or_default() }
     }
 
-    /// The same for a method, whose scene says the rest.
+    /// Returns the settings for a method, whose scene says the rest.
     pub(crate) fn options(&self) -> PyResult<FlowOptions> {
         let &Self { least, most, rest, dice, seed, alone, belief } = self;
         let expected = "none for a method: its scene says it";

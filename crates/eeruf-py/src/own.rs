@@ -128,7 +128,7 @@ type Raised = Arc<Mutex<Option<PyErr>>>;
 #[derive(Default)]
 pub(crate) struct Calls {
     callables: Vec<Mutex<Option<Py<PyAny>>>>,
-    /// Of the callables that were arguments of the simulation: whether it fires, its robot, and its place.
+    /// Callables that were arguments of the simulation: whether it fires, its robot, and its place.
     given: Vec<(bool, usize, usize)>,
     raised: Raised,
 }
@@ -208,7 +208,7 @@ impl Makers {
         Ok(Some(Arc::new(Self { firing: kept(firing), filter: kept(filter), raised: Raised::default() })))
     }
 
-    /// Those of filters and of firings.
+    /// Returns the callables of filters and of firings.
     pub(crate) fn callables(&self, py: Python<'_>) -> (Option<Py<PyAny>>, Option<Py<PyAny>>) {
         let copy = |maker: &Option<Py<PyAny>>| maker.as_ref().map(|maker| maker.clone_ref(py));
         (copy(&self.filter), copy(&self.firing))

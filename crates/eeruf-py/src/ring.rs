@@ -97,7 +97,7 @@ pub(crate) enum Fires {
 pub(crate) enum Promise {
     /// Nothing: crosstalk that the schedule repeats makes readings ambiguous.
     Nothing,
-    /// They reject crosstalk at the ring's `t_delta`.
+    /// The waits reject crosstalk at the ring's `t_delta`.
     TDelta,
     /// Needs of each sensor.
     EachSensor(Arc<OwnedRequirements>),

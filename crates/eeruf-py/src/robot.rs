@@ -397,7 +397,7 @@ impl Robot {
         Ok(Self { robot, pose, sensor_poses, spacing_rad, radius_m })
     }
 
-    /// The same robot, but for these arguments.
+    /// Return the robot with these arguments changed.
     ///
     /// Args:
     ///     changes: arguments of ``Robot``, by name.
@@ -641,7 +641,7 @@ fn changes_places(changes: Option<&Bound<'_, PyDict>>) -> PyResult<bool> {
     Ok(sensors.is_some_and(|sensors| sensors.try_iter().is_ok()))
 }
 
-/// It is no error that an argument was not there.
+/// Forgives that an argument was missing.
 fn missing(error: PyErr) -> PyResult<()> {
     Python::attach(|py| if error.is_instance_of::<pyo3::exceptions::PyKeyError>(py) { Ok(()) } else { Err(error) })
 }

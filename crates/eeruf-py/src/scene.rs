@@ -280,7 +280,7 @@ impl Scene {
         world_file(self.scene(), &robots, &self.noise, &self.physics, self.max_order, self.seed, &self.faults)
     }
 
-    /// The same scene, but for these arguments.
+    /// Return the scene with these arguments changed.
     ///
     /// Args:
     ///     changes: arguments of ``Scene``, by name. Other walls or poles have the default materials, unless those are

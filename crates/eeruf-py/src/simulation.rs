@@ -88,7 +88,7 @@ struct History {
 }
 
 impl History {
-    /// The same for a copy, whatever its length.
+    /// Shares it with a copy, whatever its length.
     fn share(&mut self) -> Self {
         if !self.since.is_empty() {
             self.before.push(Arc::new(core::mem::take(&mut self.since)));

@@ -12,7 +12,7 @@ use serial2::SerialPort;
 pub(crate) enum FromLine {
     /// The port is open.
     Opened,
-    /// It cannot be opened, or is no more: tried again each second.
+    /// The line cannot be opened, or is no more: tried again each second.
     Lost(String),
     /// A frame, or what was none, and when its last byte was read, in nanoseconds since 1970.
     Frame(Result<Received, FrameError>, i64),

@@ -114,7 +114,7 @@ pub(crate) struct Mavlink {
     armed: bool,
     /// Sensors that did not answer when the ring was last sent.
     failed: Vec<bool>,
-    /// Those of which this was said since arming.
+    /// True for sensors of which this was said since arming.
     reported: Vec<bool>,
     /// Clockwise, all at the vehicle's centre.
     places: Vec<Place>,

@@ -18,7 +18,7 @@ pub(crate) struct Candidate {
 }
 
 impl Candidate {
-    /// The same for the simulator.
+    /// Returns the draw for the simulator.
     pub(crate) fn piloting(&self) -> Piloting {
         let vfh = Vfh {
             smoothing: self.smoothing,

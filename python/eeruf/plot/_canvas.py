@@ -35,7 +35,7 @@ _ON_DARK = Colours("#e8e8e8", "#56b4e9", "#ff7f3f", "#2fd0a5", "#f0c14b", "#9a9a
 
 
 def colours(ax: Axes) -> Colours:
-    """Those for the background of these axes."""
+    """Return the colours for the background of these axes."""
     from matplotlib.colors import to_rgb
 
     red, green, blue = to_rgb(ax.get_facecolor())

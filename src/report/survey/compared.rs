@@ -15,7 +15,7 @@ pub(crate) struct Compared {
     /// Ordered pairs with a path within `until_us`, and how many of them the survey found to be such.
     pub(crate) pairs: usize,
     pub(crate) pairs_found: usize,
-    /// The same for pairs whose loudest such path is 6 dB or more above what is just heard.
+    /// Number of pairs whose loudest such path is 6 dB or more above what is just heard.
     pub(crate) loud_pairs: usize,
     pub(crate) loud_pairs_found: usize,
     /// Pairs that the survey says hear each other within `until_us`, and do not at any time, not even 6 dB louder.

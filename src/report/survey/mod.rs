@@ -25,7 +25,7 @@ pub(crate) struct Found<'a> {
     /// Sensors that hear each other within this time are neighbours.
     pub(crate) until_us: u32,
     pub(crate) speed_of_sound: f64,
-    /// Of a simulated survey, the paths that there are, and the name of the physics.
+    /// The true paths of a simulated survey, and the name of the physics.
     pub(crate) truth: Option<(&'a [TruePath], &'a str)>,
 }
 

@@ -42,7 +42,7 @@ impl<P: Plan, J: Judge, C: Captures, const K: usize, const H: usize> CaptureRing
         Ok(Self { ring, hardware, armed, count: 0, is_late: false, is_held: false, waiting: [None; K] })
     }
 
-    /// As [`Ring::poll`]: call until there is no event. [`RingEvent::Fire`] is for information, and may come some
+    /// Like [`Ring::poll`]: call until there is no event. [`RingEvent::Fire`] is for information, and may come some
     /// milliseconds after the firing.
     pub fn poll(&mut self, now: Instant) -> Option<RingEvent> {
         self.arm(now);

@@ -29,7 +29,7 @@ pub struct Mb1010<T, D> {
     delay: D,
     is_started: bool,
     pulse: Option<Micros>,
-    /// Another pulse of the same start was of another width.
+    /// True if another pulse of the same start was of another width.
     differs: bool,
 }
 

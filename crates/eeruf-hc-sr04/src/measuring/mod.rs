@@ -80,7 +80,7 @@ impl<M: Measures + ?Sized> Measures for &mut M {
 /// The state of a measurement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Measured {
-    /// It is under way. Ask again when it was started this long ago.
+    /// The measurement is under way. Ask again when it was started this long ago.
     NotYet(Micros),
     /// An echo came back after this time.
     Echo(Micros),

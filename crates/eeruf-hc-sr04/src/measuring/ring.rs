@@ -61,7 +61,7 @@ enum Step {
     Idle,
     /// Started, and to be asked at `ask`.
     Measures { started: Instant, ask: Instant },
-    /// It could not be started.
+    /// The measurement could not be started.
     Failed,
 }
 
@@ -111,14 +111,14 @@ impl<P: Plan, J: Judge, M: Measures, const K: usize, const H: usize> MeasuringRi
         Ok(Self { ring, modules, states: [State::NEW; K] })
     }
 
-    /// As [`Ring::poll`], after asking the modules that may have a result, or before that if a firing is due.
+    /// Like [`Ring::poll`], after asking the modules that may have a result, or before that if a firing is due.
     /// [`RingEvent::Fire`] is for information: the module has been started already. Read the clock for each call, since
     /// buses take time.
     pub fn poll(&mut self, now: Instant) -> Option<RingEvent> {
         self.poll_expecting(now, |_| 0)
     }
 
-    /// As [`Ring::poll_expecting`].
+    /// Like [`Ring::poll_expecting`].
     pub fn poll_expecting(&mut self, now: Instant, expected_change_us: impl FnMut(u8) -> i32) -> Option<RingEvent> {
         let plan = self.ring.plan();
         let due = if now.has_reached(plan.deadline()) { plan.next_firing() } else { None };
@@ -208,7 +208,7 @@ impl<P: Plan, J: Judge, M: Measures, const K: usize, const H: usize> MeasuringRi
         self.modules.get_mut(usize::from(sensor))
     }
 
-    /// As [`Ring::restart`]. Results of measurements under way are dropped.
+    /// Like [`Ring::restart`]. Results of measurements under way are dropped.
     pub fn restart(&mut self, now: Instant) {
         for state in &mut self.states {
             state.step = Step::Idle;

@@ -29,7 +29,7 @@ const IS_RANGING: Micros = Micros::from_millis(2);
 pub struct Srf08<B> {
     bus: B,
     address: u8,
-    /// It responded when it should have been ranging.
+    /// True if the module responded when it should have been ranging.
     is_idle: bool,
 }
 

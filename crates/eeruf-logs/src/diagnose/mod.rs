@@ -109,7 +109,7 @@ pub struct FoundPath {
     pub accidents: f64,
     /// Readings that came along it.
     pub readings: u32,
-    /// Of the readings in which nothing earlier hid it, the share that heard it.
+    /// The share of readings that heard it, among those in which nothing earlier hid it.
     pub heard: f64,
     /// The periods of the first and the last reading that came along it.
     pub periods: (u32, u32),
@@ -153,7 +153,7 @@ pub fn diagnose(log: &FiringLog, settings: &Settings) -> Diagnosis {
     diagnose_while(log, settings, &|| true)
 }
 
-/// As [`diagnose`], which ends early with what it has found once `keep_going` answers `false`.
+/// Like [`diagnose`], which ends early with what it has found once `keep_going` answers `false`.
 pub fn diagnose_while(log: &FiringLog, settings: &Settings, keep_going: KeepGoing<'_>) -> Diagnosis {
     let timeline = Timeline::of(log, settings);
     let mut paths = Vec::new();

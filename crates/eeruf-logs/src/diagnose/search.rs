@@ -242,7 +242,7 @@ impl Search<'_> {
         ((supporting, groups.len() as u32), accidents / groups.len().max(1) as f64)
     }
 
-    /// The same for a sensor's own echo. It stands still however the others' firings move, so what counts is at how
+    /// Counts the offsets of a sensor's own echo. It stands still however the others' firings move, so what counts is at how
     /// many offsets of another sensor it was heard, for that one of which these are fewest: its sound is the other
     /// explanation.
     fn own_offsets(&self, trials: &[(i64, bool, f64, usize)], share: f64) -> ((u32, u32), f64) {

@@ -94,7 +94,7 @@ impl Timeline {
         comes_back.of >= FEWEST && comes_back.value() < COMES_BACK
     }
 
-    /// Of the pairs of readings of one sensor, one from the first third of the log and one from the last, the share
+    /// The share, among pairs of readings of one sensor, one from the first third of the log and one from the last,
     /// that is the same; `by_others`: of those that follow another sensor's firing alike.
     fn comes_back(&self, same_us: i64, by_others: bool) -> Share {
         let mut alike = BTreeMap::<_, Vec<Option<i64>>>::new();

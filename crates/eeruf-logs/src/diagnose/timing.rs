@@ -13,7 +13,7 @@ pub struct Timing {
     pub drift_error_ppm: f64,
     /// Scatter of firings around the schedule that drifts so, rms, in microseconds.
     pub jitter_us: f64,
-    /// Of 100 firings one is late by more than this after the schedule that drifts so, in microseconds.
+    /// One of 100 firings is late by more than this after the schedule that drifts so, in microseconds.
     pub late_99_us: f64,
     /// Number of firings that were compared.
     pub firings: usize,

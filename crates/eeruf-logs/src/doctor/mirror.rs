@@ -8,7 +8,7 @@ use super::series::Series;
 pub(crate) struct Mirrored {
     /// Firings in which both have an echo.
     pub(crate) both: u32,
-    /// Of these, readings that are each other's.
+    /// Readings among them that are each other's.
     pub(crate) agree: u32,
     /// Readings that nearly are: a difference that only passes by is that three times as often, as the band is three
     /// times as wide.

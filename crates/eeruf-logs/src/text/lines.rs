@@ -29,9 +29,9 @@ pub(crate) struct Line {
 #[derive(Debug, PartialEq, Eq)]
 pub(super) enum Rewritten {
     Lines(Vec<String>),
-    /// It holds no reading.
+    /// The line holds no reading.
     Nothing,
-    /// It may hold a reading, and is damaged.
+    /// The line may hold a reading, and is damaged.
     Misfit,
 }
 

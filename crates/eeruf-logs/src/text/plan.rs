@@ -22,7 +22,7 @@ pub(super) struct NoEcho {
 /// The meaning of a column of validity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Says {
-    /// Of ArduPilot's `RFND`: 4 is good, 3 beyond the range, 2 below it, less is no measurement.
+    /// The status of ArduPilot's `RFND`: 4 is good, 3 beyond the range, 2 below it, less is no measurement.
     RangefinderStatus,
     /// 1 or `true` is good.
     Flag,

@@ -442,7 +442,7 @@ impl Plan {
 
     /// A voltage or a share among ranges: other decimals than each other column has, and nearer than modules hear.
     fn without_odd_ones(&mut self) {
-        /// Of the smallest of the others' medians.
+        /// Share of the smallest of the others' medians.
         const FAR_BELOW: f64 = 0.2;
         let is_vague =
             |column: &Column| column.role == Role::Range && column.units == 0 && !names::is_place(&column.name);

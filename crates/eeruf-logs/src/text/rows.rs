@@ -43,7 +43,7 @@ type Cells = Vec<(usize, String)>;
 
 /// Why a line gives no reading.
 enum Unread {
-    /// It has none.
+    /// The column has no role.
     Other,
     Damaged(String),
 }

@@ -75,7 +75,7 @@ fn driven(seed: u64, periods: i64, phases: i64) -> (FiringLog, Vec<Option<Sent>>
     (FiringLog::new("test", firings), truth)
 }
 
-/// Of the readings with another's sound the share that is named rightly, and the share of the names that are right.
+/// The share of the readings with another's sound that is named rightly, and the share of the names that are right.
 fn named(log: &FiringLog, truth: &[Option<Sent>], found: &Diagnosis) -> (f64, f64) {
     let (mut foreign, mut right, mut named) = (0, 0, 0);
     for ((firing, truth), name) in log.firings.iter().zip(truth).zip(&found.named) {

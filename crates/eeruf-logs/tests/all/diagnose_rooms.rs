@@ -9,7 +9,7 @@ use eeruf_sim::{Cause, FaultKind, Method, Motion, Noise, Options, Physics, Readi
 #[derive(Clone, Copy, Debug)]
 enum Place {
     Alcove(u64),
-    /// The same, of which the robot backs out.
+    /// An alcove out of which the robot backs.
     BacksOut(u64),
     Room(u64),
 }

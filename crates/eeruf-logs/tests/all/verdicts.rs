@@ -18,7 +18,7 @@ pub(crate) struct Counts {
     pub(crate) pairs: [usize; 3],
     /// Healthy logs: all, blamed, and with a suspect where nothing chatters.
     pub(crate) healthy: [usize; 3],
-    /// Of those with stamps of firings in turn or by alternating lags without chatter: all, and called none seen.
+    /// Logs with stamps of firings in turn or by alternating lags, without chatter: all, and called none seen.
     pub(crate) seen: [usize; 2],
 }
 

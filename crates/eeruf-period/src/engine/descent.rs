@@ -16,7 +16,7 @@ use crate::engine::state::{State, event};
 pub(crate) enum Case {
     /// A case of two.
     Of(Branching, usize),
-    /// Of these, x has the largest |d|, and d is negative or not.
+    /// Sensor x has the largest |d| of these, and d is negative or not.
     Largest { x: usize, negative: bool, of: u64 },
 }
 

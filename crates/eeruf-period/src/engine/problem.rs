@@ -116,7 +116,7 @@ pub(crate) struct Merged {
     pub(crate) gap: Vec<Vec<i32>>,
     /// The pairs x < y with a gap.
     pub(crate) pairs: Vec<(usize, usize)>,
-    /// Those with which each has a gap.
+    /// Sensors with which each has a gap.
     pub(crate) neighbours: Vec<Vec<usize>>,
     /// The least distance of any two |d|.
     pub(crate) least_apart: i32,
@@ -150,8 +150,8 @@ impl Problem {
         self.separation.iter().chain(&self.window).copied().chain(gaps)
     }
 
-    /// The same problem where the smallest separation is that of two: of any two sensors the larger counts, so that of
-    /// a single one with a smaller separation never does, but for its own stale echoes.
+    /// Returns the problem where the smallest separation is that of two: of any two sensors the larger counts, so that
+    /// of a single one with a smaller separation never does, but for its own stale echoes.
     pub(crate) fn with_separations_that_count(&self) -> Self {
         let merged = self.merged();
         let raised = |of: &usize, own: u32| {

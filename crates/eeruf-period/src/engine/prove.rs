@@ -78,7 +78,7 @@ pub fn prove(claim: &Claim, budget: usize) -> Result<String, NoProof> {
     prove_while(claim, budget, |_| true)
 }
 
-/// The same as [`prove`], as long as `go_on` says so: it is asked now and then, with the number of nodes so far.
+/// Proves like [`prove`], as long as `go_on` says so: it is asked now and then, with the number of nodes so far.
 ///
 /// # Errors
 ///

@@ -25,7 +25,7 @@ pub(crate) struct Repair {
     random: Random,
     pub(crate) period: i32,
     times: Times,
-    /// Of the gaps, then of the separation, of each pair, both ways.
+    /// Weights of the gaps, then of the separation, of each pair, both ways.
     weights: [Vec<i16>; 2],
     /// The number of needs that each sensor breaks with others.
     broken: Vec<i16>,

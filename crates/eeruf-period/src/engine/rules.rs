@@ -209,7 +209,7 @@ fn ends(x: usize, negative: bool) -> (usize, usize) {
     (event(x, usize::from(!negative)), event(x, usize::from(negative)))
 }
 
-/// Of two of known signs with `|d_x|` below `|d_y|`, the later event of y is as far behind that of x as the separation
+/// For two of known signs with `|d_x|` below `|d_y|`: the later event of y is as far behind that of x as the separation
 /// goes beyond the distance of the earlier ones, and the other way round. Only in searches: certificates do without.
 fn behind(state: &mut State, merged: &Merged) -> Result<bool, Refuted> {
     let sign = |state: &State, x: usize| {

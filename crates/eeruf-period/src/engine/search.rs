@@ -100,7 +100,7 @@ impl Search {
         self.walk(period, &mut state, budget, None, go_on)
     }
 
-    /// The same by branchings along time.
+    /// Decides by branchings along time.
     pub fn decide_in_time(&mut self, period: u32, budget: u64, go_on: &mut dyn FnMut(u64) -> bool) -> Decided {
         let assumptions = self.assumptions.get_or_init(|| Assumptions::of(&self.problem.with_separations_that_count()));
         let Ok(mut state) = assumptions.root_in_time(&self.merged, period + 1) else { return Decided::Refuted };

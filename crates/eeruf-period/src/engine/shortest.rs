@@ -326,7 +326,7 @@ impl Run {
         self.take(period, decided)
     }
 
-    /// The same by branchings along time: where there is little room beside what density asks for, they refute more.
+    /// Decides by branchings along time: where there is little room beside what density asks for, they refute more.
     fn decide_in_time(&mut self, period: u32, effort: u64, ask: Ask<'_>) -> Result<bool, Stopped> {
         let (before, effort) = (self.nodes() - self.search.nodes(), self.affordable(effort));
         let Self { search, found, .. } = self;

@@ -81,7 +81,7 @@ impl State {
         Ok(Self::of(bounds, low))
     }
 
-    /// These bounds, and nothing else known.
+    /// Begins with these bounds, and nothing else known.
     pub(crate) fn of(bounds: Bounds, low: Vec<Bound>) -> Self {
         let below = vec![0; low.len()];
         Self {

@@ -82,7 +82,7 @@ impl Assumptions {
         Ok(root)
     }
 
-    /// The same with other assumptions, for branchings along time: the first of each family is the first to fire of it
+    /// Begins with other assumptions, for branchings along time: the first of each family is the first to fire of it
     /// in phase a, and the first of all no later than any of its family in phase b.
     pub(crate) fn root_in_time(&self, merged: &Merged, bound: u32) -> Result<State, Refuted> {
         let mut root = State::new(merged, bound as i32)?;

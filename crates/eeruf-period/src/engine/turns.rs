@@ -47,7 +47,7 @@ impl Turns {
         (self.placed.len() < 2 * self.count).then_some(self.placed.len() / self.count)
     }
 
-    /// Those that may fire next, in ascending order.
+    /// Sensors that may fire next, in ascending order.
     pub(crate) fn left(&self) -> impl Iterator<Item = usize> + use<> {
         let begun = self.placed.len() / self.count * self.count;
         let fired = self.placed[begun..].iter().fold(0, |set, x| set | 1 << x);

@@ -23,7 +23,7 @@ impl Alike<'_> {
         self.conflicts.len()
     }
 
-    /// The same for the search, to which no interval is no conflict, and any window a tick at least.
+    /// Returns the problem as the search has it, to which no interval is no conflict, and any window a tick at least.
     pub(crate) fn problem(&self) -> Problem {
         let none = vec![0; self.sensors()];
         let conflicts = if self.interval > 0 { self.conflicts } else { &none };

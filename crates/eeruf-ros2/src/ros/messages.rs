@@ -205,7 +205,7 @@ pub(crate) struct Twist {
     pub(crate) angular: Vector3,
 }
 
-/// Of six numbers with themselves; zeros for what is exactly known.
+/// Covariance of six numbers; zeros for what is exactly known.
 type Covariance = [[f64; 6]; 6];
 
 /// `nav_msgs/Odometry`, whose pose and twist have a covariance each.

@@ -19,7 +19,7 @@ pub struct Conditions {
 }
 
 impl Conditions {
-    /// Those of a room, or of none, and of a gain.
+    /// Takes the conditions of a room, or of none, and of a gain.
     pub fn of(room: Option<&Room>, gain: GainProfile) -> Self {
         let gain = Some(gain).filter(|gain| *gain != GainProfile::Constant);
         Self { height: room.map(|_| "room"), gain: gain.map(GainProfile::name) }

@@ -20,7 +20,7 @@ pub struct OccupancyGrid {
     height: usize,
     /// Row by row, the lowest first.
     occupied: Vec<bool>,
-    /// Those that are known to be free.
+    /// Cells that are known to be free.
     free: Vec<bool>,
     cell_m: f64,
     /// Where the lower left corner is, in metres, and the grid's heading, in radians.

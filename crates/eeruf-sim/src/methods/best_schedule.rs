@@ -41,7 +41,7 @@ pub fn shortest_schedule_for(
     problem_of(robot).shortest(budget, &mut control(keep_going))
 }
 
-/// As [`shortest_schedule_for`], and of all schedules of that period the one to prefer, if the period is proven.
+/// Like [`shortest_schedule_for`], and of all schedules of that period the one to prefer, if the period is proven.
 ///
 /// # Errors
 /// [`SearchError`] if the ring is too large to search.

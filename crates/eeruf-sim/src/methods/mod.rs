@@ -58,29 +58,29 @@ methods! {
     /// Scheduled firing (Fig. 3) by the robot's own schedule, or else by the paper's table at the robot's period (see
     /// [`table_i_d_for`]). Consecutive readings are compared.
     Eeruf = "eeruf" { }
-    /// As [`eeruf`](Self::Eeruf), by the best schedule that is known for the ring. The caller puts it in
+    /// Like [`eeruf`](Self::Eeruf), by the best schedule that is known for the ring. The caller puts it in
     /// [`Options::best`](crate::Options::best).
     EerufBest = "eeruf_best" { firing: Way::by_table(schedules::best), }
-    /// As [`eeruf`](Self::Eeruf), moving along a ladder of scaled schedules as the rejection rate asks for (end of Sec.
-    /// 3.1).
+    /// Like [`eeruf`](Self::Eeruf), moving along a ladder of scaled schedules as the rejection rate asks for (end of
+    /// Sec. 3.1).
     Adaptive = "adaptive" { adapts: true, }
     /// Flow: one sensor after the other, each with as much quiet around its firing as it has needed and dice in every
     /// gap; an echo is believed that fits what is believed, or that two readings say and nothing foreign explains
     /// ([`InTurn`](eeruf_core::flow::InTurn), [`Belief`](eeruf_core::flow::Belief)).
     Flow = "flow" { firing: flow::WAY, judge: Belief, }
-    /// As [`eeruf`](Self::Eeruf), with sensors that report up to eight echoes of a firing: the earliest that repeats is
-    /// believed.
+    /// Like [`eeruf`](Self::Eeruf), with sensors that report up to eight echoes of a firing: the earliest that repeats
+    /// is believed.
     MultiEcho = "multi_echo" { echoes: MAX_ECHOES, }
-    /// As [`adaptive`](Self::Adaptive), with sensors that report up to eight echoes of a firing.
+    /// Like [`adaptive`](Self::Adaptive), with sensors that report up to eight echoes of a firing.
     AdaptiveMultiEcho = "adaptive_multi_echo" { echoes: MAX_ECHOES, adapts: true, on_demand: true, }
-    /// As [`flow`](Self::Flow), with sensors that report up to eight echoes of a firing.
+    /// Like [`flow`](Self::Flow), with sensors that report up to eight echoes of a firing.
     FlowMultiEcho = "flow_multi_echo" { firing: flow::WAY, judge: Belief, echoes: MAX_ECHOES, on_demand: true, }
     /// One by one, each as soon as the one before has answered or was given up, as the loop of a sketch or a ping timer
     /// fires; see [`Sketch`](crate::Sketch). Every echo is believed, unless that says otherwise.
     InTurn = "in_turn" { firing: sketch::way(sketch::in_turn), judge: AsSketched, }
     /// Arrays side by side, each as [`in_turn`](Self::InTurn).
     Arrays = "arrays" { firing: sketch::way(sketch::arrays), judge: AsSketched, }
-    /// As [`in_turn`](Self::InTurn), with groups of sensors that fire together.
+    /// Like [`in_turn`](Self::InTurn), with groups of sensors that fire together.
     Groups = "groups" { firing: sketch::way(sketch::groups), judge: AsSketched, }
     /// Modules that share a trigger: all at once, again when the slowest has answered and rested.
     SyncLine = "sync_line" { firing: sketch::way(sketch::sync_line), judge: AsSketched, }

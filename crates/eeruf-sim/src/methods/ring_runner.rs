@@ -47,9 +47,9 @@ pub(crate) trait RingRunner: Send {
 /// Why a ring cannot change to another schedule.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum ChangeError {
-    /// It fires by no schedule that could be changed.
+    /// The ring fires by no schedule that could be changed.
     Fixed,
-    /// It cannot listen as asked.
+    /// The ring cannot listen as asked.
     Ring(RingError),
 }
 
@@ -201,7 +201,7 @@ impl Way {
 /// Why a ring cannot be started.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum StartError {
-    /// It cannot listen as asked.
+    /// The ring cannot listen as asked.
     Ring(RingError),
     /// No schedule of its ladder keeps `t_delta` and window.
     Unverified(Violation),
@@ -230,7 +230,7 @@ pub(super) fn config_of(robot: &Robot) -> RingConfig {
 
 /// The firings of each sensor that are remembered for whoever asks.
 pub(super) const REMEMBERED: usize = 4;
-/// The same of immediate refiring, in which a sensor may fire many times while another listens once.
+/// The memory of immediate refiring, in which a sensor may fire many times while another listens once.
 const REFIRED: usize = 16;
 
 /// A simulated sensor that hears nothing has listened.

@@ -67,7 +67,7 @@ fn in_turns(robot: &Robot, turns: usize) -> Result<AnySchedule, ScheduleError> {
     constant(round.max(rest), &times)
 }
 
-/// The same lags in both phases.
+/// Makes a schedule with the same lags in both phases.
 fn constant(period: Micros, lags: &[Micros]) -> Result<AnySchedule, ScheduleError> {
     let none = vec![Micros::ZERO; lags.len()];
     AnySchedule::from_slices(period, lags, [&none, &none])

@@ -27,7 +27,7 @@ pub enum Cause {
     Own,
     /// The sensor's own sound, sent by an earlier firing.
     Stale,
-    /// Another sensor's sound, of this robot or of another: crosstalk.
+    /// Crosstalk: another sensor's sound, of this robot or of another.
     Crosstalk,
     /// A burst from outside.
     External,

@@ -32,7 +32,7 @@ pub enum SceneError {
         /// Its length in metres.
         length_m: f64,
     },
-    /// The same wall twice, or two walls that share more than a point.
+    /// Two walls that share more than a point, or one wall twice.
     WallsOverlap {
         /// Indices of the two walls.
         walls: [usize; 2],

@@ -108,7 +108,7 @@ impl Scene {
         self
     }
 
-    /// The same scene with more poles, over the same mesh; over a new one where a pole is beyond that.
+    /// Returns the scene with more poles, over the same mesh; over a new one where a pole is beyond that.
     pub(crate) fn with_more_poles(&self, more: Vec<Pole>) -> Result<Self, SceneError> {
         let Self { built, air, room, rough, .. } = self;
         if !more.iter().all(|pole| built.mesh.covers(pole.centre)) {
@@ -122,7 +122,7 @@ impl Scene {
         Ok(scene)
     }
 
-    /// The same scene between floor and ceiling, or flat without them: all sound in one plane, as
+    /// Returns the scene between floor and ceiling, or flat without them: all sound in one plane, as
     /// [`Scene::new`] makes it.
     ///
     /// # Errors

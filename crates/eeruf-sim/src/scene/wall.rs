@@ -38,13 +38,13 @@ impl Wall {
         Self { from: Point::new(x1, y1), to: Point::new(x2, y2), faces: Faces::Left, material: Material::SMOOTH }
     }
 
-    /// The same wall with other faces.
+    /// Returns the wall with other faces.
     #[must_use]
     pub fn with_faces(self, faces: Faces) -> Self {
         Self { faces, ..self }
     }
 
-    /// The same wall of another material.
+    /// Returns the wall of another material.
     #[must_use]
     pub fn with_material(self, material: Material) -> Self {
         Self { material, ..self }

@@ -66,8 +66,8 @@ impl Simulation {
         Self::until(world, method, options, Own::new(), None, stop)
     }
 
-    /// The same with firings or filters of the caller's [`Own`]: for the robots that have none it is as with the
-    /// method alone. A robot with its own firing, but not its own filter, is believed as the method says.
+    /// Opens a simulation with firings or filters of the caller's [`Own`]: for the robots that have none it is as with
+    /// the method alone. A robot with its own firing, but not its own filter, is believed as the method says.
     ///
     /// # Errors
     /// As [`simulate`](crate::simulate()); something of one's own for a robot out of range, or a first period that
@@ -82,7 +82,7 @@ impl Simulation {
         Self::until(world, method, options, own, None, stop)
     }
 
-    /// The same with [`Own`], but firings after `options.periods` periods of the first robot do not count.
+    /// Opens a simulation with [`Own`], but firings after `options.periods` periods of the first robot do not count.
     ///
     /// # Errors
     /// As [`simulate`](crate::simulate()).
@@ -154,8 +154,8 @@ impl Simulation {
         Ok((seconds * 1e9).round() as u64)
     }
 
-    /// As [`step`](Self::step), but no farther than to the next reading: what was read then, or nothing after that many
-    /// seconds. Readings of one moment come together.
+    /// Like [`step`](Self::step), but no farther than to the next reading: what was read then, or nothing after that
+    /// many seconds. Readings of one moment come together.
     ///
     /// # Errors
     /// As [`step`](Self::step).
@@ -190,7 +190,7 @@ impl Simulation {
         Ok(readings)
     }
 
-    /// As [`step`](Self::step), for this many periods of the first robot.
+    /// Like [`step`](Self::step), for this many periods of the first robot.
     ///
     /// # Errors
     /// As [`step`](Self::step).

@@ -8,7 +8,7 @@ pub struct Options {
     /// For how many periods of the first robot (its `period`, whatever the method fires by), so that all methods run
     /// for the same time. The default is 1000.
     pub periods: u32,
-    /// Another seed than the world's.
+    /// A seed other than the world's.
     pub seed: Option<u64>,
     /// Schedule of [`Method::EerufBest`](crate::Method::EerufBest), on every robot with as many sensors; the others and
     /// `None` fall back to [`Method::Eeruf`](crate::Method::Eeruf).

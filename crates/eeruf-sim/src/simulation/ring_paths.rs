@@ -35,7 +35,7 @@ impl World {
         self.ring_paths_above(robot, max_order, 1.0)
     }
 
-    /// As [`ring_paths`](Self::ring_paths), with what is heard at this share of the amplitude that is just heard.
+    /// Like [`ring_paths`](Self::ring_paths), with what is heard at this share of the amplitude that is just heard.
     ///
     /// # Errors
     /// As [`Tracer::trace`].

@@ -26,7 +26,7 @@ pub fn simulate(world: &World, method: Method, options: &Options) -> Result<Read
     simulate_while(world, method, options, |_| true)
 }
 
-/// As [`simulate`], calling back now and then with the share of time that has passed, 0 to 1. When the answer is
+/// Like [`simulate`], calling back now and then with the share of time that has passed, 0 to 1. When the answer is
 /// `false` it stops with [`SimulationError::Stopped`].
 ///
 /// # Errors
@@ -40,8 +40,8 @@ pub fn simulate_while(
     simulate_until(world, method, options, &Stop::default(), keep_going)
 }
 
-/// As [`simulate_while`], and `stop` ends it as well, from another thread: also while paths are looked for, before the
-/// first event.
+/// Like [`simulate_while`], and `stop` ends it as well, from another thread: also while paths are looked for, before
+/// the first event.
 ///
 /// # Errors
 /// As [`simulate`].

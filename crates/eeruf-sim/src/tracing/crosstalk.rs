@@ -110,8 +110,8 @@ impl CrosstalkMatrix {
         self.fill(tracer, query.sensors, query.transducer, query, None)
     }
 
-    /// As [`compute`](Self::compute), but traces one emitter only, which is number 0 and need not be among the sensors:
-    /// for a world in which things move from firing to firing.
+    /// Like [`compute`](Self::compute), but traces one emitter only, which is number 0 and need not be among the
+    /// sensors: for a world in which things move from firing to firing.
     ///
     /// # Errors
     /// As [`compute`](Self::compute).
@@ -124,7 +124,7 @@ impl CrosstalkMatrix {
         self.fill(tracer, core::slice::from_ref(emitter), query.transducer, query, None)
     }
 
-    /// As [`compute`](Self::compute), but what the query's sensors hear of other sensors, of a kind of their own: the
+    /// Like [`compute`](Self::compute), but what the query's sensors hear of other sensors, of a kind of their own: the
     /// emitters' frequency and pattern of departure, the sensors' pattern of arrival, gain and floor.
     ///
     /// # Errors
@@ -139,7 +139,7 @@ impl CrosstalkMatrix {
         self.fill(tracer, emitters, sending, query, None)
     }
 
-    /// The same without paths that do not matter.
+    /// Computes it without paths that do not matter.
     pub(crate) fn compute_what_matters(
         &mut self,
         emitters: &[Pose],

@@ -5,7 +5,7 @@ use crate::{geometry::Point, scene::Mesh};
 /// The triangles around a source and around each receiver, found once a question.
 #[derive(Debug, Default)]
 pub(crate) struct Ends {
-    /// Those of the source, then of each receiver.
+    /// Triangles of the source, then of each receiver.
     triangles: Vec<u32>,
     /// The end of each one's share.
     until: Vec<usize>,

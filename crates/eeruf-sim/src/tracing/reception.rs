@@ -29,7 +29,7 @@ pub fn reception(image: Point, receiver: Point, velocity: Vector, speed_of_sound
     solve(from_image.norm_squared(), from_image.dot(&velocity), velocity.norm_squared(), speed_of_sound)
 }
 
-/// The same from a path's length and direction of arrival instead of its image, in metres and radians.
+/// Computes the reception from a path's length and direction of arrival instead of its image, in metres and radians.
 ///
 /// For a path over a pole the image moves a little with the receiver; the error is of the order of the pole's radius
 /// times the receiver's speed over that of sound.
@@ -37,7 +37,7 @@ pub fn reception_along(length_m: f64, arrival_rad: f64, velocity: Vector, speed_
     reception_at(length_m, [arrival_rad, 0.0], velocity, speed_of_sound)
 }
 
-/// The same of a path that comes at an azimuth and an elevation.
+/// Computes the reception of a path that comes at an azimuth and an elevation.
 pub(crate) fn reception_at(
     length_m: f64,
     [azimuth_rad, elevation_rad]: [f64; 2],

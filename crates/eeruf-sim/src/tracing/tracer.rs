@@ -149,7 +149,7 @@ impl Tracer {
         self.trace_at(scene, source, receivers, Heights::DEFAULT, limits, paths)
     }
 
-    /// As [`trace`](Self::trace), at heights of their own. In a room each path of the plan is heard straight and over
+    /// Like [`trace`](Self::trace), at heights of their own. In a room each path of the plan is heard straight and over
     /// floor and ceiling, which together count as up to [`VERTICAL_ORDER`](super::VERTICAL_ORDER) bounces of
     /// `limits.max_order`; where the scene is flat, heights do not matter.
     ///
@@ -167,7 +167,7 @@ impl Tracer {
         self.trace_audible(None, None, scene, source, receivers, heights, limits, Asked::Once, paths)
     }
 
-    /// As [`trace`](Self::trace), without paths that are certainly too faint or do not matter.
+    /// Like [`trace`](Self::trace), without paths that are certainly too faint or do not matter.
     #[expect(clippy::too_many_arguments, reason = "one question")]
     pub(crate) fn trace_audible(
         &mut self,

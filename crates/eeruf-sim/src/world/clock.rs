@@ -56,7 +56,7 @@ impl Ticker {
         Self { offset_us: clock.offset_us, stretches: [Stretch { from: 0, own: 0, gain_ppb }, NEVER, NEVER] }
     }
 
-    /// The same that drifts by so much more from one true time to another, in nanoseconds.
+    /// Returns the clock drifting by this much more from one true time to another, in nanoseconds.
     pub(crate) fn drifting(mut self, more_ppm: f64, from: u64, to: u64) -> Self {
         let [usual, ..] = self.stretches;
         let gain_ppb = usual.gain_ppb + (more_ppm * 1000.0).round() as i64;

@@ -117,7 +117,7 @@ pub enum FaultKind {
         length_m: f64,
         /// Its direction from the hinge before, counter-clockwise from the x axis.
         from_deg: f64,
-        /// And after.
+        /// The heading after, in degrees.
         to_deg: f64,
     },
 }
@@ -195,13 +195,13 @@ impl Fault {
         Self { kind, robot: 0, sensors: vec![], from_s: 0.0, to_s: f64::INFINITY }
     }
 
-    /// The same of these sensors.
+    /// Returns the fault on these sensors only.
     #[must_use]
     pub fn of_sensors(self, sensors: &[u8]) -> Self {
         Self { sensors: sensors.to_vec(), ..self }
     }
 
-    /// The same from one time to another, in seconds.
+    /// Returns the fault from one time to another, in seconds.
     #[must_use]
     pub fn between(self, from_s: f64, to_s: f64) -> Self {
         Self { from_s, to_s, ..self }

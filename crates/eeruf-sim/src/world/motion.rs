@@ -8,18 +8,18 @@ pub const MAX_SPEED: f64 = 50.0;
 /// Motion of a robot from its first pose on.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Motion {
-    /// It stands.
+    /// The robot stands.
     #[default]
     Still,
-    /// It keeps a velocity and a rate of turn for ever.
+    /// The robot keeps a velocity and a rate of turn for ever.
     Constant {
         /// Velocity in the scene's frame, in m/s.
         velocity: Vector,
         /// Rate of turn in rad/s, counter-clockwise.
         turn_rad_s: f64,
     },
-    /// It drives along straight lines from its pose through these points, heading where it goes and turning on the
-    /// spot, and stops at the last.
+    /// The robot drives along straight lines from its pose through these points, heading where it goes and turning on
+    /// the spot, and stops at the last.
     Waypoints {
         /// The points, in metres.
         points: Vec<Point>,

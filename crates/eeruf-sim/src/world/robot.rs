@@ -63,7 +63,7 @@ pub struct Robot {
     pub window: Micros,
     /// Deaf time of a sensor after it has fired; the shortest where they differ.
     pub blanking: Micros,
-    /// The same of each sensor, where they differ. Empty, as by default, where they do not.
+    /// Deaf time of each sensor, where they differ. Empty, as by default, where they do not.
     pub blankings: Vec<Micros>,
     /// With immediate refiring, how long a sensor rests at least between its echo and its next firing. The default is
     /// 36 ms, as long as it listens: much sooner, and it hears its last sound fade away in the room, just after
@@ -175,7 +175,7 @@ impl Robot {
         })
     }
 
-    /// The same robot with its sensors at these heights in metres, one each; where all are at [`DEFAULT_HEIGHT_M`],
+    /// Returns the robot with its sensors at these heights in metres, one each; where all are at [`DEFAULT_HEIGHT_M`],
     /// none are kept, so that equal robots are equal.
     #[must_use]
     pub fn with_heights(self, heights_m: Vec<f64>) -> Self {
@@ -183,7 +183,7 @@ impl Robot {
         Self { heights_m: if usual { vec![] } else { heights_m }, ..self }
     }
 
-    /// The same robot with these modules, one for each sensor, deaf for as long as they are, and with sound
+    /// Returns the robot with these modules, one for each sensor, deaf for as long as they are, and with sound
     /// [audible](Self::audible) for as long as they hear it at 20 degrees.
     ///
     /// ```
@@ -208,7 +208,7 @@ impl Robot {
         self.with_blankings(blankings)
     }
 
-    /// The same robot whose sensors all have this gain, and this pattern near 90 degrees; where there is none, their
+    /// Returns the robot whose sensors all have this gain, and this pattern near 90 degrees; where there is none, their
     /// own.
     #[must_use]
     pub fn with_pattern(mut self, gain: Option<GainProfile>, beam: Option<Beam>) -> Self {
@@ -220,7 +220,7 @@ impl Robot {
         self
     }
 
-    /// The same robot whose sensors are deaf for so long after firing, one each.
+    /// Returns the robot whose sensors are deaf for so long after firing, one each.
     #[must_use]
     pub fn with_blankings(mut self, blankings: Vec<Micros>) -> Self {
         self.blanking = blankings.iter().copied().min().unwrap_or(self.blanking);
@@ -263,8 +263,8 @@ impl Robot {
         (0..self.sensors.len()).map(|sensor| Micros::new(self.module_of(sensor).rest_us)).max().unwrap_or_default()
     }
 
-    /// The same robot as it fires by flow. One that has a [`reach`](Self::reach) keeps quiet for no longer than sound
-    /// from there has a tail, and so believes no single echo, be it alone or not.
+    /// Returns the robot as it fires by flow. One that has a [`reach`](Self::reach) keeps quiet for no longer than
+    /// sound from there has a tail, and so believes no single echo, be it alone or not.
     #[must_use]
     pub fn by_flow(self) -> Self {
         let Some(reach) = self.reach.filter(|&reach| reach < self.window) else { return self };

@@ -73,7 +73,7 @@ impl World {
         })
     }
 
-    /// The same world, with sound followed up to another order.
+    /// Returns the world with sound followed up to another order.
     ///
     /// # Errors
     /// [`WorldError::Order`] above [`MAX_ORDER`].
@@ -84,7 +84,7 @@ impl World {
         Ok(Self { max_order, ..self })
     }
 
-    /// The same world, with sound that meets a pole followed up to this order only, at most that of all other sound.
+    /// Returns the world with sound that meets a pole followed up to this order only, at most that of all other sound.
     /// Such sound is faint, and by far the most expensive to follow.
     ///
     /// # Errors
@@ -96,7 +96,7 @@ impl World {
         Ok(Self { pole_order, ..self })
     }
 
-    /// The same world with other effects.
+    /// Returns the world with other effects.
     ///
     /// # Errors
     /// [`WorldError::Physics`] for an invalid number.
@@ -108,7 +108,7 @@ impl World {
         Ok(Self { physics, ..self })
     }
 
-    /// The same world between floor and ceiling, or flat without them.
+    /// Returns the world between floor and ceiling, or flat without them.
     ///
     /// # Errors
     /// [`WorldError`] for an invalid room, or a sensor that is not between floor and ceiling.
@@ -118,18 +118,18 @@ impl World {
         Ok(Self { scene, ..self })
     }
 
-    /// The same world with another seed.
+    /// Returns the world with another seed.
     #[must_use]
     pub fn with_seed(self, seed: u64) -> Self {
         Self { seed, ..self }
     }
 
-    /// The same world with another scene, without a check that the robots stand free.
+    /// Returns the world with another scene, without a check that the robots stand free.
     pub(crate) fn with_scene(&self, scene: Scene) -> Self {
         Self { scene, ..self.clone() }
     }
 
-    /// The same world, in which these things go wrong.
+    /// Returns the world in which these things go wrong.
     ///
     /// # Errors
     /// [`WorldError::Fault`] for an invalid one, [`WorldError`] for a door or a leg that the scene has no room

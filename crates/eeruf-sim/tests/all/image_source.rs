@@ -98,7 +98,7 @@ fn unfold(walls: &[Wall], images: &[Point], sequence: &[usize], receiver: Point)
 type Found = (Vec<Bounce>, f64);
 type Sequences = Vec<Found>;
 
-/// The same sequences with the same lengths; returns how many.
+/// Asserts equal sequences with equal lengths; returns their number.
 fn assert_agree(mut ours: Sequences, mut expected: Sequences, setting: impl Fn() -> String) -> usize {
     ours.sort_by(|a, b| a.0.cmp(&b.0));
     expected.sort_by(|a, b| a.0.cmp(&b.0));

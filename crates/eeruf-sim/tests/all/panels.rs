@@ -5,7 +5,7 @@ use eeruf_sim::*;
 
 const FAR: f64 = f64::INFINITY;
 
-/// Of each path its bounces, its length, and its amplitude.
+/// A path: its bounces, its length, and its amplitude.
 type Row = (Vec<Bounce>, f64, f64);
 
 fn traced(scene: &Scene, source: Point, receiver: Point, physics: Physics, max_order: u32) -> Vec<Row> {

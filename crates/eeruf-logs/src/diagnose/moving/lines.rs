@@ -24,7 +24,7 @@ struct Point {
 /// A line, with the sums that its fit takes, from its first point on.
 struct Line {
     points: Vec<Point>,
-    /// Of the times and the travel times: their sums, the sums of their squares, and that of their products.
+    /// Sums of the times and of the travel times, of their squares, and of their products.
     sums: [f64; 5],
 }
 

@@ -11,7 +11,7 @@ const TIMES: u64 = 2000;
 pub struct Estimate {
     /// The value.
     pub value: f64,
-    /// It lies here with 95 % confidence.
+    /// Its 95 % confidence interval.
     pub interval_95: [f64; 2],
 }
 
@@ -59,7 +59,7 @@ impl Estimate {
 pub(super) struct Latencies(Vec<(f64, usize)>);
 
 impl Latencies {
-    /// Of all rooms in order; a room without a thing has none.
+    /// Takes all rooms in order; a room without a thing has none.
     pub(super) fn new(latencies_ms: impl Iterator<Item = f64>) -> Self {
         let mut sorted: Vec<_> = latencies_ms.zip(0..).filter(|(latency, _)| !latency.is_nan()).collect();
         sorted.sort_by(|one, other| one.0.total_cmp(&other.0));

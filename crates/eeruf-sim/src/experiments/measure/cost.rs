@@ -159,7 +159,7 @@ pub struct Cost {
 /// Costs of groups of ways, the simplest first, and which to recommend, each by its index.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Costs {
-    /// Of each group.
+    /// Costs of each group.
     pub costs: Vec<Cost>,
     /// The one to recommend; none if no group has a point under each condition.
     pub recommended: Option<usize>,
@@ -214,8 +214,8 @@ impl Measured {
         Costs { costs, recommended, draw }
     }
 
-    /// Of groups with their points under each condition, the simplest first, the one to recommend, and one of less
-    /// cost from which it does not surely differ.
+    /// Chooses among groups with their points under each condition, the simplest first: the one to recommend, and one
+    /// of less cost from which it does not surely differ.
     fn recommend(&self, usable: &[(usize, &Vec<Point>)]) -> [Option<usize>; 2] {
         let Some((_, first)) = usable.first() else { return [None; 2] };
         let values: Vec<f64> = usable.iter().map(|(_, points)| self.ratio(points, first).value).collect();

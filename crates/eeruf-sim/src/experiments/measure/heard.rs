@@ -61,13 +61,13 @@ impl Heard {
 /// Ways that must rank as they do whatever the measure: what is done to the readings of a way that is sound.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Control {
-    /// It believes nothing.
+    /// A control that believes nothing.
     Never,
-    /// It says 0.3 m at each firing.
+    /// A control that says 0.3 m at each firing.
     Always,
-    /// It holds each belief for 10 s.
+    /// A control that holds each belief for 10 s.
     Holds,
-    /// It is told the paths, and believes its own sound of this firing alone.
+    /// A control that is told the paths, and believes its own sound of this firing alone.
     Genie,
     /// One sensor is masked.
     Masked,

@@ -62,7 +62,7 @@ pub(super) struct Thing {
 pub struct Draws {
     /// Things that had room.
     pub fitted: u32,
-    /// Those that the sensor does not read: the module's blindness.
+    /// Things that the sensor does not read: the module's blindness.
     pub unread: u32,
 }
 

@@ -37,11 +37,11 @@ const LOOK_S: f64 = 0.01;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Moving {
-    /// It stands.
+    /// The robot stands.
     Standing,
-    /// It drives along its free way, and back, and so on.
+    /// The robot drives along its free way, and back, and so on.
     Driving,
-    /// It turns on the spot.
+    /// The robot turns on the spot.
     Turning,
 }
 

@@ -18,7 +18,7 @@ pub enum Setting {
     Votes {
         /// Number of readings that must agree.
         m: usize,
-        /// Of this number.
+        /// Number of the last readings that vote.
         n: usize,
     },
     /// The median of a sensor's last three readings is believed. Silence is beyond all echoes.

@@ -339,7 +339,7 @@ fn world_of(room: &RoomPlan, robot: &Robot, asked: &RoomsOptions) -> Result<Worl
     Ok(room.world(&robot, asked.speed_m_s)?.with_room(height)?.with_physics(Physics::DEFAULT)?)
 }
 
-/// The same robot with the other gain: the steps of the chip where it is constant, constant where it grows.
+/// Returns the robot with the other gain: the steps of the chip where it is constant, constant where it grows.
 pub fn with_other_gain(robot: &Robot) -> Robot {
     let other = match robot.module_of(0).gain {
         Gain::Constant if robot.module_of(0).frequency_hz > 45_000 => GainProfile::Polaroid6500,

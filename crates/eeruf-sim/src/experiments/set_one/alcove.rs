@@ -9,7 +9,7 @@ use crate::{
 
 /// Number of sensors the ring has: a choice, as the paper leaves Set I open (see `docs/log/experiments.md`).
 pub const SENSORS: usize = 8;
-/// Their spacing, in degrees: that of the paper's ring.
+/// Spacing of the sensors, in degrees: that of the paper's ring.
 pub const SPACING_DEG: f64 = 15.0;
 /// The radius of the arc that they stand on, in metres: a choice.
 pub const RADIUS_M: f64 = 0.30;
@@ -51,7 +51,7 @@ impl Alcove {
         Scene::new(Wall::polyline(&corners).collect(), vec![], Air::default())
     }
 
-    /// The same with the back wall nearer by [`STEP_M`](super::STEP_M).
+    /// Returns the alcove with the back wall nearer by [`STEP_M`](super::STEP_M).
     pub(super) fn nearer(self) -> Self {
         Self { depth_m: self.depth_m - super::STEP_M, ..self }
     }

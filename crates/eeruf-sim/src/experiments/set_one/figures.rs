@@ -15,7 +15,7 @@ pub struct Run {
     pub seed: u64,
     /// The figures of the alcove as it is.
     pub summary: Summary,
-    /// Those of its back wall going to and fro.
+    /// Steps of its back wall, which goes to and fro.
     #[serde(flatten)]
     pub steps: Steps,
 }
@@ -66,9 +66,9 @@ pub struct Figures {
     pub starved_in_part: f64,
     /// Time until the back wall is read right again when it has come nearer by [`STEP_M`](super::STEP_M).
     pub nearer: Option<Latency>,
-    /// The same when it has gone away as far.
+    /// Latency when the wall has gone away as far.
     pub farther: Option<Latency>,
-    /// The same when it comes nearer for the first time, in milliseconds.
+    /// Latency when the wall comes nearer for the first time, in milliseconds.
     pub new_step: Option<NewStep>,
 }
 

@@ -47,7 +47,7 @@ pub struct Latency {
 }
 
 impl Latency {
-    /// Of all steps; `None` without any.
+    /// Takes all steps; `None` without any.
     pub(super) fn of<'a>(steps: impl Iterator<Item = &'a Option<u32>>) -> Option<Self> {
         let mut periods: Vec<_> = steps.map(|seen| seen.map_or(f64::INFINITY, f64::from)).collect();
         if periods.is_empty() {
@@ -80,7 +80,7 @@ pub struct NewStep {
 }
 
 impl NewStep {
-    /// Of all steps; `None` without any.
+    /// Takes all steps; `None` without any.
     pub(super) fn of<'a>(steps: impl Iterator<Item = &'a Option<f64>>) -> Option<Self> {
         let mut seen: Vec<_> = steps.map(|seen| seen.unwrap_or(f64::INFINITY)).collect();
         let never = seen.iter().filter(|seen| seen.is_infinite()).count() as f64 / seen.len().max(1) as f64;

@@ -27,7 +27,7 @@ pub struct SetOne {
     pub seeds: u64,
     /// Effects in the alcoves.
     pub physics: Physics,
-    /// Their height and the ring's gain.
+    /// The rooms' height and the ring's gain.
     #[serde(flatten)]
     pub conditions: Conditions,
     /// Number of sensors the ring had.

@@ -12,7 +12,7 @@ use crate::{
 pub struct Figures {
     /// Share of the accepted readings that are another robot's sound.
     pub others_of_accepted: Option<Spread>,
-    /// The same of the sensor, of all robots, that accepts the largest share of it, among those with five accepted
+    /// The share of the sensor, of all robots, that accepts the largest share of it, among those with five accepted
     /// readings.
     pub others_at_worst: Option<Spread>,
     /// Share of the accepted readings that are foreign sound, of the robot's other sensors or of an earlier firing too.

@@ -23,7 +23,7 @@ pub const SPEED_M_S: f64 = 0.5;
 pub const DRIFT_PPM: f64 = 50.0;
 /// Distance of robots that stand beside each other, from middle to middle.
 const NEAREST_M: f64 = 1.4;
-/// And how far neighbours in a row are from each other at most.
+/// The farthest that neighbours in a row are from each other.
 const FARTHEST_M: f64 = 2.6;
 
 /// Where robots are.
@@ -40,7 +40,7 @@ pub enum Place {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Arrangement {
-    /// They stand, each with any heading.
+    /// The robots stand, each with any heading.
     Standing,
     /// Two rows drive past each other, side by side.
     Meeting,
@@ -53,7 +53,7 @@ pub enum Arrangement {
 pub struct Placing {
     /// Where they are.
     pub place: Place,
-    /// Their arrangement.
+    /// The robots' arrangement.
     pub arrangement: Arrangement,
     /// The robots, two to six.
     pub robots: Vec<Robot>,

@@ -66,7 +66,7 @@ pub struct SetThree {
     pub seeds: u64,
     /// Effects in the rooms.
     pub physics: Physics,
-    /// Their height and the rings' gain.
+    /// The rooms' height and the rings' gain.
     #[serde(flatten)]
     pub conditions: Conditions,
     /// Periods that each was simulated for.
@@ -87,7 +87,7 @@ pub struct Group {
     /// Where they are; none for anywhere.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub place: Option<Place>,
-    /// Their arrangement; none for any.
+    /// The robots' arrangement; none for any.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub arrangement: Option<Arrangement>,
     /// Number of robots; none for any number.

@@ -41,7 +41,7 @@ pub(super) struct Pilot<'w> {
     /// Where it takes itself to be: what the grid is filled by and what it steers by.
     odometry: Odometry,
     grid: Himm,
-    /// The same readings entered from where the robot really was, to find phantoms in.
+    /// The readings entered from where the robot really was, to find phantoms in.
     real_grid: Himm,
     wanted: (f64, f64),
     /// For each pole: whether an echo of it was entered, and how near the robot's middle came to it.

@@ -22,14 +22,14 @@ pub enum Pilots {
     Shared,
     /// The published vector field histogram, [`Vfh::default`], with echoes entered from up to 2.0 m, for all.
     Published,
-    /// The same with the grid's growth rate operator ([`Himm::growth`](crate::Himm::growth)).
+    /// The published pilot with the grid's growth rate operator ([`Himm::growth`](crate::Himm::growth)).
     PublishedGro,
     /// This one, for all.
     Given(Piloting),
 }
 
 impl Pilots {
-    /// Those that have names.
+    /// The pilots that have names.
     pub const NAMED: [Self; 4] = [Self::Own, Self::Shared, Self::Published, Self::PublishedGro];
 
     /// Its name in the program and in Python; `given` for one that has none.

@@ -8,9 +8,9 @@ use serde::{Deserialize, Deserializer, Serialize};
 pub enum Ending {
     /// Over the finishing line.
     Finished,
-    /// It touched a pole or a wall.
+    /// The robot touched a pole or a wall.
     Contact,
-    /// It was still under way, or stuck, when the time was over.
+    /// The robot was still under way, or stuck, when the time was over.
     TimeOut,
 }
 

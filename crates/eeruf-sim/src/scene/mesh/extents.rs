@@ -51,7 +51,7 @@ struct Stretch {
 pub(crate) struct Extents {
     /// By wall, and along each from its start.
     stretches: Vec<Stretch>,
-    /// Those that end at an edge, each once.
+    /// Surfaces that end at an edge, each once.
     pub(crate) surfaces: Vec<Surface>,
     /// For each edge where its surfaces begin among the next, with one more start at the end.
     starts: Vec<u32>,

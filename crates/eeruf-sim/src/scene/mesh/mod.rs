@@ -200,7 +200,7 @@ impl Mesh {
         self.covers(point) && self.solid[self.locate(point) as usize]
     }
 
-    /// The same of a point whose triangles are known, see [`containing`](Self::containing).
+    /// Returns true if a point is solid whose triangles are known, see [`containing`](Self::containing).
     pub(crate) fn is_solid_at(&self, triangles: &[u32]) -> bool {
         triangles.first().is_some_and(|&triangle| self.solid[triangle as usize])
     }

@@ -17,7 +17,7 @@ pub(super) struct HearingRange {
     hearing: Transducer,
     /// The amplitude that is just heard.
     pub(super) floor: f64,
-    /// The same if the strongest fading lifts it, or others that come within a burst.
+    /// The faintest level that is heard if the strongest fading lifts it, or others that come within a burst.
     pub(super) faintest: f64,
     /// The longest path that is heard then, in metres.
     pub(super) longest_m: f64,
@@ -35,7 +35,7 @@ impl HearingRange {
         Self { sending: *sending, hearing: *hearing, floor, faintest, longest_m }
     }
 
-    /// Of what is sent.
+    /// Frequency of what is sent, in Hz.
     pub(super) fn frequency_hz(&self) -> f64 {
         self.sending.frequency_hz
     }

@@ -66,7 +66,7 @@ pub(crate) struct Channels {
     tracer: Tracer,
     matrix: CrosstalkMatrix,
     moves: bool,
-    /// Of each kind of transducer that hears one.
+    /// Hearing ranges, of each kind of transducer that hears one.
     ranges: Vec<HearingRange>,
     bodies: Bodies,
     /// True if it matters what a robot hears.
@@ -119,7 +119,7 @@ impl Channels {
         Ok(channels)
     }
 
-    /// The same, to be stopped apart from these.
+    /// Copies the channels, to be stopped apart from these.
     pub(crate) fn copy(&self, stop: Stop) -> Self {
         let mut copy = self.clone();
         copy.tracer.stop = stop;

@@ -41,7 +41,7 @@ pub(crate) struct EventLoop<K> {
     channels: Channels,
     rings: Vec<RunningRing>,
     bursts: Bursts,
-    /// Of every sensor of the world.
+    /// Receivers of every sensor of the world.
     receivers: Vec<Receiver>,
     /// Reading of each sensor alone, at its last firing.
     references: Vec<u64>,
@@ -129,7 +129,7 @@ impl<K: Kinematics> EventLoop<K> {
         })
     }
 
-    /// The same state, to go on apart from this and to be stopped by another switch; none if a firing or a filter of
+    /// Copies the state, to go on apart from this and to be stopped by another switch; none if a firing or a filter of
     /// the caller's cannot be copied.
     pub(crate) fn copy(&self, stop: Stop) -> Option<Self>
     where
@@ -169,7 +169,7 @@ impl<K: Kinematics> EventLoop<K> {
         Ok(more?.0)
     }
 
-    /// The same, but no farther than to the first event that gives readings: whether there is more to come, and when
+    /// Runs no farther than to the first event that gives readings: returns whether there is more to come, and when
     /// that event was, if there was one.
     pub(crate) fn run_to_reading(
         &mut self,
@@ -276,7 +276,7 @@ impl<K: Kinematics> EventLoop<K> {
         &self.kinematics
     }
 
-    /// The same, to steer them; something may move from now on.
+    /// Returns the robots to steer; something may move from now on.
     pub(crate) fn steer(&mut self) -> &mut K {
         self.channels.set_moving();
         &mut self.kinematics

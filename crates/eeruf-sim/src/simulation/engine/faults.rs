@@ -15,7 +15,7 @@ const FAULTS: u64 = 5;
 const FRAME_NS: u64 = 50_000_000;
 /// Level of noise above what is just heard, in dB: a choice, as loud as a burst from outside.
 const NOISE_DB: f32 = 20.0;
-/// The same of a glitch, which is no sound and rises at once.
+/// The level of a glitch, which is no sound and rises at once.
 const GLITCH_DB: f32 = 200.0;
 
 /// The fate of a trigger.

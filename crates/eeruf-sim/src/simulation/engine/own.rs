@@ -51,7 +51,7 @@ impl Own {
         self
     }
 
-    /// Of a robot's readings, counted from 0, is believed what this says.
+    /// Sets the filter that says which readings of a robot, counted from 0, are believed.
     #[must_use]
     pub fn filter(mut self, robot: usize, filter: impl Filter + 'static) -> Self {
         self.filter.insert(robot, Box::new(filter));

@@ -93,7 +93,7 @@ impl Envelope {
         self.waves = waves;
     }
 
-    /// The same of sounds that overlap, first to last.
+    /// Sums sounds that overlap, first to last.
     fn sum(&mut self, waves: &[Wave], rise: u64, mut heard: impl FnMut(Arrival)) {
         self.knots.clear();
         self.knots.extend(waves.iter().flat_map(|wave| [0, rise, 2 * rise].map(|after| wave.onset + after)));

@@ -67,7 +67,7 @@ impl Echo {
         self.arrival.level_over_threshold_db
     }
 
-    /// The same sound at another time: what a filter makes of it that smooths.
+    /// Returns the sound at another time: what a filter makes of it that smooths.
     #[must_use]
     pub const fn at(self, t_echo: Micros) -> Self {
         Self { t_echo_us: t_echo.as_micros(), ..self }
@@ -136,7 +136,7 @@ impl Hearing {
         Some(if self.rise_ns > 0.0 { (self.rise_ns * libm::exp10(-0.05 * level_db)) as u64 } else { 0 })
     }
 
-    /// The same of an arrival, for a receiver that fired at this time.
+    /// Returns by how much an arrival is late, for a receiver that fired at this time.
     #[inline]
     pub(crate) fn late(&self, arrival: &Arrival, fired: u64) -> Option<u64> {
         let after = arrival.onset.saturating_sub(fired);

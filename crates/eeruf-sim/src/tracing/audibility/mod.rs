@@ -111,7 +111,7 @@ impl Audibility {
         at_cos(&self.departing, cos)
     }
 
-    /// The same of a receiver's pattern.
+    /// Returns the share of amplitude that a receiver's pattern leaves.
     #[inline]
     fn heard(&self, cos: f64) -> f64 {
         at_cos(&self.arriving, cos)
@@ -199,7 +199,7 @@ impl Audibility {
         square * 0.5 * radius_m >= self.faint(length_m) * before_m * after_m * length_m
     }
 
-    /// The same of a path over two poles, `between_m` apart.
+    /// Returns true if a path over two poles, `between_m` apart, may be heard.
     pub(crate) fn may_hear_two_poles(
         &self,
         square: f64,

@@ -9,9 +9,9 @@ use crate::{
 };
 
 impl EdgeSearch {
-    /// Of the ways that were found leaves out those by the ends of a surface that reflects as well, and later than that
-    /// by less than a burst: the reflection has them already. Of a surface beside the point of reflection it makes one
-    /// way of two.
+    /// Leaves out, of the ways that were found, those by the ends of a surface that reflects as well, and later than
+    /// that by less than a burst: the reflection has them already. Of a surface beside the point of reflection it makes
+    /// one way of two.
     pub(super) fn join(&mut self, query: &EdgeQuery<'_>, burst_m: f64) {
         let EdgeQuery { scene, receivers, ends, .. } = *query;
         self.places.clear();

@@ -23,7 +23,7 @@ pub(crate) struct EdgePath {
     pub(crate) arrival_rad: f64,
     /// Share of the amplitude that diffraction and spreading leave, at the wave number of the question.
     pub(crate) spread: f64,
-    /// The same without a bound, and that wave number; none of two ways that are heard as one.
+    /// The least without a bound, and that wave number; none of two ways that are heard as one.
     unbounded: Option<[f64; 2]>,
     /// The edge itself, by which doubles are recognised.
     pub(crate) at: Point,

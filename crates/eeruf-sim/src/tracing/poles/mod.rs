@@ -60,7 +60,7 @@ pub(crate) struct PoleQuery<'a> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Asked {
     Once,
-    /// Of several times for the first.
+    /// Made for the first of several times.
     First,
     Again,
 }
@@ -79,7 +79,7 @@ pub(crate) struct PoleSearch {
     bounces: Vec<Bounce>,
     from_source: Legs,
     back: BeamTree,
-    /// Of each receiver of this query, and of the last one if that asked the same.
+    /// Homes of each receiver of this query, and of the last one if that asked the same.
     homes: Vec<Home>,
     /// Number of those that are of now; the others are kept for their memory.
     grown: usize,

@@ -42,7 +42,7 @@ impl World {
         Self::parse(&Source::read(file)?, no_reader)
     }
 
-    /// The same from a text; `file` stands in errors, and schedules are looked for beside it.
+    /// Reads a text; `file` stands in errors, and schedules are looked for beside it.
     ///
     /// # Errors
     /// As [`from_toml`](Self::from_toml).
@@ -63,7 +63,7 @@ impl World {
         Self::from_text_with(file, text, no_reader)
     }
 
-    /// The same, with a reader for the ring files that robots name, which are looked for beside it too.
+    /// Reads a text, with a reader for the ring files that robots name, which are looked for beside it too.
     ///
     /// # Errors
     /// As [`from_toml`](Self::from_toml).
@@ -123,7 +123,7 @@ impl WorldParts {
         Self::from_text_with(file, text, no_reader)
     }
 
-    /// The same, with a reader for the ring files that robots name, which are looked for beside it too.
+    /// Reads a text, with a reader for the ring files that robots name, which are looked for beside it too.
     ///
     /// # Errors
     /// As [`World::from_text`].

@@ -244,6 +244,7 @@ def recommend(
     first: int = 0,
     driving: bool = False,
     wrong: float = 0.03,
+    cost: bool = False,
     progress: _Progress = None,
 ) -> dict[str, Any]:
     r"""Judge the ways of firing a ring in rooms, and recommend one, as ``eeruf study RING.toml --json`` does.
@@ -256,13 +257,14 @@ def recommend(
         first: the number of the first room of each kind; ways are chosen on numbers below 2,000, and reported from :data:`FIRST` on.
         driving: whether the robot drives.
         wrong: the largest share of foreign sound in what is believed, of a way that is recommended.
+        cost: whether to say what each kind of way costs, as ``--cost`` does; takes minutes, not with ``rooms``.
         progress: True for a bar (tqdm if it is installed), or a callable that takes the share done and a text.
 
     Returns:
         ``recommended``, the name of the way; ``keeps``, whether it keeps to the limits in each kind of room; ``assumed``, where the file
         is silent; ``ways``, each with ``way``, ``title`` and ``rooms``, its figures by kind; ``elsewhere``, the same under other gain
-        and height; ``by_cost``, the kinds of ways by how soon the ring sees what appears, under the conditions that the file
-        names, unless rooms are given.
+        and height; ``by_cost``, if asked for, the kinds of ways by how soon the ring sees what appears, under the conditions that
+        the file names.
 
     Raises:
         ArgumentError: a number is out of range, or the file cannot be read or does not say where its sensors are.
@@ -281,7 +283,14 @@ def recommend(
         ['box']
 
     """
-    asked: dict[str, object] = {"rooms": rooms, "places": places, "first": first, "driving": driving, "wrong": wrong}
+    asked: dict[str, object] = {
+        "rooms": rooms,
+        "places": places,
+        "first": first,
+        "driving": driving,
+        "wrong": wrong,
+        "cost": cost,
+    }
     answer: dict[str, Any] = json.loads(_eeruf._recommend(ring, asked, progress))
     return answer
 

@@ -64,16 +64,16 @@ impl RoomArgs {
 }
 
 /// Measures a ring file's ways of firing, without a word of its period: `eeruf study RING.toml`. With `all` or rooms
-/// of the user's own it prints every way in every kind of room.
-pub(crate) fn study(args: &RoomArgs, file: &Path, as_json: bool, all: bool) -> Result<Answer, InputError> {
+/// of the user's own it prints every way in every kind of room, with `cost` what the kinds of ways cost.
+pub(crate) fn study(args: &RoomArgs, file: &Path, as_json: bool, all: bool, cost: bool) -> Result<Answer, InputError> {
     let spec = read_ring(file)?;
     let mut watch = Watch::new();
     let design = spec.shortest_to_study().map_err(|error| InputError::new(file, error))?;
     let name = file.display().to_string();
-    if as_json || all || !args.rooms.is_empty() {
+    if as_json || all || cost || !args.rooms.is_empty() {
         let mut judged = judged(args, &spec, design.as_ref(), &mut watch)?;
         // In rooms of the user's own nothing appears.
-        if let Some(answer) = judged.as_mut().ok().filter(|_| args.rooms.is_empty()) {
+        if let Some(answer) = judged.as_mut().ok().filter(|_| cost && args.rooms.is_empty()) {
             let (asked, watch) = (asked(args, &spec)?, Mutex::new(&mut watch));
             answer.by_cost = spec.cost_in_rooms(design.as_ref(), &asked, &|share| goes_on(&watch, share)).ok();
         }

@@ -38,6 +38,10 @@ pub(crate) struct Args {
     /// Print every method's tables too, and who fooled whom
     #[arg(long)]
     all: bool,
+    /// Of a ring file, also the cost of each kind of way, by how soon the ring sees what appears: standing, driving,
+    /// turning, and beside others if the file says so; takes minutes
+    #[arg(long, hide_short_help = true)]
+    cost: bool,
     /// Number of the first robot's periods in tables, which it prints as --all does, and pictures; by default 2000, or
     /// 250 if anything moves
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
@@ -114,7 +118,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     if Kind::of_file(&args.file) == Some(Kind::Ring) {
         return match args.of_scenes() {
             Some(option) => refuse(option, "a scene"),
-            None => rooms::study(&args.in_rooms, &args.file, args.json, args.all),
+            None => rooms::study(&args.in_rooms, &args.file, args.json, args.all, args.cost),
         };
     }
     if let Some(option) = args.in_rooms.given() {

@@ -13,10 +13,10 @@ pub(crate) fn read_ring(file: &Path) -> Result<RingSpec, InputError> {
     let text = Kind::Ring.read(file)?;
     let spec = RingSpec::in_file(file, &text)?;
     warn_of(file, &text)?;
-    let most = spec.sensors.saturating_sub(1);
+    let most = spec.sensors;
     // The default is 4, whatever the number of sensors.
     if usize::from(spec.neighbours) > most.max(4) {
-        warn(InputError::new(file, format!("neighbours: {}; expected at most {most}, all others", spec.neighbours)))?;
+        warn(InputError::new(file, format!("neighbours: {}; expected at most {most}, all of them", spec.neighbours)))?;
     }
     Ok(spec)
 }

@@ -41,9 +41,13 @@ tables! {
     car_12 "emitted/car_12.rs" "rings/car-12.toml" 12 RingConfig::new();
     hc_sr04_8 "emitted/hc_sr04_8.rs" "rings/hc-sr04-8.toml" 8 hc_sr04_8::CONFIG;
     labmate_8 "emitted/labmate_8.rs" "rings/labmate-8.toml" 8 RingConfig::new();
+    magni_5 "emitted/magni_5.rs" "rings/magni-5.toml" 5 magni_5::CONFIG;
     mower_8_and_4 "emitted/mower_8_and_4.rs" "rings/mower-8-and-4.toml" 12 RingConfig::new();
     multiplexers_8 "emitted/multiplexers_8.rs" "rings/hc-sr04-8-two-multiplexers.toml" 8 multiplexers_8::CONFIG;
+    nao_2 "emitted/nao_2.rs" "rings/nao-2.toml" 2 nao_2::CONFIG;
     paper_12 "emitted/paper_12.rs" "rings/paper-12.toml" 12 RingConfig::new();
+    pioneer_8 "emitted/pioneer_8.rs" "rings/pioneer-3dx-8.toml" 8 pioneer_8::CONFIG;
+    pmb2_3 "emitted/pmb2_3.rs" "rings/pmb2-3.toml" 3 pmb2_3::CONFIG;
     ring_24 "emitted/ring_24.rs" "rings/ring-24.toml" 24 RingConfig::new();
     round_16 "emitted/round_16.rs" "rings/round-16.toml" 16 round_16::CONFIG;
 }

@@ -102,7 +102,7 @@ fn the_table_names_every_method_and_who_was_fooled_by_whom() {
     let outcome = eeruf(&["study", "scenes/alcove.toml", "--periods", "300"]);
     assert_eq!((outcome.code, outcome.err.as_str()), (Some(0), ""));
     for method in methods() {
-        assert!(outcome.out.contains(&format!("| {method:<16} |")), "{method}\n{}", outcome.out);
+        assert!(outcome.out.contains(&format!("| {method:<17} |")), "{method}\n{}", outcome.out);
     }
     for said in ["Who was fooled by whom", "|      8 |     4 |     1 | wall 1", "300 of 300", "t95"] {
         assert!(outcome.out.contains(said), "{said}\n{}", outcome.out);

@@ -57,7 +57,7 @@ impl Way {
             Self::Groups => format!("group after group, each {most} ms after the one before; every echo is believed"),
             Self::TwoPhases => "two phases, by a table whose waits alternate; what agrees twice is believed".to_owned(),
             Self::Flow => format!(
-                "one after the other, each with as much quiet as it has needed, {least} to {most} ms. An echo is \
+                "flow: one after the other, each with as much quiet as it has needed, {least} to {most} ms. An echo is \
                  believed if it fits the last one believed, or if two in a row agree and no other firing explains them"
             ),
         }

@@ -198,6 +198,7 @@ pub(crate) struct InRooms<'py> {
     first: Bound<'py, PyAny>,
     driving: Bound<'py, PyAny>,
     wrong: Bound<'py, PyAny>,
+    cost: Bound<'py, PyAny>,
 }
 
 /// Ways of firing a ring file's ring, judged in rooms, as `eeruf study RING.toml --json` prints them.
@@ -210,7 +211,8 @@ pub(crate) fn recommend(
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<String> {
     let spec = ring_file(ring)?;
-    let InRooms { rooms, places, first, driving, wrong } = asked;
+    let InRooms { rooms, places, first, driving, wrong, cost } = asked;
+    let cost = flag("cost", Some(&cost), false)?;
     let asked = RoomsAsked {
         own: rooms.as_ref().map(own_rooms).transpose()?.unwrap_or_default(),
         places: whole("places", &places, 1..=1000)?,
@@ -224,7 +226,7 @@ pub(crate) fn recommend(
         let judged = spec.judge_in_rooms(design.as_ref(), &asked, &keep_going);
         let mut answer = judged.map_err(ArgumentError::new_err)?;
         // In rooms of the caller's own nothing appears.
-        if asked.own.is_empty() {
+        if cost && asked.own.is_empty() {
             answer.by_cost = spec.cost_in_rooms(design.as_ref(), &asked, &keep_going).ok();
         }
         json(&answer.json())

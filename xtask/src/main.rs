@@ -27,7 +27,8 @@ mod site;
 mod steps;
 mod test;
 mod toolchain;
-mod unused;
+#[cfg(test)]
+mod unused_tests;
 
 use std::process::ExitCode;
 

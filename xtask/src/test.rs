@@ -41,7 +41,6 @@ pub(crate) fn run_all(nothing_skipped: bool) -> ExitCode {
     let Some(metadata) = steps.step("cargo metadata", || Ok(MetadataCommand::new().no_deps().exec()?)) else {
         return steps.finish(nothing_skipped);
     };
-    steps.step("dependencies that nothing uses", || crate::unused::check(&metadata));
     let beside = Beside::begin(&BESIDE);
     steps.step("each feature of the core alone", || each_feature_alone(&metadata));
     // What the default compiler can build, Clippy has just built with it.

@@ -21,7 +21,7 @@ fn random_ring(seed: u64) -> String {
     let sensors = 2 + random.below(2);
     let tick = 500 + 100 * random.below(26);
     let mut pick = |most: u32| tick * random.below(most) + tick / 4 * random.below(4);
-    let (interval, window, jitter) = (pick(3), pick(4) + 1, pick(1) / 2);
+    let (interval, window, jitter) = (pick(3), pick(4) + 600, pick(1) / 2);
     let jitters: Vec<u32> = (0..sensors).map(|_| random.below(tick)).collect();
     let jitter = if random.below(3) == 0 { format!("{jitters:?}") } else { jitter.to_string() };
     format!(

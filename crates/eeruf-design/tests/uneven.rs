@@ -170,7 +170,8 @@ fn file_error_names_key_value_and_expectation() {
     assert_eq!(text, "t_delta_us: string \"99\"; expected a number, or a list of one for each sensor");
     let negative = with("sensors = 2\nt_delta_us = [99, -1]\nmin_interval_us = 5000\nwindow_us = 9000");
     assert_eq!(negative, "t_delta_us: integer `-1`; expected a whole number from 0 to 4294967295");
-    let long = read("sensors = 2\nt_delta_us = 99\nmin_interval_us = 4_000_000_000\nwindow_us = [9, 9]\ntick_us = 1");
+    let long =
+        read("sensors = 2\nt_delta_us = 99\nmin_interval_us = 4_000_000_000\nwindow_us = [900, 900]\ntick_us = 1");
     let error = long.shortest(&Search::default(), &mut ()).unwrap_err().to_string();
     assert!(
         error.starts_with("firing one by one already takes 8000 s") && error.contains("a shorter interval"),

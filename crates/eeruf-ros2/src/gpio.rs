@@ -409,7 +409,7 @@ mod tests {
 
     #[test]
     fn ring_by_flow_moves_as_it_is_told() {
-        let ring = format!("{RING}\nspeed_m_s = 1.0\nothers = false");
+        let ring = format!("{RING}\nspeed_m_s = 0.9\nothers = false");
         let accepted = |told: fn(u32) -> Option<Speeds>| {
             let (readings, _) = read(1_000, (&ring, "flow"), true, told);
             let is_accepted = |&(kind, _): &(ReadingKind, Option<Micros>)| kind == ReadingKind::Accepted;

@@ -181,15 +181,16 @@ impl Scene {
         of_all.get(edge).map_or(&[], |triangles| triangles)
     }
 
-    /// Finds the edges in sight of a point, and some that are not, in order; with the triangles that contain it.
-    pub(crate) fn edges_seen(&self, from: Point, starts: &[u32], seen: &mut Vec<u32>) {
+    /// Finds the edges in sight of a point within reach, and some that are not, in order; with the triangles that
+    /// contain it.
+    pub(crate) fn edges_seen(&self, from: Point, starts: &[u32], reach_m: f64, seen: &mut Vec<u32>) {
         let pairs = self.built.triangle_edges.get_or_init(|| {
             let corner = |edge: u32| self.triangles_at(edge as usize).iter().map(move |&triangle| (triangle, edge));
             let mut pairs: Vec<(u32, u32)> = (0..self.built.edges.len() as u32).flat_map(corner).collect();
             pairs.sort_unstable();
             pairs
         });
-        self.mesh().visit_seen(from, starts, |triangle| {
+        self.mesh().visit_seen(from, starts, reach_m, |triangle| {
             let first = pairs.partition_point(|(other, _)| *other < triangle);
             seen.extend(pairs[first..].iter().take_while(|(other, _)| *other == triangle).map(|(_, edge)| edge));
         });

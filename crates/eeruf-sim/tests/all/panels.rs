@@ -196,9 +196,8 @@ fn rectangular_room_does_not_change_with_panels() {
     for at in [Point::new(0.3, 0.2), Point::new(0.5, 0.5), Point::new(2.0, 1.0)] {
         assert_eq!(traced(&room, at, at, WITH_EDGES, 4), traced(&room, at, at, Physics::PLAIN, 4));
     }
-    let pillar = [[0.0, 0.0], [-1.0, 0.0], [-1.0, 1.0], [0.0, 1.0], [0.0, 0.0]].map(|[x, y]| [x, y]);
-    let pillar: Vec<_> = Wall::polyline(&pillar.map(|[x, y]| [y, x])).collect();
-    let pillar = perfect(pillar, vec![]);
+    let pillar = [[0.0, 0.0], [-1.0, 0.0], [-1.0, 1.0], [0.0, 1.0], [0.0, 0.0]];
+    let pillar = perfect(Wall::polyline(&pillar).collect(), vec![]);
     let before = Point::new(1e-12, 1.0);
     let reflected = traced(&pillar, before, before, NARROW, 1);
     let found: Vec<_> = reflected.iter().filter(|path| path.0.len() == 1).collect();
@@ -259,6 +258,9 @@ fn nothing_that_is_heard_over_panels_is_lost() {
         let mut random = Random::from_state(1000 + number);
         let (scene, place, _) = furnished(&mut random);
         let ring: Vec<_> = ring_of(&Pose::new(place.coords, random.between(-3.0, 3.0)), 6, 0.5, 0.05, 0.3).collect();
+        if ring.iter().any(|sensor| scene.is_solid(sensor.translation.vector.into())) {
+            continue;
+        }
         let transducer = Transducer { cycles: 12, ..Transducer::POLAROID_6500 };
         let piston = transducer.piston(scene.air());
         let places: Vec<_> = ring.iter().map(|sensor| Point::from(sensor.translation.vector)).collect();

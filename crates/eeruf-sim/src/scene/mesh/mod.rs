@@ -200,14 +200,15 @@ impl Mesh {
         self.covers(point) && self.solid[self.locate(point) as usize]
     }
 
-    /// Returns true if a point is solid whose triangles are known, see [`containing`](Self::containing).
+    /// Returns true if a point whose triangles are known, see [`containing`](Self::containing), is inside a solid and not
+    /// on its surface.
     pub(crate) fn is_solid_at(&self, triangles: &[u32]) -> bool {
-        triangles.first().is_some_and(|&triangle| self.solid[triangle as usize])
+        triangles.iter().all(|&triangle| self.solid[triangle as usize])
     }
 
-    /// Visits the triangles that straight lines from a point reach before they meet a wall, some more than once; with
-    /// the triangles that [contain](Self::containing) it.
-    pub(crate) fn visit_seen(&self, from: Point, starts: &[u32], mut visit: impl FnMut(u32)) {
+    /// Visits the triangles that straight lines of some length from a point reach before they meet a wall, some more
+    /// than once; with the triangles that [contain](Self::containing) it.
+    pub(crate) fn visit_seen(&self, from: Point, starts: &[u32], reach_m: f64, mut visit: impl FnMut(u32)) {
         // Cones between two corners of the scene, behind these sides.
         let mut open: Vec<(Exit, Vector, Vector)> = Vec::new();
         for &start in starts {
@@ -216,9 +217,14 @@ impl Mesh {
         }
         open.retain(|(_, left, right)| cross(*right, *left) > 0.0);
         while let Some((exit, left, right)) = open.pop() {
-            let Beyond::Gate(gate) = exit.beyond() else { continue };
-            visit(gate / 3);
-            let gate = &self.gates[gate as usize];
+            let Beyond::Gate(number) = exit.beyond() else { continue };
+            let [gate, end, other] = [0, 1, 2].map(|k| &self.gates[(number - number % 3 + (number + k) % 3) as usize]);
+            let (to, along) = (end.apex - from, other.apex - end.apex);
+            let nearest = to - along * (to.dot(&along) / along.norm_squared()).clamp(-1.0, 0.0);
+            if nearest.norm() > reach_m {
+                continue;
+            }
+            visit(number / 3);
             let ahead = gate.apex - from;
             // A line right through a corner passes it on the right, as that of `segment_reaches` does.
             let (is_left, is_right) = (cross(right, ahead) >= 0.0, cross(ahead, left) > 0.0);

@@ -79,7 +79,7 @@ impl Sketch {
     /// use eeruf_sim::Sketch;
     /// let sketch = Sketch::from_table(&"turn_us = 33_000\narrays = [[0, 1], [2, 3]]".parse()?)?;
     /// assert_eq!(Sketch::from_table(&sketch.to_table())?, sketch);
-    /// assert!(Sketch::from_table(&"turns_us = 1".parse()?).unwrap_err().contains("expected one of `timeout_us`"));
+    /// assert!(Sketch::from_table(&"turns_us = 1".parse()?).unwrap_err().contains("did you mean `turn_us`?"));
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn from_table(table: &Table) -> Result<Self, String> {

@@ -200,8 +200,8 @@ impl Mesh {
         self.covers(point) && self.solid[self.locate(point) as usize]
     }
 
-    /// Returns true if a point whose triangles are known, see [`containing`](Self::containing), is inside a solid and not
-    /// on its surface.
+    /// Returns true if a point whose triangles are known, see [`containing`](Self::containing), is inside a solid and
+    /// not on its surface.
     pub(crate) fn is_solid_at(&self, triangles: &[u32]) -> bool {
         triangles.iter().all(|&triangle| self.solid[triangle as usize])
     }

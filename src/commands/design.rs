@@ -285,7 +285,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     Ok(certified)
 }
 
-/// How to fire by a way, under which condition not, and the command that writes its program.
+/// The answer's second part: how to fire by a way, under which condition not, and the command that writes its program.
 fn how_to(name: &str, spec: &RingSpec, how: Option<&How>, rooms: &Result<RoomsAnswer, String>) -> String {
     let (Some(how), Ok(answer)) = (how, rooms) else { return String::new() };
     let list = |sensors: &[u8]| sensors.iter().map(|x| (x + 1).to_string()).collect::<Vec<_>>().join(", ");
@@ -310,7 +310,7 @@ fn how_to(name: &str, spec: &RingSpec, how: Option<&How>, rooms: &Result<RoomsAn
     format!("{text}\n{elsewhere}\nTo get it: {get}\n")
 }
 
-/// What is not printed, and how to get that.
+/// The answer's end: what is not printed, and how to get that.
 fn more(design: &RingDesign, all: bool) -> String {
     let period = design.schedule.period();
     let proven = if design.found.proven { ", proven" } else { "" };

@@ -33,7 +33,8 @@ pub(crate) struct RoomArgs {
     places: Option<u64>,
     /// Number of the first room of each kind, or place in each map; 0 by default. Ways are chosen on numbers below
     /// 2000; report those from 20000 on
-    #[arg(long, hide_short_help = true, value_name = "N", value_parser = clap::value_parser!(u64).range(..=1_000_000_000))]
+    #[arg(long, hide_short_help = true, value_name = "N")]
+    #[arg(value_parser = clap::value_parser!(u64).range(..=1_000_000_000))]
     first: Option<u64>,
     /// The largest share of foreign sound in what is believed, in per cent, of a way that is recommended; 3 by
     /// default

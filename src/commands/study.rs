@@ -38,8 +38,8 @@ pub(crate) struct Args {
     /// Print every method's tables too, and who fooled whom
     #[arg(long)]
     all: bool,
-    /// Of a ring file, also the cost of each kind of way, by how soon the ring sees what appears: standing, driving,
-    /// turning, and beside others if the file says so; takes minutes
+    /// Print the cost of each kind of way of firing a ring file's ring, too, by how soon the ring sees what appears:
+    /// standing, driving, turning, and beside others if the file says so; takes minutes
     #[arg(long, hide_short_help = true)]
     cost: bool,
     /// Number of the first robot's periods in tables, which it prints as --all does, and pictures; by default 2000, or

@@ -1,5 +1,5 @@
-//! Text that fits the terminal: tables with wrapped cells, on a narrow terminal a list of each row's figures; sentences by
-//! wrapping.
+//! Text that fits the terminal: tables with wrapped cells, on a narrow terminal a list of each row's figures; sentences
+//! by wrapping.
 
 use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
 

@@ -162,7 +162,7 @@ impl Described<'_> {
         row
     }
 
-    /// What is recommended under other conditions; without `all` only where that is another way.
+    /// Says what is recommended under other conditions; without `all` only where that is another way.
     fn depends_on(&self, all: bool) -> String {
         let here = self.judgement;
         let mut text = String::new();

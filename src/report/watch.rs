@@ -1,5 +1,5 @@
-//! Display of a running search or simulation: a progress line after two seconds on a terminal, else a line a minute; and
-//! Ctrl-C or a limit that ends it cleanly.
+//! Display of a running search or simulation: a progress line after two seconds on a terminal, else a line a minute;
+//! and Ctrl-C or a limit that ends it cleanly.
 
 use std::io::IsTerminal as _;
 use std::ops::ControlFlow;

@@ -25,7 +25,7 @@ pub(crate) fn eeruf(args: &[&str]) -> Outcome {
     Outcome { code: output.status.code(), out: text(output.stdout), err }
 }
 
-/// What the program prints on a terminal of 80 columns.
+/// Runs the program on a terminal of 80 columns; returns what it prints.
 pub(crate) fn eeruf_at_80(args: &[&str]) -> String {
     let mut command = Command::new(env!("CARGO_BIN_EXE_eeruf"));
     command.args(args).env("COLUMNS", "80").current_dir(env!("CARGO_MANIFEST_DIR"));

@@ -66,7 +66,7 @@ pub struct BestWay {
     pub figures: Cell,
 }
 
-/// What was measured in rooms for choosing votes, and in those that are reported.
+/// Measurements in rooms for choosing votes, and in those that are reported.
 struct Both {
     chosen: Measured,
     measured: Measured,

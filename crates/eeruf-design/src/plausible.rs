@@ -1,5 +1,6 @@
-//! Signs that a ring file's numbers are in other units than its keys say. Two that agree refuse the ring before anything
-//! is said to be proven; each alone may be meant: a front and a rear module hear nothing of each other, a car is large.
+//! Signs that a ring file's numbers are in other units than its keys say. Two that agree refuse the ring before
+//! anything is said to be proven; each alone may be meant: a front and a rear module hear nothing of each other, a car
+//! is large.
 
 use core::f64::consts::TAU;
 

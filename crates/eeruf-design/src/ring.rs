@@ -75,7 +75,7 @@ pub(crate) struct RingFile {
     audible_us: Option<u32>,
     /// Other robots that send sound; by default there may be some.
     others: Option<bool>,
-    /// How fast the robot turns on the spot.
+    /// Rate at which the robot turns on the spot.
     turn_deg_s: Option<f64>,
     temperature_c: Option<f64>,
     /// Where each sensor is on the robot, or the arc on which they stand, or the robot's URDF and their links in it.

@@ -75,7 +75,7 @@ impl Way {
     }
 }
 
-/// How a ring fires: a way with its numbers. Sensors count from 0.
+/// A way of firing with its numbers. Sensors count from 0.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct How {
     /// The way's name.
@@ -88,12 +88,12 @@ pub struct How {
     pub gaps_us: Option<[u32; 2]>,
     /// Sensors that fire together.
     pub groups: Vec<Vec<u8>>,
-    /// What is believed: `every_echo`, `by_motion` (flow's judge), or `two_in_a_row`.
+    /// The echoes that are believed: `every_echo`, `by_motion` (flow's judge), or `two_in_a_row`.
     pub votes: &'static str,
 }
 
 impl RingSpec {
-    /// How a way that was judged in rooms fires its robot; none for one that no program has.
+    /// Returns how a way that was judged in rooms fires its robot; none for one that no program has.
     ///
     /// # Errors
     /// As [`fired`](Self::fired).

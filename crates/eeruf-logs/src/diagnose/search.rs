@@ -242,9 +242,9 @@ impl Search<'_> {
         ((supporting, groups.len() as u32), accidents / groups.len().max(1) as f64)
     }
 
-    /// Counts the offsets of a sensor's own echo. It stands still however the others' firings move, so what counts is at how
-    /// many offsets of another sensor it was heard, for that one of which these are fewest: its sound is the other
-    /// explanation.
+    /// Counts the offsets of a sensor's own echo. It stands still however the others' firings move, so what counts is
+    /// at how many offsets of another sensor it was heard, for that one of which these are fewest: its sound is the
+    /// other explanation.
     fn own_offsets(&self, trials: &[(i64, bool, f64, usize)], share: f64) -> ((u32, u32), f64) {
         let accident = trials.iter().map(|trial| trial.2).sum::<f64>() / trials.len().max(1) as f64;
         let mut fewest = (u32::MAX, 0);

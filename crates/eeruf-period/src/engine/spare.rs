@@ -1,4 +1,4 @@
-//! Of the schedules with one period, the one with most to spare: larger separations, then larger gaps, then longer
+//! The schedule with most to spare of those with one period: larger separations, then larger gaps, then longer
 //! windows, each by the same for all sensors.
 
 use crate::engine::problem::Problem;

@@ -136,8 +136,8 @@ impl Tracer {
     /// direct path of no length.
     ///
     /// # Errors
-    /// A position that is not a number, far outside or inside something solid, an order or a length out of range, a tree
-    /// that outgrows [`MAX_BEAMS`], or [`stop`](Self::stop). `paths` is empty then.
+    /// A position that is not a number, far outside or inside something solid, an order or a length out of range, a
+    /// tree that outgrows [`MAX_BEAMS`], or [`stop`](Self::stop). `paths` is empty then.
     pub fn trace(
         &mut self,
         scene: &Scene,

@@ -386,9 +386,9 @@ impl JudgedWay {
     }
 }
 
-/// The way, of those that a program has, that is right most of the time and keeps to the shares asked for; of several as good, the one
-/// with most right echoes, but one by one if that has hardly fewer. Where none keeps to them, the one that is right
-/// most of the time.
+/// The way, of those that a program has, that is right most of the time and keeps to the shares asked for; of several
+/// as good, the one with most right echoes, but one by one if that has hardly fewer. Where none keeps to them, the one
+/// that is right most of the time.
 fn recommend(ways: &[JudgedWay], wrong: f64) -> (Option<usize>, bool) {
     let Some(base) = ways.first() else { return (None, false) };
     let best_of = |among: &dyn Fn(&JudgedWay) -> bool| {

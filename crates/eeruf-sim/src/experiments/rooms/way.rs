@@ -23,7 +23,8 @@ pub struct RoomWay {
 }
 
 impl RoomWay {
-    /// The ways for a ring, the baselines first. All listen for the robot's window, flow for no longer than it [reaches](Robot::reach).
+    /// The ways for a ring, the baselines first. All listen for the robot's window, flow for no longer than it
+    /// [reaches](Robot::reach).
     ///
     /// `schedule` is a schedule of two phases for it, the shortest; where there is none, there are no ways of two
     /// phases. `robot.period` is used by none of them.

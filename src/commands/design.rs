@@ -289,7 +289,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
 fn how_to(name: &str, spec: &RingSpec, how: Option<&How>, rooms: &Result<RoomsAnswer, String>) -> String {
     let (Some(how), Ok(answer)) = (how, rooms) else { return String::new() };
     let list = |sensors: &[u8]| sensors.iter().map(|x| (x + 1).to_string()).collect::<Vec<_>>().join(", ");
-    let mut text = format!("\nHow: {}.", how.in_words);
+    let mut text = format!("\nHow: {}", how.in_words);
     match &how.groups[..] {
         [] if spec.sensors > 1 && !how.order.is_empty() => text += &format!(" Order: {}.", list(&how.order)),
         [] => {}

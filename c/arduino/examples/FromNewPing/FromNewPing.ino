@@ -13,10 +13,10 @@
 //
 // Now each module reports 16 times a second instead of 11 or fewer, and nothing waits.
 // One read() takes up to 0.6 ms on an Uno.
-#include <EerufTables.h>
+#include <EerufFlow.h>
 
 const uint8_t PINS[] = {4, 5, 6};
-EerufSonar<3> sonar(EERUF_HC_SR04_3, PINS);
+EerufFlow<3> sonar(PINS);
 
 void report(uint8_t i, unsigned cm) {
   Serial.print(i + 1);

@@ -1,5 +1,5 @@
 // flow: one after the other, each with as much quiet as it has needed, 6.0 to 33.2 ms. An echo is believed if it
-// fits the last one believed, or if two in a row agree and no other firing explains them
+// fits the last one believed, or if two in a row agree and no other firing explains them.
 // Sensors 0 to 7: hc-sr04, pulse_width, trigger 10 us, rest 60000 us, held 38000 us without an echo
 use eeruf_core::flow::{BeliefSettings, TurnSettings};
 use eeruf_core::{Micros, RingConfig};

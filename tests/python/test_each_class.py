@@ -98,6 +98,7 @@ def each() -> dict[str, Any]:
         eeruf.survey(firings),
         ranges,
         eeruf.replay(ranges, logs.Agree(500)),
+        eeruf.check(ranges),
         nav.Himm(),
         nav.Vfh(),
         nav.Vfh().steer(nav.Himm(), (0, 0), (5, 0)),

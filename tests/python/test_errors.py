@@ -131,7 +131,7 @@ BAD: list[tuple[Callable[[], Any], type[Exception], str]] = [
         'criterion = \'strict\'; expected "exact" or "paper"',
     ),
     (lambda: eeruf.Schedule.from_toml("period_us ="), eeruf.ScheduleError, "."),
-    (lambda: eeruf.Schedule.from_json("{}"), eeruf.ScheduleError, "line 1: period_us: missing; expected the key"),
+    (lambda: eeruf.Schedule.from_json("{}"), eeruf.ScheduleError, "line 1: period_us: missing; expected `period_us"),
     (lambda: eeruf.Schedule.from_json(""), eeruf.ScheduleError, "line 1: EOF while parsing a value; expected JSON"),
     (lambda: ANY.Schedule.from_json(b"{}"), eeruf.ArgumentError, "text = b'{}'; expected a schedule in JSON"),
     (lambda: tables.TABLE_I_D.scaled(1, 0), eeruf.ScheduleError, "0"),

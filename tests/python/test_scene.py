@@ -58,7 +58,7 @@ def test_a_scene_of_a_file_is_the_scene_made_of_its_fields(file: Path) -> None:
     fields: dict[str, Any] = {
         name: getattr(scene, name)
         for name in "walls open two_sided poles materials pole_materials temperature_c humidity_percent pressure_kpa robots "
-        "noise seed max_order physics".split()
+        "noise seed max_order physics height".split()
     }
     made = sim.Scene(**fields)
     assert made.to_toml() == scene.to_toml()

@@ -12,7 +12,7 @@
 //   }
 //
 // Now each module reports 16 times a second instead of 11 or fewer, and nothing waits.
-// One read() takes up to 0.6 ms on an Uno.
+// One read() takes up to 0.8 ms on an Uno.
 #include <EerufFlow.h>
 
 const uint8_t PINS[] = {4, 5, 6};

@@ -162,6 +162,15 @@ void range(Fields &in) {
         in.number<float>(name);
 }
 
+void laser_scan(Fields &in) {
+    header(in);
+    for (const char *name :
+         {"angle_min", "angle_max", "angle_increment", "time_increment", "scan_time", "range_min", "range_max"})
+        in.number<float>(name);
+    for (const char *name : {"ranges", "intensities"})
+        in.sequence(name, [](Fields &in) { in.number<float>(nullptr); });
+}
+
 void point_cloud(Fields &in) {
     header(in);
     in.number<uint32_t>("height");
@@ -248,6 +257,7 @@ struct Message {
 
 const Message MESSAGES[] = {
     {"sensor_msgs::msg::dds_::Range_", range},
+    {"sensor_msgs::msg::dds_::LaserScan_", laser_scan},
     {"sensor_msgs::msg::dds_::PointCloud2_", point_cloud},
     {"diagnostic_msgs::msg::dds_::DiagnosticArray_", diagnostics},
     {"tf2_msgs::msg::dds_::TFMessage_", transforms},

@@ -1,6 +1,6 @@
 // Eight HC-SR04 modules whose firings go to a computer as frames, for `eeruf-ros2 --port` and `eeruf diagnose`.
 // Modules as in Ring8. A frame has 28 bytes: at 500,000 baud, which an Uno makes exactly, it delays nothing.
-// One read() takes up to 0.7 ms on an Uno.
+// One read() takes up to 0.5 ms on an Uno.
 #include <EerufTables.h>
 #include <eeruf_serial.h>
 

@@ -53,9 +53,11 @@ impl Way {
     pub fn in_words(self, turns: &TurnSettings) -> String {
         let [least, most] = [turns.least, turns.most].map(|time| format!("{:.1}", f64::from(time.as_micros()) / 1e3));
         match self {
-            Self::Sequential => format!("one by one, each {most} ms after the one before; every echo is believed."),
-            Self::Groups => format!("group after group, each {most} ms after the one before; every echo is believed."),
-            Self::TwoPhases => "two phases, by a table whose waits alternate; what agrees twice is believed.".to_owned(),
+            Self::Sequential => format!("one by one, one each {most} ms; every echo is believed."),
+            Self::Groups => format!("group after group, one each {most} ms; every echo is believed."),
+            Self::TwoPhases => {
+                "two phases, by a table whose waits alternate; what agrees twice is believed.".to_owned()
+            }
             Self::Flow => format!(
                 "flow: one after the other, each with as much quiet as it has needed, {least} to {most} ms. An echo is \
                  believed if it fits the last one believed, or if two in a row agree and no other firing explains them."

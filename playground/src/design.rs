@@ -116,7 +116,7 @@ pub(crate) fn certificate(ring: &str) -> Result<Certificate, String> {
         }
         true
     };
-    let proof = eeruf_design::certificate::prove(&design, CERTIFICATE_BUDGET, keep_going);
+    let proof = design.prove(CERTIFICATE_BUDGET, keep_going);
     let text = proof.map_err(|error| error.to_string())?;
     let stated = Stated::read(&text).ok_or("a certificate without a claim")?;
     let checker = include_str!("../../checker/check_period.py");

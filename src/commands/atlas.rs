@@ -32,7 +32,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "FILE", value_parser = picture())]
     svg: Option<PathBuf>,
     /// Search the open rings of FILE again, with this number of nodes each, fewer for more than 16 sensors, and write
-    /// the certificate of each row anew; by default none is searched again
+    /// new certificates; by default, none is searched
     #[arg(long, value_name = "NODES", requires = "file", conflicts_with = "shard")]
     again: Option<u64>,
     /// Only this share of the rings, of this many

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use eeruf_design::RingDesign;
-use eeruf_design::certificate::{self, Stated};
+use eeruf_design::certificate::Stated;
 
 use super::Answer;
 use crate::console::{error, note};
@@ -24,7 +24,7 @@ impl Written {
     /// budget and time do not suffice for that.
     pub(crate) fn new(design: &RingDesign, budget: usize, watch: &mut Watch) -> Self {
         let go_on = |nodes| watch.go_on(|| format!("certificate: {nodes} nodes"));
-        match certificate::prove(design, budget, go_on) {
+        match design.prove(budget, go_on) {
             Ok(text) => Self { claim: claim(&text, design), text: Ok(text) },
             Err(why) => Self { text: Err(why.to_string()), claim: String::new() },
         }

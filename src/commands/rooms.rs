@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
-use eeruf_design::{RingDesign, RingSpec, RoomsAnswer, RoomsAsked};
+use eeruf_design::{CHOICE, RingDesign, RingSpec, RoomsAnswer, RoomsAsked};
 use eeruf_files::{FileError, Kind};
 use eeruf_sim::experiments::measure::{
     Condition, Family, MeasureAsked, MeasuredWay, Moving, Speeds, measure, measured_ways,
@@ -113,13 +113,12 @@ fn three_ways(
     let ways: Vec<_> = ways.into_iter().filter(is_shown).map(|way| (way, None)).collect();
     let moving = if asked.driving { Moving::Driving } else { Moving::Standing };
     let speeds = Speeds { speed_m_s: spec.room_speed_m_s(), turn_rad_s: 0.0 };
-    // Settings are chosen in rooms behind those that are reported.
     let measured = |first: u64| {
         let conditions = vec![Condition { moving, others: false }];
         let asked = MeasureAsked { conditions, first, places: asked.places, speeds };
         measure(&ways, &asked, &|share| goes_on(&watch, share)).map_err(|error| error.to_string())
     };
-    let both = measured(asked.first + asked.places).and_then(|chosen| Ok((chosen, measured(asked.first)?)));
+    let both = measured(CHOICE).and_then(|chosen| Ok((chosen, measured(asked.first)?)));
     Ok(both.map(|(chosen, measured)| {
         let rooms = measured.under.first().map_or(0, |under| under.places.len());
         let moves = if asked.driving { "driving" } else { "standing" };

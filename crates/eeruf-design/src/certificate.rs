@@ -7,21 +7,11 @@ use eeruf_files::AnySchedule;
 use eeruf_period::PeriodProblem;
 use eeruf_period::engine::prove::{NoProof, prove_what_can_be};
 
-use crate::find::RingDesign;
-
-/// The text of the certificate that the design's period is the shortest, or that none is below the search's bound; or
-/// a lower bound, where that proof has more than `budget` nodes or `go_on`, which is given the nodes so far, says no.
+/// The text of the certificate that a schedule's period is the shortest, or that none is below `bound`; or a lower
+/// bound, where that proof has more than `budget` nodes or `go_on`, which is given the nodes so far, says no.
 ///
 /// # Errors
 /// The claim is wrong.
-pub fn prove(design: &RingDesign, budget: usize, go_on: impl FnMut(usize) -> bool) -> Result<String, NoProof> {
-    certify(&design.bounding.problem(), &design.schedule, design.bound, budget, go_on)
-}
-
-/// Certifies any schedule, and what is known to be the least period.
-///
-/// # Errors
-/// As for [`prove`].
 pub fn certify(
     problem: &PeriodProblem<'_>,
     schedule: &AnySchedule,

@@ -9,15 +9,15 @@ use eeruf_sim::experiments::measure::{
 use eeruf_sim::experiments::rooms::with_other_gain;
 use serde::Serialize;
 
+use crate::asked::RoomsAsked;
 use crate::find::RingDesign;
 use crate::ring::RingSpec;
-use crate::rooms::RoomsAsked;
 use crate::way::Way;
 
 /// The rate of turn of a robot whose file has none, in degrees a second: a choice.
 const USUAL_TURN_DEG_S: f64 = 45.0;
 /// The number of the first room in which votes are chosen. Nothing is reported from them.
-const CHOICE: u64 = 1_000;
+pub const CHOICE: u64 = 1_000;
 /// Votes are chosen in a third of the rooms, and as many are looked at under conditions that the file does not name.
 const LESS: u64 = 3;
 

@@ -6,9 +6,9 @@ use std::fmt;
 use eeruf_core::search::{Control, Found, SearchError};
 use eeruf_core::{MAX_SENSORS, Micros};
 use eeruf_files::{AnySchedule, ScheduleFile};
-use eeruf_period::ToSpare;
+use eeruf_period::{ToSpare, engine::prove::NoProof};
 
-use crate::certificate::{Stated, prove};
+use crate::certificate::{Stated, certify};
 use crate::found::FoundJson;
 use crate::ring::RingSpec;
 use crate::shortest::{Search, Shortest, shortest};
@@ -99,12 +99,20 @@ impl RingDesign {
         if self.found.proven { self.spec.what_if(control) } else { Ok(Vec::new()) }
     }
 
+    /// The text of its [certificate](certify).
+    ///
+    /// # Errors
+    /// As for [`certify`].
+    pub fn prove(&self, budget: usize, go_on: impl FnMut(usize) -> bool) -> Result<String, NoProof> {
+        certify(&self.bounding.problem(), &self.schedule, self.bound, budget, go_on)
+    }
+
     /// The period below which a certificate of a few thousand nodes proves that there is none, if the period is proven:
     /// the period itself where that proof suffices.
     pub fn certified(&self) -> Option<Micros> {
         let proof = || {
             let budget = CERTIFICATE_BUDGET / self.spec.sensors.max(16).pow(2);
-            let stated = Stated::read(&prove(self, budget, |_| true).ok()?)?;
+            let stated = Stated::read(&self.prove(budget, |_| true).ok()?)?;
             u32::try_from(stated.micros(stated.bound)).ok().map(Micros::new)
         };
         self.found.proven.then(|| self.known_certified.or_else(proof)).flatten()

@@ -6,7 +6,7 @@
 //! | `limits`, `layout` | what numbers a ring file may hold; how the sensors stand |
 //! | `each`, `uneven` | one number for all sensors or one for each; what sensors need that are not alike |
 //! | `ring` | the ring file, turned into what a schedule must meet |
-//! | `plausible` | signs that its numbers are in other units |
+//! | `read`, `plausible` | the text of one, refused if its numbers are in other units |
 //! | `places`, `urdf`, `hearing` | where the sensors are on the robot, and which hear each other there |
 //! | `shortest` | the shortest period for that, from the atlas or by `eeruf-period` |
 //! | `find`, `what_if` | the design of a ring, and what would make it shorter |
@@ -16,7 +16,7 @@
 //! | `found` | the answer as it is printed in JSON |
 //! | `atlas`, `atlas_making` | rings whose shortest period is known; how their file is made |
 //! | `certificate` | the proof, as a text that others check |
-//! | `rooms`, `cost`, `flow`, `way` | with the feature `rooms`: ways of firing the ring, judged by the simulator |
+//! | `asked`, `rooms`, `cost`, `flow`, `way` | feature `rooms`: ways of firing it, judged by the simulator |
 //!
 //! ```
 //! use eeruf_design::{RingSpec, Search};
@@ -29,6 +29,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+#[cfg(feature = "rooms")]
+mod asked;
 pub mod atlas;
 #[cfg(feature = "make-atlas")]
 pub mod atlas_making;
@@ -49,6 +51,7 @@ mod places;
 mod placing;
 mod plausible;
 mod questions;
+mod read;
 mod ring;
 #[cfg(feature = "rooms")]
 mod rooms;
@@ -60,26 +63,27 @@ mod urdf;
 mod way;
 mod what_if;
 
-#[cfg(feature = "rooms")]
-pub use cost::{BestWay, CostAnswer, KindCost};
 pub use each::Each;
 pub use eeruf_period::{PeriodProblem, ToSpare};
 pub use find::{NoDesign, RingDesign};
-#[cfg(feature = "rooms")]
-pub use flow::{FlowDesign, needs_to_see_m, turns_of};
 pub use found::FoundJson;
 pub use layout::{LayoutKey, LayoutName, OwnedLayout};
 pub use limits::{four, neighbours_in_range, sensors_in_range};
 pub use places::Places;
 pub use questions::{CURVE_BUDGET, CURVE_POINTS, CurvePoint, Fit, Need};
-pub use ring::{RingSpec, robot_ring};
-#[cfg(feature = "rooms")]
-pub use rooms::{RoomRobot, RoomsAnswer, RoomsAsked, RoomsJson};
+pub use read::robot_ring;
+pub use ring::RingSpec;
 pub use shortest::{Search, Shortest, shortest};
 pub use uneven::OwnedUneven;
-#[cfg(feature = "rooms")]
-pub use way::{How, Way};
 pub use what_if::WhatIf;
+#[cfg(feature = "rooms")]
+pub use {
+    asked::RoomsAsked,
+    cost::{BestWay, CHOICE, CostAnswer, KindCost},
+    flow::{FlowDesign, needs_to_see_m, turns_of},
+    rooms::{RoomRobot, RoomsAnswer, RoomsJson},
+    way::{How, Way},
+};
 
 /// The listing of the crate's README compiles and holds.
 #[cfg(doctest)]

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use eeruf_core::{Criterion, Micros, Requirements, SensorLimits, SpeedOfSound};
-use eeruf_files::{FileError, Pose, RobotRing, build};
+use eeruf_files::{Pose, RobotRing};
 use eeruf_modules::{Air, Module, ModulesFile};
 use eeruf_period::PeriodProblem;
 use serde::Deserialize;
@@ -13,7 +13,6 @@ use crate::hearing::hearing;
 use crate::layout::{LayoutKey, LayoutName, OwnedLayout};
 use crate::limits::{four, neighbours_in_range, number, sensors_in_range};
 use crate::places::Places;
-use crate::plausible;
 use crate::uneven::OwnedUneven;
 
 /// Repeatability of readings of one wall on a robot that stands, for a file that names its modules and no jitter: a
@@ -161,22 +160,6 @@ fn each<T>(modules: &ModulesFile, figure: impl Fn(&Module) -> T) -> Each<T> {
 }
 
 impl RingSpec {
-    /// Reads the text of a ring file that names no URDF.
-    ///
-    /// # Errors
-    /// The first thing wrong with it.
-    pub fn from_text(text: &str) -> Result<Self, FileError> {
-        build(text, |ring: RingFile| ring.spec(None))
-    }
-
-    /// Reads the text of this ring file. A URDF that it names is looked for beside it.
-    ///
-    /// # Errors
-    /// The first thing wrong with it, in the file.
-    pub fn in_file(file: &Path, text: &str) -> Result<Self, FileError> {
-        build(text, |ring: RingFile| ring.spec(Some(file))).map_err(|error| error.in_file(file))
-    }
-
     /// Returns the ring where `t_delta` must cover this much; where sensors have their own, each as much more.
     #[must_use]
     pub fn covering(&self, t_delta: Micros) -> Self {
@@ -233,22 +216,6 @@ impl RingSpec {
     }
 }
 
-/// The robot of a ring file in a scene, as `eeruf_sim::World::from_text_with` reads
-/// one.
-///
-/// # Errors
-/// The first thing wrong with it.
-///
-/// ```
-/// let text = "sensors = 2\nmodule = \"ping\"\njitter_us = 100\nmin_interval_us = 0\nspacing_deg = 30\nradius_m = 0.2";
-/// let ring = eeruf_design::robot_ring("ring.toml".as_ref(), text)?;
-/// assert_eq!((ring.modules[1].name, ring.limits[1].t_delta.as_micros()), ("ping", 100));
-/// # Ok::<(), eeruf_files::FileError>(())
-/// ```
-pub fn robot_ring(file: &Path, text: &str) -> Result<RobotRing, FileError> {
-    Ok(RingSpec::in_file(file, text)?.robot_ring())
-}
-
 impl RingFile {
     /// The layout, less the pairs that do not hear each other off walls as far as `crosstalk_m`, where the file names
     /// modules and their places. A ring then stands all round unless it says otherwise: who hears whom is known.
@@ -271,7 +238,7 @@ impl RingFile {
     }
 
     /// Requirements of the ring in this file, or in none: the first thing wrong is an error.
-    fn spec(&self, file: Option<&Path>) -> Result<RingSpec, String> {
+    pub(crate) fn spec(&self, file: Option<&Path>) -> Result<RingSpec, String> {
         sensors_in_range(self.sensors)?;
         neighbours_in_range(self.neighbours)?;
         let celsius = number("temperature_c", self.temperature_c.unwrap_or(20.0), -100.0, 100.0)?;
@@ -383,7 +350,6 @@ impl RingFile {
             uneven,
         };
         OwnedUneven::can_fire_together(&spec.problem().requirements, sensors)?;
-        plausible::check(self, &spec)?;
         Ok(spec)
     }
 }

@@ -12,6 +12,7 @@ use eeruf_sim::modules::POLAROID_6500;
 use eeruf_sim::{Pose, Robot, Transducer};
 use serde::{Serialize, Serializer};
 
+use crate::asked::RoomsAsked;
 use crate::atlas::ATLAS;
 use crate::cost::CostAnswer;
 use crate::find::{NoDesign, RingDesign};
@@ -67,28 +68,6 @@ impl RingSpec {
         let robot =
             Robot { others: self.others, reach: self.reach(), ..Robot::of_ring(&ring, Pose::identity(), places)? };
         Ok(RoomRobot { robot, assumed })
-    }
-}
-
-/// Rooms and limits for judging ways of firing.
-#[derive(Clone, Debug, PartialEq)]
-pub struct RoomsAsked {
-    /// Rooms of the caller's own; none for those of the set.
-    pub own: Vec<RoomGroup>,
-    /// Number of rooms of each kind of the set. The default is 6.
-    pub places: u64,
-    /// Number of the first room of each kind. The default is 0: ways are chosen on numbers below 2,000, and reported
-    /// from 20,000 on.
-    pub first: u64,
-    /// True for a robot that drives, at the ring's `speed_m_s` or 0.3 m/s.
-    pub driving: bool,
-    /// The largest share of foreign sound in what is believed, of a way that is recommended. The default is 0.03.
-    pub wrong: f64,
-}
-
-impl Default for RoomsAsked {
-    fn default() -> Self {
-        Self { own: vec![], places: 6, first: 0, driving: false, wrong: RoomsOptions::default().wrong }
     }
 }
 

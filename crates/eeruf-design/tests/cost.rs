@@ -24,7 +24,7 @@ fn ring_is_judged_as_its_file_says_that_it_is_used() {
     let among = cost("others = true\nturn_deg_s = 90\n");
     assert_eq!(under(&among).len(), 6);
     assert_eq!(among.turn_deg_s, 90.0);
-    // What does not depend on who is near, and how fast it turns, is the same.
+    // Figures that do not depend on others, or on how fast it turns, are equal.
     assert_eq!(among.kinds[3].best[..2], alone.kinds[3].best[..2]);
     assert_ne!(among.kinds[3].best[2], alone.kinds[3].best[2]);
     // Each condition by itself is named, whether the file names it or not, and the other gain.

@@ -5,7 +5,7 @@ mod common;
 
 use common::{accepted, small};
 use eeruf_core::Micros;
-use eeruf_design::certificate::{self, Stated};
+use eeruf_design::certificate::Stated;
 use eeruf_design::{RingDesign, RingSpec, Search};
 
 fn read(text: &str) -> RingSpec {
@@ -42,7 +42,7 @@ fn uneven_rings_are_verified_and_certified() {
             let limits = verified.limits_of(sensor as u8).expect("it is there");
             assert_eq!(limits.window, problem.requirements.window_of(sensor), "{name}");
         }
-        let text = certificate::prove(&found, 1_000_000, |_| true).expect("a proof");
+        let text = found.prove(1_000_000, |_| true).expect("a proof");
         let expected = format!("{period_us} us is the shortest period (tick {} us)", spec.tick.as_micros());
         assert_eq!(Stated::read(&text).expect("a claim").to_string(), expected, "{name}");
         certificates.push(text);

@@ -136,7 +136,7 @@ fn alike(file: &Path) -> Option<String> {
     let here = if folder == Path::new("") { Path::new(".") } else { folder };
     let names = std::fs::read_dir(here).ok()?.filter_map(|entry| entry.ok()?.file_name().into_string().ok());
     let names: Vec<String> = names.filter(|name| Path::new(name).extension() == file.extension()).collect();
-    let meant = crate::meant(&file.file_name()?.to_string_lossy(), names.iter().map(String::as_str))?;
+    let meant = crate::meant::meant(&file.file_name()?.to_string_lossy(), names.iter().map(String::as_str))?;
     Some(folder.join(meant).display().to_string())
 }
 

@@ -13,6 +13,8 @@ mod firing_row;
 mod implausible;
 mod kind;
 #[cfg(feature = "toml")]
+mod meant;
+#[cfg(feature = "toml")]
 mod parse;
 #[cfg(feature = "toml")]
 mod robot_ring;
@@ -25,7 +27,9 @@ pub use firing_row::{FIRING_COLUMNS, firing_row};
 pub use implausible::{doubt, doubt_list, doubted_keys, doubts_in, is_likely_rad};
 pub use kind::Kind;
 #[cfg(feature = "toml")]
-pub use parse::{build, explain, explain_json, meant, parse};
+pub use meant::meant;
+#[cfg(feature = "toml")]
+pub use parse::{build, explain, explain_json, parse};
 #[cfg(feature = "toml")]
 pub use robot_ring::{Pose, RobotRing, arc};
 #[cfg(feature = "toml")]

@@ -6,7 +6,8 @@ use serde::de::DeserializeOwned;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use crate::FileError;
+use crate::error::FileError;
+use crate::meant::meant;
 
 /// Types of Rust, and what a user writes for them.
 const TYPES: [(&str, &str); 6] = [
@@ -20,8 +21,6 @@ const TYPES: [(&str, &str); 6] = [
 /// Endings of keys, and the units that they stand for.
 const UNITS: [(&str, &str); 5] =
     [("_us", "microseconds"), ("_deg", "degrees"), ("_m_s", "metres per second"), ("_m", "metres"), ("_db", "dB")];
-/// The least likeness, out of 1, of a key that was meant.
-const ALIKE: f64 = 0.85;
 
 /// Reads a TOML text.
 ///
@@ -112,17 +111,6 @@ pub fn build<T: DeserializeOwned, B, E: fmt::Display>(
         });
         FileError::in_text(message).at_line(line)
     })
-}
-
-/// The name that an unknown one was meant to be, if one is like it.
-///
-/// ```
-/// assert_eq!(eeruf_files::meant("sensor", ["layout", "sensors"].into_iter()), Some("sensors"));
-/// ```
-pub fn meant<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Option<&'a str> {
-    let likeness = known.map(|known| (known, strsim::jaro_winkler(known, name)));
-    let likely = likeness.filter(|(_, alike)| *alike >= ALIKE);
-    likely.max_by(|one, other| one.1.total_cmp(&other.1)).map(|(known, _)| known)
 }
 
 /// The line of a byte, counted from 1.

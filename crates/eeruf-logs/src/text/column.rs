@@ -161,7 +161,7 @@ impl Column {
                 && !text.contains('=')
                 && value::unit(text).is_none()
         };
-        // What a robot does stays for a while; sensors come by turns.
+        // A robot's mode stays for a while; sensors take turns.
         let is_state = self.distinct.len() > 1 && self.changes * 2 < rows + self.distinct.len();
         let is_name = self.texts > 0 && self.distinct.keys().all(is_name);
         is_name && !is_state && (self.distinct.len() < rows || rows < 3)

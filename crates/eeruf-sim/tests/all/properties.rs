@@ -117,7 +117,7 @@ proptest! {
         let mut walls = scene.walls().to_vec();
         walls[opened].faces = Faces::Open;
         let open = Scene::new(walls, scene.poles().to_vec(), scene.air()).unwrap();
-        // What met only backs and the opened wall is solid now.
+        // A region bounded by backs and the opened wall is solid now.
         prop_assume!(![source, receiver].iter().any(|&end| open.is_solid(end)));
         let mut expected = rows(&scene.paths(source, &[receiver], 4, FAR).unwrap());
         expected.retain(|row| !row.0.contains(&Bounce::Wall(opened as u32)));

@@ -455,7 +455,7 @@ mod tests {
         // Hardly more echoes than one by one are not worth a library.
         assert_eq!(chosen(&[base, Ok([right(0.905, 11.5); 2])]), (Some(0), true));
         assert_eq!(chosen(&[base, Ok([right(0.905, 12.5); 2])]), (Some(1), true));
-        // What no program has is not recommended.
+        // A way without a program is not recommended.
         let mut ways = judged(&[base, Ok([right(0.99, 99.0); 2])]);
         ways[1].way.name = "arrays";
         ways[1].way.method = Method::Arrays;

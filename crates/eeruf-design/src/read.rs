@@ -1,0 +1,47 @@
+//! Ring files read: what they say, if their numbers are in the units that their keys name.
+
+use std::path::Path;
+
+use eeruf_files::{FileError, RobotRing, build};
+
+use crate::plausible;
+use crate::ring::{RingFile, RingSpec};
+
+/// The ring of this file, or of none.
+fn checked(ring: &RingFile, file: Option<&Path>) -> Result<RingSpec, String> {
+    let spec = ring.spec(file)?;
+    plausible::check(ring, &spec).map(|()| spec)
+}
+
+impl RingSpec {
+    /// Reads the text of a ring file that names no URDF.
+    ///
+    /// # Errors
+    /// The first thing wrong with it.
+    pub fn from_text(text: &str) -> Result<Self, FileError> {
+        build(text, |ring: RingFile| checked(&ring, None))
+    }
+
+    /// Reads the text of this ring file. A URDF that it names is looked for beside it.
+    ///
+    /// # Errors
+    /// The first thing wrong with it, in the file.
+    pub fn in_file(file: &Path, text: &str) -> Result<Self, FileError> {
+        build(text, |ring: RingFile| checked(&ring, Some(file))).map_err(|error| error.in_file(file))
+    }
+}
+
+/// The robot of a ring file in a scene, as `eeruf_sim::World::from_text_with` reads one.
+///
+/// # Errors
+/// The first thing wrong with it.
+///
+/// ```
+/// let text = "sensors = 2\nmodule = \"ping\"\njitter_us = 100\nmin_interval_us = 0\nspacing_deg = 30\nradius_m = 0.2";
+/// let ring = eeruf_design::robot_ring("ring.toml".as_ref(), text)?;
+/// assert_eq!((ring.modules[1].name, ring.limits[1].t_delta.as_micros()), ("ping", 100));
+/// # Ok::<(), eeruf_files::FileError>(())
+/// ```
+pub fn robot_ring(file: &Path, text: &str) -> Result<RobotRing, FileError> {
+    Ok(RingSpec::in_file(file, text)?.robot_ring())
+}

@@ -27,7 +27,7 @@ use crate::report::watch::Watch;
 /// Compare firing as sketches do, one by one and the recommended way in a scene, or for a ring in rooms.
 ///
 /// Prints a row for each, and what to do: how soon the ring sees what steps before it (t95), how often foreign sound
-/// stops the robot, how many sensors are blind, and how many right echoes it has a second. In a scene 60 things appear,
+/// stops the robot, how many sensors are blind, and how many right echoes it has a second. In a scene 60 things appear
 /// (20 where something moves), one at a time, before the first robot's sensors.
 #[derive(clap::Args)]
 #[command(after_long_help = every_method())]

@@ -427,8 +427,11 @@ bool EerufModules::take(const EerufEvent &event, uint32_t now, bool looks) {
     } else if (event.kind == EERUF_EVENT_READING) {
         sensor_ = event.sensor;
         reading_ = event.u.reading;
-        if (kind() != EERUF_READING_LATE) {
-            const uint32_t bit = 1ul << (sensor_ & 31);
+        // Two in a row: what a late reading comes before is compared with nothing.
+        const uint32_t bit = 1ul << (sensor_ & 31);
+        if (kind() == EERUF_READING_LATE) {
+            heard_ &= ~bit;
+        } else {
             twice_ |= heard_ & bit;
             heard_ |= bit;
         }

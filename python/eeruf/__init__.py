@@ -26,7 +26,6 @@ from eeruf._eeruf import (
     KINDS,
     Adaptation,
     ArgumentError,
-    Blind,
     CertificateError,
     EchoFilter,
     EerufError,
@@ -34,12 +33,11 @@ from eeruf._eeruf import (
     ExperimentError,
     FilterError,
     Fire,
-    Found,
     LogError,
+    Needs,
     PathsError,
     PeriodEnded,
     Reading,
-    Report,
     Ring,
     RingError,
     SceneError,
@@ -48,8 +46,6 @@ from eeruf._eeruf import (
     SearchError,
     SensorWatch,
     SimulationError,
-    State,
-    Violation,
     WaitSearch,
     WaitTables,
     __version__,
@@ -67,6 +63,7 @@ if TYPE_CHECKING:
 
     from eeruf import experiments, logs, plot
     from eeruf._eeruf import _Kind
+    from eeruf._records import Blind, Found, Report, State, Violation
     from eeruf.logs import check, diagnose, read_firings, read_log, replay, survey
 
 __all__ = [
@@ -84,6 +81,7 @@ __all__ = [
     "Fire",
     "Found",
     "LogError",
+    "Needs",
     "PathsError",
     "PeriodEnded",
     "Reading",
@@ -162,7 +160,9 @@ def show_versions() -> None:
 if not TYPE_CHECKING:
     # On first use: a program without them need not wait for them, or for what they import.
     _MODULES = ("experiments", "logs", "plot")
-    _FUNCTIONS = ("check", "diagnose", "read_firings", "read_log", "replay", "survey")
+    _FROM = dict.fromkeys(("check", "diagnose", "read_firings", "read_log", "replay", "survey"), "eeruf.logs") | dict.fromkeys(
+        ("Blind", "Found", "Report", "State", "Violation"), "eeruf._records"
+    )
 
     # What there was, and what does it now.
     _GONE = dict.fromkeys(
@@ -174,9 +174,9 @@ if not TYPE_CHECKING:
 
         if name in _MODULES:
             return import_module(f"eeruf.{name}")
-        if name in _FUNCTIONS:
-            globals()[name] = function = getattr(import_module("eeruf.logs"), name)
-            return function
+        if name in _FROM:
+            globals()[name] = found = getattr(import_module(_FROM[name]), name)
+            return found
         if name in _GONE:
             raise AttributeError(f"eeruf.{name} is gone; eeruf.{_GONE[name]} does it")
         if name == "sweep":

@@ -9,6 +9,7 @@ import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 from typing_extensions import Unpack
 
+from eeruf._records import Blind, Found, Report, RobotState, State, Steering
 from eeruf._summary import Summary
 from eeruf._types import FlowSettings, HeardPaths, ReadingColumns
 from eeruf.logs import Firings
@@ -17,6 +18,9 @@ from eeruf.logs import Firings
 _Int = SupportsIndex
 # One for all sensors, or one for each.
 _Each = _Int | Iterable[_Int]
+# Needs, or the path of a ring file; and what searches take, which may also be a number of sensors.
+_Needs = Needs | str | PathLike[str]
+_Ring = _Int | _Needs
 _Floats = NDArray[np.float64]
 _Ints = NDArray[np.int64]
 _Codes = NDArray[np.int8]
@@ -135,8 +139,9 @@ class Schedule:
     def scaled(self, num: _Int, den: _Int) -> Schedule: ...
     def verify(
         self,
-        t_delta_us: _Each,
+        t_delta_us: _Each | _Needs,
         min_interval_us: _Int = 0,
+        *,
         neighbours: _Int = 4,
         layout: _Layout = "line",
         criterion: _Criterion = "exact",
@@ -151,8 +156,9 @@ class Schedule:
     def to_json(self) -> str: ...
     def to_rust(
         self,
-        t_delta_us: _Int | None = None,
+        t_delta_us: _Int | _Needs | None = None,
         min_interval_us: _Int = 0,
+        *,
         neighbours: _Int = 4,
         layout: _Layout = "line",
         criterion: _Criterion = "exact",
@@ -161,8 +167,9 @@ class Schedule:
     ) -> str: ...
     def to_c(
         self,
-        t_delta_us: _Int | None = None,
+        t_delta_us: _Int | _Needs | None = None,
         min_interval_us: _Int = 0,
+        *,
         neighbours: _Int = 4,
         layout: _Layout = "line",
         criterion: _Criterion = "exact",
@@ -175,108 +182,31 @@ class Schedule:
     def __hash__(self, /) -> int: ...
 
 @final
-class Violation:
-    def __new__(
-        cls,
-        kind: _Condition,
-        sensors: tuple[int, int],
-        phases: tuple[_Phase, _Phase],
-        value_us: _Int,
-        required_us: _Int,
-        source: str,
-    ) -> Violation: ...
+class Needs:
+    def __new__(cls, **keys: Any) -> Needs: ...
+    @staticmethod
+    def from_toml(text: str) -> Needs: ...
+    @staticmethod
+    def read_toml(path: str | PathLike[str]) -> Needs: ...
+    def to_toml(self) -> str: ...
     @property
-    def kind(self) -> _Condition: ...
+    def sensors(self) -> int: ...
     @property
-    def sensors(self) -> tuple[int, int]: ...
+    def t_delta_us(self) -> int: ...
     @property
-    def phases(self) -> tuple[_Phase, _Phase]: ...
+    def min_interval_us(self) -> int: ...
     @property
-    def value_us(self) -> int: ...
-    @property
-    def required_us(self) -> int: ...
-    @property
-    def source(self) -> str: ...
-    def to_dict(self) -> dict[str, object]: ...
-    def __eq__(self, other: object, /) -> bool: ...
-    def __ne__(self, other: object, /) -> bool: ...
+    def window_us(self) -> int: ...
+    def __eq__(self, value: object, /) -> bool: ...
+    def __ne__(self, value: object, /) -> bool: ...
     def __hash__(self, /) -> int: ...
-
-@final
-class Report:
-    def __new__(
-        cls,
-        separation_us: _Int | None,
-        max_t_delta_us: _Int | None,
-        min_interval_us: _Int | None,
-        min_refire_us: _Int,
-        violations: Sequence[Violation],
-    ) -> Report: ...
-    @property
-    def ok(self) -> bool: ...
-    @property
-    def separation_us(self) -> int | None: ...
-    @property
-    def max_t_delta_us(self) -> int | None: ...
-    @property
-    def min_interval_us(self) -> int | None: ...
-    @property
-    def min_refire_us(self) -> int: ...
-    @property
-    def violations(self) -> tuple[Violation, ...]: ...
-    def to_dict(self) -> dict[str, object]: ...
-    def __bool__(self, /) -> bool: ...
-    def __eq__(self, other: object, /) -> bool: ...
-    def __ne__(self, other: object, /) -> bool: ...
-    def __hash__(self, /) -> int: ...
-
-@final
-class Found:
-    def __new__(
-        cls,
-        schedule: Schedule | None,
-        value_us: _Int | None,
-        bound_us: _Int | None,
-        proven: bool,
-        nodes: _Int,
-        seconds: float,
-        reason: str | None = None,
-        certificate: str | None = None,
-        from_atlas: bool = False,
-        spare_us: tuple[int, int, int] | None = None,
-        spare_proven: tuple[bool, bool, bool] | None = None,
-    ) -> Found: ...
-    @property
-    def schedule(self) -> Schedule | None: ...
-    @property
-    def value_us(self) -> int | None: ...
-    @property
-    def bound_us(self) -> int | None: ...
-    @property
-    def proven(self) -> bool: ...
-    @property
-    def nodes(self) -> int: ...
-    @property
-    def seconds(self) -> float: ...
-    @property
-    def reason(self) -> str | None: ...
-    @property
-    def certificate(self) -> str | None: ...
-    @property
-    def from_atlas(self) -> bool: ...
-    @property
-    def spare_us(self) -> tuple[int, int, int] | None: ...
-    @property
-    def spare_proven(self) -> tuple[bool, bool, bool] | None: ...
-    def to_dict(self) -> dict[str, object]: ...
-    def __eq__(self, other: object, /) -> bool: ...
-    def __ne__(self, other: object, /) -> bool: ...
 
 def design(
-    sensors: _Int,
-    t_delta_us: _Each,
-    min_interval_us: _Int,
-    window_us: _Each,
+    sensors: _Ring,
+    t_delta_us: _Each | None = None,
+    min_interval_us: _Int | None = None,
+    window_us: _Each | None = None,
+    *,
     tick_us: _Int = 1000,
     neighbours: _Int = 4,
     layout: _Layout = "line",
@@ -293,10 +223,11 @@ def design(
 ) -> Found: ...
 def fit(
     period_us: _Int,
-    sensors: _Int,
-    t_delta_us: _Each,
-    min_interval_us: _Int,
-    window_us: _Each,
+    sensors: _Ring,
+    t_delta_us: _Each | None = None,
+    min_interval_us: _Int | None = None,
+    window_us: _Each | None = None,
+    *,
     tick_us: _Int = 1000,
     neighbours: _Int = 4,
     layout: _Layout = "line",
@@ -309,10 +240,11 @@ def fit(
 ) -> tuple[bool | None, Found]: ...
 def curve(
     need: Literal["t_delta", "range", "interval"],
-    sensors: _Int,
-    t_delta_us: _Each,
-    min_interval_us: _Int,
-    window_us: _Each,
+    sensors: _Ring,
+    t_delta_us: _Each | None = None,
+    min_interval_us: _Int | None = None,
+    window_us: _Each | None = None,
+    *,
     tick_us: _Int = 1000,
     neighbours: _Int = 4,
     layout: _Layout = "line",
@@ -453,10 +385,10 @@ class Ring:
     def __new__(
         cls,
         schedule: Schedule,
-        t_delta_us: _Each,
+        t_delta_us: _Each | _Needs,
         now_us: _Int = 0,
         *,
-        window_us: _Each,
+        window_us: _Each | None = None,
         blanking_us: _Int = 0,
         consecutive: _Int = 2,
         path_change_us: _Int | None = None,
@@ -485,11 +417,11 @@ class Ring:
     ) -> Ring: ...
     @staticmethod
     def flow(
-        sensors: _Int,
+        sensors: _Ring,
         settings: FlowSettings | None = None,
         now_us: _Int = 0,
         *,
-        window_us: _Each,
+        window_us: _Each | None = None,
         blanking_us: _Int = 0,
         reach_us: _Int | None = None,
         refire_us: _Each | None = None,
@@ -537,6 +469,7 @@ class Ring:
         self, now_us: _Int, expected_change_us: Iterable[_Int] | None = None
     ) -> Fire | Reading | PeriodEnded | None: ...
     def echo(self, sensor: _Int, at_us: _Int) -> None: ...
+    def echo_between(self, sensor: _Int, earliest_us: _Int, latest_us: _Int) -> None: ...
     def fired(self, sensor: _Int, at_us: _Int) -> None: ...
     def stuck(self, sensor: _Int) -> None: ...
     def answered(self, sensor: _Int, answered: bool = True) -> None: ...
@@ -559,43 +492,6 @@ class SensorWatch:
     def sensors(self) -> int: ...
     def observe(self, event: Fire | Reading | PeriodEnded, now_us: _Int) -> Blind | None: ...
     def state(self, sensor: _Int, now_us: _Int) -> State: ...
-
-@final
-class Blind:
-    def __new__(cls, sensor: _Int, firings: _Int) -> Blind: ...
-    @property
-    def sensor(self) -> int: ...
-    @property
-    def firings(self) -> int: ...
-    def to_dict(self) -> dict[str, object]: ...
-    def __eq__(self, other: object, /) -> bool: ...
-    def __ne__(self, other: object, /) -> bool: ...
-    def __hash__(self, /) -> int: ...
-
-@final
-class State:
-    def __new__(
-        cls,
-        kind: _StateKind,
-        t_echo_us: _Int | None = None,
-        age_us: _Int = 0,
-        why: _Doubt | None = None,
-        explained_by: _Int | Literal["history"] | None = None,
-    ) -> State: ...
-    @property
-    def kind(self) -> _StateKind: ...
-    @property
-    def t_echo_us(self) -> int | None: ...
-    @property
-    def age_us(self) -> int: ...
-    @property
-    def why(self) -> _Doubt | None: ...
-    @property
-    def explained_by(self) -> int | Literal["history"] | None: ...
-    def to_dict(self) -> dict[str, object]: ...
-    def __eq__(self, other: object, /) -> bool: ...
-    def __ne__(self, other: object, /) -> bool: ...
-    def __hash__(self, /) -> int: ...
 
 @final
 class Adaptation:
@@ -687,19 +583,6 @@ class Vfh:
     def drive(
         self, grid: Himm, pose: _Axis, target: _Point, turn_rad_s: float = 0.0, *, turn_gain: float = 3.0
     ) -> tuple[float, float]: ...
-
-@final
-class Steering:
-    def __new__(cls, direction_rad: float, valley: tuple[int, int] = (0, 72), trapped: bool = False) -> Steering: ...
-    @property
-    def direction_rad(self) -> float: ...
-    @property
-    def valley(self) -> tuple[int, int]: ...
-    @property
-    def trapped(self) -> bool: ...
-    def to_dict(self) -> dict[str, object]: ...
-    def __eq__(self, other: object, /) -> bool: ...
-    def __ne__(self, other: object, /) -> bool: ...
 
 @final
 class Material:
@@ -1057,27 +940,6 @@ class Readings:
     def to_xarray(self) -> xr.Dataset: ...
     def __getitem__(self, key: slice | ArrayLike, /) -> Readings: ...
     def __len__(self, /) -> int: ...
-
-@final
-class RobotState:
-    def __new__(
-        cls,
-        pose: tuple[float, float, float],
-        velocity_m_s: tuple[float, float] = (0.0, 0.0),
-        turn_rad_s: float = 0.0,
-        touches: bool = False,
-    ) -> RobotState: ...
-    @property
-    def pose(self) -> tuple[float, float, float]: ...
-    @property
-    def velocity_m_s(self) -> tuple[float, float]: ...
-    @property
-    def turn_rad_s(self) -> float: ...
-    @property
-    def touches(self) -> bool: ...
-    def to_dict(self) -> dict[str, object]: ...
-    def __eq__(self, other: object, /) -> bool: ...
-    def __ne__(self, other: object, /) -> bool: ...
 
 @final
 class FiredReading:

@@ -11,8 +11,8 @@ if TYPE_CHECKING:
 
 def _plain(value: object) -> object:
     """As numbers, texts, lists and dicts."""
-    if isinstance(value, Result):
-        return value.to_dict()
+    if (to_dict := getattr(value, "to_dict", None)) is not None:
+        return to_dict()
     if isinstance(value, dict):
         return {name: _plain(of) for name, of in value.items()}
     if isinstance(value, (list, tuple)):

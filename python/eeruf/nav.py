@@ -13,6 +13,20 @@ Example:
 
 """
 
-from eeruf._eeruf import Himm, Steering, Vfh
+from eeruf._eeruf import Himm, Vfh
+
+# As in eeruf itself.
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from eeruf._records import Steering
+else:
+
+    def __getattr__(name: str) -> object:
+        if name == "Steering":
+            from eeruf._records import Steering
+
+            return Steering
+        raise AttributeError(f"module 'eeruf.nav' has no attribute {name!r}")
+
 
 __all__ = ["Himm", "Steering", "Vfh"]

@@ -20,7 +20,6 @@ from eeruf._eeruf import (
     ReadingBlocks,
     Readings,
     Robot,
-    RobotState,
     Scene,
     Simulation,
     read_map,
@@ -34,15 +33,16 @@ if TYPE_CHECKING:
     from typing_extensions import TypeGuard
 
     from eeruf._eeruf import _MethodName
+    from eeruf._records import RobotState
     from eeruf._summary import Summary
 else:
 
     def __getattr__(name: str) -> object:
         # On first use: what makes its like is most of what importing eeruf would cost.
-        if name == "Summary":
-            from eeruf._summary import Summary
+        if name in ("RobotState", "Summary"):
+            from eeruf import _records, _summary
 
-            return Summary
+            return getattr(_records if name == "RobotState" else _summary, name)
         raise AttributeError(f"module 'eeruf.sim' has no attribute {name!r}")
 
 

@@ -125,7 +125,6 @@ fn papers_ring_runs_at_65_ms_in_every_form() {
     assert_eq!((&known["from_atlas"], &again["from_atlas"]), (&true.into(), &false.into()));
     // Of the schedules with that period which keep as much, the atlas may hold another.
     assert_eq!((&known["value_us"], &known["reason"]), (&found["value_us"], &found["reason"]));
-    assert_eq!(known["spare_us"], found["spare_us"]);
     assert_eq!(known["nodes"], 0);
 
     // The schedule file passes what was asked for, and not a microsecond more of separation or window.

@@ -26,7 +26,7 @@ def test_equal_values_pickle_and_print_as_code() -> None:
     reading = eeruf.EchoFilter(1, 500).push(0, 9_000)
     names = {
         name: getattr(eeruf, name)
-        for name in ("Schedule", "Found", "Report", "Violation", "Fire", "Reading", "PeriodEnded")
+        for name in ("Schedule", "Found", "Needs", "Report", "Violation", "Fire", "Reading", "PeriodEnded")
     }
     names |= {"RobotState": sim.RobotState, "Steering": nav.Steering}
     ring = eeruf.Ring(tables.TABLE_I_D, t_delta_us=500, window_us=36_000)
@@ -51,10 +51,37 @@ def test_equal_values_pickle_and_print_as_code() -> None:
         ended,
         world.robots[0],
         nav.Vfh().steer(nav.Himm(), place=(0, 0), target=(0, 5)),
+        eeruf.Needs(sensors=2, module=["ping", "srf08"], layout=[(0, 1)], speed_m_s=np.float64(0.5)),
     )
     for value in values:
         assert pickle.loads(pickle.dumps(value)) == value
         assert eval(repr(value), names) == value
+
+
+def test_needs_mean_what_the_program_takes_from_the_file(tmp_path: Path) -> None:
+    for name in (name for name in eeruf.EXAMPLES if name.startswith("rings/") and "table-i" not in name):
+        (file := tmp_path / "ring.toml").write_text(text := eeruf.example(name), encoding="utf-8")
+        program = [sys.executable, "-m", "eeruf", "design", str(file), "--period-only", "--json"]
+        said = json.loads(subprocess.run(program, check=True, capture_output=True, text=True).stdout)
+        needs = eeruf.Needs.from_toml(text)
+        found = [eeruf.design(what) for what in (needs, file, str(file))]
+        assert {one.value_us for one in found} == {said["value_us"]}, name
+        assert found[0].schedule is not None and found[0].schedule.verify(needs).ok
+        assert found[0].schedule.to_dict().items() >= {"period_us": said["schedule"]["period_us"]}.items()
+        rings = eeruf.Ring(found[0].schedule, needs), eeruf.Ring.flow(needs)
+        assert [ring.sensors for ring in rings] == [needs.sensors] * 2
+
+
+def test_a_ring_by_needs_accepts_what_is_before_it() -> None:
+    ring, kinds, now_us = eeruf.Ring.flow(eeruf.Needs(sensors=4, module="hc-sr04"), {"seed": 3}), [], 0
+    while len(kinds) < 200:
+        now_us += ring.wait_us(now_us)
+        while event := ring.poll(now_us):
+            if isinstance(event, eeruf.Fire):
+                ring.echo_between(event.sensor, now_us + 8_990, now_us + 9_010)
+            elif isinstance(event, eeruf.Reading):
+                kinds.append(event.kind)
+    assert kinds[8:].count("accepted") > 185
 
 
 def test_a_certificate_of_design_is_checked_and_pickles() -> None:

@@ -54,7 +54,7 @@ DOCUMENTED = dict(sorted((found for module in MODULES for found in names(module)
 
 def test_the_package_exports_what_the_design_names() -> None:
     expected = """eeruf.Schedule eeruf.Schedule.verify eeruf.WaitSearch.best eeruf.design eeruf.EchoFilter.push_many eeruf.Ring.poll
-        eeruf.Found.bound_us eeruf.Ring.flow eeruf.Ring.moving eeruf.sim.Scene.paths eeruf.sim.simulate eeruf.sim.Readings.summary
+        eeruf.Found eeruf.Needs eeruf.Ring.flow eeruf.Ring.moving eeruf.sim.Scene.paths eeruf.sim.simulate eeruf.sim.Readings.summary
         eeruf.experiments.set_one eeruf.experiments.set_two eeruf.experiments.set_three eeruf.plot.timing eeruf.plot.scene eeruf.plot.readings
         eeruf.plot.course""".split()
     assert set(expected) <= set(DOCUMENTED)

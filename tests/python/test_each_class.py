@@ -53,6 +53,7 @@ def each() -> dict[str, Any]:
         eeruf.Adaptation([tables.TABLE_I_D], 500),
         eeruf.Blind(3, 20),
         eeruf.EchoFilter(4, 500),
+        eeruf.Needs(sensors=8, module="hc-sr04"),
         eeruf.design(4, 999, 15_000, 36_000, certificate=True),
         tables.TABLE_I_B.verify(999, min_interval_us=15_000),
         tables.TABLE_I_B.verify(999, min_interval_us=15_000).violations[0],

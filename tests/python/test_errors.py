@@ -28,6 +28,7 @@ ANYTHING = st.one_of(
 RING = Path(__file__).parents[2] / "rings/paper-12.toml"
 # For what a type checker would not let through.
 ANY: Any = eeruf
+NEEDS = eeruf.Needs(sensors=8, module="hc-sr04", layout="ring")
 WALL = sim.Scene([[0, 0, 1, 0]])
 ROOM = sim.Scene([[5, 2, -5, 2]], robots=[sim.Robot((0, 0, 1.57), 8, 0.26, 0.3)])
 FIRINGS = eeruf.logs.Firings.of(sensor=[0], fired_us=[0], period=[0], phase=[0], t_echo_us=[7000.0])
@@ -67,7 +68,17 @@ BAD: list[tuple[Callable[[], Any], type[Exception], str]] = [
     (lambda: ANY.experiments.set_one(1, methods=["loud"]), eeruf.ArgumentError, "no method `loud`"),
     (lambda: eeruf.experiments.set_one(1, methods=[]), eeruf.ExperimentError, "no methods"),
     # The same for what is not a number at all, and for everything that came later.
-    (lambda: ANY.design("4", 1, 1, 1), eeruf.ArgumentError, "sensors = '4'; expected a whole number from 1 to 64"),
+    (lambda: ANY.design(b"4", 1, 1, 1), eeruf.ArgumentError, "sensors = b'4'; expected a whole number from 1 to 64"),
+    (lambda: eeruf.design("none.toml"), eeruf.RingError, "none.toml: No such file .*; expected a file that exists"),
+    (lambda: eeruf.design(4), eeruf.ArgumentError, "t_delta_us = None; expected t_delta_us, min_interval_us and window"),
+    (lambda: eeruf.design(4, 1, 1), eeruf.ArgumentError, "window_us = None; expected t_delta_us, min_interval_us and"),
+    (lambda: eeruf.design(NEEDS, 500), eeruf.ArgumentError, "t_delta_us = 500; expected none beside a Needs"),
+    (lambda: tables.TABLE_I_D.verify(NEEDS), eeruf.ArgumentError, "expected needs of 12 sensors, as the schedule has"),
+    (lambda: eeruf.Ring.flow(NEEDS, window_us=9_000), eeruf.ArgumentError, "window_us = 9000; expected none beside a"),
+    (lambda: eeruf.Ring.flow(NEEDS, reach_us=9_000), eeruf.ArgumentError, "reach_us = 9000; expected none beside a Needs"),
+    (lambda: eeruf.Needs(sensors=8), eeruf.ArgumentError, "module: missing; expected `module = \"hc-sr04\"`"),
+    (lambda: eeruf.Needs(sensor=8), eeruf.ArgumentError, "sensor"),
+    (lambda: eeruf.Needs.from_toml("sensors = 8\nmodule = 4"), eeruf.RingError, "line 2"),
     (lambda: ANY.design(4.0, 1, 1, 1), eeruf.ArgumentError, "sensors = 4.0"),
     (lambda: ANY.design(True, 1, 1, 1), eeruf.ArgumentError, "sensors = True"),
     (lambda: ANY.design(4, math.nan, 1, 1), eeruf.ArgumentError, "t_delta_us = nan"),
@@ -153,11 +164,6 @@ BAD: list[tuple[Callable[[], Any], type[Exception], str]] = [
         'explained_by = 64; expected 0 to 63, "history" or None',
     ),
     (lambda: ANY.Reading(0, "loud"), eeruf.ArgumentError, "kind = 'loud'; expected \"first\" or"),
-    (
-        lambda: ANY.Report(1, 1, 1, 1, [3]),
-        eeruf.ArgumentError,
-        "violations = 3; expected a sequence of eeruf.Violation",
-    ),
     (lambda: sim.Robot((0, 0), 8, 0.2, 0.3), eeruf.ArgumentError, r"pose = \(0, 0\); expected \(x, y, heading\)"),  # type: ignore[arg-type]
     (lambda: sim.Robot((0, math.nan, 0), 8, 0.2, 0.3), eeruf.ArgumentError, r"pose\[1\] = nan"),
     (lambda: sim.Robot((0, 0, 0), 65, 0.2, 0.3), eeruf.ArgumentError, "sensors = 65"),
@@ -267,14 +273,14 @@ ARRAY = st.one_of(
 def test_the_core_never_panics_whatever_it_is_given(arguments: list[Any], layout: Any) -> None:
     refuse(
         lambda: ANY.design(*arguments, layout=layout, budget=100),
-        lambda: ANY.design(4, 999, 15_000, 36_000, *arguments[:2], layout, *arguments[2:]),
+        lambda: ANY.design(4, 999, 15_000, 36_000, tick_us=arguments[0], layout=layout, stale_echo=arguments[1]),
         lambda: ANY.Schedule(*arguments),
         lambda: ANY.Schedule.from_firing(*arguments[:3]),
         lambda: ANY.Schedule.from_toml(arguments[0]),
         lambda: ANY.Schedule.from_json(arguments[0]),
-        lambda: ANY.tables.TABLE_I_D.verify(*arguments[:3], layout, *arguments[2:], arguments[0]),
-        lambda: tables.TABLE_I_D.to_rust(arguments[0], arguments[1], arguments[2], layout),
-        lambda: tables.TABLE_I_D.to_c(arguments[0], arguments[1], arguments[2], layout),
+        lambda: ANY.tables.TABLE_I_D.verify(*arguments[:2], layout=layout, window_us=arguments[2], together=arguments[3]),
+        lambda: ANY.tables.TABLE_I_D.to_rust(*arguments[:2], neighbours=arguments[2], layout=layout),
+        lambda: ANY.tables.TABLE_I_D.to_c(*arguments[:2], neighbours=arguments[2], layout=layout),
         lambda: tables.TABLE_I_D.scaled(*arguments[:2]),
         lambda: ANY.WaitSearch(4, *arguments[:3], arguments[3], t_delta_us=layout).first(),
         lambda: ANY.WaitSearch(arguments[0], 100, 10, 1, arguments[1], t_delta_us=arguments[2], layout=layout).count(
@@ -342,6 +348,12 @@ def test_experiments_and_figures_never_panic(array: Any, arguments: list[Any]) -
         lambda: ANY.plot.course(DRIVING, method=one, course=two, ax=AX),
         lambda: ANY.plot.course(array, ax=AX),
     )
+
+
+@pytest.mark.parametrize("call", [ANY.design, ANY.Ring.flow, ANY.tables.TABLE_I_D.verify, ANY.tables.TABLE_I_D.to_c])
+def test_an_unknown_keyword_is_a_type_error(call: Any) -> None:
+    with pytest.raises(TypeError, match=r"\(\) got an unexpected keyword argument 'layouts'"):
+        call(4, layouts="ring")
 
 
 def refuse(*calls: Callable[[], Any]) -> None:

@@ -85,25 +85,12 @@ def test_a_design_is_the_programs(ring: str, atlas: bool) -> None:
     assert printed.pop("certified_us") <= printed["bound_us"]
     assert printed["from_atlas"] is atlas
     assert (found.nodes == 0) is atlas
-    for name in ("spare_us", "spare_proven"):
-        printed[name] = tuple(printed[name])
     assert Schedule.from_firing(**printed.pop("schedule")) == found.schedule
     assert {name: getattr(found, name) for name in printed} == printed
-    names = {"value_us", "bound_us", "proven", "nodes", "reason", "from_atlas", "spare_us", "spare_proven"}
+    names = {"value_us", "bound_us", "proven", "nodes", "reason", "from_atlas"}
     assert names == set(printed)
     # The atlas answers by default, as there.
     assert eeruf.design(**needs, **arguments).from_atlas
-
-
-def test_what_an_uneven_ring_has_to_spare_is_the_programs(tmp_path: Path) -> None:
-    file = tmp_path / "ring.toml"
-    needs = "t_delta_us = [999, 999, 1500, 1500]\nwindow_us = [36000, 36000, 12000, 12000]\n"
-    file.write_text(f"sensors = 4\nmin_interval_us = 15000\n{needs}shared_lines = [[0, 2]]\n")
-    printed = program("design", "--period-only", str(file))
-    found = eeruf.design(4, [999, 999, 1500, 1500], 15_000, [36_000, 36_000, 12_000, 12_000], shared_lines=[(0, 2)])
-    assert (tuple(printed["spare_us"]), tuple(printed["spare_proven"])) == (found.spare_us, found.spare_proven)
-    assert found.spare_us is not None and max(found.spare_us) > 0
-    assert program("design", "--period-only", "rings/paper-12.toml")["spare_us"] == [0, 0, 0]
 
 
 def test_the_best_table_of_waits_is_the_programs() -> None:

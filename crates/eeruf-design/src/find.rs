@@ -125,8 +125,6 @@ impl RingDesign {
             reason: Some(self.reason.clone()),
             from_atlas: Some(self.from_atlas),
             certified_us: self.certified().map(Micros::as_micros),
-            spare_us: self.to_spare.map(|spare| spare.in_us()),
-            spare_proven: self.to_spare.map(|spare| spare.proven),
             ..FoundJson::new(&self.found, seconds)
         }
     }

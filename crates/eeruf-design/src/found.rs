@@ -32,13 +32,6 @@ pub struct FoundJson {
     /// No period is shorter than this by a short certificate; only `design` says it, of a period that is proven.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub certified_us: Option<u32>,
-    /// Slack of the schedule beyond every `t_delta`, then every interval and turn on a shared line, then every refire
-    /// time; only where the period is proven.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub spare_us: Option<[u32; 3]>,
-    /// True if no schedule of this period has more, of each.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub spare_proven: Option<[bool; 3]>,
 }
 
 impl FoundJson {

@@ -91,14 +91,6 @@ pub struct ToSpare {
     pub nodes: u64,
 }
 
-impl ToSpare {
-    /// The three in microseconds, as JSON and Python have them.
-    #[must_use]
-    pub fn in_us(&self) -> [u32; 3] {
-        [self.t_delta, self.interval, self.refire].map(Micros::as_micros)
-    }
-}
-
 impl PeriodProblem<'_> {
     /// The shortest period, proven unless `budget` nodes are spent first; then the shortest found.
     ///

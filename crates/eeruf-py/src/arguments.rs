@@ -99,15 +99,6 @@ pub(crate) fn choice<T: Copy>(name: &str, value: Option<&Bound<'_, PyAny>>, of: 
     })
 }
 
-/// A value of a type that Python's values turn into, or none.
-pub(crate) fn of_type<'a, 'py, T: FromPyObject<'a, 'py>>(
-    name: &str,
-    value: Option<&'a Bound<'py, PyAny>>,
-    expected: &str,
-) -> PyResult<Option<T>> {
-    value.map(|value| value.extract().map_err(|_| wrong(name, shown(value), expected))).transpose()
-}
-
 /// An instance of one of our classes.
 pub(crate) fn instance<'a, 'py, T: pyo3::PyTypeInfo>(
     name: &str,

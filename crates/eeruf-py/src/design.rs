@@ -3,17 +3,16 @@
 use std::ffi::CString;
 use std::time::{Duration, Instant};
 
-use eeruf_core::search::{self as search, Progress};
-use eeruf_core::{MAX_SENSORS, Micros, Requirements};
-use eeruf_design::{OwnedUneven, PeriodProblem, Search, atlas::ATLAS, certificate, shortest};
-use pyo3::{prelude::*, sync::PyOnceLock};
+use eeruf_core::search::Progress;
+use eeruf_design::{Search, atlas::ATLAS};
+use pyo3::{prelude::*, sync::PyOnceLock, types::PyDict};
 
 use crate::{
-    arguments::{flag, micros, number, whole_or},
+    arguments::{flag, number, whole_or},
     errors::{ArgumentError, CertificateError, Raise},
     found::Found,
     program::examples,
-    requirements::{self, UnevenArguments, each},
+    requirements::{ALIKE, Asked, UNEVEN},
     watch::{Watch, control_flow, in_background},
 };
 
@@ -33,7 +32,7 @@ const FEW_SENSORS: usize = 12;
 /// Ctrl-C ends it.
 ///
 /// Args:
-///     sensors: how many, 1 to 64.
+///     sensors: how many, 1 to 64; or a :class:`Needs`, or the path of a ring file, in place of all needs.
 ///     t_delta_us: ``T_delta``: consecutive readings that differ by no more are near-identical (Eq. 11). One for all
 ///         sensors or a sequence of one for each; two sensors need the separation of the larger.
 ///     min_interval_us: the least time between the firings of two neighbours (Sec. 3.1 c).
@@ -78,91 +77,66 @@ const FEW_SENSORS: usize = 12;
 ///     (59000, True)
 #[pyfunction]
 #[pyo3(signature = (
-    sensors, t_delta_us, min_interval_us, window_us, tick_us=None, neighbours=None, layout=None, stale_echo=None,
-    budget=None, progress=None, certificate=None, time_limit_s=None, refire_us=None, intervals_us=None,
-    shared_lines=None, together=None, atlas=None
+    sensors, t_delta_us=None, min_interval_us=None, window_us=None, *, budget=None, progress=None, certificate=None,
+    time_limit_s=None, atlas=None, **needs
 ))]
 #[pyo3(
-    text_signature = "(sensors, t_delta_us, min_interval_us, window_us, tick_us=1000, neighbours=4, layout=\"line\", \
-        stale_echo=False, budget=None, progress=None, certificate=False, time_limit_s=None, refire_us=None, \
-        intervals_us=None, shared_lines=None, together=None, atlas=True)"
+    text_signature = "(sensors, t_delta_us=None, min_interval_us=None, window_us=None, *, tick_us=1000, neighbours=4, \
+        layout=\"line\", stale_echo=False, budget=None, progress=None, certificate=False, time_limit_s=None, \
+        refire_us=None, intervals_us=None, shared_lines=None, together=None, atlas=True)"
 )]
 #[expect(clippy::too_many_arguments, reason = "keyword arguments")]
 pub(crate) fn design<'py>(
     py: Python<'py>,
-    sensors: &Bound<'_, PyAny>,
-    t_delta_us: &Bound<'_, PyAny>,
-    min_interval_us: &Bound<'_, PyAny>,
-    window_us: &Bound<'_, PyAny>,
-    tick_us: Option<&Bound<'_, PyAny>>,
-    neighbours: Option<&Bound<'_, PyAny>>,
-    layout: Option<&Bound<'_, PyAny>>,
-    stale_echo: Option<&Bound<'_, PyAny>>,
+    sensors: &Bound<'py, PyAny>,
+    t_delta_us: Option<&Bound<'py, PyAny>>,
+    min_interval_us: Option<&Bound<'py, PyAny>>,
+    window_us: Option<&Bound<'py, PyAny>>,
     budget: Option<&Bound<'_, PyAny>>,
     progress: Option<&Bound<'_, PyAny>>,
     certificate: Option<&Bound<'_, PyAny>>,
     time_limit_s: Option<&Bound<'_, PyAny>>,
-    refire_us: Option<&Bound<'_, PyAny>>,
-    intervals_us: Option<&Bound<'_, PyAny>>,
-    shared_lines: Option<&Bound<'_, PyAny>>,
-    together: Option<&Bound<'_, PyAny>>,
     atlas: Option<&Bound<'_, PyAny>>,
+    needs: Option<&Bound<'py, PyDict>>,
 ) -> PyResult<Bound<'py, PyAny>> {
+    let spec = asked(py, "design", [t_delta_us, min_interval_us, window_us], needs)?.ring(sensors)?;
     let atlas = if flag("atlas", atlas, true)? { ATLAS } else { "" };
-    let sensors = requirements::sensors(sensors)?;
-    let layout = requirements::layout(layout, requirements::neighbours(neighbours)?, sensors)?;
-    let (t_delta, t_deltas) = each("t_delta_us", t_delta_us, 0)?;
-    let min_interval = micros("min_interval_us", min_interval_us)?;
-    let (window, windows) = each("window_us", window_us, 1)?;
-    let uneven = UnevenArguments { refire_us, intervals_us, shared_lines, together };
-    let uneven = uneven.owned(sensors, t_deltas, windows)?;
-    let tick = Micros::new(whole_or("tick_us", tick_us, 1000, 1..=u32::MAX)?);
-    let stale_echo = flag("stale_echo", stale_echo, false)?;
     let budget = whole_or("budget", budget, DESIGN_BUDGET, 1..=u64::MAX)?;
     let certificate = flag("certificate", certificate, false)?;
     let limit = time_limit_s.map(|seconds| number("time_limit_s", seconds, 1e-3..=1e9)).transpose()?;
     let limit = limit.map_or(Duration::MAX, Duration::from_secs_f64);
-    let began = Instant::now();
+    let (began, sensors) = (Instant::now(), spec.sensors);
     let work = move |go_on: &mut dyn FnMut(&dyn Fn() -> String) -> bool| {
-        let (layout, uneven) = (layout.layout(), uneven.as_ref().map(OwnedUneven::uneven));
-        let alike = Requirements::new(t_delta);
-        let requirements = Requirements { min_interval, layout, window, stale_echo, uneven, ..alike };
-        OwnedUneven::can_fire_together(&requirements, sensors).map_err(ArgumentError::new_err)?;
-        let needs = PeriodProblem { sensors, requirements, tick };
         let mut control = |at: &Progress| {
             let (bound, best) = (at.bound.unwrap_or(0), at.best.unwrap_or(0));
             let text = || format!("{} nodes, period {bound} to {best} ticks", at.nodes);
             control_flow(began.elapsed() < limit && go_on(&text))
         };
-        let shortest =
-            shortest(&needs, &Search { budget, what_if: false, atlas }, &mut control).map_err(Raise::raise)?;
-        let found = search::Found { schedule: Some(shortest.schedule), ..shortest.found };
+        let shortest = spec.shortest(&Search { budget, what_if: false, atlas }, &mut control).map_err(Raise::raise)?;
         let still = |nodes| began.elapsed() < limit && go_on(&|| format!("certificate: {nodes} nodes"));
-        let proof = certificate.then(|| certify(&needs, &found, still)).transpose()?;
-        let found = Found::of(&found, began, Some(shortest.reason)).with_spare(shortest.to_spare);
-        Ok((found.out_of_atlas(shortest.from_atlas), proof))
+        let proof = certificate.then(|| shortest.prove(CERTIFICATE_BUDGET, still)).transpose();
+        let proof = proof.map_err(|error| CertificateError::new_err(error.to_string()))?;
+        Ok(Found::of_design(&shortest, began, proof))
     };
-    let (found, certificate) = if sensors <= FEW_SENSORS {
+    let found: Found = if sensors <= FEW_SENSORS {
         let mut watch = Watch::new(progress)?;
         let designed = py.detach(|| work(&mut |text| watch.go_on(None, text)));
         watch.outcome(designed)?
     } else {
         in_background(py, progress, move |background| work(&mut |text| background.go_on(None, text)))?
     };
-    Ok(Bound::new(py, found.with_certificate(certificate))?.into_any())
+    found.into_python(py)
 }
 
-/// The certificate of what was found.
-fn certify(
-    needs: &PeriodProblem<'_>,
-    found: &search::Found<MAX_SENSORS>,
-    go_on: impl FnMut(usize) -> bool,
-) -> PyResult<String> {
-    let Some(schedule) = &found.schedule else {
-        return Err(CertificateError::new_err("no schedule was found; expected one to certify"));
-    };
-    certificate::certify(needs, schedule, found.bound, CERTIFICATE_BUDGET, go_on)
-        .map_err(|error| CertificateError::new_err(error.to_string()))
+/// What a search is asked, by the arguments that all of them have.
+pub(crate) fn asked<'py>(
+    py: Python<'py>,
+    call: &str,
+    [t_delta_us, min_interval_us, window_us]: [Option<&Bound<'py, PyAny>>; 3],
+    needs: Option<&Bound<'py, PyDict>>,
+) -> PyResult<Asked<'py>> {
+    let placed = [("t_delta_us", t_delta_us), ("min_interval_us", min_interval_us), ("window_us", window_us)];
+    Asked::of(py, call, placed, needs, &[&["tick_us"], &ALIKE, &UNEVEN])
 }
 
 /// Check a certificate: that its schedule keeps the requirements in it, and that no period is below its bound.

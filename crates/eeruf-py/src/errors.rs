@@ -132,7 +132,7 @@ Example:
     >>> eeruf.WaitSearch(4, 40_000, 8_000, tick_us=3_000, t_delta_us=999)
     Traceback (most recent call last):
     eeruf.SearchError: a lag of 10 ms; expected a whole number of ticks of 3 ms
-" from eeruf_core::search::SearchError;
+" from eeruf_core::search::SearchError, eeruf_design::NoDesign;
     CertificateError "A certificate that proves nothing, or not that a period is the shortest; the message says why.
 
 Example:

@@ -42,7 +42,7 @@ fn value_of(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Value> {
 pub(crate) fn table_of(name: &str, dict: &Bound<'_, PyDict>) -> PyResult<Table> {
     let pair = |(key, value): (Bound<'_, PyAny>, Bound<'_, PyAny>)| {
         let key = text(name, &key, "keys that are texts")?;
-        let value = value_of(&format!("{name}[\"{key}\"]"), &value)?;
+        let value = value_of(&if name.is_empty() { key.clone() } else { format!("{name}[\"{key}\"]") }, &value)?;
         Ok((key, value))
     };
     dict.iter().map(pair).collect()

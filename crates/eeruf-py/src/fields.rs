@@ -1,9 +1,18 @@
 //! Objects by their fields: as dicts of plain values for JSON and data frames, as texts, and as pickles hold them.
 
 use pyo3::{
+    call::PyCallArgs,
     prelude::*,
+    sync::PyOnceLock,
     types::{PyDict, PyList, PyTuple},
 };
+
+/// An answer: an object of a class of `eeruf._records`, which is made of its fields in their order.
+pub(crate) fn record<'py>(py: Python<'py>, class: &str, fields: impl PyCallArgs<'py>) -> PyResult<Bound<'py, PyAny>> {
+    static RECORDS: PyOnceLock<Py<PyModule>> = PyOnceLock::new();
+    let records = RECORDS.get_or_try_init(py, || py.import("eeruf._records").map(Bound::unbind))?;
+    records.bind(py).getattr(class)?.call1(fields)
+}
 
 /// The fields of a result by their names; results in it become dicts too, and tuples lists.
 pub(crate) fn to_dict<'py>(result: &Bound<'py, PyAny>, fields: &[&str]) -> PyResult<Bound<'py, PyDict>> {

@@ -61,13 +61,18 @@ fn named<F: Copy>(fields: &[(&'static str, F)], name: &str) -> Option<F> {
 impl FlowSettings {
     /// The settings that an argument gives.
     pub(crate) fn of(value: Option<&Bound<'_, PyAny>>) -> PyResult<Self> {
+        Self::over(value, BeliefSettings::default())
+    }
+
+    /// The settings that an argument gives, over a belief that a ring file says.
+    pub(crate) fn over(value: Option<&Bound<'_, PyAny>>, file: BeliefSettings) -> PyResult<Self> {
         let mut settings = Self::default();
         let Some(value) = value else { return Ok(settings) };
         let expected = "a dict such as {\"rest_us\": 60_000}";
         for (key, value) in value.cast::<PyDict>().map_err(|_| wrong("settings", shown(value), expected))? {
             let key = text("key of settings", &key, "the name of a setting of flow")?;
             let time = || whole(&key, &value, 0..=u32::MAX).map(Micros::new);
-            let belief = settings.belief.unwrap_or_default();
+            let belief = settings.belief.unwrap_or(file);
             if let Some(field) = named(&PLANNED, &key) {
                 *field(&mut settings) = Some(time()?);
             } else if key == SEED {
@@ -103,6 +108,26 @@ impl FlowSettings {
         BeliefSettings { alone: self.alone.unwrap_or(false), ..self.belief.unwrap_or_default() }
     }
 
+    /// Belief of a ring whose file says some of it.
+    pub(crate) fn belief_over(&self, file: BeliefSettings) -> BeliefSettings {
+        BeliefSettings { alone: self.alone.unwrap_or(file.alone), ..self.belief.unwrap_or(file) }
+    }
+
+    /// The plan of a ring whose file says the rest.
+    pub(crate) fn turns_over(&self, file: TurnSettings) -> TurnSettings {
+        let mut turns = TurnSettings { seed: self.drawn_seed(), ..file };
+        turns.least = self.least.unwrap_or(turns.least);
+        turns.most = self.most.unwrap_or(turns.most);
+        turns.rest = self.rest.unwrap_or(turns.rest);
+        turns.dice = self.dice.unwrap_or(turns.dice);
+        turns
+    }
+
+    /// The seed of its dice. Robots must not throw alike that are programmed alike.
+    pub(crate) fn drawn_seed(&self) -> u32 {
+        self.seed.unwrap_or_else(|| RandomState::new().hash_one(0) as u32 | 1)
+    }
+
     /// Returns the settings for a method, whose scene says the rest.
     pub(crate) fn options(&self) -> PyResult<FlowOptions> {
         let &Self { least, most, rest, dice, seed, alone, belief } = self;
@@ -123,12 +148,10 @@ impl FlowSettings {
         if let (Some(reach), Some(_)) = (reach, self.most) {
             return Err(wrong("reach_us", reach.as_micros(), "none beside the setting most_us, which says the same"));
         }
-        // Robots must not throw alike that are programmed alike.
-        let seed = self.seed.unwrap_or_else(|| RandomState::new().hash_one(0) as u32 | 1);
         // Long enough for the tail of the sound.
         let tail = Micros::new(window.as_micros() / 9 * 2);
         let rest = self.rest.unwrap_or_else(|| REST.max(window.saturating_add(tail)));
-        let mut turns = TurnSettings::for_module(seed, window, rest, blanking);
+        let mut turns = TurnSettings::for_module(self.drawn_seed(), window, rest, blanking);
         turns.most = self.most.or(reach).unwrap_or(turns.most);
         turns.least = self.least.unwrap_or(Micros::new(turns.most.as_micros() / 11 * 2));
         turns.dice = self.dice.unwrap_or(turns.dice);

@@ -36,6 +36,7 @@ mod memory;
 mod methods;
 mod module;
 mod moments;
+mod needs;
 mod own;
 mod paths;
 mod pose;
@@ -50,7 +51,6 @@ mod ring_arguments;
 mod ring_events;
 mod ring_methods;
 mod robot;
-mod robot_state;
 mod scene;
 mod schedule;
 mod search;
@@ -78,32 +78,30 @@ mod _eeruf {
         },
         experiments::{alcove, course, difference, figures, recommend, room, set_one, set_three, set_two, speed_sweep},
         filter::EchoFilter,
-        found::Found,
         himm::Himm,
         log_blocks::{LogBlocks, judge},
         logs::{LogError, diagnose, read_firings, survey},
         maps::read_map,
         methods::Method,
+        needs::Needs,
         own::FiredReading,
         paths::Paths,
         program::{example, run_program},
         questions::{curve, fit},
         reading_blocks::{ReadingBlocks, simulate_blocks},
         readings::Readings,
-        report::{Report, Violation},
         ring::Ring,
         ring_events::{Fire, PeriodEnded, Reading},
         robot::Robot,
-        robot_state::RobotState,
         scene::Scene,
         schedule::Schedule,
         search::{WaitSearch, WaitTables},
-        sensor_watch::{Blind, SensorWatch, State},
+        sensor_watch::SensorWatch,
         simulate::simulate,
         simulation::Simulation,
         surroundings::{Material, Noise},
         unpickle::readings_from_columns,
-        vfh::{Steering, Vfh},
+        vfh::Vfh,
         watch::{Switch, until_stopped},
     };
     use pyo3::prelude::*;

@@ -2,75 +2,24 @@
 
 use std::time::Instant;
 
+use eeruf_core::Micros;
 use eeruf_core::search::{Found as FoundSchedule, Progress};
-use eeruf_core::{Micros, SpeedOfSound};
-use eeruf_design::{CURVE_BUDGET, CurvePoint, Need, OwnedUneven, Places, RingSpec, Search};
-use pyo3::prelude::*;
+use eeruf_design::{CURVE_BUDGET, CurvePoint, Need, Search};
+use pyo3::{prelude::*, types::PyDict};
 
 use crate::{
-    arguments::{choice, flag, micros, whole, whole_or},
-    errors::{ArgumentError, Raise},
+    arguments::{choice, whole, whole_or},
+    design::asked,
+    errors::Raise,
     found::Found,
-    requirements::{self, UnevenArguments, each},
     watch::{Watch, control_flow},
 };
-
-/// The arguments that both questions share.
-struct Arguments<'a, 'py> {
-    sensors: &'a Bound<'py, PyAny>,
-    t_delta_us: &'a Bound<'py, PyAny>,
-    min_interval_us: &'a Bound<'py, PyAny>,
-    window_us: &'a Bound<'py, PyAny>,
-    tick_us: Option<&'a Bound<'py, PyAny>>,
-    neighbours: Option<&'a Bound<'py, PyAny>>,
-    layout: Option<&'a Bound<'py, PyAny>>,
-    stale_echo: Option<&'a Bound<'py, PyAny>>,
-    uneven: UnevenArguments<'a, 'py>,
-}
-
-impl Arguments<'_, '_> {
-    fn spec(&self) -> PyResult<RingSpec> {
-        let sensors = requirements::sensors(self.sensors)?;
-        let neighbours = requirements::neighbours(self.neighbours)?;
-        let layout = requirements::layout(self.layout, neighbours, sensors)?;
-        let (t_delta, t_deltas) = each("t_delta_us", self.t_delta_us, 0)?;
-        let (window, windows) = each("window_us", self.window_us, 1)?;
-        let spec = RingSpec {
-            sensors,
-            tick: Micros::new(whole_or("tick_us", self.tick_us, 1000, 1..=u32::MAX)?),
-            layout,
-            neighbours,
-            not_neighbours: vec![],
-            min_interval: micros("min_interval_us", self.min_interval_us)?,
-            window,
-            listening: window,
-            retrigger: Micros::ZERO,
-            stale_echo: flag("stale_echo", self.stale_echo, false)?,
-            stale_echo_by_module: false,
-            c: SpeedOfSound::at_celsius_tenths(200),
-            t_delta,
-            speed_mm_s: None,
-            handling: Micros::ZERO,
-            path_change: None,
-            audible: None,
-            others: true,
-            meets_others: false,
-            turn_deg_s: None,
-            modules: vec![],
-            sees_by_module: false,
-            places: Places::default(),
-            uneven: self.uneven.owned(sensors, t_deltas, windows)?,
-        };
-        OwnedUneven::can_fire_together(&spec.problem().requirements, sensors).map_err(ArgumentError::new_err)?;
-        Ok(spec)
-    }
-}
 
 /// Find what fits into a period: whether the needs do, and the largest ``T_delta``. Ctrl-C ends it.
 ///
 /// Args:
 ///     period_us: the period, in whole ticks.
-///     sensors: how many, 1 to 64.
+///     sensors: how many, 1 to 64; or a :class:`Needs`, or the path of a ring file.
 ///     t_delta_us: as in :func:`design`, as are the arguments below but ``budget``.
 ///     min_interval_us: the least time between the firings of two neighbours.
 ///     window_us: how long a sensor listens; one for all, or a sequence.
@@ -100,36 +49,25 @@ impl Arguments<'_, '_> {
 ///     (True, 2999, True)
 #[pyfunction]
 #[pyo3(signature = (
-    period_us, sensors, t_delta_us, min_interval_us, window_us, tick_us=None, neighbours=None, layout=None,
-    stale_echo=None, budget=None, refire_us=None, intervals_us=None, shared_lines=None, together=None
+    period_us, sensors, t_delta_us=None, min_interval_us=None, window_us=None, *, budget=None, **needs
 ))]
-#[pyo3(text_signature = "(period_us, sensors, t_delta_us, min_interval_us, window_us, tick_us=1000, neighbours=4, \
-        layout=\"line\", stale_echo=False, budget=None, refire_us=None, intervals_us=None, shared_lines=None, \
-        together=None)")]
+#[pyo3(text_signature = "(period_us, sensors, t_delta_us=None, min_interval_us=None, window_us=None, *, \
+        tick_us=1000, neighbours=4, layout=\"line\", stale_echo=False, budget=None, refire_us=None, \
+        intervals_us=None, shared_lines=None, together=None)")]
 #[expect(clippy::too_many_arguments, reason = "keyword arguments")]
-pub(crate) fn fit(
-    py: Python<'_>,
+pub(crate) fn fit<'py>(
+    py: Python<'py>,
     period_us: &Bound<'_, PyAny>,
-    sensors: &Bound<'_, PyAny>,
-    t_delta_us: &Bound<'_, PyAny>,
-    min_interval_us: &Bound<'_, PyAny>,
-    window_us: &Bound<'_, PyAny>,
-    tick_us: Option<&Bound<'_, PyAny>>,
-    neighbours: Option<&Bound<'_, PyAny>>,
-    layout: Option<&Bound<'_, PyAny>>,
-    stale_echo: Option<&Bound<'_, PyAny>>,
+    sensors: &Bound<'py, PyAny>,
+    t_delta_us: Option<&Bound<'py, PyAny>>,
+    min_interval_us: Option<&Bound<'py, PyAny>>,
+    window_us: Option<&Bound<'py, PyAny>>,
     budget: Option<&Bound<'_, PyAny>>,
-    refire_us: Option<&Bound<'_, PyAny>>,
-    intervals_us: Option<&Bound<'_, PyAny>>,
-    shared_lines: Option<&Bound<'_, PyAny>>,
-    together: Option<&Bound<'_, PyAny>>,
-) -> PyResult<(Option<bool>, Found)> {
+    needs: Option<&Bound<'py, PyDict>>,
+) -> PyResult<(Option<bool>, Bound<'py, PyAny>)> {
     let period = Micros::new(whole("period_us", period_us, 1..=u32::MAX)?);
     let budget = whole_or("budget", budget, 50_000_000, 1..=u64::MAX)?;
-    let uneven = UnevenArguments { refire_us, intervals_us, shared_lines, together };
-    let arguments =
-        Arguments { sensors, t_delta_us, min_interval_us, window_us, tick_us, neighbours, layout, stale_echo, uneven };
-    let spec = arguments.spec()?;
+    let spec = asked(py, "fit", [t_delta_us, min_interval_us, window_us], needs)?.ring(sensors)?;
     let began = Instant::now();
     let mut watch = Watch::new(None)?;
     let fit = py.detach(|| {
@@ -144,14 +82,14 @@ pub(crate) fn fit(
         proven: fit.proven,
         nodes: fit.nodes,
     };
-    Ok((fit.fits, Found::of(&found, began, None)))
+    Ok((fit.fits, Found::of(&found, began, None).into_python(py)?))
 }
 
 /// Find the shortest period for 20 values of one need, from a tenth of the one given to twice as much. Ctrl-C ends it.
 ///
 /// Args:
 ///     need: ``"t_delta"``, ``"range"`` (the window) or ``"interval"``.
-///     sensors: how many, 1 to 64.
+///     sensors: how many, 1 to 64; or a :class:`Needs`, or the path of a ring file.
 ///     t_delta_us: as in :func:`design`, as are the arguments below but ``budget``. Where sensors or pairs have
 ///         their own needs, all vary by the same factor.
 ///     min_interval_us: the least time between the firings of two neighbours.
@@ -181,38 +119,27 @@ pub(crate) fn fit(
 ///     (20, (15000, 65000, 65000, True))
 #[pyfunction]
 #[pyo3(signature = (
-    need, sensors, t_delta_us, min_interval_us, window_us, tick_us=None, neighbours=None, layout=None, stale_echo=None,
-    budget=None, refire_us=None, intervals_us=None, shared_lines=None, together=None
+    need, sensors, t_delta_us=None, min_interval_us=None, window_us=None, *, budget=None, **needs
 ))]
-#[pyo3(text_signature = "(need, sensors, t_delta_us, min_interval_us, window_us, tick_us=1000, neighbours=4, \
-        layout=\"line\", stale_echo=False, budget=None, refire_us=None, intervals_us=None, shared_lines=None, \
-        together=None)")]
+#[pyo3(text_signature = "(need, sensors, t_delta_us=None, min_interval_us=None, window_us=None, *, tick_us=1000, \
+        neighbours=4, layout=\"line\", stale_echo=False, budget=None, refire_us=None, intervals_us=None, \
+        shared_lines=None, together=None)")]
 #[expect(clippy::too_many_arguments, reason = "keyword arguments")]
 #[expect(clippy::type_complexity, reason = "a tuple for each point, as Python has it")]
-pub(crate) fn curve(
-    py: Python<'_>,
+pub(crate) fn curve<'py>(
+    py: Python<'py>,
     need: &Bound<'_, PyAny>,
-    sensors: &Bound<'_, PyAny>,
-    t_delta_us: &Bound<'_, PyAny>,
-    min_interval_us: &Bound<'_, PyAny>,
-    window_us: &Bound<'_, PyAny>,
-    tick_us: Option<&Bound<'_, PyAny>>,
-    neighbours: Option<&Bound<'_, PyAny>>,
-    layout: Option<&Bound<'_, PyAny>>,
-    stale_echo: Option<&Bound<'_, PyAny>>,
+    sensors: &Bound<'py, PyAny>,
+    t_delta_us: Option<&Bound<'py, PyAny>>,
+    min_interval_us: Option<&Bound<'py, PyAny>>,
+    window_us: Option<&Bound<'py, PyAny>>,
     budget: Option<&Bound<'_, PyAny>>,
-    refire_us: Option<&Bound<'_, PyAny>>,
-    intervals_us: Option<&Bound<'_, PyAny>>,
-    shared_lines: Option<&Bound<'_, PyAny>>,
-    together: Option<&Bound<'_, PyAny>>,
+    needs: Option<&Bound<'py, PyDict>>,
 ) -> PyResult<Vec<(u32, Option<u32>, Option<u32>, bool)>> {
-    let needs = [("t_delta", Need::TDelta), ("range", Need::Range), ("interval", Need::Interval)];
-    let need = choice("need", Some(need), &needs)?;
+    let named = [("t_delta", Need::TDelta), ("range", Need::Range), ("interval", Need::Interval)];
+    let need = choice("need", Some(need), &named)?;
     let budget = whole_or("budget", budget, CURVE_BUDGET, 1..=u64::MAX)?;
-    let uneven = UnevenArguments { refire_us, intervals_us, shared_lines, together };
-    let arguments =
-        Arguments { sensors, t_delta_us, min_interval_us, window_us, tick_us, neighbours, layout, stale_echo, uneven };
-    let spec = arguments.spec()?;
+    let spec = asked(py, "curve", [t_delta_us, min_interval_us, window_us], needs)?.ring(sensors)?;
     let mut watch = Watch::new(None)?;
     let points = py.detach(|| {
         let mut control = |_: &Progress| control_flow(watch.go_on(None, String::new));

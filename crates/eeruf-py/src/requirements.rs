@@ -1,12 +1,19 @@
-//! Requirements on a schedule, out of keyword arguments: layout, neighbours, times.
+//! Requirements on a schedule: what a caller names one by one, or a `Needs` in their place.
 
-use eeruf_core::{Criterion, MAX_SENSORS, Micros, Requirements};
-use eeruf_design::{LayoutKey, LayoutName, OwnedLayout, OwnedUneven};
+use eeruf_core::{Criterion, MAX_SENSORS, Micros, Requirements, SpeedOfSound};
+use eeruf_design::{LayoutKey, LayoutName, OwnedLayout, OwnedUneven, Places, RingSpec};
 use eeruf_sim::AnySchedule;
-use pyo3::{prelude::*, types::PyList};
+use pyo3::exceptions::PyTypeError;
+use pyo3::{prelude::*, types::PyDict, types::PyList};
 
-use crate::arguments::{choice, flag, items, micros_or, shown, times, whole, whole_or, wrong};
+use crate::arguments::{choice, flag, items, micros, micros_or, shown, times, whole, whole_or, wrong};
 use crate::errors::ArgumentError;
+use crate::needs::Needs;
+
+/// Needs of rings whose sensors are all alike, beside those that most calls name first.
+pub(crate) const ALIKE: [&str; 3] = ["neighbours", "layout", "stale_echo"];
+/// Needs of single sensors and pairs.
+pub(crate) const UNEVEN: [&str; 4] = ["refire_us", "intervals_us", "shared_lines", "together"];
 
 /// A layout by its name, or by its pairs of neighbours; a line where there is none.
 pub(crate) fn layout(value: Option<&Bound<'_, PyAny>>, neighbours: u8, sensors: usize) -> PyResult<OwnedLayout> {
@@ -34,46 +41,6 @@ pub(crate) fn layout(value: Option<&Bound<'_, PyAny>>, neighbours: u8, sensors: 
     value.map_or(Ok(LayoutKey::Unsaid), key)?.owned(neighbours, sensors).map_err(ArgumentError::new_err)
 }
 
-/// The reading of (13a), (13b); exact by default.
-fn criterion(value: Option<&Bound<'_, PyAny>>) -> PyResult<Criterion> {
-    choice("criterion", value, &[("exact", Criterion::Exact), ("paper", Criterion::Paper)])
-}
-
-/// Requirements on a schedule.
-pub(crate) struct OwnedRequirements {
-    t_delta: Micros,
-    min_interval: Micros,
-    layout: OwnedLayout,
-    criterion: Criterion,
-    window: Micros,
-    stale_echo: bool,
-    uneven: Option<OwnedUneven>,
-}
-
-impl OwnedRequirements {
-    /// Returns true if they say what single sensors need.
-    pub(crate) fn is_uneven(&self) -> bool {
-        self.uneven.is_some()
-    }
-
-    /// The largest `t_delta` and window.
-    pub(crate) fn most(&self) -> [Micros; 2] {
-        [self.t_delta, self.window]
-    }
-
-    pub(crate) fn requirements(&self) -> Requirements<'_> {
-        Requirements {
-            criterion: self.criterion,
-            min_interval: self.min_interval,
-            layout: self.layout.layout(),
-            window: self.window,
-            stale_echo: self.stale_echo,
-            uneven: self.uneven.as_ref().map(OwnedUneven::uneven),
-            ..Requirements::new(self.t_delta)
-        }
-    }
-}
-
 /// Number of adjacent sensors that count as neighbours; four by default, as in the paper (Sec. 3.1 c).
 pub(crate) fn neighbours(value: Option<&Bound<'_, PyAny>>) -> PyResult<u8> {
     whole_or("neighbours", value, 4, 1..=MAX_SENSORS as u8)
@@ -84,62 +51,153 @@ pub(crate) fn sensors(value: &Bound<'_, PyAny>) -> PyResult<usize> {
     whole("sensors", value, 1..=MAX_SENSORS as u32).map(|sensors| sensors as usize)
 }
 
-/// The keyword arguments of `verify`, `to_rust` and `to_c`, as Python gives them.
-pub(crate) struct RequirementArguments<'a, 'py> {
-    pub(crate) t_delta_us: Option<&'a Bound<'py, PyAny>>,
-    pub(crate) min_interval_us: Option<&'a Bound<'py, PyAny>>,
-    pub(crate) neighbours: Option<&'a Bound<'py, PyAny>>,
-    pub(crate) layout: Option<&'a Bound<'py, PyAny>>,
-    pub(crate) criterion: Option<&'a Bound<'py, PyAny>>,
-    pub(crate) window_us: Option<&'a Bound<'py, PyAny>>,
-    pub(crate) stale_echo: Option<&'a Bound<'py, PyAny>>,
-    pub(crate) uneven: UnevenArguments<'a, 'py>,
-}
+/// Needs that a call names, by their names.
+pub(crate) struct Asked<'py>(Bound<'py, PyDict>);
 
-impl<'a, 'py> RequirementArguments<'a, 'py> {
-    /// Where all sensors are alike; window and stale echoes last.
-    pub(crate) fn alike(
-        t_delta_us: Option<&'a Bound<'py, PyAny>>,
-        min_interval_us: Option<&'a Bound<'py, PyAny>>,
-        neighbours: Option<&'a Bound<'py, PyAny>>,
-        layout: Option<&'a Bound<'py, PyAny>>,
-        criterion: Option<&'a Bound<'py, PyAny>>,
-        (window_us, stale_echo): (Option<&'a Bound<'py, PyAny>>, Option<&'a Bound<'py, PyAny>>),
-    ) -> Self {
-        let uneven = UnevenArguments::default();
-        Self { t_delta_us, min_interval_us, neighbours, layout, criterion, window_us, stale_echo, uneven }
+impl<'py> Asked<'py> {
+    /// Takes those that have a place of their own in the call, and those of its other keywords that are known.
+    pub(crate) fn of<const N: usize>(
+        py: Python<'py>,
+        call: &str,
+        placed: [(&str, Option<&Bound<'py, PyAny>>); N],
+        others: Option<&Bound<'py, PyDict>>,
+        known: &[&[&str]],
+    ) -> PyResult<Self> {
+        let asked = PyDict::new(py);
+        for (name, value) in placed {
+            value.map_or(Ok(()), |value| asked.set_item(name, value))?;
+        }
+        for (key, value) in others.into_iter().flatten() {
+            if !known.iter().flat_map(|names| *names).any(|name| key.eq(name).unwrap_or(false)) {
+                return Err(PyTypeError::new_err(format!("{call}() got an unexpected keyword argument '{key}'")));
+            }
+            if !value.is_none() {
+                asked.set_item(key, value)?;
+            }
+        }
+        Ok(Self(asked))
     }
-}
 
-/// The keyword arguments that say what differs from sensor to sensor.
-#[derive(Clone, Copy, Default)]
-pub(crate) struct UnevenArguments<'a, 'py> {
-    pub(crate) refire_us: Option<&'a Bound<'py, PyAny>>,
-    pub(crate) intervals_us: Option<&'a Bound<'py, PyAny>>,
-    pub(crate) shared_lines: Option<&'a Bound<'py, PyAny>>,
-    pub(crate) together: Option<&'a Bound<'py, PyAny>>,
-}
+    fn get(&self, name: &str) -> PyResult<Option<Bound<'py, PyAny>>> {
+        self.0.get_item(name)
+    }
 
-impl UnevenArguments<'_, '_> {
-    /// Differences between the sensors, with lists of `t_delta` and window that are empty where all have the same;
-    /// `None` if there are none.
-    pub(crate) fn owned(
+    /// One that must be named.
+    pub(crate) fn must(&self, name: &str) -> PyResult<Bound<'py, PyAny>> {
+        let expected = "t_delta_us, min_interval_us and window_us, or a Needs or a ring file in place of all";
+        self.get(name)?.ok_or_else(|| wrong(name, "None", expected))
+    }
+
+    /// Refuses those that stand beside a `Needs`, which says them.
+    pub(crate) fn none(&self, but: &str) -> PyResult<()> {
+        for (name, value) in &self.0 {
+            if !name.eq(but)? {
+                return Err(wrong(&name.to_string(), shown(&value), "none beside a Needs, which says it"));
+            }
+        }
+        Ok(())
+    }
+
+    /// The ring that a search is asked for: a `Needs`, the path of a ring file, or a number of sensors and these needs.
+    pub(crate) fn ring(&self, sensors: &Bound<'py, PyAny>) -> PyResult<RingSpec> {
+        if let Some(needs) = Needs::given(sensors)? {
+            return self.none("").map(|()| needs.ring().clone());
+        }
+        let (sensors, t_delta) = (self::sensors(sensors)?, each("t_delta_us", &self.must("t_delta_us")?, 0)?);
+        let min_interval = micros("min_interval_us", &self.must("min_interval_us")?)?;
+        let window = each("window_us", &self.must("window_us")?, 1)?;
+        let spec = self.spec(sensors, t_delta, min_interval, window)?;
+        OwnedUneven::can_fire_together(&spec.problem().requirements, sensors).map_err(ArgumentError::new_err)?;
+        Ok(spec)
+    }
+
+    /// The ring that a schedule is checked for; without `t_delta_us` it is the most that the schedule allows.
+    pub(crate) fn ring_of(&self, schedule: &AnySchedule) -> PyResult<RingSpec> {
+        let sensors = schedule.sensors();
+        let t_delta = self.get("t_delta_us")?;
+        if let Some(needs) = t_delta.as_ref().map_or(Ok(None), Needs::given)? {
+            self.none("t_delta_us")?;
+            if needs.ring().sensors != sensors {
+                let expected = format!("needs of {sensors} sensors, as the schedule has");
+                return Err(wrong("t_delta_us", format_args!("needs of {} sensors", needs.ring().sensors), expected));
+            }
+            return Ok(needs.ring().covering(needs.ring().t_delta_needed(schedule)));
+        }
+        let or_zero = |name| self.get(name)?.map_or(Ok((Micros::ZERO, vec![])), |value| each(name, &value, 0));
+        let min_interval = micros_or("min_interval_us", self.get("min_interval_us")?.as_ref(), Micros::ZERO)?;
+        let mut spec = self.spec(sensors, or_zero("t_delta_us")?, min_interval, or_zero("window_us")?)?;
+        if t_delta.is_none() {
+            let requirements = Requirements { criterion: self.criterion()?, ..spec.problem().requirements };
+            spec.t_delta = schedule.verify(&requirements).max_t_delta().unwrap_or(Micros::ZERO);
+        }
+        Ok(spec)
+    }
+
+    /// The reading of (13a), (13b); exact by default.
+    fn criterion(&self) -> PyResult<Criterion> {
+        let criterion = self.get("criterion")?;
+        choice("criterion", criterion.as_ref(), &[("exact", Criterion::Exact), ("paper", Criterion::Paper)])
+    }
+
+    /// Answers by the requirements that these are on a schedule.
+    pub(crate) fn check<T>(&self, schedule: &AnySchedule, answer: impl FnOnce(&Requirements<'_>) -> T) -> PyResult<T> {
+        let spec = self.ring_of(schedule)?;
+        Ok(answer(&Requirements { criterion: self.criterion()?, ..spec.problem().requirements }))
+    }
+
+    /// The ring of these times, each with those of single sensors, if they have their own.
+    pub(crate) fn spec(
         &self,
         sensors: usize,
-        t_delta: Vec<Micros>,
-        window: Vec<Micros>,
-    ) -> PyResult<Option<OwnedUneven>> {
-        let all = [self.refire_us, self.intervals_us, self.shared_lines, self.together];
-        if t_delta.is_empty() && window.is_empty() && all.iter().all(Option::is_none) {
+        (t_delta, t_deltas): (Micros, Vec<Micros>),
+        min_interval: Micros,
+        (window, windows): (Micros, Vec<Micros>),
+    ) -> PyResult<RingSpec> {
+        let neighbours = neighbours(self.get("neighbours")?.as_ref())?;
+        Ok(RingSpec {
+            sensors,
+            tick: Micros::new(whole_or("tick_us", self.get("tick_us")?.as_ref(), 1000, 1..=u32::MAX)?),
+            layout: layout(self.get("layout")?.as_ref(), neighbours, sensors)?,
+            neighbours,
+            not_neighbours: vec![],
+            min_interval,
+            window,
+            listening: window,
+            retrigger: Micros::ZERO,
+            stale_echo: flag("stale_echo", self.get("stale_echo")?.as_ref(), false)?,
+            stale_echo_by_module: false,
+            c: SpeedOfSound::at_celsius_tenths(200),
+            t_delta,
+            speed_mm_s: None,
+            handling: Micros::ZERO,
+            path_change: None,
+            audible: None,
+            others: true,
+            meets_others: false,
+            turn_deg_s: None,
+            modules: vec![],
+            sees_by_module: false,
+            places: Places::default(),
+            uneven: self.uneven(sensors, t_deltas, windows)?,
+        })
+    }
+
+    /// Differences between the sensors, with lists of `t_delta` and window that are empty where all have the same;
+    /// `None` if there are none.
+    fn uneven(&self, sensors: usize, t_delta: Vec<Micros>, window: Vec<Micros>) -> PyResult<Option<OwnedUneven>> {
+        let [refire, intervals, lines, together] = UNEVEN.map(|name| self.get(name));
+        let (refire, intervals, lines, together) = (refire?, intervals?, lines?, together?);
+        let all = [&refire, &intervals, &lines, &together];
+        if t_delta.is_empty() && window.is_empty() && all.iter().all(|value| value.is_none()) {
             return Ok(None);
         }
-        let refire = self.refire_us.map_or(Ok((Micros::ZERO, vec![])), |value| each("refire_us", value, 0))?;
+        let refire = refire.map_or(Ok((Micros::ZERO, vec![])), |value| each("refire_us", &value, 0))?;
         let refire = if refire.1.is_empty() { vec![refire.0; sensors] } else { refire.1 };
         let expected = "triples of two sensors and a time in microseconds, such as [(0, 1, 9000)]";
-        let intervals = list("intervals_us", self.intervals_us, expected)?;
+        let intervals = list("intervals_us", intervals.as_ref(), expected)?;
         let expected = "groups of sensors, such as [(0, 4), (1, 5)]";
-        let lines = list("shared_lines", self.shared_lines, expected)?;
-        let together = list("together", self.together, expected)?;
+        let lines = list("shared_lines", lines.as_ref(), expected)?;
+        let together = list("together", together.as_ref(), expected)?;
         OwnedUneven::new(sensors, [t_delta, window, refire], &intervals, &lines, &together)
             .map(Some)
             .map_err(ArgumentError::new_err)
@@ -166,34 +224,4 @@ pub(crate) fn each(name: &str, value: &Bound<'_, PyAny>, least: u32) -> PyResult
         };
     }
     whole(name, value, least..=u32::MAX).map(|us| (Micros::new(us), vec![]))
-}
-
-impl RequirementArguments<'_, '_> {
-    /// Checked; without `t_delta_us` it is the most that `schedule` allows.
-    pub(crate) fn owned(&self, schedule: &AnySchedule) -> PyResult<OwnedRequirements> {
-        let mut requirements = self.of(schedule.sensors(), Micros::ZERO)?;
-        if self.t_delta_us.is_none() {
-            requirements.t_delta = schedule.verify(&requirements.requirements()).max_t_delta().unwrap_or(Micros::ZERO);
-        }
-        Ok(requirements)
-    }
-
-    /// Checked, for this many sensors; without `t_delta_us` it is this.
-    pub(crate) fn of(&self, sensors: usize, t_delta: Micros) -> PyResult<OwnedRequirements> {
-        let each_or_zero = |name, value: Option<&Bound<'_, PyAny>>| {
-            value.map_or(Ok((Micros::ZERO, vec![])), |value| each(name, value, 0))
-        };
-        let (t_delta, t_deltas) =
-            self.t_delta_us.map_or(Ok((t_delta, vec![])), |value| each("t_delta_us", value, 0))?;
-        let (window, windows) = each_or_zero("window_us", self.window_us)?;
-        Ok(OwnedRequirements {
-            t_delta,
-            min_interval: micros_or("min_interval_us", self.min_interval_us, Micros::ZERO)?,
-            layout: layout(self.layout, neighbours(self.neighbours)?, sensors)?,
-            criterion: criterion(self.criterion)?,
-            window,
-            stale_echo: flag("stale_echo", self.stale_echo, false)?,
-            uneven: self.uneven.owned(sensors, t_deltas, windows)?,
-        })
-    }
 }

@@ -6,6 +6,7 @@ use eeruf_core::{
     EachSensor, EchoFilter, Instant, MAX_SENSORS, Micros, Requirements, RingConfig, RingEvent, Silence, flow::FlowRing,
     judge::Judge as _, plan::TableFiring, watch::SensorWatch,
 };
+use eeruf_design::RingSpec;
 use eeruf_sim::AnySchedule;
 use pyo3::prelude::*;
 
@@ -13,8 +14,6 @@ use crate::{
     arguments::{choice, whole, wrong},
     errors::Raise,
     exclusive::Exclusive,
-    flow_settings::FlowSettings,
-    requirements::{self, OwnedRequirements},
     ring_arguments::FlowNeeds,
 };
 
@@ -27,9 +26,11 @@ use crate::{
 /// Args:
 ///     schedule: when the sensors fire.
 ///     t_delta_us: ``T_delta``: consecutive readings that differ by no more are near-identical (Eq. 11). One for all,
-///         or a sequence with one for each sensor.
+///         or a sequence with one for each sensor; or a :class:`Needs`, or the path of a ring file, in place of it and
+///         of all other needs.
 ///     now_us: when the first period begins.
 ///     window_us: ``T_wind``: how long a sensor listens after it has fired, 1 or more. One for all, or a sequence.
+///         Needed but with a :class:`Needs`.
 ///     blanking_us: edges sooner than this after firing are ringing of the transducer, not echoes.
 ///     consecutive: the number of consecutive readings that must agree, 2 to 8.
 ///     path_change_us: P: the largest change of a foreign sound's path from one reading to the next, at
@@ -100,7 +101,7 @@ pub(crate) enum Promise {
     /// The waits reject crosstalk at the ring's `t_delta`.
     TDelta,
     /// Needs of each sensor.
-    EachSensor(Arc<OwnedRequirements>),
+    EachSensor(Arc<RingSpec>),
 }
 
 /// A ring, what its schedules have to keep, and the state of each of its sensors by its events.
@@ -176,7 +177,7 @@ impl Promise {
             Self::Nothing => Ok((Arc::new(*schedule), EachSensor::NONE)),
             Self::TDelta => verify(schedule, t_delta).map(|()| (Arc::new(*schedule), EachSensor::NONE)),
             Self::EachSensor(needs) => {
-                let verified = schedule.verified_each(&needs.requirements()).map_err(Raise::raise)?;
+                let verified = schedule.verified_each(&needs.problem().requirements).map_err(Raise::raise)?;
                 Ok((Arc::new(*verified.schedule()), *verified.own_limits()))
             }
         }
@@ -223,9 +224,7 @@ impl AnyRing {
         several: bool,
         now: Instant,
     ) -> PyResult<Self> {
-        let (sensors, settings) = (requirements::sensors(sensors)?, FlowSettings::of(settings)?);
-        let (turns, config, limits) = needs.of(sensors, &settings)?;
-        let belief = settings.belief();
+        let (sensors, belief, turns, config, limits) = needs.of(sensors, settings)?;
         let fires = if several {
             let ring = FlowRing::with_limits(sensors, limits, turns, belief, config, now);
             ring.map(|ring| Fires::FlowSeveral(Box::new(ring)))

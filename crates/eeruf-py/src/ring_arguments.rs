@@ -1,14 +1,18 @@
 //! Settings that a `Ring` is made with, from Python's arguments.
 
-use eeruf_core::{EachSensor, Instant, MAX_SENSORS, Micros, RingConfig, flow::TurnSettings};
+use eeruf_core::{
+    EachSensor, Instant, MAX_SENSORS, Micros, RingConfig,
+    flow::{BeliefSettings, TurnSettings},
+};
 use pyo3::prelude::*;
 
 use crate::{
-    arguments::{micros, micros_or, whole_or},
+    arguments::{micros, micros_or, shown, whole_or, wrong},
     errors::ArgumentError,
     flow_settings::FlowSettings,
     moments::instant,
-    requirements::{RequirementArguments, UnevenArguments},
+    needs::Needs,
+    requirements::{self, Asked, each},
 };
 
 /// Limits of sound, as Python gives them.
@@ -40,33 +44,42 @@ pub(crate) fn begins(now_us: Option<&Bound<'_, PyAny>>) -> PyResult<Instant> {
     now_us.map_or(Ok(Instant::from_micros(0)), |now| instant("now_us", now))
 }
 
-/// Needs of a ring by flow: its window, what its sensors need of their own, and how far they hear.
+/// Needs of a ring by flow: its window and what its sensors need of their own, and how far they hear.
 pub(crate) struct FlowNeeds<'a, 'py> {
-    pub(crate) window_us: &'a Bound<'py, PyAny>,
-    pub(crate) uneven: UnevenArguments<'a, 'py>,
+    pub(crate) asked: Asked<'py>,
     pub(crate) blanking_us: Option<&'a Bound<'py, PyAny>>,
     pub(crate) reach_us: Option<&'a Bound<'py, PyAny>>,
 }
 
-impl FlowNeeds<'_, '_> {
-    /// Checked, with the gaps of the ring, and with the limits of each sensor where they are not all alike.
-    pub(crate) fn of(
-        &self,
-        sensors: usize,
-        settings: &FlowSettings,
-    ) -> PyResult<(TurnSettings, RingConfig, EachSensor<MAX_SENSORS>)> {
-        let &Self { window_us, uneven, blanking_us, reach_us } = self;
-        let needs = RequirementArguments {
-            uneven,
-            ..RequirementArguments::alike(None, None, None, None, None, (Some(window_us), None))
-        };
-        let needs = needs.of(sensors, settings.belief().t_delta)?;
-        let [_, window] = needs.most();
+/// A ring by flow: its sensors, belief, plan and times, and the limits of each sensor where they are not all alike.
+type FlowRingOf = (usize, BeliefSettings, TurnSettings, RingConfig, EachSensor<MAX_SENSORS>);
+
+impl<'py> FlowNeeds<'_, 'py> {
+    /// Checked, with the gaps of the ring; of a `Needs`, by its modules.
+    pub(crate) fn of(&self, sensors: &Bound<'py, PyAny>, settings: Option<&Bound<'_, PyAny>>) -> PyResult<FlowRingOf> {
+        let &Self { ref asked, blanking_us, reach_us } = self;
+        let config = |window, blanking| RingConfig::new().with_window(window).with_blanking(blanking);
+        if let Some(needs) = Needs::given(sensors)? {
+            asked.none("")?;
+            for (name, value) in [("blanking_us", blanking_us), ("reach_us", reach_us)] {
+                value.map_or(Ok(()), |value| Err(wrong(name, shown(value), "none beside a Needs, which says it")))?;
+            }
+            let ring = needs.ring();
+            let flow = ring.flow(1).map_err(ArgumentError::new_err)?;
+            let settings = FlowSettings::over(settings, flow.belief)?;
+            let (turns, belief) = (settings.turns_over(flow.turns), settings.belief_over(flow.belief));
+            return Ok((ring.sensors, belief, turns, config(flow.window, flow.blanking), flow.limits));
+        }
+        let (sensors, settings) = (requirements::sensors(sensors)?, FlowSettings::of(settings)?);
+        let belief = settings.belief();
+        let window = each("window_us", &asked.must("window_us")?, 1)?;
+        let ring = asked.spec(sensors, (belief.t_delta, vec![]), Micros::ZERO, window)?;
         let blanking = micros_or("blanking_us", blanking_us, Micros::ZERO)?;
         let reach = reach_us.map(|reach| micros("reach_us", reach)).transpose()?;
-        let turns = settings.turns(window, blanking, reach)?.keeping(&needs.requirements());
-        let limits = TurnSettings::limits(sensors, &needs.requirements());
+        let needs = ring.problem().requirements;
+        let turns = settings.turns(ring.window, blanking, reach)?.keeping(&needs);
+        let limits = TurnSettings::limits(sensors, &needs);
         let limits = limits.map_err(|error| ArgumentError::new_err(format!("{error:#}")))?;
-        Ok((turns, RingConfig::new().with_window(window).with_blanking(blanking), limits))
+        Ok((sensors, belief, turns, config(ring.window, blanking), limits))
     }
 }

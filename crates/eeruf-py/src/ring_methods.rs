@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use eeruf_core::watch::SensorWatch;
-use pyo3::prelude::*;
+use pyo3::{prelude::*, types::PyDict};
 
 use crate::{
     arguments::{flag, instance, micros, number},
@@ -11,7 +11,7 @@ use crate::{
     exclusive::Exclusive,
     gone::Gone,
     moments::{expected_changes, instant, until},
-    requirements::{RequirementArguments, UnevenArguments},
+    requirements::{Asked, UNEVEN},
     ring::{AnyRing, Fires, Promise, Ring, act, ask, of_sensor, table},
     ring_arguments::{FlowNeeds, Sound, begins, config},
     ring_events::{Fire, to_python},
@@ -23,38 +23,33 @@ use crate::{
 #[expect(clippy::too_many_arguments, reason = "keyword arguments")]
 impl Ring {
     #[new]
-    #[pyo3(signature = (schedule, t_delta_us, now_us=None, *, window_us, blanking_us=None, consecutive=None,
-        path_change_us=None, audible_us=None, refire_us=None, intervals_us=None, shared_lines=None, together=None,
-        several_echoes=None, silence=None))]
-    #[pyo3(text_signature = "(schedule, t_delta_us, now_us=0, *, window_us, blanking_us=0, consecutive=2, \
+    #[pyo3(signature = (schedule, t_delta_us, now_us=None, *, window_us=None, blanking_us=None, consecutive=None,
+        path_change_us=None, audible_us=None, several_echoes=None, silence=None, **needs))]
+    #[pyo3(text_signature = "(schedule, t_delta_us, now_us=0, *, window_us=None, blanking_us=0, consecutive=2, \
             path_change_us=None, audible_us=None, refire_us=None, intervals_us=None, shared_lines=None, \
             together=None, several_echoes=False, silence=\"never_free\")")]
-    fn new(
-        schedule: &Bound<'_, PyAny>,
-        t_delta_us: &Bound<'_, PyAny>,
+    fn new<'py>(
+        schedule: &Bound<'py, PyAny>,
+        t_delta_us: &Bound<'py, PyAny>,
         now_us: Option<&Bound<'_, PyAny>>,
-        window_us: &Bound<'_, PyAny>,
+        window_us: Option<&Bound<'py, PyAny>>,
         blanking_us: Option<&Bound<'_, PyAny>>,
         consecutive: Option<&Bound<'_, PyAny>>,
         path_change_us: Option<&Bound<'_, PyAny>>,
         audible_us: Option<&Bound<'_, PyAny>>,
-        refire_us: Option<&Bound<'_, PyAny>>,
-        intervals_us: Option<&Bound<'_, PyAny>>,
-        shared_lines: Option<&Bound<'_, PyAny>>,
-        together: Option<&Bound<'_, PyAny>>,
         several_echoes: Option<&Bound<'_, PyAny>>,
         silence: Option<&Bound<'_, PyAny>>,
+        needs: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Self> {
         let fires = instance::<Schedule>("schedule", schedule, "an eeruf.Schedule")?.get().0;
-        let needs = RequirementArguments {
-            uneven: UnevenArguments { refire_us, intervals_us, shared_lines, together },
-            ..RequirementArguments::alike(Some(t_delta_us), None, None, None, None, (Some(window_us), None))
-        };
-        let needs = needs.owned(&fires)?;
-        let [t_delta, window] = needs.most();
-        let config = config(t_delta, window, blanking_us, consecutive, &Sound { path_change_us, audible_us })?;
+        let placed = [("t_delta_us", Some(t_delta_us)), ("window_us", window_us)];
+        let needs = Asked::of(schedule.py(), "Ring", placed, needs, &[&UNEVEN])?.ring_of(&fires)?;
+        let mut config =
+            config(needs.t_delta, needs.listening, blanking_us, consecutive, &Sound { path_change_us, audible_us })?;
+        config.path_change = config.path_change.or(needs.path_change);
+        config.audible = config.audible.or(needs.audible);
         let (several, now) = (flag("several_echoes", several_echoes, false)?, begins(now_us)?);
-        let promise = if needs.is_uneven() { Promise::EachSensor(Arc::new(needs)) } else { Promise::TDelta };
+        let promise = if needs.uneven.is_some() { Promise::EachSensor(Arc::new(needs)) } else { Promise::TDelta };
         Self::of(AnyRing::by_schedule(&fires, promise, config, several, now)?, silence)
     }
 
@@ -110,7 +105,8 @@ impl Ring {
     /// ``docs/explanation/flow.md`` says for whom.
     ///
     /// Args:
-    ///     sensors: how many, 1 to 64.
+    ///     sensors: how many, 1 to 64; or a :class:`Needs`, or the path of a ring file, in place of all needs, with the
+    ///         window, rest, blanking and reach of its module.
     ///     settings: a dict of what differs from the default. Of the plan ``least_us`` and ``most_us``, the least and
     ///         the most quiet, ``rest_us``, for which a sensor rests, ``dice_us``, the random time in every gap, and
     ///         ``seed``, not 0, by default another one for each ring. Of belief ``t_delta_us``, ``near_us``,
@@ -119,7 +115,8 @@ impl Ring {
     ///         while the robot moves and is alone, and else two in a row that agree, ``"two_in_a_row"`` or
     ///         ``"every_echo"``.
     ///     now_us: when the first cycle begins.
-    ///     window_us: ``T_wind``: how long a sensor listens after it has fired, 1 or more; one for all, or each.
+    ///     window_us: ``T_wind``: how long a sensor listens after it has fired, 1 or more; one for all, or each. Needed but
+    ///         with a :class:`Needs`.
     ///     blanking_us: edges sooner than this after firing are no echoes.
     ///     reach_us: R: after how long no sound is heard any more, the tail of an echo included; by default two ninths
     ///         more than the window. The most quiet that a sensor gets.
@@ -138,28 +135,29 @@ impl Ring {
     ///     >>> ring = eeruf.Ring.flow(8, {"rest_us": 60_000}, window_us=36_000)
     ///     >>> ring.poll(ring.next_deadline_us).sensor
     ///     0
+    ///     >>> ring = eeruf.Ring.flow(eeruf.Needs(sensors=8, module="hc-sr04"))
+    ///     >>> ring.window_us
+    ///     23310
     #[staticmethod]
-    #[pyo3(signature = (
-        sensors, settings=None, now_us=None, *, window_us, blanking_us=None, reach_us=None, refire_us=None,
-        shared_lines=None, together=None, several_echoes=None, silence=None))]
-    #[pyo3(text_signature = "(sensors, settings=None, now_us=0, *, window_us, blanking_us=0, reach_us=None, \
+    #[pyo3(signature = (sensors, settings=None, now_us=None, *, window_us=None, blanking_us=None, reach_us=None,
+        several_echoes=None, silence=None, **needs))]
+    #[pyo3(text_signature = "(sensors, settings=None, now_us=0, *, window_us=None, blanking_us=0, reach_us=None, \
             refire_us=None, shared_lines=None, together=None, several_echoes=False, silence=\"never_free\")")]
-    fn flow(
-        sensors: &Bound<'_, PyAny>,
+    fn flow<'py>(
+        sensors: &Bound<'py, PyAny>,
         settings: Option<&Bound<'_, PyAny>>,
         now_us: Option<&Bound<'_, PyAny>>,
-        window_us: &Bound<'_, PyAny>,
+        window_us: Option<&Bound<'py, PyAny>>,
         blanking_us: Option<&Bound<'_, PyAny>>,
         reach_us: Option<&Bound<'_, PyAny>>,
-        refire_us: Option<&Bound<'_, PyAny>>,
-        shared_lines: Option<&Bound<'_, PyAny>>,
-        together: Option<&Bound<'_, PyAny>>,
         several_echoes: Option<&Bound<'_, PyAny>>,
         silence: Option<&Bound<'_, PyAny>>,
+        needs: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Self> {
         let (several, now) = (flag("several_echoes", several_echoes, false)?, begins(now_us)?);
-        let uneven = UnevenArguments { refire_us, shared_lines, together, ..UnevenArguments::default() };
-        let needs = FlowNeeds { window_us, uneven, blanking_us, reach_us };
+        let known: &[&[&str]] = &[&["refire_us", "shared_lines", "together"]];
+        let asked = Asked::of(sensors.py(), "flow", [("window_us", window_us)], needs, known)?;
+        let needs = FlowNeeds { asked, blanking_us, reach_us };
         Self::of(AnyRing::flow(sensors, settings, &needs, several, now)?, silence)
     }
 
@@ -423,6 +421,38 @@ impl Ring {
         AnyRing::raised(act!(self.0.get()?, |ring| ring.echo(sensor, at)))
     }
 
+    /// An edge like that of :meth:`echo`, known only to lie between two times: the line was last seen without it at
+    /// one, and with it at the other. The middle counts, and foreign sound at any time in between explains the reading;
+    /// more than 300 us, 5 cm, say too little, and the reading is ``"late"``.
+    ///
+    /// Args:
+    ///     sensor: which one, from 0.
+    ///     earliest_us: when the line was last seen without the edge, 0 or more.
+    ///     latest_us: when it was first seen with it, not before that.
+    ///
+    /// Raises:
+    ///     ArgumentError: no such sensor or time.
+    ///     RingError: the latest is before the earliest.
+    ///
+    /// Example:
+    ///     >>> import eeruf
+    ///     >>> ring = eeruf.Ring(eeruf.tables.TABLE_I_D, t_delta_us=500, window_us=36_000)
+    ///     >>> [ring.poll(24_000).sensor for _ in range(3)]  # one of each group of four
+    ///     [0, 4, 8]
+    ///     >>> ring.echo_between(0, 32_900, 33_100)
+    ///     >>> ring.poll(33_100).t_echo_us
+    ///     9000
+    fn echo_between(
+        &self,
+        sensor: &Bound<'_, PyAny>,
+        earliest_us: &Bound<'_, PyAny>,
+        latest_us: &Bound<'_, PyAny>,
+    ) -> PyResult<()> {
+        let sensor = self.0.get()?.sensor(sensor)?;
+        let (earliest, latest) = (instant("earliest_us", earliest_us)?, instant("latest_us", latest_us)?);
+        AnyRing::raised(act!(self.0.get()?, |ring| ring.echo_between(sensor, earliest, latest)))
+    }
+
     /// Corrects when a sensor last fired: by what a timer captured, for example. Optional: echo times count from then,
     /// and if it is later than the poll, all later firings move by as much.
     ///
@@ -483,9 +513,9 @@ impl Ring {
     ///     >>> ring = eeruf.Ring(eeruf.tables.TABLE_I_D, t_delta_us=500, window_us=36_000)
     ///     >>> ring.state(3)
     ///     State(kind='unknown', t_echo_us=None, age_us=0, why='no_firing', explained_by=None)
-    fn state(&self, sensor: &Bound<'_, PyAny>) -> PyResult<State> {
+    fn state<'py>(&self, sensor: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         let ring = self.0.get()?;
-        Ok(State::of(&ring.watch, ring.sensor(sensor)?, ring.now))
+        State::of(&ring.watch, ring.sensor(sensor)?, ring.now).into_python(sensor.py())
     }
 
     /// Hand in what hardware or a protocol measured of a sensor's last firing, before its reading is emitted: see

@@ -1,10 +1,9 @@
 //! `sim.Robot`: a robot with its ring.
 
-use std::{f64::consts::TAU, path::PathBuf};
+use std::f64::consts::TAU;
 
 use eeruf_core::{Micros, SensorLimits};
 use eeruf_design::RingSpec;
-use eeruf_files::Kind;
 use eeruf_sim::{Beam, Clock, GainProfile, Motion, Point, Sketch, Transducer, world::cover_motion};
 use pyo3::{
     prelude::*,
@@ -20,6 +19,7 @@ use crate::{
     faults::{shown_table, table_of},
     fields::{Reduced, attributes, call, reduce_by_name},
     module::{modules, shown_module},
+    needs::Needs,
     pose::{from_pose, motion, pose_of, to_pose},
     requirements,
     schedule::Schedule,
@@ -58,7 +58,7 @@ use crate::{
 ///         its modules say where ``module`` is given, or else no longer than sensors listen.
 ///     path_change_us: P: the largest change of a foreign sound's path from one reading to the next, where
 ///         a table fires the ring, at most 65,534 us; None for ``t_delta_us``.
-///     ring: the path of a ring file, for ``eeruf design``, that gives modules, windows, ``T_delta``, sensors that fire
+///     ring: a :class:`~eeruf.Needs`, or the path of a ring file, that gives modules, windows, ``T_delta``, sensors that fire
 ///         together, neighbours, ``path_change_us`` and ``audible_us``, unless these are given here.
 ///     firing: a dict with the keys of ``[firing]`` in scene files, such as ``{"turn_us": 33_000}``, for the methods
 ///         that fire as sketches and modules do.
@@ -175,11 +175,10 @@ pub(crate) fn sketch(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Sketch> {
     Sketch::from_table(&table).map_err(|message| ArgumentError::new_err(format!("{name}: {message}")))
 }
 
-/// The ring of a ring file.
-pub(crate) fn ring_file(path: &Bound<'_, PyAny>) -> PyResult<RingSpec> {
-    let path: PathBuf = path.extract().map_err(|_| wrong("ring", shown(path), "the path of a ring file"))?;
-    let ring = |text: String| RingSpec::in_file(&path, &text);
-    Kind::Ring.read(&path).and_then(ring).map_err(|error| ArgumentError::new_err(error.to_string()))
+/// The ring of a `Needs` or a ring file.
+pub(crate) fn ring_file(value: &Bound<'_, PyAny>) -> PyResult<RingSpec> {
+    let needs = Needs::given(value)?.ok_or_else(|| wrong("ring", shown(value), "a Needs, or the path of a ring file"));
+    Ok(needs?.ring().clone())
 }
 
 fn refused_ring(message: &str) -> PyErr {

@@ -13,8 +13,8 @@ use crate::{
     errors::{Raise, ScheduleError, warn_of},
     fields::{Reduced, attributes, call, reduce, repr, to_dict},
     gone::Gone,
-    report::Report,
-    requirements::{RequirementArguments, UnevenArguments},
+    report::report,
+    requirements::{ALIKE, Asked, UNEVEN},
 };
 
 /// When each sensor of a ring fires, in the two phases that alternate from period to period. Immutable; equal if all
@@ -56,6 +56,18 @@ impl Schedule {
     fn t_fire<'py>(&self, py: Python<'py>, phase: Phase) -> PyResult<Bound<'py, PyTuple>> {
         let fire = |sensor| self.0.t_fire(phase, sensor).unwrap_or_default().as_micros();
         PyTuple::new(py, (0..self.0.sensors()).map(fire))
+    }
+
+    /// Needs that it is checked for.
+    fn asked<'py>(
+        py: Python<'py>,
+        call: &str,
+        [t_delta_us, min_interval_us]: [Option<&Bound<'py, PyAny>>; 2],
+        needs: Option<&Bound<'py, PyDict>>,
+        more: &[&str],
+    ) -> PyResult<Asked<'py>> {
+        let placed = [("t_delta_us", t_delta_us), ("min_interval_us", min_interval_us)];
+        Asked::of(py, call, placed, needs, &[&["criterion", "window_us"], &ALIKE, more])
     }
 
     /// Reads a text, of a file or of none.
@@ -252,7 +264,8 @@ impl Schedule {
     ///
     /// Args:
     ///     t_delta_us: ``T_delta``: consecutive readings that differ by no more are near-identical (Eq. 11). One for
-    ///         all sensors or a sequence of one for each; two sensors need the separation of the larger.
+    ///         all sensors or a sequence of one for each; two sensors need the separation of the larger. Or a
+    ///         :class:`Needs`, or the path of a ring file, in place of all needs.
     ///     min_interval_us: the least time between the firings of two neighbours (Sec. 3.1 c).
     ///     neighbours: how many sensors in a row count as neighbours, 1 to 64.
     ///     layout: how they stand: ``"line"``, ``"ring"`` (the last beside the first), ``"blocks"`` of ``neighbours``,
@@ -278,42 +291,19 @@ impl Schedule {
     ///     >>> report = TABLE_I_D.verify(t_delta_us=999, min_interval_us=15_000)
     ///     >>> report.ok, report.min_interval_us, report.max_t_delta_us
     ///     (True, 17000, 999)
-    #[pyo3(signature = (
-        t_delta_us, min_interval_us=None, neighbours=None, layout=None, criterion=None, window_us=None, stale_echo=None,
-        refire_us=None, intervals_us=None, shared_lines=None, together=None
-    ))]
-    #[pyo3(text_signature = "($self, t_delta_us, min_interval_us=0, neighbours=4, layout=\"line\", \
+    #[pyo3(signature = (t_delta_us, min_interval_us=None, **needs))]
+    #[pyo3(text_signature = "($self, t_delta_us, min_interval_us=0, *, neighbours=4, layout=\"line\", \
             criterion=\"exact\", window_us=0, stale_echo=False, refire_us=None, intervals_us=None, \
             shared_lines=None, together=None)")]
-    #[expect(clippy::too_many_arguments, reason = "keyword arguments")]
-    fn verify(
+    fn verify<'py>(
         &self,
-        t_delta_us: &Bound<'_, PyAny>,
-        min_interval_us: Option<&Bound<'_, PyAny>>,
-        neighbours: Option<&Bound<'_, PyAny>>,
-        layout: Option<&Bound<'_, PyAny>>,
-        criterion: Option<&Bound<'_, PyAny>>,
-        window_us: Option<&Bound<'_, PyAny>>,
-        stale_echo: Option<&Bound<'_, PyAny>>,
-        refire_us: Option<&Bound<'_, PyAny>>,
-        intervals_us: Option<&Bound<'_, PyAny>>,
-        shared_lines: Option<&Bound<'_, PyAny>>,
-        together: Option<&Bound<'_, PyAny>>,
-    ) -> PyResult<Report> {
-        let t_delta_us = Some(t_delta_us);
-        let uneven = UnevenArguments { refire_us, intervals_us, shared_lines, together };
-        let owned = RequirementArguments {
-            t_delta_us,
-            min_interval_us,
-            neighbours,
-            layout,
-            criterion,
-            window_us,
-            stale_echo,
-            uneven,
-        }
-        .owned(&self.0)?;
-        Ok(Report::of(&self.0.verify(&owned.requirements())))
+        t_delta_us: &Bound<'py, PyAny>,
+        min_interval_us: Option<&Bound<'py, PyAny>>,
+        needs: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let py = t_delta_us.py();
+        let asked = Self::asked(py, "verify", [Some(t_delta_us), min_interval_us], needs, &UNEVEN)?;
+        asked.check(&self.0, |needs| report(py, &self.0.verify(needs)))?
     }
 
     /// Write a schedule file, as the program reads it.
@@ -355,27 +345,18 @@ impl Schedule {
     ///     >>> from eeruf.tables import TABLE_I_D
     ///     >>> "schedule!" in TABLE_I_D.to_rust(min_interval_us=15_000)
     ///     True
-    #[pyo3(signature = (
-        t_delta_us=None, min_interval_us=None, neighbours=None, layout=None, criterion=None, window_us=None,
-        stale_echo=None
-    ))]
-    #[pyo3(text_signature = "($self, t_delta_us=None, min_interval_us=0, neighbours=4, layout=\"line\", \
+    #[pyo3(signature = (t_delta_us=None, min_interval_us=None, **needs))]
+    #[pyo3(text_signature = "($self, t_delta_us=None, min_interval_us=0, *, neighbours=4, layout=\"line\", \
             criterion=\"exact\", window_us=0, stale_echo=False)")]
-    #[expect(clippy::too_many_arguments, reason = "keyword arguments")]
-    fn to_rust(
+    fn to_rust<'py>(
         &self,
-        t_delta_us: Option<&Bound<'_, PyAny>>,
-        min_interval_us: Option<&Bound<'_, PyAny>>,
-        neighbours: Option<&Bound<'_, PyAny>>,
-        layout: Option<&Bound<'_, PyAny>>,
-        criterion: Option<&Bound<'_, PyAny>>,
-        window_us: Option<&Bound<'_, PyAny>>,
-        stale_echo: Option<&Bound<'_, PyAny>>,
+        py: Python<'py>,
+        t_delta_us: Option<&Bound<'py, PyAny>>,
+        min_interval_us: Option<&Bound<'py, PyAny>>,
+        needs: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<String> {
-        let listening = (window_us, stale_echo);
-        let asked = RequirementArguments::alike(t_delta_us, min_interval_us, neighbours, layout, criterion, listening);
-        let owned = asked.owned(&self.0)?;
-        Ok(self.0.to_rust(&owned.requirements()))
+        let asked = Self::asked(py, "to_rust", [t_delta_us, min_interval_us], needs, &[])?;
+        asked.check(&self.0, |needs| self.0.to_rust(needs))
     }
 
     /// Write a C99 header with the firing times and what they were verified for.
@@ -396,27 +377,18 @@ impl Schedule {
     ///     >>> from eeruf.tables import TABLE_I_D
     ///     >>> "#include <stdint.h>" in TABLE_I_D.to_c(min_interval_us=15_000)
     ///     True
-    #[pyo3(signature = (
-        t_delta_us=None, min_interval_us=None, neighbours=None, layout=None, criterion=None, window_us=None,
-        stale_echo=None
-    ))]
-    #[pyo3(text_signature = "($self, t_delta_us=None, min_interval_us=0, neighbours=4, layout=\"line\", \
+    #[pyo3(signature = (t_delta_us=None, min_interval_us=None, **needs))]
+    #[pyo3(text_signature = "($self, t_delta_us=None, min_interval_us=0, *, neighbours=4, layout=\"line\", \
             criterion=\"exact\", window_us=0, stale_echo=False)")]
-    #[expect(clippy::too_many_arguments, reason = "keyword arguments")]
-    fn to_c(
+    fn to_c<'py>(
         &self,
-        t_delta_us: Option<&Bound<'_, PyAny>>,
-        min_interval_us: Option<&Bound<'_, PyAny>>,
-        neighbours: Option<&Bound<'_, PyAny>>,
-        layout: Option<&Bound<'_, PyAny>>,
-        criterion: Option<&Bound<'_, PyAny>>,
-        window_us: Option<&Bound<'_, PyAny>>,
-        stale_echo: Option<&Bound<'_, PyAny>>,
+        py: Python<'py>,
+        t_delta_us: Option<&Bound<'py, PyAny>>,
+        min_interval_us: Option<&Bound<'py, PyAny>>,
+        needs: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<String> {
-        let listening = (window_us, stale_echo);
-        let asked = RequirementArguments::alike(t_delta_us, min_interval_us, neighbours, layout, criterion, listening);
-        let owned = asked.owned(&self.0)?;
-        Ok(self.0.to_c(&owned.requirements()))
+        let asked = Self::asked(py, "to_c", [t_delta_us, min_interval_us], needs, &[])?;
+        asked.check(&self.0, |needs| self.0.to_c(needs))
     }
 
     /// Its times by their names, as the arguments of ``Schedule``: a dict of plain values.

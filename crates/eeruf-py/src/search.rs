@@ -193,12 +193,12 @@ impl WaitSearch {
     ///     >>> eeruf.WaitSearch(4, 40_000, 8_000, 1000, t_delta_us=999).best("waits").value_us
     ///     6000
     #[pyo3(signature = (objective=None, budget=None), text_signature = "($self, objective=\"interval\", budget=None)")]
-    fn best(
+    fn best<'py>(
         &self,
-        py: Python<'_>,
+        py: Python<'py>,
         objective: Option<&Bound<'_, PyAny>>,
         budget: Option<&Bound<'_, PyAny>>,
-    ) -> PyResult<Found> {
+    ) -> PyResult<Bound<'py, PyAny>> {
         type Best = fn(&Waits, &mut [u32], &mut Budget<'_>) -> Result<search::Found<MAX_SENSORS>, SearchError>;
         let objectives: [(&str, Best); 4] = [
             ("interval", Waits::best_interval),
@@ -211,7 +211,7 @@ impl WaitSearch {
         let words = memory_words(self.sensors);
         let began = Instant::now();
         let found = self.run(py, budget, |memory, budget| best(&self.search, memory, budget), words)?;
-        Ok(Found::of(&found, began, None))
+        Found::of(&found, began, None).into_python(py)
     }
 
     /// The tables of which no other has a larger smallest interval without a smaller ``T_delta``, both at least what is

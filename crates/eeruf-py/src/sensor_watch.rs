@@ -4,12 +4,12 @@ use eeruf_core::{
     Instant, MAX_SENSORS, Micros,
     watch::{Doubt, SensorState},
 };
-use pyo3::{prelude::*, types::PyDict};
+use pyo3::prelude::*;
 
 use crate::{
-    arguments::{choice, whole, whole_or, whole_or_none},
+    arguments::{whole, whole_or},
     exclusive::Exclusive,
-    fields::{Reduced, reduce, repr, to_dict},
+    fields::record,
     moments::instant,
     ring_arguments::begins,
     ring_events::{ExplainedBy, to_core},
@@ -90,10 +90,14 @@ impl SensorWatch {
     ///     >>> watch = eeruf.SensorWatch(sensors=12, blind_after=1)
     ///     >>> watch.observe(eeruf.Reading(3, "rejected", 9_000, 7_000), now_us=100_000)
     ///     Blind(sensor=3, firings=1)
-    fn observe(&self, event: &Bound<'_, PyAny>, now_us: &Bound<'_, PyAny>) -> PyResult<Option<Blind>> {
-        let (event, now) = (to_core("event", event)?, instant("now_us", now_us)?);
+    fn observe<'py>(
+        &self,
+        event: &Bound<'py, PyAny>,
+        now_us: &Bound<'_, PyAny>,
+    ) -> PyResult<Option<Bound<'py, PyAny>>> {
+        let (py, event, now) = (event.py(), to_core("event", event)?, instant("now_us", now_us)?);
         let blind = self.watch.get()?.observe(&event, now);
-        Ok(blind.map(|sensor| Blind { sensor, firings: self.blind_after }))
+        blind.map(|sensor| record(py, "Blind", (sensor, self.blind_after))).transpose()
     }
 
     /// The state of the space before a sensor.
@@ -111,9 +115,10 @@ impl SensorWatch {
     ///     >>> watch.observe(eeruf.Reading(3, "accepted", 9_000, 9_100), now_us=102_400)
     ///     >>> watch.state(3, now_us=153_600)
     ///     State(kind='obstacle', t_echo_us=9000, age_us=51200, why=None, explained_by=None)
-    fn state(&self, sensor: &Bound<'_, PyAny>, now_us: &Bound<'_, PyAny>) -> PyResult<State> {
-        let (sensor, now) = (whole("sensor", sensor, 0..=self.sensors - 1)?, instant("now_us", now_us)?);
-        Ok(State::of(&*self.watch.get()?, sensor, now))
+    fn state<'py>(&self, sensor: &Bound<'py, PyAny>, now_us: &Bound<'_, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        let (py, now) = (sensor.py(), instant("now_us", now_us)?);
+        let sensor = whole("sensor", sensor, 0..=self.sensors - 1)?;
+        State::of(&*self.watch.get()?, sensor, now).into_python(py)
     }
 
     fn __copy__(&self) -> PyResult<Self> {
@@ -129,71 +134,12 @@ impl SensorWatch {
     }
 }
 
-/// A sensor that hears echoes, none of which was accepted for this many firings.
-///
-/// Example:
-///     >>> import eeruf
-///     >>> eeruf.Blind(sensor=3, firings=20).to_dict()
-///     {'sensor': 3, 'firings': 20}
-#[pyclass(frozen, eq, hash, get_all, module = "eeruf")]
-#[derive(Clone, PartialEq, Eq, Hash)]
-pub(crate) struct Blind {
-    /// The sensor, from 0.
-    sensor: u8,
-    /// For how many firings with an echo nothing was accepted.
-    firings: u8,
-}
-
-const BLIND: [&str; 2] = ["sensor", "firings"];
-
-#[pymethods]
-impl Blind {
-    #[new]
-    fn new(sensor: &Bound<'_, PyAny>, firings: &Bound<'_, PyAny>) -> PyResult<Self> {
-        let sensor = whole("sensor", sensor, 0..=MAX_SENSORS as u8 - 1)?;
-        Ok(Self { sensor, firings: whole("firings", firings, 1..=u8::MAX)? })
-    }
-
-    fn __repr__(slf: &Bound<'_, Self>) -> PyResult<String> {
-        repr(slf, &BLIND)
-    }
-
-    /// Its fields by their names: a dict of plain values.
-    ///
-    /// Example:
-    ///     >>> import eeruf
-    ///     >>> eeruf.Blind(3, 20).to_dict()
-    ///     {'sensor': 3, 'firings': 20}
-    fn to_dict<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
-        to_dict(slf, &BLIND)
-    }
-
-    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
-        reduce(slf, &BLIND)
-    }
-}
-
-/// The state of the space before a sensor.
-///
-/// Example:
-///     >>> import eeruf
-///     >>> eeruf.State("clear", age_us=51_200).to_dict()
-///     {'kind': 'clear', 't_echo_us': None, 'age_us': 51200, 'why': None, 'explained_by': None}
-#[pyclass(frozen, eq, hash, get_all, module = "eeruf")]
-#[derive(Clone, PartialEq, Eq, Hash)]
+/// The state of the space before a sensor, before Python sees it.
 pub(crate) struct State {
-    /// ``"obstacle"``: something stands there; ``"clear"``: nothing is in range; ``"too_close"``: closer than the
-    /// sensor can measure; ``"unanswered"``: it does not answer, or its line is stuck; ``"unknown"``.
     kind: &'static str,
-    /// The echo time of an obstacle, in microseconds; None for all else.
     t_echo_us: Option<u32>,
-    /// Microseconds since that was last confirmed, or for which nothing has been known or answered; at most 2^31
-    /// (36 minutes), which stands for all longer times.
     age_us: u32,
-    /// Why nothing is known: ``"no_firing"``, ``"unsure"`` (one echo, or one silence), ``"rejected"``, ``"no_witness"``
-    /// (silence that nothing confirms) or ``"ambiguous"``; None for all else.
     why: Option<&'static str>,
-    /// The sensor whose sound explains an ambiguous echo, or ``"history"``; None for all else.
     explained_by: Option<ExplainedBy>,
 }
 
@@ -226,46 +172,10 @@ impl State {
             _ => known(unknown, Micros::ZERO),
         }
     }
-}
 
-const STATE: [&str; 5] = ["kind", "t_echo_us", "age_us", "why", "explained_by"];
-
-#[pymethods]
-impl State {
-    #[new]
-    #[pyo3(signature = (kind, t_echo_us=None, age_us=None, why=None, explained_by=None))]
-    #[pyo3(text_signature = "(kind, t_echo_us=None, age_us=0, why=None, explained_by=None)")]
-    fn new(
-        kind: &Bound<'_, PyAny>,
-        t_echo_us: Option<&Bound<'_, PyAny>>,
-        age_us: Option<&Bound<'_, PyAny>>,
-        why: Option<&Bound<'_, PyAny>>,
-        explained_by: Option<&Bound<'_, PyAny>>,
-    ) -> PyResult<Self> {
-        Ok(Self {
-            kind: choice("kind", Some(kind), &KINDS.map(|kind| (kind, kind)))?,
-            t_echo_us: whole_or_none("t_echo_us", t_echo_us, 0..=u32::MAX - 1)?,
-            age_us: whole_or("age_us", age_us, 0, 0..=1 << 31)?,
-            why: why.map(|why| choice("why", Some(why), &WHYS.map(|why| (why, why)))).transpose()?,
-            explained_by: explained_by.map(ExplainedBy::from_python).transpose()?,
-        })
-    }
-
-    fn __repr__(slf: &Bound<'_, Self>) -> PyResult<String> {
-        repr(slf, &STATE)
-    }
-
-    /// Its fields by their names: a dict of plain values.
-    ///
-    /// Example:
-    ///     >>> import eeruf
-    ///     >>> eeruf.State("unanswered", age_us=1_000).to_dict()["kind"]
-    ///     'unanswered'
-    fn to_dict<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
-        to_dict(slf, &STATE)
-    }
-
-    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
-        reduce(slf, &STATE)
+    /// As Python sees it.
+    pub(crate) fn into_python(self, py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
+        let Self { kind, t_echo_us, age_us, why, explained_by } = self;
+        record(py, "State", (kind, t_echo_us, age_us, why, explained_by))
     }
 }

@@ -6,7 +6,7 @@ use std::{
     thread::{self, ThreadId},
 };
 
-use eeruf_sim::{Body, Own, SimulationError, Stop};
+use eeruf_sim::{Body, Moment, Own, SimulationError, Stop};
 use pyo3::{
     PyTraverseError, PyVisit,
     prelude::*,
@@ -16,12 +16,12 @@ use pyo3::{
 use crate::{
     arguments::{instance, number, shown, whole, wrong},
     errors::{Raise, SimulationError as SimulationRefused},
+    fields::record,
     logs,
     own::{self, Calls},
     pose::{PoseOf, pose_of, to_pose},
     program::Recording,
     readings::Readings,
-    robot_state::RobotState,
     scene::Scene,
     schedule::Schedule,
     simulate::Asked,
@@ -504,19 +504,20 @@ impl Simulation {
 
     /// The robots now: a list of ``RobotState``.
     #[getter]
-    fn robots(&self, py: Python<'_>) -> PyResult<Vec<RobotState>> {
+    fn robots<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyAny>>> {
         let world = &self.asked().world;
         let state = |(index, robot): (usize, &eeruf_sim::Robot)| {
             let moment = self.lock()?.simulation.moment(index).map_err(Raise::raise)?;
-            let at = moment.pose.translation;
-            Ok(RobotState {
-                pose: (at.x, at.y, moment.pose.rotation.angle()),
-                velocity_m_s: (moment.velocity.x, moment.velocity.y),
-                turn_rad_s: moment.turn_rad_s,
-                touches: world.scene().contact(&Body::Disc(robot.radius_m().max(1e-6)), &moment.pose).is_some(),
-            })
+            let touches = world.scene().contact(&Body::Disc(robot.radius_m().max(1e-6)), &moment.pose).is_some();
+            Ok((moment, touches))
         };
-        py.detach(|| world.robots().iter().enumerate().map(state).collect())
+        let states = py.detach(|| world.robots().iter().enumerate().map(state).collect::<PyResult<Vec<_>>>())?;
+        let of_python = |(moment, touches): (Moment, bool)| {
+            let (at, velocity) = (moment.pose.translation, (moment.velocity.x, moment.velocity.y));
+            let pose = (at.x, at.y, moment.pose.rotation.angle());
+            record(py, "RobotState", (pose, velocity, moment.turn_rad_s, touches))
+        };
+        states.into_iter().map(of_python).collect()
     }
 
     /// The time that has passed, in seconds.

@@ -2,13 +2,13 @@
 
 use std::sync::MutexGuard;
 
-use eeruf_sim::{Point, navigation::SECTORS};
-use pyo3::{prelude::*, types::PyDict};
+use eeruf_sim::Point;
+use pyo3::prelude::*;
 
 use crate::{
-    arguments::{flag, instance, number, number_or, shown, whole_or, wrong},
+    arguments::{instance, number_or, whole_or},
     columns::read_only,
-    fields::{Reduced, reduce, repr, to_dict},
+    fields::{record, repr},
     himm::Himm,
     pose::{point_of, pose_of, to_pose},
 };
@@ -175,18 +175,19 @@ impl Vfh {
     ///     >>> from eeruf import nav
     ///     >>> nav.Vfh().steer(nav.Himm(), place=(0, 0), target=(5, 0))
     ///     Steering(direction_rad=0.0, valley=(0, 72), trapped=False)
-    fn steer(
+    fn steer<'py>(
         &self,
-        grid: &Bound<'_, PyAny>,
+        grid: &Bound<'py, PyAny>,
         place: &Bound<'_, PyAny>,
         target: &Bound<'_, PyAny>,
-    ) -> PyResult<Option<Steering>> {
+    ) -> PyResult<Option<Bound<'py, PyAny>>> {
         let (place, target): (Point, Point) = (point_of("place", place)?, point_of("target", target)?);
-        Ok(self.0.steer(&*grid_of(grid)?, place, target).map(|steering| Steering {
-            direction_rad: steering.direction_rad,
-            valley: (steering.valley.first, steering.valley.sectors),
-            trapped: steering.trapped,
-        }))
+        let steering = self.0.steer(&*grid_of(grid)?, place, target);
+        let of_python = |steering: eeruf_sim::navigation::Steering| {
+            let valley = (steering.valley.first, steering.valley.sectors);
+            record(grid.py(), "Steering", (steering.direction_rad, valley, steering.trapped))
+        };
+        steering.map(of_python).transpose()
     }
 
     /// Drives from a pose to a target, for ``Simulation.set_velocity``: the farther off the heading, the slower. Where
@@ -228,64 +229,5 @@ impl Vfh {
 
     fn __repr__(slf: &Bound<'_, Self>) -> PyResult<String> {
         repr(slf, &VFH)
-    }
-}
-
-/// Where to steer.
-///
-/// Example:
-///     >>> from eeruf import nav
-///     >>> steering = nav.Vfh().steer(nav.Himm(), place=(0, 0), target=(0, 5))
-///     >>> round(steering.direction_rad, 3), steering.trapped
-///     (1.571, False)
-#[pyclass(frozen, eq, get_all, module = "eeruf.nav")]
-#[derive(Clone, PartialEq)]
-pub(crate) struct Steering {
-    /// The direction, in radians of the scene, counter-clockwise from the x axis.
-    direction_rad: f64,
-    /// The valley that was chosen: its first sector, and how many it has; 72 if nothing is near.
-    valley: (usize, usize),
-    /// True if the direction leads away from the target, by more than 90 degrees: the robot is in a dead end, or soon
-    /// will be.
-    trapped: bool,
-}
-
-const STEERING: [&str; 3] = ["direction_rad", "valley", "trapped"];
-
-#[pymethods]
-impl Steering {
-    #[new]
-    #[pyo3(signature = (direction_rad, valley=None, trapped=None))]
-    #[pyo3(text_signature = "(direction_rad, valley=(0, 72), trapped=False)")]
-    fn new(
-        direction_rad: &Bound<'_, PyAny>,
-        valley: Option<&Bound<'_, PyAny>>,
-        trapped: Option<&Bound<'_, PyAny>>,
-    ) -> PyResult<Self> {
-        let valley = valley.map_or(Ok((0, SECTORS)), |valley| {
-            let pair: Option<(usize, usize)> = valley.extract().ok();
-            let within = pair.filter(|&(first, sectors)| first < SECTORS && (1..=SECTORS).contains(&sectors));
-            within.ok_or_else(|| wrong("valley", shown(valley), "a first sector, 0 to 71, and how many, 1 to 72"))
-        })?;
-        let direction_rad = number("direction_rad", direction_rad, f64::MIN..=f64::MAX)?;
-        Ok(Self { direction_rad, valley, trapped: flag("trapped", trapped, false)? })
-    }
-
-    /// Its fields by their names: a dict of plain values.
-    ///
-    /// Example:
-    ///     >>> from eeruf import nav
-    ///     >>> nav.Vfh().steer(nav.Himm(), place=(0, 0), target=(5, 0)).to_dict()
-    ///     {'direction_rad': 0.0, 'valley': [0, 72], 'trapped': False}
-    fn to_dict<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
-        to_dict(slf, &STEERING)
-    }
-
-    fn __repr__(slf: &Bound<'_, Self>) -> PyResult<String> {
-        repr(slf, &STEERING)
-    }
-
-    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
-        reduce(slf, &STEERING)
     }
 }

@@ -13,7 +13,7 @@ use super::{Answer, show};
 use crate::files::error::InputError;
 use crate::files::implausible::read_firings;
 use crate::files::toml::read_schedule;
-use crate::report::diagnose::{Found, describe, json, who_fools_whom};
+use crate::report::diagnose::{DiagnosisReport, describe, json, who_fools_whom};
 
 /// Find in a ring's own log which sensors fool each other, and what is broken.
 ///
@@ -80,7 +80,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     };
     let timing = timing_of(args, &log)?;
     let diagnosis = diagnose(&log, &settings);
-    let found = Found {
+    let found = DiagnosisReport {
         file: &args.file,
         log: &log,
         diagnosis: &diagnosis,

@@ -18,7 +18,7 @@ use crate::files::implausible::read_firings;
 use crate::files::survey::{TruePath, simulate, true_paths};
 use crate::files::toml::read_world;
 use crate::files::write::write;
-use crate::report::survey::{FROM, Found, RingTerms, Scenes, describe, json, ring_file, who_hears_whom};
+use crate::report::survey::{FROM, RingTerms, Scenes, SurveyReport, describe, json, ring_file, who_hears_whom};
 
 /// Find from a measuring run which sensors hear each other, and write a ring file for `design`.
 ///
@@ -149,9 +149,9 @@ fn found<'a>(
     log: &'a FiringLog,
     surveyed: &'a Surveyed,
     truth: Option<&'a (Vec<TruePath>, String)>,
-) -> Found<'a> {
+) -> SurveyReport<'a> {
     let truth = truth.map(|(paths, physics)| (&paths[..], physics.as_str()));
-    Found { file, log, surveyed, until_us: args.until_us, speed_of_sound: args.speed_of_sound, truth }
+    SurveyReport { file, log, surveyed, until_us: args.until_us, speed_of_sound: args.speed_of_sound, truth }
 }
 
 /// A line for each scene, and their sum.

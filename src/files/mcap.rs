@@ -9,7 +9,7 @@ use std::sync::Arc;
 use eeruf_core::ReadingKind;
 use eeruf_files::FileError;
 use eeruf_logs::{Marker, McapWriter, Placement, Reading, Shape, Transform};
-use eeruf_sim::experiments::set_two::Place;
+use eeruf_sim::experiments::set_two::TrackPoint;
 use eeruf_sim::{HeardPath, Moment, Point, Pose, Readings, Scene, SensorId, Simulation, Vector, World};
 
 use super::error::InputError;
@@ -41,7 +41,7 @@ impl<'a> Stage<'a> {
     }
 
     /// The first robot was driven; its places are in order of time.
-    pub(crate) fn driven(world: &'a World, track: &'a [Place]) -> Self {
+    pub(crate) fn driven(world: &'a World, track: &'a [TrackPoint]) -> Self {
         let moment = |robot, time_s| if robot == 0 { on_track(track, time_s) } else { planned(world, robot, time_s) };
         Self { world, changes: &[], moment: Box::new(moment) }
     }
@@ -77,7 +77,7 @@ fn planned(world: &World, robot: usize, time_s: f64) -> Option<Moment> {
 }
 
 /// Between two places, or at the last one.
-fn on_track(track: &[Place], time_s: f64) -> Option<Moment> {
+fn on_track(track: &[TrackPoint], time_s: f64) -> Option<Moment> {
     let after = track.partition_point(|place| place.time_s <= time_s);
     let (before, after) = (track.get(after.saturating_sub(1))?, track.get(after));
     let Some(after) = after.filter(|after| after.time_s > before.time_s) else {

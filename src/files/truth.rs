@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use eeruf_files::FIRING_COLUMNS;
-use eeruf_sim::experiments::set_two::Place;
+use eeruf_sim::experiments::set_two::TrackPoint;
 use eeruf_sim::{Cause, Readings};
 
 use super::firings::{CLOCK, firing};
@@ -41,9 +41,9 @@ fn cause(cause: Cause) -> &'static str {
 }
 
 /// Where a robot was.
-pub(crate) fn track_csv(track: &[Place]) -> String {
+pub(crate) fn track_csv(track: &[TrackPoint]) -> String {
     let mut text = "time_s,x_m,y_m,heading_rad,speed_m_s\n".to_owned();
-    for Place { time_s, x_m, y_m, heading_rad, speed_m_s } in track {
+    for TrackPoint { time_s, x_m, y_m, heading_rad, speed_m_s } in track {
         _ = writeln!(text, "{time_s:.3},{x_m:.4},{y_m:.4},{heading_rad:.4},{speed_m_s:.3}");
     }
     text

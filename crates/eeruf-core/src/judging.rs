@@ -7,7 +7,7 @@ use crate::time::{Instant, Micros};
 /// A firing as a plan tells it to a judge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Firing {
+pub struct FiringContext {
     /// The phase of the schedule in which the sensor fired.
     pub phase: Phase,
     /// Expected change of a good reading since this sensor's firing before, in microseconds, if it comes from straight
@@ -15,7 +15,7 @@ pub struct Firing {
     pub expected_change_us: i32,
 }
 
-impl Firing {
+impl FiringContext {
     /// A firing in this phase, of a robot that stands.
     pub const fn new(phase: Phase) -> Self {
         Self { phase, expected_change_us: 0 }
@@ -34,7 +34,7 @@ pub struct Heard<'r> {
     /// The echo times, earliest first; none for silence.
     pub echoes: &'r [Micros],
     /// Properties of the firing, by the plan, and the change that odometry expects.
-    pub firing: Firing,
+    pub firing: FiringContext,
     /// `T_delta` of this sensor now: the ring's, or less where the plan allows the sensor less.
     pub t_delta: Micros,
 }

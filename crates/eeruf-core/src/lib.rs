@@ -101,7 +101,7 @@ pub use verified::VerifiedSchedule;
 pub mod judge {
     pub use crate::filter::MedianFilter;
     pub use crate::flow::m_of_n::MOfN;
-    pub use crate::judging::{Agreement, Explained, Firing, Heard, Judge, NoSounds, Pace, Quiet, Sounds};
+    pub use crate::judging::{Agreement, Explained, FiringContext, Heard, Judge, NoSounds, Pace, Quiet, Sounds};
     pub use crate::reading::{Explanation, Verdict};
     pub use crate::ring::AgreementRing;
 }

@@ -211,7 +211,7 @@ mod everything_public_has_a_format {
         formats::<(BrokenPromise, ImmediateRefiring<'_, 12>, Limits<'_>, ScheduledFiring<'_, 12>, Upcoming)>();
         formats::<(Verification<'_, 12>, Violation, ViolationKind)>();
         formats::<(SensorLimits, Uneven<'_>, EachSensor<12>)>();
-        formats::<(TurnSettings, BeliefSettings, Firing, Survey)>();
+        formats::<(TurnSettings, BeliefSettings, FiringContext, Survey)>();
         formats::<(FlowRing<12>, FlowRing<12, 8, EachSensor<12>>)>();
         formats::<Verification<'_, 12>>();
     }

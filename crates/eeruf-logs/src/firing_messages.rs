@@ -54,7 +54,7 @@ fn of_cdr(data: &[u8]) -> Option<(Firing, String)> {
 pub(crate) fn read(input: impl Read, file: &Path) -> Result<FiringLog, FileError> {
     let mut input = BufReader::new(input);
     let mut reader = LinearReader::new_with_options(LinearReaderOptions::default().with_emit_chunks(false));
-    let mut of = Found::default();
+    let mut of = FiringMessages::default();
     while let Some(event) = reader.next_event() {
         match event {
             Ok(LinearReadEvent::ReadRequest(wanted)) => {
@@ -72,7 +72,7 @@ pub(crate) fn read(input: impl Read, file: &Path) -> Result<FiringLog, FileError
 }
 
 #[derive(Default)]
-struct Found {
+struct FiringMessages {
     /// Schemas of firings, and channels that have them.
     schemas: BTreeSet<u16>,
     channels: Vec<(u16, String)>,
@@ -83,7 +83,7 @@ struct Found {
     damage: Option<String>,
 }
 
-impl Found {
+impl FiringMessages {
     fn record(&mut self, opcode: u8, data: &[u8], file: &Path) -> Result<(), FileError> {
         let Ok(record) = ::mcap::parse_record(opcode, data) else {
             self.damage = Some("a record does not have the fields of its kind".to_owned());

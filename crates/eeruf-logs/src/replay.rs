@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 
 use eeruf_core::flow::{Belief, BeliefSettings};
-use eeruf_core::judge::{Explanation, Firing as Fired, Judge as _};
+use eeruf_core::judge::{Explanation, FiringContext, Judge as _};
 use eeruf_core::plan::{Limits, OwnLimits, Plan};
 use eeruf_core::{
     EachSensor, Instant, MAX_SENSORS, Micros, Phase, Reading, ReadingKind, Ring, RingConfig, RingError, RingEvent,
@@ -236,8 +236,8 @@ impl Plan for Recorded {
 
     fn restart(&mut self, _: Instant) {}
 
-    fn last_firing(&self, _: u8, _: u8) -> Fired {
-        Fired::new(Phase::A)
+    fn last_firing(&self, _: u8, _: u8) -> FiringContext {
+        FiringContext::new(Phase::A)
     }
 
     fn limits(&self) -> Limits<'_> {

@@ -3,7 +3,7 @@
 use std::io::{self, Read};
 use std::path::Path;
 
-use eeruf_serial::{Decoder, Firing as Frame, FrameError, Message};
+use eeruf_serial::{Decoder, FiringMessage, FrameError, Message};
 
 use crate::firings::{Firing, FiringLog};
 use crate::options::{Options, Parts, RangeUnit};
@@ -43,7 +43,7 @@ impl Line {
 }
 
 /// Hands in each firing with its time, in microseconds, of a clock that does not wrap.
-fn frames(mut input: impl Read, mut each: impl FnMut(Frame, i64)) -> io::Result<Line> {
+fn frames(mut input: impl Read, mut each: impl FnMut(FiringMessage, i64)) -> io::Result<Line> {
     let (mut decoder, mut line) = (Decoder::default(), Line::default());
     let (mut next, mut last, mut is_first) = (None, None::<(u32, i64)>, true);
     let mut buffer = vec![0; 1 << 14];

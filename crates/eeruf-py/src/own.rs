@@ -6,7 +6,7 @@ use std::{
 };
 
 use eeruf_core::{MAX_SENSORS, Micros, Phase, ReadingKind};
-use eeruf_sim::{Echo, Filter, Filtered, Firing, FiringPeriod, MakeOwn, Own, OwnError};
+use eeruf_sim::{Echo, Filter, Filtered, FiringMethod, FiringPeriod, MakeOwn, Own, OwnError};
 use pyo3::{
     PyTraverseError, PyVisit,
     prelude::*,
@@ -349,7 +349,7 @@ struct OwnFiring {
 
 const PERIOD: &str = "(length_us, [(t_fire_us, sensor), ..]), or the same with the phase, 0 to 7, as a third";
 
-impl Firing for OwnFiring {
+impl FiringMethod for OwnFiring {
     fn plan(&mut self, period: u32) -> Result<FiringPeriod, OwnError> {
         self.calls.call(self.index, |callable| period_of(&callable.call1((period,))?))
     }

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use eeruf_core::{Micros, judge::Explanation};
 use eeruf_files::{FIRING_COLUMNS, firing_row};
-use eeruf_serial::Firing;
+use eeruf_serial::FiringMessage;
 
 pub(crate) struct FiringLog {
     file: BufWriter<File>,
@@ -20,13 +20,13 @@ impl FiringLog {
     }
 
     /// Writes a firing, by a clock of this name.
-    pub(crate) fn write(&mut self, clock: &str, firing: &Firing) -> io::Result<()> {
+    pub(crate) fn write(&mut self, clock: &str, firing: &FiringMessage) -> io::Result<()> {
         if !self.begun {
             self.begun = true;
             writeln!(self.file, "# clock: {clock}, 32 bits")?;
             writeln!(self.file, "{FIRING_COLUMNS},explained_by,late_us")?;
         }
-        let Firing { sensor, period, phase, kind, explained_by, .. } = firing;
+        let FiringMessage { sensor, period, phase, kind, explained_by, .. } = firing;
         let echo = firing.t_echo.map(Micros::as_micros);
         let (fired, late) = (firing.fired.as_micros(), firing.late.as_micros());
         let by = match explained_by {
@@ -56,7 +56,7 @@ mod tests {
         let by = [None, None, None, Some(Explanation::Sensor(6)), Some(Explanation::History)];
         let kinds = [ReadingKind::Accepted, ReadingKind::Rejected, ReadingKind::NoEcho, ReadingKind::Ambiguous];
         for (n, (kind, explained_by)) in kinds.into_iter().chain([ReadingKind::Ambiguous]).zip(by).enumerate() {
-            let firing = Firing {
+            let firing = FiringMessage {
                 sensor: n as u8,
                 phase: 1,
                 kind,

@@ -19,7 +19,7 @@ use eeruf_core::{
 };
 use eeruf_design::{FlowDesign, PeriodProblem, RingSpec, Search, shortest};
 use eeruf_hc_sr04::{HcSr04Ring, Pins, Settings};
-use eeruf_serial::{Firing, Message, Received};
+use eeruf_serial::{FiringMessage, Message, Received};
 use embedded_hal::delay::DelayNs;
 use embedded_hal::digital::{Error, ErrorKind, ErrorType, InputPin, OutputPin};
 
@@ -205,7 +205,7 @@ impl Known {
             }
             RingEvent::Reading(reading) => {
                 let &(fired, late) = self.fired.get(usize::from(reading.sensor))?;
-                Some(Message::Firing(Firing::of(&reading, fired, late, now)))
+                Some(Message::Firing(FiringMessage::of(&reading, fired, late, now)))
             }
             RingEvent::PeriodEnded(ref stats) => {
                 let (period, max_late, health) = (stats.period, stats.max_late, health.collect());

@@ -6,7 +6,7 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::time::{Duration, Instant};
 
 use eeruf_core::{Micros, ReadingKind};
-use eeruf_serial::{Firing, Message, Received};
+use eeruf_serial::{FiringMessage, Message, Received};
 
 use crate::board_clock::BoardClock;
 use crate::board_line::{FromLine, listen, nanoseconds};
@@ -241,7 +241,8 @@ impl EerufNode {
                     let kind = self.filter.push(sensor, t_echo.map_or(Raw::Nothing, |t_echo| self.raw(t_echo)))?;
                     let fired = eeruf_core::Instant::from_micros(fired_us);
                     let (late, age) = (Micros::ZERO, Micros::ZERO);
-                    let firing = Firing { sensor, phase, kind, fired, period, t_echo, late, age, explained_by: None };
+                    let firing =
+                        FiringMessage { sensor, phase, kind, fired, period, t_echo, late, age, explained_by: None };
                     // The stamp's clock is unknown; the message has just come.
                     self.firing(&firing, nanoseconds())?;
                 }
@@ -272,11 +273,11 @@ impl EerufNode {
         if self.scale.metres(t_echo) < f64::from(self.scale.min_m) { Raw::TooEarly } else { Raw::Echo(t_echo) }
     }
 
-    fn firing(&mut self, firing: &Firing, fired_ns: i64) -> Result<(), String> {
+    fn firing(&mut self, firing: &FiringMessage, fired_ns: i64) -> Result<(), String> {
         if let Some(log) = &mut self.log {
             log.write(&self.clock_name, firing).map_err(|error| format!("log: {error}"))?;
         }
-        let Firing { sensor, kind, t_echo, late, explained_by, .. } = *firing;
+        let FiringMessage { sensor, kind, t_echo, late, explained_by, .. } = *firing;
         self.diagnosis.reading(self.now_s(), sensor, kind, t_echo, late, explained_by);
         self.publish(sensor, kind, t_echo, fired_ns);
         Ok(())

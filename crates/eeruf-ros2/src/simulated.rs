@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use eeruf_core::{Instant, Micros, ReadingKind};
-use eeruf_serial::Firing;
+use eeruf_serial::FiringMessage;
 use eeruf_sim::{Fault, FaultKind, Method, Options, Simulation, Stop, World};
 
 use crate::board_line::nanoseconds;
@@ -29,7 +29,7 @@ pub(crate) fn placing(world: &World, height_m: f64) -> Placing {
 
 /// A reading of the simulation.
 pub(crate) struct Simulated {
-    pub(crate) firing: Firing,
+    pub(crate) firing: FiringMessage,
     /// When it fired, by the host's clock.
     pub(crate) fired_ns: i64,
     /// The echo time of a sensor that fires alone; none if nothing is in range.
@@ -93,7 +93,7 @@ impl Simulator {
             let fired_s = readings.fired_s[n];
             let t_echo = micros(readings.t_echo_us[n]);
             let broken = broken(self.simulation.world().faults(), readings.sensor[n], fired_s);
-            let firing = Firing {
+            let firing = FiringMessage {
                 sensor: readings.sensor[n],
                 phase: readings.phase[n],
                 kind: broken.filter(|_| t_echo.is_none()).unwrap_or(readings.kind[n]),

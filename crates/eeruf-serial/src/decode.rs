@@ -8,7 +8,7 @@ use crc::{CRC_16_IBM_3740, Crc, Table};
 use eeruf_core::{Instant, MAX_SENSORS, Micros, ReadingKind, judge::Explanation};
 
 use crate::encode::{LONGEST_CLOCK, LONGEST_FRAME};
-use crate::firing::Firing;
+use crate::firing::FiringMessage;
 use crate::{BY_HISTORY, BY_NOTHING, FIRING, HELLO, NO_ECHO, OF_HOPPING, OLDEST_VERSION, PERIOD, VERSION};
 
 const CRC: Crc<u16, Table<1>> = Crc::<u16, Table<1>>::new(&CRC_16_IBM_3740);
@@ -24,7 +24,7 @@ pub enum Message {
         clock: String,
     },
     /// A firing, and what came of it.
-    Firing(Firing),
+    Firing(FiringMessage),
     /// A period has ended.
     Period {
         /// Its number, from 0.
@@ -157,7 +157,7 @@ fn firing(mut fields: Fields<'_>, version: u8, of_hopping: bool) -> Result<Messa
     if usize::from(sensor) >= MAX_SENSORS {
         return Err(FrameError::Content("sensor"));
     }
-    let firing = Firing {
+    let firing = FiringMessage {
         sensor,
         phase,
         kind: *ReadingKind::ALL.get(usize::from(kind)).ok_or(FrameError::Content("kind of reading"))?,

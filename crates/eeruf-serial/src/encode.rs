@@ -2,7 +2,7 @@
 
 use eeruf_core::{MAX_SENSORS, Micros, judge::Explanation};
 
-use crate::firing::Firing;
+use crate::firing::FiringMessage;
 use crate::{BY_HISTORY, BY_NOTHING, FIRING, HELLO, NO_ECHO, PERIOD, VERSION};
 
 /// A frame's content at its longest: that of a period's end with 64 sensors, and the check sum.
@@ -47,7 +47,7 @@ impl Encoder {
     }
 
     /// A firing.
-    pub fn firing(&mut self, firing: &Firing) -> Frame {
+    pub fn firing(&mut self, firing: &FiringMessage) -> Frame {
         let mut content = self.begin(FIRING);
         content.push(&[firing.sensor, firing.phase, firing.kind as u8]);
         content.push(&firing.fired.as_micros().to_le_bytes());

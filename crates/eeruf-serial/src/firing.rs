@@ -2,7 +2,7 @@ use eeruf_core::{Instant, Micros, Reading, ReadingKind, judge::Explanation};
 
 /// One firing of one sensor, and what came of it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Firing {
+pub struct FiringMessage {
     /// The sensor, from 0.
     pub sensor: u8,
     /// The phase it fired in, from 0.
@@ -23,7 +23,7 @@ pub struct Firing {
     pub explained_by: Option<Explanation>,
 }
 
-impl Firing {
+impl FiringMessage {
     /// A reading of a sensor that `fired` then, so `late`, as a frame has it that is made `now`.
     pub fn of(reading: &Reading, fired: Instant, late: Micros, now: Instant) -> Self {
         let Reading { sensor, phase, kind, period, t_echo, explained_by, .. } = *reading;

@@ -37,7 +37,7 @@ mod recorder;
 #[cfg(feature = "decode")]
 pub use decode::{Decoder, FrameError, Message, Received};
 pub use encode::{Encoder, Frame, LONGEST_CLOCK, LONGEST_FRAME};
-pub use firing::Firing;
+pub use firing::FiringMessage;
 pub use recorder::Recorder;
 
 /// The version of the protocol: the upper four bits of each frame's first byte.

@@ -3,7 +3,7 @@
 use eeruf_core::{Instant, MAX_SENSORS, Micros, RingEvent};
 
 use crate::encode::{Encoder, Frame};
-use crate::firing::Firing;
+use crate::firing::FiringMessage;
 
 /// Number of firings from one greeting to the next.
 const GREET_EVERY: u8 = 128;
@@ -48,7 +48,7 @@ impl<const K: usize> Recorder<K> {
             }
             RingEvent::Reading(reading) => {
                 let &(fired, late) = self.fired.get(usize::from(reading.sensor))?;
-                Some(self.encoder.firing(&Firing::of(&reading, fired, late, now)))
+                Some(self.encoder.firing(&FiringMessage::of(&reading, fired, late, now)))
             }
             RingEvent::PeriodEnded(ref stats) => {
                 Some(self.encoder.period(stats.period, stats.max_late, edges_lost, (0..K as u8).map(health)))

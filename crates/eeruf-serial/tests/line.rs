@@ -2,7 +2,7 @@
 //! else.
 
 use eeruf_core::{Instant, Micros, ReadingKind, Ring, RingConfig, RingEvent, judge::Explanation, tables::PAPER_12};
-use eeruf_serial::{Decoder, Encoder, Firing, Frame, FrameError, LONGEST_FRAME, Message, Received, Recorder};
+use eeruf_serial::{Decoder, Encoder, FiringMessage, Frame, FrameError, LONGEST_FRAME, Message, Received, Recorder};
 use fastrand::Rng;
 use proptest::prelude::*;
 
@@ -19,11 +19,11 @@ fn explanation() -> impl Strategy<Value = Option<Explanation>> {
     ]
 }
 
-fn firings() -> impl Strategy<Value = Firing> {
+fn firings() -> impl Strategy<Value = FiringMessage> {
     let numbers = (any::<u32>(), any::<u32>(), any::<u16>(), any::<u32>());
     let kinds = 0..ReadingKind::ALL.len();
     (0..64_u8, 0..8_u8, kinds, prop::option::of(0..u32::MAX), numbers, explanation()).prop_map(
-        |(sensor, phase, kind, t_echo, (fired, period, late, age), explained_by)| Firing {
+        |(sensor, phase, kind, t_echo, (fired, period, late, age), explained_by)| FiringMessage {
             sensor,
             phase,
             kind: ReadingKind::ALL[kind],
@@ -86,7 +86,7 @@ proptest! {
 
 fn a_minute(numbers: &mut Rng, frames: usize) -> Vec<Frame> {
     let mut encoder = Encoder::new();
-    let firing = |n: usize, numbers: &mut Rng| Firing {
+    let firing = |n: usize, numbers: &mut Rng| FiringMessage {
         sensor: (n % 8) as u8,
         phase: (n / 8 % 2) as u8,
         kind: ReadingKind::ALL[numbers.usize(..12)],
@@ -185,7 +185,7 @@ fn one_wrong_bit_before_packing_is_always_noticed() {
 /// The example of docs/reference/serial.md.
 #[test]
 fn a_firing_is_these_bytes() {
-    let firing = Firing {
+    let firing = FiringMessage {
         sensor: 3,
         phase: 1,
         kind: ReadingKind::Accepted,
@@ -281,7 +281,7 @@ fn a_recorder_says_everything_that_a_ring_reads() {
 #[test]
 fn frames_of_earlier_versions_are_still_read() {
     let bytes = |hex: &str| hex.split(' ').map(|byte| u8::from_str_radix(byte, 16).unwrap()).collect::<Vec<_>>();
-    let expected = Firing {
+    let expected = FiringMessage {
         sensor: 3,
         phase: 1,
         kind: ReadingKind::Accepted,

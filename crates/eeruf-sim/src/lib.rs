@@ -7,7 +7,7 @@
 //!   for a whole ring and says who hears whom.
 //! - [`reception`] solves for the moment at which sound meets a moving receiver; [`Scene::contact`] for what a robot
 //!   touches.
-//! - A [`Simulation`] goes on step by step under the caller's own controller, and with the caller's own [`Firing`] and
+//! - A [`Simulation`] goes on step by step under the caller's own controller, and with the caller's own [`FiringMethod`] and
 //!   [`Filter`] where they are given ([`Own`]).
 //! - A [`World`] puts robots with rings, clocks and motions into a scene, from a TOML file or from code; [`simulate()`]
 //!   runs the ring of `eeruf-core` through simulated time under a [`Method`]. Every one of the [`Readings`] knows what
@@ -81,7 +81,7 @@ pub use acoustics::{
 pub use geometry::{Moment, Point, Pose, Specular, Vector, alhazen, alhazen_twice, pose_of};
 pub use maps::OccupancyGrid;
 pub use methods::{
-    Firing, FiringPeriod, FlowOptions, Method, OwnError, UnknownMethod, best_schedule_for, requirements_of,
+    FiringMethod, FiringPeriod, FlowOptions, Method, OwnError, UnknownMethod, best_schedule_for, requirements_of,
     shortest_schedule_for, table_i_d_for,
 };
 pub use navigation::{Driven, Himm, LabMate, Vfh};

@@ -3,10 +3,10 @@
 use eeruf_logs::Share;
 use serde_json::{Value, json as object};
 
-use super::Found;
+use super::DiagnosisReport;
 
 /// Output of `--json`.
-pub(crate) fn json(found: &Found<'_>) -> Value {
+pub(crate) fn json(found: &DiagnosisReport<'_>) -> Value {
     let diagnosis = found.diagnosis;
     let paths: Vec<_> = diagnosis
         .paths

@@ -14,7 +14,7 @@ pub(crate) use picture::who_fools_whom;
 pub(crate) use text::describe;
 
 /// A log and what was found in it.
-pub(crate) struct Found<'a> {
+pub(crate) struct DiagnosisReport<'a> {
     pub(crate) file: &'a Path,
     pub(crate) log: &'a FiringLog,
     pub(crate) diagnosis: &'a Diagnosis,
@@ -24,7 +24,7 @@ pub(crate) struct Found<'a> {
     pub(crate) speed_of_sound: f64,
 }
 
-impl Found<'_> {
+impl DiagnosisReport<'_> {
     fn length_m(&self, path: &FoundPath) -> f64 {
         1e-6 * path.travel_us * self.speed_of_sound
     }

@@ -2,11 +2,11 @@
 
 use plotters::style::RGBColor;
 
-use super::Found;
+use super::DiagnosisReport;
 use crate::report::draw::Picture;
 
 /// Draws it: who sends to the right, who hears downwards.
-pub(crate) fn who_fools_whom(found: &Found<'_>) -> Picture {
+pub(crate) fn who_fools_whom(found: &DiagnosisReport<'_>) -> Picture {
     const LEFT: f64 = 70.0;
     const TOP: f64 = 96.0;
     const CELL: f64 = 46.0;

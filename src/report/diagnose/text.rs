@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use eeruf_logs::{FoundPath, Share};
 
-use super::Found;
+use super::DiagnosisReport;
 use crate::report::table::markdown;
 
 /// As many paths of a robot that drives are printed: each is a line of a second.
@@ -13,7 +13,7 @@ const MOST_LINES: usize = 30;
 const APART_PPM: f64 = 10.0;
 
 /// The whole diagnosis.
-pub(crate) fn describe(found: &Found<'_>) -> String {
+pub(crate) fn describe(found: &DiagnosisReport<'_>) -> String {
     let mut text = head(found);
     faults(found, &mut text);
     sensors(found, &mut text);
@@ -26,7 +26,7 @@ pub(crate) fn describe(found: &Found<'_>) -> String {
     text
 }
 
-fn head(found: &Found<'_>) -> String {
+fn head(found: &DiagnosisReport<'_>) -> String {
     let (log, diagnosis) = (found.log, found.diagnosis);
     let mut text = format!(
         "{}: {} firings of {} sensors in {} periods and {} phases; clock: {}\n",
@@ -104,7 +104,7 @@ fn scatter_us(paths: &[FoundPath]) -> Option<f64> {
 }
 
 /// Sensors that hear nothing, and whether the log says why.
-fn faults(found: &Found<'_>, text: &mut String) {
+fn faults(found: &DiagnosisReport<'_>, text: &mut String) {
     for fault in &found.diagnosis.faults {
         _ = writeln!(text, "Sensor {} is {}: {}.", fault.sensor + 1, fault.symptom.as_str(), fault.said);
     }
@@ -117,7 +117,7 @@ fn faults(found: &Found<'_>, text: &mut String) {
     }
 }
 
-fn sensors(found: &Found<'_>, text: &mut String) {
+fn sensors(found: &DiagnosisReport<'_>, text: &mut String) {
     if found.diagnosis.paths.is_empty() {
         let rows = found.diagnosis.hearing.iter().map(|of| vec![(of.sensor + 1).to_string(), percent(of.echoes)]);
         _ = writeln!(text, "\n{}", markdown(&["sensor", "echoes"], rows));
@@ -149,7 +149,7 @@ fn sensors(found: &Found<'_>, text: &mut String) {
     _ = writeln!(text, "\n{}", markdown(&header, rows));
 }
 
-fn paths(found: &Found<'_>, text: &mut String) {
+fn paths(found: &DiagnosisReport<'_>, text: &mut String) {
     let mut foreign: Vec<_> = found.diagnosis.paths.iter().filter(|path| path.sender != path.receiver).collect();
     if foreign.is_empty() {
         return;

@@ -1,6 +1,6 @@
 //! A course with what each method drove and the grid that it made of its readings (Fig. 6).
 
-use eeruf_sim::experiments::set_two::{Cell, Course, Ending, Place, ROOM_M, Run, SetTwo};
+use eeruf_sim::experiments::set_two::{Cell, Course, Ending, ROOM_M, Run, SetTwo, TrackPoint};
 use plotters::style::text_anchor::HPos;
 use plotters::style::{Color, RGBColor};
 
@@ -104,7 +104,7 @@ impl View {
         picture
     }
 
-    fn outline(&self, picture: &mut Picture, place: &Place, width: f64, colour: plotters::style::RGBAColor) {
+    fn outline(&self, picture: &mut Picture, place: &TrackPoint, width: f64, colour: plotters::style::RGBAColor) {
         let (sin, cos) = place.heading_rad.sin_cos();
         let half = 0.5 * SIDE_M;
         let corner = |along: f64, aside: f64| {

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use eeruf_sim::experiments::Spread;
-use eeruf_sim::experiments::set_three::{Arrangement, Brief, Figures, Group, PERIOD, Place, SetThree};
+use eeruf_sim::experiments::set_three::{Arrangement, Brief, Figures, Group, PERIOD, SetThree, Site};
 
 use crate::report::percent::{fine_percent, median};
 use crate::report::table::{markdown, or_dash};
@@ -78,8 +78,8 @@ fn belief(way: &str, figures: &Figures) -> Vec<String> {
 
 fn group<'g>(group: &'g Group, methods: impl Iterator<Item = &'g (String, Brief)>) -> Vec<String> {
     let place = group.place.map(|place| match place {
-        Place::Corridor => "corridor, ",
-        Place::Hall => "hall, ",
+        Site::Corridor => "corridor, ",
+        Site::Hall => "hall, ",
     });
     let arrangement = group.arrangement.map(|arrangement| match arrangement {
         Arrangement::Standing => "standing",

@@ -19,7 +19,7 @@ const COMPARED: [Method; 4] = [Method::Conventional, Method::Comparison, Method:
 type Key = (SensorId, Option<SensorId>, u8, Box<[Bounce]>);
 
 /// One path, and how often it fooled its receiver under each method.
-struct Row {
+struct FooledRow {
     path: Option<HeardPath>,
     /// For each method: wrong readings, and those of them that were believed.
     counts: Vec<(usize, usize)>,
@@ -28,7 +28,7 @@ struct Row {
 /// The paths that fooled one robot's sensors.
 pub(crate) struct Fooled {
     methods: Vec<Method>,
-    rows: Vec<(Key, Row)>,
+    rows: Vec<(Key, FooledRow)>,
     /// For each method, the wrong readings that are a sensor's own doing: its echo faded and it heard what lies behind.
     own: Vec<(usize, usize)>,
 }
@@ -43,7 +43,7 @@ impl Fooled {
         if compared.is_empty() {
             compared = runs.iter().take(COMPARED.len()).collect();
         }
-        let mut rows: BTreeMap<Key, Row> = BTreeMap::new();
+        let mut rows: BTreeMap<Key, FooledRow> = BTreeMap::new();
         let mut own = vec![(0, 0); compared.len()];
         for (column, readings) in compared.iter().enumerate() {
             for entry in readings.attribution(tolerance_us) {
@@ -54,7 +54,7 @@ impl Fooled {
                     let path = readings.paths.get(entry.path as usize);
                     let bounces = path.map_or_else(Box::default, |path| path.bounces.clone());
                     let key = (entry.receiver, entry.emitter, entry.cause as u8, bounces);
-                    let new = || Row { path: path.cloned(), counts: vec![(0, 0); compared.len()] };
+                    let new = || FooledRow { path: path.cloned(), counts: vec![(0, 0); compared.len()] };
                     &mut rows.entry(key).or_insert_with(new).counts[column]
                 } else {
                     &mut own[column]

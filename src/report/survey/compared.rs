@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::Found;
+use super::SurveyReport;
 use crate::files::survey::TruePath;
 use crate::report::table::markdown;
 
@@ -26,7 +26,7 @@ pub(crate) struct Compared {
     pub(crate) paths_wrong: usize,
 }
 
-pub(super) fn compare(found: &Found<'_>, truth: &[TruePath]) -> Compared {
+pub(super) fn compare(found: &SurveyReport<'_>, truth: &[TruePath]) -> Compared {
     let until_us = f64::from(found.until_us);
     let of = |x, y| truth.iter().filter(move |path| (path.sender, path.receiver) == (x, y));
     let is_true = |x, y, travel_us: f64| of(x, y).any(|path| (path.travel_us - travel_us).abs() <= SAME_US);
@@ -57,7 +57,7 @@ pub(crate) struct Scenes {
 }
 
 impl Scenes {
-    pub(crate) fn push(&mut self, found: &Found<'_>) {
+    pub(crate) fn push(&mut self, found: &SurveyReport<'_>) {
         let Some((truth, physics)) = found.truth else { return };
         self.rows.push((found.file.display().to_string(), compare(found, truth)));
         if self.physics.iter().all(|known| known != physics) {

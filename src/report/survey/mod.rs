@@ -18,7 +18,7 @@ pub(crate) use ring::{FROM, RingTerms, ring_file};
 pub(crate) use text::describe;
 
 /// A survey's log and what was found in it.
-pub(crate) struct Found<'a> {
+pub(crate) struct SurveyReport<'a> {
     pub(crate) file: &'a Path,
     pub(crate) log: &'a FiringLog,
     pub(crate) surveyed: &'a Surveyed,
@@ -29,7 +29,7 @@ pub(crate) struct Found<'a> {
     pub(crate) truth: Option<(&'a [TruePath], &'a str)>,
 }
 
-impl Found<'_> {
+impl SurveyReport<'_> {
     fn length_m(&self, path: &FoundPath) -> f64 {
         1e-6 * path.travel_us * self.speed_of_sound
     }
@@ -82,7 +82,7 @@ struct PathJson {
     accidents: f64,
 }
 
-pub(crate) fn json(found: &Found<'_>) -> Json {
+pub(crate) fn json(found: &SurveyReport<'_>) -> Json {
     let path = |path: &FoundPath| PathJson {
         sender: path.sender,
         receiver: path.receiver,

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::Found;
+use super::SurveyReport;
 
 /// Needs of a ring file besides who hears whom.
 pub(crate) struct RingTerms {
@@ -16,7 +16,7 @@ pub(crate) struct RingTerms {
 pub(crate) const FROM: &str = "# From the survey ";
 
 /// The pairs that hear each other as neighbours, each with the time after which the other's sound has passed.
-pub(crate) fn ring_file(found: &Found<'_>, terms: &RingTerms) -> String {
+pub(crate) fn ring_file(found: &SurveyReport<'_>, terms: &RingTerms) -> String {
     let conflicts = found.surveyed.conflicts(found.until_us);
     let round = |travel_us: f64| (travel_us.ceil() as u32).saturating_add(terms.tolerance_us).next_multiple_of(100);
     let intervals: Vec<_> = conflicts.iter().map(|&(x, y, travel_us)| (x, y, round(travel_us))).collect();

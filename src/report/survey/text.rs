@@ -4,11 +4,11 @@ use std::fmt::Write as _;
 
 use eeruf_logs::FoundPath;
 
-use super::{Found, compare};
+use super::{SurveyReport, compare};
 use crate::report::table::markdown;
 
 /// All of it.
-pub(crate) fn describe(found: &Found<'_>) -> String {
+pub(crate) fn describe(found: &SurveyReport<'_>) -> String {
     let surveyed = found.surveyed;
     let mut text = format!(
         "{}: {} sensors, {} slots; clock: {}{}\n",
@@ -57,7 +57,7 @@ pub(crate) fn describe(found: &Found<'_>) -> String {
     text
 }
 
-fn own(found: &Found<'_>, text: &mut String) {
+fn own(found: &SurveyReport<'_>, text: &mut String) {
     let mut without = Vec::new();
     for sensor in 0..found.surveyed.sensors as u8 {
         if found.surveyed.between(sensor, sensor).next().is_none() {
@@ -70,7 +70,7 @@ fn own(found: &Found<'_>, text: &mut String) {
     }
 }
 
-fn foreign(found: &Found<'_>, text: &mut String) {
+fn foreign(found: &SurveyReport<'_>, text: &mut String) {
     let header = ["hears", "sound of", "length m", "travel ms", "scatter us", "heard", "offsets", "accidents"];
     let row = |path: &FoundPath| {
         vec![
@@ -88,7 +88,7 @@ fn foreign(found: &Found<'_>, text: &mut String) {
 }
 
 /// Pairs without a path, and how much that is worth.
-fn silent(found: &Found<'_>, text: &mut String) {
+fn silent(found: &SurveyReport<'_>, text: &mut String) {
     let near = |x, y| found.surveyed.between(x, y).any(|path| path.travel_us <= f64::from(found.until_us));
     let silent: Vec<_> = found.pairs().filter(|&(x, y)| !near(x, y)).collect();
     if silent.is_empty() {

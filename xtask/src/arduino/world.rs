@@ -6,7 +6,7 @@ use std::process::Command;
 
 use anyhow::{Context as _, Error, Result, anyhow, bail, ensure};
 use eeruf_core::{ReadingKind, SpeedOfSound};
-use eeruf_serial::{Decoder, Firing, Message, Received};
+use eeruf_serial::{Decoder, FiringMessage, Message, Received};
 use fs_err as fs;
 
 use super::{Example, TARGET};
@@ -237,7 +237,10 @@ impl Heard {
             if sequence != awaited {
                 return Err(format!("frame {awaited} is missing"));
             }
-            if let Message::Firing(Firing { sensor, kind: ReadingKind::Accepted, t_echo: Some(t_echo), .. }) = message {
+            if let Message::Firing(FiringMessage {
+                sensor, kind: ReadingKind::Accepted, t_echo: Some(t_echo), ..
+            }) = message
+            {
                 self.accept(own_mm, sensor.into(), SpeedOfSound::at_celsius_tenths(200).distance_mm(t_echo), None);
             }
         }

@@ -15,11 +15,11 @@ const NOTHING: Micros = NO_ECHO;
 /// The echo time of a reading may be that of an earlier firing: [`Judge::stands_for`].
 ///
 /// ```
-/// use eeruf_core::{Instant, Micros, ReadingKind, judge::{Firing, Heard, Judge, MedianFilter, NoSounds}, Phase};
+/// use eeruf_core::{Instant, Micros, ReadingKind, judge::{FiringContext, Heard, Judge, MedianFilter, NoSounds}, Phase};
 /// let mut median = MedianFilter::<1>::new(3, Micros::ZERO)?;
 /// let mut push = |echoes_us: &[u32]| {
 ///     let echoes: Vec<_> = echoes_us.iter().copied().map(Micros::new).collect();
-///     let (fired, firing) = (Instant::from_micros(0), Firing::new(Phase::A));
+///     let (fired, firing) = (Instant::from_micros(0), FiringContext::new(Phase::A));
 ///     let (since_before, t_delta) = (Micros::ZERO, Micros::ZERO);
 ///     let heard = Heard { sensor: 0, fired, since_before, echoes: &echoes, firing, t_delta };
 ///     let verdict = median.judge(&heard, &NoSounds);

@@ -1,7 +1,7 @@
 //! [`InTurn`]: when sensors fire that fire in turn.
 
 use super::settings::{LONGEST_REST, TurnSettings};
-use crate::judging::{Firing, Heard, Judge, Pace, Quiet};
+use crate::judging::{FiringContext, Heard, Judge, Pace, Quiet};
 use crate::own_limits::{OwnLimits, SensorLimits};
 use crate::plan::{Limits, Plan};
 use crate::reading::Verdict;
@@ -562,8 +562,8 @@ impl<const K: usize, U: OwnLimits> Plan for InTurn<K, U> {
         self.decide();
     }
 
-    fn last_firing(&self, _sensor: u8, _periods_ago: u8) -> Firing {
-        Firing::new(Phase::A)
+    fn last_firing(&self, _sensor: u8, _periods_ago: u8) -> FiringContext {
+        FiringContext::new(Phase::A)
     }
 
     fn limits(&self) -> Limits<'_> {

@@ -2,7 +2,7 @@
 //!
 //! A plan never reads a clock. The caller passes `now` and gets the next deadline back.
 
-use crate::judging::{Firing, Heard, Judge, Pace};
+use crate::judging::{FiringContext, Heard, Judge, Pace};
 use crate::own_limits::SensorLimits;
 use crate::reading::Verdict;
 use crate::schedule::{Phase, VerifiedFor};
@@ -97,7 +97,7 @@ pub trait Plan {
     /// Starts again with phase a, no sooner than `now`.
     fn restart(&mut self, now: Instant);
     /// Properties of a sensor's last firing, `periods_ago` periods before the present one.
-    fn last_firing(&self, sensor: u8, periods_ago: u8) -> Firing;
+    fn last_firing(&self, sensor: u8, periods_ago: u8) -> FiringContext;
     /// Limits in the present period.
     fn limits(&self) -> Limits<'_>;
     /// Limits as of the next period, if it changes to another schedule then.

@@ -15,7 +15,7 @@
 use core::ops::Deref;
 
 use super::contract::{Limits, Plan};
-use crate::judging::Firing;
+use crate::judging::FiringContext;
 use crate::schedule::{MAX_PERIOD, Phase, Schedule};
 use crate::sensor_set::SensorSet;
 use crate::time::{Instant, Micros};
@@ -199,11 +199,11 @@ impl<T: Deref<Target = Schedule<K, M>>, const K: usize, const M: usize> Plan for
         self.listening = SensorSet::NONE;
     }
 
-    fn last_firing(&self, sensor: u8, _periods_ago: u8) -> Firing {
-        let Some(turn) = self.sensors.get(usize::from(sensor)) else { return Firing::new(Phase::A) };
+    fn last_firing(&self, sensor: u8, _periods_ago: u8) -> FiringContext {
+        let Some(turn) = self.sensors.get(usize::from(sensor)) else { return FiringContext::new(Phase::A) };
         // Once it has ended, its next firing's phase is known already.
         let ended = !self.listening.contains(sensor);
-        Firing::new(Phase(if ended { previous_phase::<M>(turn.phase) } else { turn.phase }))
+        FiringContext::new(Phase(if ended { previous_phase::<M>(turn.phase) } else { turn.phase }))
     }
 
     fn limits(&self) -> Limits<'_> {

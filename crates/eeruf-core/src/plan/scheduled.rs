@@ -4,7 +4,7 @@
 use core::ops::Deref;
 
 use super::contract::{Limits, Plan, Upcoming};
-use crate::judging::Firing;
+use crate::judging::FiringContext;
 use crate::own_limits::{InUse, OwnLimits, SensorLimits};
 use crate::schedule::{MAX_SENSORS, Phase, Schedule, VerifiedFor};
 use crate::sensor_set::SensorSet;
@@ -321,10 +321,14 @@ impl<T: Deref<Target = Schedule<K, M>>, const K: usize, const M: usize, U: OwnLi
         self.begin_period(0, if soon { settled } else { now });
     }
 
-    fn last_firing(&self, _sensor: u8, periods_ago: u8) -> Firing {
+    fn last_firing(&self, _sensor: u8, periods_ago: u8) -> FiringContext {
         // At most `MAX_PHASES` phases, which is how many periods the ring looks back.
         let before = periods_ago % M as u8;
-        Firing::new(Phase(if self.phase >= before { self.phase - before } else { self.phase + M as u8 - before }))
+        FiringContext::new(Phase(if self.phase >= before {
+            self.phase - before
+        } else {
+            self.phase + M as u8 - before
+        }))
     }
 
     fn limits(&self) -> Limits<'_> {

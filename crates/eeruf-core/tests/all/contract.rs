@@ -3,7 +3,7 @@
 use eeruf_core::tables::{TABLE_I_A, TABLE_I_D};
 use eeruf_core::{
     Instant, Micros, Phase,
-    judge::Firing,
+    judge::FiringContext,
     plan::{BrokenPromise, ImmediateRefiring, Limits, Plan, ScheduledFiring, check_plan},
 };
 
@@ -119,7 +119,7 @@ impl Plan for Faulty {
         }
     }
 
-    fn last_firing(&self, sensor: u8, periods_ago: u8) -> Firing {
+    fn last_firing(&self, sensor: u8, periods_ago: u8) -> FiringContext {
         self.inner.last_firing(sensor, periods_ago)
     }
 
@@ -231,8 +231,8 @@ impl Plan for Metronome {
         self.called(6, now.as_micros());
     }
 
-    fn last_firing(&self, _sensor: u8, _periods_ago: u8) -> Firing {
-        Firing::new(Phase::A)
+    fn last_firing(&self, _sensor: u8, _periods_ago: u8) -> FiringContext {
+        FiringContext::new(Phase::A)
     }
 
     fn limits(&self) -> Limits<'_> {
@@ -327,8 +327,8 @@ impl Plan for Periods {
 
     fn restart(&mut self, _now: Instant) {}
 
-    fn last_firing(&self, _sensor: u8, _periods_ago: u8) -> Firing {
-        Firing::new(Phase::A)
+    fn last_firing(&self, _sensor: u8, _periods_ago: u8) -> FiringContext {
+        FiringContext::new(Phase::A)
     }
 
     fn limits(&self) -> Limits<'_> {

@@ -3,7 +3,7 @@
 use eeruf_core::{
     Instant, Micros, Phase, ReadingKind, Ring, RingConfig, RingEvent,
     flow::{InTurn, TurnSettings},
-    judge::{Agreement, Explained, Firing, Heard, Judge, MOfN, MedianFilter, NoSounds, Sounds, Verdict},
+    judge::{Agreement, Explained, FiringContext, Heard, Judge, MOfN, MedianFilter, NoSounds, Sounds, Verdict},
 };
 
 use crate::common::random::Random;
@@ -155,7 +155,7 @@ fn own_walls_have_votes() {
 fn verdicts(judge: &mut impl Judge, echoes_us: &[u32], expected_change_us: i32) -> Vec<Verdict> {
     let push = |&echo_us: &u32| {
         let echoes: Vec<_> = Some(Micros::new(echo_us)).filter(|_| echo_us > 1).into_iter().collect();
-        let mut firing = Firing::new(Phase::A);
+        let mut firing = FiringContext::new(Phase::A);
         firing.expected_change_us = expected_change_us;
         let since_before = Micros::from_millis(60);
         let heard = Heard { sensor: 0, fired: BEGIN, since_before, echoes: &echoes, firing, t_delta: T_DELTA };
@@ -267,7 +267,7 @@ fn held_firing_is_one_of_those_before() {
         let (mut judge, asked) = (MOfN::<1, 3>::new(2, 3, T_DELTA).unwrap(), Asked(std::cell::Cell::new(None)));
         let echoes = [Micros::new(9_000)];
         let heard = |number: u32, echoes, since_before| {
-            let (fired, firing) = (Instant::from_micros(100_000 * number), Firing::new(Phase::A));
+            let (fired, firing) = (Instant::from_micros(100_000 * number), FiringContext::new(Phase::A));
             Heard { sensor: 0, fired, since_before, echoes, firing, t_delta: T_DELTA }
         };
         let refire = Micros::from_millis(100);

@@ -66,7 +66,7 @@ fn frames() -> Vec<Vec<u8>> {
     let mut encoder = Encoder::new();
     let mut frames = vec![encoder.hello(3, "board").as_bytes().to_vec()];
     for n in 0..30_u32 {
-        let firing = eeruf_serial::Firing {
+        let firing = eeruf_serial::FiringMessage {
             sensor: (n % 3) as u8,
             phase: 0,
             kind: if n % 5 == 0 { ReadingKind::NoEcho } else { ReadingKind::Accepted },

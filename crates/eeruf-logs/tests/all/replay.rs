@@ -124,7 +124,7 @@ fn frames_of_a_flow_ring_are_judged_again_as_the_ring_did() {
     let mut frames = encoder.hello(SENSORS as u8, "board").as_bytes().to_vec();
     for firing in &ran.log.firings {
         let fired = Instant::from_micros((firing.fired_us as u32).wrapping_sub(2_000_000));
-        let frame = eeruf_serial::Firing {
+        let frame = eeruf_serial::FiringMessage {
             sensor: firing.sensor,
             phase: 0,
             kind: firing.reading.unwrap(),

@@ -2,7 +2,7 @@
 
 use eeruf_core::{Micros, Phase};
 
-use super::firing::{Firing, FiringPeriod, OwnError};
+use super::firing::{FiringMethod, FiringPeriod, OwnError};
 use super::ring_runner::{RingStart, Started, Way, planned};
 use super::schedules::{self, widest_dither};
 use crate::world::Random;
@@ -29,7 +29,7 @@ struct Dither {
     random: Random,
 }
 
-impl Firing for Dither {
+impl FiringMethod for Dither {
     fn plan(&mut self, _period: u32) -> Result<FiringPeriod, OwnError> {
         let mut firings = Vec::with_capacity(self.lags.len());
         for (sensor, lag) in self.lags.iter().enumerate() {
@@ -40,7 +40,7 @@ impl Firing for Dither {
         Ok(FiringPeriod { length: self.period, phase: Phase::A, firings })
     }
 
-    fn copy(&self) -> Option<Box<dyn Firing>> {
+    fn copy(&self) -> Option<Box<dyn FiringMethod>> {
         Some(Box::new(self.clone()))
     }
 }

@@ -1,4 +1,4 @@
-//! [`Firing`]: when the sensors of a ring fire, planned period by period, by a method or by the caller's own code; and
+//! [`FiringMethod`]: when the sensors of a ring fire, planned period by period, by a method or by the caller's own code; and
 //! the plan that makes core's ring of it.
 
 use core::fmt;
@@ -12,10 +12,10 @@ use eeruf_core::{
 ///
 /// ```
 /// use eeruf_core::{Micros, Phase};
-/// use eeruf_sim::{Firing, FiringPeriod, OwnError};
+/// use eeruf_sim::{FiringMethod, FiringPeriod, OwnError};
 /// /// Eight sensors, each 8 ms after the one before, in the other order every second period.
 /// struct BackAndForth;
-/// impl Firing for BackAndForth {
+/// impl FiringMethod for BackAndForth {
 ///     fn plan(&mut self, period: u32) -> Result<FiringPeriod, OwnError> {
 ///         let place = |sensor: u8| u32::from(if period % 2 == 0 { sensor } else { 7 - sensor });
 ///         let firings = (0..8).map(|sensor| (Micros::from_millis(8 * place(sensor)), sensor)).collect();
@@ -24,7 +24,7 @@ use eeruf_core::{
 /// }
 /// assert_eq!(BackAndForth.plan(1).unwrap().firings[7], (Micros::ZERO, 7));
 /// ```
-pub trait Firing: Send {
+pub trait FiringMethod: Send {
     /// Plans a period of the ring: they are counted from 0, and each begins when the one before has ended.
     ///
     /// # Errors
@@ -34,23 +34,23 @@ pub trait Firing: Send {
 
     /// Returns one that goes on as this does; none, as by default, if it cannot be copied. A simulation can be
     /// [copied](crate::Simulation::copy) if all that its robots fire by can.
-    fn copy(&self) -> Option<Box<dyn Firing>> {
+    fn copy(&self) -> Option<Box<dyn FiringMethod>> {
         None
     }
 }
 
-impl<F: Firing + ?Sized> Firing for Box<F> {
+impl<F: FiringMethod + ?Sized> FiringMethod for Box<F> {
     fn plan(&mut self, period: u32) -> Result<FiringPeriod, OwnError> {
         F::plan(self, period)
     }
 
-    fn copy(&self) -> Option<Box<dyn Firing>> {
+    fn copy(&self) -> Option<Box<dyn FiringMethod>> {
         F::copy(self)
     }
 }
 
 /// A firing, or why there is no more.
-struct Planner(Result<Box<dyn Firing>, OwnError>);
+struct Planner(Result<Box<dyn FiringMethod>, OwnError>);
 
 impl Clone for Planner {
     fn clone(&self) -> Self {
@@ -61,7 +61,7 @@ impl Clone for Planner {
     }
 }
 
-/// One period of a [`Firing`].
+/// One period of a [`FiringMethod`].
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FiringPeriod {
     /// Length: 1 us to [`MAX_PERIOD`].
@@ -74,7 +74,7 @@ pub struct FiringPeriod {
     pub firings: Vec<(Micros, u8)>,
 }
 
-/// Why a [`Firing`](crate::Firing) or a [`Filter`](crate::Filter) of the caller's ends a simulation: a sentence.
+/// Why a [`FiringMethod`](crate::FiringMethod) or a [`Filter`](crate::Filter) of the caller's ends a simulation: a sentence.
 ///
 /// ```
 /// use eeruf_sim::OwnError;
@@ -143,7 +143,7 @@ impl fmt::Display for Unfit {
     }
 }
 
-/// Fires as a [`Firing`] plans: core's contract for it.
+/// Fires as a [`FiringMethod`] plans: core's contract for it.
 #[derive(Clone)]
 pub(crate) struct PeriodFiring {
     planner: Planner,
@@ -171,7 +171,7 @@ pub(crate) struct PeriodFiring {
 impl PeriodFiring {
     /// A ring of this many sensors, none of which fires again within `refire` of firing. What is wrong with the first
     /// period, [`error`](Self::error) says.
-    pub(crate) fn new(firing: Box<dyn Firing>, sensors: usize, refire: Micros, now: Instant) -> Self {
+    pub(crate) fn new(firing: Box<dyn FiringMethod>, sensors: usize, refire: Micros, now: Instant) -> Self {
         let mut firing = Self {
             planner: Planner(Ok(firing)),
             sensors,
@@ -325,8 +325,8 @@ impl Plan for PeriodFiring {
         self.begin_period(soon.unwrap_or(now));
     }
 
-    fn last_firing(&self, sensor: u8, _periods_ago: u8) -> eeruf_core::judge::Firing {
-        eeruf_core::judge::Firing::new(self.fired_in.get(usize::from(sensor)).copied().unwrap_or(self.phase))
+    fn last_firing(&self, sensor: u8, _periods_ago: u8) -> eeruf_core::judge::FiringContext {
+        eeruf_core::judge::FiringContext::new(self.fired_in.get(usize::from(sensor)).copied().unwrap_or(self.phase))
     }
 
     fn limits(&self) -> Limits<'_> {

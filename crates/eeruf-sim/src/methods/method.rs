@@ -17,7 +17,7 @@ use crate::world::{AnySchedule, Robot};
 pub(crate) const MAX_ECHOES: usize = 8;
 
 /// A method: its firing, its judge, the number of echoes of a firing that a sensor reports, and whether it adapts.
-pub(super) struct Row {
+pub(super) struct MethodRow {
     pub(super) name: &'static str,
     /// Its description, as the enum documents it.
     pub(super) about: &'static str,
@@ -32,7 +32,7 @@ pub(super) struct Row {
 
 /// Defaults of a row: the robot's own schedule, and one echo, which is believed if nothing foreign explains it and the
 /// one before.
-pub(super) const DEFAULT: Row = Row {
+pub(super) const DEFAULT: MethodRow = MethodRow {
     name: "",
     about: "",
     on_demand: false,
@@ -65,10 +65,10 @@ macro_rules! methods {
             pub const ALL: [Self; [$($name),+].len()] = [$(Self::$method),+];
 
             /// Its row of the table.
-            pub(in crate::methods) const fn row(self) -> &'static Row {
+            pub(in crate::methods) const fn row(self) -> &'static MethodRow {
                 match self {
                     $( Self::$method => const {
-                        &Row { name: $name, about: concat!($($about),+), $($field: $value,)* ..DEFAULT }
+                        &MethodRow { name: $name, about: concat!($($about),+), $($field: $value,)* ..DEFAULT }
                     }, )+
                 }
             }

@@ -17,7 +17,7 @@ mod schedules;
 mod sketch;
 
 pub use best_schedule::{TICK, best_schedule_for, requirements_of, shortest_schedule_for};
-pub use firing::{Firing, FiringPeriod, OwnError};
+pub use firing::{FiringMethod, FiringPeriod, OwnError};
 pub use flow::FlowOptions;
 pub(crate) use judges::{Judging, MAX_MEDIAN};
 pub(crate) use method::MAX_ECHOES;
@@ -26,7 +26,7 @@ pub(crate) use ring_runner::{ChangeError, FiringPlan, RingRunner, RingStart, Sta
 pub use schedules::table_i_d_for;
 
 use judges::JudgeKind::{self, Agreement, AsSketched, Belief, EveryEcho, TwoOfThree};
-use method::{DEFAULT, Row, methods};
+use method::{DEFAULT, MethodRow, methods};
 use ring_runner::Way;
 
 methods! {

@@ -13,7 +13,7 @@ use eeruf_core::{
 };
 
 use super::adaptive;
-use super::firing::{Firing, OwnError, PeriodFiring};
+use super::firing::{FiringMethod, OwnError, PeriodFiring};
 use super::flow::FlowOptions;
 use super::judges::{Judging, RunningJudge};
 use super::method::MAX_ECHOES;
@@ -299,7 +299,7 @@ fn immediate(start: &RingStart<'_>) -> Started {
 
 /// A robot's ring that fires as it is planned, no sensor again within `refire` of firing.
 pub(crate) fn planned(
-    firing: Box<dyn Firing>,
+    firing: Box<dyn FiringMethod>,
     robot: &Robot,
     judging: &Judging,
     refire: Micros,

@@ -6,7 +6,7 @@ use eeruf_core::{
     plan::{Limits, Plan},
 };
 
-use super::firing::{Firing, FiringPeriod, OwnError};
+use super::firing::{FiringMethod, FiringPeriod, OwnError};
 use super::judges::Judging;
 use super::ring_runner::{self, REMEMBERED, RingStart, SimulatedPlan, Started, Way, planned};
 use super::schedules;
@@ -134,7 +134,7 @@ fn run(robot: &Robot, judging: &Judging, now: Instant, lanes: Vec<Lane>, rest: M
 #[derive(Clone)]
 struct ByTable(FiringTable);
 
-impl Firing for ByTable {
+impl FiringMethod for ByTable {
     fn plan(&mut self, period: u32) -> Result<FiringPeriod, OwnError> {
         let FiringTable { period: length, rows } = &self.0;
         let phase = period as usize % rows.len().max(1);
@@ -144,7 +144,7 @@ impl Firing for ByTable {
         Ok(FiringPeriod { length: *length, phase: Phase((phase % MAX_PHASES) as u8), firings })
     }
 
-    fn copy(&self) -> Option<Box<dyn Firing>> {
+    fn copy(&self) -> Option<Box<dyn FiringMethod>> {
         Some(Box::new(self.clone()))
     }
 }
@@ -343,8 +343,8 @@ impl Plan for LanePlan {
         }
     }
 
-    fn last_firing(&self, _sensor: u8, _periods_ago: u8) -> eeruf_core::judge::Firing {
-        eeruf_core::judge::Firing::new(Phase::A)
+    fn last_firing(&self, _sensor: u8, _periods_ago: u8) -> eeruf_core::judge::FiringContext {
+        eeruf_core::judge::FiringContext::new(Phase::A)
     }
 
     fn limits(&self) -> Limits<'_> {

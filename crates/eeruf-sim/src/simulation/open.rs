@@ -116,7 +116,7 @@ impl Simulation {
     }
 
     /// A copy in the same state, which goes on alike: with the same steps it gives the same readings, bit for bit.
-    /// `stop` ends it, and not the switch of this one. None if a [`Firing`](crate::Firing) or a
+    /// `stop` ends it, and not the switch of this one. None if a [`FiringMethod`](crate::FiringMethod) or a
     /// [`Filter`](crate::Filter) of the caller's own cannot be copied.
     ///
     /// ```

@@ -12,7 +12,7 @@ use eeruf_sim::*;
 
 /// Shares of the time in percent, and echoes a second, of the first robot: means over rooms.
 #[derive(Clone, Copy, Debug, Default)]
-struct Found {
+struct FlowFigures {
     right: f64,
     phantom: f64,
     echoes: f64,
@@ -29,7 +29,7 @@ fn way(name: &str) -> RoomWay {
     RoomWay::all(&robot, None).into_iter().find(|way| way.name == name).unwrap()
 }
 
-fn run(way: &RoomWay, kinds: &[RoomKind], rooms: u64, (speed_m_s, turn_deg_s): Moves) -> Found {
+fn run(way: &RoomWay, kinds: &[RoomKind], rooms: u64, (speed_m_s, turn_deg_s): Moves) -> FlowFigures {
     let numbers: Vec<_> = kinds.iter().flat_map(|&kind| (20_000..20_000 + rooms).map(move |at| (kind, at))).collect();
     let found = sweep(&numbers, |&(kind, number)| {
         let plan = RoomPlan::random(kind, number, 0.25);
@@ -45,10 +45,10 @@ fn run(way: &RoomWay, kinds: &[RoomKind], rooms: u64, (speed_m_s, turn_deg_s): M
         let own: Vec<_> = (0..readings.len()).filter(|&k| readings.robot[k] == 0).collect();
         let summary = Readings { sensors: way.robot.sensors.len(), ..readings.select(&own) }.summary();
         let Belief { right, phantom, .. } = summary.belief;
-        Found { right: 100.0 * right, phantom: 100.0 * phantom, echoes: summary.right_echoes_per_s }
+        FlowFigures { right: 100.0 * right, phantom: 100.0 * phantom, echoes: summary.right_echoes_per_s }
     });
-    let mean = |of: fn(&Found) -> f64| found.iter().map(of).sum::<f64>() / found.len() as f64;
-    Found { right: mean(|it| it.right), phantom: mean(|it| it.phantom), echoes: mean(|it| it.echoes) }
+    let mean = |of: fn(&FlowFigures) -> f64| found.iter().map(of).sum::<f64>() / found.len() as f64;
+    FlowFigures { right: mean(|it| it.right), phantom: mean(|it| it.phantom), echoes: mean(|it| it.echoes) }
 }
 
 /// Rooms without another robot.

@@ -38,7 +38,7 @@ fn columns(readings: &Readings) -> Vec<Row> {
 /// Fires by a schedule of two phases.
 struct ByTable(AnySchedule);
 
-impl Firing for ByTable {
+impl FiringMethod for ByTable {
     fn plan(&mut self, period: u32) -> Result<FiringPeriod, OwnError> {
         let phase = Phase((period % 2) as u8);
         let firings = (0..self.0.sensors()).filter_map(|sensor| Some((self.0.t_fire(phase, sensor)?, sensor as u8)));
@@ -174,7 +174,7 @@ fn echo_differs_from_crosstalk_under_filter_times() {
 fn unfireable_period_ends_the_simulation() {
     /// Fires well for three periods, and then otherwise.
     struct Then(FiringPeriod);
-    impl Firing for Then {
+    impl FiringMethod for Then {
         fn plan(&mut self, period: u32) -> Result<FiringPeriod, OwnError> {
             let good = (Micros::from_millis(50), vec![(Micros::ZERO, 0)]);
             let good = FiringPeriod { length: good.0, phase: Phase::A, firings: good.1 };
@@ -230,7 +230,7 @@ fn errors_of_own_code_come_out_of_the_step() {
     assert_eq!(after.len(), whole.len() - 1, "the reading that was not judged is lost, and no other");
     /// Plans nothing at all.
     struct Never;
-    impl Firing for Never {
+    impl FiringMethod for Never {
         fn plan(&mut self, _period: u32) -> Result<FiringPeriod, OwnError> {
             Err("out of service".into())
         }

@@ -4,7 +4,7 @@ use core::fmt;
 
 use eeruf_core::{
     Instant, Micros, Phase, ReadingKind,
-    judge::{self, Firing, Judge, MOfN, MedianFilter, NoSounds},
+    judge::{self, FiringContext, Judge, MOfN, MedianFilter, NoSounds},
 };
 
 use super::heard::Heard;
@@ -80,7 +80,7 @@ fn by(mut judge: impl Judge, heard: &[Heard], [life_s, holds_s]: [f64; 2]) -> Ve
             fired: Instant::default(),
             since_before: Micros::ZERO,
             echoes: if reading.t_echo_us.is_nan() { &[] } else { &echoes },
-            firing: Firing { expected_change_us: reading.change_us as i32, ..Firing::new(Phase::A) },
+            firing: FiringContext { expected_change_us: reading.change_us as i32, ..FiringContext::new(Phase::A) },
             t_delta: judge.t_delta(),
         };
         let skipped = ReadingKind::Rejected;

@@ -11,5 +11,5 @@ mod placing;
 mod table;
 
 pub use figures::{Brief, Figures, Run};
-pub use placing::{Arrangement, DRIFT_PPM, PERIOD, Place, Placing, SENSORS, SPEED_M_S};
+pub use placing::{Arrangement, DRIFT_PPM, PERIOD, Placing, SENSORS, SPEED_M_S, Site};
 pub use table::{Group, SetThree, SetThreeOptions, group, set_three, usual, world_of};

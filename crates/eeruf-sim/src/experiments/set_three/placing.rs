@@ -29,7 +29,7 @@ const FARTHEST_M: f64 = 2.6;
 /// Where robots are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Place {
+pub enum Site {
     /// A corridor 1.8 to 2.6 m wide and 26 m long.
     Corridor,
     /// A hall 26 m long and 12 to 16 m wide, near one of its long walls.
@@ -52,7 +52,7 @@ pub enum Arrangement {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Placing {
     /// Where they are.
-    pub place: Place,
+    pub place: Site,
     /// The robots' arrangement.
     pub arrangement: Arrangement,
     /// The robots, two to six.
@@ -64,18 +64,18 @@ pub struct Placing {
 impl Placing {
     /// The placing that a number stands for. Thirty in a row have each place, arrangement and number of robots once.
     pub fn random(number: u64) -> Self {
-        let place = if number.is_multiple_of(2) { Place::Corridor } else { Place::Hall };
+        let place = if number.is_multiple_of(2) { Site::Corridor } else { Site::Hall };
         let arrangement =
             [Arrangement::Standing, Arrangement::Meeting, Arrangement::Following][(number / 2 % 3) as usize];
         let count = 2 + (number / 6 % 5) as usize;
         let mut random = Random::new(number);
         let room_m = match place {
-            Place::Corridor => [26.0, random.between(1.8, 2.6)],
-            Place::Hall => [26.0, random.between(12.0, 16.0)],
+            Site::Corridor => [26.0, random.between(1.8, 2.6)],
+            Site::Hall => [26.0, random.between(12.0, 16.0)],
         };
         let poses = match (arrangement, place) {
-            (Arrangement::Standing, Place::Hall) => scattered(count, &mut random),
-            (Arrangement::Standing, Place::Corridor) => {
+            (Arrangement::Standing, Site::Hall) => scattered(count, &mut random),
+            (Arrangement::Standing, Site::Corridor) => {
                 let aside = 0.5 * room_m[1] - RADIUS_M - 0.1;
                 let place = |x| (Vector::new(x, random.between(-aside, aside)), random.between(0.0, TAU));
                 row(count, &mut Random::new(number).of(1)).into_iter().map(place).collect()
@@ -87,9 +87,9 @@ impl Placing {
         };
         // In a hall rows are 1.2 to 3 m from a wall, and scattered robots are at least as far.
         let middle_m = match (place, arrangement) {
-            (Place::Corridor, _) => 0.0,
-            (Place::Hall, Arrangement::Standing) => 4.2 - 0.5 * room_m[1],
-            (Place::Hall, _) => random.between(1.2, 3.0) - 0.5 * room_m[1],
+            (Site::Corridor, _) => 0.0,
+            (Site::Hall, Arrangement::Standing) => 4.2 - 0.5 * room_m[1],
+            (Site::Hall, _) => random.between(1.2, 3.0) - 0.5 * room_m[1],
         };
         let drives = arrangement != Arrangement::Standing;
         let robots = poses.into_iter().map(|(at, heading)| {

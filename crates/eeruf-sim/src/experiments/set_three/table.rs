@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::figures::{Brief, Figures, Run};
-use super::placing::{Arrangement, Place, Placing};
+use super::placing::{Arrangement, Placing, Site};
 use crate::experiments::by_name::{by_name, named, transposed};
 use crate::experiments::conditions::Conditions;
 use crate::experiments::error::{ExperimentError, distinct, numbers};
@@ -86,7 +86,7 @@ pub struct SetThree {
 pub struct Group {
     /// Where they are; none for anywhere.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub place: Option<Place>,
+    pub place: Option<Site>,
     /// The robots' arrangement; none for any.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub arrangement: Option<Arrangement>,
@@ -165,8 +165,8 @@ pub fn group(names: &[&str], runs: &[Vec<Run>]) -> Vec<Group> {
         (place, arrangement, robots.len())
     };
     let kinds: Vec<_> = runs.first().into_iter().flatten().map(placing).collect();
-    let group = |place: Option<Place>, arrangement: Option<Arrangement>, robots: Option<usize>| {
-        let of = |kind: &(Place, Arrangement, usize)| {
+    let group = |place: Option<Site>, arrangement: Option<Arrangement>, robots: Option<usize>| {
+        let of = |kind: &(Site, Arrangement, usize)| {
             place.is_none_or(|place| place == kind.0)
                 && arrangement.is_none_or(|arrangement| arrangement == kind.1)
                 && robots.is_none_or(|robots| robots == kind.2)
@@ -179,7 +179,7 @@ pub fn group(names: &[&str], runs: &[Vec<Run>]) -> Vec<Group> {
         Group { place, arrangement, robots, placings: kinds.iter().filter(|kind| of(kind)).count(), methods }
     };
     let arrangements = [Arrangement::Standing, Arrangement::Meeting, Arrangement::Following];
-    let places = [Place::Corridor, Place::Hall].into_iter();
+    let places = [Site::Corridor, Site::Hall].into_iter();
     let kinds_of = places.flat_map(|place| arrangements.map(|arrangement| (place, arrangement)));
     let by_kind = kinds_of.map(|(place, arrangement)| group(Some(place), Some(arrangement), None));
     let all = by_kind.chain((2..=6).map(|robots| group(None, None, Some(robots))));

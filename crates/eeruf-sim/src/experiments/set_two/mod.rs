@@ -19,5 +19,5 @@ pub use figures::Figures;
 pub use odometry::OdometryNoise;
 pub use options::SetTwoOptions;
 pub use pilots::{Pilots, UnknownPilot, steered_as};
-pub use run::{Cell, Ending, Place, Run};
+pub use run::{Cell, Ending, Run, TrackPoint};
 pub use runs::{Drive, MULTI_ECHO_CONSECUTIVE, SetTwo, SpeedStep, drive, set_two, speed_sweep};

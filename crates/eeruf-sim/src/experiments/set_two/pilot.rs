@@ -6,7 +6,7 @@ use eeruf_core::ReadingKind;
 use super::course::{FINISH_X_M, POLE_RADIUS_M, ROOM_M, TARGET};
 use super::odometry::Odometry;
 use super::options::SetTwoOptions;
-use super::run::{Cell, Ending, Place, Run};
+use super::run::{Cell, Ending, Run, TrackPoint};
 use crate::{
     geometry::{Moment, Point, Pose, Vector},
     methods::Method,
@@ -113,7 +113,7 @@ impl<'w> Pilot<'w> {
         let Driven { pose, speed_m_s, .. } = self.state;
         let time_s = (self.steps * STEP_NS) as f64 * 1e-9;
         let (x_m, y_m) = (pose.translation.x, pose.translation.y);
-        self.run.track.push(Place { time_s, x_m, y_m, heading_rad: pose.rotation.angle(), speed_m_s });
+        self.run.track.push(TrackPoint { time_s, x_m, y_m, heading_rad: pose.rotation.angle(), speed_m_s });
     }
 
     /// Ends the course by a contact.

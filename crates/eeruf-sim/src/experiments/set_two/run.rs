@@ -16,7 +16,7 @@ pub enum Ending {
 
 /// Where the robot was at a time.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Place {
+pub struct TrackPoint {
     /// In seconds.
     pub time_s: f64,
     /// In metres.
@@ -73,7 +73,7 @@ pub struct Run {
     pub poles_missed: u32,
     /// Where it drove, every 30 ms.
     #[serde(default)]
-    pub track: Vec<Place>,
+    pub track: Vec<TrackPoint>,
     /// The grid in the end.
     #[serde(default)]
     pub grid: Vec<Cell>,

@@ -4,7 +4,7 @@ use core::fmt;
 use std::collections::BTreeMap;
 
 use super::filter::Filter;
-use crate::methods::Firing;
+use crate::methods::FiringMethod;
 use crate::simulation::error::SimulationError;
 
 /// The caller's own firings and filters, each for one robot. Whatever is not here goes by the method.
@@ -34,7 +34,7 @@ use crate::simulation::error::SimulationError;
 /// ```
 #[derive(Default)]
 pub struct Own {
-    firing: BTreeMap<usize, Box<dyn Firing>>,
+    firing: BTreeMap<usize, Box<dyn FiringMethod>>,
     filter: BTreeMap<usize, Box<dyn Filter>>,
 }
 
@@ -46,7 +46,7 @@ impl Own {
 
     /// A robot, counted from 0, fires by this.
     #[must_use]
-    pub fn firing(mut self, robot: usize, firing: impl Firing + 'static) -> Self {
+    pub fn firing(mut self, robot: usize, firing: impl FiringMethod + 'static) -> Self {
         self.firing.insert(robot, Box::new(firing));
         self
     }
@@ -74,7 +74,7 @@ impl Own {
         self.filter.contains_key(&robot)
     }
 
-    pub(super) fn take_firing(&mut self, robot: usize) -> Option<Box<dyn Firing>> {
+    pub(super) fn take_firing(&mut self, robot: usize) -> Option<Box<dyn FiringMethod>> {
         self.firing.remove(&robot)
     }
 

@@ -270,7 +270,7 @@ static EerufStatus meets(const EerufSchedule *schedule, EerufRequirements *needs
     return last;
 }
 
-/* For how long sound may be audible where crosstalk moves: its own echo, sent two firings before, reads the same. */
+/* Time for which sound may be audible where crosstalk moves: its own echo, sent two firings before, reads the same. */
 static uint32_t audible_for(const EerufSchedule *schedule) {
     const uint32_t period_us = READ32(schedule->period_us);
     return READ8(schedule->stale_echo) ? 2 * period_us : period_us;
@@ -466,7 +466,7 @@ EerufStatus eeruf_filter_forget(EerufFilter *filter) {
 #define LISTENING 0x08u    /* it has fired, and its reading is pending */
 #define CAN_EMIT 0x10u     /* it has a reading that can be emitted before its window closes */
 #define OUTSIDE 0x20u      /* its only edges so far came outside the window */
-/* Its evidence, in two bits: none of them where it is complete. */
+/* The evidence, in two bits: none of them where it is complete. */
 #define STUCK 0x40u        /* its line was high when it was to fire */
 #define UNANSWERED 0x80u   /* nothing has shown yet that it listens: silence says nothing */
 #define HELD 0xc0u         /* it holds its line: silence counts when that has fallen. Kept after its reading */
@@ -555,7 +555,7 @@ static bool is_deaf_to(const EerufRing *ring, uint8_t receiver, uint8_t emitter)
     return limited != NULL && limited(ring, DEAF, receiver, emitter) != 0;
 }
 
-/* For how long a sensor listens that is to listen for `window_us`: no longer than a schedule allows it. */
+/* Time for which a sensor listens that is to listen for `window_us`: no longer than a schedule allows it. */
 static OUT_OF_LINE uint32_t allowed_window(const EerufSchedule *schedule, uint8_t sensor, uint32_t window_us) {
     const EerufLimits *limits = limits_of(schedule);
     uint32_t own_us;
@@ -690,7 +690,7 @@ static IN_LINE void end_late_period(EerufRing *ring, EerufPeriod *ended, uint32_
         EerufSensor *sensor = sensor_of(ring, x);
         if (is_long_ago(sensor->fired_us[0], now_us)) {
             forget_firings(sensor, FIRINGS(flows), now_us);
-            /* Its next reading cannot be compared: the instant of its firing before is no longer known. */
+            /* The next reading cannot be compared: the instant of its firing before is no longer known. */
             forget_readings(ring, x);
             /* No edge is an echo of them. */
             if (!(sensor->filter.flags & LISTENING))
@@ -1225,7 +1225,7 @@ static void show(EerufRing *ring, uint8_t x, uint8_t evidence) {
     if ((*flags & LISTENING) && (*flags & HELD) != STUCK) *flags = (uint8_t)((*flags & ~HELD) | evidence);
 }
 
-/* Its evidence is complete. */
+/* The evidence is complete. */
 static void answer(EerufRing *ring, uint8_t x) {
     uint8_t *flags = &sensor_of(ring, x)->filter.flags;
     const bool counts = (*flags & (HELD | LISTENING)) == HELD;
@@ -1385,7 +1385,7 @@ static void forget_readings(EerufRing *ring, uint8_t sensor) {
     else forget(&sensor_of(ring, sensor)->filter);
 }
 
-/* Its last reading was not what it seemed. */
+/* The last reading was not what it seemed. */
 static void begin_again(EerufRing *ring, uint8_t sensor) {
     forget_readings(ring, sensor);
     if (FLOWS(ring)) ring->hook(ring, sensor, BEGINS_AGAIN);
@@ -1609,7 +1609,7 @@ static void watch_reading(EerufWatched *sensor, const EerufReading *reading, uin
     }
     sensor->state = state;
     sensor->explained_by = reading->explained_by;
-    /* For how long nothing is known or answered goes on. */
+    /* Time for which nothing is known or answered goes on. */
     if ((state & KNOWN) == known && (known == EERUF_STATE_UNKNOWN || known == EERUF_STATE_UNANSWERED)) return;
     sensor->at_us = now_us;
     sensor->t_echo_us = reading->t_echo_us;
@@ -2642,7 +2642,7 @@ static void correct_flow(EerufRing *ring, uint8_t x, uint32_t later_us) {
     const uint32_t at_us = sensor->fired_us[0];
     const bool listens = (sensor->filter.flags & LISTENING) != 0;
     if (!listens && sensor->filter.known_us < SILENCE) {
-        /* Its reading is with the judge already, and what is believed may be an echo of that firing. */
+        /* The reading is with the judge already, and what is believed may be an echo of that firing. */
         (void)shift(&sensor->filter.known_us, later_us);
         if (sensor->missed == 0) (void)shift(&sensor->believed_us, later_us);
     }

@@ -655,7 +655,7 @@ static void by_hardware(void) {
     EXPECT(eeruf_hc_sr04_edges_until(&modules, &edges, first_us + 449), EERUF_OK);
     EXPECT(edges.pushed != edges.popped, 1); /* later than that: it waits */
     EXPECT(eeruf_hc_sr04_edges(&modules, &edges), EERUF_OK);
-    /* Its pulse is reported after the window, and still counts: nothing is in range. */
+    /* The pulse is reported after the window, and still counts: nothing is in range. */
     while (eeruf_ring_poll(&ring, first_us + 49000, &event) == EERUF_EVENT) {
         EXPECT(event.kind == EERUF_EVENT_FIRE, 1);
         EXPECT(eeruf_hc_sr04_triggered(&modules, event.sensor), EERUF_OK);

@@ -27,7 +27,7 @@ impl FiringContext {
 pub struct Heard<'r> {
     /// The sensor, from 0.
     pub sensor: u8,
-    /// When it fired.
+    /// Time when it fired.
     pub fired: Instant,
     /// Time since its firing before; of no account where that was forgotten.
     pub since_before: Micros,
@@ -113,11 +113,11 @@ pub trait Sounds {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Quiet {
-    /// Its last reading was believed: less will do.
+    /// The last reading was believed: less will do.
     Less,
     /// As before.
     Same,
-    /// Its last reading may be another firing's sound.
+    /// The last reading may be another firing's sound.
     More,
 }
 
@@ -168,7 +168,7 @@ pub trait Judge {
     /// Takes in a firing that says nothing about the echo time: stuck, too early, late, or silence without a witness.
     /// `echoes` holds the early edge, if there was one.
     fn skip(&mut self, heard: &Heard<'_>, kind: ReadingKind) -> Verdict;
-    /// Takes in a firing whose sensor holds its line still, as one that hears nothing: no silence yet. A run of
+    /// Takes in a firing whose sensor still holds its line as one without an echo that is no silence yet. A run of
     /// silences goes on, and what it hears next is compared with no echo. By default the run ends.
     fn hold(&mut self, heard: &Heard<'_>) {
         self.skip(heard, ReadingKind::NoEcho);

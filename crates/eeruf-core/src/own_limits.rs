@@ -7,7 +7,7 @@ use core::fmt;
 use crate::schedule::VerifiedFor;
 use crate::time::{Micros, longer};
 
-/// For how long one sensor may listen, and what may count as the same echo.
+/// The longest window of one sensor, and its largest `t_delta`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct SensorLimits {
@@ -43,7 +43,7 @@ pub trait OwnLimits: Copy + fmt::Debug + sealed::Sealed {
         true
     }
 
-    /// The first of the sensors that one fires together with, or itself.
+    /// The first of the sensors that fire together with a sensor; itself if it fires alone.
     #[doc(hidden)]
     #[inline(always)]
     fn leader_of(&self, sensor: u8) -> u8 {
@@ -291,7 +291,7 @@ impl<const K: usize> OwnLimits for &EachSensor<K> {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub(crate) struct InUse<U> {
     now: U,
-    /// Its last firings may still be listening.
+    /// The last firings may still be listening.
     before: U,
     /// Limits of the next period; those of the present one if no other schedule begins with it.
     next: U,

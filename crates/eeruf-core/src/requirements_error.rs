@@ -4,8 +4,8 @@ use core::fmt;
 
 use crate::schedule::MAX_SENSORS;
 
-/// Why a [`Layout`](crate::Layout) or an [`Uneven`](crate::Uneven) does not fit a ring. Sensors are counted from 0 here
-/// and printed from 1; `{:#}` counts from 0.
+/// Reason why a [`Layout`](crate::Layout) or an [`Uneven`](crate::Uneven) does not fit a ring. Sensors are counted from
+/// 0 here and printed from 1; `{:#}` counts from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]

@@ -37,7 +37,7 @@ fn likely(name: &str, value: u32, least: u32, most: u32) -> &'static str {
     }
 }
 
-/// Why a [`Ring`](crate::Ring), or a judge, cannot be set up as asked.
+/// Reason why a [`Ring`](crate::Ring), or a judge, cannot be set up as asked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -117,7 +117,7 @@ pub enum RingError {
     Sensor(SensorError),
     /// A setting, or a judge's argument, out of its range; times are in microseconds.
     Setting {
-        /// Its field in [`RingConfig`](crate::RingConfig), or of a flow ring in
+        /// The field in [`RingConfig`](crate::RingConfig), or of a flow ring in
         /// [`TurnSettings`](crate::flow::TurnSettings) or [`BeliefSettings`](crate::flow::BeliefSettings); or the
         /// argument.
         name: &'static str,

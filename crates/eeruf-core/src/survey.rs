@@ -138,7 +138,7 @@ pub enum SurveyEvent {
     Row {
         /// The sensor, from 0.
         sensor: u8,
-        /// When it fired.
+        /// Time when it fired.
         fired: Instant,
         /// The slot: the log's `period`.
         slot: u32,
@@ -152,7 +152,7 @@ pub enum SurveyEvent {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 struct Listener {
     sensor: u8,
-    /// When it fires; once it has fired, when its window ends.
+    /// Time when it fires; once it has fired, when its window ends.
     due: Instant,
     fired: Option<Instant>,
     t_echo: Option<Micros>,
@@ -258,7 +258,7 @@ impl Survey {
         }
     }
 
-    /// When to poll again; `None` once it is over.
+    /// Returns the time to poll again; `None` once it is over.
     pub fn next_deadline(&self) -> Option<Instant> {
         if self.is_over() {
             return None;

@@ -200,7 +200,7 @@ impl ViolationKind {
         }
     }
 
-    /// Where the requirement comes from.
+    /// Returns the source of the requirement.
     pub const fn source(self) -> &'static str {
         match self {
             Self::CrosstalkA => "Eq. (13a)",

@@ -53,7 +53,7 @@ pub enum SensorState {
     /// Something stands there: an accepted echo, or a tentative one. One reading that does not confirm it leaves it, so
     /// that age grows; two in a row do not.
     Obstacle {
-        /// Its echo time.
+        /// The echo time.
         t_echo: Micros,
         /// Time since it was last confirmed.
         age: Micros,
@@ -70,19 +70,19 @@ pub enum SensorState {
     },
     /// The sensor does not answer, or its line is stuck.
     Unanswered {
-        /// For how long.
+        /// The duration.
         since: Micros,
     },
     /// Nothing is known.
     Unknown {
-        /// For how long.
+        /// The duration.
         since: Micros,
         /// The last reason.
         why: Doubt,
     },
 }
 
-/// Why nothing is known of the space before a sensor.
+/// Reason why nothing is known of the space before a sensor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]

@@ -4,7 +4,7 @@ use core::fmt;
 
 use eeruf_core::{Micros, RingError};
 
-/// Why a ring of sensors cannot be set up as asked.
+/// Reason why a ring of sensors cannot be set up as asked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum SetupError {

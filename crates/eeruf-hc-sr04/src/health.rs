@@ -6,16 +6,16 @@ use core::fmt;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Health {
-    /// Its line answers, or it has not been asked often enough to know.
+    /// The line answers, or it has not been asked often enough to know.
     #[default]
     Well,
     /// Nothing comes from it when it is triggered: no sensor there, a cut wire, or no interrupts at all.
     Missing,
-    /// Its line was high when it was to be triggered.
+    /// The line was high when it was to be triggered.
     StuckHigh,
     /// Several pulses or answers followed one trigger, or an invalid one.
     Chatters,
-    /// Its line fell without having risen, or rose and was low again without having fallen: edges get lost on the way;
+    /// The line fell without having risen, or rose and was low again without having fallen: edges get lost on the way;
     /// or a part of its answer did.
     LosesEdges,
     /// One of its pins, its bus or its serial line reported an error.

@@ -15,7 +15,7 @@ use eeruf_core::Instant;
 /// ```
 #[derive(Clone, Debug)]
 pub struct Sampler<const K: usize> {
-    /// When each line was last seen, and if it was high.
+    /// Time when each line was last seen, and if it was high.
     seen: [(Instant, bool); K],
 }
 

@@ -18,9 +18,9 @@ enum Answer {
     Pulse(u32),
     /// No edge at all.
     Cut,
-    /// Its line rises and its end is lost.
+    /// The line rises and its end is lost.
     LostFall,
-    /// Its line falls, and its rise was lost.
+    /// The line falls, and its rise was lost.
     LostRise,
     /// The hardware reports twice.
     Twice(u32),

@@ -31,7 +31,7 @@ enum Answer {
     Twice(u32),
     /// No edge at all.
     Cut,
-    /// Its line rises once and stays high for ever.
+    /// The line rises once and stays high for ever.
     Held,
 }
 

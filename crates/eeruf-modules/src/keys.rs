@@ -9,7 +9,7 @@ use crate::module::{Beam, Gain, Interface, Module, NoEcho};
 pub struct Key {
     /// The name.
     pub name: &'static str,
-    /// Its contents.
+    /// The contents.
     pub about: &'static str,
     kind: Kind,
 }
@@ -26,7 +26,7 @@ enum Kind {
 /// A value of a figure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Value<'a> {
-    /// In the unit that the key's name ends with.
+    /// A number, in the unit that ends the key's name.
     Number(f64),
     /// A word.
     Word(&'a str),
@@ -41,7 +41,7 @@ impl fmt::Display for Value<'_> {
     }
 }
 
-/// Why a module cannot be as described.
+/// Reason why a module cannot be as described.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum ModuleError<'a> {
@@ -53,14 +53,14 @@ pub enum ModuleError<'a> {
     Value {
         /// The figure.
         key: &'static str,
-        /// Its value.
+        /// The value.
         value: Value<'a>,
     },
     /// A module that listens no longer than it is deaf.
     Deaf {
-        /// Its blanking in us.
+        /// The blanking in us.
         blanking_us: u32,
-        /// When the echo of the farthest wall is back, in us.
+        /// Time when the echo of the farthest wall is back, in us.
         range_us: u32,
     },
 }
@@ -252,12 +252,12 @@ impl Module {
         Ok(())
     }
 
-    /// Its farthest range in metres.
+    /// Returns the farthest range in metres.
     pub const fn sees_to_m(&self) -> f64 {
         self.sees_to_mm as f64 / 1e3
     }
 
-    /// When the echo of a wall at its farthest range is back, in air of 20 degrees, in us.
+    /// Returns the time when the echo of a wall at its farthest range is back, in air of 20 degrees, in us.
     ///
     /// ```
     /// assert_eq!(eeruf_modules::HC_SR04.range_us(), 23_311);

@@ -32,7 +32,7 @@ pub struct Module {
     pub rest_us: u32,
     /// The length of the trigger pulse, in us; 0 for a command, a level, or a module that runs freely.
     pub trigger_us: u32,
-    /// Its way to report.
+    /// The way to report.
     pub interface: Interface,
     /// The time from the trigger to its report, in us; 0 where the echo's own edge reports it.
     pub report_us: u32,
@@ -120,7 +120,7 @@ pub enum NoEcho {
         /// The time, in us.
         us: u32,
     },
-    /// Its line never rises.
+    /// The line never rises.
     Silent,
     /// The module reports that there is nothing, by a value.
     Reports,

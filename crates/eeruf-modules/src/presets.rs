@@ -16,7 +16,7 @@ pub enum Source {
 pub struct Preset {
     /// The module.
     pub module: &'static Module,
-    /// Its name as its maker writes it.
+    /// The name as its maker writes it.
     pub title: &'static str,
     /// For each figure, by its name in files, where it comes from.
     pub sources: &'static [(&'static [&'static str], Source)],

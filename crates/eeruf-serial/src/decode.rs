@@ -27,7 +27,7 @@ pub enum Message {
     Firing(FiringMessage),
     /// A period has ended.
     Period {
-        /// Its number, from 0.
+        /// The number, from 0.
         period: u32,
         /// The latest firing in it.
         max_late: Micros,
@@ -53,7 +53,7 @@ pub struct Received {
     pub of_hopping: bool,
 }
 
-/// Why bytes between two zeros are no frame.
+/// Reason why bytes between two zeros are no frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum FrameError {

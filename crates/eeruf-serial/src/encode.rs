@@ -26,7 +26,7 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// Its bytes, with the zero at the end.
+    /// Returns the bytes, with the zero at the end.
     pub fn as_bytes(&self) -> &[u8] {
         self.bytes.get(..self.length).unwrap_or_default()
     }

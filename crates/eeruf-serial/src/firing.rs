@@ -7,9 +7,9 @@ pub struct FiringMessage {
     pub sensor: u8,
     /// The phase it fired in, from 0.
     pub phase: u8,
-    /// Its outcome: accepted, or why not.
+    /// The outcome: accepted, or why not.
     pub kind: ReadingKind,
-    /// When it fired, by the board's clock, which wraps after 2^32 us.
+    /// Time when it fired, by the board's clock, which wraps after 2^32 us.
     pub fired: Instant,
     /// The period it fired in, from 0.
     pub period: u32,

@@ -19,7 +19,7 @@ const NOTHING: Micros = NO_ECHO;
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 struct Known<const E: usize> {
-    /// Its last reading, earliest echo first; or [`SILENCE`].
+    /// The last reading, earliest echo first; or [`SILENCE`].
     last: [Micros; E],
     /// The echo that is believed of it, or was.
     believed: Micros,

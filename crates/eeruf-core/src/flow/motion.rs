@@ -45,7 +45,7 @@ impl Rate {
 pub(super) struct Motion {
     rate: Rate,
     top: Rate,
-    /// When the caller last said how fast it moves; `None` for not within [`SILENCE`].
+    /// Time when the caller last said how fast it moves; `None` for not within [`SILENCE`].
     told: Option<Instant>,
     /// The greatest rates in the spans before and from `since` on, neither of them much shorter than sound is heard.
     greatest: [Rate; 2],

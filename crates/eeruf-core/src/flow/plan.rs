@@ -19,7 +19,7 @@ const OLD: Micros = Micros::new(1 << 29);
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 struct Slot {
-    /// When it last fired, if it has.
+    /// Time when it last fired, if it has.
     fired: Instant,
     /// Quiet that it needs after its firing and before, in units.
     doubt: u16,
@@ -30,12 +30,12 @@ struct Slot {
 
 /// The sensor has fired, not too long ago.
 const FIRED: u8 = 1;
-/// Its edge is awaited.
+/// The edge is awaited.
 const LISTENS: u8 = 2;
 const DISABLED: u8 = 4;
 /// The sensor fires with one that has a turn.
 const FOLLOWS: u8 = 8;
-/// Its leader has fired, and it has not yet.
+/// The leader has fired, and it has not yet.
 const PENDING: u8 = 16;
 
 impl Slot {
@@ -71,9 +71,9 @@ pub struct InTurn<const K: usize, U = ()> {
     /// While the robot moves the dice are twice as long, and where every echo is reported the least quiet.
     pace: Pace,
     paused: bool,
-    /// When the next sensor is due, or the round ends.
+    /// Time when the next sensor is due, or the round ends.
     due: Instant,
-    /// When a sensor last fired, or the plan began.
+    /// Time when a sensor last fired, or the plan began.
     last: Instant,
     /// The throw for the next gap.
     thrown: Micros,

@@ -12,8 +12,8 @@ const LEAST_QUIET: Micros = Micros::new(100);
 const LONGEST_QUIET: Micros = Micros::from_millis(250);
 pub(super) const LONGEST_REST: Micros = Micros::from_millis(4_000);
 
-/// When sensors fire that fire in turn. The least and the most quiet being equal, each has the same gap around it, as
-/// [one by one](Self::one_by_one).
+/// Settings for firing in turn. The least and the most quiet being equal, each has the same gap around it,
+/// as [one by one](Self::one_by_one).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct TurnSettings {
@@ -32,7 +32,7 @@ pub struct TurnSettings {
 }
 
 impl TurnSettings {
-    /// For HC-SR04 modules and others that hear no further than 4 m, with this seed.
+    /// Settings for HC-SR04 modules and others that hear up to 4 m, with this seed.
     pub const fn new(seed: u32) -> Self {
         let (most, rest) = (Micros::new(33_500), Micros::from_millis(60));
         Self { least: Micros::new(6_000), most, rest, dice: Micros::from_millis(2), seed }
@@ -133,7 +133,7 @@ pub struct BeliefSettings {
     /// H: by how much a reading may differ from what is believed, of a robot that stands; of an edge between two
     /// instants the middle, since what fits has no promise anyway.
     pub near: Micros,
-    /// P: by how much the path of foreign sound may change between two readings, of a robot that stands.
+    /// P: the largest change of a foreign path between two readings of a robot that stands.
     pub path_change: Micros,
     /// Firings without belief after which a belief keeps nothing alive.
     pub memory: u8,

@@ -96,7 +96,7 @@ pub fn check_plan<P: Plan>(plan: &mut P, now: Instant, polls: u32, seed: u32) ->
 #[derive(Clone, Copy, Default)]
 struct Seen {
     fired: Option<Instant>,
-    /// When it stops listening, if it has not.
+    /// Time when it stops listening, if it has not.
     ends: Option<Instant>,
     disabled: bool,
     /// Since when it could have fired.

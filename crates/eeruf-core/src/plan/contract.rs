@@ -16,7 +16,7 @@ pub struct Upcoming {
     pub sensor: u8,
     /// The phase its wait belongs to.
     pub phase: Phase,
-    /// When it is due.
+    /// Time when it is due.
     pub due: Instant,
 }
 
@@ -56,7 +56,7 @@ pub trait Plan {
             self.end_period(now);
         }
     }
-    /// When the next step is due.
+    /// Returns the time when the next step is due.
     fn deadline(&self) -> Instant;
     /// The sensor that fires next and the phase of its wait; none if the period ends next.
     fn next_firing(&self) -> Option<(u8, Phase)>;

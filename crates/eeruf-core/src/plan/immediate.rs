@@ -42,7 +42,7 @@ pub struct Refiring<T, const K: usize, const M: usize = 2> {
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 struct Turn {
-    /// When the sensor fires next; while it listens, when it fired.
+    /// Time when the sensor fires next; while it listens, when it fired.
     at: Instant,
     phase: u8,
 }

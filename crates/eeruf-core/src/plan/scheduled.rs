@@ -43,10 +43,10 @@ pub struct TableFiring<T, const K: usize, const M: usize = 2, U = ()> {
     next: u8,
     /// True if any sensor is disabled, since asking all 64 takes time at every firing, and whether all are, by a pause.
     skips: Skips,
-    /// When it is due, or when the period ends. Worked out once per step, since it is asked for at every poll.
+    /// Time when it is due, or when the period ends. Worked out once per step, since it is asked for at every poll.
     due: Instant,
     schedule: T,
-    /// When a sensor last fired, or long enough ago.
+    /// Time when a sensor last fired, or long enough ago.
     last_fired: Instant,
     disabled: SensorSet,
     next_schedule: Option<T>,
@@ -162,7 +162,7 @@ impl<T: Deref<Target = Schedule<K, M>>, const K: usize, const M: usize, U: OwnLi
         self.due += gap;
     }
 
-    /// When a period may begin that was not verified against what fired before.
+    /// Returns the time when a period may begin that was not verified against what fired before.
     fn settled(&self) -> Instant {
         self.last_fired + settling_time(&*self.schedule)
     }

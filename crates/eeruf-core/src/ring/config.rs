@@ -79,13 +79,13 @@ impl<const E: usize> RingConfig<E> {
         Ok(Tolerance::new(t_delta, Consecutive::new(self.consecutive)?))
     }
 
-    /// With this `t_delta`: at most what the schedule was verified for.
+    /// Sets `t_delta`: at most what the schedule was verified for.
     #[must_use]
     pub const fn with_t_delta(self, t_delta: Micros) -> Self {
         Self { t_delta: Some(t_delta), ..self }
     }
 
-    /// With this listening window: at most what the schedule was verified for.
+    /// Sets the listening window: at most what the schedule was verified for.
     #[must_use]
     pub const fn with_window(self, window: Micros) -> Self {
         Self { window: Some(window), ..self }
@@ -97,25 +97,25 @@ impl<const E: usize> RingConfig<E> {
         Self { blanking, ..self }
     }
 
-    /// With this number of consecutive readings that must agree, 2 to 8.
+    /// Sets the number of consecutive readings that must agree, 2 to 8.
     #[must_use]
     pub const fn with_consecutive(self, consecutive: u8) -> Self {
         Self { consecutive, ..self }
     }
 
-    /// With paths of sound that change by at most this from one reading to the next.
+    /// Sets the largest change of a foreign path from one reading to the next.
     #[must_use]
     pub const fn with_path_change(self, path_change: Micros) -> Self {
         Self { path_change: Some(path_change), ..self }
     }
 
-    /// With sound that is audible for this long.
+    /// Sets how long sound is audible.
     #[must_use]
     pub const fn with_audible(self, audible: Micros) -> Self {
         Self { audible: Some(audible), ..self }
     }
 
-    /// For sensors that report up to `N` echoes of one firing.
+    /// Sets the number of echoes that a sensor reports of one firing.
     #[must_use]
     pub const fn with_echoes<const N: usize>(self) -> RingConfig<N> {
         let Self { t_delta, window, blanking, consecutive, path_change, audible } = self;

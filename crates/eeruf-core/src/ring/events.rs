@@ -14,7 +14,7 @@ pub enum RingEvent {
         sensor: u8,
         /// The phase that its wait belongs to.
         phase: Phase,
-        /// When it was due: in the past if the poll is late.
+        /// Time when it was due: in the past if the poll is late.
         due: Instant,
     },
     /// The outcome of an earlier firing.
@@ -52,7 +52,7 @@ pub struct Reading {
 pub struct PeriodStats {
     /// The period, counted from 0.
     pub period: u32,
-    /// Its phase.
+    /// The phase.
     pub phase: Phase,
     /// The readings emitted since the period before ended, by kind.
     pub tally: Tally<u8>,

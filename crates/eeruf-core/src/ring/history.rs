@@ -120,7 +120,7 @@ pub(super) const fn long_before(now: Instant) -> Instant {
 /// The instants at which a sensor heard two consecutive readings, and what sound may do.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Pair {
-    /// When the first was heard, `h1`, and the second, `h2`.
+    /// Time when the first was heard, `h1`, and the second, `h2`.
     pub(super) heard: [Instant; 2],
     /// `R`: how long sound is audible.
     pub(super) audible: Micros,

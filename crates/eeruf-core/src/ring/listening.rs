@@ -94,7 +94,7 @@ impl Listening {
         Ok(Self { window, audible, t_delta, blanking, path_change, unanswered, unwitnessed })
     }
 
-    /// For how long one sensor listens: no longer than the plan allows it.
+    /// Returns the time for which one sensor listens: no longer than the plan allows it.
     #[inline]
     pub(super) fn window_of<P: Plan>(&self, plan: &P, sensor: u8) -> Micros {
         match plan.limits_of(sensor) {
@@ -112,7 +112,7 @@ impl Listening {
         }
     }
 
-    /// With another `t_delta`, window and blanking time; what sound may do stays.
+    /// Returns a copy with another `t_delta`, window and blanking time.
     pub(super) fn changed<P: Plan>(
         &self,
         t_delta: Micros,
@@ -145,12 +145,12 @@ impl Listening {
         self.audible
     }
 
-    /// With another R.
+    /// Returns a copy with another R.
     pub(super) fn with_audible(&self, audible: Micros) -> Result<Self, RingError> {
         self.with_sound(self.asked_path_change(), audible)
     }
 
-    /// With another P.
+    /// Returns a copy with another P.
     pub(super) fn with_path_change(&self, path_change: Micros) -> Result<Self, RingError> {
         self.with_sound(Some(path_change), self.audible)
     }

@@ -88,7 +88,7 @@ pub struct Ring<P, J, const K: usize, const E: usize = 1, const H: usize = 4> {
     last_ready: u8,
     /// Number of sensors that listen.
     listening_now: u8,
-    /// When the next reading can be emitted: when an edge came, or when the window of the oldest closes.
+    /// Time when the next reading can be emitted: when an edge came, or when the window of the oldest closes.
     emit_at: Instant,
     listening: Listening,
     period: u32,
@@ -299,7 +299,7 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
         self.plan.deadline().since(now) > self.plan.horizon()
     }
 
-    /// When to poll next. In the past if an event is pending.
+    /// Returns the time to poll next. In the past if an event is pending.
     pub fn next_deadline(&self) -> Instant {
         let due = self.plan.deadline();
         if self.has_pending() && !self.emit_at.has_reached(due) { self.emit_at } else { due }
@@ -605,7 +605,7 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
         }
     }
 
-    /// When sensors fire.
+    /// Returns the plan.
     pub const fn plan(&self) -> &P {
         &self.plan
     }
@@ -630,8 +630,8 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
         self.plan.limits_of(0).is_some()
     }
 
-    /// When a sensor last fired, as [`fired`](Self::fired) corrected it; an instant that nothing is heard from if it
-    /// has not yet. `None` for a sensor out of range.
+    /// Returns the time when a sensor last fired, as [`fired`](Self::fired) corrected it; an instant that nothing is
+    /// heard from if it has not yet. `None` for a sensor out of range.
     pub fn last_firing(&self, sensor: u8) -> Option<Instant> {
         let there = usize::from(sensor) < self.sensors();
         self.sensors.get(usize::from(sensor)).filter(|_| there).map(Sensor::fired)

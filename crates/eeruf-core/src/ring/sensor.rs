@@ -61,7 +61,7 @@ impl<const E: usize, const H: usize> Sensor<E, H> {
         Self { firings: Firings::none_before(now), echoes: [NO_ECHO; E], flags: OUTSIDE, uncertain: [0; 3] }
     }
 
-    /// When it last fired.
+    /// Returns the time when it last fired.
     #[inline]
     pub(super) const fn fired(&self) -> Instant {
         self.firings.last()
@@ -110,7 +110,7 @@ impl<const E: usize, const H: usize> Sensor<E, H> {
         self.firings.push(now);
     }
 
-    /// Its last firing was at another instant: the echoes that were measured from it change by as much. Returns by how
+    /// The last firing was at another instant: the echoes that were measured from it change by as much. Returns by how
     /// many microseconds it was later.
     pub(super) fn correct(&mut self, at: Instant) -> i32 {
         let later_us = at.since(self.fired()).as_micros() as i32;
@@ -277,9 +277,9 @@ pub(super) fn off_by(uncertain: [u8; 3]) -> [Micros; 3] {
 pub(super) struct Ended<const E: usize> {
     pub(super) listened: bool,
     pub(super) was_ready: bool,
-    /// Its silence counts when its line has fallen; of a late edge, with it.
+    /// The silence counts when its line has fallen; of a late edge, with it.
     pub(super) is_held: bool,
-    /// Why it says nothing about the echo time, if it does not.
+    /// Reason why it says nothing about the echo time, if it does not.
     pub(super) unusable: Option<ReadingKind>,
     pub(super) echoes: [Micros; E],
     /// The times by which they, those of the firing before and those of all earlier ones may be off.

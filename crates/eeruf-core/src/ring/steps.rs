@@ -266,7 +266,7 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
         self.window_of(sensor).max(self.report_after)
     }
 
-    /// When a sensor's last firing ends if there is no echo.
+    /// Returns the time when a sensor's last firing ends if there is no echo.
     fn closes(&self, sensor: u8) -> Instant {
         let fired = self.sensor(sensor).map_or(Instant::default(), Sensor::fired);
         fired + self.closes_after(sensor)

@@ -1,11 +1,11 @@
-//! Why raw numbers do not make a schedule.
+//! Reasons why raw numbers do not make a schedule.
 
 use core::fmt;
 
 use super::limits::{MAX_PERIOD, MAX_PHASES, Phase};
 use crate::time::Micros;
 
-/// Why raw numbers do not make a [`Schedule`](crate::Schedule), or schedules no ladder for
+/// Reason why raw numbers do not make a [`Schedule`](crate::Schedule), or schedules no ladder for
 /// [`Adaptation`](crate::adaptation::Adaptation).
 /// `{:#}` counts from 0 where `{}` counts from 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -51,7 +51,7 @@ pub enum ScheduleError {
     },
     /// A scale with a zero denominator.
     Scale {
-        /// Its numerator.
+        /// The numerator.
         num: u32,
     },
     /// A ladder of schedules has no rung.
@@ -60,7 +60,7 @@ pub enum ScheduleError {
     RungOrder {
         /// The rung.
         rung: usize,
-        /// Its period.
+        /// The period.
         period: Micros,
         /// The period of the rung before.
         before: Micros,

@@ -18,8 +18,8 @@ pub use error::ScheduleError;
 pub use limits::{MAX_PERIOD, MAX_PHASES, MAX_SENSORS, Phase};
 pub use verified_for::VerifiedFor;
 
-/// When each sensor fires: once per period, at `T_fire = T_lag + T_wait`, where `T_wait` changes with the phase (Sec.
-/// 3.1).
+/// Firing times: each sensor fires once per period, at `T_fire = T_lag + T_wait`, where `T_wait` changes with the phase
+/// (Sec. 3.1).
 ///
 /// `K` is the number of sensors a table written as arrays has; for tables whose size is known only at run time it is
 /// the capacity, and [`sensors`](Self::sensors) counts (see [`from_slices`](Self::from_slices)). `M` is the number of

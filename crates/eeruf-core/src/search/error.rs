@@ -1,4 +1,4 @@
-//! Why a search cannot start: times off the grid, or an invalid problem.
+//! Reasons why a search cannot start: times off the grid, or an invalid problem.
 
 use core::fmt;
 
@@ -6,7 +6,7 @@ use crate::requirements_error::RequirementsError;
 use crate::schedule::{MAX_PERIOD, MAX_SENSORS, ScheduleError};
 use crate::time::Micros;
 
-/// Why a search cannot start. Sensors are counted from 0 here and printed from 1; `{:#}` counts from 0.
+/// Reason why a search cannot start. Sensors are counted from 0 here and printed from 1; `{:#}` counts from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
@@ -46,7 +46,7 @@ pub enum SearchError {
     OutsidePeriod {
         /// The sensor.
         sensor: usize,
-        /// Its lag in ticks.
+        /// The lag in ticks.
         lag: u32,
         /// The longest wait in ticks.
         wait_max: u32,

@@ -77,7 +77,7 @@ pub struct WaitSearch {
     rows: [u64; MAX_SENSORS],
 }
 
-/// Why there is no table.
+/// Reason why there is no table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Infeasible {

@@ -277,7 +277,7 @@ fn several_echoes_are_heard_until_window_closes() {
     assert_eq!(read, expected);
 }
 
-/// Why a ring of two sensors with room for `K` is refused, and one that fires in turn, if they are.
+/// Reason why a ring of two sensors with room for `K` is refused, and one that fires in turn, if they are.
 fn refused<const K: usize>() -> [Option<RingError>; 2] {
     let (schedule, now) = (schedule(), Instant::from_micros(0));
     let config = RingConfig::new().with_t_delta(Micros::new(500)).with_window(Micros::new(WINDOW));

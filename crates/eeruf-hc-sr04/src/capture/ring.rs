@@ -93,8 +93,8 @@ impl<P: Plan, J: Judge, C: Captures, const K: usize, const H: usize> CaptureRing
         }
     }
 
-    /// When to poll next: as [`Ring::next_deadline`], or when a firing is to go to the hardware. In the past if an
-    /// event is pending, or the hardware is busy with a sensor that is to fire.
+    /// Returns the time to poll next: as [`Ring::next_deadline`], or when a firing is to go to the hardware. In the
+    /// past if an event is pending, or the hardware is busy with a sensor that is to fire.
     pub fn next_deadline(&self) -> Instant {
         let deadline = self.ring.next_deadline();
         let next = self.ring.upcoming().nth(self.count).filter(|_| !self.is_held && !self.is_late);

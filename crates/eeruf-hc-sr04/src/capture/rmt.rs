@@ -31,7 +31,7 @@ pub struct RmtLine<const N: usize> {
     /// Number of levels, and of those that are through.
     levels: usize,
     next: usize,
-    /// When the next level begins.
+    /// Time when the next level begins.
     at: Instant,
     /// The last level.
     was_high: bool,

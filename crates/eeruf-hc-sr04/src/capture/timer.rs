@@ -25,7 +25,7 @@ pub struct Captured {
 /// edge is missing: either yields no edges at all, and silence without a rise is no free space.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct TimerLine {
-    /// When the registers were read last.
+    /// Time when the registers were read last.
     read: Option<Instant>,
     /// Edges to come, in reverse.
     edges: [Option<LineEdge>; 2],

@@ -68,7 +68,7 @@ enum Step {
 impl State {
     const NEW: Self = Self { step: Step::Idle, fault: None, silent: 0, health: Health::Well };
 
-    /// Its reading is emitted without an answer.
+    /// The reading is emitted without an answer.
     fn end(&mut self) {
         if self.step == Step::Idle {
             return;
@@ -186,8 +186,8 @@ impl<P: Plan, J: Judge, M: Measures, const K: usize, const H: usize> MeasuringRi
         _ = self.ring.measured(sensor, t_echo);
     }
 
-    /// When to poll next: as [`Ring::next_deadline`], or when a module is to be asked. In the past if an event is
-    /// pending.
+    /// Returns the time to poll next: as [`Ring::next_deadline`], or when a module is to be asked. In the past if an
+    /// event is pending.
     pub fn next_deadline(&self) -> Instant {
         let asks = self.states.iter().filter_map(|state| match state.step {
             Step::Measures { ask, .. } => Some(ask),

@@ -13,7 +13,7 @@ const FIRST_REGISTER: u8 = 0;
 const RANGE_IN_US: u8 = 0x52;
 /// All bits of a bus that nobody drives, as while the module ranges.
 const UNDRIVEN: u8 = 0xFF;
-/// When to look that it ranges, after the start: a choice, longer than a command takes at 100 kHz.
+/// Delay from the start to the check that it ranges: a choice, longer than a command takes at 100 kHz.
 const IS_RANGING: Micros = Micros::from_millis(2);
 
 /// A Devantech SRF08, or another module with its registers, on an I2C bus.

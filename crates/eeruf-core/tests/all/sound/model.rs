@@ -8,7 +8,7 @@ use eeruf_core::Reading;
 struct Sensor {
     /// All instants at which it fired, in true time.
     fired: Vec<u64>,
-    /// Its last reading with an echo: the firing and when the echo was heard.
+    /// The last reading with an echo: the firing and when the echo was heard.
     last: Option<(u64, u64)>,
 }
 

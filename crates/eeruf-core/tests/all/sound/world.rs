@@ -21,7 +21,7 @@ pub(super) const STEPS: u32 = 12;
 pub(super) enum Heard {
     /// Sound of one emitter along one path of at least this many microseconds.
     Path { emitter: u8, least: u32 },
-    /// Its own wall after this many microseconds, give or take 15.
+    /// The own wall after this many microseconds, give or take 15.
     Wall { t_echo: u32 },
 }
 

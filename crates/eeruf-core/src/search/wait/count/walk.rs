@@ -14,7 +14,7 @@ struct Free {
     s: [u64; 2],
 }
 
-/// Where the walk stands at one level, which places one sensor.
+/// State of the walk at one level, which places one sensor.
 #[derive(Clone, Copy)]
 struct Level {
     free: Free,
@@ -28,7 +28,7 @@ struct Level {
     a_left: u64,
     /// The tables counted when the level was entered.
     entered_at: u128,
-    /// Where the count goes when the level is finished.
+    /// Destination of the count when the level is finished.
     ticket: Option<Ticket>,
 }
 

@@ -31,7 +31,7 @@ pub struct Physics {
     /// of the carrier, and the envelope of the sum crosses the threshold; that has `range_walk` in it. Otherwise each
     /// is heard on its own. No preset has it.
     pub interference: bool,
-    /// For how long a path fades in the same way, in seconds: the time after which the correlation has fallen to 1/e.
+    /// Time for which a path fades in the same way, in seconds: the time after which the correlation has fallen to 1/e.
     /// At 0 every firing fades on its own, and by its number among the firings of its sensor.
     pub fading_time_s: f64,
 }

@@ -115,7 +115,7 @@ impl Transducer {
         core::f64::consts::TAU * self.frequency_hz / air.speed_of_sound()
     }
 
-    /// Its pattern in this air.
+    /// Returns the pattern in this air.
     pub fn piston(&self, air: Air) -> Piston {
         Piston { floor: self.pattern_floor, beam: self.beam, ..Piston::new(self.wave_number(air), self.radius_m) }
     }

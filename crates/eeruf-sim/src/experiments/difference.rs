@@ -12,12 +12,12 @@ pub struct Difference {
     pub pairs: usize,
     /// Mean difference.
     pub mean: f64,
-    /// Where the mean lies with 95 % confidence, by the percentile bootstrap over scenes.
+    /// 95 % confidence interval of the mean, by the percentile bootstrap over scenes.
     pub mean_95: [f64; 2],
     /// Median difference.
     pub median: f64,
-    /// Where the median lies with at least 95 % confidence: the interval of the sign test, exact for any distribution.
-    /// `None` for fewer than six scenes, which have none.
+    /// At least a 95 % confidence interval of the median: the interval of the sign test, exact for any
+    /// distribution. `None` for fewer than six scenes, which have none.
     pub median_95: Option<[f64; 2]>,
     /// Number of scenes in which the difference is below 0.
     pub less: usize,

@@ -1,4 +1,4 @@
-//! Why an experiment cannot be run.
+//! Errors of experiments.
 
 use core::fmt;
 use core::ops::Range;
@@ -8,7 +8,7 @@ use crate::{
     world::WorldError,
 };
 
-/// Why an experiment cannot be run.
+/// Reason why an experiment cannot be run.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum ExperimentError {

@@ -13,7 +13,7 @@ pub struct Spread {
     pub median: f64,
     /// Nine runs in ten have no more.
     pub p90: f64,
-    /// Where the median lies with 95 % confidence, by bootstrap.
+    /// 95 % confidence interval of the median, by bootstrap.
     pub median_95: [f64; 2],
     /// Where `p90` lies with 95 % confidence, by bootstrap.
     pub p90_95: [f64; 2],

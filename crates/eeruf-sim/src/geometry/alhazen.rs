@@ -6,7 +6,7 @@ use super::plane::{Point, Vector, cross};
 /// A specular reflection at the outside of a circle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Specular {
-    /// Where the circle is met.
+    /// Point at which the circle is met.
     pub point: Point,
     /// Angle of incidence and of reflection, in radians from the normal, 0 to pi/2.
     pub incidence_rad: f64,

@@ -23,7 +23,7 @@ pub struct OccupancyGrid {
     /// Cells that are known to be free.
     free: Vec<bool>,
     cell_m: f64,
-    /// Where the lower left corner is, in metres, and the grid's heading, in radians.
+    /// Position of the lower left corner, in metres, and the grid's heading, in radians.
     origin: [f64; 3],
 }
 

@@ -11,7 +11,7 @@ pub(super) struct Head {
     pub(super) image: String,
     /// The width of a cell in metres.
     pub(super) resolution_m: f64,
-    /// Where the lower left corner of the picture is: x and y in metres, yaw in radians.
+    /// Pose of the lower left corner of the picture: x and y in metres, yaw in radians.
     pub(super) origin: [f64; 3],
     /// True if white is occupied, not black.
     pub(super) negate: bool,

@@ -1,4 +1,4 @@
-//! [`FiringMethod`]: when the sensors of a ring fire, planned period by period, by a method or by the caller's own code; and
+//! [`FiringMethod`]: when the sensors of a ring fire, planned period by period by a method or the caller's code; and
 //! the plan that makes core's ring of it.
 
 use core::fmt;
@@ -8,7 +8,7 @@ use eeruf_core::{
     plan::{Limits, Plan},
 };
 
-/// When the sensors of one robot's ring fire. Hand it to a simulation with [`Own`](crate::Own); dither is one as well.
+/// A rule by which the sensors of one robot's ring fire. Hand it to a simulation with [`Own`](crate::Own).
 ///
 /// ```
 /// use eeruf_core::{Micros, Phase};
@@ -66,7 +66,7 @@ impl Clone for Planner {
 pub struct FiringPeriod {
     /// Length: 1 us to [`MAX_PERIOD`].
     pub length: Micros,
-    /// Its phase, which its readings carry: 0 to 7.
+    /// The phase, which its readings carry: 0 to 7.
     pub phase: Phase,
     /// Firings, each with its time after the beginning of the period and before its end, in any order. A sensor may
     /// fire several times or not at all, but never while it still listens: within the robot's
@@ -74,7 +74,8 @@ pub struct FiringPeriod {
     pub firings: Vec<(Micros, u8)>,
 }
 
-/// Why a [`FiringMethod`](crate::FiringMethod) or a [`Filter`](crate::Filter) of the caller's ends a simulation: a sentence.
+/// Reason why a [`FiringMethod`](crate::FiringMethod) or a [`Filter`](crate::Filter) of the caller's ends a simulation:
+/// a sentence.
 ///
 /// ```
 /// use eeruf_sim::OwnError;
@@ -113,7 +114,7 @@ impl fmt::Display for OwnError {
 
 impl core::error::Error for OwnError {}
 
-/// Why a period cannot be fired.
+/// Reason why a period cannot be fired.
 enum Unfit {
     Length(Micros),
     Phase(Phase),
@@ -192,7 +193,7 @@ impl PeriodFiring {
         firing
     }
 
-    /// Why it no longer fires, if it does not.
+    /// Returns the reason why it no longer fires, if it does not.
     pub(crate) fn error(&self) -> Option<&OwnError> {
         self.planner.0.as_ref().err()
     }

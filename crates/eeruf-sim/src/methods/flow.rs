@@ -14,7 +14,7 @@ use crate::world::Robot;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct FlowOptions {
-    /// For how long sensors listen, in an [`Entry`](crate::Entry); `None` for the robot's window.
+    /// Time for which sensors listen, in an [`Entry`](crate::Entry); `None` for the robot's window.
     pub window: Option<Micros>,
     /// R: how long sound is heard, its tail included, and the most quiet; `None` for the robot's
     /// [`audible`](Robot::audible), or what follows from its window.

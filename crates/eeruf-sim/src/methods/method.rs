@@ -19,7 +19,7 @@ pub(crate) const MAX_ECHOES: usize = 8;
 /// A method: its firing, its judge, the number of echoes of a firing that a sensor reports, and whether it adapts.
 pub(super) struct MethodRow {
     pub(super) name: &'static str,
-    /// Its description, as the enum documents it.
+    /// The description, as the enum documents it.
     pub(super) about: &'static str,
     /// True if it is simulated only where it is asked for.
     pub(super) on_demand: bool,
@@ -64,7 +64,7 @@ macro_rules! methods {
             /// Every method, in the order in which tables list them.
             pub const ALL: [Self; [$($name),+].len()] = [$(Self::$method),+];
 
-            /// Its row of the table.
+            /// Returns the row of the table.
             pub(in crate::methods) const fn row(self) -> &'static MethodRow {
                 match self {
                     $( Self::$method => const {
@@ -78,7 +78,7 @@ macro_rules! methods {
 pub(super) use methods;
 
 impl Method {
-    /// Its name in files, in `--json` and in Python.
+    /// Returns the name in files, in `--json` and in Python.
     pub const fn as_str(self) -> &'static str {
         self.row().name
     }

@@ -24,7 +24,7 @@ use crate::world::{AnySchedule, Random, Robot};
 pub(crate) trait RingRunner: Send {
     /// The ring's next event, if any; `expected_change_us` says by how much a good reading of a sensor should change.
     fn poll(&mut self, now: Instant, expected_change_us: &dyn Fn(u8) -> i32) -> Option<RingEvent>;
-    /// When it is to be polled again.
+    /// Returns the time when it is to be polled again.
     fn next_deadline(&self) -> Instant;
     /// A sensor hears an echo.
     fn echo(&mut self, sensor: u8, at: Instant);
@@ -36,7 +36,7 @@ pub(crate) trait RingRunner: Send {
     fn change_schedule(&mut self, _schedule: &AnySchedule) -> Result<(), ChangeError> {
         Err(ChangeError::Fixed)
     }
-    /// Why it no longer fires, if it does not.
+    /// Returns the reason why it no longer fires, if it does not.
     fn error(&self) -> Option<&OwnError> {
         None
     }
@@ -44,7 +44,7 @@ pub(crate) trait RingRunner: Send {
     fn copy(&self) -> Option<Box<dyn RingRunner>>;
 }
 
-/// Why a ring cannot change to another schedule.
+/// Reason why a ring cannot change to another schedule.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum ChangeError {
     /// The ring fires by no schedule that could be changed.
@@ -141,7 +141,7 @@ pub(super) type SimulatedTable = TableFiring<Arc<AnySchedule>, MAX_SENSORS, 2, E
 pub(crate) struct FiringPlan {
     /// The schedule that the method asked for.
     pub(crate) schedule: AnySchedule,
-    /// Where it adapts, all that it may change to, the first one first.
+    /// If it adapts, the schedules that it may change to, the first one first.
     pub(crate) ladder: Vec<VerifiedSchedule<MAX_SENSORS, 2, EachSensor<MAX_SENSORS>>>,
     /// Limits of each sensor, where they are not all alike.
     pub(crate) own_limits: EachSensor<MAX_SENSORS>,
@@ -198,7 +198,7 @@ impl Way {
     }
 }
 
-/// Why a ring cannot be started.
+/// Reason why a ring cannot be started.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum StartError {
     /// The ring cannot listen as asked.
@@ -207,7 +207,7 @@ pub(crate) enum StartError {
     Unverified(Violation),
     /// The schedules make no ladder.
     Ladder(ScheduleError),
-    /// Its first period cannot be fired.
+    /// The first period cannot be fired.
     Own(OwnError),
 }
 

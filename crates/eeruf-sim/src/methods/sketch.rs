@@ -57,7 +57,7 @@ pub(super) fn groups(start: &RingStart<'_>) -> Started {
     lanes(start, vec![given_or(&start.robot.firing.groups, far)])
 }
 
-/// All at once, again when the slowest is ready.
+/// Fires all sensors at once, and again when the slowest is ready.
 pub(super) fn sync_line(start: &RingStart<'_>) -> Started {
     lanes_resting(start, vec![vec![(0..start.robot.sensors.len() as u8).collect()]], start.robot.module_rest())
 }
@@ -156,7 +156,7 @@ struct Lane {
     /// The set whose turn it is, and how many of its sensors have had their turn.
     set: usize,
     place: usize,
-    /// When the turn began or begins.
+    /// Time when the turn began or begins.
     due: Instant,
     /// Sensors of the set that still listen, bit x for sensor x.
     pending: u64,

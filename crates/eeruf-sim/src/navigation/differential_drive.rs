@@ -71,7 +71,7 @@ impl Driven {
 }
 
 impl LabMate {
-    /// Its outline.
+    /// Returns the outline.
     pub fn body(&self) -> Body {
         Body::Box(self.side_m, self.side_m)
     }

@@ -12,11 +12,11 @@ use super::readings::{Cause, NO_PATH, Readings, SensorId};
 pub struct Attribution {
     /// The sensor that was fooled.
     pub receiver: SensorId,
-    /// By what. [`Cause::Nothing`]: it heard nothing where it should have.
+    /// Cause of the error. [`Cause::Nothing`]: it heard nothing where it should have.
     pub cause: Cause,
-    /// By whom, if a sensor was the cause.
+    /// Sensor that caused it, if one did.
     pub emitter: Option<SensorId>,
-    /// Along which of [`Readings::paths`], or [`NO_PATH`].
+    /// Index into [`Readings::paths`], or [`NO_PATH`].
     pub path: u32,
     /// Number of bounces that path has.
     pub order: Option<u32>,

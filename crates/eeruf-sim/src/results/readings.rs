@@ -45,13 +45,13 @@ pub struct HeardPath {
     pub receiver: SensorId,
     /// Number of bounces.
     pub order: u32,
-    /// Its length in metres, when it was first heard if something moves.
+    /// The length in metres, when it was first heard if something moves.
     pub length_m: f64,
-    /// Where it leaves, in the scene's frame.
+    /// Direction in which it leaves, in the scene's frame.
     pub departure_rad: f64,
-    /// Where the receiver looks to see it, in the scene's frame.
+    /// Direction in which the receiver looks to see it, in the scene's frame.
     pub arrival_rad: f64,
-    /// Its bounces, emitter to receiver. [`Scene::bounce_points`](crate::Scene::bounce_points) says where they are.
+    /// The bounces, emitter to receiver. [`Scene::bounce_points`](crate::Scene::bounce_points) says where they are.
     pub bounces: Box<[Bounce]>,
 }
 
@@ -67,7 +67,7 @@ impl HeardPath {
 pub struct Readings {
     /// The method that was simulated.
     pub method: Method,
-    /// For how long, in seconds of true time; readings of all firings within it are here.
+    /// Duration, in seconds of true time; readings of all firings within it are here.
     pub duration_s: f64,
     /// Number of sensors the world has.
     pub sensors: usize,
@@ -79,13 +79,13 @@ pub struct Readings {
     pub period: Vec<u32>,
     /// The phase in which it fired, from 0.
     pub phase: Vec<u8>,
-    /// When it fired, in seconds of true time.
+    /// Time when it fired, in seconds of true time.
     pub fired_s: Vec<f64>,
-    /// Where the sensor stood when it fired, in metres of the scene.
+    /// Position of the sensor when it fired, in metres of the scene.
     pub x_m: Vec<f64>,
-    /// Where the sensor stood when it fired, in metres of the scene.
+    /// Position of the sensor when it fired, in metres of the scene.
     pub y_m: Vec<f64>,
-    /// Its heading then, in radians of the scene, counter-clockwise from the x axis, in (-pi, pi].
+    /// The heading then, in radians of the scene, counter-clockwise from the x axis, in (-pi, pi].
     pub heading_rad: Vec<f64>,
     /// Verdict of the method on the reading. Methods that believe everything know [`ReadingKind::Accepted`] and
     /// [`ReadingKind::Clear`].
@@ -101,9 +101,9 @@ pub struct Readings {
     pub reference_us: Vec<f64>,
     /// Cause of `t_echo_us`.
     pub cause: Vec<Cause>,
-    /// Along which of `paths`, or [`NO_PATH`].
+    /// Index into `paths`, or [`NO_PATH`].
     pub path: Vec<u32>,
-    /// When the sound behind `t_echo_us` was sent, in seconds of true time.
+    /// Time when the sound behind `t_echo_us` was sent, in seconds of true time.
     pub emitted_s: Vec<f64>,
     /// The change that odometry expects of a good reading since the sensor's firing before, in microseconds; 0 for a
     /// robot without odometry.
@@ -168,7 +168,7 @@ impl Readings {
         emitted_s.try_reserve(more)
     }
 
-    /// For how many more there is room.
+    /// Number of further readings that fit.
     pub(crate) fn room(&self) -> usize {
         // Columns of like elements grow alike, and the widest grow last.
         self.emitted_s.capacity() - self.emitted_s.len()
@@ -215,7 +215,7 @@ impl Readings {
         self.robot.len()
     }
 
-    /// Returns true if there is none.
+    /// Returns true if there are no readings.
     pub fn is_empty(&self) -> bool {
         self.robot.is_empty()
     }

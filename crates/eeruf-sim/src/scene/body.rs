@@ -30,7 +30,7 @@ pub struct Outline {
     count: usize,
 }
 
-/// Why corners make no convex polygon.
+/// Reason why corners make no convex polygon.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum OutlineError {
@@ -41,9 +41,9 @@ pub enum OutlineError {
     },
     /// One where the outline does not turn to the left, or that is not a number.
     Corner {
-        /// Its index.
+        /// The index.
         corner: usize,
-        /// Where it is, in metres.
+        /// Position, in metres.
         at: [f64; 2],
     },
 }
@@ -100,7 +100,7 @@ impl Outline {
         Ok(outline)
     }
 
-    /// Its corners.
+    /// Returns the corners.
     pub fn corners(&self) -> &[Point] {
         &self.corners[..self.count]
     }
@@ -133,8 +133,8 @@ impl Body {
         self.overlaps(pose, &Self::Disc(TOUCH_M), &Pose::from(point.coords))
     }
 
-    /// Its corners at a pose, clockwise, the first one at the end again, as a pillar's walls are walked; none for a
-    /// disc.
+    /// Returns the corners at a pose, clockwise, the first one at the end again, as a pillar's walls are walked; none
+    /// for a disc.
     pub(crate) fn walls_around(&self, pose: &Pose) -> Vec<[f64; 2]> {
         let mut corners: Vec<Point> = match *self {
             Self::Disc(_) => return Vec::new(),

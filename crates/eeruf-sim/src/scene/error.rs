@@ -14,7 +14,7 @@ pub const MIN_WALL_M: f64 = 1e-6;
 /// The thickest pole's radius, in metres: a choice; whatever is rounder is a wall.
 pub const MAX_POLE_M: f64 = 100.0;
 
-/// Why a scene cannot be built.
+/// Reason why a scene cannot be built.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum SceneError {
@@ -29,7 +29,7 @@ pub enum SceneError {
     WallTooShort {
         /// Index of the wall.
         wall: usize,
-        /// Its length in metres.
+        /// The length in metres.
         length_m: f64,
     },
     /// Two walls that share more than a point, or one wall twice.
@@ -82,7 +82,7 @@ pub enum SceneError {
     },
     /// A ceiling that is too low or too high.
     Ceiling {
-        /// Its height in metres.
+        /// The height in metres.
         ceiling_m: f64,
     },
     /// An invalid material of floor or ceiling.

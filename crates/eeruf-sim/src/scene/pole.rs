@@ -7,11 +7,11 @@ use crate::geometry::Point;
 /// [`Physics::shadows`](crate::Physics::shadows) decide.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pole {
-    /// Its axis.
+    /// The axis.
     pub centre: Point,
     /// Radius in metres.
     pub radius_m: f64,
-    /// Its surface.
+    /// The surface.
     pub material: Material,
 }
 

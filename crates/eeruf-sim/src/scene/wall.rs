@@ -22,9 +22,9 @@ pub enum Faces {
 /// A straight wall.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wall {
-    /// Where it starts.
+    /// Start point.
     pub from: Point,
-    /// Where it ends.
+    /// End point.
     pub to: Point,
     /// Sides that reflect.
     pub faces: Faces,

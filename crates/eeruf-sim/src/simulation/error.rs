@@ -1,4 +1,4 @@
-//! Why a simulation cannot be run.
+//! Reasons why a simulation cannot be run.
 
 use core::fmt;
 
@@ -9,7 +9,7 @@ use crate::results::Readings;
 use crate::tracing::PathsError;
 use crate::world::WorldError;
 
-/// Why a simulation cannot be run. Robots are counted from 0 in code and printed from 1.
+/// Reason why a simulation cannot be run. Robots are counted from 0 in code and printed from 1.
 /// `{:#}` counts from 0 where `{}` counts from 1.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
@@ -20,7 +20,7 @@ pub enum SimulationError {
         robot: usize,
         /// The method.
         method: Method,
-        /// Why.
+        /// Reason.
         error: ScheduleError,
     },
     /// A robot's ring cannot listen as asked under the method.
@@ -29,7 +29,7 @@ pub enum SimulationError {
         robot: usize,
         /// The method.
         method: Method,
-        /// Why.
+        /// Reason.
         error: RingError,
     },
     /// No schedule keeps a robot's `t_delta` and window for [`Method::Adaptive`].
@@ -43,7 +43,7 @@ pub enum SimulationError {
     Ladder {
         /// The robot.
         robot: usize,
-        /// Why.
+        /// Reason.
         error: ScheduleError,
     },
     /// The median of none or of too many readings.
@@ -55,7 +55,7 @@ pub enum SimulationError {
     Paths {
         /// When, in seconds.
         at_s: f64,
-        /// Why.
+        /// Reason.
         error: PathsError,
     },
     /// There is not enough memory for as many readings.
@@ -87,7 +87,7 @@ pub enum SimulationError {
         what: &'static str,
         /// When, in seconds.
         at_s: f64,
-        /// Why.
+        /// Reason.
         error: OwnError,
     },
     /// A robot's ring fires by no schedule that could be changed.
@@ -110,7 +110,7 @@ pub enum SimulationError {
     Fault {
         /// When, in seconds.
         at_s: f64,
-        /// Why.
+        /// Reason.
         error: WorldError,
     },
     /// The caller asked to stop.

@@ -63,7 +63,8 @@ impl<'w> LockStep<'w> {
         Ok(())
     }
 
-    /// When a sensor hears what it hears since it last fired, in nanoseconds, as far as is known; `None` for nothing.
+    /// Returns the time when a sensor hears what it hears since it last fired, in nanoseconds, as far as is known;
+    /// `None` for nothing.
     pub fn hears_at_ns(&self, sensor: usize) -> Option<u64> {
         self.receivers.get(sensor).map(Receiver::next_at).filter(|&at| at != NEVER)
     }

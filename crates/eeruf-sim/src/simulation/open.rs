@@ -49,7 +49,7 @@ pub struct Simulation {
     happened: u64,
     /// The world with the scene of now, and since when.
     place: (Arc<World>, u64),
-    /// When the last firing that counts may happen.
+    /// End of the time whose firings count.
     end: u64,
     /// The first robot's period.
     period: u64,

@@ -5,8 +5,8 @@ use crate::{methods::FlowOptions, world::AnySchedule};
 /// Duration, seed, and what some methods need to know.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Options {
-    /// For how many periods of the first robot (its `period`, whatever the method fires by), so that all methods run
-    /// for the same time. The default is 1000.
+    /// Number of periods of the first robot (its `period`, whatever the method fires by), so that all methods
+    /// run for the same time. The default is 1000.
     pub periods: u32,
     /// A seed other than the world's.
     pub seed: Option<u64>,
@@ -27,7 +27,7 @@ impl Default for Options {
 }
 
 impl Options {
-    /// For this many periods.
+    /// Options for this many periods.
     pub fn periods(periods: u32) -> Self {
         Self { periods, ..Self::default() }
     }

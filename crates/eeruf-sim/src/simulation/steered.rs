@@ -74,7 +74,7 @@ impl Steered {
 }
 
 impl Leg {
-    /// Where it leads, on an arc or straight on.
+    /// Returns the motion that it leads to, on an arc or straight on.
     fn at(&self, now: u64) -> Moment {
         let Self { since, pose, v_m_s, w_rad_s } = *self;
         let time_s = now.saturating_sub(since) as f64 * 1e-9;

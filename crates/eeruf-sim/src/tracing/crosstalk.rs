@@ -27,9 +27,9 @@ pub struct CriticalPath {
     pub amplitude: f64,
     /// Number of bounces.
     pub order: u32,
-    /// Where the path leaves, in the scene's frame.
+    /// Direction in which the path leaves, in the scene's frame.
     pub departure_rad: f64,
-    /// Where the receiver looks to see it, in the scene's frame.
+    /// Direction in which the receiver looks to see it, in the scene's frame.
     pub arrival_rad: f64,
     /// The elevations in radians, upwards positive, at which it leaves and at which the receiver looks; 0 in a flat
     /// scene.
@@ -85,7 +85,7 @@ pub struct CrosstalkMatrix {
     emitters: usize,
     sensors: usize,
     paths: Vec<CriticalPath>,
-    /// Where each pair's paths begin; one more at the end.
+    /// Start of each pair's paths; one more at the end.
     starts: Vec<u32>,
     bounces: Vec<Bounce>,
     // Kept between computations only for their memory.

@@ -5,13 +5,13 @@ use core::fmt;
 use super::limits::MAX_ORDER;
 use crate::scene::Contact;
 
-/// Why a question about paths cannot be answered.
+/// Reason why a question about paths cannot be answered.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum PathsError {
     /// The source is not a number or lies out of the scene's reach.
     Source {
-        /// Its position in metres.
+        /// The position in metres.
         at: [f64; 2],
         /// Distance that the scene reaches from the walls, in metres.
         reach_m: f64,
@@ -20,21 +20,21 @@ pub enum PathsError {
     Receiver {
         /// Index of the receiver.
         receiver: usize,
-        /// Its position in metres.
+        /// The position in metres.
         at: [f64; 2],
         /// Distance that the scene reaches from the walls, in metres.
         reach_m: f64,
     },
     /// A source or a receiver is inside something solid.
     Inside {
-        /// Its position in metres.
+        /// The position in metres.
         at: [f64; 2],
         /// The object that it is inside of.
         what: Contact,
     },
     /// A source or a receiver is not between floor and ceiling.
     Height {
-        /// Its height in metres.
+        /// The height in metres.
         height_m: f64,
         /// The ceiling's, in metres.
         ceiling_m: f64,

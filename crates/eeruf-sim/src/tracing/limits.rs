@@ -21,7 +21,7 @@ pub struct Limits {
 }
 
 impl Limits {
-    /// Up to an order, at any length.
+    /// Limits of an order, at any length.
     pub const fn order(max_order: u32) -> Self {
         Self { max_order, max_length_m: f64::INFINITY }
     }

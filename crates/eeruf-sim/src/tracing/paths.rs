@@ -19,7 +19,7 @@ pub struct Paths {
     pub amplitude: Vec<f64>,
     /// Elevations at departure and arrival; empty in a flat scene.
     pub(super) elevations_rad: Vec<[f64; 2]>,
-    /// Where each path's bounces end.
+    /// End of each path's bounces.
     pub(super) ends: Vec<u32>,
     pub(super) bounces: Vec<Bounce>,
 }

@@ -268,7 +268,7 @@ impl Tracer {
         }
     }
 
-    /// Why not all was found.
+    /// Returns the reason why not all was found.
     fn incomplete(&self) -> PathsError {
         if self.stop.is_stopped() { PathsError::Stopped } else { PathsError::Budget { beams: MAX_BEAMS } }
     }

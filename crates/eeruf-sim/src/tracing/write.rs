@@ -21,7 +21,7 @@ use core::f64::consts::TAU;
 struct Course {
     receiver: u32,
     order: u32,
-    /// Where it leaves, and where the receiver looks to see it.
+    /// Directions in which it leaves, and in which the receiver looks to see it.
     angles: [f64; 2],
 }
 
@@ -34,7 +34,7 @@ struct Waiting {
     angles: [f64; 2],
     elevations: [f64; 2],
     amplitude: f64,
-    /// Its bounces in the plan, as a range, and what follows them.
+    /// The bounces in the plan, as a range, and what follows them.
     bounces: [u32; 2],
     way: Way,
 }

@@ -31,7 +31,7 @@ pub(crate) struct Ticker {
 /// A time in which a clock goes evenly.
 #[derive(Clone, Copy, Debug)]
 struct Stretch {
-    /// When it begins, in true nanoseconds.
+    /// Start, in true nanoseconds.
     from: u64,
     /// Time that the clock has counted by then, in nanoseconds.
     own: u64,

@@ -23,7 +23,7 @@ pub enum Motion {
     Waypoints {
         /// The points, in metres.
         points: Vec<Point>,
-        /// Its speed in m/s.
+        /// The speed in m/s.
         speed_m_s: f64,
     },
 }

@@ -30,7 +30,7 @@ pub struct Robot {
     /// The module of each sensor, where they are not all of [`transducer`](Self::transducer)'s kind; that is then the
     /// first one's. Empty, as by default, where they are.
     pub modules: Vec<Module>,
-    /// Its outline: what others' sound is reflected and shaded by, and what overlaps no wall, pole or other body. Its
+    /// The outline: what others' sound is reflected and shaded by, and what overlaps no wall, pole or other body. Its
     /// own sensors neither see it nor are shaded by it, but that nothing leaves or reaches them from behind. The
     /// default is none: the robot is transparent, and stands free by the disc of [`radius_m`](Self::radius_m).
     pub body: Option<Body>,
@@ -41,16 +41,16 @@ pub struct Robot {
     /// The heights of its sensors above the floor in metres, one each, where the scene has a [room](crate::Room).
     /// Empty, as by default, for [`DEFAULT_HEIGHT_M`].
     pub heights_m: Vec<f64>,
-    /// Where the robot is at the start.
+    /// Pose of the robot at the start.
     pub pose: Pose,
     /// Motion from there.
     pub motion: Motion,
-    /// Its clock.
+    /// The clock.
     pub clock: Clock,
     /// True if its ring is to expect other robots even where the world has none. The default is false: it knows whether
     /// it is alone, and by [`Method::Flow`](crate::Method::Flow) believes each echo while it moves only if it is.
     pub others: bool,
-    /// When its ring begins to fire, by its own clock, after the start of the simulation.
+    /// Delay before its ring begins to fire, by its own clock, after the start of the simulation.
     pub start: Micros,
     /// The schedule that the `eeruf` methods use; `None` for the paper's own (see
     /// [`table_i_d_for`](crate::table_i_d_for)).
@@ -78,7 +78,7 @@ pub struct Robot {
     /// [`window`](Self::window) and [`t_delta`](Self::t_delta) are then the largest, which other methods use for all.
     /// Empty, as by default, where they are alike.
     pub limits: Vec<SensorLimits>,
-    /// Its firing as a sketch does it.
+    /// The way in which a sketch fires it.
     pub firing: Sketch,
     /// The time for which sound is heard after it was sent, as far as methods that fire one by one allow for it: that
     /// of its modules where they are [given](Self::with_modules). The default is 0: no longer than sensors listen.

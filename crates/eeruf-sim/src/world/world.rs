@@ -180,12 +180,12 @@ impl World {
         self.robots.iter().enumerate().filter_map(doubt).collect()
     }
 
-    /// Its effects.
+    /// Returns the effects.
     pub fn physics(&self) -> Physics {
         self.physics
     }
 
-    /// Its noise.
+    /// Returns the noise.
     pub fn noise(&self) -> Noise {
         self.noise
     }

@@ -11,7 +11,7 @@ const TIMES: u64 = 2000;
 pub struct Estimate {
     /// The value.
     pub value: f64,
-    /// Its 95 % confidence interval.
+    /// The 95 % confidence interval.
     pub interval_95: [f64; 2],
 }
 

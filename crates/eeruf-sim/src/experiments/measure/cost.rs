@@ -149,7 +149,7 @@ fn rate(sights: &[Sight], counts: &[u16]) -> f64 {
 /// The cost of a group of ways, of which the best is taken under each condition.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cost {
-    /// Where it is used under each condition; fewer if no way of it can fire the ring.
+    /// Operating points under each condition; fewer if no way of it can fire the ring.
     pub operating: Vec<Operating>,
     /// The geometric mean over the conditions of its t95 relative to that of the first group, which may have more false
     /// stops; none where it has no operating point under a condition.

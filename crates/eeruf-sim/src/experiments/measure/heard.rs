@@ -15,9 +15,9 @@ use crate::{
 pub(super) struct Heard {
     pub(super) sensor: usize,
     pub(super) fired_s: f64,
-    /// When it was complete: when its echo ended, or the sensor had listened.
+    /// Time when it was complete: when its echo ended, or the sensor had listened.
     pub(super) ready_s: f64,
-    /// Where the sensor was when it fired.
+    /// Position of the sensor when it fired.
     pub(super) seen: Pose,
     /// NaN for silence.
     pub(super) t_echo_us: f64,

@@ -47,7 +47,7 @@ impl ThingKind {
 /// A thing where it appears.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Thing {
-    /// Its kind.
+    /// The kind.
     pub kind: ThingKind,
     /// The sensor before which it was drawn.
     pub sensor: usize,
@@ -140,7 +140,7 @@ impl Thing {
         Scene::new(walls, poles, scene.air())?.with_room(scene.room().copied())
     }
 
-    /// Its parts as bodies in their places.
+    /// Returns the parts as bodies in their places.
     fn bodies(&self) -> impl Iterator<Item = (Body, Pose)> + '_ {
         let poles = self.poles.iter().map(|pole| (Body::Disc(pole.radius_m), Pose::from(pole.centre.coords)));
         poles.chain(self.walls.iter().map(|wall| between(wall.from, wall.to)))
@@ -162,7 +162,7 @@ impl Thing {
         !others && scene.contact(&line, &middle).is_none()
     }
 
-    /// Its point nearest to a place.
+    /// Returns the point nearest to a place.
     fn nearest_point(&self, from: Point) -> Point {
         let of_pole = |pole: &Pole| pole.centre + (from - pole.centre).normalize() * pole.radius_m;
         let poles = self.poles.iter().map(of_pole);

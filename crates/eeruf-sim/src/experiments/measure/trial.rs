@@ -103,9 +103,9 @@ pub(super) struct Trial {
     pub(super) plan: RoomPlan,
     pub(super) thing: Option<Thing>,
     pub(super) draws: Draws,
-    /// When the thing appears.
+    /// Time when the thing appears.
     pub(super) appears_s: f64,
-    /// When the trial ends: the robot would touch the thing, or it has had its time.
+    /// Time when the trial ends: the robot would touch the thing, or it has had its time.
     pub(super) ends_s: f64,
     /// The robot's speeds, of which the other is 0.
     pub(super) speeds: Speeds,

@@ -51,10 +51,10 @@ impl fmt::Display for Setting {
 pub(super) struct Believed {
     /// The reading that completed it.
     pub(super) heard: Heard,
-    /// Its echo time; NaN for silence.
+    /// The echo time; NaN for silence.
     pub(super) t_echo_us: f64,
     pub(super) cause: Cause,
-    /// Until when it lasts.
+    /// Time until which it lasts.
     pub(super) until_s: f64,
 }
 

@@ -53,7 +53,7 @@ impl fmt::Display for Family {
 /// A way that is measured.
 #[derive(Clone, Debug)]
 pub struct MeasuredWay {
-    /// Its family.
+    /// The family.
     pub family: Family,
     /// The way; all know the robot's motion.
     pub way: RoomWay,

@@ -124,7 +124,7 @@ pub struct RoomFigures {
 pub struct JudgedWay {
     /// The way.
     pub way: RoomWay,
-    /// Its figures in each group of rooms, in the order asked for; or why it cannot fire this ring.
+    /// The figures in each group of rooms, in the order asked for; or why it cannot fire this ring.
     pub rooms: Result<Vec<RoomFigures>, String>,
     /// Least and largest number of blind sensors in 90 % of all rooms judged. Zeros if it cannot fire the ring.
     pub blind_90: [f64; 2],

@@ -116,11 +116,11 @@ impl FromStr for RoomKind {
 /// A room with a place in it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RoomPlan {
-    /// Its kind's number in the set, or its file's own; it seeds what is random.
+    /// The kind's number in the set, or its file's own; it seeds what is random.
     pub number: u64,
-    /// Its walls.
+    /// The walls.
     pub walls: Vec<Wall>,
-    /// Its poles.
+    /// The poles.
     pub poles: Vec<Pole>,
     /// The robot's place.
     pub pose: Pose,
@@ -144,7 +144,7 @@ impl Solid {
         Self { low: [x, y], high: [x + width, y + depth] }
     }
 
-    /// Its walls, seen from outside.
+    /// Returns the walls, seen from outside.
     fn walls(self) -> impl Iterator<Item = Wall> {
         let Self { low: [x0, y0], high: [x1, y1] } = self;
         Wall::polyline(&[[x0, y0], [x0, y1], [x1, y1], [x1, y0], [x0, y0]]).collect::<Vec<_>>().into_iter()

@@ -22,9 +22,9 @@ pub struct Alcove {
     pub width_m: f64,
     /// From the mouth to the back wall, in metres.
     pub depth_m: f64,
-    /// Where the robot's middle is, in metres.
+    /// Position of the robot's middle, in metres.
     pub robot_m: [f64; 2],
-    /// Where it heads, in radians from the alcove's axis, counter-clockwise.
+    /// Heading, in radians from the alcove's axis, counter-clockwise.
     pub heading_rad: f64,
 }
 

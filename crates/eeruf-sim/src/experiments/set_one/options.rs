@@ -25,7 +25,7 @@ pub struct SetOneOptions {
     pub seeds: u64,
     /// The first geometry's number. The default is [`FIRST`]: parameters were tuned on geometries below 2,000.
     pub first: u64,
-    /// For how long each geometry is simulated: as long as this many readings of the conventional method take. The
+    /// Time for which each geometry is simulated: as long as this many readings of the conventional method take. The
     /// default is [`READINGS`], as in the paper.
     pub readings: u32,
     /// Number of steps of the back wall to and fro, for the figures of how soon that is seen; 0: none. The default is
@@ -41,9 +41,9 @@ pub struct SetOneOptions {
     pub room: Option<Room>,
     /// Number of sensors the ring has, 1 to 24. The default is 8.
     pub sensors: usize,
-    /// Its period. The default is 60 ms.
+    /// The period. The default is 60 ms.
     pub period: Micros,
-    /// Its transducers. The default is [`Transducer::POLAROID_6500`].
+    /// The transducers. The default is [`Transducer::POLAROID_6500`].
     pub transducer: Transducer,
     /// Noise in the alcoves; each has its own number as seed.
     pub noise: Noise,

@@ -91,7 +91,7 @@ impl SetOne {
     }
 }
 
-/// For how many periods each geometry is simulated.
+/// Returns the number of periods for which each geometry is simulated.
 fn periods(asked: &SetOneOptions) -> u32 {
     asked.readings.div_ceil(asked.sensors.max(1) as u32)
 }

@@ -26,7 +26,7 @@ const NEAREST_M: f64 = 1.4;
 /// The farthest that neighbours in a row are from each other.
 const FARTHEST_M: f64 = 2.6;
 
-/// Where robots are.
+/// Surroundings of the robots.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Site {

@@ -25,7 +25,8 @@ pub struct SetThreeOptions {
     pub seeds: u64,
     /// The first placing's number. The default is [`FIRST`]: parameters were tuned on numbers below 2,000.
     pub first: u64,
-    /// For how many periods each placing is simulated. The default is 40, 4 s: robots that meet are then side by side.
+    /// Number of periods for which each placing is simulated. The default is 40, 4 s: robots that meet are then side by
+    /// side.
     pub periods: u32,
     /// The methods. The default is [`usual`].
     pub methods: Vec<Entry>,

@@ -25,7 +25,7 @@ const LEAST_GAP_M: f64 = 1.4;
 const PASSABLE_M: f64 = 0.6;
 /// The cells that the way is looked for on.
 const CELL_M: f64 = 0.1;
-/// Where the robot starts, and the line that it finishes at.
+/// Start of the robot, and the line that it finishes at.
 const START_M: [f64; 2] = [1.0, 3.0];
 pub(super) const FINISH_X_M: f64 = 8.2;
 /// Target of the steering.
@@ -40,7 +40,7 @@ pub const SECOND_AHEAD: Point = Point::new(9.4, 5.3);
 /// One course.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Course {
-    /// Its number.
+    /// The number.
     pub number: u64,
     /// The poles' axes.
     pub poles: Vec<Point>,

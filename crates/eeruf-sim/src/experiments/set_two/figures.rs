@@ -12,7 +12,7 @@ pub struct Figures {
     pub courses: usize,
     /// Number of courses finished without contact.
     pub finished: usize,
-    /// Where the share of finished courses lies with 95 % confidence, by Wilson's interval.
+    /// 95 % confidence interval of the share of finished courses, by Wilson's interval.
     pub finished_95: [f64; 2],
     /// In how many the robot touched something.
     pub contacts: usize,

@@ -50,7 +50,7 @@ impl Odometry {
         Self { noise, scales, random, state: *start }
     }
 
-    /// Where the robot takes itself to be.
+    /// Returns the pose that the robot takes itself to have.
     pub(super) fn pose(&self) -> &Pose {
         &self.state.pose
     }
@@ -70,7 +70,7 @@ impl Odometry {
         self.state.pose = self.state.moment(for_s).pose;
     }
 
-    /// Where the robot takes something to be that really is at a pose, from where it really is now.
+    /// Returns the pose that the robot takes something to have that really is at another, from where it really is now.
     pub(super) fn estimate_of(&self, platform: &Pose, real: &Pose) -> Pose {
         self.state.pose * platform.inverse() * real
     }

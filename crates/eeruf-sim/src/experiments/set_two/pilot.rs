@@ -38,7 +38,7 @@ pub(super) struct Pilot<'w> {
     state: Driven,
     steps: u64,
     steps_most: u64,
-    /// Where it takes itself to be: what the grid is filled by and what it steers by.
+    /// Pose that it takes itself to have: what the grid is filled by and what it steers by.
     odometry: Odometry,
     grid: Himm,
     /// The readings entered from where the robot really was, to find phantoms in.
@@ -105,7 +105,7 @@ impl<'w> Pilot<'w> {
         Point::from(self.state.pose.translation.vector)
     }
 
-    /// Where to, and how fast.
+    /// Returns the direction to steer in, and the speed.
     fn look(&mut self) {
         let Piloting { vfh, turn_gain, .. } = self.piloting;
         let (estimate, turn_most_rad_s) = (self.odometry.pose(), self.labmate.turn_max_rad_s);

@@ -32,7 +32,7 @@ impl Pilots {
     /// The pilots that have names.
     pub const NAMED: [Self; 4] = [Self::Own, Self::Shared, Self::Published, Self::PublishedGro];
 
-    /// Its name in the program and in Python; `given` for one that has none.
+    /// Returns the name in the program and in Python; `given` for one that has none.
     pub const fn as_str(&self) -> &'static str {
         match self {
             Self::Own => "own",

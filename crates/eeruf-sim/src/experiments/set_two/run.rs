@@ -14,7 +14,7 @@ pub enum Ending {
     TimeOut,
 }
 
-/// Where the robot was at a time.
+/// Pose of a robot at a time.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TrackPoint {
     /// In seconds.
@@ -32,11 +32,11 @@ pub struct TrackPoint {
 /// A cell of the grid that is not empty.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Cell {
-    /// Its middle, in metres.
+    /// The middle, in metres.
     pub x_m: f64,
-    /// Its middle, in metres.
+    /// The middle, in metres.
     pub y_m: f64,
-    /// Its certainty, 1 to 15.
+    /// The certainty, 1 to 15.
     pub value: u8,
 }
 
@@ -45,13 +45,13 @@ pub struct Cell {
 pub struct Run {
     /// Number of the course.
     pub course: u64,
-    /// Its end.
+    /// The end.
     pub ending: Ending,
-    /// For how long it drove, in seconds.
+    /// Time for which it drove, in seconds.
     pub time_s: f64,
     /// Distance driven, in metres.
     pub way_m: f64,
-    /// Its highest speed, in m/s.
+    /// The highest speed, in m/s.
     pub top_speed_m_s: f64,
     /// Least distance between its outline and a pole, in metres; infinite if it never came near one, which JSON has as
     /// null.
@@ -71,7 +71,7 @@ pub struct Run {
     pub poles_passed: u32,
     /// Number of those that never had an echo entered into the grid.
     pub poles_missed: u32,
-    /// Where it drove, every 30 ms.
+    /// Poses on its way, every 30 ms.
     #[serde(default)]
     pub track: Vec<TrackPoint>,
     /// The grid in the end.

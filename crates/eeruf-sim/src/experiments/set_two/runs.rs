@@ -22,7 +22,7 @@ use crate::{
     world::{Robot, World},
 };
 
-/// For how long a robot may try.
+/// Time for which a robot may try.
 const TIME_S: f64 = 40.0;
 
 /// Number of readings that [`Method::MultiEcho`] compares. Pairs of many echoes agree by accident, the more the more
@@ -39,7 +39,7 @@ pub struct SetTwo {
     pub pilot: &'static str,
     /// Effects in the lab.
     pub physics: Physics,
-    /// Its height and the robot's gain.
+    /// The height and the robot's gain.
     #[serde(flatten)]
     pub conditions: Conditions,
     /// True if robots had bodies.

@@ -70,7 +70,7 @@ impl Himm {
         self.side as usize
     }
 
-    /// Where the window begins: the corner of its first cell, with the least x and y.
+    /// Returns the corner of the window: that of its first cell, with the least x and y.
     pub fn corner(&self) -> Point {
         Point::new(self.first[0] as f64 * self.cell_m, self.first[1] as f64 * self.cell_m)
     }

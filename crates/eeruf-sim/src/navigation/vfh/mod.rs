@@ -28,7 +28,7 @@ pub type Histogram = [f64; SECTORS];
 pub struct Vfh {
     /// Number of cells the active window has on a side. 33 as in the paper.
     pub window: usize,
-    /// `l`: over how many sectors to either side the histogram is smoothed. 5 as in the paper.
+    /// `l`: number of sectors to either side over which the histogram is smoothed. 5 as in the paper.
     pub smoothing: usize,
     /// A sector with a lower density is free. Densities are in units of a fully certain cell beside the robot.
     pub threshold: f64,
@@ -63,7 +63,7 @@ impl Default for Vfh {
 /// A run of free sectors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Valley {
-    /// Its first sector.
+    /// The first sector.
     pub first: usize,
     /// Number of sectors it has; [`SECTORS`] if nothing is near.
     pub sectors: usize,
@@ -146,8 +146,8 @@ impl Vfh {
         valleys
     }
 
-    /// Where to steer to come to a target in the direction `target_rad`: into the valley nearest to it. `None` if every
-    /// direction is blocked.
+    /// Returns the direction in which to steer to come to a target in the direction `target_rad`: into the valley
+    /// nearest to it. `None` if every direction is blocked.
     ///
     /// A narrow valley is steered through its middle. Of a wide one only the `s_max` sectors nearest to the target
     /// count as the valley, so that an obstacle is passed at a distance of half as many sectors, unless the target

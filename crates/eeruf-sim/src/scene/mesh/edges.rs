@@ -12,7 +12,7 @@ const LEAST_TURN_RAD: f64 = 1e-6;
 /// An edge with the open space around it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Edge {
-    /// Where it is.
+    /// Position.
     pub at: Point,
     /// The direction of one of its faces, from the edge along the wall; the open space begins there, counter-clockwise.
     pub face_rad: f64,

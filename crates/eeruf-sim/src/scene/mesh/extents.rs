@@ -215,7 +215,7 @@ fn reflects(wall: &Wall, side: usize) -> bool {
 mod tests {
     use crate::*;
 
-    /// Where the surface ends that a point of a wall belongs to, on the wall's left or right.
+    /// Returns the end of the surface that a point of a wall belongs to, on the wall's left or right.
     fn ends(walls: &[Wall], wall: u32, from_start_m: f64, on_left: bool) -> [Option<[f64; 2]>; 2] {
         let scene = Scene::new(walls.to_vec(), vec![], Air::default()).unwrap();
         scene.extents().around(wall, from_start_m, on_left).map(|end| end.map(|end| [end.at.x, end.at.y]))

@@ -40,7 +40,7 @@ pub(crate) struct Channel {
 }
 
 impl Channel {
-    /// Its sound, beginning at a time with a level, of which bursts are as long as this to its receiver.
+    /// Returns the sound, beginning at a time with a level, of which bursts are as long as this to its receiver.
     pub(crate) fn wave(&self, onset: u64, level_over_threshold_db: f32, burst: u64) -> Wave {
         let Self { receiver, path, turn, .. } = *self;
         Wave { receiver: receiver as usize, onset, burst, turn, path, level_over_threshold_db }
@@ -282,7 +282,7 @@ impl Channels {
         self.robot_of(sensor).coupling_db.map(|_| usize::from(self.ids[sensor].robot))
     }
 
-    /// Where all sensors are, and how fast they go.
+    /// Sets the poses and speeds of all sensors.
     fn set_poses(&mut self, now: u64, kinematics: &impl Kinematics) {
         self.poses.clear();
         self.velocities.clear();

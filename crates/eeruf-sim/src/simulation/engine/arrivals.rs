@@ -138,7 +138,7 @@ pub(crate) struct Bursts {
     random: Random,
     normal: &'static Normal,
     noise: Noise,
-    /// When the next one comes, or [`NEVER`].
+    /// Time when the next one comes, or [`NEVER`].
     pub(crate) next: u64,
 }
 

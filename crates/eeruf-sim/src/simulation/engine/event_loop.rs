@@ -45,14 +45,14 @@ pub(crate) struct EventLoop<K> {
     receivers: Vec<Receiver>,
     /// Reading of each sensor alone, at its last firing.
     references: Vec<u64>,
-    /// Where each sensor's robot was then, and at the firing before.
+    /// Motion of each sensor's robot then, and at the firing before.
     fired: Vec<Option<Moment>>,
     fired_before: Vec<Option<Moment>>,
     propagation: Propagation,
     faults: Faults,
-    /// When each sensor was triggered.
+    /// Time when each sensor was triggered.
     triggered: Vec<u64>,
-    /// By which method each robot fires, and the table of its own.
+    /// The method by which each robot fires, and its own table.
     own_tables: Vec<(Method, Option<AnySchedule>)>,
     recorder: Recorder,
     /// Nothing that happens later is reported.
@@ -80,7 +80,7 @@ pub(crate) fn run(
     Ok(events.take(end as f64 * 1e-9))
 }
 
-/// When this many periods of a world's first robot are over, in true nanoseconds.
+/// Returns the time when this many periods of a world's first robot are over, in true nanoseconds.
 pub(crate) fn end_of(world: &World, periods: u32) -> u64 {
     // A world has at least one robot.
     u64::from(periods) * u64::from(world.robots()[0].period.as_micros()) * 1000
@@ -271,7 +271,7 @@ impl<K: Kinematics> EventLoop<K> {
         self.rings.get_mut(robot).map_or(Err(ChangeError::Fixed), |ring| ring.ring.change_schedule(schedule))
     }
 
-    /// Where the robots are.
+    /// Returns the motion of the robots.
     pub(crate) fn kinematics(&self) -> &K {
         &self.kinematics
     }
@@ -469,12 +469,12 @@ impl<K: Kinematics> EventLoop<K> {
     }
 }
 
-/// About how many readings this many periods of a world's first robot give: what memory is asked for.
+/// Estimates the readings in this many periods of a world's first robot, for the memory to reserve.
 pub fn expected_readings(world: &World, periods: u32) -> u64 {
     expected(world, end_of(world, periods))
 }
 
-/// About how many readings all rings give until a time in true nanoseconds, one of each sensor in each period.
+/// Estimates the readings of all rings until a time in true nanoseconds: one a sensor and period.
 fn expected(world: &World, end: u64) -> u64 {
     let of = |robot: &Robot| {
         let period = u64::from(robot.period.as_micros()) * 1000;

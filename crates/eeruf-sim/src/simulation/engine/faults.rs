@@ -11,7 +11,7 @@ use crate::{
 
 /// Purpose of the stream of random numbers.
 const FAULTS: u64 = 5;
-/// From one place of a door or a leg to the next, in nanoseconds: at 1 m/s a twentieth of a metre. A choice.
+/// Interval between two positions of a door or a leg, in nanoseconds: 5 cm at 1 m/s. A choice.
 const FRAME_NS: u64 = 50_000_000;
 /// Level of noise above what is just heard, in dB: a choice, as loud as a burst from outside.
 const NOISE_DB: f32 = 20.0;
@@ -41,7 +41,8 @@ pub(super) struct Faults {
     random: Random,
     /// The world without what faults put into its scene.
     base: Arc<World>,
-    /// When the next of these changes is due: the beginnings and ends of other tables, and the places of what moves.
+    /// Time when the next of these changes is due: the beginnings and ends of other tables, and the places of what
+    /// moves.
     next: u64,
     scene_next: u64,
 }
@@ -66,7 +67,7 @@ impl Faults {
         !self.world.faults().is_empty()
     }
 
-    /// When something changes next.
+    /// Returns the time when something changes next.
     pub(super) fn next(&self) -> u64 {
         self.next
     }
@@ -85,7 +86,7 @@ impl Faults {
         Ok(Arc::new(self.base.with_scene(scene)))
     }
 
-    /// When the first table changes after a time, or at any time.
+    /// Returns the time when the first table changes after a time, or at any time.
     fn change_after(&self, now: Option<u64>) -> u64 {
         let tables = self.world.faults().iter().filter(|fault| matches!(fault.kind, FaultKind::OtherTable { .. }));
         let times = tables.flat_map(|fault| [ns(fault.from_s), ns(fault.to_s)]);

@@ -52,10 +52,10 @@ impl<F: Filter + ?Sized> Filter for Box<F> {
 pub struct FiredReading<'a> {
     /// The ring's own verdict, by the filter of core or the belief of a flow ring: its sensor, phase and period too.
     pub reading: &'a Reading,
-    /// Its echoes, earliest first: one at most, but up to eight under methods of several, such as
+    /// The echoes, earliest first: one at most, but up to eight under methods of several, such as
     /// [`Method::MultiEcho`](crate::Method::MultiEcho).
     pub echoes: &'a [Echo],
-    /// When it fired, in seconds of true time.
+    /// Time when it fired, in seconds of true time.
     pub fired_s: f64,
     /// Change of a good reading since the sensor's firing before that odometry expects, in microseconds; 0 for a robot
     /// without odometry.

@@ -28,13 +28,13 @@ pub(crate) struct RunningRing {
     pub(crate) clock: Ticker,
     /// Hearing of each sensor.
     hearings: Vec<Hearing>,
-    /// Its sensors among all of the world's.
+    /// The sensors among all of the world's.
     pub(crate) sensors: core::ops::Range<usize>,
-    /// When its ring is due.
+    /// Time when its ring is due.
     pub(crate) wakes: u64,
-    /// When one of its sensors hears something.
+    /// Time when one of its sensors hears something.
     pub(crate) hears: u64,
-    /// When its control loop next tells it how it moves.
+    /// Time when its control loop next tells it how it moves.
     pub(crate) tells: u64,
 }
 

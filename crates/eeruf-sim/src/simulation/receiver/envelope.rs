@@ -20,11 +20,11 @@ use super::Arrival;
 pub(crate) struct Wave {
     /// The number of its receiver.
     pub(crate) receiver: usize,
-    /// When it begins, in true nanoseconds.
+    /// Start, in true nanoseconds.
     pub(crate) onset: u64,
     /// Length of its burst in nanoseconds.
     pub(crate) burst: u64,
-    /// Its phase as a share of a turn.
+    /// The phase as a share of a turn.
     pub(crate) turn: f32,
     pub(crate) path: u32,
     /// Level above the detection floor, the receiver's gain left out.

@@ -25,17 +25,17 @@ pub(crate) const EXTERNAL: u32 = u32::MAX - 1;
 /// Sound that reaches a sensor. Times are true nanoseconds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Arrival {
-    /// When it begins; of a sum when the first of its sounds does.
+    /// Start; of a sum when the first of its sounds does.
     pub(crate) onset: u64,
-    /// When it is heard: at its onset, or as much later as its receiver takes.
+    /// Time when it is heard: at its onset, or as much later as its receiver takes.
     pub(crate) at: u64,
-    /// When it was sent.
+    /// Time when it was sent.
     pub(crate) sent: u64,
     /// Along which path, or [`EXTERNAL`].
     pub(crate) path: u32,
     /// Level above the detection floor, fading included, the receiver's gain left out.
     pub(crate) level_over_threshold_db: f32,
-    /// Its envelope, if it is a stretch of several sounds' sum.
+    /// The envelope, if it is a stretch of several sounds' sum.
     pub(crate) rise: Option<Rise>,
 }
 
@@ -57,12 +57,13 @@ impl Echo {
         of_this_firing: false,
     };
 
-    /// Its time since the firing, by the robot's clock.
+    /// Returns the time since the firing, by the robot's clock.
     pub const fn t_echo(&self) -> Micros {
         Micros::new(self.t_echo_us)
     }
 
-    /// Its level over the receiver's threshold at full gain, in dB: as a module that reports amplitudes hears it.
+    /// Returns the level over the receiver's threshold at full gain, in dB: as a module that reports amplitudes hears
+    /// it.
     pub const fn level_db(&self) -> f32 {
         self.arrival.level_over_threshold_db
     }
@@ -85,7 +86,7 @@ pub(crate) struct Hearing {
     pub(crate) dead_time: u64,
     pub(crate) echoes: usize,
     pub(crate) gain: GainProfile,
-    /// When the gain is full, in seconds.
+    /// Time when the gain is full, in seconds.
     pub(crate) gain_full_s: f64,
     /// Rise time of an echo, in nanoseconds, if that is when it is heard: over a burst. 0 for a receiver that hears
     /// every echo at its onset.
@@ -156,7 +157,7 @@ pub(crate) struct Receiver {
     until: u64,
     /// Arrivals up to this moment matter to the present firing only.
     own_until: u64,
-    /// When it last fired.
+    /// Time when it last fired.
     pub(crate) fired: u64,
     /// Number of its firings.
     pub(crate) firings: u32,
@@ -181,7 +182,7 @@ impl Receiver {
         heard_count: 0,
     };
 
-    /// When it will hear what is next, as far as is known now.
+    /// Returns the time when it will hear what is next, as far as is known now.
     #[inline]
     pub(crate) fn next_at(&self) -> u64 {
         self.next.map_or(NEVER, |next| next.at)
@@ -288,7 +289,7 @@ impl Receiver {
         lost
     }
 
-    /// Its line says what another sensor has heard, if there is room for it.
+    /// The line says what another sensor has heard, if there is room for it.
     pub(crate) fn report(&mut self, t_echo_us: u32, arrival: Arrival, hearing: &Hearing) {
         if self.heard_count < hearing.echoes.min(MAX_ECHOES) {
             self.heard[self.heard_count] = Echo { t_echo_us, arrival, of_this_firing: false };

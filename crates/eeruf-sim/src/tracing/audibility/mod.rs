@@ -43,7 +43,7 @@ pub(crate) struct Audibility {
     faint: Vec<f64>,
     /// Range of sound that leaves with a share of its strength.
     reach: Reach,
-    /// Where the source heads.
+    /// Heading of the source.
     source: Vector,
     receivers: Vec<Vector>,
 }

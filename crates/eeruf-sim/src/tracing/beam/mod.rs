@@ -37,7 +37,7 @@ pub(crate) struct Beam {
     pub(crate) turn: f64,
     /// The product of the walls' reflections.
     pub(crate) reflection_gain: f64,
-    /// Where the source heads in the image's world, if that matters.
+    /// Heading of the source in the image's world, if that matters.
     pub(crate) axis: Vector,
     /// No path of this beam that is longer can be heard, or is asked for.
     pub(super) reach_m: f64,
@@ -57,7 +57,7 @@ pub(crate) struct VisibleImage {
     pub(crate) parent: u32,
     /// The last wall.
     pub(crate) wall: u32,
-    /// Where the source heads in the image's world, if that matters.
+    /// Heading of the source in the image's world, if that matters.
     pub(super) axis: Vector,
 }
 

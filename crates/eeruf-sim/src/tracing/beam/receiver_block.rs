@@ -5,7 +5,7 @@ use crate::geometry::{Point, SAME_DIRECTION, TOUCH_M, Vector, cross};
 /// Room for receivers that are tested as one block before a beam of the last order is walked at all.
 const BLOCK: usize = 32;
 
-/// Where the receivers are.
+/// Positions of the receivers.
 #[derive(Debug)]
 pub(super) struct ReceiverBlock {
     x: [f64; BLOCK],

@@ -81,7 +81,7 @@ impl EdgeSearch {
 
 /// A surface between a source and a receiver that are both before it.
 struct Seen {
-    /// Where its line reflects, from the surface's point on along its direction, in metres.
+    /// Point of reflection on its line, from the surface's point on along its direction, in metres.
     point_m: f64,
     /// The way by that point.
     length_m: f64,

@@ -29,7 +29,7 @@ pub(super) struct Leg {
 pub(super) struct Legs {
     pub(super) legs: Vec<Leg>,
     cones: Vec<PoleCone>,
-    /// Where the next cone of each pole goes.
+    /// Next free place for a cone of each pole.
     next: Vec<u32>,
 }
 

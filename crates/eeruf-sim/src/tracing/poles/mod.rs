@@ -31,7 +31,7 @@ pub(crate) struct PolePath {
     pub(crate) order: u32,
     pub(crate) departure_rad: f64,
     pub(crate) arrival_rad: f64,
-    /// Where the source seems to be, by which doubles are recognised.
+    /// Image of the source, by which doubles are recognised.
     pub(crate) image: Point,
     /// Share of the amplitude that the legs and the poles' curvature leave.
     pub(crate) spread: f64,
@@ -72,7 +72,7 @@ struct Receiver {
     at: Point,
 }
 
-/// Finds them; holds the buffers.
+/// The search for paths by way of poles, with its buffers.
 #[derive(Debug, Default)]
 pub(crate) struct PoleSearch {
     pub(crate) found: Vec<PolePath>,

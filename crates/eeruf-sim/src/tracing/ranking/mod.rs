@@ -16,7 +16,7 @@ const _: () = assert!(MAX_BEAMS as u64 <= INDEX);
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Rank {
     pub(super) length_m: f64,
-    /// Its number in [`Found`].
+    /// The number in [`Found`].
     pub(super) index: u32,
 }
 

@@ -93,9 +93,9 @@ pub struct WorldParts {
     pub scene: Scene,
     /// The robots, if there are any.
     pub robots: Vec<Robot>,
-    /// Its noise.
+    /// The noise.
     pub noise: Noise,
-    /// Its effects.
+    /// The effects.
     pub physics: Physics,
     /// The most bounces that sound is followed for.
     pub max_order: u32,

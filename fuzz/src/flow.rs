@@ -19,7 +19,7 @@ use crate::ring::{Echo, Lines, SENSORS, Step, explain, instant, time_of};
 /// Input that the fuzzer makes up.
 #[derive(Arbitrary, Debug)]
 pub struct Input {
-    /// Where the clock starts; it wraps soon after the larger values.
+    /// Reading of the clock at the start; it wraps soon after the larger values.
     pub start: u32,
     pub sensors: u8,
     pub turns: [u16; 4],
@@ -156,7 +156,7 @@ struct Model<U, J, const E: usize, const H: usize> {
     last: Option<(usize, u64)>,
     restarted: u64,
     period: u32,
-    /// When it was last polled: what was due then is done.
+    /// Time when it was last polled: what was due then is done.
     polled: u64,
 }
 

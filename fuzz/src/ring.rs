@@ -32,7 +32,7 @@ pub const SENSORS: usize = 5;
 /// Input that the fuzzer makes up.
 #[derive(Arbitrary, Debug)]
 pub struct Input {
-    /// Where the clock starts; it wraps soon after the larger values.
+    /// Reading of the clock at the start; it wraps soon after the larger values.
     pub start: u32,
     pub tables: [Table; 2],
     pub t_delta: u16,

@@ -31,7 +31,7 @@ pub(crate) extern "C" fn ask() -> usize {
     bytes
 }
 
-/// Where the answer is; valid until the next call.
+/// Returns the address of the answer; valid until the next call.
 #[unsafe(no_mangle)]
 pub(crate) extern "C" fn answer_at() -> *const u8 {
     ANSWER.with_borrow(|answer| answer.as_ptr())

@@ -306,7 +306,7 @@ class SetOne(Result):
     period_us: int
     """The period, in microseconds."""
     periods: int
-    """For how many periods each was simulated."""
+    """Number of periods for which each was simulated."""
     methods: Mapping[str, SetOneFigures]
     """The figures of each method by its label, in the order asked for."""
     runs: Mapping[str, list[AlcoveRun]] = field(repr=False)
@@ -330,11 +330,11 @@ class Run(Result):
     ending: _Ending
     """``"finished"``, ``"contact"`` (it touched a pole or a wall), or ``"time_out"``."""
     time_s: float
-    """For how long the robot drove, in seconds."""
+    """Time for which the robot drove, in seconds."""
     way_m: float
     """The distance it drove, in metres."""
     top_speed_m_s: float
-    """Its highest speed, in m/s."""
+    """The highest speed, in m/s."""
     nearest_m: float
     """The least distance of its outline from a pole, in metres; infinite if it never came near one."""
     readings: int
@@ -352,7 +352,7 @@ class Run(Result):
     poles_unseen: int
     """Number of these that never had an echo entered into the grid."""
     track: NDArray[np.float64] = field(repr=False)
-    """Where it drove, every 30 ms: rows of time (s), x, y (m), heading (rad) and speed (m/s); shape (n, 5)."""
+    """Poses on the way, every 30 ms: rows of time (s), x, y (m), heading (rad) and speed (m/s); shape (n, 5)."""
     grid: NDArray[np.float64] = field(repr=False)
     """The cells of 10 cm that are not empty in the end: rows of x, y (m) and certainty, 1 to 15; shape (m, 3)."""
     poles: NDArray[np.float64] = field(repr=False)

@@ -25,7 +25,7 @@ const COMPILERS: [(&str, &[&str]); 8] = [
 const SANITIZERS: [&str; 3] = ["-g", "-fsanitize=address,undefined", "-fno-sanitize-recover=all"];
 /// The sample of `c/zephyr`.
 const SAMPLE: &str = "c/zephyr/samples/ring";
-/// Where MicroPython's class and its tests are.
+/// Folder of MicroPython's class and its tests.
 const MICROPYTHON: &str = "c/micropython";
 
 pub(crate) fn c() -> Result<()> {

@@ -13,8 +13,8 @@ use crate::steps::{Steps, empty, output, run, run_line};
 const HOME: &str = "target/logs";
 /// Topics, and messages on each: a million, and a tenth of that.
 const SIZES: [(u32, [u32; 2]); 2] = [(8, [125_000, 12_500]), (24, [41_667, 4_167])];
-/// Where senders are named, as `cargo lab diagnose-places` takes it, and the least share in per cent that is named; in
-/// the paper's two phases nobody can be.
+/// Scenes in which senders are named, as `cargo lab diagnose-places` takes it, and the least share in per cent that is
+/// named; in the paper's two phases nobody can be.
 const SENDERS: [(&str, f64); 4] = [
     ("40000 200 flow 1000 plain", 60.0),
     ("40000 200 flow 1000 default", 60.0),

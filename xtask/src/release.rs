@@ -19,7 +19,7 @@ What remains for a person, in this order (docs/project/releasing.md says how):
   4. publish the draft, and try `pip install eeruf` and `cargo install eeruf` on another machine
 ";
 
-/// Where the bills of materials lie.
+/// Folder of the bills of materials.
 const BILLS: &str = "target/materials";
 
 pub(crate) fn release(steps: &mut Steps) {

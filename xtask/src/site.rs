@@ -14,7 +14,7 @@ use crate::steps::{Steps, command, empty, output, run, run_line};
 const SITE: &str = "target/site/book";
 /// Sources of the book.
 const SOURCES: &str = "target/site/src";
-/// Where links to sources lead.
+/// Target of links to sources.
 const REPOSITORY: &str = "https://github.com/eeruf/eeruf/blob/main";
 /// The version of mdBook that the site is built with, so that two builds look alike.
 const MDBOOK: &str = "0.5.4";

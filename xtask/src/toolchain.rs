@@ -11,7 +11,7 @@ use anyhow::{Context as _, Result, bail};
 
 use crate::steps::{output, run, skip};
 
-/// Where Debian's compiler is, which builds the standard library from its sources.
+/// Debian's compiler, which builds the standard library from its sources.
 pub(crate) const DEBIAN_CARGO: &str = "/usr/bin/cargo";
 pub(crate) const DEBIAN_RUSTC: &str = "/usr/bin/rustc";
 

@@ -66,7 +66,7 @@ pub enum Says {
 /// A row of the file.
 #[derive(Clone, Debug)]
 pub struct Fault {
-    /// Its name.
+    /// The name.
     pub name: String,
     /// Surroundings of the sensor.
     pub before: String,

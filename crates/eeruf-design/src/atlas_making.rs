@@ -45,7 +45,7 @@ fn in_ticks(time: Micros) -> u32 {
     time.as_micros() / 1000
 }
 
-/// When each sensor fires, in ticks.
+/// Returns the firing times of each sensor, in ticks.
 fn fire_of(ring: &Ring, schedule: &AnySchedule) -> [Vec<u32>; 2] {
     [Phase::A, Phase::B].map(|phase| {
         (0..usize::from(ring.sensors)).map(|x| in_ticks(schedule.t_fire(phase, x).unwrap_or_default())).collect()

@@ -18,7 +18,7 @@ use crate::way::Way;
 const USUAL_TURN_DEG_S: f64 = 45.0;
 /// The number of the first room in which votes are chosen. Nothing is reported from them.
 pub const CHOICE: u64 = 1_000;
-/// Votes are chosen in a third of the rooms, and as many are looked at under conditions that the file does not name.
+/// Divisor of the number of rooms in which votes are chosen, and of those under conditions that the file does not name.
 const LESS: u64 = 3;
 
 /// Ways of firing a ring by the one cost.
@@ -31,7 +31,7 @@ pub struct CostAnswer {
     pub draw: Option<String>,
     /// The robot's speed in m/s.
     pub speed_m_s: f64,
-    /// Its rate of turn in degrees a second.
+    /// The rate of turn in degrees a second.
     pub turn_deg_s: f64,
     /// The kinds of ways, the simplest first.
     pub kinds: Vec<KindCost>,
@@ -42,9 +42,9 @@ pub struct CostAnswer {
 /// A kind of way.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct KindCost {
-    /// Its name.
+    /// The name.
     pub kind: String,
-    /// Its cost: the geometric mean over the conditions of its t95, relative to the best one by one.
+    /// The cost: the geometric mean over the conditions of its t95, relative to the best one by one.
     pub cost: Option<Estimate>,
     /// The best way of the kind under each condition.
     pub best: Vec<BestWay>,
@@ -61,7 +61,7 @@ pub struct BestWay {
     pub votes: String,
     /// False for a way with more than one false stop a minute where votes were chosen: no way of the kind has fewer.
     pub keeps: bool,
-    /// Its figures.
+    /// The figures.
     #[serde(flatten)]
     pub figures: Cell,
 }

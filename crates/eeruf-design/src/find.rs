@@ -36,7 +36,7 @@ pub struct RingDesign {
     pub bounding: RingSpec,
     /// The bound on the period of every schedule for `bounding`: what a certificate can state.
     pub bound: Option<Micros>,
-    /// Why it is not shorter, in words.
+    /// Reason why it is not shorter, in words.
     pub reason: String,
     /// Slack of the schedule, if the period is proven: of those with this period it has the most.
     pub to_spare: Option<ToSpare>,
@@ -48,7 +48,7 @@ pub struct RingDesign {
     pub what_if: Vec<WhatIf>,
 }
 
-/// Why a ring gets no design.
+/// Reason why a ring gets no design.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NoDesign {
     /// Needs that make no sense or are too large to search.

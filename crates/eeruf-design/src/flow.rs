@@ -9,7 +9,7 @@ use crate::ring::RingSpec;
 /// The settings of a ring that fires by flow, for [`FlowRing`](eeruf_core::flow::FlowRing).
 #[derive(Clone, Debug)]
 pub struct FlowDesign {
-    /// When its sensors fire.
+    /// Settings of its firing.
     pub turns: TurnSettings,
     /// The belief in its readings.
     pub belief: BeliefSettings,
@@ -37,7 +37,7 @@ pub fn needs_to_see_m(speed_m_s: f64) -> Option<f64> {
     (speed_m_s >= FAST_M_S).then(|| stops_m.max(NEAR_M))
 }
 
-/// When the sensors of a robot fire, with the seed of their dice.
+/// Returns the settings for firing a robot's sensors in turn, with the seed of their dice.
 pub fn turns_of(robot: &Robot, seed: u32) -> TurnSettings {
     let &Robot { window, blanking, audible, .. } = robot;
     // A sensor that fires while its last sound is heard would take old echoes for new ones.

@@ -23,7 +23,7 @@ pub struct FoundJson {
     pub nodes: u64,
     /// Duration of the search.
     pub seconds: f64,
-    /// Why nothing is better; only `design` says it.
+    /// Reason why nothing is better; only `design` says it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub reason: Option<String>,
     /// True if the atlas answered, and nothing was searched; only `design` says it.

@@ -45,7 +45,7 @@ pub enum Need {
 pub struct CurvePoint {
     /// The need in tenths of the ring's own.
     pub tenths: u32,
-    /// Its value; the largest where sensors have their own.
+    /// The value; the largest where sensors have their own.
     pub value: Micros,
     /// The shortest period found; `None` if there is no schedule, as for a robot that is too fast.
     pub period: Option<Micros>,

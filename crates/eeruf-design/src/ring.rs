@@ -77,7 +77,8 @@ pub(crate) struct RingFile {
     /// Rate at which the robot turns on the spot.
     turn_deg_s: Option<f64>,
     temperature_c: Option<f64>,
-    /// Where each sensor is on the robot, or the arc on which they stand, or the robot's URDF and their links in it.
+    /// Position of each sensor on the robot, or the arc on which they stand, or the robot's URDF and their links in
+    /// it.
     pub(crate) poses: Option<Vec<PlaceFile>>,
     pub(crate) spacing_deg: Option<f64>,
     pub(crate) radius_m: Option<f64>,
@@ -139,13 +140,13 @@ pub struct RingSpec {
     pub audible: Option<Micros>,
     /// True if other robots may be about, whose firings are unknown.
     pub others: bool,
-    /// True if the file says that there are some.
+    /// True if the file says that other robots are near.
     pub meets_others: bool,
     /// The rate at which the robot turns on the spot, in degrees a second, where the file says it.
     pub turn_deg_s: Option<f64>,
     /// The module of each sensor, where the file names them; it rests for as long as the file says.
     pub modules: Vec<Module>,
-    /// Where each sensor is on the robot, if the file says it.
+    /// Position of each sensor on the robot, if the file says it.
     pub places: Places,
     /// Needs of single sensors and pairs, where they are not all alike.
     pub uneven: Option<OwnedUneven>,

@@ -35,8 +35,8 @@ pub struct RoomRobot {
 }
 
 impl RingSpec {
-    /// Its robot. Where the file has no places, a ring stands evenly all round, and a line 15 degrees apart; where it
-    /// names no modules, they are Polaroid 6500.
+    /// Returns the robot. Where the file has no places, a ring stands evenly all round, and a line 15 degrees apart;
+    /// where it names no modules, they are Polaroid 6500.
     ///
     /// # Errors
     /// A layout of pairs without places, which no robot follows from.

@@ -36,7 +36,7 @@ pub struct Shortest {
     pub found: Found<MAX_SENSORS>,
     /// The schedule to prefer.
     pub schedule: AnySchedule,
-    /// Why it is not shorter, in words.
+    /// Reason why it is not shorter, in words.
     pub reason: String,
     /// Slack of that schedule, if the period is proven: of those with this period it has the most.
     pub to_spare: Option<ToSpare>,

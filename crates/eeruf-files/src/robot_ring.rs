@@ -28,7 +28,7 @@ pub fn arc(sensors: usize, radius_m: f64, first_rad: f64, spacing_rad: f64) -> i
 pub struct RobotRing {
     /// Number of sensors, 1 to 64.
     pub sensors: usize,
-    /// Where each stands on the robot; empty if the file does not say it.
+    /// Position of each on the robot; empty if the file does not say it.
     pub poses: Vec<Pose>,
     /// Height of each above the floor in metres; empty if the file does not say it.
     pub heights_m: Vec<f64>,
@@ -38,7 +38,7 @@ pub struct RobotRing {
     pub limits: Vec<SensorLimits>,
     /// Sets of sensors that fire together, bit x for sensor x.
     pub together: Vec<u64>,
-    /// Its speed in m/s, which `T_delta` must cover too where it has no odometry.
+    /// The speed in m/s, which `T_delta` must cover too where it has no odometry.
     pub speed_m_s: f64,
     /// Number of adjacent sensors that must not fire close together.
     pub neighbours: u8,

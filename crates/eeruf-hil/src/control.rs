@@ -11,7 +11,7 @@ use embedded_hal::digital::{ErrorType, InputPin, OutputPin};
 
 use crate::reference::{HostRing, Read, on_pins};
 
-/// When the line of the sensor that is well rises and falls after its trigger: a wall 2 m away.
+/// Delay from trigger to rise on the line of a healthy sensor, and to its fall: a wall 2 m away.
 const RISE: Micros = Micros::new(460);
 const FALL: Micros = Micros::new(12_460);
 

@@ -51,11 +51,11 @@ pub fn flow_ring(now: Instant) -> Result<FlowRing<SENSORS>, RingError> {
 pub struct Orders {
     /// The board's clock at the start.
     pub start: Instant,
-    /// For how many periods to run.
+    /// Number of periods to run.
     pub periods: u32,
     /// After which period, counted from 0, the main loop stalls.
     pub stall_after: u32,
-    /// For how long; zero for never.
+    /// Duration; zero for never.
     pub stall: Micros,
 }
 
@@ -117,7 +117,7 @@ pub enum Topic {
     Trigger,
     /// The event that the poll returned, or that there was none.
     Event,
-    /// Until when the board sleeps.
+    /// Time until which the board sleeps.
     Deadline,
     /// The sensors at a period's end, and the number of edges that found the queue full.
     State,
@@ -131,7 +131,7 @@ impl Topic {
 const NONE: u32 = u32::MAX;
 
 impl Record {
-    /// Its length on the way.
+    /// The length on the way.
     pub const BYTES: usize = 24;
 
     /// As it goes over the pipe: little-endian words.
@@ -172,7 +172,7 @@ impl Record {
         Self::at(Topic::Trigger, sensor, 0, at)
     }
 
-    /// Until when the board sleeps.
+    /// Returns the time until which the board sleeps.
     pub const fn deadline(at: Instant) -> Self {
         Self::at(Topic::Deadline, 0, 0, at)
     }
@@ -213,7 +213,7 @@ impl Record {
         Self::new(Topic::State, 0, edges_lost, [code, 0, 0, 0, 0])
     }
 
-    /// Its subject, if any.
+    /// Returns the subject, if any.
     pub fn topic(self) -> Option<Topic> {
         Topic::ALL.get(usize::from(self.0[0] as u8)).copied()
     }

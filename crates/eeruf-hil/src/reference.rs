@@ -22,7 +22,7 @@ use crate::lines::Lines;
 pub(crate) struct Session<'w> {
     pub(crate) board: Emulator,
     pub(crate) lines: Lines<'w>,
-    /// When the board was started and what its clock read, where it is held to the pace of the clock on the wall.
+    /// Time when the board was started and what its clock read, where it is held to the pace of the clock on the wall.
     pace: Option<(std::time::Instant, Instant)>,
     wrong: Option<String>,
 }

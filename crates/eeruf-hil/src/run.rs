@@ -13,7 +13,7 @@ use crate::lines::{FAULTY, LineFault, Lines};
 use crate::played::PlayedLines;
 use crate::reference::{Read, Reference, Session};
 
-/// For how many periods each run of the tables lasts.
+/// Number of periods in each run of the tables.
 pub(crate) const PERIODS: u32 = 1000;
 
 /// The fault in a run.
@@ -44,7 +44,7 @@ impl Fault {
         Self::Wrap,
     ];
 
-    /// By its name on the command line.
+    /// Looks it up by its name on the command line.
     pub(crate) fn named(name: &str) -> Option<Self> {
         Some(match name {
             "none" => Self::None,

@@ -51,7 +51,7 @@ impl FiringLog {
         }
     }
 
-    /// By the first bytes.
+    /// Recognises the form by the first bytes.
     fn of_form(first: &[u8], input: &mut dyn Read, name: &Path) -> Result<Self, FileError> {
         match Form::of(first, name) {
             Form::Mcap => firing_messages::read(input, name),

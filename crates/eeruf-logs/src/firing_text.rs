@@ -13,7 +13,7 @@ const NEEDED: [&str; 5] = ["sensor", "fired_us", "period", "phase", "t_echo_us"]
 /// The columns that are read, in the order in which rows of JSON have them.
 const NAMES: [&str; 8] = ["sensor", "fired_us", "period", "phase", "t_echo_us", "reading", "sends", "g"];
 
-/// Where the columns stand.
+/// Indices of the columns.
 struct Header {
     names: Vec<String>,
     /// Nothing for JSON, whose rows have names.
@@ -29,7 +29,7 @@ struct Header {
 type Wrong = (Option<usize>, String);
 
 impl Header {
-    /// By the first line that is no comment, or by the first objects.
+    /// Finds the columns in the first line that is no comment, or in the first objects.
     fn of(sample: &[Line], is_document: bool) -> Result<Self, String> {
         let lines = || sample.iter().filter(|line| !is_comment(&line.text));
         let first = lines().next().map_or("", |line| line.text.trim());

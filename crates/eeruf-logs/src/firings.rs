@@ -30,13 +30,13 @@ use eeruf_files::{FIRING_COLUMNS, firing_row};
 pub struct Firing {
     /// The sensor, from 0.
     pub sensor: u8,
-    /// When it fired, in microseconds of the log's clock.
+    /// Time when it fired, in microseconds of the log's clock.
     pub fired_us: i64,
     /// The period, from 0.
     pub period: u32,
     /// The phase, from 0.
     pub phase: u8,
-    /// From firing to the first echo, in microseconds; `None` without echo.
+    /// Time from the firing to the first echo, in microseconds; `None` without an echo.
     pub t_echo_us: Option<u32>,
     /// The ring's verdict on the reading, if the log says it.
     pub reading: Option<ReadingKind>,
@@ -70,7 +70,8 @@ impl FiringLog {
 }
 
 impl Firing {
-    /// When the sensor fired, in nanoseconds; at least 1000, as a message's stamp of zero means that there is none.
+    /// Returns the time when the sensor fired, in nanoseconds; at least 1000, as a message's stamp of zero means that
+    /// there is none.
     pub fn at_ns(&self) -> u64 {
         1000 * self.fired_us.max(1).cast_unsigned()
     }
@@ -82,7 +83,7 @@ impl Firing {
 }
 
 impl fmt::Display for Firing {
-    /// Its row: a cell for each of the [`FIRING_COLUMNS`].
+    /// Returns the row: a cell for each of the [`FIRING_COLUMNS`].
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let row = firing_row(self.sensor, self.fired_us, self.period, self.phase, self.t_echo_us, self.spelled());
         f.write_str(&row)

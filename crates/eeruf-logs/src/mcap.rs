@@ -37,7 +37,7 @@ struct State {
     topics: HashMap<u16, Topic>,
     /// Number of messages, if the file says so.
     counted: u64,
-    /// Where its summary says that chunks are.
+    /// Positions of the chunks by its summary.
     chunks: Chunks,
     /// True if messages are packed one by one, as rosbag2 may have it.
     packed: bool,

@@ -52,7 +52,7 @@ pub(crate) const MAX_BEAMS: usize = 64;
 /// Unless the user says that a topic is one.
 const MOST_BEAMS: usize = 4096;
 
-/// Why a message could not be decoded.
+/// Reason why a message could not be decoded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Undecoded {
     /// The message ends too early, or too late.

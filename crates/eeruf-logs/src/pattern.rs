@@ -50,7 +50,7 @@ pub struct FiringPattern {
     pub least_change_us: Option<u64>,
     /// Pairs of sensors with one lag only, and all pairs.
     pub constant_pairs: (usize, usize),
-    /// Why the log does not tell, if it does not.
+    /// Reason why the log does not tell, if it does not.
     pub why: String,
 }
 

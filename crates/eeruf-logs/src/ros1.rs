@@ -33,9 +33,9 @@ struct Header<'a> {
     topic: &'a [u8],
     compression: &'a [u8],
     size: u32,
-    /// Where the index begins; 0 in a bag that was not closed.
+    /// Start of the index; 0 in a bag that was not closed.
     index_at: u64,
-    /// Where the chunk is that a record of the index is about.
+    /// Position of the chunk of an index record.
     chunk_at: u64,
     type_name: &'a [u8],
     definition: &'a [u8],
@@ -74,7 +74,7 @@ struct State {
     topics: HashMap<u32, Topic>,
     /// Number of messages, if the index says so.
     counted: u64,
-    /// Where the index says that chunks are.
+    /// Positions of the chunks by the index.
     chunks: Chunks,
 }
 

@@ -47,7 +47,7 @@ pub struct Guess {
 pub struct Skipped {
     /// The topic.
     pub topic: String,
-    /// Why its messages were left out.
+    /// Reason why its messages were left out.
     pub why: String,
     /// Number of messages that were left out, where they were counted.
     pub messages: u64,

@@ -8,11 +8,11 @@ pub enum Symptom {
     Silent,
     /// The sensor has no echo though others hear its sound along paths on which it should hear theirs.
     Deaf,
-    /// Its value never changes.
+    /// The value never changes.
     Constant,
-    /// Its values come in coarse steps.
+    /// The values come in coarse steps.
     Coarse,
-    /// Its readings are near nothing.
+    /// The readings are near nothing.
     Scatters,
     /// The sensor reads the echo of its own firing before.
     Stale,

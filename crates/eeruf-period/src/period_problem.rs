@@ -46,7 +46,7 @@ pub struct ShortestPeriod {
     pub bound: Micros,
     /// Nodes visited: the same on each machine.
     pub nodes: u64,
-    /// Why the period is not shorter, in words that say which need to relax.
+    /// Reason why the period is not shorter, in words that say which need to relax.
     pub reason: String,
 }
 
@@ -113,7 +113,7 @@ impl PeriodProblem<'_> {
         })
     }
 
-    /// Why no schedule is shorter than this one, of which it is known that it is the shortest.
+    /// Returns the reason why no schedule is shorter than this one, which is proven shortest.
     ///
     /// # Errors
     /// As for [`shortest`](Self::shortest).

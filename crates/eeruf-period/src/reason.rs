@@ -1,4 +1,4 @@
-//! Why a period is not shorter, in words that say which need to relax.
+//! Reasons why a period is not shorter, in words that say which need to relax.
 
 use eeruf_core::Micros;
 
@@ -6,7 +6,7 @@ use crate::engine::Problem;
 use crate::engine::counting::{Bound, strongest};
 use crate::engine::shortest::Shortest;
 
-/// Why the period found is not shorter; `time` says how long a number of ticks is.
+/// Returns the reason why the period found is not shorter; `time` says how long a number of ticks is.
 pub(crate) fn reason(problem: &Problem, found: &Shortest, time: &dyn Fn(u32) -> Micros) -> String {
     if found.bound < found.period {
         return format!(

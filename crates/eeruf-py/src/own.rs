@@ -41,7 +41,7 @@ pub(crate) struct FiredReading {
     reading: Reading,
     t_echoes_us: Vec<u32>,
     levels_db: Vec<f32>,
-    /// When it fired, in seconds.
+    /// Time when it fired, in seconds.
     #[pyo3(get)]
     fired_s: f64,
     /// Change of a good reading since the sensor's firing before that odometry expects, in microseconds.
@@ -101,7 +101,7 @@ impl FiredReading {
         PyTuple::new(py, &self.levels_db)
     }
 
-    /// Its fields by their names: a dict of plain values.
+    /// The fields by their names: a dict of plain values.
     ///
     /// Example:
     ///     >>> import eeruf

@@ -58,7 +58,7 @@ impl Readings {
         self.readings.method.as_str()
     }
 
-    /// For how long, in seconds.
+    /// Duration, in seconds.
     #[getter]
     fn duration_s(&self) -> f64 {
         self.readings.duration_s
@@ -94,7 +94,7 @@ impl Readings {
         self.columns.get(py, 3, self.readings.phase.iter().map(|&phase| i64::from(phase)))
     }
 
-    /// When it fired, in seconds: float64.
+    /// Time when it fired, in seconds: float64.
     #[getter]
     fn fired_s<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.columns.get(py, 4, self.readings.fired_s.iter().copied())

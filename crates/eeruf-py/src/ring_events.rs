@@ -30,7 +30,7 @@ pub(crate) struct Fire {
     sensor: u8,
     /// The phase that its wait belongs to: 0 for a, 1 for b.
     phase: u8,
-    /// When it was due, on the ring's clock: before the time of the poll if that was late.
+    /// Time when it was due, on the ring's clock: before the time of the poll if that was late.
     due_us: u32,
 }
 
@@ -61,7 +61,7 @@ impl Fire {
         })
     }
 
-    /// Its fields by their names: a dict of plain values.
+    /// The fields by their names: a dict of plain values.
     ///
     /// Example:
     ///     >>> import eeruf
@@ -104,7 +104,7 @@ pub(crate) struct Reading {
     phase: Option<u8>,
     /// The period in which the sensor fired, from 0; None from a filter alone.
     period: Option<u32>,
-    /// Why the reading is ambiguous: the sensor, from 0, whose sound explains it and the one before, or ``"history"``
+    /// Reason of an ambiguity: the sensor, from 0, whose sound explains it and the one before, or ``"history"``
     /// for a firing that is no longer remembered; None for every other kind.
     explained_by: Option<ExplainedBy>,
 }
@@ -203,7 +203,7 @@ impl Reading {
         })
     }
 
-    /// Its fields by their names: a dict of plain values.
+    /// The fields by their names: a dict of plain values.
     ///
     /// Example:
     ///     >>> import eeruf
@@ -265,7 +265,7 @@ impl PeriodEnded {
         self.0.period
     }
 
-    /// Its phase: 0 for a, 1 for b.
+    /// The phase: 0 for a, 1 for b.
     #[getter]
     fn phase(&self) -> u8 {
         self.0.phase.0
@@ -294,7 +294,7 @@ impl PeriodEnded {
         Ok(tally)
     }
 
-    /// Its fields by their names: a dict of plain values.
+    /// The fields by their names: a dict of plain values.
     ///
     /// Example:
     ///     >>> import eeruf

@@ -328,7 +328,7 @@ impl Ring {
         AnyRing::raised(act!(self.0.get()?, |ring| ring.set_window(window)))
     }
 
-    /// For how long after firing edges are no echoes, in microseconds. It can be changed while the ring runs.
+    /// Time for which after firing edges are no echoes, in microseconds. It can be changed while the ring runs.
     #[getter]
     fn blanking_us(&self) -> PyResult<u32> {
         Ok(ask!(self.0.get()?, |ring| ring.blanking()).as_micros())

@@ -492,7 +492,7 @@ impl Robot {
         (0..self.robot.sensors.len()).map(|sensor| self.robot.height_m(sensor)).collect()
     }
 
-    /// Its outline: the radius of a disc, (length, width) of a box, or the corners of a polygon; None without.
+    /// The outline: the radius of a disc, (length, width) of a box, or the corners of a polygon; None without.
     #[getter]
     fn body<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
         shown_body(py, self.robot.body.as_ref())
@@ -613,7 +613,7 @@ impl Robot {
         }
     }
 
-    /// Its clock at the start, in microseconds.
+    /// The clock at the start, in microseconds.
     #[getter]
     fn clock_offset_us(&self) -> u32 {
         self.robot.clock.offset_us

@@ -365,7 +365,7 @@ impl Scene {
         self.scene().poles().iter().map(|pole| Material::of(pole.material)).collect()
     }
 
-    /// Its noise, a ``Noise``.
+    /// The noise, a ``Noise``.
     #[getter]
     fn noise(&self) -> Noise {
         Noise::of(self.noise)

@@ -391,7 +391,7 @@ impl Schedule {
         asked.check(&self.0, |needs| self.0.to_c(needs))
     }
 
-    /// Its times by their names, as the arguments of ``Schedule``: a dict of plain values.
+    /// The times by their names, as the arguments of ``Schedule``: a dict of plain values.
     ///
     /// Example:
     ///     >>> from eeruf import Schedule, tables

@@ -20,8 +20,8 @@ pub(crate) struct BoardClock {
 }
 
 impl BoardClock {
-    /// When a sensor fired, in nanoseconds of the host's clock, of a frame that was made so long after and arrived at
-    /// `arrived_ns`.
+    /// Returns the time when a sensor fired, in nanoseconds of the host's clock, of a frame that was made so long after
+    /// and arrived at `arrived_ns`.
     pub(crate) fn fired_ns(&mut self, fired: Instant, age: Micros, arrived_ns: i64) -> i64 {
         let fired_us = self.without_wraps(fired);
         let offset = arrived_ns - 1000 * (fired_us + i64::from(age.as_micros()));

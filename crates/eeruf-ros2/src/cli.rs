@@ -56,7 +56,7 @@ pub(crate) enum Task {
 /// Arguments with which the node is started.
 pub(crate) struct Setup {
     pub(crate) parameters: Parameters,
-    /// Where the sensors are, if a ring file says it.
+    /// Place where the sensors are, if a ring file says it.
     pub(crate) placing: Placing,
     /// The scene, if there is no hardware.
     pub(crate) world: Option<Arc<World>>,

@@ -24,7 +24,7 @@ pub(crate) enum Level {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Status {
     pub(crate) level: Level,
-    /// Its name: `sensor 3`, `serial line`, `timing`.
+    /// The name: `sensor 3`, `serial line`, `timing`.
     pub(crate) about: String,
     pub(crate) message: String,
     pub(crate) values: Vec<(&'static str, String)>,
@@ -71,7 +71,7 @@ pub(crate) struct Diagnosis {
     blind_after: u32,
     silent_after_s: f64,
     interval: Interval,
-    /// Why the line is not open, until it is.
+    /// Reason why the line is not open, until it is.
     pub(crate) line_lost: Option<String>,
     /// Reason why whole frames cannot be used.
     pub(crate) foreign: Option<String>,

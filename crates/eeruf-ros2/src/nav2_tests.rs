@@ -49,7 +49,7 @@ impl Grid {
     }
 }
 
-/// Where the robot is: x, y, heading.
+/// Pose of the robot: x, y, heading.
 type At = [f64; 3];
 
 fn place_on_map(at: At, place: &Place) -> At {

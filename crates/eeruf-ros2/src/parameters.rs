@@ -74,7 +74,7 @@ parameters! {
     source: Source = Source::Serial, "serial";
     /// The board's serial line.
     port: String = "/dev/ttyACM0".to_owned(), "/dev/ttyACM0";
-    /// Its speed; without effect on USB.
+    /// The speed; without effect on USB.
     baud: u32 = 115_200, "115200";
     /// For source echo_times: the topic with rows of raw echo times.
     echo_times_topic: String = "echo_times".to_owned(), "echo_times";
@@ -183,7 +183,7 @@ impl<'de> Visitor<'de> for All<'_> {
 /// A part of a file: of nodes, namespaces, or patterns for them. Sets the parameters that are for this node and skips
 /// the others, whatever they hold.
 struct Nodes<'p> {
-    /// Where the part stands: empty at the top, or as `/robot_1/eeruf`.
+    /// Place where the part stands: empty at the top, or as `/robot_1/eeruf`.
     path: String,
     /// The node's full name.
     node: &'p str,

@@ -22,7 +22,7 @@ pub(crate) fn world(file: &Path) -> Result<Arc<World>, String> {
     world.map(Arc::new).map_err(|error| format!("simulate: {error}"))
 }
 
-/// Where the sensors of the first robot are.
+/// Returns the poses of the first robot's sensors.
 pub(crate) fn placing(world: &World, height_m: f64) -> Placing {
     Placing::of(world.robots().first().map_or(&[], |robot| &robot.sensors), height_m)
 }
@@ -30,7 +30,7 @@ pub(crate) fn placing(world: &World, height_m: f64) -> Placing {
 /// A reading of the simulation.
 pub(crate) struct Simulated {
     pub(crate) firing: FiringMessage,
-    /// When it fired, by the host's clock.
+    /// Time when it fired, by the host's clock.
     pub(crate) fired_ns: i64,
     /// The echo time of a sensor that fires alone; none if nothing is in range.
     pub(crate) truth: Option<Micros>,
@@ -47,7 +47,7 @@ fn broken(faults: &[Fault], sensor: u8, time_s: f64) -> Option<ReadingKind> {
     })
 }
 
-/// Where the robot is, in the scene.
+/// Place where the robot is, in the scene.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Course {
     pub(crate) x_m: f64,

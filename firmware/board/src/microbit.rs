@@ -63,7 +63,7 @@ pub fn set_alarm(at: Instant) {
     }
 }
 
-/// To be called by the alarm's handler.
+/// Clears the alarm; its handler calls this.
 pub fn clear_alarm() {
     Register::at(TIMER0, COMPARE_0).write(0);
 }
@@ -82,7 +82,7 @@ pub fn set_echo(at: Instant) {
     Register::at(TIMER1, START).write(1);
 }
 
-/// To be called by the echo interrupt's handler.
+/// Clears the echo interrupt; its handler calls this.
 pub fn clear_echo() {
     Register::at(TIMER1, STOP).write(1);
     Register::at(TIMER1, COMPARE_0).write(0);

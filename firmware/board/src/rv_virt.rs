@@ -114,7 +114,7 @@ pub fn set_alarm(at: Instant) {
     });
 }
 
-/// To be called by the alarm's handler; here [`due`] has done it.
+/// Clears the alarm for its handler; here [`due`] has done it.
 pub fn clear_alarm() {}
 
 /// Sets the instant of the next echo interrupt, and forgets any other. If `at` has passed it comes at once.
@@ -126,7 +126,7 @@ pub fn set_echo(at: Instant) {
     });
 }
 
-/// To be called by the echo interrupt's handler; here [`due`] has done it.
+/// Clears the echo interrupt for its handler; here [`due`] has done it.
 pub fn clear_echo() {}
 
 /// The instructions executed.

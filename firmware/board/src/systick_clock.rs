@@ -65,7 +65,7 @@ pub fn set_alarm(at: Instant) {
     one_shot(ALARM_TIMER, at, pend_alarm);
 }
 
-/// To be called by the alarm's handler.
+/// Clears the alarm; its handler calls this.
 pub fn clear_alarm() {
     Register::at(ALARM_TIMER, INTERRUPT_CLEAR).write(1);
 }
@@ -75,7 +75,7 @@ pub fn set_echo(at: Instant) {
     one_shot(ECHO_TIMER, at, pend_echo);
 }
 
-/// To be called by the echo interrupt's handler.
+/// Clears the echo interrupt; its handler calls this.
 pub fn clear_echo() {
     Register::at(ECHO_TIMER, INTERRUPT_CLEAR).write(1);
 }

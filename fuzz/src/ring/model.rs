@@ -19,7 +19,7 @@ const STAMPS: u64 = 64;
 pub(super) struct Heard {
     /// `Some(None)` stands for silence, `None` for nothing known.
     echo: Option<Option<u32>>,
-    /// When it fired.
+    /// Time when it fired.
     fired: u64,
     t_delta: u32,
     /// Something foreign explains it together with the one before.
@@ -84,7 +84,7 @@ impl Open {
         }
     }
 
-    /// Its line is held, and it has heard nothing.
+    /// The line is held, and it has heard nothing.
     pub(crate) fn is_held(&self, silence: Silence) -> bool {
         self.evidence == Evidence::Held && self.echoes.is_empty() && self.unusable(silence).is_none()
     }
@@ -148,7 +148,7 @@ pub(crate) struct Sensor {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Last {
     pub(super) at: u64,
-    /// Where the schedule has it, in microseconds from the start of the period with number 0 since the restart.
+    /// Scheduled time, in microseconds from the start of the period with number 0 since the restart.
     pub(super) planned: u64,
     /// Number of times that the ring had restarted or changed its schedule.
     pub(super) epoch: u32,

@@ -173,7 +173,7 @@ pub(super) fn table(asked: &Asked) -> Result<Table, Box<dyn std::error::Error>> 
     Ok(table)
 }
 
-/// When its wall goes, in us.
+/// Time when its wall goes, in us.
 const GOES: u64 = 3_000_000;
 
 /// Distance over which readings that fit lead the belief of sensor 0 after its wall has gone, in mm, and for how long,

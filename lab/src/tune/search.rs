@@ -74,7 +74,7 @@ impl Search<'_> {
     }
 }
 
-/// Why a search ends without a pilot.
+/// Reason why a search ends without a pilot.
 #[derive(Debug)]
 pub(crate) enum Trouble {
     NoRounds,

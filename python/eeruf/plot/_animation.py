@@ -106,7 +106,7 @@ class _Flight:
         self._along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(way, axis=0).T))])
 
     def place(self, now: float) -> NDArray[np.float64]:
-        """Where it is at this instant, between leaving and arriving."""
+        """Position at this instant, between leaving and arriving."""
         share = (now - self.leaves) / (self.arrives - self.leaves)
         along = share * self._along[-1]
         return np.array([np.interp(along, self._along, self.way[:, axis]) for axis in (0, 1)])

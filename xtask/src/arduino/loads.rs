@@ -26,7 +26,7 @@ const DRAWN: usize = 20;
 const FILE: &str = "tests/data/arduino-loads.csv";
 const POLLED: &str = "polled";
 const OWN_WALLS: &str = "own walls";
-/// For how long each runs.
+/// Time for which each runs.
 const SECONDS: u32 = 3;
 /// Numbers of the loads that run in CI, with six modules in the alcove.
 const CORNER: [usize; 3] = [1, 11, 18];
@@ -43,7 +43,7 @@ struct Load {
     /// Interrupts are masked meanwhile; or it waits for `quietFor()` too.
     masks: bool,
     waits: bool,
-    /// Right readings a second, polled, that six modules in the alcove had by a table when edges were stamped as seen.
+    /// Least right readings a second of six polled modules in the alcove: a table's, with edges stamped as seen.
     least: f64,
     /// Wrong readings a second that may be: polled, and by interrupt.
     most: [f64; 2],
@@ -146,7 +146,7 @@ impl Load {
     }
 }
 
-/// Where the modules are.
+/// Positions of the modules.
 struct Place {
     name: &'static str,
     ways: PathBuf,

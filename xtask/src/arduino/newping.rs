@@ -10,7 +10,7 @@ use fs_err as fs;
 use super::build::{self, Board};
 use super::{Example, pack, world};
 
-/// For how long each row runs, in seconds.
+/// Time for which each row runs, in seconds.
 const SECONDS: u32 = 20;
 
 /// Figures that are compared.
@@ -40,7 +40,7 @@ const ROWS: [Row; 4] = [
     Row { name: "eeruf", sketch: "Eeruf", text: EERUF, defines: &["-DCONSTANT=0", "-DEVERY=0"] },
 ];
 
-/// Where NewPing's sources are, and their version.
+/// Returns the folder of NewPing's sources, and their version.
 pub(super) fn sources(folder: &Path) -> Result<(PathBuf, String)> {
     let folder = [folder.to_owned(), folder.join("src")]
         .into_iter()

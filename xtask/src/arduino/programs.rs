@@ -37,7 +37,7 @@ const ASKED: [Asked; 16] = [
     Asked(CAR, "rust", true),
     Asked(EIGHT, "rust --way groups", false),
 ];
-/// Where harnesses are.
+/// Folder of the harnesses.
 const WALLS: &str = "tests/programs";
 
 /// Runs all, or a few of them for a few seconds.

@@ -14,7 +14,7 @@ use crate::steps::{need, output, run, skip};
 
 /// The room of the examples, in which modules hear each other.
 const SCENE: &str = "scenes/alcove-hc-sr04.toml";
-/// Its ways, for those who have no Rust.
+/// The ways, for those who have no Rust.
 pub(super) const KEPT: &str = "c/arduino/world/alcove.txt";
 /// A reading is wrong if it is off by more: 0.3 ms of echo time.
 const OFF_MM: u32 = 50;
@@ -34,7 +34,7 @@ pub(super) struct Heard {
     /// The wrong ones that were a module's own echo on another way, measured as it came.
     own_later: u32,
     right_by_module: BTreeMap<usize, u32>,
-    /// When the sketch first said that it is too slow, in milliseconds.
+    /// Time when the sketch first said that it is too slow, in milliseconds.
     slow_ms: Option<u32>,
     /// The wrong ones by cause: a module's own sound on another way, its own of an earlier firing, another's.
     by_cause: [u32; 3],

@@ -24,7 +24,7 @@ pub struct Row {
     /// True if it is proven that no schedule of this period has a larger `t_delta`, a larger interval at this
     /// `t_delta`, a longer refire time at both.
     pub preferred: [bool; 3],
-    /// When each sensor fires in phases a and b.
+    /// Firing times of each sensor in phases a and b.
     pub fire: [Vec<u32>; 2],
 }
 

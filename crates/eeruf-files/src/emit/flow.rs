@@ -10,15 +10,15 @@ use super::{CLimits, EERUF_VERSION, Grouped, Plain};
 /// The set-up of a flow ring.
 #[derive(Clone, Copy, Debug)]
 pub struct Flow<'r, const K: usize> {
-    /// When sensors fire. The seed is that of C and Arduino, whose ring may be given another one.
+    /// Settings of the firing. The seed is that of C and Arduino, whose ring may be given another one.
     pub turns: &'r TurnSettings,
     /// Settings of belief.
     pub belief: &'r BeliefSettings,
     /// Number of sensors.
     pub sensors: usize,
-    /// For how long sensors listen; the longest, where they have limits of their own.
+    /// Time for which sensors listen; the longest, where they have limits of their own.
     pub window: Micros,
-    /// For how long sensors are deaf after firing.
+    /// Time for which sensors are deaf after firing.
     pub blanking: Micros,
     /// Limits of each sensor; [`EachSensor::NONE`] if all are alike.
     pub limits: &'r EachSensor<K>,

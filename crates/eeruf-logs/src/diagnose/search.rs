@@ -31,7 +31,7 @@ enum Source {
 #[derive(Clone, Copy)]
 struct Travel {
     travel_us: i64,
-    /// When the sender fired, after the receiver did.
+    /// Time when the sender fired, after the receiver did.
     offset_us: i64,
     /// The place among the receiver's readings.
     reading: usize,

@@ -10,7 +10,7 @@ use crate::firings::FiringLog;
 /// One reading of the receiver.
 #[derive(Clone, Copy)]
 pub(super) struct Heard {
-    /// Its place in the log.
+    /// The place in the log.
     pub(super) firing: usize,
     pub(super) fired_us: i64,
     pub(super) phase: u8,
@@ -65,14 +65,14 @@ impl Timeline {
         &self.heard[usize::from(receiver)]
     }
 
-    /// When the reading of a firing, by its place in the log, came to its line.
+    /// Returns the time when the reading of a firing, by its place in the log, came to its line.
     fn edge_us(&self, line: u8, place: u32) -> i64 {
         let heard = self.heard_by(line);
         let of = heard.binary_search_by_key(&(place as usize), |of| of.firing).ok().map(|of| heard[of]);
         of.map_or(0, |of| of.fired_us + of.echo_us.unwrap_or(0))
     }
 
-    /// When readings that came along a path begin and end, if it moves.
+    /// Returns the first and last time of readings along a path, if it moves.
     pub(super) fn lasts(&self, path: &FoundPath) -> core::ops::RangeInclusive<i64> {
         match path.rate_us_s {
             Some(_) => self.edge_us(path.receiver, path.periods.0)..=self.edge_us(path.receiver, path.periods.1),

@@ -19,7 +19,7 @@ pub struct Timing {
     pub firings: usize,
 }
 
-/// Why firings cannot be held against a schedule.
+/// Reason why firings cannot be held against a schedule.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum TimingError {

@@ -12,7 +12,7 @@ const DRIVING: f64 = 0.018;
 /// A steady value that spans more moves.
 const STEADY_US: f64 = 600.0;
 
-/// When a sensor fired, and its echo time; both in microseconds, NaN without echo.
+/// Firing times of a sensor, and its echo times; both in microseconds, NaN without echo.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Series {
     pub(crate) at_us: Vec<f64>,

@@ -41,7 +41,7 @@ pub(super) struct Rows<'a, 's, 'e> {
 /// The cells of a line, each with its column.
 type Cells = Vec<(usize, String)>;
 
-/// Why a line gives no reading.
+/// Reason why a line gives no reading.
 enum Unread {
     /// The column has no role.
     Other,

@@ -43,7 +43,7 @@ pub(crate) struct Classes {
     pub(crate) kind: Kind,
 }
 
-/// Where the sensors stand.
+/// Place where the sensors stand.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {
     Line,

@@ -12,7 +12,7 @@ use crate::engine::sets::cover;
 use crate::engine::state::{Mark, event};
 use crate::engine::symmetry::Assumptions;
 
-/// Why there is no certificate.
+/// Reason why there is no certificate.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum NoProof {
     /// The budget of this many nodes is spent.

@@ -10,7 +10,7 @@ pub(crate) struct State {
     pub(crate) bounds: Bounds,
     /// Lower bounds on |d|.
     pub(crate) low: Vec<Bound>,
-    /// The set of those with a smaller |d|, as bits.
+    /// The sensors with a smaller |d|, as a bitmask.
     pub(crate) below: Vec<u64>,
     /// Two of which the first fires before the second in phase a or in phase b, or in both.
     pub(crate) reverse: Option<(usize, usize)>,

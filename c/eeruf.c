@@ -2030,7 +2030,7 @@ OUT_OF_LINE EerufStatus eeruf_hc_sr04_edge_between(EerufHcSr04 *modules, uint8_t
         const uint32_t width_us = latest_us - line->rose_us, least_us = width_us - shorter(early_us, width_us);
         /* From its latest rise to its earliest fall at the least; from its earliest to its latest at the most. */
         const uint32_t rose_early_us = line->silent == UINT8_MAX ? line->rose_us - fired_us : 8u * line->silent;
-        if (width_us + rose_early_us < settings->shortest_us) {
+        if (width_us < settings->shortest_us && width_us + rose_early_us < settings->shortest_us) {
             line->state = (uint8_t)((line->state & ~(PULSE | FLAW)) | AWAITED | CHATTERED);
             line->rose_us = latest_us;
             line->silent = 0;

@@ -18,6 +18,9 @@ pub(crate) enum Pulse {
     Over(Instant, u16),
 }
 
+/// The width of a pulse that does not go on after a gap: one that hardware measured, or a longer one.
+const ENDED: u16 = u16::MAX;
+
 /// The meaning of an edge for a firing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Shown {
@@ -90,9 +93,12 @@ impl Line {
                     self.flaw = Health::Chatters;
                     return Shown::Disturbance;
                 }
-                self.pulse = Pulse::Over(rose, u16::try_from(width.as_micros()).unwrap_or(0));
+                // The module's own time-out only if it is surely as long.
+                let is_echo = least < settings.longest;
+                let known = u16::try_from(width.as_micros()).ok().filter(|_| is_echo);
+                self.pulse = Pulse::Over(rose, known.unwrap_or(ENDED));
                 // A fall and a rise may have got lost since the trigger before, unless the line was seen to be high.
-                match least < settings.longest {
+                match is_echo {
                     true => Shown::Echo(least, rose_before.saturating_add(before.min(width))),
                     false if self.is_held || rose.has_reached(fired) => Shown::Silence,
                     false => Shown::Nothing,
@@ -105,8 +111,7 @@ impl Line {
             }
             // A gap as short as that is a disturbance: the pulse goes on. But its silence counts once.
             (Pulse::Over(rose, width), true)
-                if Micros::new(width.into()) < settings.longest
-                    && edge.at.since(rose + Micros::new(width.into())) < settings.shortest =>
+                if width != ENDED && edge.at.since(rose + Micros::new(width.into())) < settings.shortest =>
             {
                 self.pulse = Pulse::Rose(rose);
                 self.flaw = Health::Chatters;
@@ -142,7 +147,7 @@ impl Line {
             self.flaw = Health::Chatters;
             return Shown::Nothing;
         }
-        (self.pulse, self.flaw) = (Pulse::Over(Instant::from_micros(0), 0), Health::Well);
+        (self.pulse, self.flaw) = (Pulse::Over(Instant::from_micros(0), ENDED), Health::Well);
         if width < settings.longest { Shown::Echo(width, Micros::ZERO) } else { Shown::Silence }
     }
 

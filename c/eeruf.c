@@ -14,7 +14,7 @@
 SIZE_IS(EerufSchedule, 46);
 SIZE_IS(EerufLimits, 7);
 SIZE_IS(EerufWatched, 10);
-SIZE_IS(EerufRing, 77);
+SIZE_IS(EerufRing, 73);
 SIZE_IS(EerufEdge, 7);
 #define PADDING 0u
 #else
@@ -26,7 +26,7 @@ SIZE_IS(EerufLine, 8);
 SIZE_IS(EerufFlowSensor, 42 + PADDING);
 #endif
 
-#if defined(__AVR__) && !defined(EERUF_SCHEDULE_IN_RAM)
+#ifdef __AVR__
 #define READ8(place) pgm_read_byte(&(place))
 #define READ16(place) pgm_read_word(&(place))
 #define READ32(place) pgm_read_dword(&(place))
@@ -128,61 +128,12 @@ static uint32_t shortest_refire(const EerufSchedule *schedule) {
     return least;
 }
 
-EerufStatus eeruf_schedule_make(EerufSchedule *schedule, uint8_t *order, size_t order_size, uint32_t *gap_us,
-                                size_t gap_size, uint32_t period_us, uint8_t sensors, uint8_t phases,
-                                const uint32_t *t_fire_us) {
-#if defined(__AVR__) && !defined(EERUF_SCHEDULE_IN_RAM)
-    (void)schedule, (void)order, (void)order_size, (void)gap_us, (void)gap_size;
-    (void)period_us, (void)sensors, (void)phases, (void)t_fire_us;
-    return EERUF_ERR_MEMORY; /* it would be looked for in flash */
-#else
-    uint8_t phase, sensor, at;
-    if (schedule == NULL || order == NULL || gap_us == NULL || t_fire_us == NULL) return EERUF_ERR_NULL;
-    if (sensors == 0 || sensors > EERUF_MAX_SENSORS) return EERUF_ERR_SENSORS;
-    if (phases == 0 || phases > EERUF_MAX_PHASES) return EERUF_ERR_PHASES;
-    if (period_us == 0 || period_us > EERUF_MAX_PERIOD_US) return EERUF_ERR_PERIOD;
-    if (order_size < (size_t)phases * sensors) return EERUF_ERR_MEMORY;
-    if (gap_size < (size_t)phases * (sensors + 1u) * sizeof *gap_us) return EERUF_ERR_MEMORY;
-    for (phase = 0; phase < phases; phase++) {
-        uint8_t *places = order + (size_t)phase * sensors;
-        uint32_t *times = gap_us + (size_t)phase * (sensors + 1u), last = 0;
-        for (sensor = 0; sensor < sensors; sensor++) {
-            /* Insertion sort by firing time; sensors that fire together keep their order. */
-            const uint32_t t_fire = t_fire_us[(size_t)phase * sensors + sensor];
-            if (t_fire >= period_us) return EERUF_ERR_FIRE;
-            for (at = sensor; at > 0 && times[at - 1] > t_fire; at--) {
-                times[at] = times[at - 1];
-                places[at] = places[at - 1];
-            }
-            times[at] = t_fire;
-            places[at] = sensor;
-        }
-        times[sensors] = period_us;
-        for (at = 0; at <= sensors; at++) {
-            const uint32_t t_fire = times[at];
-            times[at] = t_fire - last;
-            last = t_fire;
-        }
-    }
-    memset(schedule, 0, sizeof *schedule);
-    schedule->version = EERUF_VERSION;
-    schedule->sensors = sensors;
-    schedule->phases = phases;
-    schedule->order = order;
-    schedule->gap_us = gap_us;
-    schedule->period_us = period_us;
-    schedule->min_refire_us = shortest_refire(schedule);
-    schedule->path_change_us = EERUF_AS_T_DELTA;
-    return EERUF_OK;
-#endif
-}
-
-static bool are_neighbours(uint8_t layout, uint8_t n, uint8_t sensors, uint8_t x, uint8_t y) {
-    const uint8_t steps = x > y ? (uint8_t)(x - y) : (uint8_t)(y - x);
+static bool are_neighbours(const EerufSchedule *schedule, uint8_t x, uint8_t y) {
+    const uint8_t n = READ8(schedule->neighbours), steps = x > y ? (uint8_t)(x - y) : (uint8_t)(y - x);
     if (x == y) return false;
-    switch (layout) {
+    switch (READ8(schedule->layout)) {
     case EERUF_LAYOUT_LINE: return steps < n;
-    case EERUF_LAYOUT_RING: return steps < n || sensors - steps < n;
+    case EERUF_LAYOUT_RING: return steps < n || READ8(schedule->sensors) - steps < n;
     case EERUF_LAYOUT_BLOCKS: return n > 0 && x / n == y / n;
     default: return false;
     }
@@ -207,39 +158,47 @@ static uint32_t own_t_delta(const EerufLimits *limits, uint8_t sensor, uint32_t 
     return limits == NULL ? t_delta_us : READ16(limits[sensor].t_delta_us);
 }
 
-
 /* True if two sensors fire together, and so are declared not to hear each other. */
 static bool fire_together(const EerufLimits *limits, uint8_t x, uint8_t y) {
     if (limits == NULL || x == y || READ8(limits[x].group) == 0) return false;
     return READ8(limits[x].group) == READ8(limits[y].group);
 }
 
-/* True if the schedule meets requirements; also the largest t_delta and window, and by how much crosstalk moves at
-   least: as much more than that t_delta as the pair with the least to spare has. */
-static EerufStatus meets(const EerufSchedule *schedule, EerufRequirements *needs, uint32_t *separation_us) {
-    const EerufLimits *limits = needs->limits;
-    const uint8_t sensors = READ8(schedule->sensors);
-    uint32_t t_delta_us = 0, window_us = 0, spare_us = UINT32_MAX;
+/* What a schedule achieves: the largest t_delta and window of its sensors, and by how much crosstalk moves at least: as
+   much more than that t_delta as the pair with the least to spare has. */
+typedef struct Achieved {
+    uint32_t t_delta_us, window_us, separation_us;
+} Achieved;
+
+/* True if the schedule meets the requirements that it names. */
+static EerufStatus meets(const EerufSchedule *schedule, Achieved *achieved) {
+    const EerufLimits *limits = READ_POINTER(const EerufLimits *, schedule->limits);
+    const uint32_t all_t_delta_us = READ32(schedule->t_delta_us), all_window_us = READ32(schedule->window_us);
+    const uint32_t min_interval_us = READ32(schedule->min_interval_us);
+    const uint8_t sensors = READ8(schedule->sensors), stale_echo = READ8(schedule->stale_echo);
+    uint32_t spare_us = UINT32_MAX;
     EerufStatus stale = EERUF_OK, last = EERUF_OK;
     uint8_t x, y, phase;
+    achieved->t_delta_us = achieved->window_us = 0;
     if (READ8(schedule->phases) != 2) return EERUF_ERR_PHASES;
     for (x = 0; x < sensors; x++) {
-        const uint32_t own_us = own_t_delta(limits, x, needs->t_delta_us);
-        const uint32_t listens_us = limits == NULL ? needs->window_us : READ32(limits[x].window_us);
-        t_delta_us = longer(t_delta_us, own_us);
-        window_us = longer(window_us, listens_us == 0 ? READ32(schedule->min_refire_us) : listens_us);
+        const uint32_t own_us = own_t_delta(limits, x, all_t_delta_us);
+        const uint32_t listens_us = limits == NULL ? all_window_us : READ32(limits[x].window_us);
+        achieved->t_delta_us = longer(achieved->t_delta_us, own_us);
+        achieved->window_us =
+            longer(achieved->window_us, listens_us == 0 ? READ32(schedule->min_refire_us) : listens_us);
         for (phase = 0; phase < 2; phase++)
             if (refire(schedule, phase, x) < listens_us) last = EERUF_ERR_WINDOW;
         for (y = 0; y <= x; y++) {
             const uint32_t moves = moves_by(schedule, x, y);
-            const uint32_t larger_us = longer(own_us, own_t_delta(limits, y, needs->t_delta_us));
+            const uint32_t larger_us = longer(own_us, own_t_delta(limits, y, all_t_delta_us));
             if (fire_together(limits, x, y)) {
                 for (phase = 0; phase < 2; phase++)
                     if (last == EERUF_OK && fires_at(schedule, phase, x) != fires_at(schedule, phase, y))
                         last = EERUF_ERR_TOGETHER;
                 continue;
             }
-            if (x == y && !needs->stale_echo) continue;
+            if (x == y && !stale_echo) continue;
             if (moves < add32(add32(larger_us, larger_us), 1)) {
                 if (x != y) return EERUF_ERR_CROSSTALK;
                 stale = EERUF_ERR_STALE_ECHO;
@@ -254,19 +213,13 @@ static EerufStatus meets(const EerufSchedule *schedule, EerufRequirements *needs
             const uint32_t t_x = fires_at(schedule, phase, x);
             for (y = 0; y < sensors; y++) {
                 const uint32_t t_next = fires_at(schedule, (uint8_t)(1u - phase), y) + READ32(schedule->period_us);
-                if (!are_neighbours(needs->layout, needs->neighbours, sensors, x, y)) continue;
-                if (apart(t_x, fires_at(schedule, phase, y)) < needs->min_interval_us) return EERUF_ERR_INTERVAL;
-                if (t_next - t_x < needs->min_interval_us) return EERUF_ERR_INTERVAL;
+                if (!are_neighbours(schedule, x, y)) continue;
+                if (apart(t_x, fires_at(schedule, phase, y)) < min_interval_us || t_next - t_x < min_interval_us)
+                    return EERUF_ERR_INTERVAL;
             }
         }
     }
-    /* The longest time that any sensor keeps between two firings does not follow from neighbours alone. */
-    if (limits != NULL) needs->layout = EERUF_LAYOUT_OTHER;
-    for (x = 0; x < sensors && limits != NULL; x++)
-        needs->min_interval_us = longer(needs->min_interval_us, READ32(limits[x].window_us));
-    needs->t_delta_us = t_delta_us;
-    needs->window_us = window_us;
-    *separation_us = add32(t_delta_us, spare_us);
+    achieved->separation_us = add32(achieved->t_delta_us, spare_us);
     return last;
 }
 
@@ -274,35 +227,6 @@ static EerufStatus meets(const EerufSchedule *schedule, EerufRequirements *needs
 static uint32_t audible_for(const EerufSchedule *schedule) {
     const uint32_t period_us = READ32(schedule->period_us);
     return READ8(schedule->stale_echo) ? 2 * period_us : period_us;
-}
-
-EerufStatus eeruf_schedule_verify(EerufSchedule *schedule, const EerufRequirements *requirements) {
-#if defined(__AVR__) && !defined(EERUF_SCHEDULE_IN_RAM)
-    (void)schedule, (void)requirements;
-    return EERUF_ERR_MEMORY;
-#else
-    EerufStatus status;
-    EerufRequirements needs;
-    uint32_t separation_us;
-    if (schedule == NULL || requirements == NULL) return EERUF_ERR_NULL;
-    if (schedule->version != EERUF_VERSION) return schedule->version == 0 ? EERUF_ERR_NOT_READY : EERUF_ERR_VERSION;
-    if (requirements->layout > EERUF_LAYOUT_BLOCKS) return EERUF_ERR_RANGE;
-    needs = *requirements;
-    status = meets(schedule, &needs, &separation_us);
-    if (status != EERUF_OK) return status;
-    schedule->t_delta_us = needs.t_delta_us;
-    schedule->min_interval_us = needs.min_interval_us;
-    schedule->window_us = needs.window_us;
-    schedule->limits = needs.limits;
-    schedule->separation_us = separation_us;
-    schedule->layout = needs.layout;
-    schedule->neighbours = requirements->neighbours;
-    schedule->stale_echo = requirements->stale_echo;
-    schedule->path_change_us = EERUF_AS_T_DELTA;
-    schedule->audible_us = audible_for(schedule);
-    schedule->verified = 1;
-    return EERUF_OK;
-#endif
 }
 
 static EerufStatus schedule_is_usable(const EerufSchedule *schedule) {
@@ -317,8 +241,8 @@ static EerufStatus schedule_is_usable(const EerufSchedule *schedule) {
 
 EerufStatus eeruf_schedule_check(const EerufSchedule *schedule) {
     EerufStatus status = schedule_is_usable(schedule);
-    EerufRequirements promised;
-    uint32_t separation_us, gap_us, path_change_us;
+    Achieved achieved;
+    uint32_t gap_us, path_change_us;
     uint8_t sensors, phase, place, seen;
     if (status != EERUF_OK) return status;
     if (READ32(schedule->period_us) - 1u >= EERUF_MAX_PERIOD_US) return EERUF_ERR_PERIOD;
@@ -339,20 +263,13 @@ EerufStatus eeruf_schedule_check(const EerufSchedule *schedule) {
     }
     if (READ32(schedule->min_refire_us) != shortest_refire(schedule)) return EERUF_ERR_TABLE;
     if (!is_verified(schedule)) return EERUF_ERR_UNVERIFIED;
-    promised.t_delta_us = READ32(schedule->t_delta_us);
-    promised.min_interval_us = READ32(schedule->min_interval_us);
-    promised.window_us = READ32(schedule->window_us);
-    promised.layout = READ8(schedule->layout);
-    promised.neighbours = READ8(schedule->neighbours);
-    promised.stale_echo = READ8(schedule->stale_echo);
-    promised.limits = READ_POINTER(const EerufLimits *, schedule->limits);
-    status = meets(schedule, &promised, &separation_us);
+    status = meets(schedule, &achieved);
     if (status != EERUF_OK) return status;
-    if (promised.t_delta_us != READ32(schedule->t_delta_us)) return EERUF_ERR_TABLE;
-    if (promised.window_us != READ32(schedule->window_us)) return EERUF_ERR_TABLE;
-    if (separation_us != READ32(schedule->separation_us)) return EERUF_ERR_TABLE;
+    if (achieved.t_delta_us != READ32(schedule->t_delta_us)) return EERUF_ERR_TABLE;
+    if (achieved.window_us != READ32(schedule->window_us)) return EERUF_ERR_TABLE;
+    if (achieved.separation_us != READ32(schedule->separation_us)) return EERUF_ERR_TABLE;
     path_change_us = READ32(schedule->path_change_us);
-    if (path_change_us != EERUF_AS_T_DELTA && separation_us - promised.t_delta_us <= path_change_us)
+    if (path_change_us != EERUF_AS_T_DELTA && achieved.separation_us - achieved.t_delta_us <= path_change_us)
         return EERUF_ERR_CROSSTALK;
     return READ32(schedule->audible_us) - 1u >= audible_for(schedule) ? EERUF_ERR_TABLE : EERUF_OK;
 }
@@ -428,35 +345,6 @@ static bool shift(uint32_t *t_echo_us, uint32_t later_us) {
     }
     *t_echo_us = echo_us < later_us ? 0 : echo_us - later_us;
     return echo_us >= later_us;
-}
-
-/* The reading has its kind already. */
-static void note_age(EerufReading *reading, EerufFilter *filter) {
-    if (reading->kind == EERUF_READING_ACCEPTED) filter->age = 0;
-    else if (filter->age < EERUF_NEVER - 1u) filter->age++;
-    reading->age = filter->age;
-}
-
-EerufStatus eeruf_filter_push(EerufFilter *filter, uint32_t t_delta_us, uint8_t consecutive, uint32_t t_echo_us,
-                              int32_t expected_change_us, EerufReading *reading) {
-    bool agreed;
-    if (filter == NULL || reading == NULL) return EERUF_ERR_NULL;
-    if (consecutive < 2 || consecutive > 8) return EERUF_ERR_CONSECUTIVE;
-    if (t_delta_us > UINT16_MAX) return EERUF_ERR_COARSE_T_DELTA;
-    if (t_echo_us >= HALF_TURN && t_echo_us != EERUF_NO_ECHO) return EERUF_ERR_RANGE;
-    reading->t_echo_us = t_echo_us;
-    reading->explained_by = EERUF_BY_NOTHING;
-    reading->previous_us = filter->known_us;
-    agreed = agrees(filter, (uint16_t)t_delta_us, t_echo_us, expected_change_us);
-    reading->kind = push(filter, consecutive, t_echo_us, agreed, false);
-    note_age(reading, filter);
-    return EERUF_OK;
-}
-
-EerufStatus eeruf_filter_forget(EerufFilter *filter) {
-    if (filter == NULL) return EERUF_ERR_NULL;
-    forget(filter);
-    return EERUF_OK;
 }
 
 /* ---- The ring ---- */
@@ -535,7 +423,7 @@ static OUT_OF_LINE const EerufLimits *limits_of(const EerufSchedule *schedule) {
 
 /* The answers for limits, so that with rings that have none nothing of it is linked, or asked: null until one that
    has some begins. Its questions, of a sensor and a value; FIRST_TO_CLOSE changes the ring. */
-enum { WINDOW, SHORTEST_WINDOW, T_DELTA, TOGETHER, DEAF, DIFFER, FIRST_TO_CLOSE };
+enum { WINDOW, SHORTEST_WINDOW, T_DELTA, TOGETHER, DIFFER, FIRST_TO_CLOSE };
 static uint32_t (*limited)(const EerufRing *ring, uint8_t what, uint8_t x, uint32_t value);
 
 static bool windows_differ(const EerufRing *ring) {
@@ -550,9 +438,9 @@ static uint16_t t_delta_of(const EerufRing *ring, uint8_t sensor) {
     return limited == NULL ? ring->t_delta_us : (uint16_t)limited(ring, T_DELTA, sensor, ring->t_delta_us);
 }
 
-/* True if a sensor does not hear another, by the schedule and by the one before. */
+/* True if a sensor fires together with another, and so does not hear it. */
 static bool is_deaf_to(const EerufRing *ring, uint8_t receiver, uint8_t emitter) {
-    return limited != NULL && limited(ring, DEAF, receiver, emitter) != 0;
+    return limited != NULL && limited(ring, TOGETHER, receiver, emitter) != 0;
 }
 
 /* Time for which a sensor listens that is to listen for `window_us`: no longer than a schedule allows it. */
@@ -571,26 +459,20 @@ static uint32_t shortest_window(const EerufSchedule *schedule, uint8_t sensors, 
 
 static void find_first_to_close(EerufRing *ring);
 
-/* By the schedule, and by the one of the period before, whose last firings may still be listening. */
-static uint32_t answer_by_schedules(const EerufRing *ring, uint8_t what, uint8_t x, uint32_t value) {
-    const EerufSchedule *const before = ring->schedule_before;
-    const EerufLimits *const limits = limits_of(ring->schedule), *const limits_before = limits_of(before);
+static uint32_t answer_by_schedule(const EerufRing *ring, uint8_t what, uint8_t x, uint32_t value) {
+    const EerufLimits *const limits = limits_of(ring->schedule);
     switch (what) {
-    case WINDOW: return allowed_window(before, x, allowed_window(ring->schedule, x, value));
-    case SHORTEST_WINDOW: return shortest_window(x == 0 ? ring->schedule : before, ring->count, value);
-    case T_DELTA:
-        return shorter(value, shorter(own_t_delta(limits, x, value), own_t_delta(limits_before, x, value)));
+    case WINDOW: return allowed_window(ring->schedule, x, value);
+    case SHORTEST_WINDOW: return shortest_window(ring->schedule, ring->count, value);
+    case T_DELTA: return shorter(value, own_t_delta(limits, x, value));
     case TOGETHER: return fire_together(limits, x, (uint8_t)value);
-    case DEAF:
-        return fire_together(limits, x, (uint8_t)value) &&
-               (before == NULL || fire_together(limits_before, x, (uint8_t)value));
     case FIRST_TO_CLOSE: find_first_to_close((EerufRing *)(uintptr_t)ring); return 0;
-    default: return limits != NULL || limits_before != NULL;
+    default: return limits != NULL;
     }
 }
 
 static void heed_limits(const EerufSchedule *schedule) {
-    if (limits_of(schedule) != NULL) limited = answer_by_schedules;
+    if (limits_of(schedule) != NULL) limited = answer_by_schedule;
 }
 
 static uint32_t path_change_of(const EerufRing *ring, uint16_t t_delta_us) {
@@ -742,17 +624,11 @@ static OUT_OF_LINE uint32_t horizon_of_table(const EerufRing *ring) {
 /* Ends the period of a table. Returns whether the next one does not follow on it as the schedule says. */
 static bool end_period_of_table(EerufRing *ring, uint32_t now_us, uint32_t late_us) {
     const uint32_t settling = settling_time(ring->schedule);
-    bool changed = late_us > READ32(ring->schedule->period_us);
-    uint8_t phase;
-    ring->schedule_before = NULL;
+    const bool changed = late_us > READ32(ring->schedule->period_us);
+    const uint8_t phase = (uint8_t)(ring->phase + 1u);
     if (changed) ring->due_us = now_us;
     /* The last firing must not fall half a turn of the clock behind while no sensor is enabled. */
     if (ring->due_us - ring->last_fired_us > settling) ring->last_fired_us = ring->due_us - settling;
-    if (ring->hook != NULL) {
-        ring->hook(ring, 0, settling);
-        changed = true;
-    }
-    phase = (uint8_t)(ring->phase + 1u);
     begin_period(ring, phase < READ8(ring->schedule->phases) ? phase : 0);
     return changed;
 }
@@ -802,12 +678,8 @@ static EerufStatus can_hear(uint32_t t_delta_us, uint32_t window_us, uint32_t bl
 
 /* Listens and compares so from now on, if that is possible. */
 static EerufStatus listen(EerufRing *ring, uint32_t t_delta_us, uint32_t window_us, uint32_t blanking_us) {
-    EerufStatus status = EERUF_OK;
-    uint8_t before;
-    for (before = 0; before < 2 && status == EERUF_OK; before++) {
-        const uint32_t shortest_us = limited == NULL ? window_us : limited(ring, SHORTEST_WINDOW, before, window_us);
-        status = can_hear(t_delta_us, shortest_us, blanking_us);
-    }
+    const uint32_t shortest_us = limited == NULL ? window_us : limited(ring, SHORTEST_WINDOW, 0, window_us);
+    const EerufStatus status = can_hear(t_delta_us, shortest_us, blanking_us);
     if (status != EERUF_OK) return status;
     ring->t_delta_us = (uint16_t)t_delta_us;
     ring->window_us = window_us;
@@ -1007,10 +879,12 @@ static void compare(EerufRing *ring, uint8_t x, int32_t change_us, EerufReading 
 #endif
         reading->kind = push(filter, ring->consecutive, echo_us, agreed, reading->explained_by != EERUF_BY_NOTHING);
     }
-    note_age(reading, filter);
+    if (reading->kind == EERUF_READING_ACCEPTED) filter->age = 0;
+    else if (filter->age < EERUF_NEVER - 1u) filter->age++;
+    reading->age = filter->age;
 }
 
-/* The hook of a flow ring, asked for: see there. */
+/* Questions to the hook of a flow ring: see there. */
 enum { FORGETS = 0, BEGINS_AGAIN = 1, SILENCE_COUNTS = 2 };
 
 /* A silence counts whose reading is out. */
@@ -1067,7 +941,6 @@ static IN_LINE void emit_reading(EerufRing *ring, uint8_t x, uint32_t now_us, co
 static IN_LINE void end_period(EerufRing *ring, uint32_t now_us, uint32_t late_us, EerufEvent *event,
                                bool flows) {
     EerufPeriod *ended = &event->u.ended;
-    const bool differed = windows_differ(ring);
     bool changed = false;
     uint8_t kind;
     note_late(ring, narrow(late_us));
@@ -1078,11 +951,6 @@ static IN_LINE void end_period(EerufRing *ring, uint32_t now_us, uint32_t late_u
     else changed = end_period_of_table(ring, now_us, late_us);
     end_late_period(ring, ended, now_us, flows);
     if (changed) disturb(ring);
-    /* Another schedule may allow other windows, also to firings under way. */
-    if (differed || windows_differ(ring)) {
-        (void)limited(ring, FIRST_TO_CLOSE, 0, 0);
-        emit_when_oldest_ends(ring);
-    }
     for (kind = 0; kind < EERUF_READING_KINDS; kind++) {
         ended->tally[kind] = ring->tally[kind];
         ring->tally[kind] = 0;
@@ -1200,7 +1068,7 @@ EerufStatus eeruf_ring_upcoming(const EerufRing *ring, uint8_t number, uint8_t *
     place = ring->following;
     next = ring->next;
     at_us = ring->due_us;
-    goes_on = ring->next_schedule == NULL && !ring->paused;
+    goes_on = !ring->paused;
     for (;;) {
         const bool fires = next != NOBODY && !(sensor_of(ring, next)->filter.state & DISABLED);
         if (fires && number-- == 0) {
@@ -1439,82 +1307,12 @@ EerufStatus eeruf_ring_restart(EerufRing *ring, uint32_t now_us) {
     return status;
 }
 
-/* The hook of a ring that changes its schedule at the end of the period, and has been silent for `settling` by then if
-   it may go on. */
-static void change_now(EerufRing *ring, uint8_t unused, uint32_t settling) {
-    const EerufSchedule *next = ring->next_schedule;
-    const uint32_t min_interval = is_verified(next) ? READ32(next->min_interval_us) : 0;
-    const uint32_t settled = ring->last_fired_us + longer(settling, min_interval);
-    (void)unused;
-    if (has_reached(settled, ring->due_us)) ring->due_us = settled;
-    ring->schedule_before = ring->schedule;
-    ring->schedule = next;
-    ring->next_schedule = NULL;
-    ring->hook = NULL;
-}
-
-static EerufStatus change(EerufRing *ring, const EerufSchedule *schedule, bool verified) {
-    EerufStatus status = is_ready(ring);
-    if (status == EERUF_OK) status = schedule_is_usable(schedule);
-    if (status != EERUF_OK) return status;
-    if (verified && !is_verified(schedule)) return EERUF_ERR_UNVERIFIED;
-    if (FLOWS(ring)) return EERUF_ERR_FLOW;
-    if (READ8(schedule->sensors) != ring->count) return EERUF_ERR_SENSORS;
-    if (READ8(schedule->phases) != READ8(ring->schedule->phases)) return EERUF_ERR_PHASES;
-    status = allows(schedule, ring->t_delta_us, ring->window_us);
-    if (status == EERUF_OK)
-        status = can_hear(ring->t_delta_us, shortest_window(schedule, ring->count, ring->window_us), ring->blanking_us);
-    if (status != EERUF_OK) return status;
-    heed_limits(schedule);
-    ring->next_schedule = schedule;
-    ring->hook = change_now;
-    return EERUF_OK;
-}
-
-EerufStatus eeruf_ring_change_schedule(EerufRing *ring, const EerufSchedule *schedule) {
-    return change(ring, schedule, true);
-}
-
-EerufStatus eeruf_ring_change_to_unverified(EerufRing *ring, const EerufSchedule *schedule) {
-    return change(ring, schedule, false);
-}
-
 /* No sensor fires again within this time. */
 static uint32_t least_refire(const EerufRing *ring) {
 #if EERUF_WITH_FLOW
     if (FLOWS(ring)) return longer(((const EerufFlowRing *)(const void *)ring)->rest_us, ring->window_us);
 #endif
     return READ32(ring->schedule->min_refire_us);
-}
-
-/* With one of the three changed. */
-static EerufStatus relisten(EerufRing *ring, uint32_t t_delta_us, uint32_t window_us, uint32_t blanking_us) {
-    EerufStatus status;
-    if (FLOWS(ring)) return EERUF_ERR_FLOW;
-    status = allows(ring->schedule, t_delta_us, window_us);
-    if (status == EERUF_OK && ring->next_schedule != NULL)
-        status = allows(ring->next_schedule, t_delta_us, window_us);
-    return status == EERUF_OK ? listen(ring, t_delta_us, window_us, blanking_us) : status;
-}
-
-EerufStatus eeruf_ring_set_t_delta(EerufRing *ring, uint32_t t_delta_us) {
-    EerufStatus status = is_ready(ring);
-    if (status == EERUF_OK) status = relisten(ring, t_delta_us, ring->window_us, ring->blanking_us);
-    if (status == EERUF_OK) disturb(ring);
-    return status;
-}
-
-EerufStatus eeruf_ring_set_window(EerufRing *ring, uint32_t window_us) {
-    EerufStatus status = is_ready(ring);
-    if (status == EERUF_OK) status = relisten(ring, ring->t_delta_us, window_us, ring->blanking_us);
-    if (status == EERUF_OK && windows_differ(ring)) (void)limited(ring, FIRST_TO_CLOSE, 0, 0);
-    if (status == EERUF_OK) emit_when_oldest_ends(ring);
-    return status;
-}
-
-EerufStatus eeruf_ring_set_blanking(EerufRing *ring, uint32_t blanking_us) {
-    const EerufStatus status = is_ready(ring);
-    return status == EERUF_OK ? relisten(ring, ring->t_delta_us, ring->window_us, blanking_us) : status;
 }
 
 EerufStatus eeruf_ring_set_report_after(EerufRing *ring, uint32_t report_after_us) {
@@ -1524,24 +1322,6 @@ EerufStatus eeruf_ring_set_report_after(EerufRing *ring, uint32_t report_after_u
     ring->report_after_us = report_after_us;
     if (windows_differ(ring)) (void)limited(ring, FIRST_TO_CLOSE, 0, 0);
     emit_when_oldest_ends(ring);
-    return EERUF_OK;
-}
-
-EerufStatus eeruf_ring_set_path_change(EerufRing *ring, uint32_t path_change_us) {
-    const EerufStatus status = has_table(ring);
-    if (status != EERUF_OK) return status;
-    if (path_change_us >= AS_T_DELTA) return EERUF_ERR_PATH_CHANGE;
-    ring->path_change_us = (uint16_t)path_change_us;
-    disturb(ring);
-    return EERUF_OK;
-}
-
-EerufStatus eeruf_ring_set_audible(EerufRing *ring, uint32_t audible_us) {
-    const EerufStatus status = has_table(ring);
-    if (status != EERUF_OK) return status;
-    if (audible_us > MAX_AUDIBLE) return EERUF_ERR_AUDIBLE;
-    ring->audible_us = audible_us;
-    disturb(ring);
     return EERUF_OK;
 }
 
@@ -1691,86 +1471,6 @@ uint32_t eeruf_distance_mm(uint32_t t_echo_us, uint32_t c_mm_s) {
 
 uint32_t eeruf_echo_time_us(uint32_t distance_mm, uint32_t c_mm_s) {
     return c_mm_s == 0 ? UINT32_MAX : multiply_divide(distance_mm, 2000000u, c_mm_s / 2, c_mm_s);
-}
-
-/* ---- Adaptation ---- */
-
-EerufStatus eeruf_adaptation_init(EerufAdaptation *adaptation, size_t adaptation_size,
-                                  const EerufSchedule *const *ladder, uint8_t rungs) {
-    uint8_t rung;
-    if (adaptation == NULL || ladder == NULL) return EERUF_ERR_NULL;
-    if (adaptation_size != sizeof *adaptation) return EERUF_ERR_MEMORY;
-    if (rungs == 0) return EERUF_ERR_LADDER;
-    for (rung = 0; rung < rungs; rung++) {
-        const EerufStatus status = schedule_is_usable(ladder[rung]);
-        if (status != EERUF_OK) return status;
-        if (!is_verified(ladder[rung])) return EERUF_ERR_UNVERIFIED;
-        if (rung == 0) continue;
-        if (READ32(ladder[rung]->period_us) <= READ32(ladder[rung - 1]->period_us)) return EERUF_ERR_LADDER;
-        if (READ8(ladder[rung]->sensors) != READ8(ladder[0]->sensors)) return EERUF_ERR_LADDER;
-        if (READ8(ladder[rung]->phases) != READ8(ladder[0]->phases)) return EERUF_ERR_LADDER;
-    }
-    memset(adaptation, 0, sizeof *adaptation);
-    adaptation->ladder = ladder;
-    adaptation->rungs = rungs;
-    adaptation->noisy_permille = 300;
-    adaptation->calm_permille = 100;
-    adaptation->window = 16;
-    adaptation->patience = 4;
-    adaptation->rejection_permille = UINT16_MAX;
-    adaptation->ready = READY;
-    return EERUF_OK;
-}
-
-/* The rung for the window that has just ended. One in which nothing was compared is neither noisy nor calm. */
-static uint8_t next_rung(EerufAdaptation *adaptation) {
-    const uint16_t rate = adaptation->rejection_permille;
-    const uint8_t rung = adaptation->rung;
-    if (rate != UINT16_MAX && rate <= adaptation->noisy_permille && rate <= adaptation->calm_permille) {
-        if (adaptation->calm_windows < UINT8_MAX) adaptation->calm_windows++;
-        return adaptation->calm_windows >= adaptation->patience && rung > 0 ? (uint8_t)(rung - 1u) : rung;
-    }
-    adaptation->calm_windows = 0;
-    if (rate == UINT16_MAX || rate <= adaptation->noisy_permille) return rung;
-    return rung + 1u < adaptation->rungs ? (uint8_t)(rung + 1u) : rung;
-}
-
-EerufStatus eeruf_adaptation_period(EerufAdaptation *adaptation, EerufRing *ring, const EerufEvent *event) {
-    EerufStatus status;
-    uint32_t compared;
-    uint8_t rung;
-    if (adaptation == NULL || event == NULL) return EERUF_ERR_NULL;
-    if (adaptation->ready != READY) return EERUF_ERR_NOT_READY;
-    status = is_ready(ring);
-    if (status != EERUF_OK) return status;
-    if (event->kind != EERUF_EVENT_PERIOD) return EERUF_ERR_RANGE;
-    adaptation->accepted = add16(adaptation->accepted, event->u.ended.tally[EERUF_READING_ACCEPTED]);
-    adaptation->rejected = add16(adaptation->rejected, event->u.ended.tally[EERUF_READING_REJECTED]);
-    adaptation->rejected = add16(adaptation->rejected, event->u.ended.tally[EERUF_READING_AMBIGUOUS]);
-    adaptation->repeated = add16(adaptation->repeated, event->u.ended.tally[EERUF_READING_REPEATED]);
-    if (adaptation->periods < UINT8_MAX) adaptation->periods++;
-    if (adaptation->periods < adaptation->window) return EERUF_OK;
-    adaptation->periods = 0;
-    compared = (uint32_t)adaptation->accepted + adaptation->rejected + adaptation->repeated;
-    adaptation->rejection_permille = UINT16_MAX;
-    if (compared > 0) adaptation->rejection_permille = (uint16_t)(1000 * (uint32_t)adaptation->rejected / compared);
-    adaptation->accepted = adaptation->rejected = adaptation->repeated = 0;
-    rung = next_rung(adaptation);
-    if (rung == adaptation->rung) return EERUF_OK;
-    adaptation->calm_windows = 0;
-    status = eeruf_ring_change_schedule(ring, adaptation->ladder[rung]);
-    if (status != EERUF_OK) return status;
-    adaptation->rung = rung;
-    return EERUF_EVENT;
-}
-
-uint32_t eeruf_schedule_max_speed_mm_s(const EerufSchedule *schedule, uint32_t t_delta_us, uint32_t c_mm_s) {
-    uint32_t most = 0;
-    uint8_t sensor, phase;
-    if (schedule_is_usable(schedule) != EERUF_OK) return 0;
-    for (sensor = 0; sensor < READ8(schedule->sensors); sensor++)
-        for (phase = 0; phase < READ8(schedule->phases); phase++) most = longer(most, refire(schedule, phase, sensor));
-    return most == 0 ? 0 : multiply_divide(t_delta_us, c_mm_s, 0, 2 * most);
 }
 
 /* ---- Edges ---- */
@@ -2126,13 +1826,6 @@ bool eeruf_hc_sr04_awaits(const EerufHcSr04 *modules, uint8_t sensor, bool *was_
 EerufStatus eeruf_hc_sr04_fired(EerufHcSr04 *modules, uint8_t sensor, uint32_t at_us) {
     const EerufStatus status = has_line(modules, sensor);
     return status == EERUF_OK ? eeruf_ring_fired(modules->ring, sensor, at_us) : status;
-}
-
-EerufStatus eeruf_hc_sr04_change_schedule(EerufHcSr04 *modules, const EerufSchedule *schedule) {
-    EerufStatus status = has_line(modules, 0);
-    if (status == EERUF_OK) status = schedule_is_usable(schedule);
-    if (status == EERUF_OK) status = allows_retrigger(modules->settings, READ32(schedule->min_refire_us));
-    return status == EERUF_OK ? eeruf_ring_change_schedule(modules->ring, schedule) : status;
 }
 
 uint8_t eeruf_hc_sr04_health(const EerufHcSr04 *modules, uint8_t sensor) {

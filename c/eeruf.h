@@ -52,9 +52,8 @@
 #error "EERUF_FIRINGS: expected 2 to 32, likely meant: -DEERUF_AGREEMENT_ALONE, a baseline that accepts crosstalk"
 #endif
 
-/* Schedules lie in flash: on an AVR that has its own address space, which PROGMEM names. -DEERUF_SCHEDULE_IN_RAM for
-   schedules that are made at run time there. */
-#if defined(__AVR__) && !defined(EERUF_SCHEDULE_IN_RAM)
+/* Schedules lie in flash: on an AVR that has its own address space, which PROGMEM names. */
+#ifdef __AVR__
 #include <avr/pgmspace.h>
 #define EERUF_FLASH PROGMEM
 #else
@@ -104,7 +103,6 @@ enum {
     EERUF_ERR_COARSE_T_DELTA = -19, /* t_delta no shorter than the window, or longer than 65,535 us */
     EERUF_ERR_CONSECUTIVE = -20, /* not 2 to 8 readings compared */
     EERUF_ERR_RETRIGGER = -21,   /* the schedule triggers a module again sooner than it may be */
-    EERUF_ERR_LADDER = -22,      /* no schedules, or not from the shortest period to the longest, or unlike ones */
     EERUF_ERR_RANGE = -26,       /* a number outside its range */
     EERUF_ERR_FLOW = -27,        /* a flow ring cannot do this, or has a function of its own for it */
     EERUF_ERR_AUDIBLE = -29,     /* sound that is audible for less than 1,000 us, likely given in ms, or for more than 67 s */
@@ -146,7 +144,7 @@ typedef struct EerufLimits {
     uint8_t group;        /* sensors of one group fire together and do not hear each other; 0 for none */
 } EerufLimits;
 
-/* When each sensor fires. `eeruf design --emit c` writes it as a constant in flash; eeruf_schedule_make makes one. */
+/* When each sensor fires: `eeruf design --emit c` writes it as a constant in flash. */
 typedef struct EerufSchedule {
     uint16_t version;       /* EERUF_VERSION */
     uint8_t sensors;        /* 1 to 64 */
@@ -168,25 +166,6 @@ typedef struct EerufSchedule {
     uint8_t stale_echo;     /* whether a sensor's own echo from the period before is rejected too */
     const EerufLimits *limits; /* of each sensor, where they are not all alike; else null */
 } EerufSchedule;
-
-/* Requirements that a schedule is verified for. */
-typedef struct EerufRequirements {
-    uint32_t t_delta_us, min_interval_us, window_us; /* no window: as long as the schedule allows */
-    uint8_t layout, neighbours, stale_echo;
-    /* Needs of each sensor, instead of t_delta and window above, where they are not all alike; else null. Must last as long
-       as the schedule. */
-    const EerufLimits *limits;
-} EerufRequirements;
-
-/* Makes a schedule of firing times `t_fire_us[phase * sensors + sensor]` after the start of each period. The memory
-   must last: `order` has phases * sensors places, `gap_us` phases * (sensors + 1), sizes in bytes. On an AVR only with
-   EERUF_SCHEDULE_IN_RAM. */
-EerufStatus eeruf_schedule_make(EerufSchedule *schedule, uint8_t *order, size_t order_size, uint32_t *gap_us,
-                                size_t gap_size, uint32_t period_us, uint8_t sensors, uint8_t phases,
-                                const uint32_t *t_fire_us);
-
-/* Verifies such a schedule and notes what for. If it does not meet the requirements it is left as it was. */
-EerufStatus eeruf_schedule_verify(EerufSchedule *schedule, const EerufRequirements *requirements);
 
 /* Checks every number of a schedule in flash, and that it meets what it says it was verified for: (13a), (13b), the
    interval (not for EERUF_LAYOUT_OTHER) and the window. Tables that `eeruf` writes do. */
@@ -226,20 +205,12 @@ typedef struct EerufReading {
     uint8_t explained_by; /* why it is ambiguous: a sensor, or EERUF_BY_HISTORY; else EERUF_BY_NOTHING */
 } EerufReading;
 
-/* One sensor's filter, for those who fire by other means. */
+/* One sensor's filter. Not for the caller. */
 typedef struct EerufFilter {
     uint32_t known_us;
     uint16_t age;
     uint8_t state, flags, off[2]; /* the last two of a ring's sensor */
 } EerufFilter;
-#define EERUF_FILTER {EERUF_NO_ECHO, EERUF_NEVER, 0, 0, {0, 0}}
-
-/* Takes in one firing: its echo below 2^31 us, or EERUF_NO_ECHO. `consecutive` readings, 2 to 8, must each be within
-   `t_delta_us` of the one before, after taking off the change that motion lets expect (-2 v dt / c): with one it accepts
-   crosstalk of any schedule, since it does not know what was fired, as a ring does. */
-EerufStatus eeruf_filter_push(EerufFilter *filter, uint32_t t_delta_us, uint8_t consecutive, uint32_t t_echo_us,
-                              int32_t expected_change_us, EerufReading *reading);
-EerufStatus eeruf_filter_forget(EerufFilter *filter); /* compare the next reading with nothing; the age goes on */
 
 /* ---- The ring: a reading is accepted if it agrees with the one before and no firing explains both ----
 
@@ -294,10 +265,10 @@ typedef struct EerufEvent {
     } u;
 } EerufEvent;
 
-/* A ring: 77 bytes on an AVR. Initialise it with eeruf_ring_init; not for the caller otherwise. */
+/* A ring: 73 bytes on an AVR. Initialise it with eeruf_ring_init; not for the caller otherwise. */
 typedef struct EerufRing {
     uint16_t ready;
-    const EerufSchedule *schedule, *next_schedule, *schedule_before;
+    const EerufSchedule *schedule;
     EerufSensor *sensors;
     void (*hook)(struct EerufRing *ring, uint8_t sensor, uint32_t us);
     uint32_t due_us, last_fired_us, emit_at_us, window_us, period, audible_us, known_from_us, report_after_us;
@@ -329,8 +300,8 @@ uint32_t eeruf_ring_deadline(const EerufRing *ring);
 uint32_t eeruf_ring_due(const EerufRing *ring);
 
 /* The firings to come, for a timer or other hardware that fires by itself: number 0 is the next, 1 the one after it.
-   They hold until one is late, or the ring is changed. EERUF_EMPTY beyond the end of the next period, where the ring
-   changes its schedule of this one, and in a flow ring beyond the next. The loop may then come late; let it repeat what happened in its order: for
+   They hold until one is late, or the ring is changed. EERUF_EMPTY beyond the end of the next period, and in a flow
+   ring beyond the next firing. The loop may then come late; let it repeat what happened in its order: for
    each firing poll at its instant until there is no event, so that EERUF_EVENT_FIRE says what is done already; hand in
    echoes; last poll at the present. A firing that hardware has missed is then still due. */
 EerufStatus eeruf_ring_upcoming(const EerufRing *ring, uint8_t number, uint8_t *sensor, uint32_t *due_us);
@@ -378,44 +349,9 @@ bool eeruf_ring_is_enabled(const EerufRing *ring, uint8_t sensor);
 EerufStatus eeruf_ring_pause(EerufRing *ring, bool paused); /* no sensor fires; periods go on */
 EerufStatus eeruf_ring_restart(EerufRing *ring, uint32_t now_us); /* again with the first phase, after a long sleep */
 
-/* Changes to another verified schedule, of as many sensors and phases, when the present period ends. */
-EerufStatus eeruf_ring_change_schedule(EerufRing *ring, const EerufSchedule *schedule);
-EerufStatus eeruf_ring_change_to_unverified(EerufRing *ring, const EerufSchedule *schedule);
-/* From now on; at most what the schedule was verified for. After an error the ring goes on as before. */
-EerufStatus eeruf_ring_set_t_delta(EerufRing *ring, uint32_t t_delta_us);
-EerufStatus eeruf_ring_set_window(EerufRing *ring, uint32_t window_us);
-EerufStatus eeruf_ring_set_blanking(EerufRing *ring, uint32_t blanking_us);
 /* The soonest time after its firing at which a reading without an echo comes, for modules that report by a bus or a
    pulse's width after their window has closed: at most the time until a sensor fires again. 0: when it closes. */
 EerufStatus eeruf_ring_set_report_after(EerufRing *ring, uint32_t report_after_us);
-/* P, at most 65,534 us: for a robot that moves at v its jitter and 2 v dt / c. Less than t_delta makes fewer readings
-   ambiguous where firings are late. And R, at most 67,108,864 us. */
-EerufStatus eeruf_ring_set_path_change(EerufRing *ring, uint32_t path_change_us);
-EerufStatus eeruf_ring_set_audible(EerufRing *ring, uint32_t audible_us);
-
-/* ---- Adaptation: fire more slowly where too much is rejected, and faster again when it is calm ---- */
-
-typedef struct EerufAdaptation {
-    uint16_t ready;
-    const EerufSchedule *const *ladder; /* from the shortest period to the longest; in RAM */
-    uint8_t rungs, rung;
-    uint16_t noisy_permille;     /* above this rejection rate it fires more slowly: 300 */
-    uint16_t calm_permille;      /* up to this one a window is calm: 100 */
-    uint8_t window;              /* periods in a window: 16 */
-    uint8_t patience;            /* calm windows running before it fires faster: 4 */
-    uint8_t periods, calm_windows;
-    uint16_t accepted, rejected, repeated;
-    uint16_t rejection_permille; /* of the last whole window, UINT16_MAX if nothing was compared in it */
-} EerufAdaptation;
-
-/* Begins on the first rung, which the ring began with: verified schedules. The four settings may be changed then. */
-EerufStatus eeruf_adaptation_init(EerufAdaptation *adaptation, size_t adaptation_size,
-                                  const EerufSchedule *const *ladder, uint8_t rungs);
-/* Takes in an EERUF_EVENT_PERIOD and changes the ring's schedule where it should be; EERUF_EVENT if it has. */
-EerufStatus eeruf_adaptation_period(EerufAdaptation *adaptation, EerufRing *ring, const EerufEvent *event);
-/* The fastest motion, in mm/s, at which good readings still pass with this schedule, where sound travels at `c`. */
-uint32_t eeruf_schedule_max_speed_mm_s(const EerufSchedule *schedule, uint32_t t_delta_us, uint32_t c_mm_s);
-
 /* ---- The state before each sensor: what is there now, since when, and why nothing is known ---- */
 
 enum {
@@ -577,8 +513,6 @@ EerufStatus eeruf_hc_sr04_pulse(EerufHcSr04 *modules, uint8_t sensor, uint32_t w
 bool eeruf_hc_sr04_awaits(const EerufHcSr04 *modules, uint8_t sensor, bool *was_high);
 /* As eeruf_ring_fired, where the trigger was given later than the poll said. */
 EerufStatus eeruf_hc_sr04_fired(EerufHcSr04 *modules, uint8_t sensor, uint32_t at_us);
-/* As eeruf_ring_change_schedule. */
-EerufStatus eeruf_hc_sr04_change_schedule(EerufHcSr04 *modules, const EerufSchedule *schedule);
 /* The health of a module at its last complete firing; EERUF_HEALTH_MISSING for one that is not there. */
 uint8_t eeruf_hc_sr04_health(const EerufHcSr04 *modules, uint8_t sensor);
 

@@ -62,7 +62,7 @@ const ALL: [u8; 16] = [2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17];
 /// `examples/uno`, which is in Rust: wired as Ring8.
 const IN_RUST: Example = Example::eight("examples/uno", true);
 
-const EXAMPLES: [Example; 8] = [
+const EXAMPLES: [Example; 7] = [
     Example::eight("Ring8", false),
     Example::one_pin("Ring12OnePin", 12, true),
     Example::one_pin("Flow12", 12, true),
@@ -70,7 +70,6 @@ const EXAMPLES: [Example; 8] = [
     Example::new("FromNewPing", &[4, 5, 6], &[4, 5, 6], true),
     Example::one_pin("States4", 4, false),
     Example::eight("SerialRing8", true),
-    Example::one_pin("Adaptive", 8, false),
 ];
 
 /// Parts to run.
@@ -133,7 +132,7 @@ fn pack() -> Result<PathBuf> {
 fn cores(library: &Path) -> Result<()> {
     let properties = fs::read_to_string(library.join("library.properties"))?;
     let cores = properties.lines().find_map(|line| line.strip_prefix("architectures=")).context("no architectures")?;
-    let sketches = ["FromNewPing", "States4", "Flow12", "Strip", "Adaptive", "SerialRing8"];
+    let sketches = ["FromNewPing", "States4", "Flow12", "Strip", "SerialRing8"];
     let sketches = sketches.map(|name| library.join(format!("examples/{name}/{name}.ino")));
     let sources = [&[library.join("src/EerufArduino.cpp")], &sketches[..]].concat();
     // The real core of AVRs compiles all of them.

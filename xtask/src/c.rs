@@ -12,13 +12,12 @@ use crate::steps::{empty, need, output, run};
 
 const STRICT: [&str; 7] = ["-Wall", "-Wextra", "-Werror", "-pedantic", "-Wconversion", "-Wshadow", "-Ic"];
 /// Compilers and the languages that each takes the library as.
-const COMPILERS: [(&str, &[&str]); 8] = [
+const COMPILERS: [(&str, &[&str]); 7] = [
     ("gcc", &["-std=c99"]),
     ("gcc", &["-std=c17", "-DEERUF_WITH_FLOW=0"]),
     ("g++", &["-xc++", "-std=c++11"]),
     ("g++", &["-xc++", "-std=c++20", "-DEERUF_WITH_FLOW=0"]),
     ("avr-gcc", &["-mmcu=atmega328p", "-std=c99"]),
-    ("avr-gcc", &["-mmcu=atmega328p", "-std=c99", "-DEERUF_SCHEDULE_IN_RAM"]),
     ("avr-g++", &["-mmcu=atmega328p", "-xc++", "-std=gnu++11"]),
     ("arm-none-eabi-gcc", &["-mcpu=cortex-m0", "-mthumb", "-std=c99"]),
 ];

@@ -159,7 +159,6 @@ public:
         if (status_ != EERUF_OK) return false;
         const uint32_t now = collect(200 + 40 * N, EERUF_LOOKS);
         if (eeruf_ring_poll(&ring_, now, &event) != EERUF_EVENT) return false;
-        if (event.kind == EERUF_EVENT_PERIOD && onPeriod_ != nullptr) onPeriod_(adaptation_, &ring_, &event);
         return take(event, now, EERUF_LOOKS);
     }
 
@@ -171,20 +170,9 @@ public:
     bool enable(uint8_t sensor, bool enabled = true) { return eeruf_ring_enable(&ring_, sensor, enabled) == EERUF_OK; }
     // Fires no module, or all again.
     void pause(bool paused = true) { (void)eeruf_ring_pause(&ring_, paused); }
-    // By another table of as many modules, from the next period on.
-    bool change(const EerufSchedule &schedule) {
-        return eeruf_hc_sr04_change_schedule(&modules(), &schedule) == EERUF_OK;
-    }
-    // Changes along a ladder of tables, the first of which the ring began with, as its readings ask for.
-    void adapt(EerufAdaptation &adaptation) {
-        adaptation_ = &adaptation;
-        onPeriod_ = eeruf_adaptation_period;
-    }
 
 private:
     const EerufSchedule *schedule_;
-    EerufAdaptation *adaptation_;
-    EerufStatus (*onPeriod_)(EerufAdaptation *, EerufRing *, const EerufEvent *) = nullptr;
     EerufRing ring_;
     EerufSensor sensors_[N];
     EerufLine lines_[N];

@@ -15,6 +15,8 @@ pub mod world;
 
 use std::ffi::c_void;
 
+use eeruf_core::{Micros, Phase, Schedule, VerifiedSchedule, conditions::VerifiedFor};
+
 pub use random::Random;
 
 /// An event as numbers: kind, sensor, phase, then what the kind has.
@@ -34,21 +36,13 @@ pub enum Do {
     Enable,
     Pause,
     Restart,
-    ChangeSchedule,
-    SetTDelta,
-    SetWindow,
-    SetBlanking,
     Edge,
     FireModule,
     CannotRead,
     CannotWrite,
     ModuleFired,
-    ChangeModules,
     Health,
     IsEnabled,
-    Adapt,
-    SetPathChange,
-    SetAudible,
     FiredAt,
     SetSilence,
     Answered,
@@ -71,26 +65,26 @@ pub enum Between {
     Look,
 }
 
-/// A schedule's numbers after it was verified, or not.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[expect(missing_docs, reason = "named as the fields of EerufSchedule")]
-pub struct Numbers {
-    pub min_refire_us: u32,
-    pub window_us: u32,
-    pub separation_us: u32,
-    pub max_speed_mm_s: u32,
-}
-
-/// Requirements as numbers.
+/// What a schedule is to be verified for, as the fields of an EerufSchedule.
 #[derive(Clone, Copy, Debug)]
-#[expect(missing_docs, reason = "named as the fields of EerufRequirements")]
-pub struct Needs {
-    pub t_delta_us: u32,
-    pub min_interval_us: u32,
-    pub window_us: u32,
+#[expect(missing_docs, reason = "named as the fields of EerufSchedule")]
+pub struct Claim {
+    pub verified_for: [u32; 6],
     pub layout: u8,
     pub neighbours: u8,
     pub stale_echo: bool,
+}
+
+impl Claim {
+    /// The claim of a schedule that was verified, its layout apart.
+    pub fn of(verified_for: VerifiedFor) -> Self {
+        let VerifiedFor { t_delta, min_interval, window, separation, path_change, audible, .. } = verified_for;
+        let path_change = path_change.map_or(u32::MAX, Micros::as_micros);
+        let [t_delta, min_interval, window, separation, audible] =
+            [t_delta, min_interval, window, separation, audible].map(Micros::as_micros);
+        let verified_for = [t_delta, min_interval, window, separation, path_change, audible];
+        Self { verified_for, layout: 3, neighbours: 0, stale_echo: false }
+    }
 }
 
 /// Needs of one sensor: `window_us`, `t_delta_us` and `group` of an EerufLimits.
@@ -120,36 +114,41 @@ impl C {
         Self(unsafe { shim::shim_new() })
     }
 
-    /// `eeruf_schedule_make` of times by phase and sensor: its status. Schedules are numbered as they are made.
-    pub fn schedule(&mut self, period_us: u32, sensors: u8, phases: u8, t_fire_us: &[u32]) -> i32 {
-        assert_eq!(t_fire_us.len(), usize::from(sensors) * usize::from(phases));
-        // SAFETY: as many times as there are sensors and phases.
-        unsafe { shim::shim_schedule(self.0, period_us, sensors, phases, t_fire_us.as_ptr()) }
+    /// A schedule as a table, not verified. Schedules are numbered as they are made.
+    pub fn schedule<const K: usize, const M: usize>(&mut self, schedule: &Schedule<K, M>) {
+        let (mut order, mut gaps) = (vec![], vec![]);
+        for phase in (0..M as u8).map(Phase) {
+            let mut before = Micros::ZERO;
+            let fired = schedule.firing_order(phase).iter().map(|&x| schedule.t_fire(phase, x.into()));
+            for at in fired.map(|at| at.expect("one of its sensors")).chain([schedule.period()]) {
+                gaps.push(at.saturating_sub(before).as_micros());
+                before = at;
+            }
+            order.extend_from_slice(schedule.firing_order(phase));
+        }
+        let [period, min_refire] = [schedule.period(), schedule.min_refire()].map(Micros::as_micros);
+        let (sensors, order, gaps) = (schedule.sensors() as u8, order.as_ptr(), gaps.as_ptr());
+        // SAFETY: as many numbers as sensors and phases ask for.
+        unsafe { shim::shim_schedule(self.0, period, min_refire, sensors, M as u8, order, gaps) }
     }
 
-    /// `eeruf_schedule_verify` of the schedule with this number, and `eeruf_schedule_check` if that is fine.
-    pub fn verify(&mut self, schedule: u32, needs: Needs, own: &[OwnNeeds]) -> (i32, Numbers) {
-        let Needs { t_delta_us, min_interval_us, window_us, layout, neighbours, stale_echo } = needs;
-        let mut out = [0; 4];
-        let stale_echo = stale_echo.into();
+    /// A schedule that was verified, as a table.
+    ///
+    /// # Panics
+    /// If C does not find it so.
+    pub fn verified_schedule<const K: usize>(&mut self, number: u32, schedule: &VerifiedSchedule<K>) {
+        self.schedule(schedule.schedule());
+        assert_eq!(self.verified(number, Claim::of(schedule.verified_for()), &[]), 0);
+    }
+
+    /// `eeruf_schedule_check` of the schedule with this number and claim, which it keeps if that is fine.
+    pub fn verified(&mut self, number: u32, claim: Claim, own: &[OwnNeeds]) -> i32 {
+        let Claim { verified_for: [t_delta, interval, window, separation, path_change, audible], .. } = claim;
+        let [layout, neighbours, stale] = [claim.layout, claim.neighbours, claim.stale_echo.into()].map(u32::from);
+        let numbers = [t_delta, interval, window, separation, path_change, audible, layout, neighbours, stale];
         let own = if own.is_empty() { std::ptr::null() } else { own.as_ptr().cast() };
-        // SAFETY: a schedule that was made, three numbers for each of its sensors, and room for four numbers.
-        let status = unsafe {
-            shim::shim_verify(
-                self.0,
-                schedule,
-                t_delta_us,
-                min_interval_us,
-                window_us,
-                layout,
-                neighbours,
-                stale_echo,
-                own,
-                out.as_mut_ptr(),
-            )
-        };
-        let [min_refire_us, window_us, separation_us, max_speed_mm_s] = out;
-        (status, Numbers { min_refire_us, window_us, separation_us, max_speed_mm_s })
+        // SAFETY: a schedule that was made, three numbers for each of its sensors, and nine numbers.
+        unsafe { shim::shim_verified(self.0, number, numbers.as_ptr(), own) }
     }
 
     /// `eeruf_ring_init_unverified` with `t_delta_us`, `window_us`, `blanking_us`, `path_change_us`, `audible_us`.
@@ -232,20 +231,6 @@ impl C {
         unsafe { shim::shim_modules(self.0, min_retrigger_us, shortest_us) }
     }
 
-    /// `eeruf_adaptation_init` with all schedules made, and its settings.
-    pub fn adaptation(&mut self, window: u8, patience: u8, noisy: u16, calm: u16) -> i32 {
-        // SAFETY: schedules that were made.
-        unsafe { shim::shim_adaptation(self.0, window, patience, noisy, calm) }
-    }
-
-    /// The adaptation's rung, and the rejection rate, 65,535 without one.
-    pub fn rung(&self) -> (u32, u32) {
-        let (mut rung, mut permille) = (0, 0);
-        // SAFETY: room for both.
-        unsafe { shim::shim_rung(self.0, &raw mut rung, &raw mut permille) };
-        (rung, permille)
-    }
-
     /// `eeruf_flow_init`, with the numbers in the order that `shim.c` names; `own` are the limits of each sensor, or
     /// empty.
     pub fn flow(&mut self, sensors: u8, numbers: &[u32], own: &[u32], now_us: u32) -> i32 {
@@ -268,17 +253,6 @@ impl C {
         unsafe { shim::shim_quiet(self.0, sensor, out.as_mut_ptr()) };
         out
     }
-}
-
-/// `eeruf_filter_push` of a filter that holds these three numbers: kind, echo, previous echo, age, explanation.
-pub fn filter(held: &mut [u32; 3], t_delta_us: u32, consecutive: u8, t_echo_us: u32, change_us: i32) -> [u32; 5] {
-    let mut out = [0; 5];
-    // SAFETY: room for what is held and for what comes out.
-    let status = unsafe {
-        shim::shim_filter(held.as_mut_ptr(), t_delta_us, consecutive, t_echo_us, change_us, out.as_mut_ptr())
-    };
-    assert_eq!(status, 0);
-    out
 }
 
 /// `eeruf_sound_mm_s`.

@@ -6,7 +6,7 @@ use std::convert::Infallible;
 use std::rc::Rc;
 
 use crate::core_side::{flat, state};
-use crate::{C, Do, Flat, Needs};
+use crate::{C, Do, Flat};
 use eeruf_core::{
     Edge, Instant, Micros, ReadingKind, Requirements, Ring, RingConfig, Schedule, ScheduledRing, VerifiedSchedule,
     watch::SensorWatch,
@@ -82,7 +82,6 @@ pub struct Faults {
     schedule: VerifiedSchedule<K>,
     /// T_p.
     pub period_us: u32,
-    t_fire_us: Vec<u32>,
     /// The rows.
     pub faults: Vec<Fault>,
 }
@@ -108,11 +107,11 @@ impl Faults {
         else {
             panic!("no schedule")
         };
-        let (period_us, t_fire_us) = (period.parse().unwrap(), [numbers(a), numbers(b)].concat());
-        let (times, _) = t_fire_us.as_chunks::<K>();
-        let schedule = Schedule::<K>::from_firing(Micros::new(period_us), [times[0], times[1]].map(micros)).unwrap();
+        let period_us = period.parse().unwrap();
+        let times = [a, b].map(|words| micros(numbers(words).try_into().unwrap()));
+        let schedule = Schedule::<K>::from_firing(Micros::new(period_us), times).unwrap();
         let schedule = schedule.verified(&Requirements::new(Micros::new(T_DELTA_US))).unwrap();
-        Self { schedule, period_us, t_fire_us, faults: rows.map(|row| fault(&row)).collect() }
+        Self { schedule, period_us, faults: rows.map(|row| fault(&row)).collect() }
     }
 }
 
@@ -252,10 +251,7 @@ struct InC {
 impl InC {
     fn new(faults: &Faults, wires: &Rc<Wires>, forgets: bool, now: u32) -> Self {
         let mut ring = C::new();
-        assert_eq!(ring.schedule(faults.period_us, K as u8, 2, &faults.t_fire_us), 0);
-        let (min_interval_us, window_us, layout, neighbours, stale_echo) = (0, 0, 0, 0, false);
-        let needs = Needs { t_delta_us: T_DELTA_US, min_interval_us, window_us, layout, neighbours, stale_echo };
-        assert_eq!(ring.verify(0, needs, &[]).0, 0);
+        ring.verified_schedule(0, &faults.schedule);
         assert_eq!(ring.ring(0, [0, WINDOW_US, 0, 0, 0], 2, now), 0);
         let Settings { min_retrigger, shortest, .. } = Settings::default();
         assert_eq!(ring.modules(min_retrigger.as_micros(), shortest.as_micros() as u16), 0);

@@ -1,7 +1,7 @@
 //! Rings that fire by tables.
 
 use crate::core_side::{flat, state, status_of, status_of_violation, upcoming};
-use crate::{C, Do, Needs, OwnNeeds, Random};
+use crate::{C, Claim, Do, OwnNeeds, Random};
 use eeruf_core::{
     EachSensor, EchoFilter, Instant, Layout, Micros, Requirements, Ring, RingConfig, RingError, RingEvent, Schedule,
     Uneven,
@@ -13,9 +13,29 @@ use crate::world::{World, hear, measure, same, set_silence};
 
 const K: usize = 16;
 
+/// Requirements as numbers.
+#[derive(Clone, Copy)]
+pub struct Needs {
+    t_delta_us: u32,
+    min_interval_us: u32,
+    window_us: u32,
+    layout: u8,
+    neighbours: u8,
+    stale_echo: bool,
+}
+
+impl Needs {
+    /// The claim of a schedule that was not verified for them.
+    fn claim(self) -> Claim {
+        let Self { t_delta_us, min_interval_us, window_us, layout, neighbours, stale_echo } = self;
+        Claim { verified_for: [t_delta_us, min_interval_us, window_us, 0, u32::MAX, 1], layout, neighbours, stale_echo }
+    }
+}
+
 /// Verifying, which only schedules of two phases can be.
 pub trait Verify: Sized {
-    /// Verifies in both languages, and gives back the schedule, verified if it can be, and what it allows each sensor.
+    /// Verifies in Rust, which C must find so or not, and gives back the schedule, verified if it can be, and what it
+    /// allows each sensor.
     fn verify_as(self, c: &mut C, number: u32, needs: Needs, own: &[OwnNeeds]) -> (Self, EachSensor<K>);
 }
 
@@ -39,27 +59,29 @@ impl Verify for Schedule<K, 2> {
             layout,
             ..Requirements::new(Micros::new(needs.t_delta_us))
         };
-        let (status, numbers) = c.verify(number, needs, own);
-        assert_eq!(numbers.min_refire_us, self.min_refire().as_micros());
-        let c_mm_s = 343_200;
-        assert_eq!(numbers.max_speed_mm_s, self.max_speed_mm_s(requirements.t_delta, c_mm_s));
-        match self.verified_each(&requirements) {
-            Ok(verified) => {
-                assert_eq!(status, 0);
-                let limits: Vec<_> = (0..K as u8).map_while(|x| verified.limits_of(x)).collect();
-                assert_eq!(Some(numbers.window_us), limits.iter().map(|limits| limits.window.as_micros()).max());
-                let schedule = *verified.schedule();
-                if own.is_empty() {
-                    assert_eq!(numbers.separation_us, verified.verified_for().separation.as_micros());
-                    return (schedule, EachSensor::NONE);
-                }
-                (schedule, *verified.own_limits())
-            }
+        let verified = match self.verified_each(&requirements) {
+            Ok(verified) => verified,
             Err(violation) => {
+                let status = c.verified(number, needs.claim(), own);
                 assert_eq!(status, status_of_violation(violation.kind), "{violation}");
-                (self, EachSensor::NONE)
+                return (self, EachSensor::NONE);
             }
+        };
+        let most = verified.own_limits().most().copied().filter(|_| !own.is_empty());
+        let claim = Claim::of(most.unwrap_or_else(|| verified.verified_for()));
+        let [t_delta, _, window, separation, path_change, audible] = claim.verified_for;
+        let as_asked = [t_delta, needs.min_interval_us, window, separation, path_change, audible];
+        assert_eq!(c.verified(number, Claim { verified_for: as_asked, ..needs.claim() }, own), 0);
+        // One that was not verified so is not taken.
+        let off = Claim { verified_for: [t_delta, 0, window, separation ^ 1, path_change, audible], ..needs.claim() };
+        assert_eq!(c.verified(number, off, own), -10);
+        let schedule = *verified.schedule();
+        if own.is_empty() {
+            return (schedule, EachSensor::NONE);
         }
+        // Single pairs may keep other intervals, as tables say.
+        assert_eq!(c.verified(number, Claim { stale_echo: needs.stale_echo, ..claim }, own), 0);
+        (schedule, *verified.own_limits())
     }
 }
 
@@ -67,7 +89,7 @@ macro_rules! cannot_be_verified {
     ($($phases:literal)*) => {$(
         impl Verify for Schedule<K, $phases> {
             fn verify_as(self, c: &mut C, number: u32, needs: Needs, own: &[OwnNeeds]) -> (Self, EachSensor<K>) {
-                assert_eq!(c.verify(number, needs, own).0, -7);
+                assert_eq!(c.verified(number, needs.claim(), own), -7);
                 (self, EachSensor::NONE)
             }
         }
@@ -76,7 +98,7 @@ macro_rules! cannot_be_verified {
 cannot_be_verified!(1 3 8);
 
 /// A schedule of this many sensors, in both languages, for a window that it mostly allows.
-fn schedule<const M: usize>(r: &Random, c: &mut C, number: u32, sensors: u8, period: u32) -> Fires<M>
+fn schedule<const M: usize>(r: &Random, c: &mut C, sensors: u8, period: u32) -> Fires<M>
 where
     Schedule<K, M>: Verify,
 {
@@ -105,8 +127,8 @@ where
     let rows: Vec<&[Micros]> = rows.iter().map(|row| &row[..used]).collect();
     let rows: [&[Micros]; M] = rows.try_into().expect("as many rows as phases");
     let rust = Schedule::from_slices(Micros::new(period), &vec![Micros::ZERO; used], rows);
-    let flat: Vec<u32> = times.iter().flat_map(|row| &row[..used]).copied().collect();
-    assert_eq!(c.schedule(period, sensors, M as u8, &flat), 0);
+    let rust = rust.expect("each firing lies in its period");
+    c.schedule(&rust);
     let needs = Needs {
         t_delta_us: t_delta,
         min_interval_us: r.one_of(&[0, 0, 0, r.duration(period / 4)]),
@@ -122,8 +144,7 @@ where
             [window, r.one_of(&[t_delta, r.within(1, t_delta)]), u32::from(pair && x < 2)]
         })
         .collect();
-    let rust = rust.expect("each firing lies in its period");
-    if r.once_in(5) { (rust, EachSensor::NONE) } else { rust.verify_as(c, number, needs, &own) }
+    if r.once_in(5) { (rust, EachSensor::NONE) } else { rust.verify_as(c, 0, needs, &own) }
 }
 
 fn change(c: &mut C, what: Do, value: u32, rust: Result<(), RingError>) {
@@ -136,9 +157,9 @@ type Table<'s, const M: usize> = Ring<ScheduledFiring<'s, K, M, &'s EachSensor<K
 type Fires<const M: usize> = (Schedule<K, M>, EachSensor<K>);
 
 /// Actions that a caller may take now and then.
-fn act<'s, const M: usize>(r: &Random, c: &mut C, ring: &mut Table<'s, M>, schedules: &'s [Fires<M>], now: u32) {
+fn act<const M: usize>(r: &Random, c: &mut C, ring: &mut Table<'_, M>, now: u32) {
     let sensor = r.within(0, ring.sensors() as u32) as u8;
-    match r.within(0, 17) {
+    match r.within(0, 12) {
         0 => {
             ring.pause();
             change(c, Do::Pause, 1, Ok(()));
@@ -154,34 +175,9 @@ fn act<'s, const M: usize>(r: &Random, c: &mut C, ring: &mut Table<'s, M>, sched
             change(c, Do::Restart, now, Ok(()));
         }
         8..10 => {
-            let number = r.within(0, schedules.len() as u32 - 1);
-            let (schedule, limits) = &schedules[number as usize];
-            change(c, Do::ChangeSchedule, number, ring.change_to(schedule, limits));
-        }
-        10 => {
-            let t_delta = r.duration(1_500);
-            change(c, Do::SetTDelta, t_delta, ring.set_t_delta(Micros::new(t_delta)));
-        }
-        11 => {
-            let window = r.one_of(&[r.duration(100_000), ring.window().as_micros() + r.within(0, 2) - 1]);
-            change(c, Do::SetWindow, window, ring.set_window(Micros::new(window)));
-        }
-        12 => {
-            let blanking = r.duration(80_000);
-            change(c, Do::SetBlanking, blanking, ring.set_blanking(Micros::new(blanking)));
-        }
-        15 => {
             let longest = ring.plan().min_refire().as_micros();
             let report = r.one_of(&[0, r.duration(100_000), longest, longest.saturating_add(1)]);
             change(c, Do::SetReportAfter, report, ring.set_report_after(Micros::new(report)));
-        }
-        13 => {
-            let change = r.one_of(&[r.duration(2_000), r.duration(80_000), 0]);
-            self::change(c, Do::SetPathChange, change, ring.set_path_change(Micros::new(change)));
-        }
-        14 => {
-            let audible = r.one_of(&[r.within(1, 200_000), r.duration(1 << 27), ring.audible().as_micros()]);
-            change(c, Do::SetAudible, audible, ring.set_audible(Micros::new(audible)));
         }
         _ => {
             let by = r.one_of(&[50, 6_000, 200_000]);
@@ -202,15 +198,8 @@ where
 {
     let mut c = C::new();
     let sensors = r.within(1, K as u32) as u8;
-    let period = r.one_of(&[r.within(20_000, 120_000), r.within(30_000, 60_000), 1 + r.duration(1 << 28)]);
-    let rungs = r.within(1, 3);
-    let schedules: Vec<Fires<M>> = (0..rungs)
-        .map(|number| {
-            let period = (period + number * r.duration(30_000)).min(1 << 28);
-            schedule(r, &mut c, number, sensors, period)
-        })
-        .collect();
-    let (first, limits) = &schedules[0];
+    let period = r.one_of(&[r.within(20_000, 120_000), r.within(30_000, 60_000), 1 + r.duration((1 << 28) - 1)]);
+    let (first, limits) = &schedule::<M>(r, &mut c, sensors, period);
     let longest = first.min_refire().as_micros();
     let window = r.one_of(&[0, 0, longest, r.within(0, longest), r.duration(longest), longest.saturating_add(1)]);
     let (t_delta, blanking) = (r.one_of(&[0, r.duration(900)]), r.one_of(&[0, 0, r.duration(3_000)]));
@@ -254,7 +243,7 @@ where
             same(&mut c, Do::Answered, sensor, 0, ring.answered(sensor));
         }
         if world.random.once_in(acts) {
-            act(&world.random, &mut c, &mut ring, &schedules, world.now);
+            act(&world.random, &mut c, &mut ring, world.now);
         }
         let changes: Vec<i32> = (0..sensors).map(|_| world.random.duration(400) as i32 - 200).collect();
         for _ in 0..20 {

@@ -4,6 +4,7 @@
 #include "eeruf_serial.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 typedef struct Handle {
     EerufSchedule *schedules[8];
@@ -18,7 +19,6 @@ typedef struct Handle {
     EerufHcSr04 modules;
     EerufHcSr04Settings settings;
     EerufLine *lines;
-    EerufAdaptation adaptation;
     EerufWatch watch;
     EerufWatched *watched;
     EerufEvent last;
@@ -49,18 +49,20 @@ void shim_free(Handle *handle) {
     free(handle);
 }
 
-/* Schedules are numbered as they are made. */
-int shim_schedule(Handle *handle, uint32_t period_us, uint8_t sensors, uint8_t phases, const uint32_t *t_fire_us) {
+/* Schedules are numbered as they are made; nothing is verified of them yet. */
+void shim_schedule(Handle *handle, uint32_t period_us, uint32_t min_refire_us, uint8_t sensors, uint8_t phases,
+                   const uint8_t *order, const uint32_t *gap_us) {
     EerufSchedule *schedule = (EerufSchedule *)calloc(1, sizeof *schedule);
     const size_t order_size = (size_t)sensors * phases, gap_size = (sensors + 1u) * phases * sizeof(uint32_t);
-    uint8_t *order = (uint8_t *)malloc(order_size);
-    uint32_t *gap_us = (uint32_t *)malloc(gap_size);
-    const EerufStatus status = eeruf_schedule_make(schedule, order, order_size, gap_us, gap_size, period_us, sensors,
-                                                   phases, t_fire_us);
-    schedule->order = order;
-    schedule->gap_us = gap_us;
+    schedule->version = EERUF_VERSION;
+    schedule->sensors = sensors;
+    schedule->phases = phases;
+    schedule->order = (uint8_t *)memcpy(malloc(order_size), order, order_size);
+    schedule->gap_us = (uint32_t *)memcpy(malloc(gap_size), gap_us, gap_size);
+    schedule->period_us = period_us;
+    schedule->min_refire_us = min_refire_us;
+    schedule->path_change_us = EERUF_AS_T_DELTA;
     handle->schedules[handle->schedule_count++] = schedule;
-    return status;
 }
 
 /* Needs of each sensor: window, t_delta and group, and more in flow rings. */
@@ -75,23 +77,27 @@ static EerufLimits *limits_of(uint8_t sensors, const uint32_t *own, uint8_t numb
     return limits;
 }
 
-int shim_verify(Handle *handle, unsigned number, uint32_t t_delta_us, uint32_t min_interval_us, uint32_t window_us,
-                uint8_t layout, uint8_t neighbours, uint8_t stale_echo, const uint32_t *own, uint32_t *out) {
+/* What a schedule was verified for, if eeruf_schedule_check says so; else it was not. `numbers`: t_delta, interval,
+   window, separation, path change, audible; layout, neighbours, stale echo. */
+int shim_verified(Handle *handle, unsigned number, const uint32_t *numbers, const uint32_t *own) {
     EerufSchedule *schedule = handle->schedules[number];
-    EerufRequirements needs = {t_delta_us, min_interval_us, window_us, layout, neighbours, stale_echo, NULL};
+    const EerufSchedule before = *schedule;
     EerufStatus status;
-    if (own != NULL) {
-        EerufLimits *limits = limits_of(schedule->sensors, own, 3);
-        free(handle->limits[number]);
-        handle->limits[number] = limits;
-        needs.limits = limits;
-    }
-    status = eeruf_schedule_verify(schedule, &needs);
-    out[0] = schedule->min_refire_us;
-    out[1] = schedule->window_us;
-    out[2] = schedule->separation_us;
-    out[3] = eeruf_schedule_max_speed_mm_s(schedule, t_delta_us, EERUF_SOUND_20C);
-    if (status == EERUF_OK) return eeruf_schedule_check(schedule);
+    free(handle->limits[number]);
+    handle->limits[number] = own == NULL ? NULL : limits_of(schedule->sensors, own, 3);
+    schedule->limits = handle->limits[number];
+    schedule->t_delta_us = numbers[0];
+    schedule->min_interval_us = numbers[1];
+    schedule->window_us = numbers[2];
+    schedule->separation_us = numbers[3];
+    schedule->path_change_us = numbers[4];
+    schedule->audible_us = numbers[5];
+    schedule->layout = (uint8_t)numbers[6];
+    schedule->neighbours = (uint8_t)numbers[7];
+    schedule->stale_echo = (uint8_t)numbers[8];
+    schedule->verified = 1;
+    status = eeruf_schedule_check(schedule);
+    if (status != EERUF_OK) *schedule = before;
     return status;
 }
 
@@ -188,30 +194,22 @@ int shim_do(Handle *handle, unsigned what, uint8_t sensor, uint32_t value) {
     case 5:
         if (handle->flow != NULL) return eeruf_flow_restart(handle->flow, value);
         return eeruf_ring_restart(ring, value);
-    case 6: return eeruf_ring_change_to_unverified(ring, handle->schedules[value]);
-    case 7: return eeruf_ring_set_t_delta(ring, value);
-    case 8: return eeruf_ring_set_window(ring, value);
-    case 9: return eeruf_ring_set_blanking(ring, value);
-    case 10: return eeruf_hc_sr04_edge(&handle->modules, sensor & 0x7fu, sensor >> 7, value);
-    case 11: return eeruf_hc_sr04_fire(&handle->modules, sensor & 0x7fu, sensor >> 7);
-    case 12: return eeruf_hc_sr04_cannot_read(&handle->modules, sensor);
-    case 13: return eeruf_hc_sr04_cannot_write(&handle->modules, sensor);
-    case 14: return eeruf_hc_sr04_fired(&handle->modules, sensor, value);
-    case 15: return eeruf_hc_sr04_change_schedule(&handle->modules, handle->schedules[value]);
-    case 16: return eeruf_hc_sr04_health(&handle->modules, sensor);
-    case 17: return eeruf_ring_is_enabled(ring, sensor);
-    case 18: return eeruf_adaptation_period(&handle->adaptation, ring, &handle->last);
-    case 19: return eeruf_ring_set_path_change(ring, value);
-    case 20: return eeruf_ring_set_audible(ring, value);
-    case 21: return (int)eeruf_ring_fired_at(ring, sensor);
-    case 22: return eeruf_ring_set_silence(ring, (uint8_t)value);
-    case 23: return eeruf_ring_answered(ring, sensor);
-    case 24: return eeruf_ring_unanswered(ring, sensor);
-    case 25: return eeruf_ring_forget(ring, sensor);
-    case 26: return eeruf_ring_measured(ring, sensor, value);
-    case 27: return eeruf_hc_sr04_triggered(&handle->modules, sensor);
-    case 28: return eeruf_hc_sr04_pulse(&handle->modules, sensor, value);
-    case 29: return eeruf_ring_holds(ring, sensor);
+    case 6: return eeruf_hc_sr04_edge(&handle->modules, sensor & 0x7fu, sensor >> 7, value);
+    case 7: return eeruf_hc_sr04_fire(&handle->modules, sensor & 0x7fu, sensor >> 7);
+    case 8: return eeruf_hc_sr04_cannot_read(&handle->modules, sensor);
+    case 9: return eeruf_hc_sr04_cannot_write(&handle->modules, sensor);
+    case 10: return eeruf_hc_sr04_fired(&handle->modules, sensor, value);
+    case 11: return eeruf_hc_sr04_health(&handle->modules, sensor);
+    case 12: return eeruf_ring_is_enabled(ring, sensor);
+    case 13: return (int)eeruf_ring_fired_at(ring, sensor);
+    case 14: return eeruf_ring_set_silence(ring, (uint8_t)value);
+    case 15: return eeruf_ring_answered(ring, sensor);
+    case 16: return eeruf_ring_unanswered(ring, sensor);
+    case 17: return eeruf_ring_forget(ring, sensor);
+    case 18: return eeruf_ring_measured(ring, sensor, value);
+    case 19: return eeruf_hc_sr04_triggered(&handle->modules, sensor);
+    case 20: return eeruf_hc_sr04_pulse(&handle->modules, sensor, value);
+    case 21: return eeruf_ring_holds(ring, sensor);
     default: return eeruf_ring_set_report_after(ring, value);
     }
 }
@@ -236,22 +234,6 @@ int shim_modules(Handle *handle, uint32_t min_retrigger_us, uint16_t shortest_us
     handle->lines = (EerufLine *)malloc(size);
     return eeruf_hc_sr04_init(&handle->modules, sizeof handle->modules, handle->lines, size, handle->ring,
                               &handle->settings);
-}
-
-int shim_adaptation(Handle *handle, uint8_t window, uint8_t patience, uint16_t noisy, uint16_t calm) {
-    const EerufSchedule *const *ladder = (const EerufSchedule *const *)handle->schedules;
-    const EerufStatus status = eeruf_adaptation_init(&handle->adaptation, sizeof handle->adaptation, ladder,
-                                                     (uint8_t)handle->schedule_count);
-    handle->adaptation.window = window;
-    handle->adaptation.patience = patience;
-    handle->adaptation.noisy_permille = noisy;
-    handle->adaptation.calm_permille = calm;
-    return status;
-}
-
-void shim_rung(const Handle *handle, uint32_t *rung, uint32_t *permille) {
-    *rung = handle->adaptation.rung;
-    *permille = handle->adaptation.rejection_permille;
 }
 
 /* `numbers`: window, blanking, least, most, rest, dice, seed; t_delta, near, path change, memory, hold, top speed, alone,
@@ -297,27 +279,6 @@ int shim_moving(Handle *handle, uint32_t speed_mm_s, uint32_t turn_mrad_s, uint3
 void shim_quiet(const Handle *handle, uint8_t sensor, uint32_t *out) {
     out[0] = eeruf_flow_quiet_us(handle->flow, sensor);
     out[1] = eeruf_flow_believed_us(handle->flow, sensor);
-}
-
-/* `held`: known, age, state. `out`: kind, echo, previous, age, by whom explained. */
-int shim_filter(uint32_t *held, uint32_t t_delta_us, uint8_t consecutive, uint32_t t_echo_us, int32_t change_us,
-                uint32_t *out) {
-    EerufFilter filter = EERUF_FILTER;
-    EerufReading reading = {0, 0, 0, 0, 0};
-    EerufStatus status;
-    filter.known_us = held[0];
-    filter.age = (uint16_t)held[1];
-    filter.state = (uint8_t)held[2];
-    status = eeruf_filter_push(&filter, t_delta_us, consecutive, t_echo_us, change_us, &reading);
-    held[0] = filter.known_us;
-    held[1] = filter.age;
-    held[2] = filter.state;
-    out[0] = reading.kind;
-    out[1] = reading.t_echo_us;
-    out[2] = reading.previous_us;
-    out[3] = reading.age;
-    out[4] = reading.explained_by;
-    return status;
 }
 
 static EerufEdges edges;

@@ -8,22 +8,13 @@ unsafe extern "C" {
     pub(crate) fn shim_schedule(
         handle: *mut c_void,
         period_us: u32,
+        min_refire_us: u32,
         sensors: u8,
         phases: u8,
-        t_fire_us: *const u32,
-    ) -> i32;
-    pub(crate) fn shim_verify(
-        handle: *mut c_void,
-        number: u32,
-        t_delta_us: u32,
-        min_interval_us: u32,
-        window_us: u32,
-        layout: u8,
-        neighbours: u8,
-        stale_echo: u8,
-        own: *const u32,
-        out: *mut u32,
-    ) -> i32;
+        order: *const u8,
+        gap_us: *const u32,
+    );
+    pub(crate) fn shim_verified(handle: *mut c_void, number: u32, numbers: *const u32, own: *const u32) -> i32;
     pub(crate) fn shim_ring(
         handle: *mut c_void,
         schedule: u32,
@@ -39,20 +30,10 @@ unsafe extern "C" {
     pub(crate) fn shim_do(handle: *mut c_void, what: u32, sensor: u8, value: u32) -> i32;
     pub(crate) fn shim_between(handle: *mut c_void, what: u32, sensor: u8, least: u32, most: u32) -> i32;
     pub(crate) fn shim_modules(handle: *mut c_void, min_retrigger_us: u32, shortest_us: u16) -> i32;
-    pub(crate) fn shim_adaptation(handle: *mut c_void, window: u8, patience: u8, noisy: u16, calm: u16) -> i32;
-    pub(crate) fn shim_rung(handle: *const c_void, rung: *mut u32, permille: *mut u32);
     pub(crate) fn shim_flow(handle: *mut c_void, sensors: u8, numbers: *const u32, own: *const u32, now_us: u32)
     -> i32;
     pub(crate) fn shim_moving(handle: *mut c_void, speed_mm_s: u32, turn_mrad_s: u32, now_us: u32) -> i32;
     pub(crate) fn shim_quiet(handle: *const c_void, sensor: u8, out: *mut u32);
-    pub(crate) fn shim_filter(
-        held: *mut u32,
-        t_delta_us: u32,
-        consecutive: u8,
-        t_echo_us: u32,
-        change_us: i32,
-        out: *mut u32,
-    ) -> i32;
     pub(crate) fn shim_explain(handle: *mut c_void, explained_by: u8);
     pub(crate) fn shim_serial_event(handle: *mut c_void, sensors: u8, now_us: u32, frame: *mut u8) -> usize;
     pub(crate) fn shim_edges_new();

@@ -1,8 +1,8 @@
 //! A ring in C that is told of a change which crosstalk makes too: with odometry the proof of a punctual table says
 //! nothing, and the ring asks.
 
-use eeruf_c_equal::{C, Do, Needs};
-use eeruf_core::{Micros, Phase, ReadingKind, tables::TABLE_I_D};
+use eeruf_c_equal::{C, Do};
+use eeruf_core::{Micros, Phase, ReadingKind, Requirements, tables::TABLE_I_D};
 
 const SENSORS: usize = 12;
 const PERIOD: u32 = 100_000;
@@ -17,12 +17,8 @@ fn fires(sensor: usize, period: u32) -> u32 {
 /// those ambiguous.
 fn heard_of(emitter: usize, receiver: u8) -> [usize; 2] {
     let mut c = C::new();
-    let t_fire: Vec<u32> =
-        [0, PERIOD].iter().flat_map(|at| (0..SENSORS).map(move |x| fires(x, at / PERIOD) - at)).collect();
-    assert_eq!(c.schedule(PERIOD, SENSORS as u8, 2, &t_fire), 0);
-    let needs =
-        Needs { t_delta_us: 999, min_interval_us: 0, window_us: 60_000, layout: 0, neighbours: 0, stale_echo: false };
-    assert_eq!(c.verify(0, needs, &[]).0, 0);
+    let requirements = Requirements { window: Micros::new(60_000), ..Requirements::new(Micros::new(999)) };
+    c.verified_schedule(0, &TABLE_I_D.verified(&requirements).expect("Table I(d) is for T_delta = 1 ms"));
     assert_eq!(c.ring(0, [999, 60_000, 0, 0, 0], 2, 0), 0);
     let (mut kinds, mut changes, mut before, mut edge) = ([0; 2], [0; SENSORS], None, u32::MAX);
     loop {

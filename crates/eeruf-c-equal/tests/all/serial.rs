@@ -41,8 +41,7 @@ fn run(seed: u64) -> u64 {
     let rows = [Phase::A, Phase::B].map(|phase| std::array::from_fn::<_, 12, _>(|sensor| t_fire(phase, sensor)));
     let slices = [&rows[0][..], &rows[1][..]];
     let schedule = Schedule::<12, 2>::from_slices(PAPER_12.period(), &[Micros::ZERO; 12], slices).unwrap();
-    let times: Vec<u32> = rows.as_flattened().iter().map(|time| time.as_micros()).collect();
-    assert_eq!(c.schedule(PAPER_12.period().as_micros(), SENSORS, 2, &times), 0);
+    c.schedule(&schedule);
     let (t_delta, window, start) = (500, 30_000, r.any() as u32);
     assert_eq!(c.ring(0, [t_delta, window, 0, 0, 0], 2, start), 0);
     let config = RingConfig::new().with_t_delta(Micros::new(t_delta)).with_window(Micros::new(window));

@@ -322,19 +322,13 @@ fn ready_tables() -> Vec<(String, Schedule<ROOM>, u32)> {
 #[test]
 fn handling_of_half_a_millisecond_loses_few_walls() {
     let tables = ready_tables();
-    assert_eq!(tables.len(), 12);
+    assert_eq!(tables.len(), 3);
     let course = Loop { round: 0, handling: 500, lasts: 30_000_000 };
     for (name, schedule, t_delta) in tables {
-        // Late firings of 24 sensors meet: which of them another explains hangs on where the walls are.
-        let seeds = if schedule.sensors() == 24 { 10 } else { 1 };
-        let (mut all, mut worst) = (0.0, 1.0_f64);
-        for seed in 20_000..20_000 + seeds {
-            let shares = in_a_loop(&schedule, t_delta, 100, &course, seed);
-            all += shares.iter().sum::<f64>() / shares.len() as f64 / seeds as f64;
-            worst = shares.into_iter().fold(worst, f64::min);
-        }
+        let shares = in_a_loop(&schedule, t_delta, 100, &course, 20_000);
+        let (all, worst) =
+            (shares.iter().sum::<f64>() / shares.len() as f64, shares.into_iter().fold(1.0_f64, f64::min));
         println!("{name}: accepted {all:.4}, worst sensor {worst:.3}");
-        let least = if seeds == 1 { 0.98 } else { 0.0 };
-        assert!(all >= 0.98 && worst >= least, "{name}: accepted {all:.4}, worst sensor {worst:.3}");
+        assert!(all >= 0.98 && worst >= 0.98, "{name}: accepted {all:.4}, worst sensor {worst:.3}");
     }
 }

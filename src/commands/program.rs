@@ -25,6 +25,10 @@ pub(crate) struct ProgramArgs {
     /// The board that the program is for; by default the usual one of its language
     #[arg(long, value_enum, value_name = "BOARD", requires = "program")]
     board: Option<Board>,
+    /// Let it send MAVLink from the board's own serial line to an autopilot instead of printing, with ArduPilot's
+    /// parameters beside it
+    #[arg(long, requires = "program")]
+    mavlink: bool,
     /// The program's folder; by default one with the ring file's name
     #[arg(long, value_name = "DIR", requires = "program")]
     out: Option<PathBuf>,
@@ -69,7 +73,7 @@ pub(crate) fn run(
     let name = plain(&folder);
     let (text, shown) = (Kind::Ring.read(file)?, file.file_name().unwrap_or_default().to_string_lossy());
     let robot = design.spec.room_robot().map_err(bad)?.robot;
-    let wanted = Wanted { file: (&shown, &text), design, robot: &robot, way, name: &name };
+    let wanted = Wanted { file: (&shown, &text), design, robot: &robot, way, mavlink: args.mavlink, name: &name };
     let program = program(&wanted, language, args.board).map_err(bad)?;
     // What somebody may have changed by hand stays.
     let there = program.files.iter().map(|(path, _)| folder.join(path)).find(|path| path.exists());

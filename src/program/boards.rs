@@ -61,11 +61,22 @@ impl Board {
         }
     }
 
-    /// The pins of this many modules.
+    /// The serial line to an autopilot, as a sketch has it, and its pins: what it sends, what it receives.
+    pub(crate) const fn line(self) -> (&'static str, [&'static str; 2]) {
+        match self {
+            Self::Mega => ("Serial2", ["16 (TX2)", "17 (RX2)"]),
+            Self::Pico => ("Serial1", ["GP0", "GP1"]),
+            Self::Esp32 => ("Serial", ["TX0", "RX0"]),
+            _ => ("Serial", ["1 (TX)", "0 (RX)"]),
+        }
+    }
+
+    /// The pins of this many modules, besides the line to an autopilot.
     ///
     /// # Errors
     /// The number of modules that it has pins for, in words.
-    pub(crate) fn wiring(self, modules: usize) -> Result<Wiring, String> {
+    pub(crate) fn wiring(self, modules: usize, mavlink: bool) -> Result<Wiring, String> {
+        let pico = &PICO[if mavlink { 2 } else { 0 }..];
         let halves = |pins: &[u8]| {
             (pins.len() >= 2 * modules).then(|| (pins[..modules].into(), pins[modules..2 * modules].into()))
         };
@@ -74,7 +85,7 @@ impl Board {
         let (pins, most) = match self {
             Self::Uno => (halves(&UNO).or_else(|| of(&UNO, &UNO)), UNO.len()),
             Self::Mega => (of(&std::array::from_fn::<u8, 24, _>(|pin| 22 + pin as u8), &MEGA_ECHOES), 24),
-            Self::Pico => (halves(&PICO), PICO.len() / 2),
+            Self::Pico => (halves(pico), pico.len() / 2),
             Self::Esp32 => (of(&ESP32_TRIGGERS, &ESP32_ECHOES), ESP32_ECHOES.len()),
             Self::RaspberryPi => (halves(&PI), PI.len() / 2),
         };
@@ -127,7 +138,7 @@ mod tests {
         for &board in Board::value_variants() {
             let mut most = 0;
             for modules in 1..=24 {
-                let Ok(Wiring { triggers, echoes }) = board.wiring(modules) else { continue };
+                let Ok(Wiring { triggers, echoes }) = board.wiring(modules, false) else { continue };
                 most = modules;
                 let joined = triggers == echoes;
                 let mut pins = if joined { triggers } else { [triggers, echoes].concat() };
@@ -135,7 +146,7 @@ mod tests {
                 assert!(pins.windows(2).all(|two| two[0] < two[1]), "{board:?} {modules}: {pins:?}");
                 assert_eq!(pins.len(), modules * if joined { 1 } else { 2 });
             }
-            let refused = board.wiring(most + 1).err().unwrap();
+            let refused = board.wiring(most + 1, false).err().unwrap();
             assert!(refused.ends_with(&format!("expected no more than {most}")), "{refused}");
         }
     }

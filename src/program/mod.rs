@@ -7,6 +7,7 @@ use eeruf_core::Micros;
 use eeruf_core::flow::{TurnSettings, Votes};
 use eeruf_design::{FlowDesign, RingDesign, RingSpec, Way};
 use eeruf_files::emit::{Flow, Form};
+use eeruf_files::rotation;
 use eeruf_sim::Robot;
 use eeruf_sim::modules::PulseTimes;
 
@@ -55,12 +56,17 @@ pub(crate) struct Wanted<'a> {
     pub(crate) design: &'a RingDesign,
     pub(crate) robot: &'a Robot,
     pub(crate) way: Way,
+    /// True if it is to speak MAVLink to an autopilot.
+    pub(crate) mavlink: bool,
     /// The name of the folder, for those whose main file has its name.
     pub(crate) name: &'a str,
 }
 
 const C_LIBRARY: [(&str, &str); 2] =
     [("eeruf.c", include_str!("../../c/eeruf.c")), ("eeruf.h", include_str!("../../c/eeruf.h"))];
+/// What speaks to an autopilot, and the autopilot's parameters.
+const MAVLINK: (&str, &str) = ("eeruf_mavlink.h", include_str!("../../c/eeruf_mavlink.h"));
+const ARDUPILOT: (&str, &str) = ("ardupilot.param", include_str!("templates/ardupilot.param"));
 const ARDUINO_LIBRARY: [(&str, &str); 5] = [
     ("EerufArduino.cpp", include_str!("../../c/arduino/src/EerufArduino.cpp")),
     ("EerufArduino.h", include_str!("../../c/arduino/src/EerufArduino.h")),
@@ -77,9 +83,20 @@ pub(crate) fn program(wanted: &Wanted<'_>, language: Language, board: Option<Boa
     let spec = &wanted.design.spec;
     let times = pulse_times(spec)?;
     let board = chosen(language, board)?;
-    let wiring = board.map(|board| Ok::<_, String>((board, board.wiring(spec.sensors)?))).transpose()?;
+    let wiring =
+        board.map(|board| Ok::<_, String>((board, board.wiring(spec.sensors, wanted.mavlink)?))).transpose()?;
     if wanted.way == Way::TwoPhases && language != Language::Arduino {
         return Err("--way two-phases: expected --program arduino; --emit writes its table for rust and c".to_owned());
+    }
+    if wanted.mavlink && !matches!(language, Language::Arduino | Language::C) {
+        return Err("--mavlink: expected --program arduino or c; the ROS 2 node has a parameter `mavlink`".to_owned());
+    }
+    if wanted.mavlink && spec.places.poses.is_empty() {
+        return Err(
+            "--mavlink: the ring file does not say where its sensors look; expected poses, or spacing_deg and \
+                    radius_m"
+                .to_owned(),
+        );
     }
     let flow = if wanted.way == Way::TwoPhases { None } else { Some(spec.fired(wanted.way, wanted.robot, 1)?) };
     let about = wanted.about(flow.as_ref(), wiring.as_ref());
@@ -200,15 +217,46 @@ fn printing(about: &[String], has_dice: bool) -> Vec<String> {
     [about, &[String::new()], &wrapped(&prints)].concat()
 }
 
-/// The lines of a template that a ring by flow has, or one by a table.
-fn lines_of(template: &str, flows: bool) -> String {
-    let (ours, others) = if flows { ("  //@flow", "  //@table") } else { ("  //@table", "  //@flow") };
-    let kept = template.lines().filter(|line| !line.ends_with(others));
-    kept.map(|line| line.trim_end_matches(ours).to_owned() + "\n").collect()
+/// The first lines of a program that speaks to an autopilot.
+fn speaking(about: &[String], board: Board, sends: &str, receives: &str) -> Vec<String> {
+    let level = if board.has_3v3() { "" } else { " by 1 kOhm, with 2 kOhm from there to ground: it sends 5 V" };
+    let line = format!(
+        "The line to the autopilot's TELEM port, 115,200 baud: pin {sends} to its RX{level}; pin {receives} from its \
+         TX; ground to ground. Load ardupilot.param: it makes TELEM2 that port. Before the vehicle arms, a module that \
+         does not answer holds back all distances, so that the check fails; then its direction is unknown."
+    );
+    [about, &[String::new()], &wrapped(&line)].concat()
+}
+
+/// The lines of a template that a ring by flow or by a table has, and one that speaks to an autopilot or prints.
+fn lines_of(template: &str, flows: bool, mavlink: bool) -> String {
+    let others = [if flows { "//@table" } else { "//@flow" }, if mavlink { "//@print" } else { "//@mavlink" }];
+    let kept = template.lines().filter(|line| !others.iter().any(|other| line.contains(other)));
+    kept.map(|line| line.split("  //@").next().unwrap_or_default().to_owned() + "\n").collect()
+}
+
+/// The directions of sensors for an autopilot, and what they see, by their names in templates.
+fn directions(wanted: &Wanted<'_>) -> [(&'static str, String); 4] {
+    // Of a beam of 30 degrees, as the ROS 2 node takes it.
+    const HALF_VIEW_DEG: u32 = 15;
+    const MIN_CM: u32 = 2;
+    let yaws: Vec<f32> = wanted.robot.sensors.iter().map(|pose| -pose.rotation.angle().to_degrees() as f32).collect();
+    let place = |sensor: usize| {
+        let yaw = yaws[sensor].rem_euclid(360.0).round() as u32 % 360;
+        format!("{{{yaw}, {}}}", rotation(&yaws, sensor).unwrap_or(255))
+    };
+    let places: Vec<_> = (0..yaws.len()).map(place).collect();
+    let max_cm = wanted.design.spec.modules.first().map_or(400, |module| module.sees_to_mm / 10);
+    [
+        ("places", places.join(", ")),
+        ("half_view_deg", HALF_VIEW_DEG.to_string()),
+        ("min_cm", MIN_CM.to_string()),
+        ("max_cm", max_cm.to_string()),
+    ]
 }
 
 fn arduino(wanted: &Wanted<'_>, flow: Option<&FlowDesign>, about: &[String], board: Board, wiring: &Wiring) -> Program {
-    let template = lines_of(include_str!("templates/sketch.ino"), flow.is_some());
+    let template = lines_of(include_str!("templates/sketch.ino"), flow.is_some(), wanted.mavlink);
     let Wiring { triggers, echoes } = wiring;
     let pins = |name, pins| format!("const uint8_t {name}[] = {{{}}};", list(pins));
     let (pins, given) = if triggers == echoes {
@@ -217,12 +265,22 @@ fn arduino(wanted: &Wanted<'_>, flow: Option<&FlowDesign>, about: &[String], boa
         (format!("{}\n{}", pins("TRIGGERS", triggers), pins("ECHOES", echoes)), "TRIGGERS, ECHOES")
     };
     let sensors = triggers.len().to_string();
-    let values = [("pins", &*pins), ("given", given), ("sensors", &sensors), ("noise", board.open_pin())];
-    let sketch = comments(&printing(about, flow.is_some()), "//") + &filled(&template, &values);
+    let (line, [sends, receives]) = board.line();
+    let directions = directions(wanted);
+    let mut values = vec![("pins", &*pins), ("given", given), ("sensors", &sensors), ("noise", board.open_pin())];
+    values.push(("line", if wanted.mavlink { line } else { "Serial" }));
+    values.extend(directions.iter().map(|(name, value)| (*name, &**value)));
+    let head = if wanted.mavlink { speaking(about, board, sends, receives) } else { printing(about, flow.is_some()) };
+    let sketch = comments(&head, "//") + &filled(&template, &values);
     let tab = wanted.source(Form::Arduino, flow).replace("<EerufArduino.h>", "\"src/eeruf/EerufArduino.h\"");
     let library = C_LIBRARY.into_iter().chain(ARDUINO_LIBRARY);
     let mut files = vec![(format!("{}.ino", wanted.name), sketch), ("ring.h".to_owned(), tab)];
-    files.extend(library.map(|(name, text)| (format!("src/eeruf/{name}"), text.to_owned())));
+    files.extend(
+        library
+            .chain(wanted.mavlink.then_some(MAVLINK))
+            .map(|(name, text)| (format!("src/eeruf/{name}"), text.to_owned())),
+    );
+    files.extend(wanted.mavlink.then(|| (ARDUPILOT.0.to_owned(), ARDUPILOT.1.to_owned())));
     Program { files, next: "open the sketch in the Arduino IDE and upload it; its first lines say how to wire" }
 }
 
@@ -294,12 +352,16 @@ fn micropython(
 
 fn c(wanted: &Wanted<'_>, flow: &FlowDesign, about: &[String]) -> Program {
     let about = format!("/* {} */\n", about.join("\n   "));
+    let of_ring = |template| lines_of(template, true, wanted.mavlink);
+    let directions = directions(wanted);
+    let directions: Vec<_> = directions.iter().map(|(name, value)| (*name, &**value)).collect();
     let files = [
-        ("sonar.h", about + include_str!("templates/sonar.h")),
-        ("sonar.c", include_str!("templates/sonar.c").to_owned()),
+        ("sonar.h", about + &of_ring(include_str!("templates/sonar.h"))),
+        ("sonar.c", filled(&of_ring(include_str!("templates/sonar.c")), &directions)),
         ("ring.h", wanted.source(Form::C, Some(flow))),
     ];
-    let files = files.into_iter().chain(C_LIBRARY.map(|(name, text)| (name, text.to_owned())));
+    let library = C_LIBRARY.into_iter().chain([MAVLINK, ARDUPILOT].into_iter().filter(|_| wanted.mavlink));
+    let files = files.into_iter().chain(library.map(|(name, text)| (name, text.to_owned())));
     Program {
         files: files.map(|(name, text)| (name.to_owned(), text)).collect(),
         next: "compile the two .c files with yours, which has the three functions at the beginning of sonar.h",

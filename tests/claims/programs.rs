@@ -56,6 +56,8 @@ fn programs_that_cannot_be_are_refused_by_what_is_expected() {
         ("rings/hc-sr04-8.toml", "c --way two-phases", "--way two-phases: expected --program arduino"),
         ("rings/hc-sr04-8.toml", "ros2 --way sequential", "--way sequential: expected flow"),
         ("rings/hc-sr04-8.toml", "micropython --way groups", "sensors that fire together"),
+        ("tests/data/car-4.toml", "rust --mavlink", "--mavlink: expected --program arduino or c"),
+        ("rings/hc-sr04-8.toml", "c --mavlink", "does not say where its sensors look; expected poses"),
     ] {
         let words = format!("design {ring} --places 1 --program {options}");
         let words: Vec<_> = words.split(' ').collect();

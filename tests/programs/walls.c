@@ -1,15 +1,19 @@
 /* The program of `eeruf design --program c` on modules that are each before a wall of their own, in a loop that comes up
-   to 300 us late: how many readings after the first of each, how many accepted, how many of them wrong. */
+   to 300 us late: how many readings after the first of each, how many accepted, how many of them wrong. One that speaks
+   MAVLink hears the bytes of its input, and its own go to the output, at 115,200 baud. Numbers: a
+   module without power, and one with nothing in range. */
 #include <stdio.h>
+#include <stdlib.h>
 
 #include "sonar.h"
 
 static uint32_t clock_us = 4294000000u; /* wraps after one second */
 static uint32_t rises_us[EERUF_SENSORS], falls_us[EERUF_SENSORS];
 static uint8_t level[EERUF_SENSORS], pending[EERUF_SENSORS];
+static int without_power = -1, open = -1;
 
 static uint32_t wall_us(uint8_t sensor) {
-    return 2000u + sensor * 618u % 1000u * 20u;
+    return sensor == open ? 38000u : 2000u + sensor * 618u % 1000u * 20u;
 }
 
 uint32_t board_micros(void) {
@@ -24,7 +28,7 @@ void board_trigger(uint8_t sensor, uint16_t us) {
     clock_us += us;
     rises_us[sensor] = clock_us + 450u;
     falls_us[sensor] = rises_us[sensor] + wall_us(sensor);
-    pending[sensor] = 2;
+    pending[sensor] = sensor == without_power ? 0 : 2;
 }
 
 /* The edges up to an instant, each at its own. */
@@ -39,12 +43,16 @@ static void edges_until(uint32_t now) {
     clock_us = now;
 }
 
-int main(void) {
+int main(int count, char **words) {
     uint32_t random = 1, readings = 0, accepted = 0, wrong = 0;
     uint8_t begun[EERUF_SENSORS] = {0};
     const EerufStatus status = sonar_begin(7);
     if (status != EERUF_OK) return printf("begin: status %d\n", status), 1;
     sonar_moving(0, 0);
+    if (count > 2) without_power = atoi(words[1]), open = atoi(words[2]);
+#ifdef EERUF_MAVLINK_H
+    for (int byte; (byte = getchar()) != EOF;) sonar_heard((uint8_t)byte);
+#endif
     for (uint32_t elapsed = 0; elapsed < 20000000u;) {
         uint8_t sensor;
         EerufReading reading;
@@ -52,6 +60,11 @@ int main(void) {
         const uint32_t step = 20u + (random >> 16) % 280u;
         elapsed += step;
         edges_until(clock_us + step);
+#ifdef EERUF_MAVLINK_H
+        const uint8_t *bytes;
+        const size_t size = sonar_mavlink(step / 87u, &bytes);
+        fwrite(bytes, 1, size, stdout);
+#endif
         while (sonar_read(&sensor, &reading)) {
             if (!begun[sensor]) {
                 begun[sensor] = 1;

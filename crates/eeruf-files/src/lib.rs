@@ -18,6 +18,7 @@ mod meant;
 mod parse;
 #[cfg(feature = "toml")]
 mod robot_ring;
+mod rotation;
 #[cfg(feature = "toml")]
 mod schedule;
 
@@ -32,5 +33,6 @@ pub use meant::meant;
 pub use parse::{build, explain, explain_json, parse};
 #[cfg(feature = "toml")]
 pub use robot_ring::{Pose, RobotRing, arc};
+pub use rotation::rotation;
 #[cfg(feature = "toml")]
 pub use schedule::{AnySchedule, ScheduleFile, as_file};

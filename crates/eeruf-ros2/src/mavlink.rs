@@ -9,6 +9,7 @@ use std::net::{SocketAddr, ToSocketAddrs, UdpSocket};
 use std::time::Instant;
 
 use crc::{CRC_16_MCRF4XX, Crc};
+use eeruf_files::rotation;
 
 use crate::fan;
 use crate::parameters::{Parameters, UnansweredAs};
@@ -38,8 +39,6 @@ const TEXT: usize = 50;
 const MAVLINK_VERSION: u8 = 3;
 const MAV_DISTANCE_SENSOR_ULTRASOUND: u8 = 1;
 const MAV_FRAME_BODY_FRD: u8 = 12;
-/// `MAV_SENSOR_ROTATION_NONE`; the seven that follow are by 45 degrees each, clockwise.
-const ROTATIONS: f32 = 8.0;
 const COVARIANCE_UNKNOWN: u8 = 255;
 const QUALITY_PERFECT: u8 = 100;
 
@@ -287,21 +286,6 @@ impl Mavlink {
 
 fn centimetres(metres: f32) -> u16 {
     (100.0 * metres).round() as u16
-}
-
-/// The angle between two directions, in degrees, 0 to 180.
-fn between(one: f32, other: f32) -> f32 {
-    let apart = (one - other).rem_euclid(360.0);
-    apart.min(360.0 - apart)
-}
-
-/// The named rotation of a sensor. None if it looks elsewhere, or if another sensor looks into the same 45 degrees:
-/// `ArduPilot` keeps one distance for them, and each `DISTANCE_SENSOR` would replace what `OBSTACLE_DISTANCE` said.
-fn rotation(yaws: &[f32], sensor: usize) -> Option<u8> {
-    let eighth = (yaws.get(sensor)? / 45.0).round();
-    let named = |yaw| between(yaw, 45.0 * eighth);
-    let alone = yaws.iter().enumerate().all(|(other, &yaw)| other == sensor || named(yaw) > 22.5);
-    (alone && named(*yaws.get(sensor)?) < 0.5).then_some(eighth.rem_euclid(ROTATIONS) as u8)
 }
 
 #[cfg(test)]

@@ -7,6 +7,10 @@ static EerufLine lines[EERUF_SENSORS];
 static const EerufHcSr04Settings settings = EERUF_MODULES;
 static EerufEdges edges;
 static EerufEdge places[32];
+static EerufWatch watch;  //@mavlink
+static EerufWatched states[EERUF_SENSORS];  //@mavlink
+static const EerufMavlinkPlace directions[] = {@places@};  //@mavlink
+static EerufMavlink autopilot = EERUF_MAVLINK(directions, EERUF_SENSORS, @half_view_deg@, @min_cm@, @max_cm@);  //@mavlink
 
 EerufStatus sonar_begin(uint32_t seed) {
     EerufFlowConfig config = eeruf_flow_config;
@@ -15,6 +19,7 @@ EerufStatus sonar_begin(uint32_t seed) {
     if (status == EERUF_OK)
         status = eeruf_hc_sr04_init(&modules, sizeof modules, lines, sizeof lines, &ring.ring, &settings);
     if (status == EERUF_OK) status = eeruf_edges_init(&edges, sizeof edges, places, sizeof places);
+    if (status == EERUF_OK) status = eeruf_watch_init(&watch, sizeof watch, states, sizeof states, board_micros());  //@mavlink
     return status;
 }
 
@@ -32,6 +37,7 @@ bool sonar_read(uint8_t *sensor, EerufReading *reading) {
     const uint32_t now = board_micros();
     (void)eeruf_hc_sr04_edges(&modules, &edges);
     if (eeruf_flow_poll(&ring, now, &event) != EERUF_EVENT) return false;
+    (void)eeruf_watch_event(&watch, &event, now);  //@mavlink
     if (event.kind == EERUF_EVENT_FIRE) {
         if (eeruf_hc_sr04_fire(&modules, event.sensor, board_line_is_high(event.sensor)) == EERUF_OK)
             board_trigger(event.sensor, settings.trigger_us);
@@ -42,3 +48,11 @@ bool sonar_read(uint8_t *sensor, EerufReading *reading) {
     *reading = event.u.reading;
     return true;
 }
+  //@mavlink
+void sonar_heard(uint8_t byte) {  //@mavlink
+    eeruf_mavlink_hear(&autopilot, byte);  //@mavlink
+}  //@mavlink
+  //@mavlink
+size_t sonar_mavlink(size_t room, const uint8_t **bytes) {  //@mavlink
+    return eeruf_mavlink_take(&autopilot, &watch, board_micros(), room, bytes);  //@mavlink
+}  //@mavlink

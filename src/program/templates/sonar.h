@@ -2,6 +2,7 @@
 #define SONAR_H
 
 #include "eeruf.h"
+#include "eeruf_mavlink.h"  //@mavlink
 #include "ring.h"
 
 /* Written by you, for the board: */
@@ -24,5 +25,9 @@ void sonar_moving(uint32_t speed_mm_s, uint32_t turn_mrad_s);
 /* As often as you can: fires what is due. True with a reading: EERUF_READING_ACCEPTED is a distance
    (eeruf_distance_mm), EERUF_READING_CLEAR free space, all else no news. */
 bool sonar_read(uint8_t *sensor, EerufReading *reading);
+/* Each byte that comes from the autopilot. */  //@mavlink
+void sonar_heard(uint8_t byte);  //@mavlink
+/* Bytes for the autopilot, at most as many as the line has room for, and where they are until the next call. */  //@mavlink
+size_t sonar_mavlink(size_t room, const uint8_t **bytes);  //@mavlink
 
 #endif

@@ -1,0 +1,1 @@
+../../eeruf_mavlink.h

@@ -6,7 +6,8 @@ use std::path::Path;
 
 use ::mcap::sans_io::linear_reader::{LinearReadEvent, LinearReader, LinearReaderOptions};
 
-use crate::firings::{Firing, FiringLog, MAX_SENSORS, kind_of};
+use crate::firing_text::{MAX_SENSORS, kind_of};
+use crate::firings::{Firing, FiringLog};
 use crate::message::cdr_bytes;
 use eeruf_files::FileError;
 

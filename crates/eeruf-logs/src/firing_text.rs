@@ -4,14 +4,24 @@
 use std::io::Read;
 use std::path::Path;
 
-use crate::firings::{Firing, FiringLog, MAX_SENSORS, kind_of};
+use eeruf_core::ReadingKind;
+
+use crate::firings::{Firing, FiringLog};
 use crate::text::{Line, Separator, Source, is_comment, json, separated};
 use crate::value::{is_no_echo, number, prefix};
 use eeruf_files::FileError;
 
+/// The most sensors of a ring.
+pub(crate) const MAX_SENSORS: u8 = 64;
+
 const NEEDED: [&str; 5] = ["sensor", "fired_us", "period", "phase", "t_echo_us"];
 /// The columns that are read, in the order in which rows of JSON have them.
 const NAMES: [&str; 8] = ["sensor", "fired_us", "period", "phase", "t_echo_us", "reading", "sends", "g"];
+
+/// The kind that logs spell so.
+pub(crate) fn kind_of(spelled: &str) -> Option<ReadingKind> {
+    ReadingKind::ALL.into_iter().find(|kind| kind.as_str() == spelled)
+}
 
 /// Indices of the columns.
 struct Header {

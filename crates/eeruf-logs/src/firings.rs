@@ -90,14 +90,6 @@ impl fmt::Display for Firing {
     }
 }
 
-/// The kind that logs spell so.
-pub(crate) fn kind_of(spelled: &str) -> Option<ReadingKind> {
-    ReadingKind::ALL.into_iter().find(|kind| kind.as_str() == spelled)
-}
-
-/// The most sensors of a ring.
-pub(crate) const MAX_SENSORS: u8 = 64;
-
 impl FiringLog {
     /// Puts firings in order of time.
     pub fn new(clock: &str, mut firings: Vec<Firing>) -> Self {

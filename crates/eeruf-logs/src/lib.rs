@@ -32,9 +32,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-// Without `files` a few things of text logs have nobody who calls them.
-#![cfg_attr(not(feature = "files"), allow(dead_code, unused_imports))]
-
+#[cfg(feature = "files")]
 mod bytes;
 #[cfg(feature = "files")]
 mod cdr;
@@ -48,6 +46,7 @@ mod files;
 mod firing_files;
 #[cfg(feature = "files")]
 mod firing_messages;
+#[cfg(feature = "files")]
 mod firing_text;
 mod firings;
 #[cfg(feature = "files")]
@@ -58,6 +57,7 @@ mod form;
 mod judging;
 #[cfg(feature = "files")]
 mod mcap;
+#[cfg(feature = "files")]
 mod message;
 mod names;
 mod options;
@@ -70,6 +70,7 @@ mod ros1;
 mod ros2;
 #[cfg(feature = "files")]
 mod rosbag2;
+#[cfg(feature = "files")]
 mod schema;
 #[cfg(feature = "files")]
 mod serial;
@@ -77,6 +78,8 @@ mod sink;
 mod survey;
 mod symptom;
 mod text;
+#[cfg(feature = "files")]
+mod topics;
 #[cfg(feature = "files")]
 mod unzstd;
 mod value;

@@ -10,7 +10,8 @@ use std::path::Path;
 use crate::bytes::{Bytes, Input, Order};
 use crate::chunks::Chunks;
 use crate::message::Encoding;
-use crate::sink::{Sink, Topic};
+use crate::sink::Sink;
+use crate::topics::Topic;
 use crate::unzstd::{LARGEST_MESSAGE, Unzstd};
 use eeruf_files::FileError;
 
@@ -50,7 +51,7 @@ pub(crate) fn read(opened: &mut dyn Input, file: &Path, packed: bool, sink: &mut
     let failed = |error: io::Error| FileError::reading(file, &error);
     let size = opened.seek(SeekFrom::End(0)).map_err(failed)?;
     let mut state = State { packed, ..State::default() };
-    let found_before = sink.found;
+    let found_before = sink.of_topics.found;
     // Topics are found in the chunks too; that there is no summary is no damage.
     match summary(opened, size) {
         Ok(Some(summary)) => _ = state.topics_of(&summary, sink),
@@ -260,7 +261,7 @@ impl State {
         let mut fields = Bytes::new(body, Order::Little);
         match letter {
             MESSAGE => {
-                sink.found += 1;
+                sink.of_topics.found += 1;
                 let channel = fields.u16()?;
                 fields.u32()?; // A running number.
                 let recorded_ns = fields.u64()?;

@@ -27,17 +27,17 @@ const WHOLE_TIMES: &str = "t ts ms us ns s sec msec usec milliseconds microsecon
 const ECHOES: &str = "echo flight pulse duration travel";
 const RANGES: &str = "\
     range ranges distance distances dist sonar sonars ultrasonic ultrasound ultrasonics hcsr ping abstand \
-    entfernung value values";
+    entfernung value values payload";
 const SENSORS: &str = "\
     sensor id name channel ch frame topic sonar _field sensor_id sensorid frame_id entity_id source instance device \
     device_id key addr address port";
 const OTHERS: &str = "\
-    tcdt battery bat voltage volt volts current temp temperature humidity hum pressure seq sequence index entry idx \
+    battery bat voltage volt volts current temp temperature humidity hum pressure seq sequence index entry idx \
     count counter row line mode state status flag flags ir infrared laser lidar speed velocity vel accel acc gyro \
     yaw pitch roll heading angle theta odom odometry x y z lat lon alt altitude encoder pwm motor rssi snr \
     variance covariance std intensity intensities radiation fov period phase reading rate size stride offset \
     checksum crc gain strength quality confidence amplitude threshold event error err message msg rpm light ldr \
-    pir button led type orientation unit units given solo steady batt vbat vcc watt percent soc enc encoders tick \
+    pir button led setpoint target desired goal color colour qos type orientation unit units given solo steady batt vbat vcc watt percent soc enc encoders tick \
     ticks tof sharp acceleration accelerometer gyroscope mag magnetometer imu gps sat ax ay az gx gy gz mx my mz \
     vx vy vz q servo cmd linear angular valid ok enabled bump bumper touch contact estop hz fps deg degc lux feed \
     stat orient elevation adc analog analogue ttl";
@@ -48,7 +48,7 @@ const PLACES: &str = "\
     north south east west fl fr bl br rl rr fc lf rf lb rb lr links rechts vorne vorn hinten mitte oben unten \
     gauche droite avant arriere izquierda derecha frente atras delante sinistra destra sx dx lus rus";
 /// Lengths that are worked out from a range, where there is one.
-const DERIVED: &str = "depth level height";
+const DERIVED: &str = "depth level height tcdt";
 /// Lines that a sketch draws to fix a plotter's axis.
 const LIMITS: &str = "min max minimum maximum lower upper lower_limit upper_limit";
 /// Units that are a name on their own.
@@ -171,6 +171,19 @@ pub(crate) fn stem(name: &str) -> Vec<String> {
     words
 }
 
+/// Returns true for the first letter of a place's name.
+pub(crate) fn is_letter_of_place(name: &str) -> bool {
+    is_in("l r c m f b", &name.to_lowercase())
+}
+
+/// A name without all that says nothing of the quantity: places, filters, units, numbers, and words for any value.
+pub(crate) fn quantity(name: &str) -> String {
+    const ANY: &str = "field data reading sensor ch channel column s us u d dt tcdt val state copy raw a b c e";
+    let mut words = stem(name);
+    words.retain(|word| !is_in(ANY, word) && !is_in(PLACES, word) && !word.bytes().all(|byte| byte.is_ascii_digit()));
+    words.concat()
+}
+
 /// Returns true for the name of a place on a robot, as a sensor has it.
 pub(crate) fn is_place(name: &str) -> bool {
     words(name).iter().any(|word| is_in(PLACES, word))
@@ -200,8 +213,8 @@ pub(crate) fn is_analogue_pin(name: &str) -> bool {
 
 /// Returns true for a unit of anything but a length or a time.
 pub(crate) fn is_foreign_unit(text: &str) -> bool {
-    const UNITS: &str = "% c f v mv a ma w g kg hpa pa db dbm lux lx rpm hz deg \u{b0} \u{b0}c \u{b0}f km/h m/s";
-    is_in(UNITS, &text.to_lowercase())
+    const UNITS: &str = "% c f v mv a ma w g kg hpa pa db dba dbm lux lx rpm hz deg \u{b0} \u{b0}c \u{b0}f km/h m/s";
+    is_in(UNITS, &text.to_lowercase().trim_matches([',', ';', '.', ')']).replace('(', ""))
 }
 
 /// The unit of times in a name.

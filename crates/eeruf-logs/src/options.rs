@@ -40,16 +40,33 @@ impl Default for Options {
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Parts {
     Columns,
+    #[cfg(feature = "files")]
     Topics,
     /// Frames of the serial line, which have neither.
+    #[cfg(feature = "files")]
     Frames,
 }
 
 impl Options {
     /// A warning of options that choose from parts which the log does not have.
     pub(crate) fn without_effect(&self, parts: Parts) -> Option<String> {
-        let Self { table, topics, fields, no_echo, .. } = self;
-        let columns = [
+        let bags = || given(&[("--topic", !self.topics.is_empty()), ("--field", !self.fields.is_empty())]);
+        let (idle, has) = match parts {
+            Parts::Columns => (bags(), "columns and no topics; --range and --sensor choose columns"),
+            #[cfg(feature = "files")]
+            Parts::Topics => (self.of_columns(), "topics and no columns; --topic and --field choose topics"),
+            #[cfg(feature = "files")]
+            Parts::Frames => ([self.of_columns(), bags()].concat(), "frames of the serial line, which say all"),
+        };
+        let (verb, them) = if idle.len() == 1 { ("has", "it") } else { ("have", "them") };
+        let idle = if idle.is_empty() { return None } else { idle.join(", ") };
+        Some(format!("{idle} {verb} no effect; expected a log that {them} could choose from; this one has {has}"))
+    }
+
+    #[cfg(feature = "files")]
+    fn of_columns(&self) -> Vec<&'static str> {
+        let Self { table, no_echo, .. } = self;
+        given(&[
             ("--columns", !table.columns.is_empty()),
             ("--range", !table.ranges.is_empty()),
             ("--range-unit", table.range_unit.is_some()),
@@ -57,20 +74,12 @@ impl Options {
             ("--time-unit", table.time_unit.is_some()),
             ("--sensor", table.sensor.is_some()),
             ("--no-echo", !no_echo.is_empty()),
-        ];
-        let bags = [("--topic", !topics.is_empty()), ("--field", !fields.is_empty())];
-        let given = |options: &[(&'static str, bool)]| -> Vec<&'static str> {
-            options.iter().filter(|(_, is_given)| *is_given).map(|(option, _)| *option).collect()
-        };
-        let (idle, has) = match parts {
-            Parts::Columns => (given(&bags), "columns and no topics; --range and --sensor choose columns"),
-            Parts::Topics => (given(&columns), "topics and no columns; --topic and --field choose topics"),
-            Parts::Frames => ([given(&columns), given(&bags)].concat(), "frames of the serial line, which say all"),
-        };
-        let (verb, them) = if idle.len() == 1 { ("has", "it") } else { ("have", "them") };
-        let idle = if idle.is_empty() { return None } else { idle.join(", ") };
-        Some(format!("{idle} {verb} no effect; expected a log that {them} could choose from; this one has {has}"))
+        ])
     }
+}
+
+fn given(options: &[(&'static str, bool)]) -> Vec<&'static str> {
+    options.iter().filter(|(_, is_given)| *is_given).map(|(option, _)| *option).collect()
 }
 
 /// A field of a topic's messages that holds ranges.

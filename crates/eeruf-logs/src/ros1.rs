@@ -10,7 +10,8 @@ use std::path::Path;
 use crate::bytes::{Bytes, Input, Order};
 use crate::chunks::Chunks;
 use crate::message::Encoding;
-use crate::sink::{Sink, Topic};
+use crate::sink::Sink;
+use crate::topics::Topic;
 use eeruf_files::FileError;
 
 pub(crate) const MAGIC: &[u8; 13] = b"#ROSBAG V2.0\n";
@@ -83,7 +84,7 @@ pub(crate) fn read(opened: &mut dyn Input, file: &Path, sink: &mut Sink<'_>) -> 
     let failed = |error: io::Error| FileError::reading(file, &error);
     let size = opened.seek(SeekFrom::End(0)).map_err(failed)?;
     let mut state = State::default();
-    let found_before = sink.found;
+    let found_before = sink.of_topics.found;
     // Connections are found in the chunks too; that there is no index is no damage.
     if let Ok(index) = index(opened, size) {
         state.connections_of(&index, sink);
@@ -267,7 +268,7 @@ impl State {
         let text = |bytes| String::from_utf8_lossy(bytes);
         match header.op {
             MESSAGE => {
-                sink.found += 1;
+                sink.of_topics.found += 1;
                 // A message whose connection is lost cannot be read.
                 let topic = self.topics.get_mut(&header.connection?)?;
                 sink.message(topic, header.time_ns, body);

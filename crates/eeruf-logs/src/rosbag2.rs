@@ -8,7 +8,8 @@ use saphyr::{LoadableYamlNode, Yaml};
 
 use crate::form::{self, Form};
 use crate::message::Encoding;
-use crate::sink::{Sink, Topic};
+use crate::sink::Sink;
+use crate::topics::Topic;
 use crate::unzstd::{LARGEST_MESSAGE, Unzstd};
 use eeruf_files::FileError;
 
@@ -42,7 +43,7 @@ pub(crate) fn read(folder: &Path, sink: &mut Sink<'_>) -> Result<(), FileError> 
     if files.is_empty() {
         files = bag_files(folder)?;
     }
-    let (damage, found_before) = (sink.report.damage.len(), sink.found);
+    let (damage, found_before) = (sink.report.damage.len(), sink.of_topics.found);
     for file in files {
         // What cannot be opened takes nothing from the other files.
         let read = match file.extension().and_then(|ending| ending.to_str()) {
@@ -142,7 +143,7 @@ pub(crate) fn read_sqlite(opened: &Path, file: &Path, packed: bool, sink: &mut S
             }
         };
         read += 1;
-        sink.found += 1;
+        sink.of_topics.found += 1;
         let fields = (row.get_ref(0), row.get_ref(1), row.get_ref(2));
         let (Ok(topic), Ok(recorded), Ok(data)) = fields else { continue };
         let (Ok(topic), Ok(recorded), Ok(data)) = (topic.as_i64(), recorded.as_i64(), data.as_blob()) else {

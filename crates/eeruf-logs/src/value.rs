@@ -12,12 +12,14 @@ pub(crate) enum Value {
 
 /// Words for no echo, parted by bars; the first is nothing at all.
 const NO_ECHO: &str = "\
-    |none|null|nil|nan|-nan|na|n/a|inf|+inf|infinity|+infinity|-|--|---|no echo|noecho|no_echo|timeout|time out|\
-    out of range|out_of_range|oor|err|error|undefined|invalid|nothing|.inf|.nan|<na>|--.--|unknown|#n/a";
+    |none|null|nil|nan|-nan|na|n/a|inf|+inf|infinity|+infinity|no echo|noecho|no_echo|timeout|time out|\
+    out of range|out_of_range|oor|err|error|undefined|invalid|nothing|.inf|.nan|<na>|unknown|#n/a";
 
 /// Returns true for a word that logs write where no echo came.
 pub(crate) fn is_no_echo(text: &str) -> bool {
-    text.len() <= 12 && NO_ECHO.split('|').any(|word| text.eq_ignore_ascii_case(word))
+    // Dashes in the places of digits.
+    let is_blank = text.len() <= 12 && text.contains('-') && text.trim_matches(['-', '.']).is_empty();
+    is_blank || text.len() <= 12 && NO_ECHO.split('|').any(|word| text.eq_ignore_ascii_case(word))
 }
 
 /// A finite decimal number, and nothing else: `0x10`, `1_000` and `1e999` are none.
@@ -69,7 +71,8 @@ pub(crate) fn range(text: &str, decimal_comma: bool) -> Option<(Value, Option<Ra
     }
     // A word before a unit, as formatted output has it: `nan cm`, `infm`.
     let glued = text.get(..3).filter(|word| ["inf", "nan"].contains(word)).map(|word| (word, &text[3..]));
-    let spaced = text.rsplit_once(' ').filter(|(word, _)| !word.is_empty() && is_no_echo(word));
+    let dashes = text.rfind('-').map(|at| text.split_at(at + 1)).filter(|(word, _)| is_no_echo(word));
+    let spaced = text.rsplit_once(' ').filter(|(word, _)| !word.is_empty() && is_no_echo(word)).or(dashes);
     if let Some(own) = spaced.or(glued).and_then(|(_, own)| unit(own)) {
         return Some((Value::NoEcho, Some(own)));
     }
@@ -216,6 +219,10 @@ const LEVELS: [&str; 7] = ["DEBUG", "INFO", "WARN", "WARNING", "ERROR", "CRITICA
 
 /// A line without the level and the name before it, as Python's logging prints them: `INFO:sonar:left: 40`.
 pub(crate) fn without_level(line: &str) -> &str {
+    // Most lines begin with a number.
+    if !line.starts_with(|letter: char| letter.is_ascii_uppercase()) {
+        return line;
+    }
     let rest = LEVELS.iter().find_map(|level| line.strip_prefix(level)?.strip_prefix(':'));
     rest.and_then(|rest| rest.split_once(':')).map_or(line, |(_, said)| said.trim_start())
 }
@@ -281,6 +288,12 @@ pub(crate) fn prefix(line: &str) -> Option<(u64, &str)> {
         return Some(found);
     }
     let (mut time, mut rest) = (None, line);
+    // A bus's tools: `(1700000000.123456) can0 ..`.
+    let in_parentheses = line.strip_prefix('(').and_then(|inner| inner.split_once(") "));
+    let since_1970 = |text: &str| number(text, false).filter(|&s| text.contains('.') && (1e9..1e10).contains(&s));
+    if let Some((s, after)) = in_parentheses.and_then(|(inner, after)| Some((since_1970(inner)?, after))) {
+        return Some(((s * 1e9).round() as u64, after.trim_start()));
+    }
     // A level or the name of a node may stand in brackets before the time, and after it.
     while let Some((inner, after)) = rest.strip_prefix('[').and_then(|inner| inner.split_once(']')) {
         let (inner, after) = (inner.trim(), after.trim_start());

@@ -8,7 +8,7 @@ const ENDS: &str = "entry 0x|~ld|Rebooting...|<<<stack";
 const ALONE: &str = "\
     Build:|SPIWP:0x|load:0x|entry 0x|Octal Flash Mode|For OPI Flash|flash read err|Brownout detector|Soft WDT reset|\
     *** Booting |main(): This is RIOT!|MPY: soft reboot|Auto-reload is on. |code.py output:|Code stopped by |\
-    MaxBotix Inc.|PN:MB|RoHS |HRXL-MaxSonar|Copyright 20|TempI|=~=~=~=~";
+    MaxBotix Inc.|PN:MB|RoHS |>>> %|HRXL-MaxSonar|Copyright 20|TempI|=~=~=~=~";
 /// Tags of lines that ESP-IDF writes by itself.
 const TAGS: &str = "\
     boot qio_mode esp_image cpu_start app_start app_init efuse_init heap_init spi_flash sleep main_task gpio uart \
@@ -35,6 +35,10 @@ impl Boot {
     pub(super) fn is_boot(&mut self, line: &str) -> bool {
         let text = line.trim();
         let Some(&first) = text.as_bytes().first() else { return self.left > 0 };
+        // No line of a board begins with a digit.
+        if self.left == 0 && first.is_ascii_digit() {
+            return false;
+        }
         let [begins, ends, alone] = &self.lists;
         let is_of = |list: &[&str]| list.iter().any(|own| own.as_bytes()[0] == first && text.starts_with(own));
         if is_of(begins) {

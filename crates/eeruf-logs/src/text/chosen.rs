@@ -112,6 +112,23 @@ impl Plan {
             let message = format!("{} columns with ranges; with a column of sensors expected is one", ranges.len());
             return Err(FileError::new(file, message));
         }
+        let is_called =
+            |&index: &usize| Self::is_called(&self.columns[index]) || self.columns[index].name.starts_with("column ");
+        if let Some(&label) =
+            named.iter().find(|&&index| self.columns[index].is_label() && self.columns[index].distinct.len() > 1)
+            && chosen.is_none()
+            && ranges.len() > 1
+            && asked_ranges.is_empty()
+            && !ranges.iter().any(is_called)
+        {
+            let names: Vec<_> = ranges.iter().map(|&index| self.columns[index].name.as_str()).collect();
+            let message = format!(
+                "{} beside `{}`, which names the sensor of a row; expected one of them: --range says which",
+                names.join(", "),
+                self.columns[label].name
+            );
+            return Err(FileError::new(file, message));
+        }
         let is_alone = ranges.is_empty() && of(&Role::Empty).is_empty() && asked_ranges.is_empty();
         for index in named {
             if chosen != Some(index) {

@@ -107,13 +107,6 @@ impl Column {
         numbers > 0 && !is_dash && self.texts + self.calendars <= numbers
     }
 
-    /// Returns true for a column of `0` and `1` alone, which a range in no unit is; `1.0` may be one in metres.
-    pub(super) fn is_flag(&self) -> bool {
-        let is_one =
-            self.numbers.contains(&1.0) && self.distinct.keys().all(|text| ["0", "1"].contains(&text.as_str()));
-        is_one && self.numbers.len() > 2 && self.no_echoes + self.units == 0 && names::range_unit(&self.name).is_none()
-    }
-
     /// The median of its positive numbers.
     pub(super) fn median(&self) -> f64 {
         let mut sorted: Vec<_> = self.numbers.iter().copied().filter(|&number| number > 0.0).collect();
@@ -121,20 +114,13 @@ impl Column {
         sorted.get(sorted.len() / 2).copied().unwrap_or(f64::NAN)
     }
 
-    pub(super) fn has_fractions(&self) -> bool {
-        self.numbers.iter().any(|number| number.fract() != 0.0)
-    }
-
-    /// Returns true for numbers beyond every range, such as times since 1970.
-    pub(super) fn is_beyond(&self) -> bool {
-        self.numbers.iter().filter(|&&number| number > 1e8).count() * 2 > self.numbers.len()
-    }
-
     /// Returns true for numbers that rise, or stay, and are seconds, milli-, micro- or nanoseconds since 1970.
     pub(super) fn is_epoch(&self) -> bool {
         let is_in = |number: &f64| [1.0, 1e3, 1e6, 1e9].iter().any(|unit| (1e9..2.2e9).contains(&(number / unit)));
         let falls = self.numbers.windows(2).filter(|two| two[1] < two[0]).count();
-        !self.numbers.is_empty() && self.numbers.iter().all(is_in) && falls * 10 <= self.numbers.len()
+        // A damaged line is no reason.
+        let count = self.numbers.iter().filter(|number| is_in(number)).count();
+        count > 0 && count * 10 >= 9 * self.numbers.len() && falls * 10 <= self.numbers.len()
     }
 
     /// Returns true for whole numbers that count from the first sensor to the last again and again.
@@ -158,13 +144,20 @@ impl Column {
             let inner = text.trim_start_matches(['[', '(']);
             let is_address = inner.starts_with("0x");
             (is_address || !inner.starts_with(|letter: char| letter.is_ascii_digit()))
-                && !text.contains('=')
+                && (!text.contains('=') || text.contains('{'))
                 && value::unit(text).is_none()
+                && (self.distinct.len() > 1 || !names::is_foreign_unit(text))
         };
         // A robot's mode stays for a while; sensors take turns.
         let is_state = self.distinct.len() > 1 && self.changes * 2 < rows + self.distinct.len();
         let is_name = self.texts > 0 && self.distinct.keys().all(is_name);
         is_name && !is_state && (self.distinct.len() < rows || rows < 3)
+    }
+
+    /// Returns true for texts that come equally often, as sensors in turn do, and what a robot does does not.
+    pub(super) fn takes_turns(&self) -> bool {
+        let counts = || self.distinct.values().copied();
+        counts().max() <= counts().min().map(|least| least + 1 + least / 4)
     }
 
     /// For two hexadecimal digits in each cell, as tools for buses print bytes: true if some are no plain number.

@@ -80,12 +80,19 @@ impl Plan {
         let ranges = || unnamed.iter().filter(|&&index| self.columns[index].role == Role::Range);
         let Some(most) = values.get(values.len().saturating_sub(1) * 9 / 10) else { return };
         let is_near = most.0 * unit.metres(options.speed_of_sound) < NEAREST_M;
-        if !is_asked && is_near && !ranges().any(|&index| is_called(&self.columns[index])) {
+        // A row's unit may show that nothing is an echo.
+        let of_rows = self.unit.and_then(|index| value::unit(self.columns[index].distinct.keys().next()?));
+        let least_m =
+            values.first().map_or(0.0, |value| value.0) * of_rows.unwrap_or(unit).metres(options.speed_of_sound);
+        if !is_asked
+            && (is_near || least_m >= options.no_echo_m)
+            && !ranges().any(|&index| is_called(&self.columns[index]))
+        {
             let taken: Vec<_> = ranges().copied().collect();
             for index in taken {
                 self.columns[index].role = Role::Other;
                 let (topic, why) =
-                    (self.columns[index].name.clone(), "nearer than modules hear, in any unit".to_owned());
+                    (self.columns[index].name.clone(), "nearer or farther than modules hear, in any unit".to_owned());
                 self.skipped.push(Skipped { topic, why, messages: 0 });
             }
         }
@@ -193,7 +200,9 @@ fn by_magnitude(values: &mut [(f64, bool)]) -> RangeUnit {
     /// Values that sensors and libraries send in place of a range.
     const PLACEHOLDERS: [f64; 8] = [999.0, 9999.0, 8190.0, 8191.0, 32767.0, 65533.0, 65534.0, 65535.0];
     values.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let real: Vec<_> = values.iter().copied().filter(|value| !PLACEHOLDERS.contains(&value.0)).collect();
+    // No echo comes after a second.
+    let is_real = |value: &&(f64, bool)| !PLACEHOLDERS.contains(&value.0) && value.0 < 1e6;
+    let real: Vec<_> = values.iter().filter(is_real).copied().collect();
     let values = if real.is_empty() { &*values } else { &real };
     let Some(&(median, _)) = values.get(values.len() / 2) else { return RangeUnit::M };
     // A line that was held for too long, now and then, says nothing of the unit.

@@ -35,7 +35,7 @@ pub(super) enum Rewritten {
     Misfit,
 }
 
-/// A text without a terminal's sequences for colours: `ESC [`, numbers, `m`.
+/// A text without a terminal's sequences for colours and places: `ESC [`, numbers, a letter.
 fn without_colours(text: &str) -> Cow<'_, str> {
     if !text.contains("\u{1b}[") {
         return Cow::Borrowed(text);
@@ -44,7 +44,7 @@ fn without_colours(text: &str) -> Cow<'_, str> {
     let mut plain = parts.next().unwrap_or_default().to_owned();
     for part in parts {
         let rest = part.trim_start_matches(|letter: char| letter.is_ascii_digit() || letter == ';');
-        match rest.strip_prefix('m') {
+        match rest.strip_prefix(['m', 'H', 'J', 'K']) {
             Some(rest) => plain.push_str(rest),
             None => plain.extend(["\u{1b}[", part]),
         }
@@ -96,6 +96,9 @@ impl<'a> Lines<'a> {
         let text = text.strip_suffix('\n').unwrap_or(&text);
         let text = if self.has_hashes { text.strip_prefix('#').unwrap_or(text) } else { text };
         let text = without_colours(text.trim_end_matches('\r'));
+        // Bytes, as Python prints them.
+        let bytes = text.strip_prefix("b'").and_then(|text| text.strip_suffix('\''));
+        let text = bytes.map_or(text.as_ref(), |text| text.trim_end_matches("\\n").trim_end_matches("\\r"));
         let mut parts = text.split('\r').peekable();
         let first = parts.next().unwrap_or_default().to_owned();
         let is_last = parts.peek().is_none();
@@ -143,7 +146,8 @@ impl<'a> Objects<'a> {
             };
             self.input.consume(1);
             self.number += u64::from(byte == b'\n');
-            let is_new = !is_text && matches!(byte, b'{' | b'[') && before == b'[' && !is_element;
+            let is_list = byte == b'[' && !self.is_inner()?;
+            let is_new = !is_text && matches!(byte, b'{' | b'[') && !is_list && before == b'[' && !is_element;
             let opens = !is_text && byte == b'{' && record.is_empty();
             if is_new || opens {
                 record.clear();

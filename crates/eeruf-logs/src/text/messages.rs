@@ -1,4 +1,5 @@
-//! Messages as `ros2 topic echo` and `rostopic echo` print them: maps by indentation, each ended by a line of `---`.
+//! Messages as `ros2 topic echo` and `rostopic echo` print them: maps by indentation, each ended by a line of `---`; and
+//! blocks of `name: value`, each ended by a blank line or begun by `###`.
 
 use std::collections::BTreeSet;
 use std::io;
@@ -11,49 +12,83 @@ use crate::value;
 /// A message with more text is lost.
 const LONGEST: usize = 1 << 20;
 
-/// Returns true for the beginning of such a text: keys and elements of lists alone, up to a line that ends them.
-pub(super) fn are_in(start: &str) -> bool {
-    let is_key = |line: &&str| entry(line).is_some_and(|(key, _)| line.starts_with(key));
-    let lines = start.lines().filter(|line| !line.trim().is_empty()).skip_while(|line| !is_key(line));
-    let mut lines = lines.skip_while(|line| is_part(line)).peekable();
-    lines.peek().is_some_and(|line| line.trim_end() == "---")
+/// The end of each message.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum End {
+    Rule,
+    Blank,
+}
+
+impl End {
+    /// By the beginning of a text: keys and elements of lists alone, up to a line that ends them; or blocks with the same
+    /// keys, two and more in each.
+    pub(super) fn of(start: &str) -> Option<Self> {
+        let is_plain = |key: &str| key.bytes().all(|byte| byte.is_ascii_alphanumeric() || byte == b'_');
+        let is_key = |line: &&str| entry(line).is_some_and(|(key, _)| line.starts_with(key) && is_plain(key));
+        let lines = start.lines().filter(|line| !line.trim().is_empty()).skip_while(|line| !is_key(line));
+        let mut lines = lines.skip_while(|line| is_part(line) && !is_numbered(line)).peekable();
+        if lines.peek().is_some_and(|line| line.trim_end() == "---") {
+            return Some(Self::Rule);
+        }
+        let is_end = |line: &&str| Self::Blank.is_at(line);
+        let lines: Vec<_> = start.lines().collect();
+        let keys =
+            |block: &[&str]| block.iter().map(|line| Some(entry(line)?.0.to_owned())).collect::<Option<Vec<_>>>();
+        let blocks = lines.split(|line| is_end(&line)).filter(|block| !block.is_empty()).take(4).map(keys);
+        let blocks: Vec<_> = blocks.collect();
+        let is_one =
+            |two: &[Option<Vec<String>>]| two[0] == two[1] && two[0].as_ref().is_some_and(|keys| keys.len() > 1);
+        blocks.windows(2).any(is_one).then_some(Self::Blank)
+    }
+
+    fn is_at(self, line: &str) -> bool {
+        match self {
+            Self::Rule => line.trim_end() == "---",
+            Self::Blank => line.trim().is_empty() || line.starts_with("###"),
+        }
+    }
+}
+
+/// Returns true for a key that ends with a number of its own: a sensor's, and no field of a message.
+fn is_numbered(line: &str) -> bool {
+    entry(line).is_some_and(|(key, _)| key.contains(' '))
 }
 
 /// The next message, as a JSON object of its values by their paths. One that is damaged, or that nothing ends and that
 /// may be cut, stays text, which is no object.
-pub(super) fn next(lines: &mut Lines<'_>) -> io::Result<Option<Line>> {
-    let (mut message, mut first, mut bytes) = (vec![], 0, 0);
+pub(super) fn next(lines: &mut Lines<'_>, end: End) -> io::Result<Option<Line>> {
+    let (mut message, mut first, mut bytes, mut is_ended) = (vec![], 0, 0, false);
     while let Some(line) = lines.next()? {
-        if line.text.trim_end() == "---" {
+        if end.is_at(&line.text) {
             if message.is_empty() {
                 continue;
             }
-            let is_too_long = bytes > LONGEST;
-            let text = object(&message).map_or_else(|| message.join("\n"), |values| written(&values));
-            return Ok(Some(Line { number: first, text, is_ended: true, is_too_long, is_misfit: false }));
+            is_ended = true;
+            break;
         }
         if message.is_empty() {
             first = line.number;
         }
         bytes += line.text.len();
+        // The last block of a file needs no blank line.
+        is_ended = end == End::Blank && line.is_ended;
         if bytes <= LONGEST && !line.text.trim().is_empty() {
             message.push(line.text);
         }
     }
-    let text = message.join("\n");
-    Ok((!message.is_empty()).then_some(Line {
-        number: first,
-        text,
-        is_ended: false,
-        is_too_long: bytes > LONGEST,
-        is_misfit: false,
-    }))
+    if message.is_empty() {
+        return Ok(None);
+    }
+    let values = if is_ended { object(&message) } else { None };
+    let text = values.map_or_else(|| message.join("\n"), |values| written(&values));
+    Ok(Some(Line { number: first, text, is_ended, is_too_long: bytes > LONGEST, is_misfit: false }))
 }
 
 /// A key and what follows it on the line, of `key: value` or `key:`.
 fn entry(line: &str) -> Option<(&str, &str)> {
     let (key, value) = line.trim().split_once(':')?;
-    let is_key = !key.is_empty() && key.bytes().all(|byte| byte.is_ascii_alphanumeric() || byte == b'_');
+    let is_key = key.starts_with(|letter: char| letter.is_ascii_alphabetic() || letter == '_')
+        && key.bytes().all(|byte| byte.is_ascii_alphanumeric() || b"_ ()[]".contains(&byte));
     (is_key && (value.is_empty() || value.starts_with(' '))).then_some((key, value.trim()))
 }
 
@@ -113,6 +148,8 @@ fn written(values: &[(String, Json)]) -> String {
 
 /// A value: a list in brackets, a number, or text without quotes and without the dot before `inf` and `nan`.
 fn scalar(text: &str) -> Json {
+    // What a number stands for, as a comment.
+    let text = text.split_once(" # ").map_or(text, |(number, _)| number.trim_end());
     let is_parsed = text.starts_with('[') || value::number(text, false).is_some();
     let parsed = if is_parsed { serde_json::from_str(text).ok() } else { None };
     parsed.unwrap_or_else(|| {
@@ -148,8 +185,9 @@ mod tests {
 
     #[test]
     fn text_is_messages_only_with_a_line_that_ends_one() {
-        assert!(are_in("range: 0.5\n---\nrange: 0.6\n"));
-        assert!(are_in("\nheader: \n  seq: 1\n---\n"));
+        assert_eq!(End::of("range: 0.5\n---\nrange: 0.6\n"), Some(End::Rule));
+        assert_eq!(End::of("\nheader: \n  seq: 1\n---\n"), Some(End::Rule));
+        assert_eq!(End::of("### 1\nid: 0\nrange: 1\n\n### 2\nid: 1\nrange: 2\n\n### 3\nid: 0\n"), Some(End::Blank));
         for text in [
             "range: 0.5\nrange: 0.6\n",
             "left,right\n---\n",
@@ -157,7 +195,7 @@ mod tests {
             "12:00:01 -> 4\n---\n",
             "run: 1\nSensor 1: 4 cm\n---\n",
         ] {
-            assert!(!are_in(text), "{text}");
+            assert_eq!(End::of(text), None, "{text}");
         }
     }
 }

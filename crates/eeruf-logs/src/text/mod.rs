@@ -28,10 +28,13 @@ use crate::options::{Options, Parts};
 use crate::sink::{Sink, Skipped};
 use eeruf_files::FileError;
 
-pub(crate) use lines::Line;
-pub(crate) use sample::is_comment;
-pub(crate) use shape::{Separator, json, separated};
 pub(crate) use source::Source;
+#[cfg(feature = "files")]
+pub(crate) use {
+    lines::Line,
+    sample::is_comment,
+    shape::{Separator, json, separated},
+};
 
 /// As many lines, and as many bytes, are looked at before the first reading.
 const SAMPLE: (usize, usize) = (1000, 1 << 18);

@@ -24,6 +24,8 @@ pub(super) struct NoEcho {
 pub(super) enum Says {
     /// The status of ArduPilot's `RFND`: 4 is good, 3 beyond the range, 2 below it, less is no measurement.
     RangefinderStatus,
+    /// `DroneCAN`'s: 1 is good, 2 too close, 3 too far, 0 unknown.
+    ReadingType,
     /// 1 or `true` is good.
     Flag,
     /// 0 is bad; below 0 nothing is known.

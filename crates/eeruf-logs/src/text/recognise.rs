@@ -178,6 +178,15 @@ impl Plan {
             (header, is_long) = (Some(top), true);
         }
         let mut names: Option<Vec<String>> = header.map(|at| before[at].1.clone());
+        // Names that come again are parted by the row above.
+        if let Some((names, at)) = names.as_mut().zip(header.filter(|&at| at > 0))
+            && names.iter().filter(|name| !name.is_empty()).collect::<BTreeSet<_>>().len()
+                < names.len().min(2) + names.len() / 2
+            && is_whole(&before[at - 1].1)
+        {
+            let above = before[at - 1].1.iter();
+            names.iter_mut().zip(above).for_each(|(name, above)| *name = format!("{above} {name}").trim().to_owned());
+        }
         let first_number = rows.get(first).map_or(u64::MAX, |row| row.0);
         if names.is_none() {
             // A comment may name the columns.
@@ -227,11 +236,45 @@ impl Plan {
             };
             self.guesses.push(guess("header", said, "--columns"));
         }
+        let values: Vec<_> = rows.iter().filter(|(_, row)| row.len() == width && has_number(row)).collect();
         let mut names = names.unwrap_or_default();
+        // Without a header the same words before numbers in each row name them.
+        if names.is_empty() && separator == Separator::Spaces && width > 1 {
+            let cell = |at: usize| values.first().map_or("", |(_, row)| row[at].as_str());
+            let is_word = |at: usize| {
+                let text = cell(at);
+                let has_digit = text.contains(|letter: char| letter.is_ascii_digit());
+                let is_unit = value::unit(text).is_some() || names::is_foreign_unit(text);
+                let is_same = values.iter().all(|(_, row)| row[at] == text);
+                text.starts_with(char::is_alphabetic) && !has_digit && !is_unit && is_same
+            };
+            let is_one = |at: usize| at + 1 == width || value::number(cell(at + 1), comma).is_none();
+            let words = |at: usize| (0..at).rev().take_while(|&before| is_word(before)).count();
+            let name = |at: usize| match words(at) {
+                0 => format!("column {}", at + 1),
+                _ if is_word(at) || !is_one(at) => format!("column {}", at + 1),
+                count => (at - count..at).map(cell).collect::<Vec<_>>().join(" "),
+            };
+            let is_value = |at: &usize| value::number(cell(*at), comma).is_some();
+            let is_named = |at: usize| words(at) > 0 && is_one(at);
+            if (1..width).any(|at| is_value(&at) && is_named(at)) && (1..width).filter(is_value).all(is_named) {
+                names = (0..width).map(name).collect();
+                self.has_names = true;
+            }
+        }
         // A printed frame's rows begin with their number, which has no name.
         let firsts = rows[first..].iter().filter(|(_, row)| row.len() == width).map(|(_, row)| row[0].as_str());
         if names.len() + 1 == width && (0..).zip(firsts.take(3)).all(|(n, text)| text.parse() == Ok(n)) {
             names.insert(0, String::new());
+        } else if names.len() < width
+            && header.is_some()
+            && options.table.columns.is_empty()
+            && values.iter().any(|(_, row)| row[names.len()..].iter().any(|text| !text.is_empty()))
+        {
+            // Its beginning is cut off, or its end: nobody knows which.
+            names.clear();
+            self.has_names = false;
+            (self.header, self.rows_from) = (None, first_number);
         }
         names.iter_mut().for_each(|name| name.truncate(name.trim_end_matches(':').len()));
         names.truncate(width.max(1));
@@ -240,18 +283,28 @@ impl Plan {
         for (column, (unit, is_other)) in self.columns.iter_mut().zip(units.iter().zip(&other_units)) {
             (column.has_length, column.has_other_unit) = (unit.is_some(), *is_other);
         }
-        // `# t in s, d in mm`
+        // `# t in s, d in mm`; `# unit: mm` is of all.
         let comments = sample.iter().filter_map(|line| line.text.trim().strip_prefix(['#', '%']));
         for said in comments.flat_map(|text| text.split([',', ';'])) {
-            let Some((name, unit)) = said.trim().split_once(" in ") else { continue };
-            let of = self.columns.iter_mut().filter(|column| column.name == name.trim());
-            of.for_each(|column| column.has_unit_in_cells = value::unit(unit.trim()));
+            let Some((name, unit)) = said.split_once(" in ").or_else(|| said.split_once([':', '='])) else { continue };
+            let name = name.trim().to_lowercase();
+            let is_of_all = ["unit", "units", "range unit", "distance unit"].contains(&name.as_str());
+            let of = self.columns.iter_mut().filter(|column| is_of_all || column.name.to_lowercase() == name);
+            of.for_each(|column| column.has_unit_in_cells = column.has_unit_in_cells.or(value::unit(unit.trim())));
         }
         if separator != Separator::None {
             self.guesses.push(guess("separator", separator.name(), "--columns"));
         }
         if comma {
             self.guesses.push(guess("decimal mark", "comma", "--columns"));
+        }
+        // A sensor a row, or all in one line.
+        let is_name = |text: &String| text.contains(char::is_alphabetic) && !is_number(text);
+        let is_turned = width > 2 * values.len() && values.len() > 1 && values.iter().all(|(_, row)| is_name(&row[0]));
+        if options.table.columns.is_empty() && width >= 8 && (is_turned || values.len() == 1 && self.header.is_none()) {
+            let why = if is_turned { "a sensor a row" } else { "one line with all values" };
+            let message = format!("{why}: {width} columns; expected a sensor a column, and a line for each instant");
+            return Err(FileError::new(file, message));
         }
         let mut firsts = vec![];
         let is_row = |(number, row): &&(u64, Vec<String>)| {
@@ -327,9 +380,6 @@ impl Plan {
         let ranges = table.ranges.iter().map(|name| self.place(file, name)).collect::<Result<Vec<_>, _>>()?;
         let time = table.time.as_ref().map(|name| self.place(file, name)).transpose()?;
         let sensor = table.sensor.as_ref().map(|name| self.place(file, name)).transpose()?;
-        let has_time = self.has_prefix
-            || time.is_some()
-            || self.columns.iter().any(|column| names::meaning(&column.name) == Meaning::Time);
         let has_header = self.header.is_some()
             || self.has_names
             || !table.columns.is_empty()
@@ -367,6 +417,8 @@ impl Plan {
                 Role::Other
             } else {
                 match meaning {
+                    // `us` is ultrasound, too.
+                    Meaning::Time if column.name.eq_ignore_ascii_case("us") && !column.is_rising() => Role::Range,
                     Meaning::Time => Role::Time,
                     Meaning::Sensor => Role::Sensor,
                     Meaning::Least => Role::Least,
@@ -379,12 +431,9 @@ impl Plan {
                     Meaning::Vague if self.is_counter(index) => Role::Other,
                     Meaning::Vague if is_place && (self.is_clock(index) || column.is_epoch()) => Role::Time,
                     Meaning::Vague if self.is_sweep(index) => Role::Other,
-                    // The beginning of the header is cut off.
-                    Meaning::Vague if !has_time && self.is_clock(index) && self.is_even(index) => Role::Time,
                     Meaning::Vague if is_place && column.is_cycle() => Role::Sensor,
-                    Meaning::Vague if column.is_flag() || column.is_beyond() => Role::Other,
                     _ if column.is_range() => Role::Range,
-                    Meaning::Vague if !has_header && column.is_label() => Role::Sensor,
+                    Meaning::Vague if column.is_label() && (!has_header || column.takes_turns()) => Role::Sensor,
                     _ => Role::Other,
                 }
             };
@@ -392,9 +441,30 @@ impl Plan {
             column.is_numeric = column.texts + column.calendars == 0 && !column.numbers.is_empty();
             column.role = role;
         }
+        if ranges.is_empty() && table.columns.is_empty() {
+            self.refuse_unreadable(file, lines)?;
+        }
+        if ranges.is_empty() && !has_header && lines.len() >= 8 {
+            // Where nothing has a name, what never changes or never is an echo is no range.
+            let is_idle = |column: &Column| column.distinct.len() == 1 || column.median().is_nan();
+            // Nor are numbers beside words of which none says that they are.
+            let is_said =
+                |column: &&Column| column.texts > 0 && column.numbers.is_empty() && column.distinct.len() == 1;
+            let is_known = |column: &Column| {
+                let text = column.distinct.keys().next().map_or("", String::as_str);
+                names::quantity(text).is_empty() || value::unit(text).is_some()
+            };
+            let is_foreign = self.columns.iter().any(|column| is_said(&column))
+                && !self.columns.iter().any(|column| column.units > 0 || is_said(&column) && is_known(column));
+            let is_range = |column: &Column| is_foreign || column.role == Role::Range && is_idle(column);
+            let idle = self.columns.iter_mut().filter(|column| !column.numbers.is_empty() && is_range(column));
+            idle.for_each(|column| column.role = Role::Other);
+        }
         if ranges.is_empty() && has_header {
             self.named_ranges_alone();
-            self.without_odd_ones();
+            if table.columns.is_empty() {
+                self.one_kind();
+            }
             self.without_derived();
         }
         // Bytes, as tools for buses print them, are no table.
@@ -409,9 +479,6 @@ impl Plan {
             self.columns.iter_mut().filter(is_state).for_each(|column| column.role = Role::Range);
         }
         self.time_columns(time);
-        if ranges.is_empty() {
-            self.one_range_beside_a_sensor();
-        }
         self.repetitions(lines, options);
         self.sensor_column(file, sensor, &ranges, lines)?;
         self.validities();
@@ -425,63 +492,118 @@ impl Plan {
         Ok(())
     }
 
+    /// Returns true if a name or a unit says that a column is one of ranges.
+    pub(super) fn is_called(column: &Column) -> bool {
+        let by_unit = names::range_unit(&column.name).is_some_and(|(unit, is_sure)| is_sure || unit != RangeUnit::Us);
+        // Microseconds may be of anything.
+        let is_length = column.has_unit_in_cells != Some(RangeUnit::Us) || names::quantity(&column.name).is_empty();
+        let by_cells = column.units * 2 > column.numbers.len() && is_length;
+        let by_name = names::meaning(&column.name) == Meaning::Range || names::is_place(&column.name);
+        let is_ultrasound = column.name.eq_ignore_ascii_case("us");
+        column.has_length || by_unit || by_cells || by_name || is_ultrasound
+    }
+
+    /// Refuses a log in which what is called a range holds digits and no numbers, or which is one record.
+    fn refuse_unreadable(&self, file: &Path, lines: &[(u64, &str)]) -> Result<(), FileError> {
+        let has_digit = |text: &&String| text.contains(|letter: char| letter.is_ascii_digit());
+        let is_odd = |column: &&Column| {
+            let said = matches!(names::meaning(&column.name), Meaning::Range | Meaning::Vague);
+            let is_called = said && (Self::is_called(column) || names::is_letter_of_place(&column.name));
+            is_called
+                && column.texts > column.numbers.len()
+                && column.distinct.keys().filter(has_digit).count() * 2 > column.distinct.len()
+        };
+        if let Some(column) = self.columns.iter().find(is_odd) {
+            let text = column.distinct.keys().find(has_digit).map_or("", String::as_str);
+            let text: String = text.chars().take(40).collect();
+            let message =
+                format!("column {}: `{text}`; expected a number, with or without a unit of lengths", column.name);
+            return Err(FileError::new(file, message));
+        }
+        // Each of several words before its values.
+        if self.shape == Shape::Separated(Separator::None) {
+            let mut words: BTreeMap<&str, usize> = BTreeMap::new();
+            let is_word = |text: &str| {
+                value::range(text, true).is_none() && !text.contains(|letter: char| letter.is_ascii_digit())
+            };
+            lines.iter().filter(|line| is_word(line.1)).for_each(|line| *words.entry(line.1).or_default() += 1);
+            words.retain(|_, count| *count > 2 && *count * 8 > lines.len());
+            if words.len() > 1 {
+                let words = words.into_keys().take(4).collect::<Vec<_>>().join("`, `");
+                let message = format!("`{words}` on lines between values; expected each value on a line with its name");
+                return Err(FileError::new(file, message));
+            }
+        }
+        let found = self.columns.iter().filter(|column| column.role == Role::Range).count();
+        if lines.len() == 1 && found > 8 {
+            let message = format!("one record with {found} values; expected a line or an object for each instant");
+            return Err(FileError::new(file, message));
+        }
+        Ok(())
+    }
+
     /// Where names or units say which columns are ranges, one of which neither says anything is none.
     fn named_ranges_alone(&mut self) {
-        let is_called = |column: &Column| {
-            let by_unit =
-                names::range_unit(&column.name).is_some_and(|(unit, is_sure)| is_sure || unit != RangeUnit::Us);
-            let by_cells = column.units * 2 > column.numbers.len();
-            let by_name = names::meaning(&column.name) == Meaning::Range || names::is_place(&column.name);
-            column.has_length || by_unit || by_cells || by_name
-        };
+        // Letters are places where two and more are.
+        let is_letter = |column: &Column| column.role == Role::Range && names::is_letter_of_place(&column.name);
+        let is_single = |column: &&Column| column.role == Role::Range && column.name.chars().count() == 1;
+        let singles: Vec<_> = self.columns.iter().filter(is_single).collect();
+        let has_letters = singles.len() > 1 && singles.iter().all(|column| is_letter(column));
+        let is_called = |column: &Column| Self::is_called(column) || has_letters && is_letter(column);
         if self.columns.iter().any(|column| column.role == Role::Range && is_called(column)) {
             let vague = self.columns.iter_mut().filter(|column| column.role == Role::Range && !is_called(column));
             vague.for_each(|column| column.role = Role::Other);
         }
     }
 
-    /// A voltage or a share among ranges: other decimals than each other column has, and nearer than modules hear.
-    fn without_odd_ones(&mut self) {
-        /// Share of the smallest of the others' medians.
-        const FAR_BELOW: f64 = 0.2;
-        let is_vague =
-            |column: &Column| column.role == Role::Range && column.units == 0 && !names::is_place(&column.name);
-        let found: Vec<_> =
-            self.columns.iter().map(|column| (is_vague(column), column.median(), column.has_fractions())).collect();
-        let others =
-            |index: usize| found.iter().enumerate().filter(move |(at, of)| *at != index && of.0).map(|(_, of)| of);
-        let is_odd = |index: usize| {
-            let (is_range, median, fractions) = found[index];
-            let least = others(index).map(|of| of.1).fold(f64::INFINITY, f64::min);
-            is_range && fractions && others(index).all(|of| !of.2) && least.is_finite() && median < FAR_BELOW * least
+    /// Columns of which no name and no unit says what they are form a ring only if these say nothing else either:
+    /// numbers, letters of places. What changes and is always beyond what modules hear, beside ranges, is none.
+    fn one_kind(&mut self) {
+        const FARTHEST_M: f64 = 8.0;
+        let of: Vec<_> = (0..self.columns.len()).filter(|&index| self.columns[index].role == Role::Range).collect();
+        let is_called = of.iter().any(|&index| Self::is_called(&self.columns[index]));
+        if !is_called && self.sensor_names() == 0 {
+            let is_plain = |&&index: &&usize| {
+                let quantity = names::quantity(&self.columns[index].name);
+                quantity.is_empty() || names::is_letter_of_place(&quantity)
+            };
+            let is_pin = |&index: &usize| names::is_analogue_pin(&self.columns[index].name);
+            let ring: Vec<_> = of.iter().filter(is_plain).copied().collect();
+            let is_one = |index: &&usize| !ring.contains(index) && self.columns[**index].name.chars().count() == 1;
+            let is_ring =
+                ring.len() > of.len() / 2 && !ring.iter().all(is_pin) && !of.iter().any(|index| is_one(&index));
+            let others = of.iter().filter(|index| !is_ring || !ring.contains(index));
+            others.for_each(|&index| self.columns[index].role = Role::Other);
+            return;
+        }
+        let is_beyond = |index: usize| {
+            let column = &self.columns[index];
+            let unit = column.has_unit_in_cells.or(names::range_unit(&column.name).map(|of| of.0));
+            let metres = unit.map_or(1.0, |unit| unit.metres(343.2));
+            column.distinct.len() > 2 && column.numbers.iter().all(|number| number * metres > FARTHEST_M)
         };
-        let odd: Vec<_> = (0..found.len()).filter(|&index| is_odd(index)).collect();
-        odd.into_iter().for_each(|index| self.columns[index].role = Role::Other);
+        let is_near = |index: usize| self.columns[index].numbers.iter().any(|&number| number > 0.0 && number < 1.5);
+        if of.iter().any(|&index| is_near(index)) {
+            let beyond: Vec<_> = of.into_iter().filter(|&index| is_beyond(index)).collect();
+            beyond.into_iter().for_each(|index| self.columns[index].role = Role::Other);
+        }
+    }
+
+    /// Columns that name the sensor of a row.
+    fn sensor_names(&self) -> usize {
+        self.columns.iter().filter(|column| column.role == Role::Sensor && column.distinct.len() > 1).count()
     }
 
     /// A depth or a level beside a column that is called a range is worked out from it.
     fn without_derived(&mut self) {
         let is_called = |column: &Column| {
             column.role == Role::Range
-                && names::meaning(&column.name) == Meaning::Range
+                && (names::meaning(&column.name) == Meaning::Range || names::quantity(&column.name).is_empty())
                 && !names::is_derived(&column.name)
         };
         if self.columns.iter().any(is_called) {
             let derived = |column: &&mut Column| column.role == Role::Range && names::is_derived(&column.name);
             self.columns.iter_mut().filter(derived).for_each(|column| column.role = Role::Other);
-        }
-    }
-
-    /// Where a row names its sensor, it has one range: what is called so, and no number without a meaning beside it.
-    fn one_range_beside_a_sensor(&mut self) {
-        let is_called_range =
-            |column: &Column| column.role == Role::Range && names::meaning(&column.name) == Meaning::Range;
-        let is_sensor = |column: &Column| column.role == Role::Sensor && column.distinct.len() > 1;
-        let one = self.columns.iter().filter(|column| is_called_range(column)).count() == 1;
-        if one && self.columns.iter().any(is_sensor) {
-            let others =
-                self.columns.iter_mut().filter(|column| column.role == Role::Range && !is_called_range(column));
-            others.for_each(|column| column.role = Role::Other);
         }
     }
 
@@ -498,8 +620,9 @@ impl Plan {
             let cells = self.columns.iter().zip(row).filter(|(column, _)| is_of_sensor(column));
             cells.filter(|(_, cell)| !cell.is_empty()).count()
         };
-        let single = rows.iter().filter(|row| ranges(row) == 1).count();
-        rows.len() >= 8 && single * 20 >= rows.len() * 19
+        let of_one = rows.iter().filter(|row| ranges(row) == 1).count();
+        let of_any = rows.iter().filter(|row| ranges(row) > 0).count();
+        of_any >= 8 && of_one * 20 >= of_any * 19
     }
 
     /// A column that counts rows.
@@ -534,13 +657,5 @@ impl Plan {
                 .iter()
                 .all(|other| other.numbers.iter().filter(|&&number| number > 0.0).all(|&number| number > 5.0 * middle));
         is_even && (middle >= 500.0 || column.numbers.len() >= 8 || is_small)
-    }
-
-    /// A column that rises by the same step in 30 rows and more.
-    fn is_even(&self, index: usize) -> bool {
-        let steps = self.columns[index].steps();
-        let Some(median) = steps.get(steps.len() / 2) else { return false };
-        let same = steps.iter().filter(|&step| (step / median - 1.0).abs() < 0.1).count();
-        steps.len() >= 29 && same * 10 >= 9 * steps.len()
     }
 }

@@ -141,13 +141,16 @@ impl<'a, 's, 'e> Rows<'a, 's, 'e> {
                     cells.pop();
                 }
                 // Lines that a reset repeats, and the end of a database's print, as `(2 rows)`.
-                let is_end = text.starts_with('(') && text.ends_with(" rows)");
-                let is_remark = self.plan.greetings.contains(text) || is_end;
-                let is_sentence = line.is_ended && (cells.len() != width || width == 1) && self.is_sentence(text);
-                if cells.len() != width && is_remark || is_sentence {
+                let is_end = || {
+                    text.starts_with('(') && text.ends_with(" rows)")
+                        || cells.len() == 1 && text.contains(" rows in set")
+                };
+                let is_remark = || self.plan.greetings.contains(text) || is_end();
+                let is_odd = cells.len() != width;
+                if is_odd && is_remark() || line.is_ended && (is_odd || width == 1) && self.is_sentence(text) {
                     return Err(Unread::Other);
                 }
-                if cells.len() != width {
+                if is_odd {
                     let message = format!("`{}` has {} cells; expected {width}", short(text), cells.len());
                     return Err(damaged(message));
                 }
@@ -171,7 +174,8 @@ impl<'a, 's, 'e> Rows<'a, 's, 'e> {
                 let Some(pairs) = shape::keyed(text).or_else(|| self.silence(text)) else {
                     let has_digit = text.contains(|letter: char| letter.is_ascii_digit());
                     let is_other = text.split_once(':').is_some_and(|(name, _)| names::meaning(name) == Meaning::Other);
-                    return Err(if (has_digit && !is_other) || !line.is_ended {
+                    let is_greeting = !text.contains([':', '=']) && line.is_ended && self.sink.report.messages == 0;
+                    return Err(if (has_digit && !is_other && !is_greeting) || !line.is_ended {
                         damaged(format!("`{}`; expected pairs of name and value", short(text)))
                     } else {
                         Unread::Other
@@ -201,7 +205,7 @@ impl<'a, 's, 'e> Rows<'a, 's, 'e> {
     fn silence(&self, text: &str) -> Option<Vec<(String, String)>> {
         let [name] = self.plan.usual_names.as_deref()? else { return None };
         let text = text.trim_end_matches(['.', '!']).to_lowercase();
-        let is_said = ["out of range", "no echo", "timeout", "time out"].contains(&text.as_str());
+        let is_said = ["out of range", "no echo", "timeout", "time out", "echo timeout"].contains(&text.as_str());
         is_said.then(|| vec![(name.clone(), text)])
     }
 

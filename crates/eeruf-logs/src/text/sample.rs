@@ -9,6 +9,9 @@ use crate::value;
 
 pub(crate) fn is_comment(text: &str) -> bool {
     let text = text.trim_start();
+    if text.starts_with(|letter: char| letter.is_ascii_digit()) {
+        return false;
+    }
     // MATLAB's; `%time` begins a header.
     let is_percent = text.starts_with("% ") || text == "%";
     text.is_empty()
@@ -30,7 +33,8 @@ pub(super) struct Stripped<'a> {
 pub(super) fn strip(sample: &[Line]) -> Stripped<'_> {
     let lines: Vec<_> = sample
         .iter()
-        .filter(|line| !is_comment(&line.text) && !line.is_misfit)
+        // A last line that may be cut says nothing of the others.
+        .filter(|line| !is_comment(&line.text) && !line.is_misfit && (line.is_ended || sample.len() < 4))
         .map(|line| (line.number, line.text.trim()))
         .collect();
     let rules = lines.iter().filter(|line| is_rule(line.1)).count();

@@ -2,7 +2,7 @@
 
 use serde_json::Value as Json;
 
-use crate::names::{Meaning, meaning};
+use crate::names::{self, Meaning, meaning};
 use crate::value;
 
 /// Separation of a line into cells.
@@ -65,6 +65,9 @@ pub(super) fn is_underline(cells: &[String]) -> bool {
 
 /// The brackets around a line, as Python prints a list.
 fn without_brackets(line: &str) -> &str {
+    if line.starts_with(|letter: char| letter.is_ascii_digit()) {
+        return line;
+    }
     // A sentence of NMEA 0183.
     let sentence = line.strip_prefix('$').and_then(|line| line.rsplit_once('*'));
     if let Some((inner, _)) = sentence.filter(|(_, sum)| sum.len() == 2) {
@@ -105,9 +108,10 @@ pub(crate) fn separated(line: &str, separator: Separator) -> Option<Vec<String>>
     if let Some((at, open)) = has_brackets.then(inner).flatten() {
         return separated(&format!("{},{}", &line[..at], line[at + open.len()..].replace([')', ']'], "")), separator);
     }
-    if !line.contains('"') {
+    if !line.bytes().any(|byte| byte == b'"') {
         let plain = |cell: &str| if has_brackets { without_half_brackets(cell.trim()) } else { cell.trim() }.to_owned();
-        return Some(line.split(letter).map(plain).collect());
+        // By a closure: cells are short.
+        return Some(line.split(|own: char| own == letter).map(plain).collect());
     }
     let (mut cells, mut cell, mut is_quoted) = (vec![], String::new(), false);
     let mut letters = line.chars().peekable();
@@ -123,13 +127,16 @@ pub(crate) fn separated(line: &str, separator: Separator) -> Option<Vec<String>>
     (!is_quoted).then_some(cells)
 }
 
-/// The pairs of a line of `name: value` or `name=value`, or of a dict as Python prints it; nothing if it holds anything
-/// else.
+/// The pairs of a line: each value behind a colon or an equals sign, with the words before it as its name; nothing if
+/// it holds anything else.
+///
+/// What stands before a name and is none of it does not count: a program, a decision, the number of a loop, the name of
+/// a message around it.
 pub(crate) fn keyed(line: &str) -> Option<Vec<(String, String)>> {
     const BETWEEN: [char; 6] = [',', ';', '|', '\t', ' ', '&'];
-    // A colon of full width, as Chinese and Japanese have it.
-    if line.contains('\u{ff1a}') {
-        return keyed(&line.replace('\u{ff1a}', ":"));
+    // A colon of full width, as Chinese and Japanese have it; the sign between a value and its unit of a plotter.
+    if line.contains(['\u{ff1a}', '\u{a7}']) {
+        return keyed(&line.replace('\u{ff1a}', ":").replace('\u{a7}', " "));
     }
     if let Some(arrow) = ["<-", "->"].into_iter().find(|arrow| line.contains(arrow) && !line.contains([':', '='])) {
         return keyed(&line.replace(arrow, "="));
@@ -137,30 +144,34 @@ pub(crate) fn keyed(line: &str) -> Option<Vec<(String, String)>> {
     if !line.contains([':', '=']) {
         return worded(line).or_else(|| glued(line)).or_else(|| sentence(line));
     }
-    let dict = line.trim().strip_prefix('{').and_then(|inner| inner.strip_suffix('}'));
+    let dict = line.trim().trim_start_matches("- ").strip_prefix('{').and_then(|inner| inner.strip_suffix('}'));
     let (mut rest, mut pairs, mut heading) = (dict.unwrap_or(line), vec![], "");
     let mut unit_at_end = None;
     while let Some(at) = rest.find([':', '=']) {
-        let key = rest[..at].trim_matches(BETWEEN);
-        let key = if dict.is_some() { key.trim_matches(['\'', '"']) } else { key };
+        // Behind it a decoded message begins.
+        if let Some((_, after)) = rest.split_once("::").filter(|(before, _)| before.len() == at) {
+            rest = after;
+            continue;
+        }
+        let is_equal = rest[at..].starts_with('=');
+        let key = if dict.is_some() {
+            rest[..at].trim_matches(BETWEEN).trim_matches(['\'', '"'])
+        } else {
+            name_in(rest[..at].trim_matches(BETWEEN), is_equal)
+        };
         if key.is_empty() || key.chars().count() > 40 {
             return None;
         }
-        let is_equal = rest[at..].starts_with('=');
         let after = &rest[at + 1..];
         // `sonar: left=34`; each of several headings is a part of the names below it.
         let inner = after.split_once('=').map_or("", |(name, _)| name.trim_start());
         let is_name = |letter: char| letter.is_alphanumeric() || letter == '_';
         if !is_equal && inner.starts_with(char::is_alphabetic) && inner.chars().all(is_name) {
-            heading = if after.contains(':') || !pairs.is_empty() { key } else { "" };
+            let is_own = names::is_place(key) || key.contains(|letter: char| letter == '/' || letter.is_ascii_digit());
+            heading = if is_own || after.contains(':') || !pairs.is_empty() { key } else { "" };
             rest = after;
             continue;
         }
-        // `loop 17 t=1200`
-        let key = match key.split(' ').collect::<Vec<_>>()[..] {
-            [_, number, last] if value::number(number, false).is_some() => last,
-            _ => key,
-        };
         let after =
             after.strip_prefix(['=', '>']).filter(|_| is_equal).unwrap_or(after).trim_start_matches([' ', '\t']);
         // A list gives a value for each place.
@@ -189,6 +200,14 @@ pub(crate) fn keyed(line: &str) -> Option<Vec<(String, String)>> {
         }
         let mut text = after[..end].trim_matches('"').to_owned();
         rest = &after[end..];
+        // A plotter's instant before the value.
+        if let Some((instant, own)) = text.split_once(':').filter(|(instant, _)| is_instant(instant)) {
+            pairs.push(("timestamp".to_owned(), instant.to_owned()));
+            text = own.to_owned();
+        }
+        if text.contains(':') && value::calendar_ns(&text).is_none() {
+            return None;
+        }
         // A unit after a space.
         let spaced = rest.trim_start_matches(' ');
         let word = &spaced[..spaced.find(BETWEEN).unwrap_or(spaced.len())];
@@ -196,7 +215,8 @@ pub(crate) fn keyed(line: &str) -> Option<Vec<(String, String)>> {
         let is_key = word.contains([':', '=']) || follows.is_some_and(|letter| letter == ':' || letter == '=');
         // Of another quantity, as in `21.5 C`.
         let is_unit = value::unit(word).is_some() || word.starts_with('%') || (1..=4).contains(&word.len());
-        let is_unit = is_unit && !word.contains(|letter: char| letter.is_ascii_digit() || letter == '(');
+        let begins = word.starts_with(|letter: char| letter.is_alphabetic() || "%\"\u{b0}\u{b5}".contains(letter));
+        let is_unit = is_unit && begins && !word.contains(|letter: char| letter.is_ascii_digit() || letter == '(');
         if !is_key && !text.is_empty() && value::range(&text, true).is_some() && is_unit {
             text = format!("{text} {word}");
             rest = &spaced[word.len()..];
@@ -219,7 +239,43 @@ pub(crate) fn keyed(line: &str) -> Option<Vec<(String, String)>> {
     for (_, text) in pairs.iter_mut().filter(|(name, text)| is_length(name) && value::number(text, true).is_some()) {
         text.extend(unit_at_end.iter().flat_map(|unit| [" ", unit]));
     }
-    (!pairs.is_empty() && !rest.contains(char::is_alphanumeric)).then_some(pairs)
+    // A time series' instant behind the values.
+    if let Some(instant) = Some(rest.trim()).filter(|rest| is_instant(rest) && !pairs.is_empty()) {
+        pairs.push(("timestamp".to_owned(), instant.to_owned()));
+        rest = "";
+    }
+    let is_word = pairs.last().is_some_and(|(_, text)| text.len() > 2 && text.chars().all(char::is_alphabetic));
+    let is_said =
+        (is_word || rest.trim_start().starts_with("->")) && !rest.contains(|letter: char| letter.is_ascii_digit());
+    (!pairs.is_empty() && (is_said || !rest.contains(char::is_alphanumeric))).then_some(pairs)
+}
+
+/// Returns true for milli-, micro- or nanoseconds since 1970.
+fn is_instant(text: &str) -> bool {
+    (13..=19).contains(&text.len()) && text.bytes().all(|byte| byte.is_ascii_digit())
+}
+
+/// The name at the end of what stands between two values.
+fn name_in(before: &str, is_equal: bool) -> &str {
+    let mut name = before;
+    for open in ['(', '[', '{'] {
+        let close = if open == '(' { ')' } else { (open as u8 + 2) as char };
+        // What is open still is around the name.
+        if let Some(at) = name.rfind(open).filter(|&at| !name[at..].contains(close)) {
+            name = &name[at + 1..];
+        }
+    }
+    let is_decided = ["->", "=>", "<"].iter().any(|arrow| name.contains(arrow));
+    for mark in ["->", "=>", "<", " - ", "|", ",", ";", "\t", "> "] {
+        name = name.rsplit_once(mark).map_or(name, |(_, last)| last);
+    }
+    let name = name.trim_start_matches(['>', '*', '-', ' ']).trim_end();
+    match name.split(' ').collect::<Vec<_>>()[..] {
+        // `-> LEFT ML=180`, `<reading t="1"`, `loop 17 t=1200`
+        [_, last] if is_equal && is_decided => last,
+        [_, number, last] if value::number(number, false).is_some() => last,
+        _ => name,
+    }
 }
 
 /// The pairs of a line of names and values by turns, as `left 80 cm right none`; nothing if there are fewer than two.
@@ -264,7 +320,10 @@ fn glued(line: &str) -> Option<Vec<(String, String)>> {
 
 /// The values of a JSON object by their paths, or of an array by their places; nothing if it is neither.
 pub(crate) fn json(text: &str) -> Option<Vec<(String, String)>> {
-    let found: Json = serde_json::from_str(text.trim()).ok()?;
+    // Python writes what JSON has no number for.
+    let plain = || text.replace("-Infinity", "null").replace("Infinity", "null").replace("NaN", "null");
+    let found = serde_json::from_str(text.trim()).or_else(|_| serde_json::from_str(plain().trim()));
+    let found: Json = found.ok()?;
     let mut pairs = vec![];
     match found {
         Json::Object(_) => flatten("", &found, &mut pairs),

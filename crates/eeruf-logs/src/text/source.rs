@@ -6,9 +6,8 @@ use std::io::{self, BufRead, BufReader, Read};
 
 use super::boot::{Boot, is_noise};
 use super::lines::{Input, Line, Lines, Objects, Rewritten};
-use super::messages;
+use super::messages::{self, End};
 use super::rewriter::Rewriter;
-use crate::bytes::Order;
 
 /// The records or lines of a text.
 pub(crate) struct Source<'a> {
@@ -24,7 +23,7 @@ pub(crate) struct Source<'a> {
 enum Form<'a> {
     Lines(Lines<'a>),
     Objects(Objects<'a>),
-    Messages(Lines<'a>),
+    Messages(Lines<'a>, End),
     /// An ArduPilot log as text: many tables in one file, of which one holds ranges.
     DataFlash(Lines<'a>),
     Rewritten(Lines<'a>, Rewriter),
@@ -45,7 +44,7 @@ impl<'a> Source<'a> {
                 Form::Lines(lines) => (lines.next()?, None),
                 Form::Rewritten(lines, rewriter) => (lines.next()?, Some(rewriter)),
                 Form::Objects(objects) => return objects.next(),
-                Form::Messages(lines) => return messages::next(lines),
+                Form::Messages(lines, end) => return messages::next(lines, *end),
                 Form::DataFlash(lines) => {
                     let Some(line) = lines.next()? else { return Ok(None) };
                     self.pending.extend(rangefinder(&line.text).map(|text| Line { text, ..line }));
@@ -78,7 +77,8 @@ impl<'a> Source<'a> {
         match &self.form {
             Form::Lines(_) => None,
             Form::Objects(_) => Some("JSON, a document"),
-            Form::Messages(_) => Some("messages, as `ros2 topic echo` prints them"),
+            Form::Messages(_, End::Rule) => Some("messages, as `ros2 topic echo` prints them"),
+            Form::Messages(..) => Some("blocks of name and value"),
             Form::DataFlash(_) => Some("RFND of an ArduPilot log"),
             Form::Rewritten(_, rewriter) => Some(rewriter.form()),
         }
@@ -86,10 +86,11 @@ impl<'a> Source<'a> {
 
     /// Returns true for records of which each is an object.
     pub(super) const fn is_of_objects(&self) -> bool {
-        matches!(self.form, Form::Objects(_) | Form::Messages(_))
+        matches!(self.form, Form::Objects(_) | Form::Messages(..))
     }
 
     /// Returns true for a JSON document.
+    #[cfg(feature = "files")]
     pub(crate) const fn is_document(&self) -> bool {
         matches!(self.form, Form::Objects(_))
     }
@@ -97,25 +98,28 @@ impl<'a> Source<'a> {
 
 impl<'a> Form<'a> {
     fn new(input: Box<dyn Read + 'a>) -> io::Result<Self> {
-        let mut input = BufReader::with_capacity(1 << 16, input);
+        // A pipe gives a little at a time.
+        let (mut input, mut first) = (input, vec![]);
+        (&mut input).take(1 << 14).read_to_end(&mut first)?;
+        let mut input = BufReader::with_capacity(1 << 16, io::Cursor::new(first).chain(input));
         let first = input.fill_buf()?;
         let (skip, utf16) = match first {
-            [0xff, 0xfe, ..] => (2, Some(Order::Little)),
-            [0xfe, 0xff, ..] => (2, Some(Order::Big)),
+            [0xff, 0xfe, ..] => (2, Some(false)),
+            [0xfe, 0xff, ..] => (2, Some(true)),
             [0xef, 0xbb, 0xbf, ..] => (3, None),
             // Text of the first kind has its zeroes at odd places.
-            [one, 0, two, 0, ..] if *one != 0 && *two != 0 => (0, Some(Order::Little)),
-            [0, one, 0, two, ..] if *one != 0 && *two != 0 => (0, Some(Order::Big)),
+            [one, 0, two, 0, ..] if *one != 0 && *two != 0 => (0, Some(false)),
+            [0, one, 0, two, ..] if *one != 0 && *two != 0 => (0, Some(true)),
             _ => (0, None),
         };
         input.consume(skip);
         let mut input: Input<'a> = match utf16 {
             None => BufReader::new(Box::new(input)),
-            Some(order) => BufReader::new(Box::new(Utf16 { input, order, out: VecDeque::new(), high: None })),
+            Some(is_big) => BufReader::new(Box::new(Utf16 { input, is_big, out: VecDeque::new(), high: None })),
         };
         let start = String::from_utf8_lossy(input.fill_buf()?).into_owned();
-        if messages::are_in(&start) {
-            return Ok(Self::Messages(Lines::new(input)));
+        if let Some(end) = End::of(&start) {
+            return Ok(Self::Messages(Lines::new(input), end));
         }
         if let Some(rewriter) = Rewriter::of(&start) {
             return Ok(Self::Rewritten(Lines::new(input), rewriter));
@@ -159,7 +163,7 @@ fn rangefinder(line: &str) -> Option<String> {
 /// Transcodes UTF-16 to UTF-8.
 struct Utf16<R> {
     input: R,
-    order: Order,
+    is_big: bool,
     out: VecDeque<u8>,
     high: Option<u16>,
 }
@@ -172,9 +176,9 @@ impl<R: Read> Read for Utf16<R> {
             if pairs.is_empty() && self.high.is_none() {
                 return Ok(0);
             }
-            let unit = |pair: &[u8]| match (self.order, pair) {
-                (Order::Little, &[low, high]) => u16::from_le_bytes([low, high]),
-                (Order::Big, &[high, low]) => u16::from_be_bytes([high, low]),
+            let unit = |pair: &[u8]| match (self.is_big, pair) {
+                (false, &[low, high]) => u16::from_le_bytes([low, high]),
+                (true, &[high, low]) => u16::from_be_bytes([high, low]),
                 _ => 0xfffd,
             };
             let is_end = pairs.is_empty();

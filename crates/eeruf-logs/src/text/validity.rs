@@ -23,6 +23,11 @@ impl Validity {
                 let is_bad = number == Some(0.0) || text.eq_ignore_ascii_case("false");
                 is_bad.then_some(f64::INFINITY)
             }
+            Says::ReadingType => match number? {
+                1.0 => None,
+                2.0 => Some(f64::NEG_INFINITY),
+                _ => Some(f64::INFINITY),
+            },
             Says::Quality => (number == Some(0.0)).then_some(f64::INFINITY),
         }
     }
@@ -41,6 +46,8 @@ fn meaning(column: &Column) -> Option<(Says, &'static str)> {
     });
     if has(&["stat"]) && whole(4.0) && column.numbers.contains(&4.0) {
         Some((Says::RangefinderStatus, "4 is good"))
+    } else if has(&["reading"]) && has(&["type"]) && whole(3.0) && column.numbers.contains(&1.0) {
+        Some((Says::ReadingType, "1 is good"))
     } else if has(&["valid", "ok", "isvalid"]) && is_flag && column.distinct.len() <= 2 {
         Some((Says::Flag, "1 or true is good"))
     } else if has(&["quality"]) && whole(100.0) && column.numbers.iter().any(|&number| number > 0.0) {
@@ -60,7 +67,9 @@ impl Plan {
             let Some((meaning, why)) = meaning(&self.columns[index]) else { continue };
             let without = |name: &str| {
                 let mut words = names::stem(name);
-                words.retain(|word| !["stat", "valid", "ok", "isvalid", "quality", "signal"].contains(&word.as_str()));
+                words.retain(|word| {
+                    !["stat", "valid", "ok", "isvalid", "quality", "signal", "type"].contains(&word.as_str())
+                });
                 words
             };
             let own = without(&self.columns[index].name);

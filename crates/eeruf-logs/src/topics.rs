@@ -1,0 +1,255 @@
+//! Messages of topics: finds out which sensor each reading is of.
+
+use std::collections::HashSet;
+use std::path::Path;
+
+use crate::message::{Encoding, Kind, MAX_BEAMS, Undecoded};
+use crate::options::RangeUnit;
+use crate::reading::{Reading, Sensor};
+use crate::sink::{Guess, Sink, Skipped, finite};
+
+/// What is known of the topics of a log.
+#[derive(Default)]
+pub(crate) struct Topics {
+    /// Number of messages that were found, of whatever type and whether or not they could be read.
+    pub(crate) found: u64,
+    buffer: Vec<Reading>,
+    /// Topics with readings.
+    names: HashSet<String>,
+    /// Topics of which one warning is enough.
+    warned: HashSet<String>,
+}
+
+/// One topic of one file.
+pub(crate) struct Topic {
+    name: String,
+    decoding: Option<(Encoding, Kind)>,
+    frames: Vec<Frame>,
+    /// The frame after the last one: rings often come in turn.
+    next: usize,
+    undecoded: u64,
+    beams: u64,
+    infrared: u64,
+    /// The topic of which this one is what a filter made.
+    judged: Option<(String, u64)>,
+    /// The unit of numbers, once it is known.
+    unit: Option<RangeUnit>,
+    is_asked: bool,
+}
+
+struct Frame {
+    id: Vec<u8>,
+    /// The index of each beam's sensor.
+    sensors: Vec<usize>,
+}
+
+impl Sink<'_> {
+    /// A topic by its name, the name of its type, the text of its schema if there is one, and its encoding.
+    pub(crate) fn topic(
+        &mut self,
+        name: &str,
+        type_name: &str,
+        schema: Option<&str>,
+        encoding: Option<Encoding>,
+    ) -> Topic {
+        let kind = Kind::of(name, type_name, schema, self.options);
+        let mut skip = |why: String| {
+            let skipped = Skipped { topic: name.to_owned(), why, messages: 0 };
+            if !self.report.skipped.contains(&skipped) {
+                self.report.skipped.push(skipped);
+            }
+        };
+        let decoding = match (kind, encoding) {
+            (Ok(kind), Some(encoding)) => Some((encoding, kind)),
+            (Ok(_), None) => {
+                skip(format!("{type_name} in an encoding that is neither cdr nor ros1"));
+                None
+            }
+            (Err(why), _) => {
+                skip(why);
+                None
+            }
+        };
+        if decoding.is_some() {
+            self.of_topics.names.insert(name.to_owned());
+        }
+        let is_asked =
+            self.options.topics.iter().chain(self.options.fields.iter().map(|field| &field.topic)).any(|t| t == name);
+        let base = ["/accepted", "/confirmed"].iter().find_map(|end| name.strip_suffix(end));
+        let judged = base.filter(|_| !self.options.judged && !is_asked).map(|base| (base.to_owned(), 0));
+        Topic {
+            name: name.to_owned(),
+            decoding,
+            frames: Vec::new(),
+            next: 0,
+            undecoded: 0,
+            beams: 0,
+            infrared: 0,
+            judged,
+            unit: None,
+            is_asked,
+        }
+    }
+
+    /// A message on a topic, recorded at this time.
+    pub(crate) fn message(&mut self, topic: &mut Topic, recorded_ns: u64, message: &[u8]) {
+        let Some((encoding, kind)) = topic.decoding.clone() else { return };
+        if let Some((base, left_out)) = &mut topic.judged
+            && self.of_topics.names.contains(base)
+        {
+            *left_out += 1;
+            return;
+        }
+        self.of_topics.buffer.clear();
+        let frame = match kind.decode(encoding, message, recorded_ns, &mut self.of_topics.buffer) {
+            Ok(frame) => frame,
+            Err(Undecoded::Length) => {
+                topic.undecoded += 1;
+                return;
+            }
+            Err(Undecoded::Beams) => {
+                topic.beams += 1;
+                return;
+            }
+        };
+        match kind {
+            Kind::Range { .. } => {
+                let infrared = self.of_topics.buffer.first().is_some_and(|reading| reading.radiation == 1);
+                if infrared && !topic.is_asked {
+                    topic.infrared += 1;
+                    return;
+                }
+                self.doubt(&topic.name);
+            }
+            Kind::Numbers(ref numbers) => self.scale(topic, numbers.unit),
+            Kind::Points(_) | Kind::Points2 => self.scale(topic, Some(RangeUnit::M)),
+            Kind::LaserScan(_) => {}
+        }
+        let is_shared = self.of_topics.buffer.len() > 1
+            && self.of_topics.buffer.iter().all(|reading| reading.at_ns == self.of_topics.buffer[0].at_ns);
+        self.one_time_a_row |= is_shared;
+        self.has_own_times |= !is_shared;
+        self.report.messages += 1;
+        let at = topic.frame(&frame);
+        let frame = &mut topic.frames[at];
+        for reading in &mut self.of_topics.buffer {
+            let beam = reading.sensor;
+            while frame.sensors.len() <= beam {
+                let number = frame.sensors.len();
+                let sensor = Sensor {
+                    topic: topic.name.clone(),
+                    frame: String::from_utf8_lossy(&frame.id).into_owned(),
+                    beam: kind.has_places().then_some(number as u16),
+                };
+                // The same sensor may be in several files of a bag.
+                let known = self.report.sensors.iter().position(|known| *known == sensor);
+                frame.sensors.push(known.unwrap_or(self.report.sensors.len()));
+                if known.is_none() {
+                    self.report.sensors.push(sensor);
+                }
+            }
+            reading.sensor = frame.sensors[beam];
+            self.stamps.push(reading.sensor, reading.at_ns, finite(reading));
+            (self.each)(&self.report, reading);
+        }
+    }
+
+    /// Warns of ranges that no ultrasonic sensor has: centimetres in place of metres.
+    fn doubt(&mut self, topic: &str) {
+        /// The farthest that a sensor in air sees is about 11 m.
+        const FARTHEST_M: f64 = 25.0;
+        let Some(reading) = self.of_topics.buffer.first() else { return };
+        let (most, range) = (reading.max_range_m, reading.range_m);
+        if (most > FARTHEST_M || (range > FARTHEST_M && range.is_finite())) && !self.of_topics.warned.contains(topic) {
+            self.of_topics.warned.insert(topic.to_owned());
+            self.report.warnings.push(format!(
+                "{topic}: a range of {range} m of at most {most} m; expected less than {FARTHEST_M} m from an \
+                 ultrasonic sensor; if the driver writes centimetres, `--field {topic} range cm` reads them"
+            ));
+        }
+    }
+
+    /// Turns numbers of the buffer into metres, and zero, negative and far ones into no echo.
+    fn scale(&mut self, topic: &mut Topic, known: Option<RangeUnit>) {
+        let most = self
+            .of_topics
+            .buffer
+            .iter()
+            .map(|reading| reading.range_m)
+            .filter(|range| range.is_finite())
+            .fold(0.0, f64::max);
+        if topic.unit.is_none() && (known.is_some() || most > 0.0) {
+            let by_values = match most {
+                _ if most <= 20.0 => RangeUnit::M,
+                _ if most <= 1100.0 => RangeUnit::Cm,
+                _ => RangeUnit::Mm,
+            };
+            let unit = known.unwrap_or(by_values);
+            topic.unit = Some(unit);
+            let why = if known.is_some() { String::new() } else { format!(", by values of up to {}", most as f32) };
+            let (what, value) = (format!("range unit of {}", topic.name), format!("{}{why}", unit.name()));
+            self.report.guesses.push(Guess { what, value, option: "--field".to_owned() });
+        }
+        let metres = topic.unit.unwrap_or(RangeUnit::M).metres(self.options.speed_of_sound);
+        for reading in &mut self.of_topics.buffer {
+            let range_m = reading.range_m * metres;
+            reading.max_range_m = self.options.no_echo_m;
+            reading.range_m = if range_m.is_nan() || (range_m > 0.0 && range_m < self.options.no_echo_m) {
+                range_m
+            } else {
+                f64::INFINITY
+            };
+        }
+    }
+
+    /// No more messages will come on a topic.
+    pub(crate) fn close(&mut self, topic: &Topic) {
+        let lost = [
+            (topic.undecoded, "a length that does not fit their type".to_owned()),
+            (
+                topic.beams,
+                format!(
+                    "more than {MAX_BEAMS} beams: a lidar, no ring of sonars; --topic {} reads them all the same",
+                    topic.name
+                ),
+            ),
+            (topic.infrared, format!("infrared light, no sound; --topic {} reads them", topic.name)),
+            (
+                topic.judged.as_ref().map_or(0, |judged| judged.1),
+                "what a filter made of another topic; --topic reads it".to_owned(),
+            ),
+        ];
+        for (messages, why) in lost.into_iter().filter(|(messages, _)| *messages > 0) {
+            self.report.skipped.push(Skipped { topic: topic.name.clone(), why, messages });
+        }
+    }
+
+    /// A file says how many messages it has, and the number found before it.
+    pub(crate) fn counted(&mut self, file: &Path, counted: u64, before: u64) {
+        let missing = (before + counted).saturating_sub(self.of_topics.found);
+        if missing > 0 {
+            self.damage(file, None, format!("{missing} of the {counted} messages that it counts were not found"));
+        }
+    }
+}
+
+impl Topic {
+    /// Returns true if its messages hold readings, as far as its type says.
+    pub(crate) const fn has_readings(&self) -> bool {
+        self.decoding.is_some()
+    }
+
+    /// The place of a frame among those of the topic.
+    fn frame(&mut self, id: &[u8]) -> usize {
+        let known = match self.frames.get(self.next) {
+            Some(frame) if frame.id == id => Some(self.next),
+            _ => self.frames.iter().position(|frame| frame.id == id),
+        };
+        let at = known.unwrap_or_else(|| {
+            self.frames.push(Frame { id: id.to_vec(), sensors: Vec::new() });
+            self.frames.len() - 1
+        });
+        self.next = (at + 1) % self.frames.len();
+        at
+    }
+}

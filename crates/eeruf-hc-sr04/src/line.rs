@@ -93,10 +93,10 @@ impl Line {
                     self.flaw = Health::Chatters;
                     return Shown::Disturbance;
                 }
-                // The module's own time-out only if it is surely as long.
+                // The module's own time-out only if it is surely as long. With an Option the image for AVR hears nothing.
                 let is_echo = least < settings.longest;
-                let known = u16::try_from(width.as_micros()).ok().filter(|_| is_echo);
-                self.pulse = Pulse::Over(rose, known.unwrap_or(ENDED));
+                let known = if is_echo { width.as_micros().min(ENDED.into()) as u16 } else { ENDED };
+                self.pulse = Pulse::Over(rose, known);
                 // A fall and a rise may have got lost since the trigger before, unless the line was seen to be high.
                 match is_echo {
                     true => Shown::Echo(least, rose_before.saturating_add(before.min(width))),

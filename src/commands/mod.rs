@@ -26,6 +26,7 @@ mod merge;
 mod methods;
 mod paths;
 mod program;
+mod reality;
 mod replay;
 mod rooms;
 mod scene;
@@ -197,6 +198,8 @@ pub(crate) enum LabVerb {
     Paths(paths::Args),
     #[command(after_help = help!("lab scene map.yaml > scene.toml", "0 printed; 2 bad input"))]
     Scene(scene::Args),
+    #[command(after_help = help!("lab reality log.csv scenes/alcove-hc-sr04.toml --method flow", "0 compared; 2 bad input"))]
+    Reality(reality::Args),
 }
 
 impl Verb {
@@ -221,6 +224,7 @@ impl Verb {
                 LabVerb::Search(args) => search::run(args),
                 LabVerb::Paths(args) => paths::run(args),
                 LabVerb::Scene(args) => scene::run(args),
+                LabVerb::Reality(args) => reality::run(args),
             },
         }
     }

@@ -255,3 +255,29 @@ fn a_folder_that_cannot_be_made_is_bad_input() {
     assert_eq!(outcome.code, Some(2));
     assert!(outcome.err.contains("a-file"), "{}", outcome.err);
 }
+
+#[test]
+fn a_simulated_log_is_as_simulated_and_a_planted_one_is_not() {
+    let ((folder, log), scene) = (Scratch::new("log.csv", ""), "scenes/alcove-hc-sr04.toml");
+    let log = log.to_str().unwrap();
+    let study = ["study", scene, "--method", "sequential", "--periods", "60", "--log", log];
+    assert_eq!(eeruf(&study).code, Some(0));
+    let like = |log: &str| -> Vec<bool> {
+        let found = json(&["lab", "reality", log, scene, "--json"]);
+        found["sensors"].as_array().unwrap().iter().map(|sensor| sensor["is_like"] == true).collect()
+    };
+    assert_eq!(like(log), [true; 8]);
+    // Sensor 3 hears nothing, and sensor 5 sees its wall 20 cm farther away.
+    let planted = std::fs::read_to_string(log).unwrap().lines().fold(String::new(), |planted, line| {
+        let mut cells: Vec<String> = line.split(',').map(str::to_owned).collect();
+        match (cells[0].as_str(), cells.get(4).and_then(|us| us.parse::<u32>().ok())) {
+            ("2", Some(_)) => cells[4].clear(),
+            ("4", Some(us)) => cells[4] = (us + 1_170).to_string(),
+            _ => {}
+        }
+        planted + &cells.join(",") + "\n"
+    });
+    let other = folder.path().join("planted.csv");
+    std::fs::write(&other, planted).unwrap();
+    assert_eq!(like(other.to_str().unwrap()), [true, true, false, true, false, true, true, true]);
+}

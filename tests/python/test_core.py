@@ -73,7 +73,8 @@ def test_needs_mean_what_the_program_takes_from_the_file(tmp_path: Path) -> None
 
 
 def test_a_ring_by_needs_accepts_what_is_before_it() -> None:
-    ring, kinds, now_us = eeruf.Ring.flow(eeruf.Needs(sensors=4, module="hc-sr04"), {"seed": 3}), [], 0
+    ring, now_us = eeruf.Ring.flow(eeruf.Needs(sensors=4, module="hc-sr04"), {"seed": 3}), 0
+    kinds: list[str] = []
     while len(kinds) < 200:
         now_us += ring.wait_us(now_us)
         while event := ring.poll(now_us):

@@ -8,6 +8,7 @@ mod newping;
 mod own_walls;
 mod pace;
 mod programs;
+mod real_log;
 mod survey;
 mod tables;
 mod world;
@@ -102,6 +103,7 @@ pub(crate) fn arduino(plan: &Plan, steps: &mut Steps) {
     steps.step("pace of sketches", || pace::run(&library));
     steps.step("ready tables before walls", || own_walls::run(&library, plan.short));
     steps.step("programs of `eeruf design`, a corner", || programs(true));
+    steps.step("log of a real ring", || real_log::run(&library));
     steps.step("sketches with a faulty module", || line_faults::run(&library));
     steps.step("other work in loop(), a corner", || loads::run(&library, None, false));
 }

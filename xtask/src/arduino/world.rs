@@ -13,7 +13,7 @@ use super::{Example, TARGET};
 use crate::steps::{need, output, run, skip};
 
 /// The room of the examples, in which modules hear each other.
-const SCENE: &str = "scenes/alcove-hc-sr04.toml";
+pub(super) const SCENE: &str = "scenes/alcove-hc-sr04.toml";
 /// The ways, for those who have no Rust.
 pub(super) const KEPT: &str = "c/arduino/world/alcove.txt";
 /// A reading is wrong if it is off by more: 0.3 ms of echo time.

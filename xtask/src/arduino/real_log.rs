@@ -1,0 +1,47 @@
+//! The sketch that logs a real ring: its log, read by `eeruf logs` as a ring's own, is as the simulator has it in the
+//! same room.
+
+use std::path::Path;
+use std::process::Command;
+
+use anyhow::{Context as _, Result, ensure};
+use fs_err as fs;
+use serde_json::Value;
+
+use super::build::{self, Board};
+use super::{ALL, TARGET, world};
+use crate::steps::output;
+use crate::toolchain::program;
+
+const MODULES: usize = 8;
+/// For how long it fires in each of its three ways.
+const SECONDS: u32 = 6;
+
+pub(super) fn run(library: &Path) -> Result<()> {
+    let text = fs::read_to_string(library.join("examples/RealLog/RealLog.ino"))?;
+    let sketch = build::ours(library, Board::Uno, "RealLog", &text, &[&format!("-DSECONDS={SECONDS}")])?;
+    let (world, pins) = (world::build()?, ALL[..MODULES].repeat(2));
+    let ways = Path::new(world::KEPT);
+    let said = world::command(&world, &[], &sketch.elf, 3 * SECONDS, ways, &pins).output()?;
+    let said = String::from_utf8_lossy(&said.stdout).replace('\r', "");
+    let (_, rows) = said.split_once("sensor,").context("no header")?;
+    let rows: String =
+        rows.lines().take_while(|line| !line.starts_with("world")).map(|line| format!("{line}\n")).collect();
+    let log = Path::new(TARGET).join("real-log.csv");
+    fs::write(&log, format!("sensor,{rows}"))?;
+    for method in ["sequential", "flow", "blocking"] {
+        let mut reality = Command::new(program()?);
+        reality.args(["lab", "reality", "--json", "--method", method]).arg(&log).arg(world::SCENE);
+        let found: Value = serde_json::from_str(&output(&mut reality)?)?;
+        let sensors = found["sensors"].as_array().context("no sensors")?;
+        let like = sensors.iter().filter(|sensor| sensor["is_like"] == true).count();
+        println!("{method}: {like} of {} sensors are as simulated", sensors.len());
+        // This world loses no echo, as the simulator does now and then.
+        ensure!(like + 2 >= MODULES, "{method}: {found:#}");
+    }
+    let logs = Command::new(program()?).args(["logs", "--json"]).arg(&log).output()?;
+    let found: Value = serde_json::from_slice(&logs.stdout).context("eeruf logs")?;
+    let sensors = found["sensors"].as_array().map_or(0, Vec::len);
+    ensure!(sensors == MODULES, "eeruf logs: {sensors} sensors; expected {MODULES}: {found:#}");
+    Ok(())
+}

@@ -194,12 +194,6 @@ pub(crate) fn is_filtered(name: &str) -> bool {
     words(name).iter().any(|word| is_in(FILTERS, word))
 }
 
-/// Returns true for the name of a reading before it became a range, without a unit.
-pub(crate) fn is_raw(name: &str) -> bool {
-    let words = words(name);
-    words.iter().any(|word| word == "raw") && !words.iter().any(|word| is_unit(word))
-}
-
 /// Returns true for the name of a length that a program works out from a range.
 pub(crate) fn is_derived(name: &str) -> bool {
     words(name).iter().any(|word| is_in(DERIVED, word))

@@ -157,7 +157,7 @@ impl Column {
     /// Returns true for texts that come equally often, as sensors in turn do, and what a robot does does not.
     pub(super) fn takes_turns(&self) -> bool {
         let counts = || self.distinct.values().copied();
-        counts().max() <= counts().min().map(|least| least + 1 + least / 4)
+        self.distinct.len() > 1 && counts().max() <= counts().min().map(|least| least + 1 + least / 4)
     }
 
     /// For two hexadecimal digits in each cell, as tools for buses print bytes: true if some are no plain number.

@@ -43,8 +43,6 @@ pub(super) struct Validity {
 pub(super) struct Plan {
     pub(super) shape: Shape,
     pub(super) has_prefix: bool,
-    /// The text that nearly each line has before its pairs.
-    pub(super) lead: String,
     pub(super) decimal_comma: bool,
     pub(super) columns: Vec<Column>,
     pub(super) by_name: HashMap<String, usize>,

@@ -22,12 +22,11 @@ pub(super) fn recognise(
     (records, is_of_objects): (Option<&str>, bool),
     options: &Options,
 ) -> Result<Plan, FileError> {
-    let Stripped { lines, has_prefix, has_rules, lead } = strip(sample);
+    let Stripped { lines, has_prefix, has_rules } = strip(sample);
     let (shape, decimal_comma) = if is_of_objects { (Shape::Json, false) } else { shape_of(&lines) };
     let mut plan = Plan {
         shape,
         has_prefix,
-        lead,
         decimal_comma,
         columns: vec![],
         by_name: HashMap::new(),
@@ -248,14 +247,14 @@ impl Plan {
                 let is_same = values.iter().all(|(_, row)| row[at] == text);
                 text.starts_with(char::is_alphabetic) && !has_digit && !is_unit && is_same
             };
-            let is_one = |at: usize| at + 1 == width || value::number(cell(at + 1), comma).is_none();
+            let is_value = |at: &usize| value::with_unit(cell(*at), comma).is_some();
+            let is_one = |at: usize| at + 1 == width || !is_value(&(at + 1));
             let words = |at: usize| (0..at).rev().take_while(|&before| is_word(before)).count();
             let name = |at: usize| match words(at) {
                 0 => format!("column {}", at + 1),
                 _ if is_word(at) || !is_one(at) => format!("column {}", at + 1),
                 count => (at - count..at).map(cell).collect::<Vec<_>>().join(" "),
             };
-            let is_value = |at: &usize| value::number(cell(*at), comma).is_some();
             let is_named = |at: usize| words(at) > 0 && is_one(at);
             if (1..width).any(|at| is_value(&at) && is_named(at)) && (1..width).filter(is_value).all(is_named) {
                 names = (0..width).map(name).collect();

@@ -60,15 +60,12 @@ impl Plan {
                 let others = found.iter().filter(|&&other| other != index).map(|&other| &self.columns[other].name);
                 others.filter(|other| is_one(other)).any(|other| names::stem(other) == stem)
             };
-            let is_plain = |other: &str| !names::is_filtered(other) && !names::is_raw(other);
             let is_pin = names::is_analogue_pin(name)
                 && found.iter().any(|&other| !names::is_analogue_pin(&self.columns[other].name));
             let why = if is_pin {
                 "an analogue converter's"
             } else if names::is_filtered(name) && beside(&|other| !names::is_filtered(other)) {
                 "what a filter made of another column"
-            } else if names::is_raw(name) && beside(&is_plain) {
-                "the raw value of another column"
             } else {
                 continue;
             };

@@ -125,7 +125,6 @@ impl<'a, 's, 'e> Rows<'a, 's, 'e> {
             (None, text)
         };
         let text = value::without_level(text);
-        let text = text.strip_prefix(self.plan.lead.as_str()).unwrap_or(text);
         if std::mem::take(&mut self.is_first) {
             return Err(damaged(format!("`{}` is shorter than the others: its beginning may be cut off", short(text))));
         }

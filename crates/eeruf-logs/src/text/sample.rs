@@ -26,8 +26,6 @@ pub(super) struct Stripped<'a> {
     pub(super) lines: Vec<(u64, &'a str)>,
     pub(super) has_prefix: bool,
     pub(super) has_rules: bool,
-    /// The text that nearly each line has before its pairs: a level, a program, a place in its source.
-    pub(super) lead: String,
 }
 
 pub(super) fn strip(sample: &[Line]) -> Stripped<'_> {
@@ -57,43 +55,7 @@ pub(super) fn strip(sample: &[Line]) -> Stripped<'_> {
         let rest = value::prefix(text).filter(|_| has_prefix).map_or(text, |found| found.1);
         (number, value::without_level(rest))
     };
-    let mut lines: Vec<_> = lines.into_iter().map(strip).collect();
-    let lead = lead(&lines).to_owned();
-    lines.iter_mut().for_each(|(_, text)| *text = text.strip_prefix(&*lead).unwrap_or(text));
-    Stripped { lines, has_prefix, has_rules, lead }
-}
-
-/// The longest text before pairs of name and value that nine of ten lines have, if they are no pairs with it.
-fn lead<'a>(lines: &[(u64, &'a str)]) -> &'a str {
-    const ENDS: [&str; 6] = ["] ", "> ", ": ", " - ", " # ", ") "];
-    let most = |count: usize| count * 10 >= lines.len() * 9;
-    let is_value = |(_, text): &(String, String)| value::range(text, true).is_some_and(|_| !text.is_empty());
-    let is_clean = |name: &str| {
-        let is_open = name.matches('[').count() != name.matches(']').count();
-        !is_open && !name.starts_with(['-', '[', '<', '|']) && !name.contains(" - ")
-    };
-    let is_pair = |text: &str| {
-        let pairs = shape::keyed(text).unwrap_or_default();
-        pairs.iter().any(is_value) && pairs.iter().all(|(name, _)| is_clean(name))
-    };
-    if lines.iter().filter(|(_, text)| is_pair(text)).count() * 2 >= lines.len() {
-        return "";
-    }
-    let mut best = "";
-    for (_, base) in lines.iter().take(5) {
-        for end in ENDS.iter().flat_map(|end| base.match_indices(end).map(|(at, end)| at + end.len())) {
-            let (own, rest) = base.split_at(end);
-            let is_name = rest.trim_start().starts_with(char::is_alphabetic);
-            if !is_name || own.len() <= best.len() || own.contains('{') {
-                continue;
-            }
-            let rests = lines.iter().filter_map(|(_, text)| text.strip_prefix(own));
-            if most(rests.filter(|rest| is_pair(rest)).count()) {
-                best = own;
-            }
-        }
-    }
-    best
+    Stripped { lines: lines.into_iter().map(strip).collect(), has_prefix, has_rules }
 }
 
 /// The shape that fits most lines best, and whether numbers have a decimal comma.

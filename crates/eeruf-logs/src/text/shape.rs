@@ -94,7 +94,20 @@ pub(crate) fn separated(line: &str, separator: Separator) -> Option<Vec<String>>
     let line = without_brackets(line.trim_matches([' ', '\u{feff}']));
     let Some(letter) = separator.letter() else {
         return Some(match separator {
-            Separator::Spaces => line.split_whitespace().map(|cell| cell.trim_matches('"').to_owned()).collect(),
+            Separator::Spaces => {
+                let mut cells: Vec<String> = vec![];
+                for cell in line.split_whitespace().map(|cell| cell.trim_matches('"')) {
+                    // A unit belongs to the number before it.
+                    match cells
+                        .last_mut()
+                        .filter(|last| value::unit(cell).is_some() && value::number(last, true).is_some())
+                    {
+                        Some(last) => last.extend([" ", cell]),
+                        None => cells.push(cell.to_owned()),
+                    }
+                }
+                cells
+            }
             _ => vec![line.trim().to_owned()],
         });
     };
@@ -142,7 +155,7 @@ pub(crate) fn keyed(line: &str) -> Option<Vec<(String, String)>> {
         return keyed(&line.replace(arrow, "="));
     }
     if !line.contains([':', '=']) {
-        return worded(line).or_else(|| glued(line)).or_else(|| sentence(line));
+        return glued(line).or_else(|| sentence(line));
     }
     let dict = line.trim().trim_start_matches("- ").strip_prefix('{').and_then(|inner| inner.strip_suffix('}'));
     let (mut rest, mut pairs, mut heading) = (dict.unwrap_or(line), vec![], "");
@@ -164,7 +177,7 @@ pub(crate) fn keyed(line: &str) -> Option<Vec<(String, String)>> {
         }
         let after = &rest[at + 1..];
         // `sonar: left=34`; each of several headings is a part of the names below it.
-        let inner = after.split_once('=').map_or("", |(name, _)| name.trim_start());
+        let inner = after.split_once([':', '=']).map_or("", |(name, _)| name.trim_start());
         let is_name = |letter: char| letter.is_alphanumeric() || letter == '_';
         if !is_equal && inner.starts_with(char::is_alphabetic) && inner.chars().all(is_name) {
             let is_own = names::is_place(key) || key.contains(|letter: char| letter == '/' || letter.is_ascii_digit());
@@ -269,29 +282,13 @@ fn name_in(before: &str, is_equal: bool) -> &str {
     for mark in ["->", "=>", "<", " - ", "|", ",", ";", "\t", "> "] {
         name = name.rsplit_once(mark).map_or(name, |(_, last)| last);
     }
-    let name = name.trim_start_matches(['>', '*', '-', ' ']).trim_end();
+    let name = name.trim_start_matches(['>', '*', '-', ']', ' ']).trim_end();
     match name.split(' ').collect::<Vec<_>>()[..] {
         // `-> LEFT ML=180`, `<reading t="1"`, `loop 17 t=1200`
         [_, last] if is_equal && is_decided => last,
         [_, number, last] if value::number(number, false).is_some() => last,
         _ => name,
     }
-}
-
-/// The pairs of a line of names and values by turns, as `left 80 cm right none`; nothing if there are fewer than two.
-fn worded(line: &str) -> Option<Vec<(String, String)>> {
-    let mut cells = line.split_whitespace().peekable();
-    let mut pairs: Vec<(String, String)> = vec![];
-    while let Some(name) = cells.next() {
-        let is_name = name.starts_with(char::is_alphabetic) && !value::is_no_echo(name) && value::unit(name).is_none();
-        let text = cells.next()?;
-        if !is_name || pairs.iter().any(|(known, _)| known == name) || value::range(text, true).is_none() {
-            return None;
-        }
-        let unit = cells.next_if(|unit| value::number(text, true).is_some() && value::unit(unit).is_some());
-        pairs.push((name.to_owned(), unit.map_or_else(|| text.to_owned(), |unit| format!("{text} {unit}"))));
-    }
-    (pairs.len() > 1).then_some(pairs)
 }
 
 /// The pair of a sentence that ends with a range and its unit: `Distance to nearest object is 0.4 m`.

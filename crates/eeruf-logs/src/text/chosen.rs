@@ -163,7 +163,14 @@ impl Plan {
                 .map(|column| column.name.clone())
                 .collect(),
         };
-        let by = chosen.map_or(String::new(), |index| format!(", by column `{}`", self.columns[index].name));
+        let is_said = |column: &Column| column.role == Role::Range && Self::is_called(column);
+        let by = match chosen {
+            Some(index) => format!(", by column `{}`", self.columns[index].name),
+            None if names.is_empty() || asked_ranges.len() + usize::from(self.columns.iter().any(is_said)) > 0 => {
+                String::new()
+            }
+            None => ", which no name and no unit calls ranges".to_owned(),
+        };
         self.guesses.push(guess("sensors", format!("{}: {}{by}", names.len(), names.join(", ")), "--range, --sensor"));
         Ok(())
     }

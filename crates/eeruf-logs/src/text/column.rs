@@ -178,7 +178,7 @@ impl Column {
         // A damaged line is no reason.
         let rises = self.numbers.windows(2).filter(|two| two[0] < two[1]).count();
         let rows = self.numbers.len();
-        rows >= 3 && others * 10 <= rows && (rows - 1 - rises) * 10 < rows
+        rows >= 3 && others * 10 <= rows && (rows - 1 - rises) * 20 < rows.max(20)
     }
 
     /// Returns true if half of the steps go down, as no clock does, however often it restarts.

@@ -242,10 +242,8 @@ impl Plan {
             let cell = |at: usize| values.first().map_or("", |(_, row)| row[at].as_str());
             let is_word = |at: usize| {
                 let text = cell(at);
-                let has_digit = text.contains(|letter: char| letter.is_ascii_digit());
                 let is_unit = value::unit(text).is_some() || names::is_foreign_unit(text);
-                let is_same = values.iter().all(|(_, row)| row[at] == text);
-                text.starts_with(char::is_alphabetic) && !has_digit && !is_unit && is_same
+                text.starts_with(char::is_alphabetic) && !is_unit && values.iter().all(|(_, row)| row[at] == text)
             };
             let is_value = |at: &usize| value::with_unit(cell(*at), comma).is_some();
             let is_one = |at: usize| at + 1 == width || !is_value(&(at + 1));
@@ -395,7 +393,8 @@ impl Plan {
         // A number before a percent sign, or a unit of anything else, is no length.
         for index in 1..self.columns.len() {
             let is_foreign = self.columns[index].distinct.keys().all(|text| names::is_foreign_unit(text));
-            self.columns[index - 1].has_other_unit |= is_foreign && !self.columns[index].distinct.is_empty();
+            self.columns[index - 1].has_other_unit |=
+                is_foreign && !has_header && !self.columns[index].distinct.is_empty();
         }
         // Of `sensor_msgs/Range`, and of MAVLink's and PX4's messages.
         let ends = |end: &str| self.columns.iter().position(|column| column.name.ends_with(end));
@@ -563,8 +562,10 @@ impl Plan {
         let is_called = of.iter().any(|&index| Self::is_called(&self.columns[index]));
         if !is_called && self.sensor_names() == 0 {
             let is_plain = |&&index: &&usize| {
-                let quantity = names::quantity(&self.columns[index].name);
-                quantity.is_empty() || names::is_letter_of_place(&quantity)
+                let name = &self.columns[index].name;
+                let quantity = names::quantity(name);
+                let is_numbered = name.contains(|letter: char| letter.is_ascii_digit());
+                quantity.is_empty() || !is_numbered && names::is_letter_of_place(&quantity)
             };
             let is_pin = |&index: &usize| names::is_analogue_pin(&self.columns[index].name);
             let ring: Vec<_> = of.iter().filter(is_plain).copied().collect();

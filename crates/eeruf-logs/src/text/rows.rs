@@ -146,6 +146,12 @@ impl<'a, 's, 'e> Rows<'a, 's, 'e> {
                 };
                 let is_remark = || self.plan.greetings.contains(text) || is_end();
                 let is_odd = cells.len() != width;
+                if is_odd && names::is_place(text) && self.sink.report.messages > 0 && !is_remark() {
+                    return Err(damaged(format!(
+                        "`{}` between rows: what follows may be another sensor's",
+                        short(text)
+                    )));
+                }
                 if is_odd && is_remark() || line.is_ended && (is_odd || width == 1) && self.is_sentence(text) {
                     return Err(Unread::Other);
                 }

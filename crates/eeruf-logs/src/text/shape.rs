@@ -96,7 +96,7 @@ pub(crate) fn separated(line: &str, separator: Separator) -> Option<Vec<String>>
         return Some(match separator {
             Separator::Spaces => {
                 let mut cells: Vec<String> = vec![];
-                for cell in line.split_whitespace().map(|cell| cell.trim_matches('"')) {
+                for cell in line.split_whitespace().map(|cell| cell.trim_matches('"').trim_end_matches([',', ';'])) {
                     // A unit belongs to the number before it.
                     match cells
                         .last_mut()
@@ -257,7 +257,9 @@ pub(crate) fn keyed(line: &str) -> Option<Vec<(String, String)>> {
         pairs.push(("timestamp".to_owned(), instant.to_owned()));
         rest = "";
     }
-    let is_word = pairs.last().is_some_and(|(_, text)| text.len() > 2 && text.chars().all(char::is_alphabetic));
+    let has_unit = |text: &str| value::with_unit(text, true).is_some_and(|(_, unit)| unit.is_some());
+    let is_text = |text: &str| text.len() > 2 && text.chars().all(char::is_alphabetic);
+    let is_word = pairs.last().is_some_and(|(_, text)| is_text(text) || has_unit(text));
     let is_said =
         (is_word || rest.trim_start().starts_with("->")) && !rest.contains(|letter: char| letter.is_ascii_digit());
     (!pairs.is_empty() && (is_said || !rest.contains(char::is_alphanumeric))).then_some(pairs)

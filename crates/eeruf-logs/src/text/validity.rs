@@ -50,7 +50,7 @@ fn meaning(column: &Column) -> Option<(Says, &'static str)> {
         Some((Says::ReadingType, "1 is good"))
     } else if has(&["valid", "ok", "isvalid"]) && is_flag && column.distinct.len() <= 2 {
         Some((Says::Flag, "1 or true is good"))
-    } else if has(&["quality"]) && whole(100.0) && column.numbers.iter().any(|&number| number > 0.0) {
+    } else if has(&["quality"]) && whole(255.0) && column.numbers.iter().any(|&number| number > 0.0) {
         Some((Says::Quality, "0 is bad"))
     } else {
         None

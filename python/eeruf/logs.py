@@ -419,7 +419,7 @@ def read_log(
         log: a path, a URL or a file object.
         time: the column with the time.
         time_unit: its unit.
-        ranges: the columns with ranges; if none is given, each column of numbers whose name does not say otherwise.
+        ranges: the columns with ranges; if none is given, those that a name or a unit calls so.
         range_unit: their unit; ``us`` are microseconds from firing to echo.
         sensor: the column that says whose reading a row is.
         speed_of_sound: in m/s, for ranges in ``us``.

@@ -98,7 +98,7 @@ pub struct FieldChoice {
 pub struct Table {
     /// The names of the columns in their order, in place of a header; `-` leaves one out. If empty, the header's.
     pub columns: Vec<String>,
-    /// The columns with ranges. If empty, each column of numbers whose name does not say otherwise.
+    /// The columns with ranges. If empty, those that a name or a unit calls so, else all of numbers alone.
     pub ranges: Vec<String>,
     /// The unit of the ranges.
     pub range_unit: Option<RangeUnit>,

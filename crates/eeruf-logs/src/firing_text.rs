@@ -1,5 +1,4 @@
-//! Firing logs in text: tables with any separator and JSON, by the recogniser of [`read_log`](crate::read_log). A line
-//! that is damaged gives no firing, and is named.
+//! Firing logs in text: tables with any separator. A line that is damaged gives no firing, and is named.
 
 use std::io::Read;
 use std::path::Path;
@@ -7,7 +6,7 @@ use std::path::Path;
 use eeruf_core::ReadingKind;
 
 use crate::firings::{Firing, FiringLog};
-use crate::text::{Line, Separator, Source, is_comment, json, separated};
+use crate::text::{Line, Separator, Source, is_comment, separated};
 use crate::value::{is_no_echo, number, prefix};
 use eeruf_files::FileError;
 
@@ -15,7 +14,7 @@ use eeruf_files::FileError;
 pub(crate) const MAX_SENSORS: u8 = 64;
 
 const NEEDED: [&str; 5] = ["sensor", "fired_us", "period", "phase", "t_echo_us"];
-/// The columns that are read, in the order in which rows of JSON have them.
+/// The columns that are read.
 const NAMES: [&str; 8] = ["sensor", "fired_us", "period", "phase", "t_echo_us", "reading", "sends", "g"];
 
 /// The kind that logs spell so.
@@ -23,11 +22,10 @@ pub(crate) fn kind_of(spelled: &str) -> Option<ReadingKind> {
     ReadingKind::ALL.into_iter().find(|kind| kind.as_str() == spelled)
 }
 
-/// Indices of the columns.
+/// Where the columns stand.
 struct Header {
     names: Vec<String>,
-    /// Nothing for JSON, whose rows have names.
-    separator: Option<Separator>,
+    separator: Separator,
     has_prefix: bool,
     needed: [usize; 5],
     reading: Option<usize>,
@@ -39,25 +37,19 @@ struct Header {
 type Wrong = (Option<usize>, String);
 
 impl Header {
-    /// Finds the columns in the first line that is no comment, or in the first objects.
-    fn of(sample: &[Line], is_document: bool) -> Result<Self, String> {
-        let lines = || sample.iter().filter(|line| !is_comment(&line.text));
-        let first = lines().next().map_or("", |line| line.text.trim());
-        let is_json = is_document || first.starts_with('{');
+    /// By the first line that is no comment.
+    fn of(sample: &[Line]) -> Result<Self, String> {
+        let first = sample.iter().find(|line| !is_comment(&line.text)).map_or("", |line| line.text.trim());
         let stripped = prefix(first).map(|(_, rest)| rest).filter(|rest| rest.to_lowercase().contains("sensor"));
-        let has_prefix = !is_json && stripped.is_some();
-        let (separator, names) = if is_json {
-            let rows: Vec<_> = lines().filter_map(|line| json(&line.text)).collect();
-            let is_there = |name: &&str| rows.iter().flatten().any(|(own, _)| same_name(own) == *name);
-            (None, NAMES.iter().filter(|name| is_there(name)).map(|&name| name.to_owned()).collect())
-        } else {
-            let cells = |separator| separated(stripped.unwrap_or(first), separator).unwrap_or_default();
-            let found = |separator: &Separator| {
-                cells(*separator).iter().filter(|name| NAMES.contains(&same_name(name).as_str())).count()
-            };
-            let separator = Separator::ALL.into_iter().rev().max_by_key(found).unwrap_or(Separator::Comma);
-            (Some(separator), cells(separator).iter().map(|name| same_name(name)).collect::<Vec<_>>())
+        let has_prefix = stripped.is_some();
+        let names = |separator: Separator| {
+            let cells = separated(stripped.unwrap_or(first), separator).unwrap_or_default();
+            cells.iter().map(|name| same_name(name)).collect::<Vec<_>>()
         };
+        let found =
+            |&separator: &Separator| names(separator).iter().filter(|name| NAMES.contains(&name.as_str())).count();
+        let separator = Separator::ALL.into_iter().rev().max_by_key(found).unwrap_or(Separator::Comma);
+        let names = names(separator);
         let column = |name: &str| names.iter().position(|column| column == name);
         let mut needed = [0; 5];
         for (place, name) in needed.iter_mut().zip(NEEDED) {
@@ -80,21 +72,8 @@ impl Header {
         }
         let text = line.text.trim_matches([' ', '\u{feff}']);
         let text = if self.has_prefix { prefix(text).map_or(text, |found| found.1) } else { text };
-        let Some(separator) = self.separator else {
-            let pairs = json(text).ok_or_else(|| wrong("no JSON object".to_owned()))?;
-            let value = |name: &String| {
-                let found = pairs.iter().find(|(own, _)| same_name(own) == *name).map_or("", |(_, text)| text.as_str());
-                match found {
-                    "null" => String::new(),
-                    "true" => "1".to_owned(),
-                    "false" => "0".to_owned(),
-                    other => other.to_owned(),
-                }
-            };
-            return Ok(Some(self.names.iter().map(value).collect()));
-        };
         let cells =
-            separated(text, separator).ok_or_else(|| wrong("a quotation mark that is not closed".to_owned()))?;
+            separated(text, self.separator).ok_or_else(|| wrong("a quotation mark that is not closed".to_owned()))?;
         if cells.iter().map(|cell| same_name(cell)).eq(self.names.iter().cloned()) {
             return Ok(None);
         }
@@ -106,7 +85,7 @@ impl Header {
 
     /// The firing of a row, and whether its sensor sent.
     fn firing(&self, cells: &[String]) -> Result<(Firing, bool), Wrong> {
-        let decimal_comma = self.separator.is_some_and(|separator| separator != Separator::Comma);
+        let decimal_comma = self.separator != Separator::Comma;
         let text = |column: usize| cells.get(column).map_or("", String::as_str);
         let bad = |column: usize, expected: &str| (Some(column), format!("`{}`; expected {expected}", text(column)));
         let [sensor, fired, period, phase, echo] = self.needed;
@@ -162,7 +141,7 @@ pub(crate) fn read(input: impl Read, file: &Path) -> Result<FiringLog, FileError
         let Some(line) = source.next().map_err(failed)? else { break };
         sample.push(line);
     }
-    let header = Header::of(&sample, source.is_document());
+    let header = Header::of(&sample);
     let header = header.map_err(|message| FileError::new(file, message))?;
     let clock = sample.iter().find_map(|line| line.text.trim().strip_prefix('#')).unwrap_or_default().trim();
     let clock = clock.trim_start_matches("clock:").trim();
@@ -221,7 +200,7 @@ impl Rows {
     fn row(&mut self, line: &Line) -> Result<(), Wrong> {
         let Some(cells) = self.header.cells(line)? else { return Ok(()) };
         let last = cells.last().map_or(0, String::len);
-        if !line.is_ended && self.header.separator.is_some() && last < self.longest {
+        if !line.is_ended && last < self.longest {
             return Err((None, "it ends without a line break and may be cut".to_owned()));
         }
         self.longest = self.longest.max(last);

@@ -8,7 +8,7 @@
 //! 4,15000,0,0,,no_echo
 //! ```
 //!
-//! A table with these columns in any order and any separator, or JSON with these names; others are ignored, and lines
+//! A table with these columns in any order and any separator; others are ignored, and lines
 //! that are damaged are left out and named. Times are in microseconds of one clock, which the first
 //! line may name; one of 32 bits may wrap. `t_echo_us` is the raw echo time, from firing to the first edge, empty
 //! without echo. `reading` is what the ring made of it (`rejected`, `accepted`, `ambiguous`, ..) and may be missing.

@@ -7,7 +7,7 @@ use crate::options::RangeUnit;
 use crate::names;
 use crate::value::{self, Value};
 
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(super) enum Role {
     /// A sensor's ranges.
     Range,
@@ -15,13 +15,14 @@ pub(super) enum Role {
     Sensor,
     Least,
     Most,
+    #[default]
     Other,
     /// Without a value so far.
     Empty,
 }
 
 /// A column: its name and role, and its first values counted by kind.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Column {
     pub(super) name: String,
     pub(super) role: Role,
@@ -51,27 +52,7 @@ pub(super) struct Column {
 
 impl Column {
     pub(super) fn new(name: &str) -> Self {
-        Self {
-            name: name.to_owned(),
-            role: Role::Other,
-            is_numeric: false,
-            unit: RangeUnit::M,
-            longest: 0,
-            shortest: usize::MAX,
-            numbers: vec![],
-            no_echoes: 0,
-            empties: 0,
-            texts: 0,
-            calendars: 0,
-            distinct: BTreeMap::new(),
-            changes: 0,
-            last: String::new(),
-            has_unit_in_cells: None,
-            units: 0,
-            has_length: false,
-            has_other_unit: false,
-            repeated_unit: None,
-        }
+        Self { name: name.to_owned(), shortest: usize::MAX, ..Self::default() }
     }
 
     pub(super) fn note(&mut self, text: &str, decimal_comma: bool) {

@@ -30,11 +30,10 @@ impl End {
         if lines.peek().is_some_and(|line| line.trim_end() == "---") {
             return Some(Self::Rule);
         }
-        let is_end = |line: &&str| Self::Blank.is_at(line);
         let lines: Vec<_> = start.lines().collect();
         let keys =
             |block: &[&str]| block.iter().map(|line| Some(entry(line)?.0.to_owned())).collect::<Option<Vec<_>>>();
-        let blocks = lines.split(|line| is_end(&line)).filter(|block| !block.is_empty()).take(4).map(keys);
+        let blocks = lines.split(|line| Self::Blank.is_at(line)).filter(|block| !block.is_empty()).take(4).map(keys);
         let blocks: Vec<_> = blocks.collect();
         let is_one =
             |two: &[Option<Vec<String>>]| two[0] == two[1] && two[0].as_ref().is_some_and(|keys| keys.len() > 1);

@@ -14,7 +14,6 @@ mod messages;
 mod plan;
 mod recognise;
 mod repeats;
-mod rewriter;
 mod rows;
 mod sample;
 mod shape;
@@ -33,7 +32,7 @@ pub(crate) use source::Source;
 pub(crate) use {
     lines::Line,
     sample::is_comment,
-    shape::{Separator, json, separated},
+    shape::{Separator, separated},
 };
 
 /// As many lines, and as many bytes, are looked at before the first reading.

@@ -40,6 +40,7 @@ pub(super) struct Validity {
     pub(super) meaning: Says,
 }
 
+#[derive(Default)]
 pub(super) struct Plan {
     pub(super) shape: Shape,
     pub(super) has_prefix: bool,

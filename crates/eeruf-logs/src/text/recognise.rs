@@ -9,7 +9,7 @@ use eeruf_files::FileError;
 
 use super::column::{Column, Role};
 use super::lines::Line;
-use super::plan::{MOST_SENSORS, NoEcho, Plan, guess};
+use super::plan::{MOST_SENSORS, Plan, guess};
 use super::sample::{Stripped, is_comment, shape_of, strip, usual};
 use super::shape::{self, Separator, Shape, is_underline};
 use crate::names::{self, Meaning};
@@ -24,33 +24,7 @@ pub(super) fn recognise(
 ) -> Result<Plan, FileError> {
     let Stripped { lines, has_prefix, has_rules } = strip(sample);
     let (shape, decimal_comma) = if is_of_objects { (Shape::Json, false) } else { shape_of(&lines) };
-    let mut plan = Plan {
-        shape,
-        has_prefix,
-        decimal_comma,
-        columns: vec![],
-        by_name: HashMap::new(),
-        header: None,
-        has_names: false,
-        rows_from: 0,
-        time: vec![],
-        sensor: None,
-        known: BTreeSet::new(),
-        foreign: BTreeSet::new(),
-        no_echo: NoEcho::default(),
-        one_a_row: false,
-        is_first_cut: false,
-        unit: None,
-        medium: None,
-        validity: vec![],
-        greetings: BTreeSet::new(),
-        has_rules,
-        usual_names: None,
-        form: String::new(),
-        guesses: vec![],
-        implausible: None,
-        skipped: vec![],
-    };
+    let mut plan = Plan { shape, has_prefix, has_rules, decimal_comma, ..Plan::default() };
     let units = match shape {
         Shape::Separated(separator) => plan.table(file, sample, &lines, separator, options)?,
         Shape::Keyed | Shape::Json => {

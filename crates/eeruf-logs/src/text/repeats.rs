@@ -129,20 +129,17 @@ impl Plan {
         });
         let cells: Vec<_> = cells.collect();
         let [(_, first), (_, second), ..] = cells[..] else { return None };
-        let (one, two) = (first.metres(SPEEDS.0), second.metres(SPEEDS.0));
         let is_again = |pair: &[(f64, RangeUnit)]| match pair {
             [(a, of_a), (b, of_b)] => {
-                *of_a == first && *of_b == second && (a * one - b * two).abs() <= 1.01 * (one + two) + 0.05 * a * one
+                let (one, two) = (of_a.metres(SPEEDS.0), of_b.metres(SPEEDS.0));
+                (*of_a, *of_b) == (first, second) && (a * one - b * two).abs() <= 1.01 * (one + two) + 0.05 * a * one
             }
             _ => true,
         };
-        let pairs = cells.chunks(2);
-        let is_twice = first != second
-            && cells.len() >= 4
-            && pairs.clone().filter(|pair| !is_again(pair)).count() * 20 <= pairs.len();
+        let odd = cells.chunks(2).filter(|pair| !is_again(pair)).count();
+        let is_twice = first != second && cells.len() >= 4 && odd * 40 <= cells.len();
         let is_metric = |unit: RangeUnit| !matches!(unit, RangeUnit::In | RangeUnit::Ft);
-        let ordered = if is_metric(first) || !is_metric(second) { (first, second) } else { (second, first) };
-        is_twice.then_some(ordered)
+        is_twice.then_some(if is_metric(first) || !is_metric(second) { (first, second) } else { (second, first) })
     }
 
     /// The cells of each row by their columns.

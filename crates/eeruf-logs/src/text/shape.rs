@@ -6,11 +6,12 @@ use crate::names::{self, Meaning, meaning};
 use crate::value;
 
 /// Separation of a line into cells.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Shape {
     Separated(Separator),
     /// `left: 40, right: 80`.
     Keyed,
+    #[default]
     Json,
 }
 
@@ -123,8 +124,8 @@ pub(crate) fn separated(line: &str, separator: Separator) -> Option<Vec<String>>
     }
     if !line.bytes().any(|byte| byte == b'"') {
         let plain = |cell: &str| if has_brackets { without_half_brackets(cell.trim()) } else { cell.trim() }.to_owned();
-        // By a closure: cells are short.
-        return Some(line.split(|own: char| own == letter).map(plain).collect());
+        // A list of one: cells are short.
+        return Some(line.split([letter]).map(plain).collect());
     }
     let (mut cells, mut cell, mut is_quoted) = (vec![], String::new(), false);
     let mut letters = line.chars().peekable();
@@ -318,7 +319,7 @@ fn glued(line: &str) -> Option<Vec<(String, String)>> {
 }
 
 /// The values of a JSON object by their paths, or of an array by their places; nothing if it is neither.
-pub(crate) fn json(text: &str) -> Option<Vec<(String, String)>> {
+fn json(text: &str) -> Option<Vec<(String, String)>> {
     // Python writes what JSON has no number for.
     let plain = || text.replace("-Infinity", "null").replace("Infinity", "null").replace("NaN", "null");
     let found = serde_json::from_str(text.trim()).or_else(|_| serde_json::from_str(plain().trim()));
@@ -387,9 +388,12 @@ mod tests {
         assert_eq!(pairs("0=79cm 1=119 cm"), some(&["0|79cm", "1|119 cm"]));
         assert_eq!(pairs("0: 79cm 1: out of range"), None);
         assert_eq!(pairs("{'t': 0.05, 'left': None}"), some(&["t|0.05", "left|None"]));
-        assert_eq!(pairs("left 40 right 80"), some(&["left|40", "right|80"]));
-        assert_eq!(pairs("left 40 cm right none"), some(&["left|40 cm", "right|none"]));
-        let lines = ["40,80", "12:00:01", "left: 40 of many", "hello", "left 40", "left 40 right", "left 40 left 80"];
+        let arrow = "Left: 34 Right: 65 -> FORWARD ML=180";
+        assert_eq!(pairs(arrow), some(&["Left|34", "Right|65", "ML|180"]));
+        assert_eq!(pairs("2A0 [2] 22 78 :: Sonar(Front: 34 cm)"), some(&["Front|34 cm"]));
+        assert_eq!(pairs(">left:1700000000000:34\u{a7}cm"), some(&["timestamp|1700000000000", "left|34 cm"]));
+        let lines =
+            ["40,80", "12:00:01", "left: 40 of many", "hello", "left 40", "left 40 right 80", "left 40 left 80"];
         for line in lines.into_iter().chain(["sensor 1 40 cm", "0.1 left 40", "left right 40 80"]) {
             assert_eq!(pairs(line), None, "{line}");
         }
@@ -399,6 +403,7 @@ mod tests {
     fn separated_lines_keep_what_is_quoted() {
         assert_eq!(separated("\"40,5\", 80 ", Separator::Comma).unwrap(), ["40,5", "80"]);
         assert_eq!(separated("[40, 80]", Separator::Comma).unwrap(), ["40", "80"]);
+        assert_eq!(separated("left 40 cm right none", Separator::Spaces).unwrap(), ["left", "40 cm", "right", "none"]);
         assert_eq!(separated("(0.1, [40, 80])", Separator::Comma).unwrap(), ["0.1", "40", "80"]);
         assert_eq!(separated("t, left [cm]", Separator::Comma).unwrap(), ["t", "left [cm]"]);
         assert_eq!(separated("\"40,5, 80", Separator::Comma), None);

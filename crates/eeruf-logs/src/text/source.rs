@@ -5,9 +5,10 @@ use std::collections::VecDeque;
 use std::io::{self, BufRead, BufReader, Read};
 
 use super::boot::{Boot, is_noise};
+use super::esphome::EspHome;
+use super::groups::Groups;
 use super::lines::{Input, Line, Lines, Objects, Rewritten};
 use super::messages::{self, End};
-use super::rewriter::Rewriter;
 
 /// The records or lines of a text.
 pub(crate) struct Source<'a> {
@@ -20,13 +21,17 @@ pub(crate) struct Source<'a> {
     boot: Boot,
 }
 
+/// A line that seems to hold a reading and does not fit the form is a misfit.
+type Rewriter = Box<dyn FnMut(&str) -> Rewritten>;
+
 enum Form<'a> {
     Lines(Lines<'a>),
     Objects(Objects<'a>),
     Messages(Lines<'a>, End),
     /// An ArduPilot log as text: many tables in one file, of which one holds ranges.
     DataFlash(Lines<'a>),
-    Rewritten(Lines<'a>, Rewriter),
+    /// Lines that wrap readings in a form of their own, which has a name, rewritten into lines that are read anyway.
+    Rewritten(Lines<'a>, &'static str, Rewriter),
 }
 
 impl<'a> Source<'a> {
@@ -40,9 +45,9 @@ impl<'a> Source<'a> {
             if let Some(line) = self.pending.pop_front() {
                 return Ok(Some(line));
             }
-            let (line, rewriter) = match &mut self.form {
+            let (line, rewrite) = match &mut self.form {
                 Form::Lines(lines) => (lines.next()?, None),
-                Form::Rewritten(lines, rewriter) => (lines.next()?, Some(rewriter)),
+                Form::Rewritten(lines, _, rewrite) => (lines.next()?, Some(rewrite)),
                 Form::Objects(objects) => return objects.next(),
                 Form::Messages(lines, end) => return messages::next(lines, *end),
                 Form::DataFlash(lines) => {
@@ -59,9 +64,9 @@ impl<'a> Source<'a> {
                 continue;
             }
             self.may_be_noise &= line.text.trim().is_empty();
-            match rewriter {
+            match rewrite {
                 None => return Ok(Some(line)),
-                Some(rewriter) => match rewriter.rewrite(&line.text) {
+                Some(rewrite) => match rewrite(&line.text) {
                     Rewritten::Lines(texts) => {
                         self.pending.extend(texts.into_iter().map(|text| Line { text, ..line.clone() }));
                     }
@@ -80,19 +85,13 @@ impl<'a> Source<'a> {
             Form::Messages(_, End::Rule) => Some("messages, as `ros2 topic echo` prints them"),
             Form::Messages(..) => Some("blocks of name and value"),
             Form::DataFlash(_) => Some("RFND of an ArduPilot log"),
-            Form::Rewritten(_, rewriter) => Some(rewriter.form()),
+            Form::Rewritten(_, name, _) => Some(name),
         }
     }
 
     /// Returns true for records of which each is an object.
     pub(super) const fn is_of_objects(&self) -> bool {
         matches!(self.form, Form::Objects(_) | Form::Messages(..))
-    }
-
-    /// Returns true for a JSON document.
-    #[cfg(feature = "files")]
-    pub(crate) const fn is_document(&self) -> bool {
-        matches!(self.form, Form::Objects(_))
     }
 }
 
@@ -121,8 +120,8 @@ impl<'a> Form<'a> {
         if let Some(end) = End::of(&start) {
             return Ok(Self::Messages(Lines::new(input), end));
         }
-        if let Some(rewriter) = Rewriter::of(&start) {
-            return Ok(Self::Rewritten(Lines::new(input), rewriter));
+        if let Some((name, rewrite)) = rewriter(&start) {
+            return Ok(Self::Rewritten(Lines::new(input), name, rewrite));
         }
         if start.starts_with("FMT,") {
             return Ok(Self::DataFlash(Lines::new(input)));
@@ -148,6 +147,18 @@ impl<'a> Form<'a> {
         lines.has_hashes = has_hashes;
         Ok(if is_document { Self::Objects(Objects::new(lines.input)) } else { Self::Lines(lines) })
     }
+}
+
+/// The form of a text whose lines are rewritten, by its beginning.
+fn rewriter(start: &str) -> Option<(&'static str, Rewriter)> {
+    // The last line may not be whole, and the first may be cut.
+    let whole = start.rsplit_once('\n').map_or(start, |(whole, _)| whole);
+    let lines = whole.lines().map(str::trim).filter(|line| !line.is_empty() && !line.starts_with('#'));
+    if let Some(mut groups) = Groups::of(&lines.take(50).collect::<Vec<_>>()) {
+        return Some(("a table of many measurements a row", Box::new(move |line| groups.rewrite(line))));
+    }
+    let mut log = EspHome::is_in(start).then(EspHome::default)?;
+    Some(("ESPHome's log", Box::new(move |line| log.rewrite(line))))
 }
 
 /// A row of an ArduPilot log's table `RFND`, or its header.
